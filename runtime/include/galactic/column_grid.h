@@ -1,0 +1,99 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "galactic/vec3.h"
+
+namespace galactic {
+
+/// The answer to "may the sphere's centre be here?".
+enum class Clearance : std::uint8_t {
+  kFree = 0,     ///< Inside a free span, both ends included.
+  kBlocked = 1,  ///< Inside the grid and in no free span; also when a coordinate is NaN.
+  kOutside = 2,  ///< Outside the grid's rectangle or its range of heights: the grid does not know.
+};
+
+/// Clearance and the distances to contact along the vertical line.
+struct Contact {
+  Clearance clearance = Clearance::kBlocked;
+  /// How far the sphere can sink and rise before it touches; metres; 0 unless free.
+  float down = 0;
+  float up = 0;
+};
+
+/// Centres of n spheres in the world frame, as three arrays of the same length.
+struct SphereCentres {
+  std::span<const float> x;
+  std::span<const float> y;
+  std::span<const float> z;
+};
+
+/// Where the answers of a batched query go: arrays as long as the centres. `down` and `up` may both
+/// be empty when only the clearance is wanted.
+struct ContactArrays {
+  std::span<Clearance> clearance;
+  std::span<float> down;
+  std::span<float> up;
+};
+
+/// Where a grid's cells lie and how their codes translate; plain data, pointing into a pack.
+/// docs/packs.md describes the layout.
+struct ColumnGridLayout {
+  float radius = 0;
+  float spacing = 0;
+  float inverse_spacing = 0;
+  float min_x = 0;
+  float min_z = 0;
+  Span heights;
+  float quantum = 0;
+  float inverse_quantum = 0;
+  std::uint32_t columns_x = 0;
+  std::uint32_t columns_z = 0;
+  std::uint32_t tiles_x = 0;
+  const std::uint64_t* cells = nullptr;
+  /// nullptr when the whole grid fits in one range of codes.
+  const std::uint16_t* tile_base = nullptr;
+  const std::uint32_t* overflow_start = nullptr;
+  const Span* overflow_spans = nullptr;
+};
+
+/// The free heights of all columns of one scene for one sphere radius (paper, appendix G): a view
+/// into a mapped pack, cheap to copy, valid as long as the pack is open. All members are safe to
+/// call from many threads.
+class ColumnGrid {
+ public:
+  explicit ColumnGrid(const ColumnGridLayout& layout) : layout_(layout) {}
+
+  /// Sphere radius and cell edge, metres.
+  [[nodiscard]] float radius() const { return layout_.radius; }
+  [[nodiscard]] float spacing() const { return layout_.spacing; }
+  [[nodiscard]] std::uint32_t columnsX() const { return layout_.columns_x; }
+  [[nodiscard]] std::uint32_t columnsZ() const { return layout_.columns_z; }
+  /// The range of heights that the grid answers for.
+  [[nodiscard]] Span heights() const { return layout_.heights; }
+  [[nodiscard]] const ColumnGridLayout& layout() const { return layout_; }
+
+  /// Whether a sphere centred at `centre` (world frame) is free, judged by the nearest column.
+  [[nodiscard]] Clearance clearance(Vec3 centre) const noexcept;
+
+  /// The same with the distances down and up to contact in that column.
+  [[nodiscard]] Contact contact(Vec3 centre) const noexcept;
+
+  /// `contact` for each centre, eight at a time where the processor has AVX2 (chosen at run time).
+  /// The answers equal those of `contact` bit for bit. Neither allocates nor throws.
+  /// All spans of `centres` and `out.clearance` have one length; `out.down` and `out.up` have that
+  /// length or are both empty.
+  void contact(const SphereCentres& centres, const ContactArrays& out) const noexcept;
+
+  /// Number of free spans in column (i, k); i < columnsX(), k < columnsZ().
+  [[nodiscard]] std::size_t spanCount(std::uint32_t i, std::uint32_t k) const noexcept;
+
+  /// Copies the free spans of column (i, k), ascending, as many as `out` takes; returns how many.
+  std::size_t spans(std::uint32_t i, std::uint32_t k, std::span<Span> out) const noexcept;
+
+ private:
+  ColumnGridLayout layout_;
+};
+
+}  // namespace galactic
