@@ -1,0 +1,78 @@
+#include "closing_table.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace galactic::bake {
+namespace {
+
+std::string castCheckText(const BakedGrid& grid) {
+  if (!grid.cast_check) return "not checked";
+  const CastCheck& check = *grid.cast_check;
+  if (check.errors > 0) return fmt::format("{:.1f} mm WRONG", check.errors * 1e3);
+  return fmt::format("0 errors ({} of {} columns differ: method {:.1f} mm, ties {:.1f} mm)",
+                     check.columns_differing, check.columns, check.method * 1e3, check.ties * 1e3);
+}
+
+std::uint64_t gridBytes(const EncodedGrid& grid) {
+  return grid.cells.size() * sizeof(std::uint64_t) + grid.tile_base.size() * sizeof(std::uint16_t) +
+         grid.overflow_start.size() * sizeof(std::uint32_t) +
+         grid.overflow_spans.size() * sizeof(Span);
+}
+
+void printGrids(const BakedScene& scene) {
+  fmt::print("  {:>7} {:>9} {:>9} {:>9} {:>8} {:>9} {:>9} {:>9}  {}\n", "radius", "columns",
+             "raw", "spans", "MB", "room m3", "outside", "enclosed", "sphere casts");
+  for (const BakedGrid& grid : scene.grids) {
+    fmt::print("  {:>7} {:>9} {:>9} {:>9} {:>8.2f} {:>9.2f} {:>9.2f} {:>9.2f}  {}\n",
+               fmt::format("{}", grid.grid.frame.radius), grid.grid.frame.columnCount(),
+               grid.raw_spans, grid.grid.spans, static_cast<double>(gridBytes(grid.grid)) / 1e6,
+               grid.totals[0].volume, grid.totals[1].volume, grid.totals[2].volume,
+               castCheckText(grid));
+  }
+}
+
+void printDetails(const BakedScene& scene) {
+  constexpr std::array<const char*, kRegionCount> kRegionNames{"room", "outside", "enclosed"};
+  constexpr std::size_t kShown = 8;
+  for (const BakedGrid& grid : scene.grids) {
+    fmt::print("  radius {}: {} merged gaps, {} slivers, at most {} spans in a column, {} parts\n",
+               grid.grid.frame.radius, grid.merged_gaps, grid.grid.slivers,
+               grid.grid.max_spans_per_column, grid.components.size());
+    for (std::size_t i = 0; i < std::min(kShown, grid.components.size()); ++i) {
+      const Component& part = grid.components[i];
+      fmt::print("    {:>8} {:10.4f} m3  ({:.2f}, {:.2f}, {:.2f}) to ({:.2f}, {:.2f}, {:.2f})\n",
+                 kRegionNames[static_cast<std::size_t>(part.region)], part.volume,
+                 part.bounds.min.x, part.bounds.min.y, part.bounds.min.z, part.bounds.max.x,
+                 part.bounds.max.y, part.bounds.max.z);
+    }
+  }
+}
+
+}  // namespace
+
+void printClosingTable(const BakeOutcome& outcome, Verbosity verbosity) {
+  const BakedScene& scene = outcome.scene;
+  const Bounds& bounds = scene.bounds;
+  fmt::print("{} -> {}\n", outcome.input.string(),
+             outcome.pack_bytes > 0 ? outcome.output.string() : "(dry run)");
+  fmt::print("  {}, {}; {} meshes, {} instances\n", scene.format, outcome.convention, scene.meshes,
+             scene.instances);
+  fmt::print("  {} triangles ({} degenerate, {} duplicate dropped), {:.2f} x {:.2f} x {:.2f} m, "
+             "y from {:.3f} to {:.3f} m\n",
+             scene.triangles, scene.counts.degenerate, scene.counts.duplicate,
+             bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y, bounds.max.z - bounds.min.z,
+             bounds.min.y, bounds.max.y);
+  printGrids(scene);
+  if (verbosity == Verbosity::kVerbose) printDetails(scene);
+  for (const std::string& warning : scene.warnings) fmt::print("  warning: {}\n", warning);
+  const StageTimes& t = outcome.times;
+  const double total = t.import + t.clean + t.columns + t.regions + t.encode + t.check + t.write;
+  fmt::print("  {:.3f} s: import {:.3f}, clean {:.3f}, columns {:.3f}, regions {:.3f}, encode "
+             "{:.3f}, check {:.3f}, write {:.3f}; {:.2f} MB\n",
+             total, t.import, t.clean, t.columns, t.regions, t.encode, t.check, t.write,
+             static_cast<double>(outcome.pack_bytes) / 1e6);
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,17 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <initializer_list>
+#include <span>
+
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+/// Writes `parts` one after the other to `path` through a temporary file beside it, fsync and
+/// rename: a reader sees the old file or the new one, never half of it. On failure (kIo) the old
+/// file is intact and the temporary file is gone.
+[[nodiscard]] Result<void> writeFileAtomically(
+    const std::filesystem::path& path, std::initializer_list<std::span<const std::byte>> parts);
+
+}  // namespace galactic::bake

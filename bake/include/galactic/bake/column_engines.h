@@ -1,0 +1,75 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "galactic/bake/columns.h"
+#include "galactic/bake/triangle_mesh.h"
+
+namespace galactic::bake {
+
+/// What a free span promises; see schema/column_grid.fbs.
+enum class Coverage { kColumn, kCell };
+
+struct ExactOptions {
+  /// Threads; the result does not depend on it.
+  unsigned jobs = 1;
+  Coverage coverage = Coverage::kColumn;
+};
+
+struct ExactColumns {
+  Columns columns;
+  /// Gaps between blocked intervals closed because they were within kMergeTolerance.
+  std::uint64_t merged_gaps = 0;
+};
+
+/// All free spans of all columns in closed form: the heights at which a ball touches a triangle are
+/// one interval per column (the convex sum of triangle and ball), so a column's blocked heights are
+/// a union of intervals. Exact to float rounding (about 1e-6 m); a surface at distance exactly the
+/// radius is a tie and may fall on either side. With Coverage::kCell the ball is swept over the
+/// whole cell and padded by kMergeTolerance. Memory is proportional to the columns.
+[[nodiscard]] ExactColumns exactColumns(const TriangleMesh& mesh, const GridFrame& frame,
+                                        const ExactOptions& options = {});
+
+/// A column's place in its grid.
+struct ColumnIndex {
+  std::uint32_t i = 0;
+  std::uint32_t k = 0;
+};
+
+/// The published method (paper, appendix G), as an independent check: overlap tests of a sphere
+/// every step, padded, and sphere casts up and down.
+struct BulletCastOptions {
+  /// Vertical step while searching inside an obstacle, metres.
+  float step = 0.01F;
+  /// Added to the radius in overlap tests only, metres.
+  float contact_pad = 0.002F;
+};
+
+/// A mesh as Bullet sees it, margins zero, ready to cast spheres along columns. Not thread-safe:
+/// one per thread. (Pimpl: no Bullet type leaves its source file.)
+class BulletColumnCaster {
+ public:
+  explicit BulletColumnCaster(const TriangleMesh& mesh, const BulletCastOptions& options = {});
+  ~BulletColumnCaster();
+  BulletColumnCaster(BulletColumnCaster&&) noexcept;
+  BulletColumnCaster& operator=(BulletColumnCaster&&) noexcept;
+
+  /// Free spans of one column of `frame`, ascending.
+  [[nodiscard]] std::vector<Span> column(const GridFrame& frame, ColumnIndex at) const;
+
+ private:
+  class World;
+  std::unique_ptr<World> world_;
+};
+
+/// All columns by the published method. `jobs` threads; the result does not depend on it.
+[[nodiscard]] Columns bulletColumns(const TriangleMesh& mesh, const GridFrame& frame,
+                                    unsigned jobs);
+
+/// All columns by vertical Embree rays at triangles dilated by the radius (user geometry whose
+/// intersection is the closed-form interval). `jobs` threads; the result does not depend on it.
+[[nodiscard]] Columns embreeColumns(const TriangleMesh& mesh, const GridFrame& frame,
+                                    unsigned jobs);
+
+}  // namespace galactic::bake

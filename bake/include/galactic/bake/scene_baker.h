@@ -1,0 +1,82 @@
+#pragma once
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "galactic/bake/cast_check.h"
+#include "galactic/bake/column_engines.h"
+#include "galactic/bake/free_space.h"
+#include "galactic/bake/grid_encoder.h"
+#include "galactic/bake/source_asset.h"
+#include "galactic/bake/triangle_mesh.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+/// Which method finds the free spans.
+enum class Engine { kExact, kBullet, kEmbree };
+
+struct SceneBakeOptions {
+  /// Metres, ascending, 1 to 8 of them.
+  std::vector<float> radii{0.015F, 0.05F, 0.12F};
+  float spacing = 0.03F;
+  Engine engine = Engine::kExact;
+  Coverage coverage = Coverage::kColumn;
+  FreeSpaceOptions free_space;
+  /// Columns per grid to replay with sphere casts; 0 switches the check off.
+  std::uint32_t check_columns = 128;
+  unsigned jobs = 1;
+};
+
+/// How long each stage took, seconds of wall clock.
+struct StageTimes {
+  double import = 0;
+  double clean = 0;
+  double columns = 0;
+  double regions = 0;
+  double encode = 0;
+  double check = 0;
+  double write = 0;
+};
+
+/// One grid and its statistics.
+struct BakedGrid {
+  EncodedGrid grid;
+  /// Every component of the free space by falling volume.
+  std::vector<Component> components;
+  std::uint64_t raw_spans = 0;
+  std::uint64_t merged_gaps = 0;
+  std::array<RegionTotals, kRegionCount> totals{};
+  std::optional<CastCheck> cast_check;
+};
+
+/// Everything of a scene pack but its provenance.
+struct BakedScene {
+  std::string name;
+  /// Format of the main input, and how many meshes and placements it had.
+  std::string format;
+  std::uint32_t meshes = 0;
+  std::uint32_t instances = 0;
+  CleaningCounts counts;
+  std::uint64_t triangles = 0;
+  Bounds bounds;
+  Coverage coverage = Coverage::kColumn;
+  std::vector<BakedGrid> grids;
+  /// What the user should look at: parts of the free space left out, and so on.
+  std::vector<std::string> warnings;
+};
+
+/// Told what is being done and how far it is (0 to 1); may be called from one thread at a time only.
+using Progress = std::function<void(std::string_view stage, double fraction)>;
+
+/// Bakes all column grids of one scene. Adds the time of its stages to `times`. Fails with
+/// kInvalidInput on options or geometry that cannot give a grid. The result depends on neither the
+/// number of jobs nor the processor.
+[[nodiscard]] Result<BakedScene> bakeScene(const SourceAsset& asset,
+                                           const SceneBakeOptions& options, StageTimes& times,
+                                           const Progress& progress);
+
+}  // namespace galactic::bake

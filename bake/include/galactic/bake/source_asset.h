@@ -1,0 +1,81 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "galactic/vec3.h"
+
+namespace galactic::bake {
+
+/// Corner indices of one triangle, counter-clockwise seen from outside.
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// A row-major affine transform: three rows of (linear part | translation); metres.
+using Affine = std::array<double, 12>;
+
+/// A surface appearance as the source file states it, for the render bake.
+struct SourceMaterial {
+  std::string name;
+  /// Linear RGBA, 0 to 1.
+  std::array<float, 4> base_color{1, 1, 1, 1};
+  /// Path relative to the source file, "*N" for embedded texture N, or empty.
+  std::string base_color_texture;
+  bool two_sided = false;
+};
+
+/// An image stored inside the source file, still encoded.
+struct EmbeddedTexture {
+  /// "png", "jpg" and so on.
+  std::string format;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// One mesh in its own frame.
+struct SourceMesh {
+  std::string name;
+  std::vector<Vec3> positions;
+  /// Texture coordinates, one per position or none.
+  std::vector<std::array<float, 2>> uvs;
+  /// Linear RGBA, one per position or none.
+  std::vector<std::array<float, 4>> colors;
+  std::vector<Triangle> triangles;
+  /// Index into SourceAsset::materials.
+  std::uint32_t material = 0;
+};
+
+/// One placement of a mesh.
+struct SourceInstance {
+  /// Name of the node that places it.
+  std::string name;
+  std::uint32_t mesh = 0;
+  Affine world_from_mesh{};
+};
+
+/// One file that was read.
+struct SourceFile {
+  /// Relative to the folder of the main input.
+  std::string name;
+  std::uint64_t bytes = 0;
+  std::uint64_t hash_low = 0;
+  std::uint64_t hash_high = 0;
+};
+
+/// What an importer hands to the bakers: neutral, in the world frame (Y up, metres).
+struct SourceAsset {
+  /// Main input's file name without its extension.
+  std::string name;
+  /// Format as recognised, for example "glTF 2.0".
+  std::string format;
+  /// How axes and unit were read, for the closing table: for example "Z up (file), unit 0.01 m".
+  std::string convention;
+  std::vector<SourceMesh> meshes;
+  std::vector<SourceInstance> instances;
+  std::vector<SourceMaterial> materials;
+  std::vector<EmbeddedTexture> textures;
+  std::vector<SourceFile> files;
+  /// One sentence each: missing textures, a doubtful unit and so on.
+  std::vector<std::string> warnings;
+};
+
+}  // namespace galactic::bake

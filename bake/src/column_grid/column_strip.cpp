@@ -1,0 +1,79 @@
+#include "column_grid/column_strip.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "column_grid/blocked_intervals.h"
+
+namespace galactic::bake {
+namespace {
+
+constexpr float kEmptyLo = std::numeric_limits<float>::max();
+constexpr float kEmptyHi = std::numeric_limits<float>::lowest();
+
+}  // namespace
+
+ColumnStrip::ColumnStrip(const GridFrame& frame, std::uint32_t first_row, std::uint32_t end_row)
+    : frame_(frame),
+      first_row_(first_row),
+      end_row_(end_row),
+      stride_(frame.columns_x + kPadding),
+      lo_(stride_ * (end_row - first_row), kEmptyLo),
+      hi_(stride_ * (end_row - first_row), kEmptyHi),
+      head_(stride_ * (end_row - first_row), -1) {}
+
+void ColumnStrip::spill(std::uint32_t row, std::uint32_t column, float lo, float hi) {
+  const std::size_t at = rowStart(row) + column;
+  for (std::int32_t index = head_[at]; index >= 0;) {
+    Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (lo <= node.hi && hi >= node.lo) {
+      const float merged_lo = std::min(lo, node.lo);
+      const float merged_hi = std::max(hi, node.hi);
+      node.lo = lo_[at];
+      node.hi = hi_[at];
+      lo_[at] = merged_lo;
+      hi_[at] = merged_hi;
+      return;
+    }
+    index = node.next;
+  }
+  nodes_.push_back({lo_[at], hi_[at], head_[at]});
+  head_[at] = static_cast<std::int32_t>(nodes_.size() - 1);
+  lo_[at] = lo;
+  hi_[at] = hi;
+}
+
+void ColumnStrip::add(std::uint32_t row, std::uint32_t column, float lo, float hi) {
+  const std::size_t at = rowStart(row) + column;
+  const bool empty = lo_[at] > hi_[at];
+  if (!empty && (hi_[at] < lo || hi < lo_[at])) {
+    spill(row, column, lo, hi);
+    return;
+  }
+  lo_[at] = std::min(lo_[at], lo);
+  hi_[at] = std::max(hi_[at], hi);
+}
+
+std::uint64_t ColumnStrip::appendFree(std::vector<std::uint32_t>& counts,
+                                      std::vector<Span>& spans) const {
+  std::uint64_t merged_gaps = 0;
+  std::vector<BlockedInterval> blocked;
+  for (std::uint32_t row = first_row_; row < end_row_; ++row) {
+    for (std::uint32_t column = 0; column < frame_.columns_x; ++column) {
+      const std::size_t at = rowStart(row) + column;
+      blocked.clear();
+      if (lo_[at] <= hi_[at]) blocked.push_back({lo_[at], hi_[at]});
+      for (std::int32_t index = head_[at]; index >= 0;) {
+        const Node& node = nodes_[static_cast<std::size_t>(index)];
+        blocked.push_back({node.lo, node.hi});
+        index = node.next;
+      }
+      const std::size_t before = spans.size();
+      merged_gaps += appendFreeSpans(blocked, frame_.heights, spans);
+      counts.push_back(static_cast<std::uint32_t>(spans.size() - before));
+    }
+  }
+  return merged_gaps;
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "column_grid/assemble_columns.h"
+#include "column_grid/cell_columns.h"
+#include "column_grid/prepare_triangle.h"
+#include "column_grid/triangle_bins.h"
+#include "galactic/bake/column_engines.h"
+#include "galactic/bake/triangle_interval.h"
+
+namespace galactic::bake {
+namespace {
+
+using Corners = std::array<Point, 3>;
+
+/// Where the columns' centres stand relative to the grid's corner: x split in two floats, so that
+/// differences to a triangle's corner lose nothing, and z in double.
+struct Centres {
+  std::vector<float> x_high;
+  std::vector<float> x_low;
+  std::vector<double> z;
+
+  explicit Centres(const GridFrame& frame) {
+    for (std::uint32_t i = 0; i < frame.columns_x + ColumnStrip::kPadding; ++i) {
+      const double x = frame.centreX(i) - static_cast<double>(frame.min_x);
+      x_high.push_back(static_cast<float>(x));
+      x_low.push_back(static_cast<float>(x - static_cast<double>(x_high.back())));
+    }
+    for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
+      z.push_back(frame.centreZ(k) - static_cast<double>(frame.min_z));
+    }
+  }
+};
+
+/// The extent in x of the part of a triangle between two values of z; lo > hi if there is none.
+HeightInterval extentBetween(const Corners& corners, double min_z, double max_z) {
+  HeightInterval extent{std::numeric_limits<double>::infinity(),
+                        -std::numeric_limits<double>::infinity()};
+  const auto include = [&](double x) {
+    extent.lo = std::min(extent.lo, x);
+    extent.hi = std::max(extent.hi, x);
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point& a = corners[i];
+    const Point& b = corners[(i + 1) % 3];
+    if (a[2] >= min_z && a[2] <= max_z) include(a[0]);
+    for (const double z : {min_z, max_z}) {
+      if ((a[2] < z) == (b[2] < z)) continue;
+      include(a[0] + (z - a[2]) / (b[2] - a[2]) * (b[0] - a[0]));
+    }
+  }
+  return extent;
+}
+
+/// Scatters the triangles of a mesh into strips of one grid.
+class MeshScatter {
+ public:
+  MeshScatter(const TriangleMesh& mesh, const GridFrame& frame)
+      : mesh_(mesh), frame_(frame), centres_(frame), kernels_(fastestScatter()) {}
+
+  /// Adds the blocked heights of triangle `index` to the rows of `strip`.
+  void operator()(std::uint32_t index, ColumnStrip& strip) const {
+    const Corners corners = cornersOf(index);
+    const ScatterTriangle triangle = prepareTriangle(corners, frame_.radius);
+    const ScatterTarget target = targetOf(strip);
+    const double r = static_cast<double>(frame_.radius);
+    const auto [min_x, max_x] = std::minmax({corners[0][0], corners[1][0], corners[2][0]});
+    const auto [min_z, max_z] = std::minmax({corners[0][2], corners[1][2], corners[2][2]});
+    const IndexRange rows = rowRange(min_z - r, max_z + r);
+    const IndexRange columns = columnRange(min_x - r, max_x + r);
+    const ScatterBlock box{.first_row = std::max(rows.first, strip.firstRow()),
+                           .end_row = std::min(rows.end, strip.endRow()),
+                           .first_column = columns.first,
+                           .end_column = columns.end};
+    // The box of a small triangle is hardly bigger than the triangle grown by the radius; of a big
+    // one, each row takes only what it needs.
+    const double small = 4 * r + 8 * static_cast<double>(frame_.spacing);
+    if (max_x - min_x < small || max_z - min_z < small) {
+      scatter(triangle, box, target);
+      return;
+    }
+    for (std::uint32_t row = box.first_row; row < box.end_row; ++row) {
+      const HeightInterval x = extentBetween(corners, centres_.z[row] - r, centres_.z[row] + r);
+      const IndexRange run = columnRange(x.lo - r, x.hi + r);
+      scatter(triangle, {row, row + 1, run.first, run.end}, target);
+    }
+  }
+
+ private:
+  [[nodiscard]] Corners cornersOf(std::uint32_t index) const {
+    Corners corners{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3& corner = mesh_.vertices[mesh_.triangles[index][i]];
+      corners[i] = {static_cast<double>(corner.x) - static_cast<double>(frame_.min_x),
+                    static_cast<double>(corner.y),
+                    static_cast<double>(corner.z) - static_cast<double>(frame_.min_z)};
+    }
+    return corners;
+  }
+
+  [[nodiscard]] IndexRange rowRange(double lo, double hi) const {
+    return centresWithin(lo, hi, static_cast<double>(frame_.spacing), frame_.columns_z);
+  }
+  [[nodiscard]] IndexRange columnRange(double lo, double hi) const {
+    return centresWithin(lo, hi, static_cast<double>(frame_.spacing), frame_.columns_x);
+  }
+
+  [[nodiscard]] ScatterTarget targetOf(ColumnStrip& strip) const {
+    return {.lo = strip.lo(),
+            .hi = strip.hi(),
+            .first_row = strip.firstRow(),
+            .stride = strip.stride(),
+            .x_high = centres_.x_high.data(),
+            .x_low = centres_.x_low.data(),
+            .z = centres_.z.data(),
+            .strip = &strip};
+  }
+
+  void scatter(const ScatterTriangle& triangle, const ScatterBlock& block,
+               const ScatterTarget& target) const {
+    if (block.first_column >= block.end_column) return;
+    const bool narrow = block.end_column - block.first_column <= kNarrowColumns;
+    (narrow ? kernels_.narrow : kernels_.wide)(triangle, block, frame_.radius, target);
+  }
+
+  const TriangleMesh& mesh_;
+  const GridFrame& frame_;
+  Centres centres_;
+  ScatterFunctions kernels_;
+};
+
+}  // namespace
+
+ExactColumns exactColumns(const TriangleMesh& mesh, const GridFrame& frame,
+                          const ExactOptions& options) {
+  if (options.coverage == Coverage::kCell) return cellColumns(mesh, frame, options.jobs);
+  const TriangleBins bins(mesh, frame, kRowsPerStrip, static_cast<double>(frame.radius));
+  const MeshScatter scatter(mesh, frame);
+  return assembleColumns(frame, options.jobs, bins.stripCount(),
+                         [&](std::uint32_t index, ColumnStrip& strip) {
+                           for (const std::uint32_t triangle : bins.triangles(index)) {
+                             scatter(triangle, strip);
+                           }
+                         });
+}
+
+}  // namespace galactic::bake

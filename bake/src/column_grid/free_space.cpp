@@ -1,0 +1,212 @@
+#include "galactic/bake/free_space.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace galactic::bake {
+namespace {
+
+/// Disjoint sets over span indices; the smallest index of a set is its root.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), 0U);
+  }
+
+  std::uint32_t root(std::uint32_t element) {
+    while (parent_[element] != element) {
+      parent_[element] = parent_[parent_[element]];
+      element = parent_[element];
+    }
+    return element;
+  }
+
+  void join(std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t root_a = root(a);
+    const std::uint32_t root_b = root(b);
+    parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+void joinColumns(const Columns& columns, std::size_t a, std::size_t b, DisjointSets& sets) {
+  std::uint32_t span_a = columns.first[a];
+  std::uint32_t span_b = columns.first[b];
+  while (span_a < columns.first[a + 1] && span_b < columns.first[b + 1]) {
+    const Span& in_a = columns.spans[span_a];
+    const Span& in_b = columns.spans[span_b];
+    if (std::min(in_a.hi, in_b.hi) > std::max(in_a.lo, in_b.lo)) sets.join(span_a, span_b);
+    if (in_a.hi < in_b.hi) {
+      ++span_a;
+    } else {
+      ++span_b;
+    }
+  }
+}
+
+/// The component of every span, numbered in the order of their first spans.
+struct Labels {
+  std::vector<std::uint32_t> of_span;
+  std::uint32_t count = 0;
+};
+
+Labels labelComponents(const Columns& columns) {
+  const GridFrame& frame = columns.frame;
+  DisjointSets sets(columns.spans.size());
+  for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
+    for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
+      const std::size_t at = columns.index(i, k);
+      if (i > 0) joinColumns(columns, at - 1, at, sets);
+      if (k > 0) joinColumns(columns, at - frame.columns_x, at, sets);
+    }
+  }
+  Labels labels;
+  labels.of_span.resize(columns.spans.size());
+  for (std::uint32_t span = 0; span < columns.spans.size(); ++span) {
+    const std::uint32_t root = sets.root(span);
+    labels.of_span[span] = root == span ? labels.count++ : labels.of_span[root];
+  }
+  return labels;
+}
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+std::vector<Component> measure(const Columns& columns, const Labels& labels) {
+  const GridFrame& frame = columns.frame;
+  Component empty;
+  empty.bounds = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  std::vector<Component> components(labels.count, empty);
+  const double area = static_cast<double>(frame.spacing) * static_cast<double>(frame.spacing);
+  for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
+    const auto z = static_cast<float>(frame.centreZ(k));
+    for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
+      const auto x = static_cast<float>(frame.centreX(i));
+      const bool border =
+          i == 0 || k == 0 || i + 1 == frame.columns_x || k + 1 == frame.columns_z;
+      const std::size_t at = columns.index(i, k);
+      for (std::uint32_t span = columns.first[at]; span < columns.first[at + 1]; ++span) {
+        Component& component = components[labels.of_span[span]];
+        const Span& heights = columns.spans[span];
+        component.touches_border = component.touches_border || border;
+        ++component.spans;
+        component.volume +=
+            area * (static_cast<double>(heights.hi) - static_cast<double>(heights.lo));
+        Bounds& bounds = component.bounds;
+        bounds.min = {std::min(bounds.min.x, x), std::min(bounds.min.y, heights.lo),
+                      std::min(bounds.min.z, z)};
+        bounds.max = {std::max(bounds.max.x, x), std::max(bounds.max.y, heights.hi),
+                      std::max(bounds.max.z, z)};
+      }
+    }
+  }
+  return components;
+}
+
+tl::unexpected<Error> seedFailure(const Vec3& seed, const GridFrame& frame,
+                                  const std::string& finding) {
+  return fail(ErrorCode::kInvalidInput, "--seed",
+              fmt::format("({}, {}, {}) is {} for radius {} m; give a point where a sphere of that "
+                          "radius fits, in metres with y up",
+                          seed.x, seed.y, seed.z, finding, frame.radius));
+}
+
+/// Index of the span that holds `seed`.
+Result<std::uint32_t> spanAt(const Columns& columns, const Vec3& seed) {
+  const GridFrame& frame = columns.frame;
+  const auto cell = [&](float at, float min) {
+    return std::floor((static_cast<double>(at) - static_cast<double>(min)) /
+                      static_cast<double>(frame.spacing));
+  };
+  const double i = cell(seed.x, frame.min_x);
+  const double k = cell(seed.z, frame.min_z);
+  const bool inside = i >= 0 && k >= 0 && i < static_cast<double>(frame.columns_x) &&
+                      k < static_cast<double>(frame.columns_z);
+  if (!inside) return seedFailure(seed, frame, "outside the scene");
+  const std::size_t at =
+      columns.index(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k));
+  for (std::uint32_t span = columns.first[at]; span < columns.first[at + 1]; ++span) {
+    if (seed.y >= columns.spans[span].lo && seed.y <= columns.spans[span].hi) return span;
+  }
+  std::string free = "blocked";
+  for (const Span& span : columns.column(at)) {
+    free += fmt::format("{} {:.3f} to {:.3f} m", free == "blocked" ? " (free there:" : ",",
+                        span.lo, span.hi);
+  }
+  if (free != "blocked") free += ")";
+  return seedFailure(seed, frame, free);
+}
+
+/// Which components are the room.
+Result<std::vector<bool>> chooseRooms(const Columns& columns, const Labels& labels,
+                                      const std::vector<Component>& components,
+                                      const FreeSpaceOptions& options) {
+  std::vector<bool> is_room(components.size(), false);
+  if (!options.seeds.empty()) {
+    for (const Vec3& seed : options.seeds) {
+      const auto span = spanAt(columns, seed);
+      if (!span) return tl::unexpected(span.error());
+      is_room[labels.of_span[*span]] = true;
+    }
+    return is_room;
+  }
+  std::vector<std::uint32_t> order(components.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return components[a].volume > components[b].volume;
+  });
+  const std::size_t rooms = std::min<std::size_t>(options.components, order.size());
+  for (std::size_t rank = 0; rank < rooms; ++rank) is_room[order[rank]] = true;
+  return is_room;
+}
+
+Columns filterSpans(const Columns& columns, const Labels& labels,
+                    const std::vector<Component>& components, Keep keep) {
+  if (keep == Keep::kAll) return columns;
+  Columns kept;
+  kept.frame = columns.frame;
+  kept.first.reserve(columns.first.size());
+  kept.first.push_back(0);
+  for (std::size_t at = 0; at + 1 < columns.first.size(); ++at) {
+    for (std::uint32_t span = columns.first[at]; span < columns.first[at + 1]; ++span) {
+      if (components[labels.of_span[span]].region == Region::kRoom) {
+        kept.spans.push_back(columns.spans[span]);
+      }
+    }
+    kept.first.push_back(static_cast<std::uint32_t>(kept.spans.size()));
+  }
+  return kept;
+}
+
+}  // namespace
+
+Result<FreeSpace> chooseFreeSpace(const Columns& columns, const FreeSpaceOptions& options) {
+  const Labels labels = labelComponents(columns);
+  std::vector<Component> components = measure(columns, labels);
+  const auto is_room = chooseRooms(columns, labels, components, options);
+  if (!is_room) return tl::unexpected(is_room.error());
+  FreeSpace result;
+  for (std::size_t index = 0; index < components.size(); ++index) {
+    Component& component = components[index];
+    component.region = (*is_room)[index]          ? Region::kRoom
+                       : component.touches_border ? Region::kOutside
+                                                  : Region::kEnclosed;
+    RegionTotals& totals = result.totals[static_cast<std::size_t>(component.region)];
+    ++totals.components;
+    totals.spans += component.spans;
+    totals.volume += component.volume;
+  }
+  result.columns = filterSpans(columns, labels, components, options.keep);
+  std::stable_sort(components.begin(), components.end(),
+                   [](const Component& a, const Component& b) { return a.volume > b.volume; });
+  result.components = std::move(components);
+  return result;
+}
+
+}  // namespace galactic::bake

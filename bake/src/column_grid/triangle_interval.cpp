@@ -1,0 +1,286 @@
+#include "galactic/bake/triangle_interval.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace galactic::bake {
+namespace {
+
+// A triangle grown by a ball is the union of convex pieces: a ball at each corner, a cylinder along
+// each edge, and the prism that the face sweeps when it moves by the radius along its normal. A
+// vertical line meets each piece in one interval, and their hull is the answer. Every piece is
+// computed so that its ends lie within rounding of the grown triangle, however thin or steep the
+// triangle is; what a badly conditioned piece loses, its neighbours cover.
+
+using Triangle = std::array<Point, 3>;
+
+/// A triangle whose altitude is smaller than this part of its longest edge has no usable normal;
+/// its edges cover it to within far less than rounding.
+constexpr double kFlatness = 1e-12;
+
+Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+Point plusScaled(const Point& a, double factor, const Point& b) {
+  return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]};
+}
+
+double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Point cross(const Point& a, const Point& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// The triangle with its first corner at the origin: rounding then follows the triangle's size, not
+/// its place in the world.
+Triangle relativeToFirstCorner(const Triangle& triangle) {
+  return {Point{0, 0, 0}, minus(triangle[1], triangle[0]), minus(triangle[2], triangle[0])};
+}
+
+/// A vertical line.
+struct Line {
+  double x = 0;
+  double z = 0;
+};
+
+/// The smallest interval that holds everything added to it.
+struct Hull {
+  double lo = std::numeric_limits<double>::infinity();
+  double hi = -std::numeric_limits<double>::infinity();
+
+  void add(double from, double to) {
+    lo = std::min(lo, from);
+    hi = std::max(hi, to);
+  }
+};
+
+/// The part of a line that satisfies all conditions so far.
+struct Clip {
+  double lo = -std::numeric_limits<double>::infinity();
+  double hi = std::numeric_limits<double>::infinity();
+
+  /// Keeps the heights t with constant + slope * t > 0.
+  void keepPositive(double constant, double slope) {
+    if (slope > 0) {
+      lo = std::max(lo, -constant / slope);
+    } else if (slope < 0) {
+      hi = std::min(hi, -constant / slope);
+    } else if (!(constant > 0)) {
+      hi = -std::numeric_limits<double>::infinity();
+    }
+  }
+};
+
+/// Coordinates in a triangle's plane: along its longest edge, and along the altitude on that edge.
+/// In them the corners are (0, 0), (length, 0) and (foot, height). Unlike the cross product of two
+/// edges, this stays perpendicular to the longest edge on needles.
+struct FaceFrame {
+  Point origin{};
+  Point along{};
+  Point across{};
+  double length = 0;
+  double foot = 0;
+  double height = 0;
+};
+
+/// None when the triangle is too flat to have a normal.
+std::optional<FaceFrame> makeFaceFrame(const Triangle& triangle) {
+  std::size_t longest = 0;
+  double longest_squared = -1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point edge = minus(triangle[(k + 1) % 3], triangle[k]);
+    if (const double squared = dot(edge, edge); squared > longest_squared) {
+      longest = k;
+      longest_squared = squared;
+    }
+  }
+  if (!(longest_squared > 0)) return std::nullopt;
+  FaceFrame frame;
+  frame.origin = triangle[longest];
+  frame.length = std::sqrt(longest_squared);
+  const Point edge = minus(triangle[(longest + 1) % 3], frame.origin);
+  for (std::size_t c = 0; c < 3; ++c) frame.along[c] = edge[c] / frame.length;
+  const Point apex = minus(triangle[(longest + 2) % 3], frame.origin);
+  frame.foot = dot(apex, frame.along);
+  Point altitude = plusScaled(apex, -frame.foot, frame.along);
+  // Once more: on a needle the first subtraction leaves rounding of the size of the altitude.
+  altitude = plusScaled(altitude, -dot(altitude, frame.along), frame.along);
+  frame.height = std::sqrt(dot(altitude, altitude));
+  if (!(frame.height > kFlatness * frame.length)) return std::nullopt;
+  for (std::size_t c = 0; c < 3; ++c) frame.across[c] = altitude[c] / frame.height;
+  return frame;
+}
+
+/// Ball around a corner.
+void addCorner(const Point& corner, Line line, double radius, Hull& hull) {
+  const double dx = line.x - corner[0];
+  const double dz = line.z - corner[2];
+  const double rest = radius * radius - dx * dx - dz * dz;
+  if (!(rest > 0)) return;
+  const double half = std::sqrt(rest);
+  hull.add(corner[1] - half, corner[1] + half);
+}
+
+/// Cylinder along an edge, cut off square at both ends. A vertical edge adds nothing: the balls at
+/// its corners have the same hull.
+void addEdge(const Point& from, const Point& to, Line line, double radius, Hull& hull) {
+  const Point edge = minus(to, from);
+  const double run = std::hypot(edge[0], edge[2]);
+  if (!(run > 0)) return;
+  const double hx = edge[0] / run;
+  const double hz = edge[2] / run;
+  const double qx = line.x - from[0];
+  const double qz = line.z - from[2];
+  // The common perpendicular of the edge and a vertical line is horizontal.
+  const double aside = qz * hx - qx * hz;
+  const double rest = radius * radius - aside * aside;
+  if (!(rest > 0)) return;
+  const double along = qx * hx + qz * hz;
+  const double length = std::hypot(run, edge[1]);
+  const double middle = from[1] + along * (edge[1] / run);
+  const double half = std::sqrt(rest) * (length / run);
+  Clip clip{middle - half, middle + half};
+  // Between the planes square to the edge through its ends.
+  const double start = along * run - from[1] * edge[1];
+  clip.keepPositive(start, edge[1]);
+  clip.keepPositive(length * length - start, -edge[1]);
+  if (clip.lo < clip.hi) hull.add(clip.lo, clip.hi);
+}
+
+/// Prism: the face moved by up to the radius to both sides along its normal.
+void addFace(const FaceFrame& face, Line line, double radius, Hull& hull) {
+  const Point foot = minus({line.x, 0, line.z}, face.origin);
+  const Point normal = cross(face.along, face.across);
+  const double off = dot(normal, foot);
+  const double along = dot(face.along, foot);
+  const double across = dot(face.across, foot);
+  Clip clip;
+  clip.keepPositive(radius - off, -normal[1]);
+  clip.keepPositive(radius + off, normal[1]);
+  clip.keepPositive(across, face.across[1]);
+  clip.keepPositive(face.height * along - face.foot * across,
+                    face.height * face.along[1] - face.foot * face.across[1]);
+  const double beyond = face.length - face.foot;
+  clip.keepPositive(face.height * (face.length - along) - beyond * across,
+                    -face.height * face.along[1] - beyond * face.across[1]);
+  if (clip.lo < clip.hi) hull.add(clip.lo, clip.hi);
+}
+
+/// All pieces of a grown triangle on one line; `corners` relative to the first.
+void addTriangle(const Triangle& corners, const std::optional<FaceFrame>& face, Line line,
+                 double radius, Hull& hull) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    addCorner(corners[k], line, radius, hull);
+    addEdge(corners[k], corners[(k + 1) % 3], line, radius, hull);
+  }
+  if (face) addFace(*face, line, radius, hull);
+}
+
+std::optional<HeightInterval> inWorld(const Hull& hull, double height) {
+  if (!(hull.hi > hull.lo)) return std::nullopt;
+  return HeightInterval{hull.lo + height, hull.hi + height};
+}
+
+/// A square of centres.
+struct Cell {
+  Line centre;
+  double half = 0;
+};
+
+/// The centre of the cell nearest to a corner reaches furthest up and down on its ball.
+void addCornerOverCell(const Point& corner, const Cell& cell, double radius, Hull& hull) {
+  const double dx = std::max(std::abs(cell.centre.x - corner[0]) - cell.half, 0.0);
+  const double dz = std::max(std::abs(cell.centre.z - corner[2]) - cell.half, 0.0);
+  addCorner(corner, {corner[0] + dx, corner[2] + dz}, radius, hull);
+}
+
+/// Where a centre on one side of the cell touches the edge with a contact normal square to both: a
+/// height can be extreme there between the cell's corners. `side_axis` (0 or 2) is the axis along
+/// which the side runs.
+void addEdgeOverSide(const Point& from, const Point& edge, const Cell& cell, std::size_t side_axis,
+                     Hull& hull, double radius) {
+  const std::size_t across_axis = 2 - side_axis;
+  const std::array<double, 3> centre{cell.centre.x, 0, cell.centre.z};
+  // An edge that runs in a plane square to the side's offset has a horizontal normal (or, parallel
+  // to the side, is covered by the sides across it): no extreme height.
+  if (edge[across_axis] == 0) return;
+  const double length = std::hypot(edge[1], edge[across_axis]);
+  const double normal_across = -edge[1] / length;
+  const double normal_up = edge[across_axis] / length;
+  for (const double side : {-cell.half, cell.half}) {
+    for (const double reach : {-radius, radius}) {
+      const double gap = centre[across_axis] + side - from[across_axis];
+      const double part = (gap - reach * normal_across) / edge[across_axis];
+      if (!(part >= 0 && part <= 1)) continue;
+      const double along = from[side_axis] + part * edge[side_axis];
+      if (std::abs(centre[side_axis] - along) > cell.half) continue;
+      const double height = from[1] + part * edge[1] + reach * normal_up;
+      hull.add(height, height);
+    }
+  }
+}
+
+double squaredDistanceToSegment(const Point& point, const Point& from, const Point& to) {
+  const Point edge = minus(to, from);
+  const Point offset = minus(point, from);
+  const double squared = dot(edge, edge);
+  const double part = squared > 0 ? std::clamp(dot(offset, edge) / squared, 0.0, 1.0) : 0.0;
+  const Point rest = plusScaled(offset, -part, edge);
+  return dot(rest, rest);
+}
+
+}  // namespace
+
+std::optional<HeightInterval> touchingHeights(const std::array<Point, 3>& triangle, double x,
+                                              double z, double radius) {
+  const Triangle corners = relativeToFirstCorner(triangle);
+  Hull hull;
+  addTriangle(corners, makeFaceFrame(corners), {x - triangle[0][0], z - triangle[0][2]}, radius,
+              hull);
+  return inWorld(hull, triangle[0][1]);
+}
+
+std::optional<HeightInterval> touchingHeightsOverCell(const std::array<Point, 3>& triangle,
+                                                      double x, double z, double half,
+                                                      double radius) {
+  // The upper (lower) end over the square of centres is a concave (convex) function: its extreme
+  // lies over a corner of the triangle, at a corner of the square, or on a side of the square where
+  // an edge's contact normal is square to that side.
+  const Triangle corners = relativeToFirstCorner(triangle);
+  const std::optional<FaceFrame> face = makeFaceFrame(corners);
+  const Cell cell{{x - triangle[0][0], z - triangle[0][2]}, half};
+  Hull hull;
+  for (const double dx : {-half, half}) {
+    for (const double dz : {-half, half}) {
+      addTriangle(corners, face, {cell.centre.x + dx, cell.centre.z + dz}, radius, hull);
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    addCornerOverCell(corners[k], cell, radius, hull);
+    const Point edge = minus(corners[(k + 1) % 3], corners[k]);
+    addEdgeOverSide(corners[k], edge, cell, 0, hull, radius);
+    addEdgeOverSide(corners[k], edge, cell, 2, hull, radius);
+  }
+  return inWorld(hull, triangle[0][1]);
+}
+
+double squaredDistance(const Point& point, const std::array<Point, 3>& triangle) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    least = std::min(least, squaredDistanceToSegment(point, triangle[k], triangle[(k + 1) % 3]));
+  }
+  const std::optional<FaceFrame> face = makeFaceFrame(triangle);
+  if (!face) return least;
+  const Point offset = minus(point, face->origin);
+  const double along = dot(offset, face->along);
+  const double across = dot(offset, face->across);
+  const bool over_face =
+      across >= 0 && face->height * along >= face->foot * across &&
+      face->height * (face->length - along) >= (face->length - face->foot) * across;
+  if (!over_face) return least;
+  Point rest = plusScaled(offset, -along, face->along);
+  rest = plusScaled(rest, -across, face->across);
+  return std::min(least, dot(rest, rest));
+}
+
+}  // namespace galactic::bake

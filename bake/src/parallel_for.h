@@ -1,0 +1,11 @@
+#pragma once
+#include <cstddef>
+#include <functional>
+
+namespace galactic::bake {
+
+/// Calls `body` once for each index below `count`, on up to `jobs` threads (the caller's included),
+/// in no particular order. Returns when all calls have returned. `body` must not throw.
+void parallelFor(unsigned jobs, std::size_t count, const std::function<void(std::size_t)>& body);
+
+}  // namespace galactic::bake

@@ -1,0 +1,176 @@
+#include "galactic/bake/scene_baker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace galactic::bake {
+namespace {
+
+/// A part of the free space left out is worth a warning from this share of the room's volume on.
+constexpr double kWorthMentioning = 0.1;
+
+/// Adds the time between its construction and destruction to a stage.
+class StageTimer {
+ public:
+  explicit StageTimer(double& seconds) : seconds_(seconds) {}
+  ~StageTimer() {
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+Result<void> checkRadii(const std::vector<float>& radii) {
+  constexpr std::size_t kMaxRadii = 8;
+  const auto invalid = [](std::string message) {
+    return fail(ErrorCode::kInvalidInput, "--radii", std::move(message));
+  };
+  if (radii.empty() || radii.size() > kMaxRadii) {
+    return invalid(fmt::format("has {} radii, 1 to {} are wanted", radii.size(), kMaxRadii));
+  }
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    if (!std::isfinite(radii[i]) || radii[i] <= 0) {
+      return invalid(fmt::format("has the radius {} m, a positive length is wanted", radii[i]));
+    }
+    if (i > 0 && !(radii[i] > radii[i - 1])) {
+      return invalid(fmt::format("has {} m after {} m; list each radius once, in ascending order",
+                                 radii[i], radii[i - 1]));
+    }
+  }
+  return {};
+}
+
+class SceneBaker {
+ public:
+  SceneBaker(const TriangleMesh& mesh, const SceneBakeOptions& options, StageTimes& times)
+      : mesh_(mesh), options_(options), times_(times) {}
+
+  Result<BakedGrid> bakeGrid(float radius) {
+    const auto frame = makeGridFrame(mesh_.bounds, radius, options_.spacing);
+    if (!frame) return tl::unexpected(frame.error());
+    const ExactColumns raw = findColumns(*frame);
+    auto free = chooseRegions(raw.columns);
+    if (!free) return tl::unexpected(free.error());
+    BakedGrid baked;
+    {
+      const StageTimer timer(times_.encode);
+      baked.grid = encodeGrid(free->columns);
+    }
+    baked.components = std::move(free->components);
+    baked.totals = free->totals;
+    baked.raw_spans = raw.columns.spans.size();
+    baked.merged_gaps = raw.merged_gaps;
+    if (wantsCheck()) baked.cast_check = check(*frame, raw.columns);
+    return baked;
+  }
+
+ private:
+  ExactColumns findColumns(const GridFrame& frame) {
+    const StageTimer timer(times_.columns);
+    switch (options_.engine) {
+      case Engine::kBullet:
+        return {.columns = bulletColumns(mesh_, frame, options_.jobs)};
+      case Engine::kEmbree:
+        return {.columns = embreeColumns(mesh_, frame, options_.jobs)};
+      case Engine::kExact:
+        break;
+    }
+    return exactColumns(mesh_, frame, {.jobs = options_.jobs, .coverage = options_.coverage});
+  }
+
+  Result<FreeSpace> chooseRegions(const Columns& columns) {
+    const StageTimer timer(times_.regions);
+    return chooseFreeSpace(columns, options_.free_space);
+  }
+
+  /// The casts of the check are the Bullet engine's own.
+  [[nodiscard]] bool wantsCheck() const {
+    return options_.check_columns > 0 && options_.engine != Engine::kBullet;
+  }
+
+  CastCheck check(const GridFrame& frame, const Columns& columns) {
+    const StageTimer timer(times_.check);
+    if (!caster_) caster_.emplace(mesh_);
+    CastCheckOptions check_options;
+    check_options.columns = options_.check_columns;
+    if (options_.coverage == Coverage::kColumn) {
+      return checkWithCasts(mesh_, columns, *caster_, check_options);
+    }
+    // Casts know nothing of cells: the check is of the same engine on the centre lines.
+    const ExactColumns lines = exactColumns(mesh_, frame, {.jobs = options_.jobs});
+    return checkWithCasts(mesh_, lines.columns, *caster_, check_options);
+  }
+
+  const TriangleMesh& mesh_;
+  const SceneBakeOptions& options_;
+  StageTimes& times_;
+  std::optional<BulletColumnCaster> caster_;
+};
+
+/// Warns of a grid in which a sphere has no room, and of parts left out that may be rooms too.
+void warnOfRegions(const BakedGrid& baked, const SceneBakeOptions& options,
+                   std::vector<std::string>& warnings) {
+  const float radius = baked.grid.frame.radius;
+  const double room = baked.totals[static_cast<std::size_t>(Region::kRoom)].volume;
+  if (!(room > 0)) {
+    warnings.push_back(fmt::format("radius {} m: no free space at all", radius));
+    return;
+  }
+  if (options.free_space.keep == Keep::kAll) return;
+  for (const Component& part : baked.components) {
+    if (part.region != Region::kEnclosed || part.volume < kWorthMentioning * room) continue;
+    warnings.push_back(fmt::format(
+        "radius {} m: a closed part of {:.1f} m3 (room: {:.1f} m3) from ({:.2f}, {:.2f}, {:.2f}) to "
+        "({:.2f}, {:.2f}, {:.2f}) is left out; keep it with --seed or --keep-components",
+        radius, part.volume, room, part.bounds.min.x, part.bounds.min.y, part.bounds.min.z,
+        part.bounds.max.x, part.bounds.max.y, part.bounds.max.z));
+  }
+}
+
+}  // namespace
+
+Result<BakedScene> bakeScene(const SourceAsset& asset, const SceneBakeOptions& options,
+                             StageTimes& times, const Progress& progress) {
+  if (const auto radii = checkRadii(options.radii); !radii) return tl::unexpected(radii.error());
+  if (options.coverage == Coverage::kCell && options.engine != Engine::kExact) {
+    return fail(ErrorCode::kInvalidInput, "--coverage",
+                "cell works with --engine exact only: sphere casts know single lines");
+  }
+  progress("clean", 0);
+  Result<CleanMesh> cleaned = [&] {
+    const StageTimer timer(times.clean);
+    return placeAndClean(asset);
+  }();
+  if (!cleaned) return tl::unexpected(cleaned.error());
+
+  BakedScene scene;
+  scene.name = asset.name;
+  scene.format = asset.format;
+  scene.meshes = static_cast<std::uint32_t>(asset.meshes.size());
+  scene.instances = static_cast<std::uint32_t>(asset.instances.size());
+  scene.counts = cleaned->counts;
+  scene.triangles = cleaned->mesh.triangles.size();
+  scene.bounds = cleaned->mesh.bounds;
+  scene.coverage = options.coverage;
+  scene.warnings = asset.warnings;
+
+  SceneBaker baker(cleaned->mesh, options, times);
+  for (std::size_t i = 0; i < options.radii.size(); ++i) {
+    progress(fmt::format("grid r={} m", options.radii[i]),
+             static_cast<double>(i) / static_cast<double>(options.radii.size()));
+    auto grid = baker.bakeGrid(options.radii[i]);
+    if (!grid) return tl::unexpected(grid.error());
+    warnOfRegions(*grid, options, scene.warnings);
+    scene.grids.push_back(std::move(*grid));
+  }
+  return scene;
+}
+
+}  // namespace galactic::bake

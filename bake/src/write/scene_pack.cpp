@@ -1,0 +1,185 @@
+#include "galactic/bake/scene_pack.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <span>
+
+#include "galactic/bake/atomic_file.h"
+#include "galactic/column_cell.h"
+#include "galactic/pack_header.h"
+#include "galactic/schema/pack_generated.h"
+
+namespace galactic::bake {
+namespace {
+
+using flatbuffers::FlatBufferBuilder;
+using flatbuffers::Offset;
+
+/// FlatBuffers offsets are signed 32-bit; the rest of a pack is small beside its grids.
+constexpr std::uint64_t kMaxGridBytes = (std::uint64_t{1} << 31U) - (std::uint64_t{64} << 20U);
+/// What FlatBuffers 2.0 aligns to at most.
+constexpr std::size_t kVectorAlignment = 32;
+
+schema::Vec3 toSchema(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+std::uint64_t gridBytes(const EncodedGrid& grid) {
+  return grid.cells.size() * sizeof(std::uint64_t) + grid.tile_base.size() * sizeof(std::uint16_t) +
+         grid.overflow_start.size() * sizeof(std::uint32_t) +
+         grid.overflow_spans.size() * sizeof(Span);
+}
+
+template <class T>
+Offset<flatbuffers::Vector<T>> alignedVector(FlatBufferBuilder& builder,
+                                             const std::vector<T>& values) {
+  builder.ForceVectorAlignment(values.size(), sizeof(T), kVectorAlignment);
+  return builder.CreateVector(values);
+}
+
+/// The cells with the unused elements behind them; `shiftTilesToCacheLines` moves them in place.
+Offset<flatbuffers::Vector<std::uint64_t>> cellVector(FlatBufferBuilder& builder,
+                                                      const std::vector<std::uint64_t>& cells) {
+  const std::size_t count = cells.size() + kTilePaddingCells;
+  builder.ForceVectorAlignment(count, sizeof(std::uint64_t), kVectorAlignment);
+  std::uint64_t* data = nullptr;
+  const auto offset = builder.CreateUninitializedVector(count, &data);
+  std::memcpy(data, cells.data(), cells.size() * sizeof(std::uint64_t));
+  std::memset(data + cells.size(), 0, kTilePaddingCells * sizeof(std::uint64_t));
+  return Offset<flatbuffers::Vector<std::uint64_t>>(offset);
+}
+
+Offset<schema::CastCheck> castCheck(FlatBufferBuilder& builder, const CastCheck& check) {
+  return schema::CreateCastCheck(builder, check.columns, check.columns_differing, check.compared,
+                                 check.method, check.ties, check.errors);
+}
+
+Offset<schema::GridStatistics> statistics(FlatBufferBuilder& builder, const BakedGrid& baked) {
+  std::vector<Offset<schema::RegionStatistics>> regions;
+  for (std::size_t region = 0; region < kRegionCount; ++region) {
+    const RegionTotals& totals = baked.totals[region];
+    regions.push_back(
+        schema::CreateRegionStatistics(builder, static_cast<schema::Region>(region),
+                                       totals.components, totals.spans, totals.volume));
+  }
+  const auto region_vector = builder.CreateVector(regions);
+  Offset<schema::CastCheck> check;
+  if (baked.cast_check) check = castCheck(builder, *baked.cast_check);
+  const EncodedGrid& grid = baked.grid;
+  return schema::CreateGridStatistics(builder, baked.raw_spans, grid.spans,
+                                      grid.max_spans_per_column, grid.slivers, baked.merged_gaps,
+                                      region_vector, check);
+}
+
+Offset<schema::ColumnGrid> columnGrid(FlatBufferBuilder& builder, const BakedGrid& baked,
+                                      Coverage coverage) {
+  const EncodedGrid& grid = baked.grid;
+  const auto cells = cellVector(builder, grid.cells);
+  const auto tile_base = alignedVector(builder, grid.tile_base);
+  const auto overflow_start = alignedVector(builder, grid.overflow_start);
+  builder.ForceVectorAlignment(grid.overflow_spans.size(), sizeof(schema::Span), kVectorAlignment);
+  static_assert(sizeof(Span) == sizeof(schema::Span));
+  const auto overflow_spans = builder.CreateVectorOfStructs(
+      reinterpret_cast<const schema::Span*>(grid.overflow_spans.data()),
+      grid.overflow_spans.size());
+  const auto counts = statistics(builder, baked);
+  const schema::Span heights(grid.frame.heights.lo, grid.frame.heights.hi);
+  schema::ColumnGridBuilder table(builder);
+  table.add_radius(grid.frame.radius);
+  table.add_spacing(grid.frame.spacing);
+  table.add_min_x(grid.frame.min_x);
+  table.add_min_z(grid.frame.min_z);
+  table.add_columns_x(grid.frame.columns_x);
+  table.add_columns_z(grid.frame.columns_z);
+  table.add_heights(&heights);
+  table.add_quantum(grid.quantum);
+  table.add_coverage(coverage == Coverage::kCell ? schema::Coverage::Cell
+                                                 : schema::Coverage::Column);
+  table.add_cells(cells);
+  table.add_tile_base(tile_base);
+  table.add_overflow_start(overflow_start);
+  table.add_overflow_spans(overflow_spans);
+  table.add_statistics(counts);
+  return table.Finish();
+}
+
+Offset<schema::Provenance> provenanceTable(FlatBufferBuilder& builder,
+                                           const Provenance& provenance) {
+  std::vector<Offset<schema::Option>> options;
+  for (const auto& [name, value] : provenance.options) {
+    options.push_back(schema::CreateOptionDirect(builder, name.c_str(), value.c_str()));
+  }
+  std::vector<Offset<schema::SourceFile>> sources;
+  for (const SourceFile& file : provenance.sources) {
+    const schema::Hash128 hash(file.hash_low, file.hash_high);
+    sources.push_back(
+        schema::CreateSourceFileDirect(builder, file.name.c_str(), file.bytes, &hash));
+  }
+  const auto warnings = builder.CreateVectorOfStrings(provenance.warnings);
+  return schema::CreateProvenance(
+      builder, builder.CreateString(provenance.tool), builder.CreateString(provenance.tool_version),
+      builder.CreateVector(options), builder.CreateVector(sources), warnings);
+}
+
+Offset<schema::Scene> sceneTable(FlatBufferBuilder& builder, const BakedScene& scene) {
+  std::vector<Offset<schema::ColumnGrid>> grids;
+  for (const BakedGrid& grid : scene.grids) {
+    grids.push_back(columnGrid(builder, grid, scene.coverage));
+  }
+  const auto name = builder.CreateString(scene.name);
+  const auto grid_vector = builder.CreateVector(grids);
+  const auto import_statistics = schema::CreateImportStatisticsDirect(
+      builder, scene.format.c_str(), scene.meshes, scene.instances, scene.counts.read,
+      scene.counts.degenerate, scene.counts.duplicate, scene.triangles);
+  const schema::Bounds bounds(toSchema(scene.bounds.min), toSchema(scene.bounds.max));
+  return schema::CreateScene(builder, name, &bounds, grid_vector, import_statistics);
+}
+
+/// Moves each grid's tiles to the first cache line of the file inside their vector.
+void shiftTilesToCacheLines(std::span<std::byte> payload) {
+  const schema::Scene* scene = schema::GetPack(payload.data())->asset_as_Scene();
+  for (const schema::ColumnGrid* grid : *scene->column_grids()) {
+    const std::byte* first = reinterpret_cast<const std::byte*>(grid->cells()->Data());
+    const auto at = static_cast<std::size_t>(first - payload.data());
+    const std::size_t padding = tilePadding(sizeof(PackHeader) + at) * sizeof(std::uint64_t);
+    const std::size_t tile_bytes =
+        (grid->cells()->size() - kTilePaddingCells) * sizeof(std::uint64_t);
+    std::memmove(payload.data() + at + padding, payload.data() + at, tile_bytes);
+    std::memset(payload.data() + at, 0, padding);
+  }
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> encodeScenePack(const BakedScene& scene,
+                                               const Provenance& provenance) {
+  std::uint64_t bytes = 0;
+  for (const BakedGrid& grid : scene.grids) bytes += gridBytes(grid.grid);
+  if (bytes > kMaxGridBytes) {
+    return fail(ErrorCode::kUnsupported, scene.name,
+                fmt::format("the grids need {} MB, one pack holds less than 2048 MB; use a wider "
+                            "--spacing, fewer --radii, or split the scene",
+                            bytes >> 20U));
+  }
+  FlatBufferBuilder builder(static_cast<std::size_t>(bytes) + 65536);
+  const auto provenance_table = provenanceTable(builder, provenance);
+  const auto scene_table = sceneTable(builder, scene);
+  schema::FinishPackBuffer(builder, schema::CreatePack(builder, provenance_table,
+                                                       schema::Asset::Scene, scene_table.Union()));
+  std::vector<std::byte> payload(builder.GetSize());
+  std::memcpy(payload.data(), builder.GetBufferPointer(), payload.size());
+  shiftTilesToCacheLines(payload);
+  return payload;
+}
+
+Result<std::uint64_t> writeScenePack(const std::filesystem::path& path, const BakedScene& scene,
+                                     const Provenance& provenance) {
+  const auto payload = encodeScenePack(scene, provenance);
+  if (!payload) return tl::unexpected(payload.error());
+  const PackHeader header = makePackHeader(PackKind::kScene, *payload);
+  const auto written =
+      writeFileAtomically(path, {std::as_bytes(std::span(&header, 1)), std::span(*payload)});
+  if (!written) return tl::unexpected(written.error());
+  return sizeof(header) + payload->size();
+}
+
+}  // namespace galactic::bake
