@@ -22,8 +22,8 @@ std::uint64_t gridBytes(const EncodedGrid& grid) {
 }
 
 void printGrids(const BakedScene& scene) {
-  fmt::print("  {:>7} {:>9} {:>9} {:>9} {:>8} {:>9} {:>9} {:>9}  {}\n", "radius", "columns",
-             "raw", "spans", "MB", "room m3", "outside", "enclosed", "sphere casts");
+  fmt::print("  {:>7} {:>9} {:>9} {:>9} {:>8} {:>9} {:>9} {:>9}  {}\n", "radius", "columns", "raw",
+             "spans", "MB", "room m3", "outside", "enclosed", "sphere casts");
   for (const BakedGrid& grid : scene.grids) {
     fmt::print("  {:>7} {:>9} {:>9} {:>9} {:>8.2f} {:>9.2f} {:>9.2f} {:>9.2f}  {}\n",
                fmt::format("{}", grid.grid.frame.radius), grid.grid.frame.columnCount(),
@@ -59,20 +59,21 @@ void printClosingTable(const BakeOutcome& outcome, Verbosity verbosity) {
              outcome.pack_bytes > 0 ? outcome.output.string() : "(dry run)");
   fmt::print("  {}, {}; {} meshes, {} instances\n", scene.format, outcome.convention, scene.meshes,
              scene.instances);
-  fmt::print("  {} triangles ({} degenerate, {} duplicate dropped), {:.2f} x {:.2f} x {:.2f} m, "
-             "y from {:.3f} to {:.3f} m\n",
-             scene.triangles, scene.counts.degenerate, scene.counts.duplicate,
-             bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y, bounds.max.z - bounds.min.z,
-             bounds.min.y, bounds.max.y);
+  fmt::print(
+      "  {} triangles ({} degenerate, {} duplicate dropped), {:.2f} x {:.2f} x {:.2f} m, "
+      "y from {:.3f} to {:.3f} m\n",
+      scene.triangles, scene.counts.degenerate, scene.counts.duplicate, bounds.max.x - bounds.min.x,
+      bounds.max.y - bounds.min.y, bounds.max.z - bounds.min.z, bounds.min.y, bounds.max.y);
   printGrids(scene);
   if (verbosity == Verbosity::kVerbose) printDetails(scene);
   for (const std::string& warning : scene.warnings) fmt::print("  warning: {}\n", warning);
   const StageTimes& t = outcome.times;
   const double total = t.import + t.clean + t.columns + t.regions + t.encode + t.check + t.write;
-  fmt::print("  {:.3f} s: import {:.3f}, clean {:.3f}, columns {:.3f}, regions {:.3f}, encode "
-             "{:.3f}, check {:.3f}, write {:.3f}; {:.2f} MB\n",
-             total, t.import, t.clean, t.columns, t.regions, t.encode, t.check, t.write,
-             static_cast<double>(outcome.pack_bytes) / 1e6);
+  fmt::print(
+      "  {:.3f} s: import {:.3f}, clean {:.3f}, columns {:.3f}, regions {:.3f}, encode "
+      "{:.3f}, check {:.3f}, write {:.3f}; {:.2f} MB\n",
+      total, t.import, t.clean, t.columns, t.regions, t.encode, t.check, t.write,
+      static_cast<double>(outcome.pack_bytes) / 1e6);
 }
 
 }  // namespace galactic::bake

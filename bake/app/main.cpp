@@ -77,10 +77,9 @@ Result<BakeOutcome> bakeOne(const std::filesystem::path& input, const BakeComman
   if (!asset) return tl::unexpected(asset.error());
   outcome.times.import = secondsSince(start);
   outcome.convention = asset->convention;
-  auto scene = bakeScene(*asset, command.scene, outcome.times,
-                         [&](std::string_view stage, double fraction) {
-                           line.show(item, stage, fraction);
-                         });
+  auto scene =
+      bakeScene(*asset, command.scene, outcome.times,
+                [&](std::string_view stage, double fraction) { line.show(item, stage, fraction); });
   if (!scene) {
     // Errors of the geometry name no file: the bakers know none.
     if (scene.error().where.empty()) scene.error().where = input.string();
@@ -90,8 +89,8 @@ Result<BakeOutcome> bakeOne(const std::filesystem::path& input, const BakeComman
   if (command.dry_run) return outcome;
   line.show(item, "write", 1);
   start = std::chrono::steady_clock::now();
-  const auto bytes = writeScenePack(outcome.output, outcome.scene,
-                                    provenanceOf(command, *asset, outcome.scene));
+  const auto bytes =
+      writeScenePack(outcome.output, outcome.scene, provenanceOf(command, *asset, outcome.scene));
   if (!bytes) return tl::unexpected(bytes.error());
   outcome.times.write = secondsSince(start);
   outcome.pack_bytes = *bytes;

@@ -14,7 +14,8 @@ namespace galactic::bake {
 namespace {
 
 constexpr const char* kFooter =
-    "Exit codes: 0 ok, 1 command line, 2 I/O, 3 invalid input, 4 internal, 5 unsupported, 7 differs.\n"
+    "Exit codes: 0 ok, 1 command line, 2 I/O, 3 invalid input, 4 internal, 5 unsupported, 7 "
+    "differs.\n"
     "Example: galactic-bake scene.glb --radii 0.015,0.05,0.12";
 
 /// The texts that need more than CLI11's own conversions.
@@ -36,9 +37,9 @@ Result<std::vector<double>> parseNumbers(const std::string& text, const char* op
     double number = 0;
     const auto [end, problem] = std::from_chars(part.data(), part.data() + part.size(), number);
     if (problem != std::errc() || end != part.data() + part.size() || !std::isfinite(number)) {
-      return fail(ErrorCode::kInvalidInput, option,
-                  fmt::format("has \"{}\" in \"{}\", numbers separated by commas are wanted", part,
-                              text));
+      return fail(
+          ErrorCode::kInvalidInput, option,
+          fmt::format("has \"{}\" in \"{}\", numbers separated by commas are wanted", part, text));
     }
     numbers.push_back(number);
     if (comma == std::string_view::npos) return numbers;
@@ -50,8 +51,9 @@ Result<std::vector<double>> parseExactly(const std::string& text, const char* op
                                          std::size_t count) {
   auto numbers = parseNumbers(text, option);
   if (numbers && numbers->size() != count) {
-    return fail(ErrorCode::kInvalidInput, option,
-                fmt::format("has {} numbers in \"{}\", {} are wanted", numbers->size(), text, count));
+    return fail(
+        ErrorCode::kInvalidInput, option,
+        fmt::format("has {} numbers in \"{}\", {} are wanted", numbers->size(), text, count));
   }
   return numbers;
 }
@@ -196,7 +198,8 @@ void addGridOptions(CLI::App& app, RawOptions& raw, BakeCommand& command) {
                  "exact: closed form; bullet: the published sphere casts; embree: rays")
       ->transform(CLI::CheckedTransformer(engineNames()))
       ->option_text("exact|bullet|embree");
-  app.add_option("--seed", raw.seeds, "A point of the room (may be repeated): x,y,z in metres, y up")
+  app.add_option("--seed", raw.seeds,
+                 "A point of the room (may be repeated): x,y,z in metres, y up")
       ->type_name("X,Y,Z")
       ->allow_extra_args(false);
   app.add_option("--keep", scene.free_space.keep, "What to store: the room, or all free spans")

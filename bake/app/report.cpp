@@ -37,9 +37,8 @@ Json toJson(const BakedGrid& baked) {
             {"slivers", grid.slivers}};
   for (std::size_t region = 0; region < kRegionCount; ++region) {
     const RegionTotals& totals = baked.totals[region];
-    json["regions"][kRegionNames[region]] = {{"components", totals.components},
-                                             {"spans", totals.spans},
-                                             {"volume", totals.volume}};
+    json["regions"][kRegionNames[region]] = {
+        {"components", totals.components}, {"spans", totals.spans}, {"volume", totals.volume}};
   }
   if (baked.cast_check) json["cast_check"] = toJson(*baked.cast_check);
   return json;

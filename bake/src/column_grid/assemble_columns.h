@@ -10,8 +10,8 @@ namespace galactic::bake {
 /// Rows of a strip: small enough that its working state stays in the second-level cache.
 inline constexpr std::uint32_t kRowsPerStrip = 32;
 
-/// Calls `fill` for each strip of kRowsPerStrip rows on `jobs` threads and joins their free spans in
-/// the order of the rows. `fill` adds the blocked heights of strip `index` to an empty strip.
+/// Calls `fill` for each strip of kRowsPerStrip rows on `jobs` threads and joins their free spans
+/// in the order of the rows. `fill` adds the blocked heights of strip `index` to an empty strip.
 [[nodiscard]] ExactColumns assembleColumns(
     const GridFrame& frame, unsigned jobs, std::uint32_t strip_count,
     const std::function<void(std::uint32_t index, ColumnStrip& strip)>& fill);

@@ -7,10 +7,10 @@
 
 namespace galactic::bake {
 
-/// The blocked heights of a strip of rows while triangles are scattered into it. Each column has one
-/// current interval, kept in plain arrays so that many columns are extended at once; an interval
-/// disjoint from it goes to a short list. Memory is proportional to the columns, not to the
-/// triangles.
+/// The blocked heights of a strip of rows while triangles are scattered into it. Each column has
+/// one current interval, kept in plain arrays so that many columns are extended at once; an
+/// interval disjoint from it goes to a short list. Memory is proportional to the columns, not to
+/// the triangles.
 class ColumnStrip {
  public:
   /// Widest vector that may be loaded at any column of a row.
@@ -27,9 +27,9 @@ class ColumnStrip {
   [[nodiscard]] float* hi() { return hi_.data(); }
   [[nodiscard]] std::size_t stride() const { return stride_; }
 
-  /// Adds an interval disjoint from the column's current one. Where it overlaps one of the list they
-  /// merge and become the current one, which goes to the list: the next triangle of the mesh is most
-  /// likely near this one.
+  /// Adds an interval disjoint from the column's current one. Where it overlaps one of the list
+  /// they merge and become the current one, which goes to the list: the next triangle of the mesh
+  /// is most likely near this one.
   void spill(std::uint32_t row, std::uint32_t column, float lo, float hi);
 
   /// Adds any interval (the scalar way in).

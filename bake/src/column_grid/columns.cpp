@@ -46,10 +46,11 @@ Result<GridFrame> makeGridFrame(const Bounds& bounds, float radius, float spacin
   // Compared in double: the product of absurd extents does not fit an integer.
   const double padded_cells = (x.count + kTileColumnsX) * (z.count + kTileColumnsZ);
   if (!(padded_cells <= static_cast<double>(kMaxCells))) {
-    return fail(ErrorCode::kInvalidInput, "--spacing",
-                fmt::format("{} m over a scene of {:.1f} x {:.1f} m needs {:.0f} columns, a grid has "
-                            "at most {}; use a wider spacing, or check the scene's unit (--scale)",
-                            spacing, x.count * h, z.count * h, x.count * z.count, kMaxCells));
+    return fail(
+        ErrorCode::kInvalidInput, "--spacing",
+        fmt::format("{} m over a scene of {:.1f} x {:.1f} m needs {:.0f} columns, a grid has "
+                    "at most {}; use a wider spacing, or check the scene's unit (--scale)",
+                    spacing, x.count * h, z.count * h, x.count * z.count, kMaxCells));
   }
   GridFrame frame;
   frame.radius = radius;

@@ -88,8 +88,7 @@ std::vector<Component> measure(const Columns& columns, const Labels& labels) {
     const auto z = static_cast<float>(frame.centreZ(k));
     for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
       const auto x = static_cast<float>(frame.centreX(i));
-      const bool border =
-          i == 0 || k == 0 || i + 1 == frame.columns_x || k + 1 == frame.columns_z;
+      const bool border = i == 0 || k == 0 || i + 1 == frame.columns_x || k + 1 == frame.columns_z;
       const std::size_t at = columns.index(i, k);
       for (std::uint32_t span = columns.first[at]; span < columns.first[at + 1]; ++span) {
         Component& component = components[labels.of_span[span]];
@@ -136,8 +135,8 @@ Result<std::uint32_t> spanAt(const Columns& columns, const Vec3& seed) {
   }
   std::string free = "blocked";
   for (const Span& span : columns.column(at)) {
-    free += fmt::format("{} {:.3f} to {:.3f} m", free == "blocked" ? " (free there:" : ",",
-                        span.lo, span.hi);
+    free += fmt::format("{} {:.3f} to {:.3f} m", free == "blocked" ? " (free there:" : ",", span.lo,
+                        span.hi);
   }
   if (free != "blocked") free += ")";
   return seedFailure(seed, frame, free);

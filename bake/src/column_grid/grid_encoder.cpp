@@ -4,13 +4,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "galactic/column_cell.h"
 
 namespace galactic::bake {
 namespace {
 
-/// Codes of one span; absent when no code lies in it.
+/// Codes of one span, rounded to the blocked side; lo > hi where no code lies in it.
 struct Codes {
   std::int64_t lo = 0;
   std::int64_t hi = -1;
@@ -24,32 +25,39 @@ class Quantizer {
     const double fitting = range / static_cast<double>(kMaxCode);
     tall_ = fitting > static_cast<double>(kMaxQuantum);
     // Rounded up to the next float, so that the whole range has codes.
-    quantum_ = tall_ ? kMaxQuantum
-                     : std::nextafter(static_cast<float>(fitting),
-                                      std::numeric_limits<float>::infinity());
+    quantum_ =
+        tall_ ? kMaxQuantum
+              : std::nextafter(static_cast<float>(fitting), std::numeric_limits<float>::infinity());
+    inverse_ = 1 / static_cast<double>(quantum_);
   }
 
   [[nodiscard]] float quantum() const { return quantum_; }
   /// Whether tiles need a base because one range of codes is too short for the grid.
   [[nodiscard]] bool tall() const { return tall_; }
 
-  /// The codes inside `span`: rounded to the blocked side.
   [[nodiscard]] Codes encode(const Span& span) const {
-    const double step = static_cast<double>(quantum_);
-    return {static_cast<std::int64_t>(std::ceil((static_cast<double>(span.lo) - base_) / step)),
-            static_cast<std::int64_t>(std::floor((static_cast<double>(span.hi) - base_) / step))};
+    // Heights are not below the base: truncation is the floor, without a call into the library.
+    const double lo = (static_cast<double>(span.lo) - base_) * inverse_;
+    const double hi = (static_cast<double>(span.hi) - base_) * inverse_;
+    const auto floor_of_lo = static_cast<std::int64_t>(lo);
+    return {floor_of_lo + (static_cast<double>(floor_of_lo) < lo ? 1 : 0),
+            static_cast<std::int64_t>(hi)};
   }
 
  private:
   double base_;
+  double inverse_ = 0;
   float quantum_ = 0;
   bool tall_ = false;
 };
 
-/// Free spans of one column in codes, thin ones left out.
+/// What a cell needs to know of its column: at most two spans fit in it.
 struct CodedColumn {
-  std::vector<Codes> codes;
-  std::vector<Span> spans;
+  std::array<Codes, 2> codes;
+  /// Spans that hold at least one code.
+  std::uint32_t count = 0;
+  /// Highest code of all spans.
+  std::int64_t highest = 0;
 };
 
 class GridEncoder {
@@ -61,7 +69,7 @@ class GridEncoder {
     const GridFrame& frame = columns_.frame;
     grid_.frame = frame;
     grid_.quantum = quantizer_.quantum();
-    grid_.cells.assign(cellCount(frame.columns_x, frame.columns_z), kBlockedCell);
+    grid_.cells.reserve(cellCount(frame.columns_x, frame.columns_z));
     grid_.overflow_start.push_back(0);
     const std::uint32_t tiles_x = tileCount(frame.columns_x, kTileColumnsX);
     const std::uint32_t tiles_z = tileCount(frame.columns_z, kTileColumnsZ);
@@ -72,63 +80,81 @@ class GridEncoder {
   }
 
  private:
-  void encodeTile(std::uint32_t tile_x, std::uint32_t tile_z) {
-    const GridFrame& frame = columns_.frame;
-    std::int64_t lowest = std::numeric_limits<std::int64_t>::max();
-    std::array<CodedColumn, kCellsPerTile> coded;
+  /// Spans of the column of each cell of a tile; none beyond the grid's border.
+  using TileSpans = std::array<std::span<const Span>, kCellsPerTile>;
+
+  [[nodiscard]] TileSpans spansOf(std::uint32_t tile_x, std::uint32_t tile_z) const {
+    TileSpans spans;
     for (std::uint32_t cell = 0; cell < kCellsPerTile; ++cell) {
       const std::uint32_t i = tile_x * kTileColumnsX + cell % kTileColumnsX;
       const std::uint32_t k = tile_z * kTileColumnsZ + cell / kTileColumnsX;
-      if (i >= frame.columns_x || k >= frame.columns_z) continue;
-      coded[cell] = encodeColumn(columns_.index(i, k));
-      if (!coded[cell].codes.empty()) lowest = std::min(lowest, coded[cell].codes.front().lo);
+      if (i >= columns_.frame.columns_x || k >= columns_.frame.columns_z) continue;
+      spans[cell] = columns_.column(columns_.index(i, k));
     }
-    std::int64_t base = 0;
-    if (quantizer_.tall()) {
-      if (lowest == std::numeric_limits<std::int64_t>::max()) lowest = 0;
-      base = std::min<std::int64_t>(lowest / kCodesPerTileBase,
-                                    std::numeric_limits<std::uint16_t>::max());
-      grid_.tile_base.push_back(static_cast<std::uint16_t>(base));
-    }
-    const std::uint32_t tiles_x = tileCount(frame.columns_x, kTileColumnsX);
-    const std::size_t first_cell = (std::size_t{tile_z} * tiles_x + tile_x) * kCellsPerTile;
+    return spans;
+  }
+
+  void encodeTile(std::uint32_t tile_x, std::uint32_t tile_z) {
+    const TileSpans spans = spansOf(tile_x, tile_z);
+    std::array<CodedColumn, kCellsPerTile> coded;
+    for (std::uint32_t cell = 0; cell < kCellsPerTile; ++cell) coded[cell] = encode(spans[cell]);
+    const std::int64_t base = quantizer_.tall() ? chooseBase(coded) : 0;
     for (std::uint32_t cell = 0; cell < kCellsPerTile; ++cell) {
-      grid_.cells[first_cell + cell] = cellOf(coded[cell], base * kCodesPerTileBase);
+      const CodedColumn& column = coded[cell];
+      const bool fits = column.count <= 2 && column.highest - base <= kMaxCode;
+      grid_.cells.push_back(fits ? inlineCell(column, base) : overflowCellOf(spans[cell]));
     }
   }
 
-  CodedColumn encodeColumn(std::size_t column) {
-    CodedColumn coded;
-    for (const Span& span : columns_.column(column)) {
+  CodedColumn encode(std::span<const Span> spans) {
+    CodedColumn column;
+    for (const Span& span : spans) {
       const Codes codes = quantizer_.encode(span);
       if (codes.lo > codes.hi) {
         ++grid_.slivers;
         continue;
       }
-      coded.codes.push_back(codes);
-      coded.spans.push_back(span);
+      if (column.count < column.codes.size()) column.codes[column.count] = codes;
+      column.highest = codes.hi;
+      ++column.count;
     }
-    grid_.spans += coded.spans.size();
-    grid_.max_spans_per_column =
-        std::max(grid_.max_spans_per_column, static_cast<std::uint32_t>(coded.spans.size()));
-    return coded;
+    grid_.spans += column.count;
+    grid_.max_spans_per_column = std::max(grid_.max_spans_per_column, column.count);
+    return column;
   }
 
-  std::uint64_t cellOf(const CodedColumn& coded, std::int64_t base) {
-    if (coded.codes.empty()) return kBlockedCell;
-    if (coded.codes.size() > 2 || coded.codes.back().hi - base > kMaxCode) {
-      const auto index = static_cast<std::uint32_t>(grid_.overflow_start.size() - 1);
-      grid_.overflow_spans.insert(grid_.overflow_spans.end(), coded.spans.begin(),
-                                  coded.spans.end());
-      grid_.overflow_start.push_back(static_cast<std::uint32_t>(grid_.overflow_spans.size()));
-      return overflowCell(index);
+  /// The offset of a tile's codes: that of its lowest span, remembered in the grid.
+  std::int64_t chooseBase(const std::array<CodedColumn, kCellsPerTile>& coded) {
+    constexpr std::int64_t kHighest = std::numeric_limits<std::uint16_t>::max();
+    std::int64_t lowest = kHighest * kCodesPerTileBase;
+    bool any = false;
+    for (const CodedColumn& column : coded) {
+      if (column.count == 0) continue;
+      lowest = std::min(lowest, column.codes[0].lo);
+      any = true;
     }
-    const auto half = [&](std::size_t index) {
-      if (index >= coded.codes.size()) return kEmptySpanCode;
-      return spanCode(static_cast<std::uint32_t>(coded.codes[index].lo - base),
-                      static_cast<std::uint32_t>(coded.codes[index].hi - base));
+    const std::int64_t base = any ? lowest / kCodesPerTileBase : 0;
+    grid_.tile_base.push_back(static_cast<std::uint16_t>(base));
+    return base * kCodesPerTileBase;
+  }
+
+  static std::uint64_t inlineCell(const CodedColumn& column, std::int64_t base) {
+    const auto half = [&](std::uint32_t index) {
+      if (index >= column.count) return kEmptySpanCode;
+      return spanCode(static_cast<std::uint32_t>(column.codes[index].lo - base),
+                      static_cast<std::uint32_t>(column.codes[index].hi - base));
     };
     return half(0) | (half(1) << 32U);
+  }
+
+  std::uint64_t overflowCellOf(std::span<const Span> spans) {
+    const auto index = static_cast<std::uint32_t>(grid_.overflow_start.size() - 1);
+    for (const Span& span : spans) {
+      const Codes codes = quantizer_.encode(span);
+      if (codes.lo <= codes.hi) grid_.overflow_spans.push_back(span);
+    }
+    grid_.overflow_start.push_back(static_cast<std::uint32_t>(grid_.overflow_spans.size()));
+    return overflowCell(index);
   }
 
   const Columns& columns_;

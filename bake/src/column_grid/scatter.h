@@ -71,8 +71,8 @@ struct ScatterBlock {
 
 /// The strip that a kernel writes to, in plain pointers.
 struct ScatterTarget {
-  /// Current intervals of the strip's columns, readable up to ColumnStrip::kPadding beyond the end of
-  /// a row; empty ones have lo > hi.
+  /// Current intervals of the strip's columns, readable up to ColumnStrip::kPadding beyond the end
+  /// of a row; empty ones have lo > hi.
   float* lo = nullptr;
   float* hi = nullptr;
   std::uint32_t first_row = 0;
@@ -100,8 +100,8 @@ void scatterAvx2(const ScatterTriangle& triangle, const ScatterBlock& block, flo
 void scatterAvx512(const ScatterTriangle& triangle, const ScatterBlock& block, float radius,
                    const ScatterTarget& target);
 
-/// The kernels for narrow blocks (up to kNarrowColumns) and wide ones on this processor; all kernels
-/// give the same bits.
+/// The kernels for narrow blocks (up to kNarrowColumns) and wide ones on this processor; all
+/// kernels give the same bits.
 struct ScatterFunctions {
   ScatterFunction narrow = scatterPortable;
   ScatterFunction wide = scatterPortable;

@@ -62,10 +62,10 @@ inline void includeFace(const ScatterTriangle& triangle, Floats x, float z, floa
   const Floats inverse = broadcast(triangle.inverse_normal_y);
   const Floats min_y = broadcast(triangle.min_y);
   const Floats max_y = broadcast(triangle.max_y);
-  const Floats raised = maximum(
-      min_y, minimum(max_y, (broadcast(radius) - plane) * inverse - rise));
-  const Floats lowered = maximum(
-      min_y, minimum(max_y, (broadcast(-radius) - plane) * inverse + rise));
+  const Floats raised =
+      maximum(min_y, minimum(max_y, (broadcast(radius) - plane) * inverse - rise));
+  const Floats lowered =
+      maximum(min_y, minimum(max_y, (broadcast(-radius) - plane) * inverse + rise));
   const Mask no_raised = less(raised_inside, zero);
   const Mask no_lowered = less(lowered_inside, zero);
   heights.hi = maximum(heights.hi, select(no_raised, kSmall(), raised + rise));
@@ -98,8 +98,8 @@ inline Heights touchingHeights(const ScatterTriangle& triangle, Floats x, float 
 inline Mask mayGain(const ScatterTriangle& triangle, Floats x, float z, float radius,
                     Heights current) {
   const Floats zero = broadcast(0);
-  const float dz = triangle.min_z > z ? triangle.min_z - z
-                                      : (z > triangle.max_z ? z - triangle.max_z : 0.0F);
+  const float dz =
+      triangle.min_z > z ? triangle.min_z - z : (z > triangle.max_z ? z - triangle.max_z : 0.0F);
   const Floats dx =
       maximum(maximum(broadcast(triangle.min_x) - x, x - broadcast(triangle.max_x)), zero);
   const Floats rest = broadcast(radius * radius - dz * dz) - dx * dx;
@@ -110,8 +110,7 @@ inline Mask mayGain(const ScatterTriangle& triangle, Floats x, float z, float ra
 }
 
 inline Floats laneNumbers() {
-  alignas(64) constexpr float kNumbers[16] = {0, 1, 2,  3,  4,  5,  6,  7,
-                                              8, 9, 10, 11, 12, 13, 14, 15};
+  alignas(64) constexpr float kNumbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   return load(kNumbers);
 }
 
@@ -140,10 +139,8 @@ inline void scatterRow(const ScatterTriangle& triangle, std::uint32_t row,
     float* hi_at = target.hi + row_start + i;
     const Floats x = (load(target.x_high + i) - broadcast(triangle.origin_x_high)) +
                      (load(target.x_low + i) - broadcast(triangle.origin_x_low));
-    const Mask in_range =
-        less(laneNumbers(), broadcast(static_cast<float>(block.end_column - i)));
-    const Mask lanes =
-        both(in_range, mayGain(triangle, x, z, radius, {load(lo_at), load(hi_at)}));
+    const Mask in_range = less(laneNumbers(), broadcast(static_cast<float>(block.end_column - i)));
+    const Mask lanes = both(in_range, mayGain(triangle, x, z, radius, {load(lo_at), load(hi_at)}));
     if (bits(lanes) == 0) continue;
     const Heights relative = touchingHeights(triangle, x, z, radius);
     const Heights heights{relative.lo + origin_y, relative.hi + origin_y};

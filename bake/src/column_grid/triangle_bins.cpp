@@ -36,9 +36,8 @@ TriangleBins::TriangleBins(const TriangleMesh& mesh, const GridFrame& frame,
   const std::uint32_t strips = (frame.columns_z + rows_per_strip - 1) / rows_per_strip;
   start_.assign(std::size_t{strips} + 1, 0);
   const auto strips_of = [&](const Triangle& triangle) -> IndexRange {
-    const auto [lo, hi] =
-        std::minmax({mesh.vertices[triangle[0]].z, mesh.vertices[triangle[1]].z,
-                     mesh.vertices[triangle[2]].z});
+    const auto [lo, hi] = std::minmax(
+        {mesh.vertices[triangle[0]].z, mesh.vertices[triangle[1]].z, mesh.vertices[triangle[2]].z});
     const IndexRange rows =
         rowsWithin(frame, static_cast<double>(lo) - reach, static_cast<double>(hi) + reach);
     if (rows.first >= rows.end) return {};

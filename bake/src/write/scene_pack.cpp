@@ -57,9 +57,9 @@ Offset<schema::GridStatistics> statistics(FlatBufferBuilder& builder, const Bake
   std::vector<Offset<schema::RegionStatistics>> regions;
   for (std::size_t region = 0; region < kRegionCount; ++region) {
     const RegionTotals& totals = baked.totals[region];
-    regions.push_back(
-        schema::CreateRegionStatistics(builder, static_cast<schema::Region>(region),
-                                       totals.components, totals.spans, totals.volume));
+    regions.push_back(schema::CreateRegionStatistics(builder, static_cast<schema::Region>(region),
+                                                     totals.components, totals.spans,
+                                                     totals.volume));
   }
   const auto region_vector = builder.CreateVector(regions);
   Offset<schema::CastCheck> check;

@@ -62,7 +62,8 @@ inline constexpr std::uint64_t kOverflowMark = 0xffffffffU;  // lo = hi = 65535
   return kOverflowMark | (std::uint64_t{index} << 32U);
 }
 
-/// Elements to skip in the vector of cells whose first element stands at `offset` bytes in the file.
+/// Elements to skip in the vector of cells whose first element stands at `offset` bytes in the
+/// file.
 [[nodiscard]] constexpr std::size_t tilePadding(std::size_t offset) {
   return ((kTileBytes - offset % kTileBytes) % kTileBytes) / sizeof(std::uint64_t);
 }

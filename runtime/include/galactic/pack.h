@@ -29,8 +29,8 @@ class PackFile {
   [[nodiscard]] static Result<PackFile> open(const std::filesystem::path& path,
                                              Trust trust = Trust::kVerify);
 
-  /// The same from memory, which must be 32-byte aligned and outlive the result. `where` names it in
-  /// errors.
+  /// The same from memory, which must be 32-byte aligned and outlive the result. `where` names it
+  /// in errors.
   [[nodiscard]] static Result<PackFile> view(std::span<const std::byte> file, std::string where,
                                              Trust trust = Trust::kVerify);
 

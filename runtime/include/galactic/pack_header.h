@@ -46,8 +46,8 @@ static_assert(sizeof(PackHeader) == 64);
 /// The header of a payload of this kind.
 [[nodiscard]] PackHeader makePackHeader(PackKind kind, std::span<const std::byte> payload);
 
-/// Reads and checks the header at the start of `file`, the whole file's bytes: magic, version, kind,
-/// size, reserved bytes. Does not read the payload. `where` names the file in errors.
+/// Reads and checks the header at the start of `file`, the whole file's bytes: magic, version,
+/// kind, size, reserved bytes. Does not read the payload. `where` names the file in errors.
 [[nodiscard]] Result<PackHeader> readPackHeader(std::span<const std::byte> file,
                                                 std::string_view where);
 

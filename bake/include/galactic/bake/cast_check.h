@@ -28,9 +28,9 @@ struct CastCheck {
   double errors = 0;
 };
 
-/// Replays a sample of columns with Bullet and judges each disagreement by the distance to the mesh,
-/// computed in double precision by brute force. `columns` are the free spans before the choice of
-/// regions, of Coverage::kColumn.
+/// Replays a sample of columns with Bullet and judges each disagreement by the distance to the
+/// mesh, computed in double precision by brute force. `columns` are the free spans before the
+/// choice of regions, of Coverage::kColumn.
 [[nodiscard]] CastCheck checkWithCasts(const TriangleMesh& mesh, const Columns& columns,
                                        const BulletColumnCaster& caster,
                                        const CastCheckOptions& options = {});

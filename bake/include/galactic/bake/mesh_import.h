@@ -19,8 +19,8 @@ struct MeshImportOptions {
   std::optional<double> scale;
   /// Applied last, to points that are already Y up and in metres.
   std::optional<Affine> transform;
-  /// The file reader runs in a process of its own, which is stopped after this long and when it uses
-  /// more memory than this; so a broken file costs one error message, not the bake.
+  /// The file reader runs in a process of its own, which is stopped after this long and when it
+  /// uses more memory than this; so a broken file costs one error message, not the bake.
   std::chrono::seconds time_limit{600};
   std::uint64_t memory_limit = std::uint64_t{16} << 30U;
 };

@@ -69,7 +69,8 @@ struct BakedScene {
   std::vector<std::string> warnings;
 };
 
-/// Told what is being done and how far it is (0 to 1); may be called from one thread at a time only.
+/// Told what is being done and how far it is (0 to 1); may be called from one thread at a time
+/// only.
 using Progress = std::function<void(std::string_view stage, double fraction)>;
 
 /// Bakes all column grids of one scene. Adds the time of its stages to `times`. Fails with

@@ -11,8 +11,8 @@
 
 namespace galactic::bake {
 
-/// Where a pack comes from: goes into the pack, so nothing in it may depend on the machine, the time
-/// or the number of threads.
+/// Where a pack comes from: goes into the pack, so nothing in it may depend on the machine, the
+/// time or the number of threads.
 struct Provenance {
   std::string tool = "galactic-bake";
   std::string tool_version;
