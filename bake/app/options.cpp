@@ -20,7 +20,7 @@ constexpr const char* kFooter =
 
 /// The texts that need more than CLI11's own conversions.
 struct RawOptions {
-  std::string radii = "0.015,0.05,0.12";
+  std::vector<std::string> radii{"0.015", "0.05", "0.12"};
   std::string spacing = "0.03";
   std::string up;
   std::string scale;
@@ -108,8 +108,12 @@ Result<void> understandImport(const RawOptions& raw, BakeCommand& command) {
   return {};
 }
 
+std::string joined(const std::vector<std::string>& parts) {
+  return fmt::format("{}", fmt::join(parts, ","));
+}
+
 Result<void> understandScene(const RawOptions& raw, BakeCommand& command) {
-  const auto radii = parseNumbers(raw.radii, "--radii");
+  const auto radii = parseNumbers(joined(raw.radii), "--radii");
   if (!radii) return tl::unexpected(radii.error());
   command.scene.radii.clear();
   for (const double radius : *radii) command.scene.radii.push_back(static_cast<float>(radius));
@@ -157,7 +161,7 @@ void rememberContentOptions(const RawOptions& raw, BakeCommand& command) {
   const auto add = [&](const char* name, const std::string& value) {
     if (!value.empty()) options.emplace_back(name, value);
   };
-  add("radii", raw.radii);
+  add("radii", joined(raw.radii));
   add("spacing", raw.spacing);
   add("engine", nameOf(engineNames(), command.scene.engine));
   add("coverage", nameOf(coverageNames(), command.scene.coverage));
@@ -186,7 +190,9 @@ void addGridOptions(CLI::App& app, RawOptions& raw, BakeCommand& command) {
   SceneBakeOptions& scene = command.scene;
   app.add_option("--radii", raw.radii, "Sphere radii, metres, ascending")
       ->type_name("R,R,...")
-      ->capture_default_str();
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->default_str("0.015,0.05,0.12");
   app.add_option("--spacing", raw.spacing, "Edge of a cell, metres; at most twice the least radius")
       ->type_name("METRES")
       ->capture_default_str();

@@ -55,8 +55,9 @@ class SceneBaker {
   Result<BakedGrid> bakeGrid(float radius) {
     const auto frame = makeGridFrame(mesh_.bounds, radius, options_.spacing);
     if (!frame) return tl::unexpected(frame.error());
-    const ExactColumns raw = findColumns(*frame);
-    auto free = chooseRegions(raw.columns);
+    const auto raw = findColumns(*frame);
+    if (!raw) return tl::unexpected(raw.error());
+    auto free = chooseRegions(raw->columns);
     if (!free) return tl::unexpected(free.error());
     BakedGrid baked;
     {
@@ -65,20 +66,22 @@ class SceneBaker {
     }
     baked.components = std::move(free->components);
     baked.totals = free->totals;
-    baked.raw_spans = raw.columns.spans.size();
-    baked.merged_gaps = raw.merged_gaps;
-    if (wantsCheck()) baked.cast_check = check(*frame, raw.columns);
+    baked.raw_spans = raw->columns.spans.size();
+    baked.merged_gaps = raw->merged_gaps;
+    if (wantsCheck()) baked.cast_check = check(*frame, raw->columns);
     return baked;
   }
 
  private:
-  ExactColumns findColumns(const GridFrame& frame) {
+  Result<ExactColumns> findColumns(const GridFrame& frame) {
     const StageTimer timer(times_.columns);
     switch (options_.engine) {
       case Engine::kBullet:
-        return {.columns = bulletColumns(mesh_, frame, options_.jobs)};
+        return ExactColumns{.columns = bulletColumns(mesh_, frame, options_.jobs)};
       case Engine::kEmbree:
-        return {.columns = embreeColumns(mesh_, frame, options_.jobs)};
+        return embreeColumns(mesh_, frame, options_.jobs).map([](Columns&& columns) {
+          return ExactColumns{.columns = std::move(columns)};
+        });
       case Engine::kExact:
         break;
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "column_grid/assemble_columns.h"
 #include "column_grid/triangle_bins.h"
@@ -20,28 +21,61 @@ std::array<Point, 3> cornersOf(const TriangleMesh& mesh, std::uint32_t index) {
   return corners;
 }
 
-void scatterOverCells(const TriangleMesh& mesh, const GridFrame& frame, std::uint32_t index,
-                      ColumnStrip& strip) {
-  constexpr double kPad = static_cast<double>(kMergeTolerance);
-  const std::array<Point, 3> corners = cornersOf(mesh, index);
-  const double half = static_cast<double>(frame.spacing) / 2 + kPad;
-  const double radius = static_cast<double>(frame.radius);
-  const double reach = radius + half;
-  const auto [min_x, max_x] = std::minmax({corners[0][0], corners[1][0], corners[2][0]});
-  const auto [min_z, max_z] = std::minmax({corners[0][2], corners[1][2], corners[2][2]});
-  const IndexRange rows = rowsWithin(frame, min_z - reach, max_z + reach);
-  const IndexRange columns = columnsWithin(frame, min_x - reach, max_x + reach);
-  const std::uint32_t end = std::min(rows.end, strip.endRow());
-  for (std::uint32_t k = std::max(rows.first, strip.firstRow()); k < end; ++k) {
-    for (std::uint32_t i = columns.first; i < columns.end; ++i) {
-      const auto heights =
-          touchingHeightsOverCell(corners, frame.centreX(i), frame.centreZ(k), half, radius);
-      if (!heights) continue;
-      strip.add(k, i, static_cast<float>(heights->lo - kPad),
-                static_cast<float>(heights->hi + kPad));
+/// Distance from `at` to the interval [lo, hi]; 0 inside.
+double distanceTo(double at, double lo, double hi) { return std::max({lo - at, at - hi, 0.0}); }
+
+/// One triangle and the squares around columns' centres over which the ball is swept.
+class CellScatter {
+ public:
+  CellScatter(const TriangleMesh& mesh, const GridFrame& frame, std::uint32_t index)
+      : frame_(frame), corners_(cornersOf(mesh, index)) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto [lo, hi] = std::minmax({corners_[0][axis], corners_[1][axis], corners_[2][axis]});
+      min_[axis] = lo;
+      max_[axis] = hi;
     }
   }
-}
+
+  /// Adds the blocked heights to the rows of `strip`.
+  void scatterInto(ColumnStrip& strip) const {
+    const double reach = radius() + half();
+    const IndexRange rows = rowsWithin(frame_, min_[2] - reach, max_[2] + reach);
+    const IndexRange columns = columnsWithin(frame_, min_[0] - reach, max_[0] + reach);
+    const std::uint32_t end = std::min(rows.end, strip.endRow());
+    for (std::uint32_t k = std::max(rows.first, strip.firstRow()); k < end; ++k) {
+      for (std::uint32_t i = columns.first; i < columns.end; ++i) addCell(i, k, strip);
+    }
+  }
+
+ private:
+  static constexpr double kPad = static_cast<double>(kMergeTolerance);
+
+  [[nodiscard]] double radius() const { return static_cast<double>(frame_.radius); }
+  [[nodiscard]] double half() const { return static_cast<double>(frame_.spacing) / 2 + kPad; }
+
+  void addCell(std::uint32_t i, std::uint32_t k, ColumnStrip& strip) const {
+    const double x = frame_.centreX(i);
+    const double z = frame_.centreZ(k);
+    // The box of the triangle bounds what the triangle can block: most cells need no more.
+    const double dx = distanceTo(x, min_[0] - half(), max_[0] + half());
+    const double dz = distanceTo(z, min_[2] - half(), max_[2] + half());
+    const double rest = radius() * radius() - dx * dx - dz * dz;
+    if (rest <= 0) return;
+    const double height = std::sqrt(rest) + kPad;
+    if (strip.covers(k, i, static_cast<float>(min_[1] - height),
+                     static_cast<float>(max_[1] + height))) {
+      return;
+    }
+    const auto heights = touchingHeightsOverCell(corners_, x, z, half(), radius());
+    if (!heights) return;
+    strip.add(k, i, static_cast<float>(heights->lo - kPad), static_cast<float>(heights->hi + kPad));
+  }
+
+  const GridFrame& frame_;
+  std::array<Point, 3> corners_;
+  Point min_{};
+  Point max_{};
+};
 
 }  // namespace
 
@@ -51,7 +85,7 @@ ExactColumns cellColumns(const TriangleMesh& mesh, const GridFrame& frame, unsig
   return assembleColumns(frame, jobs, bins.stripCount(),
                          [&](std::uint32_t index, ColumnStrip& strip) {
                            for (const std::uint32_t triangle : bins.triangles(index)) {
-                             scatterOverCells(mesh, frame, triangle, strip);
+                             CellScatter(mesh, frame, triangle).scatterInto(strip);
                            }
                          });
 }

@@ -35,6 +35,12 @@ class ColumnStrip {
   /// Adds any interval (the scalar way in).
   void add(std::uint32_t row, std::uint32_t column, float lo, float hi);
 
+  /// Whether the column's current interval holds all of [lo, hi].
+  [[nodiscard]] bool covers(std::uint32_t row, std::uint32_t column, float lo, float hi) const {
+    const std::size_t at = rowStart(row) + column;
+    return lo_[at] <= lo && hi <= hi_[at];
+  }
+
   /// Appends the free spans of all columns to `spans`, and how many each column has to `counts`.
   /// Returns the number of gaps closed because they were within kMergeTolerance.
   std::uint64_t appendFree(std::vector<std::uint32_t>& counts, std::vector<Span>& spans) const;

@@ -125,7 +125,7 @@ void addCorner(const Point& corner, Line line, double radius, Hull& hull) {
 /// its corners have the same hull.
 void addEdge(const Point& from, const Point& to, Line line, double radius, Hull& hull) {
   const Point edge = minus(to, from);
-  const double run = std::hypot(edge[0], edge[2]);
+  const double run = std::sqrt(edge[0] * edge[0] + edge[2] * edge[2]);
   if (!(run > 0)) return;
   const double hx = edge[0] / run;
   const double hz = edge[2] / run;
@@ -136,7 +136,7 @@ void addEdge(const Point& from, const Point& to, Line line, double radius, Hull&
   const double rest = radius * radius - aside * aside;
   if (!(rest > 0)) return;
   const double along = qx * hx + qz * hz;
-  const double length = std::hypot(run, edge[1]);
+  const double length = std::sqrt(dot(edge, edge));
   const double middle = from[1] + along * (edge[1] / run);
   const double half = std::sqrt(rest) * (length / run);
   Clip clip{middle - half, middle + half};
@@ -204,7 +204,7 @@ void addEdgeOverSide(const Point& from, const Point& edge, const Cell& cell, std
   // An edge that runs in a plane square to the side's offset has a horizontal normal (or, parallel
   // to the side, is covered by the sides across it): no extreme height.
   if (edge[across_axis] == 0) return;
-  const double length = std::hypot(edge[1], edge[across_axis]);
+  const double length = std::sqrt(edge[1] * edge[1] + edge[across_axis] * edge[across_axis]);
   const double normal_across = -edge[1] / length;
   const double normal_up = edge[across_axis] / length;
   for (const double side : {-cell.half, cell.half}) {

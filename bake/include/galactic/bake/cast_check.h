@@ -12,7 +12,6 @@ struct CastCheckOptions {
   std::uint32_t columns = 128;
   /// A surface whose distance differs from the radius by no more than this is a tie, metres.
   double tie_tolerance = 1e-5;
-  BulletCastOptions casts;
 };
 
 /// How replayed sphere casts compare with a grid; lengths in metres, summed over the sample.

@@ -5,6 +5,7 @@
 
 #include "galactic/bake/columns.h"
 #include "galactic/bake/triangle_mesh.h"
+#include "galactic/error.h"
 
 namespace galactic::bake {
 
@@ -69,7 +70,8 @@ class BulletColumnCaster {
 
 /// All columns by vertical Embree rays at triangles dilated by the radius (user geometry whose
 /// intersection is the closed-form interval). `jobs` threads; the result does not depend on it.
-[[nodiscard]] Columns embreeColumns(const TriangleMesh& mesh, const GridFrame& frame,
-                                    unsigned jobs);
+/// Fails with kInternal when Embree runs out of memory or does not know this processor.
+[[nodiscard]] Result<Columns> embreeColumns(const TriangleMesh& mesh, const GridFrame& frame,
+                                            unsigned jobs);
 
 }  // namespace galactic::bake

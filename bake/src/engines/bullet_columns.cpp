@@ -1,0 +1,267 @@
+// The only file that names Bullet.
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
+#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
+#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "engines/columns_by_rows.h"
+#include "galactic/bake/column_engines.h"
+
+namespace galactic::bake {
+namespace {
+
+/// Bullet's quantised tree keeps a triangle's index in 21 bits: bigger meshes go in as several
+/// parts.
+constexpr std::size_t kTrianglesPerPart = std::size_t{1} << 20U;
+
+static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(Triangle) == 3 * sizeof(int));
+
+/// A mesh with its tree as Bullet wants it. Immutable once built: many casters may share it.
+class MeshShape {
+ public:
+  explicit MeshShape(const TriangleMesh& mesh)
+      : vertices_(mesh.vertices), triangles_(mesh.triangles) {
+    for (std::size_t first = 0; first < triangles_.size(); first += kTrianglesPerPart) {
+      btIndexedMesh part;
+      part.m_numTriangles =
+          static_cast<int>(std::min(kTrianglesPerPart, triangles_.size() - first));
+      part.m_triangleIndexBase =
+          reinterpret_cast<const unsigned char*>(triangles_.data() + first);  // as Bullet asks
+      part.m_triangleIndexStride = sizeof(Triangle);
+      part.m_numVertices = static_cast<int>(vertices_.size());
+      part.m_vertexBase = reinterpret_cast<const unsigned char*>(vertices_.data());
+      part.m_vertexStride = sizeof(Vec3);
+      part.m_vertexType = PHY_FLOAT;
+      arrays_.addIndexedMesh(part, PHY_INTEGER);
+    }
+    constexpr bool kQuantised = true;
+    shape_ = std::make_unique<btBvhTriangleMeshShape>(&arrays_, kQuantised);
+    // Bullet's default of 4 cm would grow every surface.
+    shape_->setMargin(0);
+  }
+  MeshShape(const MeshShape&) = delete;
+  MeshShape& operator=(const MeshShape&) = delete;
+
+  /// Bullet takes shapes as mutable even where it only reads them.
+  [[nodiscard]] btBvhTriangleMeshShape* get() const { return shape_.get(); }
+
+ private:
+  std::vector<Vec3> vertices_;
+  std::vector<Triangle> triangles_;
+  btTriangleIndexVertexArray arrays_;
+  std::unique_ptr<btBvhTriangleMeshShape> shape_;
+};
+
+/// Pools for one pair of objects at a time; Bullet's defaults are megabytes.
+btDefaultCollisionConstructionInfo smallPools() {
+  btDefaultCollisionConstructionInfo info;
+  info.m_defaultMaxPersistentManifoldPoolSize = 16;
+  info.m_defaultMaxCollisionAlgorithmPoolSize = 16;
+  return info;
+}
+
+/// Remembers whether there was any contact.
+struct AnyContact : btCollisionWorld::ContactResultCallback {
+  bool found = false;
+
+  // NOLINTNEXTLINE(readability-function-size): the signature is Bullet's.
+  btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
+                           const btCollisionObjectWrapper*, int, int) override {
+    found = true;
+    return 0;
+  }
+};
+
+btTransform placedAt(const btVector3& centre) {
+  return btTransform(btQuaternion::getIdentity(), centre);
+}
+
+/// One collision object, and the machinery Bullet needs to test spheres against it. For one thread.
+class SphereProbe {
+ public:
+  SphereProbe(std::shared_ptr<const MeshShape> shape, const BulletCastOptions& options)
+      : options_(options),
+        shape_(std::move(shape)),
+        configuration_(smallPools()),
+        dispatcher_(&configuration_),
+        collision_world_(&dispatcher_, &broadphase_, &configuration_) {
+    mesh_object_.setCollisionShape(shape_->get());
+  }
+
+  [[nodiscard]] const BulletCastOptions& options() const { return options_; }
+
+  /// Whether a ball of `radius` at `centre` touches the mesh as Bullet sees it: Bullet counts
+  /// contacts up to 2 % of the radius away.
+  [[nodiscard]] bool overlaps(const btVector3& centre, float radius) {
+    btSphereShape sphere(radius);
+    btCollisionObject object;
+    object.setCollisionShape(&sphere);
+    object.setWorldTransform(placedAt(centre));
+    AnyContact contact;
+    // Without adding the ball to the world first: the same contacts, less bookkeeping.
+    collision_world_.contactPairTest(&object, &mesh_object_, contact);
+    return contact.found;
+  }
+
+  /// Where a moving ball first touches the mesh.
+  struct Hit {
+    float distance = 0;
+    /// Height of the point touched.
+    float height = 0;
+  };
+
+  /// Moves a ball of `radius` from `from` to `to`, above or below it.
+  [[nodiscard]] std::optional<Hit> sweep(const btVector3& from, const btVector3& to, float radius) {
+    const btSphereShape sphere(radius);
+    btCollisionWorld::ClosestConvexResultCallback closest(from, to);
+    btCollisionWorld::objectQuerySingle(&sphere, placedAt(from), placedAt(to), &mesh_object_,
+                                        shape_->get(), mesh_object_.getWorldTransform(), closest,
+                                        0);
+    if (!closest.hasHit()) return std::nullopt;
+    return Hit{closest.m_closestHitFraction * (to - from).length(), closest.m_hitPointWorld.y()};
+  }
+
+ private:
+  BulletCastOptions options_;
+  std::shared_ptr<const MeshShape> shape_;
+  btCollisionObject mesh_object_;
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_;
+  btDbvtBroadphase broadphase_;
+  btCollisionWorld collision_world_;
+};
+
+/// One column on its way up: the published search (paper, appendix G, and its code), at our
+/// columns.
+class ColumnSearch {
+ public:
+  ColumnSearch(SphereProbe& probe, const GridFrame& frame, ColumnIndex at)
+      : sphere_(probe),
+        x_(static_cast<float>(frame.centreX(at.i))),
+        z_(static_cast<float>(frame.centreZ(at.k))),
+        radius_(frame.radius),
+        heights_(frame.heights),
+        probe_(frame.heights.lo),
+        top_(frame.heights.lo) {}
+
+  std::vector<Span> run() {
+    if (isClear(probe_)) {
+      open_ = probe_;
+    } else {
+      probe_ += sphere_.options().step;
+    }
+    while (!finished_) {
+      if (open_) sweepUp();
+      if (!finished_) leaveObstacle();
+    }
+    return std::move(spans_);
+  }
+
+ private:
+  [[nodiscard]] btVector3 centre(float height) const { return {x_, height, z_}; }
+
+  [[nodiscard]] bool isClear(float height) {
+    return !sphere_.overlaps(centre(height), radius_ + sphere_.options().contact_pad);
+  }
+
+  /// From a clear probe: the open span ends where a ball moving up touches, or never.
+  void sweepUp() {
+    const auto hit = sphere_.sweep(centre(probe_), centre(heights_.hi), radius_);
+    if (!hit) {
+      top_ = heights_.hi;
+      store();
+      finished_ = true;
+      return;
+    }
+    top_ = probe_ + hit->distance;
+    // At least one step up, whatever the cast says: the search must end.
+    probe_ = std::max(probe_, hit->height) + sphere_.options().step;
+  }
+
+  /// Steps up until the ball is clear, then looks down for the obstacle's upper side.
+  void leaveObstacle() {
+    while (probe_ < heights_.hi) {
+      if (!isClear(probe_)) {
+        probe_ += sphere_.options().step;
+        continue;
+      }
+      const auto hit = sphere_.sweep(centre(probe_), centre(top_), radius_);
+      // The published code reads the first of the hits before it asks whether there is one, which
+      // is undefined when there is none; asking first gives what it meant.
+      if (!hit) {
+        // A grazing obstacle, seen from one side only: dropped, and the span goes on.
+        if (!open_) open_ = heights_.lo;
+        return;
+      }
+      if (hit->distance > 0) {
+        if (open_) store();
+        open_ = std::max(probe_ - hit->distance, top_);
+        return;
+      }
+      probe_ += sphere_.options().step;
+    }
+    if (open_) store();
+    finished_ = true;
+  }
+
+  void store() {
+    if (top_ - *open_ > kMergeTolerance) spans_.push_back({*open_, top_});
+  }
+
+  SphereProbe& sphere_;
+  float x_;
+  float z_;
+  float radius_;
+  Span heights_;
+  /// Where the ball is.
+  float probe_;
+  /// Top of the open span, or the lower end of the heights while there is none: how far down the
+  /// obstacle above it can reach.
+  float top_;
+  /// Bottom of the open span.
+  std::optional<float> open_;
+  bool finished_ = false;
+  std::vector<Span> spans_;
+};
+
+}  // namespace
+
+class BulletColumnCaster::World : public SphereProbe {
+  using SphereProbe::SphereProbe;
+};
+
+BulletColumnCaster::BulletColumnCaster(const TriangleMesh& mesh, const BulletCastOptions& options)
+    : world_(std::make_unique<World>(std::make_shared<const MeshShape>(mesh), options)) {}
+BulletColumnCaster::~BulletColumnCaster() = default;
+BulletColumnCaster::BulletColumnCaster(BulletColumnCaster&&) noexcept = default;
+BulletColumnCaster& BulletColumnCaster::operator=(BulletColumnCaster&&) noexcept = default;
+
+std::vector<Span> BulletColumnCaster::column(const GridFrame& frame, ColumnIndex at) const {
+  return ColumnSearch(*world_, frame, at).run();
+}
+
+Columns bulletColumns(const TriangleMesh& mesh, const GridFrame& frame, unsigned jobs) {
+  const auto shape = std::make_shared<const MeshShape>(mesh);
+  return columnsByRows(frame, jobs, [&](std::uint32_t row) {
+    SphereProbe probe(shape, {});
+    RowSpans result;
+    for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
+      const std::vector<Span> spans = ColumnSearch(probe, frame, {i, row}).run();
+      result.counts.push_back(static_cast<std::uint32_t>(spans.size()));
+      result.spans.insert(result.spans.end(), spans.begin(), spans.end());
+    }
+    return result;
+  });
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,286 @@
+#include "galactic/bake/cast_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "galactic/bake/triangle_interval.h"
+
+namespace galactic::bake {
+namespace {
+
+/// How far from the end of a piece its first and last height are judged: more than a span end's own
+/// rounding, less than anything that matters. Metres.
+constexpr double kPulledIn = 1e-4;
+/// A disagreement is judged in parts about this long, metres, so that one that is a tie at one end
+/// and the method's at the other is split between the two.
+constexpr double kPartLength = 0.01;
+/// More parts than this are made longer instead.
+constexpr double kMaxParts = 512;
+
+/// A triangle near a sampled column: how far its box is aside, squared, and its heights.
+struct NearTriangle {
+  std::uint32_t triangle = 0;
+  double aside_squared = 0;
+  std::array<double, 2> heights{};
+};
+
+struct SampledColumn {
+  std::size_t index = 0;
+  ColumnIndex at;
+  std::vector<NearTriangle> near;
+};
+
+/// A scrambled number (the finaliser of SplitMix64): a spread that no pattern in the scene matches.
+std::uint64_t scramble(std::uint64_t value) {
+  value += 0x9e3779b97f4a7c15U;
+  value = (value ^ (value >> 30U)) * 0xbf58476d1ce4e5b9U;
+  value = (value ^ (value >> 27U)) * 0x94d049bb133111ebU;
+  return value ^ (value >> 31U);
+}
+
+/// One column from each of `wanted` equal shares of those that hold spans, in ascending order; all
+/// of them when they are fewer.
+std::vector<SampledColumn> chooseColumns(const Columns& columns, std::uint32_t wanted) {
+  const std::size_t count = columns.frame.columnCount();
+  std::uint64_t with_spans = 0;
+  for (std::size_t c = 0; c < count; ++c) with_spans += columns.column(c).empty() ? 0U : 1U;
+  const std::uint64_t shares = std::min<std::uint64_t>(wanted, with_spans);
+  std::vector<SampledColumn> chosen;
+  std::uint64_t rank = 0;
+  for (std::size_t c = 0; c < count && chosen.size() < shares; ++c) {
+    if (columns.column(c).empty()) continue;
+    const std::uint64_t share = chosen.size();
+    const std::uint64_t begin = share * with_spans / shares;
+    const std::uint64_t end = (share + 1) * with_spans / shares;
+    if (rank++ != begin + scramble(share) % (end - begin)) continue;
+    SampledColumn column;
+    column.index = c;
+    column.at = {static_cast<std::uint32_t>(c % columns.frame.columns_x),
+                 static_cast<std::uint32_t>(c / columns.frame.columns_x)};
+    chosen.push_back(std::move(column));
+  }
+  return chosen;
+}
+
+std::array<Point, 3> cornersOf(const TriangleMesh& mesh, std::uint32_t triangle) {
+  std::array<Point, 3> corners{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& v = mesh.vertices[mesh.triangles[triangle][k]];
+    corners[k] = {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+  }
+  return corners;
+}
+
+/// Least and greatest coordinate of a triangle along an axis.
+std::array<double, 2> extent(const std::array<Point, 3>& corners, std::size_t axis) {
+  const auto [lo, hi] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
+  return {lo, hi};
+}
+
+/// Cells along one axis, the last one included.
+struct CellRange {
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+};
+
+/// The cells of an axis (its first edge at `min`) that a range of coordinates meets, and one more
+/// to each side for rounding. Counted here, not by the engines' own function: the check is to see
+/// what that one loses.
+CellRange cellsWithin(const std::array<double, 2>& range, double min, const GridFrame& frame,
+                      std::uint32_t count) {
+  const auto spacing = static_cast<double>(frame.spacing);
+  const double limit = static_cast<double>(count) - 1;
+  const double first = std::floor((range[0] - min) / spacing) - 1;
+  const double last = std::floor((range[1] - min) / spacing) + 1;
+  return {static_cast<std::uint32_t>(std::clamp(first, 0.0, limit)),
+          static_cast<std::uint32_t>(std::clamp(last, 0.0, limit))};
+}
+
+double outside(double value, const std::array<double, 2>& range) {
+  return std::max({range[0] - value, value - range[1], 0.0});
+}
+
+/// Notes with each sampled column the triangles that may be within `reach` of it. One pass over the
+/// mesh: for most triangles the search among the columns, which are in ascending order, ends at
+/// once.
+void gatherTriangles(const TriangleMesh& mesh, const GridFrame& frame, double reach,
+                     std::vector<SampledColumn>& columns) {
+  const auto before = [](const SampledColumn& column, std::size_t index) {
+    return column.index < index;
+  };
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::array<Point, 3> corners = cornersOf(mesh, t);
+    const std::array<double, 2> x = extent(corners, 0);
+    const std::array<double, 2> y = extent(corners, 1);
+    const std::array<double, 2> z = extent(corners, 2);
+    const CellRange across = cellsWithin({x[0] - reach, x[1] + reach},
+                                         static_cast<double>(frame.min_x), frame, frame.columns_x);
+    const CellRange rows = cellsWithin({z[0] - reach, z[1] + reach},
+                                       static_cast<double>(frame.min_z), frame, frame.columns_z);
+    const auto from = [&](auto begin, std::size_t row) {
+      return std::lower_bound(begin, columns.end(), row * frame.columns_x + across.first, before);
+    };
+    auto column = from(columns.begin(), rows.first);
+    while (column != columns.end() && column->at.k <= rows.last) {
+      if (column->at.i > across.last) {
+        column = from(column, std::size_t{column->at.k} + 1);
+      } else if (column->at.i < across.first) {
+        column = from(column, column->at.k);
+      } else {
+        const double dx = outside(frame.centreX(column->at.i), x);
+        const double dz = outside(frame.centreZ(column->at.k), z);
+        const double aside_squared = dx * dx + dz * dz;
+        if (aside_squared <= reach * reach) column->near.push_back({t, aside_squared, y});
+        ++column;
+      }
+    }
+  }
+}
+
+/// What the distance says about the grid at one height, in ascending order of gravity.
+enum class Verdict { kTie, kRight, kWrong };
+
+/// Judges one sampled column by brute force in double precision.
+class Judge {
+ public:
+  Judge(const TriangleMesh& mesh, const GridFrame& frame, const SampledColumn& column,
+        double tolerance)
+      : mesh_(mesh),
+        column_(column),
+        x_(frame.centreX(column.at.i)),
+        z_(frame.centreZ(column.at.k)),
+        radius_(static_cast<double>(frame.radius)),
+        tolerance_(tolerance) {}
+
+  /// The verdict on a grid that calls `height` free or blocked.
+  [[nodiscard]] Verdict at(double height, bool grid_says_free) const {
+    // Beyond the radius and the tolerance, or within the radius less the tolerance, the distance
+    // itself no longer matters.
+    const double reach = radius_ + 2 * tolerance_;
+    const double inside = std::max(0.0, radius_ - 2 * tolerance_);
+    double least = reach * reach;
+    for (const NearTriangle& near : column_.near) {
+      const double off = outside(height, near.heights);
+      if (near.aside_squared + off * off >= least) continue;
+      least = std::min(least, squaredDistance({x_, height, z_}, cornersOf(mesh_, near.triangle)));
+      if (least < inside * inside) break;
+    }
+    const double clearance = std::sqrt(least) - radius_;
+    if (std::abs(clearance) <= tolerance_) return Verdict::kTie;
+    return (clearance > 0) == grid_says_free ? Verdict::kRight : Verdict::kWrong;
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  const SampledColumn& column_;
+  double x_;
+  double z_;
+  double radius_;
+  double tolerance_;
+};
+
+/// Heights in which grid and casts each say one thing.
+struct Piece {
+  double lo = 0;
+  double hi = 0;
+  bool grid_free = false;
+  bool cast_free = false;
+
+  [[nodiscard]] double length() const { return hi - lo; }
+};
+
+bool contains(std::span<const Span> spans, double height) {
+  return std::any_of(spans.begin(), spans.end(), [&](const Span& span) {
+    return static_cast<double>(span.lo) <= height && height <= static_cast<double>(span.hi);
+  });
+}
+
+/// Cuts the heights at every end of both, ascending.
+std::vector<Piece> cutInPieces(const Span& heights, std::span<const Span> grid,
+                               std::span<const Span> cast) {
+  std::vector<float> cuts{heights.lo, heights.hi};
+  for (const std::span<const Span> spans : {grid, cast}) {
+    for (const Span& span : spans) {
+      cuts.push_back(std::clamp(span.lo, heights.lo, heights.hi));
+      cuts.push_back(std::clamp(span.hi, heights.lo, heights.hi));
+    }
+  }
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  std::vector<Piece> pieces;
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    const auto lo = static_cast<double>(cuts[i]);
+    const auto hi = static_cast<double>(cuts[i + 1]);
+    const double middle = 0.5 * (lo + hi);
+    pieces.push_back({lo, hi, contains(grid, middle), contains(cast, middle)});
+  }
+  return pieces;
+}
+
+/// Judges a piece, cut in equal parts: each part in its middle, the first and last also close to
+/// the piece's ends; a part gets its gravest verdict. Adds the parts' lengths to `result`. What
+/// both methods agree on can only be an error; its parts are as long as the radius, since most
+/// obstacles block twice that.
+void judgePiece(const Judge& judge, const Piece& piece, double radius, CastCheck& result) {
+  const bool agreed = piece.grid_free == piece.cast_free;
+  const double wanted = agreed ? radius : kPartLength;
+  const auto count =
+      static_cast<int>(std::clamp(std::ceil(piece.length() / wanted), 1.0, kMaxParts));
+  const double part_length = piece.length() / count;
+  const double pulled_in = std::min(kPulledIn, 0.25 * part_length);
+  for (int part = 0; part < count; ++part) {
+    const double middle = piece.lo + (part + 0.5) * part_length;
+    Verdict verdict = judge.at(middle, piece.grid_free);
+    if (part == 0) {
+      verdict = std::max(verdict, judge.at(piece.lo + pulled_in, piece.grid_free));
+    }
+    if (part == count - 1) {
+      verdict = std::max(verdict, judge.at(piece.hi - pulled_in, piece.grid_free));
+    }
+    if (verdict == Verdict::kWrong) {
+      result.errors += part_length;
+    } else if (!agreed) {
+      (verdict == Verdict::kTie ? result.ties : result.method) += part_length;
+    }
+  }
+}
+
+/// The tolerance, or two units in the last place of the greatest height where those are more: span
+/// ends are floats.
+double effectiveTolerance(const Span& heights, double tolerance) {
+  const float greatest = std::max(std::abs(heights.lo), std::abs(heights.hi));
+  const float unit = std::nextafter(greatest, std::numeric_limits<float>::infinity()) - greatest;
+  return std::max(tolerance, 2 * static_cast<double>(unit));
+}
+
+}  // namespace
+
+CastCheck checkWithCasts(const TriangleMesh& mesh, const Columns& columns,
+                         const BulletColumnCaster& caster, const CastCheckOptions& options) {
+  const GridFrame& frame = columns.frame;
+  const double tolerance = effectiveTolerance(frame.heights, options.tie_tolerance);
+  std::vector<SampledColumn> sample = chooseColumns(columns, options.columns);
+  // Further triangles cannot bring any point of a column within the radius and the tolerance.
+  gatherTriangles(mesh, frame, static_cast<double>(frame.radius) + 2 * tolerance, sample);
+  CastCheck result;
+  for (const SampledColumn& column : sample) {
+    const std::vector<Span> cast = caster.column(frame, column.at);
+    const Judge judge(mesh, frame, column, tolerance);
+    bool differs = false;
+    for (const Piece& piece : cutInPieces(frame.heights, columns.column(column.index), cast)) {
+      judgePiece(judge, piece, static_cast<double>(frame.radius), result);
+      differs |= piece.grid_free != piece.cast_free && piece.length() > tolerance;
+    }
+    ++result.columns;
+    result.columns_differing += differs ? 1U : 0U;
+    result.compared +=
+        static_cast<double>(frame.heights.hi) - static_cast<double>(frame.heights.lo);
+  }
+  return result;
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,22 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "galactic/bake/columns.h"
+
+namespace galactic::bake {
+
+/// The free spans of one row of columns, in the order of the columns.
+struct RowSpans {
+  /// Spans of each column. Shape: columns_x.
+  std::vector<std::uint32_t> counts;
+  std::vector<Span> spans;
+};
+
+/// Finds each row with `find_row` on `jobs` threads and joins them in the order of the rows, so
+/// that the result does not depend on the number of threads. `find_row` must not throw.
+[[nodiscard]] Columns columnsByRows(const GridFrame& frame, unsigned jobs,
+                                    const std::function<RowSpans(std::uint32_t row)>& find_row);
+
+}  // namespace galactic::bake
