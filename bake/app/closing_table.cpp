@@ -15,19 +15,13 @@ std::string castCheckText(const BakedGrid& grid) {
                      check.columns_differing, check.columns, check.method * 1e3, check.ties * 1e3);
 }
 
-std::uint64_t gridBytes(const EncodedGrid& grid) {
-  return grid.cells.size() * sizeof(std::uint64_t) + grid.tile_base.size() * sizeof(std::uint16_t) +
-         grid.overflow_start.size() * sizeof(std::uint32_t) +
-         grid.overflow_spans.size() * sizeof(Span);
-}
-
 void printGrids(const BakedScene& scene) {
   fmt::print("  {:>7} {:>9} {:>9} {:>9} {:>8} {:>9} {:>9} {:>9}  {}\n", "radius", "columns", "raw",
              "spans", "MB", "room m3", "outside", "enclosed", "sphere casts");
   for (const BakedGrid& grid : scene.grids) {
     fmt::print("  {:>7} {:>9} {:>9} {:>9} {:>8.2f} {:>9.2f} {:>9.2f} {:>9.2f}  {}\n",
                fmt::format("{}", grid.grid.frame.radius), grid.grid.frame.columnCount(),
-               grid.raw_spans, grid.grid.spans, static_cast<double>(gridBytes(grid.grid)) / 1e6,
+               grid.raw_spans, grid.grid.spans, static_cast<double>(storedBytes(grid.grid)) / 1e6,
                grid.totals[0].volume, grid.totals[1].volume, grid.totals[2].volume,
                castCheckText(grid));
   }

@@ -151,9 +151,16 @@ class GridEncoder {
     const auto index = static_cast<std::uint32_t>(grid_.overflow_start.size() - 1);
     for (const Span& span : spans) {
       const Codes codes = quantizer_.encode(span);
-      if (codes.lo <= codes.hi) grid_.overflow_spans.push_back(span);
+      if (codes.lo > codes.hi) continue;
+      if (quantizer_.tall()) {
+        grid_.overflow_spans.push_back(span);
+      } else {
+        grid_.overflow_codes.push_back(static_cast<std::uint32_t>(
+            spanCode(static_cast<std::uint32_t>(codes.lo), static_cast<std::uint32_t>(codes.hi))));
+      }
     }
-    grid_.overflow_start.push_back(static_cast<std::uint32_t>(grid_.overflow_spans.size()));
+    grid_.overflow_start.push_back(
+        static_cast<std::uint32_t>(grid_.overflow_codes.size() + grid_.overflow_spans.size()));
     return overflowCell(index);
   }
 
@@ -165,5 +172,11 @@ class GridEncoder {
 }  // namespace
 
 EncodedGrid encodeGrid(const Columns& columns) { return GridEncoder(columns).encode(); }
+
+std::uint64_t storedBytes(const EncodedGrid& grid) {
+  return grid.cells.size() * sizeof(std::uint64_t) + grid.tile_base.size() * sizeof(std::uint16_t) +
+         (grid.overflow_start.size() + grid.overflow_codes.size()) * sizeof(std::uint32_t) +
+         grid.overflow_spans.size() * sizeof(Span);
+}
 
 }  // namespace galactic::bake

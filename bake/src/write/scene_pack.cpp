@@ -23,12 +23,6 @@ constexpr std::size_t kVectorAlignment = 32;
 
 schema::Vec3 toSchema(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-std::uint64_t gridBytes(const EncodedGrid& grid) {
-  return grid.cells.size() * sizeof(std::uint64_t) + grid.tile_base.size() * sizeof(std::uint16_t) +
-         grid.overflow_start.size() * sizeof(std::uint32_t) +
-         grid.overflow_spans.size() * sizeof(Span);
-}
-
 template <class T>
 Offset<flatbuffers::Vector<T>> alignedVector(FlatBufferBuilder& builder,
                                              const std::vector<T>& values) {
@@ -81,6 +75,8 @@ Offset<schema::ColumnGrid> columnGrid(FlatBufferBuilder& builder, const BakedGri
   const auto overflow_spans = builder.CreateVectorOfStructs(
       reinterpret_cast<const schema::Span*>(grid.overflow_spans.data()),
       grid.overflow_spans.size());
+  Offset<flatbuffers::Vector<std::uint32_t>> overflow_codes;
+  if (!grid.overflow_codes.empty()) overflow_codes = alignedVector(builder, grid.overflow_codes);
   const auto counts = statistics(builder, baked);
   const schema::Span heights(grid.frame.heights.lo, grid.frame.heights.hi);
   schema::ColumnGridBuilder table(builder);
@@ -99,6 +95,7 @@ Offset<schema::ColumnGrid> columnGrid(FlatBufferBuilder& builder, const BakedGri
   table.add_overflow_start(overflow_start);
   table.add_overflow_spans(overflow_spans);
   table.add_statistics(counts);
+  table.add_overflow_codes(overflow_codes);
   return table.Finish();
 }
 
@@ -153,7 +150,7 @@ void shiftTilesToCacheLines(std::span<std::byte> payload) {
 Result<std::vector<std::byte>> encodeScenePack(const BakedScene& scene,
                                                const Provenance& provenance) {
   std::uint64_t bytes = 0;
-  for (const BakedGrid& grid : scene.grids) bytes += gridBytes(grid.grid);
+  for (const BakedGrid& grid : scene.grids) bytes += storedBytes(grid.grid);
   if (bytes > kMaxGridBytes) {
     return fail(ErrorCode::kUnsupported, scene.name,
                 fmt::format("the grids need {} MB, one pack holds less than 2048 MB; use a wider "

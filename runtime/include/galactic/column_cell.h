@@ -49,6 +49,12 @@ inline constexpr std::uint64_t kOverflowMark = 0xffffffffU;  // lo = hi = 65535
   return std::uint64_t{lo} | (std::uint64_t{hi} << 16U);
 }
 
+/// The two codes of a span.
+[[nodiscard]] constexpr std::uint32_t lowCode(std::uint32_t span_code) {
+  return span_code & 0xffffU;
+}
+[[nodiscard]] constexpr std::uint32_t highCode(std::uint32_t span_code) { return span_code >> 16U; }
+
 [[nodiscard]] constexpr bool isOverflow(std::uint64_t cell) {
   return (cell & 0xffffffffU) == kOverflowMark;
 }

@@ -14,12 +14,17 @@ struct EncodedGrid {
   std::vector<std::uint64_t> cells;
   std::vector<std::uint16_t> tile_base;
   std::vector<std::uint32_t> overflow_start;
+  /// One of the two is empty: heights where there are tile bases, else code pairs.
+  std::vector<std::uint32_t> overflow_codes;
   std::vector<Span> overflow_spans;
   /// Spans stored, and those dropped because they are thinner than the quantum.
   std::uint64_t spans = 0;
   std::uint64_t slivers = 0;
   std::uint32_t max_spans_per_column = 0;
 };
+
+/// Bytes of the grid's cells and overflow spans.
+[[nodiscard]] std::uint64_t storedBytes(const EncodedGrid& grid);
 
 /// Largest height of a code: with rounding to the blocked side, no stored end is further than this
 /// from the exact one. Metres.

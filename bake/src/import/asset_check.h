@@ -1,0 +1,18 @@
+#pragma once
+#include <string>
+
+#include "galactic/bake/source_asset.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+/// Refuses an asset that nothing can be made of: indices out of range, a NaN or infinite vertex
+/// that a placed triangle uses, a transform that is not finite or flattens its mesh, no triangle at
+/// all. `where` starts the place of each error, usually the file. All errors are kInvalidInput.
+[[nodiscard]] Result<void> checkAsset(const SourceAsset& asset, const std::string& where);
+
+/// Adds a warning when the whole asset is smaller than any room: its unit is then in doubt.
+/// `asset` has passed checkAsset.
+void warnAboutSize(SourceAsset& asset);
+
+}  // namespace galactic::bake

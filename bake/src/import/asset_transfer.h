@@ -1,0 +1,34 @@
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <span>
+
+#include "galactic/bake/source_asset.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+/// Receives consecutive pieces of a transfer.
+using TransferSink = std::function<void(std::span<const std::byte>)>;
+
+/// Writes a SourceAsset as bytes for another process of this same program: meshes one by one (so
+/// that the sender can free each when it is sent), then the rest; or an error.
+class AssetSender {
+ public:
+  explicit AssetSender(TransferSink sink) : sink_(std::move(sink)) {}
+
+  void mesh(const SourceMesh& mesh) const;
+  /// Everything but the meshes, and the end.
+  void finish(const SourceAsset& asset) const;
+  /// What went wrong, and the end; the meshes sent so far are forgotten.
+  void fail(const Error& error) const;
+
+ private:
+  TransferSink sink_;
+};
+
+/// The asset that was sent, or the error that was sent. Fails with kInternal when the bytes are no
+/// complete transfer; reads nothing beyond them.
+[[nodiscard]] Result<SourceAsset> receiveAsset(std::span<const std::byte> bytes);
+
+}  // namespace galactic::bake

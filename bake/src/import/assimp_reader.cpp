@@ -1,0 +1,405 @@
+#include "import/assimp_reader.h"
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/config.h>
+#include <assimp/importerdesc.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <assimp/DefaultLogger.hpp>
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "import/affine.h"
+#include "import/axis_convention.h"
+#include "import/content_check.h"
+#include "import/polygon_triangulation.h"
+#include "import/source_files.h"
+
+namespace galactic::bake {
+namespace {
+
+/// What a reader's name means to us.
+struct Format {
+  std::string_view reader;
+  std::string_view name;
+  AxisConvention convention;
+};
+
+constexpr AxisConvention statedBy(UpAxis up, std::string_view by) {
+  return {.up = {up, by}, .metres = {1.0, by}};
+}
+
+constexpr std::string_view kColladaReader = "Collada Importer";
+constexpr std::string_view kFbxReader = "Autodesk FBX Importer";
+constexpr std::string_view kGltf2Reader = "glTF2 Importer";
+
+constexpr std::array kFormats{
+    Format{kGltf2Reader, "glTF 2.0", statedBy(UpAxis::kY, "glTF convention")},
+    Format{"glTF Importer", "glTF 1.0", statedBy(UpAxis::kY, "glTF convention")},
+    Format{"Wavefront Object Importer", "Wavefront OBJ", statedBy(UpAxis::kY, "OBJ convention")},
+    Format{"Stanford Polygon Library (PLY) Importer", "Stanford PLY",
+           statedBy(UpAxis::kZ, "PLY convention")},
+    Format{"Stereolithography (STL) Importer", "STL", statedBy(UpAxis::kZ, "STL convention")},
+    Format{kColladaReader, "COLLADA", statedBy(UpAxis::kY, "file")},
+    Format{kFbxReader, "Autodesk FBX", statedBy(UpAxis::kY, "file")},
+};
+
+Format formatOf(const Assimp::Importer& importer) {
+  const int index = importer.GetPropertyInteger("importerIndex", -1);
+  const aiImporterDesc* description =
+      index < 0 ? nullptr : importer.GetImporterInfo(static_cast<std::size_t>(index));
+  const std::string_view reader = description == nullptr ? "unknown" : description->mName;
+  const auto* known = std::find_if(kFormats.begin(), kFormats.end(),
+                                   [&](const Format& format) { return format.reader == reader; });
+  if (known != kFormats.end()) return *known;
+  return {.reader = reader, .name = reader, .convention = statedBy(UpAxis::kY, "assumed")};
+}
+
+/// Opens files for the reader and remembers which, because the reader does not tell.
+class RecordingFiles final : public Assimp::DefaultIOSystem {
+ public:
+  RecordingFiles(std::vector<std::string>& opened, std::vector<std::string>& missing)
+      : opened_(opened), missing_(missing) {}
+
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    std::string name = file;
+    Assimp::IOStream* stream = DefaultIOSystem::Open(name.c_str(), mode);
+    if (stream == nullptr) {
+      // Readers hand over URIs as they stand in the file: "my%20scene.bin".
+      if (const std::string plain = withoutUriEscapes(name); plain != name) {
+        stream = DefaultIOSystem::Open(plain.c_str(), mode);
+        if (stream != nullptr) name = plain;
+      }
+    }
+    auto& list = stream == nullptr ? missing_ : opened_;
+    if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
+    return stream;
+  }
+
+ private:
+  std::vector<std::string>& opened_;
+  std::vector<std::string>& missing_;
+};
+
+/// Listens for the one thing that a reader mentions only in its log: faces that it left out because
+/// their vertices do not exist. Sets up the library's global logger: for processes of their own.
+class DroppedFacesLog final : public Assimp::LogStream {
+ public:
+  DroppedFacesLog() {
+    Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
+    Assimp::DefaultLogger::get()->attachStream(this, Assimp::Logger::Warn | Assimp::Logger::Err);
+  }
+  ~DroppedFacesLog() override {
+    Assimp::DefaultLogger::get()->detachStream(this, Assimp::Logger::Warn | Assimp::Logger::Err);
+    Assimp::DefaultLogger::kill();
+  }
+  DroppedFacesLog(const DroppedFacesLog&) = delete;
+  DroppedFacesLog& operator=(const DroppedFacesLog&) = delete;
+  DroppedFacesLog(DroppedFacesLog&&) = delete;
+  DroppedFacesLog& operator=(DroppedFacesLog&&) = delete;
+
+  void write(const char* message) override {
+    seen_ = seen_ || std::string_view(message).find("out-of-range") != std::string_view::npos;
+  }
+  [[nodiscard]] bool seen() const { return seen_; }
+
+ private:
+  bool seen_ = false;
+};
+
+/// One reading of one file.
+class SceneReader {
+ public:
+  SceneReader(const std::filesystem::path& path, const MeshImportOptions& options,
+              const ReaderCallbacks& callbacks)
+      : path_(path), options_(options), callbacks_(callbacks) {}
+
+  Result<SourceAsset> read();
+
+ private:
+  Result<void> load();
+  Result<Affine> worldFromRoot();
+  Result<void> placeNodes(const Affine& world_from_root);
+  void convertMeshes();
+  void convertMaterials();
+  void convertTextures();
+  void nameFiles();
+  [[nodiscard]] SourceMesh convertMesh(const aiMesh& mesh, unsigned index);
+  [[nodiscard]] tl::unexpected<Error> invalid(std::string message) const {
+    return fail(ErrorCode::kInvalidInput, path_.string(), std::move(message));
+  }
+
+  const std::filesystem::path& path_;
+  const MeshImportOptions& options_;
+  const ReaderCallbacks& callbacks_;
+  std::unique_ptr<aiScene> scene_;
+  Format format_{};
+  SourceAsset asset_;
+  std::vector<std::string> opened_;
+  std::vector<std::string> missing_;
+};
+
+std::string text(const aiString& string) { return {string.C_Str()}; }
+
+Result<void> SceneReader::load() {
+  DroppedFacesLog dropped_faces;
+  Assimp::Importer importer;
+  importer.SetIOHandler(new RecordingFiles(opened_, missing_));  // the importer owns it
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
+  // No post-processing: the library's own triangulation covers the notches of concave polygons.
+  const bool read = importer.ReadFile(path_.string(), 0) != nullptr;
+  callbacks_.on_stage(ReadStage::kConversion);
+  if (!read) {
+    const std::string reason = importer.GetErrorString();
+    if (reason.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
+    return invalid(
+        fmt::format("its content cannot be read as {}: {}; export it again, or convert "
+                    "it to GLB",
+                    path_.extension().string(), reason.empty() ? "no reason given" : reason));
+  }
+  if (dropped_faces.seen()) {
+    return invalid("it has faces that use vertices out of range; export it again");
+  }
+  format_ = formatOf(importer);
+  asset_.format = format_.name;
+  scene_.reset(importer.GetOrphanedScene());
+  return {};
+}
+
+Affine toAffine(const aiMatrix4x4& m) {
+  Affine affine{};
+  for (unsigned i = 0; i < affine.size(); ++i) affine[i] = static_cast<double>(m[i / 4][i % 4]);
+  return affine;
+}
+
+template <class T>
+std::optional<T> metadata(const aiScene& scene, const char* key) {
+  T value{};
+  if (scene.mMetaData == nullptr || !scene.mMetaData->Get(key, value)) return std::nullopt;
+  return value;
+}
+
+/// FBX: axis number and sign, and centimetres per unit; the reader applies neither.
+AxisConvention fbxConvention(const aiScene& scene, AxisConvention convention) {
+  const int axis = metadata<std::int32_t>(scene, "UpAxis").value_or(1);
+  const int sign = metadata<std::int32_t>(scene, "UpAxisSign").value_or(1);
+  if (axis >= 0 && axis <= 2) {
+    convention.up.value = static_cast<UpAxis>(axis + (sign < 0 ? 3 : 0));
+  }
+  const auto centimetres = metadata<float>(scene, "UnitScaleFactor");
+  convention.metres.value = centimetres ? shortestDecimal(*centimetres) / 100 : 0.01;
+  return convention;
+}
+
+Result<Affine> SceneReader::worldFromRoot() {
+  Affine file_from_root = toAffine(scene_->mRootNode->mTransformation);
+  AxisConvention convention = format_.convention;
+  if (format_.reader == kColladaReader) {
+    // The reader puts up axis and unit, and nothing else, into the root's transform. They are taken
+    // out again, so that an override replaces them instead of adding to them.
+    const auto stated = conventionOf(file_from_root, "file");
+    if (!stated && !(options_.up && options_.scale)) {
+      return invalid(
+          "the metres of its <unit> are not a positive number; correct them, or give "
+          "--scale and --up");
+    }
+    convention = stated.value_or(convention);
+    file_from_root = kIdentityAffine;
+  } else if (format_.reader == kFbxReader) {
+    convention = fbxConvention(*scene_, convention);
+  }
+  convention = withOverrides(convention, options_);
+  if (!std::isfinite(convention.metres.value) || convention.metres.value <= 0) {
+    return invalid("its unit is not a positive number of metres; give --scale");
+  }
+  asset_.convention = describe(convention);
+  return compose(compose(options_.transform.value_or(kIdentityAffine), worldFromFile(convention)),
+                 file_from_root);
+}
+
+bool hasAffineBottomRow(const aiMatrix4x4& m) {
+  constexpr float kFloatRounding = 1e-6F;
+  const std::array<float, 4> deviation{m.d1, m.d2, m.d3, m.d4 - 1};
+  return std::all_of(deviation.begin(), deviation.end(),
+                     [](float d) { return std::abs(d) <= kFloatRounding; });
+}
+
+Result<void> SceneReader::placeNodes(const Affine& world_from_root) {
+  struct Placed {
+    const aiNode* node;
+    Affine world_from_node;
+  };
+  // A stack of our own: hostile files nest nodes deeper than the call stack.
+  std::vector<Placed> open{{scene_->mRootNode, world_from_root}};
+  while (!open.empty()) {
+    const Placed at = open.back();
+    open.pop_back();
+    for (unsigned i = 0; i < at.node->mNumMeshes; ++i) {
+      asset_.instances.push_back({.name = text(at.node->mName),
+                                  .mesh = at.node->mMeshes[i],
+                                  .world_from_mesh = at.world_from_node});
+    }
+    for (unsigned i = at.node->mNumChildren; i-- > 0;) {
+      const aiNode* child = at.node->mChildren[i];
+      if (!hasAffineBottomRow(child->mTransformation)) {
+        return invalid(
+            fmt::format("node '{}' has a projective transform; only affine ones (bottom "
+                        "row 0 0 0 1) can be placed",
+                        child->mName.C_Str()));
+      }
+      open.push_back({child, compose(at.world_from_node, toAffine(child->mTransformation))});
+    }
+  }
+  return {};
+}
+
+SourceMesh SceneReader::convertMesh(const aiMesh& mesh, unsigned index) {
+  SourceMesh converted;
+  converted.name = text(mesh.mName);
+  converted.material = mesh.mMaterialIndex;
+  if (converted.name.empty()) converted.name = fmt::format("mesh {}", index);
+  const std::size_t vertices = mesh.mVertices == nullptr ? 0 : mesh.mNumVertices;
+  const auto from = std::span(mesh.mVertices, vertices);
+  converted.positions.reserve(vertices);
+  for (const aiVector3D& v : from) converted.positions.push_back({v.x, v.y, v.z});
+  if (vertices != 0 && mesh.HasTextureCoords(0)) {
+    converted.uvs.reserve(vertices);
+    for (const aiVector3D& v : std::span(mesh.mTextureCoords[0], vertices)) {
+      converted.uvs.push_back({v.x, v.y});
+    }
+  }
+  if (vertices != 0 && mesh.HasVertexColors(0)) {
+    converted.colors.reserve(vertices);
+    for (const aiColor4D& c : std::span(mesh.mColors[0], vertices)) {
+      converted.colors.push_back({c.r, c.g, c.b, c.a});
+    }
+  }
+  const auto faces = std::span(mesh.mFaces, mesh.mFaces == nullptr ? 0 : mesh.mNumFaces);
+  converted.triangles.reserve(faces.size());
+  std::size_t others = 0;
+  for (const aiFace& face : faces) {
+    if (face.mNumIndices < 3) ++others;
+    triangulatePolygon({face.mIndices, face.mNumIndices}, converted.positions, converted.triangles);
+  }
+  if (others != 0) {
+    asset_.warnings.push_back(fmt::format("mesh '{}' ({}) has {} points or lines: ignored",
+                                          converted.name, index, others));
+  }
+  return converted;
+}
+
+void SceneReader::convertMeshes() {
+  for (unsigned i = 0; i < scene_->mNumMeshes; ++i) {
+    callbacks_.on_mesh(convertMesh(*scene_->mMeshes[i], i));
+    delete std::exchange(scene_->mMeshes[i], nullptr);  // peak memory: one mesh twice, not all
+  }
+}
+
+float unitInterval(float value) { return std::isfinite(value) ? std::clamp(value, 0.F, 1.F) : 1.F; }
+
+void SceneReader::convertMaterials() {
+  for (const aiMaterial* material : std::span(scene_->mMaterials, scene_->mNumMaterials)) {
+    SourceMaterial& converted = asset_.materials.emplace_back();
+    aiString string;
+    if (material->Get(AI_MATKEY_NAME, string) == AI_SUCCESS) converted.name = text(string);
+    aiColor4D color(1, 1, 1, 1);
+    if (material->Get(AI_MATKEY_BASE_COLOR, color) != AI_SUCCESS) {
+      material->Get(AI_MATKEY_COLOR_DIFFUSE, color);
+    }
+    converted.base_color = {unitInterval(color.r), unitInterval(color.g), unitInterval(color.b),
+                            unitInterval(color.a)};
+    if (material->GetTexture(AI_MATKEY_BASE_COLOR_TEXTURE, &string) == AI_SUCCESS ||
+        material->GetTexture(aiTextureType_DIFFUSE, 0, &string) == AI_SUCCESS) {
+      converted.base_color_texture = text(string);
+    }
+    bool two_sided = false;
+    material->Get(AI_MATKEY_TWOSIDED, two_sided);
+    converted.two_sided = two_sided;
+  }
+}
+
+void SceneReader::convertTextures() {
+  for (const aiTexture* texture : std::span(scene_->mTextures, scene_->mNumTextures)) {
+    EmbeddedTexture& converted = asset_.textures.emplace_back();
+    if (texture->mHeight != 0) {
+      converted.format = "raw";
+      asset_.warnings.push_back(
+          fmt::format("embedded texture {} is not an encoded image: its pixels are ignored",
+                      asset_.textures.size() - 1));
+      continue;
+    }
+    const auto* hint = texture->achFormatHint;
+    converted.format.assign(hint, std::find(hint, hint + sizeof(texture->achFormatHint), '\0'));
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(texture->pcData);
+    converted.bytes.assign(bytes, bytes + texture->mWidth);
+  }
+}
+
+void SceneReader::nameFiles() {
+  for (const std::string& file : opened_) {
+    asset_.files.push_back({.name = nameRelativeTo(path_, file)});
+  }
+  // The OBJ reader looks for a namesake of the OBJ when the named MTL is missing: one warning each.
+  std::filesystem::path namesake = path_;
+  namesake.replace_extension(".mtl");
+  std::erase_if(missing_, [&](const std::string& file) {
+    return file == namesake.string() && file != missing_.front();
+  });
+  for (const std::string& file : missing_) {
+    if (std::filesystem::path(file).extension() != ".mtl") continue;
+    asset_.warnings.push_back(
+        fmt::format("material file '{}' is missing: its materials get default colours",
+                    nameRelativeTo(path_, file)));
+  }
+}
+
+Result<SourceAsset> SceneReader::read() {
+  if (auto loaded = load(); !loaded) return tl::unexpected(std::move(loaded.error()));
+  auto world_from_root = worldFromRoot();
+  if (!world_from_root) return tl::unexpected(std::move(world_from_root.error()));
+  if (auto placed = placeNodes(*world_from_root); !placed) {
+    return tl::unexpected(std::move(placed.error()));
+  }
+  convertMeshes();
+  convertMaterials();
+  convertTextures();
+  nameFiles();
+  asset_.name = path_.stem().string();
+  return std::move(asset_);
+}
+
+}  // namespace
+
+bool hasReader(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  return extension.size() > 1 && Assimp::Importer().IsExtensionSupported(extension);
+}
+
+std::string readableExtensions() {
+  aiString list;
+  Assimp::Importer().GetExtensionList(list);
+  std::string extensions = text(list);
+  std::erase(extensions, '*');
+  std::replace(extensions.begin(), extensions.end(), ';', ' ');
+  return extensions;
+}
+
+Result<SourceAsset> readWithAssimp(const std::filesystem::path& path,
+                                   const MeshImportOptions& options,
+                                   const ReaderCallbacks& callbacks) {
+  if (auto checked = checkContent(path); !checked) {
+    return tl::unexpected(std::move(checked.error()));
+  }
+  return SceneReader(path, options, callbacks).read();
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,150 @@
+#include "galactic/bake/mesh_import.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "import/affine.h"
+#include "import/asset_check.h"
+#include "import/asset_transfer.h"
+#include "import/assimp_reader.h"
+#include "import/isolated_process.h"
+#include "import/source_files.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<void> checkOptions(const MeshImportOptions& options) {
+  if (options.scale && !(std::isfinite(*options.scale) && *options.scale > 0)) {
+    return fail(
+        ErrorCode::kInvalidInput, "--scale",
+        fmt::format("{} is no scale; give a positive number of metres per unit", *options.scale));
+  }
+  if (options.transform && !(isFinite(*options.transform) && isInvertible(*options.transform))) {
+    return fail(ErrorCode::kInvalidInput, "--transform",
+                "it is not finite or flattens space; give an invertible affine transform");
+  }
+  return {};
+}
+
+Result<void> checkMainFile(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) {
+    const bool absent = status.type() == fs::file_type::not_found;
+    return fail(ErrorCode::kIo, path.string(),
+                absent ? "there is no such file; check the path"
+                       : fmt::format("cannot look at the file: {}", error.message()));
+  }
+  if (fs::is_directory(status)) {
+    return fail(ErrorCode::kIo, path.string(),
+                "it is a folder; give the path of a mesh file inside it");
+  }
+  if (!fs::is_regular_file(status)) {
+    return fail(ErrorCode::kIo, path.string(), "it is not a regular file; give a mesh file");
+  }
+  if (::access(path.c_str(), R_OK) != 0) {
+    return fail(ErrorCode::kIo, path.string(),
+                fmt::format("cannot read the file: {}", std::generic_category().message(errno)));
+  }
+  if (!hasReader(path)) {
+    return fail(ErrorCode::kUnsupported, path.string(),
+                fmt::format("no reader knows the extension '{}'; wanted one of {}",
+                            path.extension().string(), readableExtensions()));
+  }
+  if (fs::file_size(path, error) == 0) {
+    return fail(ErrorCode::kInvalidInput, path.string(),
+                "the file is empty; export or download it again");
+  }
+  return {};
+}
+
+Error readingFailure(const fs::path& path, const ProcessFailure& failure,
+                     const MeshImportOptions& options) {
+  const std::string reader = "the reader for " + path.extension().string() + " files";
+  Error error{.code = ErrorCode::kInvalidInput, .where = path.string(), .message = {}};
+  switch (failure.end) {
+    case ProcessEnd::kNotStarted:
+      error.code = ErrorCode::kInternal;
+      error.message = fmt::format("cannot start {}: {}", reader,
+                                  std::generic_category().message(failure.number));
+      return error;
+    case ProcessEnd::kTimeLimit:
+      error.message = fmt::format(
+          "{} did not finish within {} s; the file is broken or too large: "
+          "export it again or split it",
+          reader, options.time_limit.count());
+      return error;
+    case ProcessEnd::kMemoryLimit:
+      error.message = fmt::format(
+          "{} needs more than {:.3g} GiB of memory; the file is broken or "
+          "too large: export it again or split it",
+          reader, std::ldexp(static_cast<double>(options.memory_limit), -30));
+      return error;
+    case ProcessEnd::kCrashed:
+    case ProcessEnd::kFailed:
+      break;
+  }
+  const std::string how = failure.end == ProcessEnd::kCrashed
+                              ? fmt::format("crashed (signal {})", failure.number)
+                              : fmt::format("stopped (exit code {})", failure.number);
+  if (failure.stage == static_cast<std::uint32_t>(ReadStage::kConversion)) {
+    error.code = ErrorCode::kInternal;
+    error.message = fmt::format(
+        "the conversion of what {} read {}; please report this with the "
+        "file",
+        reader, how);
+  } else {
+    error.message = fmt::format("{} {}: the file is broken; export it again, or convert it to GLB",
+                                reader, how);
+  }
+  return error;
+}
+
+void readInChild(const fs::path& path, const MeshImportOptions& options, ProcessChannel& channel) {
+  const AssetSender sender([&](std::span<const std::byte> bytes) { channel.write(bytes); });
+  const ReaderCallbacks callbacks{
+      .on_mesh = [&](const SourceMesh& mesh) { sender.mesh(mesh); },
+      .on_stage = [&](ReadStage stage) { channel.enterStage(static_cast<std::uint32_t>(stage)); },
+  };
+  const auto rest = readWithAssimp(path, options, callbacks);
+  if (rest) {
+    sender.finish(*rest);
+  } else {
+    sender.fail(rest.error());
+  }
+}
+
+Result<SourceAsset> readIsolated(const fs::path& path, const MeshImportOptions& options) {
+  const ProcessLimits limits{.wall_clock = options.time_limit, .memory = options.memory_limit};
+  const auto output =
+      runIsolated([&](ProcessChannel& channel) { readInChild(path, options, channel); }, limits);
+  if (!output) return tl::unexpected(readingFailure(path, output.error(), options));
+  return receiveAsset(output->bytes());
+}
+
+}  // namespace
+
+Result<SourceAsset> importMesh(const fs::path& path, const MeshImportOptions& options) {
+  if (auto checked = checkOptions(options); !checked) return tl::unexpected(checked.error());
+  if (auto checked = checkMainFile(path); !checked) return tl::unexpected(checked.error());
+  auto asset = readIsolated(path, options);
+  if (!asset) return asset;
+  if (auto checked = checkAsset(*asset, path.string()); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  findTextures(*asset, path);
+  if (auto hashed = hashFiles(*asset, path); !hashed) return tl::unexpected(hashed.error());
+  warnAboutSize(*asset);
+  return asset;
+}
+
+}  // namespace galactic::bake

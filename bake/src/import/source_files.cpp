@@ -1,0 +1,125 @@
+#include "import/source_files.h"
+
+#define XXH_INLINE_ALL
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "galactic/mapped_file.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<char> hexByte(char high, char low) {
+  const auto digit = [](char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    const int letter = std::tolower(static_cast<unsigned char>(c));
+    return letter >= 'a' && letter <= 'f' ? letter - 'a' + 10 : -1;
+  };
+  if (digit(high) < 0 || digit(low) < 0) return std::nullopt;
+  return static_cast<char>(digit(high) * 16 + digit(low));
+}
+
+std::string withForwardSlashes(std::string path) {
+  std::replace(path.begin(), path.end(), '\\', '/');
+  return path;
+}
+
+bool isFile(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+/// The file that `reference` means, if it is there.
+std::optional<fs::path> findReference(const fs::path& folder, std::string reference) {
+  constexpr std::string_view kFileScheme = "file://";
+  if (reference.starts_with(kFileScheme)) reference.erase(0, kFileScheme.size());
+  // Exporters leave blanks and carriage returns at the end of MTL lines.
+  while (!reference.empty() && std::isspace(static_cast<unsigned char>(reference.back())) != 0) {
+    reference.pop_back();
+  }
+  std::vector<std::string> spellings{reference, withoutUriEscapes(reference)};
+  for (std::size_t i = 0; i < 2; ++i) spellings.push_back(withForwardSlashes(spellings[i]));
+  for (const std::string& spelling : spellings) {
+    if (isFile(folder / spelling)) return folder / spelling;
+  }
+  const fs::path beside = folder / fs::path(spellings.back()).filename();
+  if (isFile(beside)) return beside;
+  return std::nullopt;
+}
+
+Result<void> hashFile(SourceFile& file, const fs::path& path) {
+  const auto content = MappedFile::open(path);
+  if (!content) return tl::unexpected(content.error());
+  const XXH128_hash_t hash = XXH3_128bits(content->bytes().data(), content->bytes().size());
+  file.bytes = content->bytes().size();
+  file.hash_low = hash.low64;
+  file.hash_high = hash.high64;
+  return {};
+}
+
+}  // namespace
+
+std::string withoutUriEscapes(std::string_view uri) {
+  std::string plain;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const auto byte =
+        uri[i] == '%' && i + 2 < uri.size() ? hexByte(uri[i + 1], uri[i + 2]) : std::nullopt;
+    plain += byte.value_or(uri[i]);
+    if (byte) i += 2;
+  }
+  return plain;
+}
+
+std::string nameRelativeTo(const fs::path& main_input, const fs::path& file) {
+  std::error_code ignored;
+  const fs::path folder = fs::absolute(main_input, ignored).lexically_normal().parent_path();
+  return fs::absolute(file, ignored).lexically_normal().lexically_relative(folder).generic_string();
+}
+
+void findTextures(SourceAsset& asset, const fs::path& main_input) {
+  const fs::path folder = main_input.parent_path();
+  std::map<std::string, std::optional<fs::path>> found;
+  for (SourceMaterial& material : asset.materials) {
+    const std::string reference = material.base_color_texture;
+    if (reference.empty() || reference.starts_with('*')) continue;
+    const auto [entry, is_new] = found.try_emplace(reference);
+    if (is_new) entry->second = findReference(folder, reference);
+    if (entry->second) {
+      material.base_color_texture = nameRelativeTo(main_input, *entry->second);
+      if (is_new) asset.files.push_back({.name = material.base_color_texture});
+    } else if (is_new) {
+      asset.warnings.push_back(
+          fmt::format("texture '{}' of material '{}' is missing: its surfaces "
+                      "keep their plain colour",
+                      reference, material.name));
+    }
+  }
+}
+
+Result<void> hashFiles(SourceAsset& asset, const fs::path& main_input) {
+  const std::string main_name = nameRelativeTo(main_input, main_input);
+  const auto order = [&](const SourceFile& file) {
+    return std::pair(file.name != main_name, std::string_view(file.name));
+  };
+  auto& files = asset.files;
+  std::sort(files.begin(), files.end(),
+            [&](const SourceFile& a, const SourceFile& b) { return order(a) < order(b); });
+  const auto same = [](const SourceFile& a, const SourceFile& b) { return a.name == b.name; };
+  files.erase(std::unique(files.begin(), files.end(), same), files.end());
+  for (SourceFile& file : files) {
+    if (auto hashed = hashFile(file, main_input.parent_path() / file.name); !hashed) return hashed;
+  }
+  return {};
+}
+
+}  // namespace galactic::bake

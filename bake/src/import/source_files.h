@@ -1,0 +1,28 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "galactic/bake/source_asset.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+/// `uri` with its escapes (%20) undone.
+[[nodiscard]] std::string withoutUriEscapes(std::string_view uri);
+
+/// `file` as seen from the folder of `main_input`, with '/' between parts; never absolute.
+[[nodiscard]] std::string nameRelativeTo(const std::filesystem::path& main_input,
+                                         const std::filesystem::path& file);
+
+/// Looks for the textures that the materials name, relative to the folder of `main_input`: found
+/// ones join `asset.files` and their materials get the path that was found, missing ones give one
+/// warning each. Knows %20, backslashes, file:// and absolute paths of another machine (then the
+/// file's name beside the main input counts).
+void findTextures(SourceAsset& asset, const std::filesystem::path& main_input);
+
+/// Sorts `asset.files`, main input first, and fills in sizes and XXH3-128 hashes. Fails with kIo
+/// when a file can no longer be read.
+[[nodiscard]] Result<void> hashFiles(SourceAsset& asset, const std::filesystem::path& main_input);
+
+}  // namespace galactic::bake

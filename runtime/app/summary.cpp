@@ -1,0 +1,103 @@
+#include "summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "galactic/schema/pack_generated.h"
+
+namespace galactic {
+namespace {
+
+constexpr double kMega = 1e6;
+constexpr double kGiga = 1e9;
+constexpr double kMilli = 1e-3;
+
+std::string clean(const flatbuffers::String* text) {
+  return printable(std::string_view(text->c_str(), text->size()));
+}
+
+/// Bytes of everything that a query on the grid may read.
+std::size_t gridBytes(const schema::ColumnGrid& grid) {
+  const auto* codes = grid.overflow_codes();
+  const std::size_t overflow_codes = codes == nullptr ? 0 : codes->size();
+  return std::size_t{grid.cells()->size()} * sizeof(std::uint64_t) +
+         std::size_t{grid.tile_base()->size()} * sizeof(std::uint16_t) +
+         (grid.overflow_start()->size() + overflow_codes) * sizeof(std::uint32_t) +
+         std::size_t{grid.overflow_spans()->size()} * sizeof(schema::Span);
+}
+
+double volume(const schema::GridStatistics& statistics, schema::Region region) {
+  double sum = 0;
+  if (statistics.regions() == nullptr) return sum;
+  for (const schema::RegionStatistics* one : *statistics.regions()) {
+    if (one->region() == region) sum += one->volume();
+  }
+  return sum;
+}
+
+std::string castCheck(const schema::CastCheck* check) {
+  if (check == nullptr) return "off";
+  return fmt::format("{} of {} columns differ: {:.4f} m by method, {:.6f} m ties, {:g} m errors",
+                     check->columns_differing(), check->columns(), check->method(), check->ties(),
+                     check->errors());
+}
+
+std::string gridLine(const schema::ColumnGrid& grid) {
+  const schema::GridStatistics& statistics = *grid.statistics();
+  return fmt::format(
+      "  {:>8g}{:>13}{:>11}{:>9}{:>9.2f}{:>11.2f}{:>11.2f}{:>11.2f}  {}\n", grid.radius(),
+      fmt::format("{} x {}", grid.columns_x(), grid.columns_z()), statistics.spans(),
+      statistics.max_spans_per_column(), static_cast<double>(gridBytes(grid)) / kMega,
+      volume(statistics, schema::Region::Room), volume(statistics, schema::Region::Outside),
+      volume(statistics, schema::Region::Enclosed), castCheck(statistics.cast_check()));
+}
+
+std::string openingLine(const PackFile& pack, const OpenTimes& times) {
+  const auto bytes = static_cast<double>(pack.bytes().size());
+  const std::string verified =
+      times.verify > 0 ? fmt::format("verified in {:.2f} ms ({:.1f} GB/s)", times.verify / kMilli,
+                                     bytes / times.verify / kGiga)
+                       : std::string("trusted, not verified");
+  return fmt::format("  {:.2f} MB, mapped in {:.3f} ms, {}\n", bytes / kMega, times.map / kMilli,
+                     verified);
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string shown(text);
+  std::replace_if(
+      shown.begin(), shown.end(),
+      [](char c) {
+        const auto code = static_cast<unsigned char>(c);
+        return code < 0x20 || code == 0x7f;
+      },
+      '?');
+  return shown;
+}
+
+std::string summarise(const PackFile& pack, const Scene& scene, const OpenTimes& times) {
+  const schema::Provenance& provenance = *pack.root().provenance();
+  const schema::Scene& stored = *pack.root().asset_as_Scene();
+  const schema::Vec3& min = stored.bounds()->min();
+  const schema::Vec3& max = stored.bounds()->max();
+  std::string text = fmt::format("{}: scene \"{}\", format {}, by {} {}\n", printable(pack.where()),
+                                 printable(scene.name()), pack.header().format_version,
+                                 clean(provenance.tool()), clean(provenance.tool_version()));
+  text += openingLine(pack, times);
+  text +=
+      fmt::format("  {} triangles, x {:.2f} to {:.2f}, y {:.2f} to {:.2f}, z {:.2f} to {:.2f} m\n",
+                  stored.import_statistics()->triangles(), min.x(), max.x(), min.y(), max.y(),
+                  min.z(), max.z());
+  text +=
+      fmt::format("  {:>8}{:>13}{:>11}{:>9}{:>9}{:>11}{:>11}{:>11}  {}\n", "radius m", "columns",
+                  "spans", "max/col", "MB", "room m3", "outside", "enclosed", "sphere casts");
+  for (const schema::ColumnGrid* grid : *stored.column_grids()) text += gridLine(*grid);
+  for (const flatbuffers::String* warning : *provenance.warnings()) {
+    text += fmt::format("  warning: {}\n", clean(warning));
+  }
+  return text;
+}
+
+}  // namespace galactic

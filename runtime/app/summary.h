@@ -1,0 +1,24 @@
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "galactic/pack.h"
+#include "galactic/scene.h"
+
+namespace galactic {
+
+/// How long opening took, seconds of wall clock.
+struct OpenTimes {
+  double map = 0;
+  /// 0 when the pack was trusted.
+  double verify = 0;
+};
+
+/// A table of what a scene pack holds, several lines of text, each ended.
+[[nodiscard]] std::string summarise(const PackFile& pack, const Scene& scene,
+                                    const OpenTimes& times);
+
+/// `text` with control characters replaced by '?': what a file says must not steer a terminal.
+[[nodiscard]] std::string printable(std::string_view text);
+
+}  // namespace galactic

@@ -1,0 +1,39 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "galactic/column_grid.h"
+
+namespace galactic::detail {
+
+/// One batched query as bare pointers, each to `count` elements: the code built for AVX2 must not
+/// instantiate library templates, which the linker could then share with code for any processor.
+struct ContactBatch {
+  const float* x = nullptr;
+  const float* y = nullptr;
+  const float* z = nullptr;
+  std::size_t count = 0;
+  Clearance* clearance = nullptr;
+  /// Both null when only the clearance is wanted.
+  float* down = nullptr;
+  float* up = nullptr;
+};
+
+/// Answers a batch one sphere at a time, on any processor.
+void contactPortable(const ColumnGridLayout& grid, const ContactBatch& batch) noexcept;
+
+/// Answers a batch eight spheres at a time. Call it only where hasAvx2(). Bit for bit the answers
+/// of contactPortable: both do the same operations in the same order, and none is contracted.
+void contactAvx2(const ColumnGridLayout& grid, const ContactBatch& batch) noexcept;
+
+/// Whether contactAvx2 can run on this processor.
+[[nodiscard]] bool hasAvx2() noexcept;
+
+/// Free span number `n` of all overflow cells, as heights.
+[[nodiscard]] Span overflowSpan(const ColumnGridLayout& grid, std::uint32_t n) noexcept;
+
+/// The answer of overflow cell number `index` for a centre at height `y`.
+[[nodiscard]] Contact contactInOverflow(const ColumnGridLayout& grid, std::uint32_t index,
+                                        float y) noexcept;
+
+}  // namespace galactic::detail
