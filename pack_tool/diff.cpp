@@ -1,0 +1,99 @@
+#include <algorithm>
+
+#include "pack_tool/diff_text.h"
+#include "pack_tool/open_scene.h"
+#include "pack_tool/verbs.h"
+
+namespace galactic::pack_tool {
+
+namespace {
+
+/// Names a grid by its radius.
+std::string gridField(const Json& grid) { return "grid(" + grid.at("radius").dump() + ')'; }
+
+/// The part of a description that tells how the pack was made, not what the runtime reads.
+Json provenanceOf(const Json& description) {
+  Json json = description.at("provenance");
+  json["import"] = description.at("scene").at("import");
+  for (const Json& grid : description.at("scene").at("column_grids")) {
+    json[gridField(grid)] = grid.at("statistics");
+  }
+  return json;
+}
+
+/// The part of a description that the runtime reads, without the grids' frames and spans.
+Json contentOf(const Json& description) {
+  const Json& scene = description.at("scene");
+  return {{"name", scene.at("name")}, {"bounds", scene.at("bounds")}};
+}
+
+Json coverageOf(const Json& description, std::size_t grid) {
+  const Json& described = description.at("scene").at("column_grids").at(grid);
+  return {{gridField(described), {{"coverage", described.at("coverage")}}}};
+}
+
+void append(std::vector<FieldDifference>& to, const std::vector<FieldDifference>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+/// One side of the comparison.
+struct Side {
+  const OpenScene& open;
+  Json description;
+
+  explicit Side(const OpenScene& opened) : open(opened), description(describePack(opened.pack)) {}
+  [[nodiscard]] const std::vector<ColumnGrid>& grids() const { return open.scene.grids(); }
+};
+
+/// Pairs the grids by radius and compares each pair.
+void compareAllGrids(const Side& a, const Side& b, double tolerance, PackDifference& difference) {
+  for (std::size_t g = 0; g < a.grids().size(); ++g) {
+    const ColumnGrid& grid = a.grids()[g];
+    const auto other = b.open.scene.gridIndex(grid.radius());
+    if (!other) {
+      difference.radii_only_in_a.push_back(grid.radius());
+      continue;
+    }
+    append(difference.content,
+           compareFields(coverageOf(a.description, g), coverageOf(b.description, *other), 0));
+    difference.grids.push_back(compareGrids(grid, b.grids()[*other], tolerance));
+  }
+  for (const ColumnGrid& grid : b.grids()) {
+    if (!a.open.scene.gridIndex(grid.radius())) {
+      difference.radii_only_in_b.push_back(grid.radius());
+    }
+  }
+}
+
+PackDifference compareScenes(const OpenScene& a, const OpenScene& b, const DiffOptions& options) {
+  PackDifference difference;
+  difference.a = a.pack.where();
+  difference.b = b.pack.where();
+  difference.identical = std::ranges::equal(a.pack.bytes(), b.pack.bytes());
+  if (difference.identical) return difference;
+  const Side side_a(a);
+  const Side side_b(b);
+  if (options.scope == DiffScope::kEverything) {
+    difference.provenance =
+        compareFields(provenanceOf(side_a.description), provenanceOf(side_b.description), 0);
+  }
+  difference.content = compareFields(contentOf(side_a.description), contentOf(side_b.description),
+                                     options.tolerance);
+  compareAllGrids(side_a, side_b, options.tolerance, difference);
+  return difference;
+}
+
+}  // namespace
+
+int runDiff(const DiffOptions& options, const Console& console) {
+  const auto a = OpenScene::open(options.a, options.trust);
+  if (!a) return reportError(console, a.error());
+  const auto b = OpenScene::open(options.b, options.trust);
+  if (!b) return reportError(console, b.error());
+  const PackDifference difference = compareScenes(*a, *b, options);
+  console.out << (options.form == OutputForm::kJson ? jsonText(diffJson(difference))
+                                                    : diffText(difference));
+  return difference.differs() ? kExitDiffers : kExitOk;
+}
+
+}  // namespace galactic::pack_tool

@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+#include "pack_tool/mesh/grid_mesh.h"
+#include "pack_tool/open_scene.h"
+#include "pack_tool/output_file.h"
+#include "pack_tool/verbs.h"
+
+namespace galactic::pack_tool {
+
+namespace {
+
+Result<ExportFormat> formatOf(const ExportOptions& options) {
+  if (options.format) return *options.format;
+  std::string extension = options.output.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".png") return ExportFormat::kPng;
+  if (extension == ".obj") return ExportFormat::kObj;
+  if (extension == ".ply") return ExportFormat::kPly;
+  return fail(ErrorCode::kUnsupported, options.output.string(),
+              fmt::format("the extension \"{}\" names no format that can be written; use .png, "
+                          ".obj or .ply, or choose one with --to",
+                          extension));
+}
+
+Result<void> exportPicture(const OpenScene& open, const std::vector<ColumnGrid>& grids,
+                           const ExportOptions& options) {
+  const std::string title = printable(open.scene.name());
+  if (!options.slice) {
+    return pictures::writePng(
+        options.output, pictures::drawPlan(grids, {.value = options.value, .title = title}).image);
+  }
+  const auto picture = pictures::drawSlice(
+      grids, {.from = options.slice->from, .to = options.slice->to, .title = title});
+  if (!picture) {
+    return fail(picture.error().code, open.pack.where(), picture.error().message);
+  }
+  return pictures::writePng(options.output, picture->image);
+}
+
+Result<void> exportMesh(const OpenScene& open, const std::vector<ColumnGrid>& grids,
+                        const ExportOptions& options, ExportFormat format) {
+  if (grids.size() > 1) {
+    std::string radii;
+    for (const ColumnGrid& grid : grids) radii += fmt::format(" {}", grid.radius());
+    return fail(ErrorCode::kInvalidInput, open.pack.where(),
+                fmt::format("has {} grids and a mesh shows one; choose with --radius one of{}",
+                            grids.size(), radii));
+  }
+  const auto patches =
+      gridPatches(grids.front(), {.height = options.patch_height, .parts = options.parts});
+  if (patches.size() > kMaxPatches) {
+    return fail(
+        ErrorCode::kUnsupported, open.pack.where(),
+        fmt::format("the grid has {} patches and a mesh file holds {}; export --floors-only "
+                    "or a pack of larger spacing",
+                    patches.size(), kMaxPatches));
+  }
+  return writeOutputFile(options.output,
+                         format == ExportFormat::kPly ? encodePly(patches) : encodeObj(patches));
+}
+
+Result<void> exportScene(const ExportOptions& options) {
+  const auto format = formatOf(options);
+  if (!format) return tl::unexpected(format.error());
+  const auto open = OpenScene::open(options.pack, options.trust);
+  if (!open) return tl::unexpected(open.error());
+  const auto grids = open->grids(options.radius);
+  if (!grids) return tl::unexpected(grids.error());
+  if (*format == ExportFormat::kPng) return exportPicture(*open, *grids, options);
+  return exportMesh(*open, *grids, options, *format);
+}
+
+}  // namespace
+
+int runExport(const ExportOptions& options, const Console& console) {
+  const auto done = exportScene(options);
+  return done ? kExitOk : reportError(console, done.error());
+}
+
+}  // namespace galactic::pack_tool

@@ -1,0 +1,44 @@
+#include <exception>
+#include <iostream>
+
+#include "pack_tool/command_line.h"
+
+namespace galactic::pack_tool {
+
+namespace {
+
+/// Picks the verb that belongs to a request.
+struct Runner {
+  const Console& console;
+
+  int operator()(const InfoOptions& options) const { return runInfo(options, console); }
+  int operator()(const CheckOptions& options) const { return runCheck(options, console); }
+  int operator()(const ColumnOptions& options) const { return runColumn(options, console); }
+  int operator()(const DiffOptions& options) const { return runDiff(options, console); }
+  int operator()(const ExportOptions& options) const { return runExport(options, console); }
+};
+
+int runTool(int argc, const char* const* argv, const Console& console) {
+  const auto request = parseCommandLine(argc, argv, console);
+  const int exit_code = request ? std::visit(Runner{console}, *request) : request.error();
+  if (console.out.flush()) return exit_code;
+  // A full disk behind a redirection must not look like success.
+  return reportError(console, {ErrorCode::kIo, "standard output",
+                               "cannot be written to; check that the disk has room"});
+}
+
+}  // namespace
+
+}  // namespace galactic::pack_tool
+
+int main(int argc, char** argv) {
+  using galactic::ErrorCode;
+  const galactic::pack_tool::Console console{std::cout, std::cerr};
+  try {
+    return galactic::pack_tool::runTool(argc, argv, console);
+  } catch (const std::exception& error) {
+    return galactic::pack_tool::reportError(
+        console,
+        {ErrorCode::kInternal, "internal error", std::string(error.what()) + "; please report it"});
+  }
+}

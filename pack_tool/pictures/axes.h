@@ -1,0 +1,56 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "pack_tool/pictures/drawing.h"
+
+namespace galactic::pictures {
+
+/// A straight scale from values to pixels along one direction of the image.
+struct AxisScale {
+  double first_value = 0;
+  double last_value = 1;
+  int first_pixel = 0;
+  int last_pixel = 1;
+
+  /// The pixel position of a value, not rounded.
+  [[nodiscard]] double position(double value) const;
+  [[nodiscard]] double pixelsPerUnit() const;
+};
+
+/// A labelled mark of an axis.
+struct Tick {
+  double value = 0;
+  int pixel = 0;
+  std::string label;
+};
+
+/// The largest of 1, 2 and 5 times a power of ten that is no larger than `value`; value > 0.
+[[nodiscard]] double roundDown(double value);
+
+/// Marks at round values, at least `gap` pixels apart.
+[[nodiscard]] std::vector<Tick> axisTicks(const AxisScale& scale, int gap);
+
+/// Ticks and labels below `plot`, and the axis's name below them.
+void drawHorizontalAxis(Image& image, const PixelRect& plot, const AxisScale& scale,
+                        std::string_view name);
+
+/// Ticks and labels left of `plot`, and the axis's name above the labels.
+void drawVerticalAxis(Image& image, const PixelRect& plot, const AxisScale& scale,
+                      std::string_view name);
+
+/// A bar of a round length in metres with its label, its left end at (x, y).
+void drawScaleBar(Image& image, int x, int y, double pixels_per_metre);
+
+/// A square of `colour` and its meaning; returns the width used, gap to the next one included.
+int drawSwatch(Image& image, int x, int y, Rgb colour, std::string_view meaning);
+
+/// A vertical colour bar with ticks on its right side. `bar` is the bar alone.
+void drawColourBar(Image& image, const PixelRect& bar, double top_value);
+
+// Room around a plot that the functions above draw in, pixels.
+inline constexpr int kAxisLabelWidth = 5 * kTextAdvance + 12;
+inline constexpr int kAxisBottomHeight = 2 * kTextHeight + 24;
+inline constexpr int kAxisNameHeight = kTextHeight + 10;
+
+}  // namespace galactic::pictures

@@ -1,0 +1,46 @@
+#pragma once
+#include <string_view>
+
+#include "pack_tool/pictures/image.h"
+
+namespace galactic::pictures {
+
+/// A rectangle of pixels: columns x to x + width - 1, rows y to y + height - 1.
+struct PixelRect {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+
+  [[nodiscard]] int right() const { return x + width; }
+  [[nodiscard]] int bottom() const { return y + height; }
+};
+
+/// Which part of a text stands at the given x.
+enum class Anchor { kLeft, kCentre, kRight };
+
+/// Where a text goes: x by `anchor`, y is its top row.
+struct TextPlace {
+  int x = 0;
+  int y = 0;
+  Anchor anchor = Anchor::kLeft;
+};
+
+/// Pixels per font pixel, and what follows from it.
+inline constexpr int kTextScale = 2;
+inline constexpr int kTextHeight = 7 * kTextScale;
+inline constexpr int kTextAdvance = 6 * kTextScale;
+
+/// Fills a rectangle; what lies outside the image is cut off.
+void fillRect(Image& image, const PixelRect& rect, Rgb colour);
+
+/// A frame one pixel wide just outside `rect`.
+void drawFrame(Image& image, const PixelRect& rect, Rgb colour);
+
+/// Width of a text in pixels; a UTF-8 character counts once.
+[[nodiscard]] int textWidth(std::string_view text);
+
+/// Draws a text in one line; characters beyond ASCII appear as '?'.
+void drawText(Image& image, TextPlace place, std::string_view text, Rgb colour);
+
+}  // namespace galactic::pictures

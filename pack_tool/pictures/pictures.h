@@ -1,0 +1,60 @@
+#pragma once
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "galactic/column_grid.h"
+#include "galactic/error.h"
+#include "pack_tool/grid_view.h"
+#include "pack_tool/pictures/drawing.h"
+#include "pack_tool/pictures/image.h"
+
+namespace galactic::pictures {
+
+/// A finished picture and where in it the grids are drawn, one plot per grid in their order.
+struct Picture {
+  Image image;
+  std::vector<PixelRect> plots;
+};
+
+/// What the colour of a column in a plan says.
+enum class PlanValue {
+  kTotalHeight,   ///< Sum of the heights of its free spans, metres.
+  kLowestHeight,  ///< Height of its lowest free span, metres.
+  kSpanCount,     ///< Number of its free spans.
+};
+
+struct PlanOptions {
+  PlanValue value = PlanValue::kTotalHeight;
+  /// First words of the heading, usually the scene's name.
+  std::string title = {};
+};
+
+/// Draws the grids from above, side by side on one colour scale: x to the right, z down, as seen
+/// looking down the Y axis. Blocked columns are dark grey. One grid is about 1000 pixels wide, a
+/// whole number of pixels per cell where a cell is at least one pixel. `grids` must not be empty.
+/// Safe to call from many threads.
+[[nodiscard]] Picture drawPlan(std::span<const ColumnGrid> grids, const PlanOptions& options);
+
+struct SliceOptions {
+  /// The line that the vertical slice stands on.
+  pack_tool::GroundPoint from;
+  pack_tool::GroundPoint to;
+  /// First words of the heading, usually the scene's name.
+  std::string title = {};
+};
+
+/// Draws a vertical slice through the grids, one below the other: free heights of the sphere's
+/// centre are light, blocked ones dark. One scale for both axes unless the line is very short.
+/// Fails with kInvalidInput when the line is shorter than a cell, is not finite, or misses every
+/// grid. `grids` must not be empty. Safe to call from many threads.
+[[nodiscard]] Result<Picture> drawSlice(std::span<const ColumnGrid> grids,
+                                        const SliceOptions& options);
+
+/// Writes an image as a PNG file, 8-bit sRGB, replacing an existing file in one go. The same image
+/// gives the same bytes. Fails with kIo when the file cannot be written, and kInternal when libpng
+/// refuses the image.
+[[nodiscard]] Result<void> writePng(const std::filesystem::path& path, const Image& image);
+
+}  // namespace galactic::pictures

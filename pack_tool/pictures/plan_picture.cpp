@@ -1,0 +1,163 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pack_tool/pictures/axes.h"
+#include "pack_tool/pictures/palette.h"
+#include "pack_tool/pictures/pictures.h"
+
+namespace galactic::pictures {
+
+namespace {
+
+constexpr int kMargin = 24;
+constexpr int kBarWidth = 24;
+constexpr int kBarHeight = 320;
+/// Room for the colour bar, its labels and its caption.
+constexpr int kLegendWidth = 12 * kTextAdvance;
+/// Width that a single plot and one of several plots aim at, and the largest height of a plot.
+constexpr int kSingleWidth = 1000;
+constexpr int kSheetWidth = 560;
+constexpr int kLargestHeight = 2000;
+/// Pixels of a cell's edge: more would only make tiny grids huge.
+constexpr double kLargestCell = 32;
+constexpr float kBlockedValue = -1;
+
+/// One grid's part of the picture.
+struct Panel {
+  const ColumnGrid* grid = nullptr;
+  /// One per column, row by row; kBlockedValue where there is no span.
+  std::vector<float> values;
+  PixelRect plot;
+};
+
+float valueOf(const std::vector<Span>& spans, PlanValue value) {
+  if (spans.empty()) return kBlockedValue;
+  if (value == PlanValue::kSpanCount) return static_cast<float>(spans.size());
+  if (value == PlanValue::kLowestHeight) return spans.front().hi - spans.front().lo;
+  float total = 0;
+  for (const Span& span : spans) total += span.hi - span.lo;
+  return total;
+}
+
+std::vector<float> planValues(const ColumnGrid& grid, PlanValue value) {
+  std::vector<float> values;
+  values.reserve(std::size_t{grid.columnsX()} * grid.columnsZ());
+  std::vector<Span> spans;
+  for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
+    for (std::uint32_t i = 0; i < grid.columnsX(); ++i) {
+      pack_tool::readSpans(grid, {i, k}, spans);
+      values.push_back(valueOf(spans, value));
+    }
+  }
+  return values;
+}
+
+/// Size in pixels: a whole number of pixels per cell, or as large as allowed for huge grids.
+PixelRect plotSize(const ColumnGrid& grid, int target_width) {
+  const auto x = static_cast<double>(grid.columnsX());
+  const auto z = static_cast<double>(grid.columnsZ());
+  const double pixels = std::min(target_width / x, kLargestHeight / z);
+  const double cell = pixels >= 1 ? std::clamp(std::round(pixels), 1.0, kLargestCell) : pixels;
+  return {0, 0, std::max(1, static_cast<int>(std::lround(x * cell))),
+          std::max(1, static_cast<int>(std::lround(z * cell)))};
+}
+
+void drawColumns(Image& image, const Panel& panel, double top_value) {
+  const ColumnGrid& grid = *panel.grid;
+  const PixelRect& plot = panel.plot;
+  const auto cell_at = [](int pixel, int pixels, std::uint32_t cells) {
+    return static_cast<std::size_t>(pixel) * cells / static_cast<std::size_t>(pixels);
+  };
+  for (int y = 0; y < plot.height; ++y) {
+    const std::size_t row = cell_at(y, plot.height, grid.columnsZ()) * grid.columnsX();
+    for (int x = 0; x < plot.width; ++x) {
+      const float value = panel.values[row + cell_at(x, plot.width, grid.columnsX())];
+      const bool blocked = value == kBlockedValue;
+      image.set(plot.x + x, plot.y + y,
+                blocked ? kBlocked : scaleColour(static_cast<double>(value) / top_value));
+    }
+  }
+}
+
+void drawPanel(Image& image, const Panel& panel, double top_value) {
+  const ColumnGridLayout& layout = panel.grid->layout();
+  const PixelRect& plot = panel.plot;
+  const auto spacing = static_cast<double>(layout.spacing);
+  const auto min_x = static_cast<double>(layout.min_x);
+  const auto min_z = static_cast<double>(layout.min_z);
+  drawColumns(image, panel, top_value);
+  drawFrame(image, plot, kInk);
+  drawText(image, {plot.x + plot.width / 2, plot.y - kAxisNameHeight, Anchor::kCentre},
+           fmt::format("radius {} m", layout.radius), kInk);
+  const AxisScale x_scale{min_x, min_x + layout.columns_x * spacing, plot.x, plot.right()};
+  drawHorizontalAxis(image, plot, x_scale, "x (m)");
+  drawVerticalAxis(image, plot, {min_z, min_z + layout.columns_z * spacing, plot.y, plot.bottom()},
+                   "z (m)");
+  drawScaleBar(image, plot.x, plot.bottom() + kAxisBottomHeight + 8, x_scale.pixelsPerUnit());
+}
+
+std::string_view captionOf(PlanValue value) {
+  switch (value) {
+    case PlanValue::kLowestHeight:
+      return "height of the lowest free span";
+    case PlanValue::kSpanCount:
+      return "number of free spans";
+    case PlanValue::kTotalHeight:
+      break;
+  }
+  return "total free height";
+}
+
+/// The top of the colour scale: the largest value, or 1 when everything is blocked.
+double topValue(const std::vector<Panel>& panels) {
+  float largest = 0;
+  for (const Panel& panel : panels) {
+    largest = std::max(largest, *std::max_element(panel.values.begin(), panel.values.end()));
+  }
+  return largest > 0 ? static_cast<double>(largest) : 1.0;
+}
+
+void drawLegend(Image& image, int x, int y, double top_value, PlanValue value) {
+  drawText(image, {x, y}, value == PlanValue::kSpanCount ? "spans" : "metres", kInk);
+  const PixelRect bar{x, y + kTextHeight + 14, kBarWidth, kBarHeight};
+  drawColourBar(image, bar, top_value);
+  drawSwatch(image, x, bar.bottom() + 22, kBlocked, "blocked");
+}
+
+}  // namespace
+
+Picture drawPlan(std::span<const ColumnGrid> grids, const PlanOptions& options) {
+  std::vector<Panel> panels;
+  int x = kMargin;
+  int bottom = kBarHeight;
+  const int top = kMargin + 2 * kTextHeight + kAxisNameHeight;
+  for (const ColumnGrid& grid : grids) {
+    Panel& panel = panels.emplace_back(Panel{&grid, planValues(grid, options.value), {}});
+    panel.plot = plotSize(grid, grids.size() == 1 ? kSingleWidth : kSheetWidth);
+    panel.plot.x = x + kAxisLabelWidth;
+    panel.plot.y = top;
+    x = panel.plot.right() + kMargin;
+    bottom = std::max(bottom, panel.plot.height);
+  }
+  const int legend_x = x + kMargin;
+  const std::string heading =
+      fmt::format("{}: {}, columns {} m apart", options.title.empty() ? "plan" : options.title,
+                  captionOf(options.value), grids.front().spacing());
+  const int width = std::max(legend_x + kLegendWidth, 2 * kMargin + textWidth(heading));
+  const int height = top + bottom + kAxisBottomHeight + kTextHeight + 8 + kMargin;
+
+  Image image(width, height, kPaper);
+  drawText(image, {kMargin, kMargin}, heading, kInk);
+  const double top_value = topValue(panels);
+  std::vector<PixelRect> plots;
+  for (const Panel& panel : panels) {
+    drawPanel(image, panel, top_value);
+    plots.push_back(panel.plot);
+  }
+  drawLegend(image, legend_x, top - kAxisNameHeight, top_value, options.value);
+  return {std::move(image), std::move(plots)};
+}
+
+}  // namespace galactic::pictures

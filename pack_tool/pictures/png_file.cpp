@@ -1,0 +1,34 @@
+#include <fmt/format.h>
+#include <png.h>
+
+#include <cstring>
+#include <string>
+
+#include "pack_tool/output_file.h"
+#include "pack_tool/pictures/pictures.h"
+
+namespace galactic::pictures {
+
+Result<void> writePng(const std::filesystem::path& path, const Image& image) {
+  static_assert(sizeof(Rgb) == 3, "libpng reads three bytes per pixel");
+  png_image png;
+  std::memset(&png, 0, sizeof png);
+  png.version = PNG_IMAGE_VERSION;
+  png.width = static_cast<png_uint_32>(image.width());
+  png.height = static_cast<png_uint_32>(image.height());
+  png.format = PNG_FORMAT_RGB;
+
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::string bytes(size, '\0');
+  constexpr int kKeepEightBits = 0;
+  constexpr png_int_32 kPackedRows = 0;
+  if (png_image_write_to_memory(&png, bytes.data(), &size, kKeepEightBits, image.pixels().data(),
+                                kPackedRows, nullptr) == 0) {
+    return fail(ErrorCode::kInternal, path.string(),
+                fmt::format("libpng cannot encode an image of {} x {} pixels: {}", image.width(),
+                            image.height(), png.message));
+  }
+  return pack_tool::writeOutputFile(path, std::string_view(bytes).substr(0, size));
+}
+
+}  // namespace galactic::pictures

@@ -1,0 +1,153 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pack_tool/pictures/axes.h"
+#include "pack_tool/pictures/palette.h"
+#include "pack_tool/pictures/pictures.h"
+
+namespace galactic::pictures {
+
+namespace {
+
+using pack_tool::GroundPoint;
+
+constexpr int kMargin = 24;
+constexpr int kPlotWidth = 1000;
+constexpr int kSmallestPlotWidth = 240;
+constexpr int kLargestPlotHeight = 900;
+constexpr int kLineGap = 36;
+constexpr double kLineStrength = 0.18;
+
+double lengthOf(const SliceOptions& options) {
+  return std::hypot(options.to.x - options.from.x, options.to.z - options.from.z);
+}
+
+GroundPoint pointAt(const SliceOptions& options, double share) {
+  return {options.from.x + (options.to.x - options.from.x) * share,
+          options.from.z + (options.to.z - options.from.z) * share};
+}
+
+double heightRange(const ColumnGrid& grid) {
+  return static_cast<double>(grid.heights().hi) - static_cast<double>(grid.heights().lo);
+}
+
+PixelRect plotSize(const ColumnGrid& grid, double length) {
+  const double range = std::max(heightRange(grid), 1e-3);
+  const double pixels_per_metre = std::min(kPlotWidth / length, kLargestPlotHeight / range);
+  const int width = static_cast<int>(std::lround(length * pixels_per_metre));
+  const int height = static_cast<int>(std::lround(range * pixels_per_metre));
+  return {0, 0, std::max(width, kSmallestPlotWidth), std::max(height, 1)};
+}
+
+/// Paints the free spans of one column into one column of pixels.
+void drawSpans(Image& image, const PixelRect& plot, int x, const AxisScale& heights,
+               const std::vector<Span>& spans) {
+  fillRect(image, {x, plot.y, 1, plot.height}, kBlocked);
+  for (const Span& span : spans) {
+    // A pixel is free when its centre is.
+    const double top = heights.position(static_cast<double>(span.hi));
+    const double bottom = heights.position(static_cast<double>(span.lo));
+    const int first = std::max(plot.y, static_cast<int>(std::ceil(top - 0.5)));
+    const int last = std::min(plot.bottom() - 1, static_cast<int>(std::floor(bottom - 0.5)));
+    fillRect(image, {x, first, 1, last - first + 1}, kFree);
+  }
+}
+
+/// Lines at the round heights, faint enough not to be taken for a surface.
+void drawHeightLines(Image& image, const PixelRect& plot, const AxisScale& heights) {
+  for (const Tick& tick : axisTicks(heights, kLineGap)) {
+    if (tick.pixel < plot.y || tick.pixel >= plot.bottom()) continue;
+    for (int x = plot.x; x < plot.right(); ++x) {
+      image.set(x, tick.pixel, blend(image.at(x, tick.pixel), kFaintInk, kLineStrength));
+    }
+  }
+}
+
+void drawPlot(Image& image, const PixelRect& plot, const ColumnGrid& grid,
+              const SliceOptions& options) {
+  const AxisScale heights{static_cast<double>(grid.heights().hi),
+                          static_cast<double>(grid.heights().lo), plot.y, plot.bottom()};
+  std::vector<Span> spans;
+  for (int x = 0; x < plot.width; ++x) {
+    const auto cell = pack_tool::nearestColumn(grid, pointAt(options, (x + 0.5) / plot.width));
+    if (!cell) {
+      fillRect(image, {plot.x + x, plot.y, 1, plot.height}, kUncovered);
+      continue;
+    }
+    pack_tool::readSpans(grid, *cell, spans);
+    drawSpans(image, plot, plot.x + x, heights, spans);
+  }
+  drawHeightLines(image, plot, heights);
+  drawFrame(image, plot, kInk);
+  drawText(image, {plot.x + plot.width / 2, plot.y - kAxisNameHeight, Anchor::kCentre},
+           fmt::format("radius {} m", grid.radius()), kInk);
+  drawHorizontalAxis(image, plot, {0, lengthOf(options), plot.x, plot.right()},
+                     "along the line (m)");
+  drawVerticalAxis(image, plot, heights, "height (m)");
+}
+
+/// Whether a pixel column of the slice would show a column of the grid.
+bool crosses(const ColumnGrid& grid, const SliceOptions& options) {
+  for (int x = 0; x < kPlotWidth; ++x) {
+    if (pack_tool::nearestColumn(grid, pointAt(options, (x + 0.5) / kPlotWidth))) return true;
+  }
+  return false;
+}
+
+Result<void> checkLine(std::span<const ColumnGrid> grids, const SliceOptions& options) {
+  const std::string line = fmt::format("the line from x {}, z {} to x {}, z {}", options.from.x,
+                                       options.from.z, options.to.x, options.to.z);
+  const double length = lengthOf(options);
+  const auto spacing = static_cast<double>(grids.front().spacing());
+  if (!(length >= spacing) || !std::isfinite(length)) {
+    return fail(ErrorCode::kInvalidInput, "slice",
+                fmt::format("{} is {} m long; give two points at least a cell ({} m) apart", line,
+                            length, grids.front().spacing()));
+  }
+  for (const ColumnGrid& grid : grids) {
+    if (crosses(grid, options)) return {};
+  }
+  const ColumnGridLayout& layout = grids.front().layout();
+  const GroundPoint low{static_cast<double>(layout.min_x), static_cast<double>(layout.min_z)};
+  return fail(ErrorCode::kInvalidInput, "slice",
+              fmt::format("{} misses the grid; it covers x {:.3f} to {:.3f}, z {:.3f} to {:.3f} m",
+                          line, low.x, low.x + layout.columns_x * spacing, low.z,
+                          low.z + layout.columns_z * spacing));
+}
+
+void drawMeanings(Image& image, int x, int y) {
+  x += drawSwatch(image, x, y, kFree, "free for the sphere's centre");
+  x += drawSwatch(image, x, y, kBlocked, "blocked");
+  drawSwatch(image, x, y, kUncovered, "outside the grid");
+}
+
+}  // namespace
+
+Result<Picture> drawSlice(std::span<const ColumnGrid> grids, const SliceOptions& options) {
+  if (const auto line = checkLine(grids, options); !line) return tl::unexpected(line.error());
+  std::vector<PixelRect> plots;
+  int y = kMargin + kTextHeight + 14;
+  int plot_width = 0;
+  for (const ColumnGrid& grid : grids) {
+    PixelRect& plot = plots.emplace_back(plotSize(grid, lengthOf(options)));
+    plot.x = kMargin + kAxisLabelWidth;
+    plot.y = y + kAxisNameHeight;
+    y = plot.bottom() + kAxisBottomHeight + 16;
+    plot_width = std::max(plot_width, plot.width);
+  }
+  const std::string heading =
+      fmt::format("{}{}slice from x {:g}, z {:g} to x {:g}, z {:g}", options.title,
+                  options.title.empty() ? "" : ": ", options.from.x, options.from.z, options.to.x,
+                  options.to.z);
+  const int width = std::max({kMargin + kAxisLabelWidth + plot_width + 2 * kMargin,
+                              2 * kMargin + textWidth(heading), 900});
+  Image image(width, y + kTextHeight + kMargin, kPaper);
+  drawText(image, {kMargin, kMargin}, heading, kInk);
+  for (std::size_t g = 0; g < grids.size(); ++g) drawPlot(image, plots[g], grids[g], options);
+  drawMeanings(image, kMargin + kAxisLabelWidth, y);
+  return Picture{std::move(image), std::move(plots)};
+}
+
+}  // namespace galactic::pictures

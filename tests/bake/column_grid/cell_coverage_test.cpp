@@ -1,0 +1,192 @@
+// Coverage::kCell: a nearest-column query on the stored grid is never falsely free.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "galactic/bake/column_engines.h"
+#include "galactic/bake/free_space.h"
+#include "galactic/bake/grid_encoder.h"
+#include "support/asset_mesh.h"
+#include "support/distance_oracle.h"
+#include "support/encoded_grid_view.h"
+#include "support/scene_meshes.h"
+
+namespace galactic::bake {
+namespace {
+
+constexpr std::uint32_t kSeed = 20250309;
+constexpr float kRadii[] = {0.015F, 0.05F, 0.12F};
+constexpr double kReach = 0.13;
+
+/// How queries at random places were answered.
+struct Answers {
+  int asked = 0;
+  int free = 0;
+  int falsely_free = 0;
+  double deepest = 0;
+};
+
+EncodedGrid bakeRoom(const TriangleMesh& mesh, float radius, Coverage coverage) {
+  const GridFrame frame = makeGridFrame(mesh.bounds, radius, 0.03F).value();
+  const Columns columns = exactColumns(mesh, frame, {.jobs = 2, .coverage = coverage}).columns;
+  return encodeGrid(chooseFreeSpace(columns).value().columns);
+}
+
+/// Draws sphere centres: half of them anywhere in the grid, half where errors would be: on the
+/// border or at the corner of a cell, close to the end of one of its spans.
+class CentreSource {
+ public:
+  CentreSource(const EncodedGrid& grid, std::uint32_t seed)
+      : frame_(grid.frame), view_(test::viewOf(grid)), random_(seed) {}
+
+  Vec3 next() {
+    if (random_() % 2 == 0) return anywhere();
+    const auto i = static_cast<std::uint32_t>(random_() % frame_.columns_x);
+    const auto k = static_cast<std::uint32_t>(random_() % frame_.columns_z);
+    std::array<Span, 8> spans;
+    const std::size_t count = std::min(view_.spans(i, k, spans), spans.size());
+    if (count == 0) return anywhere();
+    const Span& span = spans[random_() % count];
+    const float end = random_() % 2 == 0 ? span.lo : span.hi;
+    return {static_cast<float>(frame_.centreX(i) + offset()), end + number(-2e-4F, 2e-4F),
+            static_cast<float>(frame_.centreZ(k) + offset())};
+  }
+
+ private:
+  float number(float lo, float hi) {
+    return std::uniform_real_distribution<float>(lo, hi)(random_);
+  }
+
+  Vec3 anywhere() {
+    const float width = frame_.spacing * static_cast<float>(frame_.columns_x);
+    const float depth = frame_.spacing * static_cast<float>(frame_.columns_z);
+    return {frame_.min_x + number(0, width), number(frame_.heights.lo, frame_.heights.hi),
+            frame_.min_z + number(0, depth)};
+  }
+
+  /// From the middle of a cell to a place in it, most often the border.
+  double offset() {
+    const double half = static_cast<double>(frame_.spacing) / 2;
+    switch (random_() % 3) {
+      case 0:
+        return half;
+      case 1:
+        return -half;
+      default:
+        return static_cast<double>(number(-1, 1)) * half;
+    }
+  }
+
+  GridFrame frame_;
+  ColumnGrid view_;
+  std::mt19937 random_;
+};
+
+Answers ask(const EncodedGrid& grid, const test::DistanceOracle& oracle, int count,
+            std::uint32_t seed) {
+  const ColumnGrid view = test::viewOf(grid);
+  const auto radius = static_cast<double>(grid.frame.radius);
+  CentreSource source(grid, seed);
+  Answers answers;
+  for (; answers.asked < count; ++answers.asked) {
+    const Vec3 centre = source.next();
+    if (view.clearance(centre) != Clearance::kFree) continue;
+    ++answers.free;
+    const double depth = radius - oracle.distance(test::toPoint(centre));
+    if (depth <= 0) continue;
+    ++answers.falsely_free;
+    answers.deepest = std::max(answers.deepest, depth);
+  }
+  return answers;
+}
+
+/// Demands no falsely free answer, and that both answers occur.
+void expectNeverFalselyFree(const TriangleMesh& mesh, int count, std::uint32_t seed) {
+  const test::DistanceOracle oracle(mesh, kReach);
+  for (const float radius : kRadii) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed << ", radius " << radius);
+    const Answers answers = ask(bakeRoom(mesh, radius, Coverage::kCell), oracle, count, seed);
+    EXPECT_EQ(answers.falsely_free, 0) << "deepest " << answers.deepest << " m";
+    EXPECT_GT(answers.free, answers.asked / 10);
+    EXPECT_LT(answers.free, answers.asked * 9 / 10);
+  }
+}
+
+TEST(CellCoverage, IsNeverFalselyFreeInAFurnishedRoom) {
+  for (std::uint32_t scene = 0; scene < 4; ++scene) {
+    expectNeverFalselyFree(test::furnishedRoom(kSeed + scene), 150000, kSeed + scene);
+  }
+}
+
+TEST(CellCoverage, IsNeverFalselyFreeFarFromTheOrigin) {
+  expectNeverFalselyFree(test::furnishedRoom(kSeed, {300, -20, -350}), 150000, kSeed);
+}
+
+TEST(CellCoverage, IsNeverFalselyFreeAmongAwkwardTriangles) {
+  for (std::uint32_t scene = 0; scene < 6; ++scene) {
+    const TriangleMesh mesh = test::awkwardTriangles(kSeed + scene, 24);
+    expectNeverFalselyFree(mesh, 50000, kSeed + scene);
+  }
+}
+
+TEST(CellCoverage, IsNeverFalselyFreeOnTheApartmentStage) {
+  if (!test::hasAsset(test::kApartmentStage)) {
+    GTEST_SKIP() << test::kApartmentStage << " is not on this machine";
+  }
+  const auto mesh = test::loadAsset(test::kApartmentStage);
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  expectNeverFalselyFree(*mesh, 500000, kSeed);
+}
+
+TEST(CellCoverage, IsNeverFalselyFreeInTheScannedRoom) {
+  if (!test::hasAsset(test::kScannedRoom)) {
+    GTEST_SKIP() << test::kScannedRoom << " is not on this machine";
+  }
+  const auto mesh = test::loadAsset(test::kScannedRoom);
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  expectNeverFalselyFree(*mesh, 100000, kSeed);
+}
+
+/// The questions are hard enough: the other coverage fails them.
+TEST(CellCoverage, IsNeededForThat) {
+  const TriangleMesh mesh = test::furnishedRoom(kSeed);
+  const test::DistanceOracle oracle(mesh, kReach);
+  const Answers answers =
+      ask(bakeRoom(mesh, 0.05F, Coverage::kColumn), oracle, 100000, kSeed);
+  EXPECT_GT(answers.falsely_free, answers.asked / 100);
+  EXPECT_GT(answers.deepest, 5e-3);
+}
+
+/// Every span over a cell lies inside one over its column, and what it gives away is no more than
+/// the cell's size and the surface's slope explain: nothing over level ground.
+TEST(CellCoverage, IsNoFreerThanTheColumnAndAsFreeOverLevelGround) {
+  const TriangleMesh mesh =
+      test::MeshBuilder().box({-1, -0.5F, -1}, {1, 0, 1}).build();
+  const GridFrame frame = makeGridFrame(mesh.bounds, 0.05F, 0.03F).value();
+  const Columns lines = exactColumns(mesh, frame).columns;
+  const Columns cells = exactColumns(mesh, frame, {.coverage = Coverage::kCell}).columns;
+  int level = 0;
+  for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
+    for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
+      const auto over_cell = cells.column(cells.index(i, k));
+      const auto on_line = lines.column(lines.index(i, k));
+      for (const Span& span : over_cell) {
+        EXPECT_TRUE(std::any_of(on_line.begin(), on_line.end(), [&](const Span& outer) {
+          return outer.lo <= span.lo && span.hi <= outer.hi;
+        }));
+      }
+      if (std::max(std::abs(frame.centreX(i)), std::abs(frame.centreZ(k))) > 0.9) continue;
+      ++level;
+      ASSERT_EQ(over_cell.size(), 3U);
+      EXPECT_NEAR(static_cast<double>(over_cell[2].lo), 0.05, 2.1e-5);
+      EXPECT_NEAR(static_cast<double>(over_cell[1].hi), -0.05, 2.1e-5);
+    }
+  }
+  EXPECT_GT(level, 3000);
+}
+
+}  // namespace
+}  // namespace galactic::bake

@@ -1,0 +1,383 @@
+// Which spans are free space: rooms, outside and closed parts.
+#include "galactic/bake/free_space.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "galactic/bake/column_engines.h"
+#include "support/test_meshes.h"
+
+namespace galactic::bake {
+namespace {
+
+using test::MeshBuilder;
+
+constexpr std::uint32_t kSeed = 20250312;
+constexpr float kSpacing = 0.03F;
+
+Columns columnsOf(const TriangleMesh& mesh, float radius) {
+  return exactColumns(mesh, makeGridFrame(mesh.bounds, radius, kSpacing).value()).columns;
+}
+
+/// Walls, floor and ceiling of a room, 10 cm thick, around the free box from min to max.
+MeshBuilder& addRoom(MeshBuilder& builder, Vec3 min, Vec3 max, bool with_ceiling = true) {
+  constexpr float kThick = 0.1F;
+  const Vec3 lo{min.x - kThick, min.y - kThick, min.z - kThick};
+  const Vec3 hi{max.x + kThick, max.y + kThick, max.z + kThick};
+  builder.box(lo, {hi.x, min.y, hi.z});
+  if (with_ceiling) builder.box({lo.x, max.y, lo.z}, hi);
+  const float top = with_ceiling ? hi.y : max.y;
+  builder.box(lo, {min.x, top, hi.z}).box({max.x, lo.y, lo.z}, {hi.x, top, hi.z});
+  return builder.box(lo, {hi.x, top, min.z}).box({lo.x, lo.y, max.z}, {hi.x, top, hi.z});
+}
+
+/// Volume of a box that is given by its edges.
+double volumeOf(double x, double y, double z) { return x * y * z; }
+
+/// The most that counting whole columns changes the volume of a box: half a column on every side.
+double oneCellLayer(double x, double y, double z) {
+  const auto h = static_cast<double>(kSpacing);
+  return y * ((x + h) * (z + h) - x * z);
+}
+
+const RegionTotals& totalsOf(const FreeSpace& free, Region region) {
+  return free.totals[static_cast<std::size_t>(region)];
+}
+
+TEST(FreeSpace, OfAClosedRoomIsItsInsideLessTheRadius) {
+  for (const float radius : {0.015F, 0.05F, 0.12F}) {
+    SCOPED_TRACE(testing::Message() << "radius " << radius);
+    MeshBuilder builder;
+    const Columns columns = columnsOf(addRoom(builder, {0, 0, 0}, {6, 2.6F, 5}).build(), radius);
+    const FreeSpace free = chooseFreeSpace(columns).value();
+    const double r2 = 2 * static_cast<double>(radius);
+    const RegionTotals& room = totalsOf(free, Region::kRoom);
+    EXPECT_EQ(room.components, 1U);
+    EXPECT_NEAR(room.volume, volumeOf(6 - r2, 2.6 - r2, 5 - r2),
+                oneCellLayer(6 - r2, 2.6 - r2, 5 - r2));
+    EXPECT_EQ(free.columns.spans.size(), room.spans);
+    EXPECT_EQ(free.components.front().region, Region::kRoom);
+    EXPECT_FALSE(free.components.front().touches_border);
+    EXPECT_EQ(totalsOf(free, Region::kOutside).components, 1U);
+  }
+}
+
+/// The volume of the outside is the frame's less that of the grown house.
+TEST(FreeSpace, AddsUpEverySpanOnce) {
+  MeshBuilder builder;
+  const Columns columns = columnsOf(addRoom(builder, {0, 0, 0}, {3, 2.6F, 2}).build(), 0.05F);
+  const FreeSpace free = chooseFreeSpace(columns).value();
+  std::uint64_t spans = 0;
+  std::uint32_t components = 0;
+  double volume = 0;
+  for (const RegionTotals& totals : free.totals) {
+    spans += totals.spans;
+    components += totals.components;
+    volume += totals.volume;
+  }
+  double expected = 0;
+  for (const Span& span : columns.spans) {
+    expected += static_cast<double>(span.hi) - static_cast<double>(span.lo);
+  }
+  EXPECT_EQ(spans, columns.spans.size());
+  EXPECT_EQ(components, free.components.size());
+  EXPECT_NEAR(volume, expected * 0.03 * 0.03, 1e-6 * volume);
+}
+
+TEST(FreeSpace, OfARoomWithoutACeilingIsTheRoomAndTheSkyAboveIt) {
+  MeshBuilder builder;
+  const Columns columns =
+      columnsOf(addRoom(builder, {0, 0, 0}, {6, 2.6F, 5}, false).build(), 0.05F);
+  const FreeSpace free = chooseFreeSpace(columns).value();
+  const Component& room = free.components.front();
+  EXPECT_EQ(room.region, Region::kRoom);
+  EXPECT_TRUE(room.touches_border);
+  EXPECT_EQ(totalsOf(free, Region::kOutside).components, 0U);
+  EXPECT_GT(room.volume, volumeOf(5.9, 2.5, 4.9));
+  // The floor slab's inside is no room, although it alone touches no border.
+  EXPECT_LT(static_cast<double>(room.bounds.min.y), 0.06);
+}
+
+/// Two rooms of one house with a wall between; `door` leaves an opening in it.
+TriangleMesh twoRooms(bool door) {
+  MeshBuilder builder;
+  addRoom(builder, {0, 0, 0}, {5, 2.6F, 3});
+  builder.box({2.95F, -0.05F, -0.05F}, {3.05F, 2.65F, door ? 1.0F : 3.05F});
+  if (door) builder.box({2.95F, -0.05F, 2}, {3.05F, 2.65F, 3.05F});
+  return builder.build();
+}
+
+TEST(FreeSpace, BehindAClosedDoorIsEnclosedUnlessItIsAskedFor) {
+  const Columns columns = columnsOf(twoRooms(false), 0.05F);
+  const double bigger = volumeOf(2.85, 2.5, 2.9);
+  const double smaller = volumeOf(1.85, 2.5, 2.9);
+  const FreeSpace one = chooseFreeSpace(columns).value();
+  EXPECT_NEAR(totalsOf(one, Region::kRoom).volume, bigger, oneCellLayer(2.85, 2.5, 2.9));
+  EXPECT_GT(totalsOf(one, Region::kEnclosed).volume, 0.9 * smaller);
+  const FreeSpace two = chooseFreeSpace(columns, {.components = 2}).value();
+  EXPECT_EQ(totalsOf(two, Region::kRoom).components, 2U);
+  EXPECT_NEAR(totalsOf(two, Region::kRoom).volume, bigger + smaller,
+              oneCellLayer(2.85, 2.5, 2.9) + oneCellLayer(1.85, 2.5, 2.9));
+  const FreeSpace seeded =
+      chooseFreeSpace(columns, {.seeds = {{1, 1, 1}, {4, 1, 1}, {4.5F, 2, 2}}}).value();
+  EXPECT_EQ(seeded.columns.spans, two.columns.spans);
+}
+
+TEST(FreeSpace, BehindAnOpenDoorIsTheSameRoom) {
+  const FreeSpace free = chooseFreeSpace(columnsOf(twoRooms(true), 0.05F)).value();
+  EXPECT_EQ(totalsOf(free, Region::kRoom).components, 1U);
+  EXPECT_GT(totalsOf(free, Region::kRoom).volume, volumeOf(4.7, 2.5, 2.9));
+}
+
+TEST(FreeSpace, OfASeedIsTheRoomThatItStandsInHoweverSmall) {
+  const Columns columns = columnsOf(twoRooms(false), 0.05F);
+  const FreeSpace free = chooseFreeSpace(columns, {.seeds = {{4, 1, 1}}}).value();
+  EXPECT_NEAR(totalsOf(free, Region::kRoom).volume, volumeOf(1.85, 2.5, 2.9),
+              oneCellLayer(1.85, 2.5, 2.9));
+  for (const Component& part : free.components) {
+    if (part.region == Region::kRoom) EXPECT_GT(part.bounds.min.x, 3.05F);
+  }
+}
+
+/// A room, a closed cabinet in it, and a closed chest in the cabinet.
+TriangleMesh nestedBoxes() {
+  MeshBuilder builder;
+  addRoom(builder, {0, 0, 0}, {5, 2.6F, 4});
+  builder.box({1, -0.05F, 1}, {2.2F, 1.8F, 2});
+  builder.box({1.3F, 0.4F, 1.3F}, {1.9F, 1, 1.7F});
+  return builder.build();
+}
+
+TEST(FreeSpace, InsideASealedCabinetIsEnclosedAndSoIsAChestInIt) {
+  const Columns columns = columnsOf(nestedBoxes(), 0.05F);
+  const FreeSpace free = chooseFreeSpace(columns).value();
+  std::vector<double> inside;
+  for (const Component& part : free.components) {
+    const bool in_cabinet = part.bounds.min.x > 1 && part.bounds.max.x < 2.2F &&
+                            part.bounds.min.z > 1 && part.bounds.max.z < 2;
+    if (!in_cabinet) continue;
+    EXPECT_EQ(part.region, Region::kEnclosed);
+    inside.push_back(part.volume);
+  }
+  ASSERT_EQ(inside.size(), 2U);
+  // The cabinet stands 5 cm deep in the floor, whose top face ends it at the radius.
+  const double chest = volumeOf(0.5, 0.5, 0.3);
+  EXPECT_NEAR(inside[1], chest, oneCellLayer(0.5, 0.5, 0.3));
+  const double cabinet = volumeOf(1.1, 1.7, 0.9) - volumeOf(0.7, 0.7, 0.5);
+  EXPECT_NEAR(inside[0], cabinet,
+              oneCellLayer(1.1, 1.7, 0.9) + oneCellLayer(0.7, 0.7, 0.5));
+}
+
+TEST(FreeSpace, KeepsAllSpansWhenAsked) {
+  const Columns columns = columnsOf(nestedBoxes(), 0.05F);
+  const FreeSpace free = chooseFreeSpace(columns, {.keep = Keep::kAll}).value();
+  EXPECT_EQ(free.columns.spans, columns.spans);
+  EXPECT_EQ(free.columns.first, columns.first);
+  EXPECT_EQ(totalsOf(free, Region::kRoom).components, 1U);
+  EXPECT_LT(totalsOf(free, Region::kRoom).spans, columns.spans.size());
+}
+
+/// The error of seeds that must not be accepted.
+Error seedError(const Columns& columns, Vec3 seed) {
+  const auto free = chooseFreeSpace(columns, {.seeds = {seed}});
+  EXPECT_FALSE(free);
+  return free ? Error{} : free.error();
+}
+
+TEST(FreeSpace, RefusesASeedInsideAnObstacleAndNamesTheFreeHeights) {
+  MeshBuilder builder;
+  const Columns columns = columnsOf(addRoom(builder, {0, 0, 0}, {3, 2.6F, 2}).build(), 0.05F);
+  const Error error = seedError(columns, {1.5F, 0.02F, 1});
+  EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(error.where, "--seed");
+  EXPECT_EQ(error.message,
+            "(1.5, 0.02, 1) is blocked (free there: -0.160 to -0.150 m, 0.050 to 2.550 m, "
+            "2.750 to 2.760 m) for radius 0.05 m; give a point where a sphere of that radius fits, "
+            "in metres with y up");
+}
+
+TEST(FreeSpace, RefusesASeedInAColumnWithoutFreeHeights) {
+  Columns columns;
+  columns.frame.radius = 0.05F;
+  columns.frame.spacing = 1;
+  columns.frame.heights = {0, 2};
+  columns.frame.columns_x = columns.frame.columns_z = 1;
+  columns.first = {0, 0};
+  EXPECT_EQ(seedError(columns, {0.5F, 1, 0.5F}).message,
+            "(0.5, 1, 0.5) is blocked for radius 0.05 m; give a point where a sphere of that "
+            "radius fits, in metres with y up");
+}
+
+TEST(FreeSpace, RefusesASeedOutsideTheGrid) {
+  MeshBuilder builder;
+  const Columns columns = columnsOf(addRoom(builder, {0, 0, 0}, {3, 2.6F, 2}).build(), 0.05F);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const Vec3 seed : {Vec3{-9, 1, 1}, {1, 1, 77}, {1e30F, 1, 1}, {nan, 1, 1}, {1, 1, nan}}) {
+    const Error error = seedError(columns, seed);
+    EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
+    EXPECT_THAT(error.message, testing::HasSubstr("is outside the scene for radius 0.05 m"));
+  }
+  // Above the roof the grid knows nothing, and says where it does.
+  EXPECT_THAT(seedError(columns, {1, 50, 1}).message, testing::HasSubstr("is blocked (free there"));
+  EXPECT_THAT(seedError(columns, {1, nan, 1}).message,
+              testing::HasSubstr("is blocked (free there"));
+}
+
+TEST(FreeSpace, OfNothingIsNothing) {
+  Columns columns;
+  columns.frame.spacing = 1;
+  columns.frame.columns_x = columns.frame.columns_z = 2;
+  columns.first = {0, 0, 0, 0, 0};
+  const FreeSpace free = chooseFreeSpace(columns, {.components = 5}).value();
+  EXPECT_TRUE(free.components.empty());
+  EXPECT_EQ(free.columns.first, columns.first);
+}
+
+/// A single closed sheet, tilted and turned, parts the space for any radius from half the spacing.
+TEST(FreeSpace, DoesNotLeakThroughAClosedSheetAtHalfTheSpacing) {
+  for (int turn = 0; turn < 24; ++turn) {
+    // A cube of sheets without thickness, turned about two axes.
+    const double yaw = 0.1309 * turn;
+    const double pitch = 0.07 * turn;
+    const auto turned = [&](double x, double y, double z) {
+      const double x1 = x * std::cos(yaw) + z * std::sin(yaw);
+      const double z1 = -x * std::sin(yaw) + z * std::cos(yaw);
+      return Vec3{static_cast<float>(x1 * std::cos(pitch) - y * std::sin(pitch)),
+                  static_cast<float>(x1 * std::sin(pitch) + y * std::cos(pitch)),
+                  static_cast<float>(z1)};
+    };
+    MeshBuilder builder;
+    for (const double side : {-0.5, 0.5}) {
+      builder.quad({turned(side, -0.5, -0.5), turned(side, -0.5, 0.5), turned(side, 0.5, 0.5),
+                    turned(side, 0.5, -0.5)});
+      builder.quad({turned(-0.5, side, -0.5), turned(-0.5, side, 0.5), turned(0.5, side, 0.5),
+                    turned(0.5, side, -0.5)});
+      builder.quad({turned(-0.5, -0.5, side), turned(-0.5, 0.5, side), turned(0.5, 0.5, side),
+                    turned(0.5, -0.5, side)});
+    }
+    const Columns columns = columnsOf(builder.build(), kSpacing / 2);
+    const FreeSpace free = chooseFreeSpace(columns, {.seeds = {{0, 0, 0}}}).value();
+    EXPECT_FALSE(free.components[0].region == Region::kRoom && free.components[0].touches_border)
+        << "turn " << turn;
+    EXPECT_LT(totalsOf(free, Region::kRoom).volume, 1.0) << "turn " << turn;
+    EXPECT_GT(totalsOf(free, Region::kRoom).volume, 0.85) << "turn " << turn;
+  }
+}
+
+/// Components by breadth-first search over pairs of spans, each with its column.
+class Search {
+ public:
+  explicit Search(const Columns& columns) : columns_(columns), label_(columns.spans.size(), -1) {
+    for (std::size_t at = 0; at < columns.frame.columnCount(); ++at) {
+      for (std::uint32_t s = columns.first[at]; s < columns.first[at + 1]; ++s) {
+        if (label_[s] >= 0) continue;
+        spread(at, s);
+        ++count_;
+      }
+    }
+  }
+
+  [[nodiscard]] const std::vector<int>& labels() const { return label_; }
+  [[nodiscard]] int count() const { return count_; }
+
+ private:
+  struct Place {
+    std::size_t column = 0;
+    std::uint32_t span = 0;
+  };
+
+  void spread(std::size_t column, std::uint32_t span) {
+    std::deque<Place> open{{column, span}};
+    label_[span] = count_;
+    const std::size_t nx = columns_.frame.columns_x;
+    while (!open.empty()) {
+      const Place here = open.front();
+      open.pop_front();
+      const std::size_t i = here.column % nx;
+      const std::size_t k = here.column / nx;
+      if (i > 0) visit(here, here.column - 1, open);
+      if (i + 1 < nx) visit(here, here.column + 1, open);
+      if (k > 0) visit(here, here.column - nx, open);
+      if (k + 1 < columns_.frame.columns_z) visit(here, here.column + nx, open);
+    }
+  }
+
+  void visit(const Place& here, std::size_t column, std::deque<Place>& open) {
+    const Span& a = columns_.spans[here.span];
+    for (std::uint32_t s = columns_.first[column]; s < columns_.first[column + 1]; ++s) {
+      const Span& b = columns_.spans[s];
+      if (label_[s] >= 0 || !(a.lo < b.hi && b.lo < a.hi)) continue;
+      label_[s] = count_;
+      open.push_back({column, s});
+    }
+  }
+
+  const Columns& columns_;
+  std::vector<int> label_;
+  int count_ = 0;
+};
+
+/// Small grids of random spans on whole heights, so that spans often end exactly where others begin.
+Columns randomColumns(std::mt19937& random) {
+  Columns columns;
+  columns.frame.spacing = 0.5F;
+  columns.frame.heights = {0, 24};
+  columns.frame.columns_x = 2 + random() % 12;
+  columns.frame.columns_z = 2 + random() % 12;
+  columns.first.push_back(0);
+  for (std::size_t at = 0; at < columns.frame.columnCount(); ++at) {
+    std::set<int> ends;
+    const std::size_t wanted = 2 * (random() % 5);
+    while (ends.size() < wanted) ends.insert(static_cast<int>(random() % 25));
+    for (auto end = ends.begin(); end != ends.end(); ++end) {
+      const auto lo = static_cast<float>(*end);
+      columns.spans.push_back({lo, static_cast<float>(*++end)});
+    }
+    columns.first.push_back(static_cast<std::uint32_t>(columns.spans.size()));
+  }
+  return columns;
+}
+
+TEST(FreeSpace, EqualsABreadthFirstSearchOnRandomColumns) {
+  RecordProperty("seed", static_cast<int>(kSeed));
+  std::mt19937 random(kSeed);
+  std::size_t kept = 0;
+  std::size_t all = 0;
+  for (int round = 0; round < 400; ++round) {
+    const Columns columns = randomColumns(random);
+    const Search search(columns);
+    std::vector<double> volume(static_cast<std::size_t>(search.count()), 0);
+    for (std::size_t s = 0; s < columns.spans.size(); ++s) {
+      volume[static_cast<std::size_t>(search.labels()[s])] +=
+          0.25 * static_cast<double>(columns.spans[s].hi - columns.spans[s].lo);
+    }
+    // The first of the greatest components; the labels are in the order of their first spans.
+    const auto greatest = std::max_element(volume.begin(), volume.end()) - volume.begin();
+    std::vector<Span> expected;
+    for (std::size_t s = 0; s < columns.spans.size(); ++s) {
+      if (search.labels()[s] == static_cast<int>(greatest)) expected.push_back(columns.spans[s]);
+    }
+    const FreeSpace free = chooseFreeSpace(columns).value();
+    ASSERT_EQ(free.columns.spans, expected) << "seed " << kSeed << ", round " << round;
+    ASSERT_EQ(free.components.size(), volume.size());
+    std::sort(volume.rbegin(), volume.rend());
+    for (std::size_t n = 0; n < volume.size(); ++n) {
+      ASSERT_DOUBLE_EQ(free.components[n].volume, volume[n]);
+    }
+    kept += expected.size();
+    all += columns.spans.size();
+  }
+  EXPECT_GT(kept, all / 10);
+  EXPECT_LT(kept, all * 9 / 10);
+}
+
+}  // namespace
+}  // namespace galactic::bake

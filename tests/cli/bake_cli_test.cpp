@@ -1,0 +1,179 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/mesh_files.h"
+#include "support/program_run.h"
+#include "support/scratch_folder.h"
+
+namespace galactic {
+namespace {
+
+using nlohmann::json;
+using test::ProgramRun;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+/// A folder with a closed room and a file that is no mesh.
+class BakeCli : public testing::Test {
+ protected:
+  void SetUp() override {
+    write("room.obj", test::objFile(test::unevenBox()));
+    write("broken.obj", "this is no mesh\n");
+  }
+
+  void write(const std::string& name, std::string_view content) {
+    ASSERT_EQ(test::fileContent(folder_.write(name, content)), content);
+  }
+  [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
+    return test::runProgram(GALACTIC_BAKE, folder_.path(), std::move(arguments));
+  }
+  [[nodiscard]] bool has(const std::string& name) const {
+    return std::filesystem::exists(folder_.path() / name);
+  }
+  [[nodiscard]] std::string content(const std::string& name) const {
+    return test::fileContent(folder_.path() / name);
+  }
+
+  test::ScratchFolder folder_;
+};
+
+TEST_F(BakeCli, WritesAPackNamedAfterItsInputWithTheOptionsAsUsersTypeThem) {
+  const ProgramRun bake = run({"room.obj", "--radii", "0.015,0.05,0.12"});
+  EXPECT_EQ(bake.exit_code, 0) << bake.err;
+  EXPECT_THAT(bake.out, AllOf(HasSubstr("room.obj -> room.pack"), HasSubstr("12 triangles"),
+                              HasSubstr("0.015"), HasSubstr("0 errors")));
+  EXPECT_THAT(bake.err, IsEmpty());
+  EXPECT_TRUE(has("room.pack"));
+  const ProgramRun options_first = run({"--radii", "0.015,0.05,0.12", "-o", "b.pack", "room.obj"});
+  EXPECT_EQ(options_first.exit_code, 0) << options_first.err;
+  EXPECT_EQ(content("room.pack"), content("b.pack"));
+}
+
+TEST_F(BakeCli, WritesTheSameBytesForAnyNumberOfJobs) {
+  ASSERT_EQ(run({"room.obj", "-o", "one.pack", "-j", "1"}).exit_code, 0);
+  ASSERT_EQ(run({"room.obj", "-o", "five.pack", "-j5"}).exit_code, 0);
+  EXPECT_EQ(content("one.pack"), content("five.pack"));
+}
+
+TEST_F(BakeCli, PrintsNothingButErrorsWhenQuiet) {
+  const ProgramRun bake = run({"-q", "room.obj"});
+  EXPECT_EQ(bake.exit_code, 0);
+  EXPECT_THAT(bake.out, IsEmpty());
+  EXPECT_THAT(bake.err, IsEmpty());
+}
+
+TEST_F(BakeCli, WritesNoPackOnADryRun) {
+  const ProgramRun bake = run({"room.obj", "--dry-run"});
+  EXPECT_EQ(bake.exit_code, 0);
+  EXPECT_THAT(bake.out, HasSubstr("(dry run)"));
+  EXPECT_FALSE(has("room.pack"));
+}
+
+TEST_F(BakeCli, StopsAtTheFirstErrorUnlessToldToKeepGoing) {
+  const ProgramRun stops = run({"broken.obj", "room.obj", "-o", "packs"});
+  EXPECT_EQ(stops.exit_code, 3);
+  EXPECT_THAT(stops.err, StartsWith("galactic-bake: broken.obj: "));
+  EXPECT_FALSE(has("packs/room.pack"));
+  const ProgramRun goes_on =
+      run({"broken.obj", "room.obj", "-o", "packs", "--keep-going", "--report", "report.json"});
+  EXPECT_EQ(goes_on.exit_code, 3);
+  EXPECT_TRUE(has("packs/room.pack"));
+  const json report = json::parse(content("report.json"));
+  EXPECT_EQ(report["baked"].size(), 1U);
+  EXPECT_EQ(report["baked"][0]["triangles"]["kept"], 12);
+  EXPECT_EQ(report["baked"][0]["grids"].size(), 3U);
+  EXPECT_EQ(report["failed"][0]["input"], "broken.obj");
+  EXPECT_EQ(report["failed"][0]["code"], 3);
+}
+
+TEST_F(BakeCli, ReadsOptionsFromAConfigFile) {
+  write("bake.toml", "radii = [0.05, 0.12]\nspacing = 0.04\ncoverage = \"cell\"\n");
+  const ProgramRun bake = run({"room.obj", "--config", "bake.toml", "--report", "report.json"});
+  ASSERT_EQ(bake.exit_code, 0) << bake.err;
+  const json grids = json::parse(content("report.json"))["baked"][0]["grids"];
+  ASSERT_EQ(grids.size(), 2U);
+  EXPECT_FLOAT_EQ(grids[0]["radius"], 0.05F);
+  EXPECT_FLOAT_EQ(grids[1]["radius"], 0.12F);
+  EXPECT_FLOAT_EQ(grids[0]["spacing"], 0.04F);
+}
+
+TEST_F(BakeCli, LeavesAnOldPackIntactWhenABakeFails) {
+  write("room.pack", "the old pack");
+  EXPECT_EQ(run({"room.obj", "--seed", "100,0,0"}).exit_code, 3);
+  EXPECT_EQ(content("room.pack"), "the old pack");
+}
+
+TEST_F(BakeCli, RefusesToReplaceItsInput) {
+  const std::string before = content("room.obj");
+  const ProgramRun bake = run({"room.obj", "-o", "room.obj"});
+  EXPECT_EQ(bake.exit_code, 3);
+  EXPECT_THAT(bake.err, HasSubstr("is also the input"));
+  EXPECT_EQ(content("room.obj"), before);
+}
+
+TEST_F(BakeCli, RefusesTwoInputsForOnePack) {
+  write("other/room.obj", test::objFile(test::unevenBox()));
+  const ProgramRun bake = run({"room.obj", "other/room.obj", "-o", "packs"});
+  EXPECT_EQ(bake.exit_code, 3);
+  EXPECT_THAT(bake.err, HasSubstr("would be written for two inputs"));
+}
+
+/// A command line, its exit code and a part of what it says.
+struct Refusal {
+  std::vector<std::string> arguments;
+  int exit_code;
+  std::string part;
+};
+
+TEST_F(BakeCli, ExplainsEveryRefusal) {
+  const std::vector<Refusal> refusals{
+      {{}, 1, "input is required"},
+      {{"room.obj", "--no-such-option"}, 1, "--no-such-option"},
+      {{"room.obj", "--radii", "0.05,x"}, 1, "--radii: has \"x\" in \"0.05,x\""},
+      {{"room.obj", "--seed", "1,2"}, 1, "--seed: has 2 numbers in \"1,2\", 3 are wanted"},
+      {{"room.obj", "--up", "w"}, 1, "--up: is \"w\""},
+      {{"room.obj", "--scale", "-1"}, 1, "--scale: is -1"},
+      {{"room.obj", "--transform", "1,2,3"}, 1, "--transform: has 3 numbers, 12"},
+      {{"room.obj", "--engine", "magic"}, 1, "--engine"},
+      {{"room.obj", "--jobs", "0"}, 1, "--jobs"},
+      {{"missing.obj"}, 2, "missing.obj"},
+      {{"room.obj", "--radii", "0.01"}, 3, "--radii: radius 0.01 m is under half the spacing"},
+      {{"room.obj", "--radii", "0.12,0.05"}, 3, "in ascending order"},
+      {{"room.obj", "--spacing", "0"}, 3, "--spacing: is 0 m"},
+      {{"room.obj", "--coverage", "cell", "--engine", "embree"}, 3, "--coverage: cell works with"},
+      {{"room.obj", "--seed", "9,9,9"}, 3, "is outside the scene"},
+      {{"room.obj", "-o", "no/such/folder/room.pack"}, 2, "cannot write the file"},
+  };
+  for (const Refusal& refusal : refusals) {
+    SCOPED_TRACE(testing::PrintToString(refusal.arguments));
+    const ProgramRun bake = run(refusal.arguments);
+    EXPECT_EQ(bake.exit_code, refusal.exit_code);
+    EXPECT_THAT(bake.err, HasSubstr(refusal.part));
+    EXPECT_THAT(bake.out, IsEmpty());
+  }
+}
+
+TEST_F(BakeCli, ListsItsExitCodesInHelp) {
+  const ProgramRun help = run({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.out, AllOf(HasSubstr("Exit codes: 0 ok"), HasSubstr("--keep-components"),
+                              HasSubstr("galactic-bake scene.glb --radii 0.015,0.05,0.12")));
+  EXPECT_EQ(run({"--version"}).exit_code, 0);
+}
+
+TEST_F(BakeCli, AppliesUpScaleAndTransformInThisOrder) {
+  const ProgramRun bake = run({"room.obj", "--up", "z", "--scale", "0.5", "--transform",
+                               "1,0,0,10,0,1,0,20,0,0,1,30", "--report", "report.json"});
+  ASSERT_EQ(bake.exit_code, 0) << bake.err;
+  const json bounds = json::parse(content("report.json"))["baked"][0]["bounds"];
+  // The box reaches from (0.5, 0.25, 1) to (1.5, 2.25, 4), its z becomes up and its y becomes -z.
+  EXPECT_EQ(bounds["min"], json::array({10.25, 20.5, 30 - 1.125}));
+  EXPECT_EQ(bounds["max"], json::array({10.75, 22.0, 30 - 0.125}));
+}
+
+}  // namespace
+}  // namespace galactic

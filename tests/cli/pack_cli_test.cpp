@@ -1,0 +1,231 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/pack_program.h"
+
+namespace galactic {
+namespace {
+
+using nlohmann::json;
+using test::ProgramRun;
+using test::runPackTool;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::MatchesRegex;
+using testing::StartsWith;
+
+constexpr int kIo = static_cast<int>(ErrorCode::kIo);
+constexpr int kInvalidInput = static_cast<int>(ErrorCode::kInvalidInput);
+constexpr int kUnsupported = static_cast<int>(ErrorCode::kUnsupported);
+
+/// A folder with a good pack, one that was cut off, one of a later format, and a file that is no
+/// pack.
+class PackCli : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto bytes = test::buildPack(test::smallScene());
+    write("good.pack", test::asText(bytes.bytes()));
+    write("cut.pack", test::asText(bytes.bytes()).substr(0, 500));
+    constexpr std::size_t kVersionOffset = 8;
+    bytes.bytes()[kVersionOffset] = std::byte{99};
+    write("later.pack", test::asText(bytes.bytes()));
+    write("text.pack", "this is a text and no pack, long enough to hold a whole header of a pack");
+  }
+
+  ProgramRun run(std::vector<std::string> arguments) {
+    return runPackTool(folder_, std::move(arguments));
+  }
+
+  void write(const std::string& name, std::string_view content) {
+    ASSERT_EQ(test::readBytes(folder_.write(name, content)), content);
+  }
+
+  test::ScratchFolder folder_;
+};
+
+TEST_F(PackCli, ListsItsVerbsAndExitCodesInHelp) {
+  const ProgramRun help = run({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_EQ(help.err, "");
+  for (const char* part :
+       {"info", "check", "column", "diff", "export", "0 ok", "1 command line", "2 input or output",
+        "3 invalid input", "4 internal", "5 unsupported", "7 the packs differ"}) {
+    EXPECT_THAT(help.out, HasSubstr(part));
+  }
+  const ProgramRun verb = run({"diff", "--help"});
+  EXPECT_EQ(verb.exit_code, 0);
+  EXPECT_THAT(verb.out, HasSubstr("--tolerance"));
+  EXPECT_THAT(verb.out, HasSubstr("7 the packs differ"));
+}
+
+TEST_F(PackCli, PrintsItsVersion) {
+  const ProgramRun version = run({"--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_THAT(version.out, MatchesRegex("galactic-pack [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+TEST_F(PackCli, ExplainsAWrongCommandLineWithExitCodeOne) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> lines{
+      {{}, "no verb; give info, check"},
+      {{"frobnicate", "good.pack"}, "\"frobnicate\" is no verb; give info, check"},
+      {{"info"}, "packs is required"},
+      {{"info", "good.pack", "--frob"}, "--frob"},
+      {{"column", "good.pack"}, "--at is required"},
+      {{"column", "good.pack", "--at", "1"}, "\"1\" is not 2 numbers"},
+      {{"column", "good.pack", "--at", "1,nan"}, "\"1,nan\" is not 2 numbers"},
+      {{"column", "good.pack", "--at", "1,2,3"}, "\"1,2,3\" is not 2 numbers"},
+      {{"diff", "good.pack"}, "b is required"},
+      {{"diff", "good.pack", "good.pack", "--tolerance", "-1"}, "--tolerance"},
+      {{"export", "good.pack"}, "--output is required"},
+      {{"export", "good.pack", "-o", "a.png", "--slice", "1,2,3"}, "is not 4 numbers"},
+      {{"export", "good.pack", "-o", "a.png", "--to", "gif"}, "--to"},
+  };
+  for (const auto& [arguments, message] : lines) {
+    const ProgramRun result = run(arguments);
+    EXPECT_EQ(result.exit_code, 1) << message;
+    EXPECT_EQ(result.out, "") << message;
+    EXPECT_THAT(result.err, StartsWith("galactic-pack: command line: "));
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
+}
+
+TEST_F(PackCli, InfoPrintsTextAndJson) {
+  const ProgramRun text = run({"info", "good.pack"});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_EQ(text.err, "");
+  EXPECT_THAT(text.out, StartsWith("good.pack\n  kind         SCEN, format version 1\n"));
+  EXPECT_THAT(text.out, HasSubstr("--radii 0.5,0.75"));
+
+  const ProgramRun result = run({"info", "--json", "good.pack"});
+  EXPECT_EQ(result.exit_code, 0);
+  const json packs = json::parse(result.out);
+  ASSERT_EQ(packs.size(), 1U);
+  EXPECT_EQ(packs.at(0).at("scene").at("name"), "kitchen");
+  EXPECT_EQ(packs.at(0).at("scene").at("column_grids").at(1).at("radius"), 0.75);
+}
+
+TEST_F(PackCli, InfoGoesOnAfterAPackThatCannotBeRead) {
+  const ProgramRun result = run({"info", "missing.pack", "good.pack"});
+  EXPECT_EQ(result.exit_code, kIo);
+  EXPECT_THAT(result.err, StartsWith("galactic-pack: missing.pack: "));
+  EXPECT_THAT(result.out, StartsWith("good.pack\n"));
+}
+
+TEST_F(PackCli, CheckSaysOkOrTheOffenceOfEachPack) {
+  const ProgramRun good = run({"check", "good.pack", "good.pack"});
+  EXPECT_EQ(good.exit_code, 0);
+  EXPECT_EQ(good.out, "good.pack: ok\ngood.pack: ok\n");
+  EXPECT_EQ(good.err, "");
+
+  const ProgramRun all =
+      run({"check", "missing.pack", "cut.pack", "later.pack", "text.pack", "good.pack"});
+  EXPECT_EQ(all.exit_code, kInvalidInput);
+  EXPECT_EQ(all.out, "good.pack: ok\n");
+  EXPECT_EQ(std::count(all.err.begin(), all.err.end(), '\n'), 4);
+  for (const char* pack : {"missing", "cut", "later", "text"}) {
+    EXPECT_THAT(all.err, HasSubstr("galactic-pack: " + std::string(pack) + ".pack: "));
+  }
+}
+
+TEST_F(PackCli, CheckReturnsTheExitCodeOfTheOffence) {
+  EXPECT_EQ(run({"check", "missing.pack"}).exit_code, kIo);
+  EXPECT_EQ(run({"check", "cut.pack"}).exit_code, kInvalidInput);
+  EXPECT_EQ(run({"check", "text.pack"}).exit_code, kInvalidInput);
+  EXPECT_EQ(run({"check", "later.pack"}).exit_code, kUnsupported);
+}
+
+TEST_F(PackCli, CheckReportsAsJson) {
+  const ProgramRun result = run({"check", "--json", "cut.pack", "good.pack"});
+  EXPECT_EQ(result.exit_code, kInvalidInput);
+  const json report = json::parse(result.out);
+  EXPECT_EQ(report.at(0).at("ok"), false);
+  EXPECT_EQ(report.at(0).at("exit_code"), kInvalidInput);
+  EXPECT_EQ(report.at(1).at("ok"), true);
+}
+
+TEST_F(PackCli, EveryVerbRefusesADamagedPack) {
+  for (const char* pack : {"cut.pack", "text.pack"}) {
+    for (const std::vector<std::string>& arguments : {std::vector<std::string>{"info", pack},
+                                                      {"column", pack, "--at", "1,1"},
+                                                      {"diff", "good.pack", pack},
+                                                      {"export", pack, "-o", "a.png"}}) {
+      const ProgramRun result = run(arguments);
+      EXPECT_EQ(result.exit_code, kInvalidInput) << arguments.front();
+      EXPECT_THAT(result.out, IsEmpty());
+      EXPECT_THAT(result.err, StartsWith("galactic-pack: " + std::string(pack) + ": "));
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "a.png"));
+}
+
+TEST_F(PackCli, ColumnTakesNegativeNumbersAndRefusesPointsOutside) {
+  const ProgramRun inside = run({"column", "good.pack", "--at", "1.5,0.5", "--radius", "0.5"});
+  EXPECT_EQ(inside.exit_code, 0);
+  EXPECT_THAT(inside.out, StartsWith("radius 0.5 m: cell (1, 0), column at x 1.5, z 0.5\n"));
+  const ProgramRun outside = run({"column", "good.pack", "--at", "-1.5,-0.5"});
+  EXPECT_EQ(outside.exit_code, kInvalidInput);
+  EXPECT_EQ(outside.out, "");
+  EXPECT_THAT(outside.err,
+              StartsWith("galactic-pack: good.pack: the point x -1.5, z -0.5 is outside"));
+}
+
+TEST_F(PackCli, DiffReturnsSevenWhenPacksDiffer) {
+  test::ScenePackFields other = test::smallScene();
+  other.name = "bath";
+  write("other.pack", test::asText(test::buildPack(other).bytes()));
+  const ProgramRun differ = run({"diff", "good.pack", "other.pack"});
+  EXPECT_EQ(differ.exit_code, kExitDiffers);
+  EXPECT_EQ(differ.err, "");
+  EXPECT_THAT(differ.out, StartsWith("A good.pack\nB other.pack\ndiffer\n"));
+  EXPECT_THAT(differ.out, HasSubstr("name: kitchen | bath"));
+  const ProgramRun same = run({"diff", "good.pack", "good.pack", "--json"});
+  EXPECT_EQ(same.exit_code, 0);
+  EXPECT_EQ(json::parse(same.out).at("identical"), true);
+}
+
+TEST_F(PackCli, ExportWritesPicturesAndMeshesQuietly) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> exports{
+      {{"-o", "all.png"}, "\x89PNG"},
+      {{"-o", "one.PNG", "--radius", "0.75", "--value", "lowest"}, "\x89PNG"},
+      {{"-o", "slice.png", "--slice", "0,0.5,5,2.5"}, "\x89PNG"},
+      {{"-o", "mesh.ply", "--radius", "0.5", "--surface"}, "ply\n"},
+      {{"-o", "mesh.obj", "--radius", "0.5", "--floors-only"}, "# free space"},
+      {{"-o", "mesh.dat", "--to", "obj", "--radius", "0.5"}, "# free space"},
+  };
+  for (const auto& [options, start] : exports) {
+    std::vector<std::string> arguments{"export", "good.pack"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramRun result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << options[1];
+    EXPECT_EQ(result.out + result.err, "") << options[1];
+    EXPECT_THAT(test::readBytes(folder_.path() / options[1]), StartsWith(start));
+  }
+}
+
+TEST_F(PackCli, ExportRefusesWhatItCannotWrite) {
+  const ProgramRun format = run({"export", "good.pack", "-o", "a.jpg"});
+  EXPECT_EQ(format.exit_code, kUnsupported);
+  EXPECT_THAT(format.err, HasSubstr("use .png, .obj or .ply"));
+  const ProgramRun folder = run({"export", "good.pack", "-o", "none/a.png"});
+  EXPECT_EQ(folder.exit_code, kIo);
+  EXPECT_THAT(folder.err, StartsWith("galactic-pack: none/a.png: "));
+  const ProgramRun grids = run({"export", "good.pack", "-o", "a.ply"});
+  EXPECT_EQ(grids.exit_code, kInvalidInput);
+  EXPECT_THAT(grids.err, HasSubstr("choose with --radius one of 0.5 0.75"));
+  const ProgramRun slice = run({"export", "good.pack", "-o", "a.png", "--slice", "50,50,60,50"});
+  EXPECT_EQ(slice.exit_code, kInvalidInput);
+  EXPECT_THAT(slice.err, HasSubstr("misses the grid"));
+}
+
+TEST_F(PackCli, ReportsAFullDiskBehindStandardOutput) {
+  const std::filesystem::path full = "/dev/full";
+  if (!std::filesystem::exists(full)) GTEST_SKIP() << "this system has no /dev/full";
+  const ProgramRun result = runPackTool(folder_, {"info", "good.pack"}, full);
+  EXPECT_EQ(result.exit_code, kIo);
+  EXPECT_THAT(result.err, HasSubstr("standard output: cannot be written to"));
+}
+
+}  // namespace
+}  // namespace galactic

@@ -1,0 +1,117 @@
+#!/usr/bin/env python3
+"""Checks of the documents (README.md, docs/ and the folders' READMEs).
+
+    check_documents.py code              blocks that quote a file equal it
+    check_documents.py links             links to files lead to files
+    check_documents.py commands --bin D  the commands of docs/ that call our tools do as they say
+
+A block quotes a file when the line before it is <!-- file: PATH -->. Commands are the lines of blocks
+marked "sh" that begin with one of RUN; a line that ends in "# exit 7" has to end with that code. All
+commands of one document run in one fresh folder, in which packs/ and schema/ are the project's.
+"""
+
+import argparse
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+PROJECT = pathlib.Path(__file__).parents[2]
+BLOCK = re.compile(r"(?:<!-- file: (?P<file>\S+) -->\n)?```(?P<language>\w*)\n(?P<text>.*?)```\n",
+                   re.DOTALL)
+LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
+# Our tools, and what prepares or looks at their files.
+RUN = ("galactic-", "flatc ", "printf ", "tail ")
+EXPECTED_EXIT = re.compile(r"\s+# exit (\d+)$")
+
+
+def documents(root: pathlib.Path) -> list[pathlib.Path]:
+    found = [path for path in root.rglob("*.md")
+             if not {"build", ".git"}.intersection(path.relative_to(root).parts)]
+    return sorted(found)
+
+
+def check_code(root: pathlib.Path) -> list[str]:
+    offences = []
+    quoted = 0
+    for document in documents(root):
+        for block in BLOCK.finditer(document.read_text(encoding="utf-8")):
+            if not block["file"]:
+                continue
+            quoted += 1
+            file = root / block["file"]
+            if not file.is_file():
+                offences.append(f"{document.relative_to(root)}: quotes {block['file']}, which is gone")
+            elif file.read_text(encoding="utf-8") != block["text"]:
+                offences.append(f"{document.relative_to(root)}: differs from {block['file']}; copy the "
+                                "file into the block")
+    return offences if quoted else ["no document quotes a file: nothing was compared"]
+
+
+def check_links(root: pathlib.Path) -> list[str]:
+    offences = []
+    for document in documents(root):
+        for target in LINK.findall(document.read_text(encoding="utf-8")):
+            if "://" not in target and not (document.parent / target).exists():
+                offences.append(f"{document.relative_to(root)}: links to {target}, which is not there")
+    return offences
+
+
+def commands_of(text: str) -> list[tuple[str, int]]:
+    """The commands of a document that call our tools, and the exit codes that they announce."""
+    found = []
+    for block in BLOCK.finditer(text):
+        if block["language"] != "sh":
+            continue
+        for line in block["text"].replace("\\\n", " ").splitlines():
+            if not line.startswith(RUN):
+                continue
+            expected = EXPECTED_EXIT.search(line)
+            found.append((line, int(expected[1]) if expected else 0))
+    return found
+
+
+def check_commands(root: pathlib.Path, programs: pathlib.Path) -> list[str]:
+    offences = []
+    total = 0
+    environment = {**os.environ, "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}"}
+    for document in documents(root):
+        with tempfile.TemporaryDirectory() as folder:
+            for shared in ("packs", "schema"):
+                (pathlib.Path(folder) / shared).symlink_to(root / shared)
+            for line, expected in commands_of(document.read_text(encoding="utf-8")):
+                total += 1
+                run = subprocess.run(["bash", "-c", line], cwd=folder, env=environment, text=True,
+                                     stdin=subprocess.DEVNULL, capture_output=True, check=False)
+                if run.returncode != expected:
+                    offences.append(f"{document.relative_to(root)}: {line}\n  ended with "
+                                    f"{run.returncode} instead of {expected}: {run.stderr.strip()}")
+    print(f"{total} commands")
+    return offences if total else ["no document has a command: nothing was run"]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=("code", "links", "commands"))
+    parser.add_argument("--root", type=pathlib.Path, default=PROJECT)
+    parser.add_argument("--bin", type=pathlib.Path, help="folder of the built tools")
+    options = parser.parse_args()
+    if options.what == "code":
+        offences = check_code(options.root)
+    elif options.what == "links":
+        offences = check_links(options.root)
+    elif options.bin is None:
+        parser.error("commands needs --bin")
+    else:
+        offences = check_commands(options.root, options.bin.resolve())
+    for offence in offences:
+        print(offence)
+    print(f"documents, {options.what}: {len(offences)} offences")
+    return 1 if offences else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

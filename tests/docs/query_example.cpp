@@ -1,0 +1,60 @@
+// Opens a scene pack and asks where a sphere may be. Usage: query_example PACK
+#include <array>
+#include <cstdio>
+
+#include "galactic/pack.h"
+#include "galactic/scene.h"
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: query_example PACK\n");
+    return galactic::kExitUsage;
+  }
+  // Maps the file, then checks its hash, its structure and every value in it.
+  const auto pack = galactic::PackFile::open(argv[1]);
+  if (!pack) {
+    std::fprintf(stderr, "%s: %s\n", pack.error().where.c_str(), pack.error().message.c_str());
+    return static_cast<int>(pack.error().code);
+  }
+  // A view into the pack, which has to outlive it.
+  const auto scene = galactic::Scene::from(*pack);
+  if (!scene) {
+    std::fprintf(stderr, "%s: %s\n", scene.error().where.c_str(), scene.error().message.c_str());
+    return static_cast<int>(scene.error().code);
+  }
+  // Once, before the hot loop: which grid has spheres of 5 cm?
+  const auto index = scene->gridIndex(0.05F);
+  if (!index) {
+    std::fprintf(stderr, "the pack has no grid of radius 0.05 m\n");
+    return static_cast<int>(galactic::ErrorCode::kInvalidInput);
+  }
+  const galactic::ColumnGrid& grid = scene->grids()[*index];
+
+  // One sphere. World frame: y up, metres.
+  const galactic::Contact contact = grid.contact({-0.5F, 1.2F, -2.0F});
+  if (contact.clearance == galactic::Clearance::kFree) {
+    std::printf("free: %.3f m down and %.3f m up to contact\n", static_cast<double>(contact.down),
+                static_cast<double>(contact.up));
+  }
+
+  // Many spheres at once: the fast way.
+  const std::array<float, 3> x{-0.5F, -0.5F, 50.0F};
+  const std::array<float, 3> y{1.2F, 0.0F, 1.2F};
+  const std::array<float, 3> z{-2.0F, -2.0F, -2.0F};
+  std::array<galactic::Clearance, 3> clearance{};
+  grid.contact({.x = x, .y = y, .z = z}, {.clearance = clearance, .down = {}, .up = {}});
+  for (const galactic::Clearance answer : clearance) {
+    switch (answer) {
+      case galactic::Clearance::kFree:
+        std::printf("free\n");
+        break;
+      case galactic::Clearance::kBlocked:
+        std::printf("blocked\n");
+        break;
+      case galactic::Clearance::kOutside:
+        std::printf("outside the grid\n");
+        break;
+    }
+  }
+  return galactic::kExitOk;
+}

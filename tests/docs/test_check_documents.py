@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""The check of the documents catches what it is for: each part is given a planted violation."""
+
+import pathlib
+import tempfile
+import unittest
+
+import check_documents
+
+
+class CheckDocumentsTest(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.root = pathlib.Path(holder.name)
+        (self.root / "docs").mkdir()
+        (self.root / "packs").mkdir()
+        (self.root / "a.cpp").write_text("int a;\n")
+        self.plant("<!-- file: a.cpp -->\n```cpp\nint a;\n```\nSee [b](../a.cpp#x) and "
+                   "[c](https://example.org).\n```sh\ngalactic-tool yes\n```\n")
+        tool = self.root / "galactic-tool"
+        tool.write_text('#!/bin/sh\n[ "$1" = yes ] && exit 0\nexit 7\n')
+        tool.chmod(0o755)
+
+    def plant(self, text: str):
+        (self.root / "docs" / "page.md").write_text(text)
+
+    def test_accepts_what_is_true(self):
+        self.assertEqual(check_documents.check_code(self.root), [])
+        self.assertEqual(check_documents.check_links(self.root), [])
+        self.assertEqual(check_documents.check_commands(self.root, self.root), [])
+
+    def test_refuses_a_block_that_differs_from_its_file(self):
+        self.plant("<!-- file: a.cpp -->\n```cpp\nint b;\n```\n")
+        self.assertEqual(len(check_documents.check_code(self.root)), 1)
+
+    def test_refuses_a_block_of_a_missing_file(self):
+        self.plant("<!-- file: gone.cpp -->\n```cpp\nint b;\n```\n")
+        self.assertEqual(len(check_documents.check_code(self.root)), 1)
+
+    def test_refuses_documents_that_quote_nothing(self):
+        self.plant("```cpp\nint b;\n```\n")
+        self.assertEqual(len(check_documents.check_code(self.root)), 1)
+
+    def test_refuses_a_link_to_nowhere(self):
+        self.plant("See [b](gone.md).\n")
+        self.assertEqual(len(check_documents.check_links(self.root)), 1)
+
+    def test_refuses_a_command_that_fails(self):
+        self.plant("```sh\ngalactic-tool no\n```\n")
+        self.assertEqual(len(check_documents.check_commands(self.root, self.root)), 1)
+
+    def test_refuses_a_command_that_does_not_fail_as_announced(self):
+        self.plant("```sh\ngalactic-tool yes  # exit 7\n```\n")
+        self.assertEqual(len(check_documents.check_commands(self.root, self.root)), 1)
+
+    def test_accepts_an_announced_exit_code_and_a_continued_line(self):
+        self.plant("```sh\ngalactic-tool \\\n  no  # exit 7\n```\n")
+        self.assertEqual(check_documents.check_commands(self.root, self.root), [])
+
+    def test_leaves_other_commands_and_blocks_alone(self):
+        text = "```sh\nrm -rf elsewhere\n```\n```text\ngalactic-tool no\n```\n"
+        self.assertEqual(check_documents.commands_of(text), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

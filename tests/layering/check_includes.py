@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+"""Who may include whom: see docs/architecture.md.
+
+    check_includes.py [ROOT]
+
+Every quoted include must lead to a file that the including folder may know; every third-party include
+must be on the folder's list; the types of a heavy library are named only in the files made for it.
+"""
+
+import dataclasses
+import pathlib
+import re
+import sys
+
+import source_tree
+
+SUFFIXES = (".h", ".cpp")
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+
+# Headers with a dot or a slash that belong to the language or the system.
+SYSTEM_HEADERS = {"dirent.h", "fcntl.h", "immintrin.h", "poll.h", "signal.h", "spawn.h", "unistd.h"}
+SYSTEM_FOLDERS = {"linux", "sys"}
+# Part of the compiler: its sanitizers' interface.
+COMPILER_FOLDERS = {"sanitizer"}
+
+
+@dataclasses.dataclass(frozen=True)
+class HeavyLibrary:
+    """A library that few files may know."""
+    name: str
+    headers: re.Pattern
+    # A type of it, also when it is only declared.
+    types: re.Pattern
+    allowed: re.Pattern
+
+
+HEAVY_LIBRARIES = (
+    HeavyLibrary("assimp", re.compile(r"assimp/"),
+                 re.compile(r"\b(Assimp::|ai(Scene|Node|Mesh|Material|Matrix|Vector|Texture)\w*)"),
+                 re.compile(r"bake/src/import/assimp_reader[^/]*$")),
+    HeavyLibrary("Bullet", re.compile(r"(bullet/|Bullet|LinearMath/|bt[A-Z])"),
+                 re.compile(r"\bbt[A-Z][a-z]\w+"),
+                 re.compile(r"bake/src/engines/bullet[^/]*$")),
+    HeavyLibrary("Embree", re.compile(r"embree\d/"), re.compile(r"\b(RTC[A-Z]\w+|rtc[A-Z]\w+)"),
+                 re.compile(r"bake/src/engines/embree[^/]*$")),
+    HeavyLibrary("urdfdom", re.compile(r"urdf_"), re.compile(r"\burdf::"),
+                 re.compile(r"bake/src/import/urdf_reader[^/]*$")),
+)
+
+
+@dataclasses.dataclass(frozen=True)
+class Rule:
+    """What the files under a folder may include."""
+    folder: str
+    # Folders in which a quoted include may be found, besides the including file's own.
+    roots: tuple[str, ...]
+    # First parts of third-party includes.
+    third_party: frozenset[str] = frozenset()
+    # Whether headers generated from the schema may be included.
+    schema: bool = True
+
+
+LEAN = frozenset({"fmt", "tl"})
+# The first rule whose folder holds the file applies.
+RULES = (
+    Rule("runtime/include", ("runtime/include",), frozenset({"tl"}), schema=False),
+    Rule("runtime/src", ("runtime/include", "runtime/src"), LEAN | {"flatbuffers", "xxhash.h"}),
+    Rule("runtime/app", ("runtime/include",), LEAN | {"CLI"}),
+    Rule("pack_tool", ("runtime/include", "."), LEAN | {"CLI", "nlohmann", "png.h"}),
+    Rule("bake/include", ("runtime/include", "bake/include"), frozenset({"tl"}), schema=False),
+    Rule("bake/src", ("runtime/include", "bake/include", "bake/src"),
+         LEAN | {"flatbuffers", "nlohmann", "xxhash.h"}),
+    Rule("bake/app", ("runtime/include", "bake/include"), LEAN | {"CLI", "nlohmann"}),
+)
+# Whose files a folder must not reach, even by a relative path.
+FORBIDDEN_TARGETS = {"runtime": ("bake", "pack_tool", "tests", "benchmarks"),
+                     "pack_tool": ("bake", "tests", "benchmarks", "runtime/src", "runtime/app"),
+                     "bake": ("pack_tool", "tests", "benchmarks", "runtime/src", "runtime/app")}
+
+
+def is_system(header: str) -> bool:
+    first = header.split("/")[0]
+    return ("." not in header and "/" not in header) or header in SYSTEM_HEADERS or (
+        "/" in header and first in SYSTEM_FOLDERS | COMPILER_FOLDERS)
+
+
+def rule_of(path: pathlib.Path) -> Rule | None:
+    return next((rule for rule in RULES if path.is_relative_to(rule.folder)), None)
+
+
+def resolve(root: pathlib.Path, path: pathlib.Path, header: str, rule: Rule) -> pathlib.Path | None:
+    """The project's file that a quoted include means, relative to the root."""
+    for folder in (path.parent, *map(pathlib.Path, rule.roots)):
+        candidate = (root / folder / header).resolve()
+        if candidate.is_file() and candidate.is_relative_to(root):
+            return candidate.relative_to(root)
+    return None
+
+
+def check_quoted(root: pathlib.Path, path: pathlib.Path, header: str, rule: Rule) -> str | None:
+    if re.fullmatch(r"galactic/schema/\w+_generated\.h", header):
+        return None if rule.schema else f'"{header}": public headers show no FlatBuffers type'
+    target = resolve(root, path, header, rule)
+    if target is None:
+        return f'"{header}": not found in {", ".join(rule.roots)}, where {rule.folder} may look'
+    for forbidden in FORBIDDEN_TARGETS.get(path.parts[0], ()):
+        if target.is_relative_to(forbidden):
+            return f'"{header}": {path.parts[0]} may not know {forbidden}'
+    return None
+
+
+def check_angled(path: pathlib.Path, header: str, rule: Rule) -> str | None:
+    if is_system(header) or header.split("/")[0] in rule.third_party:
+        return None
+    if any(library.headers.match(header) and library.allowed.search(path.as_posix())
+           for library in HEAVY_LIBRARIES):
+        return None
+    allowed = ", ".join(sorted(rule.third_party))
+    return f"<{header}>: {rule.folder} may include of other projects only {allowed}"
+
+
+def check_heavy(path: pathlib.Path, text: str) -> list[str]:
+    """Offences against the files that heavy libraries are confined to, in any folder."""
+    code = COMMENT.sub("", text)
+    offences = []
+    for library in HEAVY_LIBRARIES:
+        if library.allowed.search(path.as_posix()):
+            continue
+        headers = [m.group(2) for m in INCLUDE.finditer(code) if library.headers.match(m.group(2))]
+        named = library.types.search(code)
+        if headers:
+            offences.append(f"<{headers[0]}>: only {library.allowed.pattern} may know {library.name}")
+        elif named:
+            offences.append(f"{named.group(0)}: only {library.allowed.pattern} may name types of "
+                            f"{library.name}")
+    return offences
+
+
+def check_file(root: pathlib.Path, path: pathlib.Path) -> list[str]:
+    text = (root / path).read_text(encoding="utf-8", errors="replace")
+    offences = check_heavy(path, text)
+    rule = rule_of(path)
+    if rule is None:
+        if path.parts[0] in FORBIDDEN_TARGETS:
+            offences.append(f"no rule of check_includes.py covers {path.parent}; add one")
+        return offences
+    for match in INCLUDE.finditer(COMMENT.sub("", text)):
+        quote, header = match.groups()
+        found = check_quoted(root, path, header, rule) if quote == '"' else check_angled(path, header,
+                                                                                         rule)
+        if found:
+            offences.append(found)
+    return offences
+
+
+def check_schema(root: pathlib.Path) -> list[str]:
+    """schema/ holds schemas, their documentation and their build file, nothing else."""
+    allowed = {".fbs", ".md", ".txt"}
+    return [f"{path.relative_to(root)}: only .fbs files, README.md and CMakeLists.txt live in schema/"
+            for path in sorted((root / "schema").rglob("*"))
+            if path.is_file() and path.suffix not in allowed]
+
+
+def check_tree(root: pathlib.Path) -> tuple[list[str], int]:
+    """All offences, and the number of files looked at."""
+    root = root.resolve()
+    files = source_tree.project_files(root, SUFFIXES)
+    offences = [f"{path}: {offence}" for path in files for offence in check_file(root, path)]
+    return offences + check_schema(root), len(files)
+
+
+def main(arguments: list[str]) -> int:
+    root = pathlib.Path(arguments[0] if arguments else pathlib.Path(__file__).parents[2])
+    return source_tree.report("includes", *check_tree(root))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

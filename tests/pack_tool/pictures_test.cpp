@@ -1,0 +1,223 @@
+#include "pack_tool/pictures/pictures.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pack_tool/output_file.h"
+#include "pack_tool/pictures/axes.h"
+#include "pack_tool/pictures/font.h"
+#include "pack_tool/pictures/palette.h"
+#include "support/pack_tool_fixture.h"
+
+namespace galactic::pictures {
+namespace {
+
+using test::GridBuilder;
+using test::GridSpec;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Colour in the middle of a cell of a plan.
+Rgb cellColour(const Picture& picture, const ColumnGrid& grid, pack_tool::Cell cell) {
+  const PixelRect& plot = picture.plots.front();
+  const auto middle = [](int first, int length, std::uint32_t index, std::uint32_t count) {
+    return first + static_cast<int>((index + 0.5) * length / count);
+  };
+  return picture.image.at(middle(plot.x, plot.width, cell.i, grid.columnsX()),
+                          middle(plot.y, plot.height, cell.k, grid.columnsZ()));
+}
+
+test::TestGrid fourKinds() {
+  return GridBuilder(GridSpec{})
+      .column(0, 0, {{0, 8}})
+      .column(1, 0, {{1, 2}, {3, 6}})
+      .column(4, 2, {{1, 3}})
+      .column(2, 1, {{1, 2}, {3, 4}, {5, 7}})
+      .build();
+}
+
+TEST(PlanPicture, ColoursEachCellByItsTotalFreeHeight) {
+  const auto grid = fourKinds();
+  const Picture picture = drawPlan(std::vector{grid.view()}, {});
+  EXPECT_EQ(cellColour(picture, grid.view(), {0, 0}), scaleColour(1));
+  EXPECT_EQ(cellColour(picture, grid.view(), {1, 0}), scaleColour(0.5));
+  EXPECT_EQ(cellColour(picture, grid.view(), {2, 1}), scaleColour(0.5));
+  EXPECT_EQ(cellColour(picture, grid.view(), {4, 2}), scaleColour(0.25));
+  EXPECT_EQ(cellColour(picture, grid.view(), {3, 2}), kBlocked);
+}
+
+TEST(PlanPicture, ColoursByTheLowestSpanOrTheNumberOfSpans) {
+  const auto grid = fourKinds();
+  const Picture lowest = drawPlan(std::vector{grid.view()}, {.value = PlanValue::kLowestHeight});
+  EXPECT_EQ(cellColour(lowest, grid.view(), {0, 0}), scaleColour(1));
+  EXPECT_EQ(cellColour(lowest, grid.view(), {1, 0}), scaleColour(1.0 / 8));
+  const Picture count = drawPlan(std::vector{grid.view()}, {.value = PlanValue::kSpanCount});
+  EXPECT_EQ(cellColour(count, grid.view(), {2, 1}), scaleColour(1));
+  EXPECT_EQ(cellColour(count, grid.view(), {4, 2}), scaleColour(1.0 / 3));
+}
+
+TEST(PlanPicture, GivesEachCellAWholeNumberOfPixels) {
+  const auto grid =
+      GridBuilder(GridSpec{.spacing = 0.03125F, .columns_x = 250, .columns_z = 400}).build();
+  const Picture picture = drawPlan(std::vector{grid.view()}, {});
+  EXPECT_EQ(picture.plots.front().width, 1000);
+  EXPECT_EQ(picture.plots.front().height, 1600);
+}
+
+TEST(PlanPicture, ShrinksGridsLargerThanThePicture) {
+  const auto grid = GridBuilder(GridSpec{.spacing = 0.03125F, .columns_x = 3000, .columns_z = 10})
+                        .column(2999, 9, {{1, 2}})
+                        .build();
+  const Picture picture = drawPlan(std::vector{grid.view()}, {});
+  EXPECT_LE(picture.plots.front().width, 1000);
+  EXPECT_GE(picture.plots.front().height, 1);
+}
+
+TEST(PlanPicture, PutsSeveralGridsSideBySideOnOneScale) {
+  const auto low = GridBuilder(GridSpec{}).column(0, 0, {{1, 3}}).build();
+  const auto high = GridBuilder(GridSpec{.radius = 0.75F}).column(0, 0, {{1, 5}}).build();
+  const Picture picture = drawPlan(std::vector{low.view(), high.view()}, {.title = "kitchen"});
+  ASSERT_EQ(picture.plots.size(), 2U);
+  EXPECT_LT(picture.plots[0].right(), picture.plots[1].x);
+  EXPECT_LT(picture.plots[1].right(), picture.image.width());
+  EXPECT_EQ(picture.plots[0].y, picture.plots[1].y);
+  EXPECT_EQ(picture.image.at(picture.plots[0].x, picture.plots[0].y), scaleColour(0.5));
+  EXPECT_EQ(picture.image.at(picture.plots[1].x, picture.plots[1].y), scaleColour(1));
+}
+
+TEST(PlanPicture, DrawsAGridWithoutFreeSpace) {
+  const auto grid = GridBuilder(GridSpec{}).build();
+  const Picture picture = drawPlan(std::vector{grid.view()}, {});
+  EXPECT_EQ(cellColour(picture, grid.view(), {0, 0}), kBlocked);
+}
+
+/// Colour of a slice at a distance along its line and a height, metres.
+Rgb sliceColour(const Picture& picture, double along_share, double height_share) {
+  const PixelRect& plot = picture.plots.front();
+  return picture.image.at(plot.x + static_cast<int>(along_share * plot.width),
+                          plot.bottom() - 1 - static_cast<int>(height_share * plot.height));
+}
+
+/// Heights 0 to 8 in the third row: free up to 3.1 m in cell 0, blocked in cell 1, a tall column in
+/// cell 2.
+test::TestGrid sliceGrid() {
+  return GridBuilder(GridSpec{})
+      .column(0, 2, {{0, 3.1F}})
+      .column(2, 2, {{0, 1.1F}, {2.1F, 3.1F}, {6.1F, 7.9F}})
+      .build();
+}
+
+TEST(SlicePicture, ShowsFreeHeightsLightAndBlockedOnesDark) {
+  const auto grid = sliceGrid();
+  const auto picture = drawSlice(std::vector{grid.view()}, {.from = {0, 2.5}, .to = {5, 2.5}});
+  ASSERT_TRUE(picture) << picture.error().message;
+  const auto at = [&](double x, double y) { return sliceColour(*picture, x / 5, y / 8); };
+  EXPECT_EQ(at(0.5, 0.3), kFree);
+  EXPECT_EQ(at(0.5, 2.8), kFree);
+  EXPECT_EQ(at(0.5, 3.3), kBlocked);
+  EXPECT_EQ(at(1.5, 0.3), kBlocked);
+  EXPECT_EQ(at(2.5, 0.8), kFree);
+  EXPECT_EQ(at(2.5, 1.8), kBlocked);
+  EXPECT_EQ(at(2.5, 2.8), kFree);
+  EXPECT_EQ(at(2.5, 7.7), kFree);
+}
+
+TEST(SlicePicture, MarksWhatTheGridDoesNotCover) {
+  const auto grid = sliceGrid();
+  const auto picture = drawSlice(std::vector{grid.view()}, {.from = {-5, 2.5}, .to = {5, 2.5}});
+  ASSERT_TRUE(picture) << picture.error().message;
+  EXPECT_EQ(sliceColour(*picture, 0.25, 0.8), kUncovered);
+  EXPECT_EQ(sliceColour(*picture, 0.55, 0.3), kFree);
+}
+
+TEST(SlicePicture, RefusesALineThatIsTooShortOrMissesTheGrid) {
+  const auto grid = sliceGrid();
+  const auto point = drawSlice(std::vector{grid.view()}, {.from = {1, 1}, .to = {1, 1}});
+  ASSERT_FALSE(point);
+  EXPECT_EQ(point.error().code, ErrorCode::kInvalidInput);
+  EXPECT_THAT(point.error().message, HasSubstr("at least a cell (1 m) apart"));
+  const auto far = drawSlice(std::vector{grid.view()}, {.from = {10, 10}, .to = {20, 10}});
+  ASSERT_FALSE(far);
+  EXPECT_THAT(far.error().message, HasSubstr("misses the grid"));
+  const double nan = std::nan("");
+  EXPECT_FALSE(drawSlice(std::vector{grid.view()}, {.from = {nan, 0}, .to = {1, 1}}));
+}
+
+TEST(ScaleColour, RunsFromVioletToYellowAndClamps) {
+  EXPECT_EQ(scaleColour(0), (Rgb{0x44, 0x01, 0x54}));
+  EXPECT_EQ(scaleColour(1), (Rgb{0xfd, 0xe7, 0x25}));
+  EXPECT_EQ(scaleColour(-3), scaleColour(0));
+  EXPECT_EQ(scaleColour(7), scaleColour(1));
+  EXPECT_EQ(scaleColour(std::nan("")), scaleColour(0));
+}
+
+TEST(ScaleColour, GrowsBrighterAllTheWay) {
+  const auto brightness = [](Rgb colour) {
+    return 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b;
+  };
+  for (int n = 0; n < 100; ++n) {
+    EXPECT_LE(brightness(scaleColour(n / 100.0)), brightness(scaleColour((n + 1) / 100.0)) + 1);
+  }
+}
+
+TEST(Axes, PutTicksAtRoundValues) {
+  std::vector<std::string> labels;
+  for (const Tick& tick : axisTicks({-0.61, 1.3, 0, 382}, 70)) labels.push_back(tick.label);
+  EXPECT_THAT(labels, ElementsAre("-0.5", "0.0", "0.5", "1.0"));
+  EXPECT_TRUE(axisTicks({1, 1, 0, 100}, 70).empty());
+}
+
+TEST(Axes, RoundDownToOneTwoOrFive) {
+  EXPECT_DOUBLE_EQ(roundDown(0.19), 0.1);
+  EXPECT_DOUBLE_EQ(roundDown(0.2), 0.2);
+  EXPECT_DOUBLE_EQ(roundDown(4.9), 2);
+  EXPECT_DOUBLE_EQ(roundDown(50), 50);
+}
+
+TEST(DrawText, DrawsTheGlyphsPixelsAndNothingOutsideTheImage) {
+  Image image(40, 20, kPaper);
+  drawText(image, {1, 1}, "I", kInk);
+  // The top bar of the capital I: pixels 1 to 3 of 5.
+  EXPECT_EQ(image.at(1, 1), kPaper);
+  EXPECT_EQ(image.at(1 + kTextScale, 1), kInk);
+  EXPECT_EQ(image.at(1 + 4 * kTextScale, 1), kPaper);
+  drawText(image, {-30, -5}, "outside \xc3\xbc text that is much too long", kInk);
+  EXPECT_EQ(textWidth("\xc3\xbc"), textWidth("u"));
+  EXPECT_EQ(glyphOf('\x01'), glyphOf('?'));
+}
+
+TEST(WritePng, WritesASignedFileOfTheImagesSizeAndTheSameBytesAgain) {
+  const test::ScratchFolder folder;
+  const Image image(3, 2, kInk);
+  ASSERT_TRUE(writePng(folder.path() / "a.png", image));
+  ASSERT_TRUE(writePng(folder.path() / "b.png", image));
+  const std::string bytes = test::readBytes(folder.path() / "a.png");
+  EXPECT_EQ(bytes, test::readBytes(folder.path() / "b.png"));
+  EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\0\3\0\0\0\2", 8));
+  EXPECT_EQ(test::countEntries(folder.path()), 2U);
+}
+
+TEST(WriteOutputFile, ReplacesAFileInOneGo) {
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(pack_tool::writeOutputFile(folder.path() / "a", "first and longer"));
+  ASSERT_TRUE(pack_tool::writeOutputFile(folder.path() / "a", "second"));
+  EXPECT_EQ(test::readBytes(folder.path() / "a"), "second");
+  EXPECT_EQ(test::countEntries(folder.path()), 1U);
+}
+
+TEST(WriteOutputFile, FailsWithoutAFolderAndLeavesNothingWhenItCannotFinish) {
+  const test::ScratchFolder folder;
+  const auto missing = pack_tool::writeOutputFile(folder.path() / "none" / "a", "x");
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, ErrorCode::kIo);
+  EXPECT_THAT(missing.error().message, HasSubstr("No such file or directory"));
+  std::filesystem::create_directory(folder.path() / "taken");
+  EXPECT_FALSE(pack_tool::writeOutputFile(folder.path() / "taken", "x"));
+  EXPECT_EQ(test::countEntries(folder.path()), 1U);
+}
+
+}  // namespace
+}  // namespace galactic::pictures

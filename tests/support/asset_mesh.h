@@ -1,0 +1,31 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "galactic/bake/mesh_import.h"
+#include "galactic/bake/triangle_mesh.h"
+#include "support/assets.h"
+
+namespace galactic::test {
+
+/// Real scenes that the bake's tests run on, relative to the assets folder.
+inline constexpr const char* kApartmentStage = "replica_cad/stages/Stage_v3_sc1_staging.obj";
+inline constexpr const char* kScannedRoom = "scenes/scan_polycam_room/room.glb";
+inline constexpr const char* kOffice = "scenes/cpr_office/office.dae";
+
+/// Whether the asset is on this machine; tests skip with a message where it is not.
+inline bool hasAsset(const std::string& relative) {
+  const std::filesystem::path folder = assetsFolder();
+  return !folder.empty() && std::filesystem::is_regular_file(folder / relative);
+}
+
+/// The collision geometry of an asset.
+inline Result<bake::TriangleMesh> loadAsset(const std::string& relative) {
+  auto asset = bake::importMesh(assetsFolder() / relative);
+  if (!asset) return tl::unexpected(asset.error());
+  auto clean = bake::placeAndClean(*asset);
+  if (!clean) return tl::unexpected(clean.error());
+  return std::move(clean->mesh);
+}
+
+}  // namespace galactic::test

@@ -1,0 +1,225 @@
+#pragma once
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "galactic/pack_header.h"
+#include "galactic/schema/pack_generated.h"
+#include "support/aligned_bytes.h"
+#include "support/grid_builder.h"
+
+namespace galactic::test {
+
+struct RegionFields {
+  std::uint8_t region = 0;
+  double volume = 1.5;
+};
+
+struct CastCheckFields {
+  std::uint32_t columns = 8;
+  std::uint32_t columns_differing = 1;
+  double compared = 12;
+  double method = 0.25;
+  double ties = 0.125;
+  double errors = 0;
+};
+
+/// One grid of a scene pack; a test changes what it wants to be wrong.
+struct GridFields {
+  TestGrid grid;
+  bool has_heights = true;
+  std::uint8_t coverage = 0;
+  std::uint64_t spans = 0;
+  std::uint32_t max_spans_per_column = 0;
+  std::vector<RegionFields> regions{{0, 1.5}, {1, 20}, {2, 0.5}};
+  std::optional<CastCheckFields> cast_check = CastCheckFields{};
+  /// Value of the unused elements around the tiles, and how many too many there are.
+  std::uint64_t padding_value = 0;
+  std::size_t extra_cells = 0;
+  std::size_t cells_alignment = 32;
+
+  explicit GridFields(TestGrid filled) : grid(std::move(filled)) {
+    for (const auto& column : grid.columns) {
+      spans += column.size();
+      max_spans_per_column =
+          std::max(max_spans_per_column, static_cast<std::uint32_t>(column.size()));
+    }
+  }
+};
+
+/// All that a scene pack holds. build() makes a pack that is valid in every field that was left as
+/// it is.
+struct ScenePackFields {
+  PackKind kind = PackKind::kScene;
+  schema::Asset asset = schema::Asset::Scene;
+  std::string tool = "galactic-bake";
+  std::string tool_version = "0.1.0";
+  std::string option_name = "radii";
+  std::string source_name = "kitchen.glb";
+  bool source_has_hash = true;
+  std::string warning = "texture wood.png is missing";
+  std::string name = "kitchen";
+  Vec3 bounds_min{0, 0, 0};
+  Vec3 bounds_max{5, 8, 3};
+  std::string format = "glTF 2.0";
+  std::uint64_t triangles_read = 100;
+  std::uint64_t triangles_degenerate = 3;
+  std::uint64_t triangles_duplicate = 7;
+  std::uint64_t triangles = 90;
+  std::vector<GridFields> grids;
+};
+
+/// Grids of two radii over 5 x 3 columns, the second one tall: empty, one-span, two-span and
+/// overflow cells, border tiles, a tile base.
+inline ScenePackFields smallScene() {
+  ScenePackFields scene;
+  GridSpec spec;
+  scene.grids.emplace_back(GridBuilder(spec)
+                               .column(0, 0, {{1, 2}})
+                               .column(1, 0, {{1, 2}, {3, 4}})
+                               .column(2, 1, {{1, 2}, {3, 4}, {5, 6}})
+                               .column(4, 2, {{0, 8}})
+                               .column(3, 2, {{0.5F, 1}, {1.5F, 2}, {2.5F, 3}, {3.5F, 4}})
+                               .build());
+  spec.radius = 0.75F;
+  spec.heights = {-4, 36};
+  scene.grids.emplace_back(GridBuilder(spec)
+                               .column(0, 0, {{-3, 2}, {3, 8}})
+                               .column(2, 0, {{0, 1}, {2, 3}, {4, 5}})
+                               .column(4, 0, {{20, 22}, {23, 30}})
+                               .column(1, 2, {{1, 35}})
+                               .build());
+  return scene;
+}
+
+/// Makes packs of ScenePackFields.
+class ScenePackBuilder {
+ public:
+  explicit ScenePackBuilder(const ScenePackFields& fields) : fields_(fields) {}
+
+  /// The whole file: header and payload.
+  [[nodiscard]] AlignedBytes build() {
+    const auto provenance = buildProvenance();
+    const flatbuffers::Offset<void> asset = fields_.asset == schema::Asset::Scene
+                                                ? buildScene().Union()
+                                                : schema::CreateWorld(builder_).Union();
+    schema::FinishPackBuffer(builder_,
+                             schema::CreatePack(builder_, provenance, fields_.asset, asset));
+    placeTiles();
+    const auto* payload = reinterpret_cast<const std::byte*>(builder_.GetBufferPointer());
+    return withHeader(fields_.kind, {payload, builder_.GetSize()});
+  }
+
+  /// A pack with this payload and the header that belongs to it.
+  static AlignedBytes withHeader(PackKind kind, std::span<const std::byte> payload) {
+    const PackHeader header = makePackHeader(kind, payload);
+    std::vector<std::byte> file(sizeof(header));
+    std::memcpy(file.data(), &header, sizeof(header));
+    file.insert(file.end(), payload.begin(), payload.end());
+    return AlignedBytes(file);
+  }
+
+ private:
+  flatbuffers::Offset<schema::Provenance> buildProvenance() {
+    const schema::Hash128 hash(1, 2);
+    const auto options = builder_.CreateVector(std::vector{schema::CreateOption(
+        builder_, builder_.CreateString(fields_.option_name), builder_.CreateString("0.5,0.75"))});
+    const auto sources = builder_.CreateVector(
+        std::vector{schema::CreateSourceFile(builder_, builder_.CreateString(fields_.source_name),
+                                             1234, fields_.source_has_hash ? &hash : nullptr)});
+    const auto warnings =
+        builder_.CreateVector(std::vector{builder_.CreateString(fields_.warning)});
+    return schema::CreateProvenance(builder_, builder_.CreateString(fields_.tool),
+                                    builder_.CreateString(fields_.tool_version), options, sources,
+                                    warnings);
+  }
+
+  flatbuffers::Offset<schema::Scene> buildScene() {
+    std::vector<flatbuffers::Offset<schema::ColumnGrid>> grids;
+    for (const GridFields& grid : fields_.grids) grids.push_back(buildGrid(grid));
+    const Vec3& lo = fields_.bounds_min;
+    const Vec3& hi = fields_.bounds_max;
+    const schema::Bounds bounds(schema::Vec3(lo.x, lo.y, lo.z), schema::Vec3(hi.x, hi.y, hi.z));
+    const auto import = schema::CreateImportStatistics(
+        builder_, builder_.CreateString(fields_.format), 1, 1, fields_.triangles_read,
+        fields_.triangles_degenerate, fields_.triangles_duplicate, fields_.triangles);
+    return schema::CreateScene(builder_, builder_.CreateString(fields_.name), &bounds,
+                               builder_.CreateVector(grids), import);
+  }
+
+  template <class T>
+  auto alignedVector(const std::vector<T>& values) {
+    builder_.ForceVectorAlignment(values.size(), sizeof(T), 32);
+    return builder_.CreateVector(values);
+  }
+
+  flatbuffers::Offset<schema::ColumnGrid> buildGrid(const GridFields& fields) {
+    const TestGrid& grid = fields.grid;
+    const std::vector<std::uint64_t> cells(
+        grid.cells.size() + kTilePaddingCells + fields.extra_cells, fields.padding_value);
+    builder_.ForceVectorAlignment(cells.size(), sizeof(std::uint64_t), fields.cells_alignment);
+    const auto stored_cells = builder_.CreateVector(cells);
+    const auto tile_base = alignedVector(grid.tile_base);
+    const auto overflow_start = alignedVector(grid.overflow_start);
+    std::vector<schema::Span> spans;
+    for (const Span& span : grid.overflow_spans) spans.emplace_back(span.lo, span.hi);
+    builder_.ForceVectorAlignment(spans.size(), sizeof(schema::Span), 32);
+    const auto overflow_spans = builder_.CreateVectorOfStructs(spans);
+    flatbuffers::Offset<flatbuffers::Vector<std::uint32_t>> overflow_codes;
+    if (!grid.overflow_codes.empty()) overflow_codes = alignedVector(grid.overflow_codes);
+    const auto statistics = buildStatistics(fields);
+    const GridSpec& spec = grid.spec;
+    const schema::Span heights(spec.heights.lo, spec.heights.hi);
+    return schema::CreateColumnGrid(
+        builder_, spec.radius, spec.spacing, spec.min_x, spec.min_z, spec.columns_x, spec.columns_z,
+        fields.has_heights ? &heights : nullptr, spec.quantum,
+        static_cast<schema::Coverage>(fields.coverage), stored_cells, tile_base, overflow_start,
+        overflow_spans, statistics, overflow_codes);
+  }
+
+  flatbuffers::Offset<schema::GridStatistics> buildStatistics(const GridFields& fields) {
+    std::vector<flatbuffers::Offset<schema::RegionStatistics>> regions;
+    for (const RegionFields& region : fields.regions) {
+      regions.push_back(schema::CreateRegionStatistics(
+          builder_, static_cast<schema::Region>(region.region), 1, 10, region.volume));
+    }
+    flatbuffers::Offset<schema::CastCheck> cast_check;
+    if (fields.cast_check) {
+      const CastCheckFields& check = *fields.cast_check;
+      cast_check = schema::CreateCastCheck(builder_, check.columns, check.columns_differing,
+                                           check.compared, check.method, check.ties, check.errors);
+    }
+    return schema::CreateGridStatistics(builder_, fields.spans + 30, fields.spans,
+                                        fields.max_spans_per_column, 0, 0,
+                                        builder_.CreateVector(regions), cast_check);
+  }
+
+  /// Puts the tiles where they begin at a cache line of the file, known only now.
+  void placeTiles() {
+    if (fields_.asset != schema::Asset::Scene) return;
+    auto* payload = builder_.GetBufferPointer();
+    const auto* scene = schema::GetPack(payload)->asset_as_Scene();
+    for (std::size_t n = 0; n < fields_.grids.size(); ++n) {
+      const auto* stored =
+          scene->column_grids()->Get(static_cast<flatbuffers::uoffset_t>(n))->cells();
+      const auto offset = static_cast<std::size_t>(stored->Data() - payload);
+      const auto& cells = fields_.grids[n].grid.cells;
+      const std::size_t padding = tilePadding(sizeof(PackHeader) + offset);
+      if (padding > kTilePaddingCells) continue;  // misaligned on purpose
+      std::memcpy(payload + offset + padding * sizeof(std::uint64_t), cells.data(),
+                  cells.size() * sizeof(std::uint64_t));
+    }
+  }
+
+  const ScenePackFields& fields_;
+  flatbuffers::FlatBufferBuilder builder_;
+};
+
+inline AlignedBytes buildPack(const ScenePackFields& fields) {
+  return ScenePackBuilder(fields).build();
+}
+
+}  // namespace galactic::test
