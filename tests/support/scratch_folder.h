@@ -29,7 +29,7 @@ class ScratchFolder {
 
   /// Writes `content` to `name` in the folder (making folders on the way) and returns its path.
   [[nodiscard]] std::filesystem::path write(std::string_view name, std::string_view content) const {
-    const std::filesystem::path file = path_ / name;
+    std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());
     std::ofstream stream(file, std::ios::binary | std::ios::trunc);
     stream.write(content.data(), static_cast<std::streamsize>(content.size()));
