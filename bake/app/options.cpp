@@ -232,6 +232,8 @@ void addRunOptions(CLI::App& app, BakeCommand& command) {
       ->capture_default_str();
   app.add_option("--report", command.report, "Write what was done as JSON")->type_name("FILE.json");
   app.set_config("--config", "", "Read options from a TOML file")->type_name("FILE");
+  // A misspelt option in the file must not pass unnoticed.
+  app.allow_config_extras(CLI::config_extras_mode::error);
   app.add_flag("--dry-run", command.dry_run, "Read and check the inputs, write no pack");
   app.add_flag("--keep-going", command.keep_going, "Go on with the next input after an error");
   app.add_flag_callback(

@@ -3,14 +3,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/pack_program.h"
+#include "support/pack_tool_fixture.h"
+#include "support/program_run.h"
 
 namespace galactic {
 namespace {
 
 using nlohmann::json;
 using test::ProgramRun;
-using test::runPackTool;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::MatchesRegex;
@@ -25,7 +25,7 @@ constexpr int kUnsupported = static_cast<int>(ErrorCode::kUnsupported);
 class PackCli : public testing::Test {
  protected:
   void SetUp() override {
-    auto bytes = test::buildPack(test::smallScene());
+    auto bytes = test::buildPack(test::kitchenScene());
     write("good.pack", test::asText(bytes.bytes()));
     write("cut.pack", test::asText(bytes.bytes()).substr(0, 500));
     constexpr std::size_t kVersionOffset = 8;
@@ -35,11 +35,11 @@ class PackCli : public testing::Test {
   }
 
   ProgramRun run(std::vector<std::string> arguments) {
-    return runPackTool(folder_, std::move(arguments));
+    return test::runProgram(GALACTIC_PACK, folder_.path(), std::move(arguments));
   }
 
   void write(const std::string& name, std::string_view content) {
-    ASSERT_EQ(test::readBytes(folder_.write(name, content)), content);
+    ASSERT_EQ(test::fileContent(folder_.write(name, content)), content);
   }
 
   test::ScratchFolder folder_;
@@ -172,7 +172,7 @@ TEST_F(PackCli, ColumnTakesNegativeNumbersAndRefusesPointsOutside) {
 }
 
 TEST_F(PackCli, DiffReturnsSevenWhenPacksDiffer) {
-  test::ScenePackFields other = test::smallScene();
+  test::ScenePackFields other = test::kitchenScene();
   other.name = "bath";
   write("other.pack", test::asText(test::buildPack(other).bytes()));
   const ProgramRun differ = run({"diff", "good.pack", "other.pack"});
@@ -200,7 +200,7 @@ TEST_F(PackCli, ExportWritesPicturesAndMeshesQuietly) {
     const ProgramRun result = run(arguments);
     EXPECT_EQ(result.exit_code, 0) << options[1];
     EXPECT_EQ(result.out + result.err, "") << options[1];
-    EXPECT_THAT(test::readBytes(folder_.path() / options[1]), StartsWith(start));
+    EXPECT_THAT(test::fileContent(folder_.path() / options[1]), StartsWith(start));
   }
 }
 
@@ -222,7 +222,8 @@ TEST_F(PackCli, ExportRefusesWhatItCannotWrite) {
 TEST_F(PackCli, ReportsAFullDiskBehindStandardOutput) {
   const std::filesystem::path full = "/dev/full";
   if (!std::filesystem::exists(full)) GTEST_SKIP() << "this system has no /dev/full";
-  const ProgramRun result = runPackTool(folder_, {"info", "good.pack"}, full);
+  const ProgramRun result =
+      test::runProgram(GALACTIC_PACK, folder_.path(), {"info", "good.pack"}, full);
   EXPECT_EQ(result.exit_code, kIo);
   EXPECT_THAT(result.err, HasSubstr("standard output: cannot be written to"));
 }

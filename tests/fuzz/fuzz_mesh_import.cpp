@@ -46,9 +46,9 @@ void checkMesh(const galactic::bake::TriangleMesh& mesh) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  static const galactic::test::ScratchFolder kFolder;
+  static const galactic::test::ScratchFolder folder;
   const std::string_view content(reinterpret_cast<const char*>(data) + 1, size - 1);
-  const auto path = kFolder.write(kNames[data[0] % kNames.size()], content);
+  const auto path = folder.write(kNames[data[0] % kNames.size()], content);
   const galactic::bake::MeshImportOptions options{.up = {},
                                                   .scale = {},
                                                   .transform = {},

@@ -83,7 +83,7 @@ Outcome askColumn(const ColumnOptions& options) {
 
 TEST(ColumnVerb, PrintsSpansCellAndSurfacesOfEveryGrid) {
   const test::ScratchFolder folder;
-  const auto pack = test::writePack(folder, "a.pack", test::smallScene());
+  const auto pack = test::writePack(folder, "a.pack", test::kitchenScene());
   const Outcome outcome = askColumn({.pack = pack, .at = {1.75, 0.25}});
   EXPECT_EQ(outcome.exit_code, kExitOk) << outcome.err;
   EXPECT_EQ(outcome.out,
@@ -96,7 +96,7 @@ TEST(ColumnVerb, PrintsSpansCellAndSurfacesOfEveryGrid) {
 
 TEST(ColumnVerb, PrintsOverflowCellsCompletelyAsJson) {
   const test::ScratchFolder folder;
-  const auto pack = test::writePack(folder, "a.pack", test::smallScene());
+  const auto pack = test::writePack(folder, "a.pack", test::kitchenScene());
   const Outcome outcome =
       askColumn({.pack = pack, .at = {3.5, 2.5}, .radius = 0.5F, .form = OutputForm::kJson});
   ASSERT_EQ(outcome.exit_code, kExitOk) << outcome.err;
@@ -111,7 +111,7 @@ TEST(ColumnVerb, PrintsOverflowCellsCompletelyAsJson) {
 
 TEST(ColumnVerb, RefusesAPointOutsideAllGridsAndNamesTheRange) {
   const test::ScratchFolder folder;
-  const auto pack = test::writePack(folder, "a.pack", test::smallScene());
+  const auto pack = test::writePack(folder, "a.pack", test::kitchenScene());
   const Outcome outcome = askColumn({.pack = pack, .at = {7, 1}});
   EXPECT_EQ(outcome.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
   EXPECT_EQ(outcome.out, "");
@@ -134,7 +134,7 @@ TEST(ColumnVerb, SaysSoWhereOnlyAPaddedGridReaches) {
 
 TEST(ColumnVerb, NamesTheRadiiThereAreForAnotherRadius) {
   const test::ScratchFolder folder;
-  const auto pack = test::writePack(folder, "a.pack", test::smallScene());
+  const auto pack = test::writePack(folder, "a.pack", test::kitchenScene());
   const Outcome outcome = askColumn({.pack = pack, .at = {1, 1}, .radius = 0.2F});
   EXPECT_EQ(outcome.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
   EXPECT_THAT(outcome.err, HasSubstr("has no grid of radius 0.2 m; its radii are 0.5, 0.75"));

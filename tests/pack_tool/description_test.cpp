@@ -93,7 +93,7 @@ Json describe(const test::ScenePackFields& fields) {
 }
 
 TEST(DescribePack, TellsWhatTheCellsHold) {
-  const Json json = describe(test::smallScene());
+  const Json json = describe(test::kitchenScene());
   ASSERT_EQ(json.at("scene").at("column_grids").size(), 2U);
   const Json& grid = json.at("scene").at("column_grids").at(0);
   const Json& content = grid.at("content");
@@ -108,13 +108,13 @@ TEST(DescribePack, TellsWhatTheCellsHold) {
 }
 
 TEST(DescribePack, WritesSourceHashesHighHalfFirst) {
-  const Json json = describe(test::smallScene());
+  const Json json = describe(test::kitchenScene());
   EXPECT_EQ(json.at("provenance").at("sources").at(0).at("xxh3_128"),
             "00000000000000020000000000000001");
 }
 
 TEST(DescribePack, KeepsTheOrderOfItsKeys) {
-  const Json json = describe(test::smallScene());
+  const Json json = describe(test::kitchenScene());
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   EXPECT_THAT(keys, testing::ElementsAre("file", "kind", "format_version", "bytes", "payload_xxh64",
@@ -122,22 +122,22 @@ TEST(DescribePack, KeepsTheOrderOfItsKeys) {
 }
 
 TEST(InfoText, HasOneTableColumnPerGrid) {
-  const std::string text = infoText(describe(test::smallScene()));
+  const std::string text = infoText(describe(test::kitchenScene()));
   EXPECT_THAT(text, HasSubstr("kitchen.pack\n  kind         SCEN, format version 1\n"));
   EXPECT_THAT(text, testing::ContainsRegex("\n    radius \\(m\\) +0.5 +0.75\n"));
-  EXPECT_THAT(text, testing::ContainsRegex("\n    spans +11 +5\n"));
+  EXPECT_THAT(text, testing::ContainsRegex("\n    spans +11 +3\n"));
   EXPECT_THAT(text, testing::ContainsRegex("\n    casts: errors \\(m\\) +0 +0\n"));
   EXPECT_THAT(text, HasSubstr("warnings     texture wood.png is missing\n"));
 }
 
 TEST(InfoText, ShowsADashWhereTheCastCheckWasSwitchedOff) {
-  test::ScenePackFields fields = test::smallScene();
+  test::ScenePackFields fields = test::kitchenScene();
   fields.grids.at(1).cast_check.reset();
   EXPECT_THAT(infoText(describe(fields)), testing::ContainsRegex("\n    casts: columns +8 +-\n"));
 }
 
 TEST(InfoText, StripsControlCharactersFromNames) {
-  test::ScenePackFields fields = test::smallScene();
+  test::ScenePackFields fields = test::kitchenScene();
   fields.warning = "evil \x1b[2J name";
   EXPECT_THAT(infoText(describe(fields)), Not(HasSubstr("\x1b")));
 }

@@ -112,7 +112,9 @@ double countedCommonHeight(const std::vector<Span>& a, const std::vector<Span>& 
     });
   };
   double height = 0;
-  for (double y = step / 2; y < 8; y += step) {
+  const int steps = static_cast<int>(8 / step);
+  for (int n = 0; n < steps; ++n) {
+    const double y = (n + 0.5) * step;
     if (holds(a, y) && holds(b, y)) height += step;
   }
   return height;
@@ -178,55 +180,55 @@ Outcome diffOf(const test::ScenePackFields& a, const test::ScenePackFields& b,
 }
 
 TEST(DiffVerb, CallsTheSameBytesIdentical) {
-  const Outcome outcome = diffOf(test::smallScene(), test::smallScene());
+  const Outcome outcome = diffOf(test::kitchenScene(), test::kitchenScene());
   EXPECT_EQ(outcome.exit_code, kExitOk);
   EXPECT_THAT(outcome.out, HasSubstr("\nidentical\n"));
 }
 
 TEST(DiffVerb, ReportsProvenanceUnlessOnlyContentCounts) {
-  test::ScenePackFields other = test::smallScene();
+  test::ScenePackFields other = test::kitchenScene();
   other.tool_version = "0.2.0";
   other.triangles_read = 101;
   other.triangles_duplicate = 8;
-  const Outcome everything = diffOf(test::smallScene(), other);
+  const Outcome everything = diffOf(test::kitchenScene(), other);
   EXPECT_EQ(everything.exit_code, kExitDiffers);
   EXPECT_THAT(everything.out, HasSubstr("tool_version: 0.1.0 | 0.2.0"));
   EXPECT_THAT(everything.out, HasSubstr("import.triangles_read: 100 | 101"));
   EXPECT_THAT(everything.out, HasSubstr("grid of radius 0.5 m: 15 columns equal"));
 
-  const Outcome content = diffOf(test::smallScene(), other, {.scope = DiffScope::kContent});
+  const Outcome content = diffOf(test::kitchenScene(), other, {.scope = DiffScope::kContent});
   EXPECT_EQ(content.exit_code, kExitOk);
   EXPECT_THAT(content.out, HasSubstr("\nequal\n"));
 }
 
 TEST(DiffVerb, ReportsBoundsBeyondTheTolerance) {
-  test::ScenePackFields other = test::smallScene();
+  test::ScenePackFields other = test::kitchenScene();
   other.bounds_max.x = 5.25F;
-  EXPECT_EQ(diffOf(test::smallScene(), other, {.tolerance = 0.25}).exit_code, kExitOk);
-  const Outcome outcome = diffOf(test::smallScene(), other);
+  EXPECT_EQ(diffOf(test::kitchenScene(), other, {.tolerance = 0.25}).exit_code, kExitOk);
+  const Outcome outcome = diffOf(test::kitchenScene(), other);
   EXPECT_EQ(outcome.exit_code, kExitDiffers);
   EXPECT_THAT(outcome.out, HasSubstr("bounds.max.0: 5.0 | 5.25"));
 }
 
 TEST(DiffVerb, PairsGridsByRadius) {
-  test::ScenePackFields other = test::smallScene();
+  test::ScenePackFields other = test::kitchenScene();
   other.grids.erase(other.grids.begin());
-  const Outcome outcome = diffOf(test::smallScene(), other);
+  const Outcome outcome = diffOf(test::kitchenScene(), other);
   EXPECT_EQ(outcome.exit_code, kExitDiffers);
   EXPECT_THAT(outcome.out, HasSubstr("grid of radius 0.5 m: only in A\n"));
   EXPECT_THAT(outcome.out, HasSubstr("grid of radius 0.75 m: 15 columns equal\n"));
 }
 
 TEST(DiffVerb, ReportsAnotherCoverage) {
-  test::ScenePackFields other = test::smallScene();
+  test::ScenePackFields other = test::kitchenScene();
   other.grids.front().coverage = 1;
-  const Outcome outcome = diffOf(test::smallScene(), other);
+  const Outcome outcome = diffOf(test::kitchenScene(), other);
   EXPECT_EQ(outcome.exit_code, kExitDiffers);
   EXPECT_THAT(outcome.out, HasSubstr("grid(0.5).coverage: column | cell"));
 }
 
 TEST(DiffVerb, PrintsTheMostDifferentColumnsAsTextAndJson) {
-  test::ScenePackFields other = test::smallScene();
+  test::ScenePackFields other = test::kitchenScene();
   GridBuilder builder(GridSpec{});
   for (std::uint32_t k = 0; k < 3; ++k) {
     for (std::uint32_t i = 0; i < 5; ++i) {
@@ -234,12 +236,12 @@ TEST(DiffVerb, PrintsTheMostDifferentColumnsAsTextAndJson) {
     }
   }
   other.grids.front() = test::GridFields(builder.column(4, 2, {{0, 7}}).build());
-  const Outcome text = diffOf(test::smallScene(), other);
+  const Outcome text = diffOf(test::kitchenScene(), other);
   EXPECT_EQ(text.exit_code, kExitDiffers);
   EXPECT_THAT(text.out,
               testing::ContainsRegex("4\\.5000  2\\.5000  \\(4, 2\\) +1 +1 +1\\.000000\n"));
 
-  const Outcome json_outcome = diffOf(test::smallScene(), other, {.form = OutputForm::kJson});
+  const Outcome json_outcome = diffOf(test::kitchenScene(), other, {.form = OutputForm::kJson});
   const Json json = Json::parse(json_outcome.out);
   EXPECT_EQ(json.at("differs"), true);
   EXPECT_EQ(json.at("grids").at(0).at("worst").at(0).at("cell"), Json::parse("[4, 2]"));

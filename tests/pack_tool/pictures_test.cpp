@@ -10,6 +10,7 @@
 #include "pack_tool/pictures/font.h"
 #include "pack_tool/pictures/palette.h"
 #include "support/pack_tool_fixture.h"
+#include "support/program_run.h"
 
 namespace galactic::pictures {
 namespace {
@@ -193,8 +194,8 @@ TEST(WritePng, WritesASignedFileOfTheImagesSizeAndTheSameBytesAgain) {
   const Image image(3, 2, kInk);
   ASSERT_TRUE(writePng(folder.path() / "a.png", image));
   ASSERT_TRUE(writePng(folder.path() / "b.png", image));
-  const std::string bytes = test::readBytes(folder.path() / "a.png");
-  EXPECT_EQ(bytes, test::readBytes(folder.path() / "b.png"));
+  const std::string bytes = test::fileContent(folder.path() / "a.png");
+  EXPECT_EQ(bytes, test::fileContent(folder.path() / "b.png"));
   EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n");
   EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\0\3\0\0\0\2", 8));
   EXPECT_EQ(test::countEntries(folder.path()), 2U);
@@ -204,7 +205,7 @@ TEST(WriteOutputFile, ReplacesAFileInOneGo) {
   const test::ScratchFolder folder;
   ASSERT_TRUE(pack_tool::writeOutputFile(folder.path() / "a", "first and longer"));
   ASSERT_TRUE(pack_tool::writeOutputFile(folder.path() / "a", "second"));
-  EXPECT_EQ(test::readBytes(folder.path() / "a"), "second");
+  EXPECT_EQ(test::fileContent(folder.path() / "a"), "second");
   EXPECT_EQ(test::countEntries(folder.path()), 1U);
 }
 

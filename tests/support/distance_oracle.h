@@ -24,8 +24,7 @@ class DistanceOracle {
     const bake::Point hi = toPoint(mesh.bounds.max);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       min_[axis] = lo[axis] - reach;
-      count_[axis] =
-          static_cast<std::size_t>((hi[axis] - lo[axis] + 2 * reach) / kCubeEdge) + 1;
+      count_[axis] = static_cast<std::size_t>((hi[axis] - lo[axis] + 2 * reach) / kCubeEdge) + 1;
     }
     start_.assign(count_[0] * count_[1] * count_[2] + 1, 0);
     forEachNear([&](std::size_t cube, std::uint32_t) { ++start_[cube + 1]; });
@@ -61,8 +60,8 @@ class DistanceOracle {
       const double a = corners[0][axis];
       const double b = corners[1][axis];
       const double c = corners[2][axis];
-      const double outside = std::max({std::min({a, b, c}) - point[axis],
-                                       point[axis] - std::max({a, b, c}), 0.0});
+      const double outside =
+          std::max({std::min({a, b, c}) - point[axis], point[axis] - std::max({a, b, c}), 0.0});
       sum += outside * outside;
     }
     return sum;

@@ -30,7 +30,8 @@ inline bake::TriangleMesh furnishedRoom(std::uint32_t seed, const Vec3& origin =
     const float y = 0.1F + 0.31F * static_cast<float>(board);
     builder.box(at(2.15F, y, 0.3F), at(2.5F, y + 0.018F, 1.1F));
   }
-  builder.quad({at(0.1F, 0, 1.5F), at(0.1F, 1.2F, 1.9F), at(0.9F, 1.3F, 1.9F), at(0.9F, 0.1F, 1.5F)});
+  builder.quad(
+      {at(0.1F, 0, 1.5F), at(0.1F, 1.2F, 1.9F), at(0.9F, 1.3F, 1.9F), at(0.9F, 0.1F, 1.5F)});
   builder.sphere(at(1.6F, 0.24F, 1.6F), 0.25F, 12);
   builder.soup(seed, 60, {at(0.2F, 0.1F, 0.2F), at(2.3F, 2.2F, 1.8F)}, 0.08F);
   return builder.build();
@@ -79,10 +80,9 @@ inline bake::TriangleMesh awkwardTriangles(std::uint32_t seed, int count, const 
     }
     // Twice the area over the longest edge is the least altitude.
     const auto edge = [&](std::size_t a, std::size_t b) {
-      return std::array<double, 3>{
-          static_cast<double>(v[b].x) - static_cast<double>(v[a].x),
-          static_cast<double>(v[b].y) - static_cast<double>(v[a].y),
-          static_cast<double>(v[b].z) - static_cast<double>(v[a].z)};
+      return std::array<double, 3>{static_cast<double>(v[b].x) - static_cast<double>(v[a].x),
+                                   static_cast<double>(v[b].y) - static_cast<double>(v[a].y),
+                                   static_cast<double>(v[b].z) - static_cast<double>(v[a].z)};
     };
     const auto length = [](const std::array<double, 3>& e) { return std::hypot(e[0], e[1], e[2]); };
     const auto e0 = edge(0, 1);

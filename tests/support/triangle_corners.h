@@ -19,8 +19,8 @@ inline std::vector<Corners> allCorners(const bake::TriangleMesh& mesh) {
   std::vector<Corners> all;
   all.reserve(mesh.triangles.size());
   for (const bake::Triangle& t : mesh.triangles) {
-    all.push_back({toPoint(mesh.vertices[t[0]]), toPoint(mesh.vertices[t[1]]),
-                   toPoint(mesh.vertices[t[2]])});
+    all.push_back(
+        {toPoint(mesh.vertices[t[0]]), toPoint(mesh.vertices[t[1]]), toPoint(mesh.vertices[t[2]])});
   }
   return all;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "column_grid/assemble_columns.h"
 #include "column_grid/triangle_bins.h"
@@ -24,11 +25,31 @@ std::array<Point, 3> cornersOf(const TriangleMesh& mesh, std::uint32_t index) {
 /// Distance from `at` to the interval [lo, hi]; 0 inside.
 double distanceTo(double at, double lo, double hi) { return std::max({lo - at, at - hi, 0.0}); }
 
+/// What a square and its heights are padded by: the merge tolerance, and what a query loses when it
+/// computes the cell and the code of a centre in floats, three roundings of up to `size`. Metres.
+double padOver(double size) {
+  return static_cast<double>(kMergeTolerance) +
+         2 * static_cast<double>(std::numeric_limits<float>::epsilon()) * size;
+}
+
+double padInPlane(const GridFrame& frame) {
+  return padOver(static_cast<double>(frame.spacing) * std::max(frame.columns_x, frame.columns_z));
+}
+
+double padInHeight(const GridFrame& frame) {
+  const auto lo = static_cast<double>(frame.heights.lo);
+  const auto hi = static_cast<double>(frame.heights.hi);
+  return padOver(std::max({hi - lo, std::abs(lo), std::abs(hi)}));
+}
+
 /// One triangle and the squares around columns' centres over which the ball is swept.
 class CellScatter {
  public:
   CellScatter(const TriangleMesh& mesh, const GridFrame& frame, std::uint32_t index)
-      : frame_(frame), corners_(cornersOf(mesh, index)) {
+      : frame_(frame),
+        corners_(cornersOf(mesh, index)),
+        half_(static_cast<double>(frame.spacing) / 2 + padInPlane(frame)),
+        pad_(padInHeight(frame)) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto [lo, hi] = std::minmax({corners_[0][axis], corners_[1][axis], corners_[2][axis]});
       min_[axis] = lo;
@@ -38,7 +59,7 @@ class CellScatter {
 
   /// Adds the blocked heights to the rows of `strip`.
   void scatterInto(ColumnStrip& strip) const {
-    const double reach = radius() + half();
+    const double reach = radius() + half_;
     const IndexRange rows = rowsWithin(frame_, min_[2] - reach, max_[2] + reach);
     const IndexRange columns = columnsWithin(frame_, min_[0] - reach, max_[0] + reach);
     const std::uint32_t end = std::min(rows.end, strip.endRow());
@@ -48,31 +69,31 @@ class CellScatter {
   }
 
  private:
-  static constexpr double kPad = static_cast<double>(kMergeTolerance);
-
   [[nodiscard]] double radius() const { return static_cast<double>(frame_.radius); }
-  [[nodiscard]] double half() const { return static_cast<double>(frame_.spacing) / 2 + kPad; }
 
   void addCell(std::uint32_t i, std::uint32_t k, ColumnStrip& strip) const {
     const double x = frame_.centreX(i);
     const double z = frame_.centreZ(k);
     // The box of the triangle bounds what the triangle can block: most cells need no more.
-    const double dx = distanceTo(x, min_[0] - half(), max_[0] + half());
-    const double dz = distanceTo(z, min_[2] - half(), max_[2] + half());
+    const double dx = distanceTo(x, min_[0] - half_, max_[0] + half_);
+    const double dz = distanceTo(z, min_[2] - half_, max_[2] + half_);
     const double rest = radius() * radius() - dx * dx - dz * dz;
     if (rest <= 0) return;
-    const double height = std::sqrt(rest) + kPad;
+    const double height = std::sqrt(rest) + pad_;
     if (strip.covers(k, i, static_cast<float>(min_[1] - height),
                      static_cast<float>(max_[1] + height))) {
       return;
     }
-    const auto heights = touchingHeightsOverCell(corners_, x, z, half(), radius());
+    const auto heights = touchingHeightsOverCell(corners_, x, z, half_, radius());
     if (!heights) return;
-    strip.add(k, i, static_cast<float>(heights->lo - kPad), static_cast<float>(heights->hi + kPad));
+    strip.add(k, i, static_cast<float>(heights->lo - pad_), static_cast<float>(heights->hi + pad_));
   }
 
   const GridFrame& frame_;
   std::array<Point, 3> corners_;
+  /// Half the edge of a square, and what its heights grow by.
+  double half_;
+  double pad_;
   Point min_{};
   Point max_{};
 };
@@ -80,7 +101,8 @@ class CellScatter {
 }  // namespace
 
 ExactColumns cellColumns(const TriangleMesh& mesh, const GridFrame& frame, unsigned jobs) {
-  const double reach = static_cast<double>(frame.radius) + static_cast<double>(frame.spacing);
+  const double reach =
+      static_cast<double>(frame.radius) + static_cast<double>(frame.spacing) + padInPlane(frame);
   const TriangleBins bins(mesh, frame, kRowsPerStrip, reach);
   return assembleColumns(frame, jobs, bins.stripCount(),
                          [&](std::uint32_t index, ColumnStrip& strip) {

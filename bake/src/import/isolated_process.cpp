@@ -207,10 +207,25 @@ void settleChild(const std::array<int, 2>& kept, const ProcessLimits& limits) {
   ::_exit(kExitDelivered);
 }
 
+/// Stands in for the limit of the address space, which sanitizers use up themselves.
+class MemoryWatch {
+ public:
+  explicit MemoryWatch(const ProcessLimits& limits) {
+    const std::uint64_t resident = kUnderSanitizer ? processBytes(::getpid(), 1) : 0;
+    allowed_ = resident + std::min(limits.memory, ~resident);
+  }
+  [[nodiscard]] bool exceededBy(pid_t child) const {
+    return kUnderSanitizer && processBytes(child, 1) > allowed_;
+  }
+
+ private:
+  std::uint64_t allowed_ = 0;
+};
+
 /// Waits until the child has closed its end of the pipe. Returns why it had to be killed, if so.
 std::optional<ProcessEnd> superviseChild(pid_t child, int pipe_end, const ProcessLimits& limits) {
   const auto deadline = std::chrono::steady_clock::now() + limits.wall_clock;
-  const std::uint64_t resident_at_start = kUnderSanitizer ? processBytes(::getpid(), 1) : 0;
+  const MemoryWatch memory(limits);
   while (true) {
     const auto left =
         std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
@@ -221,10 +236,7 @@ std::optional<ProcessEnd> superviseChild(pid_t child, int pipe_end, const Proces
         ::poll(&waiting, 1, static_cast<int>(std::min<std::int64_t>(left.count(), longest)));
     if (ready > 0) return std::nullopt;
     if (ready < 0 && errno != EINTR) return ProcessEnd::kFailed;
-    if (kUnderSanitizer &&
-        processBytes(child, 1) > resident_at_start + std::min(limits.memory, ~resident_at_start)) {
-      return ProcessEnd::kMemoryLimit;
-    }
+    if (memory.exceededBy(child)) return ProcessEnd::kMemoryLimit;
   }
 }
 
@@ -281,7 +293,8 @@ tl::expected<ProcessOutput, ProcessFailure> runIsolated(const IsolatedWork& work
   const Descriptor file(::memfd_create("galactic-import", MFD_CLOEXEC));
   std::array<int, 2> ends{-1, -1};
   SharedStage stage;
-  if (file.get() < 0 || !stage.valid() || ::pipe2(ends.data(), O_CLOEXEC) != 0) return not_started();
+  if (file.get() < 0 || !stage.valid() || ::pipe2(ends.data(), O_CLOEXEC) != 0)
+    return not_started();
   const Descriptor read_end(ends[0]);
   Descriptor write_end(ends[1]);
 

@@ -114,8 +114,7 @@ bool boxShell(const Vec3& min, const Vec3& max, const Line& line, Blocked& block
     blocked.push_back({hi - line.radius, hi + line.radius});
     return true;
   }
-  const double aside =
-      std::hypot(std::max({left, right, 0.0}), std::max({front, back, 0.0}));
+  const double aside = std::hypot(std::max({left, right, 0.0}), std::max({front, back, 0.0}));
   if (std::abs(aside - line.radius) < kTie) return false;
   if (aside < line.radius) {
     const double half = halfChord(line.radius, aside);
@@ -145,8 +144,7 @@ TEST(ExactColumns, OfABeamOverAFloorHaveOneSpanBelowAndOneAbove) {
   const Vec3 floor_max{1.21F, 0, 1.17F};
   const Vec3 beam_min{-0.2F, 2.2F, 0.512F};
   const Vec3 beam_max{1.4F, 2.31F, 0.633F};
-  const TriangleMesh mesh =
-      MeshBuilder().box(floor_min, floor_max).box(beam_min, beam_max).build();
+  const TriangleMesh mesh = MeshBuilder().box(floor_min, floor_max).box(beam_min, beam_max).build();
   expectClosedForm(mesh, [&](const Line& line, Blocked& blocked) {
     return boxShell(floor_min, floor_max, line, blocked) &&
            boxShell(beam_min, beam_max, line, blocked);

@@ -14,8 +14,8 @@
 namespace galactic::bake {
 namespace {
 
-using test::Comparison;
 using test::ColumnOracle;
+using test::Comparison;
 
 constexpr std::uint32_t kSeed = 20250307;
 constexpr float kSpacing = 0.03F;
@@ -145,8 +145,8 @@ struct Sampled {
 };
 
 /// Samples a column every 5 mm, leaving out heights near a tie, and finds the ends between.
-void compareSampled(const SampledColumn& line, const GridFrame& frame,
-                    std::span<const Span> spans, Sampled& sampled) {
+void compareSampled(const SampledColumn& line, const GridFrame& frame, std::span<const Span> spans,
+                    Sampled& sampled) {
   constexpr double kStep = 0.005;
   const auto radius = static_cast<double>(frame.radius);
   const auto top = static_cast<double>(frame.heights.hi);
@@ -169,10 +169,11 @@ void compareSampled(const SampledColumn& line, const GridFrame& frame,
       const double far = line.changeBetween(last, y, radius + test::kTieTolerance);
       const auto [lo, hi] = std::minmax(near, far);
       // A slit between the two samples may hide ends; then one of them is still here.
-      const bool has_end = std::any_of(spans.begin(), spans.end(), [&, lo = lo, hi = hi](const Span& span) {
-        const auto end = static_cast<double>(free ? span.lo : span.hi);
-        return end >= lo - test::kEndTolerance && end <= hi + test::kEndTolerance;
-      });
+      const bool has_end =
+          std::any_of(spans.begin(), spans.end(), [&, lo = lo, hi = hi](const Span& span) {
+            const auto end = static_cast<double>(free ? span.lo : span.hi);
+            return end >= lo - test::kEndTolerance && end <= hi + test::kEndTolerance;
+          });
       ASSERT_TRUE(has_end) << "between " << last << " and " << y;
       ++sampled.ends;
     }
@@ -205,9 +206,9 @@ TEST(ExactColumnsAgainstSampledDistance, AgreeInAFurnishedRoom) {
 void expectSameColumns(const Columns& found, const Columns& expected) {
   ASSERT_EQ(found.first, expected.first);
   ASSERT_EQ(found.spans.size(), expected.spans.size());
-  EXPECT_EQ(std::memcmp(found.spans.data(), expected.spans.data(),
-                        expected.spans.size() * sizeof(Span)),
-            0);
+  EXPECT_EQ(
+      std::memcmp(found.spans.data(), expected.spans.data(), expected.spans.size() * sizeof(Span)),
+      0);
 }
 
 TEST(ExactColumns, HaveTheSameBytesForAnyNumberOfJobs) {

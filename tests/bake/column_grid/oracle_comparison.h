@@ -49,7 +49,8 @@ class OracleComparison {
     const Free greater = oracle_.freeSpans(x, z, frame, radius + kTieTolerance);
     const Free smaller = oracle_.freeSpans(x, z, frame, radius - kTieTolerance);
     ++result_.columns;
-    result_.touching += smaller.size() == 1 && smaller[0].lo < static_cast<double>(frame.heights.lo) + 1e-9 &&
+    result_.touching += smaller.size() == 1 &&
+                                smaller[0].lo < static_cast<double>(frame.heights.lo) + 1e-9 &&
                                 smaller[0].hi > static_cast<double>(frame.heights.hi) - 1e-9
                             ? 0
                             : 1;
@@ -66,13 +67,16 @@ class OracleComparison {
     }
     const Free exact = oracle_.freeSpans(x, z, frame, radius);
     if (exact.size() != found.size()) {
-      offend(i, k, "has " + std::to_string(found.size()) + " spans, the oracle finds " +
-                       std::to_string(exact.size()));
+      offend(i, k,
+             "has " + std::to_string(found.size()) + " spans, the oracle finds " +
+                 std::to_string(exact.size()));
       return;
     }
     for (std::size_t s = 0; s < found.size(); ++s) {
-      compareEnd(i, k, static_cast<double>(found[s].lo), {smaller[s].lo, exact[s].lo, greater[s].lo});
-      compareEnd(i, k, static_cast<double>(found[s].hi), {smaller[s].hi, exact[s].hi, greater[s].hi});
+      compareEnd(i, k, static_cast<double>(found[s].lo),
+                 {smaller[s].lo, exact[s].lo, greater[s].lo});
+      compareEnd(i, k, static_cast<double>(found[s].hi),
+                 {smaller[s].hi, exact[s].hi, greater[s].hi});
       ++result_.spans;
     }
   }

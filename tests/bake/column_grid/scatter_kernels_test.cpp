@@ -169,8 +169,8 @@ TEST(ScatterKernels, LeaveColumnsOutsideTheBlockAlone) {
       const std::vector<float> after = strip.intervals();
       const std::size_t stride = TestStrip::kColumns + ColumnStrip::kPadding;
       for (std::size_t n = 0; n < after.size(); ++n) {
-        const std::size_t row = n / stride % (TestStrip::kEndRow - TestStrip::kFirstRow) +
-                                TestStrip::kFirstRow;
+        const std::size_t row =
+            n / stride % (TestStrip::kEndRow - TestStrip::kFirstRow) + TestStrip::kFirstRow;
         const std::size_t column = n % stride;
         const bool inside = row >= block.first_row && row < block.end_row &&
                             column >= block.first_column && column < block.end_column;

@@ -6,7 +6,6 @@
 namespace galactic::test {
 namespace {
 
-using bake::importMesh;
 using bake::MeshImportOptions;
 using bake::placeAndClean;
 using bake::UpAxis;

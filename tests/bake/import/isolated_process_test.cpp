@@ -129,6 +129,7 @@ TEST(IsolatedProcess, WorksFromSeveralThreadsAtOnce) {
            output->bytes().front() == static_cast<std::byte>(number);
   };
   std::vector<std::future<bool>> results;
+  results.reserve(16);
   for (int i = 0; i < 16; ++i) results.push_back(std::async(std::launch::async, task, i));
   for (auto& result : results) EXPECT_TRUE(result.get());
 }

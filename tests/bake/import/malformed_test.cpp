@@ -18,7 +18,7 @@ struct Sample {
   std::string content;
 };
 
-void PrintTo(const Sample& sample, std::ostream* out) { *out << sample.name; }
+std::ostream& operator<<(std::ostream& out, const Sample& sample) { return out << sample.name; }
 
 /// A tetrahedron: small enough to try every truncation.
 MeshContent tetrahedron() {

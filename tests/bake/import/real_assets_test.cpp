@@ -23,13 +23,13 @@ struct RealScene {
   std::optional<UpAxis> up = {};
 };
 
-void PrintTo(const RealScene& scene, std::ostream* out) { *out << scene.path; }
+std::ostream& operator<<(std::ostream& out, const RealScene& scene) { return out << scene.path; }
 
 constexpr std::string_view kObj = "Y up (OBJ convention), 1 m per unit (OBJ convention)";
 constexpr std::string_view kGltf = "Y up (glTF convention), 1 m per unit (glTF convention)";
 
-const std::vector<RealScene>& realScenes() {
-  static const std::vector<RealScene> kScenes{
+std::vector<RealScene> realScenes() {
+  return {
       {"replica_cad/stages/Stage_v3_sc1_staging.obj",
        24224,
        {-2.66, -0.0788, -4.76},
@@ -71,7 +71,6 @@ const std::vector<RealScene>& realScenes() {
        {5.28, 5.45, 2.15},
        kGltf},
   };
-  return kScenes;
 }
 
 class RealScenes : public testing::TestWithParam<RealScene> {};
@@ -91,16 +90,16 @@ TEST_P(RealScenes, HaveTheReportedTrianglesAndBounds) {
   EXPECT_EQ(clean->counts.read - clean->counts.degenerate - clean->counts.duplicate,
             clean->mesh.triangles.size());
   const auto& [low, high] = clean->mesh.bounds;
-  const auto expectNear = [](float found, double reported) {
+  const auto expect_near = [](float found, double reported) {
     EXPECT_NEAR(static_cast<double>(found), reported,
                 kReportedDigits * std::max(1.0, std::abs(reported)));
   };
-  expectNear(low.x, scene.low[0]);
-  expectNear(low.y, scene.low[1]);
-  expectNear(low.z, scene.low[2]);
-  expectNear(high.x, scene.high[0]);
-  expectNear(high.y, scene.high[1]);
-  expectNear(high.z, scene.high[2]);
+  expect_near(low.x, scene.low[0]);
+  expect_near(low.y, scene.low[1]);
+  expect_near(low.z, scene.low[2]);
+  expect_near(high.x, scene.high[0]);
+  expect_near(high.y, scene.high[1]);
+  expect_near(high.z, scene.high[2]);
 }
 
 INSTANTIATE_TEST_SUITE_P(Assets, RealScenes, testing::ValuesIn(realScenes()));

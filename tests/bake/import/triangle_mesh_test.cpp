@@ -130,6 +130,7 @@ TEST(TriangleMesh, DropsExactlyWhatAPlainQuadraticSearchDrops) {
   std::mt19937 random(kSeed);
   // Few positions on a coarse lattice, so that equal and flat triangles are common.
   std::vector<Vec3> positions;
+  positions.reserve(60);
   for (int i = 0; i < 60; ++i) {
     positions.push_back({static_cast<float>(random() % 3), static_cast<float>(random() % 3),
                          static_cast<float>(random() % 3)});

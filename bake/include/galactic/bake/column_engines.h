@@ -28,7 +28,7 @@ struct ExactColumns {
 /// one interval per column (the convex sum of triangle and ball), so a column's blocked heights are
 /// a union of intervals. Exact to float rounding (about 1e-6 m); a surface at distance exactly the
 /// radius is a tie and may fall on either side. With Coverage::kCell the ball is swept over the
-/// whole cell and padded by kMergeTolerance. Memory is proportional to the columns.
+/// whole cell and padded by what float rounding can take. Memory is proportional to the columns.
 [[nodiscard]] ExactColumns exactColumns(const TriangleMesh& mesh, const GridFrame& frame,
                                         const ExactOptions& options = {});
 

@@ -18,7 +18,7 @@ enum class Keep { kRoom, kAll };
 struct FreeSpaceOptions {
   Keep keep = Keep::kRoom;
   /// Points (world frame) whose components are the room. Empty: the largest components by volume.
-  std::vector<Vec3> seeds;
+  std::vector<Vec3> seeds{};
   /// How many of the largest components are the room when there are no seeds.
   std::uint32_t components = 1;
 };

@@ -25,7 +25,7 @@ struct SceneBakeOptions {
   float spacing = 0.03F;
   Engine engine = Engine::kExact;
   Coverage coverage = Coverage::kColumn;
-  FreeSpaceOptions free_space;
+  FreeSpaceOptions free_space{};
   /// Columns per grid to replay with sphere casts; 0 switches the check off.
   std::uint32_t check_columns = 128;
   unsigned jobs = 1;

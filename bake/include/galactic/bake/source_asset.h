@@ -35,7 +35,7 @@ struct EmbeddedTexture {
 struct SourceMesh {
   std::string name;
   std::vector<Vec3> positions;
-  /// Texture coordinates, one per position or none.
+  /// Texture coordinates, one per position or none; (0, 0) is the image's lower left corner.
   std::vector<std::array<float, 2>> uvs;
   /// Linear RGBA, one per position or none.
   std::vector<std::array<float, 4>> colors;

@@ -1,0 +1,139 @@
+// A written file is there whole, or the old one is.
+#include "galactic/bake/atomic_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "support/scratch_folder.h"
+
+namespace galactic::bake {
+namespace {
+
+std::span<const std::byte> bytesOf(std::string_view text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
+
+std::string contentOf(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::vector<std::string> namesIn(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.push_back(entry.path().filename().string());
+  }
+  return names;
+}
+
+/// Limits the size of files that this process writes, so that a write fails half way; the signal
+/// that would end the process is ignored meanwhile.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    EXPECT_EQ(::getrlimit(RLIMIT_FSIZE, &before_), 0);
+    rlimit lower = before_;
+    lower.rlim_cur = bytes;
+    previous_handler_ = std::signal(SIGXFSZ, SIG_IGN);
+    EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &lower), 0);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, previous_handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  using Handler = void (*)(int);
+
+  rlimit before_{};
+  Handler previous_handler_ = SIG_DFL;
+};
+
+TEST(AtomicFile, HoldsItsPartsOneAfterTheOther) {
+  const test::ScratchFolder folder;
+  const std::filesystem::path path = folder.path() / "scene.pack";
+  ASSERT_TRUE(writeFileAtomically(path, {bytesOf("head"), bytesOf(""), bytesOf("payload")}));
+  EXPECT_EQ(contentOf(path), "headpayload");
+  EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"scene.pack"});
+}
+
+TEST(AtomicFile, MayBeEmpty) {
+  const test::ScratchFolder folder;
+  const std::filesystem::path path = folder.path() / "empty";
+  ASSERT_TRUE(writeFileAtomically(path, {}));
+  EXPECT_EQ(contentOf(path), "");
+  EXPECT_TRUE(std::filesystem::exists(path));
+}
+
+TEST(AtomicFile, ReplacesAnOldFileWhichItsReadersKeep) {
+  const test::ScratchFolder folder;
+  const std::filesystem::path path = folder.write("scene.pack", "old");
+  std::ifstream reader(path);
+  ASSERT_TRUE(writeFileAtomically(path, {bytesOf("new and longer")}));
+  EXPECT_EQ(contentOf(path), "new and longer");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(reader), {}), "old");
+  EXPECT_EQ(namesIn(folder.path()).size(), 1U);
+}
+
+TEST(AtomicFile, IsWrittenBesideARelativePathWithoutAFolder) {
+  const test::ScratchFolder folder;
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  const auto written = writeFileAtomically("scene.pack", {bytesOf("content")});
+  std::filesystem::current_path(before);
+  ASSERT_TRUE(written);
+  EXPECT_EQ(contentOf(folder.path() / "scene.pack"), "content");
+}
+
+TEST(AtomicFile, LeavesTheOldOneAndNoOtherWhenTheDiskIsFull) {
+  const test::ScratchFolder folder;
+  const std::filesystem::path path = folder.write("scene.pack", "old");
+  const std::string big(300000, 'x');
+  {
+    const FileSizeLimit limit(100000);
+    const auto written = writeFileAtomically(path, {bytesOf("head"), bytesOf(big)});
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().code, ErrorCode::kIo);
+    EXPECT_EQ(written.error().where, path.string());
+    EXPECT_EQ(written.error().message,
+              "cannot write the file: File too large; an existing file is left as it was");
+  }
+  EXPECT_EQ(contentOf(path), "old");
+  EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"scene.pack"});
+}
+
+TEST(AtomicFile, IsRefusedWithTheReasonWhereNoFileCanBe) {
+  const test::ScratchFolder folder;
+  const std::filesystem::path file = folder.write("file", "content");
+  std::filesystem::create_directory(folder.path() / "folder");
+  const struct {
+    const char* path;
+    const char* reason;
+  } cases[] = {{"file/scene.pack", "Not a directory"},
+               {"missing/scene.pack", "No such file or directory"},
+               {"folder", "Is a directory"}};
+  for (const auto& [name, reason] : cases) {
+    const std::filesystem::path path = folder.path() / name;
+    const auto written = writeFileAtomically(path, {bytesOf("content")});
+    ASSERT_FALSE(written) << name;
+    EXPECT_EQ(written.error().code, ErrorCode::kIo);
+    EXPECT_EQ(written.error().where, path.string());
+    EXPECT_EQ(written.error().message, std::string("cannot write the file: ") + reason +
+                                           "; an existing file is left as it was");
+  }
+  EXPECT_EQ(namesIn(folder.path()).size(), 2U);
+  EXPECT_EQ(contentOf(file), "content");
+}
+
+}  // namespace
+}  // namespace galactic::bake
