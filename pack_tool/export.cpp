@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <span>
 #include <string>
 
+#include "galactic/atomic_file.h"
 #include "pack_tool/mesh/grid_mesh.h"
 #include "pack_tool/open_scene.h"
-#include "pack_tool/output_file.h"
 #include "pack_tool/verbs.h"
 
 namespace galactic::pack_tool {
@@ -60,8 +61,8 @@ Result<void> exportMesh(const OpenScene& open, const std::vector<ColumnGrid>& gr
                     "or a pack of larger spacing",
                     patches.size(), kMaxPatches));
   }
-  return writeOutputFile(options.output,
-                         format == ExportFormat::kPly ? encodePly(patches) : encodeObj(patches));
+  const std::string bytes = format == ExportFormat::kPly ? encodePly(patches) : encodeObj(patches);
+  return writeFileAtomically(options.output, {std::as_bytes(std::span(bytes))});
 }
 
 Result<void> exportScene(const ExportOptions& options) {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "galactic/bake/atomic_file.h"
+#include "galactic/atomic_file.h"
 
 namespace galactic::bake {
 namespace {

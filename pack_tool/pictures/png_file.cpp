@@ -2,9 +2,10 @@
 #include <png.h>
 
 #include <cstring>
+#include <span>
 #include <string>
 
-#include "pack_tool/output_file.h"
+#include "galactic/atomic_file.h"
 #include "pack_tool/pictures/pictures.h"
 
 namespace galactic::pictures {
@@ -28,7 +29,7 @@ Result<void> writePng(const std::filesystem::path& path, const Image& image) {
                 fmt::format("libpng cannot encode an image of {} x {} pixels: {}", image.width(),
                             image.height(), png.message));
   }
-  return pack_tool::writeOutputFile(path, std::string_view(bytes).substr(0, size));
+  return writeFileAtomically(path, {std::as_bytes(std::span(bytes).first(size))});
 }
 
 }  // namespace galactic::pictures

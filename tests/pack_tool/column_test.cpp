@@ -53,13 +53,13 @@ TEST(NearestColumn, HasTheNearestCentreOfAllColumns) {
     ASSERT_EQ(cell.has_value(), covered) << "seed " << kSeed << " case " << n;
     if (!cell) continue;
     ++inside;
-    const auto distanceTo = [&](Cell other) {
+    const auto distance_to = [&](Cell other) {
       const GroundPoint centre = columnCentre(grid.view(), other);
       return std::hypot(centre.x - point.x, centre.z - point.z);
     };
     for (std::uint32_t k = 0; k < 3; ++k) {
       for (std::uint32_t i = 0; i < 5; ++i) {
-        ASSERT_LE(distanceTo(*cell), distanceTo({i, k})) << "seed " << kSeed << " case " << n;
+        ASSERT_LE(distance_to(*cell), distance_to({i, k})) << "seed " << kSeed << " case " << n;
       }
     }
   }

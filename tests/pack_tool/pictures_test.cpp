@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "pack_tool/output_file.h"
 #include "pack_tool/pictures/axes.h"
 #include "pack_tool/pictures/font.h"
 #include "pack_tool/pictures/palette.h"
@@ -199,25 +198,6 @@ TEST(WritePng, WritesASignedFileOfTheImagesSizeAndTheSameBytesAgain) {
   EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n");
   EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\0\3\0\0\0\2", 8));
   EXPECT_EQ(test::countEntries(folder.path()), 2U);
-}
-
-TEST(WriteOutputFile, ReplacesAFileInOneGo) {
-  const test::ScratchFolder folder;
-  ASSERT_TRUE(pack_tool::writeOutputFile(folder.path() / "a", "first and longer"));
-  ASSERT_TRUE(pack_tool::writeOutputFile(folder.path() / "a", "second"));
-  EXPECT_EQ(test::fileContent(folder.path() / "a"), "second");
-  EXPECT_EQ(test::countEntries(folder.path()), 1U);
-}
-
-TEST(WriteOutputFile, FailsWithoutAFolderAndLeavesNothingWhenItCannotFinish) {
-  const test::ScratchFolder folder;
-  const auto missing = pack_tool::writeOutputFile(folder.path() / "none" / "a", "x");
-  ASSERT_FALSE(missing);
-  EXPECT_EQ(missing.error().code, ErrorCode::kIo);
-  EXPECT_THAT(missing.error().message, HasSubstr("No such file or directory"));
-  std::filesystem::create_directory(folder.path() / "taken");
-  EXPECT_FALSE(pack_tool::writeOutputFile(folder.path() / "taken", "x"));
-  EXPECT_EQ(test::countEntries(folder.path()), 1U);
 }
 
 }  // namespace

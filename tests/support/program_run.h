@@ -34,6 +34,7 @@ inline ProgramRun runProgram(const std::string& program, const std::filesystem::
   const std::string err = (folder / "stderr.txt").string();
   arguments.insert(arguments.begin(), program);
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
 

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <span>
 
-#include "galactic/bake/atomic_file.h"
+#include "galactic/atomic_file.h"
 #include "galactic/column_cell.h"
 #include "galactic/pack_header.h"
 #include "galactic/schema/pack_generated.h"

@@ -1,5 +1,5 @@
 // A written file is there whole, or the old one is.
-#include "galactic/bake/atomic_file.h"
+#include "galactic/atomic_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -14,7 +14,7 @@
 
 #include "support/scratch_folder.h"
 
-namespace galactic::bake {
+namespace galactic {
 namespace {
 
 std::span<const std::byte> bytesOf(std::string_view text) {
@@ -136,4 +136,4 @@ TEST(AtomicFile, IsRefusedWithTheReasonWhereNoFileCanBe) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic

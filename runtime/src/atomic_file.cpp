@@ -1,4 +1,4 @@
-#include "galactic/bake/atomic_file.h"
+#include "galactic/atomic_file.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <string>
 #include <system_error>
 
-namespace galactic::bake {
+namespace galactic {
 namespace {
 
 /// A file under a name of its own beside the target, removed unless it was renamed onto the target.
@@ -80,4 +80,4 @@ Result<void> writeFileAtomically(const std::filesystem::path& path,
   return {};
 }
 
-}  // namespace galactic::bake
+}  // namespace galactic

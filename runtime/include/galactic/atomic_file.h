@@ -6,7 +6,7 @@
 
 #include "galactic/error.h"
 
-namespace galactic::bake {
+namespace galactic {
 
 /// Writes `parts` one after the other to `path` through a temporary file beside it, fsync and
 /// rename: a reader sees the old file or the new one, never half of it. On failure (kIo) the old
@@ -14,4 +14,4 @@ namespace galactic::bake {
 [[nodiscard]] Result<void> writeFileAtomically(
     const std::filesystem::path& path, std::initializer_list<std::span<const std::byte>> parts);
 
-}  // namespace galactic::bake
+}  // namespace galactic

@@ -1,0 +1,93 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/program_run.h"
+#include "support/scene_pack_builder.h"
+#include "support/scratch_folder.h"
+
+namespace galactic {
+namespace {
+
+using test::ProgramRun;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+/// A folder with a good pack, one that was cut off, one of a later format, and a file that is no
+/// pack.
+class RunCli : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto bytes = test::buildPack(test::smallScene());
+    const auto text = [&] {
+      return std::string(reinterpret_cast<const char*>(bytes.bytes().data()), bytes.size());
+    };
+    write("good.pack", text());
+    write("cut.pack", text().substr(0, 500));
+    constexpr std::size_t kVersionOffset = 8;
+    bytes.bytes()[kVersionOffset] = std::byte{99};
+    write("later.pack", text());
+    write("text.pack", std::string(200, 'x'));
+  }
+
+  void write(const std::string& name, std::string_view content) {
+    ASSERT_EQ(test::fileContent(folder_.write(name, content)), content);
+  }
+  [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
+    return test::runProgram(GALACTIC_RUN, folder_.path(), std::move(arguments));
+  }
+
+  test::ScratchFolder folder_;
+};
+
+TEST_F(RunCli, SaysWhatIsInAPack) {
+  const ProgramRun result = run({"--pack", "good.pack"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(StartsWith("good.pack: scene "), HasSubstr("verified in"),
+                                HasSubstr("radius m"), HasSubstr("sphere casts")));
+  EXPECT_THAT(result.err, IsEmpty());
+}
+
+TEST_F(RunCli, SkipsVerificationOnlyWhenTold) {
+  const ProgramRun result = run({"--pack", "good.pack", "--trusted"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, testing::Not(HasSubstr("verified in")));
+}
+
+TEST_F(RunCli, MeasuresQueries) {
+  const ProgramRun result = run({"--pack", "good.pack", "--bench"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("coherent, 128 robots"), HasSubstr("random")));
+}
+
+TEST_F(RunCli, EndsWithACodeForEachKindOfMistake) {
+  const std::vector<std::pair<std::vector<std::string>, int>> mistakes{
+      {{}, 1},
+      {{"--pack"}, 1},
+      {{"--no-such-option"}, 1},
+      {{"--pack", "missing.pack"}, 2},
+      {{"--pack", "cut.pack"}, 3},
+      {{"--pack", "text.pack"}, 3},
+      {{"--pack", "later.pack"}, 5},
+  };
+  for (const auto& [arguments, code] : mistakes) {
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    const ProgramRun result = run(arguments);
+    EXPECT_EQ(result.exit_code, code);
+    EXPECT_THAT(result.err, testing::Not(IsEmpty()));
+    if (code > 1) {
+      EXPECT_THAT(result.err, StartsWith("galactic-run: " + arguments.back() + ": "));
+    }
+  }
+}
+
+TEST_F(RunCli, ListsItsExitCodesInHelp) {
+  const ProgramRun help = run({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.out, AllOf(HasSubstr("--pack"), HasSubstr("--bench"), HasSubstr("0 ok"),
+                              HasSubstr("3 invalid input")));
+}
+
+}  // namespace
+}  // namespace galactic
