@@ -133,13 +133,13 @@ int runBakes(const BakeCommand& command) {
 }  // namespace galactic::bake
 
 int main(int argc, char** argv) {
-  using namespace galactic;
+  namespace bake = galactic::bake;
   try {
     const bake::ParsedCommand parsed = bake::parseCommandLine(argc, argv);
     if (const int* code = std::get_if<int>(&parsed)) return *code;
     return bake::runBakes(std::get<bake::BakeCommand>(parsed));
   } catch (const std::exception& error) {
     fmt::print(stderr, "galactic-bake: internal error: {}; please report it\n", error.what());
-    return static_cast<int>(ErrorCode::kInternal);
+    return static_cast<int>(galactic::ErrorCode::kInternal);
   }
 }

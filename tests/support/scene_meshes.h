@@ -1,12 +1,15 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <random>
 
+#include "galactic/bake/triangle_interval.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "support/test_meshes.h"
+#include "support/triangle_corners.h"
 
 namespace galactic::test {
 
@@ -37,60 +40,97 @@ inline bake::TriangleMesh furnishedRoom(std::uint32_t seed, const Vec3& origin =
   return builder.build();
 }
 
-/// Random triangles of all the kinds that are hard on floats: level, upright, with an upright edge,
-/// needles, steep ones, tiny and huge ones. None is lower than `kDegenerateHeight`, as in a cleaned
-/// mesh. `corner` is the lowest corner of the cube of one metre that they are spread over.
-inline bake::TriangleMesh awkwardTriangles(std::uint32_t seed, int count, const Vec3& corner = {}) {
-  std::mt19937_64 random(seed);
-  const auto number = [&](double lo, double hi) {
-    return std::uniform_real_distribution<double>(lo, hi)(random);
-  };
-  constexpr int kKinds = 8;
-  MeshBuilder builder;
-  for (int n = 0; n < count;) {
-    const int kind = n % kKinds;
-    const double size = kind == 6 ? std::pow(10.0, number(-5, -2))
-                                  : (kind == 7 ? number(1, 3) : std::pow(10.0, number(-2, -0.3)));
-    std::array<double, 3> middle{number(0, 1), number(0, 1), number(0, 1)};
-    std::array<std::array<double, 3>, 3> t{};
-    for (auto& point : t) {
+/// Kinds of triangles that are hard on floats.
+enum class AwkwardKind {
+  kAny,
+  kLevel,
+  kUpright,
+  kUprightEdge,
+  kNeedle,
+  kSteep,
+  kTiny,
+  kHuge,
+  kCount
+};
+
+/// Draws awkward triangles.
+class AwkwardSource {
+ public:
+  explicit AwkwardSource(std::uint32_t seed) : random_(seed) {}
+
+  /// The corners of one, around a point of the unit cube.
+  std::array<bake::Point, 3> next(AwkwardKind kind) {
+    const double size = sizeOf(kind);
+    const bake::Point middle{number(0, 1), number(0, 1), number(0, 1)};
+    std::array<bake::Point, 3> t{};
+    for (bake::Point& point : t) {
       for (std::size_t c = 0; c < 3; ++c) point[c] = middle[c] + size * number(-0.5, 0.5);
     }
-    if (kind == 1) t[1][1] = t[2][1] = t[0][1];
-    if (kind == 2) t[1][0] = t[2][0] = t[0][0];
-    if (kind == 3) {
+    deform(kind, size, t);
+    return t;
+  }
+
+ private:
+  double number(double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(random_);
+  }
+
+  double sizeOf(AwkwardKind kind) {
+    if (kind == AwkwardKind::kTiny) return std::pow(10.0, number(-5, -2));
+    if (kind == AwkwardKind::kHuge) return number(1, 3);
+    return std::pow(10.0, number(-2, -0.3));
+  }
+
+  void deform(AwkwardKind kind, double size, std::array<bake::Point, 3>& t) {
+    if (kind == AwkwardKind::kLevel) t[1][1] = t[2][1] = t[0][1];
+    if (kind == AwkwardKind::kUpright) t[1][0] = t[2][0] = t[0][0];
+    if (kind == AwkwardKind::kUprightEdge) {
       t[1][0] = t[0][0];
       t[1][2] = t[0][2];
     }
-    if (kind == 4) {
-      const double part = number(-0.5, 1.5);
-      const double aside = size * std::pow(10.0, number(-6, -2));
-      for (std::size_t c = 0; c < 3; ++c) {
-        t[2][c] = t[0][c] + part * (t[1][c] - t[0][c]) + aside * number(-1, 1);
-      }
+    if (kind == AwkwardKind::kSteep) {
+      for (bake::Point& point : t) point[0] = t[0][0] + 1e-5 * (point[0] - t[0][0]);
     }
-    if (kind == 5) {
-      for (auto& point : t) point[0] = t[0][0] + 1e-5 * (point[0] - t[0][0]);
+    if (kind != AwkwardKind::kNeedle) return;
+    const double part = number(-0.5, 1.5);
+    const double aside = size * std::pow(10.0, number(-6, -2));
+    for (std::size_t c = 0; c < 3; ++c) {
+      t[2][c] = t[0][c] + part * (t[1][c] - t[0][c]) + aside * number(-1, 1);
     }
+  }
+
+  std::mt19937_64 random_;
+};
+
+/// The least altitude of a triangle: twice its area over its longest edge.
+inline double leastAltitude(const Corners& t) {
+  const auto edge = [&](std::size_t from, std::size_t to) {
+    return bake::Point{t[to][0] - t[from][0], t[to][1] - t[from][1], t[to][2] - t[from][2]};
+  };
+  const auto length = [](const bake::Point& e) { return std::hypot(e[0], e[1], e[2]); };
+  const bake::Point a = edge(0, 1);
+  const bake::Point b = edge(0, 2);
+  const double twice_area =
+      length({a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]});
+  return twice_area / std::max({length(a), length(b), length(edge(1, 2))});
+}
+
+/// `count` random triangles of all awkward kinds in turn, spread over the cube of one metre whose
+/// lowest corner is `corner`. None is lower than kDegenerateHeight, as in a cleaned mesh.
+inline bake::TriangleMesh awkwardTriangles(std::uint32_t seed, int count, const Vec3& corner = {}) {
+  AwkwardSource source(seed);
+  MeshBuilder builder;
+  for (int n = 0; n < count;) {
+    const auto kind = static_cast<AwkwardKind>(n % static_cast<int>(AwkwardKind::kCount));
+    const auto drawn = source.next(kind);
     std::array<Vec3, 3> v;
     for (std::size_t p = 0; p < 3; ++p) {
-      v[p] = {static_cast<float>(static_cast<double>(corner.x) + t[p][0]),
-              static_cast<float>(static_cast<double>(corner.y) + t[p][1]),
-              static_cast<float>(static_cast<double>(corner.z) + t[p][2])};
+      v[p] = {static_cast<float>(static_cast<double>(corner.x) + drawn[p][0]),
+              static_cast<float>(static_cast<double>(corner.y) + drawn[p][1]),
+              static_cast<float>(static_cast<double>(corner.z) + drawn[p][2])};
     }
-    // Twice the area over the longest edge is the least altitude.
-    const auto edge = [&](std::size_t a, std::size_t b) {
-      return std::array<double, 3>{static_cast<double>(v[b].x) - static_cast<double>(v[a].x),
-                                   static_cast<double>(v[b].y) - static_cast<double>(v[a].y),
-                                   static_cast<double>(v[b].z) - static_cast<double>(v[a].z)};
-    };
-    const auto length = [](const std::array<double, 3>& e) { return std::hypot(e[0], e[1], e[2]); };
-    const auto e0 = edge(0, 1);
-    const auto e1 = edge(0, 2);
-    const double area = length({e0[1] * e1[2] - e0[2] * e1[1], e0[2] * e1[0] - e0[0] * e1[2],
-                                e0[0] * e1[1] - e0[1] * e1[0]});
-    const double longest = std::max({length(e0), length(e1), length(edge(1, 2))});
-    if (!(area >= bake::kDegenerateHeight * longest)) continue;
+    const Corners rounded{toPoint(v[0]), toPoint(v[1]), toPoint(v[2])};
+    if (!(leastAltitude(rounded) >= bake::kDegenerateHeight)) continue;
     builder.triangle(v[0], v[1], v[2]);
     ++n;
   }

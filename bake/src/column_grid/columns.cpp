@@ -27,6 +27,15 @@ Axis layOut(float scene_min, float scene_max, double padding, double spacing) {
 
 }  // namespace
 
+Bounds sceneBounds(const GridFrame& frame) {
+  const float in_plane = frame.radius + frame.spacing;
+  const float in_height = frame.radius + static_cast<float>(kHeightMargin);
+  return {{frame.min_x + in_plane, frame.heights.lo + in_height, frame.min_z + in_plane},
+          {frame.min_x + static_cast<float>(frame.columns_x) * frame.spacing - in_plane,
+           frame.heights.hi - in_height,
+           frame.min_z + static_cast<float>(frame.columns_z) * frame.spacing - in_plane}};
+}
+
 Result<GridFrame> makeGridFrame(const Bounds& bounds, float radius, float spacing) {
   if (!(spacing > 0) || !std::isfinite(spacing)) {
     return fail(ErrorCode::kInvalidInput, "--spacing",

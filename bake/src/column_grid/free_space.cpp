@@ -78,17 +78,26 @@ Labels labelComponents(const Columns& columns) {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+/// Length of the part of a span within the scene's heights.
+double overlap(const Span& span, const Bounds& scene) {
+  return std::max(0.0, static_cast<double>(std::min(span.hi, scene.max.y)) -
+                           static_cast<double>(std::max(span.lo, scene.min.y)));
+}
+
 std::vector<Component> measure(const Columns& columns, const Labels& labels) {
   const GridFrame& frame = columns.frame;
   Component empty;
   empty.bounds = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
   std::vector<Component> components(labels.count, empty);
+  const Bounds scene = sceneBounds(frame);
   const double area = static_cast<double>(frame.spacing) * static_cast<double>(frame.spacing);
   for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
     const auto z = static_cast<float>(frame.centreZ(k));
     for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
       const auto x = static_cast<float>(frame.centreX(i));
       const bool border = i == 0 || k == 0 || i + 1 == frame.columns_x || k + 1 == frame.columns_z;
+      const bool in_scene =
+          x >= scene.min.x && x <= scene.max.x && z >= scene.min.z && z <= scene.max.z;
       const std::size_t at = columns.index(i, k);
       for (std::uint32_t span = columns.first[at]; span < columns.first[at + 1]; ++span) {
         Component& component = components[labels.of_span[span]];
@@ -97,6 +106,7 @@ std::vector<Component> measure(const Columns& columns, const Labels& labels) {
         ++component.spans;
         component.volume +=
             area * (static_cast<double>(heights.hi) - static_cast<double>(heights.lo));
+        if (in_scene) component.volume_inside += area * overlap(heights, scene);
         Bounds& bounds = component.bounds;
         bounds.min = {std::min(bounds.min.x, x), std::min(bounds.min.y, heights.lo),
                       std::min(bounds.min.z, z)};
@@ -158,7 +168,12 @@ Result<std::vector<bool>> chooseRooms(const Columns& columns, const Labels& labe
   std::vector<std::uint32_t> order(components.size());
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return components[a].volume > components[b].volume;
+    const Component& first = components[a];
+    const Component& second = components[b];
+    if (first.volume_inside != second.volume_inside) {
+      return first.volume_inside > second.volume_inside;
+    }
+    return first.volume > second.volume;
   });
   const std::size_t rooms = std::min<std::size_t>(options.components, order.size());
   for (std::size_t rank = 0; rank < rooms; ++rank) is_room[order[rank]] = true;

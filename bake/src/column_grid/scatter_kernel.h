@@ -51,11 +51,18 @@ inline Floats includeEdge(const ScatterEdge& edge, Floats x, float z, float radi
   return distance;
 }
 
+/// How far a column is inside the borders of the face raised, and of the face lowered, along its
+/// normal: negative outside.
+struct FaceInside {
+  Floats raised;
+  Floats lowered;
+};
+
 /// The prism between the face raised and lowered along its normal by the radius. A column meets the
-/// raised face when it is inside all three borders shifted by `raised_inside`, and so for the
-/// lowered one; where only one of them is met, the height at the face itself bounds the other side.
+/// raised face when it is inside all three of its shifted borders, and so for the lowered one;
+/// where only one of them is met, the height at the face itself bounds the other side.
 inline void includeFace(const ScatterTriangle& triangle, Floats x, float z, float radius,
-                        Floats raised_inside, Floats lowered_inside, Heights& heights) {
+                        const FaceInside& inside, Heights& heights) {
   const Floats zero = broadcast(0);
   const Floats plane = x * broadcast(triangle.normal_x) + broadcast(triangle.normal_z * z);
   const Floats rise = broadcast(radius * triangle.normal_y);
@@ -66,8 +73,8 @@ inline void includeFace(const ScatterTriangle& triangle, Floats x, float z, floa
       maximum(min_y, minimum(max_y, (broadcast(radius) - plane) * inverse - rise));
   const Floats lowered =
       maximum(min_y, minimum(max_y, (broadcast(-radius) - plane) * inverse + rise));
-  const Mask no_raised = less(raised_inside, zero);
-  const Mask no_lowered = less(lowered_inside, zero);
+  const Mask no_raised = less(inside.raised, zero);
+  const Mask no_lowered = less(inside.lowered, zero);
   heights.hi = maximum(heights.hi, select(no_raised, kSmall(), raised + rise));
   heights.lo = minimum(heights.lo, select(no_raised, kBig(), raised));
   heights.lo = minimum(heights.lo, select(no_lowered, kBig(), lowered - rise));
@@ -76,18 +83,17 @@ inline void includeFace(const ScatterTriangle& triangle, Floats x, float z, floa
 
 inline Heights touchingHeights(const ScatterTriangle& triangle, Floats x, float z, float radius) {
   Heights heights{kBig(), kSmall()};
-  Floats raised_inside = kBig();
-  Floats lowered_inside = kBig();
+  FaceInside inside{kBig(), kBig()};
   for (int i = 0; i < 3; ++i) {
     includeCorner(triangle, i, x, z, radius, heights);
     const ScatterEdge& edge = triangle.edges[i];
     if (edge.vertical) continue;
     const Floats distance = includeEdge(edge, x, z, radius, heights);
-    raised_inside = minimum(raised_inside, distance - broadcast(edge.face_shift));
-    lowered_inside = minimum(lowered_inside, distance + broadcast(edge.face_shift));
+    inside.raised = minimum(inside.raised, distance - broadcast(edge.face_shift));
+    inside.lowered = minimum(inside.lowered, distance + broadcast(edge.face_shift));
   }
   if (triangle.has_face) {
-    includeFace(triangle, x, z, radius, raised_inside, lowered_inside, heights);
+    includeFace(triangle, x, z, radius, inside, heights);
   }
   return heights;
 }

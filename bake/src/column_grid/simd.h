@@ -3,8 +3,9 @@
 // AVX2, 4 otherwise (plain C++ where there is no SSE either). Only IEEE operations that round each
 // lane alone are offered, and no fused ones, so every width computes the same bits.
 //
-// Everything is in an unnamed namespace and nothing of the standard library is used: a function
-// compiled here for AVX must never be the one that the linker picks for the rest of the program.
+// Everything is in an unnamed namespace (constants too, which the linter dislikes) and nothing of
+// the standard library is used: a function compiled here for AVX must never be the one that the
+// linker picks for the rest of the program.
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
@@ -13,7 +14,7 @@ namespace galactic::bake {
 namespace {
 
 #if defined(__AVX512F__)
-constexpr int kLanes = 16;
+constexpr int kLanes = 16;  // NOLINT(misc-definitions-in-headers)
 using Floats = __m512;
 using Mask = __mmask16;
 
@@ -30,7 +31,7 @@ inline Mask without(Mask a, Mask b) { return _kandn_mask16(b, a); }
 inline Floats select(Mask m, Floats yes, Floats no) { return _mm512_mask_blend_ps(m, no, yes); }
 inline unsigned bits(Mask m) { return _cvtmask16_u32(m); }
 #elif defined(__AVX2__)
-constexpr int kLanes = 8;
+constexpr int kLanes = 8;  // NOLINT(misc-definitions-in-headers)
 using Floats = __m256;
 using Mask = __m256;
 
@@ -47,7 +48,7 @@ inline Mask without(Mask a, Mask b) { return _mm256_andnot_ps(b, a); }
 inline Floats select(Mask m, Floats yes, Floats no) { return _mm256_blendv_ps(no, yes, m); }
 inline unsigned bits(Mask m) { return static_cast<unsigned>(_mm256_movemask_ps(m)); }
 #elif defined(__SSE2__)
-constexpr int kLanes = 4;
+constexpr int kLanes = 4;  // NOLINT(misc-definitions-in-headers)
 using Floats = __m128;
 using Mask = __m128;
 
@@ -66,7 +67,7 @@ inline Floats select(Mask m, Floats yes, Floats no) {
 }
 inline unsigned bits(Mask m) { return static_cast<unsigned>(_mm_movemask_ps(m)); }
 #else
-constexpr int kLanes = 4;
+constexpr int kLanes = 4;  // NOLINT(misc-definitions-in-headers)
 struct Floats {
   float lane[kLanes];
 };

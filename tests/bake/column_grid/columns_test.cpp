@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t kSeed = 20250310;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-const Bounds kRoom{{-1, 0, 2}, {3.01F, 2.5F, 5.01F}};
+constexpr Bounds kRoom{{-1, 0, 2}, {3.01F, 2.5F, 5.01F}};
 
 TEST(GridFrame, PadsTheSceneByTheRadiusAndOneCellInThePlane) {
   const GridFrame frame = makeGridFrame(kRoom, 0.12F, 0.03F).value();

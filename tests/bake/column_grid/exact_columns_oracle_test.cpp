@@ -149,11 +149,14 @@ void compareSampled(const SampledColumn& line, const GridFrame& frame, std::span
                     Sampled& sampled) {
   constexpr double kStep = 0.005;
   const auto radius = static_cast<double>(frame.radius);
+  const auto bottom = static_cast<double>(frame.heights.lo);
   const auto top = static_cast<double>(frame.heights.hi);
+  const auto samples = static_cast<int>((top - bottom) / kStep);
   double last = 0;
   bool last_free = false;
   bool has_last = false;
-  for (double y = static_cast<double>(frame.heights.lo) + 0.5 * kStep; y < top; y += kStep) {
+  for (int sample = 0; sample < samples; ++sample) {
+    const double y = bottom + (sample + 0.5) * kStep;
     const bool free = line.isFree(y, radius + test::kTieTolerance);
     if (free != line.isFree(y, radius - test::kTieTolerance)) {
       has_last = false;

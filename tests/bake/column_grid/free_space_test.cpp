@@ -10,6 +10,7 @@
 #include <limits>
 #include <random>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "galactic/bake/column_engines.h"
@@ -346,6 +347,40 @@ Columns randomColumns(std::mt19937& random) {
   return columns;
 }
 
+/// Volumes of the components within the frame without its padding: the radius and a cell in the
+/// plane, the radius and 1 cm in height.
+std::vector<double> volumesInside(const Columns& columns, const Search& search) {
+  const GridFrame& frame = columns.frame;
+  std::vector<double> volumes(static_cast<std::size_t>(search.count()), 0);
+  const Bounds scene = sceneBounds(frame);
+  for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
+    for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
+      const auto x = static_cast<float>(frame.centreX(i));
+      const auto z = static_cast<float>(frame.centreZ(k));
+      if (x < scene.min.x || x > scene.max.x || z < scene.min.z || z > scene.max.z) continue;
+      const std::size_t at = columns.index(i, k);
+      for (std::uint32_t s = columns.first[at]; s < columns.first[at + 1]; ++s) {
+        const double lo = static_cast<double>(std::max(columns.spans[s].lo, scene.min.y));
+        const double hi = static_cast<double>(std::min(columns.spans[s].hi, scene.max.y));
+        volumes[static_cast<std::size_t>(search.labels()[s])] += 0.25 * std::max(0.0, hi - lo);
+      }
+    }
+  }
+  return volumes;
+}
+
+TEST(FreeSpace, IsTheRoomThoughThePaddingAroundItHoldsMore) {
+  // A closed room of one metre, and spheres so big that the padding is wider than the room.
+  const TriangleMesh mesh = test::MeshBuilder().box({-0.5F, 0, -0.5F}, {0.5F, 1, 0.5F}).build();
+  const GridFrame frame = makeGridFrame(mesh.bounds, 0.3F, 0.1F).value();
+  const FreeSpace free = chooseFreeSpace(exactColumns(mesh, frame).columns).value();
+  ASSERT_EQ(free.components.size(), 2U);
+  EXPECT_EQ(free.components[0].region, Region::kOutside);
+  EXPECT_EQ(free.components[1].region, Region::kRoom);
+  EXPECT_GT(free.components[0].volume, free.components[1].volume);
+  EXPECT_NEAR(free.components[1].volume, 0.4 * 0.4 * 0.4, 0.03);
+}
+
 TEST(FreeSpace, EqualsABreadthFirstSearchOnRandomColumns) {
   RecordProperty("seed", static_cast<int>(kSeed));
   std::mt19937 random(kSeed);
@@ -359,8 +394,15 @@ TEST(FreeSpace, EqualsABreadthFirstSearchOnRandomColumns) {
       volume[static_cast<std::size_t>(search.labels()[s])] +=
           0.25 * static_cast<double>(columns.spans[s].hi - columns.spans[s].lo);
     }
-    // The first of the greatest components; the labels are in the order of their first spans.
-    const auto greatest = std::max_element(volume.begin(), volume.end()) - volume.begin();
+    // The first of the greatest components, first by what lies within the scene's bounds; the
+    // labels are in the order of their first spans.
+    const std::vector<double> inside = volumesInside(columns, search);
+    std::size_t greatest = 0;
+    for (std::size_t n = 1; n < volume.size(); ++n) {
+      if (std::pair(inside[n], volume[n]) > std::pair(inside[greatest], volume[greatest])) {
+        greatest = n;
+      }
+    }
     std::vector<Span> expected;
     for (std::size_t s = 0; s < columns.spans.size(); ++s) {
       if (search.labels()[s] == static_cast<int>(greatest)) expected.push_back(columns.spans[s]);

@@ -56,7 +56,7 @@ void appendCodes(const EncodedGrid& grid, std::uint64_t lo, std::uint64_t hi, He
 HeightList decode(const EncodedGrid& grid, std::uint32_t i, std::uint32_t k) {
   const std::uint32_t tiles_x = (grid.frame.columns_x + 3) / 4;
   const std::size_t tile = std::size_t{k / 2} * tiles_x + i / 4;
-  const std::uint64_t cell = grid.cells[tile * 8 + (k % 2) * 4 + i % 4];
+  const std::uint64_t cell = grid.cells[tile * 8 + std::size_t{k % 2} * 4 + i % 4];
   HeightList spans;
   if ((cell & 0xffffffffU) == 0xffffffffU) {
     const std::uint64_t index = cell >> 32U;

@@ -168,10 +168,7 @@ TEST(SceneBaker, ChecksNothingWhenAskedTo) {
 /// Two closed rooms, the second as big as the first but for `shorter` metres.
 SourceAsset twoClosedRooms(float shorter) {
   test::MeshBuilder builder;
-  const Vec3 first{3, 2.5F, 3};
-  const auto addSheets = [&](Vec3 min, Vec3 max) { builder.box(min, max); };
-  addSheets({0, 0, 0}, first);
-  addSheets({3.5F, 0, 0}, {6.5F - shorter, 2.5F, 3});
+  builder.box({0, 0, 0}, {3, 2.5F, 3}).box({3.5F, 0, 0}, {6.5F - shorter, 2.5F, 3});
   return test::sourceAssetOf(builder.build());
 }
 

@@ -32,6 +32,10 @@ struct GridFrame {
   [[nodiscard]] std::size_t columnCount() const { return std::size_t{columns_x} * columns_z; }
 };
 
+/// The bounds of the scene that a frame was made for: the frame without its padding, to within a cell
+/// at the far ends in the plane.
+[[nodiscard]] Bounds sceneBounds(const GridFrame& frame);
+
 /// The frame for a scene: its bounds padded by the radius and one cell in the plane (so that the
 /// border columns touch nothing), and by the radius and 1 cm in height. Fails with kInvalidInput on
 /// a radius under half the spacing, and on more cells than a grid may have.
