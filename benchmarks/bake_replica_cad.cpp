@@ -122,7 +122,12 @@ int bakeAll(const std::filesystem::path& dataset, const std::filesystem::path& o
       return 1;
     }
     triangles += scene->triangles;
-    const auto written = writeScenePack(out / (asset->name + ".pack"), *scene, {});
+    const Provenance provenance{.tool = "bake_replica_cad",
+                                .tool_version = "0.1.0",
+                                .options = {},
+                                .sources = asset->files,
+                                .warnings = scene->warnings};
+    const auto written = writeScenePack(out / (asset->name + ".pack"), *scene, provenance);
     if (!written) {
       fmt::print(stderr, "{}: {}\n", written.error().where, written.error().message);
       return 1;
