@@ -31,15 +31,4 @@ int reportError(const Console& console, const Error& error) {
 
 int worseExit(int a, int b) { return severity(a) < severity(b) ? b : a; }
 
-std::string printable(std::string_view text) {
-  std::string result(text);
-  constexpr unsigned char kFirstPrintable = 0x20;
-  constexpr unsigned char kDelete = 0x7f;
-  for (char& character : result) {
-    const auto byte = static_cast<unsigned char>(character);
-    if (byte < kFirstPrintable || byte == kDelete) character = '?';
-  }
-  return result;
-}
-
 }  // namespace galactic::pack_tool

@@ -1,9 +1,8 @@
 #pragma once
 #include <ostream>
-#include <string>
-#include <string_view>
 
 #include "galactic/error.h"
+#include "galactic/printable.h"
 
 namespace galactic::pack_tool {
 
@@ -19,9 +18,5 @@ int reportError(const Console& console, const Error& error);
 /// The more serious of two exit codes. Rising: ok, differs, unsupported, I/O, invalid input,
 /// command line, internal.
 [[nodiscard]] int worseExit(int a, int b);
-
-/// `text` with control characters replaced by '?': names in a pack come from strangers and must not
-/// steer the terminal.
-[[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace galactic::pack_tool

@@ -28,6 +28,14 @@ Result<ExportFormat> formatOf(const ExportOptions& options) {
                           extension));
 }
 
+/// Writing over the pack that is being read would lose it.
+Result<void> checkOutput(const OpenScene& open, const ExportOptions& options) {
+  std::error_code missing;
+  if (!std::filesystem::equivalent(open.pack.where(), options.output, missing)) return {};
+  return fail(ErrorCode::kInvalidInput, options.output.string(),
+              "is the pack itself; write to another file");
+}
+
 Result<void> exportPicture(const OpenScene& open, const std::vector<ColumnGrid>& grids,
                            const ExportOptions& options) {
   const std::string title = printable(open.scene.name());
@@ -72,6 +80,7 @@ Result<void> exportScene(const ExportOptions& options) {
   if (!open) return tl::unexpected(open.error());
   const auto grids = open->grids(options.radius);
   if (!grids) return tl::unexpected(grids.error());
+  if (auto checked = checkOutput(*open, options); !checked) return checked;
   if (*format == ExportFormat::kPng) return exportPicture(*open, *grids, options);
   return exportMesh(*open, *grids, options, *format);
 }

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+
+#include "galactic/printable.h"
 
 namespace galactic::bake {
 namespace {
@@ -60,7 +63,8 @@ void printClosingTable(const BakeOutcome& outcome, Verbosity verbosity) {
       bounds.max.y - bounds.min.y, bounds.max.z - bounds.min.z, bounds.min.y, bounds.max.y);
   printGrids(scene);
   if (verbosity == Verbosity::kVerbose) printDetails(scene);
-  for (const std::string& warning : scene.warnings) fmt::print("  warning: {}\n", warning);
+  for (const std::string& warning : scene.warnings)
+    fmt::print("  warning: {}\n", printable(warning));
   const StageTimes& t = outcome.times;
   const double total = t.import + t.clean + t.columns + t.regions + t.encode + t.check + t.write;
   fmt::print(

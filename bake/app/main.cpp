@@ -9,6 +9,7 @@
 #include "closing_table.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/scene_pack.h"
+#include "galactic/printable.h"
 #include "options.h"
 #include "progress_line.h"
 #include "report.h"
@@ -25,23 +26,37 @@ std::filesystem::path outputFor(const std::filesystem::path& input, const BakeCo
   std::filesystem::path name = input.stem();
   name += ".pack";
   if (command.output.empty()) return name;
-  const bool is_folder = command.inputs.size() > 1 || std::filesystem::is_directory(command.output);
+  std::error_code unknown;
+  const bool is_folder =
+      command.inputs.size() > 1 || std::filesystem::is_directory(command.output, unknown);
   return is_folder ? command.output / name : command.output;
 }
 
-/// Two inputs must not write one pack, and no pack may replace its own source.
+/// Refuses to write `output` over a file that the user owns and the bake reads.
+Result<void> checkNotRead(const std::filesystem::path& output,
+                          const std::vector<std::filesystem::path>& read) {
+  for (const std::filesystem::path& source : read) {
+    std::error_code missing;
+    if (output.empty() || !std::filesystem::equivalent(source, output, missing)) continue;
+    return fail(ErrorCode::kInvalidInput, output.string(),
+                "is also an input; write to another file");
+  }
+  return {};
+}
+
+/// Two outputs must not be one file, and none may replace an input or the options' file.
 Result<void> checkOutputs(const BakeCommand& command) {
+  std::vector<std::filesystem::path> read = command.inputs;
+  read.push_back(command.config);
   std::set<std::filesystem::path> outputs;
+  if (!command.report.empty()) outputs.insert(command.report.lexically_normal());
+  if (auto checked = checkNotRead(command.report, read); !checked) return checked;
   for (const std::filesystem::path& input : command.inputs) {
     const std::filesystem::path output = outputFor(input, command);
-    std::error_code missing;
-    if (std::filesystem::equivalent(input, output, missing)) {
-      return fail(ErrorCode::kInvalidInput, output.string(),
-                  "is also the input; give another file with -o");
-    }
+    if (auto checked = checkNotRead(output, read); !checked) return checked;
     if (!outputs.insert(output.lexically_normal()).second) {
       return fail(ErrorCode::kInvalidInput, output.string(),
-                  "would be written for two inputs; bake them one at a time with -o");
+                  "would be written twice: two inputs of one name, or the report; use -o");
     }
   }
   if (command.inputs.size() > 1 && !command.output.empty() && !command.dry_run) {
@@ -65,8 +80,9 @@ Provenance provenanceOf(const BakeCommand& command, const SourceAsset& asset,
   return provenance;
 }
 
+/// Bakes one input; adds the files that it read to `read`.
 Result<BakeOutcome> bakeOne(const std::filesystem::path& input, const BakeCommand& command,
-                            ProgressLine& line) {
+                            ProgressLine& line, std::vector<std::filesystem::path>& read) {
   BakeOutcome outcome;
   outcome.input = input;
   outcome.output = outputFor(input, command);
@@ -77,6 +93,10 @@ Result<BakeOutcome> bakeOne(const std::filesystem::path& input, const BakeComman
   if (!asset) return tl::unexpected(asset.error());
   outcome.times.import = secondsSince(start);
   outcome.convention = asset->convention;
+  for (const SourceFile& file : asset->files) read.push_back(input.parent_path() / file.name);
+  if (auto checked = checkNotRead(outcome.output, read); !checked) {
+    return tl::unexpected(checked.error());
+  }
   auto scene =
       bakeScene(*asset, command.scene, outcome.times,
                 [&](std::string_view stage, double fraction) { line.show(item, stage, fraction); });
@@ -98,7 +118,7 @@ Result<BakeOutcome> bakeOne(const std::filesystem::path& input, const BakeComman
 }
 
 int report(const Error& error) {
-  fmt::print(stderr, "galactic-bake: {}: {}\n", error.where, error.message);
+  fmt::print(stderr, "galactic-bake: {}: {}\n", printable(error.where), printable(error.message));
   return static_cast<int>(error.code);
 }
 
@@ -107,9 +127,10 @@ int runBakes(const BakeCommand& command) {
   ProgressLine line(command.verbosity != Verbosity::kQuiet);
   std::vector<BakeOutcome> outcomes;
   std::vector<BakeFailure> failures;
+  std::vector<std::filesystem::path> read;
   int exit_code = kExitOk;
   for (const std::filesystem::path& input : command.inputs) {
-    auto outcome = bakeOne(input, command, line);
+    auto outcome = bakeOne(input, command, line, read);
     line.clear();
     if (outcome) {
       if (command.verbosity != Verbosity::kQuiet) printClosingTable(*outcome, command.verbosity);
@@ -124,9 +145,10 @@ int runBakes(const BakeCommand& command) {
     if (!command.keep_going) break;
   }
   if (command.report.empty()) return exit_code;
-  const auto written = writeReport(command.report, outcomes, failures);
-  if (!written && exit_code == kExitOk) return report(written.error());
-  return exit_code;
+  auto written = checkNotRead(command.report, read);
+  if (written) written = writeReport(command.report, outcomes, failures);
+  const int report_code = written ? kExitOk : report(written.error());
+  return exit_code == kExitOk ? report_code : exit_code;
 }
 
 }  // namespace

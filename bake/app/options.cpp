@@ -257,6 +257,9 @@ ParsedCommand parseCommandLine(int argc, const char* const* argv) {
   addImportOptions(app, raw);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::FileError& error) {
+    fmt::print(stderr, "galactic-bake: --config: {}\n", error.what());
+    return static_cast<int>(ErrorCode::kIo);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == kExitOk ? kExitOk : kExitUsage;
   }
@@ -265,6 +268,7 @@ ParsedCommand parseCommandLine(int argc, const char* const* argv) {
     fmt::print(stderr, "galactic-bake: {}: {}\n", step.error().where, step.error().message);
     return kExitUsage;
   }
+  command.config = app.get_config_ptr()->as<std::string>();
   rememberContentOptions(raw, command);
   return command;
 }

@@ -21,6 +21,8 @@ struct BakeCommand {
   /// A file for one input, a folder for several; empty: NAME.pack in the current folder.
   std::filesystem::path output;
   std::filesystem::path report;
+  /// The file of options that was read, if any: like the inputs, nothing may replace it.
+  std::filesystem::path config;
   MeshImportOptions import;
   SceneBakeOptions scene;
   bool dry_run = false;

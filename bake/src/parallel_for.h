@@ -5,7 +5,8 @@
 namespace galactic::bake {
 
 /// Calls `body` once for each index below `count`, on up to `jobs` threads (the caller's included),
-/// in no particular order. Returns when all calls have returned. `body` must not throw.
+/// in no particular order. Returns when all calls have returned. When one
+/// throws, the rest is skipped and the exception goes on to the caller.
 void parallelFor(unsigned jobs, std::size_t count, const std::function<void(std::size_t)>& body);
 
 }  // namespace galactic::bake

@@ -47,6 +47,21 @@ Result<void> checkRadii(const std::vector<float>& radii) {
   return {};
 }
 
+/// Length of the spans of `cells` that do not lie within one span of `lines`, to float rounding.
+double freeBeyond(const Columns& cells, const Columns& lines) {
+  double length = 0;
+  for (std::size_t at = 0; at < cells.frame.columnCount(); ++at) {
+    const std::span<const Span> allowed = lines.column(at);
+    for (const Span& span : cells.column(at)) {
+      const bool inside = std::any_of(allowed.begin(), allowed.end(), [&](const Span& line) {
+        return line.lo - kMergeTolerance <= span.lo && span.hi <= line.hi + kMergeTolerance;
+      });
+      if (!inside) length += static_cast<double>(span.hi) - static_cast<double>(span.lo);
+    }
+  }
+  return length;
+}
+
 class SceneBaker {
  public:
   SceneBaker(const TriangleMesh& mesh, const SceneBakeOptions& options, StageTimes& times)
@@ -106,9 +121,12 @@ class SceneBaker {
     if (options_.coverage == Coverage::kColumn) {
       return checkWithCasts(mesh_, columns, *caster_, check_options);
     }
-    // Casts know nothing of cells: the check is of the same engine on the centre lines.
+    // Casts know single lines only: they check the centre lines, and what is free over a cell has
+    // to be free on its centre line.
     const ExactColumns lines = exactColumns(mesh_, frame, {.jobs = options_.jobs});
-    return checkWithCasts(mesh_, lines.columns, *caster_, check_options);
+    CastCheck check = checkWithCasts(mesh_, lines.columns, *caster_, check_options);
+    check.errors += freeBeyond(columns, lines.columns);
+    return check;
   }
 
   const TriangleMesh& mesh_;

@@ -47,8 +47,13 @@ std::vector<Tick> axisTicks(const AxisScale& scale, int gap) {
   const double low = std::min(scale.first_value, scale.last_value);
   const double high = std::max(scale.first_value, scale.last_value);
   std::vector<Tick> ticks;
-  for (double n = std::ceil(low / step); n * step <= high; ++n) {
-    const double value = n == 0 ? 0.0 : n * step;
+  // Far from zero, neighbouring multiples of a tiny step are one number.
+  constexpr double kFinest = 1e-12;
+  if (!(step > kFinest * std::max(std::abs(low), std::abs(high)))) return ticks;
+  const double first = std::ceil(low / step);
+  const auto count = static_cast<int>(std::floor(high / step) - first) + 1;
+  for (int i = 0; i < count; ++i) {
+    const double value = first + i == 0 ? 0.0 : (first + i) * step;
     const int pixel = static_cast<int>(std::lround(scale.position(value)));
     ticks.push_back({value, pixel, fmt::format("{:.{}f}", value, decimals)});
   }

@@ -65,18 +65,6 @@ std::string openingLine(const PackFile& pack, const OpenTimes& times) {
 
 }  // namespace
 
-std::string printable(std::string_view text) {
-  std::string shown(text);
-  std::replace_if(
-      shown.begin(), shown.end(),
-      [](char c) {
-        const auto code = static_cast<unsigned char>(c);
-        return code < 0x20 || code == 0x7f;
-      },
-      '?');
-  return shown;
-}
-
 std::string summarise(const PackFile& pack, const Scene& scene, const OpenTimes& times) {
   const schema::Provenance& provenance = *pack.root().provenance();
   const schema::Scene& stored = *pack.root().asset_as_Scene();

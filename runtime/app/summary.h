@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "galactic/pack.h"
+#include "galactic/printable.h"
 #include "galactic/scene.h"
 
 namespace galactic {
@@ -17,8 +18,5 @@ struct OpenTimes {
 /// A table of what a scene pack holds, several lines of text, each ended.
 [[nodiscard]] std::string summarise(const PackFile& pack, const Scene& scene,
                                     const OpenTimes& times);
-
-/// `text` with control characters replaced by '?': what a file says must not steer a terminal.
-[[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace galactic

@@ -15,7 +15,13 @@ class TemporaryFile {
  public:
   explicit TemporaryFile(const std::filesystem::path& target)
       : target_(target), path_(target.string() + ".part-" + std::to_string(::getpid())) {
-    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    // Exclusive, so that it neither follows a link nor shares a file; a leftover of a killed
+    // process with the same number makes way.
+    constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+    descriptor_ = ::open(path_.c_str(), kFlags, 0666);
+    if (descriptor_ < 0 && errno == EEXIST && ::unlink(path_.c_str()) == 0) {
+      descriptor_ = ::open(path_.c_str(), kFlags, 0666);
+    }
   }
   ~TemporaryFile() {
     if (descriptor_ < 0) return;
@@ -71,7 +77,17 @@ tl::unexpected<Error> writeFailure(const std::filesystem::path& path) {
 
 Result<void> writeFileAtomically(const std::filesystem::path& path,
                                  std::initializer_list<std::span<const std::byte>> parts) {
-  TemporaryFile file(path);
+  std::error_code unknown;
+  // A link stays a link: what it points to is written.
+  const bool is_link = std::filesystem::is_symlink(path, unknown);
+  const std::filesystem::path target =
+      is_link ? std::filesystem::weakly_canonical(path, unknown) : path;
+  const auto status = std::filesystem::status(target, unknown);
+  if (std::filesystem::is_other(status)) {
+    return fail(ErrorCode::kIo, path.string(),
+                "cannot write the file: a device or pipe of this name is there; give another name");
+  }
+  TemporaryFile file(target);
   if (!file.isOpen()) return writeFailure(path);
   for (const std::span<const std::byte>& part : parts) {
     if (!file.write(part)) return writeFailure(path);

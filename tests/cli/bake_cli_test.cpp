@@ -111,15 +111,37 @@ TEST_F(BakeCli, RefusesToReplaceItsInput) {
   const std::string before = content("room.obj");
   const ProgramRun bake = run({"room.obj", "-o", "room.obj"});
   EXPECT_EQ(bake.exit_code, 3);
-  EXPECT_THAT(bake.err, HasSubstr("is also the input"));
+  EXPECT_THAT(bake.err, HasSubstr("is also an input"));
   EXPECT_EQ(content("room.obj"), before);
+}
+
+TEST_F(BakeCli, NeverReplacesAnythingThatItReads) {
+  write("textured.obj", "mtllib colours.mtl\n" + test::objFile(test::unevenBox()));
+  write("colours.mtl", "newmtl red\nKd 1 0 0\n");
+  write("bake.toml", "radii = [0.05]\n");
+  const std::vector<std::pair<std::string, std::vector<std::string>>> attempts{
+      {"room.obj", {"room.obj", "--report", "room.obj"}},
+      {"colours.mtl", {"textured.obj", "-o", "colours.mtl"}},
+      {"colours.mtl", {"textured.obj", "--report", "colours.mtl"}},
+      {"bake.toml", {"room.obj", "--config", "bake.toml", "--report", "bake.toml"}},
+  };
+  for (const auto& [file, arguments] : attempts) {
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    const std::string before = content(file);
+    const ProgramRun bake = run(arguments);
+    EXPECT_EQ(bake.exit_code, 3);
+    EXPECT_THAT(bake.err, HasSubstr("is also an input"));
+    EXPECT_EQ(content(file), before);
+  }
+  EXPECT_EQ(run({"room.obj", "-o", "one.pack", "--report", "one.pack"}).exit_code, 3);
+  EXPECT_FALSE(has("one.pack"));
 }
 
 TEST_F(BakeCli, RefusesTwoInputsForOnePack) {
   write("other/room.obj", test::objFile(test::unevenBox()));
   const ProgramRun bake = run({"room.obj", "other/room.obj", "-o", "packs"});
   EXPECT_EQ(bake.exit_code, 3);
-  EXPECT_THAT(bake.err, HasSubstr("would be written for two inputs"));
+  EXPECT_THAT(bake.err, HasSubstr("would be written twice"));
 }
 
 /// A command line, its exit code and a part of what it says.
@@ -141,6 +163,8 @@ TEST_F(BakeCli, ExplainsEveryRefusal) {
       {{"room.obj", "--engine", "magic"}, 1, "--engine"},
       {{"room.obj", "--jobs", "0"}, 1, "--jobs"},
       {{"missing.obj"}, 2, "missing.obj"},
+      {{"room.obj", "--config", "missing.toml"}, 2, "missing.toml"},
+      {{"room.obj", "-o", "/dev/null"}, 2, "a device or pipe of this name is there"},
       {{"room.obj", "--radii", "0.01"}, 3, "--radii: radius 0.01 m is under half the spacing"},
       {{"room.obj", "--radii", "0.12,0.05"}, 3, "in ascending order"},
       {{"room.obj", "--spacing", "0"}, 3, "--spacing: is 0 m"},

@@ -120,8 +120,11 @@ void warnAboutSize(SourceAsset& asset) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::array<double, 3> low{kInfinity, kInfinity, kInfinity};
   std::array<double, 3> high{-kInfinity, -kInfinity, -kInfinity};
+  // A scene with more triangles than this is no toy, however small it is.
+  std::uint64_t budget = 10'000'000;
   for (const SourceInstance& instance : asset.instances) {
     for (const Triangle& triangle : asset.meshes[instance.mesh].triangles) {
+      if (budget-- == 0) return;
       for (const std::uint32_t vertex : triangle) {
         const auto p =
             transformed(instance.world_from_mesh, asset.meshes[instance.mesh].positions[vertex]);

@@ -124,6 +124,7 @@ class SceneReader {
  private:
   Result<void> load();
   Result<Affine> worldFromRoot();
+  [[nodiscard]] Result<void> checkAffine(const aiNode& node) const;
   Result<void> placeNodes(const Affine& world_from_root);
   void convertMeshes();
   void convertMaterials();
@@ -233,6 +234,14 @@ bool hasAffineBottomRow(const aiMatrix4x4& m) {
                      [](float d) { return std::abs(d) <= kFloatRounding; });
 }
 
+Result<void> SceneReader::checkAffine(const aiNode& node) const {
+  if (hasAffineBottomRow(node.mTransformation)) return {};
+  return invalid(
+      fmt::format("node '{}' has a projective transform; only affine ones (bottom "
+                  "row 0 0 0 1) can be placed",
+                  node.mName.C_Str()));
+}
+
 Result<void> SceneReader::placeNodes(const Affine& world_from_root) {
   struct Placed {
     const aiNode* node;
@@ -240,6 +249,13 @@ Result<void> SceneReader::placeNodes(const Affine& world_from_root) {
   };
   // A stack of our own: hostile files nest nodes deeper than the call stack.
   std::vector<Placed> open{{scene_->mRootNode, world_from_root}};
+  // The reader of COLLADA has used up its root's transform; one that is not finite is told of
+  // later.
+  const aiMatrix4x4& root = scene_->mRootNode->mTransformation;
+  const bool finite = std::isfinite(root.d1 + root.d2 + root.d3 + root.d4);
+  if (finite && format_.reader != kColladaReader) {
+    if (auto checked = checkAffine(*scene_->mRootNode); !checked) return checked;
+  }
   while (!open.empty()) {
     const Placed at = open.back();
     open.pop_back();
@@ -250,12 +266,7 @@ Result<void> SceneReader::placeNodes(const Affine& world_from_root) {
     }
     for (unsigned i = at.node->mNumChildren; i-- > 0;) {
       const aiNode* child = at.node->mChildren[i];
-      if (!hasAffineBottomRow(child->mTransformation)) {
-        return invalid(
-            fmt::format("node '{}' has a projective transform; only affine ones (bottom "
-                        "row 0 0 0 1) can be placed",
-                        child->mName.C_Str()));
-      }
+      if (auto checked = checkAffine(*child); !checked) return checked;
       open.push_back({child, compose(at.world_from_node, toAffine(child->mTransformation))});
     }
   }

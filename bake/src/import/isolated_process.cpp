@@ -183,7 +183,9 @@ void settleChild(const std::array<int, 2>& kept, const ProcessLimits& limits) {
 
   limitResource(RLIMIT_CORE, 0);
   const auto seconds = std::chrono::ceil<std::chrono::seconds>(limits.wall_clock).count();
-  limitResource(RLIMIT_CPU, static_cast<std::uint64_t>(std::max<std::int64_t>(seconds, 1)));
+  // Behind the wall clock's limit, which gives the clearer message.
+  constexpr std::int64_t kGraceSeconds = 5;
+  limitResource(RLIMIT_CPU, static_cast<std::uint64_t>(seconds + kGraceSeconds));
   if (!kUnderSanitizer) {
     const std::uint64_t now = processBytes(::getpid(), 0);
     limitResource(RLIMIT_AS, limits.memory > ~std::uint64_t{0} - now ? ~std::uint64_t{0}

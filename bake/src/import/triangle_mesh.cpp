@@ -79,7 +79,7 @@ Result<std::uint32_t> Placement::placeVertex(const SourceInstance& instance, std
 Result<void> Placement::place(const SourceInstance& instance) {
   const SourceMesh& source = asset_.meshes[instance.mesh];
   const bool mirrors = determinant(instance.world_from_mesh) < 0;
-  placed_.assign(source.positions.size(), kNone);
+  if (placed_.size() < source.positions.size()) placed_.resize(source.positions.size(), kNone);
   for (Triangle triangle : source.triangles) {
     for (std::uint32_t& corner : triangle) {
       std::uint32_t& placed = placed_[corner];
@@ -92,6 +92,10 @@ Result<void> Placement::place(const SourceInstance& instance) {
     }
     if (mirrors) std::swap(triangle[1], triangle[2]);
     mesh_.triangles.push_back(triangle);
+  }
+  // Only what was touched: a small mesh may share a big pool of vertices with many others.
+  for (const Triangle& triangle : source.triangles) {
+    for (const std::uint32_t corner : triangle) placed_[corner] = kNone;
   }
   return {};
 }

@@ -111,10 +111,15 @@ Offset<schema::Provenance> provenanceTable(FlatBufferBuilder& builder,
     sources.push_back(
         schema::CreateSourceFileDirect(builder, file.name.c_str(), file.bytes, &hash));
   }
+  // One after the other: the order of a call's arguments is the compiler's choice, and the order in
+  // which they are built decides the bytes.
   const auto warnings = builder.CreateVectorOfStrings(provenance.warnings);
-  return schema::CreateProvenance(
-      builder, builder.CreateString(provenance.tool), builder.CreateString(provenance.tool_version),
-      builder.CreateVector(options), builder.CreateVector(sources), warnings);
+  const auto source_vector = builder.CreateVector(sources);
+  const auto option_vector = builder.CreateVector(options);
+  const auto tool_version = builder.CreateString(provenance.tool_version);
+  const auto tool = builder.CreateString(provenance.tool);
+  return schema::CreateProvenance(builder, tool, tool_version, option_vector, source_vector,
+                                  warnings);
 }
 
 Offset<schema::Scene> sceneTable(FlatBufferBuilder& builder, const BakedScene& scene) {
