@@ -32,8 +32,8 @@ struct GridFrame {
   [[nodiscard]] std::size_t columnCount() const { return std::size_t{columns_x} * columns_z; }
 };
 
-/// The bounds of the scene that a frame was made for: the frame without its padding, to within a cell
-/// at the far ends in the plane.
+/// The bounds of the scene that a frame was made for: the frame without its padding, to within a
+/// cell at the far ends in the plane.
 [[nodiscard]] Bounds sceneBounds(const GridFrame& frame);
 
 /// The frame for a scene: its bounds padded by the radius and one cell in the plane (so that the

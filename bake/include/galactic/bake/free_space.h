@@ -30,8 +30,8 @@ struct Component {
   std::uint64_t spans = 0;
   /// Cubic metres of sphere centres.
   double volume = 0;
-  /// The part of it within the scene's bounds: what makes a component the room. The padding around a
-  /// small scene can hold more than the scene.
+  /// The part of it within the scene's bounds: what makes a component the room. The padding around
+  /// a small scene can hold more than the scene.
   double volume_inside = 0;
   /// Bounds of its columns and spans.
   Bounds bounds;
@@ -53,8 +53,9 @@ struct FreeSpace {
 };
 
 /// Flood fill: spans that overlap in height in neighbouring columns are connected. The room is what
-/// the seeds reach, else the largest components by volume inside the scene's bounds; other components that reach the border
-/// are outside, the rest enclosed. Fails with kInvalidInput when a seed is not in free space.
+/// the seeds reach, else the largest components by volume inside the scene's bounds; other
+/// components that reach the border are outside, the rest enclosed. Fails with kInvalidInput when a
+/// seed is not in free space.
 [[nodiscard]] Result<FreeSpace> chooseFreeSpace(const Columns& columns,
                                                 const FreeSpaceOptions& options = {});
 
