@@ -48,14 +48,14 @@ void drawSpans(Image& image, const PixelRect& plot, int x, const AxisScale& heig
   for (const Span& span : spans) {
     // A pixel is free when its centre is.
     // Clamped as doubles: a span may lie far outside what an integer holds.
-    const auto pixelOf = [&](double position) {
+    const auto pixel_of = [&](double position) {
       return static_cast<int>(std::clamp(position, static_cast<double>(plot.y - 1),
                                          static_cast<double>(plot.bottom())));
     };
     const double top = heights.position(static_cast<double>(span.hi));
     const double bottom = heights.position(static_cast<double>(span.lo));
-    const int first = std::max(plot.y, pixelOf(std::ceil(top - 0.5)));
-    const int last = std::min(plot.bottom() - 1, pixelOf(std::floor(bottom - 0.5)));
+    const int first = std::max(plot.y, pixel_of(std::ceil(top - 0.5)));
+    const int last = std::min(plot.bottom() - 1, pixel_of(std::floor(bottom - 0.5)));
     fillRect(image, {x, first, 1, last - first + 1}, kFree);
   }
 }
