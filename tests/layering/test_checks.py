@@ -175,7 +175,7 @@ class StyleTest(PlantedTree):
         self.assertEqual(self.offences("a.cpp", "#if RTC_VERSION_MAJOR >= 4\n#endif\n"), [])
 
     def test_refuses_the_paths_of_one_machine(self):
-        for line in ("see /home/ann/scene.glb", 'open("/mnt/x")', "in /work/main"):
+        for line in ("see /home/ann/scene.glb", 'open("/mnt/x")', "in /root/x"):
             with self.subTest(line):
                 self.assertEqual(len(self.offences("a.md", line + "\n")), 1)
 
