@@ -1,0 +1,87 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "galactic/bake/source_asset.h"
+
+namespace galactic::bake {
+
+enum class JointType { kFixed, kRevolute, kContinuous, kPrismatic, kPlanar, kFloating };
+
+/// Primitive shapes, in their own frame; metres. A cylinder's axis is Y.
+struct BoxShape {
+  std::array<double, 3> size;
+};
+struct CylinderShape {
+  double radius;
+  double length;
+};
+struct SphereShape {
+  double radius;
+};
+struct MeshShape {
+  /// Index into SourceRobot::meshes.
+  std::uint32_t mesh;
+};
+
+/// One visual or collision element of a link.
+struct LinkShape {
+  std::variant<BoxShape, CylinderShape, SphereShape, MeshShape> geometry;
+  /// Includes the mesh's scale.
+  Affine link_from_shape{};
+  /// Linear RGBA where the URDF names a colour.
+  std::optional<std::array<float, 4>> color;
+};
+
+/// Radians or metres, lower <= upper.
+struct JointLimits {
+  double lower = 0;
+  double upper = 0;
+};
+
+/// position = multiplier * position of `link`'s joint + offset.
+struct Mimic {
+  /// Index of the link whose joint is followed.
+  std::uint32_t link = 0;
+  double multiplier = 1;
+  double offset = 0;
+};
+
+/// One link and the joint to its parent, in the runtime's frame: Y up, X forward.
+struct SourceLink {
+  std::string name;
+  /// Index of the parent link, always smaller than its own; -1 for the root.
+  int parent = -1;
+  std::string joint_name;
+  JointType joint_type = JointType::kFixed;
+  /// Pose of the joint in the parent link's frame; rigid.
+  Affine parent_from_joint{};
+  /// Unit axis in the joint frame.
+  std::array<double, 3> axis{1, 0, 0};
+  /// None: unlimited.
+  std::optional<JointLimits> limits;
+  std::optional<Mimic> mimic;
+  std::vector<LinkShape> collisions;
+  std::vector<LinkShape> visuals;
+};
+
+/// What the robot importer hands to the baker: neutral, every frame Y up and X forward, metres.
+struct SourceRobot {
+  std::string name;
+  /// Root first, parents before children; children in the order of the URDF's joints.
+  std::vector<SourceLink> links;
+  /// Each mesh file once.
+  std::vector<SourceAsset> meshes;
+  /// The URDF and every mesh file.
+  std::vector<SourceFile> files;
+  /// One sentence each.
+  std::vector<std::string> warnings;
+  /// Where each mesh was found, one line each, for -v.
+  std::vector<std::string> resolutions;
+};
+
+}  // namespace galactic::bake

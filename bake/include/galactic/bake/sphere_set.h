@@ -1,0 +1,99 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "galactic/bake/triangle_mesh.h"
+#include "galactic/error.h"
+#include "galactic/sphere_set.h"
+
+namespace galactic::bake {
+
+/// The half space normal . p >= offset in which spheres must stay.
+struct HalfSpace {
+  /// Unit vector.
+  Vec3 normal{0, 1, 0};
+  /// Metres.
+  float offset = 0;
+};
+
+/// What the spheres must do. Lengths in metres.
+struct SphereSetOptions {
+  /// The working set, ascending, 1 to 8 radii.
+  std::vector<float> radii{0.015F, 0.05F, 0.12F};
+  /// Every reachable surface point lies within this of the union of the spheres.
+  float eps = 0.015F;
+  /// No sphere sticks out of the surface further than this, but for thin parts: they get the least
+  /// protrusion that covers them.
+  float tau = 0.020F;
+  /// No sphere reaches beyond this plane: the face on which the object rests, or the ground.
+  /// Surface points beyond it need no cover.
+  std::optional<HalfSpace> support;
+  /// Most spheres allowed; 0: as many as the tolerances need. With a limit the gap may exceed eps.
+  std::uint32_t max_spheres = 0;
+  /// Threads. Never changes the result.
+  unsigned jobs = 1;
+};
+
+/// Mean, 95th percentile and maximum of a length over samples, metres.
+struct LengthStatistics {
+  double mean = 0;
+  double p95 = 0;
+  double max = 0;
+};
+
+/// How good a sphere set is, measured on dense samples that its solver has not seen.
+struct SphereSetQuality {
+  /// Distance of reachable surface points to the union, 0 inside it.
+  LengthStatistics gap;
+  /// Distance of the union's surface points to the solid, 0 inside it.
+  LengthStatistics protrusion;
+  /// Volume of the union by that of the solid.
+  double volume_ratio = 0;
+  /// Samples that no sphere within tau could cover.
+  std::uint64_t thin_points = 0;
+  /// Number of reachable samples measured.
+  std::uint64_t samples = 0;
+  /// Area of the reachable surface, square metres.
+  double area = 0;
+};
+
+/// Spheres of the working set, radius descending, then x, y, z ascending; and their quality.
+struct SphereSet {
+  std::vector<SetSphere> spheres;
+  SphereSetQuality quality;
+  /// What the solver promises: no reachable surface point is further than this from the union.
+  double guaranteed_gap = 0;
+  /// What the solver promises: no sphere sticks out further than this (more than tau: thin parts).
+  double guaranteed_protrusion = 0;
+  /// The tolerances could not be met within max_spheres, or at all.
+  bool meets_tolerances = true;
+};
+
+/// The fewest spheres of the working set found that cover `mesh` under two tolerances. The solid is
+/// what a ball of half the smallest radius cannot reach from outside: holes, inner faces and nested
+/// shells do not disturb. Bounded by operation counts, so the bytes depend on the input only.
+/// Fails with kInvalidInput on options out of range or a mesh without a reachable surface, and with
+/// kUnsupported where the extents are beyond 10 m.
+[[nodiscard]] Result<SphereSet> fitSphereSet(const TriangleMesh& mesh,
+                                             const SphereSetOptions& options);
+
+/// Sphere counts and tolerances for a budget shared by several meshes: one entry per step of the
+/// curve, by rising count. See fitSphereCurve.
+struct SphereCurve {
+  std::vector<SphereSet> sets;
+};
+
+/// The trade-off of a mesh: sphere sets for a falling sequence of tolerances (about nine between
+/// `options.eps` and eight times that, tau in proportion), each better than the one before, so that
+/// a budget of spheres can be spent over several meshes.
+[[nodiscard]] Result<SphereCurve> fitSphereCurve(const TriangleMesh& mesh,
+                                                 const SphereSetOptions& options);
+
+/// Measures any sphere set, hand-made ones too, with the yardstick of `fitSphereSet`.
+[[nodiscard]] Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
+                                                        const std::vector<SetSphere>& spheres,
+                                                        const SphereSetOptions& options);
+
+}  // namespace galactic::bake
