@@ -94,6 +94,18 @@ std::size_t overflowCells(const ColumnGrid& grid) {
       std::count_if(grid.layout().cells, grid.layout().cells + cells, isOverflow));
 }
 
+/// Elements of the overflow list: the spans of the overflow cells with their end marks.
+std::size_t overflowElements(const ColumnGrid& grid) {
+  std::size_t elements = overflowCells(grid);
+  for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
+    for (std::uint32_t i = 0; i < grid.columnsX(); ++i) {
+      const std::uint32_t cell = cellIndex(i, k, grid.layout().tiles_x);
+      if (isOverflow(grid.layout().cells[cell])) elements += grid.spanCount(i, k);
+    }
+  }
+  return elements;
+}
+
 /// An overflow span is a pair of codes or a pair of heights.
 std::size_t overflowSpanBytes(const ColumnGrid& grid) {
   return grid.layout().overflow_codes == nullptr ? sizeof(Span) : sizeof(std::uint32_t);
@@ -156,29 +168,25 @@ SceneSource SceneSource::synthetic() {
 
 std::size_t gridBytes(const ColumnGrid& grid) {
   const std::uint64_t cells = cellCount(grid.columnsX(), grid.columnsZ());
-  const std::size_t overflow = overflowCells(grid);
   const std::size_t bases = grid.layout().tile_base == nullptr ? 0 : cells / kCellsPerTile;
   return Arena::roomFor(cells * sizeof(std::uint64_t)) +
          Arena::roomFor(bases * sizeof(std::uint16_t)) +
-         Arena::roomFor((overflow + 1) * sizeof(std::uint32_t)) +
-         Arena::roomFor(grid.layout().overflow_start[overflow] * overflowSpanBytes(grid));
+         Arena::roomFor(overflowElements(grid) * overflowSpanBytes(grid));
 }
 
 ColumnGrid copyGrid(const ColumnGrid& grid, Arena& arena) {
   ColumnGridLayout layout = grid.layout();
   const std::uint64_t cells = cellCount(grid.columnsX(), grid.columnsZ());
-  const std::size_t overflow = overflowCells(grid);
   layout.cells = copyTo(arena, layout.cells, cells);
   if (layout.tile_base != nullptr) {
     layout.tile_base = copyTo(arena, layout.tile_base, cells / kCellsPerTile);
   }
-  const std::size_t spans = layout.overflow_start[overflow];
+  const std::size_t elements = overflowElements(grid);
   if (layout.overflow_codes != nullptr) {
-    layout.overflow_codes = copyTo(arena, layout.overflow_codes, spans);
+    layout.overflow_codes = copyTo(arena, layout.overflow_codes, elements);
   } else {
-    layout.overflow_spans = copyTo(arena, layout.overflow_spans, spans);
+    layout.overflow_spans = copyTo(arena, layout.overflow_spans, elements);
   }
-  layout.overflow_start = copyTo(arena, layout.overflow_start, overflow + 1);
   return ColumnGrid(layout);
 }
 

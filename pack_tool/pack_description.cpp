@@ -135,11 +135,6 @@ Json countCells(const ColumnGrid& grid) {
           {"max_spans", most}, {"overflow_cells", overflow_cells}};
 }
 
-std::uint64_t overflowCodeBytes(const schema::ColumnGrid& stored) {
-  const auto* codes = stored.overflow_codes();
-  return codes == nullptr ? 0 : std::uint64_t{codes->size()} * sizeof(std::uint32_t);
-}
-
 Json describeGrid(const schema::ColumnGrid& stored, const ColumnGrid& grid) {
   Json json;
   json["radius"] = jsonNumber(stored.radius());
@@ -153,8 +148,7 @@ Json describeGrid(const schema::ColumnGrid& stored, const ColumnGrid& grid) {
   json["quantum"] = jsonNumber(stored.quantum());
   json["bytes"] = std::uint64_t{stored.cells()->size()} * sizeof(std::uint64_t) +
                   std::uint64_t{stored.tile_base()->size()} * sizeof(std::uint16_t) +
-                  std::uint64_t{stored.overflow_start()->size()} * sizeof(std::uint32_t) +
-                  overflowCodeBytes(stored) +
+                  std::uint64_t{stored.overflow_codes()->size()} * sizeof(std::uint32_t) +
                   std::uint64_t{stored.overflow_spans()->size()} * sizeof(schema::Span);
   json["content"] = countCells(grid);
   json["statistics"] = describeStatistics(*stored.statistics());

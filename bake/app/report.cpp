@@ -32,7 +32,7 @@ Json toJson(const BakedGrid& baked) {
             {"raw_spans", baked.raw_spans},
             {"spans", grid.spans},
             {"max_spans_per_column", grid.max_spans_per_column},
-            {"overflow_columns", grid.overflow_start.size() - 1},
+            {"overflow_columns", grid.overflow_columns},
             {"merged_gaps", baked.merged_gaps},
             {"slivers", grid.slivers}};
   for (std::size_t region = 0; region < kRegionCount; ++region) {

@@ -19,11 +19,9 @@ std::string clean(const flatbuffers::String* text) {
 
 /// Bytes of everything that a query on the grid may read.
 std::size_t gridBytes(const schema::ColumnGrid& grid) {
-  const auto* codes = grid.overflow_codes();
-  const std::size_t overflow_codes = codes == nullptr ? 0 : codes->size();
   return std::size_t{grid.cells()->size()} * sizeof(std::uint64_t) +
          std::size_t{grid.tile_base()->size()} * sizeof(std::uint16_t) +
-         (grid.overflow_start()->size() + overflow_codes) * sizeof(std::uint32_t) +
+         std::size_t{grid.overflow_codes()->size()} * sizeof(std::uint32_t) +
          std::size_t{grid.overflow_spans()->size()} * sizeof(schema::Span);
 }
 

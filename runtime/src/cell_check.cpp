@@ -70,8 +70,6 @@ class CellChecker {
     checkPadding();
     checkTiles();
     checkBorder();
-    checkOverflowStart();
-    checkOverflowSpans();
     if (offence_.found()) return tl::unexpected<Error>(offence_.result().error());
     return totals_;
   }
@@ -105,51 +103,45 @@ class CellChecker {
   }
 
   void checkTiles() {
-    const std::size_t overflow_cells = block_.overflow_start.size() - 1;
     const std::size_t step = layout_.tile_base == nullptr ? kTilesPerScan : 1;
     std::uint64_t first_spans = 0;
     std::uint64_t second_spans = 0;
-    std::uint64_t overflow = 0;
     for (std::size_t tile = 0; tile < tiles(); tile += step) {
       const std::size_t end = std::min(tile + step, tiles());
       const std::span cells(layout_.cells + tile * kCellsPerTile, (end - tile) * kCellsPerTile);
       const CellScan scan = scanCells(cells, highestCode(tile));
-      bool good = scan.offences == 0;
-      if (scan.overflow != 0) good &= overflowInOrder(cells, overflow);
-      if (!good) return explain(tile, end, overflow);
+      if (scan.offences != 0) return explain(tile, end);
+      if (scan.overflow != 0) checkOverflowCells(tile, end);
+      if (offence_.found()) return;
       first_spans += scan.first_spans;
       second_spans += scan.second_spans;
-      overflow += scan.overflow;
     }
-    offence_.require(overflow == overflow_cells, "overflow_start",
-                     "describes {} overflow cells, wanted the {} that the cells name",
-                     overflow_cells, overflow);
-    totals_.spans = first_spans + second_spans + block_.overflow_spans;
-    totals_.max_spans_per_column = second_spans != 0 ? 2 : (first_spans != 0 ? 1 : 0);
+    offence_.require(next_overflow_ == block_.overflow_elements, overflowField(next_overflow_),
+                     "belongs to no overflow cell, wanted {} elements as the cells name them",
+                     next_overflow_);
+    totals_.spans += first_spans + second_spans;
+    const std::uint32_t inline_spans = second_spans != 0 ? 2 : (first_spans != 0 ? 1 : 0);
+    totals_.max_spans_per_column = std::max(totals_.max_spans_per_column, inline_spans);
   }
 
-  /// Whether the overflow cells among `cells` are numbered from `next` on.
-  static bool overflowInOrder(std::span<const std::uint64_t> cells, std::uint64_t next) {
-    bool good = true;
-    for (const std::uint64_t cell : cells) {
-      if (isOverflow(cell)) good &= overflowIndex(cell) == next++;
+  /// Checks the overflow cells of the tiles from `begin` to `end` with their spans.
+  void checkOverflowCells(std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin * kCellsPerTile; n < end * kCellsPerTile && !offence_.found(); ++n) {
+      const std::uint64_t cell = layout_.cells[n];
+      if (!isOverflow(cell)) continue;
+      offence_.require(overflowStart(cell) == next_overflow_, fmt::format("cells[{}]", element(n)),
+                       "is an overflow cell whose spans begin at element {}, wanted {}",
+                       overflowStart(cell), next_overflow_);
+      if (!offence_.found()) checkOverflowSpans();
     }
-    return good;
   }
 
   /// Says which cell of the tiles from `begin` to `end` is the first to offend, and how.
-  void explain(std::size_t begin, std::size_t end, std::uint64_t next_overflow) {
+  void explain(std::size_t begin, std::size_t end) {
     for (std::size_t n = begin * kCellsPerTile; n < end * kCellsPerTile && !offence_.found(); ++n) {
       const std::uint64_t cell = layout_.cells[n];
-      const std::string field = fmt::format("cells[{}]", element(n));
-      if (!isOverflow(cell)) {
-        explainCell(cell, highestCode(n / kCellsPerTile), field);
-        continue;
-      }
-      offence_.require(overflowIndex(cell) == next_overflow, field,
-                       "is an overflow cell with index {}, wanted {}", overflowIndex(cell),
-                       next_overflow);
-      ++next_overflow;
+      if (isOverflow(cell)) continue;
+      explainCell(cell, highestCode(n / kCellsPerTile), fmt::format("cells[{}]", element(n)));
     }
     assert(offence_.found());
   }
@@ -195,46 +187,42 @@ class CellChecker {
     }
   }
 
-  void checkOverflowStart() {
-    const auto start = block_.overflow_start;
-    offence_.require(start.front() == 0, "overflow_start[0]", "is {}, wanted 0", start.front());
-    for (std::size_t n = 1; n < start.size(); ++n) {
-      if (start[n] > start[n - 1]) continue;
-      return offence_.require(false, fmt::format("overflow_start[{}]", n),
-                              "is {} after {}, wanted more: each overflow cell has a span",
-                              start[n], start[n - 1]);
-    }
-    offence_.require(
-        start.back() == block_.overflow_spans, fmt::format("overflow_start[{}]", start.size() - 1),
-        "is {}, wanted the number of overflow spans {}", start.back(), block_.overflow_spans);
-  }
-
+  /// Checks the spans of one overflow cell, from element next_overflow_ to the end mark, and moves
+  /// next_overflow_ behind it.
   void checkOverflowSpans() {
-    if (offence_.found()) return;
     const Span heights{layout_.heights.lo - layout_.quantum, layout_.heights.hi + layout_.quantum};
-    for (std::size_t cell = 0; cell + 1 < block_.overflow_start.size(); ++cell) {
-      const std::uint32_t begin = block_.overflow_start[cell];
-      const std::uint32_t end = block_.overflow_start[cell + 1];
-      totals_.max_spans_per_column = std::max(totals_.max_spans_per_column, end - begin);
-      for (std::uint32_t n = begin; n < end; ++n) {
-        const Span span = overflowSpan(layout_, n);
-        // False for NaN and infinity.
-        const bool inside = span.lo >= heights.lo && span.lo <= span.hi && span.hi <= heights.hi;
-        const bool above = n == begin || span.lo > overflowSpan(layout_, n - 1).hi;
-        if (inside && above) continue;
-        return explainOverflowSpan(n, inside);
-      }
+    const std::size_t first = next_overflow_;
+    std::size_t n = first;
+    for (; n < block_.overflow_elements; ++n) {
+      const Span span = overflowSpan(layout_, static_cast<std::uint32_t>(n));
+      if (span == kEndOfSpans) break;
+      // False for NaN and infinity.
+      const bool inside = span.lo >= heights.lo && span.lo <= span.hi && span.hi <= heights.hi;
+      const bool above =
+          n == first || span.lo > overflowSpan(layout_, static_cast<std::uint32_t>(n - 1)).hi;
+      if (!inside || !above) return explainOverflowSpan(n, inside);
     }
+    offence_.require(n < block_.overflow_elements, overflowField(first),
+                     "begins the spans of an overflow cell, wanted an end mark behind them");
+    offence_.require(n > first, overflowField(first),
+                     "is an end mark, wanted the first span of an overflow cell");
+    totals_.spans += n - first;
+    totals_.max_spans_per_column =
+        std::max(totals_.max_spans_per_column, static_cast<std::uint32_t>(n - first));
+    next_overflow_ = n + 1;
   }
 
-  void explainOverflowSpan(std::uint32_t n, bool inside) {
-    const Span span = overflowSpan(layout_, n);
-    const std::string field = fmt::format(
-        "{}[{}]", layout_.overflow_codes == nullptr ? "overflow_spans" : "overflow_codes", n);
-    offence_.require(inside, field,
+  [[nodiscard]] std::string overflowField(std::size_t n) const {
+    return fmt::format("{}[{}]",
+                       layout_.overflow_codes == nullptr ? "overflow_spans" : "overflow_codes", n);
+  }
+
+  void explainOverflowSpan(std::size_t n, bool inside) {
+    const Span span = overflowSpan(layout_, static_cast<std::uint32_t>(n));
+    offence_.require(inside, overflowField(n),
                      "is {} to {} m, wanted ascending finite heights inside the grid's {} to {} m",
                      span.lo, span.hi, layout_.heights.lo, layout_.heights.hi);
-    offence_.require(false, field,
+    offence_.require(false, overflowField(n),
                      "begins at {} m, wanted above the end of the span before it in its column",
                      span.lo);
   }
@@ -243,6 +231,8 @@ class CellChecker {
   const ColumnGridLayout& layout_;
   Offence offence_;
   std::int64_t highest_code_ = 0;
+  /// Where the spans of the next overflow cell begin.
+  std::size_t next_overflow_ = 0;
   CellTotals totals_;
 };
 

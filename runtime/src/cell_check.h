@@ -13,9 +13,8 @@ struct CellBlock {
   ColumnGridLayout layout;
   /// The whole vector of cells: layout.cells points into it, unused elements stand around.
   std::span<const std::uint64_t> stored_cells;
-  std::span<const std::uint32_t> overflow_start;
-  /// Number of overflow spans, be they codes or heights.
-  std::size_t overflow_spans = 0;
+  /// Number of overflow spans and end marks, be they codes or heights.
+  std::size_t overflow_elements = 0;
 };
 
 /// What the cells hold, counted on the way.

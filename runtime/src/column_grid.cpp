@@ -1,6 +1,5 @@
 #include "galactic/column_grid.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -46,7 +45,7 @@ inline Contact contactAt(const ColumnGridLayout& grid, Vec3 centre) {
   const std::uint32_t index = cellIndex(static_cast<std::uint32_t>(cell_x),
                                         static_cast<std::uint32_t>(cell_z), grid.tiles_x);
   const std::uint64_t cell = grid.cells[index];
-  if (isOverflow(cell)) return detail::contactInOverflow(grid, overflowIndex(cell), centre.y);
+  if (isOverflow(cell)) return detail::contactInOverflow(grid, overflowStart(cell), centre.y);
 
   const float code = (centre.y - grid.heights.lo) * grid.inverse_quantum -
                      static_cast<float>(kCodesPerTileBase * tileBase(grid, index));
@@ -66,19 +65,18 @@ namespace detail {
 Span overflowSpan(const ColumnGridLayout& grid, std::uint32_t n) noexcept {
   if (grid.overflow_codes == nullptr) return grid.overflow_spans[n];
   const std::uint32_t codes = grid.overflow_codes[n];
+  if (codes == kEndOfCodes) return kEndOfSpans;
   return {grid.heights.lo + grid.quantum * static_cast<float>(lowCode(codes)),
           grid.heights.lo + grid.quantum * static_cast<float>(highCode(codes))};
 }
 
-Contact contactInOverflow(const ColumnGridLayout& grid, std::uint32_t index, float y) noexcept {
-  const std::uint32_t end = grid.overflow_start[index + 1];
-  for (std::uint32_t s = grid.overflow_start[index]; s < end; ++s) {
-    const Span span = overflowSpan(grid, s);
-    if (y > span.hi) continue;
-    if (y < span.lo) break;
-    return {Clearance::kFree, y - span.lo, span.hi - y};
-  }
-  return {};
+Contact contactInOverflow(const ColumnGridLayout& grid, std::uint32_t start, float y) noexcept {
+  // The end mark lies above every height: the walk stops there.
+  std::uint32_t n = start;
+  Span span = overflowSpan(grid, n);
+  while (y > span.hi) span = overflowSpan(grid, ++n);
+  if (y < span.lo) return {};
+  return {Clearance::kFree, y - span.lo, span.hi - y};
 }
 
 void contactPortable(const ColumnGridLayout& grid, const ContactBatch& batch) noexcept {
@@ -137,13 +135,12 @@ std::size_t ColumnGrid::spans(std::uint32_t i, std::uint32_t k,
   const std::uint32_t index = cellIndex(i, k, layout_.tiles_x);
   const std::uint64_t cell = layout_.cells[index];
   if (isOverflow(cell)) {
-    const std::uint32_t* start = layout_.overflow_start + overflowIndex(cell);
-    const std::size_t count = start[1] - start[0];
-    const auto copied = static_cast<std::uint32_t>(std::min(count, out.size()));
-    for (std::uint32_t n = 0; n < copied; ++n) {
-      out[n] = detail::overflowSpan(layout_, start[0] + n);
+    std::size_t count = 0;
+    for (std::uint32_t n = overflowStart(cell);; ++n, ++count) {
+      const Span span = detail::overflowSpan(layout_, n);
+      if (span == kEndOfSpans) return count;
+      if (count < out.size()) out[count] = span;
     }
-    return count;
   }
   const std::uint32_t base = kCodesPerTileBase * tileBase(layout_, index);
   const auto height = [&](std::uint32_t code) {

@@ -138,13 +138,13 @@ void storeClearance(const Found& found, Clearance* out) {
 /// Answers the lanes whose cells keep their spans in the overflow block, one by one: few do.
 void answerOverflow(const ColumnGridLayout& grid, const ContactBatch& batch, std::size_t first,
                     const Found& found) {
-  alignas(32) std::uint32_t index[kLanes];
-  _mm256_store_si256(reinterpret_cast<__m256i*>(index), found.upper_half);
+  alignas(32) std::uint32_t start[kLanes];
+  _mm256_store_si256(reinterpret_cast<__m256i*>(start), found.upper_half);
   auto lanes = static_cast<unsigned>(_mm256_movemask_ps(found.overflow));
   while (lanes != 0) {
     const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
     lanes &= lanes - 1;
-    const Contact contact = contactInOverflow(grid, index[lane], batch.y[first + lane]);
+    const Contact contact = contactInOverflow(grid, start[lane], batch.y[first + lane]);
     batch.clearance[first + lane] = contact.clearance;
     if (batch.down == nullptr) continue;
     batch.down[first + lane] = contact.down;

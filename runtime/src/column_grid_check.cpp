@@ -76,24 +76,19 @@ Result<void> checkVectors(const schema::ColumnGrid& grid, const std::byte* file,
   offence.require(grid.tile_base()->size() == 0 || grid.tile_base()->size() == tiles, "tile_base",
                   "has {} elements, wanted none or {}, one per tile", grid.tile_base()->size(),
                   tiles);
-  offence.require(grid.overflow_start()->size() >= 1, "overflow_start",
-                  "is empty, wanted one element more than overflow cells");
   requireAligned(offence, *grid.cells(), file, "cells");
   requireAligned(offence, *grid.tile_base(), file, "tile_base");
-  requireAligned(offence, *grid.overflow_start(), file, "overflow_start");
+  requireAligned(offence, *grid.overflow_codes(), file, "overflow_codes");
   requireAligned(offence, *grid.overflow_spans(), file, "overflow_spans");
   const bool tall = grid.tile_base()->size() != 0;
   offence.require(tall || grid.overflow_spans()->size() == 0, "overflow_spans",
                   "has {} elements in a grid without tile bases, wanted none: overflow_codes has "
                   "its spans",
                   grid.overflow_spans()->size());
-  if (grid.overflow_codes() != nullptr) {
-    requireAligned(offence, *grid.overflow_codes(), file, "overflow_codes");
-    offence.require(!tall || grid.overflow_codes()->size() == 0, "overflow_codes",
-                    "has {} elements in a grid with tile bases, wanted none: overflow_spans has "
-                    "its spans",
-                    grid.overflow_codes()->size());
-  }
+  offence.require(!tall || grid.overflow_codes()->size() == 0, "overflow_codes",
+                  "has {} elements in a grid with tile bases, wanted none: overflow_spans has "
+                  "its spans",
+                  grid.overflow_codes()->size());
   return offence.result();
 }
 
@@ -138,22 +133,16 @@ Result<void> checkStatistics(const schema::GridStatistics& statistics, const Cel
   return offence.result();
 }
 
-std::size_t overflowSpanCount(const schema::ColumnGrid& grid) {
-  const std::size_t codes = grid.overflow_codes() == nullptr ? 0 : grid.overflow_codes()->size();
-  return codes + grid.overflow_spans()->size();
-}
-
 }  // namespace
 
 Result<void> checkColumnGrid(const schema::ColumnGrid& grid, std::span<const std::byte> file,
                              const std::string& where) {
   if (auto checked = checkFrame(grid, where); !checked) return checked;
   if (auto checked = checkVectors(grid, file.data(), where); !checked) return checked;
-  const CellBlock block{
-      .layout = gridLayout(grid, file.data()),
-      .stored_cells = {grid.cells()->data(), grid.cells()->size()},
-      .overflow_start = {grid.overflow_start()->data(), grid.overflow_start()->size()},
-      .overflow_spans = overflowSpanCount(grid)};
+  const CellBlock block{.layout = gridLayout(grid, file.data()),
+                        .stored_cells = {grid.cells()->data(), grid.cells()->size()},
+                        .overflow_elements = std::size_t{grid.overflow_codes()->size()} +
+                                             grid.overflow_spans()->size()};
   const Result<CellTotals> totals = checkCells(block, where);
   if (!totals) return tl::unexpected<Error>(totals.error());
   return checkStatistics(*grid.statistics(), *totals, where);

@@ -29,11 +29,12 @@ void contactAvx2(const ColumnGridLayout& grid, const ContactBatch& batch) noexce
 /// Whether contactAvx2 can run on this processor.
 [[nodiscard]] bool hasAvx2() noexcept;
 
-/// Free span number `n` of all overflow cells, as heights.
+/// Element `n` of the overflow cells' spans, as heights; kEndOfSpans for an end mark.
 [[nodiscard]] Span overflowSpan(const ColumnGridLayout& grid, std::uint32_t n) noexcept;
 
-/// The answer of overflow cell number `index` for a centre at height `y`.
-[[nodiscard]] Contact contactInOverflow(const ColumnGridLayout& grid, std::uint32_t index,
+/// The answer of the overflow cell whose spans begin at element `start` for a centre at height `y`,
+/// inside the grid's heights.
+[[nodiscard]] Contact contactInOverflow(const ColumnGridLayout& grid, std::uint32_t start,
                                         float y) noexcept;
 
 }  // namespace galactic::detail

@@ -25,9 +25,8 @@ ColumnGridLayout gridLayout(const schema::ColumnGrid& grid, const std::byte* fil
   layout.tiles_x = tileCount(grid.columns_x(), kTileColumnsX);
   layout.cells = reinterpret_cast<const std::uint64_t*>(cells) + tilePadding(offset);
   layout.tile_base = grid.tile_base()->size() == 0 ? nullptr : grid.tile_base()->data();
-  layout.overflow_start = grid.overflow_start()->data();
-  const auto* codes = grid.overflow_codes();
-  layout.overflow_codes = codes == nullptr || codes->size() == 0 ? nullptr : codes->data();
+  layout.overflow_codes =
+      grid.overflow_codes()->size() == 0 ? nullptr : grid.overflow_codes()->data();
   layout.overflow_spans = reinterpret_cast<const Span*>(grid.overflow_spans()->Data());
   return layout;
 }

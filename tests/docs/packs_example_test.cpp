@@ -52,9 +52,8 @@ TEST(PacksDocument, ShowsTheQuantumOfItsExample) {
 
 TEST(PacksDocument, ShowsTheOverflowOfItsExample) {
   const EncodedGrid grid = encodeGrid(exampleColumns());
-  EXPECT_EQ(grid.overflow_start, (std::vector<std::uint32_t>{0, 3}));
+  EXPECT_EQ(grid.overflow_codes.size(), 4U);
   const std::string document = readDocument();
-  EXPECT_THAT(document, HasSubstr("`overflow_start` is (0, 3)"));
   std::string codes;
   for (const std::uint32_t pair : grid.overflow_codes) {
     codes += fmt::format("{}`{:08x}`", codes.empty() ? "" : ", ", pair);

@@ -170,8 +170,6 @@ TEST(PackCheck, RefusesWrongSizesOfAGrid) {
              [](GridFields& g) { g.extra_cells = 1; }),
       inGrid("tile_base", "has 3 elements, wanted none or 4, one per tile",
              [](GridFields& g) { g.grid.tile_base.assign(3, 0); }),
-      inGrid("overflow_start", "is empty, wanted one element more than overflow cells",
-             [](GridFields& g) { g.grid.overflow_start.clear(); }),
       inGrid("coverage", "is 2, wanted a value up to 1", [](GridFields& g) { g.coverage = 2; }),
   });
 }
@@ -243,9 +241,11 @@ TEST(PackCheck, RefusesWrongCells) {
       inCell(0, cellOf(kEmptySpanCode, spanCode(1, 2)), "has a second span but no first one"),
       inCell(9, cellOf(spanCode(1, 2)),
              "lies beyond the last column and is 0xffff00020001, wanted blocked 0xffff0000ffff"),
-      inCell(6, overflowCell(1), "is an overflow cell with index 1, wanted 0"),
-      inCell(19, overflowCell(0), "is an overflow cell with index 0, wanted 1"),
-      inGrid(cellField(6), "is an overflow cell with index 0, wanted 1",
+      inCell(6, overflowCell(1), "is an overflow cell whose spans begin at element 1, wanted 0"),
+      inCell(19, overflowCell(0), "is an overflow cell whose spans begin at element 0, wanted 4"),
+      inCell(19, overflowCell(0xffffffff),
+             "is an overflow cell whose spans begin at element 4294967295, wanted 4"),
+      inGrid(cellField(6), "is an overflow cell whose spans begin at element 0, wanted 4",
              [](GridFields& g) { g.grid.cells[2] = overflowCell(0); }),
   });
 }
@@ -287,25 +287,29 @@ TEST(PackCheck, RefusesWrongTileBases) {
       [](GridFields& g) { g.grid.tile_base[0] = 0xffff; }));
 }
 
-TEST(PackCheck, RefusesWrongOverflowStarts) {
-  const auto start = [](std::size_t n, std::uint32_t value) {
-    return [=](GridFields& g) { g.grid.overflow_start[n] = value; };
-  };
-  const std::string described = " overflow cells, wanted the 2 that the cells name";
-  const std::string more = ", wanted more: each overflow cell has a span";
+TEST(PackCheck, RefusesOverflowListsThatDoNotEndWhereTheyShould) {
+  const std::string no_end = "begins the spans of an overflow cell, wanted an end mark behind them";
+  const std::string empty = "is an end mark, wanted the first span of an overflow cell";
   expectRefused({
-      inGrid("overflow_start", "describes 3" + described,
-             [](GridFields& g) { g.grid.overflow_start.push_back(8); }),
-      inGrid("overflow_start", "describes 1" + described,
-             [](GridFields& g) { g.grid.overflow_start.pop_back(); }),
-      inGrid("overflow_start[0]", "is 1, wanted 0", start(0, 1)),
-      inGrid("overflow_start[1]", "is 0 after 0" + more, start(1, 0)),
-      inGrid("overflow_start[2]", "is 2 after 3" + more, start(2, 2)),
-      inGrid("overflow_start[2]", "is 8, wanted the number of overflow spans 7", start(2, 8)),
-      inGrid("overflow_start[2]", "is 4294967295, wanted the number of overflow spans 7",
-             start(2, 0xffffffff)),
-      inTallGrid("overflow_start[2]", "is 3 after 3" + more, start(2, 3)),
-      inTallGrid("overflow_start[2]", "is 5, wanted the number of overflow spans 4", start(2, 5)),
+      inGrid("overflow_codes[4]", no_end, [](GridFields& g) { g.grid.overflow_codes.pop_back(); }),
+      inGrid("overflow_codes[4]", no_end, [](GridFields& g) { g.grid.overflow_codes.resize(4); }),
+      inGrid("overflow_codes[0]", empty,
+             [](GridFields& g) { g.grid.overflow_codes[0] = kEndOfCodes; }),
+      inGrid(cellField(19), "is an overflow cell whose spans begin at element 4, wanted 3",
+             [](GridFields& g) { g.grid.overflow_codes[2] = kEndOfCodes; }),
+      inGrid("overflow_codes[9]",
+             "belongs to no overflow cell, wanted 9 elements as the cells name "
+             "them",
+             [](GridFields& g) { g.grid.overflow_codes.push_back(kEndOfCodes); }),
+      inTallGrid("overflow_spans[4]", no_end,
+                 [](GridFields& g) { g.grid.overflow_spans.pop_back(); }),
+      inTallGrid("overflow_spans[4]", empty,
+                 [](GridFields& g) { g.grid.overflow_spans[4] = kEndOfSpans; }),
+      inTallGrid("overflow_spans[6]",
+                 "belongs to no overflow cell, wanted 6 elements as the cells name them",
+                 [](GridFields& g) {
+                   g.grid.overflow_spans.push_back({1, 2});
+                 }),
   });
 }
 
@@ -322,7 +326,7 @@ TEST(PackCheck, RefusesWrongOverflowCodes) {
       inGrid("overflow_codes[0]", "is 2 to 1 m" + inside, codes(0, 8192, 4096)),
       inGrid("overflow_codes[2]", "is 5 to 15 m" + inside, codes(2, 20480, 61440)),
       inGrid("overflow_codes[1]", "begins at 2 m" + above, codes(1, 8192, 16384)),
-      inGrid("overflow_codes[6]", "begins at 1 m" + above, codes(6, 4096, 16384)),
+      inGrid("overflow_codes[7]", "begins at 1 m" + above, codes(7, 4096, 16384)),
       inTallGrid("overflow_codes",
                  "has 1 elements in a grid with tile bases, wanted none: overflow_spans has its "
                  "spans",
@@ -339,9 +343,9 @@ TEST(PackCheck, RefusesWrongOverflowSpans) {
   expectRefused({
       inTallGrid("overflow_spans[0]", "is nan to 1 m" + inside, span(0, {kNan, 1})),
       inTallGrid("overflow_spans[0]", "is 0 to nan m" + inside, span(0, {0, kNan})),
-      inTallGrid("overflow_spans[3]", "is 1 to inf m" + inside, span(3, {1, kInfinity})),
+      inTallGrid("overflow_spans[4]", "is 1 to inf m" + inside, span(4, {1, kInfinity})),
       inTallGrid("overflow_spans[2]", "is 5 to 4 m" + inside, span(2, {5, 4})),
-      inTallGrid("overflow_spans[3]", "is 1 to 36.5 m" + inside, span(3, {1, 36.5F})),
+      inTallGrid("overflow_spans[4]", "is 1 to 36.5 m" + inside, span(4, {1, 36.5F})),
       inTallGrid("overflow_spans[0]", "is -4.5 to 1 m" + inside, span(0, {-4.5F, 1})),
       inTallGrid("overflow_spans[1]", "begins at 1 m" + above, span(1, {1, 3})),
       inGrid("overflow_spans",

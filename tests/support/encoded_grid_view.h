@@ -21,7 +21,6 @@ inline ColumnGrid viewOf(const bake::EncodedGrid& grid) {
   layout.tiles_x = tileCount(grid.frame.columns_x, kTileColumnsX);
   layout.cells = grid.cells.data();
   layout.tile_base = grid.tile_base.empty() ? nullptr : grid.tile_base.data();
-  layout.overflow_start = grid.overflow_start.data();
   layout.overflow_codes = grid.overflow_codes.empty() ? nullptr : grid.overflow_codes.data();
   layout.overflow_spans = grid.overflow_spans.data();
   return ColumnGrid(layout);

@@ -31,8 +31,7 @@ struct TestGrid {
   /// The tiles, without the padding that a pack adds.
   std::vector<std::uint64_t> cells;
   std::vector<std::uint16_t> tile_base;
-  std::vector<std::uint32_t> overflow_start{0};
-  /// Spans of the overflow cells: codes in a flat grid, heights in a tall one.
+  /// Spans and end marks of the overflow cells: codes in a flat grid, heights in a tall one.
   std::vector<std::uint32_t> overflow_codes;
   std::vector<Span> overflow_spans;
 
@@ -51,7 +50,6 @@ struct TestGrid {
     layout.tiles_x = tileCount(spec.columns_x, kTileColumnsX);
     layout.cells = cells.data();
     layout.tile_base = tile_base.empty() ? nullptr : tile_base.data();
-    layout.overflow_start = overflow_start.data();
     layout.overflow_codes = overflow_codes.empty() ? nullptr : overflow_codes.data();
     layout.overflow_spans = overflow_spans.data();
     return ColumnGrid(layout);
@@ -80,7 +78,7 @@ class GridBuilder {
     if (lowestCode({spec.heights.hi, spec.heights.hi}) > std::int64_t{kMaxCode}) {
       fillTileBase(grid);
     }
-    // Overflow cells are numbered in the order of the cells, so walk over cells, not columns.
+    // Overflow spans stand in the order of the cells, so walk over cells, not columns.
     const std::uint32_t tiles_x = tileCount(spec.columns_x, kTileColumnsX);
     const std::uint32_t tiles_z = tileCount(spec.columns_z, kTileColumnsZ);
     for (std::uint32_t tile_z = 0; tile_z < tiles_z; ++tile_z) {
@@ -143,7 +141,7 @@ class GridBuilder {
                                      std::int64_t base) const {
     if (spans.empty()) return kBlockedCell;
     if (spans.size() > 2 || highestCode(spans.back()) - base > std::int64_t{kMaxCode}) {
-      const auto index = static_cast<std::uint32_t>(grid.overflow_start.size() - 1);
+      const std::size_t start = grid.overflow_codes.size() + grid.overflow_spans.size();
       for (const Span& span : spans) {
         if (grid.tile_base.empty()) {
           grid.overflow_codes.push_back(static_cast<std::uint32_t>(code(span, 0)));
@@ -151,9 +149,12 @@ class GridBuilder {
           grid.overflow_spans.push_back(span);
         }
       }
-      grid.overflow_start.push_back(
-          static_cast<std::uint32_t>(grid.overflow_codes.size() + grid.overflow_spans.size()));
-      return overflowCell(index);
+      if (grid.tile_base.empty()) {
+        grid.overflow_codes.push_back(kEndOfCodes);
+      } else {
+        grid.overflow_spans.push_back(kEndOfSpans);
+      }
+      return overflowCell(static_cast<std::uint32_t>(start));
     }
     std::array<std::uint64_t, 2> codes{kEmptySpanCode, kEmptySpanCode};
     for (std::size_t n = 0; n < spans.size(); ++n) codes[n] = code(spans[n], base);

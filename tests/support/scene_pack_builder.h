@@ -163,21 +163,19 @@ class ScenePackBuilder {
     builder_.ForceVectorAlignment(cells.size(), sizeof(std::uint64_t), fields.cells_alignment);
     const auto stored_cells = builder_.CreateVector(cells);
     const auto tile_base = alignedVector(grid.tile_base);
-    const auto overflow_start = alignedVector(grid.overflow_start);
+    const auto overflow_codes = alignedVector(grid.overflow_codes);
     std::vector<schema::Span> spans;
     for (const Span& span : grid.overflow_spans) spans.emplace_back(span.lo, span.hi);
     builder_.ForceVectorAlignment(spans.size(), sizeof(schema::Span), 32);
     const auto overflow_spans = builder_.CreateVectorOfStructs(spans);
-    flatbuffers::Offset<flatbuffers::Vector<std::uint32_t>> overflow_codes;
-    if (!grid.overflow_codes.empty()) overflow_codes = alignedVector(grid.overflow_codes);
     const auto statistics = buildStatistics(fields);
     const GridSpec& spec = grid.spec;
     const schema::Span heights(spec.heights.lo, spec.heights.hi);
-    return schema::CreateColumnGrid(
-        builder_, spec.radius, spec.spacing, spec.min_x, spec.min_z, spec.columns_x, spec.columns_z,
-        fields.has_heights ? &heights : nullptr, spec.quantum,
-        static_cast<schema::Coverage>(fields.coverage), stored_cells, tile_base, overflow_start,
-        overflow_spans, statistics, overflow_codes);
+    return schema::CreateColumnGrid(builder_, spec.radius, spec.spacing, spec.min_x, spec.min_z,
+                                    spec.columns_x, spec.columns_z,
+                                    fields.has_heights ? &heights : nullptr, spec.quantum,
+                                    static_cast<schema::Coverage>(fields.coverage), stored_cells,
+                                    tile_base, overflow_codes, overflow_spans, statistics);
   }
 
   flatbuffers::Offset<schema::GridStatistics> buildStatistics(const GridFields& fields) {

@@ -70,7 +70,6 @@ class GridEncoder {
     grid_.frame = frame;
     grid_.quantum = quantizer_.quantum();
     grid_.cells.reserve(cellCount(frame.columns_x, frame.columns_z));
-    grid_.overflow_start.push_back(0);
     const std::uint32_t tiles_x = tileCount(frame.columns_x, kTileColumnsX);
     const std::uint32_t tiles_z = tileCount(frame.columns_z, kTileColumnsZ);
     for (std::uint32_t tile_z = 0; tile_z < tiles_z; ++tile_z) {
@@ -148,7 +147,8 @@ class GridEncoder {
   }
 
   std::uint64_t overflowCellOf(std::span<const Span> spans) {
-    const auto index = static_cast<std::uint32_t>(grid_.overflow_start.size() - 1);
+    ++grid_.overflow_columns;
+    const std::size_t start = grid_.overflow_codes.size() + grid_.overflow_spans.size();
     for (const Span& span : spans) {
       const Codes codes = quantizer_.encode(span);
       if (codes.lo > codes.hi) continue;
@@ -159,9 +159,12 @@ class GridEncoder {
             spanCode(static_cast<std::uint32_t>(codes.lo), static_cast<std::uint32_t>(codes.hi))));
       }
     }
-    grid_.overflow_start.push_back(
-        static_cast<std::uint32_t>(grid_.overflow_codes.size() + grid_.overflow_spans.size()));
-    return overflowCell(index);
+    if (quantizer_.tall()) {
+      grid_.overflow_spans.push_back(kEndOfSpans);
+    } else {
+      grid_.overflow_codes.push_back(kEndOfCodes);
+    }
+    return overflowCell(static_cast<std::uint32_t>(start));
   }
 
   const Columns& columns_;
@@ -175,7 +178,7 @@ EncodedGrid encodeGrid(const Columns& columns) { return GridEncoder(columns).enc
 
 std::uint64_t storedBytes(const EncodedGrid& grid) {
   return grid.cells.size() * sizeof(std::uint64_t) + grid.tile_base.size() * sizeof(std::uint16_t) +
-         (grid.overflow_start.size() + grid.overflow_codes.size()) * sizeof(std::uint32_t) +
+         grid.overflow_codes.size() * sizeof(std::uint32_t) +
          grid.overflow_spans.size() * sizeof(Span);
 }
 

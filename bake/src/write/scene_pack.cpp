@@ -69,14 +69,12 @@ Offset<schema::ColumnGrid> columnGrid(FlatBufferBuilder& builder, const BakedGri
   const EncodedGrid& grid = baked.grid;
   const auto cells = cellVector(builder, grid.cells);
   const auto tile_base = alignedVector(builder, grid.tile_base);
-  const auto overflow_start = alignedVector(builder, grid.overflow_start);
+  const auto overflow_codes = alignedVector(builder, grid.overflow_codes);
   builder.ForceVectorAlignment(grid.overflow_spans.size(), sizeof(schema::Span), kVectorAlignment);
   static_assert(sizeof(Span) == sizeof(schema::Span));
   const auto overflow_spans = builder.CreateVectorOfStructs(
       reinterpret_cast<const schema::Span*>(grid.overflow_spans.data()),
       grid.overflow_spans.size());
-  Offset<flatbuffers::Vector<std::uint32_t>> overflow_codes;
-  if (!grid.overflow_codes.empty()) overflow_codes = alignedVector(builder, grid.overflow_codes);
   const auto counts = statistics(builder, baked);
   const schema::Span heights(grid.frame.heights.lo, grid.frame.heights.hi);
   schema::ColumnGridBuilder table(builder);
@@ -92,10 +90,9 @@ Offset<schema::ColumnGrid> columnGrid(FlatBufferBuilder& builder, const BakedGri
                                                  : schema::Coverage::Column);
   table.add_cells(cells);
   table.add_tile_base(tile_base);
-  table.add_overflow_start(overflow_start);
+  table.add_overflow_codes(overflow_codes);
   table.add_overflow_spans(overflow_spans);
   table.add_statistics(counts);
-  table.add_overflow_codes(overflow_codes);
   return table.Finish();
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+
+#include "galactic/vec3.h"
 
 namespace galactic {
 
@@ -25,6 +28,10 @@ inline constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 27;
 inline constexpr std::uint64_t kEmptySpanCode = 0x0000ffffU;  // lo = 65535, hi = 0
 inline constexpr std::uint64_t kBlockedCell = kEmptySpanCode | (kEmptySpanCode << 32U);
 inline constexpr std::uint64_t kOverflowMark = 0xffffffffU;  // lo = hi = 65535
+/// What stands after the last span of an overflow cell, as a code pair and as heights.
+inline constexpr std::uint32_t kEndOfCodes = 0xffffffffU;  // lo = hi = 65535
+inline constexpr Span kEndOfSpans{std::numeric_limits<float>::max(),
+                                  std::numeric_limits<float>::max()};
 
 /// Tiles along an axis of `columns` cells.
 [[nodiscard]] constexpr std::uint32_t tileCount(std::uint32_t columns, std::uint32_t tile_columns) {
@@ -59,13 +66,13 @@ inline constexpr std::uint64_t kOverflowMark = 0xffffffffU;  // lo = hi = 65535
   return (cell & 0xffffffffU) == kOverflowMark;
 }
 
-/// Index of an overflow cell into overflow_start.
-[[nodiscard]] constexpr std::uint32_t overflowIndex(std::uint64_t cell) {
+/// Where the spans of an overflow cell begin in overflow_codes or overflow_spans.
+[[nodiscard]] constexpr std::uint32_t overflowStart(std::uint64_t cell) {
   return static_cast<std::uint32_t>(cell >> 32U);
 }
 
-[[nodiscard]] constexpr std::uint64_t overflowCell(std::uint32_t index) {
-  return kOverflowMark | (std::uint64_t{index} << 32U);
+[[nodiscard]] constexpr std::uint64_t overflowCell(std::uint32_t start) {
+  return kOverflowMark | (std::uint64_t{start} << 32U);
 }
 
 /// Elements to skip in the vector of cells whose first element stands at `offset` bytes in the

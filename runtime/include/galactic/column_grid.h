@@ -54,8 +54,7 @@ struct ColumnGridLayout {
   const std::uint64_t* cells = nullptr;
   /// nullptr when the whole grid fits in one range of codes.
   const std::uint16_t* tile_base = nullptr;
-  const std::uint32_t* overflow_start = nullptr;
-  /// One of the two: spans as code pairs, or as heights where codes do not reach.
+  /// One of the two: spans of overflow cells as code pairs, or as heights where codes do not reach.
   const std::uint32_t* overflow_codes = nullptr;
   const Span* overflow_spans = nullptr;
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -59,17 +60,17 @@ HeightList decode(const EncodedGrid& grid, std::uint32_t i, std::uint32_t k) {
   const std::uint64_t cell = grid.cells[tile * 8 + std::size_t{k % 2} * 4 + i % 4];
   HeightList spans;
   if ((cell & 0xffffffffU) == 0xffffffffU) {
-    const std::uint64_t index = cell >> 32U;
-    for (std::uint32_t s = grid.overflow_start[index]; s < grid.overflow_start[index + 1]; ++s) {
+    for (std::uint64_t s = cell >> 32U;; ++s) {
       if (grid.tile_base.empty()) {
-        const std::uint32_t pair = grid.overflow_codes[s];
+        const std::uint32_t pair = grid.overflow_codes.at(s);
+        if (pair == 0xffffffffU) return spans;
         appendCodes(grid, pair & 0xffffU, pair >> 16U, spans);
       } else {
-        spans.push_back({static_cast<double>(grid.overflow_spans[s].lo),
-                         static_cast<double>(grid.overflow_spans[s].hi)});
+        const Span& heights = grid.overflow_spans.at(s);
+        if (heights.lo == std::numeric_limits<float>::max()) return spans;
+        spans.push_back({static_cast<double>(heights.lo), static_cast<double>(heights.hi)});
       }
     }
-    return spans;
   }
   const std::uint64_t base =
       grid.tile_base.empty() ? 0U : 1024U * std::uint64_t{grid.tile_base[tile]};
@@ -235,7 +236,7 @@ TEST(GridEncoder, LaysOutAGridWithoutSpansAsBlocked) {
   EXPECT_EQ(grid.cells.size(), 32U);
   for (const std::uint64_t cell : grid.cells) EXPECT_EQ(cell, kBlockedCell);
   EXPECT_TRUE(grid.tile_base.empty());
-  EXPECT_EQ(grid.overflow_start, std::vector<std::uint32_t>{0});
+  EXPECT_EQ(grid.overflow_columns, 0U);
   EXPECT_TRUE(grid.overflow_codes.empty());
   EXPECT_TRUE(grid.overflow_spans.empty());
   EXPECT_EQ(grid.spans, 0U);
@@ -269,9 +270,13 @@ TEST(GridEncoder, KeepsTwoSpansInTheCellAndThreeBeside) {
   EXPECT_FALSE(isOverflow(grid.cells[2]));
   EXPECT_EQ(grid.max_spans_per_column, 3U);
   EXPECT_EQ(grid.spans, 6U);
-  EXPECT_EQ(grid.overflow_start, (std::vector<std::uint32_t>{0, 3}));
-  ASSERT_EQ(grid.overflow_codes.size(), 3U);
-  for (const std::uint32_t pair : grid.overflow_codes) EXPECT_LT(lowCode(pair), highCode(pair));
+  EXPECT_EQ(grid.overflow_columns, 1U);
+  ASSERT_EQ(grid.overflow_codes.size(), 4U);
+  EXPECT_EQ(overflowStart(grid.cells[1]), 0U);
+  for (std::size_t n = 0; n < 3; ++n) {
+    EXPECT_LT(lowCode(grid.overflow_codes[n]), highCode(grid.overflow_codes[n]));
+  }
+  EXPECT_EQ(grid.overflow_codes[3], kEndOfCodes);
 }
 
 /// A sliver is dropped before it is decided whether a column fits in its cell.
@@ -305,7 +310,8 @@ TEST(GridEncoder, KeepsAColumnOfFiftyMetresBesideItsCell) {
   EXPECT_FALSE(isOverflow(grid.cells[1]));
   EXPECT_TRUE(isOverflow(grid.cells[2]));
   // Heights as they are: floats need no rounding.
-  EXPECT_EQ(grid.overflow_spans, (std::vector<Span>{{0, 50}, {1, 3}, {4, 49.5F}}));
+  EXPECT_EQ(grid.overflow_spans,
+            (std::vector<Span>{{0, 50}, kEndOfSpans, {1, 3}, {4, 49.5F}, kEndOfSpans}));
   Seen seen;
   expectFaithful(columns, grid, seen);
   EXPECT_EQ(seen.stored, 4U);

@@ -13,14 +13,15 @@ struct EncodedGrid {
   float quantum = 0;
   std::vector<std::uint64_t> cells;
   std::vector<std::uint16_t> tile_base;
-  std::vector<std::uint32_t> overflow_start;
-  /// One of the two is empty: heights where there are tile bases, else code pairs.
+  /// One of the two is empty: heights where there are tile bases, else code pairs. The spans of
+  /// each overflow cell end with an end mark.
   std::vector<std::uint32_t> overflow_codes;
   std::vector<Span> overflow_spans;
   /// Spans stored, and those dropped because they are thinner than the quantum.
   std::uint64_t spans = 0;
   std::uint64_t slivers = 0;
   std::uint32_t max_spans_per_column = 0;
+  std::uint64_t overflow_columns = 0;
 };
 
 /// Bytes of the grid's cells and overflow spans.
