@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "cell_check.h"
+#include "common_check.h"
 #include "galactic/column_cell.h"
 #include "galactic/schema/pack_generated.h"
 #include "grid_layout.h"
@@ -91,8 +92,6 @@ Result<void> checkVectors(const schema::ColumnGrid& grid, const std::byte* file,
                   grid.overflow_codes()->size());
   return offence.result();
 }
-
-bool isAmount(double value) { return std::isfinite(value) && value >= 0; }
 
 Result<void> checkCastCheck(const schema::CastCheck& check, const std::string& where) {
   Offence offence(where + ".statistics.cast_check");

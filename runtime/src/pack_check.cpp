@@ -1,10 +1,10 @@
 #include "pack_check.h"
 
-#include <cmath>
-
-#include "column_grid_check.h"
-#include "galactic/schema/pack_generated.h"
+#include "common_check.h"
+#include "object_check.h"
 #include "offence.h"
+#include "robot_check.h"
+#include "scene_check.h"
 
 namespace galactic::detail {
 namespace {
@@ -13,9 +13,6 @@ namespace {
 constexpr flatbuffers::uoffset_t kMaxDepth = 16;
 /// Far above any real pack; bounds the time that a hostile one can take.
 constexpr flatbuffers::uoffset_t kMaxTables = 1'000'000;
-constexpr std::size_t kMaxGrids = 8;
-
-bool isEmpty(const flatbuffers::String* text) { return text->size() == 0; }
 
 bool isRelative(const flatbuffers::String* path) {
   return path->size() > 0 && path->c_str()[0] != '/';
@@ -40,52 +37,35 @@ Result<void> checkProvenance(const schema::Provenance& provenance, const std::st
   return offence.result();
 }
 
-bool isFinite(const schema::Vec3& v) {
-  return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+/// The asset of the kind that the header names, or the error of a pack that holds another.
+template <class Asset>
+Result<const Asset*> assetOf(const schema::Pack& pack, const PackHeader& header,
+                             const std::string& where) {
+  if (const Asset* asset = pack.asset_as<Asset>()) return asset;
+  return fail(ErrorCode::kInvalidInput, where + ": asset",
+              fmt::format("has type {}, the header says {}; bake the pack again",
+                          static_cast<unsigned>(pack.asset_type()), packKindName(header.kind)));
 }
 
-Result<void> checkImport(const schema::ImportStatistics& counts, const std::string& where) {
-  Offence offence(where + ": scene.import_statistics");
-  offence.require(!isEmpty(counts.format()), "format", "is empty, wanted a format's name");
-  // Subtracted one by one: a sum of hostile counts could wrap around.
-  const bool plausible =
-      counts.triangles_degenerate() <= counts.triangles_read() &&
-      counts.triangles_duplicate() <= counts.triangles_read() - counts.triangles_degenerate();
-  offence.require(plausible, "triangles_read",
-                  "is {}, wanted at least the {} degenerate and {} duplicate triangles dropped",
-                  counts.triangles_read(), counts.triangles_degenerate(),
-                  counts.triangles_duplicate());
-  const std::uint64_t remaining =
-      counts.triangles_read() - counts.triangles_degenerate() - counts.triangles_duplicate();
-  offence.require(counts.triangles() == remaining, "triangles",
-                  "is {}, wanted the {} that remain of those read", counts.triangles(), remaining);
-  return offence.result();
-}
-
-Result<void> checkScene(const schema::Scene& scene, std::span<const std::byte> file,
+Result<void> checkAsset(const PackHeader& header, std::span<const std::byte> file,
                         const std::string& where) {
-  Offence offence(where + ": scene");
-  offence.require(!isEmpty(scene.name()), "name", "is empty, wanted the scene's name");
-  const schema::Vec3& min = scene.bounds()->min();
-  const schema::Vec3& max = scene.bounds()->max();
-  offence.require(isFinite(min) && isFinite(max), "bounds", "are not finite, wanted numbers");
-  offence.require(min.x() <= max.x() && min.y() <= max.y() && min.z() <= max.z(), "bounds",
-                  "have a minimum ({}, {}, {}) above the maximum ({}, {}, {})", min.x(), min.y(),
-                  min.z(), max.x(), max.y(), max.z());
-  offence.require(checkImport(*scene.import_statistics(), where));
-
-  const auto& grids = *scene.column_grids();
-  offence.require(grids.size() >= 1 && grids.size() <= kMaxGrids, "column_grids",
-                  "has {} grids, wanted 1 to {}", grids.size(), kMaxGrids);
-  for (flatbuffers::uoffset_t n = 0; n < grids.size() && !offence.found(); ++n) {
-    const std::string field = fmt::format("column_grids[{}]", n);
-    offence.require(checkColumnGrid(*grids.Get(n), file, offence.where() + "." + field));
-    if (n == 0) continue;
-    const float previous = grids.Get(n - 1)->radius();
-    offence.require(grids.Get(n)->radius() > previous, field + ".radius",
-                    "is {} m after {} m, wanted ascending radii", grids.Get(n)->radius(), previous);
+  const schema::Pack& pack = *schema::GetPack(file.data() + sizeof(PackHeader));
+  if (header.kind == PackKind::kObjects) {
+    return assetOf<schema::ObjectSet>(pack, header, where)
+        .and_then([&](const schema::ObjectSet* set) { return checkObjectSet(*set, where); });
   }
-  return offence.result();
+  if (header.kind == PackKind::kRobot) {
+    return assetOf<schema::Robot>(pack, header, where).and_then([&](const schema::Robot* robot) {
+      return checkRobot(*robot, where);
+    });
+  }
+  return assetOf<schema::Scene>(pack, header, where).and_then([&](const schema::Scene* scene) {
+    return checkScene(*scene, file, where);
+  });
+}
+
+bool isReadable(PackKind kind) {
+  return kind == PackKind::kScene || kind == PackKind::kObjects || kind == PackKind::kRobot;
 }
 
 }  // namespace
@@ -108,10 +88,12 @@ Result<void> checkPayloadStart(std::span<const std::byte> payload, const std::st
 
 Result<void> checkPack(const PackHeader& header, std::span<const std::byte> file,
                        const std::string& where) {
-  if (header.kind != PackKind::kScene) {
+  if (!isReadable(header.kind)) {
     return fail(ErrorCode::kUnsupported, where,
-                fmt::format("is a pack of kind {}, this version reads only {}; update galactic",
-                            packKindName(header.kind), packKindName(PackKind::kScene)));
+                fmt::format("is a pack of kind {}, this version reads only {}, {} and {}; update "
+                            "galactic",
+                            packKindName(header.kind), packKindName(PackKind::kScene),
+                            packKindName(PackKind::kObjects), packKindName(PackKind::kRobot)));
   }
   const auto payload = file.subspan(sizeof(PackHeader));
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(payload.data());
@@ -123,13 +105,7 @@ Result<void> checkPack(const PackHeader& header, std::span<const std::byte> file
   }
   const schema::Pack& pack = *schema::GetPack(bytes);
   if (auto checked = checkProvenance(*pack.provenance(), where); !checked) return checked;
-  const schema::Scene* scene = pack.asset_as_Scene();
-  if (scene == nullptr) {
-    return fail(ErrorCode::kInvalidInput, where + ": asset",
-                fmt::format("has type {}, the header says {}; bake the pack again",
-                            static_cast<unsigned>(pack.asset_type()), packKindName(header.kind)));
-  }
-  return checkScene(*scene, file, where);
+  return checkAsset(header, file, where);
 }
 
 }  // namespace galactic::detail

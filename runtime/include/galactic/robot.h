@@ -1,0 +1,132 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "galactic/error.h"
+#include "galactic/kinematics.h"
+#include "galactic/pack.h"
+#include "galactic/sphere_set.h"
+
+namespace galactic {
+
+/// Limits of one value of the vector of joint positions, radians or metres; the largest floats
+/// where there is none. The memory layout is that of a pack.
+struct PositionLimits {
+  float lower = 0;
+  float upper = 0;
+};
+
+/// A joint that an action moves. The memory layout is that of a pack.
+struct ControlledJoint {
+  /// Index into the vector of joint positions.
+  std::uint32_t position = 0;
+  /// Farthest move of one action, radians or metres.
+  float step = 0;
+  /// Limits of the controlled motion, inside those of the joint.
+  float lower = 0;
+  float upper = 0;
+};
+
+/// Two groups of links that can touch: first < second.
+struct GroupPair {
+  std::uint16_t first = 0;
+  std::uint16_t second = 0;
+};
+
+/// Links that no joint moves against each other, as one rigid body of spheres.
+struct SphereGroup {
+  /// The link in whose frame the spheres are.
+  std::uint32_t link = 0;
+  std::span<const SetSphere> spheres;
+};
+
+struct EndEffector {
+  std::uint32_t link = 0;
+  /// In the link's frame, metres.
+  Vec3 grasp_point;
+  /// Metres.
+  float grasp_radius = 0;
+};
+
+struct RobotCamera {
+  std::uint32_t link = 0;
+  /// The camera looks along +X of its own frame, +Y is up in the image.
+  Pose link_from_camera;
+  /// Radians, between the lower and the upper edge of the image.
+  float vertical_fov = 0;
+};
+
+struct RobotBase {
+  /// Farthest drive of one action, metres, and farthest turn, radians.
+  float forward_step = 0;
+  float turn_step = 0;
+  /// Height of the root link's origin above the ground, metres.
+  float root_height = 0;
+  /// Rectangle on the ground in the root link's frame, metres.
+  Vec3 footprint_min;
+  Vec3 footprint_max;
+  /// > 0: the footprint is a circle of this radius around the middle of the rectangle.
+  float footprint_radius = 0;
+};
+
+/// The robot of a robot pack: kinematics, spheres and what its recipe says. Views into the pack,
+/// every frame Y up and X forward.
+class Robot {
+ public:
+  /// The robot in `pack`, which must outlive the result. Fails with kInvalidInput on another kind
+  /// of pack.
+  [[nodiscard]] static Result<Robot> from(const PackFile& pack);
+
+  [[nodiscard]] std::string_view name() const { return name_; }
+  /// The working set, metres, ascending.
+  [[nodiscard]] std::span<const float> radii() const { return radii_; }
+
+  /// Root first, parents before children: what forwardKinematics reads.
+  [[nodiscard]] std::span<const LinkFrame> links() const { return links_; }
+  [[nodiscard]] std::string_view linkName(std::size_t link) const { return link_names_[link]; }
+  /// Name of the joint to the parent; empty for the root.
+  [[nodiscard]] std::string_view jointName(std::size_t link) const { return joint_names_[link]; }
+  [[nodiscard]] std::optional<std::uint32_t> findLink(std::string_view name) const;
+
+  /// One entry per joint position.
+  [[nodiscard]] std::span<const PositionLimits> limits() const { return limits_; }
+  /// The joint positions in which an episode starts.
+  [[nodiscard]] std::span<const float> startPositions() const { return start_positions_; }
+  [[nodiscard]] std::size_t positionCount() const { return limits_.size(); }
+
+  [[nodiscard]] std::span<const SetSphere> spheres() const { return spheres_; }
+  [[nodiscard]] const std::vector<SphereGroup>& groups() const { return groups_; }
+  /// Pairs of groups that a self-collision test has to look at.
+  [[nodiscard]] const std::vector<GroupPair>& testedPairs() const { return tested_pairs_; }
+
+  /// In the order of the actions.
+  [[nodiscard]] std::span<const ControlledJoint> controlledJoints() const { return controlled_; }
+  /// None when the robot was baked without a recipe.
+  [[nodiscard]] const std::optional<EndEffector>& endEffector() const { return end_effector_; }
+  [[nodiscard]] const std::optional<RobotCamera>& camera() const { return camera_; }
+  [[nodiscard]] const std::optional<RobotBase>& base() const { return base_; }
+
+ private:
+  Robot() = default;
+
+  std::string_view name_;
+  std::span<const float> radii_;
+  std::span<const LinkFrame> links_;
+  std::vector<std::string_view> link_names_;
+  std::vector<std::string_view> joint_names_;
+  std::span<const PositionLimits> limits_;
+  std::span<const float> start_positions_;
+  std::span<const SetSphere> spheres_;
+  std::vector<SphereGroup> groups_;
+  std::vector<GroupPair> tested_pairs_;
+  std::span<const ControlledJoint> controlled_;
+  std::optional<EndEffector> end_effector_;
+  std::optional<RobotCamera> camera_;
+  std::optional<RobotBase> base_;
+};
+
+}  // namespace galactic

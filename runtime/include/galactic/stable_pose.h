@@ -1,0 +1,18 @@
+#pragma once
+#include "galactic/pose.h"
+
+namespace galactic {
+
+/// A way in which an object rests on a horizontal plane. The memory layout is that of a pack.
+struct StablePose {
+  /// plane_from_object: turns the object so that its support face lies down (-Y).
+  Quat rotation;
+  /// Height of the object's origin above the plane, metres.
+  float height = 0;
+  /// Share of random drops that end in this pose, 0 to 1.
+  float likelihood = 0;
+
+  friend bool operator==(const StablePose&, const StablePose&) = default;
+};
+
+}  // namespace galactic
