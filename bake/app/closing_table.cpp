@@ -54,13 +54,14 @@ void printClosingTable(const BakeOutcome& outcome, Verbosity verbosity) {
   const Bounds& bounds = scene.bounds;
   fmt::print("{} -> {}\n", outcome.input.string(),
              outcome.pack_bytes > 0 ? outcome.output.string() : "(dry run)");
-  fmt::print("  {}, {}; {} meshes, {} instances\n", scene.format, outcome.convention, scene.meshes,
-             scene.instances);
+  fmt::print("  {}, {}; {} meshes, {} instances\n", scene.imported.format, outcome.convention,
+             scene.imported.meshes, scene.imported.instances);
   fmt::print(
       "  {} triangles ({} degenerate, {} duplicate dropped), {:.2f} x {:.2f} x {:.2f} m, "
       "y from {:.3f} to {:.3f} m\n",
-      scene.triangles, scene.counts.degenerate, scene.counts.duplicate, bounds.max.x - bounds.min.x,
-      bounds.max.y - bounds.min.y, bounds.max.z - bounds.min.z, bounds.min.y, bounds.max.y);
+      scene.imported.triangles, scene.imported.counts.degenerate, scene.imported.counts.duplicate,
+      bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y, bounds.max.z - bounds.min.z,
+      bounds.min.y, bounds.max.y);
   printGrids(scene);
   if (verbosity == Verbosity::kVerbose) printDetails(scene);
   for (const std::string& warning : scene.warnings)

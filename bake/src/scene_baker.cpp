@@ -3,29 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+
+#include "stage_timer.h"
 
 namespace galactic::bake {
 namespace {
 
 /// A part of the free space left out is worth a warning from this share of the room's volume on.
 constexpr double kWorthMentioning = 0.1;
-
-/// Adds the time between its construction and destruction to a stage.
-class StageTimer {
- public:
-  explicit StageTimer(double& seconds) : seconds_(seconds) {}
-  ~StageTimer() {
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-  StageTimer(const StageTimer&) = delete;
-  StageTimer& operator=(const StageTimer&) = delete;
-
- private:
-  double& seconds_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 Result<void> checkRadii(const std::vector<float>& radii) {
   constexpr std::size_t kMaxRadii = 8;
@@ -174,11 +160,7 @@ Result<BakedScene> bakeScene(const SourceAsset& asset, const SceneBakeOptions& o
 
   BakedScene scene;
   scene.name = asset.name;
-  scene.format = asset.format;
-  scene.meshes = static_cast<std::uint32_t>(asset.meshes.size());
-  scene.instances = static_cast<std::uint32_t>(asset.instances.size());
-  scene.counts = cleaned->counts;
-  scene.triangles = cleaned->mesh.triangles.size();
+  scene.imported = importStatisticsOf(asset, *cleaned);
   scene.bounds = cleaned->mesh.bounds;
   scene.coverage = options.coverage;
   scene.warnings = asset.warnings;

@@ -5,31 +5,16 @@
 #include <cstring>
 #include <span>
 
-#include "galactic/atomic_file.h"
 #include "galactic/column_cell.h"
 #include "galactic/pack_header.h"
 #include "galactic/schema/pack_generated.h"
+#include "pack_payload.h"
 
 namespace galactic::bake {
 namespace {
 
-using flatbuffers::FlatBufferBuilder;
-using flatbuffers::Offset;
-
 /// FlatBuffers offsets are signed 32-bit; the rest of a pack is small beside its grids.
 constexpr std::uint64_t kMaxGridBytes = (std::uint64_t{1} << 31U) - (std::uint64_t{64} << 20U);
-/// What FlatBuffers 2.0 aligns to at most.
-constexpr std::size_t kVectorAlignment = 32;
-
-schema::Vec3 toSchema(const Vec3& v) { return {v.x, v.y, v.z}; }
-
-template <class T>
-Offset<flatbuffers::Vector<T>> alignedVector(FlatBufferBuilder& builder,
-                                             const std::vector<T>& values) {
-  builder.ForceVectorAlignment(values.size(), sizeof(T), kVectorAlignment);
-  return builder.CreateVector(values);
-}
-
 /// The cells with the unused elements behind them; `shiftTilesToCacheLines` moves them in place.
 Offset<flatbuffers::Vector<std::uint64_t>> cellVector(FlatBufferBuilder& builder,
                                                       const std::vector<std::uint64_t>& cells) {
@@ -68,13 +53,9 @@ Offset<schema::ColumnGrid> columnGrid(FlatBufferBuilder& builder, const BakedGri
                                       Coverage coverage) {
   const EncodedGrid& grid = baked.grid;
   const auto cells = cellVector(builder, grid.cells);
-  const auto tile_base = alignedVector(builder, grid.tile_base);
-  const auto overflow_codes = alignedVector(builder, grid.overflow_codes);
-  builder.ForceVectorAlignment(grid.overflow_spans.size(), sizeof(schema::Span), kVectorAlignment);
-  static_assert(sizeof(Span) == sizeof(schema::Span));
-  const auto overflow_spans = builder.CreateVectorOfStructs(
-      reinterpret_cast<const schema::Span*>(grid.overflow_spans.data()),
-      grid.overflow_spans.size());
+  const auto tile_base = alignedVector<std::uint16_t>(builder, grid.tile_base);
+  const auto overflow_codes = alignedVector<std::uint32_t>(builder, grid.overflow_codes);
+  const auto overflow_spans = alignedStructs<schema::Span>(builder, std::span(grid.overflow_spans));
   const auto counts = statistics(builder, baked);
   const schema::Span heights(grid.frame.heights.lo, grid.frame.heights.hi);
   schema::ColumnGridBuilder table(builder);
@@ -96,29 +77,6 @@ Offset<schema::ColumnGrid> columnGrid(FlatBufferBuilder& builder, const BakedGri
   return table.Finish();
 }
 
-Offset<schema::Provenance> provenanceTable(FlatBufferBuilder& builder,
-                                           const Provenance& provenance) {
-  std::vector<Offset<schema::Option>> options;
-  for (const auto& [name, value] : provenance.options) {
-    options.push_back(schema::CreateOptionDirect(builder, name.c_str(), value.c_str()));
-  }
-  std::vector<Offset<schema::SourceFile>> sources;
-  for (const SourceFile& file : provenance.sources) {
-    const schema::Hash128 hash(file.hash_low, file.hash_high);
-    sources.push_back(
-        schema::CreateSourceFileDirect(builder, file.name.c_str(), file.bytes, &hash));
-  }
-  // One after the other: the order of a call's arguments is the compiler's choice, and the order in
-  // which they are built decides the bytes.
-  const auto warnings = builder.CreateVectorOfStrings(provenance.warnings);
-  const auto source_vector = builder.CreateVector(sources);
-  const auto option_vector = builder.CreateVector(options);
-  const auto tool_version = builder.CreateString(provenance.tool_version);
-  const auto tool = builder.CreateString(provenance.tool);
-  return schema::CreateProvenance(builder, tool, tool_version, option_vector, source_vector,
-                                  warnings);
-}
-
 Offset<schema::Scene> sceneTable(FlatBufferBuilder& builder, const BakedScene& scene) {
   std::vector<Offset<schema::ColumnGrid>> grids;
   for (const BakedGrid& grid : scene.grids) {
@@ -126,10 +84,8 @@ Offset<schema::Scene> sceneTable(FlatBufferBuilder& builder, const BakedScene& s
   }
   const auto name = builder.CreateString(scene.name);
   const auto grid_vector = builder.CreateVector(grids);
-  const auto import_statistics = schema::CreateImportStatisticsDirect(
-      builder, scene.format.c_str(), scene.meshes, scene.instances, scene.counts.read,
-      scene.counts.degenerate, scene.counts.duplicate, scene.triangles);
-  const schema::Bounds bounds(toSchema(scene.bounds.min), toSchema(scene.bounds.max));
+  const auto import_statistics = importStatistics(builder, scene.imported);
+  const schema::Bounds bounds = toSchema(scene.bounds);
   return schema::CreateScene(builder, name, &bounds, grid_vector, import_statistics);
 }
 
@@ -162,10 +118,8 @@ Result<std::vector<std::byte>> encodeScenePack(const BakedScene& scene,
   FlatBufferBuilder builder(static_cast<std::size_t>(bytes) + 65536);
   const auto provenance_table = provenanceTable(builder, provenance);
   const auto scene_table = sceneTable(builder, scene);
-  schema::FinishPackBuffer(builder, schema::CreatePack(builder, provenance_table,
-                                                       schema::Asset::Scene, scene_table.Union()));
-  std::vector<std::byte> payload(builder.GetSize());
-  std::memcpy(payload.data(), builder.GetBufferPointer(), payload.size());
+  std::vector<std::byte> payload =
+      finishPack(builder, provenance_table, schema::Asset::Scene, scene_table.Union());
   shiftTilesToCacheLines(payload);
   return payload;
 }
@@ -174,11 +128,7 @@ Result<std::uint64_t> writeScenePack(const std::filesystem::path& path, const Ba
                                      const Provenance& provenance) {
   const auto payload = encodeScenePack(scene, provenance);
   if (!payload) return tl::unexpected(payload.error());
-  const PackHeader header = makePackHeader(PackKind::kScene, *payload);
-  const auto written =
-      writeFileAtomically(path, {std::as_bytes(std::span(&header, 1)), std::span(*payload)});
-  if (!written) return tl::unexpected(written.error());
-  return sizeof(header) + payload->size();
+  return writePackFile(path, PackKind::kScene, *payload);
 }
 
 }  // namespace galactic::bake

@@ -99,10 +99,10 @@ TEST(SceneBaker, DescribesTheSceneAndEachGrid) {
   EXPECT_EQ(scene->format, "test mesh");
   EXPECT_EQ(scene->meshes, 1U);
   EXPECT_EQ(scene->instances, 1U);
-  EXPECT_EQ(scene->counts.read, asset.meshes[0].triangles.size());
-  EXPECT_GE(scene->counts.duplicate, 1U);
+  EXPECT_EQ(scene->imported.counts.read, asset.meshes[0].triangles.size());
+  EXPECT_GE(scene->imported.counts.duplicate, 1U);
   EXPECT_EQ(scene->triangles,
-            scene->counts.read - scene->counts.degenerate - scene->counts.duplicate);
+            scene->imported.counts.read - scene->counts.degenerate - scene->counts.duplicate);
   ASSERT_FALSE(scene->warnings.empty());
   EXPECT_EQ(scene->warnings[0], "a texture is missing");
   ASSERT_EQ(scene->grids.size(), 3U);

@@ -181,8 +181,8 @@ TEST(ScenePack, StoresWhereItComesFromAndWhatWasCounted) {
   EXPECT_EQ(pack->provenance()->sources()->Get(0)->hash()->high(), 0xfedcba9876543210U);
   EXPECT_EQ(pack->provenance()->warnings()->Get(0)->str(), "the texture is missing");
   const schema::Scene* stored = pack->asset_as_Scene();
-  EXPECT_EQ(stored->import_statistics()->triangles(), scene.triangles);
-  EXPECT_EQ(stored->import_statistics()->triangles_read(), scene.counts.read);
+  EXPECT_EQ(stored->import_statistics()->triangles(), scene.imported.triangles);
+  EXPECT_EQ(stored->import_statistics()->triangles_read(), scene.imported.counts.read);
   EXPECT_EQ(stored->bounds()->min().x(), scene.bounds.min.x);
   EXPECT_EQ(stored->bounds()->max().z(), scene.bounds.max.z);
   const BakedGrid& baked = scene.grids[1];

@@ -10,6 +10,7 @@
 #include "galactic/bake/column_engines.h"
 #include "galactic/bake/free_space.h"
 #include "galactic/bake/grid_encoder.h"
+#include "galactic/bake/import_statistics.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"
@@ -56,12 +57,7 @@ struct BakedGrid {
 /// Everything of a scene pack but its provenance.
 struct BakedScene {
   std::string name;
-  /// Format of the main input, and how many meshes and placements it had.
-  std::string format;
-  std::uint32_t meshes = 0;
-  std::uint32_t instances = 0;
-  CleaningCounts counts;
-  std::uint64_t triangles = 0;
+  ImportStatistics imported;
   Bounds bounds;
   Coverage coverage = Coverage::kColumn;
   std::vector<BakedGrid> grids;

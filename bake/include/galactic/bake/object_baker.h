@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "galactic/bake/import_statistics.h"
+#include "galactic/bake/oriented_box.h"
+#include "galactic/bake/source_asset.h"
+#include "galactic/bake/sphere_set.h"
+#include "galactic/bake/stable_poses.h"
+#include "galactic/bake/surface.h"
+#include "galactic/bake/triangle_mesh.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+struct ObjectBakeOptions {
+  BoxFit box = BoxFit::kYaw;
+  /// Working set, tolerances and budget. `support` is set by the baker.
+  SphereSetOptions spheres{};
+  /// No sphere reaches below the object's lowest point, so that dropped objects do not float.
+  bool keep_above_support = true;
+};
+
+/// How long each stage took, seconds of wall clock.
+struct ObjectTimes {
+  double box = 0;
+  double stable_poses = 0;
+  double spheres = 0;
+};
+
+/// One object of a pack.
+struct BakedObject {
+  std::string name;
+  ImportStatistics imported;
+  Bounds bounds;
+  BoxFitResult box;
+  std::vector<StablePose> stable_poses;
+  /// What was asked for.
+  float eps = 0;
+  float tau = 0;
+  SphereSet spheres;
+  Surface surface;
+  ObjectTimes times;
+  /// What the user should look at: tolerances that could not be met, a doubtful unit and so on.
+  std::vector<std::string> warnings;
+};
+
+/// Box, stable poses and spheres of one object. Fails with kInvalidInput or kUnsupported on options
+/// or geometry that cannot give them; `where` is empty: the baker knows no file. The result does
+/// not depend on the number of threads.
+[[nodiscard]] Result<BakedObject> bakeObject(const SourceAsset& asset,
+                                             const ObjectBakeOptions& options);
+
+}  // namespace galactic::bake

@@ -1,0 +1,86 @@
+#include "galactic/bake/object_baker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "stage_timer.h"
+
+namespace galactic::bake {
+namespace {
+
+/// A movable object larger or smaller than this probably has another unit. Metres.
+constexpr float kDoubtfulSize = 10;
+constexpr float kDoubtfulSmallness = 0.002F;
+
+float largestExtent(const Bounds& bounds) {
+  return std::max(
+      {bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y, bounds.max.z - bounds.min.z});
+}
+
+void warnOfSize(const Bounds& bounds, std::vector<std::string>& warnings) {
+  const float size = largestExtent(bounds);
+  if (size > kDoubtfulSize) {
+    warnings.push_back(
+        fmt::format("is {:.4g} m large; if the file is in millimetres, give --scale "
+                    "0.001",
+                    size));
+  }
+  if (size < kDoubtfulSmallness) {
+    warnings.push_back(
+        fmt::format("is only {:.4g} mm large; is the unit right? --scale sets metres "
+                    "per unit",
+                    1000 * size));
+  }
+}
+
+void warnOfSpheres(const SphereSet& set, const SphereSetOptions& options,
+                   std::vector<std::string>& warnings) {
+  if (set.meets_tolerances) return;
+  warnings.push_back(fmt::format(
+      "{} spheres leave a gap of up to {:.1f} mm and stick out up to {:.1f} mm, wanted {:.1f} and "
+      "{:.1f} mm; allow more with --max-spheres or wider tolerances",
+      set.spheres.size(), 1000 * set.guaranteed_gap, 1000 * set.guaranteed_protrusion,
+      1000 * options.eps, 1000 * options.tau));
+}
+
+}  // namespace
+
+Result<BakedObject> bakeObject(const SourceAsset& asset, const ObjectBakeOptions& options) {
+  Result<CleanMesh> cleaned = placeAndClean(asset);
+  if (!cleaned) return tl::unexpected(cleaned.error());
+  const TriangleMesh& mesh = cleaned->mesh;
+
+  BakedObject object;
+  object.name = asset.name;
+  object.imported = importStatisticsOf(asset, *cleaned);
+  object.bounds = mesh.bounds;
+  object.warnings = asset.warnings;
+  warnOfSize(mesh.bounds, object.warnings);
+  {
+    const StageTimer timer(object.times.box);
+    object.box = fitOrientedBox(mesh.vertices, options.box);
+  }
+  {
+    const StageTimer timer(object.times.stable_poses);
+    object.stable_poses = findStablePoses(mesh);
+  }
+  SphereSetOptions sphere_options = options.spheres;
+  if (options.keep_above_support) {
+    sphere_options.support = HalfSpace{{0, 1, 0}, mesh.bounds.min.y};
+  }
+  {
+    const StageTimer timer(object.times.spheres);
+    Result<SphereSet> spheres = fitSphereSet(mesh, sphere_options);
+    if (!spheres) return tl::unexpected(spheres.error());
+    object.spheres = std::move(*spheres);
+  }
+  object.eps = options.spheres.eps;
+  object.tau = options.spheres.tau;
+  warnOfSpheres(object.spheres, options.spheres, object.warnings);
+  object.surface.positions = std::move(cleaned->mesh.vertices);
+  object.surface.triangles = std::move(cleaned->mesh.triangles);
+  return object;
+}
+
+}  // namespace galactic::bake

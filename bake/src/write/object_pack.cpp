@@ -1,0 +1,94 @@
+#include "galactic/bake/object_pack.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pack_payload.h"
+
+namespace galactic::bake {
+namespace {
+
+/// FlatBuffers offsets are signed 32-bit; what is not a surface is small.
+constexpr std::uint64_t kMaxSurfaceBytes = (std::uint64_t{1} << 31U) - (std::uint64_t{64} << 20U);
+
+std::uint64_t surfaceBytes(const Surface& surface) {
+  return surface.positions.size() * sizeof(Vec3) + surface.triangles.size() * sizeof(Triangle) +
+         surface.colors.size() * sizeof(std::uint32_t);
+}
+
+schema::BoxFit toSchema(BoxFit fit) {
+  switch (fit) {
+    case BoxFit::kYaw:
+      return schema::BoxFit::Yaw;
+    case BoxFit::kMinimum:
+      return schema::BoxFit::Minimum;
+    case BoxFit::kAxisAligned:
+      return schema::BoxFit::AxisAligned;
+  }
+  return schema::BoxFit::Yaw;
+}
+
+Offset<schema::Object> objectTable(FlatBufferBuilder& builder, const BakedObject& object) {
+  const auto name = builder.CreateString(object.name);
+  const auto spheres =
+      alignedStructs<schema::SetSphere>(builder, std::span(object.spheres.spheres));
+  const auto statistics =
+      sphereStatistics(builder, object.spheres, {.eps = object.eps, .tau = object.tau});
+  const auto stable_poses =
+      alignedStructs<schema::StablePose>(builder, std::span(object.stable_poses));
+  const auto imported = importStatistics(builder, object.imported);
+  const auto surface = surfaceTable(builder, object.surface);
+  const schema::Pose box_pose = bake::toSchema(object.box.box.pose);
+  const schema::Vec3 half_extents = bake::toSchema(object.box.box.half_extents);
+  const schema::BoxStatistics volumes(object.box.volume, object.box.axis_aligned_volume,
+                                      object.box.pca_volume);
+  const schema::Bounds bounds = bake::toSchema(object.bounds);
+  return schema::CreateObject(builder, name, &box_pose, &half_extents, toSchema(object.box.used),
+                              &volumes, spheres, statistics, stable_poses, &bounds, imported,
+                              surface);
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> encodeObjectPack(const BakedObjectSet& set,
+                                                const Provenance& provenance) {
+  std::vector<const BakedObject*> objects;
+  std::uint64_t bytes = 0;
+  for (const BakedObject& object : set.objects) {
+    objects.push_back(&object);
+    bytes += surfaceBytes(object.surface);
+  }
+  if (bytes > kMaxSurfaceBytes) {
+    return fail(ErrorCode::kUnsupported, "",
+                fmt::format("the objects need {} MB, one pack holds less than 2048 MB; bake them "
+                            "into several packs",
+                            bytes >> 20U));
+  }
+  std::sort(objects.begin(), objects.end(),
+            [](const BakedObject* a, const BakedObject* b) { return a->name < b->name; });
+  const auto same = std::adjacent_find(
+      objects.begin(), objects.end(),
+      [](const BakedObject* a, const BakedObject* b) { return a->name == b->name; });
+  if (same != objects.end()) {
+    return fail(ErrorCode::kInvalidInput, (*same)->name,
+                "is the name of two objects; rename one of the files or folders");
+  }
+  FlatBufferBuilder builder(static_cast<std::size_t>(bytes) + 65536);
+  const auto provenance_table = provenanceTable(builder, provenance);
+  std::vector<Offset<schema::Object>> tables;
+  for (const BakedObject* object : objects) tables.push_back(objectTable(builder, *object));
+  const auto table_vector = builder.CreateVector(tables);
+  const auto radii = builder.CreateVector(set.radii);
+  const auto root = schema::CreateObjectSet(builder, radii, table_vector);
+  return finishPack(builder, provenance_table, schema::Asset::ObjectSet, root.Union());
+}
+
+Result<std::uint64_t> writeObjectPack(const std::filesystem::path& path, const BakedObjectSet& set,
+                                      const Provenance& provenance) {
+  const auto payload = encodeObjectPack(set, provenance);
+  if (!payload) return tl::unexpected(payload.error());
+  return writePackFile(path, PackKind::kObjects, *payload);
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,83 @@
+#include "pack_payload.h"
+
+#include <cstring>
+
+#include "galactic/atomic_file.h"
+
+namespace galactic::bake {
+namespace {
+
+schema::LengthStatistics toSchema(const LengthStatistics& lengths) {
+  return {lengths.mean, lengths.p95, lengths.max};
+}
+
+}  // namespace
+
+Offset<schema::Provenance> provenanceTable(FlatBufferBuilder& builder,
+                                           const Provenance& provenance) {
+  std::vector<Offset<schema::Option>> options;
+  for (const auto& [name, value] : provenance.options) {
+    options.push_back(schema::CreateOptionDirect(builder, name.c_str(), value.c_str()));
+  }
+  std::vector<Offset<schema::SourceFile>> sources;
+  for (const SourceFile& file : provenance.sources) {
+    const schema::Hash128 hash(file.hash_low, file.hash_high);
+    sources.push_back(
+        schema::CreateSourceFileDirect(builder, file.name.c_str(), file.bytes, &hash));
+  }
+  const auto warnings = builder.CreateVectorOfStrings(provenance.warnings);
+  const auto source_vector = builder.CreateVector(sources);
+  const auto option_vector = builder.CreateVector(options);
+  const auto tool_version = builder.CreateString(provenance.tool_version);
+  const auto tool = builder.CreateString(provenance.tool);
+  return schema::CreateProvenance(builder, tool, tool_version, option_vector, source_vector,
+                                  warnings);
+}
+
+Offset<schema::ImportStatistics> importStatistics(FlatBufferBuilder& builder,
+                                                  const ImportStatistics& statistics) {
+  return schema::CreateImportStatisticsDirect(builder, statistics.format.c_str(), statistics.meshes,
+                                              statistics.instances, statistics.counts.read,
+                                              statistics.counts.degenerate,
+                                              statistics.counts.duplicate, statistics.triangles);
+}
+
+Offset<schema::Surface> surfaceTable(FlatBufferBuilder& builder, const Surface& surface) {
+  const auto positions = alignedStructs<schema::Vec3>(builder, std::span(surface.positions));
+  static_assert(sizeof(Triangle) == 3 * sizeof(std::uint32_t));
+  const auto triangles = alignedVector<std::uint32_t>(
+      builder, {reinterpret_cast<const std::uint32_t*>(surface.triangles.data()),
+                3 * surface.triangles.size()});
+  const auto colors = alignedVector<std::uint32_t>(builder, surface.colors);
+  return schema::CreateSurface(builder, positions, triangles, colors);
+}
+
+Offset<schema::SphereSetStatistics> sphereStatistics(FlatBufferBuilder& builder,
+                                                     const SphereSet& set,
+                                                     const SphereTolerances& asked) {
+  const SphereSetQuality& quality = set.quality;
+  const schema::LengthStatistics gap = toSchema(quality.gap);
+  const schema::LengthStatistics protrusion = toSchema(quality.protrusion);
+  return schema::CreateSphereSetStatistics(
+      builder, asked.eps, asked.tau, &gap, &protrusion, quality.volume_ratio, quality.thin_points,
+      quality.samples, set.guaranteed_gap, set.guaranteed_protrusion, set.meets_tolerances,
+      asked.authored);
+}
+
+std::vector<std::byte> finishPack(FlatBufferBuilder& builder, Offset<schema::Provenance> provenance,
+                                  schema::Asset type, Offset<void> asset) {
+  schema::FinishPackBuffer(builder, schema::CreatePack(builder, provenance, type, asset));
+  std::vector<std::byte> payload(builder.GetSize());
+  std::memcpy(payload.data(), builder.GetBufferPointer(), payload.size());
+  return payload;
+}
+
+Result<std::uint64_t> writePackFile(const std::filesystem::path& path, PackKind kind,
+                                    std::span<const std::byte> payload) {
+  const PackHeader header = makePackHeader(kind, payload);
+  const auto written = writeFileAtomically(path, {std::as_bytes(std::span(&header, 1)), payload});
+  if (!written) return tl::unexpected(written.error());
+  return sizeof(header) + payload.size();
+}
+
+}  // namespace galactic::bake

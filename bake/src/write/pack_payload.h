@@ -1,0 +1,87 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "galactic/bake/import_statistics.h"
+#include "galactic/bake/oriented_box.h"
+#include "galactic/bake/provenance.h"
+#include "galactic/bake/sphere_set.h"
+#include "galactic/bake/surface.h"
+#include "galactic/bake/triangle_mesh.h"
+#include "galactic/error.h"
+#include "galactic/pack_header.h"
+#include "galactic/pose.h"
+#include "galactic/schema/pack_generated.h"
+
+namespace galactic::bake {
+
+// What the writers of all kinds of packs share. Arguments of a call are built in statements of
+// their own: the order of a call's arguments is the compiler's choice, and the order in which
+// tables are built decides the bytes.
+
+using flatbuffers::FlatBufferBuilder;
+using flatbuffers::Offset;
+
+/// What FlatBuffers 2.0 aligns to at most.
+inline constexpr std::size_t kVectorAlignment = 32;
+
+[[nodiscard]] inline schema::Vec3 toSchema(const Vec3& v) { return {v.x, v.y, v.z}; }
+[[nodiscard]] inline schema::Quat toSchema(const Quat& q) { return {q.x, q.y, q.z, q.w}; }
+[[nodiscard]] inline schema::Pose toSchema(const Pose& pose) {
+  return {toSchema(pose.translation), toSchema(pose.rotation)};
+}
+[[nodiscard]] inline schema::Bounds toSchema(const Bounds& bounds) {
+  return {toSchema(bounds.min), toSchema(bounds.max)};
+}
+
+/// A vector of numbers, aligned as the runtime reads it.
+template <class T>
+[[nodiscard]] Offset<flatbuffers::Vector<T>> alignedVector(FlatBufferBuilder& builder,
+                                                           std::span<const T> values) {
+  builder.ForceVectorAlignment(values.size(), sizeof(T), kVectorAlignment);
+  return builder.CreateVector(values.data(), values.size());
+}
+
+/// A vector of structs of ours that have the layout of the schema's struct `Stored`.
+template <class Stored, class T>
+[[nodiscard]] Offset<flatbuffers::Vector<const Stored*>> alignedStructs(FlatBufferBuilder& builder,
+                                                                        std::span<const T> values) {
+  static_assert(sizeof(T) == sizeof(Stored));
+  builder.ForceVectorAlignment(values.size(), sizeof(Stored), kVectorAlignment);
+  return builder.CreateVectorOfStructs(reinterpret_cast<const Stored*>(values.data()),
+                                       values.size());
+}
+
+[[nodiscard]] Offset<schema::Provenance> provenanceTable(FlatBufferBuilder& builder,
+                                                         const Provenance& provenance);
+
+[[nodiscard]] Offset<schema::ImportStatistics> importStatistics(FlatBufferBuilder& builder,
+                                                                const ImportStatistics& statistics);
+
+[[nodiscard]] Offset<schema::Surface> surfaceTable(FlatBufferBuilder& builder,
+                                                   const Surface& surface);
+
+/// What was asked of a sphere set.
+struct SphereTolerances {
+  float eps = 0;
+  float tau = 0;
+  bool authored = false;
+};
+
+[[nodiscard]] Offset<schema::SphereSetStatistics> sphereStatistics(FlatBufferBuilder& builder,
+                                                                   const SphereSet& set,
+                                                                   const SphereTolerances& asked);
+
+/// The finished payload of a pack.
+[[nodiscard]] std::vector<std::byte> finishPack(FlatBufferBuilder& builder,
+                                                Offset<schema::Provenance> provenance,
+                                                schema::Asset type, Offset<void> asset);
+
+/// Writes header and payload atomically; returns the file's size in bytes.
+[[nodiscard]] Result<std::uint64_t> writePackFile(const std::filesystem::path& path, PackKind kind,
+                                                  std::span<const std::byte> payload);
+
+}  // namespace galactic::bake
