@@ -44,8 +44,11 @@ HEAVY_LIBRARIES = (
                  re.compile(r"bake/src/engines/bullet[^/]*$")),
     HeavyLibrary("Embree", re.compile(r"embree\d/"), re.compile(r"\b(RTC[A-Z]\w+|rtc[A-Z]\w+)"),
                  re.compile(r"bake/src/engines/embree[^/]*$")),
-    HeavyLibrary("urdfdom", re.compile(r"urdf_"), re.compile(r"\burdf::"),
-                 re.compile(r"bake/src/import/urdf_reader[^/]*$")),
+    HeavyLibrary("urdfdom", re.compile(r"(urdf_|tinyxml|console_bridge/)"),
+                 re.compile(r"\b(urdf::|TiXml\w+|console_bridge::)"),
+                 re.compile(r"bake/src/urdf/urdf_reader[^/]*$")),
+    HeavyLibrary("toml++", re.compile(r"toml\+\+/"), re.compile(r"\btoml::"),
+                 re.compile(r"bake/src/recipe/toml_table[^/]*$")),
 )
 
 

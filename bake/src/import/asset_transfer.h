@@ -1,15 +1,12 @@
 #pragma once
 #include <cstddef>
-#include <functional>
 #include <span>
 
 #include "galactic/bake/source_asset.h"
 #include "galactic/error.h"
+#include "import/transfer_archive.h"
 
 namespace galactic::bake {
-
-/// Receives consecutive pieces of a transfer.
-using TransferSink = std::function<void(std::span<const std::byte>)>;
 
 /// Writes a SourceAsset as bytes for another process of this same program: meshes one by one (so
 /// that the sender can free each when it is sent), then the rest; or an error.

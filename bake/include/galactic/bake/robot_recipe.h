@@ -1,0 +1,138 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "galactic/bake/hand_spheres.h"
+#include "galactic/bake/source_asset.h"
+#include "galactic/bake/source_robot.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+/// The name of a link or joint, and where the recipe has it ("fetch.toml:12"), for messages.
+struct RecipeName {
+  std::string name;
+  std::string where;
+};
+
+/// What grasps: a sphere at a point of a link.
+struct RecipeEndEffector {
+  RecipeName link;
+  /// In the link's frame (Y up, X forward), metres.
+  std::array<double, 3> grasp_point{};
+  /// Metres.
+  double grasp_radius = 0.015;
+};
+
+struct RecipeCamera {
+  RecipeName link;
+  /// Rigid. The camera looks along +X of its own frame, +Y is up in the image.
+  Affine link_from_camera{};
+  /// Radians, between the lower and the upper edge of the image.
+  double vertical_fov = 0;
+};
+
+/// The ground that the base covers, in the root link's frame; metres.
+struct FootprintCircle {
+  double radius = 0;
+};
+struct FootprintRectangle {
+  double min_x = 0;
+  double max_x = 0;
+  double min_z = 0;
+  double max_z = 0;
+};
+
+struct RecipeBase {
+  std::variant<FootprintCircle, FootprintRectangle> footprint;
+  /// Farthest drive of one action, metres, and farthest turn, radians.
+  double forward_step = 0.1;
+  double turn_step = 0.0873;
+  /// Height of the root link's origin above the ground, metres.
+  double root_height = 0;
+};
+
+/// A joint that an action moves.
+struct RecipeJoint {
+  RecipeName joint;
+  /// Farthest move of one action, radians or metres.
+  double step = 0;
+  /// Narrower limits than the URDF's.
+  std::optional<double> min;
+  std::optional<double> max;
+};
+
+struct RecipeStart {
+  RecipeName joint;
+  /// Radians or metres.
+  double position = 0;
+};
+
+/// How one link's spheres differ from the rest.
+struct RecipeLinkSpheres {
+  RecipeName link;
+  /// Metres.
+  std::optional<double> eps;
+  std::optional<double> tau;
+  std::optional<double> clip_height;
+  std::optional<std::uint32_t> max_spheres;
+  /// The link gets no spheres at all.
+  bool skip = false;
+  /// The link counts as a part of its parent: one set of spheres for both.
+  bool merge_with_parent = false;
+  /// Taken as they are, instead of fitted ones; link frame (Y up, X forward).
+  std::vector<HandSphere> spheres;
+};
+
+struct RecipeSpheres {
+  /// Metres.
+  double eps = 0.020;
+  double tau = 0.040;
+  /// Of the whole robot.
+  std::uint32_t max_spheres = 100;
+  /// At the start pose, surfaces lower than this above the ground need no cover, and no sphere
+  /// reaches below; metres.
+  double clip_height = 0.020;
+  /// By link name.
+  std::vector<RecipeLinkSpheres> links;
+};
+
+/// What a URDF does not say about a robot. Every frame Y up, X forward; SI units.
+struct RobotRecipe {
+  std::string name;
+  /// The file that it was read from, for messages and provenance.
+  std::string source;
+  RecipeEndEffector end_effector;
+  std::optional<RecipeCamera> camera;
+  RecipeBase base;
+  /// In the order of the actions.
+  std::vector<RecipeJoint> joints;
+  /// Joints that do not start at 0 (or at their limit nearest to 0), by name.
+  std::vector<RecipeStart> start_pose;
+  RecipeSpheres spheres;
+  /// Links that may touch.
+  std::vector<std::pair<RecipeName, RecipeName>> ignored_pairs;
+};
+
+/// Reads a recipe in TOML; describeRobotRecipe() is its documentation. Positions and rotations in
+/// the text are in the URDF's frame (Z up) and are converted here, degrees to radians likewise.
+/// Strict: fails with kIo (missing file) or kInvalidInput, naming file and line, on broken TOML,
+/// unknown keys (with the nearest known one), missing keys, wrong types, values out of range and
+/// contradictions.
+[[nodiscard]] Result<RobotRecipe> readRobotRecipe(const std::filesystem::path& path);
+
+/// A complete recipe with every key explained, for --print-recipe; readRobotRecipe reads it.
+[[nodiscard]] std::string describeRobotRecipe();
+
+/// Whether the recipe fits the robot: links and joints exist (with the nearest names otherwise),
+/// controlled joints can move and mimic nothing, ranges and start positions lie within limits, the
+/// root merges with nothing. Fails with kInvalidInput.
+[[nodiscard]] Result<void> checkRecipe(const RobotRecipe& recipe, const SourceRobot& robot);
+
+}  // namespace galactic::bake

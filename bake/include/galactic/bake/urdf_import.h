@@ -1,0 +1,63 @@
+#pragma once
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "galactic/bake/mesh_import.h"
+#include "galactic/bake/source_robot.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+/// A URDF of more bytes is refused.
+inline constexpr std::uintmax_t kMaxUrdfBytes = std::uintmax_t{64} << 20U;
+
+/// How to read a URDF.
+struct UrdfImportOptions {
+  /// Folders of packages by name (--package NAME=DIR); these come first.
+  std::map<std::string, std::filesystem::path> packages;
+  /// Folders in which packages are looked for, in this order (ROS_PACKAGE_PATH).
+  std::vector<std::filesystem::path> search_roots;
+  /// A link that lost all its geometry is a warning instead of an error.
+  bool allow_missing = false;
+  /// Up axis of the URDF: kZ, or kY for furniture made for simulators that are Y up.
+  UpAxis up = UpAxis::kZ;
+  /// The XML is read in a process of its own, which is stopped after this long.
+  std::chrono::seconds time_limit{60};
+};
+
+/// Reads a robot from URDF text, with its meshes.
+///
+/// Frames: everything is converted once, (x, y, z) to (x, z, -y), so that link, joint and shape
+/// frames are Y up and X forward; a primitive's size and a mesh's points likewise. The points of a
+/// mesh file count as they stand in the file, after its node transforms and its unit: the up axis
+/// that COLLADA or glTF state is not applied, as in RViz and MoveIt (ros-visualization/rviz#1045,
+/// moveit/geometric_shapes#52), for which robots' meshes are made. Scales may be negative: then
+/// link_from_shape mirrors.
+///
+/// Meshes: package://, model://, file://, absolute paths and paths relative to the URDF. A package
+/// is looked for in options.packages, then in options.search_roots, then from the URDF's folder
+/// upwards; at last its path inside the package is tried from the URDF's folder upwards, with a
+/// warning. SourceRobot::resolutions names where each was found. Each file is loaded once; in its
+/// SourceAsset, names of files and textures are relative to the URDF's folder.
+///
+/// What is missing is loud: a mesh that is not found or does not load is a warning while its link
+/// keeps other geometry, and an error when the link lost all (see allow_missing). For links with
+/// visuals but without collision elements a warning says that the visuals stand in for them.
+///
+/// Colours are taken as sRGB and converted to linear; material textures are not used (warning).
+/// Joints: continuous joints have no limits; revolute and prismatic ones need <limit>, in which
+/// lower and upper are 0 when absent (URDF); planar axes are the plane's normal. Chains of mimics
+/// are resolved, so that Mimic::link never mimics itself.
+///
+/// Fails with kIo (missing or unreadable file), kUnsupported (xacro, an up axis other than Y or Z)
+/// or kInvalidInput: broken XML, no or several roots, loops, two parents, duplicate or unknown
+/// names, numbers that are not finite or beyond kMaxCoordinate, limits with lower > upper, axes
+/// without direction, mimics in a circle, geometry without positive size, lost geometry.
+/// Deterministic; thread-safe; prints nothing.
+[[nodiscard]] Result<SourceRobot> importUrdf(const std::filesystem::path& path,
+                                             const UrdfImportOptions& options = {});
+
+}  // namespace galactic::bake

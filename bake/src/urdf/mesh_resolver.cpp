@@ -1,0 +1,223 @@
+#include "urdf/mesh_resolver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "import/source_files.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How deep below a search root packages are looked for, and in how many folders at most.
+constexpr int kSearchDepth = 4;
+constexpr std::size_t kMostSearchedFolders = 20'000;
+/// A package.xml is small; of others only this much is looked at.
+constexpr std::size_t kPackageFileBytes = 65'536;
+
+bool isFile(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+bool isFolder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+/// The <name> of a package.xml, without a parser: the first one counts.
+std::string nameInPackageFile(const fs::path& folder) {
+  std::ifstream stream(folder / "package.xml", std::ios::binary);
+  if (!stream) return {};
+  std::string text(kPackageFileBytes, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  constexpr std::string_view kOpen = "<name>";
+  const std::size_t open = text.find(kOpen);
+  if (open == std::string::npos) return {};
+  const std::size_t close = text.find("</name>", open);
+  if (close == std::string::npos) return {};
+  std::string name = text.substr(open + kOpen.size(), close - open - kOpen.size());
+  constexpr const char* kBlanks = " \t\r\n";
+  const std::size_t first = name.find_first_not_of(kBlanks);
+  if (first == std::string::npos) return {};
+  return name.substr(first, name.find_last_not_of(kBlanks) - first + 1);
+}
+
+bool isPackage(const fs::path& folder, const std::string& package) {
+  return folder.filename() == package || nameInPackageFile(folder) == package;
+}
+
+/// `folder / name`, also with %20 and backslashes undone, if it is a file.
+std::optional<fs::path> fileIn(const fs::path& folder, const std::string& name) {
+  std::vector<std::string> spellings{name, withoutUriEscapes(name)};
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::string& spelling = spellings.emplace_back(spellings[i]);
+    std::replace(spelling.begin(), spelling.end(), '\\', '/');
+  }
+  for (const std::string& spelling : spellings) {
+    fs::path path = (folder / spelling).lexically_normal();
+    if (isFile(path)) return path;
+  }
+  return std::nullopt;
+}
+
+/// The folders directly in `folder`, by name; not those behind links or hidden.
+std::vector<fs::path> foldersIn(const fs::path& folder) {
+  std::vector<fs::path> folders;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const bool hidden = entry->path().filename().string().starts_with('.');
+    std::error_code ignored;
+    if (!hidden && entry->is_directory(ignored)) folders.push_back(entry->path());
+  }
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+/// Package folders at or below `root`, nearest first.
+void searchPackage(const fs::path& root, const std::string& package, std::vector<fs::path>& found) {
+  std::vector<fs::path> level{root};
+  std::size_t searched = 0;
+  for (int depth = 0; depth <= kSearchDepth && !level.empty(); ++depth) {
+    std::vector<fs::path> next;
+    for (const fs::path& folder : level) {
+      if (++searched > kMostSearchedFolders) return;
+      if (isPackage(folder, package)) found.push_back(folder);
+      if (depth == kSearchDepth) continue;
+      for (fs::path& below : foldersIn(folder)) next.push_back(std::move(below));
+    }
+    level = std::move(next);
+  }
+}
+
+MeshResolution notFound(const std::vector<fs::path>& tried) {
+  constexpr std::size_t kMostNamed = 6;
+  std::string places;
+  for (std::size_t i = 0; i < std::min(tried.size(), kMostNamed); ++i) {
+    places += (i == 0 ? "" : ", ") + tried[i].lexically_normal().string();
+  }
+  if (tried.size() > kMostNamed) places += fmt::format(" and {} more", tried.size() - kMostNamed);
+  return {.file = {}, .how = places, .guessed = false};
+}
+
+}  // namespace
+
+MeshResolver::MeshResolver(const fs::path& urdf, const UrdfImportOptions& options)
+    : options_(options) {
+  std::error_code ignored;
+  fs::path folder = fs::absolute(urdf, ignored).lexically_normal().parent_path();
+  while (true) {
+    ancestors_.push_back(folder);
+    if (folder == folder.parent_path()) break;
+    folder = folder.parent_path();
+  }
+}
+
+const std::vector<fs::path>& MeshResolver::foldersOf(const std::string& package) {
+  const auto [entry, is_new] = folders_of_package_.try_emplace(package);
+  if (is_new) {
+    for (const fs::path& root : options_.search_roots) {
+      // The usual case first: no search through the whole of an installation.
+      if (isFolder(root / package)) entry->second.push_back(root / package);
+    }
+    if (entry->second.empty()) {
+      for (const fs::path& root : options_.search_roots) {
+        searchPackage(root, package, entry->second);
+      }
+    }
+  }
+  return entry->second;
+}
+
+MeshResolution MeshResolver::resolvePackage(const std::string& package, const std::string& rest) {
+  std::vector<fs::path> tried;
+  const auto in = [&](const fs::path& folder, std::string how) -> std::optional<MeshResolution> {
+    if (auto file = fileIn(folder, rest)) {
+      return MeshResolution{.file = *file, .how = std::move(how), .guessed = false};
+    }
+    tried.push_back(folder / rest);
+    return std::nullopt;
+  };
+  const auto named = options_.packages.find(package);
+  if (named != options_.packages.end()) {
+    if (auto found = in(named->second, fmt::format("--package {}", package))) return *found;
+  }
+  for (const fs::path& folder : foldersOf(package)) {
+    if (auto found = in(folder, "package search path")) return *found;
+  }
+  for (const fs::path& ancestor : ancestors_) {
+    if (isPackage(ancestor, package)) {
+      if (auto found = in(ancestor, "package above the URDF")) return *found;
+    }
+    if (isFolder(ancestor / package)) {
+      if (auto found = in(ancestor / package, "package beside the URDF's folders")) return *found;
+    }
+  }
+  for (const fs::path& ancestor : ancestors_) {
+    if (auto file = fileIn(ancestor, rest)) {
+      return {.file = *file,
+              .how = fmt::format("no package '{}'; by its path from above the URDF", package),
+              .guessed = true};
+    }
+  }
+  if (tried.empty()) {
+    return {.file = {},
+            .how = fmt::format("no folder '{}' or package.xml of that name in the search path or "
+                               "above the URDF",
+                               package),
+            .guessed = false};
+  }
+  return notFound(tried);
+}
+
+MeshResolution MeshResolver::resolveRelative(const std::string& reference) const {
+  const fs::path path(reference);
+  if (path.empty()) return {.file = {}, .how = "a file name, which is empty", .guessed = false};
+  if (path.is_absolute()) {
+    if (auto file = fileIn("/", reference)) return {.file = *file, .how = "absolute path"};
+    return notFound({path});
+  }
+  if (auto file = fileIn(ancestors_.front(), reference)) {
+    return {.file = *file, .how = "relative to the URDF"};
+  }
+  if (*path.begin() != "..") {
+    for (const fs::path& ancestor : ancestors_) {
+      if (auto file = fileIn(ancestor, reference)) {
+        return {.file = *file, .how = "relative to a folder above the URDF", .guessed = true};
+      }
+    }
+  }
+  return notFound({ancestors_.front() / reference});
+}
+
+MeshResolution MeshResolver::resolve(const std::string& reference) {
+  for (const std::string_view scheme : {"package://", "model://"}) {
+    if (!reference.starts_with(scheme)) continue;
+    std::string path = reference.substr(scheme.size());
+    path.erase(0, std::min(path.find_first_not_of('/'), path.size()));
+    const std::size_t slash = path.find('/');
+    if (slash == std::string::npos) return resolveRelative(path.empty() ? reference : path);
+    MeshResolution found = resolvePackage(path.substr(0, slash), path.substr(slash + 1));
+    if (!found.file.empty()) return found;
+    // package:///meshes/a.stl has no package name at all.
+    const bool nameless = reference.size() > scheme.size() && reference[scheme.size()] == '/';
+    if (!nameless) return found;
+    MeshResolution whole = resolveRelative(path);
+    whole.guessed = true;
+    return whole.file.empty() ? found : whole;
+  }
+  constexpr std::string_view kFile = "file://";
+  if (reference.starts_with(kFile)) return resolveRelative(reference.substr(kFile.size()));
+  return resolveRelative(reference);
+}
+
+}  // namespace galactic::bake

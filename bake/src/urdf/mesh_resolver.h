@@ -1,0 +1,40 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "galactic/bake/urdf_import.h"
+
+namespace galactic::bake {
+
+/// What a reference of a URDF means.
+struct MeshResolution {
+  /// Empty when the file was not found.
+  std::filesystem::path file;
+  /// For people: by which rule it was found, or where it was looked for.
+  std::string how;
+  /// Found by a guess that deserves a warning.
+  bool guessed = false;
+};
+
+/// Turns references of one URDF into files: see importUrdf for the order.
+class MeshResolver {
+ public:
+  MeshResolver(const std::filesystem::path& urdf, const UrdfImportOptions& options);
+
+  [[nodiscard]] MeshResolution resolve(const std::string& reference);
+
+ private:
+  [[nodiscard]] MeshResolution resolvePackage(const std::string& package, const std::string& rest);
+  [[nodiscard]] MeshResolution resolveRelative(const std::string& reference) const;
+  /// Folders named or described as `package` in the search roots.
+  [[nodiscard]] const std::vector<std::filesystem::path>& foldersOf(const std::string& package);
+
+  const UrdfImportOptions& options_;
+  /// The URDF's folder and its parents, nearest first.
+  std::vector<std::filesystem::path> ancestors_;
+  std::map<std::string, std::vector<std::filesystem::path>> folders_of_package_;
+};
+
+}  // namespace galactic::bake

@@ -1,0 +1,252 @@
+#include "urdf/urdf_geometry.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include "galactic/bake/triangle_mesh.h"
+#include "import/source_files.h"
+#include "urdf/urdf_frames.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A colour channel on a screen (IEC 61966-2-1) as linear light.
+float linearFromSrgb(double value) {
+  constexpr double kLinearPart = 0.04045;
+  const double v = std::clamp(value, 0.0, 1.0);
+  const double linear = v <= kLinearPart ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+  return static_cast<float>(linear);
+}
+
+std::array<float, 4> linearColor(const std::array<double, 4>& c) {
+  return {linearFromSrgb(c[0]), linearFromSrgb(c[1]), linearFromSrgb(c[2]),
+          static_cast<float>(std::clamp(c[3], 0.0, 1.0))};
+}
+
+std::size_t sizeCount(UrdfGeometry geometry) {
+  switch (geometry) {
+    case UrdfGeometry::kSphere:
+      return 1;
+    case UrdfGeometry::kCylinder:
+      return 2;
+    case UrdfGeometry::kBox:
+    case UrdfGeometry::kMesh:
+      return 3;
+  }
+  return 0;
+}
+
+std::string_view sizeName(UrdfGeometry geometry) {
+  switch (geometry) {
+    case UrdfGeometry::kSphere:
+      return "sphere of radius";
+    case UrdfGeometry::kCylinder:
+      return "cylinder of radius and length";
+    case UrdfGeometry::kBox:
+      return "box of size";
+    case UrdfGeometry::kMesh:
+      return "mesh with scale";
+  }
+  return "";
+}
+
+/// Numbers that no robot has. Sizes of 0 pass but for a mesh's scale.
+Result<void> checkShape(const UrdfShape& shape, const std::string& place) {
+  const std::span sizes(shape.size.data(), sizeCount(shape.geometry));
+  const auto describe = [&](std::string_view wanted) {
+    return fmt::format("a {} {}: {}", sizeName(shape.geometry), fmt::join(sizes, " "), wanted);
+  };
+  const Affine& t = shape.link_from_shape;
+  if (!isFinite(t) ||
+      !std::all_of(sizes.begin(), sizes.end(), [](double s) { return std::isfinite(s); })) {
+    return fail(ErrorCode::kInvalidInput, place,
+                "its origin or size has a number that is not finite; correct it");
+  }
+  const double farthest = std::max({std::abs(t[3]), std::abs(t[7]), std::abs(t[11])});
+  if (farthest > kMaxCoordinate) {
+    return fail(ErrorCode::kInvalidInput, place,
+                fmt::format("its origin is {} m away, at most {} m are possible; is the unit "
+                            "metres?",
+                            farthest, kMaxCoordinate));
+  }
+  if (shape.geometry == UrdfGeometry::kMesh) {
+    const bool flat = std::any_of(sizes.begin(), sizes.end(), [](double s) { return s == 0; });
+    if (flat) return fail(ErrorCode::kInvalidInput, place, describe("a scale of 0 flattens it"));
+    return {};
+  }
+  for (const double size : sizes) {
+    if (size < 0) return fail(ErrorCode::kInvalidInput, place, describe("negative; correct it"));
+    if (size > kMaxCoordinate) {
+      return fail(
+          ErrorCode::kInvalidInput, place,
+          describe(fmt::format("at most {} m are possible; is the unit metres?", kMaxCoordinate)));
+    }
+  }
+  return {};
+}
+
+bool hasSize(const UrdfShape& shape) {
+  return std::all_of(shape.size.begin(), shape.size.begin() + sizeCount(shape.geometry),
+                     [](double size) { return size != 0; });
+}
+
+}  // namespace
+
+GeometryBuilder::GeometryBuilder(const fs::path& urdf, const UrdfImportOptions& options,
+                                 SourceRobot& robot)
+    : urdf_(urdf),
+      options_(options),
+      robot_(robot),
+      resolver_(urdf, options),
+      up_from_urdf_(options.up == UpAxis::kZ ? kYUpFromZUp : kIdentityAffine) {}
+
+void GeometryBuilder::warn(const std::string& place, const std::string& message) {
+  // The place without the URDF's name, which every warning would repeat.
+  const std::string prefix = urdf_.string() + ": ";
+  const std::string short_place = place.starts_with(prefix) ? place.substr(prefix.size()) : place;
+  robot_.warnings.push_back(fmt::format("{}: {}", short_place, message));
+}
+
+Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& file) {
+  // The points as the file has them are taken for Z up, whatever up axis it states.
+  MeshImportOptions mesh_options;
+  mesh_options.up = UpAxis::kZ;
+  auto asset = importMesh(file, mesh_options);
+  if (!asset) {
+    if (asset.error().code == ErrorCode::kInternal) return tl::unexpected(asset.error());
+    return LoadedMesh{
+        .index = {},
+        .failure = fmt::format("'{}' does not load: {}", nameRelativeTo(urdf_, asset.error().where),
+                               asset.error().message)};
+  }
+  const fs::path folder = file.parent_path();
+  for (SourceFile& source : asset->files) {
+    source.name = nameRelativeTo(urdf_, folder / source.name);
+    robot_.files.push_back(source);
+  }
+  for (SourceMaterial& material : asset->materials) {
+    std::string& texture = material.base_color_texture;
+    std::error_code ignored;
+    if (texture.empty() || texture.starts_with('*')) continue;
+    if (fs::exists(folder / texture, ignored)) texture = nameRelativeTo(urdf_, folder / texture);
+  }
+  for (const std::string& warning : asset->warnings) warn(nameRelativeTo(urdf_, file), warning);
+  robot_.meshes.push_back(std::move(*asset));
+  return LoadedMesh{.index = static_cast<std::uint32_t>(robot_.meshes.size() - 1), .failure = {}};
+}
+
+Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const std::string& reference,
+                                                               const std::string& place) {
+  const auto [entry, is_new] = resolutions_.try_emplace(reference);
+  MeshResolution& resolution = entry->second;
+  if (is_new) {
+    resolution = resolver_.resolve(reference);
+    if (!resolution.file.empty()) {
+      robot_.resolutions.push_back(fmt::format(
+          "{}: {} ({})", reference, nameRelativeTo(urdf_, resolution.file), resolution.how));
+      if (resolution.guessed) {
+        warn(place, fmt::format("mesh '{}' was found only as '{}' ({}); name the package's folder "
+                                "to be sure",
+                                reference, nameRelativeTo(urdf_, resolution.file), resolution.how));
+      }
+    }
+  }
+  if (resolution.file.empty()) {
+    warn(place, fmt::format("mesh '{}' is missing; looked for {}", reference, resolution.how));
+    return std::nullopt;
+  }
+  auto loaded = loaded_.find(resolution.file);
+  if (loaded == loaded_.end()) {
+    auto mesh = loadFile(resolution.file);
+    if (!mesh) return tl::unexpected(mesh.error());
+    loaded = loaded_.emplace(resolution.file, std::move(*mesh)).first;
+  }
+  if (!loaded->second.index) warn(place, "mesh " + loaded->second.failure);
+  return loaded->second.index;
+}
+
+Result<std::optional<LinkShape>> GeometryBuilder::convert(const UrdfShape& shape,
+                                                          const std::string& place,
+                                                          std::size_t& lost) {
+  if (auto checked = checkShape(shape, place); !checked) return tl::unexpected(checked.error());
+  if (!hasSize(shape)) {
+    warn(place, fmt::format("a {} with a size of 0 is left out", sizeName(shape.geometry)));
+    return std::nullopt;
+  }
+  LinkShape converted;
+  const auto& s = shape.size;
+  Affine link_from_shape = shape.link_from_shape;
+  switch (shape.geometry) {
+    case UrdfGeometry::kBox:
+      converted.geometry = BoxShape{{s[0], s[2], s[1]}};
+      break;
+    case UrdfGeometry::kCylinder:
+      converted.geometry = CylinderShape{.radius = s[0], .length = s[1]};
+      break;
+    case UrdfGeometry::kSphere:
+      converted.geometry = SphereShape{s[0]};
+      break;
+    case UrdfGeometry::kMesh: {
+      const auto mesh = loadMesh(shape.mesh, place);
+      if (!mesh) return tl::unexpected(mesh.error());
+      if (!*mesh) {
+        ++lost;
+        return std::nullopt;
+      }
+      converted.geometry = MeshShape{**mesh};
+      link_from_shape = compose(link_from_shape, {s[0], 0, 0, 0, 0, s[1], 0, 0, 0, 0, s[2], 0});
+      break;
+    }
+  }
+  // Primitives and meshes are Y up in their own frame, too.
+  converted.link_from_shape = conjugate(up_from_urdf_, link_from_shape, kZUpFromYUp);
+  if (shape.has_color) converted.color = linearColor(shape.color);
+  if (!shape.texture.empty()) {
+    warn(place, fmt::format("the texture '{}' of its material is not used", shape.texture));
+  }
+  return converted;
+}
+
+Result<std::size_t> GeometryBuilder::addList(const UrdfLink& link, const ShapeList& list) {
+  std::size_t lost = 0;
+  for (std::size_t i = 0; i < list.from.size(); ++i) {
+    const std::string place =
+        fmt::format("{}: link '{}' {} {}", urdf_.string(), link.name, list.kind, i + 1);
+    auto shape = convert(list.from[i], place, lost);
+    if (!shape) return tl::unexpected(shape.error());
+    if (*shape) list.to.push_back(std::move(**shape));
+  }
+  return lost;
+}
+
+Result<void> GeometryBuilder::addShapes(const UrdfLink& from, SourceLink& to) {
+  const std::size_t warnings_before = robot_.warnings.size();
+  const auto lost_collisions = addList(from, {from.collisions, to.collisions, "collision"});
+  if (!lost_collisions) return tl::unexpected(lost_collisions.error());
+  const auto lost_visuals = addList(from, {from.visuals, to.visuals, "visual"});
+  if (!lost_visuals) return tl::unexpected(lost_visuals.error());
+  const bool lost_all = from.collisions.empty() ? *lost_visuals != 0 && to.visuals.empty()
+                                                : *lost_collisions != 0 && to.collisions.empty();
+  const std::string place = fmt::format("{}: link '{}'", urdf_.string(), from.name);
+  if (lost_all && !options_.allow_missing) {
+    const bool collision = !from.collisions.empty();
+    return fail(ErrorCode::kInvalidInput, place,
+                fmt::format("it lost all its {} geometry: {}; name the package's folder (--package "
+                            "NAME=DIR), put the file there, or allow missing geometry",
+                            collision ? "collision" : "visual", robot_.warnings[warnings_before]));
+  }
+  if (lost_all) {
+    warn(place, "it lost all its geometry and collides with nothing");
+  } else if (from.collisions.empty() && !to.visuals.empty()) {
+    warn(place, "it has no collision geometry; its visual geometry stands in for it");
+  }
+  return {};
+}
+
+}  // namespace galactic::bake

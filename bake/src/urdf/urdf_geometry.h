@@ -1,0 +1,56 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "galactic/bake/urdf_import.h"
+#include "urdf/mesh_resolver.h"
+#include "urdf/urdf_model.h"
+
+namespace galactic::bake {
+
+/// Turns the shapes of a URDF's links into those of a SourceRobot, loading each mesh file once.
+class GeometryBuilder {
+ public:
+  /// Fills in the meshes, files, warnings and resolutions of `robot`.
+  GeometryBuilder(const std::filesystem::path& urdf, const UrdfImportOptions& options,
+                  SourceRobot& robot);
+
+  /// Fills in the shapes of `to`. Fails with kInvalidInput on broken numbers, and when the link
+  /// lost all the geometry that it had, unless the options allow it.
+  Result<void> addShapes(const UrdfLink& from, SourceLink& to);
+
+ private:
+  /// A mesh that was loaded, or why there is none.
+  struct LoadedMesh {
+    std::optional<std::uint32_t> index;
+    std::string failure;
+  };
+  struct ShapeList {
+    const std::vector<UrdfShape>& from;
+    std::vector<LinkShape>& to;
+    const char* kind;
+  };
+
+  /// How many shapes of the list were lost.
+  Result<std::size_t> addList(const UrdfLink& link, const ShapeList& list);
+  /// The shape, or nothing when it is lost or has no size.
+  Result<std::optional<LinkShape>> convert(const UrdfShape& shape, const std::string& place,
+                                           std::size_t& lost);
+  Result<std::optional<std::uint32_t>> loadMesh(const std::string& reference,
+                                                const std::string& place);
+  Result<LoadedMesh> loadFile(const std::filesystem::path& file);
+  void warn(const std::string& place, const std::string& message);
+
+  const std::filesystem::path& urdf_;
+  const UrdfImportOptions& options_;
+  SourceRobot& robot_;
+  MeshResolver resolver_;
+  Affine up_from_urdf_;
+  std::map<std::string, MeshResolution> resolutions_;
+  std::map<std::filesystem::path, LoadedMesh> loaded_;
+};
+
+}  // namespace galactic::bake

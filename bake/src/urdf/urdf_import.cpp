@@ -1,0 +1,95 @@
+#include "galactic/bake/urdf_import.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "import/source_files.h"
+#include "urdf/urdf_frames.h"
+#include "urdf/urdf_geometry.h"
+#include "urdf/urdf_process.h"
+#include "urdf/urdf_tree.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Puts the joints of the model, in the runtime's frame, into the links of `robot`.
+void addJoints(const UrdfModel& model, const std::vector<TreeLink>& tree,
+               const std::vector<std::optional<ResolvedMimic>>& mimics, UpAxis up,
+               SourceRobot& robot) {
+  const bool z_up = up == UpAxis::kZ;
+  const Affine& up_from_urdf = z_up ? kYUpFromZUp : kIdentityAffine;
+  const Affine& urdf_from_up = z_up ? kZUpFromYUp : kIdentityAffine;
+  std::vector<std::uint32_t> link_of_joint(model.joints.size());
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    if (tree[i].joint) link_of_joint[*tree[i].joint] = static_cast<std::uint32_t>(i);
+  }
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    SourceLink& link = robot.links[i];
+    link.name = model.links[tree[i].link].name;
+    link.parent = tree[i].parent;
+    link.parent_from_joint = kIdentityAffine;
+    if (!tree[i].joint) continue;
+    const UrdfJoint& joint = model.joints[*tree[i].joint];
+    link.joint_name = joint.name;
+    link.joint_type = joint.type;
+    link.parent_from_joint = conjugate(up_from_urdf, joint.parent_from_joint, urdf_from_up);
+    link.axis = transformed(up_from_urdf, joint.axis);
+    if (joint.has_limits) link.limits = JointLimits{joint.lower, joint.upper};
+    if (const auto& mimic = mimics[*tree[i].joint]) {
+      link.mimic = Mimic{.link = link_of_joint[mimic->joint],
+                         .multiplier = mimic->multiplier,
+                         .offset = mimic->offset};
+    }
+  }
+}
+
+/// Sorts and hashes the URDF and the files that its meshes named.
+Result<void> finishFiles(SourceRobot& robot, const fs::path& path) {
+  SourceAsset list;
+  list.files = std::move(robot.files);
+  list.files.push_back({.name = nameRelativeTo(path, path)});
+  if (auto hashed = hashFiles(list, path); !hashed) return hashed;
+  robot.files = std::move(list.files);
+  return {};
+}
+
+}  // namespace
+
+Result<SourceRobot> importUrdf(const fs::path& path, const UrdfImportOptions& options) {
+  if (options.up != UpAxis::kZ && options.up != UpAxis::kY) {
+    return fail(ErrorCode::kUnsupported, path.string(),
+                "the up axis of a URDF can only be Z or Y; turn the robot's root otherwise");
+  }
+  auto model = readUrdf(path, options.time_limit);
+  if (!model) return tl::unexpected(model.error());
+  SourceRobot robot;
+  robot.name = model->name;
+  robot.warnings = std::move(model->warnings);
+  const std::string where = path.string();
+  const auto tree = orderTree(*model, where);
+  if (!tree) return tl::unexpected(tree.error());
+  if (auto checked = checkJoints(*model, where, robot.warnings); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  const auto mimics = resolveMimics(*model, where);
+  if (!mimics) return tl::unexpected(mimics.error());
+  robot.links.resize(tree->size());
+  addJoints(*model, *tree, *mimics, options.up, robot);
+  GeometryBuilder geometry(path, options, robot);
+  for (std::size_t i = 0; i < tree->size(); ++i) {
+    if (auto added = geometry.addShapes(model->links[(*tree)[i].link], robot.links[i]); !added) {
+      return tl::unexpected(added.error());
+    }
+  }
+  if (auto finished = finishFiles(robot, path); !finished) {
+    return tl::unexpected(finished.error());
+  }
+  return robot;
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,147 @@
+#include "urdf/urdf_process.h"
+
+#include <fmt/format.h>
+
+#include <system_error>
+#include <utility>
+
+#include "galactic/bake/urdf_import.h"
+#include "galactic/mapped_file.h"
+#include "import/isolated_process.h"
+#include "import/transfer_archive.h"
+#include "urdf/urdf_reader.h"
+
+namespace galactic::bake {
+
+template <class Archive>
+void transferFields(Archive& archive, Is<UrdfShape> auto& shape) {
+  archive(shape.geometry, shape.size, shape.mesh, shape.link_from_shape, shape.has_color,
+          shape.color, shape.texture);
+}
+
+template <class Archive>
+void transferFields(Archive& archive, Is<UrdfLink> auto& link) {
+  archive(link.name, link.visuals, link.collisions);
+}
+
+template <class Archive>
+void transferFields(Archive& archive, Is<UrdfJoint> auto& joint) {
+  archive(joint.name, joint.parent, joint.child, joint.type, joint.parent_from_joint, joint.axis,
+          joint.has_limits, joint.lower, joint.upper, joint.mimic, joint.multiplier, joint.offset);
+}
+
+template <class Archive>
+void transferFields(Archive& archive, Is<UrdfModel> auto& model) {
+  archive(model.name, model.links, model.joints, model.warnings);
+}
+
+template <class Archive>
+void transferFields(Archive& archive, Is<LinkSpheres> auto& link) {
+  archive(link.link, link.spheres);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// XML trees take some tens of bytes per byte of text.
+constexpr std::uint64_t kMemoryLimit = std::uint64_t{8} << 30U;
+
+Result<std::string> readText(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    return fail(ErrorCode::kIo, path.string(), "it is a folder; give the path of a URDF file");
+  }
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (!error && size > kMaxUrdfBytes) {
+    return fail(
+        ErrorCode::kInvalidInput, path.string(),
+        fmt::format("it has {} bytes, at most {} are read; is it a URDF?", size, kMaxUrdfBytes));
+  }
+  const auto file = MappedFile::open(path);
+  if (!file) return tl::unexpected(file.error());
+  const auto bytes = file->bytes();
+  std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (text.find('\0') != std::string::npos) {
+    return fail(ErrorCode::kInvalidInput, path.string(),
+                "it has zero bytes, so it is no XML text; is it a URDF?");
+  }
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    return fail(ErrorCode::kInvalidInput, path.string(), "the file is empty; generate it again");
+  }
+  return text;
+}
+
+Error processFailure(const fs::path& path, const ProcessFailure& failure) {
+  Error error{.code = ErrorCode::kInvalidInput, .where = path.string(), .message = {}};
+  switch (failure.end) {
+    case ProcessEnd::kNotStarted:
+      error.code = ErrorCode::kInternal;
+      error.message = fmt::format("cannot start a process to read it: {}",
+                                  std::generic_category().message(failure.number));
+      break;
+    case ProcessEnd::kTimeLimit:
+      error.message =
+          "the XML parser did not finish in time; the file is broken: generate it again";
+      break;
+    case ProcessEnd::kMemoryLimit:
+      error.message =
+          "the XML parser ran out of memory; the file is broken or too large: generate it again";
+      break;
+    case ProcessEnd::kCrashed:
+    case ProcessEnd::kFailed:
+      error.message =
+          "the XML parser crashed: elements are nested too deep or the file is broken; generate it "
+          "again";
+      break;
+  }
+  return error;
+}
+
+/// Parses a file in a child: `parse` gives a Result<T>.
+template <class T, class Parse>
+Result<T> parseIsolated(const fs::path& path, std::chrono::seconds time_limit, Parse parse) {
+  const auto text = readText(path);
+  if (!text) return tl::unexpected(text.error());
+  const auto work = [&](ProcessChannel& channel) {
+    const TransferSink sink = [&](std::span<const std::byte> bytes) { channel.write(bytes); };
+    TransferWriter writer(sink);
+    const Result<T> parsed = parse(*text, path.string());
+    writer(parsed.has_value());
+    if (parsed) {
+      writer(*parsed);
+    } else {
+      writer(parsed.error());
+    }
+  };
+  const auto output = runIsolated(work, {.wall_clock = time_limit, .memory = kMemoryLimit});
+  if (!output) return tl::unexpected(processFailure(path, output.error()));
+  TransferReader reader(output->bytes());
+  bool good = false;
+  T value;
+  Error error;
+  reader(good);
+  if (good) {
+    reader(value);
+  } else {
+    reader(error);
+  }
+  if (!reader.good() || !reader.atEnd()) {
+    return fail(ErrorCode::kInternal, path.string(),
+                "the reading process delivered a broken result; please report this with the file");
+  }
+  if (!good) return tl::unexpected(std::move(error));
+  return value;
+}
+
+}  // namespace
+
+Result<UrdfModel> readUrdf(const fs::path& path, std::chrono::seconds time_limit) {
+  return parseIsolated<UrdfModel>(path, time_limit, parseUrdf);
+}
+
+Result<std::vector<LinkSpheres>> readSrdf(const fs::path& path, std::chrono::seconds time_limit) {
+  return parseIsolated<std::vector<LinkSpheres>>(path, time_limit, parseSrdf);
+}
+
+}  // namespace galactic::bake

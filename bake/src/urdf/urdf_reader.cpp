@@ -1,0 +1,270 @@
+#include "urdf/urdf_reader.h"
+
+#include <console_bridge/console.h>
+#include <fmt/format.h>
+#include <tinyxml.h>
+#include <urdf_model/model.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <charconv>
+#include <exception>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "import/affine.h"
+
+namespace galactic::bake {
+namespace {
+
+/// Collects what the parser logs; nothing is printed.
+class LogCapture final : public console_bridge::OutputHandler {
+ public:
+  LogCapture() {
+    console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_WARN);
+    console_bridge::useOutputHandler(this);
+  }
+  ~LogCapture() override { console_bridge::restorePreviousOutputHandler(); }
+  LogCapture(const LogCapture&) = delete;
+  LogCapture& operator=(const LogCapture&) = delete;
+  LogCapture(LogCapture&&) = delete;
+  LogCapture& operator=(LogCapture&&) = delete;
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char* /*file*/,
+           int /*line*/) override {
+    auto& list = level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR ? errors_ : warnings_;
+    if (list.size() < kMostMessages) list.push_back(text);
+  }
+
+  /// All errors as one sentence.
+  [[nodiscard]] std::string errors() const {
+    return errors_.empty() ? "no reason given" : fmt::format("{}", fmt::join(errors_, "; "));
+  }
+  [[nodiscard]] std::vector<std::string> takeWarnings() { return std::move(warnings_); }
+
+ private:
+  static constexpr std::size_t kMostMessages = 20;
+  std::vector<std::string> errors_;
+  std::vector<std::string> warnings_;
+};
+
+/// The <robot> element, or what is wrong with the text.
+Result<const TiXmlElement*> robotElement(TiXmlDocument& document, const std::string& text,
+                                         const std::string& where) {
+  document.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
+  if (document.Error()) {
+    return fail(ErrorCode::kInvalidInput, where,
+                fmt::format("it is not well-formed XML: {} (line {}, column {}); repair or "
+                            "generate it again",
+                            document.ErrorDesc(), document.ErrorRow(), document.ErrorCol()));
+  }
+  const TiXmlElement* robot = document.FirstChildElement("robot");
+  if (robot == nullptr) {
+    const TiXmlElement* root = document.RootElement();
+    return fail(ErrorCode::kInvalidInput, where,
+                fmt::format("its outermost element is <{}>, wanted <robot>",
+                            root == nullptr ? "" : root->Value()));
+  }
+  for (const auto* e = robot->FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
+    if (std::string_view(e->Value()).starts_with("xacro:")) {
+      return fail(ErrorCode::kUnsupported, where,
+                  fmt::format("it is a xacro file (line {} has <{}>); expand it with 'xacro {} > "
+                              "robot.urdf' and give the result",
+                              e->Row(), e->Value(), where));
+    }
+  }
+  return robot;
+}
+
+/// Names of the children of <robot> called `tag`, in the order of the text: the parser's library
+/// keeps them sorted by name.
+std::vector<std::string> namesInOrder(const TiXmlElement& robot, const char* tag) {
+  std::vector<std::string> names;
+  for (const auto* e = robot.FirstChildElement(tag); e != nullptr; e = e->NextSiblingElement(tag)) {
+    const char* name = e->Attribute("name");
+    names.emplace_back(name == nullptr ? "" : name);
+  }
+  return names;
+}
+
+Affine toAffine(const urdf::Pose& pose) {
+  const auto& [x, y, z, w] =
+      std::tie(pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w);
+  const auto& p = pose.position;
+  return {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),     p.x,
+          2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),     p.y,
+          2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y), p.z};
+}
+
+std::array<double, 3> toArray(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
+
+UrdfShape toShape(const urdf::Pose& origin, const urdf::Geometry& geometry) {
+  UrdfShape shape;
+  shape.link_from_shape = toAffine(origin);
+  switch (geometry.type) {
+    case urdf::Geometry::BOX:
+      shape.geometry = UrdfGeometry::kBox;
+      shape.size = toArray(static_cast<const urdf::Box&>(geometry).dim);
+      break;
+    case urdf::Geometry::CYLINDER: {
+      const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
+      shape.geometry = UrdfGeometry::kCylinder;
+      shape.size = {cylinder.radius, cylinder.length, 0};
+      break;
+    }
+    case urdf::Geometry::SPHERE:
+      shape.geometry = UrdfGeometry::kSphere;
+      shape.size = {static_cast<const urdf::Sphere&>(geometry).radius, 0, 0};
+      break;
+    case urdf::Geometry::MESH: {
+      const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
+      shape.geometry = UrdfGeometry::kMesh;
+      shape.size = toArray(mesh.scale);
+      shape.mesh = mesh.filename;
+      break;
+    }
+  }
+  return shape;
+}
+
+void addMaterial(UrdfShape& shape, const urdf::Material& material) {
+  shape.texture = material.texture_filename;
+  const urdf::Color& c = material.color;
+  shape.color = {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b),
+                 static_cast<double>(c.a)};
+  // The library does not tell a missing colour from black; with a texture it is the former.
+  shape.has_color = shape.texture.empty() || c.r + c.g + c.b > 0;
+}
+
+UrdfLink toLink(const urdf::Link& link) {
+  UrdfLink converted;
+  converted.name = link.name;
+  for (const auto& visual : link.visual_array) {
+    UrdfShape& shape = converted.visuals.emplace_back(toShape(visual->origin, *visual->geometry));
+    if (visual->material) addMaterial(shape, *visual->material);
+  }
+  for (const auto& collision : link.collision_array) {
+    converted.collisions.push_back(toShape(collision->origin, *collision->geometry));
+  }
+  return converted;
+}
+
+std::optional<JointType> toJointType(const urdf::Joint& joint) {
+  switch (joint.type) {
+    case urdf::Joint::FIXED:
+      return JointType::kFixed;
+    case urdf::Joint::REVOLUTE:
+      return JointType::kRevolute;
+    case urdf::Joint::CONTINUOUS:
+      return JointType::kContinuous;
+    case urdf::Joint::PRISMATIC:
+      return JointType::kPrismatic;
+    case urdf::Joint::PLANAR:
+      return JointType::kPlanar;
+    case urdf::Joint::FLOATING:
+      return JointType::kFloating;
+    default:
+      return std::nullopt;
+  }
+}
+
+UrdfJoint toJoint(const urdf::Joint& joint) {
+  UrdfJoint converted;
+  converted.name = joint.name;
+  converted.parent = joint.parent_link_name;
+  converted.child = joint.child_link_name;
+  converted.type = toJointType(joint).value_or(JointType::kFixed);
+  converted.parent_from_joint = toAffine(joint.parent_to_joint_origin_transform);
+  converted.axis = toArray(joint.axis);
+  if (joint.limits) {
+    converted.has_limits = true;
+    converted.lower = joint.limits->lower;
+    converted.upper = joint.limits->upper;
+  }
+  if (joint.mimic) {
+    converted.mimic = joint.mimic->joint_name;
+    converted.multiplier = joint.mimic->multiplier;
+    converted.offset = joint.mimic->offset;
+  }
+  return converted;
+}
+
+/// Three numbers, or none when there are not three.
+std::optional<std::vector<double>> numbersOf(const char* text, std::size_t count) {
+  if (text == nullptr) return std::nullopt;
+  std::vector<double> numbers;
+  std::string_view left(text);
+  constexpr std::string_view kBlanks = " \t\r\n";
+  while (true) {
+    left.remove_prefix(std::min(left.find_first_not_of(kBlanks), left.size()));
+    if (left.empty()) break;
+    double number = 0;
+    if (left.front() == '+') left.remove_prefix(1);
+    const auto [end, error] = std::from_chars(left.data(), left.data() + left.size(), number);
+    if (error != std::errc{}) return std::nullopt;
+    numbers.push_back(number);
+    left.remove_prefix(static_cast<std::size_t>(end - left.data()));
+  }
+  if (numbers.size() != count) return std::nullopt;
+  return numbers;
+}
+
+}  // namespace
+
+Result<UrdfModel> parseUrdf(const std::string& text, const std::string& where) {
+  TiXmlDocument document;
+  const auto robot = robotElement(document, text, where);
+  if (!robot) return tl::unexpected(robot.error());
+  LogCapture log;
+  urdf::ModelInterfaceSharedPtr parsed;
+  try {
+    parsed = urdf::parseURDF(text);
+  } catch (const std::exception& e) {
+    return fail(ErrorCode::kInvalidInput, where, fmt::format("it cannot be read: {}", e.what()));
+  }
+  if (!parsed) return fail(ErrorCode::kInvalidInput, where, log.errors());
+  UrdfModel model;
+  model.name = parsed->name_;
+  for (const std::string& name : namesInOrder(**robot, "link")) {
+    if (const auto link = parsed->getLink(name)) model.links.push_back(toLink(*link));
+  }
+  for (const std::string& name : namesInOrder(**robot, "joint")) {
+    if (const auto joint = parsed->getJoint(name)) model.joints.push_back(toJoint(*joint));
+  }
+  model.warnings = log.takeWarnings();
+  return model;
+}
+
+Result<std::vector<LinkSpheres>> parseSrdf(const std::string& text, const std::string& where) {
+  TiXmlDocument document;
+  const auto robot = robotElement(document, text, where);
+  if (!robot) return tl::unexpected(robot.error());
+  std::vector<LinkSpheres> links;
+  constexpr const char* kTag = "link_sphere_approximation";
+  for (const auto* e = (*robot)->FirstChildElement(kTag); e != nullptr;
+       e = e->NextSiblingElement(kTag)) {
+    const char* name = e->Attribute("link");
+    if (name == nullptr) {
+      return fail(ErrorCode::kInvalidInput, fmt::format("{}:{}", where, e->Row()),
+                  fmt::format("<{}> has no attribute 'link'; name the link", kTag));
+    }
+    LinkSpheres& link = links.emplace_back();
+    link.link = name;
+    for (const auto* s = e->FirstChildElement("sphere"); s != nullptr;
+         s = s->NextSiblingElement("sphere")) {
+      const auto centre = numbersOf(s->Attribute("center"), 3);
+      const auto radius = numbersOf(s->Attribute("radius"), 1);
+      if (!centre || !radius) {
+        return fail(ErrorCode::kInvalidInput, fmt::format("{}:{}", where, s->Row()),
+                    fmt::format("a <sphere> of link '{}' is wanted with center=\"x y z\" and "
+                                "radius=\"r\"",
+                                name));
+      }
+      link.spheres.push_back({{(*centre)[0], (*centre)[1], (*centre)[2]}, (*radius)[0]});
+    }
+  }
+  return links;
+}
+
+}  // namespace galactic::bake

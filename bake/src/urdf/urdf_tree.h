@@ -1,0 +1,45 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "galactic/error.h"
+#include "urdf/urdf_model.h"
+
+namespace galactic::bake {
+
+/// A link's place in the tree.
+struct TreeLink {
+  /// Index into UrdfModel::links.
+  std::size_t link = 0;
+  /// Position in the list of the parent; -1 for the root.
+  int parent = -1;
+  /// Index into UrdfModel::joints of the joint to the parent; none for the root.
+  std::optional<std::size_t> joint;
+};
+
+/// The links, root first and parents before children (depth first, children in the order of the
+/// model's joints). Fails with kInvalidInput unless the joints make all links one tree.
+[[nodiscard]] Result<std::vector<TreeLink>> orderTree(const UrdfModel& model,
+                                                      const std::string& where);
+
+/// A joint whose mimic chain is resolved.
+struct ResolvedMimic {
+  /// Index into UrdfModel::joints of a joint that mimics nothing.
+  std::size_t joint = 0;
+  double multiplier = 1;
+  double offset = 0;
+};
+
+/// One entry per joint; none where it mimics nothing. Fails with kInvalidInput on unknown or fixed
+/// joints and on circles.
+[[nodiscard]] Result<std::vector<std::optional<ResolvedMimic>>> resolveMimics(
+    const UrdfModel& model, const std::string& where);
+
+/// Checks the numbers of joints: finite, within bounds, limits in order, axes with a direction.
+/// Normalises the axes; what is doubtful is added to `warnings`.
+[[nodiscard]] Result<void> checkJoints(UrdfModel& model, const std::string& where,
+                                       std::vector<std::string>& warnings);
+
+}  // namespace galactic::bake
