@@ -53,6 +53,7 @@ class IncludesTest(PlantedTree):
             "bake/src/import/assimp_reader.cpp": "#include <assimp/scene.h>\nconst aiScene* s;\n",
             "bake/src/engines/bullet_columns.cpp":
                 "#include <BulletCollision/CollisionShapes/btSphereShape.h>\n",
+            "bake/src/fit/convex_hull.cpp": "#include <LinearMath/btConvexHullComputer.h>\n",
             "bake/src/engines/embree_columns.cpp": "#include <embree3/rtcore.h>\nRTCScene s;\n",
             "bake/src/b.cpp": '#include "galactic/bake/bake.h"\n#include "galactic/pack.h"\n',
             "tests/a.cpp": "#include <gtest/gtest.h>\n#include <benchmark/benchmark.h>\n",

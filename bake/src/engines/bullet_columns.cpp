@@ -1,4 +1,4 @@
-// The only file that names Bullet.
+// The only file that names Bullet's collision detection.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>

@@ -13,15 +13,25 @@ struct StablePose {
   Quat rotation;
   /// Height of the object's origin above the plane, metres.
   float height = 0;
-  /// Share of random drops that end in this pose, 0 to 1.
+  /// Share of random drops that end in this pose, 0 to 1. All poses of an object add up to 1; where
+  /// there are more than are kept, the kept ones do not, and their shares stay as they are.
   float likelihood = 0;
 };
 
 /// At most this many poses are kept, the likeliest first.
 inline constexpr std::size_t kMaxStablePoses = 16;
 
-/// The stable poses of the solid inside the convex hull of `mesh`, likeliest first. Never empty:
-/// flat and thin input rests on its largest faces. Deterministic.
+/// Poses whose down directions differ by less than this are one: the likeliest, with the shares of
+/// all. Radians.
+inline constexpr double kSamePoseAngle = 0.05;
+
+/// The stable poses of the solid of even density inside the convex hull of `mesh` (object frame,
+/// metres, finite), likeliest first; of equally likely ones, the more upright first. Heights are
+/// such that no vertex is below the plane. Never empty: a flat mesh rests on either side, one that
+/// is a line on four of its sides, a point as it is.
+/// Likelihoods by the quasi-static estimate of Goldberg et al., "Part pose statistics: estimators
+/// and experiments" (1999): the share of directions in which a face lies below the centre of mass,
+/// its own and those of the faces from which the body rolls onto it. Deterministic.
 [[nodiscard]] std::vector<StablePose> findStablePoses(const TriangleMesh& mesh);
 
 }  // namespace galactic::bake

@@ -1,0 +1,111 @@
+#include "galactic/bake/oriented_box.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "fit/box_axes.h"
+#include "fit/minimum_box.h"
+#include "fit/rotation.h"
+#include "fit/vec3d.h"
+
+namespace galactic::bake {
+namespace {
+
+using fit::Axes;
+using fit::PointSet;
+using fit::Vec3d;
+
+constexpr double kMinSide = 2 * static_cast<double>(kMinHalfExtent);
+/// Added to each half extent, so that points are inside whatever order of float operations a reader
+/// uses: this many metres, and this share of the greatest coordinate (eight roundings).
+constexpr double kPadding = 1e-6;
+constexpr double kRelativePadding = 8 * 6e-8;
+
+/// How far points reach from the centre along each axis, in the float arithmetic of a reader.
+std::array<float, 3> floatReach(const PointSet& points, const Pose& object_from_box) {
+  const Pose box_from_object = inverse(object_from_box);
+  std::array<float, 3> reach{};
+  for (std::size_t at = 0; at < points.size(); ++at) {
+    const Vec3 local = box_from_object * fit::narrow(points[at]);
+    reach[0] = std::max(reach[0], std::abs(local.x));
+    reach[1] = std::max(reach[1], std::abs(local.y));
+    reach[2] = std::max(reach[2], std::abs(local.z));
+  }
+  return reach;
+}
+
+/// The box around `points` with the directions of `axes`, rounded to floats and grown until every
+/// point is inside, by exact arithmetic and by that of floats.
+OrientedBox boxAround(const PointSet& points, const Axes& axes) {
+  OrientedBox box;
+  box.pose.rotation = fit::quaternionOf(fit::nearestEquivalent(axes));
+  // From here on with the axes that the rounded rotation stands for.
+  const Axes stored = fit::axesOf(box.pose.rotation);
+  std::array<fit::Interval, 3> sides;
+  Vec3d centre;
+  double magnitude = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    sides[axis] = fit::intervalAlong(points, stored[axis]);
+    centre = centre + stored[axis] * ((sides[axis].lo + sides[axis].hi) / 2);
+    magnitude = std::max({magnitude, std::abs(sides[axis].lo), std::abs(sides[axis].hi)});
+  }
+  box.pose.translation = fit::narrow(centre);
+  const Vec3d origin = fit::widen(box.pose.translation);
+  const std::array<float, 3> in_floats = floatReach(points, box.pose);
+  std::array<float, 3> half{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double middle = dot(origin, stored[axis]);
+    const double reach = std::max(
+        {sides[axis].hi - middle, middle - sides[axis].lo, static_cast<double>(in_floats[axis])});
+    half[axis] = std::max(static_cast<float>(reach + kPadding + kRelativePadding * magnitude),
+                          kMinHalfExtent);
+  }
+  box.half_extents = {half[0], half[1], half[2]};
+  return box;
+}
+
+double volumeOf(const OrientedBox& box) {
+  const Vec3d half = fit::widen(box.half_extents);
+  return 8 * half.x * half.y * half.z;
+}
+
+/// Up stays up; the sides in the ground plane are those of the rectangle of least area.
+Axes yawAxes(const PointSet& points) {
+  const Axes around = fit::FixedAxisCalipers(points, kMinSide).bestAround({0, 1, 0}).axes;
+  return {around[1], around[2], around[0]};
+}
+
+/// The smaller of two boxes; the first of equal ones.
+const OrientedBox& smaller(const OrientedBox& a, const OrientedBox& b) {
+  return volumeOf(b) < volumeOf(a) ? b : a;
+}
+
+}  // namespace
+
+BoxFitResult fitOrientedBox(std::span<const Vec3> points, BoxFit fit) {
+  assert(!points.empty());
+  const PointSet set = fit::pointSet(points);
+  const OrientedBox aligned = boxAround(set, fit::kIdentityAxes);
+  const OrientedBox principal = boxAround(set, fit::principalAxes(set));
+  BoxFitResult result;
+  result.axis_aligned_volume = volumeOf(aligned);
+  result.pca_volume = volumeOf(principal);
+  result.used = fit;
+  result.box = aligned;
+  if (fit != BoxFit::kAxisAligned) {
+    const OrientedBox yaw = smaller(aligned, boxAround(set, yawAxes(set)));
+    const OrientedBox searched = boxAround(set, fit::minimumBoxAxes(points, kMinSide));
+    const OrientedBox least = smaller(yaw, smaller(principal, searched));
+    const bool saves = volumeOf(least) < volumeOf(yaw) * (1 - kMinimumBoxSaving);
+    result.used = fit == BoxFit::kMinimum || saves ? BoxFit::kMinimum : BoxFit::kYaw;
+    result.box = result.used == BoxFit::kMinimum ? least : yaw;
+  }
+  result.volume = volumeOf(result.box);
+  return result;
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,24 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "fit/convex_hull.h"
+#include "fit/vec3d.h"
+
+namespace galactic::bake::fit {
+
+/// The centre of mass of the solid inside `hull` (kSolid), of even density.
+[[nodiscard]] Vec3d centreOfMass(const ConvexHull& hull);
+
+/// For each face of `hull` (kSolid) the share of random drops that come to rest on it; 0 for faces
+/// that the body rolls on from. They add up to 1.
+///
+/// The quasi-static estimate of Goldberg, Mirtich, Zhuang, Craig, Carlisle and Canny, "Part pose
+/// statistics: estimators and experiments" (IEEE Transactions on Robotics and Automation 15, 1999):
+/// a body in a random attitude comes down on the face below its centre of mass, so on each with its
+/// solid angle's share. Where the centre is not above that face, the body rolls over the edge that
+/// is nearest to the centre's foot, onto the face beyond, and so on. Each roll lowers the centre,
+/// so that every chain ends.
+[[nodiscard]] std::vector<double> restingShares(const ConvexHull& hull);
+
+}  // namespace galactic::bake::fit
