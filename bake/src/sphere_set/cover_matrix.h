@@ -40,6 +40,11 @@ struct CandidatePool {
 void appendCovering(const FitTask& task, const PointGrid& grid, std::span<const Candidate> found,
                     CandidatePool& pool);
 
+/// Drops candidates that a neighbour, within `distance` of them, makes needless: it covers all they
+/// cover and more, or the same with less protrusion.
+[[nodiscard]] CandidatePool withoutDominated(const FitTask& task, std::span<const Vec3d> points,
+                                             const CandidatePool& pool, double distance);
+
 /// For each of `points` points whether a candidate from number `from` on covers it; added to what
 /// `covered` says.
 void markCovered(const CandidatePool& pool, std::size_t from, std::vector<char>& covered);

@@ -27,6 +27,9 @@ constexpr double kTolerated = 0.25;
 constexpr std::uint64_t kPointSeed = 1;
 constexpr std::uint64_t kDenseSeed = 2;
 
+/// Candidates this many steps of the finest lattice apart are compared for dominance.
+constexpr double kDominanceSteps = 3;
+
 /// Steps in each direction of the fine lattices around chosen spheres.
 constexpr int kFineSteps = 4;
 
@@ -49,6 +52,7 @@ class CoverSolver {
     if (points_.empty()) return {};
     findCover();
     for (int round = 0; round < effort_.rounds; ++round) refine(round);
+    polish(task_, dense_, effort_.polish_sweeps, chosen_);
     topUp();
     polish(task_, dense_, effort_.polish_sweeps, chosen_);
     Cover cover;
@@ -66,14 +70,19 @@ class CoverSolver {
   void findCover() {
     Candidates found = findCandidates(task_, points_);
     addThinCandidates(task_, points_, found.coverable, found.pool);
-    choose(found.pool, {}, effort_.search);
+    const double distance = kDominanceSteps * latticeSpacing(task_, 0);
+    const CandidatePool pool = withoutDominated(task_, points_, found.pool, distance);
+    coarse_ = pool.candidates;
+    choose(pool, {}, effort_.search);
   }
 
   /// Completes `selection` and makes it small.
-  void choose(const CandidatePool& pool, Selection selection, std::uint64_t budget) {
+  void choose(const CandidatePool& pool, Selection selection, std::uint64_t operations_each) {
     completeGreedily(pool, points_.size(), selection);
     removeRedundant(pool, points_.size(), selection);
-    selection = LocalSearch(task_, points_, pool).improve(selection, budget);
+    const std::uint64_t wanted = operations_each * selection.size();
+    selection =
+        LocalSearch(task_, points_, pool).improve(selection, std::min(wanted, effort_.limit));
     chosen_.clear();
     for (const std::uint32_t at : selection) chosen_.push_back(pool.candidates[at]);
   }
@@ -109,6 +118,7 @@ class CoverSolver {
     Selection selection(pool.candidates.size());
     std::iota(selection.begin(), selection.end(), 0U);
     appendCovering(task_, grid, candidatesFor(open), pool);
+    appendCovering(task_, grid, coarse_, pool);
     appendCovering(task_, grid, fineLattices(round), pool);
     choose(pool, std::move(selection), effort_.refine);
   }
@@ -163,6 +173,8 @@ class CoverSolver {
   std::vector<Vec3d> points_;
   /// What the cover is checked on.
   std::vector<Vec3d> dense_;
+  /// From the coarse lattices.
+  std::vector<Candidate> coarse_;
   std::vector<Candidate> chosen_;
 };
 

@@ -8,8 +8,12 @@ namespace galactic::bake::sphere_fit {
 
 /// How much work a cover is worth: operations, never time, so that results are reproducible.
 struct Effort {
-  std::uint64_t search = 30'000'000;
-  std::uint64_t refine = 12'000'000;
+  /// Operations of the local search per sphere of the cover that it starts from, first on the
+  /// coarse lattices and then in each round.
+  std::uint64_t search = 1'500'000;
+  std::uint64_t refine = 600'000;
+  /// Most operations of one search.
+  std::uint64_t limit = 30'000'000;
   int rounds = 3;
   int polish_sweeps = 16;
 };

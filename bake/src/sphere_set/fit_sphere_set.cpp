@@ -24,7 +24,7 @@ constexpr int kCurveSteps = 8;
 /// With this many steps eps is beyond the size of any mesh, whatever it was.
 constexpr int kMostSteps = 64;
 /// For one of many covers; the whole curve costs about three single fits.
-constexpr Effort kCurveEffort{6'000'000, 3'000'000, 2, 12};
+constexpr Effort kCurveEffort{400'000, 200'000, 8'000'000, 2, 12};
 /// Halvings of the last step when a number of spheres is given.
 constexpr int kHalvings = 2;
 

@@ -15,6 +15,8 @@ constexpr int kTries = 8;
 /// The first step, as a share of the smallest radius, and what is left of it after each sweep.
 constexpr double kFirstStep = 0.4;
 constexpr double kStepDecay = 0.82;
+/// What the square of a gap's excess over eps weighs: closing it comes first.
+constexpr double kRepair = 1e4;
 
 /// A point that a sphere may have to cover, and its distance to all other spheres.
 struct NearPoint {
@@ -91,6 +93,7 @@ class Polisher {
       const double gap = std::min(point.others, outside(task_, sphere, point.position));
       if (gap > most_) return HUGE_VAL;
       if (gap > 0) sum += gap * gap;
+      if (gap > task_.eps) sum += kRepair * (gap - task_.eps) * (gap - task_.eps);
     }
     const double radius = task_.radii[sphere.radius_index];
     const double share = 4 * std::numbers::pi * radius * radius / task_.solid->area();

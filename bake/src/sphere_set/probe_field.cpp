@@ -16,7 +16,7 @@ constexpr double kCoarsestVoxel = 0.35;
 /// A probe smaller than this many voxels would slip through the grid.
 constexpr double kVoxelsPerProbe = 1.0 / 0.7;
 /// Distances are exact up to the probe's radius and this many voxels.
-constexpr double kExactVoxels = 2;
+constexpr double kExactVoxels = 1;
 /// A search from a free voxel looks this many voxels further, to skip what is free as well.
 constexpr double kSkipVoxels = 14;
 
@@ -81,11 +81,7 @@ std::int64_t squared(std::int64_t value) { return value * value; }
 ProbeField::ProbeField(const TriangleTree& tree, const Box& bounds, double smallest_radius,
                        unsigned jobs) {
   chooseGrid(bounds, smallest_radius);
-  clearance_.assign(size_[0] * size_[1] * size_[2], 0);
-  parallelFor(jobs, size_[2], [&](std::size_t z) {
-    for (std::size_t y = 0; y < size_[1]; ++y) measureRow(tree, y, z);
-  });
-  spread();
+  spread(tree);
   findNearestReached(jobs);
 }
 
@@ -118,47 +114,46 @@ Vec3d ProbeField::positionOf(std::size_t index) const {
          Vec3d{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)} * voxel_;
 }
 
-void ProbeField::measureRow(const TriangleTree& tree, std::size_t y, std::size_t z) {
+void ProbeField::spread(const TriangleTree& tree) {
+  /// A voxel to go on from, what is known of its distance, and a facet near it.
+  struct Step {
+    std::uint32_t at = 0;
+    std::uint32_t facet = kNoFacet;
+    double at_least = 0;
+  };
+  clearance_.assign(size_[0] * size_[1] * size_[2], kUnknown);
+  nearest_.assign(clearance_.size(), kUnreached);
   const double exact = probe_ + kExactVoxels * voxel_;
   const double far = exact + kSkipVoxels * voxel_;
-  SearchLimits limits{far * far, probe_ * probe_ * (1 - 1e-9), kNoFacet};
-  std::size_t x = 0;
-  while (x < size_[0]) {
-    const std::size_t at = index(x, y, z);
-    const NearestPoint found = tree.nearest(positionOf(at), limits);
-    if (found.facet != kNoFacet) limits.hint = found.facet;
-    const double distance = std::sqrt(found.squared);
-    std::size_t next = x + 1;
-    if (distance >= exact) {
-      next += static_cast<std::size_t>((distance - exact) / voxel_);
-      next = std::min(next, size_[0]);
-      for (std::size_t free = x; free < next; ++free) {
-        clearance_[index(free, y, z)] = static_cast<float>(exact);
+  std::vector<Step> front;
+  const auto visit = [&](std::size_t at, const Step& from) {
+    if (clearance_[at] != kUnknown) return;
+    Step step{static_cast<std::uint32_t>(at), from.facet, from.at_least - voxel_};
+    // The distance changes by no more than the way gone: far from the mesh few searches are due,
+    // and which ones does not change the outcome.
+    if (step.at_least < exact) {
+      const SearchLimits limits{far * far, probe_ * probe_ * (1 - 1e-9), from.facet};
+      const NearestPoint found = tree.nearest(positionOf(at), limits);
+      if (found.squared <= limits.squared_enough) {
+        clearance_[at] = kBlocked;
+        return;
       }
-    } else if (found.squared > limits.squared_enough) {
-      clearance_[at] = static_cast<float>(distance);
+      if (found.facet != kNoFacet) step.facet = found.facet;
+      step.at_least = std::sqrt(found.squared);
     }
-    x = next;
-  }
-}
-
-void ProbeField::spread() {
-  nearest_.assign(clearance_.size(), kUnreached);
-  std::vector<std::uint32_t> front{0};
-  nearest_[0] = 0;
-  const auto visit = [&](std::size_t at) {
-    if (nearest_[at] != kUnreached || !(clearance_[at] > 0)) return;
-    nearest_[at] = static_cast<std::uint32_t>(at);
-    front.push_back(static_cast<std::uint32_t>(at));
+    clearance_[at] = static_cast<float>(std::min(exact, step.at_least));
+    nearest_[at] = step.at;
+    front.push_back(step);
   };
+  visit(0, {});
   while (!front.empty()) {
-    const std::size_t at = front.back();
+    const Step from = front.back();
     front.pop_back();
-    const auto cell = cellOf(at);
+    const auto cell = cellOf(from.at);
     std::size_t stride = 1;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (cell[axis] > 0) visit(at - stride);
-      if (cell[axis] + 1 < size_[axis]) visit(at + stride);
+      if (cell[axis] > 0) visit(from.at - stride, from);
+      if (cell[axis] + 1 < size_[axis]) visit(from.at + stride, from);
       stride *= size_[axis];
     }
   }

@@ -31,8 +31,7 @@ class ProbeField {
 
  private:
   void chooseGrid(const Box& bounds, double smallest_radius);
-  void measureRow(const TriangleTree& tree, std::size_t y, std::size_t z);
-  void spread();
+  void spread(const TriangleTree& tree);
   void findNearestReached(unsigned jobs);
   void nearestInPlane(std::size_t z);
   void nearestAcrossPlanes(std::size_t y);
@@ -45,11 +44,15 @@ class ProbeField {
   }
   [[nodiscard]] Vec3d positionOf(std::size_t index) const;
 
+  static constexpr float kUnknown = 0;
+  static constexpr float kBlocked = -1;
+
   double voxel_ = 0;
   double probe_ = 0;
   Vec3d origin_;
   std::array<std::size_t, 3> size_{};
-  /// Radius of the empty ball at each voxel, up to a limit; 0 where the probe does not fit.
+  /// Radius of the empty ball at each voxel that the probe reaches, up to a limit; kBlocked where
+  /// it does not fit, kUnknown where it did not come near.
   std::vector<float> clearance_;
   /// Index of the reached voxel nearest to each voxel.
   std::vector<std::uint32_t> nearest_;

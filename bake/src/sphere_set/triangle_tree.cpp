@@ -102,13 +102,6 @@ void TriangleTree::build(std::vector<std::uint32_t>& order, const std::vector<Ve
   build(order, middles, middle, end);
 }
 
-float TriangleTree::squaredDistance(const Node& node, const Vec3& p) {
-  const float x = std::max(std::max(node.min.x - p.x, p.x - node.max.x), 0.0F);
-  const float y = std::max(std::max(node.min.y - p.y, p.y - node.max.y), 0.0F);
-  const float z = std::max(std::max(node.min.z - p.z, p.z - node.max.z), 0.0F);
-  return x * x + y * y + z * z;
-}
-
 NearestPoint TriangleTree::nearest(const Vec3d& p, const SearchLimits& limits) const {
   NearestPoint best{limits.squared_limit, {}, kNoFacet};
   const auto consider = [&](const Facet& facet, std::uint32_t index) {
@@ -123,7 +116,7 @@ NearestPoint TriangleTree::nearest(const Vec3d& p, const SearchLimits& limits) c
   const Vec3 from = toVec3(p);
   std::array<std::pair<std::uint32_t, float>, kStack> stack;
   std::size_t depth = 0;
-  stack[depth++] = {0U, squaredDistance(nodes_[0], from)};
+  stack[depth++] = {0U, nodes_[0].squaredDistance(from)};
   while (depth > 0 && best.squared > limits.squared_enough) {
     const auto [at, squared] = stack[--depth];
     if (static_cast<double>(squared) * kRounding >= best.squared) continue;
@@ -134,8 +127,8 @@ NearestPoint TriangleTree::nearest(const Vec3d& p, const SearchLimits& limits) c
       }
       continue;
     }
-    std::pair<std::uint32_t, float> near{at + 1, squaredDistance(nodes_[at + 1], from)};
-    std::pair<std::uint32_t, float> far{node.first, squaredDistance(nodes_[node.first], from)};
+    std::pair<std::uint32_t, float> near{at + 1, nodes_[at + 1].squaredDistance(from)};
+    std::pair<std::uint32_t, float> far{node.first, nodes_[node.first].squaredDistance(from)};
     if (far.second < near.second) std::swap(near, far);
     stack[depth++] = far;
     stack[depth++] = near;

@@ -52,11 +52,18 @@ class TriangleTree {
     std::uint32_t first = 0;
     /// Facets of a leaf; 0: an inner node.
     std::uint32_t count = 0;
+
+    /// Of `p` to the box, in single precision.
+    [[nodiscard]] float squaredDistance(const Vec3& p) const {
+      const float x = std::max(std::max(min.x - p.x, p.x - max.x), 0.0F);
+      const float y = std::max(std::max(min.y - p.y, p.y - max.y), 0.0F);
+      const float z = std::max(std::max(min.z - p.z, p.z - max.z), 0.0F);
+      return x * x + y * y + z * z;
+    }
   };
 
   void build(std::vector<std::uint32_t>& order, const std::vector<Vec3d>& middles,
              std::uint32_t begin, std::uint32_t end);
-  [[nodiscard]] static float squaredDistance(const Node& node, const Vec3& p);
 
   std::vector<Facet> facets_;
   std::vector<Node> nodes_;
