@@ -1,0 +1,36 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "sphere_set/fit_task.h"
+
+namespace galactic::bake::sphere_fit {
+
+/// How much work a cover is worth: operations, never time, so that results are reproducible.
+struct Effort {
+  /// Operations of the local search per sphere of the cover that it starts from, first on the
+  /// coarse lattices and then in each round.
+  std::uint64_t search = 1'500'000;
+  std::uint64_t refine = 600'000;
+  /// Most operations of one search.
+  std::uint64_t limit = 30'000'000;
+  int rounds = 3;
+  int polish_sweeps = 16;
+};
+
+/// A small set of spheres that covers a solid, and what its solver can promise.
+struct Cover {
+  std::vector<Candidate> spheres;
+  /// No reachable surface point is further from the union than this.
+  double guaranteed_gap = 0;
+  /// No sphere protrudes further than this.
+  double guaranteed_protrusion = 0;
+  /// What sampling adds to eps in the guarantee.
+  double slack = 0;
+};
+
+/// As few spheres as found that cover the task's solid. Empty where the surface has no point that
+/// needs cover.
+[[nodiscard]] Cover solveCover(const FitTask& task, const Effort& effort);
+
+}  // namespace galactic::bake::sphere_fit

@@ -1,0 +1,56 @@
+#pragma once
+#include <memory>
+#include <span>
+
+#include "galactic/bake/triangle_mesh.h"
+#include "sphere_set/probe_field.h"
+#include "sphere_set/triangle_tree.h"
+
+namespace galactic::bake::sphere_fit {
+
+/// Signed distance to the reachable surface, and the point of the surface that is nearest.
+struct SurfaceDistance {
+  /// Negative inside the solid, metres.
+  double distance = 0;
+  Vec3d nearest;
+  /// The facet that `nearest` lies on.
+  std::uint32_t facet = kNoFacet;
+};
+
+/// What a probe cannot reach from outside, and the surface that it touches: holes smaller than the
+/// probe are closed, inner faces and nested shells vanish. Immutable, so safe to share between
+/// threads.
+class ExteriorSolid {
+ public:
+  /// See ProbeField for the probe that `smallest_radius` gives. Never changes with `jobs`.
+  ExteriorSolid(const TriangleMesh& mesh, double smallest_radius, unsigned jobs);
+
+  /// The facets that the probe touches; large ones that it touches only in part are cut up.
+  [[nodiscard]] std::span<const Facet> facets() const { return surface_.facets(); }
+  /// Of the facets.
+  [[nodiscard]] const Box& bounds() const { return bounds_; }
+  /// Of the facets, square metres.
+  [[nodiscard]] double area() const { return area_; }
+
+  [[nodiscard]] bool contains(const Vec3d& p) const { return field_->excess(p) >= 0; }
+
+  /// Whether the probe touches the surface at `p`, up to half a voxel.
+  [[nodiscard]] bool reachable(const Vec3d& p) const {
+    return field_->excess(p) <= field_->voxel() / 2;
+  }
+
+  [[nodiscard]] SurfaceDistance distance(const Vec3d& p) const;
+
+ private:
+  [[nodiscard]] std::vector<Facet> touchedFacets(const TriangleMesh& mesh) const;
+
+  std::unique_ptr<const ProbeField> field_;
+  TriangleTree surface_;
+  Box bounds_;
+  double area_ = 0;
+};
+
+/// Twice the area is the length of this normal.
+[[nodiscard]] Vec3d facetNormal(const Facet& facet);
+
+}  // namespace galactic::bake::sphere_fit

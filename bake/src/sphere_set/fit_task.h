@@ -1,0 +1,36 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "galactic/bake/sphere_set.h"
+#include "sphere_set/exterior_solid.h"
+
+namespace galactic::bake::sphere_fit {
+
+/// What one cover has to do, and on which solid. Lengths in metres.
+struct FitTask {
+  const ExteriorSolid* solid = nullptr;
+  /// Ascending.
+  std::vector<double> radii;
+  double eps = 0;
+  double tau = 0;
+  std::optional<HalfSpace> support;
+  unsigned jobs = 1;
+};
+
+/// A sphere that may be chosen.
+struct Candidate {
+  /// Exactly as it would be stored.
+  Vec3d centre;
+  std::uint32_t radius_index = 0;
+  /// No point of the sphere is further outside the solid than this.
+  double protrusion = 0;
+};
+
+/// How far the centre of a sphere may be outside (negative: must be inside) under `tau`.
+[[nodiscard]] inline double highestCentre(const FitTask& task, std::uint32_t radius_index) {
+  return task.tau - task.radii[radius_index];
+}
+
+}  // namespace galactic::bake::sphere_fit

@@ -1,0 +1,189 @@
+#include "sphere_set/measure.h"
+
+#include <numbers>
+#include <numeric>
+
+#include "parallel_for.h"
+#include "sphere_set/candidates.h"
+#include "sphere_set/gaps.h"
+#include "sphere_set/surface_samples.h"
+
+namespace galactic::bake::sphere_fit {
+namespace {
+
+/// Apart from the seeds that the solver uses.
+constexpr std::uint64_t kSeed = 99;
+constexpr double kSurfaceSamples = 20'000;
+/// Sample spacings are within these shares of the smallest radius where the area allows.
+constexpr double kFinestSpacing = 0.1;
+constexpr double kCoarsestSpacing = 0.3;
+/// Points on each sphere, and more where the sphere is large.
+constexpr double kLeastSpherePoints = 250;
+constexpr double kMostSpherePoints = 600;
+constexpr double kVolumeSamples = 80'000;
+
+/// A length, and how much surface it stands for.
+struct Weighted {
+  double value = 0;
+  double weight = 0;
+};
+
+LengthStatistics statisticsOf(std::vector<Weighted> values) {
+  LengthStatistics result;
+  if (values.empty()) return result;
+  std::sort(values.begin(), values.end(), [](const Weighted& a, const Weighted& b) {
+    return a.value != b.value ? a.value < b.value : a.weight < b.weight;
+  });
+  double sum = 0;
+  double total = 0;
+  for (const Weighted& v : values) {
+    sum += v.value * v.weight;
+    total += v.weight;
+  }
+  result.mean = sum / total;
+  result.max = values.back().value;
+  double below = 0;
+  for (const Weighted& v : values) {
+    below += v.weight;
+    result.p95 = v.value;
+    if (below >= 0.95 * total) break;
+  }
+  return result;
+}
+
+double sampleSpacing(const FitTask& task) {
+  const double area = task.solid->area();
+  const double radius = task.radii.front();
+  return std::clamp(std::sqrt(area / kSurfaceSamples),
+                    std::min(kFinestSpacing * radius, std::sqrt(area / 2000)),
+                    std::max(kCoarsestSpacing * radius, std::sqrt(area / (5 * kSurfaceSamples))));
+}
+
+/// Points spread evenly over the sphere, on a Fibonacci spiral.
+std::vector<Vec3d> spherePoints(const Vec3d& centre, double radius, std::size_t count) {
+  constexpr double kGoldenAngle = std::numbers::pi * (3 - 2.23606797749978969641);
+  std::vector<Vec3d> points;
+  for (std::size_t n = 0; n < count; ++n) {
+    const double z = 1 - 2 * (static_cast<double>(n) + 0.5) / static_cast<double>(count);
+    const double ring = std::sqrt(1 - z * z);
+    const double turn = kGoldenAngle * static_cast<double>(n);
+    points.push_back(centre + Vec3d{ring * std::cos(turn), ring * std::sin(turn), z} * radius);
+  }
+  return points;
+}
+
+/// The spheres that meet each sphere.
+std::vector<std::vector<const Candidate*>> neighboursOf(const FitTask& task,
+                                                        std::span<const Candidate> spheres) {
+  std::vector<std::vector<const Candidate*>> neighbours(spheres.size());
+  for (std::size_t a = 0; a < spheres.size(); ++a) {
+    for (std::size_t b = 0; b < spheres.size(); ++b) {
+      const double reach =
+          task.radii[spheres[a].radius_index] + task.radii[spheres[b].radius_index];
+      const bool meets = squaredLength(spheres[a].centre - spheres[b].centre) < reach * reach;
+      if (a != b && meets) neighbours[a].push_back(&spheres[b]);
+    }
+  }
+  return neighbours;
+}
+
+LengthStatistics protrusionOf(const FitTask& task, std::span<const Candidate> spheres) {
+  const auto neighbours = neighboursOf(task, spheres);
+  std::vector<std::vector<Weighted>> parts(spheres.size());
+  parallelFor(task.jobs, spheres.size(), [&](std::size_t at) {
+    const double radius = task.radii[spheres[at].radius_index];
+    const double scaled = kLeastSpherePoints * radius / task.radii.front();
+    const double count = std::clamp(scaled, kLeastSpherePoints, kMostSpherePoints);
+    const double share = radius * radius / count;
+    for (const Vec3d& p :
+         spherePoints(spheres[at].centre, radius, static_cast<std::size_t>(count))) {
+      const bool hidden =
+          std::any_of(neighbours[at].begin(), neighbours[at].end(),
+                      [&](const Candidate* other) { return outside(task, *other, p) < -1e-9; });
+      if (hidden) continue;
+      parts[at].push_back({std::max(0.0, task.solid->distance(p).distance), share});
+    }
+  });
+  std::vector<Weighted> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return statisticsOf(std::move(all));
+}
+
+double volumeRatioOf(const FitTask& task, std::span<const Candidate> spheres) {
+  Box box = task.solid->bounds();
+  for (const Candidate& sphere : spheres) {
+    const double radius = task.radii[sphere.radius_index];
+    box.grow(sphere.centre - Vec3d{radius, radius, radius});
+    box.grow(sphere.centre + Vec3d{radius, radius, radius});
+  }
+  const Vec3d size = box.size();
+  const double step = std::cbrt(size.x * size.y * size.z / kVolumeSamples);
+  const auto along = [&](double extent) {
+    return std::max<std::size_t>(1, static_cast<std::size_t>(extent / step));
+  };
+  struct Counts {
+    std::size_t solid = 0;
+    std::size_t spheres = 0;
+  };
+  std::vector<Counts> layers(along(size.z));
+  parallelFor(task.jobs, layers.size(), [&](std::size_t k) {
+    for (std::size_t j = 0; j < along(size.y); ++j) {
+      for (std::size_t i = 0; i < along(size.x); ++i) {
+        const Vec3d cell{static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5,
+                         static_cast<double>(k) + 0.5};
+        const Vec3d p = box.min + cell * step;
+        layers[k].solid += task.solid->contains(p) ? 1U : 0U;
+        const bool held = std::any_of(spheres.begin(), spheres.end(), [&](const Candidate& sphere) {
+          return outside(task, sphere, p) <= 0;
+        });
+        layers[k].spheres += held ? 1U : 0U;
+      }
+    }
+  });
+  Counts total;
+  for (const Counts& layer : layers) {
+    total.solid += layer.solid;
+    total.spheres += layer.spheres;
+  }
+  if (total.solid == 0) return 0;
+  return static_cast<double>(total.spheres) / static_cast<double>(total.solid);
+}
+
+/// Samples that no sphere within tau can cover: only those that none of `spheres` proves wrong
+/// need a search.
+std::uint64_t countThin(const FitTask& task, std::span<const Candidate> spheres,
+                        std::span<const Vec3d> samples) {
+  std::vector<Candidate> within;
+  for (Candidate sphere : spheres) {
+    const double radius = task.radii[sphere.radius_index];
+    const double protrusion = task.solid->distance(sphere.centre).distance + radius;
+    if (protrusion <= task.tau && staysAbove(task, sphere.centre, radius)) within.push_back(sphere);
+  }
+  const std::vector<double> gaps = gapsOf(task, within, samples);
+  std::vector<Vec3d> open;
+  for (std::size_t at = 0; at < samples.size(); ++at) {
+    if (gaps[at] > task.eps) open.push_back(samples[at]);
+  }
+  if (open.empty()) return 0;
+  const std::vector<char> coverable = findCandidates(task, open).coverable;
+  return static_cast<std::uint64_t>(std::count(coverable.begin(), coverable.end(), 0));
+}
+
+}  // namespace
+
+SphereSetQuality measure(const FitTask& task, std::span<const Candidate> spheres) {
+  SphereSetQuality quality;
+  const auto samples = sampleSurface(*task.solid, task.support, {sampleSpacing(task), kSeed, 10});
+  quality.samples = samples.size();
+  quality.area = task.solid->area();
+  if (samples.empty() || spheres.empty()) return quality;
+  std::vector<Weighted> gaps;
+  for (const double gap : gapsOf(task, spheres, samples)) gaps.push_back({std::max(0.0, gap), 1});
+  quality.gap = statisticsOf(std::move(gaps));
+  quality.protrusion = protrusionOf(task, spheres);
+  quality.volume_ratio = volumeRatioOf(task, spheres);
+  quality.thin_points = countThin(task, spheres, samples);
+  return quality;
+}
+
+}  // namespace galactic::bake::sphere_fit

@@ -1,0 +1,125 @@
+#include "sphere_set/polish.h"
+
+#include <numbers>
+
+#include "sphere_set/candidates.h"
+#include "sphere_set/cover_matrix.h"
+#include "sphere_set/gaps.h"
+#include "sphere_set/random.h"
+
+namespace galactic::bake::sphere_fit {
+namespace {
+
+constexpr std::uint64_t kSeed = 17;
+constexpr int kTries = 8;
+/// The first step, as a share of the smallest radius, and what is left of it after each sweep.
+constexpr double kFirstStep = 0.4;
+constexpr double kStepDecay = 0.82;
+/// What the square of a gap's excess over eps weighs: closing it comes first.
+constexpr double kRepair = 1e4;
+
+/// A point that a sphere may have to cover, and its distance to all other spheres.
+struct NearPoint {
+  Vec3d position;
+  double others = 0;
+};
+
+class Polisher {
+ public:
+  Polisher(const FitTask& task, std::span<const Vec3d> points, std::vector<Candidate>& spheres)
+      : task_(task),
+        points_(points),
+        spheres_(spheres),
+        grid_(points, gridCell(task)),
+        most_(std::max(task.eps, largestOf(gapsOf(task, spheres, points)))),
+        random_(kSeed) {}
+
+  void sweep(double step) {
+    for (std::size_t at = 0; at < spheres_.size(); ++at) improve(at, step);
+  }
+
+ private:
+  void improve(std::size_t at, double step) {
+    const std::vector<NearPoint> near = pointsNear(at);
+    Candidate& sphere = spheres_[at];
+    double cost = costOf(sphere, near);
+    for (int attempt = 0; attempt < kTries; ++attempt) {
+      const Vec3d direction{random_.unit() * 2 - 1, random_.unit() * 2 - 1, random_.unit() * 2 - 1};
+      const double length = step * (0.3 + random_.unit());
+      Candidate moved = sphere;
+      moved.centre = asStored(sphere.centre + direction * length);
+      if (!allowed(sphere, moved)) continue;
+      const double moved_cost = costOf(moved, near);
+      if (moved_cost < cost) {
+        cost = moved_cost;
+        sphere = moved;
+      }
+    }
+  }
+
+  /// Also measures how far the moved sphere protrudes.
+  [[nodiscard]] bool allowed(const Candidate& sphere, Candidate& moved) const {
+    const double radius = task_.radii[moved.radius_index];
+    if (!staysAbove(task_, moved.centre, radius)) return false;
+    moved.protrusion = std::max(0.0, task_.solid->distance(moved.centre).distance + radius);
+    return moved.protrusion <= std::max(task_.tau, sphere.protrusion);
+  }
+
+  [[nodiscard]] std::vector<NearPoint> pointsNear(std::size_t at) const {
+    const double reach = task_.radii[spheres_[at].radius_index] + most_;
+    std::vector<const Candidate*> neighbours;
+    for (std::size_t other = 0; other < spheres_.size(); ++other) {
+      const double reaches = reach + most_ + task_.radii[spheres_[other].radius_index];
+      const double squared = squaredLength(spheres_[other].centre - spheres_[at].centre);
+      if (other != at && squared < reaches * reaches) neighbours.push_back(&spheres_[other]);
+    }
+    std::vector<NearPoint> near;
+    grid_.visitWithin(spheres_[at].centre, reach, [&](std::uint32_t index, double) {
+      NearPoint point{points_[index], HUGE_VAL};
+      for (const Candidate* other : neighbours) {
+        point.others = std::min(point.others, outside(task_, *other, point.position));
+      }
+      // What others hold inside costs nothing wherever this sphere goes.
+      if (point.others > 0) near.push_back(point);
+      return true;
+    });
+    return near;
+  }
+
+  /// Infinite where a gap would be too large.
+  [[nodiscard]] double costOf(const Candidate& sphere, const std::vector<NearPoint>& near) const {
+    double sum = 0;
+    for (const NearPoint& point : near) {
+      const double gap = std::min(point.others, outside(task_, sphere, point.position));
+      if (gap > most_) return HUGE_VAL;
+      if (gap > 0) sum += gap * gap;
+      if (gap > task_.eps) sum += kRepair * (gap - task_.eps) * (gap - task_.eps);
+    }
+    const double radius = task_.radii[sphere.radius_index];
+    const double share = 4 * std::numbers::pi * radius * radius / task_.solid->area();
+    return sum / static_cast<double>(points_.size()) +
+           share * sphere.protrusion * sphere.protrusion;
+  }
+
+  const FitTask& task_;
+  std::span<const Vec3d> points_;
+  std::vector<Candidate>& spheres_;
+  PointGrid grid_;
+  /// No gap may be larger.
+  double most_;
+  Random random_;
+};
+
+}  // namespace
+
+void polish(const FitTask& task, std::span<const Vec3d> points, int sweeps,
+            std::vector<Candidate>& spheres) {
+  Polisher polisher(task, points, spheres);
+  double step = kFirstStep * task.radii.front();
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    polisher.sweep(step);
+    step *= kStepDecay;
+  }
+}
+
+}  // namespace galactic::bake::sphere_fit
