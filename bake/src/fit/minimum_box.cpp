@@ -16,9 +16,9 @@ namespace {
 
 /// The search runs on the points that are extremal along this many directions; the last steps run
 /// on all corners of the hull.
-constexpr std::size_t kSearchDirections = 600;
+constexpr std::size_t kSearchDirections = 300;
 /// So many different candidates are improved.
-constexpr std::size_t kImprovedCandidates = 12;
+constexpr std::size_t kImprovedCandidates = 8;
 /// Axes closer than this (cosine, 0.26 and 3.1 degrees) are the same normal, or the same box.
 constexpr double kSameNormal = 1 - 1e-5;
 constexpr double kSameBox = 0.9985;

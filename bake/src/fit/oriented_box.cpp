@@ -10,6 +10,7 @@
 #include "fit/box_axes.h"
 #include "fit/minimum_box.h"
 #include "fit/rotation.h"
+#include "fit/unique_points.h"
 #include "fit/vec3d.h"
 
 namespace galactic::bake {
@@ -88,7 +89,8 @@ const OrientedBox& smaller(const OrientedBox& a, const OrientedBox& b) {
 
 BoxFitResult fitOrientedBox(std::span<const Vec3> points, BoxFit fit) {
   assert(!points.empty());
-  const PointSet set = fit::pointSet(points);
+  const std::vector<Vec3> unique = fit::uniquePoints(points);
+  const PointSet set = fit::pointSet(unique);
   const OrientedBox aligned = boxAround(set, fit::kIdentityAxes);
   const OrientedBox principal = boxAround(set, fit::principalAxes(set));
   BoxFitResult result;
@@ -98,7 +100,7 @@ BoxFitResult fitOrientedBox(std::span<const Vec3> points, BoxFit fit) {
   result.box = aligned;
   if (fit != BoxFit::kAxisAligned) {
     const OrientedBox yaw = smaller(aligned, boxAround(set, yawAxes(set)));
-    const OrientedBox searched = boxAround(set, fit::minimumBoxAxes(points, kMinSide));
+    const OrientedBox searched = boxAround(set, fit::minimumBoxAxes(unique, kMinSide));
     const OrientedBox least = smaller(yaw, smaller(principal, searched));
     const bool saves = volumeOf(least) < volumeOf(yaw) * (1 - kMinimumBoxSaving);
     result.used = fit == BoxFit::kMinimum || saves ? BoxFit::kMinimum : BoxFit::kYaw;

@@ -10,6 +10,7 @@
 #include "fit/facets.h"
 #include "fit/rolling.h"
 #include "fit/rotation.h"
+#include "fit/unique_points.h"
 #include "fit/vec3d.h"
 
 namespace galactic::bake {
@@ -26,9 +27,9 @@ struct Resting {
   double likelihood = 0;
 };
 
-/// The corners of the triangles; all vertices of a mesh without triangles.
+/// The corners of the triangles, each once; all vertices of a mesh without triangles.
 std::vector<Vec3> usedVertices(const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) return mesh.vertices;
+  if (mesh.triangles.empty()) return fit::uniquePoints(mesh.vertices);
   std::vector<bool> used(mesh.vertices.size(), false);
   for (const Triangle& triangle : mesh.triangles) {
     for (const std::uint32_t corner : triangle) used[corner] = true;
@@ -37,7 +38,7 @@ std::vector<Vec3> usedVertices(const TriangleMesh& mesh) {
   for (std::size_t at = 0; at < used.size(); ++at) {
     if (used[at]) points.push_back(mesh.vertices[at]);
   }
-  return points;
+  return fit::uniquePoints(points);
 }
 
 /// A rod lies on any side: four of them, the first with the object as upright as it can be.
