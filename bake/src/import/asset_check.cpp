@@ -13,9 +13,6 @@
 namespace galactic::bake {
 namespace {
 
-/// A scene smaller than this in all directions is suspicious. Metres.
-constexpr double kSmallestScene = 0.5;
-
 tl::unexpected<Error> invalid(std::string where, std::string message) {
   return fail(ErrorCode::kInvalidInput, std::move(where), std::move(message));
 }
@@ -116,7 +113,8 @@ Result<void> checkAsset(const SourceAsset& asset, const std::string& where) {
   return {};
 }
 
-void warnAboutSize(SourceAsset& asset) {
+void warnAboutSize(SourceAsset& asset, double smallest_size) {
+  if (smallest_size <= 0) return;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::array<double, 3> low{kInfinity, kInfinity, kInfinity};
   std::array<double, 3> high{-kInfinity, -kInfinity, -kInfinity};
@@ -134,7 +132,7 @@ void warnAboutSize(SourceAsset& asset) {
         }
       }
       // Almost every scene is larger than this after a few triangles.
-      if (std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}) >= kSmallestScene)
+      if (std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}) >= smallest_size)
         return;
     }
   }

@@ -143,7 +143,7 @@ Result<SourceAsset> importMesh(const fs::path& path, const MeshImportOptions& op
   }
   findTextures(*asset, path);
   if (auto hashed = hashFiles(*asset, path); !hashed) return tl::unexpected(hashed.error());
-  warnAboutSize(*asset);
+  warnAboutSize(*asset, options.smallest_size);
   return asset;
 }
 

@@ -112,7 +112,7 @@ class RecipeTable {
       return numbers;
     }
     for (std::size_t i = 0; i < kCount; ++i) {
-      numbers[i] = checkedNumber((*array)[i], what, range).value_or(0);
+      numbers[i] = checkedNumber((*array)[i], fmt::format("{}[{}]", what, i), range).value_or(0);
     }
     return numbers;
   }
@@ -127,8 +127,9 @@ class RecipeTable {
   }
 
   const TomlTable* requiredTable(std::string_view key) {
-    const bool absent = lookUp(key) == nullptr;
-    if (absent) errors_.at(line_, fmt::format("the table [{}] is missing", full(key)));
+    if (lookUp(key) == nullptr) {
+      missing_.push_back(fmt::format("the table [{}] is missing", full(key)));
+    }
     return table(key);
   }
 
@@ -155,13 +156,15 @@ class RecipeTable {
     return checkedNumber(value, full(key), range);
   }
 
-  /// Reports keys that nobody asked for.
+  /// Reports keys that nobody asked for; then those that are missing, because a misspelt key is
+  /// both.
   void finish() {
     for (const auto& [key, value] : table_) {
       if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
       errors_.at(value.line,
                  fmt::format("the key {} is unknown; {}", full(key), suggestNames(key, known_)));
     }
+    for (const std::string& message : missing_) errors_.at(line_, message);
   }
 
   [[nodiscard]] std::string full(std::string_view key) const {
@@ -181,13 +184,7 @@ class RecipeTable {
   const TomlValue* require(std::string_view key) {
     const TomlValue* value = find(key);
     if (value != nullptr) return value;
-    // A misspelt key is better told as such.
-    for (const auto& [name, other] : table_) {
-      const std::string hint = suggestNames(name, {std::string(key)});
-      if (!hint.starts_with("did")) continue;
-      errors_.at(other.line, fmt::format("the key {} is unknown; {}", full(name), hint));
-    }
-    errors_.at(line_, fmt::format("the key {} is missing", full(key)));
+    missing_.push_back(fmt::format("the key {} is missing", full(key)));
     return nullptr;
   }
 
@@ -218,6 +215,7 @@ class RecipeTable {
   std::uint32_t line_;
   FirstError& errors_;
   std::vector<std::string> known_;
+  std::vector<std::string> missing_;
 };
 
 }  // namespace galactic::bake

@@ -99,16 +99,6 @@ void searchPackage(const fs::path& root, const std::string& package, std::vector
   }
 }
 
-MeshResolution notFound(const std::vector<fs::path>& tried) {
-  constexpr std::size_t kMostNamed = 6;
-  std::string places;
-  for (std::size_t i = 0; i < std::min(tried.size(), kMostNamed); ++i) {
-    places += (i == 0 ? "" : ", ") + tried[i].lexically_normal().string();
-  }
-  if (tried.size() > kMostNamed) places += fmt::format(" and {} more", tried.size() - kMostNamed);
-  return {.file = {}, .how = places, .guessed = false};
-}
-
 }  // namespace
 
 MeshResolver::MeshResolver(const fs::path& urdf, const UrdfImportOptions& options)
@@ -138,13 +128,31 @@ const std::vector<fs::path>& MeshResolver::foldersOf(const std::string& package)
   return entry->second;
 }
 
+MeshResolution MeshResolver::notFound(const std::vector<fs::path>& tried) const {
+  constexpr std::size_t kMostNamed = 6;
+  std::vector<std::string> places;
+  // Relative paths, because warnings go into packs, which must not depend on the machine.
+  for (const fs::path& path : tried) {
+    std::string place = path.lexically_relative(ancestors_.front()).generic_string();
+    const bool is_new = std::find(places.begin(), places.end(), place) == places.end();
+    if (is_new) places.push_back(std::move(place));
+  }
+  const std::size_t left = places.size() - std::min(places.size(), kMostNamed);
+  places.resize(places.size() - left);
+  return {.file = {},
+          .how = fmt::format("{}{} (from the URDF's folder)", fmt::join(places, ", "),
+                             left == 0 ? "" : fmt::format(" and {} more", left)),
+          .guessed = false};
+}
+
 MeshResolution MeshResolver::resolvePackage(const std::string& package, const std::string& rest) {
   std::vector<fs::path> tried;
   const auto in = [&](const fs::path& folder, std::string how) -> std::optional<MeshResolution> {
     if (auto file = fileIn(folder, rest)) {
       return MeshResolution{.file = *file, .how = std::move(how), .guessed = false};
     }
-    tried.push_back(folder / rest);
+    std::error_code ignored;
+    tried.push_back(fs::absolute(folder / rest, ignored).lexically_normal());
     return std::nullopt;
   };
   const auto named = options_.packages.find(package);
@@ -171,7 +179,7 @@ MeshResolution MeshResolver::resolvePackage(const std::string& package, const st
   }
   if (tried.empty()) {
     return {.file = {},
-            .how = fmt::format("no folder '{}' or package.xml of that name in the search path or "
+            .how = fmt::format("a folder '{}' or a package.xml of that name in the search path and "
                                "above the URDF",
                                package),
             .guessed = false};
@@ -184,7 +192,7 @@ MeshResolution MeshResolver::resolveRelative(const std::string& reference) const
   if (path.empty()) return {.file = {}, .how = "a file name, which is empty", .guessed = false};
   if (path.is_absolute()) {
     if (auto file = fileIn("/", reference)) return {.file = *file, .how = "absolute path"};
-    return notFound({path});
+    return notFound({path.lexically_normal()});
   }
   if (auto file = fileIn(ancestors_.front(), reference)) {
     return {.file = *file, .how = "relative to the URDF"};
@@ -196,24 +204,18 @@ MeshResolution MeshResolver::resolveRelative(const std::string& reference) const
       }
     }
   }
-  return notFound({ancestors_.front() / reference});
+  return notFound({(ancestors_.front() / reference).lexically_normal()});
 }
 
 MeshResolution MeshResolver::resolve(const std::string& reference) {
   for (const std::string_view scheme : {"package://", "model://"}) {
     if (!reference.starts_with(scheme)) continue;
     std::string path = reference.substr(scheme.size());
+    // package:///pkg/a.stl is written, too.
     path.erase(0, std::min(path.find_first_not_of('/'), path.size()));
     const std::size_t slash = path.find('/');
     if (slash == std::string::npos) return resolveRelative(path.empty() ? reference : path);
-    MeshResolution found = resolvePackage(path.substr(0, slash), path.substr(slash + 1));
-    if (!found.file.empty()) return found;
-    // package:///meshes/a.stl has no package name at all.
-    const bool nameless = reference.size() > scheme.size() && reference[scheme.size()] == '/';
-    if (!nameless) return found;
-    MeshResolution whole = resolveRelative(path);
-    whole.guessed = true;
-    return whole.file.empty() ? found : whole;
+    return resolvePackage(path.substr(0, slash), path.substr(slash + 1));
   }
   constexpr std::string_view kFile = "file://";
   if (reference.starts_with(kFile)) return resolveRelative(reference.substr(kFile.size()));

@@ -28,6 +28,8 @@ class MeshResolver {
  private:
   [[nodiscard]] MeshResolution resolvePackage(const std::string& package, const std::string& rest);
   [[nodiscard]] MeshResolution resolveRelative(const std::string& reference) const;
+  /// A resolution without file that lists where it was looked for.
+  [[nodiscard]] MeshResolution notFound(const std::vector<std::filesystem::path>& tried) const;
   /// Folders named or described as `package` in the search roots.
   [[nodiscard]] const std::vector<std::filesystem::path>& foldersOf(const std::string& package);
 

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -15,6 +18,10 @@ namespace galactic::bake {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Parts smaller or larger than this, in all directions, draw a question about their unit. Metres.
+constexpr double kSmallestPart = 0.002;
+constexpr double kLargestPart = 10;
 
 /// A colour channel on a screen (IEC 61966-2-1) as linear light.
 float linearFromSrgb(double value) {
@@ -91,6 +98,26 @@ Result<void> checkShape(const UrdfShape& shape, const std::string& place) {
   return {};
 }
 
+/// The box around the points of a mesh that was read as Z up, along the axes of its file.
+std::array<double, 3> sizeInFile(const SourceAsset& asset) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::array<double, 3> low{kInfinity, kInfinity, kInfinity};
+  std::array<double, 3> high{-kInfinity, -kInfinity, -kInfinity};
+  for (const SourceInstance& instance : asset.instances) {
+    const SourceMesh& mesh = asset.meshes[instance.mesh];
+    for (const Triangle& triangle : mesh.triangles) {
+      for (const std::uint32_t corner : triangle) {
+        const auto p = transformed(instance.world_from_mesh, mesh.positions[corner]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          low[axis] = std::min(low[axis], p[axis]);
+          high[axis] = std::max(high[axis], p[axis]);
+        }
+      }
+    }
+  }
+  return {high[0] - low[0], high[2] - low[2], high[1] - low[1]};
+}
+
 bool hasSize(const UrdfShape& shape) {
   return std::all_of(shape.size.begin(), shape.size.begin() + sizeCount(shape.geometry),
                      [](double size) { return size != 0; });
@@ -117,6 +144,7 @@ Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& fi
   // The points as the file has them are taken for Z up, whatever up axis it states.
   MeshImportOptions mesh_options;
   mesh_options.up = UpAxis::kZ;
+  mesh_options.smallest_size = 0;
   auto asset = importMesh(file, mesh_options);
   if (!asset) {
     if (asset.error().code == ErrorCode::kInternal) return tl::unexpected(asset.error());
@@ -138,27 +166,34 @@ Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& fi
   }
   for (const std::string& warning : asset->warnings) warn(nameRelativeTo(urdf_, file), warning);
   robot_.meshes.push_back(std::move(*asset));
-  return LoadedMesh{.index = static_cast<std::uint32_t>(robot_.meshes.size() - 1), .failure = {}};
+  return LoadedMesh{.index = static_cast<std::uint32_t>(robot_.meshes.size() - 1),
+                    .size = sizeInFile(robot_.meshes.back()),
+                    .failure = {}};
 }
 
-Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const std::string& reference,
-                                                               const std::string& place) {
+const MeshResolution& GeometryBuilder::resolve(const std::string& reference,
+                                               const std::string& place) {
   const auto [entry, is_new] = resolutions_.try_emplace(reference);
   MeshResolution& resolution = entry->second;
-  if (is_new) {
-    resolution = resolver_.resolve(reference);
-    if (!resolution.file.empty()) {
-      robot_.resolutions.push_back(fmt::format(
-          "{}: {} ({})", reference, nameRelativeTo(urdf_, resolution.file), resolution.how));
-      if (resolution.guessed) {
-        warn(place, fmt::format("mesh '{}' was found only as '{}' ({}); name the package's folder "
-                                "to be sure",
-                                reference, nameRelativeTo(urdf_, resolution.file), resolution.how));
-      }
-    }
+  if (!is_new) return resolution;
+  resolution = resolver_.resolve(reference);
+  if (resolution.file.empty()) return resolution;
+  const std::string file = nameRelativeTo(urdf_, resolution.file);
+  robot_.resolutions.push_back(fmt::format("{}: {} ({})", reference, file, resolution.how));
+  if (resolution.guessed) {
+    warn(place,
+         fmt::format("mesh '{}' was found only as '{}' ({}); name the package's folder to be "
+                     "sure",
+                     reference, file, resolution.how));
   }
+  return resolution;
+}
+
+Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const UrdfShape& shape,
+                                                               const std::string& place) {
+  const MeshResolution& resolution = resolve(shape.mesh, place);
   if (resolution.file.empty()) {
-    warn(place, fmt::format("mesh '{}' is missing; looked for {}", reference, resolution.how));
+    warn(place, fmt::format("mesh '{}' is missing; looked for {}", shape.mesh, resolution.how));
     return std::nullopt;
   }
   auto loaded = loaded_.find(resolution.file);
@@ -167,8 +202,21 @@ Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const std::string
     if (!mesh) return tl::unexpected(mesh.error());
     loaded = loaded_.emplace(resolution.file, std::move(*mesh)).first;
   }
-  if (!loaded->second.index) warn(place, "mesh " + loaded->second.failure);
-  return loaded->second.index;
+  const LoadedMesh& mesh = loaded->second;
+  if (!mesh.index) {
+    warn(place, "mesh " + mesh.failure);
+    return std::nullopt;
+  }
+  double largest = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    largest = std::max(largest, mesh.size[i] * std::abs(shape.size[i]));
+  }
+  if (largest < kSmallestPart || largest > kLargestPart) {
+    warn(place, fmt::format("mesh '{}' is {:.3g} m large: is its unit the metre? Correct the scale "
+                            "of the <mesh>",
+                            shape.mesh, largest));
+  }
+  return mesh.index;
 }
 
 Result<std::optional<LinkShape>> GeometryBuilder::convert(const UrdfShape& shape,
@@ -193,7 +241,7 @@ Result<std::optional<LinkShape>> GeometryBuilder::convert(const UrdfShape& shape
       converted.geometry = SphereShape{s[0]};
       break;
     case UrdfGeometry::kMesh: {
-      const auto mesh = loadMesh(shape.mesh, place);
+      const auto mesh = loadMesh(shape, place);
       if (!mesh) return tl::unexpected(mesh.error());
       if (!*mesh) {
         ++lost;

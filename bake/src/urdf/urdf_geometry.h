@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -26,6 +28,8 @@ class GeometryBuilder {
   /// A mesh that was loaded, or why there is none.
   struct LoadedMesh {
     std::optional<std::uint32_t> index;
+    /// Of the box around its points, in the frame of the file; metres.
+    std::array<double, 3> size{};
     std::string failure;
   };
   struct ShapeList {
@@ -39,8 +43,10 @@ class GeometryBuilder {
   /// The shape, or nothing when it is lost or has no size.
   Result<std::optional<LinkShape>> convert(const UrdfShape& shape, const std::string& place,
                                            std::size_t& lost);
-  Result<std::optional<std::uint32_t>> loadMesh(const std::string& reference,
-                                                const std::string& place);
+  /// The mesh of the shape, or nothing when it is lost.
+  Result<std::optional<std::uint32_t>> loadMesh(const UrdfShape& shape, const std::string& place);
+  /// Where the reference leads; says so the first time.
+  const MeshResolution& resolve(const std::string& reference, const std::string& place);
   Result<LoadedMesh> loadFile(const std::filesystem::path& file);
   void warn(const std::string& place, const std::string& message);
 

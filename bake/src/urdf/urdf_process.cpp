@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -47,6 +48,52 @@ namespace fs = std::filesystem;
 /// XML trees take some tens of bytes per byte of text.
 constexpr std::uint64_t kMemoryLimit = std::uint64_t{8} << 30U;
 
+/// The parser recurses, and takes time in proportion to the depth for every element.
+constexpr int kMaxNesting = 100;
+
+/// Where the XML construct that starts with '<' at `at` ends: behind its '>'.
+std::size_t endOfTag(std::string_view text, std::size_t at) {
+  const auto behind = [&](std::string_view end) {
+    const std::size_t found = text.find(end, at);
+    return found == std::string_view::npos ? text.size() : found + end.size();
+  };
+  const std::string_view left = text.substr(at);
+  if (left.starts_with("<!--")) return behind("-->");
+  if (left.starts_with("<![CDATA[")) return behind("]]>");
+  if (left.starts_with("<?")) return behind("?>");
+  char quote = 0;
+  for (; at < text.size(); ++at) {
+    const char c = text[at];
+    if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '>') {
+      return at + 1;
+    }
+  }
+  return text.size();
+}
+
+/// Whether elements of well-formed XML nest at most kMaxNesting deep; for other text a guess, which
+/// spares the parser the worst.
+bool nestsModerately(std::string_view text) {
+  int depth = 0;
+  for (std::size_t at = text.find('<'); at != std::string_view::npos;) {
+    const std::size_t end = endOfTag(text, at);
+    const char kind = at + 1 < text.size() ? text[at + 1] : ' ';
+    const bool closes_itself = end >= 2 && text[end - 2] == '/';
+    if (kind == '/') {
+      --depth;
+    } else if (kind != '!' && kind != '?' && !closes_itself) {
+      ++depth;
+    }
+    if (depth > kMaxNesting) return false;
+    at = text.find('<', end);
+  }
+  return true;
+}
+
 Result<std::string> readText(const fs::path& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) {
@@ -69,6 +116,11 @@ Result<std::string> readText(const fs::path& path) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     return fail(ErrorCode::kInvalidInput, path.string(), "the file is empty; generate it again");
   }
+  if (!nestsModerately(text)) {
+    return fail(
+        ErrorCode::kInvalidInput, path.string(),
+        fmt::format("its elements are nested more than {} deep; is it a URDF?", kMaxNesting));
+  }
   return text;
 }
 
@@ -90,9 +142,7 @@ Error processFailure(const fs::path& path, const ProcessFailure& failure) {
       break;
     case ProcessEnd::kCrashed:
     case ProcessEnd::kFailed:
-      error.message =
-          "the XML parser crashed: elements are nested too deep or the file is broken; generate it "
-          "again";
+      error.message = "the XML parser crashed; the file is broken: generate it again";
       break;
   }
   return error;

@@ -7,6 +7,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <exception>
 #include <optional>
@@ -39,8 +40,17 @@ class LogCapture final : public console_bridge::OutputHandler {
 
   /// All errors as one sentence.
   [[nodiscard]] std::string errors() const {
-    return errors_.empty() ? "no reason given" : fmt::format("{}", fmt::join(errors_, "; "));
+    std::string reasons;
+    for (std::string_view error : errors_) {
+      // Says nothing, and comes after every error of a joint or link.
+      if (error.ends_with("xml is not initialized correctly")) continue;
+      while (error.ends_with('.')) error.remove_suffix(1);
+      reasons += fmt::format("{}{}", reasons.empty() ? "" : "; ", error);
+    }
+    return fmt::format("the URDF parser refuses it: {}",
+                       reasons.empty() ? "no reason given" : reasons);
   }
+  [[nodiscard]] bool hasErrors() const { return !errors_.empty(); }
   [[nodiscard]] std::vector<std::string> takeWarnings() { return std::move(warnings_); }
 
  private:
@@ -54,27 +64,74 @@ Result<const TiXmlElement*> robotElement(TiXmlDocument& document, const std::str
                                          const std::string& where) {
   document.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
   if (document.Error()) {
-    return fail(ErrorCode::kInvalidInput, where,
-                fmt::format("it is not well-formed XML: {} (line {}, column {}); repair or "
-                            "generate it again",
-                            document.ErrorDesc(), document.ErrorRow(), document.ErrorCol()));
+    const std::string place =
+        document.ErrorRow() == 0 ? where : fmt::format("{}:{}", where, document.ErrorRow());
+    std::string_view reason = document.ErrorDesc();
+    while (reason.ends_with('.')) reason.remove_suffix(1);
+    return fail(ErrorCode::kInvalidInput, place,
+                fmt::format("it is not well-formed XML: {}; repair or generate it again", reason));
   }
   const TiXmlElement* robot = document.FirstChildElement("robot");
   if (robot == nullptr) {
     const TiXmlElement* root = document.RootElement();
     return fail(ErrorCode::kInvalidInput, where,
-                fmt::format("its outermost element is <{}>, wanted <robot>",
-                            root == nullptr ? "" : root->Value()));
+                fmt::format("its outermost element is {}, wanted <robot>",
+                            root == nullptr ? "missing" : fmt::format("<{}>", root->Value())));
   }
   for (const auto* e = robot->FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
     if (std::string_view(e->Value()).starts_with("xacro:")) {
-      return fail(ErrorCode::kUnsupported, where,
-                  fmt::format("it is a xacro file (line {} has <{}>); expand it with 'xacro {} > "
-                              "robot.urdf' and give the result",
-                              e->Row(), e->Value(), where));
+      return fail(ErrorCode::kUnsupported, fmt::format("{}:{}", where, e->Row()),
+                  fmt::format("it is a xacro file, with <{}>; expand it with the xacro tool and "
+                              "give the result",
+                              e->Value()));
     }
   }
   return robot;
+}
+
+/// Lists of numbers that the parser splits at blanks only.
+constexpr std::array<std::string_view, 5> kNumberLists{"xyz", "rpy", "scale", "size", "rgba"};
+
+/// Makes blanks of what else separates numbers in real files: commas (with a warning), tabs and
+/// line ends. Returns whether anything changed.
+bool separateByBlanks(TiXmlElement& element, std::vector<std::string>& warnings) {
+  bool changed = false;
+  for (auto* a = element.FirstAttribute(); a != nullptr; a = a->Next()) {
+    const bool is_list =
+        std::find(kNumberLists.begin(), kNumberLists.end(), a->Name()) != kNumberLists.end();
+    std::string value = a->Value();
+    if (!is_list || value.find_first_of(",\t\r\n") == std::string::npos) continue;
+    if (value.find(',') != std::string::npos) {
+      warnings.push_back(fmt::format("line {}: {}=\"{}\" has commas, which count as blanks",
+                                     element.Row(), a->Name(), value));
+    }
+    std::replace_if(
+        value.begin(), value.end(),
+        [](char c) { return c == ',' || c == '\t' || c == '\r' || c == '\n'; }, ' ');
+    a->SetValue(value);
+    changed = true;
+  }
+  return changed;
+}
+
+/// The text for the parser: as it is, or printed again where separators had to change.
+std::string textForParser(TiXmlDocument& document, const std::string& text,
+                          std::vector<std::string>& warnings) {
+  bool changed = false;
+  TiXmlElement* at = document.RootElement();
+  while (at != nullptr) {
+    changed = separateByBlanks(*at, warnings) || changed;
+    TiXmlElement* next = at->FirstChildElement();
+    while (next == nullptr && at != nullptr) {
+      next = at->NextSiblingElement();
+      at = at->Parent() == nullptr ? nullptr : at->Parent()->ToElement();
+    }
+    at = next;
+  }
+  if (!changed) return text;
+  TiXmlPrinter printer;
+  document.Accept(&printer);
+  return printer.Str();
 }
 
 /// Names of the children of <robot> called `tag`, in the order of the text: the parser's library
@@ -190,7 +247,7 @@ UrdfJoint toJoint(const urdf::Joint& joint) {
   return converted;
 }
 
-/// Three numbers, or none when there are not three.
+/// `count` numbers, or none when there are not so many.
 std::optional<std::vector<double>> numbersOf(const char* text, std::size_t count) {
   if (text == nullptr) return std::nullopt;
   std::vector<double> numbers;
@@ -216,15 +273,17 @@ Result<UrdfModel> parseUrdf(const std::string& text, const std::string& where) {
   TiXmlDocument document;
   const auto robot = robotElement(document, text, where);
   if (!robot) return tl::unexpected(robot.error());
+  UrdfModel model;
+  const std::string plain_text = textForParser(document, text, model.warnings);
   LogCapture log;
   urdf::ModelInterfaceSharedPtr parsed;
   try {
-    parsed = urdf::parseURDF(text);
+    parsed = urdf::parseURDF(plain_text);
   } catch (const std::exception& e) {
     return fail(ErrorCode::kInvalidInput, where, fmt::format("it cannot be read: {}", e.what()));
   }
-  if (!parsed) return fail(ErrorCode::kInvalidInput, where, log.errors());
-  UrdfModel model;
+  // It goes on after some errors, with half of a link.
+  if (!parsed || log.hasErrors()) return fail(ErrorCode::kInvalidInput, where, log.errors());
   model.name = parsed->name_;
   for (const std::string& name : namesInOrder(**robot, "link")) {
     if (const auto link = parsed->getLink(name)) model.links.push_back(toLink(*link));
@@ -232,7 +291,7 @@ Result<UrdfModel> parseUrdf(const std::string& text, const std::string& where) {
   for (const std::string& name : namesInOrder(**robot, "joint")) {
     if (const auto joint = parsed->getJoint(name)) model.joints.push_back(toJoint(*joint));
   }
-  model.warnings = log.takeWarnings();
+  for (std::string& warning : log.takeWarnings()) model.warnings.push_back(std::move(warning));
   return model;
 }
 

@@ -19,6 +19,9 @@ struct MeshImportOptions {
   std::optional<double> scale;
   /// Applied last, to points that are already Y up and in metres.
   std::optional<Affine> transform;
+  /// Smaller files draw a question about their unit (a warning). Metres; the default is for scenes,
+  /// 0 asks never.
+  double smallest_size = 0.5;
   /// The file reader runs in a process of its own, which is stopped after this long and when it
   /// uses more memory than this; so a broken file costs one error message, not the bake.
   std::chrono::seconds time_limit{600};

@@ -1,0 +1,159 @@
+// Each thing that can be wrong with a recipe has a message of its own, with its line.
+#include <gmock/gmock.h>
+
+#include <ostream>
+
+#include "bake/recipe/recipe_helpers.h"
+
+namespace galactic::test {
+namespace {
+
+struct Fault {
+  const char* name;
+  std::string text;
+  const char* where;
+  const char* message;
+};
+
+std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
+
+/// Line 6 is the first of `more`.
+std::string with(const std::string& more) { return kLeastRecipe + more; }
+
+std::vector<Fault> faults() {
+  return {
+      {"NoToml", "name = = 1", "r.toml:1",
+       "it is not TOML: Error while parsing value: could not determine value type"},
+      {"Empty", "", "r.toml", "the key name is missing"},
+      {"NoName", "[end_effector]\nlink = \"hand\"\n[base]\nfootprint_radius = 0.3\n", "r.toml",
+       "the key name is missing"},
+      {"NameOfOtherType", "name = 3\n", "r.toml:1", "name is wanted as a name in quotes"},
+      {"NoEndEffector", "name = \"r\"\n[base]\nfootprint_radius = 0.3\n", "r.toml",
+       "the table [end_effector] is missing"},
+      {"NoEndEffectorLink", "name = \"r\"\n[end_effector]\n[base]\nfootprint_radius = 0.3\n",
+       "r.toml:2", "the key end_effector.link is missing"},
+      {"MisspeltRequiredKey",
+       "name = \"r\"\n[end_effector]\nlnk = \"hand\"\n[base]\nfootprint_radius = 0.3\n", "r.toml:3",
+       "the key end_effector.lnk is unknown; did you mean 'link'?"},
+      {"NoBase", "name = \"r\"\n[end_effector]\nlink = \"hand\"\n", "r.toml",
+       "the table [base] is missing"},
+      {"NoFootprint", "name = \"r\"\n[end_effector]\nlink = \"hand\"\n[base]\n", "r.toml:4",
+       "base has no footprint; give footprint_radius or footprint_rectangle"},
+      {"TwoFootprints", with("footprint_rectangle = [0, 0, 1, 1]\n"), "r.toml:4",
+       "base has both footprint_radius and footprint_rectangle; keep one of them"},
+      {"FootprintInsideOut",
+       "name = \"r\"\n[end_effector]\nlink = \"hand\"\n[base]\nfootprint_rectangle = [1, 0, 0, "
+       "1]\n",
+       "r.toml:4",
+       "base.footprint_rectangle is wanted as [min x, min y, max x, max y] with each min below its "
+       "max"},
+      {"UnknownTable", with("[sphere]\neps = 0.1\n"), "r.toml:6",
+       "the key sphere is unknown; did you mean 'spheres'?"},
+      {"UnknownKey", with("foward_step = 0.1\n"), "r.toml:6",
+       "the key base.foward_step is unknown; did you mean 'forward_step'?"},
+      {"UnknownKeyFarFromAll",
+       with("[camera]\nlink = \"head\"\nvertical_fov_degrees = 60\ncolour = 3\n"), "r.toml:9",
+       "the key camera.colour is unknown; known are 'link', 'position', 'rpy_degrees', "
+       "'vertical_fov_degrees'"},
+      {"TableOfOtherType", "name = \"r\"\nend_effector = 3\n", "r.toml:2",
+       "end_effector is wanted as a table, [end_effector]"},
+      {"NumberOfOtherType", with("forward_step = \"far\"\n"), "r.toml:6",
+       "base.forward_step is wanted as a number"},
+      {"NumberOutOfRange", with("forward_step = 20\n"), "r.toml:6",
+       "base.forward_step = 20: wanted 0.001 to 1 m"},
+      {"NumberNotFinite", with("forward_step = nan\n"), "r.toml:6",
+       "base.forward_step = nan: a finite number is wanted"},
+      {"CountNotWhole", with("[spheres]\nmax_spheres = 1.5\n"), "r.toml:7",
+       "spheres.max_spheres is wanted as a whole number"},
+      {"CountNegative", with("[spheres]\nmax_spheres = -1\n"), "r.toml:7",
+       "spheres.max_spheres = -1: wanted 1 to 10000"},
+      {"VectorTooShort",
+       with("[camera]\nlink = \"head\"\nvertical_fov_degrees = 60\nposition = [1, 2]\n"),
+       "r.toml:9", "camera.position is wanted as a list of 3 numbers"},
+      {"VectorOfText",
+       with("[camera]\nlink = \"head\"\nvertical_fov_degrees = 60\nposition = [1, 2, \"x\"]\n"),
+       "r.toml:9", "camera.position[2] is wanted as a number"},
+      {"CameraWithoutFieldOfView", with("[camera]\nlink = \"head\"\n"), "r.toml:6",
+       "the key camera.vertical_fov_degrees is missing"},
+      {"FieldOfViewOutOfRange", with("[camera]\nlink = \"head\"\nvertical_fov_degrees = 180\n"),
+       "r.toml:8", "camera.vertical_fov_degrees = 180: wanted 1 to 170 degrees"},
+      {"JointsNoList", with("[joints]\nname = \"a\"\n"), "r.toml:6", "joints is wanted as a list"},
+      {"JointWithoutName", with("[[joints]]\nstep = 0.1\n"), "r.toml:6",
+       "the key joints[0].name is missing"},
+      {"JointWithoutStep", with("[[joints]]\nname = \"a\"\n"), "r.toml:6",
+       "the key joints[0].step is missing"},
+      {"JointStepZero", with("[[joints]]\nname = \"a\"\nstep = 0\n"), "r.toml:8",
+       "joints[0].step = 0: wanted 0.0001 to 3.2 (radians or metres)"},
+      {"JointRangeEmpty", with("[[joints]]\nname = \"a\"\nstep = 0.1\nmin = 1\nmax = 1\n"),
+       "r.toml:6", "joints[0].min = 1 is not below joints[0].max = 1"},
+      {"StartNotANumber", with("[start_pose]\na = \"up\"\n"), "r.toml:7",
+       "start_pose.a is wanted as a number"},
+      {"SkipNotTrueOrFalse", with("[spheres.links.a]\nskip = 1\n"), "r.toml:7",
+       "spheres.links.a.skip is wanted as true or false"},
+      {"SkipAndTolerance", with("[spheres.links.a]\nskip = true\neps = 0.1\n"), "r.toml:6",
+       "spheres.links.a contradicts itself; keep one of: skip, merge_with_parent, spheres, or "
+       "tolerances (eps, tau, max_spheres, clip_height)"},
+      {"MergeAndSpheres",
+       with("[spheres.links.a]\nmerge_with_parent = true\nspheres = [[0, 0, 0, 0.1]]\n"),
+       "r.toml:6",
+       "spheres.links.a contradicts itself; keep one of: skip, merge_with_parent, spheres, or "
+       "tolerances (eps, tau, max_spheres, clip_height)"},
+      {"SphereOfThreeNumbers", with("[spheres.links.a]\nspheres = [[0, 0, 0]]\n"), "r.toml:7",
+       "spheres.links.a.spheres[0] is wanted as a list of 4 numbers"},
+      {"SphereWithoutRadius", with("[spheres.links.a]\nspheres = [[0, 0, 0, 0]]\n"), "r.toml:7",
+       "spheres.links.a.spheres[0] has the radius 0: wanted 0.001 to 2 m"},
+      {"NoSpheresAtAll", with("[spheres.links.a]\nspheres = []\n"), "r.toml:6",
+       "spheres.links.a.spheres is empty; a link without spheres says skip = true"},
+      {"LinkNoTable", with("[spheres.links]\na = 3\n"), "r.toml:7",
+       "spheres.links.a is wanted as a table, [spheres.links.a]"},
+      {"PairOfThree", with("[self_collision]\nignore = [[\"a\", \"b\", \"c\"]]\n"), "r.toml:7",
+       "each entry of self_collision.ignore is wanted as a pair of links, [\"a\", \"b\"]"},
+      {"PairOfNumbers", with("[self_collision]\nignore = [[1, 2]]\n"), "r.toml:7",
+       "each entry of self_collision.ignore is wanted as a name in quotes"},
+      {"Date", with("forward_step = 2020-01-01\n"), "r.toml:6",
+       "base.forward_step is wanted as a number"},
+  };
+}
+
+class RecipeFaults : public testing::TestWithParam<Fault> {};
+
+TEST_P(RecipeFaults, NameTheirLineAndWhatIsWanted) {
+  const ScratchFolder folder;
+  const auto recipe = readText(folder, GetParam().text);
+  ASSERT_FALSE(recipe.has_value());
+  EXPECT_EQ(recipe.error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(std::filesystem::path(recipe.error().where).filename(), GetParam().where);
+  EXPECT_EQ(recipe.error().message, GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(Texts, RecipeFaults, testing::ValuesIn(faults()),
+                         [](const auto& fault) { return fault.param.name; });
+
+TEST(RecipeJoints, ThatAreListedTwiceNameBothLines) {
+  const ScratchFolder folder;
+  const std::string joint = "[[joints]]\nname = \"a\"\nstep = 0.1\n";
+  const auto recipe = readText(folder, with(joint + joint));
+  ASSERT_FALSE(recipe.has_value());
+  EXPECT_THAT(recipe.error().where, testing::EndsWith("r.toml:9"));
+  EXPECT_THAT(recipe.error().message, testing::StartsWith("joint 'a' is listed twice, see "));
+  EXPECT_THAT(recipe.error().message, testing::EndsWith("r.toml:7"));
+}
+
+TEST(RecipeFiles, ThatAreMissingOrFoldersAreIoErrors) {
+  const ScratchFolder folder;
+  for (const auto& path : {folder.path() / "absent.toml", folder.path()}) {
+    const auto recipe = bake::readRobotRecipe(path);
+    ASSERT_FALSE(recipe.has_value());
+    EXPECT_EQ(recipe.error().code, ErrorCode::kIo);
+  }
+}
+
+TEST(RecipeFiles, BeyondOneMebibyteAreRefused) {
+  const ScratchFolder folder;
+  const auto recipe = readText(folder, with("# " + std::string(1U << 20U, 'x')));
+  ASSERT_FALSE(recipe.has_value());
+  EXPECT_THAT(recipe.error().message, testing::EndsWith("is it a recipe?"));
+}
+
+}  // namespace
+}  // namespace galactic::test

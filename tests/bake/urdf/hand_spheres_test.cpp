@@ -1,0 +1,155 @@
+// Spheres made by hand or by other tools: in and out.
+#include "galactic/bake/hand_spheres.h"
+
+#include <gmock/gmock.h>
+
+#include "bake/urdf/link_points.h"
+#include "bake/urdf/urdf_helpers.h"
+
+namespace galactic::test {
+namespace {
+
+using bake::HandSphere;
+using bake::LinkSpheres;
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::Pointwise;
+
+/// Roll, pitch and yaw of a frame read back.
+constexpr double kFrameRounding = 1e-12;
+
+std::string sphereElement(std::string_view xyz, double radius) {
+  return fmt::format(
+      "<collision><origin xyz=\"{}\"/><geometry><sphere radius=\"{}\"/></geometry></collision>",
+      xyz, radius);
+}
+
+TEST(SpherizedUrdfs, GiveTheSpheresOfEachLinkYUp) {
+  const ScratchFolder folder;
+  const auto path = folder.write(
+      "s.urdf",
+      robotText("<link name=\"a\">" + sphereElement("1 2 3", 0.5) + sphereElement("0 0 0", 0.015) +
+                "<collision><geometry><box size=\"1 1 1\"/></geometry></collision></link>"
+                "<link name=\"b\"/>" +
+                jointText("j", "fixed", "a,b")));
+  const auto spheres = bake::readSpherizedUrdf(path);
+  ASSERT_TRUE(spheres.has_value()) << spheres.error().message;
+  const LinkSpheres expected{"a", {{{1, 3, -2}, 0.5}, {{0, 0, 0}, 0.015}}};
+  EXPECT_THAT(spheres->links, ElementsAre(expected));
+  EXPECT_THAT(spheres->warnings,
+              ElementsAre("link 'a': 1 collision elements are no spheres: left out"));
+}
+
+TEST(SpherizedUrdfs, WithoutSpheresOrWithBrokenOnesAreErrors) {
+  const ScratchFolder folder;
+  const auto none =
+      bake::readSpherizedUrdf(folder.write("n.urdf", robotText("<link name=\"a\"/>")));
+  ASSERT_FALSE(none.has_value());
+  EXPECT_EQ(none.error().message,
+            "no link has a <sphere> collision element; is it the spherized file?");
+  const auto flat = bake::readSpherizedUrdf(folder.write(
+      "f.urdf", robotText("<link name=\"a\">" + sphereElement("0 0 0", 0) + "</link>")));
+  ASSERT_FALSE(flat.has_value());
+  EXPECT_THAT(flat.error().where, testing::EndsWith("f.urdf: link 'a'"));
+  EXPECT_EQ(flat.error().message,
+            "a sphere at (0 0 0) of radius 0: wanted a finite centre and a positive radius, in "
+            "metres");
+}
+
+TEST(SrdfSpheres, AreReadYUpWithoutMoveItsEmptyLinks) {
+  const ScratchFolder folder;
+  const auto path = folder.write("r.srdf", R"(<?xml version="1.0"?><robot name="r">
+    <group name="arm"/>
+    <link_sphere_approximation link="a">
+      <sphere center="1.0 2.0 3.0" radius="0.5"/><sphere center="0 0	+0.25" radius="1e-2"/>
+    </link_sphere_approximation>
+    <link_sphere_approximation link="b"><sphere center="0 0 0" radius="0"/>
+    </link_sphere_approximation></robot>)");
+  const auto spheres = bake::readSrdfSpheres(path);
+  ASSERT_TRUE(spheres.has_value()) << spheres.error().message;
+  const LinkSpheres expected{"a", {{{1, 3, -2}, 0.5}, {{0, 0.25, 0}, 0.01}}};
+  EXPECT_THAT(spheres->links, ElementsAre(expected));
+}
+
+TEST(SrdfSpheres, ThatAreBrokenNameTheirLine) {
+  const ScratchFolder folder;
+  const auto error = [&](std::string_view element) {
+    const auto read = bake::readSrdfSpheres(
+        folder.write("r.srdf", "<robot name=\"r\">\n" + std::string(element) + "</robot>"));
+    return read ? Error{} : read.error();
+  };
+  const Error unnamed = error("<link_sphere_approximation/>");
+  EXPECT_THAT(unnamed.where, testing::EndsWith("r.srdf:2"));
+  EXPECT_EQ(unnamed.message, "<link_sphere_approximation> has no attribute 'link'; name the link");
+  for (const char* sphere :
+       {"<sphere radius=\"1\"/>", "<sphere center=\"0 0 0\"/>",
+        "<sphere center=\"0 0\" radius=\"1\"/>", "<sphere center=\"0 0 x\" radius=\"1\"/>"}) {
+    SCOPED_TRACE(sphere);
+    const Error broken = error(fmt::format(
+        "<link_sphere_approximation link=\"a\">{}</link_sphere_approximation>", sphere));
+    EXPECT_EQ(broken.message,
+              "a <sphere> of link 'a' is wanted with center=\"x y z\" and radius=\"r\"");
+  }
+  for (const char* sphere :
+       {"<sphere center=\"0 0 nan\" radius=\"1\"/>", "<sphere center=\"0 0 0\" radius=\"-1\"/>",
+        "<sphere center=\"0 0 1e9\" radius=\"1\"/>", "<sphere center=\"0 0 0\" radius=\"inf\"/>"}) {
+    SCOPED_TRACE(sphere);
+    const Error broken = error(fmt::format(
+        "<link_sphere_approximation link=\"a\">{}</link_sphere_approximation>", sphere));
+    EXPECT_THAT(broken.message, testing::HasSubstr("wanted a finite centre and a positive radius"));
+  }
+}
+
+const std::vector<LinkSpheres>& someSpheres() {
+  static const std::vector<LinkSpheres> spheres{
+      {"a", {{{0.1, 1.0 / 3, -0.7}, 0.015}, {{1e-9, 0, 2}, 0.12}}}, {"b", {{{0, 0, 0}, 0.05}}}};
+  return spheres;
+}
+
+TEST(WrittenSrdf, ReadsBackExactly) {
+  const ScratchFolder folder;
+  const auto path = folder.write("r.srdf", bake::writeSrdfSpheres("<&\"r\">", someSpheres()));
+  const auto spheres = bake::readSrdfSpheres(path);
+  ASSERT_TRUE(spheres.has_value()) << spheres.error().message;
+  EXPECT_EQ(spheres->links, someSpheres());
+}
+
+TEST(WrittenUrdf, ReadsBackAsTheSameTreeAndSpheres) {
+  const ScratchFolder folder;
+  const auto robot = importText(
+      folder,
+      robotText(
+          "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/><link name=\"d\"/>" +
+          jointText("j", "revolute", "a,b",
+                    "<origin xyz=\"0.1 0.2 0.3\" rpy=\"0.4 -0.5 2\"/><axis xyz=\"0 0.6 "
+                    "0.8\"/><limit lower=\"-1\" upper=\"2\" effort=\"1\" velocity=\"1\"/>") +
+          jointText("k", "prismatic", "b,c",
+                    "<origin rpy=\"0 1.5707963267948966 0.3\"/><limit lower=\"0\" upper=\"1\" "
+                    "effort=\"1\" velocity=\"1\"/><mimic joint=\"j\" multiplier=\"2\"/>") +
+          jointText("l", "fixed", "a,d")));
+  ASSERT_TRUE(robot.has_value()) << robot.error().message;
+  const auto path =
+      folder.write("robots/written.urdf", bake::writeSpherizedUrdf(*robot, someSpheres()));
+  const auto again = bake::importUrdf(path);
+  ASSERT_TRUE(again.has_value()) << again.error().message;
+  ASSERT_EQ(again->links.size(), robot->links.size());
+  for (std::size_t i = 0; i < robot->links.size(); ++i) {
+    const bake::SourceLink& before = robot->links[i];
+    const bake::SourceLink& after = again->links[i];
+    SCOPED_TRACE(before.name);
+    EXPECT_EQ(after.name, before.name);
+    EXPECT_EQ(after.joint_name, before.joint_name);
+    EXPECT_EQ(after.joint_type, before.joint_type);
+    EXPECT_THAT(after.parent_from_joint,
+                Pointwise(DoubleNear(kFrameRounding), before.parent_from_joint));
+    EXPECT_THAT(after.axis, Pointwise(DoubleNear(kFrameRounding), before.axis));
+    EXPECT_EQ(after.limits.has_value(), before.limits.has_value());
+    EXPECT_EQ(after.mimic.has_value(), before.mimic.has_value());
+  }
+  const auto spheres = bake::readSpherizedUrdf(path);
+  ASSERT_TRUE(spheres.has_value()) << spheres.error().message;
+  EXPECT_EQ(spheres->links, someSpheres());
+}
+
+}  // namespace
+}  // namespace galactic::test

@@ -1,0 +1,129 @@
+// Where references to mesh files are looked for, and in which order.
+#include <gmock/gmock.h>
+
+#include "bake/urdf/urdf_helpers.h"
+#include "urdf/mesh_resolver.h"
+
+namespace galactic::test {
+namespace {
+
+namespace fs = std::filesystem;
+using bake::MeshResolution;
+using bake::MeshResolver;
+using bake::UrdfImportOptions;
+using testing::HasSubstr;
+
+/// A folder with a URDF at ws/src/pkg_description/robots/r.urdf.
+class MeshReferences : public testing::Test {
+ protected:
+  [[nodiscard]] fs::path put(const std::string& file) const {
+    return folder_.write(file, "x").lexically_normal();
+  }
+  [[nodiscard]] MeshResolution resolve(const std::string& reference) const {
+    return MeshResolver(urdf_, options_).resolve(reference);
+  }
+
+  ScratchFolder folder_;
+  fs::path urdf_ = folder_.write("ws/src/pkg_description/robots/r.urdf", "x");
+  UrdfImportOptions options_;
+};
+
+TEST_F(MeshReferences, ToPackagesTryNamedOnesThenTheSearchPathThenFoldersAbove) {
+  const std::string reference = "package://pkg/meshes/m.stl";
+  const fs::path above = put("ws/src/pkg/meshes/m.stl");
+  const fs::path searched = put("share/pkg/meshes/m.stl");
+  const fs::path named = put("elsewhere/meshes/m.stl");
+  EXPECT_EQ(resolve(reference).file, above);
+  options_.search_roots = {folder_.path() / "nowhere", folder_.path() / "share"};
+  EXPECT_EQ(resolve(reference).file, searched);
+  EXPECT_EQ(resolve(reference).how, "package search path");
+  options_.packages["pkg"] = folder_.path() / "elsewhere";
+  EXPECT_EQ(resolve(reference).file, named);
+  EXPECT_EQ(resolve(reference).how, "--package pkg");
+  EXPECT_FALSE(resolve(reference).guessed);
+}
+
+TEST_F(MeshReferences, ToPackagesGoOnWhenTheFileIsNotInThePackage) {
+  const fs::path above = put("ws/src/pkg/meshes/m.stl");
+  options_.packages["pkg"] = folder_.path() / "elsewhere";
+  EXPECT_EQ(resolve("package://pkg/meshes/m.stl").file, above);
+}
+
+TEST_F(MeshReferences, ToThePackageOfTheUrdfAreFoundByFolderName) {
+  const fs::path mesh = put("ws/src/pkg_description/meshes/m.stl");
+  const MeshResolution found = resolve("package://pkg_description/meshes/m.stl");
+  EXPECT_EQ(found.file, mesh);
+  EXPECT_EQ(found.how, "package above the URDF");
+  EXPECT_EQ(resolve("model://pkg_description/meshes/m.stl").file, mesh);
+}
+
+TEST_F(MeshReferences, ToThePackageOfTheUrdfAreFoundByItsPackageFile) {
+  const fs::path mesh = put("ws/src/pkg_description/meshes/m.stl");
+  (void)folder_.write("ws/src/pkg_description/package.xml",
+                      "<package>\n  <name> renamed </name>\n</package>");
+  const MeshResolution found = resolve("package://renamed/meshes/m.stl");
+  EXPECT_EQ(found.file, mesh);
+  EXPECT_EQ(found.how, "package above the URDF");
+}
+
+TEST_F(MeshReferences, ToPackagesDeepInASearchRootAreFoundByTheirPackageFile) {
+  const fs::path mesh = put("overlay/src/stack/folder/m.stl");
+  (void)folder_.write("overlay/src/stack/folder/package.xml",
+                      "<package><name>deep</name></package>");
+  options_.search_roots = {folder_.path() / "overlay"};
+  EXPECT_EQ(resolve("package://deep/m.stl").file, mesh);
+}
+
+TEST_F(MeshReferences, ToUnknownPackagesAreGuessedFromThePathInside) {
+  const fs::path mesh = put("ws/src/pkg_description/meshes/m.stl");
+  const MeshResolution found = resolve("package://no_such_package/meshes/m.stl");
+  EXPECT_EQ(found.file, mesh);
+  EXPECT_TRUE(found.guessed);
+}
+
+TEST_F(MeshReferences, WithoutPackageNameAreFound) {
+  const fs::path mesh = put("ws/src/pkg_description/meshes/m.stl");
+  EXPECT_EQ(resolve("package:///pkg_description/meshes/m.stl").file, mesh);
+  EXPECT_EQ(resolve("package:///meshes/m.stl").file, mesh);
+}
+
+TEST_F(MeshReferences, ByPathAreRelativeToTheUrdf) {
+  const fs::path mesh = put("ws/src/pkg_description/meshes/m.stl");
+  const fs::path beside = put("ws/src/pkg_description/robots/beside.stl");
+  EXPECT_EQ(resolve("../meshes/m.stl").file, mesh);
+  EXPECT_EQ(resolve("../meshes/m.stl").how, "relative to the URDF");
+  EXPECT_EQ(resolve("beside.stl").file, beside);
+  EXPECT_EQ(resolve("./beside.stl").file, beside);
+  EXPECT_EQ(resolve("..\\meshes\\m.stl").file, mesh);
+  EXPECT_EQ(resolve(mesh.string()).file, mesh);
+  EXPECT_EQ(resolve("file://" + mesh.string()).file, mesh);
+  EXPECT_EQ(resolve("file://beside.stl").file, beside);
+  const MeshResolution guessed = resolve("meshes/m.stl");
+  EXPECT_EQ(guessed.file, mesh);
+  EXPECT_TRUE(guessed.guessed);
+}
+
+TEST_F(MeshReferences, MayHaveUriEscapes) {
+  const fs::path mesh = put("ws/src/pkg_description/meshes/my mesh.stl");
+  EXPECT_EQ(resolve("package://pkg_description/meshes/my%20mesh.stl").file, mesh);
+  EXPECT_EQ(resolve("../meshes/my%20mesh.stl").file, mesh);
+}
+
+TEST_F(MeshReferences, ThatLeadNowhereSayWhereTheyWereLookedFor) {
+  options_.packages["pkg"] = folder_.path() / "elsewhere";
+  const MeshResolution named = resolve("package://pkg/meshes/m.stl");
+  EXPECT_TRUE(named.file.empty());
+  EXPECT_EQ(named.how, "../../../../elsewhere/meshes/m.stl (from the URDF's folder)");
+  const MeshResolution unknown = resolve("package://other/m.stl");
+  EXPECT_THAT(unknown.how, HasSubstr("a folder 'other' or a package.xml of that name"));
+  EXPECT_EQ(resolve("../m.stl").how, "../m.stl (from the URDF's folder)");
+  for (const char* odd : {"", "package://", "package:///", "package://x", "http://host/m.stl", "/",
+                          "..", "file://"}) {
+    SCOPED_TRACE(odd);
+    EXPECT_TRUE(resolve(odd).file.empty());
+    EXPECT_FALSE(resolve(odd).how.empty());
+  }
+}
+
+}  // namespace
+}  // namespace galactic::test
