@@ -47,9 +47,9 @@ TomlValue convert(const toml::node& node) {
 TomlTable convertTable(const toml::table& table) {
   TomlTable converted;
   for (const auto& [key, node] : table) {
-    converted.emplace_back(std::string(key.str()), convert(node));
+    converted.push_back({.key = std::string(key.str()), .value = convert(node)});
     // The key's line says more than the line where a table's first key stands.
-    converted.back().second.line = key.source().begin.line;
+    converted.back().value.line = key.source().begin.line;
   }
   return converted;
 }

@@ -45,7 +45,7 @@ struct JointLimits {
 
 /// position = multiplier * position of `link`'s joint + offset.
 struct Mimic {
-  /// Index of the link whose joint is followed.
+  /// Index of the link whose joint is followed; that one mimics nothing.
   std::uint32_t link = 0;
   double multiplier = 1;
   double offset = 0;
