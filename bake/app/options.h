@@ -1,5 +1,7 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -7,6 +9,7 @@
 #include <vector>
 
 #include "galactic/bake/mesh_import.h"
+#include "galactic/bake/object_baker.h"
 #include "galactic/bake/scene_baker.h"
 #include "galactic/error.h"
 
@@ -15,21 +18,48 @@ namespace galactic::bake {
 /// How much to print.
 enum class Verbosity { kQuiet, kNormal, kVerbose };
 
+/// What the inputs are.
+enum class AssetKind { kScene, kObject, kRobot };
+
+/// How a robot is read and which recipe goes with it.
+struct RobotOptions {
+  /// --package NAME=DIR.
+  std::map<std::string, std::filesystem::path> packages;
+  /// Robot recipe (TOML) or published collection (JSON); empty: none.
+  std::filesystem::path recipe;
+  /// Hand-made spheres (spherized URDF, SRDF); empty: none.
+  std::filesystem::path spheres;
+  bool allow_missing = false;
+};
+
 /// What the user typed, understood.
 struct BakeCommand {
+  AssetKind kind = AssetKind::kScene;
   std::vector<std::filesystem::path> inputs;
-  /// A file for one input, a folder for several; empty: NAME.pack in the current folder.
+  /// A file for one pack, a folder for several; empty: NAME.pack in the current folder.
   std::filesystem::path output;
   std::filesystem::path report;
   /// The file of options that was read, if any: like the inputs, nothing may replace it.
   std::filesystem::path config;
   MeshImportOptions import;
   SceneBakeOptions scene;
+  ObjectBakeOptions object;
+  RobotOptions robot;
+  /// Most spheres of an object or robot, where the user said so; 0: no limit.
+  std::optional<std::uint32_t> max_spheres;
+  /// Whether eps and tau of object.spheres come from the user: then they override a recipe's.
+  bool tolerances_given = false;
+  unsigned jobs = 1;
   bool dry_run = false;
   bool keep_going = false;
   Verbosity verbosity = Verbosity::kNormal;
   /// The options that decide the pack's content, as text, for its provenance.
   std::vector<std::pair<std::string, std::string>> content_options;
+
+  /// Adds an option to content_options unless its text is empty.
+  void remember(const char* name, const std::string& value) {
+    if (!value.empty()) content_options.emplace_back(name, value);
+  }
 };
 
 /// The command, or the exit code of a command line that needs no work: help, version, or a mistake,

@@ -1,21 +1,12 @@
 #pragma once
 #include <filesystem>
-#include <vector>
 
-#include "bake_outcome.h"
+#include "bake_run.h"
 #include "galactic/error.h"
 
 namespace galactic::bake {
 
-/// An input that could not be baked.
-struct BakeFailure {
-  std::filesystem::path input;
-  Error error;
-};
-
-/// Writes what was done as JSON, atomically. Lengths in metres, times in seconds.
-[[nodiscard]] Result<void> writeReport(const std::filesystem::path& path,
-                                       const std::vector<BakeOutcome>& outcomes,
-                                       const std::vector<BakeFailure>& failures);
+/// Writes what was baked and what failed as JSON, atomically.
+[[nodiscard]] Result<void> writeReport(const std::filesystem::path& path, const BakeRun& run);
 
 }  // namespace galactic::bake

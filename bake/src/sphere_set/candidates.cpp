@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 #include "sphere_set/lattice.h"
 #include "sphere_set/surface_samples.h"
 

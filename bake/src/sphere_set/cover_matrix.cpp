@@ -1,6 +1,6 @@
 #include "sphere_set/cover_matrix.h"
 
-#include "parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 
 namespace galactic::bake::sphere_fit {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 #include "sphere_set/candidates.h"
 #include "sphere_set/gaps.h"
 #include "sphere_set/local_search.h"

@@ -3,7 +3,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 #include "sphere_set/candidates.h"
 #include "sphere_set/gaps.h"
 #include "sphere_set/surface_samples.h"

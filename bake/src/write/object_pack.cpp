@@ -9,14 +9,6 @@
 namespace galactic::bake {
 namespace {
 
-/// FlatBuffers offsets are signed 32-bit; what is not a surface is small.
-constexpr std::uint64_t kMaxSurfaceBytes = (std::uint64_t{1} << 31U) - (std::uint64_t{64} << 20U);
-
-std::uint64_t surfaceBytes(const Surface& surface) {
-  return surface.positions.size() * sizeof(Vec3) + surface.triangles.size() * sizeof(Triangle) +
-         surface.colors.size() * sizeof(std::uint32_t);
-}
-
 schema::BoxFit toSchema(BoxFit fit) {
   switch (fit) {
     case BoxFit::kYaw:
@@ -31,12 +23,10 @@ schema::BoxFit toSchema(BoxFit fit) {
 
 Offset<schema::Object> objectTable(FlatBufferBuilder& builder, const BakedObject& object) {
   const auto name = builder.CreateString(object.name);
-  const auto spheres =
-      alignedStructs<schema::SetSphere>(builder, std::span(object.spheres.spheres));
+  const auto spheres = alignedStructs<schema::SetSphere>(builder, object.spheres.spheres);
   const auto statistics =
       sphereStatistics(builder, object.spheres, {.eps = object.eps, .tau = object.tau});
-  const auto stable_poses =
-      alignedStructs<schema::StablePose>(builder, std::span(object.stable_poses));
+  const auto stable_poses = alignedStructs<schema::StablePose>(builder, object.stable_poses);
   const auto imported = importStatistics(builder, object.imported);
   const auto surface = surfaceTable(builder, object.surface);
   const schema::Pose box_pose = bake::toSchema(object.box.box.pose);
@@ -57,7 +47,7 @@ Result<std::vector<std::byte>> encodeObjectPack(const BakedObjectSet& set,
   std::uint64_t bytes = 0;
   for (const BakedObject& object : set.objects) {
     objects.push_back(&object);
-    bytes += surfaceBytes(object.surface);
+    bytes += storedBytes(object.surface);
   }
   if (bytes > kMaxSurfaceBytes) {
     return fail(ErrorCode::kUnsupported, "",

@@ -43,7 +43,7 @@ Offset<schema::ImportStatistics> importStatistics(FlatBufferBuilder& builder,
 }
 
 Offset<schema::Surface> surfaceTable(FlatBufferBuilder& builder, const Surface& surface) {
-  const auto positions = alignedStructs<schema::Vec3>(builder, std::span(surface.positions));
+  const auto positions = alignedStructs<schema::Vec3>(builder, surface.positions);
   static_assert(sizeof(Triangle) == 3 * sizeof(std::uint32_t));
   const auto triangles = alignedVector<std::uint32_t>(
       builder, {reinterpret_cast<const std::uint32_t*>(surface.triangles.data()),

@@ -47,8 +47,8 @@ template <class T>
 
 /// A vector of structs of ours that have the layout of the schema's struct `Stored`.
 template <class Stored, class T>
-[[nodiscard]] Offset<flatbuffers::Vector<const Stored*>> alignedStructs(FlatBufferBuilder& builder,
-                                                                        std::span<const T> values) {
+[[nodiscard]] Offset<flatbuffers::Vector<const Stored*>> alignedStructs(
+    FlatBufferBuilder& builder, const std::vector<T>& values) {
   static_assert(sizeof(T) == sizeof(Stored));
   builder.ForceVectorAlignment(values.size(), sizeof(Stored), kVectorAlignment);
   return builder.CreateVectorOfStructs(reinterpret_cast<const Stored*>(values.data()),
@@ -63,6 +63,16 @@ template <class Stored, class T>
 
 [[nodiscard]] Offset<schema::Surface> surfaceTable(FlatBufferBuilder& builder,
                                                    const Surface& surface);
+
+/// FlatBuffers offsets are signed 32-bit; what is not a surface is small.
+inline constexpr std::uint64_t kMaxSurfaceBytes =
+    (std::uint64_t{1} << 31U) - (std::uint64_t{64} << 20U);
+
+/// Bytes of a surface in a pack.
+[[nodiscard]] inline std::uint64_t storedBytes(const Surface& surface) {
+  return surface.positions.size() * sizeof(Vec3) + surface.triangles.size() * sizeof(Triangle) +
+         surface.colors.size() * sizeof(std::uint32_t);
+}
 
 /// What was asked of a sphere set.
 struct SphereTolerances {

@@ -55,7 +55,7 @@ Offset<schema::ColumnGrid> columnGrid(FlatBufferBuilder& builder, const BakedGri
   const auto cells = cellVector(builder, grid.cells);
   const auto tile_base = alignedVector<std::uint16_t>(builder, grid.tile_base);
   const auto overflow_codes = alignedVector<std::uint32_t>(builder, grid.overflow_codes);
-  const auto overflow_spans = alignedStructs<schema::Span>(builder, std::span(grid.overflow_spans));
+  const auto overflow_spans = alignedStructs<schema::Span>(builder, grid.overflow_spans);
   const auto counts = statistics(builder, baked);
   const schema::Span heights(grid.frame.heights.lo, grid.frame.heights.hi);
   schema::ColumnGridBuilder table(builder);

@@ -9,7 +9,8 @@ struct StablePose {
   Quat rotation;
   /// Height of the object's origin above the plane, metres.
   float height = 0;
-  /// Share of random drops that end in this pose, 0 to 1.
+  /// Share of random drops that end in this pose, 0 to 1. All poses of an object add up to 1; where
+  /// there are more than are kept, the kept ones do not, and their shares stay as they are.
   float likelihood = 0;
 
   friend bool operator==(const StablePose&, const StablePose&) = default;

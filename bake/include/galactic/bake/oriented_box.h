@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "galactic/pose.h"
+#include "galactic/oriented_box.h"
 #include "galactic/vec3.h"
 
 namespace galactic::bake {
@@ -11,14 +11,6 @@ enum class BoxFit {
   kYaw,      ///< Vertical axis kept, least area in the ground plane; kMinimum where it saves much.
   kMinimum,  ///< Least volume over all rotations.
   kAxisAligned,  ///< The axes of the object's frame.
-};
-
-/// A box in the frame of its object.
-struct OrientedBox {
-  /// Centre and rotation: object_from_box.
-  Pose pose;
-  /// Metres, each >= kMinHalfExtent.
-  Vec3 half_extents;
 };
 
 /// kYaw gives the box of least volume instead when that is smaller by more than this share.

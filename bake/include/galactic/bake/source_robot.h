@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "galactic/bake/source_asset.h"
+#include "galactic/kinematics.h"
 
 namespace galactic::bake {
-
-enum class JointType { kFixed, kRevolute, kContinuous, kPrismatic, kPlanar, kFloating };
 
 /// Primitive shapes, in their own frame; metres. A cylinder's axis is Y.
 struct BoxShape {

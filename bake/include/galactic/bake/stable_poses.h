@@ -3,20 +3,9 @@
 #include <vector>
 
 #include "galactic/bake/triangle_mesh.h"
-#include "galactic/pose.h"
+#include "galactic/stable_pose.h"
 
 namespace galactic::bake {
-
-/// A way in which an object rests on a horizontal plane.
-struct StablePose {
-  /// plane_from_object: turns the object so that its support face lies down (-Y).
-  Quat rotation;
-  /// Height of the object's origin above the plane, metres.
-  float height = 0;
-  /// Share of random drops that end in this pose, 0 to 1. All poses of an object add up to 1; where
-  /// there are more than are kept, the kept ones do not, and their shares stay as they are.
-  float likelihood = 0;
-};
 
 /// At most this many poses are kept, the likeliest first.
 inline constexpr std::size_t kMaxStablePoses = 16;

@@ -1,11 +1,10 @@
-#include "closing_table.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
 #include "galactic/printable.h"
+#include "scene_outcome.h"
 
 namespace galactic::bake {
 namespace {
@@ -49,7 +48,7 @@ void printDetails(const BakedScene& scene) {
 
 }  // namespace
 
-void printClosingTable(const BakeOutcome& outcome, Verbosity verbosity) {
+void printSceneTable(const SceneOutcome& outcome, Verbosity verbosity) {
   const BakedScene& scene = outcome.scene;
   const Bounds& bounds = scene.bounds;
   fmt::print("{} -> {}\n", outcome.input.string(),

@@ -1,0 +1,80 @@
+#pragma once
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "galactic/bake/provenance.h"
+#include "galactic/error.h"
+#include "options.h"
+#include "progress_line.h"
+
+namespace galactic::bake {
+
+using Json = nlohmann::ordered_json;
+
+/// One input that could not be baked.
+struct BakeFailure {
+  std::filesystem::path input;
+  Error error;
+};
+
+/// What all bakes of one command share: what was asked, what was read, and what became of it.
+class BakeRun {
+ public:
+  explicit BakeRun(const BakeCommand& command)
+      : command_(command), line_(command.verbosity != Verbosity::kQuiet) {
+    read_ = command.inputs;
+    read_.push_back(command.config);
+    read_.push_back(command.robot.recipe);
+    read_.push_back(command.robot.spheres);
+  }
+
+  [[nodiscard]] const BakeCommand& command() const { return command_; }
+  [[nodiscard]] ProgressLine& line() { return line_; }
+
+  /// Remembers files that were read: nothing is written over them.
+  void noteRead(const std::filesystem::path& folder, const std::vector<SourceFile>& files);
+  void noteRead(const std::filesystem::path& file) { read_.push_back(file); }
+
+  /// Refuses to write `output` over a file that the user owns and the bake reads.
+  [[nodiscard]] Result<void> checkNotRead(const std::filesystem::path& output) const;
+
+  /// Where the pack of `input` goes.
+  [[nodiscard]] std::filesystem::path outputFor(const std::filesystem::path& input) const;
+
+  /// Remembers a bake for the report.
+  void succeed(Json entry) { baked_.push_back(std::move(entry)); }
+  /// Explains an error on stderr and remembers it.
+  void fail(const std::filesystem::path& input, const Error& error);
+  /// Whether to begin the next input.
+  [[nodiscard]] bool goesOn() const { return failures_.empty() || command_.keep_going; }
+
+  [[nodiscard]] const std::vector<Json>& baked() const { return baked_; }
+  [[nodiscard]] const std::vector<BakeFailure>& failures() const { return failures_; }
+  /// That of the first error.
+  [[nodiscard]] int exitCode() const {
+    return failures_.empty() ? kExitOk : static_cast<int>(failures_.front().error.code);
+  }
+
+ private:
+  const BakeCommand& command_;
+  ProgressLine line_;
+  std::vector<std::filesystem::path> read_;
+  std::vector<Json> baked_;
+  std::vector<BakeFailure> failures_;
+};
+
+/// Provenance of a pack: the options of the command, the files read and the warnings.
+[[nodiscard]] Provenance provenanceOf(const BakeCommand& command, std::vector<SourceFile> sources,
+                                      std::vector<std::string> warnings);
+
+/// Seconds of wall clock since `start`.
+[[nodiscard]] inline double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// One line on stderr: program, place, message.
+void printError(const Error& error);
+
+}  // namespace galactic::bake

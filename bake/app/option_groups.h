@@ -1,0 +1,64 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "galactic/error.h"
+#include "options.h"
+
+namespace galactic::bake {
+
+// The options of galactic-bake in groups, each in a file of its own. A group adds its options to the
+// parser, understands their texts after parsing, and remembers those that decide the content.
+
+/// Up axis, unit and transform of meshes: for scenes and objects.
+class ImportOptions {
+ public:
+  void addTo(CLI::App& app);
+  [[nodiscard]] Result<void> understand(BakeCommand& command) const;
+  void remember(BakeCommand& command) const;
+
+ private:
+  std::string up_;
+  std::string scale_;
+  std::string transform_;
+};
+
+/// Column grids.
+class SceneOptions {
+ public:
+  void addTo(CLI::App& app, BakeCommand& command);
+  [[nodiscard]] Result<void> understand(BakeCommand& command) const;
+  void remember(BakeCommand& command) const;
+
+ private:
+  std::string spacing_ = "0.03";
+  std::vector<std::string> seeds_;
+};
+
+/// Oriented boxes and sphere sets of objects, and the spheres of robots.
+class ShapeOptions {
+ public:
+  void addTo(CLI::App& app, BakeCommand& command);
+  [[nodiscard]] Result<void> understand(BakeCommand& command) const;
+  void remember(BakeCommand& command) const;
+
+ private:
+  std::string profile_;
+  std::string eps_;
+  std::string tau_;
+  bool any_side_ = false;
+};
+
+/// Where a robot's files are, and its recipe.
+class RobotFileOptions {
+ public:
+  void addTo(CLI::App& app, BakeCommand& command);
+  [[nodiscard]] Result<void> understand(BakeCommand& command) const;
+  void remember(BakeCommand& command) const;
+
+ private:
+  std::vector<std::string> packages_;
+};
+
+}  // namespace galactic::bake

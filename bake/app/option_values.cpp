@@ -1,0 +1,54 @@
+#include "option_values.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+namespace galactic::bake {
+
+Result<std::vector<double>> parseNumbers(const std::string& text, const char* option) {
+  std::vector<double> numbers;
+  std::string_view rest = text;
+  while (true) {
+    const std::size_t comma = rest.find(',');
+    const std::string_view part = rest.substr(0, comma);
+    double number = 0;
+    const auto [end, problem] = std::from_chars(part.data(), part.data() + part.size(), number);
+    if (problem != std::errc() || end != part.data() + part.size() || !std::isfinite(number)) {
+      return fail(
+          ErrorCode::kInvalidInput, option,
+          fmt::format("has \"{}\" in \"{}\", numbers separated by commas are wanted", part, text));
+    }
+    numbers.push_back(number);
+    if (comma == std::string_view::npos) return numbers;
+    rest.remove_prefix(comma + 1);
+  }
+}
+
+Result<std::vector<double>> parseExactly(const std::string& text, const char* option,
+                                         std::size_t count) {
+  auto numbers = parseNumbers(text, option);
+  if (numbers && numbers->size() != count) {
+    return fail(
+        ErrorCode::kInvalidInput, option,
+        fmt::format("has {} numbers in \"{}\", {} are wanted", numbers->size(), text, count));
+  }
+  return numbers;
+}
+
+Result<double> parsePositive(const std::string& text, const char* option) {
+  const auto number = parseExactly(text, option, 1);
+  if (!number) return tl::unexpected(number.error());
+  if ((*number)[0] > 0) return (*number)[0];
+  return fail(ErrorCode::kInvalidInput, option,
+              fmt::format("is {}, a number above 0 is wanted", text));
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  return fmt::format("{}", fmt::join(parts, ","));
+}
+
+}  // namespace galactic::bake

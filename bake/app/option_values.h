@@ -1,0 +1,32 @@
+#pragma once
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+/// Numbers separated by commas. `option` names it in the error.
+[[nodiscard]] Result<std::vector<double>> parseNumbers(const std::string& text, const char* option);
+
+/// The same, of a fixed count.
+[[nodiscard]] Result<std::vector<double>> parseExactly(const std::string& text, const char* option,
+                                                       std::size_t count);
+
+/// A single positive number, in metres.
+[[nodiscard]] Result<double> parsePositive(const std::string& text, const char* option);
+
+[[nodiscard]] std::string joined(const std::vector<std::string>& parts);
+
+/// The name under which `value` is typed.
+template <class T>
+[[nodiscard]] std::string nameOf(const std::map<std::string, T>& names, T value) {
+  for (const auto& [name, candidate] : names) {
+    if (candidate == value) return name;
+  }
+  return {};
+}
+
+}  // namespace galactic::bake

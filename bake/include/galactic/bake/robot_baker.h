@@ -1,0 +1,99 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "galactic/bake/hand_spheres.h"
+#include "galactic/bake/robot_recipe.h"
+#include "galactic/bake/source_robot.h"
+#include "galactic/bake/sphere_set.h"
+#include "galactic/bake/surface.h"
+#include "galactic/error.h"
+#include "galactic/kinematics.h"
+#include "galactic/robot.h"
+
+namespace galactic::bake {
+
+struct RobotBakeOptions {
+  /// Working set, metres, ascending.
+  std::vector<float> radii{0.015F, 0.05F, 0.12F};
+  /// Metres. Override the recipe's; without either, 20 and 40 mm.
+  std::optional<float> eps;
+  std::optional<float> tau;
+  /// Of the whole robot; 0: as many as the tolerances need. Overrides the recipe's; without either,
+  /// 100.
+  std::optional<std::uint32_t> max_spheres;
+  /// Spheres made by hand or by another tool. Links named here take them instead of fitted ones;
+  /// the others get none.
+  std::optional<HandSpheres> hand_spheres;
+  /// Threads. Never changes the result.
+  unsigned jobs = 1;
+};
+
+/// Links that no joint moves against each other, and their spheres.
+struct BakedGroup {
+  /// The link in whose frame the spheres are: the one nearest to the root.
+  std::uint32_t link = 0;
+  /// Ascending, `link` first.
+  std::vector<std::uint32_t> links;
+  /// Empty where the group has no geometry or was skipped.
+  SphereSet spheres;
+  /// What was asked for, metres.
+  float eps = 0;
+  float tau = 0;
+  /// Whether the spheres were given by hand.
+  bool authored = false;
+  /// Whether the group has geometry that was measured.
+  bool measured = false;
+};
+
+/// What two groups of links do.
+enum class PairKind : std::uint8_t { kTested, kAdjacent, kAlways, kNever, kIgnored };
+
+struct BakedPair {
+  std::uint16_t first = 0;
+  std::uint16_t second = 0;
+  PairKind kind = PairKind::kTested;
+};
+
+/// The kinematic tree as the runtime reads it.
+struct FlatKinematics {
+  std::vector<LinkFrame> links;
+  /// One per position.
+  std::vector<PositionLimits> limits;
+  std::vector<float> start_positions;
+};
+
+struct RobotTimes {
+  double spheres = 0;
+  double self_collision = 0;
+};
+
+/// Everything of a robot pack but its provenance.
+struct BakedRobot {
+  std::string name;
+  std::vector<float> radii;
+  FlatKinematics kinematics;
+  std::vector<std::string> link_names;
+  std::vector<std::string> joint_names;
+  std::vector<BakedGroup> groups;
+  std::vector<BakedPair> pairs;
+  std::vector<ControlledJoint> controlled_joints;
+  std::optional<EndEffector> end_effector;
+  std::optional<RobotCamera> camera;
+  std::optional<RobotBase> base;
+  /// One per link; empty where a link has none.
+  std::vector<Surface> collision_surfaces;
+  std::vector<Surface> visual_surfaces;
+  RobotTimes times;
+  std::vector<std::string> warnings;
+};
+
+/// Kinematics, spheres and self-collision pairs of a robot; `recipe` may be null. Fails with
+/// kInvalidInput on options, recipe or geometry that cannot give them. The result does not depend
+/// on the number of threads.
+[[nodiscard]] Result<BakedRobot> bakeRobot(const SourceRobot& robot, const RobotRecipe* recipe,
+                                           const RobotBakeOptions& options);
+
+}  // namespace galactic::bake

@@ -1,0 +1,91 @@
+#include "flat_kinematics.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+
+namespace galactic::bake {
+namespace {
+
+constexpr float kUnlimited = std::numeric_limits<float>::max();
+
+Vec3 vectorOf(const std::array<double, 3>& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+/// Limits of the n-th value of a joint: the URDF's belong to joints of one value.
+PositionLimits limitsOf(const SourceLink& link) {
+  if (!link.limits) return {-kUnlimited, kUnlimited};
+  return {static_cast<float>(link.limits->lower), static_cast<float>(link.limits->upper)};
+}
+
+float nearestToZero(const PositionLimits& limits) {
+  return std::clamp(0.0F, limits.lower, limits.upper);
+}
+
+void addPositions(const SourceLink& link, LinkFrame& frame, FlatKinematics& flat) {
+  const std::uint32_t count = positionCount(link.joint_type);
+  if (count == 0) return;
+  frame.position = static_cast<std::int32_t>(flat.limits.size());
+  for (std::uint32_t n = 0; n < count; ++n) {
+    flat.limits.push_back(limitsOf(link));
+    flat.start_positions.push_back(nearestToZero(flat.limits.back()));
+  }
+  // The quaternion of a floating joint starts as no rotation.
+  if (link.joint_type == JointType::kFloating) flat.start_positions.back() = 1;
+}
+
+void applyStartPose(const SourceRobot& robot, const RobotRecipe& recipe, FlatKinematics& flat) {
+  for (const RecipeStart& start : recipe.start_pose) {
+    const auto link = std::find_if(
+        robot.links.begin(), robot.links.end(),
+        [&](const SourceLink& candidate) { return candidate.joint_name == start.joint.name; });
+    if (link == robot.links.end()) continue;
+    const LinkFrame& frame = flat.links[static_cast<std::size_t>(link - robot.links.begin())];
+    if (frame.position < 0 || link->mimic) continue;
+    const auto position = static_cast<std::size_t>(frame.position);
+    flat.start_positions[position] =
+        std::clamp(static_cast<float>(start.position), flat.limits[position].lower,
+                   flat.limits[position].upper);
+  }
+}
+
+}  // namespace
+
+Pose poseOf(const Affine& rigid) {
+  Eigen::Matrix3d rotation;
+  rotation << rigid[0], rigid[1], rigid[2], rigid[4], rigid[5], rigid[6], rigid[8], rigid[9],
+      rigid[10];
+  Eigen::Quaterniond q(rotation);
+  q.normalize();
+  // Of the two quaternions of a rotation the one with w >= 0, so that bytes are stable.
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  return {
+      {static_cast<float>(rigid[3]), static_cast<float>(rigid[7]), static_cast<float>(rigid[11])},
+      {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()),
+       static_cast<float>(q.w())}};
+}
+
+FlatKinematics flattenKinematics(const SourceRobot& robot, const RobotRecipe* recipe) {
+  FlatKinematics flat;
+  for (const SourceLink& link : robot.links) {
+    LinkFrame& frame = flat.links.emplace_back();
+    frame.parent_from_joint = poseOf(link.parent_from_joint);
+    frame.axis = vectorOf(link.axis);
+    frame.parent = link.parent;
+    frame.type = link.parent < 0 ? JointType::kFixed : link.joint_type;
+    if (link.parent >= 0 && !link.mimic) addPositions(link, frame, flat);
+  }
+  for (std::size_t n = 0; n < robot.links.size(); ++n) {
+    const SourceLink& link = robot.links[n];
+    if (!link.mimic || link.parent < 0) continue;
+    LinkFrame& frame = flat.links[n];
+    frame.position = flat.links[link.mimic->link].position;
+    frame.multiplier = static_cast<float>(link.mimic->multiplier);
+    frame.offset = static_cast<float>(link.mimic->offset);
+  }
+  if (recipe != nullptr) applyStartPose(robot, *recipe, flat);
+  return flat;
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,270 @@
+#include "group_spheres.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "galactic/bake/parallel_for.h"
+#include "import/affine.h"
+#include "sphere_budget.h"
+
+namespace galactic::bake {
+namespace {
+
+constexpr double kDefaultEps = 0.020;
+constexpr double kDefaultTau = 0.040;
+constexpr std::uint32_t kDefaultMaxSpheres = 100;
+constexpr double kDefaultClipHeight = 0.020;
+
+/// What one group asks for.
+struct GroupPlan {
+  SphereSetOptions fit;
+  TriangleMesh mesh;
+  /// In the group's frame.
+  std::vector<HandSphere> by_hand;
+  bool authored = false;
+};
+
+const RecipeLinkSpheres* ruleOf(const RobotRecipe* recipe, const std::string& link) {
+  if (recipe == nullptr) return nullptr;
+  const auto& rules = recipe->spheres.links;
+  const auto found = std::find_if(rules.begin(), rules.end(), [&](const RecipeLinkSpheres& rule) {
+    return rule.link.name == link;
+  });
+  return found == rules.end() ? nullptr : &*found;
+}
+
+const LinkSpheres* handSpheresOf(const RobotBakeOptions& options, const std::string& link) {
+  if (!options.hand_spheres) return nullptr;
+  const auto& links = options.hand_spheres->links;
+  const auto found = std::find_if(links.begin(), links.end(),
+                                  [&](const LinkSpheres& one) { return one.link == link; });
+  return found == links.end() ? nullptr : &*found;
+}
+
+/// Makes the plan of one group after the other.
+class Planner {
+ public:
+  explicit Planner(const SphereTask& task) : task_(task) {
+    const RecipeSpheres* recipe = task.recipe == nullptr ? nullptr : &task.recipe->spheres;
+    eps_ = task.options.eps ? static_cast<double>(*task.options.eps)
+                            : (recipe == nullptr ? kDefaultEps : recipe->eps);
+    tau_ = task.options.tau ? static_cast<double>(*task.options.tau)
+                            : (recipe == nullptr ? kDefaultTau : recipe->tau);
+    clip_height_ = recipe == nullptr ? kDefaultClipHeight : recipe->clip_height;
+  }
+
+  [[nodiscard]] GroupPlan plan(const RigidGroup& group) const {
+    GroupPlan plan;
+    plan.authored = task_.options.hand_spheres.has_value();
+    plan.fit.radii = task_.options.radii;
+    std::optional<double> eps;
+    std::optional<double> tau;
+    std::optional<double> clip;
+    std::optional<std::uint32_t> most;
+    for (std::size_t n = 0; n < group.links.size(); ++n) {
+      const std::string& name = task_.robot.links[group.links[n]].name;
+      const RecipeLinkSpheres* rule = ruleOf(task_.recipe, name);
+      if (rule != nullptr) {
+        // The link nearest to the root that states a value has the say.
+        if (!eps) eps = rule->eps;
+        if (!tau) tau = rule->tau;
+        if (!clip) clip = rule->clip_height;
+        if (!most) most = rule->max_spheres;
+        plan.authored |= !rule->spheres.empty();
+        addByHand(rule->spheres, group.group_from_link[n], plan);
+        if (rule->skip) continue;
+      }
+      if (const LinkSpheres* given = handSpheresOf(task_.options, name)) {
+        addByHand(given->spheres, group.group_from_link[n], plan);
+      }
+      addSurface(task_.surfaces[group.links[n]], group.group_from_link[n], plan.mesh);
+    }
+    plan.fit.eps = static_cast<float>(eps.value_or(eps_));
+    plan.fit.tau = static_cast<float>(tau.value_or(tau_));
+    plan.fit.max_spheres = most.value_or(0);
+    if (!plan.mesh.triangles.empty()) {
+      setBounds(plan.mesh);
+      plan.fit.support = clipPlane(task_.world_from_link[group.link],
+                                   static_cast<float>(clip.value_or(clip_height_)));
+    }
+    return plan;
+  }
+
+ private:
+  static void addByHand(const std::vector<HandSphere>& spheres, const Affine& group_from_link,
+                        GroupPlan& plan) {
+    for (const HandSphere& sphere : spheres) {
+      HandSphere placed = sphere;
+      for (std::size_t row = 0; row < 3; ++row) {
+        const double* m = &group_from_link[4 * row];
+        placed.centre[row] =
+            m[0] * sphere.centre[0] + m[1] * sphere.centre[1] + m[2] * sphere.centre[2] + m[3];
+      }
+      plan.by_hand.push_back(placed);
+    }
+  }
+
+  static void addSurface(const Surface& surface, const Affine& group_from_link,
+                         TriangleMesh& mesh) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vec3& position : surface.positions) {
+      const auto p = transformed(group_from_link, position);
+      mesh.vertices.push_back(
+          {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+    }
+    for (const Triangle& t : surface.triangles) {
+      mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+  }
+
+  static void setBounds(TriangleMesh& mesh) {
+    mesh.bounds = {mesh.vertices.front(), mesh.vertices.front()};
+    for (const Vec3& v : mesh.vertices) {
+      mesh.bounds.min = {std::min(mesh.bounds.min.x, v.x), std::min(mesh.bounds.min.y, v.y),
+                         std::min(mesh.bounds.min.z, v.z)};
+      mesh.bounds.max = {std::max(mesh.bounds.max.x, v.x), std::max(mesh.bounds.max.y, v.y),
+                         std::max(mesh.bounds.max.z, v.z)};
+    }
+  }
+
+  /// The plane at `height` above the ground, in the group's frame at the start pose.
+  static HalfSpace clipPlane(const Pose& world_from_group, float height) {
+    const Vec3 up = rotate(conjugate(world_from_group.rotation), {0, 1, 0});
+    return {up, height - world_from_group.translation.y};
+  }
+
+  const SphereTask& task_;
+  double eps_ = kDefaultEps;
+  double tau_ = kDefaultTau;
+  double clip_height_ = kDefaultClipHeight;
+};
+
+/// Hand-made spheres with the nearest radius of the working set; returns the largest change.
+double snapRadii(const std::vector<HandSphere>& by_hand, const std::vector<float>& radii,
+                 std::vector<SetSphere>& spheres) {
+  double largest = 0;
+  for (const HandSphere& sphere : by_hand) {
+    const auto nearest = std::min_element(radii.begin(), radii.end(), [&](float a, float b) {
+      return std::abs(static_cast<double>(a) - sphere.radius) <
+             std::abs(static_cast<double>(b) - sphere.radius);
+    });
+    largest = std::max(largest, std::abs(static_cast<double>(*nearest) - sphere.radius));
+    spheres.push_back({{static_cast<float>(sphere.centre[0]), static_cast<float>(sphere.centre[1]),
+                        static_cast<float>(sphere.centre[2])},
+                       static_cast<std::uint32_t>(nearest - radii.begin())});
+  }
+  std::sort(spheres.begin(), spheres.end(), [](const SetSphere& a, const SetSphere& b) {
+    return std::tuple(~a.radius_index, a.centre.x, a.centre.y, a.centre.z) <
+           std::tuple(~b.radius_index, b.centre.x, b.centre.y, b.centre.z);
+  });
+  return largest;
+}
+
+Result<void> takeByHand(const GroupPlan& plan, const std::string& link, BakedGroup& group,
+                        std::vector<std::string>& warnings) {
+  const double change = snapRadii(plan.by_hand, plan.fit.radii, group.spheres.spheres);
+  constexpr double kWorthMentioning = 1e-6;
+  if (change > kWorthMentioning) {
+    warnings.push_back(fmt::format(
+        "link '{}': radii of hand-made spheres change by up to {:.1f} mm to those of the working "
+        "set; choose --radii that hold them",
+        link, 1e3 * change));
+  }
+  if (plan.mesh.triangles.empty() || group.spheres.spheres.empty()) return {};
+  auto quality = measureSphereSet(plan.mesh, group.spheres.spheres, plan.fit);
+  if (!quality) return tl::unexpected(quality.error());
+  group.spheres.quality = *quality;
+  group.spheres.guaranteed_gap = quality->gap.max;
+  group.spheres.guaranteed_protrusion = quality->protrusion.max;
+  group.spheres.meets_tolerances = quality->gap.max <= static_cast<double>(plan.fit.eps) &&
+                                   quality->protrusion.max <= static_cast<double>(plan.fit.tau);
+  group.measured = true;
+  return {};
+}
+
+/// The spheres that the groups without hand-made ones may have together; 0: no limit.
+std::uint32_t budgetOf(const SphereTask& task, std::size_t by_hand) {
+  const std::uint32_t most = task.options.max_spheres.value_or(
+      task.recipe == nullptr ? kDefaultMaxSpheres : task.recipe->spheres.max_spheres);
+  if (most == 0) return 0;
+  return most > by_hand ? most - static_cast<std::uint32_t>(by_hand) : 1;
+}
+
+/// Curves of all groups that are fitted, each on its own thread; the last link first, since the
+/// root's group tends to be the largest: work is handed out from the largest mesh on.
+Result<std::vector<SphereCurve>> fitCurves(const std::vector<GroupPlan>& plans,
+                                           const SphereTask& task) {
+  std::vector<SphereCurve> curves(plans.size());
+  std::vector<std::optional<Error>> errors(plans.size());
+  std::vector<std::size_t> order;
+  for (std::size_t n = 0; n < plans.size(); ++n) {
+    if (!plans[n].authored && !plans[n].mesh.triangles.empty()) order.push_back(n);
+  }
+  const auto size = [&](std::size_t n) {
+    const Bounds& b = plans[n].mesh.bounds;
+    return (b.max.x - b.min.x) + (b.max.y - b.min.y) + (b.max.z - b.min.z);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
+  parallelFor(task.options.jobs, order.size(), [&](std::size_t n) {
+    auto curve = fitSphereCurve(plans[order[n]].mesh, plans[order[n]].fit);
+    if (curve) {
+      curves[order[n]] = std::move(*curve);
+    } else {
+      errors[order[n]] = std::move(curve.error());
+    }
+  });
+  for (const auto& error : errors) {
+    if (error) return tl::unexpected(*error);
+  }
+  return curves;
+}
+
+}  // namespace
+
+Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& groups,
+                                                 const SphereTask& task,
+                                                 std::vector<std::string>& warnings) {
+  const Planner planner(task);
+  std::vector<GroupPlan> plans;
+  std::vector<BakedGroup> baked;
+  std::size_t by_hand = 0;
+  for (const RigidGroup& group : groups) {
+    plans.push_back(planner.plan(group));
+    by_hand += plans.back().by_hand.size();
+    baked.push_back({.link = group.link,
+                     .links = group.links,
+                     .spheres = {},
+                     .eps = plans.back().fit.eps,
+                     .tau = plans.back().fit.tau,
+                     .authored = plans.back().authored});
+  }
+  const std::uint32_t budget = budgetOf(task, by_hand);
+  const auto curves = fitCurves(plans, task);
+  if (!curves) return tl::unexpected(curves.error());
+  const std::vector<std::size_t> chosen = spendBudget(*curves, budget);
+  std::size_t fitted = 0;
+  for (std::size_t n = 0; n < plans.size(); ++n) {
+    if (plans[n].authored) {
+      const auto taken =
+          takeByHand(plans[n], task.robot.links[baked[n].link].name, baked[n], warnings);
+      if (!taken) return tl::unexpected(taken.error());
+    } else if (!(*curves)[n].sets.empty()) {
+      baked[n].spheres = (*curves)[n].sets[chosen[n]];
+      baked[n].measured = true;
+      fitted += baked[n].spheres.spheres.size();
+    }
+  }
+  if (budget != 0 && fitted > budget) {
+    warnings.push_back(fmt::format(
+        "{} spheres are the fewest that cover every group of links, {} are allowed; merge links in "
+        "the recipe or allow more with --max-spheres",
+        fitted, budget));
+  }
+  return baked;
+}
+
+}  // namespace galactic::bake

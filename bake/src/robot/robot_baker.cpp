@@ -1,0 +1,211 @@
+#include "galactic/bake/robot_baker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "flat_kinematics.h"
+#include "group_spheres.h"
+#include "import/affine.h"
+#include "link_geometry.h"
+#include "rigid_groups.h"
+#include "self_collision.h"
+#include "stage_timer.h"
+
+namespace galactic::bake {
+namespace {
+
+std::uint32_t linkIndex(const SourceRobot& robot, const std::string& name) {
+  const auto found = std::find_if(robot.links.begin(), robot.links.end(),
+                                  [&](const SourceLink& link) { return link.name == name; });
+  return static_cast<std::uint32_t>(found - robot.links.begin());
+}
+
+std::size_t jointLinkIndex(const SourceRobot& robot, const std::string& joint) {
+  const auto found = std::find_if(robot.links.begin(), robot.links.end(),
+                                  [&](const SourceLink& link) { return link.joint_name == joint; });
+  return static_cast<std::size_t>(found - robot.links.begin());
+}
+
+Vec3 vectorOf(const std::array<double, 3>& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+Affine affineOf(const Pose& pose) {
+  const Vec3 x = rotate(pose.rotation, {1, 0, 0});
+  const Vec3 y = rotate(pose.rotation, {0, 1, 0});
+  const Vec3 z = rotate(pose.rotation, {0, 0, 1});
+  const Vec3& t = pose.translation;
+  const auto d = [](float value) { return static_cast<double>(value); };
+  return {d(x.x), d(y.x), d(z.x), d(t.x), d(x.y), d(y.y),
+          d(z.y), d(t.y), d(x.z), d(y.z), d(z.z), d(t.z)};
+}
+
+/// joint_from_link of each link at the start positions: what findRigidGroups needs of moved joints.
+std::vector<Affine> startTransforms(const FlatKinematics& flat) {
+  std::vector<Pose> parent_from_link(flat.links.size());
+  std::vector<Affine> transforms;
+  for (std::size_t n = 0; n < flat.links.size(); ++n) {
+    // A link alone, with its joint at the origin.
+    LinkFrame link = flat.links[n];
+    link.parent = -1;
+    link.parent_from_joint = {};
+    forwardKinematics({&link, 1}, {}, flat.start_positions, {&parent_from_link[n], 1});
+    transforms.push_back(affineOf(parent_from_link[n]));
+  }
+  return transforms;
+}
+
+/// Builds a robot part by part.
+class RobotBaker {
+ public:
+  RobotBaker(const SourceRobot& robot, const RobotRecipe* recipe, const RobotBakeOptions& options)
+      : robot_(robot), recipe_(recipe), options_(options) {}
+
+  Result<BakedRobot> bake() {
+    baked_.name = recipe_ != nullptr && !recipe_->name.empty() ? recipe_->name : robot_.name;
+    baked_.radii = options_.radii;
+    baked_.warnings = robot_.warnings;
+    for (const SourceLink& link : robot_.links) {
+      baked_.link_names.push_back(link.name);
+      baked_.joint_names.push_back(link.joint_name);
+    }
+    baked_.kinematics = flattenKinematics(robot_, recipe_);
+    makeSurfaces();
+    if (auto made = makeSpheres(); !made) return tl::unexpected(made.error());
+    {
+      const StageTimer timer(baked_.times.self_collision);
+      baked_.pairs = classifyPairs(baked_, ignoredPairs());
+    }
+    if (recipe_ != nullptr) applyRecipe();
+    return std::move(baked_);
+  }
+
+ private:
+  void makeSurfaces() {
+    for (const SourceLink& link : robot_.links) {
+      baked_.collision_surfaces.push_back(surfaceOfShapes(robot_, link.collisions));
+      baked_.visual_surfaces.push_back(surfaceOfShapes(robot_, link.visuals));
+    }
+  }
+
+  Result<void> makeSpheres() {
+    const StageTimer timer(baked_.times.spheres);
+    // Where a link has no collision geometry, what is seen of it stands in.
+    std::vector<Surface> fitted;
+    for (std::size_t n = 0; n < robot_.links.size(); ++n) {
+      const bool has_collision = !baked_.collision_surfaces[n].empty();
+      fitted.push_back(has_collision ? baked_.collision_surfaces[n] : baked_.visual_surfaces[n]);
+    }
+    const std::vector<Pose> world_from_link = startPoses(fitted);
+    const auto groups = findRigidGroups(robot_, recipe_, startTransforms(baked_.kinematics));
+    const SphereTask task{robot_, recipe_, options_, fitted, world_from_link};
+    auto made = makeGroupSpheres(groups, task, baked_.warnings);
+    if (!made) return tl::unexpected(made.error());
+    baked_.groups = std::move(*made);
+    const bool any =
+        std::any_of(baked_.groups.begin(), baked_.groups.end(),
+                    [](const BakedGroup& group) { return !group.spheres.spheres.empty(); });
+    if (any) return {};
+    return fail(ErrorCode::kInvalidInput, "",
+                "no link has geometry, so the robot would be without spheres; give its meshes with "
+                "--package, or spheres in a recipe");
+  }
+
+  /// Poses at the start, the robot standing on the ground: at the recipe's height, else with its
+  /// lowest point at height 0.
+  std::vector<Pose> startPoses(const std::vector<Surface>& surfaces) const {
+    std::vector<Pose> poses(robot_.links.size());
+    const FlatKinematics& flat = baked_.kinematics;
+    Pose world_from_root;
+    if (recipe_ != nullptr) {
+      world_from_root.translation.y = static_cast<float>(recipe_->base.root_height);
+    } else {
+      forwardKinematics(flat.links, {}, flat.start_positions, poses);
+      float lowest = std::numeric_limits<float>::max();
+      for (std::size_t n = 0; n < poses.size(); ++n) {
+        for (const Vec3& p : surfaces[n].positions) lowest = std::min(lowest, (poses[n] * p).y);
+      }
+      if (lowest < std::numeric_limits<float>::max()) world_from_root.translation.y = -lowest;
+    }
+    forwardKinematics(flat.links, world_from_root, flat.start_positions, poses);
+    return poses;
+  }
+
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ignoredPairs() const {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    if (recipe_ == nullptr) return pairs;
+    for (const auto& [first, second] : recipe_->ignored_pairs) {
+      pairs.emplace_back(linkIndex(robot_, first.name), linkIndex(robot_, second.name));
+    }
+    return pairs;
+  }
+
+  void applyRecipe() {
+    const RecipeEndEffector& effector = recipe_->end_effector;
+    baked_.end_effector =
+        EndEffector{linkIndex(robot_, effector.link.name), vectorOf(effector.grasp_point),
+                    static_cast<float>(effector.grasp_radius)};
+    if (recipe_->camera) {
+      baked_.camera = RobotCamera{linkIndex(robot_, recipe_->camera->link.name),
+                                  poseOf(recipe_->camera->link_from_camera),
+                                  static_cast<float>(recipe_->camera->vertical_fov)};
+    }
+    baked_.base = baseOf(recipe_->base);
+    for (const RecipeJoint& joint : recipe_->joints) {
+      baked_.controlled_joints.push_back(controlledJoint(joint));
+    }
+  }
+
+  static RobotBase baseOf(const RecipeBase& recipe) {
+    RobotBase base;
+    base.forward_step = static_cast<float>(recipe.forward_step);
+    base.turn_step = static_cast<float>(recipe.turn_step);
+    base.root_height = static_cast<float>(recipe.root_height);
+    if (const auto* circle = std::get_if<FootprintCircle>(&recipe.footprint)) {
+      const auto radius = static_cast<float>(circle->radius);
+      base.footprint_radius = radius;
+      base.footprint_min = {-radius, 0, -radius};
+      base.footprint_max = {radius, 0, radius};
+    } else {
+      const auto& rectangle = std::get<FootprintRectangle>(recipe.footprint);
+      base.footprint_min = {static_cast<float>(rectangle.min_x), 0,
+                            static_cast<float>(rectangle.min_z)};
+      base.footprint_max = {static_cast<float>(rectangle.max_x), 0,
+                            static_cast<float>(rectangle.max_z)};
+    }
+    return base;
+  }
+
+  ControlledJoint controlledJoint(const RecipeJoint& joint) const {
+    const FlatKinematics& flat = baked_.kinematics;
+    const LinkFrame& link = flat.links[jointLinkIndex(robot_, joint.joint.name)];
+    const auto position = static_cast<std::uint32_t>(link.position);
+    const PositionLimits& limits = flat.limits[position];
+    const auto inside = [&](const std::optional<double>& wanted, float otherwise) {
+      return wanted ? std::clamp(static_cast<float>(*wanted), limits.lower, limits.upper)
+                    : otherwise;
+    };
+    return {position, static_cast<float>(joint.step), inside(joint.min, limits.lower),
+            inside(joint.max, limits.upper)};
+  }
+
+  const SourceRobot& robot_;
+  const RobotRecipe* recipe_;
+  const RobotBakeOptions& options_;
+  BakedRobot baked_;
+};
+
+}  // namespace
+
+Result<BakedRobot> bakeRobot(const SourceRobot& robot, const RobotRecipe* recipe,
+                             const RobotBakeOptions& options) {
+  if (recipe != nullptr) {
+    if (auto fits = checkRecipe(*recipe, robot); !fits) return tl::unexpected(fits.error());
+  }
+  return RobotBaker(robot, recipe, options).bake();
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,185 @@
+#include "self_collision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace galactic::bake {
+namespace {
+
+/// SplitMix64 (Steele et al., "Fast splittable pseudorandom number generators", 2014): the same
+/// numbers on any platform.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+
+  /// Uniform in [0, 1).
+  double uniform() {
+    state_ += 0x9e3779b97f4a7c15U;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
+    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
+    return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1p-53;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// A sphere of a group in the world.
+struct Ball {
+  Vec3 centre;
+  float radius = 0;
+};
+
+bool overlap(const Ball& a, const Ball& b) {
+  const Vec3 between = a.centre - b.centre;
+  const float reach = a.radius + b.radius;
+  return dot(between, between) < reach * reach;
+}
+
+/// The ball around a group's spheres, in the group's frame.
+Ball boundingBall(const BakedGroup& group, const std::vector<float>& radii) {
+  Vec3 sum;
+  for (const SetSphere& sphere : group.spheres.spheres) sum = sum + sphere.centre;
+  Ball ball{sum * (1 / static_cast<float>(group.spheres.spheres.size())), 0};
+  for (const SetSphere& sphere : group.spheres.spheres) {
+    const Vec3 from_centre = sphere.centre - ball.centre;
+    ball.radius = std::max(ball.radius,
+                           std::sqrt(dot(from_centre, from_centre)) + radii[sphere.radius_index]);
+  }
+  return ball;
+}
+
+/// Counts touches of all pairs over many poses.
+class PairSampler {
+ public:
+  explicit PairSampler(const BakedRobot& robot)
+      : robot_(robot),
+        bounds_(robot.groups.size()),
+        balls_(robot.groups.size()),
+        world_from_link_(robot.kinematics.links.size()) {
+    for (std::size_t n = 0; n < robot.groups.size(); ++n) {
+      const BakedGroup& group = robot.groups[n];
+      if (!group.spheres.spheres.empty()) bounds_[n] = boundingBall(group, robot.radii);
+    }
+  }
+
+  /// Places all spheres for a vector of joint positions.
+  void pose(std::span<const float> positions) {
+    forwardKinematics(robot_.kinematics.links, {}, positions, world_from_link_);
+    for (std::size_t n = 0; n < robot_.groups.size(); ++n) {
+      const BakedGroup& group = robot_.groups[n];
+      const Pose& world_from_group = world_from_link_[group.link];
+      balls_[n].clear();
+      for (const SetSphere& sphere : group.spheres.spheres) {
+        balls_[n].push_back({world_from_group * sphere.centre, robot_.radii[sphere.radius_index]});
+      }
+    }
+  }
+
+  [[nodiscard]] bool touch(std::size_t first, std::size_t second) const {
+    if (!overlap(placed(first), placed(second))) return false;
+    for (const Ball& a : balls_[first]) {
+      for (const Ball& b : balls_[second]) {
+        if (overlap(a, b)) return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] Ball placed(std::size_t group) const {
+    return {world_from_link_[robot_.groups[group].link] * bounds_[group].centre,
+            bounds_[group].radius};
+  }
+
+  const BakedRobot& robot_;
+  std::vector<Ball> bounds_;
+  std::vector<std::vector<Ball>> balls_;
+  std::vector<Pose> world_from_link_;
+};
+
+std::vector<float> randomPositions(const FlatKinematics& kinematics, Random& random) {
+  std::vector<float> positions;
+  for (const PositionLimits& limits : kinematics.limits) {
+    const bool limited = limits.lower > std::numeric_limits<float>::lowest();
+    const double lower = limited ? static_cast<double>(limits.lower) : -std::numbers::pi;
+    const double upper = limited ? static_cast<double>(limits.upper) : std::numbers::pi;
+    const double position = lower + (upper - lower) * random.uniform();
+    positions.push_back(static_cast<float>(position));
+  }
+  return positions;
+}
+
+/// The group of each link.
+std::vector<std::size_t> groupOfLinks(const BakedRobot& robot) {
+  std::vector<std::size_t> group_of(robot.kinematics.links.size());
+  for (std::size_t n = 0; n < robot.groups.size(); ++n) {
+    for (const std::uint32_t link : robot.groups[n].links) group_of[link] = n;
+  }
+  return group_of;
+}
+
+/// Pairs of groups that a joint joins, directly or through groups without spheres.
+std::vector<std::pair<std::size_t, std::size_t>> adjacentGroups(
+    const BakedRobot& robot, const std::vector<std::size_t>& group_of) {
+  std::vector<std::pair<std::size_t, std::size_t>> adjacent;
+  for (std::size_t n = 0; n < robot.groups.size(); ++n) {
+    std::int32_t parent = robot.kinematics.links[robot.groups[n].link].parent;
+    while (parent >= 0) {
+      const std::size_t above = group_of[static_cast<std::size_t>(parent)];
+      adjacent.emplace_back(above, n);
+      if (!robot.groups[above].spheres.spheres.empty()) break;
+      parent = robot.kinematics.links[robot.groups[above].link].parent;
+    }
+  }
+  return adjacent;
+}
+
+}  // namespace
+
+std::vector<BakedPair> classifyPairs(
+    const BakedRobot& robot, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& ignored) {
+  const std::vector<std::size_t> group_of = groupOfLinks(robot);
+  std::vector<BakedPair> pairs;
+  for (std::size_t first = 0; first < robot.groups.size(); ++first) {
+    for (std::size_t second = first + 1; second < robot.groups.size(); ++second) {
+      if (robot.groups[first].spheres.spheres.empty()) continue;
+      if (robot.groups[second].spheres.spheres.empty()) continue;
+      pairs.push_back({static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(second),
+                       PairKind::kTested});
+    }
+  }
+  const auto mark = [&](std::size_t a, std::size_t b, PairKind kind) {
+    const auto [first, second] = std::minmax(a, b);
+    for (BakedPair& pair : pairs) {
+      if (pair.first == first && pair.second == second) pair.kind = kind;
+    }
+  };
+  for (const auto& [a, b] : ignored) mark(group_of[a], group_of[b], PairKind::kIgnored);
+  for (const auto& [a, b] : adjacentGroups(robot, group_of)) mark(a, b, PairKind::kAdjacent);
+
+  std::vector<std::size_t> touches(pairs.size());
+  PairSampler sampler(robot);
+  constexpr std::uint64_t kSeed = 20230613;
+  Random random(kSeed);
+  for (std::size_t sample = 0; sample < kSelfCollisionSamples; ++sample) {
+    sampler.pose(sample == 0 ? robot.kinematics.start_positions
+                             : randomPositions(robot.kinematics, random));
+    for (std::size_t n = 0; n < pairs.size(); ++n) {
+      if (pairs[n].kind == PairKind::kTested && sampler.touch(pairs[n].first, pairs[n].second)) {
+        ++touches[n];
+      }
+    }
+  }
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    if (pairs[n].kind != PairKind::kTested) continue;
+    if (touches[n] == 0) pairs[n].kind = PairKind::kNever;
+    if (touches[n] == kSelfCollisionSamples) pairs[n].kind = PairKind::kAlways;
+  }
+  return pairs;
+}
+
+}  // namespace galactic::bake
