@@ -90,6 +90,24 @@ Footprint footprintOf(const RobotBase& base) {
   return circle;
 }
 
+/// The largest gap and protrusion of all groups.
+std::string worstText(const flatbuffers::Vector<flatbuffers::Offset<schema::SphereGroup>>& groups) {
+  double gap = 0;
+  double protrusion = 0;
+  bool measured = false;
+  for (const schema::SphereGroup* group : groups) {
+    const schema::SphereSetStatistics* quality = group->statistics();
+    if (quality == nullptr || quality->gap() == nullptr || quality->protrusion() == nullptr)
+      continue;
+    measured = true;
+    gap = std::max(gap, quality->gap()->max());
+    protrusion = std::max(protrusion, quality->protrusion()->max());
+  }
+  if (!measured) return {};
+  return fmt::format(", gap up to {:.1f} mm, protrusion up to {:.1f} mm", 1e3 * gap,
+                     1e3 * protrusion);
+}
+
 std::vector<FigurePart> robotParts(const Robot& robot, const std::vector<Pose>& world_from_link) {
   std::vector<FigurePart> parts(robot.links().size());
   for (std::size_t n = 0; n < parts.size(); ++n) {

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "galactic/printable.h"
 #include "pack_tool/pictures/axes.h"
@@ -44,7 +45,7 @@ std::vector<LegendEntry> legendOf(const Figure& figure) {
   const bool robot = figure.kind == FigureKind::kRobot;
   std::vector<LegendEntry> legend;
   if (any([](const FigurePart& part) { return !part.surface.empty(); })) {
-    legend.push_back({kMeshGrey, "mesh"});
+    legend.push_back({kMeshGrey, robot ? "mesh, in its own colours" : "mesh"});
   }
   if (any([](const FigurePart& part) { return !part.spheres.empty(); })) {
     std::string radii;
@@ -63,11 +64,60 @@ std::vector<LegendEntry> legendOf(const Figure& figure) {
   return legend;
 }
 
+int legendWidth(const std::vector<LegendEntry>& legend) {
+  int width = 0;
+  for (const LegendEntry& entry : legend) width += swatchWidth(entry.meaning);
+  return width;
+}
+
+void drawLegend(Image& image, const std::vector<LegendEntry>& legend, int y) {
+  int x = kMargin;
+  for (const LegendEntry& entry : legend) {
+    x += drawSwatch(image, x, y, entry.colour, entry.meaning);
+  }
+}
+
 /// One view of a figure's picture.
 struct NamedView {
   std::string_view name;
   ViewAxes axes;
 };
+
+constexpr std::string_view kSheetNote = "gap: mean/p95/max; every object at its own scale";
+
+/// How a contact sheet is divided: about as many columns as rows.
+struct SheetLayout {
+  std::uint64_t columns = 1;
+  std::uint64_t rows = 1;
+  /// Pixels.
+  std::uint64_t tile_width = 0;
+  std::uint64_t tile_height = 0;
+};
+
+SheetLayout layOut(std::size_t count, int view_size) {
+  SheetLayout layout;
+  while (layout.columns * layout.columns < count) ++layout.columns;
+  layout.rows = (count + layout.columns - 1) / layout.columns;
+  layout.tile_width = std::uint64_t(view_size + kMargin);
+  // Name and two lines of caption above, the scale bar below.
+  layout.tile_height = std::uint64_t(view_size + 4 * kLine + kMargin);
+  return layout;
+}
+
+void drawTile(Image& image, const ViewPlace& place, const Figure& figure) {
+  const ViewAxes axes = threeQuarterView();
+  const double scale = fittingScale(windowOf(figure, axes).extent(), place.size);
+  drawText(image, {place.left, place.top}, shortened(printable(figure.name), place.size), kInk);
+  int y = place.top + kLine;
+  for (const std::string& line : figure.short_caption) {
+    drawText(image, {place.left, y}, shortened(line, place.size), kFaintInk);
+    y += kLine;
+  }
+  const ViewPlace view{place.left, place.top + 3 * kLine, place.size};
+  drawFigureView(image, view, figure, axes, scale);
+  drawFrame(image, {view.left, view.top, view.size, view.size}, kFaintInk);
+  drawScaleBar(image, {view.left, view.top + view.size + 6}, scale, view.size / 2);
+}
 
 }  // namespace
 
@@ -83,8 +133,7 @@ Image drawFigure(const Figure& figure, int view_size) {
   const double scale = fittingScale(extent, view_size);
   const std::string name = printable(figure.name);
   const std::vector<LegendEntry> legend = legendOf(figure);
-  int legend_width = 0;
-  for (const LegendEntry& entry : legend) legend_width += swatchWidth(entry.meaning);
+  const int legend_width = legendWidth(legend);
   const int views_width = static_cast<int>(views.size()) * (view_size + kMargin) - kMargin;
   const int width = 2 * kMargin + std::max({views_width, legend_width, textWidth(name),
                                             textWidth(figure.caption)});
@@ -101,49 +150,34 @@ Image drawFigure(const Figure& figure, int view_size) {
     drawFrame(image, {x, views_top, view_size, view_size}, kFaintInk);
     x += view_size + kMargin;
   }
-  x = kMargin;
-  for (const LegendEntry& entry : legend) {
-    x += drawSwatch(image, x, legend_top, entry.colour, entry.meaning);
-  }
+  drawLegend(image, legend, legend_top);
   drawScaleBar(image, {kMargin, legend_top + kLine}, scale, view_size / 2);
   return image;
 }
 
 Result<Image> drawContactSheet(std::span<const Figure> figures, int view_size) {
-  const auto count = static_cast<double>(figures.size());
-  const int columns = static_cast<int>(std::ceil(std::sqrt(count)));
-  const int rows = static_cast<int>(std::ceil(count / columns));
-  const int tile_width = view_size + kMargin;
-  // Name, caption in two lines, view, scale bar.
-  const int tile_height = view_size + 4 * kLine + kMargin;
+  const SheetLayout layout = layOut(figures.size(), view_size);
+  const std::vector<LegendEntry> legend = legendOf(figures.front());
   const std::uint64_t width =
-      std::uint64_t(kMargin) + std::uint64_t(columns) * std::uint64_t(tile_width);
+      std::max(std::uint64_t(kMargin) + layout.columns * layout.tile_width,
+               std::uint64_t(2 * kMargin + std::max(legendWidth(legend), textWidth(kSheetNote))));
   const std::uint64_t height =
-      std::uint64_t(kMargin) + std::uint64_t(rows) * std::uint64_t(tile_height);
-  if (width * height > kMostPixels) {
+      std::uint64_t(kMargin + 2 * kLine + kMargin) + layout.rows * layout.tile_height;
+  if (width > kMostPixels || height > kMostPixels || width * height > kMostPixels) {
     return fail(ErrorCode::kUnsupported, "",
                 fmt::format("a sheet of {} objects at {} pixels each has {} x {} pixels, more than "
                             "a picture may have; choose a smaller --size or one --object",
                             figures.size(), view_size, width, height));
   }
   Image image(static_cast<int>(width), static_cast<int>(height), kPaper);
-  const ViewAxes axes = threeQuarterView();
   for (std::size_t n = 0; n < figures.size(); ++n) {
-    const Figure& figure = figures[n];
-    const int x = kMargin + static_cast<int>(n) % columns * tile_width;
-    const int y = kMargin + static_cast<int>(n) / columns * tile_height;
-    const double scale = fittingScale(windowOf(figure, axes).extent(), view_size);
-    drawText(image, {x, y}, shortened(printable(figure.name), view_size), kInk);
-    int text_y = y + kLine;
-    for (const std::string& line : figure.short_caption) {
-      drawText(image, {x, text_y}, shortened(line, view_size), kFaintInk);
-      text_y += kLine;
-    }
-    const int top = y + 3 * kLine;
-    drawFigureView(image, {x, top, view_size}, figure, axes, scale);
-    drawFrame(image, {x, top, view_size, view_size}, kFaintInk);
-    drawScaleBar(image, {x, top + view_size + 6}, scale, view_size / 2);
+    const auto x = static_cast<int>(kMargin + n % layout.columns * layout.tile_width);
+    const auto y = static_cast<int>(kMargin + n / layout.columns * layout.tile_height);
+    drawTile(image, {x, y, view_size}, figures[n]);
   }
+  const int legend_top = static_cast<int>(kMargin + layout.rows * layout.tile_height);
+  drawLegend(image, legend, legend_top);
+  drawText(image, {kMargin, legend_top + kLine}, kSheetNote, kFaintInk);
   return image;
 }
 
