@@ -148,8 +148,9 @@ Result<std::vector<Figure>> robotFigures(const PackFile& pack, const FigureOptio
   figure.name = robot->name();
   figure.radii = robot->radii();
   figure.caption =
-      fmt::format("{} spheres ({}) in {} groups", robot->spheres().size(),
-                  sphereCounts(robot->spheres(), robot->radii().size()), robot->groups().size());
+      fmt::format("{} spheres ({}) in {} groups{}", robot->spheres().size(),
+                  sphereCounts(robot->spheres(), robot->radii().size()), robot->groups().size(),
+                  worstText(*pack.root().asset_as_Robot()->groups()));
   figure.parts = robotParts(*robot, world_from_link);
   if (options.layers.has(FigureLayer::kMesh)) {
     for (const schema::LinkSurface* surface : *pack.root().asset_as_Robot()->surfaces()) {
