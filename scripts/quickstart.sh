@@ -15,12 +15,12 @@ slice=-4,1.5,3.9,1.5
 
 draw() {
   local radius
-  "$bin/galactic-pack" export "$pack" -o "$out/plans.png"
+  "$bin/galactic-pack" picture "$pack" -o "$out/plans.png"
   for radius in "${radii[@]}"; do
-    "$bin/galactic-pack" export "$pack" --radius "$radius" -o "$out/plan-r$radius.png"
+    "$bin/galactic-pack" picture "$pack" --radius "$radius" -o "$out/plan-r$radius.png"
   done
-  "$bin/galactic-pack" export "$pack" --slice "$slice" --radius 0.015 -o "$out/slice.png"
-  "$bin/galactic-pack" export "$pack" --radius 0.05 --surface -o "$out/surfaces.ply"
+  "$bin/galactic-pack" picture "$pack" --slice "$slice" --radius 0.015 -o "$out/slice.png"
+  "$bin/galactic-pack" picture "$pack" --radius 0.05 --surface -o "$out/surfaces.ply"
 }
 
 phase setup "Installing packages" scripts/setup.sh

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <tuple>
 
+#include "pack_tool/asset_packs.h"
 #include "support/pack_tool_fixture.h"
 #include "support/program_run.h"
 
@@ -20,8 +22,8 @@ constexpr int kIo = static_cast<int>(ErrorCode::kIo);
 constexpr int kInvalidInput = static_cast<int>(ErrorCode::kInvalidInput);
 constexpr int kUnsupported = static_cast<int>(ErrorCode::kUnsupported);
 
-/// A folder with a good pack, one that was cut off, one of a later format, and a file that is no
-/// pack.
+/// A folder with a good pack of each kind, one that was cut off, one of a later format, and a file
+/// that is no pack.
 class PackCli : public testing::Test {
  protected:
   void SetUp() override {
@@ -31,6 +33,8 @@ class PackCli : public testing::Test {
     constexpr std::size_t kVersionOffset = 8;
     bytes.bytes()[kVersionOffset] = std::byte{99};
     write("later.pack", test::asText(bytes.bytes()));
+    write("toys.pack", test::asText(test::ToyPackBuilder::build(test::ToyObjects{}).bytes()));
+    write("arm.pack", test::asText(test::ToyPackBuilder::build(test::ToyRobot{}).bytes()));
     write("text.pack", "this is a text and no pack, long enough to hold a whole header of a pack");
   }
 
@@ -49,9 +53,9 @@ TEST_F(PackCli, ListsItsVerbsAndExitCodesInHelp) {
   const ProgramRun help = run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_EQ(help.err, "");
-  for (const char* part :
-       {"info", "check", "column", "diff", "export", "0 ok", "1 command line", "2 input or output",
-        "3 invalid input", "4 internal", "5 unsupported", "7 the packs differ"}) {
+  for (const char* part : {"info", "check", "column", "diff", "export", "picture", "0 ok",
+                           "1 command line", "2 input or output", "3 invalid input", "4 internal",
+                           "5 unsupported", "7 the packs differ"}) {
     EXPECT_THAT(help.out, HasSubstr(part));
   }
   const ProgramRun verb = run({"diff", "--help"});
@@ -79,7 +83,12 @@ TEST_F(PackCli, ExplainsAWrongCommandLineWithExitCodeOne) {
       {{"diff", "good.pack"}, "b is required"},
       {{"diff", "good.pack", "good.pack", "--tolerance", "-1"}, "--tolerance"},
       {{"export", "good.pack"}, "--output is required"},
-      {{"export", "good.pack", "-o", "a.png", "--slice", "1,2,3"}, "is not 4 numbers"},
+      {{"picture", "good.pack", "-o", "a.png", "--slice", "1,2,3"}, "is not 4 numbers"},
+      {{"picture", "good.pack"}, "--output is required"},
+      {{"picture", "arm.pack", "-o", "a.png", "--joints", "lift"}, "is no joint=value"},
+      {{"picture", "arm.pack", "-o", "a.png", "--joints", "lift=1,"}, "is no joint=value"},
+      {{"picture", "arm.pack", "-o", "a.png", "--what", "mesh,bones"}, "\"bones\" is none of"},
+      {{"picture", "arm.pack", "-o", "a.png", "--size", "10"}, "--size"},
       {{"export", "good.pack", "-o", "a.png", "--to", "gif"}, "--to"},
   };
   for (const auto& [arguments, message] : lines) {
@@ -150,7 +159,8 @@ TEST_F(PackCli, EveryVerbRefusesADamagedPack) {
     for (const std::vector<std::string>& arguments : {std::vector<std::string>{"info", pack},
                                                       {"column", pack, "--at", "1,1"},
                                                       {"diff", "good.pack", pack},
-                                                      {"export", pack, "-o", "a.png"}}) {
+                                                      {"picture", pack, "-o", "a.png"},
+                                                      {"export", pack, "-o", "a.glb"}}) {
       const ProgramRun result = run(arguments);
       EXPECT_EQ(result.exit_code, kInvalidInput) << arguments.front();
       EXPECT_THAT(result.out, IsEmpty());
@@ -185,38 +195,96 @@ TEST_F(PackCli, DiffReturnsSevenWhenPacksDiffer) {
   EXPECT_EQ(json::parse(same.out).at("identical"), true);
 }
 
-TEST_F(PackCli, ExportWritesPicturesAndMeshesQuietly) {
-  const std::vector<std::pair<std::vector<std::string>, std::string>> exports{
-      {{"-o", "all.png"}, "\x89PNG"},
-      {{"-o", "one.PNG", "--radius", "0.75", "--value", "lowest"}, "\x89PNG"},
-      {{"-o", "slice.png", "--slice", "0,0.5,5,2.5"}, "\x89PNG"},
-      {{"-o", "mesh.ply", "--radius", "0.5", "--surface"}, "ply\n"},
-      {{"-o", "mesh.obj", "--radius", "0.5", "--floors-only"}, "# free space"},
-      {{"-o", "mesh.dat", "--to", "obj", "--radius", "0.5"}, "# free space"},
+TEST_F(PackCli, PictureAndExportWriteTheirFilesQuietly) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> runs{
+      {{"picture", "good.pack", "-o", "all.png"}, "\x89PNG"},
+      {{"picture", "good.pack", "-o", "one.PNG", "--radius", "0.75", "--value", "lowest"},
+       "\x89PNG"},
+      {{"picture", "good.pack", "-o", "slice.png", "--slice", "0,0.5,5,2.5"}, "\x89PNG"},
+      {{"picture", "toys.pack", "-o", "sheet.png"}, "\x89PNG"},
+      {{"picture", "toys.pack", "-o", "block.png", "--object", "block", "--size", "100"},
+       "\x89PNG"},
+      {{"picture", "arm.pack", "-o", "arm.png", "--joints", "lift=-0.5,reach=1", "--what",
+        "mesh,spheres"},
+       "\x89PNG"},
+      {{"export", "good.pack", "-o", "mesh.ply", "--radius", "0.5", "--surface"}, "ply\n"},
+      {{"export", "good.pack", "-o", "mesh.obj", "--radius", "0.5", "--floors-only"},
+       "# free space"},
+      {{"export", "good.pack", "-o", "mesh.dat", "--to", "obj", "--radius", "0.5"}, "# free space"},
+      {{"export", "toys.pack", "-o", "toys.glb", "--what", "boxes"}, "glTF"},
+      {{"export", "arm.pack", "-o", "arm.GLB", "--all-zero"}, "glTF"},
+      {{"export", "arm.pack", "-o", "arm.srdf"}, "<?xml"},
+      {{"export", "arm.pack", "-o", "arm.urdf"}, "<?xml"},
   };
-  for (const auto& [options, start] : exports) {
-    std::vector<std::string> arguments{"export", "good.pack"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
+  for (const auto& [arguments, start] : runs) {
     const ProgramRun result = run(arguments);
-    EXPECT_EQ(result.exit_code, 0) << options[1];
-    EXPECT_EQ(result.out + result.err, "") << options[1];
-    EXPECT_THAT(test::fileContent(folder_.path() / options[1]), StartsWith(start));
+    EXPECT_EQ(result.exit_code, 0) << arguments[3];
+    EXPECT_EQ(result.out + result.err, "") << arguments[3];
+    EXPECT_THAT(test::fileContent(folder_.path() / arguments[3]), StartsWith(start));
   }
 }
 
-TEST_F(PackCli, ExportRefusesWhatItCannotWrite) {
-  const ProgramRun format = run({"export", "good.pack", "-o", "a.jpg"});
-  EXPECT_EQ(format.exit_code, kUnsupported);
-  EXPECT_THAT(format.err, HasSubstr("use .png, .obj or .ply"));
-  const ProgramRun folder = run({"export", "good.pack", "-o", "none/a.png"});
-  EXPECT_EQ(folder.exit_code, kIo);
-  EXPECT_THAT(folder.err, StartsWith("galactic-pack: none/a.png: "));
-  const ProgramRun grids = run({"export", "good.pack", "-o", "a.ply"});
-  EXPECT_EQ(grids.exit_code, kInvalidInput);
-  EXPECT_THAT(grids.err, HasSubstr("choose with --radius one of 0.5 0.75"));
-  const ProgramRun slice = run({"export", "good.pack", "-o", "a.png", "--slice", "50,50,60,50"});
-  EXPECT_EQ(slice.exit_code, kInvalidInput);
-  EXPECT_THAT(slice.err, HasSubstr("misses the grid"));
+TEST_F(PackCli, PictureAndExportRefuseWhatTheyCannotWrite) {
+  const std::vector<std::tuple<std::vector<std::string>, int, std::string>> runs{
+      {{"export", "good.pack", "-o", "a.jpg"},
+       kUnsupported,
+       "use .glb, .srdf, .urdf, .obj or .ply"},
+      {{"export", "good.pack", "-o", "a.png"}, kUnsupported, "draw it with galactic-pack picture"},
+      {{"picture", "good.pack", "-o", "a.jpg"}, kUnsupported, "end the name with .png"},
+      {{"picture", "good.pack", "-o", "none/a.png"}, kIo, "galactic-pack: none/a.png: "},
+      {{"export", "good.pack", "-o", "a.ply"},
+       kInvalidInput,
+       "choose with --radius one of 0.5 0.75"},
+      {{"picture", "good.pack", "-o", "a.png", "--slice", "50,50,60,50"},
+       kInvalidInput,
+       "misses the grid"},
+      {{"picture", "good.pack", "-o", "a.png", "--size", "100"}, kInvalidInput, "is a scene; "},
+      {{"picture", "arm.pack", "-o", "a.png", "--radius", "0.5"},
+       kInvalidInput,
+       "is a pack of kind RBOT and holds no column grids"},
+      {{"picture", "toys.pack", "-o", "a.png", "--object", "mug"},
+       kInvalidInput,
+       "has no object \"mug\""},
+      {{"picture", "arm.pack", "-o", "a.png", "--joints", "lift=7"},
+       kInvalidInput,
+       "its limits are -1 to 2"},
+      {{"export", "toys.pack", "-o", "a.ply"},
+       kInvalidInput,
+       "is a pack of kind OBJS and holds no column grids, which OBJ and PLY files show"},
+      {{"export", "toys.pack", "-o", "a.urdf"}, kInvalidInput, "wanted a robot (RBOT)"},
+      {{"export", "good.pack", "-o", "a.glb"}, kInvalidInput, "wanted objects (OBJS) or a robot"},
+      {{"export", "arm.pack", "-o", "a.urdf", "--all-zero"}, kInvalidInput, "are for GLB files"},
+      {{"export", "arm.pack", "-o", "a.glb", "--radius", "0.5"},
+       kInvalidInput,
+       "are for OBJ and PLY files"},
+      {{"column", "arm.pack", "--at", "0,0"},
+       kInvalidInput,
+       "is a pack of kind RBOT and holds no column grids"},
+      {{"export", "arm.pack", "-o", "arm.pack", "--to", "urdf"},
+       kInvalidInput,
+       "is the pack itself"},
+  };
+  for (const auto& [arguments, exit_code, message] : runs) {
+    const ProgramRun result = run(arguments);
+    EXPECT_EQ(result.exit_code, exit_code) << message;
+    EXPECT_EQ(result.out, "") << message;
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
+}
+
+TEST_F(PackCli, InfoChecksAndComparesObjectsAndRobots) {
+  const ProgramRun info = run({"info", "--json", "toys.pack", "arm.pack"});
+  EXPECT_EQ(info.exit_code, 0);
+  const json packs = json::parse(info.out);
+  EXPECT_EQ(packs.at(0).at("object_set").at("objects").size(), 2U);
+  EXPECT_EQ(packs.at(1).at("robot").at("links").size(), 5U);
+  EXPECT_EQ(run({"check", "toys.pack", "arm.pack"}).exit_code, 0);
+  test::ToyRobot shorter;
+  shorter.upper_limit = 1;
+  write("shorter.pack", test::asText(test::ToyPackBuilder::build(shorter).bytes()));
+  const ProgramRun differ = run({"diff", "arm.pack", "shorter.pack"});
+  EXPECT_EQ(differ.exit_code, kExitDiffers);
+  EXPECT_THAT(differ.out, HasSubstr("positions.lift.upper: 2.0 | 1.0"));
 }
 
 TEST_F(PackCli, ReportsAFullDiskBehindStandardOutput) {

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -49,103 +47,6 @@ Result<HandSpheres> finish(HandSpheres spheres, const fs::path& path, std::strin
   return spheres;
 }
 
-std::string escaped(std::string_view text) {
-  std::string xml;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        xml += "&amp;";
-        break;
-      case '<':
-        xml += "&lt;";
-        break;
-      case '>':
-        xml += "&gt;";
-        break;
-      case '"':
-        xml += "&quot;";
-        break;
-      default:
-        xml += c;
-    }
-  }
-  return xml;
-}
-
-std::string_view typeName(JointType type) {
-  switch (type) {
-    case JointType::kFixed:
-      return "fixed";
-    case JointType::kRevolute:
-      return "revolute";
-    case JointType::kContinuous:
-      return "continuous";
-    case JointType::kPrismatic:
-      return "prismatic";
-    case JointType::kPlanar:
-      return "planar";
-    case JointType::kFloating:
-      return "floating";
-  }
-  return "";
-}
-
-/// Roll, pitch and yaw of a rotation matrix: R = Rz(yaw) Ry(pitch) Rx(roll).
-std::array<double, 3> rollPitchYaw(const Affine& m) {
-  constexpr double kGimbalLock = 1e-12;
-  const double cos_pitch = std::hypot(m[0], m[4]);
-  const double pitch = std::atan2(-m[8], cos_pitch);
-  if (cos_pitch < kGimbalLock) return {std::atan2(-m[6], m[5]), pitch, 0};
-  return {std::atan2(m[9], m[10]), pitch, std::atan2(m[4], m[0])};
-}
-
-std::string vectorText(const std::array<double, 3>& v) {
-  return fmt::format("{} {} {}", v[0], v[1], v[2]);
-}
-
-std::string originText(const Affine& frame) {
-  return fmt::format("<origin xyz=\"{}\" rpy=\"{}\"/>", vectorText({frame[3], frame[7], frame[11]}),
-                     vectorText(rollPitchYaw(frame)));
-}
-
-std::string jointText(const SourceRobot& robot, const SourceLink& link) {
-  std::string text = fmt::format("  <joint name=\"{}\" type=\"{}\">\n", escaped(link.joint_name),
-                                 typeName(link.joint_type));
-  const auto& parent = robot.links[static_cast<std::size_t>(link.parent)];
-  text += fmt::format("    <parent link=\"{}\"/>\n    <child link=\"{}\"/>\n", escaped(parent.name),
-                      escaped(link.name));
-  text += "    " + originText(conjugate(kZUpFromYUp, link.parent_from_joint, kYUpFromZUp)) + "\n";
-  if (link.joint_type != JointType::kFixed && link.joint_type != JointType::kFloating) {
-    text +=
-        fmt::format("    <axis xyz=\"{}\"/>\n", vectorText(transformed(kZUpFromYUp, link.axis)));
-  }
-  if (link.limits) {
-    text += fmt::format("    <limit lower=\"{}\" upper=\"{}\" effort=\"0\" velocity=\"0\"/>\n",
-                        link.limits->lower, link.limits->upper);
-  }
-  if (link.mimic) {
-    text += fmt::format("    <mimic joint=\"{}\" multiplier=\"{}\" offset=\"{}\"/>\n",
-                        escaped(robot.links[link.mimic->link].joint_name), link.mimic->multiplier,
-                        link.mimic->offset);
-  }
-  return text + "  </joint>\n";
-}
-
-std::string linkText(const SourceLink& link, std::span<const LinkSpheres> spheres) {
-  std::string text;
-  for (const LinkSpheres& set : spheres) {
-    if (set.link != link.name) continue;
-    for (const HandSphere& sphere : set.spheres) {
-      text += fmt::format(
-          "    <collision>\n      <origin xyz=\"{}\" rpy=\"0 0 0\"/>\n"
-          "      <geometry><sphere radius=\"{}\"/></geometry>\n    </collision>\n",
-          vectorText(transformed(kZUpFromYUp, sphere.centre)), sphere.radius);
-    }
-  }
-  if (text.empty()) return fmt::format("  <link name=\"{}\"/>\n", escaped(link.name));
-  return fmt::format("  <link name=\"{}\">\n{}  </link>\n", escaped(link.name), text);
-}
-
 }  // namespace
 
 Result<HandSpheres> readSpherizedUrdf(const fs::path& path) {
@@ -181,30 +82,6 @@ Result<HandSpheres> readSrdfSpheres(const fs::path& path) {
   }
   return finish({.links = std::move(*links), .warnings = {}}, path,
                 "<sphere> in a <link_sphere_approximation>");
-}
-
-std::string writeSrdfSpheres(const std::string& robot, std::span<const LinkSpheres> spheres) {
-  std::string text = fmt::format("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(robot));
-  for (const LinkSpheres& link : spheres) {
-    text += fmt::format("  <link_sphere_approximation link=\"{}\">\n", escaped(link.link));
-    for (const HandSphere& sphere : link.spheres) {
-      text += fmt::format("    <sphere center=\"{}\" radius=\"{}\"/>\n",
-                          vectorText(transformed(kZUpFromYUp, sphere.centre)), sphere.radius);
-    }
-    if (link.spheres.empty()) text += "    <sphere center=\"0 0 0\" radius=\"0\"/>\n";
-    text += "  </link_sphere_approximation>\n";
-  }
-  return text + "</robot>\n";
-}
-
-std::string writeSpherizedUrdf(const SourceRobot& robot, std::span<const LinkSpheres> spheres) {
-  std::string text =
-      fmt::format("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(robot.name));
-  for (const SourceLink& link : robot.links) text += linkText(link, spheres);
-  for (const SourceLink& link : robot.links) {
-    if (link.parent >= 0) text += jointText(robot, link);
-  }
-  return text + "</robot>\n";
 }
 
 }  // namespace galactic::bake

@@ -1,9 +1,8 @@
-// Spheres made by hand or by other tools: in and out.
+// Spheres made by hand or by other tools.
 #include "galactic/bake/hand_spheres.h"
 
 #include <gmock/gmock.h>
 
-#include "bake/urdf/link_points.h"
 #include "bake/urdf/urdf_helpers.h"
 
 namespace galactic::test {
@@ -11,12 +10,7 @@ namespace {
 
 using bake::HandSphere;
 using bake::LinkSpheres;
-using testing::DoubleNear;
 using testing::ElementsAre;
-using testing::Pointwise;
-
-/// Roll, pitch and yaw of a frame read back.
-constexpr double kFrameRounding = 1e-12;
 
 std::string sphereElement(std::string_view xyz, double radius) {
   return fmt::format(
@@ -98,57 +92,6 @@ TEST(SrdfSpheres, ThatAreBrokenNameTheirLine) {
         "<link_sphere_approximation link=\"a\">{}</link_sphere_approximation>", sphere));
     EXPECT_THAT(broken.message, testing::HasSubstr("wanted a finite centre and a positive radius"));
   }
-}
-
-const std::vector<LinkSpheres>& someSpheres() {
-  static const std::vector<LinkSpheres> spheres{
-      {"a", {{{0.1, 1.0 / 3, -0.7}, 0.015}, {{1e-9, 0, 2}, 0.12}}}, {"b", {{{0, 0, 0}, 0.05}}}};
-  return spheres;
-}
-
-TEST(WrittenSrdf, ReadsBackExactly) {
-  const ScratchFolder folder;
-  const auto path = folder.write("r.srdf", bake::writeSrdfSpheres("<&\"r\">", someSpheres()));
-  const auto spheres = bake::readSrdfSpheres(path);
-  ASSERT_TRUE(spheres.has_value()) << spheres.error().message;
-  EXPECT_EQ(spheres->links, someSpheres());
-}
-
-TEST(WrittenUrdf, ReadsBackAsTheSameTreeAndSpheres) {
-  const ScratchFolder folder;
-  const auto robot = importText(
-      folder,
-      robotText(
-          "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/><link name=\"d\"/>" +
-          jointText("j", "revolute", "a,b",
-                    "<origin xyz=\"0.1 0.2 0.3\" rpy=\"0.4 -0.5 2\"/><axis xyz=\"0 0.6 "
-                    "0.8\"/><limit lower=\"-1\" upper=\"2\" effort=\"1\" velocity=\"1\"/>") +
-          jointText("k", "prismatic", "b,c",
-                    "<origin rpy=\"0 1.5707963267948966 0.3\"/><limit lower=\"0\" upper=\"1\" "
-                    "effort=\"1\" velocity=\"1\"/><mimic joint=\"j\" multiplier=\"2\"/>") +
-          jointText("l", "fixed", "a,d")));
-  ASSERT_TRUE(robot.has_value()) << robot.error().message;
-  const auto path =
-      folder.write("robots/written.urdf", bake::writeSpherizedUrdf(*robot, someSpheres()));
-  const auto again = bake::importUrdf(path);
-  ASSERT_TRUE(again.has_value()) << again.error().message;
-  ASSERT_EQ(again->links.size(), robot->links.size());
-  for (std::size_t i = 0; i < robot->links.size(); ++i) {
-    const bake::SourceLink& before = robot->links[i];
-    const bake::SourceLink& after = again->links[i];
-    SCOPED_TRACE(before.name);
-    EXPECT_EQ(after.name, before.name);
-    EXPECT_EQ(after.joint_name, before.joint_name);
-    EXPECT_EQ(after.joint_type, before.joint_type);
-    EXPECT_THAT(after.parent_from_joint,
-                Pointwise(DoubleNear(kFrameRounding), before.parent_from_joint));
-    EXPECT_THAT(after.axis, Pointwise(DoubleNear(kFrameRounding), before.axis));
-    EXPECT_EQ(after.limits.has_value(), before.limits.has_value());
-    EXPECT_EQ(after.mimic.has_value(), before.mimic.has_value());
-  }
-  const auto spheres = bake::readSpherizedUrdf(path);
-  ASSERT_TRUE(spheres.has_value()) << spheres.error().message;
-  EXPECT_EQ(spheres->links, someSpheres());
 }
 
 }  // namespace

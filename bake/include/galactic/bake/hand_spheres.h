@@ -1,11 +1,9 @@
 #pragma once
 #include <array>
 #include <filesystem>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "galactic/bake/source_robot.h"
 #include "galactic/error.h"
 
 namespace galactic::bake {
@@ -41,15 +39,5 @@ struct HandSpheres {
 /// The <link_sphere_approximation> elements of an SRDF (MoveIt). MoveIt's way to say that a link
 /// has no spheres, a single one of radius 0, leaves the link out. Fails as readSpherizedUrdf.
 [[nodiscard]] Result<HandSpheres> readSrdfSpheres(const std::filesystem::path& path);
-
-/// SRDF text with the spheres of each link, in the URDF's frame (Z up). Numbers read back exactly.
-[[nodiscard]] std::string writeSrdfSpheres(const std::string& robot,
-                                           std::span<const LinkSpheres> spheres);
-
-/// URDF text of the robot's links and joints with `spheres` as its only geometry, in the URDF's
-/// frame (Z up). Effort and velocity limits, which SourceRobot does not keep, are written as 0.
-/// Joint frames read back to within 1e-12.
-[[nodiscard]] std::string writeSpherizedUrdf(const SourceRobot& robot,
-                                             std::span<const LinkSpheres> spheres);
 
 }  // namespace galactic::bake

@@ -1,0 +1,254 @@
+// The software rasteriser and the pictures of figures.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "pack_tool/asset_packs.h"
+#include "pack_tool/figure/figures_of_pack.h"
+#include "pack_tool/pictures/figure_picture.h"
+#include "pack_tool/pictures/figure_view.h"
+#include "pack_tool/pictures/mesh_raster.h"
+#include "pack_tool/pictures/palette.h"
+
+namespace galactic::pictures {
+namespace {
+
+using pack_tool::Figure;
+using pack_tool::figuresOf;
+using test::ToyObjects;
+using test::ToyPack;
+using test::ToyRobot;
+using testing::HasSubstr;
+
+constexpr unsigned kSeed = 20230611;
+constexpr int kSize = 64;
+/// One pixel per centimetre, the origin in the middle.
+const RasterView kSide{kSideView, {0, 0, 0}, 100, kSize, kSize};
+constexpr Rgb kRed{200, 0, 0};
+constexpr Rgb kBlue{0, 0, 200};
+
+Image imageOf(const MeshRaster& raster) {
+  Image image(kSize, kSize, kInk);
+  raster.compose(image, 0, 0);
+  return image;
+}
+
+/// The world point that the middle of a pixel shows in kSide, at z = 0.
+Vec3 pointOf(int x, int y) {
+  return {(static_cast<float>(x) + 0.5F - kSize / 2) / 100,
+          (kSize / 2 - static_cast<float>(y) - 0.5F) / 100, 0};
+}
+
+void drawTriangle(MeshRaster& raster, const std::array<Vec3, 3>& corners, Rgb colour) {
+  constexpr std::array<std::uint32_t, 3> kCorners{0, 1, 2};
+  raster.drawMesh({corners, kCorners, {}, colour}, {});
+}
+
+/// Least distance of a point from the lines through the edges of a triangle in the plane z = 0,
+/// negative outside.
+double depthInside(const std::array<Vec3, 3>& c, const Vec3& p) {
+  const auto side = [](const Vec3& a, const Vec3& b, const Vec3& q) {
+    const double x = static_cast<double>(b.x - a.x);
+    const double y = static_cast<double>(b.y - a.y);
+    return (x * static_cast<double>(q.y - a.y) - y * static_cast<double>(q.x - a.x)) /
+           std::hypot(x, y);
+  };
+  const double turn = side(c[0], c[1], c[2]) > 0 ? 1 : -1;
+  return std::min(
+      {turn * side(c[0], c[1], p), turn * side(c[1], c[2], p), turn * side(c[2], c[0], p)});
+}
+
+TEST(MeshRaster, ColoursExactlyThePixelsInsideATriangle) {
+  std::mt19937 random(kSeed);
+  const auto coordinate = [&random] {
+    return (static_cast<float>(random() % 1000) - 500) * 0.0012F;
+  };
+  int inside = 0;
+  int outside = 0;
+  for (int n = 0; n < 40; ++n) {
+    const std::array<Vec3, 3> corners{Vec3{coordinate(), coordinate(), 0},
+                                      Vec3{coordinate(), coordinate(), 0},
+                                      Vec3{coordinate(), coordinate(), 0}};
+    MeshRaster raster(kSide);
+    drawTriangle(raster, corners, kRed);
+    const Image image = imageOf(raster);
+    for (int y = 0; y < kSize; ++y) {
+      for (int x = 0; x < kSize; ++x) {
+        // Pixels that an edge crosses are mixed: half a diagonal is 0.71 pixels.
+        const double depth = depthInside(corners, pointOf(x, y));
+        if (std::abs(depth) < 0.0072) continue;
+        const bool drawn = image.at(x, y) != kPaper;
+        ASSERT_EQ(drawn, depth > 0)
+            << "seed " << kSeed << " case " << n << " at " << x << ", " << y;
+        ++(drawn ? inside : outside);
+      }
+    }
+  }
+  EXPECT_GT(inside, (inside + outside) / 10);
+  EXPECT_GT(outside, (inside + outside) / 10);
+}
+
+TEST(MeshRaster, ShowsWhatIsNearerWhateverComesFirst) {
+  const auto large = [](float z) {
+    return std::array<Vec3, 3>{Vec3{-1, -1, z}, Vec3{1, -1, z}, Vec3{0, 1, z}};
+  };
+  for (const bool red_first : {true, false}) {
+    MeshRaster raster(kSide);
+    if (red_first) drawTriangle(raster, large(0.1F), kRed);
+    drawTriangle(raster, large(0), kBlue);
+    if (!red_first) drawTriangle(raster, large(0.1F), kRed);
+    const Rgb middle = imageOf(raster).at(kSize / 2, kSize / 2);
+    EXPECT_GT(middle.r, 0);
+    EXPECT_EQ(middle.b, 0);
+  }
+}
+
+TEST(MeshRaster, GivesSpheresTheirAreaAndLetsShineThroughWhatIsBehind) {
+  MeshRaster raster(kSide);
+  constexpr float kRadius = 0.2F;
+  raster.drawSphere({{0.05F, 0, 0}, kRadius}, kBlue);
+  const Image image = imageOf(raster);
+  int covered = 0;
+  for (const Rgb& pixel : image.pixels()) covered += pixel != kPaper ? 1 : 0;
+  // Pixels on the rim count as covered: up to half a pixel around.
+  const double least = std::numbers::pi * 20 * 20;
+  EXPECT_GT(covered, 0.98 * least);
+  EXPECT_LT(covered, std::numbers::pi * 21 * 21);
+  const Rgb middle = image.at(kSize / 2 + 5, kSize / 2);
+  EXPECT_GT(middle.r, 60);
+  EXPECT_GT(middle.b, middle.r);
+
+  // Inside a mesh, nothing of it is seen.
+  MeshRaster hidden(kSide);
+  drawTriangle(hidden, {Vec3{-2, -1, 0.5F}, Vec3{2, -1, 0.5F}, Vec3{0, 2, 0.5F}}, kRed);
+  hidden.drawSphere({{0, 0, 0}, kRadius}, kBlue);
+  EXPECT_EQ(imageOf(hidden).at(kSize / 2, kSize / 2).b, 0);
+}
+
+TEST(MeshRaster, LetsHiddenLinesShineFaintlyThroughMeshes) {
+  const std::array<Vec3, 3> wall{Vec3{-2, -1, 0}, Vec3{2, -1, 0}, Vec3{0, 2, 0}};
+  const auto lineAt = [&wall](float z) {
+    MeshRaster raster(kSide);
+    drawTriangle(raster, wall, kRed);
+    raster.drawLine({{-0.3F, 0, z}, {0.3F, 0, z}, kBlue});
+    return imageOf(raster).at(kSize / 2, kSize / 2);
+  };
+  EXPECT_EQ(lineAt(0.1F), kBlue);
+  EXPECT_GT(lineAt(-0.1F).b, 0);
+  EXPECT_LT(lineAt(-0.1F).b, kBlue.b / 2);
+}
+
+TEST(MeshRaster, DrawsNothingOutsideItsPlace) {
+  MeshRaster raster(kSide);
+  drawTriangle(raster, {Vec3{-9, -9, 0}, Vec3{9, -9, 0}, Vec3{0, 90, 0}}, kRed);
+  raster.drawSphere({{50, 50, 0}, 1}, kBlue);
+  raster.drawLine({{-50, 0, 0}, {50, 0, 0}, kBlue});
+  Image image(kSize + 2, kSize + 2, kInk);
+  raster.compose(image, 1, 1);
+  for (int n = 0; n < kSize + 2; ++n) {
+    EXPECT_EQ(image.at(n, 0), kInk);
+    EXPECT_EQ(image.at(n, kSize + 1), kInk);
+    EXPECT_EQ(image.at(0, n), kInk);
+    EXPECT_EQ(image.at(kSize + 1, n), kInk);
+  }
+}
+
+TEST(ViewAxes, AreRightHanded) {
+  for (const ViewAxes& axes : {kFrontView, kSideView, kTopView, threeQuarterView()}) {
+    const Vec3 toward = cross(axes.right, axes.up);
+    constexpr float kRounding = 1e-6F;
+    EXPECT_NEAR(toward.x, axes.toward.x, kRounding);
+    EXPECT_NEAR(toward.y, axes.toward.y, kRounding);
+    EXPECT_NEAR(toward.z, axes.toward.z, kRounding);
+    EXPECT_NEAR(dot(axes.right, axes.right), 1, kRounding);
+    EXPECT_NEAR(dot(axes.up, axes.up), 1, kRounding);
+  }
+}
+
+/// How many pixels of views are clearly of a colour's kind: its strongest channel leads by far.
+int pixelsLike(const Image& image, int channel) {
+  int count = 0;
+  for (const Rgb& pixel : image.pixels()) {
+    const std::array<int, 3> values{pixel.r, pixel.g, pixel.b};
+    const int own = values[static_cast<std::size_t>(channel)];
+    const int a = values[static_cast<std::size_t>((channel + 1) % 3)];
+    const int b = values[static_cast<std::size_t>((channel + 2) % 3)];
+    if (own > a + 30 && own > b + 30) ++count;
+  }
+  return count;
+}
+
+TEST(FigurePicture, ShowsObjectsWithBlueSpheresAndRobotsWithGreenOnes) {
+  constexpr int kRedChannel = 0;
+  constexpr int kGreenChannel = 1;
+  constexpr int kBlueChannel = 2;
+  const ToyPack objects{ToyObjects{}};
+  const auto figures = figuresOf(*objects, {});
+  ASSERT_TRUE(figures.has_value());
+  const Image object = drawFigure(figures->front(), 128);
+  EXPECT_GT(pixelsLike(object, kBlueChannel), 200);
+  EXPECT_EQ(pixelsLike(object, kGreenChannel), 0);
+  // The box's lines.
+  EXPECT_GT(pixelsLike(object, kRedChannel), 100);
+
+  const ToyPack robot{ToyRobot{}};
+  const auto arm = figuresOf(*robot, {});
+  ASSERT_TRUE(arm.has_value());
+  const Image picture = drawFigure(arm->front(), 128);
+  EXPECT_GT(pixelsLike(picture, kGreenChannel), 200);
+  // The mesh has its own colour, red.
+  EXPECT_GT(pixelsLike(picture, kRedChannel), 200);
+}
+
+TEST(FigurePicture, HasFourViewsOfTheSizeAskedFor) {
+  const ToyPack pack{ToyObjects{}};
+  const auto figures = figuresOf(*pack, {});
+  ASSERT_TRUE(figures.has_value());
+  const Image small = drawFigure(figures->front(), 128);
+  const Image large = drawFigure(figures->front(), 328);
+  EXPECT_GE(small.width(), 4 * 128);
+  EXPECT_EQ(large.height() - small.height(), 200);
+}
+
+TEST(FigurePicture, DrawsAFigureWithNothingInIt) {
+  Figure nothing;
+  nothing.name = "nothing";
+  const Image image = drawFigure(nothing, 64);
+  EXPECT_GT(image.width(), 4 * 64);
+}
+
+TEST(FigureWindow, HoldsEverythingDrawnInEachView) {
+  const ToyPack pack{ToyObjects{}};
+  const auto figures = figuresOf(*pack, {});
+  ASSERT_TRUE(figures.has_value());
+  const ViewWindow side = windowOf(figures->front(), kSideView);
+  constexpr double kRounding = 1e-6;
+  EXPECT_NEAR(side.low_right, -0.05, kRounding);
+  EXPECT_NEAR(side.high_up, 0.1, kRounding);
+  EXPECT_NEAR(side.extent(), 0.2, kRounding);
+}
+
+TEST(ContactSheet, HasATileForEachObject) {
+  const ToyPack pack{ToyObjects{}};
+  const auto figures = figuresOf(*pack, {});
+  ASSERT_TRUE(figures.has_value());
+  const auto sheet = drawContactSheet(*figures, 256);
+  ASSERT_TRUE(sheet.has_value());
+  EXPECT_GT(sheet->width(), 2 * 256);
+  EXPECT_LT(sheet->height(), 2 * 256);
+}
+
+TEST(ContactSheet, RefusesToBecomeHuge) {
+  const std::vector<Figure> figures(10000);
+  const auto sheet = drawContactSheet(figures, kLargestView);
+  ASSERT_FALSE(sheet.has_value());
+  EXPECT_EQ(sheet.error().code, ErrorCode::kUnsupported);
+  EXPECT_THAT(sheet.error().message, HasSubstr("a sheet of 10000 objects at 2048 pixels each"));
+}
+
+}  // namespace
+}  // namespace galactic::pictures
