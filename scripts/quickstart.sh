@@ -20,7 +20,7 @@ draw() {
     "$bin/galactic-pack" picture "$pack" --radius "$radius" -o "$out/plan-r$radius.png"
   done
   "$bin/galactic-pack" picture "$pack" --slice "$slice" --radius 0.015 -o "$out/slice.png"
-  "$bin/galactic-pack" picture "$pack" --radius 0.05 --surface -o "$out/surfaces.ply"
+  "$bin/galactic-pack" export "$pack" --radius 0.05 --surface -o "$out/surfaces.ply"
 }
 
 phase setup "Installing packages" scripts/setup.sh
