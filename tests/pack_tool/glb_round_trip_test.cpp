@@ -28,7 +28,9 @@ bake::Surface importedOf(const ToyPack& pack, const FigureOptions& options) {
   EXPECT_TRUE(figures.has_value());
   const auto bytes = encodeGlb(*figures);
   EXPECT_TRUE(bytes.has_value());
-  const auto asset = bake::importMesh(folder.write("toys.glb", *bytes), {.smallest_size = 0});
+  bake::MeshImportOptions import;
+  import.smallest_size = 0;
+  const auto asset = bake::importMesh(folder.write("toys.glb", *bytes), import);
   EXPECT_TRUE(asset.has_value()) << asset.error().message;
   return bake::surfaceOf(*asset, kAsItIs);
 }
