@@ -1,8 +1,11 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstddef>
 #include <span>
 
 #include "galactic/bake/oriented_box.h"
@@ -35,8 +38,8 @@ inline void expectTightAround(std::span<const Vec3> points, const bake::Oriented
 
 /// Whether two boxes are the same bytes.
 inline bool sameBytes(const bake::OrientedBox& a, const bake::OrientedBox& b) {
-  static_assert(sizeof(bake::OrientedBox) == 10 * sizeof(float));
-  return std::memcmp(&a, &b, sizeof a) == 0;
+  using Bytes = std::array<std::byte, 10 * sizeof(float)>;
+  return std::bit_cast<Bytes>(a) == std::bit_cast<Bytes>(b);
 }
 
 }  // namespace galactic::test
