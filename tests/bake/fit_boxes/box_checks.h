@@ -14,7 +14,7 @@ namespace galactic::test {
 
 /// Every point lies in the box by float arithmetic, as a reader computes it, and the box is no
 /// looser than its padding: each face has a point near it, unless that side is at its minimum.
-inline void expectTightAround(std::span<const Vec3> points, const bake::OrientedBox& box) {
+inline void expectTightAround(std::span<const Vec3> points, const OrientedBox& box) {
   // Padding, and the float rounding of coordinates up to a few metres.
   constexpr float kSlack = 5e-6F;
   const Pose box_from_object = inverse(box.pose);
@@ -37,7 +37,7 @@ inline void expectTightAround(std::span<const Vec3> points, const bake::Oriented
 }
 
 /// Whether two boxes are the same bytes.
-inline bool sameBytes(const bake::OrientedBox& a, const bake::OrientedBox& b) {
+inline bool sameBytes(const OrientedBox& a, const OrientedBox& b) {
   using Bytes = std::array<std::byte, 10 * sizeof(float)>;
   return std::bit_cast<Bytes>(a) == std::bit_cast<Bytes>(b);
 }
