@@ -20,9 +20,9 @@ constexpr double kSpacingOfRadius = 0.4;
 constexpr double kMostPoints = 15'000;
 constexpr double kLeastPoints = 400;
 /// The cover is checked on points this much denser.
-constexpr double kDenser = 0.5;
+constexpr double kDenser = 0.4;
 /// A checked point is covered well enough when its gap is above eps by this share of the spacing.
-constexpr double kTolerated = 0.25;
+constexpr double kTolerated = 0.5;
 
 constexpr std::uint64_t kPointSeed = 1;
 constexpr std::uint64_t kDenseSeed = 2;
@@ -32,6 +32,8 @@ constexpr double kDominanceSteps = 3;
 
 /// Steps in each direction of the fine lattices around chosen spheres.
 constexpr int kFineSteps = 4;
+/// Rounds of refinement while the cover still misses points of the check.
+constexpr int kMostRounds = 5;
 
 double spacingOf(const FitTask& task) {
   const double area = task.solid->area();
@@ -51,9 +53,13 @@ class CoverSolver {
   [[nodiscard]] Cover solve() {
     if (points_.empty()) return {};
     findCover();
-    for (int round = 0; round < effort_.rounds; ++round) refine(round);
+    bool complete = false;
+    for (int round = 0; round < kMostRounds && (round < effort_.rounds || !complete); ++round) {
+      complete = refine(round);
+    }
     polish(task_, dense_, effort_.polish_sweeps, chosen_);
     topUp();
+    dropNeedless();
     polish(task_, dense_, effort_.polish_sweeps, chosen_);
     Cover cover;
     cover.slack = (1 + kTolerated) * kDenser * spacing_;
@@ -87,12 +93,16 @@ class CoverSolver {
     for (const std::uint32_t at : selection) chosen_.push_back(pool.candidates[at]);
   }
 
+  [[nodiscard]] double largestAccepted() const {
+    return task_.eps + kTolerated * kDenser * spacing_;
+  }
+
   /// Points of the check that are too far from every chosen sphere.
   [[nodiscard]] std::vector<Vec3d> uncovered() const {
     const std::vector<double> gaps = gapsOf(task_, chosen_, dense_);
     std::vector<Vec3d> open;
     for (std::size_t at = 0; at < dense_.size(); ++at) {
-      if (gaps[at] > task_.eps + kTolerated * kDenser * spacing_) open.push_back(dense_[at]);
+      if (gaps[at] > largestAccepted()) open.push_back(dense_[at]);
     }
     return open;
   }
@@ -106,8 +116,8 @@ class CoverSolver {
   }
 
   /// Searches again with finer lattices around the chosen spheres, and with the points that the
-  /// cover so far misses.
-  void refine(int round) {
+  /// cover so far misses. Returns whether there were none.
+  bool refine(int round) {
     std::vector<Vec3d> open;
     // The first round moves the spheres off the coarse lattice, which closes most gaps.
     if (round > 0) open = thinnedOut(uncovered(), spacing_);
@@ -121,6 +131,7 @@ class CoverSolver {
     appendCovering(task_, grid, coarse_, pool);
     appendCovering(task_, grid, fineLattices(round), pool);
     choose(pool, std::move(selection), effort_.refine);
+    return open.empty();
   }
 
   [[nodiscard]] std::vector<Candidate> fineLattices(int round) const {
@@ -164,6 +175,20 @@ class CoverSolver {
     Selection added;
     completeGreedily(found.pool, open.size(), added);
     for (const std::uint32_t at : added) chosen_.push_back(found.pool.candidates[at]);
+  }
+
+  /// Removes spheres without which every point of the check is covered well enough: points that
+  /// came late, and the moves since, may have made some needless.
+  void dropNeedless() {
+    FitTask loose = task_;
+    loose.eps = std::max(largestAccepted(), largestOf(gapsOf(task_, chosen_, dense_)));
+    CandidatePool pool;
+    appendCovering(loose, PointGrid(dense_, gridCell(task_)), chosen_, pool);
+    Selection selection(pool.candidates.size());
+    std::iota(selection.begin(), selection.end(), 0U);
+    removeRedundant(pool, dense_.size(), selection);
+    chosen_.clear();
+    for (const std::uint32_t at : selection) chosen_.push_back(pool.candidates[at]);
   }
 
   const FitTask& task_;
