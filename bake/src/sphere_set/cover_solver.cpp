@@ -13,10 +13,8 @@
 namespace galactic::bake::sphere_fit {
 namespace {
 
-/// Spacing of the points to cover: this share of eps and at most this share of the smallest
-/// radius, but never more nor fewer points than these.
+/// Spacing of the points to cover: this share of eps, but never more nor fewer points than these.
 constexpr double kSpacingOfEps = 0.3;
-constexpr double kSpacingOfRadius = 0.4;
 constexpr double kMostPoints = 15'000;
 constexpr double kLeastPoints = 400;
 /// The cover is checked on points this much denser.
@@ -32,13 +30,13 @@ constexpr double kDominanceSteps = 3;
 
 /// Steps in each direction of the fine lattices around chosen spheres.
 constexpr int kFineSteps = 4;
-/// Rounds of refinement while the cover still misses points of the check.
-constexpr int kMostRounds = 5;
+/// Rounds of refinement more than wanted while the cover still misses points of the check.
+constexpr int kMoreRounds = 2;
 
 double spacingOf(const FitTask& task) {
   const double area = task.solid->area();
-  const double wanted = std::min(kSpacingOfEps * task.eps, kSpacingOfRadius * task.radii.front());
-  return std::clamp(wanted, std::sqrt(area / kMostPoints), std::sqrt(area / kLeastPoints));
+  return std::clamp(kSpacingOfEps * task.eps, std::sqrt(area / kMostPoints),
+                    std::sqrt(area / kLeastPoints));
 }
 
 class CoverSolver {
@@ -54,7 +52,8 @@ class CoverSolver {
     if (points_.empty()) return {};
     findCover();
     bool complete = false;
-    for (int round = 0; round < kMostRounds && (round < effort_.rounds || !complete); ++round) {
+    const int most = effort_.rounds + kMoreRounds;
+    for (int round = 0; round < most && (round < effort_.rounds || !complete); ++round) {
       complete = refine(round);
     }
     polish(task_, dense_, effort_.polish_sweeps, chosen_);
@@ -148,6 +147,7 @@ class CoverSolver {
   void addFineLattice(const Candidate& around, double step, std::vector<Candidate>& found) const {
     const double radius = task_.radii[around.radius_index];
     const double most = std::max(task_.tau, around.protrusion);
+    std::uint32_t hint = kNoFacet;
     for (int z = -kFineSteps; z <= kFineSteps; ++z) {
       for (int y = -kFineSteps; y <= kFineSteps; ++y) {
         for (int x = -kFineSteps; x <= kFineSteps; ++x) {
@@ -157,9 +157,10 @@ class CoverSolver {
                              static_cast<double>(z)};
           const Vec3d centre = asStored(around.centre + offset * step);
           if (!staysAbove(task_, centre, radius)) continue;
-          const double distance = task_.solid->distance(centre).distance;
-          const double protrusion = std::max(0.0, distance + radius);
-          if (protrusion > most || distance < -(radius + task_.eps)) continue;
+          const SurfaceDistance surface = task_.solid->distance(centre, hint);
+          hint = surface.facet;
+          const double protrusion = std::max(0.0, surface.distance + radius);
+          if (protrusion > most || surface.distance < -(radius + task_.eps)) continue;
           found.push_back({centre, around.radius_index, protrusion});
         }
       }

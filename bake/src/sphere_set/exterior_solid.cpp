@@ -109,8 +109,10 @@ std::vector<Facet> ExteriorSolid::touchedFacets(const TriangleMesh& mesh) const 
   return touched;
 }
 
-SurfaceDistance ExteriorSolid::distance(const Vec3d& p) const {
-  const NearestPoint found = surface_.nearest(p);
+SurfaceDistance ExteriorSolid::distance(const Vec3d& p, std::uint32_t hint) const {
+  SearchLimits limits;
+  limits.hint = hint;
+  const NearestPoint found = surface_.nearest(p, limits);
   const double distance = std::sqrt(found.squared);
   const SurfaceDistance outside{distance, found.point, found.facet};
   // The empty balls are known at voxels only, so right outside a face they leave points free that

@@ -42,7 +42,8 @@ class ExteriorSolid {
 
   /// The distance is that to the facets; its sign is never wrongly negative outside a closed
   /// surface, and wrongly positive only within a small part of a voxel of it.
-  [[nodiscard]] SurfaceDistance distance(const Vec3d& p) const;
+  /// A facet that is likely near, `hint`, makes it faster.
+  [[nodiscard]] SurfaceDistance distance(const Vec3d& p, std::uint32_t hint = kNoFacet) const;
 
  private:
   [[nodiscard]] std::vector<Facet> touchedFacets(const TriangleMesh& mesh) const;
