@@ -17,6 +17,7 @@ using sphere_fit::Cover;
 using sphere_fit::Effort;
 using sphere_fit::ExteriorSolid;
 using sphere_fit::FitTask;
+using sphere_fit::Yardstick;
 
 /// Tolerances grow by this from one step of a curve to the next looser one: eightfold in 8 steps.
 constexpr double kStepFactor = 1.29683955465100966593;
@@ -25,6 +26,7 @@ constexpr int kCurveSteps = 8;
 constexpr int kMostSteps = 64;
 /// For one of many covers; the whole curve costs about three single fits.
 constexpr Effort kCurveEffort{400'000, 200'000, 8'000'000, 2, 12};
+constexpr double kCurvePlaces = 15'000;
 /// Halvings of the last step when a number of spheres is given.
 constexpr int kHalvings = 2;
 
@@ -62,11 +64,13 @@ tl::unexpected<Error> nothingToCover() {
               "check its normal and offset");
 }
 
+/// The task with looser tolerances, for one of many covers.
 FitTask loosened(const FitTask& task, double steps) {
   const double factor = std::pow(kStepFactor, steps);
   FitTask loose = task;
   loose.eps *= factor;
   loose.tau *= factor;
+  loose.most_places = kCurvePlaces;
   return loose;
 }
 
@@ -78,13 +82,13 @@ bool comesFirst(const SetSphere& a, const SetSphere& b) {
 }
 
 /// Measured and judged by the tolerances of `task`, whichever the cover was made for.
-SphereSet finished(const FitTask& task, const Cover& cover) {
+SphereSet finished(const FitTask& task, const Yardstick& yardstick, const Cover& cover) {
   SphereSet set;
   for (const Candidate& sphere : cover.spheres) {
     set.spheres.push_back({toVec3(sphere.centre), sphere.radius_index});
   }
   std::sort(set.spheres.begin(), set.spheres.end(), comesFirst);
-  set.quality = sphere_fit::measure(task, cover.spheres);
+  set.quality = yardstick.measure(task, cover.spheres);
   set.guaranteed_gap = cover.guaranteed_gap;
   set.guaranteed_protrusion = cover.guaranteed_protrusion;
   set.meets_tolerances =
@@ -128,20 +132,21 @@ Result<SphereSet> fitSphereSet(const TriangleMesh& mesh, const SphereSetOptions&
   if (options.max_spheres > 0 && cover.spheres.size() > options.max_spheres) {
     cover = coverWithin(task, options.max_spheres, std::move(cover));
   }
-  return finished(task, cover);
+  return finished(task, Yardstick(task), cover);
 }
 
 Result<SphereCurve> fitSphereCurve(const TriangleMesh& mesh, const SphereSetOptions& options) {
   const auto prepared = prepare(mesh, options);
   if (!prepared) return tl::unexpected(prepared.error());
   const FitTask& task = prepared->task;
+  const Yardstick yardstick(task);
   SphereCurve curve;
   for (int step = kCurveSteps; step >= 0; --step) {
     const Cover cover = sphere_fit::solveCover(loosened(task, step), kCurveEffort);
     if (cover.spheres.empty()) return nothingToCover();
     const bool too_many = options.max_spheres > 0 && cover.spheres.size() > options.max_spheres;
     if (too_many && !curve.sets.empty()) break;
-    SphereSet set = finished(task, cover);
+    SphereSet set = finished(task, yardstick, cover);
     // As many spheres as before, or fewer, for tighter tolerances: the looser set is of no use.
     while (!curve.sets.empty() && curve.sets.back().spheres.size() >= set.spheres.size()) {
       curve.sets.pop_back();
@@ -175,7 +180,7 @@ Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
     }
     placed.push_back({centre, sphere.radius_index, 0});
   }
-  return sphere_fit::measure(prepared->task, placed);
+  return Yardstick(prepared->task).measure(prepared->task, placed);
 }
 
 }  // namespace galactic::bake

@@ -174,7 +174,8 @@ Selection LocalSearch::improve(const Selection& cover, std::uint64_t budget) {
       if (chosen_.size() <= 1) return smallest;
       removeAt(cheapest(kNone));
     }
-    if (chosen_.size() > 1) removeAt(cheapest(tabu));
+    // One less than the smallest cover so far; fewer where no candidate could come in last time.
+    if (chosen_.size() > 1 && chosen_.size() + 1 >= smallest.size()) removeAt(cheapest(tabu));
     const std::uint32_t candidate = bestForRandomRow();
     if (candidate != kNone) {
       add(candidate);

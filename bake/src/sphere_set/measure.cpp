@@ -20,7 +20,7 @@ constexpr double kCoarsestSpacing = 0.3;
 /// Points on each sphere, and more where the sphere is large.
 constexpr double kLeastSpherePoints = 250;
 constexpr double kMostSpherePoints = 600;
-constexpr double kVolumeSamples = 80'000;
+constexpr double kVolumeSamples = 40'000;
 
 /// A length, and how much surface it stands for.
 struct Weighted {
@@ -95,13 +95,16 @@ LengthStatistics protrusionOf(const FitTask& task, std::span<const Candidate> sp
     const double scaled = kLeastSpherePoints * radius / task.radii.front();
     const double count = std::clamp(scaled, kLeastSpherePoints, kMostSpherePoints);
     const double share = radius * radius / count;
+    std::uint32_t hint = kNoFacet;
     for (const Vec3d& p :
          spherePoints(spheres[at].centre, radius, static_cast<std::size_t>(count))) {
       const bool hidden =
           std::any_of(neighbours[at].begin(), neighbours[at].end(),
                       [&](const Candidate* other) { return outside(task, *other, p) < -1e-9; });
       if (hidden) continue;
-      parts[at].push_back({std::max(0.0, task.solid->distance(p).distance), share});
+      const SurfaceDistance surface = task.solid->distance(p, hint);
+      hint = surface.facet;
+      parts[at].push_back({std::max(0.0, surface.distance), share});
     }
   });
   std::vector<Weighted> all;
@@ -171,18 +174,20 @@ std::uint64_t countThin(const FitTask& task, std::span<const Candidate> spheres,
 
 }  // namespace
 
-SphereSetQuality measure(const FitTask& task, std::span<const Candidate> spheres) {
+Yardstick::Yardstick(const FitTask& task)
+    : samples_(sampleSurface(*task.solid, task.support, {sampleSpacing(task), kSeed, 10})) {}
+
+SphereSetQuality Yardstick::measure(const FitTask& task, std::span<const Candidate> spheres) const {
   SphereSetQuality quality;
-  const auto samples = sampleSurface(*task.solid, task.support, {sampleSpacing(task), kSeed, 10});
-  quality.samples = samples.size();
+  quality.samples = samples_.size();
   quality.area = task.solid->area();
-  if (samples.empty() || spheres.empty()) return quality;
+  if (samples_.empty() || spheres.empty()) return quality;
   std::vector<Weighted> gaps;
-  for (const double gap : gapsOf(task, spheres, samples)) gaps.push_back({std::max(0.0, gap), 1});
+  for (const double gap : gapsOf(task, spheres, samples_)) gaps.push_back({std::max(0.0, gap), 1});
   quality.gap = statisticsOf(std::move(gaps));
   quality.protrusion = protrusionOf(task, spheres);
   quality.volume_ratio = volumeRatioOf(task, spheres);
-  quality.thin_points = countThin(task, spheres, samples);
+  quality.thin_points = countThin(task, spheres, samples_);
   return quality;
 }
 

@@ -14,6 +14,8 @@ using test::KnownSolid;
 constexpr std::uint32_t kSeed = 20250401;
 /// Float rounding of stored centres.
 constexpr double kRounding = 1e-6;
+/// Points this near to the surface count as outside, wherever they are, when protrusion is measured.
+constexpr double kSignMargin = 0.0003;
 
 SphereSetOptions tolerances(float eps, float tau) {
   SphereSetOptions options;
@@ -82,7 +84,7 @@ TEST(SphereSetOfAKnownSolid, KeepsItsGuarantees) {
       largest_protrusion = std::max(largest_protrusion, known.solid.distance(p));
     }
     EXPECT_LE(largest_protrusion, set->guaranteed_protrusion + known.solid.error + kRounding);
-    EXPECT_LE(set->quality.protrusion.max, set->guaranteed_protrusion + kRounding);
+    EXPECT_LE(set->quality.protrusion.max, set->guaranteed_protrusion + kSignMargin);
     if (set->quality.thin_points == 0) {
       EXPECT_LE(set->guaranteed_protrusion, static_cast<double>(options.tau));
       EXPECT_TRUE(set->meets_tolerances);
