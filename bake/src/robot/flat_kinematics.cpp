@@ -1,8 +1,9 @@
 #include "flat_kinematics.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
+
+#include "fit/rotation.h"
 
 namespace galactic::bake {
 namespace {
@@ -53,17 +54,12 @@ void applyStartPose(const SourceRobot& robot, const RobotRecipe& recipe, FlatKin
 }  // namespace
 
 Pose poseOf(const Affine& rigid) {
-  Eigen::Matrix3d rotation;
-  rotation << rigid[0], rigid[1], rigid[2], rigid[4], rigid[5], rigid[6], rigid[8], rigid[9],
-      rigid[10];
-  Eigen::Quaterniond q(rotation);
-  q.normalize();
-  // Of the two quaternions of a rotation the one with w >= 0, so that bytes are stable.
-  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  const fit::Axes axes{{{rigid[0], rigid[4], rigid[8]},
+                        {rigid[1], rigid[5], rigid[9]},
+                        {rigid[2], rigid[6], rigid[10]}}};
   return {
       {static_cast<float>(rigid[3]), static_cast<float>(rigid[7]), static_cast<float>(rigid[11])},
-      {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()),
-       static_cast<float>(q.w())}};
+      fit::quaternionOf(axes)};
 }
 
 FlatKinematics flattenKinematics(const SourceRobot& robot, const RobotRecipe* recipe) {
