@@ -84,14 +84,15 @@ bool comesFirst(const SetSphere& a, const SetSphere& b) {
   return a.centre.z < b.centre.z;
 }
 
-/// Measured and judged by the tolerances of `task`, whichever the cover was made for.
+/// Measured, but for the thin points, and judged by the tolerances of `task`, whichever the cover
+/// was made for.
 SphereSet finished(const FitTask& task, const Yardstick& yardstick, const Cover& cover) {
   SphereSet set;
   for (const Candidate& sphere : cover.spheres) {
     set.spheres.push_back({toVec3(sphere.centre), sphere.radius_index});
   }
   std::sort(set.spheres.begin(), set.spheres.end(), comesFirst);
-  set.quality = yardstick.measure(task, cover.spheres);
+  set.quality = yardstick.measure(cover.spheres);
   set.guaranteed_gap = cover.guaranteed_gap;
   set.guaranteed_protrusion = cover.guaranteed_protrusion;
   set.meets_tolerances =
@@ -135,7 +136,10 @@ Result<SphereSet> fitSphereSet(const TriangleMesh& mesh, const SphereSetOptions&
   if (options.max_spheres > 0 && cover.spheres.size() > options.max_spheres) {
     cover = coverWithin(task, options.max_spheres, std::move(cover));
   }
-  return finished(task, Yardstick(task), cover);
+  const Yardstick yardstick(task);
+  SphereSet set = finished(task, yardstick, cover);
+  set.quality.thin_points = yardstick.countThin(cover.spheres);
+  return set;
 }
 
 Result<SphereCurve> fitSphereCurve(const TriangleMesh& mesh, const SphereSetOptions& options) {
@@ -144,10 +148,13 @@ Result<SphereCurve> fitSphereCurve(const TriangleMesh& mesh, const SphereSetOpti
   const FitTask& task = prepared->task;
   const Yardstick yardstick(task);
   SphereCurve curve;
+  std::uint64_t thin_points = 0;
   for (int step = kCurveSteps; step >= 0; --step) {
     const Cover cover = sphere_fit::solveCover(loosened(task, step), kCurveEffort);
     if (cover.spheres.empty()) return nothingToCover();
     const bool too_many = options.max_spheres > 0 && cover.spheres.size() > options.max_spheres;
+    // The tightest spheres save most of the search.
+    if (step == 0 || too_many) thin_points = yardstick.countThin(cover.spheres);
     if (too_many && !curve.sets.empty()) break;
     SphereSet set = finished(task, yardstick, cover);
     // As many spheres as before, or fewer, for tighter tolerances: the looser set is of no use.
@@ -156,6 +163,7 @@ Result<SphereCurve> fitSphereCurve(const TriangleMesh& mesh, const SphereSetOpti
     }
     curve.sets.push_back(std::move(set));
   }
+  for (SphereSet& set : curve.sets) set.quality.thin_points = thin_points;
   return curve;
 }
 
@@ -183,7 +191,10 @@ Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
     }
     placed.push_back({centre, sphere.radius_index, 0});
   }
-  return Yardstick(prepared->task).measure(prepared->task, placed);
+  const Yardstick yardstick(prepared->task);
+  SphereSetQuality quality = yardstick.measure(placed);
+  quality.thin_points = yardstick.countThin(placed);
+  return quality;
 }
 
 }  // namespace galactic::bake

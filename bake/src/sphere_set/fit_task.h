@@ -18,7 +18,7 @@ struct FitTask {
   std::optional<HalfSpace> support;
   unsigned jobs = 1;
   /// Places where a sphere of one radius is tried, about and at most.
-  double most_places = 80'000;
+  double most_places = 30'000;
 };
 
 /// A sphere that may be chosen.

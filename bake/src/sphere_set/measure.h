@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,15 +11,19 @@ namespace galactic::bake::sphere_fit {
 /// Measures sphere sets of one mesh on samples that no solver has seen.
 class Yardstick {
  public:
+  /// Keeps a copy of the task, whose solid must outlive it.
   explicit Yardstick(const FitTask& task);
 
-  /// Of spheres whose protrusions may be wrong: they are measured. `task` has the tolerances; its
-  /// solid and support are those that the yardstick was made with. All zero where no surface needs
-  /// cover or without spheres.
-  [[nodiscard]] SphereSetQuality measure(const FitTask& task,
-                                         std::span<const Candidate> spheres) const;
+  /// Of spheres whose protrusions may be wrong: they are measured. All but the thin points; zero
+  /// where no surface needs cover or without spheres.
+  [[nodiscard]] SphereSetQuality measure(std::span<const Candidate> spheres) const;
+
+  /// Number of samples that no sphere within tau can cover, the same for all `spheres`: those near
+  /// them only save a search where they are within tau themselves.
+  [[nodiscard]] std::uint64_t countThin(std::span<const Candidate> spheres) const;
 
  private:
+  FitTask task_;
   std::vector<Vec3d> samples_;
 };
 

@@ -65,6 +65,21 @@ int wrongSides(const ExteriorSolid& solid, const KnownSolid& known, double clear
   return wrong;
 }
 
+/// GCC 12 loses conversions to float and back in vectorised code.
+TEST(StoredPoints, AreFloatsAndTheNearestOnes) {
+  for (const Vec3d& p : randomPoints({{-2, -2, -2}, {2, 2, 2}}, 0, 1000)) {
+    const Vec3d stored = asStored(p);
+    const Vec3 as_float = toVec3(p);
+    EXPECT_EQ(toVec3(stored), as_float);
+    for (const auto& [value, rounded] :
+         {std::pair{stored.x, as_float.x}, std::pair{stored.y, as_float.y},
+          std::pair{stored.z, as_float.z}}) {
+      const volatile float seen = rounded;
+      EXPECT_EQ(value, static_cast<double>(seen));
+    }
+  }
+}
+
 TEST(TriangleTree, FindsTheNearestPointOfASoup) {
   MeshBuilder builder;
   const TriangleMesh mesh = builder.soup(kSeed, 300, {{-1, -1, -1}, {1, 1, 1}}, 0.3F).build();

@@ -14,7 +14,8 @@ using test::KnownSolid;
 constexpr std::uint32_t kSeed = 20250401;
 /// Float rounding of stored centres.
 constexpr double kRounding = 1e-6;
-/// Points this near to the surface count as outside, wherever they are, when protrusion is measured.
+/// Points this near to the surface count as outside, wherever they are, when protrusion is
+/// measured.
 constexpr double kSignMargin = 0.0003;
 
 SphereSetOptions tolerances(float eps, float tau) {
