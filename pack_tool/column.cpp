@@ -76,7 +76,7 @@ Error outsideError(const OpenScene& open, const ColumnGrid& grid, GroundPoint at
 int runColumn(const ColumnOptions& options, const Console& console) {
   const auto open = OpenScene::open(options.pack, options.trust);
   if (!open) return reportError(console, open.error());
-  const auto grids = open->grids(options.radius);
+  const auto grids = gridsOf(open->scene, open->pack.where(), options.radius);
   if (!grids) return reportError(console, grids.error());
 
   std::vector<ColumnAnswer> answers;

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
 #include <string>
 #include <string_view>
+
+#include "pack_tool/pictures/figure_picture.h"
 
 namespace galactic::pack_tool {
 
@@ -51,11 +54,24 @@ void addTrusted(CLI::App& verb, Trust& trust) {
 }
 
 void addRadius(CLI::App& verb, std::optional<float>& radius) {
-  verb.add_option("--radius", radius, "only the grid of this sphere radius")->type_name("METRES");
+  verb.add_option("--radius", radius, "scenes: only the grid of this sphere radius")
+      ->type_name("METRES");
 }
 
-void addPack(CLI::App& verb, const std::string& name, std::filesystem::path& pack) {
-  verb.add_option(name, pack, "a scene pack")->required()->type_name("PACK");
+/// Which packs a verb takes.
+struct PackOption {
+  std::string name;
+  std::string meaning;
+};
+
+void addPack(CLI::App& verb, const PackOption& option, std::filesystem::path& pack) {
+  verb.add_option(option.name, pack, option.meaning)->required()->type_name("PACK");
+}
+
+void addOutput(CLI::App& verb, std::filesystem::path& output) {
+  verb.add_option("-o,--output", output, "the file to write; replaced if it is there")
+      ->required()
+      ->type_name("FILE");
 }
 
 void addPacks(CLI::App& verb, std::vector<std::filesystem::path>& packs) {
@@ -69,6 +85,7 @@ struct AllOptions {
   ColumnOptions column;
   DiffOptions diff;
   ExportOptions export_;
+  PictureOptions picture;
 };
 
 void addInfo(CLI::App& app, InfoOptions& options) {
@@ -88,7 +105,7 @@ void addCheck(CLI::App& app, CheckOptions& options) {
 void addColumn(CLI::App& app, ColumnOptions& options) {
   CLI::App& verb =
       *app.add_subcommand("column", "Print the free spans of the column nearest to a point");
-  addPack(verb, "pack", options.pack);
+  addPack(verb, {"pack", "a scene pack"}, options.pack);
   verb.add_option_function<std::string>(
           "--at",
           [&options](const std::string& text) {
@@ -105,9 +122,9 @@ void addColumn(CLI::App& app, ColumnOptions& options) {
 
 void addDiff(CLI::App& app, DiffOptions& options) {
   CLI::App& verb = *app.add_subcommand(
-      "diff", "Compare two scene packs by their meaning; exit code 7 when they differ");
-  addPack(verb, "a", options.a);
-  addPack(verb, "b", options.b);
+      "diff", "Compare two packs of one kind by their meaning; exit code 7 when they differ");
+  addPack(verb, {"a", "a pack of a scene, of objects or of a robot"}, options.a);
+  addPack(verb, {"b", "another one of its kind"}, options.b);
   verb.add_option("--tolerance", options.tolerance,
                   "lengths that differ by no more are equal (default 0)")
       ->check(CLI::NonNegativeNumber)
@@ -119,19 +136,84 @@ void addDiff(CLI::App& app, DiffOptions& options) {
   addTrusted(verb, options.trust);
 }
 
-void addPictureOptions(CLI::App& verb, ExportOptions& options) {
+/// "name=value,name=value" as joint values.
+std::vector<JointValue> parseJoints(const std::string& text) {
+  std::vector<JointValue> joints;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    const std::string entry = text.substr(from, comma - from);
+    const std::size_t equals = entry.rfind('=');
+    JointValue joint{entry.substr(0, equals), 0};
+    const char* const end = entry.data() + entry.size();
+    const char* const number = equals == std::string::npos ? end : entry.data() + equals + 1;
+    const auto parsed = std::from_chars(number, end, joint.value);
+    if (joint.name.empty() || parsed.ec != std::errc() || parsed.ptr != end ||
+        !std::isfinite(joint.value)) {
+      throw CLI::ValidationError(
+          "--joints", fmt::format("\"{}\" is no joint=value, for example elbow=1.57", entry));
+    }
+    joints.push_back(std::move(joint));
+    from = comma + 1;
+  }
+  return joints;
+}
+
+LayerSet parseLayers(const std::string& text) {
+  const std::map<std::string, FigureLayer> names{{"mesh", FigureLayer::kMesh},
+                                                 {"spheres", FigureLayer::kSpheres},
+                                                 {"boxes", FigureLayer::kBoxes}};
+  LayerSet layers = LayerSet::none();
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    const std::string name = text.substr(from, comma - from);
+    const auto found = names.find(name);
+    if (found == names.end()) {
+      throw CLI::ValidationError("--what",
+                                 fmt::format("\"{}\" is none of mesh, spheres and boxes", name));
+    }
+    layers.add(found->second);
+    from = comma + 1;
+  }
+  return layers;
+}
+
+/// What only objects and robots have: `figures` is filled when one of them is given.
+void addFigureOptions(CLI::App& verb, std::optional<FigureOptions>& figures) {
+  const auto given = [&figures]() -> FigureOptions& {
+    return figures ? *figures : figures.emplace();
+  };
+  verb.add_option_function<std::string>(
+          "--object", [given](const std::string& name) { given().object = name; },
+          "objects: only the one of this name")
+      ->type_name("NAME");
+  verb.add_option_function<std::string>(
+          "--joints",
+          [given](const std::string& text) { given().joints.values = parseJoints(text); },
+          "robots: joint values, radians or metres; the others are at the start pose")
+      ->type_name("NAME=VALUE,...");
+  verb.add_flag_callback(
+      "--all-zero", [given] { given().joints.others = OtherJoints::kZero; },
+      "robots: joints that --joints does not name are at 0");
+  verb.add_option_function<std::string>(
+          "--what", [given](const std::string& text) { given().layers = parseLayers(text); },
+          "objects and robots: what is shown (default all of mesh,spheres,boxes)")
+      ->type_name("LAYER,...");
+}
+
+void addGridPictureOptions(CLI::App& verb, GridPictureOptions& options) {
   using pictures::PlanValue;
+  addRadius(verb, options.radius);
   verb.add_option_function<std::string>(
           "--slice",
           [&options](const std::string& text) {
             const auto [x0, z0, x1, z1] = parseNumbers<4>("--slice", text);
             options.slice = SliceLine{{x0, z0}, {x1, z1}};
           },
-          "PNG: a vertical slice along this line instead of a plan, metres")
+          "scenes: a vertical slice along this line instead of a plan, metres")
       ->type_name("X0,Z0,X1,Z1");
   verb.add_option("--value", options.value,
-                  "PNG plan: colour by total free height, by the height of the lowest span, or by "
-                  "the number of spans (default total)")
+                  "scenes: colour a plan by total free height, by the height of the lowest span, "
+                  "or by the number of spans (default total)")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, PlanValue>{{"total", PlanValue::kTotalHeight},
                                            {"lowest", PlanValue::kLowestHeight},
@@ -139,18 +221,37 @@ void addPictureOptions(CLI::App& verb, ExportOptions& options) {
       ->type_name("total|lowest|spans");
 }
 
+void addPicture(CLI::App& app, PictureOptions& options) {
+  CLI::App& verb =
+      *app.add_subcommand("picture", "Draw a scene's grids, objects or a robot into a PNG file");
+  addPack(verb, {"pack", "a pack of a scene, of objects or of a robot"}, options.pack);
+  addOutput(verb, options.output);
+  addGridPictureOptions(verb, options.grids);
+  addFigureOptions(verb, options.figures);
+  verb.add_option(
+          "--size", options.size,
+          fmt::format("objects and robots: edge of a view (default {}, on a contact sheet {})",
+                      pictures::kDefaultViewSize, pictures::kDefaultTileSize))
+      ->check(CLI::Range(pictures::kSmallestView, pictures::kLargestView))
+      ->type_name("PIXELS");
+  addTrusted(verb, options.trust);
+}
+
 void addExport(CLI::App& app, ExportOptions& options) {
-  CLI::App& verb = *app.add_subcommand("export", "Write a picture or a mesh of a scene's grids");
-  addPack(verb, "pack", options.pack);
-  verb.add_option("-o,--output", options.output, "the file to write; replaced if it is there")
-      ->required()
-      ->type_name("FILE");
+  CLI::App& verb =
+      *app.add_subcommand("export", "Write a scene's grid, objects or a robot for other programs");
+  addPack(verb, {"pack", "a pack of a scene, of objects or of a robot"}, options.pack);
+  addOutput(verb, options.output);
   verb.add_option("--to", options.format, "format (default: by the extension of FILE)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, ExportFormat>{
-          {"png", ExportFormat::kPng}, {"obj", ExportFormat::kObj}, {"ply", ExportFormat::kPly}}))
-      ->type_name("png|obj|ply");
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, ExportFormat>{{"obj", ExportFormat::kObj},
+                                              {"ply", ExportFormat::kPly},
+                                              {"glb", ExportFormat::kGlb},
+                                              {"srdf", ExportFormat::kSrdf},
+                                              {"urdf", ExportFormat::kUrdf}}))
+      ->type_name("glb|srdf|urdf|obj|ply");
+  addFigureOptions(verb, options.figures);
   addRadius(verb, options.radius);
-  addPictureOptions(verb, options);
   verb.add_flag_callback(
       "--surface", [&options] { options.patch_height = PatchHeight::kSurface; },
       "OBJ, PLY: patches a radius beyond the free spans, where level surfaces are");
@@ -164,6 +265,7 @@ Request chosenRequest(const CLI::App& app, AllOptions& options) {
   if (app.got_subcommand("check")) return std::move(options.check);
   if (app.got_subcommand("column")) return std::move(options.column);
   if (app.got_subcommand("diff")) return std::move(options.diff);
+  if (app.got_subcommand("picture")) return std::move(options.picture);
   return std::move(options.export_);
 }
 
@@ -177,7 +279,7 @@ int usageError(const Console& console, std::string_view message) {
 
 tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
                                             const Console& console) {
-  CLI::App app("galactic-pack looks into packs, checks, compares and exports them.",
+  CLI::App app("galactic-pack looks into packs, checks, compares, exports and draws them.",
                "galactic-pack");
   AllOptions options;
   // Verbs inherit the footer that is set before them.
@@ -189,8 +291,9 @@ tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
   addColumn(app, options.column);
   addDiff(app, options.diff);
   addExport(app, options.export_);
+  addPicture(app, options.picture);
 
-  constexpr std::string_view kVerbs = "info, check, column, diff or export";
+  constexpr std::string_view kVerbs = "info, check, column, diff, export or picture";
   if (argc < 2) return tl::unexpected(usageError(console, fmt::format("no verb; give {}", kVerbs)));
   const std::string first = argv[1];
   const auto named = [&first](const CLI::App* verb) { return verb->get_name() == first; };

@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "pack_tool/asset_diff.h"
 #include "pack_tool/diff_text.h"
 #include "pack_tool/open_scene.h"
 #include "pack_tool/verbs.h"
@@ -36,20 +39,25 @@ void append(std::vector<FieldDifference>& to, const std::vector<FieldDifference>
   to.insert(to.end(), from.begin(), from.end());
 }
 
-/// One side of the comparison.
+/// One side of the comparison of scenes.
 struct Side {
-  const OpenScene& open;
+  Scene scene;
   Json description;
 
-  explicit Side(const OpenScene& opened) : open(opened), description(describePack(opened.pack)) {}
-  [[nodiscard]] const std::vector<ColumnGrid>& grids() const { return open.scene.grids(); }
+  [[nodiscard]] const std::vector<ColumnGrid>& grids() const { return scene.grids(); }
 };
+
+Result<Side> sideOf(const PackFile& pack) {
+  auto scene = sceneOf(pack);
+  if (!scene) return tl::unexpected(scene.error());
+  return Side{std::move(*scene), describePack(pack)};
+}
 
 /// Pairs the grids by radius and compares each pair.
 void compareAllGrids(const Side& a, const Side& b, double tolerance, PackDifference& difference) {
   for (std::size_t g = 0; g < a.grids().size(); ++g) {
     const ColumnGrid& grid = a.grids()[g];
-    const auto other = b.open.scene.gridIndex(grid.radius());
+    const auto other = b.scene.gridIndex(grid.radius());
     if (!other) {
       difference.radii_only_in_a.push_back(grid.radius());
       continue;
@@ -59,41 +67,60 @@ void compareAllGrids(const Side& a, const Side& b, double tolerance, PackDiffere
     difference.grids.push_back(compareGrids(grid, b.grids()[*other], tolerance));
   }
   for (const ColumnGrid& grid : b.grids()) {
-    if (!a.open.scene.gridIndex(grid.radius())) {
-      difference.radii_only_in_b.push_back(grid.radius());
-    }
+    if (!a.scene.gridIndex(grid.radius())) difference.radii_only_in_b.push_back(grid.radius());
   }
 }
 
-PackDifference compareScenes(const OpenScene& a, const OpenScene& b, const DiffOptions& options) {
-  PackDifference difference;
-  difference.a = a.pack.where();
-  difference.b = b.pack.where();
-  difference.identical = std::ranges::equal(a.pack.bytes(), b.pack.bytes());
-  if (difference.identical) return difference;
-  const Side side_a(a);
-  const Side side_b(b);
+Result<void> compareScenes(const PackFile& a, const PackFile& b, const DiffOptions& options,
+                           PackDifference& difference) {
+  const auto side_a = sideOf(a);
+  if (!side_a) return tl::unexpected(side_a.error());
+  const auto side_b = sideOf(b);
+  if (!side_b) return tl::unexpected(side_b.error());
   if (options.scope == DiffScope::kEverything) {
     difference.provenance =
-        compareFields(provenanceOf(side_a.description), provenanceOf(side_b.description), 0);
+        compareFields(provenanceOf(side_a->description), provenanceOf(side_b->description), 0);
   }
-  difference.content = compareFields(contentOf(side_a.description), contentOf(side_b.description),
+  difference.content = compareFields(contentOf(side_a->description), contentOf(side_b->description),
                                      options.tolerance);
-  compareAllGrids(side_a, side_b, options.tolerance, difference);
+  compareAllGrids(*side_a, *side_b, options.tolerance, difference);
+  return {};
+}
+
+Result<PackDifference> comparePacks(const PackFile& a, const PackFile& b,
+                                    const DiffOptions& options) {
+  if (a.kind() != b.kind()) {
+    return fail(ErrorCode::kInvalidInput, b.where(),
+                fmt::format("is a pack of kind {} and {} one of kind {}; give two of one kind",
+                            packKindName(b.kind()), a.where(), packKindName(a.kind())));
+  }
+  PackDifference difference;
+  difference.a = a.where();
+  difference.b = b.where();
+  difference.identical = std::ranges::equal(a.bytes(), b.bytes());
+  if (difference.identical) return difference;
+  if (a.kind() == PackKind::kObjects || a.kind() == PackKind::kRobot) {
+    compareAssets({describePack(a), describePack(b)}, options, difference);
+    return difference;
+  }
+  if (auto done = compareScenes(a, b, options, difference); !done) {
+    return tl::unexpected(done.error());
+  }
   return difference;
 }
 
 }  // namespace
 
 int runDiff(const DiffOptions& options, const Console& console) {
-  const auto a = OpenScene::open(options.a, options.trust);
+  const auto a = PackFile::open(options.a, options.trust);
   if (!a) return reportError(console, a.error());
-  const auto b = OpenScene::open(options.b, options.trust);
+  const auto b = PackFile::open(options.b, options.trust);
   if (!b) return reportError(console, b.error());
-  const PackDifference difference = compareScenes(*a, *b, options);
-  console.out << (options.form == OutputForm::kJson ? jsonText(diffJson(difference))
-                                                    : diffText(difference));
-  return difference.differs() ? kExitDiffers : kExitOk;
+  const auto difference = comparePacks(*a, *b, options);
+  if (!difference) return reportError(console, difference.error());
+  console.out << (options.form == OutputForm::kJson ? jsonText(diffJson(*difference))
+                                                    : diffText(*difference));
+  return difference->differs() ? kExitDiffers : kExitOk;
 }
 
 }  // namespace galactic::pack_tool

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "pack_tool/console.h"
 #include "pack_tool/text_table.h"
@@ -14,9 +15,14 @@ namespace {
 std::string fieldsText(std::string_view heading, const std::vector<FieldDifference>& fields) {
   if (fields.empty()) return {};
   std::string text = fmt::format("{}\n", heading);
-  for (const FieldDifference& field : fields) {
+  constexpr std::size_t kMostLines = 100;
+  const std::size_t shown = std::min(fields.size(), kMostLines);
+  for (const FieldDifference& field : std::span(fields).first(shown)) {
     text += fmt::format("  {}: {} | {}\n", printable(field.field), printable(field.a),
                         printable(field.b));
+  }
+  if (fields.size() > shown) {
+    text += fmt::format("  and {} more; --json lists them all\n", fields.size() - shown);
   }
   return text;
 }
@@ -110,7 +116,7 @@ std::string diffText(const PackDifference& difference) {
       fmt::format("A {}\nB {}\n{}\n", printable(difference.a), printable(difference.b), verdict);
   if (difference.identical) return text;
   text += fieldsText("provenance (A | B)", difference.provenance);
-  text += fieldsText("scene (A | B)", difference.content);
+  text += fieldsText("content (A | B)", difference.content);
   for (const float radius : difference.radii_only_in_a) {
     text += fmt::format("grid of radius {} m: only in A\n", radius);
   }

@@ -6,20 +6,20 @@
 
 namespace galactic::pack_tool {
 
-/// Everything in which two scene packs differ.
+/// Everything in which two packs of one kind differ.
 struct PackDifference {
   std::string a;
   std::string b;
   /// All bytes are the same.
   bool identical = false;
-  /// Provenance and the statistics of import and bake; empty when not compared.
+  /// Provenance, the statistics of import and bake, and meshes for pictures; empty when not
+  /// compared.
   std::vector<FieldDifference> provenance;
-  /// Name, bounds and the grids' coverage.
+  /// What the runtime reads, but for grids.
   std::vector<FieldDifference> content;
-  /// Radii of grids that only one side has.
+  // Of scenes: radii of grids that only one side has, and one difference per radius that both have.
   std::vector<float> radii_only_in_a;
   std::vector<float> radii_only_in_b;
-  /// One per radius that both sides have.
   std::vector<GridDifference> grids;
 
   [[nodiscard]] bool differs() const;

@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-#include <span>
 #include <string>
+#include <string_view>
 
-#include "galactic/atomic_file.h"
+#include "pack_tool/mesh/figure_glb.h"
 #include "pack_tool/mesh/grid_mesh.h"
 #include "pack_tool/open_scene.h"
+#include "pack_tool/output_file.h"
+#include "pack_tool/robot_text/robot_text.h"
 #include "pack_tool/verbs.h"
 
 namespace galactic::pack_tool {
@@ -16,79 +16,117 @@ namespace {
 
 Result<ExportFormat> formatOf(const ExportOptions& options) {
   if (options.format) return *options.format;
-  std::string extension = options.output.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".png") return ExportFormat::kPng;
+  const std::string extension = extensionOf(options.output);
   if (extension == ".obj") return ExportFormat::kObj;
   if (extension == ".ply") return ExportFormat::kPly;
+  if (extension == ".glb") return ExportFormat::kGlb;
+  if (extension == ".srdf") return ExportFormat::kSrdf;
+  if (extension == ".urdf") return ExportFormat::kUrdf;
+  if (extension == ".png") {
+    return fail(ErrorCode::kUnsupported, options.output.string(),
+                "is a picture; draw it with galactic-pack picture");
+  }
   return fail(ErrorCode::kUnsupported, options.output.string(),
-              fmt::format("the extension \"{}\" names no format that can be written; use .png, "
-                          ".obj or .ply, or choose one with --to",
+              fmt::format("the extension \"{}\" names no format that can be written; use .glb, "
+                          ".srdf, .urdf, .obj or .ply, or choose one with --to",
                           extension));
 }
 
-/// Writing over the pack that is being read would lose it.
-Result<void> checkOutput(const OpenScene& open, const ExportOptions& options) {
-  std::error_code missing;
-  if (!std::filesystem::equivalent(open.pack.where(), options.output, missing)) return {};
-  return fail(ErrorCode::kInvalidInput, options.output.string(),
-              "is the pack itself; write to another file");
+/// Options that the format cannot heed.
+Result<void> checkOptions(const ExportOptions& options, ExportFormat format) {
+  const bool grid = format == ExportFormat::kObj || format == ExportFormat::kPly;
+  if (options.figures && format != ExportFormat::kGlb) {
+    return fail(ErrorCode::kInvalidInput, options.output.string(),
+                "--object, --joints, --all-zero and --what are for GLB files; leave them out");
+  }
+  const bool patches = options.radius || options.patch_height != PatchHeight::kSphereCentre ||
+                       options.parts != MeshParts::kFloorsAndCeilings;
+  if (patches && !grid) {
+    return fail(ErrorCode::kInvalidInput, options.output.string(),
+                "--radius, --surface and --floors-only are for OBJ and PLY files; leave them out");
+  }
+  return {};
 }
 
-Result<void> exportPicture(const OpenScene& open, const std::vector<ColumnGrid>& grids,
-                           const ExportOptions& options) {
-  const std::string title = printable(open.scene.name());
-  if (!options.slice) {
-    return pictures::writePng(
-        options.output, pictures::drawPlan(grids, {.value = options.value, .title = title}).image);
+Result<std::string> gridMesh(const PackFile& pack, const ExportOptions& options,
+                             ExportFormat format) {
+  if (pack.kind() == PackKind::kObjects || pack.kind() == PackKind::kRobot) {
+    return fail(
+        ErrorCode::kInvalidInput, pack.where(),
+        fmt::format("is a pack of kind {} and holds no column grids, which OBJ and PLY files "
+                    "show; export it --to glb",
+                    packKindName(pack.kind())));
   }
-  const auto picture = pictures::drawSlice(
-      grids, {.from = options.slice->from, .to = options.slice->to, .title = title});
-  if (!picture) {
-    return fail(picture.error().code, open.pack.where(), picture.error().message);
-  }
-  return pictures::writePng(options.output, picture->image);
-}
-
-Result<void> exportMesh(const OpenScene& open, const std::vector<ColumnGrid>& grids,
-                        const ExportOptions& options, ExportFormat format) {
-  if (grids.size() > 1) {
+  const auto scene = sceneOf(pack);
+  if (!scene) return tl::unexpected(scene.error());
+  const auto grids = gridsOf(*scene, pack.where(), options.radius);
+  if (!grids) return tl::unexpected(grids.error());
+  if (grids->size() > 1) {
     std::string radii;
-    for (const ColumnGrid& grid : grids) radii += fmt::format(" {}", grid.radius());
-    return fail(ErrorCode::kInvalidInput, open.pack.where(),
+    for (const ColumnGrid& grid : *grids) radii += fmt::format(" {}", grid.radius());
+    return fail(ErrorCode::kInvalidInput, pack.where(),
                 fmt::format("has {} grids and a mesh shows one; choose with --radius one of{}",
-                            grids.size(), radii));
+                            grids->size(), radii));
   }
   const auto patches =
-      gridPatches(grids.front(), {.height = options.patch_height, .parts = options.parts});
+      gridPatches(grids->front(), {.height = options.patch_height, .parts = options.parts});
   if (patches.size() > kMaxPatches) {
     return fail(
-        ErrorCode::kUnsupported, open.pack.where(),
+        ErrorCode::kUnsupported, pack.where(),
         fmt::format("the grid has {} patches and a mesh file holds {}; export --floors-only "
                     "or a pack of larger spacing",
                     patches.size(), kMaxPatches));
   }
-  const std::string bytes = format == ExportFormat::kPly ? encodePly(patches) : encodeObj(patches);
-  return writeFileAtomically(options.output, {std::as_bytes(std::span(bytes))});
+  return format == ExportFormat::kPly ? encodePly(patches) : encodeObj(patches);
 }
 
-Result<void> exportScene(const ExportOptions& options) {
+Result<std::string> figureScene(const PackFile& pack, const ExportOptions& options) {
+  auto figures = figuresOf(pack, options.figures.value_or(FigureOptions{}));
+  if (!figures) return tl::unexpected(figures.error());
+  // A single object stays in its own frame.
+  if (figures->size() > 1) layOutInARow(*figures);
+  auto bytes = encodeGlb(*figures);
+  if (!bytes) bytes.error().where = pack.where();
+  return bytes;
+}
+
+Result<std::string> robotDescription(const PackFile& pack, ExportFormat format) {
+  const auto robot = Robot::from(pack);
+  if (!robot) return tl::unexpected(robot.error());
+  return format == ExportFormat::kSrdf ? srdfText(*robot) : spherizedUrdfText(*robot);
+}
+
+Result<std::string> encode(const PackFile& pack, const ExportOptions& options,
+                           ExportFormat format) {
+  switch (format) {
+    case ExportFormat::kGlb:
+      return figureScene(pack, options);
+    case ExportFormat::kSrdf:
+    case ExportFormat::kUrdf:
+      return robotDescription(pack, format);
+    case ExportFormat::kObj:
+    case ExportFormat::kPly:
+      break;
+  }
+  return gridMesh(pack, options, format);
+}
+
+Result<void> exportPack(const ExportOptions& options) {
   const auto format = formatOf(options);
   if (!format) return tl::unexpected(format.error());
-  const auto open = OpenScene::open(options.pack, options.trust);
-  if (!open) return tl::unexpected(open.error());
-  const auto grids = open->grids(options.radius);
-  if (!grids) return tl::unexpected(grids.error());
-  if (auto checked = checkOutput(*open, options); !checked) return checked;
-  if (*format == ExportFormat::kPng) return exportPicture(*open, *grids, options);
-  return exportMesh(*open, *grids, options, *format);
+  if (auto checked = checkOptions(options, *format); !checked) return checked;
+  const auto pack = PackFile::open(options.pack, options.trust);
+  if (!pack) return tl::unexpected(pack.error());
+  const auto bytes = encode(*pack, options, *format);
+  if (!bytes) return tl::unexpected(bytes.error());
+  if (auto checked = checkOutput(*pack, options.output); !checked) return checked;
+  return writeOutput(options.output, *bytes);
 }
 
 }  // namespace
 
 int runExport(const ExportOptions& options, const Console& console) {
-  const auto done = exportScene(options);
+  const auto done = exportPack(options);
   return done ? kExitOk : reportError(console, done.error());
 }
 

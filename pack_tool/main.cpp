@@ -16,6 +16,7 @@ struct Runner {
   int operator()(const ColumnOptions& options) const { return runColumn(options, console); }
   int operator()(const DiffOptions& options) const { return runDiff(options, console); }
   int operator()(const ExportOptions& options) const { return runExport(options, console); }
+  int operator()(const PictureOptions& options) const { return runPicture(options, console); }
 };
 
 int runTool(int argc, const char* const* argv, const Console& console) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "galactic/pack.h"
@@ -13,12 +14,17 @@ struct OpenScene {
   PackFile pack;
   Scene scene;
 
-  /// Opens `path`. Fails as PackFile::open and Scene::from do.
+  /// Opens `path`. Fails as PackFile::open and sceneOf do.
   [[nodiscard]] static Result<OpenScene> open(const std::filesystem::path& path, Trust trust);
-
-  /// The grid of `radius`, or all of them. Fails with kInvalidInput, naming the radii there are,
-  /// when there is none of this radius.
-  [[nodiscard]] Result<std::vector<ColumnGrid>> grids(std::optional<float> radius) const;
 };
+
+/// The scene in `pack`. Fails with kInvalidInput on another kind of pack, saying that it holds no
+/// column grids.
+[[nodiscard]] Result<Scene> sceneOf(const PackFile& pack);
+
+/// The grid of `radius`, or all of them. Fails with kInvalidInput, naming the radii there are, when
+/// there is none of this radius. `where` names the pack.
+[[nodiscard]] Result<std::vector<ColumnGrid>> gridsOf(const Scene& scene, const std::string& where,
+                                                      std::optional<float> radius);
 
 }  // namespace galactic::pack_tool

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
 
 namespace galactic::pack_tool {
 
@@ -135,10 +138,12 @@ const char* keyOfList(const Json& list) {
   return nullptr;
 }
 
+/// Values with their paths.
+using Leaves = std::vector<std::pair<std::string, Json>>;
+
 /// All leaves of a JSON value with their paths, in order. Lists are told apart by their keys; a
 /// repeated key gets its number.
-void flatten(const Json& json, const std::string& path,
-             std::vector<std::pair<std::string, Json>>& leaves) {
+void flatten(const Json& json, const std::string& path, Leaves& leaves) {
   const auto extended = [&path](const std::string& step) {
     return path.empty() ? step : path + '.' + step;
   };
@@ -146,12 +151,11 @@ void flatten(const Json& json, const std::string& path,
     for (const auto& [key, value] : json.items()) flatten(value, extended(key), leaves);
   } else if (json.is_array()) {
     const char* key = keyOfList(json);
-    std::vector<std::string> seen;
+    std::unordered_map<std::string, std::size_t> seen;
     for (std::size_t n = 0; n < json.size(); ++n) {
       const std::string name = key == nullptr ? std::to_string(n) : leafText(json[n].at(key));
-      const auto repeats = std::count(seen.begin(), seen.end(), name);
-      seen.push_back(name);
-      std::string step = extended(repeats > 0 ? fmt::format("{}#{}", name, repeats + 1) : name);
+      const std::size_t number = ++seen[name];
+      const std::string step = extended(number > 1 ? fmt::format("{}#{}", name, number) : name);
       Json value = json[n];
       if (key != nullptr) value.erase(key);
       // {"name": ..., "value": ...} reads best as one leaf.
@@ -191,27 +195,32 @@ GridDifference compareGrids(const ColumnGrid& a, const ColumnGrid& b, double tol
 }
 
 std::vector<FieldDifference> compareFields(const Json& a, const Json& b, double tolerance) {
-  std::vector<std::pair<std::string, Json>> leaves_a;
-  std::vector<std::pair<std::string, Json>> leaves_b;
+  Leaves leaves_a;
+  Leaves leaves_b;
   flatten(a, "", leaves_a);
   flatten(b, "", leaves_b);
-  const auto find = [](const auto& leaves, const std::string& path) {
-    return std::find_if(leaves.begin(), leaves.end(),
-                        [&path](const auto& leaf) { return leaf.first == path; });
+  const auto placesOf = [](const Leaves& leaves) {
+    std::unordered_map<std::string_view, std::size_t> places;
+    // Of equal paths the first counts.
+    for (std::size_t n = 0; n < leaves.size(); ++n) places.try_emplace(leaves[n].first, n);
+    return places;
   };
+  const auto places_a = placesOf(leaves_a);
+  const auto places_b = placesOf(leaves_b);
   std::vector<FieldDifference> differences;
   for (const auto& [path, value] : leaves_a) {
-    const auto other = find(leaves_b, path);
-    if (other == leaves_b.end()) {
+    const auto other = places_b.find(path);
+    if (other == places_b.end()) {
       differences.push_back({path, leafText(value), "none"});
-    } else if (!sameLeaf(value, other->second, tolerance)) {
-      differences.push_back({path, leafText(value), leafText(other->second)});
+      continue;
+    }
+    const Json& value_b = leaves_b[other->second].second;
+    if (!sameLeaf(value, value_b, tolerance)) {
+      differences.push_back({path, leafText(value), leafText(value_b)});
     }
   }
   for (const auto& [path, value] : leaves_b) {
-    if (find(leaves_a, path) == leaves_a.end()) {
-      differences.push_back({path, "none", leafText(value)});
-    }
+    if (!places_a.contains(path)) differences.push_back({path, "none", leafText(value)});
   }
   return differences;
 }

@@ -5,6 +5,7 @@
 
 #include "galactic/pack.h"
 #include "pack_tool/console.h"
+#include "pack_tool/figure/figures_of_pack.h"
 #include "pack_tool/grid_view.h"
 #include "pack_tool/pictures/pictures.h"
 
@@ -61,16 +62,44 @@ struct DiffOptions {
   Trust trust = Trust::kVerify;
 };
 
-/// Compares two scene packs by their meaning; kExitDiffers when they differ.
+/// Compares two packs of one kind (scenes, objects or robots) by their meaning; kExitDiffers when
+/// they differ.
 [[nodiscard]] int runDiff(const DiffOptions& options, const Console& console);
-
-enum class ExportFormat { kPng, kObj, kPly };
 
 /// Two points of the ground plane, the ends of a vertical slice.
 struct SliceLine {
   GroundPoint from;
   GroundPoint to;
 };
+
+/// What is drawn of a scene's grids.
+struct GridPictureOptions {
+  /// Only the grid of this radius, metres. Not given: all of them.
+  std::optional<float> radius = std::nullopt;
+  /// A slice instead of a plan.
+  std::optional<SliceLine> slice = std::nullopt;
+  std::optional<pictures::PlanValue> value = std::nullopt;
+
+  [[nodiscard]] bool anyGiven() const { return radius || slice || value; }
+};
+
+struct PictureOptions {
+  std::filesystem::path pack = {};
+  std::filesystem::path output = {};
+  /// For scenes.
+  GridPictureOptions grids = {};
+  /// For objects and robots.
+  std::optional<FigureOptions> figures = std::nullopt;
+  /// Edge of a view, pixels; for objects and robots.
+  std::optional<int> size = std::nullopt;
+  Trust trust = Trust::kVerify;
+};
+
+/// Draws a pack into a PNG file, replacing an existing one: the grids of a scene from above or as a
+/// slice; a robot or an object from four sides; several objects on a contact sheet.
+[[nodiscard]] int runPicture(const PictureOptions& options, const Console& console);
+
+enum class ExportFormat { kObj, kPly, kGlb, kSrdf, kUrdf };
 
 /// Where the patches of an exported mesh lie.
 enum class PatchHeight {
@@ -86,17 +115,18 @@ struct ExportOptions {
   std::filesystem::path output = {};
   /// Not given: by the output's extension.
   std::optional<ExportFormat> format = std::nullopt;
-  /// Only the grid of this radius, metres. Not given: all of them (pictures), or the only one.
+  /// Only the grid of this radius, metres. Not given: the only one. OBJ and PLY.
   std::optional<float> radius = std::nullopt;
-  /// A slice instead of a plan; pictures only.
-  std::optional<SliceLine> slice = std::nullopt;
-  pictures::PlanValue value = pictures::PlanValue::kTotalHeight;
   PatchHeight patch_height = PatchHeight::kSphereCentre;
   MeshParts parts = MeshParts::kFloorsAndCeilings;
+  /// For GLB.
+  std::optional<FigureOptions> figures = std::nullopt;
   Trust trust = Trust::kVerify;
 };
 
-/// Writes a picture or a mesh of a grid, replacing an existing file.
+/// Writes a pack in another format, replacing an existing file: a grid of a scene as a mesh (OBJ,
+/// PLY), objects or a robot as a scene of meshes, spheres and boxes (GLB), a robot with its spheres
+/// (SRDF, URDF).
 [[nodiscard]] int runExport(const ExportOptions& options, const Console& console);
 
 }  // namespace galactic::pack_tool

@@ -15,8 +15,6 @@ constexpr int kTickLength = 6;
 /// Least distances between ticks: labels are wider than high.
 constexpr int kHorizontalGap = 70;
 constexpr int kVerticalGap = 36;
-/// A scale bar is the longest round length that is no longer than this.
-constexpr double kScaleBarPixels = 220;
 
 }  // namespace
 
@@ -81,21 +79,23 @@ void drawVerticalAxis(Image& image, const PixelRect& plot, const AxisScale& scal
   drawText(image, {plot.x - kAxisLabelWidth, plot.y - kAxisNameHeight}, name, kInk);
 }
 
-void drawScaleBar(Image& image, int x, int y, double pixels_per_metre) {
-  const double metres = roundDown(kScaleBarPixels / pixels_per_metre);
+void drawScaleBar(Image& image, const BarPlace& place, double pixels_per_metre, int longest) {
+  const double metres = roundDown(longest / pixels_per_metre);
   const int length = static_cast<int>(std::lround(metres * pixels_per_metre));
-  fillRect(image, {x, y + kTextHeight / 2 - 1, length, 3}, kInk);
-  fillRect(image, {x, y, 2, kTextHeight}, kInk);
-  fillRect(image, {x + length - 2, y, 2, kTextHeight}, kInk);
-  drawText(image, {x + length + 10, y}, fmt::format("{:g} m", metres), kInk);
+  fillRect(image, {place.x, place.y + kTextHeight / 2 - 1, length, 3}, kInk);
+  fillRect(image, {place.x, place.y, 2, kTextHeight}, kInk);
+  fillRect(image, {place.x + length - 2, place.y, 2, kTextHeight}, kInk);
+  drawText(image, {place.x + length + 10, place.y}, fmt::format("{:g} m", metres), kInk);
 }
+
+int swatchWidth(std::string_view meaning) { return kTextHeight + 8 + textWidth(meaning) + 28; }
 
 int drawSwatch(Image& image, int x, int y, Rgb colour, std::string_view meaning) {
   const PixelRect square{x, y, kTextHeight, kTextHeight};
   fillRect(image, square, colour);
   drawFrame(image, square, kInk);
   drawText(image, {square.right() + 8, y}, meaning, kInk);
-  return kTextHeight + 8 + textWidth(meaning) + 28;
+  return swatchWidth(meaning);
 }
 
 void drawColourBar(Image& image, const PixelRect& bar, double top_value) {

@@ -39,8 +39,22 @@ void drawHorizontalAxis(Image& image, const PixelRect& plot, const AxisScale& sc
 void drawVerticalAxis(Image& image, const PixelRect& plot, const AxisScale& scale,
                       std::string_view name);
 
-/// A bar of a round length in metres with its label, its left end at (x, y).
-void drawScaleBar(Image& image, int x, int y, double pixels_per_metre);
+/// Where a bar begins: the top of its left end.
+struct BarPlace {
+  int x = 0;
+  int y = 0;
+};
+
+/// The length in pixels that a scale bar does not exceed when nothing else is wanted.
+inline constexpr int kScaleBarPixels = 220;
+
+/// A bar of the longest round length in metres that is no longer than `longest` pixels, and its
+/// label on its right.
+void drawScaleBar(Image& image, const BarPlace& place, double pixels_per_metre,
+                  int longest = kScaleBarPixels);
+
+/// The width that drawSwatch uses, pixels.
+[[nodiscard]] int swatchWidth(std::string_view meaning);
 
 /// A square of `colour` and its meaning; returns the width used, gap to the next one included.
 int drawSwatch(Image& image, int x, int y, Rgb colour, std::string_view meaning);

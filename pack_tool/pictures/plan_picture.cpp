@@ -95,7 +95,7 @@ void drawPanel(Image& image, const Panel& panel, double top_value) {
   drawHorizontalAxis(image, plot, x_scale, "x (m)");
   drawVerticalAxis(image, plot, {min_z, min_z + layout.columns_z * spacing, plot.y, plot.bottom()},
                    "z (m)");
-  drawScaleBar(image, plot.x, plot.bottom() + kAxisBottomHeight + 8, x_scale.pixelsPerUnit());
+  drawScaleBar(image, {plot.x, plot.bottom() + kAxisBottomHeight + 8}, x_scale.pixelsPerUnit());
 }
 
 std::string_view captionOf(PlanValue value) {

@@ -1,0 +1,13 @@
+#pragma once
+#include "galactic/pack.h"
+#include "pack_tool/pack_description.h"
+
+namespace galactic::pack_tool {
+
+// The part of describePack that tells what is in one kind of pack; null on another kind.
+
+[[nodiscard]] Json describeScene(const PackFile& pack);
+[[nodiscard]] Json describeObjects(const PackFile& pack);
+[[nodiscard]] Json describeRobot(const PackFile& pack);
+
+}  // namespace galactic::pack_tool

@@ -1,0 +1,14 @@
+#pragma once
+#include <string>
+
+#include "pack_tool/pack_description.h"
+
+namespace galactic::pack_tool {
+
+// What infoText tells of one kind of pack, from the part of describePack about it.
+
+[[nodiscard]] std::string sceneText(const Json& scene);
+[[nodiscard]] std::string objectsText(const Json& set);
+[[nodiscard]] std::string robotText(const Json& robot);
+
+}  // namespace galactic::pack_tool

@@ -1,0 +1,44 @@
+#pragma once
+#include <string>
+
+#include "galactic/schema/pack_generated.h"
+#include "galactic/sphere_set.h"
+#include "pack_tool/pack_description.h"
+
+namespace galactic::pack_tool {
+
+// What the descriptions of several kinds of packs share.
+
+/// (x, y, z).
+[[nodiscard]] Json describePoint(const schema::Vec3& point);
+
+/// Translation (x, y, z) and rotation in the order of text, (w, x, y, z).
+[[nodiscard]] Json describeRotation(const schema::Quat& rotation);
+[[nodiscard]] Json describePose(const schema::Pose& pose);
+
+[[nodiscard]] Json describeImport(const schema::ImportStatistics& statistics);
+
+/// "radii" of the working set.
+[[nodiscard]] Json describeRadii(const flatbuffers::Vector<float>& radii);
+
+/// The spheres [first, first + count), each with its centre and radius.
+struct SphereRange {
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+[[nodiscard]] Json describeSpheres(const flatbuffers::Vector<const schema::SetSphere*>& spheres,
+                                   const SphereRange& range,
+                                   const flatbuffers::Vector<float>& radii);
+
+/// Null without statistics.
+[[nodiscard]] Json describeQuality(const schema::SphereSetStatistics* statistics);
+
+/// How large a mesh is, and a hash (FNV-1a, 64 bits) of its vertices, triangles and colours; null
+/// without one.
+[[nodiscard]] Json describeSurface(const schema::Surface* surface);
+
+/// A list of texts.
+[[nodiscard]] Json describeTexts(
+    const flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>& texts);
+
+}  // namespace galactic::pack_tool

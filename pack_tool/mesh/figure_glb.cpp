@@ -1,0 +1,142 @@
+#include "pack_tool/mesh/figure_glb.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "pack_tool/mesh/glb_file.h"
+#include "pack_tool/mesh/sphere_mesh.h"
+
+namespace galactic::pack_tool {
+
+namespace {
+
+/// Linear colours as in pictures: grey, green, blue, orange.
+constexpr GlbMaterial kMeshMaterial{"mesh", {0.44F, 0.45F, 0.48F, 1}};
+constexpr GlbMaterial kColoredMaterial{"coloured mesh", {1, 1, 1, 1}};
+constexpr GlbMaterial kRobotSphereMaterial{"robot spheres", {0.02F, 0.43F, 0.07F, 0.45F}};
+constexpr GlbMaterial kObjectSphereMaterial{"object spheres", {0.03F, 0.17F, 0.80F, 0.45F}};
+constexpr GlbMaterial kBoxMaterial{"boxes", {0.87F, 0.22F, 0.01F, 1}};
+
+/// Turns -Z, where a camera of glTF looks, to +X; +Y stays.
+const Quat kCameraTurn{0, -std::sqrt(0.5F), 0, std::sqrt(0.5F)};
+
+/// Adds what figures have in common when it is first needed.
+class FigureWriter {
+ public:
+  void write(const Figure& figure) {
+    const std::size_t root = file_.addNode({.name = figure.name});
+    std::vector<std::size_t> nodes;
+    for (const FigurePart& part : figure.parts) {
+      const bool carried = part.parent >= 0;
+      const auto parent = static_cast<std::size_t>(part.parent);
+      const Pose pose = carried
+                            ? inverse(figure.parts[parent].world_from_part) * part.world_from_part
+                            : part.world_from_part;
+      nodes.push_back(file_.addNode(
+          {.name = part.name, .parent_from_node = pose, .parent = carried ? nodes[parent] : root}));
+      writePart(figure, part, nodes.back());
+    }
+    if (figure.grasp) {
+      file_.addNode({.name = "grasp point",
+                     .parent_from_node = {figure.grasp->centre_in_world, {}},
+                     .parent = root});
+    }
+    if (figure.camera) {
+      file_.addNode({.name = "camera",
+                     .parent_from_node = figure.camera->world_from_camera * Pose{{}, kCameraTurn},
+                     .camera_fov = figure.camera->vertical_fov,
+                     .parent = root});
+    }
+  }
+
+  [[nodiscard]] Result<std::string> bytes() const { return file_.bytes(); }
+
+ private:
+  void writePart(const Figure& figure, const FigurePart& part, std::size_t node) {
+    if (!part.surface.empty()) {
+      const std::string name = part.name + " mesh";
+      const SurfaceView& surface = part.surface;
+      const std::size_t mesh = file_.addMesh(
+          {.name = name,
+           .positions = surface.positions,
+           .colors = surface.colors,
+           .corners = surface.corners,
+           .material = material(surface.colors.empty() ? kMeshMaterial : kColoredMaterial)});
+      file_.addNode({.name = name, .mesh = mesh, .parent = node});
+    }
+    if (!part.spheres.empty()) writeSpheres(figure, part, node);
+    if (!part.box) return;
+    file_.addNode({.name = part.name + " box",
+                   .parent_from_node = part.box->pose,
+                   .scale = part.box->half_extents,
+                   .mesh = unitBox(),
+                   .parent = node});
+  }
+
+  void writeSpheres(const Figure& figure, const FigurePart& part, std::size_t node) {
+    const std::size_t group = file_.addNode({.name = part.name + " spheres", .parent = node});
+    for (std::size_t n = 0; n < part.spheres.size(); ++n) {
+      const SetSphere& sphere = part.spheres[n];
+      file_.addNode({.name = fmt::format("{} sphere {}", part.name, n),
+                     .parent_from_node = {sphere.centre, {}},
+                     .mesh = sphereOf(figure.radii[sphere.radius_index], figure.kind),
+                     .parent = group});
+    }
+  }
+
+  std::size_t material(const GlbMaterial& wanted) {
+    const auto [found, added] = materials_.try_emplace(std::string(wanted.name), 0);
+    if (added) found->second = file_.addMaterial(wanted);
+    return found->second;
+  }
+
+  std::size_t sphereOf(float radius, FigureKind kind) {
+    const auto [found, added] = spheres_.try_emplace(std::pair(kind, radius), 0);
+    if (!added) return found->second;
+    const SphereMesh unit = makeSphereMesh();
+    std::vector<Vec3> points;
+    points.reserve(unit.points.size());
+    for (const Vec3& point : unit.points) points.push_back(point * radius);
+    found->second =
+        file_.addMesh({.name = fmt::format("sphere of {} m", radius),
+                       .positions = points,
+                       .normals = unit.points,
+                       .corners = unit.corners,
+                       .material = material(kind == FigureKind::kRobot ? kRobotSphereMaterial
+                                                                       : kObjectSphereMaterial)});
+    return found->second;
+  }
+
+  std::size_t unitBox() {
+    if (box_) return *box_;
+    const auto corners = cornersOf({{}, {1, 1, 1}});
+    std::vector<std::uint32_t> ends;
+    for (const auto& [from, to] : kBoxEdges) {
+      ends.push_back(static_cast<std::uint32_t>(from));
+      ends.push_back(static_cast<std::uint32_t>(to));
+    }
+    box_ = file_.addMesh({.name = "box",
+                          .positions = corners,
+                          .corners = ends,
+                          .shape = GlbShape::kLines,
+                          .material = material(kBoxMaterial)});
+    return *box_;
+  }
+
+  GlbFile file_;
+  std::map<std::string, std::size_t> materials_;
+  std::map<std::pair<FigureKind, float>, std::size_t> spheres_;
+  std::optional<std::size_t> box_;
+};
+
+}  // namespace
+
+Result<std::string> encodeGlb(std::span<const Figure> figures) {
+  FigureWriter writer;
+  for (const Figure& figure : figures) writer.write(figure);
+  return writer.bytes();
+}
+
+}  // namespace galactic::pack_tool

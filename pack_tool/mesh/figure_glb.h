@@ -1,0 +1,17 @@
+#pragma once
+#include <span>
+#include <string>
+
+#include "galactic/error.h"
+#include "pack_tool/figure/figure.h"
+
+namespace galactic::pack_tool {
+
+/// Figures as a GLB file (glTF 2.0, metres, Y up). Every figure and part is a named node, parts
+/// under those that carry them; under a part lie "NAME mesh" with its vertex colours, "NAME
+/// spheres" with a node for each sphere, which share one mesh for each radius, and "NAME box" as
+/// lines. A robot has nodes "grasp point" and "camera", the latter a camera of glTF. Fails with
+/// kUnsupported, an empty `where`, when the file would be larger than 4 GiB.
+[[nodiscard]] Result<std::string> encodeGlb(std::span<const Figure> figures);
+
+}  // namespace galactic::pack_tool

@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+
+#include <string>
+
+#include "pack_tool/open_scene.h"
+#include "pack_tool/output_file.h"
+#include "pack_tool/pictures/figure_picture.h"
+#include "pack_tool/verbs.h"
+
+namespace galactic::pack_tool {
+
+namespace {
+
+using pictures::Image;
+
+Result<Image> drawGrids(const PackFile& pack, const GridPictureOptions& options) {
+  const auto scene = sceneOf(pack);
+  if (!scene) return tl::unexpected(scene.error());
+  const auto grids = gridsOf(*scene, pack.where(), options.radius);
+  if (!grids) return tl::unexpected(grids.error());
+  const std::string title = printable(scene->name());
+  if (!options.slice) {
+    const auto value = options.value.value_or(pictures::PlanValue::kTotalHeight);
+    return pictures::drawPlan(*grids, {.value = value, .title = title}).image;
+  }
+  auto slice = pictures::drawSlice(
+      *grids, {.from = options.slice->from, .to = options.slice->to, .title = title});
+  if (!slice) return fail(slice.error().code, pack.where(), slice.error().message);
+  return std::move(slice->image);
+}
+
+Result<Image> drawFigures(const PackFile& pack, const PictureOptions& options) {
+  const auto figures = figuresOf(pack, options.figures.value_or(FigureOptions{}));
+  if (!figures) return tl::unexpected(figures.error());
+  if (figures->size() == 1) {
+    return pictures::drawFigure(figures->front(),
+                                options.size.value_or(pictures::kDefaultViewSize));
+  }
+  auto sheet =
+      pictures::drawContactSheet(*figures, options.size.value_or(pictures::kDefaultTileSize));
+  if (!sheet) sheet.error().where = pack.where();
+  return sheet;
+}
+
+Result<Image> draw(const PackFile& pack, const PictureOptions& options) {
+  if (pack.kind() == PackKind::kScene) {
+    if (!options.figures && !options.size) return drawGrids(pack, options.grids);
+    return fail(ErrorCode::kInvalidInput, pack.where(),
+                "is a scene; --object, --joints, --all-zero, --what and --size are for objects and "
+                "robots");
+  }
+  if (!options.grids.anyGiven()) return drawFigures(pack, options);
+  return fail(ErrorCode::kInvalidInput, pack.where(),
+              fmt::format("is a pack of kind {} and holds no column grids; --radius, --slice and "
+                          "--value are for scenes",
+                          packKindName(pack.kind())));
+}
+
+Result<void> makePicture(const PictureOptions& options) {
+  if (extensionOf(options.output) != ".png") {
+    return fail(ErrorCode::kUnsupported, options.output.string(),
+                "pictures are PNG files; end the name with .png");
+  }
+  const auto pack = PackFile::open(options.pack, options.trust);
+  if (!pack) return tl::unexpected(pack.error());
+  const auto image = draw(*pack, options);
+  if (!image) return tl::unexpected(image.error());
+  if (auto checked = checkOutput(*pack, options.output); !checked) return checked;
+  return pictures::writePng(options.output, *image);
+}
+
+}  // namespace
+
+int runPicture(const PictureOptions& options, const Console& console) {
+  const auto done = makePicture(options);
+  return done ? kExitOk : reportError(console, done.error());
+}
+
+}  // namespace galactic::pack_tool

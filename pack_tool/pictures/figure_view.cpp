@@ -1,0 +1,132 @@
+#include "pack_tool/pictures/figure_view.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace galactic::pictures {
+
+namespace {
+
+using pack_tool::CameraMark;
+using pack_tool::Figure;
+using pack_tool::FigureKind;
+using pack_tool::FigurePart;
+
+/// What remains white around a figure: share of a view.
+constexpr double kBorder = 0.06;
+constexpr double kLeastExtent = 1e-3;
+/// Length of the drawn part of a camera's view, metres.
+constexpr float kCameraLength = 0.15F;
+/// Half the length of the cross at the grasp point, metres: seen also where the radius is tiny.
+constexpr float kGraspCross = 0.03F;
+
+double along(const Vec3& axis, const Vec3& point) {
+  return static_cast<double>(axis.x) * static_cast<double>(point.x) +
+         static_cast<double>(axis.y) * static_cast<double>(point.y) +
+         static_cast<double>(axis.z) * static_cast<double>(point.z);
+}
+
+void include(ViewWindow& window, const ViewAxes& axes, const RasterSphere& sphere) {
+  const double right = along(axes.right, sphere.centre);
+  const double up = along(axes.up, sphere.centre);
+  const auto radius = static_cast<double>(sphere.radius);
+  window.low_right = std::min(window.low_right, right - radius);
+  window.high_right = std::max(window.high_right, right + radius);
+  window.low_up = std::min(window.low_up, up - radius);
+  window.high_up = std::max(window.high_up, up + radius);
+}
+
+/// The lines that show a camera: what it sees, and a roof where up is.
+std::vector<RasterLine> cameraLines(const CameraMark& camera) {
+  const auto far = pack_tool::viewPyramid(camera, kCameraLength);
+  const Pose& world = camera.world_from_camera;
+  std::vector<RasterLine> lines;
+  for (std::size_t n = 0; n < far.size(); ++n) {
+    lines.push_back({world.translation, world * far[n], kCameraMark});
+    lines.push_back({world * far[n], world * far[(n + 1) % far.size()], kCameraMark});
+  }
+  const Vec3 roof = (far[0] + far[1]) * 0.5F + Vec3{0, 0.3F * (far[0].y - far[3].y), 0};
+  lines.push_back({world * far[0], world * roof, kCameraMark});
+  lines.push_back({world * far[1], world * roof, kCameraMark});
+  return lines;
+}
+
+std::vector<RasterLine> markLines(const Figure& figure) {
+  std::vector<RasterLine> lines;
+  for (std::size_t n = 0; n < figure.footprint.size(); ++n) {
+    lines.push_back(
+        {figure.footprint[n], figure.footprint[(n + 1) % figure.footprint.size()], kFootprintMark});
+  }
+  if (figure.camera) {
+    const auto camera = cameraLines(*figure.camera);
+    lines.insert(lines.end(), camera.begin(), camera.end());
+  }
+  if (figure.grasp) {
+    const float half = std::max(figure.grasp->radius, kGraspCross);
+    for (const Vec3& arm : {Vec3{half, 0, 0}, Vec3{0, half, 0}, Vec3{0, 0, half}}) {
+      const Vec3& centre = figure.grasp->centre_in_world;
+      lines.push_back({centre - arm, centre + arm, kGraspMark});
+    }
+  }
+  return lines;
+}
+
+void drawPart(MeshRaster& raster, const Figure& figure, const FigurePart& part) {
+  const bool robot = figure.kind == FigureKind::kRobot;
+  const auto colors = robot ? part.surface.colors : std::span<const std::uint32_t>();
+  raster.drawMesh({part.surface.positions, part.surface.corners, colors, kMeshGrey},
+                  part.world_from_part);
+  for (const SetSphere& sphere : part.spheres) {
+    raster.drawSphere({part.world_from_part * sphere.centre, figure.radii[sphere.radius_index]},
+                      robot ? kRobotSpheres : kObjectSpheres);
+  }
+  if (!part.box) return;
+  const auto corners = pack_tool::cornersOf(*part.box);
+  for (const auto& [from, to] : pack_tool::kBoxEdges) {
+    raster.drawLine({part.world_from_part * corners[static_cast<std::size_t>(from)],
+                     part.world_from_part * corners[static_cast<std::size_t>(to)], kBoxEdge});
+  }
+}
+
+}  // namespace
+
+double ViewWindow::extent() const { return std::max({width(), height(), kLeastExtent}); }
+
+ViewWindow windowOf(const Figure& figure, const ViewAxes& axes) {
+  constexpr double kFar = std::numeric_limits<double>::max();
+  ViewWindow window{kFar, -kFar, kFar, -kFar};
+  for (const FigurePart& part : figure.parts) {
+    const Pose& pose = part.world_from_part;
+    for (const std::uint32_t corner : part.surface.corners) {
+      include(window, axes, {pose * part.surface.positions[corner], 0});
+    }
+    for (const SetSphere& sphere : part.spheres) {
+      include(window, axes, {pose * sphere.centre, figure.radii[sphere.radius_index]});
+    }
+    if (!part.box) continue;
+    for (const Vec3& corner : pack_tool::cornersOf(*part.box)) {
+      include(window, axes, {pose * corner, 0});
+    }
+  }
+  for (const RasterLine& line : markLines(figure)) {
+    include(window, axes, {line.from, 0});
+    include(window, axes, {line.to, 0});
+  }
+  return window.low_right > window.high_right ? ViewWindow{} : window;
+}
+
+double fittingScale(double metres, int pixels) { return (1 - 2 * kBorder) * pixels / metres; }
+
+void drawFigureView(Image& image, const ViewPlace& place, const Figure& figure,
+                    const ViewAxes& axes, double pixels_per_metre) {
+  const ViewWindow window = windowOf(figure, axes);
+  const auto right = static_cast<float>(0.5 * (window.low_right + window.high_right));
+  const auto up = static_cast<float>(0.5 * (window.low_up + window.high_up));
+  MeshRaster raster(
+      {axes, axes.right * right + axes.up * up, pixels_per_metre, place.size, place.size});
+  for (const FigurePart& part : figure.parts) drawPart(raster, figure, part);
+  for (const RasterLine& line : markLines(figure)) raster.drawLine(line);
+  raster.compose(image, place.left, place.top);
+}
+
+}  // namespace galactic::pictures
