@@ -159,10 +159,10 @@ TEST(PackFile, ComparesThePayloadWithItsHashUnlessItIsTrusted) {
 }
 
 TEST(PackFile, RefusesAKindThatItCannotCheck) {
-  const Error error = errorAfter([](PackHeader& h) { h.kind = PackKind::kWorld; });
+  const Error error = errorAfter([](PackHeader& h) { h.kind = PackKind::kEpisodes; });
   EXPECT_EQ(error.code, ErrorCode::kUnsupported);
   EXPECT_EQ(error.message,
-            "is a pack of kind WRLD, this version reads only SCEN, OBJS and RBOT; update galactic");
+            "is a pack of kind EPIS, this version reads only SCEN, OBJS and RBOT; update galactic");
 }
 
 TEST(PackFile, RefusesAPayloadThatIsNoFlatBufferOfOurs) {
