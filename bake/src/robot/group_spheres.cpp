@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include "galactic/bake/parallel_for.h"
@@ -56,7 +57,7 @@ class Planner {
     clip_height_ = recipe == nullptr ? kDefaultClipHeight : recipe->clip_height;
   }
 
-  [[nodiscard]] GroupPlan plan(const RigidGroup& group) const {
+  [[nodiscard]] GroupPlan plan(const RigidGroup& group, std::vector<std::string>& warnings) const {
     GroupPlan plan;
     plan.authored = task_.options.hand_spheres.has_value();
     plan.fit.radii = task_.options.radii;
@@ -85,10 +86,17 @@ class Planner {
     plan.fit.eps = static_cast<float>(eps.value_or(eps_));
     plan.fit.tau = static_cast<float>(tau.value_or(tau_));
     plan.fit.max_spheres = most.value_or(0);
-    if (!plan.mesh.triangles.empty()) {
-      setBounds(plan.mesh);
-      plan.fit.support = clipPlane(task_.world_from_link[group.link],
-                                   static_cast<float>(clip.value_or(clip_height_)));
+    if (plan.mesh.triangles.empty()) return plan;
+    setBounds(plan.mesh);
+    plan.fit.support = clipPlane(task_.world_from_link[group.link],
+                                 static_cast<float>(clip.value_or(clip_height_)));
+    if (!reachesAbove(plan.mesh, *plan.fit.support)) {
+      warnings.push_back(
+          fmt::format("link '{}': all of its geometry is below the clip height of {} m at the "
+                      "start pose, so it "
+                      "has no spheres; lower clip_height in the recipe, or check the root's height",
+                      task_.robot.links[group.link].name, clip.value_or(clip_height_)));
+      plan.mesh = {};
     }
     return plan;
   }
@@ -134,6 +142,11 @@ class Planner {
   static HalfSpace clipPlane(const Pose& world_from_group, float height) {
     const Vec3 up = rotate(conjugate(world_from_group.rotation), {0, 1, 0});
     return {up, height - world_from_group.translation.y};
+  }
+
+  static bool reachesAbove(const TriangleMesh& mesh, const HalfSpace& plane) {
+    return std::any_of(mesh.vertices.begin(), mesh.vertices.end(),
+                       [&](const Vec3& v) { return dot(plane.normal, v) > plane.offset; });
   }
 
   const SphereTask& task_;
@@ -193,35 +206,79 @@ std::uint32_t budgetOf(const SphereTask& task, std::size_t by_hand) {
   return most > by_hand ? most - static_cast<std::uint32_t>(by_hand) : 1;
 }
 
-/// Curves of all groups that are fitted, each on its own thread; the last link first, since the
-/// root's group tends to be the largest: work is handed out from the largest mesh on.
-Result<std::vector<SphereCurve>> fitCurves(const std::vector<GroupPlan>& plans,
-                                           const SphereTask& task) {
-  std::vector<SphereCurve> curves(plans.size());
-  std::vector<std::optional<Error>> errors(plans.size());
-  std::vector<std::size_t> order;
-  for (std::size_t n = 0; n < plans.size(); ++n) {
-    if (!plans[n].authored && !plans[n].mesh.triangles.empty()) order.push_back(n);
-  }
-  const auto size = [&](std::size_t n) {
-    const Bounds& b = plans[n].mesh.bounds;
-    return (b.max.x - b.min.x) + (b.max.y - b.min.y) + (b.max.z - b.min.z);
-  };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
-  parallelFor(task.options.jobs, order.size(), [&](std::size_t n) {
-    auto curve = fitSphereCurve(plans[order[n]].mesh, plans[order[n]].fit);
-    if (curve) {
-      curves[order[n]] = std::move(*curve);
-    } else {
-      errors[order[n]] = std::move(curve.error());
+/// The trade-off curves of all groups that are fitted, and what the budget takes of each.
+class BudgetedCurves {
+ public:
+  BudgetedCurves(const std::vector<GroupPlan>& plans, unsigned jobs)
+      : plans_(plans), jobs_(jobs), curves_(plans.size()) {}
+
+  /// Refines each curve as far as the budget reaches.
+  Result<void> spend(std::uint32_t budget) {
+    std::vector<std::size_t> wanted;
+    for (std::size_t n = 0; n < plans_.size(); ++n) {
+      if (!plans_[n].authored && !plans_[n].mesh.triangles.empty()) wanted.push_back(n);
     }
-  });
-  for (const auto& error : errors) {
-    if (error) return tl::unexpected(*error);
+    // The largest first, so that it does not keep all others waiting at the end.
+    std::stable_sort(wanted.begin(), wanted.end(),
+                     [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
+    while (!wanted.empty()) {
+      if (auto refined = refine(wanted); !refined) return refined;
+      chosen_ = spendBudget(sets(), budget);
+      // A curve of which the tightest set is taken may be worth another step.
+      std::erase_if(wanted, [&](std::size_t n) {
+        return curves_[n]->complete() || chosen_[n] + 1 < curves_[n]->sets().size();
+      });
+    }
+    return {};
   }
-  return curves;
-}
+
+  /// The set that the budget takes of a group that is fitted.
+  [[nodiscard]] std::optional<SphereSet> take(std::size_t group) const {
+    if (!curves_[group]) return std::nullopt;
+    return curves_[group]->take(chosen_[group]);
+  }
+
+ private:
+  [[nodiscard]] float size(std::size_t group) const {
+    const Bounds& b = plans_[group].mesh.bounds;
+    return (b.max.x - b.min.x) + (b.max.y - b.min.y) + (b.max.z - b.min.z);
+  }
+
+  [[nodiscard]] std::vector<SphereSets> sets() const {
+    std::vector<SphereSets> sets;
+    for (const auto& curve : curves_)
+      sets.push_back(curve ? SphereSets(curve->sets()) : SphereSets());
+    return sets;
+  }
+
+  Result<void> refine(const std::vector<std::size_t>& groups) {
+    std::vector<std::optional<Error>> errors(groups.size());
+    const unsigned jobs_each =
+        std::max(1U, jobs_ / static_cast<unsigned>(std::min<std::size_t>(groups.size(), jobs_)));
+    parallelFor(jobs_, groups.size(), [&](std::size_t n) {
+      const auto refined = refineGroup(groups[n], jobs_each);
+      if (!refined) errors[n] = refined.error();
+    });
+    for (const auto& error : errors) {
+      if (error) return tl::unexpected(*error);
+    }
+    return {};
+  }
+
+  Result<void> refineGroup(std::size_t group, unsigned jobs) {
+    if (!curves_[group]) {
+      auto curve = SphereCurve::begin(plans_[group].mesh, plans_[group].fit);
+      if (!curve) return tl::unexpected(curve.error());
+      curves_[group] = std::move(*curve);
+    }
+    return curves_[group]->refine(jobs);
+  }
+
+  const std::vector<GroupPlan>& plans_;
+  unsigned jobs_;
+  std::vector<std::optional<SphereCurve>> curves_;
+  std::vector<std::size_t> chosen_;
+};
 
 }  // namespace
 
@@ -233,7 +290,7 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
   std::vector<BakedGroup> baked;
   std::size_t by_hand = 0;
   for (const RigidGroup& group : groups) {
-    plans.push_back(planner.plan(group));
+    plans.push_back(planner.plan(group, warnings));
     by_hand += plans.back().by_hand.size();
     baked.push_back({.link = group.link,
                      .links = group.links,
@@ -243,17 +300,16 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
                      .authored = plans.back().authored});
   }
   const std::uint32_t budget = budgetOf(task, by_hand);
-  const auto curves = fitCurves(plans, task);
-  if (!curves) return tl::unexpected(curves.error());
-  const std::vector<std::size_t> chosen = spendBudget(*curves, budget);
+  BudgetedCurves curves(plans, task.options.jobs);
+  if (auto spent = curves.spend(budget); !spent) return tl::unexpected(spent.error());
   std::size_t fitted = 0;
   for (std::size_t n = 0; n < plans.size(); ++n) {
     if (plans[n].authored) {
       const auto taken =
           takeByHand(plans[n], task.robot.links[baked[n].link].name, baked[n], warnings);
       if (!taken) return tl::unexpected(taken.error());
-    } else if (!(*curves)[n].sets.empty()) {
-      baked[n].spheres = (*curves)[n].sets[chosen[n]];
+    } else if (auto set = curves.take(n)) {
+      baked[n].spheres = std::move(*set);
       baked[n].measured = true;
       fitted += baked[n].spheres.spheres.size();
     }

@@ -19,11 +19,11 @@ struct Step {
   double gain = 0;
 };
 
-std::optional<Step> bestStep(const std::vector<SphereCurve>& curves,
+std::optional<Step> bestStep(const std::vector<SphereSets>& curves,
                              const std::vector<std::size_t>& chosen, std::size_t left) {
   std::optional<Step> best;
   for (std::size_t n = 0; n < curves.size(); ++n) {
-    const std::vector<SphereSet>& sets = curves[n].sets;
+    const SphereSets sets = curves[n];
     for (std::size_t to = chosen[n] + 1; to < sets.size(); ++to) {
       const std::size_t now = sets[chosen[n]].spheres.size();
       if (sets[to].spheres.size() <= now) continue;
@@ -39,18 +39,18 @@ std::optional<Step> bestStep(const std::vector<SphereCurve>& curves,
 
 }  // namespace
 
-std::vector<std::size_t> spendBudget(const std::vector<SphereCurve>& curves, std::uint32_t budget) {
+std::vector<std::size_t> spendBudget(const std::vector<SphereSets>& curves, std::uint32_t budget) {
   std::vector<std::size_t> chosen(curves.size(), 0);
   std::size_t used = 0;
   for (std::size_t n = 0; n < curves.size(); ++n) {
-    if (curves[n].sets.empty()) continue;
-    if (budget == 0) chosen[n] = curves[n].sets.size() - 1;
-    used += curves[n].sets[chosen[n]].spheres.size();
+    if (curves[n].empty()) continue;
+    if (budget == 0) chosen[n] = curves[n].size() - 1;
+    used += curves[n][chosen[n]].spheres.size();
   }
   while (used < budget) {
     const std::optional<Step> step = bestStep(curves, chosen, budget - used);
     if (!step) break;
-    const std::vector<SphereSet>& sets = curves[step->curve].sets;
+    const SphereSets sets = curves[step->curve];
     used += sets[step->to].spheres.size() - sets[chosen[step->curve]].spheres.size();
     chosen[step->curve] = step->to;
   }

@@ -142,30 +142,70 @@ Result<SphereSet> fitSphereSet(const TriangleMesh& mesh, const SphereSetOptions&
   return set;
 }
 
-Result<SphereCurve> fitSphereCurve(const TriangleMesh& mesh, const SphereSetOptions& options) {
-  const auto prepared = prepare(mesh, options);
-  if (!prepared) return tl::unexpected(prepared.error());
-  const FitTask& task = prepared->task;
-  const Yardstick yardstick(task);
-  SphereCurve curve;
-  std::uint64_t thin_points = 0;
-  for (int step = kCurveSteps; step >= 0; --step) {
-    const Cover cover = sphere_fit::solveCover(loosened(task, step), kCurveEffort);
+/// The solver's state between two sets of a curve.
+class SphereCurve::Fitter {
+ public:
+  Fitter(Prepared prepared, std::uint32_t most)
+      : prepared_(std::move(prepared)), yardstick_(prepared_.task), most_(most) {}
+
+  Result<void> refine(unsigned jobs) {
+    if (complete()) return {};
+    FitTask task = loosened(prepared_.task, step_);
+    task.jobs = jobs;
+    const Cover cover = sphere_fit::solveCover(task, kCurveEffort);
     if (cover.spheres.empty()) return nothingToCover();
-    const bool too_many = options.max_spheres > 0 && cover.spheres.size() > options.max_spheres;
-    // The tightest spheres save most of the search.
-    if (step == 0 || too_many) thin_points = yardstick.countThin(cover.spheres);
-    if (too_many && !curve.sets.empty()) break;
-    SphereSet set = finished(task, yardstick, cover);
-    // As many spheres as before, or fewer, for tighter tolerances: the looser set is of no use.
-    while (!curve.sets.empty() && curve.sets.back().spheres.size() >= set.spheres.size()) {
-      curve.sets.pop_back();
+    --step_;
+    if (most_ > 0 && cover.spheres.size() > most_) {
+      step_ = kNoStep;
+      if (!sets_.empty()) return {};
     }
-    curve.sets.push_back(std::move(set));
+    SphereSet set = finished(prepared_.task, yardstick_, cover);
+    // As many spheres as before, or fewer, for tighter tolerances: the looser set is of no use.
+    while (!sets_.empty() && sets_.back().spheres.size() >= set.spheres.size()) {
+      sets_.pop_back();
+      covers_.pop_back();
+    }
+    sets_.push_back(std::move(set));
+    covers_.push_back(cover.spheres);
+    return {};
   }
-  for (SphereSet& set : curve.sets) set.quality.thin_points = thin_points;
-  return curve;
+
+  [[nodiscard]] bool complete() const { return step_ == kNoStep; }
+  [[nodiscard]] const std::vector<SphereSet>& sets() const { return sets_; }
+
+  [[nodiscard]] SphereSet take(std::size_t n) const {
+    SphereSet set = sets_[n];
+    set.quality.thin_points = yardstick_.countThin(covers_[n]);
+    return set;
+  }
+
+ private:
+  static constexpr int kNoStep = -1;
+
+  Prepared prepared_;
+  Yardstick yardstick_;
+  std::uint32_t most_ = 0;
+  int step_ = kCurveSteps;
+  std::vector<SphereSet> sets_;
+  /// What each set was made of.
+  std::vector<std::vector<Candidate>> covers_;
+};
+
+SphereCurve::SphereCurve(std::unique_ptr<Fitter> fitter) : fitter_(std::move(fitter)) {}
+SphereCurve::~SphereCurve() = default;
+SphereCurve::SphereCurve(SphereCurve&&) noexcept = default;
+SphereCurve& SphereCurve::operator=(SphereCurve&&) noexcept = default;
+
+Result<SphereCurve> SphereCurve::begin(const TriangleMesh& mesh, const SphereSetOptions& options) {
+  auto prepared = prepare(mesh, options);
+  if (!prepared) return tl::unexpected(prepared.error());
+  return SphereCurve(std::make_unique<Fitter>(std::move(*prepared), options.max_spheres));
 }
+
+Result<void> SphereCurve::refine(unsigned jobs) { return fitter_->refine(jobs); }
+bool SphereCurve::complete() const { return fitter_->complete(); }
+const std::vector<SphereSet>& SphereCurve::sets() const { return fitter_->sets(); }
+SphereSet SphereCurve::take(std::size_t set) const { return fitter_->take(set); }
 
 Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
                                           const std::vector<SetSphere>& spheres,

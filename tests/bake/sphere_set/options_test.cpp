@@ -81,7 +81,7 @@ TEST(SphereSetOptions, ThatAreWrongAreRefusedByName) {
     EXPECT_EQ(set.error().code, ErrorCode::kInvalidInput);
     EXPECT_EQ(set.error().where, wrong.where);
     EXPECT_EQ(set.error().message, wrong.message);
-    const auto curve = fitSphereCurve(someBox(), wrong.options);
+    const auto curve = SphereCurve::begin(someBox(), wrong.options);
     ASSERT_FALSE(curve);
     EXPECT_EQ(curve.error().message, wrong.message);
   }
@@ -209,22 +209,45 @@ TEST(SphereSetLimit, IsKeptAndCostsGap) {
   EXPECT_EQ(fitSphereSet(mesh, options)->spheres, all->spheres);
 }
 
+/// All sets of a curve.
+std::vector<SphereSet> wholeCurve(const TriangleMesh& mesh, const SphereSetOptions& options,
+                                  unsigned jobs) {
+  auto curve = SphereCurve::begin(mesh, options);
+  EXPECT_TRUE(curve);
+  while (curve && !curve->complete()) EXPECT_TRUE(curve->refine(jobs));
+  return curve ? curve->sets() : std::vector<SphereSet>{};
+}
+
 TEST(SphereCurve, RisesInCountAndFallsInGap) {
   const TriangleMesh mesh = test::cylinder(0.05, 0.3).mesh;
   SphereSetOptions options;
   options.eps = 0.005F;
   options.tau = 0.01F;
-  const auto curve = fitSphereCurve(mesh, options);
-  ASSERT_TRUE(curve);
-  ASSERT_GE(curve->sets.size(), 5U);
-  for (std::size_t at = 1; at < curve->sets.size(); ++at) {
-    EXPECT_GT(curve->sets[at].spheres.size(), curve->sets[at - 1].spheres.size());
-    EXPECT_LT(curve->sets[at].guaranteed_gap, curve->sets[at - 1].guaranteed_gap);
+  const std::vector<SphereSet> sets = wholeCurve(mesh, options, 1);
+  ASSERT_GE(sets.size(), 5U);
+  for (std::size_t at = 1; at < sets.size(); ++at) {
+    EXPECT_GT(sets[at].spheres.size(), sets[at - 1].spheres.size());
+    EXPECT_LT(sets[at].guaranteed_gap, sets[at - 1].guaranteed_gap);
   }
-  EXPECT_FALSE(curve->sets.front().meets_tolerances);
-  EXPECT_TRUE(curve->sets.back().meets_tolerances);
-  options.max_spheres = static_cast<std::uint32_t>(curve->sets[2].spheres.size());
-  EXPECT_EQ(fitSphereCurve(mesh, options)->sets.size(), 3U);
+  EXPECT_FALSE(sets.front().meets_tolerances);
+  EXPECT_TRUE(sets.back().meets_tolerances);
+  options.max_spheres = static_cast<std::uint32_t>(sets[2].spheres.size());
+  EXPECT_EQ(wholeCurve(mesh, options, 1).size(), 3U);
+}
+
+TEST(SphereCurve, IsTheSameForAnyNumberOfJobsAndStaysCompleteOnceItIs) {
+  const TriangleMesh mesh = test::cylinder(0.05, 0.1).mesh;
+  const std::vector<SphereSet> one = wholeCurve(mesh, {}, 1);
+  const std::vector<SphereSet> three = wholeCurve(mesh, {}, 3);
+  ASSERT_EQ(one.size(), three.size());
+  for (std::size_t at = 0; at < one.size(); ++at) EXPECT_EQ(one[at].spheres, three[at].spheres);
+  auto curve = SphereCurve::begin(mesh, {});
+  ASSERT_TRUE(curve);
+  EXPECT_TRUE(curve->sets().empty());
+  while (!curve->complete()) ASSERT_TRUE(curve->refine(1));
+  ASSERT_TRUE(curve->refine(1));
+  EXPECT_EQ(curve->sets().size(), one.size());
+  EXPECT_EQ(curve->take(0).spheres, one[0].spheres);
 }
 
 TEST(SphereSetResult, IsSorted) {

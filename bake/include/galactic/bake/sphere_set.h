@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -87,20 +89,40 @@ struct SphereSet {
 [[nodiscard]] Result<SphereSet> fitSphereSet(const TriangleMesh& mesh,
                                              const SphereSetOptions& options);
 
-/// Sphere counts and tolerances for a budget shared by several meshes: one entry per step of the
-/// curve, by rising count. See fitSphereCurve.
-struct SphereCurve {
-  std::vector<SphereSet> sets;
-};
-
-/// The trade-off of a mesh: sphere sets for a falling sequence of tolerances (nine between eight
-/// times `options.eps` and that itself, tau in proportion), so that a budget of spheres can be
-/// spent over several meshes. A set that a tighter one beats in count is left out. With
-/// `max_spheres` the curve ends before the first set of more, but has at least one. Quality and
-/// `meets_tolerances` are by the tolerances of `options`. Less work goes into each than with
-/// fitSphereSet, whose set may be a little smaller. Fails as fitSphereSet does.
-[[nodiscard]] Result<SphereCurve> fitSphereCurve(const TriangleMesh& mesh,
+/// The trade-off of a mesh: sphere sets for a falling sequence of tolerances, so that a budget of
+/// spheres can be spent over several meshes. The sets are made one after the other, from the
+/// loosest on: the tight ones take most of the time, and a budget may not reach them. There are
+/// nine, from eight times `options.eps` to that itself; tau grows with the cube root of what eps
+/// grows by, since a loose set may leave wide gaps but has no business far outside. Less work goes
+/// into each than with fitSphereSet, whose set may be a little smaller. Movable, not copyable.
+class SphereCurve {
+ public:
+  /// The curve of `mesh`, without sets yet. Fails as fitSphereSet does.
+  [[nodiscard]] static Result<SphereCurve> begin(const TriangleMesh& mesh,
                                                  const SphereSetOptions& options);
+  ~SphereCurve();
+  SphereCurve(SphereCurve&&) noexcept;
+  SphereCurve& operator=(SphereCurve&&) noexcept;
+
+  /// Adds the next tighter set, on up to `jobs` threads, which never change it; a set that it beats
+  /// in count is dropped. Does nothing when the curve is complete. Fails as fitSphereSet does.
+  [[nodiscard]] Result<void> refine(unsigned jobs);
+  /// Whether the set for the tolerances of the options themselves has been made, or the next one
+  /// has more than their `max_spheres`.
+  [[nodiscard]] bool complete() const;
+
+  /// By rising count. Quality, all but the thin points, and `meets_tolerances` are by the
+  /// tolerances of the options.
+  [[nodiscard]] const std::vector<SphereSet>& sets() const;
+  /// A copy of one of the sets with its thin points counted.
+  [[nodiscard]] SphereSet take(std::size_t set) const;
+
+ private:
+  class Fitter;
+  explicit SphereCurve(std::unique_ptr<Fitter> fitter);
+
+  std::unique_ptr<Fitter> fitter_;
+};
 
 /// Measures any sphere set, hand-made ones too, with the yardstick of `fitSphereSet`. Fails as that
 /// does, and with kInvalidInput where there are no spheres, a centre is not finite or a radius is
