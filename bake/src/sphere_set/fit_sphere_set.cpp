@@ -93,10 +93,12 @@ SphereSet finished(const FitTask& task, const Yardstick& yardstick, const Cover&
   }
   std::sort(set.spheres.begin(), set.spheres.end(), comesFirst);
   set.quality = yardstick.measure(cover.spheres);
-  set.guaranteed_gap = cover.guaranteed_gap;
-  set.guaranteed_protrusion = cover.guaranteed_protrusion;
+  // Where the solid's border is no facet (a small hole, the bottom of a crevice), a sphere may be
+  // further from the facets than from the solid: what was measured counts.
+  set.guaranteed_gap = std::max(cover.guaranteed_gap, set.quality.gap.max);
+  set.guaranteed_protrusion = std::max(cover.guaranteed_protrusion, set.quality.protrusion.max);
   set.meets_tolerances =
-      cover.guaranteed_gap <= task.eps + cover.slack && cover.guaranteed_protrusion <= task.tau;
+      set.guaranteed_gap <= task.eps + cover.slack && set.guaranteed_protrusion <= task.tau;
   return set;
 }
 
