@@ -25,6 +25,10 @@ struct GroupPlan {
   /// In the group's frame.
   std::vector<HandSphere> by_hand;
   bool authored = false;
+  /// All of the mesh is lower than the clip height, so nothing needs cover.
+  bool clipped = false;
+
+  [[nodiscard]] bool hasSurface() const { return !mesh.triangles.empty() && !clipped; }
 };
 
 const RecipeLinkSpheres* ruleOf(const RobotRecipe* recipe, const std::string& link) {
@@ -34,14 +38,6 @@ const RecipeLinkSpheres* ruleOf(const RobotRecipe* recipe, const std::string& li
     return rule.link.name == link;
   });
   return found == rules.end() ? nullptr : &*found;
-}
-
-const LinkSpheres* handSpheresOf(const RobotBakeOptions& options, const std::string& link) {
-  if (!options.hand_spheres) return nullptr;
-  const auto& links = options.hand_spheres->links;
-  const auto found = std::find_if(links.begin(), links.end(),
-                                  [&](const LinkSpheres& one) { return one.link == link; });
-  return found == links.end() ? nullptr : &*found;
 }
 
 /// Makes the plan of one group after the other.
@@ -77,8 +73,10 @@ class Planner {
         addByHand(rule->spheres, group.group_from_link[n], plan);
         if (rule->skip) continue;
       }
-      if (const LinkSpheres* given = handSpheresOf(task_.options, name)) {
-        addByHand(given->spheres, group.group_from_link[n], plan);
+      if (task_.options.hand_spheres) {
+        for (const LinkSpheres& given : task_.options.hand_spheres->links) {
+          if (given.link == name) addByHand(given.spheres, group.group_from_link[n], plan);
+        }
       }
       addSurface(task_.surfaces[group.links[n]], group.group_from_link[n], plan.mesh);
     }
@@ -89,6 +87,7 @@ class Planner {
       setBounds(plan.mesh);
       plan.fit.support = clipPlane(task_.world_from_link[group.link],
                                    static_cast<float>(clip.value_or(clip_height_)));
+      plan.clipped = isBeyond(plan.mesh, *plan.fit.support);
     }
     return plan;
   }
@@ -136,6 +135,12 @@ class Planner {
     return {up, height - world_from_group.translation.y};
   }
 
+  /// Whether no part of the mesh is on the side of the plane where spheres may be.
+  static bool isBeyond(const TriangleMesh& mesh, const HalfSpace& plane) {
+    return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                       [&](const Vec3& v) { return dot(plane.normal, v) <= plane.offset; });
+  }
+
   const SphereTask& task_;
   double eps_ = kDefaultEps;
   double tau_ = kDefaultTau;
@@ -163,6 +168,12 @@ double snapRadii(const std::vector<HandSphere>& by_hand, const std::vector<float
   return largest;
 }
 
+/// The fitter knows no links: says whose mesh it was.
+tl::unexpected<Error> ofLink(const std::string& link, Error error) {
+  error.where = fmt::format("link '{}': {}", link, error.where);
+  return tl::unexpected<Error>(std::move(error));
+}
+
 Result<void> takeByHand(const GroupPlan& plan, const std::string& link, BakedGroup& group,
                         std::vector<std::string>& warnings) {
   const double change = snapRadii(plan.by_hand, plan.fit.radii, group.spheres.spheres);
@@ -173,9 +184,9 @@ Result<void> takeByHand(const GroupPlan& plan, const std::string& link, BakedGro
         "set; choose --radii that hold them",
         link, 1e3 * change));
   }
-  if (plan.mesh.triangles.empty() || group.spheres.spheres.empty()) return {};
+  if (!plan.hasSurface() || group.spheres.spheres.empty()) return {};
   auto quality = measureSphereSet(plan.mesh, group.spheres.spheres, plan.fit);
-  if (!quality) return tl::unexpected(quality.error());
+  if (!quality) return ofLink(link, quality.error());
   group.spheres.quality = *quality;
   group.spheres.guaranteed_gap = quality->gap.max;
   group.spheres.guaranteed_protrusion = quality->protrusion.max;
@@ -196,12 +207,13 @@ std::uint32_t budgetOf(const SphereTask& task, std::size_t by_hand) {
 /// Curves of all groups that are fitted, each on its own thread; the last link first, since the
 /// root's group tends to be the largest: work is handed out from the largest mesh on.
 Result<std::vector<SphereCurve>> fitCurves(const std::vector<GroupPlan>& plans,
+                                           const std::vector<RigidGroup>& groups,
                                            const SphereTask& task) {
   std::vector<SphereCurve> curves(plans.size());
   std::vector<std::optional<Error>> errors(plans.size());
   std::vector<std::size_t> order;
   for (std::size_t n = 0; n < plans.size(); ++n) {
-    if (!plans[n].authored && !plans[n].mesh.triangles.empty()) order.push_back(n);
+    if (!plans[n].authored && plans[n].hasSurface()) order.push_back(n);
   }
   const auto size = [&](std::size_t n) {
     const Bounds& b = plans[n].mesh.bounds;
@@ -217,8 +229,8 @@ Result<std::vector<SphereCurve>> fitCurves(const std::vector<GroupPlan>& plans,
       errors[order[n]] = std::move(curve.error());
     }
   });
-  for (const auto& error : errors) {
-    if (error) return tl::unexpected(*error);
+  for (std::size_t n = 0; n < errors.size(); ++n) {
+    if (errors[n]) return ofLink(task.robot.links[groups[n].link].name, *errors[n]);
   }
   return curves;
 }
@@ -243,7 +255,7 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
                      .authored = plans.back().authored});
   }
   const std::uint32_t budget = budgetOf(task, by_hand);
-  const auto curves = fitCurves(plans, task);
+  const auto curves = fitCurves(plans, groups, task);
   if (!curves) return tl::unexpected(curves.error());
   const std::vector<std::size_t> chosen = spendBudget(*curves, budget);
   std::size_t fitted = 0;
@@ -252,6 +264,11 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
       const auto taken =
           takeByHand(plans[n], task.robot.links[baked[n].link].name, baked[n], warnings);
       if (!taken) return tl::unexpected(taken.error());
+    } else if (plans[n].clipped) {
+      warnings.push_back(fmt::format(
+          "link '{}': all of it is lower than the clip height at the start pose, so it gets no "
+          "spheres; lower clip_height in the recipe if it needs some",
+          task.robot.links[baked[n].link].name));
     } else if (!(*curves)[n].sets.empty()) {
       baked[n].spheres = (*curves)[n].sets[chosen[n]];
       baked[n].measured = true;
