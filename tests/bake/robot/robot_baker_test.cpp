@@ -191,7 +191,6 @@ TEST(RobotPack, OpensWithLimitsBeyondAllFloats) {
 TEST(RobotPack, HasTheSameBytesForAnyNumberOfJobs) {
   const RobotRecipe recipe = armRecipe();
   RobotBakeOptions options = coarse();
-  options.radii = {0.02F, 0.04F};
   const auto one = bake::encodeRobotPack(bakeWell(smallArm(), &recipe, options), {});
   options.jobs = 3;
   const auto three = bake::encodeRobotPack(bakeWell(smallArm(), &recipe, options), {});
@@ -207,7 +206,7 @@ std::size_t spheresOf(const BakedRobot& robot) {
 
 TEST(RobotBaker, KeepsToTheBudgetAndSaysWhenItCannot) {
   RobotBakeOptions options = coarse();
-  options.radii = {0.02F, 0.04F};
+  options.eps = 0.02F;
   options.max_spheres = 0;
   const BakedRobot all = bakeWell(smallArm(), nullptr, options);
   options.max_spheres = static_cast<std::uint32_t>(spheresOf(all) - 1);

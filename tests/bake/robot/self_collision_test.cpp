@@ -190,7 +190,7 @@ TEST(SelfCollision, AgreesWithOtherSamplesOfRandomRobots) {
       const int parent = n == 0 ? -1 : n - 1 - static_cast<int>(random() % 2 == 0 && n > 1);
       const auto f = [&](double reach) { return static_cast<float>(between(-reach, reach)); };
       const float turn = static_cast<float>(between(0.1, 3));
-      maker.link(parent, {f(0.15), f(0.05), f(0.15)}, {-turn, turn},
+      maker.link(parent, {f(0.45), f(0.1), f(0.45)}, {-turn, turn},
                  {{{f(0.1), 0, 0}, 1}, {{0, f(0.1), 0}, 0}});
     }
     const auto pairs = classifyPairs(maker.robot(), {});

@@ -87,19 +87,18 @@ std::vector<SphereCurve> randomCurves(std::mt19937& random, std::uint32_t widest
   return curves;
 }
 
-TEST(SphereBudget, IsSpentBestWhereEachStepAddsOneSphere) {
+TEST(SphereBudget, IsSpentAsWellAsAnyWayAllows) {
   constexpr std::uint32_t kSeed = 11;
   std::printf("seed %u\n", kSeed);
   std::mt19937 random(kSeed);
   int bound = 0;
-  constexpr int kRounds = 300;
+  constexpr int kRounds = 400;
   for (int round = 0; round < kRounds; ++round) {
-    const auto curves = randomCurves(random, 1);
-    const auto budget = static_cast<std::uint32_t>(4 + random() % 20);
+    const auto curves = randomCurves(random, round % 2 == 0 ? 1 : 6);
+    const auto budget = static_cast<std::uint32_t>(4 + random() % 60);
     const auto chosen = spendBudget(curves, budget);
     const std::vector<std::size_t> coarsest(curves.size(), 0);
-    const bool possible = spheresOf(curves, coarsest) <= budget;
-    if (!possible) {
+    if (spheresOf(curves, coarsest) > budget) {
       EXPECT_EQ(chosen, coarsest);
       continue;
     }
@@ -107,38 +106,10 @@ TEST(SphereBudget, IsSpentBestWhereEachStepAddsOneSphere) {
     constexpr double kRounding = 1e-12;
     EXPECT_NEAR(errorOf(curves, chosen), leastError(curves, budget), kRounding);
     // Whether the budget had to choose.
-    if (spheresOf(curves, chosen) == budget) ++bound;
+    if (chosen != spendBudget(curves, 0)) ++bound;
   }
   EXPECT_GT(bound, kRounds / 10);
   EXPECT_LT(bound, kRounds * 9 / 10);
-}
-
-TEST(SphereBudget, IsSpentNearlyBestWhereStepsAddSeveralSpheres) {
-  constexpr std::uint32_t kSeed = 12;
-  std::mt19937 random(kSeed);
-  double worst = 1;
-  double sum = 0;
-  int compared = 0;
-  for (int round = 0; round < 500; ++round) {
-    const auto curves = randomCurves(random, 6);
-    const std::vector<std::size_t> coarsest(curves.size(), 0);
-    const auto budget = static_cast<std::uint32_t>(spheresOf(curves, coarsest) + 1 + random() % 24);
-    const auto chosen = spendBudget(curves, budget);
-    EXPECT_LE(spheresOf(curves, chosen), budget);
-    const double before = errorOf(curves, coarsest);
-    const double most = before - leastError(curves, budget);
-    if (most <= 0) continue;
-    const double share = (before - errorOf(curves, chosen)) / most;
-    worst = std::min(worst, share);
-    sum += share;
-    ++compared;
-  }
-  std::printf("seed %u: of the best gain %.4f on average, %.3f at worst, over %d cases\n", kSeed,
-              sum / compared, worst, compared);
-  EXPECT_GT(compared, 400);
-  // Greedy steps leave the last few spheres unused now and then.
-  EXPECT_GT(sum / compared, 0.97);
-  EXPECT_GT(worst, 0.5);
 }
 
 TEST(SphereBudget, WithoutALimitTakesTheFinestSets) {
