@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <tuple>
 
 #include "galactic/bake/parallel_for.h"
@@ -26,6 +25,10 @@ struct GroupPlan {
   /// In the group's frame.
   std::vector<HandSphere> by_hand;
   bool authored = false;
+  /// All of the mesh is lower than the clip height, so nothing needs cover.
+  bool clipped = false;
+
+  [[nodiscard]] bool hasSurface() const { return !mesh.triangles.empty() && !clipped; }
 };
 
 const RecipeLinkSpheres* ruleOf(const RobotRecipe* recipe, const std::string& link) {
@@ -35,14 +38,6 @@ const RecipeLinkSpheres* ruleOf(const RobotRecipe* recipe, const std::string& li
     return rule.link.name == link;
   });
   return found == rules.end() ? nullptr : &*found;
-}
-
-const LinkSpheres* handSpheresOf(const RobotBakeOptions& options, const std::string& link) {
-  if (!options.hand_spheres) return nullptr;
-  const auto& links = options.hand_spheres->links;
-  const auto found = std::find_if(links.begin(), links.end(),
-                                  [&](const LinkSpheres& one) { return one.link == link; });
-  return found == links.end() ? nullptr : &*found;
 }
 
 /// Makes the plan of one group after the other.
@@ -57,7 +52,7 @@ class Planner {
     clip_height_ = recipe == nullptr ? kDefaultClipHeight : recipe->clip_height;
   }
 
-  [[nodiscard]] GroupPlan plan(const RigidGroup& group, std::vector<std::string>& warnings) const {
+  [[nodiscard]] GroupPlan plan(const RigidGroup& group) const {
     GroupPlan plan;
     plan.authored = task_.options.hand_spheres.has_value();
     plan.fit.radii = task_.options.radii;
@@ -78,25 +73,21 @@ class Planner {
         addByHand(rule->spheres, group.group_from_link[n], plan);
         if (rule->skip) continue;
       }
-      if (const LinkSpheres* given = handSpheresOf(task_.options, name)) {
-        addByHand(given->spheres, group.group_from_link[n], plan);
+      if (task_.options.hand_spheres) {
+        for (const LinkSpheres& given : task_.options.hand_spheres->links) {
+          if (given.link == name) addByHand(given.spheres, group.group_from_link[n], plan);
+        }
       }
       addSurface(task_.surfaces[group.links[n]], group.group_from_link[n], plan.mesh);
     }
     plan.fit.eps = static_cast<float>(eps.value_or(eps_));
     plan.fit.tau = static_cast<float>(tau.value_or(tau_));
     plan.fit.max_spheres = most.value_or(0);
-    if (plan.mesh.triangles.empty()) return plan;
-    setBounds(plan.mesh);
-    plan.fit.support = clipPlane(task_.world_from_link[group.link],
-                                 static_cast<float>(clip.value_or(clip_height_)));
-    if (!reachesAbove(plan.mesh, *plan.fit.support)) {
-      warnings.push_back(
-          fmt::format("link '{}': all of its geometry is below the clip height of {} m at the "
-                      "start pose, so it "
-                      "has no spheres; lower clip_height in the recipe, or check the root's height",
-                      task_.robot.links[group.link].name, clip.value_or(clip_height_)));
-      plan.mesh = {};
+    if (!plan.mesh.triangles.empty()) {
+      setBounds(plan.mesh);
+      plan.fit.support = clipPlane(task_.world_from_link[group.link],
+                                   static_cast<float>(clip.value_or(clip_height_)));
+      plan.clipped = isBeyond(plan.mesh, *plan.fit.support);
     }
     return plan;
   }
@@ -144,9 +135,10 @@ class Planner {
     return {up, height - world_from_group.translation.y};
   }
 
-  static bool reachesAbove(const TriangleMesh& mesh, const HalfSpace& plane) {
-    return std::any_of(mesh.vertices.begin(), mesh.vertices.end(),
-                       [&](const Vec3& v) { return dot(plane.normal, v) > plane.offset; });
+  /// Whether no part of the mesh is on the side of the plane where spheres may be.
+  static bool isBeyond(const TriangleMesh& mesh, const HalfSpace& plane) {
+    return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                       [&](const Vec3& v) { return dot(plane.normal, v) <= plane.offset; });
   }
 
   const SphereTask& task_;
@@ -176,6 +168,12 @@ double snapRadii(const std::vector<HandSphere>& by_hand, const std::vector<float
   return largest;
 }
 
+/// The fitter knows no links: says whose mesh it was.
+tl::unexpected<Error> ofLink(const std::string& link, Error error) {
+  error.where = fmt::format("link '{}': {}", link, error.where);
+  return tl::unexpected<Error>(std::move(error));
+}
+
 Result<void> takeByHand(const GroupPlan& plan, const std::string& link, BakedGroup& group,
                         std::vector<std::string>& warnings) {
   const double change = snapRadii(plan.by_hand, plan.fit.radii, group.spheres.spheres);
@@ -186,9 +184,9 @@ Result<void> takeByHand(const GroupPlan& plan, const std::string& link, BakedGro
         "set; choose --radii that hold them",
         link, 1e3 * change));
   }
-  if (plan.mesh.triangles.empty() || group.spheres.spheres.empty()) return {};
+  if (!plan.hasSurface() || group.spheres.spheres.empty()) return {};
   auto quality = measureSphereSet(plan.mesh, group.spheres.spheres, plan.fit);
-  if (!quality) return tl::unexpected(quality.error());
+  if (!quality) return ofLink(link, quality.error());
   group.spheres.quality = *quality;
   group.spheres.guaranteed_gap = quality->gap.max;
   group.spheres.guaranteed_protrusion = quality->protrusion.max;
@@ -206,17 +204,22 @@ std::uint32_t budgetOf(const SphereTask& task, std::size_t by_hand) {
   return most > by_hand ? most - static_cast<std::uint32_t>(by_hand) : 1;
 }
 
+/// A curve is refined while one of its tightest sets, this many, is taken: the next may be worth
+/// more, even where the one before it is not.
+constexpr std::size_t kLookAhead = 2;
+
 /// The trade-off curves of all groups that are fitted, and what the budget takes of each.
 class BudgetedCurves {
  public:
-  BudgetedCurves(const std::vector<GroupPlan>& plans, unsigned jobs)
-      : plans_(plans), jobs_(jobs), curves_(plans.size()) {}
+  BudgetedCurves(const std::vector<GroupPlan>& plans, const std::vector<RigidGroup>& groups,
+                 const SphereTask& task)
+      : plans_(plans), groups_(groups), task_(task), curves_(plans.size()) {}
 
   /// Refines each curve as far as the budget reaches.
   Result<void> spend(std::uint32_t budget) {
     std::vector<std::size_t> wanted;
     for (std::size_t n = 0; n < plans_.size(); ++n) {
-      if (!plans_[n].authored && !plans_[n].mesh.triangles.empty()) wanted.push_back(n);
+      if (!plans_[n].authored && plans_[n].hasSurface()) wanted.push_back(n);
     }
     // The largest first, so that it does not keep all others waiting at the end.
     std::stable_sort(wanted.begin(), wanted.end(),
@@ -224,9 +227,8 @@ class BudgetedCurves {
     while (!wanted.empty()) {
       if (auto refined = refine(wanted); !refined) return refined;
       chosen_ = spendBudget(sets(), budget);
-      // A curve of which the tightest set is taken may be worth another step.
       std::erase_if(wanted, [&](std::size_t n) {
-        return curves_[n]->complete() || chosen_[n] + 1 < curves_[n]->sets().size();
+        return curves_[n]->complete() || chosen_[n] + kLookAhead < curves_[n]->sets().size();
       });
     }
     return {};
@@ -246,21 +248,21 @@ class BudgetedCurves {
 
   [[nodiscard]] std::vector<SphereSets> sets() const {
     std::vector<SphereSets> sets;
-    for (const auto& curve : curves_)
-      sets.push_back(curve ? SphereSets(curve->sets()) : SphereSets());
+    for (const auto& curve : curves_) sets.push_back(curve ? curve->sets() : SphereSets());
     return sets;
   }
 
   Result<void> refine(const std::vector<std::size_t>& groups) {
     std::vector<std::optional<Error>> errors(groups.size());
+    const unsigned jobs = task_.options.jobs;
     const unsigned jobs_each =
-        std::max(1U, jobs_ / static_cast<unsigned>(std::min<std::size_t>(groups.size(), jobs_)));
-    parallelFor(jobs_, groups.size(), [&](std::size_t n) {
+        std::max(1U, jobs / static_cast<unsigned>(std::min<std::size_t>(groups.size(), jobs)));
+    parallelFor(jobs, groups.size(), [&](std::size_t n) {
       const auto refined = refineGroup(groups[n], jobs_each);
       if (!refined) errors[n] = refined.error();
     });
-    for (const auto& error : errors) {
-      if (error) return tl::unexpected(*error);
+    for (std::size_t n = 0; n < groups.size(); ++n) {
+      if (errors[n]) return ofLink(task_.robot.links[groups_[groups[n]].link].name, *errors[n]);
     }
     return {};
   }
@@ -275,7 +277,8 @@ class BudgetedCurves {
   }
 
   const std::vector<GroupPlan>& plans_;
-  unsigned jobs_;
+  const std::vector<RigidGroup>& groups_;
+  const SphereTask& task_;
   std::vector<std::optional<SphereCurve>> curves_;
   std::vector<std::size_t> chosen_;
 };
@@ -290,7 +293,7 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
   std::vector<BakedGroup> baked;
   std::size_t by_hand = 0;
   for (const RigidGroup& group : groups) {
-    plans.push_back(planner.plan(group, warnings));
+    plans.push_back(planner.plan(group));
     by_hand += plans.back().by_hand.size();
     baked.push_back({.link = group.link,
                      .links = group.links,
@@ -300,7 +303,7 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
                      .authored = plans.back().authored});
   }
   const std::uint32_t budget = budgetOf(task, by_hand);
-  BudgetedCurves curves(plans, task.options.jobs);
+  BudgetedCurves curves(plans, groups, task);
   if (auto spent = curves.spend(budget); !spent) return tl::unexpected(spent.error());
   std::size_t fitted = 0;
   for (std::size_t n = 0; n < plans.size(); ++n) {
@@ -308,6 +311,11 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
       const auto taken =
           takeByHand(plans[n], task.robot.links[baked[n].link].name, baked[n], warnings);
       if (!taken) return tl::unexpected(taken.error());
+    } else if (plans[n].clipped) {
+      warnings.push_back(fmt::format(
+          "link '{}': all of it is lower than the clip height at the start pose, so it gets no "
+          "spheres; lower clip_height in the recipe if it needs some",
+          task.robot.links[baked[n].link].name));
     } else if (auto set = curves.take(n)) {
       baked[n].spheres = std::move(*set);
       baked[n].measured = true;
