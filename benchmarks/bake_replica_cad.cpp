@@ -121,7 +121,7 @@ int bakeAll(const std::filesystem::path& dataset, const std::filesystem::path& o
       fmt::print(stderr, "{}: {}\n", file.string(), scene.error().message);
       return 1;
     }
-    triangles += scene->triangles;
+    triangles += scene->imported.triangles;
     const Provenance provenance{.tool = "bake_replica_cad",
                                 .tool_version = "0.1.0",
                                 .options = {},

@@ -4,7 +4,7 @@
 //   fit_boxes [--up z] [--starts N] FILE...
 //
 // With --starts, the last column tells how far the minimum box is above the best of as many random
-// rotations, each walked downhill (and never below it by more than the padding).
+// rotations, each walked downhill; the padding of the boxes is in it.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -12,6 +12,8 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -100,18 +102,23 @@ int printTable(const std::vector<std::string>& files, const MeshImportOptions& o
 }  // namespace galactic::bake
 
 int main(int argc, char** argv) {
-  CLI::App app("Oriented boxes and stable poses of mesh files, and their times");
-  std::vector<std::string> files;
-  int starts = 0;
-  galactic::bake::UpAxis up = galactic::bake::UpAxis::kY;
-  const std::map<std::string, galactic::bake::UpAxis> axes{{"y", galactic::bake::UpAxis::kY},
-                                                           {"z", galactic::bake::UpAxis::kZ}};
-  app.add_option("FILE", files, "Mesh files")->required();
-  app.add_option("--up", up, "Up axis of the files: y or z")
-      ->transform(CLI::CheckedTransformer(axes));
-  app.add_option("--starts", starts, "Random rotations to compare with; 0 for none");
-  CLI11_PARSE(app, argc, argv);
-  galactic::bake::MeshImportOptions options;
-  options.up = up;
-  return galactic::bake::printTable(files, options, starts);
+  using galactic::bake::UpAxis;
+  try {
+    CLI::App app("Oriented boxes and stable poses of mesh files, and their times");
+    std::vector<std::string> files;
+    int starts = 0;
+    galactic::bake::MeshImportOptions options;
+    UpAxis up = UpAxis::kY;
+    const std::map<std::string, UpAxis> axes{{"y", UpAxis::kY}, {"z", UpAxis::kZ}};
+    app.add_option("FILE", files, "Mesh files")->required();
+    app.add_option("--up", up, "Up axis of the files: y or z")
+        ->transform(CLI::CheckedTransformer(axes));
+    app.add_option("--starts", starts, "Random rotations to compare with; 0 for none");
+    CLI11_PARSE(app, argc, argv);
+    options.up = up;
+    return galactic::bake::printTable(files, options, starts);
+  } catch (const std::exception& error) {
+    std::fputs(error.what(), stderr);
+    return static_cast<int>(galactic::ErrorCode::kInternal);
+  }
 }

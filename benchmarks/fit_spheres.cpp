@@ -80,9 +80,13 @@ Result<std::vector<SphereSet>> makeSets(const TriangleMesh& mesh, const Request&
     return std::vector{set};
   }
   if (request.curve) {
-    auto curve = fitSphereCurve(mesh, options);
+    auto curve = SphereCurve::begin(mesh, options);
     if (!curve) return tl::unexpected(curve.error());
-    return curve->sets;
+    while (!curve->complete()) {
+      if (auto refined = curve->refine(options.jobs); !refined)
+        return tl::unexpected(refined.error());
+    }
+    return curve->sets();
   }
   auto set = fitSphereSet(mesh, options);
   if (!set) return tl::unexpected(set.error());

@@ -23,11 +23,15 @@ Result<void> BakeRun::checkNotRead(const std::filesystem::path& output) const {
 }
 
 std::filesystem::path BakeRun::outputFor(const std::filesystem::path& input) const {
-  // "objects/" has an empty file name.
-  std::filesystem::path name = input.has_filename() ? input.stem() : input.parent_path().filename();
+  std::error_code unknown;
+  std::filesystem::path name = input.stem();
+  if (std::filesystem::is_directory(input, unknown)) {
+    // "objects/" has no file name and "." is none; a dot in a folder's name begins no extension.
+    name = std::filesystem::absolute(input / "", unknown).lexically_normal().parent_path();
+    name = name.has_filename() ? name.filename() : "objects";
+  }
   name += ".pack";
   if (command_.output.empty()) return name;
-  std::error_code unknown;
   const bool one_pack = command_.kind == AssetKind::kObject || command_.inputs.size() == 1;
   const bool is_folder = !one_pack || std::filesystem::is_directory(command_.output, unknown);
   return is_folder ? command_.output / name : command_.output;

@@ -69,6 +69,12 @@ class BakeRun {
 [[nodiscard]] Provenance provenanceOf(const BakeCommand& command, std::vector<SourceFile> sources,
                                       std::vector<std::string> warnings);
 
+/// The place of an error in `file`, from the place that a baker named, which knows no files.
+[[nodiscard]] inline std::string inFile(const std::filesystem::path& file,
+                                        const std::string& where) {
+  return where.empty() ? file.string() : file.string() + ": " + where;
+}
+
 /// Seconds of wall clock since `start`.
 [[nodiscard]] inline double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

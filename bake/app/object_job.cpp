@@ -40,9 +40,7 @@ void bakeObjectFile(const ObjectInput& input, const BakeCommand& command, bool a
   ObjectBakeOptions options = command.object;
   if (!alone) options.spheres.jobs = 1;
   work.baked = bakeObject(*asset, options);
-  if (!*work.baked && work.baked->error().where.empty()) {
-    work.baked->error().where = input.path.string();
-  }
+  if (!*work.baked) work.baked->error().where = inFile(input.path, work.baked->error().where);
 }
 
 std::vector<ObjectWork> bakeAll(const std::vector<ObjectInput>& inputs, BakeRun& run) {

@@ -8,6 +8,7 @@
 #include "galactic/bake/robot_baker.h"
 #include "galactic/bake/robot_pack.h"
 #include "galactic/bake/robot_recipe.h"
+#include "galactic/bake/source_file.h"
 #include "galactic/bake/urdf_import.h"
 #include "robot_outcome.h"
 
@@ -54,7 +55,8 @@ Result<std::optional<HandSpheres>> readSpheres(const std::filesystem::path& path
   return std::move(*spheres);
 }
 
-Result<BakedRobot> bakeWith(const BakeCommand& command, SourceRobot& robot) {
+Result<BakedRobot> bakeWith(const std::filesystem::path& input, const BakeCommand& command,
+                            SourceRobot& robot) {
   auto recipe = readRecipe(command.robot.recipe, robot);
   if (!recipe) return tl::unexpected(recipe.error());
   auto spheres = readSpheres(command.robot.spheres, robot);
@@ -68,7 +70,23 @@ Result<BakedRobot> bakeWith(const BakeCommand& command, SourceRobot& robot) {
     options.eps = command.object.spheres.eps;
     options.tau = command.object.spheres.tau;
   }
-  return bakeRobot(robot, *recipe ? &**recipe : nullptr, options);
+  auto baked = bakeRobot(robot, *recipe ? &**recipe : nullptr, options);
+  if (!baked && !(*recipe && baked.error().where.starts_with((*recipe)->source))) {
+    baked.error().where = inFile(input, baked.error().where);
+  }
+  return baked;
+}
+
+/// What a robot is made from besides the URDF and its meshes.
+Result<void> addSources(const std::filesystem::path& input, const RobotOptions& options,
+                        std::vector<SourceFile>& files) {
+  for (const std::filesystem::path& path : {options.recipe, options.spheres}) {
+    if (path.empty()) continue;
+    auto file = describeFile(input, path);
+    if (!file) return tl::unexpected(file.error());
+    files.push_back(std::move(*file));
+  }
+  return {};
 }
 
 }  // namespace
@@ -94,10 +112,10 @@ Result<Json> bakeRobotFile(const std::filesystem::path& input, BakeRun& run) {
     return tl::unexpected(checked.error());
   }
   run.line().show(item, "spheres", 0.3);
-  auto baked = bakeWith(command, *robot);
-  if (!baked) {
-    if (baked.error().where.empty()) baked.error().where = input.string();
-    return tl::unexpected(baked.error());
+  auto baked = bakeWith(input, command, *robot);
+  if (!baked) return tl::unexpected(baked.error());
+  if (auto added = addSources(input, command.robot, robot->files); !added) {
+    return tl::unexpected(added.error());
   }
   outcome.robot = std::move(*baked);
   if (!command.dry_run) {

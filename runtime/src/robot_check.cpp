@@ -24,7 +24,8 @@ class RobotChecker {
     offence_.require(checkRadii(*robot_.radii(), offence_.where()));
     checkSizes();
     checkLinks();
-    checkNames(*robot_.link_names(), "link_names");
+    checkNames(*robot_.link_names(), {.field = "link_names", .owner = "link"});
+    checkJointNames();
     checkPositions();
     checkGroups();
     checkPairs();
@@ -69,6 +70,9 @@ class RobotChecker {
     offence_.require(link.type() <= schema::JointType::MAX, field + ".type",
                      "is {}, wanted a value up to {}", static_cast<unsigned>(link.type()),
                      static_cast<unsigned>(schema::JointType::MAX));
+    offence_.require(n > 0 || link.type() == schema::JointType::Fixed, field + ".type",
+                     "is {} at the root, wanted 0: it has no joint",
+                     static_cast<unsigned>(link.type()));
     if (offence_.found()) return;
     offence_.require(std::isfinite(link.multiplier()) && std::isfinite(link.offset()),
                      field + ".multiplier", "or offset is not finite, wanted numbers");
@@ -85,14 +89,30 @@ class RobotChecker {
         values, positions());
   }
 
+  /// What a list of names is called, what each belongs to, and its first element that has one.
+  struct NameList {
+    const char* field;
+    const char* owner;
+    flatbuffers::uoffset_t begin = 0;
+  };
+
   void checkNames(const flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>& names,
-                  const char* field) {
+                  const NameList& list) {
     std::set<std::string_view> seen;
-    for (flatbuffers::uoffset_t n = 0; n < names.size() && !offence_.found(); ++n) {
+    for (flatbuffers::uoffset_t n = list.begin; n < names.size() && !offence_.found(); ++n) {
       const std::string_view name = names.Get(n)->string_view();
-      offence_.require(!name.empty() && seen.insert(name).second, fmt::format("{}[{}]", field, n),
-                       "is empty or a repeated name, wanted each link's own");
+      offence_.require(!name.empty() && seen.insert(name).second,
+                       fmt::format("{}[{}]", list.field, n),
+                       "is empty or a repeated name, wanted each {}'s own", list.owner);
     }
+  }
+
+  void checkJointNames() {
+    if (offence_.found()) return;
+    const std::string_view root = robot_.joint_names()->Get(0)->string_view();
+    offence_.require(root.empty(), "joint_names[0]", "is '{}', wanted none: the root has no joint",
+                     root);
+    checkNames(*robot_.joint_names(), {.field = "joint_names", .owner = "joint", .begin = 1});
   }
 
   void checkPositions() {
@@ -150,6 +170,9 @@ class RobotChecker {
       offence_.require(link < links() && grouped.insert(link).second,
                        fmt::format("{}.links[{}]", field, n),
                        "is {}, wanted one of {} links that is in no other group", link, links());
+      if (n == 0) continue;
+      offence_.require(members.Get(n - 1) < link, fmt::format("{}.links[{}]", field, n),
+                       "is {} after {}, wanted ascending links", link, members.Get(n - 1));
     }
   }
 

@@ -1,16 +1,23 @@
 // Any bytes as a pack. An even first byte: the rest is the file as it is. An odd one: the rest is
 // the payload, and a header with its right size and hash is put before it, so that the checks
-// behind the hash are reached. What opens has to answer queries safely and alike, one by one and in
-// batches.
+// behind the hash are reached; the byte's other bits choose the kind in that header. What opens has
+// to be safe to use: grids answer queries alike, one by one and in batches; objects and robots
+// show only what is in the pack, and the robot moves.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <vector>
 
+#include "galactic/kinematics.h"
+#include "galactic/object_set.h"
 #include "galactic/pack.h"
+#include "galactic/robot.h"
 #include "galactic/scene.h"
 #include "support/aligned_bytes.h"
 
@@ -73,11 +80,89 @@ void query(const ColumnGrid& grid) {
   grid.spans(grid.columnsX() - 1, grid.columnsZ() - 1, spans);
 }
 
+void useScene(const PackFile& pack) {
+  const auto scene = Scene::from(pack);
+  if (!scene) report("a pack of scenes without a scene");
+  for (const ColumnGrid& grid : scene->grids()) query(grid);
+}
+
+/// Whether every sphere has a radius of the working set and a place.
+void useSpheres(std::span<const SetSphere> spheres, std::span<const float> radii) {
+  for (const SetSphere& sphere : spheres) {
+    if (sphere.radius_index >= radii.size()) report("a sphere without a radius");
+    const Vec3& centre = sphere.centre;
+    if (!std::isfinite(centre.x) || !std::isfinite(centre.y) || !std::isfinite(centre.z)) {
+      report("a sphere without a place");
+    }
+  }
+}
+
+void useObjects(const PackFile& pack) {
+  const auto set = ObjectSet::from(pack);
+  if (!set) report("a pack of objects without objects");
+  for (std::size_t n = 0; n < set->objects().size(); ++n) {
+    const ObjectModel& object = set->objects()[n];
+    if (set->find(object.name) != n) report("an object that its name does not find");
+    if (object.spheres.empty() || object.stable_poses.empty()) report("an object without a part");
+    useSpheres(object.spheres, set->radii());
+    if (!(object.box.half_extents.x > 0)) report("a box without volume");
+    for (const StablePose& pose : object.stable_poses) {
+      if (!(pose.likelihood >= 0 && pose.likelihood <= 1)) report("a share beyond 0 to 1");
+    }
+  }
+}
+
+void useRobot(const PackFile& pack) {
+  const auto robot = Robot::from(pack);
+  if (!robot) report("a pack of a robot without a robot");
+  const std::size_t links = robot->links().size();
+  std::vector<Pose> poses(links);
+  forwardKinematics(robot->links(), {}, robot->startPositions(), poses);
+  for (std::size_t n = 0; n < links; ++n) {
+    if (robot->findLink(robot->linkName(n)) != n) report("a link that its name does not find");
+    if (robot->jointName(n).empty() != (n == 0)) report("a joint without a name");
+  }
+  useSpheres(robot->spheres(), robot->radii());
+  std::size_t spheres = 0;
+  for (const SphereGroup& group : robot->groups()) {
+    if (group.link >= links) report("a group without a link");
+    spheres += group.spheres.size();
+  }
+  if (spheres != robot->spheres().size()) report("a sphere without a group");
+  for (const GroupPair& pair : robot->testedPairs()) {
+    if (pair.first >= pair.second || pair.second >= robot->groups().size()) {
+      report("a pair of no two groups");
+    }
+  }
+  for (const ControlledJoint& joint : robot->controlledJoints()) {
+    if (joint.position >= robot->positionCount()) report("an action without a joint");
+  }
+  if (robot->endEffector() && robot->endEffector()->link >= links) report("a hand without a link");
+  if (robot->camera() && robot->camera()->link >= links) report("a camera without a link");
+}
+
+void use(const PackFile& pack) {
+  switch (pack.kind()) {
+    case PackKind::kScene:
+      return useScene(pack);
+    case PackKind::kObjects:
+      return useObjects(pack);
+    case PackKind::kRobot:
+      return useRobot(pack);
+    case PackKind::kEpisodes:
+    case PackKind::kWorld:
+      report("a kind that cannot be checked passed");
+  }
+}
+
+/// The kinds of header for a payload; odd first bytes count through them.
+constexpr std::array kKinds{PackKind::kScene, PackKind::kObjects, PackKind::kRobot};
+
 test::AlignedBytes fileOf(const std::uint8_t* data, std::size_t size) {
   const auto* first = reinterpret_cast<const std::byte*>(data);
   std::vector<std::byte> file(first + 1, first + size);
   if (data[0] % 2 == 1) {
-    const PackHeader header = makePackHeader(PackKind::kScene, file);
+    const PackHeader header = makePackHeader(kKinds[(data[0] / 2) % kKinds.size()], file);
     const auto* bytes = reinterpret_cast<const std::byte*>(&header);
     file.insert(file.begin(), bytes, bytes + sizeof(header));
   }
@@ -90,14 +175,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const test::AlignedBytes file = fileOf(data, size);
   const auto pack = PackFile::view(file.bytes(), "fuzz.pack");
-  if (!pack) {
-    if (pack.error().where.empty() || pack.error().message.empty()) {
-      report("an error without place or message");
-    }
-    return 0;
+  if (pack) {
+    use(*pack);
+  } else if (pack.error().where.empty() || pack.error().message.empty()) {
+    report("an error without place or message");
   }
-  const auto scene = Scene::from(*pack);
-  if (!scene) return 0;
-  for (const ColumnGrid& grid : scene->grids()) query(grid);
   return 0;
 }

@@ -12,7 +12,7 @@
 
 namespace {
 
-using galactic::bake::JointType;
+using galactic::JointType;
 using galactic::bake::SourceLink;
 using galactic::bake::SourceRobot;
 

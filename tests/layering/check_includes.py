@@ -41,7 +41,8 @@ HEAVY_LIBRARIES = (
                  re.compile(r"bake/src/import/assimp_reader[^/]*$")),
     HeavyLibrary("Bullet", re.compile(r"(bullet/|Bullet|LinearMath/|bt[A-Z])"),
                  re.compile(r"\bbt[A-Z][a-z]\w+"),
-                 re.compile(r"bake/src/(engines/bullet[^/]*|fit/convex_hull\.cpp)$")),
+                 re.compile(r"bake/src/(engines/bullet[^/]*|fit/convex_hull\.cpp)$|"
+                            r"tests/bake/robot/bullet[^/]*$")),
     HeavyLibrary("Embree", re.compile(r"embree\d/"), re.compile(r"\b(RTC[A-Z]\w+|rtc[A-Z]\w+)"),
                  re.compile(r"bake/src/engines/embree[^/]*$")),
     HeavyLibrary("urdfdom", re.compile(r"(urdf_|tinyxml|console_bridge/)"),
@@ -73,7 +74,7 @@ RULES = (
     Rule("pack_tool", ("runtime/include", "."), LEAN | {"CLI", "nlohmann", "png.h"}),
     Rule("bake/include", ("runtime/include", "bake/include"), frozenset({"tl"}), schema=False),
     Rule("bake/src", ("runtime/include", "bake/include", "bake/src"),
-         LEAN | {"flatbuffers", "nlohmann", "xxhash.h"}),
+         LEAN | {"Eigen", "flatbuffers", "nlohmann", "xxhash.h"}),
     Rule("bake/app", ("runtime/include", "bake/include"), LEAN | {"CLI", "nlohmann"}),
 )
 # Whose files a folder must not reach, even by a relative path.

@@ -1,7 +1,8 @@
 // Damaged packs: each truncation, each extra byte and each flipped bit.
+#include "runtime/pack_damage.h"
+
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -12,45 +13,14 @@
 namespace galactic::test {
 namespace {
 
-constexpr std::size_t kBitsPerByte = 8;
-
-void flip(AlignedBytes& bytes, std::size_t bit) {
-  bytes.bytes()[bit / kBitsPerByte] ^= std::byte{1} << (bit % kBitsPerByte);
-}
-
 TEST(DamagedPack, IsRefusedAtEachLengthOfATruncation) {
-  const AlignedBytes whole = buildPack(smallScene());
-  for (std::size_t length = 0; length < whole.size(); ++length) {
-    const AlignedBytes part(whole.bytes().first(length));
-    for (const Trust trust : {Trust::kVerify, Trust::kTrusted}) {
-      const Result<PackFile> pack = PackFile::view(part.bytes(), "short.pack", trust);
-      ASSERT_FALSE(pack.has_value()) << length;
-      ASSERT_EQ(pack.error().code, ErrorCode::kInvalidInput) << length;
-      ASSERT_EQ(pack.error().where, "short.pack") << length;
-    }
-  }
+  expectEachTruncationRefused(buildPack(smallScene()));
 }
 
-TEST(DamagedPack, IsRefusedWithBytesTooMany) {
-  const AlignedBytes whole = buildPack(smallScene());
-  for (std::size_t extra = 1; extra <= 64; ++extra) {
-    std::vector<std::byte> longer(whole.bytes().begin(), whole.bytes().end());
-    longer.resize(longer.size() + extra);
-    const AlignedBytes bytes(longer);
-    EXPECT_FALSE(PackFile::view(bytes.bytes(), "long.pack").has_value()) << extra;
-  }
-}
+TEST(DamagedPack, IsRefusedWithBytesTooMany) { expectBytesTooManyRefused(buildPack(smallScene())); }
 
 TEST(DamagedPack, IsRefusedAfterEachFlipOfASingleBit) {
-  AlignedBytes bytes = buildPack(smallScene());
-  for (std::size_t bit = 0; bit < bytes.size() * kBitsPerByte; ++bit) {
-    flip(bytes, bit);
-    const Result<PackFile> pack = PackFile::view(bytes.bytes(), "flipped.pack");
-    ASSERT_FALSE(pack.has_value()) << bit;
-    ASSERT_FALSE(pack.error().message.empty());
-    flip(bytes, bit);
-  }
-  EXPECT_TRUE(PackFile::view(bytes.bytes(), "whole.pack").has_value());
+  expectEachBitFlipRefused(buildPack(smallScene()));
 }
 
 /// Asks the scene about every cell and beyond; a sanitizer sees a read outside the pack.
@@ -97,28 +67,8 @@ void queryEverywhere(const PackFile& pack) {
 }
 
 TEST(DamagedPack, WithARecomputedHashIsRefusedOrSafeToQueryAfterEachFlip) {
-  AlignedBytes bytes = buildPack(smallScene());
-  const auto payload = bytes.bytes().subspan(sizeof(PackHeader));
-  std::size_t refused = 0;
-  const std::size_t bits = payload.size() * kBitsPerByte;
-  for (std::size_t bit = 0; bit < bits; ++bit) {
-    const std::size_t in_file = sizeof(PackHeader) * kBitsPerByte + bit;
-    flip(bytes, in_file);
-    const PackHeader header = makePackHeader(PackKind::kScene, payload);
-    std::memcpy(bytes.bytes().data(), &header, sizeof(header));
-    const Result<PackFile> pack = PackFile::view(bytes.bytes(), "flipped.pack");
-    if (pack) {
-      queryEverywhere(*pack);
-      if (testing::Test::HasFatalFailure()) FAIL() << "after flipping bit " << bit;
-    } else {
-      ++refused;
-      ASSERT_NE(pack.error().message, "");
-    }
-    flip(bytes, in_file);
-  }
-  // Both happen: codes may change and stay well-formed, offsets may not.
-  EXPECT_GT(refused, bits / 10);
-  EXPECT_LT(refused, bits * 9 / 10);
+  expectFlipsWithARightHashRefusedOrUsable(buildPack(smallScene()), PackKind::kScene,
+                                           queryEverywhere);
 }
 
 }  // namespace

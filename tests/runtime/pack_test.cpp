@@ -159,9 +159,10 @@ TEST(PackFile, ComparesThePayloadWithItsHashUnlessItIsTrusted) {
 }
 
 TEST(PackFile, RefusesAKindThatItCannotCheck) {
-  const Error error = errorAfter([](PackHeader& h) { h.kind = PackKind::kRobot; });
+  const Error error = errorAfter([](PackHeader& h) { h.kind = PackKind::kEpisodes; });
   EXPECT_EQ(error.code, ErrorCode::kUnsupported);
-  EXPECT_EQ(error.message, "is a pack of kind RBOT, this version reads only SCEN; update galactic");
+  EXPECT_EQ(error.message,
+            "is a pack of kind EPIS, this version reads only SCEN, OBJS and RBOT; update galactic");
 }
 
 TEST(PackFile, RefusesAPayloadThatIsNoFlatBufferOfOurs) {

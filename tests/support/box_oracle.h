@@ -64,7 +64,9 @@ class BoxOracle {
   /// when none helps.
   [[nodiscard]] double descend(Rotation at) const {
     double best = volumeAt(at);
-    for (double step = 0.2; step > 1e-6; step /= 2) {
+    constexpr int kHalvings = 18;
+    double step = 0.2;
+    for (int halving = 0; halving < kHalvings; ++halving, step /= 2) {
       bool improved = true;
       for (int round = 0; improved && round < 20; ++round) {
         improved = false;

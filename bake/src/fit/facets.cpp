@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -16,17 +17,32 @@ constexpr double kPlaneTolerance = 2 * kHullRounding;
 /// body is.
 constexpr double kSteepest = 0.5;
 
+/// Twice the area of a face along its outward normal, its corners being where `place` says.
+template <class Place>
+Vec3d areaOf(const std::vector<std::uint32_t>& face, const Place& place) {
+  Vec3d area;
+  const Vec3d origin = place(face[0]);
+  for (std::size_t at = 2; at < face.size(); ++at) {
+    area = area + cross(place(face[at - 1]) - origin, place(face[at]) - origin);
+  }
+  return area;
+}
+
+double planeTolerance(const ConvexHull& hull) {
+  double extent = 0;
+  for (const HullCorner& corner : hull.corners) {
+    extent = std::max(extent, norm(corner.rounded - hull.corners[0].rounded));
+  }
+  return kPlaneTolerance * extent;
+}
+
 class FacetBuilder {
  public:
-  FacetBuilder(const ConvexHull& hull, std::span<const Vec3> points)
-      : hull_(hull), points_(points), facet_of_face_(hull.faces.size(), kNone) {
+  explicit FacetBuilder(const ConvexHull& hull)
+      : hull_(hull), tolerance_(planeTolerance(hull)), facet_of_face_(hull.faces.size(), kNone) {
     areas_.reserve(hull.faces.size());
-    for (const auto& loop : hull.faces) {
-      areas_.push_back(areaOf(loop, [&](std::uint32_t c) { return hull.corners[c].rounded; }));
-    }
-    for (const HullCorner& corner : hull.corners) {
-      const Vec3d from = corner.rounded - hull.corners[0].rounded;
-      tolerance_ = std::max(tolerance_, kPlaneTolerance * norm(from));
+    for (const auto& face : hull.faces) {
+      areas_.push_back(areaOf(face, [&](std::uint32_t c) { return hull.corners[c].rounded; }));
     }
     linkNeighbours();
   }
@@ -40,10 +56,7 @@ class FacetBuilder {
     std::vector<Facet> facets;
     for (const std::uint32_t seed : by_area) {
       if (facet_of_face_[seed] != kNone) continue;
-      Facet facet;
-      collect(seed, static_cast<std::uint32_t>(facets.size()), facet);
-      facet.normal = normalOf(facet);
-      facets.push_back(std::move(facet));
+      facets.push_back(collect(seed, static_cast<std::uint32_t>(facets.size())));
     }
     return facets;
   }
@@ -51,20 +64,9 @@ class FacetBuilder {
  private:
   static constexpr std::uint32_t kNone = ~0U;
 
-  /// Twice the area of a polygon, along its normal.
-  template <class Place>
-  static Vec3d areaOf(const std::vector<std::uint32_t>& loop, const Place& place) {
-    Vec3d area;
-    const Vec3d origin = place(loop[0]);
-    for (std::size_t at = 2; at < loop.size(); ++at) {
-      area = area + cross(place(loop[at - 1]) - origin, place(loop[at]) - origin);
-    }
-    return area;
-  }
-
   void linkNeighbours() {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> face_of_edge;
-    const auto forEachEdge = [&](const auto& visit) {
+    const auto for_each_edge = [&](const auto& visit) {
       for (std::uint32_t face = 0; face < hull_.faces.size(); ++face) {
         const auto& loop = hull_.faces[face];
         for (std::size_t at = 0; at < loop.size(); ++at) {
@@ -72,18 +74,18 @@ class FacetBuilder {
         }
       }
     };
-    forEachEdge([&](std::uint32_t face, std::uint32_t a, std::uint32_t b) {
+    for_each_edge([&](std::uint32_t face, std::uint32_t a, std::uint32_t b) {
       face_of_edge.emplace(std::pair(a, b), face);
     });
     neighbours_.resize(hull_.faces.size());
-    forEachEdge([&](std::uint32_t face, std::uint32_t a, std::uint32_t b) {
+    for_each_edge([&](std::uint32_t face, std::uint32_t a, std::uint32_t b) {
       const auto beyond = face_of_edge.find({b, a});
       if (beyond != face_of_edge.end()) neighbours_[face].push_back(beyond->second);
     });
   }
 
   /// Grows a facet from its seed over faces that lie in the seed's plane.
-  void collect(std::uint32_t seed, std::uint32_t facet_index, Facet& facet) {
+  Facet collect(std::uint32_t seed, std::uint32_t facet_index) {
     const Vec3d normal = normalized(areas_[seed]);
     const double height = dot(hull_.corners[hull_.faces[seed][0]].rounded, normal);
     const auto joins = [&](std::uint32_t face) {
@@ -93,50 +95,19 @@ class FacetBuilder {
                            return height - dot(hull_.corners[corner].rounded, normal) <= tolerance_;
                          });
     };
-    facet.faces = {seed};
+    Facet facet{seed};
     facet_of_face_[seed] = facet_index;
-    for (std::size_t at = 0; at < facet.faces.size(); ++at) {
-      for (const std::uint32_t next : neighbours_[facet.faces[at]]) {
+    for (std::size_t at = 0; at < facet.size(); ++at) {
+      for (const std::uint32_t next : neighbours_[facet[at]]) {
         if (facet_of_face_[next] != kNone || !joins(next)) continue;
         facet_of_face_[next] = facet_index;
-        facet.faces.push_back(next);
+        facet.push_back(next);
       }
     }
-  }
-
-  /// From the sources of the corners, unless the hull's rounding decided which corners there are:
-  /// then their plane may cut through the body, and that of the rounded corners is taken.
-  [[nodiscard]] Vec3d normalOf(const Facet& facet) const {
-    Vec3d exact;
-    Vec3d rounded;
-    for (const std::uint32_t face : facet.faces) {
-      rounded = rounded + areas_[face];
-      exact = exact + areaOf(hull_.faces[face], [&](std::uint32_t c) { return source(c); });
-    }
-    const Vec3d normal = normalized(exact);
-    double plane = 0;
-    double support = 0;
-    bool first = true;
-    for (const std::uint32_t face : facet.faces) {
-      for (const std::uint32_t corner : hull_.faces[face]) {
-        const double here = dot(source(corner), normal);
-        plane = first ? here : std::min(plane, here);
-        first = false;
-      }
-    }
-    support = plane;
-    for (std::uint32_t corner = 0; corner < hull_.corners.size(); ++corner) {
-      support = std::max(support, dot(source(corner), normal));
-    }
-    return support - plane <= 2 * tolerance_ ? normal : normalized(rounded);
-  }
-
-  [[nodiscard]] Vec3d source(std::uint32_t corner) const {
-    return widen(points_[hull_.corners[corner].source]);
+    return facet;
   }
 
   const ConvexHull& hull_;
-  std::span<const Vec3> points_;
   double tolerance_ = 0;
   std::vector<Vec3d> areas_;
   std::vector<std::vector<std::uint32_t>> neighbours_;
@@ -145,8 +116,32 @@ class FacetBuilder {
 
 }  // namespace
 
-std::vector<Facet> planarFacets(const ConvexHull& hull, std::span<const Vec3> points) {
-  return FacetBuilder(hull, points).build();
+std::vector<Facet> planarFacets(const ConvexHull& hull) { return FacetBuilder(hull).build(); }
+
+Vec3d facetNormal(const ConvexHull& hull, std::span<const Vec3> points, const Facet& facet) {
+  const auto source = [&](std::uint32_t corner) {
+    return widen(points[hull.corners[corner].source]);
+  };
+  Vec3d exact;
+  Vec3d rounded;
+  for (const std::uint32_t face : facet) {
+    exact = exact + areaOf(hull.faces[face], source);
+    rounded = rounded +
+              areaOf(hull.faces[face], [&](std::uint32_t c) { return hull.corners[c].rounded; });
+  }
+  const Vec3d normal = normalized(exact);
+  // The lowest corner of the facet, and the highest of the body.
+  double plane = std::numeric_limits<double>::infinity();
+  double support = -plane;
+  for (const std::uint32_t face : facet) {
+    for (const std::uint32_t corner : hull.faces[face]) {
+      plane = std::min(plane, dot(source(corner), normal));
+    }
+  }
+  for (std::uint32_t corner = 0; corner < hull.corners.size(); ++corner) {
+    support = std::max(support, dot(source(corner), normal));
+  }
+  return support - plane <= 2 * planeTolerance(hull) ? normal : normalized(rounded);
 }
 
 }  // namespace galactic::bake::fit

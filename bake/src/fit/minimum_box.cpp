@@ -107,13 +107,13 @@ std::vector<BoxCandidate> bestDifferent(std::vector<BoxCandidate> candidates) {
 /// Searches the rotations near a box by Nelder and Mead's simplex of the size `radians`.
 BoxCandidate turnToBetter(const PointSet& points, const BoxCandidate& box, double min_side,
                           const SimplexOptions& options) {
-  const auto axesAt = [&](const Vec3d& turn) {
+  const auto axes_at = [&](const Vec3d& turn) {
     return Axes{rotated(box.axes[0], turn), rotated(box.axes[1], turn), rotated(box.axes[2], turn)};
   };
   const SimplexResult found = searchSimplex(
-      [&](const Vec3d& turn) { return boxVolume(points, axesAt(turn), min_side); }, options);
+      [&](const Vec3d& turn) { return boxVolume(points, axes_at(turn), min_side); }, options);
   if (found.value >= box.volume) return box;
-  return {axesAt(found.place), found.value};
+  return {axes_at(found.place), found.value};
 }
 
 std::vector<BoxCandidate> seedBoxes(const PointSet& points, const ConvexHull& hull,

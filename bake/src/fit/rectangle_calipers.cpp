@@ -78,20 +78,20 @@ void convexPolygon(std::vector<Vec2d>& points, std::vector<Vec2d>& polygon) {
 
 Vec2d leastRectangleDirection(std::span<const Vec2d> polygon, double min_side) {
   if (polygon.size() < 2) return {1, 0};
-  const auto edgeDirection = [&](std::size_t from) {
+  const auto edge_direction = [&](std::size_t from) {
     const Vec2d& a = polygon[from];
     const Vec2d& b = polygon[from + 1 < polygon.size() ? from + 1 : 0];
     const double length = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
     return length > 0 ? Vec2d{(b.x - a.x) / length, (b.y - a.y) / length} : Vec2d{1, 0};
   };
-  const Vec2d first = edgeDirection(0);
+  const Vec2d first = edge_direction(0);
   TurningSupport front(polygon, first);
   TurningSupport left(polygon, {-first.y, first.x});
   TurningSupport back(polygon, {-first.x, -first.y});
   Vec2d best_direction = first;
   double best_area = 0;
   for (std::size_t edge = 0; edge < polygon.size(); ++edge) {
-    const Vec2d u = edgeDirection(edge);
+    const Vec2d u = edge_direction(edge);
     const Vec2d v{-u.y, u.x};
     const double length = front.turnTo(u) + back.turnTo({-u.x, -u.y});
     const double width = left.turnTo(v) - along(polygon[edge], v);

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "galactic/bake/source_file.h"
 #include "galactic/mapped_file.h"
 
 namespace galactic::bake {
@@ -84,6 +85,12 @@ std::string nameRelativeTo(const fs::path& main_input, const fs::path& file) {
   std::error_code ignored;
   const fs::path folder = fs::absolute(main_input, ignored).lexically_normal().parent_path();
   return fs::absolute(file, ignored).lexically_normal().lexically_relative(folder).generic_string();
+}
+
+Result<SourceFile> describeFile(const fs::path& main_input, const fs::path& path) {
+  SourceFile file{.name = nameRelativeTo(main_input, path)};
+  if (auto hashed = hashFile(file, path); !hashed) return tl::unexpected(hashed.error());
+  return file;
 }
 
 void findTextures(SourceAsset& asset, const fs::path& main_input) {

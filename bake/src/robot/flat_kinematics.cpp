@@ -1,8 +1,11 @@
 #include "flat_kinematics.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <string>
+
+#include "fit/rotation.h"
 
 namespace galactic::bake {
 namespace {
@@ -13,10 +16,16 @@ Vec3 vectorOf(const std::array<double, 3>& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
-/// Limits of the n-th value of a joint: the URDF's belong to joints of one value.
+/// The nearest float; some URDFs write limits beyond all floats for none.
+float nearestFloat(double value) {
+  constexpr auto kLargest = static_cast<double>(kUnlimited);
+  return static_cast<float>(std::clamp(value, -kLargest, kLargest));
+}
+
+/// Limits of each value of a joint: the URDF's belong to joints of one value.
 PositionLimits limitsOf(const SourceLink& link) {
-  if (!link.limits) return {-kUnlimited, kUnlimited};
-  return {static_cast<float>(link.limits->lower), static_cast<float>(link.limits->upper)};
+  if (!link.limits || positionCount(link.joint_type) != 1) return {-kUnlimited, kUnlimited};
+  return {nearestFloat(link.limits->lower), nearestFloat(link.limits->upper)};
 }
 
 float nearestToZero(const PositionLimits& limits) {
@@ -35,35 +44,45 @@ void addPositions(const SourceLink& link, LinkFrame& frame, FlatKinematics& flat
   if (link.joint_type == JointType::kFloating) flat.start_positions.back() = 1;
 }
 
+/// Where the joint of this name has its value; none where it has no value of its own.
+std::optional<std::size_t> positionOf(const SourceRobot& robot, const FlatKinematics& flat,
+                                      const std::string& joint) {
+  const auto link =
+      std::find_if(robot.links.begin(), robot.links.end(),
+                   [&](const SourceLink& candidate) { return candidate.joint_name == joint; });
+  if (link == robot.links.end() || link->mimic) return std::nullopt;
+  const LinkFrame& frame = flat.links[static_cast<std::size_t>(link - robot.links.begin())];
+  if (frame.position < 0) return std::nullopt;
+  return static_cast<std::size_t>(frame.position);
+}
+
 void applyStartPose(const SourceRobot& robot, const RobotRecipe& recipe, FlatKinematics& flat) {
+  // Narrower limits of the recipe hold from the start.
+  for (const RecipeJoint& joint : recipe.joints) {
+    const auto position = positionOf(robot, flat, joint.joint.name);
+    if (!position) continue;
+    float& start = flat.start_positions[*position];
+    if (joint.min) start = std::max(start, nearestFloat(*joint.min));
+    if (joint.max) start = std::min(start, nearestFloat(*joint.max));
+  }
   for (const RecipeStart& start : recipe.start_pose) {
-    const auto link = std::find_if(
-        robot.links.begin(), robot.links.end(),
-        [&](const SourceLink& candidate) { return candidate.joint_name == start.joint.name; });
-    if (link == robot.links.end()) continue;
-    const LinkFrame& frame = flat.links[static_cast<std::size_t>(link - robot.links.begin())];
-    if (frame.position < 0 || link->mimic) continue;
-    const auto position = static_cast<std::size_t>(frame.position);
-    flat.start_positions[position] =
-        std::clamp(static_cast<float>(start.position), flat.limits[position].lower,
-                   flat.limits[position].upper);
+    const auto position = positionOf(robot, flat, start.joint.name);
+    if (!position) continue;
+    const PositionLimits& limits = flat.limits[*position];
+    flat.start_positions[*position] =
+        std::clamp(nearestFloat(start.position), limits.lower, limits.upper);
   }
 }
 
 }  // namespace
 
 Pose poseOf(const Affine& rigid) {
-  Eigen::Matrix3d rotation;
-  rotation << rigid[0], rigid[1], rigid[2], rigid[4], rigid[5], rigid[6], rigid[8], rigid[9],
-      rigid[10];
-  Eigen::Quaterniond q(rotation);
-  q.normalize();
-  // Of the two quaternions of a rotation the one with w >= 0, so that bytes are stable.
-  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  const fit::Axes axes{{{rigid[0], rigid[4], rigid[8]},
+                        {rigid[1], rigid[5], rigid[9]},
+                        {rigid[2], rigid[6], rigid[10]}}};
   return {
       {static_cast<float>(rigid[3]), static_cast<float>(rigid[7]), static_cast<float>(rigid[11])},
-      {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()),
-       static_cast<float>(q.w())}};
+      fit::quaternionOf(axes)};
 }
 
 FlatKinematics flattenKinematics(const SourceRobot& robot, const RobotRecipe* recipe) {
@@ -81,8 +100,8 @@ FlatKinematics flattenKinematics(const SourceRobot& robot, const RobotRecipe* re
     if (!link.mimic || link.parent < 0) continue;
     LinkFrame& frame = flat.links[n];
     frame.position = flat.links[link.mimic->link].position;
-    frame.multiplier = static_cast<float>(link.mimic->multiplier);
-    frame.offset = static_cast<float>(link.mimic->offset);
+    frame.multiplier = nearestFloat(link.mimic->multiplier);
+    frame.offset = nearestFloat(link.mimic->offset);
   }
   if (recipe != nullptr) applyStartPose(robot, *recipe, flat);
   return flat;

@@ -25,6 +25,10 @@ struct GroupPlan {
   /// In the group's frame.
   std::vector<HandSphere> by_hand;
   bool authored = false;
+  /// All of the mesh is lower than the clip height, so nothing needs cover.
+  bool clipped = false;
+
+  [[nodiscard]] bool hasSurface() const { return !mesh.triangles.empty() && !clipped; }
 };
 
 const RecipeLinkSpheres* ruleOf(const RobotRecipe* recipe, const std::string& link) {
@@ -34,14 +38,6 @@ const RecipeLinkSpheres* ruleOf(const RobotRecipe* recipe, const std::string& li
     return rule.link.name == link;
   });
   return found == rules.end() ? nullptr : &*found;
-}
-
-const LinkSpheres* handSpheresOf(const RobotBakeOptions& options, const std::string& link) {
-  if (!options.hand_spheres) return nullptr;
-  const auto& links = options.hand_spheres->links;
-  const auto found = std::find_if(links.begin(), links.end(),
-                                  [&](const LinkSpheres& one) { return one.link == link; });
-  return found == links.end() ? nullptr : &*found;
 }
 
 /// Makes the plan of one group after the other.
@@ -77,8 +73,10 @@ class Planner {
         addByHand(rule->spheres, group.group_from_link[n], plan);
         if (rule->skip) continue;
       }
-      if (const LinkSpheres* given = handSpheresOf(task_.options, name)) {
-        addByHand(given->spheres, group.group_from_link[n], plan);
+      if (task_.options.hand_spheres) {
+        for (const LinkSpheres& given : task_.options.hand_spheres->links) {
+          if (given.link == name) addByHand(given.spheres, group.group_from_link[n], plan);
+        }
       }
       addSurface(task_.surfaces[group.links[n]], group.group_from_link[n], plan.mesh);
     }
@@ -89,6 +87,7 @@ class Planner {
       setBounds(plan.mesh);
       plan.fit.support = clipPlane(task_.world_from_link[group.link],
                                    static_cast<float>(clip.value_or(clip_height_)));
+      plan.clipped = isBeyond(plan.mesh, *plan.fit.support);
     }
     return plan;
   }
@@ -136,6 +135,12 @@ class Planner {
     return {up, height - world_from_group.translation.y};
   }
 
+  /// Whether no part of the mesh is on the side of the plane where spheres may be.
+  static bool isBeyond(const TriangleMesh& mesh, const HalfSpace& plane) {
+    return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                       [&](const Vec3& v) { return dot(plane.normal, v) <= plane.offset; });
+  }
+
   const SphereTask& task_;
   double eps_ = kDefaultEps;
   double tau_ = kDefaultTau;
@@ -163,6 +168,12 @@ double snapRadii(const std::vector<HandSphere>& by_hand, const std::vector<float
   return largest;
 }
 
+/// The fitter knows no links: says whose mesh it was.
+tl::unexpected<Error> ofLink(const std::string& link, Error error) {
+  error.where = fmt::format("link '{}': {}", link, error.where);
+  return tl::unexpected<Error>(std::move(error));
+}
+
 Result<void> takeByHand(const GroupPlan& plan, const std::string& link, BakedGroup& group,
                         std::vector<std::string>& warnings) {
   const double change = snapRadii(plan.by_hand, plan.fit.radii, group.spheres.spheres);
@@ -173,9 +184,9 @@ Result<void> takeByHand(const GroupPlan& plan, const std::string& link, BakedGro
         "set; choose --radii that hold them",
         link, 1e3 * change));
   }
-  if (plan.mesh.triangles.empty() || group.spheres.spheres.empty()) return {};
+  if (!plan.hasSurface() || group.spheres.spheres.empty()) return {};
   auto quality = measureSphereSet(plan.mesh, group.spheres.spheres, plan.fit);
-  if (!quality) return tl::unexpected(quality.error());
+  if (!quality) return ofLink(link, quality.error());
   group.spheres.quality = *quality;
   group.spheres.guaranteed_gap = quality->gap.max;
   group.spheres.guaranteed_protrusion = quality->protrusion.max;
@@ -193,35 +204,84 @@ std::uint32_t budgetOf(const SphereTask& task, std::size_t by_hand) {
   return most > by_hand ? most - static_cast<std::uint32_t>(by_hand) : 1;
 }
 
-/// Curves of all groups that are fitted, each on its own thread; the last link first, since the
-/// root's group tends to be the largest: work is handed out from the largest mesh on.
-Result<std::vector<SphereCurve>> fitCurves(const std::vector<GroupPlan>& plans,
-                                           const SphereTask& task) {
-  std::vector<SphereCurve> curves(plans.size());
-  std::vector<std::optional<Error>> errors(plans.size());
-  std::vector<std::size_t> order;
-  for (std::size_t n = 0; n < plans.size(); ++n) {
-    if (!plans[n].authored && !plans[n].mesh.triangles.empty()) order.push_back(n);
-  }
-  const auto size = [&](std::size_t n) {
-    const Bounds& b = plans[n].mesh.bounds;
-    return (b.max.x - b.min.x) + (b.max.y - b.min.y) + (b.max.z - b.min.z);
-  };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
-  parallelFor(task.options.jobs, order.size(), [&](std::size_t n) {
-    auto curve = fitSphereCurve(plans[order[n]].mesh, plans[order[n]].fit);
-    if (curve) {
-      curves[order[n]] = std::move(*curve);
-    } else {
-      errors[order[n]] = std::move(curve.error());
+/// A curve is refined while one of its tightest sets, this many, is taken: the next may be worth
+/// more, even where the one before it is not.
+constexpr std::size_t kLookAhead = 2;
+
+/// The trade-off curves of all groups that are fitted, and what the budget takes of each.
+class BudgetedCurves {
+ public:
+  BudgetedCurves(const std::vector<GroupPlan>& plans, const std::vector<RigidGroup>& groups,
+                 const SphereTask& task)
+      : plans_(plans), groups_(groups), task_(task), curves_(plans.size()) {}
+
+  /// Refines each curve as far as the budget reaches.
+  Result<void> spend(std::uint32_t budget) {
+    std::vector<std::size_t> wanted;
+    for (std::size_t n = 0; n < plans_.size(); ++n) {
+      if (!plans_[n].authored && plans_[n].hasSurface()) wanted.push_back(n);
     }
-  });
-  for (const auto& error : errors) {
-    if (error) return tl::unexpected(*error);
+    // The largest first, so that it does not keep all others waiting at the end.
+    std::stable_sort(wanted.begin(), wanted.end(),
+                     [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
+    while (!wanted.empty()) {
+      if (auto refined = refine(wanted); !refined) return refined;
+      chosen_ = spendBudget(sets(), budget);
+      std::erase_if(wanted, [&](std::size_t n) {
+        return curves_[n]->complete() || chosen_[n] + kLookAhead < curves_[n]->sets().size();
+      });
+    }
+    return {};
   }
-  return curves;
-}
+
+  /// The set that the budget takes of a group that is fitted.
+  [[nodiscard]] std::optional<SphereSet> take(std::size_t group) const {
+    if (!curves_[group]) return std::nullopt;
+    return curves_[group]->take(chosen_[group]);
+  }
+
+ private:
+  [[nodiscard]] float size(std::size_t group) const {
+    const Bounds& b = plans_[group].mesh.bounds;
+    return (b.max.x - b.min.x) + (b.max.y - b.min.y) + (b.max.z - b.min.z);
+  }
+
+  [[nodiscard]] std::vector<SphereSets> sets() const {
+    std::vector<SphereSets> sets;
+    for (const auto& curve : curves_) sets.push_back(curve ? curve->sets() : SphereSets());
+    return sets;
+  }
+
+  Result<void> refine(const std::vector<std::size_t>& groups) {
+    std::vector<std::optional<Error>> errors(groups.size());
+    const unsigned jobs = task_.options.jobs;
+    const unsigned jobs_each =
+        std::max(1U, jobs / static_cast<unsigned>(std::min<std::size_t>(groups.size(), jobs)));
+    parallelFor(jobs, groups.size(), [&](std::size_t n) {
+      const auto refined = refineGroup(groups[n], jobs_each);
+      if (!refined) errors[n] = refined.error();
+    });
+    for (std::size_t n = 0; n < groups.size(); ++n) {
+      if (errors[n]) return ofLink(task_.robot.links[groups_[groups[n]].link].name, *errors[n]);
+    }
+    return {};
+  }
+
+  Result<void> refineGroup(std::size_t group, unsigned jobs) {
+    if (!curves_[group]) {
+      auto curve = SphereCurve::begin(plans_[group].mesh, plans_[group].fit);
+      if (!curve) return tl::unexpected(curve.error());
+      curves_[group] = std::move(*curve);
+    }
+    return curves_[group]->refine(jobs);
+  }
+
+  const std::vector<GroupPlan>& plans_;
+  const std::vector<RigidGroup>& groups_;
+  const SphereTask& task_;
+  std::vector<std::optional<SphereCurve>> curves_;
+  std::vector<std::size_t> chosen_;
+};
 
 }  // namespace
 
@@ -243,17 +303,21 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
                      .authored = plans.back().authored});
   }
   const std::uint32_t budget = budgetOf(task, by_hand);
-  const auto curves = fitCurves(plans, task);
-  if (!curves) return tl::unexpected(curves.error());
-  const std::vector<std::size_t> chosen = spendBudget(*curves, budget);
+  BudgetedCurves curves(plans, groups, task);
+  if (auto spent = curves.spend(budget); !spent) return tl::unexpected(spent.error());
   std::size_t fitted = 0;
   for (std::size_t n = 0; n < plans.size(); ++n) {
     if (plans[n].authored) {
       const auto taken =
           takeByHand(plans[n], task.robot.links[baked[n].link].name, baked[n], warnings);
       if (!taken) return tl::unexpected(taken.error());
-    } else if (!(*curves)[n].sets.empty()) {
-      baked[n].spheres = (*curves)[n].sets[chosen[n]];
+    } else if (plans[n].clipped) {
+      warnings.push_back(fmt::format(
+          "link '{}': all of it is lower than the clip height at the start pose, so it gets no "
+          "spheres; lower clip_height in the recipe if it needs some",
+          task.robot.links[baked[n].link].name));
+    } else if (auto set = curves.take(n)) {
+      baked[n].spheres = std::move(*set);
       baked[n].measured = true;
       fitted += baked[n].spheres.spheres.size();
     }

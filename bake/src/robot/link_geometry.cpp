@@ -49,12 +49,12 @@ class PrimitiveBuilder {
   Surface surface_;
 };
 
-/// Steps of a full circle whose chords stay within kTessellationError; a multiple of four, so that
-/// the extremes along the axes are vertices.
-std::uint32_t circleSteps(double radius) {
+/// Steps of a full circle whose chords stay within `error` of it; a multiple of four, so that the
+/// extremes along the axes are vertices.
+std::uint32_t circleSteps(double radius, double error) {
   constexpr std::uint32_t kFewest = 16;
   constexpr std::uint32_t kMost = 256;
-  const double ratio = std::clamp(1 - kTessellationError / std::max(radius, 1e-9), -1.0, 1.0);
+  const double ratio = std::clamp(1 - error / std::max(radius, 1e-9), -1.0, 1.0);
   const double half_step = std::acos(ratio);
   const double steps = half_step > 0 ? std::numbers::pi / half_step : kMost;
   const auto rounded =
@@ -115,7 +115,7 @@ void addCap(const std::vector<std::uint32_t>& rim, std::uint32_t point, bool abo
 }
 
 void addCylinder(const CylinderShape& cylinder, PrimitiveBuilder& builder) {
-  const std::uint32_t steps = circleSteps(cylinder.radius);
+  const std::uint32_t steps = circleSteps(cylinder.radius, kTessellationError);
   const double top = cylinder.length / 2;
   const auto low = ring(cylinder.radius, -top, steps, builder);
   const auto high = ring(cylinder.radius, top, steps, builder);
@@ -125,7 +125,8 @@ void addCylinder(const CylinderShape& cylinder, PrimitiveBuilder& builder) {
 }
 
 void addSphere(const SphereShape& sphere, PrimitiveBuilder& builder) {
-  const std::uint32_t steps = circleSteps(sphere.radius);
+  // The middle of a facet is deep by a chord around and a chord up.
+  const std::uint32_t steps = circleSteps(sphere.radius, kTessellationError / 2);
   const std::uint32_t bands = steps / 2;
   std::vector<std::uint32_t> below;
   for (std::uint32_t n = 1; n < bands; ++n) {

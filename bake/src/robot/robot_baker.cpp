@@ -10,8 +10,10 @@
 #include "group_spheres.h"
 #include "import/affine.h"
 #include "link_geometry.h"
+#include "recipe/nearest_name.h"
 #include "rigid_groups.h"
 #include "self_collision.h"
+#include "sphere_set/check_options.h"
 #include "stage_timer.h"
 
 namespace galactic::bake {
@@ -56,6 +58,52 @@ std::vector<Affine> startTransforms(const FlatKinematics& flat) {
     transforms.push_back(affineOf(parent_from_link[n]));
   }
   return transforms;
+}
+
+/// Names that a pack needs: the run finds links and joints by them.
+Result<void> checkNames(const SourceRobot& robot, const RobotRecipe* recipe) {
+  if (robot.links.empty()) {
+    return fail(ErrorCode::kInvalidInput, "", "the robot has no links; give at least one");
+  }
+  if (robot.name.empty() && (recipe == nullptr || recipe->name.empty())) {
+    return fail(ErrorCode::kInvalidInput, "",
+                "the robot has no name; give <robot> one, or the recipe");
+  }
+  for (std::size_t n = 0; n < robot.links.size(); ++n) {
+    if (robot.links[n].name.empty()) {
+      return fail(ErrorCode::kInvalidInput, "",
+                  fmt::format("a link has an empty name, number {} from the root on; name it", n));
+    }
+    if (n > 0 && robot.links[n].joint_name.empty()) {
+      return fail(ErrorCode::kInvalidInput, fmt::format("link '{}'", robot.links[n].name),
+                  "the joint to its parent has an empty name; name it");
+    }
+  }
+  return {};
+}
+
+/// The working set and the tolerances, also where nothing is fitted.
+Result<void> checkShapeOptions(const RobotBakeOptions& options) {
+  SphereSetOptions asked;
+  asked.radii = options.radii;
+  if (options.eps) asked.eps = *options.eps;
+  if (options.tau) asked.tau = *options.tau;
+  return sphere_fit::checkOptions(asked);
+}
+
+/// Spheres for a link that is not there would be lost without a word.
+Result<void> checkHandSpheres(const SourceRobot& robot, const RobotBakeOptions& options) {
+  if (!options.hand_spheres) return {};
+  std::vector<std::string> names;
+  for (const SourceLink& link : robot.links) names.push_back(link.name);
+  for (const LinkSpheres& given : options.hand_spheres->links) {
+    if (std::find(names.begin(), names.end(), given.link) != names.end()) continue;
+    return fail(ErrorCode::kInvalidInput, "",
+                fmt::format("hand-made spheres are given for the link '{}', which the robot '{}' "
+                            "does not have; {}",
+                            given.link, robot.name, suggestNames(given.link, names)));
+  }
+  return {};
 }
 
 /// Builds a robot part by part.
@@ -204,6 +252,10 @@ Result<BakedRobot> bakeRobot(const SourceRobot& robot, const RobotRecipe* recipe
                              const RobotBakeOptions& options) {
   if (recipe != nullptr) {
     if (auto fits = checkRecipe(*recipe, robot); !fits) return tl::unexpected(fits.error());
+  }
+  for (const auto& checked :
+       {checkNames(robot, recipe), checkShapeOptions(options), checkHandSpheres(robot, options)}) {
+    if (!checked) return tl::unexpected(checked.error());
   }
   return RobotBaker(robot, recipe, options).bake();
 }

@@ -1,60 +1,96 @@
 #include "sphere_budget.h"
 
-#include <optional>
+#include <algorithm>
+#include <limits>
 
 namespace galactic::bake {
 namespace {
 
-/// What a set gets wrong, metres: both sides of the surface count, and the tails too.
+/// What a set gets wrong, metres times square metres: both sides of the surface count, and the
+/// tails too.
 double errorOf(const SphereSet& set) {
   const SphereSetQuality& quality = set.quality;
-  return quality.gap.mean + quality.protrusion.mean +
-         0.5 * (quality.gap.p95 + quality.protrusion.p95);
+  return quality.area * (quality.gap.mean + quality.protrusion.mean +
+                         0.5 * (quality.gap.p95 + quality.protrusion.p95));
 }
 
-/// A step of one curve.
-struct Step {
-  std::size_t curve = 0;
-  std::size_t to = 0;
-  double gain = 0;
-};
-
-std::optional<Step> bestStep(const std::vector<SphereCurve>& curves,
-                             const std::vector<std::size_t>& chosen, std::size_t left) {
-  std::optional<Step> best;
-  for (std::size_t n = 0; n < curves.size(); ++n) {
-    const std::vector<SphereSet>& sets = curves[n].sets;
-    for (std::size_t to = chosen[n] + 1; to < sets.size(); ++to) {
-      const std::size_t now = sets[chosen[n]].spheres.size();
-      if (sets[to].spheres.size() <= now) continue;
-      const std::size_t more = sets[to].spheres.size() - now;
-      if (more > left) continue;
-      const double gain = sets[to].quality.area * (errorOf(sets[chosen[n]]) - errorOf(sets[to])) /
-                          static_cast<double>(more);
-      if (gain > 0 && (!best || gain > best->gain)) best = Step{n, to, gain};
-    }
+std::size_t coarsestCount(const std::vector<SphereSets>& curves) {
+  std::size_t count = 0;
+  for (const SphereSets& curve : curves) {
+    if (!curve.empty()) count += curve.front().spheres.size();
   }
-  return best;
+  return count;
 }
+
+std::size_t finestCount(const std::vector<SphereSets>& curves) {
+  std::size_t count = 0;
+  for (const SphereSets& curve : curves) {
+    if (!curve.empty()) count += curve.back().spheres.size();
+  }
+  return count;
+}
+
+std::vector<std::size_t> finestSets(const std::vector<SphereSets>& curves) {
+  std::vector<std::size_t> chosen;
+  for (const SphereSets& curve : curves) {
+    chosen.push_back(curve.empty() ? 0 : curve.size() - 1);
+  }
+  return chosen;
+}
+
+/// The least error of the first curves for each number of spheres, and the set of the last of them
+/// that gives it. Curves are added one by one.
+class BudgetTable {
+ public:
+  explicit BudgetTable(std::size_t most) : least_(most + 1, 0) {}
+
+  void add(const SphereSets& sets) {
+    constexpr double kImpossible = std::numeric_limits<double>::infinity();
+    std::vector<double> least(least_.size(), kImpossible);
+    std::vector<std::uint32_t> choice(least_.size(), 0);
+    for (std::uint32_t set = 0; set < sets.size(); ++set) {
+      const std::size_t count = sets[set].spheres.size();
+      const double error = errorOf(sets[set]);
+      for (std::size_t used = count; used < least.size(); ++used) {
+        const double sum = least_[used - count] + error;
+        if (sum < least[used]) {
+          least[used] = sum;
+          choice[used] = set;
+        }
+      }
+    }
+    least_ = std::move(least);
+    choices_.push_back(std::move(choice));
+  }
+
+  /// The sets of all curves that were added, with at most this many spheres.
+  [[nodiscard]] std::vector<std::size_t> best(const std::vector<SphereSets>& curves) const {
+    std::vector<std::size_t> chosen(curves.size(), 0);
+    std::size_t left = least_.size() - 1;
+    std::size_t row = choices_.size();
+    for (std::size_t n = curves.size(); n-- > 0;) {
+      if (curves[n].empty()) continue;
+      chosen[n] = choices_[--row][left];
+      left -= curves[n][chosen[n]].spheres.size();
+    }
+    return chosen;
+  }
+
+ private:
+  std::vector<double> least_;
+  std::vector<std::vector<std::uint32_t>> choices_;
+};
 
 }  // namespace
 
-std::vector<std::size_t> spendBudget(const std::vector<SphereCurve>& curves, std::uint32_t budget) {
-  std::vector<std::size_t> chosen(curves.size(), 0);
-  std::size_t used = 0;
-  for (std::size_t n = 0; n < curves.size(); ++n) {
-    if (curves[n].sets.empty()) continue;
-    if (budget == 0) chosen[n] = curves[n].sets.size() - 1;
-    used += curves[n].sets[chosen[n]].spheres.size();
+std::vector<std::size_t> spendBudget(const std::vector<SphereSets>& curves, std::uint32_t budget) {
+  if (budget == 0) return finestSets(curves);
+  if (coarsestCount(curves) > budget) return std::vector<std::size_t>(curves.size(), 0);
+  BudgetTable table(std::min<std::size_t>(budget, finestCount(curves)));
+  for (const SphereSets& curve : curves) {
+    if (!curve.empty()) table.add(curve);
   }
-  while (used < budget) {
-    const std::optional<Step> step = bestStep(curves, chosen, budget - used);
-    if (!step) break;
-    const std::vector<SphereSet>& sets = curves[step->curve].sets;
-    used += sets[step->to].spheres.size() - sets[chosen[step->curve]].spheres.size();
-    chosen[step->curve] = step->to;
-  }
-  return chosen;
+  return table.best(curves);
 }
 
 }  // namespace galactic::bake

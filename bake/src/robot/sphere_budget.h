@@ -7,11 +7,16 @@
 
 namespace galactic::bake {
 
+/// The sets of one curve, by rising count.
+using SphereSets = std::vector<SphereSet>;
+
 /// Which set of each curve to take, so that all together have at most `budget` spheres (0: no
-/// limit, the finest sets) and the robot's surface is approximated best: from the coarsest sets on,
-/// the step that lowers the error times the area most per sphere is taken while one fits. Where
-/// even the coarsest sets have more, those are taken. Curves may be empty. Deterministic.
-[[nodiscard]] std::vector<std::size_t> spendBudget(const std::vector<SphereCurve>& curves,
+/// limit, the finest sets) and the sum of error times area over all curves is least; exact, by
+/// dynamic programming over the number of spheres (a multiple-choice knapsack). Of equally good
+/// ways the one with the coarser last curves is taken. Where even the coarsest sets have more than
+/// the budget, those are taken. Curves may be empty; the sets of one rise in count. Deterministic;
+/// work grows with budget times sets.
+[[nodiscard]] std::vector<std::size_t> spendBudget(const std::vector<SphereSets>& curves,
                                                    std::uint32_t budget);
 
 }  // namespace galactic::bake

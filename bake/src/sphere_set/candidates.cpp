@@ -9,10 +9,10 @@
 namespace galactic::bake::sphere_fit {
 namespace {
 
-/// Steps of a lattice across the disc that a sphere covers of a flat face.
-constexpr double kStepsPerDisc = 6;
-/// About as many lattice points per radius at most.
-constexpr double kMostPoints = 80'000;
+/// Steps of a lattice across the disc that a sphere covers of a flat face: a large sphere that just
+/// fits saves many of the smallest, so it is worth more tries.
+constexpr double kStepsPerDisc = 12;
+constexpr double kStepsPerSmallestDisc = 6;
 /// Centres are pushed to this much below the highest level, metres: rounding must not lift them.
 constexpr double kBelowHighest = 1e-6;
 /// Of thin parts' spheres those are kept whose protrusion is this share of the radius above the
@@ -37,7 +37,7 @@ Candidate pushedOutwards(const FitTask& task, std::uint32_t radius_index,
   if (away > 0) {
     const Vec3d outwards = (from.position - from.surface.nearest) * (1 / here);
     const Vec3d pushed = asStored(from.position + outwards * (highest - kBelowHighest - here));
-    const double there = task.solid->distance(pushed).distance;
+    const double there = task.solid->distance(pushed, from.surface.facet).distance;
     if (there <= highest && there > here && staysAbove(task, pushed, task.radii[radius_index])) {
       return candidateAt(task, radius_index, pushed, there);
     }
@@ -124,7 +124,8 @@ double latticeSpacing(const FitTask& task, std::uint32_t radius_index) {
   const double below = std::max(0.0, radius - task.tau);
   const double disc = std::sqrt(reach * reach - below * below);
   const double band = task.solid->area() * (reach + highestCentre(task, radius_index));
-  return std::max(disc / kStepsPerDisc, std::cbrt(std::max(band, 0.0) / kMostPoints));
+  const double steps = radius_index == 0 ? kStepsPerSmallestDisc : kStepsPerDisc;
+  return std::max(disc / steps, std::cbrt(std::max(band, 0.0) / task.most_places));
 }
 
 Candidates findCandidates(const FitTask& task, std::span<const Vec3d> points) {

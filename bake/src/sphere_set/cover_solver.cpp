@@ -13,16 +13,14 @@
 namespace galactic::bake::sphere_fit {
 namespace {
 
-/// Spacing of the points to cover: this share of eps and at most this share of the smallest
-/// radius, but never more nor fewer points than these.
+/// Spacing of the points to cover: this share of eps, but never more nor fewer points than these.
 constexpr double kSpacingOfEps = 0.3;
-constexpr double kSpacingOfRadius = 0.4;
 constexpr double kMostPoints = 15'000;
 constexpr double kLeastPoints = 400;
 /// The cover is checked on points this much denser.
-constexpr double kDenser = 0.5;
+constexpr double kDenser = 0.4;
 /// A checked point is covered well enough when its gap is above eps by this share of the spacing.
-constexpr double kTolerated = 0.25;
+constexpr double kTolerated = 0.5;
 
 constexpr std::uint64_t kPointSeed = 1;
 constexpr std::uint64_t kDenseSeed = 2;
@@ -32,11 +30,13 @@ constexpr double kDominanceSteps = 3;
 
 /// Steps in each direction of the fine lattices around chosen spheres.
 constexpr int kFineSteps = 4;
+/// Rounds of refinement more than wanted while the cover still misses points of the check.
+constexpr int kMoreRounds = 2;
 
 double spacingOf(const FitTask& task) {
   const double area = task.solid->area();
-  const double wanted = std::min(kSpacingOfEps * task.eps, kSpacingOfRadius * task.radii.front());
-  return std::clamp(wanted, std::sqrt(area / kMostPoints), std::sqrt(area / kLeastPoints));
+  return std::clamp(kSpacingOfEps * task.eps, std::sqrt(area / kMostPoints),
+                    std::sqrt(area / kLeastPoints));
 }
 
 class CoverSolver {
@@ -51,9 +51,14 @@ class CoverSolver {
   [[nodiscard]] Cover solve() {
     if (points_.empty()) return {};
     findCover();
-    for (int round = 0; round < effort_.rounds; ++round) refine(round);
+    bool complete = false;
+    const int most = effort_.rounds + kMoreRounds;
+    for (int round = 0; round < most && (round < effort_.rounds || !complete); ++round) {
+      complete = refine(round);
+    }
     polish(task_, dense_, effort_.polish_sweeps, chosen_);
     topUp();
+    dropNeedless();
     polish(task_, dense_, effort_.polish_sweeps, chosen_);
     Cover cover;
     cover.slack = (1 + kTolerated) * kDenser * spacing_;
@@ -87,12 +92,16 @@ class CoverSolver {
     for (const std::uint32_t at : selection) chosen_.push_back(pool.candidates[at]);
   }
 
+  [[nodiscard]] double largestAccepted() const {
+    return task_.eps + kTolerated * kDenser * spacing_;
+  }
+
   /// Points of the check that are too far from every chosen sphere.
   [[nodiscard]] std::vector<Vec3d> uncovered() const {
     const std::vector<double> gaps = gapsOf(task_, chosen_, dense_);
     std::vector<Vec3d> open;
     for (std::size_t at = 0; at < dense_.size(); ++at) {
-      if (gaps[at] > task_.eps + kTolerated * kDenser * spacing_) open.push_back(dense_[at]);
+      if (gaps[at] > largestAccepted()) open.push_back(dense_[at]);
     }
     return open;
   }
@@ -106,8 +115,8 @@ class CoverSolver {
   }
 
   /// Searches again with finer lattices around the chosen spheres, and with the points that the
-  /// cover so far misses.
-  void refine(int round) {
+  /// cover so far misses. Returns whether there were none.
+  bool refine(int round) {
     std::vector<Vec3d> open;
     // The first round moves the spheres off the coarse lattice, which closes most gaps.
     if (round > 0) open = thinnedOut(uncovered(), spacing_);
@@ -121,6 +130,7 @@ class CoverSolver {
     appendCovering(task_, grid, coarse_, pool);
     appendCovering(task_, grid, fineLattices(round), pool);
     choose(pool, std::move(selection), effort_.refine);
+    return open.empty();
   }
 
   [[nodiscard]] std::vector<Candidate> fineLattices(int round) const {
@@ -137,6 +147,7 @@ class CoverSolver {
   void addFineLattice(const Candidate& around, double step, std::vector<Candidate>& found) const {
     const double radius = task_.radii[around.radius_index];
     const double most = std::max(task_.tau, around.protrusion);
+    std::uint32_t hint = kNoFacet;
     for (int z = -kFineSteps; z <= kFineSteps; ++z) {
       for (int y = -kFineSteps; y <= kFineSteps; ++y) {
         for (int x = -kFineSteps; x <= kFineSteps; ++x) {
@@ -146,9 +157,10 @@ class CoverSolver {
                              static_cast<double>(z)};
           const Vec3d centre = asStored(around.centre + offset * step);
           if (!staysAbove(task_, centre, radius)) continue;
-          const double distance = task_.solid->distance(centre).distance;
-          const double protrusion = std::max(0.0, distance + radius);
-          if (protrusion > most || distance < -(radius + task_.eps)) continue;
+          const SurfaceDistance surface = task_.solid->distance(centre, hint);
+          hint = surface.facet;
+          const double protrusion = std::max(0.0, surface.distance + radius);
+          if (protrusion > most || surface.distance < -(radius + task_.eps)) continue;
           found.push_back({centre, around.radius_index, protrusion});
         }
       }
@@ -164,6 +176,20 @@ class CoverSolver {
     Selection added;
     completeGreedily(found.pool, open.size(), added);
     for (const std::uint32_t at : added) chosen_.push_back(found.pool.candidates[at]);
+  }
+
+  /// Removes spheres without which every point of the check is covered well enough: points that
+  /// came late, and the moves since, may have made some needless.
+  void dropNeedless() {
+    FitTask loose = task_;
+    loose.eps = std::max(largestAccepted(), largestOf(gapsOf(task_, chosen_, dense_)));
+    CandidatePool pool;
+    appendCovering(loose, PointGrid(dense_, gridCell(task_)), chosen_, pool);
+    Selection selection(pool.candidates.size());
+    std::iota(selection.begin(), selection.end(), 0U);
+    removeRedundant(pool, dense_.size(), selection);
+    chosen_.clear();
+    for (const std::uint32_t at : selection) chosen_.push_back(pool.candidates[at]);
   }
 
   const FitTask& task_;

@@ -109,10 +109,20 @@ std::vector<Facet> ExteriorSolid::touchedFacets(const TriangleMesh& mesh) const 
   return touched;
 }
 
-SurfaceDistance ExteriorSolid::distance(const Vec3d& p) const {
-  const NearestPoint found = surface_.nearest(p);
+SurfaceDistance ExteriorSolid::distance(const Vec3d& p, std::uint32_t hint) const {
+  SearchLimits limits;
+  limits.hint = hint;
+  const NearestPoint found = surface_.nearest(p, limits);
   const double distance = std::sqrt(found.squared);
-  return {contains(p) ? -distance : distance, found.point, found.facet};
+  const SurfaceDistance outside{distance, found.point, found.facet};
+  // The empty balls are known at voxels only, so right outside a face they leave points free that
+  // are up to about this far from it. Such points count as outside, wherever they are: no sphere
+  // may protrude more than is said.
+  const double voxel = field_->voxel();
+  if (distance < voxel * voxel / (4 * field_->probe())) return outside;
+  // A point inside is at least as far from every empty ball as from the surface.
+  const bool inside = field_->excess(p) >= std::min(distance, voxel / 4) * (1 - 1e-6);
+  return inside ? SurfaceDistance{-distance, found.point, found.facet} : outside;
 }
 
 }  // namespace galactic::bake::sphere_fit

@@ -32,6 +32,7 @@ class ExteriorSolid {
   /// Of the facets, square metres.
   [[nodiscard]] double area() const { return area_; }
 
+  /// Up to a quarter of a voxel at the surface.
   [[nodiscard]] bool contains(const Vec3d& p) const { return field_->excess(p) >= 0; }
 
   /// Whether the probe touches the surface at `p`, up to half a voxel.
@@ -39,7 +40,10 @@ class ExteriorSolid {
     return field_->excess(p) <= field_->voxel() / 2;
   }
 
-  [[nodiscard]] SurfaceDistance distance(const Vec3d& p) const;
+  /// The distance is that to the facets; its sign is never wrongly negative outside a closed
+  /// surface, and wrongly positive only within a small part of a voxel of it.
+  /// A facet that is likely near, `hint`, makes it faster.
+  [[nodiscard]] SurfaceDistance distance(const Vec3d& p, std::uint32_t hint = kNoFacet) const;
 
  private:
   [[nodiscard]] std::vector<Facet> touchedFacets(const TriangleMesh& mesh) const;

@@ -17,14 +17,19 @@ using sphere_fit::Cover;
 using sphere_fit::Effort;
 using sphere_fit::ExteriorSolid;
 using sphere_fit::FitTask;
+using sphere_fit::Yardstick;
 
 /// Tolerances grow by this from one step of a curve to the next looser one: eightfold in 8 steps.
 constexpr double kStepFactor = 1.29683955465100966593;
 constexpr int kCurveSteps = 8;
+/// A loose set may leave wide gaps, but has no business far outside: tau grows with this power of
+/// what eps grows by.
+constexpr double kProtrusionGrowth = 1.0 / 3;
 /// With this many steps eps is beyond the size of any mesh, whatever it was.
 constexpr int kMostSteps = 64;
 /// For one of many covers; the whole curve costs about three single fits.
 constexpr Effort kCurveEffort{400'000, 200'000, 8'000'000, 2, 12};
+constexpr double kCurvePlaces = 15'000;
 /// Halvings of the last step when a number of spheres is given.
 constexpr int kHalvings = 2;
 
@@ -62,11 +67,13 @@ tl::unexpected<Error> nothingToCover() {
               "check its normal and offset");
 }
 
+/// The task with looser tolerances, for one of many covers.
 FitTask loosened(const FitTask& task, double steps) {
   const double factor = std::pow(kStepFactor, steps);
   FitTask loose = task;
   loose.eps *= factor;
-  loose.tau *= factor;
+  loose.tau *= std::pow(factor, kProtrusionGrowth);
+  loose.most_places = kCurvePlaces;
   return loose;
 }
 
@@ -77,18 +84,21 @@ bool comesFirst(const SetSphere& a, const SetSphere& b) {
   return a.centre.z < b.centre.z;
 }
 
-/// Measured and judged by the tolerances of `task`, whichever the cover was made for.
-SphereSet finished(const FitTask& task, const Cover& cover) {
+/// Measured, but for the thin points, and judged by the tolerances of `task`, whichever the cover
+/// was made for.
+SphereSet finished(const FitTask& task, const Yardstick& yardstick, const Cover& cover) {
   SphereSet set;
   for (const Candidate& sphere : cover.spheres) {
     set.spheres.push_back({toVec3(sphere.centre), sphere.radius_index});
   }
   std::sort(set.spheres.begin(), set.spheres.end(), comesFirst);
-  set.quality = sphere_fit::measure(task, cover.spheres);
-  set.guaranteed_gap = cover.guaranteed_gap;
-  set.guaranteed_protrusion = cover.guaranteed_protrusion;
+  set.quality = yardstick.measure(cover.spheres);
+  // Where the solid's border is no facet (a small hole, the bottom of a crevice), a sphere may be
+  // further from the facets than from the solid: what was measured counts.
+  set.guaranteed_gap = std::max(cover.guaranteed_gap, set.quality.gap.max);
+  set.guaranteed_protrusion = std::max(cover.guaranteed_protrusion, set.quality.protrusion.max);
   set.meets_tolerances =
-      cover.guaranteed_gap <= task.eps + cover.slack && cover.guaranteed_protrusion <= task.tau;
+      set.guaranteed_gap <= task.eps + cover.slack && set.guaranteed_protrusion <= task.tau;
   return set;
 }
 
@@ -128,28 +138,76 @@ Result<SphereSet> fitSphereSet(const TriangleMesh& mesh, const SphereSetOptions&
   if (options.max_spheres > 0 && cover.spheres.size() > options.max_spheres) {
     cover = coverWithin(task, options.max_spheres, std::move(cover));
   }
-  return finished(task, cover);
+  const Yardstick yardstick(task);
+  SphereSet set = finished(task, yardstick, cover);
+  set.quality.thin_points = yardstick.countThin(cover.spheres);
+  return set;
 }
 
-Result<SphereCurve> fitSphereCurve(const TriangleMesh& mesh, const SphereSetOptions& options) {
-  const auto prepared = prepare(mesh, options);
-  if (!prepared) return tl::unexpected(prepared.error());
-  const FitTask& task = prepared->task;
-  SphereCurve curve;
-  for (int step = kCurveSteps; step >= 0; --step) {
-    const Cover cover = sphere_fit::solveCover(loosened(task, step), kCurveEffort);
+/// The solver's state between two sets of a curve.
+class SphereCurve::Fitter {
+ public:
+  Fitter(Prepared prepared, std::uint32_t most)
+      : prepared_(std::move(prepared)), yardstick_(prepared_.task), most_(most) {}
+
+  Result<void> refine(unsigned jobs) {
+    if (complete()) return {};
+    FitTask task = loosened(prepared_.task, step_);
+    task.jobs = jobs;
+    const Cover cover = sphere_fit::solveCover(task, kCurveEffort);
     if (cover.spheres.empty()) return nothingToCover();
-    const bool too_many = options.max_spheres > 0 && cover.spheres.size() > options.max_spheres;
-    if (too_many && !curve.sets.empty()) break;
-    SphereSet set = finished(task, cover);
-    // As many spheres as before, or fewer, for tighter tolerances: the looser set is of no use.
-    while (!curve.sets.empty() && curve.sets.back().spheres.size() >= set.spheres.size()) {
-      curve.sets.pop_back();
+    --step_;
+    if (most_ > 0 && cover.spheres.size() > most_) {
+      step_ = kNoStep;
+      if (!sets_.empty()) return {};
     }
-    curve.sets.push_back(std::move(set));
+    SphereSet set = finished(prepared_.task, yardstick_, cover);
+    // As many spheres as before, or fewer, for tighter tolerances: the looser set is of no use.
+    while (!sets_.empty() && sets_.back().spheres.size() >= set.spheres.size()) {
+      sets_.pop_back();
+      covers_.pop_back();
+    }
+    sets_.push_back(std::move(set));
+    covers_.push_back(cover.spheres);
+    return {};
   }
-  return curve;
+
+  [[nodiscard]] bool complete() const { return step_ == kNoStep; }
+  [[nodiscard]] const std::vector<SphereSet>& sets() const { return sets_; }
+
+  [[nodiscard]] SphereSet take(std::size_t n) const {
+    SphereSet set = sets_[n];
+    set.quality.thin_points = yardstick_.countThin(covers_[n]);
+    return set;
+  }
+
+ private:
+  static constexpr int kNoStep = -1;
+
+  Prepared prepared_;
+  Yardstick yardstick_;
+  std::uint32_t most_ = 0;
+  int step_ = kCurveSteps;
+  std::vector<SphereSet> sets_;
+  /// What each set was made of.
+  std::vector<std::vector<Candidate>> covers_;
+};
+
+SphereCurve::SphereCurve(std::unique_ptr<Fitter> fitter) : fitter_(std::move(fitter)) {}
+SphereCurve::~SphereCurve() = default;
+SphereCurve::SphereCurve(SphereCurve&&) noexcept = default;
+SphereCurve& SphereCurve::operator=(SphereCurve&&) noexcept = default;
+
+Result<SphereCurve> SphereCurve::begin(const TriangleMesh& mesh, const SphereSetOptions& options) {
+  auto prepared = prepare(mesh, options);
+  if (!prepared) return tl::unexpected(prepared.error());
+  return SphereCurve(std::make_unique<Fitter>(std::move(*prepared), options.max_spheres));
 }
+
+Result<void> SphereCurve::refine(unsigned jobs) { return fitter_->refine(jobs); }
+bool SphereCurve::complete() const { return fitter_->complete(); }
+const std::vector<SphereSet>& SphereCurve::sets() const { return fitter_->sets(); }
+SphereSet SphereCurve::take(std::size_t set) const { return fitter_->take(set); }
 
 Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
                                           const std::vector<SetSphere>& spheres,
@@ -175,7 +233,10 @@ Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
     }
     placed.push_back({centre, sphere.radius_index, 0});
   }
-  return sphere_fit::measure(prepared->task, placed);
+  const Yardstick yardstick(prepared->task);
+  SphereSetQuality quality = yardstick.measure(placed);
+  quality.thin_points = yardstick.countThin(placed);
+  return quality;
 }
 
 }  // namespace galactic::bake

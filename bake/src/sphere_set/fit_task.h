@@ -17,6 +17,8 @@ struct FitTask {
   double tau = 0;
   std::optional<HalfSpace> support;
   unsigned jobs = 1;
+  /// Places where a sphere of one radius is tried, about and at most.
+  double most_places = 30'000;
 };
 
 /// A sphere that may be chosen.

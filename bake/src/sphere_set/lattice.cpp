@@ -49,13 +49,15 @@ class BandSearch {
   }
 
   void collect(const Cube& leaf, std::vector<LatticePoint>& points) const {
+    std::uint32_t hint = kNoFacet;
     for (std::int64_t z = 0; z < leaf.edge; ++z) {
       for (std::int64_t y = 0; y < leaf.edge; ++y) {
         for (std::int64_t x = 0; x < leaf.edge; ++x) {
           const Vec3d p = asStored(
               position({static_cast<double>(leaf.at[0] + x), static_cast<double>(leaf.at[1] + y),
                         static_cast<double>(leaf.at[2] + z)}));
-          const SurfaceDistance surface = solid_.distance(p);
+          const SurfaceDistance surface = solid_.distance(p, hint);
+          hint = surface.facet;
           if (surface.distance < band_.lowest || surface.distance > band_.highest) continue;
           if (band_.wanted != nullptr && !band_.wanted->anyWithin(p, band_.reach)) continue;
           points.push_back({p, surface});

@@ -1,5 +1,6 @@
 #include "sphere_set/local_search.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace galactic::bake::sphere_fit {
@@ -29,6 +30,8 @@ LocalSearch::LocalSearch(const FitTask& task, std::span<const Vec3d> points,
     const Vec3 centre = toVec3(c.centre);
     const auto reach = static_cast<float>(task.radii[c.radius_index] + task.eps);
     balls_.push_back({centre.x, centre.y, centre.z, reach * reach});
+    // A little more, for the rounding of the distances.
+    squared_width_ = std::max(squared_width_, 4.001F * reach * reach);
   }
 }
 
@@ -117,44 +120,32 @@ std::size_t LocalSearch::cheapest(std::uint32_t tabu) const {
   return best;
 }
 
-void LocalSearch::gatherOpen() {
-  const std::size_t count = open_.size();
-  gathered_.x.resize(count);
-  gathered_.y.resize(count);
-  gathered_.z.resize(count);
-  gathered_.weight.resize(count);
-  for (std::size_t at = 0; at < count; ++at) {
-    gathered_.x[at] = point_x_[open_[at]];
-    gathered_.y[at] = point_y_[open_[at]];
-    gathered_.z[at] = point_z_[open_[at]];
-    gathered_.weight[at] = weight_[open_[at]];
+void LocalSearch::gatherAround(std::uint32_t row) {
+  gathered_.x.resize(open_.size());
+  gathered_.y.resize(open_.size());
+  gathered_.z.resize(open_.size());
+  gathered_.weight.resize(open_.size());
+  std::size_t count = 0;
+  for (const std::uint32_t other : open_) {
+    const float dx = point_x_[other] - point_x_[row];
+    const float dy = point_y_[other] - point_y_[row];
+    const float dz = point_z_[other] - point_z_[row];
+    gathered_.x[count] = point_x_[other];
+    gathered_.y[count] = point_y_[other];
+    gathered_.z[count] = point_z_[other];
+    gathered_.weight[count] = weight_[other];
+    if (dx * dx + dy * dy + dz * dz <= squared_width_) ++count;
   }
-}
-
-std::int32_t LocalSearch::score(std::uint32_t candidate) const {
-  const Ball ball = balls_[candidate];
-  const float* x = gathered_.x.data();
-  const float* y = gathered_.y.data();
-  const float* z = gathered_.z.data();
-  const std::int32_t* weight = gathered_.weight.data();
-  const std::size_t count = open_.size();
-  // Whole numbers add up the same in any order, so the compiler may use the vector unit.
-  std::int32_t sum = 0;
-  for (std::size_t at = 0; at < count; ++at) {
-    const float dx = x[at] - ball.x;
-    const float dy = y[at] - ball.y;
-    const float dz = z[at] - ball.z;
-    const float squared = dx * dx + dy * dy + dz * dz;
-    sum += squared <= ball.squared_reach ? weight[at] : 0;
-  }
-  return sum;
+  gathered_count_ = count;
 }
 
 std::uint32_t LocalSearch::bestForRandomRow() {
-  gatherOpen();
   const std::uint32_t row = open_[random_.below(static_cast<std::uint32_t>(open_.size()))];
+  gatherAround(row);
+  const WeightedPoints points{gathered_.x.data(), gathered_.y.data(), gathered_.z.data(),
+                              gathered_.weight.data(), gathered_count_};
   const auto columns = columns_of_row_.column(row);
-  const std::size_t work = columns.size() * open_.size();
+  const std::size_t work = columns.size() * gathered_count_;
   const std::size_t stride = work / kMostScores + 1;
   const std::size_t start = stride == 1 ? 0 : random_.below(static_cast<std::uint32_t>(stride));
   operations_ += work / stride / kScoresPerOperation + kOperationsPerIteration;
@@ -163,7 +154,7 @@ std::uint32_t LocalSearch::bestForRandomRow() {
   for (std::size_t at = start; at < columns.size(); at += stride) {
     const std::uint32_t candidate = columns[at];
     if (is_chosen_[candidate] != 0 || moved_[candidate] == iteration_) continue;
-    const std::int32_t scored = score(candidate);
+    const std::int32_t scored = ball_weight_(points, balls_[candidate]);
     if (scored > best_score || (scored == best_score && moved_[candidate] < moved_[best])) {
       best_score = scored;
       best = candidate;
@@ -183,7 +174,8 @@ Selection LocalSearch::improve(const Selection& cover, std::uint64_t budget) {
       if (chosen_.size() <= 1) return smallest;
       removeAt(cheapest(kNone));
     }
-    if (chosen_.size() > 1) removeAt(cheapest(tabu));
+    // One less than the smallest cover so far; fewer where no candidate could come in last time.
+    if (chosen_.size() > 1 && chosen_.size() + 1 >= smallest.size()) removeAt(cheapest(tabu));
     const std::uint32_t candidate = bestForRandomRow();
     if (candidate != kNone) {
       add(candidate);

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "sphere_set/ball_weight.h"
 #include "sphere_set/random.h"
 #include "sphere_set/set_cover.h"
 
@@ -41,8 +42,8 @@ class LocalSearch {
   [[nodiscard]] std::size_t cheapest(std::uint32_t tabu) const;
   /// The best candidate that covers a random open point.
   [[nodiscard]] std::uint32_t bestForRandomRow();
-  [[nodiscard]] std::int32_t score(std::uint32_t candidate) const;
-  void gatherOpen();
+  /// Gathers the open points that a candidate covering `row` may cover.
+  void gatherAround(std::uint32_t row);
 
   const CandidatePool& pool_;
   CoverMatrix columns_of_row_;
@@ -64,16 +65,14 @@ class LocalSearch {
   std::vector<std::uint32_t> open_;
   std::vector<std::uint32_t> open_rank_;
   OpenPoints gathered_;
+  std::size_t gathered_count_ = 0;
+  /// No two points that one candidate covers are further apart than the root of this.
+  float squared_width_ = 0;
+  BallWeight ball_weight_ = fastestBallWeight();
   std::vector<float> point_x_;
   std::vector<float> point_y_;
   std::vector<float> point_z_;
-  /// Per candidate: centre and squared reach.
-  struct Ball {
-    float x = 0;
-    float y = 0;
-    float z = 0;
-    float squared_reach = 0;
-  };
+  /// Per candidate.
   std::vector<Ball> balls_;
 };
 

@@ -20,7 +20,7 @@ constexpr double kCoarsestSpacing = 0.3;
 /// Points on each sphere, and more where the sphere is large.
 constexpr double kLeastSpherePoints = 250;
 constexpr double kMostSpherePoints = 600;
-constexpr double kVolumeSamples = 80'000;
+constexpr double kVolumeSamples = 40'000;
 
 /// A length, and how much surface it stands for.
 struct Weighted {
@@ -95,13 +95,16 @@ LengthStatistics protrusionOf(const FitTask& task, std::span<const Candidate> sp
     const double scaled = kLeastSpherePoints * radius / task.radii.front();
     const double count = std::clamp(scaled, kLeastSpherePoints, kMostSpherePoints);
     const double share = radius * radius / count;
+    std::uint32_t hint = kNoFacet;
     for (const Vec3d& p :
          spherePoints(spheres[at].centre, radius, static_cast<std::size_t>(count))) {
       const bool hidden =
           std::any_of(neighbours[at].begin(), neighbours[at].end(),
                       [&](const Candidate* other) { return outside(task, *other, p) < -1e-9; });
       if (hidden) continue;
-      parts[at].push_back({std::max(0.0, task.solid->distance(p).distance), share});
+      const SurfaceDistance surface = task.solid->distance(p, hint);
+      hint = surface.facet;
+      parts[at].push_back({std::max(0.0, surface.distance), share});
     }
   });
   std::vector<Weighted> all;
@@ -149,41 +152,43 @@ double volumeRatioOf(const FitTask& task, std::span<const Candidate> spheres) {
   return static_cast<double>(total.spheres) / static_cast<double>(total.solid);
 }
 
-/// Samples that no sphere within tau can cover: only those that none of `spheres` proves wrong
-/// need a search.
-std::uint64_t countThin(const FitTask& task, std::span<const Candidate> spheres,
-                        std::span<const Vec3d> samples) {
-  std::vector<Candidate> within;
-  for (Candidate sphere : spheres) {
-    const double radius = task.radii[sphere.radius_index];
-    const double protrusion = task.solid->distance(sphere.centre).distance + radius;
-    if (protrusion <= task.tau && staysAbove(task, sphere.centre, radius)) within.push_back(sphere);
-  }
-  const std::vector<double> gaps = gapsOf(task, within, samples);
-  std::vector<Vec3d> open;
-  for (std::size_t at = 0; at < samples.size(); ++at) {
-    if (gaps[at] > task.eps) open.push_back(samples[at]);
-  }
-  if (open.empty()) return 0;
-  const std::vector<char> coverable = findCandidates(task, open).coverable;
-  return static_cast<std::uint64_t>(std::count(coverable.begin(), coverable.end(), 0));
-}
-
 }  // namespace
 
-SphereSetQuality measure(const FitTask& task, std::span<const Candidate> spheres) {
+Yardstick::Yardstick(const FitTask& task)
+    : task_(task),
+      samples_(sampleSurface(*task.solid, task.support, {sampleSpacing(task), kSeed, 10})) {}
+
+SphereSetQuality Yardstick::measure(std::span<const Candidate> spheres) const {
   SphereSetQuality quality;
-  const auto samples = sampleSurface(*task.solid, task.support, {sampleSpacing(task), kSeed, 10});
-  quality.samples = samples.size();
-  quality.area = task.solid->area();
-  if (samples.empty() || spheres.empty()) return quality;
+  quality.samples = samples_.size();
+  quality.area = task_.solid->area();
+  if (samples_.empty() || spheres.empty()) return quality;
   std::vector<Weighted> gaps;
-  for (const double gap : gapsOf(task, spheres, samples)) gaps.push_back({std::max(0.0, gap), 1});
+  for (const double gap : gapsOf(task_, spheres, samples_)) {
+    gaps.push_back({std::max(0.0, gap), 1});
+  }
   quality.gap = statisticsOf(std::move(gaps));
-  quality.protrusion = protrusionOf(task, spheres);
-  quality.volume_ratio = volumeRatioOf(task, spheres);
-  quality.thin_points = countThin(task, spheres, samples);
+  quality.protrusion = protrusionOf(task_, spheres);
+  quality.volume_ratio = volumeRatioOf(task_, spheres);
   return quality;
+}
+
+std::uint64_t Yardstick::countThin(std::span<const Candidate> spheres) const {
+  std::vector<Candidate> within;
+  for (const Candidate& sphere : spheres) {
+    const double radius = task_.radii[sphere.radius_index];
+    const double protrusion = task_.solid->distance(sphere.centre).distance + radius;
+    const bool above = staysAbove(task_, sphere.centre, radius);
+    if (protrusion <= task_.tau && above) within.push_back(sphere);
+  }
+  const std::vector<double> gaps = gapsOf(task_, within, samples_);
+  std::vector<Vec3d> open;
+  for (std::size_t at = 0; at < samples_.size(); ++at) {
+    if (gaps[at] > task_.eps) open.push_back(samples_[at]);
+  }
+  if (open.empty()) return 0;
+  const std::vector<char> coverable = findCandidates(task_, open).coverable;
+  return static_cast<std::uint64_t>(std::count(coverable.begin(), coverable.end(), 0));
 }
 
 }  // namespace galactic::bake::sphere_fit

@@ -1,13 +1,30 @@
 #pragma once
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "galactic/bake/sphere_set.h"
 #include "sphere_set/fit_task.h"
 
 namespace galactic::bake::sphere_fit {
 
-/// Measures spheres, at least one, on samples that no solver has seen. Their protrusions may be
-/// wrong: they are measured. All zero where no surface needs cover.
-[[nodiscard]] SphereSetQuality measure(const FitTask& task, std::span<const Candidate> spheres);
+/// Measures sphere sets of one mesh on samples that no solver has seen.
+class Yardstick {
+ public:
+  /// Keeps a copy of the task, whose solid must outlive it.
+  explicit Yardstick(const FitTask& task);
+
+  /// Of spheres whose protrusions may be wrong: they are measured. All but the thin points; zero
+  /// where no surface needs cover or without spheres.
+  [[nodiscard]] SphereSetQuality measure(std::span<const Candidate> spheres) const;
+
+  /// Number of samples that no sphere within tau can cover, the same for all `spheres`: those near
+  /// them only save a search where they are within tau themselves.
+  [[nodiscard]] std::uint64_t countThin(std::span<const Candidate> spheres) const;
+
+ private:
+  FitTask task_;
+  std::vector<Vec3d> samples_;
+};
 
 }  // namespace galactic::bake::sphere_fit

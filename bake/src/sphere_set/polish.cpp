@@ -66,7 +66,10 @@ class Polisher {
   }
 
   [[nodiscard]] std::vector<NearPoint> pointsNear(std::size_t at) const {
-    const double reach = task_.radii[spheres_[at].radius_index] + most_;
+    // The point of the largest gap is right at the end of its sphere's reach: rounding must not
+    // leave it out.
+    constexpr double kRounding = 1e-6;
+    const double reach = task_.radii[spheres_[at].radius_index] + most_ + kRounding;
     std::vector<const Candidate*> neighbours;
     for (std::size_t other = 0; other < spheres_.size(); ++other) {
       const double reaches = reach + most_ + task_.radii[spheres_[other].radius_index];

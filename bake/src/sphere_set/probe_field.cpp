@@ -16,7 +16,7 @@ constexpr double kCoarsestVoxel = 0.35;
 /// A probe smaller than this many voxels would slip through the grid.
 constexpr double kVoxelsPerProbe = 1.0 / 0.7;
 /// Distances are exact up to the probe's radius and this many voxels.
-constexpr double kExactVoxels = 1;
+constexpr double kExactVoxels = 1.5;
 /// A search from a free voxel looks this many voxels further, to skip what is free as well.
 constexpr double kSkipVoxels = 14;
 

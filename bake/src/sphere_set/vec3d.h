@@ -53,8 +53,18 @@ struct Vec3d {
   return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 
+/// `value` rounded to the 24 significant bits of a float (Veltkamp's splitting). Not by a
+/// conversion to float and back: GCC 12 drops that where it vectorises it, and builds would differ.
+[[nodiscard]] inline double roundedToFloat(double value) {
+  constexpr double kSplitter = 0x1p29 + 1;
+  const double scaled = value * kSplitter;
+  return scaled - (scaled - value);
+}
+
 /// The nearest point that a pack can store. Whatever is checked is checked there.
-[[nodiscard]] inline Vec3d asStored(const Vec3d& v) { return toVec3d(toVec3(v)); }
+[[nodiscard]] inline Vec3d asStored(const Vec3d& v) {
+  return {roundedToFloat(v.x), roundedToFloat(v.y), roundedToFloat(v.z)};
+}
 
 /// A box that holds nothing until it is grown.
 struct Box {

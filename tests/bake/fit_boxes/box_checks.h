@@ -1,8 +1,11 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstddef>
 #include <span>
 
 #include "galactic/bake/oriented_box.h"
@@ -11,7 +14,7 @@ namespace galactic::test {
 
 /// Every point lies in the box by float arithmetic, as a reader computes it, and the box is no
 /// looser than its padding: each face has a point near it, unless that side is at its minimum.
-inline void expectTightAround(std::span<const Vec3> points, const bake::OrientedBox& box) {
+inline void expectTightAround(std::span<const Vec3> points, const OrientedBox& box) {
   // Padding, and the float rounding of coordinates up to a few metres.
   constexpr float kSlack = 5e-6F;
   const Pose box_from_object = inverse(box.pose);
@@ -34,9 +37,9 @@ inline void expectTightAround(std::span<const Vec3> points, const bake::Oriented
 }
 
 /// Whether two boxes are the same bytes.
-inline bool sameBytes(const bake::OrientedBox& a, const bake::OrientedBox& b) {
-  static_assert(sizeof(bake::OrientedBox) == 10 * sizeof(float));
-  return std::memcmp(&a, &b, sizeof a) == 0;
+inline bool sameBytes(const OrientedBox& a, const OrientedBox& b) {
+  using Bytes = std::array<std::byte, 10 * sizeof(float)>;
+  return std::bit_cast<Bytes>(a) == std::bit_cast<Bytes>(b);
 }
 
 }  // namespace galactic::test

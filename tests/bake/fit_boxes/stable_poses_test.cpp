@@ -83,9 +83,11 @@ TEST(StablePoses, OfATurnedCubeAreItsSixFacesToo) {
     ASSERT_EQ(poses.size(), 6U);
     for (const StablePose& resting : poses) {
       EXPECT_NEAR(static_cast<double>(resting.likelihood), 1.0 / 6, kRounding);
+      // Two of three parts vanish: a face of the cube, not tilted by the hull's rounding.
       const Vec3 down = rotate(conjugate(pose.rotation), downOf(resting));
-      EXPECT_NEAR(std::max({std::abs(down.x), std::abs(down.y), std::abs(down.z)}), 1, 1e-5F)
-          << "a face of the cube, not tilted by the hull's rounding";
+      std::array parts{std::abs(down.x), std::abs(down.y), std::abs(down.z)};
+      std::sort(parts.begin(), parts.end());
+      EXPECT_LT(parts[1], 5e-6F);
     }
   }
 }

@@ -24,21 +24,21 @@ inline Result<bake::RobotRecipe> readText(const ScratchFolder& folder, const std
 inline bake::SourceRobot smallRobot() {
   bake::SourceRobot robot;
   robot.name = "small";
-  const auto add = [&](const char* name, int parent, const char* joint, bake::JointType type) {
+  const auto add = [&](const char* name, int parent, const char* joint, JointType type) {
     bake::SourceLink& link = robot.links.emplace_back();
     link.name = name;
     link.parent = parent;
     link.joint_name = joint;
     link.joint_type = type;
   };
-  add("base", -1, "", bake::JointType::kFixed);
-  add("arm", 0, "shoulder", bake::JointType::kRevolute);
+  add("base", -1, "", JointType::kFixed);
+  add("arm", 0, "shoulder", JointType::kRevolute);
   robot.links.back().limits = bake::JointLimits{-1, 2};
-  add("hand", 1, "wrist", bake::JointType::kContinuous);
-  add("finger", 2, "grip", bake::JointType::kContinuous);
+  add("hand", 1, "wrist", JointType::kContinuous);
+  add("finger", 2, "grip", JointType::kContinuous);
   robot.links.back().mimic = bake::Mimic{.link = 2, .multiplier = 1, .offset = 0};
-  add("camera", 0, "mount", bake::JointType::kFixed);
-  add("lock", 0, "locked", bake::JointType::kPrismatic);
+  add("camera", 0, "mount", JointType::kFixed);
+  add("lock", 0, "locked", JointType::kPrismatic);
   robot.links.back().limits = bake::JointLimits{0, 0};
   return robot;
 }

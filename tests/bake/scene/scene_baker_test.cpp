@@ -96,13 +96,14 @@ TEST(SceneBaker, DescribesTheSceneAndEachGrid) {
   const auto scene = bake(asset, {.check_columns = 32});
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->name, "room");
-  EXPECT_EQ(scene->format, "test mesh");
-  EXPECT_EQ(scene->meshes, 1U);
-  EXPECT_EQ(scene->instances, 1U);
+  EXPECT_EQ(scene->imported.format, "test mesh");
+  EXPECT_EQ(scene->imported.meshes, 1U);
+  EXPECT_EQ(scene->imported.instances, 1U);
   EXPECT_EQ(scene->imported.counts.read, asset.meshes[0].triangles.size());
   EXPECT_GE(scene->imported.counts.duplicate, 1U);
-  EXPECT_EQ(scene->triangles,
-            scene->imported.counts.read - scene->counts.degenerate - scene->counts.duplicate);
+  EXPECT_EQ(scene->imported.triangles, scene->imported.counts.read -
+                                           scene->imported.counts.degenerate -
+                                           scene->imported.counts.duplicate);
   ASSERT_FALSE(scene->warnings.empty());
   EXPECT_EQ(scene->warnings[0], "a texture is missing");
   ASSERT_EQ(scene->grids.size(), 3U);

@@ -11,7 +11,6 @@
 namespace galactic::test {
 namespace {
 
-using bake::JointType;
 using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::Pointwise;

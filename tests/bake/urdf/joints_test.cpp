@@ -6,7 +6,6 @@
 namespace galactic::test {
 namespace {
 
-using bake::JointType;
 using testing::ElementsAre;
 using testing::IsEmpty;
 

@@ -1,6 +1,7 @@
 #pragma once
-#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -20,15 +21,15 @@ struct HalfSpace {
 
 /// What the spheres must do. Lengths in metres.
 struct SphereSetOptions {
-  /// The working set, ascending, 1 to 8 radii.
+  /// The working set, ascending, 1 to 8 radii of 0.0001 to 10 m.
   std::vector<float> radii{0.015F, 0.05F, 0.12F};
-  /// Every reachable surface point lies within this of the union of the spheres.
+  /// Every reachable surface point lies within this of the union of the spheres; 0.0001 to 10.
   float eps = 0.015F;
   /// No sphere sticks out of the surface further than this, but for thin parts: they get the least
-  /// protrusion that covers them.
+  /// protrusion that covers them. 0 to 10.
   float tau = 0.020F;
-  /// No sphere reaches beyond this plane: the face on which the object rests, or the ground.
-  /// Surface points beyond it need no cover.
+  /// No sphere reaches beyond this plane (up to a micrometre): the face on which the object rests,
+  /// or the ground. Surface points beyond it need no cover.
   std::optional<HalfSpace> support;
   /// Most spheres allowed; 0: as many as the tolerances need. With a limit the gap may exceed eps.
   std::uint32_t max_spheres = 0;
@@ -49,7 +50,7 @@ struct SphereSetQuality {
   LengthStatistics gap;
   /// Distance of the union's surface points to the solid, 0 inside it.
   LengthStatistics protrusion;
-  /// Volume of the union by that of the solid.
+  /// Volume of the union by that of the solid, by counting voxels; 0 where the solid has none.
   double volume_ratio = 0;
   /// Samples that no sphere within tau could cover.
   std::uint64_t thin_points = 0;
@@ -63,35 +64,69 @@ struct SphereSetQuality {
 struct SphereSet {
   std::vector<SetSphere> spheres;
   SphereSetQuality quality;
-  /// What the solver promises: no reachable surface point is further than this from the union.
+  /// What the solver promises: no reachable surface point is further than this from the union. At
+  /// most 1.18 times eps where neither max_spheres nor the object's size stands in the way: the
+  /// surface is known at samples only, and more than 15,000 of them are never covered.
   double guaranteed_gap = 0;
   /// What the solver promises: no sphere sticks out further than this (more than tau: thin parts).
   double guaranteed_protrusion = 0;
-  /// The tolerances could not be met within max_spheres, or at all.
+  /// False where the tolerances could not be met within max_spheres, or at all: the guaranteed
+  /// figures then say by how much. Thin parts alone make it false when their protrusion is above
+  /// tau.
   bool meets_tolerances = true;
 };
 
 /// The fewest spheres of the working set found that cover `mesh` under two tolerances. The solid is
-/// what a ball of half the smallest radius cannot reach from outside: holes, inner faces and nested
-/// shells do not disturb. Bounded by operation counts, so the bytes depend on the input only.
+/// what a ball of half the smallest radius cannot reach from outside: holes, inner faces, nested
+/// shells and the winding of triangles do not matter. For objects of metres the ball is larger, so
+/// that memory stays bounded. Bounded by operation counts, so the bytes depend on the input only.
+///
+/// Set cover over spheres on lattices through the solid: lazy greedy, then the row weighting local
+/// search of Gao, Weise and Li (EJOR 2015), then refinement on finer lattices and denser samples.
+/// With `max_spheres` the least loosened tolerances that need no more are used.
 /// Fails with kInvalidInput on options out of range or a mesh without a reachable surface, and with
 /// kUnsupported where the extents are beyond 10 m.
 [[nodiscard]] Result<SphereSet> fitSphereSet(const TriangleMesh& mesh,
                                              const SphereSetOptions& options);
 
-/// Sphere counts and tolerances for a budget shared by several meshes: one entry per step of the
-/// curve, by rising count. See fitSphereCurve.
-struct SphereCurve {
-  std::vector<SphereSet> sets;
+/// The trade-off of a mesh: sphere sets for a falling sequence of tolerances, so that a budget of
+/// spheres can be spent over several meshes. The sets are made one after the other, from the
+/// loosest on: the tight ones take most of the time, and a budget may not reach them. There are
+/// nine, from eight times `options.eps` to that itself; tau grows with the cube root of what eps
+/// grows by, since a loose set may leave wide gaps but has no business far outside. Less work goes
+/// into each than with fitSphereSet, whose set may be a little smaller. Movable, not copyable.
+class SphereCurve {
+ public:
+  /// The curve of `mesh`, without sets yet. Fails as fitSphereSet does.
+  [[nodiscard]] static Result<SphereCurve> begin(const TriangleMesh& mesh,
+                                                 const SphereSetOptions& options);
+  ~SphereCurve();
+  SphereCurve(SphereCurve&&) noexcept;
+  SphereCurve& operator=(SphereCurve&&) noexcept;
+
+  /// Adds the next tighter set, on up to `jobs` threads, which never change it; a set that it beats
+  /// in count is dropped. Does nothing when the curve is complete. Fails as fitSphereSet does.
+  [[nodiscard]] Result<void> refine(unsigned jobs);
+  /// Whether the set for the tolerances of the options themselves has been made, or the next one
+  /// has more than their `max_spheres`.
+  [[nodiscard]] bool complete() const;
+
+  /// By rising count. Quality, all but the thin points, and `meets_tolerances` are by the
+  /// tolerances of the options.
+  [[nodiscard]] const std::vector<SphereSet>& sets() const;
+  /// A copy of one of the sets with its thin points counted.
+  [[nodiscard]] SphereSet take(std::size_t set) const;
+
+ private:
+  class Fitter;
+  explicit SphereCurve(std::unique_ptr<Fitter> fitter);
+
+  std::unique_ptr<Fitter> fitter_;
 };
 
-/// The trade-off of a mesh: sphere sets for a falling sequence of tolerances (about nine between
-/// `options.eps` and eight times that, tau in proportion), each better than the one before, so that
-/// a budget of spheres can be spent over several meshes.
-[[nodiscard]] Result<SphereCurve> fitSphereCurve(const TriangleMesh& mesh,
-                                                 const SphereSetOptions& options);
-
-/// Measures any sphere set, hand-made ones too, with the yardstick of `fitSphereSet`.
+/// Measures any sphere set, hand-made ones too, with the yardstick of `fitSphereSet`. Fails as that
+/// does, and with kInvalidInput where there are no spheres, a centre is not finite or a radius is
+/// not in the working set.
 [[nodiscard]] Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
                                                         const std::vector<SetSphere>& spheres,
                                                         const SphereSetOptions& options);

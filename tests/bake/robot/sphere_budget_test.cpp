@@ -1,0 +1,146 @@
+// How a budget of spheres is spent over links, against all possible ways.
+#include "robot/sphere_budget.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <random>
+#include <vector>
+
+namespace galactic::test {
+namespace {
+
+using bake::spendBudget;
+using bake::SphereSet;
+using bake::SphereSets;
+using testing::ElementsAre;
+
+/// A set of so many spheres whose gap and protrusion give this error, on one square metre.
+SphereSet setOf(std::size_t spheres, double error) {
+  SphereSet set;
+  set.spheres.resize(spheres);
+  set.quality.gap.mean = error;
+  set.quality.area = 1;
+  return set;
+}
+
+/// What is minimised, written down anew: error times area over all links.
+double errorOf(const std::vector<SphereSets>& curves, const std::vector<std::size_t>& chosen) {
+  double sum = 0;
+  for (std::size_t n = 0; n < curves.size(); ++n) {
+    if (curves[n].empty()) continue;
+    const bake::SphereSetQuality& quality = curves[n][chosen[n]].quality;
+    sum += quality.area * (quality.gap.mean + quality.protrusion.mean +
+                           (quality.gap.p95 + quality.protrusion.p95) / 2);
+  }
+  return sum;
+}
+
+std::size_t spheresOf(const std::vector<SphereSets>& curves,
+                      const std::vector<std::size_t>& chosen) {
+  std::size_t sum = 0;
+  for (std::size_t n = 0; n < curves.size(); ++n) {
+    if (!curves[n].empty()) sum += curves[n][chosen[n]].spheres.size();
+  }
+  return sum;
+}
+
+/// The least error of all ways to stay within the budget.
+double leastError(const std::vector<SphereSets>& curves, std::size_t budget) {
+  std::vector<std::size_t> chosen(curves.size(), 0);
+  double least = errorOf(curves, chosen);
+  while (true) {
+    if (spheresOf(curves, chosen) <= budget) least = std::min(least, errorOf(curves, chosen));
+    std::size_t n = 0;
+    for (; n < curves.size(); ++n) {
+      if (chosen[n] + 1 < curves[n].size()) {
+        ++chosen[n];
+        break;
+      }
+      chosen[n] = 0;
+    }
+    if (n == curves.size()) return least;
+  }
+}
+
+/// Curves with falling gains per sphere; each step adds 1 to `widest` spheres.
+std::vector<SphereSets> randomCurves(std::mt19937& random, std::uint32_t widest) {
+  const auto uniform = [&] { return static_cast<double>(random()) * 0x1p-32; };
+  std::vector<SphereSets> curves(2 + random() % 3);
+  for (SphereSets& curve : curves) {
+    const std::size_t steps = 2 + random() % 5;
+    std::vector<double> gains;
+    for (std::size_t n = 0; n < steps; ++n) gains.push_back(uniform());
+    std::sort(gains.rbegin(), gains.rend());
+    std::size_t spheres = 1 + random() % 3;
+    double error = 10;
+    curve.push_back(setOf(spheres, error));
+    for (const double gain : gains) {
+      const std::size_t more = 1 + random() % widest;
+      spheres += more;
+      error -= gain * static_cast<double>(more) / widest;
+      curve.push_back(setOf(spheres, error));
+    }
+  }
+  return curves;
+}
+
+TEST(SphereBudget, IsSpentAsWellAsAnyWayAllows) {
+  constexpr std::uint32_t kSeed = 11;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  int bound = 0;
+  constexpr int kRounds = 400;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto curves = randomCurves(random, round % 2 == 0 ? 1 : 6);
+    const auto budget = static_cast<std::uint32_t>(4 + random() % 60);
+    const auto chosen = spendBudget(curves, budget);
+    const std::vector<std::size_t> coarsest(curves.size(), 0);
+    if (spheresOf(curves, coarsest) > budget) {
+      EXPECT_EQ(chosen, coarsest);
+      continue;
+    }
+    EXPECT_LE(spheresOf(curves, chosen), budget);
+    constexpr double kRounding = 1e-12;
+    EXPECT_NEAR(errorOf(curves, chosen), leastError(curves, budget), kRounding);
+    // Whether the budget had to choose.
+    if (chosen != spendBudget(curves, 0)) ++bound;
+  }
+  EXPECT_GT(bound, kRounds / 10);
+  EXPECT_LT(bound, kRounds * 9 / 10);
+}
+
+TEST(SphereBudget, WithoutALimitTakesTheFinestSets) {
+  const std::vector<SphereSets> curves{{setOf(1, 3), setOf(2, 2), setOf(9, 1)}, {}, {setOf(4, 1)}};
+  EXPECT_THAT(spendBudget(curves, 0), ElementsAre(2, 0, 0));
+}
+
+TEST(SphereBudget, BelowTheCoarsestSetsTakesThem) {
+  const std::vector<SphereSets> curves{{setOf(5, 3), setOf(6, 1)}, {setOf(5, 3), setOf(6, 1)}};
+  EXPECT_THAT(spendBudget(curves, 1), ElementsAre(0, 0));
+  EXPECT_THAT(spendBudget(curves, 9), ElementsAre(0, 0));
+  EXPECT_THAT(spendBudget(curves, 11), ElementsAre(1, 0)) << "of equals the first";
+}
+
+TEST(SphereBudget, PassesOverAStepThatDoesNotFitOrDoesNotHelp) {
+  // The second set is worse than the first; the third is worth its two spheres.
+  const std::vector<SphereSets> curves{{setOf(1, 3), setOf(2, 4), setOf(3, 1)}};
+  EXPECT_THAT(spendBudget(curves, 2), ElementsAre(0));
+  EXPECT_THAT(spendBudget(curves, 3), ElementsAre(2));
+  // The best step of all adds too many; the next best one fits.
+  const std::vector<SphereSets> two{{setOf(1, 9), setOf(20, 0)}, {setOf(1, 2), setOf(2, 1.9)}};
+  EXPECT_THAT(spendBudget(two, 4), ElementsAre(0, 1));
+}
+
+TEST(SphereBudget, WeighsErrorsByArea) {
+  std::vector<SphereSets> curves{{setOf(1, 2), setOf(2, 1)}, {setOf(1, 2), setOf(2, 1)}};
+  for (SphereSet& set : curves[1]) set.quality.area = 5;
+  EXPECT_THAT(spendBudget(curves, 3), ElementsAre(0, 1));
+}
+
+TEST(SphereBudget, OfNoCurvesIsNoChoice) { EXPECT_TRUE(spendBudget({}, 10).empty()); }
+
+}  // namespace
+}  // namespace galactic::test

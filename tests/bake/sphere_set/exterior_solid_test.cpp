@@ -1,0 +1,185 @@
+// Distances to meshes, and what a probe makes of them.
+#include "sphere_set/exterior_solid.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+#include "galactic/bake/triangle_interval.h"
+#include "sphere_set/shapes.h"
+
+namespace galactic::bake::sphere_fit {
+namespace {
+
+using test::KnownSolid;
+using test::MeshBuilder;
+
+constexpr std::uint32_t kSeed = 20250402;
+constexpr double kSmallestRadius = 0.015;
+
+std::vector<Facet> facetsOf(const TriangleMesh& mesh) {
+  std::vector<Facet> facets;
+  for (const Triangle& t : mesh.triangles) {
+    facets.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+  }
+  return facets;
+}
+
+std::vector<Vec3d> randomPoints(const Bounds& bounds, float margin, int count) {
+  std::mt19937 random(kSeed);
+  const auto between = [&](float lo, float hi) {
+    const double share = static_cast<double>(random()) * 0x1p-32;
+    return static_cast<double>(lo - margin) + share * static_cast<double>(hi - lo + 2 * margin);
+  };
+  std::vector<Vec3d> points;
+  for (int n = 0; n < count; ++n) {
+    points.push_back({between(bounds.min.x, bounds.max.x), between(bounds.min.y, bounds.max.y),
+                      between(bounds.min.z, bounds.max.z)});
+  }
+  return points;
+}
+
+double bruteForce(const TriangleMesh& mesh, const Vec3d& p) {
+  double least = HUGE_VAL;
+  for (const test::Corners& corners : test::allCorners(mesh)) {
+    least = std::min(least, squaredDistance({p.x, p.y, p.z}, corners));
+  }
+  return std::sqrt(least);
+}
+
+/// Of points further from the surface than `clear`, how many the solid judges other than the
+/// closed form; fails unless both sides were asked often.
+int wrongSides(const ExteriorSolid& solid, const KnownSolid& known, double clear) {
+  int inside = 0;
+  int outside = 0;
+  int wrong = 0;
+  for (const Vec3d& p : randomPoints(known.mesh.bounds, 0.02F, 4000)) {
+    const double distance = known.distance({p.x, p.y, p.z});
+    if (std::fabs(distance) < clear) continue;
+    ++(distance < 0 ? inside : outside);
+    wrong += (solid.distance(p).distance < 0) != (distance < 0) ? 1 : 0;
+  }
+  EXPECT_GT(inside, (inside + outside) / 10) << "seed " << kSeed;
+  EXPECT_GT(outside, (inside + outside) / 10) << "seed " << kSeed;
+  return wrong;
+}
+
+/// GCC 12 loses conversions to float and back in vectorised code.
+TEST(StoredPoints, AreFloatsAndTheNearestOnes) {
+  for (const Vec3d& p : randomPoints({{-2, -2, -2}, {2, 2, 2}}, 0, 1000)) {
+    const Vec3d stored = asStored(p);
+    const Vec3 as_float = toVec3(p);
+    EXPECT_EQ(toVec3(stored), as_float);
+    for (const auto& [value, rounded] :
+         {std::pair{stored.x, as_float.x}, std::pair{stored.y, as_float.y},
+          std::pair{stored.z, as_float.z}}) {
+      const volatile float seen = rounded;
+      EXPECT_EQ(value, static_cast<double>(seen));
+    }
+  }
+}
+
+TEST(TriangleTree, FindsTheNearestPointOfASoup) {
+  MeshBuilder builder;
+  const TriangleMesh mesh = builder.soup(kSeed, 300, {{-1, -1, -1}, {1, 1, 1}}, 0.3F).build();
+  const TriangleTree tree(facetsOf(mesh));
+  int within = 0;
+  for (const Vec3d& p : randomPoints(mesh.bounds, 0.2F, 400)) {
+    const double truth = bruteForce(mesh, p);
+    const NearestPoint found = tree.nearest(p);
+    EXPECT_NEAR(std::sqrt(found.squared), truth, 1e-7);
+    EXPECT_NEAR(length(found.point - p), truth, 1e-7);
+    const NearestPoint limited = tree.nearest(p, {.squared_limit = 0.01});
+    EXPECT_EQ(limited.facet != kNoFacet, truth < 0.1);
+    within += truth < 0.1 ? 1 : 0;
+  }
+  EXPECT_GT(within, 40) << "seed " << kSeed;
+  EXPECT_LT(within, 360) << "seed " << kSeed;
+}
+
+TEST(TriangleTree, OfNothingFindsNothing) {
+  EXPECT_EQ(TriangleTree({}).nearest({0, 0, 0}).facet, kNoFacet);
+}
+
+TEST(ExteriorSolid, KnowsInsideFromOutside) {
+  for (const KnownSolid& known :
+       {test::ball(0.05), test::box(0.1, 0.06, 0.2), test::cylinder(0.04, 0.15)}) {
+    const ExteriorSolid solid(known.mesh, kSmallestRadius, 1);
+    EXPECT_EQ(wrongSides(solid, known, 0.0005), 0);
+    EXPECT_EQ(solid.facets().size(), known.mesh.triangles.size());
+  }
+}
+
+TEST(ExteriorSolid, MeasuresSignedDistances) {
+  const KnownSolid known = test::box(0.1, 0.06, 0.2);
+  const ExteriorSolid solid(known.mesh, kSmallestRadius, 1);
+  for (const Vec3d& p : randomPoints(known.mesh.bounds, 0.02F, 1000)) {
+    const double truth = known.distance({p.x, p.y, p.z});
+    // Right at the surface the sign is not certain.
+    EXPECT_NEAR(solid.distance(p).distance, truth, std::fabs(truth) < 0.0005 ? 0.001 : 1e-6);
+  }
+}
+
+TEST(ExteriorSolid, DoesNotCareAboutWinding) {
+  KnownSolid known = test::cylinder(0.04, 0.15);
+  for (std::size_t t = 0; t < known.mesh.triangles.size(); t += 3) {
+    std::swap(known.mesh.triangles[t][0], known.mesh.triangles[t][1]);
+  }
+  const ExteriorSolid solid(known.mesh, kSmallestRadius, 1);
+  EXPECT_EQ(wrongSides(solid, known, 0.0005), 0);
+}
+
+TEST(ExteriorSolid, ClosesHolesThatTheProbeDoesNotPass) {
+  KnownSolid known = test::cylinder(0.04, 0.15);
+  // 96 facets around, 24 rows: single missing facets are some 6 by 3 mm.
+  std::vector<Triangle> kept;
+  for (std::size_t t = 0; t < known.mesh.triangles.size(); ++t) {
+    if (t % 101 != 50) kept.push_back(known.mesh.triangles[t]);
+  }
+  ASSERT_LT(kept.size(), known.mesh.triangles.size() - 40);
+  known.mesh.triangles = kept;
+  const ExteriorSolid solid(known.mesh, kSmallestRadius, 1);
+  EXPECT_EQ(wrongSides(solid, known, 0.002), 0);
+}
+
+TEST(ExteriorSolid, DropsShellsAndRibsInside) {
+  const KnownSolid known = test::box(0.1, 0.06, 0.2);
+  MeshBuilder builder;
+  builder.box({-0.05F, -0.03F, -0.1F}, {0.05F, 0.03F, 0.1F});
+  builder.box({-0.045F, -0.025F, -0.095F}, {0.045F, 0.025F, 0.095F});
+  builder.floor({-0.045F, 0, -0.095F}, {0.045F, 0, 0.095F}, 0.001F);
+  KnownSolid nested = known;
+  nested.mesh = builder.build();
+  const ExteriorSolid solid(nested.mesh, kSmallestRadius, 1);
+  EXPECT_EQ(wrongSides(solid, known, 0.0005), 0);
+  EXPECT_EQ(solid.facets().size(), 12U);
+  EXPECT_NEAR(solid.area(), 2 * (0.1 * 0.06 + 0.1 * 0.2 + 0.06 * 0.2), 1e-6);
+}
+
+TEST(ExteriorSolid, CutsFacetsThatAreHiddenInPart) {
+  // Two crossing bars: the middle of each face is inside the other bar.
+  MeshBuilder builder;
+  builder.box({-0.2F, -0.03F, -0.03F}, {0.2F, 0.03F, 0.03F});
+  builder.box({-0.03F, -0.03F, -0.2F}, {0.03F, 0.03F, 0.2F});
+  const ExteriorSolid solid(builder.build(), kSmallestRadius, 1);
+  // In the middle only the top and bottom are near.
+  EXPECT_NEAR(solid.distance({0, 0, 0}).distance, -0.03, 0.001);
+  // The probe does not get into the corner at (0.03, 0.03), which is 7 mm away: it stops about
+  // where it touches both faces, 7.5 mm from the corner.
+  EXPECT_NEAR(solid.distance({0.025, 0, 0.025}).distance, -0.0095, 0.0025);
+  EXPECT_FALSE(solid.reachable({0.03, 0, 0}));
+  EXPECT_TRUE(solid.reachable({0.03, 0, 0.1}));
+}
+
+TEST(ExteriorSolid, KeepsItsMemoryForAnythingUpToTenMetres) {
+  MeshBuilder builder;
+  builder.box({-5, -5, -5}, {5, 5, 5});
+  const ExteriorSolid solid(builder.build(), kSmallestRadius, 1);
+  EXPECT_TRUE(solid.contains({0, 0, 0}));
+  EXPECT_TRUE(solid.contains({4.9, 4.9, 4.9}));
+  EXPECT_FALSE(solid.contains({5.05, 0, 0}));
+}
+
+}  // namespace
+}  // namespace galactic::bake::sphere_fit
