@@ -6,12 +6,19 @@
 namespace galactic::bake {
 namespace {
 
-/// What a set gets wrong, metres times square metres: both sides of the surface count, and the
-/// tails too.
+/// A protrusion costs room, a gap lets the robot pass through things: it counts twice as much.
+constexpr double kProtrusionWeight = 0.5;
+/// The tails count beside the mean.
+constexpr double kTailWeight = 0.5;
+
+double errorOf(const LengthStatistics& lengths) {
+  return lengths.mean + kTailWeight * lengths.p95;
+}
+
+/// What a set gets wrong, metres times square metres.
 double errorOf(const SphereSet& set) {
   const SphereSetQuality& quality = set.quality;
-  return quality.area * (quality.gap.mean + quality.protrusion.mean +
-                         0.5 * (quality.gap.p95 + quality.protrusion.p95));
+  return quality.area * (errorOf(quality.gap) + kProtrusionWeight * errorOf(quality.protrusion));
 }
 
 std::size_t coarsestCount(const std::vector<SphereSets>& curves) {

@@ -23,8 +23,9 @@ using sphere_fit::Yardstick;
 constexpr double kStepFactor = 1.29683955465100966593;
 constexpr int kCurveSteps = 8;
 /// A loose set may leave wide gaps, but has no business far outside: tau grows with this power of
-/// what eps grows by.
-constexpr double kProtrusionGrowth = 1.0 / 3;
+/// what eps grows by, and never beyond this factor.
+constexpr double kProtrusionGrowth = 0.4;
+constexpr double kMostProtrusionGrowth = 1.6;
 /// With this many steps eps is beyond the size of any mesh, whatever it was.
 constexpr int kMostSteps = 64;
 /// For one of many covers; the whole curve costs about three single fits.
@@ -72,7 +73,7 @@ FitTask loosened(const FitTask& task, double steps) {
   const double factor = std::pow(kStepFactor, steps);
   FitTask loose = task;
   loose.eps *= factor;
-  loose.tau *= std::pow(factor, kProtrusionGrowth);
+  loose.tau *= std::min(std::pow(factor, kProtrusionGrowth), kMostProtrusionGrowth);
   loose.most_places = kCurvePlaces;
   return loose;
 }
