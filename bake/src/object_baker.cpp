@@ -9,8 +9,8 @@
 namespace galactic::bake {
 namespace {
 
-/// A movable object larger or smaller than this probably has another unit. Metres.
-constexpr float kDoubtfulSize = 10;
+/// A movable object smaller than this probably has another unit, metres; too large ones are refused
+/// by the sphere fitter with the same question.
 constexpr float kDoubtfulSmallness = 0.002F;
 
 float largestExtent(const Bounds& bounds) {
@@ -20,12 +20,6 @@ float largestExtent(const Bounds& bounds) {
 
 void warnOfSize(const Bounds& bounds, std::vector<std::string>& warnings) {
   const float size = largestExtent(bounds);
-  if (size > kDoubtfulSize) {
-    warnings.push_back(
-        fmt::format("is {:.4g} m large; if the file is in millimetres, give --scale "
-                    "0.001",
-                    size));
-  }
   if (size < kDoubtfulSmallness) {
     warnings.push_back(
         fmt::format("is only {:.4g} mm large; is the unit right? --scale sets metres "

@@ -3,42 +3,27 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/bake_folder.h"
 #include "support/mesh_files.h"
-#include "support/program_run.h"
-#include "support/scratch_folder.h"
 
 namespace galactic {
 namespace {
 
 using nlohmann::json;
 using test::ProgramRun;
+using test::Refusal;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
 /// A folder with a closed room and a file that is no mesh.
-class BakeCli : public testing::Test {
+class BakeCli : public test::BakeFolder {
  protected:
   void SetUp() override {
     write("room.obj", test::objFile(test::unevenBox()));
     write("broken.obj", "this is no mesh\n");
   }
-
-  void write(const std::string& name, std::string_view content) {
-    ASSERT_EQ(test::fileContent(folder_.write(name, content)), content);
-  }
-  [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
-    return test::runProgram(GALACTIC_BAKE, folder_.path(), std::move(arguments));
-  }
-  [[nodiscard]] bool has(const std::string& name) const {
-    return std::filesystem::exists(folder_.path() / name);
-  }
-  [[nodiscard]] std::string content(const std::string& name) const {
-    return test::fileContent(folder_.path() / name);
-  }
-
-  test::ScratchFolder folder_;
 };
 
 TEST_F(BakeCli, WritesAPackNamedAfterItsInputWithTheOptionsAsUsersTypeThem) {
@@ -143,13 +128,6 @@ TEST_F(BakeCli, RefusesTwoInputsForOnePack) {
   EXPECT_EQ(bake.exit_code, 3);
   EXPECT_THAT(bake.err, HasSubstr("would be written twice"));
 }
-
-/// A command line, its exit code and a part of what it says.
-struct Refusal {
-  std::vector<std::string> arguments;
-  int exit_code;
-  std::string part;
-};
 
 TEST_F(BakeCli, ExplainsEveryRefusal) {
   const std::vector<Refusal> refusals{

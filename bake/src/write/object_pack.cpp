@@ -55,8 +55,14 @@ Result<std::vector<std::byte>> encodeObjectPack(const BakedObjectSet& set,
                             "into several packs",
                             bytes >> 20U));
   }
+  if (objects.empty()) {
+    return fail(ErrorCode::kInvalidInput, "", "there are no objects for the pack; give some");
+  }
   std::sort(objects.begin(), objects.end(),
             [](const BakedObject* a, const BakedObject* b) { return a->name < b->name; });
+  if (objects.front()->name.empty()) {
+    return fail(ErrorCode::kInvalidInput, "", "an object has no name; give it one");
+  }
   const auto same = std::adjacent_find(
       objects.begin(), objects.end(),
       [](const BakedObject* a, const BakedObject* b) { return a->name == b->name; });

@@ -1,0 +1,162 @@
+// Objects of known shape: box, resting poses, spheres, warnings.
+#include "galactic/bake/object_baker.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/source_asset.h"
+#include "support/test_meshes.h"
+
+namespace galactic::test {
+namespace {
+
+using bake::BakedObject;
+using bake::bakeObject;
+using bake::ObjectBakeOptions;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// What the box may be larger than its points by, metres.
+constexpr float kBoxGrowth = 5e-6F;
+
+/// 6 x 10 x 8 cm around the origin, moved up by `lift`.
+bake::SourceAsset brick(float lift = 0) {
+  return sourceAssetOf(
+      MeshBuilder().box({-0.03F, lift - 0.05F, -0.04F}, {0.03F, lift + 0.05F, 0.04F}).build(),
+      "brick");
+}
+
+/// Few large spheres: a fit takes hundredths of a second.
+ObjectBakeOptions coarse() {
+  ObjectBakeOptions options;
+  options.spheres.radii = {0.015F, 0.03F};
+  options.spheres.eps = 0.02F;
+  options.spheres.tau = 0.03F;
+  return options;
+}
+
+BakedObject bakeWell(const bake::SourceAsset& asset, const ObjectBakeOptions& options) {
+  auto object = bakeObject(asset, options);
+  if (object) return std::move(*object);
+  ADD_FAILURE() << object.error().where << ": " << object.error().message;
+  return {};
+}
+
+TEST(ObjectBaker, GivesABrickItsBoxAndKeepsItsSurface) {
+  const BakedObject object = bakeWell(brick(0.25F), coarse());
+  EXPECT_EQ(object.name, "brick");
+  EXPECT_NEAR(object.box.box.half_extents.x, 0.03F, kBoxGrowth);
+  EXPECT_NEAR(object.box.box.half_extents.y, 0.05F, kBoxGrowth);
+  EXPECT_NEAR(object.box.box.half_extents.z, 0.04F, kBoxGrowth);
+  EXPECT_NEAR(object.box.box.pose.translation.y, 0.25F, kBoxGrowth);
+  EXPECT_NEAR(object.box.volume, 0.06 * 0.1 * 0.08, 1e-6);
+  EXPECT_EQ(object.bounds.min, (Vec3{-0.03F, 0.2F, -0.04F}));
+  EXPECT_EQ(object.surface.triangles.size(), 12U);
+  EXPECT_EQ(object.imported.triangles, 12U);
+  EXPECT_THAT(object.warnings, IsEmpty());
+}
+
+TEST(ObjectBaker, RestsABrickOnItsSixFacesLargestFirst) {
+  const BakedObject object = bakeWell(brick(), coarse());
+  ASSERT_EQ(object.stable_poses.size(), 6U);
+  float sum = 0;
+  for (const StablePose& pose : object.stable_poses) sum += pose.likelihood;
+  EXPECT_NEAR(sum, 1, 1e-5);
+  // Half the edge that stands up: 6 cm on the largest face, 10 cm on the smallest.
+  const std::vector<float> heights{0.03F, 0.03F, 0.04F, 0.04F, 0.05F, 0.05F};
+  for (std::size_t n = 0; n < 6; ++n) {
+    EXPECT_NEAR(object.stable_poses[n].height, heights[n], 1e-5) << n;
+  }
+}
+
+TEST(ObjectBaker, KeepsSpheresAboveTheFaceOnWhichTheObjectRests) {
+  const BakedObject object = bakeWell(brick(0.25F), coarse());
+  ASSERT_FALSE(object.spheres.spheres.empty());
+  EXPECT_TRUE(object.spheres.meets_tolerances);
+  EXPECT_EQ(object.eps, 0.02F);
+  EXPECT_EQ(object.tau, 0.03F);
+  const auto lowest = [&](const BakedObject& made) {
+    float low = 1;
+    for (const SetSphere& sphere : made.spheres.spheres) {
+      low = std::min(low, sphere.centre.y - coarse().spheres.radii[sphere.radius_index]);
+    }
+    return low;
+  };
+  constexpr float kRounding = 1e-5F;
+  EXPECT_GE(lowest(object), 0.2F - kRounding);
+  ObjectBakeOptions free = coarse();
+  free.keep_above_support = false;
+  EXPECT_LT(lowest(bakeWell(brick(0.25F), free)), 0.2F - kRounding);
+}
+
+TEST(ObjectBaker, SaysWhenTheTolerancesCannotBeMet) {
+  ObjectBakeOptions options = coarse();
+  options.spheres.max_spheres = 1;
+  const BakedObject object = bakeWell(brick(), options);
+  EXPECT_FALSE(object.spheres.meets_tolerances);
+  ASSERT_EQ(object.warnings.size(), 1U);
+  EXPECT_THAT(object.warnings[0], testing::StartsWith("1 spheres leave a gap of up to "));
+  EXPECT_THAT(object.warnings[0],
+              HasSubstr("wanted 20.0 and 30.0 mm; allow more with --max-spheres"));
+}
+
+TEST(ObjectBaker, AsksAboutTheUnitOfTinyObjectsAndRefusesHugeOnes) {
+  bake::SourceAsset tiny = brick();
+  for (Vec3& p : tiny.meshes[0].positions) p = p * 0.01F;
+  ObjectBakeOptions options = coarse();
+  options.spheres.radii = {0.0005F};
+  EXPECT_THAT(bakeWell(tiny, options).warnings,
+              testing::Contains("is only 1 mm large; is the unit right? --scale sets metres per "
+                                "unit"));
+  bake::SourceAsset huge = brick();
+  for (Vec3& p : huge.meshes[0].positions) p = p * 1000;
+  const auto refused = bakeObject(huge, coarse());
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().code, ErrorCode::kUnsupported);
+  EXPECT_EQ(refused.error().where, "mesh");
+  EXPECT_THAT(refused.error().message, HasSubstr("is its unit the millimetre?"));
+}
+
+TEST(ObjectBaker, KeepsTheWarningsOfTheImport) {
+  bake::SourceAsset asset = brick();
+  asset.warnings = {"texture 'wood.png' is missing"};
+  EXPECT_THAT(bakeWell(asset, coarse()).warnings, ElementsAre("texture 'wood.png' is missing"));
+}
+
+TEST(ObjectBaker, RefusesOptionsAndMeshesThatGiveNoSpheres) {
+  ObjectBakeOptions wrong = coarse();
+  wrong.spheres.radii = {0.05F, 0.02F};
+  auto refused = bakeObject(brick(), wrong);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().where, "radii[1]");
+  wrong = coarse();
+  wrong.spheres.tau = -1;
+  refused = bakeObject(brick(), wrong);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().where, "tau");
+  refused = bakeObject(sourceAssetOf({}), coarse());
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
+}
+
+TEST(ObjectBaker, UsesTheBoxThatWasAskedFor) {
+  // A brick turned by an eighth of a turn about Y.
+  bake::SourceAsset asset = brick();
+  const float s = std::sqrt(0.5F);
+  asset.instances[0].world_from_mesh = {s, 0, s, 0, 0, 1, 0, 0, -s, 0, s, 0};
+  ObjectBakeOptions options = coarse();
+  for (const auto fit : {bake::BoxFit::kYaw, bake::BoxFit::kMinimum}) {
+    options.box = fit;
+    EXPECT_NEAR(bakeWell(asset, options).box.volume, 0.06 * 0.1 * 0.08, 1e-6);
+  }
+  options.box = bake::BoxFit::kAxisAligned;
+  const BakedObject aligned = bakeWell(asset, options);
+  EXPECT_NEAR(aligned.box.box.half_extents.x, (0.03F + 0.04F) * s, kBoxGrowth);
+  EXPECT_EQ(aligned.box.box.pose.rotation, Quat{});
+}
+
+}  // namespace
+}  // namespace galactic::test

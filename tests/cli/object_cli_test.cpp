@@ -1,0 +1,212 @@
+// galactic-bake --as object as a user meets it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/bake_folder.h"
+#include "galactic/object_set.h"
+#include "galactic/pack.h"
+#include "support/mesh_files.h"
+
+namespace galactic {
+namespace {
+
+using nlohmann::json;
+using test::ProgramRun;
+using test::Refusal;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+/// A brick of 1 x 2 x 3 units.
+std::string brick() { return test::objFile(test::unevenBox()); }
+
+class ObjectCli : public test::BakeFolder {
+ protected:
+  /// Bricks of 3 x 6 x 9 cm in few large spheres: a bake takes a tenth of a second.
+  [[nodiscard]] ProgramRun bake(std::vector<std::string> arguments) const {
+    const std::vector<std::string> quick{"--as",      "object", "--scale", "0.03",  "--radii",
+                                         "0.03,0.05", "--eps",  "0.02",    "--tau", "0.03"};
+    arguments.insert(arguments.end(), quick.begin(), quick.end());
+    return run(std::move(arguments));
+  }
+
+  [[nodiscard]] std::vector<std::string> namesIn(const std::string& pack_name) const {
+    std::vector<std::string> names;
+    const auto pack = PackFile::open(path(pack_name));
+    EXPECT_TRUE(pack) << pack.error().where << ": " << pack.error().message;
+    if (!pack) return names;
+    const auto set = ObjectSet::from(*pack);
+    EXPECT_TRUE(set);
+    for (const ObjectModel& object : set->objects()) names.emplace_back(object.name);
+    return names;
+  }
+};
+
+TEST_F(ObjectCli, BakesOneFileIntoAPackOfItsName) {
+  write("mug.obj", brick());
+  const ProgramRun run = bake({"mug.obj"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, AllOf(HasSubstr("1 object -> mug.pack"), HasSubstr("30x60x90"),
+                             HasSubstr("spheres of radius 0.05+0.03 m")));
+  EXPECT_THAT(run.err, IsEmpty());
+  EXPECT_THAT(namesIn("mug.pack"), ElementsAre("mug"));
+}
+
+TEST_F(ObjectCli, BakesAFolderOfFoldersAsYcbIsLaidOut) {
+  write("ycb/025_mug/textured.obj", brick());
+  write("ycb/003_box/textured.obj", brick());
+  write("ycb/003_box/notes.txt", "not a mesh");
+  write("ycb/loose/cup.obj", brick());
+  write("ycb/loose/cup.stl", test::stlBinaryFile(test::unevenBox()));
+  const ProgramRun run = bake({"ycb"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("3 objects -> ycb.pack"));
+  EXPECT_THAT(namesIn("ycb.pack"), ElementsAre("003_box", "025_mug", "cup"));
+}
+
+TEST_F(ObjectCli, NamesThePackAfterTheFolderHoweverItIsWritten) {
+  write("things.v2/mug.obj", brick());
+  for (const char* input : {"things.v2", "things.v2/", "./things.v2/.", "things.v2/../things.v2"}) {
+    SCOPED_TRACE(input);
+    EXPECT_EQ(bake({input, "-q"}).exit_code, 0);
+    EXPECT_TRUE(has("things.v2.pack"));
+    std::filesystem::remove(path("things.v2.pack"));
+  }
+  const std::string name = path("x").parent_path().filename().string() + ".pack";
+  EXPECT_EQ(bake({".", "-q"}).exit_code, 0);
+  EXPECT_TRUE(has(name));
+}
+
+TEST_F(ObjectCli, WritesTheSameBytesForAnyNumberOfJobs) {
+  for (const char* name : {"a", "b", "c"}) write(std::string("set/") + name + ".obj", brick());
+  ASSERT_EQ(bake({"set", "-o", "one.pack", "-j", "1"}).exit_code, 0);
+  ASSERT_EQ(bake({"set", "-o", "three.pack", "-j", "3"}).exit_code, 0);
+  EXPECT_FALSE(content("one.pack").empty());
+  EXPECT_TRUE(content("one.pack") == content("three.pack"));
+}
+
+TEST_F(ObjectCli, RefusesTwoObjectsOfOneName) {
+  write("set/a/mug.obj", brick());
+  write("set/b/mug.obj", brick());
+  const ProgramRun run = bake({"set"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_THAT(run.err, AllOf(StartsWith("galactic-bake: set/b/mug.obj: would be the object 'mug', "
+                                        "as set/a/mug.obj is"),
+                             HasSubstr("rename one of them")));
+  EXPECT_FALSE(has("set.pack"));
+}
+
+TEST_F(ObjectCli, StopsAtABrokenFileUnlessToldToKeepGoing) {
+  write("set/broken.obj", "this is no mesh\n");
+  write("set/mug.obj", brick());
+  const ProgramRun stops = bake({"set"});
+  EXPECT_EQ(stops.exit_code, 3);
+  EXPECT_THAT(stops.err, StartsWith("galactic-bake: set/broken.obj: "));
+  EXPECT_FALSE(has("set.pack"));
+  const ProgramRun goes_on = bake({"set", "--keep-going", "--report", "report.json"});
+  EXPECT_EQ(goes_on.exit_code, 3);
+  EXPECT_THAT(namesIn("set.pack"), ElementsAre("mug"));
+  const json report = json::parse(content("report.json"));
+  ASSERT_EQ(report["failed"].size(), 1U);
+  EXPECT_EQ(report["failed"][0]["input"], "set/broken.obj");
+  EXPECT_EQ(report["failed"][0]["code"], 3);
+  ASSERT_EQ(report["baked"].size(), 1U);
+}
+
+TEST_F(ObjectCli, ReportsEachObject) {
+  write("mug.obj", brick());
+  ASSERT_EQ(bake({"mug.obj", "--report", "report.json"}).exit_code, 0);
+  const json object = json::parse(content("report.json"))["baked"][0];
+  EXPECT_EQ(object["name"], "mug");
+  EXPECT_EQ(object["output"], "mug.pack");
+  EXPECT_EQ(object["pack_bytes"], std::filesystem::file_size(path("mug.pack")));
+  EXPECT_EQ(object["triangles"]["kept"], 12);
+  EXPECT_NEAR(object["box"]["half_extents"][1], 0.03, 1e-5);
+  EXPECT_NEAR(object["box"]["volume"], 0.03 * 0.06 * 0.09, 1e-6);
+  EXPECT_EQ(object["box"]["rotation_wxyz"], json::array({1, 0, 0, 0}));
+  EXPECT_EQ(object["stable_poses"].size(), 6U);
+  const json& spheres = object["spheres"];
+  EXPECT_EQ(spheres["meets_tolerances"], true);
+  EXPECT_EQ(spheres["count_per_radius"].size(), 2U);
+  EXPECT_EQ(spheres["count"],
+            spheres["count_per_radius"][0].get<int>() + spheres["count_per_radius"][1].get<int>());
+  EXPECT_LE(spheres["gap"]["max"], 0.021);
+  EXPECT_TRUE(object["warnings"].empty());
+}
+
+TEST_F(ObjectCli, AsksAboutUnits) {
+  write("mug.obj", brick());
+  const ProgramRun tiny = run({"mug.obj", "--as", "object", "--scale", "0.0005"});
+  EXPECT_EQ(tiny.exit_code, 0) << tiny.err;
+  EXPECT_THAT(tiny.out, HasSubstr("warning: mug: is only 1.5 mm large; is the unit right?"));
+  const ProgramRun huge = run({"mug.obj", "--as", "object", "--scale", "30"});
+  EXPECT_EQ(huge.exit_code, 5);
+  EXPECT_THAT(huge.err, AllOf(StartsWith("galactic-bake: mug.obj: mesh: its extents are"),
+                              HasSubstr("is its unit the millimetre?")));
+}
+
+TEST_F(ObjectCli, UnderstandsEveryOptionOfObjects) {
+  write("mug.obj", brick());
+  for (const char* box : {"yaw", "min", "aabb"})
+    EXPECT_EQ(bake({"mug.obj", "--obb", box}).exit_code, 0);
+  EXPECT_EQ(bake({"mug.obj", "--no-support"}).exit_code, 0);
+  const ProgramRun one = bake({"mug.obj", "--max-spheres", "1", "--report", "report.json"});
+  EXPECT_EQ(one.exit_code, 0);
+  EXPECT_THAT(one.out, HasSubstr("warning: mug: 1 spheres leave a gap"));
+  EXPECT_EQ(json::parse(content("report.json"))["baked"][0]["spheres"]["count"], 1);
+  EXPECT_EQ(bake({"mug.obj", "--dry-run", "-o", "none.pack"}).exit_code, 0);
+  EXPECT_FALSE(has("none.pack"));
+}
+
+TEST_F(ObjectCli, ExplainsEveryRefusal) {
+  write("mug.obj", brick());
+  write("empty/readme.txt", "");
+  const std::vector<Refusal> refusals{
+      {{"mug.obj", "--as", "thing"}, 1, "--as"},
+      {{"mug.obj", "--as", "object", "--spacing", "0.04"},
+       1,
+       "--spacing: does not go with --as object; leave it out"},
+      {{"mug.obj", "--as", "object", "--recipe", "r.toml"},
+       1,
+       "--recipe: does not go with --as object; leave it out"},
+      {{"mug.obj", "--as", "object", "--allow-missing"},
+       1,
+       "--allow-missing: does not go with --as object"},
+      {{"mug.obj", "--obb", "min"}, 1, "--obb: does not go with --as scene; leave it out"},
+      {{"mug.obj", "--as", "object", "--obb", "round"}, 1, "--obb"},
+      {{"mug.obj", "--as", "object", "--profile", "loose"}, 1, "--profile"},
+      {{"mug.obj", "--as", "object", "--eps", "0"}, 1, "--eps: is 0, a number above 0 is wanted"},
+      {{"mug.obj", "--as", "object", "--tau", "x"}, 1, "--tau: has \"x\" in \"x\""},
+      {{"mug.obj", "--as", "object", "--max-spheres", "-1"}, 1, "--max-spheres"},
+      {{"missing.obj", "--as", "object"}, 2, "missing.obj"},
+      {{"empty", "--as", "object"}, 3, "empty: holds no mesh file; .glb"},
+      {{"mug.obj", "--as", "object", "--radii", "0.05,0.02"},
+       3,
+       "mug.obj: radii[1]: 0.02 m comes after 0.05 m"},
+      {{"mug.obj", "--as", "object", "-o", "mug.obj"}, 3, "is also an input"},
+  };
+  const std::string before = content("mug.obj");
+  for (const Refusal& refusal : refusals) {
+    SCOPED_TRACE(testing::PrintToString(refusal.arguments));
+    const ProgramRun run_once = run(refusal.arguments);
+    EXPECT_EQ(run_once.exit_code, refusal.exit_code);
+    EXPECT_THAT(run_once.err, HasSubstr(refusal.part));
+    EXPECT_THAT(run_once.out, IsEmpty());
+  }
+  EXPECT_EQ(content("mug.obj"), before);
+}
+
+TEST_F(ObjectCli, NeverReplacesAMeshOfTheFolder) {
+  write("set/mug.obj", brick());
+  const ProgramRun run = bake({"set", "-o", "set/mug.obj"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_THAT(run.err, HasSubstr("is also an input"));
+  EXPECT_EQ(content("set/mug.obj"), brick());
+}
+
+}  // namespace
+}  // namespace galactic
