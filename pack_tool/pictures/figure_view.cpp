@@ -15,10 +15,10 @@ using pack_tool::FigurePart;
 /// What remains white around a figure: share of a view.
 constexpr double kBorder = 0.06;
 constexpr double kLeastExtent = 1e-3;
-/// Length of the drawn part of a camera's view, metres.
-constexpr float kCameraLength = 0.15F;
-/// Half the length of the cross at the grasp point, metres: seen also where the radius is tiny.
-constexpr float kGraspCross = 0.03F;
+/// Length of the drawn part of a camera's view, and half the length of the cross at the grasp
+/// point, which is seen also where the radius is tiny: shares of the robot's size.
+constexpr float kCameraLength = 0.1F;
+constexpr float kGraspCross = 0.02F;
 
 double along(const Vec3& axis, const Vec3& point) {
   return static_cast<double>(axis.x) * static_cast<double>(point.x) +
@@ -37,8 +37,8 @@ void include(ViewWindow& window, const ViewAxes& axes, const RasterSphere& spher
 }
 
 /// The lines that show a camera: what it sees, and a roof where up is.
-std::vector<RasterLine> cameraLines(const CameraMark& camera) {
-  const auto far = pack_tool::viewPyramid(camera, kCameraLength);
+std::vector<RasterLine> cameraLines(const CameraMark& camera, float length) {
+  const auto far = pack_tool::viewPyramid(camera, length);
   const Pose& world = camera.world_from_camera;
   std::vector<RasterLine> lines;
   for (std::size_t n = 0; n < far.size(); ++n) {
@@ -51,18 +51,29 @@ std::vector<RasterLine> cameraLines(const CameraMark& camera) {
   return lines;
 }
 
+/// The longest edge of the box around a figure, metres.
+float sizeOf(const Figure& figure) {
+  const pack_tool::FigureBounds bounds = boundsOf(figure);
+  // Marks are drawn also where nothing else is.
+  if (bounds.empty()) return 1;
+  const Vec3 edges = bounds.max - bounds.min;
+  return std::max({edges.x, edges.y, edges.z});
+}
+
 std::vector<RasterLine> markLines(const Figure& figure) {
   std::vector<RasterLine> lines;
+  if (figure.kind != FigureKind::kRobot) return lines;
+  const float size = sizeOf(figure);
   for (std::size_t n = 0; n < figure.footprint.size(); ++n) {
     lines.push_back(
         {figure.footprint[n], figure.footprint[(n + 1) % figure.footprint.size()], kFootprintMark});
   }
   if (figure.camera) {
-    const auto camera = cameraLines(*figure.camera);
+    const auto camera = cameraLines(*figure.camera, kCameraLength * size);
     lines.insert(lines.end(), camera.begin(), camera.end());
   }
   if (figure.grasp) {
-    const float half = std::max(figure.grasp->radius, kGraspCross);
+    const float half = std::max(figure.grasp->radius, kGraspCross * size);
     for (const Vec3& arm : {Vec3{half, 0, 0}, Vec3{0, half, 0}, Vec3{0, 0, half}}) {
       const Vec3& centre = figure.grasp->centre_in_world;
       lines.push_back({centre - arm, centre + arm, kGraspMark});
