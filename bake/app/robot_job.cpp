@@ -78,11 +78,10 @@ Result<BakedRobot> bakeWith(const std::filesystem::path& input, const BakeComman
 }
 
 /// What a robot is made from besides the URDF and its meshes.
-Result<void> addSources(const std::filesystem::path& input, const RobotOptions& options,
-                        std::vector<SourceFile>& files) {
+Result<void> addSources(const RobotOptions& options, std::vector<SourceFile>& files) {
   for (const std::filesystem::path& path : {options.recipe, options.spheres}) {
     if (path.empty()) continue;
-    auto file = describeFile(input, path);
+    auto file = describeFile(path);
     if (!file) return tl::unexpected(file.error());
     files.push_back(std::move(*file));
   }
@@ -114,7 +113,7 @@ Result<Json> bakeRobotFile(const std::filesystem::path& input, BakeRun& run) {
   run.line().show(item, "spheres", 0.3);
   auto baked = bakeWith(input, command, *robot);
   if (!baked) return tl::unexpected(baked.error());
-  if (auto added = addSources(input, command.robot, robot->files); !added) {
+  if (auto added = addSources(command.robot, robot->files); !added) {
     return tl::unexpected(added.error());
   }
   outcome.robot = std::move(*baked);

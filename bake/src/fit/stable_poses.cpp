@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -77,13 +78,14 @@ std::vector<Resting> findRestings(const ConvexHull& hull, std::span<const Vec3> 
   return restingsOfSolid(hull, points);
 }
 
+/// Likelihoods are told apart in these steps: those of symmetric bodies are equal up to rounding.
+constexpr double kLikelihoodSteps = 1e6;
+
 /// Likeliest first; of equally likely ones, the more upright first.
 void sortByLikelihood(std::vector<Resting>& restings) {
-  // Symmetric bodies have equal likelihoods up to rounding.
-  constexpr double kSteps = 1e6;
   std::stable_sort(restings.begin(), restings.end(), [](const Resting& a, const Resting& b) {
-    const auto steps_a = std::llround(a.likelihood * kSteps);
-    const auto steps_b = std::llround(b.likelihood * kSteps);
+    const auto steps_a = std::llround(a.likelihood * kLikelihoodSteps);
+    const auto steps_b = std::llround(b.likelihood * kLikelihoodSteps);
     return steps_a != steps_b ? steps_a > steps_b : a.down.y < b.down.y;
   });
 }
@@ -127,7 +129,13 @@ std::vector<StablePose> findStablePoses(const TriangleMesh& mesh) {
   if (restings.size() > kMaxStablePoses) restings.resize(kMaxStablePoses);
   std::vector<StablePose> poses;
   poses.reserve(restings.size());
-  for (const Resting& resting : restings) poses.push_back(poseOf(resting, points));
+  for (const Resting& resting : restings) {
+    poses.push_back(poseOf(resting, points));
+    // Of equally likely poses, a later one may be the likelier by its rounding.
+    if (poses.size() < 2) continue;
+    poses.back().likelihood =
+        std::min(poses.back().likelihood, std::prev(poses.end(), 2)->likelihood);
+  }
   return poses;
 }
 

@@ -87,8 +87,8 @@ std::string nameRelativeTo(const fs::path& main_input, const fs::path& file) {
   return fs::absolute(file, ignored).lexically_normal().lexically_relative(folder).generic_string();
 }
 
-Result<SourceFile> describeFile(const fs::path& main_input, const fs::path& path) {
-  SourceFile file{.name = nameRelativeTo(main_input, path)};
+Result<SourceFile> describeFile(const fs::path& path) {
+  SourceFile file{.name = path.filename().generic_string()};
   if (auto hashed = hashFile(file, path); !hashed) return tl::unexpected(hashed.error());
   return file;
 }

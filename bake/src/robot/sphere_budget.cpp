@@ -11,9 +11,7 @@ constexpr double kProtrusionWeight = 0.5;
 /// The tails count beside the mean.
 constexpr double kTailWeight = 0.5;
 
-double errorOf(const LengthStatistics& lengths) {
-  return lengths.mean + kTailWeight * lengths.p95;
-}
+double errorOf(const LengthStatistics& lengths) { return lengths.mean + kTailWeight * lengths.p95; }
 
 /// What a set gets wrong, metres times square metres.
 double errorOf(const SphereSet& set) {

@@ -200,6 +200,27 @@ TEST(StablePoses, JoinPosesThatDifferLittle) {
   EXPECT_NEAR(sumOf(poses), 1, 1e-6);
 }
 
+/// A pack demands it of what is stored, and symmetric bodies have likelihoods that differ by
+/// rounding.
+TEST(StablePoses, AreStoredInDescendingLikelihood) {
+  std::mt19937 random(kSeed);
+  std::size_t close = 0;
+  std::size_t all = 0;
+  for (int sides = 6; sides < 60; ++sides) {
+    SCOPED_TRACE(sides);
+    std::vector<Vec3> body = test::lathe({{0.03, -0.05}, {0.03, 0.05}}, sides);
+    body = test::moved(body, {{}, test::toQuat(test::randomRotation(random))});
+    const std::vector<StablePose> poses = findStablePoses(test::meshOf(body));
+    for (std::size_t n = 1; n < poses.size(); ++n) {
+      EXPECT_LE(poses[n].likelihood, poses[n - 1].likelihood);
+      ++all;
+      if (poses[n].likelihood > 0.999F * poses[n - 1].likelihood) ++close;
+    }
+  }
+  EXPECT_GT(close, all / 10);
+  EXPECT_LT(close, all);
+}
+
 TEST(StablePoses, OfAFlatMeshAreItsTwoSides) {
   std::mt19937 random(kSeed);
   for (int run = 0; run < 20; ++run) {
