@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <functional>
 #include <map>
-#include <set>
 #include <thread>
 
 #include "galactic/bake/robot_recipe.h"
@@ -34,18 +33,19 @@ const std::map<std::string, AssetKind>& kindNames() {
 /// The headings of --help, and which kinds of asset each is for.
 struct Group {
   const char* heading;
-  std::set<AssetKind> kinds;
+  bool (*is_for)(AssetKind);
 };
 
-const Group kMeshGroup{"Meshes (scenes, objects)", {AssetKind::kScene, AssetKind::kObject}};
-const Group kSceneGroup{"Scenes", {AssetKind::kScene}};
-const Group kShapeGroup{"Spheres and boxes (objects, robots)",
-                        {AssetKind::kObject, AssetKind::kRobot}};
-const Group kRobotGroup{"Robots", {AssetKind::kRobot}};
+constexpr Group kMeshGroup{"Meshes (scenes, objects)",
+                           [](AssetKind kind) { return kind != AssetKind::kRobot; }};
+constexpr Group kSceneGroup{"Scenes", [](AssetKind kind) { return kind == AssetKind::kScene; }};
+constexpr Group kShapeGroup{"Spheres and boxes (objects, robots)",
+                            [](AssetKind kind) { return kind != AssetKind::kScene; }};
+constexpr Group kRobotGroup{"Robots", [](AssetKind kind) { return kind == AssetKind::kRobot; }};
 
 /// Options that were typed although their group is for other kinds of asset.
 Result<void> checkGroup(const CLI::App& app, const Group& group, AssetKind kind) {
-  if (group.kinds.contains(kind)) return {};
+  if (group.is_for(kind)) return {};
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_group() != group.heading || option->count() == 0) continue;
     return fail(ErrorCode::kInvalidInput, option->get_name(),

@@ -31,6 +31,17 @@ void warnOfSize(const Bounds& bounds, std::vector<std::string>& warnings) {
 void warnOfSpheres(const SphereSet& set, const SphereSetOptions& options,
                    std::vector<std::string>& warnings) {
   if (set.meets_tolerances) return;
+  // The surface is known at samples: a gap beyond eps by their distance is no miss.
+  constexpr double kSlack = 1.2;
+  const bool covered = set.guaranteed_gap <= kSlack * static_cast<double>(options.eps);
+  if (covered && set.quality.thin_points > 0) {
+    warnings.push_back(
+        fmt::format("has thin parts: spheres that cover them stick out up to {:.1f} mm, {:.1f} mm "
+                    "are wanted; a "
+                    "smaller radius in --radii does better",
+                    1000 * set.guaranteed_protrusion, 1000 * options.tau));
+    return;
+  }
   warnings.push_back(fmt::format(
       "{} spheres leave a gap of up to {:.1f} mm and stick out up to {:.1f} mm, wanted {:.1f} and "
       "{:.1f} mm; allow more with --max-spheres or wider tolerances",

@@ -83,12 +83,12 @@ Json describeQuality(const schema::SphereSetStatistics* statistics) {
 Json describeSurface(const schema::Surface* surface) {
   if (surface == nullptr) return nullptr;
   constexpr std::uint64_t kStart = 0xcbf29ce484222325;
-  const auto bytesOf = [](std::uint64_t hash, const auto& values, std::size_t element) {
+  const auto bytes_of = [](std::uint64_t hash, const auto& values, std::size_t element) {
     return hashed(hash, values.Data(), values.size() * element);
   };
-  std::uint64_t hash = bytesOf(kStart, *surface->positions(), sizeof(schema::Vec3));
-  hash = bytesOf(hash, *surface->triangles(), sizeof(std::uint32_t));
-  hash = bytesOf(hash, *surface->colors(), sizeof(std::uint32_t));
+  std::uint64_t hash = bytes_of(kStart, *surface->positions(), sizeof(schema::Vec3));
+  hash = bytes_of(hash, *surface->triangles(), sizeof(std::uint32_t));
+  hash = bytes_of(hash, *surface->colors(), sizeof(std::uint32_t));
   return {{"vertices", surface->positions()->size()},
           {"triangles", surface->triangles()->size() / 3},
           {"coloured", surface->colors()->size() > 0},

@@ -67,6 +67,12 @@ std::optional<int> parse(int argc, char** argv, Options& options) {
   return std::nullopt;
 }
 
+/// Whether the kind of pack is one that this version knows; a verified pack always is.
+bool isDescribed(galactic::PackKind kind) {
+  return kind == galactic::PackKind::kScene || kind == galactic::PackKind::kObjects ||
+         kind == galactic::PackKind::kRobot;
+}
+
 /// Opens one pack and prints its summary. Mapping and verifying are timed apart.
 Result<galactic::PackFile> openAndDescribe(const std::string& path, bool trusted) {
   using Clock = std::chrono::steady_clock;
@@ -82,9 +88,12 @@ Result<galactic::PackFile> openAndDescribe(const std::string& path, bool trusted
     times.verify = Seconds(Clock::now() - mapped).count();
     if (!verified) return tl::unexpected<Error>(verified.error());
   }
-  const Result<galactic::Scene> scene = galactic::Scene::from(*pack);
-  if (!scene) return tl::unexpected<Error>(scene.error());
-  fmt::print("{}", galactic::summarise(*pack, *scene, times));
+  if (!isDescribed(pack->kind())) {
+    return galactic::fail(ErrorCode::kUnsupported, path,
+                          "is a pack of kind " + galactic::packKindName(pack->kind()) +
+                              ", which this version cannot open; update galactic");
+  }
+  fmt::print("{}", galactic::summarise(*pack, times));
   return pack;
 }
 
@@ -94,8 +103,12 @@ int run(const Options& options) {
   for (const std::string& path : options.packs) {
     Result<galactic::PackFile> pack = openAndDescribe(path, options.trusted);
     if (!pack) return report(pack.error());
-    scenes.push_back(galactic::Scene::from(*pack)->grids());
+    if (const auto scene = galactic::Scene::from(*pack)) scenes.push_back(scene->grids());
     packs.push_back(std::move(*pack));
+  }
+  if (options.bench && scenes.empty()) {
+    return report({ErrorCode::kInvalidInput, "--bench",
+                   "needs a pack of a scene to query; give one with --pack"});
   }
   if (options.bench) fmt::print("{}", galactic::runQueryBenchmark(scenes, options.seed));
   if (std::fflush(stdout) != 0) {

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "galactic/schema/pack_generated.h"
 
@@ -61,18 +62,10 @@ std::string openingLine(const PackFile& pack, const OpenTimes& times) {
                      verified);
 }
 
-}  // namespace
-
-std::string summarise(const PackFile& pack, const Scene& scene, const OpenTimes& times) {
-  const schema::Provenance& provenance = *pack.root().provenance();
-  const schema::Scene& stored = *pack.root().asset_as_Scene();
+std::string sceneText(const schema::Scene& stored) {
   const schema::Vec3& min = stored.bounds()->min();
   const schema::Vec3& max = stored.bounds()->max();
-  std::string text = fmt::format("{}: scene \"{}\", format {}, by {} {}\n", printable(pack.where()),
-                                 printable(scene.name()), pack.header().format_version,
-                                 clean(provenance.tool()), clean(provenance.tool_version()));
-  text += openingLine(pack, times);
-  text +=
+  std::string text =
       fmt::format("  {} triangles, x {:.2f} to {:.2f}, y {:.2f} to {:.2f}, z {:.2f} to {:.2f} m\n",
                   stored.import_statistics()->triangles(), min.x(), max.x(), min.y(), max.y(),
                   min.z(), max.z());
@@ -80,6 +73,72 @@ std::string summarise(const PackFile& pack, const Scene& scene, const OpenTimes&
       fmt::format("  {:>8}{:>13}{:>11}{:>9}{:>9}{:>11}{:>11}{:>11}  {}\n", "radius m", "columns",
                   "spans", "max/col", "MB", "room m3", "outside", "enclosed", "sphere casts");
   for (const schema::ColumnGrid* grid : *stored.column_grids()) text += gridLine(*grid);
+  return text;
+}
+
+std::string radiiText(const flatbuffers::Vector<float>& radii) {
+  return fmt::format("  radii {} m\n",
+                     fmt::join(std::vector<float>(radii.begin(), radii.end()), ", "));
+}
+
+std::string objectsText(const schema::ObjectSet& set) {
+  std::string text = radiiText(*set.radii());
+  text += fmt::format("  {:>20}{:>9}{:>8}{:>14}  {}\n", "box mm", "spheres", "poses",
+                      "worst gap mm", "object");
+  for (const schema::Object* object : *set.objects()) {
+    const schema::Vec3& half = *object->box_half_extents();
+    text += fmt::format(
+        "  {:>20}{:>9}{:>8}{:>14.1f}  {}\n",
+        fmt::format("{:.0f} x {:.0f} x {:.0f}", 2000 * half.x(), 2000 * half.y(), 2000 * half.z()),
+        object->spheres()->size(), object->stable_poses()->size(),
+        object->sphere_statistics()->gap()->max() / kMilli, clean(object->name()));
+  }
+  return text;
+}
+
+std::string robotText(const schema::Robot& robot) {
+  std::size_t tested = 0;
+  for (const schema::GroupPair* pair : *robot.group_pairs()) {
+    if (pair->kind() == schema::PairKind::Tested) ++tested;
+  }
+  return radiiText(*robot.radii()) +
+         fmt::format(
+             "  {} links, {} joint positions, {} of them controlled\n"
+             "  {} spheres in {} groups of links, {} of {} pairs can collide\n"
+             "  end effector: {}, camera: {}\n",
+             robot.links()->size(), robot.limits()->size(), robot.controlled_joints()->size(),
+             robot.spheres()->size(), robot.groups()->size(), tested, robot.group_pairs()->size(),
+             robot.end_effector() == nullptr
+                 ? std::string("none")
+                 : clean(robot.link_names()->Get(robot.end_effector()->link())),
+             robot.camera() == nullptr ? std::string("none")
+                                       : clean(robot.link_names()->Get(robot.camera()->link())));
+}
+
+/// What kind of asset it is, with its name where it has one, and its description.
+std::pair<std::string, std::string> assetText(const schema::Pack& pack) {
+  if (const schema::ObjectSet* set = pack.asset_as_ObjectSet()) {
+    return {fmt::format("{} objects", set->objects()->size()), objectsText(*set)};
+  }
+  if (const schema::Robot* robot = pack.asset_as_Robot()) {
+    return {fmt::format("robot \"{}\"", clean(robot->name())), robotText(*robot)};
+  }
+  if (const schema::Scene* scene = pack.asset_as_Scene()) {
+    return {fmt::format("scene \"{}\"", clean(scene->name())), sceneText(*scene)};
+  }
+  return {"an asset of another kind than the header says", ""};
+}
+
+}  // namespace
+
+std::string summarise(const PackFile& pack, const OpenTimes& times) {
+  const schema::Provenance& provenance = *pack.root().provenance();
+  const auto [title, content] = assetText(pack.root());
+  std::string text = fmt::format("{}: {}, format {}, by {} {}\n", printable(pack.where()), title,
+                                 pack.header().format_version, clean(provenance.tool()),
+                                 clean(provenance.tool_version()));
+  text += openingLine(pack, times);
+  text += content;
   for (const flatbuffers::String* warning : *provenance.warnings()) {
     text += fmt::format("  warning: {}\n", clean(warning));
   }

@@ -4,7 +4,6 @@
 
 #include "galactic/pack.h"
 #include "galactic/printable.h"
-#include "galactic/scene.h"
 
 namespace galactic {
 
@@ -15,8 +14,7 @@ struct OpenTimes {
   double verify = 0;
 };
 
-/// A table of what a scene pack holds, several lines of text, each ended.
-[[nodiscard]] std::string summarise(const PackFile& pack, const Scene& scene,
-                                    const OpenTimes& times);
+/// What a pack of any kind holds, several lines of text, each ended.
+[[nodiscard]] std::string summarise(const PackFile& pack, const OpenTimes& times);
 
 }  // namespace galactic

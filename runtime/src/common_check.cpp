@@ -133,10 +133,12 @@ Result<void> checkSurface(const schema::Surface& surface, const std::string& whe
   const auto& positions = *surface.positions();
   const auto& corners = *surface.triangles();
   Offence offence(where);
-  for (flatbuffers::uoffset_t n = 0; n < positions.size() && !offence.found(); ++n) {
-    offence.require(isFinite(*positions.Get(n)), fmt::format("positions[{}]", n),
-                    "is not finite, wanted numbers");
-  }
+  // Messages are made for the first offender only: surfaces are the bulk of a pack.
+  const auto broken = std::find_if(positions.begin(), positions.end(),
+                                   [](const schema::Vec3* p) { return !isFinite(*p); });
+  offence.require(broken == positions.end(),
+                  fmt::format("positions[{}]", std::distance(positions.begin(), broken)),
+                  "is not finite, wanted numbers");
   offence.require(corners.size() % 3 == 0, "triangles",
                   "has {} elements, wanted three per triangle", corners.size());
   const auto beyond = std::find_if(corners.begin(), corners.end(),

@@ -237,8 +237,8 @@ class RobotChecker {
   }
 
   void checkBase(const schema::Base& base) {
-    const auto isStep = [](float step) { return std::isfinite(step) && step > 0; };
-    offence_.require(isStep(base.forward_step()) && isStep(base.turn_step()), "base.forward_step",
+    const auto is_step = [](float step) { return std::isfinite(step) && step > 0; };
+    offence_.require(is_step(base.forward_step()) && is_step(base.turn_step()), "base.forward_step",
                      "or turn_step is {} or {}, wanted numbers above 0", base.forward_step(),
                      base.turn_step());
     offence_.require(std::isfinite(base.root_height()), "base.root_height",

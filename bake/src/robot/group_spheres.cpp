@@ -55,44 +55,62 @@ class Planner {
   [[nodiscard]] GroupPlan plan(const RigidGroup& group) const {
     GroupPlan plan;
     plan.authored = task_.options.hand_spheres.has_value();
-    plan.fit.radii = task_.options.radii;
-    std::optional<double> eps;
-    std::optional<double> tau;
-    std::optional<double> clip;
-    std::optional<std::uint32_t> most;
+    const GroupRule rule = ruleOfGroup(group);
     for (std::size_t n = 0; n < group.links.size(); ++n) {
-      const std::string& name = task_.robot.links[group.links[n]].name;
-      const RecipeLinkSpheres* rule = ruleOf(task_.recipe, name);
-      if (rule != nullptr) {
-        // The link nearest to the root that states a value has the say.
-        if (!eps) eps = rule->eps;
-        if (!tau) tau = rule->tau;
-        if (!clip) clip = rule->clip_height;
-        if (!most) most = rule->max_spheres;
-        plan.authored |= !rule->spheres.empty();
-        addByHand(rule->spheres, group.group_from_link[n], plan);
-        if (rule->skip) continue;
-      }
-      if (task_.options.hand_spheres) {
-        for (const LinkSpheres& given : task_.options.hand_spheres->links) {
-          if (given.link == name) addByHand(given.spheres, group.group_from_link[n], plan);
-        }
-      }
-      addSurface(task_.surfaces[group.links[n]], group.group_from_link[n], plan.mesh);
+      addLink(group.links[n], group.group_from_link[n], plan);
     }
-    plan.fit.eps = static_cast<float>(eps.value_or(eps_));
-    plan.fit.tau = static_cast<float>(tau.value_or(tau_));
-    plan.fit.max_spheres = most.value_or(0);
+    plan.fit.radii = task_.options.radii;
+    plan.fit.eps = static_cast<float>(rule.eps.value_or(eps_));
+    plan.fit.tau = static_cast<float>(rule.tau.value_or(tau_));
+    plan.fit.max_spheres = rule.max_spheres.value_or(0);
     if (!plan.mesh.triangles.empty()) {
       setBounds(plan.mesh);
       plan.fit.support = clipPlane(task_.world_from_link[group.link],
-                                   static_cast<float>(clip.value_or(clip_height_)));
+                                   static_cast<float>(rule.clip_height.value_or(clip_height_)));
       plan.clipped = isBeyond(plan.mesh, *plan.fit.support);
     }
     return plan;
   }
 
  private:
+  /// What the recipe says of a group's links.
+  struct GroupRule {
+    std::optional<double> eps;
+    std::optional<double> tau;
+    std::optional<double> clip_height;
+    std::optional<std::uint32_t> max_spheres;
+  };
+
+  /// Of several links that state a value, the one nearest to the root has the say.
+  [[nodiscard]] GroupRule ruleOfGroup(const RigidGroup& group) const {
+    GroupRule all;
+    for (const std::uint32_t link : group.links) {
+      const RecipeLinkSpheres* rule = ruleOf(task_.recipe, task_.robot.links[link].name);
+      if (rule == nullptr) continue;
+      if (!all.eps) all.eps = rule->eps;
+      if (!all.tau) all.tau = rule->tau;
+      if (!all.clip_height) all.clip_height = rule->clip_height;
+      if (!all.max_spheres) all.max_spheres = rule->max_spheres;
+    }
+    return all;
+  }
+
+  /// Adds a link's hand-made spheres and its surface.
+  void addLink(std::uint32_t link, const Affine& group_from_link, GroupPlan& plan) const {
+    const std::string& name = task_.robot.links[link].name;
+    if (const RecipeLinkSpheres* rule = ruleOf(task_.recipe, name)) {
+      plan.authored |= !rule->spheres.empty();
+      addByHand(rule->spheres, group_from_link, plan);
+      if (rule->skip) return;
+    }
+    if (task_.options.hand_spheres) {
+      for (const LinkSpheres& given : task_.options.hand_spheres->links) {
+        if (given.link == name) addByHand(given.spheres, group_from_link, plan);
+      }
+    }
+    addSurface(task_.surfaces[link], group_from_link, plan.mesh);
+  }
+
   static void addByHand(const std::vector<HandSphere>& spheres, const Affine& group_from_link,
                         GroupPlan& plan) {
     for (const HandSphere& sphere : spheres) {

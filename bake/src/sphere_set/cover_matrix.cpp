@@ -53,7 +53,7 @@ CandidatePool withoutDominated(const FitTask& task, std::span<const Vec3d> point
   std::vector<Vec3d> centres;
   for (const Candidate& candidate : pool.candidates) centres.push_back(candidate.centre);
   const PointGrid grid(centres, distance);
-  const auto comesFirst = [&](std::uint32_t a, std::uint32_t b) {
+  const auto comes_first = [&](std::uint32_t a, std::uint32_t b) {
     const std::size_t size_a = pool.cover.column(a).size();
     const std::size_t size_b = pool.cover.column(b).size();
     if (size_a != size_b) return size_a > size_b;
@@ -61,7 +61,7 @@ CandidatePool withoutDominated(const FitTask& task, std::span<const Vec3d> point
     const double protrusion_b = pool.candidates[b].protrusion;
     return protrusion_a != protrusion_b ? protrusion_a < protrusion_b : a < b;
   };
-  const auto coversAll = [&](std::uint32_t other, std::uint32_t at) {
+  const auto covers_all = [&](std::uint32_t other, std::uint32_t at) {
     const Candidate& sphere = pool.candidates[other];
     const double reach = task.radii[sphere.radius_index] + task.eps;
     const auto rows = pool.cover.column(at);
@@ -75,7 +75,7 @@ CandidatePool withoutDominated(const FitTask& task, std::span<const Vec3d> point
     for (std::size_t i = chunk * kChunk; i < end; ++i) {
       const auto at = static_cast<std::uint32_t>(i);
       grid.visitWithin(centres[at], distance, [&](std::uint32_t other, double) {
-        dominated[at] = other != at && comesFirst(other, at) && coversAll(other, at) ? 1 : 0;
+        dominated[at] = other != at && comes_first(other, at) && covers_all(other, at) ? 1 : 0;
         return dominated[at] == 0;
       });
     }
