@@ -18,6 +18,7 @@ namespace {
 constexpr std::array<const char*, 4> kMadeBy{"box_volumes", "sphere_quality", "import", "surface"};
 
 /// One side, taken apart.
+// NOLINTNEXTLINE(bugprone-exception-escape): moving JSON does not throw; its checks are asserts.
 struct AssetParts {
   Json provenance;
   Json content;
@@ -132,9 +133,9 @@ void pairByName(const char* list, DescribedPair& pair, std::vector<FieldDifferen
 /// Takes the spheres out of paired elements, whose names are unique, and compares them.
 void compareSphereLists(const char* list, DescribedPair& elements, const DescribedPair& radii,
                         double tolerance, std::vector<FieldDifference>& differences) {
-  const auto byName = [](const Json& a, const Json& b) { return a.at("name") < b.at("name"); };
-  std::sort(elements.a.begin(), elements.a.end(), byName);
-  std::sort(elements.b.begin(), elements.b.end(), byName);
+  const auto by_name = [](const Json& a, const Json& b) { return a.at("name") < b.at("name"); };
+  std::sort(elements.a.begin(), elements.a.end(), by_name);
+  std::sort(elements.b.begin(), elements.b.end(), by_name);
   for (std::size_t n = 0; n < std::min(elements.a.size(), elements.b.size()); ++n) {
     const std::string field =
         fmt::format("{}.{}.spheres", list, elements.a[n].at("name").get<std::string>());

@@ -138,29 +138,24 @@ std::vector<std::pair<std::size_t, std::size_t>> adjacentGroups(
   return adjacent;
 }
 
-}  // namespace
-
-std::vector<BakedPair> classifyPairs(
-    const BakedRobot& robot, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& ignored) {
-  const std::vector<std::size_t> group_of = groupOfLinks(robot);
+/// All pairs of groups that have spheres, ascending.
+std::vector<BakedPair> pairsWithSpheres(const BakedRobot& robot) {
+  std::vector<std::uint16_t> with_spheres;
+  for (std::size_t n = 0; n < robot.groups.size(); ++n) {
+    if (robot.groups[n].spheres.spheres.empty()) continue;
+    with_spheres.push_back(static_cast<std::uint16_t>(n));
+  }
   std::vector<BakedPair> pairs;
-  for (std::size_t first = 0; first < robot.groups.size(); ++first) {
-    for (std::size_t second = first + 1; second < robot.groups.size(); ++second) {
-      if (robot.groups[first].spheres.spheres.empty()) continue;
-      if (robot.groups[second].spheres.spheres.empty()) continue;
-      pairs.push_back({static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(second),
-                       PairKind::kTested});
+  for (std::size_t a = 0; a < with_spheres.size(); ++a) {
+    for (std::size_t b = a + 1; b < with_spheres.size(); ++b) {
+      pairs.push_back({with_spheres[a], with_spheres[b], PairKind::kTested});
     }
   }
-  const auto mark = [&](std::size_t a, std::size_t b, PairKind kind) {
-    const auto [first, second] = std::minmax(a, b);
-    for (BakedPair& pair : pairs) {
-      if (pair.first == first && pair.second == second) pair.kind = kind;
-    }
-  };
-  for (const auto& [a, b] : ignored) mark(group_of[a], group_of[b], PairKind::kIgnored);
-  for (const auto& [a, b] : adjacentGroups(robot, group_of)) mark(a, b, PairKind::kAdjacent);
+  return pairs;
+}
 
+/// Decides the pairs that are still to be tested by what they do in many poses.
+void samplePairs(const BakedRobot& robot, std::vector<BakedPair>& pairs) {
   std::vector<std::size_t> touches(pairs.size());
   PairSampler sampler(robot);
   constexpr std::uint64_t kSeed = 20230613;
@@ -179,6 +174,23 @@ std::vector<BakedPair> classifyPairs(
     if (touches[n] == 0) pairs[n].kind = PairKind::kNever;
     if (touches[n] == kSelfCollisionSamples) pairs[n].kind = PairKind::kAlways;
   }
+}
+
+}  // namespace
+
+std::vector<BakedPair> classifyPairs(
+    const BakedRobot& robot, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& ignored) {
+  const std::vector<std::size_t> group_of = groupOfLinks(robot);
+  std::vector<BakedPair> pairs = pairsWithSpheres(robot);
+  const auto mark = [&](std::size_t a, std::size_t b, PairKind kind) {
+    const auto [first, second] = std::minmax(a, b);
+    for (BakedPair& pair : pairs) {
+      if (pair.first == first && pair.second == second) pair.kind = kind;
+    }
+  };
+  for (const auto& [a, b] : ignored) mark(group_of[a], group_of[b], PairKind::kIgnored);
+  for (const auto& [a, b] : adjacentGroups(robot, group_of)) mark(a, b, PairKind::kAdjacent);
+  samplePairs(robot, pairs);
   return pairs;
 }
 

@@ -27,7 +27,8 @@ class BandSearch {
     const Vec3d size = solid_.bounds().widened(std::max(band_.highest, 0.0)).size();
     const double half = std::max({size.x, size.y, size.z}) / 2;
     std::int64_t edge = kLeafEdge;
-    while (static_cast<double>(edge / 2 - 1) * band_.spacing < half) edge *= 2;
+    const auto reach = [&] { return static_cast<double>(edge - 2) / 2 * band_.spacing; };
+    while (reach() < half) edge *= 2;
     std::vector<Cube> leaves;
     std::vector<Cube> open{{{-edge / 2, -edge / 2, -edge / 2}, edge}};
     while (!open.empty()) {
