@@ -199,14 +199,14 @@ std::vector<FieldDifference> compareFields(const Json& a, const Json& b, double 
   Leaves leaves_b;
   flatten(a, "", leaves_a);
   flatten(b, "", leaves_b);
-  const auto placesOf = [](const Leaves& leaves) {
+  const auto places_of = [](const Leaves& leaves) {
     std::unordered_map<std::string_view, std::size_t> places;
     // Of equal paths the first counts.
     for (std::size_t n = 0; n < leaves.size(); ++n) places.try_emplace(leaves[n].first, n);
     return places;
   };
-  const auto places_a = placesOf(leaves_a);
-  const auto places_b = placesOf(leaves_b);
+  const auto places_a = places_of(leaves_a);
+  const auto places_b = places_of(leaves_b);
   std::vector<FieldDifference> differences;
   for (const auto& [path, value] : leaves_a) {
     const auto other = places_b.find(path);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <map>
 
 #include "pack_tool/mesh/glb_file.h"
@@ -20,7 +19,8 @@ constexpr GlbMaterial kObjectSphereMaterial{"object spheres", {0.03F, 0.17F, 0.8
 constexpr GlbMaterial kBoxMaterial{"boxes", {0.87F, 0.22F, 0.01F, 1}};
 
 /// Turns -Z, where a camera of glTF looks, to +X; +Y stays.
-const Quat kCameraTurn{0, -std::sqrt(0.5F), 0, std::sqrt(0.5F)};
+constexpr float kRootHalf = 0.707106781F;
+constexpr Quat kCameraTurn{0, -kRootHalf, 0, kRootHalf};
 
 /// Adds what figures have in common when it is first needed.
 class FigureWriter {

@@ -37,6 +37,7 @@ std::size_t finestCount(const std::vector<SphereSets>& curves) {
 
 std::vector<std::size_t> finestSets(const std::vector<SphereSets>& curves) {
   std::vector<std::size_t> chosen;
+  chosen.reserve(curves.size());
   for (const SphereSets& curve : curves) {
     chosen.push_back(curve.empty() ? 0 : curve.size() - 1);
   }

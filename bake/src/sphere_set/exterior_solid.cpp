@@ -48,7 +48,8 @@ Touch touchOf(const ProbeField& field, const Facet& facet, double longest) {
   const Vec3d a = toVec3d(facet[0]);
   const Vec3d ab = toVec3d(facet[1]) - a;
   const Vec3d ac = toVec3d(facet[2]) - a;
-  const double rows = std::clamp(std::ceil(longest / (2 * field.voxel())), 1.0, kMostRows);
+  const auto rows =
+      static_cast<int>(std::clamp(std::ceil(longest / (2 * field.voxel())), 1.0, kMostRows));
   bool some = false;
   bool all = true;
   const auto attempt = [&](double u, double v) {
@@ -57,8 +58,10 @@ Touch touchOf(const ProbeField& field, const Facet& facet, double longest) {
     all = all && touched;
   };
   attempt(1.0 / 3, 1.0 / 3);
-  for (double i = 0; i <= rows; ++i) {
-    for (double j = 0; i + j <= rows; ++j) attempt(i / rows, j / rows);
+  for (int i = 0; i <= rows; ++i) {
+    for (int j = 0; i + j <= rows; ++j) {
+      attempt(static_cast<double>(i) / rows, static_cast<double>(j) / rows);
+    }
   }
   return all ? Touch::kEverywhere : some ? Touch::kPartly : Touch::kNowhere;
 }

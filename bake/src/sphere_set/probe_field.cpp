@@ -164,24 +164,26 @@ void ProbeField::findNearestReached(unsigned jobs) {
   parallelFor(jobs, size_[1], [&](std::size_t y) { nearestAcrossPlanes(y); });
 }
 
-void ProbeField::nearestInPlane(std::size_t z) {
-  // Along x: the nearer of the last reached voxel and the next one.
-  for (std::size_t y = 0; y < size_[1]; ++y) {
-    std::uint32_t* row = &nearest_[index(0, y, z)];
-    const auto first = static_cast<std::uint32_t>(index(0, y, z));
-    std::uint32_t last = kUnreached;
-    for (std::size_t x = 0; x < size_[0]; ++x) {
-      const std::uint32_t at = first + static_cast<std::uint32_t>(x);
-      if (row[x] == at) last = at;
-      row[x] = last;
-    }
-    last = kUnreached;
-    for (std::size_t x = size_[0]; x-- > 0;) {
-      const std::uint32_t at = first + static_cast<std::uint32_t>(x);
-      if (row[x] == at) last = at;
-      if (last != kUnreached && (row[x] == kUnreached || last - at < at - row[x])) row[x] = last;
-    }
+void ProbeField::nearestInRow(std::size_t y, std::size_t z) {
+  // The nearer of the last reached voxel and the next one.
+  std::uint32_t* row = &nearest_[index(0, y, z)];
+  const auto first = static_cast<std::uint32_t>(index(0, y, z));
+  std::uint32_t last = kUnreached;
+  for (std::size_t x = 0; x < size_[0]; ++x) {
+    const std::uint32_t at = first + static_cast<std::uint32_t>(x);
+    if (row[x] == at) last = at;
+    row[x] = last;
   }
+  last = kUnreached;
+  for (std::size_t x = size_[0]; x-- > 0;) {
+    const std::uint32_t at = first + static_cast<std::uint32_t>(x);
+    if (row[x] == at) last = at;
+    if (last != kUnreached && (row[x] == kUnreached || last - at < at - row[x])) row[x] = last;
+  }
+}
+
+void ProbeField::nearestInPlane(std::size_t z) {
+  for (std::size_t y = 0; y < size_[1]; ++y) nearestInRow(y, z);
   Envelope envelope(size_[1]);
   std::vector<std::uint32_t> column(size_[1]);
   for (std::size_t x = 0; x < size_[0]; ++x) {

@@ -33,6 +33,7 @@ class ProbeField {
   void chooseGrid(const Box& bounds, double smallest_radius);
   void spread(const TriangleTree& tree);
   void findNearestReached(unsigned jobs);
+  void nearestInRow(std::size_t y, std::size_t z);
   void nearestInPlane(std::size_t z);
   void nearestAcrossPlanes(std::size_t y);
 

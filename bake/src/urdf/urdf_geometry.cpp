@@ -268,7 +268,7 @@ Result<std::size_t> GeometryBuilder::addList(const UrdfLink& link, const ShapeLi
         fmt::format("{}: link '{}' {} {}", urdf_.string(), link.name, list.kind, i + 1);
     auto shape = convert(list.from[i], place, lost);
     if (!shape) return tl::unexpected(shape.error());
-    if (*shape) list.to.push_back(std::move(**shape));
+    if (*shape) list.to.push_back(**shape);
   }
   return lost;
 }

@@ -73,6 +73,7 @@ Result<std::vector<std::byte>> encodeObjectPack(const BakedObjectSet& set,
   FlatBufferBuilder builder(static_cast<std::size_t>(bytes) + 65536);
   const auto provenance_table = provenanceTable(builder, provenance);
   std::vector<Offset<schema::Object>> tables;
+  tables.reserve(objects.size());
   for (const BakedObject* object : objects) tables.push_back(objectTable(builder, *object));
   const auto table_vector = builder.CreateVector(tables);
   const auto radii = builder.CreateVector(set.radii);
