@@ -98,9 +98,9 @@ SheetLayout layOut(std::size_t count, int view_size) {
   SheetLayout layout;
   while (layout.columns * layout.columns < count) ++layout.columns;
   layout.rows = (count + layout.columns - 1) / layout.columns;
-  layout.tile_width = std::uint64_t(view_size + kMargin);
+  layout.tile_width = static_cast<std::uint64_t>(view_size) + kMargin;
   // Name and two lines of caption above, the scale bar below.
-  layout.tile_height = std::uint64_t(view_size + 4 * kLine + kMargin);
+  layout.tile_height = static_cast<std::uint64_t>(view_size) + 4 * kLine + kMargin;
   return layout;
 }
 
