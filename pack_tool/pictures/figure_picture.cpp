@@ -100,7 +100,8 @@ SheetLayout layOut(std::size_t count, int view_size) {
   layout.rows = (count + layout.columns - 1) / layout.columns;
   layout.tile_width = static_cast<std::uint64_t>(view_size) + kMargin;
   // Name and two lines of caption above, the scale bar below.
-  layout.tile_height = static_cast<std::uint64_t>(view_size) + 4 * kLine + kMargin;
+  constexpr int kTileTextHeight = 4 * kLine + kMargin;
+  layout.tile_height = static_cast<std::uint64_t>(view_size) + kTileTextHeight;
   return layout;
 }
 
