@@ -8,8 +8,8 @@
 
 namespace galactic::bake {
 
-// The options of galactic-bake in groups, each in a file of its own. A group adds its options to the
-// parser, understands their texts after parsing, and remembers those that decide the content.
+// The options of galactic-bake in groups, each in a file of its own. A group adds its options to
+// the parser, understands their texts after parsing, and remembers those that decide the content.
 
 /// Up axis, unit and transform of meshes: for scenes and objects.
 class ImportOptions {

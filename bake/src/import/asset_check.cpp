@@ -132,8 +132,7 @@ void warnAboutSize(SourceAsset& asset, double smallest_size) {
         }
       }
       // Almost every scene is larger than this after a few triangles.
-      if (std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}) >= smallest_size)
-        return;
+      if (std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}) >= smallest_size) return;
     }
   }
   asset.warnings.push_back(fmt::format(

@@ -19,7 +19,8 @@ struct BakedObjectSet {
 
 /// The bytes of an object pack's FlatBuffer, without the file header; objects by ascending name.
 /// The same objects and provenance give the same bytes. Fails with kInvalidInput when there is
-/// no object, one has no name or two have the same, and with kUnsupported when it would reach 2 GiB, the limit of one pack.
+/// no object, one has no name or two have the same, and with kUnsupported when it would reach 2
+/// GiB, the limit of one pack.
 [[nodiscard]] Result<std::vector<std::byte>> encodeObjectPack(const BakedObjectSet& set,
                                                               const Provenance& provenance);
 

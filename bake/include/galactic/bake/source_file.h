@@ -6,8 +6,8 @@
 
 namespace galactic::bake {
 
-/// Size and XXH3-128 hash of the file at `path`, for a pack's provenance. Its name is the file's own:
-/// the path would tell of the machine. Fails with kIo where it cannot be read.
+/// Size and XXH3-128 hash of the file at `path`, for a pack's provenance. Its name is the file's
+/// own: the path would tell of the machine. Fails with kIo where it cannot be read.
 [[nodiscard]] Result<SourceFile> describeFile(const std::filesystem::path& path);
 
 }  // namespace galactic::bake
