@@ -18,7 +18,6 @@ namespace {
 
 using fit::Axes;
 using fit::PointSet;
-using fit::Vec3d;
 
 constexpr double kMinSide = 2 * static_cast<double>(kMinHalfExtent);
 /// Added to each half extent, so that points are inside whatever order of float operations a reader
@@ -31,7 +30,7 @@ std::array<float, 3> floatReach(const PointSet& points, const Pose& object_from_
   const Pose box_from_object = inverse(object_from_box);
   std::array<float, 3> reach{};
   for (std::size_t at = 0; at < points.size(); ++at) {
-    const Vec3 local = box_from_object * fit::narrow(points[at]);
+    const Vec3 local = box_from_object * narrow(points[at]);
     reach[0] = std::max(reach[0], std::abs(local.x));
     reach[1] = std::max(reach[1], std::abs(local.y));
     reach[2] = std::max(reach[2], std::abs(local.z));
@@ -54,8 +53,8 @@ OrientedBox boxAround(const PointSet& points, const Axes& axes) {
     centre = centre + stored[axis] * ((sides[axis].lo + sides[axis].hi) / 2);
     magnitude = std::max({magnitude, std::abs(sides[axis].lo), std::abs(sides[axis].hi)});
   }
-  box.pose.translation = fit::narrow(centre);
-  const Vec3d origin = fit::widen(box.pose.translation);
+  box.pose.translation = narrow(centre);
+  const Vec3d origin = widen(box.pose.translation);
   const std::array<float, 3> in_floats = floatReach(points, box.pose);
   std::array<float, 3> half{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -70,7 +69,7 @@ OrientedBox boxAround(const PointSet& points, const Axes& axes) {
 }
 
 double volumeOf(const OrientedBox& box) {
-  const Vec3d half = fit::widen(box.half_extents);
+  const Vec3d half = widen(box.half_extents);
   return 8 * half.x * half.y * half.z;
 }
 

@@ -19,7 +19,6 @@ namespace {
 
 using fit::ConvexHull;
 using fit::HullShape;
-using fit::Vec3d;
 
 /// A way to lie, before it becomes a pose.
 struct Resting {

@@ -5,27 +5,10 @@
 #include <limits>
 #include <numbers>
 
+#include "random.h"
+
 namespace galactic::bake {
 namespace {
-
-/// SplitMix64 (Steele et al., "Fast splittable pseudorandom number generators", 2014): the same
-/// numbers on any platform.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-
-  /// Uniform in [0, 1).
-  double uniform() {
-    state_ += 0x9e3779b97f4a7c15U;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
-    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-    return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1p-53;
-  }
-
- private:
-  std::uint64_t state_;
-};
 
 /// A sphere of a group in the world.
 struct Ball {
@@ -107,7 +90,7 @@ std::vector<float> randomPositions(const FlatKinematics& kinematics, Random& ran
     const bool limited = limits.lower > std::numeric_limits<float>::lowest();
     const double lower = limited ? static_cast<double>(limits.lower) : -std::numbers::pi;
     const double upper = limited ? static_cast<double>(limits.upper) : std::numbers::pi;
-    const double position = lower + (upper - lower) * random.uniform();
+    const double position = lower + (upper - lower) * random.unit();
     positions.push_back(static_cast<float>(position));
   }
   return positions;

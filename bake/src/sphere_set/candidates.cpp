@@ -83,7 +83,7 @@ Candidate lifted(const FitTask& task, const Vec3d& p) {
   Vec3d centre = p;
   if (!staysAbove(task, p, radius)) {
     const double missing = radius - heightAbove(task.support, p);
-    centre = asStored(p + toVec3d(task.support->normal) * missing);
+    centre = asStored(p + widen(task.support->normal) * missing);
   }
   return candidateAt(task, 0, centre, task.solid->distance(centre).distance);
 }

@@ -24,7 +24,7 @@ std::vector<Facet> facetsOf(const TriangleMesh& mesh) {
 Box boundsOf(std::span<const Facet> facets) {
   Box box;
   for (const Facet& facet : facets) {
-    for (const Vec3& corner : facet) box.grow(toVec3d(corner));
+    for (const Vec3& corner : facet) box.grow(widen(corner));
   }
   return box;
 }
@@ -34,7 +34,7 @@ std::pair<std::size_t, double> longestEdge(const Facet& facet) {
   std::size_t start = 0;
   double longest = 0;
   for (std::size_t corner = 0; corner < 3; ++corner) {
-    const double edge = length(toVec3d(facet[(corner + 1) % 3]) - toVec3d(facet[corner]));
+    const double edge = length(widen(facet[(corner + 1) % 3]) - widen(facet[corner]));
     if (edge > longest) {
       longest = edge;
       start = corner;
@@ -45,9 +45,9 @@ std::pair<std::size_t, double> longestEdge(const Facet& facet) {
 
 /// Tries points of the facet, no further apart than two voxels where it is not huge.
 Touch touchOf(const ProbeField& field, const Facet& facet, double longest) {
-  const Vec3d a = toVec3d(facet[0]);
-  const Vec3d ab = toVec3d(facet[1]) - a;
-  const Vec3d ac = toVec3d(facet[2]) - a;
+  const Vec3d a = widen(facet[0]);
+  const Vec3d ab = widen(facet[1]) - a;
+  const Vec3d ac = widen(facet[2]) - a;
   const auto rows =
       static_cast<int>(std::clamp(std::ceil(longest / (2 * field.voxel())), 1.0, kMostRows));
   bool some = false;
@@ -69,8 +69,8 @@ Touch touchOf(const ProbeField& field, const Facet& facet, double longest) {
 }  // namespace
 
 Vec3d facetNormal(const Facet& facet) {
-  const Vec3d a = toVec3d(facet[0]);
-  return cross(toVec3d(facet[1]) - a, toVec3d(facet[2]) - a);
+  const Vec3d a = widen(facet[0]);
+  return cross(widen(facet[1]) - a, widen(facet[2]) - a);
 }
 
 ExteriorSolid::ExteriorSolid(const TriangleMesh& mesh, double smallest_radius, unsigned jobs)
@@ -100,7 +100,7 @@ std::vector<Facet> ExteriorSolid::touchedFacets(const TriangleMesh& mesh) const 
         continue;
       }
       const std::size_t next = (start + 1) % 3;
-      const Vec3 middle = toVec3((toVec3d(facet[start]) + toVec3d(facet[next])) * 0.5);
+      const Vec3 middle = narrow((widen(facet[start]) + widen(facet[next])) * 0.5);
       Facet first = facet;
       first[next] = middle;
       Facet second = facet;

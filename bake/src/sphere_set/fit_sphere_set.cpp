@@ -90,7 +90,7 @@ bool comesFirst(const SetSphere& a, const SetSphere& b) {
 SphereSet finished(const FitTask& task, const Yardstick& yardstick, const Cover& cover) {
   SphereSet set;
   for (const Candidate& sphere : cover.spheres) {
-    set.spheres.push_back({toVec3(sphere.centre), sphere.radius_index});
+    set.spheres.push_back({narrow(sphere.centre), sphere.radius_index});
   }
   std::sort(set.spheres.begin(), set.spheres.end(), comesFirst);
   set.quality = yardstick.measure(cover.spheres);
@@ -227,7 +227,7 @@ Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
                   fmt::format("{} is not in the working set of {} radii; give its index",
                               sphere.radius_index, options.radii.size()));
     }
-    const sphere_fit::Vec3d centre = sphere_fit::toVec3d(sphere.centre);
+    const sphere_fit::Vec3d centre = widen(sphere.centre);
     if (!std::isfinite(centre.x + centre.y + centre.z)) {
       return fail(ErrorCode::kInvalidInput, fmt::format("spheres[{}].centre", at),
                   "it is not finite; give metres in the object's frame");

@@ -20,14 +20,14 @@ LocalSearch::LocalSearch(const FitTask& task, std::span<const Vec3d> points,
                          const CandidatePool& pool)
     : pool_(pool), columns_of_row_(pool.cover.transposed(points.size())), random_(kSeed) {
   for (const Vec3d& p : points) {
-    const Vec3 stored = toVec3(p);
+    const Vec3 stored = narrow(p);
     point_x_.push_back(stored.x);
     point_y_.push_back(stored.y);
     point_z_.push_back(stored.z);
   }
   balls_.reserve(pool.candidates.size());
   for (const Candidate& c : pool.candidates) {
-    const Vec3 centre = toVec3(c.centre);
+    const Vec3 centre = narrow(c.centre);
     const auto reach = static_cast<float>(task.radii[c.radius_index] + task.eps);
     balls_.push_back({centre.x, centre.y, centre.z, reach * reach});
     // A little more, for the rounding of the distances.

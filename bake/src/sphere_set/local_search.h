@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "random.h"
 #include "sphere_set/ball_weight.h"
-#include "sphere_set/random.h"
 #include "sphere_set/set_cover.h"
 
 namespace galactic::bake::sphere_fit {

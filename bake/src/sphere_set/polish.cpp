@@ -2,10 +2,10 @@
 
 #include <numbers>
 
+#include "random.h"
 #include "sphere_set/candidates.h"
 #include "sphere_set/cover_matrix.h"
 #include "sphere_set/gaps.h"
-#include "sphere_set/random.h"
 
 namespace galactic::bake::sphere_fit {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <bit>
 
-#include "sphere_set/random.h"
+#include "random.h"
 
 namespace galactic::bake::sphere_fit {
 namespace {
@@ -66,8 +66,7 @@ class SparseGrid {
 Vec3d pointOn(const Facet& facet, Random& random) {
   const double a = std::sqrt(random.unit());
   const double b = random.unit();
-  return toVec3d(facet[0]) * (1 - a) + toVec3d(facet[1]) * (a * (1 - b)) +
-         toVec3d(facet[2]) * (a * b);
+  return widen(facet[0]) * (1 - a) + widen(facet[1]) * (a * (1 - b)) + widen(facet[2]) * (a * b);
 }
 
 }  // namespace
@@ -85,7 +84,7 @@ std::vector<Vec3d> thinnedOut(const std::vector<Vec3d>& points, double spacing) 
 
 double heightAbove(const std::optional<HalfSpace>& support, const Vec3d& p) {
   if (!support) return HUGE_VAL;
-  return dot(toVec3d(support->normal), p) - static_cast<double>(support->offset);
+  return dot(widen(support->normal), p) - static_cast<double>(support->offset);
 }
 
 std::vector<Vec3d> sampleSurface(const ExteriorSolid& solid,

@@ -20,9 +20,9 @@ int longestAxis(const Vec3d& size) {
 }  // namespace
 
 Vec3d nearestOnFacet(const Vec3d& p, const Facet& facet) {
-  const Vec3d a = toVec3d(facet[0]);
-  const Vec3d b = toVec3d(facet[1]);
-  const Vec3d c = toVec3d(facet[2]);
+  const Vec3d a = widen(facet[0]);
+  const Vec3d b = widen(facet[1]);
+  const Vec3d c = widen(facet[2]);
   const Vec3d ab = b - a;
   const Vec3d ac = c - a;
   const Vec3d ap = p - a;
@@ -56,7 +56,7 @@ TriangleTree::TriangleTree(std::vector<Facet> facets) : facets_(std::move(facets
   std::vector<Vec3d> middles;
   middles.reserve(count);
   for (const Facet& f : facets_) {
-    middles.push_back((toVec3d(f[0]) + toVec3d(f[1]) + toVec3d(f[2])) * (1.0 / 3));
+    middles.push_back((widen(f[0]) + widen(f[1]) + widen(f[2])) * (1.0 / 3));
   }
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0U);
@@ -73,11 +73,11 @@ void TriangleTree::build(std::vector<std::uint32_t>& order, const std::vector<Ve
   Box box;
   Box of_middles;
   for (std::uint32_t i = begin; i < end; ++i) {
-    for (const Vec3& corner : facets_[order[i]]) box.grow(toVec3d(corner));
+    for (const Vec3& corner : facets_[order[i]]) box.grow(widen(corner));
     of_middles.grow(middles[order[i]]);
   }
-  nodes_[at].min = toVec3(box.min);
-  nodes_[at].max = toVec3(box.max);
+  nodes_[at].min = narrow(box.min);
+  nodes_[at].max = narrow(box.max);
   if (end - begin <= kFacetsPerLeaf) {
     // The halves below are sets; only here does their order show.
     std::sort(order.begin() + begin, order.begin() + end);
@@ -113,7 +113,7 @@ NearestPoint TriangleTree::nearest(const Vec3d& p, const SearchLimits& limits) c
   if (nodes_.empty()) return best;
   // Boxes are compared in single precision: this much is more than their rounding.
   constexpr double kRounding = 1 - 1e-5;
-  const Vec3 from = toVec3(p);
+  const Vec3 from = narrow(p);
   std::array<std::pair<std::uint32_t, float>, kStack> stack;
   std::size_t depth = 0;
   stack[depth++] = {0U, nodes_[0].squaredDistance(from)};

@@ -2,44 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "galactic/vec3.h"
+#include "../vec3d.h"
 
 namespace galactic::bake::sphere_fit {
 
-/// A point or direction in the object's frame, metres.
-struct Vec3d {
-  double x = 0;
-  double y = 0;
-  double z = 0;
-};
-
-[[nodiscard]] inline Vec3d toVec3d(const Vec3& v) {
-  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-}
-
-[[nodiscard]] inline Vec3 toVec3(const Vec3d& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
-[[nodiscard]] inline Vec3d operator+(const Vec3d& a, const Vec3d& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-
-[[nodiscard]] inline Vec3d operator-(const Vec3d& a, const Vec3d& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
-[[nodiscard]] inline Vec3d operator*(const Vec3d& v, double factor) {
-  return {v.x * factor, v.y * factor, v.z * factor};
-}
-
-[[nodiscard]] inline double dot(const Vec3d& a, const Vec3d& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-[[nodiscard]] inline Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+using bake::Vec3d;
 
 [[nodiscard]] inline double squaredLength(const Vec3d& v) { return dot(v, v); }
 

@@ -69,8 +69,8 @@ int wrongSides(const ExteriorSolid& solid, const KnownSolid& known, double clear
 TEST(StoredPoints, AreFloatsAndTheNearestOnes) {
   for (const Vec3d& p : randomPoints({{-2, -2, -2}, {2, 2, 2}}, 0, 1000)) {
     const Vec3d stored = asStored(p);
-    const Vec3 as_float = toVec3(p);
-    EXPECT_EQ(toVec3(stored), as_float);
+    const Vec3 as_float = narrow(p);
+    EXPECT_EQ(narrow(stored), as_float);
     for (const auto& [value, rounded] :
          {std::pair{stored.x, as_float.x}, std::pair{stored.y, as_float.y},
           std::pair{stored.z, as_float.z}}) {

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake {
 
 /// SplitMix64: the same numbers with every standard library, unlike the std:: distributions.
 class Random {
@@ -28,4 +28,4 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake

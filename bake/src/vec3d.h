@@ -1,0 +1,55 @@
+#pragma once
+#include <cmath>
+
+#include "galactic/vec3.h"
+
+namespace galactic::bake {
+
+/// A point or direction in double precision: fits compute in it and round once, at the end.
+struct Vec3d {
+  double x = 0;
+  double y = 0;
+  double z = 0;
+
+  friend constexpr bool operator==(const Vec3d&, const Vec3d&) = default;
+};
+
+[[nodiscard]] constexpr Vec3d widen(const Vec3& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+[[nodiscard]] constexpr Vec3 narrow(const Vec3d& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+[[nodiscard]] constexpr Vec3d operator+(const Vec3d& a, const Vec3d& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+[[nodiscard]] constexpr Vec3d operator-(const Vec3d& a, const Vec3d& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+[[nodiscard]] constexpr Vec3d operator-(const Vec3d& v) { return {-v.x, -v.y, -v.z}; }
+
+[[nodiscard]] constexpr Vec3d operator*(const Vec3d& v, double factor) {
+  return {v.x * factor, v.y * factor, v.z * factor};
+}
+
+[[nodiscard]] constexpr double dot(const Vec3d& a, const Vec3d& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+[[nodiscard]] constexpr Vec3d cross(const Vec3d& a, const Vec3d& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+[[nodiscard]] inline double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+
+/// `v` at unit length; `fallback` where it has none.
+[[nodiscard]] inline Vec3d normalized(const Vec3d& v, const Vec3d& fallback = {1, 0, 0}) {
+  const double length = norm(v);
+  return length > 0 ? v * (1 / length) : fallback;
+}
+
+}  // namespace galactic::bake
