@@ -1,0 +1,81 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "galactic/error.h"
+#include "galactic/pack.h"
+#include "galactic/pose.h"
+
+namespace galactic {
+
+/// An object at rest at the start of an episode. The memory layout is that of a pack.
+struct Placement {
+  /// Index into EpisodeSet::objectNames().
+  std::uint32_t object = 0;
+  /// world_from_object.
+  Pose pose;
+};
+
+/// One task instance: bring the target to the goal. The memory layout is that of a pack.
+struct Episode {
+  /// Index into EpisodeSet::sceneNames().
+  std::uint32_t scene = 0;
+  /// Range of the episode set's placements.
+  std::uint32_t first_placement = 0;
+  std::uint32_t placement_count = 0;
+  /// The object to move, counted within the episode's placements.
+  std::uint32_t target = 0;
+  /// Point on the ground under the root link's origin, world frame, metres. The run looks for the
+  /// floor at or under its height.
+  Vec3 base_position;
+  /// Rotation of the base about +Y, radians: 0 looks along +X, positive turns counter-clockwise
+  /// seen from above.
+  float base_yaw = 0;
+  /// Where the target object has to be: world_from_object.
+  Pose goal;
+};
+
+/// The episodes of an episode pack: views into the pack.
+class EpisodeSet {
+ public:
+  /// The episodes in `pack`, which must outlive the result. Fails with kInvalidInput on another
+  /// kind of pack.
+  [[nodiscard]] static Result<EpisodeSet> from(const PackFile& pack);
+
+  [[nodiscard]] std::string_view name() const { return name_; }
+  /// Ascending.
+  [[nodiscard]] const std::vector<std::string_view>& sceneNames() const { return scenes_; }
+  /// Ascending.
+  [[nodiscard]] const std::vector<std::string_view>& objectNames() const { return objects_; }
+  /// The robot that the start positions are for; empty when they fit any.
+  [[nodiscard]] std::string_view robotName() const { return robot_; }
+  /// The joints whose positions each episode gives.
+  [[nodiscard]] const std::vector<std::string_view>& startJoints() const { return start_joints_; }
+
+  [[nodiscard]] std::span<const Episode> episodes() const { return episodes_; }
+  /// The objects of one episode.
+  [[nodiscard]] std::span<const Placement> placements(const Episode& episode) const {
+    return placements_.subspan(episode.first_placement, episode.placement_count);
+  }
+  /// Positions of startJoints() in episode `n`, radians or metres.
+  [[nodiscard]] std::span<const float> startPositions(std::size_t n) const {
+    return start_positions_.subspan(n * start_joints_.size(), start_joints_.size());
+  }
+
+ private:
+  EpisodeSet() = default;
+
+  std::string_view name_;
+  std::vector<std::string_view> scenes_;
+  std::vector<std::string_view> objects_;
+  std::string_view robot_;
+  std::vector<std::string_view> start_joints_;
+  std::span<const float> start_positions_;
+  std::span<const Placement> placements_;
+  std::span<const Episode> episodes_;
+};
+
+}  // namespace galactic

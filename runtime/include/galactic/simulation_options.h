@@ -1,0 +1,104 @@
+#pragma once
+#include <cstdint>
+
+namespace galactic {
+
+/// How a robot that would penetrate something is pushed clear (paper, appendix I.1).
+enum class SlideDirection : std::uint8_t {
+  /// Out of what the spheres penetrate: along the directions in which they get free.
+  kPushOut = 0,
+  /// Published code: from the first sphere found in contact towards the base.
+  kTowardsBase = 1,
+};
+
+struct SlideOptions {
+  /// Jitters of the base per step; 0 switches sliding off.
+  std::uint32_t attempts = 3;
+  SlideDirection direction = SlideDirection::kPushOut;
+  /// Length of one jitter in metres: the longest with kPushOut, the only one with kTowardsBase.
+  float step = 0.1F;
+};
+
+/// How a released object finds its place (paper, appendix I.2).
+struct PlacementOptions {
+  /// Candidate poses: the one of the release, and jittered ones.
+  std::uint32_t attempts = 6;
+  /// A candidate that would have to be lifted further than this to be free is given up, metres.
+  float most_lift = 0.05F;
+  /// Left between the object and what it rests on, metres.
+  float clearance = 0.001F;
+  /// Half the range of random directions about the direction away from the object that was hit,
+  /// radians; with none to go away from, all directions are equally likely.
+  float direction_spread = 1.0471976F;
+  /// Length of a jitter, in diagonals of the object's box.
+  float jitter = 1.0F;
+};
+
+/// How the base follows the floor.
+struct GroundOptions {
+  /// Highest rise and deepest drop of the floor under the base within one step, metres. A higher
+  /// step is a wall; a deeper drop is refused.
+  float most_rise = 0.05F;
+  float most_drop = 0.05F;
+};
+
+/// What the robot has to do.
+enum class TaskKind : std::uint8_t {
+  /// Bring the target to the goal, release it there, and say so (paper, appendix A).
+  kRearrange = 0,
+  /// Pick up the target.
+  kMobilePick = 1,
+  /// Nothing: no reward, no success, no failure; episodes end with their time.
+  kNone = 2,
+};
+
+/// The task, its reward (paper, equation 1) and its end. The defaults are the paper's.
+struct TaskOptions {
+  TaskKind kind = TaskKind::kRearrange;
+  float success_reward = 10.0F;
+  float pick_reward = 5.0F;
+  float reach_weight = 1.0F;
+  float transport_weight = 1.0F;
+  float action_weight = 0.001F;
+  /// Taken away each step, and when an episode fails.
+  float slack_penalty = 0.0F;
+  float failure_penalty = 0.0F;
+  /// Distance of target and goal that counts as success, metres.
+  float success_distance = 0.1F;
+  /// Steps after which an episode ends without success or failure; 0 for never.
+  std::uint32_t most_steps = 500;
+  /// Success needs the terminate action, and terminating elsewhere is a failure. Off: success is
+  /// judged at each release, and the action is ignored ("no terminate action").
+  bool needs_terminate = true;
+  /// Releases away from the goal and grasps of another object end the episode as a failure. Off:
+  /// they do nothing ("safe drop": a release away from the goal is not carried out).
+  bool drop_fails = true;
+  /// Whether objects other than the target are there.
+  bool distractors = true;
+};
+
+/// In which order an env takes the episodes of a world.
+enum class EpisodeOrder : std::uint8_t {
+  /// A new permutation of all its episodes each time round.
+  kShuffled = 0,
+  /// As they are stored.
+  kLinear = 1,
+};
+
+struct SimulationOptions {
+  std::uint32_t envs = 128;
+  /// 0: one per processor.
+  std::uint32_t threads = 0;
+  std::uint64_t seed = 1;
+  EpisodeOrder order = EpisodeOrder::kShuffled;
+  /// Env b of this batch is env rank * envs + b of ranks * envs: what each env takes and draws
+  /// depends on that number only.
+  std::uint32_t rank = 0;
+  std::uint32_t ranks = 1;
+  SlideOptions slide;
+  PlacementOptions placement;
+  GroundOptions ground;
+  TaskOptions task;
+};
+
+}  // namespace galactic

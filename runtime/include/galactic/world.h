@@ -1,0 +1,75 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "galactic/episode_set.h"
+#include "galactic/error.h"
+#include "galactic/object_set.h"
+#include "galactic/pack.h"
+#include "galactic/robot.h"
+#include "galactic/scene.h"
+
+namespace galactic {
+
+/// Everything that a run reads and never writes: scenes, objects, robot and episodes, mapped.
+/// Immutable, so safe to share between threads; movable (the packs stay where they are mapped).
+class World {
+ public:
+  /// Opens what `paths` name: either one world pack, whose list is followed, or the packs
+  /// themselves (one robot, one episode set, one or more scenes, any number of object sets).
+  /// Fails with the errors of PackFile::open, and with kInvalidInput when
+  /// - a referenced pack is missing, or is not the one that was linked (kind, size or hash),
+  /// - a kind is missing or is there twice where one is wanted, or two scenes or two objects have
+  ///   one name,
+  /// - an episode names a scene, an object or a joint that is not there, or the robot is another,
+  /// - the packs were baked for different radii,
+  /// - the robot has no end effector, no base or no spheres.
+  [[nodiscard]] static Result<World> open(std::span<const std::filesystem::path> paths,
+                                          Trust trust = Trust::kVerify);
+
+  /// The same from packs that are already open.
+  [[nodiscard]] static Result<World> from(std::vector<PackFile> packs);
+
+  /// The working set of radii, metres, ascending: the same in all packs.
+  [[nodiscard]] std::span<const float> radii() const { return robot_.front().radii(); }
+  [[nodiscard]] const std::vector<Scene>& scenes() const { return scenes_; }
+  [[nodiscard]] const Robot& robot() const { return robot_.front(); }
+  [[nodiscard]] const EpisodeSet& episodes() const { return episodes_.front(); }
+  [[nodiscard]] const std::vector<PackFile>& packs() const { return packs_; }
+
+  [[nodiscard]] const Scene& sceneOf(const Episode& episode) const {
+    return scenes_[sceneIndexOf(episode)];
+  }
+  /// Index into scenes().
+  [[nodiscard]] std::uint32_t sceneIndexOf(const Episode& episode) const {
+    return scene_of_name_[episode.scene];
+  }
+  [[nodiscard]] const ObjectModel& objectOf(const Placement& placement) const {
+    return object_of_name_[placement.object];
+  }
+  /// Index into the robot's joint positions of each of the episodes' startJoints().
+  [[nodiscard]] std::span<const std::uint32_t> startPositionIndices() const {
+    return start_position_indices_;
+  }
+  /// The most objects that one episode has.
+  [[nodiscard]] std::size_t mostObjects() const { return most_objects_; }
+
+ private:
+  World() = default;
+
+  std::vector<PackFile> packs_;
+  std::vector<Scene> scenes_;
+  /// One each; vectors because neither can be made empty.
+  std::vector<Robot> robot_;
+  std::vector<EpisodeSet> episodes_;
+  /// By the episode set's indices.
+  std::vector<std::uint32_t> scene_of_name_;
+  std::vector<ObjectModel> object_of_name_;
+  std::vector<std::uint32_t> start_position_indices_;
+  std::size_t most_objects_ = 0;
+};
+
+}  // namespace galactic

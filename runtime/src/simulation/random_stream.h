@@ -1,0 +1,36 @@
+#pragma once
+#include <cstdint>
+
+namespace galactic::simulation {
+
+/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014): every bit of the input decides every bit
+/// of the output.
+[[nodiscard]] constexpr std::uint64_t mix(std::uint64_t z) {
+  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
+  return z ^ (z >> 31U);
+}
+
+/// A stream of random numbers that is fully given by what it is for, so that an env's numbers do
+/// not depend on the other envs or on the order in which envs are stepped.
+class RandomStream {
+ public:
+  /// `episode` counts the episodes that the env has begun; `step` the steps in it.
+  RandomStream(std::uint64_t seed, std::uint32_t env, std::uint64_t episode, std::uint32_t step)
+      : state_(mix(mix(mix(mix(seed + kGamma) ^ env) ^ episode) ^ step)) {}
+
+  [[nodiscard]] std::uint64_t next() {
+    state_ += kGamma;
+    return mix(state_);
+  }
+
+  /// Uniform in [0, 1), a multiple of 2^-24.
+  [[nodiscard]] float unit() { return static_cast<float>(next() >> 40U) * 0x1p-24F; }
+
+ private:
+  static constexpr std::uint64_t kGamma = 0x9E3779B97F4A7C15ULL;
+
+  std::uint64_t state_;
+};
+
+}  // namespace galactic::simulation
