@@ -42,6 +42,16 @@ struct GroundOptions {
   float most_drop = 0.05F;
 };
 
+/// From where on the values of an action mean something.
+struct ActionOptions {
+  /// A hand that is empty grasps from this value on.
+  float grasp = 0.5F;
+  /// A hand that holds something releases it below this value. The paper's action is 0 or 1; the
+  /// published code releases below -0.5, so that a policy can do neither.
+  float release = 0.5F;
+  float terminate = 0.5F;
+};
+
 /// What the robot has to do.
 enum class TaskKind : std::uint8_t {
   /// Bring the target to the goal, release it there, and say so (paper, appendix A).
@@ -75,14 +85,20 @@ struct TaskOptions {
   bool drop_fails = true;
   /// Whether objects other than the target are there.
   bool distractors = true;
+  /// Whether observations give the target where it is; else where it was at the start, as the
+  /// published code does.
+  bool observes_current_target = false;
 };
 
 /// In which order an env takes the episodes of a world.
 enum class EpisodeOrder : std::uint8_t {
   /// A new permutation of all its episodes each time round.
   kShuffled = 0,
-  /// As they are stored.
+  /// As they are stored: env b begins with episode b.
   kLinear = 1,
+  /// Env b of all N envs (of all ranks) takes episodes b, b + N, ...: together each once, for
+  /// evaluations. The only order in which an env's episodes depend on the number of envs.
+  kPartition = 2,
 };
 
 struct SimulationOptions {
@@ -95,6 +111,7 @@ struct SimulationOptions {
   /// depends on that number only.
   std::uint32_t rank = 0;
   std::uint32_t ranks = 1;
+  ActionOptions action;
   SlideOptions slide;
   PlacementOptions placement;
   GroundOptions ground;

@@ -101,6 +101,8 @@ class RestingObjects {
   /// object; infinity when nothing is under it.
   [[nodiscard]] float fall(const Vec3& centre, float radius) const noexcept;
 
+  [[nodiscard]] std::size_t bytes() const;
+
  private:
   WindowFrame frame_;
   std::size_t words_ = 0;

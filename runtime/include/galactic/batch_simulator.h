@@ -1,0 +1,152 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "galactic/error.h"
+#include "galactic/pose.h"
+#include "galactic/simulation_options.h"
+#include "galactic/world.h"
+
+namespace galactic {
+
+/// One named part of an env's observation.
+struct ObservationPart {
+  std::string name;
+  /// First element in the env's row, and number of elements.
+  std::size_t first = 0;
+  std::size_t size = 0;
+};
+
+/// What happened in all envs since the simulator was made.
+struct SimulationStatistics {
+  std::uint64_t steps = 0;
+  /// Steps in which the robot kept its pose because the candidate penetrated something.
+  std::uint64_t refused = 0;
+  /// Steps whose candidate was free after being pushed.
+  std::uint64_t slid = 0;
+  std::uint64_t grasps = 0;
+  /// Releases that found a place, and releases after which the object went back.
+  std::uint64_t drops = 0;
+  std::uint64_t restored = 0;
+  std::uint64_t episodes = 0;
+  std::uint64_t successes = 0;
+  std::uint64_t failures = 0;
+  /// Action values that were not a number and were taken as zero.
+  std::uint64_t nan_actions = 0;
+  /// Sum of the rewards of all steps.
+  double reward = 0;
+};
+
+/// The state of one env, for tools: exports, pictures, scripted policies. A copy.
+struct EnvState {
+  /// Index into World::scenes(), and into the episode set's episodes.
+  std::uint32_t scene = 0;
+  std::uint32_t episode = 0;
+  std::uint32_t step = 0;
+  Pose world_from_root;
+  /// The robot's whole vector of joint positions.
+  std::vector<float> joint_positions;
+  /// Origin at the grasp point, axes of the end effector's link.
+  Pose world_from_grip;
+  /// World poses of the episode's objects, in the order of its placements.
+  std::vector<Pose> objects;
+  /// Index into `objects`; -1 when nothing is held.
+  std::int32_t held = -1;
+  std::uint32_t target = 0;
+  Pose goal;
+};
+
+/// world_from_link as a matrix: the link's axes and origin in the world frame, metres.
+struct LinkTransform {
+  Vec3 x_axis;
+  Vec3 y_axis;
+  Vec3 z_axis;
+  Vec3 origin;
+};
+
+/// Seconds that the threads spent in each phase of the sampled steps, added up.
+struct PhaseTime {
+  std::string_view name;
+  double seconds = 0;
+};
+
+/// N environments of one world, stepped together (paper, section 3.2 and appendices A, G and I).
+/// What an env does depends on (world, options, seed, env number, actions) only: bit for bit the
+/// same for any number of threads and of other envs. A step neither allocates, nor throws, nor
+/// locks. Not safe to call from several threads at once.
+///
+/// Actions, for each env: one per controlled joint of the robot, in the order of its recipe (+-1:
+/// the largest step); forward (+1: forward_step metres ahead); turn (+1: turn_step radians
+/// clockwise, seen from above); grasp (1: grasp what the gripper touches, or keep it; 0: release);
+/// terminate (1: the robot says that the task is done). Values are clamped to [-1, 1]; NaN is taken
+/// as 0 and counted.
+class BatchSimulator {
+ public:
+  /// `world` must outlive the simulator. All envs stand at the start of their first episode. Fails
+  /// with kInvalidInput when no episode of the world can be started (the robot penetrates something
+  /// in all of them), and with kUnsupported when an action moves a planar or floating joint.
+  [[nodiscard]] static Result<BatchSimulator> create(const World& world,
+                                                     const SimulationOptions& options);
+  ~BatchSimulator();
+  BatchSimulator(BatchSimulator&&) noexcept;
+  BatchSimulator& operator=(BatchSimulator&&) noexcept;
+
+  [[nodiscard]] std::size_t envCount() const;
+  [[nodiscard]] std::size_t actionCount() const;
+  [[nodiscard]] std::size_t observationSize() const;
+  [[nodiscard]] std::size_t threadCount() const;
+  /// The parts of an observation, in order:
+  /// robot_target (3), grip_target (3), robot_grip (3), robot_goal (3), grip_goal (3): points in the
+  /// frame of the robot's root (yaw only) or of the grip, metres; is_holding (1); joints (one per
+  /// controlled joint, radians or metres); time (3): the share f of the steps that is left, as
+  /// min(1, f), min(1, 5 f), min(1, 50 f).
+  [[nodiscard]] const std::vector<ObservationPart>& observationParts() const;
+
+  /// One step of all envs. `actions`: envCount() * actionCount(), env after env.
+  /// `resets`: empty, or for each env the index of an episode that begins instead of this step's
+  /// end, -1 for none; the env's reward and done of this step are 0.
+  void step(std::span<const float> actions, std::span<const std::int32_t> resets = {});
+
+  /// The same in two halves, so that the caller can work meanwhile. `actions` and `resets` must stay
+  /// as they are until endStep() returns; what the simulator returns is valid after it.
+  void beginStep(std::span<const float> actions, std::span<const std::int32_t> resets = {});
+  void endStep();
+
+  /// After the last step. Shape: envs * observationSize(). Where an episode ended, the first
+  /// observation of the next one.
+  [[nodiscard]] std::span<const float> observations() const;
+  /// Where an episode ended in the last step, its last observation; elsewhere undefined.
+  [[nodiscard]] std::span<const float> finalObservations() const;
+  /// Of the last step. Shape: envs.
+  [[nodiscard]] std::span<const float> rewards() const;
+  /// 1 where an episode ended in the last step. Shape: envs.
+  [[nodiscard]] std::span<const std::uint8_t> dones() const;
+  /// 1 where it ended in success. Shape: envs.
+  [[nodiscard]] std::span<const std::uint8_t> successes() const;
+
+  [[nodiscard]] SimulationStatistics statistics() const;
+  /// Episodes of the world that are skipped because the robot cannot start in them.
+  [[nodiscard]] std::span<const std::uint32_t> skippedEpisodes() const;
+  [[nodiscard]] EnvState envState(std::size_t env) const;
+  /// Where all links of all envs' robots are, for rendering. Shape: envs * Robot::links(), env
+  /// after env. Neither allocates nor throws.
+  void linkTransforms(std::span<LinkTransform> out);
+
+  /// Measures one step in `every` from now on; 0 switches it off.
+  void samplePhases(std::uint32_t every);
+  [[nodiscard]] std::vector<PhaseTime> phaseTimes() const;
+  /// Bytes that the envs take, all together.
+  [[nodiscard]] std::size_t memoryBytes() const;
+
+ private:
+  class Impl;
+  explicit BatchSimulator(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace galactic

@@ -1,0 +1,211 @@
+#include "galactic/batch_simulator.h"
+
+#include <algorithm>
+#include <cassert>
+#include <thread>
+#include <utility>
+
+#include "simulation/batch_state.h"
+#include "simulation/chunk.h"
+#include "simulation/episode_order.h"
+#include "simulation/episode_start.h"
+#include "simulation/grip_frame.h"
+#include "simulation/link_poses.h"
+#include "simulation/model.h"
+#include "simulation/step.h"
+#include "simulation/workers.h"
+
+namespace galactic {
+
+using simulation::BatchState;
+using simulation::Chunk;
+using simulation::kChunk;
+using simulation::Model;
+
+/// The batch, and the threads that step it.
+class BatchSimulator::Impl {
+ public:
+  Impl(Model model, std::size_t threads)
+      : model_(std::move(model)), state_(model_, model_.options.envs) {
+    const std::size_t chunks = state_.paddedCount() / kChunk;
+    threads = std::min(threads, chunks);
+    parts_.reserve(threads);
+    for (std::size_t n = 0; n < threads; ++n) {
+      parts_.push_back({Chunk(model_), n * chunks / threads * kChunk,
+                        (n + 1) * chunks / threads * kChunk, {}});
+    }
+    for (std::size_t env = 0; env < state_.paddedCount(); ++env) {
+      simulation::beginEpisode(model_, state_, env, firstStart(env));
+    }
+  }
+
+  void begin(std::span<const float> actions, std::span<const std::int32_t> resets) {
+    assert(actions.size() == model_.options.envs * model_.actionCount());
+    assert(resets.empty() || resets.size() == model_.options.envs);
+    input_ = {actions, resets};
+    measures_ = sample_every_ != 0 && steps_ % sample_every_ == 0;
+    if (!workers_) {
+      workers_ =
+          std::make_unique<simulation::Workers>(parts_.size(), [this](std::size_t n) { run(n); });
+    }
+    workers_->begin();
+  }
+
+  void end() {
+    workers_->end();
+    ++steps_;
+  }
+
+  void step(std::span<const float> actions, std::span<const std::int32_t> resets) {
+    if (parts_.size() > 1) {
+      begin(actions, resets);
+      end();
+      return;
+    }
+    input_ = {actions, resets};
+    measures_ = sample_every_ != 0 && steps_ % sample_every_ == 0;
+    run(0);
+    ++steps_;
+  }
+
+  const Model& model() const { return model_; }
+  BatchState& state() { return state_; }
+  const BatchState& state() const { return state_; }
+  std::size_t threads() const { return parts_.size(); }
+  std::uint64_t steps() const { return steps_; }
+  void sample(std::uint32_t every) { sample_every_ = every; }
+
+  std::vector<PhaseTime> phaseTimes() const {
+    std::vector<PhaseTime> times;
+    times.reserve(simulation::kPhaseNames.size());
+    for (std::size_t n = 0; n < simulation::kPhaseNames.size(); ++n) {
+      double seconds = 0;
+      for (const Part& part : parts_) seconds += part.seconds[n];
+      times.push_back({simulation::kPhaseNames[n], seconds});
+    }
+    return times;
+  }
+
+ private:
+  /// The envs of one thread.
+  struct Part {
+    Chunk chunk;
+    std::size_t first = 0;
+    std::size_t last = 0;
+    simulation::PhaseSeconds seconds{};
+  };
+
+  std::uint32_t firstStart(std::size_t env) const {
+    return simulation::nthEpisode(model_.options, model_.globalEnv(env), 0,
+                                  static_cast<std::uint32_t>(model_.starts.size()));
+  }
+
+  void run(std::size_t n) noexcept {
+    Part& part = parts_[n];
+    for (std::size_t first = part.first; first < part.last; first += kChunk) {
+      const simulation::ChunkStep step{model_, state_, part.chunk, first};
+      if (measures_) {
+        simulation::stepChunkMeasured(step, input_, part.seconds);
+      } else {
+        simulation::stepChunk(step, input_);
+      }
+    }
+  }
+
+  Model model_;
+  BatchState state_;
+  std::vector<Part> parts_;
+  simulation::StepInput input_;
+  std::uint64_t steps_ = 0;
+  std::uint32_t sample_every_ = 0;
+  bool measures_ = false;
+  std::unique_ptr<simulation::Workers> workers_;
+};
+
+Result<BatchSimulator> BatchSimulator::create(const World& world,
+                                              const SimulationOptions& options) {
+  if (options.envs == 0 || options.ranks == 0 || options.rank >= options.ranks) {
+    return fail(ErrorCode::kInvalidInput, "simulation options",
+                "found " + std::to_string(options.envs) + " envs, rank " +
+                    std::to_string(options.rank) + " of " + std::to_string(options.ranks) +
+                    "; wanted at least one env and a rank below the number of ranks");
+  }
+  Result<Model> model = simulation::makeModel(world, options);
+  if (!model) return tl::unexpected<Error>(model.error());
+  const std::size_t threads =
+      options.threads != 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  return BatchSimulator(std::make_unique<Impl>(std::move(*model), threads));
+}
+
+BatchSimulator::BatchSimulator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+BatchSimulator::~BatchSimulator() = default;
+BatchSimulator::BatchSimulator(BatchSimulator&&) noexcept = default;
+BatchSimulator& BatchSimulator::operator=(BatchSimulator&&) noexcept = default;
+
+std::size_t BatchSimulator::envCount() const { return impl_->model().options.envs; }
+std::size_t BatchSimulator::actionCount() const { return impl_->model().actionCount(); }
+std::size_t BatchSimulator::observationSize() const { return impl_->model().observation_size; }
+std::size_t BatchSimulator::threadCount() const { return impl_->threads(); }
+const std::vector<ObservationPart>& BatchSimulator::observationParts() const {
+  return impl_->model().observation;
+}
+
+void BatchSimulator::step(std::span<const float> actions, std::span<const std::int32_t> resets) {
+  impl_->step(actions, resets);
+}
+void BatchSimulator::beginStep(std::span<const float> actions,
+                               std::span<const std::int32_t> resets) {
+  impl_->begin(actions, resets);
+}
+void BatchSimulator::endStep() { impl_->end(); }
+
+std::span<const float> BatchSimulator::observations() const {
+  return impl_->state().observations();
+}
+std::span<const float> BatchSimulator::finalObservations() const {
+  return impl_->state().finalObservations();
+}
+std::span<const float> BatchSimulator::rewards() const {
+  return impl_->state().rewards().first(envCount());
+}
+std::span<const std::uint8_t> BatchSimulator::dones() const {
+  return impl_->state().dones().first(envCount());
+}
+std::span<const std::uint8_t> BatchSimulator::successes() const {
+  return impl_->state().successes().first(envCount());
+}
+
+SimulationStatistics BatchSimulator::statistics() const {
+  SimulationStatistics sum;
+  sum.steps = impl_->steps() * envCount();
+  for (std::size_t n = 0; n < envCount(); ++n) {
+    const simulation::EnvCounters& env = impl_->state().env(n).counters;
+    sum.refused += env.refused;
+    sum.slid += env.slid;
+    sum.grasps += env.grasps;
+    sum.drops += env.drops;
+    sum.restored += env.restored;
+    sum.episodes += env.episodes;
+    sum.successes += env.successes;
+    sum.failures += env.failures;
+    sum.nan_actions += env.nan_actions;
+    sum.reward += env.reward;
+  }
+  return sum;
+}
+
+std::span<const std::uint32_t> BatchSimulator::skippedEpisodes() const {
+  return impl_->model().skipped;
+}
+
+EnvState BatchSimulator::envState(std::size_t env) const {
+  return simulation::envStateOf(impl_->model(), impl_->state(), env);
+}
+
+void BatchSimulator::linkTransforms(std::span<LinkTransform> out) { impl_->links(out); }
+
+void BatchSimulator::samplePhases(std::uint32_t every) { impl_->sample(every); }
+std::vector<PhaseTime> BatchSimulator::phaseTimes() const { return impl_->phaseTimes(); }
+std::size_t BatchSimulator::memoryBytes() const { return impl_->state().bytes(); }
+
+}  // namespace galactic

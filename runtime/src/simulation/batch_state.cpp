@@ -1,0 +1,60 @@
+#include "simulation/batch_state.h"
+
+namespace galactic::simulation {
+namespace {
+
+template <class T>
+std::size_t bytesOf(const std::vector<T>& values) {
+  return values.size() * sizeof(T);
+}
+
+std::size_t paddedToChunks(std::size_t count) { return (count + kChunk - 1) / kChunk * kChunk; }
+
+}  // namespace
+
+BatchState::BatchState(const Model& model, std::size_t envs)
+    : env_count_(envs),
+      most_objects_(model.most_objects),
+      held_words_(model.heldWords()),
+      joints_(model.motion.controlled.size()),
+      observation_size_(model.observation_size) {
+  const std::size_t padded = paddedToChunks(env_count_);
+  envs_.resize(padded);
+  resting_.reserve(padded);
+  for (std::size_t n = 0; n < padded; ++n) {
+    resting_.emplace_back(model.most_windows, model.most_objects);
+  }
+  objects_.resize(padded * most_objects_);
+  grips_.resize(padded);
+  ignored_.resize(padded * held_words_);
+  last_actions_.resize(padded * joints_);
+  x_.resize(padded);
+  y_.resize(padded);
+  z_.resize(padded);
+  yaw_.resize(padded);
+  variables_.resize(padded * model.variableCount());
+  observations_.resize(padded * observation_size_);
+  final_observations_.resize(padded * observation_size_);
+  rewards_.resize(padded);
+  dones_.resize(padded);
+  successes_.resize(padded);
+}
+
+PoseArrays BatchState::poses(std::size_t first) {
+  return {.x = x_.data() + first,
+          .y = y_.data() + first,
+          .z = z_.data() + first,
+          .yaw = yaw_.data() + first,
+          .variables = variables_.data() + first,
+          .stride = envs_.size()};
+}
+
+std::size_t BatchState::bytes() const {
+  std::size_t bytes = bytesOf(envs_) + bytesOf(objects_) + bytesOf(grips_) + bytesOf(ignored_) +
+                      bytesOf(last_actions_) + 4 * bytesOf(x_) + bytesOf(variables_) +
+                      2 * bytesOf(observations_) + bytesOf(rewards_) + 2 * bytesOf(dones_);
+  for (const RestingObjects& resting : resting_) bytes += resting.bytes();
+  return bytes;
+}
+
+}  // namespace galactic::simulation

@@ -1,0 +1,95 @@
+#include "simulation/episode_start.h"
+
+#include <algorithm>
+
+#include "simulation/episode_order.h"
+#include "simulation/observe.h"
+#include "simulation/task.h"
+
+namespace galactic::simulation {
+namespace {
+
+void placeRobot(const Model& model, BatchState& state, std::size_t n, std::uint32_t start) {
+  const EpisodeStart& from = model.starts[start];
+  const PoseArrays to = state.poses(n);
+  *to.x = from.base.x;
+  *to.y = from.base.y;
+  *to.z = from.base.z;
+  *to.yaw = from.yaw;
+  const std::size_t variables = model.variableCount();
+  for (std::size_t v = 0; v < variables; ++v) {
+    to.variables[v * to.stride] = model.start_variables[start * variables + v];
+  }
+  state.grip(n) = from.grip;
+  std::ranges::fill(state.lastActions(n), 0.0F);
+}
+
+void placeObjects(const Model& model, BatchState& state, std::size_t n, const Episode& episode) {
+  const std::span<const Placement> placements = model.placements(episode);
+  RestingObjects& resting = state.resting(n);
+  resting.begin(model.frames[model.world->sceneIndexOf(episode)]);
+  for (std::uint32_t object = 0; object < placements.size(); ++object) {
+    const Placement& placement = placements[object];
+    state.objects(n)[object] = placement.pose;
+    resting.insert(object, restingBox(model.world->objectOf(placement).box, placement.pose));
+  }
+}
+
+/// The start of episode `episode`, or the next that can be started.
+std::uint32_t startOf(const Model& model, std::uint32_t episode) {
+  const auto by_episode = [](const EpisodeStart& start, std::uint32_t wanted) {
+    return start.episode < wanted;
+  };
+  const auto found =
+      std::lower_bound(model.starts.begin(), model.starts.end(), episode, by_episode);
+  return found == model.starts.end() ? 0U
+                                     : static_cast<std::uint32_t>(found - model.starts.begin());
+}
+
+}  // namespace
+
+void beginEpisode(const Model& model, BatchState& state, std::size_t n,
+                  std::uint32_t start) noexcept {
+  const Episode& episode = model.episodeOf(start);
+  placeRobot(model, state, n, start);
+  placeObjects(model, state, n, episode);
+  const std::uint32_t target = model.targetOf(episode);
+  Env& env = state.env(n);
+  env = {.start = start,
+         .scene = model.world->sceneIndexOf(episode),
+         .objects = static_cast<std::uint32_t>(model.placements(episode).size()),
+         .target = target,
+         .ordinal = env.ordinal + 1,
+         .goal = episode.goal.translation,
+         .target_start = state.objects(n)[target].translation,
+         .counters = env.counters};
+  const TargetDistances distances = measureTarget(state, n);
+  env.reach = distances.reach;
+  env.transport = distances.transport;
+  observe(model, state, n, state.observation(n));
+}
+
+void renewEpisodes(const ChunkStep& step) noexcept {
+  const auto count = static_cast<std::uint32_t>(step.model.starts.size());
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    const std::size_t n = step.first + e;
+    if (step.state.dones()[n] == 0) continue;
+    std::ranges::copy(step.state.observation(n), step.state.finalObservation(n).begin());
+    beginEpisode(step.model, step.state, n,
+                 nthEpisode(step.model.options, step.model.globalEnv(n), step.state.env(n).ordinal,
+                            count));
+  }
+}
+
+void resetEpisodes(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept {
+  for (std::size_t n = step.first; n < std::min(step.first + kChunk, resets.size()); ++n) {
+    if (resets[n] < 0) continue;
+    beginEpisode(step.model, step.state, n,
+                 startOf(step.model, static_cast<std::uint32_t>(resets[n])));
+    step.state.rewards()[n] = 0;
+    step.state.dones()[n] = 0;
+    step.state.successes()[n] = 0;
+  }
+}
+
+}  // namespace galactic::simulation

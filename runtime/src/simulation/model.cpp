@@ -1,0 +1,150 @@
+#include "simulation/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "simulation/batch_state.h"
+#include "simulation/chunk.h"
+#include "simulation/move.h"
+#include "simulation/observe.h"
+
+namespace galactic::simulation {
+namespace {
+
+WindowFrame frameOf(const Scene& scene) {
+  // All grids of a scene cover nearly the same rectangle; the widest holds every sphere.
+  const ColumnGridLayout& grid = scene.grids().back().layout();
+  const auto length = [&](std::uint32_t columns) {
+    return static_cast<float>(columns) * grid.spacing;
+  };
+  return makeWindowFrame({grid.min_x, grid.min_x + length(grid.columns_x)},
+                         {grid.min_z, grid.min_z + length(grid.columns_z)},
+                         scene.grids().back().radius());
+}
+
+void measure(const World& world, Model& model) {
+  model.most_objects = model.options.task.distractors ? world.mostObjects() : 1;
+  for (const Episode& episode : world.episodes().episodes()) {
+    for (const Placement& placement : model.placements(episode)) {
+      model.most_held_spheres =
+          std::max(model.most_held_spheres, paddedObjectSpheres(world.objectOf(placement)));
+    }
+  }
+  model.frames.reserve(world.scenes().size());
+  for (const Scene& scene : world.scenes()) {
+    model.frames.push_back(frameOf(scene));
+    model.most_windows = std::max(model.most_windows, model.frames.back().windowCount());
+  }
+}
+
+/// Tries the episodes one after the other in a batch of one chunk, whose first env is used.
+class StartFinder {
+ public:
+  explicit StartFinder(Model& model) : model_(model), state_(model, 1), chunk_(model) {}
+
+  void find() {
+    const World& world = *model_.world;
+    const std::size_t count = world.episodes().episodes().size();
+    model_.starts.reserve(count);
+    model_.start_variables.reserve(count * model_.variableCount());
+    for (std::uint32_t n = 0; n < count; ++n) {
+      if (!tryEpisode(n)) model_.skipped.push_back(n);
+    }
+  }
+
+ private:
+  void setVariables(std::uint32_t episode) {
+    const World& world = *model_.world;
+    const std::span<const float> recipe = world.robot().startPositions();
+    const std::span<const float> given = world.episodes().startPositions(episode);
+    const std::span<const std::uint32_t> positions = world.startPositionIndices();
+    const PoseArrays pose = chunk_.candidates(0);
+    for (std::size_t v = 0; v < model_.variableCount(); ++v) {
+      const MotionVariable& variable = model_.motion.variables[v];
+      float value = recipe[variable.position];
+      for (std::size_t n = 0; n < positions.size(); ++n) {
+        if (positions[n] == variable.position) value = given[n];
+      }
+      constexpr float kTurn = 6.28318531F;
+      pose.variables[v * pose.stride] = variable.wraps
+                                            ? std::remainder(value, kTurn)
+                                            : std::clamp(value, variable.lower, variable.upper);
+    }
+  }
+
+  /// The floor at or under the episode's base: at once, or further down.
+  bool setBase(const Episode& episode) {
+    constexpr float kDeepestSearch = 0.5F;
+    const Scene& scene = model_.world->sceneOf(episode);
+    GroundOptions options = model_.options.ground;
+    options.most_drop = std::max(options.most_drop, kDeepestSearch);
+    const FloorUnder under = floorUnder(scene, episode.base_position, options);
+    const PoseArrays pose = chunk_.candidates(0);
+    *pose.x = episode.base_position.x;
+    *pose.y = under.height;
+    *pose.z = episode.base_position.z;
+    *pose.yaw = episode.base_yaw;
+    *state_.poses(0).y = under.height;
+    chunk_.floor(0) = under.floor;
+    return under.floor != Floor::kDrops;
+  }
+
+  void setObjects(const Episode& episode) {
+    RestingObjects& resting = state_.resting(0);
+    const std::uint32_t scene = model_.world->sceneIndexOf(episode);
+    resting.begin(model_.frames[scene]);
+    std::uint32_t number = 0;
+    for (const Placement& placement : model_.placements(episode)) {
+      resting.insert(number++, restingBox(model_.world->objectOf(placement).box, placement.pose));
+    }
+    state_.env(0).scene = scene;
+  }
+
+  bool tryEpisode(std::uint32_t n) {
+    const Episode& episode = model_.world->episodes().episodes()[n];
+    setVariables(n);
+    if (!setBase(episode)) return false;
+    setObjects(episode);
+    const ChunkStep step{model_, state_, chunk_, 0};
+    placeBodies(step);
+    if (!isFree(step, 0) && !pushClear(step, 0)) return false;
+    model_.starts.push_back({n, chunk_.base(0), episode.base_yaw, chunk_.grip(0)});
+    const PoseArrays pose = chunk_.candidates(0);
+    for (std::size_t v = 0; v < model_.variableCount(); ++v) {
+      model_.start_variables.push_back(pose.variables[v * pose.stride]);
+    }
+    return true;
+  }
+
+  Model& model_;
+  BatchState state_;
+  Chunk chunk_;
+};
+
+}  // namespace
+
+Result<Model> makeModel(const World& world, const SimulationOptions& options) {
+  Model model;
+  model.world = &world;
+  model.options = options;
+  Result<MotionModel> motion = makeMotionModel(world.robot(), world.startPositionIndices());
+  if (!motion) return tl::unexpected<Error>(motion.error());
+  model.motion = std::move(*motion);
+  model.kernels = motionKernels();
+  model.tables = motionTables(model.motion);
+  model.observation = observationParts(model.motion.controlled.size());
+  model.observation_size = model.observation.back().first + model.observation.back().size;
+  measure(world, model);
+  StartFinder(model).find();
+  if (model.starts.empty()) {
+    return fail(ErrorCode::kInvalidInput, "episodes " + std::string(world.episodes().name()),
+                "the robot penetrates the scene or an object at the start of all " +
+                    std::to_string(model.skipped.size()) +
+                    " episodes; check that scene, robot and episodes belong together");
+  }
+  return model;
+}
+
+}  // namespace galactic::simulation

@@ -1,0 +1,274 @@
+// The motion kernels, in terms of eight-lane vectors: included by motion_portable.cpp and
+// motion_avx2.cpp, which differ only in the instructions that they may use. No library templates
+// here: see column_grid_avx2.cpp.
+namespace galactic::simulation {
+namespace {
+
+using Lanes = float __attribute__((vector_size(32)));
+using IntLanes = std::int32_t __attribute__((vector_size(32)));
+
+inline Lanes load(const float* from) {
+  Lanes lanes;
+  __builtin_memcpy(&lanes, from, sizeof(lanes));
+  return lanes;
+}
+
+inline void store(float* to, Lanes lanes) { __builtin_memcpy(to, &lanes, sizeof(lanes)); }
+
+inline Lanes spread(float value) {
+  return Lanes{value, value, value, value, value, value, value, value};
+}
+
+/// Element 0 of eight rows.
+inline Lanes loadStrided(const float* p, std::size_t stride) {
+  return Lanes{p[0],          p[stride],     p[2 * stride], p[3 * stride],
+               p[4 * stride], p[5 * stride], p[6 * stride], p[7 * stride]};
+}
+
+inline Lanes pick(IntLanes mask, Lanes yes, Lanes no) {
+  IntLanes a;
+  IntLanes b;
+  __builtin_memcpy(&a, &yes, sizeof(a));
+  __builtin_memcpy(&b, &no, sizeof(b));
+  const IntLanes bits = (a & mask) | (b & ~mask);
+  Lanes result;
+  __builtin_memcpy(&result, &bits, sizeof(result));
+  return result;
+}
+
+inline Lanes clampTo(Lanes value, float lower, float upper) {
+  value = pick(value < spread(lower), spread(lower), value);
+  return pick(value > spread(upper), spread(upper), value);
+}
+
+/// The nearest whole number for |value| < 2^22.
+inline Lanes rounded(Lanes value) {
+  const Lanes shift = spread(12582912.0F);  // 1.5 * 2^23: leaves no bits for a fraction
+  return (value + shift) - shift;
+}
+
+/// An angle in [-pi, pi) as one in the same range: the input lies within a few turns.
+inline Lanes wrapped(Lanes angle) {
+  constexpr float kPi = 3.14159265F;
+  constexpr float kTurn = 6.28318531F;
+  const Lanes turned = angle - spread(kTurn) * rounded(angle * spread(1 / kTurn));
+  const Lanes low = pick(turned < spread(-kPi), turned + spread(kTurn), turned);
+  return pick(low >= spread(kPi), low - spread(kTurn), low);
+}
+
+struct SineCosine {
+  Lanes sine, cosine;
+};
+
+/// Sine and cosine for |angle| < 1000, error under 1.2e-7: reduction by quarter turns in three
+/// parts (Cody and Waite), then the minimax polynomials of the Cephes library (Moshier).
+inline SineCosine sineCosine(Lanes angle) {
+  const Lanes quarter = rounded(angle * spread(0.636619772F));
+  const Lanes r =
+      ((angle - quarter * spread(1.5703125F)) - quarter * spread(4.837512969970703e-4F)) -
+      quarter * spread(7.549789948768648e-8F);
+  const Lanes r2 = r * r;
+  const Lanes sine = r + r * r2 *
+                             ((spread(-1.9515295891e-4F) * r2 + spread(8.3321608736e-3F)) * r2 +
+                              spread(-1.6666654611e-1F));
+  const Lanes cosine =
+      spread(1) - spread(0.5F) * r2 +
+      r2 * r2 *
+          ((spread(2.443315711809948e-5F) * r2 + spread(-1.388731625493765e-3F)) * r2 +
+           spread(4.166664568298827e-2F));
+  const IntLanes turns = __builtin_convertvector(quarter, IntLanes);
+  const IntLanes swap = (turns & 1) != 0;
+  const Lanes s = pick(swap, cosine, sine);
+  const Lanes c = pick(swap, sine, cosine);
+  return {pick((turns & 2) != 0, -s, s), pick(((turns + 1) & 2) != 0, -c, c)};
+}
+
+struct LaneVector {
+  Lanes x, y, z;
+};
+
+/// World frame: axes and origin of eight frames.
+struct LaneFrame {
+  LaneVector x_axis, y_axis, z_axis, origin;
+};
+
+inline LaneVector turned(const LaneFrame& frame, const Vec3& v) {
+  const Lanes x = spread(v.x);
+  const Lanes y = spread(v.y);
+  const Lanes z = spread(v.z);
+  return {frame.x_axis.x * x + frame.y_axis.x * y + frame.z_axis.x * z,
+          frame.x_axis.y * x + frame.y_axis.y * y + frame.z_axis.y * z,
+          frame.x_axis.z * x + frame.y_axis.z * y + frame.z_axis.z * z};
+}
+
+inline LaneVector moved(const LaneFrame& frame, const Vec3& point) {
+  const LaneVector v = turned(frame, point);
+  return {v.x + frame.origin.x, v.y + frame.origin.y, v.z + frame.origin.z};
+}
+
+inline LaneVector scaledSum(const LaneVector& a, Lanes s, const LaneVector& b, Lanes t) {
+  return {a.x * s + b.x * t, a.y * s + b.y * t, a.z * s + b.z * t};
+}
+
+inline LaneFrame rootFrame(const PoseArrays& pose, float root_height) {
+  const SineCosine heading = sineCosine(load(pose.yaw));
+  const Lanes zero = spread(0);
+  return {{heading.cosine, zero, -heading.sine},
+          {zero, spread(1), zero},
+          {heading.sine, zero, heading.cosine},
+          {load(pose.x), load(pose.y) + spread(root_height), load(pose.z)}};
+}
+
+inline LaneFrame nodeFrame(const LaneFrame& parent, const MotionNode& node, Lanes variable) {
+  const Lanes value = spread(node.multiplier) * variable + spread(node.offset);
+  LaneFrame frame{turned(parent, node.x_axis), turned(parent, node.y_axis),
+                  turned(parent, node.z_axis), moved(parent, node.origin)};
+  if (node.motion == NodeMotion::kSlides) {
+    frame.origin = {frame.origin.x + frame.x_axis.x * value,
+                    frame.origin.y + frame.x_axis.y * value,
+                    frame.origin.z + frame.x_axis.z * value};
+    return frame;
+  }
+  const SineCosine angle = sineCosine(value);
+  const LaneVector y = frame.y_axis;
+  frame.y_axis = scaledSum(y, angle.cosine, frame.z_axis, angle.sine);
+  frame.z_axis = scaledSum(frame.z_axis, angle.cosine, y, -angle.sine);
+  return frame;
+}
+
+/// Eight rows of eight become eight columns.
+inline void transpose(Lanes rows[kLanes]) {
+  Lanes a[kLanes];
+  for (std::size_t n = 0; n < kLanes; n += 2) {
+    a[n] = __builtin_shufflevector(rows[n], rows[n + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+    a[n + 1] = __builtin_shufflevector(rows[n], rows[n + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+  }
+  Lanes b[kLanes];
+  for (std::size_t n = 0; n < kLanes; n += 4) {
+    b[n] = __builtin_shufflevector(a[n], a[n + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+    b[n + 1] = __builtin_shufflevector(a[n], a[n + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    b[n + 2] = __builtin_shufflevector(a[n + 1], a[n + 3], 0, 1, 8, 9, 4, 5, 12, 13);
+    b[n + 3] = __builtin_shufflevector(a[n + 1], a[n + 3], 2, 3, 10, 11, 6, 7, 14, 15);
+  }
+  for (std::size_t n = 0; n < 4; ++n) {
+    rows[n] = __builtin_shufflevector(b[n], b[n + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    rows[n + 4] = __builtin_shufflevector(b[n], b[n + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
+/// The centres of eight spheres in eight envs, to the rows of the envs.
+inline void placeEightSpheres(const MotionTables& tables, const LaneFrame* frames,
+                              std::uint32_t first, float* centres) {
+  Lanes x[kLanes];
+  Lanes y[kLanes];
+  Lanes z[kLanes];
+  for (std::uint32_t n = 0; n < kLanes; ++n) {
+    const BodySphere& sphere = tables.spheres[first + n];
+    const LaneVector centre = moved(frames[sphere.node + 1], sphere.centre);
+    x[n] = centre.x;
+    y[n] = centre.y;
+    z[n] = centre.z;
+  }
+  transpose(x);
+  transpose(y);
+  transpose(z);
+  const std::size_t count = tables.sphere_count;
+  for (std::size_t env = 0; env < kLanes; ++env) {
+    float* row = centres + 3 * env * count + first;
+    store(row, x[env]);
+    store(row + count, y[env]);
+    store(row + 2 * count, z[env]);
+  }
+}
+
+inline LaneFrame fixedFrame(const LaneFrame* frames, const FixedFrame& fixed) {
+  const LaneFrame& node = frames[fixed.node + 1];
+  return {turned(node, fixed.x_axis), turned(node, fixed.y_axis), turned(node, fixed.z_axis),
+          moved(node, fixed.origin)};
+}
+
+inline void placeGrip(const MotionTables& tables, const LaneFrame* frames, float* grips) {
+  const LaneFrame grip = fixedFrame(frames, tables.grip);
+  const LaneFrame& root = frames[0];
+  const Lanes none = spread(0);
+  Lanes first[kLanes] = {grip.x_axis.x, grip.x_axis.y, grip.x_axis.z, grip.y_axis.x,
+                         grip.y_axis.y, grip.y_axis.z, grip.z_axis.x, grip.z_axis.y};
+  Lanes second[kLanes] = {grip.z_axis.z,   grip.origin.x,   grip.origin.y, grip.origin.z,
+                          root.x_axis.x, root.z_axis.x, none,          none};
+  transpose(first);
+  transpose(second);
+  for (std::size_t env = 0; env < kLanes; ++env) {
+    store(grips + kGripStride * env, first[env]);
+    store(grips + kGripStride * env + kLanes, second[env]);
+  }
+}
+
+inline void placeLink(const LaneFrame& link, float* links, std::size_t stride) {
+  const Lanes none = spread(0);
+  Lanes first[kLanes] = {link.x_axis.x, link.x_axis.y, link.x_axis.z, link.y_axis.x,
+                         link.y_axis.y, link.y_axis.z, link.z_axis.x, link.z_axis.y};
+  Lanes second[kLanes] = {link.z_axis.z, link.origin.x, link.origin.y, link.origin.z,
+                          none,          none,          none,          none};
+  transpose(first);
+  transpose(second);
+  for (std::size_t env = 0; env < kLanes; ++env) {
+    store(links + stride * env, first[env]);
+    __builtin_memcpy(links + stride * env + kLanes, &second[env], 4 * sizeof(float));
+  }
+}
+
+/// Frame 0 is the root, frame n + 1 node n.
+inline const LaneFrame* nodeFrames(const MotionTables& tables, const PoseArrays& pose,
+                                   float* scratch) {
+  auto* frames = reinterpret_cast<LaneFrame*>(scratch);
+  frames[0] = rootFrame(pose, tables.root_height);
+  for (std::uint32_t n = 0; n < tables.node_count; ++n) {
+    const MotionNode& node = tables.nodes[n];
+    frames[n + 1] = nodeFrame(frames[node.parent + 1], node,
+                              load(pose.variables + node.variable * pose.stride));
+  }
+  return frames;
+}
+
+void moveKernel(const MotionTables& tables, const MoveBatch& batch) noexcept {
+  const std::size_t joints = batch.action_count - 4;
+  const Lanes forward = loadStrided(batch.actions + joints, batch.action_count);
+  const Lanes clockwise = loadStrided(batch.actions + joints + 1, batch.action_count);
+  const Lanes yaw = wrapped(load(batch.from.yaw) - spread(tables.turn_step) * clockwise);
+  const SineCosine heading = sineCosine(yaw);
+  const Lanes drive = spread(tables.forward_step) * forward;
+  store(batch.to.yaw, yaw);
+  store(batch.to.x, load(batch.from.x) + heading.cosine * drive);
+  store(batch.to.y, load(batch.from.y));
+  store(batch.to.z, load(batch.from.z) - heading.sine * drive);
+  for (std::uint32_t v = 0; v < tables.variable_count; ++v) {
+    const MotionVariable& variable = tables.variables[v];
+    Lanes value = load(batch.from.variables + v * batch.from.stride);
+    if (variable.action >= 0) {
+      const Lanes action = loadStrided(batch.actions + static_cast<std::size_t>(variable.action),
+                                       batch.action_count);
+      value = value + spread(variable.step) * action;
+      value = variable.wraps ? wrapped(value) : clampTo(value, variable.lower, variable.upper);
+    }
+    store(batch.to.variables + v * batch.to.stride, value);
+  }
+}
+
+void placeKernel(const MotionTables& tables, const BodyBatch& batch) noexcept {
+  const LaneFrame* frames = nodeFrames(tables, batch.pose, batch.scratch);
+  for (std::uint32_t first = 0; first < tables.sphere_count; first += kLanes) {
+    placeEightSpheres(tables, frames, first, batch.body.centres);
+  }
+  placeGrip(tables, frames, batch.body.grips);
+}
+
+void linksKernel(const MotionTables& tables, const LinkBatch& batch) noexcept {
+  const LaneFrame* frames = nodeFrames(tables, batch.pose, batch.scratch);
+  const std::size_t stride = std::size_t{12} * tables.link_count;
+  for (std::uint32_t n = 0; n < tables.link_count; ++n) {
+    placeLink(fixedFrame(frames, tables.links[n]), batch.links + std::size_t{12} * n, stride);
+  }
+}
+
+}  // namespace
+}  // namespace galactic::simulation

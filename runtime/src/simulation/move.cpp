@@ -1,0 +1,179 @@
+#include "simulation/move.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/collision.h"
+#include "simulation/grip_frame.h"
+#include "simulation/object_placement.h"
+
+namespace galactic::simulation {
+namespace {
+
+Obstacles obstaclesOf(const ChunkStep& step, std::size_t e) {
+  const Env& env = step.state.env(step.first + e);
+  return {step.model.world->scenes()[env.scene], step.state.resting(step.first + e)};
+}
+
+/// The smallest sphere of the working set, standing on a rise as high as the base may climb.
+Vec3 floorProbe(const Scene& scene, const Vec3& base, const GroundOptions& options) {
+  return {base.x, base.y + options.most_rise + scene.grids().front().radius(), base.z};
+}
+
+/// The spheres of the held object at the candidate's grip.
+SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) {
+  const Env& env = step.state.env(step.first + e);
+  const Pose world_from_object = gripPose(step.chunk.grip(e)) * env.held.grip_from_object;
+  return holdSpheres(heldModel(step.model, env), world_from_object, step.chunk.placement());
+}
+
+/// Whether a held object's sphere that counts penetrates something.
+bool heldPenetrates(const ChunkStep& step, std::size_t e) {
+  const std::span<std::uint64_t> bits = step.chunk.bits().first(step.model.heldWords());
+  penetrating(obstaclesOf(step, e), heldSpheres(step, e), step.chunk.collision(), bits);
+  const std::span<const std::uint64_t> ignored = step.state.ignored(step.first + e);
+  std::uint64_t any = 0;
+  for (std::size_t w = 0; w < bits.size(); ++w) any |= bits[w] & ~ignored[w];
+  return any != 0;
+}
+
+/// The candidate is the robot's pose from now on.
+void accept(const ChunkStep& step, std::size_t e) {
+  const std::size_t n = step.first + e;
+  const PoseArrays to = step.state.poses(n);
+  const PoseArrays from = step.chunk.candidates(e);
+  *to.x = *from.x;
+  *to.y = *from.y;
+  *to.z = *from.z;
+  *to.yaw = *from.yaw;
+  for (std::size_t v = 0; v < step.model.variableCount(); ++v) {
+    to.variables[v * to.stride] = from.variables[v * from.stride];
+  }
+  step.state.grip(n) = step.chunk.grip(e);
+  if (step.state.env(n).held.object < 0) return;
+  // Spheres that are free now count from now on. The bits are those of the accepted candidate.
+  const std::span<std::uint64_t> ignored = step.state.ignored(n);
+  for (std::size_t w = 0; w < ignored.size(); ++w) ignored[w] &= step.chunk.bits()[w];
+}
+
+/// Where the base has to go so that what penetrates gets free, in one jitter.
+Push pushOf(const ChunkStep& step, std::size_t e) {
+  const SlideOptions& options = step.model.options.slide;
+  const Obstacles obstacles = obstaclesOf(step, e);
+  const Env& env = step.state.env(step.first + e);
+  PushSum sum;
+  pushOut(obstacles, step.chunk.spheres(e), {}, options.step, step.chunk.collision(), sum);
+  if (env.held.object >= 0) {
+    pushOut(obstacles, heldSpheres(step, e), step.state.ignored(step.first + e), options.step,
+            step.chunk.collision(), sum);
+  }
+  if (step.chunk.floor(e) == Floor::kBlocks) {
+    const Vec3 probe = floorProbe(obstacles.scene, step.chunk.base(e), step.model.options.ground);
+    sum.add(pushOutOfScene(obstacles.scene.grids().front(), probe, options.step));
+  }
+  return sum.total(options.step);
+}
+
+/// The published rule: from the first sphere in contact, towards the base.
+Push pushTowardsBase(const ChunkStep& step, std::size_t e) {
+  const std::span<std::uint64_t> bits = step.chunk.bits();
+  const SphereBatch spheres = step.chunk.spheres(e);
+  penetrating(obstaclesOf(step, e), spheres, step.chunk.collision(), bits);
+  for (std::size_t sphere = 0; sphere < step.model.sphereCount(); ++sphere) {
+    if ((bits[sphere / 64] >> (sphere % 64) & 1U) == 0) continue;
+    const Vec3 base = step.chunk.base(e);
+    const float x = base.x - spheres.x[sphere];
+    const float z = base.z - spheres.z[sphere];
+    const float length = std::sqrt(x * x + z * z);
+    constexpr float kNoDirection = 1e-3F;
+    if (!(length > kNoDirection)) return {};
+    const float scale = step.model.options.slide.step / length;
+    return {x * scale, z * scale};
+  }
+  return {};
+}
+
+void refuse(const ChunkStep& step, std::size_t e) {
+  ++step.state.env(step.first + e).counters.refused;
+}
+
+}  // namespace
+
+FloorUnder floorUnder(const Scene& scene, const Vec3& base, const GroundOptions& options) noexcept {
+  const ColumnGrid& grid = scene.grids().front();
+  const Vec3 probe = floorProbe(scene, base, options);
+  const Contact contact = grid.contact(probe);
+  if (contact.clearance == Clearance::kBlocked) return {Floor::kBlocks, base.y};
+  if (contact.clearance == Clearance::kOutside) return {Floor::kDrops, base.y};
+  const float height = probe.y - contact.down - grid.radius();
+  if (height < base.y - options.most_drop) return {Floor::kDrops, base.y};
+  return {Floor::kCarries, height};
+}
+
+bool isFree(const ChunkStep& step, std::size_t e) noexcept {
+  if (step.chunk.floor(e) != Floor::kCarries) return false;
+  if (penetrates(obstaclesOf(step, e), step.chunk.spheres(e), step.chunk.collision())) return false;
+  return step.state.env(step.first + e).held.object < 0 || !heldPenetrates(step, e);
+}
+
+void proposePoses(const ChunkStep& step) noexcept {
+  const std::size_t actions = step.model.actionCount();
+  for (std::size_t e = 0; e < kChunk; e += kLanes) {
+    step.model.kernels.move(
+        step.model.tables, {.actions = step.chunk.actions().data() + e * actions,
+                              .action_count = actions,
+                              .from = step.state.poses(step.first + e),
+                              .to = step.chunk.candidates(e)});
+  }
+}
+
+void followFloor(const ChunkStep& step) noexcept {
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    const Scene& scene = step.model.world->scenes()[step.state.env(step.first + e).scene];
+    const FloorUnder under = floorUnder(scene, step.chunk.base(e), step.model.options.ground);
+    step.chunk.floor(e) = under.floor;
+    *step.chunk.candidates(e).y = under.height;
+  }
+}
+
+void placeBodies(const ChunkStep& step) noexcept {
+  for (std::size_t e = 0; e < kChunk; e += kLanes) {
+    step.model.kernels.place(step.model.tables, {.pose = step.chunk.candidates(e),
+                                                   .body = step.chunk.bodies(e),
+                                                   .scratch = step.chunk.frames()});
+  }
+}
+
+bool pushClear(const ChunkStep& step, std::size_t e) noexcept {
+  const SlideOptions& options = step.model.options.slide;
+  const Scene& scene = step.model.world->scenes()[step.state.env(step.first + e).scene];
+  const float floor_before = *step.state.poses(step.first + e).y;
+  for (std::uint32_t attempt = 0; attempt < options.attempts; ++attempt) {
+    if (step.chunk.floor(e) == Floor::kDrops) return false;
+    const Push push = options.direction == SlideDirection::kPushOut ? pushOf(step, e)
+                                                                    : pushTowardsBase(step, e);
+    if (push.x == 0 && push.z == 0) return false;
+    const Vec3 base = step.chunk.base(e);
+    const FloorUnder under = floorUnder(scene, {base.x + push.x, floor_before, base.z + push.z},
+                                        step.model.options.ground);
+    step.chunk.floor(e) = under.floor;
+    step.chunk.shift(e, {push.x, under.height - base.y, push.z});
+    if (isFree(step, e)) return true;
+  }
+  return false;
+}
+
+void moveRobots(const ChunkStep& step) noexcept {
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    if (isFree(step, e)) {
+      accept(step, e);
+    } else if (pushClear(step, e)) {
+      ++step.state.env(step.first + e).counters.slid;
+      accept(step, e);
+    } else {
+      refuse(step, e);
+    }
+  }
+}
+
+}  // namespace galactic::simulation

@@ -1,0 +1,90 @@
+#include "simulation/observe.h"
+
+#include <algorithm>
+
+#include "simulation/grip_frame.h"
+#include "simulation/task.h"
+
+namespace galactic::simulation {
+namespace {
+
+/// Appends numbers to a row.
+class Row {
+ public:
+  explicit Row(std::span<float> out) : next_(out.data()) {}
+
+  void add(float value) { *next_++ = value; }
+  void add(const Vec3& v) {
+    add(v.x);
+    add(v.y);
+    add(v.z);
+  }
+
+ private:
+  float* next_;
+};
+
+/// The frame of the robot's root without its height: turned by the yaw only.
+struct RobotFrame {
+  Vec3 base;
+  float sine = 0;
+  float cosine = 1;
+
+  [[nodiscard]] Vec3 fromWorld(const Vec3& point) const {
+    const Vec3 away = point - base;
+    return {cosine * away.x - sine * away.z, away.y, sine * away.x + cosine * away.z};
+  }
+};
+
+}  // namespace
+
+std::vector<ObservationPart> observationParts(std::size_t joints) {
+  std::vector<ObservationPart> parts;
+  std::size_t first = 0;
+  const auto add = [&](const char* name, std::size_t size) {
+    parts.push_back({name, first, size});
+    first += size;
+  };
+  add("robot_target", 3);
+  add("grip_target", 3);
+  add("robot_grip", 3);
+  add("robot_goal", 3);
+  add("grip_goal", 3);
+  add("is_holding", 1);
+  add("joints", joints);
+  add("time", 3);
+  return parts;
+}
+
+void observe(const Model& model, const BatchState& state, std::size_t env_number,
+             std::span<float> out) noexcept {
+  const Env& env = state.env(env_number);
+  const GripFrame& grip = state.grip(env_number);
+  const RobotFrame robot{state.base(env_number), headingSine(grip), headingCosine(grip)};
+  const TaskOptions& task = model.options.task;
+  const Vec3 target = task.observes_current_target ? measureTarget(state, env_number).target
+                                                   : env.target_start;
+  Row row(out);
+  row.add(robot.fromWorld(target));
+  row.add(worldToGrip(grip, target));
+  row.add(robot.fromWorld(gripOrigin(grip)));
+  row.add(robot.fromWorld(env.goal));
+  row.add(worldToGrip(grip, env.goal));
+  row.add(env.held.object >= 0 ? 1.0F : 0.0F);
+  for (const std::uint32_t variable : model.motion.controlled) {
+    row.add(state.variable(variable, env_number));
+  }
+  const float left = task.most_steps == 0 ? 1.0F
+                                          : 1.0F - static_cast<float>(env.step) /
+                                                       static_cast<float>(task.most_steps);
+  for (const float scale : {1.0F, 5.0F, 50.0F}) row.add(std::min(1.0F, scale * left));
+}
+
+void observeAll(const ChunkStep& step) noexcept {
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    const std::size_t n = step.first + e;
+    observe(step.model, step.state, n, step.state.observation(n));
+  }
+}
+
+}  // namespace galactic::simulation
