@@ -31,8 +31,8 @@ class BatchSimulator::Impl {
     threads = std::min(threads, chunks);
     parts_.reserve(threads);
     for (std::size_t n = 0; n < threads; ++n) {
-      parts_.push_back({Chunk(model_), n * chunks / threads * kChunk,
-                        (n + 1) * chunks / threads * kChunk, {}});
+      parts_.push_back(
+          {Chunk(model_), n * chunks / threads * kChunk, (n + 1) * chunks / threads * kChunk, {}});
     }
     for (std::size_t env = 0; env < state_.paddedCount(); ++env) {
       simulation::beginEpisode(model_, state_, env, firstStart(env));
@@ -202,7 +202,10 @@ EnvState BatchSimulator::envState(std::size_t env) const {
   return simulation::envStateOf(impl_->model(), impl_->state(), env);
 }
 
-void BatchSimulator::linkTransforms(std::span<LinkTransform> out) { impl_->links(out); }
+std::span<const LinkTransform> BatchSimulator::linkTransforms() const {
+  return impl_->state().links().first(
+      impl_->model().options.link_transforms ? envCount() * impl_->model().motion.links.size() : 0);
+}
 
 void BatchSimulator::samplePhases(std::uint32_t every) { impl_->sample(every); }
 std::vector<PhaseTime> BatchSimulator::phaseTimes() const { return impl_->phaseTimes(); }

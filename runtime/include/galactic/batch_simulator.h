@@ -101,9 +101,9 @@ class BatchSimulator {
   [[nodiscard]] std::size_t observationSize() const;
   [[nodiscard]] std::size_t threadCount() const;
   /// The parts of an observation, in order:
-  /// robot_target (3), grip_target (3), robot_grip (3), robot_goal (3), grip_goal (3): points in the
-  /// frame of the robot's root (yaw only) or of the grip, metres; is_holding (1); joints (one per
-  /// controlled joint, radians or metres); time (3): the share f of the steps that is left, as
+  /// robot_target (3), grip_target (3), robot_grip (3), robot_goal (3), grip_goal (3): points in
+  /// the frame of the robot's root (yaw only) or of the grip, metres; is_holding (1); joints (one
+  /// per controlled joint, radians or metres); time (3): the share f of the steps that is left, as
   /// min(1, f), min(1, 5 f), min(1, 50 f).
   [[nodiscard]] const std::vector<ObservationPart>& observationParts() const;
 
@@ -112,8 +112,8 @@ class BatchSimulator {
   /// end, -1 for none; the env's reward and done of this step are 0.
   void step(std::span<const float> actions, std::span<const std::int32_t> resets = {});
 
-  /// The same in two halves, so that the caller can work meanwhile. `actions` and `resets` must stay
-  /// as they are until endStep() returns; what the simulator returns is valid after it.
+  /// The same in two halves, so that the caller can work meanwhile. `actions` and `resets` must
+  /// stay as they are until endStep() returns; what the simulator returns is valid after it.
   void beginStep(std::span<const float> actions, std::span<const std::int32_t> resets = {});
   void endStep();
 
@@ -134,8 +134,8 @@ class BatchSimulator {
   [[nodiscard]] std::span<const std::uint32_t> skippedEpisodes() const;
   [[nodiscard]] EnvState envState(std::size_t env) const;
   /// Where all links of all envs' robots are, for rendering. Shape: envs * Robot::links(), env
-  /// after env. Neither allocates nor throws.
-  void linkTransforms(std::span<LinkTransform> out);
+  /// after env; empty without SimulationOptions::link_transforms.
+  [[nodiscard]] std::span<const LinkTransform> linkTransforms() const;
 
   /// Measures one step in `every` from now on; 0 switches it off.
   void samplePhases(std::uint32_t every);

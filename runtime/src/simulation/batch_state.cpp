@@ -35,6 +35,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   variables_.resize(padded * model.variableCount());
   observations_.resize(padded * observation_size_);
   final_observations_.resize(padded * observation_size_);
+  if (model.options.link_transforms) links_.resize(padded * model.motion.links.size());
   rewards_.resize(padded);
   dones_.resize(padded);
   successes_.resize(padded);
@@ -52,7 +53,8 @@ PoseArrays BatchState::poses(std::size_t first) {
 std::size_t BatchState::bytes() const {
   std::size_t bytes = bytesOf(envs_) + bytesOf(objects_) + bytesOf(grips_) + bytesOf(ignored_) +
                       bytesOf(last_actions_) + 4 * bytesOf(x_) + bytesOf(variables_) +
-                      2 * bytesOf(observations_) + bytesOf(rewards_) + 2 * bytesOf(dones_);
+                      2 * bytesOf(observations_) + bytesOf(links_) + bytesOf(rewards_) +
+                      2 * bytesOf(dones_);
   for (const RestingObjects& resting : resting_) bytes += resting.bytes();
   return bytes;
 }

@@ -124,9 +124,15 @@ class BatchState {
   [[nodiscard]] std::span<const float> finalObservations() const {
     return std::span(final_observations_).first(env_count_ * observation_size_);
   }
+  /// Rows of all links; empty where the run does not want them.
+  [[nodiscard]] std::span<LinkTransform> links() { return links_; }
+  [[nodiscard]] std::span<const LinkTransform> links() const { return links_; }
   [[nodiscard]] std::span<float> rewards() { return rewards_; }
+  [[nodiscard]] std::span<const float> rewards() const { return rewards_; }
   [[nodiscard]] std::span<std::uint8_t> dones() { return dones_; }
+  [[nodiscard]] std::span<const std::uint8_t> dones() const { return dones_; }
   [[nodiscard]] std::span<std::uint8_t> successes() { return successes_; }
+  [[nodiscard]] std::span<const std::uint8_t> successes() const { return successes_; }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
@@ -146,6 +152,7 @@ class BatchState {
   std::vector<float> variables_;
   std::vector<float> observations_;
   std::vector<float> final_observations_;
+  std::vector<LinkTransform> links_;
   std::vector<float> rewards_;
   std::vector<std::uint8_t> dones_;
   std::vector<std::uint8_t> successes_;

@@ -67,4 +67,12 @@ class Chunk {
   std::vector<std::uint64_t> bits_;
 };
 
+/// The envs [first, first + kChunk) of a batch in one step.
+struct ChunkStep {
+  const Model& model;
+  BatchState& state;
+  Chunk& chunk;
+  std::size_t first = 0;
+};
+
 }  // namespace galactic::simulation

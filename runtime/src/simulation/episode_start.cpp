@@ -60,6 +60,8 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t n,
          .objects = static_cast<std::uint32_t>(model.placements(episode).size()),
          .target = target,
          .ordinal = env.ordinal + 1,
+         .held = {},
+         .events = {},
          .goal = episode.goal.translation,
          .target_start = state.objects(n)[target].translation,
          .counters = env.counters};
@@ -75,9 +77,9 @@ void renewEpisodes(const ChunkStep& step) noexcept {
     const std::size_t n = step.first + e;
     if (step.state.dones()[n] == 0) continue;
     std::ranges::copy(step.state.observation(n), step.state.finalObservation(n).begin());
-    beginEpisode(step.model, step.state, n,
-                 nthEpisode(step.model.options, step.model.globalEnv(n), step.state.env(n).ordinal,
-                            count));
+    beginEpisode(
+        step.model, step.state, n,
+        nthEpisode(step.model.options, step.model.globalEnv(n), step.state.env(n).ordinal, count));
   }
 }
 

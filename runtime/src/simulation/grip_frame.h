@@ -6,7 +6,9 @@
 namespace galactic::simulation {
 
 /// Origin of the grip in the world, metres.
-[[nodiscard]] inline Vec3 gripOrigin(const GripFrame& grip) { return {grip[9], grip[10], grip[11]}; }
+[[nodiscard]] inline Vec3 gripOrigin(const GripFrame& grip) {
+  return {grip[9], grip[10], grip[11]};
+}
 
 /// Of the base's yaw.
 [[nodiscard]] inline float headingCosine(const GripFrame& grip) { return grip[12]; }

@@ -21,8 +21,8 @@ void grasp(const ChunkStep& step, std::size_t e) {
   const Pose before = step.state.objects(n)[*object];
   env.held = {static_cast<std::int32_t>(*object), inverse(gripPose(grip)) * before, before};
   resting.remove(*object);
-  const SphereBatch spheres = holdSpheres(heldModel(step.model, env), before,
-                                          step.chunk.placement());
+  const SphereBatch spheres =
+      holdSpheres(heldModel(step.model, env), before, step.chunk.placement());
   penetrating({step.model.world->scenes()[env.scene], resting}, spheres, step.chunk.collision(),
               step.state.ignored(n));
   ++env.counters.grasps;
@@ -46,9 +46,9 @@ void release(const ChunkStep& step, std::size_t e) {
   const ObjectModel& object = heldModel(step.model, env);
   const Pose released = gripPose(step.state.grip(n)) * env.held.grip_from_object;
   RandomStream random(step.model.options.seed, step.model.globalEnv(n), env.ordinal, env.step);
-  const Landing landing = placeObject({step.model.world->scenes()[env.scene], resting}, object,
-                                      released, random, step.model.options.placement,
-                                      step.chunk.placement());
+  const Landing landing =
+      placeObject({step.model.world->scenes()[env.scene], resting}, object, released, random,
+                  step.model.options.placement, step.chunk.placement());
   const Pose rest = landing.placed ? landing.pose : env.held.before;
   if (!mayRestAt(step, env, rest)) return;
   const auto number = static_cast<std::uint32_t>(env.held.object);

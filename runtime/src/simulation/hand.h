@@ -1,5 +1,5 @@
 #pragma once
-#include "simulation/move.h"
+#include "simulation/chunk.h"
 
 namespace galactic::simulation {
 

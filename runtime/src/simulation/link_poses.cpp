@@ -6,12 +6,16 @@
 
 namespace galactic::simulation {
 
-void linkFrames(const Model& model, BatchState& state, std::size_t first, float* scratch,
-                std::span<LinkTransform> out) noexcept {
+void placeLinks(const ChunkStep& step) noexcept {
   static_assert(sizeof(LinkTransform) == 12 * sizeof(float));
-  model.kernels.links(model.tables, {.pose = state.poses(first),
-                                     .links = reinterpret_cast<float*>(out.data()),
-                                     .scratch = scratch});
+  if (!step.model.options.link_transforms) return;
+  const std::size_t links = step.model.motion.links.size();
+  for (std::size_t e = 0; e < kChunk; e += kLanes) {
+    LinkTransform* const rows = step.state.links().data() + (step.first + e) * links;
+    step.model.kernels.links(step.model.tables, {.pose = step.state.poses(step.first + e),
+                                                 .links = reinterpret_cast<float*>(rows),
+                                                 .scratch = step.chunk.frames()});
+  }
 }
 
 EnvState envStateOf(const Model& model, const BatchState& state, std::size_t n) {

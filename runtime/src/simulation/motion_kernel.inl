@@ -193,7 +193,7 @@ inline void placeGrip(const MotionTables& tables, const LaneFrame* frames, float
   const Lanes none = spread(0);
   Lanes first[kLanes] = {grip.x_axis.x, grip.x_axis.y, grip.x_axis.z, grip.y_axis.x,
                          grip.y_axis.y, grip.y_axis.z, grip.z_axis.x, grip.z_axis.y};
-  Lanes second[kLanes] = {grip.z_axis.z,   grip.origin.x,   grip.origin.y, grip.origin.z,
+  Lanes second[kLanes] = {grip.z_axis.z, grip.origin.x, grip.origin.y, grip.origin.z,
                           root.x_axis.x, root.z_axis.x, none,          none};
   transpose(first);
   transpose(second);

@@ -73,8 +73,8 @@ struct BodyBatch {
   float* scratch = nullptr;
 };
 
-/// Where all links of eight envs are. Env e, link n: world_from_link as axes x, y, z and origin from
-/// links[12 * (e * link_count + n)] on.
+/// Where all links of eight envs are. Env e, link n: world_from_link as axes x, y, z and origin
+/// from links[12 * (e * link_count + n)] on.
 struct LinkBatch {
   PoseArrays pose;
   float* links = nullptr;

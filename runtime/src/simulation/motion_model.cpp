@@ -54,7 +54,8 @@ class Folding {
       const std::optional<std::uint32_t> variable = variableOf(link);
       if (!variable) {
         const Pose parent_from_link = inverse(links_at_start_[parent]) * links_at_start_[n];
-        attached_[n] = {attached_[parent].node, attached_[parent].node_from_link * parent_from_link};
+        attached_[n] = {attached_[parent].node,
+                        attached_[parent].node_from_link * parent_from_link};
         continue;
       }
       if (positionCount(link.type) != 1) {

@@ -119,11 +119,11 @@ bool isFree(const ChunkStep& step, std::size_t e) noexcept {
 void proposePoses(const ChunkStep& step) noexcept {
   const std::size_t actions = step.model.actionCount();
   for (std::size_t e = 0; e < kChunk; e += kLanes) {
-    step.model.kernels.move(
-        step.model.tables, {.actions = step.chunk.actions().data() + e * actions,
-                              .action_count = actions,
-                              .from = step.state.poses(step.first + e),
-                              .to = step.chunk.candidates(e)});
+    step.model.kernels.move(step.model.tables,
+                            {.actions = step.chunk.actions().data() + e * actions,
+                             .action_count = actions,
+                             .from = step.state.poses(step.first + e),
+                             .to = step.chunk.candidates(e)});
   }
 }
 
@@ -139,8 +139,8 @@ void followFloor(const ChunkStep& step) noexcept {
 void placeBodies(const ChunkStep& step) noexcept {
   for (std::size_t e = 0; e < kChunk; e += kLanes) {
     step.model.kernels.place(step.model.tables, {.pose = step.chunk.candidates(e),
-                                                   .body = step.chunk.bodies(e),
-                                                   .scratch = step.chunk.frames()});
+                                                 .body = step.chunk.bodies(e),
+                                                 .scratch = step.chunk.frames()});
   }
 }
 
@@ -150,8 +150,8 @@ bool pushClear(const ChunkStep& step, std::size_t e) noexcept {
   const float floor_before = *step.state.poses(step.first + e).y;
   for (std::uint32_t attempt = 0; attempt < options.attempts; ++attempt) {
     if (step.chunk.floor(e) == Floor::kDrops) return false;
-    const Push push = options.direction == SlideDirection::kPushOut ? pushOf(step, e)
-                                                                    : pushTowardsBase(step, e);
+    const Push push =
+        options.direction == SlideDirection::kPushOut ? pushOf(step, e) : pushTowardsBase(step, e);
     if (push.x == 0 && push.z == 0) return false;
     const Vec3 base = step.chunk.base(e);
     const FloorUnder under = floorUnder(scene, {base.x + push.x, floor_before, base.z + push.z},

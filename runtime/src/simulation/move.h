@@ -7,14 +7,6 @@
 
 namespace galactic::simulation {
 
-/// The envs [first, first + kChunk) of a batch in one step.
-struct ChunkStep {
-  const Model& model;
-  BatchState& state;
-  Chunk& chunk;
-  std::size_t first = 0;
-};
-
 /// Where the robots would be after their actions: base, then joints, each within its limits.
 void proposePoses(const ChunkStep& step) noexcept;
 

@@ -62,8 +62,8 @@ void observe(const Model& model, const BatchState& state, std::size_t env_number
   const GripFrame& grip = state.grip(env_number);
   const RobotFrame robot{state.base(env_number), headingSine(grip), headingCosine(grip)};
   const TaskOptions& task = model.options.task;
-  const Vec3 target = task.observes_current_target ? measureTarget(state, env_number).target
-                                                   : env.target_start;
+  const Vec3 target =
+      task.observes_current_target ? measureTarget(state, env_number).target : env.target_start;
   Row row(out);
   row.add(robot.fromWorld(target));
   row.add(worldToGrip(grip, target));

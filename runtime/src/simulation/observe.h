@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-#include "simulation/move.h"
+#include "simulation/chunk.h"
 
 namespace galactic::simulation {
 

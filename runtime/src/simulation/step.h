@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "simulation/move.h"
+#include "simulation/chunk.h"
 
 namespace galactic::simulation {
 
@@ -18,8 +18,9 @@ struct StepInput {
 };
 
 /// The phases of a step, in order.
-inline constexpr std::array<std::string_view, 9> kPhaseNames{
-    "actions", "propose", "floor", "kinematics", "collide", "hands", "task", "observe", "renew"};
+inline constexpr std::array<std::string_view, 10> kPhaseNames{
+    "actions", "propose", "floor",   "kinematics", "collide",
+    "hands",   "task",    "observe", "renew",      "links"};
 using PhaseSeconds = std::array<double, kPhaseNames.size()>;
 
 /// One step of the chunk's envs.

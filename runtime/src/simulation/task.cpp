@@ -48,8 +48,7 @@ float rewardOf(const TaskOptions& task, const Env& env, const TargetDistances& n
 
 }  // namespace
 
-TargetDistances measureTarget(const BatchState& state,
-                              std::size_t env_number) noexcept {
+TargetDistances measureTarget(const BatchState& state, std::size_t env_number) noexcept {
   const Env& env = state.env(env_number);
   const GripFrame& grip = state.grip(env_number);
   const Vec3 target = isHeld(env) ? gripToWorld(grip, env.held.grip_from_object.translation)
@@ -85,9 +84,8 @@ void judge(const ChunkStep& step) noexcept {
     ++env.step;
     const TargetDistances now = measureTarget(step.state, n);
     const Verdict verdict = verdictOf(task, env, now.transport);
-    float reward = rewardOf(task, env, now,
-                            actionChange(step.chunk.actions(e), step.state.lastActions(n),
-                                         is_first));
+    float reward = rewardOf(
+        task, env, now, actionChange(step.chunk.actions(e), step.state.lastActions(n), is_first));
     if (verdict == Verdict::kSuccess) reward += task.success_reward;
     if (verdict == Verdict::kFailure) reward -= task.failure_penalty;
     env.reach = now.reach;

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "simulation/move.h"
+#include "simulation/chunk.h"
 
 namespace galactic::simulation {
 
@@ -14,8 +14,7 @@ struct TargetDistances {
   float reach = 0;
   float transport = 0;
 };
-[[nodiscard]] TargetDistances measureTarget(const BatchState& state,
-                                            std::size_t env) noexcept;
+[[nodiscard]] TargetDistances measureTarget(const BatchState& state, std::size_t env) noexcept;
 
 /// The verdict of the task's rules (paper, appendix A). `transport` is the distance of target and
 /// goal after the step, in metres.

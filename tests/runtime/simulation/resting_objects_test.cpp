@@ -1,0 +1,433 @@
+// The four-grid query against all pairs in double precision, its bookkeeping against a model, and
+// its two kernels against each other.
+#include "simulation/resting_objects.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+
+#include "column_grid_kernels.h"
+#include "support/resting_oracle.h"
+
+namespace galactic::test {
+namespace {
+
+using namespace galactic::simulation;
+using testing::ElementsAre;
+
+constexpr float kRadii[] = {0.015F, 0.05F, 0.12F};
+constexpr float kLargestRadius = 0.12F;
+/// Spheres this near to touching are left out of comparisons with double precision: floats of a
+/// few metres are a micrometre apart.
+constexpr double kTies = 1e-5;
+
+std::vector<Body> randomBodies(const Room& room, std::size_t count, std::mt19937& random) {
+  std::vector<Body> bodies;
+  bodies.reserve(count);
+  for (std::size_t n = 0; n < count; ++n) bodies.push_back(randomBody(room, random));
+  return bodies;
+}
+
+/// A centre near one of the bodies, or anywhere when there is none; often exactly at the border of
+/// a window.
+Vec3 randomCentre(const std::vector<Body>& bodies, const Room& room, std::mt19937& random) {
+  if (bodies.empty()) return randomBody(room, random).pose.translation;
+  const Point3 near = bodies[random() % bodies.size()].solid().at({0, 0, 0});
+  const float reach = room.most + 0.15F;
+  const auto coordinate = [&](std::size_t axis) {
+    return static_cast<float>(near[axis]) + uniformIn(random, -reach, reach);
+  };
+  Vec3 centre{coordinate(0), coordinate(1), coordinate(2)};
+  if (random() % 4 == 0) {
+    const WindowFrame frame = makeWindowFrame(room.x, room.z, kLargestRadius);
+    const float half_cell = 1 / frame.inverse_half_cell;
+    centre.x = frame.min_x + std::round((centre.x - frame.min_x) / half_cell) * half_cell;
+    if (random() % 2 == 0) {
+      centre.z = frame.min_z + std::round((centre.z - frame.min_z) / half_cell) * half_cell;
+    }
+  }
+  return centre;
+}
+
+RestingObjects restingIn(const Room& room, const std::vector<Body>& bodies) {
+  const WindowFrame frame = makeWindowFrame(room.x, room.z, kLargestRadius);
+  RestingObjects objects(frame.windowCount(), bodies.size());
+  objects.begin(frame);
+  for (std::size_t n = 0; n < bodies.size(); ++n) {
+    objects.insert(static_cast<std::uint32_t>(n), bodies[n].resting());
+  }
+  return objects;
+}
+
+/// One to twenty spheres of each radius.
+OwnedBatch randomBatch(const std::vector<Body>& bodies, const Room& room, std::mt19937& random) {
+  OwnedBatch batch;
+  for (std::uint32_t r = 0; r < std::size(kRadii); ++r) {
+    std::vector<Vec3> centres(1 + random() % 20);
+    for (Vec3& centre : centres) centre = randomCentre(bodies, room, random);
+    batch.add(r, kRadii[r], centres);
+  }
+  return batch;
+}
+
+std::vector<SphereHit> hitsOf(const RestingObjects& objects, const SphereBatch& batch) {
+  std::vector<SphereHit> hits(10000);
+  hits.resize(objects.hits(batch, hits));
+  return hits;
+}
+
+/// `hits` against the distances of all spheres to all boxes.
+void compareWithAllPairs(const RestingObjects& objects, const std::vector<Body>& bodies,
+                         const OwnedBatch& batch, Tally& tally) {
+  const std::vector<SphereHit> hits = hitsOf(objects, batch.view());
+  std::size_t next = 0;
+  std::vector<BoxSolid> solids;
+  solids.reserve(bodies.size());
+  for (const Body& body : bodies) solids.push_back(body.solid());
+  for (const RadiusRange& range : batch.view().ranges) {
+    for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
+      bool any = false;
+      for (std::uint32_t object = 0; object < bodies.size(); ++object) {
+        const bool found = next < hits.size() && hits[next] == SphereHit{n, object};
+        next += found ? 1 : 0;
+        any = any || found;
+        const double gap =
+            solids[object].distance(toPoint3(batch.centre(n))) - static_cast<double>(range.radius);
+        if (std::abs(gap) < kTies) continue;
+        ASSERT_EQ(found, gap < 0) << "sphere " << n << " object " << object << " gap " << gap;
+      }
+      tally.add(any);
+    }
+  }
+  ASSERT_EQ(next, hits.size()) << "hits out of order, or twice";
+  EXPECT_EQ(objects.touches(batch.view()), !hits.empty());
+}
+
+TEST(RestingObjects, FindsWhatAllPairsFindInARoomOfThirtyObjects) {
+  std::mt19937 random(401);
+  const Room room;
+  Tally tally;
+  for (int round = 0; round < 50; ++round) {
+    const std::vector<Body> bodies = randomBodies(room, 30, random);
+    const RestingObjects objects = restingIn(room, bodies);
+    for (int n = 0; n < 20; ++n) {
+      compareWithAllPairs(objects, bodies, randomBatch(bodies, room, random), tally);
+    }
+  }
+  tally.expectBothSides();
+}
+
+TEST(RestingObjects, FindsWhatAllPairsFindForAnyNumberOfObjects) {
+  std::mt19937 random(402);
+  for (const std::size_t count : {1U, 32U, 33U, 64U, 65U, 200U}) {
+    SCOPED_TRACE(count);
+    const Room room{.x = {0, 6}, .z = {0, 6}};
+    Tally tally;
+    for (int n = 0; n < 40; ++n) {
+      const std::vector<Body> bodies = randomBodies(room, count, random);
+      const RestingObjects objects = restingIn(room, bodies);
+      compareWithAllPairs(objects, bodies, randomBatch(bodies, room, random), tally);
+    }
+    tally.expectBothSides();
+  }
+}
+
+TEST(RestingObjects, FindsBoxesLargerThanWindows) {
+  std::mt19937 random(403);
+  const Room room{.least = 0.01F, .most = 1.5F};
+  Tally tally;
+  for (int n = 0; n < 100; ++n) {
+    const std::vector<Body> bodies = randomBodies(room, 5, random);
+    compareWithAllPairs(restingIn(room, bodies), bodies, randomBatch(bodies, room, random), tally);
+  }
+  tally.expectBothSides();
+}
+
+TEST(RestingObjects, FindsObjectsAndSpheresOutsideTheFrame) {
+  std::mt19937 random(404);
+  const Room room{.x = {0, 1}, .z = {-1, 0.5F}, .beyond = 3};
+  Tally tally;
+  for (int n = 0; n < 100; ++n) {
+    const std::vector<Body> bodies = randomBodies(room, 20, random);
+    compareWithAllPairs(restingIn(room, bodies), bodies, randomBatch(bodies, room, random), tally);
+  }
+  tally.expectBothSides();
+}
+
+TEST(RestingObjects, WithoutObjectsTouchNothing) {
+  std::mt19937 random(405);
+  const Room room;
+  const RestingObjects objects = restingIn(room, {});
+  const OwnedBatch batch = randomBatch({}, room, random);
+  EXPECT_FALSE(objects.touches(batch.view()));
+  EXPECT_TRUE(hitsOf(objects, batch.view()).empty());
+  EXPECT_EQ(objects.nearest({1, 1, 1}, 0.1F), std::nullopt);
+  EXPECT_EQ(objects.fall({1, 1, 1}, 0.1F), std::numeric_limits<float>::infinity());
+}
+
+TEST(RestingObjects, TouchingIsNoOverlap) {
+  const Body cube{{{}, {0.25F, 0.25F, 0.25F}}, {{1, 1, 1}, {}}};
+  const RestingObjects objects = restingIn({.x = {0, 2}, .z = {0, 2}}, {cube});
+  const auto touches = [&](Vec3 centre) {
+    return objects.touches(OwnedBatch().add(0, 0.0625F, {centre}).view());
+  };
+  EXPECT_FALSE(touches({1.3125F, 1, 1}));
+  EXPECT_TRUE(touches({std::nextafter(1.3125F, 0.0F), 1, 1}));
+  EXPECT_FALSE(touches({1, 1.3125F, 1}));
+  EXPECT_TRUE(touches({1, 1.3124F, 1}));
+  EXPECT_TRUE(touches({1, 1, 1}));
+}
+
+TEST(RestingObjects, NumbersThatAreNoneTouchNothing) {
+  const Body cube{{{}, {0.25F, 0.25F, 0.25F}}, {{0, 0, 0}, {}}};
+  const RestingObjects objects = restingIn({.x = {-0.1F, 2}, .z = {-0.1F, 2}}, {cube});
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const float odd : {nan, -nan, infinity, -infinity, 3e38F, -3e38F}) {
+    for (const Vec3 centre : {Vec3{odd, 0, 0}, Vec3{0, odd, 0}, Vec3{0, 0, odd}}) {
+      const OwnedBatch batch = OwnedBatch().add(0, 0.1F, {centre});
+      EXPECT_FALSE(objects.touches(batch.view()));
+      EXPECT_TRUE(hitsOf(objects, batch.view()).empty());
+      EXPECT_EQ(objects.nearest(centre, 0.1F), std::nullopt);
+      // One such sphere hides no other.
+      EXPECT_TRUE(objects.touches(OwnedBatch().add(0, 0.1F, {centre, {0, 0, 0}}).view()));
+    }
+  }
+}
+
+TEST(RestingObjects, GiveAsManyHitsAsAreTaken) {
+  std::mt19937 random(406);
+  const Room room{.x = {0, 1}, .z = {0, 1}};
+  const std::vector<Body> bodies = randomBodies(room, 150, random);
+  const RestingObjects objects = restingIn(room, bodies);
+  const OwnedBatch batch = randomBatch(bodies, room, random);
+  const std::vector<SphereHit> all = hitsOf(objects, batch.view());
+  ASSERT_GT(all.size(), 20U);
+  for (std::size_t most = 0; most <= all.size() + 1; ++most) {
+    std::vector<SphereHit> some(most + 1, {77, 77});
+    const std::size_t count = objects.hits(batch.view(), std::span(some).first(most));
+    ASSERT_EQ(count, std::min(most, all.size()));
+    EXPECT_TRUE(
+        std::equal(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count), all.begin()));
+    EXPECT_EQ(some[count], (SphereHit{77, 77}));
+  }
+}
+
+TEST(RestingObjects, FollowAnySequenceOfGraspsAndDrops) {
+  std::mt19937 random(407);
+  const Room room{.x = {0, 3}, .z = {0, 3}};
+  const WindowFrame frame = makeWindowFrame(room.x, room.z, kLargestRadius);
+  constexpr std::uint32_t kObjects = 70;
+  RestingObjects objects(frame.windowCount() + 5, kObjects);
+  std::vector<Body> bodies(kObjects);
+  std::vector<bool> resting(kObjects);
+  Tally tally;
+  for (int change = 0; change < 3000; ++change) {
+    if (change % 1000 == 0) {
+      objects.begin(frame);
+      resting.assign(kObjects, false);
+    }
+    const auto index = static_cast<std::uint32_t>(random() % kObjects);
+    if (resting[index]) {
+      objects.remove(index);
+    } else {
+      bodies[index] = randomBody(room, random);
+      objects.insert(index, bodies[index].resting());
+    }
+    resting[index] = !resting[index];
+    if (change % 10 != 0) continue;
+    const Vec3 centre = randomCentre(bodies, room, random);
+    const std::vector<SphereHit> hits =
+        hitsOf(objects, OwnedBatch().add(0, kLargestRadius, {centre}).view());
+    std::set<std::uint32_t> expected;
+    for (std::uint32_t n = 0; n < kObjects; ++n) {
+      ASSERT_EQ(objects.isResting(n), resting[n]);
+      if (resting[n] && overlaps(bodies[n].resting(), centre, kLargestRadius)) expected.insert(n);
+    }
+    std::set<std::uint32_t> found;
+    for (const SphereHit& hit : hits) found.insert(hit.object);
+    ASSERT_EQ(found, expected);
+    tally.add(!found.empty());
+  }
+  tally.expectBothSides();
+  for (std::uint32_t n = 0; n < kObjects; ++n) {
+    if (resting[n]) objects.remove(n);
+  }
+  const RestingView view = objects.view();
+  for (std::size_t n = 0; n < view.planes * view.plane_stride; ++n) ASSERT_EQ(view.words[n], 0U);
+}
+
+/// Both kernels on the same groups, some of whose centres are no sensible numbers.
+TEST(RestingObjects, AnswerAlikeBitForBitWithBothKernels) {
+  if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2: nothing to compare";
+  std::mt19937 random(408);
+  const Room room{.x = {0, 5}, .z = {0, 5}, .beyond = 1};
+  Tally tally;
+  for (int round = 0; round < 300; ++round) {
+    const std::vector<Body> bodies = randomBodies(room, 1 + random() % 90, random);
+    const RestingObjects objects = restingIn(room, bodies);
+    std::vector<Vec3> centres(8 * (1 + random() % 20));
+    for (Vec3& centre : centres) {
+      centre = randomCentre(bodies, room, random);
+      if (random() % 16 == 0) centre.x = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+      if (random() % 16 == 0) centre.y = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+      if (random() % 16 == 0) centre.z = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+    }
+    const OwnedBatch batch = OwnedBatch().add(0, kRadii[random() % 3], centres);
+    const SphereBatch spheres = batch.view();
+    const SphereGroups groups{spheres.x, spheres.y, spheres.z, centres.size() / 8,
+                              spheres.ranges[0].radius};
+    for (std::size_t first = 0; first < groups.groups; ++first) {
+      unsigned portable = 0;
+      unsigned vectorised = 0;
+      ASSERT_EQ(firstTouchingGroupPortable(objects.view(), groups, first, portable),
+                firstTouchingGroupAvx2(objects.view(), groups, first, vectorised));
+      ASSERT_EQ(portable, vectorised);
+      for (unsigned lane = 0; lane < 8; ++lane) tally.add(((portable >> lane) & 1U) != 0);
+    }
+  }
+  tally.expectBothSides();
+}
+
+TEST(RestingObjects, NearestIsTheOneOfBruteForce) {
+  std::mt19937 random(409);
+  const Room room{.x = {0, 2}, .z = {0, 2}};
+  Tally tally;
+  for (int round = 0; round < 50; ++round) {
+    const std::vector<Body> bodies = randomBodies(room, 40, random);
+    const RestingObjects objects = restingIn(room, bodies);
+    for (int n = 0; n < 100; ++n) {
+      const Vec3 centre = randomCentre(bodies, room, random);
+      const float radius = kRadii[random() % 3];
+      std::optional<std::uint32_t> expected;
+      double least = static_cast<double>(radius);
+      double second = least;
+      for (std::uint32_t object = 0; object < bodies.size(); ++object) {
+        const double distance = bodies[object].solid().distance(toPoint3(centre));
+        if (distance < least) {
+          second = least;
+          least = distance;
+          expected = object;
+        } else {
+          second = std::min(second, distance);
+        }
+      }
+      const std::optional<std::uint32_t> found = objects.nearest(centre, radius);
+      tally.add(found.has_value());
+      const bool is_tie = second - least < kTies && least > 0;
+      if (is_tie) continue;
+      ASSERT_EQ(found, expected) << least << " " << second;
+    }
+  }
+  tally.expectBothSides();
+}
+
+TEST(RestingObjects, NearestPrefersTheLowerIndexOfTwoThatHoldTheCentre) {
+  const Body cube{{{}, {0.25F, 0.25F, 0.25F}}, {{1, 1, 1}, {}}};
+  const RestingObjects objects = restingIn({.x = {0, 2}, .z = {0, 2}}, {cube, cube, cube});
+  EXPECT_EQ(objects.nearest({1, 1, 1}, 0.015F), 0U);
+}
+
+/// How far a sphere sinks, by halving the interval between the last free and the first overlapping
+/// of many small steps.
+double fallByBisection(const std::vector<Body>& bodies, const Vec3& centre, double radius) {
+  constexpr double kDeepest = 2;
+  double best = std::numeric_limits<double>::infinity();
+  for (const Body& body : bodies) {
+    const BoxSolid solid = body.solid();
+    const auto overlaps_at = [&](double depth) {
+      Point3 point = toPoint3(centre);
+      point[1] -= depth;
+      return solid.distance(point) < radius;
+    };
+    // The distance along the line is convex: its least value by golden section.
+    double lo = 0;
+    double hi = kDeepest;
+    for (int n = 0; n < 200; ++n) {
+      const double a = lo + (hi - lo) / 3;
+      const double b = hi - (hi - lo) / 3;
+      Point3 at_a = toPoint3(centre);
+      Point3 at_b = at_a;
+      at_a[1] -= a;
+      at_b[1] -= b;
+      (solid.distance(at_a) < solid.distance(at_b) ? hi : lo) =
+          solid.distance(at_a) < solid.distance(at_b) ? b : a;
+    }
+    if (overlaps_at(0)) return 0;
+    if (!overlaps_at(lo)) continue;
+    double free = 0;
+    double blocked = lo;
+    for (int n = 0; n < 60; ++n) {
+      const double middle = (free + blocked) / 2;
+      (overlaps_at(middle) ? blocked : free) = middle;
+    }
+    best = std::min(best, free);
+  }
+  return best;
+}
+
+TEST(RestingObjects, FallIsThatOfBisection) {
+  /// A sphere that grazes a box along an edge may sink much further on either side of rounding.
+  constexpr double kGraze = 1e-4;
+  constexpr double kTolerance = 2e-5;
+  std::mt19937 random(410);
+  const Room room{.x = {0, 2}, .z = {0, 2}};
+  Tally tally;
+  for (int round = 0; round < 40; ++round) {
+    const std::vector<Body> bodies = randomBodies(room, 25, random);
+    const RestingObjects objects = restingIn(room, bodies);
+    for (int n = 0; n < 50; ++n) {
+      Vec3 centre = randomCentre(bodies, room, random);
+      centre.y += 0.3F;
+      const float radius = kRadii[random() % 3];
+      const auto r = static_cast<double>(radius);
+      const double smaller = fallByBisection(bodies, centre, r - kGraze);
+      const double larger = fallByBisection(bodies, centre, r + kGraze);
+      const bool grazes = !(smaller - larger < 0.01) && smaller != larger;
+      if (grazes) continue;
+      const double expected = fallByBisection(bodies, centre, r);
+      const auto found = static_cast<double>(objects.fall(centre, radius));
+      tally.add(std::isfinite(found));
+      if (std::isinf(expected)) {
+        ASSERT_TRUE(std::isinf(found));
+        continue;
+      }
+      ASSERT_NEAR(found, expected, kTolerance);
+    }
+  }
+  tally.expectBothSides();
+}
+
+TEST(RestingObjects, FallIsExactOnSmallCases) {
+  const Body cube{{{}, {0.25F, 0.25F, 0.25F}}, {{1, 1, 1}, {}}};
+  const RestingObjects objects = restingIn({.x = {0, 2}, .z = {0, 2}}, {cube});
+  const float infinity = std::numeric_limits<float>::infinity();
+  EXPECT_FLOAT_EQ(objects.fall({1, 2, 1}, 0.0625F), 0.6875F);
+  EXPECT_FLOAT_EQ(objects.fall({1, 1.3125F, 1}, 0.0625F), 0);
+  // Overlapping, beside, under.
+  EXPECT_EQ(objects.fall({1, 1.25F, 1}, 0.0625F), 0);
+  EXPECT_EQ(objects.fall({1.4F, 2, 1}, 0.0625F), infinity);
+  EXPECT_EQ(objects.fall({1, 0.5F, 1}, 0.0625F), infinity);
+  // Over an edge, 3-4-5: the ball touches where it is 0.03 beside and 0.04 above.
+  EXPECT_NEAR(objects.fall({1.28F, 2, 1}, 0.05F), 1 - 0.25F - 0.04F, 1e-6);
+  // Over a corner: 0.02, 0.02 beside.
+  EXPECT_NEAR(objects.fall({1.27F, 2, 1.27F}, 0.03F), 1 - 0.25F - 0.01F, 1e-6);
+}
+
+TEST(WindowFrame, CoversLargeScenesWithLargerWindows) {
+  const WindowFrame room = makeWindowFrame({-2, 6}, {-4, 10}, 0.12F);
+  EXPECT_GE(1 / room.inverse_half_cell, 0.2399F);
+  const WindowFrame palace = makeWindowFrame({-200, 600}, {-400, 1000}, 0.12F);
+  EXPECT_LE(palace.windowCount(), kMostWindows);
+  EXPECT_GE(static_cast<float>(palace.windows_x) / palace.inverse_half_cell, 800);
+  EXPECT_GE(static_cast<float>(palace.windows_z) / palace.inverse_half_cell, 1400);
+  EXPECT_EQ(makeWindowFrame({1, 1}, {2, 2}, 0.12F).windowCount(), 1U);
+}
+
+}  // namespace
+}  // namespace galactic::test
