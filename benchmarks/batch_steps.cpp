@@ -1,0 +1,188 @@
+// Steps of a batch on the workload on which the published physics was measured, see
+// docs/simulation.md for how to make its world:
+//
+//   GALACTIC_BENCH_WORLD=world.pack batch_steps
+//
+// GALACTIC_BENCH_HELD_WORLD: the same with the target of each episode in the robot's hand.
+#include <benchmark/benchmark.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "galactic/batch_simulator.h"
+#include "galactic/world.h"
+
+namespace {
+
+using galactic::BatchSimulator;
+using galactic::Result;
+using galactic::SimulationOptions;
+using galactic::World;
+
+enum class Load : std::int64_t { kRandom = 0, kForward = 1, kHeld = 2 };
+
+constexpr std::uint32_t kEpisodeSteps = 500;
+constexpr std::size_t kBatches = 512;
+
+/// The workload's actions: one of 512 batches of uniform numbers that only (step, env, action)
+/// decide.
+class Actions {
+ public:
+  Actions(std::size_t envs, std::size_t count, Load load) : size_(envs * count) {
+    values_.resize(kBatches * size_);
+    for (std::size_t step = 0; step < kBatches; ++step) {
+      for (std::size_t env = 0; env < envs; ++env) {
+        fillRow(std::span(values_).subspan(step * size_ + env * count, count), step, env, load);
+      }
+    }
+  }
+
+  [[nodiscard]] std::span<const float> batch(std::size_t step) const {
+    return std::span(values_).subspan(step % kBatches * size_, size_);
+  }
+
+ private:
+  static std::uint64_t mix(std::uint64_t z) {
+    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
+    return z ^ (z >> 31U);
+  }
+
+  static float uniform(std::size_t step, std::size_t env, std::size_t action) {
+    constexpr std::uint64_t kSeed = 1;
+    const std::uint64_t hash = mix(mix(mix(mix(kSeed) ^ step) ^ env) ^ action);
+    return static_cast<float>(hash >> 40U) * 0x1p-23F - 1;
+  }
+
+  /// The published order of actions is hand, turn, forward, joints, stop; its turn is positive
+  /// counter-clockwise.
+  static void fillRow(std::span<float> row, std::size_t step, std::size_t env, Load load) {
+    const std::size_t joints = row.size() - 4;
+    for (std::size_t n = 0; n < joints; ++n) row[n] = uniform(step, env, 3 + n);
+    const float forward = uniform(step, env, 2);
+    row[joints] = load == Load::kForward ? 0.5F + 0.5F * forward : forward;
+    row[joints + 1] = -uniform(step, env, 1);
+    row[joints + 2] = load == Load::kHeld ? 1.0F : uniform(step, env, 0);
+    row[joints + 3] = 0;
+  }
+
+  std::size_t size_;
+  std::vector<float> values_;
+};
+
+/// Which env begins which episode when: each every 500 steps, evenly spread.
+class Resets {
+ public:
+  Resets(std::size_t envs, std::size_t episodes) : by_phase_(kEpisodeSteps), resets_(envs, -1) {
+    for (std::size_t env = 0; env < envs; ++env) {
+      const std::size_t offset = env * kEpisodeSteps / envs;
+      by_phase_[(kEpisodeSteps - offset) % kEpisodeSteps].push_back(env);
+      next_.push_back((env + 1) % episodes);
+    }
+    episodes_ = episodes;
+  }
+
+  [[nodiscard]] std::span<const std::int32_t> at(std::size_t step) {
+    for (const std::size_t env : last_) resets_[env] = -1;
+    last_ = {};
+    if (step == 0) return {};
+    last_ = by_phase_[step % kEpisodeSteps];
+    if (last_.empty()) return {};
+    for (const std::size_t env : last_) {
+      resets_[env] = static_cast<std::int32_t>(next_[env]);
+      next_[env] = (next_[env] + 1) % episodes_;
+    }
+    return resets_;
+  }
+
+ private:
+  std::vector<std::vector<std::size_t>> by_phase_;
+  std::vector<std::size_t> next_;
+  std::vector<std::int32_t> resets_;
+  std::span<const std::size_t> last_;
+  std::size_t episodes_ = 1;
+};
+
+SimulationOptions optionsOf(std::uint32_t envs, std::uint32_t threads) {
+  SimulationOptions options;
+  options.envs = envs;
+  options.threads = threads;
+  options.order = galactic::EpisodeOrder::kLinear;
+  options.link_transforms = true;
+  options.action.release = -0.5F;
+  options.task.kind = galactic::TaskKind::kNone;
+  options.task.most_steps = 0;
+  return options;
+}
+
+const World* worldFrom(const char* variable) {
+  const char* path = std::getenv(variable);
+  if (path == nullptr) return nullptr;
+  static std::vector<std::pair<std::string, World>> opened;
+  for (const auto& [known, world] : opened) {
+    if (known == variable) return &world;
+  }
+  const std::filesystem::path file(path);
+  Result<World> world = World::open(std::span(&file, 1));
+  if (!world) {
+    std::fprintf(stderr, "%s: %s\n", world.error().where.c_str(), world.error().message.c_str());
+    std::exit(2);
+  }
+  opened.reserve(2);
+  opened.emplace_back(variable, std::move(*world));
+  return &opened.back().second;
+}
+
+void report(benchmark::State& state, const BatchSimulator& simulator) {
+  const galactic::SimulationStatistics sum = simulator.statistics();
+  const auto per_step = [&](std::uint64_t count) {
+    return benchmark::Counter(static_cast<double>(count) / static_cast<double>(sum.steps));
+  };
+  state.SetItemsProcessed(static_cast<std::int64_t>(sum.steps));
+  state.counters["refused"] = per_step(sum.refused);
+  state.counters["slid"] = per_step(sum.slid);
+  state.counters["grasps"] = per_step(sum.grasps);
+  state.counters["bytes_per_env"] = benchmark::Counter(
+      static_cast<double>(simulator.memoryBytes()) / static_cast<double>(simulator.envCount()));
+}
+
+void stepBatch(benchmark::State& state) {
+  const auto load = static_cast<Load>(state.range(2));
+  const World* world =
+      worldFrom(load == Load::kHeld ? "GALACTIC_BENCH_HELD_WORLD" : "GALACTIC_BENCH_WORLD");
+  if (world == nullptr) {
+    state.SkipWithError("set GALACTIC_BENCH_WORLD (and GALACTIC_BENCH_HELD_WORLD)");
+    return;
+  }
+  const auto envs = static_cast<std::uint32_t>(state.range(0));
+  Result<BatchSimulator> simulator =
+      BatchSimulator::create(*world, optionsOf(envs, static_cast<std::uint32_t>(state.range(1))));
+  if (!simulator) {
+    state.SkipWithError(simulator.error().message.c_str());
+    return;
+  }
+  const Actions actions(envs, simulator->actionCount(), load);
+  Resets resets(envs, world->episodes().episodes().size());
+  std::size_t step = 0;
+  for (auto _ : state) {
+    simulator->step(actions.batch(step), resets.at(step));
+    ++step;
+  }
+  report(state, *simulator);
+}
+
+}  // namespace
+
+BENCHMARK(stepBatch)
+    ->ArgNames({"envs", "threads", "load"})
+    ->ArgsProduct({{128, 512, 4096}, {1, 2}, {0, 1, 2}})
+    ->UseRealTime()
+    ->Unit(benchmark::kMicrosecond);
+
+BENCHMARK_MAIN();
