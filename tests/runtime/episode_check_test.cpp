@@ -161,7 +161,7 @@ void readEverything(const PackFile& pack) {
   for (std::size_t n = 0; n < set->episodes().size(); ++n) {
     const Episode& episode = set->episodes()[n];
     ASSERT_FALSE(set->sceneNames().at(episode.scene).empty());
-    ASSERT_TRUE(std::isfinite(episode.base_position.x + episode.base_yaw));
+    ASSERT_TRUE(std::isfinite(episode.base_position.x) && std::isfinite(episode.base_yaw));
     const std::span<const Placement> placements = set->placements(episode);
     ASSERT_LT(episode.target, placements.size());
     for (const Placement& placement : placements) {
