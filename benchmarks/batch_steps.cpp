@@ -29,6 +29,8 @@ enum class Load : std::int64_t { kRandom = 0, kForward = 1, kHeld = 2 };
 
 constexpr std::uint32_t kEpisodeSteps = 500;
 constexpr std::size_t kBatches = 512;
+/// One step in so many is measured phase by phase.
+constexpr std::uint32_t kSampled = 16;
 
 /// The workload's actions: one of 512 batches of uniform numbers that only (step, env, action)
 /// decide.
@@ -114,7 +116,7 @@ SimulationOptions optionsOf(std::uint32_t envs, std::uint32_t threads) {
   options.envs = envs;
   options.threads = threads;
   options.order = galactic::EpisodeOrder::kLinear;
-  options.link_transforms = true;
+  options.body_transforms = true;
   options.action.release = -0.5F;
   options.task.kind = galactic::TaskKind::kNone;
   options.task.most_steps = 0;
@@ -144,6 +146,12 @@ void report(benchmark::State& state, const BatchSimulator& simulator) {
   const auto per_step = [&](std::uint64_t count) {
     return benchmark::Counter(static_cast<double>(count) / static_cast<double>(sum.steps));
   };
+  // Of one env in one step, nanoseconds of the sampled steps' threads.
+  const double sampled = static_cast<double>(sum.steps) / kSampled;
+  for (const galactic::PhaseTime& phase : simulator.phaseTimes()) {
+    state.counters["ns_" + std::string(phase.name)] =
+        benchmark::Counter(phase.seconds * 1e9 / sampled);
+  }
   state.SetItemsProcessed(static_cast<std::int64_t>(sum.steps));
   state.counters["refused"] = per_step(sum.refused);
   state.counters["slid"] = per_step(sum.slid);
@@ -167,6 +175,7 @@ void stepBatch(benchmark::State& state) {
     state.SkipWithError(simulator.error().message.c_str());
     return;
   }
+  simulator->samplePhases(kSampled);
   const Actions actions(envs, simulator->actionCount(), load);
   Resets resets(envs, world->episodes().episodes().size());
   std::size_t step = 0;

@@ -7,10 +7,10 @@
 
 #include "simulation/batch_state.h"
 #include "simulation/chunk.h"
+#include "simulation/env_state.h"
 #include "simulation/episode_order.h"
 #include "simulation/episode_start.h"
 #include "simulation/grip_frame.h"
-#include "simulation/link_poses.h"
 #include "simulation/model.h"
 #include "simulation/step.h"
 #include "simulation/workers.h"
@@ -202,9 +202,16 @@ EnvState BatchSimulator::envState(std::size_t env) const {
   return simulation::envStateOf(impl_->model(), impl_->state(), env);
 }
 
-std::span<const LinkTransform> BatchSimulator::linkTransforms() const {
-  return impl_->state().links().first(
-      impl_->model().options.link_transforms ? envCount() * impl_->model().motion.links.size() : 0);
+std::size_t BatchSimulator::bodyCount() const { return impl_->model().motion.nodes.size() + 1; }
+
+LinkOnBody BatchSimulator::linkOnBody(std::size_t link) const {
+  const simulation::FixedFrame& frame = impl_->model().motion.links[link];
+  return {static_cast<std::size_t>(frame.node + 1),
+          {frame.x_axis, frame.y_axis, frame.z_axis, frame.origin}};
+}
+
+std::span<const LinkTransform> BatchSimulator::bodyTransforms() const {
+  return impl_->state().bodyTransforms();
 }
 
 void BatchSimulator::samplePhases(std::uint32_t every) { impl_->sample(every); }

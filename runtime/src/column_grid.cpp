@@ -89,6 +89,14 @@ void contactPortable(const ColumnGridLayout& grid, const ContactBatch& batch) no
   }
 }
 
+std::size_t firstNotFreePortable(const ColumnGridLayout& grid, const CentreBatch& batch) noexcept {
+  for (std::size_t n = 0; n < batch.count; ++n) {
+    const Contact contact = contactAt(grid, {batch.x[n], batch.y[n], batch.z[n]});
+    if (contact.clearance != Clearance::kFree) return n;
+  }
+  return batch.count;
+}
+
 bool hasAvx2() noexcept {
 #if defined(__x86_64__)
   return __builtin_cpu_supports("avx2") != 0;
@@ -123,6 +131,14 @@ void ColumnGrid::contact(const SphereCentres& centres, const ContactArrays& out)
   } else {
     detail::contactPortable(layout_, batch);
   }
+}
+
+std::size_t ColumnGrid::firstNotFree(const SphereCentres& centres) const noexcept {
+  const std::size_t count = centres.x.size();
+  assert(centres.y.size() == count && centres.z.size() == count);
+  const detail::CentreBatch batch{centres.x.data(), centres.y.data(), centres.z.data(), count};
+  return detail::hasAvx2() ? detail::firstNotFreeAvx2(layout_, batch)
+                           : detail::firstNotFreePortable(layout_, batch);
 }
 
 std::size_t ColumnGrid::spanCount(std::uint32_t i, std::uint32_t k) const noexcept {

@@ -152,13 +152,34 @@ void answerOverflow(const ColumnGridLayout& grid, const ContactBatch& batch, std
   }
 }
 
+/// The lanes, as bits, whose cells keep their spans in the overflow block and are free.
+unsigned freeInOverflow(const ColumnGridLayout& grid, const CentreBatch& batch, std::size_t first,
+                        const Found& found) {
+  auto lanes = static_cast<unsigned>(_mm256_movemask_ps(found.overflow));
+  if (lanes == 0) return 0;
+  alignas(32) std::uint32_t start[kLanes];
+  _mm256_store_si256(reinterpret_cast<__m256i*>(start), found.upper_half);
+  unsigned free = 0;
+  while (lanes != 0) {
+    const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
+    lanes &= lanes - 1;
+    const Contact contact = contactInOverflow(grid, start[lane], batch.y[first + lane]);
+    if (contact.clearance == Clearance::kFree) free |= 1U << lane;
+  }
+  return free;
+}
+
+/// Whether baseCodes may be used: one tile's base is half of what it reads.
+bool readsWholePairs(const ColumnGridLayout& grid) {
+  const bool one_tile = grid.tiles_x == 1 && grid.columns_z <= 2;
+  return grid.tile_base == nullptr || !one_tile;
+}
+
 }  // namespace
 
 void contactAvx2(const ColumnGridLayout& grid, const ContactBatch& batch) noexcept {
   std::size_t first = 0;
-  // One tile's base is half of what baseCodes reads.
-  const bool one_tile = grid.tiles_x == 1 && grid.columns_z <= 2;
-  if (grid.tile_base == nullptr || !one_tile) {
+  if (readsWholePairs(grid)) {
     const Lanes lanes = broadcast(grid);
     for (; first + kLanes <= batch.count; first += kLanes) {
       const Found found = find(grid, lanes, _mm256_loadu_ps(batch.x + first),
@@ -180,6 +201,25 @@ void contactAvx2(const ColumnGridLayout& grid, const ContactBatch& batch) noexce
                          distances ? batch.up + first : nullptr});
 }
 
+std::size_t firstNotFreeAvx2(const ColumnGridLayout& grid, const CentreBatch& batch) noexcept {
+  std::size_t first = 0;
+  if (readsWholePairs(grid)) {
+    const Lanes lanes = broadcast(grid);
+    for (; first + kLanes <= batch.count; first += kLanes) {
+      const __m256 y = _mm256_loadu_ps(batch.y + first);
+      const Found found =
+          find(grid, lanes, _mm256_loadu_ps(batch.x + first), y, _mm256_loadu_ps(batch.z + first));
+      constexpr unsigned kAllLanes = 0xff;
+      auto not_free = static_cast<unsigned>(_mm256_movemask_ps(found.free)) ^ kAllLanes;
+      if (not_free == 0) continue;
+      not_free &= ~freeInOverflow(grid, batch, first, found);
+      if (not_free != 0) return first + static_cast<std::size_t>(__builtin_ctz(not_free));
+    }
+  }
+  const CentreBatch rest{batch.x + first, batch.y + first, batch.z + first, batch.count - first};
+  return rest.count == 0 ? first : first + firstNotFreePortable(grid, rest);
+}
+
 }  // namespace galactic::detail
 
 #else
@@ -189,6 +229,10 @@ namespace galactic::detail {
 // hasAvx2() is false on this architecture; the symbol exists so that callers need no condition.
 void contactAvx2(const ColumnGridLayout& grid, const ContactBatch& batch) noexcept {
   contactPortable(grid, batch);
+}
+
+std::size_t firstNotFreeAvx2(const ColumnGridLayout& grid, const CentreBatch& batch) noexcept {
+  return firstNotFreePortable(grid, batch);
 }
 
 }  // namespace galactic::detail

@@ -26,7 +26,22 @@ void contactPortable(const ColumnGridLayout& grid, const ContactBatch& batch) no
 /// of contactPortable: both do the same operations in the same order, and none is contracted.
 void contactAvx2(const ColumnGridLayout& grid, const ContactBatch& batch) noexcept;
 
-/// Whether contactAvx2 can run on this processor.
+/// The centres of one batched query as bare pointers, each to `count` elements.
+struct CentreBatch {
+  const float* x = nullptr;
+  const float* y = nullptr;
+  const float* z = nullptr;
+  std::size_t count = 0;
+};
+
+/// Index of the first centre that is not free, `count` when all are: on any processor, and eight at
+/// a time where hasAvx2().
+[[nodiscard]] std::size_t firstNotFreePortable(const ColumnGridLayout& grid,
+                                               const CentreBatch& batch) noexcept;
+[[nodiscard]] std::size_t firstNotFreeAvx2(const ColumnGridLayout& grid,
+                                           const CentreBatch& batch) noexcept;
+
+/// Whether the AVX2 versions can run on this processor.
 [[nodiscard]] bool hasAvx2() noexcept;
 
 /// Element `n` of the overflow cells' spans, as heights; kEndOfSpans for an end mark.

@@ -61,12 +61,19 @@ struct EnvState {
   Pose goal;
 };
 
-/// world_from_link as a matrix: the link's axes and origin in the world frame, metres.
+/// A frame as a matrix: its axes and origin in another frame, metres.
 struct LinkTransform {
-  Vec3 x_axis;
-  Vec3 y_axis;
-  Vec3 z_axis;
+  Vec3 x_axis{1, 0, 0};
+  Vec3 y_axis{0, 1, 0};
+  Vec3 z_axis{0, 0, 1};
   Vec3 origin;
+};
+
+/// Where a link sits on the body that carries it.
+struct LinkOnBody {
+  std::size_t body = 0;
+  /// body_from_link.
+  LinkTransform place;
 };
 
 /// Seconds that the threads spent in each phase of the sampled steps, added up.
@@ -133,9 +140,14 @@ class BatchSimulator {
   /// Episodes of the world that are skipped because the robot cannot start in them.
   [[nodiscard]] std::span<const std::uint32_t> skippedEpisodes() const;
   [[nodiscard]] EnvState envState(std::size_t env) const;
-  /// Where all links of all envs' robots are, for rendering. Shape: envs * Robot::links(), env
-  /// after env; empty without SimulationOptions::link_transforms.
-  [[nodiscard]] std::span<const LinkTransform> linkTransforms() const;
+  /// A body is a group of links that no joint moves against each other in this run (joints that
+  /// neither actions nor episodes move count as fixed). The root's is body 0.
+  [[nodiscard]] std::size_t bodyCount() const;
+  /// `link`: index into Robot::links().
+  [[nodiscard]] LinkOnBody linkOnBody(std::size_t link) const;
+  /// world_from_body of all bodies after the last step, for rendering. Shape: envs * bodyCount();
+  /// empty without SimulationOptions::body_transforms.
+  [[nodiscard]] std::span<const LinkTransform> bodyTransforms() const;
 
   /// Measures one step in `every` from now on; 0 switches it off.
   void samplePhases(std::uint32_t every);

@@ -87,6 +87,10 @@ class ColumnGrid {
   /// length or are both empty.
   void contact(const SphereCentres& centres, const ContactArrays& out) const noexcept;
 
+  /// Index of the first of these centres that is not free, their number when all are. The same
+  /// answers as those of `contact`, found faster. Neither allocates nor throws.
+  [[nodiscard]] std::size_t firstNotFree(const SphereCentres& centres) const noexcept;
+
   /// Number of free spans in column (i, k); i < columnsX(), k < columnsZ().
   [[nodiscard]] std::size_t spanCount(std::uint32_t i, std::uint32_t k) const noexcept;
 

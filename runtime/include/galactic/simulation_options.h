@@ -111,8 +111,8 @@ struct SimulationOptions {
   /// depends on that number only.
   std::uint32_t rank = 0;
   std::uint32_t ranks = 1;
-  /// Whether a step ends with the pose of every link, for rendering.
-  bool link_transforms = false;
+  /// Whether a step leaves the pose of every body of the robot, for rendering.
+  bool body_transforms = false;
   ActionOptions action;
   SlideOptions slide;
   PlacementOptions placement;

@@ -17,7 +17,8 @@ BatchState::BatchState(const Model& model, std::size_t envs)
       most_objects_(model.most_objects),
       held_words_(model.heldWords()),
       joints_(model.motion.controlled.size()),
-      observation_size_(model.observation_size) {
+      observation_size_(model.observation_size),
+      body_count_(model.bodyCount()) {
   const std::size_t padded = paddedToChunks(env_count_);
   envs_.resize(padded);
   resting_.reserve(padded);
@@ -35,7 +36,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   variables_.resize(padded * model.variableCount());
   observations_.resize(padded * observation_size_);
   final_observations_.resize(padded * observation_size_);
-  if (model.options.link_transforms) links_.resize(padded * model.motion.links.size());
+  bodies_.resize(padded * body_count_);
   rewards_.resize(padded);
   dones_.resize(padded);
   successes_.resize(padded);
@@ -53,7 +54,7 @@ PoseArrays BatchState::poses(std::size_t first) {
 std::size_t BatchState::bytes() const {
   std::size_t bytes = bytesOf(envs_) + bytesOf(objects_) + bytesOf(grips_) + bytesOf(ignored_) +
                       bytesOf(last_actions_) + 4 * bytesOf(x_) + bytesOf(variables_) +
-                      2 * bytesOf(observations_) + bytesOf(links_) + bytesOf(rewards_) +
+                      2 * bytesOf(observations_) + bytesOf(bodies_) + bytesOf(rewards_) +
                       2 * bytesOf(dones_);
   for (const RestingObjects& resting : resting_) bytes += resting.bytes();
   return bytes;

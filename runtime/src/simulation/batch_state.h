@@ -124,9 +124,13 @@ class BatchState {
   [[nodiscard]] std::span<const float> finalObservations() const {
     return std::span(final_observations_).first(env_count_ * observation_size_);
   }
-  /// Rows of all links; empty where the run does not want them.
-  [[nodiscard]] std::span<LinkTransform> links() { return links_; }
-  [[nodiscard]] std::span<const LinkTransform> links() const { return links_; }
+  /// Root and nodes of the robot; empty where the run does not want them.
+  [[nodiscard]] std::span<LinkTransform> bodyTransforms(std::size_t n) {
+    return std::span(bodies_).subspan(n * body_count_, body_count_);
+  }
+  [[nodiscard]] std::span<const LinkTransform> bodyTransforms() const {
+    return std::span(bodies_).first(env_count_ * body_count_);
+  }
   [[nodiscard]] std::span<float> rewards() { return rewards_; }
   [[nodiscard]] std::span<const float> rewards() const { return rewards_; }
   [[nodiscard]] std::span<std::uint8_t> dones() { return dones_; }
@@ -141,6 +145,7 @@ class BatchState {
   std::size_t held_words_ = 0;
   std::size_t joints_ = 0;
   std::size_t observation_size_ = 0;
+  std::size_t body_count_ = 0;
   std::vector<Env> envs_;
   std::vector<RestingObjects> resting_;
   std::vector<Pose> objects_;
@@ -152,7 +157,7 @@ class BatchState {
   std::vector<float> variables_;
   std::vector<float> observations_;
   std::vector<float> final_observations_;
-  std::vector<LinkTransform> links_;
+  std::vector<LinkTransform> bodies_;
   std::vector<float> rewards_;
   std::vector<std::uint8_t> dones_;
   std::vector<std::uint8_t> successes_;

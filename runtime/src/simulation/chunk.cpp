@@ -7,10 +7,12 @@ namespace galactic::simulation {
 Chunk::Chunk(const Model& model)
     : action_count_(model.actionCount()),
       sphere_count_(model.sphereCount()),
+      body_count_(model.bodyCount()),
       ranges_(model.motion.ranges),
       actions_(kChunk * model.actionCount()),
       variables_(kChunk * model.variableCount()),
       centres_(kChunk * 3 * model.sphereCount()),
+      bodies_(kChunk * body_count_),
       frames_(frameScratchSize(model.motion.nodes.size()) / kLanes),
       collision_(std::max(model.sphereCount(), model.most_held_spheres)),
       placement_(model.most_held_spheres),
@@ -26,7 +28,12 @@ PoseArrays Chunk::candidates(std::size_t first) {
 }
 
 BodyArrays Chunk::bodies(std::size_t first) {
-  return {.centres = centres_.data() + first * 3 * sphere_count_, .grips = grips_[first].data()};
+  static_assert(sizeof(LinkTransform) == 12 * sizeof(float));
+  return {.centres = centres_.data() + first * 3 * sphere_count_,
+          .grips = grips_[first].data(),
+          .bodies = body_count_ == 0
+                        ? nullptr
+                        : reinterpret_cast<float*>(bodies_.data() + first * body_count_)};
 }
 
 void Chunk::shift(std::size_t env, const Vec3& by) {
@@ -43,6 +50,7 @@ void Chunk::shift(std::size_t env, const Vec3& by) {
   grip[9] += by.x;
   grip[10] += by.y;
   grip[11] += by.z;
+  for (LinkTransform& body : bodyTransforms(env)) body.origin = body.origin + by;
 }
 
 SphereBatch Chunk::spheres(std::size_t env) const {

@@ -41,6 +41,10 @@ class Chunk {
   void shift(std::size_t env, const Vec3& by);
   [[nodiscard]] SphereBatch spheres(std::size_t env) const;
   [[nodiscard]] GripFrame& grip(std::size_t env) { return grips_[env]; }
+  /// Root and nodes of a candidate; empty where the run does not want them.
+  [[nodiscard]] std::span<LinkTransform> bodyTransforms(std::size_t env) {
+    return std::span(bodies_).subspan(env * body_count_, body_count_);
+  }
   [[nodiscard]] Floor& floor(std::size_t env) { return floor_[env]; }
   [[nodiscard]] CollisionScratch& collision() { return collision_; }
   [[nodiscard]] PlacementScratch& placement() { return placement_; }
@@ -54,12 +58,15 @@ class Chunk {
 
   std::size_t action_count_ = 0;
   std::size_t sphere_count_ = 0;
+  /// 0 where the run does not want them.
+  std::size_t body_count_ = 0;
   std::span<const RadiusRange> ranges_;
   std::vector<float> actions_;
   std::array<float, kChunk> x_{}, y_{}, z_{}, yaw_{};
   std::vector<float> variables_;
   std::vector<float> centres_;
   std::array<GripFrame, kChunk> grips_{};
+  std::vector<LinkTransform> bodies_;
   std::vector<AlignedLanes> frames_;
   std::array<Floor, kChunk> floor_{};
   CollisionScratch collision_;

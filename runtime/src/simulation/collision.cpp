@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
 namespace galactic::simulation {
 namespace {
@@ -14,26 +13,19 @@ bool isIgnored(IgnoredSpheres ignored, std::size_t sphere) {
   return !ignored.empty() && (ignored[sphere / kBitsPerWord] >> (sphere % kBitsPerWord) & 1U) != 0;
 }
 
+/// The spheres of one radius with their padding.
+SphereCentres centresOf(const SphereBatch& spheres, const RadiusRange& range) {
+  const std::size_t count = paddedToLanes(range.count);
+  return {std::span(spheres.x + range.first, count), std::span(spheres.y + range.first, count),
+          std::span(spheres.z + range.first, count)};
+}
+
 /// Asks the grid of one radius about its spheres, whole lanes at a time.
 std::span<const Clearance> askScene(const Scene& scene, const SphereBatch& spheres,
                                     const RadiusRange& range, CollisionScratch& scratch) {
-  const std::size_t count = paddedToLanes(range.count);
-  const std::span<Clearance> answers = scratch.clearance(count);
-  scene.grids()[range.radius_index].contact(
-      {std::span(spheres.x + range.first, count), std::span(spheres.y + range.first, count),
-       std::span(spheres.z + range.first, count)},
-      {answers, {}, {}});
+  const std::span<Clearance> answers = scratch.clearance(paddedToLanes(range.count));
+  scene.grids()[range.radius_index].contact(centresOf(spheres, range), {answers, {}, {}});
   return answers;
-}
-
-bool allFree(std::span<const Clearance> answers) {
-  static_assert(static_cast<int>(Clearance::kFree) == 0 && sizeof(std::uint64_t) == kLanes);
-  for (std::size_t n = 0; n < answers.size(); n += kLanes) {
-    std::uint64_t eight = 0;
-    std::memcpy(&eight, answers.data() + n, sizeof(eight));
-    if (eight != 0) return false;
-  }
-  return true;
 }
 
 /// Calls visit(sphere, range) for each sphere that the static scene blocks.
@@ -68,10 +60,13 @@ CollisionScratch::CollisionScratch(std::size_t most_spheres) {
   hits_.resize(kHitsPerSphere * most_spheres);
 }
 
-bool penetrates(const Obstacles& obstacles, const SphereBatch& spheres,
-                CollisionScratch& scratch) noexcept {
-  for (const RadiusRange& range : spheres.ranges) {
-    if (!allFree(askScene(obstacles.scene, spheres, range, scratch))) return true;
+bool penetrates(const Obstacles& obstacles, const SphereBatch& spheres) noexcept {
+  // Whole lanes at a time: the padding repeats a sphere.
+  for (std::size_t n = spheres.ranges.size(); n-- > 0;) {
+    const RadiusRange& range = spheres.ranges[n];
+    const SphereCentres centres = centresOf(spheres, range);
+    const ColumnGrid& grid = obstacles.scene.grids()[range.radius_index];
+    if (grid.firstNotFree(centres) != centres.x.size()) return true;
   }
   return obstacles.objects.touches(spheres);
 }
@@ -91,36 +86,43 @@ Push PushSum::total(float longest) const noexcept {
 }
 
 Push pushOutOfScene(const ColumnGrid& grid, const Vec3& centre, float reach) noexcept {
-  constexpr float kDiagonal = 0.70710678F;
-  constexpr std::array<float, kLanes> kX{1, kDiagonal, 0, -kDiagonal, -1, -kDiagonal, 0, kDiagonal};
-  constexpr std::array<float, kLanes> kZ{0, kDiagonal, 1, kDiagonal, 0, -kDiagonal, -1, -kDiagonal};
+  // The nearest column decides, so a sphere gets free where it enters the cell of a free column.
+  // Four directions, two cells further each time.
+  constexpr int kDirections = 4;
+  constexpr std::array<float, kDirections> kX{1, -1, 0, 0};
+  constexpr std::array<float, kDirections> kZ{0, 0, 1, -1};
+  constexpr float kIntoCell = 1e-4F;
+  const ColumnGridLayout& layout = grid.layout();
+  const float cell_x = (centre.x - layout.min_x) * layout.inverse_spacing;
+  const float cell_z = (centre.z - layout.min_z) * layout.inverse_spacing;
+  const float part_x = cell_x - std::floor(cell_x);
+  const float part_z = cell_z - std::floor(cell_z);
+  const std::array<float, kDirections> to_border{1 - part_x, part_x, 1 - part_z, part_z};
   std::array<float, kLanes> x{};
   std::array<float, kLanes> y{};
   std::array<float, kLanes> z{};
+  std::array<float, kLanes> way{};
   std::array<Clearance, kLanes> answers{};
   y.fill(centre.y);
-  // A step of one column: the nearest column decides, so nothing changes in between.
-  for (int columns = 1;; ++columns) {
-    const float distance = static_cast<float>(columns) * grid.spacing();
-    if (!(distance <= reach)) return {};
+  for (int cells = 0; static_cast<float>(cells) * layout.spacing <= reach; cells += 2) {
     for (std::size_t n = 0; n < kLanes; ++n) {
-      x[n] = centre.x + distance * kX[n];
-      z[n] = centre.z + distance * kZ[n];
+      const std::size_t direction = n % kDirections;
+      const auto further = static_cast<float>(cells + static_cast<int>(n / kDirections));
+      way[n] = (to_border[direction] + further) * layout.spacing + kIntoCell;
+      x[n] = centre.x + way[n] * kX[direction];
+      z[n] = centre.z + way[n] * kZ[direction];
     }
     grid.contact({x, y, z}, {answers, {}, {}});
-    Push sum;
-    Push first;
-    for (std::size_t n = kLanes; n-- > 0;) {
-      if (answers[n] != Clearance::kFree) continue;
-      first = {kX[n], kZ[n]};
-      sum = {sum.x + kX[n], sum.z + kZ[n]};
+    float shortest = reach;
+    Push push;
+    for (std::size_t n = 0; n < kLanes; ++n) {
+      if (answers[n] != Clearance::kFree || way[n] > shortest) continue;
+      shortest = way[n];
+      push = {way[n] * kX[n % kDirections], way[n] * kZ[n % kDirections]};
     }
-    const float length = std::sqrt(sum.x * sum.x + sum.z * sum.z);
-    // Free on both sides of something thin: one of them.
-    constexpr float kNoMean = 0.1F;
-    if (length > kNoMean) return {sum.x * (distance / length), sum.z * (distance / length)};
-    if (first.x != 0 || first.z != 0) return {first.x * distance, first.z * distance};
+    if (push.x != 0 || push.z != 0) return push;
   }
+  return {};
 }
 
 Push pushOutOfBox(const RestingBox& box, const Vec3& centre, float radius) noexcept {

@@ -36,8 +36,7 @@ struct Obstacles {
 
 /// Whether any sphere penetrates the static scene or a resting object. A place that the grid does
 /// not know counts as penetrated.
-[[nodiscard]] bool penetrates(const Obstacles& obstacles, const SphereBatch& spheres,
-                              CollisionScratch& scratch) noexcept;
+[[nodiscard]] bool penetrates(const Obstacles& obstacles, const SphereBatch& spheres) noexcept;
 
 /// A direction in the ground plane in which something gets free, metres; (0, 0) for none.
 struct Push {
@@ -60,8 +59,8 @@ class PushSum {
   float most_z_ = 0;
 };
 
-/// The way out of the static scene for a sphere that is blocked at `centre`: the mean of those of
-/// eight directions in which it is free after the shortest of a few distances up to `reach` metres.
+/// The way out of the static scene for a sphere that is blocked at `centre`: the shortest way along
+/// an axis of the ground plane into a column in which it is free, up to `reach` metres.
 [[nodiscard]] Push pushOutOfScene(const ColumnGrid& grid, const Vec3& centre, float reach) noexcept;
 
 /// The way out of a box for a sphere that overlaps it: the shortest horizontal one along the normal

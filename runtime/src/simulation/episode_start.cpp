@@ -21,6 +21,9 @@ void placeRobot(const Model& model, BatchState& state, std::size_t n, std::uint3
     to.variables[v * to.stride] = model.start_variables[start * variables + v];
   }
   state.grip(n) = from.grip;
+  const std::size_t bodies = model.bodyCount();
+  std::ranges::copy(std::span(model.start_bodies).subspan(start * bodies, bodies),
+                    state.bodyTransforms(n).begin());
   std::ranges::fill(state.lastActions(n), 0.0F);
 }
 

@@ -111,6 +111,8 @@ class StartFinder {
     placeBodies(step);
     if (!isFree(step, 0) && !pushClear(step, 0)) return false;
     model_.starts.push_back({n, chunk_.base(0), episode.base_yaw, chunk_.grip(0)});
+    const std::span<const LinkTransform> bodies = chunk_.bodyTransforms(0);
+    model_.start_bodies.insert(model_.start_bodies.end(), bodies.begin(), bodies.end());
     const PoseArrays pose = chunk_.candidates(0);
     for (std::size_t v = 0; v < model_.variableCount(); ++v) {
       model_.start_variables.push_back(pose.variables[v * pose.stride]);

@@ -41,6 +41,8 @@ struct Model {
   std::vector<EpisodeStart> starts;
   /// Variables of each start. Shape: starts * variables.
   std::vector<float> start_variables;
+  /// Shape: starts * bodyCount().
+  std::vector<LinkTransform> start_bodies;
   std::vector<std::uint32_t> skipped;
   std::size_t most_objects = 0;
   /// Spheres of the largest object, padded to lanes.
@@ -53,6 +55,10 @@ struct Model {
   [[nodiscard]] std::size_t variableCount() const { return motion.variables.size(); }
   /// Spheres of the robot, padded to lanes.
   [[nodiscard]] std::size_t sphereCount() const { return motion.spheres.size(); }
+  /// Root and nodes, or none where the run does not want their poses.
+  [[nodiscard]] std::size_t bodyCount() const {
+    return options.body_transforms ? motion.nodes.size() + 1 : 0;
+  }
   /// The number that an env's random numbers and episodes depend on.
   [[nodiscard]] std::uint32_t globalEnv(std::size_t env) const {
     return options.rank * options.envs + static_cast<std::uint32_t>(env);

@@ -8,6 +8,6 @@
 
 namespace galactic::simulation {
 
-MotionKernels avx2Motion() noexcept { return {moveKernel, placeKernel, linksKernel}; }
+MotionKernels avx2Motion() noexcept { return {moveKernel, placeKernel}; }
 
 }  // namespace galactic::simulation

@@ -203,17 +203,17 @@ inline void placeGrip(const MotionTables& tables, const LaneFrame* frames, float
   }
 }
 
-inline void placeLink(const LaneFrame& link, float* links, std::size_t stride) {
+inline void placeBody(const LaneFrame& body, float* bodies, std::size_t stride) {
   const Lanes none = spread(0);
-  Lanes first[kLanes] = {link.x_axis.x, link.x_axis.y, link.x_axis.z, link.y_axis.x,
-                         link.y_axis.y, link.y_axis.z, link.z_axis.x, link.z_axis.y};
-  Lanes second[kLanes] = {link.z_axis.z, link.origin.x, link.origin.y, link.origin.z,
+  Lanes first[kLanes] = {body.x_axis.x, body.x_axis.y, body.x_axis.z, body.y_axis.x,
+                         body.y_axis.y, body.y_axis.z, body.z_axis.x, body.z_axis.y};
+  Lanes second[kLanes] = {body.z_axis.z, body.origin.x, body.origin.y, body.origin.z,
                           none,          none,          none,          none};
   transpose(first);
   transpose(second);
   for (std::size_t env = 0; env < kLanes; ++env) {
-    store(links + stride * env, first[env]);
-    __builtin_memcpy(links + stride * env + kLanes, &second[env], 4 * sizeof(float));
+    store(bodies + stride * env, first[env]);
+    __builtin_memcpy(bodies + stride * env + kLanes, &second[env], 4 * sizeof(float));
   }
 }
 
@@ -260,13 +260,10 @@ void placeKernel(const MotionTables& tables, const BodyBatch& batch) noexcept {
     placeEightSpheres(tables, frames, first, batch.body.centres);
   }
   placeGrip(tables, frames, batch.body.grips);
-}
-
-void linksKernel(const MotionTables& tables, const LinkBatch& batch) noexcept {
-  const LaneFrame* frames = nodeFrames(tables, batch.pose, batch.scratch);
-  const std::size_t stride = std::size_t{12} * tables.link_count;
-  for (std::uint32_t n = 0; n < tables.link_count; ++n) {
-    placeLink(fixedFrame(frames, tables.links[n]), batch.links + std::size_t{12} * n, stride);
+  if (batch.body.bodies == nullptr) return;
+  const std::size_t stride = std::size_t{12} * (tables.node_count + 1);
+  for (std::uint32_t n = 0; n <= tables.node_count; ++n) {
+    placeBody(frames[n], batch.body.bodies + std::size_t{12} * n, stride);
   }
 }
 

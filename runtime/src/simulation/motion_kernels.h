@@ -17,8 +17,6 @@ struct MotionTables {
   const BodySphere* spheres = nullptr;
   std::uint32_t sphere_count = 0;
   FixedFrame grip;
-  const FixedFrame* links = nullptr;
-  std::uint32_t link_count = 0;
   float forward_step = 0;
   float turn_step = 0;
   /// Of the root link above the floor, metres.
@@ -45,6 +43,9 @@ struct BodyArrays {
   /// From grips[kGripStride * e] on: world_from_grip of env e as axes x, y, z and origin, then
   /// cosine and sine of the base's yaw.
   float* grips = nullptr;
+  /// From bodies[12 * (nodes + 1) * e] on: axes x, y, z and origin of the root, then of each node,
+  /// in the world. Null when nobody wants them.
+  float* bodies = nullptr;
 };
 
 /// Fourteen numbers, padded to whole lanes.
@@ -73,20 +74,11 @@ struct BodyBatch {
   float* scratch = nullptr;
 };
 
-/// Where all links of eight envs are. Env e, link n: world_from_link as axes x, y, z and origin
-/// from links[12 * (e * link_count + n)] on.
-struct LinkBatch {
-  PoseArrays pose;
-  float* links = nullptr;
-  float* scratch = nullptr;
-};
-
 /// The kernels of the motion of a robot. Both versions do the same operations in the same
 /// order, and none is contracted: they agree bit for bit.
 struct MotionKernels {
   void (*move)(const MotionTables&, const MoveBatch&) noexcept = nullptr;
   void (*place)(const MotionTables&, const BodyBatch&) noexcept = nullptr;
-  void (*links)(const MotionTables&, const LinkBatch&) noexcept = nullptr;
 };
 
 /// For any processor.

@@ -7,7 +7,7 @@
 
 namespace galactic::simulation {
 
-MotionKernels portableMotion() noexcept { return {moveKernel, placeKernel, linksKernel}; }
+MotionKernels portableMotion() noexcept { return {moveKernel, placeKernel}; }
 
 MotionKernels motionKernels() noexcept {
   return detail::hasAvx2() ? avx2Motion() : portableMotion();
@@ -21,8 +21,6 @@ MotionTables motionTables(const MotionModel& model) {
           .spheres = model.spheres.data(),
           .sphere_count = static_cast<std::uint32_t>(model.spheres.size()),
           .grip = model.grip,
-          .links = model.links.data(),
-          .link_count = static_cast<std::uint32_t>(model.links.size()),
           .forward_step = model.base.forward_step,
           .turn_step = model.base.turn_step,
           .root_height = model.base.root_height};

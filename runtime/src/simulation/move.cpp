@@ -50,6 +50,7 @@ void accept(const ChunkStep& step, std::size_t e) {
     to.variables[v * to.stride] = from.variables[v * from.stride];
   }
   step.state.grip(n) = step.chunk.grip(e);
+  std::ranges::copy(step.chunk.bodyTransforms(e), step.state.bodyTransforms(n).begin());
   if (step.state.env(n).held.object < 0) return;
   // Spheres that are free now count from now on. The bits are those of the accepted candidate.
   const std::span<std::uint64_t> ignored = step.state.ignored(n);
@@ -112,7 +113,7 @@ FloorUnder floorUnder(const Scene& scene, const Vec3& base, const GroundOptions&
 
 bool isFree(const ChunkStep& step, std::size_t e) noexcept {
   if (step.chunk.floor(e) != Floor::kCarries) return false;
-  if (penetrates(obstaclesOf(step, e), step.chunk.spheres(e), step.chunk.collision())) return false;
+  if (penetrates(obstaclesOf(step, e), step.chunk.spheres(e))) return false;
   return step.state.env(step.first + e).held.object < 0 || !heldPenetrates(step, e);
 }
 

@@ -5,7 +5,6 @@
 
 #include "simulation/episode_start.h"
 #include "simulation/hand.h"
-#include "simulation/link_poses.h"
 #include "simulation/move.h"
 #include "simulation/observe.h"
 #include "simulation/task.h"
@@ -58,8 +57,6 @@ void runPhases(const ChunkStep& step, const StepInput& input, const Lap& lap) no
   renewEpisodes(step);
   resetEpisodes(step, input.resets);
   lap(8);
-  placeLinks(step);
-  lap(9);
 }
 
 }  // namespace

@@ -1,22 +1,10 @@
-#include "simulation/link_poses.h"
+#include "simulation/env_state.h"
 
 #include <cmath>
 
 #include "simulation/grip_frame.h"
 
 namespace galactic::simulation {
-
-void placeLinks(const ChunkStep& step) noexcept {
-  static_assert(sizeof(LinkTransform) == 12 * sizeof(float));
-  if (!step.model.options.link_transforms) return;
-  const std::size_t links = step.model.motion.links.size();
-  for (std::size_t e = 0; e < kChunk; e += kLanes) {
-    LinkTransform* const rows = step.state.links().data() + (step.first + e) * links;
-    step.model.kernels.links(step.model.tables, {.pose = step.state.poses(step.first + e),
-                                                 .links = reinterpret_cast<float*>(rows),
-                                                 .scratch = step.chunk.frames()});
-  }
-}
 
 EnvState envStateOf(const Model& model, const BatchState& state, std::size_t n) {
   const Env& env = state.env(n);
