@@ -23,7 +23,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   envs_.resize(padded);
   resting_.reserve(padded);
   for (std::size_t n = 0; n < padded; ++n) {
-    resting_.emplace_back(model.most_windows, model.most_objects);
+    resting_.emplace_back(model.most_objects, model.world->radii().back());
   }
   objects_.resize(padded * most_objects_);
   grips_.resize(padded);

@@ -30,7 +30,7 @@ void placeRobot(const Model& model, BatchState& state, std::size_t n, std::uint3
 void placeObjects(const Model& model, BatchState& state, std::size_t n, const Episode& episode) {
   const std::span<const Placement> placements = model.placements(episode);
   RestingObjects& resting = state.resting(n);
-  resting.begin(model.frames[model.world->sceneIndexOf(episode)]);
+  resting.clear();
   for (std::uint32_t object = 0; object < placements.size(); ++object) {
     const Placement& placement = placements[object];
     state.objects(n)[object] = placement.pose;

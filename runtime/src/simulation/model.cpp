@@ -13,17 +13,6 @@
 namespace galactic::simulation {
 namespace {
 
-WindowFrame frameOf(const Scene& scene) {
-  // All grids of a scene cover nearly the same rectangle; the widest holds every sphere.
-  const ColumnGridLayout& grid = scene.grids().back().layout();
-  const auto length = [&](std::uint32_t columns) {
-    return static_cast<float>(columns) * grid.spacing;
-  };
-  return makeWindowFrame({grid.min_x, grid.min_x + length(grid.columns_x)},
-                         {grid.min_z, grid.min_z + length(grid.columns_z)},
-                         scene.grids().back().radius());
-}
-
 void measure(const World& world, Model& model) {
   model.most_objects = model.options.task.distractors ? world.mostObjects() : 1;
   for (const Episode& episode : world.episodes().episodes()) {
@@ -31,11 +20,6 @@ void measure(const World& world, Model& model) {
       model.most_held_spheres =
           std::max(model.most_held_spheres, paddedObjectSpheres(world.objectOf(placement)));
     }
-  }
-  model.frames.reserve(world.scenes().size());
-  for (const Scene& scene : world.scenes()) {
-    model.frames.push_back(frameOf(scene));
-    model.most_windows = std::max(model.most_windows, model.frames.back().windowCount());
   }
 }
 
@@ -94,7 +78,7 @@ class StartFinder {
   void setObjects(const Episode& episode) {
     RestingObjects& resting = state_.resting(0);
     const std::uint32_t scene = model_.world->sceneIndexOf(episode);
-    resting.begin(model_.frames[scene]);
+    resting.clear();
     std::uint32_t number = 0;
     for (const Placement& placement : model_.placements(episode)) {
       resting.insert(number++, restingBox(model_.world->objectOf(placement).box, placement.pose));

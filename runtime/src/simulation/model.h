@@ -11,7 +11,6 @@
 #include "galactic/world.h"
 #include "simulation/motion_kernels.h"
 #include "simulation/motion_model.h"
-#include "simulation/resting_objects.h"
 
 namespace galactic::simulation {
 
@@ -35,8 +34,6 @@ struct Model {
   MotionModel motion;
   MotionKernels kernels;
   MotionTables tables;
-  /// By scene of the world.
-  std::vector<WindowFrame> frames;
   /// Episodes that can be started, ascending; and those that cannot.
   std::vector<EpisodeStart> starts;
   /// Variables of each start. Shape: starts * variables.
@@ -47,7 +44,6 @@ struct Model {
   std::size_t most_objects = 0;
   /// Spheres of the largest object, padded to lanes.
   std::size_t most_held_spheres = 0;
-  std::size_t most_windows = 0;
   std::vector<ObservationPart> observation;
   std::size_t observation_size = 0;
 

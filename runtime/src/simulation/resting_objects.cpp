@@ -5,202 +5,215 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "column_grid_kernels.h"
 
 namespace galactic::simulation {
 namespace {
 
-constexpr std::uint32_t kWordBits = 32;
-
-/// Objects are entered in windows that they miss by this much, so that no rounding of a query can
-/// find an overlap that the windows do not know: metres, and parts of a coordinate.
+/// Objects are entered in sets that they miss by this much, so that no rounding of a query can find
+/// an overlap that the sets do not know: metres, and parts of a coordinate.
 constexpr float kSlack = 1e-4F;
 constexpr float kRelativeSlack = 1e-6F;
 
-std::size_t planesFor(std::size_t objects) { return (objects + kWordBits - 1) / kWordBits; }
+/// Coordinates from here on, in squares, are not told apart.
+constexpr float kMostSquares = 0x1p30F;
 
-/// Half cell of a coordinate; the border's for what lies outside, 0 for NaN. The kernel for AVX2
-/// repeats it operation by operation.
-std::uint32_t halfCell(float coordinate, float min, float inverse_half_cell, std::uint32_t count) {
-  const float cell = (coordinate - min) * inverse_half_cell;
-  const auto last = static_cast<float>(count - 1);
-  const float from_first = cell > 0 ? cell : 0;
-  return static_cast<std::uint32_t>(from_first < last ? from_first : last);
+std::size_t planesFor(std::size_t objects) { return (objects + kPlaneObjects - 1) / kPlaneObjects; }
+
+std::uint32_t bitOf(std::uint32_t index) { return 1U << (index % kPlaneObjects); }
+
+/// Number of the square that a coordinate is in; none where it is too large, or NaN. The kernel for
+/// AVX2 does the same.
+std::optional<std::int32_t> squareOf(float coordinate) {
+  const float square = coordinate * kInverseSquareEdge;
+  if (!(std::fabs(square) < kMostSquares)) return std::nullopt;
+  return static_cast<std::int32_t>(std::lrint(square));
 }
 
-std::size_t windowOf(const WindowFrame& frame, float x, float z) {
-  const std::uint32_t i = halfCell(x, frame.min_x, frame.inverse_half_cell, frame.windows_x);
-  const std::uint32_t k = halfCell(z, frame.min_z, frame.inverse_half_cell, frame.windows_z);
-  return std::size_t{k} * frame.windows_x + i;
+/// Index of the set of square `n` among `count` sets.
+std::uint32_t setOf(std::int32_t n, std::uint32_t count) {
+  return static_cast<std::uint32_t>(n) % count;
 }
 
-/// Calls `visit` with the index of each object that the window knows, ascending, until it returns
-/// true; whether it did.
+/// Index of the set that a query reads.
+std::uint32_t setOf(float coordinate, std::uint32_t count) {
+  return setOf(squareOf(coordinate).value_or(0), count);
+}
+
+/// Calls `change` with the sets of all squares that some query from `centre - reach` to
+/// `centre + reach` may fall in.
+template <class Change>
+void forEachSet(std::span<std::uint32_t> sets, float centre, float reach, const Change& change) {
+  const auto count = static_cast<std::uint32_t>(sets.size());
+  const float around = reach + kSlack + kRelativeSlack * (std::fabs(centre) + reach);
+  const std::optional<std::int32_t> first = squareOf(centre - around);
+  const std::optional<std::int32_t> last = squareOf(centre + around);
+  if (!first || !last || *last - *first >= static_cast<std::int32_t>(count)) {
+    for (std::uint32_t& set : sets) change(set);
+    return;
+  }
+  for (std::int32_t n = *first; n <= *last; ++n) change(sets[setOf(n, count)]);
+}
+
+/// All bits: the objects of every height.
+constexpr std::uint32_t kAnyHeight = ~std::uint32_t{0};
+
+/// Calls `visit` with the index of each object in the sets of a sphere, ascending, until it returns
+/// true; whether it did. `every_height`: also those above and below it.
 template <class Visit>
-bool anyInWindow(const RestingView& objects, std::size_t window, const Visit& visit) {
-  for (std::size_t plane = 0; plane < objects.planes; ++plane) {
-    std::uint32_t word = objects.words[plane * objects.plane_stride + window];
-    for (; word != 0; word &= word - 1) {
-      const auto bit = static_cast<std::uint32_t>(std::countr_zero(word));
-      if (visit(static_cast<std::uint32_t>(plane) * kWordBits + bit)) return true;
+bool anyNear(const RestingView& objects, const Vec3& centre, bool every_height,
+             const Visit& visit) {
+  const std::uint32_t strip_x = setOf(centre.x, kStrips);
+  const std::uint32_t strip_z = setOf(centre.z, kStrips);
+  const std::uint32_t band = setOf(centre.y, kBands);
+  for (std::size_t p = 0; p < objects.plane_count; ++p) {
+    const SetPlane& plane = objects.planes[p];
+    std::uint32_t near = plane.along_x[strip_x] & plane.along_z[strip_z] &
+                         (every_height ? kAnyHeight : plane.at_height[band]);
+    for (; near != 0; near &= near - 1) {
+      const auto bit = static_cast<std::uint32_t>(std::countr_zero(near));
+      if (visit(static_cast<std::uint32_t>(p) * kPlaneObjects + bit)) return true;
     }
   }
   return false;
 }
 
-/// The heights first: most objects near a sphere lie higher or lower.
-bool overlapsNear(const RestingBox& box, const Vec3& centre, float radius) {
-  if (!(std::fabs(centre.y - box.centre.y) < box.half_height + radius)) return false;
-  return overlaps(box, centre, radius);
-}
-
-/// The objects that overlap a sphere, ascending, to `visit` as in anyInWindow.
+/// The objects at any height over, under or around a sphere.
 template <class Visit>
-bool anyOverlapping(const RestingView& objects, const Vec3& centre, float radius,
-                    const Visit& visit) {
-  const std::size_t window = windowOf(objects.frame, centre.x, centre.z);
-  return anyInWindow(objects, window, [&](std::uint32_t index) {
-    return overlapsNear(objects.boxes[index], centre, radius) && visit(index);
+void forEachInColumn(const RestingView& objects, const Vec3& centre, const Visit& visit) {
+  anyNear(objects, centre, true, [&visit](std::uint32_t index) {
+    visit(index);
+    return false;
   });
 }
 
-std::size_t firstTouchingGroup(const RestingView& objects, const SphereGroups& spheres,
-                               std::size_t first, unsigned& lanes) {
-  return detail::hasAvx2() ? firstTouchingGroupAvx2(objects, spheres, first, lanes)
-                           : firstTouchingGroupPortable(objects, spheres, first, lanes);
+/// The objects that overlap a sphere, ascending, to `visit` as in anyNear.
+template <class Visit>
+bool anyOverlapping(const RestingView& objects, const Vec3& centre, float radius,
+                    const Visit& visit) {
+  return anyNear(objects, centre, false, [&](std::uint32_t index) {
+    const RestingBox& box = objects.boxes[index];
+    // The kernel for AVX2 asks for the heights first, too: no answer depends on it.
+    return std::fabs(centre.y - box.centre.y) < box.half_height + radius &&
+           overlaps(box, centre, radius) && visit(index);
+  });
 }
 
-SphereGroups groupsOf(const SphereBatch& spheres, const RadiusRange& range) {
-  return {spheres.x + range.first, spheres.y + range.first, spheres.z + range.first,
-          paddedToLanes(range.count) / kLanes, range.radius};
+unsigned touchingLanes(const RestingView& objects, const SphereArrays& spheres, std::size_t first,
+                       float radius) {
+  const auto found = [](std::uint32_t) { return true; };
+  unsigned lanes = 0;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const std::size_t n = first + lane;
+    const Vec3 centre{spheres.x[n], spheres.y[n], spheres.z[n]};
+    const bool touches = anyOverlapping(objects, centre, radius, found);
+    lanes |= static_cast<unsigned>(touches) << lane;
+  }
+  return lanes;
+}
+
+bool findTouching(const RestingView& objects, const SphereArrays& spheres, SphereGroup& at) {
+  return detail::hasAvx2() ? findTouchingAvx2(objects, spheres, at)
+                           : findTouchingPortable(objects, spheres, at);
+}
+
+SphereArrays arraysOf(const SphereBatch& spheres) {
+  return {spheres.x, spheres.y, spheres.z, spheres.ranges.data(), spheres.ranges.size()};
+}
+
+/// What the caller of a query guarantees.
+[[maybe_unused]] bool radiiFit(const SphereBatch& spheres, float largest_radius) {
+  return std::all_of(spheres.ranges.begin(), spheres.ranges.end(),
+                     [=](const RadiusRange& range) { return range.radius <= largest_radius; });
 }
 
 }  // namespace
 
-std::size_t firstTouchingGroupPortable(const RestingView& objects, const SphereGroups& spheres,
-                                       std::size_t first, unsigned& lanes) noexcept {
-  const auto touches_any = [](std::uint32_t) { return true; };
-  for (std::size_t group = first; group < spheres.groups; ++group) {
-    unsigned touching = 0;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const std::size_t n = group * kLanes + lane;
-      const Vec3 centre{spheres.x[n], spheres.y[n], spheres.z[n]};
-      const bool touches = anyOverlapping(objects, centre, spheres.radius, touches_any);
-      touching |= static_cast<unsigned>(touches) << lane;
+bool findTouchingPortable(const RestingView& objects, const SphereArrays& spheres,
+                          SphereGroup& at) noexcept {
+  for (; at.range < spheres.range_count; ++at.range, at.group = 0) {
+    const RadiusRange& range = spheres.ranges[at.range];
+    for (; at.group * kLanes < range.count; ++at.group) {
+      at.lanes = touchingLanes(objects, spheres, range.first + at.group * kLanes, range.radius);
+      if (at.lanes != 0) return true;
     }
-    if (touching == 0) continue;
-    lanes = touching;
-    return group;
   }
-  return spheres.groups;
+  return false;
 }
 
-WindowFrame makeWindowFrame(Span x, Span z, float largest_radius) {
-  constexpr float kGrowth = 1.1F;
-  assert(std::isfinite(x.hi - x.lo) && std::isfinite(z.hi - z.lo) && largest_radius > 0);
-  WindowFrame frame{.min_x = x.lo, .min_z = z.lo, .largest_radius = largest_radius};
-  float half_cell = 2 * largest_radius;
-  for (;; half_cell *= kGrowth) {
-    const float columns = std::max(std::ceil((x.hi - x.lo) / half_cell), 1.0F);
-    const float rows = std::max(std::ceil((z.hi - z.lo) / half_cell), 1.0F);
-    if (!(columns * rows <= static_cast<float>(kMostWindows))) continue;
-    frame.inverse_half_cell = 1 / half_cell;
-    frame.windows_x = static_cast<std::uint32_t>(columns);
-    frame.windows_z = static_cast<std::uint32_t>(rows);
-    return frame;
-  }
-}
-
-RestingObjects::RestingObjects(std::size_t most_windows, std::size_t most_objects)
-    : planes_(planesFor(most_objects)),
-      words_(planes_ * most_windows),
+RestingObjects::RestingObjects(std::size_t most_objects, float largest_radius)
+    : largest_radius_(largest_radius),
+      planes_(planesFor(most_objects)),
       boxes_(most_objects),
-      resting_(planes_) {}
+      resting_(planes_.size()) {}
 
-void RestingObjects::begin(const WindowFrame& frame) noexcept {
-  assert(frame.windowCount() * planes_ <= words_.size());
-  frame_ = frame;
-  const auto used = static_cast<std::ptrdiff_t>(frame.windowCount() * planes_);
-  std::fill(words_.begin(), words_.begin() + used, 0U);
+void RestingObjects::clear() noexcept {
+  std::fill(planes_.begin(), planes_.end(), SetPlane{});
   std::fill(resting_.begin(), resting_.end(), 0U);
 }
 
 template <class Change>
-void RestingObjects::forEachWord(std::uint32_t index, const Change& change) noexcept {
+void RestingObjects::changeSets(std::uint32_t index, const Change& change) noexcept {
   const RestingBox& box = boxes_[index];
   const Vec3 half = halfBounds(box);
-  const auto cells = [this](float centre, float reach, float min, std::uint32_t count) {
-    const float around =
-        reach + frame_.largest_radius + kSlack + kRelativeSlack * (std::fabs(centre) + reach);
-    return std::pair{halfCell(centre - around, min, frame_.inverse_half_cell, count),
-                     halfCell(centre + around, min, frame_.inverse_half_cell, count)};
-  };
-  const auto [first_x, last_x] = cells(box.centre.x, half.x, frame_.min_x, frame_.windows_x);
-  const auto [first_z, last_z] = cells(box.centre.z, half.z, frame_.min_z, frame_.windows_z);
-  std::uint32_t* plane = words_.data() + index / kWordBits * frame_.windowCount();
-  const std::uint32_t bit = 1U << (index % kWordBits);
-  for (std::uint32_t k = first_z; k <= last_z; ++k) {
-    for (std::uint32_t i = first_x; i <= last_x; ++i) {
-      change(plane[std::size_t{k} * frame_.windows_x + i], bit);
-    }
-  }
+  const float radius = largest_radius_;
+  SetPlane& plane = planes_[index / kPlaneObjects];
+  forEachSet(plane.along_x, box.centre.x, half.x + radius, change);
+  forEachSet(plane.along_z, box.centre.z, half.z + radius, change);
+  forEachSet(plane.at_height, box.centre.y, half.y + radius, change);
 }
 
 void RestingObjects::insert(std::uint32_t index, const RestingBox& box) noexcept {
   assert(index < boxes_.size() && !isResting(index));
   boxes_[index] = box;
-  resting_[index / kWordBits] |= 1U << (index % kWordBits);
-  forEachWord(index, [](std::uint32_t& word, std::uint32_t bit) { word |= bit; });
+  const std::uint32_t bit = bitOf(index);
+  resting_[index / kPlaneObjects] |= bit;
+  changeSets(index, [bit](std::uint32_t& set) { set |= bit; });
 }
 
 void RestingObjects::remove(std::uint32_t index) noexcept {
   assert(isResting(index));
-  resting_[index / kWordBits] &= ~(1U << (index % kWordBits));
-  forEachWord(index, [](std::uint32_t& word, std::uint32_t bit) { word &= ~bit; });
+  const std::uint32_t bit = bitOf(index);
+  resting_[index / kPlaneObjects] &= ~bit;
+  changeSets(index, [bit](std::uint32_t& set) { set &= ~bit; });
 }
 
 bool RestingObjects::isResting(std::uint32_t index) const noexcept {
   assert(index < boxes_.size());
-  return ((resting_[index / kWordBits] >> (index % kWordBits)) & 1U) != 0;
+  return (resting_[index / kPlaneObjects] & bitOf(index)) != 0;
 }
 
 RestingView RestingObjects::view() const noexcept {
-  return {frame_, words_.data(), frame_.windowCount(), planes_, boxes_.data()};
+  return {planes_.data(), planes_.size(), boxes_.data()};
 }
 
 bool RestingObjects::touches(const SphereBatch& spheres) const noexcept {
-  const RestingView objects = view();
-  unsigned lanes = 0;
-  for (const RadiusRange& range : spheres.ranges) {
-    assert(range.radius <= frame_.largest_radius);
-    const SphereGroups groups = groupsOf(spheres, range);
-    if (firstTouchingGroup(objects, groups, 0, lanes) != groups.groups) return true;
-  }
-  return false;
+  assert(radiiFit(spheres, largest_radius_));
+  SphereGroup at;
+  return findTouching(view(), arraysOf(spheres), at);
 }
 
 std::size_t RestingObjects::hits(const SphereBatch& spheres,
                                  std::span<SphereHit> out) const noexcept {
+  assert(radiiFit(spheres, largest_radius_));
   const RestingView objects = view();
+  const SphereArrays arrays = arraysOf(spheres);
   std::size_t written = 0;
-  for (const RadiusRange& range : spheres.ranges) {
-    assert(range.radius <= frame_.largest_radius);
-    const SphereGroups groups = groupsOf(spheres, range);
-    unsigned lanes = 0;
-    std::size_t group = firstTouchingGroup(objects, groups, 0, lanes);
-    for (; group != groups.groups; group = firstTouchingGroup(objects, groups, group + 1, lanes)) {
-      for (; lanes != 0; lanes &= lanes - 1) {
-        const std::size_t n = group * kLanes + static_cast<std::size_t>(std::countr_zero(lanes));
-        if (n >= range.count) break;
-        const auto sphere = static_cast<std::uint32_t>(range.first + n);
-        anyOverlapping(objects, {groups.x[n], groups.y[n], groups.z[n]}, range.radius,
-                       [&](std::uint32_t object) {
-                         if (written < out.size()) out[written++] = {sphere, object};
-                         return written == out.size();
-                       });
-      }
+  SphereGroup at;
+  for (; findTouching(objects, arrays, at); ++at.group) {
+    const RadiusRange& range = spheres.ranges[at.range];
+    for (; at.lanes != 0; at.lanes &= at.lanes - 1) {
+      const std::size_t n =
+          at.group * kLanes + static_cast<std::size_t>(std::countr_zero(at.lanes));
+      if (n >= range.count) break;
+      const auto sphere = static_cast<std::uint32_t>(range.first + n);
+      const Vec3 centre{spheres.x[sphere], spheres.y[sphere], spheres.z[sphere]};
+      anyOverlapping(objects, centre, range.radius, [&](std::uint32_t object) {
+        if (written < out.size()) out[written++] = {sphere, object};
+        return written == out.size();
+      });
+      if (written == out.size()) return written;
     }
   }
   return written;
@@ -208,37 +221,31 @@ std::size_t RestingObjects::hits(const SphereBatch& spheres,
 
 std::optional<std::uint32_t> RestingObjects::nearest(const Vec3& centre,
                                                      float radius) const noexcept {
-  assert(radius <= frame_.largest_radius);
+  assert(radius <= largest_radius_);
   std::optional<std::uint32_t> best;
   float least = radius * radius;
-  const RestingView objects = view();
-  anyInWindow(objects, windowOf(frame_, centre.x, centre.z), [&](std::uint32_t index) {
+  forEachInColumn(view(), centre, [&](std::uint32_t index) {
     const float squared = squaredDistance(boxes_[index], centre);
-    if (squared < least) {
-      least = squared;
-      best = index;
-    }
-    return false;
+    if (!(squared < least)) return;
+    least = squared;
+    best = index;
   });
   return best;
 }
 
 float RestingObjects::fall(const Vec3& centre, float radius) const noexcept {
-  assert(radius <= frame_.largest_radius);
+  assert(radius <= largest_radius_);
   float least = std::numeric_limits<float>::infinity();
-  const RestingView objects = view();
-  anyInWindow(objects, windowOf(frame_, centre.x, centre.z), [&](std::uint32_t index) {
+  forEachInColumn(view(), centre, [&](std::uint32_t index) {
     const std::optional<Span> heights = overlapHeights(boxes_[index], centre.x, centre.z, radius);
-    if (heights && heights->lo < centre.y) {
-      least = std::min(least, std::max(centre.y - heights->hi, 0.0F));
-    }
-    return false;
+    if (!heights || !(heights->lo < centre.y)) return;
+    least = std::min(least, std::max(centre.y - heights->hi, 0.0F));
   });
   return least;
 }
 
 std::size_t RestingObjects::bytes() const {
-  return words_.size() * sizeof(words_[0]) + boxes_.size() * sizeof(boxes_[0]) +
+  return planes_.size() * sizeof(planes_[0]) + boxes_.size() * sizeof(boxes_[0]) +
          resting_.size() * sizeof(resting_[0]);
 }
 

@@ -10,7 +10,6 @@
 #include "simulation/resting_box.h"
 #include "simulation/resting_objects_kernels.h"
 #include "simulation/sphere_batch.h"
-#include "simulation/window_frame.h"
 
 namespace galactic::simulation {
 
@@ -23,19 +22,20 @@ struct SphereHit {
   friend bool operator==(const SphereHit&, const SphereHit&) = default;
 };
 
-/// The objects of one env that rest in the scene. Windows hold sets of object indices as bits, in
-/// as many planes of 32-bit words as the objects need, so no capacity can overflow. After
+/// The objects of one env that rest in the scene. Sets of objects are bits, in as many planes of 32
+/// as the objects need, so no capacity can overflow: up to 32 objects take one plane, 64 take two,
+/// and each plane costs a query the same. How the sets work: resting_objects_kernels.h. After
 /// construction nothing allocates and nothing throws. One thread at a time; const members from any.
 class RestingObjects {
  public:
-  /// Room for `most_objects` objects in any frame of up to `most_windows` windows.
-  RestingObjects(std::size_t most_windows, std::size_t most_objects);
+  /// Room for `most_objects` objects. Queries are for spheres of up to `largest_radius`, metres.
+  RestingObjects(std::size_t most_objects, float largest_radius);
 
-  /// Forgets all objects and works in `frame` from now on.
-  void begin(const WindowFrame& frame) noexcept;
+  /// Forgets all objects.
+  void clear() noexcept;
 
   /// Object `index` (less than capacity()) rests at `box` from now on. It must not be resting
-  /// already. A box, or a part of one, outside the frame is kept in the windows at the border.
+  /// already. It may be anywhere: there is no frame to be outside of.
   void insert(std::uint32_t index, const RestingBox& box) noexcept;
 
   /// Object `index`, which must be resting, rests no more (it was grasped).
@@ -48,7 +48,7 @@ class RestingObjects {
   [[nodiscard]] bool isResting(std::uint32_t index) const noexcept;
   /// Of a resting object.
   [[nodiscard]] const RestingBox& box(std::uint32_t index) const noexcept { return boxes_[index]; }
-  [[nodiscard]] const WindowFrame& frame() const noexcept { return frame_; }
+  [[nodiscard]] float largestRadius() const noexcept { return largest_radius_; }
 
   /// Whether any sphere overlaps any object. No radius may exceed the frame's. A sphere with a
   /// centre that is not a number overlaps nothing; one outside the frame is looked up in the
@@ -60,11 +60,11 @@ class RestingObjects {
                                  std::span<SphereHit> out) const noexcept;
 
   /// The object whose box is nearest to `centre` among those that a sphere of `radius` (at most the
-  /// frame's) overlaps; the lower index when equally near.
+  /// largest) overlaps; the lower index when equally near.
   [[nodiscard]] std::optional<std::uint32_t> nearest(const Vec3& centre,
                                                      float radius) const noexcept;
 
-  /// How far a sphere (radius at most the frame's) can sink from `centre` before it touches an
+  /// How far a sphere (radius at most the largest) can sink from `centre` before it touches an
   /// object: 0 when it overlaps one already, infinity when nothing is under it. Exact but for
   /// rounding: the sphere sinks to where its centre enters the box grown by the radius.
   [[nodiscard]] float fall(const Vec3& centre, float radius) const noexcept;
@@ -75,14 +75,12 @@ class RestingObjects {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  /// Calls `change` with each window word that a box belongs to, and the bit of object `index`.
+  /// Calls `change` with each set that object `index` belongs to.
   template <class Change>
-  void forEachWord(std::uint32_t index, const Change& change) noexcept;
+  void changeSets(std::uint32_t index, const Change& change) noexcept;
 
-  WindowFrame frame_;
-  std::size_t planes_ = 0;
-  /// Plane after plane, each as large as the frame.
-  std::vector<std::uint32_t> words_;
+  float largest_radius_;
+  std::vector<SetPlane> planes_;
   std::vector<RestingBox> boxes_;
   std::vector<std::uint32_t> resting_;
 };

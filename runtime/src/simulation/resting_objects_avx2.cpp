@@ -9,38 +9,41 @@
 namespace galactic::simulation {
 namespace {
 
-constexpr std::size_t kGroup = 8;
-constexpr std::uint32_t kWordBits = 32;
-
-/// The frame's numbers, one copy per lane.
-struct Lanes {
-  __m256 min_x, min_z, inverse_half_cell, last_x, last_z;
-  __m256i windows_x;
-};
-
 struct Centres {
   __m256 x, y, z;
 };
 
-Lanes broadcast(const WindowFrame& frame) {
-  return {_mm256_set1_ps(frame.min_x),
-          _mm256_set1_ps(frame.min_z),
-          _mm256_set1_ps(frame.inverse_half_cell),
-          _mm256_set1_ps(static_cast<float>(frame.windows_x - 1)),
-          _mm256_set1_ps(static_cast<float>(frame.windows_z - 1)),
-          _mm256_set1_epi32(static_cast<int>(frame.windows_x))};
+/// Which sets eight spheres read: indices of strips, and squares along the vertical.
+struct Places {
+  __m256i x, y, z;
+};
+
+/// Squares of eight coordinates; the lowest number for NaN and for what 32 bits do not hold.
+__m256i squaresOf(__m256 coordinates) {
+  return _mm256_cvtps_epi32(_mm256_mul_ps(coordinates, _mm256_set1_ps(kInverseSquareEdge)));
 }
 
-/// maxps gives its second operand when one is NaN: here 0, so that no lane reads out of range.
-__m256i halfCells(__m256 coordinate, __m256 min, __m256 inverse_half_cell, __m256 last) {
-  const __m256 cell = _mm256_mul_ps(_mm256_sub_ps(coordinate, min), inverse_half_cell);
-  return _mm256_cvttps_epi32(_mm256_min_ps(_mm256_max_ps(cell, _mm256_setzero_ps()), last));
+Places placesOf(const Centres& centres) {
+  const __m256i wrap = _mm256_set1_epi32(kStrips - 1);
+  return {_mm256_and_si256(squaresOf(centres.x), wrap), squaresOf(centres.y),
+          _mm256_and_si256(squaresOf(centres.z), wrap)};
 }
 
-__m256i windowsOf(const Lanes& lanes, const Centres& centres) {
-  const __m256i i = halfCells(centres.x, lanes.min_x, lanes.inverse_half_cell, lanes.last_x);
-  const __m256i k = halfCells(centres.z, lanes.min_z, lanes.inverse_half_cell, lanes.last_z);
-  return _mm256_add_epi32(_mm256_mullo_epi32(k, lanes.windows_x), i);
+/// Eight words of `sets`. The plain gather leaves its result's old value open, so that each waits
+/// for what its register last held, in a loop the gather before it; a zero breaks the chain.
+__m256i gather(const std::uint32_t* sets, __m256i index) {
+  return _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), reinterpret_cast<const int*>(sets),
+                                     index, _mm256_set1_epi32(-1), sizeof(int));
+}
+
+/// The objects of one plane that all sets of a sphere know, for eight spheres.
+__m256i objectsNear(const SetPlane& plane, const Places& places) {
+  const __m256i in_strips =
+      _mm256_and_si256(gather(plane.along_x, places.x), gather(plane.along_z, places.z));
+  // vpermd looks at three bits of an index: the square modulo kBands.
+  const __m256i at_height = _mm256_permutevar8x32_epi32(
+      _mm256_load_si256(reinterpret_cast<const __m256i*>(plane.at_height)), places.y);
+  return _mm256_and_si256(in_strips, at_height);
 }
 
 __m256 absolute(__m256 value) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0F), value); }
@@ -78,39 +81,60 @@ std::uint32_t anyLane(__m256i words) {
   return static_cast<std::uint32_t>(_mm_cvtsi128_si32(any));
 }
 
-/// The lanes that overlap an object of those that the lanes' windows know. Every such object is
-/// tested against all lanes: what is not in a lane's window does not overlap its sphere.
-unsigned touchingLanes(const RestingBox* boxes, __m256i words, const Centres& centres,
-                       float radius) {
+Centres centresAt(const SphereArrays& spheres, std::size_t n) {
+  return {_mm256_loadu_ps(spheres.x + n), _mm256_loadu_ps(spheres.y + n),
+          _mm256_loadu_ps(spheres.z + n)};
+}
+
+/// The lanes that overlap an object of those in the lanes' sets, for the spheres from `n` on. Every
+/// such object is tested against all lanes: what is not in a lane's sets does not overlap its
+/// sphere. Not inlined, and looks its objects up again, so that the loop around it keeps all its
+/// numbers in registers: it is called for few groups.
+[[gnu::noinline]] unsigned touchingLanes(const RestingView& objects, const SphereArrays& spheres,
+                                         std::size_t n, float radius) {
+  const Centres centres = centresAt(spheres, n);
+  const Places places = placesOf(centres);
   unsigned lanes = 0;
-  for (std::uint32_t word = anyLane(words); word != 0; word &= word - 1) {
-    lanes |= overlapping(boxes[__builtin_ctz(word)], centres, radius);
+  for (std::size_t plane = 0; plane < objects.plane_count; ++plane) {
+    const RestingBox* boxes = objects.boxes + plane * kPlaneObjects;
+    std::uint32_t near = anyLane(objectsNear(objects.planes[plane], places));
+    for (; near != 0; near &= near - 1) {
+      lanes |= overlapping(boxes[__builtin_ctz(near)], centres, radius);
+    }
   }
   return lanes;
 }
 
+/// Whether no plane has an object that all sets of a sphere know, for any of eight spheres.
+bool nothingNear(const RestingView& objects, const Places& places) {
+  __m256i near = objectsNear(objects.planes[0], places);
+  for (std::size_t plane = 1; plane < objects.plane_count; ++plane) {
+    near = _mm256_or_si256(near, objectsNear(objects.planes[plane], places));
+  }
+  return _mm256_testz_si256(near, near) != 0;
+}
+
 }  // namespace
 
-std::size_t firstTouchingGroupAvx2(const RestingView& objects, const SphereGroups& spheres,
-                                   std::size_t first, unsigned& lanes) noexcept {
-  const Lanes frame = broadcast(objects.frame);
-  for (std::size_t group = first; group < spheres.groups; ++group) {
-    const std::size_t n = group * kGroup;
-    const Centres centres{_mm256_loadu_ps(spheres.x + n), _mm256_loadu_ps(spheres.y + n),
-                          _mm256_loadu_ps(spheres.z + n)};
-    const __m256i windows = windowsOf(frame, centres);
-    unsigned touching = 0;
-    for (std::size_t plane = 0; plane < objects.planes; ++plane) {
-      const auto* base = reinterpret_cast<const int*>(objects.words + plane * objects.plane_stride);
-      const __m256i words = _mm256_i32gather_epi32(base, windows, sizeof(std::uint32_t));
-      if (_mm256_testz_si256(words, words) != 0) continue;
-      touching |= touchingLanes(objects.boxes + plane * kWordBits, words, centres, spheres.radius);
+bool findTouchingAvx2(const RestingView& given_objects, const SphereArrays& given_spheres,
+                      SphereGroup& at) noexcept {
+  // Copies: nothing that is written below can change them.
+  const RestingView objects = given_objects;
+  const SphereArrays spheres = given_spheres;
+  if (objects.plane_count == 0) return false;
+  std::size_t group = at.group;
+  for (std::size_t r = at.range; r < spheres.range_count; ++r, group = 0) {
+    const RadiusRange range = spheres.ranges[r];
+    const std::size_t end = std::size_t{range.first} + range.count;
+    for (std::size_t n = range.first + group * kLanes; n < end; n += kLanes) {
+      if (nothingNear(objects, placesOf(centresAt(spheres, n)))) continue;
+      const unsigned lanes = touchingLanes(given_objects, given_spheres, n, range.radius);
+      if (lanes == 0) continue;
+      at = {r, (n - range.first) / kLanes, lanes};
+      return true;
     }
-    if (touching == 0) continue;
-    lanes = touching;
-    return group;
   }
-  return spheres.groups;
+  return false;
 }
 
 }  // namespace galactic::simulation
@@ -120,9 +144,9 @@ std::size_t firstTouchingGroupAvx2(const RestingView& objects, const SphereGroup
 namespace galactic::simulation {
 
 // hasAvx2() is false on this architecture; the symbol exists so that callers need no condition.
-std::size_t firstTouchingGroupAvx2(const RestingView& objects, const SphereGroups& spheres,
-                                   std::size_t first, unsigned& lanes) noexcept {
-  return firstTouchingGroupPortable(objects, spheres, first, lanes);
+bool findTouchingAvx2(const RestingView& objects, const SphereArrays& spheres,
+                      SphereGroup& at) noexcept {
+  return findTouchingPortable(objects, spheres, at);
 }
 
 }  // namespace galactic::simulation

@@ -34,7 +34,7 @@ std::vector<Body> randomBodies(const Room& room, std::size_t count, std::mt19937
 }
 
 /// A centre near one of the bodies, or anywhere when there is none; often exactly at the border of
-/// a window.
+/// a square.
 Vec3 randomCentre(const std::vector<Body>& bodies, const Room& room, std::mt19937& random) {
   if (bodies.empty()) return randomBody(room, random).pose.translation;
   const Point3 near = bodies[random() % bodies.size()].solid().at({0, 0, 0});
@@ -43,21 +43,15 @@ Vec3 randomCentre(const std::vector<Body>& bodies, const Room& room, std::mt1993
     return static_cast<float>(near[axis]) + uniformIn(random, -reach, reach);
   };
   Vec3 centre{coordinate(0), coordinate(1), coordinate(2)};
-  if (random() % 4 == 0) {
-    const WindowFrame frame = makeWindowFrame(room.x, room.z, kLargestRadius);
-    const float half_cell = 1 / frame.inverse_half_cell;
-    centre.x = frame.min_x + std::round((centre.x - frame.min_x) / half_cell) * half_cell;
-    if (random() % 2 == 0) {
-      centre.z = frame.min_z + std::round((centre.z - frame.min_z) / half_cell) * half_cell;
-    }
-  }
+  const auto border = [](float at) { return (std::floor(at / kSquareEdge) + 0.5F) * kSquareEdge; };
+  if (random() % 4 == 0) centre.x = border(centre.x);
+  if (random() % 4 == 0) centre.y = border(centre.y);
+  if (random() % 4 == 0) centre.z = border(centre.z);
   return centre;
 }
 
-RestingObjects restingIn(const Room& room, const std::vector<Body>& bodies) {
-  const WindowFrame frame = makeWindowFrame(room.x, room.z, kLargestRadius);
-  RestingObjects objects(frame.windowCount(), bodies.size());
-  objects.begin(frame);
+RestingObjects restingAt(const std::vector<Body>& bodies) {
+  RestingObjects objects(bodies.size(), kLargestRadius);
   for (std::size_t n = 0; n < bodies.size(); ++n) {
     objects.insert(static_cast<std::uint32_t>(n), bodies[n].resting());
   }
@@ -114,7 +108,7 @@ TEST(RestingObjects, FindsWhatAllPairsFindInARoomOfThirtyObjects) {
   Tally tally;
   for (int round = 0; round < 50; ++round) {
     const std::vector<Body> bodies = randomBodies(room, 30, random);
-    const RestingObjects objects = restingIn(room, bodies);
+    const RestingObjects objects = restingAt(bodies);
     for (int n = 0; n < 20; ++n) {
       compareWithAllPairs(objects, bodies, randomBatch(bodies, room, random), tally);
     }
@@ -130,7 +124,7 @@ TEST(RestingObjects, FindsWhatAllPairsFindForAnyNumberOfObjects) {
     Tally tally;
     for (int n = 0; n < 40; ++n) {
       const std::vector<Body> bodies = randomBodies(room, count, random);
-      const RestingObjects objects = restingIn(room, bodies);
+      const RestingObjects objects = restingAt(bodies);
       compareWithAllPairs(objects, bodies, randomBatch(bodies, room, random), tally);
     }
     tally.expectBothSides();
@@ -143,26 +137,54 @@ TEST(RestingObjects, FindsBoxesLargerThanWindows) {
   Tally tally;
   for (int n = 0; n < 100; ++n) {
     const std::vector<Body> bodies = randomBodies(room, 5, random);
-    compareWithAllPairs(restingIn(room, bodies), bodies, randomBatch(bodies, room, random), tally);
+    compareWithAllPairs(restingAt(bodies), bodies, randomBatch(bodies, room, random), tally);
   }
   tally.expectBothSides();
 }
 
-TEST(RestingObjects, FindsObjectsAndSpheresOutsideTheFrame) {
+TEST(RestingObjects, FindsTheRightOnesInScenesLargerThanTheStrips) {
   std::mt19937 random(404);
-  const Room room{.x = {0, 1}, .z = {-1, 0.5F}, .beyond = 3};
+  // Four rooms at the same place on the torus, and the numbers of squares negative in one.
+  const float size = kSquareEdge * kStrips;
   Tally tally;
   for (int n = 0; n < 100; ++n) {
-    const std::vector<Body> bodies = randomBodies(room, 20, random);
-    compareWithAllPairs(restingIn(room, bodies), bodies, randomBatch(bodies, room, random), tally);
+    std::vector<Body> bodies;
+    bodies.reserve(40);
+    for (std::uint32_t body = 0; body < 40; ++body) {
+      bodies.push_back(randomBody({.x = {0, 1.5F}, .z = {0, 1.5F}}, random));
+      bodies.back().pose.translation.x += static_cast<float>(body % 4) * size - size;
+      bodies.back().pose.translation.z -= static_cast<float>(body % 3) * size;
+      bodies.back().pose.translation.y += static_cast<float>(body % 5) * kSquareEdge * kBands;
+    }
+    compareWithAllPairs(restingAt(bodies), bodies, randomBatch(bodies, {}, random), tally);
   }
   tally.expectBothSides();
+}
+
+TEST(RestingObjects, FindsBoxesLongerThanAllStrips) {
+  const Body plank{{{}, {20, 0.01F, 0.1F}}, {{0, 1, 0}, yaw(0.3)}};
+  const Body pole{{{}, {0.05F, 30, 0.05F}}, {{5, 0, 5}, {}}};
+  const RestingObjects objects = restingAt({plank, pole});
+  const auto hits = [&](Vec3 centre) {
+    return hitsOf(objects, OwnedBatch().add(2, 0.12F, {centre}).view());
+  };
+  const double turn = 0.3;
+  for (float along = -19.9F; along < 20; along += 0.3F) {
+    const Vec3 on{along * static_cast<float>(std::cos(turn)), 1.1F,
+                  -along * static_cast<float>(std::sin(turn))};
+    EXPECT_THAT(hits(on), ElementsAre(SphereHit{0, 0})) << along;
+    EXPECT_THAT(hits(on + Vec3{0, 0.2F, 0}), ElementsAre()) << along;
+  }
+  for (float height = -30; height < 30; height += 0.3F) {
+    EXPECT_THAT(hits({5.1F, height, 5}), ElementsAre(SphereHit{0, 1})) << height;
+    EXPECT_THAT(hits({5.2F, height, 5}), ElementsAre()) << height;
+  }
 }
 
 TEST(RestingObjects, WithoutObjectsTouchNothing) {
   std::mt19937 random(405);
   const Room room;
-  const RestingObjects objects = restingIn(room, {});
+  const RestingObjects objects = restingAt({});
   const OwnedBatch batch = randomBatch({}, room, random);
   EXPECT_FALSE(objects.touches(batch.view()));
   EXPECT_TRUE(hitsOf(objects, batch.view()).empty());
@@ -172,7 +194,7 @@ TEST(RestingObjects, WithoutObjectsTouchNothing) {
 
 TEST(RestingObjects, TouchingIsNoOverlap) {
   const Body cube{{{}, {0.25F, 0.25F, 0.25F}}, {{1, 1, 1}, {}}};
-  const RestingObjects objects = restingIn({.x = {0, 2}, .z = {0, 2}}, {cube});
+  const RestingObjects objects = restingAt({cube});
   const auto touches = [&](Vec3 centre) {
     return objects.touches(OwnedBatch().add(0, 0.0625F, {centre}).view());
   };
@@ -185,7 +207,7 @@ TEST(RestingObjects, TouchingIsNoOverlap) {
 
 TEST(RestingObjects, NumbersThatAreNoneTouchNothing) {
   const Body cube{{{}, {0.25F, 0.25F, 0.25F}}, {{0, 0, 0}, {}}};
-  const RestingObjects objects = restingIn({.x = {-0.1F, 2}, .z = {-0.1F, 2}}, {cube});
+  const RestingObjects objects = restingAt({cube});
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   for (const float odd : {nan, -nan, infinity, -infinity, 3e38F, -3e38F}) {
@@ -204,7 +226,7 @@ TEST(RestingObjects, GiveAsManyHitsAsAreTaken) {
   std::mt19937 random(406);
   const Room room{.x = {0, 1}, .z = {0, 1}};
   const std::vector<Body> bodies = randomBodies(room, 150, random);
-  const RestingObjects objects = restingIn(room, bodies);
+  const RestingObjects objects = restingAt(bodies);
   const OwnedBatch batch = randomBatch(bodies, room, random);
   const std::vector<SphereHit> all = hitsOf(objects, batch.view());
   ASSERT_GT(all.size(), 20U);
@@ -221,15 +243,14 @@ TEST(RestingObjects, GiveAsManyHitsAsAreTaken) {
 TEST(RestingObjects, FollowAnySequenceOfGraspsAndDrops) {
   std::mt19937 random(407);
   const Room room{.x = {0, 3}, .z = {0, 3}};
-  const WindowFrame frame = makeWindowFrame(room.x, room.z, kLargestRadius);
   constexpr std::uint32_t kObjects = 70;
-  RestingObjects objects(frame.windowCount() + 5, kObjects);
+  RestingObjects objects(kObjects, kLargestRadius);
   std::vector<Body> bodies(kObjects);
   std::vector<bool> resting(kObjects);
   Tally tally;
   for (int change = 0; change < 3000; ++change) {
     if (change % 1000 == 0) {
-      objects.begin(frame);
+      objects.clear();
       resting.assign(kObjects, false);
     }
     const auto index = static_cast<std::uint32_t>(random() % kObjects);
@@ -259,7 +280,15 @@ TEST(RestingObjects, FollowAnySequenceOfGraspsAndDrops) {
     if (resting[n]) objects.remove(n);
   }
   const RestingView view = objects.view();
-  for (std::size_t n = 0; n < view.planes * view.plane_stride; ++n) ASSERT_EQ(view.words[n], 0U);
+  const auto empty = [](std::uint32_t set) { return set == 0; };
+  for (std::size_t n = 0; n < view.plane_count; ++n) {
+    EXPECT_TRUE(
+        std::all_of(std::begin(view.planes[n].along_x), std::end(view.planes[n].along_x), empty));
+    EXPECT_TRUE(
+        std::all_of(std::begin(view.planes[n].along_z), std::end(view.planes[n].along_z), empty));
+    EXPECT_TRUE(std::all_of(std::begin(view.planes[n].at_height),
+                            std::end(view.planes[n].at_height), empty));
+  }
 }
 
 /// Both kernels on the same groups, some of whose centres are no sensible numbers.
@@ -270,7 +299,7 @@ TEST(RestingObjects, AnswerAlikeBitForBitWithBothKernels) {
   Tally tally;
   for (int round = 0; round < 300; ++round) {
     const std::vector<Body> bodies = randomBodies(room, 1 + random() % 90, random);
-    const RestingObjects objects = restingIn(room, bodies);
+    const RestingObjects objects = restingAt(bodies);
     std::vector<Vec3> centres(8 * (1 + random() % 20));
     for (Vec3& centre : centres) {
       centre = randomCentre(bodies, room, random);
@@ -280,15 +309,17 @@ TEST(RestingObjects, AnswerAlikeBitForBitWithBothKernels) {
     }
     const OwnedBatch batch = OwnedBatch().add(0, kRadii[random() % 3], centres);
     const SphereBatch spheres = batch.view();
-    const SphereGroups groups{spheres.x, spheres.y, spheres.z, centres.size() / 8,
-                              spheres.ranges[0].radius};
-    for (std::size_t first = 0; first < groups.groups; ++first) {
-      unsigned portable = 0;
-      unsigned vectorised = 0;
-      ASSERT_EQ(firstTouchingGroupPortable(objects.view(), groups, first, portable),
-                firstTouchingGroupAvx2(objects.view(), groups, first, vectorised));
-      ASSERT_EQ(portable, vectorised);
-      for (unsigned lane = 0; lane < 8; ++lane) tally.add(((portable >> lane) & 1U) != 0);
+    const SphereArrays arrays{spheres.x, spheres.y, spheres.z, spheres.ranges.data(), 1};
+    for (std::size_t first = 0; first < centres.size() / 8; ++first) {
+      SphereGroup portable{.group = first};
+      SphereGroup vectorised{.group = first};
+      const bool found = findTouchingPortable(objects.view(), arrays, portable);
+      ASSERT_EQ(found, findTouchingAvx2(objects.view(), arrays, vectorised));
+      if (!found) break;
+      ASSERT_EQ(portable.range, vectorised.range);
+      ASSERT_EQ(portable.group, vectorised.group);
+      ASSERT_EQ(portable.lanes, vectorised.lanes);
+      for (unsigned lane = 0; lane < 8; ++lane) tally.add(((portable.lanes >> lane) & 1U) != 0);
     }
   }
   tally.expectBothSides();
@@ -300,7 +331,7 @@ TEST(RestingObjects, NearestIsTheOneOfBruteForce) {
   Tally tally;
   for (int round = 0; round < 50; ++round) {
     const std::vector<Body> bodies = randomBodies(room, 40, random);
-    const RestingObjects objects = restingIn(room, bodies);
+    const RestingObjects objects = restingAt(bodies);
     for (int n = 0; n < 100; ++n) {
       const Vec3 centre = randomCentre(bodies, room, random);
       const float radius = kRadii[random() % 3];
@@ -329,7 +360,7 @@ TEST(RestingObjects, NearestIsTheOneOfBruteForce) {
 
 TEST(RestingObjects, NearestPrefersTheLowerIndexOfTwoThatHoldTheCentre) {
   const Body cube{{{}, {0.25F, 0.25F, 0.25F}}, {{1, 1, 1}, {}}};
-  const RestingObjects objects = restingIn({.x = {0, 2}, .z = {0, 2}}, {cube, cube, cube});
+  const RestingObjects objects = restingAt({cube, cube, cube});
   EXPECT_EQ(objects.nearest({1, 1, 1}, 0.015F), 0U);
 }
 
@@ -380,7 +411,7 @@ TEST(RestingObjects, FallIsThatOfBisection) {
   Tally tally;
   for (int round = 0; round < 40; ++round) {
     const std::vector<Body> bodies = randomBodies(room, 25, random);
-    const RestingObjects objects = restingIn(room, bodies);
+    const RestingObjects objects = restingAt(bodies);
     for (int n = 0; n < 50; ++n) {
       Vec3 centre = randomCentre(bodies, room, random);
       centre.y += 0.3F;
@@ -405,7 +436,7 @@ TEST(RestingObjects, FallIsThatOfBisection) {
 
 TEST(RestingObjects, FallIsExactOnSmallCases) {
   const Body cube{{{}, {0.25F, 0.25F, 0.25F}}, {{1, 1, 1}, {}}};
-  const RestingObjects objects = restingIn({.x = {0, 2}, .z = {0, 2}}, {cube});
+  const RestingObjects objects = restingAt({cube});
   const float infinity = std::numeric_limits<float>::infinity();
   EXPECT_FLOAT_EQ(objects.fall({1, 2, 1}, 0.0625F), 0.6875F);
   EXPECT_FLOAT_EQ(objects.fall({1, 1.3125F, 1}, 0.0625F), 0);
@@ -417,16 +448,6 @@ TEST(RestingObjects, FallIsExactOnSmallCases) {
   EXPECT_NEAR(objects.fall({1.28F, 2, 1}, 0.05F), 1 - 0.25F - 0.04F, 1e-6);
   // Over a corner: 0.02, 0.02 beside.
   EXPECT_NEAR(objects.fall({1.27F, 2, 1.27F}, 0.03F), 1 - 0.25F - 0.01F, 1e-6);
-}
-
-TEST(WindowFrame, CoversLargeScenesWithLargerWindows) {
-  const WindowFrame room = makeWindowFrame({-2, 6}, {-4, 10}, 0.12F);
-  EXPECT_GE(1 / room.inverse_half_cell, 0.2399F);
-  const WindowFrame palace = makeWindowFrame({-200, 600}, {-400, 1000}, 0.12F);
-  EXPECT_LE(palace.windowCount(), kMostWindows);
-  EXPECT_GE(static_cast<float>(palace.windows_x) / palace.inverse_half_cell, 800);
-  EXPECT_GE(static_cast<float>(palace.windows_z) / palace.inverse_half_cell, 1400);
-  EXPECT_EQ(makeWindowFrame({1, 1}, {2, 2}, 0.12F).windowCount(), 1U);
 }
 
 }  // namespace
