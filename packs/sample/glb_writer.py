@@ -165,25 +165,31 @@ def _node_json(node, document, mesh_ids, mesh_list):
     return index
 
 
-def _material_json(name, image_index):
-    _, colour, metallic, roughness, _ = textures.MATERIALS[name]
-    return {"name": name, "pbrMetallicRoughness": {
-        "baseColorFactor": list(colour) + [1.0], "baseColorTexture": {"index": image_index},
-        "metallicFactor": metallic, "roughnessFactor": roughness}}
+def _material_json(name, material, image_names):
+    image, colour, metallic, roughness, _ = material
+    surface = {"baseColorFactor": list(colour) + [1.0]}
+    if image is not None:
+        surface["baseColorTexture"] = {"index": image_names.index(image)}
+    surface.update(metallicFactor=metallic, roughnessFactor=roughness)
+    return {"name": name, "pbrMetallicRoughness": surface}
 
 
-def write(root, images):
-    """Return the bytes of the GLB of the tree under `root` with [(name, PNG bytes)]."""
+def write(root, images, materials=textures.MATERIALS, script="make_apartment.py"):
+    """Return the bytes of the GLB of the tree under `root`.
+
+    images: [(name, PNG bytes)]; materials: those of the file, laid out as textures.MATERIALS;
+    script: the file that made it, named inside.
+    """
     names = [name for name, _ in images]
-    materials = [_material_json(m, names.index(textures.MATERIALS[m][0])) for m in textures.MATERIALS]
-    document = {"asset": {"version": "2.0", "generator": "galactic packs/sample/make_apartment.py"},
+    material_list = [_material_json(name, m, names) for name, m in materials.items()]
+    document = {"asset": {"version": "2.0", "generator": f"galactic packs/sample/{script}"},
                 "scene": 0, "scenes": [{"name": root.name, "nodes": [0]}], "nodes": [],
-                "meshes": [], "materials": materials,
+                "meshes": [], "materials": material_list,
                 "textures": [{"name": n, "sampler": 0, "source": i} for i, n in enumerate(names)],
                 "samplers": [{"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497}]}
     mesh_list = []
     _node_json(root, document, {}, mesh_list)
-    buffers, material_ids = _Buffers(), {m: i for i, m in enumerate(textures.MATERIALS)}
+    buffers, material_ids = _Buffers(), {m: i for i, m in enumerate(materials)}
     document["meshes"] = [_mesh_json(m, material_ids, buffers) for m in mesh_list]
     document["accessors"] = buffers.accessors
 
@@ -203,6 +209,10 @@ def write(root, images):
         blob += data + bytes(-len(data) % 4)
     document["bufferViews"] = views
     document["buffers"] = [{"byteLength": len(blob)}]
+    if not images:
+        # glTF has no empty lists.
+        for key in ("images", "textures", "samplers"):
+            del document[key]
 
     text = json.dumps(document, separators=(",", ":"), allow_nan=False).encode()
     text += b" " * (-len(text) % 4)

@@ -66,7 +66,7 @@ def signed_volume(points, faces):
 
 def planar_uvs(material, points, faces):
     """Project every face along its main axis, at the material's scale; the grain follows length."""
-    tile_u, tile_v = textures.MATERIALS[material][4]
+    tile_u, tile_v = textures.tile_size(material)
     extent = [max(p[k] for p in points) - min(p[k] for p in points) for k in range(3)]
     result = []
     for face in faces:
@@ -160,7 +160,7 @@ def lathe(material, profile, segments, rect=None, ring=False, crease=0.45):
 
     An open profile starts and ends on the axis (radius 0); with `ring` it is a loop off the axis.
     """
-    tile_u, tile_v = textures.MATERIALS[material][4]
+    tile_u, tile_v = textures.tile_size(material)
     lengths = [0.0]
     loop = profile + profile[:1] if ring else profile
     for (r0, y0), (r1, y1) in zip(loop, loop[1:]):
@@ -219,7 +219,7 @@ def ellipsoid(material, radii, rings, segments, rect=None):
 
 def tube(material, path, radius, segments):
     """A round tube along a polyline that stays in one plane x = constant, with flat ends."""
-    tile_u, tile_v = textures.MATERIALS[material][4]
+    tile_u, tile_v = textures.tile_size(material)
     points, rings, along = [], [], 0.0
     for i, p in enumerate(path):
         before, after = path[max(i - 1, 0)], path[min(i + 1, len(path) - 1)]

@@ -34,8 +34,30 @@ MATERIALS = {
     "prints": ("prints", (1.0, 1.0, 1.0), 0.0, 0.7, (1.0, 1.0)),
 }
 
+# The same for the movable objects, each of which is a file of its own: most are plain colours, which
+# need no image.
+OBJECT_MATERIALS = {
+    "glaze": (None, (0.89, 0.87, 0.80), 0.0, 0.25, (1.0, 1.0)),
+    "blue_glaze": (None, (0.13, 0.30, 0.52), 0.0, 0.25, (1.0, 1.0)),
+    "porcelain": (None, (0.93, 0.93, 0.91), 0.0, 0.2, (1.0, 1.0)),
+    "tin": (None, (0.66, 0.67, 0.69), 0.8, 0.35, (1.0, 1.0)),
+    "red_label": ("label", (0.84, 0.24, 0.20), 0.0, 0.6, (1.0, 1.0)),
+    "yellow_label": ("label", (0.96, 0.72, 0.22), 0.0, 0.6, (1.0, 1.0)),
+    "green_plastic": (None, (0.20, 0.47, 0.31), 0.0, 0.4, (1.0, 1.0)),
+    "white_plastic": (None, (0.90, 0.90, 0.88), 0.0, 0.4, (1.0, 1.0)),
+    "teal_cover": ("label", (0.16, 0.46, 0.50), 0.0, 0.7, (1.0, 1.0)),
+    "pages": (None, (0.92, 0.89, 0.80), 0.0, 0.95, (1.0, 1.0)),
+    "apple_skin": (None, (0.75, 0.15, 0.13), 0.0, 0.4, (1.0, 1.0)),
+    "stem": (None, (0.33, 0.23, 0.13), 0.0, 0.9, (1.0, 1.0)),
+}
+
 # Materials whose texture has a grain along u: u follows the long side of a part.
 GRAINED = frozenset(("planks", "oak", "walnut"))
+
+
+def tile_size(material):
+    """Metres per repeat of the material's image in u and v."""
+    return (MATERIALS.get(material) or OBJECT_MATERIALS[material])[4]
 
 
 def _hash01(x, y, seed):
@@ -221,6 +243,28 @@ def _prints():
             return _painting_colour(min(max(x - 1, 0), 62), inside_y)
         return _view_colour(min(max(x - 65, 0), 62), inside_y)
     return _picture(PRINTS_SIZE, colour)
+
+
+def _label():
+    """A printed label, bright so that the material's colour shows: a seal over lines of print."""
+    def colour(x, y):
+        u, v = (x + 0.5) / 64, (y + 0.5) / 64
+        round_seal = (u - 0.5) * (u - 0.5) + (v - 0.36) * (v - 0.36)
+        if v < 0.08 or v > 0.94:
+            return (150, 150, 150)
+        if round_seal < 0.012:
+            return (255, 250, 236)
+        if round_seal < 0.045:
+            return (120, 120, 120)
+        if 0.64 < v < 0.90 and 0.2 < u < 0.8 and int(v * 64) % 4 < 2:
+            return (130, 130, 130) if _hash01(x // 2, y // 4, 101) > 0.3 else (255, 255, 255)
+        return (255, 255, 255)
+    return _picture(64, colour)
+
+
+def object_images():
+    """Return [(name, PNG file bytes)] of OBJECT_MATERIALS in a fixed order."""
+    return [("label", png.encode(*_label()))]
 
 
 def images():

@@ -1,0 +1,190 @@
+#include "episodes/floor_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "episodes/columns_view.h"
+#include "episodes/robot_body.h"
+#include "galactic/simulation_options.h"
+
+namespace galactic::bake {
+namespace {
+
+constexpr std::uint32_t kNoPlace = 0xFFFFFFFF;
+
+/// Which headings of which places have been seen by a flood fill.
+struct Flood {
+  struct State {
+    std::uint32_t place = 0;
+    std::uint32_t heading = 0;
+  };
+
+  explicit Flood(std::size_t places) : seen(places, 0) {}
+
+  void visit(std::uint32_t place, std::uint32_t heading) {
+    seen[place] = static_cast<std::uint16_t>(seen[place] | (1U << heading));
+    open.push_back({place, heading});
+  }
+
+  std::vector<std::uint16_t> seen;
+  std::vector<State> open;
+};
+
+bool hasHeading(std::uint16_t headings, std::uint32_t heading) {
+  return ((headings >> heading) & 1U) != 0;
+}
+
+/// Connections of floor places.
+class FloorGraph {
+ public:
+  FloorGraph(const std::vector<FloorPlace>& places, const std::vector<std::uint32_t>& first,
+             const ColumnGrid& grid)
+      : places_(places), first_(first), grid_(grid) {}
+
+  /// Fills from one heading of a place; returns how many states it reached.
+  std::size_t fill(Flood& flood, std::uint32_t place, std::uint32_t heading) const {
+    std::size_t reached = 0;
+    flood.visit(place, heading);
+    while (!flood.open.empty()) {
+      const Flood::State state = flood.open.back();
+      flood.open.pop_back();
+      ++reached;
+      tryVisit(flood, state.place, (state.heading + 1) % kHeadings);
+      tryVisit(flood, state.place, (state.heading + kHeadings - 1) % kHeadings);
+      const FloorPlace& here = places_[state.place];
+      if (here.i > 0) visitColumn(flood, state, here.i - 1, here.k);
+      if (here.k > 0) visitColumn(flood, state, here.i, here.k - 1);
+      if (here.i + 1 < grid_.columnsX()) visitColumn(flood, state, here.i + 1, here.k);
+      if (here.k + 1 < grid_.columnsZ()) visitColumn(flood, state, here.i, here.k + 1);
+    }
+    return reached;
+  }
+
+ private:
+  void tryVisit(Flood& flood, std::uint32_t place, std::uint32_t heading) const {
+    const bool free = hasHeading(places_[place].headings, heading);
+    if (free && !hasHeading(flood.seen[place], heading)) flood.visit(place, heading);
+  }
+
+  void visitColumn(Flood& flood, const Flood::State& from, std::uint32_t i, std::uint32_t k) const {
+    // A slope that the base takes in both directions.
+    constexpr GroundOptions kGround;
+    constexpr float kMostStep = std::min(kGround.most_rise, kGround.most_drop);
+    const std::size_t column = std::size_t{k} * grid_.columnsX() + i;
+    for (std::uint32_t place = first_[column]; place < first_[column + 1]; ++place) {
+      const float step = places_[place].height - places_[from.place].height;
+      if (std::abs(step) <= kMostStep) tryVisit(flood, place, from.heading);
+    }
+  }
+
+  const std::vector<FloorPlace>& places_;
+  const std::vector<std::uint32_t>& first_;
+  const ColumnGrid& grid_;
+};
+
+/// The height of the floor under a free centre of a large sphere, as the smallest radius sees it:
+/// a small sphere is not held up by what stands beside it.
+std::optional<float> floorUnder(const Scene& scene, const Vec3& free_centre) {
+  const ColumnGrid& grid = scene.grids().front();
+  const Contact contact = grid.contact(free_centre);
+  if (contact.clearance != Clearance::kFree) return std::nullopt;
+  return free_centre.y - contact.down - grid.radius();
+}
+
+}  // namespace
+
+std::uint32_t nearestHeading(float yaw) {
+  constexpr float kPerRadian = static_cast<float>(kHeadings) / (2 * std::numbers::pi_v<float>);
+  const auto steps = static_cast<std::int32_t>(std::lround(yaw * kPerRadian));
+  constexpr auto kCount = static_cast<std::int32_t>(kHeadings);
+  return static_cast<std::uint32_t>((steps % kCount + kCount) % kCount);
+}
+
+float yawOf(std::uint32_t heading) {
+  constexpr float kStep = 2 * std::numbers::pi_v<float> / static_cast<float>(kHeadings);
+  return kStep * static_cast<float>(heading);
+}
+
+FloorMap::FloorMap(const Scene& scene, const Robot& robot) : grid_(scene.grids().back()) {
+  for (std::uint32_t k = 0; k < grid_.columnsZ(); ++k) {
+    for (std::uint32_t i = 0; i < grid_.columnsX(); ++i) addPlaces(scene, i, k);
+  }
+  tried_ = places_.size();
+  std::array<std::vector<BodySphere>, kHeadings> at_origin;
+  for (std::uint32_t heading = 0; heading < kHeadings; ++heading) {
+    at_origin[heading] =
+        robotBody(robot, groundPose({}, yawOf(heading)), robot.startPositions()).spheres;
+  }
+  for (FloorPlace& place : places_) {
+    const Vec3 ground = position(place);
+    for (std::uint32_t heading = 0; heading < kHeadings; ++heading) {
+      if (isFree(scene, at_origin[heading], ground)) {
+        place.headings = static_cast<std::uint16_t>(place.headings | (1U << heading));
+      }
+    }
+  }
+  std::erase_if(places_, [](const FloorPlace& place) { return place.headings == 0; });
+  indexColumns();
+  keepLargestPart();
+}
+
+void FloorMap::addPlaces(const Scene& scene, std::uint32_t i, std::uint32_t k) {
+  std::optional<float> last;
+  for (const Span& span : spansOf(grid_, i, k)) {
+    Vec3 centre = columnCentre(grid_, i, k);
+    centre.y = span.lo;
+    const std::optional<float> floor = floorUnder(scene, centre);
+    // Two spans of the large sphere may lie in one of the small one, over one floor.
+    if (!floor || floor == last) continue;
+    places_.push_back({.i = i, .k = k, .height = *floor, .headings = 0});
+    last = floor;
+  }
+}
+
+void FloorMap::indexColumns() {
+  const std::size_t columns = std::size_t{grid_.columnsX()} * grid_.columnsZ();
+  first_.assign(columns + 1, 0);
+  for (const FloorPlace& place : places_) {
+    ++first_[std::size_t{place.k} * grid_.columnsX() + place.i + 1];
+  }
+  for (std::size_t column = 0; column < columns; ++column) first_[column + 1] += first_[column];
+}
+
+void FloorMap::keepLargestPart() {
+  const FloorGraph graph(places_, first_, grid_);
+  Flood all(places_.size());
+  std::size_t most = 0;
+  Flood::State seed{kNoPlace, 0};
+  for (std::uint32_t place = 0; place < places_.size(); ++place) {
+    for (std::uint32_t heading = 0; heading < kHeadings; ++heading) {
+      if (!hasHeading(places_[place].headings, heading)) continue;
+      if (hasHeading(all.seen[place], heading)) continue;
+      const std::size_t reached = graph.fill(all, place, heading);
+      if (reached <= most) continue;
+      most = reached;
+      seed = {place, heading};
+    }
+  }
+  if (seed.place == kNoPlace) return;
+  Flood largest(places_.size());
+  graph.fill(largest, seed.place, seed.heading);
+  for (std::size_t n = 0; n < places_.size(); ++n) places_[n].headings = largest.seen[n];
+  std::erase_if(places_, [](const FloorPlace& place) { return place.headings == 0; });
+  indexColumns();
+}
+
+Vec3 FloorMap::position(const FloorPlace& place) const {
+  Vec3 centre = columnCentre(grid_, place.i, place.k);
+  centre.y = place.height;
+  return centre;
+}
+
+std::span<const FloorPlace> FloorMap::placesAt(float x, float z) const {
+  const std::optional<Column> column = columnAt(grid_, x, z);
+  if (!column) return {};
+  const std::size_t index = std::size_t{column->k} * grid_.columnsX() + column->i;
+  return std::span(places_).subspan(first_[index], first_[index + 1] - first_[index]);
+}
+
+}  // namespace galactic::bake

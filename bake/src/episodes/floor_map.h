@@ -1,0 +1,67 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "galactic/column_grid.h"
+#include "galactic/robot.h"
+#include "galactic/scene.h"
+
+namespace galactic::bake {
+
+/// Headings in which the base is tried at each place, evenly spread; heading n is a yaw of
+/// n * 2 pi / kHeadings.
+inline constexpr std::uint32_t kHeadings = 16;
+
+/// A place on the floor under the centre of a column of the largest radius.
+struct FloorPlace {
+  std::uint32_t i = 0;
+  std::uint32_t k = 0;
+  /// Metres.
+  float height = 0;
+  /// Bit n: the robot in its start pose is free in heading n, and can drive here from anywhere else
+  /// on the map.
+  std::uint16_t headings = 0;
+};
+
+/// Where the robot can stand and drive: the largest connected part of the floor.
+class FloorMap {
+ public:
+  /// Takes the floor from the columns of the largest radius and tests all spheres of the robot in
+  /// its start pose against the scene. Places in neighbouring columns are connected in one heading
+  /// when their heights differ by no more than the run's GroundOptions allow; headings are
+  /// connected with their neighbours. Empty when the robot stands nowhere.
+  FloorMap(const Scene& scene, const Robot& robot);
+
+  /// Row by row, the lower place of a column first; each with at least one heading.
+  [[nodiscard]] const std::vector<FloorPlace>& places() const { return places_; }
+  /// Places with a floor at which the robot was tried.
+  [[nodiscard]] std::size_t tried() const { return tried_; }
+
+  /// Point on the floor at the centre of the place's column, metres.
+  [[nodiscard]] Vec3 position(const FloorPlace& place) const;
+
+  /// The places of the column in which (x, z) lies; empty outside the grid.
+  [[nodiscard]] std::span<const FloorPlace> placesAt(float x, float z) const;
+
+ private:
+  void addPlaces(const Scene& scene, std::uint32_t i, std::uint32_t k);
+  void indexColumns();
+  void keepLargestPart();
+
+  ColumnGrid grid_;
+  std::vector<FloorPlace> places_;
+  /// Index of each column's first place, and the number of places at the end.
+  std::vector<std::uint32_t> first_;
+  std::size_t tried_ = 0;
+};
+
+/// The heading that is nearest to a yaw in radians.
+[[nodiscard]] std::uint32_t nearestHeading(float yaw);
+/// Radians.
+[[nodiscard]] float yawOf(std::uint32_t heading);
+
+}  // namespace galactic::bake

@@ -1,0 +1,17 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "episodes/episode_draft.h"
+
+namespace galactic::bake {
+
+/// Looks for a position of base and arm in which the grasp point is within kGraspShare of the grasp
+/// radius of the object's box: the base at a place of the floor map about `floor_height` high,
+/// every sphere free in the scene, none touching the object. Returns the robot's spheres, or none
+/// after some hundred tries.
+[[nodiscard]] std::optional<std::vector<BodySphere>> findReach(const Stage& stage,
+                                                               const PlacedObject& object,
+                                                               float floor_height, Random& random);
+
+}  // namespace galactic::bake

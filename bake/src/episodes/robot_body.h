@@ -1,0 +1,49 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "galactic/pose.h"
+#include "galactic/robot.h"
+#include "galactic/scene.h"
+
+namespace galactic::bake {
+
+/// A sphere of the robot in the world.
+struct BodySphere {
+  Vec3 centre;
+  float radius = 0;
+  std::uint32_t radius_index = 0;
+  std::uint32_t group = 0;
+};
+
+/// The robot in one configuration.
+struct RobotBody {
+  /// By falling radius: the large ones are the likeliest to be blocked.
+  std::vector<BodySphere> spheres;
+  /// Of the end effector.
+  Vec3 grasp_point;
+};
+
+/// Turns by `yaw` radians about +Y, counter-clockwise seen from above.
+[[nodiscard]] Quat yawRotation(float yaw);
+
+/// The frame on the ground under the root's origin: `position` in the world, turned by `yaw`.
+[[nodiscard]] inline Pose groundPose(const Vec3& position, float yaw) {
+  return {position, yawRotation(yaw)};
+}
+
+/// Spheres and grasp point with the base at `world_from_ground` and the joints at `positions`
+/// (radians or metres, one per position of the robot). The robot must have base and end effector.
+[[nodiscard]] RobotBody robotBody(const Robot& robot, const Pose& world_from_ground,
+                                  std::span<const float> positions);
+
+/// Whether every sphere, moved by `offset` (metres), is free in the column grid of its radius; the
+/// scene's radii must be the robot's. Spheres outside the grid are not free.
+[[nodiscard]] bool isFree(const Scene& scene, std::span<const BodySphere> spheres,
+                          const Vec3& offset = {});
+
+/// Whether two groups that may touch do.
+[[nodiscard]] bool touchesItself(const Robot& robot, std::span<const BodySphere> spheres);
+
+}  // namespace galactic::bake
