@@ -6,6 +6,7 @@
 // GALACTIC_BENCH_HELD_WORLD: the same with the target of each episode in the robot's hand.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -36,7 +37,8 @@ constexpr std::uint32_t kSampled = 16;
 /// decide.
 class Actions {
  public:
-  Actions(std::size_t envs, std::size_t count, Load load) : size_(envs * count) {
+  Actions(std::size_t envs, std::size_t count, Load load)
+      : size_(envs * count), count_(count), load_(load) {
     values_.resize(kBatches * size_);
     for (std::size_t step = 0; step < kBatches; ++step) {
       for (std::size_t env = 0; env < envs; ++env) {
@@ -45,7 +47,16 @@ class Actions {
     }
   }
 
-  [[nodiscard]] std::span<const float> batch(std::size_t step) const {
+  /// `begin`: the envs whose episode begins with this step; their robots do not move in it.
+  [[nodiscard]] std::span<const float> batch(std::size_t step, std::span<const std::size_t> begin) {
+    for (const std::size_t env : begin_) fillRow(row(step_, env), step_ % kBatches, env, load_);
+    step_ = step;
+    begin_ = begin;
+    for (const std::size_t env : begin_) {
+      const std::span<float> first = row(step, env);
+      std::fill(first.begin(), first.end(), 0.0F);
+      if (load_ == Load::kHeld) first[count_ - 2] = 1;
+    }
     return std::span(values_).subspan(step % kBatches * size_, size_);
   }
 
@@ -62,6 +73,10 @@ class Actions {
     return static_cast<float>(hash >> 40U) * 0x1p-23F - 1;
   }
 
+  [[nodiscard]] std::span<float> row(std::size_t step, std::size_t env) {
+    return std::span(values_).subspan(step % kBatches * size_ + env * count_, count_);
+  }
+
   /// The published order of actions is hand, turn, forward, joints, stop; its turn is positive
   /// counter-clockwise.
   static void fillRow(std::span<float> row, std::size_t step, std::size_t env, Load load) {
@@ -75,7 +90,12 @@ class Actions {
   }
 
   std::size_t size_;
+  std::size_t count_;
+  Load load_;
   std::vector<float> values_;
+  /// Of the batch given last.
+  std::size_t step_ = 0;
+  std::span<const std::size_t> begin_;
 };
 
 /// Which env begins which episode when: each every 500 steps, evenly spread.
@@ -93,15 +113,16 @@ class Resets {
   [[nodiscard]] std::span<const std::int32_t> at(std::size_t step) {
     for (const std::size_t env : last_) resets_[env] = -1;
     last_ = {};
-    if (step == 0) return {};
-    last_ = by_phase_[step % kEpisodeSteps];
-    if (last_.empty()) return {};
+    if (step > 0) last_ = by_phase_[step % kEpisodeSteps];
     for (const std::size_t env : last_) {
       resets_[env] = static_cast<std::int32_t>(next_[env]);
       next_[env] = (next_[env] + 1) % episodes_;
     }
     return resets_;
   }
+
+  /// The envs that the last call reset.
+  [[nodiscard]] std::span<const std::size_t> last() const { return last_; }
 
  private:
   std::vector<std::vector<std::size_t>> by_phase_;
@@ -176,11 +197,12 @@ void stepBatch(benchmark::State& state) {
     return;
   }
   simulator->samplePhases(kSampled);
-  const Actions actions(envs, simulator->actionCount(), load);
+  Actions actions(envs, simulator->actionCount(), load);
   Resets resets(envs, world->episodes().episodes().size());
   std::size_t step = 0;
   for (auto _ : state) {
-    simulator->step(actions.batch(step), resets.at(step));
+    const std::span<const float> batch = actions.batch(step, resets.last());
+    simulator->step(batch, resets.at(step));
     ++step;
   }
   report(state, *simulator);

@@ -30,7 +30,12 @@ SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) {
 /// Whether a held object's sphere that counts penetrates something.
 bool heldPenetrates(const ChunkStep& step, std::size_t e) {
   const std::span<std::uint64_t> bits = step.chunk.bits().first(step.model.heldWords());
-  penetrating(obstaclesOf(step, e), heldSpheres(step, e), step.chunk.collision(), bits);
+  const SphereBatch spheres = heldSpheres(step, e);
+  if (!penetrates(obstaclesOf(step, e), spheres)) {
+    std::ranges::fill(bits, 0U);
+    return false;
+  }
+  penetrating(obstaclesOf(step, e), spheres, step.chunk.collision(), bits);
   const std::span<const std::uint64_t> ignored = step.state.ignored(step.first + e);
   std::uint64_t any = 0;
   for (std::size_t w = 0; w < bits.size(); ++w) any |= bits[w] & ~ignored[w];
