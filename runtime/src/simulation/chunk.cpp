@@ -15,7 +15,7 @@ Chunk::Chunk(const Model& model)
       bodies_(kChunk * body_count_),
       frames_(frameScratchSize(model.motion.nodes.size()) / kLanes),
       collision_(std::max(model.sphereCount(), model.most_held_spheres)),
-      placement_(model.most_held_spheres),
+      placement_(model.most_held_spheres, model.world->radii()),
       bits_((std::max(model.sphereCount(), model.most_held_spheres) + 63) / 64) {}
 
 PoseArrays Chunk::candidates(std::size_t first) {

@@ -28,7 +28,7 @@ class CollisionScratch {
   std::vector<SphereHit> hits_;
 };
 
-/// What a robot and the object that it holds can hit.
+/// What a robot, and an object that it holds or releases, can hit.
 struct Obstacles {
   const Scene& scene;
   const RestingObjects& objects;

@@ -22,7 +22,7 @@ void grasp(const ChunkStep& step, std::size_t e) {
   env.held = {static_cast<std::int32_t>(*object), inverse(gripPose(grip)) * before, before};
   resting.remove(*object);
   const SphereBatch spheres =
-      holdSpheres(heldModel(step.model, env), before, step.chunk.placement());
+      holdSpheres(heldModel(step.model, env), before, step.chunk.placement().spheres);
   penetrating({step.model.world->scenes()[env.scene], resting}, spheres, step.chunk.collision(),
               step.state.ignored(n));
   ++env.counters.grasps;

@@ -13,12 +13,22 @@
 namespace galactic::simulation {
 namespace {
 
+/// Spheres of an object as a SphereBatch has them: each radius padded to whole lanes.
+std::size_t paddedSpheres(const ObjectModel& object, std::size_t radii) {
+  std::size_t padded = 0;
+  for (std::uint32_t radius = 0; radius < radii; ++radius) {
+    padded += paddedToLanes(static_cast<std::size_t>(
+        std::ranges::count(object.spheres, radius, &SetSphere::radius_index)));
+  }
+  return padded;
+}
+
 void measure(const World& world, Model& model) {
   model.most_objects = model.options.task.distractors ? world.mostObjects() : 1;
   for (const Episode& episode : world.episodes().episodes()) {
     for (const Placement& placement : model.placements(episode)) {
-      model.most_held_spheres =
-          std::max(model.most_held_spheres, paddedObjectSpheres(world.objectOf(placement)));
+      model.most_held_spheres = std::max(
+          model.most_held_spheres, paddedSpheres(world.objectOf(placement), world.radii().size()));
     }
   }
 }

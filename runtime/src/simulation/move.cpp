@@ -24,7 +24,7 @@ Vec3 floorProbe(const Scene& scene, const Vec3& base, const GroundOptions& optio
 SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) {
   const Env& env = step.state.env(step.first + e);
   const Pose world_from_object = gripPose(step.chunk.grip(e)) * env.held.grip_from_object;
-  return holdSpheres(heldModel(step.model, env), world_from_object, step.chunk.placement());
+  return holdSpheres(heldModel(step.model, env), world_from_object, step.chunk.placement().spheres);
 }
 
 /// Whether a held object's sphere that counts penetrates something.
