@@ -87,40 +87,41 @@ Push PushSum::total(float longest) const noexcept {
 
 Push pushOutOfScene(const ColumnGrid& grid, const Vec3& centre, float reach) noexcept {
   // The nearest column decides, so a sphere gets free where it enters the cell of a free column.
-  // Four directions, two cells further each time.
-  constexpr int kDirections = 4;
-  constexpr std::array<float, kDirections> kX{1, -1, 0, 0};
-  constexpr std::array<float, kDirections> kZ{0, 0, 1, -1};
+  // Eight candidates at a time: the next cell in four directions, and the one behind it.
+  using Eight = std::array<float, kLanes>;
+  constexpr Eight kX{1, -1, 0, 0, 1, -1, 0, 0};
+  constexpr Eight kZ{0, 0, 1, -1, 0, 0, 1, -1};
   constexpr float kIntoCell = 1e-4F;
+  constexpr int kCellsAtATime = 2;
   const ColumnGridLayout& layout = grid.layout();
   const float cell_x = (centre.x - layout.min_x) * layout.inverse_spacing;
   const float cell_z = (centre.z - layout.min_z) * layout.inverse_spacing;
   const float part_x = cell_x - std::floor(cell_x);
   const float part_z = cell_z - std::floor(cell_z);
-  const std::array<float, kDirections> to_border{1 - part_x, part_x, 1 - part_z, part_z};
-  std::array<float, kLanes> x{};
-  std::array<float, kLanes> y{};
-  std::array<float, kLanes> z{};
-  std::array<float, kLanes> way{};
+  const Eight to_border{1 - part_x, part_x,     1 - part_z, part_z,
+                        2 - part_x, 1 + part_x, 2 - part_z, 1 + part_z};
+  Eight x{};
+  Eight y{};
+  Eight z{};
+  Eight way{};
   std::array<Clearance, kLanes> answers{};
   y.fill(centre.y);
-  for (int cells = 0; static_cast<float>(cells) * layout.spacing <= reach; cells += 2) {
+  for (int cells = 0; static_cast<float>(cells) * layout.spacing <= reach; cells += kCellsAtATime) {
+    const float further = static_cast<float>(cells) * layout.spacing + kIntoCell;
     for (std::size_t n = 0; n < kLanes; ++n) {
-      const std::size_t direction = n % kDirections;
-      const auto further = static_cast<float>(cells + static_cast<int>(n / kDirections));
-      way[n] = (to_border[direction] + further) * layout.spacing + kIntoCell;
-      x[n] = centre.x + way[n] * kX[direction];
-      z[n] = centre.z + way[n] * kZ[direction];
+      way[n] = to_border[n] * layout.spacing + further;
+      x[n] = centre.x + way[n] * kX[n];
+      z[n] = centre.z + way[n] * kZ[n];
     }
     grid.contact({x, y, z}, {answers, {}, {}});
+    std::size_t best = kLanes;
     float shortest = reach;
-    Push push;
     for (std::size_t n = 0; n < kLanes; ++n) {
-      if (answers[n] != Clearance::kFree || way[n] > shortest) continue;
-      shortest = way[n];
-      push = {way[n] * kX[n % kDirections], way[n] * kZ[n % kDirections]};
+      const bool is_better = answers[n] == Clearance::kFree && way[n] <= shortest;
+      shortest = is_better ? way[n] : shortest;
+      best = is_better ? n : best;
     }
-    if (push.x != 0 || push.z != 0) return push;
+    if (best != kLanes) return {way[best] * kX[best], way[best] * kZ[best]};
   }
   return {};
 }
