@@ -90,8 +90,8 @@ bool SupportPlaces::isFlatAround(const Column& column, float surface) const {
 
 std::optional<float> SupportPlaces::surfaceUnder(const Footprint& footprint, float surface) const {
   const ColumnGrid& grid = scene_->grids().front();
-  const float length = footprint.half_length + kRim;
-  const float width = footprint.half_width + kRim;
+  const float length = footprint.half_length + kRim * grid.spacing();
+  const float width = footprint.half_width + kRim * grid.spacing();
   const float reach = std::hypot(length, width);
   const auto first = columnAt(grid, footprint.x - reach, footprint.z - reach);
   const auto last = columnAt(grid, footprint.x + reach, footprint.z + reach);

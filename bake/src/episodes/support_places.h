@@ -20,8 +20,9 @@ inline constexpr float kApproachHeight = 0.2F;
 inline constexpr float kHeadroom = 0.02F;
 /// Heights within one footprint may differ by this much, metres: a bake rounds them to less.
 inline constexpr float kFlatness = 0.004F;
-/// The surface goes on for so much around an object's footprint, metres.
-inline constexpr float kRim = 0.01F;
+/// The surface goes on for so much around an object's footprint, in cells: half a diagonal, so that
+/// the column nearest to any point under the object counts.
+inline constexpr float kRim = 0.7072F;
 
 /// A column over a flat piece of surface that the robot can reach.
 struct SupportPlace {
