@@ -21,9 +21,9 @@ class EpisodeOracle {
  public:
   /// Boxes may come this much nearer than promised: rounding of floats, and of the projections.
   static constexpr double kGapTolerance = 1e-3;
-  /// Heights under one object differ by no more than this; the sampler's limit is 4 mm on each
+  /// Heights under one object differ by no more than this; the sampler's limit is 2 mm on each
   /// side, and a grid rounds.
-  static constexpr double kFlatTolerance = 0.009;
+  static constexpr double kFlatTolerance = 0.005;
   static constexpr double kGap = 0.05;
 
   EpisodeOracle(const Scene& scene, const ObjectSet& objects, const Robot& robot,
