@@ -13,7 +13,17 @@
 namespace galactic::test {
 namespace {
 
-using namespace galactic::simulation;
+using simulation::HeldSpheres;
+using simulation::holdSpheres;
+using simulation::Landing;
+using simulation::paddedToLanes;
+using simulation::PlacementScratch;
+using simulation::placeObject;
+using simulation::RadiusRange;
+using simulation::RandomStream;
+using simulation::restingBox;
+using simulation::RestingObjects;
+using simulation::SphereBatch;
 
 /// Grids round heights to 0.06 mm; floats of a few metres are a micrometre apart.
 constexpr float kHeightTolerance = 1e-4F;

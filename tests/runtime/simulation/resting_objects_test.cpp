@@ -17,7 +17,19 @@
 namespace galactic::test {
 namespace {
 
-using namespace galactic::simulation;
+using simulation::findTouchingAvx2;
+using simulation::findTouchingPortable;
+using simulation::kBands;
+using simulation::kSquareEdge;
+using simulation::kStrips;
+using simulation::overlaps;
+using simulation::RadiusRange;
+using simulation::RestingObjects;
+using simulation::RestingView;
+using simulation::SphereArrays;
+using simulation::SphereBatch;
+using simulation::SphereGroup;
+using simulation::SphereHit;
 using testing::ElementsAre;
 
 constexpr float kRadii[] = {0.015F, 0.05F, 0.12F};
@@ -169,13 +181,15 @@ TEST(RestingObjects, FindsBoxesLongerThanAllStrips) {
     return hitsOf(objects, OwnedBatch().add(2, 0.12F, {centre}).view());
   };
   const double turn = 0.3;
-  for (float along = -19.9F; along < 20; along += 0.3F) {
+  for (int n = -66; n <= 66; ++n) {
+    const float along = 0.3F * static_cast<float>(n);
     const Vec3 on{along * static_cast<float>(std::cos(turn)), 1.1F,
                   -along * static_cast<float>(std::sin(turn))};
     EXPECT_THAT(hits(on), ElementsAre(SphereHit{0, 0})) << along;
     EXPECT_THAT(hits(on + Vec3{0, 0.2F, 0}), ElementsAre()) << along;
   }
-  for (float height = -30; height < 30; height += 0.3F) {
+  for (int n = -100; n <= 100; ++n) {
+    const float height = 0.3F * static_cast<float>(n);
     EXPECT_THAT(hits({5.1F, height, 5}), ElementsAre(SphereHit{0, 1})) << height;
     EXPECT_THAT(hits({5.2F, height, 5}), ElementsAre()) << height;
   }
