@@ -219,13 +219,21 @@ TEST(ObjectPlacement, GetsOutOfAWallAndNeverThroughIt) {
   // Larger than the way to the other side, and 2 cm in the wall.
   const TestObject object = brick({0.1F, 0.1F, 0.1F});
   std::size_t placed = 0;
+  std::size_t at_once = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const Landing landing = home.place(object, {{2.6F, 0.5F, 1.5F}, {}}, seed);
     if (!landing.placed) continue;
     ++placed;
     EXPECT_LT(landing.pose.translation.x, 2.6F);
     EXPECT_GT(landing.attempts, 1U);
+    if (landing.attempts > 2) continue;
+    // The first jitter leads straight out of the wall, but for the spread.
+    ++at_once;
+    const Vec3 way = landing.pose.translation - Vec3{2.6F, landing.pose.translation.y, 1.5F};
+    const float cosine = -way.x / std::sqrt(dot(way, way));
+    EXPECT_GE(cosine, std::cos(home.options.direction_spread) - 1e-4F);
   }
+  EXPECT_GT(at_once, 100U);
   EXPECT_GT(placed, 180U) << "the way out of the wall is open";
 }
 
