@@ -16,7 +16,6 @@ namespace {
 using simulation::HeldSpheres;
 using simulation::holdSpheres;
 using simulation::Landing;
-using simulation::paddedToLanes;
 using simulation::PlacementScratch;
 using simulation::placeObject;
 using simulation::RadiusRange;
@@ -439,37 +438,6 @@ TEST(ObjectPlacement, DependsOnTheStreamAndNotOnTheOrderOfSpheres) {
   }
   jittered.expectBothSides();
   EXPECT_GT(differing, 20U);
-}
-
-TEST(HeldSpheres, StandInLanesRadiusByRadius) {
-  std::mt19937 random(424);
-  TestObject object;
-  for (std::uint32_t n = 0; n < 11; ++n)
-    object.spheres.push_back({{0.01F * static_cast<float>(n), 0, 0.1F}, 2});
-  for (std::uint32_t n = 0; n < 8; ++n)
-    object.spheres.push_back({{0, 0.02F * static_cast<float>(n), 0.2F}, 0});
-  HeldSpheres room(object.spheres.size(), BoxRoom::kRadii);
-  const Pose pose{{1, 2, 3}, randomQuat(random)};
-  const SphereBatch batch = holdSpheres(object.model(), pose, room);
-  ASSERT_EQ(batch.ranges.size(), 2U);
-  EXPECT_EQ(batch.ranges[0].radius, 0.12F);
-  EXPECT_EQ(batch.ranges[0].first, 0U);
-  EXPECT_EQ(batch.ranges[0].count, 11U);
-  EXPECT_EQ(batch.ranges[1].radius_index, 0U);
-  EXPECT_EQ(batch.ranges[1].first, 16U);
-  EXPECT_EQ(batch.ranges[1].count, 8U);
-  std::size_t sphere = 0;
-  for (const RadiusRange& range : batch.ranges) {
-    for (std::uint32_t n = 0; n < paddedToLanes(range.count); ++n) {
-      const std::size_t from = sphere + std::min(n, range.count - 1);
-      const Vec3 expected = pose * object.spheres[from].centre;
-      EXPECT_NEAR(batch.x[range.first + n], expected.x, 1e-6F);
-      EXPECT_NEAR(batch.y[range.first + n], expected.y, 1e-6F);
-      EXPECT_NEAR(batch.z[range.first + n], expected.z, 1e-6F);
-    }
-    sphere += range.count;
-  }
-  EXPECT_TRUE(holdSpheres(TestObject{}.model(), pose, room).ranges.empty());
 }
 
 }  // namespace
