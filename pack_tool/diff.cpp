@@ -4,6 +4,7 @@
 
 #include "pack_tool/asset_diff.h"
 #include "pack_tool/diff_text.h"
+#include "pack_tool/episode_diff.h"
 #include "pack_tool/open_scene.h"
 #include "pack_tool/verbs.h"
 
@@ -103,9 +104,13 @@ Result<PackDifference> comparePacks(const PackFile& a, const PackFile& b,
     compareAssets({describePack(a), describePack(b)}, options, difference);
     return difference;
   }
-  if (auto done = compareScenes(a, b, options, difference); !done) {
-    return tl::unexpected(done.error());
+  if (a.kind() == PackKind::kWorld) {
+    compareWorlds(a, b, options, difference);
+    return difference;
   }
+  const auto done = a.kind() == PackKind::kEpisodes ? compareEpisodes(a, b, options, difference)
+                                                    : compareScenes(a, b, options, difference);
+  if (!done) return tl::unexpected(done.error());
   return difference;
 }
 

@@ -6,6 +6,7 @@ namespace galactic::pack_tool {
 
 int runInfo(const InfoOptions& options, const Console& console) {
   int exit_code = kExitOk;
+  bool first = true;
   Json all = Json::array();
   for (const auto& path : options.packs) {
     const auto pack = PackFile::open(path, options.trust);
@@ -13,11 +14,12 @@ int runInfo(const InfoOptions& options, const Console& console) {
       exit_code = worseExit(exit_code, reportError(console, pack.error()));
       continue;
     }
-    Json description = describePack(*pack);
     if (options.form == OutputForm::kText) {
-      console.out << (all.empty() ? "" : "\n") << infoText(description);
+      console.out << (first ? "" : "\n") << infoText(describePack(*pack, Detail::kSummary));
+    } else {
+      all.push_back(describePack(*pack));
     }
-    all.push_back(std::move(description));
+    first = false;
   }
   if (options.form == OutputForm::kJson) console.out << jsonText(all);
   return exit_code;

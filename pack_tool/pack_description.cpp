@@ -23,14 +23,9 @@ Json describeProvenance(const schema::Provenance& provenance) {
   }
   json["sources"] = Json::array();
   for (const auto* source : *provenance.sources()) {
-    // XXH3-128 is written high half first.
-    const schema::Hash128* hash = source->hash();
-    json["sources"].push_back(
-        {{"name", source->name()->str()},
-         {"bytes", source->bytes()},
-         {"xxh3_128", hash == nullptr
-                          ? Json()
-                          : Json(fmt::format("{:016x}{:016x}", hash->high(), hash->low()))}});
+    json["sources"].push_back({{"name", source->name()->str()},
+                               {"bytes", source->bytes()},
+                               {"xxh3_128", describeHash(source->hash())}});
   }
   json["warnings"] = describeTexts(*provenance.warnings());
   return json;
@@ -52,7 +47,7 @@ std::string jsonText(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-Json describePack(const PackFile& pack) {
+Json describePack(const PackFile& pack, Detail detail) {
   Json json;
   json["file"] = pack.where();
   json["kind"] = packKindName(pack.kind());
@@ -63,6 +58,10 @@ Json describePack(const PackFile& pack) {
   if (Json scene = describeScene(pack); !scene.is_null()) json["scene"] = std::move(scene);
   if (Json set = describeObjects(pack); !set.is_null()) json["object_set"] = std::move(set);
   if (Json robot = describeRobot(pack); !robot.is_null()) json["robot"] = std::move(robot);
+  if (Json set = describeEpisodes(pack, detail); !set.is_null()) {
+    json["episode_set"] = std::move(set);
+  }
+  if (Json world = describeWorld(pack); !world.is_null()) json["world"] = std::move(world);
   return json;
 }
 

@@ -15,8 +15,14 @@ using Json = nlohmann::ordered_json;
 /// Indented text, closed by a newline. Bytes that are no UTF-8 are replaced by U+FFFD.
 [[nodiscard]] std::string jsonText(const Json& json);
 
+/// How much a description tells.
+enum class Detail {
+  kEverything,
+  kSummary,  ///< What a summary for people needs: without the list of episodes.
+};
+
 /// Everything that `galactic-pack info` tells about a pack. The keys and their order are described
 /// in pack_tool/README.md and stay as they are; new ones may be added.
-[[nodiscard]] Json describePack(const PackFile& pack);
+[[nodiscard]] Json describePack(const PackFile& pack, Detail detail = Detail::kEverything);
 
 }  // namespace galactic::pack_tool

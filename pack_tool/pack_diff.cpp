@@ -129,7 +129,7 @@ std::string leafText(const Json& json) {
 
 /// The key that tells the elements of a list apart, none when they go by position.
 const char* keyOfList(const Json& list) {
-  for (const char* key : {"name", "region"}) {
+  for (const char* key : {"name", "region", "path"}) {
     const auto has_key = [key](const Json& element) {
       return element.is_object() && element.contains(key);
     };

@@ -63,7 +63,8 @@ inline constexpr std::size_t kWorstColumns = 5;
                                           double tolerance);
 
 /// Compares two JSON values leaf by leaf. Fractions that differ by no more than `tolerance` are
-/// equal. A list of objects that have a "name" or a "region" is compared by it and not by position.
+/// equal. A list of objects that all have a "name", a "region" or a "path" is compared by it and
+/// not by position.
 [[nodiscard]] std::vector<FieldDifference> compareFields(const Json& a, const Json& b,
                                                          double tolerance);
 

@@ -31,7 +31,7 @@ struct CheckOptions {
 };
 
 /// Verifies each pack completely: one line "ok" to console.out or one error to console.err for
-/// each.
+/// each. Of a world pack also the packs that it lists, and whether they fit together.
 [[nodiscard]] int runCheck(const CheckOptions& options, const Console& console);
 
 struct ColumnOptions {
@@ -62,7 +62,7 @@ struct DiffOptions {
   Trust trust = Trust::kVerify;
 };
 
-/// Compares two packs of one kind (scenes, objects or robots) by their meaning; kExitDiffers when
+/// Compares two packs of one kind by their meaning; kExitDiffers when
 /// they differ.
 [[nodiscard]] int runDiff(const DiffOptions& options, const Console& console);
 

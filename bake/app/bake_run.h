@@ -28,6 +28,7 @@ class BakeRun {
     read_.push_back(command.config);
     read_.push_back(command.robot.recipe);
     read_.push_back(command.robot.spheres);
+    read_.push_back(command.episodes.only);
   }
 
   [[nodiscard]] const BakeCommand& command() const { return command_; }

@@ -9,5 +9,7 @@ namespace galactic::pack_tool {
 [[nodiscard]] Json describeScene(const PackFile& pack);
 [[nodiscard]] Json describeObjects(const PackFile& pack);
 [[nodiscard]] Json describeRobot(const PackFile& pack);
+[[nodiscard]] Json describeEpisodes(const PackFile& pack, Detail detail);
+[[nodiscard]] Json describeWorld(const PackFile& pack);
 
 }  // namespace galactic::pack_tool

@@ -10,5 +10,7 @@ namespace galactic::pack_tool {
 [[nodiscard]] std::string sceneText(const Json& scene);
 [[nodiscard]] std::string objectsText(const Json& set);
 [[nodiscard]] std::string robotText(const Json& robot);
+[[nodiscard]] std::string episodesText(const Json& set);
+[[nodiscard]] std::string worldText(const Json& world);
 
 }  // namespace galactic::pack_tool

@@ -95,6 +95,11 @@ Json describeSurface(const schema::Surface* surface) {
           {"fnv1a_64", fmt::format("{:016x}", hash)}};
 }
 
+Json describeHash(const schema::Hash128* hash) {
+  if (hash == nullptr) return nullptr;
+  return fmt::format("{:016x}{:016x}", hash->high(), hash->low());
+}
+
 Json describeTexts(const flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>& texts) {
   Json list = Json::array();
   for (const flatbuffers::String* text : texts) list.push_back(text->str());

@@ -37,6 +37,9 @@ struct SphereRange {
 /// without one.
 [[nodiscard]] Json describeSurface(const schema::Surface* surface);
 
+/// An XXH3-128 hash in 32 hexadecimal digits, high half first; null without one.
+[[nodiscard]] Json describeHash(const schema::Hash128* hash);
+
 /// A list of texts.
 [[nodiscard]] Json describeTexts(
     const flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>& texts);

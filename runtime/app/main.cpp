@@ -67,12 +67,6 @@ std::optional<int> parse(int argc, char** argv, Options& options) {
   return std::nullopt;
 }
 
-/// Whether the kind of pack is one that this version knows; a verified pack always is.
-bool isDescribed(galactic::PackKind kind) {
-  return kind == galactic::PackKind::kScene || kind == galactic::PackKind::kObjects ||
-         kind == galactic::PackKind::kRobot;
-}
-
 /// Opens one pack and prints its summary. Mapping and verifying are timed apart.
 Result<galactic::PackFile> openAndDescribe(const std::string& path, bool trusted) {
   using Clock = std::chrono::steady_clock;
@@ -87,11 +81,6 @@ Result<galactic::PackFile> openAndDescribe(const std::string& path, bool trusted
     const auto verified = galactic::PackFile::view(pack->bytes(), path);
     times.verify = Seconds(Clock::now() - mapped).count();
     if (!verified) return tl::unexpected<Error>(verified.error());
-  }
-  if (!isDescribed(pack->kind())) {
-    return galactic::fail(ErrorCode::kUnsupported, path,
-                          "is a pack of kind " + galactic::packKindName(pack->kind()) +
-                              ", which this version cannot open; update galactic");
   }
   fmt::print("{}", galactic::summarise(*pack, times));
   return pack;

@@ -1,7 +1,9 @@
 #include "summary.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -115,6 +117,41 @@ std::string robotText(const schema::Robot& robot) {
                                        : clean(robot.link_names()->Get(robot.camera()->link())));
 }
 
+std::string episodesText(const schema::EpisodeSet& set) {
+  std::vector<std::size_t> of_scene(set.scenes()->size());
+  std::size_t fewest = set.placements()->size();
+  std::size_t most = 0;
+  for (const schema::Episode* episode : *set.episodes()) {
+    if (episode->scene() < of_scene.size()) ++of_scene[episode->scene()];
+    fewest = std::min<std::size_t>(fewest, episode->placement_count());
+    most = std::max<std::size_t>(most, episode->placement_count());
+  }
+  std::vector<std::string> joints;
+  joints.reserve(set.start_joints()->size());
+  for (const flatbuffers::String* name : *set.start_joints()) joints.push_back(clean(name));
+  std::string text = fmt::format(
+      "  {} scenes, {} objects, {} to {} of them at a time\n"
+      "  robot: {}, start joints: {}\n"
+      "  {:>10}  scene\n",
+      set.scenes()->size(), set.objects()->size(), fewest, most,
+      set.robot()->size() == 0 ? "any" : clean(set.robot()),
+      joints.empty() ? "none" : fmt::format("{}", fmt::join(joints, ", ")), "episodes");
+  for (std::size_t n = 0; n < of_scene.size(); ++n) {
+    text += fmt::format("  {:>10}  {}\n", of_scene[n],
+                        clean(set.scenes()->Get(static_cast<flatbuffers::uoffset_t>(n))));
+  }
+  return text;
+}
+
+std::string worldText(const schema::World& world) {
+  std::string text = fmt::format("  {:>6}{:>12}  pack\n", "kind", "MB");
+  for (const schema::PackReference* one : *world.packs()) {
+    text += fmt::format("  {:>6}{:>12.2f}  {}\n", clean(one->kind()),
+                        static_cast<double>(one->bytes()) / kMega, clean(one->path()));
+  }
+  return text;
+}
+
 /// What kind of asset it is, with its name where it has one, and its description.
 std::pair<std::string, std::string> assetText(const schema::Pack& pack) {
   if (const schema::ObjectSet* set = pack.asset_as_ObjectSet()) {
@@ -125,6 +162,13 @@ std::pair<std::string, std::string> assetText(const schema::Pack& pack) {
   }
   if (const schema::Scene* scene = pack.asset_as_Scene()) {
     return {fmt::format("scene \"{}\"", clean(scene->name())), sceneText(*scene)};
+  }
+  if (const schema::EpisodeSet* set = pack.asset_as_EpisodeSet()) {
+    return {fmt::format("{} episodes \"{}\"", set->episodes()->size(), clean(set->name())),
+            episodesText(*set)};
+  }
+  if (const schema::World* world = pack.asset_as_World()) {
+    return {fmt::format("world of {} packs", world->packs()->size()), worldText(*world)};
   }
   return {"an asset of another kind than the header says", ""};
 }

@@ -9,12 +9,6 @@ namespace galactic::detail {
 namespace {
 
 constexpr std::size_t kMaxRadii = 8;
-/// What rounding to floats can do to a length of 1, and much more.
-constexpr double kUnitTolerance = 1e-3;
-
-bool isOne(double squared_length) { return std::fabs(squared_length - 1) <= kUnitTolerance; }
-
-double square(float value) { return static_cast<double>(value) * static_cast<double>(value); }
 
 /// The order of spheres: radius descending, then x, y, z ascending.
 auto sphereKey(const schema::SetSphere& sphere) {
@@ -36,16 +30,6 @@ Result<void> checkLengths(const schema::LengthStatistics* lengths, const std::st
 }
 
 }  // namespace
-
-bool isUnit(const schema::Vec3& v) { return isOne(square(v.x()) + square(v.y()) + square(v.z())); }
-
-bool isUnit(const schema::Quat& q) {
-  return isOne(square(q.x()) + square(q.y()) + square(q.z()) + square(q.w()));
-}
-
-bool isRigid(const schema::Pose& pose) {
-  return isFinite(pose.translation()) && isUnit(pose.rotation());
-}
 
 Result<void> checkBounds(const schema::Bounds* bounds, const std::string& where) {
   Offence offence(where);

@@ -18,11 +18,28 @@ namespace galactic::detail {
 /// A finite amount of 0 or more.
 [[nodiscard]] inline bool isAmount(double value) { return std::isfinite(value) && value >= 0; }
 
-/// Length 1 within the rounding of floats.
-[[nodiscard]] bool isUnit(const schema::Vec3& v);
-[[nodiscard]] bool isUnit(const schema::Quat& q);
+/// What rounding to floats can do to a squared length of 1, and much more.
+inline constexpr double kUnitTolerance = 1e-3;
+
+/// Length 1 within the rounding of floats. Inline, like the next: large packs ask for millions.
+[[nodiscard]] inline bool isUnit(const schema::Vec3& v) {
+  const double x = static_cast<double>(v.x());
+  const double y = static_cast<double>(v.y());
+  const double z = static_cast<double>(v.z());
+  return std::fabs(x * x + y * y + z * z - 1) <= kUnitTolerance;
+}
+[[nodiscard]] inline bool isUnit(const schema::Quat& q) {
+  const double x = static_cast<double>(q.x());
+  const double y = static_cast<double>(q.y());
+  const double z = static_cast<double>(q.z());
+  const double w = static_cast<double>(q.w());
+  return std::fabs(x * x + y * y + z * z + w * w - 1) <= kUnitTolerance;
+}
+
 /// Finite translation and unit rotation.
-[[nodiscard]] bool isRigid(const schema::Pose& pose);
+[[nodiscard]] inline bool isRigid(const schema::Pose& pose) {
+  return isFinite(pose.translation()) && isUnit(pose.rotation());
+}
 
 /// Finite, and no minimum above its maximum.
 [[nodiscard]] Result<void> checkBounds(const schema::Bounds* bounds, const std::string& where);

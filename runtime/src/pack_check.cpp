@@ -1,10 +1,12 @@
 #include "pack_check.h"
 
 #include "common_check.h"
+#include "episode_check.h"
 #include "object_check.h"
 #include "offence.h"
 #include "robot_check.h"
 #include "scene_check.h"
+#include "world_check.h"
 
 namespace galactic::detail {
 namespace {
@@ -50,22 +52,27 @@ Result<const Asset*> assetOf(const schema::Pack& pack, const PackHeader& header,
 Result<void> checkAsset(const PackHeader& header, std::span<const std::byte> file,
                         const std::string& where) {
   const schema::Pack& pack = *schema::GetPack(file.data() + sizeof(PackHeader));
-  if (header.kind == PackKind::kObjects) {
-    return assetOf<schema::ObjectSet>(pack, header, where)
-        .and_then([&](const schema::ObjectSet* set) { return checkObjectSet(*set, where); });
+  switch (header.kind) {
+    case PackKind::kScene:
+      return assetOf<schema::Scene>(pack, header, where).and_then([&](const schema::Scene* scene) {
+        return checkScene(*scene, file, where);
+      });
+    case PackKind::kObjects:
+      return assetOf<schema::ObjectSet>(pack, header, where)
+          .and_then([&](const schema::ObjectSet* set) { return checkObjectSet(*set, where); });
+    case PackKind::kRobot:
+      return assetOf<schema::Robot>(pack, header, where).and_then([&](const schema::Robot* robot) {
+        return checkRobot(*robot, where);
+      });
+    case PackKind::kEpisodes:
+      return assetOf<schema::EpisodeSet>(pack, header, where)
+          .and_then([&](const schema::EpisodeSet* set) { return checkEpisodeSet(*set, where); });
+    case PackKind::kWorld:
+      return assetOf<schema::World>(pack, header, where).and_then([&](const schema::World* world) {
+        return checkWorld(*world, where);
+      });
   }
-  if (header.kind == PackKind::kRobot) {
-    return assetOf<schema::Robot>(pack, header, where).and_then([&](const schema::Robot* robot) {
-      return checkRobot(*robot, where);
-    });
-  }
-  return assetOf<schema::Scene>(pack, header, where).and_then([&](const schema::Scene* scene) {
-    return checkScene(*scene, file, where);
-  });
-}
-
-bool isReadable(PackKind kind) {
-  return kind == PackKind::kScene || kind == PackKind::kObjects || kind == PackKind::kRobot;
+  return fail(ErrorCode::kInternal, where, "has a kind that reading its header refuses");
 }
 
 }  // namespace
@@ -88,13 +95,6 @@ Result<void> checkPayloadStart(std::span<const std::byte> payload, const std::st
 
 Result<void> checkPack(const PackHeader& header, std::span<const std::byte> file,
                        const std::string& where) {
-  if (!isReadable(header.kind)) {
-    return fail(ErrorCode::kUnsupported, where,
-                fmt::format("is a pack of kind {}, this version reads only {}, {} and {}; update "
-                            "galactic",
-                            packKindName(header.kind), packKindName(PackKind::kScene),
-                            packKindName(PackKind::kObjects), packKindName(PackKind::kRobot)));
-  }
   const auto payload = file.subspan(sizeof(PackHeader));
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(payload.data());
   flatbuffers::Verifier verifier(bytes, payload.size(), kMaxDepth, kMaxTables);

@@ -17,8 +17,7 @@ inline constexpr std::uint64_t kMaxPayloadBytes = (std::uint64_t{1} << 31U) - 1;
 
 /// Checks structure (FlatBuffers verifier) and meaning (every value) of the pack in `file`, whose
 /// header has been read and whose payload passed checkPayloadStart. A scene pack that passes is
-/// safe to query with any input. Fails with kInvalidInput, or kUnsupported for a kind of pack that
-/// this version cannot check.
+/// safe to query with any input. Fails with kInvalidInput.
 [[nodiscard]] Result<void> checkPack(const PackHeader& header, std::span<const std::byte> file,
                                      const std::string& where);
 

@@ -30,6 +30,14 @@ std::string packKindName(PackKind kind) {
   return name;
 }
 
+std::optional<PackKind> packKindOf(std::string_view name) {
+  PackKind kind{};
+  if (name.size() != sizeof(kind)) return std::nullopt;
+  std::memcpy(&kind, name.data(), sizeof(kind));
+  if (!isKnownKind(kind)) return std::nullopt;
+  return kind;
+}
+
 PackHeader makePackHeader(PackKind kind, std::span<const std::byte> payload) {
   PackHeader header;
   header.kind = kind;

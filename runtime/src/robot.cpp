@@ -13,14 +13,6 @@ static_assert(sizeof(ControlledJoint) == sizeof(schema::ControlledJoint));
 
 namespace {
 
-std::vector<std::string_view> namesOf(
-    const flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>& stored) {
-  std::vector<std::string_view> names;
-  names.reserve(stored.size());
-  for (const flatbuffers::String* name : stored) names.push_back(detail::fromSchema(name));
-  return names;
-}
-
 std::optional<EndEffector> endEffectorOf(const schema::EndEffector* stored) {
   if (stored == nullptr) return std::nullopt;
   return EndEffector{stored->link(), detail::fromSchema(*stored->grasp_point()),
@@ -57,8 +49,8 @@ Result<Robot> Robot::from(const PackFile& pack) {
   robot.name_ = detail::fromSchema(stored->name());
   robot.radii_ = detail::inPlace<float>(stored->radii());
   robot.links_ = detail::inPlace<LinkFrame>(stored->links());
-  robot.link_names_ = namesOf(*stored->link_names());
-  robot.joint_names_ = namesOf(*stored->joint_names());
+  robot.link_names_ = detail::namesOf(*stored->link_names());
+  robot.joint_names_ = detail::namesOf(*stored->joint_names());
   robot.limits_ = detail::inPlace<PositionLimits>(stored->limits());
   robot.start_positions_ = detail::inPlace<float>(stored->start_positions());
   robot.spheres_ = detail::inPlace<SetSphere>(stored->spheres());

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "galactic/pose.h"
 #include "galactic/schema/pack_generated.h"
@@ -25,6 +26,15 @@ static_assert(sizeof(SetSphere) == sizeof(schema::SetSphere));
 
 [[nodiscard]] inline std::string_view fromSchema(const flatbuffers::String* text) {
   return {text->c_str(), text->size()};
+}
+
+/// Views of a list of names.
+[[nodiscard]] inline std::vector<std::string_view> namesOf(
+    const flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>& stored) {
+  std::vector<std::string_view> names;
+  names.reserve(stored.size());
+  for (const flatbuffers::String* name : stored) names.push_back(fromSchema(name));
+  return names;
 }
 
 /// A vector of schema structs as the runtime's structs of the same layout, in place.

@@ -4,6 +4,7 @@
 #include "support/program_run.h"
 #include "support/scene_pack_builder.h"
 #include "support/scratch_folder.h"
+#include "support/world_pack_builder.h"
 
 namespace galactic {
 namespace {
@@ -47,6 +48,19 @@ TEST_F(RunCli, SaysWhatIsInAPack) {
   EXPECT_THAT(result.out, AllOf(StartsWith("good.pack: scene "), HasSubstr("verified in"),
                                 HasSubstr("radius m"), HasSubstr("sphere casts")));
   EXPECT_THAT(result.err, IsEmpty());
+}
+
+TEST_F(RunCli, SaysWhatIsInEpisodesAndListsThePacksOfAWorld) {
+  write("tidy.pack", test::textOf(test::buildPack(test::smallEpisodes())));
+  write("world.pack", test::textOf(test::buildPack(test::smallWorldPack())));
+  const ProgramRun result = run({"--pack", "tidy.pack", "--pack", "world.pack"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(StartsWith("tidy.pack: 2 episodes \"tidy\", format 1"),
+                                HasSubstr("\n  1 scenes, 2 objects, 1 to 3 of them at a time\n"
+                                          "  robot: helper, start joints: elbow, lift\n"
+                                          "    episodes  scene\n           2  kitchen\n"),
+                                HasSubstr("world.pack: world of 4 packs, format 1"),
+                                HasSubstr("\n    RBOT        0.00  robots/helper.pack\n")));
 }
 
 TEST_F(RunCli, SkipsVerificationOnlyWhenTold) {

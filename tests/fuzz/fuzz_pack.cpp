@@ -10,13 +10,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include "galactic/episode_set.h"
 #include "galactic/kinematics.h"
 #include "galactic/object_set.h"
 #include "galactic/pack.h"
+#include "galactic/pack_reference.h"
 #include "galactic/robot.h"
 #include "galactic/scene.h"
 #include "support/aligned_bytes.h"
@@ -141,6 +144,39 @@ void useRobot(const PackFile& pack) {
   if (robot->camera() && robot->camera()->link >= links) report("a camera without a link");
 }
 
+void useEpisodes(const PackFile& pack) {
+  const auto set = EpisodeSet::from(pack);
+  if (!set) report("a pack of episodes without episodes");
+  for (std::size_t n = 0; n < set->episodes().size(); ++n) {
+    const Episode& episode = set->episodes()[n];
+    if (episode.scene >= set->sceneNames().size()) report("an episode without a scene");
+    if (!std::isfinite(episode.base_position.y) || !std::isfinite(episode.base_yaw)) {
+      report("an episode that starts nowhere");
+    }
+    if (episode.target >= set->placements(episode).size()) report("an episode without a target");
+    for (const Placement& placement : set->placements(episode)) {
+      if (placement.object >= set->objectNames().size()) report("a placement without an object");
+      const Quat& turn = placement.pose.rotation;
+      if (!(turn.x * turn.x + turn.w * turn.w <= 1.1F)) report("a placement without a rotation");
+    }
+    for (const float position : set->startPositions(n)) {
+      if (!std::isfinite(position)) report("a joint that starts nowhere");
+    }
+  }
+}
+
+void useWorld(const PackFile& pack) {
+  const auto references = packReferences(pack);
+  if (!references) report("a pack of a world without a list");
+  for (const PackReference& reference : *references) {
+    const std::filesystem::path path(reference.path);
+    if (path.empty() || path.is_absolute()) report("a listed pack that may lie anywhere");
+    for (const auto& part : path) {
+      if (part == "..") report("a listed pack outside the folder");
+    }
+  }
+}
+
 void use(const PackFile& pack) {
   switch (pack.kind()) {
     case PackKind::kScene:
@@ -150,13 +186,15 @@ void use(const PackFile& pack) {
     case PackKind::kRobot:
       return useRobot(pack);
     case PackKind::kEpisodes:
+      return useEpisodes(pack);
     case PackKind::kWorld:
-      report("a kind that cannot be checked passed");
+      return useWorld(pack);
   }
 }
 
 /// The kinds of header for a payload; odd first bytes count through them.
-constexpr std::array kKinds{PackKind::kScene, PackKind::kObjects, PackKind::kRobot};
+constexpr std::array kKinds{PackKind::kScene, PackKind::kObjects, PackKind::kRobot,
+                            PackKind::kEpisodes, PackKind::kWorld};
 
 test::AlignedBytes fileOf(const std::uint8_t* data, std::size_t size) {
   const auto* first = reinterpret_cast<const std::byte*>(data);

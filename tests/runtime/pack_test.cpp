@@ -158,11 +158,14 @@ TEST(PackFile, ComparesThePayloadWithItsHashUnlessItIsTrusted) {
   EXPECT_EQ(errorAfter(change, Trust::kTrusted).message, "no error");
 }
 
-TEST(PackFile, RefusesAKindThatItCannotCheck) {
-  const Error error = errorAfter([](PackHeader& h) { h.kind = PackKind::kEpisodes; });
-  EXPECT_EQ(error.code, ErrorCode::kUnsupported);
-  EXPECT_EQ(error.message,
-            "is a pack of kind EPIS, this version reads only SCEN, OBJS and RBOT; update galactic");
+TEST(PackHeader, FindsEachKindByItsFourCharactersAndNoOther) {
+  for (const PackKind kind : {PackKind::kScene, PackKind::kObjects, PackKind::kRobot,
+                              PackKind::kEpisodes, PackKind::kWorld}) {
+    EXPECT_EQ(packKindOf(packKindName(kind)), kind);
+  }
+  for (const char* name : {"", "SCE", "SCENE", "scen", "ELSE"}) {
+    EXPECT_EQ(packKindOf(name), std::nullopt) << name;
+  }
 }
 
 TEST(PackFile, RefusesAPayloadThatIsNoFlatBufferOfOurs) {

@@ -103,9 +103,8 @@ class ScenePackBuilder {
   /// The whole file: header and payload.
   [[nodiscard]] AlignedBytes build() {
     const auto provenance = buildProvenance();
-    const flatbuffers::Offset<void> asset = fields_.asset == schema::Asset::Scene
-                                                ? buildScene().Union()
-                                                : schema::CreateWorld(builder_).Union();
+    const flatbuffers::Offset<void> asset =
+        fields_.asset == schema::Asset::Scene ? buildScene().Union() : buildEmptyWorld().Union();
     schema::FinishPackBuffer(builder_,
                              schema::CreatePack(builder_, provenance, fields_.asset, asset));
     placeTiles();
@@ -123,6 +122,12 @@ class ScenePackBuilder {
   }
 
  private:
+  /// Another asset, for packs whose header lies.
+  flatbuffers::Offset<schema::World> buildEmptyWorld() {
+    const std::vector<flatbuffers::Offset<schema::PackReference>> none;
+    return schema::CreateWorld(builder_, builder_.CreateVector(none));
+  }
+
   flatbuffers::Offset<schema::Provenance> buildProvenance() {
     const schema::Hash128 hash(1, 2);
     const auto options = builder_.CreateVector(std::vector{schema::CreateOption(

@@ -61,10 +61,7 @@ std::optional<fs::path> findReference(const fs::path& folder, std::string refere
 Result<void> hashFile(SourceFile& file, const fs::path& path) {
   const auto content = MappedFile::open(path);
   if (!content) return tl::unexpected(content.error());
-  const XXH128_hash_t hash = XXH3_128bits(content->bytes().data(), content->bytes().size());
-  file.bytes = content->bytes().size();
-  file.hash_low = hash.low64;
-  file.hash_high = hash.high64;
+  file = describeBytes(std::move(file.name), content->bytes());
   return {};
 }
 
@@ -85,6 +82,14 @@ std::string nameRelativeTo(const fs::path& main_input, const fs::path& file) {
   std::error_code ignored;
   const fs::path folder = fs::absolute(main_input, ignored).lexically_normal().parent_path();
   return fs::absolute(file, ignored).lexically_normal().lexically_relative(folder).generic_string();
+}
+
+SourceFile describeBytes(std::string name, std::span<const std::byte> bytes) {
+  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+  return {.name = std::move(name),
+          .bytes = bytes.size(),
+          .hash_low = hash.low64,
+          .hash_high = hash.high64};
 }
 
 Result<SourceFile> describeFile(const fs::path& path) {

@@ -4,19 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
-#include "galactic/mapped_file.h"
+#include "json/json_reader.h"
 
 namespace galactic::bake {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 constexpr std::size_t kMaxCollectionBytes = std::size_t{64} << 20U;
 constexpr double kFarthest = 100;
@@ -28,204 +25,136 @@ constexpr std::uint32_t kMostDofs = 10'000;
 /// What is read of a collection, and the first error.
 class CollectionReader {
  public:
-  explicit CollectionReader(const fs::path& path) : path_(path) {}
+  explicit CollectionReader(const fs::path& path) : json_(path.string()) {}
 
   Result<Collection> read(const Json& root);
 
  private:
-  /// A JSON value and where it stands, for example "collection.robots[0].gripper".
-  struct Node {
-    const Json* json = nullptr;
-    std::string place;
-  };
-
-  void error(const std::string& place, std::string message) {
-    if (error_) return;
-    error_ = Error{ErrorCode::kInvalidInput, fmt::format("{}: {}", path_.string(), place),
-                   std::move(message)};
-  }
-  /// The member, or a null node when it is absent.
-  static Node member(const Node& object, const char* key) {
-    Node node{nullptr, object.place.empty() ? key : fmt::format("{}.{}", object.place, key)};
-    if (object.json == nullptr || !object.json->is_object()) return node;
-    const auto found = object.json->find(key);
-    if (found != object.json->end()) node.json = &*found;
-    return node;
-  }
-  Node require(const Node& object, const char* key) {
-    Node node = member(object, key);
-    if (node.json == nullptr && !error_) error(node.place, "it is missing");
-    return node;
-  }
-  std::vector<Node> elements(const Node& list) {
-    std::vector<Node> nodes;
-    if (list.json == nullptr) return nodes;
-    if (!list.json->is_array()) error(list.place, "it is wanted as a list");
-    if (error_) return nodes;
-    for (std::size_t i = 0; i < list.json->size(); ++i) {
-      nodes.push_back({&(*list.json)[i], fmt::format("{}[{}]", list.place, i)});
-    }
-    return nodes;
-  }
-  std::string text(const Node& node) {
-    if (node.json != nullptr && node.json->is_string()) return node.json->get<std::string>();
-    if (node.json != nullptr) error(node.place, "it is wanted as text");
-    return {};
-  }
-  double number(const Node& node, double min, double max) {
-    if (node.json == nullptr) return 0;
-    if (!node.json->is_number()) {
-      error(node.place, "it is wanted as a number");
-      return 0;
-    }
-    const double value = node.json->get<double>();
-    if (value >= min && value <= max) return value;
-    error(node.place, fmt::format("{}: wanted {} to {}", value, min, max));
-    return 0;
-  }
-  std::array<double, 3> vector(const Node& node) {
-    std::array<double, 3> values{};
-    const auto list = elements(node);
-    if (node.json == nullptr || error_) return values;
-    if (list.size() != values.size()) {
-      error(node.place, fmt::format("it has {} numbers, wanted 3", list.size()));
-      return values;
-    }
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i] = number(list[i], -kFarthest, kFarthest);
-    }
-    return values;
-  }
-  void onlyKnown(const Node& object, std::initializer_list<std::string_view> known);
-
-  void readObject(const Node& object);
-  std::vector<HandSphere> readSpheres(const Node& list);
-  void readRobot(const Node& robot);
-  void readActions(const Node& actions, CollectionRobot& robot);
+  std::array<double, 3> point(const JsonNode& node) { return json_.vector<3>(node, kFarthest); }
+  void readObject(const JsonNode& node);
+  std::vector<HandSphere> readSpheres(const JsonNode& list);
+  void readRobot(const JsonNode& node);
+  void readActions(const JsonNode& actions, CollectionRobot& robot);
   /// The farthest move of an action, which is the same both ways.
-  double readStep(const Node& action);
+  double readStep(const JsonNode& action);
 
-  const fs::path& path_;
+  JsonReader json_;
   Collection collection_;
-  std::optional<Error> error_;
 };
 
-void CollectionReader::onlyKnown(const Node& object,
-                                 std::initializer_list<std::string_view> known) {
-  if (object.json == nullptr || !object.json->is_object()) return;
-  for (const auto& [key, value] : object.json->items()) {
-    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    collection_.warnings.push_back(fmt::format("{}.{} is not used", object.place, key));
-  }
-}
-
-std::vector<HandSphere> CollectionReader::readSpheres(const Node& list) {
+std::vector<HandSphere> CollectionReader::readSpheres(const JsonNode& list) {
   std::vector<HandSphere> spheres;
-  for (const Node& sphere : elements(list)) {
-    onlyKnown(sphere, {"origin", "radius"});
-    const auto centre = vector(require(sphere, "origin"));
-    const double radius = number(require(sphere, "radius"), 1e-4, kLargestRadius);
+  for (const JsonNode& sphere : json_.elements(list)) {
+    json_.onlyKnown(sphere, {"origin", "radius"});
+    const auto centre = point(json_.require(sphere, "origin"));
+    const double radius = json_.number(json_.require(sphere, "radius"), 1e-4, kLargestRadius);
     spheres.push_back({.centre = centre, .radius = radius});
   }
   return spheres;
 }
 
-void CollectionReader::readObject(const Node& node) {
-  onlyKnown(node, {"name", "collisionBox", "generateCollisionSpheresTechnique", "collisionSpheres",
-                   "heldRotationIndex"});
+void CollectionReader::readObject(const JsonNode& node) {
+  json_.onlyKnown(node, {"name", "collisionBox", "generateCollisionSpheresTechnique",
+                         "collisionSpheres", "heldRotationIndex"});
   CollectionObject object;
-  object.name = text(require(node, "name"));
-  const Node box = require(node, "collisionBox");
-  object.box_min = vector(require(box, "min"));
-  object.box_max = vector(require(box, "max"));
+  object.name = json_.text(json_.require(node, "name"));
+  const JsonNode box = json_.require(node, "collisionBox");
+  object.box_min = point(json_.require(box, "min"));
+  object.box_max = point(json_.require(box, "max"));
   for (std::size_t i = 0; i < 3; ++i) {
     if (object.box_min[i] > object.box_max[i]) {
-      error(box.place,
-            fmt::format("its min {} lies above its max {}", object.box_min[i], object.box_max[i]));
+      json_.error(box.place, fmt::format("its min {} lies above its max {}", object.box_min[i],
+                                         object.box_max[i]));
     }
   }
-  object.spheres = readSpheres(member(node, "collisionSpheres"));
-  const Node technique = member(node, "generateCollisionSpheresTechnique");
-  const std::string name = text(technique);
+  object.spheres = readSpheres(json_.member(node, "collisionSpheres"));
+  const JsonNode technique = json_.member(node, "generateCollisionSpheresTechnique");
+  const std::string name = json_.text(technique);
   if (name == "box") {
     object.technique = SphereTechnique::kBox;
   } else if (name == "uprightCylinder") {
     object.technique = SphereTechnique::kUprightCylinder;
   } else if (!name.empty()) {
-    error(technique.place,
-          fmt::format("'{}' is unknown; known are 'box' and 'uprightCylinder'", name));
+    json_.error(technique.place,
+                fmt::format("'{}' is unknown; known are 'box' and 'uprightCylinder'", name));
   }
   if (!name.empty() && !object.spheres.empty()) {
-    error(node.place, "it has both spheres and a technique to make them; keep one");
+    json_.error(node.place, "it has both spheres and a technique to make them; keep one");
   }
   collection_.objects.push_back(std::move(object));
 }
 
-double CollectionReader::readStep(const Node& action) {
-  onlyKnown(action, {"actionIdx", "stepMin", "stepMax"});
-  const Node min_node = member(action, "stepMin");
-  const Node max_node = member(action, "stepMax");
-  const double min = min_node.json == nullptr ? -1 : number(min_node, -kLargestStep, kLargestStep);
-  const double max = max_node.json == nullptr ? 1 : number(max_node, -kLargestStep, kLargestStep);
+double CollectionReader::readStep(const JsonNode& action) {
+  json_.onlyKnown(action, {"actionIdx", "stepMin", "stepMax"});
+  const JsonNode min_node = json_.member(action, "stepMin");
+  const JsonNode max_node = json_.member(action, "stepMax");
+  const double min =
+      min_node.json == nullptr ? -1 : json_.number(min_node, -kLargestStep, kLargestStep);
+  const double max =
+      max_node.json == nullptr ? 1 : json_.number(max_node, -kLargestStep, kLargestStep);
   if (max <= 0 || min != -max) {
-    error(action.place,
-          fmt::format("its steps {} to {} are wanted as -x to x, the same both ways", min, max));
+    json_.error(
+        action.place,
+        fmt::format("its steps {} to {} are wanted as -x to x, the same both ways", min, max));
   }
   return max;
 }
 
-void CollectionReader::readActions(const Node& actions, CollectionRobot& robot) {
+void CollectionReader::readActions(const JsonNode& actions, CollectionRobot& robot) {
   if (actions.json == nullptr) return;
-  onlyKnown(actions, {"numActions", "baseMove", "baseRotate", "graspRelease", "joints"});
-  const Node move = member(actions, "baseMove");
-  const Node rotate = member(actions, "baseRotate");
+  json_.onlyKnown(actions, {"numActions", "baseMove", "baseRotate", "graspRelease", "joints"});
+  const JsonNode move = json_.member(actions, "baseMove");
+  const JsonNode rotate = json_.member(actions, "baseRotate");
   if (move.json != nullptr) robot.forward_step = readStep(move);
   if (rotate.json != nullptr) robot.turn_step = readStep(rotate);
-  for (const Node& joint : elements(member(actions, "joints"))) {
-    const double dof = number(require(joint, "first"), 0, kMostDofs);
-    if (dof != std::floor(dof)) error(joint.place, "its number is wanted whole");
+  for (const JsonNode& joint : json_.elements(json_.member(actions, "joints"))) {
+    const double dof = json_.number(json_.require(joint, "first"), 0, kMostDofs);
+    if (dof != std::floor(dof)) json_.error(joint.place, "its number is wanted whole");
     robot.joints.push_back(
-        {.dof = static_cast<std::uint32_t>(dof), .step = readStep(require(joint, "second"))});
+        {.dof = static_cast<std::uint32_t>(dof), .step = readStep(json_.require(joint, "second"))});
   }
 }
 
-void CollectionReader::readRobot(const Node& node) {
-  onlyKnown(node, {"urdfFilepath", "startJointPositions", "actionMap", "gripper", "links"});
+void CollectionReader::readRobot(const JsonNode& node) {
+  json_.onlyKnown(node, {"urdfFilepath", "startJointPositions", "actionMap", "gripper", "links"});
   CollectionRobot robot;
-  robot.urdf = text(require(node, "urdfFilepath"));
-  for (const Node& position : elements(member(node, "startJointPositions"))) {
-    robot.start_positions.push_back(number(position, -kLargestPosition, kLargestPosition));
+  robot.urdf = json_.text(json_.require(node, "urdfFilepath"));
+  for (const JsonNode& position : json_.elements(json_.member(node, "startJointPositions"))) {
+    robot.start_positions.push_back(json_.number(position, -kLargestPosition, kLargestPosition));
   }
-  const Node gripper = require(node, "gripper");
-  robot.gripper_link = text(require(gripper, "attachLinkName"));
-  robot.gripper_offset = vector(require(gripper, "offset"));
-  robot.gripper_radius = number(require(gripper, "radius"), 1e-4, kLargestRadius);
-  readActions(member(node, "actionMap"), robot);
-  for (const Node& link : elements(require(node, "links"))) {
+  const JsonNode gripper = json_.require(node, "gripper");
+  robot.gripper_link = json_.text(json_.require(gripper, "attachLinkName"));
+  robot.gripper_offset = point(json_.require(gripper, "offset"));
+  robot.gripper_radius = json_.number(json_.require(gripper, "radius"), 1e-4, kLargestRadius);
+  readActions(json_.member(node, "actionMap"), robot);
+  for (const JsonNode& link : json_.elements(json_.require(node, "links"))) {
     LinkSpheres& set = robot.links.emplace_back();
-    set.link = text(require(link, "linkName"));
-    set.spheres = readSpheres(require(link, "collisionSpheres"));
+    set.link = json_.text(json_.require(link, "linkName"));
+    set.spheres = readSpheres(json_.require(link, "collisionSpheres"));
   }
   collection_.robot = std::move(robot);
 }
 
 Result<Collection> CollectionReader::read(const Json& root) {
-  const Node collection = require({&root, ""}, "collection");
-  onlyKnown(collection, {"collisionRadiusWorkingSet", "freeObjects", "robots"});
-  for (const Node& radius : elements(require(collection, "collisionRadiusWorkingSet"))) {
-    collection_.radii.push_back(number(radius, 1e-4, kLargestRadius));
+  const JsonNode collection = json_.require({&root, ""}, "collection");
+  json_.onlyKnown(collection, {"collisionRadiusWorkingSet", "freeObjects", "robots"});
+  for (const JsonNode& radius :
+       json_.elements(json_.require(collection, "collisionRadiusWorkingSet"))) {
+    collection_.radii.push_back(json_.number(radius, 1e-4, kLargestRadius));
   }
-  for (const Node& object : elements(member(collection, "freeObjects"))) {
+  for (const JsonNode& object : json_.elements(json_.member(collection, "freeObjects"))) {
     readObject(object);
-    if (error_) break;
+    if (json_.failed()) break;
   }
-  const auto robots = elements(member(collection, "robots"));
+  const auto robots = json_.elements(json_.member(collection, "robots"));
   if (robots.size() > 1) {
-    error("collection.robots", fmt::format("it has {} robots, at most 1 is read", robots.size()));
+    json_.error("collection.robots",
+                fmt::format("it has {} robots, at most 1 is read", robots.size()));
   }
   if (!robots.empty()) readRobot(robots.front());
-  if (error_) return tl::unexpected(std::move(*error_));
-  collection_.source = path_.string();
+  if (json_.failed()) return json_.failure();
+  collection_.source = json_.file();
+  collection_.warnings = json_.warnings();
   return std::move(collection_);
 }
 
@@ -337,26 +266,11 @@ void addSpheres(const CollectionRobot& from, const SourceRobot& robot, const std
 }  // namespace
 
 Result<Collection> readCollection(const fs::path& path) {
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
-    return fail(ErrorCode::kIo, path.string(),
-                "it is a folder; give the path of a .collection.json file");
-  }
-  const auto file = MappedFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  const std::string_view text(reinterpret_cast<const char*>(file->bytes().data()),
-                              file->bytes().size());
-  if (text.size() > kMaxCollectionBytes) {
-    return fail(ErrorCode::kInvalidInput, path.string(),
-                fmt::format("it has {} bytes, at most {} are read; is it a collection?",
-                            text.size(), kMaxCollectionBytes));
-  }
-  try {
-    return CollectionReader(path).read(Json::parse(text));
-  } catch (const Json::exception& error) {
-    return fail(ErrorCode::kInvalidInput, path.string(),
-                fmt::format("it is not JSON: {}", error.what()));
-  }
+  const auto json = readJsonFile(
+      path,
+      {.what = "a collection", .suffix = ".collection.json", .max_bytes = kMaxCollectionBytes});
+  if (!json) return tl::unexpected(json.error());
+  return CollectionReader(path).read(*json);
 }
 
 Result<CollectionRecipe> recipeFromCollection(const Collection& collection,

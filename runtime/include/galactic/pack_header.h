@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,6 +25,9 @@ enum class PackKind : std::uint32_t {
 
 /// The four characters of a kind, for messages.
 [[nodiscard]] std::string packKindName(PackKind kind);
+
+/// The kind of these four characters, none when there is no such kind.
+[[nodiscard]] std::optional<PackKind> packKindOf(std::string_view name);
 
 inline constexpr std::array<char, 8> kPackMagic{'G', 'A', 'L', 'A', 'P', 'A', 'C', 'K'};
 /// The format versions that this build reads; it writes the latest.

@@ -24,20 +24,23 @@ class World {
   /// - a referenced pack is missing, or is not the one that was linked (kind, size or hash),
   /// - a kind is missing or is there twice where one is wanted, or two scenes or two objects have
   ///   one name,
-  /// - an episode names a scene, an object or a joint that is not there, or the robot is another,
+  /// - an episode names a scene, an object or a joint (of one position, that follows no other) that
+  ///   is not there, or the robot is another,
   /// - the packs were baked for different radii,
   /// - the robot has no end effector, no base or no spheres.
   [[nodiscard]] static Result<World> open(std::span<const std::filesystem::path> paths,
                                           Trust trust = Trust::kVerify);
 
-  /// The same from packs that are already open.
+  /// The same from packs that are already open, none of them a world.
   [[nodiscard]] static Result<World> from(std::vector<PackFile> packs);
 
   /// The working set of radii, metres, ascending: the same in all packs.
   [[nodiscard]] std::span<const float> radii() const { return robot_.front().radii(); }
+  /// Ascending names, whatever the order of the packs.
   [[nodiscard]] const std::vector<Scene>& scenes() const { return scenes_; }
   [[nodiscard]] const Robot& robot() const { return robot_.front(); }
   [[nodiscard]] const EpisodeSet& episodes() const { return episodes_.front(); }
+  /// The packs of the assets, without the world pack that listed them.
   [[nodiscard]] const std::vector<PackFile>& packs() const { return packs_; }
 
   [[nodiscard]] const Scene& sceneOf(const Episode& episode) const {

@@ -1,0 +1,47 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "galactic/bake/provenance.h"
+#include "galactic/error.h"
+#include "galactic/pack_header.h"
+
+namespace galactic::bake {
+
+/// One pack of a world, as the world's list describes it.
+struct LinkedPack {
+  /// Relative to the folder of the world pack, '/' between parts, no "." and no "..".
+  std::string path;
+  PackKind kind = PackKind::kScene;
+  std::uint64_t bytes = 0;
+  /// XXH3-128 of the file.
+  std::uint64_t hash_low = 0;
+  std::uint64_t hash_high = 0;
+
+  friend bool operator==(const LinkedPack&, const LinkedPack&) = default;
+};
+
+/// Describes the packs in the files `paths`, in any order, for a world pack in `folder` (empty: the
+/// current one); ascending paths. Opens and verifies them and sees that together they make a world:
+/// fails with the errors of PackFile::open and World::from, and with kInvalidInput when a file does
+/// not lie below `folder`, is listed twice or is a world itself.
+[[nodiscard]] Result<std::vector<LinkedPack>> linkPacks(
+    std::span<const std::filesystem::path> paths, const std::filesystem::path& folder);
+
+/// The bytes of a world pack's FlatBuffer, without the file header; packs by ascending path. Fails
+/// with kInvalidInput when the list is not as schema/world.fbs wants it: a path that is empty,
+/// absolute, leads upwards or is there twice, a world, not exactly one robot and one episode set,
+/// no scene.
+[[nodiscard]] Result<std::vector<std::byte>> encodeWorldPack(std::vector<LinkedPack> packs,
+                                                             const Provenance& provenance);
+
+/// Writes header and payload atomically; returns the file's size in bytes.
+[[nodiscard]] Result<std::uint64_t> writeWorldPack(const std::filesystem::path& path,
+                                                   std::vector<LinkedPack> packs,
+                                                   const Provenance& provenance);
+
+}  // namespace galactic::bake

@@ -1,0 +1,154 @@
+#include "galactic/bake/episode_pack.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "pack_payload.h"
+
+namespace galactic::bake {
+namespace {
+
+/// What rounding to floats can do to a length of 1, and more.
+constexpr double kUnitTolerance = 5e-4;
+
+bool isFinite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool isRigid(const Pose& pose) {
+  const auto square = [](float value) {
+    return static_cast<double>(value) * static_cast<double>(value);
+  };
+  const Quat& q = pose.rotation;
+  const double length = std::sqrt(square(q.x) + square(q.y) + square(q.z) + square(q.w));
+  return isFinite(pose.translation) && std::abs(length - 1) <= kUnitTolerance;
+}
+
+/// Compares episodes with what the schema wants; keeps the first offence.
+class EpisodeCheck {
+ public:
+  explicit EpisodeCheck(const SourceEpisodes& source) : source_(source) {}
+
+  Result<void> run() {
+    require(!source_.name.empty(), "name", "is empty, wanted the episodes' name");
+    checkAscending(source_.scenes, "scenes");
+    checkAscending(source_.objects, "objects");
+    checkJoints();
+    require(!source_.episodes.empty(), "episodes", "is empty, wanted at least one episode");
+    for (std::size_t n = 0; n < source_.placements.size() && result_; ++n) checkPlacement(n);
+    std::size_t next = 0;
+    for (std::size_t n = 0; n < source_.episodes.size() && result_; ++n) {
+      checkEpisode(n, next);
+      next += source_.episodes[n].placement_count;
+    }
+    require(next == source_.placements.size(), "placements",
+            "has elements that belong to no episode; leave them out");
+    return result_;
+  }
+
+ private:
+  void require(bool holds, const std::string& where, const std::string& message) {
+    if (holds || !result_) return;
+    result_ = fail(ErrorCode::kInvalidInput, where, message);
+  }
+
+  void checkAscending(const std::vector<std::string>& names, const char* field) {
+    require(!names.empty(), field, "is empty, wanted at least one name");
+    if (!result_) return;
+    require(!names.front().empty(), fmt::format("{}[0]", field), "is empty, wanted a name");
+    for (std::size_t n = 1; n < names.size(); ++n) {
+      require(names[n - 1] < names[n], fmt::format("{}[{}]", field, n),
+              "does not come after its predecessor, wanted ascending names");
+    }
+  }
+
+  void checkJoints() {
+    std::set<std::string_view> seen;
+    for (const std::string& joint : source_.start_joints) {
+      require(!joint.empty() && seen.insert(joint).second, "start_joints",
+              fmt::format("has '{}', wanted each joint's name once", joint));
+    }
+    const std::size_t wanted = source_.episodes.size() * source_.start_joints.size();
+    require(source_.start_positions.size() == wanted, "start_positions",
+            fmt::format("has {} elements, wanted {}, one for each episode and joint",
+                        source_.start_positions.size(), wanted));
+    const bool finite = std::all_of(source_.start_positions.begin(), source_.start_positions.end(),
+                                    [](float position) { return std::isfinite(position); });
+    require(finite, "start_positions", "has an element that is not finite");
+  }
+
+  void checkPlacement(std::size_t n) {
+    const Placement& placement = source_.placements[n];
+    if (placement.object < source_.objects.size() && isRigid(placement.pose)) return;
+    require(false, fmt::format("placements[{}]", n),
+            "wanted one of the objects at a finite place with a rotation of length 1");
+  }
+
+  void checkEpisode(std::size_t n, std::size_t next) {
+    const Episode& episode = source_.episodes[n];
+    const std::string where = fmt::format("episodes[{}]", n);
+    require(episode.scene < source_.scenes.size(), where + ".scene",
+            fmt::format("is {}, wanted one of {} scenes", episode.scene, source_.scenes.size()));
+    require(episode.first_placement == next && episode.placement_count >= 1 &&
+                episode.placement_count <= source_.placements.size() - next,
+            where + ".first_placement",
+            fmt::format("and count are {} and {}, wanted {} and 1 to {}", episode.first_placement,
+                        episode.placement_count, next, source_.placements.size() - next));
+    require(
+        episode.target < episode.placement_count, where + ".target",
+        fmt::format("is {}, wanted one of {} placements", episode.target, episode.placement_count));
+    require(isFinite(episode.base_position) && std::isfinite(episode.base_yaw),
+            where + ".base_position", "or the yaw is not finite");
+    require(isRigid(episode.goal), where + ".goal",
+            "wanted a finite place and a rotation of length 1");
+  }
+
+  const SourceEpisodes& source_;
+  Result<void> result_;
+};
+
+std::uint64_t storedBytes(const SourceEpisodes& source) {
+  return source.placements.size() * sizeof(Placement) + source.episodes.size() * sizeof(Episode) +
+         source.start_positions.size() * sizeof(float);
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> encodeEpisodePack(const SourceEpisodes& source,
+                                                 const Provenance& provenance) {
+  const std::uint64_t bytes = storedBytes(source);
+  if (bytes > kMaxSurfaceBytes) {
+    return fail(ErrorCode::kUnsupported, "",
+                fmt::format("the episodes need {} MB, one pack holds less than 2048 MB; bake them "
+                            "into several packs",
+                            bytes >> 20U));
+  }
+  if (auto checked = EpisodeCheck(source).run(); !checked) return tl::unexpected(checked.error());
+  FlatBufferBuilder builder(static_cast<std::size_t>(bytes) + 65536);
+  const auto provenance_table = provenanceTable(builder, provenance);
+  const auto name = builder.CreateString(source.name);
+  const auto scenes = builder.CreateVectorOfStrings(source.scenes);
+  const auto objects = builder.CreateVectorOfStrings(source.objects);
+  const auto robot = builder.CreateString(source.robot);
+  const auto start_joints = builder.CreateVectorOfStrings(source.start_joints);
+  const auto start_positions = alignedVector<float>(builder, source.start_positions);
+  const auto placements = alignedStructs<schema::Placement>(builder, source.placements);
+  const auto episodes = alignedStructs<schema::Episode>(builder, source.episodes);
+  const auto root = schema::CreateEpisodeSet(builder, name, scenes, objects, robot, start_joints,
+                                             start_positions, placements, episodes);
+  return finishPack(builder, provenance_table, schema::Asset::EpisodeSet, root.Union());
+}
+
+Result<std::uint64_t> writeEpisodePack(const std::filesystem::path& path,
+                                       const SourceEpisodes& source, const Provenance& provenance) {
+  const auto payload = encodeEpisodePack(source, provenance);
+  if (!payload) return tl::unexpected(payload.error());
+  return writePackFile(path, PackKind::kEpisodes, *payload);
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,146 @@
+#include "galactic/bake/world_pack.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "galactic/bake/source_file.h"
+#include "galactic/pack.h"
+#include "galactic/world.h"
+#include "pack_payload.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool leadsUpwards(const fs::path& path) {
+  return path.empty() || path.is_absolute() || *path.begin() == "..";
+}
+
+/// `path` seen from `folder`: as it is written, or, where that leads out of the folder, without
+/// symbolic links.
+fs::path relativeTo(const fs::path& path, const fs::path& folder) {
+  std::error_code problem;
+  const fs::path from = fs::absolute(folder / "", problem).lexically_normal();
+  const fs::path as_written =
+      fs::absolute(path, problem).lexically_normal().lexically_relative(from);
+  if (!leadsUpwards(as_written)) return as_written;
+  const fs::path real = fs::canonical(path, problem);
+  const fs::path real_folder = problem ? fs::path() : fs::canonical(folder, problem);
+  return problem ? as_written : real.lexically_relative(real_folder);
+}
+
+/// Why a path of a world's list is none; empty for a good one.
+std::string_view faultOf(std::string_view path) {
+  if (path.empty()) return "is empty";
+  if (path.find('\0') != std::string_view::npos) return "holds a zero byte";
+  if (path.front() == '/') return "is absolute";
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('/', begin), path.size());
+    const std::string_view part = path.substr(begin, end - begin);
+    if (part == "..") return "leads upwards";
+    if (part.empty() || part == ".") return "has an empty part";
+    begin = end + 1;
+  }
+  return "";
+}
+
+Result<void> checkCounts(const std::vector<LinkedPack>& packs) {
+  const auto count = [&packs](PackKind kind) {
+    return std::count_if(packs.begin(), packs.end(),
+                         [kind](const LinkedPack& pack) { return pack.kind == kind; });
+  };
+  if (count(PackKind::kRobot) != 1 || count(PackKind::kEpisodes) != 1) {
+    return fail(ErrorCode::kInvalidInput, "",
+                fmt::format("the packs hold {} robots and {} episode sets, a world has one of each",
+                            count(PackKind::kRobot), count(PackKind::kEpisodes)));
+  }
+  if (count(PackKind::kScene) == 0) {
+    return fail(ErrorCode::kInvalidInput, "",
+                "the packs hold no scene, a world has at least one; add its pack");
+  }
+  return {};
+}
+
+Result<void> checkList(const std::vector<LinkedPack>& packs) {
+  for (std::size_t n = 0; n < packs.size(); ++n) {
+    const LinkedPack& pack = packs[n];
+    if (const std::string_view fault = faultOf(pack.path); !fault.empty()) {
+      return fail(ErrorCode::kInvalidInput, pack.path,
+                  fmt::format("{}, a world lists packs by paths below its own folder", fault));
+    }
+    if (pack.kind == PackKind::kWorld) {
+      return fail(ErrorCode::kInvalidInput, pack.path,
+                  "is a world; list the packs that it lists instead");
+    }
+    if (n > 0 && packs[n - 1].path == pack.path) {
+      return fail(ErrorCode::kInvalidInput, pack.path, "is there twice; give each pack once");
+    }
+  }
+  return checkCounts(packs);
+}
+
+bool comesBefore(const LinkedPack& a, const LinkedPack& b) { return a.path < b.path; }
+
+}  // namespace
+
+Result<std::vector<LinkedPack>> linkPacks(std::span<const fs::path> paths,
+                                          const fs::path& world_folder) {
+  const fs::path folder = world_folder.empty() ? "." : world_folder;
+  std::vector<LinkedPack> linked;
+  std::vector<PackFile> opened;
+  linked.reserve(paths.size());
+  opened.reserve(paths.size());
+  for (const fs::path& path : paths) {
+    auto pack = PackFile::open(path);
+    if (!pack) return tl::unexpected(pack.error());
+    const fs::path relative = relativeTo(path, folder);
+    if (leadsUpwards(relative)) {
+      return fail(ErrorCode::kInvalidInput, path.string(),
+                  fmt::format("does not lie in {} or below it, where the world pack is to be; put "
+                              "the world pack above all its packs",
+                              folder.string()));
+    }
+    const SourceFile file = describeBytes(relative.generic_string(), pack->bytes());
+    linked.push_back({file.name, pack->kind(), file.bytes, file.hash_low, file.hash_high});
+    opened.push_back(std::move(*pack));
+  }
+  std::sort(linked.begin(), linked.end(), comesBefore);
+  if (auto checked = checkList(linked); !checked) return tl::unexpected(checked.error());
+  if (const auto world = World::from(std::move(opened)); !world) {
+    return tl::unexpected(world.error());
+  }
+  return linked;
+}
+
+Result<std::vector<std::byte>> encodeWorldPack(std::vector<LinkedPack> packs,
+                                               const Provenance& provenance) {
+  std::sort(packs.begin(), packs.end(), comesBefore);
+  if (auto checked = checkList(packs); !checked) return tl::unexpected(checked.error());
+  FlatBufferBuilder builder;
+  const auto provenance_table = provenanceTable(builder, provenance);
+  std::vector<Offset<schema::PackReference>> references;
+  references.reserve(packs.size());
+  for (const LinkedPack& pack : packs) {
+    const schema::Hash128 hash(pack.hash_low, pack.hash_high);
+    const auto path = builder.CreateString(pack.path);
+    const auto kind = builder.CreateString(packKindName(pack.kind));
+    references.push_back(schema::CreatePackReference(builder, path, kind, pack.bytes, &hash));
+  }
+  const auto reference_vector = builder.CreateVector(references);
+  const auto root = schema::CreateWorld(builder, reference_vector);
+  return finishPack(builder, provenance_table, schema::Asset::World, root.Union());
+}
+
+Result<std::uint64_t> writeWorldPack(const fs::path& path, std::vector<LinkedPack> packs,
+                                     const Provenance& provenance) {
+  const auto payload = encodeWorldPack(std::move(packs), provenance);
+  if (!payload) return tl::unexpected(payload.error());
+  return writePackFile(path, PackKind::kWorld, *payload);
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,18 @@
+#include "pack_tool/describe/asset_text.h"
+#include "pack_tool/describe/text_parts.h"
+#include "pack_tool/text_table.h"
+
+namespace galactic::pack_tool {
+
+std::string worldText(const Json& world) {
+  TextTable table(4);
+  table.add({"pack", "kind", "bytes", "XXH3-128"});
+  for (const Json& pack : world.at("packs")) {
+    const Json& hash = pack.at("xxh3_128");
+    table.add({textOf(pack.at("path")), textOf(pack.at("kind")), countOf(pack.at("bytes")),
+               hash.is_null() ? "not recorded" : textOf(hash)});
+  }
+  return labelled("packs", countOf(Json(world.at("packs").size()))) + table.text();
+}
+
+}  // namespace galactic::pack_tool

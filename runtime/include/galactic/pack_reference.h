@@ -1,0 +1,37 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "galactic/error.h"
+#include "galactic/pack.h"
+
+namespace galactic {
+
+/// One pack of a world pack's list: a view into the world pack.
+struct PackReference {
+  /// Relative to the folder of the world pack, '/' between parts.
+  std::string_view path;
+  PackKind kind = PackKind::kScene;
+  /// Size of the file, and its XXH3-128 hash.
+  std::uint64_t bytes = 0;
+  std::uint64_t hash_low = 0;
+  std::uint64_t hash_high = 0;
+};
+
+/// The list of the world pack `world`, which must outlive it; ascending paths. Fails with
+/// kInvalidInput on another kind of pack.
+[[nodiscard]] Result<std::vector<PackReference>> packReferences(const PackFile& world);
+
+/// Where the pack of `reference` lies: beside the file that `world` was opened from.
+[[nodiscard]] std::filesystem::path pathOf(const PackReference& reference, const PackFile& world);
+
+/// Opens the pack of `reference`, one of the list of `world`. Fails with the errors of
+/// PackFile::open, and with kInvalidInput when the file is missing or is not the one that was
+/// linked: another kind, another size, or another hash (not compared with Trust::kTrusted).
+[[nodiscard]] Result<PackFile> openReference(const PackFile& world, const PackReference& reference,
+                                             Trust trust = Trust::kVerify);
+
+}  // namespace galactic

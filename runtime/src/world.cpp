@@ -1,0 +1,303 @@
+#include "galactic/world.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "galactic/pack_reference.h"
+
+namespace galactic {
+namespace {
+
+constexpr auto kInvalid = ErrorCode::kInvalidInput;
+/// Radii that a user typed and that packs store may differ in the last digit.
+constexpr float kSameRadius = 1e-6F;
+
+/// Something, and the pack that it is in.
+template <class T>
+struct Packed {
+  T content;
+  const PackFile* pack = nullptr;
+};
+
+/// What the packs of a world hold, by kind; maps for names that have to be unique.
+struct Parts {
+  std::map<std::string_view, Packed<Scene>> scenes;
+  std::map<std::string_view, Packed<ObjectModel>> objects;
+  std::optional<Packed<Robot>> robot;
+  std::optional<Packed<EpisodeSet>> episodes;
+};
+
+tl::unexpected<Error> repeated(const PackFile& pack, std::string_view what, std::string_view name,
+                               const PackFile& first) {
+  return fail(kInvalid, pack.where(),
+              fmt::format("has a second {} named \"{}\", the first is in {}; names have to be "
+                          "unique in a world, leave one pack out",
+                          what, name, first.where()));
+}
+
+Result<void> addScene(const PackFile& pack, Parts& parts) {
+  Result<Scene> scene = Scene::from(pack);
+  if (!scene) return tl::unexpected<Error>(std::move(scene.error()));
+  const std::string_view name = scene->name();
+  const auto [place, is_new] = parts.scenes.try_emplace(name, Packed<Scene>{*scene, &pack});
+  if (!is_new) return repeated(pack, "scene", name, *place->second.pack);
+  return {};
+}
+
+Result<void> addObjects(const PackFile& pack, Parts& parts) {
+  const Result<ObjectSet> set = ObjectSet::from(pack);
+  if (!set) return tl::unexpected<Error>(set.error());
+  for (const ObjectModel& object : set->objects()) {
+    const auto [place, is_new] =
+        parts.objects.try_emplace(object.name, Packed<ObjectModel>{object, &pack});
+    if (!is_new) return repeated(pack, "object", object.name, *place->second.pack);
+  }
+  return {};
+}
+
+/// Keeps the only robot or episode set.
+template <class T>
+Result<void> addOnly(const PackFile& pack, std::optional<Packed<T>>& only, std::string_view what) {
+  if (only) {
+    return fail(kInvalid, pack.where(),
+                fmt::format("has a second {}, the first is in {}; a world has one, leave one out",
+                            what, only->pack->where()));
+  }
+  Result<T> content = T::from(pack);
+  if (!content) return tl::unexpected<Error>(std::move(content.error()));
+  only.emplace(Packed<T>{std::move(*content), &pack});
+  return {};
+}
+
+Result<void> add(const PackFile& pack, Parts& parts) {
+  switch (pack.kind()) {
+    case PackKind::kScene:
+      return addScene(pack, parts);
+    case PackKind::kObjects:
+      return addObjects(pack, parts);
+    case PackKind::kRobot:
+      return addOnly(pack, parts.robot, "robot");
+    case PackKind::kEpisodes:
+      return addOnly(pack, parts.episodes, "episode set");
+    case PackKind::kWorld:
+      break;
+  }
+  return fail(kInvalid, pack.where(),
+              "is a world pack among others; give one world pack alone, or the packs themselves");
+}
+
+/// All parts, none of the wanted kinds missing.
+Result<Parts> sortByKind(const std::vector<PackFile>& packs) {
+  Parts parts;
+  for (const PackFile& pack : packs) {
+    if (auto added = add(pack, parts); !added) return tl::unexpected<Error>(added.error());
+  }
+  const auto missing = [](std::string_view what) {
+    return fail(kInvalid, "world", fmt::format("has no {}; give a pack of one, too", what));
+  };
+  if (!parts.robot) return missing("robot (RBOT)");
+  if (!parts.episodes) return missing("episode set (EPIS)");
+  if (parts.scenes.empty()) return missing("scene (SCEN)");
+  return parts;
+}
+
+Result<void> checkRadii(std::span<const float> radii, const PackFile& pack,
+                        const Packed<Robot>& robot) {
+  const std::span<const float> wanted = robot.content.radii();
+  const auto same = [](float a, float b) { return std::fabs(a - b) <= kSameRadius; };
+  if (std::equal(radii.begin(), radii.end(), wanted.begin(), wanted.end(), same)) return {};
+  return fail(kInvalid, pack.where(),
+              fmt::format("was baked for the radii {} m, {} for {} m; bake them with the same "
+                          "--radii",
+                          fmt::join(radii, ", "), robot.pack->where(), fmt::join(wanted, ", ")));
+}
+
+Result<void> checkAllRadii(const std::vector<PackFile>& packs, const Parts& parts) {
+  for (const auto& [name, scene] : parts.scenes) {
+    std::vector<float> radii;
+    radii.reserve(scene.content.grids().size());
+    for (const ColumnGrid& grid : scene.content.grids()) radii.push_back(grid.radius());
+    if (auto same = checkRadii(radii, *scene.pack, *parts.robot); !same) return same;
+  }
+  for (const PackFile& pack : packs) {
+    if (pack.kind() != PackKind::kObjects) continue;
+    const Result<ObjectSet> set = ObjectSet::from(pack);
+    if (!set) return tl::unexpected<Error>(set.error());
+    if (auto same = checkRadii(set->radii(), pack, *parts.robot); !same) return same;
+  }
+  return {};
+}
+
+/// Whether the robot can be simulated at all.
+Result<void> checkAbilities(const Packed<Robot>& robot) {
+  const auto lacks = [&](std::string_view what) {
+    return fail(kInvalid, robot.pack->where(),
+                fmt::format("has no {}, wanted a robot to simulate; bake it with a recipe that has "
+                            "one",
+                            what));
+  };
+  if (!robot.content.endEffector()) return lacks("end effector");
+  if (!robot.content.base()) return lacks("base");
+  if (robot.content.spheres().empty()) {
+    return fail(kInvalid, robot.pack->where(),
+                "has no spheres, wanted a robot to simulate; bake it with collision geometry");
+  }
+  return {};
+}
+
+/// The failure of a name in the episode pack.
+tl::unexpected<Error> unknown(const PackFile& episodes, std::string_view field, std::size_t n,
+                              std::string message) {
+  return fail(kInvalid, fmt::format("{}: episode_set.{}[{}]", episodes.where(), field, n),
+              std::move(message));
+}
+
+/// For each of the episode set's scenes its place among the sorted scenes.
+Result<std::vector<std::uint32_t>> findScenes(const Parts& parts) {
+  const auto& names = parts.episodes->content.sceneNames();
+  std::vector<std::uint32_t> indices;
+  indices.reserve(names.size());
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    const auto found = parts.scenes.find(names[n]);
+    if (found == parts.scenes.end()) {
+      return unknown(*parts.episodes->pack, "scenes", n,
+                     fmt::format("is \"{}\", which is none of the world's {} scenes; add its pack",
+                                 names[n], parts.scenes.size()));
+    }
+    indices.push_back(static_cast<std::uint32_t>(std::distance(parts.scenes.begin(), found)));
+  }
+  return indices;
+}
+
+Result<std::vector<ObjectModel>> findObjects(const Parts& parts) {
+  const auto& names = parts.episodes->content.objectNames();
+  std::vector<ObjectModel> objects;
+  objects.reserve(names.size());
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    const auto found = parts.objects.find(names[n]);
+    if (found == parts.objects.end()) {
+      return unknown(*parts.episodes->pack, "objects", n,
+                     fmt::format("is \"{}\", which is none of the world's {} objects; add its pack",
+                                 names[n], parts.objects.size()));
+    }
+    objects.push_back(found->second.content);
+  }
+  return objects;
+}
+
+/// The link whose joint has this name.
+std::optional<std::size_t> findJoint(const Robot& robot, std::string_view name) {
+  for (std::size_t link = 1; link < robot.links().size(); ++link) {
+    if (robot.jointName(link) == name) return link;
+  }
+  return std::nullopt;
+}
+
+/// For each start joint its place in the vector of joint positions.
+Result<std::vector<std::uint32_t>> findStartPositions(const Parts& parts) {
+  const Robot& robot = parts.robot->content;
+  const auto& names = parts.episodes->content.startJoints();
+  std::vector<std::uint32_t> indices;
+  indices.reserve(names.size());
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    const auto refuse = [&](std::string_view fault) {
+      return unknown(*parts.episodes->pack, "start_joints", n,
+                     fmt::format("is \"{}\", which {} of the robot \"{}\"; give the robot that the "
+                                 "episodes were made for",
+                                 names[n], fault, robot.name()));
+    };
+    const std::optional<std::size_t> joint = findJoint(robot, names[n]);
+    if (!joint) return refuse("is no joint");
+    const LinkFrame& link = robot.links()[*joint];
+    if (positionCount(link.type) != 1) return refuse("is no joint with one position");
+    if (link.multiplier != 1 || link.offset != 0) return refuse("follows another joint");
+    const auto position = static_cast<std::uint32_t>(link.position);
+    if (std::find(indices.begin(), indices.end(), position) != indices.end()) {
+      return refuse("moves with an earlier start joint");
+    }
+    indices.push_back(position);
+  }
+  return indices;
+}
+
+Result<void> checkRobotName(const Parts& parts) {
+  const std::string_view wanted = parts.episodes->content.robotName();
+  if (wanted.empty() || wanted == parts.robot->content.name()) return {};
+  return fail(kInvalid, parts.episodes->pack->where() + ": episode_set.robot",
+              fmt::format("is \"{}\", the robot in {} is \"{}\"; give the robot that the episodes "
+                          "were made for",
+                          wanted, parts.robot->pack->where(), parts.robot->content.name()));
+}
+
+Result<void> checkParts(const std::vector<PackFile>& packs, const Parts& parts) {
+  if (auto able = checkAbilities(*parts.robot); !able) return able;
+  if (auto same = checkAllRadii(packs, parts); !same) return same;
+  return checkRobotName(parts);
+}
+
+Result<std::vector<PackFile>> openList(const PackFile& world, Trust trust) {
+  const auto references = packReferences(world);
+  if (!references) return tl::unexpected<Error>(references.error());
+  std::vector<PackFile> packs;
+  packs.reserve(references->size());
+  for (const PackReference& reference : *references) {
+    Result<PackFile> pack = openReference(world, reference, trust);
+    if (!pack) return tl::unexpected<Error>(std::move(pack.error()));
+    packs.push_back(std::move(*pack));
+  }
+  return packs;
+}
+
+}  // namespace
+
+Result<World> World::open(std::span<const std::filesystem::path> paths, Trust trust) {
+  std::vector<PackFile> packs;
+  packs.reserve(paths.size());
+  for (const std::filesystem::path& path : paths) {
+    Result<PackFile> pack = PackFile::open(path, trust);
+    if (!pack) return tl::unexpected<Error>(std::move(pack.error()));
+    packs.push_back(std::move(*pack));
+  }
+  if (packs.size() != 1 || packs.front().kind() != PackKind::kWorld) return from(std::move(packs));
+  Result<std::vector<PackFile>> listed = openList(packs.front(), trust);
+  if (!listed) return tl::unexpected<Error>(std::move(listed.error()));
+  return from(std::move(*listed));
+}
+
+Result<World> World::from(std::vector<PackFile> packs) {
+  World world;
+  // First of all: what follows points to the packs.
+  world.packs_ = std::move(packs);
+  Result<Parts> parts = sortByKind(world.packs_);
+  if (!parts) return tl::unexpected<Error>(std::move(parts.error()));
+  if (auto sound = checkParts(world.packs_, *parts); !sound) {
+    return tl::unexpected<Error>(std::move(sound.error()));
+  }
+  auto scenes = findScenes(*parts);
+  if (!scenes) return tl::unexpected<Error>(std::move(scenes.error()));
+  auto objects = findObjects(*parts);
+  if (!objects) return tl::unexpected<Error>(std::move(objects.error()));
+  auto positions = findStartPositions(*parts);
+  if (!positions) return tl::unexpected<Error>(std::move(positions.error()));
+  world.scene_of_name_ = std::move(*scenes);
+  world.object_of_name_ = std::move(*objects);
+  world.start_position_indices_ = std::move(*positions);
+  world.scenes_.reserve(parts->scenes.size());
+  for (auto& [name, scene] : parts->scenes) world.scenes_.push_back(std::move(scene.content));
+  world.robot_.push_back(std::move(parts->robot->content));
+  world.episodes_.push_back(std::move(parts->episodes->content));
+  for (const Episode& episode : world.episodes().episodes()) {
+    world.most_objects_ = std::max<std::size_t>(world.most_objects_, episode.placement_count);
+  }
+  return world;
+}
+
+}  // namespace galactic

@@ -1,0 +1,69 @@
+#include "world_check.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include "common_check.h"
+#include "galactic/pack_header.h"
+#include "offence.h"
+
+namespace galactic::detail {
+namespace {
+
+/// Why a path of a world's list is none, or nothing: "" for a good one.
+const char* faultOf(std::string_view path) {
+  if (path.empty()) return "is empty, wanted the path of a pack";
+  if (path.find('\0') != std::string_view::npos) {
+    return "holds a zero byte, wanted the path of a pack";
+  }
+  if (path.front() == '/') return "is absolute, wanted a path relative to the world pack's folder";
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('/', begin), path.size());
+    const std::string_view part = path.substr(begin, end - begin);
+    if (part == "..")
+      return "leads upwards with \"..\", wanted a path below the world pack's folder";
+    if (part.empty() || part == ".") return "has an empty part or \".\", wanted names between '/'";
+    begin = end + 1;
+  }
+  return "";
+}
+
+Result<void> checkReference(const schema::PackReference& reference, const std::string& where) {
+  Offence offence(where);
+  const char* fault = faultOf(reference.path()->string_view());
+  offence.require(fault[0] == '\0', "path", "{}", fault);
+  const std::optional<PackKind> kind = packKindOf(reference.kind()->string_view());
+  offence.require(kind.has_value(), "kind", "is \"{}\", wanted SCEN, OBJS, RBOT or EPIS",
+                  reference.kind()->string_view());
+  offence.require(kind != PackKind::kWorld, "kind", "is \"WRLD\", wanted no world in a world");
+  offence.require(reference.bytes() > sizeof(PackHeader), "bytes",
+                  "is {}, wanted more than the {} of a pack's header", reference.bytes(),
+                  sizeof(PackHeader));
+  offence.require(reference.hash() != nullptr, "hash", "is missing, wanted the file's hash");
+  return offence.result();
+}
+
+}  // namespace
+
+Result<void> checkWorld(const schema::World& world, const std::string& where) {
+  Offence offence(where + ": world");
+  const auto& packs = *world.packs();
+  std::map<std::string_view, std::size_t> counts;
+  for (flatbuffers::uoffset_t n = 0; n < packs.size() && !offence.found(); ++n) {
+    const std::string field = fmt::format("packs[{}]", n);
+    offence.require(checkReference(*packs.Get(n), offence.where() + "." + field));
+    ++counts[packs.Get(n)->kind()->string_view()];
+    if (n == 0) continue;
+    offence.require(packs.Get(n - 1)->path()->string_view() < packs.Get(n)->path()->string_view(),
+                    field + ".path", "does not come after its predecessor, wanted ascending paths");
+  }
+  offence.require(counts["RBOT"] == 1, "packs", "has {} robots (RBOT), wanted one", counts["RBOT"]);
+  offence.require(counts["EPIS"] == 1, "packs", "has {} episode sets (EPIS), wanted one",
+                  counts["EPIS"]);
+  offence.require(counts["SCEN"] >= 1, "packs", "has no scene (SCEN), wanted at least one");
+  return offence.result();
+}
+
+}  // namespace galactic::detail

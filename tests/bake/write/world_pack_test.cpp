@@ -1,0 +1,154 @@
+#include "galactic/bake/world_pack.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "galactic/pack_reference.h"
+#include "galactic/world.h"
+#include "support/world_pack_builder.h"
+
+namespace galactic::test {
+namespace {
+
+namespace fs = std::filesystem;
+using bake::encodeWorldPack;
+using bake::LinkedPack;
+using bake::linkPacks;
+using testing::HasSubstr;
+
+bake::Provenance provenance() {
+  bake::Provenance made;
+  made.tool_version = "0.1.0";
+  return made;
+}
+
+/// The packs of a small world in a folder of their own.
+class WorldPack : public testing::Test {
+ protected:
+  void SetUp() override {
+    list_ = writePacks(folder_, WorldFields{});
+    for (const ReferenceFields& one : list_.packs) paths_.push_back(folder_.path() / one.path);
+  }
+  [[nodiscard]] fs::path at(const char* name) const { return folder_.path() / name; }
+
+  ScratchFolder folder_;
+  WorldPackFields list_;
+  std::vector<fs::path> paths_;
+};
+
+void expectRefused(const Result<std::vector<LinkedPack>>& linked, const std::string& part) {
+  ASSERT_FALSE(linked.has_value());
+  EXPECT_EQ(linked.error().code, ErrorCode::kInvalidInput);
+  EXPECT_THAT(linked.error().where + ": " + linked.error().message, HasSubstr(part));
+}
+
+TEST_F(WorldPack, IsOpenedAsAWorldWhateverTheOrderOfItsPacks) {
+  std::vector<std::byte> first;
+  std::sort(paths_.begin(), paths_.end());
+  do {
+    const auto linked = linkPacks(paths_, folder_.path());
+    ASSERT_TRUE(linked.has_value()) << linked.error().where << ": " << linked.error().message;
+    const auto payload = encodeWorldPack(*linked, provenance());
+    ASSERT_TRUE(payload.has_value());
+    if (first.empty()) first = *payload;
+    EXPECT_TRUE(*payload == first);
+  } while (std::next_permutation(paths_.begin(), paths_.end()));
+  const auto linked = linkPacks(paths_, folder_.path());
+  const auto bytes = writeWorldPack(at("world.pack"), *linked, provenance());
+  ASSERT_TRUE(bytes.has_value()) << bytes.error().message;
+  EXPECT_EQ(*bytes, fs::file_size(at("world.pack")));
+  const auto world = World::open(std::vector{at("world.pack")});
+  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  EXPECT_EQ(world->scenes().size(), 1U);
+  EXPECT_EQ(world->robot().name(), "helper");
+}
+
+TEST_F(WorldPack, ListsPathKindSizeAndHash) {
+  const auto linked = linkPacks(paths_, folder_.path());
+  ASSERT_TRUE(linked.has_value());
+  ASSERT_EQ(linked->size(), list_.packs.size());
+  for (std::size_t n = 0; n < linked->size(); ++n) {
+    const ReferenceFields& wanted = list_.packs[n];
+    EXPECT_EQ((*linked)[n].path, wanted.path);
+    EXPECT_EQ(packKindName((*linked)[n].kind), wanted.kind);
+    EXPECT_EQ((*linked)[n].bytes, wanted.bytes);
+    EXPECT_EQ((*linked)[n].hash_low, wanted.hash->first);
+    EXPECT_EQ((*linked)[n].hash_high, wanted.hash->second);
+  }
+}
+
+TEST_F(WorldPack, FindsPathsThatTakeDetours) {
+  paths_[0] = folder_.path() / "robots" / ".." / "." / "episodes.pack";
+  const auto linked = linkPacks(paths_, folder_.path() / "robots" / "..");
+  ASSERT_TRUE(linked.has_value()) << linked.error().message;
+  EXPECT_EQ((*linked)[0].path, "episodes.pack");
+  // A link to the folder is the folder.
+  fs::create_directory_symlink(folder_.path(), at("again"));
+  for (fs::path& path : paths_) {
+    path = at("again") / fs::path(path).lexically_relative(folder_.path()).lexically_normal();
+  }
+  const auto through_link = linkPacks(paths_, at("again"));
+  ASSERT_TRUE(through_link.has_value()) << through_link.error().message;
+  EXPECT_EQ(*through_link, *linked);
+}
+
+TEST_F(WorldPack, RefusesPacksOutsideItsFolder) {
+  expectRefused(linkPacks(paths_, at("scenes")), "put the world pack above all its packs");
+}
+
+TEST_F(WorldPack, RefusesPacksThatMakeNoWorld) {
+  auto twice = paths_;
+  twice.push_back(paths_[3]);
+  expectRefused(linkPacks(twice, folder_.path()), "scenes/kitchen.pack: is there twice");
+  auto no_robot = paths_;
+  no_robot.erase(no_robot.begin() + 2);
+  expectRefused(linkPacks(no_robot, folder_.path()), "hold 0 robots and 1 episode sets");
+  auto no_scene = paths_;
+  no_scene.pop_back();
+  expectRefused(linkPacks(no_scene, folder_.path()), "hold no scene");
+  auto no_objects = paths_;
+  no_objects.erase(no_objects.begin() + 1);
+  expectRefused(linkPacks(no_objects, folder_.path()), "none of the world's 0 objects");
+}
+
+TEST_F(WorldPack, RefusesAWorldAmongItsPacks) {
+  const auto linked = linkPacks(paths_, folder_.path());
+  ASSERT_TRUE(linked.has_value());
+  ASSERT_TRUE(writeWorldPack(at("world.pack"), *linked, provenance()).has_value());
+  auto more = paths_;
+  more.push_back(at("world.pack"));
+  expectRefused(linkPacks(more, folder_.path()), "world.pack: is a world");
+}
+
+TEST_F(WorldPack, RefusesPacksThatAreMissingOrBroken) {
+  auto missing = paths_;
+  missing[1] = at("none.pack");
+  const auto no_file = linkPacks(missing, folder_.path());
+  ASSERT_FALSE(no_file.has_value());
+  EXPECT_EQ(no_file.error().code, ErrorCode::kIo);
+  static_cast<void>(folder_.write("objects.pack", "no pack"));
+  expectRefused(linkPacks(paths_, folder_.path()), "objects.pack");
+}
+
+TEST(WorldPackLists, HoldPathsBelowTheirFolderOnly) {
+  const auto list_with = [](const std::string& path) {
+    return std::vector<LinkedPack>{{.path = "e.pack", .kind = PackKind::kEpisodes},
+                                   {.path = path, .kind = PackKind::kScene},
+                                   {.path = "r.pack", .kind = PackKind::kRobot}};
+  };
+  for (const char* path : {"s.pack", "a/s.pack", "a..b/..s.pack", ".hidden/s.pack"}) {
+    EXPECT_TRUE(encodeWorldPack(list_with(path), provenance()).has_value()) << path;
+  }
+  for (const char* path :
+       {"", "/s.pack", "../s.pack", "a/../s.pack", "a//s.pack", "./s.pack", "a/./s.pack", "a/"}) {
+    const auto payload = encodeWorldPack(list_with(path), provenance());
+    ASSERT_FALSE(payload.has_value()) << path;
+    EXPECT_EQ(payload.error().where, path);
+    EXPECT_THAT(payload.error().message, HasSubstr("below its own folder"));
+  }
+}
+
+}  // namespace
+}  // namespace galactic::test

@@ -1,0 +1,137 @@
+// One wrong value per field of a world pack whose hash is right: each has its own message.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "galactic/pack.h"
+#include "galactic/pack_reference.h"
+#include "runtime/pack_damage.h"
+#include "runtime/pack_offence.h"
+#include "support/world_pack_builder.h"
+
+namespace galactic::test {
+namespace {
+
+using Fields = WorldPackFields;
+using Offence = PackOffence<Fields>;
+
+void refuse(const std::vector<Offence>& offences) { expectRefused(smallWorldPack(), offences); }
+
+/// An offence of the path of the first pack.
+Offence path(const std::string& path, const std::string& message) {
+  return {"world.packs[0].path", message, [path](Fields& f) { f.packs[0].path = path; }};
+}
+
+TEST(WorldCheck, AcceptsTheWorldThatTheOffencesBelowStartFrom) {
+  const AlignedBytes bytes = buildPack(smallWorldPack());
+  const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
+  ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+}
+
+TEST(WorldCheck, AcceptsDotsInsideNames) {
+  Fields fields = smallWorldPack();
+  fields.packs[0].path = "...a/b..pack/.c";
+  const AlignedBytes bytes = buildPack(fields);
+  EXPECT_TRUE(PackFile::view(bytes.bytes(), "made.pack").has_value());
+}
+
+TEST(WorldCheck, RefusesWrongPaths) {
+  const std::string upwards =
+      "leads upwards with \"..\", wanted a path below the world pack's folder";
+  const std::string part = "has an empty part or \".\", wanted names between '/'";
+  refuse({
+      path("", "is empty, wanted the path of a pack"),
+      path("/a.pack", "is absolute, wanted a path relative to the world pack's folder"),
+      path(std::string("a\0.pack", 7), "holds a zero byte, wanted the path of a pack"),
+      path("..", upwards),
+      path("../a.pack", upwards),
+      path("a/../b.pack", upwards),
+      path("a/..", upwards),
+      path("./a.pack", part),
+      path("a//b.pack", part),
+      path("a/", part),
+      {"world.packs[1].path", "does not come after its predecessor, wanted ascending paths",
+       [](Fields& f) { f.packs[1].path = "episodes.pack"; }},
+      {"world.packs[2].path", "does not come after its predecessor, wanted ascending paths",
+       [](Fields& f) { f.packs[2].path = "a.pack"; }},
+  });
+}
+
+TEST(WorldCheck, RefusesWrongKindsSizesAndHashes) {
+  refuse({
+      {"world.packs[1].kind", "is \"OBJ\", wanted SCEN, OBJS, RBOT or EPIS",
+       [](Fields& f) { f.packs[1].kind = "OBJ"; }},
+      {"world.packs[1].kind", "is \"objs\", wanted SCEN, OBJS, RBOT or EPIS",
+       [](Fields& f) { f.packs[1].kind = "objs"; }},
+      {"world.packs[1].kind", "is \"WRLD\", wanted no world in a world",
+       [](Fields& f) { f.packs[1].kind = "WRLD"; }},
+      {"world.packs[3].bytes", "is 64, wanted more than the 64 of a pack's header",
+       [](Fields& f) { f.packs[3].bytes = 64; }},
+      {"world.packs[3].hash", "is missing, wanted the file's hash",
+       [](Fields& f) { f.packs[3].hash.reset(); }},
+  });
+}
+
+TEST(WorldCheck, RefusesAListThatIsNoWorld) {
+  refuse({
+      {"world.packs", "has 0 robots (RBOT), wanted one",
+       [](Fields& f) { f.packs.erase(f.packs.begin() + 2); }},
+      {"world.packs", "has 2 robots (RBOT), wanted one",
+       [](Fields& f) { f.packs[1].kind = "RBOT"; }},
+      {"world.packs", "has 0 episode sets (EPIS), wanted one",
+       [](Fields& f) { f.packs[0].kind = "OBJS"; }},
+      {"world.packs", "has 2 episode sets (EPIS), wanted one",
+       [](Fields& f) { f.packs[1].kind = "EPIS"; }},
+      {"world.packs", "has no scene (SCEN), wanted at least one",
+       [](Fields& f) { f.packs.pop_back(); }},
+      {"world.packs", "has 0 robots (RBOT), wanted one", [](Fields& f) { f.packs.clear(); }},
+  });
+}
+
+TEST(WorldCheck, RefusesAnotherKindOfAssetThanTheHeaderSays) {
+  Fields fields = smallWorldPack();
+  fields.kind = PackKind::kEpisodes;
+  const AlignedBytes bytes = buildPack(fields);
+  const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
+  ASSERT_FALSE(pack.has_value());
+  EXPECT_EQ(pack.error().where, "made.pack: asset");
+  EXPECT_EQ(pack.error().message, "has type 5, the header says EPIS; bake the pack again");
+}
+
+TEST(DamagedWorldPack, IsRefusedAtEachLengthOfATruncation) {
+  expectEachTruncationRefused(buildPack(smallWorldPack()));
+}
+
+TEST(DamagedWorldPack, IsRefusedWithBytesTooMany) {
+  expectBytesTooManyRefused(buildPack(smallWorldPack()));
+}
+
+TEST(DamagedWorldPack, IsRefusedAfterEachFlipOfASingleBit) {
+  expectEachBitFlipRefused(buildPack(smallWorldPack()));
+}
+
+/// Reads the whole list; a sanitizer sees a read outside the pack.
+void readEverything(const PackFile& pack) {
+  const auto references = packReferences(pack);
+  ASSERT_TRUE(references.has_value());
+  ASSERT_GE(references->size(), 3U);
+  for (const PackReference& reference : *references) {
+    ASSERT_FALSE(reference.path.empty());
+    const std::filesystem::path path(reference.path);
+    ASSERT_TRUE(path.is_relative());
+    ASSERT_EQ(path, path.lexically_normal());
+    ASSERT_NE(*path.begin(), "..");
+    ASSERT_NE(reference.kind, PackKind::kWorld);
+    ASSERT_GT(reference.bytes, sizeof(PackHeader));
+  }
+}
+
+TEST(DamagedWorldPack, WithARecomputedHashIsRefusedOrSafeToReadAfterEachFlip) {
+  expectFlipsWithARightHashRefusedOrUsable(buildPack(smallWorldPack()), PackKind::kWorld,
+                                           readEverything);
+}
+
+}  // namespace
+}  // namespace galactic::test
