@@ -7,6 +7,11 @@ target_compile_options(galactic_warnings INTERFACE
 # -fno-math-errno lets sqrt become one instruction; it changes no result.
 target_compile_options(galactic_warnings INTERFACE -ffp-contract=off -fno-math-errno)
 
+# What is compiled for longer than it runs: tests, and what reads command lines and writes reports.
+# In Release, -O1 takes a third less to compile than -O3; no result depends on it.
+add_library(galactic_not_hot INTERFACE)
+target_compile_options(galactic_not_hot INTERFACE $<$<CONFIG:Release>:-O1>)
+
 if(GALACTIC_SANITIZE)
   add_compile_options(-fsanitize=${GALACTIC_SANITIZE} -fno-omit-frame-pointer
                       -fno-sanitize-recover=all)
