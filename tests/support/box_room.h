@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "galactic/pack.h"
@@ -32,15 +33,20 @@ class BoxRoom {
   static constexpr Span kHeights{-0.5F, 3};
 
   explicit BoxRoom(std::vector<Block> blocks) : blocks_(std::move(blocks)) {
-    ScenePackFields fields;
-    for (const float radius : kRadii) fields.grids.emplace_back(buildGrid(radius));
-    bytes_ = buildPack(fields);
+    bytes_ = buildPack(fields());
     pack_ =
         std::make_unique<PackFile>(PackFile::view(bytes_.bytes(), "room", Trust::kTrusted).value());
     scene_ = std::make_unique<Scene>(Scene::from(*pack_).value());
   }
 
   [[nodiscard]] const Scene& scene() const { return *scene_; }
+
+  /// Its scene pack; for a file, all radii must be at least half the spacing.
+  [[nodiscard]] ScenePackFields fields(std::span<const float> radii = kRadii) const {
+    ScenePackFields fields;
+    for (const float radius : radii) fields.grids.emplace_back(buildGrid(radius));
+    return fields;
+  }
 
   /// Whether the grid's exact counterpart blocks a centre: outside, or too near to a block in the
   /// middle of the centre's cell.
