@@ -153,6 +153,8 @@ void followFloor(const ChunkStep& step) noexcept {
 }
 
 void placeBodies(const ChunkStep& step) noexcept {
+  // While the kernels calculate, what the collision tests read comes nearer.
+  for (std::size_t e = 0; e < kChunk; ++e) step.state.resting(step.first + e).prefetch();
   for (std::size_t e = 0; e < kChunk; e += kLanes) {
     step.model.kernels.place(step.model.tables, {.pose = step.chunk.candidates(e),
                                                  .body = step.chunk.bodies(e),
