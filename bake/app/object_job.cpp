@@ -49,7 +49,7 @@ Result<ObjectBakeOptions> optionsOf(const std::string& name, const ObjectTask& t
   const auto found = std::find_if(objects.begin(), objects.end(),
                                   [&](const CollectionObject& one) { return one.name == name; });
   if (found == objects.end()) {
-    warnings.push_back("the collection does not name it: box and spheres are fitted");
+    warnings.emplace_back("the collection does not name it: box and spheres are fitted");
     return options;
   }
   auto shape = shapeFromCollection(*found, *task.command.import.up, options.spheres.radii);
@@ -58,7 +58,7 @@ Result<ObjectBakeOptions> optionsOf(const std::string& name, const ObjectTask& t
     return tl::unexpected(shape.error());
   }
   if (shape->spheres.empty()) {
-    warnings.push_back("the collection gives it no spheres: they are fitted");
+    warnings.emplace_back("the collection gives it no spheres: they are fitted");
   }
   options.authored = std::move(*shape);
   return options;
