@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "galactic/pack.h"
@@ -41,6 +42,8 @@ class BoxRoom {
   }
 
   [[nodiscard]] const Scene& scene() const { return *scene_; }
+  /// The scene's pack.
+  [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_.bytes(); }
 
   /// Whether the grid's exact counterpart blocks a centre: outside, or too near to a block in the
   /// middle of the centre's cell.
