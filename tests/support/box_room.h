@@ -40,6 +40,8 @@ class BoxRoom {
   }
 
   [[nodiscard]] const Scene& scene() const { return *scene_; }
+  /// The scene's pack.
+  [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_.bytes(); }
 
   /// Its scene pack; for a file, all radii must be at least half the spacing.
   [[nodiscard]] ScenePackFields fields(std::span<const float> radii = kRadii) const {
