@@ -51,10 +51,11 @@ CLI::Validator finite(Within<float> within) {
 CLI::Validator knownPolicy() {
   return CLI::Validator(
       [](const std::string& text) {
-        if (isGeneratedPolicy(text)) return std::string();
+        if (isGeneratedPolicy(text) || text == kScriptedPolicy) return std::string();
         const std::string_view prefix = kReplayPrefix;
         if (text.starts_with(prefix) && text.size() > prefix.size()) return std::string();
-        return fmt::format("unknown policy {}, wanted random, forward, zero or replay:FILE", text);
+        return fmt::format(
+            "unknown policy {}, wanted random, forward, zero, scripted or replay:FILE", text);
       },
       "", "policy");
 }
@@ -131,7 +132,7 @@ void addRunOptions(CLI::App& app, RunOptions& options) {
       ->option_text(fmt::format("N [{}]", options.steps));
   app.add_option("--policy", options.policy, "Where the actions come from")
       ->check(knownPolicy())
-      ->option_text(fmt::format("random|forward|zero|replay:FILE [{}]", options.policy));
+      ->option_text(fmt::format("random|forward|zero|scripted|replay:FILE [{}]", options.policy));
   app.add_option("--threads", options.simulation.threads,
                  "Threads; the results do not depend on it; 0: one per processor")
       ->check(CLI::Range(0, 4096))

@@ -23,6 +23,9 @@ class Policy {
   [[nodiscard]] virtual Result<void> act(std::uint64_t step, std::span<float> actions) = 0;
 };
 
+/// The name of the policy that solves the task with a plan: see ScriptedPolicy.
+inline constexpr std::string_view kScriptedPolicy = "scripted";
+
 /// What a generated policy's numbers depend on: an env's on its number over all ranks only, so that
 /// they are the same for any batch that it is part of.
 struct PolicyShape {

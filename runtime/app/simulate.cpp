@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "galactic/batch_simulator.h"
+#include "galactic/scripted_policy.h"
 #include "galactic/world.h"
 #include "interrupt.h"
 #include "live_line.h"
@@ -44,6 +45,22 @@ class ReplayPolicy final : public Policy {
  private:
   RecordingReader& recording_;
   std::uint64_t digest_ = 0;
+};
+
+/// The actions of a plan, which looks at the simulator.
+class PlannedPolicy final : public Policy {
+ public:
+  PlannedPolicy(ScriptedPolicy policy, const BatchSimulator& simulator)
+      : policy_(std::move(policy)), simulator_(simulator) {}
+
+  Result<void> act(std::uint64_t, std::span<float> actions) override {
+    policy_.act(simulator_, actions);
+    return {};
+  }
+
+ private:
+  ScriptedPolicy policy_;
+  const BatchSimulator& simulator_;
 };
 
 /// Adds up the rewards of each env's episode until it ends.
@@ -84,6 +101,14 @@ class Run {
     auto policy = std::make_unique<ReplayPolicy>(recording);
     replay_ = policy.get();
     policy_ = std::move(policy);
+  }
+
+  /// Before go().
+  Result<void> plan(const World& world) {
+    Result<ScriptedPolicy> policy = ScriptedPolicy::create(world, options_.simulation);
+    if (!policy) return tl::unexpected<Error>(policy.error());
+    policy_ = std::make_unique<PlannedPolicy>(std::move(*policy), simulator_);
+    return {};
   }
 
   Result<void> record(const World& world) {
@@ -184,6 +209,11 @@ Result<RunReport> simulate(const RunOptions& options, RecordingReader* replay) {
   simulator->samplePhases(kSampleEvery);
   Run run(options, *simulator, report);
   if (replay != nullptr) run.replay(*replay);
+  if (replay == nullptr && options.policy == kScriptedPolicy) {
+    if (auto planned = run.plan(*world); !planned) {
+      return tl::unexpected<Error>(planned.error());
+    }
+  }
   if (!options.record.empty()) {
     if (auto opened_file = run.record(*world); !opened_file) {
       return tl::unexpected<Error>(opened_file.error());
