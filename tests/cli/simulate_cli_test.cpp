@@ -187,7 +187,8 @@ TEST_F(SimulateCli, RefusesAReplayOfSomethingElse) {
   test::WorldFields other = test::smallHomeWorld();
   other.episodes.episodes[0].base_yaw += 0.01F;
   writeWorld(other);
-  refused({}, "was recorded with another world: 4 packs then, 4 now, and one of kind EPIS is another");
+  refused({},
+          "was recorded with another world: 4 packs then, 4 now, and one of kind EPIS is another");
 }
 
 TEST_F(SimulateCli, EndsWithSevenWhereAReplayDiffers) {
