@@ -27,7 +27,8 @@ inline constexpr std::size_t kCartActions = kCartJoints + 4;
 
 /// A cart with a ball of 12 cm, 30 cm above the floor, from whose middle an arm slides forward with
 /// a ball of 5 cm at its end and, on a wrist that turns about the vertical without limits, one of
-/// 1.5 cm. Drawn in, the arm is inside the cart's ball. It grasps at the arm's end.
+/// 1.5 cm. Drawn in, the arm is inside the cart's ball. It grasps what is
+/// 12 cm from the end of its arm.
 inline RobotPackFields cartRobot() {
   constexpr float kUnlimited = std::numeric_limits<float>::max();
   RobotPackFields robot;
@@ -50,7 +51,7 @@ inline RobotPackFields cartRobot() {
   robot.groups = {
       {0, {0}, 0, 1, std::nullopt}, {1, {1}, 1, 1, std::nullopt}, {2, {2}, 2, 1, std::nullopt}};
   robot.controlled_joints = {{0, 0.3F, 0, 0.6F}, {1, 0.25F, -kUnlimited, kUnlimited}};
-  robot.end_effector = EndEffectorFields{2, Vec3{}, 0.05F};
+  robot.end_effector = EndEffectorFields{2, Vec3{}, 0.12F};
   robot.camera.reset();
   robot.base->root_height = 0;
   return robot;

@@ -79,7 +79,9 @@ class StartFinder {
     *pose.x = episode.base_position.x;
     *pose.y = under.height;
     *pose.z = episode.base_position.z;
-    *pose.yaw = episode.base_yaw;
+    // Episodes may have turned any number of times; the motion kernels want one turn.
+    constexpr double kTurn = 6.283185307179586;
+    *pose.yaw = static_cast<float>(std::remainder(static_cast<double>(episode.base_yaw), kTurn));
     *state_.poses(0).y = under.height;
     chunk_.floor(0) = under.floor;
     return under.floor != Floor::kDrops;
@@ -104,10 +106,10 @@ class StartFinder {
     const ChunkStep step{model_, state_, chunk_, 0};
     placeBodies(step);
     if (!isFree(step, 0) && !pushClear(step, 0)) return false;
-    model_.starts.push_back({n, chunk_.base(0), episode.base_yaw, chunk_.grip(0)});
+    const PoseArrays pose = chunk_.candidates(0);
+    model_.starts.push_back({n, chunk_.base(0), *pose.yaw, chunk_.grip(0)});
     const std::span<const LinkTransform> bodies = chunk_.bodyTransforms(0);
     model_.start_bodies.insert(model_.start_bodies.end(), bodies.begin(), bodies.end());
-    const PoseArrays pose = chunk_.candidates(0);
     for (std::size_t v = 0; v < model_.variableCount(); ++v) {
       model_.start_variables.push_back(pose.variables[v * pose.stride]);
     }

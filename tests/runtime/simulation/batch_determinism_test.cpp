@@ -1,0 +1,172 @@
+// What an env does depends on nothing but the world, the seed, its number and its actions.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <random>
+
+#include "batch_trace.h"
+
+namespace galactic::test {
+namespace {
+
+BatchSimulator made(const BoxWorld& world, const SimulationOptions& options) {
+  return BatchSimulator::create(world.world(), options).value();
+}
+
+/// Something of everything happened, so that equal traces mean something.
+void expectBusy(const SimulationStatistics& seen) {
+  std::printf(
+      "steps %llu refused %llu slid %llu grasps %llu drops %llu restored %llu ends %llu\n",
+      static_cast<unsigned long long>(seen.steps), static_cast<unsigned long long>(seen.refused),
+      static_cast<unsigned long long>(seen.slid), static_cast<unsigned long long>(seen.grasps),
+      static_cast<unsigned long long>(seen.drops), static_cast<unsigned long long>(seen.restored),
+      static_cast<unsigned long long>(seen.episodes));
+  EXPECT_GT(seen.refused, seen.steps / 100);
+  EXPECT_GT(seen.slid, seen.steps / 100);
+  EXPECT_GT(seen.episodes, 0U);
+}
+
+TEST(BatchSimulator, GivesTheSameBitsForAnyNumberOfThreads) {
+  const BoxWorld world = furnishedWorld();
+  // Neither the envs nor their chunks divide evenly.
+  BatchSimulator one = made(world, optionsFor(203, 1));
+  const auto wanted = tracesOf(one, 250);
+  expectBusy(one.statistics());
+  EXPECT_GT(one.statistics().grasps, 100U);
+  EXPECT_GT(one.statistics().drops + one.statistics().restored, 100U);
+  for (const std::uint32_t threads : {2U, 7U}) {
+    BatchSimulator many = made(world, optionsFor(203, threads));
+    ASSERT_EQ(many.threadCount(), threads);
+    EXPECT_EQ(tracesOf(many, 250), wanted);
+    EXPECT_EQ(many.statistics().reward, one.statistics().reward);
+    EXPECT_EQ(many.statistics().slid, one.statistics().slid);
+  }
+}
+
+TEST(BatchSimulator, GivesTheSameBitsAgain) {
+  const BoxWorld world = furnishedWorld();
+  BatchSimulator first = made(world, optionsFor(40));
+  BatchSimulator second = made(world, optionsFor(40));
+  const auto wanted = tracesOf(first, 100);
+  EXPECT_EQ(tracesOf(second, 100), wanted);
+  SimulationOptions other = optionsFor(40);
+  other.seed = 12;
+  BatchSimulator third = made(world, other);
+  EXPECT_NE(tracesOf(third, 100), wanted);
+}
+
+TEST(BatchSimulator, DoesNotLetEnvsInfluenceEachOther) {
+  const BoxWorld world = furnishedWorld();
+  for (const EpisodeOrder order : {EpisodeOrder::kShuffled, EpisodeOrder::kLinear}) {
+    SimulationOptions options = optionsFor(512, 2);
+    options.order = order;
+    BatchSimulator large = made(world, options);
+    const auto traces = tracesOf(large, 100);
+    options.envs = 1;
+    for (const std::uint32_t env : {0U, 1U, 17U, 300U, 511U}) {
+      options.ranks = 512;
+      options.rank = env;
+      BatchSimulator single = made(world, options);
+      ASSERT_EQ(tracesOf(single, 100, env).front(), traces[env]) << "env " << env;
+    }
+    options.envs = 64;
+    options.ranks = 8;
+    options.rank = 5;
+    BatchSimulator shard = made(world, options);
+    const auto sharded = tracesOf(shard, 100, 5 * 64);
+    EXPECT_TRUE(std::equal(sharded.begin(), sharded.end(), traces.begin() + 5 * 64));
+  }
+}
+
+TEST(BatchSimulator, SharesEpisodesAmongRanksInAPartition) {
+  const BoxWorld world = furnishedWorld();
+  SimulationOptions options = optionsFor(8);
+  options.order = EpisodeOrder::kPartition;
+  BatchSimulator whole = made(world, options);
+  const auto traces = tracesOf(whole, 100);
+  options.envs = 4;
+  options.ranks = 2;
+  options.rank = 1;
+  BatchSimulator half = made(world, options);
+  const auto sharded = tracesOf(half, 100, 4);
+  EXPECT_TRUE(std::equal(sharded.begin(), sharded.end(), traces.begin() + 4));
+}
+
+TEST(BatchSimulator, DoesTheSameInTwoHalves) {
+  const BoxWorld world = furnishedWorld();
+  for (const std::uint32_t threads : {1U, 2U}) {
+    BatchSimulator expected = made(world, optionsFor(100, threads));
+    BatchSimulator halves = made(world, optionsFor(100, threads));
+    BatchTrace trace(halves);
+    for (std::uint32_t step = 0; step < 100; ++step) {
+      const std::vector<float> actions = actionsFor(halves, 0, step);
+      // Both ways may alternate.
+      if (step % 5 == 4) {
+        halves.step(actions);
+      } else {
+        halves.beginStep(actions);
+        halves.endStep();
+      }
+      trace.add(halves);
+    }
+    EXPECT_EQ(trace.hashes(), tracesOf(expected, 100));
+    EXPECT_EQ(halves.statistics().steps, expected.statistics().steps);
+  }
+}
+
+TEST(BatchSimulator, DoesTheSameWhenPhasesAreMeasuredOrBodiesAreNotWanted) {
+  const BoxWorld world = furnishedWorld();
+  SimulationOptions options = optionsFor(50);
+  options.body_transforms = false;
+  BatchSimulator plain = made(world, options);
+  BatchSimulator measured = made(world, options);
+  measured.samplePhases(3);
+  EXPECT_EQ(tracesOf(plain, 100), tracesOf(measured, 100));
+  EXPECT_TRUE(plain.bodyTransforms().empty());
+  options.body_transforms = true;
+  BatchSimulator with_bodies = made(world, options);
+  EXPECT_EQ(with_bodies.bodyTransforms().size(), 50 * with_bodies.bodyCount());
+  for (std::uint32_t step = 0; step < 100; ++step) {
+    with_bodies.step(actionsFor(with_bodies, 0, step));
+  }
+  EXPECT_TRUE(std::ranges::equal(plain.observations(), with_bodies.observations()));
+}
+
+TEST(BatchSimulator, DoesTheSameWithTheRobotsSpheresInAnyOrder) {
+  // Balls all over the cart and its arm, so that several penetrate things at a time.
+  constexpr std::uint32_t kSeed = 701;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  RobotPackFields robot = cartRobot();
+  robot.spheres.clear();
+  for (GroupFields& group : robot.groups) {
+    group.first_sphere = static_cast<std::uint32_t>(robot.spheres.size());
+    group.sphere_count = 12;
+    for (std::uint32_t n = 0; n < 12; ++n) {
+      const float height = group.link == 0 ? 0.3F : 0.0F;
+      robot.spheres.push_back(
+          {{uniformIn(random, -0.1F, 0.1F), height + uniformIn(random, -0.1F, 0.2F),
+            uniformIn(random, -0.1F, 0.1F)},
+           n % 3});
+    }
+  }
+  const BoxWorld world = furnishedWorld(robot);
+  BatchSimulator simulator = made(world, optionsFor(64));
+  const auto wanted = tracesOf(simulator, 150);
+  expectBusy(simulator.statistics());
+  for (int round = 0; round < 4; ++round) {
+    for (const GroupFields& group : robot.groups) {
+      for (std::uint32_t n = 11; n > 0; --n) {
+        const auto other = static_cast<std::uint32_t>(random() % (n + 1));
+        std::swap(robot.spheres[group.first_sphere + n], robot.spheres[group.first_sphere + other]);
+      }
+    }
+    const BoxWorld permuted = furnishedWorld(robot);
+    BatchSimulator same = made(permuted, optionsFor(64));
+    EXPECT_EQ(tracesOf(same, 150), wanted);
+  }
+}
+
+}  // namespace
+}  // namespace galactic::test

@@ -1,0 +1,217 @@
+// Wild actions, resets, and episodes that cannot be started.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "batch_trace.h"
+
+namespace galactic::test {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kHuge = std::numeric_limits<float>::max();
+
+BatchSimulator made(const BoxWorld& world, const SimulationOptions& options) {
+  return BatchSimulator::create(world.world(), options).value();
+}
+
+/// Traces of two batches, one given `wild`, the other `tame` in the places that `chosen` picks.
+template <class Chosen>
+void expectSame(float wild, float tame, const Chosen& chosen) {
+  const BoxWorld world = furnishedWorld();
+  BatchSimulator first = made(world, optionsFor(37));
+  BatchSimulator second = made(world, optionsFor(37));
+  BatchTrace first_trace(first);
+  BatchTrace second_trace(second);
+  for (std::uint32_t step = 0; step < 60; ++step) {
+    std::vector<float> actions = actionsFor(first, 0, step);
+    std::vector<float> others = actions;
+    for (std::size_t n = 0; n < actions.size(); ++n) {
+      if (!chosen(step * actions.size() + n)) continue;
+      actions[n] = wild;
+      others[n] = tame;
+    }
+    first.step(actions);
+    second.step(others);
+    first_trace.add(first);
+    second_trace.add(second);
+  }
+  EXPECT_EQ(first_trace.hashes(), second_trace.hashes());
+}
+
+TEST(Actions, ThatAreNotANumberAreTakenAsZero) {
+  expectSame(kNan, 0, [](std::size_t n) { return n % 7 == 0; });
+  expectSame(-kNan, 0, [](std::size_t) { return true; });
+}
+
+TEST(Actions, BeyondOneAreClamped) {
+  for (const float wild : {1.0001F, 2.0F, 1e30F, kHuge, kInfinity}) {
+    expectSame(wild, 1, [](std::size_t n) { return n % 5 == 0; });
+    expectSame(-wild, -1, [](std::size_t n) { return n % 5 == 0; });
+  }
+}
+
+TEST(Actions, ThatAreNotANumberAreCounted) {
+  const BoxWorld world = furnishedWorld();
+  BatchSimulator simulator = made(world, optionsFor(20, 2));
+  std::vector<float> actions(20 * simulator.actionCount());
+  simulator.step(actions);
+  EXPECT_EQ(simulator.statistics().nan_actions, 0U);
+  actions[0] = kNan;
+  actions[3] = kInfinity;
+  actions[77] = -kNan;
+  actions.back() = kNan;
+  simulator.step(actions);
+  EXPECT_EQ(simulator.statistics().nan_actions, 3U);
+  simulator.step(actions);
+  EXPECT_EQ(simulator.statistics().nan_actions, 6U);
+  for (const float value : simulator.observations()) ASSERT_TRUE(std::isfinite(value));
+}
+
+TEST(Resets, BeginTheEpisodeThatIsAskedFor) {
+  const BoxWorld world = furnishedWorld();
+  BatchSimulator simulator = made(world, optionsFor(20));
+  BatchSimulator fresh = made(world, [] {
+    SimulationOptions options = optionsFor(7);
+    options.order = EpisodeOrder::kLinear;
+    return options;
+  }());
+  for (std::uint32_t step = 0; step < 10; ++step) simulator.step(actionsFor(simulator, 0, step));
+  std::vector<std::int32_t> resets(20, -1);
+  resets[4] = 6;
+  resets[19] = 0;
+  const std::vector<std::uint32_t> before{simulator.envState(5).episode,
+                                          simulator.envState(5).step};
+  simulator.step(actionsFor(simulator, 0, 10), resets);
+  EXPECT_EQ(simulator.envState(4).episode, 6U);
+  EXPECT_EQ(simulator.envState(19).episode, 0U);
+  EXPECT_EQ(simulator.envState(5).episode, before[0]);
+  EXPECT_EQ(simulator.envState(5).step, before[1] + 1);
+  for (const std::size_t env : {4U, 19U}) {
+    EXPECT_EQ(simulator.envState(env).step, 0U);
+    EXPECT_EQ(simulator.envState(env).held, -1);
+    EXPECT_EQ(simulator.rewards()[env], 0);
+    EXPECT_EQ(simulator.dones()[env], 0);
+    EXPECT_EQ(simulator.successes()[env], 0);
+    // As at the start of a run: the fourth usable episode begins there as in a linear order.
+    const std::size_t same = env == 4 ? 4 : 0;
+    ASSERT_EQ(fresh.envState(same).episode, simulator.envState(env).episode);
+    EXPECT_EQ(fresh.envState(same).world_from_root, simulator.envState(env).world_from_root);
+    EXPECT_EQ(fresh.envState(same).objects, simulator.envState(env).objects);
+    EXPECT_EQ(fresh.envState(same).joint_positions, simulator.envState(env).joint_positions);
+    const std::size_t size = simulator.observationSize();
+    EXPECT_TRUE(std::ranges::equal(fresh.observations().subspan(same * size, size),
+                                   simulator.observations().subspan(env * size, size)));
+  }
+}
+
+TEST(Resets, PassOverEpisodesThatCannotBeStarted) {
+  const BoxWorld world = furnishedWorld();
+  BatchSimulator simulator = made(world, optionsFor(4));
+  const std::vector<float> actions(4 * simulator.actionCount());
+  simulator.step(actions, std::vector<std::int32_t>{2, 5, 7, 0x7FFFFFFF});
+  EXPECT_EQ(simulator.envState(0).episode, 3U);
+  EXPECT_EQ(simulator.envState(1).episode, 6U);
+  // Beyond the last one: the first.
+  EXPECT_EQ(simulator.envState(2).episode, 0U);
+  EXPECT_EQ(simulator.envState(3).episode, 0U);
+}
+
+TEST(Resets, InTheStepThatEndsAnEpisodeWin) {
+  const BoxWorld world = furnishedWorld();
+  SimulationOptions options = optionsFor(2);
+  options.task.most_steps = 3;
+  BatchSimulator simulator = made(world, options);
+  const std::vector<float> actions(2 * simulator.actionCount());
+  simulator.step(actions);
+  simulator.step(actions);
+  simulator.step(actions, std::vector<std::int32_t>{6, -1});
+  EXPECT_THAT(simulator.dones(), ElementsAre(0, 1));
+  EXPECT_EQ(simulator.envState(0).episode, 6U);
+  EXPECT_EQ(simulator.envState(0).step, 0U);
+}
+
+TEST(Episodes, InWhichTheRobotCannotStartAreSkippedAndListed) {
+  const BoxWorld world = furnishedWorld();
+  SimulationOptions options = optionsFor(50);
+  options.order = EpisodeOrder::kLinear;
+  options.task.most_steps = 2;
+  BatchSimulator simulator = made(world, options);
+  EXPECT_THAT(simulator.skippedEpisodes(), ElementsAre(2, 5));
+  std::vector<bool> seen(7);
+  for (std::uint32_t step = 0; step < 30; ++step) {
+    simulator.step(actionsFor(simulator, 0, step));
+    for (std::size_t env = 0; env < 50; ++env) seen[simulator.envState(env).episode] = true;
+  }
+  EXPECT_THAT(seen, ElementsAre(true, true, false, true, true, false, true));
+}
+
+TEST(Episodes, ThatNoneCanBeStartedIsAnError) {
+  const BoxWorld world({plainFloor(), {{1, 0, 1}, {2, 2, 2}}},
+                       {{.base = {1.5F, 0, 1.5F}, .objects = {{0.5F, 0, 0.5F}}},
+                        {.base = {1.5F, 2.5F, 7}, .objects = {{0.5F, 0, 0.5F}}}});
+  const auto simulator = BatchSimulator::create(world.world(), optionsFor(4));
+  ASSERT_FALSE(simulator.has_value());
+  EXPECT_EQ(simulator.error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(simulator.error().where, "episodes tidy");
+  EXPECT_EQ(simulator.error().message,
+            "the robot penetrates the scene or an object at the start of all 2 episodes; check "
+            "that scene, robot and episodes belong together");
+}
+
+TEST(Episodes, ThatBeginInContactArePushedClear) {
+  const BoxWorld world({plainFloor(), {{2, 0, 0}, {2.1F, 2, 3}}},
+                       {{.base = {1.9F, 0, 1.5F}, .objects = {{0.5F, 0, 0.5F}}}});
+  BatchSimulator simulator = made(world, optionsFor(1));
+  EXPECT_TRUE(simulator.skippedEpisodes().empty());
+  EXPECT_NEAR(simulator.envState(0).world_from_root.translation.x, 1.8749F, 1e-5F);
+}
+
+TEST(Episodes, MayLookInAnyDirectionHoweverOftenTheyTurned) {
+  constexpr float kTurn = 2 * std::numbers::pi_v<float>;
+  const auto start = [](float yaw) {
+    const BoxWorld world({plainFloor()},
+                         {{.base = {1.5F, 0, 1.5F}, .yaw = yaw, .objects = {{0.5F, 0, 0.5F}}}});
+    BatchSimulator simulator = made(world, optionsFor(1));
+    const std::vector<float> actions{0, 0, 1, 0, 0, 0};
+    simulator.step(actions);
+    return simulator.envState(0).world_from_root.translation;
+  };
+  const Vec3 wanted = start(0.5F);
+  for (const float turns : {-1.0F, 1.0F, 100.0F, -1000.0F}) {
+    const Vec3 found = start(0.5F + turns * kTurn);
+    // Floats of thousands of radians are a millimetre apart.
+    EXPECT_NEAR(found.x, wanted.x, 1e-4F) << turns;
+    EXPECT_NEAR(found.z, wanted.z, 1e-4F) << turns;
+  }
+  const Vec3 far = start(1e9F);
+  EXPECT_NEAR(std::hypot(far.x - 1.5F, far.z - 1.5F), 0.1F, 1e-5F);
+}
+
+TEST(Options, ThatMakeNoSenseAreErrors) {
+  const BoxWorld world = furnishedWorld();
+  const auto message = [&](const SimulationOptions& options) {
+    const auto simulator = BatchSimulator::create(world.world(), options);
+    return simulator ? std::string("accepted") : simulator.error().message;
+  };
+  SimulationOptions options = optionsFor(0);
+  EXPECT_EQ(message(options),
+            "found 0 envs, rank 0 of 1; wanted at least one env and a rank below the number of "
+            "ranks");
+  options = optionsFor(3);
+  options.rank = 2;
+  options.ranks = 2;
+  EXPECT_EQ(message(options),
+            "found 3 envs, rank 2 of 2; wanted at least one env and a rank below the number of "
+            "ranks");
+}
+
+}  // namespace
+}  // namespace galactic::test

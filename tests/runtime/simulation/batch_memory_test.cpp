@@ -1,0 +1,64 @@
+// A step does not allocate, and the memory of a batch is what it says.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "batch_trace.h"
+#include "counted_new.h"
+
+namespace galactic::test {
+namespace {
+
+TEST(BatchMemory, IsNotAllocatedInAStep) {
+  const BoxWorld world = furnishedWorld();
+  for (const std::uint32_t threads : {1U, 3U}) {
+    auto simulator = BatchSimulator::create(world.world(), optionsFor(64, threads)).value();
+    std::vector<std::vector<float>> actions;
+    for (std::uint32_t step = 0; step < 300; ++step) {
+      actions.push_back(actionsFor(simulator, 0, step));
+    }
+    std::vector<std::int32_t> resets(64, -1);
+    // The first step of a batch with several threads starts them.
+    simulator.step(actions.front());
+    const std::uint64_t before = allocationCount();
+    for (std::size_t step = 0; step < actions.size(); ++step) {
+      resets[step % 64] = static_cast<std::int32_t>(step % 9) - 2;
+      simulator.step(actions[step], resets);
+      resets[step % 64] = -1;
+    }
+    EXPECT_EQ(allocationCount(), before);
+    // Everything that a step may do was among them.
+    const SimulationStatistics seen = simulator.statistics();
+    EXPECT_GT(seen.slid, 100U);
+    EXPECT_GT(seen.refused, 0U);
+    EXPECT_GT(seen.grasps, 0U);
+    EXPECT_GT(seen.drops + seen.restored, 0U);
+    EXPECT_GT(seen.episodes, 0U);
+  }
+}
+
+TEST(BatchMemory, IsWhatTheBatchSaysForEachEnv) {
+  const BoxWorld world = furnishedWorld();
+  struct Measured {
+    std::uint64_t said = 0;
+    std::uint64_t taken = 0;
+  };
+  const auto measure = [&](std::uint32_t envs) {
+    const std::uint64_t before = allocatedBytes();
+    const auto simulator = BatchSimulator::create(world.world(), optionsFor(envs)).value();
+    return Measured{simulator.memoryBytes(), allocatedBytes() - before};
+  };
+  const Measured small = measure(256);
+  const Measured large = measure(1024);
+  const std::uint64_t said = (large.said - small.said) / 768;
+  const std::uint64_t taken = (large.taken - small.taken) / 768;
+  std::printf("bytes of an env: said %llu, taken %llu\n", static_cast<unsigned long long>(said),
+              static_cast<unsigned long long>(taken));
+  EXPECT_EQ(said * 768, large.said - small.said);
+  // Bookkeeping of vectors is not in the sum.
+  EXPECT_GE(taken, said);
+  EXPECT_LE(taken, said + said / 8);
+}
+
+}  // namespace
+}  // namespace galactic::test
