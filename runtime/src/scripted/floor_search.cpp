@@ -41,7 +41,6 @@ FloorSearch::FloorSearch(Probe& probe, const Robot& robot)
     : probe_(probe),
       forward_step_(robot.base()->forward_step),
       turn_step_(robot.base()->turn_step),
-      edge_(std::min(forward_step_, kLongestEdge)),
       eighth_(static_cast<std::uint32_t>(std::max(actionsFor(kTurn / 8, turn_step_), 1.0F))),
       fines_(kHeadings * eighth_) {}
 
@@ -200,8 +199,10 @@ void FloorSearch::drive(std::uint32_t node, int sign) {
   if (!next || !isFree(*next, heading * eighth_)) return;
   const BasePlace to = placeOf(*next, heading * eighth_);
   const float length = heading % 2 == 0 ? edge_ : edge_ * std::sqrt(2.0F);
-  const float actions = actionsFor(length, forward_step_);
-  if (actions > 1 && !canDrive(from, to)) return;
+  // Drives along the axes are merged, so that an action takes the robot over several cells.
+  const bool is_merged = heading % 2 == 0;
+  const float actions = is_merged ? length / forward_step_ : actionsFor(length, forward_step_);
+  if (actions > 1 + kSlack && !canDrive(from, to)) return;
   const float cost = nodes_[node].cost + (sign > 0 ? actions : kBackwards * actions);
   reach(*next * kHeadings + heading, cost, node);
 }
@@ -255,11 +256,42 @@ BaseRoute FloorSearch::routeTo(std::uint32_t node) const {
   }
   route.insert(route.end(), first->route.rbegin(), first->route.rend());
   std::ranges::reverse(route);
-  return route;
+  return merged(route);
+}
+
+BaseRoute FloorSearch::merged(const BaseRoute& route) const {
+  BaseRoute result;
+  result.reserve(route.size());
+  for (const BasePlace& place : route) {
+    if (result.size() >= 2) {
+      const BasePlace& before = result[result.size() - 2];
+      const Vec3 first = result.back().position - before.position;
+      const Vec3 second = place.position - result.back().position;
+      const bool same_yaw = before.yaw == place.yaw && result.back().yaw == place.yaw;
+      const bool along_x = std::fabs(first.z) + std::fabs(second.z) < kOnLattice;
+      const bool along_z = std::fabs(first.x) + std::fabs(second.x) < kOnLattice;
+      const bool goes_on = first.x * second.x + first.z * second.z > 0;
+      if (same_yaw && (along_x || along_z) && goes_on) result.pop_back();
+    }
+    result.push_back(place);
+  }
+  return result;
 }
 
 FloorSearch::Answer FloorSearch::search(const BasePlace& start, const Joints& carried,
                                         const Target& target, const Accept& accept) {
+  // A coarse lattice is fast; narrow doors need a finer one.
+  constexpr int kFinest = 3;
+  Answer answer;
+  for (int pitch = 1; pitch <= kFinest && answer.outcome != Outcome::kFound; ++pitch) {
+    edge_ = std::min(forward_step_, kLongestEdge) / static_cast<float>(pitch);
+    answer = searchLattice(start, carried, target, accept);
+  }
+  return answer;
+}
+
+FloorSearch::Answer FloorSearch::searchLattice(const BasePlace& start, const Joints& carried,
+                                               const Target& target, const Accept& accept) {
   carried_ = &carried;
   target_ = target;
   floor_ = start.position.y;

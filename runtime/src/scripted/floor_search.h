@@ -69,6 +69,8 @@ class FloorSearch {
     }
   };
 
+  [[nodiscard]] Answer searchLattice(const BasePlace& start, const Joints& carried,
+                                     const Target& target, const Accept& accept);
   void layOut();
   [[nodiscard]] std::optional<std::uint32_t> cellAt(float x, float z) const;
   [[nodiscard]] BasePlace placeOf(std::uint32_t cell, std::uint32_t fine) const;
@@ -85,16 +87,18 @@ class FloorSearch {
   void drive(std::uint32_t node, int sign);
   [[nodiscard]] std::optional<BasePlace> offer(std::uint32_t node, const Accept& accept);
   [[nodiscard]] BaseRoute routeTo(std::uint32_t node) const;
+  /// With drives along one axis put together.
+  [[nodiscard]] BaseRoute merged(const BaseRoute& route) const;
 
   Probe& probe_;
   float forward_step_;
   float turn_step_;
-  /// Edge of a cell, metres.
-  float edge_;
   /// Actions of an eighth of a turn, and of a whole one.
   std::uint32_t eighth_;
   std::uint32_t fines_;
   // Of the current search:
+  /// Edge of a cell, metres.
+  float edge_ = 0;
   const Joints* carried_ = nullptr;
   Target target_;
   float floor_ = 0;
