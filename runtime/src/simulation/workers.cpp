@@ -1,5 +1,6 @@
 #include "simulation/workers.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace galactic::simulation {
@@ -7,7 +8,7 @@ namespace {
 
 /// Waits until `value` is no longer `old`.
 void awaitChange(const std::atomic<std::uint32_t>& value, std::uint32_t old) noexcept {
-  constexpr int kLooks = 4000;  // some tens of microseconds
+  constexpr int kLooks = 30000;  // about a millisecond
   for (int n = 0; n < kLooks; ++n) {
     if (value.load(std::memory_order_acquire) != old) return;
 #if defined(__x86_64__)
@@ -19,11 +20,13 @@ void awaitChange(const std::atomic<std::uint32_t>& value, std::uint32_t old) noe
 
 }  // namespace
 
-Workers::Workers(std::size_t count, std::function<void(std::size_t)> work)
-    : work_(std::move(work)) {
-  threads_.reserve(count);
-  for (std::size_t n = 0; n < count; ++n) {
-    threads_.emplace_back([this, n] { run(n); });
+Workers::Workers(std::size_t parts, std::function<void(std::size_t)> work)
+    : work_(std::move(work)), begun_(parts) {
+  const std::size_t threads = std::max<std::size_t>(1, parts - 1);
+  threads_.reserve(threads);
+  for (std::size_t n = 0; n < threads; ++n) {
+    // The caller begins with part 0.
+    threads_.emplace_back([this, own = (n + 1) % parts] { run(own); });
   }
 }
 
@@ -34,26 +37,38 @@ Workers::~Workers() {
 }
 
 void Workers::begin() noexcept {
-  running_.store(static_cast<std::uint32_t>(threads_.size()), std::memory_order_relaxed);
+  left_.store(static_cast<std::uint32_t>(begun_.size()), std::memory_order_relaxed);
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
 }
 
 void Workers::end() noexcept {
-  for (std::uint32_t left = running_.load(std::memory_order_acquire); left != 0;
-       left = running_.load(std::memory_order_acquire)) {
-    awaitChange(running_, left);
+  doParts(round_.load(std::memory_order_relaxed), 0);
+  for (std::uint32_t left = left_.load(std::memory_order_acquire); left != 0;
+       left = left_.load(std::memory_order_acquire)) {
+    awaitChange(left_, left);
   }
 }
 
-void Workers::run(std::size_t n) noexcept {
+void Workers::run(std::size_t own) noexcept {
   std::uint32_t seen = 0;
   while (true) {
     awaitChange(round_, seen);
-    ++seen;
+    // A thread that slept through a round goes on with the one that is in work.
+    seen = round_.load(std::memory_order_acquire);
     if (stops_.load(std::memory_order_relaxed)) return;
-    work_(n);
-    if (running_.fetch_sub(1, std::memory_order_acq_rel) == 1) running_.notify_all();
+    doParts(seen, own);
+  }
+}
+
+void Workers::doParts(std::uint32_t round, std::size_t own) noexcept {
+  const std::size_t parts = begun_.size();
+  for (std::size_t n = 0; n < parts; ++n) {
+    const std::size_t part = (own + n) % parts;
+    std::uint32_t before = round - 1;
+    if (!begun_[part].compare_exchange_strong(before, round, std::memory_order_acq_rel)) continue;
+    work_(part);
+    if (left_.fetch_sub(1, std::memory_order_acq_rel) == 1) left_.notify_all();
   }
 }
 

@@ -8,29 +8,37 @@
 
 namespace galactic::simulation {
 
-/// Threads that all run one function, each with its own number, whenever they are told to. They
-/// wait without a lock: for a short time awake, so that steps that follow each other closely start
-/// at once, then asleep.
+/// Threads that share a piece of work in parts, again and again. Each part of a round is done once,
+/// by whichever thread takes it first: a thread begins with the part that it also did last time,
+/// and then helps with what nobody has begun. The caller helps too while it waits, so there is one
+/// thread fewer than parts, but at least one, so that the caller may do something else in between.
+/// Nothing locks. Threads wait awake for a short time, so that rounds that follow each other
+/// closely start at once, then asleep.
 class Workers {
  public:
-  /// `work(n)` runs in thread n of `count`; it must not throw.
-  Workers(std::size_t count, std::function<void(std::size_t)> work);
+  /// `work(n)` does part n of `parts`; it must not throw.
+  Workers(std::size_t parts, std::function<void(std::size_t)> work);
   ~Workers();
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
-  /// Starts one round. What was written before is seen by the threads.
+  /// Starts a round. What was written before is seen by whoever does a part.
   void begin() noexcept;
-  /// Waits for the end of the round. What the threads wrote is seen afterwards.
+  /// Helps, then waits for the end of the round. What the parts wrote is seen afterwards.
   void end() noexcept;
 
  private:
-  void run(std::size_t n) noexcept;
+  void run(std::size_t own) noexcept;
+  /// Does the parts that nobody has begun in this round, from `own` on and around.
+  void doParts(std::uint32_t round, std::size_t own) noexcept;
 
   std::function<void(std::size_t)> work_;
   std::atomic<std::uint32_t> round_{0};
-  std::atomic<std::uint32_t> running_{0};
+  /// Parts that are not done yet.
+  std::atomic<std::uint32_t> left_{0};
   std::atomic<bool> stops_{false};
+  /// The round in which each part was begun last.
+  std::vector<std::atomic<std::uint32_t>> begun_;
   std::vector<std::jthread> threads_;
 };
 
