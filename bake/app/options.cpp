@@ -43,11 +43,12 @@ struct Group {
   bool (*is_for)(AssetKind);
 };
 
+bool isObject(AssetKind kind) { return kind == AssetKind::kObject; }
 bool isScene(AssetKind kind) { return kind == AssetKind::kScene; }
 bool isRobot(AssetKind kind) { return kind == AssetKind::kRobot; }
 bool isEpisodes(AssetKind kind) { return kind == AssetKind::kEpisodes; }
-bool isMesh(AssetKind kind) { return isScene(kind) || kind == AssetKind::kObject; }
-bool isShape(AssetKind kind) { return isRobot(kind) || kind == AssetKind::kObject; }
+bool isMesh(AssetKind kind) { return isScene(kind) || isObject(kind); }
+bool isShape(AssetKind kind) { return isRobot(kind) || isObject(kind); }
 bool hasRadii(AssetKind kind) { return isMesh(kind) || isRobot(kind); }
 bool hasSeed(AssetKind kind) { return isScene(kind) || isEpisodes(kind); }
 
@@ -55,11 +56,12 @@ constexpr Group kRadiiGroup{"Spheres (scenes, objects, robots)", hasRadii};
 constexpr Group kMeshGroup{"Meshes (scenes, objects)", isMesh};
 constexpr Group kSceneGroup{"Scenes", isScene};
 constexpr Group kShapeGroup{"Spheres and boxes (objects, robots)", isShape};
+constexpr Group kObjectGroup{"Objects", isObject};
 constexpr Group kRobotGroup{"Robots", isRobot};
 constexpr Group kEpisodeGroup{"Episodes", isEpisodes};
 constexpr Group kSeedGroup{"Scenes, sampled episodes", hasSeed};
-constexpr std::array kGroups{kRadiiGroup, kSceneGroup, kMeshGroup,   kShapeGroup,
-                             kRobotGroup, kSeedGroup,  kEpisodeGroup};
+constexpr std::array kGroups{kRadiiGroup,  kSceneGroup, kMeshGroup, kShapeGroup,
+                             kObjectGroup, kRobotGroup, kSeedGroup, kEpisodeGroup};
 
 /// Options that were typed although their group is for other kinds of asset.
 Result<void> checkGroup(const CLI::App& app, const Group& group, AssetKind kind) {
@@ -130,6 +132,7 @@ class CommandLine {
     addGroup(kSceneGroup, [&] { scene_.addTo(app_, command); });
     addGroup(kMeshGroup, [&] { import_.addTo(app_); });
     addGroup(kShapeGroup, [&] { shape_.addTo(app_, command); });
+    addGroup(kObjectGroup, [&] { addCollection(); });
     addGroup(kRobotGroup, [&] { robot_.addTo(app_, command); });
     addGroup(kEpisodeGroup, [&] { episodes_.addTo(app_, command); });
   }
@@ -142,9 +145,10 @@ class CommandLine {
     for (const Group& group : kGroups) {
       if (auto fits = checkGroup(app_, group, command_.kind); !fits) return fits;
     }
-    for (const auto& step : {understandRadii(radii_, command_), import_.understand(command_),
-                             scene_.understand(command_, seeds_), shape_.understand(command_),
-                             robot_.understand(command_), episodes_.understand(command_, seeds_)}) {
+    for (const auto& step :
+         {understandRadii(radii_, command_), import_.understand(command_),
+          scene_.understand(command_, seeds_), shape_.understand(command_),
+          robot_.understand(command_), episodes_.understand(command_, seeds_), checkCollection()}) {
       if (!step) return step;
     }
     // Movable objects may be small.
@@ -169,6 +173,21 @@ class CommandLine {
         ->delimiter(',')
         ->allow_extra_args(false)
         ->default_str("0.015,0.05,0.12");
+  }
+
+  void addCollection() {
+    app_.add_option("--collection", command_.collection,
+                    "Published *.collection.json: the objects in it get its boxes and spheres")
+        ->type_name("FILE");
+  }
+
+  /// A collection's boxes stand in the frame of the mesh files.
+  [[nodiscard]] Result<void> checkCollection() const {
+    if (command_.collection.empty()) return {};
+    if (command_.import.up && !command_.import.transform) return {};
+    return fail(ErrorCode::kInvalidInput, "--collection",
+                "needs the up axis of the meshes, in whose frame its boxes stand: give --up, and "
+                "no --transform");
   }
 
   void addSeed() {
@@ -202,6 +221,7 @@ class CommandLine {
     if (hasRadii(command_.kind)) command_.remember("radii", joined(radii_));
     if (isScene(command_.kind)) scene_.remember(command_);
     if (isShape(command_.kind)) shape_.remember(command_);
+    command_.remember("collection", command_.collection.filename().string());
     if (isRobot(command_.kind)) robot_.remember(command_);
     if (isMesh(command_.kind)) import_.remember(command_);
     if (isEpisodes(command_.kind)) episodes_.remember(command_);

@@ -57,6 +57,8 @@ struct BakeCommand {
   MeshImportOptions import;
   SceneBakeOptions scene;
   ObjectBakeOptions object;
+  /// Published collection whose boxes and spheres objects get; empty: none.
+  std::filesystem::path collection;
   RobotOptions robot;
   EpisodeOptions episodes;
   /// Most spheres of an object or robot, where the user said so; 0: no limit.

@@ -1,39 +1,36 @@
-// galactic-run: opens packs, verifies them, says what is inside and measures queries.
+// galactic-run: opens packs, verifies them, says what is inside, measures queries, and steps
+// worlds.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
-#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <optional>
+#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "galactic/atomic_file.h"
 #include "galactic/error.h"
 #include "galactic/pack.h"
+#include "galactic/printable.h"
 #include "galactic/scene.h"
+#include "options.h"
 #include "query_benchmark.h"
+#include "recording.h"
+#include "run_report.h"
+#include "simulate.h"
 #include "summary.h"
 
 namespace {
 
 using galactic::Error;
 using galactic::ErrorCode;
+using galactic::RecordingReader;
 using galactic::Result;
-
-constexpr const char* kExitCodes =
-    "Exit codes: 0 ok, 1 command line, 2 input or output, 3 invalid input, 4 internal error,\n"
-    "5 unsupported.";
-
-struct Options {
-  std::vector<std::string> packs;
-  bool trusted = false;
-  bool bench = false;
-  std::uint32_t seed = 1;
-};
+using galactic::RunOptions;
 
 int report(const Error& error) {
   fmt::print(stderr, "galactic-run: {}: {}\n", galactic::printable(error.where),
@@ -41,30 +38,9 @@ int report(const Error& error) {
   return static_cast<int>(error.code);
 }
 
-/// Reads the command line into `options`; returns an exit code when there is nothing more to do.
-std::optional<int> parse(int argc, char** argv, Options& options) {
-  CLI::App app{"Opens packs, verifies them and says what is inside.", "galactic-run"};
-  app.footer(kExitCodes);
-  app.set_version_flag("--version", "galactic-run " GALACTIC_VERSION);
-  app.add_option("--pack", options.packs, "Pack to open; may be given several times")
-      ->required()
-      ->allow_extra_args(false)
-      ->type_name("FILE");
-  app.add_flag("--trusted", options.trusted,
-               "Skip the verification of packs that this machine has verified before");
-  app.add_flag("--bench", options.bench, "Measure queries on all grids of all packs");
-  app.add_option("--seed", options.seed, "Seed of the benchmark's robots and places")
-      ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const bool asked = error.get_exit_code() == 0;  // --help, --version
-    if (asked) return app.exit(error);
-    fmt::print(stderr, "galactic-run: command line: {}; see --help\n",
-               galactic::printable(error.what()));
-    return galactic::kExitUsage;
-  }
-  return std::nullopt;
+int flushOutput() {
+  if (std::fflush(stdout) == 0) return galactic::kExitOk;
+  return report({ErrorCode::kIo, "standard output", "cannot be written; free some space"});
 }
 
 /// Opens one pack and prints its summary. Mapping and verifying are timed apart.
@@ -86,7 +62,7 @@ Result<galactic::PackFile> openAndDescribe(const std::string& path, bool trusted
   return pack;
 }
 
-int run(const Options& options) {
+int describePacks(const RunOptions& options) {
   std::vector<galactic::PackFile> packs;
   std::vector<galactic::SceneGrids> scenes;
   for (const std::string& path : options.packs) {
@@ -99,20 +75,60 @@ int run(const Options& options) {
     return report({ErrorCode::kInvalidInput, "--bench",
                    "needs a pack of a scene to query; give one with --pack"});
   }
-  if (options.bench) fmt::print("{}", galactic::runQueryBenchmark(scenes, options.seed));
-  if (std::fflush(stdout) != 0) {
-    return report({ErrorCode::kIo, "standard output", "cannot be written; free some space"});
+  if (options.bench) {
+    const auto seed = static_cast<std::uint32_t>(options.simulation.seed);
+    fmt::print("{}", galactic::runQueryBenchmark(scenes, seed));
   }
-  return galactic::kExitOk;
+  return flushOutput();
+}
+
+int simulatePacks(const RunOptions& options, RecordingReader* replay) {
+  const Result<galactic::RunReport> run = galactic::simulate(options, replay);
+  if (!run) return report(run.error());
+  fmt::print("{}", galactic::tableOf(*run));
+  if (const int written = flushOutput(); written != galactic::kExitOk) return written;
+  if (!options.report.empty()) {
+    const std::string json = galactic::jsonOf(*run);
+    const auto saved =
+        galactic::writeFileAtomically(options.report, {std::as_bytes(std::span(json))});
+    if (!saved) return report(saved.error());
+  }
+  if (!run->first_difference) return galactic::kExitOk;
+  fmt::print(stderr,
+             "galactic-run: {}: step {} returns something else than when it was recorded; "
+             "compare the versions of galactic-run and the processors\n",
+             galactic::printable(options.replayFile()), *run->first_difference);
+  return galactic::kExitDiffers;
+}
+
+/// The options of a replay are those of the recording, and what was typed must not contradict them:
+/// the command line is read again on top of them.
+int replayPacks(int argc, char** argv, const std::string& file) {
+  Result<RecordingReader> recording = RecordingReader::open(file);
+  if (!recording) return report(recording.error());
+  RunOptions options;
+  options.simulation = recording->subject().options;
+  options.steps = recording->steps();
+  if (const auto exit_code = galactic::parseCommandLine(argc, argv, options)) return *exit_code;
+  if (const auto fits = galactic::checkReplay(*recording, options); !fits) {
+    return report(fits.error());
+  }
+  return simulatePacks(options, &*recording);
+}
+
+int run(int argc, char** argv) {
+  RunOptions options;
+  if (const auto exit_code = galactic::parseCommandLine(argc, argv, options)) return *exit_code;
+  if (!options.simulates) return describePacks(options);
+  const std::string replayed = options.replayFile();
+  return replayed.empty() ? simulatePacks(options, nullptr) : replayPacks(argc, argv, replayed);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    Options options;
-    if (const std::optional<int> exit_code = parse(argc, argv, options)) return *exit_code;
-    return run(options);
+    return run(argc, argv);
   } catch (const std::system_error& failure) {  // what printing throws
     return report({ErrorCode::kIo, "standard output", failure.what()});
   } catch (const std::exception& exception) {

@@ -6,15 +6,18 @@
 #include <cerrno>
 #include <string>
 #include <system_error>
+#include <utility>
 
 namespace galactic {
-namespace {
 
 /// A file under a name of its own beside the target, removed unless it was renamed onto the target.
-class TemporaryFile {
+class AtomicFile::Temporary {
  public:
-  explicit TemporaryFile(const std::filesystem::path& target)
-      : target_(target), path_(target.string() + ".part-" + std::to_string(::getpid())) {
+  /// `path` is what the user named, `target` where it leads.
+  Temporary(std::filesystem::path path, std::filesystem::path target)
+      : named_(std::move(path)),
+        target_(std::move(target)),
+        path_(target_.string() + ".part-" + std::to_string(::getpid())) {
     // Exclusive, so that it neither follows a link nor shares a file; a leftover of a killed
     // process with the same number makes way.
     constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
@@ -23,24 +26,29 @@ class TemporaryFile {
       descriptor_ = ::open(path_.c_str(), kFlags, 0666);
     }
   }
-  ~TemporaryFile() {
+  ~Temporary() {
     if (descriptor_ < 0) return;
     ::close(descriptor_);
     if (!renamed_) ::unlink(path_.c_str());
   }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+  Temporary(Temporary&&) = delete;
+  Temporary& operator=(Temporary&&) = delete;
 
   [[nodiscard]] bool isOpen() const { return descriptor_ >= 0; }
 
-  [[nodiscard]] bool write(std::span<const std::byte> bytes) const {
-    while (!bytes.empty()) {
-      const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) return false;
-      bytes = bytes.subspan(static_cast<std::size_t>(written));
-    }
-    return true;
+  [[nodiscard]] bool append(std::span<const std::byte> bytes) const {
+    return writeAll(bytes, [this](std::span<const std::byte> rest) {
+      return ::write(descriptor_, rest.data(), rest.size());
+    });
+  }
+
+  [[nodiscard]] bool overwrite(std::uint64_t offset, std::span<const std::byte> bytes) const {
+    return writeAll(bytes, [&](std::span<const std::byte> rest) {
+      const std::uint64_t done = bytes.size() - rest.size();
+      return ::pwrite(descriptor_, rest.data(), rest.size(), static_cast<off_t>(offset + done));
+    });
   }
 
   /// Makes the bytes durable, then visible under the target's name.
@@ -51,7 +59,25 @@ class TemporaryFile {
     return renamed_;
   }
 
+  /// What the last system call says about the failure.
+  [[nodiscard]] tl::unexpected<Error> failure() const {
+    return fail(ErrorCode::kIo, named_.string(),
+                "cannot write the file: " + std::generic_category().message(errno) +
+                    "; an existing file is left as it was");
+  }
+
  private:
+  template <class Write>
+  static bool writeAll(std::span<const std::byte> bytes, const Write& write) {
+    while (!bytes.empty()) {
+      const ssize_t written = write(bytes);
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) return false;
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+    return true;
+  }
+
   /// Makes the renaming durable; a file system that cannot do so has still renamed the file.
   void syncFolder() const {
     const std::filesystem::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
@@ -61,22 +87,19 @@ class TemporaryFile {
     ::close(descriptor);
   }
 
+  std::filesystem::path named_;
   std::filesystem::path target_;
   std::string path_;
   int descriptor_ = -1;
   bool renamed_ = false;
 };
 
-tl::unexpected<Error> writeFailure(const std::filesystem::path& path) {
-  return fail(ErrorCode::kIo, path.string(),
-              "cannot write the file: " + std::generic_category().message(errno) +
-                  "; an existing file is left as it was");
-}
+AtomicFile::AtomicFile(std::unique_ptr<Temporary> temporary) : temporary_(std::move(temporary)) {}
+AtomicFile::~AtomicFile() = default;
+AtomicFile::AtomicFile(AtomicFile&&) noexcept = default;
+AtomicFile& AtomicFile::operator=(AtomicFile&&) noexcept = default;
 
-}  // namespace
-
-Result<void> writeFileAtomically(const std::filesystem::path& path,
-                                 std::initializer_list<std::span<const std::byte>> parts) {
+Result<AtomicFile> AtomicFile::create(const std::filesystem::path& path) {
   std::error_code unknown;
   // A link stays a link: what it points to is written.
   const bool is_link = std::filesystem::is_symlink(path, unknown);
@@ -87,13 +110,34 @@ Result<void> writeFileAtomically(const std::filesystem::path& path,
     return fail(ErrorCode::kIo, path.string(),
                 "cannot write the file: a device or pipe of this name is there; give another name");
   }
-  TemporaryFile file(target);
-  if (!file.isOpen()) return writeFailure(path);
-  for (const std::span<const std::byte>& part : parts) {
-    if (!file.write(part)) return writeFailure(path);
-  }
-  if (!file.publish()) return writeFailure(path);
+  auto temporary = std::make_unique<Temporary>(path, target);
+  if (!temporary->isOpen()) return temporary->failure();
+  return AtomicFile(std::move(temporary));
+}
+
+Result<void> AtomicFile::append(std::span<const std::byte> bytes) {
+  if (!temporary_->append(bytes)) return temporary_->failure();
   return {};
+}
+
+Result<void> AtomicFile::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
+  if (!temporary_->overwrite(offset, bytes)) return temporary_->failure();
+  return {};
+}
+
+Result<void> AtomicFile::publish() {
+  if (!temporary_->publish()) return temporary_->failure();
+  return {};
+}
+
+Result<void> writeFileAtomically(const std::filesystem::path& path,
+                                 std::initializer_list<std::span<const std::byte>> parts) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return tl::unexpected<Error>(file.error());
+  for (const std::span<const std::byte>& part : parts) {
+    if (auto appended = file->append(part); !appended) return appended;
+  }
+  return file->publish();
 }
 
 }  // namespace galactic

@@ -12,7 +12,7 @@ using test::ProgramRun;
 using testing::HasSubstr;
 
 std::string sample(const char* file) {
-  return std::string(GALACTIC_SOURCE_DIR) + "/packs/sample/" + file;
+  return std::string(GALACTIC_SOURCE_DIR "/packs/sample/") + file;
 }
 
 class SamplingCli : public test::BakeFolder {

@@ -33,9 +33,7 @@ class BoxRoom {
   static constexpr Span kHeights{-0.5F, 3};
 
   explicit BoxRoom(std::vector<Block> blocks) : blocks_(std::move(blocks)) {
-    ScenePackFields fields;
-    for (const float radius : kRadii) fields.grids.emplace_back(buildGrid(radius));
-    bytes_ = buildPack(fields);
+    bytes_ = buildPack(fields());
     pack_ =
         std::make_unique<PackFile>(PackFile::view(bytes_.bytes(), "room", Trust::kTrusted).value());
     scene_ = std::make_unique<Scene>(Scene::from(*pack_).value());
@@ -44,6 +42,13 @@ class BoxRoom {
   [[nodiscard]] const Scene& scene() const { return *scene_; }
   /// The scene's pack.
   [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_.bytes(); }
+
+  /// Its scene pack; for a file, all radii must be at least half the spacing.
+  [[nodiscard]] ScenePackFields fields(std::span<const float> radii = kRadii) const {
+    ScenePackFields fields;
+    for (const float radius : radii) fields.grids.emplace_back(buildGrid(radius));
+    return fields;
+  }
 
   /// Whether the grid's exact counterpart blocks a centre: outside, or too near to a block in the
   /// middle of the centre's cell.

@@ -1,17 +1,40 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <memory>
 #include <span>
 
 #include "galactic/error.h"
 
 namespace galactic {
 
-/// Writes `parts` one after the other to `path` through a temporary file beside it, fsync and
-/// rename: a reader sees the old file or the new one, never half of it. On failure (kIo) the old
-/// file is intact and the temporary file is gone. A symbolic link is followed; a folder, device or
-/// pipe is refused.
+/// A file that is written piece by piece and seen only when it is whole: it grows under another
+/// name beside its path, and is renamed at the end. A symbolic link is followed; a folder, device
+/// or pipe is refused. Destroyed before it was published, it leaves nothing behind and an old file
+/// of the name intact. All failures are kIo.
+class AtomicFile {
+ public:
+  [[nodiscard]] static Result<AtomicFile> create(const std::filesystem::path& path);
+  ~AtomicFile();
+  AtomicFile(AtomicFile&&) noexcept;
+  AtomicFile& operator=(AtomicFile&&) noexcept;
+
+  [[nodiscard]] Result<void> append(std::span<const std::byte> bytes);
+  /// Replaces bytes that were appended before.
+  [[nodiscard]] Result<void> overwrite(std::uint64_t offset, std::span<const std::byte> bytes);
+  /// Makes the bytes durable (fsync), then visible under the path: the last call.
+  [[nodiscard]] Result<void> publish();
+
+ private:
+  class Temporary;
+  explicit AtomicFile(std::unique_ptr<Temporary> temporary);
+  std::unique_ptr<Temporary> temporary_;
+};
+
+/// Writes `parts` one after the other to `path` as an AtomicFile: a reader sees the old file or the
+/// new one, never half of it. On failure (kIo) the old file is intact and nothing else is left.
 [[nodiscard]] Result<void> writeFileAtomically(
     const std::filesystem::path& path, std::initializer_list<std::span<const std::byte>> parts);
 

@@ -109,9 +109,9 @@ class BatchSimulator {
   [[nodiscard]] std::size_t threadCount() const;
   /// The parts of an observation, in order:
   /// robot_target (3), grip_target (3), robot_grip (3), robot_goal (3), grip_goal (3): points in
-  /// the frame of the robot's root (yaw only) or of the grip, metres; is_holding (1); joints (one
-  /// per controlled joint, radians or metres); time (3): the share f of the steps that is left, as
-  /// min(1, f), min(1, 5 f), min(1, 50 f).
+  /// the frame of the base (on the floor under the root, turned by the yaw) or of the grip, metres;
+  /// is_holding (1); joints (one per controlled joint, radians or metres); time (3): the share f of
+  /// the steps that is left, as min(1, f), min(1, 5 f), min(1, 50 f).
   [[nodiscard]] const std::vector<ObservationPart>& observationParts() const;
 
   /// One step of all envs. `actions`: envCount() * actionCount(), env after env.

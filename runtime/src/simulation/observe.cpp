@@ -24,7 +24,7 @@ class Row {
   float* next_;
 };
 
-/// The frame of the robot's root without its height: turned by the yaw only.
+/// The frame of the base: on the floor under the root, turned by the yaw only.
 struct RobotFrame {
   Vec3 base;
   float sine = 0;

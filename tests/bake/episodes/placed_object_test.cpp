@@ -13,7 +13,6 @@ namespace {
 
 using test::PlacedBox;
 using test::Point;
-using test::pointOf;
 using test::uniform;
 
 constexpr std::uint32_t kSeed = 11;

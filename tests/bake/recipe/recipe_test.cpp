@@ -94,9 +94,9 @@ spheres = [[1, 2, 3, 0.05]]
 
 TEST(Recipes, TurnACameraOnAnOpticalFrameToLookAlongItsZ) {
   const ScratchFolder folder;
-  const auto recipe = readText(folder, std::string(kLeastRecipe) +
-                                           "[camera]\nlink = \"optical\"\nrpy_degrees = [90, -90, "
-                                           "0]\nvertical_fov_degrees = 60\n");
+  std::string text(kLeastRecipe);
+  text += "[camera]\nlink = \"optical\"\nrpy_degrees = [90, -90, 0]\nvertical_fov_degrees = 60\n";
+  const auto recipe = readText(folder, text);
   ASSERT_TRUE(recipe.has_value()) << recipe.error().message;
   const bake::Affine& pose = recipe->camera->link_from_camera;
   // An optical frame's Z (forward) is +Y here, its -Y (up in the image) is +Z.

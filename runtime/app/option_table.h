@@ -1,0 +1,115 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "galactic/simulation_options.h"
+
+namespace galactic {
+
+/// A value of an option that has names for its values.
+template <class T>
+struct Named {
+  std::string_view name;
+  T value;
+};
+
+/// The values that an option may have, both ends included.
+template <class T>
+struct Within {
+  T least;
+  T most;
+};
+
+inline constexpr std::array<Named<TaskKind>, 3> kTaskNames{{{"rearrange", TaskKind::kRearrange},
+                                                            {"pick", TaskKind::kMobilePick},
+                                                            {"none", TaskKind::kNone}}};
+inline constexpr std::array<Named<EpisodeOrder>, 3> kOrderNames{
+    {{"shuffled", EpisodeOrder::kShuffled},
+     {"linear", EpisodeOrder::kLinear},
+     {"partition", EpisodeOrder::kPartition}}};
+inline constexpr std::array<Named<SlideDirection>, 2> kSlideNames{
+    {{"pushout", SlideDirection::kPushOut}, {"towards-base", SlideDirection::kTowardsBase}}};
+
+/// A switch: the field and the value that it gets when the switch is typed.
+struct Switch {
+  bool& field;
+  bool when_typed;
+};
+
+/// Names each option that decides what a simulation does, once, for all who need the list: the
+/// command line, recordings and reports. Calls on `v`
+///   group(heading), whole(name, field, Within, help), real(name, field, Within, help),
+///   choice(name, field, names, help), flag(name, Switch, help), seed(name, field, help).
+template <class Visitor>
+void visitBatchOptions(SimulationOptions& o, Visitor& v) {
+  v.group("Simulation");
+  v.whole("envs", o.envs, Within<std::uint32_t>{1, 1U << 20U}, "Environments that step together");
+  v.seed("seed", o.seed, "Seed of episodes, placements and policy, and of --bench");
+  v.choice("order", o.order, kOrderNames, "Order in which an env takes the episodes");
+  v.whole("rank", o.rank, Within<std::uint32_t>{0, 65535},
+          "Number of this batch among several that share the episodes");
+  v.whole("ranks", o.ranks, Within<std::uint32_t>{1, 65536}, "How many batches there are");
+}
+
+/// The same, of the task and its reward.
+template <class Visitor>
+void visitTaskOptions(TaskOptions& t, Visitor& v) {
+  constexpr Within<float> kReward{-1e6F, 1e6F};
+  v.group("Task");
+  v.choice("task", t.kind, kTaskNames, "What the robot has to do");
+  v.whole("episode-steps", t.most_steps, Within<std::uint32_t>{0, 1U << 30U},
+          "Steps after which an episode ends; 0: never");
+  v.real("success-distance", t.success_distance, Within<float>{0, 1000},
+         "Distance of target and goal that is a success, metres");
+  v.flag("no-terminate", Switch{t.needs_terminate, false},
+         "Judge success at each release; the terminate action does nothing");
+  v.flag("safe-drop", Switch{t.drop_fails, false},
+         "Releases away from the goal are not carried out, instead of failures");
+  v.flag("no-distractors", Switch{t.distractors, false}, "Leave all objects out but the target");
+  v.flag("observe-current", Switch{t.observes_current_target, true},
+         "Observe the target where it is, not where it was at the start");
+  v.group("Reward");
+  v.real("success-reward", t.success_reward, kReward, "For success");
+  v.real("pick-reward", t.pick_reward, kReward, "For the first grasp of the target");
+  v.real("reach-weight", t.reach_weight, kReward, "For each metre of hand towards target");
+  v.real("transport-weight", t.transport_weight, kReward, "For each metre of target towards goal");
+  v.real("action-weight", t.action_weight, kReward, "Off for squared changes of joint actions");
+  v.real("slack-penalty", t.slack_penalty, kReward, "Off for each step");
+  v.real("failure-penalty", t.failure_penalty, kReward, "Off for a failure");
+}
+
+/// The same, of what the robot does and meets.
+template <class Visitor>
+void visitMotionOptions(SimulationOptions& o, Visitor& v) {
+  constexpr Within<float> kThreshold{-2, 2};
+  constexpr Within<float> kMetres{0, 1000};
+  constexpr Within<std::uint32_t> kAttempts{0, 1000};
+  v.group("Actions");
+  v.real("grasp-from", o.action.grasp, kThreshold, "An empty hand grasps from this value on");
+  v.real("release-below", o.action.release, kThreshold, "A full hand lets go below this value");
+  v.real("terminate-from", o.action.terminate, kThreshold, "Terminates from this value on");
+  v.group("Sliding and floor");
+  v.choice("slide-direction", o.slide.direction, kSlideNames, "Where the base is pushed");
+  v.whole("slide-attempts", o.slide.attempts, kAttempts, "Pushes in a step; 0: no sliding");
+  v.real("slide-step", o.slide.step, kMetres, "Length of a push, metres");
+  v.real("floor-rise", o.ground.most_rise, kMetres, "Highest step up, metres");
+  v.real("floor-drop", o.ground.most_drop, kMetres, "Deepest step down, metres");
+  v.group("Placing released objects");
+  v.whole("place-attempts", o.placement.attempts, kAttempts, "Poses that are tried");
+  v.real("place-lift", o.placement.most_lift, kMetres, "Highest lift out of something, metres");
+  v.real("place-clearance", o.placement.clearance, kMetres, "Left below the object, metres");
+  v.real("place-spread", o.placement.direction_spread, Within<float>{0, 4},
+         "Half the range of random directions, radians");
+  v.real("place-jitter", o.placement.jitter, kMetres, "Length of a jitter, in box diagonals");
+}
+
+/// All of them, in the order of recordings and reports.
+template <class Visitor>
+void visitOptions(SimulationOptions& options, Visitor& visitor) {
+  visitBatchOptions(options, visitor);
+  visitTaskOptions(options.task, visitor);
+  visitMotionOptions(options, visitor);
+}
+
+}  // namespace galactic

@@ -1,0 +1,216 @@
+#include "options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string_view>
+
+#include "galactic/error.h"
+#include "galactic/printable.h"
+#include "option_table.h"
+#include "policy.h"
+
+namespace galactic {
+namespace {
+
+constexpr const char* kFooter =
+    "Exit codes: 0 ok, 1 command line, 2 input or output, 3 invalid input, 4 internal error,\n"
+    "5 unsupported, 7 a replay differs.\n"
+    "Any option of the groups below \"Options\" starts a simulation; without one, packs are\n"
+    "described.\n"
+    "Examples:\n"
+    "  galactic-run --pack world.pack\n"
+    "  galactic-run --pack world.pack --envs 1024 --steps 1000 --policy random\n"
+    "  galactic-run --pack world.pack --steps 100 --record run.rec\n"
+    "  galactic-run --pack world.pack --policy replay:run.rec";
+constexpr const char* kReplayPrefix = "replay:";
+constexpr const char* kPlainGroup = "Options";
+constexpr const char* kRunGroup = "Simulation";
+
+/// A number from `within`; not infinite and not NaN.
+CLI::Validator finite(Within<float> within) {
+  return CLI::Validator(
+      [within](const std::string& text) {
+        double value = 0;
+        const char* end = text.data() + text.size();
+        const auto [stop, problem] = std::from_chars(text.data(), end, value);
+        const bool is_good = problem == std::errc() && stop == end &&
+                             value >= static_cast<double>(within.least) &&
+                             value <= static_cast<double>(within.most);
+        if (is_good) return std::string();
+        return fmt::format("found {}, wanted a number from {} to {}", text, within.least,
+                           within.most);
+      },
+      "NUMBER", "finite");
+}
+
+CLI::Validator knownPolicy() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        if (isGeneratedPolicy(text) || text == kScriptedPolicy) return std::string();
+        const std::string_view prefix = kReplayPrefix;
+        if (text.starts_with(prefix) && text.size() > prefix.size()) return std::string();
+        return fmt::format(
+            "unknown policy {}, wanted random, forward, zero, scripted or replay:FILE", text);
+      },
+      "", "policy");
+}
+
+/// Makes an option of the command line of each option of the table. They write to the fields only
+/// when they are typed.
+class CommandLineVisitor {
+ public:
+  explicit CommandLineVisitor(CLI::App& app) : app_(app) {}
+
+  void group(std::string_view heading) { heading_ = heading; }
+  void whole(std::string_view name, std::uint32_t& field, Within<std::uint32_t> within,
+             std::string_view help) {
+    add(name, field, help)
+        ->check(CLI::Range(within.least, within.most))
+        ->option_text(fmt::format("N [{}]", field));
+  }
+  void seed(std::string_view name, std::uint64_t& field, std::string_view help) {
+    add(name, field, help)->option_text(fmt::format("N [{}]", field))->group(kPlainGroup);
+  }
+  void real(std::string_view name, float& field, Within<float> within, std::string_view help) {
+    add(name, field, help)->check(finite(within))->option_text(fmt::format("NUMBER [{}]", field));
+  }
+  void flag(std::string_view name, const Switch& value, std::string_view help) {
+    app_.add_flag_callback(
+            dashed(name), [value] { value.field = value.when_typed; }, std::string(help))
+        ->group(heading_);
+  }
+  template <class T, std::size_t N>
+  void choice(std::string_view name, T& field, const std::array<Named<T>, N>& names,
+              std::string_view help) {
+    std::map<std::string, T> values;
+    std::string listed;
+    std::string now;
+    for (const Named<T>& one : names) {
+      values.emplace(one.name, one.value);
+      listed += (listed.empty() ? "" : "|") + std::string(one.name);
+      if (one.value == field) now = one.name;
+    }
+    const auto set = [&field, values](const std::string& text) { field = values.at(text); };
+    app_.add_option_function<std::string>(dashed(name), set, std::string(help))
+        ->check(CLI::IsMember(values))
+        ->group(heading_)
+        ->option_text(fmt::format("{} [{}]", listed, now));
+  }
+
+ private:
+  static std::string dashed(std::string_view name) { return "--" + std::string(name); }
+
+  template <class T>
+  CLI::Option* add(std::string_view name, T& field, std::string_view help) {
+    return app_.add_option(dashed(name), field, std::string(help))->group(heading_);
+  }
+
+  CLI::App& app_;
+  std::string heading_;
+};
+
+void addPlainOptions(CLI::App& app, RunOptions& options) {
+  app.set_version_flag("--version", "galactic-run " GALACTIC_VERSION);
+  app.add_option("--pack", options.packs, "Pack to open; may be given several times")
+      ->required()
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  app.add_flag("--trusted", options.trusted,
+               "Skip the verification of packs that this machine has verified before");
+  app.add_flag("--bench", options.bench, "Measure queries on all grids of all packs");
+}
+
+void addRunOptions(CLI::App& app, RunOptions& options) {
+  app.option_defaults()->group(kRunGroup);
+  app.add_option("--steps", options.steps, "Steps of the whole batch")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40U))
+      ->option_text(fmt::format("N [{}]", options.steps));
+  app.add_option("--policy", options.policy, "Where the actions come from")
+      ->check(knownPolicy())
+      ->option_text(fmt::format("random|forward|zero|scripted|replay:FILE [{}]", options.policy));
+  app.add_option("--threads", options.simulation.threads,
+                 "Threads; the results do not depend on it; 0: one per processor")
+      ->check(CLI::Range(0, 4096))
+      ->option_text(fmt::format("N [{}]", options.simulation.threads));
+  app.add_flag("--body-transforms", options.simulation.body_transforms,
+               "Keep the pose of every body of the robot, as rendering needs");
+  app.add_option("--record", options.record, "Write actions and digests, for replay:FILE")
+      ->type_name("FILE");
+  app.add_option("--report", options.report, "Write the closing table as JSON")
+      ->type_name("FILE.json");
+  app.option_defaults()->group(kPlainGroup);
+}
+
+/// Sliding by name: what the two other options of sliding then refine.
+void addSlide(CLI::App& app, SlideOptions& slide) {
+  const std::map<std::string, SlideOptions> named{
+      {"pushout", {}},
+      {"published", {.attempts = 5, .direction = SlideDirection::kTowardsBase, .step = 0.05F}},
+      {"off", {.attempts = 0}}};
+  const auto set = [&slide, named](const std::string& text) { slide = named.at(text); };
+  app.add_option_function<std::string>("--slide", set,
+                                       "How a robot that would hit something is pushed clear")
+      ->check(CLI::IsMember({"pushout", "published", "off"}))
+      ->group("Sliding and floor")
+      ->option_text("pushout|published|off [pushout]");
+}
+
+/// What no single option can see to be wrong; empty when nothing is.
+std::string faultOf(const RunOptions& options) {
+  if (options.bench && options.simulates) {
+    return "--bench measures queries and simulates nothing; leave it out, or the other options";
+  }
+  if (options.bench && options.simulation.seed > std::numeric_limits<std::uint32_t>::max()) {
+    return "--bench takes a --seed up to 4294967295";
+  }
+  if (options.simulation.rank >= options.simulation.ranks) {
+    return fmt::format("--rank is {}, wanted a number below --ranks, which is {}",
+                       options.simulation.rank, options.simulation.ranks);
+  }
+  return {};
+}
+
+int refuse(std::string_view message) {
+  fmt::print(stderr, "galactic-run: command line: {}; see --help\n", printable(message));
+  return kExitUsage;
+}
+
+}  // namespace
+
+std::string RunOptions::replayFile() const {
+  const std::string_view prefix = kReplayPrefix;
+  return policy.starts_with(prefix) ? policy.substr(prefix.size()) : std::string();
+}
+
+std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOptions& options) {
+  CLI::App app{"Opens packs and says what is inside, or steps a world of them.", "galactic-run"};
+  app.footer(kFooter);
+  constexpr std::size_t kHelpColumn = 34;
+  app.get_formatter()->column_width(kHelpColumn);
+  addPlainOptions(app, options);
+  addRunOptions(app, options);
+  CommandLineVisitor visitor(app);
+  visitBatchOptions(options.simulation, visitor);
+  visitTaskOptions(options.simulation.task, visitor);
+  // Before the options that refine it: they are read in this order.
+  addSlide(app, options.simulation.slide);
+  visitMotionOptions(options.simulation, visitor);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool asked = error.get_exit_code() == 0;  // --help, --version
+    return asked ? app.exit(error) : refuse(error.what());
+  }
+  for (const CLI::Option* option : app.get_options()) {
+    options.simulates |= option->count() > 0 && option->get_group() != kPlainGroup;
+  }
+  const std::string fault = faultOf(options);
+  return fault.empty() ? std::nullopt : std::optional<int>(refuse(fault));
+}
+
+}  // namespace galactic

@@ -1,0 +1,38 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "galactic/simulation_options.h"
+
+namespace galactic {
+
+/// What the command line asks for.
+struct RunOptions {
+  RunOptions() { simulation.envs = 1024; }
+
+  std::vector<std::string> packs;
+  bool trusted = false;
+  bool bench = false;
+  /// Whether any option of a simulation was typed: then the packs are a world and step, else they
+  /// are summarised.
+  bool simulates = false;
+  SimulationOptions simulation;
+  /// Of the whole batch.
+  std::uint64_t steps = 1000;
+  std::string policy = "random";
+  /// Files to write; empty for none.
+  std::string record;
+  std::string report;
+
+  /// The file of "replay:FILE"; empty for the other policies.
+  [[nodiscard]] std::string replayFile() const;
+};
+
+/// Reads the command line into `options`; what is not typed keeps its value. Prints help, version
+/// and what is wrong. Returns an exit code when there is nothing more to do.
+[[nodiscard]] std::optional<int> parseCommandLine(int argc, const char* const* argv,
+                                                  RunOptions& options);
+
+}  // namespace galactic

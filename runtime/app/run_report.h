@@ -1,0 +1,53 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "galactic/batch_simulator.h"
+#include "options.h"
+
+namespace galactic {
+
+/// Sums over the episodes that ended in a run.
+struct EpisodeSums {
+  std::uint64_t ended = 0;
+  /// Of the rewards, and of the steps, of these episodes.
+  double returns = 0;
+  std::uint64_t steps = 0;
+};
+
+/// What a run was and what came of it.
+struct RunReport {
+  RunOptions options;
+  std::size_t threads = 0;
+  /// Of the whole batch; fewer than were asked for when the run was interrupted.
+  std::uint64_t steps = 0;
+  bool is_interrupted = false;
+  /// Wall clock in seconds: opening the packs, making the simulator, all calls of step(), and the
+  /// whole loop with policy and recording.
+  double open_seconds = 0;
+  double create_seconds = 0;
+  double step_seconds = 0;
+  double loop_seconds = 0;
+  /// Threads' seconds of `sampled_steps` steps.
+  std::vector<PhaseTime> phases;
+  std::uint64_t sampled_steps = 0;
+  SimulationStatistics sum;
+  EpisodeSums episodes;
+  /// Episodes of the world, and which of them cannot be started.
+  std::size_t world_episodes = 0;
+  std::vector<std::uint32_t> skipped;
+  std::size_t memory_bytes = 0;
+  /// The first step in which a replay differs, counted from 0.
+  std::optional<std::uint64_t> first_difference;
+};
+
+/// The closing table, lines of text.
+[[nodiscard]] std::string tableOf(const RunReport& report);
+
+/// The same as JSON, with all options and a line end.
+[[nodiscard]] std::string jsonOf(const RunReport& report);
+
+}  // namespace galactic

@@ -1,0 +1,83 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "galactic/batch_simulator.h"
+#include "galactic/error.h"
+#include "galactic/simulation_options.h"
+#include "galactic/world.h"
+
+namespace galactic {
+
+/// What a ScriptedPolicy is about in an env.
+enum class ScriptedPhase : std::uint8_t {
+  /// Drive to the target, reach for it and grasp it.
+  kPick = 0,
+  /// Lift it, carry it to the goal, set it down and let go.
+  kPlace = 1,
+  /// The target lies at the goal (or is held, where that is the task): say so.
+  kFinish = 2,
+  /// See ScriptedTrouble.
+  kGaveUp = 3,
+};
+
+/// Why a ScriptedPolicy gave up, or planned anew for the last time.
+enum class ScriptedTrouble : std::uint8_t {
+  kNone = 0,
+  /// The base cannot drive to any place near target or goal.
+  kNoWayToTarget = 1,
+  kNoWayToGoal = 2,
+  /// From no such place the arm reaches it without penetrating anything.
+  kNoGrasp = 3,
+  kNoPlacement = 4,
+  /// The arm cannot be folded for driving.
+  kNoFold = 5,
+  /// The simulation did not move the robot as planned.
+  kStuck = 6,
+  /// The hand closed on nothing or on another object, or the target came to rest elsewhere.
+  kMissed = 7,
+};
+
+/// The name of a trouble in lower case, for tables: "no way to target".
+[[nodiscard]] std::string_view nameOf(ScriptedTrouble trouble);
+
+/// Solves episodes of Rearrange and Mobile Pick with a plan, from the whole state of an env rather
+/// than from observations: shows that a world's task can be solved, and by what actions. For each
+/// env it
+/// - searches the floor for the cheapest way (A*) to a place from which the arm, by inverse
+///   kinematics and a planned motion, reaches the target; drives there and grasps it;
+/// - lifts it, folds the arm, drives on to a place from which the arm brings it just over the goal,
+///   as upright as it has to lie there, lets go, and terminates.
+/// Where the simulation moves the robot otherwise than planned, it plans again, a few times; when
+/// nothing is found it gives up: its actions are zero, but for the hand, which keeps what it holds.
+///
+/// Deterministic: what it does in an env depends on that env's states only. Plans take some tens of
+/// milliseconds and allocate. Not safe to call from several threads at once.
+class ScriptedPolicy {
+ public:
+  /// For a batch of `options.envs` envs that was made from the same world and options. `world` must
+  /// outlive the policy. Fails with kUnsupported when the task is TaskKind::kNone.
+  [[nodiscard]] static Result<ScriptedPolicy> create(const World& world,
+                                                     const SimulationOptions& options);
+  ~ScriptedPolicy();
+  ScriptedPolicy(ScriptedPolicy&&) noexcept;
+  ScriptedPolicy& operator=(ScriptedPolicy&&) noexcept;
+
+  /// The actions of the next step of all envs. Shape of `actions`: envs * actionCount(), as
+  /// BatchSimulator::step takes them. Call it once before each step.
+  void act(const BatchSimulator& simulator, std::span<float> actions);
+
+  /// Of the last call of act.
+  [[nodiscard]] ScriptedPhase phase(std::size_t env) const;
+  [[nodiscard]] ScriptedTrouble trouble(std::size_t env) const;
+
+ private:
+  class Impl;
+  explicit ScriptedPolicy(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace galactic

@@ -1,0 +1,128 @@
+#include "scripted/arm.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace galactic::scripted {
+namespace {
+
+constexpr float kTurn = 6.28318531F;
+
+bool isContinuous(const Robot& robot, std::uint32_t position) {
+  return std::ranges::any_of(robot.links(), [position](const LinkFrame& link) {
+    return link.type == JointType::kContinuous &&
+           link.position == static_cast<std::int32_t>(position);
+  });
+}
+
+/// Whether any sphere of `a` overlaps one of `b`.
+bool overlap(const SphereGroup& a, const Pose& root_from_a, const SphereGroup& b,
+             const Pose& root_from_b, std::span<const float> radii) {
+  const Pose a_from_b = inverse(root_from_a) * root_from_b;
+  for (const SetSphere& other : b.spheres) {
+    const Vec3 centre = a_from_b * other.centre;
+    for (const SetSphere& own : a.spheres) {
+      const Vec3 away = centre - own.centre;
+      const float reach = radii[own.radius_index] + radii[other.radius_index];
+      if (dot(away, away) < reach * reach) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+Arm::Arm(const Robot& robot) : robot_(&robot), links_(robot.links().size()) {
+  joints_.reserve(robot.controlledJoints().size());
+  for (const ControlledJoint& joint : robot.controlledJoints()) {
+    joints_.push_back({joint.position, joint.step, joint.lower, joint.upper,
+                       isContinuous(robot, joint.position)});
+  }
+  const std::span<const LinkFrame> links = robot.links();
+  for (auto link = static_cast<std::int32_t>(robot.endEffector()->link); link >= 0;
+       link = links[static_cast<std::size_t>(link)].parent) {
+    const auto index = static_cast<std::size_t>(link);
+    for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+      const bool moves =
+          links[index].type != JointType::kFixed &&
+          links[index].position == static_cast<std::int32_t>(joints_[joint].position);
+      if (moves) movers_.push_back({index, joint});
+    }
+  }
+}
+
+std::span<const Pose> Arm::placeLinks(std::span<const float> positions) {
+  forwardKinematics(robot_->links(), {}, positions, links_);
+  return links_;
+}
+
+Pose Arm::gripOf(std::span<const Pose> links) const {
+  const EndEffector& hand = *robot_->endEffector();
+  return links[hand.link] * Pose{hand.grasp_point, {}};
+}
+
+void Arm::columns(std::span<const Pose> links, std::span<Column> out) const {
+  std::ranges::fill(out, Column{});
+  for (const Mover& mover : movers_) {
+    const LinkFrame& link = robot_->links()[mover.link];
+    const Pose& pose = links[mover.link];
+    const Vec3 axis = rotate(pose.rotation, link.axis) * link.multiplier;
+    Column& column = out[mover.joint];
+    if (link.type == JointType::kPrismatic) {
+      column.slide = column.slide + axis;
+    } else {
+      column.turn = column.turn + axis;
+      column.origin = pose.translation;
+    }
+  }
+}
+
+float Arm::difference(std::size_t joint, std::span<const float> from,
+                      std::span<const float> to) const {
+  const ArmJoint& arm_joint = joints_[joint];
+  const float way = to[arm_joint.position] - from[arm_joint.position];
+  return arm_joint.wraps ? std::remainder(way, kTurn) : way;
+}
+
+float Arm::distance(std::span<const float> from, std::span<const float> to) const {
+  float most = 0;
+  for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+    most = std::max(most, std::fabs(difference(joint, from, to)));
+  }
+  return most;
+}
+
+float Arm::actionsBetween(std::span<const float> from, std::span<const float> to) const {
+  float most = 0;
+  for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+    const float way = std::fabs(difference(joint, from, to));
+    if (way > 0 && joints_[joint].step > 0) most = std::max(most, way / joints_[joint].step);
+  }
+  return most;
+}
+
+void Arm::interpolate(std::span<const float> from, std::span<const float> to, float share,
+                      Joints& out) const {
+  out.assign(from.begin(), from.end());
+  for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+    out[joints_[joint].position] += share * difference(joint, from, to);
+  }
+}
+
+void Arm::move(std::size_t joint, float by, Joints& positions) const {
+  const ArmJoint& arm_joint = joints_[joint];
+  float& position = positions[arm_joint.position];
+  position = arm_joint.wraps ? std::remainder(position + by, kTurn)
+                             : std::clamp(position + by, arm_joint.lower, arm_joint.upper);
+}
+
+bool Arm::touchesItself(std::span<const Pose> links) const {
+  const std::vector<SphereGroup>& groups = robot_->groups();
+  return std::ranges::any_of(robot_->testedPairs(), [&](const GroupPair& pair) {
+    const SphereGroup& first = groups[pair.first];
+    const SphereGroup& second = groups[pair.second];
+    return overlap(first, links[first.link], second, links[second.link], robot_->radii());
+  });
+}
+
+}  // namespace galactic::scripted

@@ -1,0 +1,150 @@
+#include "scripted/arm_planner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace galactic::scripted {
+namespace {
+
+constexpr float kPi = 3.14159265F;
+/// Between the positions on a line that are looked at, radians or metres: finer than a step, so
+/// that nothing of the robot's size is jumped over.
+constexpr float kResolution = 0.07F;
+/// Longest edge of a tree, radians or metres.
+constexpr float kEdge = 0.4F;
+/// Nodes of both trees together, and random positions, after which the search is given up.
+constexpr std::size_t kMostNodes = 1200;
+constexpr int kMostDraws = 500;
+/// Length of the pieces in which the hand moves straight, metres.
+constexpr float kPiece = 0.02F;
+/// A larger move of a joint within a piece is a jump to another bend of the arm, radians.
+constexpr float kJump = 0.6F;
+
+}  // namespace
+
+bool ArmPlanner::isFree(const BasePlace& base, const Joints& from, const Joints& to) {
+  const float length = probe_.arm().distance(from, to);
+  const auto pieces = std::max(1, static_cast<int>(std::ceil(length / kResolution)));
+  // The end first: it is the likeliest to be blocked.
+  for (int n = pieces; n > 0; --n) {
+    probe_.arm().interpolate(from, to, static_cast<float>(n) / static_cast<float>(pieces),
+                             between_);
+    if (!probe_.isFree(base, between_)) return false;
+  }
+  return true;
+}
+
+std::optional<ArmPath> ArmPlanner::plan(const BasePlace& base, const Joints& from, const Joints& to,
+                                        std::uint64_t seed) {
+  if (!probe_.isFree(base, to)) return std::nullopt;
+  if (isFree(base, from, to)) return ArmPath{to};
+  std::optional<ArmPath> path = connect(base, from, to, seed);
+  if (path) shorten(base, from, *path);
+  return path;
+}
+
+ArmPath ArmPlanner::slide(const BasePlace& base, const Joints& from, HandGoal hand,
+                          const Slide& slide) {
+  InverseKinematicsOptions options;
+  options.direction_tolerance = slide.direction_tolerance;
+  const Vec3 start = hand.place;
+  const int pieces = std::max(1, static_cast<int>(std::lround(slide.length / kPiece)));
+  ArmPath path;
+  path.reserve(static_cast<std::size_t>(pieces));
+  Joints last = from;
+  for (int n = 1; n <= pieces; ++n) {
+    const float share = static_cast<float>(n) / static_cast<float>(pieces);
+    hand.place = start + slide.way * (slide.length * share);
+    const std::optional<Joints> next = solveHand(probe_.arm(), hand, last, options);
+    if (!next || probe_.arm().distance(last, *next) > kJump) break;
+    if (!isFree(base, last, *next)) break;
+    last = *next;
+    path.push_back(last);
+    probe_.keepTouching(base, last);
+  }
+  return path;
+}
+
+std::uint32_t ArmPlanner::nearest(const Tree& tree, const Joints& to) {
+  float best = std::numeric_limits<float>::max();
+  std::uint32_t found = 0;
+  for (std::uint32_t n = 0; n < tree.nodes.size(); ++n) {
+    float sum = 0;
+    for (std::size_t joint = 0; joint < probe_.arm().joints().size(); ++joint) {
+      const float way = probe_.arm().difference(joint, tree.nodes[n], to);
+      sum += way * way;
+    }
+    if (sum < best) {
+      best = sum;
+      found = n;
+    }
+  }
+  return found;
+}
+
+ArmPlanner::Growth ArmPlanner::extend(const BasePlace& base, Tree& tree, const Joints& to) {
+  const std::uint32_t parent = nearest(tree, to);
+  const float length = probe_.arm().distance(tree.nodes[parent], to);
+  const bool arrives = length <= kEdge;
+  Joints next = to;
+  if (!arrives) probe_.arm().interpolate(tree.nodes[parent], to, kEdge / length, next);
+  if (!isFree(base, tree.nodes[parent], next)) return Growth::kBlocked;
+  tree.nodes.push_back(std::move(next));
+  tree.parents.push_back(parent);
+  return arrives ? Growth::kArrived : Growth::kGrown;
+}
+
+std::optional<ArmPath> ArmPlanner::connect(const BasePlace& base, const Joints& from,
+                                           const Joints& to, std::uint64_t seed) {
+  Tree trees[2] = {{{from}, {0}}, {{to}, {0}}};
+  simulation::RandomStream random(seed, 0, 0, 0);
+  Joints drawn = from;
+  for (int n = 0; n < kMostDraws; ++n) {
+    Tree& growing = trees[n % 2];
+    Tree& other = trees[1 - n % 2];
+    if (growing.nodes.size() + other.nodes.size() > kMostNodes) break;
+    for (const ArmJoint& joint : probe_.arm().joints()) {
+      const float lower = std::max(joint.lower, -kPi);
+      const float upper = std::min(joint.upper, kPi);
+      drawn[joint.position] = lower + random.unit() * (upper - lower);
+    }
+    if (extend(base, growing, drawn) == Growth::kBlocked) continue;
+    const Joints reached = growing.nodes.back();
+    Growth growth = Growth::kGrown;
+    while (growth == Growth::kGrown) growth = extend(base, other, reached);
+    if (growth != Growth::kArrived) continue;
+    ArmPath path;
+    const auto walk = [&path](const Tree& tree) {
+      for (auto node = static_cast<std::uint32_t>(tree.nodes.size() - 1); node != 0;
+           node = tree.parents[node]) {
+        path.push_back(tree.nodes[node]);
+      }
+    };
+    walk(trees[0]);
+    std::ranges::reverse(path);
+    // The other tree's last node is where the trees meet.
+    if (!path.empty()) path.pop_back();
+    walk(trees[1]);
+    path.push_back(to);
+    return path;
+  }
+  return std::nullopt;
+}
+
+void ArmPlanner::shorten(const BasePlace& base, const Joints& from, ArmPath& path) {
+  ArmPath shorter;
+  Joints at = from;
+  std::size_t next = 0;
+  while (next < path.size()) {
+    std::size_t last = path.size() - 1;
+    while (last > next && !isFree(base, at, path[last])) --last;
+    at = path[last];
+    shorter.push_back(at);
+    next = last + 1;
+  }
+  path = std::move(shorter);
+}
+
+}  // namespace galactic::scripted

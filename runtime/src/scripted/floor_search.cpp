@@ -1,0 +1,318 @@
+#include "scripted/floor_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace galactic::scripted {
+namespace {
+
+constexpr float kTurn = 6.28318531F;
+constexpr float kLongestEdge = 0.1F;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// Driving backwards costs a little more, so that the robot looks where it goes.
+constexpr float kBackwards = 1.5F;
+/// How far from where it stands the robot looks for the lattice, metres.
+constexpr float kEntryReach = 0.25F;
+/// A place this near is on the lattice already, metres.
+constexpr float kOnLattice = 1e-3F;
+/// Actions are counted with this much let through, which rounding may add.
+constexpr float kSlack = 1e-3F;
+constexpr std::uint8_t kFree = 1;
+constexpr std::uint8_t kBlocked = 2;
+
+/// Cells by which a drive of one edge along heading h leads on.
+struct CellStep {
+  std::int32_t i = 0;
+  std::int32_t k = 0;
+};
+constexpr std::array<CellStep, 8> kSteps{
+    {{1, 0}, {1, -1}, {0, -1}, {-1, -1}, {-1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
+
+float actionsFor(float way, float step) { return std::ceil(std::fabs(way) / step - kSlack); }
+
+float wrapped(float angle) { return std::remainder(angle, kTurn); }
+
+}  // namespace
+
+FloorSearch::FloorSearch(Probe& probe, const Robot& robot)
+    : probe_(probe),
+      forward_step_(robot.base()->forward_step),
+      turn_step_(robot.base()->turn_step),
+      eighth_(static_cast<std::uint32_t>(std::max(actionsFor(kTurn / 8, turn_step_), 1.0F))),
+      fines_(kHeadings * eighth_) {}
+
+void FloorSearch::layOut() {
+  const ColumnGrid& grid = probe_.scene().grids().front();
+  const auto last_i = static_cast<std::int32_t>(std::ceil(
+      (grid.layout().min_x + static_cast<float>(grid.columnsX()) * grid.spacing()) / edge_));
+  const auto last_k = static_cast<std::int32_t>(std::ceil(
+      (grid.layout().min_z + static_cast<float>(grid.columnsZ()) * grid.spacing()) / edge_));
+  first_i_ = static_cast<std::int32_t>(std::floor(grid.layout().min_x / edge_));
+  first_k_ = static_cast<std::int32_t>(std::floor(grid.layout().min_z / edge_));
+  count_i_ = static_cast<std::uint32_t>(last_i - first_i_ + 1);
+  count_k_ = static_cast<std::uint32_t>(last_k - first_k_ + 1);
+  const std::size_t cells = static_cast<std::size_t>(count_i_) * count_k_;
+  nodes_.assign(cells * kHeadings, {kInfinity, kNone, false});
+  known_.assign(cells * fines_, 0);
+  offered_.assign(cells * fines_, 0);
+  floors_.assign(cells, kInfinity);
+  entries_.clear();
+  waiting_.clear();
+  offers_ = 0;
+}
+
+std::optional<std::uint32_t> FloorSearch::cellAt(float x, float z) const {
+  const auto i = static_cast<std::int32_t>(std::lround(x / edge_)) - first_i_;
+  const auto k = static_cast<std::int32_t>(std::lround(z / edge_)) - first_k_;
+  const bool inside = i >= 0 && k >= 0 && i < static_cast<std::int32_t>(count_i_) &&
+                      k < static_cast<std::int32_t>(count_k_);
+  if (!inside) return std::nullopt;
+  return static_cast<std::uint32_t>(k) * count_i_ + static_cast<std::uint32_t>(i);
+}
+
+BasePlace FloorSearch::placeOf(std::uint32_t cell, std::uint32_t fine) const {
+  const auto i = static_cast<std::int32_t>(cell % count_i_) + first_i_;
+  const auto k = static_cast<std::int32_t>(cell / count_i_) + first_k_;
+  return {{static_cast<float>(i) * edge_, floors_[cell], static_cast<float>(k) * edge_},
+          wrapped(kTurn * static_cast<float>(fine) / static_cast<float>(fines_))};
+}
+
+std::uint32_t FloorSearch::fineOf(float yaw) const {
+  const float share = wrapped(yaw) / kTurn;
+  const auto nearest = static_cast<std::int32_t>(std::lround(share * static_cast<float>(fines_)));
+  const auto count = static_cast<std::int32_t>(fines_);
+  return static_cast<std::uint32_t>((nearest + count) % count);
+}
+
+bool FloorSearch::isFree(std::uint32_t cell, std::uint32_t fine) {
+  std::uint8_t& known = known_[static_cast<std::size_t>(cell) * fines_ + fine];
+  if (known != 0) return known == kFree;
+  known = kBlocked;
+  BasePlace place = placeOf(cell, fine);
+  if (floors_[cell] == kInfinity) {
+    const std::optional<float> floor = probe_.floorAt(place.position.x, place.position.z, floor_);
+    floors_[cell] = floor.value_or(std::numeric_limits<float>::quiet_NaN());
+    place.position.y = floors_[cell];
+  }
+  if (std::isnan(floors_[cell]) || !probe_.isFreeAt(place)) return false;
+  known = kFree;
+  return true;
+}
+
+bool FloorSearch::canTurn(std::uint32_t cell, std::uint32_t from, std::uint32_t to) {
+  const std::uint32_t left = (to + fines_ - from) % fines_;
+  const bool goes_left = left <= fines_ / 2;
+  const std::uint32_t count = goes_left ? left : fines_ - left;
+  for (std::uint32_t n = 0; n <= count; ++n) {
+    const std::uint32_t turned = goes_left ? n : fines_ - n;
+    if (!isFree(cell, (from + turned) % fines_)) return false;
+  }
+  return true;
+}
+
+bool FloorSearch::canTurnFreely(const BasePlace& at, float to) {
+  const float way = wrapped(to - at.yaw);
+  const float actions = actionsFor(way, turn_step_);
+  for (float n = 1; n <= actions; ++n) {
+    const float turned = n == actions ? way : std::copysign(n * turn_step_, way);
+    if (!probe_.isFreeAt({at.position, at.yaw + turned})) return false;
+  }
+  return true;
+}
+
+bool FloorSearch::canDrive(const BasePlace& from, const BasePlace& to) {
+  const Vec3 way = to.position - from.position;
+  const float length = std::sqrt(way.x * way.x + way.z * way.z);
+  const float actions = actionsFor(length, forward_step_);
+  for (float n = 1; n <= actions; ++n) {
+    const float share = n == actions ? 1.0F : n * forward_step_ / length;
+    BasePlace at{from.position + way * share, from.yaw};
+    const std::optional<float> floor =
+        probe_.floorAt(at.position.x, at.position.z, from.position.y);
+    if (!floor) return false;
+    at.position.y = *floor;
+    if (!probe_.isFreeAt(at)) return false;
+  }
+  return true;
+}
+
+void FloorSearch::tryEntry(const BasePlace& start, std::uint32_t cell) {
+  if (!isFree(cell, 0) && std::isnan(floors_[cell])) return;
+  const BasePlace at = placeOf(cell, 0);
+  const Vec3 way = at.position - start.position;
+  const float length = std::sqrt(way.x * way.x + way.z * way.z);
+  if (length > kEntryReach) return;
+  const bool stays = length < kOnLattice;
+  const float bearing = std::atan2(-way.z, way.x);
+  for (const float turned : {0.0F, 0.5F * kTurn}) {
+    const float yaw = stays ? start.yaw : wrapped(bearing + turned);
+    const BasePlace facing{start.position, yaw};
+    const BasePlace arrived{stays ? start.position : at.position, yaw};
+    const std::uint32_t heading = (fineOf(yaw) + eighth_ / 2) / eighth_ % kHeadings;
+    const BasePlace settled = placeOf(cell, heading * eighth_);
+    if (!canTurnFreely(start, yaw) || (!stays && !canDrive(facing, arrived))) continue;
+    if (!canTurnFreely({settled.position, yaw}, settled.yaw)) continue;
+    Entry entry{cell * kHeadings + heading, 0, {}};
+    entry.cost = actionsFor(wrapped(yaw - start.yaw), turn_step_) +
+                 actionsFor(length, forward_step_) +
+                 actionsFor(wrapped(settled.yaw - yaw), turn_step_);
+    if (!stays) entry.route = {facing, arrived};
+    entry.route.push_back({arrived.position, settled.yaw});
+    entries_.push_back(std::move(entry));
+    if (stays) return;
+  }
+}
+
+void FloorSearch::findEntries(const BasePlace& start) {
+  const auto reach_cells = static_cast<int>(std::ceil(kEntryReach / edge_));
+  for (int k = -reach_cells; k <= reach_cells; ++k) {
+    for (int i = -reach_cells; i <= reach_cells; ++i) {
+      const auto cell = cellAt(start.position.x + static_cast<float>(i) * edge_,
+                               start.position.z + static_cast<float>(k) * edge_);
+      if (cell) tryEntry(start, *cell);
+    }
+  }
+  for (const Entry& entry : entries_) reach(entry.node, entry.cost, kNone);
+}
+
+void FloorSearch::reach(std::uint32_t node, float cost, std::uint32_t parent) {
+  Node& reached = nodes_[node];
+  if (reached.settled || cost >= reached.cost) return;
+  reached.cost = cost;
+  reached.parent = parent;
+  const Vec3 away = placeOf(node / kHeadings, 0).position - target_.point;
+  const float distance = std::sqrt(away.x * away.x + away.z * away.z) - target_.farthest;
+  waiting_.push_back({cost + std::max(distance, 0.0F) / forward_step_, node});
+  std::ranges::push_heap(waiting_, std::greater<>());
+}
+
+void FloorSearch::drive(std::uint32_t node, int sign) {
+  const std::uint32_t cell = node / kHeadings;
+  const std::uint32_t heading = node % kHeadings;
+  const BasePlace from = placeOf(cell, heading * eighth_);
+  const float x = from.position.x + static_cast<float>(sign * kSteps[heading].i) * edge_;
+  const float z = from.position.z + static_cast<float>(sign * kSteps[heading].k) * edge_;
+  const std::optional<std::uint32_t> next = cellAt(x, z);
+  if (!next || !isFree(*next, heading * eighth_)) return;
+  const BasePlace to = placeOf(*next, heading * eighth_);
+  const float length = heading % 2 == 0 ? edge_ : edge_ * std::sqrt(2.0F);
+  // Drives along the axes are merged, so that an action takes the robot over several cells.
+  const bool is_merged = heading % 2 == 0;
+  const float actions = is_merged ? length / forward_step_ : actionsFor(length, forward_step_);
+  if (actions > 1 + kSlack && !canDrive(from, to)) return;
+  const float cost = nodes_[node].cost + (sign > 0 ? actions : kBackwards * actions);
+  reach(*next * kHeadings + heading, cost, node);
+}
+
+void FloorSearch::expand(std::uint32_t node) {
+  drive(node, 1);
+  drive(node, -1);
+  const std::uint32_t cell = node / kHeadings;
+  const std::uint32_t heading = node % kHeadings;
+  for (const std::uint32_t turned : {1U, kHeadings - 1}) {
+    const std::uint32_t to = (heading + turned) % kHeadings;
+    if (nodes_[cell * kHeadings + to].settled) continue;
+    if (!canTurn(cell, heading * eighth_, to * eighth_)) continue;
+    reach(cell * kHeadings + to, nodes_[node].cost + static_cast<float>(eighth_), node);
+  }
+}
+
+std::optional<BasePlace> FloorSearch::offer(std::uint32_t node, const Accept& accept) {
+  const std::uint32_t cell = node / kHeadings;
+  const std::uint32_t heading = node % kHeadings;
+  const BasePlace place = placeOf(cell, heading * eighth_);
+  const Vec3 way = target_.point - place.position;
+  const float distance = std::sqrt(way.x * way.x + way.z * way.z);
+  if (distance < target_.nearest || distance > target_.farthest) return std::nullopt;
+  const float bearing = std::atan2(-way.z, way.x);
+  for (const float beside : {0.0F, 0.44F, -0.44F, 0.87F, -0.87F}) {
+    const std::uint32_t fine = fineOf(bearing + beside);
+    std::uint8_t& offered = offered_[static_cast<std::size_t>(cell) * fines_ + fine];
+    if (offered != 0 || !canTurn(cell, heading * eighth_, fine)) continue;
+    offered = 1;
+    ++offers_;
+    const BasePlace stance = placeOf(cell, fine);
+    const bool accepted = accept(stance);
+    // The answer may have moved the arm.
+    probe_.setArm(*carried_);
+    if (accepted) return stance;
+  }
+  return std::nullopt;
+}
+
+BaseRoute FloorSearch::routeTo(std::uint32_t node) const {
+  BaseRoute route;
+  std::uint32_t at = node;
+  while (nodes_[at].parent != kNone) {
+    route.push_back(placeOf(at / kHeadings, at % kHeadings * eighth_));
+    at = nodes_[at].parent;
+  }
+  const Entry* first = nullptr;
+  for (const Entry& entry : entries_) {
+    if (entry.node == at && (first == nullptr || entry.cost < first->cost)) first = &entry;
+  }
+  route.insert(route.end(), first->route.rbegin(), first->route.rend());
+  std::ranges::reverse(route);
+  return merged(route);
+}
+
+BaseRoute FloorSearch::merged(const BaseRoute& route) const {
+  BaseRoute result;
+  result.reserve(route.size());
+  for (const BasePlace& place : route) {
+    if (result.size() >= 2) {
+      const BasePlace& before = result[result.size() - 2];
+      const Vec3 first = result.back().position - before.position;
+      const Vec3 second = place.position - result.back().position;
+      const bool same_yaw = before.yaw == place.yaw && result.back().yaw == place.yaw;
+      const bool along_x = std::fabs(first.z) + std::fabs(second.z) < kOnLattice;
+      const bool along_z = std::fabs(first.x) + std::fabs(second.x) < kOnLattice;
+      const bool goes_on = first.x * second.x + first.z * second.z > 0;
+      if (same_yaw && (along_x || along_z) && goes_on) result.pop_back();
+    }
+    result.push_back(place);
+  }
+  return result;
+}
+
+FloorSearch::Answer FloorSearch::search(const BasePlace& start, const Joints& carried,
+                                        const Target& target, const Accept& accept) {
+  // A coarse lattice is fast; narrow doors need a finer one.
+  constexpr int kFinest = 3;
+  Answer answer;
+  for (int pitch = 1; pitch <= kFinest && answer.outcome != Outcome::kFound; ++pitch) {
+    edge_ = std::min(forward_step_, kLongestEdge) / static_cast<float>(pitch);
+    answer = searchLattice(start, carried, target, accept);
+  }
+  return answer;
+}
+
+FloorSearch::Answer FloorSearch::searchLattice(const BasePlace& start, const Joints& carried,
+                                               const Target& target, const Accept& accept) {
+  carried_ = &carried;
+  target_ = target;
+  floor_ = start.position.y;
+  layOut();
+  probe_.setArm(carried);
+  findEntries(start);
+  while (!waiting_.empty() && offers_ < target_.most_offers) {
+    std::ranges::pop_heap(waiting_, std::greater<>());
+    const std::uint32_t node = waiting_.back().node;
+    waiting_.pop_back();
+    if (nodes_[node].settled) continue;
+    nodes_[node].settled = true;
+    const std::optional<BasePlace> stance = offer(node, accept);
+    if (stance) {
+      Answer answer{Outcome::kFound, routeTo(node)};
+      answer.route.push_back(*stance);
+      return answer;
+    }
+    expand(node);
+  }
+  return {offers_ == 0 ? Outcome::kNoWay : Outcome::kNotAccepted, {}};
+}
+
+}  // namespace galactic::scripted

@@ -1,0 +1,120 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "scripted/probe.h"
+
+namespace galactic::scripted {
+
+/// Places of the base one after the other: each is reached from the one before either by a turn on
+/// the spot or by a straight drive, forward or backward.
+using BaseRoute = std::vector<BasePlace>;
+
+/// Ways of the base over the floor, with the arm in one pose: a search for the cheapest (A*, Hart,
+/// Nilsson and Raphael 1968) on a lattice of places as far apart as one action drives and of eight
+/// headings. Costs are actions. Every pose that the actions lead through is looked at.
+class FloorSearch {
+ public:
+  /// `probe` must outlive the search.
+  FloorSearch(Probe& probe, const Robot& robot);
+
+  struct Target {
+    /// What the robot has to get near to; y is not looked at.
+    Vec3 point;
+    /// Distances of the base from it at which it may stand, metres.
+    float nearest = 0.35F;
+    float farthest = 1.0F;
+    /// Places that are offered before the search gives up.
+    int most_offers = 300;
+  };
+  /// Whether the robot may stay at a place of the lattice, facing the target more or less.
+  using Accept = std::function<bool(const BasePlace&)>;
+
+  enum class Outcome : std::uint8_t { kFound, kNoWay, kNotAccepted };
+  struct Answer {
+    Outcome outcome = Outcome::kNoWay;
+    /// Start left out.
+    BaseRoute route;
+  };
+  /// The way to the first place, by cost, that is accepted. `carried`: positions of the joints all
+  /// the way.
+  [[nodiscard]] Answer search(const BasePlace& start, const Joints& carried, const Target& target,
+                              const Accept& accept);
+
+ private:
+  static constexpr std::uint32_t kHeadings = 8;
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  struct Node {
+    float cost = 0;
+    /// A node, or kNone for the first of an entry.
+    std::uint32_t parent = kNone;
+    bool settled = false;
+  };
+  /// How the robot gets from where it is onto the lattice.
+  struct Entry {
+    std::uint32_t node = 0;
+    float cost = 0;
+    BaseRoute route;
+  };
+  struct Waiting {
+    float estimate = 0;
+    std::uint32_t node = 0;
+    friend bool operator>(const Waiting& a, const Waiting& b) {
+      return a.estimate != b.estimate ? a.estimate > b.estimate : a.node > b.node;
+    }
+  };
+
+  [[nodiscard]] Answer searchLattice(const BasePlace& start, const Joints& carried,
+                                     const Target& target, const Accept& accept);
+  void layOut();
+  [[nodiscard]] std::optional<std::uint32_t> cellAt(float x, float z) const;
+  [[nodiscard]] BasePlace placeOf(std::uint32_t cell, std::uint32_t fine) const;
+  [[nodiscard]] std::uint32_t fineOf(float yaw) const;
+  [[nodiscard]] bool isFree(std::uint32_t cell, std::uint32_t fine);
+  /// Turning on the spot, the shorter way round; both ends are looked at.
+  [[nodiscard]] bool canTurn(std::uint32_t cell, std::uint32_t from, std::uint32_t to);
+  [[nodiscard]] bool canTurnFreely(const BasePlace& at, float to);
+  [[nodiscard]] bool canDrive(const BasePlace& from, const BasePlace& to);
+  void findEntries(const BasePlace& start);
+  void tryEntry(const BasePlace& start, std::uint32_t cell);
+  void reach(std::uint32_t node, float cost, std::uint32_t parent);
+  void expand(std::uint32_t node);
+  void drive(std::uint32_t node, int sign);
+  [[nodiscard]] std::optional<BasePlace> offer(std::uint32_t node, const Accept& accept);
+  [[nodiscard]] BaseRoute routeTo(std::uint32_t node) const;
+  /// With drives along one axis put together.
+  [[nodiscard]] BaseRoute merged(const BaseRoute& route) const;
+
+  Probe& probe_;
+  float forward_step_;
+  float turn_step_;
+  /// Actions of an eighth of a turn, and of a whole one.
+  std::uint32_t eighth_;
+  std::uint32_t fines_;
+  // Of the current search:
+  /// Edge of a cell, metres.
+  float edge_ = 0;
+  const Joints* carried_ = nullptr;
+  Target target_;
+  float floor_ = 0;
+  std::int32_t first_i_ = 0;
+  std::int32_t first_k_ = 0;
+  std::uint32_t count_i_ = 0;
+  std::uint32_t count_k_ = 0;
+  std::vector<Node> nodes_;
+  /// By cell and fine heading: 0 not known, 1 free, 2 blocked.
+  std::vector<std::uint8_t> known_;
+  std::vector<std::uint8_t> offered_;
+  /// By cell: height of the floor; NaN where there is none.
+  std::vector<float> floors_;
+  std::vector<Entry> entries_;
+  std::vector<Waiting> waiting_;
+  int offers_ = 0;
+};
+
+}  // namespace galactic::scripted

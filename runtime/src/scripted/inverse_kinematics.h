@@ -1,0 +1,41 @@
+#pragma once
+#include <optional>
+
+#include "scripted/arm.h"
+
+namespace galactic::scripted {
+
+/// What the hand has to do: a point fixed to it comes to a place, and a direction fixed to it to a
+/// direction. Turns about that direction stay free.
+struct HandGoal {
+  /// Frame of the grip, metres.
+  Vec3 point;
+  /// Frame of the grip, unit vector.
+  Vec3 direction{1, 0, 0};
+  /// Where the point has to be, frame of the robot's root, metres.
+  Vec3 place;
+  /// Where the direction has to point, frame of the robot's root, unit vector.
+  Vec3 toward{1, 0, 0};
+};
+
+struct InverseKinematicsOptions {
+  int most_iterations = 30;
+  /// Farthest that the point may stay from its place, metres.
+  float tolerance = 0.002F;
+  /// Farthest angle between direction and goal, radians. Negative: any direction does.
+  float direction_tolerance = 0.15F;
+  /// How much a radian of direction counts beside a metre of position.
+  float direction_weight = 0.15F;
+  /// Damping of the least squares, metres per radian.
+  float damping = 0.03F;
+  /// Farthest move of a joint in one iteration, radians or metres.
+  float longest_move = 0.35F;
+};
+
+/// Positions of the controlled joints, inside their limits, that reach the goal; none when the
+/// iteration from `seed` does not get there. Damped least squares on position and direction
+/// (Wampler 1986), the Jacobian from the links' axes.
+[[nodiscard]] std::optional<Joints> solveHand(Arm& arm, const HandGoal& goal, const Joints& seed,
+                                              const InverseKinematicsOptions& options = {});
+
+}  // namespace galactic::scripted

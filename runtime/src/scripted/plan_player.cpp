@@ -1,0 +1,95 @@
+#include "scripted/plan_player.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace galactic::scripted {
+namespace {
+
+constexpr float kTurn = 6.28318531F;
+/// A base this far off the plan's line is astray, metres.
+constexpr float kStray = 5e-3F;
+/// So much of an action is nothing left to do.
+constexpr float kNothing = 1e-3F;
+
+float planeDistance(const Vec3& a, const Vec3& b) {
+  const float x = a.x - b.x;
+  const float z = a.z - b.z;
+  return std::sqrt(x * x + z * z);
+}
+
+}  // namespace
+
+ActionRow rowOf(std::span<float> actions) {
+  const std::size_t joints = actions.size() - 4;
+  return {actions.first(joints), actions[joints], actions[joints + 1], actions[joints + 2],
+          actions[joints + 3]};
+}
+
+PlanPlayer::Way PlanPlayer::moveBase(const RobotBase& robot_base, const BasePlace& at,
+                                     const ActionRow& row) const {
+  const BasePlace& to = plan_.steps[next_].base;
+  const float turn = std::remainder(to.yaw - at.yaw, kTurn) / robot_base.turn_step;
+  const Vec3 way = to.position - at.position;
+  const Vec3 heading = headingOf(at.yaw);
+  const float along = way.x * heading.x + way.z * heading.z;
+  const float across = way.x * heading.z - way.z * heading.x;
+  const float forward = along / robot_base.forward_step;
+  const bool turns = std::fabs(turn) > kNothing;
+  const bool drives = std::fabs(forward) > kNothing;
+  // Positive turns are clockwise, positive yaw is not.
+  if (turns) row.turn = -std::clamp(turn, -1.0F, 1.0F);
+  if (drives && !turns) row.forward = std::clamp(forward, -1.0F, 1.0F);
+  Way result;
+  result.remaining = (turns ? std::fabs(turn) : 0) + (drives ? std::fabs(forward) : 0);
+  result.strays = std::fabs(across) > kStray || (turns && drives);
+  return result;
+}
+
+PlanPlayer::Way PlanPlayer::moveArm(const Arm& arm, const BasePlace& at, const EnvState& state,
+                                    const ActionRow& row) const {
+  const PlanStep& step = plan_.steps[next_];
+  const float actions = arm.actionsBetween(state.joint_positions, step.joints);
+  Way result;
+  result.strays = planeDistance(at.position, step.base.position) > kStray;
+  if (actions <= kNothing) return result;
+  result.remaining = actions;
+  // All joints arrive together, so that the arm stays on the planned line.
+  const float share = 1 / std::max(actions, 1.0F);
+  for (std::size_t joint = 0; joint < arm.joints().size(); ++joint) {
+    const float step_size = arm.joints()[joint].step;
+    if (!(step_size > 0)) continue;
+    row.joints[joint] =
+        share * arm.difference(joint, state.joint_positions, step.joints) / step_size;
+  }
+  return result;
+}
+
+PlanPlayer::Progress PlanPlayer::play(const Arm& arm, const RobotBase& robot_base,
+                                      const EnvState& state, const ActionRow& row) {
+  const Quat& q = state.world_from_root.rotation;
+  const BasePlace at{state.world_from_root.translation, 2 * std::atan2(q.y, q.w)};
+  for (; next_ < plan_.steps.size(); ++next_, remaining_ = -1) {
+    const PlanStep& step = plan_.steps[next_];
+    if (step.kind == PlanStep::Kind::kGrasp || step.kind == PlanStep::Kind::kRelease ||
+        step.kind == PlanStep::Kind::kTerminate) {
+      if (step.kind == PlanStep::Kind::kTerminate) row.terminate = 1;
+      if (step.kind != PlanStep::Kind::kTerminate) {
+        row.grasp = step.kind == PlanStep::Kind::kGrasp ? 1.0F : -1.0F;
+      }
+      ++next_;
+      remaining_ = -1;
+      return Progress::kActs;
+    }
+    const Way way = step.kind == PlanStep::Kind::kMoveBase ? moveBase(robot_base, at, row)
+                                                           : moveArm(arm, at, state, row);
+    if (way.strays) return Progress::kStuck;
+    if (way.remaining == 0) continue;
+    const bool moved = remaining_ < 0 || way.remaining < remaining_ - kNothing / 2;
+    remaining_ = way.remaining;
+    return moved ? Progress::kActs : Progress::kStuck;
+  }
+  return Progress::kDone;
+}
+
+}  // namespace galactic::scripted

@@ -1,0 +1,57 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "galactic/batch_simulator.h"
+#include "scripted/plan.h"
+
+namespace galactic::scripted {
+
+/// Where the values of an env's actions go, as BatchSimulator has them.
+struct ActionRow {
+  std::span<float> joints;
+  float& forward;
+  float& turn;
+  float& grasp;
+  float& terminate;
+};
+[[nodiscard]] ActionRow rowOf(std::span<float> actions);
+
+/// Turns a plan into actions, one step after the other.
+class PlanPlayer {
+ public:
+  enum class Progress : std::uint8_t {
+    /// The row is set.
+    kActs,
+    /// Nothing is left to do.
+    kDone,
+    /// The robot is not where the plan wants it, or does not move.
+    kStuck,
+  };
+
+  PlanPlayer() = default;
+  explicit PlanPlayer(Plan plan) : plan_(std::move(plan)) {}
+
+  /// The next action from where the robot is. Sets `row` but for its grasp action, unless a step
+  /// grasps or releases.
+  Progress play(const Arm& arm, const RobotBase& robot_base, const EnvState& state,
+                const ActionRow& row);
+
+ private:
+  struct Way {
+    float remaining = 0;
+    bool strays = false;
+  };
+  [[nodiscard]] Way moveBase(const RobotBase& robot_base, const BasePlace& at,
+                             const ActionRow& row) const;
+  [[nodiscard]] Way moveArm(const Arm& arm, const BasePlace& at, const EnvState& state,
+                            const ActionRow& row) const;
+
+  Plan plan_;
+  std::size_t next_ = 0;
+  /// Actions left of the current step when it was last played; negative: not played yet.
+  float remaining_ = -1;
+};
+
+}  // namespace galactic::scripted

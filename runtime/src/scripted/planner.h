@@ -1,0 +1,65 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "scripted/arm_planner.h"
+#include "scripted/floor_search.h"
+#include "scripted/plan.h"
+#include "scripted/probe.h"
+#include "scripted/reach_table.h"
+
+namespace galactic::scripted {
+
+/// Makes the plans of one env after the other.
+class Planner {
+ public:
+  /// `world`, whose robot has base and end effector, must outlive the planner.
+  Planner(const World& world, const SimulationOptions& options);
+
+  /// From anywhere with an empty hand, to the grasp of the target. `attempt` counts plans of the
+  /// episode: each draws other random positions.
+  [[nodiscard]] Plan planPick(const EnvState& state, std::uint32_t attempt);
+  /// From anywhere with the target in the hand, to its release at the goal.
+  [[nodiscard]] Plan planPlace(const EnvState& state, std::uint32_t attempt);
+
+  [[nodiscard]] BasePlace baseOf(const EnvState& state) const;
+
+ private:
+  /// What the arm has to do at a place where the robot may stand.
+  struct Reach {
+    HandGoal goal;
+    /// Direction in which the hand leaves again, frame of the root.
+    Vec3 retreat;
+    float retreat_length = 0.1F;
+  };
+
+  [[nodiscard]] Joints carriedOf(const EnvState& state) const;
+  /// Ends of the arm's move for this reach: to a free pose at which `isRight`, by way of the
+  /// retreat.
+  template <class IsRight>
+  [[nodiscard]] std::optional<ArmPath> reach(const BasePlace& base, const Joints& carried,
+                                             const Reach& reach, const IsRight& is_right);
+  [[nodiscard]] std::optional<ArmPath> reachTarget(const BasePlace& base, const Joints& carried);
+  [[nodiscard]] std::optional<ArmPath> reachGoal(const BasePlace& base, const Joints& carried);
+  /// From where the arm is to its pose for driving; empty when it is there.
+  [[nodiscard]] std::optional<ArmPath> fold(const BasePlace& base, const Joints& from,
+                                            const Joints& carried);
+  [[nodiscard]] std::optional<ArmPath> liftAndFold(const BasePlace& base, const Joints& from,
+                                                   const Joints& carried);
+  [[nodiscard]] std::uint64_t nextSeed();
+
+  const World& world_;
+  SimulationOptions options_;
+  Probe probe_;
+  ArmPlanner arm_planner_;
+  FloorSearch floor_search_;
+  ReachTable reach_table_;
+  ReachView pick_view_;
+  // Of the current plan:
+  const EnvState* state_ = nullptr;
+  const ReachView* view_ = nullptr;
+  std::uint64_t seed_ = 0;
+  int failed_motions_ = 0;
+};
+
+}  // namespace galactic::scripted

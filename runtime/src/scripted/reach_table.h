@@ -1,0 +1,51 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scripted/arm.h"
+#include "scripted/inverse_kinematics.h"
+
+namespace galactic::scripted {
+
+/// Positions of the arm drawn evenly within its limits, with where the grip is in them: where to
+/// begin the inverse kinematics. Depends on the robot only.
+class ReachTable {
+ public:
+  /// The joints that no action moves stay at `positions`. Samples in which the robot touches
+  /// itself are left out.
+  ReachTable(Arm& arm, const Joints& positions, std::uint32_t samples);
+
+  [[nodiscard]] std::size_t size() const { return grips_.size(); }
+  /// Of the controlled joints of sample n.
+  [[nodiscard]] std::span<const float> controlled(std::size_t n) const {
+    return std::span(rows_).subspan(n * joints_, joints_);
+  }
+  /// root_from_grip of each sample.
+  [[nodiscard]] std::span<const Pose> grips() const { return grips_; }
+
+ private:
+  std::size_t joints_ = 0;
+  std::vector<float> rows_;
+  std::vector<Pose> grips_;
+};
+
+/// Where one point and one direction of the hand are in each sample of a table.
+class ReachView {
+ public:
+  /// `table` must outlive the view. Point and direction: frame of the grip.
+  ReachView(const ReachTable& table, const Vec3& point, const Vec3& direction);
+
+  /// The samples nearest to the goal's place and direction, the nearest first: indices into the
+  /// table, as many as `out` takes or fewer. Samples further than `farthest` are left out.
+  std::size_t nearest(const HandGoal& goal, float farthest, std::span<std::uint32_t> out) const;
+
+ private:
+  struct Entry {
+    Vec3 point;
+    Vec3 direction;
+  };
+  std::vector<Entry> entries_;
+};
+
+}  // namespace galactic::scripted

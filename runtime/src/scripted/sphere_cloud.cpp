@@ -1,0 +1,50 @@
+#include "scripted/sphere_cloud.h"
+
+#include <cmath>
+
+namespace galactic::scripted {
+
+Vec3 headingOf(float yaw) { return {std::cos(yaw), 0, -std::sin(yaw)}; }
+
+SphereCloud::SphereCloud(std::span<const Sphere> spheres, std::span<const float> radii) {
+  entries_.reserve(spheres.size() + simulation::kLanes * radii.size());
+  ranges_.reserve(radii.size());
+  for (std::uint32_t radius = 0; radius < radii.size(); ++radius) {
+    const auto first = static_cast<std::uint32_t>(entries_.size());
+    for (const Sphere& sphere : spheres) {
+      if (sphere.sphere.radius_index == radius) entries_.push_back(sphere);
+    }
+    const auto count = static_cast<std::uint32_t>(entries_.size()) - first;
+    if (count == 0) continue;
+    ranges_.push_back({radius, radii[radius], first, count});
+    while (entries_.size() % simulation::kLanes != 0) {
+      const Sphere last = entries_.back();
+      entries_.push_back(last);
+    }
+  }
+  in_root_.resize(entries_.size());
+  x_.resize(entries_.size());
+  y_.resize(entries_.size());
+  z_.resize(entries_.size());
+}
+
+void SphereCloud::assemble(std::span<const Pose> parts) {
+  for (std::size_t n = 0; n < entries_.size(); ++n) {
+    in_root_[n] = parts[entries_[n].part] * entries_[n].sphere.centre;
+  }
+}
+
+simulation::SphereBatch SphereCloud::at(const BasePlace& base, float root_height) {
+  const float cosine = std::cos(base.yaw);
+  const float sine = std::sin(base.yaw);
+  const float up = base.position.y + root_height;
+  for (std::size_t n = 0; n < in_root_.size(); ++n) {
+    const Vec3& p = in_root_[n];
+    x_[n] = cosine * p.x + sine * p.z + base.position.x;
+    y_[n] = p.y + up;
+    z_[n] = cosine * p.z - sine * p.x + base.position.z;
+  }
+  return {x_.data(), y_.data(), z_.data(), ranges_};
+}
+
+}  // namespace galactic::scripted

@@ -1,0 +1,51 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "galactic/pose.h"
+#include "galactic/sphere_set.h"
+#include "simulation/sphere_batch.h"
+
+namespace galactic::scripted {
+
+/// A place of the robot's base: the point on the floor under its root, and its heading about +Y,
+/// radians.
+struct BasePlace {
+  Vec3 position;
+  float yaw = 0;
+};
+
+/// The direction in which a base of this yaw drives forward.
+[[nodiscard]] Vec3 headingOf(float yaw);
+
+/// Spheres of rigid parts, first put together in the frame of the robot's root, then taken to many
+/// places of its base.
+class SphereCloud {
+ public:
+  struct Sphere {
+    /// Index of the part in whose frame the sphere is.
+    std::uint32_t part = 0;
+    SetSphere sphere;
+  };
+  SphereCloud() = default;
+  /// `radii` of the working set, metres.
+  SphereCloud(std::span<const Sphere> spheres, std::span<const float> radii);
+
+  [[nodiscard]] std::size_t paddedCount() const { return entries_.size(); }
+  /// root_from_part of all parts.
+  void assemble(std::span<const Pose> parts);
+  /// The assembled spheres in the world, for a root that lies `root_height` above the base's place;
+  /// valid until the next call.
+  [[nodiscard]] simulation::SphereBatch at(const BasePlace& base, float root_height);
+
+ private:
+  /// Radius by radius, each padded to whole lanes.
+  std::vector<Sphere> entries_;
+  std::vector<simulation::RadiusRange> ranges_;
+  std::vector<Vec3> in_root_;
+  std::vector<float> x_, y_, z_;
+};
+
+}  // namespace galactic::scripted

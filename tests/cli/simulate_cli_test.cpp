@@ -1,0 +1,280 @@
+// Simulations with galactic-run as a user meets them: table, report, recordings, exit codes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "recording.h"
+#include "support/program_run.h"
+#include "support/scratch_folder.h"
+#include "support/small_home.h"
+
+namespace galactic {
+namespace {
+
+using nlohmann::json;
+using test::ProgramRun;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+class SimulateCli : public testing::Test {
+ protected:
+  void SetUp() override { writeWorld(test::smallHomeWorld()); }
+
+  void writeWorld(const test::WorldFields& world) {
+    ASSERT_TRUE(std::filesystem::exists(test::writeWorld(folder_, world)));
+  }
+  [[nodiscard]] ProgramRun runBare(std::vector<std::string> arguments) const {
+    return test::runProgram(GALACTIC_RUN, folder_.path(), std::move(arguments));
+  }
+  /// With the world.
+  [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), {"--pack", "world.pack"});
+    return runBare(std::move(arguments));
+  }
+  /// Simulates with a report and returns it.
+  [[nodiscard]] json reportOf(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--report", "report.json"});
+    const ProgramRun result = run(std::move(arguments));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    json report = json::parse(content("report.json"), nullptr, false);
+    EXPECT_TRUE(report.is_object()) << content("report.json");
+    return report;
+  }
+  [[nodiscard]] std::string content(const std::string& name) const {
+    return test::fileContent(folder_.path() / name);
+  }
+  [[nodiscard]] std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+      names.push_back(entry.path().filename().string());
+    }
+    return names;
+  }
+  /// Records 40 steps of 5 envs.
+  void record() const {
+    const ProgramRun result = run({"--envs", "5", "--steps", "40", "--seed", "9", "--episode-steps",
+                                   "15", "--safe-drop", "--threads", "1", "--record", "run.rec"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+  }
+
+  test::ScratchFolder folder_;
+};
+
+TEST_F(SimulateCli, EndsWithATable) {
+  const ProgramRun result = run({"--envs", "20", "--steps", "50", "--seed", "3", "--threads", "2"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out,
+              AllOf(StartsWith("20 envs, 50 steps each, 2 threads, policy random, seed 3\n"),
+                    HasSubstr("\n  stepping "), HasSubstr(" steps/s"), HasSubstr("\n  whole loop "),
+                    HasSubstr("\n  start-up "), HasSubstr("bytes per env\n"),
+                    HasSubstr("\n    collide "), HasSubstr("% refused, "), HasSubstr(" grasps, ")));
+  EXPECT_THAT(result.out, AllOf(HasSubstr(" ended: "), HasSubstr("means of the episodes"),
+                                HasSubstr("\n  skipped       1 of 4 episodes: 2\n")));
+  // No live line where there is no terminal.
+  EXPECT_THAT(result.err, IsEmpty());
+}
+
+TEST_F(SimulateCli, TakesThePacksThemselvesToo) {
+  const ProgramRun result =
+      runBare({"--pack", "episodes.pack", "--pack", "objects.pack", "--pack", "robots/helper.pack",
+               "--pack", "scenes/kitchen.pack", "--trusted", "--envs", "1", "--steps", "1"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, StartsWith("1 envs, 1 steps each, 1 threads"));
+}
+
+TEST_F(SimulateCli, StillDescribesAWorldWhenNoSimulationIsAskedFor) {
+  const ProgramRun result = run({});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, StartsWith("world.pack: world of 4 packs"));
+}
+
+TEST_F(SimulateCli, ReportsAsJson) {
+  const json report = reportOf({"--envs", "12", "--steps", "60", "--episode-steps", "20", "--order",
+                                "linear", "--task", "pick", "--no-distractors"});
+  EXPECT_EQ(report["env_steps"], 720);
+  EXPECT_EQ(report["steps"], 60);
+  EXPECT_EQ(report["interrupted"], false);
+  EXPECT_EQ(report["policy"], "random");
+  EXPECT_EQ(report["packs"], json::array({"world.pack"}));
+  EXPECT_EQ(report["options"]["task"], "pick");
+  EXPECT_EQ(report["options"]["order"], "linear");
+  EXPECT_EQ(report["options"]["envs"], 12);
+  EXPECT_EQ(report["options"]["no-distractors"], true);
+  EXPECT_EQ(report["options"]["safe-drop"], false);
+  EXPECT_EQ(report["phase_ns_per_step"].size(), 9U);
+  EXPECT_GT(report["steps_per_second"].get<double>(),
+            report["loop_steps_per_second"].get<double>());
+  EXPECT_EQ(report["episodes"]["skipped"], json::array({2}));
+  EXPECT_EQ(report["episodes"]["in_world"], 4);
+  const json& episodes = report["episodes"];
+  EXPECT_GE(episodes["ended"], 36);
+  EXPECT_EQ(episodes["ended"].get<int>(), episodes["successes"].get<int>() +
+                                              episodes["failures"].get<int>() +
+                                              episodes["out_of_time"].get<int>());
+  EXPECT_TRUE(episodes["mean_return"].is_number());
+  EXPECT_LE(episodes["mean_steps"].get<double>(), 20);
+  EXPECT_FALSE(report.contains("first_difference"));
+}
+
+TEST_F(SimulateCli, EscapesNamesInTheReport) {
+  const std::string name = "a \"strange\"\n\\name\xff.pack";
+  std::filesystem::rename(folder_.path() / "world.pack", folder_.path() / name);
+  const ProgramRun result =
+      runBare({"--pack", name, "--envs", "1", "--steps", "1", "--report", "report.json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const json report = json::parse(content("report.json"), nullptr, false);
+  ASSERT_TRUE(report.is_object()) << content("report.json");
+  EXPECT_EQ(report["packs"][0], "a \"strange\"\n\\name?.pack");
+  EXPECT_TRUE(report["episodes"]["mean_return"].is_null()) << "no episode has ended";
+}
+
+TEST_F(SimulateCli, HasPoliciesThatDiffer) {
+  const auto refusedWith = [&](const char* policy) {
+    return reportOf(
+               {"--envs", "16", "--steps", "200", "--policy", policy, "--task", "none"})["refused"]
+        .get<int>();
+  };
+  EXPECT_EQ(refusedWith("zero"), 0);
+  EXPECT_GT(refusedWith("forward"), refusedWith("random"));
+}
+
+TEST_F(SimulateCli, IsTheSameForTheSameSeedOnly) {
+  const std::vector<std::string> arguments{"--envs", "20", "--steps", "100", "--threads"};
+  const auto rewardOf = [&](const char* threads, const char* seed) {
+    std::vector<std::string> all = arguments;
+    all.insert(all.end(), {threads, "--seed", seed});
+    return reportOf(all)["reward"].get<double>();
+  };
+  EXPECT_EQ(rewardOf("1", "5"), rewardOf("2", "5"));
+  EXPECT_NE(rewardOf("1", "5"), rewardOf("1", "6"));
+}
+
+TEST_F(SimulateCli, ReplaysARecordingBitForBit) {
+  record();
+  for (const char* threads : {"1", "2"}) {
+    const ProgramRun result = run({"--policy", "replay:run.rec", "--threads", threads});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, AllOf(StartsWith("5 envs, 40 steps each, "),
+                                  HasSubstr("replay        40 steps, bit for bit the same\n")));
+  }
+  // Options that say the same are fine, and so are fewer steps and a copy.
+  const ProgramRun copy = run({"--policy", "replay:run.rec", "--seed", "9", "--safe-drop",
+                               "--record", "copy.rec", "--report", "report.json"});
+  EXPECT_EQ(copy.exit_code, 0) << copy.err;
+  EXPECT_EQ(content("copy.rec"), content("run.rec"));
+  EXPECT_TRUE(json::parse(content("report.json"))["first_difference"].is_null());
+  const ProgramRun fewer = run({"--policy", "replay:run.rec", "--steps", "7"});
+  EXPECT_EQ(fewer.exit_code, 0) << fewer.err;
+  EXPECT_THAT(fewer.out, HasSubstr("7 steps, bit for bit the same"));
+}
+
+TEST_F(SimulateCli, RefusesAReplayOfSomethingElse) {
+  record();
+  const auto refused = [&](std::vector<std::string> arguments, const std::string& message) {
+    arguments.insert(arguments.end(), {"--policy", "replay:run.rec"});
+    const ProgramRun result = run(std::move(arguments));
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.err, AllOf(StartsWith("galactic-run: run.rec: "), HasSubstr(message)));
+  };
+  refused({"--seed", "8"}, "was recorded with seed 9");
+  refused({"--slide", "off"}, "was recorded with slide-attempts 3");
+  refused({"--task", "pick"}, "was recorded with task rearrange");
+  refused({"--steps", "41"}, "holds 40 steps, and --steps asks for 41");
+  test::WorldFields other = test::smallHomeWorld();
+  other.episodes.episodes[0].base_yaw += 0.01F;
+  writeWorld(other);
+  refused({},
+          "was recorded with another world: 4 packs then, 4 now, and one of kind EPIS is another");
+}
+
+TEST_F(SimulateCli, EndsWithSevenWhereAReplayDiffers) {
+  record();
+  // The same steps, but for the digest of one of them.
+  Result<RecordingReader> reader = RecordingReader::open(folder_.path() / "run.rec");
+  ASSERT_TRUE(reader);
+  Result<RecordingWriter> writer =
+      RecordingWriter::create(folder_.path() / "other.rec", reader->subject());
+  ASSERT_TRUE(writer);
+  std::vector<float> actions(reader->subject().actionCount());
+  for (std::uint64_t step = 0; step < reader->steps(); ++step) {
+    const Result<std::uint64_t> digest = reader->next(actions);
+    ASSERT_TRUE(digest);
+    ASSERT_TRUE(writer->append(actions, *digest ^ (step >= 23 ? 1U : 0U)));
+  }
+  ASSERT_TRUE(writer->finish());
+  const ProgramRun result =
+      run({"--policy", "replay:other.rec", "--report", "report.json", "--envs", "5"});
+  EXPECT_EQ(result.exit_code, 7);
+  EXPECT_THAT(result.err, StartsWith("galactic-run: other.rec: step 23 returns something else"));
+  EXPECT_THAT(result.out, HasSubstr("replay        differs at step 23\n"));
+  EXPECT_EQ(json::parse(content("report.json"))["first_difference"], 23);
+}
+
+TEST_F(SimulateCli, RefusesADamagedRecording) {
+  record();
+  const std::string whole = content("run.rec");
+  const std::vector<std::pair<std::string, std::string>> damages{
+      {"", "is no recording"},
+      {"x" + whole, "is no recording"},
+      {whole.substr(0, whole.size() - 1), "has "},
+      {whole.substr(0, 100), "has 100 bytes"},
+  };
+  for (const auto& [bytes, message] : damages) {
+    static_cast<void>(folder_.write("cut.rec", bytes));
+    const ProgramRun result = run({"--policy", "replay:cut.rec"});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.err, AllOf(StartsWith("galactic-run: cut.rec: "), HasSubstr(message)));
+  }
+  // Found only when its step comes: the run ends there, and no copy of it is left.
+  std::string flipped = whole;
+  flipped[flipped.size() - 20] = static_cast<char>(flipped[flipped.size() - 20] ^ 1);
+  static_cast<void>(folder_.write("cut.rec", flipped));
+  const ProgramRun result = run({"--policy", "replay:cut.rec", "--record", "copy.rec"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("damaged at step 39"));
+  EXPECT_THAT(files(), Not(testing::Contains(StartsWith("copy.rec"))));
+}
+
+TEST_F(SimulateCli, EndsWithACodeForEachKindOfMistake) {
+  const std::vector<std::pair<std::vector<std::string>, int>> mistakes{
+      {{"--policy", "dance"}, 1},
+      {{"--envs", "0"}, 1},
+      {{"--steps", "5", "--bench"}, 1},
+      {{"--policy", "replay:missing.rec"}, 2},
+      {{"--envs", "1", "--steps", "1", "--record", "missing/run.rec"}, 2},
+      {{"--envs", "1", "--steps", "1", "--report", "missing/report.json"}, 2},
+      {{"--policy", "replay:world.pack"}, 3},
+  };
+  for (const auto& [arguments, code] : mistakes) {
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    const ProgramRun result = run(arguments);
+    EXPECT_EQ(result.exit_code, code);
+    EXPECT_THAT(result.err, StartsWith("galactic-run: "));
+  }
+  const ProgramRun alone = runBare({"--pack", "scenes/kitchen.pack", "--steps", "1"});
+  EXPECT_EQ(alone.exit_code, 3);
+  std::filesystem::remove(folder_.path() / "objects.pack");
+  EXPECT_EQ(run({"--steps", "1"}).exit_code, 3);
+}
+
+TEST_F(SimulateCli, EndsCleanlyWhenItIsInterrupted) {
+  // timeout sends what Ctrl-C does; the run itself would take days.
+  const ProgramRun result = test::runProgram(
+      "/usr/bin/timeout", folder_.path(),
+      {"--preserve-status", "--signal=INT", "2", GALACTIC_RUN, "--pack", "world.pack", "--envs",
+       "8", "--steps", "100000000000", "--threads", "2", "--record", "run.rec"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(StartsWith("8 envs, "), HasSubstr("(stopped; 100000000000 steps"),
+                                HasSubstr("\n  stepping ")));
+  const Result<RecordingReader> reader = RecordingReader::open(folder_.path() / "run.rec");
+  ASSERT_TRUE(reader) << reader.error().message;
+  EXPECT_GT(reader->steps(), 0U);
+  EXPECT_THAT(result.out, StartsWith("8 envs, " + std::to_string(reader->steps()) + " steps each"));
+}
+
+}  // namespace
+}  // namespace galactic

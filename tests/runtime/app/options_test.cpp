@@ -1,0 +1,108 @@
+// The command line of galactic-run, as far as it needs no program.
+#include "options.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "galactic/error.h"
+
+namespace galactic {
+namespace {
+
+std::optional<int> parse(std::vector<std::string> arguments, RunOptions& options) {
+  arguments.insert(arguments.begin(), {"galactic-run", "--pack", "world.pack"});
+  std::vector<const char*> argv;
+  argv.reserve(arguments.size());
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  return parseCommandLine(static_cast<int>(argv.size()), argv.data(), options);
+}
+
+RunOptions parsed(const std::vector<std::string>& arguments) {
+  RunOptions options;
+  EXPECT_EQ(parse(arguments, options), std::nullopt);
+  return options;
+}
+
+TEST(RunCommandLine, SimulatesWhenAnOptionOfTheSimulationIsTyped) {
+  EXPECT_FALSE(parsed({}).simulates);
+  EXPECT_FALSE(parsed({"--seed", "5", "--trusted"}).simulates);
+  EXPECT_FALSE(parsed({"--bench"}).simulates);
+  for (const char* option : {"--no-distractors", "--safe-drop", "--body-transforms"}) {
+    EXPECT_TRUE(parsed({option}).simulates) << option;
+  }
+  EXPECT_TRUE(parsed({"--steps", "5"}).simulates);
+  EXPECT_TRUE(parsed({"--slide", "off"}).simulates);
+  EXPECT_TRUE(parsed({"--reach-weight", "2"}).simulates);
+}
+
+TEST(RunCommandLine, HasUsefulDefaults) {
+  const RunOptions options = parsed({"--steps", "5"});
+  EXPECT_EQ(options.simulation.envs, 1024U);
+  EXPECT_EQ(options.policy, "random");
+  EXPECT_EQ(options.simulation.task.kind, TaskKind::kRearrange);
+  EXPECT_EQ(options.replayFile(), "");
+}
+
+TEST(RunCommandLine, SlidesByNameAndInDetail) {
+  const SlideOptions published = parsed({"--slide", "published"}).simulation.slide;
+  EXPECT_EQ(published.direction, SlideDirection::kTowardsBase);
+  EXPECT_EQ(published.attempts, 5U);
+  EXPECT_EQ(published.step, 0.05F);
+  EXPECT_EQ(parsed({"--slide", "off"}).simulation.slide.attempts, 0U);
+  // In any order, the details refine the name.
+  const SlideOptions mixed =
+      parsed({"--slide-attempts", "2", "--slide", "published"}).simulation.slide;
+  EXPECT_EQ(mixed.direction, SlideDirection::kTowardsBase);
+  EXPECT_EQ(mixed.attempts, 2U);
+}
+
+TEST(RunCommandLine, KeepsWhatIsNotTyped) {
+  RunOptions options;
+  options.simulation.task.needs_terminate = false;
+  options.simulation.task.kind = TaskKind::kMobilePick;
+  options.simulation.slide.attempts = 1;
+  EXPECT_EQ(parse({"--policy", "replay:a:b", "--threads", "3"}, options), std::nullopt);
+  EXPECT_FALSE(options.simulation.task.needs_terminate);
+  EXPECT_EQ(options.simulation.task.kind, TaskKind::kMobilePick);
+  EXPECT_EQ(options.simulation.slide.attempts, 1U);
+  EXPECT_EQ(options.simulation.threads, 3U);
+  EXPECT_EQ(options.replayFile(), "a:b");
+}
+
+TEST(RunCommandLine, RefusesWhatMakesNoSense) {
+  const std::vector<std::vector<std::string>> mistakes{
+      {"--policy", "dance"},
+      {"--policy", "replay:"},
+      {"--policy", ""},
+      {"--envs", "0"},
+      {"--envs", "-1"},
+      {"--envs", "1.5"},
+      {"--envs", "9999999999"},
+      {"--steps", "0"},
+      {"--steps", "many"},
+      {"--task", "fly"},
+      {"--task", ""},
+      {"--order", "random"},
+      {"--slide", "up"},
+      {"--slide-step", "nan"},
+      {"--slide-step", "-1"},
+      {"--slide-step", "inf"},
+      {"--success-distance", "1e9"},
+      {"--success-distance", "0x1"},
+      {"--threads", "-1"},
+      {"--rank", "1"},
+      {"--rank", "2", "--ranks", "2"},
+      {"--bench", "--steps", "5"},
+      {"--bench", "--seed", "4294967296"},
+      {"world.pack"},
+  };
+  for (const std::vector<std::string>& arguments : mistakes) {
+    RunOptions options;
+    EXPECT_EQ(parse(arguments, options), kExitUsage) << testing::PrintToString(arguments);
+  }
+}
+
+}  // namespace
+}  // namespace galactic

@@ -1,0 +1,170 @@
+// Observations against a plain reference in double precision that sees only the state of the env.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "support/small_home_actor.h"
+#include "support/task_oracle.h"
+#include "support/task_twins.h"
+
+namespace galactic::test {
+namespace {
+
+constexpr std::uint32_t kSeed = 7;
+constexpr std::uint32_t kEnvs = 20;
+/// Floats of a few metres, through a handful of rotations.
+constexpr double kTolerance = 1e-4;
+
+SimulationOptions optionsOf(const TaskOptions& task) {
+  SimulationOptions options;
+  options.envs = kEnvs;
+  options.threads = 1;
+  options.task = task;
+  return options;
+}
+
+std::span<const float> rowOf(const BatchSimulator& simulator, std::span<const float> rows,
+                             std::size_t env) {
+  return rows.subspan(env * simulator.observationSize(), simulator.observationSize());
+}
+
+void expectObserved(std::span<const float> row, const std::vector<double>& wanted) {
+  ASSERT_EQ(row.size(), wanted.size());
+  for (std::size_t n = 0; n < row.size(); ++n) {
+    ASSERT_NEAR(static_cast<double>(row[n]), wanted[n], kTolerance) << "element " << n;
+  }
+}
+
+/// Drives wild episodes and compares every observation, the final ones too.
+class Observed {
+ public:
+  explicit Observed(const TaskOptions& task) : task_(task), twins_(home_.world(), optionsOf(task)) {
+    for (std::uint32_t env = 0; env < kEnvs; ++env) actors_.emplace_back(kSeed + env);
+  }
+
+  void run(int steps) {
+    checkAll();
+    for (int step = 0; step < steps; ++step) {
+      SCOPED_TRACE("step " + std::to_string(step));
+      act();
+      twins_.step(actions_);
+      checkFinals();
+      twins_.renew();
+      checkAll();
+      if (testing::Test::HasFatalFailure()) return;
+    }
+  }
+
+  int finals = 0;
+  int holding = 0;
+  int moved_targets = 0;
+  int rows = 0;
+
+ private:
+  void act() {
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      const SmallHomeRow row = actors_[env].act(twins_.batch().envState(env));
+      std::copy(row.begin(), row.end(),
+                actions_.begin() + static_cast<std::ptrdiff_t>(env * kSmallHomeActions));
+    }
+  }
+
+  /// Where an episode ended: the last observation of it.
+  void checkFinals() {
+    const BatchSimulator& batch = twins_.batch();
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      if (batch.dones()[env] == 0) continue;
+      ++finals;
+      actors_[env].begin();
+      expectObserved(rowOf(batch, batch.finalObservations(), env),
+                     observationOf(home_.world(), task_, twins_.after(env)));
+    }
+  }
+
+  /// The state in which the env is now: the next episode's first where one ended.
+  void checkAll() {
+    const BatchSimulator& batch = twins_.batch();
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      const EnvState state = batch.envState(env);
+      expectObserved(rowOf(batch, batch.observations(), env),
+                     observationOf(home_.world(), task_, state));
+      const Episode& episode = home_.world().episodes().episodes()[state.episode];
+      const Pose& start = home_.world().episodes().placements(episode)[episode.target].pose;
+      ++rows;
+      holding += state.held >= 0 ? 1 : 0;
+      moved_targets += state.objects[state.target] == start ? 0 : 1;
+    }
+  }
+
+  SmallHome home_;
+  TaskOptions task_;
+  TaskTwins twins_;
+  std::vector<WildActor> actors_;
+  std::vector<float> actions_ = std::vector<float>(kEnvs * kSmallHomeActions);
+};
+
+void expectBothSides(int count, int all) {
+  EXPECT_GE(10 * count, all);
+  EXPECT_LE(10 * count, 9 * all);
+}
+
+TEST(Observation, IsThatOfTheStateAfterTheStep) {
+  RecordProperty("seed", static_cast<int>(kSeed));
+  Observed observed({.most_steps = 50});
+  observed.run(300);
+  EXPECT_GT(observed.finals, 50);
+  expectBothSides(observed.holding, observed.rows);
+  expectBothSides(observed.moved_targets, observed.rows);
+}
+
+TEST(Observation, FollowsTheTargetWhenAskedTo) {
+  Observed observed({.most_steps = 50, .observes_current_target = true});
+  observed.run(300);
+  EXPECT_GT(observed.finals, 50);
+  expectBothSides(observed.moved_targets, observed.rows);
+}
+
+TEST(Observation, IsTheSameWithoutDistractorsAndWithoutATimeLimit) {
+  Observed observed({.most_steps = 0, .distractors = false});
+  observed.run(200);
+  EXPECT_GT(observed.finals, 10);
+}
+
+TEST(Observation, NamesItsParts) {
+  const SmallHome home;
+  const BatchSimulator simulator = simulatorOf(home.world(), optionsOf({}));
+  const std::vector<std::pair<std::string, std::size_t>> wanted{
+      {"robot_target", 3}, {"grip_target", 3}, {"robot_grip", 3}, {"robot_goal", 3},
+      {"grip_goal", 3},    {"is_holding", 1},  {"joints", 4},     {"time", 3}};
+  std::size_t first = 0;
+  ASSERT_EQ(simulator.observationParts().size(), wanted.size());
+  for (std::size_t n = 0; n < wanted.size(); ++n) {
+    const ObservationPart& part = simulator.observationParts()[n];
+    EXPECT_EQ(part.name, wanted[n].first);
+    EXPECT_EQ(part.size, wanted[n].second);
+    EXPECT_EQ(part.first, first);
+    first += part.size;
+  }
+  EXPECT_EQ(simulator.observationSize(), first);
+  EXPECT_EQ(simulator.observations().size(), kEnvs * first);
+}
+
+TEST(Observation, CountsTheTimeDown) {
+  const SmallHome home;
+  BatchSimulator simulator = simulatorOf(home.world(), optionsOf({.most_steps = 100}));
+  const std::vector<float> nothing(kEnvs * kSmallHomeActions);
+  const auto time = [&] {
+    const std::span<const float> row = simulator.observations().first(simulator.observationSize());
+    return std::vector<float>(row.end() - 3, row.end());
+  };
+  EXPECT_EQ(time(), (std::vector<float>{1, 1, 1}));
+  for (int step = 0; step < 90; ++step) simulator.step(nothing);
+  EXPECT_NEAR(static_cast<double>(time()[0]), 0.1, kTolerance);
+  EXPECT_NEAR(static_cast<double>(time()[1]), 0.5, kTolerance);
+  EXPECT_EQ(time()[2], 1);
+}
+
+}  // namespace
+}  // namespace galactic::test

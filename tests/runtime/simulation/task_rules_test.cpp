@@ -1,0 +1,180 @@
+// Reward, end and success of every step of wild episodes against a plain reference of the paper's
+// appendix A that sees only what an onlooker sees.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "support/small_home_actor.h"
+#include "support/task_oracle.h"
+#include "support/task_twins.h"
+
+namespace galactic::test {
+namespace {
+
+constexpr std::uint32_t kSeed = 20240611;
+constexpr std::uint32_t kEnvs = 24;
+constexpr int kSteps = 400;
+/// Distances of a few metres in floats, times weights up to 3.
+constexpr double kRewardTolerance = 1e-4;
+
+/// How the steps of a run ended.
+struct Tally {
+  int ended = 0;
+  int successes = 0;
+  int failures = 0;
+  int late = 0;
+  int grasps = 0;
+};
+
+/// One case: which task, and which outcomes are to be seen in 10 to 90 % of its episodes.
+struct Case {
+  std::string name;
+  SimulationOptions options;
+  bool sees_success = true;
+  bool sees_failure = true;
+  bool sees_late = true;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& one) { return out << one.name; }
+
+SimulationOptions optionsOf(const TaskOptions& task) {
+  SimulationOptions options;
+  options.envs = kEnvs;
+  options.threads = 2;
+  options.task = task;
+  options.task.most_steps = 42;
+  return options;
+}
+
+Case paperCase() { return {.name = "Paper", .options = optionsOf({})}; }
+
+Case unusualCase() {
+  TaskOptions task;
+  task.success_reward = 3;
+  task.pick_reward = -2;
+  task.reach_weight = 2.5F;
+  task.transport_weight = 0.5F;
+  task.action_weight = 0.25F;
+  task.slack_penalty = 0.125F;
+  task.failure_penalty = 1.5F;
+  task.success_distance = 0.25F;
+  task.observes_current_target = true;
+  Case unusual{.name = "UnusualNumbers", .options = optionsOf(task)};
+  unusual.options.action = {.grasp = 0.2F, .release = -0.5F, .terminate = 0.9F};
+  unusual.options.task.most_steps = 45;
+  return unusual;
+}
+
+std::vector<Case> cases() {
+  const TaskOptions none{.kind = TaskKind::kNone};
+  const TaskOptions pick{.kind = TaskKind::kMobilePick};
+  const TaskOptions lenient_pick{.kind = TaskKind::kMobilePick, .drop_fails = false};
+  const TaskOptions no_terminate{.needs_terminate = false};
+  const TaskOptions safe_drop{.drop_fails = false};
+  const TaskOptions neither{.needs_terminate = false, .drop_fails = false};
+  const TaskOptions alone{.distractors = false};
+  return {paperCase(),
+          unusualCase(),
+          {.name = "NoTerminate", .options = optionsOf(no_terminate)},
+          {.name = "SafeDrop", .options = optionsOf(safe_drop)},
+          {.name = "SafeDropNoTerminate", .options = optionsOf(neither), .sees_failure = false},
+          {.name = "NoDistractors", .options = optionsOf(alone)},
+          {.name = "MobilePick", .options = optionsOf(pick)},
+          {.name = "MobilePickAnything", .options = optionsOf(lenient_pick), .sees_failure = false},
+          {.name = "None",
+           .options = optionsOf(none),
+           .sees_success = false,
+           .sees_failure = false,
+           .sees_late = false}};
+}
+
+class TaskRules : public testing::TestWithParam<Case> {
+ protected:
+  /// Compares one env's last step.
+  void check(TaskTwins& twins, std::size_t env, const EnvState& after, const Judgement& wanted) {
+    const BatchSimulator& batch = twins.batch();
+    ASSERT_NEAR(static_cast<double>(batch.rewards()[env]), wanted.reward, kRewardTolerance);
+    ASSERT_EQ(batch.dones()[env] != 0, wanted.done);
+    ASSERT_EQ(batch.successes()[env] != 0, wanted.success);
+    if (!wanted.done) {
+      expectSameState(batch.envState(env), after);
+      return;
+    }
+    ++tally_.ended;
+    tally_.successes += wanted.success ? 1 : 0;
+    tally_.failures += wanted.failure ? 1 : 0;
+    tally_.late += !wanted.success && !wanted.failure ? 1 : 0;
+  }
+
+  void expectSeen(bool expected, int count) const {
+    if (!expected) return;
+    EXPECT_GE(10 * count, tally_.ended);
+    EXPECT_LE(10 * count, 9 * tally_.ended);
+  }
+
+  Tally tally_;
+};
+
+TEST_P(TaskRules, AreThoseOfThePaper) {
+  RecordProperty("seed", static_cast<int>(kSeed));
+  const SmallHome home;
+  const SimulationOptions& options = GetParam().options;
+  TaskTwins twins(home.world(), options);
+  std::vector<TaskOracle> oracles(kEnvs, TaskOracle(options.task, options.action));
+  std::vector<WildActor> actors;
+  for (std::uint32_t env = 0; env < kEnvs; ++env) actors.emplace_back(kSeed + env);
+  std::vector<float> actions(kEnvs * kSmallHomeActions);
+  double reward = 0;
+  for (int step = 0; step < kSteps; ++step) {
+    std::vector<EnvState> before;
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      before.push_back(twins.batch().envState(env));
+      const SmallHomeRow row = actors[env].act(before.back());
+      std::copy(row.begin(), row.end(),
+                actions.begin() + static_cast<std::ptrdiff_t>(env * kSmallHomeActions));
+    }
+    twins.step(actions);
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      SCOPED_TRACE("step " + std::to_string(step) + " env " + std::to_string(env));
+      const EnvState after = twins.after(env);
+      const auto row =
+          std::span<const float>(actions).subspan(env * kSmallHomeActions, kSmallHomeActions);
+      const Judgement wanted = oracles[env].judge(before[env], after, row);
+      ASSERT_NO_FATAL_FAILURE(check(twins, env, after, wanted));
+      reward += wanted.reward;
+      tally_.grasps += before[env].held < 0 && after.held >= 0 ? 1 : 0;
+      if (!wanted.done) continue;
+      oracles[env].begin();
+      actors[env].begin();
+    }
+    twins.renew();
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      expectSameState(twins.batch().envState(env), twins.after(env));
+    }
+  }
+  const SimulationStatistics sum = twins.batch().statistics();
+  EXPECT_EQ(sum.steps, std::uint64_t{kEnvs} * kSteps);
+  EXPECT_EQ(sum.episodes, static_cast<std::uint64_t>(tally_.ended));
+  EXPECT_EQ(sum.successes, static_cast<std::uint64_t>(tally_.successes));
+  EXPECT_EQ(sum.failures, static_cast<std::uint64_t>(tally_.failures));
+  EXPECT_EQ(sum.grasps, static_cast<std::uint64_t>(tally_.grasps));
+  EXPECT_GT(sum.nan_actions, 0U);
+  EXPECT_NEAR(sum.reward, reward, kRewardTolerance * kSteps);
+  EXPECT_GT(tally_.grasps, 40);
+  EXPECT_GT(tally_.ended, 100);
+  expectSeen(GetParam().sees_success, tally_.successes);
+  expectSeen(GetParam().sees_failure, tally_.failures);
+  expectSeen(GetParam().sees_late, tally_.late);
+  std::printf("seed %u: %d episodes, %d successes, %d failures, %d late, %d grasps\n", kSeed,
+              tally_.ended, tally_.successes, tally_.failures, tally_.late, tally_.grasps);
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, TaskRules, testing::ValuesIn(cases()),
+                         [](const auto& one) { return one.param.name; });
+
+}  // namespace
+}  // namespace galactic::test
