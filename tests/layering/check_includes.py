@@ -42,7 +42,8 @@ HEAVY_LIBRARIES = (
     HeavyLibrary("Bullet", re.compile(r"(bullet/|Bullet|LinearMath/|bt[A-Z])"),
                  re.compile(r"\bbt[A-Z][a-z]\w+"),
                  re.compile(r"bake/src/(engines/bullet[^/]*|fit/convex_hull\.cpp)$|"
-                            r"tests/bake/robot/bullet[^/]*$|benchmarks/batch_kinematics\.cpp$")),
+                            r"tests/bake/(robot|simulation)/bullet[^/]*$|"
+                            r"benchmarks/batch_kinematics\.cpp$")),
     HeavyLibrary("Embree", re.compile(r"embree\d/"), re.compile(r"\b(RTC[A-Z]\w+|rtc[A-Z]\w+)"),
                  re.compile(r"bake/src/engines/embree[^/]*$")),
     HeavyLibrary("urdfdom", re.compile(r"(urdf_|tinyxml|console_bridge/)"),

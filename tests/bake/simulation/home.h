@@ -1,0 +1,101 @@
+#pragma once
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "galactic/bake/episode_pack.h"
+#include "galactic/bake/episode_sampler.h"
+#include "galactic/bake/triangle_mesh.h"
+#include "galactic/batch_simulator.h"
+#include "support/sample_world.h"
+
+namespace galactic::test {
+
+/// The objects and the robot of packs/sample, baked once: it takes seconds.
+struct SampleThings {
+  MemoryPack objects = bakeSampleObjects();
+  MemoryPack robot = bakeSampleRobot();
+};
+
+/// A world in a scene of triangles, with sampled episodes in every second of which the robot begins
+/// with an apple between its fingers.
+class Home {
+ public:
+  Home(const std::filesystem::path& mesh_file, const SampleThings& things)
+      : Home(MemoryPack::opened(bake::importMesh(mesh_file)), things) {}
+
+  [[nodiscard]] const World& world() const { return *world_; }
+  [[nodiscard]] const bake::TriangleMesh& mesh() const { return mesh_; }
+
+ private:
+  Home(const bake::SourceAsset& asset, const SampleThings& things)
+      : mesh_(MemoryPack::opened(bake::placeAndClean(asset)).mesh),
+        things_(things),
+        scene_(bakeScenePack(asset)) {
+    bake::SourceEpisodes episodes = sample();
+    episodes_.emplace(PackKind::kEpisodes, encoded(episodes), "episodes");
+    world_.emplace(open());
+    putApplesInHands(episodes);
+    world_.reset();
+    episodes_.emplace(PackKind::kEpisodes, encoded(episodes), "episodes");
+    world_.emplace(open());
+  }
+
+  static MemoryPack bakeScenePack(const bake::SourceAsset& asset) {
+    bake::SceneBakeOptions options;
+    options.check_columns = 0;
+    bake::StageTimes times;
+    const auto silent = [](std::string_view, double) {};
+    const auto scene = MemoryPack::opened(bake::bakeScene(asset, options, times, silent));
+    return {PackKind::kScene,
+            MemoryPack::opened(bake::encodeScenePack(scene, testProvenance("scene"))), "scene"};
+  }
+
+  static std::vector<std::byte> encoded(const bake::SourceEpisodes& episodes) {
+    return MemoryPack::opened(bake::encodeEpisodePack(episodes, testProvenance("episodes")));
+  }
+
+  [[nodiscard]] bake::SourceEpisodes sample() const {
+    bake::EpisodeSamplerOptions options;
+    options.episodes = 40;
+    const std::vector<Scene> scenes{MemoryPack::opened(Scene::from(scene_.pack()))};
+    const auto objects = MemoryPack::opened(ObjectSet::from(things_.objects.pack()));
+    const auto robot = MemoryPack::opened(Robot::from(things_.robot.pack()));
+    return MemoryPack::opened(bake::sampleEpisodes(scenes, objects, robot, options));
+  }
+
+  [[nodiscard]] World open() const {
+    std::vector<PackFile> packs;
+    for (const MemoryPack* pack : {&scene_, &things_.objects, &things_.robot, &*episodes_}) {
+      packs.push_back(MemoryPack::opened(PackFile::view(pack->bytes().bytes(), "pack")));
+    }
+    return MemoryPack::opened(World::from(std::move(packs)));
+  }
+
+  void putApplesInHands(bake::SourceEpisodes& episodes) const {
+    SimulationOptions options;
+    options.envs = static_cast<std::uint32_t>(episodes.episodes.size());
+    options.threads = 1;
+    options.order = EpisodeOrder::kLinear;
+    const auto simulator = MemoryPack::opened(BatchSimulator::create(*world_, options));
+    const auto apple = std::find(episodes.objects.begin(), episodes.objects.end(), "apple");
+    if (apple == episodes.objects.end()) return;
+    for (std::size_t env = 0; env < options.envs; env += 2) {
+      const EnvState state = simulator.envState(env);
+      const Episode& episode = episodes.episodes[state.episode];
+      Placement& target = episodes.placements[episode.first_placement + episode.target];
+      target.object = static_cast<std::uint32_t>(apple - episodes.objects.begin());
+      const Vec3 middle = world_->objectOf(target).box.pose.translation;
+      target.pose = {state.world_from_grip.translation - middle, {}};
+    }
+  }
+
+  bake::TriangleMesh mesh_;
+  const SampleThings& things_;
+  MemoryPack scene_;
+  std::optional<MemoryPack> episodes_;
+  std::optional<World> world_;
+};
+
+}  // namespace galactic::test

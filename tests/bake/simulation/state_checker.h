@@ -1,0 +1,188 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bullet_scene.h"
+#include "galactic/batch_simulator.h"
+#include "support/resting_oracle.h"
+
+namespace galactic::test {
+
+/// What was found in the states of a run.
+struct Findings {
+  std::uint64_t states = 0;
+  /// Spheres of robots and of held objects that were looked at.
+  std::uint64_t robot_spheres = 0;
+  std::uint64_t held_spheres = 0;
+  /// Held spheres that have penetrated something ever since they were grasped, in all states.
+  std::uint64_t excepted = 0;
+  /// Spheres within 20 cm of an object's box.
+  std::uint64_t near_objects = 0;
+  /// Spheres shown to Bullet.
+  std::uint64_t exact = 0;
+  /// Of the robot, then of held objects: blocked by the column grid, overlapping an object, deeper
+  /// in the exact scene than the column method allows.
+  std::array<std::uint64_t, 2> in_grid{};
+  std::array<std::uint64_t, 2> in_objects{};
+  std::array<std::uint64_t, 2> in_scene{};
+};
+
+/// Looks at the states of a batch from outside: column grids and boxes asked sphere by sphere, and
+/// Bullet.
+class StateChecker {
+ public:
+  /// A sphere is judged by the nearest column, half the diagonal of a cell of 3 cm away at most;
+  /// heights are rounded to fractions of a millimetre.
+  static constexpr float kDeepest = 0.0213F;
+
+  StateChecker(const World& world, const BatchSimulator& simulator, BulletScene& scene)
+      : world_(world), simulator_(simulator), scene_(scene), held_(simulator.envCount()) {
+    const Robot& robot = world.robot();
+    for (const galactic::SphereGroup& group : robot.groups()) {
+      const LinkOnBody link = simulator.linkOnBody(group.link);
+      for (const SetSphere& sphere : group.spheres) {
+        spheres_.push_back({link.body, at(link.place, sphere.centre), sphere.radius_index});
+      }
+    }
+  }
+
+  /// `exactly`: whether to ask Bullet too, which takes its time.
+  void check(std::size_t env, bool exactly, Findings& found) {
+    const EnvState state = simulator_.envState(env);
+    Surroundings around = surroundingsOf(state);
+    const std::size_t bodies = simulator_.bodyCount();
+    const auto transforms = simulator_.bodyTransforms().subspan(env * bodies, bodies);
+    for (const RobotSphere& sphere : spheres_) {
+      const Ball ball{at(transforms[sphere.body], sphere.centre), sphere.radius_index};
+      found.in_grid[0] += isInGrid(around, ball) ? 1U : 0U;
+      found.in_objects[0] += isInObject(around, ball, found) ? 1U : 0U;
+      if (exactly) found.in_scene[0] += isInScene(ball, found) ? 1U : 0U;
+    }
+    found.robot_spheres += spheres_.size();
+    ++found.states;
+    checkHeld(env, state, around, found);
+  }
+
+ private:
+  struct RobotSphere {
+    std::size_t body = 0;
+    Vec3 centre;
+    std::uint32_t radius_index = 0;
+  };
+  struct Ball {
+    Vec3 centre;
+    std::uint32_t radius_index = 0;
+  };
+  struct RestingSolid {
+    BoxSolid solid;
+    Vec3 centre;
+    float reach = 0;
+  };
+  struct Surroundings {
+    const Scene* scene = nullptr;
+    std::vector<RestingSolid> objects;
+  };
+  /// What an env held in the state before.
+  struct HeldBefore {
+    std::int32_t object = -1;
+    std::uint32_t step = 0;
+    std::vector<bool> excepted;
+  };
+
+  static Vec3 at(const LinkTransform& frame, const Vec3& point) {
+    return frame.x_axis * point.x + frame.y_axis * point.y + frame.z_axis * point.z + frame.origin;
+  }
+
+  [[nodiscard]] const Placement& placementOf(const EnvState& state, std::size_t object) const {
+    return world_.episodes().placements(world_.episodes().episodes()[state.episode])[object];
+  }
+
+  [[nodiscard]] Surroundings surroundingsOf(const EnvState& state) const {
+    Surroundings around{&world_.scenes()[state.scene], {}};
+    for (std::size_t n = 0; n < state.objects.size(); ++n) {
+      if (static_cast<std::int32_t>(n) == state.held) continue;
+      const OrientedBox& box = world_.objectOf(placementOf(state, n)).box;
+      const Vec3& half = box.half_extents;
+      around.objects.push_back({BoxSolid(box, state.objects[n]),
+                                state.objects[n] * box.pose.translation,
+                                std::sqrt(dot(half, half)) + 0.2F});
+    }
+    return around;
+  }
+
+  /// Blocked, and not only by rounding: centres are computed in another way here.
+  [[nodiscard]] static bool isInGrid(const Surroundings& around, const Ball& ball) {
+    constexpr float kRounding = 1e-5F;
+    const ColumnGrid& grid = around.scene->grids()[ball.radius_index];
+    if (grid.clearance(ball.centre) == Clearance::kFree) return false;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      const auto by = [&](unsigned bit) {
+        return (corner >> bit & 1U) != 0 ? kRounding : -kRounding;
+      };
+      if (grid.clearance(ball.centre + Vec3{by(0), by(1), by(2)}) == Clearance::kFree) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool isInObject(const Surroundings& around, const Ball& ball,
+                                Findings& found) const {
+    constexpr double kRounding = 1e-5;
+    bool any = false;
+    bool near = false;
+    for (const RestingSolid& object : around.objects) {
+      const Vec3 away = ball.centre - object.centre;
+      if (dot(away, away) > object.reach * object.reach) continue;
+      near = true;
+      const double distance = object.solid.distance(toPoint3(ball.centre));
+      any = any || distance < static_cast<double>(world_.radii()[ball.radius_index]) - kRounding;
+    }
+    found.near_objects += near ? 1U : 0U;
+    return any;
+  }
+
+  [[nodiscard]] bool isInScene(const Ball& ball, Findings& found) {
+    // Bullet counts contacts up to 2 % of the radius away.
+    const float radius = (world_.radii()[ball.radius_index] - kDeepest) / 1.02F;
+    if (!(radius > 0)) return false;
+    ++found.exact;
+    return scene_.touches(ball.centre, radius);
+  }
+
+  void checkHeld(std::size_t env, const EnvState& state, const Surroundings& around,
+                 Findings& found) {
+    HeldBefore& before = held_[env];
+    const bool goes_on = before.object == state.held && state.step == before.step + 1;
+    before.step = state.step;
+    before.object = state.held;
+    if (state.held < 0) return;
+    const auto number = static_cast<std::size_t>(state.held);
+    const ObjectModel& object = world_.objectOf(placementOf(state, number));
+    // Whatever penetrates something when it is grasped does not count until it is free.
+    if (!goes_on) before.excepted.assign(object.spheres.size(), true);
+    for (std::size_t n = 0; n < object.spheres.size(); ++n) {
+      const Ball ball{state.objects[number] * object.spheres[n].centre,
+                      object.spheres[n].radius_index};
+      ++found.held_spheres;
+      const bool in_grid = isInGrid(around, ball);
+      const bool in_object = isInObject(around, ball, found);
+      before.excepted[n] = before.excepted[n] && (in_grid || in_object);
+      found.excepted += before.excepted[n] ? 1U : 0U;
+      if (before.excepted[n]) continue;
+      found.in_grid[1] += in_grid ? 1U : 0U;
+      found.in_objects[1] += in_object ? 1U : 0U;
+      found.in_scene[1] += isInScene(ball, found) ? 1U : 0U;
+    }
+  }
+
+  const World& world_;
+  const BatchSimulator& simulator_;
+  BulletScene& scene_;
+  std::vector<RobotSphere> spheres_;
+  std::vector<HeldBefore> held_;
+};
+
+}  // namespace galactic::test
