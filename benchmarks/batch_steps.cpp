@@ -1,5 +1,5 @@
 // Steps of a batch on the workload on which the published physics was measured, see
-// docs/simulation.md for how to make its world:
+// make_published_world.sh for its worlds:
 //
 //   GALACTIC_BENCH_WORLD=world.pack batch_steps
 //

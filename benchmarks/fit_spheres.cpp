@@ -10,17 +10,19 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "galactic/bake/collection_shape.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/sphere_set.h"
 #include "galactic/bake/triangle_mesh.h"
-#include "published_spheres.h"
 
 namespace galactic::bake {
 namespace {
@@ -69,11 +71,26 @@ void printRow(const std::string& name, const SphereSet& set, std::size_t radii, 
   std::fflush(stdout);
 }
 
+/// The published rule for an object of these bounds. It counts along the axes of a Z up file.
+Result<AuthoredShape> publishedShape(const Bounds& bounds, const std::string& rule,
+                                     const std::vector<float>& radii) {
+  const auto in_file = [](float x, float y, float z) {
+    return std::array{static_cast<double>(x), static_cast<double>(-z), static_cast<double>(y)};
+  };
+  CollectionObject object;
+  object.box_min = in_file(bounds.min.x, bounds.min.y, bounds.max.z);
+  object.box_max = in_file(bounds.max.x, bounds.max.y, bounds.min.z);
+  object.technique = rule == "cylinder" ? SphereTechnique::kUprightCylinder : SphereTechnique::kBox;
+  return shapeFromCollection(object, UpAxis::kZ, radii);
+}
+
 Result<std::vector<SphereSet>> makeSets(const TriangleMesh& mesh, const Request& request,
                                         const SphereSetOptions& options) {
   if (!request.rule.empty()) {
     SphereSet set;
-    set.spheres = publishedSpheres(mesh.bounds, request.rule == "cylinder", options.radii);
+    auto shape = publishedShape(mesh.bounds, request.rule, options.radii);
+    if (!shape) return tl::unexpected(shape.error());
+    set.spheres = std::move(shape->spheres);
     const auto quality = measureSphereSet(mesh, set.spheres, options);
     if (!quality) return tl::unexpected(quality.error());
     set.quality = *quality;

@@ -18,10 +18,8 @@
 #include <random>
 #include <vector>
 
-namespace galactic::bench {
+namespace galactic::simulation {
 namespace {
-
-using namespace galactic::simulation;
 
 constexpr std::uint32_t kObjects = 30;
 constexpr float kLargestRadius = 0.12F;
@@ -131,10 +129,10 @@ class RegularGrid {
  public:
   explicit RegularGrid(const std::vector<RestingBox>& boxes) : boxes_(&boxes) {
     lists_.resize(std::size_t{kColumns} * kRows);
-    for (std::uint16_t n = 0; n < boxes.size(); ++n) {
+    for (std::size_t n = 0; n < boxes.size(); ++n) {
       const Vec3 half = halfBounds(boxes[n]);
       forEachCell(boxes[n].centre, half.x, half.z, [&](std::vector<std::uint16_t>& list) {
-        list.push_back(n);
+        list.push_back(static_cast<std::uint16_t>(n));
         return false;
       });
     }
@@ -166,7 +164,8 @@ class RegularGrid {
     for (int k = cell(centre.z - reach_z, kRows); k <= cell(centre.z + reach_z, kRows); ++k) {
       for (int i = cell(centre.x - reach_x, kColumns); i <= cell(centre.x + reach_x, kColumns);
            ++i) {
-        if (visit(lists_[static_cast<std::size_t>(k * kColumns + i)])) return true;
+        if (visit(lists_[static_cast<std::size_t>(k) * kColumns + static_cast<std::size_t>(i)]))
+          return true;
       }
     }
     return false;
@@ -208,7 +207,7 @@ void measure(benchmark::State& state, const Workload& workload, const Touches& t
   const std::size_t envs = workload.rooms.size();
   std::size_t turn = 0;
   std::size_t hits = 0;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     for (std::size_t n = 0; n < 1024; ++n, ++turn) {
       hits += touches(turn % envs, workload.robots[turn % kRobots].batch()) ? 1U : 0U;
     }
@@ -275,7 +274,7 @@ void removeAndInsert(benchmark::State& state) {
   RestingObjects objects(room.size(), kLargestRadius);
   for (std::uint32_t n = 0; n < room.size(); ++n) objects.insert(n, room[n]);
   std::uint32_t index = 0;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     objects.remove(index);
     objects.insert(index, room[index]);
     index = (index + 1) % kObjects;
@@ -289,6 +288,6 @@ BENCHMARK(mergedLists)->ArgName("envs")->Arg(1)->Arg(128)->Arg(4096);
 BENCHMARK(removeAndInsert);
 
 }  // namespace
-}  // namespace galactic::bench
+}  // namespace galactic::simulation
 
 BENCHMARK_MAIN();

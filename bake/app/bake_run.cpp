@@ -22,17 +22,33 @@ Result<void> BakeRun::checkNotRead(const std::filesystem::path& output) const {
   return {};
 }
 
+namespace {
+
+/// The name of the pack that is made of `input`, without its extension.
+std::filesystem::path packNameOf(const BakeCommand& command, const std::filesystem::path& input) {
+  if (command.kind == AssetKind::kWorld) return "world";
+  if (command.kind == AssetKind::kEpisodes && command.episodes.sampled) return "episodes";
+  const std::string file = input.filename().string();
+  if (command.kind == AssetKind::kEpisodes && file.ends_with(kEpisodeSetSuffix) &&
+      file.size() > kEpisodeSetSuffix.size()) {
+    return file.substr(0, file.size() - kEpisodeSetSuffix.size());
+  }
+  std::error_code unknown;
+  if (!std::filesystem::is_directory(input, unknown)) return input.stem();
+  // "objects/" has no file name and "." is none; a dot in a folder's name begins no extension.
+  const auto folder =
+      std::filesystem::absolute(input / "", unknown).lexically_normal().parent_path();
+  return folder.has_filename() ? folder.filename() : "objects";
+}
+
+}  // namespace
+
 std::filesystem::path BakeRun::outputFor(const std::filesystem::path& input) const {
   std::error_code unknown;
-  std::filesystem::path name = input.stem();
-  if (std::filesystem::is_directory(input, unknown)) {
-    // "objects/" has no file name and "." is none; a dot in a folder's name begins no extension.
-    name = std::filesystem::absolute(input / "", unknown).lexically_normal().parent_path();
-    name = name.has_filename() ? name.filename() : "objects";
-  }
+  std::filesystem::path name = packNameOf(command_, input);
   name += ".pack";
   if (command_.output.empty()) return name;
-  const bool one_pack = command_.kind == AssetKind::kObject || command_.inputs.size() == 1;
+  const bool one_pack = command_.makesOnePack() || command_.inputs.size() == 1;
   const bool is_folder = !one_pack || std::filesystem::is_directory(command_.output, unknown);
   return is_folder ? command_.output / name : command_.output;
 }

@@ -28,6 +28,8 @@ class BakeRun {
     read_.push_back(command.config);
     read_.push_back(command.robot.recipe);
     read_.push_back(command.robot.spheres);
+    read_.push_back(command.episodes.only);
+    read_.push_back(command.collection);
   }
 
   [[nodiscard]] const BakeCommand& command() const { return command_; }

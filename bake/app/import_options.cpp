@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "option_groups.h"
 #include "option_values.h"
@@ -26,16 +25,6 @@ Result<Affine> parseTransform(const std::string& text) {
   return transform;
 }
 
-Result<UpAxis> parseUp(const std::string& text) {
-  const std::map<std::string, UpAxis> axes{{"x", UpAxis::kX},       {"y", UpAxis::kY},
-                                           {"z", UpAxis::kZ},       {"-x", UpAxis::kMinusX},
-                                           {"-y", UpAxis::kMinusY}, {"-z", UpAxis::kMinusZ}};
-  const auto axis = axes.find(text);
-  if (axis != axes.end()) return axis->second;
-  return fail(ErrorCode::kInvalidInput, "--up",
-              fmt::format("is \"{}\", one of x, y, z, -x, -y, -z is wanted", text));
-}
-
 }  // namespace
 
 void ImportOptions::addTo(CLI::App& app) {
@@ -50,7 +39,7 @@ void ImportOptions::addTo(CLI::App& app) {
 
 Result<void> ImportOptions::understand(BakeCommand& command) const {
   if (!up_.empty()) {
-    const auto up = parseUp(up_);
+    const auto up = parseUp(up_, "--up");
     if (!up) return tl::unexpected(up.error());
     command.import.up = *up;
   }

@@ -5,18 +5,20 @@
 #include <set>
 
 #include "bake_run.h"
+#include "episode_job.h"
 #include "object_job.h"
 #include "options.h"
 #include "report.h"
 #include "robot_job.h"
 #include "scene_job.h"
+#include "world_job.h"
 
 namespace galactic::bake {
 namespace {
 
-/// What one pack each is made of: all objects share one.
+/// What one pack each is made of: the first input stands for all that share one.
 std::vector<std::filesystem::path> packInputs(const BakeCommand& command) {
-  if (command.kind == AssetKind::kObject) return {command.inputs.front()};
+  if (command.makesOnePack()) return {command.inputs.front()};
   return command.inputs;
 }
 
@@ -46,17 +48,27 @@ Result<void> checkOutputs(const BakeRun& run) {
   return {};
 }
 
+Result<Json> bakeFile(const std::filesystem::path& input, BakeRun& run) {
+  if (run.command().kind == AssetKind::kRobot) return bakeRobotFile(input, run);
+  if (run.command().kind == AssetKind::kEpisodes) return importEpisodeFile(input, run);
+  return bakeSceneFile(input, run);
+}
+
+/// One pack of all inputs.
+Result<Json> bakeTogether(BakeRun& run) {
+  return run.command().kind == AssetKind::kWorld ? linkWorldPack(run) : sampleEpisodePack(run);
+}
+
 void bakeInputs(BakeRun& run) {
+  const auto keep = [&run](const std::filesystem::path& input, Result<Json> entry) {
+    if (entry) return run.succeed(std::move(*entry));
+    run.fail(input, entry.error());
+  };
   if (run.command().kind == AssetKind::kObject) return bakeObjectFiles(run);
+  if (run.command().makesOnePack()) return keep(run.command().inputs.front(), bakeTogether(run));
   for (const std::filesystem::path& input : run.command().inputs) {
     if (!run.goesOn()) return;
-    auto entry = run.command().kind == AssetKind::kRobot ? bakeRobotFile(input, run)
-                                                         : bakeSceneFile(input, run);
-    if (entry) {
-      run.succeed(std::move(*entry));
-    } else {
-      run.fail(input, entry.error());
-    }
+    keep(input, bakeFile(input, run));
   }
 }
 

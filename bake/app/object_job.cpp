@@ -1,12 +1,17 @@
 #include "object_job.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <optional>
 
+#include "galactic/bake/collection_shape.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/object_pack.h"
 #include "galactic/bake/parallel_for.h"
+#include "galactic/bake/source_file.h"
 #include "object_inputs.h"
 #include "object_outcome.h"
 
@@ -25,11 +30,44 @@ void renameSources(std::vector<SourceFile>& files, const ObjectInput& input) {
   for (SourceFile& file : files) file.name = input.name + "/" + file.name;
 }
 
-void bakeObjectFile(const ObjectInput& input, const BakeCommand& command, bool alone,
-                    ObjectWork& work) {
+/// What bakes of one command share.
+struct ObjectTask {
+  const BakeCommand& command;
+  /// None where no collection is given.
+  std::optional<Collection> collection;
+  /// Whether an object has all threads.
+  bool alone = false;
+};
+
+/// The options of one object: with the shape that a collection gives it.
+Result<ObjectBakeOptions> optionsOf(const std::string& name, const ObjectTask& task,
+                                    std::vector<std::string>& warnings) {
+  ObjectBakeOptions options = task.command.object;
+  if (!task.alone) options.spheres.jobs = 1;
+  if (!task.collection) return options;
+  const auto& objects = task.collection->objects;
+  const auto found = std::find_if(objects.begin(), objects.end(),
+                                  [&](const CollectionObject& one) { return one.name == name; });
+  if (found == objects.end()) {
+    warnings.emplace_back("the collection does not name it: box and spheres are fitted");
+    return options;
+  }
+  auto shape = shapeFromCollection(*found, *task.command.import.up, options.spheres.radii);
+  if (!shape) {
+    shape.error().where = inFile(task.collection->source, shape.error().where);
+    return tl::unexpected(shape.error());
+  }
+  if (shape->spheres.empty()) {
+    warnings.emplace_back("the collection gives it no spheres: they are fitted");
+  }
+  options.authored = std::move(*shape);
+  return options;
+}
+
+void bakeObjectFile(const ObjectInput& input, const ObjectTask& task, ObjectWork& work) {
   work.outcome.input = input.path;
   const auto start = std::chrono::steady_clock::now();
-  auto asset = importMesh(input.path, command.import);
+  auto asset = importMesh(input.path, task.command.import);
   work.outcome.import_seconds = secondsSince(start);
   if (!asset) {
     work.baked = tl::unexpected(asset.error());
@@ -37,23 +75,29 @@ void bakeObjectFile(const ObjectInput& input, const BakeCommand& command, bool a
   }
   work.files = asset->files;
   asset->name = input.name;
-  ObjectBakeOptions options = command.object;
-  if (!alone) options.spheres.jobs = 1;
-  work.baked = bakeObject(*asset, options);
+  const auto options = optionsOf(input.name, task, asset->warnings);
+  if (!options) {
+    work.baked = tl::unexpected(options.error());
+    return;
+  }
+  work.baked = bakeObject(*asset, *options);
   if (!*work.baked) work.baked->error().where = inFile(input.path, work.baked->error().where);
 }
 
-std::vector<ObjectWork> bakeAll(const std::vector<ObjectInput>& inputs, BakeRun& run) {
+std::vector<ObjectWork> bakeAll(const std::vector<ObjectInput>& inputs,
+                                std::optional<Collection> collection, BakeRun& run) {
   const BakeCommand& command = run.command();
   std::vector<ObjectWork> work(inputs.size());
   // Several objects at once, or one on all threads.
-  const bool alone = inputs.size() < command.jobs;
+  const ObjectTask task{.command = command,
+                        .collection = std::move(collection),
+                        .alone = inputs.size() < command.jobs};
   std::atomic<bool> stop{false};
   std::mutex progress;
   std::size_t done = 0;
-  parallelFor(alone ? 1 : command.jobs, inputs.size(), [&](std::size_t n) {
+  parallelFor(task.alone ? 1 : command.jobs, inputs.size(), [&](std::size_t n) {
     if (stop) return;
-    bakeObjectFile(inputs[n], command, alone, work[n]);
+    bakeObjectFile(inputs[n], task, work[n]);
     if (!*work[n].baked && !command.keep_going) stop = true;
     const std::lock_guard lock(progress);
     ++done;
@@ -70,7 +114,7 @@ Result<std::uint64_t> writePack(const ObjectSetOutcome& outcome, const BakedObje
     return tl::unexpected(checked.error());
   }
   if (run.command().dry_run) return 0;
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = outcome.warnings;
   for (const BakedObject& object : set.objects) {
     for (const std::string& warning : object.warnings) {
       warnings.push_back(object.name + ": " + warning);
@@ -78,6 +122,18 @@ Result<std::uint64_t> writePack(const ObjectSetOutcome& outcome, const BakedObje
   }
   return writeObjectPack(outcome.output, set,
                          provenanceOf(run.command(), std::move(sources), std::move(warnings)));
+}
+
+/// The collection of the command, if there is one; it joins the sources.
+Result<std::optional<Collection>> readShapes(const std::filesystem::path& path,
+                                             std::vector<SourceFile>& sources) {
+  if (path.empty()) return std::nullopt;
+  auto collection = readCollection(path);
+  if (!collection) return tl::unexpected(collection.error());
+  auto file = describeFile(path);
+  if (!file) return tl::unexpected(file.error());
+  sources.push_back(std::move(*file));
+  return std::move(*collection);
 }
 
 }  // namespace
@@ -90,10 +146,13 @@ void bakeObjectFiles(BakeRun& run) {
   outcome.radii = command.object.spheres.radii;
   const auto inputs = findObjects(command.inputs);
   if (!inputs) return run.fail(command.inputs.front(), inputs.error());
-  std::vector<ObjectWork> work = bakeAll(*inputs, run);
+  std::vector<SourceFile> sources;
+  auto collection = readShapes(command.collection, sources);
+  if (!collection) return run.fail(command.collection, collection.error());
+  if (*collection) outcome.warnings = (*collection)->warnings;
+  std::vector<ObjectWork> work = bakeAll(*inputs, std::move(*collection), run);
 
   BakedObjectSet set{.radii = outcome.radii, .objects = {}};
-  std::vector<SourceFile> sources;
   std::vector<ObjectOutcome> outcomes;
   for (std::size_t n = 0; n < work.size(); ++n) {
     if (!work[n].baked) continue;

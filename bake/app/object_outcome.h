@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "bake_run.h"
@@ -18,6 +19,8 @@ struct ObjectOutcome {
 struct ObjectSetOutcome {
   std::filesystem::path output;
   std::vector<float> radii;
+  /// Of the collection.
+  std::vector<std::string> warnings;
   /// Size of the pack; 0 for a dry run.
   std::uint64_t pack_bytes = 0;
   double seconds = 0;

@@ -52,6 +52,7 @@ Json objectReport(const BakedObject& object, const ObjectOutcome& outcome,
               {"duplicate", object.imported.counts.duplicate},
               {"kept", object.imported.triangles}}},
             {"box", toJson(object.box)},
+            {"authored_spheres", object.authored_spheres},
             {"spheres", sphereSetReport(object.spheres, set.radii.size())}};
   json["stable_poses"] = Json::array();
   for (const StablePose& pose : object.stable_poses) {

@@ -24,7 +24,7 @@ void printObject(const BakedObject& object, std::size_t radii, int name_width) {
   const OrientedBox& box = object.box.box;
   const ObjectTimes& times = object.times;
   fmt::print(
-      "  {:<{}} {:>9} {:>17} {:>4} {:>6.3f} {:>5} {:>8} {:>4} {:>16} {:>16} {:>5} {:>7.3f}\n",
+      "  {:<{}} {:>9} {:>17} {:>4} {:>6.3f} {:>5} {:>8} {:>4} {:>16} {:>16} {:>5} {:>7.3f}{}\n",
       printable(object.name), name_width, object.imported.triangles,
       fmt::format("{:.0f}x{:.0f}x{:.0f}", 2e3F * box.half_extents.x, 2e3F * box.half_extents.y,
                   2e3F * box.half_extents.z),
@@ -32,7 +32,7 @@ void printObject(const BakedObject& object, std::size_t radii, int name_width) {
       object.stable_poses.size(), sphereCounts(object.spheres.spheres, radii),
       object.spheres.spheres.size(), millimetres(object.spheres.quality.gap),
       millimetres(object.spheres.quality.protrusion), object.spheres.quality.thin_points,
-      times.box + times.stable_poses + times.spheres);
+      times.box + times.stable_poses + times.spheres, object.authored_spheres ? "  as given" : "");
 }
 
 }  // namespace
@@ -61,6 +61,9 @@ void printObjectTable(const ObjectSetOutcome& outcome, const std::vector<BakedOb
              "gap mm", "protrusion mm", "thin", "seconds");
   for (const BakedObject& object : objects) {
     printObject(object, outcome.radii.size(), name_width);
+  }
+  for (const std::string& warning : outcome.warnings) {
+    fmt::print("  warning: {}\n", printable(warning));
   }
   for (const BakedObject& object : objects) {
     for (const std::string& warning : object.warnings) {

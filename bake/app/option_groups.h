@@ -28,7 +28,9 @@ class ImportOptions {
 class SceneOptions {
  public:
   void addTo(CLI::App& app, BakeCommand& command);
-  [[nodiscard]] Result<void> understand(BakeCommand& command) const;
+  /// `seeds` are the texts of --seed, which means something else for episodes.
+  [[nodiscard]] Result<void> understand(BakeCommand& command,
+                                        const std::vector<std::string>& seeds);
   void remember(BakeCommand& command) const;
 
  private:
@@ -59,6 +61,29 @@ class RobotFileOptions {
 
  private:
   std::vector<std::string> packages_;
+};
+
+/// Episodes: imported from published sets, or sampled.
+class EpisodeSetOptions {
+ public:
+  void addTo(CLI::App& app, BakeCommand& command);
+  /// `seeds` are the texts of --seed.
+  [[nodiscard]] Result<void> understand(BakeCommand& command,
+                                        const std::vector<std::string>& seeds);
+  void remember(BakeCommand& command) const;
+
+ private:
+  [[nodiscard]] Result<void> understandImport(BakeCommand& command) const;
+  [[nodiscard]] Result<void> understandSampling(BakeCommand& command,
+                                                const std::vector<std::string>& seeds) const;
+
+  std::vector<CLI::Option*> for_import_;
+  std::vector<CLI::Option*> for_sampling_;
+  std::string object_up_ = "z";
+  std::vector<std::string> start_joints_;
+  std::vector<std::string> scene_names_;
+  std::string heights_;
+  std::string least_distance_;
 };
 
 }  // namespace galactic::bake

@@ -47,6 +47,26 @@ Result<double> parsePositive(const std::string& text, const char* option) {
               fmt::format("is {}, a number above 0 is wanted", text));
 }
 
+Result<UpAxis> parseUp(const std::string& text, const char* option) {
+  const std::map<std::string, UpAxis> axes{{"x", UpAxis::kX},       {"y", UpAxis::kY},
+                                           {"z", UpAxis::kZ},       {"-x", UpAxis::kMinusX},
+                                           {"-y", UpAxis::kMinusY}, {"-z", UpAxis::kMinusZ}};
+  const auto axis = axes.find(text);
+  if (axis != axes.end()) return axis->second;
+  return fail(ErrorCode::kInvalidInput, option,
+              fmt::format("is \"{}\", one of x, y, z, -x, -y, -z is wanted", text));
+}
+
+Result<std::pair<std::string, std::string>> parsePair(const std::string& text, const char* option,
+                                                      const char* wanted) {
+  const std::size_t equals = text.find('=');
+  if (equals != std::string::npos && equals > 0 && equals + 1 < text.size()) {
+    return std::pair(text.substr(0, equals), text.substr(equals + 1));
+  }
+  return fail(ErrorCode::kInvalidInput, option,
+              fmt::format("is \"{}\", {} is wanted", text, wanted));
+}
+
 std::string joined(const std::vector<std::string>& parts) {
   return fmt::format("{}", fmt::join(parts, ","));
 }

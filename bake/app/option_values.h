@@ -2,8 +2,10 @@
 #include <cstddef>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "galactic/bake/mesh_import.h"
 #include "galactic/error.h"
 
 namespace galactic::bake {
@@ -17,6 +19,14 @@ namespace galactic::bake {
 
 /// A single positive number, in metres.
 [[nodiscard]] Result<double> parsePositive(const std::string& text, const char* option);
+
+/// One of x, y, z, -x, -y, -z.
+[[nodiscard]] Result<UpAxis> parseUp(const std::string& text, const char* option);
+
+/// NAME=VALUE, both not empty; `wanted` shows the form in the error, for example "NAME=DIR".
+[[nodiscard]] Result<std::pair<std::string, std::string>> parsePair(const std::string& text,
+                                                                    const char* option,
+                                                                    const char* wanted);
 
 [[nodiscard]] std::string joined(const std::vector<std::string>& parts);
 

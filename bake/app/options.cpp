@@ -4,9 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <functional>
 #include <map>
+#include <string_view>
 #include <thread>
 
 #include "galactic/bake/robot_recipe.h"
@@ -22,11 +24,16 @@ constexpr const char* kFooter =
     "Examples:\n"
     "  galactic-bake scene.glb --radii 0.015,0.05,0.12\n"
     "  galactic-bake objects/ --as object -o objects.pack\n"
-    "  galactic-bake fetch.urdf --as robot --recipe fetch.toml";
+    "  galactic-bake fetch.urdf --as robot --recipe fetch.toml\n"
+    "  galactic-bake scene.pack objects.pack fetch.pack --as episodes -o episodes.pack\n"
+    "  galactic-bake scene.pack objects.pack fetch.pack episodes.pack --as world -o world.pack";
 
 const std::map<std::string, AssetKind>& kindNames() {
-  static const std::map<std::string, AssetKind> names{
-      {"scene", AssetKind::kScene}, {"object", AssetKind::kObject}, {"robot", AssetKind::kRobot}};
+  static const std::map<std::string, AssetKind> names{{"scene", AssetKind::kScene},
+                                                      {"object", AssetKind::kObject},
+                                                      {"robot", AssetKind::kRobot},
+                                                      {"episodes", AssetKind::kEpisodes},
+                                                      {"world", AssetKind::kWorld}};
   return names;
 }
 
@@ -36,12 +43,25 @@ struct Group {
   bool (*is_for)(AssetKind);
 };
 
-constexpr Group kMeshGroup{"Meshes (scenes, objects)",
-                           [](AssetKind kind) { return kind != AssetKind::kRobot; }};
-constexpr Group kSceneGroup{"Scenes", [](AssetKind kind) { return kind == AssetKind::kScene; }};
-constexpr Group kShapeGroup{"Spheres and boxes (objects, robots)",
-                            [](AssetKind kind) { return kind != AssetKind::kScene; }};
-constexpr Group kRobotGroup{"Robots", [](AssetKind kind) { return kind == AssetKind::kRobot; }};
+bool isObject(AssetKind kind) { return kind == AssetKind::kObject; }
+bool isScene(AssetKind kind) { return kind == AssetKind::kScene; }
+bool isRobot(AssetKind kind) { return kind == AssetKind::kRobot; }
+bool isEpisodes(AssetKind kind) { return kind == AssetKind::kEpisodes; }
+bool isMesh(AssetKind kind) { return isScene(kind) || isObject(kind); }
+bool isShape(AssetKind kind) { return isRobot(kind) || isObject(kind); }
+bool hasRadii(AssetKind kind) { return isMesh(kind) || isRobot(kind); }
+bool hasSeed(AssetKind kind) { return isScene(kind) || isEpisodes(kind); }
+
+constexpr Group kRadiiGroup{"Spheres (scenes, objects, robots)", hasRadii};
+constexpr Group kMeshGroup{"Meshes (scenes, objects)", isMesh};
+constexpr Group kSceneGroup{"Scenes", isScene};
+constexpr Group kShapeGroup{"Spheres and boxes (objects, robots)", isShape};
+constexpr Group kObjectGroup{"Objects", isObject};
+constexpr Group kRobotGroup{"Robots", isRobot};
+constexpr Group kEpisodeGroup{"Episodes", isEpisodes};
+constexpr Group kSeedGroup{"Scenes, sampled episodes", hasSeed};
+constexpr std::array kGroups{kRadiiGroup,  kSceneGroup, kMeshGroup, kShapeGroup,
+                             kObjectGroup, kRobotGroup, kSeedGroup, kEpisodeGroup};
 
 /// Options that were typed although their group is for other kinds of asset.
 Result<void> checkGroup(const CLI::App& app, const Group& group, AssetKind kind) {
@@ -56,12 +76,15 @@ Result<void> checkGroup(const CLI::App& app, const Group& group, AssetKind kind)
 
 void addRunOptions(CLI::App& app, BakeCommand& command) {
   app.add_option("input", command.inputs,
-                 "Meshes (GLB, glTF, OBJ, PLY, STL, DAE, ...), folders of objects, or URDF robots")
+                 "Meshes (GLB, glTF, OBJ, PLY, STL, DAE, ...), folders of objects, URDF robots, "
+                 "published episode sets, or packs")
       ->required()
       ->option_text("INPUT...");
-  app.add_option("--as", command.kind, "What the inputs are (default: robot for .urdf, else scene)")
+  app.add_option(
+         "--as", command.kind,
+         "What to make (default: robot of .urdf, episodes of .episode_set.json, else scene)")
       ->transform(CLI::CheckedTransformer(kindNames()))
-      ->option_text("scene|object|robot");
+      ->option_text("scene|object|robot|episodes|world");
   app.add_option("-o,--out", command.output,
                  "Pack to write, or a folder for several packs (default: NAME.pack)")
       ->type_name("OUT");
@@ -104,15 +127,14 @@ class CommandLine {
     app_.footer(kFooter);
     app_.get_formatter()->column_width(34);
     addRunOptions(app_, command);
-    app_.add_option("--radii", radii_, "Sphere radii, metres, ascending")
-        ->type_name("R,R,...")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->default_str("0.015,0.05,0.12");
+    addGroup(kRadiiGroup, [&] { addRadii(); });
+    addGroup(kSeedGroup, [&] { addSeed(); });
     addGroup(kSceneGroup, [&] { scene_.addTo(app_, command); });
     addGroup(kMeshGroup, [&] { import_.addTo(app_); });
     addGroup(kShapeGroup, [&] { shape_.addTo(app_, command); });
+    addGroup(kObjectGroup, [&] { addCollection(); });
     addGroup(kRobotGroup, [&] { robot_.addTo(app_, command); });
+    addGroup(kEpisodeGroup, [&] { episodes_.addTo(app_, command); });
   }
 
   void parse(int argc, const char* const* argv) { app_.parse(argc, argv); }
@@ -120,12 +142,13 @@ class CommandLine {
 
   Result<void> understand() {
     chooseKind();
-    for (const Group& group : {kSceneGroup, kMeshGroup, kShapeGroup, kRobotGroup}) {
+    for (const Group& group : kGroups) {
       if (auto fits = checkGroup(app_, group, command_.kind); !fits) return fits;
     }
     for (const auto& step :
          {understandRadii(radii_, command_), import_.understand(command_),
-          scene_.understand(command_), shape_.understand(command_), robot_.understand(command_)}) {
+          scene_.understand(command_, seeds_), shape_.understand(command_),
+          robot_.understand(command_), episodes_.understand(command_, seeds_), checkCollection()}) {
       if (!step) return step;
     }
     // Movable objects may be small.
@@ -144,12 +167,50 @@ class CommandLine {
     app_.option_defaults()->group("Options");
   }
 
+  void addRadii() {
+    app_.add_option("--radii", radii_, "Sphere radii, metres, ascending")
+        ->type_name("R,R,...")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->default_str("0.015,0.05,0.12");
+  }
+
+  void addCollection() {
+    app_.add_option("--collection", command_.collection,
+                    "Published *.collection.json: the objects in it get its boxes and spheres")
+        ->type_name("FILE");
+  }
+
+  /// A collection's boxes stand in the frame of the mesh files.
+  [[nodiscard]] Result<void> checkCollection() const {
+    if (command_.collection.empty()) return {};
+    if (command_.import.up && !command_.import.transform) return {};
+    return fail(ErrorCode::kInvalidInput, "--collection",
+                "needs the up axis of the meshes, in whose frame its boxes stand: give --up, and "
+                "no --transform");
+  }
+
+  void addSeed() {
+    app_.add_option("--seed", seeds_,
+                    "Scenes: a point of the room (may be repeated), x,y,z in metres, y up; "
+                    "episodes: the number from which the random ones are drawn")
+        ->type_name("X,Y,Z|N")
+        ->allow_extra_args(false);
+  }
+
+  [[nodiscard]] bool allEndWith(std::string_view ending) const {
+    return std::all_of(command_.inputs.begin(), command_.inputs.end(),
+                       [ending](const std::filesystem::path& path) {
+                         return path.filename().string().ends_with(ending);
+                       });
+  }
+
   void chooseKind() {
+    command_.episodes.sampled = !allEndWith(".json");
     if (app_.get_option("--as")->count() > 0) return;
-    const bool robots =
-        std::all_of(command_.inputs.begin(), command_.inputs.end(),
-                    [](const std::filesystem::path& path) { return path.extension() == ".urdf"; });
-    command_.kind = robots ? AssetKind::kRobot : AssetKind::kScene;
+    command_.kind = AssetKind::kScene;
+    if (allEndWith(".urdf")) command_.kind = AssetKind::kRobot;
+    if (allEndWith(kEpisodeSetSuffix)) command_.kind = AssetKind::kEpisodes;
   }
 
   /// In this order in every pack; only what decides the content.
@@ -157,26 +218,25 @@ class CommandLine {
     if (command_.kind != AssetKind::kScene) {
       command_.remember("as", nameOf(kindNames(), command_.kind));
     }
-    command_.remember("radii", joined(radii_));
-    if (command_.kind == AssetKind::kScene) {
-      scene_.remember(command_);
-    } else {
-      shape_.remember(command_);
-    }
-    if (command_.kind == AssetKind::kRobot) {
-      robot_.remember(command_);
-    } else {
-      import_.remember(command_);
-    }
+    if (hasRadii(command_.kind)) command_.remember("radii", joined(radii_));
+    if (isScene(command_.kind)) scene_.remember(command_);
+    if (isShape(command_.kind)) shape_.remember(command_);
+    command_.remember("collection", command_.collection.filename().string());
+    if (isRobot(command_.kind)) robot_.remember(command_);
+    if (isMesh(command_.kind)) import_.remember(command_);
+    if (isEpisodes(command_.kind)) episodes_.remember(command_);
   }
 
   BakeCommand& command_;
-  CLI::App app_{"Bakes scenes, objects and robots into packs for galactic-run.", "galactic-bake"};
+  CLI::App app_{"Bakes scenes, objects, robots and episodes into packs for galactic-run.",
+                "galactic-bake"};
   std::vector<std::string> radii_{"0.015", "0.05", "0.12"};
   ImportOptions import_;
   SceneOptions scene_;
   ShapeOptions shape_;
   RobotFileOptions robot_;
+  EpisodeSetOptions episodes_;
+  std::vector<std::string> seeds_;
 };
 
 }  // namespace

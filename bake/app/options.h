@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "galactic/bake/episode_sampler.h"
+#include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/object_baker.h"
 #include "galactic/bake/scene_baker.h"
@@ -19,7 +21,7 @@ namespace galactic::bake {
 enum class Verbosity { kQuiet, kNormal, kVerbose };
 
 /// What the inputs are.
-enum class AssetKind { kScene, kObject, kRobot };
+enum class AssetKind { kScene, kObject, kRobot, kEpisodes, kWorld };
 
 /// How a robot is read and which recipe goes with it.
 struct RobotOptions {
@@ -30,6 +32,17 @@ struct RobotOptions {
   /// Hand-made spheres (spherized URDF, SRDF); empty: none.
   std::filesystem::path spheres;
   bool allow_missing = false;
+};
+
+/// Where episodes come from.
+struct EpisodeOptions {
+  /// Whether the inputs are packs, in which episodes are sampled; else they are episode sets, which
+  /// are imported.
+  bool sampled = false;
+  EpisodeImportOptions import;
+  /// List of the episodes to keep; empty: all.
+  std::filesystem::path only;
+  EpisodeSamplerOptions sample;
 };
 
 /// What the user typed, understood.
@@ -44,7 +57,10 @@ struct BakeCommand {
   MeshImportOptions import;
   SceneBakeOptions scene;
   ObjectBakeOptions object;
+  /// Published collection whose boxes and spheres objects get; empty: none.
+  std::filesystem::path collection;
   RobotOptions robot;
+  EpisodeOptions episodes;
   /// Most spheres of an object or robot, where the user said so; 0: no limit.
   std::optional<std::uint32_t> max_spheres;
   /// Whether eps and tau of object.spheres come from the user: then they override a recipe's.
@@ -55,6 +71,12 @@ struct BakeCommand {
   Verbosity verbosity = Verbosity::kNormal;
   /// The options that decide the pack's content, as text, for its provenance.
   std::vector<std::pair<std::string, std::string>> content_options;
+
+  /// Whether all inputs go into one pack.
+  [[nodiscard]] bool makesOnePack() const {
+    return kind == AssetKind::kObject || kind == AssetKind::kWorld ||
+           (kind == AssetKind::kEpisodes && episodes.sampled);
+  }
 
   /// Adds an option to content_options unless its text is empty.
   void remember(const char* name, const std::string& value) {

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "option_groups.h"
+#include "option_values.h"
 
 namespace galactic::bake {
 
@@ -20,13 +23,9 @@ void RobotFileOptions::addTo(CLI::App& app, BakeCommand& command) {
 
 Result<void> RobotFileOptions::understand(BakeCommand& command) const {
   for (const std::string& package : packages_) {
-    const std::size_t equals = package.find('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == package.size()) {
-      return fail(ErrorCode::kInvalidInput, "--package",
-                  fmt::format("is \"{}\", NAME=DIR is wanted", package));
-    }
-    const auto [place, fresh] =
-        command.robot.packages.emplace(package.substr(0, equals), package.substr(equals + 1));
+    auto pair = parsePair(package, "--package", "NAME=DIR");
+    if (!pair) return tl::unexpected(pair.error());
+    const auto [place, fresh] = command.robot.packages.insert(std::move(*pair));
     if (!fresh) {
       return fail(ErrorCode::kInvalidInput, "--package",
                   fmt::format("names {} twice; give each package once", place->first));

@@ -36,9 +36,6 @@ void SceneOptions::addTo(CLI::App& app, BakeCommand& command) {
                  "exact: closed form; bullet: the published sphere casts; embree: rays")
       ->transform(CLI::CheckedTransformer(engineNames()))
       ->option_text("exact|bullet|embree");
-  app.add_option("--seed", seeds_, "A point of the room (may be repeated): x,y,z in metres, y up")
-      ->type_name("X,Y,Z")
-      ->allow_extra_args(false);
   app.add_option("--keep", scene.free_space.keep, "What to store: the room, or all free spans")
       ->transform(CLI::CheckedTransformer(keepNames()))
       ->option_text("room|all");
@@ -51,10 +48,11 @@ void SceneOptions::addTo(CLI::App& app, BakeCommand& command) {
       ->capture_default_str();
 }
 
-Result<void> SceneOptions::understand(BakeCommand& command) const {
+Result<void> SceneOptions::understand(BakeCommand& command, const std::vector<std::string>& seeds) {
   const auto spacing = parseExactly(spacing_, "--spacing", 1);
   if (!spacing) return tl::unexpected(spacing.error());
   command.scene.spacing = static_cast<float>((*spacing)[0]);
+  if (command.kind == AssetKind::kScene) seeds_ = seeds;
   for (const std::string& seed : seeds_) {
     const auto point = parseExactly(seed, "--seed", 3);
     if (!point) return tl::unexpected(point.error());

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "sphere_set/authored_spheres.h"
 #include "stage_timer.h"
 
 namespace galactic::bake {
@@ -49,6 +51,36 @@ void warnOfSpheres(const SphereSet& set, const SphereSetOptions& options,
       1000 * options.eps, 1000 * options.tau));
 }
 
+/// A published box that differs more from the mesh's stands in another frame, or is another
+/// object's. Metres.
+constexpr float kDoubtfulBoxDifference = 0.005F;
+
+float farthestApart(const Vec3& a, const Vec3& b) {
+  return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+}
+
+/// The box as it is given, which need not contain every vertex.
+void takeBox(const AuthoredShape& shape, BakedObject& object) {
+  const Bounds& given = shape.box;
+  BoxFitResult& fit = object.box;
+  const Vec3 half = (given.max - given.min) * 0.5F;
+  fit.used = BoxFit::kAxisAligned;
+  fit.box.pose = {given.min + half, {}};
+  fit.box.half_extents = {std::max(half.x, kMinHalfExtent), std::max(half.y, kMinHalfExtent),
+                          std::max(half.z, kMinHalfExtent)};
+  const Vec3& extents = fit.box.half_extents;
+  fit.volume = 8 * static_cast<double>(extents.x) * static_cast<double>(extents.y) *
+               static_cast<double>(extents.z);
+  const float difference = std::max(farthestApart(given.min, object.bounds.min),
+                                    farthestApart(given.max, object.bounds.max));
+  if (difference > kDoubtfulBoxDifference) {
+    object.warnings.push_back(
+        fmt::format("the box given for it is up to {:.0f} mm off the mesh's; is it of this mesh, "
+                    "and are --up and --scale right?",
+                    1000 * difference));
+  }
+}
+
 }  // namespace
 
 Result<BakedObject> bakeObject(const SourceAsset& asset, const ObjectBakeOptions& options) {
@@ -65,6 +97,7 @@ Result<BakedObject> bakeObject(const SourceAsset& asset, const ObjectBakeOptions
   {
     const StageTimer timer(object.times.box);
     object.box = fitOrientedBox(mesh.vertices, options.box);
+    if (options.authored) takeBox(*options.authored, object);
   }
   {
     const StageTimer timer(object.times.stable_poses);
@@ -74,15 +107,18 @@ Result<BakedObject> bakeObject(const SourceAsset& asset, const ObjectBakeOptions
   if (options.keep_above_support) {
     sphere_options.support = HalfSpace{{0, 1, 0}, mesh.bounds.min.y};
   }
+  object.authored_spheres = options.authored && !options.authored->spheres.empty();
   {
     const StageTimer timer(object.times.spheres);
-    Result<SphereSet> spheres = fitSphereSet(mesh, sphere_options);
+    Result<SphereSet> spheres =
+        object.authored_spheres ? authoredSphereSet(mesh, options.authored->spheres, sphere_options)
+                                : fitSphereSet(mesh, sphere_options);
     if (!spheres) return tl::unexpected(spheres.error());
     object.spheres = std::move(*spheres);
   }
   object.eps = options.spheres.eps;
   object.tau = options.spheres.tau;
-  warnOfSpheres(object.spheres, options.spheres, object.warnings);
+  if (!object.authored_spheres) warnOfSpheres(object.spheres, options.spheres, object.warnings);
   object.surface.positions = std::move(cleaned->mesh.vertices);
   object.surface.triangles = std::move(cleaned->mesh.triangles);
   return object;

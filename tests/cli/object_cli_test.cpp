@@ -208,5 +208,73 @@ TEST_F(ObjectCli, NeverReplacesAMeshOfTheFolder) {
   EXPECT_EQ(content("set/mug.obj"), brick());
 }
 
+/// The brick as a published object, in the frame of its file.
+constexpr const char* kCollection = R"({"collection": {
+  "collisionRadiusWorkingSet": [0.03, 0.05], "author": "me", "robots": [],
+  "freeObjects": [{"name": "mug", "collisionBox": {"min": [0, 0, 0], "max": [0.03, 0.06, 0.09]},
+    "collisionSpheres": [{"origin": [0.015, 0.03, 0.045], "radius": 0.05}]}]}})";
+
+TEST_F(ObjectCli, TakesBoxesAndSpheresOfACollection) {
+  write("set/mug.obj", brick());
+  write("set/cup.obj", brick());
+  write("c.collection.json", kCollection);
+  const ProgramRun run =
+      bake({"set", "--up", "z", "--collection", "c.collection.json", "--report", "report.json"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out,
+              AllOf(HasSubstr("as given"), HasSubstr("warning: collection.author is not used"),
+                    HasSubstr("warning: cup: the collection does not name it: box and spheres are "
+                              "fitted")));
+  const json baked = json::parse(content("report.json"))["baked"];
+  ASSERT_EQ(baked.size(), 2U);
+  EXPECT_EQ(baked[0]["authored_spheres"], false);
+  const json& mug = baked[1];
+  EXPECT_EQ(mug["authored_spheres"], true);
+  EXPECT_EQ(mug["spheres"]["count"], 1);
+  const auto pack = PackFile::open(path("set.pack"));
+  ASSERT_TRUE(pack) << pack.error().message;
+  const auto set = ObjectSet::from(*pack);
+  ASSERT_TRUE(set);
+  const ObjectModel& object = set->objects()[1];
+  EXPECT_EQ(object.name, "mug");
+  EXPECT_EQ(object.box.pose.rotation, Quat{});
+  EXPECT_NEAR(object.box.half_extents.x, 0.015F, 1e-8F);
+  EXPECT_NEAR(object.box.half_extents.y, 0.045F, 1e-8F);
+  EXPECT_NEAR(object.box.half_extents.z, 0.03F, 1e-8F);
+  ASSERT_EQ(object.spheres.size(), 1U);
+  EXPECT_NEAR(object.spheres[0].centre.y, 0.045F, 1e-8F);
+  EXPECT_NEAR(object.spheres[0].centre.z, -0.03F, 1e-8F);
+}
+
+TEST_F(ObjectCli, ExplainsWhatACollectionLacks) {
+  write("mug.obj", brick());
+  write("c.collection.json", kCollection);
+  write("broken.json", "{}");
+  const std::vector<Refusal> refusals{
+      {{"mug.obj", "--collection", "c.collection.json"},
+       1,
+       "--collection: needs the up axis of the meshes"},
+      {{"mug.obj", "--collection", "broken.json", "--up", "z"},
+       3,
+       "broken.json: collection: it is missing"},
+      {{"mug.obj", "--collection", "none.json", "--up", "z"}, 2, "none.json"},
+      {{"mug.obj", "--collection", "c.collection.json", "--up", "z", "-o", "c.collection.json"},
+       3,
+       "is also an input"}};
+  for (const Refusal& refusal : refusals) {
+    SCOPED_TRACE(testing::PrintToString(refusal.arguments));
+    const ProgramRun refused = bake(refusal.arguments);
+    EXPECT_EQ(refused.exit_code, refusal.exit_code);
+    EXPECT_THAT(refused.err, HasSubstr(refusal.part));
+  }
+  const ProgramRun scene = run({"mug.obj", "--collection", "c.collection.json"});
+  EXPECT_EQ(scene.exit_code, 1);
+  EXPECT_THAT(scene.err, HasSubstr("--collection: does not go with --as scene"));
+  const ProgramRun other = run({"mug.obj", "--as", "object", "--scale", "0.03", "--up", "z",
+                                "--radii", "0.02", "--collection", "c.collection.json"});
+  EXPECT_EQ(other.exit_code, 3);
+  EXPECT_THAT(other.err, HasSubstr("c.collection.json: object 'mug': lists spheres whose radii"));
+}
+
 }  // namespace
 }  // namespace galactic

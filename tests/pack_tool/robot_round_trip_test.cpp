@@ -80,7 +80,7 @@ TEST(ExportedUrdf, MovesAsThePackDoesWhateverTheRotations) {
                                       {0, 0, -half, half},
                                       {0.5F, 0.5F, 0.5F, 0.5F},
                                       {0.5F, -0.5F, -0.5F, 0.5F}};
-  while (rotations.size() < 24) {
+  while (rotations.size() < 12) {
     const std::array<float, 4> q{number(), number(), number(), number()};
     const float length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (length < 0.1F) continue;

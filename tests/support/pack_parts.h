@@ -1,7 +1,10 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "galactic/pack_header.h"
@@ -56,6 +59,16 @@ template <class T>
 auto alignedStructs(flatbuffers::FlatBufferBuilder& builder, const std::vector<T>& values) {
   builder.ForceVectorAlignment(values.size(), sizeof(T), 32);
   return builder.CreateVectorOfStructs(values);
+}
+
+/// Puts the spheres of one set in the order that packs want.
+inline void sortSpheres(std::span<SetSphere> spheres) {
+  const auto key = [](const SetSphere& sphere) {
+    const Vec3& at = sphere.centre;
+    return std::tuple(-static_cast<std::int64_t>(sphere.radius_index), at.x, at.y, at.z);
+  };
+  std::sort(spheres.begin(), spheres.end(),
+            [&](const SetSphere& a, const SetSphere& b) { return key(a) < key(b); });
 }
 
 inline auto buildSpheres(flatbuffers::FlatBufferBuilder& builder,

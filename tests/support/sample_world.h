@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "galactic/bake/mesh_import.h"
@@ -45,6 +46,14 @@ class MemoryPack {
   PackFile pack_;
 };
 
+/// A provenance that a pack is accepted with.
+inline bake::Provenance testProvenance(const std::string& input) {
+  bake::Provenance provenance;
+  provenance.tool_version = "0.1.0";
+  provenance.sources.push_back({input, 1234, 1, 2});
+  return provenance;
+}
+
 /// The apartment of packs/sample as a scene pack; 0.3 s.
 inline MemoryPack bakeSampleApartment() {
   const std::filesystem::path folder = std::filesystem::path(GALACTIC_SOURCE_DIR) / "packs/sample";
@@ -52,8 +61,11 @@ inline MemoryPack bakeSampleApartment() {
   bake::SceneBakeOptions options;
   options.check_columns = 0;
   bake::StageTimes times;
-  const auto scene = MemoryPack::opened(bake::bakeScene(asset, options, times, {}));
-  return {PackKind::kScene, MemoryPack::opened(bake::encodeScenePack(scene, {})), "apartment"};
+  const auto silent = [](std::string_view, double) {};
+  const auto scene = MemoryPack::opened(bake::bakeScene(asset, options, times, silent));
+  return {PackKind::kScene,
+          MemoryPack::opened(bake::encodeScenePack(scene, testProvenance("apartment.glb"))),
+          "apartment"};
 }
 
 /// The objects of packs/sample as an object pack; some seconds.
@@ -73,7 +85,8 @@ inline MemoryPack bakeSampleObjects() {
     options.spheres.radii = set.radii;
     set.objects.push_back(MemoryPack::opened(bake::bakeObject(asset, options)));
   }
-  return {PackKind::kObjects, MemoryPack::opened(bake::encodeObjectPack(set, {})), "objects"};
+  return {PackKind::kObjects,
+          MemoryPack::opened(bake::encodeObjectPack(set, testProvenance("apple.glb"))), "objects"};
 }
 
 /// The robot of packs/sample as a robot pack; some seconds.
@@ -86,7 +99,9 @@ inline MemoryPack bakeSampleRobot() {
   if (!source.warnings.empty() || !robot.warnings.empty()) {
     throw std::runtime_error("the sample robot bakes with warnings");
   }
-  return {PackKind::kRobot, MemoryPack::opened(bake::encodeRobotPack(robot, {})), "porter"};
+  return {PackKind::kRobot,
+          MemoryPack::opened(bake::encodeRobotPack(robot, testProvenance("porter.urdf"))),
+          "porter"};
 }
 
 }  // namespace galactic::test

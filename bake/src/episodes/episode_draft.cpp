@@ -83,10 +83,14 @@ class Draft {
     for (std::size_t n = 0; n < kStartTries; ++n) {
       const FloorPlace& place = places[random_.below(static_cast<std::uint32_t>(places.size()))];
       const std::uint32_t heading = random_.below(kHeadings);
-      const float turn = static_cast<float>(random_.unit()) - 0.5F;
-      base_yaw_ = yawOf(heading) + turn * kTurn / static_cast<float>(kHeadings);
+      base_yaw_ = yawOf(heading) + aside() * kTurn / static_cast<float>(kHeadings);
       base_position_ = stage_.floor.position(place);
+      base_position_.x += aside() * stage_.floor.spacing();
+      base_position_.z += aside() * stage_.floor.spacing();
       if (((place.headings >> heading) & 1U) == 0) continue;
+      const auto height = stage_.floor.heightAt(base_position_.x, base_position_.z, place.height);
+      if (!height) continue;
+      base_position_.y = *height;
       const RobotBody body = robotBody(stage_.robot, groundPose(base_position_, base_yaw_),
                                        stage_.robot.startPositions());
       if (isFree(stage_.scene, body.spheres) && isClearOfObjects(body.spheres)) return true;
@@ -107,6 +111,9 @@ class Draft {
   }
 
  private:
+  /// Somewhere in a cell: a share of its size between -1/2 and 1/2.
+  float aside() { return static_cast<float>(random_.unit()) - 0.5F; }
+
   std::uint32_t drawObject() {
     return random_.below(static_cast<std::uint32_t>(stage_.objects.objects().size()));
   }
@@ -117,8 +124,8 @@ class Draft {
     const auto& places = stage_.supports.places();
     const SupportPlace& place = places[random_.below(static_cast<std::uint32_t>(places.size()))];
     const float spacing = stage_.scene.grids().front().spacing();
-    Spot spot{.x = place.x + spacing * (static_cast<float>(random_.unit()) - 0.5F),
-              .z = place.z + spacing * (static_cast<float>(random_.unit()) - 0.5F),
+    Spot spot{.x = place.x + spacing * aside(),
+              .z = place.z + spacing * aside(),
               .surface = place.surface,
               .yaw = kTurn * static_cast<float>(random_.unit())};
     const PlacedObject roughly = placeObject(model, object, stable, spot);

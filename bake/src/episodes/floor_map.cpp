@@ -12,6 +12,8 @@ namespace galactic::bake {
 namespace {
 
 constexpr std::uint32_t kNoPlace = 0xFFFFFFFF;
+/// A step that the run's base takes in both directions, metres.
+constexpr float kMostStep = std::min(GroundOptions{}.most_rise, GroundOptions{}.most_drop);
 
 /// Which headings of which places have been seen by a flood fill.
 struct Flood {
@@ -68,9 +70,6 @@ class FloorGraph {
   }
 
   void visitColumn(Flood& flood, const Flood::State& from, std::uint32_t i, std::uint32_t k) const {
-    // A slope that the base takes in both directions.
-    constexpr GroundOptions kGround;
-    constexpr float kMostStep = std::min(kGround.most_rise, kGround.most_drop);
     const std::size_t column = std::size_t{k} * grid_.columnsX() + i;
     for (std::uint32_t place = first_[column]; place < first_[column + 1]; ++place) {
       const float step = places_[place].height - places_[from.place].height;
@@ -82,15 +81,6 @@ class FloorGraph {
   const std::vector<std::uint32_t>& first_;
   const ColumnGrid& grid_;
 };
-
-/// The height of the floor under a free centre of a large sphere, as the smallest radius sees it:
-/// a small sphere is not held up by what stands beside it.
-std::optional<float> floorUnder(const Scene& scene, const Vec3& free_centre) {
-  const ColumnGrid& grid = scene.grids().front();
-  const Contact contact = grid.contact(free_centre);
-  if (contact.clearance != Clearance::kFree) return std::nullopt;
-  return free_centre.y - contact.down - grid.radius();
-}
 
 }  // namespace
 
@@ -106,9 +96,10 @@ float yawOf(std::uint32_t heading) {
   return kStep * static_cast<float>(heading);
 }
 
-FloorMap::FloorMap(const Scene& scene, const Robot& robot) : grid_(scene.grids().back()) {
+FloorMap::FloorMap(const Scene& scene, const Robot& robot)
+    : grid_(scene.grids().back()), fine_grid_(scene.grids().front()) {
   for (std::uint32_t k = 0; k < grid_.columnsZ(); ++k) {
-    for (std::uint32_t i = 0; i < grid_.columnsX(); ++i) addPlaces(scene, i, k);
+    for (std::uint32_t i = 0; i < grid_.columnsX(); ++i) addPlaces(i, k);
   }
   tried_ = places_.size();
   std::array<std::vector<BodySphere>, kHeadings> at_origin;
@@ -129,17 +120,36 @@ FloorMap::FloorMap(const Scene& scene, const Robot& robot) : grid_(scene.grids()
   keepLargestPart();
 }
 
-void FloorMap::addPlaces(const Scene& scene, std::uint32_t i, std::uint32_t k) {
+void FloorMap::addPlaces(std::uint32_t i, std::uint32_t k) {
   std::optional<float> last;
   for (const Span& span : spansOf(grid_, i, k)) {
     Vec3 centre = columnCentre(grid_, i, k);
     centre.y = span.lo;
-    const std::optional<float> floor = floorUnder(scene, centre);
+    const std::optional<float> floor = floorUnder(centre);
     // Two spans of the large sphere may lie in one of the small one, over one floor.
     if (!floor || floor == last) continue;
     places_.push_back({.i = i, .k = k, .height = *floor, .headings = 0});
     last = floor;
   }
+}
+
+/// As the smallest radius sees it: a small sphere is not held up by what stands beside it.
+std::optional<float> FloorMap::floorUnder(const Vec3& free_centre) const {
+  const Contact contact = fine_grid_.contact(free_centre);
+  if (contact.clearance != Clearance::kFree) return std::nullopt;
+  return free_centre.y - contact.down - fine_grid_.radius();
+}
+
+std::optional<float> FloorMap::heightAt(float x, float z, float height) const {
+  const std::optional<Column> column = columnAt(fine_grid_, x, z);
+  if (!column) return std::nullopt;
+  std::optional<float> nearest;
+  for (const Span& span : spansOf(fine_grid_, column->i, column->k)) {
+    const float floor = span.lo - fine_grid_.radius();
+    const float step = std::abs(floor - height);
+    if (step <= kMostStep && (!nearest || step < std::abs(*nearest - height))) nearest = floor;
+  }
+  return nearest;
 }
 
 void FloorMap::indexColumns() {

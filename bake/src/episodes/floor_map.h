@@ -43,16 +43,25 @@ class FloorMap {
 
   /// Point on the floor at the centre of the place's column, metres.
   [[nodiscard]] Vec3 position(const FloorPlace& place) const;
+  /// Edge of a column's cell, metres.
+  [[nodiscard]] float spacing() const { return grid_.spacing(); }
+
+  /// The height of the floor under (x, z) itself, metres: what the column of the smallest radius
+  /// there shows within a step of `height`, the nearest one. None where there is no such floor.
+  [[nodiscard]] std::optional<float> heightAt(float x, float z, float height) const;
 
   /// The places of the column in which (x, z) lies; empty outside the grid.
   [[nodiscard]] std::span<const FloorPlace> placesAt(float x, float z) const;
 
  private:
-  void addPlaces(const Scene& scene, std::uint32_t i, std::uint32_t k);
+  void addPlaces(std::uint32_t i, std::uint32_t k);
+  [[nodiscard]] std::optional<float> floorUnder(const Vec3& free_centre) const;
   void indexColumns();
   void keepLargestPart();
 
   ColumnGrid grid_;
+  /// Of the smallest radius.
+  ColumnGrid fine_grid_;
   std::vector<FloorPlace> places_;
   /// Index of each column's first place, and the number of places at the end.
   std::vector<std::uint32_t> first_;

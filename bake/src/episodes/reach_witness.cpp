@@ -52,7 +52,9 @@ std::optional<std::vector<BodySphere>> findReach(const Stage& stage, const Place
     Vec3 ground{aim.x - offset.x, floor_height, aim.z - offset.z};
     const FloorPlace* place = standingPlace(stage.floor, ground, yaw);
     if (place == nullptr) continue;
-    ground.y = place->height;
+    const auto base_height = stage.floor.heightAt(ground.x, ground.z, place->height);
+    if (!base_height) continue;
+    ground.y = *base_height;
     RobotBody body = robotBody(stage.robot, groundPose(ground, yaw), stage.reach.positions(sample));
     if (distanceToBox(object, body.grasp_point) >= grasp) continue;
     if (!touches(object, body.spheres) && isFree(stage.scene, body.spheres)) return body.spheres;

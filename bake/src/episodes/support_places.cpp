@@ -20,6 +20,13 @@ std::optional<Span> freeOver(const ColumnGrid& grid, const Column& column, float
   return std::nullopt;
 }
 
+/// How far around a footprint the columns have to be flat, metres, so that nothing under it is not:
+/// a column beside an edge still looks flat where the sphere on it sinks by no more than kFlatness,
+/// and the next one is a cell further.
+float rimOf(const ColumnGrid& grid) {
+  return grid.spacing() + std::sqrt(2 * grid.radius() * kFlatness);
+}
+
 /// Finds floors from which the arm reaches a point.
 class ReachTest {
  public:
@@ -90,8 +97,8 @@ bool SupportPlaces::isFlatAround(const Column& column, float surface) const {
 
 std::optional<float> SupportPlaces::surfaceUnder(const Footprint& footprint, float surface) const {
   const ColumnGrid& grid = scene_->grids().front();
-  const float length = footprint.half_length + kRim;
-  const float width = footprint.half_width + kRim;
+  const float length = footprint.half_length + rimOf(grid);
+  const float width = footprint.half_width + rimOf(grid);
   const float reach = std::hypot(length, width);
   const auto first = columnAt(grid, footprint.x - reach, footprint.z - reach);
   const auto last = columnAt(grid, footprint.x + reach, footprint.z + reach);

@@ -19,9 +19,7 @@ inline constexpr float kApproachHeight = 0.2F;
 /// Free height between an object and what is over it, metres.
 inline constexpr float kHeadroom = 0.02F;
 /// Heights within one footprint may differ by this much, metres: a bake rounds them to less.
-inline constexpr float kFlatness = 0.004F;
-/// The surface goes on for so much around an object's footprint, metres.
-inline constexpr float kRim = 0.01F;
+inline constexpr float kFlatness = 0.002F;
 
 /// A column over a flat piece of surface that the robot can reach.
 struct SupportPlace {
@@ -45,9 +43,9 @@ class SupportPlaces {
   /// Row by row, the lower one of a column first.
   [[nodiscard]] const std::vector<SupportPlace>& places() const { return places_; }
 
-  /// The highest surface under an object's footprint (and kRim around it), which must be flat and
-  /// free up to kHeadroom over the object, and have room for a gripper over its middle. None where
-  /// it is not so. Only the footprint's rectangle and top count; heights in metres.
+  /// The highest surface under an object's footprint, which must be flat and free up to kHeadroom
+  /// over the object, and have room for a gripper over its middle; one cell around it, too. None
+  /// where it is not so. Only the footprint's rectangle and top count; heights in metres.
   [[nodiscard]] std::optional<float> surfaceUnder(const Footprint& footprint, float surface) const;
 
  private:

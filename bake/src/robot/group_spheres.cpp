@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <utility>
 
 #include "galactic/bake/parallel_for.h"
 #include "import/affine.h"
 #include "sphere_budget.h"
+#include "sphere_set/authored_spheres.h"
 
 namespace galactic::bake {
 namespace {
@@ -165,27 +166,6 @@ class Planner {
   double clip_height_ = kDefaultClipHeight;
 };
 
-/// Hand-made spheres with the nearest radius of the working set; returns the largest change.
-double snapRadii(const std::vector<HandSphere>& by_hand, const std::vector<float>& radii,
-                 std::vector<SetSphere>& spheres) {
-  double largest = 0;
-  for (const HandSphere& sphere : by_hand) {
-    const auto nearest = std::min_element(radii.begin(), radii.end(), [&](float a, float b) {
-      return std::abs(static_cast<double>(a) - sphere.radius) <
-             std::abs(static_cast<double>(b) - sphere.radius);
-    });
-    largest = std::max(largest, std::abs(static_cast<double>(*nearest) - sphere.radius));
-    spheres.push_back({{static_cast<float>(sphere.centre[0]), static_cast<float>(sphere.centre[1]),
-                        static_cast<float>(sphere.centre[2])},
-                       static_cast<std::uint32_t>(nearest - radii.begin())});
-  }
-  std::sort(spheres.begin(), spheres.end(), [](const SetSphere& a, const SetSphere& b) {
-    return std::tuple(~a.radius_index, a.centre.x, a.centre.y, a.centre.z) <
-           std::tuple(~b.radius_index, b.centre.x, b.centre.y, b.centre.z);
-  });
-  return largest;
-}
-
 /// The fitter knows no links: says whose mesh it was.
 tl::unexpected<Error> ofLink(const std::string& link, Error error) {
   error.where = fmt::format("link '{}': {}", link, error.where);
@@ -194,22 +174,19 @@ tl::unexpected<Error> ofLink(const std::string& link, Error error) {
 
 Result<void> takeByHand(const GroupPlan& plan, const std::string& link, BakedGroup& group,
                         std::vector<std::string>& warnings) {
-  const double change = snapRadii(plan.by_hand, plan.fit.radii, group.spheres.spheres);
-  constexpr double kWorthMentioning = 1e-6;
-  if (change > kWorthMentioning) {
+  SnappedSpheres snapped = snapRadii(plan.by_hand, plan.fit.radii);
+  group.spheres.spheres = std::move(snapped.spheres);
+  const double change = snapped.largest_change;
+  if (change > kRadiusChangeWorthMentioning) {
     warnings.push_back(fmt::format(
         "link '{}': radii of hand-made spheres change by up to {:.1f} mm to those of the working "
         "set; choose --radii that hold them",
         link, 1e3 * change));
   }
   if (!plan.hasSurface() || group.spheres.spheres.empty()) return {};
-  auto quality = measureSphereSet(plan.mesh, group.spheres.spheres, plan.fit);
-  if (!quality) return ofLink(link, quality.error());
-  group.spheres.quality = *quality;
-  group.spheres.guaranteed_gap = quality->gap.max;
-  group.spheres.guaranteed_protrusion = quality->protrusion.max;
-  group.spheres.meets_tolerances = quality->gap.max <= static_cast<double>(plan.fit.eps) &&
-                                   quality->protrusion.max <= static_cast<double>(plan.fit.tau);
+  auto measured = authoredSphereSet(plan.mesh, std::move(group.spheres.spheres), plan.fit);
+  if (!measured) return ofLink(link, measured.error());
+  group.spheres = std::move(*measured);
   group.measured = true;
   return {};
 }

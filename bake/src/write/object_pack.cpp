@@ -25,7 +25,8 @@ Offset<schema::Object> objectTable(FlatBufferBuilder& builder, const BakedObject
   const auto name = builder.CreateString(object.name);
   const auto spheres = alignedStructs<schema::SetSphere>(builder, object.spheres.spheres);
   const auto statistics =
-      sphereStatistics(builder, object.spheres, {.eps = object.eps, .tau = object.tau});
+      sphereStatistics(builder, object.spheres,
+                       {.eps = object.eps, .tau = object.tau, .authored = object.authored_spheres});
   const auto stable_poses = alignedStructs<schema::StablePose>(builder, object.stable_poses);
   const auto imported = importStatistics(builder, object.imported);
   const auto surface = surfaceTable(builder, object.surface);

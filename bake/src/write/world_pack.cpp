@@ -88,7 +88,9 @@ bool comesBefore(const LinkedPack& a, const LinkedPack& b) { return a.path < b.p
 
 }  // namespace
 
-Result<std::vector<LinkedPack>> linkPacks(std::span<const fs::path> paths, const fs::path& folder) {
+Result<std::vector<LinkedPack>> linkPacks(std::span<const fs::path> paths,
+                                          const fs::path& world_folder) {
+  const fs::path folder = world_folder.empty() ? "." : world_folder;
   std::vector<LinkedPack> linked;
   std::vector<PackFile> opened;
   linked.reserve(paths.size());
@@ -101,7 +103,7 @@ Result<std::vector<LinkedPack>> linkPacks(std::span<const fs::path> paths, const
       return fail(ErrorCode::kInvalidInput, path.string(),
                   fmt::format("does not lie in {} or below it, where the world pack is to be; put "
                               "the world pack above all its packs",
-                              folder.empty() ? "." : folder.string()));
+                              folder.string()));
     }
     const SourceFile file = describeBytes(relative.generic_string(), pack->bytes());
     linked.push_back({file.name, pack->kind(), file.bytes, file.hash_low, file.hash_high});

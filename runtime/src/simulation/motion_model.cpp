@@ -48,6 +48,7 @@ class Folding {
   Result<std::vector<Attached>> fold() {
     const std::span<const LinkFrame> links = robot_.links();
     attached_.resize(links.size());
+    attached_[0] = {-1, links_at_start_[0]};
     for (std::size_t n = 1; n < links.size(); ++n) {
       const LinkFrame& link = links[n];
       const auto parent = static_cast<std::size_t>(link.parent);
@@ -104,11 +105,17 @@ class Folding {
   std::vector<Attached> attached_;
 };
 
-bool isContinuous(const Robot& robot, std::uint32_t position) {
-  return std::any_of(robot.links().begin(), robot.links().end(), [&](const LinkFrame& link) {
-    return link.type == JointType::kContinuous &&
-           link.position == static_cast<std::int32_t>(position);
-  });
+/// Whether a whole turn more or less changes nothing: a continuous joint, followed by none that
+/// slides or turns by another part of a turn.
+bool isPeriodic(const Robot& robot, std::uint32_t position) {
+  bool is_continuous = false;
+  for (const LinkFrame& link : robot.links()) {
+    if (link.position != static_cast<std::int32_t>(position)) continue;
+    const bool turns = link.type == JointType::kContinuous || link.type == JointType::kRevolute;
+    if (!turns || link.multiplier != std::round(link.multiplier)) return false;
+    is_continuous = is_continuous || link.type == JointType::kContinuous;
+  }
+  return is_continuous;
 }
 
 void addVariables(const Robot& robot, std::span<const std::uint32_t> also_variable,
@@ -121,7 +128,7 @@ void addVariables(const Robot& robot, std::span<const std::uint32_t> also_variab
                                .upper = joint.upper,
                                .step = joint.step,
                                .action = static_cast<std::int32_t>(index),
-                               .wraps = isContinuous(robot, joint.position)});
+                               .wraps = isPeriodic(robot, joint.position)});
   }
   for (const std::uint32_t position : also_variable) {
     const auto known = [&](const MotionVariable& v) { return v.position == position; };
@@ -130,7 +137,7 @@ void addVariables(const Robot& robot, std::span<const std::uint32_t> also_variab
     model.variables.push_back({.position = position,
                                .lower = limits.lower,
                                .upper = limits.upper,
-                               .wraps = isContinuous(robot, position)});
+                               .wraps = isPeriodic(robot, position)});
   }
   // A continuous joint without limits of its own: what keeps the angle in range is the wrapping.
   for (MotionVariable& variable : model.variables) {

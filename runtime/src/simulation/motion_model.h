@@ -23,7 +23,7 @@ struct MotionVariable {
   float step = 0;
   /// Index of its action, -1 for none.
   std::int32_t action = -1;
-  /// Whether the angle is kept in [-pi, pi): a continuous joint.
+  /// Whether the angle is kept in [-pi, pi): a continuous joint that no gear follows.
   bool wraps = false;
 };
 

@@ -1,6 +1,7 @@
 #include "simulation/move.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "simulation/collision.h"
@@ -80,13 +81,16 @@ Push pushOf(const ChunkStep& step, std::size_t e) {
   return sum.total(options.step);
 }
 
-/// The published rule: from the first sphere in contact, towards the base.
-Push pushTowardsBase(const ChunkStep& step, std::size_t e) {
+/// The jitter of the published rule for the first sphere of a batch that penetrates something and
+/// is not ignored: towards the base.
+Push pushTowardsBase(const ChunkStep& step, std::size_t e, const SphereBatch& spheres,
+                     IgnoredSpheres ignored) {
   const std::span<std::uint64_t> bits = step.chunk.bits();
-  const SphereBatch spheres = step.chunk.spheres(e);
   penetrating(obstaclesOf(step, e), spheres, step.chunk.collision(), bits);
-  for (std::size_t sphere = 0; sphere < step.model.sphereCount(); ++sphere) {
-    if ((bits[sphere / 64] >> (sphere % 64) & 1U) == 0) continue;
+  for (std::size_t w = 0; w < bits.size(); ++w) {
+    const std::uint64_t word = w < ignored.size() ? bits[w] & ~ignored[w] : bits[w];
+    if (word == 0) continue;
+    const std::size_t sphere = 64 * w + static_cast<std::size_t>(std::countr_zero(word));
     const Vec3 base = step.chunk.base(e);
     const float x = base.x - spheres.x[sphere];
     const float z = base.z - spheres.z[sphere];
@@ -97,6 +101,12 @@ Push pushTowardsBase(const ChunkStep& step, std::size_t e) {
     return {x * scale, z * scale};
   }
   return {};
+}
+
+Push pushTowardsBase(const ChunkStep& step, std::size_t e) {
+  const Push push = pushTowardsBase(step, e, step.chunk.spheres(e), {});
+  if (push.x != 0 || push.z != 0 || step.state.env(step.first + e).held.object < 0) return push;
+  return pushTowardsBase(step, e, heldSpheres(step, e), step.state.ignored(step.first + e));
 }
 
 void refuse(const ChunkStep& step, std::size_t e) {
@@ -143,6 +153,8 @@ void followFloor(const ChunkStep& step) noexcept {
 }
 
 void placeBodies(const ChunkStep& step) noexcept {
+  // While the kernels calculate, what the collision tests read comes nearer.
+  for (std::size_t e = 0; e < kChunk; ++e) step.state.resting(step.first + e).prefetch();
   for (std::size_t e = 0; e < kChunk; e += kLanes) {
     step.model.kernels.place(step.model.tables, {.pose = step.chunk.candidates(e),
                                                  .body = step.chunk.bodies(e),

@@ -88,9 +88,9 @@ class Candidate {
       : scene_(obstacles.scene),
         objects_(obstacles.objects),
         object_(object),
+        scratch_(scratch),
         most_lift_(options.most_lift),
-        clearance_(std::max(options.clearance, kLeastClearance)),
-        scratch_(scratch) {}
+        clearance_(std::max(options.clearance, kLeastClearance)) {}
 
   /// Where the object rests when it is let go at `pose`; none when it finds no place.
   [[nodiscard]] std::optional<Pose> settle(const Pose& pose) {
@@ -247,14 +247,15 @@ class Candidate {
     return free;
   }
 
+  /// First, because it is aligned to a cache line.
+  RestingBox box_;
   const Scene& scene_;
   const RestingObjects& objects_;
   const ObjectModel& object_;
+  PlacementScratch& scratch_;
   float most_lift_;
   float clearance_;
-  PlacementScratch& scratch_;
   SphereBatch batch_;
-  RestingBox box_;
   PushSum from_scene_;
   PushSum from_objects_;
 };
@@ -277,8 +278,10 @@ bool isPathFree(const Scene& scene, const Vec3& from, const Vec3& step) {
   const ColumnGrid& grid = scene.grids().front();
   const float samples = std::ceil(std::sqrt(dot(step, step)) / grid.radius());
   if (!(samples < 0x1p20F)) return false;
-  for (float n = 1; n <= samples; ++n) {
-    if (grid.clearance(from + step * (n / samples)) != Clearance::kFree) return false;
+  const auto count = static_cast<std::uint32_t>(samples);
+  for (std::uint32_t n = 1; n <= count; ++n) {
+    const Vec3 at = from + step * (static_cast<float>(n) / samples);
+    if (grid.clearance(at) != Clearance::kFree) return false;
   }
   return true;
 }

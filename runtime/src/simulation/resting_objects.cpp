@@ -237,7 +237,14 @@ float RestingObjects::fall(const Vec3& centre, float radius) const noexcept {
   assert(radius <= largest_radius_);
   float least = std::numeric_limits<float>::infinity();
   forEachInColumn(view(), centre, [&](std::uint32_t index) {
-    const std::optional<Span> heights = overlapHeights(boxes_[index], centre.x, centre.z, radius);
+    const RestingBox& box = boxes_[index];
+    // Whoever lies lower than the sphere is known to sink, or aside of it, needs no closer look.
+    if (centre.y - radius - box.centre.y - box.half_height > least) return;
+    const Vec3 half = halfBounds(box);
+    const float around = radius + kSlack;
+    if (std::fabs(centre.x - box.centre.x) > half.x + around) return;
+    if (std::fabs(centre.z - box.centre.z) > half.z + around) return;
+    const std::optional<Span> heights = overlapHeights(box, centre.x, centre.z, radius);
     if (!heights || !(heights->lo < centre.y)) return;
     least = std::min(least, std::max(centre.y - heights->hi, 0.0F));
   });

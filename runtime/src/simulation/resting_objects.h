@@ -72,6 +72,15 @@ class RestingObjects {
   /// What `touches` reads, for the kernels and the tests that compare them.
   [[nodiscard]] RestingView view() const noexcept;
 
+  /// Asks for what `touches` reads, so that it is in the nearest cache when it is needed.
+  void prefetch() const noexcept {
+    constexpr std::size_t kCacheLine = 64;
+    for (const SetPlane& plane : planes_) {
+      const auto* bytes = reinterpret_cast<const char*>(&plane);
+      for (std::size_t n = 0; n < sizeof(plane); n += kCacheLine) __builtin_prefetch(bytes + n);
+    }
+  }
+
   [[nodiscard]] std::size_t bytes() const;
 
  private:

@@ -158,5 +158,36 @@ TEST(ObjectBaker, UsesTheBoxThatWasAskedFor) {
   EXPECT_EQ(aligned.box.box.pose.rotation, Quat{});
 }
 
+TEST(ObjectBaker, TakesAShapeThatIsGiven) {
+  ObjectBakeOptions options = coarse();
+  options.authored = bake::AuthoredShape{.box = {{-0.03F, -0.05F, -0.04F}, {0.03F, 0.05F, 0.042F}},
+                                         .spheres = {{{0, 0.01F, 0}, 1}, {{0, -0.02F, 0}, 0}}};
+  const BakedObject object = bakeWell(brick(), options);
+  EXPECT_EQ(object.box.box.half_extents, (Vec3{0.03F, 0.05F, 0.041F}));
+  EXPECT_NEAR(object.box.box.pose.translation.z, 0.001F, 1e-8F);
+  EXPECT_EQ(object.box.box.pose.rotation, Quat{});
+  EXPECT_EQ(object.box.used, bake::BoxFit::kAxisAligned);
+  EXPECT_NEAR(object.box.volume, 0.06 * 0.1 * 0.082, 1e-8);
+  EXPECT_TRUE(object.authored_spheres);
+  EXPECT_EQ(object.spheres.spheres, options.authored->spheres);
+  // Two spheres leave the corners bare: the measurement says so, and no advice is given.
+  EXPECT_GT(object.spheres.quality.gap.max, 0.03);
+  EXPECT_EQ(object.spheres.guaranteed_gap, object.spheres.quality.gap.max);
+  EXPECT_FALSE(object.spheres.meets_tolerances);
+  EXPECT_THAT(object.warnings, IsEmpty());
+}
+
+TEST(ObjectBaker, FitsSpheresWhereOnlyABoxIsGivenAndDoubtsABoxOfAnotherMesh) {
+  ObjectBakeOptions options = coarse();
+  options.authored =
+      bake::AuthoredShape{.box = {{-0.03F, -0.04F, -0.05F}, {0.03F, 0.04F, 0.05F}}, .spheres = {}};
+  const BakedObject object = bakeWell(brick(), options);
+  EXPECT_FALSE(object.authored_spheres);
+  EXPECT_TRUE(object.spheres.meets_tolerances);
+  EXPECT_THAT(object.warnings,
+              ElementsAre("the box given for it is up to 10 mm off the mesh's; is it of this mesh, "
+                          "and are --up and --scale right?"));
+}
+
 }  // namespace
 }  // namespace galactic::test

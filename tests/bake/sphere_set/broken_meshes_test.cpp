@@ -74,14 +74,14 @@ TEST(SphereSetOfABrokenMesh, IsThatOfTheWholeOne) {
 /// What has no inside at all.
 TEST(SphereSetOfASheet, LeavesNothingUncovered) {
   MeshBuilder sheet;
-  sheet.floor({0, 0, 0}, {0.2F, 0, 0.15F}, 0);
+  sheet.floor({0, 0, 0}, {0.12F, 0, 0.1F}, 0);
   MeshBuilder triangle;
   triangle.triangle({0, 0, 0}, {0.1F, 0, 0}, {0, 0.02F, 0.1F});
   MeshBuilder needle;
   needle.triangle({0, 0, 0}, {0.3F, 0.0001F, 0}, {0.3F, 0, 0});
   MeshBuilder open_box;
-  open_box.floor({0, 0, 0}, {0.2F, 0, 0.15F}, 0)
-      .quad({Vec3{0, 0, 0}, {0.2F, 0, 0}, {0.2F, 0.1F, 0}, {0, 0.1F, 0}});
+  open_box.floor({0, 0, 0}, {0.12F, 0, 0.1F}, 0)
+      .quad({Vec3{0, 0, 0}, {0.12F, 0, 0}, {0.12F, 0.08F, 0}, {0, 0.08F, 0}});
   MeshBuilder soup;
   soup.soup(kSeed, 20, {{0, 0, 0}, {0.1F, 0.1F, 0.1F}}, 0.05F);
   for (const auto& [name, builder] :
@@ -105,8 +105,8 @@ TEST(SphereSetOfASheet, LeavesNothingUncovered) {
 TEST(SphereSetOfThinParts, CoversThemWhateverTau) {
   // A pan: a disc 3 mm thick with a handle of 4 mm.
   MeshBuilder builder;
-  builder.box({-0.1F, 0, -0.1F}, {0.1F, 0.003F, 0.1F});
-  builder.box({0.1F, 0, -0.002F}, {0.3F, 0.004F, 0.002F});
+  builder.box({-0.05F, 0, -0.05F}, {0.05F, 0.003F, 0.05F});
+  builder.box({0.05F, 0, -0.002F}, {0.2F, 0.004F, 0.002F});
   const TriangleMesh mesh = builder.build();
   SphereSetOptions options;
   options.eps = 0.01F;

@@ -63,16 +63,26 @@ bool coversAll(const Instance& instance, const Selection& selection) {
   return rows.size() == instance.points.size();
 }
 
+/// By trying all selections; points are bits.
 std::size_t smallestCover(const Instance& instance) {
-  std::size_t smallest = instance.pool.candidates.size();
-  for (std::uint32_t bits = 1; bits < 1U << instance.pool.candidates.size(); ++bits) {
+  const std::size_t count = instance.pool.candidates.size();
+  std::vector<std::uint64_t> covered(count, 0);
+  for (std::uint32_t at = 0; at < count; ++at) {
+    for (const std::uint32_t row : instance.pool.cover.column(at)) {
+      covered[at] |= std::uint64_t{1} << row;
+    }
+  }
+  std::uint64_t all = 0;
+  for (std::size_t row = 0; row < instance.points.size(); ++row) all |= std::uint64_t{1} << row;
+  std::size_t smallest = count;
+  for (std::uint32_t bits = 1; bits < 1U << count; ++bits) {
     const auto size = static_cast<std::size_t>(std::popcount(bits));
     if (size >= smallest) continue;
-    Selection selection;
-    for (std::uint32_t at = 0; at < instance.pool.candidates.size(); ++at) {
-      if ((bits >> at & 1U) != 0) selection.push_back(at);
+    std::uint64_t together = 0;
+    for (std::uint32_t left = bits; left != 0; left &= left - 1) {
+      together |= covered[static_cast<std::size_t>(std::countr_zero(left))];
     }
-    if (coversAll(instance, selection)) smallest = size;
+    if (together == all) smallest = size;
   }
   return smallest;
 }

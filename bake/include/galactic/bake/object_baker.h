@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,22 @@
 
 namespace galactic::bake {
 
+/// A shape that is given instead of fitted, in the frame of the pack; metres.
+struct AuthoredShape {
+  /// Taken as it is, along the axes of the frame.
+  Bounds box;
+  /// In the order of packs: radius descending, then x, y, z ascending. None: they are fitted.
+  std::vector<SetSphere> spheres;
+};
+
 struct ObjectBakeOptions {
   BoxFit box = BoxFit::kYaw;
   /// Working set, tolerances and budget. `support` is set by the baker.
   SphereSetOptions spheres{};
   /// No sphere reaches below the object's lowest point, so that dropped objects do not float.
   bool keep_above_support = true;
+  /// Given by hand, or by a published collection.
+  std::optional<AuthoredShape> authored;
 };
 
 /// How long each stage took, seconds of wall clock.
@@ -40,6 +51,8 @@ struct BakedObject {
   float eps = 0;
   float tau = 0;
   SphereSet spheres;
+  /// Whether the spheres were given, and only measured.
+  bool authored_spheres = false;
   Surface surface;
   ObjectTimes times;
   /// What the user should look at: tolerances that could not be met, a doubtful unit and so on.

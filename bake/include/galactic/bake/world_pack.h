@@ -25,10 +25,10 @@ struct LinkedPack {
   friend bool operator==(const LinkedPack&, const LinkedPack&) = default;
 };
 
-/// Describes the packs in the files `paths`, in any order, for a world pack in `folder`; ascending
-/// paths. Opens and verifies them and sees that together they make a world: fails with the errors
-/// of PackFile::open and World::from, and with kInvalidInput when a file does not lie below
-/// `folder`, is listed twice or is a world itself.
+/// Describes the packs in the files `paths`, in any order, for a world pack in `folder` (empty: the
+/// current one); ascending paths. Opens and verifies them and sees that together they make a world:
+/// fails with the errors of PackFile::open and World::from, and with kInvalidInput when a file does
+/// not lie below `folder`, is listed twice or is a world itself.
 [[nodiscard]] Result<std::vector<LinkedPack>> linkPacks(
     std::span<const std::filesystem::path> paths, const std::filesystem::path& folder);
 

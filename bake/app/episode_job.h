@@ -1,0 +1,17 @@
+#pragma once
+#include <filesystem>
+
+#include "bake_run.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+/// Imports one published episode set into a pack of its own and prints the closing table; the entry
+/// of the report.
+[[nodiscard]] Result<Json> importEpisodeFile(const std::filesystem::path& input, BakeRun& run);
+
+/// Samples episodes in the packs of the command (scenes, one set of objects, one robot), writes
+/// them into one pack and prints the closing table; the entry of the report.
+[[nodiscard]] Result<Json> sampleEpisodePack(BakeRun& run);
+
+}  // namespace galactic::bake

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "episode_outcome.h"
+#include "galactic/printable.h"
+
+namespace galactic::bake {
+namespace {
+
+/// From the target's start to its goal, metres.
+struct Distances {
+  double min = 0;
+  double mean = 0;
+  double max = 0;
+};
+
+Distances targetDistances(const SourceEpisodes& set) {
+  Distances distances;
+  for (const Episode& episode : set.episodes) {
+    const Vec3 start = set.placements[episode.first_placement + episode.target].pose.translation;
+    const Vec3 way = episode.goal.translation - start;
+    const double length = std::sqrt(static_cast<double>(dot(way, way)));
+    const bool first = &episode == set.episodes.data();
+    distances.min = first ? length : std::min(distances.min, length);
+    distances.max = std::max(distances.max, length);
+    distances.mean += length / static_cast<double>(set.episodes.size());
+  }
+  return distances;
+}
+
+std::uint32_t mostPlacements(const SourceEpisodes& set) {
+  std::uint32_t most = 0;
+  for (const Episode& episode : set.episodes) most = std::max(most, episode.placement_count);
+  return most;
+}
+
+}  // namespace
+
+void printEpisodeTable(const EpisodeOutcome& outcome, Verbosity verbosity) {
+  const SourceEpisodes& set = outcome.episodes;
+  const Distances distances = targetDistances(set);
+  fmt::print("{} -> {}\n", printable(outcome.input),
+             outcome.pack_bytes > 0 ? outcome.output.string() : "(dry run)");
+  fmt::print("  {}: {} episodes; {} scenes, {} objects, {} placements, at most {} in an episode\n",
+             printable(set.name), set.episodes.size(), set.scenes.size(), set.objects.size(),
+             set.placements.size(), mostPlacements(set));
+  fmt::print("  target to goal {:.2f} m at least, {:.2f} m on average, {:.2f} m at most\n",
+             distances.min, distances.mean, distances.max);
+  if (verbosity == Verbosity::kVerbose) {
+    fmt::print("  scenes: {}\n", printable(fmt::format("{}", fmt::join(set.scenes, ", "))));
+    fmt::print("  objects: {}\n", printable(fmt::format("{}", fmt::join(set.objects, ", "))));
+    if (!set.start_joints.empty()) {
+      fmt::print("  start joints: {}\n",
+                 printable(fmt::format("{}", fmt::join(set.start_joints, ", "))));
+    }
+  }
+  for (const std::string& warning : set.warnings) {
+    fmt::print("  warning: {}\n", printable(warning));
+  }
+  fmt::print("  {:.3f} s; {:.2f} MB\n", outcome.seconds,
+             static_cast<double>(outcome.pack_bytes) / 1e6);
+}
+
+Json episodeReport(const EpisodeOutcome& outcome) {
+  const SourceEpisodes& set = outcome.episodes;
+  const Distances distances = targetDistances(set);
+  return {{"input", outcome.input},
+          {"output", outcome.output.string()},
+          {"pack_bytes", outcome.pack_bytes},
+          {"name", set.name},
+          {"robot", set.robot},
+          {"episodes", set.episodes.size()},
+          {"placements", set.placements.size()},
+          {"most_placements", mostPlacements(set)},
+          {"scenes", set.scenes},
+          {"objects", set.objects},
+          {"start_joints", set.start_joints},
+          {"target_to_goal",
+           {{"min", distances.min}, {"mean", distances.mean}, {"max", distances.max}}},
+          {"seconds", outcome.seconds},
+          {"warnings", set.warnings}};
+}
+
+}  // namespace galactic::bake

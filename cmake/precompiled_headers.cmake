@@ -1,0 +1,19 @@
+# Precompiled headers are for speed alone: every file includes what it uses, which the preset `clang`
+# checks by building without them.
+option(GALACTIC_PRECOMPILE "Precompile the third-party headers that most files include" ON)
+
+# galactic_precompile(TARGET HEADERS...): TARGET reads HEADERS precompiled. Not for files compiled for
+# another instruction set: inline functions of the headers would be compiled for it too.
+function(galactic_precompile target)
+  if(GALACTIC_PRECOMPILE)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
+# galactic_precompiled_by(TARGET OTHER): TARGET shares OTHER's headers. Both need the same compile
+# options and, as far as the headers use them, definitions.
+function(galactic_precompiled_by target other)
+  if(GALACTIC_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM ${other})
+  endif()
+endfunction()

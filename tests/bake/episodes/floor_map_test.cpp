@@ -1,0 +1,105 @@
+#include "episodes/floor_map.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "floor_oracle.h"
+#include "made_world.h"
+
+namespace galactic::test {
+namespace {
+
+using bake::FloorMap;
+using bake::FloorPlace;
+
+/// A large and a small room: the wall between them leaves a gap of `gap` metres.
+bake::TriangleMesh twoRooms(float gap) {
+  MeshBuilder rooms = madeRoom(4, 2);
+  rooms.box({2.6F, 0, gap}, {2.7F, 2.5F, 2});
+  return rooms.build();
+}
+
+/// Whether the map has a place in the large room, and in the small one.
+std::array<bool, 2> roomsOn(const FloorMap& map) {
+  std::array<bool, 2> rooms{false, false};
+  for (const FloorPlace& place : map.places()) {
+    rooms[map.position(place).x > 2.7F ? 1 : 0] = true;
+  }
+  return rooms;
+}
+
+TEST(FloorMap, AgreesWithBruteForceOnWhereTheRobotStands) {
+  MeshBuilder room = madeRoom(3, 2.5F);
+  room.box({1, 0.7F, 0.8F}, {2, 0.74F, 1.6F});
+  room.box({0, 0, 2}, {0.6F, 0.04F, 2.5F});
+  room.box({2.5F, 0, 0}, {3, 0.4F, 0.5F});
+  const MadeWorld world(room.build(), stickRobot());
+  const FloorMap map(world.scene(), world.robot());
+  const FloorOracle oracle(world.scene(), world.robot());
+  std::size_t stands = 0;
+  std::size_t asked = 0;
+  const ColumnGrid& grid = world.scene().grids().back();
+  for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
+    for (std::uint32_t i = 0; i < grid.columnsX(); ++i) {
+      // Off the centre, where the columns of the other radii do not tie.
+      const float x = grid.layout().min_x + (static_cast<float>(i) + 0.4F) * grid.spacing();
+      const float z = grid.layout().min_z + (static_cast<float>(k) + 0.4F) * grid.spacing();
+      const auto expected = oracle.largestPartAt(static_cast<double>(x), static_cast<double>(z));
+      const std::span<const FloorPlace> found = map.placesAt(x, z);
+      EXPECT_EQ(!found.empty(), expected.has_value()) << x << ", " << z;
+      ++asked;
+      if (found.empty() || !expected) continue;
+      ++stands;
+      // The step of the platform in the corner is the only unevenness.
+      EXPECT_NEAR(static_cast<double>(found.front().height), *expected, 0.0401);
+      EXPECT_TRUE(map.heightAt(x, z, found.front().height).has_value());
+    }
+  }
+  EXPECT_GT(stands, asked / 10);
+  EXPECT_LT(stands, asked * 9 / 10);
+}
+
+TEST(FloorMap, KeepsTheLargerOfTwoRoomsThatTheRobotCannotDriveBetween) {
+  // The base's sphere is 0.24 m wide.
+  const MadeWorld narrow(twoRooms(0.2F), stickRobot());
+  EXPECT_EQ(roomsOn(FloorMap(narrow.scene(), narrow.robot())), (std::array{true, false}));
+  const MadeWorld wide(twoRooms(0.8F), stickRobot());
+  EXPECT_EQ(roomsOn(FloorMap(wide.scene(), wide.robot())), (std::array{true, true}));
+}
+
+TEST(FloorMap, TakesStepsThatTheBaseTakesAndNoHigherOnes) {
+  for (const auto& [step, climbs] : {std::pair{0.04F, true}, std::pair{0.08F, false}}) {
+    MeshBuilder room = madeRoom(3, 2);
+    room.box({1.8F, 0, 0}, {3, step, 2});
+    const MadeWorld world(room.build(), stickRobot());
+    const FloorMap map(world.scene(), world.robot());
+    const bool has_step = std::any_of(
+        map.places().begin(), map.places().end(),
+        [step = step](const FloorPlace& place) { return std::abs(place.height - step) < 0.001F; });
+    EXPECT_EQ(has_step, climbs) << step;
+  }
+}
+
+TEST(FloorMap, IsEmptyWhereTheRobotStandsNowhere) {
+  RobotPackFields tall = stickRobot();
+  // A sphere above the ceiling.
+  tall.spheres[0].centre.y = 2.45F;
+  const MadeWorld world(madeRoom(2, 2).build(), tall);
+  const FloorMap map(world.scene(), world.robot());
+  EXPECT_TRUE(map.places().empty());
+  EXPECT_GT(map.tried(), 100U);
+}
+
+TEST(FloorMap, HeadingsAreEvenlySpreadYaws) {
+  for (std::uint32_t heading = 0; heading < bake::kHeadings; ++heading) {
+    const float yaw = bake::yawOf(heading);
+    constexpr float kTurn = 2 * std::numbers::pi_v<float>;
+    EXPECT_EQ(bake::nearestHeading(yaw), heading);
+    EXPECT_EQ(bake::nearestHeading(yaw - kTurn + 0.1F), heading);
+    EXPECT_EQ(bake::nearestHeading(yaw + kTurn - 0.1F), heading);
+  }
+}
+
+}  // namespace
+}  // namespace galactic::test

@@ -1,0 +1,130 @@
+#include "episodes/support_places.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <random>
+
+#include "made_world.h"
+#include "support/box_oracle.h"
+
+namespace galactic::test {
+namespace {
+
+using bake::ArmReach;
+using bake::EpisodeSamplerOptions;
+using bake::FloorMap;
+using bake::Footprint;
+using bake::SupportPlace;
+using bake::SupportPlaces;
+
+constexpr float kTable = 0.74F;
+
+/// A room with a table from (1, 1) to (1.8, 1.6), a lamp over its end x > 1.6, and a high shelf.
+bake::TriangleMesh tableRoom() {
+  MeshBuilder room = madeRoom(3, 3);
+  room.box({1, 0.7F, 1}, {1.8F, kTable, 1.6F});
+  room.box({1.6F, 1, 1}, {1.8F, 1.2F, 1.6F});
+  room.box({0, 1.6F, 0}, {3, 1.62F, 0.3F});
+  return room.build();
+}
+
+struct Supports {
+  explicit Supports(const EpisodeSamplerOptions& options = {})
+      : world(tableRoom(), stickRobot()),
+        floor(world.scene(), world.robot()),
+        reach(world.robot()),
+        places(world.scene(), floor, reach, options) {}
+
+  MadeWorld world;
+  FloorMap floor;
+  ArmReach reach;
+  SupportPlaces places;
+};
+
+TEST(SupportPlaces, AreTheTopOfTheTableAndNeitherFloorNorHighShelf) {
+  const Supports supports;
+  ASSERT_GT(supports.places.places().size(), 200U);
+  // Spheres fit under the lamp: its end of the table is a surface, too, and so is the lamp's top.
+  for (const SupportPlace& place : supports.places.places()) {
+    EXPECT_TRUE(std::abs(place.surface - kTable) < 0.001F ||
+                std::abs(place.surface - 1.2F) < 0.001F)
+        << place.surface;
+    EXPECT_GT(place.x, 1);
+    EXPECT_LT(place.x, 1.8F);
+    EXPECT_GT(place.z, 1);
+    EXPECT_LT(place.z, 1.6F);
+    EXPECT_NEAR(place.floor, 0, 0.001F);
+  }
+}
+
+TEST(SupportPlaces, KeepToTheHeightsAskedFor) {
+  EpisodeSamplerOptions options;
+  options.lowest = 1;
+  const Supports supports(options);
+  ASSERT_FALSE(supports.places.places().empty());
+  for (const SupportPlace& place : supports.places.places()) {
+    EXPECT_NEAR(place.surface, 1.2F, 0.001F);
+  }
+}
+
+TEST(SupportPlaces, FootprintsFitWhereTheTableIsFlatFreeAndOpenFromAbove) {
+  const Supports supports;
+  std::mt19937 random(3);
+  int fits = 0;
+  constexpr int kCases = 3000;
+  for (int n = 0; n < kCases; ++n) {
+    const auto number = [&](double low, double high) {
+      return static_cast<float>(low + (high - low) * uniform(random));
+    };
+    const float yaw = number(0, 2 * std::numbers::pi);
+    const float height = number(0.02, 0.3);
+    const Footprint print{.x = number(0.95, 1.85),
+                          .z = number(0.95, 1.65),
+                          .half_length = number(0.02, 0.15),
+                          .half_width = number(0.02, 0.1),
+                          .along_x = std::cos(yaw),
+                          .along_z = -std::sin(yaw),
+                          .heights = {kTable, kTable + height}};
+    const auto surface = supports.places.surfaceUnder(print, kTable);
+    // Half the extents along x and z of the turned rectangle.
+    const float half_x =
+        print.half_length * std::abs(print.along_x) + print.half_width * std::abs(print.along_z);
+    const float half_z =
+        print.half_length * std::abs(print.along_z) + print.half_width * std::abs(print.along_x);
+    const auto inside = [&](float margin) {
+      return print.x - half_x > 1 + margin && print.x + half_x < 1.8F - margin &&
+             print.z - half_z > 1 + margin && print.z + half_z < 1.6F - margin;
+    };
+    // The lamp over the table's end: neither the object nor the gripper over its middle under it.
+    const auto clear = [&](float margin) {
+      return print.x + half_x < 1.6F - margin && print.x < 1.6F - 0.12F - margin;
+    };
+    constexpr float kCells = 0.08F;
+    if (inside(kCells) && clear(kCells)) {
+      EXPECT_TRUE(surface.has_value()) << print.x << print.z;
+    }
+    if (!inside(0)) {
+      EXPECT_FALSE(surface.has_value()) << print.x << ", " << print.z;
+    }
+    if (print.x > 1.6F - 0.12F + kCells) {
+      EXPECT_FALSE(surface.has_value()) << print.x;
+    }
+    if (surface) {
+      EXPECT_NEAR(*surface, kTable, 0.001F);
+      ++fits;
+    }
+  }
+  EXPECT_GT(fits, kCases / 10);
+  EXPECT_LT(fits, kCases * 9 / 10);
+}
+
+TEST(SupportPlaces, FootprintsOutsideTheGridFitNowhere) {
+  const Supports supports;
+  const Footprint print{
+      .x = 90, .z = 1, .half_length = 0.1F, .half_width = 0.1F, .heights = {0, 1}};
+  EXPECT_FALSE(supports.places.surfaceUnder(print, 0).has_value());
+}
+
+}  // namespace
+}  // namespace galactic::test

@@ -1,0 +1,73 @@
+// From the sample's sources to a world with sampled episodes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/bake_folder.h"
+#include "galactic/world.h"
+
+namespace galactic {
+namespace {
+
+using test::ProgramRun;
+using testing::HasSubstr;
+
+std::string sample(const char* file) {
+  return std::string(GALACTIC_SOURCE_DIR) + "/packs/sample/" + file;
+}
+
+class SamplingCli : public test::BakeFolder {
+ protected:
+  /// The sample's packs with few spheres: some seconds.
+  void bakePacks() const {
+    const std::vector<std::vector<std::string>> commands{
+        {sample("apartment.glb"), "--check-columns", "0", "-q"},
+        {sample("objects/mug.glb"), sample("objects/book.glb"), "--as", "object", "-o",
+         "objects.pack", "--eps", "0.03", "--tau", "0.06", "-q"},
+        {sample("robot/porter.urdf"), "--recipe", sample("robot/robot.toml"), "--eps", "0.06",
+         "--tau", "0.08", "--max-spheres", "30", "-q"}};
+    for (const auto& command : commands) {
+      const ProgramRun baked = run(command);
+      ASSERT_EQ(baked.exit_code, 0) << baked.err;
+    }
+  }
+
+  [[nodiscard]] ProgramRun draw(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{"apartment.pack",
+                                       "objects.pack",
+                                       "porter.pack",
+                                       "--as",
+                                       "episodes",
+                                       "--count",
+                                       "3",
+                                       "--objects",
+                                       "2"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(std::move(arguments));
+  }
+};
+
+TEST_F(SamplingCli, DrawsEpisodesThatMakeAWorldWithTheirPacks) {
+  bakePacks();
+  const ProgramRun drawn = draw({"--seed", "7"});
+  ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_THAT(drawn.out, HasSubstr("3 packs -> episodes.pack"));
+  EXPECT_THAT(drawn.out, HasSubstr("3 episodes; 1 scenes, 2 objects, 6 placements"));
+  ASSERT_EQ(draw({"--seed", "7", "-o", "again.pack", "-j", "1"}).exit_code, 0);
+  ASSERT_EQ(draw({"--seed", "8", "-o", "other.pack"}).exit_code, 0);
+  EXPECT_TRUE(content("episodes.pack") == content("again.pack"));
+  EXPECT_FALSE(content("episodes.pack") == content("other.pack"));
+  const ProgramRun linked = run({"apartment.pack", "objects.pack", "porter.pack", "episodes.pack",
+                                 "--as", "world", "-o", "world.pack"});
+  ASSERT_EQ(linked.exit_code, 0) << linked.err;
+  const auto world = World::open(std::vector{path("world.pack")});
+  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  EXPECT_EQ(world->episodes().episodes().size(), 3U);
+  EXPECT_EQ(world->mostObjects(), 2U);
+  const ProgramRun impossible = draw({"--heights", "90,91", "-o", "none.pack"});
+  EXPECT_EQ(impossible.exit_code, 3);
+  EXPECT_THAT(impossible.err, HasSubstr("no flat surface between 90 and 91 m"));
+  EXPECT_FALSE(has("none.pack"));
+}
+
+}  // namespace
+}  // namespace galactic

@@ -1,0 +1,179 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "galactic/batch_simulator.h"
+#include "galactic/robot.h"
+#include "simulation/motion_kernels.h"
+#include "support/assets.h"
+#include "support/resting_oracle.h"
+#include "support/robot_pack_builder.h"
+
+namespace galactic::test {
+
+/// A robot in memory with its motion model.
+struct MotionRobot {
+  AlignedBytes bytes;
+  std::unique_ptr<PackFile> pack;
+  std::unique_ptr<Robot> robot;
+  simulation::MotionModel model;
+  simulation::MotionTables tables;
+
+  /// `also_variable`: see makeMotionModel.
+  MotionRobot(AlignedBytes file, const std::vector<std::uint32_t>& also_variable)
+      : bytes(std::move(file)) {
+    pack = std::make_unique<PackFile>(PackFile::view(bytes.bytes(), "robot").value());
+    robot = std::make_unique<Robot>(Robot::from(*pack).value());
+    model = simulation::makeMotionModel(*robot, also_variable).value();
+    tables = simulation::motionTables(model);
+  }
+};
+
+/// Eight envs in rows longer than eight, so that a kernel that mixes up strides is found out.
+class MotionBatch {
+ public:
+  static constexpr std::size_t kEnvs = simulation::kLanes;
+  static constexpr std::size_t kStride = kEnvs + 3;
+
+  explicit MotionBatch(const MotionRobot& robot)
+      : robot_(robot),
+        actions_(kEnvs * actionCount()),
+        variables_(kStride * robot.model.variables.size()),
+        moved_variables_(variables_.size()),
+        centres_(kEnvs * 3 * robot.model.spheres.size()),
+        grips_(kEnvs * simulation::kGripStride),
+        bodies_(kEnvs * bodyCount()),
+        scratch_(simulation::frameScratchSize(robot.model.nodes.size()) / kEnvs) {}
+
+  [[nodiscard]] std::size_t actionCount() const { return robot_.model.controlled.size() + 4; }
+  [[nodiscard]] std::size_t bodyCount() const { return robot_.model.nodes.size() + 1; }
+
+  /// Poses and variables anywhere in their ranges, often at an end; actions often 0 or +-1.
+  void draw(std::mt19937& random) {
+    constexpr float kPi = 3.14159265F;
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      x[env] = uniformIn(random, -8, 8);
+      y[env] = uniformIn(random, -1, 4);
+      z[env] = uniformIn(random, -8, 8);
+      yaw[env] = random() % 8 == 0 ? -kPi : uniformIn(random, -kPi, kPi);
+      for (std::size_t v = 0; v < robot_.model.variables.size(); ++v) {
+        variable(v, env) = drawVariable(robot_.model.variables[v], random);
+      }
+    }
+    constexpr std::array kSpecial{-1.0F, 0.0F, 1.0F};
+    for (float& action : actions_) {
+      const bool is_special = random() % 4 == 0;
+      action = is_special ? kSpecial[random() % kSpecial.size()] : uniformIn(random, -1, 1);
+    }
+  }
+
+  void move(const simulation::MotionKernels& kernels) {
+    kernels.move(robot_.tables, {.actions = actions_.data(),
+                                 .action_count = actionCount(),
+                                 .from = poses(),
+                                 .to = {.x = moved_x.data(),
+                                        .y = moved_y.data(),
+                                        .z = moved_z.data(),
+                                        .yaw = moved_yaw.data(),
+                                        .variables = moved_variables_.data(),
+                                        .stride = kStride}});
+  }
+
+  void place(const simulation::MotionKernels& kernels) {
+    kernels.place(robot_.tables, {.pose = poses(),
+                                  .body = {.centres = centres_.data(),
+                                           .grips = grips_.data(),
+                                           .bodies = &bodies_.front().x_axis.x},
+                                  .scratch = scratch_.data()->data()});
+  }
+
+  [[nodiscard]] float& action(std::size_t env, std::size_t n) {
+    return actions_[env * actionCount() + n];
+  }
+  [[nodiscard]] float& variable(std::size_t v, std::size_t env) {
+    return variables_[v * kStride + env];
+  }
+  [[nodiscard]] float movedVariable(std::size_t v, std::size_t env) const {
+    return moved_variables_[v * kStride + env];
+  }
+  [[nodiscard]] Vec3 centre(std::size_t env, std::size_t sphere) const {
+    const std::size_t count = robot_.model.spheres.size();
+    const float* row = centres_.data() + 3 * env * count;
+    return {row[sphere], row[count + sphere], row[2 * count + sphere]};
+  }
+  [[nodiscard]] const float* grip(std::size_t env) const {
+    return grips_.data() + simulation::kGripStride * env;
+  }
+  [[nodiscard]] const LinkTransform& body(std::size_t env, std::size_t n) const {
+    return bodies_[env * bodyCount() + n];
+  }
+
+  /// Bits of everything that the kernels write.
+  [[nodiscard]] std::vector<std::uint32_t> moved() const {
+    std::vector<std::uint32_t> bits;
+    for (const auto& values : {moved_x, moved_y, moved_z, moved_yaw}) append(values, bits);
+    append(moved_variables_, bits);
+    return bits;
+  }
+  [[nodiscard]] std::vector<std::uint32_t> placed() const {
+    std::vector<std::uint32_t> bits;
+    append(centres_, bits);
+    append(grips_, bits);
+    for (const LinkTransform& body : bodies_) {
+      append(std::bit_cast<std::array<float, 12>>(body), bits);
+    }
+    return bits;
+  }
+
+  std::array<float, kEnvs> x{}, y{}, z{}, yaw{};
+  std::array<float, kEnvs> moved_x{}, moved_y{}, moved_z{}, moved_yaw{};
+
+ private:
+  struct alignas(32) AlignedLanes : std::array<float, kEnvs> {};
+
+  simulation::PoseArrays poses() {
+    return {.x = x.data(),
+            .y = y.data(),
+            .z = z.data(),
+            .yaw = yaw.data(),
+            .variables = variables_.data(),
+            .stride = kStride};
+  }
+
+  static float drawVariable(const simulation::MotionVariable& variable, std::mt19937& random) {
+    constexpr float kPi = 3.14159265F;
+    const float lower = std::max(variable.lower, -kPi);
+    const float upper = std::min(variable.upper, kPi);
+    switch (random() % 8) {
+      case 0:
+        return lower;
+      case 1:
+        return variable.wraps ? lower : upper;
+      default:
+        return uniformIn(random, lower, upper);
+    }
+  }
+
+  template <class Values>
+  static void append(const Values& values, std::vector<std::uint32_t>& bits) {
+    for (const float value : values) bits.push_back(std::bit_cast<std::uint32_t>(value));
+  }
+
+  const MotionRobot& robot_;
+  std::vector<float> actions_;
+  std::vector<float> variables_;
+  std::vector<float> moved_variables_;
+  std::vector<float> centres_;
+  std::vector<float> grips_;
+  std::vector<LinkTransform> bodies_;
+  std::vector<AlignedLanes> scratch_;
+};
+
+}  // namespace galactic::test

@@ -1,0 +1,260 @@
+// Where the motion kernels put spheres, grip and bodies, against the forward kinematics of single
+// robots; and the two builds of the kernels against each other.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+
+#include "column_grid_kernels.h"
+#include "motion_batch.h"
+#include "support/random_robot.h"
+
+namespace galactic::test {
+namespace {
+
+using namespace galactic::simulation;
+
+/// Both sides are floats along chains of up to twenty links, some metres from the origin.
+constexpr float kLengthTolerance = 1e-5F;
+/// Of the elements of rotation matrices: at each joint angles of up to 7 radians are rounded.
+constexpr float kAxisTolerance = 3e-5F;
+
+AlignedBytes readFile(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  const std::vector<char> content{std::istreambuf_iterator<char>(stream), {}};
+  return AlignedBytes(std::as_bytes(std::span(content)));
+}
+
+MotionRobot goldenArm() {
+  const auto path = std::filesystem::path(GALACTIC_SOURCE_DIR) / "packs/golden/arm.pack";
+  return {readFile(path), {}};
+}
+
+MotionRobot randomRobot(std::mt19937& random) {
+  // Position 1 is moved by no action; every other robot's episodes set it.
+  const std::vector<std::uint32_t> also_variable(random() % 2, 1);
+  return {buildPack(RandomRobotMaker(random).robot()), also_variable};
+}
+
+float largestDifference(const Vec3& a, const Vec3& b) {
+  return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+}
+
+/// The farthest that the kernels are off the forward kinematics of single robots.
+struct Differences {
+  float length = 0;
+  float axis = 0;
+
+  void addAxes(const Vec3& x, const Vec3& y, const Vec3& z, const Quat& wanted) {
+    axis = std::max({axis, largestDifference(x, rotate(wanted, {1, 0, 0})),
+                     largestDifference(y, rotate(wanted, {0, 1, 0})),
+                     largestDifference(z, rotate(wanted, {0, 0, 1}))});
+  }
+  void addPoint(const Vec3& point, const Vec3& wanted) {
+    length = std::max(length, largestDifference(point, wanted));
+  }
+};
+
+/// One env of a batch, beside a single robot in the same pose.
+class SingleRobot {
+ public:
+  SingleRobot(const MotionRobot& robot, MotionBatch& batch, std::size_t env)
+      : robot_(robot), batch_(batch), env_(env), links_(robot.robot->links().size()) {
+    const Robot& one = *robot.robot;
+    std::vector<float> positions(one.startPositions().begin(), one.startPositions().end());
+    for (std::size_t v = 0; v < robot.model.variables.size(); ++v) {
+      positions[robot.model.variables[v].position] = batch.variable(v, env);
+    }
+    const double half = 0.5 * static_cast<double>(batch.yaw[env]);
+    const Pose world_from_root{
+        {batch.x[env], batch.y[env] + one.base()->root_height, batch.z[env]},
+        {0, static_cast<float>(std::sin(half)), 0, static_cast<float>(std::cos(half))}};
+    forwardKinematics(one.links(), world_from_root, positions, links_);
+  }
+
+  void compareSpheres(Differences& worst) const {
+    for (const RadiusRange& range : robot_.model.ranges) {
+      std::uint32_t next = range.first;
+      for (const galactic::SphereGroup& group : robot_.robot->groups()) {
+        for (const SetSphere& sphere : group.spheres) {
+          if (sphere.radius_index != range.radius_index) continue;
+          worst.addPoint(batch_.centre(env_, next++), links_[group.link] * sphere.centre);
+        }
+      }
+      ASSERT_EQ(next, range.first + range.count);
+      for (; next < range.first + paddedToLanes(range.count); ++next) {
+        EXPECT_EQ(batch_.centre(env_, next), batch_.centre(env_, range.first + range.count - 1));
+      }
+    }
+  }
+
+  void compareGrip(Differences& worst) const {
+    const float* grip = batch_.grip(env_);
+    const EndEffector& tool = *robot_.robot->endEffector();
+    worst.addAxes({grip[0], grip[1], grip[2]}, {grip[3], grip[4], grip[5]},
+                  {grip[6], grip[7], grip[8]}, links_[tool.link].rotation);
+    worst.addPoint({grip[9], grip[10], grip[11]}, links_[tool.link] * tool.grasp_point);
+    const auto yaw = static_cast<double>(batch_.yaw[env_]);
+    worst.axis = std::max({worst.axis, std::abs(grip[12] - static_cast<float>(std::cos(yaw))),
+                           std::abs(grip[13] - static_cast<float>(std::sin(yaw)))});
+  }
+
+  void compareLinks(Differences& worst) const {
+    for (std::size_t n = 0; n < links_.size(); ++n) {
+      const FixedFrame& place = robot_.model.links[n];
+      const LinkTransform& body = batch_.body(env_, static_cast<std::size_t>(place.node + 1));
+      const auto turned = [&](const Vec3& v) {
+        return body.x_axis * v.x + body.y_axis * v.y + body.z_axis * v.z;
+      };
+      worst.addAxes(turned(place.x_axis), turned(place.y_axis), turned(place.z_axis),
+                    links_[n].rotation);
+      worst.addPoint(turned(place.origin) + body.origin, links_[n].translation);
+    }
+  }
+
+ private:
+  const MotionRobot& robot_;
+  MotionBatch& batch_;
+  std::size_t env_;
+  std::vector<Pose> links_;
+};
+
+void compareWithSingleRobots(const MotionRobot& robot, std::mt19937& random, Differences& worst) {
+  MotionBatch batch(robot);
+  for (int round = 0; round < 20; ++round) {
+    batch.draw(random);
+    batch.place(motionKernels());
+    for (std::size_t env = 0; env < MotionBatch::kEnvs; ++env) {
+      const SingleRobot single(robot, batch, env);
+      single.compareSpheres(worst);
+      single.compareGrip(worst);
+      single.compareLinks(worst);
+    }
+  }
+}
+
+void expectSmall(const Differences& worst) {
+  std::printf("worst: %.2g m, %.2g of an axis\n", static_cast<double>(worst.length),
+              static_cast<double>(worst.axis));
+  EXPECT_LT(worst.length, kLengthTolerance);
+  EXPECT_LT(worst.axis, kAxisTolerance);
+}
+
+void compareKernels(const MotionRobot& robot, std::mt19937& random) {
+  MotionBatch portable(robot);
+  for (int round = 0; round < 20; ++round) {
+    portable.draw(random);
+    MotionBatch fast = portable;
+    portable.move(portableMotion());
+    portable.place(portableMotion());
+    fast.move(avx2Motion());
+    fast.place(avx2Motion());
+    ASSERT_EQ(portable.moved(), fast.moved());
+    ASSERT_EQ(portable.placed(), fast.placed());
+  }
+}
+
+TEST(MotionBodies, StandWhereThoseOfSingleRobotsStand) {
+  constexpr std::uint32_t kSeed = 501;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  Differences worst;
+  Tally mimics;
+  for (int n = 0; n < 200; ++n) {
+    const MotionRobot robot = randomRobot(random);
+    mimics.add(robot.model.nodes.size() > robot.model.variables.size());
+    compareWithSingleRobots(robot, random, worst);
+  }
+  mimics.expectBothSides();
+  expectSmall(worst);
+}
+
+TEST(MotionBodies, StandWhereThoseOfTheGoldenArmStand) {
+  std::mt19937 random(502);
+  Differences worst;
+  compareWithSingleRobots(goldenArm(), random, worst);
+  expectSmall(worst);
+}
+
+TEST(MotionKernels, AgreeBitForBitWithAndWithoutAvx2) {
+  if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2";
+  constexpr std::uint32_t kSeed = 503;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  for (int n = 0; n < 200; ++n) compareKernels(randomRobot(random), random);
+  compareKernels(goldenArm(), random);
+}
+
+TEST(MotionModel, HasOneVariableForEachJointThatMovesAndFoldsTheOthers) {
+  RobotPackFields fields = smallRobotPack();
+  fields.start_positions[1] = 0.5F;
+  const MotionRobot robot(buildPack(fields), {2});
+  // Elbow and lift by action, the wrist by episodes; tray and ball stay.
+  ASSERT_EQ(robot.model.variables.size(), 3U);
+  EXPECT_EQ(robot.model.variables[0].position, 1U);
+  EXPECT_EQ(robot.model.variables[0].action, 0);
+  EXPECT_EQ(robot.model.variables[1].position, 0U);
+  EXPECT_EQ(robot.model.variables[2].position, 2U);
+  EXPECT_EQ(robot.model.variables[2].action, -1);
+  EXPECT_TRUE(robot.model.variables[2].wraps);
+  // Torso, arm, hand and the finger that follows the arm.
+  EXPECT_EQ(robot.model.nodes.size(), 4U);
+  std::mt19937 random(504);
+  Differences worst;
+  compareWithSingleRobots(robot, random, worst);
+  expectSmall(worst);
+}
+
+TEST(MotionModel, DoesNotWrapAnglesThatGearsFollow) {
+  // A whole turn of the wrist is half a turn of a finger that follows it with half its speed.
+  RobotPackFields fields = smallRobotPack();
+  fields.links[4].position = 2;
+  const auto wraps = [&](float multiplier) {
+    fields.links[4].multiplier = multiplier;
+    return MotionRobot(buildPack(fields), {2}).model.variables[2].wraps;
+  };
+  EXPECT_TRUE(wraps(-2));
+  EXPECT_FALSE(wraps(0.5F));
+  fields.links[4].type = JointType::kPrismatic;
+  EXPECT_FALSE(wraps(1));
+}
+
+TEST(MotionModel, RefusesActionsOnPlanarAndFloatingJoints) {
+  for (const std::uint32_t position : {4U, 8U}) {
+    const AlignedBytes bytes = buildPack(smallRobotPack());
+    const auto pack = PackFile::view(bytes.bytes(), "robot");
+    const auto robot = Robot::from(*pack);
+    const auto model = makeMotionModel(*robot, std::vector{position});
+    ASSERT_FALSE(model.has_value());
+    EXPECT_EQ(model.error().code, ErrorCode::kUnsupported);
+    EXPECT_EQ(model.error().where, position == 4 ? "joint slide" : "joint free");
+  }
+}
+
+TEST(MotionModel, RefusesRobotsWithoutSpheresOrEndEffectorOrBase) {
+  const auto refused = [](const RobotPackFields& fields) {
+    const AlignedBytes bytes = buildPack(fields);
+    const auto pack = PackFile::view(bytes.bytes(), "robot");
+    const auto robot = Robot::from(*pack);
+    const auto model = makeMotionModel(*robot, {});
+    return model.has_value() ? std::string("accepted") : model.error().message;
+  };
+  RobotPackFields fields = smallRobotPack();
+  fields.end_effector.reset();
+  EXPECT_NE(refused(fields).find("end effector"), std::string::npos) << refused(fields);
+  fields = smallRobotPack();
+  fields.base.reset();
+  EXPECT_NE(refused(fields).find("no base"), std::string::npos) << refused(fields);
+  fields = smallRobotPack();
+  fields.spheres.clear();
+  for (GroupFields& group : fields.groups) group.first_sphere = group.sphere_count = 0;
+  EXPECT_NE(refused(fields).find("no collision spheres"), std::string::npos) << refused(fields);
+}
+
+}  // namespace
+}  // namespace galactic::test
