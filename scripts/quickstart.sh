@@ -48,8 +48,9 @@ heading "Drawing episodes, and linking all packs to a world"
 "$bin/galactic-bake" "$apartment" "$objects" "$robot" --as episodes --count 100 --seed 1 -o "$episodes"
 "$bin/galactic-bake" "$apartment" "$objects" "$robot" "$episodes" --as world -o "$world"
 
-heading "Opening it in the runtime"
+heading "Opening it in the runtime, and stepping 1024 homes with random actions"
 "$bin/galactic-run" --pack "$world"
+"$bin/galactic-run" --pack "$world" --envs 1024 --steps 500 --policy random
 
 phase quickstart-draw "Drawing it" draw
 
@@ -69,4 +70,6 @@ Look at these, in $out/:
     $bin/galactic-pack column $apartment --at 0.3,1.5
     $bin/galactic-pack info $episodes
     $bin/galactic-run --pack $apartment --bench
+    $bin/galactic-run --pack $world --steps 1000 --policy forward --record $out/run.rec
+    $bin/galactic-run --pack $world --policy replay:$out/run.rec
 END

@@ -65,7 +65,7 @@ Case unusualCase() {
   task.observes_current_target = true;
   Case unusual{.name = "UnusualNumbers", .options = optionsOf(task)};
   unusual.options.action = {.grasp = 0.2F, .release = -0.5F, .terminate = 0.9F};
-  unusual.options.task.most_steps = 45;
+  unusual.options.task.most_steps = 30;
   return unusual;
 }
 
