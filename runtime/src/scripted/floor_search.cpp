@@ -58,7 +58,6 @@ void FloorSearch::layOut() {
   nodes_.assign(cells * kHeadings, {kInfinity, kNone, false});
   known_.assign(cells * fines_, 0);
   offered_.assign(cells * fines_, 0);
-  floors_.assign(cells, kInfinity);
   entries_.clear();
   waiting_.clear();
   offers_ = 0;
@@ -76,7 +75,7 @@ std::optional<std::uint32_t> FloorSearch::cellAt(float x, float z) const {
 BasePlace FloorSearch::placeOf(std::uint32_t cell, std::uint32_t fine) const {
   const auto i = static_cast<std::int32_t>(cell % count_i_) + first_i_;
   const auto k = static_cast<std::int32_t>(cell / count_i_) + first_k_;
-  return {{static_cast<float>(i) * edge_, floors_[cell], static_cast<float>(k) * edge_},
+  return {{static_cast<float>(i) * edge_, memories_[memory_].floors[cell], static_cast<float>(k) * edge_},
           wrapped(kTurn * static_cast<float>(fine) / static_cast<float>(fines_))};
 }
 
@@ -87,19 +86,47 @@ std::uint32_t FloorSearch::fineOf(float yaw) const {
   return static_cast<std::uint32_t>((nearest + count) % count);
 }
 
+void FloorSearch::recall() {
+  for (memory_ = 0; memory_ < memories_.size(); ++memory_) {
+    const Memory& memory = memories_[memory_];
+    const bool fits = memory.scene == &probe_.scene() && memory.edge == edge_ &&
+                      memory.floor == floor_ && memory.carried == *carried_;
+    if (fits) return;
+  }
+  constexpr std::size_t kMostMemories = 8;
+  if (memories_.size() < kMostMemories) {
+    memories_.emplace_back();
+  } else {
+    memory_ = oldest_;
+    oldest_ = (oldest_ + 1) % kMostMemories;
+  }
+  const std::size_t cells = static_cast<std::size_t>(count_i_) * count_k_;
+  memories_[memory_] = {&probe_.scene(), edge_, floor_, *carried_,
+                        std::vector<std::uint8_t>(cells * fines_, 0),
+                        std::vector<float>(cells, kInfinity)};
+}
+
+bool FloorSearch::isFreeOfScene(std::uint32_t cell, std::uint32_t fine) {
+  Memory& memory = memories_[memory_];
+  std::uint8_t& known = memory.known[static_cast<std::size_t>(cell) * fines_ + fine];
+  if (known != 0) return known == kFree;
+  float& height = memory.floors[cell];
+  if (height == kInfinity) {
+    const Vec3 at = placeOf(cell, fine).position;
+    height = probe_.floorAt(at.x, at.z, floor_).value_or(std::numeric_limits<float>::quiet_NaN());
+  }
+  const bool is_free = !std::isnan(height) && probe_.isFreeOfScene(placeOf(cell, fine));
+  known = is_free ? kFree : kBlocked;
+  return is_free;
+}
+
 bool FloorSearch::isFree(std::uint32_t cell, std::uint32_t fine) {
   std::uint8_t& known = known_[static_cast<std::size_t>(cell) * fines_ + fine];
-  if (known != 0) return known == kFree;
-  known = kBlocked;
-  BasePlace place = placeOf(cell, fine);
-  if (floors_[cell] == kInfinity) {
-    const std::optional<float> floor = probe_.floorAt(place.position.x, place.position.z, floor_);
-    floors_[cell] = floor.value_or(std::numeric_limits<float>::quiet_NaN());
-    place.position.y = floors_[cell];
+  if (known == 0) {
+    const bool is_free = isFreeOfScene(cell, fine) && probe_.isFreeOfRest(placeOf(cell, fine));
+    known = is_free ? kFree : kBlocked;
   }
-  if (std::isnan(floors_[cell]) || !probe_.isFreeAt(place)) return false;
-  known = kFree;
-  return true;
+  return known == kFree;
 }
 
 bool FloorSearch::canTurn(std::uint32_t cell, std::uint32_t from, std::uint32_t to) {
@@ -140,7 +167,7 @@ bool FloorSearch::canDrive(const BasePlace& from, const BasePlace& to) {
 }
 
 void FloorSearch::tryEntry(const BasePlace& start, std::uint32_t cell) {
-  if (!isFree(cell, 0) && std::isnan(floors_[cell])) return;
+  if (!isFree(cell, 0) && std::isnan(memories_[memory_].floors[cell])) return;
   const BasePlace at = placeOf(cell, 0);
   const Vec3 way = at.position - start.position;
   const float length = std::sqrt(way.x * way.x + way.z * way.z);
@@ -296,6 +323,7 @@ FloorSearch::Answer FloorSearch::searchLattice(const BasePlace& start, const Joi
   target_ = target;
   floor_ = start.position.y;
   layOut();
+  recall();
   probe_.setArm(carried);
   findEntries(start);
   while (!waiting_.empty() && offers_ < target_.most_offers) {

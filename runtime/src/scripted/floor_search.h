@@ -72,9 +72,12 @@ class FloorSearch {
   [[nodiscard]] Answer searchLattice(const BasePlace& start, const Joints& carried,
                                      const Target& target, const Accept& accept);
   void layOut();
+  /// What was found out about the static scene, with this pose of the arm, in searches before.
+  void recall();
   [[nodiscard]] std::optional<std::uint32_t> cellAt(float x, float z) const;
   [[nodiscard]] BasePlace placeOf(std::uint32_t cell, std::uint32_t fine) const;
   [[nodiscard]] std::uint32_t fineOf(float yaw) const;
+  [[nodiscard]] bool isFreeOfScene(std::uint32_t cell, std::uint32_t fine);
   [[nodiscard]] bool isFree(std::uint32_t cell, std::uint32_t fine);
   /// Turning on the spot, the shorter way round; both ends are looked at.
   [[nodiscard]] bool canTurn(std::uint32_t cell, std::uint32_t from, std::uint32_t to);
@@ -109,9 +112,20 @@ class FloorSearch {
   std::vector<Node> nodes_;
   /// By cell and fine heading: 0 not known, 1 free, 2 blocked.
   std::vector<std::uint8_t> known_;
+  /// The same for the static scene alone, which stays from search to search: that of the cell's
+  /// floor and of the robot without what it holds.
+  struct Memory {
+    const Scene* scene = nullptr;
+    float edge = 0;
+    float floor = 0;
+    Joints carried;
+    std::vector<std::uint8_t> known;
+    std::vector<float> floors;
+  };
+  std::vector<Memory> memories_;
+  std::size_t memory_ = 0;
+  std::size_t oldest_ = 0;
   std::vector<std::uint8_t> offered_;
-  /// By cell: height of the floor; NaN where there is none.
-  std::vector<float> floors_;
   std::vector<Entry> entries_;
   std::vector<Waiting> waiting_;
   int offers_ = 0;

@@ -57,10 +57,29 @@ void Probe::look(const EnvState& state) {
     if (static_cast<std::int32_t>(n) == state.held) continue;
     resting_.insert(n, simulation::restingBox(models_[n]->box, state.objects[n]));
   }
+  poses_ = state.objects;
   if (state.held < 0) return;
-  const auto held = static_cast<std::size_t>(state.held);
-  held_ = models_[held];
-  grip_from_object_ = inverse(state.world_from_grip) * state.objects[held];
+  const auto held = static_cast<std::uint32_t>(state.held);
+  hold(held, inverse(state.world_from_grip) * state.objects[held]);
+}
+
+void Probe::pretendToHold(std::uint32_t number, const BasePlace& base,
+                          std::span<const float> positions) {
+  const Pose world_from_grip = worldFromRoot(base) * arm_.gripOf(arm_.placeLinks(positions));
+  resting_.remove(number);
+  hold(number, inverse(world_from_grip) * poses_[number]);
+}
+
+void Probe::pretendNoMore() {
+  held_ = nullptr;
+  resting_.insert(held_number_,
+                  simulation::restingBox(models_[held_number_]->box, poses_[held_number_]));
+}
+
+void Probe::hold(std::uint32_t number, const Pose& grip_from_object) {
+  held_number_ = number;
+  held_ = models_[number];
+  grip_from_object_ = grip_from_object;
   std::vector<SphereCloud::Sphere> spheres;
   spheres.reserve(held_->spheres.size());
   for (const SetSphere& sphere : held_->spheres) spheres.push_back({0, sphere});
@@ -87,6 +106,7 @@ std::optional<float> Probe::floorAt(float x, float z, float from) const {
 void Probe::setArm(std::span<const float> positions) {
   const std::span<const Pose> links = arm_.placeLinks(positions);
   robot_.assemble(links);
+  robot_reach_ = robot_.reach();
   if (held_ == nullptr) return;
   const Pose root_from_object = arm_.gripOf(links) * grip_from_object_;
   held_spheres_.assemble(std::span(&root_from_object, 1));
@@ -95,6 +115,34 @@ void Probe::setArm(std::span<const float> positions) {
 bool Probe::isFreeAt(const BasePlace& base) {
   if (simulation::penetrates({*scene_, resting_}, robot_.at(base, root_height_))) return false;
   return held_ == nullptr || heldIsFree(held_spheres_.at(base, root_height_));
+}
+
+bool Probe::isFreeOfScene(const BasePlace& base) {
+  const simulation::SphereBatch spheres = robot_.at(base, root_height_);
+  return std::ranges::all_of(spheres.ranges, [&](const simulation::RadiusRange& range) {
+    const std::size_t count = simulation::paddedToLanes(range.count);
+    const SphereCentres centres{
+        {spheres.x + range.first, count}, {spheres.y + range.first, count}, {spheres.z + range.first, count}};
+    return scene_->grids()[range.radius_index].firstNotFree(centres) == count;
+  });
+}
+
+bool Probe::isFreeOfRest(const BasePlace& base) {
+  if (isAnyNear(base.position) && resting_.touches(robot_.at(base, root_height_))) return false;
+  return held_ == nullptr || heldIsFree(held_spheres_.at(base, root_height_));
+}
+
+bool Probe::isAnyNear(const Vec3& position) const {
+  for (std::uint32_t n = 0; n < resting_.capacity(); ++n) {
+    if (!resting_.isResting(n)) continue;
+    const simulation::RestingBox& box = resting_.box(n);
+    const Vec3 half = box.half_extents;
+    const float x = box.centre.x - position.x;
+    const float z = box.centre.z - position.z;
+    const float reach = robot_reach_ + std::sqrt(dot(half, half));
+    if (x * x + z * z < reach * reach) return true;
+  }
+  return false;
 }
 
 bool Probe::heldIsFree(const simulation::SphereBatch& spheres) {

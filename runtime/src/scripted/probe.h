@@ -48,10 +48,21 @@ class Probe {
     setArm(positions);
     return isFreeAt(base);
   }
-  /// Spheres of the held object that penetrate something at this pose do not count from now on
-  /// (`more`), or count again where they are free: as in the simulation, which ignores them from
-  /// the grasp until they get free.
+  /// The parts of isFreeAt: the robot and the static scene; the robot and the objects, and what it
+  /// holds and both.
+  [[nodiscard]] bool isFreeOfScene(const BasePlace& base);
+  [[nodiscard]] bool isFreeOfRest(const BasePlace& base);
+
+  /// Takes object `number`, which rests, into the hand as if grasped in this pose; and back to
+  /// where it rests.
+  void pretendToHold(std::uint32_t number, const BasePlace& base,
+                     std::span<const float> positions);
+  void pretendNoMore();
+
+  /// Spheres of the held object that penetrate something at this pose do not count from now on: as
+  /// in the simulation, which ignores them from the grasp until they get free.
   void ignoreTouching(const BasePlace& base, std::span<const float> positions);
+  /// Spheres that are free at this pose count again.
   void keepTouching(const BasePlace& base, std::span<const float> positions);
 
   /// Where the held object would come to rest, released here; none when it finds no place without
@@ -60,6 +71,9 @@ class Probe {
                                             std::span<const float> positions);
 
  private:
+  /// Whether an object's bounds lie within the robot's, over a base at `position`.
+  [[nodiscard]] bool isAnyNear(const Vec3& position) const;
+  void hold(std::uint32_t number, const Pose& grip_from_object);
   [[nodiscard]] bool heldIsFree(const simulation::SphereBatch& spheres);
   void findTouching(const BasePlace& base, std::span<const float> positions);
 
@@ -71,7 +85,10 @@ class Probe {
   simulation::RestingObjects resting_;
   std::vector<const ObjectModel*> models_;
   SphereCloud robot_;
+  float robot_reach_ = 0;
+  std::vector<Pose> poses_;
   const ObjectModel* held_ = nullptr;
+  std::uint32_t held_number_ = 0;
   Pose grip_from_object_;
   SphereCloud held_spheres_;
   std::vector<std::uint64_t> touching_;

@@ -1,5 +1,6 @@
 #include "scripted/sphere_cloud.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace galactic::scripted {
@@ -32,6 +33,17 @@ void SphereCloud::assemble(std::span<const Pose> parts) {
   for (std::size_t n = 0; n < entries_.size(); ++n) {
     in_root_[n] = parts[entries_[n].part] * entries_[n].sphere.centre;
   }
+}
+
+float SphereCloud::reach() const {
+  float most = 0;
+  for (const simulation::RadiusRange& range : ranges_) {
+    for (std::size_t n = range.first; n < range.first + range.count; ++n) {
+      const Vec3& p = in_root_[n];
+      most = std::max(most, std::sqrt(p.x * p.x + p.z * p.z) + range.radius);
+    }
+  }
+  return most;
 }
 
 simulation::SphereBatch SphereCloud::at(const BasePlace& base, float root_height) {

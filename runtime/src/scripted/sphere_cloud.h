@@ -36,6 +36,8 @@ class SphereCloud {
   [[nodiscard]] std::size_t paddedCount() const { return entries_.size(); }
   /// root_from_part of all parts.
   void assemble(std::span<const Pose> parts);
+  /// The farthest that an assembled sphere reaches from the root's vertical axis, metres.
+  [[nodiscard]] float reach() const;
   /// The assembled spheres in the world, for a root that lies `root_height` above the base's place;
   /// valid until the next call.
   [[nodiscard]] simulation::SphereBatch at(const BasePlace& base, float root_height);
