@@ -6,6 +6,7 @@
 
 #include "galactic/bake/episode_pack.h"
 #include "galactic/bake/episode_sampler.h"
+#include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/batch_simulator.h"
 #include "support/sample_world.h"
@@ -18,28 +19,42 @@ struct SampleThings {
   MemoryPack robot = bakeSampleRobot();
 };
 
-/// A world in a scene of triangles, with sampled episodes in every second of which the robot begins
-/// with an apple between its fingers.
+/// A scene of triangles, and the published episodes that take place in it; sampled ones where there
+/// is no such file.
+struct HomeFiles {
+  std::filesystem::path mesh;
+  std::filesystem::path episodes{};
+};
+
+/// A world in a scene of triangles, with the things of packs/sample. In every second episode the
+/// robot begins with an apple between its fingers.
 class Home {
  public:
-  Home(const std::filesystem::path& mesh_file, const SampleThings& things)
-      : Home(MemoryPack::opened(bake::importMesh(mesh_file)), things) {}
+  Home(const HomeFiles& files, const SampleThings& things)
+      : Home(importYUp(files.mesh), files.episodes, things) {}
 
   [[nodiscard]] const World& world() const { return *world_; }
   [[nodiscard]] const bake::TriangleMesh& mesh() const { return mesh_; }
 
  private:
-  Home(const bake::SourceAsset& asset, const SampleThings& things)
+  Home(const bake::SourceAsset& asset, const std::filesystem::path& episodes_file,
+       const SampleThings& things)
       : mesh_(MemoryPack::opened(bake::placeAndClean(asset)).mesh),
         things_(things),
         scene_(bakeScenePack(asset)) {
-    bake::SourceEpisodes episodes = sample();
+    bake::SourceEpisodes episodes = episodes_file.empty() ? sample() : readPublished(episodes_file);
     episodes_.emplace(PackKind::kEpisodes, encoded(episodes), "episodes");
     world_.emplace(open());
     putApplesInHands(episodes);
     world_.reset();
     episodes_.emplace(PackKind::kEpisodes, encoded(episodes), "episodes");
     world_.emplace(open());
+  }
+
+  static bake::SourceAsset importYUp(const std::filesystem::path& file) {
+    bake::MeshImportOptions options;
+    options.up = bake::UpAxis::kY;
+    return MemoryPack::opened(bake::importMesh(file, options));
   }
 
   static MemoryPack bakeScenePack(const bake::SourceAsset& asset) {
@@ -63,6 +78,24 @@ class Home {
     const auto objects = MemoryPack::opened(ObjectSet::from(things_.objects.pack()));
     const auto robot = MemoryPack::opened(Robot::from(things_.robot.pack()));
     return MemoryPack::opened(bake::sampleEpisodes(scenes, objects, robot, options));
+  }
+
+  /// Robots and objects where the file has them, but they are others.
+  [[nodiscard]] bake::SourceEpisodes readPublished(const std::filesystem::path& file) const {
+    bake::SourceEpisodes episodes = MemoryPack::opened(bake::readEpisodeSet(file));
+    const Scene scene = MemoryPack::opened(Scene::from(scene_.pack()));
+    const auto objects = MemoryPack::opened(ObjectSet::from(things_.objects.pack()));
+    episodes.scenes = {std::string(scene.name())};
+    episodes.robot.clear();
+    episodes.start_joints.clear();
+    episodes.start_positions.clear();
+    episodes.objects.clear();
+    for (const ObjectModel& object : objects.objects()) {
+      episodes.objects.emplace_back(object.name);
+    }
+    const auto count = static_cast<std::uint32_t>(episodes.objects.size());
+    for (Placement& placement : episodes.placements) placement.object %= count;
+    return episodes;
   }
 
   [[nodiscard]] World open() const {

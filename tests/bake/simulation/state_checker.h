@@ -20,10 +20,13 @@ struct Findings {
   std::uint64_t held_spheres = 0;
   /// Held spheres that have penetrated something ever since they were grasped, in all states.
   std::uint64_t excepted = 0;
+  /// Spheres of robots that have not moved since they released an object into them, in all states.
+  std::uint64_t released_into = 0;
   /// Spheres within 20 cm of an object's box.
   std::uint64_t near_objects = 0;
-  /// Spheres shown to Bullet.
+  /// Spheres shown to Bullet, and those that touch the exact scene, which the column method allows.
   std::uint64_t exact = 0;
+  std::uint64_t shallow = 0;
   /// Of the robot, then of held objects: blocked by the column grid, overlapping an object, deeper
   /// in the exact scene than the column method allows.
   std::array<std::uint64_t, 2> in_grid{};
@@ -38,6 +41,8 @@ class StateChecker {
   /// A sphere is judged by the nearest column, half the diagonal of a cell of 3 cm away at most;
   /// heights are rounded to fractions of a millimetre.
   static constexpr float kDeepest = 0.0213F;
+  /// Spheres farther from a box than this overlap it in no case.
+  static constexpr float kNear = 0.2F;
 
   StateChecker(const World& world, const BatchSimulator& simulator, BulletScene& scene)
       : world_(world), simulator_(simulator), scene_(scene), held_(simulator.envCount()) {
@@ -53,13 +58,19 @@ class StateChecker {
   /// `exactly`: whether to ask Bullet too, which takes its time.
   void check(std::size_t env, bool exactly, Findings& found) {
     const EnvState state = simulator_.envState(env);
-    Surroundings around = surroundingsOf(state);
+    const Surroundings around = surroundingsOf(state);
     const std::size_t bodies = simulator_.bodyCount();
     const auto transforms = simulator_.bodyTransforms().subspan(env * bodies, bodies);
+    HeldBefore& before = held_[env];
+    // Objects come to rest after the robot moved, and do not ask where it is.
+    if (before.object >= 0 && before.object != state.held)
+      before.at_release = state.world_from_grip;
+    const bool stays = before.at_release == state.world_from_grip;
     for (const RobotSphere& sphere : spheres_) {
       const Ball ball{at(transforms[sphere.body], sphere.centre), sphere.radius_index};
       found.in_grid[0] += isInGrid(around, ball) ? 1U : 0U;
-      found.in_objects[0] += isInObject(around, ball, found) ? 1U : 0U;
+      const bool in_object = isInObject(around, ball, found);
+      (stays ? found.released_into : found.in_objects[0]) += in_object ? 1U : 0U;
       if (exactly) found.in_scene[0] += isInScene(ball, found) ? 1U : 0U;
     }
     found.robot_spheres += spheres_.size();
@@ -91,6 +102,8 @@ class StateChecker {
     std::int32_t object = -1;
     std::uint32_t step = 0;
     std::vector<bool> excepted;
+    /// world_from_grip when an object was released.
+    Pose at_release;
   };
 
   static Vec3 at(const LinkTransform& frame, const Vec3& point) {
@@ -107,9 +120,12 @@ class StateChecker {
       if (static_cast<std::int32_t>(n) == state.held) continue;
       const OrientedBox& box = world_.objectOf(placementOf(state, n)).box;
       const Vec3& half = box.half_extents;
-      around.objects.push_back({BoxSolid(box, state.objects[n]),
-                                state.objects[n] * box.pose.translation,
-                                std::sqrt(dot(half, half)) + 0.2F});
+      const Vec3 centre = state.objects[n] * box.pose.translation;
+      const Vec3 away = centre - state.world_from_root.translation;
+      constexpr float kFar = 2.5F;
+      if (dot(away, away) > kFar * kFar) continue;
+      around.objects.push_back(
+          {BoxSolid(box, state.objects[n]), centre, std::sqrt(dot(half, half)) + kNear});
     }
     return around;
   }
@@ -149,6 +165,7 @@ class StateChecker {
     const float radius = (world_.radii()[ball.radius_index] - kDeepest) / 1.02F;
     if (!(radius > 0)) return false;
     ++found.exact;
+    found.shallow += scene_.touches(ball.centre, world_.radii()[ball.radius_index]) ? 1U : 0U;
     return scene_.touches(ball.centre, radius);
   }
 
