@@ -16,6 +16,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
     : env_count_(envs),
       most_objects_(model.most_objects),
       held_words_(model.heldWords()),
+      body_words_(model.bodyWords()),
       joints_(model.motion.controlled.size()),
       observation_size_(model.observation_size),
       body_count_(model.bodyCount()) {
@@ -28,6 +29,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   objects_.resize(padded * most_objects_);
   grips_.resize(padded);
   ignored_.resize(padded * held_words_);
+  leaving_.resize(padded * body_words_);
   last_actions_.resize(padded * joints_);
   x_.resize(padded);
   y_.resize(padded);
@@ -53,9 +55,9 @@ PoseArrays BatchState::poses(std::size_t first) {
 
 std::size_t BatchState::bytes() const {
   std::size_t bytes = bytesOf(envs_) + bytesOf(objects_) + bytesOf(grips_) + bytesOf(ignored_) +
-                      bytesOf(last_actions_) + 4 * bytesOf(x_) + bytesOf(variables_) +
-                      2 * bytesOf(observations_) + bytesOf(bodies_) + bytesOf(rewards_) +
-                      2 * bytesOf(dones_);
+                      bytesOf(leaving_) + bytesOf(last_actions_) + 4 * bytesOf(x_) +
+                      bytesOf(variables_) + 2 * bytesOf(observations_) + bytesOf(bodies_) +
+                      bytesOf(rewards_) + 2 * bytesOf(dones_);
   for (const RestingObjects& resting : resting_) bytes += resting.bytes();
   return bytes;
 }

@@ -60,6 +60,10 @@ struct Env {
   Held held;
   /// Whether the target was in the hand before in this episode.
   bool has_picked = false;
+  /// The object that the hand let go of and that some of the robot's spheres still penetrate; -1
+  /// for none. Those spheres do not count against it until each is free of it once; else the hand
+  /// could not leave it.
+  std::int32_t leaves = -1;
   StepEvents events;
   Vec3 goal;
   Vec3 target_start;
@@ -99,6 +103,10 @@ class BatchState {
   /// Spheres of the held object that do not count yet.
   [[nodiscard]] std::span<std::uint64_t> ignored(std::size_t n) {
     return std::span(ignored_).subspan(n * held_words_, held_words_);
+  }
+  /// Spheres of the robot that do not count against Env::leaves yet.
+  [[nodiscard]] std::span<std::uint64_t> leaving(std::size_t n) {
+    return std::span(leaving_).subspan(n * body_words_, body_words_);
   }
   /// The joint actions of the step before.
   [[nodiscard]] std::span<float> lastActions(std::size_t n) {
@@ -143,6 +151,7 @@ class BatchState {
   std::size_t env_count_ = 0;
   std::size_t most_objects_ = 0;
   std::size_t held_words_ = 0;
+  std::size_t body_words_ = 0;
   std::size_t joints_ = 0;
   std::size_t observation_size_ = 0;
   std::size_t body_count_ = 0;
@@ -151,6 +160,7 @@ class BatchState {
   std::vector<Pose> objects_;
   std::vector<GripFrame> grips_;
   std::vector<std::uint64_t> ignored_;
+  std::vector<std::uint64_t> leaving_;
   std::vector<float> last_actions_;
   std::vector<float> x_, y_, z_, yaw_;
   /// Variable v of env n at v * paddedCount() + n.

@@ -16,7 +16,8 @@ Chunk::Chunk(const Model& model)
       frames_(frameScratchSize(model.motion.nodes.size()) / kLanes),
       collision_(std::max(model.sphereCount(), model.most_held_spheres)),
       placement_(model.most_held_spheres, model.world->radii()),
-      bits_((std::max(model.sphereCount(), model.most_held_spheres) + 63) / 64) {}
+      held_bits_(model.heldWords()),
+      body_bits_(model.bodyWords()) {}
 
 PoseArrays Chunk::candidates(std::size_t first) {
   return {.x = x_.data() + first,

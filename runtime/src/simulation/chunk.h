@@ -48,8 +48,10 @@ class Chunk {
   [[nodiscard]] Floor& floor(std::size_t env) { return floor_[env]; }
   [[nodiscard]] CollisionScratch& collision() { return collision_; }
   [[nodiscard]] PlacementScratch& placement() { return placement_; }
-  /// One bit for each sphere of the robot or of a held object.
-  [[nodiscard]] std::span<std::uint64_t> bits() { return bits_; }
+  /// One bit for each sphere of the held object that penetrates something, and of the robot that
+  /// penetrates the object which it leaves: what isFree() found last.
+  [[nodiscard]] std::span<std::uint64_t> heldBits() { return held_bits_; }
+  [[nodiscard]] std::span<std::uint64_t> bodyBits() { return body_bits_; }
 
  private:
   struct alignas(32) AlignedLanes {
@@ -71,7 +73,8 @@ class Chunk {
   std::array<Floor, kChunk> floor_{};
   CollisionScratch collision_;
   PlacementScratch placement_;
-  std::vector<std::uint64_t> bits_;
+  std::vector<std::uint64_t> held_bits_;
+  std::vector<std::uint64_t> body_bits_;
 };
 
 /// The envs [first, first + kChunk) of a batch in one step.

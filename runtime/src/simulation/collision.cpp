@@ -162,6 +162,20 @@ std::size_t pushOut(const Obstacles& obstacles, const SphereBatch& spheres, Igno
   return count;
 }
 
+bool overlapping(const RestingBox& box, const SphereBatch& spheres,
+                 std::span<std::uint64_t> bits) noexcept {
+  std::fill(bits.begin(), bits.end(), 0);
+  bool any = false;
+  for (const RadiusRange& range : spheres.ranges) {
+    for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
+      if (!overlaps(box, centreOf(spheres, n), range.radius)) continue;
+      bits[n / kBitsPerWord] |= std::uint64_t{1} << (n % kBitsPerWord);
+      any = true;
+    }
+  }
+  return any;
+}
+
 void penetrating(const Obstacles& obstacles, const SphereBatch& spheres, CollisionScratch& scratch,
                  std::span<std::uint64_t> bits) noexcept {
   std::fill(bits.begin(), bits.end(), 0);

@@ -76,6 +76,10 @@ using IgnoredSpheres = std::span<const std::uint64_t>;
 std::size_t pushOut(const Obstacles& obstacles, const SphereBatch& spheres, IgnoredSpheres ignored,
                     float reach, CollisionScratch& scratch, PushSum& sum) noexcept;
 
+/// Sets the bit of each sphere that overlaps the box, clears the others. Returns whether any does.
+bool overlapping(const RestingBox& box, const SphereBatch& spheres,
+                 std::span<std::uint64_t> bits) noexcept;
+
 /// Sets the bit of each sphere that penetrates something, clears the others.
 void penetrating(const Obstacles& obstacles, const SphereBatch& spheres, CollisionScratch& scratch,
                  std::span<std::uint64_t> bits) noexcept;

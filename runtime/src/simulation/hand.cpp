@@ -21,6 +21,7 @@ void grasp(const ChunkStep& step, std::size_t e) {
   const Pose before = step.state.objects(n)[*object];
   env.held = {static_cast<std::int32_t>(*object), inverse(gripPose(grip)) * before, before};
   resting.remove(*object);
+  if (env.leaves == env.held.object) env.leaves = -1;
   const SphereBatch spheres =
       holdSpheres(heldModel(step.model, env), before, step.chunk.placement().spheres);
   penetrating({step.model.world->scenes()[env.scene], resting}, spheres, step.chunk.collision(),
@@ -39,6 +40,20 @@ bool mayRestAt(const ChunkStep& step, const Env& env, const Pose& pose) {
   return dot(away, away) < task.success_distance * task.success_distance;
 }
 
+/// The robot's spheres that penetrate the object which the hand has let go of do not count against
+/// it until they are free of it.
+void beginToLeave(const ChunkStep& step, std::size_t e, std::uint32_t object) {
+  // The chunk's spheres are those of a candidate that may have been refused.
+  const std::size_t group = e / kLanes * kLanes;
+  step.model.kernels.place(step.model.tables, {.pose = step.state.poses(step.first + group),
+                                               .body = step.chunk.bodies(group),
+                                               .scratch = step.chunk.frames()});
+  const std::size_t n = step.first + e;
+  const RestingBox& box = step.state.resting(n).box(object);
+  const bool any = overlapping(box, step.chunk.spheres(e), step.state.leaving(n));
+  step.state.env(n).leaves = any ? static_cast<std::int32_t>(object) : -1;
+}
+
 void release(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
   Env& env = step.state.env(n);
@@ -54,6 +69,7 @@ void release(const ChunkStep& step, std::size_t e) {
   const auto number = static_cast<std::uint32_t>(env.held.object);
   step.state.objects(n)[number] = rest;
   resting.insert(number, restingBox(object.box, rest));
+  beginToLeave(step, e, number);
   env.events.released_target = number == env.target;
   env.held.object = -1;
   ++(landing.placed ? env.counters.drops : env.counters.restored);

@@ -61,6 +61,8 @@ struct Model {
   }
   /// 64-bit words of one bit for each sphere of a held object.
   [[nodiscard]] std::size_t heldWords() const { return (most_held_spheres + 63) / 64; }
+  /// The same for the robot.
+  [[nodiscard]] std::size_t bodyWords() const { return (sphereCount() + 63) / 64; }
   [[nodiscard]] const Episode& episodeOf(std::uint32_t start) const {
     return world->episodes().episodes()[starts[start].episode];
   }

@@ -28,18 +28,59 @@ SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) {
   return holdSpheres(heldModel(step.model, env), world_from_object, step.chunk.placement().spheres);
 }
 
-/// Whether a held object's sphere that counts penetrates something.
+/// Calls `ask` while the object that the robot leaves is not there.
+template <class Ask>
+auto withoutLeft(const ChunkStep& step, std::size_t e, const Ask& ask) {
+  const std::int32_t leaves = step.state.env(step.first + e).leaves;
+  if (leaves < 0) return ask();
+  const auto object = static_cast<std::uint32_t>(leaves);
+  RestingObjects& resting = step.state.resting(step.first + e);
+  const RestingBox box = resting.box(object);
+  resting.remove(object);
+  const auto answer = ask();
+  resting.insert(object, box);
+  return answer;
+}
+
+/// Whether a bit is set that is not ignored.
+bool anyCounts(std::span<const std::uint64_t> bits, IgnoredSpheres ignored) {
+  std::uint64_t any = 0;
+  for (std::size_t w = 0; w < bits.size(); ++w) any |= bits[w] & ~ignored[w];
+  return any != 0;
+}
+
+bool bodyPenetrates(const ChunkStep& step, std::size_t e) {
+  const SphereBatch spheres = step.chunk.spheres(e);
+  const bool in_others =
+      withoutLeft(step, e, [&] { return penetrates(obstaclesOf(step, e), spheres); });
+  const std::int32_t leaves = step.state.env(step.first + e).leaves;
+  if (in_others || leaves < 0) return in_others;
+  const std::size_t n = step.first + e;
+  const RestingBox& box = step.state.resting(n).box(static_cast<std::uint32_t>(leaves));
+  overlapping(box, spheres, step.chunk.bodyBits());
+  return anyCounts(step.chunk.bodyBits(), step.state.leaving(n));
+}
+
 bool heldPenetrates(const ChunkStep& step, std::size_t e) {
-  const std::span<std::uint64_t> bits = step.chunk.bits().first(step.model.heldWords());
+  if (step.state.env(step.first + e).held.object < 0) return false;
+  const Obstacles obstacles = obstaclesOf(step, e);
   const SphereBatch spheres = heldSpheres(step, e);
-  if (!penetrates(obstaclesOf(step, e), spheres)) {
+  const std::span<std::uint64_t> bits = step.chunk.heldBits();
+  if (!penetrates(obstacles, spheres)) {
     std::ranges::fill(bits, 0U);
     return false;
   }
-  penetrating(obstaclesOf(step, e), spheres, step.chunk.collision(), bits);
-  const std::span<const std::uint64_t> ignored = step.state.ignored(step.first + e);
+  penetrating(obstacles, spheres, step.chunk.collision(), bits);
+  return anyCounts(bits, step.state.ignored(step.first + e));
+}
+
+/// Spheres that are free now count from now on; whether some still do not.
+bool keepPenetrating(std::span<std::uint64_t> ignored, std::span<const std::uint64_t> bits) {
   std::uint64_t any = 0;
-  for (std::size_t w = 0; w < bits.size(); ++w) any |= bits[w] & ~ignored[w];
+  for (std::size_t w = 0; w < ignored.size(); ++w) {
+    ignored[w] &= bits[w];
+    any |= ignored[w];
+  }
   return any != 0;
 }
 
@@ -57,10 +98,12 @@ void accept(const ChunkStep& step, std::size_t e) {
   }
   step.state.grip(n) = step.chunk.grip(e);
   std::ranges::copy(step.chunk.bodyTransforms(e), step.state.bodyTransforms(n).begin());
-  if (step.state.env(n).held.object < 0) return;
-  // Spheres that are free now count from now on. The bits are those of the accepted candidate.
-  const std::span<std::uint64_t> ignored = step.state.ignored(n);
-  for (std::size_t w = 0; w < ignored.size(); ++w) ignored[w] &= step.chunk.bits()[w];
+  // The bits are those of the accepted candidate.
+  Env& env = step.state.env(n);
+  if (env.held.object >= 0) keepPenetrating(step.state.ignored(n), step.chunk.heldBits());
+  if (env.leaves >= 0 && !keepPenetrating(step.state.leaving(n), step.chunk.bodyBits())) {
+    env.leaves = -1;
+  }
 }
 
 /// Where the base has to go so that what penetrates gets free, in one jitter.
@@ -69,7 +112,9 @@ Push pushOf(const ChunkStep& step, std::size_t e) {
   const Obstacles obstacles = obstaclesOf(step, e);
   const Env& env = step.state.env(step.first + e);
   PushSum sum;
-  pushOut(obstacles, step.chunk.spheres(e), {}, options.step, step.chunk.collision(), sum);
+  withoutLeft(step, e, [&] {
+    return pushOut(obstacles, step.chunk.spheres(e), {}, options.step, step.chunk.collision(), sum);
+  });
   if (env.held.object >= 0) {
     pushOut(obstacles, heldSpheres(step, e), step.state.ignored(step.first + e), options.step,
             step.chunk.collision(), sum);
@@ -84,8 +129,7 @@ Push pushOf(const ChunkStep& step, std::size_t e) {
 /// The jitter of the published rule for the first sphere of a batch that penetrates something and
 /// is not ignored: towards the base.
 Push pushTowardsBase(const ChunkStep& step, std::size_t e, const SphereBatch& spheres,
-                     IgnoredSpheres ignored) {
-  const std::span<std::uint64_t> bits = step.chunk.bits();
+                     IgnoredSpheres ignored, std::span<std::uint64_t> bits) {
   penetrating(obstaclesOf(step, e), spheres, step.chunk.collision(), bits);
   for (std::size_t w = 0; w < bits.size(); ++w) {
     const std::uint64_t word = w < ignored.size() ? bits[w] & ~ignored[w] : bits[w];
@@ -104,9 +148,12 @@ Push pushTowardsBase(const ChunkStep& step, std::size_t e, const SphereBatch& sp
 }
 
 Push pushTowardsBase(const ChunkStep& step, std::size_t e) {
-  const Push push = pushTowardsBase(step, e, step.chunk.spheres(e), {});
+  const Push push = withoutLeft(step, e, [&] {
+    return pushTowardsBase(step, e, step.chunk.spheres(e), {}, step.chunk.bodyBits());
+  });
   if (push.x != 0 || push.z != 0 || step.state.env(step.first + e).held.object < 0) return push;
-  return pushTowardsBase(step, e, heldSpheres(step, e), step.state.ignored(step.first + e));
+  return pushTowardsBase(step, e, heldSpheres(step, e), step.state.ignored(step.first + e),
+                         step.chunk.heldBits());
 }
 
 void refuse(const ChunkStep& step, std::size_t e) {
@@ -128,8 +175,7 @@ FloorUnder floorUnder(const Scene& scene, const Vec3& base, const GroundOptions&
 
 bool isFree(const ChunkStep& step, std::size_t e) noexcept {
   if (step.chunk.floor(e) != Floor::kCarries) return false;
-  if (penetrates(obstaclesOf(step, e), step.chunk.spheres(e))) return false;
-  return step.state.env(step.first + e).held.object < 0 || !heldPenetrates(step, e);
+  return !bodyPenetrates(step, e) && !heldPenetrates(step, e);
 }
 
 void proposePoses(const ChunkStep& step) noexcept {

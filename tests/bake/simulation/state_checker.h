@@ -20,7 +20,7 @@ struct Findings {
   std::uint64_t held_spheres = 0;
   /// Held spheres that have penetrated something ever since they were grasped, in all states.
   std::uint64_t excepted = 0;
-  /// Spheres of robots that have not moved since they released an object into them, in all states.
+  /// Spheres of robots that have been in an object ever since the robot released it, in all states.
   std::uint64_t released_into = 0;
   /// Spheres within 20 cm of an object's box.
   std::uint64_t near_objects = 0;
@@ -62,15 +62,15 @@ class StateChecker {
     const std::size_t bodies = simulator_.bodyCount();
     const auto transforms = simulator_.bodyTransforms().subspan(env * bodies, bodies);
     HeldBefore& before = held_[env];
-    // Objects come to rest after the robot moved, and do not ask where it is.
-    if (before.object >= 0 && before.object != state.held)
-      before.at_release = state.world_from_grip;
-    const bool stays = before.at_release == state.world_from_grip;
-    for (const RobotSphere& sphere : spheres_) {
+    noteRelease(state, before);
+    for (std::size_t n = 0; n < spheres_.size(); ++n) {
+      const RobotSphere& sphere = spheres_[n];
       const Ball ball{at(transforms[sphere.body], sphere.centre), sphere.radius_index};
       found.in_grid[0] += isInGrid(around, ball) ? 1U : 0U;
-      const bool in_object = isInObject(around, ball, found);
-      (stays ? found.released_into : found.in_objects[0]) += in_object ? 1U : 0U;
+      const InObjects in = inObjects(around, ball, before.released, found);
+      before.leaving[n] = before.leaving[n] && in.released;
+      found.released_into += before.leaving[n] ? 1U : 0U;
+      found.in_objects[0] += in.other || (in.released && !before.leaving[n]) ? 1U : 0U;
       if (exactly) found.in_scene[0] += isInScene(ball, found) ? 1U : 0U;
     }
     found.robot_spheres += spheres_.size();
@@ -89,6 +89,7 @@ class StateChecker {
     std::uint32_t radius_index = 0;
   };
   struct RestingSolid {
+    std::int32_t number = -1;
     BoxSolid solid;
     Vec3 centre;
     float reach = 0;
@@ -102,9 +103,26 @@ class StateChecker {
     std::int32_t object = -1;
     std::uint32_t step = 0;
     std::vector<bool> excepted;
-    /// world_from_grip when an object was released.
-    Pose at_release;
+    /// The object that was released last, and the robot's spheres that have been in it since.
+    std::int32_t released = -1;
+    std::vector<bool> leaving;
   };
+  /// Whether a sphere is in the object that was released last, and in another one.
+  struct InObjects {
+    bool released = false;
+    bool other = false;
+  };
+
+  void noteRelease(const EnvState& state, HeldBefore& before) const {
+    const bool goes_on = state.step == before.step + 1;
+    if (!goes_on || before.leaving.empty()) {
+      before.released = -1;
+      before.leaving.assign(spheres_.size(), false);
+    }
+    if (!goes_on || before.object < 0 || before.object == state.held) return;
+    before.released = before.object;
+    before.leaving.assign(spheres_.size(), true);
+  }
 
   static Vec3 at(const LinkTransform& frame, const Vec3& point) {
     return frame.x_axis * point.x + frame.y_axis * point.y + frame.z_axis * point.z + frame.origin;
@@ -124,8 +142,8 @@ class StateChecker {
       const Vec3 away = centre - state.world_from_root.translation;
       constexpr float kFar = 2.5F;
       if (dot(away, away) > kFar * kFar) continue;
-      around.objects.push_back(
-          {BoxSolid(box, state.objects[n]), centre, std::sqrt(dot(half, half)) + kNear});
+      around.objects.push_back({static_cast<std::int32_t>(n), BoxSolid(box, state.objects[n]),
+                                centre, std::sqrt(dot(half, half)) + kNear});
     }
     return around;
   }
@@ -144,20 +162,22 @@ class StateChecker {
     return true;
   }
 
-  [[nodiscard]] bool isInObject(const Surroundings& around, const Ball& ball,
-                                Findings& found) const {
+  [[nodiscard]] InObjects inObjects(const Surroundings& around, const Ball& ball,
+                                    std::int32_t released, Findings& found) const {
     constexpr double kRounding = 1e-5;
-    bool any = false;
+    InObjects in;
     bool near = false;
     for (const RestingSolid& object : around.objects) {
       const Vec3 away = ball.centre - object.centre;
       if (dot(away, away) > object.reach * object.reach) continue;
       near = true;
       const double distance = object.solid.distance(toPoint3(ball.centre));
-      any = any || distance < static_cast<double>(world_.radii()[ball.radius_index]) - kRounding;
+      if (!(distance < static_cast<double>(world_.radii()[ball.radius_index]) - kRounding))
+        continue;
+      (object.number == released ? in.released : in.other) = true;
     }
     found.near_objects += near ? 1U : 0U;
-    return any;
+    return in;
   }
 
   [[nodiscard]] bool isInScene(const Ball& ball, Findings& found) {
@@ -185,7 +205,7 @@ class StateChecker {
                       object.spheres[n].radius_index};
       ++found.held_spheres;
       const bool in_grid = isInGrid(around, ball);
-      const bool in_object = isInObject(around, ball, found);
+      const bool in_object = inObjects(around, ball, -1, found).other;
       before.excepted[n] = before.excepted[n] && (in_grid || in_object);
       found.excepted += before.excepted[n] ? 1U : 0U;
       if (before.excepted[n]) continue;
