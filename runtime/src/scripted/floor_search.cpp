@@ -14,6 +14,9 @@ constexpr float kLongestEdge = 0.1F;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Driving backwards costs a little more, so that the robot looks where it goes.
 constexpr float kBackwards = 1.5F;
+/// How much more the way that is left counts than the way behind: more than 1 finds a way sooner,
+/// and one that is longer by this factor at most.
+constexpr float kHurry = 1.5F;
 /// How far from where it stands the robot looks for the lattice, metres.
 constexpr float kEntryReach = 0.25F;
 /// A place this near is on the lattice already, metres.
@@ -75,7 +78,8 @@ std::optional<std::uint32_t> FloorSearch::cellAt(float x, float z) const {
 BasePlace FloorSearch::placeOf(std::uint32_t cell, std::uint32_t fine) const {
   const auto i = static_cast<std::int32_t>(cell % count_i_) + first_i_;
   const auto k = static_cast<std::int32_t>(cell / count_i_) + first_k_;
-  return {{static_cast<float>(i) * edge_, memories_[memory_].floors[cell], static_cast<float>(k) * edge_},
+  return {{static_cast<float>(i) * edge_, memories_[memory_].floors[cell],
+           static_cast<float>(k) * edge_},
           wrapped(kTurn * static_cast<float>(fine) / static_cast<float>(fines_))};
 }
 
@@ -101,8 +105,12 @@ void FloorSearch::recall() {
     oldest_ = (oldest_ + 1) % kMostMemories;
   }
   const std::size_t cells = static_cast<std::size_t>(count_i_) * count_k_;
-  memories_[memory_] = {&probe_.scene(), edge_, floor_, *carried_,
+  memories_[memory_] = {&probe_.scene(),
+                        edge_,
+                        floor_,
+                        *carried_,
                         std::vector<std::uint8_t>(cells * fines_, 0),
+                        std::vector<std::uint8_t>(cells, 0),
                         std::vector<float>(cells, kInfinity)};
 }
 
@@ -118,6 +126,48 @@ bool FloorSearch::isFreeOfScene(std::uint32_t cell, std::uint32_t fine) {
   const bool is_free = !std::isnan(height) && probe_.isFreeOfScene(placeOf(cell, fine));
   known = is_free ? kFree : kBlocked;
   return is_free;
+}
+
+bool FloorSearch::isPassable(std::uint32_t cell) {
+  std::uint8_t& passable = memories_[memory_].passable[cell];
+  for (std::uint32_t heading = 0; passable == 0 && heading < kHeadings; ++heading) {
+    if (isFreeOfScene(cell, heading * eighth_)) passable = kFree;
+  }
+  if (passable == 0) passable = kBlocked;
+  return passable == kFree;
+}
+
+float FloorSearch::targetDistance(std::uint32_t cell) const {
+  const Vec3 way = target_.point - placeOf(cell, 0).position;
+  return std::sqrt(way.x * way.x + way.z * way.z);
+}
+
+void FloorSearch::measureWays() {
+  const std::uint32_t cells = count_i_ * count_k_;
+  ways_.assign(cells, kInfinity);
+  const auto push = [this](std::uint32_t cell, float way) {
+    if (way >= ways_[cell] || !isPassable(cell)) return;
+    ways_[cell] = way;
+    waiting_.push_back({way, cell});
+    std::ranges::push_heap(waiting_, std::greater<>());
+  };
+  for (std::uint32_t cell = 0; cell < cells; ++cell) {
+    const float distance = targetDistance(cell);
+    if (distance >= target_.nearest && distance <= target_.farthest) push(cell, 0);
+  }
+  while (!waiting_.empty()) {
+    std::ranges::pop_heap(waiting_, std::greater<>());
+    const Waiting at = waiting_.back();
+    waiting_.pop_back();
+    if (at.estimate > ways_[at.node]) continue;
+    const Vec3 from = placeOf(at.node, 0).position;
+    for (const CellStep& step : kSteps) {
+      const auto next = cellAt(from.x + static_cast<float>(step.i) * edge_,
+                               from.z + static_cast<float>(step.k) * edge_);
+      const float length = step.i != 0 && step.k != 0 ? edge_ * std::sqrt(2.0F) : edge_;
+      if (next) push(*next, at.estimate + length / forward_step_);
+    }
+  }
 }
 
 bool FloorSearch::isFree(std::uint32_t cell, std::uint32_t fine) {
@@ -208,11 +258,10 @@ void FloorSearch::findEntries(const BasePlace& start) {
 void FloorSearch::reach(std::uint32_t node, float cost, std::uint32_t parent) {
   Node& reached = nodes_[node];
   if (reached.settled || cost >= reached.cost) return;
+  if (ways_[node / kHeadings] == kInfinity) return;
   reached.cost = cost;
   reached.parent = parent;
-  const Vec3 away = placeOf(node / kHeadings, 0).position - target_.point;
-  const float distance = std::sqrt(away.x * away.x + away.z * away.z) - target_.farthest;
-  waiting_.push_back({cost + std::max(distance, 0.0F) / forward_step_, node});
+  waiting_.push_back({cost + kHurry * ways_[node / kHeadings], node});
   std::ranges::push_heap(waiting_, std::greater<>());
 }
 
@@ -252,7 +301,7 @@ std::optional<BasePlace> FloorSearch::offer(std::uint32_t node, const Accept& ac
   const std::uint32_t heading = node % kHeadings;
   const BasePlace place = placeOf(cell, heading * eighth_);
   const Vec3 way = target_.point - place.position;
-  const float distance = std::sqrt(way.x * way.x + way.z * way.z);
+  const float distance = targetDistance(cell);
   if (distance < target_.nearest || distance > target_.farthest) return std::nullopt;
   const float bearing = std::atan2(-way.z, way.x);
   for (const float beside : {0.0F, 0.44F, -0.44F, 0.87F, -0.87F}) {
@@ -325,6 +374,7 @@ FloorSearch::Answer FloorSearch::searchLattice(const BasePlace& start, const Joi
   layOut();
   recall();
   probe_.setArm(carried);
+  measureWays();
   findEntries(start);
   while (!waiting_.empty() && offers_ < target_.most_offers) {
     std::ranges::pop_heap(waiting_, std::greater<>());

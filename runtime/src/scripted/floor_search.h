@@ -74,6 +74,11 @@ class FloorSearch {
   void layOut();
   /// What was found out about the static scene, with this pose of the arm, in searches before.
   void recall();
+  /// How many actions every cell is from where the robot may stand, with doors and walls but with
+  /// turns for nothing.
+  void measureWays();
+  [[nodiscard]] bool isPassable(std::uint32_t cell);
+  [[nodiscard]] float targetDistance(std::uint32_t cell) const;
   [[nodiscard]] std::optional<std::uint32_t> cellAt(float x, float z) const;
   [[nodiscard]] BasePlace placeOf(std::uint32_t cell, std::uint32_t fine) const;
   [[nodiscard]] std::uint32_t fineOf(float yaw) const;
@@ -120,12 +125,16 @@ class FloorSearch {
     float floor = 0;
     Joints carried;
     std::vector<std::uint8_t> known;
+    /// By cell: the same for whether any of the eight headings is free.
+    std::vector<std::uint8_t> passable;
     std::vector<float> floors;
   };
   std::vector<Memory> memories_;
   std::size_t memory_ = 0;
   std::size_t oldest_ = 0;
   std::vector<std::uint8_t> offered_;
+  /// By cell: see measureWays; infinity where there is no way.
+  std::vector<float> ways_;
   std::vector<Entry> entries_;
   std::vector<Waiting> waiting_;
   int offers_ = 0;

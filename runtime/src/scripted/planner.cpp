@@ -42,16 +42,29 @@ Vec3 pointBefore(const simulation::RestingBox& box, const Vec3& way, float dista
   return box.centre - way * far;
 }
 
-void append(const BasePlace& base, const ArmPath& path, Plan& plan) {
-  for (const Joints& joints : path) {
-    plan.steps.push_back({PlanStep::Kind::kMoveArm, base, joints});
-  }
+std::vector<PlanStep> stepsOf(const BasePlace& base, const ArmPath& path) {
+  std::vector<PlanStep> steps;
+  steps.reserve(path.size());
+  for (const Joints& joints : path) steps.push_back({PlanStep::Kind::kMoveArm, base, joints});
+  return steps;
 }
 
-void append(const BaseRoute& route, Plan& plan) {
+void prepend(const BasePlace& base, const ArmPath& path, Plan& plan) {
+  const std::vector<PlanStep> steps = stepsOf(base, path);
+  plan.steps.insert(plan.steps.begin(), steps.begin(), steps.end());
+}
+
+/// Drives, moves the arm, and does the last.
+Plan planOf(const BaseRoute& route, const ArmPath& path, PlanStep::Kind last) {
+  Plan plan;
+  plan.steps.reserve(route.size() + path.size() + 1);
   for (const BasePlace& place : route) {
     plan.steps.push_back({PlanStep::Kind::kMoveBase, place, {}});
   }
+  const std::vector<PlanStep> steps = stepsOf(route.back(), path);
+  plan.steps.insert(plan.steps.end(), steps.begin(), steps.end());
+  plan.steps.push_back({last, route.back(), {}});
+  return plan;
 }
 
 ScriptedTrouble troubleOf(FloorSearch::Outcome outcome, ScriptedTrouble no_way,
@@ -70,7 +83,9 @@ Planner::Planner(const World& world, const SimulationOptions& options)
       reach_table_(probe_.arm(),
                    {world.robot().startPositions().begin(), world.robot().startPositions().end()},
                    kReachSamples),
-      pick_view_(reach_table_, {}, {1, 0, 0}) {}
+      pick_view_(reach_table_, {}, {1, 0, 0}) {
+  chooseCarries();
+}
 
 BasePlace Planner::baseOf(const EnvState& state) const {
   const Quat& q = state.world_from_root.rotation;
@@ -80,13 +95,67 @@ BasePlace Planner::baseOf(const EnvState& state) const {
 
 std::uint64_t Planner::nextSeed() { return seed_++; }
 
-Joints Planner::carriedOf(const EnvState& state) const {
-  Joints carried = state.joint_positions;
-  for (const ControlledJoint& joint : world_.robot().controlledJoints()) {
-    carried[joint.position] =
-        std::clamp(world_.robot().startPositions()[joint.position], joint.lower, joint.upper);
+std::vector<Joints> Planner::carriesOf(const EnvState& state) const {
+  std::vector<Joints> result;
+  result.reserve(carries_.size());
+  for (const Joints& carry : carries_) {
+    Joints joints = state.joint_positions;
+    for (const ControlledJoint& joint : world_.robot().controlledJoints()) {
+      joints[joint.position] = carry[joint.position];
+    }
+    result.push_back(std::move(joints));
   }
-  return carried;
+  return result;
+}
+
+void Planner::chooseCarries() {
+  // Room for what is held, metres, and how much farther out the start pose may reach to be kept: it
+  // is what the robot's maker chose.
+  constexpr float kHeldRoom = 0.15F;
+  constexpr float kStartBonus = 1.15F;
+  constexpr float kLowest = 0.4F;
+  constexpr float kHighest = 1.4F;
+  constexpr std::size_t kMostCarries = 3;
+  constexpr float kApart = 0.3F;
+  Joints start{world_.robot().startPositions().begin(), world_.robot().startPositions().end()};
+  for (const ArmJoint& joint : probe_.arm().joints()) {
+    start[joint.position] = std::clamp(start[joint.position], joint.lower, joint.upper);
+  }
+  const auto reach_of = [&](const Joints& joints, const Pose& grip) {
+    probe_.setArm(joints);
+    const Vec3& p = grip.translation;
+    return std::max(probe_.robotReach(), std::sqrt(p.x * p.x + p.z * p.z) + kHeldRoom);
+  };
+  struct Candidate {
+    float reach = 0;
+    std::size_t sample = 0;
+  };
+  std::vector<Candidate> candidates;
+  candidates.reserve(reach_table_.size());
+  for (std::size_t n = 0; n < reach_table_.size(); ++n) {
+    const Pose& grip = reach_table_.grips()[n];
+    const Vec3& p = grip.translation;
+    // In front, where the robot sees what it holds.
+    if (p.y < kLowest || p.y > kHighest || p.x < std::fabs(p.z)) continue;
+    candidates.push_back({reach_of(reach_table_.joints(probe_.arm(), n, start), grip), n});
+  }
+  std::ranges::stable_sort(candidates, {}, &Candidate::reach);
+  const Pose start_grip = probe_.arm().gripOf(probe_.arm().placeLinks(start));
+  const bool start_is_good =
+      candidates.empty() || reach_of(start, start_grip) <= kStartBonus * candidates.front().reach;
+  if (start_is_good) carries_.push_back(start);
+  std::vector<Vec3> grips;
+  for (const Candidate& candidate : candidates) {
+    if (carries_.size() >= kMostCarries) break;
+    const Vec3& grip = reach_table_.grips()[candidate.sample].translation;
+    const bool is_new = std::ranges::all_of(grips, [&](const Vec3& other) {
+      return dot(grip - other, grip - other) > kApart * kApart;
+    });
+    if (!is_new) continue;
+    grips.push_back(grip);
+    carries_.push_back(reach_table_.joints(probe_.arm(), candidate.sample, start));
+  }
+  if (!start_is_good) carries_.push_back(start);
 }
 
 template <class IsRight>
@@ -96,14 +165,13 @@ std::optional<ArmPath> Planner::reach(const BasePlace& base, const Joints& carri
   const std::size_t count = view_->nearest(reach.goal, kSeedReach, seeds);
   Arm& arm = probe_.arm();
   for (const std::uint32_t sample : std::span(seeds).first(count)) {
-    Joints seed = carried;
-    for (std::size_t joint = 0; joint < arm.joints().size(); ++joint) {
-      seed[arm.joints()[joint].position] = reach_table_.controlled(sample)[joint];
-    }
-    const std::optional<Joints> there = solveHand(arm, reach.goal, seed);
+    const Joints seed = reach_table_.joints(arm, sample, carried);
+    const std::optional<Joints> there = solveHand(arm, reach.goal, seed, hand_options_);
     if (!there || !probe_.isFree(base, *there) || !is_right(*there)) continue;
     ArmPath path = arm_planner_.slide(base, *there, reach.goal,
-                                      {.length = reach.retreat_length, .way = reach.retreat});
+                                      {.length = reach.retreat_length,
+                                       .way = reach.retreat,
+                                       .direction_tolerance = hand_options_.direction_tolerance});
     if (path.empty()) continue;
     std::ranges::reverse(path);
     path.push_back(*there);
@@ -139,9 +207,17 @@ std::optional<ArmPath> Planner::reachTarget(const BasePlace& base, const Joints&
       return probe_.objects().nearest(world_from_grip.translation, radius) == state_->target;
     };
     std::optional<ArmPath> path = reach(base, carried, goal, is_right);
-    if (path) return path;
+    if (path && comesAway(base, path->back(), carried)) return path;
   }
   return std::nullopt;
+}
+
+bool Planner::comesAway(const BasePlace& base, const Joints& positions, const Joints& carried) {
+  probe_.pretendToHold(state_->target, base, positions);
+  const bool result = liftAndFold(base, positions, carried).has_value();
+  probe_.pretendNoMore();
+  if (!result) ++failed_motions_;
+  return result;
 }
 
 std::optional<ArmPath> Planner::reachGoal(const BasePlace& base, const Joints& carried) {
@@ -195,20 +271,29 @@ std::optional<ArmPath> Planner::liftAndFold(const BasePlace& base, const Joints&
 Plan Planner::planPick(const EnvState& state, std::uint32_t attempt) {
   state_ = &state;
   view_ = &pick_view_;
+  hand_options_ = {};
   seed_ = (std::uint64_t{state.episode} << 32U) + attempt * 1000;
-  failed_motions_ = 0;
   probe_.look(state);
   const BasePlace start = baseOf(state);
-  Joints carried = carriedOf(state);
-  std::optional<ArmPath> folding = fold(start, state.joint_positions, carried);
-  if (!folding) {
-    folding = ArmPath{};
-    carried = state.joint_positions;
+  Plan plan{{}, ScriptedTrouble::kNoFold};
+  std::vector<Joints> carries = carriesOf(state);
+  // Where there is no room to fold the arm it may still be driven as it is.
+  carries.push_back(state.joint_positions);
+  for (const Joints& carried : carries) {
+    failed_motions_ = 0;
+    const std::optional<ArmPath> folding = fold(start, state.joint_positions, carried);
+    if (!folding) continue;
+    plan = pickWith(start, carried);
+    if (plan.trouble != ScriptedTrouble::kNone) continue;
+    prepend(start, *folding, plan);
+    break;
   }
-  Plan plan;
-  append(start, *folding, plan);
+  return plan;
+}
+
+Plan Planner::pickWith(const BasePlace& start, const Joints& carried) {
   std::optional<ArmPath> reaching;
-  const FloorSearch::Target target{.point = probe_.objects().box(state.target).centre};
+  const FloorSearch::Target target{.point = probe_.objects().box(state_->target).centre};
   const FloorSearch::Answer answer =
       floor_search_.search(start, carried, target, [&](const BasePlace& stance) {
         reaching = reachTarget(stance, carried);
@@ -218,30 +303,46 @@ Plan Planner::planPick(const EnvState& state, std::uint32_t attempt) {
     return {{},
             troubleOf(answer.outcome, ScriptedTrouble::kNoWayToTarget, ScriptedTrouble::kNoGrasp)};
   }
-  append(answer.route, plan);
-  const BasePlace stance = answer.route.back();
-  append(stance, *reaching, plan);
-  plan.steps.push_back({PlanStep::Kind::kGrasp, stance, {}});
-  return plan;
+  return planOf(answer.route, *reaching, PlanStep::Kind::kGrasp);
 }
 
 Plan Planner::planPlace(const EnvState& state, std::uint32_t attempt) {
   state_ = &state;
   seed_ = (std::uint64_t{state.episode} << 32U) + attempt * 1000 + 500;
-  failed_motions_ = 0;
   probe_.look(state);
   const Vec3 up_of_object = rotate(conjugate(state.goal.rotation), kUp);
   const ReachView view(reach_table_, probe_.gripFromObject().translation,
                        rotate(probe_.gripFromObject().rotation, up_of_object));
   view_ = &view;
   const BasePlace start = baseOf(state);
-  const Joints carried = carriedOf(state);
-  const std::optional<ArmPath> folding = liftAndFold(start, state.joint_positions, carried);
-  if (!folding) return {{}, ScriptedTrouble::kNoFold};
+  Plan plan{{}, ScriptedTrouble::kNoFold};
+  for (const Joints& carried : carriesOf(state)) {
+    failed_motions_ = 0;
+    const std::optional<ArmPath> folding = liftAndFold(start, state.joint_positions, carried);
+    if (!folding) continue;
+    plan = placeLeaning(start, carried);
+    if (plan.trouble == ScriptedTrouble::kNone) prepend(start, *folding, plan);
+    // What the arm does not reach it does not reach from another fold.
+    if (plan.trouble != ScriptedTrouble::kNoWayToGoal) break;
+  }
+  return plan;
+}
+
+Plan Planner::placeLeaning(const BasePlace& start, const Joints& carried) {
   Plan plan;
-  append(start, *folding, plan);
+  // Upright, else leaning, else as it comes, radians.
+  for (const float leaning : {0.15F, 0.6F, -1.0F}) {
+    hand_options_.direction_tolerance = leaning;
+    failed_motions_ = 0;
+    plan = placeWith(start, carried);
+    if (plan.trouble != ScriptedTrouble::kNoPlacement) break;
+  }
+  return plan;
+}
+
+Plan Planner::placeWith(const BasePlace& start, const Joints& carried) {
   std::optional<ArmPath> reaching;
-  const FloorSearch::Target target{.point = state.goal.translation};
+  const FloorSearch::Target target{.point = state_->goal.translation};
   const FloorSearch::Answer answer =
       floor_search_.search(start, carried, target, [&](const BasePlace& stance) {
         reaching = reachGoal(stance, carried);
@@ -252,11 +353,7 @@ Plan Planner::planPlace(const EnvState& state, std::uint32_t attempt) {
         {},
         troubleOf(answer.outcome, ScriptedTrouble::kNoWayToGoal, ScriptedTrouble::kNoPlacement)};
   }
-  append(answer.route, plan);
-  const BasePlace stance = answer.route.back();
-  append(stance, *reaching, plan);
-  plan.steps.push_back({PlanStep::Kind::kRelease, stance, {}});
-  return plan;
+  return planOf(answer.route, *reaching, PlanStep::Kind::kRelease);
 }
 
 }  // namespace galactic::scripted

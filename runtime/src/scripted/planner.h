@@ -33,7 +33,10 @@ class Planner {
     float retreat_length = 0.1F;
   };
 
-  [[nodiscard]] Joints carriedOf(const EnvState& state) const;
+  /// Poses of the arm for driving, the best first: controlled joints from `carries_`, the others
+  /// from the env.
+  [[nodiscard]] std::vector<Joints> carriesOf(const EnvState& state) const;
+  void chooseCarries();
   /// Ends of the arm's move for this reach: to a free pose at which `isRight`, by way of the
   /// retreat.
   template <class IsRight>
@@ -41,6 +44,12 @@ class Planner {
                                              const Reach& reach, const IsRight& is_right);
   [[nodiscard]] std::optional<ArmPath> reachTarget(const BasePlace& base, const Joints& carried);
   [[nodiscard]] std::optional<ArmPath> reachGoal(const BasePlace& base, const Joints& carried);
+  /// Whether the arm, once it has grasped the target at `positions`, can be folded.
+  [[nodiscard]] bool comesAway(const BasePlace& base, const Joints& positions,
+                               const Joints& carried);
+  [[nodiscard]] Plan pickWith(const BasePlace& start, const Joints& carried);
+  [[nodiscard]] Plan placeLeaning(const BasePlace& start, const Joints& carried);
+  [[nodiscard]] Plan placeWith(const BasePlace& start, const Joints& carried);
   /// From where the arm is to its pose for driving; empty when it is there.
   [[nodiscard]] std::optional<ArmPath> fold(const BasePlace& base, const Joints& from,
                                             const Joints& carried);
@@ -55,11 +64,13 @@ class Planner {
   FloorSearch floor_search_;
   ReachTable reach_table_;
   ReachView pick_view_;
+  std::vector<Joints> carries_;
   // Of the current plan:
   const EnvState* state_ = nullptr;
   const ReachView* view_ = nullptr;
   std::uint64_t seed_ = 0;
   int failed_motions_ = 0;
+  InverseKinematicsOptions hand_options_;
 };
 
 }  // namespace galactic::scripted

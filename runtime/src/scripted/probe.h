@@ -43,6 +43,8 @@ class Probe {
 
   /// Joint positions for the calls of isFreeAt and touching that follow.
   void setArm(std::span<const float> positions);
+  /// How far the robot reaches from its root's vertical axis, metres.
+  [[nodiscard]] float robotReach() const { return robot_reach_; }
   [[nodiscard]] bool isFreeAt(const BasePlace& base);
   [[nodiscard]] bool isFree(const BasePlace& base, std::span<const float> positions) {
     setArm(positions);
@@ -55,8 +57,7 @@ class Probe {
 
   /// Takes object `number`, which rests, into the hand as if grasped in this pose; and back to
   /// where it rests.
-  void pretendToHold(std::uint32_t number, const BasePlace& base,
-                     std::span<const float> positions);
+  void pretendToHold(std::uint32_t number, const BasePlace& base, std::span<const float> positions);
   void pretendNoMore();
 
   /// Spheres of the held object that penetrate something at this pose do not count from now on: as

@@ -37,6 +37,14 @@ ReachTable::ReachTable(Arm& arm, const Joints& positions, std::uint32_t samples)
   }
 }
 
+Joints ReachTable::joints(const Arm& arm, std::size_t n, const Joints& others) const {
+  Joints result = others;
+  for (std::size_t joint = 0; joint < joints_; ++joint) {
+    result[arm.joints()[joint].position] = rows_[n * joints_ + joint];
+  }
+  return result;
+}
+
 ReachView::ReachView(const ReachTable& table, const Vec3& point, const Vec3& direction) {
   entries_.reserve(table.size());
   for (const Pose& grip : table.grips()) {

@@ -17,10 +17,8 @@ class ReachTable {
   ReachTable(Arm& arm, const Joints& positions, std::uint32_t samples);
 
   [[nodiscard]] std::size_t size() const { return grips_.size(); }
-  /// Of the controlled joints of sample n.
-  [[nodiscard]] std::span<const float> controlled(std::size_t n) const {
-    return std::span(rows_).subspan(n * joints_, joints_);
-  }
+  /// `others` with the controlled joints of sample n of the table, which was made for `arm`.
+  [[nodiscard]] Joints joints(const Arm& arm, std::size_t n, const Joints& others) const;
   /// root_from_grip of each sample.
   [[nodiscard]] std::span<const Pose> grips() const { return grips_; }
 
