@@ -6,6 +6,7 @@
 #include <fstream>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "galactic/atomic_file.h"
@@ -24,7 +25,11 @@ struct PackStamp {
   std::uint64_t payload_bytes = 0;
   std::uint64_t payload_xxh64 = 0;
 
-  friend auto operator<=>(const PackStamp&, const PackStamp&) = default;
+  friend bool operator==(const PackStamp&, const PackStamp&) = default;
+  friend bool operator<(const PackStamp& a, const PackStamp& b) {
+    return std::tie(a.kind, a.payload_bytes, a.payload_xxh64) <
+           std::tie(b.kind, b.payload_bytes, b.payload_xxh64);
+  }
 };
 
 /// The stamps of a world's packs, ascending: the same for any order of the packs.

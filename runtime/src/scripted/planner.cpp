@@ -272,7 +272,7 @@ Plan Planner::planPick(const EnvState& state, std::uint32_t attempt) {
   state_ = &state;
   view_ = &pick_view_;
   hand_options_ = {};
-  seed_ = (std::uint64_t{state.episode} << 32U) + attempt * 1000;
+  seed_ = (std::uint64_t{state.episode} << 32U) + std::uint64_t{attempt} * 1000;
   probe_.look(state);
   const BasePlace start = baseOf(state);
   Plan plan{{}, ScriptedTrouble::kNoFold};
@@ -308,7 +308,7 @@ Plan Planner::pickWith(const BasePlace& start, const Joints& carried) {
 
 Plan Planner::planPlace(const EnvState& state, std::uint32_t attempt) {
   state_ = &state;
-  seed_ = (std::uint64_t{state.episode} << 32U) + attempt * 1000 + 500;
+  seed_ = (std::uint64_t{state.episode} << 32U) + std::uint64_t{attempt} * 1000 + 500;
   probe_.look(state);
   const Vec3 up_of_object = rotate(conjugate(state.goal.rotation), kUp);
   const ReachView view(reach_table_, probe_.gripFromObject().translation,
