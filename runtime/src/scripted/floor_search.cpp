@@ -192,9 +192,9 @@ bool FloorSearch::canTurn(std::uint32_t cell, std::uint32_t from, std::uint32_t 
 
 bool FloorSearch::canTurnFreely(const BasePlace& at, float to) {
   const float way = wrapped(to - at.yaw);
-  const float actions = actionsFor(way, turn_step_);
-  for (float n = 1; n <= actions; ++n) {
-    const float turned = n == actions ? way : std::copysign(n * turn_step_, way);
+  const int actions = static_cast<int>(actionsFor(way, turn_step_));
+  for (int n = 1; n <= actions; ++n) {
+    const float turned = way * (static_cast<float>(n) / static_cast<float>(actions));
     if (!probe_.isFreeAt({at.position, at.yaw + turned})) return false;
   }
   return true;
@@ -203,9 +203,9 @@ bool FloorSearch::canTurnFreely(const BasePlace& at, float to) {
 bool FloorSearch::canDrive(const BasePlace& from, const BasePlace& to) {
   const Vec3 way = to.position - from.position;
   const float length = std::sqrt(way.x * way.x + way.z * way.z);
-  const float actions = actionsFor(length, forward_step_);
-  for (float n = 1; n <= actions; ++n) {
-    const float share = n == actions ? 1.0F : n * forward_step_ / length;
+  const int actions = static_cast<int>(actionsFor(length, forward_step_));
+  for (int n = 1; n <= actions; ++n) {
+    const float share = n == actions ? 1.0F : static_cast<float>(n) * forward_step_ / length;
     BasePlace at{from.position + way * share, from.yaw};
     const std::optional<float> floor =
         probe_.floorAt(at.position.x, at.position.z, from.position.y);

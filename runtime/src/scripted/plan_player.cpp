@@ -37,8 +37,10 @@ PlanPlayer::Way PlanPlayer::moveBase(const RobotBase& robot_base, const BasePlac
   const float forward = along / robot_base.forward_step;
   const bool turns = std::fabs(turn) > kNothing;
   const bool drives = std::fabs(forward) > kNothing;
-  // Positive turns are clockwise, positive yaw is not.
-  if (turns) row.turn = -std::clamp(turn, -1.0F, 1.0F);
+  // Positive turns are clockwise, positive yaw is not. Turns are spread over their actions evenly,
+  // as the search looks at them.
+  constexpr float kSlack = 1e-3F;
+  if (turns) row.turn = -turn / std::max(std::ceil(std::fabs(turn) - kSlack), 1.0F);
   if (drives && !turns) row.forward = std::clamp(forward, -1.0F, 1.0F);
   Way result;
   result.remaining = (turns ? std::fabs(turn) : 0) + (drives ? std::fabs(forward) : 0);

@@ -121,8 +121,9 @@ bool Probe::isFreeOfScene(const BasePlace& base) {
   const simulation::SphereBatch spheres = robot_.at(base, root_height_);
   return std::ranges::all_of(spheres.ranges, [&](const simulation::RadiusRange& range) {
     const std::size_t count = simulation::paddedToLanes(range.count);
-    const SphereCentres centres{
-        {spheres.x + range.first, count}, {spheres.y + range.first, count}, {spheres.z + range.first, count}};
+    const SphereCentres centres{{spheres.x + range.first, count},
+                                {spheres.y + range.first, count},
+                                {spheres.z + range.first, count}};
     return scene_->grids()[range.radius_index].firstNotFree(centres) == count;
   });
 }
