@@ -52,6 +52,9 @@ heading "Opening it in the runtime, and stepping 1024 homes with random actions"
 "$bin/galactic-run" --pack "$world"
 "$bin/galactic-run" --pack "$world" --envs 1024 --steps 500 --policy random
 
+heading "Solving 32 episodes with a plan"
+"$bin/galactic-run" --pack "$world" --envs 32 --steps 500 --policy scripted
+
 phase quickstart-draw "Drawing it" draw
 
 cat <<END
