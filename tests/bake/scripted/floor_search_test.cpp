@@ -1,0 +1,161 @@
+// The search for a way of the base, on floors made for it.
+#include "scripted/floor_search.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+
+#include "scripted_world.h"
+
+namespace galactic::test {
+namespace {
+
+using scripted::BasePlace;
+using scripted::BaseRoute;
+using scripted::FloorSearch;
+using scripted::Joints;
+using scripted::Probe;
+
+/// A room of 4 m by 3 m, cut at x = 2 m by a wall with a door of `door` metres at z = 1.5 m.
+MeshBuilder twoRooms(float door) {
+  MeshBuilder room = madeRoom(4, 3);
+  constexpr float kMiddle = 1.5F;
+  room.box({1.95F, 0, 0}, {2.05F, 2.5F, kMiddle - door / 2});
+  room.box({1.95F, 0, kMiddle + door / 2}, {2.05F, 2.5F, 3});
+  return room;
+}
+
+/// A blind alley: walls on three sides of the straight way from (0.5, 1.5) to (3.5, 1.5).
+MeshBuilder deadEnd() {
+  MeshBuilder room = madeRoom(4, 3);
+  room.box({2.2F, 0, 0.7F}, {2.3F, 2.5F, 2.3F});
+  room.box({1, 0, 0.7F}, {2.3F, 2.5F, 0.8F});
+  room.box({1, 0, 2.2F}, {2.3F, 2.5F, 2.3F});
+  return room;
+}
+
+/// One robot on one floor, with where it wants to go.
+class Floor {
+ public:
+  Floor(const MeshBuilder& room, const Vec3& from, const Vec3& to)
+      : made_(stickWorld(room.build(), from, to, to)), probe_(made_.world(), {}) {
+    EnvState state;
+    state.objects = {{to, {}}};
+    state.world_from_root.translation = from;
+    const auto start = made_.world().robot().startPositions();
+    joints_.assign(start.begin(), start.end());
+    probe_.look(state);
+    start_ = {from, 0.3F};
+    target_ = to;
+  }
+
+  FloorSearch::Answer search() {
+    FloorSearch search(probe_, made_.world().robot());
+    return search.search(start_, joints_, {.point = target_},
+                         [](const BasePlace&) { return true; });
+  }
+
+  /// Checks that each leg is a turn or a drive, and that no pose on the way penetrates anything.
+  /// Returns metres driven.
+  float follow(const BaseRoute& route) {
+    // Finer than actions, so some poses here were not looked at; the radius of the base's sphere
+    // and the cells of the grid let through this much.
+    constexpr float kBetween = 0.02F;
+    float driven = 0;
+    BasePlace at = start_;
+    probe_.setArm(joints_);
+    for (const BasePlace& next : route) {
+      const Vec3 way = next.position - at.position;
+      const float length = std::sqrt(way.x * way.x + way.z * way.z);
+      const float turn = std::fabs(std::remainder(next.yaw - at.yaw, 6.2831853F));
+      EXPECT_TRUE(length < 1e-3F || turn < 1e-3F) << "a leg turns and drives at once";
+      if (length > 1e-3F) {
+        const Vec3 heading = scripted::headingOf(at.yaw);
+        EXPECT_NEAR(std::fabs(dot(way, heading)), length, 1e-3F) << "a drive sideways";
+      }
+      const int pieces = 1 + static_cast<int>(length / kBetween);
+      for (int n = 1; n <= pieces; ++n) {
+        const float share = static_cast<float>(n) / static_cast<float>(pieces);
+        EXPECT_TRUE(probe_.isFreeAt({at.position + way * share, next.yaw}));
+      }
+      driven += length;
+      at = next;
+    }
+    return driven;
+  }
+
+ private:
+  ScriptedWorld made_;
+  Probe probe_;
+  Joints joints_;
+  BasePlace start_;
+  Vec3 target_;
+};
+
+constexpr Vec3 kWest{0.53F, 0, 0.57F};
+constexpr Vec3 kEast{3.4F, 0.5F, 2.4F};
+
+TEST(FloorSearch, GoesThroughADoor) {
+  Floor floor(twoRooms(0.7F), kWest, kEast);
+  const FloorSearch::Answer answer = floor.search();
+  ASSERT_EQ(answer.outcome, FloorSearch::Outcome::kFound);
+  const float straight = 2.9F;
+  const float driven = floor.follow(answer.route);
+  EXPECT_GT(driven, straight - 1.0F);
+  EXPECT_LT(driven, 2 * straight);
+  const Vec3 end = answer.route.back().position;
+  EXPECT_LE(std::hypot(end.x - kEast.x, end.z - kEast.z), 1.0F + 1e-4F);
+}
+
+TEST(FloorSearch, GoesThroughADoorOnlyAFinerLatticeFits) {
+  // Centres of the base's sphere of 12 cm fit through 1 to 4 cm here: one in ten coarse doors.
+  int found = 0;
+  for (int n = 0; n < 5; ++n) {
+    Floor floor(twoRooms(0.32F + 0.02F * static_cast<float>(n)), kWest, kEast);
+    const FloorSearch::Answer answer = floor.search();
+    if (answer.outcome != FloorSearch::Outcome::kFound) continue;
+    ++found;
+    floor.follow(answer.route);
+  }
+  EXPECT_GE(found, 3);
+}
+
+TEST(FloorSearch, SaysThatThereIsNoWay) {
+  Floor floor(twoRooms(0.2F), kWest, kEast);
+  EXPECT_EQ(floor.search().outcome, FloorSearch::Outcome::kNoWay);
+}
+
+TEST(FloorSearch, GetsOutOfADeadEnd) {
+  const Vec3 to{3.6F, 0.5F, 1.5F};
+  Floor floor(deadEnd(), {1.6F, 0, 1.5F}, to);
+  const FloorSearch::Answer answer = floor.search();
+  ASSERT_EQ(answer.outcome, FloorSearch::Outcome::kFound);
+  // Out to x < 1 m and round the walls.
+  EXPECT_GT(floor.follow(answer.route), 2.5F);
+}
+
+TEST(FloorSearch, TellsPlacesThatAreNotWantedFromNoWay) {
+  const ScriptedWorld made = stickWorld(madeRoom(3, 3).build(), kWest, {2, 0.5F, 2}, {});
+  Probe probe(made.world(), {});
+  EnvState state;
+  state.objects = {{{2, 0.5F, 2}, {}}};
+  probe.look(state);
+  FloorSearch search(probe, made.world().robot());
+  const auto start = made.world().robot().startPositions();
+  int offers = 0;
+  const auto answer = search.search({kWest, 0}, {start.begin(), start.end()},
+                                    {.point = {2, 0.5F, 2}}, [&](const BasePlace& place) {
+                                      ++offers;
+                                      const Vec3 way = Vec3{2, 0, 2} - place.position;
+                                      const float distance = std::sqrt(dot(way, way));
+                                      EXPECT_GE(distance, 0.35F - 1e-4F);
+                                      EXPECT_LE(distance, 1.0F + 1e-4F);
+                                      return false;
+                                    });
+  EXPECT_EQ(answer.outcome, FloorSearch::Outcome::kNotAccepted);
+  EXPECT_GT(offers, 10);
+}
+
+}  // namespace
+}  // namespace galactic::test

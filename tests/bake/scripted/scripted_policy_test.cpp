@@ -1,0 +1,171 @@
+// The scripted policy on the project's own world, from the first step to the reward.
+#include "galactic/scripted_policy.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "galactic/batch_simulator.h"
+#include "scripted_world.h"
+
+namespace galactic::test {
+namespace {
+
+/// What came of each env's first episode.
+struct Outcomes {
+  std::vector<float> actions;
+  std::vector<std::uint32_t> steps;
+  std::vector<bool> successes;
+  std::vector<double> returns;
+  std::vector<float> last_rewards;
+  std::vector<ScriptedPhase> phases;
+
+  [[nodiscard]] std::size_t successCount() const {
+    return static_cast<std::size_t>(std::count(successes.begin(), successes.end(), true));
+  }
+};
+
+/// Plays each env until its first episode is over; afterwards its actions are zero.
+Outcomes play(const World& world, const SimulationOptions& options) {
+  BatchSimulator simulator = MemoryPack::opened(BatchSimulator::create(world, options));
+  ScriptedPolicy policy = MemoryPack::opened(ScriptedPolicy::create(world, options));
+  const std::size_t envs = simulator.envCount();
+  const std::size_t count = simulator.actionCount();
+  Outcomes outcomes{{},
+                    std::vector<std::uint32_t>(envs, 0),
+                    std::vector<bool>(envs, false),
+                    std::vector<double>(envs, 0),
+                    std::vector<float>(envs, 0),
+                    std::vector<ScriptedPhase>(envs, ScriptedPhase::kPick)};
+  std::vector<float> actions(envs * count);
+  std::size_t over = 0;
+  while (over < envs) {
+    policy.act(simulator, actions);
+    for (std::size_t env = 0; env < envs; ++env) {
+      if (outcomes.steps[env] == 0) outcomes.phases[env] = policy.phase(env);
+    }
+    outcomes.actions.insert(outcomes.actions.end(), actions.begin(), actions.end());
+    simulator.step(actions);
+    for (std::size_t env = 0; env < envs; ++env) {
+      if (outcomes.steps[env] != 0) continue;
+      outcomes.returns[env] += static_cast<double>(simulator.rewards()[env]);
+      if (simulator.dones()[env] == 0) continue;
+      ++over;
+      outcomes.steps[env] = static_cast<std::uint32_t>(outcomes.actions.size() / (envs * count));
+      outcomes.successes[env] = simulator.successes()[env] != 0;
+      outcomes.last_rewards[env] = simulator.rewards()[env];
+    }
+  }
+  return outcomes;
+}
+
+class ScriptedPolicyInTheSampleWorld : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kEpisodes = 20;
+  static constexpr std::uint64_t kSeed = 3;
+
+  static void SetUpTestSuite() {
+    made_ = std::make_unique<ScriptedWorld>(sampleWorld(kEpisodes, kSeed));
+  }
+  static void TearDownTestSuite() { made_.reset(); }
+
+  static SimulationOptions options() {
+    SimulationOptions options;
+    options.envs = kEpisodes;
+    options.threads = 1;
+    options.order = EpisodeOrder::kPartition;
+    return options;
+  }
+  static const World& world() { return made_->world(); }
+
+ private:
+  static inline std::unique_ptr<ScriptedWorld> made_;
+};
+
+TEST_F(ScriptedPolicyInTheSampleWorld, SolvesMostEpisodesTheSameWayEachTime) {
+  const Outcomes outcomes = play(world(), options());
+  RecordProperty("successes", static_cast<int>(outcomes.successCount()));
+  std::printf("seed %u: %zu of %u episodes solved\n", static_cast<unsigned>(kSeed),
+              outcomes.successCount(), kEpisodes);
+  EXPECT_GE(outcomes.successCount(), kEpisodes * 8 / 10);
+  for (std::size_t env = 0; env < kEpisodes; ++env) {
+    if (!outcomes.successes[env]) continue;
+    const TaskOptions task;
+    EXPECT_LT(outcomes.steps[env], task.most_steps);
+    // The last step pays the success and moves nothing.
+    EXPECT_NEAR(outcomes.last_rewards[env], task.success_reward, 0.1F);
+    EXPECT_GT(outcomes.returns[env], static_cast<double>(task.success_reward + task.pick_reward));
+  }
+
+  // Other threads, other number of envs.
+  SimulationOptions fewer = options();
+  fewer.envs = 3;
+  fewer.threads = 2;
+  const Outcomes again = play(world(), fewer);
+  const std::size_t row = outcomes.actions.size() / outcomes.steps.size();
+  ASSERT_GT(row, 0U);
+  const std::size_t count = world().robot().controlledJoints().size() + 4;
+  for (std::size_t env = 0; env < fewer.envs; ++env) {
+    EXPECT_EQ(again.steps[env], outcomes.steps[env]);
+    EXPECT_EQ(again.returns[env], outcomes.returns[env]);
+    for (std::size_t step = 0; step < again.steps[env]; ++step) {
+      for (std::size_t n = 0; n < count; ++n) {
+        ASSERT_EQ(again.actions[(step * fewer.envs + env) * count + n],
+                  outcomes.actions[(step * kEpisodes + env) * count + n])
+            << "env " << env << " step " << step;
+      }
+    }
+  }
+}
+
+TEST_F(ScriptedPolicyInTheSampleWorld, PicksAndWaitsWhereThatIsTheTask) {
+  SimulationOptions pick = options();
+  pick.envs = 4;
+  pick.task.kind = TaskKind::kMobilePick;
+  const Outcomes outcomes = play(world(), pick);
+  EXPECT_GE(outcomes.successCount(), 3U);
+}
+
+TEST_F(ScriptedPolicyInTheSampleWorld, SucceedsWithoutATerminateAction) {
+  SimulationOptions without = options();
+  without.envs = 4;
+  without.task.needs_terminate = false;
+  without.task.distractors = false;
+  EXPECT_GE(play(world(), without).successCount(), 3U);
+}
+
+TEST_F(ScriptedPolicyInTheSampleWorld, RefusesToHaveNothingToDo) {
+  SimulationOptions none = options();
+  none.task.kind = TaskKind::kNone;
+  const auto policy = ScriptedPolicy::create(world(), none);
+  ASSERT_FALSE(policy.has_value());
+  EXPECT_EQ(policy.error().code, ErrorCode::kUnsupported);
+  EXPECT_EQ(policy.error().message,
+            "the task is none, which has nothing to plan for; use rearrange or mobile pick");
+}
+
+TEST(ScriptedPolicy, GivesUpWhereThereIsNoWayAndStandsStill) {
+  MeshBuilder room = madeRoom(4, 3);
+  room.box({1.95F, 0, 0}, {2.05F, 2.5F, 3});
+  room.box({3.2F, 0, 1}, {3.8F, 0.5F, 2});
+  const ScriptedWorld made =
+      stickWorld(room.build(), {0.8F, 0, 1.5F}, {3.5F, 0.501F, 1.2F}, {3.5F, 0.501F, 1.8F});
+  SimulationOptions options;
+  options.envs = 1;
+  options.threads = 1;
+  BatchSimulator simulator = MemoryPack::opened(BatchSimulator::create(made.world(), options));
+  ScriptedPolicy policy = MemoryPack::opened(ScriptedPolicy::create(made.world(), options));
+  std::vector<float> actions(simulator.actionCount(), 1);
+  for (int step = 0; step < 3; ++step) {
+    policy.act(simulator, actions);
+    for (const float action : actions) EXPECT_EQ(action, 0);
+    simulator.step(actions);
+  }
+  EXPECT_EQ(policy.phase(0), ScriptedPhase::kGaveUp);
+  EXPECT_EQ(policy.trouble(0), ScriptedTrouble::kNoWayToTarget);
+  EXPECT_EQ(nameOf(policy.trouble(0)), "no way to target");
+}
+
+}  // namespace
+}  // namespace galactic::test
