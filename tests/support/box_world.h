@@ -115,6 +115,7 @@ class BoxWorld {
  private:
   [[nodiscard]] World open() const {
     std::vector<PackFile> packs;
+    packs.reserve(4);
     // BoxRoom's columns are a little further apart than those of packs may be.
     packs.push_back(opened(PackFile::view(room_.bytes(), "room", Trust::kTrusted)));
     packs.push_back(opened(PackFile::view(objects_.bytes(), "objects")));

@@ -100,6 +100,7 @@ class Home {
 
   [[nodiscard]] World open() const {
     std::vector<PackFile> packs;
+    packs.reserve(4);
     for (const MemoryPack* pack : {&scene_, &things_.objects, &things_.robot, &*episodes_}) {
       packs.push_back(MemoryPack::opened(PackFile::view(pack->bytes().bytes(), "pack")));
     }

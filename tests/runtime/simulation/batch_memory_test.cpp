@@ -14,6 +14,7 @@ TEST(BatchMemory, IsNotAllocatedInAStep) {
   for (const std::uint32_t threads : {1U, 3U}) {
     auto simulator = BatchSimulator::create(world.world(), optionsFor(64, threads)).value();
     std::vector<std::vector<float>> actions;
+    actions.reserve(300);
     for (std::uint32_t step = 0; step < 300; ++step) {
       actions.push_back(actionsFor(simulator, 0, step));
     }

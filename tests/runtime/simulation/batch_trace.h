@@ -22,6 +22,7 @@ inline BoxWorld furnishedWorld(const RobotPackFields& robot = cartRobot()) {
                                   {{2, 0, 0}, {3, 0.03F, 3}},
                                   {{0, 0.5F, 2.5F}, {1, 0.55F, 3}}};
   std::vector<Start> starts;
+  starts.reserve(7);
   for (int n = 0; n < 7; ++n) {
     const float by = 0.03F * static_cast<float>(n);
     starts.push_back({.base = {0.6F + by, 0, 0.8F},

@@ -246,6 +246,7 @@ struct Flat {
 
   explicit Flat(std::mt19937& random) : room(furniture(random)), objects(20, 0.12F) {
     const Room within{.x = {0, 3}, .z = {0, 3}};
+    bodies.reserve(objects.capacity());
     for (std::uint32_t n = 0; n < objects.capacity(); ++n) {
       bodies.push_back(randomBody(within, random));
       objects.insert(n, bodies.back().resting());

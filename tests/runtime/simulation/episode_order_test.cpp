@@ -63,6 +63,7 @@ TEST(Permuted, StaysBelowTheLargestCounts) {
 
 TEST(Permuted, DiffersFromKeyToKey) {
   std::vector<std::vector<std::uint32_t>> orders;
+  orders.reserve(200);
   for (std::uint64_t key = 0; key < 200; ++key) orders.push_back(permutation(50, key));
   std::sort(orders.begin(), orders.end());
   EXPECT_EQ(std::adjacent_find(orders.begin(), orders.end()), orders.end());
