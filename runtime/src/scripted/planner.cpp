@@ -17,8 +17,6 @@ constexpr std::size_t kSeeds = 3;
 constexpr float kSeedReach = 0.15F;
 /// Motions of the arm that are searched for in vain before a plan is given up.
 constexpr int kMostFailedMotions = 12;
-/// The hand has to come away at least so far on its way to where it turns freely, metres.
-constexpr float kLeastRetreat = 0.03F;
 /// Distance of grip and target's box, as a share of the radius in which the hand grasps.
 constexpr float kGraspShare = 0.5F;
 /// The share of the distance of success that a planned release may use up.

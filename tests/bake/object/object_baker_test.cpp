@@ -145,7 +145,7 @@ TEST(ObjectBaker, RefusesOptionsAndMeshesThatGiveNoSpheres) {
 TEST(ObjectBaker, UsesTheBoxThatWasAskedFor) {
   // A brick turned by an eighth of a turn about Y.
   bake::SourceAsset asset = brick();
-  const float s = std::sqrt(0.5F);
+  const double s = std::sqrt(0.5);
   asset.instances[0].world_from_mesh = {s, 0, s, 0, 0, 1, 0, 0, -s, 0, s, 0};
   ObjectBakeOptions options = coarse();
   for (const auto fit : {bake::BoxFit::kYaw, bake::BoxFit::kMinimum}) {
@@ -154,7 +154,7 @@ TEST(ObjectBaker, UsesTheBoxThatWasAskedFor) {
   }
   options.box = bake::BoxFit::kAxisAligned;
   const BakedObject aligned = bakeWell(asset, options);
-  EXPECT_NEAR(aligned.box.box.half_extents.x, (0.03F + 0.04F) * s, kBoxGrowth);
+  EXPECT_NEAR(aligned.box.box.half_extents.x, (0.03 + 0.04) * s, kBoxGrowth);
   EXPECT_EQ(aligned.box.box.pose.rotation, Quat{});
 }
 
