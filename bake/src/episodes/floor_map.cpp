@@ -34,7 +34,7 @@ struct Flood {
 };
 
 bool hasHeading(std::uint16_t headings, std::uint32_t heading) {
-  return ((headings >> heading) & 1U) != 0;
+  return ((std::uint32_t{headings} >> heading) & 1U) != 0;
 }
 
 /// Connections of floor places.
