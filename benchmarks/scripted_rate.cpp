@@ -73,12 +73,16 @@ void printFrame(const World& world, const EnvState& state, ScriptedPhase phase) 
   fmt::print("frame {} {} episode {}\n", state.step, phaseName(phase), state.episode);
   fmt::print("  base {}\n  joints ", textOf(state.world_from_root));
   const galactic::Robot& robot = world.robot();
+  // A joint that mimics another has no position of its own.
+  std::vector<bool> is_printed(state.joint_positions.size());
   for (std::size_t link = 0; link < robot.links().size(); ++link) {
     const galactic::LinkFrame& frame = robot.links()[link];
-    const bool is_own = frame.multiplier == 1 && frame.offset == 0 && frame.position >= 0;
-    if (!is_own || positionCount(frame.type) != 1) continue;
-    fmt::print("{}={:.9g},", robot.jointName(link),
-               state.joint_positions[static_cast<std::size_t>(frame.position)]);
+    const bool is_plain = frame.multiplier == 1 && frame.offset == 0 && frame.position >= 0;
+    if (!is_plain || positionCount(frame.type) != 1) continue;
+    const auto position = static_cast<std::size_t>(frame.position);
+    if (is_printed[position]) continue;
+    is_printed[position] = true;
+    fmt::print("{}={:.9g},", robot.jointName(link), state.joint_positions[position]);
   }
   fmt::print("\n  grip {}\n  held {}\n  goal {}\n", textOf(state.world_from_grip), state.held,
              textOf(state.goal));

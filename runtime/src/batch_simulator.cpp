@@ -13,7 +13,7 @@
 #include "simulation/grip_frame.h"
 #include "simulation/model.h"
 #include "simulation/step.h"
-#include "simulation/workers.h"
+#include "workers.h"
 
 namespace galactic {
 
@@ -37,6 +37,7 @@ class BatchSimulator::Impl {
     for (std::size_t env = 0; env < state_.paddedCount(); ++env) {
       simulation::beginEpisode(model_, state_, env, firstStart(env));
     }
+    workers_ = std::make_unique<detail::Workers>(threads, [this](std::size_t n) { run(n); });
   }
 
   void begin(std::span<const float> actions, std::span<const std::int32_t> resets) {
@@ -44,10 +45,6 @@ class BatchSimulator::Impl {
     assert(resets.empty() || resets.size() == model_.options.envs);
     input_ = {actions, resets};
     measures_ = sample_every_ != 0 && steps_ % sample_every_ == 0;
-    if (!workers_) {
-      workers_ =
-          std::make_unique<simulation::Workers>(parts_.size(), [this](std::size_t n) { run(n); });
-    }
     workers_->begin();
   }
 
@@ -119,7 +116,7 @@ class BatchSimulator::Impl {
   std::uint64_t steps_ = 0;
   std::uint32_t sample_every_ = 0;
   bool measures_ = false;
-  std::unique_ptr<simulation::Workers> workers_;
+  std::unique_ptr<detail::Workers> workers_;
 };
 
 Result<BatchSimulator> BatchSimulator::create(const World& world,
@@ -210,7 +207,7 @@ LinkOnBody BatchSimulator::linkOnBody(std::size_t link) const {
           {frame.x_axis, frame.y_axis, frame.z_axis, frame.origin}};
 }
 
-std::span<const LinkTransform> BatchSimulator::bodyTransforms() const {
+std::span<const RigidTransform> BatchSimulator::bodyTransforms() const {
   return impl_->state().bodyTransforms();
 }
 

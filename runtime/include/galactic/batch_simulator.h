@@ -9,6 +9,7 @@
 
 #include "galactic/error.h"
 #include "galactic/pose.h"
+#include "galactic/rigid_transform.h"
 #include "galactic/simulation_options.h"
 #include "galactic/world.h"
 
@@ -61,19 +62,11 @@ struct EnvState {
   Pose goal;
 };
 
-/// A frame as a matrix: its axes and origin in another frame, metres.
-struct LinkTransform {
-  Vec3 x_axis{1, 0, 0};
-  Vec3 y_axis{0, 1, 0};
-  Vec3 z_axis{0, 0, 1};
-  Vec3 origin;
-};
-
 /// Where a link sits on the body that carries it.
 struct LinkOnBody {
   std::size_t body = 0;
   /// body_from_link.
-  LinkTransform place;
+  RigidTransform place;
 };
 
 /// Seconds that the threads spent in each phase of the sampled steps, added up.
@@ -147,7 +140,7 @@ class BatchSimulator {
   [[nodiscard]] LinkOnBody linkOnBody(std::size_t link) const;
   /// world_from_body of all bodies after the last step, for rendering. Shape: envs * bodyCount();
   /// empty without SimulationOptions::body_transforms.
-  [[nodiscard]] std::span<const LinkTransform> bodyTransforms() const;
+  [[nodiscard]] std::span<const RigidTransform> bodyTransforms() const;
 
   /// Measures one step in `every` from now on; 0 switches it off.
   void samplePhases(std::uint32_t every);

@@ -133,10 +133,10 @@ class BatchState {
     return std::span(final_observations_).first(env_count_ * observation_size_);
   }
   /// Root and nodes of the robot; empty where the run does not want them.
-  [[nodiscard]] std::span<LinkTransform> bodyTransforms(std::size_t n) {
+  [[nodiscard]] std::span<RigidTransform> bodyTransforms(std::size_t n) {
     return std::span(bodies_).subspan(n * body_count_, body_count_);
   }
-  [[nodiscard]] std::span<const LinkTransform> bodyTransforms() const {
+  [[nodiscard]] std::span<const RigidTransform> bodyTransforms() const {
     return std::span(bodies_).first(env_count_ * body_count_);
   }
   [[nodiscard]] std::span<float> rewards() { return rewards_; }
@@ -167,7 +167,7 @@ class BatchState {
   std::vector<float> variables_;
   std::vector<float> observations_;
   std::vector<float> final_observations_;
-  std::vector<LinkTransform> bodies_;
+  std::vector<RigidTransform> bodies_;
   std::vector<float> rewards_;
   std::vector<std::uint8_t> dones_;
   std::vector<std::uint8_t> successes_;

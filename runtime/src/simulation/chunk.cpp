@@ -29,7 +29,7 @@ PoseArrays Chunk::candidates(std::size_t first) {
 }
 
 BodyArrays Chunk::bodies(std::size_t first) {
-  static_assert(sizeof(LinkTransform) == 12 * sizeof(float));
+  static_assert(sizeof(RigidTransform) == 12 * sizeof(float));
   return {.centres = centres_.data() + first * 3 * sphere_count_,
           .grips = grips_[first].data(),
           .bodies = body_count_ == 0
@@ -51,7 +51,7 @@ void Chunk::shift(std::size_t env, const Vec3& by) {
   grip[9] += by.x;
   grip[10] += by.y;
   grip[11] += by.z;
-  for (LinkTransform& body : bodyTransforms(env)) body.origin = body.origin + by;
+  for (RigidTransform& body : bodyTransforms(env)) body.origin = body.origin + by;
 }
 
 SphereBatch Chunk::spheres(std::size_t env) const {

@@ -42,7 +42,7 @@ class Chunk {
   [[nodiscard]] SphereBatch spheres(std::size_t env) const;
   [[nodiscard]] GripFrame& grip(std::size_t env) { return grips_[env]; }
   /// Root and nodes of a candidate; empty where the run does not want them.
-  [[nodiscard]] std::span<LinkTransform> bodyTransforms(std::size_t env) {
+  [[nodiscard]] std::span<RigidTransform> bodyTransforms(std::size_t env) {
     return std::span(bodies_).subspan(env * body_count_, body_count_);
   }
   [[nodiscard]] Floor& floor(std::size_t env) { return floor_[env]; }
@@ -68,7 +68,7 @@ class Chunk {
   std::vector<float> variables_;
   std::vector<float> centres_;
   std::array<GripFrame, kChunk> grips_{};
-  std::vector<LinkTransform> bodies_;
+  std::vector<RigidTransform> bodies_;
   std::vector<AlignedLanes> frames_;
   std::array<Floor, kChunk> floor_{};
   CollisionScratch collision_;

@@ -91,9 +91,6 @@ void resetEpisodes(const ChunkStep& step, std::span<const std::int32_t> resets) 
     if (resets[n] < 0) continue;
     beginEpisode(step.model, step.state, n,
                  startOf(step.model, static_cast<std::uint32_t>(resets[n])));
-    step.state.rewards()[n] = 0;
-    step.state.dones()[n] = 0;
-    step.state.successes()[n] = 0;
   }
 }
 

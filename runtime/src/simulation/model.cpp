@@ -108,7 +108,7 @@ class StartFinder {
     if (!isFree(step, 0) && !pushClear(step, 0)) return false;
     const PoseArrays pose = chunk_.candidates(0);
     model_.starts.push_back({n, chunk_.base(0), *pose.yaw, chunk_.grip(0)});
-    const std::span<const LinkTransform> bodies = chunk_.bodyTransforms(0);
+    const std::span<const RigidTransform> bodies = chunk_.bodyTransforms(0);
     model_.start_bodies.insert(model_.start_bodies.end(), bodies.begin(), bodies.end());
     for (std::size_t v = 0; v < model_.variableCount(); ++v) {
       model_.start_variables.push_back(pose.variables[v * pose.stride]);

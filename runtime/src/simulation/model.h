@@ -39,7 +39,7 @@ struct Model {
   /// Variables of each start. Shape: starts * variables.
   std::vector<float> start_variables;
   /// Shape: starts * bodyCount().
-  std::vector<LinkTransform> start_bodies;
+  std::vector<RigidTransform> start_bodies;
   std::vector<std::uint32_t> skipped;
   std::size_t most_objects = 0;
   /// Spheres of the largest object, padded to lanes.

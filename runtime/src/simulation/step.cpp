@@ -50,7 +50,7 @@ void runPhases(const ChunkStep& step, const StepInput& input, const Lap& lap) no
   lap(4);
   useHands(step);
   lap(5);
-  judge(step);
+  judge(step, input.resets);
   lap(6);
   observeAll(step);
   lap(7);

@@ -75,10 +75,16 @@ Verdict verdictOf(const TaskOptions& task, const Env& env, float transport) noex
   return verdict == Verdict::kGoesOn && is_late ? Verdict::kTimeOut : verdict;
 }
 
-void judge(const ChunkStep& step) noexcept {
+void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept {
   const TaskOptions& task = step.model.options.task;
   for (std::size_t e = 0; e < kChunk; ++e) {
     const std::size_t n = step.first + e;
+    if (n < resets.size() && resets[n] >= 0) {
+      step.state.rewards()[n] = 0;
+      step.state.dones()[n] = 0;
+      step.state.successes()[n] = 0;
+      continue;
+    }
     Env& env = step.state.env(n);
     const bool is_first = env.step == 0;
     ++env.step;

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <span>
 
 #include "simulation/chunk.h"
 
@@ -20,7 +21,9 @@ struct TargetDistances {
 /// goal after the step, in metres.
 [[nodiscard]] Verdict verdictOf(const TaskOptions& task, const Env& env, float transport) noexcept;
 
-/// Counts the step; rewards (paper, equation 1), dones and successes of it.
-void judge(const ChunkStep& step) noexcept;
+/// Counts the step; rewards (paper, equation 1), dones and successes of it. Envs of the batch that
+/// the caller resets (`resets`: empty, or not negative where so) get none: their episode is neither
+/// rewarded nor counted.
+void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept;
 
 }  // namespace galactic::simulation

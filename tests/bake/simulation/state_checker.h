@@ -124,7 +124,7 @@ class StateChecker {
     before.leaving.assign(spheres_.size(), true);
   }
 
-  static Vec3 at(const LinkTransform& frame, const Vec3& point) {
+  static Vec3 at(const RigidTransform& frame, const Vec3& point) {
     return frame.x_axis * point.x + frame.y_axis * point.y + frame.z_axis * point.z + frame.origin;
   }
 

@@ -136,6 +136,8 @@ TEST(Resets, InTheStepThatEndsAnEpisodeWin) {
   EXPECT_THAT(simulator.dones(), ElementsAre(0, 1));
   EXPECT_EQ(simulator.envState(0).episode, 6U);
   EXPECT_EQ(simulator.envState(0).step, 0U);
+  // The episode that the caller cut short is not one that ended.
+  EXPECT_EQ(simulator.statistics().episodes, 1U);
 }
 
 TEST(Episodes, InWhichTheRobotCannotStartAreSkippedAndListed) {

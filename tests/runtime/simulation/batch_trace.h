@@ -96,7 +96,7 @@ class BatchTrace {
     mixIn(hash, simulator.dones()[env] * 2U + simulator.successes()[env]);
     if (!simulator.bodyTransforms().empty()) {
       const std::size_t bodies = simulator.bodyCount();
-      for (const LinkTransform& body : simulator.bodyTransforms().subspan(env * bodies, bodies)) {
+      for (const RigidTransform& body : simulator.bodyTransforms().subspan(env * bodies, bodies)) {
         addAll(hash, std::bit_cast<std::array<float, 12>>(body));
       }
     }

@@ -111,7 +111,7 @@ class MotionBatch {
   [[nodiscard]] const float* grip(std::size_t env) const {
     return grips_.data() + simulation::kGripStride * env;
   }
-  [[nodiscard]] const LinkTransform& body(std::size_t env, std::size_t n) const {
+  [[nodiscard]] const RigidTransform& body(std::size_t env, std::size_t n) const {
     return bodies_[env * bodyCount() + n];
   }
 
@@ -126,7 +126,7 @@ class MotionBatch {
     std::vector<std::uint32_t> bits;
     append(centres_, bits);
     append(grips_, bits);
-    for (const LinkTransform& body : bodies_) {
+    for (const RigidTransform& body : bodies_) {
       append(std::bit_cast<std::array<float, 12>>(body), bits);
     }
     return bits;
@@ -172,7 +172,7 @@ class MotionBatch {
   std::vector<float> moved_variables_;
   std::vector<float> centres_;
   std::vector<float> grips_;
-  std::vector<LinkTransform> bodies_;
+  std::vector<RigidTransform> bodies_;
   std::vector<AlignedLanes> scratch_;
 };
 

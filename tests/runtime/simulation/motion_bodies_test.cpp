@@ -107,7 +107,7 @@ class SingleRobot {
   void compareLinks(Differences& worst) const {
     for (std::size_t n = 0; n < links_.size(); ++n) {
       const FixedFrame& place = robot_.model.links[n];
-      const LinkTransform& body = batch_.body(env_, static_cast<std::size_t>(place.node + 1));
+      const RigidTransform& body = batch_.body(env_, static_cast<std::size_t>(place.node + 1));
       const auto turned = [&](const Vec3& v) {
         return body.x_axis * v.x + body.y_axis * v.y + body.z_axis * v.z;
       };

@@ -201,7 +201,7 @@ TEST(Move, KnowsSineAndCosineOfAllAnglesUpToAThousandRadians) {
     if (round % 16 == 0) batch.yaw[0] = 1.57079633F * static_cast<float>(round / 128);
     batch.place(motionKernels());
     for (std::size_t env = 0; env < MotionBatch::kEnvs; ++env) {
-      const LinkTransform& root = batch.body(env, 0);
+      const RigidTransform& root = batch.body(env, 0);
       const double yaw = asDouble(batch.yaw[env]);
       worst = std::max({worst, std::abs(asDouble(root.x_axis.x) - std::cos(yaw)),
                         std::abs(asDouble(root.z_axis.x) - std::sin(yaw)),

@@ -1,5 +1,5 @@
 // Threads that step together: to be run under ThreadSanitizer too.
-#include "simulation/workers.h"
+#include "workers.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace galactic::test {
 namespace {
 
-using simulation::Workers;
+using detail::Workers;
 
 constexpr std::array<std::size_t, 4> kThreadCounts{1, 2, 3, 7};
 

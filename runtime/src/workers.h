@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace galactic::simulation {
+namespace galactic::detail {
 
 /// Threads that share a piece of work in parts, again and again. Each part of a round is done once,
 /// by whichever thread takes it first: a thread begins with the part that it also did last time,
@@ -42,4 +42,4 @@ class Workers {
   std::vector<std::jthread> threads_;
 };
 
-}  // namespace galactic::simulation
+}  // namespace galactic::detail

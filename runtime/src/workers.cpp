@@ -1,9 +1,9 @@
-#include "simulation/workers.h"
+#include "workers.h"
 
 #include <algorithm>
 #include <utility>
 
-namespace galactic::simulation {
+namespace galactic::detail {
 namespace {
 
 /// Waits until `value` is no longer `old`.
@@ -72,4 +72,4 @@ void Workers::doParts(std::uint32_t round, std::size_t own) noexcept {
   }
 }
 
-}  // namespace galactic::simulation
+}  // namespace galactic::detail

@@ -1,0 +1,121 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "galactic/error.h"
+#include "galactic/render_library.h"
+#include "galactic/rigid_transform.h"
+
+namespace galactic {
+
+/// What draws.
+enum class RenderBackend : std::uint8_t {
+  kAuto,  ///< `gl` where there is a graphics processor, else `soft`.
+  kSoft,  ///< The rasteriser of this library, on all cores of the processor.
+  kGl,    ///< OpenGL 4.5 through EGL, without a display.
+};
+
+/// Bytes per pixel of colour images.
+enum class ColorFormat : std::uint8_t { kNone = 0, kRgb8 = 3, kRgba8 = 4 };
+
+struct RenderOptions {
+  /// Pixels, 1 to 4096 each.
+  std::uint32_t width = 128;
+  std::uint32_t height = 128;
+  /// Which images the renderer makes.
+  ColorFormat color = ColorFormat::kRgba8;
+  bool depth = true;
+  bool semantics = false;
+  /// What is nearer to the camera's plane is cut off, metres, > 0.
+  float near = 0.05F;
+  /// RGBA, sRGB, R lowest, where nothing is drawn.
+  std::uint32_t background = 0;
+  RenderBackend backend = RenderBackend::kAuto;
+  /// For `gl`: index of the device, "cuda:N", a UUID, "software" for a driver without a graphics
+  /// processor (an error otherwise), or empty for the first graphics processor.
+  std::string device;
+  /// For `soft`: 0 takes all cores. The images do not depend on it.
+  std::uint32_t threads = 0;
+  /// Whether what cannot be seen is left out before it is drawn. The images do not depend on it.
+  bool culling = true;
+};
+
+/// A pinhole camera that looks along +X of its own frame; +Y is up in the image, +Z to the right.
+struct RenderCamera {
+  RigidTransform world_from_camera;
+  /// Radians between the lower and the upper edge of the image, 0 to pi; the horizontal field of
+  /// view follows from the image's shape.
+  float vertical_fov = 1.57079633F;
+};
+
+/// A model, placed.
+struct RenderInstance {
+  /// Number in the RenderLibrary.
+  std::uint32_t model = 0;
+  RigidTransform world_from_model;
+};
+
+/// One image: a camera and what it sees. A camera whose numbers are not finite, or whose field of
+/// view is not within its range, sees nothing.
+struct RenderView {
+  RenderCamera camera;
+  std::span<const RenderInstance> instances;
+};
+
+/// Where the images go: memory of the caller, view after view, rows from top to bottom. What the
+/// options do not ask for is left empty.
+struct RenderTargets {
+  /// Shape: views x height x width x 3 or 4. sRGB; alpha is 255 where something is drawn.
+  std::span<std::uint8_t> color;
+  /// Shape: views x height x width. Metres along the camera's axis; 0 where nothing is drawn.
+  std::span<float> depth;
+  /// Shape: views x height x width. Indices into RenderLibrary::semanticNames().
+  std::span<std::uint32_t> semantics;
+};
+
+/// What the last rendering did, summed over its views.
+struct RenderStatistics {
+  std::uint64_t instances = 0;
+  std::uint64_t clusters = 0;
+  std::uint64_t clusters_drawn = 0;
+  std::uint64_t triangles_drawn = 0;
+};
+
+/// Draws many images of one library together (paper, appendix D). Every image depends on its view
+/// and the options only. Rendering neither allocates (once it has seen its largest load), nor
+/// throws, nor locks. Not safe to call from several threads at once.
+class BatchRenderer {
+ public:
+  /// `library` must outlive the renderer. Fails with kInvalidInput on options out of range, with
+  /// kUnsupported when the backend or the device is not there: the message names what is missing.
+  [[nodiscard]] static Result<BatchRenderer> create(const RenderLibrary& library,
+                                                    const RenderOptions& options);
+  ~BatchRenderer();
+  BatchRenderer(BatchRenderer&&) noexcept;
+  BatchRenderer& operator=(BatchRenderer&&) noexcept;
+
+  /// Draws `views`. The spans of `targets` have the sizes that views and options give.
+  void render(std::span<const RenderView> views, const RenderTargets& targets);
+
+  /// The same in two halves, so that the caller can work meanwhile. What `views` and `targets`
+  /// lead to must stay as it is until endRender() returns.
+  void beginRender(std::span<const RenderView> views, const RenderTargets& targets);
+  void endRender();
+
+  [[nodiscard]] const RenderOptions& options() const;
+  /// kSoft or kGl.
+  [[nodiscard]] RenderBackend backend() const;
+  /// One line for reports: "soft, AVX2, 2 threads", or the OpenGL driver's renderer string.
+  [[nodiscard]] const std::string& description() const;
+  [[nodiscard]] RenderStatistics statistics() const;
+
+ private:
+  class Impl;
+  explicit BatchRenderer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace galactic

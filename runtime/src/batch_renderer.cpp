@@ -1,0 +1,102 @@
+#include "galactic/batch_renderer.h"
+
+#include <cassert>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "render/render_engine.h"
+
+namespace galactic {
+namespace {
+
+constexpr std::uint32_t kLargestImage = 4096;
+
+Result<void> checkOptions(const RenderOptions& options) {
+  const auto refuse = [](const std::string& message) {
+    return fail(ErrorCode::kInvalidInput, "render options", message);
+  };
+  if (options.width < 1 || options.width > kLargestImage || options.height < 1 ||
+      options.height > kLargestImage) {
+    return refuse("found images of " + std::to_string(options.width) + " x " +
+                  std::to_string(options.height) + " pixels; wanted 1 to " +
+                  std::to_string(kLargestImage) + " each");
+  }
+  if (!(options.near > 0) || !std::isfinite(options.near)) {
+    return refuse("found a near plane at " + std::to_string(options.near) +
+                  " m; wanted a distance above 0");
+  }
+  if (options.color == ColorFormat::kNone && !options.depth && !options.semantics) {
+    return refuse("found no image to make; wanted colour, depth or semantics");
+  }
+  return {};
+}
+
+using Made = Result<std::unique_ptr<render::RenderEngine>>;
+
+/// Without a wish, OpenGL only where a graphics processor stands behind it.
+Made makeEngine(const RenderLibrary& library, const RenderOptions& options) {
+  if (options.backend == RenderBackend::kSoft) return render::makeSoftEngine(library, options);
+  Made gl = render::makeGlEngine(library, options);
+  if (gl || options.backend == RenderBackend::kGl) return gl;
+  return render::makeSoftEngine(library, options);
+}
+
+}  // namespace
+
+class BatchRenderer::Impl {
+ public:
+  Impl(const RenderOptions& options, std::unique_ptr<render::RenderEngine> engine)
+      : options_(options), engine_(std::move(engine)), description_(engine_->description()) {}
+
+  void begin(std::span<const RenderView> views, const RenderTargets& targets) {
+    [[maybe_unused]] const std::size_t pixels = views.size() * options_.width * options_.height;
+    assert(targets.color.size() == pixels * static_cast<std::size_t>(options_.color));
+    assert(targets.depth.size() == (options_.depth ? pixels : 0));
+    assert(targets.semantics.size() == (options_.semantics ? pixels : 0));
+    engine_->begin(views, targets);
+  }
+  void end() { engine_->end(); }
+
+  const RenderOptions& options() const { return options_; }
+  const std::string& description() const { return description_; }
+  const render::RenderEngine& engine() const { return *engine_; }
+
+ private:
+  RenderOptions options_;
+  std::unique_ptr<render::RenderEngine> engine_;
+  std::string description_;
+};
+
+Result<BatchRenderer> BatchRenderer::create(const RenderLibrary& library,
+                                            const RenderOptions& options) {
+  if (const Result<void> checked = checkOptions(options); !checked) {
+    return tl::unexpected<Error>(checked.error());
+  }
+  Made engine = makeEngine(library, options);
+  if (!engine) return tl::unexpected<Error>(engine.error());
+  RenderOptions chosen = options;
+  chosen.backend = (*engine)->backend();
+  return BatchRenderer(std::make_unique<Impl>(chosen, std::move(*engine)));
+}
+
+BatchRenderer::BatchRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+BatchRenderer::~BatchRenderer() = default;
+BatchRenderer::BatchRenderer(BatchRenderer&&) noexcept = default;
+BatchRenderer& BatchRenderer::operator=(BatchRenderer&&) noexcept = default;
+
+void BatchRenderer::render(std::span<const RenderView> views, const RenderTargets& targets) {
+  impl_->begin(views, targets);
+  impl_->end();
+}
+void BatchRenderer::beginRender(std::span<const RenderView> views, const RenderTargets& targets) {
+  impl_->begin(views, targets);
+}
+void BatchRenderer::endRender() { impl_->end(); }
+
+const RenderOptions& BatchRenderer::options() const { return impl_->options(); }
+RenderBackend BatchRenderer::backend() const { return impl_->options().backend; }
+const std::string& BatchRenderer::description() const { return impl_->description(); }
+RenderStatistics BatchRenderer::statistics() const { return impl_->engine().statistics(); }
+
+}  // namespace galactic

@@ -1,0 +1,38 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+
+#include "galactic/batch_renderer.h"
+
+namespace galactic::render {
+
+/// One way to draw a batch: what BatchRenderer is made of.
+class RenderEngine {
+ public:
+  RenderEngine() = default;
+  virtual ~RenderEngine() = default;
+  RenderEngine(const RenderEngine&) = delete;
+  RenderEngine& operator=(const RenderEngine&) = delete;
+
+  /// Starts to draw. The spans have the right sizes.
+  virtual void begin(std::span<const RenderView> views, const RenderTargets& targets) = 0;
+  /// Returns when the images are there.
+  virtual void end() = 0;
+
+  /// kSoft or kGl.
+  [[nodiscard]] virtual RenderBackend backend() const = 0;
+  [[nodiscard]] virtual std::string description() const = 0;
+  [[nodiscard]] virtual RenderStatistics statistics() const = 0;
+};
+
+/// `library` must outlive the engine; the options are within range.
+[[nodiscard]] Result<std::unique_ptr<RenderEngine>> makeSoftEngine(const RenderLibrary& library,
+                                                                   const RenderOptions& options);
+[[nodiscard]] Result<std::unique_ptr<RenderEngine>> makeGlEngine(const RenderLibrary& library,
+                                                                 const RenderOptions& options);
+
+/// Whether a camera sees anything: its numbers are finite and its field of view within range.
+[[nodiscard]] bool canSee(const RenderCamera& camera) noexcept;
+
+}  // namespace galactic::render
