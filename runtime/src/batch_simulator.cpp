@@ -199,6 +199,10 @@ EnvState BatchSimulator::envState(std::size_t env) const {
   return simulation::envStateOf(impl_->model(), impl_->state(), env);
 }
 
+EnvObjects BatchSimulator::envObjects(std::size_t env) const noexcept {
+  return simulation::envObjectsOf(impl_->model(), impl_->state(), env);
+}
+
 std::size_t BatchSimulator::bodyCount() const { return impl_->model().motion.nodes.size() + 1; }
 
 LinkOnBody BatchSimulator::linkOnBody(std::size_t link) const {

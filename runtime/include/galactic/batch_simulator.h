@@ -62,6 +62,19 @@ struct EnvState {
   Pose goal;
 };
 
+/// Where the objects of an env are: a view of the simulator, valid until its next step.
+struct EnvObjects {
+  /// Index into World::scenes(), and into the episode set's episodes.
+  std::uint32_t scene = 0;
+  std::uint32_t episode = 0;
+  /// World poses of the episode's objects, in the order of its placements; that of the held one is
+  /// where it rested before.
+  std::span<const Pose> objects;
+  /// Index into `objects`; -1 when nothing is held.
+  std::int32_t held = -1;
+  Pose world_from_held;
+};
+
 /// Where a link sits on the body that carries it.
 struct LinkOnBody {
   std::size_t body = 0;
@@ -133,6 +146,8 @@ class BatchSimulator {
   /// Episodes of the world that are skipped because the robot cannot start in them.
   [[nodiscard]] std::span<const std::uint32_t> skippedEpisodes() const;
   [[nodiscard]] EnvState envState(std::size_t env) const;
+  /// The objects of it alone, without copies: for rendering.
+  [[nodiscard]] EnvObjects envObjects(std::size_t env) const noexcept;
   /// A body is a group of links that no joint moves against each other in this run (joints that
   /// neither actions nor episodes move count as fixed). The root's is body 0.
   [[nodiscard]] std::size_t bodyCount() const;

@@ -6,14 +6,27 @@
 
 namespace galactic::simulation {
 
+EnvObjects envObjectsOf(const Model& model, const BatchState& state, std::size_t n) noexcept {
+  const Env& env = state.env(n);
+  EnvObjects result{.scene = env.scene,
+                    .episode = model.starts[env.start].episode,
+                    .objects = state.objects(n).first(env.objects),
+                    .held = env.held.object,
+                    .world_from_held = {}};
+  if (env.held.object >= 0) {
+    result.world_from_held = gripPose(state.grip(n)) * env.held.grip_from_object;
+  }
+  return result;
+}
+
 EnvState envStateOf(const Model& model, const BatchState& state, std::size_t n) {
   const Env& env = state.env(n);
-  const GripFrame& grip = state.grip(n);
+  const EnvObjects objects = envObjectsOf(model, state, n);
   const Vec3 base = state.base(n);
   const float half_yaw = 0.5F * state.yaw(n);
   EnvState result;
-  result.scene = env.scene;
-  result.episode = model.starts[env.start].episode;
+  result.scene = objects.scene;
+  result.episode = objects.episode;
   result.step = env.step;
   result.world_from_root = {{base.x, base.y + model.motion.base.root_height, base.z},
                             {0, std::sin(half_yaw), 0, std::cos(half_yaw)}};
@@ -22,13 +35,11 @@ EnvState envStateOf(const Model& model, const BatchState& state, std::size_t n) 
   for (std::size_t v = 0; v < model.variableCount(); ++v) {
     result.joint_positions[model.motion.variables[v].position] = state.variable(v, n);
   }
-  result.world_from_grip = gripPose(grip);
-  const std::span<const Pose> objects = state.objects(n).first(env.objects);
-  result.objects.assign(objects.begin(), objects.end());
-  result.held = env.held.object;
-  if (env.held.object >= 0) {
-    result.objects[static_cast<std::size_t>(env.held.object)] =
-        result.world_from_grip * env.held.grip_from_object;
+  result.world_from_grip = gripPose(state.grip(n));
+  result.objects.assign(objects.objects.begin(), objects.objects.end());
+  result.held = objects.held;
+  if (objects.held >= 0) {
+    result.objects[static_cast<std::size_t>(objects.held)] = objects.world_from_held;
   }
   result.target = env.target;
   result.goal = model.episodeOf(env.start).goal;

@@ -8,6 +8,8 @@
 namespace galactic::simulation {
 
 /// See EnvState.
+[[nodiscard]] EnvObjects envObjectsOf(const Model& model, const BatchState& state,
+                                      std::size_t env) noexcept;
 [[nodiscard]] EnvState envStateOf(const Model& model, const BatchState& state, std::size_t env);
 
 }  // namespace galactic::simulation

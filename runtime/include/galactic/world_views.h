@@ -1,0 +1,74 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "galactic/batch_renderer.h"
+#include "galactic/batch_simulator.h"
+#include "galactic/pose.h"
+#include "galactic/world_models.h"
+
+namespace galactic {
+
+/// What a camera moves with.
+enum class CameraFrame : std::uint8_t {
+  kLink,   ///< A link of the robot.
+  kBase,   ///< The robot's base: on the floor under the root, turned by the yaw.
+  kWorld,  ///< Nothing.
+};
+
+/// Where every env's camera is.
+struct CameraMount {
+  CameraFrame frame = CameraFrame::kLink;
+  /// For kLink: index into Robot::links().
+  std::uint32_t link = 0;
+  /// The camera looks along +X of its own frame, +Y is up in the image.
+  Pose frame_from_camera;
+  /// Radians between the lower and the upper edge of the image.
+  float vertical_fov = 1.57079633F;
+};
+
+/// The camera of the robot's recipe; none when it has none.
+[[nodiscard]] std::optional<CameraMount> robotCamera(const Robot& robot);
+
+/// What the cameras of a batch see: one view per env, filled from the simulator's state and valid
+/// while that changes, so that a renderer can draw one step while the next is simulated.
+class WorldViews {
+ public:
+  /// `world` and `models` must outlive the views. `simulator` must have been made with
+  /// SimulationOptions::body_transforms.
+  WorldViews(const World& world, const WorldModels& models, const BatchSimulator& simulator,
+             const CameraMount& camera);
+
+  /// Copies the state after the last step. Does not allocate.
+  void update(const BatchSimulator& simulator) noexcept;
+
+  /// Of the last update. Shape: envs.
+  [[nodiscard]] std::span<const RenderView> views() const { return views_; }
+
+ private:
+  /// A link that is shown, and where it sits on its body.
+  struct PlacedLink {
+    std::uint32_t model = 0;
+    LinkOnBody on_body;
+  };
+
+  void updateEnv(const BatchSimulator& simulator, std::size_t env) noexcept;
+  [[nodiscard]] RigidTransform cameraPose(std::span<const RigidTransform> bodies) const noexcept;
+
+  const World* world_;
+  const WorldModels* models_;
+  CameraFrame frame_;
+  /// The camera's link; the root for kBase.
+  LinkOnBody camera_on_body_;
+  RigidTransform frame_from_camera_;
+  std::vector<PlacedLink> links_;
+  /// Room for the instances of one env.
+  std::size_t stride_ = 0;
+  std::vector<RenderInstance> instances_;
+  std::vector<RenderView> views_;
+};
+
+}  // namespace galactic

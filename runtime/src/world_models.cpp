@@ -1,0 +1,80 @@
+#include "galactic/world_models.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "galactic/object_set.h"
+#include "galactic/scene.h"
+
+namespace galactic {
+namespace {
+
+using ModelOfName = std::map<std::string_view, std::optional<std::uint32_t>, std::less<>>;
+
+Result<RenderMeshes> requiredMeshes(const PackFile& pack) {
+  Result<std::optional<RenderMeshes>> meshes = renderMeshesOf(pack);
+  if (!meshes) return tl::unexpected<Error>(meshes.error());
+  if (!meshes->has_value()) {
+    return fail(ErrorCode::kInvalidInput, pack.where(),
+                "was baked without render meshes, which drawing needs; bake it again with them");
+  }
+  return std::move(**meshes);
+}
+
+/// Adds a pack's models; `name_of(part)` says which of the world's things a model shows.
+template <class NameOf>
+void addNamed(RenderLibrary& library, RenderMeshes meshes, const NameOf& name_of,
+              ModelOfName& models) {
+  std::vector<std::pair<std::string_view, std::uint32_t>> shown;
+  for (std::uint32_t n = 0; n < meshes.models.size(); ++n) {
+    if (meshes.models[n].cluster_count != 0) shown.emplace_back(name_of(meshes.models[n].part), n);
+  }
+  const std::uint32_t first = library.add(std::move(meshes));
+  for (const auto& [name, model] : shown) models[name] = first + model;
+}
+
+std::optional<std::uint32_t> find(const ModelOfName& models, std::string_view name) {
+  const auto found = models.find(name);
+  return found == models.end() ? std::nullopt : found->second;
+}
+
+}  // namespace
+
+Result<WorldModels> WorldModels::from(const World& world) {
+  WorldModels models;
+  ModelOfName scenes;
+  ModelOfName objects;
+  for (const PackFile& pack : world.packs()) {
+    if (pack.kind() == PackKind::kEpisodes) continue;
+    Result<RenderMeshes> meshes = requiredMeshes(pack);
+    if (!meshes) return tl::unexpected<Error>(meshes.error());
+    if (pack.kind() == PackKind::kScene) {
+      const std::string_view name = Scene::from(pack)->name();
+      addNamed(
+          models.library_, std::move(*meshes), [&](std::uint32_t) { return name; }, scenes);
+    } else if (pack.kind() == PackKind::kObjects) {
+      const Result<ObjectSet> set = ObjectSet::from(pack);
+      const auto name_of = [&](std::uint32_t part) { return set->objects()[part].name; };
+      addNamed(models.library_, std::move(*meshes), name_of, objects);
+    } else {
+      const std::vector<RenderModel> robot_models = meshes->models;
+      const std::uint32_t first = models.library_.add(std::move(*meshes));
+      for (std::uint32_t n = 0; n < robot_models.size(); ++n) {
+        if (robot_models[n].cluster_count == 0) continue;
+        models.links_.push_back({robot_models[n].part, first + n});
+      }
+    }
+  }
+  models.scenes_.reserve(world.scenes().size());
+  for (const Scene& scene : world.scenes()) models.scenes_.push_back(find(scenes, scene.name()));
+  models.objects_.reserve(world.episodes().objectNames().size());
+  for (const std::string_view name : world.episodes().objectNames()) {
+    models.objects_.push_back(find(objects, name));
+  }
+  return models;
+}
+
+}  // namespace galactic
