@@ -55,11 +55,8 @@ void WorldViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
       simulator.bodyTransforms().subspan(env * simulator.bodyCount(), simulator.bodyCount());
   std::size_t count = 0;
   if (const auto scene = models_->sceneModel(state.scene)) room[count++] = {*scene, {}};
-  const EpisodeSet& episodes = world_->episodes();
-  const std::span<const Placement> placements =
-      episodes.placements(episodes.episodes()[state.episode]);
   for (std::size_t n = 0; n < state.objects.size(); ++n) {
-    const auto model = models_->objectModel(placements[n].object);
+    const auto model = models_->objectModel(state.placements[n].object);
     if (!model) continue;
     const bool is_held = static_cast<std::int32_t>(n) == state.held;
     room[count++] = {*model, rigidTransform(is_held ? state.world_from_held : state.objects[n])};
