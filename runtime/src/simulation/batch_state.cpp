@@ -3,8 +3,11 @@
 namespace galactic::simulation {
 namespace {
 
+/// A batch of many envs asks the system for its memory at once.
+constexpr std::size_t kTypicalEnvBytes = 4096;
+
 template <class T>
-std::size_t bytesOf(const std::vector<T>& values) {
+std::size_t bytesOf(const std::pmr::vector<T>& values) {
   return values.size() * sizeof(T);
 }
 
@@ -13,7 +16,8 @@ std::size_t paddedToChunks(std::size_t count) { return (count + kChunk - 1) / kC
 }  // namespace
 
 BatchState::BatchState(const Model& model, std::size_t envs)
-    : env_count_(envs),
+    : memory_(paddedToChunks(envs) * kTypicalEnvBytes, &huge_pages_),
+      env_count_(envs),
       most_objects_(model.most_objects),
       held_words_(model.heldWords()),
       body_words_(model.bodyWords()),
@@ -24,7 +28,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   envs_.resize(padded);
   resting_.reserve(padded);
   for (std::size_t n = 0; n < padded; ++n) {
-    resting_.emplace_back(model.most_objects, model.world->radii().back());
+    resting_.emplace_back(model.most_objects, model.world->radii().back(), &memory_);
   }
   objects_.resize(padded * most_objects_);
   grips_.resize(padded);

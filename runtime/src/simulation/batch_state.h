@@ -1,11 +1,12 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
 #include "galactic/pose.h"
+#include "huge_pages.h"
 #include "simulation/model.h"
 #include "simulation/resting_objects.h"
 
@@ -148,6 +149,9 @@ class BatchState {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  detail::HugePages huge_pages_;
+  /// All vectors are made once, one after the other, in here.
+  std::pmr::monotonic_buffer_resource memory_;
   std::size_t env_count_ = 0;
   std::size_t most_objects_ = 0;
   std::size_t held_words_ = 0;
@@ -155,22 +159,22 @@ class BatchState {
   std::size_t joints_ = 0;
   std::size_t observation_size_ = 0;
   std::size_t body_count_ = 0;
-  std::vector<Env> envs_;
-  std::vector<RestingObjects> resting_;
-  std::vector<Pose> objects_;
-  std::vector<GripFrame> grips_;
-  std::vector<std::uint64_t> ignored_;
-  std::vector<std::uint64_t> leaving_;
-  std::vector<float> last_actions_;
-  std::vector<float> x_, y_, z_, yaw_;
+  std::pmr::vector<Env> envs_{&memory_};
+  std::pmr::vector<RestingObjects> resting_{&memory_};
+  std::pmr::vector<Pose> objects_{&memory_};
+  std::pmr::vector<GripFrame> grips_{&memory_};
+  std::pmr::vector<std::uint64_t> ignored_{&memory_};
+  std::pmr::vector<std::uint64_t> leaving_{&memory_};
+  std::pmr::vector<float> last_actions_{&memory_};
+  std::pmr::vector<float> x_{&memory_}, y_{&memory_}, z_{&memory_}, yaw_{&memory_};
   /// Variable v of env n at v * paddedCount() + n.
-  std::vector<float> variables_;
-  std::vector<float> observations_;
-  std::vector<float> final_observations_;
-  std::vector<RigidTransform> bodies_;
-  std::vector<float> rewards_;
-  std::vector<std::uint8_t> dones_;
-  std::vector<std::uint8_t> successes_;
+  std::pmr::vector<float> variables_{&memory_};
+  std::pmr::vector<float> observations_{&memory_};
+  std::pmr::vector<float> final_observations_{&memory_};
+  std::pmr::vector<RigidTransform> bodies_{&memory_};
+  std::pmr::vector<float> rewards_{&memory_};
+  std::pmr::vector<std::uint8_t> dones_{&memory_};
+  std::pmr::vector<std::uint8_t> successes_{&memory_};
 };
 
 }  // namespace galactic::simulation

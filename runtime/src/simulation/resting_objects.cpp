@@ -142,11 +142,12 @@ bool findTouchingPortable(const RestingView& objects, const SphereArrays& sphere
   return false;
 }
 
-RestingObjects::RestingObjects(std::size_t most_objects, float largest_radius)
+RestingObjects::RestingObjects(std::size_t most_objects, float largest_radius,
+                               std::pmr::memory_resource* memory)
     : largest_radius_(largest_radius),
-      planes_(planesFor(most_objects)),
-      boxes_(most_objects),
-      resting_(planes_.size()) {}
+      planes_(planesFor(most_objects), memory),
+      boxes_(most_objects, memory),
+      resting_(planes_.size(), memory) {}
 
 void RestingObjects::clear() noexcept {
   std::fill(planes_.begin(), planes_.end(), SetPlane{});

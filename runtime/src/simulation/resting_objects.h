@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <memory_resource>
 #include <optional>
 #include <span>
 #include <vector>
@@ -28,8 +29,10 @@ struct SphereHit {
 /// construction nothing allocates and nothing throws. One thread at a time; const members from any.
 class RestingObjects {
  public:
-  /// Room for `most_objects` objects. Queries are for spheres of up to `largest_radius`, metres.
-  RestingObjects(std::size_t most_objects, float largest_radius);
+  /// Room for `most_objects` objects, in `memory`. Queries are for spheres of up to
+  /// `largest_radius`, metres.
+  RestingObjects(std::size_t most_objects, float largest_radius,
+                 std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
   /// Forgets all objects.
   void clear() noexcept;
@@ -89,9 +92,9 @@ class RestingObjects {
   void changeSets(std::uint32_t index, const Change& change) noexcept;
 
   float largest_radius_;
-  std::vector<SetPlane> planes_;
-  std::vector<RestingBox> boxes_;
-  std::vector<std::uint32_t> resting_;
+  std::pmr::vector<SetPlane> planes_;
+  std::pmr::vector<RestingBox> boxes_;
+  std::pmr::vector<std::uint32_t> resting_;
 };
 
 }  // namespace galactic::simulation

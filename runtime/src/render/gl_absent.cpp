@@ -1,0 +1,13 @@
+// Stands in for the `gl` backend where it is not built.
+#include "render/render_engine.h"
+
+namespace galactic::render {
+
+Result<std::unique_ptr<RenderEngine>> makeGlEngine(const RenderLibrary& /*library*/,
+                                                   const RenderOptions& /*options*/) {
+  return fail(ErrorCode::kUnsupported, "render options",
+              "the gl backend is not part of this build, which found no libepoxy; use the soft "
+              "backend, or install libepoxy-dev and build again");
+}
+
+}  // namespace galactic::render

@@ -1,0 +1,158 @@
+// Triangles that come too near to the eye, or reach too far beside the image, are cut off
+// (Sutherland and Hodgman). Each edge is cut from the same end by both triangles that share it, so
+// the new corners agree.
+namespace galactic::render {
+namespace {
+
+/// A corner before the division by w: numbers as in PlacedModel.
+struct ClipVertex {
+  float w, x, y;
+  float u, v;
+  float color[4];
+};
+
+constexpr int kClipPlanes = 5;
+/// A triangle gains at most one corner at each plane.
+constexpr int kMostCorners = 3 + kClipPlanes;
+
+struct Polygon {
+  ClipVertex corners[kMostCorners];
+  int count;
+};
+
+/// Not negative where the vertex may stay: the tests of placeEight().
+inline float clipDistance(const ClipVertex& vertex, int plane, float near) {
+  const float guard = kGuard * vertex.w;
+  switch (plane) {
+    case 0:
+      return vertex.w - near;
+    case 1:
+      return guard - vertex.x;
+    case 2:
+      return guard + vertex.x;
+    case 3:
+      return guard - vertex.y;
+    default:
+      return guard + vertex.y;
+  }
+}
+
+/// An order of places that does not depend on which triangle asks.
+inline bool comesFirst(const ClipVertex& a, const ClipVertex& b) {
+  if (a.w != b.w) return a.w < b.w;
+  if (a.x != b.x) return a.x < b.x;
+  return a.y < b.y;
+}
+
+inline ClipVertex cutEdge(const ClipVertex& a, const ClipVertex& b, int plane, float near) {
+  const bool in_order = comesFirst(a, b);
+  const ClipVertex& p = in_order ? a : b;
+  const ClipVertex& q = in_order ? b : a;
+  const float p_distance = clipDistance(p, plane, near);
+  const float share = p_distance / (p_distance - clipDistance(q, plane, near));
+  const auto between = [share](float from, float to) { return from + (to - from) * share; };
+  ClipVertex cut;
+  cut.w = plane == 0 ? near : between(p.w, q.w);
+  cut.x = between(p.x, q.x);
+  cut.y = between(p.y, q.y);
+  cut.u = between(p.u, q.u);
+  cut.v = between(p.v, q.v);
+  for (int n = 0; n < 4; ++n) cut.color[n] = between(p.color[n], q.color[n]);
+  return cut;
+}
+
+inline void cutPolygon(const Polygon& from, int plane, float near, Polygon& to) {
+  to.count = 0;
+  for (int n = 0; n < from.count; ++n) {
+    const ClipVertex& a = from.corners[n];
+    const ClipVertex& b = from.corners[n + 1 == from.count ? 0 : n + 1];
+    const bool a_stays = clipDistance(a, plane, near) >= 0;
+    const bool b_stays = clipDistance(b, plane, near) >= 0;
+    if (a_stays && to.count < kMostCorners) to.corners[to.count++] = a;
+    if (a_stays != b_stays && to.count < kMostCorners) {
+      to.corners[to.count++] = cutEdge(a, b, plane, near);
+    }
+  }
+}
+
+inline ClipVertex clipVertex(const ClusterState& state, std::uint32_t number) {
+  const RenderCluster& cluster = *state.cluster;
+  const VertexFrame& frame = *state.frame;
+  const std::uint16_t* block =
+      state.pack->vertices +
+      static_cast<std::size_t>(cluster.first_vertex + number / kWidth * kWidth) * kVertexRows +
+      number % kWidth;
+  const auto on_lattice = [](std::uint16_t q, std::int32_t origin) {
+    return static_cast<float>(static_cast<std::int32_t>(q) + origin);
+  };
+  const float x = on_lattice(block[0], cluster.origin_x);
+  const float y = on_lattice(block[kWidth], cluster.origin_y);
+  const float z = on_lattice(block[2 * kWidth], cluster.origin_z);
+  const auto at = [&](const float* row) {
+    return ((row[0] * x + row[1] * y) + row[2] * z) + row[3];
+  };
+  ClipVertex vertex{at(frame.w), at(frame.x), at(frame.y), 0, 0, {}};
+  if ((state.surface.kind & 0xFFU) != kFlatSurface) {
+    vertex.u = state.uv[2 * number];
+    vertex.v = state.uv[2 * number + 1];
+  }
+  if (state.pack->colors != nullptr) {
+    const std::uint32_t color = state.pack->colors[cluster.first_vertex + number];
+    for (int n = 0; n < 4; ++n) {
+      vertex.color[n] = static_cast<float>((color >> (8 * n)) & 0xFFU);
+    }
+  }
+  return vertex;
+}
+
+/// 1/256 pixel in the pane; false when the number is none.
+inline bool projected(float value, float inverse, float middle, std::int32_t& place) {
+  constexpr float kMost = 1 << 22;
+  const float exact = value * inverse + middle;
+  if (!(exact > -kMost && exact < kMost)) return false;
+  place = as<std::int32_t>(exact + kToWhole) - as<std::int32_t>(kToWhole);
+  return true;
+}
+
+inline bool toCorner(const VertexFrame& frame, const ClipVertex& vertex, Corner& corner) {
+  corner.z = 1.0F / vertex.w;
+  if (!projected(vertex.x, corner.z, frame.middle_x, corner.x) ||
+      !projected(vertex.y, corner.z, frame.middle_y, corner.y)) {
+    return false;
+  }
+  corner.x -= frame.left;
+  corner.y -= frame.top;
+  corner.u = vertex.u;
+  corner.v = vertex.v;
+  __builtin_memcpy(corner.color, vertex.color, sizeof(corner.color));
+  return true;
+}
+
+/// Draws what is left of a triangle, given by the numbers of its vertices.
+void drawClipped(Pane& pane, ClusterState& state, std::int32_t packed_corners) {
+  const VertexFrame& frame = *state.frame;
+  if ((state.surface.kind & 0xFFU) != kFlatSurface) readCoordinates(state);
+  Polygon polygons[2];
+  const auto corners = static_cast<std::uint32_t>(packed_corners);
+  for (std::uint32_t n = 0; n < 3; ++n) {
+    polygons[0].corners[n] = clipVertex(state, (corners >> (8 * n)) & 0xFFU);
+  }
+  polygons[0].count = 3;
+  int current = 0;
+  for (int plane = 0; plane < kClipPlanes; ++plane) {
+    cutPolygon(polygons[current], plane, frame.near, polygons[1 - current]);
+    current = 1 - current;
+    if (polygons[current].count < 3) return;
+  }
+  const Polygon& rest = polygons[current];
+  Corner ready[kMostCorners];
+  for (int n = 0; n < rest.count; ++n) {
+    if (!toCorner(frame, rest.corners[n], ready[n])) return;
+  }
+  for (int n = 1; n + 1 < rest.count; ++n) {
+    drawLarge(pane, state, ready[0], ready[n], ready[n + 1]);
+  }
+}
+
+}  // namespace
+}  // namespace galactic::render

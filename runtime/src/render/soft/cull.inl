@@ -1,0 +1,282 @@
+// Which clusters of a pane's models may be seen, and in which order they are drawn. What is left
+// out here covers no pixel: all bounds are widened by what rounding and the move of vertices to
+// 1/256 pixel can amount to, so images do not depend on it. Cones of normals are not looked at: a
+// triangle seen almost from its side can turn to the viewer when its vertices are moved.
+namespace galactic::render {
+namespace {
+
+/// Of sums of a few products, relative to the sum of their magnitudes: a generous bound.
+constexpr float kRounding = 2e-6F;
+/// Moves of vertices, in 1/256 pixel, widened.
+constexpr float kMoved = 4;
+constexpr float kUnknownNearness = __builtin_inff();
+/// Of cluster_bounds, as schema/render.fbs has them.
+constexpr std::uint32_t kCentreX = 0;
+constexpr std::uint32_t kHalfX = 3;
+
+/// A pane's edges, in 1/256 pixel from the image's centre.
+struct PaneEdges {
+  float left, right, top, bottom;
+};
+
+inline PaneEdges paneEdges(const PaneTask& task) {
+  const auto units = [](std::uint32_t pixels, std::uint32_t image) {
+    return static_cast<float>(pixels) * kSubpixels - static_cast<float>(image) * (kSubpixels / 2);
+  };
+  return {units(task.left, task.image_width), units(task.left + task.width, task.image_width),
+          units(task.top, task.image_height), units(task.top + task.height, task.image_height)};
+}
+
+/// A linear function of points of a model, and how far it may be off.
+struct Row {
+  float axis[3];
+  float start, error;
+};
+
+inline Row makeRow(const float* row, const ModelTables& model) {
+  float size = magnitude(row[3]);
+  for (int n = 0; n < 3; ++n) {
+    size += magnitude(row[n]) * (magnitude(model.centre[n]) + model.half_extents[n]);
+  }
+  return {{row[0], row[1], row[2]}, row[3], size * kRounding};
+}
+
+/// a * factor + b.
+inline Row combine(const Row& a, float factor, const Row& b) {
+  return {{a.axis[0] * factor + b.axis[0], a.axis[1] * factor + b.axis[1],
+           a.axis[2] * factor + b.axis[2]},
+          a.start * factor + b.start,
+          a.error * magnitude(factor) + b.error};
+}
+
+inline Row negative(const Row& a) {
+  return {{-a.axis[0], -a.axis[1], -a.axis[2]}, -a.start, a.error};
+}
+
+constexpr int kPlanes = 5;
+
+/// A model in front of a pane: a point may be seen where no plane is negative.
+struct CullFrame {
+  Row w, x, y;
+  Row planes[kPlanes];
+  PaneEdges edges;
+  /// What the error of X / w and Y / w amounts to, times w.
+  float projected_error;
+};
+
+inline CullFrame makeFrame(const PaneTask& task, const PlacedModel& placed) {
+  const ModelTables& model = *placed.model;
+  CullFrame frame;
+  frame.w = makeRow(placed.w, model);
+  frame.x = makeRow(placed.x, model);
+  frame.y = makeRow(placed.y, model);
+  frame.edges = paneEdges(task);
+  const PaneEdges& edges = frame.edges;
+  frame.planes[0] = frame.w;
+  frame.planes[0].start -= task.near;
+  frame.planes[1] = combine(frame.w, -(edges.left - kSubpixels), frame.x);
+  frame.planes[2] = combine(frame.w, edges.right + kSubpixels, negative(frame.x));
+  frame.planes[3] = combine(frame.w, -(edges.top - kSubpixels), frame.y);
+  frame.planes[4] = combine(frame.w, edges.bottom + kSubpixels, negative(frame.y));
+  for (Row& plane : frame.planes) plane.start += plane.error;
+  const float widest = 128.0F * static_cast<float>(task.image_width + task.image_height);
+  frame.projected_error = 2 * (frame.x.error + frame.y.error + widest * frame.w.error);
+  return frame;
+}
+
+inline bool mayShow(const CullFrame& frame, const ModelTables& model) {
+  const float* c = model.centre;
+  const float* h = model.half_extents;
+  for (const Row& plane : frame.planes) {
+    const float centre =
+        plane.axis[0] * c[0] + plane.axis[1] * c[1] + plane.axis[2] * c[2] + plane.start;
+    const float reach = magnitude(plane.axis[0]) * h[0] + magnitude(plane.axis[1]) * h[1] +
+                        magnitude(plane.axis[2]) * h[2];
+    if (centre + reach < 0) return false;
+  }
+  return true;
+}
+
+/// The boxes of eight clusters.
+struct BoxLanes {
+  Lanes centre[3];
+  Lanes half[3];
+};
+
+inline Lanes atCentre(const Row& row, const BoxLanes& box) {
+  return spread(row.axis[0]) * box.centre[0] + spread(row.axis[1]) * box.centre[1] +
+         spread(row.axis[2]) * box.centre[2] + spread(row.start);
+}
+
+inline Lanes reachOf(const Row& row, const BoxLanes& box) {
+  return spread(magnitude(row.axis[0])) * box.half[0] +
+         spread(magnitude(row.axis[1])) * box.half[1] +
+         spread(magnitude(row.axis[2])) * box.half[2];
+}
+
+/// Bit n: box n is not outside of one of the planes.
+inline unsigned withinPlanes(const CullFrame& frame, const BoxLanes& box) {
+  IntLanes outside = spread(0);
+  for (const Row& plane : frame.planes) {
+    outside |= (atCentre(plane, box) + reachOf(plane, box)) < spread(0.0F);
+  }
+  return ~signBits(outside) & kAllLanes;
+}
+
+struct Interval {
+  Lanes low, high;
+};
+
+/// What eight boxes cover of the pane, pixels from its edges; both may lie outside of it.
+struct Footprint {
+  Interval x, y;
+};
+
+/// The interval of (row / w) over the corners of the boxes, for boxes in front of the eye.
+Footprint footprint(const CullFrame& frame, const BoxLanes& box) {
+  Lanes w_steps[3];
+  Lanes x_steps[3];
+  Lanes y_steps[3];
+  for (int n = 0; n < 3; ++n) {
+    w_steps[n] = spread(frame.w.axis[n]) * box.half[n];
+    x_steps[n] = spread(frame.x.axis[n]) * box.half[n];
+    y_steps[n] = spread(frame.y.axis[n]) * box.half[n];
+  }
+  const Lanes w = atCentre(frame.w, box);
+  const Lanes x = atCentre(frame.x, box);
+  const Lanes y = atCentre(frame.y, box);
+  const Lanes far = spread(1e30F);
+  Footprint result{{far, -far}, {far, -far}};
+  const auto corner_value = [](Lanes centre, const Lanes* steps, unsigned corner) {
+    const Lanes a = (corner & 1U) != 0 ? centre + steps[0] : centre - steps[0];
+    const Lanes b = (corner & 2U) != 0 ? a + steps[1] : a - steps[1];
+    return (corner & 4U) != 0 ? b + steps[2] : b - steps[2];
+  };
+#pragma GCC unroll 8
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const Lanes inverse = spread(1.0F) / corner_value(w, w_steps, corner);
+    const Lanes px = corner_value(x, x_steps, corner) * inverse;
+    const Lanes py = corner_value(y, y_steps, corner) * inverse;
+    result.x = {lesser(result.x.low, px), greater(result.x.high, px)};
+    result.y = {lesser(result.y.low, py), greater(result.y.high, py)};
+  }
+  return result;
+}
+
+/// First and last pixel whose centre lies in the interval; none where first > last.
+struct PixelRange {
+  IntLanes first, last;
+};
+
+/// `edge`: where the pane begins, in the units of the interval; `count`: its pixels.
+inline PixelRange pixelsWithin(const Interval& interval, Lanes error, float edge,
+                               std::uint32_t count) {
+  const float half = kSubpixels / 2;
+  const Lanes low = (interval.low - error - spread(edge + half)) * spread(1.0F / kSubpixels);
+  const Lanes high = (interval.high + error - spread(edge + half)) * spread(1.0F / kSubpixels);
+  const auto most = static_cast<float>(count);
+  const Lanes low_clamped = clampTo(low, 0, most);
+  const IntLanes low_int = toInt(low_clamped);
+  const IntLanes first = low_int - (toFloat(low_int) < low_clamped);
+  // One more, so that what ends left of the first pixel has none.
+  const IntLanes last = toInt(clampTo(high + spread(1.0F), 0, most)) - spread(1);
+  return {first, last};
+}
+
+/// Nearness, tiles and pixels of eight clusters.
+struct EightSeen {
+  unsigned seen;
+  Lanes nearest;
+  Lanes distance;
+  PixelRange x, y;
+};
+
+EightSeen lookAtEight(const PaneTask& task, const CullFrame& frame, const float* bounds) {
+  BoxLanes box;
+  for (std::uint32_t n = 0; n < 3; ++n) {
+    box.centre[n] = load<Lanes>(bounds + kWidth * (kCentreX + n));
+    box.half[n] = load<Lanes>(bounds + kWidth * (kHalfX + n));
+  }
+  EightSeen eight;
+  eight.seen = task.culling ? withinPlanes(frame, box) : kAllLanes;
+  if (eight.seen == 0) return eight;
+  eight.distance = atCentre(frame.w, box) - reachOf(frame.w, box) - spread(frame.w.error);
+  eight.nearest = spread(kUnknownNearness);
+  const auto last_x = static_cast<std::int32_t>(task.width) - 1;
+  const auto last_y = static_cast<std::int32_t>(task.height) - 1;
+  eight.x = {spread(0), spread(last_x)};
+  eight.y = {spread(0), spread(last_y)};
+  if (!task.culling) return eight;
+  const IntLanes in_front = eight.distance > spread(task.near);
+  if ((signBits(in_front) & eight.seen) == 0) return eight;
+  const Lanes inverse = spread(1.0F) / eight.distance;
+  // A part in a million more: the division is rounded.
+  eight.nearest = pick(in_front, inverse * spread(1.000001F), eight.nearest);
+  const Lanes error = spread(frame.projected_error) * inverse + spread(kMoved);
+  const Footprint covered = footprint(frame, box);
+  const PixelRange x = pixelsWithin(covered.x, error, frame.edges.left, task.width);
+  const PixelRange y = pixelsWithin(covered.y, error, frame.edges.top, task.height);
+  const IntLanes none = in_front & ((x.first > x.last) | (y.first > y.last));
+  eight.seen &= ~signBits(none);
+  eight.x = {pick(in_front, x.first, eight.x.first), pick(in_front, x.last, eight.x.last)};
+  eight.y = {pick(in_front, y.first, eight.y.first), pick(in_front, y.last, eight.y.last)};
+  return eight;
+}
+
+/// Buckets of equal ratio, sixteen for each doubling of the distance from the near plane.
+inline IntLanes bucketsOf(Lanes distance, float near) {
+  const IntLanes bits = as<IntLanes>(greater(distance, spread(near)));
+  const IntLanes bucket = (bits - spread(as<std::int32_t>(near))) >> 19;
+  return lesser(greater(bucket, spread(0)), spread(static_cast<std::int32_t>(kBuckets) - 1));
+}
+
+inline void noteEight(const EightSeen& eight, IntLanes buckets, SeenCluster first,
+                      SeenCluster*& end) {
+  for (unsigned left = eight.seen; left != 0; left &= left - 1) {
+    const int n = __builtin_ctz(left);
+    SeenCluster& seen = *end++;
+    seen = first;
+    seen.cluster += static_cast<std::uint32_t>(n);
+    seen.nearest = eight.nearest[n];
+    seen.bucket = static_cast<std::uint32_t>(buckets[n]);
+    constexpr auto kEdge = static_cast<std::int32_t>(kTileEdge);
+    seen.tiles[0] = static_cast<std::uint8_t>(eight.x.first[n] / kEdge);
+    seen.tiles[1] = static_cast<std::uint8_t>(eight.x.last[n] / kEdge);
+    seen.tiles[2] = static_cast<std::uint8_t>(eight.y.first[n] / kEdge);
+    seen.tiles[3] = static_cast<std::uint8_t>(eight.y.last[n] / kEdge);
+  }
+}
+
+/// Fills scratch.seen; returns how many there are.
+std::uint32_t findClusters(const PaneTask& task, const PaneScratch& scratch, PaneCounts& counts) {
+  SeenCluster* end = scratch.seen;
+  for (std::uint32_t m = 0; m < task.model_count; ++m) {
+    const PlacedModel& placed = task.models[m];
+    const ModelTables& model = *placed.model;
+    counts.clusters += model.cluster_count;
+    const CullFrame frame = makeFrame(task, placed);
+    if (task.culling && !mayShow(frame, model)) continue;
+    const float* bounds = model.pack->cluster_bounds +
+                          static_cast<std::size_t>(model.first_block) * kBoundsRows * kWidth;
+    for (std::uint32_t c = 0; c < model.cluster_count; c += kWidth) {
+      EightSeen eight = lookAtEight(task, frame, bounds);
+      bounds += kBoundsRows * kWidth;
+      if (model.cluster_count - c < kWidth) eight.seen &= (1U << (model.cluster_count - c)) - 1;
+      if (eight.seen == 0) continue;
+      noteEight(eight, bucketsOf(eight.distance, task.near), {.model = m, .cluster = c}, end);
+    }
+  }
+  return static_cast<std::uint32_t>(end - scratch.seen);
+}
+
+/// Fills scratch.order: by bucket; within one as found, that is by model, then cluster.
+void sortClusters(const PaneScratch& scratch, std::uint32_t count) {
+  std::uint32_t* starts = scratch.bucket_starts;
+  __builtin_memset(starts, 0, (kBuckets + 1) * sizeof(*starts));
+  for (std::uint32_t n = 0; n < count; ++n) ++starts[scratch.seen[n].bucket + 1];
+  for (std::uint32_t b = 0; b < kBuckets; ++b) starts[b + 1] += starts[b];
+  for (std::uint32_t n = 0; n < count; ++n) scratch.order[starts[scratch.seen[n].bucket]++] = n;
+}
+
+}  // namespace
+}  // namespace galactic::render

@@ -1,0 +1,223 @@
+// Vectors of eight: the few operations that the kernels are made of. Written with the compilers'
+// vector extensions; where AVX2 has an instruction that they do not find, it is named. Both ways
+// give the same bits.
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
+namespace galactic::render {
+namespace {
+
+using Lanes = float __attribute__((vector_size(32)));
+using IntLanes = std::int32_t __attribute__((vector_size(32)));
+using WordLanes = std::uint32_t __attribute__((vector_size(32)));
+using ShortLanes = std::uint16_t __attribute__((vector_size(32)));
+using EightBytes = std::uint8_t __attribute__((vector_size(8)));
+using EightShorts = std::uint16_t __attribute__((vector_size(16)));
+
+constexpr std::uint32_t kWidth = 8;
+constexpr unsigned kAllLanes = 0xFF;
+
+/// The same bits as another type.
+template <class To, class From>
+inline To as(From from) {
+  static_assert(sizeof(To) == sizeof(From));
+  To to;
+  __builtin_memcpy(&to, &from, sizeof(to));
+  return to;
+}
+
+template <class Vector>
+inline Vector load(const void* from) {
+  Vector lanes;
+  __builtin_memcpy(&lanes, from, sizeof(lanes));
+  return lanes;
+}
+
+template <class Vector>
+inline void store(void* to, Vector lanes) {
+  __builtin_memcpy(to, &lanes, sizeof(lanes));
+}
+
+inline Lanes spread(float v) { return Lanes{v, v, v, v, v, v, v, v}; }
+inline IntLanes spread(std::int32_t v) { return IntLanes{v, v, v, v, v, v, v, v}; }
+
+inline Lanes toFloat(IntLanes v) { return __builtin_convertvector(v, Lanes); }
+/// Towards 0; the values lie within the range of integers.
+inline IntLanes toInt(Lanes v) { return __builtin_convertvector(v, IntLanes); }
+
+/// `mask`: all bits of a lane, or none.
+inline IntLanes pick(IntLanes mask, IntLanes yes, IntLanes no) {
+#if defined(__AVX2__)
+  return as<IntLanes>(_mm256_blendv_epi8(as<__m256i>(no), as<__m256i>(yes), as<__m256i>(mask)));
+#else
+  return (yes & mask) | (no & ~mask);
+#endif
+}
+
+inline Lanes pick(IntLanes mask, Lanes yes, Lanes no) {
+#if defined(__AVX2__)
+  return as<Lanes>(_mm256_blendv_ps(as<__m256>(no), as<__m256>(yes), as<__m256>(mask)));
+#else
+  return as<Lanes>(pick(mask, as<IntLanes>(yes), as<IntLanes>(no)));
+#endif
+}
+
+/// By the sign bits alone.
+inline Lanes pickBySign(IntLanes sign, Lanes yes, Lanes no) {
+#if defined(__AVX2__)
+  return pick(sign, yes, no);
+#else
+  return pick(sign >> 31, yes, no);
+#endif
+}
+
+inline IntLanes pickBySign(IntLanes sign, IntLanes yes, IntLanes no) {
+  return as<IntLanes>(pickBySign(sign, as<Lanes>(yes), as<Lanes>(no)));
+}
+
+/// The second where the comparison fails, as with numbers that are none.
+inline Lanes lesser(Lanes a, Lanes b) {
+#if defined(__AVX2__)
+  return as<Lanes>(_mm256_min_ps(as<__m256>(a), as<__m256>(b)));
+#else
+  return pick(a < b, a, b);
+#endif
+}
+
+inline Lanes greater(Lanes a, Lanes b) {
+#if defined(__AVX2__)
+  return as<Lanes>(_mm256_max_ps(as<__m256>(a), as<__m256>(b)));
+#else
+  return pick(a > b, a, b);
+#endif
+}
+
+inline IntLanes lesser(IntLanes a, IntLanes b) {
+#if defined(__AVX2__)
+  return as<IntLanes>(_mm256_min_epi32(as<__m256i>(a), as<__m256i>(b)));
+#else
+  return pick(a < b, a, b);
+#endif
+}
+
+inline IntLanes greater(IntLanes a, IntLanes b) {
+#if defined(__AVX2__)
+  return as<IntLanes>(_mm256_max_epi32(as<__m256i>(a), as<__m256i>(b)));
+#else
+  return pick(a > b, a, b);
+#endif
+}
+
+inline Lanes clampTo(Lanes v, float low, float high) {
+  return lesser(greater(v, spread(low)), spread(high));
+}
+
+inline Lanes magnitude(Lanes v) { return as<Lanes>(as<IntLanes>(v) & 0x7FFFFFFF); }
+inline float magnitude(float v) { return v < 0 ? -v : v; }
+
+/// Bit n: the sign of lane n.
+inline unsigned signBits(IntLanes v) {
+#if defined(__AVX2__)
+  return static_cast<unsigned>(_mm256_movemask_ps(as<__m256>(v)));
+#else
+  unsigned bits = 0;
+  for (unsigned n = 0; n < kWidth; ++n) bits |= (static_cast<unsigned>(v[n]) >> 31U) << n;
+  return bits;
+#endif
+}
+
+/// Products and differences that may wrap around: of lanes whose result is not used.
+inline IntLanes wrapMultiply(IntLanes a, IntLanes b) {
+  return as<IntLanes>(as<WordLanes>(a) * as<WordLanes>(b));
+}
+inline IntLanes wrapSubtract(IntLanes a, IntLanes b) {
+  return as<IntLanes>(as<WordLanes>(a) - as<WordLanes>(b));
+}
+
+inline IntLanes gather(const std::int32_t* from, IntLanes at) {
+#if defined(__AVX2__)
+  return as<IntLanes>(_mm256_i32gather_epi32(from, as<__m256i>(at), 4));
+#else
+  IntLanes lanes;
+  for (unsigned n = 0; n < kWidth; ++n) lanes[n] = from[at[n]];
+  return lanes;
+#endif
+}
+
+inline Lanes gather(const float* from, IntLanes at) {
+#if defined(__AVX2__)
+  return as<Lanes>(_mm256_i32gather_ps(from, as<__m256i>(at), 4));
+#else
+  Lanes lanes;
+  for (unsigned n = 0; n < kWidth; ++n) lanes[n] = from[at[n]];
+  return lanes;
+#endif
+}
+
+template <class Vector>
+struct Pair {
+  Vector first, second;
+};
+
+/// Elements 2 * at and 2 * at + 1.
+inline Pair<IntLanes> gatherPairs(const std::int32_t* from, IntLanes at) {
+#if defined(__AVX2__)
+  // Lanes 0, 1, 4, 5 and 2, 3, 6, 7, so that the shuffles below put them in order.
+  const __m256i mixed = _mm256_permute4x64_epi64(as<__m256i>(at), 0xD8);
+  const auto* pairs = reinterpret_cast<const long long*>(from);
+  const __m256i a = _mm256_i32gather_epi64(pairs, _mm256_castsi256_si128(mixed), 8);
+  const __m256i b = _mm256_i32gather_epi64(pairs, _mm256_extracti128_si256(mixed, 1), 8);
+  const __m256 low = as<__m256>(a);
+  const __m256 high = as<__m256>(b);
+  return {as<IntLanes>(_mm256_shuffle_ps(low, high, 0x88)),
+          as<IntLanes>(_mm256_shuffle_ps(low, high, 0xDD))};
+#else
+  Pair<IntLanes> result;
+  for (unsigned n = 0; n < kWidth; ++n) {
+    result.first[n] = from[2 * at[n]];
+    result.second[n] = from[2 * at[n] + 1];
+  }
+  return result;
+#endif
+}
+
+inline Pair<Lanes> gatherPairs(const float* from, IntLanes at) {
+#if defined(__AVX2__)
+  const Pair<IntLanes> bits = gatherPairs(reinterpret_cast<const std::int32_t*>(from), at);
+  return {as<Lanes>(bits.first), as<Lanes>(bits.second)};
+#else
+  Pair<Lanes> result;
+  for (unsigned n = 0; n < kWidth; ++n) {
+    result.first[n] = from[2 * at[n]];
+    result.second[n] = from[2 * at[n] + 1];
+  }
+  return result;
+#endif
+}
+
+/// Writes the lanes of both in turn: what gatherPairs reads.
+template <class Vector, class Element>
+inline void storePairs(Element* to, Vector first, Vector second) {
+  store(to, __builtin_shufflevector(first, second, 0, 8, 1, 9, 2, 10, 3, 11));
+  store(to + kWidth, __builtin_shufflevector(first, second, 4, 12, 5, 13, 6, 14, 7, 15));
+}
+
+inline IntLanes widen(EightShorts v) { return __builtin_convertvector(v, IntLanes); }
+inline IntLanes widen(EightBytes v) {
+#if defined(__AVX2__)
+  return as<IntLanes>(_mm256_cvtepu8_epi32(_mm_cvtsi64_si128(as<long long>(v))));
+#else
+  return __builtin_convertvector(v, IntLanes);
+#endif
+}
+
+inline float least(Lanes v) {
+  v = lesser(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
+  v = lesser(v, __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5));
+  v = lesser(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6));
+  return v[0];
+}
+
+}  // namespace
+}  // namespace galactic::render

@@ -1,0 +1,166 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "galactic/render_meshes.h"
+
+// What the kernels of the rasteriser read and write, as bare pointers and plain numbers: the code
+// built for AVX2 must not instantiate library templates, which the linker could then share with
+// code for any processor.
+namespace galactic::render {
+
+/// Images are drawn in panes of at most this edge, so that what a pane needs stays in the cache.
+inline constexpr std::uint32_t kPaneEdge = 256;
+/// Pixels are stored in blocks of 4 x 2, which are one vector; rows of blocks follow each other.
+inline constexpr std::uint32_t kBlockWidth = 4;
+inline constexpr std::uint32_t kBlockHeight = 2;
+/// Edge of the squares that the hierarchical depth test looks at.
+inline constexpr std::uint32_t kTileEdge = 8;
+inline constexpr std::uint32_t kMostTiles = kPaneEdge / kTileEdge;
+
+/// Lattice points per pixel to which vertices are moved: what makes edge functions exact.
+inline constexpr std::int32_t kSubpixels = 256;
+
+/// How a material looks to the shader.
+struct SurfaceTexels {
+  /// Flat: the colour, RGBA, R lowest. Else the number of the first texel, from the base.
+  std::uint32_t texels = 0;
+  /// kFlatSurface, or log2 of the edge of the texture and, from bit 8 on, the number of the base.
+  std::uint32_t kind = 0;
+  /// What has less alpha than this, of 255, is not there. 0: opaque.
+  std::uint32_t least_alpha = 0;
+};
+inline constexpr std::uint32_t kFlatSurface = 0xFF;
+/// Bit of a triangle's kind: its corners have colours.
+inline constexpr std::uint32_t kHasColors = 1U << 31U;
+
+/// The pools of one pack.
+struct PackTables {
+  const RenderCluster* clusters = nullptr;
+  const float* cluster_bounds = nullptr;
+  const std::uint16_t* vertices = nullptr;
+  /// Null where there are none.
+  const std::uint32_t* colors = nullptr;
+  const std::uint8_t* triangles = nullptr;
+  const SurfaceTexels* surfaces = nullptr;
+  /// Semantic id in images of the pack's semantic 0.
+  std::uint32_t first_semantic = 0;
+};
+
+struct ModelTables {
+  const PackTables* pack = nullptr;
+  float step = 0;
+  std::uint32_t first_cluster = 0;
+  std::uint32_t cluster_count = 0;
+  std::uint32_t first_block = 0;
+  /// Metres, in the frame of the part.
+  float centre[3] = {};
+  float half_extents[3] = {};
+};
+
+/// A model in front of the camera. The rows take a point of the model to w, metres along the
+/// camera's axis, and to X and Y: X / w and Y / w count in 1/256 pixels from the image's centre, to
+/// the right and down.
+struct PlacedModel {
+  const ModelTables* model = nullptr;
+  float w[4] = {};
+  float x[4] = {};
+  float y[4] = {};
+};
+
+/// One pane of one image.
+struct PaneTask {
+  const PlacedModel* models = nullptr;
+  std::uint32_t model_count = 0;
+  /// Bases of texels, by the numbers in SurfaceTexels::kind.
+  const std::uint32_t* const* texel_bases = nullptr;
+  /// Of the whole image, pixels.
+  std::uint32_t image_width = 0;
+  std::uint32_t image_height = 0;
+  /// The pane within it.
+  std::uint32_t left = 0;
+  std::uint32_t top = 0;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  float near = 0;
+  std::uint32_t background = 0;
+  bool culling = true;
+  /// The image: null where it is not wanted. `channels`: 3 or 4.
+  std::uint8_t* color = nullptr;
+  std::uint32_t channels = 4;
+  float* depth = nullptr;
+  std::uint32_t* semantics = nullptr;
+};
+
+/// A cluster that may be seen.
+struct SeenCluster {
+  /// Index into PaneTask::models.
+  std::uint32_t model = 0;
+  /// Within its model.
+  std::uint32_t cluster = 0;
+  /// At least the largest 1/w of it; infinite when it comes too near.
+  float nearest = 0;
+  /// The tiles that it can touch: first and last column, first and last row.
+  std::uint8_t tiles[4] = {};
+  /// By distance: nearer ones have a lower number.
+  std::uint32_t bucket = 0;
+};
+inline constexpr std::uint32_t kBuckets = 512;
+
+/// Rows of a group of records: eight triangles that are shaded later. Texture coordinates are in
+/// texels of the largest level.
+enum RecordRow : std::uint32_t {
+  kURight,  ///< Change of u / w with each pixel to the right.
+  kUDown,   ///< With each pixel down.
+  kUStart,  ///< At the centre of the pane's first pixel.
+  kVRight,
+  kVDown,
+  kVStart,
+  kWRight,  ///< Of 1 / w.
+  kWDown,
+  kTexels,  ///< SurfaceTexels::texels; this row and the next two hold integers.
+  kKind,
+  kSemantic,
+  kSpareRow,
+  kRecordRows
+};
+/// Rows of the colours' planes: red, green, blue, alpha, each as right, down, start.
+inline constexpr std::uint32_t kColorRows = 12;
+/// Groups of records that a pane has room for; when they are used up, what is seen so far is
+/// shaded.
+inline constexpr std::uint32_t kRecordGroups = 4096;
+
+/// What a thread needs to draw panes. All pointers are aligned to 64 bytes.
+struct PaneScratch {
+  /// 1/w by pixel: 0 where nothing is, infinite outside of the image.
+  float* depth = nullptr;
+  /// Record by pixel: group * 8 + lane; 0 for background, kShaded where the image has the colour.
+  std::int32_t* ids = nullptr;
+  /// Least 1/w of each tile, where it is not marked as changed since.
+  float* tile_depth = nullptr;
+  std::uint8_t* tile_changed = nullptr;
+  /// Room for all clusters of a view.
+  SeenCluster* seen = nullptr;
+  std::uint32_t* order = nullptr;
+  std::uint32_t* bucket_starts = nullptr;
+  float* records = nullptr;
+  float* colors = nullptr;
+};
+inline constexpr std::int32_t kShaded = -1;
+
+/// What a pane took.
+struct PaneCounts {
+  std::uint64_t clusters = 0;
+  std::uint64_t clusters_drawn = 0;
+  std::uint64_t triangles_drawn = 0;
+};
+
+/// Draws a pane. Both versions do the same operations in the same order, and none is contracted:
+/// the images agree bit for bit.
+using DrawPane = PaneCounts (*)(const PaneTask&, const PaneScratch&) noexcept;
+/// For any processor.
+PaneCounts drawPanePortable(const PaneTask& task, const PaneScratch& scratch) noexcept;
+/// For processors with AVX2.
+PaneCounts drawPaneAvx2(const PaneTask& task, const PaneScratch& scratch) noexcept;
+
+}  // namespace galactic::render

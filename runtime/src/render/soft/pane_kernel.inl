@@ -1,0 +1,148 @@
+// Draws a pane: included by pane_portable.cpp and pane_avx2.cpp, which differ only in the
+// instructions that they may use. No library templates here or in the files that this one is made
+// of: see column_grid_avx2.cpp.
+// Each builds on those before it.
+// clang-format off
+#include "render/soft/lanes.inl"
+#include "render/soft/cull.inl"
+#include "render/soft/vertices.inl"
+#include "render/soft/coverage.inl"
+#include "render/soft/triangles.inl"
+#include "render/soft/sample.inl"
+#include "render/soft/records.inl"
+#include "render/soft/resolve.inl"
+#include "render/soft/large.inl"
+#include "render/soft/clip.inl"
+// clang-format on
+
+namespace galactic::render {
+namespace {
+
+/// Empties the pane. What lies beyond the image counts as covered by something very near.
+void clearPane(Pane& pane) {
+  const PaneTask& task = *pane.task;
+  const PaneScratch& scratch = *pane.scratch;
+  const std::uint32_t tiles_down = (task.height + kTileEdge - 1) / kTileEdge;
+  pane.tile_columns = (task.width + kTileEdge - 1) / kTileEdge;
+  pane.columns = pane.tile_columns * (kTileEdge / kBlockWidth);
+  pane.rows = tiles_down * (kTileEdge / kBlockHeight);
+  pane.groups = 1;
+  pane.open_lane = kWidth;
+  pane.shades = task.color != nullptr || task.semantics != nullptr;
+  const std::size_t blocks = std::size_t{pane.columns} * pane.rows;
+  __builtin_memset(scratch.ids, 0, blocks * kWidth * sizeof(*scratch.ids));
+  __builtin_memset(scratch.depth, 0, blocks * kWidth * sizeof(*scratch.depth));
+  const std::size_t tiles = std::size_t{pane.tile_columns} * tiles_down;
+  __builtin_memset(scratch.tile_depth, 0, tiles * sizeof(*scratch.tile_depth));
+  __builtin_memset(scratch.tile_changed, 0, tiles);
+  if (task.width % kTileEdge == 0 && task.height % kTileEdge == 0) return;
+  for (std::uint32_t row = 0; row < pane.rows; ++row) {
+    for (std::uint32_t column = 0; column < pane.columns; ++column) {
+      const IntLanes x = spread(static_cast<std::int32_t>(column * kBlockWidth)) + laneRight();
+      const IntLanes y = spread(static_cast<std::int32_t>(row * kBlockHeight)) + laneDown();
+      const IntLanes outside = (x >= spread(static_cast<std::int32_t>(task.width))) |
+                               (y >= spread(static_cast<std::int32_t>(task.height)));
+      store(scratch.depth + (std::size_t{row} * pane.columns + column) * kWidth,
+            as<IntLanes>(spread(__builtin_inff())) & outside);
+    }
+  }
+}
+
+/// Group 0 of the records: the background, a flat surface of its colour.
+void recordBackground(const Pane& pane) {
+  float* record = recordsOf(pane, 0);
+  __builtin_memset(record, 0, sizeof(float) * kRecordRows * kWidth);
+  __builtin_memset(colorsOf(pane, 0), 0, sizeof(float) * kColorRows * kWidth);
+  store(record + kTexels * kWidth, spread(static_cast<std::int32_t>(pane.task->background)));
+  store(record + kKind * kWidth, spread(static_cast<std::int32_t>(kFlatSurface)));
+}
+
+/// Draws up to eight small triangles.
+void drawGroup(Pane& pane, ClusterState& state, const std::int32_t* corners, std::uint32_t count) {
+  if (pane.groups == kRecordGroups) makeRoom(pane);
+  alignas(32) std::int32_t eight[kWidth];
+  for (std::uint32_t n = 0; n < kWidth; ++n) eight[n] = corners[n < count ? n : 0];
+  SmallGroup group;
+  GroupSetup setup;
+  setUpGroup(pane, state, load<IntLanes>(eight), group, setup);
+  const auto first_id = static_cast<std::int32_t>(pane.groups * kWidth);
+  bool seen = false;
+  if (state.surface.least_alpha != 0) {
+    recordGroup(pane, state, group);
+    for (std::uint32_t n = 0; n < count; ++n) {
+      const AlphaTest test = alphaTest(pane, state, pane.groups, n);
+      seen |= coverTriangle(pane, setup, n, first_id + static_cast<std::int32_t>(n), test);
+    }
+  } else {
+    for (std::uint32_t n = 0; n < count; ++n) {
+      seen |= coverTriangle(pane, setup, n, first_id + static_cast<std::int32_t>(n), Opaque{});
+    }
+    if (seen && pane.shades) recordGroup(pane, state, group);
+  }
+  if (seen) ++pane.groups;
+}
+
+inline Corner cornerOf(const ClusterState& state, std::uint32_t number) {
+  const ClipVertex vertex = clipVertex(state, number);
+  Corner corner{
+      state.xy[2 * number], state.xy[2 * number + 1], state.z[number], vertex.u, vertex.v, {}};
+  __builtin_memcpy(corner.color, vertex.color, sizeof(corner.color));
+  return corner;
+}
+
+void drawTriangles(Pane& pane, ClusterState& state, const Survivors& survivors) {
+  for (std::uint32_t n = 0; n < survivors.small_count; n += kWidth) {
+    const std::uint32_t left = survivors.small_count - n;
+    drawGroup(pane, state, survivors.small + n, left < kWidth ? left : kWidth);
+  }
+  pane.counts.triangles_drawn += survivors.small_count;
+  if (survivors.large_count != 0 && (state.surface.kind & 0xFFU) != kFlatSurface) {
+    readCoordinates(state);
+  }
+  for (std::uint32_t n = 0; n < survivors.large_count; ++n) {
+    const auto corners = static_cast<std::uint32_t>(survivors.large[n]);
+    drawLarge(pane, state, cornerOf(state, corners & 0xFFU),
+              cornerOf(state, (corners >> 8U) & 0xFFU), cornerOf(state, (corners >> 16U) & 0xFFU));
+  }
+  for (std::uint32_t n = 0; n < survivors.clipped_count; ++n) {
+    drawClipped(pane, state, survivors.clipped[n]);
+  }
+}
+
+void drawCluster(Pane& pane, const SeenCluster& seen) {
+  const PlacedModel& placed = pane.task->models[seen.model];
+  const ModelTables& model = *placed.model;
+  const VertexFrame frame = vertexFrame(*pane.task, placed);
+  ClusterState state;
+  state.has_coordinates = false;
+  state.pack = model.pack;
+  state.cluster = model.pack->clusters + model.first_cluster + seen.cluster;
+  state.frame = &frame;
+  state.surface = model.pack->surfaces[state.cluster->material];
+  state.semantic = model.pack->first_semantic + state.cluster->semantic;
+  placeVertices(state);
+  Survivors survivors;
+  sortTriangles(pane, state, survivors);
+  drawTriangles(pane, state, survivors);
+  ++pane.counts.clusters_drawn;
+}
+
+PaneCounts drawPane(const PaneTask& task, const PaneScratch& scratch) noexcept {
+  Pane pane{};
+  pane.task = &task;
+  pane.scratch = &scratch;
+  clearPane(pane);
+  recordBackground(pane);
+  const std::uint32_t count = findClusters(task, scratch, pane.counts);
+  sortClusters(scratch, count);
+  for (std::uint32_t n = 0; n < count; ++n) {
+    const SeenCluster& seen = scratch.seen[scratch.order[n]];
+    if (task.culling && isHidden(pane, seen)) continue;
+    drawCluster(pane, seen);
+  }
+  resolve(pane);
+  return pane.counts;
+}
+
+}  // namespace
+}  // namespace galactic::render

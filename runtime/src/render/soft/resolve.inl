@@ -1,0 +1,168 @@
+// From what is seen at each pixel to the images.
+namespace galactic::render {
+namespace {
+
+inline IntLanes shade(const Pane& pane, IntLanes ids, const PixelLanes& pixels) {
+  const IntLanes group = ids >> 3;
+  const IntLanes lane = ids & 7;
+  const std::int32_t first = ids[0];
+  const bool uniform = signBits(ids == spread(first)) == kAllLanes;
+  IntLanes colors;
+  IntLanes kind;
+  if (uniform) {
+    const OneRecord records{recordsOf(pane, static_cast<std::uint32_t>(first) >> 3U) + (first & 7)};
+    const TexturePlaces places = texturePlaces(records, pixels);
+    kind = places.kind;
+    colors = sampleTexels(*pane.task, places);
+  } else {
+    const EachRecord records{pane.scratch->records,
+                             group * static_cast<std::int32_t>(kRecordRows * kWidth) + lane};
+    const TexturePlaces places = texturePlaces(records, pixels);
+    kind = places.kind;
+    colors = sampleTexels(*pane.task, places);
+  }
+  if (signBits(kind) != 0) {
+    // Lanes without colours look at group 0.
+    const IntLanes at =
+        (group * static_cast<std::int32_t>(kColorRows * kWidth) + lane) & (kind >> 31);
+    const EachRecord rows{pane.scratch->colors, at};
+    colors = pick(kind >> 31, timesColors(colors, rows, pixels), colors);
+  }
+  // What is drawn hides all behind it.
+  return pick(ids == spread(0), colors, colors | static_cast<std::int32_t>(0xFF000000U));
+}
+
+/// Where a block of pixels lies in the whole image, and how much of it is within.
+struct BlockTarget {
+  std::size_t pixel;
+  std::uint32_t width, height;
+};
+
+inline BlockTarget blockTarget(const PaneTask& task, std::uint32_t column, std::uint32_t row) {
+  const std::uint32_t x = column * kBlockWidth;
+  const std::uint32_t y = row * kBlockHeight;
+  const std::uint32_t wide = task.width - x < kBlockWidth ? task.width - x : kBlockWidth;
+  const std::uint32_t high = task.height - y < kBlockHeight ? task.height - y : kBlockHeight;
+  return {static_cast<std::size_t>(task.top + y) * task.image_width + task.left + x, wide, high};
+}
+
+/// Writes eight elements of four bytes to a block of an image.
+inline void writeWords(const PaneTask& task, const BlockTarget& target, void* image,
+                       IntLanes words) {
+  auto* to = static_cast<std::uint8_t*>(image) + 4 * target.pixel;
+  alignas(32) std::uint8_t bytes[4 * kWidth];
+  store(bytes, words);
+  if (target.width == kBlockWidth) {
+    __builtin_memcpy(to, bytes, 4 * kBlockWidth);
+  } else {
+    __builtin_memcpy(to, bytes, std::size_t{4} * target.width);
+  }
+  if (target.height < kBlockHeight) return;
+  to += std::size_t{4} * task.image_width;
+  if (target.width == kBlockWidth) {
+    __builtin_memcpy(to, bytes + 4 * kBlockWidth, 4 * kBlockWidth);
+  } else {
+    __builtin_memcpy(to, bytes + 4 * kBlockWidth, std::size_t{4} * target.width);
+  }
+}
+
+/// Writes eight colours without their alpha.
+inline void writeTriples(const PaneTask& task, const BlockTarget& target, IntLanes words) {
+  alignas(32) std::uint8_t bytes[4 * kWidth];
+  store(bytes, words);
+  for (std::uint32_t y = 0; y < target.height; ++y) {
+    std::uint8_t* to = task.color + 3 * (target.pixel + y * std::size_t{task.image_width});
+    const std::uint8_t* from = bytes + std::size_t{y} * 4 * kBlockWidth;
+    for (std::uint32_t x = 0; x < target.width; ++x, to += 3, from += 4) {
+      to[0] = from[0];
+      to[1] = from[1];
+      to[2] = from[2];
+    }
+  }
+}
+
+/// Puts what the image has already in the place of pixels that are shaded.
+inline IntLanes keepShaded(const PaneTask& task, const BlockTarget& target, IntLanes ids,
+                           IntLanes words, const std::uint8_t* image, std::uint32_t bytes_each) {
+  for (std::uint32_t n = 0; n < kWidth; ++n) {
+    const std::uint32_t x = n % kBlockWidth;
+    const std::uint32_t y = n / kBlockWidth;
+    if (ids[n] != kShaded || x >= target.width || y >= target.height) continue;
+    std::uint32_t word = 0;
+    const std::size_t pixel = target.pixel + y * std::size_t{task.image_width} + x;
+    __builtin_memcpy(&word, image + pixel * bytes_each, bytes_each);
+    words[n] = static_cast<std::int32_t>(word);
+  }
+  return words;
+}
+
+inline void resolveColors(const Pane& pane, const BlockTarget& target, IntLanes ids,
+                          const PixelLanes& pixels) {
+  const PaneTask& task = *pane.task;
+  const bool any_shaded = signBits(ids) != 0;
+  const IntLanes valid = ids & ~(ids >> 31);
+  if (task.color != nullptr) {
+    IntLanes colors = spread(static_cast<std::int32_t>(task.background));
+    if (signBits(valid == spread(0)) != kAllLanes) colors = shade(pane, valid, pixels);
+    if (any_shaded) colors = keepShaded(task, target, ids, colors, task.color, task.channels);
+    if (task.channels == 4) {
+      writeWords(task, target, task.color, colors);
+    } else {
+      writeTriples(task, target, colors);
+    }
+  }
+  if (task.semantics != nullptr) {
+    const EachRecord records{
+        pane.scratch->records,
+        (valid >> 3) * static_cast<std::int32_t>(kRecordRows * kWidth) + (valid & 7)};
+    IntLanes semantics = records.intRow(kSemantic);
+    if (any_shaded) {
+      semantics = keepShaded(task, target, ids, semantics,
+                             reinterpret_cast<const std::uint8_t*>(task.semantics), 4);
+    }
+    writeWords(task, target, task.semantics, semantics);
+  }
+}
+
+/// Writes the images.
+void resolve(const Pane& pane) {
+  const PaneTask& task = *pane.task;
+  const float* depth = pane.scratch->depth;
+  const std::int32_t* ids = pane.scratch->ids;
+  const std::uint32_t shown_columns = (task.width + kBlockWidth - 1) / kBlockWidth;
+  const std::uint32_t shown_rows = (task.height + kBlockHeight - 1) / kBlockHeight;
+  for (std::uint32_t row = 0; row < shown_rows; ++row) {
+    for (std::uint32_t column = 0; column < shown_columns; ++column) {
+      const std::size_t at = (std::size_t{row} * pane.columns + column) * kWidth;
+      const Lanes z = load<Lanes>(depth + at);
+      const BlockTarget target = blockTarget(task, column, row);
+      if (task.depth != nullptr) {
+        const Lanes metres = spread(1.0F) / z;
+        writeWords(task, target, task.depth, as<IntLanes>(metres) & (z > spread(0.0F)));
+      }
+      if (pane.shades) {
+        resolveColors(pane, target, load<IntLanes>(ids + at), pixelsOf(column, row, z));
+      }
+    }
+  }
+}
+
+/// Shades what is seen so far, so that the records can be used again.
+void makeRoom(Pane& pane) {
+  const PaneTask& task = *pane.task;
+  for (std::uint32_t row = 0; row < pane.rows; ++row) {
+    for (std::uint32_t column = 0; column < pane.columns; ++column) {
+      const std::size_t at = (std::size_t{row} * pane.columns + column) * kWidth;
+      const IntLanes ids = load<IntLanes>(pane.scratch->ids + at);
+      if (signBits(spread(0) - ids) == 0) continue;  // none above 0
+      const Lanes z = load<Lanes>(pane.scratch->depth + at);
+      resolveColors(pane, blockTarget(task, column, row), ids, pixelsOf(column, row, z));
+      store(pane.scratch->ids + at, pick(ids > spread(0), spread(kShaded), ids));
+    }
+  }
+  pane.groups = 1;
+  pane.open_lane = kWidth;
+}
+
+}  // namespace
+}  // namespace galactic::render

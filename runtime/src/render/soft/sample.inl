@@ -1,0 +1,181 @@
+// Colours of eight pixels from the records of their triangles: texture coordinates by perspective,
+// the mip level whose texels come closest to one per pixel, bilinear between four texels of it, as
+// GL_LINEAR_MIPMAP_NEAREST does; colours are weighed as they are stored (sRGB), in eighths of bits.
+namespace galactic::render {
+namespace {
+
+/// Where eight pixels lie on their textures.
+struct TexturePlaces {
+  /// Texels of the largest level.
+  Lanes u, v;
+  /// Square of the most texels per pixel.
+  Lanes squared_rate;
+  IntLanes texels, kind;
+};
+
+/// p + (q - p) * weight / 256 for the 16-bit halves of all lanes; weights 0 to 256.
+inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight, ShortLanes rest) {
+  return (p * rest + q * weight + 128) >> 8;
+}
+
+/// Weights for blend(), from shares within [0, 1].
+inline IntLanes blendWeight(Lanes share) {
+  const IntLanes weight = toInt(share * spread(256.0F) + spread(0.5F));
+  return weight | weight << 16;
+}
+
+struct FourTexels {
+  IntLanes upper_left, upper_right, lower_left, lower_right;
+};
+
+inline IntLanes bilinear(const FourTexels& t, Lanes share_right, Lanes share_down) {
+  const IntLanes whole = spread(0x01000100);
+  const IntLanes right = blendWeight(share_right);
+  const IntLanes down = blendWeight(share_down);
+  const auto right_weight = as<ShortLanes>(right);
+  const auto left_weight = as<ShortLanes>(whole - right);
+  const auto down_weight = as<ShortLanes>(down);
+  const auto up_weight = as<ShortLanes>(whole - down);
+  const auto even = [](IntLanes v) { return as<ShortLanes>(v & 0x00FF00FF); };
+  const auto odd = [](IntLanes v) { return as<ShortLanes>(v) >> 8; };
+  const ShortLanes low =
+      blend(blend(even(t.upper_left), even(t.upper_right), right_weight, left_weight),
+            blend(even(t.lower_left), even(t.lower_right), right_weight, left_weight), down_weight,
+            up_weight);
+  const ShortLanes high =
+      blend(blend(odd(t.upper_left), odd(t.upper_right), right_weight, left_weight),
+            blend(odd(t.lower_left), odd(t.lower_right), right_weight, left_weight), down_weight,
+            up_weight);
+  return as<IntLanes>(low | high << 8);
+}
+
+/// Texels in the levels from one of edge 2^n down to the last.
+inline IntLanes texelsDownFrom(IntLanes n) {
+  return spread(0x55555555) & ((spread(4) << (n + n)) - spread(1));
+}
+
+/// Towards minus infinity.
+inline IntLanes floorOf(Lanes v) {
+  const IntLanes whole = toInt(v);
+  return whole + (toFloat(whole) > v);
+}
+
+/// A place in one level of a texture: the four texels around it and the shares of the latter ones.
+struct LevelPlace {
+  FourTexels at;
+  Lanes share_right, share_down;
+};
+
+inline LevelPlace levelPlace(const TexturePlaces& places, IntLanes flat) {
+  const IntLanes size = pick(flat, spread(0), places.kind & 0xFF);
+  // log4 of the doubled square, rounded down: changes half way between two levels.
+  const IntLanes exponent = as<IntLanes>(places.squared_rate * spread(2.0F)) >> 23;
+  const IntLanes level = lesser(greater((exponent - spread(127)) >> 1, spread(0)), size);
+  const Lanes scale = as<Lanes>((spread(127) - level) << 23);
+  constexpr float kFarthest = 1 << 22;
+  const Lanes u = clampTo(places.u * scale - spread(0.5F), -kFarthest, kFarthest);
+  const Lanes v = clampTo(places.v * scale - spread(0.5F), -kFarthest, kFarthest);
+  const IntLanes left = floorOf(u);
+  const IntLanes upper = floorOf(v);
+  const IntLanes level_size = size - level;
+  const IntLanes wrap = (spread(1) << level_size) - spread(1);
+  const IntLanes first = places.texels + (texelsDownFrom(size) - texelsDownFrom(level_size));
+  const IntLanes row0 = first + ((upper & wrap) << level_size);
+  const IntLanes row1 = first + (((upper + spread(1)) & wrap) << level_size);
+  const IntLanes column0 = left & wrap;
+  const IntLanes column1 = (left + spread(1)) & wrap;
+  return {{row0 + column0, row0 + column1, row1 + column0, row1 + column1},
+          u - toFloat(left),
+          v - toFloat(upper)};
+}
+
+inline const std::int32_t* texelBase(const PaneTask& task, std::int32_t number) {
+  return reinterpret_cast<const std::int32_t*>(task.texel_bases[number]);
+}
+
+/// Texels, or the colours of flat surfaces. Lanes without a triangle have a flat one.
+inline IntLanes sampleTexels(const PaneTask& task, const TexturePlaces& places) {
+  const IntLanes flat = (places.kind & 0xFF) == spread(static_cast<std::int32_t>(kFlatSurface));
+  unsigned left = ~signBits(flat) & kAllLanes;
+  if (left == 0) return places.texels;
+  const LevelPlace place = levelPlace(places, flat);
+  const IntLanes base = (places.kind >> 8) & 0x7FFFFF;
+  FourTexels texels{};
+  while (left != 0) {
+    const std::int32_t number = base[__builtin_ctz(left)];
+    const std::int32_t* from = texelBase(task, number);
+    const IntLanes here = (base == spread(number)) & ~flat;
+    left &= ~signBits(here);
+    texels.upper_left |= gather(from, place.at.upper_left & here) & here;
+    texels.upper_right |= gather(from, place.at.upper_right & here) & here;
+    texels.lower_left |= gather(from, place.at.lower_left & here) & here;
+    texels.lower_right |= gather(from, place.at.lower_right & here) & here;
+  }
+  return pick(flat, places.texels, bilinear(texels, place.share_right, place.share_down));
+}
+
+/// Rows of the records of eight pixels.
+struct EachRecord {
+  const float* records;
+  IntLanes at;
+  Lanes row(std::uint32_t number) const {
+    return gather(records + std::size_t{number} * kWidth, at);
+  }
+  IntLanes intRow(std::uint32_t number) const { return as<IntLanes>(row(number)); }
+};
+
+/// The same where all have one record.
+struct OneRecord {
+  const float* record;
+  Lanes row(std::uint32_t number) const { return spread(record[std::size_t{number} * kWidth]); }
+  IntLanes intRow(std::uint32_t number) const { return as<IntLanes>(row(number)); }
+};
+
+/// Eight pixels: their places in the pane, from the centre of its first pixel, and 1/w.
+struct PixelLanes {
+  Lanes x, y, z;
+};
+
+template <class Records>
+inline TexturePlaces texturePlaces(const Records& records, const PixelLanes& pixels) {
+  const Lanes w = spread(1.0F) / pixels.z;
+  const Lanes u_right = records.row(kURight);
+  const Lanes u_down = records.row(kUDown);
+  const Lanes v_right = records.row(kVRight);
+  const Lanes v_down = records.row(kVDown);
+  const Lanes w_right = records.row(kWRight);
+  const Lanes w_down = records.row(kWDown);
+  const Lanes u = (u_right * pixels.x + u_down * pixels.y + records.row(kUStart)) * w;
+  const Lanes v = (v_right * pixels.x + v_down * pixels.y + records.row(kVStart)) * w;
+  const Lanes u_x = (u_right - u * w_right) * w;
+  const Lanes u_y = (u_down - u * w_down) * w;
+  const Lanes v_x = (v_right - v * w_right) * w;
+  const Lanes v_y = (v_down - v * w_down) * w;
+  return {u, v, greater(u_x * u_x + v_x * v_x, u_y * u_y + v_y * v_y), records.intRow(kTexels),
+          records.intRow(kKind)};
+}
+
+/// a * b / 255, rounded, for bytes.
+inline IntLanes byteProduct(IntLanes a, IntLanes b) {
+  const IntLanes product = a * b + spread(128);
+  return (product + (product >> 8)) >> 8;
+}
+
+/// Texels times the colours of the corners, interpolated by perspective.
+template <class Records>
+inline IntLanes timesColors(IntLanes texels, const Records& colors, const PixelLanes& pixels) {
+  const Lanes w = spread(1.0F) / pixels.z;
+  IntLanes result = spread(0);
+  for (std::uint32_t channel = 0; channel < 4; ++channel) {
+    const Lanes value = (colors.row(3 * channel) * pixels.x +
+                         colors.row(3 * channel + 1) * pixels.y + colors.row(3 * channel + 2)) *
+                        w;
+    const IntLanes factor = toInt(clampTo(value + spread(0.5F), 0, 255));
+    const auto shift = static_cast<std::int32_t>(8 * channel);
+    result |= byteProduct((texels >> shift) & 0xFF, factor) << shift;
+  }
+  return result;
+}
+
+}  // namespace
+}  // namespace galactic::render

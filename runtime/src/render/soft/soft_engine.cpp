@@ -1,0 +1,163 @@
+#include "render/soft/soft_engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "column_grid_kernels.h"
+
+namespace galactic::render {
+namespace {
+
+bool isFinite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool isFinite(const RigidTransform& t) {
+  return isFinite(t.x_axis) && isFinite(t.y_axis) && isFinite(t.z_axis) && isFinite(t.origin);
+}
+
+std::uint32_t threadCount(std::uint32_t wanted) {
+  if (wanted != 0) return wanted;
+  return std::max(1U, std::thread::hardware_concurrency());
+}
+
+/// Edge of the panes that an image is cut in: as few as possible, of like size, of whole tiles.
+std::uint32_t paneEdge(std::uint32_t pixels) {
+  const std::uint32_t count = (pixels + kPaneEdge - 1) / kPaneEdge;
+  const std::uint32_t edge = (pixels + count - 1) / count;
+  return (edge + kTileEdge - 1) / kTileEdge * kTileEdge;
+}
+
+/// 1/256 pixels at a distance of 1 m for each metre beside the camera's axis.
+float focalLength(const RenderOptions& options, const RenderCamera& camera) {
+  const double half_height = 0.5 * static_cast<double>(options.height);
+  const double slope = std::tan(0.5 * static_cast<double>(camera.vertical_fov));
+  return static_cast<float>(half_height * kSubpixels / slope);
+}
+
+}  // namespace
+
+SoftEngine::SoftEngine(const RenderLibrary& library, const RenderOptions& options, DrawPane draw)
+    : options_(options), draw_(draw), scene_(library) {
+  options_.threads = threadCount(options.threads);
+  cutImage();
+  memories_.reserve(options_.threads);
+  for (std::uint32_t n = 0; n < options_.threads; ++n) {
+    memories_.push_back(
+        std::make_unique<PaneMemory>(paneEdge(options_.width), paneEdge(options_.height)));
+  }
+  workers_ = std::make_unique<detail::Workers>(
+      options_.threads, [this](std::size_t part) { drawPanes(*memories_[part]); });
+}
+
+void SoftEngine::cutImage() {
+  const std::uint32_t wide = paneEdge(options_.width);
+  const std::uint32_t high = paneEdge(options_.height);
+  for (std::uint32_t y = 0; y < options_.height; y += high) {
+    for (std::uint32_t x = 0; x < options_.width; x += wide) {
+      panes_.push_back(
+          {x, y, std::min(wide, options_.width - x), std::min(high, options_.height - y)});
+    }
+  }
+}
+
+void SoftEngine::begin(std::span<const RenderView> views, const RenderTargets& targets) {
+  std::size_t most_models = 0;
+  std::size_t most_clusters = 0;
+  statistics_ = {};
+  for (const RenderView& view : views) {
+    std::size_t clusters = 0;
+    for (const RenderInstance& instance : view.instances) {
+      clusters += scene_.models()[instance.model].cluster_count;
+    }
+    most_models = std::max(most_models, view.instances.size());
+    most_clusters = std::max(most_clusters, clusters);
+    statistics_.instances += view.instances.size();
+    statistics_.clusters += clusters;
+  }
+  for (const auto& memory : memories_) {
+    memory->reserve(most_models, most_clusters);
+    memory->counts = {};
+  }
+  views_ = views;
+  targets_ = targets;
+  next_.store(0, std::memory_order_relaxed);
+  workers_->begin();
+}
+
+void SoftEngine::end() {
+  workers_->end();
+  for (const auto& memory : memories_) {
+    statistics_.clusters_drawn += memory->counts.clusters_drawn;
+    statistics_.triangles_drawn += memory->counts.triangles_drawn;
+  }
+}
+
+std::string SoftEngine::description() const {
+  const char* instructions = draw_ == drawPaneAvx2 ? "AVX2" : "portable";
+  return std::string("soft, ") + instructions + ", " + std::to_string(options_.threads) +
+         (options_.threads == 1 ? " thread" : " threads");
+}
+
+void SoftEngine::drawPanes(PaneMemory& memory) noexcept {
+  const std::size_t count = views_.size() * panes_.size();
+  for (std::size_t n = next_.fetch_add(1, std::memory_order_relaxed); n < count;
+       n = next_.fetch_add(1, std::memory_order_relaxed)) {
+    drawOne(memory, n / panes_.size(), panes_[n % panes_.size()]);
+  }
+}
+
+void SoftEngine::drawOne(PaneMemory& memory, std::size_t view, const PaneRectangle& pane) noexcept {
+  const std::size_t first_pixel = view * options_.width * options_.height;
+  PaneTask task;
+  task.models = memory.models();
+  task.model_count = placeModels(views_[view], memory.models());
+  task.texel_bases = scene_.texelBases();
+  task.image_width = options_.width;
+  task.image_height = options_.height;
+  task.left = pane.left;
+  task.top = pane.top;
+  task.width = pane.width;
+  task.height = pane.height;
+  task.near = options_.near;
+  task.background = options_.background;
+  task.culling = options_.culling;
+  task.channels = static_cast<std::uint32_t>(options_.color);
+  if (task.channels != 0) task.color = targets_.color.data() + first_pixel * task.channels;
+  if (options_.depth) task.depth = targets_.depth.data() + first_pixel;
+  if (options_.semantics) task.semantics = targets_.semantics.data() + first_pixel;
+  const PaneCounts counts = draw_(task, memory.scratch());
+  memory.counts.clusters_drawn += counts.clusters_drawn;
+  memory.counts.triangles_drawn += counts.triangles_drawn;
+}
+
+std::uint32_t SoftEngine::placeModels(const RenderView& view, PlacedModel* placed) const noexcept {
+  if (!canSee(view.camera)) return 0;
+  const float focal = focalLength(options_, view.camera);
+  const RigidTransform camera_from_world = inverse(view.camera.world_from_camera);
+  std::uint32_t count = 0;
+  for (const RenderInstance& instance : view.instances) {
+    const ModelTables& model = scene_.models()[instance.model];
+    if (model.cluster_count == 0) continue;
+    const RigidTransform t = camera_from_world * instance.world_from_model;
+    const RigidTransform scaled{t.x_axis * focal, t.y_axis * focal, t.z_axis * focal,
+                                t.origin * focal};
+    if (!isFinite(t) || !isFinite(scaled)) continue;
+    // The camera looks along its x; y is up, z to the right.
+    placed[count++] = {
+        .model = &model,
+        .w = {t.x_axis.x, t.y_axis.x, t.z_axis.x, t.origin.x},
+        .x = {scaled.x_axis.z, scaled.y_axis.z, scaled.z_axis.z, scaled.origin.z},
+        .y = {-scaled.x_axis.y, -scaled.y_axis.y, -scaled.z_axis.y, -scaled.origin.y}};
+  }
+  return count;
+}
+
+Result<std::unique_ptr<RenderEngine>> makeSoftEngine(const RenderLibrary& library,
+                                                     const RenderOptions& options) {
+  const DrawPane draw = detail::hasAvx2() ? drawPaneAvx2 : drawPanePortable;
+  return std::make_unique<SoftEngine>(library, options, draw);
+}
+
+}  // namespace galactic::render

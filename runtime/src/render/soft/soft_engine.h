@@ -1,0 +1,56 @@
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/render_engine.h"
+#include "render/soft/pane_memory.h"
+#include "render/soft/soft_scene.h"
+#include "workers.h"
+
+namespace galactic::render {
+
+/// Draws on the processor: every image by itself, in panes, which the threads take one by one.
+class SoftEngine final : public RenderEngine {
+ public:
+  /// `draw` is one of the kernels that this processor can run.
+  SoftEngine(const RenderLibrary& library, const RenderOptions& options, DrawPane draw);
+
+  void begin(std::span<const RenderView> views, const RenderTargets& targets) override;
+  void end() override;
+  [[nodiscard]] RenderBackend backend() const override { return RenderBackend::kSoft; }
+  [[nodiscard]] std::string description() const override;
+  [[nodiscard]] RenderStatistics statistics() const override { return statistics_; }
+
+ private:
+  /// A rectangle of the image, pixels.
+  struct PaneRectangle {
+    std::uint32_t left, top, width, height;
+  };
+
+  void cutImage();
+  /// Draws panes until none is left.
+  void drawPanes(PaneMemory& memory) noexcept;
+  void drawOne(PaneMemory& memory, std::size_t view, const PaneRectangle& pane) noexcept;
+  std::uint32_t placeModels(const RenderView& view, PlacedModel* placed) const noexcept;
+
+  RenderOptions options_;
+  DrawPane draw_;
+  SoftScene scene_;
+  std::vector<PaneRectangle> panes_;
+  std::vector<std::unique_ptr<PaneMemory>> memories_;
+  RenderStatistics statistics_;
+
+  /// Of the round in work.
+  std::span<const RenderView> views_;
+  RenderTargets targets_;
+  std::atomic<std::size_t> next_{0};
+
+  /// Last, so that its threads end before what they use.
+  std::unique_ptr<detail::Workers> workers_;
+};
+
+}  // namespace galactic::render

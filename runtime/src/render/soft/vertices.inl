@@ -1,0 +1,135 @@
+// Vertices of a cluster on their way to the pane.
+namespace galactic::render {
+namespace {
+
+/// Vertices whose X / w or Y / w is larger, in 1/256 pixel, are cut off: integers of their
+/// differences stay small. Four times the largest image.
+constexpr float kGuard = 1 << 21;
+/// Added to a number under 2^22 it leaves the nearest whole number in the lowest bits.
+constexpr float kToWhole = 12582912.0F;
+
+/// What is the same for all vertices of a model.
+struct VertexFrame {
+  /// For points on the lattice: the step is in the rows.
+  float w[4], x[4], y[4];
+  /// Of the pane's first pixel's corner in the image, in 1/256 pixel.
+  std::int32_t left, top;
+  /// Of the image.
+  float middle_x, middle_y;
+  float near;
+};
+
+VertexFrame vertexFrame(const PaneTask& task, const PlacedModel& placed) {
+  VertexFrame frame;
+  const float step = placed.model->step;
+  for (int n = 0; n < 4; ++n) {
+    // Exact: the step is a power of two.
+    const float factor = n < 3 ? step : 1.0F;
+    frame.w[n] = placed.w[n] * factor;
+    frame.x[n] = placed.x[n] * factor;
+    frame.y[n] = placed.y[n] * factor;
+  }
+  frame.left = static_cast<std::int32_t>(task.left) * kSubpixels;
+  frame.top = static_cast<std::int32_t>(task.top) * kSubpixels;
+  frame.middle_x = static_cast<float>(task.image_width) * (kSubpixels / 2);
+  frame.middle_y = static_cast<float>(task.image_height) * (kSubpixels / 2);
+  frame.near = task.near;
+  return frame;
+}
+
+/// A cluster in work.
+struct ClusterState {
+  /// In the pane, 1/256 pixel from its upper left corner: x, y, x, y. Not set where `bad`.
+  alignas(64) std::int32_t xy[2 * kMostInCluster];
+  /// 1 / w.
+  alignas(64) float z[kMostInCluster];
+  /// Texture coordinates, u, v, u, v: see readCoordinates().
+  alignas(64) float uv[2 * kMostInCluster];
+  /// Not 0: too near, or too far from the image's middle.
+  alignas(64) std::int32_t bad[kMostInCluster];
+  bool any_bad;
+  bool has_coordinates;
+
+  const PackTables* pack;
+  const RenderCluster* cluster;
+  const VertexFrame* frame;
+  SurfaceTexels surface;
+  /// In images.
+  std::uint32_t semantic;
+};
+
+inline Lanes along(const float* row, Lanes x, Lanes y, Lanes z) {
+  return ((spread(row[0]) * x + spread(row[1]) * y) + spread(row[2]) * z) + spread(row[3]);
+}
+
+/// The nearest whole number for |value| < 2^22.
+inline IntLanes wholeNumber(Lanes value) {
+  return as<IntLanes>(value + spread(kToWhole)) - spread(as<std::int32_t>(kToWhole));
+}
+
+inline Lanes onLattice(const std::uint16_t* row, std::int32_t origin) {
+  return toFloat(widen(load<EightShorts>(row)) + spread(origin));
+}
+
+/// Eight vertices: returns which are good.
+inline unsigned placeEight(const VertexFrame& frame, const RenderCluster& cluster,
+                           const std::uint16_t* block, std::uint32_t first, ClusterState& state) {
+  const Lanes x = onLattice(block, cluster.origin_x);
+  const Lanes y = onLattice(block + kWidth, cluster.origin_y);
+  const Lanes z = onLattice(block + 2 * kWidth, cluster.origin_z);
+  const Lanes w = along(frame.w, x, y, z);
+  const Lanes right = along(frame.x, x, y, z);
+  const Lanes down = along(frame.y, x, y, z);
+  const Lanes guard = spread(kGuard) * w;
+  const IntLanes good =
+      (w >= spread(frame.near)) & (magnitude(right) <= guard) & (magnitude(down) <= guard);
+  const Lanes inverse = spread(1.0F) / w;
+  Lanes px = right * inverse + spread(frame.middle_x);
+  Lanes py = down * inverse + spread(frame.middle_y);
+  const unsigned good_bits = signBits(good);
+  if (good_bits != kAllLanes) {
+    px = pick(good, px, spread(0.0F));
+    py = pick(good, py, spread(0.0F));
+  }
+  storePairs(state.xy + std::size_t{2} * first, wholeNumber(px) - spread(frame.left),
+             wholeNumber(py) - spread(frame.top));
+  store(state.z + first, inverse);
+  store(state.bad + first, ~good);
+  return good_bits;
+}
+
+void placeVertices(ClusterState& state) {
+  const RenderCluster& cluster = *state.cluster;
+  const std::uint16_t* block =
+      state.pack->vertices + static_cast<std::size_t>(cluster.first_vertex) * kVertexRows;
+  unsigned bad = 0;
+  for (std::uint32_t v = 0; v < cluster.vertex_count; v += kWidth, block += kVertexRows * kWidth) {
+    unsigned good = placeEight(*state.frame, cluster, block, v, state);
+    // What follows the last vertex is not looked at.
+    if (cluster.vertex_count - v < kWidth) good |= kAllLanes << (cluster.vertex_count - v);
+    bad |= ~good & kAllLanes;
+  }
+  state.any_bad = bad != 0;
+}
+
+/// Texture coordinates of all vertices, in texels of the largest level.
+void readCoordinates(ClusterState& state) {
+  if (state.has_coordinates) return;
+  state.has_coordinates = true;
+  const RenderCluster& cluster = *state.cluster;
+  const std::uint16_t* block =
+      state.pack->vertices + static_cast<std::size_t>(cluster.first_vertex) * kVertexRows;
+  const auto edge = static_cast<float>(1U << (state.surface.kind & 0xFFU));
+  const Lanes u_start = spread(cluster.u_minimum * edge);
+  const Lanes v_start = spread(cluster.v_minimum * edge);
+  const Lanes u_step = spread(cluster.u_step * edge);
+  const Lanes v_step = spread(cluster.v_step * edge);
+  for (std::uint32_t n = 0; n < cluster.vertex_count; n += kWidth, block += kVertexRows * kWidth) {
+    const Lanes u = toFloat(widen(load<EightShorts>(block + 3 * kWidth)));
+    const Lanes v = toFloat(widen(load<EightShorts>(block + 4 * kWidth)));
+    storePairs(state.uv + std::size_t{2} * n, u_start + u_step * u, v_start + v_step * v);
+  }
+}
+
+}  // namespace
+}  // namespace galactic::render
