@@ -6,6 +6,7 @@
 #include "pack_tool/output_file.h"
 #include "pack_tool/pictures/figure_picture.h"
 #include "pack_tool/verbs.h"
+#include "pictures/png_file.h"
 
 namespace galactic::pack_tool {
 

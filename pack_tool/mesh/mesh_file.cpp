@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "pack_tool/mesh/grid_mesh.h"
-#include "pack_tool/pictures/palette.h"
+#include "pictures/palette.h"
 
 namespace galactic::pack_tool {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pack_tool/pictures/palette.h"
+#include "pictures/palette.h"
 
 namespace galactic::pictures {
 

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "pack_tool/pictures/drawing.h"
+#include "pictures/drawing.h"
 
 namespace galactic::pictures {
 

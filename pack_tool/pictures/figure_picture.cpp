@@ -12,7 +12,7 @@
 #include "galactic/printable.h"
 #include "pack_tool/pictures/axes.h"
 #include "pack_tool/pictures/figure_view.h"
-#include "pack_tool/pictures/palette.h"
+#include "pictures/palette.h"
 
 namespace galactic::pictures {
 

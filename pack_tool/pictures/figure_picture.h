@@ -3,7 +3,7 @@
 
 #include "galactic/error.h"
 #include "pack_tool/figure/figure.h"
-#include "pack_tool/pictures/image.h"
+#include "pictures/image.h"
 
 namespace galactic::pictures {
 

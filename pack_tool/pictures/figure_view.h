@@ -1,7 +1,7 @@
 #pragma once
 #include "pack_tool/figure/figure.h"
-#include "pack_tool/pictures/image.h"
 #include "pack_tool/pictures/mesh_raster.h"
+#include "pictures/image.h"
 
 namespace galactic::pictures {
 

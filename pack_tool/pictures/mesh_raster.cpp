@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pack_tool/pictures/palette.h"
+#include "pictures/palette.h"
 
 namespace galactic::pictures {
 

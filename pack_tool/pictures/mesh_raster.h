@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "galactic/pose.h"
-#include "pack_tool/pictures/image.h"
+#include "pictures/image.h"
 
 namespace galactic::pictures {
 

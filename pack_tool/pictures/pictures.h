@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -7,8 +6,8 @@
 #include "galactic/column_grid.h"
 #include "galactic/error.h"
 #include "pack_tool/grid_view.h"
-#include "pack_tool/pictures/drawing.h"
-#include "pack_tool/pictures/image.h"
+#include "pictures/drawing.h"
+#include "pictures/image.h"
 
 namespace galactic::pictures {
 
@@ -51,10 +50,5 @@ struct SliceOptions {
 /// grid. `grids` must not be empty. Safe to call from many threads.
 [[nodiscard]] Result<Picture> drawSlice(std::span<const ColumnGrid> grids,
                                         const SliceOptions& options);
-
-/// Writes an image as a PNG file, 8-bit sRGB, replacing an existing file in one go. The same image
-/// gives the same bytes. Fails with kIo when the file cannot be written, and kInternal when libpng
-/// refuses the image.
-[[nodiscard]] Result<void> writePng(const std::filesystem::path& path, const Image& image);
 
 }  // namespace galactic::pictures

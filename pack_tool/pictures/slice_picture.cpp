@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "pack_tool/pictures/axes.h"
-#include "pack_tool/pictures/palette.h"
 #include "pack_tool/pictures/pictures.h"
+#include "pictures/palette.h"
 
 namespace galactic::pictures {
 

@@ -13,6 +13,7 @@
 #include "galactic/printable.h"
 #include "option_table.h"
 #include "policy.h"
+#include "render_command_line.h"
 
 namespace galactic {
 namespace {
@@ -26,6 +27,7 @@ constexpr const char* kFooter =
     "  galactic-run --pack world.pack\n"
     "  galactic-run --pack world.pack --envs 1024 --steps 1000 --policy random\n"
     "  galactic-run --pack world.pack --steps 100 --record run.rec\n"
+    "  galactic-run --pack world.pack --steps 100 --envs 4 --render rgbd --contact-sheet run.png\n"
     "  galactic-run --pack world.pack --policy replay:run.rec";
 constexpr const char* kReplayPrefix = "replay:";
 constexpr const char* kPlainGroup = "Options";
@@ -194,6 +196,7 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
   app.get_formatter()->column_width(kHelpColumn);
   addPlainOptions(app, options);
   addRunOptions(app, options);
+  addDrawingOptions(app, options.drawing);
   CommandLineVisitor visitor(app);
   visitBatchOptions(options.simulation, visitor);
   visitTaskOptions(options.simulation.task, visitor);
@@ -209,7 +212,9 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
   for (const CLI::Option* option : app.get_options()) {
     options.simulates |= option->count() > 0 && option->get_group() != kPlainGroup;
   }
-  const std::string fault = faultOf(options);
+  std::string fault = faultOf(options);
+  if (fault.empty()) fault = drawingFault(options.drawing, app);
+  options.simulation.body_transforms |= options.drawing.draws();
   return fault.empty() ? std::nullopt : std::optional<int>(refuse(fault));
 }
 

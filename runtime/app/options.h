@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "galactic/simulation_options.h"
+#include "render_options.h"
 
 namespace galactic {
 
@@ -22,6 +23,7 @@ struct RunOptions {
   /// Of the whole batch.
   std::uint64_t steps = 1000;
   std::string policy = "random";
+  DrawingOptions drawing;
   /// Files to write; empty for none.
   std::string record;
   std::string report;

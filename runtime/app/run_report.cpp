@@ -63,6 +63,26 @@ std::string episodeLines(const RunReport& report) {
                                     ratio(episodes.steps, episodes.ended)));
 }
 
+std::string renderLines(const RunReport& report) {
+  const DrawingOptions& drawing = report.options.drawing;
+  const RenderReport& drawn = *report.rendering;
+  constexpr double kMilli = 1e-3;
+  const double larger = std::max(drawn.rendering.mean(), drawn.physics.mean());
+  std::string text =
+      line("drawing",
+           fmt::format("{} {} x {}, camera {}, by {}", drawing.images, drawing.width,
+                       drawing.height, printable(drawing.camera), printable(drawn.description))) +
+      line("images", fmt::format("{:>12.0f} images/s{:>11.3f} s",
+                                 ratio(static_cast<double>(drawn.images), report.step_seconds),
+                                 report.step_seconds)) +
+      line("one step", fmt::format("{:.3f} ms of rendering, {:.3f} ms of physics",
+                                   drawn.rendering.mean() / kMilli, drawn.physics.mean() / kMilli));
+  if (drawn.overlapped.steps == 0) return text;
+  return text + line("  overlapped", fmt::format("{:.3f} ms, {:.2f} of the larger part",
+                                                 drawn.overlapped.mean() / kMilli,
+                                                 ratio(drawn.overlapped.mean(), larger)));
+}
+
 std::string replayLine(const RunReport& report) {
   if (report.options.replayFile().empty()) return {};
   if (report.first_difference) {
@@ -82,6 +102,7 @@ std::string tableOf(const RunReport& report) {
       report.is_interrupted ? fmt::format(" (stopped; {} steps were wanted)", options.steps) : "");
   text += line("stepping", rate(report, report.step_seconds));
   text += line("whole loop", rate(report, report.loop_seconds));
+  if (report.rendering) text += renderLines(report);
   text += line("start-up", fmt::format("{:.3f} s: packs {:.3f}, envs {:.3f}",
                                        report.open_seconds + report.create_seconds,
                                        report.open_seconds, report.create_seconds));

@@ -18,6 +18,33 @@ struct EpisodeSums {
   std::uint64_t steps = 0;
 };
 
+/// Wall clock of some of the steps.
+struct StepTime {
+  double seconds = 0;
+  std::uint64_t steps = 0;
+
+  void add(double more) {
+    seconds += more;
+    ++steps;
+  }
+  /// Seconds per step; 0 without a step.
+  [[nodiscard]] double mean() const {
+    return steps == 0 ? 0 : seconds / static_cast<double>(steps);
+  }
+};
+
+/// What drawing a run took.
+struct RenderReport {
+  /// BatchRenderer::description(), and whether it is "gl" or "soft".
+  std::string description;
+  std::string backend;
+  std::uint64_t images = 0;
+  /// Steps whose drawing and simulation were measured alone, and those of both together.
+  StepTime rendering;
+  StepTime physics;
+  StepTime overlapped;
+};
+
 /// What a run was and what came of it.
 struct RunReport {
   RunOptions options;
@@ -40,6 +67,8 @@ struct RunReport {
   std::size_t world_episodes = 0;
   std::vector<std::uint32_t> skipped;
   std::size_t memory_bytes = 0;
+  /// When something was drawn. Then step_seconds holds the drawing, too.
+  std::optional<RenderReport> rendering;
   /// The first step in which a replay differs, counted from 0.
   std::optional<std::uint64_t> first_difference;
 };

@@ -135,6 +135,31 @@ void writeTimes(JsonWriter& json, const RunReport& report) {
   json.end('}');
 }
 
+void writeRendering(JsonWriter& json, const RunReport& report) {
+  if (!report.rendering) return;
+  const DrawingOptions& drawing = report.options.drawing;
+  const RenderReport& drawn = *report.rendering;
+  json.begin("rendering", '{');
+  json.text("images", drawing.images);
+  json.number("width", drawing.width);
+  json.number("height", drawing.height);
+  json.text("camera", drawing.camera);
+  json.text("backend", drawn.backend);
+  json.text("description", drawn.description);
+  json.number("image_count", drawn.images);
+  json.number("images_per_second", static_cast<double>(drawn.images) / report.step_seconds);
+  json.begin("seconds_per_step", '{');
+  const auto mean = [&json](std::string_view key, const StepTime& time) {
+    // Without a step there is no mean: null.
+    json.number(key, time.seconds / static_cast<double>(time.steps));
+  };
+  mean("rendering_alone", drawn.rendering);
+  mean("physics_alone", drawn.physics);
+  mean("overlapped", drawn.overlapped);
+  json.end('}');
+  json.end('}');
+}
+
 void writeCounts(JsonWriter& json, const RunReport& report) {
   const SimulationStatistics& sum = report.sum;
   json.number("env_steps", sum.steps);
@@ -172,6 +197,7 @@ std::string jsonOf(const RunReport& report) {
   json.number("steps", report.steps);
   json.truth("interrupted", report.is_interrupted);
   writeTimes(json, report);
+  writeRendering(json, report);
   json.number("bytes_per_env", static_cast<double>(report.memory_bytes) /
                                    static_cast<double>(report.options.simulation.envs));
   writeCounts(json, report);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "drawn_steps.h"
 #include "galactic/batch_simulator.h"
 #include "galactic/scripted_policy.h"
 #include "galactic/world.h"
@@ -111,6 +112,18 @@ class Run {
     return {};
   }
 
+  /// Before go().
+  Result<void> draw(const World& world) {
+    Result<DrawnSteps> drawn = DrawnSteps::create(world, simulator_, options_);
+    if (!drawn) return tl::unexpected<Error>(drawn.error());
+    drawn_.emplace(std::move(*drawn));
+    const BatchRenderer& renderer = drawn_->renderer();
+    report_.rendering.emplace();
+    report_.rendering->description = renderer.description();
+    report_.rendering->backend = renderer.backend() == RenderBackend::kGl ? "gl" : "soft";
+    return {};
+  }
+
   Result<void> record(const World& world) {
     const RecordingSubject subject{
         options_.simulation, static_cast<std::uint32_t>(simulator_.actionCount()), stampsOf(world)};
@@ -120,7 +133,7 @@ class Run {
     return {};
   }
 
-  Result<void> go() {
+  Result<void> go(const Interrupt& interrupt) {
     if (!policy_) {
       const SimulationOptions& simulation = options_.simulation;
       policy_ = makeGeneratedPolicy(
@@ -128,7 +141,6 @@ class Run {
                             .seed = simulation.seed,
                             .first_env = std::uint64_t{simulation.rank} * simulation.envs});
     }
-    const Interrupt interrupt;
     LiveLine line(options_.steps, simulator_.envCount());
     constexpr auto kLookEvery = std::chrono::milliseconds(250);
     const Clock::time_point start = Clock::now();
@@ -142,15 +154,22 @@ class Run {
       if (report_.is_interrupted) break;
     }
     report_.loop_seconds = secondsBetween(start, Clock::now());
+    if (drawn_) {
+      if (Result<void> finished = drawn_->finish(simulator_, report_); !finished) return finished;
+    }
     return writer_ ? writer_->finish() : Result<void>();
   }
 
  private:
   Result<void> step() {
     if (Result<void> acted = policy_->act(report_.steps, actions_); !acted) return acted;
-    const Clock::time_point before = Clock::now();
-    simulator_.step(actions_);
-    report_.step_seconds += secondsBetween(before, Clock::now());
+    if (drawn_) {
+      if (Result<void> drawn = drawn_->step(simulator_, actions_, report_); !drawn) return drawn;
+    } else {
+      const Clock::time_point before = Clock::now();
+      simulator_.step(actions_);
+      report_.step_seconds += secondsBetween(before, Clock::now());
+    }
     tally_.add(simulator_, report_.episodes);
     if (writer_ || replay_ != nullptr) {
       const std::uint64_t digest = digestOf(simulator_);
@@ -174,6 +193,7 @@ class Run {
   /// The policy, when it replays.
   const ReplayPolicy* replay_ = nullptr;
   std::optional<RecordingWriter> writer_;
+  std::optional<DrawnSteps> drawn_;
 };
 
 /// Whether the recording is of this world and robot.
@@ -190,6 +210,7 @@ Result<void> checkSubject(const RecordingReader* replay, const World& world,
 }  // namespace
 
 Result<RunReport> simulate(const RunOptions& options, RecordingReader* replay) {
+  const Interrupt interrupt;
   RunReport report;
   report.options = options;
   const Clock::time_point start = Clock::now();
@@ -214,12 +235,15 @@ Result<RunReport> simulate(const RunOptions& options, RecordingReader* replay) {
       return tl::unexpected<Error>(planned.error());
     }
   }
+  if (options.drawing.draws()) {
+    if (auto drawn = run.draw(*world); !drawn) return tl::unexpected<Error>(drawn.error());
+  }
   if (!options.record.empty()) {
     if (auto opened_file = run.record(*world); !opened_file) {
       return tl::unexpected<Error>(opened_file.error());
     }
   }
-  if (Result<void> done = run.go(); !done) return tl::unexpected<Error>(done.error());
+  if (Result<void> done = run.go(interrupt); !done) return tl::unexpected<Error>(done.error());
   report.threads = simulator->threadCount();
   report.phases = simulator->phaseTimes();
   report.sampled_steps = (report.steps + kSampleEvery - 1) / kSampleEvery;

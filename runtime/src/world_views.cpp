@@ -25,13 +25,27 @@ std::optional<CameraMount> robotCamera(const Robot& robot) {
                      .vertical_fov = robot.camera()->vertical_fov};
 }
 
+MountedCamera::MountedCamera(const World& world, const BatchSimulator& simulator,
+                             const CameraMount& mount)
+    : frame_(mount.frame),
+      on_body_(simulator.linkOnBody(mount.frame == CameraFrame::kLink ? mount.link : 0)),
+      frame_from_camera_(rigidTransform(mount.frame_from_camera)),
+      vertical_fov_(mount.vertical_fov),
+      root_height_(world.robot().base() ? world.robot().base()->root_height : 0) {}
+
+RenderCamera MountedCamera::at(std::span<const RigidTransform> bodies) const noexcept {
+  RenderCamera camera{frame_from_camera_, vertical_fov_};
+  if (frame_ == CameraFrame::kWorld) return camera;
+  const RigidTransform link = bodies[on_body_.body] * on_body_.place;
+  const RigidTransform frame = frame_ == CameraFrame::kLink ? link : baseFrame(link, root_height_);
+  camera.world_from_camera = frame * frame_from_camera_;
+  return camera;
+}
+
 WorldViews::WorldViews(const World& world, const WorldModels& models,
                        const BatchSimulator& simulator, const CameraMount& camera)
-    : world_(&world),
-      models_(&models),
-      frame_(camera.frame),
-      camera_on_body_(simulator.linkOnBody(camera.frame == CameraFrame::kLink ? camera.link : 0)),
-      frame_from_camera_(rigidTransform(camera.frame_from_camera)),
+    : models_(&models),
+      camera_(world, simulator, camera),
       stride_(1 + world.mostObjects() + models.links().size()),
       instances_(simulator.envCount() * stride_),
       views_(simulator.envCount()) {
@@ -40,7 +54,6 @@ WorldViews::WorldViews(const World& world, const WorldModels& models,
   for (const LinkModel& link : models.links()) {
     links_.push_back({link.model, simulator.linkOnBody(link.link)});
   }
-  for (RenderView& view : views_) view.camera.vertical_fov = camera.vertical_fov;
   update(simulator);
 }
 
@@ -65,22 +78,7 @@ void WorldViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
     room[count++] = {link.model, bodies[link.on_body.body] * link.on_body.place};
   }
   views_[env].instances = room.first(count);
-  views_[env].camera.world_from_camera = cameraPose(bodies);
-}
-
-RigidTransform WorldViews::cameraPose(std::span<const RigidTransform> bodies) const noexcept {
-  const RigidTransform link = bodies[camera_on_body_.body] * camera_on_body_.place;
-  switch (frame_) {
-    case CameraFrame::kLink:
-      return link * frame_from_camera_;
-    case CameraFrame::kBase: {
-      const std::optional<RobotBase>& base = world_->robot().base();
-      return baseFrame(link, base ? base->root_height : 0) * frame_from_camera_;
-    }
-    case CameraFrame::kWorld:
-      break;
-  }
-  return frame_from_camera_;
+  views_[env].camera = camera_.at(bodies);
 }
 
 }  // namespace galactic

@@ -73,9 +73,10 @@ LEAN = frozenset({"fmt", "tl"})
 RULES = (
     Rule("runtime/include", ("runtime/include",), frozenset({"tl"}), schema=False),
     Rule("runtime/src", ("runtime/include", "runtime/src"), LEAN | {"flatbuffers", "xxhash.h"}),
+    Rule("runtime/pictures", ("runtime/include", "runtime"), LEAN | {"png.h"}, schema=False),
     # xxHash as headers: digests of recordings.
-    Rule("runtime/app", ("runtime/include",), LEAN | {"CLI", "xxhash.h"}),
-    Rule("pack_tool", ("runtime/include", "."), LEAN | {"CLI", "nlohmann", "png.h"}),
+    Rule("runtime/app", ("runtime/include", "runtime/app", "runtime"), LEAN | {"CLI", "xxhash.h"}),
+    Rule("pack_tool", ("runtime/include", "runtime", "."), LEAN | {"CLI", "nlohmann"}),
     Rule("bake/include", ("runtime/include", "bake/include"), frozenset({"tl"}), schema=False),
     Rule("bake/src", ("runtime/include", "bake/include", "bake/src"),
          LEAN | {"Eigen", "flatbuffers", "nlohmann", "xxhash.h"}),
@@ -83,6 +84,8 @@ RULES = (
 )
 # Whose files a folder must not reach, even by a relative path.
 FORBIDDEN_TARGETS = {"runtime": ("bake", "pack_tool", "tests", "benchmarks"),
+                     "runtime/pictures": ("runtime/src", "runtime/app"),
+                     "runtime/app": ("runtime/src",),
                      "pack_tool": ("bake", "tests", "benchmarks", "runtime/src", "runtime/app"),
                      "bake": ("pack_tool", "tests", "benchmarks", "runtime/src", "runtime/app")}
 
@@ -112,9 +115,10 @@ def check_quoted(root: pathlib.Path, path: pathlib.Path, header: str, rule: Rule
     target = resolve(root, path, header, rule)
     if target is None:
         return f'"{header}": not found in {", ".join(rule.roots)}, where {rule.folder} may look'
-    for forbidden in FORBIDDEN_TARGETS.get(path.parts[0], ()):
-        if target.is_relative_to(forbidden):
-            return f'"{header}": {path.parts[0]} may not know {forbidden}'
+    for folder, targets in FORBIDDEN_TARGETS.items():
+        forbidden = next((one for one in targets if target.is_relative_to(one)), None)
+        if path.is_relative_to(folder) and forbidden is not None:
+            return f'"{header}": {folder} may not know {forbidden}'
     return None
 
 

@@ -49,7 +49,10 @@ class IncludesTest(PlantedTree):
                                  '#include <fmt/format.h>\n#include <sys/mman.h>\n#include <xxhash.h>\n'
                                  '#include "galactic/schema/pack_generated.h"\n',
             "runtime/app/main.cpp": "#include <CLI/CLI.hpp>\n",
-            "pack_tool/a.cpp": "#include <nlohmann/json.hpp>\n#include <png.h>\n",
+            "runtime/pictures/image.h": "",
+            "runtime/pictures/a.cpp": '#include "pictures/image.h"\n#include <png.h>\n',
+            "runtime/app/b.cpp": '#include "pictures/image.h"\n',
+            "pack_tool/a.cpp": '#include <nlohmann/json.hpp>\n#include "pictures/image.h"\n',
             "bake/src/import/assimp_reader.cpp": "#include <assimp/scene.h>\nconst aiScene* s;\n",
             "bake/src/engines/bullet_columns.cpp":
                 "#include <BulletCollision/CollisionShapes/btSphereShape.h>\n",
@@ -64,6 +67,14 @@ class IncludesTest(PlantedTree):
 
     def test_refuses_the_bake_side_in_the_runtime(self):
         self.assert_refused("runtime/src/a.cpp", '#include "galactic/bake/bake.h"\n', "not found in")
+
+    def test_refuses_png_outside_of_the_pictures(self):
+        self.assert_refused("pack_tool/b.cpp", "#include <png.h>\n", "only CLI")
+
+    def test_refuses_the_run_times_inside_in_its_programs(self):
+        self.plant("runtime/src/workers.h", "")
+        self.assert_refused("runtime/app/c.cpp", '#include "src/workers.h"\n',
+                            "runtime/app may not know runtime/src")
 
     def test_refuses_the_bake_side_by_a_relative_path(self):
         self.assert_refused("runtime/src/a.cpp",
@@ -142,10 +153,12 @@ class NeededTest(unittest.TestCase):
         self.assertEqual(len(offences), 1)
         self.assertIn("bake side", offences[0])
 
-    def test_refuses_png_in_galactic_run_only(self):
+    def test_accepts_png_in_both_programs_and_nothing_else_that_draws(self):
         libraries = [*self.LEAN, "libpng16.so.16"]
-        self.assertEqual(len(check_needed.judge("galactic-run", libraries, libraries)), 1)
+        self.assertEqual(check_needed.judge("galactic-run", libraries, libraries), [])
         self.assertEqual(check_needed.judge("galactic-pack", libraries, libraries), [])
+        libraries = [*self.LEAN, "libjpeg.so.62"]
+        self.assertEqual(len(check_needed.judge("galactic-run", libraries, libraries)), 1)
 
     def test_reads_the_libraries_of_a_real_program(self):
         self.assertIn("libc.so.6", check_needed.needed(sys.executable))

@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "pack_tool/pictures/axes.h"
-#include "pack_tool/pictures/font.h"
-#include "pack_tool/pictures/palette.h"
+#include "pictures/font.h"
+#include "pictures/palette.h"
+#include "pictures/png_file.h"
 #include "support/pack_tool_fixture.h"
 #include "support/program_run.h"
 
@@ -198,6 +199,15 @@ TEST(WritePng, WritesASignedFileOfTheImagesSizeAndTheSameBytesAgain) {
   EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n");
   EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\0\3\0\0\0\2", 8));
   EXPECT_EQ(test::countEntries(folder.path()), 2U);
+}
+
+TEST(WritePng, WritesSixteenBitsOfGrey) {
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(writePng(folder.path() / "deep.png", DeepImage{2, 1, {0x1234, 65535}}));
+  const std::string bytes = test::fileContent(folder.path() / "deep.png");
+  EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\0\2\0\0\0\1", 8));
+  // Bits of a sample, and grey.
+  EXPECT_EQ(bytes.substr(24, 2), std::string("\x10\0", 2));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include "pack_tool/pictures/figure_picture.h"
 #include "pack_tool/pictures/figure_view.h"
 #include "pack_tool/pictures/mesh_raster.h"
-#include "pack_tool/pictures/palette.h"
+#include "pictures/palette.h"
 
 namespace galactic::pictures {
 namespace {

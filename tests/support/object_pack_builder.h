@@ -45,6 +45,7 @@ struct ObjectPackFields {
   PackKind kind = PackKind::kObjects;
   std::vector<float> radii{0.015F, 0.05F};
   std::vector<ObjectFields> objects;
+  RenderMeshesField render_meshes;
 };
 
 /// Two objects; the second one without colours, with one sphere and one pose.
@@ -96,7 +97,8 @@ inline AlignedBytes buildPack(const ObjectPackFields& fields) {
   }
   const auto object_vector = builder.CreateVector(objects);
   const auto radii = builder.CreateVector(fields.radii);
-  const auto set = schema::CreateObjectSet(builder, radii, object_vector);
+  const auto render_meshes = buildRenderMeshesField(builder, fields.render_meshes);
+  const auto set = schema::CreateObjectSet(builder, radii, object_vector, render_meshes);
   return finishFile(builder, fields.kind, schema::Asset::ObjectSet, set.Union());
 }
 

@@ -73,6 +73,7 @@ struct RobotPackFields {
   std::optional<CameraFields> camera = CameraFields{};
   std::optional<BaseFields> base = BaseFields{};
   std::vector<LinkSurfaceFields> surfaces;
+  RenderMeshesField render_meshes;
 };
 
 /// base - torso (prismatic) - arm (revolute) - hand (continuous), with a finger that mimics the
@@ -152,9 +153,11 @@ class RobotPackBuilder {
     const auto camera = buildCamera();
     const auto base = buildBase();
     const auto surfaces = buildSurfaces();
-    const auto robot = schema::CreateRobot(
-        builder_, name, radii, links, link_names, joint_names, limit_vector, start_positions,
-        spheres, groups, pair_vector, joint_vector, end_effector, camera, base, surfaces);
+    const auto render_meshes = buildRenderMeshesField(builder_, fields_.render_meshes);
+    const auto robot =
+        schema::CreateRobot(builder_, name, radii, links, link_names, joint_names, limit_vector,
+                            start_positions, spheres, groups, pair_vector, joint_vector,
+                            end_effector, camera, base, surfaces, render_meshes);
     return finishFile(builder_, fields_.kind, schema::Asset::Robot, robot.Union());
   }
 

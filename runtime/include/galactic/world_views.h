@@ -33,11 +33,30 @@ struct CameraMount {
 /// The camera of the robot's recipe; none when it has none.
 [[nodiscard]] std::optional<CameraMount> robotCamera(const Robot& robot);
 
+/// A camera on the robot of a batch.
+class MountedCamera {
+ public:
+  /// `world` must outlive the result.
+  MountedCamera(const World& world, const BatchSimulator& simulator, const CameraMount& mount);
+
+  /// `bodies`: BatchSimulator::bodyTransforms() of one env.
+  [[nodiscard]] RenderCamera at(std::span<const RigidTransform> bodies) const noexcept;
+
+ private:
+  CameraFrame frame_;
+  /// The camera's link; the root for kBase.
+  LinkOnBody on_body_;
+  RigidTransform frame_from_camera_;
+  float vertical_fov_;
+  /// Of the root link above the floor, metres.
+  float root_height_;
+};
+
 /// What the cameras of a batch see: one view per env, filled from the simulator's state and valid
 /// while that changes, so that a renderer can draw one step while the next is simulated.
 class WorldViews {
  public:
-  /// `world` and `models` must outlive the views. `simulator` must have been made with
+  /// `models` must outlive the views. `simulator` must have been made with
   /// SimulationOptions::body_transforms.
   WorldViews(const World& world, const WorldModels& models, const BatchSimulator& simulator,
              const CameraMount& camera);
@@ -56,14 +75,9 @@ class WorldViews {
   };
 
   void updateEnv(const BatchSimulator& simulator, std::size_t env) noexcept;
-  [[nodiscard]] RigidTransform cameraPose(std::span<const RigidTransform> bodies) const noexcept;
 
-  const World* world_;
   const WorldModels* models_;
-  CameraFrame frame_;
-  /// The camera's link; the root for kBase.
-  LinkOnBody camera_on_body_;
-  RigidTransform frame_from_camera_;
+  MountedCamera camera_;
   std::vector<PlacedLink> links_;
   /// Room for the instances of one env.
   std::size_t stride_ = 0;

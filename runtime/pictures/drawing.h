@@ -1,7 +1,7 @@
 #pragma once
 #include <string_view>
 
-#include "pack_tool/pictures/image.h"
+#include "pictures/image.h"
 
 namespace galactic::pictures {
 

@@ -1,8 +1,8 @@
-#include "pack_tool/pictures/drawing.h"
+#include "pictures/drawing.h"
 
 #include <algorithm>
 
-#include "pack_tool/pictures/font.h"
+#include "pictures/font.h"
 
 namespace galactic::pictures {
 

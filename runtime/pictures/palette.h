@@ -1,5 +1,5 @@
 #pragma once
-#include "pack_tool/pictures/image.h"
+#include "pictures/image.h"
 
 namespace galactic::pictures {
 

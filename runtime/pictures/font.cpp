@@ -1,4 +1,4 @@
-#include "pack_tool/pictures/font.h"
+#include "pictures/font.h"
 
 #include <string_view>
 

@@ -1,4 +1,4 @@
-#include "pack_tool/pictures/palette.h"
+#include "pictures/palette.h"
 
 #include <algorithm>
 #include <array>

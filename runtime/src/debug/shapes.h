@@ -1,0 +1,20 @@
+#pragma once
+#include "galactic/oriented_box.h"
+#include "galactic/render_mesh_builder.h"
+
+namespace galactic::debug {
+
+// Closed shapes seen from outside, in colours: shaded as if light came from above.
+
+/// About the origin, of 320 triangles with corners on the sphere; metres. `color`: RGBA, R lowest.
+[[nodiscard]] RenderSurface sphereSurface(float radius, std::uint32_t color);
+
+[[nodiscard]] RenderSurface boxSurface(const OrientedBox& box, std::uint32_t color);
+
+/// The twelve edges of the box as beams around them.
+[[nodiscard]] RenderSurface boxFrameSurface(const OrientedBox& box, std::uint32_t color);
+
+/// Half the thickness of the beams, metres.
+inline constexpr float kBeamHalfThickness = 0.004F;
+
+}  // namespace galactic::debug

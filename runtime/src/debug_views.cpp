@@ -1,0 +1,83 @@
+#include "galactic/debug_views.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace galactic {
+namespace {
+
+/// Spheres look the same from everywhere: shaded as if the light stood still in the world.
+RigidTransform sphereAt(const Vec3& centre_in_world) {
+  RigidTransform place;
+  place.origin = centre_in_world;
+  return place;
+}
+
+/// The most spheres that an object of the world has.
+std::size_t mostHeldSpheres(const World& world) {
+  std::size_t most = 0;
+  for (const Episode& episode : world.episodes().episodes()) {
+    for (const Placement& placement : world.episodes().placements(episode)) {
+      most = std::max(most, world.objectOf(placement).spheres.size());
+    }
+  }
+  return most;
+}
+
+}  // namespace
+
+DebugViews::DebugViews(const World& world, const DebugModels& models,
+                       const BatchSimulator& simulator, const CameraMount& camera, std::size_t envs)
+    : world_(&world), models_(&models), camera_(world, simulator, camera) {
+  assert(!simulator.bodyTransforms().empty() && envs <= simulator.envCount());
+  const Robot& robot = world.robot();
+  spheres_.reserve(robot.spheres().size());
+  for (const SphereGroup& group : robot.groups()) {
+    const LinkOnBody link = simulator.linkOnBody(group.link);
+    for (const SetSphere& sphere : group.spheres) {
+      spheres_.push_back({models.sphereModel(DebugSpheres::kRobot, sphere.radius_index), link.body,
+                          link.place * sphere.centre});
+    }
+  }
+  // A scene, the objects, the goal, the robot and what it holds.
+  stride_ = 1 + world.mostObjects() + 1 + spheres_.size() + mostHeldSpheres(world);
+  instances_.resize(envs * stride_);
+  views_.resize(envs);
+  update(simulator);
+}
+
+void DebugViews::update(const BatchSimulator& simulator) noexcept {
+  for (std::size_t env = 0; env < views_.size(); ++env) updateEnv(simulator, env);
+}
+
+void DebugViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noexcept {
+  const std::span<RenderInstance> room = std::span(instances_).subspan(env * stride_, stride_);
+  const EnvObjects state = simulator.envObjects(env);
+  const std::span<const RigidTransform> bodies =
+      simulator.bodyTransforms().subspan(env * simulator.bodyCount(), simulator.bodyCount());
+  const EpisodeSet& episodes = world_->episodes();
+  const Episode& episode = episodes.episodes()[state.episode];
+  const Placement& target = episodes.placements(episode)[episode.target];
+  std::size_t count = 0;
+  if (const auto scene = models_->sceneModel(state.scene)) room[count++] = {*scene, {}};
+  for (std::size_t n = 0; n < state.objects.size(); ++n) {
+    if (static_cast<std::int32_t>(n) == state.held) continue;
+    room[count++] = {models_->boxModel(state.placements[n].object),
+                     rigidTransform(state.objects[n])};
+  }
+  room[count++] = {models_->goalModel(target.object), rigidTransform(episode.goal)};
+  for (const PlacedSphere& sphere : spheres_) {
+    room[count++] = {sphere.model, sphereAt(bodies[sphere.body] * sphere.centre)};
+  }
+  if (state.held >= 0) {
+    const Placement& held = state.placements[static_cast<std::size_t>(state.held)];
+    for (const SetSphere& sphere : world_->objectOf(held).spheres) {
+      room[count++] = {models_->sphereModel(DebugSpheres::kHeld, sphere.radius_index),
+                       sphereAt(state.world_from_held * sphere.centre)};
+    }
+  }
+  views_[env].instances = room.first(count);
+  views_[env].camera = camera_.at(bodies);
+}
+
+}  // namespace galactic

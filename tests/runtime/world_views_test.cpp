@@ -1,0 +1,251 @@
+#include "galactic/world_views.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "galactic/batch_simulator.h"
+#include "galactic/debug_models.h"
+#include "galactic/debug_views.h"
+#include "galactic/kinematics.h"
+#include "support/small_home_actor.h"
+#include "support/small_home_models.h"
+
+namespace galactic {
+namespace {
+
+using test::SmallHomeRow;
+
+/// Floats along chains of five links, metres from the origin.
+constexpr float kPlaceTolerance = 1e-5F;
+
+float farApart(const Vec3& a, const Vec3& b) {
+  return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+}
+
+/// Of axes and origin.
+float difference(const RigidTransform& a, const RigidTransform& b) {
+  return std::max({farApart(a.x_axis, b.x_axis), farApart(a.y_axis, b.y_axis),
+                   farApart(a.z_axis, b.z_axis), farApart(a.origin, b.origin)});
+}
+
+/// The small home with models, and envs that carry its objects about.
+class WorldViewsOfAHome : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kEnvs = 3;
+
+  void SetUp() override { open({.safe_drop = true}); }
+
+  struct HomeOptions {
+    bool safe_drop = true;
+    bool distractors = true;
+  };
+
+  void open(const HomeOptions& home) {
+    const std::filesystem::path path = test::writeWorld(folder_, test::smallHomeWorldWithModels());
+    Result<World> world = World::open(std::span(&path, 1));
+    ASSERT_TRUE(world) << world.error().where << ": " << world.error().message;
+    world_ = std::make_unique<World>(std::move(*world));
+    Result<WorldModels> models = WorldModels::from(*world_);
+    ASSERT_TRUE(models) << models.error().message;
+    models_ = std::make_unique<WorldModels>(std::move(*models));
+    SimulationOptions options;
+    options.envs = kEnvs;
+    options.threads = 1;
+    options.order = EpisodeOrder::kLinear;
+    options.body_transforms = true;
+    options.task.drop_fails = !home.safe_drop;
+    options.task.distractors = home.distractors;
+    Result<BatchSimulator> simulator = BatchSimulator::create(*world_, options);
+    ASSERT_TRUE(simulator) << simulator.error().message;
+    simulator_ = std::make_unique<BatchSimulator>(std::move(*simulator));
+  }
+
+  /// One step of each env towards its goal.
+  void step() {
+    std::vector<float> actions;
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      const SmallHomeRow row = test::solve(simulator_->envState(env));
+      actions.insert(actions.end(), row.begin(), row.end());
+    }
+    simulator_->step(actions);
+  }
+
+  /// world_from_link of all links of an env.
+  [[nodiscard]] std::vector<Pose> links(std::size_t env) const {
+    const EnvState state = simulator_->envState(env);
+    std::vector<Pose> links(world_->robot().links().size());
+    forwardKinematics(world_->robot().links(), state.world_from_root, state.joint_positions, links);
+    return links;
+  }
+
+  [[nodiscard]] std::uint32_t objectModel(std::size_t env, std::size_t number) const {
+    const EnvObjects objects = simulator_->envObjects(env);
+    return models_->objectModel(objects.placements[number].object).value();
+  }
+
+  test::ScratchFolder folder_;
+  std::unique_ptr<World> world_;
+  std::unique_ptr<WorldModels> models_;
+  std::unique_ptr<BatchSimulator> simulator_;
+};
+
+TEST_F(WorldViewsOfAHome, TheCameraOfALinkFollowsTheForwardKinematics) {
+  const CameraMount mount{.frame = CameraFrame::kLink,
+                          .link = 4,
+                          .frame_from_camera = {{0.01F, 0.02F, 0.03F}, test::yaw(0.7)},
+                          .vertical_fov = 1.25F};
+  WorldViews views(*world_, *models_, *simulator_, mount);
+  for (int n = 0; n < 40; ++n) {
+    step();
+    views.update(*simulator_);
+    ASSERT_EQ(views.views().size(), kEnvs);
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      const RenderCamera& camera = views.views()[env].camera;
+      EXPECT_EQ(camera.vertical_fov, 1.25F);
+      EXPECT_LT(difference(camera.world_from_camera,
+                           rigidTransform(links(env)[4] * mount.frame_from_camera)),
+                kPlaceTolerance);
+    }
+  }
+}
+
+TEST_F(WorldViewsOfAHome, TheCameraOfTheBaseStandsOnTheFloor) {
+  const CameraMount mount{
+      .frame = CameraFrame::kBase, .link = 0, .frame_from_camera = {{-1, 2, 0.5F}, {}}};
+  WorldViews views(*world_, *models_, *simulator_, mount);
+  step();
+  views.update(*simulator_);
+  for (std::size_t env = 0; env < kEnvs; ++env) {
+    Pose base = simulator_->envState(env).world_from_root;
+    base.translation.y -= world_->robot().base()->root_height;
+    EXPECT_LT(difference(views.views()[env].camera.world_from_camera,
+                         rigidTransform(base * mount.frame_from_camera)),
+              kPlaceTolerance);
+  }
+}
+
+TEST_F(WorldViewsOfAHome, ACameraOfTheWorldStaysWhereItIs) {
+  const CameraMount mount{
+      .frame = CameraFrame::kWorld, .link = 0, .frame_from_camera = {{1, 2, 3}, test::yaw(1)}};
+  const WorldViews views(*world_, *models_, *simulator_, mount);
+  EXPECT_EQ(difference(views.views()[2].camera.world_from_camera,
+                       rigidTransform(mount.frame_from_camera)),
+            0);
+}
+
+TEST_F(WorldViewsOfAHome, AViewHoldsTheSceneItsObjectsAndTheLinksThatShowSomething) {
+  WorldViews views(*world_, *models_, *simulator_, robotCamera(world_->robot()).value());
+  std::size_t with_held = 0;
+  std::size_t cases = 0;
+  for (int n = 0; n < 60; ++n) {
+    views.update(*simulator_);
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      const EnvState state = simulator_->envState(env);
+      const std::span<const RenderInstance> shown = views.views()[env].instances;
+      ASSERT_EQ(shown.size(), 1 + state.objects.size() + 2);
+      EXPECT_EQ(shown[0].model, models_->sceneModel(state.scene));
+      EXPECT_EQ(difference(shown[0].world_from_model, {}), 0);
+      for (std::size_t object = 0; object < state.objects.size(); ++object) {
+        EXPECT_EQ(shown[1 + object].model, objectModel(env, object));
+        // envState() has the held object where the grip holds it.
+        EXPECT_LT(
+            difference(shown[1 + object].world_from_model, rigidTransform(state.objects[object])),
+            kPlaceTolerance);
+      }
+      const std::vector<Pose> poses = links(env);
+      for (std::size_t link = 0; link < 2; ++link) {
+        const LinkModel& model = models_->links()[link];
+        const RenderInstance& instance = shown[1 + state.objects.size() + link];
+        EXPECT_EQ(instance.model, model.model);
+        EXPECT_LT(difference(instance.world_from_model, rigidTransform(poses[model.link])),
+                  kPlaceTolerance);
+      }
+      ++cases;
+      with_held += state.held >= 0 ? 1 : 0;
+    }
+    step();
+  }
+  const double share = static_cast<double>(with_held) / static_cast<double>(cases);
+  EXPECT_GT(share, 0.1);
+  EXPECT_LT(share, 0.9);
+}
+
+TEST_F(WorldViewsOfAHome, WithoutDistractorsTheTargetIsShownAndNothingElse) {
+  open({.safe_drop = true, .distractors = false});
+  const WorldViews views(*world_, *models_, *simulator_, robotCamera(world_->robot()).value());
+  const EpisodeSet& episodes = world_->episodes();
+  std::size_t not_first = 0;
+  for (std::size_t env = 0; env < kEnvs; ++env) {
+    const Episode& episode = episodes.episodes()[simulator_->envObjects(env).episode];
+    const Placement& target = episodes.placements(episode)[episode.target];
+    not_first += episode.target != 0 ? 1 : 0;
+    const std::span<const RenderInstance> shown = views.views()[env].instances;
+    ASSERT_EQ(shown.size(), 1U + 1 + 2);
+    EXPECT_EQ(shown[1].model, models_->objectModel(target.object));
+    EXPECT_LT(difference(shown[1].world_from_model, rigidTransform(target.pose)), kPlaceTolerance);
+  }
+  EXPECT_GT(not_first, 0U);
+}
+
+TEST_F(WorldViewsOfAHome, AWorldWithoutRenderMeshesIsRefusedByItsPack) {
+  const test::SmallHome bare;
+  const auto models = WorldModels::from(bare.world());
+  ASSERT_FALSE(models);
+  EXPECT_EQ(models.error().code, ErrorCode::kInvalidInput);
+  EXPECT_THAT(models.error().message, testing::HasSubstr("was baked without render meshes"));
+}
+
+TEST_F(WorldViewsOfAHome, TheDebugViewShowsSpheresBoxesAndTheGoal) {
+  const auto models = DebugModels::from(*world_, {});
+  ASSERT_TRUE(models) << models.error().message;
+  const CameraMount mount{.frame = CameraFrame::kBase, .link = 0, .frame_from_camera = {}};
+  DebugViews views(*world_, *models, *simulator_, mount, 2);
+  ASSERT_EQ(views.views().size(), 2U);
+  const auto find = [&](std::size_t env, std::uint32_t model) {
+    std::vector<RigidTransform> places;
+    for (const RenderInstance& instance : views.views()[env].instances) {
+      if (instance.model == model) places.push_back(instance.world_from_model);
+    }
+    return places;
+  };
+  std::size_t held_seen = 0;
+  for (int n = 0; n < 60; ++n) {
+    views.update(*simulator_);
+    for (std::size_t env = 0; env < 2; ++env) {
+      const EnvState state = simulator_->envState(env);
+      const std::vector<Pose> poses = links(env);
+      const bool holds = state.held >= 0;
+      ASSERT_EQ(views.views()[env].instances.size(),
+                1 + state.objects.size() + 1 + world_->robot().spheres().size());
+      EXPECT_EQ(find(env, models->sceneModel(0).value()).size(), 1U);
+      const std::vector<RigidTransform> hand =
+          find(env, models->sphereModel(DebugSpheres::kRobot, 0));
+      ASSERT_EQ(hand.size(), 1U);
+      EXPECT_LT(farApart(hand[0].origin, poses[4] * Vec3{0.02F, 0, 0}), kPlaceTolerance);
+      // One sphere of 5 cm around the middle of the object's box.
+      const auto held = find(env, models->sphereModel(DebugSpheres::kHeld, 1));
+      ASSERT_EQ(held.size(), holds ? 1U : 0U);
+      if (!holds) continue;
+      ++held_seen;
+      const Pose& object = state.objects[static_cast<std::size_t>(state.held)];
+      EXPECT_LT(farApart(held[0].origin, object * Vec3{0, 0.05F, 0}), kPlaceTolerance);
+    }
+    step();
+  }
+  EXPECT_GT(held_seen, 10U);
+  const EnvObjects objects = simulator_->envObjects(0);
+  const Episode& episode = world_->episodes().episodes()[objects.episode];
+  const Placement& target = world_->episodes().placements(episode)[episode.target];
+  views.update(*simulator_);
+  const auto goal = find(0, models->goalModel(target.object));
+  ASSERT_EQ(goal.size(), 1U);
+  EXPECT_EQ(difference(goal[0], rigidTransform(episode.goal)), 0);
+}
+
+}  // namespace
+}  // namespace galactic
