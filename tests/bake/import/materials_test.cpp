@@ -41,6 +41,30 @@ TEST(GltfMaterials, SayWhatTheirAlphaMeans) {
   EXPECT_THAT(glass.base_color, ElementsAre(1.F, 1.F, 1.F, 0.5F));
 }
 
+TEST(GltfMaterials, LoseImagesInOtherFormatsWithAWarning) {
+  for (const auto& [extension, format] :
+       {std::pair{"KHR_texture_basisu", "KTX2"}, {"EXT_texture_webp", "WebP"}}) {
+    const GltfPieces pieces{
+        .nodes = GltfPieces{}.nodes,
+        .buffer_uri = {},
+        .more = fmt::format(
+            R"(,"materials":[{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0}}}}}}],)"
+            R"("textures":[{{"extensions":{{"{0}":{{"source":0}}}}}}],)"
+            R"("images":[{{"uri":"a.image"}}],"extensionsUsed":["{0}"],"extensionsRequired":["{0}"])",
+            extension)};
+    std::string json = gltfFile(unevenBox(), pieces);
+    const std::string_view primitive_end = R"("indices":0)";
+    json.insert(json.find(primitive_end) + primitive_end.size(), R"(,"material":0)");
+    const auto asset = importContent("box.glb", glbContainer(json, gltfBuffer(unevenBox())));
+    ASSERT_TRUE(asset.has_value()) << asset.error().message;
+    EXPECT_EQ(asset->materials[asset->meshes[0].material].base_color_texture, "");
+    EXPECT_THAT(asset->warnings,
+                ElementsAre(fmt::format("textures in {} ({}) cannot be read: their surfaces keep "
+                                        "their plain colour; export them as PNG or JPEG",
+                                        format, extension)));
+  }
+}
+
 /// The only named material of an OBJ whose MTL has these lines; "a.png" and "b.png" exist.
 struct ObjImport {
   SourceMaterial material;
