@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cmath>
 #include <map>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
