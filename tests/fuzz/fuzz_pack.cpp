@@ -20,9 +20,11 @@
 #include "galactic/object_set.h"
 #include "galactic/pack.h"
 #include "galactic/pack_reference.h"
+#include "galactic/render_meshes.h"
 #include "galactic/robot.h"
 #include "galactic/scene.h"
 #include "support/aligned_bytes.h"
+#include "support/render_mesh_reader.h"
 
 namespace {
 
@@ -177,7 +179,15 @@ void useWorld(const PackFile& pack) {
   }
 }
 
+void draw(const PackFile& pack) {
+  const auto meshes = renderMeshesOf(pack);
+  if (!meshes) report("a pack whose render meshes are not read");
+  if (!*meshes) return;
+  if (const char* offence = test::drawingOffence(**meshes)) report(offence);
+}
+
 void use(const PackFile& pack) {
+  if (pack.kind() != PackKind::kEpisodes && pack.kind() != PackKind::kWorld) draw(pack);
   switch (pack.kind()) {
     case PackKind::kScene:
       return useScene(pack);

@@ -6,6 +6,7 @@
 
 #include "galactic/stable_pose.h"
 #include "support/pack_parts.h"
+#include "support/render_pack_builder.h"
 
 namespace galactic::test {
 
@@ -45,7 +46,7 @@ struct ObjectPackFields {
   PackKind kind = PackKind::kObjects;
   std::vector<float> radii{0.015F, 0.05F};
   std::vector<ObjectFields> objects;
-  RenderMeshesField render_meshes;
+  std::optional<RenderMeshesFields> render_meshes;
 };
 
 /// Two objects; the second one without colours, with one sphere and one pose.
@@ -97,8 +98,9 @@ inline AlignedBytes buildPack(const ObjectPackFields& fields) {
   }
   const auto object_vector = builder.CreateVector(objects);
   const auto radii = builder.CreateVector(fields.radii);
-  const auto render_meshes = buildRenderMeshesField(builder, fields.render_meshes);
-  const auto set = schema::CreateObjectSet(builder, radii, object_vector, render_meshes);
+  flatbuffers::Offset<schema::RenderMeshes> meshes;
+  if (fields.render_meshes) meshes = buildRenderMeshes(builder, *fields.render_meshes);
+  const auto set = schema::CreateObjectSet(builder, radii, object_vector, meshes);
   return finishFile(builder, fields.kind, schema::Asset::ObjectSet, set.Union());
 }
 

@@ -8,6 +8,7 @@
 #include "galactic/kinematics.h"
 #include "galactic/robot.h"
 #include "support/pack_parts.h"
+#include "support/render_pack_builder.h"
 
 namespace galactic::test {
 
@@ -73,7 +74,7 @@ struct RobotPackFields {
   std::optional<CameraFields> camera = CameraFields{};
   std::optional<BaseFields> base = BaseFields{};
   std::vector<LinkSurfaceFields> surfaces;
-  RenderMeshesField render_meshes;
+  std::optional<RenderMeshesFields> render_meshes;
 };
 
 /// base - torso (prismatic) - arm (revolute) - hand (continuous), with a finger that mimics the
@@ -153,11 +154,11 @@ class RobotPackBuilder {
     const auto camera = buildCamera();
     const auto base = buildBase();
     const auto surfaces = buildSurfaces();
-    const auto render_meshes = buildRenderMeshesField(builder_, fields_.render_meshes);
-    const auto robot =
-        schema::CreateRobot(builder_, name, radii, links, link_names, joint_names, limit_vector,
-                            start_positions, spheres, groups, pair_vector, joint_vector,
-                            end_effector, camera, base, surfaces, render_meshes);
+    flatbuffers::Offset<schema::RenderMeshes> meshes;
+    if (fields_.render_meshes) meshes = buildRenderMeshes(builder_, *fields_.render_meshes);
+    const auto robot = schema::CreateRobot(
+        builder_, name, radii, links, link_names, joint_names, limit_vector, start_positions,
+        spheres, groups, pair_vector, joint_vector, end_effector, camera, base, surfaces, meshes);
     return finishFile(builder_, fields_.kind, schema::Asset::Robot, robot.Union());
   }
 

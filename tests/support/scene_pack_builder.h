@@ -10,7 +10,7 @@
 #include "galactic/schema/pack_generated.h"
 #include "support/aligned_bytes.h"
 #include "support/grid_builder.h"
-#include "support/render_pack_parts.h"
+#include "support/render_pack_builder.h"
 
 namespace galactic::test {
 
@@ -71,7 +71,7 @@ struct ScenePackFields {
   std::uint64_t triangles_duplicate = 7;
   std::uint64_t triangles = 90;
   std::vector<GridFields> grids;
-  RenderMeshesField render_meshes;
+  std::optional<RenderMeshesFields> render_meshes;
 };
 
 /// Grids of two radii over 5 x 3 columns, the second one tall: empty, one-span, two-span and
@@ -153,9 +153,10 @@ class ScenePackBuilder {
     const auto import = schema::CreateImportStatistics(
         builder_, builder_.CreateString(fields_.format), 1, 1, fields_.triangles_read,
         fields_.triangles_degenerate, fields_.triangles_duplicate, fields_.triangles);
-    const auto render_meshes = buildRenderMeshesField(builder_, fields_.render_meshes);
+    flatbuffers::Offset<schema::RenderMeshes> meshes;
+    if (fields_.render_meshes) meshes = buildRenderMeshes(builder_, *fields_.render_meshes);
     return schema::CreateScene(builder_, builder_.CreateString(fields_.name), &bounds,
-                               builder_.CreateVector(grids), import, render_meshes);
+                               builder_.CreateVector(grids), import, meshes);
   }
 
   template <class T>

@@ -1,13 +1,13 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "galactic/render_mesh_builder.h"
+#include "support/render_pack_parts.h"
 #include "support/small_home.h"
 
 namespace galactic::test {
@@ -35,8 +35,8 @@ inline RenderSurface boxModel(const Block& box, std::uint16_t material, bool inw
 }
 
 /// Render meshes of these surfaces, one part each; material n has the n-th colour (RGBA, R lowest).
-inline RenderMeshesField modelsOf(std::vector<std::pair<std::uint32_t, RenderSurface>> parts,
-                                  const std::vector<std::uint32_t>& colors) {
+inline RenderMeshesFields modelsOf(std::vector<std::pair<std::uint32_t, RenderSurface>> parts,
+                                   const std::vector<std::uint32_t>& colors) {
   RenderMeshSource source;
   for (const std::uint32_t color : colors) source.materials.push_back({"paint", color});
   source.semantics = {"thing"};
@@ -48,7 +48,7 @@ inline RenderMeshesField modelsOf(std::vector<std::pair<std::uint32_t, RenderSur
   }
   Result<RenderMeshStorage> built = buildRenderMeshes(source);
   if (!built) throw std::runtime_error(built.error().where + ": " + built.error().message);
-  return std::make_shared<const RenderMeshStorage>(std::move(*built));
+  return fieldsOf(*built);
 }
 
 // What is drawn in which colour in the small home.
