@@ -282,6 +282,35 @@ TEST_F(SoftBatch, CountsWhatItDrew) {
   EXPECT_LE(culling.statistics().triangles_drawn, all.triangles_drawn);
 }
 
+/// FNV-1a.
+template <class T>
+std::uint64_t digest(const std::vector<T>& values) {
+  std::uint64_t hash = 0xCBF29CE484222325U;
+  const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
+  for (std::size_t n = 0; n < values.size() * sizeof(T); ++n) {
+    hash = (hash ^ bytes[n]) * 0x100000001B3U;
+  }
+  return hash;
+}
+
+TEST_F(SoftBatch, DrawsTheBytesThatItHasAlwaysDrawn) {
+  // Cameras by division alone, so that no mathematical library has a say in the views.
+  std::vector<RenderInstance> instances = {{0, {}}, {3, {.origin = {1.5F, 0.25F, -0.5F}}}};
+  std::vector<RenderView> views(4);
+  for (std::size_t n = 0; n < views.size(); ++n) {
+    const auto x = static_cast<float>(n);
+    views[n].camera.world_from_camera = {
+        {0.6F, 0, 0.8F}, {0, 1, 0}, {-0.8F, 0, 0.6F}, {-4 + x, 0.5F - 0.25F * x, -3}};
+    views[n].camera.vertical_fov = 1 + 0.25F * x;
+    views[n].instances = instances;
+  }
+  const RenderImages images = renderViews(library_, batchOptions(100, 75), views);
+  // When a change is meant to change images, look at them, then write the new numbers here.
+  EXPECT_EQ(digest(images.color), 6833829695956995427U);
+  EXPECT_EQ(digest(images.depth), 892410985143664461U);
+  EXPECT_EQ(digest(images.semantics), 12286742099158423379U);
+}
+
 TEST_F(SoftBatch, AFullListOfRecordsChangesNothing) {
   // More triangles in sight than there are records: a wall of triangles a few pixels large in front
   // of another, the farther one drawn first as a model of its own that begins nearer.

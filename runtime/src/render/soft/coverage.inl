@@ -12,8 +12,8 @@ struct Pane {
   const PaneScratch* scratch;
   /// In blocks and in tiles, whole.
   std::uint32_t columns, rows, tile_columns;
-  /// Groups of records in use, and the one that large triangles fill, from this lane on.
-  std::uint32_t groups, open_group, open_lane;
+  /// In use.
+  std::uint32_t records;
   PaneCounts counts;
   bool shades;
 };

@@ -63,6 +63,15 @@ inline Lanes pick(IntLanes mask, Lanes yes, Lanes no) {
 #endif
 }
 
+/// One lane, in all.
+inline IntLanes laneOf(IntLanes v, int lane) {
+#if defined(__AVX2__)
+  return as<IntLanes>(_mm256_permutevar8x32_epi32(as<__m256i>(v), as<__m256i>(spread(lane))));
+#else
+  return spread(v[lane]);
+#endif
+}
+
 /// By the sign bits alone.
 inline Lanes pickBySign(IntLanes sign, Lanes yes, Lanes no) {
 #if defined(__AVX2__)

@@ -65,47 +65,32 @@ inline Plane planeOf(const LargeTriangle& triangle, double a, double b, double c
   return {a + (right * dx + down * dy), right, down};
 }
 
-inline void recordPlane(float* rows, const Plane& plane) {
-  rows[0] = static_cast<float>(plane.right);
-  rows[kWidth] = static_cast<float>(plane.down);
-  rows[2 * kWidth] = static_cast<float>(plane.start);
+inline void recordPlane(float* fields, const Plane& plane) {
+  fields[0] = static_cast<float>(plane.right);
+  fields[1] = static_cast<float>(plane.down);
+  fields[2] = static_cast<float>(plane.start);
 }
 
-/// The number of a free record: room for one triangle.
-inline std::int32_t freeRecord(Pane& pane) {
-  if (pane.open_lane == kWidth) {
-    if (pane.groups == kRecordGroups) makeRoom(pane);
-    pane.open_group = pane.groups++;
-    pane.open_lane = 0;
-  }
-  return static_cast<std::int32_t>(pane.open_group * kWidth + pane.open_lane);
-}
-
+/// Writes the record at the next free number.
 void recordLarge(const Pane& pane, const ClusterState& state, const LargeTriangle& triangle,
                  const Plane& depth) {
-  float* record = recordsOf(pane, pane.open_group) + pane.open_lane;
+  float* record = recordAt(pane, pane.records);
   const Corner& a = *triangle.corners[0];
   const Corner& b = *triangle.corners[1];
   const Corner& c = *triangle.corners[2];
   const auto over_w = [](float value, const Corner& corner) {
     return static_cast<double>(value) * static_cast<double>(corner.z);
   };
-  recordPlane(record + kURight * kWidth,
-              planeOf(triangle, over_w(a.u, a), over_w(b.u, b), over_w(c.u, c)));
-  recordPlane(record + kVRight * kWidth,
-              planeOf(triangle, over_w(a.v, a), over_w(b.v, b), over_w(c.v, c)));
-  record[kWRight * kWidth] = static_cast<float>(depth.right);
-  record[kWDown * kWidth] = static_cast<float>(depth.down);
-  auto kind = state.surface.kind;
-  if (state.pack->colors != nullptr) kind |= kHasColors;
-  record[kTexels * kWidth] = as<float>(state.surface.texels);
-  record[kKind * kWidth] = as<float>(kind);
-  record[kSemantic * kWidth] = as<float>(state.semantic);
+  recordPlane(record + kURight, planeOf(triangle, over_w(a.u, a), over_w(b.u, b), over_w(c.u, c)));
+  recordPlane(record + kVRight, planeOf(triangle, over_w(a.v, a), over_w(b.v, b), over_w(c.v, c)));
+  record[kWRight] = static_cast<float>(depth.right);
+  record[kWDown] = static_cast<float>(depth.down);
+  store(record + kTexels, surfaceFields(state));
   if (state.pack->colors == nullptr) return;
-  float* rows = colorsOf(pane, pane.open_group) + pane.open_lane;
-  for (int n = 0; n < 4; ++n, rows += std::size_t{3} * kWidth) {
-    recordPlane(rows, planeOf(triangle, over_w(a.color[n], a), over_w(b.color[n], b),
-                              over_w(c.color[n], c)));
+  float* fields = colorsAt(pane, pane.records);
+  for (int n = 0; n < 4; ++n, fields += 3) {
+    recordPlane(fields, planeOf(triangle, over_w(a.color[n], a), over_w(b.color[n], b),
+                                over_w(c.color[n], c)));
   }
 }
 
@@ -240,17 +225,19 @@ void drawLarge(Pane& pane, const ClusterState& state, const Corner& a, const Cor
   setup.z_most = greaterOf(greaterOf(a.z, b.z), c.z);
   setup.z_low = spread(lesserOf(lesserOf(a.z, b.z), c.z));
   setup.z_high = spread(setup.z_most);
-  const std::int32_t id = freeRecord(pane);
-  setup.id = spread(id);
+  if (pane.records == kMostRecords) makeRoom(pane);
+  setup.id = spread(static_cast<std::int32_t>(pane.records));
+  bool seen = false;
   if (state.surface.least_alpha != 0) {
     recordLarge(pane, state, triangle, setup.depth);
-    const AlphaTest test = alphaTest(pane, state, pane.open_group, pane.open_lane);
-    if (coverTiles(pane, setup, tiles, test)) ++pane.open_lane;
-    return;
+    seen = coverTiles(
+        pane, setup, tiles,
+        alphaTest(pane, state, recordAt(pane, pane.records), colorsAt(pane, pane.records)));
+  } else {
+    seen = coverTiles(pane, setup, tiles, Opaque{});
+    if (seen && pane.shades) recordLarge(pane, state, triangle, setup.depth);
   }
-  if (!coverTiles(pane, setup, tiles, Opaque{})) return;
-  if (pane.shades) recordLarge(pane, state, triangle, setup.depth);
-  ++pane.open_lane;
+  if (seen && pane.shades) ++pane.records;
 }
 
 }  // namespace

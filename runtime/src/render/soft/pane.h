@@ -107,9 +107,9 @@ struct SeenCluster {
 };
 inline constexpr std::uint32_t kBuckets = 512;
 
-/// Rows of a group of records: eight triangles that are shaded later. Texture coordinates are in
-/// texels of the largest level.
-enum RecordRow : std::uint32_t {
+/// Numbers in a record: a triangle that is shaded later. Texture coordinates are in texels of the
+/// largest level.
+enum RecordField : std::uint32_t {
   kURight,  ///< Change of u / w with each pixel to the right.
   kUDown,   ///< With each pixel down.
   kUStart,  ///< At the centre of the pane's first pixel.
@@ -118,23 +118,23 @@ enum RecordRow : std::uint32_t {
   kVStart,
   kWRight,  ///< Of 1 / w.
   kWDown,
-  kTexels,  ///< SurfaceTexels::texels; this row and the next two hold integers.
+  kTexels,  ///< SurfaceTexels::texels; this field and the next two hold integers.
   kKind,
   kSemantic,
-  kSpareRow,
-  kRecordRows
+  kRecordFields = 12
 };
-/// Rows of the colours' planes: red, green, blue, alpha, each as right, down, start.
-inline constexpr std::uint32_t kColorRows = 12;
-/// Groups of records that a pane has room for; when they are used up, what is seen so far is
-/// shaded.
-inline constexpr std::uint32_t kRecordGroups = 4096;
+/// Fields of the colours' planes: red, green, blue, alpha, each as right, down, start.
+inline constexpr std::uint32_t kColorFields = 12;
+/// From one record to the next: a cache line.
+inline constexpr std::uint32_t kRecordStride = 16;
+/// What a pane has room for; when it is used up, what is seen so far is shaded.
+inline constexpr std::uint32_t kMostRecords = 16384;
 
 /// What a thread needs to draw panes. All pointers are aligned to 64 bytes.
 struct PaneScratch {
   /// 1/w by pixel: 0 where nothing is, infinite outside of the image.
   float* depth = nullptr;
-  /// Record by pixel: group * 8 + lane; 0 for background, kShaded where the image has the colour.
+  /// Record by pixel: 0 for background, kShaded where the image has the colour.
   std::int32_t* ids = nullptr;
   /// Least 1/w of each tile, where it is not marked as changed since.
   float* tile_depth = nullptr;
@@ -143,6 +143,7 @@ struct PaneScratch {
   SeenCluster* seen = nullptr;
   std::uint32_t* order = nullptr;
   std::uint32_t* bucket_starts = nullptr;
+  /// Record 0 is the background's.
   float* records = nullptr;
   float* colors = nullptr;
 };

@@ -26,8 +26,7 @@ void clearPane(Pane& pane) {
   pane.tile_columns = (task.width + kTileEdge - 1) / kTileEdge;
   pane.columns = pane.tile_columns * (kTileEdge / kBlockWidth);
   pane.rows = tiles_down * (kTileEdge / kBlockHeight);
-  pane.groups = 1;
-  pane.open_lane = kWidth;
+  pane.records = 1;
   pane.shades = task.color != nullptr || task.semantics != nullptr;
   const std::size_t blocks = std::size_t{pane.columns} * pane.rows;
   __builtin_memset(scratch.ids, 0, blocks * kWidth * sizeof(*scratch.ids));
@@ -48,38 +47,44 @@ void clearPane(Pane& pane) {
   }
 }
 
-/// Group 0 of the records: the background, a flat surface of its colour.
+/// Record 0: the background, a flat surface of its colour.
 void recordBackground(const Pane& pane) {
-  float* record = recordsOf(pane, 0);
-  __builtin_memset(record, 0, sizeof(float) * kRecordRows * kWidth);
-  __builtin_memset(colorsOf(pane, 0), 0, sizeof(float) * kColorRows * kWidth);
-  store(record + kTexels * kWidth, spread(static_cast<std::int32_t>(pane.task->background)));
-  store(record + kKind * kWidth, spread(static_cast<std::int32_t>(kFlatSurface)));
+  float* record = recordAt(pane, 0);
+  __builtin_memset(record, 0, sizeof(float) * kRecordStride);
+  __builtin_memset(colorsAt(pane, 0), 0, sizeof(float) * kRecordStride);
+  record[kTexels] = as<float>(pane.task->background);
+  record[kKind] = as<float>(kFlatSurface);
 }
 
 /// Draws up to eight small triangles.
 void drawGroup(Pane& pane, ClusterState& state, const std::int32_t* corners, std::uint32_t count) {
-  if (pane.groups == kRecordGroups) makeRoom(pane);
+  if (pane.records + kWidth > kMostRecords) makeRoom(pane);
   alignas(32) std::int32_t eight[kWidth];
   for (std::uint32_t n = 0; n < kWidth; ++n) eight[n] = corners[n < count ? n : 0];
   SmallGroup group;
   GroupSetup setup;
   setUpGroup(pane, state, load<IntLanes>(eight), group, setup);
-  const auto first_id = static_cast<std::int32_t>(pane.groups * kWidth);
-  bool seen = false;
+  const std::uint32_t first = pane.records;
+  std::uint32_t next = first;
+  unsigned seen = 0;
+  const auto cover = [&](std::uint32_t n, const auto& test) {
+    if (!coverTriangle(pane, setup, n, static_cast<std::int32_t>(next), test)) return;
+    seen |= 1U << n;
+    ++next;
+  };
+  GroupRecords records;
   if (state.surface.least_alpha != 0) {
-    recordGroup(pane, state, group);
+    makeRecords(state, group, records);
     for (std::uint32_t n = 0; n < count; ++n) {
-      const AlphaTest test = alphaTest(pane, state, pane.groups, n);
-      seen |= coverTriangle(pane, setup, n, first_id + static_cast<std::int32_t>(n), test);
+      cover(n, alphaTest(pane, state, records.records[n], records.colors[n]));
     }
   } else {
-    for (std::uint32_t n = 0; n < count; ++n) {
-      seen |= coverTriangle(pane, setup, n, first_id + static_cast<std::int32_t>(n), Opaque{});
-    }
-    if (seen && pane.shades) recordGroup(pane, state, group);
+    for (std::uint32_t n = 0; n < count; ++n) cover(n, Opaque{});
+    if (seen != 0 && pane.shades) makeRecords(state, group, records);
   }
-  if (seen) ++pane.groups;
+  if (seen == 0 || !pane.shades) return;
+  keepRecords(pane, state, records, seen, first);
+  pane.records = next;
 }
 
 inline Corner cornerOf(const ClusterState& state, std::uint32_t number) {

@@ -2,34 +2,21 @@
 namespace galactic::render {
 namespace {
 
-inline IntLanes shade(const Pane& pane, IntLanes ids, const PixelLanes& pixels) {
-  const IntLanes group = ids >> 3;
-  const IntLanes lane = ids & 7;
-  const std::int32_t first = ids[0];
-  const bool uniform = signBits(ids == spread(first)) == kAllLanes;
-  IntLanes colors;
-  IntLanes kind;
-  if (uniform) {
-    const OneRecord records{recordsOf(pane, static_cast<std::uint32_t>(first) >> 3U) + (first & 7)};
-    const TexturePlaces places = texturePlaces(records, pixels);
-    kind = places.kind;
-    colors = sampleTexels(*pane.task, places);
-  } else {
-    const EachRecord records{pane.scratch->records,
-                             group * static_cast<std::int32_t>(kRecordRows * kWidth) + lane};
-    const TexturePlaces places = texturePlaces(records, pixels);
-    kind = places.kind;
-    colors = sampleTexels(*pane.task, places);
-  }
+/// `ids`: 0 or more.
+inline IntLanes shade(const Pane& pane, const std::int32_t* ids, const PixelLanes& pixels) {
+  const auto id = load<IntLanes>(ids);
+  const TexturePlaces places = texturePlaces(loadRecords(pane.scratch->records, ids), pixels);
+  IntLanes colors = sampleTexels(*pane.task, places);
+  const IntLanes kind = places.kind;
   if (signBits(kind) != 0) {
-    // Lanes without colours look at group 0.
-    const IntLanes at =
-        (group * static_cast<std::int32_t>(kColorRows * kWidth) + lane) & (kind >> 31);
-    const EachRecord rows{pane.scratch->colors, at};
-    colors = pick(kind >> 31, timesColors(colors, rows, pixels), colors);
+    // Lanes without colours look at record 0.
+    alignas(32) std::int32_t colored[kWidth];
+    store(colored, id & (kind >> 31));
+    const EachRecord planes = loadRecords(pane.scratch->colors, colored);
+    colors = pick(kind >> 31, timesColors(colors, planes, pixels), colors);
   }
   // What is drawn hides all behind it.
-  return pick(ids == spread(0), colors, colors | static_cast<std::int32_t>(0xFF000000U));
+  return pick(id == spread(0), colors, colors | static_cast<std::int32_t>(0xFF000000U));
 }
 
 /// Where a block of pixels lies in the whole image, and how much of it is within.
@@ -96,32 +83,35 @@ inline IntLanes keepShaded(const PaneTask& task, const BlockTarget& target, IntL
   return words;
 }
 
-inline void resolveColors(const Pane& pane, const BlockTarget& target, IntLanes ids,
+inline void resolveColors(const Pane& pane, const BlockTarget& target, const std::int32_t* ids,
                           const PixelLanes& pixels) {
   const PaneTask& task = *pane.task;
-  const bool any_shaded = signBits(ids) != 0;
-  const IntLanes valid = ids & ~(ids >> 31);
+  const auto id = load<IntLanes>(ids);
+  const bool any_shaded = signBits(id) != 0;
+  alignas(32) std::int32_t valid[kWidth];
+  if (any_shaded) store(valid, id & ~(id >> 31));
+  const std::int32_t* shown = any_shaded ? valid : ids;
   if (task.color != nullptr) {
     IntLanes colors = spread(static_cast<std::int32_t>(task.background));
-    if (signBits(valid == spread(0)) != kAllLanes) colors = shade(pane, valid, pixels);
-    if (any_shaded) colors = keepShaded(task, target, ids, colors, task.color, task.channels);
+    if (signBits(load<IntLanes>(shown) == spread(0)) != kAllLanes) {
+      colors = shade(pane, shown, pixels);
+    }
+    if (any_shaded) colors = keepShaded(task, target, id, colors, task.color, task.channels);
     if (task.channels == 4) {
       writeWords(task, target, task.color, colors);
     } else {
       writeTriples(task, target, colors);
     }
   }
-  if (task.semantics != nullptr) {
-    const EachRecord records{
-        pane.scratch->records,
-        (valid >> 3) * static_cast<std::int32_t>(kRecordRows * kWidth) + (valid & 7)};
-    IntLanes semantics = records.intRow(kSemantic);
-    if (any_shaded) {
-      semantics = keepShaded(task, target, ids, semantics,
-                             reinterpret_cast<const std::uint8_t*>(task.semantics), 4);
-    }
-    writeWords(task, target, task.semantics, semantics);
+  if (task.semantics == nullptr) return;
+  IntLanes semantics =
+      gather(reinterpret_cast<const std::int32_t*>(pane.scratch->records) + kSemantic,
+             load<IntLanes>(shown) * static_cast<std::int32_t>(kRecordStride));
+  if (any_shaded) {
+    semantics = keepShaded(task, target, id, semantics,
+                           reinterpret_cast<const std::uint8_t*>(task.semantics), 4);
   }
+  writeWords(task, target, task.semantics, semantics);
 }
 
 /// Writes the images.
@@ -141,7 +131,7 @@ void resolve(const Pane& pane) {
         writeWords(task, target, task.depth, as<IntLanes>(metres) & (z > spread(0.0F)));
       }
       if (pane.shades) {
-        resolveColors(pane, target, load<IntLanes>(ids + at), pixelsOf(column, row, z));
+        resolveColors(pane, target, ids + at, pixelsOf(column, row, z));
       }
     }
   }
@@ -156,12 +146,12 @@ void makeRoom(Pane& pane) {
       const IntLanes ids = load<IntLanes>(pane.scratch->ids + at);
       if (signBits(spread(0) - ids) == 0) continue;  // none above 0
       const Lanes z = load<Lanes>(pane.scratch->depth + at);
-      resolveColors(pane, blockTarget(task, column, row), ids, pixelsOf(column, row, z));
+      resolveColors(pane, blockTarget(task, column, row), pane.scratch->ids + at,
+                    pixelsOf(column, row, z));
       store(pane.scratch->ids + at, pick(ids > spread(0), spread(kShaded), ids));
     }
   }
-  pane.groups = 1;
-  pane.open_lane = kWidth;
+  pane.records = 1;
 }
 
 }  // namespace

@@ -102,9 +102,9 @@ inline IntLanes sampleTexels(const PaneTask& task, const TexturePlaces& places) 
   const IntLanes base = (places.kind >> 8) & 0x7FFFFF;
   FourTexels texels{};
   while (left != 0) {
-    const std::int32_t number = base[__builtin_ctz(left)];
-    const std::int32_t* from = texelBase(task, number);
-    const IntLanes here = (base == spread(number)) & ~flat;
+    const IntLanes number = laneOf(base, __builtin_ctz(left));
+    const std::int32_t* from = texelBase(task, number[0]);
+    const IntLanes here = (base == number) & ~flat;
     left &= ~signBits(here);
     texels.upper_left |= gather(from, place.at.upper_left & here) & here;
     texels.upper_right |= gather(from, place.at.upper_right & here) & here;
@@ -114,21 +114,47 @@ inline IntLanes sampleTexels(const PaneTask& task, const TexturePlaces& places) 
   return pick(flat, places.texels, bilinear(texels, place.share_right, place.share_down));
 }
 
-/// Rows of the records of eight pixels.
-struct EachRecord {
-  const float* records;
-  IntLanes at;
-  Lanes row(std::uint32_t number) const {
-    return gather(records + std::size_t{number} * kWidth, at);
+using Quad = float __attribute__((vector_size(16)));
+
+/// Four numbers of eight records become a vector each.
+inline void loadFour(const float* records, const std::int32_t* ids, Lanes* fields) {
+  Lanes pairs[4];
+  for (int n = 0; n < 4; ++n) {
+    const auto near =
+        load<Quad>(records + std::size_t{kRecordStride} * static_cast<std::uint32_t>(ids[n]));
+    const auto far =
+        load<Quad>(records + std::size_t{kRecordStride} * static_cast<std::uint32_t>(ids[n + 4]));
+    pairs[n] = __builtin_shufflevector(near, far, 0, 1, 2, 3, 4, 5, 6, 7);
   }
-  IntLanes intRow(std::uint32_t number) const { return as<IntLanes>(row(number)); }
+  const Lanes a = __builtin_shufflevector(pairs[0], pairs[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Lanes b = __builtin_shufflevector(pairs[0], pairs[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const Lanes c = __builtin_shufflevector(pairs[2], pairs[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Lanes d = __builtin_shufflevector(pairs[2], pairs[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  fields[0] = __builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13);
+  fields[1] = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);
+  fields[2] = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);
+  fields[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+/// The records of eight pixels, field by field.
+struct EachRecord {
+  Lanes fields[kRecordFields];
+  Lanes field(std::uint32_t number) const { return fields[number]; }
+  IntLanes intField(std::uint32_t number) const { return as<IntLanes>(fields[number]); }
 };
+
+inline EachRecord loadRecords(const float* records, const std::int32_t* ids) {
+  static_assert(kRecordFields == kColorFields);
+  EachRecord each;
+  for (std::uint32_t n = 0; n < kRecordFields; n += 4) loadFour(records + n, ids, each.fields + n);
+  return each;
+}
 
 /// The same where all have one record.
 struct OneRecord {
   const float* record;
-  Lanes row(std::uint32_t number) const { return spread(record[std::size_t{number} * kWidth]); }
-  IntLanes intRow(std::uint32_t number) const { return as<IntLanes>(row(number)); }
+  Lanes field(std::uint32_t number) const { return spread(record[number]); }
+  IntLanes intField(std::uint32_t number) const { return as<IntLanes>(field(number)); }
 };
 
 /// Eight pixels: their places in the pane, from the centre of its first pixel, and 1/w.
@@ -139,20 +165,20 @@ struct PixelLanes {
 template <class Records>
 inline TexturePlaces texturePlaces(const Records& records, const PixelLanes& pixels) {
   const Lanes w = spread(1.0F) / pixels.z;
-  const Lanes u_right = records.row(kURight);
-  const Lanes u_down = records.row(kUDown);
-  const Lanes v_right = records.row(kVRight);
-  const Lanes v_down = records.row(kVDown);
-  const Lanes w_right = records.row(kWRight);
-  const Lanes w_down = records.row(kWDown);
-  const Lanes u = (u_right * pixels.x + u_down * pixels.y + records.row(kUStart)) * w;
-  const Lanes v = (v_right * pixels.x + v_down * pixels.y + records.row(kVStart)) * w;
+  const Lanes u_right = records.field(kURight);
+  const Lanes u_down = records.field(kUDown);
+  const Lanes v_right = records.field(kVRight);
+  const Lanes v_down = records.field(kVDown);
+  const Lanes w_right = records.field(kWRight);
+  const Lanes w_down = records.field(kWDown);
+  const Lanes u = (u_right * pixels.x + u_down * pixels.y + records.field(kUStart)) * w;
+  const Lanes v = (v_right * pixels.x + v_down * pixels.y + records.field(kVStart)) * w;
   const Lanes u_x = (u_right - u * w_right) * w;
   const Lanes u_y = (u_down - u * w_down) * w;
   const Lanes v_x = (v_right - v * w_right) * w;
   const Lanes v_y = (v_down - v * w_down) * w;
-  return {u, v, greater(u_x * u_x + v_x * v_x, u_y * u_y + v_y * v_y), records.intRow(kTexels),
-          records.intRow(kKind)};
+  return {u, v, greater(u_x * u_x + v_x * v_x, u_y * u_y + v_y * v_y), records.intField(kTexels),
+          records.intField(kKind)};
 }
 
 /// a * b / 255, rounded, for bytes.
@@ -167,8 +193,8 @@ inline IntLanes timesColors(IntLanes texels, const Records& colors, const PixelL
   const Lanes w = spread(1.0F) / pixels.z;
   IntLanes result = spread(0);
   for (std::uint32_t channel = 0; channel < 4; ++channel) {
-    const Lanes value = (colors.row(3 * channel) * pixels.x +
-                         colors.row(3 * channel + 1) * pixels.y + colors.row(3 * channel + 2)) *
+    const Lanes value = (colors.field(3 * channel) * pixels.x +
+                         colors.field(3 * channel + 1) * pixels.y + colors.field(3 * channel + 2)) *
                         w;
     const IntLanes factor = toInt(clampTo(value + spread(0.5F), 0, 255));
     const auto shift = static_cast<std::int32_t>(8 * channel);

@@ -55,7 +55,14 @@ struct Sorting {
   unsigned small, large;
 };
 
-inline Sorting sortEight(const Pane& pane, const ClusterState& state, const CornerLanes& corners) {
+/// Bounds of a pane, and whether both sides of triangles show: by value, so that no store can
+/// change them.
+struct SortLimits {
+  IntLanes last_x, last_y, two_sided;
+};
+
+inline Sorting sortEight(const SortLimits limits, const ClusterState& state,
+                         const CornerLanes& corners) {
   const PointLanes a = pointsOf(state, corners.a);
   const PointLanes b = pointsOf(state, corners.b);
   const PointLanes c = pointsOf(state, corners.c);
@@ -65,15 +72,12 @@ inline Sorting sortEight(const Pane& pane, const ClusterState& state, const Corn
   const IntLanes y_high = mostOf(a.y, b.y, c.y);
   const IntLanes first_x = greater(firstPixel(x_low), spread(0));
   const IntLanes first_y = greater(firstPixel(y_low), spread(0));
-  const auto width = static_cast<std::int32_t>(pane.task->width);
-  const auto height = static_cast<std::int32_t>(pane.task->height);
-  const IntLanes last_x = lesser(lastPixel(x_high), spread(width - 1));
-  const IntLanes last_y = lesser(lastPixel(y_high), spread(height - 1));
+  const IntLanes last_x = lesser(lastPixel(x_high), limits.last_x);
+  const IntLanes last_y = lesser(lastPixel(y_high), limits.last_y);
   const IntLanes missed = (first_x > last_x) | (first_y > last_y);
   const IntLanes large = ((x_high - x_low) > spread(kSmall)) | ((y_high - y_low) > spread(kSmall));
   const IntLanes area = doubleArea(a, b, c);
-  const IntLanes turned_away =
-      state.cluster->two_sided != 0 ? area == spread(0) : area <= spread(0);
+  const IntLanes turned_away = (area == spread(0)) | ((area < spread(0)) & ~limits.two_sided);
   return {signBits(~missed & ~large & ~turned_away), signBits(~missed & large)};
 }
 
@@ -86,16 +90,20 @@ inline void append(std::int32_t* list, std::uint32_t& count, IntLanes corners, u
 void sortTriangles(const Pane& pane, const ClusterState& state, Survivors& survivors) {
   survivors.small_count = survivors.large_count = survivors.clipped_count = 0;
   const RenderCluster& cluster = *state.cluster;
+  const SortLimits limits{spread(static_cast<std::int32_t>(pane.task->width) - 1),
+                          spread(static_cast<std::int32_t>(pane.task->height) - 1),
+                          spread(cluster.two_sided != 0 ? -1 : 0)};
+  const std::uint32_t triangle_count = cluster.triangle_count;
   const std::uint8_t* block =
       state.pack->triangles + static_cast<std::size_t>(cluster.first_triangle) * kTriangleRows;
-  for (std::uint32_t t = 0; t < cluster.triangle_count; t += kWidth) {
+  for (std::uint32_t t = 0; t < triangle_count; t += kWidth) {
     // Counter-clockwise from outside is clockwise where rows run down: two corners change places.
     const CornerLanes corners{widen(load<EightBytes>(block)),
                               widen(load<EightBytes>(block + 2 * kWidth)),
                               widen(load<EightBytes>(block + kWidth))};
     block += kTriangleRows * kWidth;
     unsigned valid = kAllLanes;
-    if (cluster.triangle_count - t < kWidth) valid = (1U << (cluster.triangle_count - t)) - 1;
+    if (triangle_count - t < kWidth) valid = (1U << (triangle_count - t)) - 1;
     const IntLanes both = corners.a | corners.b << 8 | corners.c << 16;
     if (state.any_bad) {
       const IntLanes bad = gather(state.bad, corners.a) | gather(state.bad, corners.b) |
@@ -103,7 +111,7 @@ void sortTriangles(const Pane& pane, const ClusterState& state, Survivors& survi
       append(survivors.clipped, survivors.clipped_count, both, signBits(bad) & valid);
       valid &= ~signBits(bad);
     }
-    const Sorting sorting = sortEight(pane, state, corners);
+    const Sorting sorting = sortEight(limits, state, corners);
     append(survivors.small, survivors.small_count, both, sorting.small & valid);
     append(survivors.large, survivors.large_count, both, sorting.large & valid);
   }
