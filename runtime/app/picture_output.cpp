@@ -26,6 +26,9 @@ std::string frameName(std::size_t env, std::uint64_t step, const char* what) {
 
 /// Whether a file can be written here; leaves nothing behind.
 Result<void> tryFile(const std::filesystem::path& path) {
+  if (!path.has_filename()) {
+    return fail(ErrorCode::kIo, path.string(), "is a folder; wanted the name of a file");
+  }
   const Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected<Error>(file.error());
   return {};
