@@ -14,6 +14,7 @@
 #include "galactic/bake/source_file.h"
 #include "object_inputs.h"
 #include "object_outcome.h"
+#include "render_job.h"
 
 namespace galactic::bake {
 namespace {
@@ -64,6 +65,21 @@ Result<ObjectBakeOptions> optionsOf(const std::string& name, const ObjectTask& t
   return options;
 }
 
+/// Adds what is drawn to an object that was baked.
+void addRenderMeshes(const SourceAsset& asset, const ObjectInput& input, const ObjectTask& task,
+                     ObjectWork& work) {
+  const auto start = std::chrono::steady_clock::now();
+  BakedObject& object = **work.baked;
+  auto meshes = renderObject(asset, {task.command, input.path, task.alone ? task.command.jobs : 1},
+                             object.warnings);
+  if (!meshes) {
+    work.baked = tl::unexpected(meshes.error());
+    return;
+  }
+  object.render_meshes = std::move(*meshes);
+  object.times.render = secondsSince(start);
+}
+
 void bakeObjectFile(const ObjectInput& input, const ObjectTask& task, ObjectWork& work) {
   work.outcome.input = input.path;
   const auto start = std::chrono::steady_clock::now();
@@ -81,7 +97,11 @@ void bakeObjectFile(const ObjectInput& input, const ObjectTask& task, ObjectWork
     return;
   }
   work.baked = bakeObject(*asset, *options);
-  if (!*work.baked) work.baked->error().where = inFile(input.path, work.baked->error().where);
+  if (!*work.baked) {
+    work.baked->error().where = inFile(input.path, work.baked->error().where);
+    return;
+  }
+  addRenderMeshes(*asset, input, task, work);
 }
 
 std::vector<ObjectWork> bakeAll(const std::vector<ObjectInput>& inputs,

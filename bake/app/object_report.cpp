@@ -1,4 +1,5 @@
 #include "object_outcome.h"
+#include "render_job.h"
 
 namespace galactic::bake {
 namespace {
@@ -63,7 +64,9 @@ Json objectReport(const BakedObject& object, const ObjectOutcome& outcome,
   json["seconds"] = {{"import", outcome.import_seconds},
                      {"box", object.times.box},
                      {"stable_poses", object.times.stable_poses},
-                     {"spheres", object.times.spheres}};
+                     {"spheres", object.times.spheres},
+                     {"render", object.times.render}};
+  if (object.render_meshes) json["render_meshes"] = renderReport(*object.render_meshes);
   json["warnings"] = object.warnings;
   return json;
 }

@@ -4,6 +4,7 @@
 
 #include "galactic/printable.h"
 #include "object_outcome.h"
+#include "render_job.h"
 
 namespace galactic::bake {
 namespace {
@@ -35,6 +36,20 @@ void printObject(const BakedObject& object, std::size_t radii, int name_width) {
       times.box + times.stable_poses + times.spheres, object.authored_spheres ? "  as given" : "");
 }
 
+/// The figures of all objects together. Textures that two objects share count twice.
+void printAllRenderMeshes(const std::vector<BakedObject>& objects) {
+  RenderBakeStatistics sum;
+  std::size_t textures = 0;
+  bool any = false;
+  for (const BakedObject& object : objects) {
+    if (!object.render_meshes) continue;
+    any = true;
+    sum += object.render_meshes->statistics();
+    textures += object.render_meshes->materials.textures.size();
+  }
+  if (any) printRenderMeshes(sum, textures);
+}
+
 }  // namespace
 
 std::string sphereCounts(const std::vector<SetSphere>& spheres, std::size_t radii) {
@@ -62,6 +77,7 @@ void printObjectTable(const ObjectSetOutcome& outcome, const std::vector<BakedOb
   for (const BakedObject& object : objects) {
     printObject(object, outcome.radii.size(), name_width);
   }
+  printAllRenderMeshes(objects);
   for (const std::string& warning : outcome.warnings) {
     fmt::print("  warning: {}\n", printable(warning));
   }

@@ -52,6 +52,18 @@ class ShapeOptions {
   bool any_side_ = false;
 };
 
+/// What is drawn of scenes, objects and robots.
+class RenderMeshOptions {
+ public:
+  void addTo(CLI::App& app, BakeCommand& command);
+  [[nodiscard]] Result<void> understand(BakeCommand& command) const;
+  void remember(BakeCommand& command) const;
+
+ private:
+  std::string error_;
+  bool none_ = false;
+};
+
 /// Where a robot's files are, and its recipe.
 class RobotFileOptions {
  public:

@@ -59,9 +59,10 @@ constexpr Group kShapeGroup{"Spheres and boxes (objects, robots)", isShape};
 constexpr Group kObjectGroup{"Objects", isObject};
 constexpr Group kRobotGroup{"Robots", isRobot};
 constexpr Group kEpisodeGroup{"Episodes", isEpisodes};
+constexpr Group kRenderGroup{"Render meshes (scenes, objects, robots)", hasRadii};
 constexpr Group kSeedGroup{"Scenes, sampled episodes", hasSeed};
-constexpr std::array kGroups{kRadiiGroup,  kSceneGroup, kMeshGroup, kShapeGroup,
-                             kObjectGroup, kRobotGroup, kSeedGroup, kEpisodeGroup};
+constexpr std::array kGroups{kRadiiGroup, kSceneGroup,  kMeshGroup, kShapeGroup,  kObjectGroup,
+                             kRobotGroup, kRenderGroup, kSeedGroup, kEpisodeGroup};
 
 /// Options that were typed although their group is for other kinds of asset.
 Result<void> checkGroup(const CLI::App& app, const Group& group, AssetKind kind) {
@@ -134,6 +135,7 @@ class CommandLine {
     addGroup(kShapeGroup, [&] { shape_.addTo(app_, command); });
     addGroup(kObjectGroup, [&] { addCollection(); });
     addGroup(kRobotGroup, [&] { robot_.addTo(app_, command); });
+    addGroup(kRenderGroup, [&] { render_.addTo(app_, command); });
     addGroup(kEpisodeGroup, [&] { episodes_.addTo(app_, command); });
   }
 
@@ -145,10 +147,10 @@ class CommandLine {
     for (const Group& group : kGroups) {
       if (auto fits = checkGroup(app_, group, command_.kind); !fits) return fits;
     }
-    for (const auto& step :
-         {understandRadii(radii_, command_), import_.understand(command_),
-          scene_.understand(command_, seeds_), shape_.understand(command_),
-          robot_.understand(command_), episodes_.understand(command_, seeds_), checkCollection()}) {
+    for (const auto& step : {understandRadii(radii_, command_), import_.understand(command_),
+                             scene_.understand(command_, seeds_), shape_.understand(command_),
+                             robot_.understand(command_), render_.understand(command_),
+                             episodes_.understand(command_, seeds_), checkCollection()}) {
       if (!step) return step;
     }
     // Movable objects may be small.
@@ -224,6 +226,7 @@ class CommandLine {
     command_.remember("collection", command_.collection.filename().string());
     if (isRobot(command_.kind)) robot_.remember(command_);
     if (isMesh(command_.kind)) import_.remember(command_);
+    if (hasRadii(command_.kind)) render_.remember(command_);
     if (isEpisodes(command_.kind)) episodes_.remember(command_);
   }
 
@@ -235,6 +238,7 @@ class CommandLine {
   SceneOptions scene_;
   ShapeOptions shape_;
   RobotFileOptions robot_;
+  RenderMeshOptions render_;
   EpisodeSetOptions episodes_;
   std::vector<std::string> seeds_;
 };

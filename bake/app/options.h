@@ -12,6 +12,7 @@
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/object_baker.h"
+#include "galactic/bake/render_baker.h"
 #include "galactic/bake/scene_baker.h"
 #include "galactic/error.h"
 
@@ -45,6 +46,13 @@ struct EpisodeOptions {
   EpisodeSamplerOptions sample;
 };
 
+/// What is drawn.
+struct RenderOptions {
+  bool wanted = true;
+  RenderBakeOptions meshes;
+  TextureBakeOptions textures;
+};
+
 /// What the user typed, understood.
 struct BakeCommand {
   AssetKind kind = AssetKind::kScene;
@@ -60,6 +68,7 @@ struct BakeCommand {
   /// Published collection whose boxes and spheres objects get; empty: none.
   std::filesystem::path collection;
   RobotOptions robot;
+  RenderOptions render;
   EpisodeOptions episodes;
   /// Most spheres of an object or robot, where the user said so; 0: no limit.
   std::optional<std::uint32_t> max_spheres;

@@ -10,6 +10,7 @@
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/source_file.h"
 #include "galactic/bake/urdf_import.h"
+#include "render_job.h"
 #include "robot_outcome.h"
 
 namespace galactic::bake {
@@ -117,6 +118,12 @@ Result<Json> bakeRobotFile(const std::filesystem::path& input, BakeRun& run) {
     return tl::unexpected(added.error());
   }
   outcome.robot = std::move(*baked);
+  run.line().show(item, "render meshes", 0.9);
+  const auto render_start = std::chrono::steady_clock::now();
+  auto meshes = renderRobot(*robot, {command, input, command.jobs}, outcome.robot.warnings);
+  if (!meshes) return tl::unexpected(meshes.error());
+  outcome.robot.render_meshes = std::move(*meshes);
+  outcome.robot.times.render = secondsSince(render_start);
   if (!command.dry_run) {
     run.line().show(item, "write", 1);
     const auto bytes =

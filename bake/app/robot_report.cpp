@@ -1,6 +1,7 @@
 #include <array>
 
 #include "object_outcome.h"
+#include "render_job.h"
 #include "robot_outcome.h"
 
 namespace galactic::bake {
@@ -43,7 +44,9 @@ Json robotReport(const RobotOutcome& outcome) {
   json["seconds"] = {{"import", outcome.import_seconds},
                      {"spheres", robot.times.spheres},
                      {"self_collision", robot.times.self_collision},
+                     {"render", robot.times.render},
                      {"all", outcome.seconds}};
+  if (robot.render_meshes) json["render_meshes"] = renderReport(*robot.render_meshes);
   json["warnings"] = robot.warnings;
   return json;
 }

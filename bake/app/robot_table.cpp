@@ -5,6 +5,7 @@
 
 #include "galactic/printable.h"
 #include "object_outcome.h"
+#include "render_job.h"
 #include "robot_outcome.h"
 
 namespace galactic::bake {
@@ -54,15 +55,18 @@ void printRobotTable(const RobotOutcome& outcome, Verbosity verbosity) {
              "spheres", "all", "gap mm", "protrusion mm", "volume", "thin");
   for (const BakedGroup& group : robot.groups) printGroup(robot, group, name_width);
   printPairs(robot);
+  printRenderMeshes(robot.render_meshes);
   if (verbosity == Verbosity::kVerbose) {
     for (const std::string& found : outcome.resolutions) fmt::print("  {}\n", printable(found));
   }
   for (const std::string& warning : robot.warnings) {
     fmt::print("  warning: {}\n", printable(warning));
   }
-  fmt::print("  {:.3f} s: import {:.3f}, spheres {:.3f}, self-collision {:.3f}; {:.2f} MB\n",
-             outcome.seconds, outcome.import_seconds, robot.times.spheres,
-             robot.times.self_collision, static_cast<double>(outcome.pack_bytes) / 1e6);
+  fmt::print(
+      "  {:.3f} s: import {:.3f}, spheres {:.3f}, self-collision {:.3f}, render {:.3f}; {:.2f} "
+      "MB\n",
+      outcome.seconds, outcome.import_seconds, robot.times.spheres, robot.times.self_collision,
+      robot.times.render, static_cast<double>(outcome.pack_bytes) / 1e6);
 }
 
 }  // namespace galactic::bake

@@ -2,6 +2,7 @@
 
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/scene_pack.h"
+#include "render_job.h"
 #include "scene_outcome.h"
 
 namespace galactic::bake {
@@ -31,6 +32,12 @@ Result<Json> bakeSceneFile(const std::filesystem::path& input, BakeRun& run) {
     return tl::unexpected(scene.error());
   }
   outcome.scene = std::move(*scene);
+  run.line().show(item, "render meshes", 0.9);
+  start = std::chrono::steady_clock::now();
+  auto meshes = renderScene(*asset, {command, input, command.jobs}, outcome.scene.warnings);
+  if (!meshes) return tl::unexpected(meshes.error());
+  outcome.scene.render_meshes = std::move(*meshes);
+  outcome.times.render = secondsSince(start);
   if (!command.dry_run) {
     run.line().show(item, "write", 1);
     start = std::chrono::steady_clock::now();

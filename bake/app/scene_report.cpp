@@ -1,5 +1,6 @@
 #include <array>
 
+#include "render_job.h"
 #include "scene_outcome.h"
 
 namespace galactic::bake {
@@ -60,8 +61,10 @@ Json sceneReport(const SceneOutcome& outcome) {
               {"regions", times.regions},
               {"encode", times.encode},
               {"check", times.check},
+              {"render", times.render},
               {"write", times.write}}},
             {"warnings", scene.warnings}};
+  if (scene.render_meshes) json["render_meshes"] = renderReport(*scene.render_meshes);
   json["grids"] = Json::array();
   for (const BakedGrid& grid : scene.grids) json["grids"].push_back(toJson(grid));
   return json;

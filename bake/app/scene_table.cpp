@@ -4,6 +4,7 @@
 #include <array>
 
 #include "galactic/printable.h"
+#include "render_job.h"
 #include "scene_outcome.h"
 
 namespace galactic::bake {
@@ -62,15 +63,17 @@ void printSceneTable(const SceneOutcome& outcome, Verbosity verbosity) {
       bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y, bounds.max.z - bounds.min.z,
       bounds.min.y, bounds.max.y);
   printGrids(scene);
+  printRenderMeshes(scene.render_meshes);
   if (verbosity == Verbosity::kVerbose) printDetails(scene);
   for (const std::string& warning : scene.warnings)
     fmt::print("  warning: {}\n", printable(warning));
   const StageTimes& t = outcome.times;
-  const double total = t.import + t.clean + t.columns + t.regions + t.encode + t.check + t.write;
+  const double total =
+      t.import + t.clean + t.columns + t.regions + t.encode + t.check + t.render + t.write;
   fmt::print(
       "  {:.3f} s: import {:.3f}, clean {:.3f}, columns {:.3f}, regions {:.3f}, encode "
-      "{:.3f}, check {:.3f}, write {:.3f}; {:.2f} MB\n",
-      total, t.import, t.clean, t.columns, t.regions, t.encode, t.check, t.write,
+      "{:.3f}, check {:.3f}, render {:.3f}, write {:.3f}; {:.2f} MB\n",
+      total, t.import, t.clean, t.columns, t.regions, t.encode, t.check, t.render, t.write,
       static_cast<double>(outcome.pack_bytes) / 1e6);
 }
 

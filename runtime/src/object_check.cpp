@@ -2,6 +2,7 @@
 
 #include "common_check.h"
 #include "offence.h"
+#include "render_check.h"
 
 namespace galactic::detail {
 namespace {
@@ -72,6 +73,9 @@ Result<void> checkObjectSet(const schema::ObjectSet& set, const std::string& whe
     offence.require(
         objects.Get(n - 1)->name()->string_view() < objects.Get(n)->name()->string_view(),
         field + ".name", "does not come after its predecessor's, wanted ascending names");
+  }
+  if (set.render_meshes() != nullptr && !offence.found()) {
+    offence.require(checkRenderMeshes(*set.render_meshes(), objects.size(), offence.where()));
   }
   return offence.result();
 }

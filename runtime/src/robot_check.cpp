@@ -7,6 +7,7 @@
 #include "common_check.h"
 #include "galactic/kinematics.h"
 #include "offence.h"
+#include "render_check.h"
 
 namespace galactic::detail {
 namespace {
@@ -32,10 +33,16 @@ class RobotChecker {
     checkControlledJoints();
     checkTools();
     checkSurfaces();
+    checkRendered();
     return offence_.result();
   }
 
  private:
+  void checkRendered() {
+    if (robot_.render_meshes() == nullptr || offence_.found()) return;
+    offence_.require(checkRenderMeshes(*robot_.render_meshes(), links(), offence_.where()));
+  }
+
   [[nodiscard]] std::size_t links() const { return robot_.links()->size(); }
   [[nodiscard]] std::size_t positions() const { return robot_.limits()->size(); }
 

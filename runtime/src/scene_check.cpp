@@ -3,6 +3,7 @@
 #include "column_grid_check.h"
 #include "common_check.h"
 #include "offence.h"
+#include "render_check.h"
 
 namespace galactic::detail {
 namespace {
@@ -28,6 +29,9 @@ Result<void> checkScene(const schema::Scene& scene, std::span<const std::byte> f
     const float previous = grids.Get(n - 1)->radius();
     offence.require(grids.Get(n)->radius() > previous, field + ".radius",
                     "is {} m after {} m, wanted ascending radii", grids.Get(n)->radius(), previous);
+  }
+  if (scene.render_meshes() != nullptr && !offence.found()) {
+    offence.require(checkRenderMeshes(*scene.render_meshes(), 1, offence.where()));
   }
   return offence.result();
 }

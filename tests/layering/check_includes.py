@@ -49,6 +49,8 @@ HEAVY_LIBRARIES = (
     HeavyLibrary("urdfdom", re.compile(r"(urdf_|tinyxml|console_bridge/)"),
                  re.compile(r"\b(urdf::|TiXml\w+|console_bridge::)"),
                  re.compile(r"bake/src/urdf/urdf_reader[^/]*$")),
+    HeavyLibrary("meshoptimizer", re.compile(r"meshoptimizer\.h"), re.compile(r"\bmeshopt_\w+"),
+                 re.compile(r"bake/src/render/mesh_optimizer\.cpp$")),
     HeavyLibrary("toml++", re.compile(r"toml\+\+/"), re.compile(r"\btoml::"),
                  re.compile(r"bake/src/recipe/toml_table[^/]*$")),
 )

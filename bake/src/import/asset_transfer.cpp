@@ -16,7 +16,8 @@ void transferFields(Archive& archive, Is<SourceInstance> auto& instance) {
 
 template <class Archive>
 void transferFields(Archive& archive, Is<SourceMaterial> auto& material) {
-  archive(material.name, material.base_color, material.base_color_texture, material.two_sided);
+  archive(material.name, material.base_color, material.base_color_texture, material.two_sided,
+          material.alpha_mode, material.alpha_cutoff);
 }
 
 template <class Archive>

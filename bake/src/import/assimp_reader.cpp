@@ -1,6 +1,7 @@
 #include "import/assimp_reader.h"
 
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/GltfMaterial.h>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
@@ -37,11 +38,12 @@ constexpr AxisConvention statedBy(UpAxis up, std::string_view by) {
 constexpr std::string_view kColladaReader = "Collada Importer";
 constexpr std::string_view kFbxReader = "Autodesk FBX Importer";
 constexpr std::string_view kGltf2Reader = "glTF2 Importer";
+constexpr std::string_view kObjReader = "Wavefront Object Importer";
 
 constexpr std::array kFormats{
     Format{kGltf2Reader, "glTF 2.0", statedBy(UpAxis::kY, "glTF convention")},
     Format{"glTF Importer", "glTF 1.0", statedBy(UpAxis::kY, "glTF convention")},
-    Format{"Wavefront Object Importer", "Wavefront OBJ", statedBy(UpAxis::kY, "OBJ convention")},
+    Format{kObjReader, "Wavefront OBJ", statedBy(UpAxis::kY, "OBJ convention")},
     Format{"Stanford Polygon Library (PLY) Importer", "Stanford PLY",
            statedBy(UpAxis::kZ, "PLY convention")},
     Format{"Stereolithography (STL) Importer", "STL", statedBy(UpAxis::kZ, "STL convention")},
@@ -128,6 +130,7 @@ class SceneReader {
   Result<void> placeNodes(const Affine& world_from_root);
   void convertMeshes();
   void convertMaterials();
+  void convertAlpha(const aiMaterial& material, SourceMaterial& converted);
   void convertTextures();
   void nameFiles();
   [[nodiscard]] SourceMesh convertMesh(const aiMesh& mesh, unsigned index);
@@ -317,6 +320,48 @@ void SceneReader::convertMeshes() {
 
 float unitInterval(float value) { return std::isfinite(value) ? std::clamp(value, 0.F, 1.F) : 1.F; }
 
+/// glTF says what its alpha means. Elsewhere a factor strictly between the ends counts: files do
+/// not agree which end is opaque, and nobody ships invisible surfaces.
+void SceneReader::convertAlpha(const aiMaterial& material, SourceMaterial& converted) {
+  aiString string;
+  if (format_.reader == kGltf2Reader) {
+    if (material.Get(AI_MATKEY_GLTF_ALPHAMODE, string) != AI_SUCCESS) return;
+    if (text(string) == "MASK") converted.alpha_mode = AlphaMode::kMask;
+    if (text(string) == "BLEND") converted.alpha_mode = AlphaMode::kBlend;
+    float cutoff = converted.alpha_cutoff;
+    material.Get(AI_MATKEY_GLTF_ALPHACUTOFF, cutoff);
+    converted.alpha_cutoff = unitInterval(cutoff);
+    return;
+  }
+  float opacity = 1;
+  material.Get(AI_MATKEY_OPACITY, opacity);
+  converted.base_color[3] = 1;
+  if (opacity > 0 && opacity < 1) {
+    converted.base_color[3] = opacity;
+    converted.alpha_mode = AlphaMode::kBlend;
+  }
+  if (material.GetTexture(aiTextureType_OPACITY, 0, &string) != AI_SUCCESS) return;
+  if (text(string) == converted.base_color_texture) {
+    converted.alpha_mode = AlphaMode::kBlend;
+  } else {
+    asset_.warnings.push_back(fmt::format(
+        "the opacity texture '{}' of material '{}' is not used; put opacity into the alpha of "
+        "its colour texture",
+        text(string), converted.name));
+  }
+}
+
+/// Whether `color` cannot be meant to be multiplied with a texture: black, or what the OBJ reader
+/// puts where the file states no colour.
+bool isNoFactor(const aiColor4D& color, std::string_view reader) {
+  if (reader == kGltf2Reader) return false;
+  constexpr float kUnstatedInObj = 0.6F;
+  const auto all = [&](float value) {
+    return color.r == value && color.g == value && color.b == value;
+  };
+  return all(0) || (reader == kObjReader && all(kUnstatedInObj));
+}
+
 void SceneReader::convertMaterials() {
   for (const aiMaterial* material : std::span(scene_->mMaterials, scene_->mNumMaterials)) {
     SourceMaterial& converted = asset_.materials.emplace_back();
@@ -331,9 +376,12 @@ void SceneReader::convertMaterials() {
     if (material->GetTexture(AI_MATKEY_BASE_COLOR_TEXTURE, &string) == AI_SUCCESS ||
         material->GetTexture(aiTextureType_DIFFUSE, 0, &string) == AI_SUCCESS) {
       converted.base_color_texture = text(string);
+      if (isNoFactor(color, format_.reader)) converted.base_color = {1, 1, 1, 1};
     }
-    bool two_sided = false;
-    material->Get(AI_MATKEY_TWOSIDED, two_sided);
+    convertAlpha(*material, converted);
+    // Other formats do not say which triangles show one side only: no surface may be lost.
+    bool two_sided = format_.reader != kGltf2Reader;
+    if (!two_sided) material->Get(AI_MATKEY_TWOSIDED, two_sided);
     converted.two_sided = two_sided;
   }
 }

@@ -109,7 +109,9 @@ void findTextures(SourceAsset& asset, const fs::path& main_input) {
     if (entry->second) {
       material.base_color_texture = nameRelativeTo(main_input, *entry->second);
       if (is_new) asset.files.push_back({.name = material.base_color_texture});
-    } else if (is_new) {
+    } else {
+      material.base_color_texture.clear();
+      if (!is_new) continue;
       asset.warnings.push_back(
           fmt::format("texture '{}' of material '{}' is missing: its surfaces "
                       "keep their plain colour",

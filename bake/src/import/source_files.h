@@ -16,8 +16,8 @@ namespace galactic::bake {
                                          const std::filesystem::path& file);
 
 /// Looks for the textures that the materials name, relative to the folder of `main_input`: found
-/// ones join `asset.files` and their materials get the path that was found, missing ones give one
-/// warning each. Knows %20, backslashes, file:// and absolute paths of another machine (then the
+/// ones join `asset.files` and their materials get the path that was found; of missing ones the
+/// materials get none, with one warning each. Knows %20, backslashes, file:// and absolute paths of another machine (then the
 /// file's name beside the main input counts).
 void findTextures(SourceAsset& asset, const std::filesystem::path& main_input);
 

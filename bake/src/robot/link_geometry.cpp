@@ -9,9 +9,6 @@
 namespace galactic::bake {
 namespace {
 
-/// What a link without a colour of its own looks like.
-constexpr std::array<float, 4> kPlainColor{0.55F, 0.55F, 0.57F, 1.0F};
-
 /// Collects a primitive's corners, placed in the link's frame.
 class PrimitiveBuilder {
  public:
@@ -148,14 +145,18 @@ Surface surfaceOfShape(const SourceRobot& robot, const LinkShape& shape) {
     return surfaceOf(robot.meshes[mesh->mesh], shape.link_from_shape,
                      shape.color ? &*shape.color : nullptr);
   }
+  return surfaceOfPrimitive(shape);
+}
+
+}  // namespace
+
+Surface surfaceOfPrimitive(const LinkShape& shape) {
   PrimitiveBuilder builder(shape.link_from_shape, shape.color.value_or(kPlainColor));
   if (const auto* box = std::get_if<BoxShape>(&shape.geometry)) addBox(*box, builder);
   if (const auto* rod = std::get_if<CylinderShape>(&shape.geometry)) addCylinder(*rod, builder);
   if (const auto* ball = std::get_if<SphereShape>(&shape.geometry)) addSphere(*ball, builder);
   return builder.finish();
 }
-
-}  // namespace
 
 Surface surfaceOfShapes(const SourceRobot& robot, const std::vector<LinkShape>& shapes) {
   Surface surface;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pack_payload.h"
+#include "write/render_meshes.h"
 
 namespace galactic::bake {
 namespace {
@@ -40,6 +41,27 @@ Offset<schema::Object> objectTable(FlatBufferBuilder& builder, const BakedObject
                               surface);
 }
 
+/// Those of all objects in one; none when no object has any.
+Result<std::optional<BakedRenderMeshes>> mergedMeshes(
+    const std::vector<const BakedObject*>& objects) {
+  constexpr std::size_t kMostMaterials = 65536;
+  std::optional<BakedRenderMeshes> merged;
+  std::size_t materials = 0;
+  for (std::size_t n = 0; n < objects.size(); ++n) {
+    const auto& meshes = objects[n]->render_meshes;
+    if (!meshes) continue;
+    materials += meshes->materials.materials.size();
+    if (materials > kMostMaterials) {
+      return fail(ErrorCode::kUnsupported, "",
+                  fmt::format("the objects have over {} materials; bake them into several packs",
+                              kMostMaterials));
+    }
+    if (!merged) merged.emplace();
+    append(*merged, *meshes, static_cast<std::uint32_t>(n));
+  }
+  return merged;
+}
+
 }  // namespace
 
 Result<std::vector<std::byte>> encodeObjectPack(const BakedObjectSet& set,
@@ -49,6 +71,7 @@ Result<std::vector<std::byte>> encodeObjectPack(const BakedObjectSet& set,
   for (const BakedObject& object : set.objects) {
     objects.push_back(&object);
     bytes += storedBytes(object.surface);
+    if (object.render_meshes) bytes += object.render_meshes->storedBytes();
   }
   if (bytes > kMaxSurfaceBytes) {
     return fail(ErrorCode::kUnsupported, "",
@@ -72,13 +95,17 @@ Result<std::vector<std::byte>> encodeObjectPack(const BakedObjectSet& set,
                 "is the name of two objects; rename one of the files or folders");
   }
   FlatBufferBuilder builder(static_cast<std::size_t>(bytes) + 65536);
+  const auto meshes = mergedMeshes(objects);
+  if (!meshes) return tl::unexpected(meshes.error());
   const auto provenance_table = provenanceTable(builder, provenance);
   std::vector<Offset<schema::Object>> tables;
   tables.reserve(objects.size());
   for (const BakedObject* object : objects) tables.push_back(objectTable(builder, *object));
   const auto table_vector = builder.CreateVector(tables);
+  Offset<schema::RenderMeshes> render_meshes;
+  if (*meshes) render_meshes = renderMeshesTable(builder, **meshes);
   const auto radii = builder.CreateVector(set.radii);
-  const auto root = schema::CreateObjectSet(builder, radii, table_vector);
+  const auto root = schema::CreateObjectSet(builder, radii, table_vector, render_meshes);
   return finishPack(builder, provenance_table, schema::Asset::ObjectSet, root.Union());
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "pack_payload.h"
+#include "write/render_meshes.h"
 
 namespace galactic::bake {
 namespace {
@@ -101,6 +102,8 @@ Offset<schema::Robot> robotTable(FlatBufferBuilder& builder, const BakedRobot& r
   for (const BakedPair& pair : robot.pairs) {
     pairs.emplace_back(pair.first, pair.second, static_cast<schema::PairKind>(pair.kind));
   }
+  Offset<schema::RenderMeshes> render_meshes;
+  if (robot.render_meshes) render_meshes = renderMeshesTable(builder, *robot.render_meshes);
   const RecipeTables recipe = recipeTables(builder, robot);
   const auto surfaces = linkSurfaces(builder, robot);
   const auto pair_vector = builder.CreateVectorOfStructs(pairs);
@@ -116,7 +119,8 @@ Offset<schema::Robot> robotTable(FlatBufferBuilder& builder, const BakedRobot& r
   const auto name = builder.CreateString(robot.name);
   return schema::CreateRobot(builder, name, radii, links, link_names, joint_names, limits, start,
                              sphere_vector, group_vector, pair_vector, recipe.controlled_joints,
-                             recipe.end_effector, recipe.camera, recipe.base, surfaces);
+                             recipe.end_effector, recipe.camera, recipe.base, surfaces,
+                             render_meshes);
 }
 
 }  // namespace
@@ -127,6 +131,7 @@ Result<std::vector<std::byte>> encodeRobotPack(const BakedRobot& robot,
   for (const auto* surfaces : {&robot.collision_surfaces, &robot.visual_surfaces}) {
     for (const Surface& surface : *surfaces) bytes += storedBytes(surface);
   }
+  if (robot.render_meshes) bytes += robot.render_meshes->storedBytes();
   if (bytes > kMaxSurfaceBytes) {
     return fail(ErrorCode::kUnsupported, robot.name,
                 fmt::format("the links' meshes need {} MB, one pack holds less than 2048 MB; "

@@ -9,6 +9,7 @@
 #include "galactic/pack_header.h"
 #include "galactic/schema/pack_generated.h"
 #include "pack_payload.h"
+#include "write/render_meshes.h"
 
 namespace galactic::bake {
 namespace {
@@ -86,7 +87,9 @@ Offset<schema::Scene> sceneTable(FlatBufferBuilder& builder, const BakedScene& s
   const auto grid_vector = builder.CreateVector(grids);
   const auto import_statistics = importStatistics(builder, scene.imported);
   const schema::Bounds bounds = toSchema(scene.bounds);
-  return schema::CreateScene(builder, name, &bounds, grid_vector, import_statistics);
+  Offset<schema::RenderMeshes> render_meshes;
+  if (scene.render_meshes) render_meshes = renderMeshesTable(builder, *scene.render_meshes);
+  return schema::CreateScene(builder, name, &bounds, grid_vector, import_statistics, render_meshes);
 }
 
 /// Moves each grid's tiles to the first cache line of the file inside their vector.
@@ -109,10 +112,12 @@ Result<std::vector<std::byte>> encodeScenePack(const BakedScene& scene,
                                                const Provenance& provenance) {
   std::uint64_t bytes = 0;
   for (const BakedGrid& grid : scene.grids) bytes += storedBytes(grid.grid);
+  if (scene.render_meshes) bytes += scene.render_meshes->storedBytes();
   if (bytes > kMaxGridBytes) {
     return fail(ErrorCode::kUnsupported, scene.name,
-                fmt::format("the grids need {} MB, one pack holds less than 2048 MB; use a wider "
-                            "--spacing, fewer --radii, or split the scene",
+                fmt::format("grids and render meshes need {} MB, one pack holds less than 2048 MB; "
+                            "use a wider --spacing, fewer --radii, smaller textures, or split the "
+                            "scene",
                             bytes >> 20U));
   }
   FlatBufferBuilder builder(static_cast<std::size_t>(bytes) + 65536);

@@ -67,10 +67,9 @@ struct EnvObjects {
   /// Index into World::scenes(), and into the episode set's episodes.
   std::uint32_t scene = 0;
   std::uint32_t episode = 0;
-  /// The episode's placements that are there: without distractors, the target's alone.
+  /// The placements that are there: without distractors that of the target alone.
   std::span<const Placement> placements;
-  /// World poses of their objects, in the same order; that of the held one is where it rested
-  /// before.
+  /// World poses, one per placement; that of the held one is where it rested before.
   std::span<const Pose> objects;
   /// Index into `objects`; -1 when nothing is held.
   std::int32_t held = -1;

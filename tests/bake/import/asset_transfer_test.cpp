@@ -8,6 +8,7 @@
 namespace galactic::test {
 namespace {
 
+using bake::AlphaMode;
 using bake::AssetSender;
 using bake::receiveAsset;
 using bake::SourceAsset;
@@ -33,8 +34,12 @@ SourceAsset exampleRest() {
   asset.convention = "Y up";
   asset.instances = {
       {.name = "n", .mesh = 1, .world_from_mesh = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}}};
-  asset.materials.push_back(
-      {.name = "oak", .base_color = {0, 1, 0, 1}, .base_color_texture = "*0", .two_sided = true});
+  asset.materials.push_back({.name = "oak",
+                             .base_color = {0, 1, 0, 1},
+                             .base_color_texture = "*0",
+                             .two_sided = true,
+                             .alpha_mode = AlphaMode::kMask,
+                             .alpha_cutoff = 0.25F});
   asset.textures.push_back({.format = "png", .bytes = {1, 2, 3}});
   asset.files.push_back({.name = "room.glb", .bytes = 5, .hash_low = 6, .hash_high = 7});
   asset.warnings = {"first", "second"};
@@ -80,6 +85,8 @@ TEST(AssetTransfer, DeliversEveryField) {
   EXPECT_EQ(asset->materials[0].name, "oak");
   EXPECT_EQ(asset->materials[0].base_color, expected.materials[0].base_color);
   EXPECT_EQ(asset->materials[0].base_color_texture, "*0");
+  EXPECT_EQ(asset->materials[0].alpha_mode, AlphaMode::kMask);
+  EXPECT_EQ(asset->materials[0].alpha_cutoff, 0.25F);
   EXPECT_TRUE(asset->materials[0].two_sided);
   ASSERT_EQ(asset->textures.size(), 1U);
   EXPECT_EQ(asset->textures[0].format, "png");

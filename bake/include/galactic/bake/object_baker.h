@@ -6,6 +6,7 @@
 
 #include "galactic/bake/import_statistics.h"
 #include "galactic/bake/oriented_box.h"
+#include "galactic/bake/render_baker.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/bake/sphere_set.h"
 #include "galactic/bake/stable_poses.h"
@@ -38,6 +39,7 @@ struct ObjectTimes {
   double box = 0;
   double stable_poses = 0;
   double spheres = 0;
+  double render = 0;
 };
 
 /// One object of a pack.
@@ -54,6 +56,8 @@ struct BakedObject {
   /// Whether the spheres were given, and only measured.
   bool authored_spheres = false;
   Surface surface;
+  /// What is drawn, where it is wanted: one model. Not made by bakeObject.
+  std::optional<BakedRenderMeshes> render_meshes;
   ObjectTimes times;
   /// What the user should look at: tolerances that could not be met, a doubtful unit and so on.
   std::vector<std::string> warnings;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "galactic/bake/hand_spheres.h"
+#include "galactic/bake/render_baker.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/source_robot.h"
 #include "galactic/bake/sphere_set.h"
@@ -68,6 +69,7 @@ struct FlatKinematics {
 struct RobotTimes {
   double spheres = 0;
   double self_collision = 0;
+  double render = 0;
 };
 
 /// Everything of a robot pack but its provenance.
@@ -86,6 +88,8 @@ struct BakedRobot {
   /// One per link; empty where a link has none.
   std::vector<Surface> collision_surfaces;
   std::vector<Surface> visual_surfaces;
+  /// What is drawn, where it is wanted: a model per link. Not made by bakeRobot.
+  std::optional<BakedRenderMeshes> render_meshes;
   RobotTimes times;
   std::vector<std::string> warnings;
 };

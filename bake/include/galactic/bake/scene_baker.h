@@ -11,6 +11,7 @@
 #include "galactic/bake/free_space.h"
 #include "galactic/bake/grid_encoder.h"
 #include "galactic/bake/import_statistics.h"
+#include "galactic/bake/render_baker.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"
@@ -40,6 +41,7 @@ struct StageTimes {
   double regions = 0;
   double encode = 0;
   double check = 0;
+  double render = 0;
   double write = 0;
 };
 
@@ -61,6 +63,8 @@ struct BakedScene {
   Bounds bounds;
   Coverage coverage = Coverage::kColumn;
   std::vector<BakedGrid> grids;
+  /// What is drawn, where it is wanted; not made by bakeScene.
+  std::optional<BakedRenderMeshes> render_meshes;
   /// What the user should look at: parts of the free space left out, and so on.
   std::vector<std::string> warnings;
 };

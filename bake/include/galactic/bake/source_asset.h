@@ -14,6 +14,13 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// A row-major affine transform: three rows of (linear part | translation); metres.
 using Affine = std::array<double, 12>;
 
+/// What a material's alpha means (glTF's alphaMode).
+enum class AlphaMode : std::uint8_t {
+  kOpaque,  ///< Nothing.
+  kMask,    ///< What has less alpha than a cutoff is not there, the rest is opaque.
+  kBlend,   ///< Translucency.
+};
+
 /// A surface appearance as the source file states it, for the render bake.
 struct SourceMaterial {
   std::string name;
@@ -21,7 +28,11 @@ struct SourceMaterial {
   std::array<float, 4> base_color{1, 1, 1, 1};
   /// Path relative to the source file, "*N" for embedded texture N, or empty.
   std::string base_color_texture;
+  /// Whether both sides are seen: true also where the format cannot say.
   bool two_sided = false;
+  AlphaMode alpha_mode = AlphaMode::kOpaque;
+  /// Of kMask.
+  float alpha_cutoff = 0.5F;
 };
 
 /// An image stored inside the source file, still encoded.

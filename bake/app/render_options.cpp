@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include "option_groups.h"
+#include "option_values.h"
+
+namespace galactic::bake {
+namespace {
+
+/// How far a surface may move, metres: scenes are seen from farther off than what is handled.
+constexpr double kSceneError = 0.005;
+constexpr double kHandledError = 0.002;
+
+const std::map<std::string, TexelFormat>& formatNames() {
+  static const std::map<std::string, TexelFormat> names{{"rgba8", TexelFormat::kRgba8},
+                                                        {"bc1", TexelFormat::kBc1}};
+  return names;
+}
+
+}  // namespace
+
+void RenderMeshOptions::addTo(CLI::App& app, BakeCommand& command) {
+  app.add_flag("--no-render-meshes", none_, "Leave out what is drawn: a pack for physics alone");
+  app.add_option("--render-error", error_,
+                 "How far simplification may move a surface (default: 0.005 of scenes, else 0.002)")
+      ->type_name("METRES");
+  app.add_option("--texture-size", command.render.textures.largest,
+                 "Longest edge of a texture, texels: a power of two")
+      ->check(CLI::IsMember({1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096}))
+      ->option_text("1..4096")
+      ->capture_default_str();
+  app.add_option("--texture-format", command.render.textures.format,
+                 "bc1: an eighth of the size, for graphics processors; opaque textures only")
+      ->transform(CLI::CheckedTransformer(formatNames()))
+      ->option_text("rgba8|bc1");
+}
+
+Result<void> RenderMeshOptions::understand(BakeCommand& command) const {
+  RenderOptions& render = command.render;
+  render.wanted = !none_;
+  render.meshes.jobs = command.jobs;
+  render.textures.jobs = command.jobs;
+  render.meshes.error = command.kind == AssetKind::kScene ? kSceneError : kHandledError;
+  if (error_.empty()) return {};
+  const auto error = parseExactly(error_, "--render-error", 1);
+  if (!error) return tl::unexpected(error.error());
+  if (!((*error)[0] >= 0)) {
+    return fail(ErrorCode::kInvalidInput, "--render-error",
+                fmt::format("is {}, wanted metres, 0 or more", error_));
+  }
+  render.meshes.error = (*error)[0];
+  return {};
+}
+
+void RenderMeshOptions::remember(BakeCommand& command) const {
+  if (!command.render.wanted) return command.remember("render-meshes", "no");
+  command.remember("render-error", fmt::format("{}", command.render.meshes.error));
+  command.remember("texture-size", std::to_string(command.render.textures.largest));
+  command.remember("texture-format", nameOf(formatNames(), command.render.textures.format));
+}
+
+}  // namespace galactic::bake

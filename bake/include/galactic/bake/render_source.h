@@ -1,0 +1,32 @@
+#pragma once
+#include <filesystem>
+
+#include "galactic/bake/render_baker.h"
+#include "galactic/bake/source_asset.h"
+#include "galactic/bake/source_robot.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+// What the render bake makes of a scene, an object and a robot. `folder` is where the textures are
+// that the materials name. The asset or robot has to outlive the result. Fail as bakeMaterials
+// does.
+
+/// One part; a semantic id per name of a node. Nodes beyond 65,535 names share one.
+[[nodiscard]] Result<RenderSource> sceneRenderSource(const SourceAsset& scene,
+                                                     const std::filesystem::path& folder,
+                                                     const TextureBakeOptions& options);
+
+/// One part with one semantic id, named after the asset.
+[[nodiscard]] Result<RenderSource> objectRenderSource(const SourceAsset& object,
+                                                      const std::filesystem::path& folder,
+                                                      const TextureBakeOptions& options);
+
+/// A part for each link with visual geometry, in the link's frame: meshes with their materials, and
+/// primitives. A semantic id per link. The URDF's colour is taken for primitives and for meshes
+/// that have none of their own: neither named material nor texture nor vertex colours.
+[[nodiscard]] Result<RenderSource> robotRenderSource(const SourceRobot& robot,
+                                                     const std::filesystem::path& folder,
+                                                     const TextureBakeOptions& options);
+
+}  // namespace galactic::bake

@@ -1,0 +1,102 @@
+#include "render/cluster_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "vec3d.h"
+
+namespace galactic::bake {
+namespace {
+
+/// Cosine of the widest cone worth storing: eyes from which a wider one faces away are too few.
+constexpr double kWidestCone = 0.1;
+/// Over the rounding of a renderer's floats, in which it compares with the cutoff.
+constexpr double kCutoffMargin = 1e-6;
+
+/// The next float that is not below `value`.
+float roundedUp(double value) {
+  const auto nearest = static_cast<float>(value);
+  if (static_cast<double>(nearest) >= value) return nearest;
+  return std::nextafter(nearest, std::numeric_limits<float>::infinity());
+}
+
+Vec3d pointOf(const LatticeVertex& vertex, double step) {
+  return {vertex.at[0] * step, vertex.at[1] * step, vertex.at[2] * step};
+}
+
+/// Unit normals of the triangles that have an area.
+std::vector<Vec3d> normalsOf(const LatticeCluster& cluster) {
+  std::vector<Vec3d> normals;
+  normals.reserve(cluster.triangles.size());
+  for (const auto& t : cluster.triangles) {
+    const Vec3d a = pointOf(cluster.vertices[t[0]], 1);
+    const Vec3d b = pointOf(cluster.vertices[t[1]], 1);
+    const Vec3d c = pointOf(cluster.vertices[t[2]], 1);
+    const Vec3d normal = cross(b - a, c - a);
+    if (const double length = norm(normal); length > 0) normals.push_back(normal * (1 / length));
+  }
+  return normals;
+}
+
+/// Axis and cutoff; see RenderMeshes.cluster_bounds of the schema. For a sphere of radius r about c
+/// that holds all triangles, and normals at most alpha from the axis: when the axis is at phi from
+/// the direction v to c and cos phi >= sin alpha + r / |v|, then
+/// cos(phi + alpha) = sin((90 - phi) - alpha) >= cos phi - sin alpha >= r / |v|,
+/// so every triangle is seen from behind.
+void addCone(const LatticeCluster& cluster, std::array<float, kBoundsRows>& rows) {
+  rows[kConeCutoffRow] = kNoCone;
+  if (cluster.two_sided) return;
+  const std::vector<Vec3d> normals = normalsOf(cluster);
+  if (normals.empty()) return;
+  Vec3d sum;
+  for (const Vec3d& normal : normals) sum = sum + normal;
+  const Vec3 axis = narrow(normalized(sum, {0, 0, 0}));
+  const Vec3d stored = widen(axis);
+  const double length = norm(stored);
+  if (!(length > 0)) return;
+  double least = 1;
+  for (const Vec3d& normal : normals) least = std::min(least, dot(normal, stored) / length);
+  if (least <= kWidestCone) return;
+  rows[kConeAxisRow] = axis.x;
+  rows[kConeAxisRow + 1] = axis.y;
+  rows[kConeAxisRow + 2] = axis.z;
+  const double cutoff = std::sqrt(std::max(0.0, 1 - least * least)) + kCutoffMargin;
+  rows[kConeCutoffRow] = std::min(1.0F, roundedUp(cutoff));
+}
+
+}  // namespace
+
+ClusterBounds boundsOf(const LatticeCluster& cluster, double step) {
+  ClusterBounds bounds;
+  Vec3d low = pointOf(cluster.vertices.front(), step);
+  Vec3d high = low;
+  for (const LatticeVertex& vertex : cluster.vertices) {
+    const Vec3d p = pointOf(vertex, step);
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  // Lattice points are floats.
+  bounds.box = {narrow(low), narrow(high)};
+  const Vec3 centre = narrow((low + high) * 0.5);
+  const Vec3d stored = widen(centre);
+  bounds.rows[kCentreRow] = centre.x;
+  bounds.rows[kCentreRow + 1] = centre.y;
+  bounds.rows[kCentreRow + 2] = centre.z;
+  bounds.rows[kHalfExtentRow] = roundedUp(std::max(high.x - stored.x, stored.x - low.x));
+  bounds.rows[kHalfExtentRow + 1] = roundedUp(std::max(high.y - stored.y, stored.y - low.y));
+  bounds.rows[kHalfExtentRow + 2] = roundedUp(std::max(high.z - stored.z, stored.z - low.z));
+  double squared = 0;
+  for (const LatticeVertex& vertex : cluster.vertices) {
+    const Vec3d away = pointOf(vertex, step) - stored;
+    squared = std::max(squared, dot(away, away));
+  }
+  // One float further: the root was rounded.
+  bounds.rows[kRadiusRow] =
+      std::nextafter(roundedUp(std::sqrt(squared)), std::numeric_limits<float>::infinity());
+  addCone(cluster, bounds.rows);
+  return bounds;
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,21 @@
+#pragma once
+#include <array>
+
+#include "galactic/bake/triangle_mesh.h"
+#include "galactic/render_layout.h"
+#include "render/lattice.h"
+
+namespace galactic::bake {
+
+/// One lane of a block of bounds, by rows, and the box it was made of.
+struct ClusterBounds {
+  std::array<float, kBoundsRows> rows{};
+  Bounds box;
+};
+
+/// Box, sphere and cone of a cluster, rounded so that they hold every corner and every normal as a
+/// renderer computes them. The cone is for one-sided clusters whose normals lie within 84 degrees
+/// of their mean. `step`: of the lattice, metres.
+[[nodiscard]] ClusterBounds boundsOf(const LatticeCluster& cluster, double step);
+
+}  // namespace galactic::bake

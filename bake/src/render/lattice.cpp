@@ -1,0 +1,223 @@
+#include "render/lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "galactic/bake/parallel_for.h"
+#include "render/mesh_optimizer.h"
+
+namespace galactic::bake {
+namespace {
+
+/// Most steps from a cluster's origin.
+constexpr std::int32_t kMostSteps = 65535;
+
+using Point = std::array<std::int32_t, 3>;
+
+/// Triangles of one kind of surface, seen from one side or both.
+struct Group {
+  SurfaceKey surface;
+  bool two_sided = false;
+  std::vector<LatticeVertex> vertices;
+  std::vector<Triangle> triangles;
+};
+
+std::int32_t onLattice(float coordinate, double step) {
+  return static_cast<std::int32_t>(std::llround(static_cast<double>(coordinate) / step));
+}
+
+/// Largest extent of a triangle, metres: a lattice has to hold that much in a cluster.
+double largestExtent(std::span<const FinishedPiece> pieces) {
+  float largest = 0;
+  const auto spread = [](float a, float b, float c) {
+    return std::max({a, b, c}) - std::min({a, b, c});
+  };
+  for (const FinishedPiece& piece : pieces) {
+    for (const Triangle& t : piece.mesh.triangles) {
+      const Vec3& a = piece.mesh.vertices[t[0]].position;
+      const Vec3& b = piece.mesh.vertices[t[1]].position;
+      const Vec3& c = piece.mesh.vertices[t[2]].position;
+      largest =
+          std::max({largest, spread(a.x, b.x, c.x), spread(a.y, b.y, c.y), spread(a.z, b.z, c.z)});
+    }
+  }
+  return static_cast<double>(largest);
+}
+
+/// The triangles by surface and sides, in a fixed order, as they came.
+std::vector<Group> groupTriangles(std::span<const FinishedPiece> pieces, const RenderSource& source,
+                                  double step) {
+  std::map<std::tuple<std::uint16_t, std::uint16_t, bool>, Group> groups;
+  for (const FinishedPiece& piece : pieces) {
+    for (const Triangle& triangle : piece.mesh.triangles) {
+      const SurfaceKey surface = piece.mesh.vertices[triangle[0]].surface;
+      const bool two_sided = source.materials[surface.material].two_sided && !piece.has_outside;
+      Group& group = groups[{surface.semantic, surface.material, two_sided}];
+      group.surface = surface;
+      group.two_sided = two_sided;
+      const auto first = static_cast<std::uint32_t>(group.vertices.size());
+      group.triangles.push_back({first, first + 1, first + 2});
+      for (const std::uint32_t corner : triangle) {
+        const RenderVertex& vertex = piece.mesh.vertices[corner];
+        group.vertices.push_back(
+            {.at = {onLattice(vertex.position.x, step), onLattice(vertex.position.y, step),
+                    onLattice(vertex.position.z, step)},
+             .uv = vertex.uv,
+             .color = vertex.color});
+      }
+    }
+  }
+  std::vector<Group> listed;
+  listed.reserve(groups.size());
+  for (auto& [key, group] : groups) listed.push_back(std::move(group));
+  return listed;
+}
+
+/// Welds what has become equal on the lattice.
+void weld(Group& group) {
+  const ByteNumbers numbers = numberValues(group.vertices);
+  group.vertices = distinctValues(group.vertices, numbers);
+  for (Triangle& triangle : group.triangles) {
+    for (std::uint32_t& corner : triangle) corner = numbers.number_of[corner];
+  }
+  std::erase_if(group.triangles, [&](const Triangle& t) {
+    const Point& a = group.vertices[t[0]].at;
+    const Point& b = group.vertices[t[1]].at;
+    const Point& c = group.vertices[t[2]].at;
+    return a == b || b == c || c == a;
+  });
+}
+
+std::vector<LatticeCluster> cutGroup(Group& group) {
+  weld(group);
+  std::vector<Vec3> positions;
+  positions.reserve(group.vertices.size());
+  for (const LatticeVertex& vertex : group.vertices) {
+    positions.push_back({static_cast<float>(vertex.at[0]), static_cast<float>(vertex.at[1]),
+                         static_cast<float>(vertex.at[2])});
+  }
+  std::vector<LatticeCluster> clusters;
+  for (TriangleCluster& cut : cutClusters(positions, group.triangles)) {
+    LatticeCluster& cluster = clusters.emplace_back();
+    cluster.surface = group.surface;
+    cluster.two_sided = group.two_sided;
+    cluster.triangles = std::move(cut.triangles);
+    cluster.vertices.reserve(cut.vertices.size());
+    for (const std::uint32_t vertex : cut.vertices) {
+      cluster.vertices.push_back(group.vertices[vertex]);
+    }
+  }
+  return clusters;
+}
+
+struct Box {
+  Point low{};
+  Point high{};
+};
+
+Box boxOf(const LatticeCluster& cluster) {
+  Box box{cluster.vertices.front().at, cluster.vertices.front().at};
+  for (const LatticeVertex& vertex : cluster.vertices) {
+    for (std::size_t n = 0; n < 3; ++n) {
+      box.low[n] = std::min(box.low[n], vertex.at[n]);
+      box.high[n] = std::max(box.high[n], vertex.at[n]);
+    }
+  }
+  return box;
+}
+
+bool fits(const LatticeCluster& cluster) {
+  const Box box = boxOf(cluster);
+  return box.high[0] - box.low[0] <= kMostSteps && box.high[1] - box.low[1] <= kMostSteps &&
+         box.high[2] - box.low[2] <= kMostSteps;
+}
+
+/// The clusters on a lattice, or none when one of them spans too many steps.
+std::optional<std::vector<LatticeCluster>> cutOnLattice(std::span<const FinishedPiece> pieces,
+                                                        const RenderSource& source, double step,
+                                                        unsigned jobs) {
+  std::vector<Group> groups = groupTriangles(pieces, source, step);
+  std::vector<std::vector<LatticeCluster>> cut(groups.size());
+  parallelFor(jobs, groups.size(), [&](std::size_t n) { cut[n] = cutGroup(groups[n]); });
+  std::vector<LatticeCluster> clusters;
+  for (std::vector<LatticeCluster>& of_group : cut) {
+    for (LatticeCluster& cluster : of_group) {
+      if (!fits(cluster)) return std::nullopt;
+      clusters.push_back(std::move(cluster));
+    }
+  }
+  return clusters;
+}
+
+/// The bits of `value`, two zeros before each (Morton 1966).
+std::uint64_t spreadBits(std::uint64_t value) {
+  std::uint64_t spread = 0;
+  constexpr unsigned kBits = 21;
+  for (unsigned bit = 0; bit < kBits; ++bit) spread |= (value >> bit & 1U) << (3 * bit);
+  return spread;
+}
+
+/// Neighbours in space become neighbours in the list.
+void sortInSpace(std::vector<LatticeCluster>& clusters) {
+  if (clusters.empty()) return;
+  std::vector<std::array<std::int64_t, 3>> centres;
+  centres.reserve(clusters.size());
+  for (const LatticeCluster& cluster : clusters) {
+    const Box box = boxOf(cluster);
+    std::array<std::int64_t, 3>& centre = centres.emplace_back();
+    for (std::size_t n = 0; n < 3; ++n) {
+      centre[n] = (std::int64_t{box.low[n]} + box.high[n]) / 2;
+    }
+  }
+  std::array<std::int64_t, 3> low = centres.front();
+  std::int64_t widest = 0;
+  for (std::size_t n = 0; n < 3; ++n) {
+    std::int64_t high = centres.front()[n];
+    for (const auto& centre : centres) {
+      low[n] = std::min(low[n], centre[n]);
+      high = std::max(high, centre[n]);
+    }
+    widest = std::max(widest, high - low[n]);
+  }
+  unsigned shift = 0;
+  while (widest >> shift >= std::int64_t{1} << 21U) ++shift;
+  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  order.reserve(clusters.size());
+  for (const auto& centre : centres) {
+    std::uint64_t key = 0;
+    for (std::size_t n = 0; n < 3; ++n) {
+      key |= spreadBits(static_cast<std::uint64_t>(centre[n] - low[n]) >> shift) << n;
+    }
+    order.emplace_back(key, order.size());
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<LatticeCluster> sorted;
+  sorted.reserve(clusters.size());
+  for (const auto& [key, index] : order) sorted.push_back(std::move(clusters[index]));
+  clusters = std::move(sorted);
+}
+
+}  // namespace
+
+LatticeModel cutModel(std::span<const FinishedPiece> pieces, const RenderSource& source,
+                      unsigned jobs) {
+  LatticeModel model;
+  model.step = kFinestStep;
+  const double largest = largestExtent(pieces);
+  while (model.step * kMostSteps < largest) model.step *= 2;
+  while (true) {
+    if (auto clusters = cutOnLattice(pieces, source, model.step, jobs)) {
+      model.clusters = std::move(*clusters);
+      break;
+    }
+    model.step *= 2;
+  }
+  sortInSpace(model.clusters);
+  return model;
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,38 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "galactic/bake/render_baker.h"
+
+namespace galactic::bake {
+
+/// The materials of a RenderSource while its meshes are placed: those that are used, once each.
+class MaterialList {
+ public:
+  explicit MaterialList(RenderSource& source) : source_(source) {}
+
+  /// The material of a mesh of `asset`; without its texture when the mesh does not say where on it.
+  std::uint32_t add(const SourceAsset& asset, const SourceMesh& mesh);
+
+  /// A plain colour, linear RGBA.
+  std::uint32_t addColor(const std::array<float, 4>& color, bool two_sided);
+
+  /// Bakes what was added since the last call; `embedded` are the images of the asset that it came
+  /// from.
+  Result<void> bake(const std::vector<EmbeddedTexture>& embedded,
+                    const std::filesystem::path& folder, const TextureBakeOptions& options);
+
+ private:
+  std::uint32_t append(SourceMaterial material);
+
+  RenderSource& source_;
+  std::map<std::pair<std::array<float, 4>, bool>, std::uint32_t> colors_;
+  /// Of the asset at hand: by material, and whether without its texture.
+  std::map<std::pair<std::uint32_t, bool>, std::uint32_t> of_asset_;
+};
+
+}  // namespace galactic::bake

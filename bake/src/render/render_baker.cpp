@@ -1,0 +1,107 @@
+#include "galactic/bake/render_baker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "galactic/bake/parallel_for.h"
+#include "render/lattice.h"
+#include "render/part_mesh.h"
+#include "render/piece.h"
+#include "render/pools.h"
+
+namespace galactic::bake {
+namespace {
+
+/// Materials and semantics are numbered in 16 bits.
+constexpr std::size_t kMostNumbers = 65536;
+
+/// A part on its way to the pools.
+struct PartWork {
+  LatticeModel model;
+  ModelFigures figures;
+};
+
+Result<void> checkSource(const RenderSource& source) {
+  if (source.materials.size() != source.baked.materials.size()) {
+    return fail(ErrorCode::kInternal, "materials",
+                fmt::format("{} of {} materials were baked", source.baked.materials.size(),
+                            source.materials.size()));
+  }
+  if (source.semantics.empty()) {
+    return fail(ErrorCode::kInvalidInput, "semantics", "there is no name; give at least one");
+  }
+  if (source.semantics.size() > kMostNumbers || source.materials.size() > kMostNumbers) {
+    return fail(ErrorCode::kUnsupported, "materials",
+                fmt::format("there are {} materials and {} names for semantic ids, at most {} of "
+                            "each are possible; merge some",
+                            source.materials.size(), source.semantics.size(), kMostNumbers));
+  }
+  return {};
+}
+
+Result<PartWork> bakePart(const RenderPart& part, const RenderSource& source,
+                          const RenderBakeOptions& options) {
+  auto mesh = assemblePart(part, source);
+  if (!mesh) return tl::unexpected(mesh.error());
+  std::vector<PartMesh> pieces = connectedPieces(*mesh);
+  *mesh = {};
+  std::vector<FinishedPiece> finished(pieces.size());
+  parallelFor(options.jobs, pieces.size(), [&](std::size_t n) {
+    finished[n] = finishPiece(std::move(pieces[n]), source, options.error);
+  });
+  PartWork work;
+  work.model = cutModel(finished, source, options.jobs);
+  work.figures.part = part.part;
+  for (const PlacedMesh& placed : part.meshes) {
+    work.figures.source_triangles += static_cast<std::uint32_t>(placed.mesh->triangles.size());
+  }
+  for (const FinishedPiece& piece : finished) {
+    work.figures.largest_error = std::max(work.figures.largest_error, piece.error);
+  }
+  return work;
+}
+
+bool hasColors(const RenderSource& source) {
+  return std::any_of(source.parts.begin(), source.parts.end(), [](const RenderPart& part) {
+    return std::any_of(part.meshes.begin(), part.meshes.end(),
+                       [](const PlacedMesh& placed) { return !placed.mesh->colors.empty(); });
+  });
+}
+
+void countSource(const SourceMesh& mesh, BakedRenderMeshes& meshes) {
+  meshes.source_vertices += mesh.positions.size();
+  meshes.source_bytes += mesh.positions.size() * sizeof(Vec3) + mesh.uvs.size() * 8 +
+                         mesh.colors.size() * 4 + mesh.triangles.size() * sizeof(Triangle);
+}
+
+}  // namespace
+
+Result<BakedRenderMeshes> bakeRenderMeshes(const RenderSource& source,
+                                           const RenderBakeOptions& options) {
+  if (auto checked = checkSource(source); !checked) return tl::unexpected(checked.error());
+  // Many parts at once, or the pieces of one.
+  const bool alone = source.parts.size() < options.jobs;
+  RenderBakeOptions part_options = options;
+  if (!alone) part_options.jobs = 1;
+  std::vector<std::optional<Result<PartWork>>> work(source.parts.size());
+  parallelFor(alone ? 1 : options.jobs, work.size(),
+              [&](std::size_t n) { work[n] = bakePart(source.parts[n], source, part_options); });
+  BakedRenderMeshes meshes;
+  meshes.materials = source.baked;
+  meshes.semantics = source.semantics;
+  const bool colored = hasColors(source);
+  for (std::size_t n = 0; n < work.size(); ++n) {
+    Result<PartWork>& part = *work[n];
+    if (!part) return tl::unexpected(part.error());
+    part->figures.colored = colored;
+    appendModel(part->model, part->figures, meshes);
+    for (const PlacedMesh& placed : source.parts[n].meshes) countSource(*placed.mesh, meshes);
+  }
+  return meshes;
+}
+
+}  // namespace galactic::bake

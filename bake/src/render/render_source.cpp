@@ -1,0 +1,176 @@
+#include "galactic/bake/render_source.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "import/affine.h"
+#include "render/material_list.h"
+#include "robot/link_geometry.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Semantic ids of names, in the order in which they come.
+class SemanticNames {
+ public:
+  explicit SemanticNames(std::vector<std::string>& names) : names_(names) {}
+
+  std::uint32_t numberOf(const std::string& name) {
+    constexpr std::size_t kMost = 65535;
+    const auto found = numbers_.find(name);
+    if (found != numbers_.end()) return found->second;
+    if (names_.size() == kMost) names_.emplace_back("others");
+    if (names_.size() > kMost) return kMost;
+    names_.push_back(name);
+    const auto number = static_cast<std::uint32_t>(names_.size() - 1);
+    numbers_.emplace(name, number);
+    return number;
+  }
+
+ private:
+  std::vector<std::string>& names_;
+  std::map<std::string, std::uint32_t> numbers_;
+};
+
+std::string nameOf(const SourceAsset& asset, const SourceInstance& instance) {
+  if (!instance.name.empty()) return instance.name;
+  const std::string& mesh = asset.meshes[instance.mesh].name;
+  return mesh.empty() ? "unnamed" : mesh;
+}
+
+std::uint32_t addOwnMesh(Surface surface, RenderSource& source) {
+  auto mesh = std::make_unique<SourceMesh>();
+  mesh->name = "primitive";
+  mesh->positions = std::move(surface.positions);
+  mesh->triangles = std::move(surface.triangles);
+  source.own_meshes.push_back(std::move(mesh));
+  return static_cast<std::uint32_t>(source.own_meshes.size() - 1);
+}
+
+/// Whether the file of a mesh says what it looks like.
+bool hasLooks(const SourceAsset& asset, const SourceMesh& mesh) {
+  if (!mesh.colors.empty()) return true;
+  if (mesh.material >= asset.materials.size()) return false;
+  const SourceMaterial& material = asset.materials[mesh.material];
+  // What readers call the material of files that know none.
+  return !material.base_color_texture.empty() ||
+         (!material.name.empty() && material.name != "DefaultMaterial");
+}
+
+/// Places the visual shapes of a robot's links.
+class RobotPlacer {
+ public:
+  RobotPlacer(const SourceRobot& robot, RenderSource& source)
+      : robot_(robot), source_(source), materials_(source) {}
+
+  Result<void> place(const fs::path& folder, const TextureBakeOptions& options) {
+    placed_.resize(robot_.links.size());
+    for (const SourceLink& link : robot_.links) source_.semantics.push_back(link.name);
+    // Asset by asset: each has its own embedded images.
+    for (std::uint32_t mesh = 0; mesh < robot_.meshes.size(); ++mesh) {
+      for (std::size_t link = 0; link < robot_.links.size(); ++link) placeMesh(mesh, link);
+      if (source_.materials.size() == source_.baked.materials.size()) continue;
+      if (auto baked = materials_.bake(robot_.meshes[mesh].textures, folder, options); !baked) {
+        return baked;
+      }
+    }
+    for (std::size_t link = 0; link < robot_.links.size(); ++link) placePrimitives(link);
+    if (auto baked = materials_.bake({}, folder, options); !baked) return baked;
+    for (std::size_t link = 0; link < robot_.links.size(); ++link) {
+      if (placed_[link].empty()) continue;
+      source_.parts.push_back(
+          {.part = static_cast<std::uint32_t>(link), .meshes = std::move(placed_[link])});
+    }
+    return {};
+  }
+
+ private:
+  void placeMesh(std::uint32_t number, std::size_t link) {
+    const SourceAsset& asset = robot_.meshes[number];
+    for (const LinkShape& shape : robot_.links[link].visuals) {
+      const auto* shape_mesh = std::get_if<MeshShape>(&shape.geometry);
+      if (shape_mesh == nullptr || shape_mesh->mesh != number) continue;
+      for (const SourceInstance& instance : asset.instances) {
+        const SourceMesh& mesh = asset.meshes[instance.mesh];
+        const bool urdf_color = shape.color && !hasLooks(asset, mesh);
+        const std::uint32_t material =
+            urdf_color ? materials_.addColor(*shape.color, isTwoSided(asset, mesh))
+                       : materials_.add(asset, mesh);
+        placed_[link].push_back(
+            {.mesh = &mesh,
+             .part_from_mesh = compose(shape.link_from_shape, instance.world_from_mesh),
+             .material = material,
+             .semantic = static_cast<std::uint32_t>(link)});
+      }
+    }
+  }
+
+  void placePrimitives(std::size_t link) {
+    for (const LinkShape& shape : robot_.links[link].visuals) {
+      if (std::holds_alternative<MeshShape>(shape.geometry)) continue;
+      const std::uint32_t own = addOwnMesh(surfaceOfPrimitive(shape), source_);
+      placed_[link].push_back(
+          {.mesh = source_.own_meshes[own].get(),
+           .part_from_mesh = kIdentityAffine,
+           .material = materials_.addColor(shape.color.value_or(kPlainColor), false),
+           .semantic = static_cast<std::uint32_t>(link)});
+    }
+  }
+
+  static bool isTwoSided(const SourceAsset& asset, const SourceMesh& mesh) {
+    return mesh.material >= asset.materials.size() || asset.materials[mesh.material].two_sided;
+  }
+
+  const SourceRobot& robot_;
+  RenderSource& source_;
+  MaterialList materials_;
+  std::vector<std::vector<PlacedMesh>> placed_;
+};
+
+}  // namespace
+
+Result<RenderSource> sceneRenderSource(const SourceAsset& scene, const fs::path& folder,
+                                       const TextureBakeOptions& options) {
+  RenderSource source;
+  SemanticNames semantics(source.semantics);
+  MaterialList materials(source);
+  RenderPart& part = source.parts.emplace_back();
+  part.meshes.reserve(scene.instances.size());
+  for (const SourceInstance& instance : scene.instances) {
+    const SourceMesh& mesh = scene.meshes[instance.mesh];
+    part.meshes.push_back({.mesh = &mesh,
+                           .part_from_mesh = instance.world_from_mesh,
+                           .material = materials.add(scene, mesh),
+                           .semantic = semantics.numberOf(nameOf(scene, instance))});
+  }
+  if (source.semantics.empty()) source.semantics.push_back(scene.name);
+  if (auto baked = materials.bake(scene.textures, folder, options); !baked) {
+    return tl::unexpected(baked.error());
+  }
+  return source;
+}
+
+Result<RenderSource> objectRenderSource(const SourceAsset& object, const fs::path& folder,
+                                        const TextureBakeOptions& options) {
+  auto source = sceneRenderSource(object, folder, options);
+  if (!source) return source;
+  source->semantics.assign(1, object.name);
+  for (PlacedMesh& placed : source->parts.front().meshes) placed.semantic = 0;
+  return source;
+}
+
+Result<RenderSource> robotRenderSource(const SourceRobot& robot, const fs::path& folder,
+                                       const TextureBakeOptions& options) {
+  RenderSource source;
+  if (auto placed = RobotPlacer(robot, source).place(folder, options); !placed) {
+    return tl::unexpected(placed.error());
+  }
+  return source;
+}
+
+}  // namespace galactic::bake
