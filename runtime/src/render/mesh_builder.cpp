@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "galactic/render_layout.h"
 #include "galactic/render_mesh_builder.h"
 #include "render/cluster_bounds.h"
 #include "render/cluster_split.h"
@@ -28,10 +29,6 @@ constexpr double kCoarsestStep = 1;
 /// Farthest from the origin of its part that a vertex may be, metres: lattice numbers stay within
 /// 32 bits at the finest step.
 constexpr float kFarthest = 65536;
-
-std::size_t roundedToLanes(std::size_t count) {
-  return (count + kRenderLanes - 1) / kRenderLanes * kRenderLanes;
-}
 
 bool isFinite(const RenderVertex& vertex) {
   return std::isfinite(vertex.u) && std::isfinite(vertex.v) && std::isfinite(vertex.position.x) &&
@@ -219,7 +216,7 @@ class Packer {
         static_cast<std::uint32_t>(out_.cluster_bounds.size() / (kBoundsRows * kRenderLanes));
     model.source_triangles = part.source_triangles;
     model.largest_error = part.largest_error;
-    addEmptyBounds(roundedToLanes(clusters.size()) / kRenderLanes);
+    addEmptyBounds(wholeLanes(clusters.size()) / kRenderLanes);
     for (std::size_t n = 0; n < clusters.size(); ++n) {
       addCluster(clusters[n], model);
       growBox(model, n == 0);
@@ -236,9 +233,8 @@ class Packer {
 
  private:
   void addEmptyBounds(std::size_t blocks) {
-    constexpr float kNothing = -1e30F;
-    constexpr std::array<float, kBoundsRows> kEmpty{0,        0, 0, kNothing, kNothing, kNothing,
-                                                    kNothing, 0, 0, 0,        2};
+    constexpr std::array<float, kBoundsRows> kEmpty{
+        0, 0, 0, kNoCluster, kNoCluster, kNoCluster, kNoCluster, 0, 0, 0, kNoCone};
     for (std::size_t block = 0; block < blocks; ++block) {
       for (const float value : kEmpty) {
         out_.cluster_bounds.insert(out_.cluster_bounds.end(), kRenderLanes, value);
@@ -270,7 +266,7 @@ class Packer {
     stored.two_sided = surface.two_sided ? 1 : 0;
     out_.clusters.push_back(stored);
 
-    const std::size_t room = roundedToLanes(draft.vertices.size());
+    const std::size_t room = wholeLanes(draft.vertices.size());
     out_.vertices.resize(out_.vertices.size() + room * kVertexRows);
     out_.colors.resize(out_.colors.size() + room);
     positions_.clear();
@@ -291,19 +287,18 @@ class Packer {
   }
 
   void storeVertex(std::size_t number, const std::array<std::uint16_t, kVertexRows>& values) {
-    std::uint16_t* block =
-        &out_.vertices[number / kRenderLanes * kRenderLanes * kVertexRows + number % kRenderLanes];
-    for (std::size_t row = 0; row < kVertexRows; ++row) block[row * kRenderLanes] = values[row];
+    for (std::size_t row = 0; row < kVertexRows; ++row) {
+      out_.vertices[pooledAt(number, row, kVertexRows)] = values[row];
+    }
   }
 
   void addTriangles(const ClusterDraft& draft) {
-    const std::size_t first = out_.triangles.size();
-    out_.triangles.resize(first + roundedToLanes(draft.triangles.size()) * kTriangleRows);
+    const std::size_t first = out_.triangles.size() / kTriangleRows;
+    out_.triangles.resize(out_.triangles.size() +
+                          wholeLanes(draft.triangles.size()) * kTriangleRows);
     for (std::size_t n = 0; n < draft.triangles.size(); ++n) {
-      const std::size_t place =
-          first + n / kRenderLanes * kRenderLanes * kTriangleRows + n % kRenderLanes;
       for (std::size_t row = 0; row < kTriangleRows; ++row) {
-        out_.triangles[place + row * kRenderLanes] = draft.triangles[n][row];
+        out_.triangles[pooledAt(first + n, row, kTriangleRows)] = draft.triangles[n][row];
       }
     }
   }
@@ -326,9 +321,10 @@ class Packer {
     const std::array<float, kBoundsRows> rows{
         b.centre.x, b.centre.y, b.centre.z, b.half_extents.x, b.half_extents.y, b.half_extents.z,
         b.radius,   b.axis.x,   b.axis.y,   b.axis.z,         b.cutoff};
-    const std::size_t block = model.first_block + cluster / kRenderLanes;
-    float* lane = &out_.cluster_bounds[block * kBoundsRows * kRenderLanes + cluster % kRenderLanes];
-    for (std::size_t row = 0; row < kBoundsRows; ++row) lane[row * kRenderLanes] = rows[row];
+    const std::size_t lane = model.first_block * kRenderLanes + cluster;
+    for (std::size_t row = 0; row < kBoundsRows; ++row) {
+      out_.cluster_bounds[pooledAt(lane, row, kBoundsRows)] = rows[row];
+    }
   }
 
   RenderMeshStorage& out_;
