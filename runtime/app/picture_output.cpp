@@ -111,6 +111,11 @@ Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const R
   return output;
 }
 
+bool PictureOutput::wants(std::uint64_t step) const {
+  const bool takes_all = !options_.frames.empty() || !options_.video.empty();
+  return isOnSheet(step) || (takes_all && step % options_.frame_every == 0);
+}
+
 Result<void> PictureOutput::add(std::uint64_t step, std::span<const EnvFrame> frames) {
   if (!options_.frames.empty()) {
     for (std::size_t env = 0; env < frames.size(); ++env) {

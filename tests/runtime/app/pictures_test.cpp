@@ -186,6 +186,15 @@ TEST_F(Pictures, FramesAreNamedByEnvAndStep) {
 TEST_F(Pictures, ASheetShowsSixMomentsFromTheFirstToTheLast) {
   DrawingOptions options = smallOptions();
   options.contact_sheet = file("sheet.png");
+  {
+    // Nothing is drawn for other moments.
+    const auto output = PictureOutput::open(options, {100, 2});
+    ASSERT_TRUE(output);
+    std::size_t wanted = 0;
+    for (std::uint64_t step = 0; step <= 100; ++step) wanted += output->wants(step) ? 1 : 0;
+    EXPECT_EQ(wanted, 6U);
+    EXPECT_TRUE(output->wants(0) && output->wants(20) && output->wants(100));
+  }
   const SmallImage small;
   const auto height_of = [&](std::uint64_t steps, std::uint64_t done) {
     auto output = PictureOutput::open(options, {steps, 2});
