@@ -90,9 +90,8 @@ Image tileOf(const EnvFrame& frame) {
 
 PictureOutput::PictureOutput(const DrawingOptions& options, const RunLength& length)
     : options_(options), envs_(std::min<std::size_t>(options.frame_envs, length.envs)) {
-  for (const std::uint64_t frame : spreadMoments(length.steps / options.frame_every + 1)) {
-    sheet_steps_.push_back(frame * options.frame_every);
-  }
+  sheet_steps_ = spreadMoments(length.steps / options.frame_every + 1);
+  for (std::uint64_t& step : sheet_steps_) step *= options.frame_every;
 }
 
 Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const RunLength& length) {

@@ -191,7 +191,7 @@ TEST_F(Pictures, ASheetShowsSixMomentsFromTheFirstToTheLast) {
     const auto output = PictureOutput::open(options, {100, 2});
     ASSERT_TRUE(output);
     std::size_t wanted = 0;
-    for (std::uint64_t step = 0; step <= 100; ++step) wanted += output->wants(step) ? 1 : 0;
+    for (std::uint64_t step = 0; step <= 100; ++step) wanted += output->wants(step) ? 1U : 0U;
     EXPECT_EQ(wanted, 6U);
     EXPECT_TRUE(output->wants(0) && output->wants(20) && output->wants(100));
   }
