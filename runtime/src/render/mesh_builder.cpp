@@ -26,8 +26,9 @@ constexpr std::size_t kTextureAlignment = 32;
 constexpr std::int64_t kMostStored = std::numeric_limits<std::uint16_t>::max();
 constexpr double kFinestStep = 1.0 / (1 << 14);
 constexpr double kCoarsestStep = 1;
-/// Farthest from the origin of its part that a vertex may be, metres: lattice numbers stay within
-/// 32 bits at the finest step.
+/// Lattice numbers up to here are floats.
+constexpr std::int64_t kMostLattice = std::int64_t{1} << 24U;
+/// Farthest from the origin of its part that a vertex may be, metres.
 constexpr float kFarthest = 65536;
 
 bool isFinite(const RenderVertex& vertex) {
@@ -41,7 +42,8 @@ bool isNear(const Vec3& p) {
 
 /// What is wrong with a surface, as a sentence; nothing when it can be stored.
 std::optional<std::string> faultOf(const RenderSurface& surface, const RenderMeshSource& source) {
-  constexpr float kLargestTexture = 1e6F;
+  // A cluster then repeats its image 32,000 times at most, which a pack can hold.
+  constexpr float kLargestTexture = 16000;
   if (surface.corners.size() % 3 != 0) {
     return fmt::format("found {} corners, wanted three per triangle", surface.corners.size());
   }
@@ -141,8 +143,11 @@ struct LatticeBox {
   LatticePoint low;
   LatticePoint high;
 
-  [[nodiscard]] std::int64_t extent() const {
-    return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  /// Whether a cluster in it can be stored.
+  [[nodiscard]] bool fits() const {
+    const std::int64_t extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    return extent <= kMostStored && std::min({low.x, low.y, low.z}) >= -kMostLattice &&
+           std::max({low.x, low.y, low.z}) < kMostLattice - kMostStored;
   }
 };
 
@@ -163,11 +168,11 @@ LatticeBox latticeBox(const SurfaceDraft& cluster, double step) {
   return box;
 }
 
-/// The finest step on which every cluster fits into sixteen bits; none when there is none.
+/// The finest step on which every cluster can be stored; none when there is none.
 std::optional<double> latticeStep(const std::vector<SurfaceDraft>& clusters) {
   double step = kFinestStep;
   for (const SurfaceDraft& cluster : clusters) {
-    while (latticeBox(cluster, step).extent() > kMostStored) step *= 2;
+    while (!latticeBox(cluster, step).fits()) step *= 2;
   }
   return step <= kCoarsestStep ? std::optional(step) : std::nullopt;
 }
@@ -234,7 +239,7 @@ class Packer {
  private:
   void addEmptyBounds(std::size_t blocks) {
     constexpr std::array<float, kBoundsRows> kEmpty{
-        0, 0, 0, kNoCluster, kNoCluster, kNoCluster, kNoCluster, 0, 0, 0, kNoCone};
+        0, 0, 0, kNoCluster, kNoCluster, kNoCluster, kNoCluster, 0, 0, 0, 0};
     for (std::size_t block = 0; block < blocks; ++block) {
       for (const float value : kEmpty) {
         out_.cluster_bounds.insert(out_.cluster_bounds.end(), kRenderLanes, value);
