@@ -26,7 +26,8 @@ std::string frameName(std::size_t env, std::uint64_t step, const char* what) {
 
 /// Whether a file can be written here; leaves nothing behind.
 Result<void> tryFile(const std::filesystem::path& path) {
-  if (!path.has_filename()) {
+  std::error_code unknown;
+  if (!path.has_filename() || std::filesystem::is_directory(path, unknown)) {
     return fail(ErrorCode::kIo, path.string(), "is a folder; wanted the name of a file");
   }
   const Result<AtomicFile> file = AtomicFile::create(path);
