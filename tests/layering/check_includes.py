@@ -45,7 +45,7 @@ HEAVY_LIBRARIES = (
                             r"tests/bake/(robot|simulation)/bullet[^/]*$|"
                             r"benchmarks/batch_kinematics\.cpp$")),
     HeavyLibrary("Embree", re.compile(r"embree\d/"), re.compile(r"\b(RTC[A-Z]\w+|rtc[A-Z]\w+)"),
-                 re.compile(r"bake/src/engines/embree[^/]*$")),
+                 re.compile(r"bake/src/(engines|ambient)/embree[^/]*$")),
     HeavyLibrary("urdfdom", re.compile(r"(urdf_|tinyxml|console_bridge/)"),
                  re.compile(r"\b(urdf::|TiXml\w+|console_bridge::)"),
                  re.compile(r"bake/src/urdf/urdf_reader[^/]*$")),
@@ -53,6 +53,13 @@ HEAVY_LIBRARIES = (
                  re.compile(r"bake/src/render/mesh_optimizer\.cpp$")),
     HeavyLibrary("toml++", re.compile(r"toml\+\+/"), re.compile(r"\btoml::"),
                  re.compile(r"bake/src/recipe/toml_table[^/]*$")),
+    HeavyLibrary("libpng", re.compile(r"png\.h"), re.compile(r"\bpng_(struct|info|byte)p+\b"),
+                 re.compile(r"bake/src/textures/png_image\.cpp$|^runtime/pictures/png_file\.cpp$|"
+                            r"^tests/")),
+    HeavyLibrary("libjpeg", re.compile(r"(jpeglib|jerror)\.h"), re.compile(r"\bjpeg_\w+_struct\b"),
+                 re.compile(r"bake/src/textures/jpeg_image\.cpp$|^tests/")),
+    HeavyLibrary("stb", re.compile(r"stb/"), re.compile(r"\bstb_\w+\("),
+                 re.compile(r"bake/src/textures/bc1_blocks\.cpp$")),
 )
 
 
@@ -73,7 +80,7 @@ LEAN = frozenset({"fmt", "tl"})
 RULES = (
     Rule("runtime/include", ("runtime/include",), frozenset({"tl"}), schema=False),
     Rule("runtime/src", ("runtime/include", "runtime/src"), LEAN | {"flatbuffers", "xxhash.h"}),
-    Rule("runtime/pictures", ("runtime/include", "runtime"), LEAN | {"png.h"}, schema=False),
+    Rule("runtime/pictures", ("runtime/include", "runtime"), LEAN, schema=False),
     # xxHash as headers: digests of recordings.
     Rule("runtime/app", ("runtime/include", "runtime/app", "runtime"), LEAN | {"CLI", "xxhash.h"}),
     Rule("pack_tool", ("runtime/include", "runtime", "."), LEAN | {"CLI", "nlohmann"}),

@@ -1,12 +1,12 @@
 #pragma once
-#include <jpeglib.h>
-#include <png.h>
-
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <vector>
+// jpeglib.h needs <cstdio> before it.
+#include <jpeglib.h>
+#include <png.h>
 
 namespace galactic::test {
 

@@ -455,10 +455,11 @@ std::string readableExtensions() {
 Result<SourceAsset> readWithAssimp(const std::filesystem::path& path,
                                    const MeshImportOptions& options,
                                    const ReaderCallbacks& callbacks) {
-  if (auto checked = checkContent(path); !checked) {
-    return tl::unexpected(std::move(checked.error()));
-  }
-  return SceneReader(path, options, callbacks).read();
+  const auto warnings = checkContent(path);
+  if (!warnings) return tl::unexpected(warnings.error());
+  auto asset = SceneReader(path, options, callbacks).read();
+  if (asset) asset->warnings.insert(asset->warnings.end(), warnings->begin(), warnings->end());
+  return asset;
 }
 
 }  // namespace galactic::bake

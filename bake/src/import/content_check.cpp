@@ -6,6 +6,7 @@
 #include <cctype>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "galactic/mapped_file.h"
 #include "import/gltf_extensions.h"
@@ -20,13 +21,14 @@ std::string lowerCaseExtension(const std::filesystem::path& path) {
   return extension;
 }
 
-Result<void> checkGltf(const std::filesystem::path& path, std::span<const std::byte> content) {
-  const auto required = unsupportedGltfExtension(content);
-  if (!required) return {};
+Result<std::vector<std::string>> checkGltf(const std::filesystem::path& path,
+                                           std::span<const std::byte> content) {
+  GltfRequirements required = gltfRequirements(content);
+  if (!required.unsupported) return std::move(required.warnings);
   return fail(ErrorCode::kUnsupported, path.string(),
               fmt::format("it requires the glTF extension {}, which is not supported; export it "
                           "without that extension (uncompressed)",
-                          *required));
+                          *required.unsupported));
 }
 
 Result<void> checkPly(const std::filesystem::path& path, std::span<const std::byte> content) {
@@ -51,14 +53,18 @@ Result<void> checkPly(const std::filesystem::path& path, std::span<const std::by
 
 }  // namespace
 
-Result<void> checkContent(const std::filesystem::path& path) {
+Result<std::vector<std::string>> checkContent(const std::filesystem::path& path) {
   const std::string extension = lowerCaseExtension(path);
   const bool gltf = extension == ".glb" || extension == ".gltf";
   const bool ply = extension == ".ply";
-  if (!gltf && !ply) return {};
+  if (!gltf && !ply) return std::vector<std::string>();
   const auto file = MappedFile::open(path);
   if (!file) return tl::unexpected(file.error());
-  return gltf ? checkGltf(path, file->bytes()) : checkPly(path, file->bytes());
+  if (gltf) return checkGltf(path, file->bytes());
+  if (auto checked = checkPly(path, file->bytes()); !checked) {
+    return tl::unexpected(std::move(checked.error()));
+  }
+  return std::vector<std::string>();
 }
 
 }  // namespace galactic::bake

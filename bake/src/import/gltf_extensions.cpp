@@ -1,11 +1,14 @@
 #include "import/gltf_extensions.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <utility>
 
 namespace galactic::bake {
 namespace {
@@ -13,17 +16,25 @@ namespace {
 using Json = nlohmann::json;
 
 // Extensions that a reader may require only to draw surfaces as intended.
-constexpr std::array<std::string_view, 7> kHarmlessPrefixes{
-    "KHR_materials_", "KHR_texture_transform", "KHR_lights_",     "KHR_xmp",
-    "KHR_animation_", "EXT_texture_webp",      "MSFT_texture_dds"};
+constexpr std::array<std::string_view, 5> kHarmlessPrefixes{
+    "KHR_materials_", "KHR_texture_transform", "KHR_lights_", "KHR_xmp", "KHR_animation_"};
+
+/// Extensions that put images of other formats in the place of PNG and JPEG.
+struct ImageExtension {
+  std::string_view name;
+  std::string_view format;
+};
+constexpr std::array kImageExtensions{ImageExtension{"KHR_texture_basisu", "KTX2"},
+                                      ImageExtension{"EXT_texture_webp", "WebP"},
+                                      ImageExtension{"MSFT_texture_dds", "DDS"}};
 
 bool isHarmless(std::string_view extension) {
   return std::any_of(kHarmlessPrefixes.begin(), kHarmlessPrefixes.end(),
                      [&](std::string_view prefix) { return extension.starts_with(prefix); });
 }
 
-/// Streams through the JSON and keeps nothing but the first offender; a document tree of a file
-/// with embedded buffers would take several times its size.
+/// Streams through the JSON and keeps nothing but what matters; a document tree of a file with
+/// embedded buffers would take several times its size.
 class RequiredExtensions final : public Json::json_sax_t {
  public:
   bool null() override { return true; }
@@ -47,11 +58,20 @@ class RequiredExtensions final : public Json::json_sax_t {
 
   bool string(string_t& value) override {
     if (depth_ != 2 || !in_list_ || isHarmless(value)) return true;
-    offender_ = value;
-    return false;
+    const auto* image = std::find_if(kImageExtensions.begin(), kImageExtensions.end(),
+                                     [&](const auto& known) { return known.name == value; });
+    if (image == kImageExtensions.end()) {
+      found_.unsupported = value;
+      return false;
+    }
+    found_.warnings.push_back(
+        fmt::format("textures in {} ({}) cannot be read: their surfaces keep their plain colour; "
+                    "export them as PNG or JPEG",
+                    image->format, image->name));
+    return true;
   }
 
-  [[nodiscard]] const std::optional<std::string>& offender() const { return offender_; }
+  [[nodiscard]] GltfRequirements take() { return std::move(found_); }
 
  private:
   bool enter() {
@@ -65,7 +85,7 @@ class RequiredExtensions final : public Json::json_sax_t {
 
   std::size_t depth_ = 0;
   bool in_list_ = false;
-  std::optional<std::string> offender_;
+  GltfRequirements found_;
 };
 
 std::uint32_t wordAt(std::span<const std::byte> bytes, std::size_t offset) {
@@ -85,14 +105,14 @@ std::span<const std::byte> jsonPart(std::span<const std::byte> file) {
 
 }  // namespace
 
-std::optional<std::string> unsupportedGltfExtension(std::span<const std::byte> file) {
+GltfRequirements gltfRequirements(std::span<const std::byte> file) {
   const std::span<const std::byte> json = jsonPart(file);
   const auto* text = reinterpret_cast<const char*>(json.data());
   RequiredExtensions found;
   // The result only tells whether the parse was stopped; broken JSON is the mesh reader's to
   // report.
   static_cast<void>(Json::sax_parse(text, text + json.size(), &found));
-  return found.offender();
+  return found.take();
 }
 
 }  // namespace galactic::bake

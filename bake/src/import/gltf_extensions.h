@@ -3,12 +3,19 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace galactic::bake {
 
-/// The first extension that a glTF 2.0 file (JSON or GLB) requires (`extensionsRequired`) and that
-/// the mesh reader would ignore although it changes shapes or images, such as Draco, meshopt and
-/// KTX2 compression. None also when `file` is no glTF: the reader then says why.
-[[nodiscard]] std::optional<std::string> unsupportedGltfExtension(std::span<const std::byte> file);
+/// What a glTF 2.0 file (JSON or GLB) requires (`extensionsRequired`) and the mesh reader ignores.
+struct GltfRequirements {
+  /// The first extension that changes shapes, such as Draco and meshopt compression.
+  std::optional<std::string> unsupported;
+  /// One sentence for each extension whose images cannot be read.
+  std::vector<std::string> warnings;
+};
+
+/// Nothing also when `file` is no glTF: the reader then says why.
+[[nodiscard]] GltfRequirements gltfRequirements(std::span<const std::byte> file);
 
 }  // namespace galactic::bake

@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <string>
+#include <tuple>
 #include <vector>
 
 #include "galactic/bake/render_textures.h"
@@ -19,7 +19,10 @@ struct Look {
   /// 0 to 1; of kMask.
   float alpha_cutoff = 0.5F;
 
-  auto operator<=>(const Look&) const = default;
+  [[nodiscard]] bool operator<(const Look& other) const {
+    return std::tie(factor, alpha_mode, alpha_cutoff) <
+           std::tie(other.factor, other.alpha_mode, other.alpha_cutoff);
+  }
 };
 
 /// The look of `material`, alike for materials that differ only in what does not show.

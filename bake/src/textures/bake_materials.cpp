@@ -1,14 +1,18 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cmath>
 #include <map>
+#include <string>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "galactic/bake/parallel_for.h"
 #include "galactic/bake/render_textures.h"
 #include "galactic/bake/source_file.h"
 #include "textures/appearance.h"
-#include "textures/image_decoder.h"
+#include "textures/isolated_bake.h"
 #include "textures/texture_source.h"
 
 namespace galactic::bake {
@@ -38,14 +42,17 @@ void bakeSource(const TextureSource& source, const TextureBakeOptions& options,
                 const TransferFunction& transfer, SourceResult& result) {
   result.fault = source.fault;
   if (!result.fault.empty()) return;
-  const DecodedImage image = decodeIsolated(source.bytes);
-  if (!image) {
-    result.fault = image.error();
+  std::vector<Look> looks;
+  looks.reserve(result.appearances.size());
+  for (const auto& [look, appearance] : result.appearances) looks.push_back(look);
+  auto baked = bakeIsolated(source.bytes, looks, options, transfer);
+  if (!baked) {
+    result.fault = std::move(baked.error());
     return;
   }
-  result.image_bytes = image->rgba.size();
-  for (auto& [look, appearance] : result.appearances) {
-    appearance = texturedAppearance(*image, look, options, transfer);
+  result.image_bytes = baked->image_bytes;
+  for (std::size_t n = 0; n < looks.size(); ++n) {
+    result.appearances[looks[n]] = std::move(baked->appearances[n]);
   }
 }
 

@@ -6,18 +6,12 @@
 #include <array>
 #include <string_view>
 
-#include "import/isolated_process.h"
-#include "import/transfer_archive.h"
 #include "textures/image_codecs.h"
 
 namespace galactic::bake {
 namespace {
 
 using namespace std::string_view_literals;
-
-/// The largest allowed image takes a second to decode and twice its own size.
-constexpr ProcessLimits kDecodeLimits{.wall_clock = std::chrono::seconds(60),
-                                      .memory = std::uint64_t{2} << 30U};
 
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1A\n";
 constexpr std::string_view kJpegSignature = "\xFF\xD8\xFF";
@@ -64,34 +58,6 @@ std::string otherFormat(std::string_view file) {
   return "is of an unknown format; wanted PNG or JPEG";
 }
 
-std::string failureText(const ProcessFailure& failure) {
-  switch (failure.end) {
-    case ProcessEnd::kNotStarted:
-      return "could not be decoded: no process could be started";
-    case ProcessEnd::kTimeLimit:
-      return "took too long to decode";
-    case ProcessEnd::kMemoryLimit:
-      return "needs too much memory to decode";
-    case ProcessEnd::kCrashed:
-      return fmt::format("crashes its decoder (signal {})", failure.number);
-    case ProcessEnd::kFailed:
-      break;
-  }
-  return fmt::format("stops its decoder (exit code {})", failure.number);
-}
-
-void sendImage(std::span<const std::byte> file, ProcessChannel& channel) {
-  const TransferSink sink = [&](std::span<const std::byte> bytes) { channel.write(bytes); };
-  TransferWriter writer(sink);
-  const DecodedImage decoded = decodeImage(file);
-  writer(decoded.has_value());
-  if (decoded) {
-    writer(decoded->width, decoded->height, decoded->rgba);
-  } else {
-    writer(decoded.error());
-  }
-}
-
 }  // namespace
 
 std::string sizeFault(std::uint64_t width, std::uint64_t height) {
@@ -109,27 +75,6 @@ DecodedImage decodeImage(std::span<const std::byte> file) {
   if (text.starts_with(kPngSignature)) return decodePng(file);
   if (text.starts_with(kJpegSignature)) return decodeJpeg(file);
   return refused(otherFormat(text));
-}
-
-DecodedImage decodeIsolated(std::span<const std::byte> file) {
-  const auto output =
-      runIsolated([&](ProcessChannel& channel) { sendImage(file, channel); }, kDecodeLimits);
-  if (!output) return refused(failureText(output.error()));
-  TransferReader reader(output->bytes());
-  bool decoded = false;
-  reader(decoded);
-  Image image;
-  std::string message;
-  if (decoded) {
-    reader(image.width, image.height, image.rgba);
-  } else {
-    reader(message);
-  }
-  const bool complete = reader.good() && reader.atEnd() &&
-                        image.rgba.size() == std::size_t{image.width} * image.height * 4;
-  if (!complete) return refused("was not delivered by its decoder");
-  if (!decoded) return refused(std::move(message));
-  return image;
 }
 
 }  // namespace galactic::bake

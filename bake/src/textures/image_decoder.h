@@ -13,12 +13,8 @@ using DecodedImage = tl::expected<Image, std::string>;
 
 /// Decodes PNG (all kinds; 16 bits are rounded to 8; colour space chunks are ignored, as glTF
 /// demands) and JPEG (grey, YCbCr and RGB, baseline and progressive), told apart by their first
-/// bytes. Runs in this process, so it trusts its libraries: see decodeIsolated. Strict: a file that
-/// is cut off or damaged is refused, unless the damage leaves the image alone.
+/// bytes. Runs in this process, so it trusts its libraries: see isolated_bake.h. Strict: a file
+/// that is cut off or damaged is refused, unless the damage leaves the image alone.
 [[nodiscard]] DecodedImage decodeImage(std::span<const std::byte> file);
-
-/// decodeImage in a process of its own, limited in time and memory: whatever the file makes of the
-/// libraries, it costs one message.
-[[nodiscard]] DecodedImage decodeIsolated(std::span<const std::byte> file);
 
 }  // namespace galactic::bake

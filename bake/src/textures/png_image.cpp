@@ -49,8 +49,8 @@ void readBytes(png_structp png, png_bytep to, std::size_t bytes) {
 
 void onWarning(png_structp, png_const_charp) {}
 
-/// Reads up to the first texel and asks for four bytes a texel. Nothing with a destructor lives
-/// here: errors jump out.
+/// Reads up to the first texel. Nothing with a destructor lives here and in the next two: errors
+/// jump out.
 bool readHeader(const PngHandles& handles, PngInput& input) {
   png_structp png = handles.png;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
@@ -60,6 +60,13 @@ bool readHeader(const PngHandles& handles, PngInput& input) {
   // Sizes are judged by sizeFault, which says what it found.
   png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
   png_read_info(png, handles.info);
+  return true;
+}
+
+/// Asks for four bytes a texel. Allocates rows, so the size has been judged.
+bool prepareRows(const PngHandles& handles) {
+  png_structp png = handles.png;
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_expand(png);
   png_set_scale_16(png);
   png_set_gray_to_rgb(png);
@@ -96,6 +103,7 @@ DecodedImage decodePng(std::span<const std::byte> file) {
   if (std::string fault = sizeFault(image.width, image.height); !fault.empty()) {
     return refused(std::move(fault));
   }
+  if (!prepareRows(handles)) return broken(input);
   const std::size_t row_bytes = std::size_t{image.width} * 4;
   if (png_get_rowbytes(handles.png, handles.info) != row_bytes) {
     return refused("is a PNG of an unknown kind");

@@ -1,4 +1,4 @@
-// Decoding of PNG and JPEG, in this process and in one of its own.
+// Decoding of PNG and JPEG, and baking in a process of its own.
 #include "textures/image_decoder.h"
 
 #include <gmock/gmock.h>
@@ -7,13 +7,13 @@
 
 #include "support/image_files.h"
 #include "texture_helpers.h"
+#include "textures/isolated_bake.h"
 
 namespace galactic::test {
 namespace {
 
 using bake::DecodedImage;
 using bake::decodeImage;
-using bake::decodeIsolated;
 using testing::ElementsAre;
 using testing::ElementsAreArray;
 using testing::HasSubstr;
@@ -164,7 +164,7 @@ TEST(ImageDecoder, RefusesHugeDeclaredSizesBeforeItAllocates) {
             "has 16384 x 16384 texels; wanted at most 16384 a side and 64 million in all");
   EXPECT_THAT(faultOf(pngOfDeclaredSize(0, 5)), StartsWith("is a broken PNG (Invalid IHDR"));
   // Allowed, but the data is not there.
-  EXPECT_THAT(faultOf(pngOfDeclaredSize(8192, 8192)), StartsWith("is a broken PNG ("));
+  EXPECT_THAT(faultOf(pngOfDeclaredSize(1024, 1024)), StartsWith("is a broken PNG ("));
 
   std::string jpeg = jpegFile({8, 8, std::vector<std::uint8_t>(192, 9)});
   const std::size_t frame = jpeg.find("\xFF\xC0");
@@ -240,14 +240,30 @@ TEST(ImageDecoder, SurvivesTruncatedAndFlippedJpeg) {
   }
 }
 
-TEST(ImageDecoder, DecodesTheSameInAProcessOfItsOwn) {
+TEST(IsolatedBake, GivesWhatTheSameWorkGivesInThisProcess) {
   const std::string file = pngFile(busyImage(31, 5));
-  const DecodedImage isolated = decodeIsolated(std::as_bytes(std::span(file)));
+  const bake::TransferFunction transfer;
+  const bake::Look white;
+  const bake::Look dark{.factor = {0.5F, 0.25F, 1, 1}};
+  const std::array looks{white, dark};
+  const auto isolated =
+      bake::bakeIsolated(std::as_bytes(std::span(file)), looks, {.largest = 16}, transfer);
   ASSERT_TRUE(isolated.has_value()) << isolated.error();
-  EXPECT_EQ(isolated->width, 31U);
-  EXPECT_EQ(isolated->rgba, decodedBytes(file));
+  EXPECT_EQ(isolated->image_bytes, 4U * 31 * 5);
+  ASSERT_EQ(isolated->appearances.size(), 2U);
+  const DecodedImage image = decode(file);
+  ASSERT_TRUE(image.has_value());
+  for (std::size_t n = 0; n < 2; ++n) {
+    const auto here = bake::texturedAppearance(*image, looks[n], {.largest = 16}, transfer);
+    EXPECT_EQ(isolated->appearances[n].texels, here.texels);
+    EXPECT_EQ(isolated->appearances[n].color, here.color);
+    EXPECT_EQ(isolated->appearances[n].size, 16U);
+  }
+}
+
+TEST(IsolatedBake, PassesTheDecodersMessageOn) {
   const std::string other = "GIF89a";
-  const DecodedImage refused = decodeIsolated(std::as_bytes(std::span(other)));
+  const auto refused = bake::bakeIsolated(std::as_bytes(std::span(other)), {}, {}, {});
   ASSERT_FALSE(refused.has_value());
   EXPECT_EQ(refused.error(), "is GIF; wanted PNG or JPEG");
 }

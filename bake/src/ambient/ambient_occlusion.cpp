@@ -1,0 +1,199 @@
+#include "galactic/bake/ambient_occlusion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "ambient/occlusion_rays.h"
+#include "ambient/ray_pattern.h"
+#include "ambient/vertex_fans.h"
+#include "galactic/bake/parallel_for.h"
+#include "import/affine.h"
+
+namespace galactic::bake {
+namespace {
+
+constexpr unsigned kMostRays = 65536;
+/// Rays start this far off their triangle: beyond the rounding of float coordinates in a home.
+constexpr double kLift = 1e-4;
+/// Vertices that one thread takes at a time.
+constexpr std::size_t kChunk = 256;
+
+Result<void> checkOptions(const AmbientOcclusionOptions& options) {
+  if (options.rays < 1 || options.rays > kMostRays) {
+    return fail(ErrorCode::kInvalidInput, "ambient occlusion: rays",
+                fmt::format("{} rays a vertex; give 1 to {}", options.rays, kMostRays));
+  }
+  if (!(options.largest_distance > 0) || !std::isfinite(options.largest_distance)) {
+    return fail(ErrorCode::kInvalidInput, "ambient occlusion: largest distance",
+                fmt::format("{} is no distance; give a positive number of metres",
+                            options.largest_distance));
+  }
+  return {};
+}
+
+/// A mesh in the world.
+struct PlacedMesh {
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+};
+
+PlacedMesh placed(const OccludingMesh& mesh) {
+  PlacedMesh result;
+  result.positions.reserve(mesh.positions.size());
+  for (const Vec3& position : mesh.positions) {
+    const auto p = transformed(mesh.world_from_mesh, position);
+    result.positions.push_back(
+        {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+  }
+  result.triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
+  if (determinant(mesh.world_from_mesh) < 0) {
+    for (Triangle& triangle : result.triangles) std::swap(triangle[1], triangle[2]);
+  }
+  return result;
+}
+
+Result<Occluders> allOccluders(std::span<const PlacedMesh> meshes, unsigned jobs) {
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  for (const PlacedMesh& mesh : meshes) {
+    vertices += mesh.positions.size();
+    triangles += mesh.triangles.size();
+  }
+  PlacedMesh all;
+  all.positions.reserve(vertices + 1);
+  all.triangles.reserve(triangles);
+  for (const PlacedMesh& mesh : meshes) {
+    const auto first = static_cast<std::uint32_t>(all.positions.size());
+    all.positions.insert(all.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const Triangle& t : mesh.triangles) {
+      all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+  }
+  return Occluders::build(std::move(all.positions), std::move(all.triangles), jobs);
+}
+
+using Vector = std::array<double, 3>;
+
+/// Two axes that make a right-handed frame with `n`, a unit vector (Duff et al., "Building an
+/// Orthonormal Basis, Revisited", 2017).
+std::array<Vector, 2> tangents(const Vector& n) {
+  const double sign = std::copysign(1.0, n[2]);
+  const double a = -1 / (sign + n[2]);
+  const double b = n[0] * n[1] * a;
+  return {Vector{1 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]},
+          Vector{b, sign + n[1] * n[1] * a, -n[1]}};
+}
+
+/// Rays from the triangles around the vertices of one mesh.
+class RayMaker {
+ public:
+  RayMaker(const PlacedMesh& mesh, std::span<const PatternRay> pattern)
+      : mesh_(mesh), pattern_(pattern), fans_(mesh.positions, mesh.triangles) {}
+
+  /// The rays of a vertex, from its triangles' fronts (`side` 1) or backs (-1); none where it has
+  /// no triangle of some area.
+  void make(std::size_t vertex, double side, std::vector<OcclusionRay>& rays) const {
+    rays.clear();
+    const std::span<const FanTriangle> fan = fans_.of(vertex);
+    double total = 0;
+    for (const FanTriangle& entry : fan) total += fans_.area(entry.triangle);
+    if (!(total > 0)) return;
+    for (const PatternRay& ray : pattern_) {
+      std::size_t chosen = 0;
+      double before = 0;
+      while (chosen + 1 < fan.size() &&
+             before + fans_.area(fan[chosen].triangle) <= ray.triangle * total) {
+        before += fans_.area(fan[chosen++].triangle);
+      }
+      rays.push_back(fromTriangle(fan[chosen], ray, side));
+    }
+  }
+
+ private:
+  [[nodiscard]] OcclusionRay fromTriangle(const FanTriangle& from, const PatternRay& ray,
+                                          double side) const {
+    const Vector& normal = fans_.normal(from.triangle);
+    const auto [first, second] = tangents(normal);
+    const Triangle& triangle = mesh_.triangles[from.triangle];
+    const std::array<double, 3> weights{ray.own, ray.next, 1 - ray.own - ray.next};
+    Vector origin{};
+    Vector direction{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      origin[axis] = side * kLift * normal[axis];
+      direction[axis] = ray.direction[0] * first[axis] + ray.direction[1] * second[axis] +
+                        ray.direction[2] * side * normal[axis];
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& p = mesh_.positions[triangle[(from.corner + k) % 3]];
+      origin[0] += weights[k] * static_cast<double>(p.x);
+      origin[1] += weights[k] * static_cast<double>(p.y);
+      origin[2] += weights[k] * static_cast<double>(p.z);
+    }
+    const auto rounded = [](const Vector& v) {
+      return Vec3{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+    };
+    return {.origin = rounded(origin), .direction = rounded(direction)};
+  }
+
+  const PlacedMesh& mesh_;
+  std::span<const PatternRay> pattern_;
+  VertexFans fans_;
+};
+
+/// Part of the rays from one side of a vertex that meet nothing.
+float openPart(const Occluders& occluders, std::span<const OcclusionRay> rays, float distance) {
+  if (rays.empty()) return 1;
+  const std::size_t open = occluders.countOpen(rays, distance);
+  return static_cast<float>(static_cast<double>(open) / static_cast<double>(rays.size()));
+}
+
+}  // namespace
+
+Result<std::vector<std::vector<float>>> ambientOcclusion(std::span<const OccludingMesh> meshes,
+                                                         const AmbientOcclusionOptions& options) {
+  if (auto checked = checkOptions(options); !checked) return tl::unexpected(checked.error());
+  std::vector<PlacedMesh> world(meshes.size());
+  parallelFor(options.jobs, meshes.size(), [&](std::size_t m) { world[m] = placed(meshes[m]); });
+  const auto occluders = allOccluders(world, options.jobs);
+  if (!occluders) return tl::unexpected(occluders.error());
+  const std::vector<PatternRay> pattern = rayPattern(options.rays);
+
+  std::vector<std::vector<float>> openness(meshes.size());
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const RayMaker maker(world[m], pattern);
+    const std::size_t vertices = world[m].positions.size();
+    openness[m].resize(vertices);
+    parallelFor(options.jobs, (vertices + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+      std::vector<OcclusionRay> rays;
+      rays.reserve(pattern.size());
+      const std::size_t end = std::min(vertices, (chunk + 1) * kChunk);
+      for (std::size_t v = chunk * kChunk; v < end; ++v) {
+        maker.make(v, 1, rays);
+        openness[m][v] = openPart(*occluders, rays, options.largest_distance);
+        if (!meshes[m].two_sided) continue;
+        maker.make(v, -1, rays);
+        openness[m][v] =
+            std::max(openness[m][v], openPart(*occluders, rays, options.largest_distance));
+      }
+    });
+  }
+  return openness;
+}
+
+std::vector<std::array<float, 4>> darkened(std::span<const std::array<float, 4>> colors,
+                                           std::span<const float> openness) {
+  std::vector<std::array<float, 4>> result;
+  result.reserve(openness.size());
+  for (std::size_t v = 0; v < openness.size(); ++v) {
+    const std::array<float, 4> color =
+        v < colors.size() ? colors[v] : std::array<float, 4>{1, 1, 1, 1};
+    const float factor = openness[v];
+    result.push_back({color[0] * factor, color[1] * factor, color[2] * factor, color[3]});
+  }
+  return result;
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,122 @@
+// What the texture bake makes of mesh files: bytes for each largest size and format, with times;
+// and what ambient occlusion of their vertices takes.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "galactic/bake/ambient_occlusion.h"
+#include "galactic/bake/mesh_import.h"
+#include "galactic/bake/render_textures.h"
+
+namespace {
+
+namespace bake = galactic::bake;
+
+struct Input {
+  std::filesystem::path path;
+  bake::SourceAsset asset;
+};
+
+class Stopwatch {
+ public:
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::vector<Input> importAll(const std::vector<std::string>& files) {
+  std::vector<Input> inputs;
+  bake::MeshImportOptions options;
+  options.smallest_size = 0;
+  for (const std::string& file : files) {
+    auto asset = bake::importMesh(file, options);
+    if (asset) {
+      inputs.push_back({file, std::move(*asset)});
+    } else {
+      fmt::print("{}: {}\n", asset.error().where, asset.error().message);
+    }
+  }
+  return inputs;
+}
+
+void bakeAll(const std::vector<Input>& inputs, const bake::TextureBakeOptions& options,
+             bool print_warnings) {
+  std::uint64_t source_bytes = 0;
+  std::uint64_t bytes = 0;
+  std::size_t textures = 0;
+  const Stopwatch watch;
+  for (const Input& input : inputs) {
+    const auto baked = bake::bakeMaterials(input.asset.materials, input.asset.textures,
+                                           input.path.parent_path(), options);
+    if (!baked) {
+      fmt::print("{}: {}\n", baked.error().where, baked.error().message);
+      continue;
+    }
+    source_bytes += baked->source_bytes;
+    bytes += baked->texels.size();
+    textures += baked->textures.size();
+    if (!print_warnings) continue;
+    for (const std::string& warning : baked->warnings) {
+      fmt::print("{}: {}\n", input.path.filename().string(), warning);
+    }
+  }
+  fmt::print("{:>8} {:>6} {:>9} {:>11.1f} {:>10.2f} {:>8.2f}\n", options.largest,
+             options.format == galactic::TexelFormat::kBc1 ? "bc1" : "rgba8", textures,
+             static_cast<double>(source_bytes) / 1e6, static_cast<double>(bytes) / 1e6,
+             watch.seconds());
+}
+
+void occludeAll(const std::vector<Input>& inputs, unsigned jobs) {
+  std::size_t vertices = 0;
+  double sum = 0;
+  const Stopwatch watch;
+  for (const Input& input : inputs) {
+    std::vector<bake::OccludingMesh> meshes;
+    meshes.reserve(input.asset.instances.size());
+    for (const bake::SourceInstance& instance : input.asset.instances) {
+      const bake::SourceMesh& mesh = input.asset.meshes[instance.mesh];
+      meshes.push_back({.positions = mesh.positions,
+                        .triangles = mesh.triangles,
+                        .world_from_mesh = instance.world_from_mesh});
+    }
+    const auto openness = bake::ambientOcclusion(meshes, {.jobs = jobs});
+    if (!openness) {
+      fmt::print("{}: {}\n", openness.error().where, openness.error().message);
+      continue;
+    }
+    for (const auto& mesh : *openness) {
+      vertices += mesh.size();
+      for (const float factor : mesh) sum += static_cast<double>(factor);
+    }
+  }
+  fmt::print("\nambient occlusion: {} vertices, mean factor {:.3f}, {:.2f} s\n", vertices,
+             sum / static_cast<double>(std::max<std::size_t>(vertices, 1)), watch.seconds());
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  CLI::App app("What the texture bake makes of mesh files");
+  std::vector<std::string> files;
+  unsigned jobs = 1;
+  app.add_option("FILE", files, "Mesh files")->required();
+  app.add_option("--jobs", jobs, "Threads")->capture_default_str();
+  CLI11_PARSE(app, count, arguments);
+  const std::vector<Input> inputs = importAll(files);
+  fmt::print("{:>8} {:>6} {:>9} {:>11} {:>10} {:>8}\n", "largest", "format", "textures",
+             "source MB", "texels MB", "seconds");
+  for (const auto format : {galactic::TexelFormat::kRgba8, galactic::TexelFormat::kBc1}) {
+    for (const std::uint32_t largest : {256U, 512U, 1024U}) {
+      bakeAll(inputs, {.largest = largest, .format = format, .jobs = jobs},
+              largest == 256 && format == galactic::TexelFormat::kRgba8);
+    }
+  }
+  occludeAll(inputs, jobs);
+  return 0;
+}
