@@ -36,7 +36,7 @@ Result<void> DrawnSteps::step(BatchSimulator& simulator, std::span<const float> 
   const Clock::time_point start = Clock::now();
   rendering_.update(simulator);
   rendering_.begin();
-  if (report.steps % kMeasureEvery == 0) {
+  if (report.steps % kMeasureEvery == 1) {
     rendering_.end();
     drawn.rendering.add(secondsSince(start));
     const Clock::time_point rendered = Clock::now();
@@ -46,7 +46,7 @@ Result<void> DrawnSteps::step(BatchSimulator& simulator, std::span<const float> 
     simulator.beginStep(actions);
     simulator.endStep();
     rendering_.end();
-    drawn.overlapped.add(secondsSince(start));
+    if (report.steps > 0) drawn.overlapped.add(secondsSince(start));
   }
   report.step_seconds += secondsSince(start);
   drawn.images += simulator.envCount();

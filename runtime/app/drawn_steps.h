@@ -14,6 +14,7 @@ namespace galactic {
 class DrawnSteps {
  public:
   /// One step in so many is simulated and drawn one after the other instead, to measure each alone.
+  /// The first step of a run, in which memory is touched for the first time, is not measured.
   static constexpr std::uint64_t kMeasureEvery = 16;
 
   /// Of the run of `options`. Fails with the errors of PictureOutput::open and Rendering::create.

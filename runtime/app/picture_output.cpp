@@ -26,6 +26,10 @@ std::string frameName(std::size_t env, std::uint64_t step, const char* what) {
 
 /// Whether a file can be written here; leaves nothing behind.
 Result<void> tryFile(const std::filesystem::path& path) {
+  std::error_code unknown;
+  if (!path.has_filename() || std::filesystem::is_directory(path, unknown)) {
+    return fail(ErrorCode::kIo, path.string(), "is a folder; wanted the name of a file");
+  }
   const Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected<Error>(file.error());
   return {};
@@ -87,9 +91,8 @@ Image tileOf(const EnvFrame& frame) {
 
 PictureOutput::PictureOutput(const DrawingOptions& options, const RunLength& length)
     : options_(options), envs_(std::min<std::size_t>(options.frame_envs, length.envs)) {
-  for (const std::uint64_t frame : spreadMoments(length.steps / options.frame_every + 1)) {
-    sheet_steps_.push_back(frame * options.frame_every);
-  }
+  sheet_steps_ = spreadMoments(length.steps / options.frame_every + 1);
+  for (std::uint64_t& step : sheet_steps_) step *= options.frame_every;
 }
 
 Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const RunLength& length) {
@@ -106,6 +109,11 @@ Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const R
     output.video_.emplace(std::move(*video));
   }
   return output;
+}
+
+bool PictureOutput::wants(std::uint64_t step) const {
+  const bool takes_all = !options_.frames.empty() || !options_.video.empty();
+  return isOnSheet(step) || (takes_all && step % options_.frame_every == 0);
 }
 
 Result<void> PictureOutput::add(std::uint64_t step, std::span<const EnvFrame> frames) {

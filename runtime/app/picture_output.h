@@ -42,9 +42,7 @@ class PictureOutput {
                                                   const RunLength& length);
 
   /// Whether the state after `step` steps is shown.
-  [[nodiscard]] bool wants(std::uint64_t step) const {
-    return options_.makesPictures() && step % options_.frame_every == 0;
-  }
+  [[nodiscard]] bool wants(std::uint64_t step) const;
   /// How many envs are shown, from the first one on.
   [[nodiscard]] std::size_t envCount() const { return envs_; }
 

@@ -68,19 +68,22 @@ std::string renderLines(const RunReport& report) {
   const RenderReport& drawn = *report.rendering;
   constexpr double kMilli = 1e-3;
   const double larger = std::max(drawn.rendering.mean(), drawn.physics.mean());
-  std::string text =
+  const std::string text =
       line("drawing",
            fmt::format("{} {} x {}, camera {}, by {}", drawing.images, drawing.width,
                        drawing.height, printable(drawing.camera), printable(drawn.description))) +
       line("images", fmt::format("{:>12.0f} images/s{:>11.3f} s",
                                  ratio(static_cast<double>(drawn.images), report.step_seconds),
-                                 report.step_seconds)) +
-      line("one step", fmt::format("{:.3f} ms of rendering, {:.3f} ms of physics",
-                                   drawn.rendering.mean() / kMilli, drawn.physics.mean() / kMilli));
+                                 report.step_seconds));
+  // A short run has no step of each kind to measure.
   if (drawn.overlapped.steps == 0) return text;
-  return text + line("  overlapped", fmt::format("{:.3f} ms, {:.2f} of the larger part",
-                                                 drawn.overlapped.mean() / kMilli,
-                                                 ratio(drawn.overlapped.mean(), larger)));
+  return text +
+         line("one step",
+              fmt::format("{:.3f} ms of rendering, {:.3f} ms of physics",
+                          drawn.rendering.mean() / kMilli, drawn.physics.mean() / kMilli)) +
+         line("  overlapped",
+              fmt::format("{:.3f} ms, {:.2f} of the larger part", drawn.overlapped.mean() / kMilli,
+                          ratio(drawn.overlapped.mean(), larger)));
 }
 
 std::string replayLine(const RunReport& report) {

@@ -147,7 +147,7 @@ TEST(RenderMeshBuilder, ATriangleBecomesOneClusterInTheWordsOfTheSchema) {
   // A lane without a cluster.
   EXPECT_EQ(reader.bound(1, 3), -1e30F);
   EXPECT_EQ(reader.bound(1, 6), -1e30F);
-  EXPECT_EQ(reader.bound(1, 10), 2.0F);
+  EXPECT_EQ(reader.bound(1, 10), 0.0F);
 }
 
 TEST(RenderMeshBuilder, EveryTriangleOfALargeSurfaceIsThereOnceWithinHalfAStep) {
@@ -305,6 +305,17 @@ TEST(RenderMeshBuilder, AStepGrowsUntilTheLargestClusterFits) {
   }
 }
 
+TEST(RenderMeshBuilder, AStepGrowsFarFromTheOrigin) {
+  // At the finest step, 2 km are 2^25 steps, which floats cannot tell apart.
+  for (const float far : {-2000.0F, 2000.0F}) {
+    const auto built = buildRenderMeshes(
+        sourceOf({{.surfaces = {triangleSurface({far, 0, 0}, {far, 0, 1}, {far, 1, 0})}}}));
+    ASSERT_TRUE(built) << built.error().message;
+    EXPECT_EQ(built->models[0].step, 1.0F / 8192);
+    EXPECT_EQ(built->models[0].bounds_min.x, far);
+  }
+}
+
 TEST(RenderMeshBuilder, EqualPositionsStayEqualAcrossClusters) {
   // Two clusters with other origins share two corners that lie between lattice points.
   const Vec3 a{0.123456F, 0.9876543F, -0.3333333F};
@@ -380,6 +391,9 @@ TEST(RenderMeshBuilder, WhatCannotBeStoredIsRefusedByName) {
   bad = good;
   bad.vertices[1].u = std::numeric_limits<float>::infinity();
   EXPECT_THAT(refused(bad), HasSubstr("found a vertex 1 that is not finite"));
+  bad = good;
+  bad.vertices[1].v = 20000;
+  EXPECT_THAT(refused(bad), HasSubstr("found texture coordinates (0, 20000) at vertex 1"));
   bad = good;
   bad.vertices[1].position.x = -70000;
   EXPECT_THAT(refused(bad), HasSubstr("found a vertex 1 farther than 65536 m"));

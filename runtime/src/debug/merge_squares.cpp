@@ -5,7 +5,7 @@
 namespace galactic::debug {
 
 std::vector<KeyedRectangle> mergeSquares(std::vector<KeyedSquare> squares) {
-  std::ranges::sort(squares);
+  std::sort(squares.begin(), squares.end());
   std::vector<KeyedRectangle> runs;
   for (const KeyedSquare& square : squares) {
     const bool goes_on = !runs.empty() && runs.back().key == square.key &&
@@ -17,8 +17,7 @@ std::vector<KeyedRectangle> mergeSquares(std::vector<KeyedSquare> squares) {
     }
     runs.push_back({square.key, square.column, square.column + 1, square.row, square.row + 1});
   }
-  // By key, then columns, then rows: what can be joined stands one after the other.
-  std::ranges::sort(runs);
+  std::sort(runs.begin(), runs.end());
   std::vector<KeyedRectangle> rectangles;
   for (const KeyedRectangle& run : runs) {
     const bool goes_on = !rectangles.empty() && rectangles.back().key == run.key &&

@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
-#include <compare>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace galactic::debug {
@@ -12,7 +12,10 @@ struct KeyedSquare {
   std::int32_t row = 0;
   std::int32_t column = 0;
 
-  friend auto operator<=>(const KeyedSquare&, const KeyedSquare&) = default;
+  friend bool operator==(const KeyedSquare&, const KeyedSquare&) = default;
+  friend bool operator<(const KeyedSquare& a, const KeyedSquare& b) {
+    return std::tie(a.key, a.row, a.column) < std::tie(b.key, b.row, b.column);
+  }
 };
 
 /// Squares [first_row, end_row) x [first_column, end_column) of one key.
@@ -23,7 +26,12 @@ struct KeyedRectangle {
   std::int32_t first_row = 0;
   std::int32_t end_row = 0;
 
-  friend auto operator<=>(const KeyedRectangle&, const KeyedRectangle&) = default;
+  friend bool operator==(const KeyedRectangle&, const KeyedRectangle&) = default;
+  /// By key, then columns, then rows: what can be joined stands one after the other.
+  friend bool operator<(const KeyedRectangle& a, const KeyedRectangle& b) {
+    return std::tie(a.key, a.first_column, a.end_column, a.first_row) <
+           std::tie(b.key, b.first_column, b.end_column, b.first_row);
+  }
 };
 
 /// Rectangles that cover the squares, which differ from each other, and nothing else, each once:

@@ -9,18 +9,22 @@
 namespace galactic::debug {
 namespace {
 
-/// `color` as bright as a surface of this normal is.
-std::uint32_t shaded(std::uint32_t color, const Vec3& normal) {
-  // Unit length.
-  constexpr Vec3 kLight{0.36F, 0.8F, 0.48F};
-  constexpr float kDarkest = 0.5F;
-  const float light = kDarkest + (1 - kDarkest) * (0.5F + 0.5F * dot(normal, kLight));
+/// `color` with that share of its brightness.
+std::uint32_t dimmed(std::uint32_t color, float light) {
   std::uint32_t result = color & 0xFF000000U;
   for (const unsigned shift : {0U, 8U, 16U}) {
     const auto channel = static_cast<float>(color >> shift & 0xFFU);
     result |= static_cast<std::uint32_t>(std::lround(channel * light)) << shift;
   }
   return result;
+}
+
+/// How bright a ball is where its normal is `normal`.
+float lightOn(const Vec3& normal) {
+  // Unit length.
+  constexpr Vec3 kLight{0.36F, 0.8F, 0.48F};
+  constexpr float kDarkest = 0.5F;
+  return kDarkest + (1 - kDarkest) * (0.5F + 0.5F * dot(normal, kLight));
 }
 
 Vec3 unit(const Vec3& v) { return v * (1 / std::sqrt(dot(v, v))); }
@@ -101,11 +105,11 @@ void addBox(RenderSurface& surface, const Pose& object_from_box, const LocalBox&
   // Corner n is high along the axes whose bits are set.
   constexpr std::array<std::array<std::uint32_t, 4>, 6> kFaces{
       {{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3}, {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}}};
-  constexpr std::array<Vec3, 6> kNormals{
-      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+  // Opposite faces are alike: objects lie on any of them.
+  constexpr std::array<float, 3> kLights{0.86F, 1.0F, 0.72F};
   for (std::size_t face = 0; face < kFaces.size(); ++face) {
     const auto first = static_cast<std::uint32_t>(surface.vertices.size());
-    const std::uint32_t shade = shaded(color, rotate(object_from_box.rotation, kNormals[face]));
+    const std::uint32_t shade = dimmed(color, kLights[face / 2]);
     for (const std::uint32_t corner : kFaces[face]) {
       const Vec3 local{(corner & 1U) != 0 ? box.high.x : box.low.x,
                        (corner & 2U) != 0 ? box.high.y : box.low.y,
@@ -127,7 +131,8 @@ RenderSurface sphereSurface(float radius, std::uint32_t color) {
   RenderSurface surface;
   surface.vertices.reserve(sphere.points().size());
   for (const Vec3& point : sphere.points()) {
-    surface.vertices.push_back({.position = point * radius, .color = shaded(color, point)});
+    surface.vertices.push_back(
+        {.position = point * radius, .color = dimmed(color, lightOn(point))});
   }
   surface.corners.reserve(3 * sphere.triangles().size());
   for (const auto& triangle : sphere.triangles()) {

@@ -4,7 +4,8 @@
 
 namespace galactic::debug {
 
-// Closed shapes seen from outside, in colours: shaded as if light came from above.
+// Closed shapes seen from outside, in colours that show their form: balls as if light
+// came from above, boxes with a shade for each direction.
 
 /// About the origin, of 320 triangles with corners on the sphere; metres. `color`: RGBA, R lowest.
 [[nodiscard]] RenderSurface sphereSurface(float radius, std::uint32_t color);

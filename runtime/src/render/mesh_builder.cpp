@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "galactic/render_layout.h"
 #include "galactic/render_mesh_builder.h"
 #include "render/cluster_bounds.h"
 #include "render/cluster_split.h"
@@ -25,13 +26,10 @@ constexpr std::size_t kTextureAlignment = 32;
 constexpr std::int64_t kMostStored = std::numeric_limits<std::uint16_t>::max();
 constexpr double kFinestStep = 1.0 / (1 << 14);
 constexpr double kCoarsestStep = 1;
-/// Farthest from the origin of its part that a vertex may be, metres: lattice numbers stay within
-/// 32 bits at the finest step.
+/// Lattice numbers up to here are floats.
+constexpr std::int64_t kMostLattice = std::int64_t{1} << 24U;
+/// Farthest from the origin of its part that a vertex may be, metres.
 constexpr float kFarthest = 65536;
-
-std::size_t roundedToLanes(std::size_t count) {
-  return (count + kRenderLanes - 1) / kRenderLanes * kRenderLanes;
-}
 
 bool isFinite(const RenderVertex& vertex) {
   return std::isfinite(vertex.u) && std::isfinite(vertex.v) && std::isfinite(vertex.position.x) &&
@@ -44,7 +42,8 @@ bool isNear(const Vec3& p) {
 
 /// What is wrong with a surface, as a sentence; nothing when it can be stored.
 std::optional<std::string> faultOf(const RenderSurface& surface, const RenderMeshSource& source) {
-  constexpr float kLargestTexture = 1e6F;
+  // A cluster then repeats its image 32,000 times at most, which a pack can hold.
+  constexpr float kLargestTexture = 16000;
   if (surface.corners.size() % 3 != 0) {
     return fmt::format("found {} corners, wanted three per triangle", surface.corners.size());
   }
@@ -144,8 +143,11 @@ struct LatticeBox {
   LatticePoint low;
   LatticePoint high;
 
-  [[nodiscard]] std::int64_t extent() const {
-    return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  /// Whether a cluster in it can be stored.
+  [[nodiscard]] bool fits() const {
+    const std::int64_t extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    return extent <= kMostStored && std::min({low.x, low.y, low.z}) >= -kMostLattice &&
+           std::max({low.x, low.y, low.z}) < kMostLattice - kMostStored;
   }
 };
 
@@ -166,11 +168,11 @@ LatticeBox latticeBox(const SurfaceDraft& cluster, double step) {
   return box;
 }
 
-/// The finest step on which every cluster fits into sixteen bits; none when there is none.
+/// The finest step on which every cluster can be stored; none when there is none.
 std::optional<double> latticeStep(const std::vector<SurfaceDraft>& clusters) {
   double step = kFinestStep;
   for (const SurfaceDraft& cluster : clusters) {
-    while (latticeBox(cluster, step).extent() > kMostStored) step *= 2;
+    while (!latticeBox(cluster, step).fits()) step *= 2;
   }
   return step <= kCoarsestStep ? std::optional(step) : std::nullopt;
 }
@@ -219,7 +221,7 @@ class Packer {
         static_cast<std::uint32_t>(out_.cluster_bounds.size() / (kBoundsRows * kRenderLanes));
     model.source_triangles = part.source_triangles;
     model.largest_error = part.largest_error;
-    addEmptyBounds(roundedToLanes(clusters.size()) / kRenderLanes);
+    addEmptyBounds(wholeLanes(clusters.size()) / kRenderLanes);
     for (std::size_t n = 0; n < clusters.size(); ++n) {
       addCluster(clusters[n], model);
       growBox(model, n == 0);
@@ -236,9 +238,8 @@ class Packer {
 
  private:
   void addEmptyBounds(std::size_t blocks) {
-    constexpr float kNothing = -1e30F;
-    constexpr std::array<float, kBoundsRows> kEmpty{0,        0, 0, kNothing, kNothing, kNothing,
-                                                    kNothing, 0, 0, 0,        2};
+    constexpr std::array<float, kBoundsRows> kEmpty{
+        0, 0, 0, kNoCluster, kNoCluster, kNoCluster, kNoCluster, 0, 0, 0, 0};
     for (std::size_t block = 0; block < blocks; ++block) {
       for (const float value : kEmpty) {
         out_.cluster_bounds.insert(out_.cluster_bounds.end(), kRenderLanes, value);
@@ -270,7 +271,7 @@ class Packer {
     stored.two_sided = surface.two_sided ? 1 : 0;
     out_.clusters.push_back(stored);
 
-    const std::size_t room = roundedToLanes(draft.vertices.size());
+    const std::size_t room = wholeLanes(draft.vertices.size());
     out_.vertices.resize(out_.vertices.size() + room * kVertexRows);
     out_.colors.resize(out_.colors.size() + room);
     positions_.clear();
@@ -291,19 +292,18 @@ class Packer {
   }
 
   void storeVertex(std::size_t number, const std::array<std::uint16_t, kVertexRows>& values) {
-    std::uint16_t* block =
-        &out_.vertices[number / kRenderLanes * kRenderLanes * kVertexRows + number % kRenderLanes];
-    for (std::size_t row = 0; row < kVertexRows; ++row) block[row * kRenderLanes] = values[row];
+    for (std::size_t row = 0; row < kVertexRows; ++row) {
+      out_.vertices[pooledAt(number, row, kVertexRows)] = values[row];
+    }
   }
 
   void addTriangles(const ClusterDraft& draft) {
-    const std::size_t first = out_.triangles.size();
-    out_.triangles.resize(first + roundedToLanes(draft.triangles.size()) * kTriangleRows);
+    const std::size_t first = out_.triangles.size() / kTriangleRows;
+    out_.triangles.resize(out_.triangles.size() +
+                          wholeLanes(draft.triangles.size()) * kTriangleRows);
     for (std::size_t n = 0; n < draft.triangles.size(); ++n) {
-      const std::size_t place =
-          first + n / kRenderLanes * kRenderLanes * kTriangleRows + n % kRenderLanes;
       for (std::size_t row = 0; row < kTriangleRows; ++row) {
-        out_.triangles[place + row * kRenderLanes] = draft.triangles[n][row];
+        out_.triangles[pooledAt(first + n, row, kTriangleRows)] = draft.triangles[n][row];
       }
     }
   }
@@ -326,9 +326,10 @@ class Packer {
     const std::array<float, kBoundsRows> rows{
         b.centre.x, b.centre.y, b.centre.z, b.half_extents.x, b.half_extents.y, b.half_extents.z,
         b.radius,   b.axis.x,   b.axis.y,   b.axis.z,         b.cutoff};
-    const std::size_t block = model.first_block + cluster / kRenderLanes;
-    float* lane = &out_.cluster_bounds[block * kBoundsRows * kRenderLanes + cluster % kRenderLanes];
-    for (std::size_t row = 0; row < kBoundsRows; ++row) lane[row * kRenderLanes] = rows[row];
+    const std::size_t lane = model.first_block * kRenderLanes + cluster;
+    for (std::size_t row = 0; row < kBoundsRows; ++row) {
+      out_.cluster_bounds[pooledAt(lane, row, kBoundsRows)] = rows[row];
+    }
   }
 
   RenderMeshStorage& out_;

@@ -71,8 +71,43 @@ TEST(RunCommandLine, KeepsWhatIsNotTyped) {
   EXPECT_EQ(options.replayFile(), "a:b");
 }
 
+TEST(RunCommandLine, DrawsWhenTold) {
+  EXPECT_FALSE(parsed({"--steps", "5"}).drawing.draws());
+  const RunOptions plain = parsed({"--render", "rgbd"});
+  EXPECT_TRUE(plain.simulates);
+  EXPECT_TRUE(plain.simulation.body_transforms);
+  EXPECT_TRUE(plain.drawing.hasColor() && plain.drawing.hasDepth());
+  EXPECT_FALSE(plain.drawing.hasSemantics() || plain.drawing.makesPictures());
+  EXPECT_EQ(plain.drawing.width, 128U);
+  const DrawingOptions all = parsed({"--render", "depth", "--size", "160x96", "--backend", "soft",
+                                     "--camera", "top", "--fov", "75.5", "--contact-sheet", "a.png",
+                                     "--debug-view", "--debug-radius", "0.05"})
+                                 .drawing;
+  EXPECT_FALSE(all.hasColor());
+  EXPECT_TRUE(all.hasDepth() && all.makesPictures());
+  EXPECT_EQ(all.width, 160U);
+  EXPECT_EQ(all.height, 96U);
+  EXPECT_EQ(all.backend, RenderBackend::kSoft);
+  EXPECT_EQ(all.fov_degrees, 75.5F);
+  EXPECT_EQ(all.debug_radius, 0.05F);
+  EXPECT_EQ(parsed({"--render", "rgb", "--size", "64"}).drawing.height, 64U);
+}
+
 TEST(RunCommandLine, RefusesWhatMakesNoSense) {
   const std::vector<std::vector<std::string>> mistakes{
+      {"--render", "colour"},
+      {"--render", "rgb", "--size", "0"},
+      {"--render", "rgb", "--size", "128x"},
+      {"--render", "rgb", "--size", "12x5000"},
+      {"--render", "rgb", "--size", "12x12x12"},
+      {"--render", "rgb", "--fov", "180"},
+      {"--render", "rgb", "--backend", "vulkan"},
+      {"--render", "rgb", "--debug-view"},
+      {"--render", "rgb", "--frame-every", "5"},
+      {"--render", "rgb", "--frames", "f", "--debug-camera", "top"},
+      {"--size", "64"},
+      {"--frames", "f"},
+      {"--debug-view"},
       {"--policy", "dance"},
       {"--policy", "replay:"},
       {"--policy", ""},

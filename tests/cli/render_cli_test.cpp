@@ -1,0 +1,226 @@
+// Drawing with galactic-run as a user meets it: files, report, exit codes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "support/program_run.h"
+#include "support/scratch_folder.h"
+#include "support/small_home_models.h"
+
+namespace galactic {
+namespace {
+
+using nlohmann::json;
+using test::ProgramRun;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+/// The small home with render meshes, drawn by the soft renderer.
+class RenderCli : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(
+        std::filesystem::exists(test::writeWorld(folder_, test::smallHomeWorldWithModels())));
+  }
+
+  [[nodiscard]] ProgramRun runBare(std::vector<std::string> arguments) const {
+    return test::runProgram(GALACTIC_RUN, folder_.path(), std::move(arguments));
+  }
+  [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
+    const std::vector<std::string> first{"--pack", "world.pack", "--backend", "soft",
+                                         "--envs", "3",          "--steps",   "20"};
+    arguments.insert(arguments.begin(), first.begin(), first.end());
+    return runBare(std::move(arguments));
+  }
+  [[nodiscard]] std::string content(const std::string& name) const {
+    return test::fileContent(folder_.path() / name);
+  }
+  [[nodiscard]] std::vector<std::string> files(const std::string& folder) const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / folder)) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  test::ScratchFolder folder_;
+};
+
+TEST_F(RenderCli, DrawsAndSaysHowFast) {
+  const ProgramRun result = run({"--render", "rgbd", "--size", "32x24"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("\n  drawing       rgbd 32 x 24, camera head, by soft, "),
+                    HasSubstr(" images/s"), HasSubstr(" ms of rendering, "),
+                    HasSubstr("\n    overlapped  "), HasSubstr(" of the larger part\n")));
+  EXPECT_THAT(result.err, IsEmpty());
+  EXPECT_THAT(files("."), ElementsAre("episodes.pack", "objects.pack", "robots", "scenes",
+                                      "stderr.txt", "stdout.txt", "world.pack"));
+}
+
+TEST_F(RenderCli, ReportsAsJson) {
+  const ProgramRun result =
+      run({"--render", "rgbds", "--size", "16", "--camera", "hand", "--report", "report.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json report = json::parse(content("report.json"));
+  const json& rendering = report["rendering"];
+  EXPECT_EQ(rendering["images"], "rgbds");
+  EXPECT_EQ(rendering["width"], 16);
+  EXPECT_EQ(rendering["height"], 16);
+  EXPECT_EQ(rendering["camera"], "hand");
+  EXPECT_EQ(rendering["backend"], "soft");
+  EXPECT_THAT(rendering["description"].get<std::string>(), StartsWith("soft"));
+  EXPECT_EQ(rendering["image_count"], 60);
+  EXPECT_GT(rendering["images_per_second"].get<double>(), 0);
+  for (const char* part : {"rendering_alone", "physics_alone", "overlapped"}) {
+    EXPECT_GT(rendering["seconds_per_step"][part].get<double>(), 0) << part;
+  }
+  ASSERT_EQ(run({"--report", "plain.json"}).exit_code, 1);
+  ASSERT_EQ(runBare({"--pack", "world.pack", "--steps", "3", "--report", "plain.json"}).exit_code,
+            0);
+  EXPECT_FALSE(json::parse(content("plain.json")).contains("rendering"));
+}
+
+TEST_F(RenderCli, WritesFramesAndASheetThatDependOnNothingElse) {
+  const std::vector<std::string> pictures{
+      "--render", "rgbds",        "--size", "24x16", "--frame-every", "8", "--frame-envs",
+      "2",        "--debug-view", "--seed", "4"};
+  const auto with = [&](const std::string& folder, const std::string& threads) {
+    std::vector<std::string> all = pictures;
+    all.insert(all.end(),
+               {"--threads", threads, "--frames", folder, "--contact-sheet", folder + ".png"});
+    return run(all);
+  };
+  const ProgramRun one = with("one", "1");
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  ASSERT_EQ(with("three", "3").exit_code, 0);
+  const std::vector<std::string> names = files("one");
+  // States 0, 8 and 16 of two envs, four images each.
+  EXPECT_EQ(names.size(), 3U * 2 * 4);
+  EXPECT_THAT(names, AllOf(testing::Contains("env_0001_step_000016_rgb.png"),
+                           testing::Contains("env_0000_step_000008_depth.png"),
+                           testing::Contains("env_0000_step_000000_semantic.png"),
+                           testing::Contains("env_0001_step_000000_debug.png")));
+  EXPECT_EQ(files("three"), names);
+  for (const std::string& name : names) {
+    EXPECT_EQ(content("one/" + name), content("three/" + name)) << name;
+  }
+  EXPECT_EQ(content("one.png"), content("three.png"));
+  EXPECT_THAT(content("one.png"), StartsWith("\x89PNG"));
+  // The robot has moved.
+  EXPECT_NE(content("one/env_0000_step_000000_rgb.png"),
+            content("one/env_0000_step_000016_rgb.png"));
+}
+
+TEST_F(RenderCli, DrawingDoesNotChangeTheRun) {
+  const std::vector<std::string> plain{"--pack", "world.pack", "--envs", "3",       "--steps",
+                                       "40",     "--seed",     "9",      "--record"};
+  std::vector<std::string> without = plain;
+  without.insert(without.end(), {"plain.rec"});
+  std::vector<std::string> drawn = plain;
+  drawn.insert(drawn.end(), {"drawn.rec", "--render", "rgbd", "--size", "16", "--backend", "soft"});
+  ASSERT_EQ(runBare(without).exit_code, 0);
+  ASSERT_EQ(runBare(drawn).exit_code, 0);
+  EXPECT_EQ(content("plain.rec"), content("drawn.rec"));
+  // And a recording can be drawn.
+  const ProgramRun replayed =
+      runBare({"--pack", "world.pack", "--policy", "replay:plain.rec", "--render", "rgb", "--size",
+               "16", "--backend", "soft", "--contact-sheet", "replay.png"});
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
+  EXPECT_THAT(content("replay.png"), StartsWith("\x89PNG"));
+}
+
+TEST_F(RenderCli, SendsAVideoToFfmpeg) {
+  const auto script =
+      folder_.write("bin/ffmpeg", "#!/bin/sh\nfor last; do :; done\ncat > \"$last\"\n");
+  std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+  const std::string before = std::getenv("PATH");
+  ::setenv("PATH", ((folder_.path() / "bin").string() + ":" + before).c_str(), 1);
+  const ProgramRun result = run({"--render", "rgb", "--size", "16", "--video", "run.mp4"});
+  ::setenv("PATH", (folder_.path() / "empty").c_str(), 1);
+  const ProgramRun without = run({"--render", "rgb", "--size", "16", "--video", "other.mp4"});
+  ::setenv("PATH", before.c_str(), 1);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  // States 0 to 20 as a square of 2 x 2 tiles, one of them empty.
+  EXPECT_EQ(content("run.mp4").size(), 21U * 34 * 34 * 3);
+  EXPECT_EQ(without.exit_code, 5);
+  EXPECT_EQ(without.err,
+            "galactic-run: other.mp4: needs ffmpeg, which is not on PATH; install it, or take "
+            "--frames instead\n");
+}
+
+TEST_F(RenderCli, WhatCannotWorkIsRefusedBeforeTheRun) {
+  static_cast<void>(folder_.write("occupied", "a file"));
+  const std::vector<std::tuple<std::vector<std::string>, int, std::string>> mistakes{
+      {{"--render", "rgb", "--camera", "nose"}, 3, "galactic-run: --camera: found no link nose"},
+      {{"--render", "rgb", "--frames", "f", "--debug-view", "--debug-camera", "nose"},
+       3,
+       "galactic-run: --debug-camera: found no link nose"},
+      {{"--render", "rgb", "--frames", "f", "--debug-view", "--debug-radius", "0.3"},
+       3,
+       "galactic-run: debug view: found a radius of 0.3 m"},
+      {{"--render", "rgb", "--frames", "occupied"}, 2, "galactic-run: occupied: "},
+      {{"--render", "rgb", "--contact-sheet", "none/a.png"}, 2, "galactic-run: none/a.png: "},
+      {{"--frames", "f"}, 1, "galactic-run: command line: "},
+  };
+  for (const auto& [arguments, code, message] : mistakes) {
+    const ProgramRun result = run(arguments);
+    EXPECT_EQ(result.exit_code, code) << result.err;
+    EXPECT_THAT(result.err, StartsWith(message));
+    EXPECT_THAT(result.out, IsEmpty());
+  }
+}
+
+TEST_F(RenderCli, AWorldWithoutRenderMeshesIsRefusedByItsPack) {
+  ASSERT_TRUE(std::filesystem::exists(test::writeWorld(folder_, test::smallHomeWorld())));
+  const ProgramRun result = run({"--render", "rgb"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, AllOf(StartsWith("galactic-run: "), HasSubstr(".pack: "),
+                                HasSubstr("was baked without render meshes")));
+}
+
+TEST_F(RenderCli, ARunThatIsStoppedFinishesItsPictures) {
+  // A signal that comes early waits until it is asked for.
+  const ProgramRun result = test::runProgram("/usr/bin/timeout", folder_.path(),
+                                             {"--preserve-status",
+                                              "-s",
+                                              "INT",
+                                              "2",
+                                              GALACTIC_RUN,
+                                              "--pack",
+                                              "world.pack",
+                                              "--backend",
+                                              "soft",
+                                              "--envs",
+                                              "2",
+                                              "--steps",
+                                              "1000000000",
+                                              "--render",
+                                              "rgb",
+                                              "--size",
+                                              "16",
+                                              "--frames",
+                                              "frames",
+                                              "--frame-every",
+                                              "1000",
+                                              "--contact-sheet",
+                                              "sheet.png"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("(stopped; 1000000000 steps were wanted)"));
+  EXPECT_THAT(content("sheet.png"), StartsWith("\x89PNG"));
+  EXPECT_THAT(files("frames"), testing::Contains("env_0001_step_000000_rgb.png"));
+}
+
+}  // namespace
+}  // namespace galactic
