@@ -416,5 +416,47 @@ TEST_F(GlImage, CompressedTexturesLookAlikeDecodedOrNot) {
   EXPECT_GT(colors.size(), 4U);
 }
 
+TEST_F(GlImage, ImagesThatStayOnTheDeviceAreTheSameWhateverTheRounds) {
+  GlHome home;
+  const std::vector<RenderView> views = home.views(11);
+  for (const ColorFormat color : {ColorFormat::kRgb8, ColorFormat::kRgba8}) {
+    RenderOptions options = allImages();
+    options.width = 31;
+    options.height = 17;
+    options.color = color;
+    const RenderImages wanted = renderTuned(home.library(), options, {}, views);
+    auto engine = render::gl::GlEngine::make(home.library(), options, {.most_views = 4},
+                                             render::gl::loadsLibrary);
+    ASSERT_TRUE(engine.has_value());
+    const auto layout = (*engine)->drawToDevice(views);
+    ASSERT_TRUE(layout.has_value());
+    const render::gl::CurrentContext current((*engine)->context());
+    const auto differs = [&](const auto& images, std::size_t begin) {
+      auto found = images;
+      const auto bytes = static_cast<GLsizeiptr>(images.size() * sizeof(images[0]));
+      glGetNamedBufferSubData((*engine)->renderer().deviceImages().get(),
+                              static_cast<GLintptr>(begin), bytes, found.data());
+      return found != images;
+    };
+    EXPECT_FALSE(differs(wanted.color, layout->color));
+    EXPECT_FALSE(differs(wanted.depth, layout->depth));
+    EXPECT_FALSE(differs(wanted.semantics, layout->semantics));
+  }
+}
+
+TEST_F(GlImage, WithoutCudaDeviceImagesAreRefusedInWords) {
+  const RenderLibrary library;
+  BatchRenderer renderer = makeRenderer(library, glOptions());
+  const auto images = renderer.renderToDevice(std::vector<RenderView>(1));
+  ASSERT_FALSE(images.has_value());
+  EXPECT_EQ(images.error().code, ErrorCode::kUnsupported);
+  EXPECT_EQ(images.error().where, "device images");
+  RenderOptions options;
+  options.backend = RenderBackend::kSoft;
+  BatchRenderer soft = makeRenderer(library, options);
+  EXPECT_EQ(soft.renderToDevice(std::vector<RenderView>(1)).error().message,
+            "the soft backend draws into memory of the processor; use the gl backend");
+}
+
 }  // namespace
 }  // namespace galactic::test

@@ -101,9 +101,7 @@ TEST(LibraryGeometry, KeepsEveryTriangleAndOrdersClustersByClass) {
       for (std::uint32_t c = geometry.models[m].first[kind]; c < geometry.models[m].first[kind + 1];
            ++c) {
         ++found[kind];
-        const GpuCluster& cluster = geometry.clusters[c];
         const GpuBounds& bounds = geometry.bounds[c];
-        EXPECT_EQ(cluster.alpha_cutoff > 0, kind >= 2);
         // Indices of neighbours follow each other, so that runs of clusters are one draw.
         const std::uint32_t next = c + 1 < geometry.bounds.size()
                                        ? geometry.bounds[c + 1].first_index
@@ -114,10 +112,8 @@ TEST(LibraryGeometry, KeepsEveryTriangleAndOrdersClustersByClass) {
           for (std::uint32_t n = 0; n < 3; ++n) {
             const GpuVertex& vertex =
                 geometry.vertices[geometry.indices[bounds.first_index + i + n]];
-            EXPECT_EQ(vertex.cluster, c & 0xFFFFU);
-            corners.push_back(static_cast<float>(cluster.origin_x + vertex.x) * cluster.step);
-            corners.push_back(static_cast<float>(cluster.origin_y + vertex.y) * cluster.step);
-            corners.push_back(static_cast<float>(cluster.origin_z + vertex.z) * cluster.step);
+            EXPECT_EQ(vertex.alpha_cutoff > 0, kind >= 2);
+            corners.insert(corners.end(), {vertex.x, vertex.y, vertex.z});
           }
           triangles.insert(corners);
         }

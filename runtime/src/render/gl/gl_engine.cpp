@@ -50,6 +50,7 @@ GlEngine::~GlEngine() {
     if (round.fence != nullptr) glDeleteSync(round.fence);
     round = Round();
   }
+  cuda_.reset();
   renderer_.reset();
 }
 
@@ -83,6 +84,44 @@ void GlEngine::submitNext() {
     submitted_views_ += count;
     ++submitted_rounds_;
   }
+}
+
+Result<ImageLayout> GlEngine::drawToDevice(std::span<const RenderView> views) {
+  const CurrentContext current(context_);
+  cuda_->unmap();
+  renderer_->resetStatistics();
+  // CUDA must let go of a buffer before it is replaced by a larger one.
+  if (!renderer_->hasRoomOnDevice(views.size())) cuda_->forget();
+  const Result<ImageLayout> layout = renderer_->reserveDeviceImages(views.size());
+  if (!layout) return layout;
+  // Four pixels of three bytes are written together, so that rounds share none.
+  constexpr std::size_t kTogether = 4;
+  const std::size_t most = std::max(renderer_->mostViews() / kTogether, std::size_t{1}) * kTogether;
+  std::size_t next = 0;
+  for (std::size_t first = 0; first < views.size(); first += most, ++next) {
+    Round& round = rounds_[next % rounds_.size()];
+    if (round.fence != nullptr) renderer_->finish(round);
+    round.first_view = first;
+    renderer_->submitToDevice(views.subspan(first, std::min(most, views.size() - first)), *layout,
+                              round);
+  }
+  for (Round& round : rounds_) {
+    if (round.fence != nullptr) renderer_->finish(round);
+  }
+  return layout;
+}
+
+Result<DeviceImages> GlEngine::renderToDevice(std::span<const RenderView> views) {
+  const Result<ImageLayout> layout = drawToDevice(views);
+  if (!layout) return tl::unexpected<Error>(layout.error());
+  const CurrentContext current(context_);
+  const Result<std::uint64_t> address = cuda_->map(renderer_->deviceImages().get());
+  if (!address) return tl::unexpected<Error>(address.error());
+  DeviceImages images;
+  if (layout->color_of_view > 0) images.color = *address + layout->color;
+  if (layout->depth_of_view > 0) images.depth = *address + layout->depth;
+  if (layout->semantics_of_view > 0) images.semantics = *address + layout->semantics;
+  return images;
 }
 
 std::string GlEngine::description() const {

@@ -1,6 +1,10 @@
 #pragma once
+#include <array>
 #include <memory>
+#include <span>
+#include <string>
 
+#include "render/gl/cuda_mapping.h"
 #include "render/gl/egl_context.h"
 #include "render/gl/egl_library.h"
 #include "render/gl/gl_renderer.h"
@@ -24,6 +28,11 @@ class GlEngine final : public RenderEngine {
 
   void begin(std::span<const RenderView> views, const RenderTargets& targets) override;
   void end() override;
+  [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views) override;
+  /// The first part of it: draws into renderer().deviceImages(), and waits.
+  [[nodiscard]] Result<ImageLayout> drawToDevice(std::span<const RenderView> views);
+  [[nodiscard]] const EglContext& context() const { return context_; }
+  [[nodiscard]] const GlRenderer& renderer() const { return *renderer_; }
   [[nodiscard]] RenderBackend backend() const override { return RenderBackend::kGl; }
   [[nodiscard]] std::string description() const override;
   [[nodiscard]] RenderStatistics statistics() const override { return renderer_->statistics(); }
@@ -35,6 +44,7 @@ class GlEngine final : public RenderEngine {
 
   EglContext context_;
   std::unique_ptr<GlRenderer> renderer_;
+  std::unique_ptr<CudaMapping> cuda_ = std::make_unique<CudaMapping>();
   /// Two: one is drawn while the other is read.
   std::array<Round, 2> rounds_;
   std::span<const RenderView> views_;

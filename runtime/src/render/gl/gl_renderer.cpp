@@ -21,20 +21,49 @@ struct DrawCommand {
   std::int32_t base_vertex;
   std::uint32_t base_instance;
 };
-/// What culling knows of a chunk, and which instance and cluster a command begins with.
+/// What culling knows of a chunk.
 struct ChunkResult {
   std::uint32_t seen;
   std::uint32_t triangles;
   std::uint32_t first_draw;
 };
-struct DrawMark {
-  std::uint32_t instance;
-  std::uint32_t first_cluster;
-};
-
 /// Bindings and locations of the shaders.
-enum Binding : GLuint { kInstances, kClusters, kBounds, kChunks, kResults, kDraws, kMarks };
-enum Attribute : GLuint { kPlace, kTexture, kColor, kMark };
+enum Binding : GLuint { kInstances = 0, kBounds = 2, kChunks = 3, kResults = 4, kDraws = 5 };
+/// An attribute of a vertex or of an instance.
+struct Attribute {
+  GLuint location;
+  GLint count;
+  GLenum type;
+  std::size_t offset;
+};
+constexpr std::array<Attribute, 4> kVertexAttributes{
+    {{0, 3, GL_FLOAT, offsetof(GpuVertex, x)},
+     {1, 2, GL_FLOAT, offsetof(GpuVertex, u)},
+     {3, 2, GL_UNSIGNED_INT, offsetof(GpuVertex, texture)},
+     {4, 1, GL_FLOAT, offsetof(GpuVertex, alpha_cutoff)}}};
+constexpr GLuint kColorLocation = 2;
+constexpr std::array<Attribute, 5> kInstanceAttributes{
+    {{5, 4, GL_FLOAT, offsetof(GpuInstance, rows)},
+     {6, 4, GL_FLOAT, offsetof(GpuInstance, rows) + 4 * sizeof(float)},
+     {7, 4, GL_FLOAT, offsetof(GpuInstance, rows) + 8 * sizeof(float)},
+     {8, 2, GL_FLOAT, offsetof(GpuInstance, scale_x)},
+     {9, 1, GL_UNSIGNED_INT, offsetof(GpuInstance, layer)}}};
+/// Bindings of the vertex array.
+constexpr GLuint kPerVertex = 0;
+constexpr GLuint kPerInstance = 1;
+
+void describe(GLuint array, const Attribute& attribute, GLuint binding) {
+  const auto offset = static_cast<GLuint>(attribute.offset);
+  glEnableVertexArrayAttrib(array, attribute.location);
+  if (attribute.type == GL_FLOAT) {
+    glVertexArrayAttribFormat(array, attribute.location, attribute.count, GL_FLOAT, GL_FALSE,
+                              offset);
+  } else {
+    glVertexArrayAttribIFormat(array, attribute.location, attribute.count, attribute.type, offset);
+  }
+  glVertexArrayAttribBinding(array, attribute.location, binding);
+}
+
 constexpr std::size_t kTotalsBytes = kDrawClasses * sizeof(DrawTotals);
 
 GLint limitOf(GLenum name) {
@@ -113,13 +142,6 @@ Result<void> GlRenderer::load(const RenderLibrary& library, const GlTuning& tuni
   const auto has = [&](const char* extension) {
     return !tuning.core_only && epoxy_has_gl_extension(extension);
   };
-  constexpr GLint kVertexBlocks = 2;
-  if (limitOf(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS) < kVertexBlocks) {
-    return fail(ErrorCode::kUnsupported, "render backend gl",
-                fmt::format("the driver's vertex shaders read {} storage buffers; wanted {}: use "
-                            "the soft backend",
-                            limitOf(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS), kVertexBlocks));
-  }
   const Result<TexturePlan> plan = planTextures(
       library,
       {.arrays = std::min<std::size_t>(
@@ -129,8 +151,10 @@ Result<void> GlRenderer::load(const RenderLibrary& library, const GlTuning& tuni
   if (!plan) return tl::unexpected<Error>(plan.error());
   indirect_count_ = has("GL_ARB_indirect_parameters");
   measures_ = tuning.measure;
+  LibraryGeometry geometry = gatherGeometry(library, plan->slots);
   Result<Programs> programs =
       makePrograms({.layer_in_vertex = has("GL_ARB_shader_viewport_layer_array"),
+                    .vertex_colors = geometry.vertex_colors,
                     .color = options_.color != ColorFormat::kNone,
                     .color_bytes = static_cast<unsigned>(options_.color),
                     .depth = options_.depth,
@@ -139,14 +163,12 @@ Result<void> GlRenderer::load(const RenderLibrary& library, const GlTuning& tuni
   if (!programs) return tl::unexpected<Error>(programs.error());
   programs_ = std::move(*programs);
   textures_ = uploadTextures(*plan);
-  LibraryGeometry geometry = gatherGeometry(library, plan->slots);
   vertices_.fill(geometry.vertices.data(), geometry.vertices.size() * sizeof(GpuVertex));
   indices_.fill(geometry.indices.data(), geometry.indices.size() * sizeof(std::uint32_t));
-  clusters_.fill(geometry.clusters.data(), geometry.clusters.size() * sizeof(GpuCluster));
   bounds_.fill(geometry.bounds.data(), geometry.bounds.size() * sizeof(GpuBounds));
   totals_.reserve(kTotalsBytes);
   models_ = std::move(geometry.models);
-  makeVertexArray();
+  makeVertexArray(geometry.vertex_colors);
   chooseRounds(tuning);
   if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
     return fail(ErrorCode::kUnsupported, "render backend gl",
@@ -157,36 +179,42 @@ Result<void> GlRenderer::load(const RenderLibrary& library, const GlTuning& tuni
   return {};
 }
 
-void GlRenderer::makeVertexArray() {
-  constexpr GLuint kPerVertex = 0;
-  constexpr GLuint kPerDraw = 1;
+void GlRenderer::makeVertexArray(bool vertex_colors) {
   GLuint name = 0;
   glCreateVertexArrays(1, &name);
   vertex_array_ = VertexArray(name);
   glVertexArrayElementBuffer(name, indices_.get());
   glVertexArrayVertexBuffer(name, kPerVertex, vertices_.get(), 0, sizeof(GpuVertex));
-  glVertexArrayAttribIFormat(name, kPlace, 4, GL_UNSIGNED_SHORT, offsetof(GpuVertex, x));
-  glVertexArrayAttribFormat(name, kTexture, 2, GL_UNSIGNED_SHORT, GL_FALSE, offsetof(GpuVertex, u));
-  glVertexArrayAttribFormat(name, kColor, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(GpuVertex, color));
-  glVertexArrayAttribIFormat(name, kMark, 2, GL_UNSIGNED_INT, 0);
-  for (const GLuint attribute : {kPlace, kTexture, kColor, kMark}) {
-    glEnableVertexArrayAttrib(name, attribute);
-    glVertexArrayAttribBinding(name, attribute, attribute == kMark ? kPerDraw : kPerVertex);
+  glVertexArrayBindingDivisor(name, kPerInstance, 1);
+  for (const Attribute& attribute : kVertexAttributes) describe(name, attribute, kPerVertex);
+  for (const Attribute& attribute : kInstanceAttributes) describe(name, attribute, kPerInstance);
+  constexpr auto kColor = static_cast<GLuint>(offsetof(GpuVertex, color));
+  glEnableVertexArrayAttrib(name, kColorLocation);
+  glVertexArrayAttribBinding(name, kColorLocation, kPerVertex);
+  if (vertex_colors) {
+    glVertexArrayAttribFormat(name, kColorLocation, 4, GL_UNSIGNED_BYTE, GL_TRUE, kColor);
+  } else {
+    glVertexArrayAttribIFormat(name, kColorLocation, 1, GL_UNSIGNED_INT, kColor);
   }
-  glVertexArrayBindingDivisor(name, kPerDraw, 1);
 }
 
 void GlRenderer::chooseRounds(const GlTuning& tuning) {
-  // More views than this gain nothing, and while one round is copied the next is drawn.
+  // More views than this gain nothing, and while one round is copied the next is drawn. On a
+  // processor the targets of a round should stay in its cache.
   constexpr std::size_t kGoodViews = 256;
+  constexpr std::size_t kGoodSoftwareViews = 8;
   constexpr std::size_t kTargetBytes = std::size_t{1} << 30U;
   constexpr std::size_t kBytesPerPixel = 12;
   const std::size_t pixels = std::size_t{options_.width} * options_.height;
   GLint64 block = 0;
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block);
-  const std::size_t wanted = tuning.most_views > 0 ? tuning.most_views : kGoodViews;
+  const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  const bool software = name != nullptr && isSoftwareRenderer(name);
+  const std::size_t good = software ? kGoodSoftwareViews : kGoodViews;
+  const std::size_t wanted = tuning.most_views > 0 ? tuning.most_views : good;
+  largest_block_ = static_cast<std::size_t>(block);
   most_views_ = std::min({wanted, kTargetBytes / (pixels * kBytesPerPixel),
-                          static_cast<std::size_t>(block) / (pixels * sizeof(float)),
+                          largest_block_ / (pixels * sizeof(float)),
                           static_cast<std::size_t>(limitOf(GL_MAX_FRAMEBUFFER_LAYERS)),
                           static_cast<std::size_t>(limitOf(GL_MAX_ARRAY_TEXTURE_LAYERS))});
   most_views_ = std::max<std::size_t>(most_views_, 1);
@@ -194,18 +222,45 @@ void GlRenderer::chooseRounds(const GlTuning& tuning) {
 
 void GlRenderer::submit(std::span<const RenderView> views, Round& round) {
   const Stopwatch watch(timings_.setup);
+  round.layout = imageLayout(options_, views.size());
+  round.stays = false;
+  images_.reserve(round.layout.bytes);
+  start(views, round);
+}
+
+Result<ImageLayout> GlRenderer::reserveDeviceImages(std::size_t views) {
+  const ImageLayout layout = imageLayout(options_, views);
+  const std::size_t largest =
+      std::max({layout.depth, layout.semantics - layout.depth, layout.bytes - layout.semantics});
+  if (largest > largest_block_) {
+    return fail(ErrorCode::kUnsupported, "device images",
+                fmt::format("the images of {} views take {} bytes in one block; the driver has "
+                            "blocks of {}: draw fewer views at a time",
+                            views, largest, largest_block_));
+  }
+  device_images_.reserve(layout.bytes);
+  return layout;
+}
+
+void GlRenderer::submitToDevice(std::span<const RenderView> views, const ImageLayout& layout,
+                                Round& round) {
+  const Stopwatch watch(timings_.setup);
+  round.layout = layout;
+  round.stays = true;
+  start(views, round);
+}
+
+void GlRenderer::start(std::span<const RenderView> views, Round& round) {
   round.views = views.size();
   round.counts = countRound(views, models_);
-  round.layout = imageLayout(options_, views.size());
   targets_.reserve(views.size());
-  images_.reserve(round.layout.bytes);
-  round.readback.reserve(round.layout.bytes + kTotalsBytes);
   if (measures_) stamp(round.times[0]);
   upload(views, round);
   cull(round.counts);
   draw(round.counts);
   if (measures_) stamp(round.times[1]);
   resolve(round);
+  readBack(round);
   if (measures_) stamp(round.times[2]);
   round.fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   glFlush();
@@ -222,7 +277,6 @@ void GlRenderer::upload(std::span<const RenderView> views, Round& round) {
   chunks_.reserve(chunk_bytes);
   results_.reserve(chunks * sizeof(ChunkResult));
   draws_.reserve(draws * sizeof(DrawCommand));
-  marks_.reserve(draws * sizeof(DrawMark));
   auto* first_instance = reinterpret_cast<GpuInstance*>(round.upload.data());
   auto* first_chunk = reinterpret_cast<GpuChunk*>(round.upload.data() + instance_bytes);
   const float aspect = static_cast<float>(options_.width) / static_cast<float>(options_.height);
@@ -258,7 +312,6 @@ void GlRenderer::cull(const RoundCounts& counts) {
     glClearNamedBufferData(draws_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
   }
   bind(kDraws, draws_);
-  bind(kMarks, marks_);
   glUseProgram(programs_.emit.get());
   glUniform1ui(0, chunks);
   if (chunks > 0) glDispatchCompute(groups(chunks), 1, 1);
@@ -275,9 +328,8 @@ void GlRenderer::draw(const RoundCounts& counts) {
   for (std::size_t i = 0; i < textures_.size(); ++i) {
     glBindTextureUnit(static_cast<GLuint>(i), textures_[i].get());
   }
-  bind(kInstances, instances_);
-  bind(kClusters, clusters_);
-  glVertexArrayVertexBuffer(vertex_array_.get(), 1, marks_.get(), 0, sizeof(DrawMark));
+  glVertexArrayVertexBuffer(vertex_array_.get(), kPerInstance, instances_.get(), 0,
+                            sizeof(GpuInstance));
   glBindVertexArray(vertex_array_.get());
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, draws_.get());
   if (indirect_count_) glBindBuffer(GL_PARAMETER_BUFFER_ARB, totals_.get());
@@ -304,12 +356,13 @@ void GlRenderer::draw(const RoundCounts& counts) {
   }
 }
 
-void GlRenderer::resolve(Round& round) {
+void GlRenderer::resolve(const Round& round) {
+  const Buffer& images = round.stays ? device_images_ : images_;
   const ImageLayout& layout = round.layout;
   const std::size_t pixels = round.views * options_.width * options_.height;
   const auto bind_part = [&](GLuint binding, std::size_t begin, std::size_t end) {
-    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, images_.get(),
-                      static_cast<GLintptr>(begin), static_cast<GLsizeiptr>(end - begin));
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, images.get(), static_cast<GLintptr>(begin),
+                      static_cast<GLsizeiptr>(end - begin));
   };
   bind_part(0, layout.color, layout.depth);
   bind_part(1, layout.depth, layout.semantics);
@@ -323,32 +376,29 @@ void GlRenderer::resolve(Round& round) {
   glUniform1ui(1, options_.width);
   glUniform1ui(2, options_.height);
   glUniform1ui(3, static_cast<GLuint>(pixels));
-  glUniform1ui(4, 0);
+  const std::size_t first_view = round.stays ? round.first_view : 0;
+  glUniform1ui(4, static_cast<GLuint>(first_view * options_.width * options_.height));
   if (pixels > 0) glDispatchCompute(groups((pixels + 3) / 4), 1, 1);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  copyBuffer(images_, 0, round.readback, 0, layout.bytes);
-  copyBuffer(totals_, 0, round.readback, layout.bytes, kTotalsBytes);
 }
 
-void GlRenderer::collect(Round& round, const RenderTargets& targets) {
+void GlRenderer::readBack(Round& round) {
+  const std::size_t bytes = round.stays ? 0 : round.layout.bytes;
+  round.readback.reserve(bytes + kTotalsBytes);
+  copyBuffer(images_, 0, round.readback, 0, bytes);
+  copyBuffer(totals_, 0, round.readback, bytes, kTotalsBytes);
+}
+
+void GlRenderer::finish(Round& round) {
   constexpr GLuint64 kNanoseconds = 1'000'000'000;
   while (glClientWaitSync(round.fence, GL_SYNC_FLUSH_COMMANDS_BIT, kNanoseconds) ==
          GL_TIMEOUT_EXPIRED) {
   }
   glDeleteSync(round.fence);
   round.fence = nullptr;
-  const Stopwatch watch(timings_.copy);
-  const ImageLayout& layout = round.layout;
-  const auto copy_to = [&](auto* target, std::size_t begin, std::size_t bytes_of_view) {
-    if (bytes_of_view == 0) return;
-    std::memcpy(reinterpret_cast<std::byte*>(target) + round.first_view * bytes_of_view,
-                round.readback.data() + begin, round.views * bytes_of_view);
-  };
-  copy_to(targets.color.data(), layout.color, layout.color_of_view);
-  copy_to(targets.depth.data(), layout.depth, layout.depth_of_view);
-  copy_to(targets.semantics.data(), layout.semantics, layout.semantics_of_view);
   std::array<DrawTotals, kDrawClasses> totals{};
-  std::memcpy(totals.data(), round.readback.data() + layout.bytes, kTotalsBytes);
+  const std::size_t bytes = round.stays ? 0 : round.layout.bytes;
+  std::memcpy(totals.data(), round.readback.data() + bytes, kTotalsBytes);
   statistics_.instances += round.counts.instances;
   statistics_.clusters += round.counts.clusters;
   for (const DrawTotals& total : totals) {
@@ -359,6 +409,20 @@ void GlRenderer::collect(Round& round, const RenderTargets& targets) {
     timings_.draw += secondsBetween(round.times[0], round.times[1]);
     timings_.readback += secondsBetween(round.times[1], round.times[2]);
   }
+}
+
+void GlRenderer::collect(Round& round, const RenderTargets& targets) {
+  finish(round);
+  const Stopwatch watch(timings_.copy);
+  const ImageLayout& layout = round.layout;
+  const auto copy_to = [&](auto* target, std::size_t begin, std::size_t bytes_of_view) {
+    if (bytes_of_view == 0) return;
+    std::memcpy(reinterpret_cast<std::byte*>(target) + round.first_view * bytes_of_view,
+                round.readback.data() + begin, round.views * bytes_of_view);
+  };
+  copy_to(targets.color.data(), layout.color, layout.color_of_view);
+  copy_to(targets.depth.data(), layout.depth, layout.depth_of_view);
+  copy_to(targets.semantics.data(), layout.semantics, layout.semantics_of_view);
 }
 
 }  // namespace galactic::render::gl

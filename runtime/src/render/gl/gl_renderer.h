@@ -51,7 +51,9 @@ struct Round {
   GLsync fence = nullptr;
   std::size_t first_view = 0;
   std::size_t views = 0;
+  /// Of the images of this round, or of the whole batch when they stay on the device.
   ImageLayout layout;
+  bool stays = false;
   RoundCounts counts;
 };
 
@@ -70,6 +72,19 @@ class GlRenderer {
   /// Waits for a round and copies its images to their place in `targets`.
   void collect(Round& round, const RenderTargets& targets);
 
+  /// The same with images that stay on the device, in deviceImages(): makes room for so many views.
+  /// Fails with kUnsupported when they are too many for the driver.
+  [[nodiscard]] Result<ImageLayout> reserveDeviceImages(std::size_t views);
+  /// Whether that leaves the buffer as it is.
+  [[nodiscard]] bool hasRoomOnDevice(std::size_t views) const {
+    return imageLayout(options_, views).bytes <= device_images_.size();
+  }
+  /// `round.first_view` is a multiple of 4.
+  void submitToDevice(std::span<const RenderView> views, const ImageLayout& layout, Round& round);
+  /// Waits for a round.
+  void finish(Round& round);
+  [[nodiscard]] const Buffer& deviceImages() const { return device_images_; }
+
   [[nodiscard]] const RenderStatistics& statistics() const { return statistics_; }
   void resetStatistics() { statistics_ = {}; }
   [[nodiscard]] const GlTimings& timings() const { return timings_; }
@@ -77,14 +92,17 @@ class GlRenderer {
  private:
   explicit GlRenderer(const RenderOptions& options) : options_(options), targets_(options) {}
   [[nodiscard]] Result<void> load(const RenderLibrary& library, const GlTuning& tuning);
-  void makeVertexArray();
+  void makeVertexArray(bool vertex_colors);
   void chooseRounds(const GlTuning& tuning);
   /// Lists what the views hold, and sends the lists on their way.
   void upload(std::span<const RenderView> views, Round& round);
   /// Which clusters are seen, as draw commands.
   void cull(const RoundCounts& counts);
   void draw(const RoundCounts& counts);
-  void resolve(Round& round);
+  /// Prepares and draws a round whose layout is known.
+  void start(std::span<const RenderView> views, Round& round);
+  void resolve(const Round& round);
+  void readBack(Round& round);
 
   RenderOptions options_;
   bool indirect_count_ = false;
@@ -95,7 +113,6 @@ class GlRenderer {
   std::vector<ModelClusters> models_;
   Buffer vertices_;
   Buffer indices_;
-  Buffer clusters_;
   Buffer bounds_;
   VertexArray vertex_array_;
   Targets targets_;
@@ -103,9 +120,10 @@ class GlRenderer {
   Buffer chunks_;
   Buffer results_;
   Buffer draws_;
-  Buffer marks_;
   Buffer totals_;
   Buffer images_;
+  Buffer device_images_;
+  std::size_t largest_block_ = 0;
   RenderStatistics statistics_;
   GlTimings timings_;
 };

@@ -15,7 +15,16 @@ DrawClass classOf(const RenderCluster& cluster, const RenderMaterial& material) 
   return two_sided ? DrawClass::kTwoSided : DrawClass::kOneSided;
 }
 
-/// Adds the clusters of one library to its geometry.
+/// The product of two colours, channel by channel, rounded.
+std::uint32_t multiplied(std::uint32_t a, std::uint32_t b) {
+  std::uint32_t product = 0;
+  for (std::uint32_t shift = 0; shift < 32; shift += 8) {
+    product |= ((a >> shift & 0xFFU) * (b >> shift & 0xFFU) + 127) / 255 << shift;
+  }
+  return product;
+}
+
+/// Adds the models of one pack to the geometry of a library.
 class Gatherer {
  public:
   Gatherer(const RenderMeshes& meshes, std::span<const std::uint32_t> slots,
@@ -25,37 +34,24 @@ class Gatherer {
   void add(const RenderModel& model) {
     ModelClusters placed;
     for (std::size_t wanted = 0; wanted < kDrawClasses; ++wanted) {
-      placed.first[wanted] = static_cast<std::uint32_t>(geometry_.clusters.size());
+      placed.first[wanted] = static_cast<std::uint32_t>(geometry_.bounds.size());
       for (std::uint32_t i = 0; i < model.cluster_count; ++i) {
         const RenderCluster& cluster = meshes_.clusters[model.first_cluster + i];
         const auto found = classOf(cluster, meshes_.materials[cluster.material]);
         if (static_cast<std::size_t>(found) == wanted) addCluster(model, i);
       }
     }
-    placed.first[kDrawClasses] = static_cast<std::uint32_t>(geometry_.clusters.size());
+    placed.first[kDrawClasses] = static_cast<std::uint32_t>(geometry_.bounds.size());
     geometry_.models.push_back(placed);
   }
 
  private:
   void addCluster(const RenderModel& model, std::uint32_t number) {
     const RenderCluster& cluster = meshes_.clusters[model.first_cluster + number];
-    const RenderMaterial& material = meshes_.materials[cluster.material];
-    const bool textured = material.texture >= 0;
     geometry_.bounds.push_back(boundsOf(model, number, cluster));
-    addVertices(cluster);
-    geometry_.clusters.push_back(
-        {.origin_x = cluster.origin_x,
-         .origin_y = cluster.origin_y,
-         .origin_z = cluster.origin_z,
-         .step = model.step,
-         .u_minimum = cluster.u_minimum,
-         .v_minimum = cluster.v_minimum,
-         .u_step = cluster.u_step,
-         .v_step = cluster.v_step,
-         .color = textured ? 0xFFFFFFFF : material.color,
-         .texture = textured ? slots_[static_cast<std::size_t>(material.texture)] : kNoTexture,
-         .alpha_cutoff = material.alpha_cutoff,
-         .semantic = first_semantic_ + cluster.semantic});
+    const auto first = static_cast<std::uint32_t>(geometry_.vertices.size());
+    addVertices(model, cluster);
+    addTriangles(cluster, first);
   }
 
   GpuBounds boundsOf(const RenderModel& model, std::uint32_t number,
@@ -72,26 +68,33 @@ class Gatherer {
     return bounds;
   }
 
-  void addVertices(const RenderCluster& cluster) {
-    const auto first = static_cast<std::uint32_t>(geometry_.vertices.size());
-    const auto low = static_cast<std::uint16_t>(geometry_.clusters.size() & 0xFFFFU);
+  void addVertices(const RenderModel& model, const RenderCluster& cluster) {
+    const RenderMaterial& material = meshes_.materials[cluster.material];
+    const bool textured = material.texture >= 0;
+    GpuVertex vertex;
+    vertex.texture = textured ? slots_[static_cast<std::size_t>(material.texture)] : kNoTexture;
+    vertex.semantic = first_semantic_ + cluster.semantic;
+    vertex.alpha_cutoff = material.alpha_cutoff;
     for (std::size_t i = 0; i < cluster.vertex_count; ++i) {
       const std::size_t stored = cluster.first_vertex + i;
-      geometry_.vertices.push_back(
-          {.x = vertexRow(stored, 0),
-           .y = vertexRow(stored, 1),
-           .z = vertexRow(stored, 2),
-           .cluster = low,
-           .u = vertexRow(stored, 3),
-           .v = vertexRow(stored, 4),
-           .color = meshes_.colors.empty() ? 0xFFFFFFFF : meshes_.colors[stored]});
+      vertex.x = static_cast<float>(cluster.origin_x + vertexRow(stored, 0)) * model.step;
+      vertex.y = static_cast<float>(cluster.origin_y + vertexRow(stored, 1)) * model.step;
+      vertex.z = static_cast<float>(cluster.origin_z + vertexRow(stored, 2)) * model.step;
+      vertex.u = cluster.u_minimum + cluster.u_step * static_cast<float>(vertexRow(stored, 3));
+      vertex.v = cluster.v_minimum + cluster.v_step * static_cast<float>(vertexRow(stored, 4));
+      vertex.color = textured ? 0xFFFFFFFF : material.color;
+      if (!meshes_.colors.empty()) vertex.color = multiplied(vertex.color, meshes_.colors[stored]);
+      geometry_.vertices.push_back(vertex);
     }
+  }
+
+  void addTriangles(const RenderCluster& cluster, std::uint32_t first_vertex) {
     for (std::size_t i = 0; i < cluster.triangle_count; ++i) {
       const std::size_t stored = cluster.first_triangle + i;
       for (std::size_t corner = 0; corner < kTriangleRows; ++corner) {
         const std::size_t place =
             (stored / kRenderLanes * kTriangleRows + corner) * kRenderLanes + stored % kRenderLanes;
-        geometry_.indices.push_back(first + meshes_.triangles[place]);
+        geometry_.indices.push_back(first_vertex + meshes_.triangles[place]);
       }
     }
   }
@@ -117,11 +120,11 @@ LibraryGeometry gatherGeometry(const RenderLibrary& library,
   std::size_t triangles = 0;
   for (const RenderMeshes& meshes : library.packs()) {
     clusters += meshes.clusters.size();
+    geometry.vertex_colors = geometry.vertex_colors || !meshes.colors.empty();
     vertices += meshes.vertices.size() / kVertexRows;
     triangles += meshes.triangles.size() / kTriangleRows;
   }
   geometry.models.reserve(library.modelCount());
-  geometry.clusters.reserve(clusters);
   geometry.bounds.reserve(clusters);
   geometry.vertices.reserve(vertices);
   geometry.indices.reserve(3 * triangles);

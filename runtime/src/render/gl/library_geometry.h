@@ -12,39 +12,25 @@ namespace galactic::render::gl {
 enum class DrawClass : std::uint8_t { kOneSided, kTwoSided, kMaskedOneSided, kMaskedTwoSided };
 inline constexpr std::size_t kDrawClasses = 4;
 
-/// A vertex as it lies in the vertex buffer.
+/// A vertex as it lies in the vertex buffer: all that the vertex shader needs, whatever cluster it
+/// is of, so that neighbouring clusters can be drawn as one.
 struct GpuVertex {
-  /// On the lattice, counted from the cluster's origin.
-  std::uint16_t x = 0;
-  std::uint16_t y = 0;
-  std::uint16_t z = 0;
-  /// Low bits of its cluster's number, so that neighbouring clusters can be drawn as one.
-  std::uint16_t cluster = 0;
-  std::uint16_t u = 0;
-  std::uint16_t v = 0;
+  /// Metres in the frame of the model: float(origin + stored) * step, so the same for all clusters
+  /// that share the point.
+  float x = 0;
+  float y = 0;
+  float z = 0;
+  /// Texture coordinates, v down.
+  float u = 0;
+  float v = 0;
+  /// RGBA, R lowest: of the vertex, times the material's where there is no texture.
   std::uint32_t color = 0xFFFFFFFF;
-};
-static_assert(sizeof(GpuVertex) == 16);
-
-/// What the vertex shader reads of a cluster (std430).
-struct GpuCluster {
-  std::int32_t origin_x = 0;
-  std::int32_t origin_y = 0;
-  std::int32_t origin_z = 0;
-  float step = 0;
-  float u_minimum = 0;
-  float v_minimum = 0;
-  float u_step = 0;
-  float v_step = 0;
-  /// Of the material; white where there is a texture.
-  std::uint32_t color = 0xFFFFFFFF;
-  /// Where the texture lies, see TextureSlot; kNoTexture for none.
+  /// Where the texture lies, see textureSlot(); kNoTexture for none.
   std::uint32_t texture = 0;
-  float alpha_cutoff = 0;
   /// As in images.
   std::uint32_t semantic = 0;
+  float alpha_cutoff = 0;
 };
-static_assert(sizeof(GpuCluster) == 48);
 
 /// What culling reads of a cluster (std430): its bounds as in RenderMeshes, and its indices.
 struct GpuBounds {
@@ -66,7 +52,8 @@ struct ModelClusters {
 /// likewise, so that the indices of neighbouring clusters of a class follow each other.
 struct LibraryGeometry {
   std::vector<ModelClusters> models;
-  std::vector<GpuCluster> clusters;
+  /// Whether any vertices have colours of their own.
+  bool vertex_colors = false;
   std::vector<GpuBounds> bounds;
   std::vector<GpuVertex> vertices;
   std::vector<std::uint32_t> indices;

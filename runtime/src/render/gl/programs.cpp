@@ -69,7 +69,7 @@ Result<Programs> makePrograms(const ShaderVariant& variant) {
     if (variant.layer_in_vertex) {
       link({vertex, fragment}, program, outcome);
     } else {
-      link({vertex, {GL_GEOMETRY_SHADER, geometrySource()}, fragment}, program, outcome);
+      link({vertex, {GL_GEOMETRY_SHADER, geometrySource(variant)}, fragment}, program, outcome);
     }
   };
   draw(programs.opaque, false);

@@ -7,13 +7,11 @@ namespace {
 
 constexpr const char* kVersion = "#version 450 core\n";
 
-/// As GpuInstance, GpuCluster, GpuBounds, GpuChunk, ChunkResult and DrawCommand in C++.
+/// As GpuInstance, GpuBounds, GpuChunk, ChunkResult, DrawCommand and DrawTotals in C++.
 constexpr const char* kStructures = R"(
-struct Instance { vec4 row_x; vec4 row_y; vec4 row_z; float scale_x; float scale_y; uint layer; uint unused; };
-struct Cluster {
-  int origin_x; int origin_y; int origin_z; float lattice;
-  float u_minimum; float v_minimum; float u_step; float v_step;
-  uint color; uint slot; float cutoff; uint semantic;
+struct Instance {
+  vec4 row_x; vec4 row_y; vec4 row_z;
+  float scale_x; float scale_y; uint layer; uint unused;
 };
 struct Bounds {
   float centre_x; float centre_y; float centre_z; float half_x; float half_y; float half_z;
@@ -22,43 +20,44 @@ struct Bounds {
 };
 struct Chunk { uint instance; uint first_cluster; uint count; };
 struct ChunkResult { uint seen; uint triangles; uint first_draw; };
-struct Draw { uint count; uint instance_count; uint first_index; int base_vertex; uint base_instance; };
+struct Draw {
+  uint count; uint instance_count; uint first_index; int base_vertex; uint base_instance;
+};
 struct Total { uint draws; uint clusters; uint triangles; uint unused; };
 )";
 
 constexpr const char* kVertexMain = R"(
-layout(location = 0) in uvec4 a_place;
-layout(location = 1) in vec2 a_texture;
-layout(location = 2) in vec4 a_color;
-layout(location = 3) in uvec2 a_draw;
-layout(std430, binding = 0) restrict readonly buffer Instances { Instance instances[]; };
-layout(std430, binding = 1) restrict readonly buffer Clusters { Cluster clusters[]; };
+layout(location = 0) in vec3 a_place;
+layout(location = 1) in vec2 a_texture_place;
+layout(location = 2) in COLOR_TYPE a_color;
+layout(location = 3) in uvec2 a_texture;
+layout(location = 4) in float a_cutoff;
+// Of the instance.
+layout(location = 5) in vec4 a_row_x;
+layout(location = 6) in vec4 a_row_y;
+layout(location = 7) in vec4 a_row_z;
+layout(location = 8) in vec2 a_scale;
+layout(location = 9) in uint a_layer;
 layout(location = 0) uniform float u_near;
 
-// The same corner of two clusters, or of two triangles, must come out the same.
+// The same corner of two triangles must come out the same.
 invariant gl_Position;
 
 void main() {
-  uint number = a_draw.y + ((a_place.w - a_draw.y) & 0xFFFFu);
-  ivec3 lattice = ivec3(clusters[number].origin_x, clusters[number].origin_y, clusters[number].origin_z) +
-                  ivec3(a_place.xyz);
-  vec4 place = vec4(vec3(lattice) * clusters[number].lattice, 1.0);
-  vec3 seen = vec3(dot(instances[a_draw.x].row_x, place), dot(instances[a_draw.x].row_y, place),
-                   dot(instances[a_draw.x].row_z, place));
+  vec4 place = vec4(a_place, 1.0);
+  vec3 seen = vec3(dot(a_row_x, place), dot(a_row_y, place), dot(a_row_z, place));
   // The camera looks along x, with y up and z to the right; depth is near / x.
-  gl_Position = vec4(seen.z * instances[a_draw.x].scale_x, seen.y * instances[a_draw.x].scale_y, u_near,
-                     seen.x);
+  gl_Position = vec4(seen.z * a_scale.x, seen.y * a_scale.y, u_near, seen.x);
 #ifdef LAYER_IN_VERTEX
-  gl_Layer = int(instances[a_draw.x].layer);
+  gl_Layer = int(a_layer);
 #else
-  to_layer = int(instances[a_draw.x].layer);
+  to_layer = int(a_layer);
 #endif
-  to.texture_place = vec2(clusters[number].u_minimum, clusters[number].v_minimum) +
-                     vec2(clusters[number].u_step, clusters[number].v_step) * a_texture;
-  to.color = a_color * unpackUnorm4x8(clusters[number].color);
-  to.slot = clusters[number].slot;
-  to.cutoff = clusters[number].cutoff;
-  to.semantic = clusters[number].semantic;
+  to.texture_place = a_texture_place;
+  to.color = a_color;
+  to.slot = a_texture.x;
+  to.semantic = a_texture.y;
+  to.cutoff = a_cutoff;
 }
 )";
 
@@ -91,7 +90,11 @@ layout(location = SEMANTIC_TARGET) out uint o_semantic;
 
 #if defined(COLOR) || defined(MASKED)
 vec4 shade() {
+#ifdef VERTEX_COLORS
   vec4 color = from.color;
+#else
+  vec4 color = unpackUnorm4x8(from.color);
+#endif
 #if TEXTURE_ARRAYS > 0
   vec2 along_x = dFdx(from.texture_place);
   vec2 along_y = dFdy(from.texture_place);
@@ -252,7 +255,6 @@ layout(std430, binding = 2) restrict readonly buffer BoundsOfClusters { Bounds b
 layout(std430, binding = 3) restrict readonly buffer Chunks { Chunk chunks[]; };
 layout(std430, binding = 4) restrict readonly buffer Results { ChunkResult results[]; };
 layout(std430, binding = 5) restrict writeonly buffer Draws { Draw draws[]; };
-layout(std430, binding = 6) restrict writeonly buffer Marks { uvec2 marks[]; };
 layout(location = 0) uniform uint u_chunks;
 
 void main() {
@@ -269,9 +271,7 @@ void main() {
     uint last = first + length - 1u;
     uint first_index = bounds[first].first_index;
     uint count = bounds[last].first_index + bounds[last].index_count - first_index;
-    draws[draw] = Draw(count, 1u, first_index, 0, draw);
-    marks[draw] = uvec2(part.instance, first);
-    ++draw;
+    draws[draw++] = Draw(count, 1u, first_index, 0, part.instance);
     left = begin + length >= 32u ? 0u : left & (0xFFFFFFFFu << (begin + length));
   }
 }
@@ -328,12 +328,16 @@ void main() {
 }
 )";
 
-/// What the stages hand on.
-constexpr const char* kCorner =
-    "{ vec2 texture_place; vec4 color; flat uint slot; flat float cutoff; flat uint semantic; }";
+/// What the stages hand on. Without colours of vertices, a colour is the same all over a triangle.
+std::string corner(const ShaderVariant& variant) {
+  return fmt::format(
+      "{{ vec2 texture_place; {} color; flat uint slot; flat float cutoff; flat uint semantic; }}",
+      variant.vertex_colors ? "vec4" : "flat uint");
+}
 
 std::string definitions(const ShaderVariant& variant) {
   std::string text;
+  if (variant.vertex_colors) text += "#define VERTEX_COLORS\n";
   if (variant.color) text += "#define COLOR\n";
   if (variant.depth) text += "#define DEPTH\n";
   if (variant.semantics) text += "#define SEMANTICS\n";
@@ -364,18 +368,19 @@ std::string vertexSource(const ShaderVariant& variant) {
   } else {
     text += "out int to_layer;\n";
   }
-  return text + kStructures + fmt::format("out Corner {} to;\n", kCorner) + kVertexMain;
+  text += fmt::format("#define COLOR_TYPE {}\n", variant.vertex_colors ? "vec4" : "uint");
+  return text + "out Corner " + corner(variant) + " to;\n" + kVertexMain;
 }
 
-std::string geometrySource() {
-  return kVersion + fmt::format("in Corner {} from[];\nout Corner {} to;\n", kCorner, kCorner) +
-         "in int to_layer[];\n" + kGeometryMain;
+std::string geometrySource(const ShaderVariant& variant) {
+  return kVersion + ("in Corner " + corner(variant) + " from[];\n") + "out Corner " +
+         corner(variant) + " to;\nin int to_layer[];\n" + kGeometryMain;
 }
 
 std::string fragmentSource(const ShaderVariant& variant, bool masked) {
   std::string text = kVersion + definitions(variant);
   if (masked) text += "#define MASKED\n";
-  return text + fmt::format("in Corner {} from;\n", kCorner) +
+  return text + "in Corner " + corner(variant) + " from;\n" +
          texelFunction(variant.texture_arrays) + kFragmentMain;
 }
 

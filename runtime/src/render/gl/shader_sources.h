@@ -13,6 +13,8 @@ inline constexpr unsigned kChunkClusters = 32;
 struct ShaderVariant {
   /// Whether the vertex shader chooses the layer; else a geometry shader does.
   bool layer_in_vertex = true;
+  /// Whether vertices have colours of their own.
+  bool vertex_colors = false;
   bool color = true;
   /// Bytes per pixel of colour: 3 or 4.
   unsigned color_bytes = 4;
@@ -24,7 +26,7 @@ struct ShaderVariant {
 
 /// GLSL of the stages that draw. `masked`: for materials with holes.
 [[nodiscard]] std::string vertexSource(const ShaderVariant& variant);
-[[nodiscard]] std::string geometrySource();
+[[nodiscard]] std::string geometrySource(const ShaderVariant& variant);
 [[nodiscard]] std::string fragmentSource(const ShaderVariant& variant, bool masked);
 
 /// GLSL of the compute shaders. Culling has three passes: which clusters of each chunk are seen,
