@@ -57,6 +57,9 @@ class BatchRenderer::Impl {
     engine_->begin(views, targets);
   }
   void end() { engine_->end(); }
+  Result<DeviceImages> renderToDevice(std::span<const RenderView> views) {
+    return engine_->renderToDevice(views);
+  }
 
   const RenderOptions& options() const { return options_; }
   const std::string& description() const { return description_; }
@@ -93,6 +96,9 @@ void BatchRenderer::beginRender(std::span<const RenderView> views, const RenderT
   impl_->begin(views, targets);
 }
 void BatchRenderer::endRender() { impl_->end(); }
+Result<DeviceImages> BatchRenderer::renderToDevice(std::span<const RenderView> views) {
+  return impl_->renderToDevice(views);
+}
 
 const RenderOptions& BatchRenderer::options() const { return impl_->options(); }
 RenderBackend BatchRenderer::backend() const { return impl_->options().backend; }

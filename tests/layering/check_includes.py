@@ -19,7 +19,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 # Headers with a dot or a slash that belong to the language or the system.
-SYSTEM_HEADERS = {"dirent.h", "fcntl.h", "immintrin.h", "poll.h", "signal.h", "spawn.h", "unistd.h"}
+SYSTEM_HEADERS = {"dirent.h", "dlfcn.h", "fcntl.h", "immintrin.h", "malloc.h", "poll.h", "signal.h", "spawn.h", "unistd.h"}
 SYSTEM_FOLDERS = {"linux", "sys"}
 # Part of the compiler: its sanitizers' interface.
 COMPILER_FOLDERS = {"sanitizer"}
@@ -51,6 +51,11 @@ HEAVY_LIBRARIES = (
                  re.compile(r"bake/src/urdf/urdf_reader[^/]*$")),
     HeavyLibrary("meshoptimizer", re.compile(r"meshoptimizer\.h"), re.compile(r"\bmeshopt_\w+"),
                  re.compile(r"bake/src/render/mesh_optimizer\.cpp$")),
+    HeavyLibrary("OpenGL", re.compile(r"(epoxy|EGL|GL|KHR)/"),
+                 re.compile(r"\b(GL(u?int|enum|sync|sizei)|EGL(Display|Context|DeviceEXT))\b"),
+                 re.compile(r"(runtime/src/render/gl/[^/]*|tests/runtime/render/gl_[^/]*)$")),
+    HeavyLibrary("CUDA", re.compile(r"(cuda|nv)\w*\.h"), re.compile(r"\bCU(result|context|device(ptr)?|graphicsResource)\b"),
+                 re.compile(r"runtime/src/render/gl/cuda[^/]*$")),
     HeavyLibrary("toml++", re.compile(r"toml\+\+/"), re.compile(r"\btoml::"),
                  re.compile(r"bake/src/recipe/toml_table[^/]*$")),
     HeavyLibrary("libpng", re.compile(r"png\.h"), re.compile(r"\bpng_(struct|info|byte)p+\b"),

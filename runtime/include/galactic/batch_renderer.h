@@ -6,6 +6,7 @@
 #include <string>
 
 #include "galactic/error.h"
+#include "galactic/render_device_images.h"
 #include "galactic/render_library.h"
 #include "galactic/rigid_transform.h"
 
@@ -104,6 +105,12 @@ class BatchRenderer {
   /// lead to must stay as it is until endRender() returns.
   void beginRender(std::span<const RenderView> views, const RenderTargets& targets);
   void endRender();
+
+  /// Draws `views` and leaves the images where CUDA can use them without a copy. They stay as they
+  /// are until the next rendering, and whatever CUDA does with them before that on its default
+  /// stream is waited for. A CUDA context must be current on this thread. Fails with kUnsupported
+  /// with the soft backend, without CUDA, and when CUDA's device is not the renderer's.
+  [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views);
 
   [[nodiscard]] const RenderOptions& options() const;
   /// kSoft or kGl.

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "galactic/batch_renderer.h"
+#include "galactic/render_device_images.h"
 
 namespace galactic::render {
 
@@ -19,6 +20,12 @@ class RenderEngine {
   virtual void begin(std::span<const RenderView> views, const RenderTargets& targets) = 0;
   /// Returns when the images are there.
   virtual void end() = 0;
+
+  /// Draws, and leaves the images on a CUDA device. Fails with kUnsupported where it cannot.
+  [[nodiscard]] virtual Result<DeviceImages> renderToDevice(std::span<const RenderView> /*views*/) {
+    return fail(ErrorCode::kUnsupported, "device images",
+                "the soft backend draws into memory of the processor; use the gl backend");
+  }
 
   /// kSoft or kGl.
   [[nodiscard]] virtual RenderBackend backend() const = 0;

@@ -1,0 +1,194 @@
+// Images of 128 x 128 pixels, colour and depth, by the OpenGL backend, by the rasteriser, and by
+// OpenGL one env after the other with nothing culled:
+//
+//   render_gl                                        on a home made in code
+//   GALACTIC_RENDER_WORLD=world.pack render_gl       on a world that was baked
+//   GALACTIC_RENDER_DEVICE=cuda:0 render_gl          on a graphics processor; "software" without
+//   one
+//
+// items_per_second counts images per second of the processor's time; images_per_second by the
+// clock. On a graphics processor the share of its time that went into drawing and reading back
+// comes from timer queries, that of the processor from the clock.
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <random>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "galactic/batch_simulator.h"
+#include "galactic/world.h"
+#include "galactic/world_models.h"
+#include "galactic/world_views.h"
+#include "render/gl/gl_engine.h"
+#include "render_apartment.h"
+
+namespace {
+
+using galactic::BatchSimulator;
+using galactic::RenderBackend;
+using galactic::RenderLibrary;
+using galactic::RenderOptions;
+using galactic::RenderView;
+using galactic::Result;
+using galactic::World;
+using galactic::WorldModels;
+using galactic::WorldViews;
+using galactic::render::RenderEngine;
+using galactic::render::gl::GlEngine;
+using galactic::render::gl::GlTimings;
+
+template <class T>
+T orExit(Result<T> result) {
+  if (result) return std::move(*result);
+  std::fprintf(stderr, "%s: %s\n", result.error().where.c_str(), result.error().message.c_str());
+  std::exit(static_cast<int>(result.error().code));
+}
+
+/// The apartment that the benchmark of the soft renderer draws, too.
+class MadeHome {
+ public:
+  MadeHome() { library_.add(meshes_.meshes()); }
+
+  [[nodiscard]] const RenderLibrary& library() const { return library_; }
+
+  /// Valid until the next call.
+  std::vector<RenderView> views(std::size_t count) {
+    std::mt19937 random(5);
+    instances_.assign(count, {});
+    std::vector<RenderView> views(count);
+    for (std::size_t env = 0; env < count; ++env) {
+      instances_[env] = galactic::furnishedApartment(library_, random);
+      views[env] = {galactic::cameraInApartment(random), instances_[env]};
+    }
+    return views;
+  }
+
+ private:
+  galactic::test::RenderModelBuilder meshes_ = galactic::apartmentMeshes();
+  RenderLibrary library_;
+  std::vector<std::vector<galactic::RenderInstance>> instances_;
+};
+
+/// What is drawn: a world that was baked, at the beginning of its episodes, or the made home.
+class Scene {
+ public:
+  Scene() {
+    const char* path = std::getenv("GALACTIC_RENDER_WORLD");
+    if (path == nullptr) return;
+    world_ = std::make_unique<World>(orExit(World::open(std::vector<std::filesystem::path>{path})));
+    models_ = std::make_unique<WorldModels>(orExit(WorldModels::from(*world_)));
+  }
+
+  [[nodiscard]] const RenderLibrary& library() const {
+    return models_ ? models_->library() : home_.library();
+  }
+
+  std::vector<RenderView> views(std::size_t count) {
+    if (!models_) return home_.views(count);
+    galactic::SimulationOptions options;
+    options.envs = static_cast<std::uint32_t>(count);
+    options.body_transforms = true;
+    simulator_ = std::make_unique<BatchSimulator>(orExit(BatchSimulator::create(*world_, options)));
+    const auto camera = galactic::robotCamera(world_->robot());
+    world_views_ = std::make_unique<WorldViews>(*world_, *models_, *simulator_,
+                                                camera.value_or(galactic::CameraMount{}));
+    world_views_->update(*simulator_);
+    return {world_views_->views().begin(), world_views_->views().end()};
+  }
+
+ private:
+  MadeHome home_;
+  std::unique_ptr<World> world_;
+  std::unique_ptr<WorldModels> models_;
+  std::unique_ptr<BatchSimulator> simulator_;
+  std::unique_ptr<WorldViews> world_views_;
+};
+
+RenderOptions optionsFor(RenderBackend backend) {
+  RenderOptions options;
+  options.backend = backend;
+  options.threads = 1;
+  const char* device = std::getenv("GALACTIC_RENDER_DEVICE");
+  options.device = device == nullptr ? "software" : device;
+  return options;
+}
+
+/// Draws until the benchmark has enough, and says how fast.
+void drawBatches(benchmark::State& state, RenderEngine& engine, std::span<const RenderView> views,
+                 const RenderOptions& options) {
+  galactic::test::RenderImages images = galactic::test::emptyImages(options, views.size());
+  const auto draw = [&] {
+    engine.begin(views, galactic::test::targetsOf(images));
+    engine.end();
+  };
+  // The first batch makes room.
+  draw();
+  const auto start = std::chrono::steady_clock::now();
+  for ([[maybe_unused]] const auto iteration : state) draw();
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  const auto count = static_cast<double>(state.iterations()) * static_cast<double>(views.size());
+  state.SetItemsProcessed(static_cast<std::int64_t>(count));
+  state.counters["images_per_second"] = count / wall.count();
+  const galactic::RenderStatistics statistics = engine.statistics();
+  const auto per_image = [&](std::uint64_t sum) {
+    return static_cast<double>(sum) / static_cast<double>(views.size());
+  };
+  state.counters["clusters"] = per_image(statistics.clusters_drawn);
+  state.counters["of_clusters"] = per_image(statistics.clusters);
+  state.counters["triangles"] = per_image(statistics.triangles_drawn);
+  state.SetLabel(engine.description());
+}
+
+void drawWithGl(benchmark::State& state, Scene& scene, bool plain) {
+  RenderOptions options = optionsFor(RenderBackend::kGl);
+  options.culling = !plain;
+  const auto views = scene.views(static_cast<std::size_t>(state.range(0)));
+  auto engine =
+      GlEngine::make(scene.library(), options, {.most_views = plain ? 1U : 0U, .measure = true},
+                     galactic::render::gl::loadsLibrary);
+  if (!engine) return state.SkipWithError(engine.error().message.c_str());
+  const auto start = std::chrono::steady_clock::now();
+  drawBatches(state, **engine, views, options);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  const GlTimings& timings = (*engine)->timings();
+  state.counters["share_setup"] = timings.setup / wall.count();
+  state.counters["share_draw"] = timings.draw / wall.count();
+  state.counters["share_readback"] = timings.readback / wall.count();
+  state.counters["share_copy"] = timings.copy / wall.count();
+}
+
+void drawWithSoft(benchmark::State& state, Scene& scene) {
+  const RenderOptions options = optionsFor(RenderBackend::kSoft);
+  const auto views = scene.views(static_cast<std::size_t>(state.range(0)));
+  auto engine = galactic::render::makeSoftEngine(scene.library(), options);
+  if (!engine) return state.SkipWithError(engine.error().message.c_str());
+  drawBatches(state, **engine, views, options);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Scene scene;
+  const auto add = [&](const char* name, auto run) {
+    benchmark::RegisterBenchmark(name, run)
+        ->Arg(32)
+        ->Arg(128)
+        ->Arg(512)
+        ->Arg(2048)
+        ->MeasureProcessCPUTime()
+        ->Unit(benchmark::kMillisecond);
+  };
+  add("gl", [&](benchmark::State& state) { drawWithGl(state, scene, false); });
+  add("gl_one_by_one", [&](benchmark::State& state) { drawWithGl(state, scene, true); });
+  add("soft", [&](benchmark::State& state) { drawWithSoft(state, scene); });
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

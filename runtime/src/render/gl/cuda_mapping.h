@@ -1,0 +1,32 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+
+#include "galactic/error.h"
+
+namespace galactic::render::gl {
+
+/// Gives CUDA the memory of a buffer of OpenGL, without a copy. The OpenGL context must be current
+/// for all calls, also for the destructor.
+class CudaMapping {
+ public:
+  CudaMapping();
+  ~CudaMapping();
+  CudaMapping(const CudaMapping&) = delete;
+  CudaMapping& operator=(const CudaMapping&) = delete;
+
+  /// The address of `buffer` in CUDA's memory, after all that OpenGL has been told to do with it.
+  /// CUDA's context must be current on this thread. OpenGL must not touch the buffer until
+  /// unmap(). Fails with kUnsupported where CUDA is absent or is on another device.
+  [[nodiscard]] Result<std::uint64_t> map(std::uint32_t buffer);
+  /// OpenGL may use the buffer again, after all that CUDA has been told to do with it.
+  void unmap();
+  /// To be called before a buffer is deleted.
+  void forget();
+
+ private:
+  struct Driver;
+  std::unique_ptr<Driver> driver_;
+};
+
+}  // namespace galactic::render::gl

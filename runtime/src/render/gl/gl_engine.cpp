@@ -1,0 +1,144 @@
+#include "render/gl/gl_engine.h"
+
+#include <malloc.h>
+
+#include <algorithm>
+#include <string>
+
+namespace galactic::render::gl {
+namespace {
+
+/// The software driver frees and takes its lists anew for every flush: with glibc's thresholds that
+/// costs a third of its time in page faults.
+void keepFreedMemory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 2'000'000'000);
+  mallopt(M_TOP_PAD, 64 << 20);
+#endif
+}
+
+tl::unexpected<Error> lost() {
+  return fail(ErrorCode::kUnsupported, "render device",
+              "EGL cannot make its own context current; use the soft backend");
+}
+
+}  // namespace
+
+Result<std::unique_ptr<GlEngine>> GlEngine::make(const RenderLibrary& library,
+                                                 const RenderOptions& options,
+                                                 const GlTuning& tuning,
+                                                 const LibraryLoads& loads) {
+  const Result<DeviceWish> wish = parseDeviceWish(options.device);
+  if (!wish) return tl::unexpected<Error>(wish.error());
+  if (const Result<void> there = checkLibraries(loads); !there) {
+    return tl::unexpected<Error>(there.error());
+  }
+  Result<EglContext> context = openContext(*wish, options.backend == RenderBackend::kGl);
+  if (!context) return tl::unexpected<Error>(context.error());
+  if (isSoftwareRenderer(context->facts().renderer)) keepFreedMemory();
+  const CurrentContext current(*context);
+  if (!current.holds()) return lost();
+  auto renderer = GlRenderer::make(library, options, tuning);
+  if (!renderer) return tl::unexpected<Error>(renderer.error());
+  return std::make_unique<GlEngine>(std::move(*context), std::move(*renderer));
+}
+
+GlEngine::~GlEngine() {
+  const CurrentContext current(context_);
+  for (Round& round : rounds_) {
+    if (round.fence != nullptr) glDeleteSync(round.fence);
+    round = Round();
+  }
+  cuda_.reset();
+  renderer_.reset();
+}
+
+void GlEngine::begin(std::span<const RenderView> views, const RenderTargets& targets) {
+  views_ = views;
+  targets_ = targets;
+  submitted_views_ = 0;
+  submitted_rounds_ = 0;
+  collected_rounds_ = 0;
+  const CurrentContext current(context_);
+  renderer_->resetStatistics();
+  submitNext();
+}
+
+void GlEngine::end() {
+  const CurrentContext current(context_);
+  while (collected_rounds_ < submitted_rounds_) {
+    renderer_->collect(rounds_[collected_rounds_ % rounds_.size()], targets_);
+    ++collected_rounds_;
+    submitNext();
+  }
+}
+
+void GlEngine::submitNext() {
+  while (submitted_views_ < views_.size() &&
+         submitted_rounds_ - collected_rounds_ < rounds_.size()) {
+    Round& round = rounds_[submitted_rounds_ % rounds_.size()];
+    const std::size_t count = std::min(renderer_->mostViews(), views_.size() - submitted_views_);
+    round.first_view = submitted_views_;
+    renderer_->submit(views_.subspan(submitted_views_, count), round);
+    submitted_views_ += count;
+    ++submitted_rounds_;
+  }
+}
+
+Result<ImageLayout> GlEngine::drawToDevice(std::span<const RenderView> views) {
+  const CurrentContext current(context_);
+  cuda_->unmap();
+  renderer_->resetStatistics();
+  // CUDA must let go of a buffer before it is replaced by a larger one.
+  if (!renderer_->hasRoomOnDevice(views.size())) cuda_->forget();
+  const Result<ImageLayout> layout = renderer_->reserveDeviceImages(views.size());
+  if (!layout) return layout;
+  // Four pixels of three bytes are written together, so that rounds share none.
+  constexpr std::size_t kTogether = 4;
+  const std::size_t most = std::max(renderer_->mostViews() / kTogether, std::size_t{1}) * kTogether;
+  std::size_t next = 0;
+  for (std::size_t first = 0; first < views.size(); first += most, ++next) {
+    Round& round = rounds_[next % rounds_.size()];
+    if (round.fence != nullptr) renderer_->finish(round);
+    round.first_view = first;
+    renderer_->submitToDevice(views.subspan(first, std::min(most, views.size() - first)), *layout,
+                              round);
+  }
+  for (Round& round : rounds_) {
+    if (round.fence != nullptr) renderer_->finish(round);
+  }
+  return layout;
+}
+
+Result<DeviceImages> GlEngine::renderToDevice(std::span<const RenderView> views) {
+  const Result<ImageLayout> layout = drawToDevice(views);
+  if (!layout) return tl::unexpected<Error>(layout.error());
+  const CurrentContext current(context_);
+  const Result<std::uint64_t> address = cuda_->map(renderer_->deviceImages().get());
+  if (!address) return tl::unexpected<Error>(address.error());
+  DeviceImages images;
+  if (layout->color_of_view > 0) images.color = *address + layout->color;
+  if (layout->depth_of_view > 0) images.depth = *address + layout->depth;
+  if (layout->semantics_of_view > 0) images.semantics = *address + layout->semantics;
+  return images;
+}
+
+std::string GlEngine::description() const {
+  const ContextFacts& facts = context_.facts();
+  return "gl, " + facts.renderer + ", OpenGL " + std::to_string(facts.major) + "." +
+         std::to_string(facts.minor);
+}
+
+}  // namespace galactic::render::gl
+
+namespace galactic::render {
+
+Result<std::unique_ptr<RenderEngine>> makeGlEngine(const RenderLibrary& library,
+                                                   const RenderOptions& options) {
+  auto engine = gl::GlEngine::make(library, options, {}, gl::loadsLibrary);
+  if (!engine) return tl::unexpected<Error>(engine.error());
+  return std::unique_ptr<RenderEngine>(std::move(*engine));
+}
+
+}  // namespace galactic::render

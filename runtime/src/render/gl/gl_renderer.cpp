@@ -1,0 +1,428 @@
+#include "render/gl/gl_renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <numeric>
+
+#include "render/gl/device_wish.h"
+#include "render/gl/library_textures.h"
+
+namespace galactic::render::gl {
+namespace {
+
+/// As it is read by glMultiDrawElementsIndirect.
+struct DrawCommand {
+  std::uint32_t count;
+  std::uint32_t instance_count;
+  std::uint32_t first_index;
+  std::int32_t base_vertex;
+  std::uint32_t base_instance;
+};
+/// What culling knows of a chunk.
+struct ChunkResult {
+  std::uint32_t seen;
+  std::uint32_t triangles;
+  std::uint32_t first_draw;
+};
+/// Bindings and locations of the shaders.
+enum Binding : GLuint { kInstances = 0, kBounds = 2, kChunks = 3, kResults = 4, kDraws = 5 };
+/// An attribute of a vertex or of an instance.
+struct Attribute {
+  GLuint location;
+  GLint count;
+  GLenum type;
+  std::size_t offset;
+};
+constexpr std::array<Attribute, 4> kVertexAttributes{
+    {{0, 3, GL_FLOAT, offsetof(GpuVertex, x)},
+     {1, 2, GL_FLOAT, offsetof(GpuVertex, u)},
+     {3, 2, GL_UNSIGNED_INT, offsetof(GpuVertex, texture)},
+     {4, 1, GL_FLOAT, offsetof(GpuVertex, alpha_cutoff)}}};
+constexpr GLuint kColorLocation = 2;
+constexpr std::array<Attribute, 5> kInstanceAttributes{
+    {{5, 4, GL_FLOAT, offsetof(GpuInstance, rows)},
+     {6, 4, GL_FLOAT, offsetof(GpuInstance, rows) + 4 * sizeof(float)},
+     {7, 4, GL_FLOAT, offsetof(GpuInstance, rows) + 8 * sizeof(float)},
+     {8, 2, GL_FLOAT, offsetof(GpuInstance, scale_x)},
+     {9, 1, GL_UNSIGNED_INT, offsetof(GpuInstance, layer)}}};
+/// Bindings of the vertex array.
+constexpr GLuint kPerVertex = 0;
+constexpr GLuint kPerInstance = 1;
+
+void describe(GLuint array, const Attribute& attribute, GLuint binding) {
+  const auto offset = static_cast<GLuint>(attribute.offset);
+  glEnableVertexArrayAttrib(array, attribute.location);
+  if (attribute.type == GL_FLOAT) {
+    glVertexArrayAttribFormat(array, attribute.location, attribute.count, GL_FLOAT, GL_FALSE,
+                              offset);
+  } else {
+    glVertexArrayAttribIFormat(array, attribute.location, attribute.count, attribute.type, offset);
+  }
+  glVertexArrayAttribBinding(array, attribute.location, binding);
+}
+
+constexpr std::size_t kTotalsBytes = kDrawClasses * sizeof(DrawTotals);
+
+GLint limitOf(GLenum name) {
+  GLint value = 0;
+  glGetIntegerv(name, &value);
+  return value;
+}
+
+void bind(Binding binding, const Buffer& buffer) {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.get());
+}
+
+GLuint groups(std::size_t threads) {
+  return static_cast<GLuint>((threads + kGroupSize - 1) / kGroupSize);
+}
+
+void copyBuffer(const Buffer& from, std::size_t from_offset, const Buffer& to,
+                std::size_t to_offset, std::size_t bytes) {
+  if (bytes == 0) return;
+  glCopyNamedBufferSubData(from.get(), to.get(), static_cast<GLintptr>(from_offset),
+                           static_cast<GLintptr>(to_offset), static_cast<GLsizeiptr>(bytes));
+}
+
+std::array<std::uint32_t, kDrawClasses> firstOf(
+    const std::array<std::uint32_t, kDrawClasses>& counts) {
+  std::array<std::uint32_t, kDrawClasses> first{};
+  std::exclusive_scan(counts.begin(), counts.end(), first.begin(), 0U);
+  return first;
+}
+
+/// Adds the time until its end to a sum of seconds.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}
+  ~Stopwatch() {
+    sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& sum_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+void stamp(Query& query) {
+  if (query.get() == 0) {
+    GLuint name = 0;
+    glCreateQueries(GL_TIMESTAMP, 1, &name);
+    query = Query(name);
+  }
+  glQueryCounter(query.get(), GL_TIMESTAMP);
+}
+
+double secondsBetween(const Query& begin, const Query& end) {
+  GLuint64 first = 0;
+  GLuint64 last = 0;
+  glGetQueryObjectui64v(begin.get(), GL_QUERY_RESULT, &first);
+  glGetQueryObjectui64v(end.get(), GL_QUERY_RESULT, &last);
+  return static_cast<double>(last - first) * 1e-9;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<GlRenderer>> GlRenderer::make(const RenderLibrary& library,
+                                                     const RenderOptions& options,
+                                                     const GlTuning& tuning) {
+  std::unique_ptr<GlRenderer> renderer(new GlRenderer(options));
+  if (const Result<void> loaded = renderer->load(library, tuning); !loaded) {
+    return tl::unexpected<Error>(loaded.error());
+  }
+  return renderer;
+}
+
+Result<void> GlRenderer::load(const RenderLibrary& library, const GlTuning& tuning) {
+  const auto has = [&](const char* extension) {
+    return !tuning.core_only && epoxy_has_gl_extension(extension);
+  };
+  const Result<TexturePlan> plan = planTextures(
+      library,
+      {.arrays = std::min<std::size_t>(
+           static_cast<std::size_t>(limitOf(GL_MAX_TEXTURE_IMAGE_UNITS)), Targets::kFirstUnit),
+       .layers = static_cast<std::size_t>(limitOf(GL_MAX_ARRAY_TEXTURE_LAYERS)),
+       .bc1 = has("GL_EXT_texture_compression_s3tc")});
+  if (!plan) return tl::unexpected<Error>(plan.error());
+  indirect_count_ = has("GL_ARB_indirect_parameters");
+  measures_ = tuning.measure;
+  LibraryGeometry geometry = gatherGeometry(library, plan->slots);
+  Result<Programs> programs =
+      makePrograms({.layer_in_vertex = has("GL_ARB_shader_viewport_layer_array"),
+                    .vertex_colors = geometry.vertex_colors,
+                    .color = options_.color != ColorFormat::kNone,
+                    .color_bytes = static_cast<unsigned>(options_.color),
+                    .depth = options_.depth,
+                    .semantics = options_.semantics,
+                    .texture_arrays = plan->arrays.size()});
+  if (!programs) return tl::unexpected<Error>(programs.error());
+  programs_ = std::move(*programs);
+  textures_ = uploadTextures(*plan);
+  vertices_.fill(geometry.vertices.data(), geometry.vertices.size() * sizeof(GpuVertex));
+  indices_.fill(geometry.indices.data(), geometry.indices.size() * sizeof(std::uint32_t));
+  bounds_.fill(geometry.bounds.data(), geometry.bounds.size() * sizeof(GpuBounds));
+  totals_.reserve(kTotalsBytes);
+  models_ = std::move(geometry.models);
+  makeVertexArray(geometry.vertex_colors);
+  chooseRounds(tuning);
+  if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
+    return fail(ErrorCode::kUnsupported, "render backend gl",
+                fmt::format("the driver cannot load the library (OpenGL error 0x{:04x}{}): use a "
+                            "smaller library, or the soft backend",
+                            error, error == GL_OUT_OF_MEMORY ? ", out of memory" : ""));
+  }
+  return {};
+}
+
+void GlRenderer::makeVertexArray(bool vertex_colors) {
+  GLuint name = 0;
+  glCreateVertexArrays(1, &name);
+  vertex_array_ = VertexArray(name);
+  glVertexArrayElementBuffer(name, indices_.get());
+  glVertexArrayVertexBuffer(name, kPerVertex, vertices_.get(), 0, sizeof(GpuVertex));
+  glVertexArrayBindingDivisor(name, kPerInstance, 1);
+  for (const Attribute& attribute : kVertexAttributes) describe(name, attribute, kPerVertex);
+  for (const Attribute& attribute : kInstanceAttributes) describe(name, attribute, kPerInstance);
+  constexpr auto kColor = static_cast<GLuint>(offsetof(GpuVertex, color));
+  glEnableVertexArrayAttrib(name, kColorLocation);
+  glVertexArrayAttribBinding(name, kColorLocation, kPerVertex);
+  if (vertex_colors) {
+    glVertexArrayAttribFormat(name, kColorLocation, 4, GL_UNSIGNED_BYTE, GL_TRUE, kColor);
+  } else {
+    glVertexArrayAttribIFormat(name, kColorLocation, 1, GL_UNSIGNED_INT, kColor);
+  }
+}
+
+void GlRenderer::chooseRounds(const GlTuning& tuning) {
+  // More views than this gain nothing, and while one round is copied the next is drawn. On a
+  // processor the targets of a round should stay in its cache.
+  constexpr std::size_t kGoodViews = 256;
+  constexpr std::size_t kGoodSoftwareViews = 8;
+  constexpr std::size_t kTargetBytes = std::size_t{1} << 30U;
+  constexpr std::size_t kBytesPerPixel = 12;
+  const std::size_t pixels = std::size_t{options_.width} * options_.height;
+  GLint64 block = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block);
+  const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  const bool software = name != nullptr && isSoftwareRenderer(name);
+  const std::size_t good = software ? kGoodSoftwareViews : kGoodViews;
+  const std::size_t wanted = tuning.most_views > 0 ? tuning.most_views : good;
+  largest_block_ = static_cast<std::size_t>(block);
+  most_views_ = std::min({wanted, kTargetBytes / (pixels * kBytesPerPixel),
+                          largest_block_ / (pixels * sizeof(float)),
+                          static_cast<std::size_t>(limitOf(GL_MAX_FRAMEBUFFER_LAYERS)),
+                          static_cast<std::size_t>(limitOf(GL_MAX_ARRAY_TEXTURE_LAYERS))});
+  most_views_ = std::max<std::size_t>(most_views_, 1);
+}
+
+void GlRenderer::submit(std::span<const RenderView> views, Round& round) {
+  const Stopwatch watch(timings_.setup);
+  round.layout = imageLayout(options_, views.size());
+  round.stays = false;
+  images_.reserve(round.layout.bytes);
+  start(views, round);
+}
+
+Result<ImageLayout> GlRenderer::reserveDeviceImages(std::size_t views) {
+  const ImageLayout layout = imageLayout(options_, views);
+  const std::size_t largest =
+      std::max({layout.depth, layout.semantics - layout.depth, layout.bytes - layout.semantics});
+  if (largest > largest_block_) {
+    return fail(ErrorCode::kUnsupported, "device images",
+                fmt::format("the images of {} views take {} bytes in one block; the driver has "
+                            "blocks of {}: draw fewer views at a time",
+                            views, largest, largest_block_));
+  }
+  device_images_.reserve(layout.bytes);
+  return layout;
+}
+
+void GlRenderer::submitToDevice(std::span<const RenderView> views, const ImageLayout& layout,
+                                Round& round) {
+  const Stopwatch watch(timings_.setup);
+  round.layout = layout;
+  round.stays = true;
+  start(views, round);
+}
+
+void GlRenderer::start(std::span<const RenderView> views, Round& round) {
+  round.views = views.size();
+  round.counts = countRound(views, models_);
+  targets_.reserve(views.size());
+  if (measures_) stamp(round.times[0]);
+  upload(views, round);
+  cull(round.counts);
+  draw(round.counts);
+  if (measures_) stamp(round.times[1]);
+  resolve(round);
+  readBack(round);
+  if (measures_) stamp(round.times[2]);
+  round.fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  glFlush();
+}
+
+void GlRenderer::upload(std::span<const RenderView> views, Round& round) {
+  const std::size_t instances = round.counts.instances;
+  const std::size_t chunks = round.counts.allChunks();
+  const std::size_t draws = round.counts.allDraws();
+  const std::size_t instance_bytes = instances * sizeof(GpuInstance);
+  const std::size_t chunk_bytes = chunks * sizeof(GpuChunk);
+  round.upload.reserve(instance_bytes + chunk_bytes);
+  instances_.reserve(instance_bytes);
+  chunks_.reserve(chunk_bytes);
+  results_.reserve(chunks * sizeof(ChunkResult));
+  draws_.reserve(draws * sizeof(DrawCommand));
+  auto* first_instance = reinterpret_cast<GpuInstance*>(round.upload.data());
+  auto* first_chunk = reinterpret_cast<GpuChunk*>(round.upload.data() + instance_bytes);
+  const float aspect = static_cast<float>(options_.width) / static_cast<float>(options_.height);
+  listRound(views, models_, aspect,
+            {round.counts, {first_instance, instances}, {first_chunk, chunks}});
+  copyBuffer(round.upload, 0, instances_, 0, instance_bytes);
+  copyBuffer(round.upload, instance_bytes, chunks_, 0, chunk_bytes);
+}
+
+void GlRenderer::cull(const RoundCounts& counts) {
+  const std::uint32_t chunks = counts.allChunks();
+  const auto first_draw = firstOf(counts.draws);
+  std::array<std::uint32_t, kDrawClasses + 1> first_chunk{};
+  std::inclusive_scan(counts.chunks.begin(), counts.chunks.end(), first_chunk.begin() + 1);
+  bind(kInstances, instances_);
+  bind(kBounds, bounds_);
+  bind(kChunks, chunks_);
+  bind(kResults, results_);
+  glUseProgram(programs_.test.get());
+  glUniform1f(0, options_.near);
+  glUniform1ui(1, chunks);
+  glUniform1ui(2, options_.culling ? 1 : 0);
+  if (chunks > 0) glDispatchCompute(groups(chunks), 1, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  bind(kDraws, totals_);
+  glUseProgram(programs_.scan.get());
+  glUniform1uiv(0, static_cast<GLsizei>(first_chunk.size()), first_chunk.data());
+  glUniform1uiv(5, static_cast<GLsizei>(first_draw.size()), first_draw.data());
+  glDispatchCompute(kDrawClasses, 1, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  if (!indirect_count_) {
+    // Commands that nothing was written for draw nothing.
+    glClearNamedBufferData(draws_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  }
+  bind(kDraws, draws_);
+  glUseProgram(programs_.emit.get());
+  glUniform1ui(0, chunks);
+  if (chunks > 0) glDispatchCompute(groups(chunks), 1, 1);
+  glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
+                  GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void GlRenderer::draw(const RoundCounts& counts) {
+  targets_.beginDrawing();
+  // Row 0 is the top one, and depth is 1 at the near plane and 0 far away.
+  glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  for (std::size_t i = 0; i < textures_.size(); ++i) {
+    glBindTextureUnit(static_cast<GLuint>(i), textures_[i].get());
+  }
+  glVertexArrayVertexBuffer(vertex_array_.get(), kPerInstance, instances_.get(), 0,
+                            sizeof(GpuInstance));
+  glBindVertexArray(vertex_array_.get());
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, draws_.get());
+  if (indirect_count_) glBindBuffer(GL_PARAMETER_BUFFER_ARB, totals_.get());
+  const auto first_draw = firstOf(counts.draws);
+  for (std::size_t kind = 0; kind < kDrawClasses; ++kind) {
+    if (counts.draws[kind] == 0) continue;
+    const auto is = [&](DrawClass other) { return kind == static_cast<std::size_t>(other); };
+    const bool masked = is(DrawClass::kMaskedOneSided) || is(DrawClass::kMaskedTwoSided);
+    const bool two_sided = is(DrawClass::kTwoSided) || is(DrawClass::kMaskedTwoSided);
+    glUseProgram(masked ? programs_.masked.get() : programs_.opaque.get());
+    glUniform1f(0, options_.near);
+    two_sided ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
+    const auto most = static_cast<GLsizei>(counts.draws[kind]);
+    const std::uintptr_t offset = first_draw[kind] * sizeof(DrawCommand);
+    const auto* indirect = reinterpret_cast<const void*>(offset);
+    if (indirect_count_) {
+      glMultiDrawElementsIndirectCountARB(GL_TRIANGLES, GL_UNSIGNED_INT, indirect,
+                                          static_cast<GLintptr>(kind * sizeof(DrawTotals)), most,
+                                          sizeof(DrawCommand));
+    } else {
+      glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, indirect, most,
+                                  sizeof(DrawCommand));
+    }
+  }
+}
+
+void GlRenderer::resolve(const Round& round) {
+  const Buffer& images = round.stays ? device_images_ : images_;
+  const ImageLayout& layout = round.layout;
+  const std::size_t pixels = round.views * options_.width * options_.height;
+  const auto bind_part = [&](GLuint binding, std::size_t begin, std::size_t end) {
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, images.get(), static_cast<GLintptr>(begin),
+                      static_cast<GLsizeiptr>(end - begin));
+  };
+  bind_part(0, layout.color, layout.depth);
+  bind_part(1, layout.depth, layout.semantics);
+  bind_part(2, layout.semantics, layout.bytes);
+  // OpenGL asks for no barrier here, but Mesa's software driver does not otherwise wait for what is
+  // drawn when a compute shader reads it.
+  glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+  targets_.bindForReading();
+  glUseProgram(programs_.resolve.get());
+  glUniform1f(0, options_.near);
+  glUniform1ui(1, options_.width);
+  glUniform1ui(2, options_.height);
+  glUniform1ui(3, static_cast<GLuint>(pixels));
+  const std::size_t first_view = round.stays ? round.first_view : 0;
+  glUniform1ui(4, static_cast<GLuint>(first_view * options_.width * options_.height));
+  if (pixels > 0) glDispatchCompute(groups((pixels + 3) / 4), 1, 1);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void GlRenderer::readBack(Round& round) {
+  const std::size_t bytes = round.stays ? 0 : round.layout.bytes;
+  round.readback.reserve(bytes + kTotalsBytes);
+  copyBuffer(images_, 0, round.readback, 0, bytes);
+  copyBuffer(totals_, 0, round.readback, bytes, kTotalsBytes);
+}
+
+void GlRenderer::finish(Round& round) {
+  constexpr GLuint64 kNanoseconds = 1'000'000'000;
+  while (glClientWaitSync(round.fence, GL_SYNC_FLUSH_COMMANDS_BIT, kNanoseconds) ==
+         GL_TIMEOUT_EXPIRED) {
+  }
+  glDeleteSync(round.fence);
+  round.fence = nullptr;
+  std::array<DrawTotals, kDrawClasses> totals{};
+  const std::size_t bytes = round.stays ? 0 : round.layout.bytes;
+  std::memcpy(totals.data(), round.readback.data() + bytes, kTotalsBytes);
+  statistics_.instances += round.counts.instances;
+  statistics_.clusters += round.counts.clusters;
+  for (const DrawTotals& total : totals) {
+    statistics_.clusters_drawn += total.clusters;
+    statistics_.triangles_drawn += total.triangles;
+  }
+  if (measures_) {
+    timings_.draw += secondsBetween(round.times[0], round.times[1]);
+    timings_.readback += secondsBetween(round.times[1], round.times[2]);
+  }
+}
+
+void GlRenderer::collect(Round& round, const RenderTargets& targets) {
+  finish(round);
+  const Stopwatch watch(timings_.copy);
+  const ImageLayout& layout = round.layout;
+  const auto copy_to = [&](auto* target, std::size_t begin, std::size_t bytes_of_view) {
+    if (bytes_of_view == 0) return;
+    std::memcpy(reinterpret_cast<std::byte*>(target) + round.first_view * bytes_of_view,
+                round.readback.data() + begin, round.views * bytes_of_view);
+  };
+  copy_to(targets.color.data(), layout.color, layout.color_of_view);
+  copy_to(targets.depth.data(), layout.depth, layout.depth_of_view);
+  copy_to(targets.semantics.data(), layout.semantics, layout.semantics_of_view);
+}
+
+}  // namespace galactic::render::gl

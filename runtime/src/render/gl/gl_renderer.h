@@ -1,0 +1,131 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "galactic/batch_renderer.h"
+#include "render/gl/handles.h"
+#include "render/gl/library_geometry.h"
+#include "render/gl/programs.h"
+#include "render/gl/targets.h"
+#include "render/gl/view_lists.h"
+
+namespace galactic::render::gl {
+
+/// What tests and benchmarks choose and users need not.
+struct GlTuning {
+  /// Most views of a round; 0 for what suits the device.
+  std::size_t most_views = 0;
+  /// Whether to do without extensions that are not part of OpenGL 4.5.
+  bool core_only = false;
+  /// Whether to measure with timer queries.
+  bool measure = false;
+};
+
+/// Seconds since the start, by what they went into; the last two on the graphics processor.
+struct GlTimings {
+  double setup = 0;
+  double copy = 0;
+  double draw = 0;
+  double readback = 0;
+};
+
+/// What a class of commands came to: a line of the scan shader's totals.
+struct DrawTotals {
+  std::uint32_t draws = 0;
+  std::uint32_t clusters = 0;
+  std::uint32_t triangles = 0;
+  std::uint32_t unused = 0;
+};
+
+/// A round on its way: views that share one set of draw commands. Its buffers are its own, so that
+/// the next round can be prepared and drawn while this one is read.
+struct Round {
+  Buffer upload{Access::kWrite};
+  Buffer readback{Access::kRead};
+  std::array<Query, 3> times;
+  GLsync fence = nullptr;
+  std::size_t first_view = 0;
+  std::size_t views = 0;
+  /// Of the images of this round, or of the whole batch when they stay on the device.
+  ImageLayout layout;
+  bool stays = false;
+  RoundCounts counts;
+};
+
+/// Draws rounds of views on the current context, which must be the same for all calls, also for the
+/// destructor.
+class GlRenderer {
+ public:
+  /// Loads the library. Fails with kUnsupported when the driver has too little for it.
+  [[nodiscard]] static Result<std::unique_ptr<GlRenderer>> make(const RenderLibrary& library,
+                                                                const RenderOptions& options,
+                                                                const GlTuning& tuning);
+
+  [[nodiscard]] std::size_t mostViews() const { return most_views_; }
+  /// Starts to draw `views` and to read the images back. `round` is idle.
+  void submit(std::span<const RenderView> views, Round& round);
+  /// Waits for a round and copies its images to their place in `targets`.
+  void collect(Round& round, const RenderTargets& targets);
+
+  /// The same with images that stay on the device, in deviceImages(): makes room for so many views.
+  /// Fails with kUnsupported when they are too many for the driver.
+  [[nodiscard]] Result<ImageLayout> reserveDeviceImages(std::size_t views);
+  /// Whether that leaves the buffer as it is.
+  [[nodiscard]] bool hasRoomOnDevice(std::size_t views) const {
+    return imageLayout(options_, views).bytes <= device_images_.size();
+  }
+  /// `round.first_view` is a multiple of 4.
+  void submitToDevice(std::span<const RenderView> views, const ImageLayout& layout, Round& round);
+  /// Waits for a round.
+  void finish(Round& round);
+  [[nodiscard]] const Buffer& deviceImages() const { return device_images_; }
+
+  [[nodiscard]] const RenderStatistics& statistics() const { return statistics_; }
+  void resetStatistics() { statistics_ = {}; }
+  [[nodiscard]] const GlTimings& timings() const { return timings_; }
+
+ private:
+  explicit GlRenderer(const RenderOptions& options) : options_(options), targets_(options) {}
+  [[nodiscard]] Result<void> load(const RenderLibrary& library, const GlTuning& tuning);
+  void makeVertexArray(bool vertex_colors);
+  void chooseRounds(const GlTuning& tuning);
+  /// Lists what the views hold, and sends the lists on their way.
+  void upload(std::span<const RenderView> views, Round& round);
+  /// Which clusters are seen, as draw commands.
+  void cull(const RoundCounts& counts);
+  void draw(const RoundCounts& counts);
+  /// Prepares and draws a round whose layout is known.
+  void start(std::span<const RenderView> views, Round& round);
+  void resolve(const Round& round);
+  void readBack(Round& round);
+
+  RenderOptions options_;
+  bool indirect_count_ = false;
+  bool measures_ = false;
+  std::size_t most_views_ = 1;
+  Programs programs_;
+  std::vector<Texture> textures_;
+  std::vector<ModelClusters> models_;
+  Buffer vertices_;
+  Buffer indices_;
+  Buffer bounds_;
+  VertexArray vertex_array_;
+  Targets targets_;
+  Buffer instances_;
+  Buffer chunks_;
+  Buffer results_;
+  Buffer draws_;
+  Buffer totals_;
+  Buffer images_;
+  Buffer device_images_;
+  std::size_t largest_block_ = 0;
+  RenderStatistics statistics_;
+  GlTimings timings_;
+};
+
+}  // namespace galactic::render::gl

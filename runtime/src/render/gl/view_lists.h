@@ -1,0 +1,60 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "galactic/batch_renderer.h"
+#include "render/gl/library_geometry.h"
+
+namespace galactic::render::gl {
+
+/// A placed model as one camera sees it (std430).
+struct GpuInstance {
+  /// Rows of camera_from_model: camera coordinate = dot(row, (p, 1)).
+  std::array<std::array<float, 4>, 3> rows{};
+  /// From z / x and y / x of the camera's frame to -1 to 1 across the image.
+  float scale_x = 0;
+  float scale_y = 0;
+  std::uint32_t layer = 0;
+  std::uint32_t unused = 0;
+};
+static_assert(sizeof(GpuInstance) == 64);
+
+/// Up to kChunkClusters neighbouring clusters of one class of an instance (std430).
+struct GpuChunk {
+  std::uint32_t instance = 0;
+  std::uint32_t first_cluster = 0;
+  std::uint32_t count = 0;
+};
+static_assert(sizeof(GpuChunk) == 12);
+
+/// How much the views of a round hold.
+struct RoundCounts {
+  /// Only those that something can be seen of.
+  std::uint32_t instances = 0;
+  std::uint64_t clusters = 0;
+  /// By class: chunks, and commands if every other cluster is seen.
+  std::array<std::uint32_t, kDrawClasses> chunks{};
+  std::array<std::uint32_t, kDrawClasses> draws{};
+
+  [[nodiscard]] std::uint32_t allChunks() const;
+  [[nodiscard]] std::uint32_t allDraws() const;
+};
+
+[[nodiscard]] RoundCounts countRound(std::span<const RenderView> views,
+                                     std::span<const ModelClusters> models);
+
+/// Where the lists of a round go, and what countRound() counted for it.
+struct RoundLists {
+  RoundCounts counts;
+  std::span<GpuInstance> instances;
+  std::span<GpuChunk> chunks;
+};
+
+/// Writes the lists: chunks by class, in a class by view, instance and cluster. `aspect`: width
+/// over height of the images.
+void listRound(std::span<const RenderView> views, std::span<const ModelClusters> models,
+               float aspect, const RoundLists& lists);
+
+}  // namespace galactic::render::gl

@@ -1,0 +1,55 @@
+// Both backends draw the same images.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "runtime/render/gl_scene.h"
+
+namespace galactic::test {
+namespace {
+
+/// Pixels at the edge of two surfaces may fall to either: drivers round positions differently.
+constexpr double kMeanColor = 0.2;
+constexpr float kDepth = 0.01F;
+constexpr double kDeepShare = 0.0005;
+
+TEST(BackendAgreement, ImagesOfTheOpenGlDriverAndOfTheRasteriserDifferLessThanCanBeSeen) {
+  GALACTIC_SKIP_WITHOUT_GL();
+  GlHome home;
+  const std::vector<RenderView> views = home.views(48);
+  RenderOptions options = glOptions();
+  options.semantics = true;
+  const RenderImages gl = renderViews(home.library(), options, views);
+  options.backend = RenderBackend::kSoft;
+  const RenderImages soft = renderViews(home.library(), options, views);
+  double color = 0;
+  std::size_t far = 0;
+  std::size_t drawn = 0;
+  std::size_t other = 0;
+  const std::size_t pixels = gl.depth.size();
+  for (std::size_t i = 0; i < gl.color.size(); ++i) {
+    // Alpha tells only whether something is drawn.
+    if (i % 4 != 3) color += std::abs(gl.color[i] - soft.color[i]);
+  }
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const bool apart = !(std::abs(gl.depth[i] - soft.depth[i]) <= kDepth);
+    far += apart ? 1U : 0U;
+    drawn += gl.depth[i] > 0 ? 1U : 0U;
+    other += gl.semantics[i] != soft.semantics[i] ? 1U : 0U;
+  }
+  const double mean = color / (3.0 * static_cast<double>(pixels));
+  const auto share = [&](std::size_t count) {
+    return static_cast<double>(count) / static_cast<double>(pixels);
+  };
+  std::printf("mean colour difference %.4f of 255, depth off on %.5f %%, another id on %.5f %%\n",
+              mean, 100 * share(far), 100 * share(other));
+  EXPECT_LT(mean, kMeanColor);
+  EXPECT_LT(share(far), kDeepShare);
+  EXPECT_LT(share(other), kDeepShare);
+  // Both sides of the question occur: surfaces, and background.
+  EXPECT_GT(share(drawn), 0.1);
+  EXPECT_LT(share(drawn), 0.9);
+}
+
+}  // namespace
+}  // namespace galactic::test
