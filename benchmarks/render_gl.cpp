@@ -28,6 +28,7 @@
 #include "galactic/world_views.h"
 #include "render/gl/gl_engine.h"
 #include "render_apartment.h"
+#include "support/render_images.h"
 
 namespace {
 
