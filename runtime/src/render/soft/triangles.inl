@@ -106,10 +106,14 @@ void sortTriangles(const Pane& pane, const ClusterState& state, Survivors& survi
     if (triangle_count - t < kWidth) valid = (1U << (triangle_count - t)) - 1;
     const IntLanes both = corners.a | corners.b << 8 | corners.c << 16;
     if (state.any_bad) {
-      const IntLanes bad = gather(state.bad, corners.a) | gather(state.bad, corners.b) |
-                           gather(state.bad, corners.c);
-      append(survivors.clipped, survivors.clipped_count, both, signBits(bad) & valid);
-      valid &= ~signBits(bad);
+      const IntLanes a = gather(state.bad, corners.a);
+      const IntLanes b = gather(state.bad, corners.b);
+      const IntLanes c = gather(state.bad, corners.c);
+      const unsigned good = signBits((a | b | c) == spread(0));
+      // Beyond one plane with all corners: nothing is left.
+      const unsigned outside = signBits((a & b & c) != spread(0));
+      append(survivors.clipped, survivors.clipped_count, both, ~(good | outside) & valid);
+      valid &= good;
     }
     const Sorting sorting = sortEight(limits, state, corners);
     append(survivors.small, survivors.small_count, both, sorting.small & valid);

@@ -45,7 +45,7 @@ struct ClusterState {
   alignas(64) float z[kMostInCluster];
   /// Texture coordinates, u, v, u, v: see readCoordinates().
   alignas(64) float uv[2 * kMostInCluster];
-  /// Not 0: too near, or too far from the image's middle.
+  /// Bit n: on the wrong side of clip plane n; see clipDistance().
   alignas(64) std::int32_t bad[kMostInCluster];
   bool any_bad;
   bool has_coordinates;
@@ -87,14 +87,17 @@ inline unsigned placeEight(const VertexFrame& frame, const RenderCluster& cluste
   Lanes px = right * inverse + spread(frame.middle_x);
   Lanes py = down * inverse + spread(frame.middle_y);
   const unsigned good_bits = signBits(good);
+  IntLanes bad = spread(0);
   if (good_bits != kAllLanes) {
     px = pick(good, px, spread(0.0F));
     py = pick(good, py, spread(0.0F));
+    bad = (~(w >= spread(frame.near)) & 1) | (~(right <= guard) & 2) | (~(-right <= guard) & 4) |
+          (~(down <= guard) & 8) | (~(-down <= guard) & 16);
   }
   storePairs(state.xy + std::size_t{2} * first, wholeNumber(px) - spread(frame.left),
              wholeNumber(py) - spread(frame.top));
   store(state.z + first, inverse);
-  store(state.bad + first, ~good);
+  store(state.bad + first, bad);
   return good_bits;
 }
 
