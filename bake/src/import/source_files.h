@@ -17,8 +17,8 @@ namespace galactic::bake {
 
 /// Looks for the textures that the materials name, relative to the folder of `main_input`: found
 /// ones join `asset.files` and their materials get the path that was found; of missing ones the
-/// materials get none, with one warning each. Knows %20, backslashes, file:// and absolute paths of another machine (then the
-/// file's name beside the main input counts).
+/// materials get none, with one warning each. Knows %20, backslashes, file:// and absolute paths of
+/// another machine (then the file's name beside the main input counts).
 void findTextures(SourceAsset& asset, const std::filesystem::path& main_input);
 
 /// Sorts `asset.files`, main input first, and fills in sizes and XXH3-128 hashes. Fails with kIo
