@@ -1,7 +1,12 @@
 // What the OpenGL backend draws, on the software driver.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstring>
+#include <limits>
 #include <map>
+#include <numbers>
+#include <random>
 
 #include "render/gl/gl_engine.h"
 #include "runtime/render/gl_scene.h"
@@ -98,7 +103,7 @@ TEST_F(GlImage, ASphereHasItsDepthAwayFromItsEdge) {
   const RenderImages images = renderViews(ball.library, glOptions(), views);
   std::size_t seen = 0;
   for (std::size_t i = 0; i < images.depth.size(); ++i) {
-    const double focal = 64 / std::tan(radians(30));
+    const double focal = 64 / std::tan(std::numbers::pi / 6);
     const double right = (static_cast<double>(i % 128) + 0.5 - 64) / focal;
     const double up = (64 - (static_cast<double>(i / 128) + 0.5)) / focal;
     // |(-3, 0, 0) + t (1, up, right)| = 1

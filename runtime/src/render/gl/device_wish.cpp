@@ -76,8 +76,8 @@ std::vector<std::size_t> matching(std::span<const DeviceFacts> devices, Matches 
 std::vector<std::size_t> graphicsProcessors(std::span<const DeviceFacts> devices) {
   std::vector<std::size_t> found =
       matching(devices, [](const DeviceFacts& device) { return !device.software; });
-  std::ranges::stable_partition(
-      found, [&](std::size_t device) { return devices[device].cuda.has_value(); });
+  std::stable_partition(found.begin(), found.end(),
+                        [&](std::size_t device) { return devices[device].cuda.has_value(); });
   return found;
 }
 

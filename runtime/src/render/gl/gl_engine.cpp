@@ -92,7 +92,7 @@ Result<ImageLayout> GlEngine::drawToDevice(std::span<const RenderView> views) {
   renderer_->resetStatistics();
   // CUDA must let go of a buffer before it is replaced by a larger one.
   if (!renderer_->hasRoomOnDevice(views.size())) cuda_->forget();
-  const Result<ImageLayout> layout = renderer_->reserveDeviceImages(views.size());
+  Result<ImageLayout> layout = renderer_->reserveDeviceImages(views.size());
   if (!layout) return layout;
   // Four pixels of three bytes are written together, so that rounds share none.
   constexpr std::size_t kTogether = 4;

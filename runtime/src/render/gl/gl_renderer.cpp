@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cstring>
 #include <numeric>
@@ -344,7 +345,7 @@ void GlRenderer::draw(const RoundCounts& counts) {
     two_sided ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
     const auto most = static_cast<GLsizei>(counts.draws[kind]);
     const std::uintptr_t offset = first_draw[kind] * sizeof(DrawCommand);
-    const auto* indirect = reinterpret_cast<const void*>(offset);
+    const auto* indirect = std::bit_cast<const void*>(offset);
     if (indirect_count_) {
       glMultiDrawElementsIndirectCountARB(GL_TRIANGLES, GL_UNSIGNED_INT, indirect,
                                           static_cast<GLintptr>(kind * sizeof(DrawTotals)), most,
