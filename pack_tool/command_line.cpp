@@ -196,7 +196,8 @@ void addFigureOptions(CLI::App& verb, std::optional<FigureOptions>& figures) {
       "robots: joints that --joints does not name are at 0");
   verb.add_option_function<std::string>(
           "--what", [given](const std::string& text) { given().layers = parseLayers(text); },
-          "objects and robots: what is shown (default all of mesh,spheres,boxes)")
+          "what is shown (objects and robots: by default all of mesh,spheres,boxes; picture of a "
+          "scene: mesh, instead of its grids)")
       ->type_name("LAYER,...");
 }
 
@@ -230,8 +231,9 @@ void addPicture(CLI::App& app, PictureOptions& options) {
   addFigureOptions(verb, options.figures);
   verb.add_option(
           "--size", options.size,
-          fmt::format("objects and robots: edge of a view (default {}, on a contact sheet {})",
-                      pictures::kDefaultViewSize, pictures::kDefaultTileSize))
+          fmt::format(
+              "meshes, objects and robots: edge of a view (default {}, on a contact sheet {})",
+              pictures::kDefaultViewSize, pictures::kDefaultTileSize))
       ->check(CLI::Range(pictures::kSmallestView, pictures::kLargestView))
       ->type_name("PIXELS");
   addTrusted(verb, options.trust);

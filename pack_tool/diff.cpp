@@ -6,6 +6,7 @@
 #include "pack_tool/diff_text.h"
 #include "pack_tool/episode_diff.h"
 #include "pack_tool/open_scene.h"
+#include "pack_tool/render/render_diff.h"
 #include "pack_tool/verbs.h"
 
 namespace galactic::pack_tool {
@@ -85,6 +86,7 @@ Result<void> compareScenes(const PackFile& a, const PackFile& b, const DiffOptio
   difference.content = compareFields(contentOf(side_a->description), contentOf(side_b->description),
                                      options.tolerance);
   compareAllGrids(*side_a, *side_b, options.tolerance, difference);
+  compareRenderMeshes({a, b}, {side_a->description, side_b->description}, options, difference);
   return {};
 }
 
@@ -101,7 +103,9 @@ Result<PackDifference> comparePacks(const PackFile& a, const PackFile& b,
   difference.identical = std::ranges::equal(a.bytes(), b.bytes());
   if (difference.identical) return difference;
   if (a.kind() == PackKind::kObjects || a.kind() == PackKind::kRobot) {
-    compareAssets({describePack(a), describePack(b)}, options, difference);
+    const DescribedPair descriptions{describePack(a), describePack(b)};
+    compareAssets(descriptions, options, difference);
+    compareRenderMeshes({a, b}, descriptions, options, difference);
     return difference;
   }
   if (a.kind() == PackKind::kWorld) {

@@ -68,6 +68,9 @@ std::string infoText(const Json& description) {
   if (description.contains("scene")) text += sceneText(description.at("scene"));
   if (description.contains("object_set")) text += objectsText(description.at("object_set"));
   if (description.contains("robot")) text += robotText(description.at("robot"));
+  if (description.contains("render_meshes")) {
+    text += renderMeshesText(description.at("render_meshes"));
+  }
   if (description.contains("episode_set")) text += episodesText(description.at("episode_set"));
   if (description.contains("world")) text += worldText(description.at("world"));
   return text;

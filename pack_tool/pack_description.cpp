@@ -58,6 +58,9 @@ Json describePack(const PackFile& pack, Detail detail) {
   if (Json scene = describeScene(pack); !scene.is_null()) json["scene"] = std::move(scene);
   if (Json set = describeObjects(pack); !set.is_null()) json["object_set"] = std::move(set);
   if (Json robot = describeRobot(pack); !robot.is_null()) json["robot"] = std::move(robot);
+  if (json.contains("scene") || json.contains("object_set") || json.contains("robot")) {
+    json["render_meshes"] = describeRenderMeshes(pack);
+  }
   if (Json set = describeEpisodes(pack, detail); !set.is_null()) {
     json["episode_set"] = std::move(set);
   }

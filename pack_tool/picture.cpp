@@ -5,6 +5,7 @@
 #include "pack_tool/open_scene.h"
 #include "pack_tool/output_file.h"
 #include "pack_tool/pictures/figure_picture.h"
+#include "pack_tool/pictures/scene_picture.h"
 #include "pack_tool/verbs.h"
 #include "pictures/png_file.h"
 
@@ -43,12 +44,23 @@ Result<Image> drawFigures(const PackFile& pack, const PictureOptions& options) {
   return sheet;
 }
 
+/// Of a scene.
+Result<Image> drawMeshes(const PackFile& pack, const PictureOptions& options) {
+  const auto figures = figuresOf(pack, *options.figures);
+  if (!figures) return tl::unexpected(figures.error());
+  auto image =
+      pictures::drawScene(figures->front(), options.size.value_or(pictures::kDefaultViewSize));
+  if (!image) image.error().where = pack.where();
+  return image;
+}
+
 Result<Image> draw(const PackFile& pack, const PictureOptions& options) {
   if (pack.kind() == PackKind::kScene) {
     if (!options.figures && !options.size) return drawGrids(pack, options.grids);
+    if (options.figures && !options.grids.anyGiven()) return drawMeshes(pack, options);
     return fail(ErrorCode::kInvalidInput, pack.where(),
-                "is a scene; --object, --joints, --all-zero, --what and --size are for objects and "
-                "robots");
+                "is a scene: a picture is either of its grids, with --radius, --slice and --value, "
+                "or of its meshes, with --what mesh and --size");
   }
   if (!options.grids.anyGiven()) return drawFigures(pack, options);
   return fail(ErrorCode::kInvalidInput, pack.where(),

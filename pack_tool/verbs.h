@@ -88,7 +88,7 @@ struct PictureOptions {
   std::filesystem::path output = {};
   /// For scenes.
   GridPictureOptions grids = {};
-  /// For objects and robots.
+  /// For objects and robots, and for the render meshes of a scene instead of its grids.
   std::optional<FigureOptions> figures = std::nullopt;
   /// Edge of a view, pixels; for objects and robots.
   std::optional<int> size = std::nullopt;
@@ -96,7 +96,8 @@ struct PictureOptions {
 };
 
 /// Draws a pack into a PNG file, replacing an existing one: the grids of a scene from above or as a
-/// slice; a robot or an object from four sides; several objects on a contact sheet.
+/// slice, or its render meshes, where figures are asked for; a robot or an object from four sides;
+/// several objects on a contact sheet.
 [[nodiscard]] int runPicture(const PictureOptions& options, const Console& console);
 
 enum class ExportFormat { kObj, kPly, kGlb, kSrdf, kUrdf };
@@ -125,8 +126,8 @@ struct ExportOptions {
 };
 
 /// Writes a pack in another format, replacing an existing file: a grid of a scene as a mesh (OBJ,
-/// PLY), objects or a robot as a scene of meshes, spheres and boxes (GLB), a robot with its spheres
-/// (SRDF, URDF).
+/// PLY), a scene's render meshes, or objects or a robot with spheres and boxes (GLB), a robot with
+/// its spheres (SRDF, URDF).
 [[nodiscard]] int runExport(const ExportOptions& options, const Console& console);
 
 }  // namespace galactic::pack_tool

@@ -12,5 +12,7 @@ namespace galactic::pack_tool {
 [[nodiscard]] std::string robotText(const Json& robot);
 [[nodiscard]] std::string episodesText(const Json& set);
 [[nodiscard]] std::string worldText(const Json& world);
+/// Of scenes, objects and robots; null: there are none.
+[[nodiscard]] std::string renderMeshesText(const Json& render);
 
 }  // namespace galactic::pack_tool

@@ -11,6 +11,8 @@ Json describeLengths(const schema::LengthStatistics* lengths) {
   return {{"mean", lengths->mean()}, {"p95", lengths->p95()}, {"max", lengths->max()}};
 }
 
+constexpr std::uint64_t kHashStart = 0xcbf29ce484222325;
+
 /// FNV-1a, 64 bits, continued over more bytes.
 std::uint64_t hashed(std::uint64_t hash, const std::uint8_t* bytes, std::size_t count) {
   constexpr std::uint64_t kPrime = 0x100000001b3;
@@ -82,17 +84,21 @@ Json describeQuality(const schema::SphereSetStatistics* statistics) {
 
 Json describeSurface(const schema::Surface* surface) {
   if (surface == nullptr) return nullptr;
-  constexpr std::uint64_t kStart = 0xcbf29ce484222325;
   const auto bytes_of = [](std::uint64_t hash, const auto& values, std::size_t element) {
     return hashed(hash, values.Data(), values.size() * element);
   };
-  std::uint64_t hash = bytes_of(kStart, *surface->positions(), sizeof(schema::Vec3));
+  std::uint64_t hash = bytes_of(kHashStart, *surface->positions(), sizeof(schema::Vec3));
   hash = bytes_of(hash, *surface->triangles(), sizeof(std::uint32_t));
   hash = bytes_of(hash, *surface->colors(), sizeof(std::uint32_t));
   return {{"vertices", surface->positions()->size()},
           {"triangles", surface->triangles()->size() / 3},
           {"coloured", surface->colors()->size() > 0},
           {"fnv1a_64", fmt::format("{:016x}", hash)}};
+}
+
+std::string contentHash(std::span<const std::byte> bytes) {
+  const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  return fmt::format("{:016x}", hashed(kHashStart, first, bytes.size()));
 }
 
 Json describeHash(const schema::Hash128* hash) {

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+#include <span>
 #include <string>
 
 #include "galactic/schema/pack_generated.h"
@@ -36,6 +38,9 @@ struct SphereRange {
 /// How large a mesh is, and a hash (FNV-1a, 64 bits) of its vertices, triangles and colours; null
 /// without one.
 [[nodiscard]] Json describeSurface(const schema::Surface* surface);
+
+/// FNV-1a, 64 bits, in 16 hexadecimal digits.
+[[nodiscard]] std::string contentHash(std::span<const std::byte> bytes);
 
 /// An XXH3-128 hash in 32 hexadecimal digits, high half first; null without one.
 [[nodiscard]] Json describeHash(const schema::Hash128* hash);

@@ -26,6 +26,9 @@ FigureBounds boundsOf(const Figure& figure) {
     for (const std::uint32_t corner : part.surface.corners) {
       include(bounds, pose * part.surface.positions[corner]);
     }
+    if (part.surface.empty() && part.render_model) {
+      for (const Vec3& corner : renderBoxOf(figure, part)) include(bounds, corner);
+    }
     for (const SetSphere& sphere : part.spheres) {
       include(bounds, pose * sphere.centre, figure.radii[sphere.radius_index]);
     }
@@ -33,6 +36,14 @@ FigureBounds boundsOf(const Figure& figure) {
     for (const Vec3& corner : cornersOf(*part.box)) include(bounds, pose * corner);
   }
   return bounds;
+}
+
+std::array<Vec3, 8> renderBoxOf(const Figure& figure, const FigurePart& part) {
+  const RenderModel& model = figure.render_meshes->models[*part.render_model];
+  const Vec3 half = (model.bounds_max - model.bounds_min) * 0.5F;
+  std::array<Vec3, 8> corners = cornersOf({{model.bounds_min + half, {}}, half});
+  for (Vec3& corner : corners) corner = part.world_from_part * corner;
+  return corners;
 }
 
 std::array<Vec3, 8> cornersOf(const OrientedBox& box) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "galactic/oriented_box.h"
 #include "galactic/pose.h"
+#include "galactic/render_meshes.h"
 #include "galactic/sphere_set.h"
 
 namespace galactic::pack_tool {
@@ -25,7 +27,7 @@ struct SurfaceView {
   [[nodiscard]] bool empty() const { return corners.empty(); }
 };
 
-/// A rigid piece of a figure: an object, or a link of a robot.
+/// A rigid piece of a figure: an object, a link of a robot, or a scene.
 struct FigurePart {
   std::string name;
   /// An earlier part that carries this one; -1: none.
@@ -33,11 +35,13 @@ struct FigurePart {
   Pose world_from_part;
   // In the part's frame; empty where there is none or where it is not shown.
   SurfaceView surface;
+  /// In Figure::render_meshes: what is seen instead of the surface, where there is one.
+  std::optional<std::uint32_t> render_model;
   std::span<const SetSphere> spheres;
   std::optional<OrientedBox> box;
 };
 
-enum class FigureKind { kObject, kRobot };
+enum class FigureKind { kObject, kRobot, kScene };
 
 /// Where the robot grasps.
 struct GraspMark {
@@ -56,8 +60,8 @@ struct CameraMark {
 /// What the robot covers of the ground: a closed line, metres.
 using Footprint = std::vector<Vec3>;
 
-/// An object or a robot in one pose, ready to be drawn or exported. Views into the pack it was made
-/// from, which must outlive it. World frame: Y up, metres.
+/// An object, a robot in one pose, or a scene, ready to be drawn or exported. Views into the pack
+/// it was made from, which must outlive it. World frame: Y up, metres.
 struct Figure {
   FigureKind kind = FigureKind::kObject;
   std::string name;
@@ -66,6 +70,8 @@ struct Figure {
   std::vector<std::string> short_caption;
   /// Working set, metres: SetSphere::radius_index counts in it.
   std::span<const float> radii;
+  /// What the pack has to draw; nullptr for none. Figures of one pack share it.
+  std::shared_ptr<const RenderMeshes> render_meshes;
   /// Carriers before what they carry.
   std::vector<FigurePart> parts;
   std::optional<GraspMark> grasp;
@@ -87,6 +93,9 @@ struct FigureBounds {
 /// The corners of a box in the frame of its object; corner n lies on the positive side of x, y and
 /// z where bits 0, 1 and 2 of n are set.
 [[nodiscard]] std::array<Vec3, 8> cornersOf(const OrientedBox& box);
+
+/// The corners of the box around the render model of a part, which has one, in the world.
+[[nodiscard]] std::array<Vec3, 8> renderBoxOf(const Figure& figure, const FigurePart& part);
 
 /// The edges of a box as pairs of corners of cornersOf.
 inline constexpr std::array<std::pair<int, int>, 12> kBoxEdges{{{0, 1},

@@ -21,6 +21,21 @@ SurfaceView viewOf(const schema::Surface* surface) {
           {surface->colors()->data(), surface->colors()->size()}};
 }
 
+/// The render meshes of a pack, where it has them and they are wanted.
+std::shared_ptr<const RenderMeshes> renderMeshesFor(const PackFile& pack, LayerSet layers) {
+  if (!layers.has(FigureLayer::kMesh)) return nullptr;
+  auto stored = renderMeshesOf(pack);
+  if (!stored || !*stored) return nullptr;
+  return std::make_shared<const RenderMeshes>(std::move(**stored));
+}
+
+/// Gives a part its render model.
+void addRenderModel(Figure& figure, std::size_t part, std::uint32_t number) {
+  if (figure.render_meshes) {
+    figure.parts[part].render_model = figure.render_meshes->modelOf(number);
+  }
+}
+
 /// Mean, 95th percentile and maximum.
 std::string millimetres(const schema::LengthStatistics* lengths) {
   if (lengths == nullptr) return "-";
@@ -57,11 +72,14 @@ Result<std::vector<Figure>> objectFigures(const PackFile& pack, const FigureOpti
   const auto set = ObjectSet::from(pack);
   if (!set) return tl::unexpected(set.error());
   const auto& stored = *pack.root().asset_as_ObjectSet()->objects();
+  const auto render_meshes = renderMeshesFor(pack, options.layers);
   std::vector<Figure> figures;
   for (flatbuffers::uoffset_t n = 0; n < stored.size(); ++n) {
     const ObjectModel& object = set->objects()[n];
     if (!options.object.empty() && object.name != options.object) continue;
     figures.push_back(objectFigure(*set, object, *stored.Get(n), options.layers));
+    figures.back().render_meshes = render_meshes;
+    addRenderModel(figures.back(), 0, n);
   }
   if (figures.empty()) {
     return fail(ErrorCode::kInvalidInput, pack.where(),
@@ -159,6 +177,10 @@ Result<std::vector<Figure>> robotFigures(const PackFile& pack, const FigureOptio
           visual.empty() ? viewOf(surface->collision()) : visual;
     }
   }
+  figure.render_meshes = renderMeshesFor(pack, options.layers);
+  for (std::uint32_t link = 0; link < figure.parts.size(); ++link) {
+    addRenderModel(figure, link, link);
+  }
   if (options.layers.has(FigureLayer::kSpheres)) {
     for (const SphereGroup& group : robot->groups()) {
       figure.parts[group.link].spheres = group.spheres;
@@ -168,13 +190,37 @@ Result<std::vector<Figure>> robotFigures(const PackFile& pack, const FigureOptio
   return figures;
 }
 
+Result<std::vector<Figure>> sceneFigures(const PackFile& pack, const FigureOptions& options) {
+  if (!options.object.empty() || !options.joints.values.empty() ||
+      options.joints.others != OtherJoints::kStart || !options.layers.has(FigureLayer::kMesh)) {
+    return fail(ErrorCode::kInvalidInput, pack.where(),
+                "is a scene, which has meshes only; --object, --joints and --all-zero are for "
+                "objects and robots, and --what takes mesh");
+  }
+  Figure figure;
+  figure.kind = FigureKind::kScene;
+  figure.name = pack.root().asset_as_Scene()->name()->str();
+  figure.render_meshes = renderMeshesFor(pack, options.layers);
+  figure.parts.resize(1);
+  figure.parts.front().name = figure.name;
+  addRenderModel(figure, 0, 0);
+  if (!figure.parts.front().render_model) {
+    return fail(ErrorCode::kInvalidInput, pack.where(),
+                "has no render meshes, only column grids; bake the scene with render meshes, or "
+                "export a grid as an OBJ or PLY file");
+  }
+  return std::vector{std::move(figure)};
+}
+
 }  // namespace
 
 Result<std::vector<Figure>> figuresOf(const PackFile& pack, const FigureOptions& options) {
   if (pack.kind() == PackKind::kObjects) return objectFigures(pack, options);
   if (pack.kind() == PackKind::kRobot) return robotFigures(pack, options);
+  if (pack.kind() == PackKind::kScene) return sceneFigures(pack, options);
   return fail(ErrorCode::kInvalidInput, pack.where(),
-              fmt::format("is a pack of kind {}, wanted objects (OBJS) or a robot (RBOT)",
+              fmt::format("is a pack of kind {}, wanted a scene (SCEN), objects (OBJS) or a robot "
+                          "(RBOT)",
                           packKindName(pack.kind())));
 }
 

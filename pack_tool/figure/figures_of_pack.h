@@ -19,6 +19,8 @@ class LayerSet {
   static constexpr LayerSet all() { return LayerSet(7); }
   static constexpr LayerSet none() { return LayerSet(0); }
 
+  friend constexpr bool operator==(LayerSet, LayerSet) = default;
+
   constexpr void add(FigureLayer layer) { bits_ |= static_cast<unsigned>(layer); }
   [[nodiscard]] constexpr bool has(FigureLayer layer) const {
     return (bits_ & static_cast<unsigned>(layer)) != 0;
@@ -39,10 +41,11 @@ struct FigureOptions {
   LayerSet layers = LayerSet::all();
 };
 
-/// The objects of a set, each in its own frame, by ascending name; or the robot in a pose, its root
-/// above the ground as its base says: visual surfaces, where a link has none that of collisions.
-/// The result looks into `pack`. Fails with kInvalidInput on another kind of pack, on an object or
-/// joint that is not there, and on options that are not for this kind.
+/// The objects of a set, each in its own frame, by ascending name; the robot in a pose, its root
+/// above the ground as its base says: visual surfaces, where a link has none that of collisions; or
+/// the scene, which has render meshes only. The result looks into `pack`. Fails with kInvalidInput
+/// on another kind of pack, on a scene without render meshes, on an object or joint that is not
+/// there, and on options that are not for this kind.
 [[nodiscard]] Result<std::vector<Figure>> figuresOf(const PackFile& pack,
                                                     const FigureOptions& options);
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "pack_tool/mesh/glb_file.h"
+#include "pack_tool/mesh/render_glb.h"
 #include "pack_tool/mesh/sphere_mesh.h"
 
 namespace galactic::pack_tool {
@@ -25,7 +26,7 @@ constexpr Quat kCameraTurn{0, -kRootHalf, 0, kRootHalf};
 /// Adds what figures have in common when it is first needed.
 class FigureWriter {
  public:
-  void write(const Figure& figure) {
+  Result<void> write(const Figure& figure) {
     const std::size_t root = file_.addNode({.name = figure.name});
     std::vector<std::size_t> nodes;
     for (const FigurePart& part : figure.parts) {
@@ -36,7 +37,7 @@ class FigureWriter {
                             : part.world_from_part;
       nodes.push_back(file_.addNode(
           {.name = part.name, .parent_from_node = pose, .parent = carried ? nodes[parent] : root}));
-      writePart(figure, part, nodes.back());
+      if (auto written = writePart(figure, part, nodes.back()); !written) return written;
     }
     if (figure.grasp) {
       file_.addNode({.name = "grasp point",
@@ -49,25 +50,45 @@ class FigureWriter {
                      .camera_fov = figure.camera->vertical_fov,
                      .parent = root});
     }
+    return {};
   }
 
   [[nodiscard]] Result<std::string> bytes() const { return file_.bytes(); }
 
  private:
-  void writePart(const Figure& figure, const FigurePart& part, std::size_t node) {
-    if (!part.surface.empty()) {
-      const std::string name = part.name + " mesh";
-      const SurfaceView& surface = part.surface;
-      const std::size_t mesh = file_.addMesh(
-          {.name = name,
-           .positions = surface.positions,
-           .colors = surface.colors,
-           .corners = surface.corners,
-           .material = material(surface.colors.empty() ? kMeshMaterial : kColoredMaterial)});
-      file_.addNode({.name = name, .mesh = mesh, .parent = node});
+  Result<void> writePart(const Figure& figure, const FigurePart& part, std::size_t node) {
+    const std::string name = part.name + " mesh";
+    if (part.render_model) {
+      const RenderMeshes& meshes = *figure.render_meshes;
+      auto written = writerOf(meshes).write(meshes.models[*part.render_model], name, node);
+      if (!written) return written;
+    } else if (!part.surface.empty()) {
+      writeSurface(part.surface, name, node);
     }
     if (!part.spheres.empty()) writeSpheres(figure, part, node);
-    if (!part.box) return;
+    if (part.box) writeBox(part, node);
+    return {};
+  }
+
+  /// The one for all figures that share these meshes, and so their textures.
+  RenderGlbWriter& writerOf(const RenderMeshes& meshes) {
+    return writers_.try_emplace(&meshes, meshes, file_).first->second;
+  }
+
+  void writeSurface(const SurfaceView& surface, const std::string& name, std::size_t node) {
+    const std::size_t mesh = addMesh(
+        name, {.positions = surface.positions,
+               .colors = surface.colors,
+               .corners = surface.corners,
+               .material = material(surface.colors.empty() ? kMeshMaterial : kColoredMaterial)});
+    file_.addNode({.name = name, .mesh = mesh, .parent = node});
+  }
+
+  std::size_t addMesh(const std::string& name, const GlbPrimitive& primitive) {
+    return file_.addMesh(name, {&primitive, 1});
+  }
+
+  void writeBox(const FigurePart& part, std::size_t node) {
     file_.addNode({.name = part.name + " box",
                    .parent_from_node = part.box->pose,
                    .scale = part.box->half_extents,
@@ -99,13 +120,13 @@ class FigureWriter {
     std::vector<Vec3> points;
     points.reserve(unit.points.size());
     for (const Vec3& point : unit.points) points.push_back(point * radius);
-    found->second =
-        file_.addMesh({.name = fmt::format("sphere of {} m", radius),
-                       .positions = points,
-                       .normals = unit.points,
-                       .corners = unit.corners,
-                       .material = material(kind == FigureKind::kRobot ? kRobotSphereMaterial
-                                                                       : kObjectSphereMaterial)});
+    found->second = addMesh(
+        fmt::format("sphere of {} m", radius),
+        {.positions = points,
+         .normals = unit.points,
+         .corners = unit.corners,
+         .material =
+             material(kind == FigureKind::kRobot ? kRobotSphereMaterial : kObjectSphereMaterial)});
     return found->second;
   }
 
@@ -117,15 +138,16 @@ class FigureWriter {
       ends.push_back(static_cast<std::uint32_t>(from));
       ends.push_back(static_cast<std::uint32_t>(to));
     }
-    box_ = file_.addMesh({.name = "box",
-                          .positions = corners,
-                          .corners = ends,
-                          .shape = GlbShape::kLines,
-                          .material = material(kBoxMaterial)});
+    box_ = addMesh("box", {.positions = corners,
+                           .corners = ends,
+                           .shape = GlbShape::kLines,
+                           .material = material(kBoxMaterial)});
     return *box_;
   }
 
   GlbFile file_;
+  /// Asked by address, never walked through.
+  std::map<const RenderMeshes*, RenderGlbWriter> writers_;
   std::map<std::string, std::size_t> materials_;
   std::map<std::pair<FigureKind, float>, std::size_t> spheres_;
   std::optional<std::size_t> box_;
@@ -135,7 +157,9 @@ class FigureWriter {
 
 Result<std::string> encodeGlb(std::span<const Figure> figures) {
   FigureWriter writer;
-  for (const Figure& figure : figures) writer.write(figure);
+  for (const Figure& figure : figures) {
+    if (auto written = writer.write(figure); !written) return tl::unexpected(written.error());
+  }
   return writer.bytes();
 }
 

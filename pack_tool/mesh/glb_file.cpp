@@ -50,30 +50,74 @@ std::uint16_t linearFromSrgb(std::uint32_t value) {
   return static_cast<std::uint16_t>(std::lround(linear * kSixteen));
 }
 
+/// As renderers of packs read textures.
+nlohmann::ordered_json samplerJson() {
+  constexpr int kLinear = 9729;
+  constexpr int kLinearOfNearestLevel = 9985;
+  constexpr int kRepeat = 10497;
+  return {{"magFilter", kLinear},
+          {"minFilter", kLinearOfNearestLevel},
+          {"wrapS", kRepeat},
+          {"wrapT", kRepeat}};
+}
+
 nlohmann::ordered_json listOf(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
+std::array<float, 4> linearColor(std::uint32_t color) {
+  constexpr float kSixteen = 65535;
+  constexpr float kEight = 255;
+  std::array<float, 4> linear{};
+  for (unsigned channel = 0; channel < 3; ++channel) {
+    linear[channel] = static_cast<float>(linearFromSrgb(color >> (8 * channel) & 0xffU)) / kSixteen;
+  }
+  linear[3] = static_cast<float>(color >> 24U) / kEight;
+  return linear;
+}
+
+std::size_t GlbFile::addTexture(std::string_view name, const std::string& png) {
+  images_.push_back({{"name", name},
+                     {"mimeType", "image/png"},
+                     {"bufferView", addView(std::as_bytes(std::span(png)), std::nullopt)}});
+  textures_.push_back({{"sampler", 0}, {"source", images_.size() - 1}});
+  return textures_.size() - 1;
+}
+
 std::size_t GlbFile::addMaterial(const GlbMaterial& material) {
-  Json json{{"name", material.name},
-            {"pbrMetallicRoughness",
-             {{"baseColorFactor", material.color}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
-            // Scans have holes: what is seen through them is not nothing.
-            {"doubleSided", true}};
-  if (material.color[3] < 1) json["alphaMode"] = "BLEND";
+  Json surface{{"baseColorFactor", material.color}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
+  if (material.texture) surface["baseColorTexture"] = {{"index", *material.texture}};
+  Json json{{"name", material.name}, {"pbrMetallicRoughness", std::move(surface)}};
+  if (material.two_sided) json["doubleSided"] = true;
+  if (material.alpha_cutoff > 0) {
+    json["alphaMode"] = "MASK";
+    json["alphaCutoff"] = material.alpha_cutoff;
+  } else if (material.color[3] < 1) {
+    json["alphaMode"] = "BLEND";
+  }
+  if (material.unlit) {
+    has_unlit_ = true;
+    json["extensions"] = {{"KHR_materials_unlit", Json::object()}};
+  }
   materials_.push_back(std::move(json));
   return materials_.size() - 1;
 }
 
-std::size_t GlbFile::addMesh(const GlbMesh& mesh) {
-  Json attributes{{"POSITION", addVectors(mesh.positions)}};
-  if (!mesh.normals.empty()) attributes["NORMAL"] = addVectors(mesh.normals);
-  if (!mesh.colors.empty()) attributes["COLOR_0"] = addColors(mesh.colors);
-  Json primitive{{"attributes", std::move(attributes)},
-                 {"indices", addIndices(mesh.corners)},
-                 {"material", mesh.material},
-                 {"mode", static_cast<int>(mesh.shape)}};
-  meshes_.push_back({{"name", mesh.name}, {"primitives", Json::array({std::move(primitive)})}});
+GlbFile::Json GlbFile::primitiveOf(const GlbPrimitive& primitive) {
+  Json attributes{{"POSITION", addVectors(primitive.positions)}};
+  if (!primitive.normals.empty()) attributes["NORMAL"] = addVectors(primitive.normals);
+  if (!primitive.uvs.empty()) attributes["TEXCOORD_0"] = addUvs(primitive.uvs);
+  if (!primitive.colors.empty()) attributes["COLOR_0"] = addColors(primitive.colors);
+  return {{"attributes", std::move(attributes)},
+          {"indices", addIndices(primitive.corners)},
+          {"material", primitive.material},
+          {"mode", static_cast<int>(primitive.shape)}};
+}
+
+std::size_t GlbFile::addMesh(std::string_view name, std::span<const GlbPrimitive> primitives) {
+  Json list = Json::array();
+  for (const GlbPrimitive& primitive : primitives) list.push_back(primitiveOf(primitive));
+  meshes_.push_back({{"name", name}, {"primitives", std::move(list)}});
   return meshes_.size() - 1;
 }
 
@@ -115,6 +159,10 @@ Result<std::string> GlbFile::bytes() const {
   add(json, "meshes", meshes_);
   add(json, "cameras", cameras_);
   add(json, "materials", materials_);
+  add(json, "textures", textures_);
+  add(json, "images", images_);
+  if (!textures_.empty()) json["samplers"] = Json::array({samplerJson()});
+  if (has_unlit_) json["extensionsUsed"] = Json::array({"KHR_materials_unlit"});
   add(json, "accessors", accessors_);
   add(json, "bufferViews", views_);
   std::string binary = binary_;
@@ -140,12 +188,11 @@ Result<std::string> GlbFile::bytes() const {
   return file;
 }
 
-std::size_t GlbFile::addView(std::span<const std::byte> data, int target) {
+std::size_t GlbFile::addView(std::span<const std::byte> data, std::optional<int> target) {
   pad(binary_, '\0');
-  views_.push_back({{"buffer", 0},
-                    {"byteOffset", binary_.size()},
-                    {"byteLength", data.size()},
-                    {"target", target}});
+  Json view{{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", data.size()}};
+  if (target) view["target"] = *target;
+  views_.push_back(std::move(view));
   binary_.append(reinterpret_cast<const char*>(data.data()), data.size());
   return views_.size() - 1;
 }
@@ -163,6 +210,13 @@ std::size_t GlbFile::addVectors(std::span<const Vec3> vectors) {
                       {"type", "VEC3"},
                       {"min", listOf(low)},
                       {"max", listOf(high)}});
+}
+
+std::size_t GlbFile::addUvs(std::span<const std::array<float, 2>> uvs) {
+  return addAccessor({{"bufferView", addView(std::as_bytes(uvs), kArrayBuffer)},
+                      {"componentType", kFloat},
+                      {"count", uvs.size()},
+                      {"type", "VEC2"}});
 }
 
 std::size_t GlbFile::addColors(std::span<const std::uint32_t> colors) {

@@ -16,13 +16,15 @@ namespace galactic::pack_tool {
 /// How the corners of a mesh are joined; the values are those of glTF.
 enum class GlbShape { kLines = 1, kTriangles = 4 };
 
-/// A mesh for a GLB file: views, copied when it is added.
-struct GlbMesh {
-  std::string_view name;
+/// Triangles or lines of one material for a GLB file: views, copied when they are added.
+struct GlbPrimitive {
   /// At least one.
   std::span<const Vec3> positions;
   /// Unit vectors, one per position; or none for flat faces.
   std::span<const Vec3> normals = {};
+  /// Texture coordinates, u to the right and v down from the image's top: one per position, or
+  /// none.
+  std::span<const std::array<float, 2>> uvs = {};
   /// RGBA, sRGB, 8 bits each, R lowest: one per position, or none.
   std::span<const std::uint32_t> colors = {};
   /// Indices of positions, two per line or three per triangle; at least one of them.
@@ -33,9 +35,20 @@ struct GlbMesh {
 
 struct GlbMaterial {
   std::string_view name;
-  /// Linear; alpha below 1 makes it translucent.
+  /// Linear; alpha below 1 makes it translucent, unless there is a cut-off.
   std::array<float, 4> color{1, 1, 1, 1};
+  /// From addTexture().
+  std::optional<std::size_t> texture = std::nullopt;
+  /// Over 0: what has less alpha than this is not there.
+  float alpha_cutoff = 0;
+  /// Scans have holes: what is seen through them is not nothing.
+  bool two_sided = true;
+  /// Shown as it is, whatever the light (KHR_materials_unlit).
+  bool unlit = false;
 };
+
+/// An sRGB colour of 8 bits each, R lowest, as glTF has it: linear but for alpha.
+[[nodiscard]] std::array<float, 4> linearColor(std::uint32_t color);
 
 /// A named place in the scene.
 struct GlbNode {
@@ -54,8 +67,10 @@ struct GlbNode {
 class GlbFile {
  public:
   // Each returns an index for the ones added later.
+  /// An image as the bytes of a PNG file; repeats, and is read from its nearest mip level.
+  std::size_t addTexture(std::string_view name, const std::string& png);
   std::size_t addMaterial(const GlbMaterial& material);
-  std::size_t addMesh(const GlbMesh& mesh);
+  std::size_t addMesh(std::string_view name, std::span<const GlbPrimitive> primitives);
   std::size_t addNode(const GlbNode& node);
 
   /// The file's bytes. Fails with kUnsupported, an empty `where`, beyond the 4 GiB of a GLB file.
@@ -64,14 +79,20 @@ class GlbFile {
  private:
   using Json = nlohmann::ordered_json;
 
-  /// Appends data as a buffer view of its own; returns its index.
-  std::size_t addView(std::span<const std::byte> data, int target);
+  /// Appends data as a buffer view of its own; returns its index. `target`: what vertices and
+  /// indices are bound to.
+  std::size_t addView(std::span<const std::byte> data, std::optional<int> target);
+  std::size_t addUvs(std::span<const std::array<float, 2>> uvs);
+  Json primitiveOf(const GlbPrimitive& primitive);
   std::size_t addVectors(std::span<const Vec3> vectors);
   std::size_t addColors(std::span<const std::uint32_t> colors);
   std::size_t addIndices(std::span<const std::uint32_t> indices);
   std::size_t addAccessor(Json accessor);
 
+  Json images_ = Json::array();
+  Json textures_ = Json::array();
   Json materials_ = Json::array();
+  bool has_unlit_ = false;
   Json views_ = Json::array();
   Json accessors_ = Json::array();
   Json meshes_ = Json::array();

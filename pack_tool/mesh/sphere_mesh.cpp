@@ -11,8 +11,6 @@ namespace galactic::pack_tool {
 
 namespace {
 
-constexpr int kCuts = 2;
-
 Vec3 unit(const Vec3& v) { return v * (1 / std::sqrt(dot(v, v))); }
 
 SphereMesh icosahedron() {
@@ -54,9 +52,9 @@ SphereMesh cut(const SphereMesh& coarse) {
 
 }  // namespace
 
-SphereMesh makeSphereMesh() {
+SphereMesh makeSphereMesh(int cuts) {
   SphereMesh mesh = icosahedron();
-  for (int n = 0; n < kCuts; ++n) mesh = cut(mesh);
+  for (int n = 0; n < cuts; ++n) mesh = cut(mesh);
   return mesh;
 }
 

@@ -7,13 +7,14 @@
 
 namespace galactic::pack_tool {
 
-/// The unit sphere as 320 triangles over 162 points: an icosahedron, each face cut in four twice.
+/// The unit sphere: an icosahedron, each face cut in four a few times; after two cuts 320 triangles
+/// over 162 points.
 /// Points are unit vectors, so they are the normals too.
 struct SphereMesh {
   std::vector<Vec3> points;
   /// Three per triangle, counter-clockwise seen from outside.
   std::vector<std::uint32_t> corners;
 };
-[[nodiscard]] SphereMesh makeSphereMesh();
+[[nodiscard]] SphereMesh makeSphereMesh(int cuts = 2);
 
 }  // namespace galactic::pack_tool

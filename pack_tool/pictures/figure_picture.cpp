@@ -44,8 +44,9 @@ std::vector<LegendEntry> legendOf(const Figure& figure) {
   };
   const bool robot = figure.kind == FigureKind::kRobot;
   std::vector<LegendEntry> legend;
-  if (any([](const FigurePart& part) { return !part.surface.empty(); })) {
-    legend.push_back({kMeshGrey, robot ? "mesh, in its own colours" : "mesh"});
+  const bool textured = any([](const FigurePart& part) { return part.render_model.has_value(); });
+  if (textured || any([](const FigurePart& part) { return !part.surface.empty(); })) {
+    legend.push_back({kMeshGrey, robot || textured ? "mesh, in its own colours" : "mesh"});
   }
   if (any([](const FigurePart& part) { return !part.spheres.empty(); })) {
     std::string radii;

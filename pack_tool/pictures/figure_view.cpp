@@ -82,11 +82,24 @@ std::vector<RasterLine> markLines(const Figure& figure) {
   return lines;
 }
 
+/// Where the ceiling of a scene is left out, metres.
+float ceilingOf(const Figure& scene) {
+  // Over doors and furniture, under lamps and beams.
+  constexpr float kShare = 0.8F;
+  const pack_tool::FigureBounds bounds = boundsOf(scene);
+  return bounds.min.y + kShare * (bounds.max.y - bounds.min.y);
+}
+
 void drawPart(MeshRaster& raster, const Figure& figure, const FigurePart& part) {
   const bool robot = figure.kind == FigureKind::kRobot;
-  const auto colors = robot ? part.surface.colors : std::span<const std::uint32_t>();
-  raster.drawMesh({part.surface.positions, part.surface.corners, colors, kMeshGrey},
-                  part.world_from_part);
+  if (part.render_model) {
+    const RenderMeshes& meshes = *figure.render_meshes;
+    raster.drawRenderModel(meshes, meshes.models[*part.render_model], part.world_from_part);
+  } else {
+    const auto colors = robot ? part.surface.colors : std::span<const std::uint32_t>();
+    raster.drawMesh({part.surface.positions, part.surface.corners, colors, kMeshGrey},
+                    part.world_from_part);
+  }
   for (const SetSphere& sphere : part.spheres) {
     raster.drawSphere({part.world_from_part * sphere.centre, figure.radii[sphere.radius_index]},
                       robot ? kRobotSpheres : kObjectSpheres);
@@ -110,6 +123,9 @@ ViewWindow windowOf(const Figure& figure, const ViewAxes& axes) {
     const Pose& pose = part.world_from_part;
     for (const std::uint32_t corner : part.surface.corners) {
       include(window, axes, {pose * part.surface.positions[corner], 0});
+    }
+    if (part.surface.empty() && part.render_model) {
+      for (const Vec3& corner : renderBoxOf(figure, part)) include(window, axes, {corner, 0});
     }
     for (const SetSphere& sphere : part.spheres) {
       include(window, axes, {pose * sphere.centre, figure.radii[sphere.radius_index]});
@@ -135,6 +151,7 @@ void drawFigureView(Image& image, const ViewPlace& place, const Figure& figure,
   const auto up = static_cast<float>(0.5 * (window.low_up + window.high_up));
   MeshRaster raster(
       {axes, axes.right * right + axes.up * up, pixels_per_metre, place.size, place.size});
+  if (figure.kind == FigureKind::kScene) raster.leaveOutAbove(ceilingOf(figure));
   for (const FigurePart& part : figure.parts) drawPart(raster, figure, part);
   for (const RasterLine& line : markLines(figure)) raster.drawLine(line);
   raster.compose(image, place.left, place.top);

@@ -4,7 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
+#include "galactic/batch_renderer.h"
+#include "galactic/render_library.h"
+#include "pack_tool/mesh/sphere_mesh.h"
+#include "pack_tool/render/render_surfaces.h"
 #include "pictures/palette.h"
 
 namespace galactic::pictures {
@@ -14,9 +19,23 @@ namespace {
 /// Samples along each edge of a pixel.
 constexpr int kSamples = 2;
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
+/// Units of the frame that is drawn: the lattice of its vertices is finer than a hundredth of this.
+constexpr double kSamplesPerUnit = 16;
+/// How far away the viewer is, in heights of the picture.
+constexpr double kLens = 256;
+/// Vertices beyond this many units are left out: a render mesh is at most 65,535 across with this
+/// lattice. A picture is 256 wide at most.
+constexpr float kFarthest = 30000;
+/// A texture that repeats more often is a blur.
+constexpr float kMostImages = 1e5F;
+/// Cuts of an icosahedron: a sphere's outline is round to half a percent.
+constexpr int kSphereCuts = 3;
+constexpr std::uint32_t kOpaque = 0xFF000000;
 /// Of the light: what reaches every side, and what comes from over the viewer's left shoulder.
 constexpr double kAmbient = 0.35;
 constexpr double kDiffuse = 0.65;
+/// Textures have light in them: their shading is weaker.
+constexpr double kLeastOfTextures = 0.55;
 constexpr std::array<double, 3> kLight{-0.37, 0.56, 0.74};
 /// How much of what lies behind a sphere it covers.
 constexpr double kSphereShare = 0.5;
@@ -65,16 +84,36 @@ SampleRange samplesBetween(double low, double high, int count) {
   return {clamped(std::ceil(low - 0.5)), clamped(std::floor(high - 0.5) + 1)};
 }
 
-Rgb meanColour(const RasterMesh& mesh, const std::array<std::uint32_t, 3>& corners) {
-  if (mesh.colors.empty()) return mesh.colour;
-  std::array<std::uint32_t, 3> sum{};
-  for (const std::uint32_t corner : corners) {
-    for (unsigned channel = 0; channel < 3; ++channel) {
-      sum[channel] += (mesh.colors[corner] >> (8 * channel)) & 0xffU;
+std::uint32_t packed(Rgb colour) {
+  return std::uint32_t{colour.r} | std::uint32_t{colour.g} << 8U | std::uint32_t{colour.b} << 16U |
+         kOpaque;
+}
+
+Rgb unpacked(std::uint32_t color) {
+  return {static_cast<std::uint8_t>(color), static_cast<std::uint8_t>(color >> 8U),
+          static_cast<std::uint8_t>(color >> 16U)};
+}
+
+/// Drops the triangles that lie wholly above a height.
+void dropAbove(float height, const Pose& world_from_model, RenderSurface& surface) {
+  std::size_t kept = 0;
+  for (std::size_t n = 0; n + 2 < surface.corners.size(); n += 3) {
+    bool above = true;
+    for (std::size_t corner = n; corner < n + 3; ++corner) {
+      const Vec3& p = surface.vertices[surface.corners[corner]].position;
+      above = above && (world_from_model * p).y > height;
+    }
+    if (above) continue;
+    for (std::size_t corner = n; corner < n + 3; ++corner) {
+      surface.corners[kept++] = surface.corners[corner];
     }
   }
-  return {static_cast<std::uint8_t>(sum[0] / 3), static_cast<std::uint8_t>(sum[1] / 3),
-          static_cast<std::uint8_t>(sum[2] / 3)};
+  surface.corners.resize(kept);
+}
+
+/// Whether a picture can hold it; a comparison with NaN is false.
+bool isNear(const Vec3& p) {
+  return std::abs(p.x) < kFarthest && std::abs(p.y) < kFarthest && std::abs(p.z) < kFarthest;
 }
 
 }  // namespace
@@ -89,104 +128,184 @@ MeshRaster::MeshRaster(const RasterView& view)
     : view_(view),
       width_(view.width * kSamples),
       height_(view.height * kSamples),
-      samples_per_metre_(view.pixels_per_metre * kSamples) {
-  const std::size_t samples = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-  for (Layer* layer : {&mesh_, &spheres_}) {
-    layer->colours.assign(samples, kPaper);
-    layer->depths.assign(samples, kNothing);
+      samples_per_metre_(view.pixels_per_metre * kSamples),
+      distance_(kLens * std::max(width_, height_) / kSamplesPerUnit) {
+  source_.parts.resize(2);
+  source_.parts[1].part = 1;
+  source_.materials.push_back({.name = "colour of the vertices"});
+  source_.semantics.emplace_back("figure");
+  for (RenderPart& part : source_.parts) {
+    part.surfaces.resize(1);
+    part.surfaces.front().two_sided = true;
   }
+}
+
+Vec3 MeshRaster::inView(const Vec3& point) const {
+  const Vec3 offset = point - view_.centre;
+  const double scale = samples_per_metre_ / kSamplesPerUnit;
+  return {static_cast<float>(-scale * dotProduct(offset, view_.axes.toward)),
+          static_cast<float>(scale * dotProduct(offset, view_.axes.up)),
+          static_cast<float>(scale * dotProduct(offset, view_.axes.right))};
 }
 
 MeshRaster::Sample MeshRaster::project(const Vec3& point) const {
   const Vec3 offset = point - view_.centre;
-  return {0.5 * width_ + samples_per_metre_ * dotProduct(offset, view_.axes.right),
-          0.5 * height_ - samples_per_metre_ * dotProduct(offset, view_.axes.up),
-          dotProduct(offset, view_.axes.toward)};
+  const double depth = dotProduct(offset, view_.axes.toward) * samples_per_metre_ / kSamplesPerUnit;
+  const double scale = samples_per_metre_ * distance_ / (distance_ - depth);
+  return {0.5 * width_ + scale * dotProduct(offset, view_.axes.right),
+          0.5 * height_ - scale * dotProduct(offset, view_.axes.up), depth};
+}
+
+void MeshRaster::addTriangle(RenderSurface& to, std::array<RenderVertex, 3> corners,
+                             double least_light) const {
+  if (!std::ranges::all_of(corners, [](const RenderVertex& v) { return isNear(v.position); })) {
+    return;
+  }
+  const Vec3& origin = corners[0].position;
+  const Vec3 normal = cross(corners[1].position - origin, corners[2].position - origin);
+  // The side that is seen: X points away from the viewer.
+  const double side = normal.x > 0 ? -1 : 1;
+  const double light =
+      lightOn(side * static_cast<double>(normal.z), side * static_cast<double>(normal.y),
+              -side * static_cast<double>(normal.x));
+  const double share = (light - kAmbient) / (1 - kAmbient);
+  const double shown = least_light + (1 - least_light) * share;
+  for (RenderVertex& corner : corners) {
+    corner.color = packed(shaded(unpacked(corner.color), shown));
+    to.corners.push_back(static_cast<std::uint32_t>(to.vertices.size()));
+    to.vertices.push_back(corner);
+  }
 }
 
 void MeshRaster::drawMesh(const RasterMesh& mesh, const Pose& world_from_mesh) {
-  std::vector<Sample> projected;
-  projected.reserve(mesh.positions.size());
-  for (const Vec3& position : mesh.positions) {
-    projected.push_back(project(world_from_mesh * position));
-  }
+  RenderSurface& surface = source_.parts[0].surfaces.front();
   for (std::size_t n = 0; n + 2 < mesh.corners.size(); n += 3) {
-    const std::array<std::uint32_t, 3> corners{mesh.corners[n], mesh.corners[n + 1],
-                                               mesh.corners[n + 2]};
-    drawTriangle({projected[corners[0]], projected[corners[1]], projected[corners[2]]},
-                 meanColour(mesh, corners));
+    std::array<RenderVertex, 3> corners;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::uint32_t index = mesh.corners[n + corner];
+      corners[corner].position = inView(world_from_mesh * mesh.positions[index]);
+      corners[corner].color = mesh.colors.empty() ? packed(mesh.colour) : mesh.colors[index];
+    }
+    addTriangle(surface, corners, kAmbient);
   }
 }
 
-void MeshRaster::drawTriangle(const std::array<Sample, 3>& c, Rgb colour) {
-  const double ux = c[1].x - c[0].x;
-  const double uy = c[1].y - c[0].y;
-  const double vx = c[2].x - c[0].x;
-  const double vy = c[2].y - c[0].y;
-  const double area = ux * vy - uy * vx;
-  if (area == 0) return;
-  const double ud = c[1].depth - c[0].depth;
-  const double vd = c[2].depth - c[0].depth;
-  // Change of depth along x and y: the plane's slope, and with it the normal.
-  const double slope_x = (ud * vy - uy * vd) / area;
-  const double slope_y = (ux * vd - ud * vx) / area;
-  const Rgb lit =
-      shaded(colour, lightOn(-slope_x * samples_per_metre_, slope_y * samples_per_metre_, 1));
+std::size_t MeshRaster::firstMaterialOf(const RenderMeshes& meshes) {
+  const auto found =
+      std::ranges::find(packs_, &meshes, [](const auto& pack) { return pack.first; });
+  if (found != packs_.end()) return found->second;
+  const std::size_t first = source_.materials.size();
+  const auto first_texture = static_cast<std::int32_t>(source_.textures.size());
+  source_.textures.insert(source_.textures.end(), meshes.textures.begin(), meshes.textures.end());
+  for (RenderMaterial material : meshes.materials) {
+    if (material.texture >= 0) material.texture += first_texture;
+    source_.materials.push_back(material);
+  }
+  packs_.emplace_back(&meshes, first);
+  return first;
+}
 
-  const auto [low_x, high_x] = std::minmax({c[0].x, c[1].x, c[2].x});
-  const auto [low_y, high_y] = std::minmax({c[0].y, c[1].y, c[2].y});
-  const SampleRange columns = samplesBetween(low_x, high_x, width_);
-  const SampleRange rows = samplesBetween(low_y, high_y, height_);
-  for (int y = rows.begin; y < rows.end; ++y) {
-    for (int x = columns.begin; x < columns.end; ++x) {
-      const double px = x + 0.5 - c[0].x;
-      const double py = y + 0.5 - c[0].y;
-      const double b = (px * vy - py * vx) / area;
-      const double g = (ux * py - uy * px) / area;
-      if (b < 0 || g < 0 || b + g > 1) continue;
-      plot(mesh_, {x, y}, c[0].depth + slope_x * px + slope_y * py, lit);
+void MeshRaster::leaveOutAbove(float height) { highest_ = height; }
+
+void MeshRaster::drawRenderModel(const RenderMeshes& meshes, const RenderModel& model,
+                                 const Pose& world_from_model) {
+  const std::size_t first = firstMaterialOf(meshes);
+  for (RenderSurface& stored : pack_tool::surfacesOf(meshes, model)) {
+    RenderSurface& surface = source_.parts[0].surfaces.emplace_back();
+    surface.material = static_cast<std::uint16_t>(first + stored.material);
+    surface.two_sided = stored.two_sided;
+    const bool textured = meshes.materials[stored.material].texture >= 0;
+    if (highest_) dropAbove(*highest_, world_from_model, stored);
+    for (RenderVertex& vertex : stored.vertices) {
+      vertex.position = inView(world_from_model * vertex.position);
+      if (!(std::abs(vertex.u) < kMostImages && std::abs(vertex.v) < kMostImages)) {
+        vertex.u = 0;
+        vertex.v = 0;
+      }
+    }
+    for (std::size_t n = 0; n + 2 < stored.corners.size(); n += 3) {
+      const std::array<RenderVertex, 3> corners{stored.vertices[stored.corners[n]],
+                                                stored.vertices[stored.corners[n + 1]],
+                                                stored.vertices[stored.corners[n + 2]]};
+      addTriangle(surface, corners, textured ? kLeastOfTextures : kAmbient);
     }
   }
 }
 
 void MeshRaster::drawSphere(const RasterSphere& sphere, Rgb colour) {
-  const Sample centre = project(sphere.centre);
-  const auto metres = static_cast<double>(sphere.radius);
-  const double radius = metres * samples_per_metre_;
-  const SampleRange columns = samplesBetween(centre.x - radius, centre.x + radius, width_);
-  const SampleRange rows = samplesBetween(centre.y - radius, centre.y + radius, height_);
-  for (int y = rows.begin; y < rows.end; ++y) {
-    for (int x = columns.begin; x < columns.end; ++x) {
-      const double u = (x + 0.5 - centre.x) / radius;
-      const double v = (y + 0.5 - centre.y) / radius;
-      const double square = 1 - u * u - v * v;
-      if (!(square > 0)) continue;
-      const double height = std::sqrt(square);
-      plot(spheres_, {x, y}, centre.depth + metres * height,
-           shaded(colour, lightOn(u, -v, height)));
-    }
+  const Vec3 centre = inView(sphere.centre);
+  const auto radius =
+      static_cast<float>(static_cast<double>(sphere.radius) * samples_per_metre_ / kSamplesPerUnit);
+  if (!isNear(centre) || !(radius < kFarthest)) return;
+  const pack_tool::SphereMesh unit = pack_tool::makeSphereMesh(kSphereCuts);
+  RenderSurface& surface = source_.parts[1].surfaces.emplace_back();
+  surface.vertices.reserve(unit.points.size());
+  for (const Vec3& p : unit.points) {
+    const double light =
+        lightOn(static_cast<double>(p.z), static_cast<double>(p.y), -static_cast<double>(p.x));
+    surface.vertices.push_back(
+        {.position = centre + p * radius, .color = packed(shaded(colour, light))});
   }
+  surface.corners = unit.corners;
+}
+
+std::array<MeshRaster::Layer, 2> MeshRaster::render() const {
+  const std::size_t samples = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  std::array<Layer, 2> layers;
+  for (Layer& layer : layers) {
+    layer.colours.assign(samples, kPaper);
+    layer.depths.assign(samples, kNothing);
+  }
+  // Whatever the layout or the renderer could refuse was left out before.
+  const Result<RenderMeshStorage> storage = buildRenderMeshes(source_);
+  if (!storage) return layers;
+  RenderLibrary library;
+  library.add(storage->view());
+  RenderOptions options;
+  options.width = static_cast<std::uint32_t>(width_);
+  options.height = static_cast<std::uint32_t>(height_);
+  options.color = ColorFormat::kRgb8;
+  options.near = static_cast<float>(0.5 * distance_);
+  options.backend = RenderBackend::kSoft;
+  options.threads = 1;
+  auto renderer = BatchRenderer::create(library, options);
+  if (!renderer) return layers;
+
+  RenderCamera camera;
+  camera.world_from_camera = rigidTransform({{static_cast<float>(-distance_), 0, 0}, Quat{}});
+  camera.vertical_fov =
+      static_cast<float>(2 * std::atan(0.5 * height_ / kSamplesPerUnit / distance_));
+  std::vector<std::uint8_t> colours(2 * 3 * samples);
+  std::vector<float> depths(2 * samples);
+  const std::array<RenderInstance, 2> instances{
+      {{.model = 0, .world_from_model = {}}, {.model = 1, .world_from_model = {}}}};
+  std::array<RenderView, 2> views;
+  for (std::size_t n = 0; n < views.size(); ++n) {
+    const bool any = library.model(static_cast<std::uint32_t>(n)).cluster_count > 0;
+    views[n] = {camera, std::span(instances).subspan(n, any ? 1 : 0)};
+  }
+  renderer->render(views, {.color = colours, .depth = depths, .semantics = {}});
+  for (std::size_t n = 0; n < 2 * samples; ++n) {
+    if (!(depths[n] > 0)) continue;
+    Layer& layer = layers[n / samples];
+    layer.colours[n % samples] = {colours[3 * n], colours[3 * n + 1], colours[3 * n + 2]};
+    layer.depths[n % samples] = static_cast<float>(distance_ - static_cast<double>(depths[n]));
+  }
+  return layers;
 }
 
 void MeshRaster::drawLine(const RasterLine& line) { lines_.push_back(line); }
-
-void MeshRaster::plot(Layer& layer, SamplePlace place, double depth, Rgb colour) const {
-  const std::size_t index = indexOf(place);
-  const auto stored = static_cast<float>(depth);
-  if (!(stored > layer.depths[index])) return;
-  layer.depths[index] = stored;
-  layer.colours[index] = colour;
-}
 
 std::size_t MeshRaster::indexOf(SamplePlace place) const {
   return static_cast<std::size_t>(place.y) * static_cast<std::size_t>(width_) +
          static_cast<std::size_t>(place.x);
 }
 
-void MeshRaster::plotLine(const RasterLine& line, std::vector<Rgb>& samples) const {
+void MeshRaster::plotLine(const RasterLine& line, const Layer& meshes,
+                          std::vector<Rgb>& samples) const {
   const Sample from = project(line.from);
   const Sample to = project(line.to);
-  const double bias = kLineBias * height_ / samples_per_metre_;
+  const double bias = kLineBias * height_ / kSamplesPerUnit;
   const double dx = to.x - from.x;
   const double dy = to.y - from.y;
   const double length = std::hypot(dx, dy);
@@ -204,20 +323,21 @@ void MeshRaster::plotLine(const RasterLine& line, std::vector<Rgb>& samples) con
       if (std::hypot(px - way * dx, py - way * dy) > kHalfLine) continue;
       const std::size_t index = indexOf({x, y});
       const double depth = from.depth + way * (to.depth - from.depth) + bias;
-      const bool hidden = depth < static_cast<double>(mesh_.depths[index]);
+      const bool hidden = depth < static_cast<double>(meshes.depths[index]);
       samples[index] = blend(samples[index], line.colour, hidden ? kHiddenLineShare : kLineShare);
     }
   }
 }
 
 void MeshRaster::compose(Image& image, int left, int top) const {
-  std::vector<Rgb> samples = mesh_.colours;
+  const auto [meshes, spheres] = render();
+  std::vector<Rgb> samples = meshes.colours;
   for (std::size_t n = 0; n < samples.size(); ++n) {
-    if (spheres_.depths[n] > mesh_.depths[n]) {
-      samples[n] = blend(samples[n], spheres_.colours[n], kSphereShare);
+    if (spheres.depths[n] > meshes.depths[n]) {
+      samples[n] = blend(samples[n], spheres.colours[n], kSphereShare);
     }
   }
-  for (const RasterLine& line : lines_) plotLine(line, samples);
+  for (const RasterLine& line : lines_) plotLine(line, meshes, samples);
   for (int y = 0; y < view_.height; ++y) {
     for (int x = 0; x < view_.width; ++x) {
       std::array<unsigned, 3> sum{};

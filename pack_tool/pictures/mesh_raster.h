@@ -2,10 +2,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "galactic/pose.h"
+#include "galactic/render_mesh_builder.h"
 #include "pictures/image.h"
 
 namespace galactic::pictures {
@@ -58,14 +61,22 @@ struct RasterLine {
   Rgb colour;
 };
 
-/// Draws opaque meshes, translucent spheres and lines with a depth buffer, four samples per pixel.
-/// Meshes and spheres may come in any order; spheres form one translucent shell. Lines shine
-/// faintly through meshes. Coordinates must be finite.
+/// Draws opaque meshes, translucent spheres and lines, four samples per pixel. Meshes and spheres
+/// are drawn by the soft backend of BatchRenderer, through a lens so long that the view is parallel
+/// to half a pixel. They may come in any order; spheres form one translucent shell. Lines shine
+/// faintly through meshes. Coordinates must be finite; triangles far outside the view are left out.
 class MeshRaster {
  public:
   explicit MeshRaster(const RasterView& view);
 
+  /// Of render models that are drawn from now on, triangles wholly above this height of the world
+  /// are left out, metres: rooms are seen without their ceilings.
+  void leaveOutAbove(float height);
+
   void drawMesh(const RasterMesh& mesh, const Pose& world_from_mesh);
+  /// With materials and textures, shaded so that its shape is seen. `meshes` outlives this.
+  void drawRenderModel(const RenderMeshes& meshes, const RenderModel& model,
+                       const Pose& world_from_model);
   void drawSphere(const RasterSphere& sphere, Rgb colour);
   void drawLine(const RasterLine& line);
 
@@ -73,7 +84,7 @@ class MeshRaster {
   void compose(Image& image, int left, int top) const;
 
  private:
-  /// A point in samples: x to the right, y down, depth towards the viewer in metres.
+  /// A point in samples: x to the right, y down, depth towards the viewer in units of the view.
   struct Sample {
     double x = 0;
     double y = 0;
@@ -91,20 +102,32 @@ class MeshRaster {
     int y = 0;
   };
 
+  /// Where a point of the world is in the frame that is drawn: X away from the viewer, Y up, Z to
+  /// the right, in units of a few samples.
+  [[nodiscard]] Vec3 inView(const Vec3& point) const;
   [[nodiscard]] Sample project(const Vec3& point) const;
   [[nodiscard]] std::size_t indexOf(SamplePlace place) const;
-  void drawTriangle(const std::array<Sample, 3>& corners, Rgb colour);
-  /// Colours a sample of `layer` unless something nearer is there.
-  void plot(Layer& layer, SamplePlace place, double depth, Rgb colour) const;
-  void plotLine(const RasterLine& line, std::vector<Rgb>& samples) const;
+  /// `least_light`: what is left of a colour in the shadow.
+  void addTriangle(RenderSurface& to, std::array<RenderVertex, 3> corners,
+                   double least_light) const;
+  /// The first material of a pack among those of the picture.
+  std::size_t firstMaterialOf(const RenderMeshes& meshes);
+  /// The meshes and the spheres as images.
+  [[nodiscard]] std::array<Layer, 2> render() const;
+  void plotLine(const RasterLine& line, const Layer& meshes, std::vector<Rgb>& samples) const;
 
   RasterView view_;
   int width_;
   int height_;
   double samples_per_metre_;
-  Layer mesh_;
-  Layer spheres_;
+  /// From the viewer to the middle of the picture, units.
+  double distance_;
+  /// Part 0: meshes; part 1: spheres.
+  RenderMeshSource source_;
+  /// Packs whose materials are in source_, and where.
+  std::vector<std::pair<const RenderMeshes*, std::size_t>> packs_;
   std::vector<RasterLine> lines_;
+  std::optional<float> highest_;
 };
 
 }  // namespace galactic::pictures

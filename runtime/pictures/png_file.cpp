@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include <algorithm>
+#include <bit>
 #include <cstring>
-#include <span>
-#include <string>
 
 #include "galactic/atomic_file.h"
 
@@ -20,7 +20,7 @@ struct RawImage {
   const void* pixels = nullptr;
 };
 
-Result<void> write(const std::filesystem::path& path, const RawImage& image) {
+Result<std::string> encode(const RawImage& image) {
   png_image png;
   std::memset(&png, 0, sizeof png);
   png.version = PNG_IMAGE_VERSION;
@@ -34,14 +34,39 @@ Result<void> write(const std::filesystem::path& path, const RawImage& image) {
   constexpr png_int_32 kPackedRows = 0;
   if (png_image_write_to_memory(&png, bytes.data(), &size, kKeepBits, image.pixels, kPackedRows,
                                 nullptr) == 0) {
-    return fail(ErrorCode::kInternal, path.string(),
+    return fail(ErrorCode::kInternal, "",
                 fmt::format("libpng cannot encode an image of {} x {} pixels: {}", image.width,
                             image.height, png.message));
   }
-  return writeFileAtomically(path, {std::as_bytes(std::span(bytes).first(size))});
+  bytes.resize(size);
+  return bytes;
+}
+
+Result<void> write(const std::filesystem::path& path, const RawImage& image) {
+  auto bytes = encode(image);
+  if (!bytes) {
+    bytes.error().where = path.string();
+    return tl::unexpected(bytes.error());
+  }
+  return writeFileAtomically(path, {std::as_bytes(std::span(*bytes))});
 }
 
 }  // namespace
+
+Result<std::string> encodePng(const AlphaImage& image) {
+  static_assert(std::endian::native == std::endian::little, "libpng reads R first");
+  constexpr std::uint32_t kOpaque = 255;
+  const bool opaque = std::ranges::all_of(
+      image.pixels, [](std::uint32_t pixel) { return pixel >> 24U == kOpaque; });
+  if (!opaque) return encode({image.width, image.height, PNG_FORMAT_RGBA, image.pixels.data()});
+  std::vector<Rgb> pixels;
+  pixels.reserve(image.pixels.size());
+  for (const std::uint32_t pixel : image.pixels) {
+    pixels.push_back({static_cast<std::uint8_t>(pixel), static_cast<std::uint8_t>(pixel >> 8U),
+                      static_cast<std::uint8_t>(pixel >> 16U)});
+  }
+  return encode({image.width, image.height, PNG_FORMAT_RGB, pixels.data()});
+}
 
 Result<void> writePng(const std::filesystem::path& path, const Image& image) {
   static_assert(sizeof(Rgb) == 3, "libpng reads three bytes per pixel");

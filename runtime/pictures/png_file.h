@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "galactic/error.h"
@@ -14,6 +16,17 @@ struct DeepImage {
   int height = 0;
   std::vector<std::uint16_t> pixels;
 };
+
+/// Pixels with alpha, RGBA with R lowest, row by row from the top left corner: a view.
+struct AlphaImage {
+  int width = 0;
+  int height = 0;
+  std::span<const std::uint32_t> pixels;
+};
+
+/// The bytes of a PNG file, 8-bit sRGB; without alpha where all of it is 255. The same image gives
+/// the same bytes. Fails with kInternal when libpng refuses the image.
+[[nodiscard]] Result<std::string> encodePng(const AlphaImage& image);
 
 /// Writes an image as a PNG file, 8-bit sRGB, replacing an existing file in one go. The same image
 /// gives the same bytes. Fails with kIo when the file cannot be written, and kInternal when libpng

@@ -252,7 +252,7 @@ TEST_F(PackCli, PictureAndExportRefuseWhatTheyCannotWrite) {
        kInvalidInput,
        "is a pack of kind OBJS and holds no column grids, which OBJ and PLY files show"},
       {{"export", "toys.pack", "-o", "a.urdf"}, kInvalidInput, "wanted a robot (RBOT)"},
-      {{"export", "good.pack", "-o", "a.glb"}, kInvalidInput, "wanted objects (OBJS) or a robot"},
+      {{"export", "good.pack", "-o", "a.glb"}, kInvalidInput, "has no render meshes"},
       {{"export", "arm.pack", "-o", "a.urdf", "--all-zero"}, kInvalidInput, "are for GLB files"},
       {{"export", "arm.pack", "-o", "a.glb", "--radius", "0.5"},
        kInvalidInput,

@@ -27,6 +27,7 @@ struct ToyObject {
 struct ToyObjects {
   std::vector<ToyObject> objects{{}, {.name = "die", .half = {0.01F, 0.01F, 0.01F}}};
   std::string tool_version = "0.1.0";
+  RenderMeshesField render_meshes = nullptr;
 };
 
 /// A robot of five links: base -> upper (revolute) -> slide (prismatic, no limits) -> finger
@@ -39,6 +40,7 @@ struct ToyRobot {
   std::vector<schema::SetSphere> base_spheres{{schema::Vec3(0, 0.2F, 0), 1},
                                               {schema::Vec3(0.125F, 0.5F, -0.25F), 0}};
   bool with_recipe = true;
+  RenderMeshesField render_meshes = nullptr;
 };
 
 /// Makes packs of toys.
@@ -130,7 +132,9 @@ class ToyPackBuilder {
     std::vector<flatbuffers::Offset<schema::Object>> objects;
     for (const ToyObject& toy : toys.objects) objects.push_back(object(toy));
     const auto radii = fbb_.CreateVector(std::vector<float>{0.015F, 0.05F});
-    return schema::CreateObjectSet(fbb_, radii, fbb_.CreateVector(objects));
+    const auto stored = fbb_.CreateVector(objects);
+    return schema::CreateObjectSet(fbb_, radii, stored,
+                                   buildRenderMeshesField(fbb_, toys.render_meshes));
   }
 
   [[nodiscard]] std::vector<schema::LinkFrame> links(const schema::Quat& upper_rotation) const {
@@ -181,10 +185,12 @@ class ToyPackBuilder {
         std::vector{schema::CreateLinkSurface(fbb_, 0, block({0.25F, 0.125F, 0.25F}, false),
                                               block({0.25F, 0.125F, 0.25F}, true)),
                     schema::CreateLinkSurface(fbb_, 1, block({0.125F, 0.0625F, 0.0625F}, false))});
+    const auto render_meshes = buildRenderMeshesField(fbb_, toy.render_meshes);
     if (!toy.with_recipe) {
       const auto none = fbb_.CreateVectorOfStructs(std::vector<schema::ControlledJoint>{});
       return schema::CreateRobot(fbb_, name, radii, frames, link_names, joint_names, limits, start,
-                                 stored_spheres, groups, pairs, none, 0, 0, 0, surfaces);
+                                 stored_spheres, groups, pairs, none, 0, 0, 0, surfaces,
+                                 render_meshes);
     }
     const auto controlled = fbb_.CreateVectorOfStructs(
         std::vector{schema::ControlledJoint(0, 0.1F, -1, toy.upper_limit)});
@@ -197,7 +203,7 @@ class ToyPackBuilder {
     const auto base = schema::CreateBase(fbb_, 0.1F, 0.2F, 0.5F, &low, &high, 0);
     return schema::CreateRobot(fbb_, name, radii, frames, link_names, joint_names, limits, start,
                                stored_spheres, groups, pairs, controlled, effector, camera, base,
-                               surfaces);
+                               surfaces, render_meshes);
   }
 
   const schema::Quat no_turn_{0, 0, 0, 1};

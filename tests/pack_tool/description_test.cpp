@@ -118,7 +118,7 @@ TEST(DescribePack, KeepsTheOrderOfItsKeys) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   EXPECT_THAT(keys, testing::ElementsAre("file", "kind", "format_version", "bytes", "payload_xxh64",
-                                         "provenance", "scene"));
+                                         "provenance", "scene", "render_meshes"));
 }
 
 TEST(InfoText, HasOneTableColumnPerGrid) {

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "pack_tool/asset_packs.h"
 #include "pack_tool/figure/figures_of_pack.h"
+#include "pack_tool/painted_meshes.h"
 #include "pack_tool/pictures/figure_picture.h"
 #include "pack_tool/pictures/figure_view.h"
 #include "pack_tool/pictures/mesh_raster.h"
@@ -155,6 +157,29 @@ TEST(MeshRaster, DrawsNothingOutsideItsPlace) {
     EXPECT_EQ(image.at(0, n), kInk);
     EXPECT_EQ(image.at(kSize + 1, n), kInk);
   }
+}
+
+TEST(MeshRaster, DrawsRenderModelsWithTheirTexturesAndSides) {
+  const auto field = test::paintedMeshes();
+  const RenderMeshes meshes = field->view();
+  // From the front, the leaf with its holes before the wall; from behind, the leaf alone.
+  const auto coloursFrom = [&](const ViewAxes& axes, const Vec3& centre) {
+    MeshRaster raster({axes, centre, 60, kSize, kSize});
+    raster.drawRenderModel(meshes, meshes.models.front(), {});
+    const Image image = imageOf(raster);
+    std::vector<Rgb> colours;
+    for (const Rgb& pixel : image.pixels()) {
+      if (pixel != kPaper) colours.push_back(pixel);
+    }
+    return colours.size();
+  };
+  const std::size_t front = coloursFrom(kSideView, {0.5F, 0.5F, 0});
+  const ViewAxes behind{{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
+  const std::size_t back = coloursFrom(behind, {0.5F, 0.5F, 0});
+  // The leaf is 60 by 60 pixels, the wall covers what its holes show.
+  EXPECT_GT(front, 60U * 60);
+  EXPECT_GT(back, 60U * 60 / 2);
+  EXPECT_LT(back, 60U * 60 * 95 / 100);
 }
 
 TEST(ViewAxes, AreRightHanded) {

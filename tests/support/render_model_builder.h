@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "galactic/pose.h"
-#include "galactic/render_meshes.h"
+#include "galactic/render_pools.h"
 
 namespace galactic::test {
 
@@ -78,19 +78,14 @@ class RenderModelBuilder {
 
   /// Begins the next model, of the next part.
   void model() {
-    closeCluster();
-    while (bounds_.size() % kBlockFloats != 0) padBounds();
-    RenderModel next;
-    next.part = static_cast<std::uint32_t>(models_.size());
-    next.step = step_;
-    next.first_cluster = static_cast<std::uint32_t>(clusters_.size());
-    next.first_block = static_cast<std::uint32_t>(bounds_.size() / kBlockFloats);
-    models_.push_back(next);
+    closeModel();
+    open_model_ = {.step = static_cast<double>(step_), .clusters = {}};
+    has_model_ = true;
   }
 
   /// Counter-clockwise seen from outside.
   void triangle(const std::array<RenderVertex, 3>& corners, const RenderSurface& surface = {}) {
-    std::array<Stored, 3> stored;
+    std::array<LatticeVertex, 3> stored;
     std::size_t fresh = 0;
     for (std::size_t n = 0; n < 3; ++n) {
       stored[n] = store(corners[n]);
@@ -121,18 +116,11 @@ class RenderModelBuilder {
     triangle({corner(0), corner(2), corner(3)}, surface);
   }
 
-  void finish() { closeCluster(); }
+  void finish() { closeModel(); }
 
   /// Valid while the builder lives.
   [[nodiscard]] RenderMeshes meshes() const {
-    RenderMeshes meshes;
-    meshes.models = models_;
-    meshes.clusters = clusters_;
-    // Blocks are stored lane by lane here, row by row there.
-    meshes.cluster_bounds = bounds_rows_;
-    meshes.vertices = vertices_;
-    if (has_colors_) meshes.colors = colors_;
-    meshes.triangles = triangles_;
+    RenderMeshes meshes = pools_.geometry();
     meshes.materials = materials_;
     for (const Texture& texture : textures_) {
       const auto* bytes = reinterpret_cast<const std::uint8_t*>(texture.texels->data());
@@ -154,16 +142,6 @@ class RenderModelBuilder {
     std::uint32_t size;
     std::unique_ptr<std::vector<std::uint32_t>> texels;
   };
-  struct Stored {
-    std::array<std::int32_t, 3> lattice{};
-    float u = 0;
-    float v = 0;
-    std::uint32_t color = 0;
-
-    friend bool operator==(const Stored&, const Stored&) = default;
-  };
-
-  static constexpr std::size_t kBlockFloats = kBoundsRows * kRenderLanes;
 
   static std::vector<std::uint32_t> halved(std::uint32_t size,
                                            const std::vector<std::uint32_t>& texels) {
@@ -186,165 +164,64 @@ class RenderModelBuilder {
     return half;
   }
 
-  Stored store(const RenderVertex& vertex) const {
+  LatticeVertex store(const RenderVertex& vertex) const {
     const auto at = [this](float v) { return static_cast<std::int32_t>(std::lround(v / step_)); };
     const Vec3& p = vertex.position;
-    return {{at(p.x), at(p.y), at(p.z)}, vertex.u, vertex.v, vertex.color};
+    return {{at(p.x), at(p.y), at(p.z)}, {vertex.u, vertex.v}, vertex.color};
   }
 
-  std::size_t find(const Stored& vertex) const {
-    return static_cast<std::size_t>(std::ranges::find(open_, vertex) - open_.begin());
+  std::size_t find(const LatticeVertex& wanted) const {
+    const auto equal = [&](const LatticeVertex& vertex) {
+      return vertex.at == wanted.at && vertex.uv == wanted.uv && vertex.color == wanted.color;
+    };
+    return static_cast<std::size_t>(std::ranges::find_if(open_, equal) - open_.begin());
   }
 
   /// Whether the open cluster's extent stays within 16 bits with these.
-  bool fits(const std::array<Stored, 3>& more) const {
+  bool fits(const std::array<LatticeVertex, 3>& more) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      std::int64_t low = more[0].lattice[axis];
+      std::int64_t low = more[0].at[axis];
       std::int64_t high = low;
-      const auto extend = [&](const Stored& vertex) {
-        low = std::min<std::int64_t>(low, vertex.lattice[axis]);
-        high = std::max<std::int64_t>(high, vertex.lattice[axis]);
+      const auto extend = [&](const LatticeVertex& vertex) {
+        low = std::min<std::int64_t>(low, vertex.at[axis]);
+        high = std::max<std::int64_t>(high, vertex.at[axis]);
       };
       std::ranges::for_each(more, extend);
       std::ranges::for_each(open_, extend);
-      if (high - low > 0xFFFF) return false;
+      if (high - low > kMostSteps) return false;
     }
     return true;
   }
 
   void closeCluster() {
     if (open_triangles_.empty()) return;
-    RenderCluster cluster;
-    cluster.first_vertex = static_cast<std::uint32_t>(vertices_.size() / kVertexRows);
-    cluster.first_triangle = static_cast<std::uint32_t>(triangles_.size() / kTriangleRows);
-    cluster.vertex_count = static_cast<std::uint16_t>(open_.size());
-    cluster.triangle_count = static_cast<std::uint16_t>(open_triangles_.size());
-    cluster.material = open_surface_.material;
-    cluster.semantic = open_surface_.semantic;
-    cluster.two_sided = open_surface_.two_sided ? 1 : 0;
-    std::array<std::int32_t, 3> low = open_[0].lattice;
-    std::array<std::int32_t, 3> high = low;
-    float u_high = cluster.u_minimum = open_[0].u;
-    float v_high = cluster.v_minimum = open_[0].v;
-    for (const Stored& vertex : open_) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], vertex.lattice[axis]);
-        high[axis] = std::max(high[axis], vertex.lattice[axis]);
-      }
-      cluster.u_minimum = std::min(cluster.u_minimum, vertex.u);
-      cluster.v_minimum = std::min(cluster.v_minimum, vertex.v);
-      u_high = std::max(u_high, vertex.u);
-      v_high = std::max(v_high, vertex.v);
-    }
-    cluster.origin_x = low[0];
-    cluster.origin_y = low[1];
-    cluster.origin_z = low[2];
-    cluster.u_step = (u_high - cluster.u_minimum) / 65535;
-    cluster.v_step = (v_high - cluster.v_minimum) / 65535;
-    appendVertices(cluster);
-    appendTriangles();
-    appendBounds(low, high);
-    ++models_.back().cluster_count;
-    models_.back().triangles += cluster.triangle_count;
-    clusters_.push_back(cluster);
+    open_model_.clusters.push_back({.vertices = std::move(open_),
+                                    .triangles = std::move(open_triangles_),
+                                    .material = open_surface_.material,
+                                    .semantic = open_surface_.semantic,
+                                    .two_sided = open_surface_.two_sided});
     open_.clear();
     open_triangles_.clear();
   }
 
-  void appendVertices(const RenderCluster& cluster) {
-    const auto share = [](float value, float minimum, float step) {
-      return step > 0 ? static_cast<std::uint16_t>(std::lround((value - minimum) / step))
-                      : std::uint16_t{0};
-    };
-    const auto offset = [](std::int32_t value, std::int32_t origin) {
-      return static_cast<std::uint16_t>(value - origin);
-    };
-    for (std::size_t first = 0; first < open_.size(); first += kRenderLanes) {
-      std::array<std::uint16_t, kVertexRows * kRenderLanes> block{};
-      for (std::size_t lane = 0; lane < kRenderLanes; ++lane) {
-        const bool there = first + lane < open_.size();
-        colors_.push_back(there ? open_[first + lane].color : 0);
-        if (!there) continue;
-        const Stored& vertex = open_[first + lane];
-        block[lane] = offset(vertex.lattice[0], cluster.origin_x);
-        block[kRenderLanes + lane] = offset(vertex.lattice[1], cluster.origin_y);
-        block[2 * kRenderLanes + lane] = offset(vertex.lattice[2], cluster.origin_z);
-        block[3 * kRenderLanes + lane] = share(vertex.u, cluster.u_minimum, cluster.u_step);
-        block[4 * kRenderLanes + lane] = share(vertex.v, cluster.v_minimum, cluster.v_step);
-      }
-      vertices_.insert(vertices_.end(), block.begin(), block.end());
-    }
-  }
-
-  void appendTriangles() {
-    for (std::size_t first = 0; first < open_triangles_.size(); first += kRenderLanes) {
-      std::array<std::uint8_t, kTriangleRows * kRenderLanes> block{};
-      for (std::size_t lane = 0; lane < kRenderLanes; ++lane) {
-        if (first + lane >= open_triangles_.size()) break;
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-          block[corner * kRenderLanes + lane] = open_triangles_[first + lane][corner];
-        }
-      }
-      triangles_.insert(triangles_.end(), block.begin(), block.end());
-    }
-  }
-
-  void appendBounds(const std::array<std::int32_t, 3>& low,
-                    const std::array<std::int32_t, 3>& high) {
-    const auto at = [this](std::int32_t v) { return static_cast<float>(v) * step_; };
-    const Vec3 least{at(low[0]), at(low[1]), at(low[2])};
-    const Vec3 most{at(high[0]), at(high[1]), at(high[2])};
-    const Vec3 centre = (least + most) * 0.5F;
-    const Vec3 half = (most - least) * 0.50001F;
-    const float radius = std::sqrt(dot(half, half));
-    setBounds({centre.x, centre.y, centre.z, half.x, half.y, half.z, radius, 1, 0, 0, 2});
-    RenderModel& model = models_.back();
-    if (model.cluster_count == 0) {
-      model.bounds_min = least;
-      model.bounds_max = most;
-      return;
-    }
-    model.bounds_min = {std::min(model.bounds_min.x, least.x),
-                        std::min(model.bounds_min.y, least.y),
-                        std::min(model.bounds_min.z, least.z)};
-    model.bounds_max = {std::max(model.bounds_max.x, most.x), std::max(model.bounds_max.y, most.y),
-                        std::max(model.bounds_max.z, most.z)};
-  }
-
-  void padBounds() { setBounds({0, 0, 0, -1e30F, -1e30F, -1e30F, -1e30F, 1, 0, 0, 2}); }
-
-  /// The bounds of the next lane.
-  void setBounds(const std::array<float, kBoundsRows>& values) {
-    const std::size_t lane = bounds_.size() / kBoundsRows % kRenderLanes;
-    if (lane == 0) {
-      const std::size_t first = bounds_rows_.size();
-      bounds_rows_.resize(first + kBlockFloats, 0);
-      for (std::size_t row = 3; row < 7; ++row) {
-        std::fill_n(bounds_rows_.begin() + static_cast<std::ptrdiff_t>(first + row * kRenderLanes),
-                    kRenderLanes, -1e30F);
-      }
-    }
-    const std::size_t block = bounds_.size() / kBlockFloats * kBlockFloats;
-    for (std::size_t row = 0; row < kBoundsRows; ++row) {
-      bounds_rows_[block + row * kRenderLanes + lane] = values[row];
-      bounds_.push_back(values[row]);
-    }
+  void closeModel() {
+    if (!has_model_) return;
+    closeCluster();
+    appendModel(open_model_,
+                {.part = static_cast<std::uint32_t>(pools_.models.size()), .colored = has_colors_},
+                pools_);
+    has_model_ = false;
   }
 
   float step_;
   bool has_colors_ = false;
-  std::vector<RenderModel> models_;
-  std::vector<RenderCluster> clusters_;
-  /// Eleven numbers per cluster or padding, and the same by rows of eight.
-  std::vector<float> bounds_;
-  std::vector<float> bounds_rows_;
-  std::vector<std::uint16_t> vertices_;
-  std::vector<std::uint32_t> colors_;
-  std::vector<std::uint8_t> triangles_;
+  RenderPools pools_;
   std::vector<RenderMaterial> materials_;
   std::vector<Texture> textures_;
   std::vector<std::string> semantics_;
-  std::vector<Stored> open_;
+  LatticeModel open_model_;
+  bool has_model_ = false;
+  std::vector<LatticeVertex> open_;
   std::vector<std::array<std::uint8_t, 3>> open_triangles_;
   RenderSurface open_surface_;
 };

@@ -96,15 +96,15 @@ std::vector<std::uint16_t> appendNames(std::vector<std::string>& names,
 
 constexpr std::uint32_t kWhite = 0xFFFFFFFF;
 
-template <class T>
-void appendAll(std::vector<T>& to, const std::vector<T>& more) {
+template <class Values>
+void appendAll(Values& to, const Values& more) {
   to.insert(to.end(), more.begin(), more.end());
 }
 
 void appendColors(BakedRenderMeshes& meshes, const BakedRenderMeshes& more) {
   if (meshes.colors.empty() && more.colors.empty()) return;
   const auto fill = [](const BakedRenderMeshes& from) {
-    std::vector<std::uint32_t> colors = from.colors;
+    RenderPools::Values<std::uint32_t> colors = from.colors;
     if (!colors.empty() || from.vertices.empty()) return colors;
     colors.resize(from.vertices.size() / kVertexRows);
     for (const RenderCluster& cluster : from.clusters) {
@@ -175,13 +175,7 @@ RenderBakeStatistics& RenderBakeStatistics::operator+=(const RenderBakeStatistic
 }
 
 RenderMeshes BakedRenderMeshes::view() const {
-  RenderMeshes meshes;
-  meshes.models = models;
-  meshes.clusters = clusters;
-  meshes.cluster_bounds = cluster_bounds;
-  meshes.vertices = vertices;
-  meshes.colors = colors;
-  meshes.triangles = triangles;
+  RenderMeshes meshes = geometry();
   meshes.materials.reserve(materials.materials.size());
   for (const BakedMaterial& material : materials.materials) {
     meshes.materials.push_back({.name = material.name,

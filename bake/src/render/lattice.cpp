@@ -13,9 +13,6 @@
 namespace galactic::bake {
 namespace {
 
-/// Most steps from a cluster's origin.
-constexpr std::int32_t kMostSteps = 65535;
-
 using Point = std::array<std::int32_t, 3>;
 
 /// Triangles of one kind of surface, seen from one side or both.
@@ -103,7 +100,8 @@ std::vector<LatticeCluster> cutGroup(Group& group) {
   std::vector<LatticeCluster> clusters;
   for (TriangleCluster& cut : cutClusters(positions, group.triangles)) {
     LatticeCluster& cluster = clusters.emplace_back();
-    cluster.surface = group.surface;
+    cluster.material = group.surface.material;
+    cluster.semantic = group.surface.semantic;
     cluster.two_sided = group.two_sided;
     cluster.triangles = std::move(cut.triangles);
     cluster.vertices.reserve(cut.vertices.size());
@@ -208,7 +206,7 @@ LatticeModel cutModel(std::span<const FinishedPiece> pieces, const RenderSource&
   LatticeModel model;
   model.step = kFinestStep;
   const double largest = largestExtent(pieces);
-  while (model.step * kMostSteps < largest) model.step *= 2;
+  while (model.step * static_cast<double>(kMostSteps) < largest) model.step *= 2;
   while (true) {
     if (auto clusters = cutOnLattice(pieces, source, model.step, jobs)) {
       model.clusters = std::move(*clusters);

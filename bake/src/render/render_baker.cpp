@@ -11,7 +11,6 @@
 #include "render/lattice.h"
 #include "render/part_mesh.h"
 #include "render/piece.h"
-#include "render/pools.h"
 
 namespace galactic::bake {
 namespace {
@@ -22,7 +21,7 @@ constexpr std::size_t kMostNumbers = 65536;
 /// A part on its way to the pools.
 struct PartWork {
   LatticeModel model;
-  ModelFigures figures;
+  RenderModelFigures figures;
 };
 
 Result<void> checkSource(const RenderSource& source) {

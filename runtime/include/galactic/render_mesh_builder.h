@@ -1,12 +1,12 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <new>
 #include <string>
 #include <vector>
 
 #include "galactic/error.h"
 #include "galactic/render_meshes.h"
+#include "galactic/render_pools.h"
 #include "galactic/vec3.h"
 
 namespace galactic {
@@ -54,29 +54,8 @@ struct RenderMeshSource {
   std::vector<std::string> semantics;
 };
 
-/// Allocates as packs are laid out: vectors begin at multiples of 32 bytes.
-template <class T>
-struct PackAllocator {
-  using value_type = T;
-  static constexpr std::align_val_t kAlignment{32};
-
-  PackAllocator() = default;
-  template <class U>
-  // NOLINTNEXTLINE(google-explicit-constructor): as the standard's allocators convert
-  PackAllocator(const PackAllocator<U>&) noexcept {}
-
-  T* allocate(std::size_t count) {
-    return static_cast<T*>(::operator new(count * sizeof(T), kAlignment));
-  }
-  void deallocate(T* memory, std::size_t) noexcept { ::operator delete(memory, kAlignment); }
-  friend bool operator==(const PackAllocator&, const PackAllocator&) { return true; }
-};
-
 /// Render meshes in memory of their own, in the layout of a pack.
-struct RenderMeshStorage {
-  template <class T>
-  using Values = std::vector<T, PackAllocator<T>>;
-
+struct RenderMeshStorage : RenderPools {
   struct Material {
     std::string name;
     std::uint32_t color = 0;
@@ -91,12 +70,6 @@ struct RenderMeshStorage {
     std::size_t first_byte = 0;
   };
 
-  std::vector<RenderModel> models;
-  Values<RenderCluster> clusters;
-  Values<float> cluster_bounds;
-  Values<std::uint16_t> vertices;
-  Values<std::uint32_t> colors;
-  Values<std::uint8_t> triangles;
   std::vector<Material> materials;
   std::vector<Texture> textures;
   Values<std::uint8_t> texels;

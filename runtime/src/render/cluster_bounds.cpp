@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 namespace galactic::render {
@@ -15,87 +14,112 @@ struct Vec3d {
   double z = 0;
 };
 
-Vec3d wide(const Vec3& v) {
+Vec3d widen(const Vec3& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
+Vec3 narrow(const Vec3d& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+Vec3d operator+(const Vec3d& a, const Vec3d& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 Vec3d operator-(const Vec3d& a, const Vec3d& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vec3d operator*(const Vec3d& v, double factor) {
+  return {v.x * factor, v.y * factor, v.z * factor};
+}
 double dot(const Vec3d& a, const Vec3d& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Vec3d cross(const Vec3d& a, const Vec3d& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
+/// Cosine of the widest cone worth storing: eyes from which a wider one faces away are too few.
+constexpr double kWidestCone = 0.1;
+/// Over the rounding of a renderer's floats, in which it compares with the cutoff.
+constexpr double kCutoffMargin = 1e-6;
+
+/// The next float that is not below `value`.
 float roundedUp(double value) {
-  const auto rounded = static_cast<float>(value);
-  if (static_cast<double>(rounded) >= value) return rounded;
-  return std::nextafter(rounded, std::numeric_limits<float>::infinity());
+  const auto nearest = static_cast<float>(value);
+  if (static_cast<double>(nearest) >= value) return nearest;
+  return std::nextafter(nearest, std::numeric_limits<float>::infinity());
 }
 
-void setBox(ClusterBounds& bounds, std::span<const Vec3> positions) {
-  Vec3 low = positions[0];
-  Vec3 high = positions[0];
-  for (const Vec3& p : positions) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  bounds.centre = {0.5F * low.x + 0.5F * high.x, 0.5F * low.y + 0.5F * high.y,
-                   0.5F * low.z + 0.5F * high.z};
-  const Vec3d centre = wide(bounds.centre);
-  Vec3d half;
-  double squared_radius = 0;
-  for (const Vec3& p : positions) {
-    const Vec3d d = wide(p) - centre;
-    half = {std::max(half.x, std::abs(d.x)), std::max(half.y, std::abs(d.y)),
-            std::max(half.z, std::abs(d.z))};
-    squared_radius = std::max(squared_radius, dot(d, d));
-  }
-  bounds.half_extents = {roundedUp(half.x), roundedUp(half.y), roundedUp(half.z)};
-  bounds.radius = roundedUp(std::sqrt(squared_radius));
+Vec3d pointOf(const LatticeVertex& vertex, double step) {
+  return {vertex.at[0] * step, vertex.at[1] * step, vertex.at[2] * step};
 }
 
-/// Of all triangles that have one.
-std::vector<Vec3d> unitNormals(std::span<const Vec3> positions,
-                               std::span<const std::array<std::uint8_t, 3>> triangles) {
+/// Unit normals of the triangles that have an area.
+std::vector<Vec3d> normalsOf(const LatticeCluster& cluster) {
   std::vector<Vec3d> normals;
-  normals.reserve(triangles.size());
-  for (const auto& [a, b, c] : triangles) {
-    const Vec3d origin = wide(positions[a]);
-    const Vec3d normal = cross(wide(positions[b]) - origin, wide(positions[c]) - origin);
-    const double length = std::sqrt(dot(normal, normal));
-    if (length > 0) normals.push_back({normal.x / length, normal.y / length, normal.z / length});
+  normals.reserve(cluster.triangles.size());
+  for (const auto& t : cluster.triangles) {
+    const Vec3d a = pointOf(cluster.vertices[t[0]], 1);
+    const Vec3d b = pointOf(cluster.vertices[t[1]], 1);
+    const Vec3d c = pointOf(cluster.vertices[t[2]], 1);
+    const Vec3d normal = cross(b - a, c - a);
+    if (const double length = norm(normal); length > 0) normals.push_back(normal * (1 / length));
   }
   return normals;
 }
 
-/// The cone about the mean of the normals. With cos(a) the smallest cosine between a normal and the
-/// axis, the test of schema/render.fbs with the cutoff sin(a) leaves no triangle out that faces the
-/// eye.
-void setCone(ClusterBounds& bounds, const std::vector<Vec3d>& normals) {
-  // A wider cone faces away from hardly any place.
-  constexpr double kWidestCone = 0.1;
-  // Over what the axis loses by rounding.
-  constexpr double kMargin = 1e-4;
+/// Axis and cutoff; see RenderMeshes.cluster_bounds of the schema. For a sphere of radius r about c
+/// that holds all triangles, and normals at most alpha from the axis: when the axis is at phi from
+/// the direction v to c and cos phi >= sin alpha + r / |v|, then
+/// cos(phi + alpha) = sin((90 - phi) - alpha) >= cos phi - sin alpha >= r / |v|,
+/// so every triangle is seen from behind.
+void addCone(const LatticeCluster& cluster, std::array<float, kBoundsRows>& rows) {
+  rows[kConeCutoffRow] = kNoCone;
+  if (cluster.two_sided) return;
+  const std::vector<Vec3d> normals = normalsOf(cluster);
+  if (normals.empty()) return;
   Vec3d sum;
-  for (const Vec3d& n : normals) sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
-  const double length = std::sqrt(dot(sum, sum));
-  if (!(length > kMargin)) return;
-  const Vec3 axis{static_cast<float>(sum.x / length), static_cast<float>(sum.y / length),
-                  static_cast<float>(sum.z / length)};
+  for (const Vec3d& normal : normals) sum = sum + normal;
+  const double total = norm(sum);
+  if (!(total > 0)) return;
+  const Vec3 axis = narrow(sum * (1 / total));
+  const Vec3d stored = widen(axis);
+  const double length = norm(stored);
+  if (!(length > 0)) return;
   double least = 1;
-  for (const Vec3d& n : normals) least = std::min(least, dot(n, wide(axis)));
-  if (least < kWidestCone) return;
-  const double cutoff = std::sqrt(1 - least * least) + kMargin;
-  if (cutoff >= 1) return;
-  bounds.axis = axis;
-  bounds.cutoff = roundedUp(cutoff);
+  for (const Vec3d& normal : normals) least = std::min(least, dot(normal, stored) / length);
+  if (least <= kWidestCone) return;
+  rows[kConeAxisRow] = axis.x;
+  rows[kConeAxisRow + 1] = axis.y;
+  rows[kConeAxisRow + 2] = axis.z;
+  const double cutoff = std::sqrt(std::max(0.0, 1 - least * least)) + kCutoffMargin;
+  rows[kConeCutoffRow] = std::min(1.0F, roundedUp(cutoff));
 }
 
 }  // namespace
 
-ClusterBounds boundsOf(std::span<const Vec3> positions,
-                       std::span<const std::array<std::uint8_t, 3>> triangles) {
+ClusterBounds boundsOf(const LatticeCluster& cluster, double step) {
   ClusterBounds bounds;
-  setBox(bounds, positions);
-  setCone(bounds, unitNormals(positions, triangles));
+  Vec3d low = pointOf(cluster.vertices.front(), step);
+  Vec3d high = low;
+  for (const LatticeVertex& vertex : cluster.vertices) {
+    const Vec3d p = pointOf(vertex, step);
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  // Lattice points are floats.
+  bounds.low = narrow(low);
+  bounds.high = narrow(high);
+  const Vec3 centre = narrow((low + high) * 0.5);
+  const Vec3d stored = widen(centre);
+  bounds.rows[kCentreRow] = centre.x;
+  bounds.rows[kCentreRow + 1] = centre.y;
+  bounds.rows[kCentreRow + 2] = centre.z;
+  bounds.rows[kHalfExtentRow] = roundedUp(std::max(high.x - stored.x, stored.x - low.x));
+  bounds.rows[kHalfExtentRow + 1] = roundedUp(std::max(high.y - stored.y, stored.y - low.y));
+  bounds.rows[kHalfExtentRow + 2] = roundedUp(std::max(high.z - stored.z, stored.z - low.z));
+  double squared = 0;
+  for (const LatticeVertex& vertex : cluster.vertices) {
+    const Vec3d away = pointOf(vertex, step) - stored;
+    squared = std::max(squared, dot(away, away));
+  }
+  // One float further: the root was rounded.
+  bounds.rows[kRadiusRow] =
+      std::nextafter(roundedUp(std::sqrt(squared)), std::numeric_limits<float>::infinity());
+  addCone(cluster, bounds.rows);
   return bounds;
 }
 

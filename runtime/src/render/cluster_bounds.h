@@ -1,25 +1,21 @@
 #pragma once
 #include <array>
-#include <cstdint>
-#include <span>
 
-#include "galactic/render_meshes.h"
+#include "galactic/render_layout.h"
+#include "galactic/render_pools.h"
 
 namespace galactic::render {
 
-/// What a lane of a block of bounds holds.
+/// One lane of a block of bounds, by rows, and the box it was made of.
 struct ClusterBounds {
-  Vec3 centre;
-  Vec3 half_extents;
-  float radius = 0;
-  Vec3 axis;
-  float cutoff = 2;
+  std::array<float, kBoundsRows> rows{};
+  Vec3 low;
+  Vec3 high;
 };
 
-/// The bounds of a cluster, rounded outwards. `positions`: of its vertices as they are drawn,
-/// metres, at least one. `triangles`: their corners; empty for a cluster that is seen from both
-/// sides, which has no cone.
-[[nodiscard]] ClusterBounds boundsOf(std::span<const Vec3> positions,
-                                     std::span<const std::array<std::uint8_t, 3>> triangles);
+/// Box, sphere and cone of a cluster, rounded so that they hold every corner and every normal as a
+/// renderer computes them. The cone is for one-sided clusters whose normals lie within 84 degrees
+/// of their mean. `step`: of the lattice, metres.
+[[nodiscard]] ClusterBounds boundsOf(const LatticeCluster& cluster, double step);
 
 }  // namespace galactic::render

@@ -10,21 +10,15 @@
 #include <string>
 #include <utility>
 
-#include "galactic/render_layout.h"
 #include "galactic/render_mesh_builder.h"
-#include "render/cluster_bounds.h"
 #include "render/cluster_split.h"
 
 namespace galactic {
 namespace {
 
-using render::ClusterBounds;
 using render::ClusterDraft;
 
 constexpr std::size_t kTextureAlignment = 32;
-/// The most that sixteen bits hold.
-constexpr std::int64_t kMostStored = std::numeric_limits<std::uint16_t>::max();
-constexpr double kFinestStep = 1.0 / (1 << 14);
 constexpr double kCoarsestStep = 1;
 /// Lattice numbers up to here are floats.
 constexpr std::int64_t kMostLattice = std::int64_t{1} << 24U;
@@ -146,8 +140,8 @@ struct LatticeBox {
   /// Whether a cluster in it can be stored.
   [[nodiscard]] bool fits() const {
     const std::int64_t extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-    return extent <= kMostStored && std::min({low.x, low.y, low.z}) >= -kMostLattice &&
-           std::max({low.x, low.y, low.z}) < kMostLattice - kMostStored;
+    return extent <= kMostSteps && std::min({low.x, low.y, low.z}) >= -kMostLattice &&
+           std::max({low.x, low.y, low.z}) < kMostLattice - kMostSteps;
   }
 };
 
@@ -177,166 +171,40 @@ std::optional<double> latticeStep(const std::vector<SurfaceDraft>& clusters) {
   return step <= kCoarsestStep ? std::optional(step) : std::nullopt;
 }
 
-/// How a texture coordinate of a cluster is stored.
-struct TextureRange {
-  double whole = 0;
-  float minimum = 0;
-  float step = 0;
-
-  template <class Get>
-  TextureRange(const SurfaceDraft& cluster, const Get& get) {
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (const std::uint32_t vertex : cluster.draft.vertices) {
-      const auto value = static_cast<double>(get(cluster.surface->vertices[vertex]));
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
-    whole = std::floor(low);
-    minimum = static_cast<float>(low - whole);
-    step = static_cast<float>((high - low) / static_cast<double>(kMostStored));
-  }
-
-  [[nodiscard]] std::uint16_t stored(float value) const {
-    if (!(step > 0)) return 0;
-    const double steps = (static_cast<double>(value) - whole - static_cast<double>(minimum)) /
-                         static_cast<double>(step);
-    return static_cast<std::uint16_t>(std::clamp<double>(std::round(steps), 0, kMostStored));
-  }
-};
-
-/// Appends clusters to the pools.
-class Packer {
- public:
-  explicit Packer(RenderMeshStorage& storage) : out_(storage) {}
-
-  /// `step`: from latticeStep().
-  void add(const RenderPart& part, const std::vector<SurfaceDraft>& clusters, double step) {
-    RenderModel model;
-    model.part = part.part;
-    model.step = static_cast<float>(step);
-    model.first_cluster = static_cast<std::uint32_t>(out_.clusters.size());
-    model.cluster_count = static_cast<std::uint32_t>(clusters.size());
-    model.first_block =
-        static_cast<std::uint32_t>(out_.cluster_bounds.size() / (kBoundsRows * kRenderLanes));
-    model.source_triangles = part.source_triangles;
-    model.largest_error = part.largest_error;
-    addEmptyBounds(wholeLanes(clusters.size()) / kRenderLanes);
-    for (std::size_t n = 0; n < clusters.size(); ++n) {
-      addCluster(clusters[n], model);
-      growBox(model, n == 0);
-      model.triangles += out_.clusters.back().triangle_count;
-      storeBounds(model, n, clusters[n]);
-    }
-    out_.models.push_back(model);
-  }
-
-  /// After the last part.
-  void finish() {
-    if (!has_colors_) out_.colors.clear();
-  }
-
- private:
-  void addEmptyBounds(std::size_t blocks) {
-    constexpr std::array<float, kBoundsRows> kEmpty{
-        0, 0, 0, kNoCluster, kNoCluster, kNoCluster, kNoCluster, 0, 0, 0, 0};
-    for (std::size_t block = 0; block < blocks; ++block) {
-      for (const float value : kEmpty) {
-        out_.cluster_bounds.insert(out_.cluster_bounds.end(), kRenderLanes, value);
-      }
-    }
-  }
-
-  void addCluster(const SurfaceDraft& cluster, const RenderModel& model) {
-    const RenderSurface& surface = *cluster.surface;
-    const ClusterDraft& draft = cluster.draft;
-    const auto step = static_cast<double>(model.step);
-    const LatticePoint origin = latticeBox(cluster, step).low;
-    const TextureRange u(cluster, [](const RenderVertex& vertex) { return vertex.u; });
-    const TextureRange v(cluster, [](const RenderVertex& vertex) { return vertex.v; });
-    RenderCluster stored;
-    stored.origin_x = static_cast<std::int32_t>(origin.x);
-    stored.origin_y = static_cast<std::int32_t>(origin.y);
-    stored.origin_z = static_cast<std::int32_t>(origin.z);
-    stored.u_minimum = u.minimum;
-    stored.v_minimum = v.minimum;
-    stored.u_step = u.step;
-    stored.v_step = v.step;
-    stored.first_vertex = static_cast<std::uint32_t>(out_.colors.size());
-    stored.first_triangle = static_cast<std::uint32_t>(out_.triangles.size() / kTriangleRows);
-    stored.vertex_count = static_cast<std::uint16_t>(draft.vertices.size());
-    stored.triangle_count = static_cast<std::uint16_t>(draft.triangles.size());
-    stored.material = surface.material;
-    stored.semantic = surface.semantic;
-    stored.two_sided = surface.two_sided ? 1 : 0;
-    out_.clusters.push_back(stored);
-
-    const std::size_t room = wholeLanes(draft.vertices.size());
-    out_.vertices.resize(out_.vertices.size() + room * kVertexRows);
-    out_.colors.resize(out_.colors.size() + room);
-    positions_.clear();
-    for (std::size_t n = 0; n < draft.vertices.size(); ++n) {
-      const RenderVertex& vertex = surface.vertices[draft.vertices[n]];
+/// `step`: from latticeStep().
+LatticeModel onLattice(const std::vector<SurfaceDraft>& clusters, double step) {
+  LatticeModel model;
+  model.step = step;
+  model.clusters.reserve(clusters.size());
+  for (const auto& [surface, draft] : clusters) {
+    LatticeCluster& cluster = model.clusters.emplace_back();
+    cluster.triangles = draft.triangles;
+    cluster.material = surface->material;
+    cluster.semantic = surface->semantic;
+    cluster.two_sided = surface->two_sided;
+    cluster.vertices.reserve(draft.vertices.size());
+    for (const std::uint32_t number : draft.vertices) {
+      const RenderVertex& vertex = surface->vertices[number];
       const LatticePoint p = latticePoint(vertex.position, step);
-      storeVertex(
-          stored.first_vertex + n,
-          {static_cast<std::uint16_t>(p.x - origin.x), static_cast<std::uint16_t>(p.y - origin.y),
-           static_cast<std::uint16_t>(p.z - origin.z), u.stored(vertex.u), v.stored(vertex.v)});
-      out_.colors[stored.first_vertex + n] = vertex.color;
-      has_colors_ |= vertex.color != 0xFFFFFFFFU;
-      positions_.push_back({static_cast<float>(p.x) * model.step,
-                            static_cast<float>(p.y) * model.step,
-                            static_cast<float>(p.z) * model.step});
-    }
-    addTriangles(draft);
-  }
-
-  void storeVertex(std::size_t number, const std::array<std::uint16_t, kVertexRows>& values) {
-    for (std::size_t row = 0; row < kVertexRows; ++row) {
-      out_.vertices[pooledAt(number, row, kVertexRows)] = values[row];
+      cluster.vertices.push_back(
+          {.at = {static_cast<std::int32_t>(p.x), static_cast<std::int32_t>(p.y),
+                  static_cast<std::int32_t>(p.z)},
+           .uv = {vertex.u, vertex.v},
+           .color = vertex.color});
     }
   }
+  return model;
+}
 
-  void addTriangles(const ClusterDraft& draft) {
-    const std::size_t first = out_.triangles.size() / kTriangleRows;
-    out_.triangles.resize(out_.triangles.size() +
-                          wholeLanes(draft.triangles.size()) * kTriangleRows);
-    for (std::size_t n = 0; n < draft.triangles.size(); ++n) {
-      for (std::size_t row = 0; row < kTriangleRows; ++row) {
-        out_.triangles[pooledAt(first + n, row, kTriangleRows)] = draft.triangles[n][row];
-      }
-    }
-  }
-
-  /// By the vertices of the cluster that was added last.
-  void growBox(RenderModel& model, bool is_first) const {
-    if (is_first) model.bounds_min = model.bounds_max = positions_[0];
-    Vec3& low = model.bounds_min;
-    Vec3& high = model.bounds_max;
-    for (const Vec3& p : positions_) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-  }
-
-  void storeBounds(const RenderModel& model, std::size_t cluster, const SurfaceDraft& source) {
-    const std::span<const std::array<std::uint8_t, 3>> triangles = source.draft.triangles;
-    const ClusterBounds b =
-        render::boundsOf(positions_, source.surface->two_sided ? triangles.first(0) : triangles);
-    const std::array<float, kBoundsRows> rows{
-        b.centre.x, b.centre.y, b.centre.z, b.half_extents.x, b.half_extents.y, b.half_extents.z,
-        b.radius,   b.axis.x,   b.axis.y,   b.axis.z,         b.cutoff};
-    const std::size_t lane = model.first_block * kRenderLanes + cluster;
-    for (std::size_t row = 0; row < kBoundsRows; ++row) {
-      out_.cluster_bounds[pooledAt(lane, row, kBoundsRows)] = rows[row];
-    }
-  }
-
-  RenderMeshStorage& out_;
-  /// As they are drawn, of the cluster that was added last.
-  std::vector<Vec3> positions_;
-  bool has_colors_ = false;
-};
+bool hasColors(const RenderMeshSource& source) {
+  constexpr std::uint32_t kWhite = 0xFFFFFFFF;
+  return std::ranges::any_of(source.parts, [](const RenderPart& part) {
+    return std::ranges::any_of(part.surfaces, [](const RenderSurface& surface) {
+      return std::ranges::any_of(surface.vertices,
+                                 [](const RenderVertex& vertex) { return vertex.color != kWhite; });
+    });
+  });
+}
 
 void copyAppearance(const RenderMeshSource& source, RenderMeshStorage& storage) {
   storage.materials.reserve(source.materials.size());
@@ -358,13 +226,7 @@ void copyAppearance(const RenderMeshSource& source, RenderMeshStorage& storage) 
 }  // namespace
 
 RenderMeshes RenderMeshStorage::view() const {
-  RenderMeshes meshes;
-  meshes.models = models;
-  meshes.clusters = clusters;
-  meshes.cluster_bounds = cluster_bounds;
-  meshes.vertices = vertices;
-  meshes.colors = colors;
-  meshes.triangles = triangles;
+  RenderMeshes meshes = geometry();
   meshes.materials.reserve(materials.size());
   for (const Material& material : materials) {
     meshes.materials.push_back(
@@ -389,18 +251,22 @@ Result<RenderMeshStorage> buildRenderMeshes(const RenderMeshSource& source) {
   }
   RenderMeshStorage storage;
   copyAppearance(source, storage);
-  Packer packer(storage);
+  const bool colored = hasColors(source);
   for (std::size_t p = 0; p < source.parts.size(); ++p) {
     const std::vector<SurfaceDraft> clusters = draftsOf(source.parts[p]);
     const std::optional<double> step = latticeStep(clusters);
     if (!step) {
       return refuse(
           fmt::format("parts[{}]", p),
-          fmt::format("found a cluster longer than {} m, wanted a smaller one", kMostStored));
+          fmt::format("found a cluster longer than {} m, wanted a smaller one", kMostSteps));
     }
-    packer.add(source.parts[p], clusters, *step);
+    appendModel(onLattice(clusters, *step),
+                {.part = source.parts[p].part,
+                 .source_triangles = source.parts[p].source_triangles,
+                 .largest_error = source.parts[p].largest_error,
+                 .colored = colored},
+                storage);
   }
-  packer.finish();
   return storage;
 }
 

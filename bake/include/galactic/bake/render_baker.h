@@ -9,6 +9,7 @@
 #include "galactic/bake/source_asset.h"
 #include "galactic/error.h"
 #include "galactic/render_meshes.h"
+#include "galactic/render_pools.h"
 
 namespace galactic::bake {
 
@@ -58,8 +59,6 @@ inline constexpr double kLargestShare = 0.05;
 /// is about the circumference of a cable, the width of a strip. Both keep two thirds of their
 /// width.
 inline constexpr double kLargestThinness = 0.1;
-/// Finest lattice, metres: finer than a float at the far end of a large scene.
-inline constexpr double kFinestStep = 1.0 / 16384;
 
 /// Figures of a bake.
 struct RenderBakeStatistics {
@@ -84,13 +83,7 @@ struct RenderBakeStatistics {
 };
 
 /// The render meshes of a pack in the layout of schema/render.fbs.
-struct BakedRenderMeshes {
-  std::vector<RenderModel> models;
-  std::vector<RenderCluster> clusters;
-  std::vector<float> cluster_bounds;
-  std::vector<std::uint16_t> vertices;
-  std::vector<std::uint32_t> colors;
-  std::vector<std::uint8_t> triangles;
+struct BakedRenderMeshes : RenderPools {
   BakedMaterials materials;
   std::vector<std::string> semantics;
   /// Of the placed meshes: see RenderBakeStatistics.

@@ -1,13 +1,14 @@
-#include "render/pools.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "galactic/render_layout.h"
+#include "galactic/render_pools.h"
 #include "render/cluster_bounds.h"
 
-namespace galactic::bake {
+namespace galactic {
 namespace {
+
+using render::ClusterBounds;
 
 constexpr double kMostStored = 65535;
 /// More repetitions of an image than this many per vertex step overflow a sampler's integers.
@@ -52,7 +53,7 @@ std::array<std::int32_t, 3> originOf(const LatticeCluster& cluster) {
 }
 
 void appendVertices(const LatticeCluster& cluster, RenderCluster& stored, bool colored,
-                    BakedRenderMeshes& to) {
+                    RenderPools& to) {
   const std::size_t first = to.vertices.size() / kVertexRows;
   const std::size_t lanes = wholeLanes(cluster.vertices.size());
   stored.first_vertex = static_cast<std::uint32_t>(first);
@@ -86,7 +87,7 @@ void appendVertices(const LatticeCluster& cluster, RenderCluster& stored, bool c
   }
 }
 
-void appendTriangles(const LatticeCluster& cluster, RenderCluster& stored, BakedRenderMeshes& to) {
+void appendTriangles(const LatticeCluster& cluster, RenderCluster& stored, RenderPools& to) {
   const std::size_t first = to.triangles.size() / kTriangleRows;
   stored.first_triangle = static_cast<std::uint32_t>(first);
   stored.triangle_count = static_cast<std::uint16_t>(cluster.triangles.size());
@@ -99,7 +100,7 @@ void appendTriangles(const LatticeCluster& cluster, RenderCluster& stored, Baked
 }
 
 /// Starts the blocks of a model's bounds with lanes that hold no cluster.
-std::size_t appendBlocks(std::size_t clusters, std::vector<float>& blocks) {
+std::size_t appendBlocks(std::size_t clusters, RenderPools::Values<float>& blocks) {
   const std::size_t first_lane = blocks.size() / kBoundsRows;
   blocks.resize(blocks.size() + wholeLanes(clusters) * kBoundsRows);
   for (std::size_t lane = first_lane; lane < blocks.size() / kBoundsRows; ++lane) {
@@ -110,21 +111,32 @@ std::size_t appendBlocks(std::size_t clusters, std::vector<float>& blocks) {
   return first_lane;
 }
 
-void include(const Bounds& box, bool first, RenderModel& model) {
+void include(const ClusterBounds& box, bool first, RenderModel& model) {
   Vec3& low = model.bounds_min;
   Vec3& high = model.bounds_max;
   if (first) {
-    low = box.min;
-    high = box.max;
+    low = box.low;
+    high = box.high;
     return;
   }
-  low = {std::min(low.x, box.min.x), std::min(low.y, box.min.y), std::min(low.z, box.min.z)};
-  high = {std::max(high.x, box.max.x), std::max(high.y, box.max.y), std::max(high.z, box.max.z)};
+  low = {std::min(low.x, box.low.x), std::min(low.y, box.low.y), std::min(low.z, box.low.z)};
+  high = {std::max(high.x, box.high.x), std::max(high.y, box.high.y), std::max(high.z, box.high.z)};
 }
 
 }  // namespace
 
-void appendModel(const LatticeModel& model, const ModelFigures& figures, BakedRenderMeshes& to) {
+RenderMeshes RenderPools::geometry() const {
+  RenderMeshes meshes;
+  meshes.models = models;
+  meshes.clusters = clusters;
+  meshes.cluster_bounds = cluster_bounds;
+  meshes.vertices = vertices;
+  meshes.colors = colors;
+  meshes.triangles = triangles;
+  return meshes;
+}
+
+void appendModel(const LatticeModel& model, const RenderModelFigures& figures, RenderPools& to) {
   RenderModel stored;
   stored.part = figures.part;
   stored.step = static_cast<float>(model.step);
@@ -137,19 +149,19 @@ void appendModel(const LatticeModel& model, const ModelFigures& figures, BakedRe
   for (std::size_t n = 0; n < model.clusters.size(); ++n) {
     const LatticeCluster& cluster = model.clusters[n];
     RenderCluster& header = to.clusters.emplace_back();
-    header.material = cluster.surface.material;
-    header.semantic = cluster.surface.semantic;
+    header.material = cluster.material;
+    header.semantic = cluster.semantic;
     header.two_sided = cluster.two_sided ? 1 : 0;
     appendVertices(cluster, header, figures.colored, to);
     appendTriangles(cluster, header, to);
     stored.triangles += header.triangle_count;
-    const ClusterBounds bounds = boundsOf(cluster, model.step);
+    const ClusterBounds bounds = render::boundsOf(cluster, model.step);
     for (std::size_t row = 0; row < kBoundsRows; ++row) {
       to.cluster_bounds[pooledAt(first_lane + n, row, kBoundsRows)] = bounds.rows[row];
     }
-    include(bounds.box, n == 0, stored);
+    include(bounds, n == 0, stored);
   }
   to.models.push_back(stored);
 }
 
-}  // namespace galactic::bake
+}  // namespace galactic

@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "pack_tool/describe/asset_text.h"
+#include "pack_tool/describe/text_parts.h"
+#include "pack_tool/text_table.h"
+
+namespace galactic::pack_tool {
+
+namespace {
+
+std::string percentOf(const Json& part, const Json& whole) {
+  const auto all = whole.get<std::uint64_t>();
+  if (all == 0) return "0 %";
+  return fmt::format(
+      "{:.0f} %", 100 * static_cast<double>(part.get<std::uint64_t>()) / static_cast<double>(all));
+}
+
+std::string millimetreOf(const Json& length) {
+  return fmt::format("{:.2f}", 1e3 * numberOf(length));
+}
+
+/// "3 of 512 texels (rgba8), 1 of 256 texels (bc1)", largest first.
+std::string textureSizes(const Json& textures) {
+  std::map<std::pair<std::uint32_t, std::string>, std::size_t, std::greater<>> counts;
+  for (const Json& texture : textures) {
+    ++counts[{texture.at("size").get<std::uint32_t>(), textOf(texture.at("format"))}];
+  }
+  std::string text;
+  for (const auto& [kind, count] : counts) {
+    text += fmt::format("{}{} of {} texels ({})", text.empty() ? "" : ", ", count, kind.first,
+                        kind.second);
+  }
+  return text;
+}
+
+std::string appearanceText(const Json& render) {
+  const Json& textures = render.at("textures");
+  const auto cut_out = std::ranges::count_if(render.at("materials"), [](const Json& material) {
+    return numberOf(material.at("alpha_cutoff")) > 0;
+  });
+  std::string text = labelled(
+      "materials",
+      fmt::format("{}, {} with a cut-out shape; {}", render.at("materials").size(), cut_out,
+                  render.at("coloured").get<bool>() ? "vertices have colours"
+                                                    : "vertices have no colours"));
+  text += labelled("textures", textures.empty() ? "none"
+                                                : fmt::format("{}, {} bytes: {}", textures.size(),
+                                                              countOf(render.at("texture_bytes")),
+                                                              textureSizes(textures)));
+  return text + labelled("semantics", fmt::format("{} names", render.at("semantics").size()));
+}
+
+std::string modelsText(const Json& models) {
+  TextTable table(4);
+  table.add({"model", "clusters", "two-sided", "vertices", "triangles", "of", "error (mm)"});
+  for (const Json& model : models) {
+    table.add({textOf(model.at("name")), countOf(model.at("clusters")),
+               percentOf(model.at("two_sided_clusters"), model.at("clusters")),
+               countOf(model.at("vertices")), countOf(model.at("triangles")),
+               countOf(model.at("source_triangles")), millimetreOf(model.at("largest_error"))});
+  }
+  return table.text();
+}
+
+}  // namespace
+
+std::string renderMeshesText(const Json& render) {
+  if (render.is_null()) {
+    return labelled("render", "no render meshes: nothing to draw in batches, nothing textured");
+  }
+  std::string text = labelled(
+      "render", fmt::format("{} models, {} clusters ({} two-sided), {} vertices, {} bytes",
+                            render.at("models").size(), countOf(render.at("clusters")),
+                            percentOf(render.at("two_sided_clusters"), render.at("clusters")),
+                            countOf(render.at("vertices")), countOf(render.at("geometry_bytes"))));
+  text += labelled(
+      "", fmt::format("{} of {} triangles, moved by at most {} mm", countOf(render.at("triangles")),
+                      countOf(render.at("source_triangles")),
+                      millimetreOf(render.at("largest_error"))));
+  text += appearanceText(render);
+  if (render.at("models").size() > 1) text += modelsText(render.at("models"));
+  return text;
+}
+
+}  // namespace galactic::pack_tool

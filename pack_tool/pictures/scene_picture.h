@@ -1,0 +1,14 @@
+#pragma once
+#include "galactic/error.h"
+#include "pack_tool/figure/figure.h"
+#include "pictures/image.h"
+
+namespace galactic::pictures {
+
+/// Draws the render meshes of a scene: from above, from between front, side and top, and twice from
+/// inside, at the height of a standing person's eyes, where most of the room is seen. From
+/// outside, without what lies in the uppermost fifth: the ceiling. `scene` has one part, with a
+/// render model. `view_size` as of drawFigure. Fails as BatchRenderer::create.
+[[nodiscard]] Result<Image> drawScene(const pack_tool::Figure& scene, int view_size);
+
+}  // namespace galactic::pictures
