@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "vec3d.h"
+#include "sphere_set/vec3d.h"
 
 namespace galactic::bake {
 namespace {
@@ -24,6 +24,13 @@ float roundedUp(double value) {
 
 Vec3d pointOf(const LatticeVertex& vertex, double step) {
   return {vertex.at[0] * step, vertex.at[1] * step, vertex.at[2] * step};
+}
+
+/// Numbers that are floats already when they are converted, so that it does not matter where a
+/// compiler leaves conversions out.
+Vec3 nearestFloats(const Vec3d& v) {
+  using sphere_fit::roundedToFloat;
+  return narrow({roundedToFloat(v.x), roundedToFloat(v.y), roundedToFloat(v.z)});
 }
 
 /// Unit normals of the triangles that have an area.
@@ -52,7 +59,7 @@ void addCone(const LatticeCluster& cluster, std::array<float, kBoundsRows>& rows
   if (normals.empty()) return;
   Vec3d sum;
   for (const Vec3d& normal : normals) sum = sum + normal;
-  const Vec3 axis = narrow(normalized(sum, {0, 0, 0}));
+  const Vec3 axis = nearestFloats(normalized(sum, {0, 0, 0}));
   const Vec3d stored = widen(axis);
   const double length = norm(stored);
   if (!(length > 0)) return;
@@ -79,7 +86,7 @@ ClusterBounds boundsOf(const LatticeCluster& cluster, double step) {
   }
   // Lattice points are floats.
   bounds.box = {narrow(low), narrow(high)};
-  const Vec3 centre = narrow((low + high) * 0.5);
+  const Vec3 centre = nearestFloats((low + high) * 0.5);
   const Vec3d stored = widen(centre);
   bounds.rows[kCentreRow] = centre.x;
   bounds.rows[kCentreRow + 1] = centre.y;
