@@ -24,10 +24,9 @@ void RenderMeshOptions::addTo(CLI::App& app, BakeCommand& command) {
                  "How far simplification may move a surface (default: 0.005 of scenes, else 0.002)")
       ->type_name("METRES");
   app.add_option("--texture-size", command.render.textures.largest,
-                 "Longest edge of a texture, texels: a power of two")
+                 "Longest edge of a texture, texels: a power of two (default: 512)")
       ->check(CLI::IsMember({1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096}))
-      ->option_text("1..4096")
-      ->capture_default_str();
+      ->option_text("1..4096");
   app.add_option("--texture-format", command.render.textures.format,
                  "bc1: an eighth of the size, for graphics processors; opaque textures only")
       ->transform(CLI::CheckedTransformer(formatNames()))

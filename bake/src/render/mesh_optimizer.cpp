@@ -22,21 +22,28 @@ ByteNumbers numberBytes(const void* elements, std::size_t count, std::size_t siz
   return numbers;
 }
 
-Simplified simplify(const PartMesh& mesh, double error) {
+Simplified simplify(const PartMesh& mesh, double error, const std::vector<bool>& kept) {
   Simplified result;
   if (mesh.triangles.empty()) return result;
   const float* positions = &mesh.vertices.front().position.x;
   const std::size_t count = mesh.vertices.size();
   const float scale = meshopt_simplifyScale(positions, count, sizeof(RenderVertex));
-  if (!(scale > 0)) return {mesh.triangles, 0};
-  result.triangles.resize(mesh.triangles.size());
+  if (!(scale > 0)) return {mesh.triangles, 0.0};
+  // This version takes no list of vertices to keep. But it keeps a vertex that more than two open
+  // edges meet at, and counts the edges of a triangle without area as such.
+  std::vector<Triangle> input = mesh.triangles;
+  for (std::uint32_t n = 0; n < kept.size(); ++n) {
+    if (kept[n]) input.push_back({n, n, n});
+  }
+  result.triangles.resize(input.size());
   auto* indices = reinterpret_cast<unsigned int*>(result.triangles.data());
   float relative_error = 0;
-  const std::size_t kept = meshopt_simplify(
-      indices, indicesOf(mesh.triangles), 3 * mesh.triangles.size(), positions, count,
-      sizeof(RenderVertex), 0, static_cast<float>(error) / scale, 0, &relative_error);
-  result.triangles.resize(kept / 3);
-  result.error = relative_error * scale;
+  const std::size_t left = meshopt_simplify(indices, indicesOf(input), 3 * input.size(), positions,
+                                            count, sizeof(RenderVertex), 0,
+                                            static_cast<float>(error) / scale, 0, &relative_error);
+  result.triangles.resize(left / 3);
+  std::erase_if(result.triangles, [](const Triangle& t) { return t[0] == t[1]; });
+  result.error = static_cast<double>(relative_error) * static_cast<double>(scale);
   return result;
 }
 

@@ -37,12 +37,14 @@ template <class T>
 struct Simplified {
   std::vector<Triangle> triangles;
   /// How far the surface moved at most, metres, as the quadrics estimate.
-  float error = 0;
+  double error = 0;
 };
 
 /// Fewer triangles over the same vertices, the surface moved by up to `error` metres. What is equal
-/// by position moves together, so no crack opens between vertices that differ in the rest.
-[[nodiscard]] Simplified simplify(const PartMesh& mesh, double error);
+/// by position moves together, so no crack opens between vertices that differ in the rest. `kept`:
+/// a mark for each vertex; what is marked at a position keeps all vertices there where they are.
+[[nodiscard]] Simplified simplify(const PartMesh& mesh, double error,
+                                  const std::vector<bool>& kept);
 
 /// Triangles that lie near each other.
 struct TriangleCluster {

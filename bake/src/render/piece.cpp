@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "render/mesh_optimizer.h"
+#include "render/simplify_within.h"
 #include "vec3d.h"
 
 namespace galactic::bake {
@@ -111,11 +112,11 @@ FinishedPiece finishPiece(PartMesh piece, const RenderSource& source, double err
   FinishedPiece finished;
   const PieceShape shape = measurePiece(piece);
   finished.has_outside = showOutside(piece, shape, source);
-  Simplified simplified = simplify(piece, allowedError(shape, error));
+  Simplified simplified = simplifyWithin(piece, allowedError(shape, error));
   const std::size_t fewest = shape.closed ? kFewestClosed : 1;
   if (simplified.triangles.size() >= fewest) {
     piece.triangles = std::move(simplified.triangles);
-    finished.error = simplified.error;
+    finished.error = static_cast<float>(simplified.error);
   }
   finished.mesh = std::move(piece);
   return finished;

@@ -24,7 +24,7 @@ struct FinishedPiece {
   PartMesh mesh;
   /// Whether no triangle of it needs to be seen from behind, whatever its material says.
   bool has_outside = false;
-  /// Estimate of the largest distance by which simplification moved its surface, metres.
+  /// Largest distance by which simplification moved its surface, as measured, metres.
   float error = 0;
 };
 

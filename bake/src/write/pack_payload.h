@@ -46,10 +46,10 @@ template <class T>
 }
 
 /// A vector of structs of ours that have the layout of the schema's struct `Stored`.
-template <class Stored, class T>
-[[nodiscard]] Offset<flatbuffers::Vector<const Stored*>> alignedStructs(
-    FlatBufferBuilder& builder, const std::vector<T>& values) {
-  static_assert(sizeof(T) == sizeof(Stored));
+template <class Stored, class Structs>
+[[nodiscard]] Offset<flatbuffers::Vector<const Stored*>> alignedStructs(FlatBufferBuilder& builder,
+                                                                        const Structs& values) {
+  static_assert(sizeof(typename Structs::value_type) == sizeof(Stored));
   builder.ForceVectorAlignment(values.size(), sizeof(Stored), kVectorAlignment);
   return builder.CreateVectorOfStructs(reinterpret_cast<const Stored*>(values.data()),
                                        values.size());

@@ -96,7 +96,7 @@ struct RenderModel {
   Vec3 bounds_max;
   std::uint32_t source_triangles = 0;
   std::uint32_t triangles = 0;
-  /// Farthest that simplification moved the surface, metres, as estimated.
+  /// Farthest that simplification moved the surface, metres, as measured.
   float largest_error = 0;
 };
 

@@ -1,4 +1,4 @@
-// How far simplification moves surfaces, measured without the simplifier's own estimate.
+// How far simplification moves surfaces, measured without the simplifier's own measured.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,12 +13,12 @@
 namespace galactic::test {
 namespace {
 
-/// Quadrics estimate the root mean square of distances to planes: single points move further.
-constexpr double kEstimateTolerance = 3;
+/// Corners and middles of triangles are measured by the bake; points between them move further.
+constexpr double kBetweenTolerance = 1.25;
 
 struct Outcome {
   std::vector<DrawnTriangle> triangles;
-  double estimate = 0;
+  double measured = 0;
 };
 
 Outcome simplified(const bake::SourceMesh& mesh, double error, bool textured = false) {
@@ -83,11 +83,12 @@ TEST(Simplification, MovesALandscapeNoFurtherThanItSays) {
   for (const double error : {0.0005, 0.002, 0.005, 0.02}) {
     const Outcome outcome = simplified(meshOf(source), error);
     const bake::TriangleMesh drawn = asMesh(outcome.triangles);
-    EXPECT_LE(outcome.estimate, error);
+    EXPECT_LE(outcome.measured, error);
+    EXPECT_GT(outcome.measured, error / 10);
     const double reach = 4 * error;
     const double moved = std::max(deviation(source, drawn, reach), deviation(drawn, source, reach));
     const double rounding = bake::kFinestStep;
-    EXPECT_LE(moved, kEstimateTolerance * outcome.estimate + rounding) << "allowed " << error;
+    EXPECT_LE(moved, kBetweenTolerance * outcome.measured + rounding) << "allowed " << error;
     EXPECT_LT(drawn.triangles.size(), source.triangles.size());
   }
 }

@@ -75,7 +75,8 @@ struct RenderBakeStatistics {
   /// Images as they came, decoded; and as they are stored.
   std::uint64_t source_texture_bytes = 0;
   std::uint64_t texture_bytes = 0;
-  /// Farthest that simplification moved a surface, as estimated by the quadric error; metres.
+  /// Farthest that simplification moved a surface, as measured at its corners and the middles of
+  /// its triangles; metres.
   float largest_error = 0;
 
   /// Of several assets together.
