@@ -46,9 +46,9 @@ template <class T>
 }
 
 /// A vector of structs of ours that have the layout of the schema's struct `Stored`.
-template <class Stored, class T>
+template <class Stored, class T, class Allocator>
 [[nodiscard]] Offset<flatbuffers::Vector<const Stored*>> alignedStructs(
-    FlatBufferBuilder& builder, const std::vector<T>& values) {
+    FlatBufferBuilder& builder, const std::vector<T, Allocator>& values) {
   static_assert(sizeof(T) == sizeof(Stored));
   builder.ForceVectorAlignment(values.size(), sizeof(Stored), kVectorAlignment);
   return builder.CreateVectorOfStructs(reinterpret_cast<const Stored*>(values.data()),
