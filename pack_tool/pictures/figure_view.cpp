@@ -82,12 +82,14 @@ std::vector<RasterLine> markLines(const Figure& figure) {
   return lines;
 }
 
-/// Where the ceiling of a scene is left out, metres.
-float ceilingOf(const Figure& scene) {
-  // Over doors and furniture, under lamps and beams.
-  constexpr float kShare = 0.8F;
+/// What hides the rooms of a scene from above: over doors and furniture, under lamps and beams; of
+/// lower rooms the ceiling.
+RoomCut ceilingsOf(const Figure& scene) {
+  constexpr float kAnyShare = 0.8F;
+  constexpr float kLevelShare = 0.6F;
   const pack_tool::FigureBounds bounds = boundsOf(scene);
-  return bounds.min.y + kShare * (bounds.max.y - bounds.min.y);
+  const float height = bounds.max.y - bounds.min.y;
+  return {bounds.min.y + kAnyShare * height, bounds.min.y + kLevelShare * height};
 }
 
 void drawPart(MeshRaster& raster, const Figure& figure, const FigurePart& part) {
@@ -151,7 +153,7 @@ void drawFigureView(Image& image, const ViewPlace& place, const Figure& figure,
   const auto up = static_cast<float>(0.5 * (window.low_up + window.high_up));
   MeshRaster raster(
       {axes, axes.right * right + axes.up * up, pixels_per_metre, place.size, place.size});
-  if (figure.kind == FigureKind::kScene) raster.leaveOutAbove(ceilingOf(figure));
+  if (figure.kind == FigureKind::kScene) raster.openRooms(ceilingsOf(figure));
   for (const FigurePart& part : figure.parts) drawPart(raster, figure, part);
   for (const RasterLine& line : markLines(figure)) raster.drawLine(line);
   raster.compose(image, place.left, place.top);

@@ -94,16 +94,24 @@ Rgb unpacked(std::uint32_t color) {
           static_cast<std::uint8_t>(color >> 16U)};
 }
 
-/// Drops the triangles that lie wholly above a height.
-void dropAbove(float height, const Pose& world_from_model, RenderSurface& surface) {
+/// Whether a triangle of the world lies wholly above where a cut leaves things out.
+bool isCutOff(const RoomCut& cut, const std::array<Vec3, 3>& corners) {
+  // Of the length of the normal: within 18 degrees of level.
+  constexpr float kLevel = 0.95F;
+  const float lowest = std::min({corners[0].y, corners[1].y, corners[2].y});
+  if (lowest > cut.any) return true;
+  const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  return lowest > cut.level && std::abs(normal.y) > kLevel * std::sqrt(dot(normal, normal));
+}
+
+void cutOff(const RoomCut& cut, const Pose& world_from_model, RenderSurface& surface) {
   std::size_t kept = 0;
   for (std::size_t n = 0; n + 2 < surface.corners.size(); n += 3) {
-    bool above = true;
-    for (std::size_t corner = n; corner < n + 3; ++corner) {
-      const Vec3& p = surface.vertices[surface.corners[corner]].position;
-      above = above && (world_from_model * p).y > height;
+    std::array<Vec3, 3> corners;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      corners[corner] = world_from_model * surface.vertices[surface.corners[n + corner]].position;
     }
-    if (above) continue;
+    if (isCutOff(cut, corners)) continue;
     for (std::size_t corner = n; corner < n + 3; ++corner) {
       surface.corners[kept++] = surface.corners[corner];
     }
@@ -205,7 +213,7 @@ std::size_t MeshRaster::firstMaterialOf(const RenderMeshes& meshes) {
   return first;
 }
 
-void MeshRaster::leaveOutAbove(float height) { highest_ = height; }
+void MeshRaster::openRooms(const RoomCut& cut) { cut_ = cut; }
 
 void MeshRaster::drawRenderModel(const RenderMeshes& meshes, const RenderModel& model,
                                  const Pose& world_from_model) {
@@ -215,7 +223,7 @@ void MeshRaster::drawRenderModel(const RenderMeshes& meshes, const RenderModel& 
     surface.material = static_cast<std::uint16_t>(first + stored.material);
     surface.two_sided = stored.two_sided;
     const bool textured = meshes.materials[stored.material].texture >= 0;
-    if (highest_) dropAbove(*highest_, world_from_model, stored);
+    if (cut_) cutOff(*cut_, world_from_model, stored);
     for (RenderVertex& vertex : stored.vertices) {
       vertex.position = inView(world_from_model * vertex.position);
       if (!(std::abs(vertex.u) < kMostImages && std::abs(vertex.v) < kMostImages)) {

@@ -61,6 +61,14 @@ struct RasterLine {
   Rgb colour;
 };
 
+/// What is left out of rooms so that one can look into them: triangles wholly above these heights
+/// of the world, metres.
+struct RoomCut {
+  float any = 0;
+  /// Of those that are about level.
+  float level = 0;
+};
+
 /// Draws opaque meshes, translucent spheres and lines, four samples per pixel. Meshes and spheres
 /// are drawn by the soft backend of BatchRenderer, through a lens so long that the view is parallel
 /// to half a pixel. They may come in any order; spheres form one translucent shell. Lines shine
@@ -69,9 +77,8 @@ class MeshRaster {
  public:
   explicit MeshRaster(const RasterView& view);
 
-  /// Of render models that are drawn from now on, triangles wholly above this height of the world
-  /// are left out, metres: rooms are seen without their ceilings.
-  void leaveOutAbove(float height);
+  /// Cuts the render models that are drawn from now on: rooms are seen without their ceilings.
+  void openRooms(const RoomCut& cut);
 
   void drawMesh(const RasterMesh& mesh, const Pose& world_from_mesh);
   /// With materials and textures, shaded so that its shape is seen. `meshes` outlives this.
@@ -127,7 +134,7 @@ class MeshRaster {
   /// Packs whose materials are in source_, and where.
   std::vector<std::pair<const RenderMeshes*, std::size_t>> packs_;
   std::vector<RasterLine> lines_;
-  std::optional<float> highest_;
+  std::optional<RoomCut> cut_;
 };
 
 }  // namespace galactic::pictures

@@ -7,8 +7,8 @@ namespace galactic::pictures {
 
 /// Draws the render meshes of a scene: from above, from between front, side and top, and twice from
 /// inside, at the height of a standing person's eyes, where most of the room is seen. From
-/// outside, without what lies in the uppermost fifth: the ceiling. `scene` has one part, with a
-/// render model. `view_size` as of drawFigure. Fails as BatchRenderer::create.
+/// outside without ceilings: what lies in the uppermost fifth, and level faces above 60 %. `scene`
+/// has one part, with a render model. `view_size` as of drawFigure. Fails as BatchRenderer::create.
 [[nodiscard]] Result<Image> drawScene(const pack_tool::Figure& scene, int view_size);
 
 }  // namespace galactic::pictures

@@ -47,6 +47,19 @@ Vec3d pointOf(const LatticeVertex& vertex, double step) {
   return {vertex.at[0] * step, vertex.at[1] * step, vertex.at[2] * step};
 }
 
+/// The nearest float, as a double (Veltkamp's splitting; Dekker 1971).
+double roundedToFloat(double value) {
+  constexpr double kSplitter = 0x1p29 + 1;
+  const double scaled = value * kSplitter;
+  return scaled - (scaled - value);
+}
+
+/// Numbers that are floats already when they are converted, so that it does not matter where a
+/// compiler leaves conversions out.
+Vec3 nearestFloats(const Vec3d& v) {
+  return narrow({roundedToFloat(v.x), roundedToFloat(v.y), roundedToFloat(v.z)});
+}
+
 /// Unit normals of the triangles that have an area.
 std::vector<Vec3d> normalsOf(const LatticeCluster& cluster) {
   std::vector<Vec3d> normals;
@@ -75,7 +88,7 @@ void addCone(const LatticeCluster& cluster, std::array<float, kBoundsRows>& rows
   for (const Vec3d& normal : normals) sum = sum + normal;
   const double total = norm(sum);
   if (!(total > 0)) return;
-  const Vec3 axis = narrow(sum * (1 / total));
+  const Vec3 axis = nearestFloats(sum * (1 / total));
   const Vec3d stored = widen(axis);
   const double length = norm(stored);
   if (!(length > 0)) return;
@@ -103,7 +116,7 @@ ClusterBounds boundsOf(const LatticeCluster& cluster, double step) {
   // Lattice points are floats.
   bounds.low = narrow(low);
   bounds.high = narrow(high);
-  const Vec3 centre = narrow((low + high) * 0.5);
+  const Vec3 centre = nearestFloats((low + high) * 0.5);
   const Vec3d stored = widen(centre);
   bounds.rows[kCentreRow] = centre.x;
   bounds.rows[kCentreRow + 1] = centre.y;
