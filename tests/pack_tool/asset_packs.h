@@ -27,7 +27,7 @@ struct ToyObject {
 struct ToyObjects {
   std::vector<ToyObject> objects{{}, {.name = "die", .half = {0.01F, 0.01F, 0.01F}}};
   std::string tool_version = "0.1.0";
-  RenderMeshesField render_meshes = nullptr;
+  RenderMeshesField render_meshes = {};
 };
 
 /// A robot of five links: base -> upper (revolute) -> slide (prismatic, no limits) -> finger
@@ -40,7 +40,7 @@ struct ToyRobot {
   std::vector<schema::SetSphere> base_spheres{{schema::Vec3(0, 0.2F, 0), 1},
                                               {schema::Vec3(0.125F, 0.5F, -0.25F), 0}};
   bool with_recipe = true;
-  RenderMeshesField render_meshes = nullptr;
+  RenderMeshesField render_meshes = {};
 };
 
 /// Makes packs of toys.

@@ -78,7 +78,7 @@ inline RenderMeshesField paintedMeshes(const Painting& painting = {}) {
   }
   Result<RenderMeshStorage> built = buildRenderMeshes(source);
   if (!built) throw std::runtime_error(built.error().where + ": " + built.error().message);
-  return std::make_shared<const RenderMeshStorage>(std::move(*built));
+  return fieldsOf(*built);
 }
 
 }  // namespace galactic::test

@@ -179,7 +179,7 @@ TEST(RenderDiff, CountsHowTheyWereMadeAsProvenance) {
 }
 
 TEST(RenderDiff, TellsThatOneSideHasNone) {
-  const Answer gone = diffOf(paintedMeshes(), nullptr);
+  const Answer gone = diffOf(paintedMeshes(), {});
   EXPECT_EQ(gone.exit_code, kExitDiffers);
   EXPECT_THAT(gone.out, HasSubstr("  render_meshes: present | none\n"));
 }
@@ -214,7 +214,7 @@ TEST(RenderSurfaces, AreWhatTheMeshesWereMadeOf) {
 
 TEST(SceneExport, NeedsRenderMeshes) {
   const ScratchFolder folder;
-  const auto path = writeScene(folder, "a.pack", nullptr);
+  const auto path = writeScene(folder, "a.pack", {});
   const Answer answer =
       answerOf(runExport, ExportOptions{.pack = path, .output = folder.path() / "a.glb"});
   EXPECT_EQ(answer.exit_code, kInvalid);

@@ -46,7 +46,7 @@ struct ObjectPackFields {
   PackKind kind = PackKind::kObjects;
   std::vector<float> radii{0.015F, 0.05F};
   std::vector<ObjectFields> objects;
-  std::optional<RenderMeshesFields> render_meshes;
+  RenderMeshesField render_meshes;
 };
 
 /// Two objects; the second one without colours, with one sphere and one pose.
@@ -98,8 +98,7 @@ inline AlignedBytes buildPack(const ObjectPackFields& fields) {
   }
   const auto object_vector = builder.CreateVector(objects);
   const auto radii = builder.CreateVector(fields.radii);
-  flatbuffers::Offset<schema::RenderMeshes> meshes;
-  if (fields.render_meshes) meshes = buildRenderMeshes(builder, *fields.render_meshes);
+  const auto meshes = buildRenderMeshesField(builder, fields.render_meshes);
   const auto set = schema::CreateObjectSet(builder, radii, object_vector, meshes);
   return finishFile(builder, fields.kind, schema::Asset::ObjectSet, set.Union());
 }

@@ -205,4 +205,13 @@ inline flatbuffers::Offset<schema::RenderMeshes> buildRenderMeshes(
                                     triangles, material_vector, texture_vector, texels, semantics);
 }
 
+/// Render meshes of a hand-made pack, or none.
+using RenderMeshesField = std::optional<RenderMeshesFields>;
+
+inline flatbuffers::Offset<schema::RenderMeshes> buildRenderMeshesField(
+    flatbuffers::FlatBufferBuilder& builder, const RenderMeshesField& field) {
+  if (!field) return {};
+  return buildRenderMeshes(builder, *field);
+}
+
 }  // namespace galactic::test

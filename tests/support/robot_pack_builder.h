@@ -74,7 +74,7 @@ struct RobotPackFields {
   std::optional<CameraFields> camera = CameraFields{};
   std::optional<BaseFields> base = BaseFields{};
   std::vector<LinkSurfaceFields> surfaces;
-  std::optional<RenderMeshesFields> render_meshes;
+  RenderMeshesField render_meshes;
 };
 
 /// base - torso (prismatic) - arm (revolute) - hand (continuous), with a finger that mimics the
@@ -154,8 +154,7 @@ class RobotPackBuilder {
     const auto camera = buildCamera();
     const auto base = buildBase();
     const auto surfaces = buildSurfaces();
-    flatbuffers::Offset<schema::RenderMeshes> meshes;
-    if (fields_.render_meshes) meshes = buildRenderMeshes(builder_, *fields_.render_meshes);
+    const auto meshes = buildRenderMeshesField(builder_, fields_.render_meshes);
     const auto robot = schema::CreateRobot(
         builder_, name, radii, links, link_names, joint_names, limit_vector, start_positions,
         spheres, groups, pair_vector, joint_vector, end_effector, camera, base, surfaces, meshes);

@@ -71,7 +71,7 @@ struct ScenePackFields {
   std::uint64_t triangles_duplicate = 7;
   std::uint64_t triangles = 90;
   std::vector<GridFields> grids;
-  std::optional<RenderMeshesFields> render_meshes;
+  RenderMeshesField render_meshes;
 };
 
 /// Grids of two radii over 5 x 3 columns, the second one tall: empty, one-span, two-span and
@@ -153,8 +153,7 @@ class ScenePackBuilder {
     const auto import = schema::CreateImportStatistics(
         builder_, builder_.CreateString(fields_.format), 1, 1, fields_.triangles_read,
         fields_.triangles_degenerate, fields_.triangles_duplicate, fields_.triangles);
-    flatbuffers::Offset<schema::RenderMeshes> meshes;
-    if (fields_.render_meshes) meshes = buildRenderMeshes(builder_, *fields_.render_meshes);
+    const auto meshes = buildRenderMeshesField(builder_, fields_.render_meshes);
     return schema::CreateScene(builder_, builder_.CreateString(fields_.name), &bounds,
                                builder_.CreateVector(grids), import, meshes);
   }
