@@ -196,7 +196,7 @@ TEST(CheckRenderMeshes, NamesTheWrongValue) {
 }
 
 TEST(RenderSurfaces, AreWhatTheMeshesWereMadeOf) {
-  const RenderMeshStorage storage = paintedStorage({.colored = true});
+  const RenderMeshStorage storage = test::paintedStorage({.colored = true});
   const RenderMeshes meshes = storage.view();
   const auto surfaces = surfacesOf(meshes, meshes.models.front());
   ASSERT_EQ(surfaces.size(), 3U);
