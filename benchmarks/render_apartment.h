@@ -133,7 +133,8 @@ class RenderApartment {
     builder_.model();
     for (int room = 0; room < 6; ++room) {
       const float x = 4.0F * static_cast<float>(room % 3);
-      const float z = 4.0F * static_cast<float>(room / 3);
+      const int row = room / 3;
+      const float z = 4.0F * static_cast<float>(row);
       const test::RenderSurface surface{
           .material = materials_[static_cast<std::size_t>(room) % kMaterials]};
       addSheet({x, 0, z + 4}, {4, 0, 0}, {0, 0, -4}, 16, surface);
