@@ -238,7 +238,7 @@ TEST_F(PackCli, PictureAndExportRefuseWhatTheyCannotWrite) {
       {{"picture", "good.pack", "-o", "a.png", "--slice", "50,50,60,50"},
        kInvalidInput,
        "misses the grid"},
-      {{"picture", "good.pack", "-o", "a.png", "--size", "100"}, kInvalidInput, "is a scene; "},
+      {{"picture", "good.pack", "-o", "a.png", "--size", "100"}, kInvalidInput, "is a scene: "},
       {{"picture", "arm.pack", "-o", "a.png", "--radius", "0.5"},
        kInvalidInput,
        "is a pack of kind RBOT and holds no column grids"},

@@ -17,9 +17,9 @@ SYSTEM = {"libstdc++", "libgcc_s", "libm", "libc", "libpthread", "ld-linux-x86-6
           "ld-linux-aarch64", "libasan", "libubsan", "libtsan", "libclang_rt"}
 ALLOWED = {
     # libz comes with libpng, which writes pictures. libepoxy finds OpenGL when it is first used: the
-    # program starts without any.
+    # programs start without any.
     "galactic-run": SYSTEM | {"libfmt", "libpng16", "libz", "libepoxy", "libdl"},
-    "galactic-pack": SYSTEM | {"libfmt", "libpng16", "libz"},
+    "galactic-pack": SYSTEM | {"libfmt", "libpng16", "libz", "libepoxy", "libdl"},
 }
 BAKE_SIDE = re.compile(r"lib(assimp|embree|Bullet|LinearMath|urdfdom|console_bridge|jsoncpp|tinyxml)",
                        re.IGNORECASE)

@@ -3,8 +3,19 @@
 namespace galactic::simulation {
 namespace {
 
-/// A batch of many envs asks the system for its memory at once.
-constexpr std::size_t kTypicalEnvBytes = 4096;
+/// What the vectors of one env take, so that a batch asks for its memory at once.
+std::size_t envBytes(const Model& model) {
+  // What the alignment of an env's own vectors may cost.
+  constexpr std::size_t kPadding = 96;
+  const std::size_t planes = (model.most_objects + kPlaneObjects - 1) / kPlaneObjects;
+  const std::size_t floats =
+      model.motion.controlled.size() + model.variableCount() + 2 * model.observation_size + 5;
+  return kPadding + sizeof(Env) + sizeof(RestingObjects) + sizeof(GripFrame) +
+         planes * (sizeof(SetPlane) + sizeof(std::uint32_t)) +
+         model.most_objects * (sizeof(RestingBox) + sizeof(Pose)) +
+         (model.heldWords() + model.bodyWords()) * sizeof(std::uint64_t) + floats * sizeof(float) +
+         2 + model.bodyCount() * sizeof(RigidTransform);
+}
 
 template <class T>
 std::size_t bytesOf(const std::pmr::vector<T>& values) {
@@ -16,7 +27,7 @@ std::size_t paddedToChunks(std::size_t count) { return (count + kChunk - 1) / kC
 }  // namespace
 
 BatchState::BatchState(const Model& model, std::size_t envs)
-    : memory_(paddedToChunks(envs) * kTypicalEnvBytes, &huge_pages_),
+    : memory_(paddedToChunks(envs) * envBytes(model), &huge_pages_),
       env_count_(envs),
       most_objects_(model.most_objects),
       held_words_(model.heldWords()),

@@ -306,7 +306,7 @@ TEST_F(SoftBatch, DrawsTheBytesThatItHasAlwaysDrawn) {
   }
   const RenderImages images = renderViews(library_, batchOptions(100, 75), views);
   // When a change is meant to change images, look at them, then write the new numbers here.
-  EXPECT_EQ(digest(images.color), 6833829695956995427U);
+  EXPECT_EQ(digest(images.color), 18292753853555835599U);
   EXPECT_EQ(digest(images.depth), 892410985143664461U);
   EXPECT_EQ(digest(images.semantics), 12286742099158423379U);
 }
