@@ -17,8 +17,8 @@
 namespace galactic::test {
 namespace {
 
-/// The bake measures corners and middles of triangles; points between them were seen to move twice as
-/// far.
+/// The bake measures corners and middles of triangles; points between them were seen to move twice
+/// as far.
 constexpr double kBetweenTolerance = 2.25;
 
 /// Largest distance from points spread over `from` to `to`; `reach` at most.
