@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <random>
@@ -173,9 +174,7 @@ void drawWithSoft(benchmark::State& state, Scene& scene) {
   drawBatches(state, **engine, views, options);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   Scene scene;
   const auto add = [&](const char* name, auto run) {
     benchmark::RegisterBenchmark(name, run)
@@ -192,4 +191,15 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return static_cast<int>(galactic::ErrorCode::kInternal);
+  }
 }

@@ -149,7 +149,7 @@ TEST(ExportedRenderMeshes, KeepMaterials) {
 }
 
 TEST(ExportedRenderMeshes, KeepTheTexelsOfTextures) {
-  const auto field = test::paintedMeshes();
+  const RenderMeshStorage storage = test::paintedStorage();
   const test::AlignedBytes bytes = paintedScene({});
   const auto pack = PackFile::view(bytes.bytes(), "kitchen.pack");
   ASSERT_TRUE(pack.has_value());
@@ -163,7 +163,7 @@ TEST(ExportedRenderMeshes, KeepTheTexelsOfTextures) {
     ASSERT_GE(material.texture, 0);
     const auto& texture = baked->textures[static_cast<std::size_t>(material.texture)];
     const bool wood = material.name == "wood";
-    const RenderMeshes meshes = field->view();
+    const RenderMeshes meshes = storage.view();
     const RenderTexture& wanted = meshes.textures[wood ? 0 : 1];
     ASSERT_EQ(texture.size, wanted.size);
     // The level that came from the pack; what alpha hides has no colour that matters.

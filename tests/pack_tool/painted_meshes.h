@@ -1,10 +1,10 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "galactic/render_mesh_builder.h"
@@ -40,7 +40,7 @@ inline std::vector<std::uint8_t> noiseTexels(std::uint32_t size, std::uint32_t s
 
 /// Each model: a wall (opaque texture, seen from the front), a leaf (cut-out texture, seen from
 /// both sides) and a floor (plain colour), each with its semantic; a metre or two in size.
-inline RenderMeshesField paintedMeshes(const Painting& painting = {}) {
+inline RenderMeshStorage paintedStorage(const Painting& painting = {}) {
   constexpr std::uint32_t kSize = 16;
   std::vector<std::uint8_t> wood = noiseTexels(kSize, painting.seed, 0);
   const std::vector<std::uint8_t> leaf = noiseTexels(kSize / 2, painting.seed + 1, 3);
@@ -78,7 +78,12 @@ inline RenderMeshesField paintedMeshes(const Painting& painting = {}) {
   }
   Result<RenderMeshStorage> built = buildRenderMeshes(source);
   if (!built) throw std::runtime_error(built.error().where + ": " + built.error().message);
-  return fieldsOf(*built);
+  return std::move(*built);
+}
+
+/// The same for a pack.
+inline RenderMeshesField paintedMeshes(const Painting& painting = {}) {
+  return fieldsOf(paintedStorage(painting));
 }
 
 }  // namespace galactic::test

@@ -160,8 +160,8 @@ TEST(MeshRaster, DrawsNothingOutsideItsPlace) {
 }
 
 TEST(MeshRaster, DrawsRenderModelsWithTheirTexturesAndSides) {
-  const auto field = test::paintedMeshes();
-  const RenderMeshes meshes = field->view();
+  const RenderMeshStorage storage = test::paintedStorage();
+  const RenderMeshes meshes = storage.view();
   // From the front, the leaf with its holes before the wall; from behind, the leaf alone.
   const auto coloursFrom = [&](const ViewAxes& axes, const Vec3& centre) {
     MeshRaster raster({axes, centre, 60, kSize, kSize});

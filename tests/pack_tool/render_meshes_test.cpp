@@ -185,7 +185,7 @@ TEST(RenderDiff, TellsThatOneSideHasNone) {
 }
 
 TEST(CheckRenderMeshes, NamesTheWrongValue) {
-  auto damaged = std::make_shared<RenderMeshStorage>(*paintedMeshes());
+  test::RenderMeshesField damaged = paintedMeshes();
   damaged->clusters[1].material = 9;
   const ScratchFolder folder;
   const auto path = writeScene(folder, "a.pack", damaged);
@@ -196,8 +196,8 @@ TEST(CheckRenderMeshes, NamesTheWrongValue) {
 }
 
 TEST(RenderSurfaces, AreWhatTheMeshesWereMadeOf) {
-  const auto field = paintedMeshes({.colored = true});
-  const RenderMeshes meshes = field->view();
+  const RenderMeshStorage storage = test::paintedStorage({.colored = true});
+  const RenderMeshes meshes = storage.view();
   const auto surfaces = surfacesOf(meshes, meshes.models.front());
   ASSERT_EQ(surfaces.size(), 3U);
   const RenderSurface& floor = surfaces[2];

@@ -14,7 +14,7 @@
 namespace galactic::test {
 namespace {
 
-constexpr double kFinest = bake::kFinestStep;
+constexpr double kFinest = kFinestStep;
 
 bake::BakedRenderMeshes bakedMeshes(const SourceBuilder& builder, double error = 0,
                                     unsigned jobs = 1) {

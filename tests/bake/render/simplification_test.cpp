@@ -87,7 +87,7 @@ TEST(Simplification, MovesALandscapeNoFurtherThanItSays) {
     EXPECT_GT(outcome.measured, error / 10);
     const double reach = 4 * error;
     const double moved = std::max(deviation(source, drawn, reach), deviation(drawn, source, reach));
-    const double rounding = bake::kFinestStep;
+    const double rounding = kFinestStep;
     EXPECT_LE(moved, kBetweenTolerance * outcome.measured + rounding) << "allowed " << error;
     EXPECT_LT(drawn.triangles.size(), source.triangles.size());
   }
