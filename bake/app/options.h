@@ -51,6 +51,7 @@ struct RenderOptions {
   bool wanted = true;
   RenderBakeOptions meshes;
   TextureBakeOptions textures;
+  bool ambient_occlusion = false;
 };
 
 /// What the user typed, understood.

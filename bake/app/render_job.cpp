@@ -15,13 +15,17 @@ TextureBakeOptions texturesOf(const RenderTask& task) {
   return options;
 }
 
-Result<OptionalMeshes> bakeFrom(const Result<RenderSource>& source, const RenderTask& task,
+Result<OptionalMeshes> bakeFrom(Result<RenderSource> source, const RenderTask& task,
                                 std::vector<std::string>& warnings) {
   const auto located = [&](Error error) {
     error.where = inFile(task.input, error.where);
     return tl::unexpected(std::move(error));
   };
   if (!source) return located(source.error());
+  if (task.command.render.ambient_occlusion) {
+    const auto darkened = addAmbientOcclusion(*source, {.jobs = task.jobs});
+    if (!darkened) return located(darkened.error());
+  }
   RenderBakeOptions options = task.command.render.meshes;
   options.jobs = task.jobs;
   auto meshes = bakeRenderMeshes(*source, options);

@@ -31,6 +31,8 @@ void RenderMeshOptions::addTo(CLI::App& app, BakeCommand& command) {
                  "bc1: an eighth of the size, for graphics processors; opaque textures only")
       ->transform(CLI::CheckedTransformer(formatNames()))
       ->option_text("rgba8|bc1");
+  app.add_flag("--ambient-occlusion", command.render.ambient_occlusion,
+               "Darken corners, for meshes whose textures have no light in them");
 }
 
 Result<void> RenderMeshOptions::understand(BakeCommand& command) const {
@@ -55,6 +57,7 @@ void RenderMeshOptions::remember(BakeCommand& command) const {
   command.remember("render-error", fmt::format("{}", command.render.meshes.error));
   command.remember("texture-size", std::to_string(command.render.textures.largest));
   command.remember("texture-format", nameOf(formatNames(), command.render.textures.format));
+  if (command.render.ambient_occlusion) command.remember("ambient-occlusion", "yes");
 }
 
 }  // namespace galactic::bake

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 
+#include "galactic/bake/ambient_occlusion.h"
 #include "galactic/bake/render_baker.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/bake/source_robot.h"
@@ -28,5 +29,11 @@ namespace galactic::bake {
 [[nodiscard]] Result<RenderSource> robotRenderSource(const SourceRobot& robot,
                                                      const std::filesystem::path& folder,
                                                      const TextureBakeOptions& options);
+
+/// Darkens the vertex colours of all meshes where the rest of their part keeps light away from
+/// them. Of meshes seen from both sides the brighter side counts, unless all their pieces are
+/// closed. Fails as ambientOcclusion and bakeRenderMeshes do.
+[[nodiscard]] Result<void> addAmbientOcclusion(RenderSource& source,
+                                               const AmbientOcclusionOptions& options);
 
 }  // namespace galactic::bake
