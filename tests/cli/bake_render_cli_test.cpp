@@ -60,6 +60,19 @@ TEST_F(BakeRenderCli, LeavesThemOutWhenAsked) {
   EXPECT_EQ(modelsIn("brick.pack"), std::nullopt);
 }
 
+TEST_F(BakeRenderCli, BakesAmbientOcclusionIntoVertexColours) {
+  write("brick.obj", test::objFile(test::unevenBox()));
+  ASSERT_EQ(bake({"brick.obj", "-o", "plain.pack"}).exit_code, 0);
+  ASSERT_EQ(bake({"brick.obj", "-o", "dark.pack", "--ambient-occlusion"}).exit_code, 0);
+  const auto colors_in = [&](const char* name) {
+    const auto pack = PackFile::open(path(name));
+    EXPECT_TRUE(pack);
+    return (*renderMeshesOf(*pack))->colors.size();
+  };
+  EXPECT_EQ(colors_in("plain.pack"), 0U);
+  EXPECT_GE(colors_in("dark.pack"), 8U);
+}
+
 TEST_F(BakeRenderCli, RefusesErrorsAndSizesThatAreNone) {
   write("brick.obj", test::objFile(test::unevenBox()));
   const std::vector<std::pair<std::vector<std::string>, std::string>> refused{
