@@ -28,7 +28,7 @@ void* HugePages::do_allocate(std::size_t bytes, std::size_t alignment) {
 }
 
 void HugePages::do_deallocate(void* memory, std::size_t bytes, std::size_t alignment) {
-  ::operator delete (memory, bytes, std::align_val_t{alignmentFor(bytes, alignment)});
+  ::operator delete (memory, std::align_val_t{alignmentFor(bytes, alignment)});
 }
 
 bool HugePages::do_is_equal(const std::pmr::memory_resource& other) const noexcept {
