@@ -5,8 +5,8 @@
 
 Says what it found and exits with 1 when it found something. A source that passed is not examined again
 until something changes that it is made of: itself, what it includes of ours, its compile command, the
-checks, or an installed package. What passed is remembered in BUILD_FOLDER/tidy-passed, or in the folder
-that GALACTIC_TIDY_CACHE names.
+checks, or an installed package. What passed is remembered for all checkouts of the user, in
+~/.cache/galactic/tidy, or in the folder that GALACTIC_TIDY_CACHE names.
 """
 
 import concurrent.futures
@@ -98,7 +98,7 @@ def main() -> int:
         print("tidy: give the build folder, which has compile_commands.json", file=sys.stderr)
         return 1
     build = pathlib.Path(sys.argv[1]).resolve()
-    passed = pathlib.Path(os.environ.get("GALACTIC_TIDY_CACHE") or build / "tidy-passed")
+    passed = pathlib.Path(os.environ.get("GALACTIC_TIDY_CACHE") or pathlib.Path.home() / ".cache/galactic/tidy")
     passed.mkdir(parents=True, exist_ok=True)
     ours = tuple(f"{ROOT / folder}{os.sep}" for folder in FOLDERS)
     # A source of several targets is examined once.
@@ -119,7 +119,7 @@ def main() -> int:
                 (passed / keys[source]).touch()
                 continue
             failed += 1
-            print(said)
+            print(said, flush=True)
             findings.update(line for line in said.splitlines() if FINDING.search(line))
     for line in sorted(findings):
         print(line)

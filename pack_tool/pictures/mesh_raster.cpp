@@ -283,7 +283,7 @@ std::array<MeshRaster::Layer, 2> MeshRaster::render() const {
   camera.world_from_camera = rigidTransform({{static_cast<float>(-distance_), 0, 0}, Quat{}});
   camera.vertical_fov =
       static_cast<float>(2 * std::atan(0.5 * height_ / kSamplesPerUnit / distance_));
-  std::vector<std::uint8_t> colours(2 * 3 * samples);
+  std::vector<std::uint8_t> colours(std::size_t{6} * samples);
   std::vector<float> depths(2 * samples);
   const std::array<RenderInstance, 2> instances{
       {{.model = 0, .world_from_model = {}}, {.model = 1, .world_from_model = {}}}};

@@ -1,10 +1,10 @@
 // Any bytes as actions and resets of a small batch. Nothing may become a number that is none, no
 // robot may leave the room, and the books have to balance.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -32,7 +32,7 @@ class Input {
   T take() {
     T value{};
     const std::size_t size = std::min(sizeof(T), bytes_.size());
-    std::memcpy(&value, bytes_.data(), size);
+    std::copy_n(bytes_.begin(), size, reinterpret_cast<std::uint8_t*>(&value));
     bytes_ = bytes_.subspan(size);
     return value;
   }
