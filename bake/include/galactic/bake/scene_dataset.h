@@ -1,0 +1,73 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "galactic/bake/mesh_library.h"
+#include "galactic/bake/source_asset.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+/// A movable object that a scene instance places.
+struct DatasetObject {
+  /// Name of its template.
+  std::string name;
+  /// Mesh that is drawn and fitted, an absolute path.
+  std::filesystem::path mesh;
+  /// World frame from the mesh's own frame, the template's and the instance's scale included.
+  Affine world_from_mesh{};
+};
+
+/// A scene instance put together.
+struct ComposedScene {
+  /// Everything that does not move, in the world frame. `files` lists all that was read for it
+  /// (configurations, meshes, textures), by path relative to the dataset's folder.
+  SourceAsset scene;
+  /// What the instance calls dynamic, in its order.
+  std::vector<DatasetObject> movable;
+  /// One sentence for each thing that the instance names and the dataset lacks; it is left out.
+  std::vector<std::string> missing;
+  /// Files that were looked for and are not there, relative to the dataset's folder: the result may
+  /// change when one of them appears.
+  std::vector<std::string> absent_files;
+  /// Whether the stage is there. Without it there is no floor.
+  bool has_stage = true;
+};
+
+/// A Habitat scene dataset (*.scene_dataset_config.json): which scenes it has and what they place.
+/// Immutable once read; safe to share between threads.
+class SceneDataset {
+ public:
+  /// Reads the dataset's configuration and finds stages, objects, articulated objects and scene
+  /// instances by its globs. The many configurations are read when they are needed. Fails with kIo
+  /// or kInvalidInput, naming file and field.
+  [[nodiscard]] static Result<SceneDataset> read(const std::filesystem::path& config);
+  ~SceneDataset();
+  SceneDataset(SceneDataset&&) noexcept;
+  SceneDataset& operator=(SceneDataset&&) noexcept;
+  SceneDataset(const SceneDataset&) = delete;
+  SceneDataset& operator=(const SceneDataset&) = delete;
+
+  /// Names of the scene instances, ascending.
+  [[nodiscard]] const std::vector<std::string>& scenes() const;
+  /// The folder of the configuration: names of files are relative to it.
+  [[nodiscard]] const std::filesystem::path& folder() const;
+  /// What the user should look at, one sentence each: globs that match nothing and so on.
+  [[nodiscard]] const std::vector<std::string>& warnings() const;
+
+  /// Puts a scene together: stage, objects and articulated objects (in their default joint state)
+  /// that do not move. Fails with kInvalidInput on a broken configuration or an unknown name, and
+  /// with the errors of the importers on files that are there and cannot be read; what lacks is no
+  /// failure. Deterministic.
+  [[nodiscard]] Result<ComposedScene> compose(std::string_view scene, MeshLibrary& meshes) const;
+
+ private:
+  struct State;
+  explicit SceneDataset(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace galactic::bake
