@@ -9,13 +9,13 @@
 namespace galactic::bake {
 
 void BakeRun::noteRead(const std::filesystem::path& folder, const std::vector<SourceFile>& files) {
-  for (const SourceFile& file : files) read_.push_back(folder / file.name);
+  for (const SourceFile& file : files) read_.push_back({folder / file.name, file});
 }
 
 Result<void> BakeRun::checkNotRead(const std::filesystem::path& output) const {
-  for (const std::filesystem::path& source : read_) {
+  for (const ReadFile& source : read_) {
     std::error_code missing;
-    if (output.empty() || !std::filesystem::equivalent(source, output, missing)) continue;
+    if (output.empty() || !std::filesystem::equivalent(source.path, output, missing)) continue;
     return galactic::fail(ErrorCode::kInvalidInput, output.string(),
                           "is also an input; write to another file");
   }
@@ -55,7 +55,7 @@ std::filesystem::path BakeRun::outputFor(const std::filesystem::path& input) con
 
 void BakeRun::fail(const std::filesystem::path& input, const Error& error) {
   line_.clear();
-  printError(error);
+  if (command_.verbosity != Verbosity::kSilent) printError(error);
   failures_.push_back({input, error});
 }
 

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "galactic/bake/provenance.h"
@@ -19,17 +20,18 @@ struct BakeFailure {
   Error error;
 };
 
+/// A file that a bake read.
+struct ReadFile {
+  std::filesystem::path path;
+  /// What it held, where the reader said so.
+  std::optional<SourceFile> content;
+};
+
 /// What all bakes of one command share: what was asked, what was read, and what became of it.
 class BakeRun {
  public:
-  explicit BakeRun(const BakeCommand& command)
-      : command_(command), line_(command.verbosity != Verbosity::kQuiet) {
-    read_ = command.inputs;
-    read_.push_back(command.config);
-    read_.push_back(command.robot.recipe);
-    read_.push_back(command.robot.spheres);
-    read_.push_back(command.episodes.only);
-    read_.push_back(command.collection);
+  explicit BakeRun(const BakeCommand& command) : command_(command), line_(command.saysMore()) {
+    for (const std::filesystem::path& file : command.namedFiles()) noteRead(file);
   }
 
   [[nodiscard]] const BakeCommand& command() const { return command_; }
@@ -37,7 +39,11 @@ class BakeRun {
 
   /// Remembers files that were read: nothing is written over them.
   void noteRead(const std::filesystem::path& folder, const std::vector<SourceFile>& files);
-  void noteRead(const std::filesystem::path& file) { read_.push_back(file); }
+  void noteRead(const std::filesystem::path& file) { read_.push_back({file, std::nullopt}); }
+  [[nodiscard]] const std::vector<ReadFile>& filesRead() const { return read_; }
+  /// Remembers a file that was looked for and is not there.
+  void noteAbsent(const std::filesystem::path& file) { absent_.push_back(file); }
+  [[nodiscard]] const std::vector<std::filesystem::path>& absentFiles() const { return absent_; }
 
   /// Refuses to write `output` over a file that the user owns and the bake reads.
   [[nodiscard]] Result<void> checkNotRead(const std::filesystem::path& output) const;
@@ -62,7 +68,8 @@ class BakeRun {
  private:
   const BakeCommand& command_;
   ProgressLine line_;
-  std::vector<std::filesystem::path> read_;
+  std::vector<ReadFile> read_;
+  std::vector<std::filesystem::path> absent_;
   std::vector<Json> baked_;
   std::vector<BakeFailure> failures_;
 };

@@ -37,7 +37,7 @@ Result<Json> finish(EpisodeOutcome& outcome, std::vector<SourceFile> sources, Ba
   }
   outcome.seconds = secondsSince(start);
   run.line().clear();
-  if (command.verbosity != Verbosity::kQuiet) printEpisodeTable(outcome, command.verbosity);
+  if (command.saysMore()) printEpisodeTable(outcome, command.verbosity);
   return episodeReport(outcome);
 }
 

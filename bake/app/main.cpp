@@ -4,14 +4,11 @@
 #include <exception>
 #include <set>
 
+#include "bake_inputs.h"
 #include "bake_run.h"
-#include "episode_job.h"
-#include "object_job.h"
 #include "options.h"
+#include "plan/bake_plan.h"
 #include "report.h"
-#include "robot_job.h"
-#include "scene_job.h"
-#include "world_job.h"
 
 namespace galactic::bake {
 namespace {
@@ -48,30 +45,6 @@ Result<void> checkOutputs(const BakeRun& run) {
   return {};
 }
 
-Result<Json> bakeFile(const std::filesystem::path& input, BakeRun& run) {
-  if (run.command().kind == AssetKind::kRobot) return bakeRobotFile(input, run);
-  if (run.command().kind == AssetKind::kEpisodes) return importEpisodeFile(input, run);
-  return bakeSceneFile(input, run);
-}
-
-/// One pack of all inputs.
-Result<Json> bakeTogether(BakeRun& run) {
-  return run.command().kind == AssetKind::kWorld ? linkWorldPack(run) : sampleEpisodePack(run);
-}
-
-void bakeInputs(BakeRun& run) {
-  const auto keep = [&run](const std::filesystem::path& input, Result<Json> entry) {
-    if (entry) return run.succeed(std::move(*entry));
-    run.fail(input, entry.error());
-  };
-  if (run.command().kind == AssetKind::kObject) return bakeObjectFiles(run);
-  if (run.command().makesOnePack()) return keep(run.command().inputs.front(), bakeTogether(run));
-  for (const std::filesystem::path& input : run.command().inputs) {
-    if (!run.goesOn()) return;
-    keep(input, bakeFile(input, run));
-  }
-}
-
 int bakeAll(const BakeCommand& command) {
   BakeRun run(command);
   if (const auto outputs = checkOutputs(run); !outputs) {
@@ -96,7 +69,8 @@ int main(int argc, char** argv) {
   try {
     const bake::ParsedCommand parsed = bake::parseCommandLine(argc, argv);
     if (const int* code = std::get_if<int>(&parsed)) return *code;
-    return bake::bakeAll(std::get<bake::BakeCommand>(parsed));
+    const auto& command = std::get<bake::BakeCommand>(parsed);
+    return command.hasPlan() ? bake::bakePlan(command) : bake::bakeAll(command);
   } catch (const std::exception& error) {
     fmt::print(stderr, "galactic-bake: internal error: {}; please report it\n", error.what());
     return static_cast<int>(galactic::ErrorCode::kInternal);

@@ -164,8 +164,9 @@ void bakeObjectFiles(BakeRun& run) {
   ObjectSetOutcome outcome;
   outcome.output = run.outputFor(command.inputs.front());
   outcome.radii = command.object.spheres.radii;
-  const auto inputs = findObjects(command.inputs);
+  auto inputs = findObjects(command.inputs);
   if (!inputs) return run.fail(command.inputs.front(), inputs.error());
+  if (!command.asset_name.empty() && inputs->size() == 1) inputs->front().name = command.asset_name;
   std::vector<SourceFile> sources;
   auto collection = readShapes(command.collection, sources);
   if (!collection) return run.fail(command.collection, collection.error());
@@ -191,7 +192,7 @@ void bakeObjectFiles(BakeRun& run) {
   if (!bytes) return run.fail(outcome.output, bytes.error());
   outcome.pack_bytes = *bytes;
   outcome.seconds = secondsSince(start);
-  if (command.verbosity != Verbosity::kQuiet) printObjectTable(outcome, set.objects);
+  if (command.saysMore()) printObjectTable(outcome, set.objects);
   for (std::size_t n = 0; n < set.objects.size(); ++n) {
     run.succeed(objectReport(set.objects[n], outcomes[n], outcome));
   }

@@ -98,4 +98,16 @@ class EpisodeSetOptions {
   std::string least_distance_;
 };
 
+/// Scene datasets, and how many packs are baked at once.
+class PlannedOptions {
+ public:
+  void addDatasetTo(CLI::App& app, BakeCommand& command);
+  void addTo(CLI::App& app, BakeCommand& command);
+  [[nodiscard]] Result<void> understand(BakeCommand& command) const;
+
+ private:
+  std::string shard_;
+  std::string memory_;
+};
+
 }  // namespace galactic::bake

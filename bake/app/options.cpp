@@ -18,6 +18,9 @@
 namespace galactic::bake {
 namespace {
 
+constexpr std::string_view kDatasetSuffix = ".scene_dataset_config.json";
+constexpr std::string_view kRecipeSuffix = ".toml";
+
 constexpr const char* kFooter =
     "Exit codes: 0 ok, 1 command line, 2 I/O, 3 invalid input, 4 internal, 5 unsupported, 7 "
     "differs.\n"
@@ -26,14 +29,15 @@ constexpr const char* kFooter =
     "  galactic-bake objects/ --as object -o objects.pack\n"
     "  galactic-bake fetch.urdf --as robot --recipe fetch.toml\n"
     "  galactic-bake scene.pack objects.pack fetch.pack --as episodes -o episodes.pack\n"
-    "  galactic-bake scene.pack objects.pack fetch.pack episodes.pack --as world -o world.pack";
+    "  galactic-bake scene.pack objects.pack fetch.pack episodes.pack --as world -o world.pack\n"
+    "  galactic-bake replicaCAD.scene_dataset_config.json -o replica.pack\n"
+    "  galactic-bake world.toml -o world.pack";
 
 const std::map<std::string, AssetKind>& kindNames() {
-  static const std::map<std::string, AssetKind> names{{"scene", AssetKind::kScene},
-                                                      {"object", AssetKind::kObject},
-                                                      {"robot", AssetKind::kRobot},
-                                                      {"episodes", AssetKind::kEpisodes},
-                                                      {"world", AssetKind::kWorld}};
+  static const std::map<std::string, AssetKind> names{
+      {"scene", AssetKind::kScene},     {"object", AssetKind::kObject},
+      {"robot", AssetKind::kRobot},     {"episodes", AssetKind::kEpisodes},
+      {"dataset", AssetKind::kDataset}, {"world", AssetKind::kWorld}};
   return names;
 }
 
@@ -44,12 +48,14 @@ struct Group {
 };
 
 bool isObject(AssetKind kind) { return kind == AssetKind::kObject; }
-bool isScene(AssetKind kind) { return kind == AssetKind::kScene; }
+bool isDataset(AssetKind kind) { return kind == AssetKind::kDataset; }
+bool isScene(AssetKind kind) { return kind == AssetKind::kScene || isDataset(kind); }
 bool isRobot(AssetKind kind) { return kind == AssetKind::kRobot; }
 bool isEpisodes(AssetKind kind) { return kind == AssetKind::kEpisodes; }
-bool isMesh(AssetKind kind) { return isScene(kind) || isObject(kind); }
+bool isMesh(AssetKind kind) { return kind == AssetKind::kScene || isObject(kind); }
 bool isShape(AssetKind kind) { return isRobot(kind) || isObject(kind); }
-bool hasRadii(AssetKind kind) { return isMesh(kind) || isRobot(kind); }
+bool hasRadii(AssetKind kind) { return isScene(kind) || isObject(kind) || isRobot(kind); }
+bool hasPlan(AssetKind kind) { return isDataset(kind) || kind == AssetKind::kWorld; }
 bool hasSeed(AssetKind kind) { return isScene(kind) || isEpisodes(kind); }
 
 constexpr Group kRadiiGroup{"Spheres (scenes, objects, robots)", hasRadii};
@@ -61,8 +67,11 @@ constexpr Group kRobotGroup{"Robots", isRobot};
 constexpr Group kEpisodeGroup{"Episodes", isEpisodes};
 constexpr Group kRenderGroup{"Render meshes (scenes, objects, robots)", hasRadii};
 constexpr Group kSeedGroup{"Scenes, sampled episodes", hasSeed};
-constexpr std::array kGroups{kRadiiGroup, kSceneGroup,  kMeshGroup, kShapeGroup,  kObjectGroup,
-                             kRobotGroup, kRenderGroup, kSeedGroup, kEpisodeGroup};
+constexpr Group kDatasetGroup{"Datasets", isDataset};
+constexpr Group kPlanGroup{"Datasets, worlds from recipes", hasPlan};
+constexpr std::array kGroups{kRadiiGroup,   kSceneGroup,   kMeshGroup,   kShapeGroup,
+                             kObjectGroup,  kRobotGroup,   kRenderGroup, kSeedGroup,
+                             kEpisodeGroup, kDatasetGroup, kPlanGroup};
 
 /// Options that were typed although their group is for other kinds of asset.
 Result<void> checkGroup(const CLI::App& app, const Group& group, AssetKind kind) {
@@ -78,14 +87,14 @@ Result<void> checkGroup(const CLI::App& app, const Group& group, AssetKind kind)
 void addRunOptions(CLI::App& app, BakeCommand& command) {
   app.add_option("input", command.inputs,
                  "Meshes (GLB, glTF, OBJ, PLY, STL, DAE, ...), folders of objects, URDF robots, "
-                 "published episode sets, or packs")
+                 "published episode sets, a scene dataset, a world's recipe, or packs")
       ->required()
       ->option_text("INPUT...");
-  app.add_option(
-         "--as", command.kind,
-         "What to make (default: robot of .urdf, episodes of .episode_set.json, else scene)")
+  app.add_option("--as", command.kind,
+                 "What to make (default: robot of .urdf, episodes of .episode_set.json, dataset of "
+                 ".scene_dataset_config.json, world of .toml, else scene)")
       ->transform(CLI::CheckedTransformer(kindNames()))
-      ->option_text("scene|object|robot|episodes|world");
+      ->option_text("scene|object|robot|episodes|dataset|world");
   app.add_option("-o,--out", command.output,
                  "Pack to write, or a folder for several packs (default: NAME.pack)")
       ->type_name("OUT");
@@ -137,6 +146,8 @@ class CommandLine {
     addGroup(kRobotGroup, [&] { robot_.addTo(app_, command); });
     addGroup(kRenderGroup, [&] { render_.addTo(app_, command); });
     addGroup(kEpisodeGroup, [&] { episodes_.addTo(app_, command); });
+    addGroup(kDatasetGroup, [&] { plan_.addDatasetTo(app_, command); });
+    addGroup(kPlanGroup, [&] { plan_.addTo(app_, command); });
   }
 
   void parse(int argc, const char* const* argv) { app_.parse(argc, argv); }
@@ -147,16 +158,16 @@ class CommandLine {
     for (const Group& group : kGroups) {
       if (auto fits = checkGroup(app_, group, command_.kind); !fits) return fits;
     }
-    for (const auto& step : {understandRadii(radii_, command_), import_.understand(command_),
-                             scene_.understand(command_, seeds_), shape_.understand(command_),
-                             robot_.understand(command_), render_.understand(command_),
-                             episodes_.understand(command_, seeds_), checkCollection()}) {
+    for (const auto& step :
+         {understandRadii(radii_, command_), import_.understand(command_),
+          scene_.understand(command_, seeds_), shape_.understand(command_),
+          robot_.understand(command_), render_.understand(command_),
+          episodes_.understand(command_, seeds_), checkCollection(), plan_.understand(command_)}) {
       if (!step) return step;
     }
     // Movable objects may be small.
     if (command_.kind == AssetKind::kObject) command_.import.smallest_size = 0;
-    command_.scene.jobs = command_.jobs;
-    command_.object.spheres.jobs = command_.jobs;
+    command_.setJobs(command_.jobs);
     command_.config = app_.get_config_ptr()->as<std::string>();
     remember();
     return {};
@@ -213,11 +224,13 @@ class CommandLine {
     command_.kind = AssetKind::kScene;
     if (allEndWith(".urdf")) command_.kind = AssetKind::kRobot;
     if (allEndWith(kEpisodeSetSuffix)) command_.kind = AssetKind::kEpisodes;
+    if (allEndWith(kDatasetSuffix)) command_.kind = AssetKind::kDataset;
+    if (allEndWith(kRecipeSuffix)) command_.kind = AssetKind::kWorld;
   }
 
   /// In this order in every pack; only what decides the content.
   void remember() {
-    if (command_.kind != AssetKind::kScene) {
+    if (!isScene(command_.kind)) {
       command_.remember("as", nameOf(kindNames(), command_.kind));
     }
     if (hasRadii(command_.kind)) command_.remember("radii", joined(radii_));
@@ -240,6 +253,7 @@ class CommandLine {
   RobotFileOptions robot_;
   RenderMeshOptions render_;
   EpisodeSetOptions episodes_;
+  PlannedOptions plan_;
   std::vector<std::string> seeds_;
 };
 
@@ -263,6 +277,35 @@ ParsedCommand parseCommandLine(int argc, const char* const* argv) {
     return kExitUsage;
   }
   return command;
+}
+
+Result<BakeCommand> commandFrom(const std::vector<std::string>& arguments) {
+  BakeCommand command;
+  CommandLine line(command);
+  std::vector<const char*> argv{"galactic-bake"};
+  argv.reserve(arguments.size() + 1);
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  try {
+    line.parse(static_cast<int>(argv.size()), argv.data());
+  } catch (const CLI::ParseError& error) {
+    return fail(ErrorCode::kInvalidInput, "", error.what());
+  }
+  if (auto understood = line.understand(); !understood) return tl::unexpected(understood.error());
+  return command;
+}
+
+bool BakeCommand::hasPlan() const {
+  return kind == AssetKind::kDataset || (kind == AssetKind::kWorld && inputs.size() == 1 &&
+                                         inputs.front().string().ends_with(kRecipeSuffix));
+}
+
+std::vector<std::filesystem::path> BakeCommand::namedFiles() const {
+  std::vector<std::filesystem::path> files = inputs;
+  for (const std::filesystem::path& file :
+       {config, robot.recipe, robot.spheres, episodes.only, collection}) {
+    if (!file.empty()) files.push_back(file);
+  }
+  return files;
 }
 
 }  // namespace galactic::bake

@@ -19,10 +19,15 @@
 namespace galactic::bake {
 
 /// How much to print.
-enum class Verbosity { kQuiet, kNormal, kVerbose };
+enum class Verbosity {
+  kSilent,  ///< Nothing: the caller tells errors.
+  kQuiet,   ///< Errors.
+  kNormal,
+  kVerbose
+};
 
 /// What the inputs are.
-enum class AssetKind { kScene, kObject, kRobot, kEpisodes, kWorld };
+enum class AssetKind { kScene, kObject, kRobot, kEpisodes, kWorld, kDataset };
 
 /// How a robot is read and which recipe goes with it.
 struct RobotOptions {
@@ -54,6 +59,43 @@ struct RenderOptions {
   bool ambient_occlusion = false;
 };
 
+/// What to do with a scene of a dataset of which something lacks. A scene without its stage is
+/// never baked.
+enum class MissingPolicy {
+  kFail,     ///< An error.
+  kSkip,     ///< The scene is left out, and listed.
+  kWithout,  ///< It is baked without what lacks, which is listed.
+};
+
+/// Which scenes of a dataset.
+struct DatasetOptions {
+  /// Patterns (*, ?) of names; none: all.
+  std::vector<std::string> scenes;
+  MissingPolicy missing = MissingPolicy::kWithout;
+  /// Only print the names.
+  bool list = false;
+};
+
+/// One part of work that is split: the packs whose number, modulo `count`, is `index`.
+struct Shard {
+  std::size_t index = 0;
+  std::size_t count = 1;
+};
+
+/// How the many packs of a dataset or world are baked.
+struct PlanOptions {
+  /// Where a recipe's files are looked for that are not beside it; empty: nowhere else.
+  std::filesystem::path data;
+  /// Empty: beside the packs.
+  std::filesystem::path cache;
+  bool no_cache = false;
+  Shard shard;
+  /// Bytes that bakes at the same time may take together, as far as that can be foreseen.
+  std::uint64_t memory = 0;
+  /// A picture report; empty: none.
+  std::filesystem::path html;
+};
+
 /// What the user typed, understood.
 struct BakeCommand {
   AssetKind kind = AssetKind::kScene;
@@ -71,6 +113,10 @@ struct BakeCommand {
   RobotOptions robot;
   RenderOptions render;
   EpisodeOptions episodes;
+  DatasetOptions dataset;
+  PlanOptions plan;
+  /// Name of the asset in its pack; empty: that of its file.
+  std::string asset_name;
   /// Most spheres of an object or robot, where the user said so; 0: no limit.
   std::optional<std::uint32_t> max_spheres;
   /// Whether eps and tau of object.spheres come from the user: then they override a recipe's.
@@ -82,11 +128,27 @@ struct BakeCommand {
   /// The options that decide the pack's content, as text, for its provenance.
   std::vector<std::pair<std::string, std::string>> content_options;
 
+  /// Bakes on `count` threads, which the result does not depend on.
+  void setJobs(unsigned count) {
+    jobs = count;
+    scene.jobs = count;
+    object.spheres.jobs = count;
+  }
+
+  /// Whether to print what was done.
+  [[nodiscard]] bool saysMore() const { return verbosity >= Verbosity::kNormal; }
+
   /// Whether all inputs go into one pack.
   [[nodiscard]] bool makesOnePack() const {
     return kind == AssetKind::kObject || kind == AssetKind::kWorld ||
            (kind == AssetKind::kEpisodes && episodes.sampled);
   }
+
+  /// Whether it is a recipe or a dataset, of which many packs are made.
+  [[nodiscard]] bool hasPlan() const;
+
+  /// The files that it names: they are read whatever else is.
+  [[nodiscard]] std::vector<std::filesystem::path> namedFiles() const;
 
   /// Adds an option to content_options unless its text is empty.
   void remember(const char* name, const std::string& value) {
@@ -99,5 +161,9 @@ struct BakeCommand {
 using ParsedCommand = std::variant<BakeCommand, int>;
 
 [[nodiscard]] ParsedCommand parseCommandLine(int argc, const char* const* argv);
+
+/// The command that somebody would have typed with these arguments, the program's name not among
+/// them. Fails with kInvalidInput where they are none; `where` is the option, or empty.
+[[nodiscard]] Result<BakeCommand> commandFrom(const std::vector<std::string>& arguments);
 
 }  // namespace galactic::bake

@@ -134,7 +134,7 @@ Result<Json> bakeRobotFile(const std::filesystem::path& input, BakeRun& run) {
   }
   outcome.seconds = secondsSince(start);
   run.line().clear();
-  if (command.verbosity != Verbosity::kQuiet) printRobotTable(outcome, command.verbosity);
+  if (command.saysMore()) printRobotTable(outcome, command.verbosity);
   return robotReport(outcome);
 }
 

@@ -78,7 +78,7 @@ Result<Json> linkWorldPack(BakeRun& run) {
   }
   outcome.seconds = secondsSince(start);
   run.line().clear();
-  if (command.verbosity != Verbosity::kQuiet) printWorldTable(outcome);
+  if (command.saysMore()) printWorldTable(outcome);
   return worldReport(outcome);
 }
 

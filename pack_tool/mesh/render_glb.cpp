@@ -56,7 +56,7 @@ Result<std::size_t> RenderGlbWriter::material(const MaterialKey& key) {
   material.two_sided = key.second;
   material.alpha_cutoff = stored.alpha_cutoff;
   if (stored.texture >= 0) {
-    const auto number = texture(static_cast<std::size_t>(stored.texture));
+    auto number = texture(static_cast<std::size_t>(stored.texture));
     if (!number) return number;
     material.texture = *number;
   } else {

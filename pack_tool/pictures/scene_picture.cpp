@@ -28,7 +28,7 @@ using pack_tool::Figure;
 constexpr int kMargin = 20;
 constexpr int kLine = kTextHeight + 10;
 /// Samples along each edge of a pixel.
-constexpr int kSamples = 2;
+constexpr std::size_t kSamples = 2;
 constexpr std::size_t kInsideViews = 2;
 
 constexpr float kFov = std::numbers::pi_v<float> / 2;
@@ -47,9 +47,11 @@ std::vector<RenderCamera> candidates(const RenderModel& model) {
   std::vector<RenderCamera> cameras;
   cameras.reserve(kTurns.size() * kPlaces * kPlaces);
   for (int n = 0; n < kPlaces * kPlaces; ++n) {
-    const Vec3 eye{low.x + size.x * (static_cast<float>(n % kPlaces) + 0.5F) / kPlaces,
+    const int column = n % kPlaces;
+    const int row = n / kPlaces;
+    const Vec3 eye{low.x + size.x * (static_cast<float>(column) + 0.5F) / kPlaces,
                    low.y + std::min(kEyes, kEyeShare * size.y),
-                   low.z + size.z * (static_cast<float>(n / kPlaces) + 0.5F) / kPlaces};
+                   low.z + size.z * (static_cast<float>(row) + 0.5F) / kPlaces};
     for (const Quat& turn : kTurns) cameras.push_back({rigidTransform({eye, turn}), kFov});
   }
   return cameras;

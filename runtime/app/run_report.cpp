@@ -68,7 +68,7 @@ std::string renderLines(const RunReport& report) {
   const RenderReport& drawn = *report.rendering;
   constexpr double kMilli = 1e-3;
   const double larger = std::max(drawn.rendering.mean(), drawn.physics.mean());
-  const std::string text =
+  std::string text =
       line("drawing",
            fmt::format("{} {} x {}, camera {}, by {}", drawing.images, drawing.width,
                        drawing.height, printable(drawing.camera), printable(drawn.description))) +

@@ -26,7 +26,7 @@ bool leadsUpwards(const fs::path& path) {
 fs::path relativeTo(const fs::path& path, const fs::path& folder) {
   std::error_code problem;
   const fs::path from = fs::absolute(folder / "", problem).lexically_normal();
-  const fs::path as_written =
+  fs::path as_written =
       fs::absolute(path, problem).lexically_normal().lexically_relative(from);
   if (!leadsUpwards(as_written)) return as_written;
   const fs::path real = fs::canonical(path, problem);

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -17,8 +18,20 @@ struct DatasetObject {
   std::string name;
   /// Mesh that is drawn and fitted, an absolute path.
   std::filesystem::path mesh;
+  /// The template's scale and axes.
+  Affine object_from_mesh{};
   /// World frame from the mesh's own frame, the template's and the instance's scale included.
   Affine world_from_mesh{};
+};
+
+/// What a scene instance names, found out without reading a mesh.
+struct SceneSurvey {
+  bool has_stage = true;
+  /// As in ComposedScene.
+  std::vector<std::string> missing;
+  std::vector<DatasetObject> movable;
+  /// Size of all meshes that it places, each once.
+  std::uint64_t bytes = 0;
 };
 
 /// A scene instance put together.
@@ -57,6 +70,9 @@ class SceneDataset {
   [[nodiscard]] const std::filesystem::path& folder() const;
   /// What the user should look at, one sentence each: globs that match nothing and so on.
   [[nodiscard]] const std::vector<std::string>& warnings() const;
+
+  /// What compose() would find. Fails as it does, as far as no mesh is concerned.
+  [[nodiscard]] Result<SceneSurvey> survey(std::string_view scene) const;
 
   /// Puts a scene together: stage, objects and articulated objects (in their default joint state)
   /// that do not move. Fails with kInvalidInput on a broken configuration or an unknown name, and

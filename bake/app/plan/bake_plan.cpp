@@ -1,0 +1,95 @@
+#include "plan/bake_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bake_run.h"
+#include "galactic/bake/world_pack.h"
+#include "plan/make_plan.h"
+#include "plan/plan_report.h"
+#include "plan/plan_table.h"
+#include "plan/run_plan.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kExitInterrupted = 130;
+
+int refuse(const Error& error) {
+  printError(error);
+  return static_cast<int>(error.code);
+}
+
+int listScenes(const BakeCommand& command) {
+  const auto names = namesOfScenes(command);
+  if (!names) return refuse(names.error());
+  for (const std::string& name : *names) fmt::print("{}\n", name);
+  return kExitOk;
+}
+
+bool isMade(const PackOutcome& pack) {
+  return pack.state == PackState::kBaked || pack.state == PackState::kUnchanged;
+}
+
+/// The packs of the outcome in one world pack.
+Result<std::vector<LinkedPack>> link(const WorldPlan& plan, const PlanOutcome& outcome) {
+  std::vector<fs::path> paths;
+  for (const PackOutcome& pack : outcome.packs) {
+    if (isMade(pack)) paths.push_back(plan.folder / pack.name);
+  }
+  auto packs = linkPacks(paths, plan.world.parent_path());
+  if (!packs) return packs;
+  std::vector<SourceFile> sources;
+  sources.reserve(packs->size());
+  for (const LinkedPack& pack : *packs) {
+    sources.push_back({pack.path, pack.bytes, pack.hash_low, pack.hash_high});
+  }
+  BakeCommand linked;
+  linked.remember("as", "world");
+  const auto written =
+      writeWorldPack(plan.world, *packs, provenanceOf(linked, std::move(sources), {}));
+  if (!written) return tl::unexpected(written.error());
+  return packs;
+}
+
+/// Whether there is a world to link after this run.
+bool linksWorld(const BakeCommand& command, const PlanOutcome& outcome) {
+  if (command.dry_run || command.plan.shard.count > 1 || outcome.stopped) return false;
+  return outcome.count(PackState::kFailed) == 0 ||
+         (command.keep_going && std::any_of(outcome.packs.begin(), outcome.packs.end(), isMade));
+}
+
+int exitCodeOf(const PlanOutcome& outcome) {
+  if (outcome.stopped) return kExitInterrupted;
+  for (const PackOutcome& pack : outcome.packs) {
+    if (pack.error) return static_cast<int>(pack.error->code);
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+int bakePlan(const BakeCommand& command) {
+  if (command.dataset.list) return listScenes(command);
+  const auto plan = makePlan(command);
+  if (!plan) return refuse(plan.error());
+  const PlanOutcome outcome = runPlan(*plan, command);
+  int exit_code = exitCodeOf(outcome);
+  PlanSummary summary{.plan = *plan, .outcome = outcome, .world = {}};
+  if (linksWorld(command, outcome)) {
+    auto packs = link(*plan, outcome);
+    if (!packs) return refuse(packs.error());
+    summary.world = std::move(*packs);
+  }
+  if (command.saysMore()) printPlanTable(summary);
+  if (auto written = writePlanReports(summary, command); !written) {
+    const int code = refuse(written.error());
+    exit_code = exit_code == kExitOk ? code : exit_code;
+  }
+  return exit_code;
+}
+
+}  // namespace galactic::bake

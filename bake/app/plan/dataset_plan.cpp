@@ -1,0 +1,93 @@
+#include "plan/dataset_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "galactic/bake/world_recipe.h"
+
+namespace galactic::bake {
+namespace {
+
+/// A command for one of the assets of a dataset: its options go with scenes and with objects.
+BakeCommand assetCommand(const BakeCommand& dataset, AssetKind kind) {
+  BakeCommand command = dataset;
+  command.kind = kind;
+  // Habitat's frame is ours, and its meshes are used as they stand in their files.
+  command.import.smallest_size = 0;
+  return command;
+}
+
+void addObjects(const SceneSurvey& survey, const BakeCommand& dataset, PackList& packs) {
+  for (const DatasetObject& object : survey.movable) {
+    const std::string name = "objects/" + object.name;
+    if (packs.has(name)) continue;
+    BakeCommand command = assetCommand(dataset, AssetKind::kObject);
+    command.inputs = {object.mesh};
+    command.asset_name = object.name;
+    command.import.transform = object.object_from_mesh;
+    packs.add(name, std::move(command), object.mesh);
+  }
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> wantedScenes(const SceneDataset& dataset,
+                                              const DatasetOptions& options) {
+  if (options.scenes.empty()) return dataset.scenes();
+  std::vector<bool> wanted(dataset.scenes().size(), false);
+  for (const std::string& pattern : options.scenes) {
+    bool fits_any = false;
+    for (std::size_t n = 0; n < wanted.size(); ++n) {
+      if (!fitsPattern(dataset.scenes()[n], pattern)) continue;
+      wanted[n] = true;
+      fits_any = true;
+    }
+    if (fits_any) continue;
+    return fail(ErrorCode::kInvalidInput, "--scenes",
+                fmt::format("\"{}\" fits none of the dataset's {} scenes; --list prints them",
+                            pattern, wanted.size()));
+  }
+  std::vector<std::string> names;
+  for (std::size_t n = 0; n < wanted.size(); ++n) {
+    if (wanted[n]) names.push_back(dataset.scenes()[n]);
+  }
+  return names;
+}
+
+Result<void> addDataset(const BakeCommand& command, PackList& packs) {
+  auto read = SceneDataset::read(command.inputs.front());
+  if (!read) return tl::unexpected(read.error());
+  const auto dataset = std::make_shared<const SceneDataset>(std::move(*read));
+  const auto names = wantedScenes(*dataset, command.dataset);
+  if (!names) return tl::unexpected(names.error());
+  MeshImportOptions as_in_file;
+  as_in_file.smallest_size = 0;
+  const auto meshes = std::make_shared<MeshLibrary>(as_in_file);
+  for (const std::string& warning : dataset->warnings()) packs.warn(warning);
+  for (const std::string& name : *names) {
+    auto survey = dataset->survey(name);
+    if (!survey) return tl::unexpected(survey.error());
+    const bool lacks = !survey->missing.empty();
+    if (lacks && command.dataset.missing == MissingPolicy::kFail) {
+      return fail(
+          ErrorCode::kInvalidInput, fmt::format("{}: {}", command.inputs.front().string(), name),
+          survey->missing.front() + "; add it, or bake with --missing skip or --missing without");
+    }
+    if (!survey->has_stage || (lacks && command.dataset.missing == MissingPolicy::kSkip)) {
+      packs.leaveOut({name, std::move(survey->missing)});
+      continue;
+    }
+    BakeCommand one = assetCommand(command, AssetKind::kScene);
+    one.asset_name = name;
+    PlannedPack& pack = packs.add("scenes/" + name, std::move(one), command.inputs.front());
+    pack.scene = InstancedScene{dataset, meshes, name};
+    pack.source_bytes = survey->bytes;
+    addObjects(*survey, command, packs);
+  }
+  return {};
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,23 @@
+#pragma once
+#include <vector>
+
+#include "galactic/bake/world_pack.h"
+#include "galactic/error.h"
+#include "options.h"
+#include "plan/plan.h"
+#include "plan/plan_outcome.h"
+
+namespace galactic::bake {
+
+/// What is reported of a plan.
+struct PlanSummary {
+  const WorldPlan& plan;
+  const PlanOutcome& outcome;
+  /// What the world pack lists; empty where none was linked.
+  std::vector<LinkedPack> world;
+};
+
+/// The command's --report and --html, as far as it wants them.
+[[nodiscard]] Result<void> writePlanReports(const PlanSummary& summary, const BakeCommand& command);
+
+}  // namespace galactic::bake

@@ -1,0 +1,31 @@
+#pragma once
+#include <atomic>
+#include <csignal>
+#include <thread>
+
+namespace galactic::bake {
+
+/// While it lives, the first Ctrl-C or SIGTERM is a request to begin nothing more; the second ends
+/// the program at once. Make it before other threads start: they inherit the signals' mask.
+class StopRequest {
+ public:
+  StopRequest();
+  ~StopRequest();
+  StopRequest(const StopRequest&) = delete;
+  StopRequest& operator=(const StopRequest&) = delete;
+  StopRequest(StopRequest&&) = delete;
+  StopRequest& operator=(StopRequest&&) = delete;
+
+  [[nodiscard]] bool came() const { return came_; }
+
+ private:
+  void watch();
+
+  sigset_t signals_{};
+  sigset_t before_{};
+  std::atomic<bool> came_{false};
+  std::atomic<bool> over_{false};
+  std::thread watcher_;
+};
+
+}  // namespace galactic::bake

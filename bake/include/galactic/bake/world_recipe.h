@@ -1,0 +1,59 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+/// An option of galactic-bake as a recipe gives it.
+struct RecipeOption {
+  /// Its long name, without dashes.
+  std::string name;
+  /// One text for each time that the option is typed; none for a flag.
+  std::vector<std::string> values;
+  /// File and line.
+  std::string place;
+};
+
+/// One table of a recipe: what is baked, and how.
+struct RecipeAssets {
+  /// File and line.
+  std::string place;
+  /// Files, folders and patterns (* and ? in any part of the path), as they are written.
+  std::vector<std::string> inputs;
+  /// Whether the inputs are scene datasets, not scenes.
+  bool is_dataset = false;
+  std::vector<RecipeOption> options;
+};
+
+/// What a world is made of (TOML); docs/worlds.md tells its form.
+struct WorldRecipe {
+  /// For all scenes, objects and the robot.
+  std::vector<RecipeOption> common;
+  /// At least one.
+  std::vector<RecipeAssets> scenes;
+  std::vector<RecipeAssets> objects;
+  std::optional<RecipeAssets> robot;
+  /// With inputs they are imported, without they are generated.
+  std::optional<RecipeAssets> episodes;
+};
+
+/// Reads a recipe. Keys that are not its own are options of galactic-bake, by their long names;
+/// whether there is such an option is seen where it is used. Fails with kIo, or with kInvalidInput
+/// naming file and line.
+[[nodiscard]] Result<WorldRecipe> readWorldRecipe(const std::filesystem::path& path);
+
+/// The files and folders that `patterns` name, ascending, each once. A pattern is looked for from
+/// each of `roots` in turn, and the first root where it fits anything counts; absolute ones need
+/// none. Fails with kIo, naming the pattern, where it fits nothing.
+[[nodiscard]] Result<std::vector<std::filesystem::path>> findInputs(
+    const std::vector<std::string>& patterns, const std::vector<std::filesystem::path>& roots);
+
+/// Whether `text` is `pattern`, in which * stands for any characters and ? for one.
+[[nodiscard]] bool fitsPattern(std::string_view text, std::string_view pattern);
+
+}  // namespace galactic::bake

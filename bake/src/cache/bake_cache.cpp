@@ -1,0 +1,116 @@
+#include "galactic/bake/bake_cache.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "cache/cache_entry.h"
+#include "galactic/atomic_file.h"
+#include "galactic/bake/source_file.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kEntrySuffix = ".json";
+
+std::string hexOf(std::string_view text) {
+  return hexOf(describeBytes({}, std::as_bytes(std::span(text))));
+}
+
+/// The files of a key's entries, the youngest first; of one age by name.
+std::vector<fs::path> entriesIn(const fs::path& folder) {
+  std::vector<std::pair<fs::file_time_type, fs::path>> dated;
+  std::error_code problem;
+  for (fs::directory_iterator at(folder, problem), end; !problem && at != end;
+       at.increment(problem)) {
+    if (at->path().extension() != kEntrySuffix) continue;
+    std::error_code gone;
+    const auto time = fs::last_write_time(at->path(), gone);
+    if (!gone) dated.emplace_back(time, at->path());
+  }
+  std::sort(dated.begin(), dated.end(), [](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first > b.first : a.second < b.second;
+  });
+  std::vector<fs::path> paths;
+  paths.reserve(dated.size());
+  for (auto& [time, path] : dated) paths.push_back(std::move(path));
+  return paths;
+}
+
+bool holds(const BakeInputs& inputs, const fs::path& folder, FileDigests& digests) {
+  std::error_code problem;
+  const auto is_there = [&](const std::string& name) { return fs::exists(folder / name, problem); };
+  const auto is_same = [&](const SourceFile& file) {
+    const auto now = digests.of(folder / file.name);
+    return now && sameContent(*now, file);
+  };
+  return std::none_of(inputs.absent.begin(), inputs.absent.end(), is_there) &&
+         std::all_of(inputs.files.begin(), inputs.files.end(), is_same);
+}
+
+fs::path packBeside(const fs::path& entry) {
+  fs::path pack = entry;
+  return pack.replace_extension(".pack");
+}
+
+/// Whether the pack is the one that was stored: links share its bytes with what users own.
+bool isIntact(const fs::path& pack, const SourceFile& digest) {
+  const auto found = describeFile(pack);
+  return found && sameContent(*found, digest);
+}
+
+Result<void> makeFolder(const fs::path& folder) {
+  std::error_code problem;
+  fs::create_directories(folder, problem);
+  if (!problem) return {};
+  return fail(ErrorCode::kIo, folder.string(),
+              fmt::format("cannot be made a folder: {}; give another --cache", problem.message()));
+}
+
+void removeOldEntries(const fs::path& folder) {
+  const std::vector<fs::path> entries = entriesIn(folder);
+  std::error_code ignored;
+  for (std::size_t n = BakeCache::kResultsPerKey; n < entries.size(); ++n) {
+    fs::remove(entries[n], ignored);
+    fs::remove(packBeside(entries[n]), ignored);
+  }
+}
+
+}  // namespace
+
+std::optional<CachedBake> BakeCache::find(const std::string& key, const fs::path& folder,
+                                          FileDigests& digests) const {
+  for (const fs::path& path : entriesIn(folder_ / hexOf(key))) {
+    auto entry = readCacheEntry(path);
+    if (!entry || entry->inputs.key != key || !holds(entry->inputs, folder, digests)) continue;
+    CachedBake found{packBeside(path), entry->pack, std::move(entry->report)};
+    if (isIntact(found.pack, found.digest)) return found;
+  }
+  return std::nullopt;
+}
+
+Result<void> BakeCache::store(const BakeInputs& inputs, const fs::path& pack,
+                              const std::string& report) const {
+  auto digest = describeFile(pack);
+  if (!digest) return tl::unexpected(digest.error());
+  const std::string text = encodeCacheEntry({inputs, *digest, report});
+  // One name for one set of inputs, whatever the report says of times and places.
+  const std::string name = hexOf(encodeCacheEntry({inputs, {}, {}}));
+  const fs::path folder = folder_ / hexOf(inputs.key);
+  if (auto made = makeFolder(folder); !made) return made;
+  const fs::path entry = folder / (name + std::string(kEntrySuffix));
+  // The pack first: an entry without its pack is none.
+  if (auto kept = linkOrCopy(pack, packBeside(entry)); !kept) return kept;
+  if (auto written = writeFileAtomically(entry, {std::as_bytes(std::span(text))}); !written) {
+    return written;
+  }
+  removeOldEntries(folder);
+  return {};
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <system_error>
+
+#include "galactic/bake/world_recipe.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isPattern(std::string_view part) { return part.find_first_of("*?") != std::string_view::npos; }
+
+/// What fits one part of a path, in each of `folders`.
+std::vector<fs::path> step(const std::vector<fs::path>& folders, const fs::path& part) {
+  std::vector<fs::path> found;
+  const std::string name = part.string();
+  for (const fs::path& folder : folders) {
+    std::error_code problem;
+    if (!isPattern(name)) {
+      if (fs::exists(folder / part, problem)) found.push_back(folder / part);
+      continue;
+    }
+    for (fs::directory_iterator at(folder, problem), end; !problem && at != end;
+         at.increment(problem)) {
+      const std::string candidate = at->path().filename().string();
+      // As in a shell, a leading dot has to be written.
+      if (candidate.front() == '.' && name.front() != '.') continue;
+      if (fitsPattern(candidate, name)) found.push_back(at->path());
+    }
+  }
+  return found;
+}
+
+std::vector<fs::path> matches(const fs::path& root, const fs::path& pattern) {
+  const fs::path start = pattern.is_absolute() ? pattern.root_path() : root;
+  std::vector<fs::path> found{start};
+  for (const fs::path& part : pattern.relative_path()) {
+    // A slash at the end.
+    if (!part.empty()) found = step(found, part);
+  }
+  return found;
+}
+
+}  // namespace
+
+bool fitsPattern(std::string_view text, std::string_view pattern) {
+  // The usual walk: after a mismatch, the last star takes one character more.
+  std::size_t at = 0;
+  std::size_t in_pattern = 0;
+  std::size_t star = std::string_view::npos;
+  std::size_t after_star = 0;
+  while (at < text.size()) {
+    if (in_pattern < pattern.size() && pattern[in_pattern] == '*') {
+      star = in_pattern++;
+      after_star = at;
+    } else if (in_pattern < pattern.size() &&
+               (pattern[in_pattern] == '?' || pattern[in_pattern] == text[at])) {
+      ++in_pattern;
+      ++at;
+    } else if (star != std::string_view::npos) {
+      in_pattern = star + 1;
+      at = ++after_star;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', in_pattern) == std::string_view::npos;
+}
+
+Result<std::vector<fs::path>> findInputs(const std::vector<std::string>& patterns,
+                                         const std::vector<fs::path>& roots) {
+  std::vector<fs::path> found;
+  for (const std::string& pattern : patterns) {
+    std::vector<fs::path> matched;
+    for (const fs::path& root : roots) {
+      matched = matches(root, pattern);
+      if (!matched.empty()) break;
+    }
+    if (matched.empty()) {
+      std::string looked;
+      for (const fs::path& root : roots) looked += (looked.empty() ? "" : " or ") + root.string();
+      return fail(ErrorCode::kIo, pattern,
+                  fmt::format("fits no file in {}; correct it, or tell with --data where the files "
+                              "are",
+                              looked));
+    }
+    found.insert(found.end(), matched.begin(), matched.end());
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+}  // namespace galactic::bake
