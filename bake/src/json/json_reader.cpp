@@ -86,6 +86,12 @@ std::string JsonReader::text(const JsonNode& node) {
   return {};
 }
 
+bool JsonReader::flag(const JsonNode& node) {
+  if (node.json != nullptr && node.json->is_boolean()) return node.json->get<bool>();
+  if (node.json != nullptr) error(node.place, "it is wanted as true or false");
+  return false;
+}
+
 double JsonReader::number(const JsonNode& node, double min, double max) {
   if (node.json == nullptr) return 0;
   if (!node.json->is_number()) {

@@ -61,6 +61,8 @@ class JsonReader {
   /// The elements of a list; none of an absent one.
   [[nodiscard]] std::vector<JsonNode> elements(const JsonNode& list);
   [[nodiscard]] std::string text(const JsonNode& node);
+  /// True or false; false of an absent one.
+  [[nodiscard]] bool flag(const JsonNode& node);
   /// A number of `min` to `max`.
   [[nodiscard]] double number(const JsonNode& node, double min, double max);
   /// A whole number of `min` to `max`.

@@ -10,6 +10,15 @@ constexpr std::array<float, 4> kNeutral{0.6F, 0.6F, 0.6F, 1.0F};
 
 }  // namespace
 
+bool hasLooks(const SourceAsset& asset, const SourceMesh& mesh) {
+  if (!mesh.colors.empty()) return true;
+  if (mesh.material >= asset.materials.size()) return false;
+  const SourceMaterial& material = asset.materials[mesh.material];
+  // What readers call the material of files that know none.
+  return !material.base_color_texture.empty() ||
+         (!material.name.empty() && material.name != "DefaultMaterial");
+}
+
 std::uint32_t MaterialList::append(SourceMaterial material) {
   source_.materials.push_back(std::move(material));
   return static_cast<std::uint32_t>(source_.materials.size() - 1);

@@ -10,6 +10,10 @@
 
 namespace galactic::bake {
 
+/// Whether the file of a mesh says what it looks like: by a named material, a texture or vertex
+/// colours.
+[[nodiscard]] bool hasLooks(const SourceAsset& asset, const SourceMesh& mesh);
+
 /// The materials of a RenderSource while its meshes are placed: those that are used, once each.
 class MaterialList {
  public:

@@ -52,16 +52,6 @@ std::uint32_t addOwnMesh(Surface surface, RenderSource& source) {
   return static_cast<std::uint32_t>(source.own_meshes.size() - 1);
 }
 
-/// Whether the file of a mesh says what it looks like.
-bool hasLooks(const SourceAsset& asset, const SourceMesh& mesh) {
-  if (!mesh.colors.empty()) return true;
-  if (mesh.material >= asset.materials.size()) return false;
-  const SourceMaterial& material = asset.materials[mesh.material];
-  // What readers call the material of files that know none.
-  return !material.base_color_texture.empty() ||
-         (!material.name.empty() && material.name != "DefaultMaterial");
-}
-
 /// Places the visual shapes of a robot's links.
 class RobotPlacer {
  public:

@@ -193,6 +193,7 @@ Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const UrdfShape& 
                                                                const std::string& place) {
   const MeshResolution& resolution = resolve(shape.mesh, place);
   if (resolution.file.empty()) {
+    robot_.missing.push_back(shape.mesh);
     warn(place, fmt::format("mesh '{}' is missing; looked for {}", shape.mesh, resolution.how));
     return std::nullopt;
   }

@@ -12,13 +12,17 @@
 
 namespace galactic::bake {
 
+/// How the meshes of a dataset are to be read: points as they stand in the file, because it is the
+/// dataset's `up` and `front` that say how to turn them. For the MeshLibrary of compose().
+[[nodiscard]] MeshImportOptions datasetMeshOptions();
+
 /// A movable object that a scene instance places.
 struct DatasetObject {
   /// Name of its template.
   std::string name;
   /// Mesh that is drawn and fitted, an absolute path.
   std::filesystem::path mesh;
-  /// The template's scale and axes.
+  /// The template's axes and scale and the instance's scale.
   Affine object_from_mesh{};
   /// World frame from the mesh's own frame, the template's and the instance's scale included.
   Affine world_from_mesh{};
@@ -36,7 +40,9 @@ struct SceneSurvey {
 
 /// A scene instance put together.
 struct ComposedScene {
-  /// Everything that does not move, in the world frame. `files` lists all that was read for it
+  /// Everything that does not move, in the world frame. Its instances are named as Habitat names
+  /// them: the stage after its template, the others "TEMPLATE_:0000", "TEMPLATE_:0001" and so on.
+  /// Paths of textures are relative to the dataset's folder. `files` lists all that was read for it
   /// (configurations, meshes, textures), by path relative to the dataset's folder.
   SourceAsset scene;
   /// What the instance calls dynamic, in its order.
@@ -64,20 +70,25 @@ class SceneDataset {
   SceneDataset(const SceneDataset&) = delete;
   SceneDataset& operator=(const SceneDataset&) = delete;
 
-  /// Names of the scene instances, ascending.
+  /// Names of the scene instances, ascending; of a dataset that has none, of its stages, each of
+  /// which is then a scene.
   [[nodiscard]] const std::vector<std::string>& scenes() const;
   /// The folder of the configuration: names of files are relative to it.
   [[nodiscard]] const std::filesystem::path& folder() const;
   /// What the user should look at, one sentence each: globs that match nothing and so on.
   [[nodiscard]] const std::vector<std::string>& warnings() const;
 
-  /// What compose() would find. Fails as it does, as far as no mesh is concerned.
+  /// Changes when a template or scene is added, removed or moved: names may mean others then.
+  [[nodiscard]] std::uint64_t fingerprint() const;
+
+  /// What the scene names, as far as no mesh and no URDF has to be read for it: a URDF's missing
+  /// meshes are seen only by compose(). Fails as compose() does.
   [[nodiscard]] Result<SceneSurvey> survey(std::string_view scene) const;
 
   /// Puts a scene together: stage, objects and articulated objects (in their default joint state)
   /// that do not move. Fails with kInvalidInput on a broken configuration or an unknown name, and
   /// with the errors of the importers on files that are there and cannot be read; what lacks is no
-  /// failure. Deterministic.
+  /// failure. `meshes` has to read with datasetMeshOptions(). Deterministic.
   [[nodiscard]] Result<ComposedScene> compose(std::string_view scene, MeshLibrary& meshes) const;
 
  private:

@@ -79,6 +79,8 @@ struct SourceRobot {
   std::vector<SourceFile> files;
   /// One sentence each.
   std::vector<std::string> warnings;
+  /// References to meshes that were not found, as the URDF has them.
+  std::vector<std::string> missing;
   /// Where each mesh was found, one line each, for -v.
   std::vector<std::string> resolutions;
 };

@@ -1,0 +1,177 @@
+#include "galactic/bake/mesh_library.h"
+
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "galactic/bake/urdf_import.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class T>
+std::uint64_t bytesIn(const std::vector<T>& values) {
+  return std::uint64_t{sizeof(T)} * values.size();
+}
+
+std::uint64_t bytesOf(const SourceAsset& asset) {
+  std::uint64_t bytes = sizeof(SourceAsset) + bytesIn(asset.instances) + bytesIn(asset.materials);
+  for (const SourceMesh& mesh : asset.meshes) {
+    bytes += sizeof(SourceMesh) + bytesIn(mesh.positions) + bytesIn(mesh.uvs) +
+             bytesIn(mesh.colors) + bytesIn(mesh.triangles);
+  }
+  for (const EmbeddedTexture& texture : asset.textures) bytes += bytesIn(texture.bytes);
+  return bytes;
+}
+
+std::uint64_t bytesOf(const SourceRobot& robot) {
+  std::uint64_t bytes = sizeof(SourceRobot) + bytesIn(robot.links);
+  for (const SourceAsset& mesh : robot.meshes) bytes += bytesOf(mesh);
+  return bytes;
+}
+
+/// The same for all spellings of a path.
+std::string keyOf(const fs::path& file) {
+  std::error_code ignored;
+  return fs::absolute(file, ignored).lexically_normal().string();
+}
+
+/// What was read of files, by path.
+template <class T>
+struct Shelf {
+  struct Entry {
+    /// None while it is being read.
+    std::optional<Result<std::shared_ptr<const T>>> content;
+    std::uint64_t bytes = 0;
+    /// Of the last load; no two are the same.
+    std::uint64_t used = 0;
+  };
+  std::map<std::string, Entry> entries;
+};
+
+/// Whether only the library holds it. Called under the library's mutex: nobody can take another
+/// copy meanwhile.
+template <class T>
+bool isIdle(const typename Shelf<T>::Entry& entry) {
+  return entry.content && entry.content->has_value() && (*entry.content)->use_count() == 1;
+}
+
+}  // namespace
+
+struct MeshLibrary::State {
+  MeshImportOptions options;
+  std::uint64_t memory_limit = 0;
+  std::mutex mutex;
+  std::condition_variable was_read;
+  std::uint64_t loads = 0;
+  Shelf<SourceAsset> meshes;
+  Shelf<SourceRobot> furniture;
+
+  template <class T>
+  Result<std::shared_ptr<const T>> load(Shelf<T>& shelf, const std::string& key,
+                                        const std::function<Result<T>()>& read);
+  /// Gives up what is idle, that which was not loaded for longest first.
+  void makeRoom();
+};
+
+template <class T>
+Result<std::shared_ptr<const T>> MeshLibrary::State::load(Shelf<T>& shelf, const std::string& key,
+                                                          const std::function<Result<T>()>& read) {
+  std::unique_lock lock(mutex);
+  const auto [known, is_new] = shelf.entries.try_emplace(key);
+  known->second.used = ++loads;
+  if (!is_new) {
+    // The entry may be given up, and read by another, while this waits.
+    was_read.wait(lock, [&] {
+      const auto entry = shelf.entries.find(key);
+      return entry == shelf.entries.end() || entry->second.content.has_value();
+    });
+    const auto entry = shelf.entries.find(key);
+    if (entry != shelf.entries.end()) return *entry->second.content;
+    shelf.entries.try_emplace(key);
+    shelf.entries.at(key).used = ++loads;
+  }
+  lock.unlock();
+  auto content = read();
+  std::uint64_t bytes = 0;
+  Result<std::shared_ptr<const T>> shared = tl::unexpected(Error{});
+  if (content) {
+    bytes = bytesOf(*content);
+    shared = std::make_shared<const T>(std::move(*content));
+  } else {
+    shared = tl::unexpected(content.error());
+  }
+  lock.lock();
+  auto& entry = shelf.entries.at(key);
+  entry.content = shared;
+  entry.bytes = bytes;
+  makeRoom();
+  lock.unlock();
+  was_read.notify_all();
+  return shared;
+}
+
+void MeshLibrary::State::makeRoom() {
+  const auto idle_bytes = [&] {
+    std::uint64_t bytes = 0;
+    for (const auto& [key, entry] : meshes.entries) {
+      if (isIdle<SourceAsset>(entry)) bytes += entry.bytes;
+    }
+    for (const auto& [key, entry] : furniture.entries) {
+      if (isIdle<SourceRobot>(entry)) bytes += entry.bytes;
+    }
+    return bytes;
+  };
+  while (idle_bytes() > memory_limit) {
+    auto oldest_mesh = meshes.entries.end();
+    auto oldest_furniture = furniture.entries.end();
+    std::uint64_t oldest = loads + 1;
+    for (auto entry = meshes.entries.begin(); entry != meshes.entries.end(); ++entry) {
+      if (!isIdle<SourceAsset>(entry->second) || entry->second.used >= oldest) continue;
+      oldest = entry->second.used;
+      oldest_mesh = entry;
+    }
+    for (auto entry = furniture.entries.begin(); entry != furniture.entries.end(); ++entry) {
+      if (!isIdle<SourceRobot>(entry->second) || entry->second.used >= oldest) continue;
+      oldest = entry->second.used;
+      oldest_furniture = entry;
+    }
+    if (oldest_furniture != furniture.entries.end()) {
+      furniture.entries.erase(oldest_furniture);
+    } else if (oldest_mesh != meshes.entries.end()) {
+      meshes.entries.erase(oldest_mesh);
+    } else {
+      return;
+    }
+  }
+}
+
+MeshLibrary::MeshLibrary(MeshImportOptions options, std::uint64_t memory_limit)
+    : state_(std::make_unique<State>()) {
+  state_->options = options;
+  state_->memory_limit = memory_limit;
+}
+
+MeshLibrary::~MeshLibrary() = default;
+
+Result<std::shared_ptr<const SourceAsset>> MeshLibrary::load(const fs::path& file) {
+  return state_->load<SourceAsset>(state_->meshes, keyOf(file),
+                                   [&] { return importMesh(file, state_->options); });
+}
+
+Result<std::shared_ptr<const SourceRobot>> MeshLibrary::loadFurniture(const fs::path& urdf) {
+  UrdfImportOptions options;
+  options.up = UpAxis::kY;
+  options.allow_missing = true;
+  return state_->load<SourceRobot>(state_->furniture, keyOf(urdf),
+                                   [&] { return importUrdf(urdf, options); });
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,287 @@
+#include "dataset/scene_composer.h"
+
+#include <fmt/format.h>
+
+#include <system_error>
+#include <utility>
+
+#include "dataset/placement.h"
+#include "dataset/rest_pose.h"
+#include "import/affine.h"
+#include "import/source_files.h"
+#include "robot/link_geometry.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isFile(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+/// A box, cylinder or sphere as an asset of one mesh.
+SourceAsset primitiveAsset(const LinkShape& shape) {
+  Surface surface = surfaceOfPrimitive(shape);
+  SourceAsset asset;
+  SourceMesh& mesh = asset.meshes.emplace_back();
+  mesh.name = "primitive";
+  mesh.positions = std::move(surface.positions);
+  mesh.triangles = std::move(surface.triangles);
+  SourceMaterial& material = asset.materials.emplace_back();
+  material.name = "URDF";
+  material.base_color = shape.color.value_or(kPlainColor);
+  asset.instances.push_back({.name = mesh.name, .mesh = 0, .world_from_mesh = kIdentityAffine});
+  return asset;
+}
+
+}  // namespace
+
+SceneComposer::SceneComposer(const DatasetIndex& index, MeshLibrary& meshes)
+    : index_(index), meshes_(meshes), merger_(index.config, result_.scene) {}
+
+std::string SceneComposer::relative(const fs::path& file) const {
+  return nameRelativeTo(index_.config, file);
+}
+
+void SceneComposer::noteMissing(const std::string& sentence) {
+  if (++missing_[sentence] == 1) result_.missing.push_back(sentence);
+}
+
+void SceneComposer::noteAbsent(const fs::path& file) { absent_.insert(relative(file)); }
+
+void SceneComposer::warnOnce(const std::string& warning) {
+  if (warned_.insert(warning).second) result_.scene.warnings.push_back(warning);
+}
+
+std::string SceneComposer::nextName(const std::string& template_name) {
+  return fmt::format("{}_:{:04d}", template_name, placed_[template_name]++);
+}
+
+const DatasetTemplate* SceneComposer::lookUp(TemplateKind kind, const SceneItem& item) {
+  const DatasetBlock& block = index_.block(kind);
+  const TemplateKindNames& names = namesOf(kind);
+  const FoundTemplate found = block.templates.find(item.template_name);
+  if (found.found == nullptr) {
+    noteMissing(
+        fmt::format("{} '{}' is in none of the dataset's paths", names.noun, item.template_name));
+    for (const std::string& folder : block.folders) {
+      noteAbsent(index_.folder / folder / (item.template_name + std::string(names.suffix)));
+    }
+  } else if (found.ambiguous) {
+    warnOnce(fmt::format("{} '{}' may be several; '{}' is taken, the first", names.noun,
+                         item.template_name, found.found->handle));
+  }
+  return found.found;
+}
+
+Result<SceneComposer::Attributes> SceneComposer::attributesOf(const DatasetTemplate& entry,
+                                                              TemplateKind kind) {
+  const std::string key = fmt::format("{}:{}", static_cast<unsigned>(kind), entry.handle);
+  const auto known = attributes_.find(key);
+  if (known != attributes_.end()) return known->second;
+  auto read = readAttributes(entry, index_.block(kind), kind);
+  if (!read) return tl::unexpected(read.error());
+  if (!entry.config.empty()) {
+    if (auto noted = merger_.noteFile(entry.config); !noted) return tl::unexpected(noted.error());
+  }
+  auto attributes = std::make_shared<const TemplateAttributes>(std::move(*read));
+  attributes_.emplace(key, attributes);
+  return attributes;
+}
+
+Result<fs::path> SceneComposer::meshOf(const DatasetTemplate& entry,
+                                       const TemplateAttributes& attributes, TemplateKind kind) {
+  const std::string& stated =
+      attributes.render_asset.empty() ? attributes.collision_asset : attributes.render_asset;
+  if (stated.empty() && entry.asset.empty()) {
+    return fail(ErrorCode::kInvalidInput,
+                fmt::format("{}: render_asset",
+                            entry.config.empty() ? entry.handle : entry.config.string()),
+                "it is missing; name the mesh to place");
+  }
+  fs::path mesh = stated.empty() ? entry.asset : fileOf(entry, stated);
+  if (isFile(mesh)) return mesh;
+  noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kind).noun, entry.name,
+                          relative(mesh)));
+  noteAbsent(mesh);
+  return fs::path();
+}
+
+Result<std::shared_ptr<const SourceAsset>> SceneComposer::load(const fs::path& mesh) {
+  auto asset = meshes_.load(mesh);
+  if (!asset) return asset;
+  for (const SourceFile& file : (*asset)->files) {
+    merger_.noteFile(mesh.parent_path() / file.name, file);
+  }
+  for (const std::string& warning : (*asset)->warnings) {
+    warnOnce(fmt::format("{}: {}", relative(mesh), warning));
+  }
+  return asset;
+}
+
+Result<Affine> SceneComposer::placement(const SceneItem& item, const TemplateAttributes& attributes,
+                                        const fs::path& mesh) {
+  const Affine object_from_asset = objectFromAsset(attributes, item.scale);
+  const Affine world_from_object = worldFromObject(item);
+  if (item.origin.value_or(default_origin_) == TranslationOrigin::kAssetOrigin) {
+    return compose(world_from_object, object_from_asset);
+  }
+  std::array<double, 3> centre{};
+  if (attributes.centre_of_mass) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      centre[axis] = (*attributes.centre_of_mass)[axis] * attributes.scale[axis] * item.scale[axis];
+    }
+  } else {
+    const auto asset = load(mesh);
+    if (!asset) return tl::unexpected(asset.error());
+    centre = boxCentre(**asset, object_from_asset);
+  }
+  const Affine centred = translationBy({-centre[0], -centre[1], -centre[2]});
+  return compose(world_from_object, compose(centred, object_from_asset));
+}
+
+void SceneComposer::addMesh(const fs::path& mesh, const SourceAsset& asset,
+                            const Affine& world_from_asset, const std::string& name) {
+  const std::uint32_t first = merger_.take(mesh.string(), asset, mesh.parent_path());
+  merger_.place(first, asset, world_from_asset, name);
+}
+
+Result<void> SceneComposer::placeStage(const SceneItem& item) {
+  result_.has_stage = false;
+  const DatasetTemplate* entry = lookUp(TemplateKind::kStage, item);
+  if (entry == nullptr) return {};
+  const auto attributes = attributesOf(*entry, TemplateKind::kStage);
+  if (!attributes) return tl::unexpected(attributes.error());
+  const auto mesh = meshOf(*entry, **attributes, TemplateKind::kStage);
+  if (!mesh) return tl::unexpected(mesh.error());
+  if (mesh->empty()) return {};
+  const auto asset = load(*mesh);
+  if (!asset) return tl::unexpected(asset.error());
+  // A stage stands where its own origin is, whatever the translation's origin.
+  const Affine world_from_stage =
+      compose(worldFromObject(item), objectFromAsset(**attributes, item.scale));
+  addMesh(*mesh, **asset, world_from_stage, entry->name);
+  result_.has_stage = true;
+  return {};
+}
+
+Result<void> SceneComposer::placeObject(const SceneItem& item) {
+  const DatasetTemplate* entry = lookUp(TemplateKind::kObject, item);
+  if (entry == nullptr) return {};
+  const auto attributes = attributesOf(*entry, TemplateKind::kObject);
+  if (!attributes) return tl::unexpected(attributes.error());
+  const auto mesh = meshOf(*entry, **attributes, TemplateKind::kObject);
+  if (!mesh) return tl::unexpected(mesh.error());
+  if (mesh->empty()) return {};
+  const auto world_from_mesh = placement(item, **attributes, *mesh);
+  if (!world_from_mesh) return tl::unexpected(world_from_mesh.error());
+  if (item.motion == MotionType::kDynamic) {
+    result_.movable.push_back({.name = entry->name,
+                               .mesh = *mesh,
+                               .object_from_mesh = objectFromAsset(**attributes, item.scale),
+                               .world_from_mesh = *world_from_mesh});
+    return {};
+  }
+  if (!(*attributes)->collidable) {
+    warnOnce(
+        fmt::format("object '{}' collides with nothing in Habitat; here it does", entry->name));
+  }
+  const auto asset = load(*mesh);
+  if (!asset) return tl::unexpected(asset.error());
+  addMesh(*mesh, **asset, *world_from_mesh, nextName(entry->name));
+  return {};
+}
+
+Result<void> SceneComposer::placeLinks(const SceneItem& item, const SourceRobot& furniture,
+                                       const fs::path& urdf, const Affine& world_from_root) {
+  const std::vector<Affine> root_from_link = restPose(furniture, item.joint_positions);
+  const std::string name = nextName(urdf.stem().string());
+  for (std::size_t n = 0; n < furniture.links.size(); ++n) {
+    const Affine world_from_link = compose(world_from_root, root_from_link[n]);
+    for (std::size_t visual = 0; visual < furniture.links[n].visuals.size(); ++visual) {
+      const LinkShape& shape = furniture.links[n].visuals[visual];
+      if (const auto* mesh = std::get_if<MeshShape>(&shape.geometry); mesh != nullptr) {
+        const SourceAsset& asset = furniture.meshes[mesh->mesh];
+        const std::string file = asset.files.empty() ? asset.name : asset.files.front().name;
+        // Its points are turned otherwise than those of the same file as an object.
+        const std::string key = "URDF " + (urdf.parent_path() / file).lexically_normal().string();
+        const std::uint32_t first = merger_.take(key, asset, urdf.parent_path(), shape.color);
+        merger_.place(first, asset, compose(world_from_link, shape.link_from_shape), name);
+        continue;
+      }
+      const SourceAsset asset = primitiveAsset(shape);
+      const std::string key = fmt::format("URDF {} link {} visual {}", urdf.string(), n, visual);
+      const std::uint32_t first = merger_.take(key, asset, urdf.parent_path());
+      merger_.place(first, asset, world_from_link, name);
+    }
+  }
+  return {};
+}
+
+Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
+  constexpr TemplateKind kKind = TemplateKind::kArticulated;
+  const DatasetTemplate* entry = lookUp(kKind, item);
+  if (entry == nullptr) return {};
+  const auto attributes = attributesOf(*entry, kKind);
+  if (!attributes) return tl::unexpected(attributes.error());
+  const fs::path urdf = urdfOf(*entry, **attributes);
+  if (!isFile(urdf)) {
+    noteMissing(fmt::format("{} '{}': its URDF '{}' is missing", namesOf(kKind).noun, entry->name,
+                            relative(urdf)));
+    noteAbsent(urdf);
+    return {};
+  }
+  const auto furniture = meshes_.loadFurniture(urdf);
+  if (!furniture) return tl::unexpected(furniture.error());
+  const fs::path folder = urdf.parent_path();
+  for (const SourceFile& file : (*furniture)->files) merger_.noteFile(folder / file.name, file);
+  for (const std::string& warning : (*furniture)->warnings) {
+    warnOnce(fmt::format("{}: {}", relative(urdf), warning));
+  }
+  for (const std::string& reference : (*furniture)->missing) {
+    noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kKind).noun, entry->name,
+                            reference));
+    if (reference.find("://") == std::string::npos) noteAbsent(folder / reference);
+  }
+  // Neither the centre of mass nor a frame: Habitat takes a URDF's root as it is.
+  Affine root_from_urdf = kIdentityAffine;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    root_from_urdf[5 * axis] = (*attributes)->scale[axis] * item.scale[axis];
+  }
+  return placeLinks(item, **furniture, urdf, compose(worldFromObject(item), root_from_urdf));
+}
+
+Result<ComposedScene> SceneComposer::run(const std::string& name, const SceneInstance& instance,
+                                         const std::vector<fs::path>& read) {
+  SourceAsset& scene = result_.scene;
+  scene.name = name;
+  scene.format = "Habitat scene dataset";
+  scene.convention = "Y up, metres (Habitat)";
+  for (const fs::path& file : read) {
+    if (auto noted = merger_.noteFile(file); !noted) return tl::unexpected(noted.error());
+  }
+  default_origin_ = instance.origin;
+  if (instance.stage) {
+    if (auto placed = placeStage(*instance.stage); !placed) return tl::unexpected(placed.error());
+  } else {
+    result_.has_stage = false;
+    warnOnce("the scene says that it has no stage");
+  }
+  for (const SceneItem& item : instance.objects) {
+    if (auto placed = placeObject(item); !placed) return tl::unexpected(placed.error());
+  }
+  for (const SceneItem& item : instance.articulated) {
+    if (auto placed = placeArticulated(item); !placed) return tl::unexpected(placed.error());
+  }
+  merger_.finish();
+  result_.absent_files.assign(absent_.begin(), absent_.end());
+  for (std::string& sentence : result_.missing) {
+    const unsigned times = missing_.at(sentence);
+    if (times > 1) sentence += fmt::format(" ({} times)", times);
+  }
+  return std::move(result_);
+}
+
+}  // namespace galactic::bake

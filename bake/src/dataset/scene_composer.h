@@ -1,0 +1,69 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "dataset/asset_merger.h"
+#include "dataset/dataset_index.h"
+#include "dataset/scene_instance.h"
+#include "dataset/template_attributes.h"
+#include "galactic/bake/mesh_library.h"
+#include "galactic/bake/scene_dataset.h"
+
+namespace galactic::bake {
+
+/// Puts one scene together; for one use.
+class SceneComposer {
+ public:
+  SceneComposer(const DatasetIndex& index, MeshLibrary& meshes);
+
+  /// What `instance` places. Files that were read for it already are in `read`.
+  [[nodiscard]] Result<ComposedScene> run(const std::string& name, const SceneInstance& instance,
+                                          const std::vector<std::filesystem::path>& read);
+
+ private:
+  using Attributes = std::shared_ptr<const TemplateAttributes>;
+
+  [[nodiscard]] Result<void> placeStage(const SceneItem& item);
+  [[nodiscard]] Result<void> placeObject(const SceneItem& item);
+  [[nodiscard]] Result<void> placeArticulated(const SceneItem& item);
+  [[nodiscard]] Result<void> placeLinks(const SceneItem& item, const SourceRobot& furniture,
+                                        const std::filesystem::path& urdf,
+                                        const Affine& world_from_root);
+  /// Null where the dataset has none; then it is noted as missing.
+  const DatasetTemplate* lookUp(TemplateKind kind, const SceneItem& item);
+  [[nodiscard]] Result<Attributes> attributesOf(const DatasetTemplate& entry, TemplateKind kind);
+  /// The mesh of a stage or object; empty where it is not there, then it is noted as missing.
+  [[nodiscard]] Result<std::filesystem::path> meshOf(const DatasetTemplate& entry,
+                                                     const TemplateAttributes& attributes,
+                                                     TemplateKind kind);
+  /// Loads a mesh and notes its files and warnings.
+  [[nodiscard]] Result<std::shared_ptr<const SourceAsset>> load(const std::filesystem::path& mesh);
+  /// World frame from the asset's.
+  [[nodiscard]] Result<Affine> placement(const SceneItem& item,
+                                         const TemplateAttributes& attributes,
+                                         const std::filesystem::path& mesh);
+  void addMesh(const std::filesystem::path& mesh, const SourceAsset& asset,
+               const Affine& world_from_asset, const std::string& name);
+  /// "chair_:0001" for the second chair.
+  std::string nextName(const std::string& template_name);
+  void noteMissing(const std::string& sentence);
+  void noteAbsent(const std::filesystem::path& file);
+  void warnOnce(const std::string& warning);
+  [[nodiscard]] std::string relative(const std::filesystem::path& file) const;
+
+  const DatasetIndex& index_;
+  MeshLibrary& meshes_;
+  TranslationOrigin default_origin_ = TranslationOrigin::kCentreOfMass;
+  ComposedScene result_;
+  AssetMerger merger_;
+  std::map<std::string, Attributes> attributes_;
+  std::map<std::string, unsigned> placed_;
+  /// Sentence to number of times; their order is that of result_.missing.
+  std::map<std::string, unsigned> missing_;
+  std::set<std::string> absent_;
+  std::set<std::string> warned_;
+};
+
+}  // namespace galactic::bake

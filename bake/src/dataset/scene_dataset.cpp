@@ -1,0 +1,137 @@
+#include "galactic/bake/scene_dataset.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <span>
+#include <utility>
+
+#include "dataset/dataset_index.h"
+#include "dataset/scene_composer.h"
+#include "dataset/scene_instance.h"
+#include "dataset/scene_surveyor.h"
+#include "dataset/template_attributes.h"
+#include "galactic/bake/source_file.h"
+#include "recipe/nearest_name.h"
+
+namespace galactic::bake {
+
+namespace fs = std::filesystem;
+
+struct SceneDataset::State {
+  DatasetIndex index;
+  /// What the scenes are made of: scene instances, or stages where there are none.
+  TemplateKind kind = TemplateKind::kScene;
+  std::map<std::string, const DatasetTemplate*, std::less<>> by_name;
+  std::vector<std::string> names;
+
+  [[nodiscard]] Result<const DatasetTemplate*> find(std::string_view scene) const;
+  [[nodiscard]] Result<SceneInstance> instanceOf(const DatasetTemplate& entry) const;
+};
+
+namespace {
+
+/// Names for the templates of a list: their own, or their handles where several have the same.
+std::map<std::string, const DatasetTemplate*, std::less<>> namesIn(const TemplateList& list,
+                                                                   std::string_view suffix) {
+  std::map<std::string_view, unsigned> count;
+  for (const auto& [handle, entry] : list.all()) ++count[entry.name];
+  std::map<std::string, const DatasetTemplate*, std::less<>> names;
+  for (const auto& [handle, entry] : list.all()) {
+    std::string name = entry.name;
+    if (count[entry.name] > 1) {
+      name = handle.ends_with(suffix) ? handle.substr(0, handle.size() - suffix.size()) : handle;
+    }
+    names.try_emplace(std::move(name), &entry);
+  }
+  return names;
+}
+
+/// A scene of nothing but the stage.
+SceneInstance sceneOfStage(const DatasetTemplate& stage) {
+  SceneInstance scene;
+  scene.stage.emplace().template_name = stage.handle;
+  return scene;
+}
+
+}  // namespace
+
+MeshImportOptions datasetMeshOptions() {
+  MeshImportOptions options;
+  options.up = UpAxis::kY;
+  options.smallest_size = 0;
+  return options;
+}
+
+SceneDataset::SceneDataset(std::unique_ptr<State> state) : state_(std::move(state)) {}
+SceneDataset::~SceneDataset() = default;
+SceneDataset::SceneDataset(SceneDataset&&) noexcept = default;
+SceneDataset& SceneDataset::operator=(SceneDataset&&) noexcept = default;
+
+Result<SceneDataset> SceneDataset::read(const fs::path& config) {
+  auto index = readDatasetIndex(config);
+  if (!index) return tl::unexpected(index.error());
+  auto state = std::make_unique<State>();
+  state->index = std::move(*index);
+  if (state->index.block(TemplateKind::kScene).templates.all().empty()) {
+    state->kind = TemplateKind::kStage;
+  }
+  state->by_name = namesIn(state->index.block(state->kind).templates, namesOf(state->kind).suffix);
+  state->names.reserve(state->by_name.size());
+  for (const auto& [name, entry] : state->by_name) state->names.push_back(name);
+  if (state->names.empty()) {
+    return fail(ErrorCode::kInvalidInput, config.string(),
+                "it has neither scene instances nor stages; are the files that its 'paths' name "
+                "there?");
+  }
+  return SceneDataset(std::move(state));
+}
+
+const std::vector<std::string>& SceneDataset::scenes() const { return state_->names; }
+const fs::path& SceneDataset::folder() const { return state_->index.folder; }
+const std::vector<std::string>& SceneDataset::warnings() const { return state_->index.warnings; }
+
+std::uint64_t SceneDataset::fingerprint() const {
+  std::string all;
+  for (const DatasetBlock& block : state_->index.blocks) {
+    for (const auto& [handle, entry] : block.templates.all()) all += handle + '\n';
+    all += '\n';
+  }
+  return describeBytes({}, std::as_bytes(std::span(all))).hash_low;
+}
+
+Result<const DatasetTemplate*> SceneDataset::State::find(std::string_view scene) const {
+  const auto found = by_name.find(scene);
+  if (found != by_name.end()) return found->second;
+  return fail(ErrorCode::kInvalidInput, index.config.string(),
+              fmt::format("it has no scene '{}'; {}", scene, suggestNames(scene, names)));
+}
+
+Result<SceneInstance> SceneDataset::State::instanceOf(const DatasetTemplate& entry) const {
+  if (kind == TemplateKind::kStage) return sceneOfStage(entry);
+  const auto layers = layersOf(entry, index.block(kind), kind);
+  if (!layers) return tl::unexpected(layers.error());
+  return readSceneInstance(*layers);
+}
+
+Result<SceneSurvey> SceneDataset::survey(std::string_view scene) const {
+  const auto entry = state_->find(scene);
+  if (!entry) return tl::unexpected(entry.error());
+  const auto instance = state_->instanceOf(**entry);
+  if (!instance) return tl::unexpected(instance.error());
+  return SceneSurveyor(state_->index).run(*instance);
+}
+
+Result<ComposedScene> SceneDataset::compose(std::string_view scene, MeshLibrary& meshes) const {
+  const auto entry = state_->find(scene);
+  if (!entry) return tl::unexpected(entry.error());
+  const auto instance = state_->instanceOf(**entry);
+  if (!instance) return tl::unexpected(instance.error());
+  std::vector<fs::path> read{state_->index.config};
+  if (state_->kind == TemplateKind::kScene && !(*entry)->config.empty()) {
+    read.push_back((*entry)->config);
+  }
+  return SceneComposer(state_->index, meshes).run(std::string(scene), *instance, read);
+}
+
+}  // namespace galactic::bake

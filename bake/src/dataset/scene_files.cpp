@@ -1,0 +1,151 @@
+#include "galactic/bake/scene_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <span>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "dataset/dataset_paths.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Deeper folders are not searched: published scans are three deep at most.
+constexpr std::size_t kDeepest = 6;
+/// By falling preference among files of one scene.
+constexpr std::array<std::string_view, 4> kEndings{".glb", ".basis.glb", ".ply", ".obj"};
+/// Parts of the names of files that are no surface to stand on.
+constexpr std::array<std::string_view, 4> kNoSurface{".semantic.", "_semantic.", ".navmesh",
+                                                     "_navmesh."};
+
+struct Candidate {
+  fs::path path;
+  /// The path without the ending.
+  std::string scene;
+  std::size_t preference = 0;
+};
+
+std::optional<Candidate> candidateOf(const fs::path& path) {
+  const std::string name = lowerCase(path.filename().string());
+  for (const std::string_view part : kNoSurface) {
+    if (name.find(part) != std::string::npos) return std::nullopt;
+  }
+  // The longest ending first.
+  for (const std::size_t ending : {1U, 0U, 2U, 3U}) {
+    if (!name.ends_with(kEndings[ending]) || name.size() == kEndings[ending].size()) continue;
+    const std::string whole = path.string();
+    return Candidate{path, whole.substr(0, whole.size() - kEndings[ending].size()), ending};
+  }
+  return std::nullopt;
+}
+
+/// Adds the scenes' files in `folder` and below to `found`, the best for each scene.
+void search(const fs::path& folder, std::size_t depth, std::map<std::string, Candidate>& found,
+            std::error_code& error) {
+  std::vector<fs::path> folders;
+  fs::directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
+  std::error_code ignored;
+  while (!error && entry != fs::directory_iterator()) {
+    const fs::path path = entry->path();
+    const bool hidden = path.filename().string().starts_with('.');
+    if (entry->is_directory(ignored)) {
+      if (!hidden && !entry->is_symlink(ignored)) folders.push_back(path);
+    } else if (entry->is_regular_file(ignored) && !hidden) {
+      if (auto candidate = candidateOf(path)) {
+        const auto [known, is_new] = found.try_emplace(candidate->scene, *candidate);
+        if (!is_new && candidate->preference < known->second.preference) {
+          known->second = std::move(*candidate);
+        }
+      }
+    }
+    entry.increment(error);
+  }
+  if (depth == kDeepest) return;
+  for (const fs::path& inner : folders) search(inner, depth + 1, found, ignored);
+}
+
+/// The folders and the name that tell a scene from others: of SCENE/SCENE and SCENE/mesh only
+/// SCENE.
+std::vector<std::string> partsOf(const fs::path& scene) {
+  constexpr std::array<std::string_view, 3> kGeneric{"mesh", "mesh_z_up", "scene"};
+  std::vector<std::string> parts;
+  for (const fs::path& part : scene) parts.push_back(part.string());
+  if (parts.size() < 2) return parts;
+  const std::string& last = parts.back();
+  const bool generic = std::find(kGeneric.begin(), kGeneric.end(), last) != kGeneric.end();
+  if (generic || last == parts[parts.size() - 2]) parts.pop_back();
+  return parts;
+}
+
+/// The last `count` parts as one name.
+std::string lastOf(const std::vector<std::string>& parts, std::size_t count) {
+  const std::size_t first = parts.size() - std::min(count, parts.size());
+  return fmt::format("{}", fmt::join(std::span(parts).subspan(first), "_"));
+}
+
+/// Gives each file a name of its own, with as few folders before it as that takes.
+void nameAll(const std::vector<std::vector<std::string>>& parts, std::vector<SceneFile>& files) {
+  std::set<std::string> taken;
+  for (std::size_t count = 1; count <= kDeepest + 1; ++count) {
+    std::map<std::string, unsigned> users;
+    for (const auto& one : parts) ++users[lastOf(one, count)];
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      const std::string name = lastOf(parts[i], count);
+      if (!files[i].name.empty() || users[name] != 1 || !taken.insert(name).second) continue;
+      files[i].name = name;
+    }
+  }
+  // SCENE.glb beside SCENE/SCENE.glb: a number tells them apart.
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!files[i].name.empty()) continue;
+    const std::string whole = lastOf(parts[i], parts[i].size());
+    std::string name = whole;
+    for (unsigned number = 2; !taken.insert(name).second; ++number) {
+      name = fmt::format("{}_{}", whole, number);
+    }
+    files[i].name = std::move(name);
+  }
+}
+
+}  // namespace
+
+Result<std::vector<SceneFile>> findSceneFiles(const fs::path& folder) {
+  std::map<std::string, Candidate> found;
+  std::error_code error;
+  search(folder, 0, found, error);
+  if (error) {
+    return fail(ErrorCode::kIo, folder.string(),
+                fmt::format("the folder cannot be read: {}", error.message()));
+  }
+  if (found.empty()) {
+    return fail(ErrorCode::kInvalidInput, folder.string(),
+                "there is no scene in it; wanted SCENE/SCENE.glb, or *.glb, *.ply or *.obj files");
+  }
+  std::vector<Candidate> candidates;
+  candidates.reserve(found.size());
+  for (auto& [scene, candidate] : found) candidates.push_back(std::move(candidate));
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Candidate& a, const Candidate& b) { return a.path < b.path; });
+  std::vector<SceneFile> files;
+  std::vector<std::vector<std::string>> parts;
+  files.reserve(candidates.size());
+  parts.reserve(candidates.size());
+  for (const Candidate& candidate : candidates) {
+    parts.push_back(partsOf(fs::path(candidate.scene).lexically_relative(folder)));
+    SceneFile& file = files.emplace_back();
+    file.path = candidate.path;
+    if (candidate.preference <= 1) file.up = UpAxis::kZ;
+  }
+  nameAll(parts, files);
+  return files;
+}
+
+}  // namespace galactic::bake
