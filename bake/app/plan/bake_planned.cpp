@@ -42,7 +42,9 @@ std::string keyOf(const PlannedPack& pack, const std::string& program) {
   }
   if (command.import.transform)
     key += fmt::format("{}\n", fmt::join(*command.import.transform, ","));
-  if (pack.scene) key += fmt::format("scene {}\n", pack.scene->name);
+  if (pack.scene) {
+    key += fmt::format("scene {} {:016x}\n", pack.scene->name, pack.scene->dataset->fingerprint());
+  }
   return key;
 }
 

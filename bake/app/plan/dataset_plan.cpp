@@ -15,8 +15,7 @@ namespace {
 BakeCommand assetCommand(const BakeCommand& dataset, AssetKind kind) {
   BakeCommand command = dataset;
   command.kind = kind;
-  // Habitat's frame is ours, and its meshes are used as they stand in their files.
-  command.import.smallest_size = 0;
+  command.import = datasetMeshOptions();
   return command;
 }
 
@@ -63,9 +62,7 @@ Result<void> addDataset(const BakeCommand& command, PackList& packs) {
   const auto dataset = std::make_shared<const SceneDataset>(std::move(*read));
   const auto names = wantedScenes(*dataset, command.dataset);
   if (!names) return tl::unexpected(names.error());
-  MeshImportOptions as_in_file;
-  as_in_file.smallest_size = 0;
-  const auto meshes = std::make_shared<MeshLibrary>(as_in_file);
+  const auto meshes = std::make_shared<MeshLibrary>(datasetMeshOptions());
   for (const std::string& warning : dataset->warnings()) packs.warn(warning);
   for (const std::string& name : *names) {
     auto survey = dataset->survey(name);
