@@ -73,6 +73,8 @@ Result<void> addDataset(const BakeCommand& command, PackList& packs) {
           ErrorCode::kInvalidInput, fmt::format("{}: {}", command.inputs.front().string(), name),
           survey->missing.front() + "; add it, or bake with --missing skip or --missing without");
     }
+    // Without its stage nothing else matters; the stage is looked for first.
+    if (!survey->has_stage && lacks) survey->missing.resize(1);
     if (!survey->has_stage || (lacks && command.dataset.missing == MissingPolicy::kSkip)) {
       packs.leaveOut({name, std::move(survey->missing)});
       continue;
