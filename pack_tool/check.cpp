@@ -79,7 +79,7 @@ class PackChecker {
                                  fmt::format("lists {} packs, {} of them are bad; see above",
                                              listed, listed - good_packs.size())});
     }
-    const auto fits = World::from(std::move(good_packs));
+    const auto fits = checkTogether(std::move(good_packs));
     return fits ? good(world) : bad(world.where(), fits.error());
   }
 

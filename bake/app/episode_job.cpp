@@ -80,6 +80,9 @@ Result<void> add(PackFile pack, SamplingPacks& packs) {
       return keepOnly(std::move(pack), packs.object_pack, packs.objects);
     case PackKind::kRobot:
       return keepOnly(std::move(pack), packs.robot_pack, packs.robot);
+    case PackKind::kTexture:
+      // What scenes look like plays no part.
+      return {};
     case PackKind::kEpisodes:
     case PackKind::kWorld:
       break;

@@ -57,6 +57,8 @@ struct RenderOptions {
   RenderBakeOptions meshes;
   TextureBakeOptions textures;
   bool ambient_occlusion = false;
+  /// Folder for texture packs that assets share; empty: each pack has its own.
+  std::filesystem::path shared_textures{};
 };
 
 /// What to do with a scene of a dataset of which something lacks. A scene without its stage is

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "galactic/bake/render_source.h"
+#include "galactic/bake/texture_pack.h"
 
 namespace galactic::bake {
 namespace {
@@ -33,6 +34,15 @@ Result<OptionalMeshes> bakeFrom(Result<RenderSource> source, const RenderTask& t
   const std::vector<std::string>& more = meshes->materials.warnings;
   warnings.insert(warnings.end(), more.begin(), more.end());
   return OptionalMeshes(std::move(*meshes));
+}
+
+/// The packs that the asset's textures are in.
+std::vector<std::string> sharedTextures(const BakedMaterials& materials) {
+  std::vector<std::string> hashes;
+  if (!materials.shared) return hashes;
+  hashes.reserve(materials.textures.size());
+  for (const BakedTexture& texture : materials.textures) hashes.push_back(textureHash(texture));
+  return hashes;
 }
 
 }  // namespace
@@ -86,6 +96,7 @@ Json renderReport(const BakedRenderMeshes& meshes) {
             {"bytes", figures.bytes},
             {"largest_error", figures.largest_error},
             {"textures", meshes.materials.textures.size()},
+            {"shared_textures", sharedTextures(meshes.materials)},
             {"source_texture_bytes", figures.source_texture_bytes},
             {"texture_bytes", figures.texture_bytes}};
   json["models"] = Json::array();

@@ -40,7 +40,8 @@ Result<void> RenderMeshOptions::understand(BakeCommand& command) const {
   render.wanted = !none_;
   render.meshes.jobs = command.jobs;
   render.textures.jobs = command.jobs;
-  render.meshes.error = command.kind == AssetKind::kScene ? kSceneError : kHandledError;
+  const bool is_handled = command.kind == AssetKind::kObject || command.kind == AssetKind::kRobot;
+  render.meshes.error = is_handled ? kHandledError : kSceneError;
   if (error_.empty()) return {};
   const auto error = parseExactly(error_, "--render-error", 1);
   if (!error) return tl::unexpected(error.error());

@@ -6,6 +6,7 @@
 #include "galactic/bake/scene_pack.h"
 #include "render_job.h"
 #include "scene_outcome.h"
+#include "texture_job.h"
 
 namespace galactic::bake {
 namespace {
@@ -55,6 +56,10 @@ Result<Json> bakeRead(ReadScene read, BakeRun& run) {
       renderScene(read.asset, {command, read.input, command.jobs}, outcome.scene.warnings);
   if (!meshes) return tl::unexpected(meshes.error());
   outcome.scene.render_meshes = std::move(*meshes);
+  if (outcome.scene.render_meshes) {
+    auto shared = shareTextures(outcome.scene.render_meshes->materials, command);
+    if (!shared) return tl::unexpected(shared.error());
+  }
   outcome.times.render = secondsSince(start);
   run.line().show(read.item, "write", 1);
   start = std::chrono::steady_clock::now();

@@ -128,7 +128,8 @@ Result<void> drawInside(Image& image, const std::array<ViewPlace, kInsideViews>&
   RenderLibrary library;
   library.add(*scene.render_meshes);
   RenderOptions options;
-  options.width = options.height = static_cast<std::uint32_t>(kSamples * places[0].size);
+  options.width = options.height =
+      static_cast<std::uint32_t>(kSamples) * static_cast<std::uint32_t>(places[0].size);
   options.color = ColorFormat::kRgb8;
   options.depth = false;
   options.background = 0xFFFFFFFF;

@@ -17,9 +17,9 @@ class AtomicFile::Temporary {
   Temporary(std::filesystem::path path, std::filesystem::path target)
       : named_(std::move(path)),
         target_(std::move(target)),
-        path_(target_.string() + ".part-" + std::to_string(::getpid())) {
+        path_(target_.string() + ".part-" + std::to_string(::gettid())) {
     // Exclusive, so that it neither follows a link nor shares a file; a leftover of a killed
-    // process with the same number makes way.
+    // thread with the same number makes way.
     constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
     descriptor_ = ::open(path_.c_str(), kFlags, 0666);
     if (descriptor_ < 0 && errno == EEXIST && ::unlink(path_.c_str()) == 0) {

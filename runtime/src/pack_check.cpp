@@ -6,6 +6,7 @@
 #include "offence.h"
 #include "robot_check.h"
 #include "scene_check.h"
+#include "texture_check.h"
 #include "world_check.h"
 
 namespace galactic::detail {
@@ -71,6 +72,11 @@ Result<void> checkAsset(const PackHeader& header, std::span<const std::byte> fil
       return assetOf<schema::World>(pack, header, where).and_then([&](const schema::World* world) {
         return checkWorld(*world, where);
       });
+    case PackKind::kTexture:
+      return assetOf<schema::SharedTexture>(pack, header, where)
+          .and_then([&](const schema::SharedTexture* texture) {
+            return checkSharedTexture(*texture, where);
+          });
   }
   return fail(ErrorCode::kInternal, where, "has a kind that reading its header refuses");
 }

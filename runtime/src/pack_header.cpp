@@ -17,6 +17,7 @@ bool isKnownKind(PackKind kind) {
     case PackKind::kRobot:
     case PackKind::kEpisodes:
     case PackKind::kWorld:
+    case PackKind::kTexture:
       return true;
   }
   return false;

@@ -8,13 +8,13 @@
 #include "offence.h"
 #include "render_cluster_check.h"
 #include "schema_values.h"
+#include "texture_check.h"
 
 namespace galactic::detail {
 namespace {
 
 /// Materials and semantics are numbered in 16 bits.
 constexpr std::size_t kMostNumbers = 65536;
-constexpr std::uint32_t kLargestTexture = 4096;
 constexpr std::size_t kTexelAlignment = 32;
 /// Steps of a lattice: powers of two between these, metres.
 constexpr float kLeastStep = 0x1p-20F;
@@ -75,12 +75,12 @@ class RenderChecker {
     for (flatbuffers::uoffset_t n = 0; n < meshes_.textures()->size() && !offence_.found(); ++n) {
       const schema::RenderTexture& texture = *meshes_.textures()->Get(n);
       const std::string field = fmt::format("textures[{}]", n);
-      offence_.require(texture.size() <= kLargestTexture && std::has_single_bit(texture.size()),
-                       field + ".size", "is {}, wanted a power of two up to {}", texture.size(),
-                       kLargestTexture);
-      offence_.require(texture.format() <= schema::TexelFormat::MAX, field + ".format",
-                       "is {}, wanted a value up to {}", static_cast<unsigned>(texture.format()),
-                       static_cast<unsigned>(schema::TexelFormat::MAX));
+      requireTextureForm(texture, field + ".", offence_);
+      if (texture.shared() != nullptr) {
+        offence_.require(texture.first_byte() == 0, field + ".first_byte",
+                         "is {} of a shared texture, wanted 0", texture.first_byte());
+        continue;
+      }
       offence_.require(texture.first_byte() % kTexelAlignment == 0, field + ".first_byte",
                        "is {}, wanted a multiple of {}", texture.first_byte(), kTexelAlignment);
       if (offence_.found()) return;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "galactic/shared_textures.h"
 #include "schema_values.h"
 
 namespace galactic {
@@ -40,6 +41,41 @@ RenderModel modelFrom(const schema::RenderModel& stored) {
           .largest_error = stored.largest_error()};
 }
 
+RenderTexture textureFrom(const schema::RenderTexture& stored,
+                          std::span<const std::uint8_t> texels) {
+  const auto format = static_cast<TexelFormat>(stored.format());
+  return {.name = detail::fromSchema(stored.name()),
+          .size = stored.size(),
+          .format = format,
+          .texels = texels.subspan(stored.first_byte(), textureBytes(stored.size(), format))};
+}
+
+/// Fills the textures of `meshes`; where each of the stored ones went, -1 for a missing one.
+std::vector<std::int32_t> takeTextures(const schema::RenderMeshes& stored,
+                                       const SharedTextures& shared, RenderMeshes& meshes) {
+  const auto texels = detail::inPlace<std::uint8_t>(stored.texels());
+  std::vector<std::int32_t> place;
+  place.reserve(stored.textures()->size());
+  for (const schema::RenderTexture* texture : *stored.textures()) {
+    const auto next = static_cast<std::int32_t>(meshes.textures.size());
+    const schema::Hash128* hash = texture->shared();
+    const RenderTexture* elsewhere =
+        hash == nullptr ? nullptr : shared.find(hash->low(), hash->high());
+    if (hash == nullptr) {
+      meshes.textures.push_back(textureFrom(*texture, texels));
+    } else if (elsewhere != nullptr) {
+      meshes.textures.push_back(*elsewhere);
+    } else {
+      meshes.missing_textures.push_back(
+          {detail::fromSchema(texture->name()), hash->low(), hash->high()});
+      place.push_back(-1);
+      continue;
+    }
+    place.push_back(next);
+  }
+  return place;
+}
+
 }  // namespace
 
 std::optional<std::uint32_t> RenderMeshes::modelOf(std::uint32_t part) const {
@@ -60,6 +96,11 @@ std::size_t textureBytes(std::uint32_t size, TexelFormat format) {
 }
 
 Result<std::optional<RenderMeshes>> renderMeshesOf(const PackFile& pack) {
+  return renderMeshesOf(pack, {});
+}
+
+Result<std::optional<RenderMeshes>> renderMeshesOf(const PackFile& pack,
+                                                   const SharedTextures& shared) {
   if (!hasKindWithMeshes(pack)) {
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 "is a pack of kind " + packKindName(pack.kind()) +
@@ -77,20 +118,14 @@ Result<std::optional<RenderMeshes>> renderMeshesOf(const PackFile& pack) {
   meshes.vertices = detail::inPlace<std::uint16_t>(stored->vertices());
   meshes.colors = detail::inPlace<std::uint32_t>(stored->colors());
   meshes.triangles = detail::inPlace<std::uint8_t>(stored->triangles());
+  const std::vector<std::int32_t> place = takeTextures(*stored, shared, meshes);
   for (const schema::RenderMaterial* material : *stored->materials()) {
-    meshes.materials.push_back({.name = detail::fromSchema(material->name()),
-                                .color = material->color(),
-                                .texture = material->texture(),
-                                .alpha_cutoff = material->alpha_cutoff()});
-  }
-  const auto texels = detail::inPlace<std::uint8_t>(stored->texels());
-  for (const schema::RenderTexture* texture : *stored->textures()) {
-    const auto format = static_cast<TexelFormat>(texture->format());
-    meshes.textures.push_back(
-        {.name = detail::fromSchema(texture->name()),
-         .size = texture->size(),
-         .format = format,
-         .texels = texels.subspan(texture->first_byte(), textureBytes(texture->size(), format))});
+    const std::int32_t texture = material->texture();
+    meshes.materials.push_back(
+        {.name = detail::fromSchema(material->name()),
+         .color = material->color(),
+         .texture = texture < 0 ? texture : place[static_cast<std::size_t>(texture)],
+         .alpha_cutoff = material->alpha_cutoff()});
   }
   meshes.semantics = detail::namesOf(*stored->semantics());
   return std::optional<RenderMeshes>(std::move(meshes));

@@ -87,6 +87,9 @@ Result<void> add(const PackFile& pack, Parts& parts) {
       return addOnly(pack, parts.robot, "robot");
     case PackKind::kEpisodes:
       return addOnly(pack, parts.episodes, "episode set");
+    case PackKind::kTexture:
+      // Drawing alone asks for it.
+      return {};
     case PackKind::kWorld:
       break;
   }
@@ -94,44 +97,72 @@ Result<void> add(const PackFile& pack, Parts& parts) {
               "is a world pack among others; give one world pack alone, or the packs themselves");
 }
 
-/// All parts, none of the wanted kinds missing.
 Result<Parts> sortByKind(const std::vector<PackFile>& packs) {
   Parts parts;
   for (const PackFile& pack : packs) {
     if (auto added = add(pack, parts); !added) return tl::unexpected<Error>(added.error());
   }
+  return parts;
+}
+
+/// Whether none of the wanted kinds is missing.
+Result<void> checkComplete(const Parts& parts) {
   const auto missing = [](std::string_view what) {
     return fail(kInvalid, "world", fmt::format("has no {}; give a pack of one, too", what));
   };
   if (!parts.robot) return missing("robot (RBOT)");
   if (!parts.episodes) return missing("episode set (EPIS)");
   if (parts.scenes.empty()) return missing("scene (SCEN)");
-  return parts;
+  return {};
 }
 
-Result<void> checkRadii(std::span<const float> radii, const PackFile& pack,
-                        const Packed<Robot>& robot) {
-  const std::span<const float> wanted = robot.content.radii();
+/// What a pack was baked for.
+struct StatedRadii {
+  std::vector<float> radii;
+  const PackFile* pack = nullptr;
+};
+
+Result<void> checkRadii(const StatedRadii& stated, const StatedRadii& first) {
   const auto same = [](float a, float b) { return std::fabs(a - b) <= kSameRadius; };
-  if (std::equal(radii.begin(), radii.end(), wanted.begin(), wanted.end(), same)) return {};
-  return fail(kInvalid, pack.where(),
+  if (std::equal(stated.radii.begin(), stated.radii.end(), first.radii.begin(), first.radii.end(),
+                 same)) {
+    return {};
+  }
+  return fail(kInvalid, stated.pack->where(),
               fmt::format("was baked for the radii {} m, {} for {} m; bake them with the same "
                           "--radii",
-                          fmt::join(radii, ", "), robot.pack->where(), fmt::join(wanted, ", ")));
+                          fmt::join(stated.radii, ", "), first.pack->where(),
+                          fmt::join(first.radii, ", ")));
 }
 
-Result<void> checkAllRadii(const std::vector<PackFile>& packs, const Parts& parts) {
+/// The robot's first, against which the others are held.
+Result<std::vector<StatedRadii>> statedRadii(const std::vector<PackFile>& packs,
+                                             const Parts& parts) {
+  std::vector<StatedRadii> stated;
+  if (parts.robot) {
+    const auto radii = parts.robot->content.radii();
+    stated.push_back({{radii.begin(), radii.end()}, parts.robot->pack});
+  }
   for (const auto& [name, scene] : parts.scenes) {
-    std::vector<float> radii;
-    radii.reserve(scene.content.grids().size());
-    for (const ColumnGrid& grid : scene.content.grids()) radii.push_back(grid.radius());
-    if (auto same = checkRadii(radii, *scene.pack, *parts.robot); !same) return same;
+    StatedRadii of_scene{{}, scene.pack};
+    of_scene.radii.reserve(scene.content.grids().size());
+    for (const ColumnGrid& grid : scene.content.grids()) of_scene.radii.push_back(grid.radius());
+    stated.push_back(std::move(of_scene));
   }
   for (const PackFile& pack : packs) {
     if (pack.kind() != PackKind::kObjects) continue;
     const Result<ObjectSet> set = ObjectSet::from(pack);
     if (!set) return tl::unexpected<Error>(set.error());
-    if (auto same = checkRadii(set->radii(), pack, *parts.robot); !same) return same;
+    stated.push_back({{set->radii().begin(), set->radii().end()}, &pack});
+  }
+  return stated;
+}
+
+Result<void> checkAllRadii(const std::vector<PackFile>& packs, const Parts& parts) {
+  const auto stated = statedRadii(packs, parts);
+  if (!stated) return tl::unexpected<Error>(stated.error());
+  for (const StatedRadii& one : *stated) {
+    if (auto same = checkRadii(one, stated->front()); !same) return same;
   }
   return {};
 }
@@ -258,6 +289,15 @@ Result<std::vector<PackFile>> openList(const PackFile& world, Trust trust) {
 
 }  // namespace
 
+Result<void> checkTogether(std::vector<PackFile> packs) {
+  const Result<Parts> parts = sortByKind(packs);
+  if (!parts) return tl::unexpected<Error>(parts.error());
+  if (!parts->robot || !parts->episodes) return checkAllRadii(packs, *parts);
+  const Result<World> world = World::from(std::move(packs));
+  if (!world) return tl::unexpected<Error>(world.error());
+  return {};
+}
+
 Result<World> World::open(std::span<const std::filesystem::path> paths, Trust trust) {
   std::vector<PackFile> packs;
   packs.reserve(paths.size());
@@ -278,6 +318,9 @@ Result<World> World::from(std::vector<PackFile> packs) {
   world.packs_ = std::move(packs);
   Result<Parts> parts = sortByKind(world.packs_);
   if (!parts) return tl::unexpected<Error>(std::move(parts.error()));
+  if (auto complete = checkComplete(*parts); !complete) {
+    return tl::unexpected<Error>(std::move(complete.error()));
+  }
   if (auto sound = checkParts(world.packs_, *parts); !sound) {
     return tl::unexpected<Error>(std::move(sound.error()));
   }

@@ -35,7 +35,7 @@ Result<void> checkReference(const schema::PackReference& reference, const std::s
   const char* fault = faultOf(reference.path()->string_view());
   offence.require(fault[0] == '\0', "path", "{}", fault);
   const std::optional<PackKind> kind = packKindOf(reference.kind()->string_view());
-  offence.require(kind.has_value(), "kind", "is \"{}\", wanted SCEN, OBJS, RBOT or EPIS",
+  offence.require(kind.has_value(), "kind", "is \"{}\", wanted SCEN, OBJS, RBOT, EPIS or TXTR",
                   reference.kind()->string_view());
   offence.require(kind != PackKind::kWorld, "kind", "is \"WRLD\", wanted no world in a world");
   offence.require(reference.bytes() > sizeof(PackHeader), "bytes",
@@ -59,8 +59,9 @@ Result<void> checkWorld(const schema::World& world, const std::string& where) {
     offence.require(packs.Get(n - 1)->path()->string_view() < packs.Get(n)->path()->string_view(),
                     field + ".path", "does not come after its predecessor, wanted ascending paths");
   }
-  offence.require(counts["RBOT"] == 1, "packs", "has {} robots (RBOT), wanted one", counts["RBOT"]);
-  offence.require(counts["EPIS"] == 1, "packs", "has {} episode sets (EPIS), wanted one",
+  offence.require(counts["RBOT"] <= 1, "packs", "has {} robots (RBOT), wanted at most one",
+                  counts["RBOT"]);
+  offence.require(counts["EPIS"] <= 1, "packs", "has {} episode sets (EPIS), wanted at most one",
                   counts["EPIS"]);
   offence.require(counts["SCEN"] >= 1, "packs", "has no scene (SCEN), wanted at least one");
   return offence.result();

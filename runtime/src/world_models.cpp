@@ -1,5 +1,7 @@
 #include "galactic/world_models.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <string>
@@ -8,18 +10,36 @@
 
 #include "galactic/object_set.h"
 #include "galactic/scene.h"
+#include "galactic/shared_textures.h"
 
 namespace galactic {
 namespace {
 
 using ModelOfName = std::map<std::string_view, std::optional<std::uint32_t>, std::less<>>;
 
-Result<RenderMeshes> requiredMeshes(const PackFile& pack) {
-  Result<std::optional<RenderMeshes>> meshes = renderMeshesOf(pack);
+Result<SharedTextures> texturesOf(const World& world) {
+  SharedTextures textures;
+  for (const PackFile& pack : world.packs()) {
+    if (pack.kind() != PackKind::kTexture) continue;
+    if (auto added = textures.add(pack); !added) return tl::unexpected<Error>(added.error());
+  }
+  return textures;
+}
+
+Result<RenderMeshes> requiredMeshes(const PackFile& pack, const SharedTextures& textures) {
+  Result<std::optional<RenderMeshes>> meshes = renderMeshesOf(pack, textures);
   if (!meshes) return tl::unexpected<Error>(meshes.error());
   if (!meshes->has_value()) {
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 "was baked without render meshes, which drawing needs; bake it again with them");
+  }
+  if (!(*meshes)->missing_textures.empty()) {
+    const MissingTexture& missing = (*meshes)->missing_textures.front();
+    return fail(
+        ErrorCode::kInvalidInput, pack.where(),
+        fmt::format("shares the texture \"{}\" ({:016x}{:016x}), which is in no pack of the "
+                    "world; add its texture pack",
+                    missing.name, missing.hash_high, missing.hash_low));
   }
   return std::move(**meshes);
 }
@@ -47,9 +67,11 @@ Result<WorldModels> WorldModels::from(const World& world) {
   WorldModels models;
   ModelOfName scenes;
   ModelOfName objects;
+  const Result<SharedTextures> textures = texturesOf(world);
+  if (!textures) return tl::unexpected<Error>(textures.error());
   for (const PackFile& pack : world.packs()) {
-    if (pack.kind() == PackKind::kEpisodes) continue;
-    Result<RenderMeshes> meshes = requiredMeshes(pack);
+    if (pack.kind() == PackKind::kEpisodes || pack.kind() == PackKind::kTexture) continue;
+    Result<RenderMeshes> meshes = requiredMeshes(pack, *textures);
     if (!meshes) return tl::unexpected<Error>(meshes.error());
     if (pack.kind() == PackKind::kScene) {
       const std::string_view name = Scene::from(pack)->name();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "bake_run.h"
 #include "galactic/bake/world_pack.h"
@@ -36,10 +37,13 @@ bool isMade(const PackOutcome& pack) {
 
 /// The packs of the outcome in one world pack.
 Result<std::vector<LinkedPack>> link(const WorldPlan& plan, const PlanOutcome& outcome) {
-  std::vector<fs::path> paths;
+  std::set<fs::path> names;
   for (const PackOutcome& pack : outcome.packs) {
-    if (isMade(pack)) paths.push_back(plan.folder / pack.name);
+    if (!isMade(pack)) continue;
+    names.insert(plan.folder / pack.name);
+    for (const std::string& texture : texturePacks(pack.entry)) names.insert(plan.folder / texture);
   }
+  const std::vector<fs::path> paths(names.begin(), names.end());
   auto packs = linkPacks(paths, plan.world.parent_path());
   if (!packs) return packs;
   std::vector<SourceFile> sources;

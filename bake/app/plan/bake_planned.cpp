@@ -83,15 +83,26 @@ Result<void> makeFolder(const fs::path& folder) {
   return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + problem.message());
 }
 
+/// Whether the texture packs are there that a bake of before shared.
+bool hasTextures(const PlannedPack& pack, const Json& entry) {
+  const std::vector<std::string> textures = texturePacks(entry);
+  return std::ranges::all_of(textures, [&](const std::string& texture) {
+    std::error_code problem;
+    const fs::path name = fs::path(texture).filename();
+    return fs::exists(pack.command.render.shared_textures / name, problem);
+  });
+}
+
 /// The pack as it was made before, put where it belongs.
 Result<std::optional<Json>> fromCache(const PlannedPack& pack, const std::string& key,
                                       const PlanTools& tools) {
   const auto found = tools.cache->find(key, pack.folder, tools.digests);
   if (!found) return std::nullopt;
+  Json entry = Json::parse(found->report, nullptr, /*allow_exceptions=*/false);
+  if (!hasTextures(pack, entry)) return std::nullopt;
   if (auto linked = linkOrCopy(found->pack, pack.command.output); !linked) {
     return tl::unexpected(linked.error());
   }
-  Json entry = Json::parse(found->report, nullptr, /*allow_exceptions=*/false);
   return std::optional<Json>(std::move(entry));
 }
 

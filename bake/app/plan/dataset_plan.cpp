@@ -63,6 +63,7 @@ Result<void> addDataset(const BakeCommand& command, PackList& packs) {
   const auto names = wantedScenes(*dataset, command.dataset);
   if (!names) return tl::unexpected(names.error());
   const auto meshes = std::make_shared<MeshLibrary>(datasetMeshOptions());
+  const auto textures = std::make_shared<TextureLibrary>();
   for (const std::string& warning : dataset->warnings()) packs.warn(warning);
   for (const std::string& name : *names) {
     auto survey = dataset->survey(name);
@@ -81,6 +82,8 @@ Result<void> addDataset(const BakeCommand& command, PackList& packs) {
     }
     BakeCommand one = assetCommand(command, AssetKind::kScene);
     one.asset_name = name;
+    one.render.textures.library = textures;
+    one.render.shared_textures = packs.folder() / "textures";
     PlannedPack& pack = packs.add("scenes/" + name, std::move(one), command.inputs.front());
     pack.scene = InstancedScene{dataset, meshes, name};
     pack.source_bytes = survey->bytes;

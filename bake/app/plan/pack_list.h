@@ -21,6 +21,8 @@ class PackList {
   void setEpisodes(BakeCommand command);
   void leaveOut(LeftOut scene) { plan_.left_out.push_back(std::move(scene)); }
   void warn(const std::string& warning) { plan_.warnings.push_back(warning); }
+  /// Where the packs go.
+  [[nodiscard]] const std::filesystem::path& folder() const { return plan_.folder; }
   /// Whether a pack of this name is there.
   [[nodiscard]] bool has(const std::string& name) const;
 

@@ -20,6 +20,16 @@ const char* nameOf(PackState state) {
   return "planned";
 }
 
+std::vector<std::string> texturePacks(const Json& entry) {
+  std::vector<std::string> packs;
+  const Json::json_pointer hashes("/render_meshes/shared_textures");
+  if (!entry.is_object() || !entry.contains(hashes)) return packs;
+  for (const Json& hash : entry.at(hashes)) {
+    packs.push_back("textures/" + hash.get<std::string>() + ".pack");
+  }
+  return packs;
+}
+
 std::size_t PlanOutcome::count(PackState state) const {
   return static_cast<std::size_t>(
       std::count_if(packs.begin(), packs.end(),

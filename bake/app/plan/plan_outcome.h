@@ -39,4 +39,7 @@ struct PlanOutcome {
   [[nodiscard]] std::size_t count(PackState state) const;
 };
 
+/// The texture packs that the bake of an entry shares with others, below the plan's folder.
+[[nodiscard]] std::vector<std::string> texturePacks(const Json& entry);
+
 }  // namespace galactic::bake

@@ -11,9 +11,9 @@ Result<void> linkOrCopy(const std::filesystem::path& source, const std::filesyst
   namespace fs = std::filesystem;
   std::error_code problem;
   if (fs::equivalent(source, target, problem)) return {};
-  // A name of this process and thread of work alone, then renamed: never half a file.
+  // A name of this thread alone, then renamed: never half a file.
   const fs::path temporary =
-      target.string() + fmt::format(".part-{}-{}", ::getpid(), static_cast<const void*>(&problem));
+      target.string() + fmt::format(".part-{}", ::gettid());
   fs::remove(temporary, problem);
   fs::create_hard_link(source, temporary, problem);
   if (problem) {

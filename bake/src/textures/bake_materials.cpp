@@ -12,7 +12,7 @@
 #include "galactic/bake/render_textures.h"
 #include "galactic/bake/source_file.h"
 #include "textures/appearance.h"
-#include "textures/isolated_bake.h"
+#include "textures/texture_library.h"
 #include "textures/texture_source.h"
 
 namespace galactic::bake {
@@ -45,7 +45,7 @@ void bakeSource(const TextureSource& source, const TextureBakeOptions& options,
   std::vector<Look> looks;
   looks.reserve(result.appearances.size());
   for (const auto& [look, appearance] : result.appearances) looks.push_back(look);
-  auto baked = bakeIsolated(source.bytes, looks, options, transfer);
+  auto baked = bakeRemembered(source.bytes, looks, options, transfer);
   if (!baked) {
     result.fault = std::move(baked.error());
     return;
@@ -85,7 +85,9 @@ class Collector {
       baked_.textures.push_back({.name = name,
                                  .size = look.size,
                                  .format = look.format,
-                                 .first_byte = static_cast<std::uint32_t>(first)});
+                                 .first_byte = static_cast<std::uint32_t>(first),
+                                 .hash_low = content.hash_low,
+                                 .hash_high = content.hash_high});
       baked_.texels.resize(first);
       baked_.texels.insert(baked_.texels.end(), look.texels.begin(), look.texels.end());
     }

@@ -34,9 +34,11 @@ Offset<flatbuffers::Vector<Offset<schema::RenderTexture>>> textureTables(
   std::vector<Offset<schema::RenderTexture>> tables;
   tables.reserve(baked.textures.size());
   for (const BakedTexture& texture : baked.textures) {
+    const schema::Hash128 hash(texture.hash_low, texture.hash_high);
     tables.push_back(schema::CreateRenderTextureDirect(
         builder, texture.name.c_str(), texture.size,
-        static_cast<schema::TexelFormat>(texture.format), texture.first_byte));
+        static_cast<schema::TexelFormat>(texture.format), baked.shared ? 0 : texture.first_byte,
+        baked.shared ? &hash : nullptr));
   }
   return builder.CreateVector(tables);
 }
@@ -46,7 +48,9 @@ Offset<flatbuffers::Vector<Offset<schema::RenderTexture>>> textureTables(
 Offset<schema::RenderMeshes> renderMeshesTable(FlatBufferBuilder& builder,
                                                const BakedRenderMeshes& meshes) {
   const auto semantics = builder.CreateVectorOfStrings(meshes.semantics);
-  const auto texels = alignedVector<std::uint8_t>(builder, meshes.materials.texels);
+  const std::vector<std::uint8_t> none;
+  const auto texels = alignedVector<std::uint8_t>(
+      builder, meshes.materials.shared ? none : meshes.materials.texels);
   const auto textures = textureTables(builder, meshes.materials);
   const auto materials = materialTables(builder, meshes.materials);
   const auto triangles = alignedVector<std::uint8_t>(builder, meshes.triangles);

@@ -26,8 +26,7 @@ bool leadsUpwards(const fs::path& path) {
 fs::path relativeTo(const fs::path& path, const fs::path& folder) {
   std::error_code problem;
   const fs::path from = fs::absolute(folder / "", problem).lexically_normal();
-  fs::path as_written =
-      fs::absolute(path, problem).lexically_normal().lexically_relative(from);
+  fs::path as_written = fs::absolute(path, problem).lexically_normal().lexically_relative(from);
   if (!leadsUpwards(as_written)) return as_written;
   const fs::path real = fs::canonical(path, problem);
   const fs::path real_folder = problem ? fs::path() : fs::canonical(folder, problem);
@@ -54,9 +53,10 @@ Result<void> checkCounts(const std::vector<LinkedPack>& packs) {
     return std::count_if(packs.begin(), packs.end(),
                          [kind](const LinkedPack& pack) { return pack.kind == kind; });
   };
-  if (count(PackKind::kRobot) != 1 || count(PackKind::kEpisodes) != 1) {
+  if (count(PackKind::kRobot) > 1 || count(PackKind::kEpisodes) > 1) {
     return fail(ErrorCode::kInvalidInput, "",
-                fmt::format("the packs hold {} robots and {} episode sets, a world has one of each",
+                fmt::format("the packs hold {} robots and {} episode sets, a world has at most one "
+                            "of each",
                             count(PackKind::kRobot), count(PackKind::kEpisodes)));
   }
   if (count(PackKind::kScene) == 0) {
@@ -111,8 +111,8 @@ Result<std::vector<LinkedPack>> linkPacks(std::span<const fs::path> paths,
   }
   std::sort(linked.begin(), linked.end(), comesBefore);
   if (auto checked = checkList(linked); !checked) return tl::unexpected(checked.error());
-  if (const auto world = World::from(std::move(opened)); !world) {
-    return tl::unexpected(world.error());
+  if (const auto fit = checkTogether(std::move(opened)); !fit) {
+    return tl::unexpected(fit.error());
   }
   return linked;
 }

@@ -21,6 +21,7 @@ enum class PackKind : std::uint32_t {
   kRobot = 0x544f4252,     // "RBOT"
   kEpisodes = 0x53495045,  // "EPIS"
   kWorld = 0x444c5257,     // "WRLD"
+  kTexture = 0x52545854,   // "TXTR"
 };
 
 /// The four characters of a kind, for messages.

@@ -100,6 +100,14 @@ struct RenderModel {
   float largest_error = 0;
 };
 
+/// A texture in a texture pack.
+struct MissingTexture {
+  std::string_view name;
+  /// XXH3-128 of its texels.
+  std::uint64_t hash_low = 0;
+  std::uint64_t hash_high = 0;
+};
+
 /// Everything that a pack has to draw: views into its memory, in the layout of schema/render.fbs.
 struct RenderMeshes {
   /// Ascending `part`.
@@ -117,13 +125,22 @@ struct RenderMeshes {
   std::vector<RenderTexture> textures;
   /// Names of what semantic ids tell apart.
   std::vector<std::string_view> semantics;
+  /// Textures that are in other packs and were not found: their materials have plain colours.
+  std::vector<MissingTexture> missing_textures;
 
   /// The model of this object or link; none when it has nothing to show.
   [[nodiscard]] std::optional<std::uint32_t> modelOf(std::uint32_t part) const;
 };
 
+class SharedTextures;
+
 /// The render meshes of a scene, object or robot pack, which must outlive them; none where it was
-/// baked without. Fails with kInvalidInput on another kind of pack.
+/// baked without. Textures that the pack shares with others come from `shared`, whose packs must
+/// outlive the meshes, too. Fails with kInvalidInput on another kind of pack.
+[[nodiscard]] Result<std::optional<RenderMeshes>> renderMeshesOf(const PackFile& pack,
+                                                                 const SharedTextures& shared);
+
+/// The same without any shared textures.
 [[nodiscard]] Result<std::optional<RenderMeshes>> renderMeshesOf(const PackFile& pack);
 
 }  // namespace galactic

@@ -14,12 +14,18 @@
 
 namespace galactic {
 
+/// Whether packs can be parts of one world that need not be complete: unique names, the same radii,
+/// at most one robot and one episode set; where both are there, everything that World::from wants.
+/// Fails as that does.
+[[nodiscard]] Result<void> checkTogether(std::vector<PackFile> packs);
+
 /// Everything that a run reads and never writes: scenes, objects, robot and episodes, mapped.
 /// Immutable, so safe to share between threads; movable (the packs stay where they are mapped).
 class World {
  public:
   /// Opens what `paths` name: either one world pack, whose list is followed, or the packs
-  /// themselves (one robot, one episode set, one or more scenes, any number of object sets).
+  /// themselves (one robot, one episode set, one or more scenes, any number of object sets and
+  /// textures).
   /// Fails with the errors of PackFile::open, and with kInvalidInput when
   /// - a referenced pack is missing, or is not the one that was linked (kind, size or hash),
   /// - a kind is missing or is there twice where one is wanted, or two scenes or two objects have

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,6 +32,9 @@ struct BakedTexture {
   TexelFormat format = TexelFormat::kRgba8;
   /// Where it begins in BakedMaterials::texels: a multiple of 32.
   std::uint32_t first_byte = 0;
+  /// XXH3-128 of its texels.
+  std::uint64_t hash_low = 0;
+  std::uint64_t hash_high = 0;
 };
 
 /// Materials and textures in the layout of a pack.
@@ -40,11 +44,29 @@ struct BakedMaterials {
   /// In the order in which the materials first use them; no two are equal.
   std::vector<BakedTexture> textures;
   std::vector<std::uint8_t> texels;
+  /// Whether a pack names the textures by their hashes and leaves the texels to texture packs.
+  bool shared = false;
   /// Bytes of the images that were decoded, each once, at their own size with 4 bytes a texel and
   /// without mip levels: what it would take to keep them as they are.
   std::uint64_t source_bytes = 0;
   /// One sentence each: images that cannot be used, translucency that cannot be shown.
   std::vector<std::string> warnings;
+};
+
+/// Images that many assets show, each decoded and scaled once. Thread-safe.
+class TextureLibrary {
+ public:
+  TextureLibrary();
+  ~TextureLibrary();
+  TextureLibrary(const TextureLibrary&) = delete;
+  TextureLibrary& operator=(const TextureLibrary&) = delete;
+
+  /// What is known of the images; for the bakers of textures.
+  struct State;
+  [[nodiscard]] State& state() { return *state_; }
+
+ private:
+  std::unique_ptr<State> state_;
 };
 
 struct TextureBakeOptions {
@@ -54,6 +76,8 @@ struct TextureBakeOptions {
   TexelFormat format = TexelFormat::kRgba8;
   /// Threads. The result does not depend on them.
   unsigned jobs = 1;
+  /// Where images of other assets may be found again; null: nowhere.
+  std::shared_ptr<TextureLibrary> library;
 };
 
 /// Makes flat colours and small square mip-mapped textures of the materials of an asset.

@@ -26,15 +26,15 @@ struct LinkedPack {
 };
 
 /// Describes the packs in the files `paths`, in any order, for a world pack in `folder` (empty: the
-/// current one); ascending paths. Opens and verifies them and sees that together they make a world:
-/// fails with the errors of PackFile::open and World::from, and with kInvalidInput when a file does
-/// not lie below `folder`, is listed twice or is a world itself.
+/// current one); ascending paths. Opens and verifies them and sees that they fit together:
+/// fails with the errors of PackFile::open and checkTogether, and with kInvalidInput when a file
+/// does not lie below `folder`, is listed twice or is a world itself.
 [[nodiscard]] Result<std::vector<LinkedPack>> linkPacks(
     std::span<const std::filesystem::path> paths, const std::filesystem::path& folder);
 
 /// The bytes of a world pack's FlatBuffer, without the file header; packs by ascending path. Fails
 /// with kInvalidInput when the list is not as schema/world.fbs wants it: a path that is empty,
-/// absolute, leads upwards or is there twice, a world, not exactly one robot and one episode set,
+/// absolute, leads upwards or is there twice, a world, more than one robot or episode set,
 /// no scene.
 [[nodiscard]] Result<std::vector<std::byte>> encodeWorldPack(std::vector<LinkedPack> packs,
                                                              const Provenance& provenance);
