@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <numeric>
+#include <limits>
 #include <optional>
 
 #include "galactic/bake/parallel_for.h"
@@ -21,12 +21,19 @@ std::uint64_t memoryOf(const PlannedPack& pack) {
   return kAtLeast + kPerByte * pack.source_bytes;
 }
 
-/// The indices of the assets that are this shard's, the largest first.
+/// How long a bake takes, for comparison only. A robot takes longest, and its URDF says nothing of
+/// its meshes.
+std::uint64_t effortOf(const PlannedPack& pack) {
+  const bool is_robot = pack.command.kind == AssetKind::kRobot;
+  return is_robot ? std::numeric_limits<std::uint64_t>::max() : pack.source_bytes;
+}
+
+/// The indices of the assets that are this shard's, the longest first.
 std::vector<std::size_t> orderOf(const WorldPlan& plan, const Shard& shard) {
   std::vector<std::size_t> order;
   for (std::size_t n = shard.index; n < plan.assets.size(); n += shard.count) order.push_back(n);
   std::ranges::stable_sort(order, std::greater{},
-                           [&](std::size_t n) { return plan.assets[n].source_bytes; });
+                           [&](std::size_t n) { return effortOf(plan.assets[n]); });
   return order;
 }
 
