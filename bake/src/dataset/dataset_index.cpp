@@ -86,7 +86,7 @@ void IndexReader::addMatches(TemplateKind kind, const std::string& ending,
   std::size_t files = 0;
   for (const fs::path& match : matchingPaths(index_.folder, pattern)) {
     if (fs::is_directory(match, ignored)) {
-      block(kind).folders.push_back(nameRelativeTo(index_.config, match));
+      block(kind).searched.push_back({nameRelativeTo(index_.config, match), suffix});
       for (const fs::path& file : filesIn(match, suffix)) {
         addFile(kind, file);
         ++files;

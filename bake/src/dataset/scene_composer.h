@@ -51,6 +51,8 @@ class SceneComposer {
   void noteMissing(const std::string& sentence);
   void noteAbsent(const std::filesystem::path& file);
   void warnOnce(const std::string& warning);
+  /// The first few warnings about a file.
+  void noteWarnings(const std::filesystem::path& file, const std::vector<std::string>& warnings);
   [[nodiscard]] std::string relative(const std::filesystem::path& file) const;
 
   const DatasetIndex& index_;
