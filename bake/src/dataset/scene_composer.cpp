@@ -202,10 +202,10 @@ Result<void> SceneComposer::placeObject(const SceneItem& item) {
   return {};
 }
 
-Result<void> SceneComposer::placeLinks(const SceneItem& item, const SourceRobot& furniture,
-                                       const fs::path& urdf, const Affine& world_from_root) {
+void SceneComposer::placeLinks(const SceneItem& item, const std::string& name,
+                               const SourceRobot& furniture, const fs::path& urdf,
+                               const Affine& world_from_root) {
   const std::vector<Affine> root_from_link = restPose(furniture, item.joint_positions);
-  const std::string name = nextName(urdf.stem().string());
   for (std::size_t n = 0; n < furniture.links.size(); ++n) {
     const Affine world_from_link = compose(world_from_root, root_from_link[n]);
     for (std::size_t visual = 0; visual < furniture.links[n].visuals.size(); ++visual) {
@@ -225,7 +225,6 @@ Result<void> SceneComposer::placeLinks(const SceneItem& item, const SourceRobot&
       merger_.place(first, asset, world_from_link, name);
     }
   }
-  return {};
 }
 
 Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
@@ -261,7 +260,9 @@ Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     root_from_urdf[5 * axis] = (*attributes)->scale[axis] * item.scale[axis];
   }
-  return placeLinks(item, **furniture, urdf, compose(worldFromObject(item), root_from_urdf));
+  placeLinks(item, nextName(entry->name), **furniture, urdf,
+             compose(worldFromObject(item), root_from_urdf));
+  return {};
 }
 
 Result<ComposedScene> SceneComposer::run(const std::string& name, const SceneInstance& instance,
