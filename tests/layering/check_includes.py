@@ -19,7 +19,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 # Headers with a dot or a slash that belong to the language or the system.
-SYSTEM_HEADERS = {"dirent.h", "dlfcn.h", "fcntl.h", "fnmatch.h", "immintrin.h", "malloc.h", "poll.h", "signal.h", "spawn.h", "unistd.h"}
+SYSTEM_HEADERS = {"dirent.h", "dlfcn.h", "fcntl.h", "immintrin.h", "malloc.h", "poll.h", "signal.h", "spawn.h", "unistd.h"}
 SYSTEM_FOLDERS = {"linux", "sys"}
 # Part of the compiler: its sanitizers' interface.
 COMPILER_FOLDERS = {"sanitizer"}

@@ -84,9 +84,15 @@ void IndexReader::addMatches(TemplateKind kind, const std::string& ending,
   const std::string suffix = attributes ? std::string(namesOf(kind).suffix) : ending;
   std::error_code ignored;
   std::size_t files = 0;
-  for (const fs::path& match : matchingPaths(index_.folder, pattern)) {
+  const auto matches = matchingPaths(index_.folder, pattern);
+  if (!matches) {
+    return json_.error(
+        pattern_node.place,
+        fmt::format("'{}' finds more than {} files and folders; narrow it", pattern, kMostMatches));
+  }
+  for (const fs::path& match : *matches) {
     if (fs::is_directory(match, ignored)) {
-      block(kind).folders.push_back(nameRelativeTo(index_.config, match));
+      block(kind).searched.push_back({nameRelativeTo(index_.config, match), suffix});
       for (const fs::path& file : filesIn(match, suffix)) {
         addFile(kind, file);
         ++files;

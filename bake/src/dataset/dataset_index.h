@@ -27,13 +27,18 @@ struct TemplateKindNames {
 };
 [[nodiscard]] const TemplateKindNames& namesOf(TemplateKind kind);
 
+/// Where templates were looked for: files with this ending in a folder (relative to the dataset's).
+struct SearchedFolder {
+  std::string folder;
+  std::string ending;
+};
+
 /// One block of the dataset's configuration: all templates of a kind.
 struct DatasetBlock {
   /// What all templates start from.
   std::optional<AttributeLayer> defaults;
   TemplateList templates;
-  /// Folders in which attribute files were looked for, relative to the dataset's.
-  std::vector<std::string> folders;
+  std::vector<SearchedFolder> searched;
 };
 
 /// What a dataset offers, by kind. Attribute files are named, not yet read.

@@ -56,6 +56,18 @@ struct Shelf {
   std::map<std::string, Entry> entries;
 };
 
+template <class T>
+typename Shelf<T>::Entry sharedEntry(Result<T> content) {
+  typename Shelf<T>::Entry entry;
+  if (content) {
+    entry.bytes = bytesOf(*content);
+    entry.content = std::make_shared<const T>(std::move(*content));
+  } else {
+    entry.content = tl::unexpected<Error>(content.error());
+  }
+  return entry;
+}
+
 /// Whether only the library holds it. Called under the library's mutex: nobody can take another
 /// copy meanwhile.
 template <class T>
@@ -85,37 +97,34 @@ template <class T>
 Result<std::shared_ptr<const T>> MeshLibrary::State::load(Shelf<T>& shelf, const std::string& key,
                                                           const std::function<Result<T>()>& read) {
   std::unique_lock lock(mutex);
-  const auto [known, is_new] = shelf.entries.try_emplace(key);
-  known->second.used = ++loads;
-  if (!is_new) {
-    // The entry may be given up, and read by another, while this waits.
-    was_read.wait(lock, [&] {
-      const auto entry = shelf.entries.find(key);
-      return entry == shelf.entries.end() || entry->second.content.has_value();
-    });
-    const auto entry = shelf.entries.find(key);
-    if (entry != shelf.entries.end()) return *entry->second.content;
-    shelf.entries.try_emplace(key);
-    shelf.entries.at(key).used = ++loads;
+  // While it is read by another, this waits; it may be given up before this wakes.
+  while (!shelf.entries.try_emplace(key).second) {
+    auto& entry = shelf.entries.at(key);
+    if (entry.content) {
+      entry.used = ++loads;
+      return *entry.content;
+    }
+    was_read.wait(lock);
   }
   lock.unlock();
-  auto content = read();
-  std::uint64_t bytes = 0;
-  Result<std::shared_ptr<const T>> shared = tl::unexpected(Error{});
-  if (content) {
-    bytes = bytesOf(*content);
-    shared = std::make_shared<const T>(std::move(*content));
-  } else {
-    shared = tl::unexpected(content.error());
+  typename Shelf<T>::Entry fresh;
+  try {
+    fresh = sharedEntry(read());
+  } catch (...) {
+    // Memory ran out: nobody may wait for what does not come.
+    lock.lock();
+    shelf.entries.erase(key);
+    was_read.notify_all();
+    throw;
   }
+  // Held here, it is not idle when room is made.
+  const Result<std::shared_ptr<const T>> content = *fresh.content;
   lock.lock();
-  auto& entry = shelf.entries.at(key);
-  entry.content = shared;
-  entry.bytes = bytes;
+  fresh.used = ++loads;
+  shelf.entries.at(key) = std::move(fresh);
   makeRoom();
-  lock.unlock();
   was_read.notify_all();
-  return shared;
+  return content;
 }
 
 void MeshLibrary::State::makeRoom() {

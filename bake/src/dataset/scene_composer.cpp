@@ -55,6 +55,18 @@ void SceneComposer::warnOnce(const std::string& warning) {
   if (warned_.insert(warning).second) result_.scene.warnings.push_back(warning);
 }
 
+void SceneComposer::noteWarnings(const fs::path& file, const std::vector<std::string>& warnings) {
+  // Some URDFs draw one for each line.
+  constexpr std::size_t kMost = 4;
+  const std::size_t told = warnings.size() > kMost ? kMost - 1 : warnings.size();
+  for (std::size_t n = 0; n < told; ++n) {
+    warnOnce(fmt::format("{}: {}", relative(file), warnings[n]));
+  }
+  if (told < warnings.size()) {
+    warnOnce(fmt::format("{}: and {} more warnings", relative(file), warnings.size() - told));
+  }
+}
+
 std::string SceneComposer::nextName(const std::string& template_name) {
   return fmt::format("{}_:{:04d}", template_name, placed_[template_name]++);
 }
@@ -66,8 +78,8 @@ const DatasetTemplate* SceneComposer::lookUp(TemplateKind kind, const SceneItem&
   if (found.found == nullptr) {
     noteMissing(
         fmt::format("{} '{}' is in none of the dataset's paths", names.noun, item.template_name));
-    for (const std::string& folder : block.folders) {
-      noteAbsent(index_.folder / folder / (item.template_name + std::string(names.suffix)));
+    for (const SearchedFolder& searched : block.searched) {
+      noteAbsent(index_.folder / searched.folder / (item.template_name + searched.ending));
     }
   } else if (found.ambiguous) {
     warnOnce(fmt::format("{} '{}' may be several; '{}' is taken, the first", names.noun,
@@ -115,9 +127,7 @@ Result<std::shared_ptr<const SourceAsset>> SceneComposer::load(const fs::path& m
   for (const SourceFile& file : (*asset)->files) {
     merger_.noteFile(mesh.parent_path() / file.name, file);
   }
-  for (const std::string& warning : (*asset)->warnings) {
-    warnOnce(fmt::format("{}: {}", relative(mesh), warning));
-  }
+  noteWarnings(mesh, (*asset)->warnings);
   return asset;
 }
 
@@ -194,10 +204,10 @@ Result<void> SceneComposer::placeObject(const SceneItem& item) {
   return {};
 }
 
-Result<void> SceneComposer::placeLinks(const SceneItem& item, const SourceRobot& furniture,
-                                       const fs::path& urdf, const Affine& world_from_root) {
+void SceneComposer::placeLinks(const SceneItem& item, const std::string& name,
+                               const SourceRobot& furniture, const fs::path& urdf,
+                               const Affine& world_from_root) {
   const std::vector<Affine> root_from_link = restPose(furniture, item.joint_positions);
-  const std::string name = nextName(urdf.stem().string());
   for (std::size_t n = 0; n < furniture.links.size(); ++n) {
     const Affine world_from_link = compose(world_from_root, root_from_link[n]);
     for (std::size_t visual = 0; visual < furniture.links[n].visuals.size(); ++visual) {
@@ -217,7 +227,6 @@ Result<void> SceneComposer::placeLinks(const SceneItem& item, const SourceRobot&
       merger_.place(first, asset, world_from_link, name);
     }
   }
-  return {};
 }
 
 Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
@@ -237,9 +246,7 @@ Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
   if (!furniture) return tl::unexpected(furniture.error());
   const fs::path folder = urdf.parent_path();
   for (const SourceFile& file : (*furniture)->files) merger_.noteFile(folder / file.name, file);
-  for (const std::string& warning : (*furniture)->warnings) {
-    warnOnce(fmt::format("{}: {}", relative(urdf), warning));
-  }
+  noteWarnings(urdf, (*furniture)->warnings);
   for (const std::string& reference : (*furniture)->missing) {
     noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kKind).noun, entry->name,
                             reference));
@@ -250,7 +257,9 @@ Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     root_from_urdf[5 * axis] = (*attributes)->scale[axis] * item.scale[axis];
   }
-  return placeLinks(item, **furniture, urdf, compose(worldFromObject(item), root_from_urdf));
+  placeLinks(item, nextName(entry->name), **furniture, urdf,
+             compose(worldFromObject(item), root_from_urdf));
+  return {};
 }
 
 Result<ComposedScene> SceneComposer::run(const std::string& name, const SceneInstance& instance,

@@ -28,9 +28,8 @@ class SceneComposer {
   [[nodiscard]] Result<void> placeStage(const SceneItem& item);
   [[nodiscard]] Result<void> placeObject(const SceneItem& item);
   [[nodiscard]] Result<void> placeArticulated(const SceneItem& item);
-  [[nodiscard]] Result<void> placeLinks(const SceneItem& item, const SourceRobot& furniture,
-                                        const std::filesystem::path& urdf,
-                                        const Affine& world_from_root);
+  void placeLinks(const SceneItem& item, const std::string& name, const SourceRobot& furniture,
+                  const std::filesystem::path& urdf, const Affine& world_from_root);
   /// Null where the dataset has none; then it is noted as missing.
   const DatasetTemplate* lookUp(TemplateKind kind, const SceneItem& item);
   [[nodiscard]] Result<Attributes> attributesOf(const DatasetTemplate& entry, TemplateKind kind);
@@ -51,6 +50,8 @@ class SceneComposer {
   void noteMissing(const std::string& sentence);
   void noteAbsent(const std::filesystem::path& file);
   void warnOnce(const std::string& warning);
+  /// The first few warnings about a file.
+  void noteWarnings(const std::filesystem::path& file, const std::vector<std::string>& warnings);
   [[nodiscard]] std::string relative(const std::filesystem::path& file) const;
 
   const DatasetIndex& index_;

@@ -1,6 +1,8 @@
 #include "dataset/template_list.h"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <utility>
 
 #include "dataset/dataset_paths.h"

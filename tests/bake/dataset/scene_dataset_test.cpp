@@ -1,0 +1,354 @@
+// What a dataset offers, and what becomes of it in a scene.
+#include "galactic/bake/scene_dataset.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bake/dataset/small_dataset.h"
+#include "galactic/bake/render_source.h"
+
+namespace galactic::test {
+namespace {
+
+using bake::ComposedScene;
+using bake::MeshLibrary;
+using bake::SceneDataset;
+using bake::SourceAsset;
+using bake::SourceInstance;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+using Points = std::vector<std::array<double, 3>>;
+
+/// Files hold coordinates as floats and text of six digits.
+constexpr double kTolerance = 1e-5;
+
+std::string textOf(const Error& error) { return error.where + ": " + error.message; }
+
+ComposedScene composed(const SmallDataset& small, const std::string& name = "a_home") {
+  const auto dataset = SceneDataset::read(small.config());
+  EXPECT_TRUE(dataset) << textOf(dataset.error());
+  MeshLibrary meshes(bake::datasetMeshOptions());
+  auto scene = dataset->compose(name, meshes);
+  EXPECT_TRUE(scene) << textOf(scene.error());
+  return scene ? std::move(*scene) : ComposedScene{};
+}
+
+const SourceInstance& instanceNamed(const SourceAsset& scene, std::string_view name) {
+  for (const SourceInstance& instance : scene.instances) {
+    if (instance.name == name) return instance;
+  }
+  ADD_FAILURE() << "no instance " << name;
+  return scene.instances.front();
+}
+
+/// The corners of unevenBox(), each changed by `change`.
+template <class Change>
+Points changedCorners(const Change& change) {
+  Points corners = boxCorners();
+  for (auto& corner : corners) corner = change(corner);
+  return corners;
+}
+
+double errorOf(const SourceAsset& scene, std::string_view name, const Points& wanted) {
+  return farthestCorner(placedVertices(scene, instanceNamed(scene, name)), wanted);
+}
+
+TEST(SceneDataset, KnowsItsScenesAndWarnsOfWhatItsPathsMiss) {
+  const SmallDataset small;
+  small.writeScene("b_home", SmallDataset::kScene);
+  const auto dataset = SceneDataset::read(small.config());
+  ASSERT_TRUE(dataset) << textOf(dataset.error());
+  EXPECT_THAT(dataset->scenes(), ElementsAre("a_home", "b_home"));
+  EXPECT_EQ(dataset->folder(), small.folder());
+  EXPECT_THAT(
+      dataset->warnings(),
+      ElementsAre("objects.paths['.json'][1]: '../elsewhere/*.object_config.json' finds no "
+                  ".object_config.json file",
+                  "objects.configs[3].original_file: 'nowhere' is in none of the paths; it is "
+                  "left out"));
+}
+
+TEST(SceneDataset, PlacesWhatDoesNotMoveAndListsWhatDoes) {
+  const ComposedScene scene = composed(SmallDataset());
+  std::vector<std::string> names;
+  for (const SourceInstance& instance : scene.scene.instances) names.push_back(instance.name);
+  EXPECT_THAT(names,
+              ElementsAre("room", "table_:0000", "table_:0001", "crate_:0000", "high_table_:0000",
+                          "made_here_:0000", "cupboard_:0000", "cupboard_:0000"));
+  ASSERT_EQ(scene.movable.size(), 2U);
+  EXPECT_EQ(scene.movable[0].name, "cup");
+  EXPECT_EQ(scene.movable[0].mesh.filename(), "box.obj");
+  EXPECT_TRUE(scene.movable[0].mesh.is_absolute());
+  EXPECT_EQ(scene.movable[1].name, "shelf") << "Habitat takes what states no motion for dynamic";
+  EXPECT_TRUE(scene.has_stage);
+  EXPECT_EQ(scene.scene.name, "a_home");
+}
+
+TEST(SceneDataset, PlacesTheCentreOfMassOrTheOriginOfTheAsset) {
+  const ComposedScene scene = composed(SmallDataset());
+  // A quarter turn about Y takes (x, y, z) to (z, y, -x).
+  EXPECT_LT(errorOf(scene.scene, "table_:0000", changedCorners([](const auto& p) {
+                      return std::array{p[2] - 2 + 1, p[1] - 0.5, -(p[0] - 0.25) + 2};
+                    })),
+            kTolerance);
+  EXPECT_LT(errorOf(scene.scene, "table_:0001", changedCorners([](const auto& p) {
+                      return std::array{p[0] + 3, p[1], p[2] + 2};
+                    })),
+            kTolerance)
+      << "the dataset's default is asset_local";
+  // The layer moved the cup's centre of mass.
+  const bake::Affine cup{1, 0, 0, -1, 0, 1, 0, 0, 0, 0, 1, -1};
+  EXPECT_EQ(scene.movable[0].world_from_mesh, cup);
+}
+
+TEST(SceneDataset, AppliesScalesAndFrames) {
+  const ComposedScene scene = composed(SmallDataset());
+  EXPECT_LT(errorOf(scene.scene, "crate_:0000", changedCorners([](const auto& p) {
+                      return std::array{0.5 * p[0], 0.5 * p[1], 0.5 * p[2]};
+                    })),
+            kTolerance);
+  EXPECT_LT(errorOf(scene.scene, "high_table_:0000", changedCorners([](const auto& p) {
+                      return std::array{p[0], 3 * p[1], p[2]};
+                    })),
+            kTolerance);
+  // Z up: (x, y, z) becomes (x, z, -y), then the scale.
+  const bake::Affine shelf{0.5, 0, 0, 0, 0, 0, 2, 0, 0, -1.5, 0, 0};
+  EXPECT_EQ(scene.movable[1].world_from_mesh, shelf);
+}
+
+TEST(SceneDataset, PlacesFurnitureInItsRestPose) {
+  const ComposedScene scene = composed(SmallDataset());
+  std::vector<Points> placed;
+  for (const SourceInstance& instance : scene.scene.instances) {
+    if (instance.name == "cupboard_:0000") placed.push_back(placedVertices(scene.scene, instance));
+  }
+  ASSERT_EQ(placed.size(), 2U);
+  // Scale 2 of the template times 0.5 of the instance; the box is 1 x 2 x 3 and 1 m along z.
+  Points base;
+  for (const double x : {-0.5, 0.5}) {
+    for (const double y : {-1.0, 1.0}) {
+      for (const double z : {-0.5, 2.5}) base.push_back({x, y + 1, z});
+    }
+  }
+  EXPECT_LT(farthestCorner(placed[0], base), kTolerance);
+  // The hinge is at the limit nearest to zero.
+  const double c = std::cos(0.5);
+  const double s = std::sin(0.5);
+  EXPECT_LT(farthestCorner(
+                placed[1], changedCorners([&](const auto& p) {
+                  return std::array{1 + c * p[0] - s * p[1], 1 + s * p[0] + c * p[1], 2 * p[2]};
+                })),
+            kTolerance);
+}
+
+TEST(SceneDataset, TakesTheStatedJointPositionsOfFurniture) {
+  for (const std::string_view pose : {"[1.25]", R"({"hinge": 1.25})", R"({"joint_00": 1.25})"}) {
+    SCOPED_TRACE(pose);
+    const SmallDataset small;
+    small.writeScene("posed", fmt::format(R"({{"stage_instance": {{"template_name": "room"}},
+      "articulated_object_instances": [{{"template_name": "cupboard", "uniform_scale": 0.5,
+        "initial_joint_pose": {}}}]}})",
+                                          pose));
+    const ComposedScene scene = composed(small, "posed");
+    const double c = std::cos(1.25);
+    const double s = std::sin(1.25);
+    EXPECT_LT(
+        farthestCorner(placedVertices(scene.scene, scene.scene.instances.back()),
+                       changedCorners([&](const auto& p) {
+                         return std::array{1 + c * p[0] - s * p[1], s * p[0] + c * p[1], 2 * p[2]};
+                       })),
+        kTolerance);
+  }
+}
+
+TEST(SceneDataset, SaysWhatLacksAndWhereItWasLookedFor) {
+  const ComposedScene scene = composed(SmallDataset());
+  EXPECT_THAT(scene.missing,
+              ElementsAre("object 'ghost': its mesh 'meshes/ghost.glb' is missing (2 times)",
+                          "object 'lamp' is in none of the dataset's paths",
+                          "articulated object 'cupboard': its mesh 'handle.glb' is missing"));
+  EXPECT_THAT(scene.absent_files, ElementsAre("configs/objects/big/lamp.object_config.json",
+                                              "configs/objects/small/lamp.object_config.json",
+                                              "meshes/ghost.glb", "urdf/cupboard/handle.glb"));
+}
+
+TEST(SceneDataset, ListsEveryFileThatWasReadOnce) {
+  const ComposedScene scene = composed(SmallDataset());
+  std::vector<std::string> names;
+  for (const bake::SourceFile& file : scene.scene.files) {
+    names.push_back(file.name);
+    EXPECT_GT(file.bytes, 0U) << file.name;
+    EXPECT_NE(file.hash_low, 0U) << file.name;
+  }
+  EXPECT_THAT(
+      names,
+      ElementsAre("bare/crate.glb", "configs/objects/big/shelf.object_config.json",
+                  "configs/objects/big/table.object_config.json",
+                  "configs/objects/small/cup.object_config.json",
+                  "configs/objects/small/ghost.object_config.json",
+                  "configs/stages/room.stage_config.json", "home.scene_dataset_config.json",
+                  "meshes/box.mtl", "meshes/box.obj", "meshes/room.obj",
+                  "scenes/a_home.scene_instance.json", "urdf/cupboard/cupboard.ao_config.json",
+                  "urdf/cupboard/cupboard.urdf", "urdf/cupboard/door.obj"));
+}
+
+TEST(SceneDataset, HoldsEachMeshOnceHoweverOftenItIsPlaced) {
+  const SmallDataset small;
+  std::string items;
+  for (int i = 0; i < 10; ++i) {
+    items += fmt::format(R"({}{{"template_name": "table", "motion_type": "STATIC"}})",
+                         i == 0 ? "" : ", ");
+  }
+  small.writeScene("tables", fmt::format(R"({{"stage_instance": {{"template_name": "NONE"}},
+      "object_instances": [{}, {{"template_name": "high_table", "motion_type": "STATIC"}}]}})",
+                                         items));
+  const ComposedScene scene = composed(small, "tables");
+  EXPECT_FALSE(scene.has_stage);
+  EXPECT_EQ(scene.scene.instances.size(), 11U);
+  EXPECT_EQ(scene.scene.meshes.size(), 1U);
+  const auto box = bake::importMesh(small.folder() / "meshes/box.obj", bake::datasetMeshOptions());
+  ASSERT_TRUE(box);
+  EXPECT_EQ(scene.scene.materials.size(), box->materials.size());
+  EXPECT_THAT(scene.scene.warnings, testing::Contains("the scene says that it has no stage"));
+}
+
+TEST(SceneDataset, KeepsMaterialsTexturesAndSemanticsApart) {
+  const SmallDataset small;
+  const auto textured = [&](const std::string& name, const std::string& uri) {
+    GltfPieces pieces;
+    pieces.more = fmt::format(
+        R"(,"materials":[{{"name":"{}","pbrMetallicRoughness":{{"baseColorTexture":{{"index":0}}}}}}],)"
+        R"("textures":[{{"source":0}}],"images":[{{"uri":"{}"}}])",
+        name, uri);
+    // Mesh 0 refers to material 0.
+    std::string json = gltfFile(unevenBox(), pieces);
+    const std::string_view primitive = R"("indices":0)";
+    json.insert(json.find(primitive) + primitive.size(), R"(,"material":0)");
+    small.write("bare/" + name + ".glb", glbContainer(json, gltfBuffer(unevenBox())));
+  };
+  // Two that carry their image themselves, and one whose image lies beside it.
+  const std::string image = "data:image/png;base64,iVBORw0KGgo=";
+  textured("crate", image);
+  textured("crute", image);
+  textured("crote", "../meshes/paint.png");
+  small.write("meshes/paint.png", "no image, but a file");
+  small.writeScene("three", R"({"stage_instance": {"template_name": "room"}, "object_instances": [
+      {"template_name": "crate", "motion_type": "STATIC"},
+      {"template_name": "crute", "motion_type": "STATIC"},
+      {"template_name": "crote", "motion_type": "STATIC"},
+      {"template_name": "crate", "motion_type": "STATIC"}]})");
+  const SourceAsset scene = composed(small, "three").scene;
+  ASSERT_EQ(scene.instances.size(), 5U);
+  EXPECT_EQ(scene.textures.size(), 2U);
+  std::vector<std::string> names;
+  std::vector<std::string> textures;
+  for (std::size_t i = 1; i < 5; ++i) {
+    const auto& material = scene.materials.at(scene.meshes.at(scene.instances[i].mesh).material);
+    names.push_back(material.name);
+    textures.push_back(material.base_color_texture);
+  }
+  EXPECT_THAT(names, ElementsAre("crate", "crute", "crote", "crate"));
+  EXPECT_THAT(textures, ElementsAre("*0", "*1", "meshes/paint.png", "*0"));
+  bake::TextureBakeOptions options;
+  SourceAsset plain = scene;
+  for (auto& material : plain.materials) material.base_color_texture.clear();
+  const auto source = bake::sceneRenderSource(plain, small.folder(), options);
+  ASSERT_TRUE(source) << textOf(source.error());
+  EXPECT_THAT(source->semantics,
+              ElementsAre("room", "crate_:0000", "crute_:0000", "crote_:0000", "crate_:0001"));
+}
+
+TEST(SceneDataset, OfStagesAloneHasThemAsScenes) {
+  const ScratchFolder folder;
+  const auto config = folder.write(
+      "scans.scene_dataset_config.json",
+      R"({"stages": {"paths": {".glb": ["train/*/*.basis.glb"], ".obj": ["train/*"]}}})");
+  static_cast<void>(folder.write("train/0/abc.basis.glb", glbFile(unevenBox())));
+  static_cast<void>(folder.write("train/0/abc.semantic.glb", glbFile(unevenBox())));
+  static_cast<void>(folder.write("train/1/xyz.obj", objFile(unevenBox())));
+  const auto dataset = SceneDataset::read(config);
+  ASSERT_TRUE(dataset) << textOf(dataset.error());
+  ASSERT_THAT(dataset->scenes(), ElementsAre("abc.basis", "xyz"));
+  MeshLibrary meshes(bake::datasetMeshOptions());
+  const auto scan = dataset->compose("abc.basis", meshes);
+  ASSERT_TRUE(scan) << textOf(scan.error());
+  // As Habitat does, a bare GLB is taken for Z up.
+  EXPECT_LT(errorOf(scan->scene, "abc.basis", changedCorners([](const auto& p) {
+                      return std::array{p[0], p[2], -p[1]};
+                    })),
+            kTolerance);
+  const auto other = dataset->compose("xyz", meshes);
+  ASSERT_TRUE(other) << textOf(other.error());
+  EXPECT_LT(errorOf(other->scene, "xyz", boxCorners()), kTolerance);
+}
+
+TEST(SceneDataset, TakesTheFirstOfSeveralMeaningsAndSaysSo) {
+  const SmallDataset small;
+  small.write("configs/objects/small/table.object_config.json",
+              R"({"render_asset": "../../../meshes/room.obj"})");
+  small.writeScene("doubt", R"({"stage_instance": {"template_name": "NONE"}, "object_instances": [
+      {"template_name": "table", "motion_type": "STATIC"},
+      {"template_name": "small/table", "motion_type": "STATIC"},
+      {"template_name": "HEL", "motion_type": "STATIC"}]})");
+  const ComposedScene scene = composed(small, "doubt");
+  EXPECT_THAT(scene.scene.warnings,
+              testing::Contains("object 'table' may be several; "
+                                "'configs/objects/big/table.object_config.json' is taken, the "
+                                "first"));
+  ASSERT_EQ(scene.scene.instances.size(), 3U);
+  const auto& mesh = scene.scene.meshes.at(scene.scene.instances[0].mesh);
+  EXPECT_EQ(scene.scene.materials.at(mesh.material).name, "wood") << "box.obj, not room.obj";
+  EXPECT_NE(scene.scene.instances[1].mesh, scene.scene.instances[0].mesh);
+  EXPECT_EQ(scene.scene.instances[2].name, "shelf_:0000");
+}
+
+TEST(SceneDataset, DoesNotDependOnTheOrderOfScenesOrOnTheLibrary) {
+  const SmallDataset small;
+  small.writeScene("b_home", R"({"stage_instance": {"template_name": "room"}, "object_instances": [
+      {"template_name": "made_here", "motion_type": "STATIC"},
+      {"template_name": "crate", "motion_type": "STATIC"},
+      {"template_name": "table", "motion_type": "STATIC"}]})");
+  const auto dataset = SceneDataset::read(small.config());
+  ASSERT_TRUE(dataset) << textOf(dataset.error());
+  const auto digest = [&](const std::string& name, MeshLibrary& meshes) {
+    const auto scene = dataset->compose(name, meshes);
+    EXPECT_TRUE(scene) << textOf(scene.error());
+    std::string text;
+    for (const SourceInstance& instance : scene->scene.instances) {
+      text += fmt::format("{} {} {}\n", instance.name, instance.mesh,
+                          fmt::join(instance.world_from_mesh, " "));
+    }
+    for (const auto& mesh : scene->scene.meshes) {
+      text += fmt::format("{} {} {}\n", mesh.name, mesh.positions.size(), mesh.material);
+    }
+    for (const auto& file : scene->scene.files) text += file.name + '\n';
+    return text;
+  };
+  MeshLibrary shared(bake::datasetMeshOptions());
+  MeshLibrary keeps_nothing(bake::datasetMeshOptions(), 0);
+  const std::string a = digest("a_home", shared);
+  const std::string b = digest("b_home", shared);
+  EXPECT_NE(a, b);
+  EXPECT_EQ(digest("b_home", keeps_nothing), b);
+  EXPECT_EQ(digest("a_home", keeps_nothing), a);
+  EXPECT_EQ(digest("a_home", shared), a);
+}
+
+TEST(SceneDataset, FingerprintChangesWithTheTemplatesThatAreThere) {
+  const SmallDataset small;
+  const auto fingerprint = [&] { return SceneDataset::read(small.config())->fingerprint(); };
+  const std::uint64_t before = fingerprint();
+  small.write("configs/objects/big/table.object_config.json",
+              R"({"render_asset": "../../../meshes/room.obj"})");
+  EXPECT_EQ(fingerprint(), before) << "what a file says is the business of its hash";
+  small.write("configs/objects/big/lamp.object_config.json", "{}");
+  EXPECT_NE(fingerprint(), before);
+}
+
+}  // namespace
+}  // namespace galactic::test
