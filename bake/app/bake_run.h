@@ -29,6 +29,7 @@ class BakeRun {
     read_.push_back(command.robot.recipe);
     read_.push_back(command.robot.spheres);
     read_.push_back(command.episodes.only);
+    read_.push_back(command.episodes.object_pack);
     read_.push_back(command.collection);
   }
 

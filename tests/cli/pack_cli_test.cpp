@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "pack_tool/asset_packs.h"
+#include "support/episode_pack_builder.h"
 #include "support/pack_tool_fixture.h"
 #include "support/program_run.h"
 
@@ -90,6 +91,8 @@ TEST_F(PackCli, ExplainsAWrongCommandLineWithExitCodeOne) {
       {{"picture", "arm.pack", "-o", "a.png", "--what", "mesh,bones"}, "\"bones\" is none of"},
       {{"picture", "arm.pack", "-o", "a.png", "--size", "10"}, "--size"},
       {{"export", "good.pack", "-o", "a.png", "--to", "gif"}, "--to"},
+      {{"export", "good.pack", "--to", "ply"}, "--output is required"},
+      {{"export", "good.pack", "-o", "x.json", "--object-up", "w"}, "--object-up"},
   };
   for (const auto& [arguments, message] : lines) {
     const ProgramRun result = run(arguments);
@@ -224,11 +227,22 @@ TEST_F(PackCli, PictureAndExportWriteTheirFilesQuietly) {
   }
 }
 
+TEST_F(PackCli, ExportsEpisodesBesideItselfWhereNoFileIsNamed) {
+  write("tidy.pack", test::asText(test::buildPack(test::smallEpisodes()).bytes()));
+  const ProgramRun result =
+      run({"export", "tidy.pack", "--to", "episode_set", "--object-up", "-y"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, HasSubstr("warning: 2 of 2 starts are not at height 0"));
+  const json set = json::parse(test::fileContent(folder_.path() / "tidy.episode_set.json"));
+  EXPECT_EQ(set.at("episodeSet").at("episodes").size(), 2U);
+}
+
 TEST_F(PackCli, PictureAndExportRefuseWhatTheyCannotWrite) {
   const std::vector<std::tuple<std::vector<std::string>, int, std::string>> runs{
       {{"export", "good.pack", "-o", "a.jpg"},
        kUnsupported,
-       "use .glb, .srdf, .urdf, .obj or .ply"},
+       "use .glb, .srdf, .urdf, .obj, .ply or .episode_set.json"},
       {{"export", "good.pack", "-o", "a.png"}, kUnsupported, "draw it with galactic-pack picture"},
       {{"picture", "good.pack", "-o", "a.jpg"}, kUnsupported, "end the name with .png"},
       {{"picture", "good.pack", "-o", "none/a.png"}, kIo, "galactic-pack: none/a.png: "},
