@@ -98,8 +98,16 @@ void addInfo(CLI::App& app, InfoOptions& options) {
 void addCheck(CLI::App& app, CheckOptions& options) {
   CLI::App& verb = *app.add_subcommand(
       "check", "Verify packs completely; the exit code is that of the worst one");
-  addPacks(verb, options.packs);
+  verb.add_option("packs", options.packs, "packs of any kind, and folders with packs in them")
+      ->required()
+      ->type_name("PACK");
   addJson(verb, options.form);
+  verb.add_option("--junit", options.junit,
+                  "also write a JUnit report, for CI; replaced if it is there")
+      ->type_name("FILE");
+  verb.add_option("-j,--jobs", options.jobs, "threads (default: one for each core)")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
 }
 
 void addColumn(CLI::App& app, ColumnOptions& options) {

@@ -27,12 +27,18 @@ struct InfoOptions {
 [[nodiscard]] int runInfo(const InfoOptions& options, const Console& console);
 
 struct CheckOptions {
+  /// Packs, and folders that are searched for them.
   std::vector<std::filesystem::path> packs = {};
   OutputForm form = OutputForm::kText;
+  /// Report for CI systems; empty: none.
+  std::filesystem::path junit = {};
+  /// Threads; 0: as many as there are cores. What is printed does not depend on it.
+  unsigned jobs = 0;
 };
 
-/// Verifies each pack completely: one line "ok" to console.out or one error to console.err for
-/// each. Of a world pack also the packs that it lists, and whether they fit together.
+/// Verifies each pack completely: one line "ok" to console.out or one error with its code (see
+/// findingCode) to console.err for each, in the order in which they are given. Of a world pack also
+/// the packs that it lists, and whether they fit together.
 [[nodiscard]] int runCheck(const CheckOptions& options, const Console& console);
 
 struct ColumnOptions {

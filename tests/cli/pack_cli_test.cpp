@@ -154,7 +154,22 @@ TEST_F(PackCli, CheckReportsAsJson) {
   const json report = json::parse(result.out);
   EXPECT_EQ(report.at(0).at("ok"), false);
   EXPECT_EQ(report.at(0).at("exit_code"), kInvalidInput);
+  EXPECT_EQ(report.at(0).at("code"), "pack/size");
   EXPECT_EQ(report.at(1).at("ok"), true);
+}
+
+TEST_F(PackCli, CheckSearchesFoldersAndWritesAJUnitReport) {
+  const ProgramRun result = run({"check", ".", "--junit", "report.xml", "--jobs", "3"});
+  EXPECT_EQ(result.exit_code, kInvalidInput);
+  EXPECT_EQ(result.out, "./arm.pack: ok\n./good.pack: ok\n./toys.pack: ok\n");
+  for (const char* line : {"galactic-pack: ./cut.pack: announces ", " [pack/size]\n",
+                           " [pack/version-new]\n", " [pack/not-a-pack]\n"}) {
+    EXPECT_THAT(result.err, HasSubstr(line));
+  }
+  const std::string report = test::fileContent(folder_.path() / "report.xml");
+  EXPECT_THAT(report, HasSubstr("tests=\"6\" failures=\"3\""));
+  EXPECT_THAT(report, HasSubstr("<testcase classname=\"packs\" name=\"./arm.pack\"/>"));
+  EXPECT_EQ(run({"check", ".", "--jobs", "0"}).exit_code, 1);
 }
 
 TEST_F(PackCli, EveryVerbRefusesADamagedPack) {
