@@ -98,8 +98,16 @@ void addInfo(CLI::App& app, InfoOptions& options) {
 void addCheck(CLI::App& app, CheckOptions& options) {
   CLI::App& verb = *app.add_subcommand(
       "check", "Verify packs completely; the exit code is that of the worst one");
-  addPacks(verb, options.packs);
+  verb.add_option("packs", options.packs, "packs of any kind, and folders with packs in them")
+      ->required()
+      ->type_name("PACK");
   addJson(verb, options.form);
+  verb.add_option("--junit", options.junit,
+                  "also write a JUnit report, for CI; replaced if it is there")
+      ->type_name("FILE");
+  verb.add_option("-j,--jobs", options.jobs, "threads (default: one for each core)")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
 }
 
 void addColumn(CLI::App& app, ColumnOptions& options) {
@@ -239,19 +247,41 @@ void addPicture(CLI::App& app, PictureOptions& options) {
   addTrusted(verb, options.trust);
 }
 
+void addEpisodeSetOptions(CLI::App& verb, ExportOptions& options) {
+  verb.add_option("--object-up", options.object_up,
+                  "episode sets: up axis of the objects' mesh files (default z)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, FileUp>{{"x", FileUp::kX},
+                                                                        {"y", FileUp::kY},
+                                                                        {"z", FileUp::kZ},
+                                                                        {"-x", FileUp::kMinusX},
+                                                                        {"-y", FileUp::kMinusY},
+                                                                        {"-z", FileUp::kMinusZ}}))
+      ->type_name("AXIS");
+  verb.final_callback([&options] {
+    if (options.output.empty() && options.format != ExportFormat::kEpisodeSet) {
+      throw CLI::RequiredError("--output");
+    }
+  });
+}
+
 void addExport(CLI::App& app, ExportOptions& options) {
-  CLI::App& verb =
-      *app.add_subcommand("export", "Write a scene's grid, objects or a robot for other programs");
-  addPack(verb, {"pack", "a pack of a scene, of objects or of a robot"}, options.pack);
-  addOutput(verb, options.output);
+  CLI::App& verb = *app.add_subcommand(
+      "export", "Write a scene's grid, objects, a robot or episodes for other programs");
+  addPack(verb, {"pack", "a pack of a scene, of objects, of a robot or of episodes"}, options.pack);
+  verb.add_option("-o,--output", options.output,
+                  "the file to write; replaced if it is there (default for episode_set: "
+                  "NAME.episode_set.json)")
+      ->type_name("FILE");
+  addEpisodeSetOptions(verb, options);
   verb.add_option("--to", options.format, "format (default: by the extension of FILE)")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, ExportFormat>{{"obj", ExportFormat::kObj},
                                               {"ply", ExportFormat::kPly},
                                               {"glb", ExportFormat::kGlb},
                                               {"srdf", ExportFormat::kSrdf},
-                                              {"urdf", ExportFormat::kUrdf}}))
-      ->type_name("glb|srdf|urdf|obj|ply");
+                                              {"urdf", ExportFormat::kUrdf},
+                                              {"episode_set", ExportFormat::kEpisodeSet}}))
+      ->type_name("glb|srdf|urdf|obj|ply|episode_set");
   addFigureOptions(verb, options.figures);
   addRadius(verb, options.radius);
   verb.add_flag_callback(

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 
+#include "galactic/episode_set.h"
 #include "pack_tool/mesh/figure_glb.h"
 #include "pack_tool/mesh/grid_mesh.h"
 #include "pack_tool/open_scene.h"
@@ -17,6 +19,9 @@ namespace {
 Result<ExportFormat> formatOf(const ExportOptions& options) {
   if (options.format) return *options.format;
   const std::string extension = extensionOf(options.output);
+  if (options.output.filename().string().ends_with(kEpisodeSetSuffix)) {
+    return ExportFormat::kEpisodeSet;
+  }
   if (extension == ".obj") return ExportFormat::kObj;
   if (extension == ".ply") return ExportFormat::kPly;
   if (extension == ".glb") return ExportFormat::kGlb;
@@ -28,7 +33,7 @@ Result<ExportFormat> formatOf(const ExportOptions& options) {
   }
   return fail(ErrorCode::kUnsupported, options.output.string(),
               fmt::format("the extension \"{}\" names no format that can be written; use .glb, "
-                          ".srdf, .urdf, .obj or .ply, or choose one with --to",
+                          ".srdf, .urdf, .obj, .ply or .episode_set.json, or choose one with --to",
                           extension));
 }
 
@@ -38,6 +43,10 @@ Result<void> checkOptions(const ExportOptions& options, ExportFormat format) {
   if (options.figures && format != ExportFormat::kGlb) {
     return fail(ErrorCode::kInvalidInput, options.output.string(),
                 "--object, --joints, --all-zero and --what are for GLB files; leave them out");
+  }
+  if (options.object_up && format != ExportFormat::kEpisodeSet) {
+    return fail(ErrorCode::kInvalidInput, options.output.string(),
+                "--object-up is for episode sets; leave it out");
   }
   const bool patches = options.radius || options.patch_height != PatchHeight::kSphereCentre ||
                        options.parts != MeshParts::kFloorsAndCeilings;
@@ -50,6 +59,11 @@ Result<void> checkOptions(const ExportOptions& options, ExportFormat format) {
 
 Result<std::string> gridMesh(const PackFile& pack, const ExportOptions& options,
                              ExportFormat format) {
+  if (pack.kind() == PackKind::kEpisodes) {
+    return fail(ErrorCode::kInvalidInput, pack.where(),
+                "is a pack of kind EPIS and holds no column grids, which OBJ and PLY files show; "
+                "export it --to episode_set");
+  }
   if (pack.kind() == PackKind::kObjects || pack.kind() == PackKind::kRobot) {
     return fail(
         ErrorCode::kInvalidInput, pack.where(),
@@ -96,9 +110,28 @@ Result<std::string> robotDescription(const PackFile& pack, ExportFormat format) 
   return format == ExportFormat::kSrdf ? srdfText(*robot) : spherizedUrdfText(*robot);
 }
 
-Result<std::string> encode(const PackFile& pack, const ExportOptions& options,
-                           ExportFormat format) {
+/// The episode set, after a warning of the starts that lose their height.
+Result<std::string> publishedEpisodes(const PackFile& pack, const ExportOptions& options,
+                                      const Console& console) {
+  const auto set = EpisodeSet::from(pack);
+  if (!set) return tl::unexpected(set.error());
+  const auto raised =
+      std::count_if(set->episodes().begin(), set->episodes().end(),
+                    [](const Episode& episode) { return !(episode.base_position.y == 0); });
+  if (raised > 0) {
+    console.err << fmt::format(
+        "galactic-pack: {}: warning: {} of {} starts are not at height 0, which is what an episode "
+        "set means\n",
+        printable(pack.where()), raised, set->episodes().size());
+  }
+  return episodeSetText(*set, options.object_up.value_or(FileUp::kZ));
+}
+
+Result<std::string> encode(const PackFile& pack, const ExportOptions& options, ExportFormat format,
+                           const Console& console) {
   switch (format) {
+    case ExportFormat::kEpisodeSet:
+      return publishedEpisodes(pack, options, console);
     case ExportFormat::kGlb:
       return figureScene(pack, options);
     case ExportFormat::kSrdf:
@@ -111,22 +144,29 @@ Result<std::string> encode(const PackFile& pack, const ExportOptions& options,
   return gridMesh(pack, options, format);
 }
 
-Result<void> exportPack(const ExportOptions& options) {
+/// "tidy.episode_set.json" for "packs/tidy.pack", where no other file is named.
+std::filesystem::path outputOf(const ExportOptions& options) {
+  if (!options.output.empty()) return options.output;
+  return options.pack.stem().concat(kEpisodeSetSuffix);
+}
+
+Result<void> exportPack(const ExportOptions& options, const Console& console) {
   const auto format = formatOf(options);
   if (!format) return tl::unexpected(format.error());
   if (auto checked = checkOptions(options, *format); !checked) return checked;
   const auto pack = PackFile::open(options.pack, options.trust);
   if (!pack) return tl::unexpected(pack.error());
-  const auto bytes = encode(*pack, options, *format);
+  const auto bytes = encode(*pack, options, *format, console);
   if (!bytes) return tl::unexpected(bytes.error());
-  if (auto checked = checkOutput(*pack, options.output); !checked) return checked;
-  return writeOutput(options.output, *bytes);
+  const std::filesystem::path output = outputOf(options);
+  if (auto checked = checkOutput(*pack, output); !checked) return checked;
+  return writeOutput(output, *bytes);
 }
 
 }  // namespace
 
 int runExport(const ExportOptions& options, const Console& console) {
-  const auto done = exportPack(options);
+  const auto done = exportPack(options, console);
   return done ? kExitOk : reportError(console, done.error());
 }
 

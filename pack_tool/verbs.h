@@ -5,6 +5,7 @@
 
 #include "galactic/pack.h"
 #include "pack_tool/console.h"
+#include "pack_tool/episode_set/episode_set_text.h"
 #include "pack_tool/figure/figures_of_pack.h"
 #include "pack_tool/grid_view.h"
 #include "pack_tool/pictures/pictures.h"
@@ -26,12 +27,18 @@ struct InfoOptions {
 [[nodiscard]] int runInfo(const InfoOptions& options, const Console& console);
 
 struct CheckOptions {
+  /// Packs, and folders that are searched for them.
   std::vector<std::filesystem::path> packs = {};
   OutputForm form = OutputForm::kText;
+  /// Report for CI systems; empty: none.
+  std::filesystem::path junit = {};
+  /// Threads; 0: as many as there are cores. What is printed does not depend on it.
+  unsigned jobs = 0;
 };
 
-/// Verifies each pack completely: one line "ok" to console.out or one error to console.err for
-/// each. Of a world pack also the packs that it lists, and whether they fit together.
+/// Verifies each pack completely: one line "ok" to console.out or one error with its code (see
+/// findingCode) to console.err for each, in the order in which they are given. Of a world pack also
+/// the packs that it lists, and whether they fit together.
 [[nodiscard]] int runCheck(const CheckOptions& options, const Console& console);
 
 struct ColumnOptions {
@@ -100,7 +107,10 @@ struct PictureOptions {
 /// several objects on a contact sheet.
 [[nodiscard]] int runPicture(const PictureOptions& options, const Console& console);
 
-enum class ExportFormat { kObj, kPly, kGlb, kSrdf, kUrdf };
+enum class ExportFormat { kObj, kPly, kGlb, kSrdf, kUrdf, kEpisodeSet };
+
+/// How the names of published episode sets end.
+inline constexpr std::string_view kEpisodeSetSuffix = ".episode_set.json";
 
 /// Where the patches of an exported mesh lie.
 enum class PatchHeight {
@@ -113,6 +123,7 @@ enum class MeshParts { kFloorsAndCeilings, kFloors };
 
 struct ExportOptions {
   std::filesystem::path pack = {};
+  /// Empty, for episode sets only: NAME.episode_set.json in the current folder for NAME.pack.
   std::filesystem::path output = {};
   /// Not given: by the output's extension.
   std::optional<ExportFormat> format = std::nullopt;
@@ -122,12 +133,15 @@ struct ExportOptions {
   MeshParts parts = MeshParts::kFloorsAndCeilings;
   /// For GLB.
   std::optional<FigureOptions> figures = std::nullopt;
+  /// For episode sets: up axis of the objects' mesh files. Not given: Z.
+  std::optional<FileUp> object_up = std::nullopt;
   Trust trust = Trust::kVerify;
 };
 
 /// Writes a pack in another format, replacing an existing file: a grid of a scene as a mesh (OBJ,
 /// PLY), a scene's render meshes, or objects or a robot with spheres and boxes (GLB), a robot with
-/// its spheres (SRDF, URDF).
+/// its spheres (SRDF, URDF), or episodes as a published episode set. Warns on console.err of what
+/// an episode set cannot hold.
 [[nodiscard]] int runExport(const ExportOptions& options, const Console& console);
 
 }  // namespace galactic::pack_tool

@@ -28,11 +28,7 @@ namespace {
 std::filesystem::path packNameOf(const BakeCommand& command, const std::filesystem::path& input) {
   if (command.kind == AssetKind::kWorld) return "world";
   if (command.kind == AssetKind::kEpisodes && command.episodes.sampled) return "episodes";
-  const std::string file = input.filename().string();
-  if (command.kind == AssetKind::kEpisodes && file.ends_with(kEpisodeSetSuffix) &&
-      file.size() > kEpisodeSetSuffix.size()) {
-    return file.substr(0, file.size() - kEpisodeSetSuffix.size());
-  }
+  if (command.kind == AssetKind::kEpisodes) return episodeSetName(input);
   std::error_code unknown;
   if (!std::filesystem::is_directory(input, unknown)) return input.stem();
   // "objects/" has no file name and "." is none; a dot in a folder's name begins no extension.

@@ -121,10 +121,19 @@ Result<Json> importEpisodeFile(const std::filesystem::path& input, BakeRun& run)
     if (!only) return tl::unexpected(only.error());
     options.only = std::move(*only);
   }
-  auto episodes = readEpisodeSet(input, options);
+  if (!command.episodes.object_pack.empty()) {
+    const auto pack = PackFile::open(command.episodes.object_pack);
+    if (!pack) return tl::unexpected(pack.error());
+    auto centres = objectCentres(*pack);
+    if (!centres) return tl::unexpected(centres.error());
+    options.object_centres = std::move(*centres);
+    options.centres_needed = true;
+  }
+  auto episodes = readEpisodeFile(input, options);
   if (!episodes) return tl::unexpected(episodes.error());
   std::vector<SourceFile> sources;
-  for (const std::filesystem::path& path : {input, command.episodes.only}) {
+  for (const std::filesystem::path& path :
+       {input, command.episodes.only, command.episodes.object_pack}) {
     if (path.empty()) continue;
     auto file = describeFile(path);
     if (!file) return tl::unexpected(file.error());

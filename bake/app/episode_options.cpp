@@ -43,9 +43,16 @@ void EpisodeSetOptions::addTo(CLI::App& app, BakeCommand& command) {
           ->type_name("NAME,NAME,...")
           ->delimiter(',')
           ->allow_extra_args(false),
-      app.add_option("--object-up", object_up_,
-                     "Import: up axis of the objects' meshes, as --up in their bake")
-          ->type_name("AXIS")
+      app.add_option(
+             "--object-up", object_up_,
+             "Import: up axis of the objects' frames in the file (default: z; Habitat's: y)")
+          ->type_name("AXIS"),
+      app.add_option("--object-pack", command.episodes.object_pack,
+                     "Import of Habitat's: the objects' pack, which says where their centres are")
+          ->type_name("PACK"),
+      app.add_option("--targets", targets_,
+                     "Import of Habitat's: the first target of an episode, or each as an episode")
+          ->check(CLI::IsMember({"first", "each"}))
           ->capture_default_str()};
   for_sampling_ = {
       app.add_option("--count", sample.episodes, "Sampling: how many episodes")
@@ -65,9 +72,12 @@ void EpisodeSetOptions::addTo(CLI::App& app, BakeCommand& command) {
 
 Result<void> EpisodeSetOptions::understandImport(BakeCommand& command) const {
   EpisodeImportOptions& import = command.episodes.import;
-  const auto up = parseUp(object_up_, "--object-up");
-  if (!up) return tl::unexpected(up.error());
-  import.object_up = *up;
+  if (!object_up_.empty()) {
+    const auto up = parseUp(object_up_, "--object-up");
+    if (!up) return tl::unexpected(up.error());
+    import.object_up = *up;
+  }
+  import.targets = targets_ == "each" ? HabitatTargets::kEach : HabitatTargets::kFirst;
   if (!start_joints_.empty()) import.start_joints = start_joints_;
   for (const std::string& text : scene_names_) {
     auto names = parsePair(text, "--scene-name", "OLD=NEW");
@@ -136,6 +146,10 @@ void EpisodeSetOptions::remember(BakeCommand& command) const {
   for (const std::string& names : scene_names_) command.remember("scene-name", names);
   command.remember("start-joints", joined(command.episodes.import.start_joints));
   command.remember("object-up", object_up_);
+  command.remember("object-pack", command.episodes.object_pack.filename().string());
+  if (command.episodes.import.targets == HabitatTargets::kEach) {
+    command.remember("targets", targets_);
+  }
 }
 
 }  // namespace galactic::bake

@@ -91,7 +91,8 @@ class EpisodeSetOptions {
 
   std::vector<CLI::Option*> for_import_;
   std::vector<CLI::Option*> for_sampling_;
-  std::string object_up_ = "z";
+  std::string object_up_;
+  std::string targets_ = "first";
   std::vector<std::string> start_joints_;
   std::vector<std::string> scene_names_;
   std::string heights_;

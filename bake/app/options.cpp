@@ -87,12 +87,13 @@ Result<void> checkGroup(const CLI::App& app, const Group& group, AssetKind kind)
 void addRunOptions(CLI::App& app, BakeCommand& command) {
   app.add_option("input", command.inputs,
                  "Meshes (GLB, glTF, OBJ, PLY, STL, DAE, ...), folders of objects, URDF robots, "
-                 "published episode sets, a scene dataset, a world's recipe, or packs")
+                 "published episodes (episode sets, Habitat's), a scene dataset, a world's recipe, "
+                 "or packs")
       ->required()
       ->option_text("INPUT...");
   app.add_option("--as", command.kind,
-                 "What to make (default: robot of .urdf, episodes of .episode_set.json, dataset of "
-                 ".scene_dataset_config.json, world of .toml, else scene)")
+                 "What to make (default: robot of .urdf, episodes of .episode_set.json and "
+                 ".json.gz, dataset of .scene_dataset_config.json, world of .toml, else scene)")
       ->transform(CLI::CheckedTransformer(kindNames()))
       ->option_text("scene|object|robot|episodes|dataset|world");
   app.add_option("-o,--out", command.output,
@@ -211,21 +212,26 @@ class CommandLine {
         ->allow_extra_args(false);
   }
 
-  [[nodiscard]] bool allEndWith(std::string_view ending) const {
+  /// Whether each input ends in one of them.
+  [[nodiscard]] bool allEndWithOneOf(std::initializer_list<std::string_view> endings) const {
     return std::all_of(command_.inputs.begin(), command_.inputs.end(),
-                       [ending](const std::filesystem::path& path) {
-                         return path.filename().string().ends_with(ending);
+                       [endings](const std::filesystem::path& path) {
+                         const std::string file = path.filename().string();
+                         return std::any_of(
+                             endings.begin(), endings.end(),
+                             [&file](std::string_view ending) { return file.ends_with(ending); });
                        });
   }
 
   void chooseKind() {
-    command_.episodes.sampled = !allEndWith(".json");
+    command_.episodes.sampled = !allEndWithOneOf({".json", ".json.gz"});
     if (app_.get_option("--as")->count() > 0) return;
     command_.kind = AssetKind::kScene;
-    if (allEndWith(".urdf")) command_.kind = AssetKind::kRobot;
-    if (allEndWith(kEpisodeSetSuffix)) command_.kind = AssetKind::kEpisodes;
-    if (allEndWith(kDatasetSuffix)) command_.kind = AssetKind::kDataset;
-    if (allEndWith(kRecipeSuffix)) command_.kind = AssetKind::kWorld;
+    if (allEndWithOneOf({".urdf"})) command_.kind = AssetKind::kRobot;
+    // Nothing but episodes comes compressed.
+    if (allEndWithOneOf({kEpisodeSetSuffix, ".json.gz"})) command_.kind = AssetKind::kEpisodes;
+    if (allEndWithOneOf({kDatasetSuffix})) command_.kind = AssetKind::kDataset;
+    if (allEndWithOneOf({kRecipeSuffix})) command_.kind = AssetKind::kWorld;
   }
 
   /// In this order in every pack; only what decides the content.
@@ -302,7 +308,7 @@ bool BakeCommand::hasPlan() const {
 std::vector<std::filesystem::path> BakeCommand::namedFiles() const {
   std::vector<std::filesystem::path> files = inputs;
   for (const std::filesystem::path& file :
-       {config, robot.recipe, robot.spheres, episodes.only, collection}) {
+       {config, robot.recipe, robot.spheres, episodes.only, episodes.object_pack, collection}) {
     if (!file.empty()) files.push_back(file);
   }
   return files;

@@ -48,6 +48,8 @@ struct EpisodeOptions {
   EpisodeImportOptions import;
   /// List of the episodes to keep; empty: all.
   std::filesystem::path only;
+  /// Pack of the objects, for where their centres are; empty: none.
+  std::filesystem::path object_pack;
   EpisodeSamplerOptions sample;
 };
 

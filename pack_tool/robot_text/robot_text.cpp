@@ -10,34 +10,11 @@
 #include <vector>
 
 #include "pack_tool/figure/joint_positions.h"
+#include "pack_tool/xml_text.h"
 
 namespace galactic::pack_tool {
 
 namespace {
-
-/// Text as it may stand in an attribute. Control characters cannot stand in XML at all.
-std::string escaped(std::string_view text) {
-  std::string xml;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        xml += "&amp;";
-        break;
-      case '<':
-        xml += "&lt;";
-        break;
-      case '>':
-        xml += "&gt;";
-        break;
-      case '"':
-        xml += "&quot;";
-        break;
-      default:
-        xml += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-    }
-  }
-  return xml;
-}
 
 /// The URDF's frame from the pack's: (x, y, z) to (x, -z, y). Adding zero turns -0 into 0.
 Vec3 zUp(const Vec3& v) { return {v.x, 0.0F - v.z, v.y + 0.0F}; }
@@ -108,7 +85,7 @@ class UrdfWriter {
 
   std::string text() const {
     std::string text =
-        fmt::format("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(robot_.name()));
+        fmt::format("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", xmlEscaped(robot_.name()));
     for (std::size_t n = 0; n < robot_.links().size(); ++n) text += linkText(n);
     for (std::size_t n = 0; n < robot_.links().size(); ++n) {
       if (robot_.links()[n].parent >= 0) text += jointText(n);
@@ -118,7 +95,7 @@ class UrdfWriter {
 
  private:
   std::string linkText(std::size_t n) const {
-    const std::string name = escaped(robot_.linkName(n));
+    const std::string name = xmlEscaped(robot_.linkName(n));
     if (groups_[n].empty()) return fmt::format("  <link name=\"{}\"/>\n", name);
     std::string text = fmt::format("  <link name=\"{}\">\n", name);
     for (const SetSphere& sphere : groups_[n]) {
@@ -134,9 +111,9 @@ class UrdfWriter {
     const LinkFrame& link = robot_.links()[n];
     std::string text = fmt::format(
         "  <joint name=\"{}\" type=\"{}\">\n    <parent link=\"{}\"/>\n    <child link=\"{}\"/>\n",
-        escaped(robot_.jointName(n)), typeName(writtenType(link)),
-        escaped(robot_.linkName(static_cast<std::size_t>(link.parent))),
-        escaped(robot_.linkName(n)));
+        xmlEscaped(robot_.jointName(n)), typeName(writtenType(link)),
+        xmlEscaped(robot_.linkName(static_cast<std::size_t>(link.parent))),
+        xmlEscaped(robot_.linkName(n)));
     text += "    " + originText(link.parent_from_joint) + "\n";
     if (link.type != JointType::kFixed && link.type != JointType::kFloating) {
       text += fmt::format("    <axis xyz=\"{}\"/>\n", vectorText(zUp(link.axis)));
@@ -171,7 +148,7 @@ class UrdfWriter {
     const std::uint32_t owner = owners_[static_cast<std::size_t>(link.position)];
     if (owner == n) return {};
     return fmt::format("    <mimic joint=\"{}\" multiplier=\"{}\" offset=\"{}\"/>\n",
-                       escaped(robot_.jointName(owner)), link.multiplier, link.offset);
+                       xmlEscaped(robot_.jointName(owner)), link.multiplier, link.offset);
   }
 
   const Robot& robot_;
@@ -186,9 +163,10 @@ std::string srdfText(const Robot& robot) {
   std::vector<std::span<const SetSphere>> spheres(robot.links().size());
   for (const SphereGroup& group : robot.groups()) spheres[group.link] = group.spheres;
   std::string text =
-      fmt::format("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(robot.name()));
+      fmt::format("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", xmlEscaped(robot.name()));
   for (std::size_t n = 0; n < spheres.size(); ++n) {
-    text += fmt::format("  <link_sphere_approximation link=\"{}\">\n", escaped(robot.linkName(n)));
+    text +=
+        fmt::format("  <link_sphere_approximation link=\"{}\">\n", xmlEscaped(robot.linkName(n)));
     for (const SetSphere& sphere : spheres[n]) {
       text += fmt::format("    <sphere center=\"{}\" radius=\"{}\"/>\n",
                           vectorText(zUp(sphere.centre)), robot.radii()[sphere.radius_index]);

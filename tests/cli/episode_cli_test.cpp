@@ -9,6 +9,8 @@
 #include "galactic/pack.h"
 #include "galactic/schema/pack_generated.h"
 #include "support/episode_set_text.h"
+#include "support/gzip_text.h"
+#include "support/habitat_text.h"
 
 namespace galactic {
 namespace {
@@ -69,7 +71,7 @@ TEST_F(EpisodeCli, ImportsASetIntoAPackOfItsName) {
   const Names names = namesIn("tidy.pack");
   EXPECT_EQ(names.set, "tidy");
   EXPECT_EQ(names.episodes, 2U);
-  EXPECT_THAT(names.options, ElementsAre("as=episodes", "start-joints=pan,lift", "object-up=z"));
+  EXPECT_THAT(names.options, ElementsAre("as=episodes", "start-joints=pan,lift"));
   EXPECT_THAT(names.sources, ElementsAre("tidy.episode_set.json"));
 }
 
@@ -129,6 +131,62 @@ TEST_F(EpisodeCli, WarnsOfKeysThatAreNotUsed) {
   const ProgramRun run = bake({"tidy.episode_set.json"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("warning: episodeSet.author is not used"));
+}
+
+TEST_F(EpisodeCli, ImportsDatasetsOfHabitat) {
+  write("rearrange.json.gz", test::gzipped(test::kSmallHabitatSet));
+  const ProgramRun packed = run({"rearrange.json.gz"});
+  EXPECT_EQ(packed.exit_code, 0) << packed.err;
+  EXPECT_THAT(packed.out, AllOf(HasSubstr("rearrange: 2 episodes; 2 scenes, 2 objects"),
+                                HasSubstr("warning: 1 of 2 episodes have several targets")));
+  EXPECT_EQ(namesIn("rearrange.pack").episodes, 2U);
+  write("plain.json", test::kSmallHabitatSet);
+  const ProgramRun plain = run({"plain.json", "--as", "episodes", "--targets", "each",
+                                "--scene-name", "v3_sc0_staging_00=flat"});
+  EXPECT_EQ(plain.exit_code, 0) << plain.err;
+  const Names names = namesIn("plain.pack");
+  EXPECT_EQ(names.episodes, 3U);
+  EXPECT_THAT(names.scenes, ElementsAre("flat", "v3_sc1_staging_05"));
+  EXPECT_THAT(names.options, testing::Contains("targets=each"));
+}
+
+TEST_F(EpisodeCli, TakesTheCentresOfHabitatsObjectsFromTheirPack) {
+  // A tetrahedron of 10 and 20 cm whose origin is at a corner.
+  const std::string box =
+      "v 0 0 0\nv 0.1 0 0\nv 0 0.2 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  write("mug.obj", box);
+  write("003_cracker_box.obj", box);
+  const ProgramRun objects = run({"mug.obj", "003_cracker_box.obj", "--as", "object", "--up", "y",
+                                  "-q", "-o", "objects.pack"});
+  ASSERT_EQ(objects.exit_code, 0) << objects.err;
+  write("plain.json", test::kSmallHabitatSet);
+  const ProgramRun import =
+      run({"plain.json", "--as", "episodes", "--object-pack", "objects.pack"});
+  EXPECT_EQ(import.exit_code, 0) << import.err;
+  EXPECT_THAT(import.out, testing::Not(HasSubstr("--object-pack")));
+  const auto pack = PackFile::open(path("plain.pack"));
+  ASSERT_TRUE(pack.has_value());
+  const auto set = EpisodeSet::from(*pack);
+  ASSERT_TRUE(set.has_value());
+  const Vec3 origin = set->placements(set->episodes()[0])[0].pose.translation;
+  EXPECT_FLOAT_EQ(origin.x, 0.45F);
+  EXPECT_FLOAT_EQ(origin.y, 0.9F);
+  EXPECT_FLOAT_EQ(origin.z, -0.3F);
+  EXPECT_THAT(namesIn("plain.pack").sources, ElementsAre("plain.json", "objects.pack"));
+
+  EXPECT_EQ(run({"plain.json", "--as", "episodes", "--object-pack", "plain.pack"}).exit_code, 3);
+  EXPECT_EQ(run({"plain.json", "--as", "episodes", "--object-pack", "none.pack"}).exit_code, 2);
+}
+
+TEST_F(EpisodeCli, RefusesDamagedArchives) {
+  const std::string whole = test::gzipped(test::kSmallHabitatSet);
+  write("cut.json.gz", whole.substr(0, whole.size() / 2));
+  const ProgramRun cut = run({"cut.json.gz"});
+  EXPECT_EQ(cut.exit_code, 3);
+  EXPECT_EQ(cut.err,
+            "galactic-bake: cut.json.gz: ends in the middle of its gzip data; fetch or make it "
+            "again\n");
+  EXPECT_FALSE(has("cut.pack"));
 }
 
 TEST_F(EpisodeCli, ExplainsEveryRefusal) {

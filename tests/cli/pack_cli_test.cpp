@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "pack_tool/asset_packs.h"
+#include "support/episode_pack_builder.h"
 #include "support/pack_tool_fixture.h"
 #include "support/program_run.h"
 
@@ -90,6 +91,8 @@ TEST_F(PackCli, ExplainsAWrongCommandLineWithExitCodeOne) {
       {{"picture", "arm.pack", "-o", "a.png", "--what", "mesh,bones"}, "\"bones\" is none of"},
       {{"picture", "arm.pack", "-o", "a.png", "--size", "10"}, "--size"},
       {{"export", "good.pack", "-o", "a.png", "--to", "gif"}, "--to"},
+      {{"export", "good.pack", "--to", "ply"}, "--output is required"},
+      {{"export", "good.pack", "-o", "x.json", "--object-up", "w"}, "--object-up"},
   };
   for (const auto& [arguments, message] : lines) {
     const ProgramRun result = run(arguments);
@@ -151,7 +154,22 @@ TEST_F(PackCli, CheckReportsAsJson) {
   const json report = json::parse(result.out);
   EXPECT_EQ(report.at(0).at("ok"), false);
   EXPECT_EQ(report.at(0).at("exit_code"), kInvalidInput);
+  EXPECT_EQ(report.at(0).at("code"), "pack/size");
   EXPECT_EQ(report.at(1).at("ok"), true);
+}
+
+TEST_F(PackCli, CheckSearchesFoldersAndWritesAJUnitReport) {
+  const ProgramRun result = run({"check", ".", "--junit", "report.xml", "--jobs", "3"});
+  EXPECT_EQ(result.exit_code, kInvalidInput);
+  EXPECT_EQ(result.out, "./arm.pack: ok\n./good.pack: ok\n./toys.pack: ok\n");
+  for (const char* line : {"galactic-pack: ./cut.pack: announces ", " [pack/size]\n",
+                           " [pack/version-new]\n", " [pack/not-a-pack]\n"}) {
+    EXPECT_THAT(result.err, HasSubstr(line));
+  }
+  const std::string report = test::fileContent(folder_.path() / "report.xml");
+  EXPECT_THAT(report, HasSubstr("tests=\"6\" failures=\"3\""));
+  EXPECT_THAT(report, HasSubstr("<testcase classname=\"packs\" name=\"./arm.pack\"/>"));
+  EXPECT_EQ(run({"check", ".", "--jobs", "0"}).exit_code, 1);
 }
 
 TEST_F(PackCli, EveryVerbRefusesADamagedPack) {
@@ -224,11 +242,22 @@ TEST_F(PackCli, PictureAndExportWriteTheirFilesQuietly) {
   }
 }
 
+TEST_F(PackCli, ExportsEpisodesBesideItselfWhereNoFileIsNamed) {
+  write("tidy.pack", test::asText(test::buildPack(test::smallEpisodes()).bytes()));
+  const ProgramRun result =
+      run({"export", "tidy.pack", "--to", "episode_set", "--object-up", "-y"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, HasSubstr("warning: 2 of 2 starts are not at height 0"));
+  const json set = json::parse(test::fileContent(folder_.path() / "tidy.episode_set.json"));
+  EXPECT_EQ(set.at("episodeSet").at("episodes").size(), 2U);
+}
+
 TEST_F(PackCli, PictureAndExportRefuseWhatTheyCannotWrite) {
   const std::vector<std::tuple<std::vector<std::string>, int, std::string>> runs{
       {{"export", "good.pack", "-o", "a.jpg"},
        kUnsupported,
-       "use .glb, .srdf, .urdf, .obj or .ply"},
+       "use .glb, .srdf, .urdf, .obj, .ply or .episode_set.json"},
       {{"export", "good.pack", "-o", "a.png"}, kUnsupported, "draw it with galactic-pack picture"},
       {{"picture", "good.pack", "-o", "a.jpg"}, kUnsupported, "end the name with .png"},
       {{"picture", "good.pack", "-o", "none/a.png"}, kIo, "galactic-pack: none/a.png: "},

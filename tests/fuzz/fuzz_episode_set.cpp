@@ -1,4 +1,5 @@
-// Any bytes as the text of a published episode set. The import has to give an error, or episodes
+// Any bytes as a file of episodes: a published episode set, a dataset of Habitat, or one of them
+// compressed. The import has to give an error, or episodes
 // that the writer takes and the runtime reads.
 #include <cstdint>
 #include <cstdio>
@@ -48,7 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   galactic::bake::EpisodeImportOptions options;
   options.start_joints = {"pan", "lift"};
   const auto episodes =
-      galactic::bake::readEpisodeSet(folder.write("set.episode_set.json", text), options);
+      galactic::bake::readEpisodeFile(folder.write("set.episode_set.json", text), options);
   if (episodes) {
     checkEpisodes(*episodes);
   } else {

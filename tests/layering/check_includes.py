@@ -63,6 +63,8 @@ HEAVY_LIBRARIES = (
                             r"^tests/")),
     HeavyLibrary("libjpeg", re.compile(r"(jpeglib|jerror)\.h"), re.compile(r"\bjpeg_\w+_struct\b"),
                  re.compile(r"bake/src/textures/jpeg_image\.cpp$|^tests/")),
+    HeavyLibrary("zlib", re.compile(r"zlib\.h"), re.compile(r"\bz_streamp?\b"),
+                 re.compile(r"bake/src/json/gzip\.cpp$|^tests/")),
     HeavyLibrary("stb", re.compile(r"stb/"), re.compile(r"\bstb_\w+\("),
                  re.compile(r"bake/src/textures/bc1_blocks\.cpp$")),
 )

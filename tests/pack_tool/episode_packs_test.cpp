@@ -117,9 +117,10 @@ TEST(CheckWorld, TellsEachListedPackThatIsBad) {
   EXPECT_EQ(outcome.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("episodes.pack: ok\n"), HasSubstr("kitchen.pack: ok\n"),
                                  Not(HasSubstr("world.pack: ok"))));
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("objects.pack, which is missing"),
-                                 HasSubstr("helper.pack: announces"),
-                                 HasSubstr("lists 4 packs, 2 of them are bad; see above\n")));
+  EXPECT_THAT(
+      outcome.err,
+      AllOf(HasSubstr("objects.pack, which is missing"), HasSubstr("helper.pack: announces"),
+            HasSubstr("lists 4 packs, 2 of them are bad; see above [world/bad-pack]\n")));
   const Json report = Json::parse(checked(path, OutputForm::kJson).out);
   EXPECT_EQ(report.at(0).at("ok"), false);
   EXPECT_EQ(report.at(0).at("packs").at(0).at("ok"), true);

@@ -16,7 +16,18 @@ using Rotation = std::array<double, 4>;
 /// First `b`, then `a`.
 [[nodiscard]] Rotation product(const Rotation& a, const Rotation& b);
 
-/// Rounded once.
+/// The length of the four numbers.
+[[nodiscard]] double lengthOf(const Rotation& rotation);
+
+/// Made a unit quaternion. One that is of unit length to within the rounding of floats stays as it
+/// is: what was exported from a pack comes back as the same floats.
+[[nodiscard]] Rotation ofUnitLength(const Rotation& rotation);
+
+/// Rounded to multiples of 2^-40 (1e-12), then to floats: so the rounding of a turn to another
+/// frame and back cannot show in parts that are nearly 0.
 [[nodiscard]] Quat narrow(const Rotation& rotation);
+
+/// The same as a pose at `point`, metres.
+[[nodiscard]] Pose narrow(const std::array<double, 3>& point, const Rotation& rotation);
 
 }  // namespace galactic::bake

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "galactic/mapped_file.h"
+#include "json/gzip.h"
 
 namespace galactic::bake {
 namespace {
@@ -34,8 +35,14 @@ Result<Json> readJsonFile(const std::filesystem::path& path, const JsonFileKind&
   }
   const auto file = MappedFile::open(path);
   if (!file) return tl::unexpected(file.error());
-  const std::string_view text(reinterpret_cast<const char*>(file->bytes().data()),
-                              file->bytes().size());
+  std::string unpacked;
+  std::string_view text(reinterpret_cast<const char*>(file->bytes().data()), file->bytes().size());
+  if (isGzip(file->bytes())) {
+    auto inside = gunzip(file->bytes(), path.string(), kind.max_bytes);
+    if (!inside) return tl::unexpected(inside.error());
+    unpacked = std::move(*inside);
+    text = unpacked;
+  }
   if (text.size() > kind.max_bytes) {
     return fail(ErrorCode::kInvalidInput, path.string(),
                 fmt::format("it has {} bytes, at most {} are read; is it {}?", text.size(),

@@ -28,8 +28,8 @@ struct JsonFileKind {
   std::size_t max_bytes = 0;
 };
 
-/// The JSON document in the file `path`. Fails with kIo, and with kInvalidInput when it is larger
-/// than `kind` allows or no JSON.
+/// The JSON document in the file `path`, which may be compressed with gzip. Fails with kIo, and
+/// with kInvalidInput when it is (or unpacks to be) larger than `kind` allows, or is no JSON.
 [[nodiscard]] Result<Json> readJsonFile(const std::filesystem::path& path,
                                         const JsonFileKind& kind);
 

@@ -10,24 +10,40 @@
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/source_episodes.h"
 #include "galactic/error.h"
+#include "galactic/pack.h"
 
 namespace galactic::bake {
 
 /// How the names of published episode sets end.
 inline constexpr std::string_view kEpisodeSetSuffix = ".episode_set.json";
 
-/// What a published episode set leaves open.
+/// Which targets of a Habitat episode that has several become one of ours, which has one.
+enum class HabitatTargets {
+  kFirst,  ///< The one that comes first among its rigid_objs.
+  kEach,   ///< Each, as an episode of its own, in the order of rigid_objs.
+};
+
+/// What published episodes leave open.
 struct EpisodeImportOptions {
-  /// Up axis of the objects' own frames. Object packs are Y up: they were baked with the same --up.
-  UpAxis object_up = UpAxis::kZ;
-  /// The joints of robotStartJointPositions, which the file counts in the order of the collection's
-  /// actionMap. Default: the published collection's Fetch.
+  /// Up axis of the objects' frames in the file; the frames of object packs are Y up. Not given: Z
+  /// in episode sets, whose frames are those of the mesh files (packs were baked with the same
+  /// --up), and Y in Habitat's, which turns the meshes.
+  std::optional<UpAxis> object_up;
+  /// Habitat: where the origin of an object's frame in the file lies in the frame of its pack,
+  /// metres, by the object's name; others have it in the pack's origin. See objectCentres.
+  std::map<std::string, Vec3> object_centres;
+  /// Habitat: an object that object_centres lacks is an error.
+  bool centres_needed = false;
+  HabitatTargets targets = HabitatTargets::kFirst;
+  /// Episode sets: the joints of robotStartJointPositions, which the file counts in the order of
+  /// the collection's actionMap. Default: the published collection's Fetch.
   std::vector<std::string> start_joints{
       "shoulder_pan_joint", "shoulder_lift_joint", "upperarm_roll_joint", "elbow_flex_joint",
       "forearm_roll_joint", "wrist_flex_joint",    "wrist_roll_joint"};
   /// Scenes whose packs have other names than the file says: the file's name to the pack's.
   std::map<std::string, std::string> scene_names;
-  /// Indices of the episodes to keep, in this order; none: all of them.
+  /// Indices of the episodes to keep, in this order; none: all of them. With HabitatTargets::kEach
+  /// those that the file's become are counted.
   std::optional<std::vector<std::uint32_t>> only;
 };
 
@@ -39,10 +55,35 @@ struct EpisodeImportOptions {
 /// them.
 /// Fails with kIo or kInvalidInput, naming the file and the element, on broken JSON, missing keys,
 /// wrong types, counts and indices out of range, numbers that are not finite or absurdly far,
-/// quaternions that are not of length 1 within 1e-3, two scenes of one name, a scene to rename or
+/// quaternions that are not of length 1 within 1e-3 (those within 1e-6 are not touched: what was
+/// exported comes back as the same floats), two scenes of one name, a scene to rename or
 /// an episode to keep that is not there.
 [[nodiscard]] Result<SourceEpisodes> readEpisodeSet(const std::filesystem::path& path,
                                                     const EpisodeImportOptions& options = {});
+
+/// Reads a rearrangement dataset of Habitat 2.0 (`*.json`, `*.json.gz`): the fields of
+/// RearrangeEpisode in habitat-lab, habitat/datasets/rearrange/rearrange_dataset.py. Scenes and
+/// object templates are named by their files without folders and extensions. Objects stand where
+/// rigid_objs puts them (row-major world_from_object, whose origin is the object's centre of mass,
+/// see object_centres); the goal is the target's transform. The robot starts at start_position,
+/// turned by the heading of start_rotation (x, y, z, w). There are no start joints. A warning says
+/// what is lost: other targets, opened furniture, starts that the file does not give.
+/// Fails like readEpisodeSet, and on transforms that are not rigid within 1e-3, and targets that
+/// are none of the episode's objects.
+[[nodiscard]] Result<SourceEpisodes> readHabitatEpisodes(const std::filesystem::path& path,
+                                                         const EpisodeImportOptions& options = {});
+
+/// Either of them, by its content.
+[[nodiscard]] Result<SourceEpisodes> readEpisodeFile(const std::filesystem::path& path,
+                                                     const EpisodeImportOptions& options = {});
+
+/// The name of the episodes in a file: "tidy" of "tidy.episode_set.json" and "tidy.json.gz".
+[[nodiscard]] std::string episodeSetName(const std::filesystem::path& path);
+
+/// The centres of the bounds of all objects in an object pack, in their own frames, by name.
+/// Habitat puts the origins of objects there that have no centre of mass of their own. Fails with
+/// kInvalidInput on another kind of pack.
+[[nodiscard]] Result<std::map<std::string, Vec3>> objectCentres(const PackFile& objects);
 
 /// The indices in a text file, one or more in a line, separated by blanks; '#' begins a comment.
 /// Fails with kIo, and with kInvalidInput, naming the line, on what is no index.

@@ -1,0 +1,22 @@
+#include "galactic/bake/episode_set_import.h"
+#include "galactic/object_set.h"
+#include "galactic/schema/pack_generated.h"
+
+namespace galactic::bake {
+
+Result<std::map<std::string, Vec3>> objectCentres(const PackFile& objects) {
+  const auto set = ObjectSet::from(objects);
+  if (!set) return tl::unexpected(set.error());
+  std::map<std::string, Vec3> centres;
+  for (const schema::Object* object : *objects.root().asset_as_ObjectSet()->objects()) {
+    const schema::Bounds* bounds = object->bounds();
+    if (bounds == nullptr) continue;  // Only where nothing was verified.
+    const schema::Vec3& low = bounds->min();
+    const schema::Vec3& high = bounds->max();
+    centres[object->name()->str()] =
+        Vec3{low.x() + high.x(), low.y() + high.y(), low.z() + high.z()} * 0.5F;
+  }
+  return centres;
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,32 @@
+#include "pack_tool/check/find_packs.h"
+
+#include <algorithm>
+
+#include "pack_tool/output_file.h"
+
+namespace galactic::pack_tool {
+
+namespace fs = std::filesystem;
+
+Result<std::vector<fs::path>> findPacks(const fs::path& folder) {
+  std::vector<fs::path> packs;
+  std::error_code problem;
+  fs::recursive_directory_iterator entry(folder, problem);
+  for (; !problem && entry != fs::recursive_directory_iterator(); entry.increment(problem)) {
+    std::error_code ignored;
+    if (extensionOf(entry->path()) == ".pack" && !entry->is_directory(ignored)) {
+      packs.push_back(entry->path());
+    }
+  }
+  if (problem) {
+    return fail(ErrorCode::kIo, folder.string(), "cannot read the folder: " + problem.message());
+  }
+  if (packs.empty()) {
+    return fail(ErrorCode::kInvalidInput, folder.string(),
+                "has no files *.pack in it or below; give packs, or a folder with packs");
+  }
+  std::sort(packs.begin(), packs.end());
+  return packs;
+}
+
+}  // namespace galactic::pack_tool

@@ -1,0 +1,146 @@
+// What can be wrong with a rearrangement dataset of Habitat, one by one.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <string>
+
+#include "galactic/bake/episode_set_import.h"
+#include "support/habitat_text.h"
+#include "support/scratch_folder.h"
+
+namespace galactic::test {
+namespace {
+
+struct Fault {
+  const char* name;
+  /// What of the good text is replaced, and by what.
+  const char* from;
+  const char* to;
+  /// After "tidy.json: ".
+  const char* where;
+  const char* message;
+};
+
+std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
+
+constexpr const char* kNotRigid =
+    "it is no rigid transform: wanted columns that are perpendicular, right-handed and of length "
+    "1, the translation in the last one, and a last row of 0, 0, 0, 1";
+constexpr const char* kFirstMatrix =
+    "[[1, 0, 0, 0.5], [0, 1, 0, 1], [0, 0, 1, -0.25], [0, 0, 0, 1]]";
+constexpr const char* kFirst = "episodes[0].rigid_objs[0][1]";
+
+const std::vector<Fault>& faults() {
+  static const std::vector<Fault> all{
+      {"EpisodesNoList", "\"episodes\": [", "\"episodes\": 3, \"old\": [", "episodes",
+       "it is wanted as a list"},
+      {"NoEpisode", "\"episodes\": [", "\"episodes\": [], \"old\": [", "episodes",
+       "is empty, at least one episode is wanted"},
+      {"EpisodeNoObject", "\"episodes\": [", "\"episodes\": [3, ", "episodes[0].scene_id",
+       "it is missing"},
+      {"NoScene", "\"scene_id\"", "\"scene\"", "episodes[0].scene_id", "it is missing"},
+      {"SceneNotText", "\"scene_id\": \"v3_sc0_staging_00\"", "\"scene_id\": 3",
+       "episodes[1].scene_id", "it is wanted as text"},
+      {"SceneEmpty", "\"scene_id\": \"v3_sc0_staging_00\"", "\"scene_id\": \"data/\"",
+       "episodes[1].scene_id", "is empty, a scene's name or file is wanted"},
+      {"NoStart", "\"start_position\"", "\"start\"", "episodes[0].start_position", "it is missing"},
+      {"StartOfTwo", "[1.5, 0.125, -2.5]", "[1.5, 0.125]", "episodes[0].start_position",
+       "it has 2 numbers, wanted 3"},
+      {"StartFar", "[1.5, 0.125, -2.5]", "[1.5, 1e5, -2.5]", "episodes[0].start_position[1]",
+       "100000: wanted -10000 to 10000"},
+      {"NoHeading", "\"start_rotation\"", "\"start_turn\"", "episodes[0].start_rotation",
+       "it is missing"},
+      {"HeadingOfNothing", "[0, 0.7071068, 0, 0.7071068]", "[0, 0, 0, 0]",
+       "episodes[0].start_rotation",
+       "has the length 0, a rotation x, y, z, w of length 1 is wanted"},
+      {"HeadingUp", "[0, 0.7071068, 0, 0.7071068]", "[0, 0, 0.7071068, 0.7071068]",
+       "episodes[0].start_rotation", "points the robot up or down, a heading is wanted"},
+      {"FurnitureNoObject", "\"ao_states\": {}", "\"ao_states\": []", "episodes[1].ao_states",
+       "it is wanted as an object"},
+      {"FurnitureLinksNoObject", "{\"7\": 0.45, \"6\": 0}", "[0.45]",
+       "episodes[0].ao_states.kitchen_counter_:0000", "it is wanted as an object"},
+      {"FurnitureStateNoNumber", "{\"7\": 0.45, \"6\": 0}", "{\"7\": \"open\"}",
+       "episodes[0].ao_states.kitchen_counter_:0000.7", "it is wanted as a number"},
+      {"NoObjects", "\"rigid_objs\"", "\"objects\"", "episodes[0].rigid_objs", "it is missing"},
+      {"ObjectsEmpty", "\"rigid_objs\": [", "\"rigid_objs\": [], \"old\": [",
+       "episodes[0].rigid_objs", "is empty, at least one object is wanted"},
+      {"ObjectNoPair", "\"rigid_objs\": [", "\"rigid_objs\": [[\"mug\"], ",
+       "episodes[0].rigid_objs[0]",
+       "it has 1 elements, wanted an object's template and its transform"},
+      {"ObjectNotText", "\"003_cracker_box.object_config.json\"", "3",
+       "episodes[0].rigid_objs[0][0]", "it is wanted as text"},
+      {"ObjectWithoutName", "\"003_cracker_box.object_config.json\"", "\"\"",
+       "episodes[0].rigid_objs[0][0]", "is empty, an object's template is wanted"},
+      {"MatrixNoList", kFirstMatrix, "7", kFirst, "it is wanted as a list"},
+      {"MatrixOfThreeRows", kFirstMatrix, "[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]", kFirst,
+       "it has 3 rows, wanted 4 of 4 numbers"},
+      {"MatrixOfShortRows", kFirstMatrix, "[[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0]]",
+       "episodes[0].rigid_objs[0][1][0]", "it has 3 numbers, wanted 4"},
+      {"MatrixNoNumber", "[0, 1, 0, 1], [0, 0, 1, -0.25]", "[0, 1, 0, 1], [0, 0, null, 0]",
+       "episodes[0].rigid_objs[0][1][2][2]", "it is wanted as a number"},
+      {"MatrixScaled", kFirstMatrix,
+       "[[2, 0, 0, 0.5], [0, 2, 0, 1], [0, 0, 2, -0.25], [0, 0, 0, 1]]", kFirst, kNotRigid},
+      {"MatrixMirrored", kFirstMatrix,
+       "[[-1, 0, 0, 0.5], [0, 1, 0, 1], [0, 0, 1, -0.25], [0, 0, 0, 1]]", kFirst, kNotRigid},
+      {"MatrixSheared", kFirstMatrix,
+       "[[1, 0.6, 0, 0.5], [0, 0.8, 0, 1], [0, 0, 1, -0.25], [0, 0, 0, 1]]", kFirst, kNotRigid},
+      {"MatrixByColumns", kFirstMatrix,
+       "[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0.5, 1, -0.25, 1]]", kFirst, kNotRigid},
+      {"NoTargets", "\"targets\"", "\"goals\"", "episodes[0].targets", "it is missing"},
+      {"TargetsNoObject", "\"targets\": {\"mug_:0000\"", "\"targets\": 1, \"o\": {\"mug_:0000\"",
+       "episodes[1].targets", "it is wanted as an object"},
+      {"TargetsEmpty", "\"targets\": {\"mug_:0000\"", "\"targets\": {}, \"o\": {\"mug_:0000\"",
+       "episodes[1].targets", "is empty, at least one target is wanted"},
+      {"TargetNoHandle", "\"003_cracker_box_:0000\"", "\"003_cracker_box\"",
+       "episodes[0].targets.003_cracker_box",
+       "is no handle of an instance, wanted a template's name and its number, for example "
+       "mug_:0000"},
+      {"TargetNumberNoNumber", "\"003_cracker_box_:0000\"", "\"003_cracker_box_:first\"",
+       "episodes[0].targets.003_cracker_box_:first",
+       "is no handle of an instance, wanted a template's name and its number, for example "
+       "mug_:0000"},
+      {"TargetNotThere", "\"003_cracker_box_:0000\"", "\"003_cracker_box_:0001\"",
+       "episodes[0].targets.003_cracker_box_:0001",
+       "is number 1 of the objects '003_cracker_box' from 0 on, rigid_objs has 1 of them"},
+      {"TargetOfOtherName", "\"003_cracker_box_:0000\"", "\"bowl_:0000\"",
+       "episodes[0].targets.bowl_:0000",
+       "is number 0 of the objects 'bowl' from 0 on, rigid_objs has 0 of them"},
+      {"TwoGoals", "\"003_cracker_box_:0000\"", "\"mug_:1\"", "episodes[0].targets.mug_:1",
+       "is the second goal of one object, wanted one for each"},
+      {"GoalNoMatrix", "\"mug_:0000\": [[1, 0, 0, 2]", "\"mug_:0000\": [[1, 1, 0, 2]",
+       "episodes[1].targets.mug_:0000", kNotRigid},
+  };
+  return all;
+}
+
+class HabitatFaults : public testing::TestWithParam<Fault> {};
+
+TEST_P(HabitatFaults, AreRefusedWithTheirPlace) {
+  const Fault& fault = GetParam();
+  std::string text = kSmallHabitatSet;
+  const std::size_t at = text.find(fault.from);
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, std::string_view(fault.from).size(), fault.to);
+  const ScratchFolder folder;
+  const auto file = folder.write("tidy.json", text);
+  const auto set = bake::readEpisodeFile(file);
+  ASSERT_FALSE(set.has_value());
+  EXPECT_EQ(set.error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(set.error().where, file.string() + ": " + fault.where);
+  EXPECT_EQ(set.error().message, fault.message);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, HabitatFaults, testing::ValuesIn(faults()),
+                         [](const auto& fault) { return std::string(fault.param.name); });
+
+TEST(HabitatFaults, KeepNothingOfAFileThatIsNeither) {
+  const ScratchFolder folder;
+  for (const char* text : {"[]", "{}", "3", "{\"episodeSet\": {}, \"episodes\": []}"}) {
+    SCOPED_TRACE(text);
+    EXPECT_FALSE(bake::readEpisodeFile(folder.write("x.json", text)).has_value());
+  }
+}
+
+}  // namespace
+}  // namespace galactic::test
