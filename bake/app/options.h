@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "galactic/bake/episode_sampler.h"
+#include "galactic/bake/episode_generator.h"
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/object_baker.h"
@@ -37,13 +37,15 @@ struct RobotOptions {
 
 /// Where episodes come from.
 struct EpisodeOptions {
-  /// Whether the inputs are packs, in which episodes are sampled; else they are episode sets, which
-  /// are imported.
+  /// Whether the inputs are packs, in which episodes are generated; else they are episode sets,
+  /// which are imported.
   bool sampled = false;
   EpisodeImportOptions import;
   /// List of the episodes to keep; empty: all.
   std::filesystem::path only;
-  EpisodeSamplerOptions sample;
+  EpisodeGeneratorOptions generate;
+  /// The meshes that scenes were baked from, by the scenes' names.
+  std::map<std::string, std::filesystem::path> geometry;
 };
 
 /// What is drawn.
