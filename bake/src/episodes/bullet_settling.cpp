@@ -23,12 +23,13 @@ namespace {
 /// parts.
 constexpr std::size_t kTrianglesPerPart = std::size_t{1} << 20U;
 constexpr btScalar kGravity = -9.81F;
-constexpr btScalar kStep = 1.0F / 240;
-constexpr int kMostSteps = 480;
-/// At rest: slower than this, metres and radians per second, for so many steps.
-constexpr btScalar kSlow = 0.01F;
-constexpr btScalar kSlowTurn = 0.05F;
-constexpr int kQuietSteps = 24;
+constexpr btScalar kStep = 1.0F / 120;
+/// At rest: within so many steps it went less far than this, metres, and leaned over less than
+/// this, radians. Speeds say little: contacts without margins come and go, and things tremble.
+constexpr int kWindow = 24;
+constexpr float kQuietWay = 5e-4F;
+constexpr float kQuietLean = 0.01F;
+constexpr int kMostWindows = 8;
 /// The object is let go this high over where it is put, metres, so that it begins outside of the
 /// triangles: a grid rounds heights by less.
 constexpr float kDrop = 0.0005F;
@@ -101,11 +102,20 @@ float leanBetween(const Quat& before, const Quat& after) {
   return std::acos(std::clamp(up.y, -1.0F, 1.0F));
 }
 
+float wayBetween(const Pose& before, const Pose& after) {
+  const Vec3 way = after.translation - before.translation;
+  return std::sqrt(dot(way, way));
+}
+
 SettlingEnd judge(const Pose& before, const Pose& now) {
   // Every comparison is false for NaN.
-  const Vec3 way = now.translation - before.translation;
   if (!(leanBetween(before.rotation, now.rotation) <= kSettlingLean)) return SettlingEnd::kTipped;
-  return std::sqrt(dot(way, way)) <= kSettlingWay ? SettlingEnd::kRests : SettlingEnd::kMoved;
+  return wayBetween(before, now) <= kSettlingWay ? SettlingEnd::kRests : SettlingEnd::kMoved;
+}
+
+bool isQuiet(const Pose& before, const Pose& now) {
+  return wayBetween(before, now) <= kQuietWay &&
+         leanBetween(before.rotation, now.rotation) <= kQuietLean;
 }
 
 /// One object over the scene, and all that Bullet remembers of it.
@@ -135,10 +145,6 @@ class Drop {
     world_.stepSimulation(kStep, kOneStepOfThisLength);
   }
   [[nodiscard]] Pose pose() const { return fromBullet(object_.getWorldTransform()); }
-  [[nodiscard]] bool isSlow() const {
-    return object_.getLinearVelocity().length2() < kSlow * kSlow &&
-           object_.getAngularVelocity().length2() < kSlowTurn * kSlowTurn;
-  }
 
  private:
   btDefaultCollisionConfiguration configuration_;
@@ -194,18 +200,17 @@ Settled SettlingScene::settle(const SettlingBody& body, const Pose& world_from_o
   const Pose put = start;
   start.translation.y += kDrop;
   Drop drop(impl_->shape(), body, start);
-  int quiet = 0;
-  Pose now = start;
-  SettlingEnd end = SettlingEnd::kMoved;
-  for (int n = 0; n < kMostSteps && quiet < kQuietSteps; ++n) {
-    drop.step();
-    now = drop.pose();
-    end = judge(put, now);
-    if (end != SettlingEnd::kRests) break;
-    quiet = drop.isSlow() ? quiet + 1 : 0;
+  const Pose body_from_object = inverse(body.object_from_body);
+  for (int window = 0; window < kMostWindows; ++window) {
+    const Pose before = drop.pose();
+    for (int n = 0; n < kWindow; ++n) drop.step();
+    const Pose now = drop.pose();
+    const SettlingEnd end = judge(put, now);
+    // The drop is in the first window.
+    const bool is_quiet = window > 0 && isQuiet(before, now);
+    if (is_quiet || end != SettlingEnd::kRests) return {end, now * body_from_object};
   }
-  if (end == SettlingEnd::kRests && quiet < kQuietSteps) end = SettlingEnd::kMoved;
-  return {end, now * inverse(body.object_from_body)};
+  return {SettlingEnd::kMoved, drop.pose() * body_from_object};
 }
 
 }  // namespace galactic::bake
