@@ -1,18 +1,21 @@
 #include "episode_job.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <optional>
+#include <algorithm>
+#include <functional>
+#include <set>
 #include <utility>
 
 #include "episode_outcome.h"
+#include "galactic/bake/episode_generator.h"
 #include "galactic/bake/episode_pack.h"
-#include "galactic/bake/episode_sampler.h"
 #include "galactic/bake/episode_set_import.h"
+#include "galactic/bake/mesh_import.h"
 #include "galactic/bake/source_file.h"
-#include "galactic/object_set.h"
+#include "galactic/bake/triangle_mesh.h"
 #include "galactic/pack.h"
-#include "galactic/robot.h"
 #include "galactic/scene.h"
 
 namespace galactic::bake {
@@ -41,72 +44,63 @@ Result<Json> finish(EpisodeOutcome& outcome, std::vector<SourceFile> sources, Ba
   return episodeReport(outcome);
 }
 
-/// The packs in which episodes are sampled.
-struct SamplingPacks {
-  std::vector<PackFile> scene_packs;
-  std::vector<Scene> scenes;
-  std::optional<PackFile> object_pack;
-  std::optional<ObjectSet> objects;
-  std::optional<PackFile> robot_pack;
-  std::optional<Robot> robot;
+/// The packs in which episodes are generated.
+struct OpenPacks {
+  std::vector<PackFile> packs;
   std::vector<SourceFile> files;
 };
 
-/// Keeps the only pack of its kind and what is in it.
-template <class T>
-Result<void> keepOnly(PackFile pack, std::optional<PackFile>& kept, std::optional<T>& content) {
-  if (kept) {
-    return fail(ErrorCode::kInvalidInput, pack.where(),
-                fmt::format("is a second pack of kind {}, the first is {}; give one of them",
-                            packKindName(pack.kind()), kept->where()));
-  }
-  kept.emplace(std::move(pack));
-  auto opened = T::from(*kept);
-  if (!opened) return tl::unexpected(opened.error());
-  content.emplace(std::move(*opened));
-  return {};
-}
-
-Result<void> add(PackFile pack, SamplingPacks& packs) {
-  switch (pack.kind()) {
-    case PackKind::kScene: {
-      auto scene = Scene::from(pack);
-      if (!scene) return tl::unexpected(scene.error());
-      packs.scenes.push_back(std::move(*scene));
-      packs.scene_packs.push_back(std::move(pack));
-      return {};
-    }
-    case PackKind::kObjects:
-      return keepOnly(std::move(pack), packs.object_pack, packs.objects);
-    case PackKind::kRobot:
-      return keepOnly(std::move(pack), packs.robot_pack, packs.robot);
-    case PackKind::kTexture:
-      // What scenes look like plays no part.
-      return {};
-    case PackKind::kEpisodes:
-    case PackKind::kWorld:
-      break;
-  }
-  return fail(ErrorCode::kInvalidInput, pack.where(),
-              fmt::format("is a pack of kind {}; episodes are sampled in packs of scenes, objects "
-                          "and a robot",
-                          packKindName(pack.kind())));
-}
-
-Result<SamplingPacks> openPacks(const std::vector<std::filesystem::path>& inputs) {
-  SamplingPacks packs;
+Result<OpenPacks> openPacks(const std::vector<std::filesystem::path>& inputs) {
+  OpenPacks opened;
+  opened.packs.reserve(inputs.size());
+  opened.files.reserve(inputs.size());
   for (const std::filesystem::path& input : inputs) {
     auto pack = PackFile::open(input);
     if (!pack) return tl::unexpected(pack.error());
-    packs.files.push_back(describeBytes(input.filename().string(), pack->bytes()));
-    if (auto added = add(std::move(*pack), packs); !added) return tl::unexpected(added.error());
+    opened.files.push_back(describeBytes(input.filename().string(), pack->bytes()));
+    opened.packs.push_back(std::move(*pack));
   }
-  if (!packs.scenes.empty() && packs.objects && packs.robot) return packs;
-  return fail(
-      ErrorCode::kInvalidInput, "--as episodes",
-      fmt::format("{} scenes, {} object packs and {} robots are given; episodes are sampled "
-                  "in at least one scene, with one object pack and one robot",
-                  packs.scenes.size(), packs.objects ? 1 : 0, packs.robot ? 1 : 0));
+  return opened;
+}
+
+/// Sees that each mesh of --geometry is for one of the scenes, and describes it.
+Result<void> addGeometry(BakeRun& run, OpenPacks& opened) {
+  std::set<std::string, std::less<>> names;
+  for (const PackFile& pack : opened.packs) {
+    if (pack.kind() != PackKind::kScene) continue;
+    const auto scene = Scene::from(pack);
+    if (!scene) return tl::unexpected(scene.error());
+    names.emplace(scene->name());
+  }
+  for (const auto& [scene, file] : run.command().episodes.geometry) {
+    if (!names.contains(scene)) {
+      return fail(ErrorCode::kInvalidInput, "--geometry",
+                  fmt::format("is for the scene {}, which none of the packs holds; they hold {}",
+                              scene, fmt::join(names, ", ")));
+    }
+    auto described = describeFile(file);
+    if (!described) return tl::unexpected(described.error());
+    opened.files.push_back(std::move(*described));
+    run.noteRead(file);
+  }
+  return {};
+}
+
+/// The mesh of --geometry for a scene; nothing where there is none.
+Result<SceneDetails> readDetails(const EpisodeOptions& options, std::string_view scene) {
+  if (options.details) return options.details(scene);
+  SceneDetails details;
+  const auto file = options.geometry.find(std::string(scene));
+  if (file == options.geometry.end()) return details;
+  const auto asset = importMesh(file->second);
+  if (!asset) return tl::unexpected(asset.error());
+  auto clean = placeAndClean(*asset);
+  if (!clean) {
+    const Error& error = clean.error();
+    return fail(error.code, inFile(file->second, error.where), error.message);
+  }
+  details.mesh = std::move(clean->mesh);
+  return details;
 }
 
 }  // namespace
@@ -146,17 +140,33 @@ Result<Json> importEpisodeFile(const std::filesystem::path& input, BakeRun& run)
 
 Result<Json> sampleEpisodePack(BakeRun& run) {
   const BakeCommand& command = run.command();
+  const EpisodeOptions& options = command.episodes;
   const auto start = std::chrono::steady_clock::now();
-  auto packs = openPacks(command.inputs);
-  if (!packs) return tl::unexpected(packs.error());
-  run.line().show("episodes", "sample", 0);
-  auto episodes =
-      sampleEpisodes(packs->scenes, *packs->objects, *packs->robot, command.episodes.sample);
-  if (!episodes) return tl::unexpected(episodes.error());
-  EpisodeOutcome outcome{.input = fmt::format("{} packs", command.inputs.size()),
-                         .output = run.outputFor(command.inputs.front()),
-                         .episodes = std::move(*episodes)};
-  return finish(outcome, std::move(packs->files), run, start);
+  auto opened = openPacks(command.inputs);
+  if (!opened) return tl::unexpected(opened.error());
+  if (auto added = addGeometry(run, *opened); !added) return tl::unexpected(added.error());
+  // The bytes of the pack do not depend on the order of the inputs.
+  std::ranges::sort(opened->files, {}, &SourceFile::name);
+  EpisodeInputs inputs;
+  inputs.packs.reserve(opened->packs.size());
+  for (const PackFile& pack : opened->packs) inputs.packs.push_back(&pack);
+  if (!options.geometry.empty()) {
+    inputs.details = [&options](std::string_view scene) { return readDetails(options, scene); };
+  }
+  const auto show = [&](std::size_t done) {
+    const std::uint32_t all = options.generate.episodes;
+    run.line().show("episodes", fmt::format("{} of {}", done, all),
+                    static_cast<double>(done) / all);
+  };
+  show(0);
+  auto generated = generateEpisodes(inputs, options.generate, show);
+  if (!generated) return tl::unexpected(generated.error());
+  EpisodeOutcome outcome{
+      .input = fmt::format("{} packs", command.inputs.size()),
+      .output = run.outputFor(command.inputs.front()),
+      .episodes = std::move(generated->episodes),
+      .generation = EpisodeGeneration{generated->rejections, std::move(generated->scenes)}};
+  return finish(outcome, std::move(opened->files), run, start);
 }
 
 }  // namespace galactic::bake

@@ -10,8 +10,8 @@ namespace galactic::bake {
 /// of the report.
 [[nodiscard]] Result<Json> importEpisodeFile(const std::filesystem::path& input, BakeRun& run);
 
-/// Samples episodes in the packs of the command (scenes, one set of objects, one robot), writes
-/// them into one pack and prints the closing table; the entry of the report.
+/// Generates episodes in the packs of the command (scenes, objects, one robot), writes them into
+/// one pack and prints the closing table; the entry of the report.
 [[nodiscard]] Result<Json> sampleEpisodePack(BakeRun& run);
 
 }  // namespace galactic::bake

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <system_error>
 #include <utility>
 
@@ -10,12 +11,55 @@
 namespace galactic::bake {
 namespace {
 
+const std::map<std::string, SplitSide>& splitNames() {
+  static const std::map<std::string, SplitSide> names{{"train", SplitSide::kTrain},
+                                                      {"validation", SplitSide::kValidation}};
+  return names;
+}
+
 Result<std::uint64_t> parseSeed(const std::string& text) {
   std::uint64_t seed = 0;
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seed);
   if (problem == std::errc() && end == text.data() + text.size()) return seed;
   return fail(ErrorCode::kInvalidInput, "--seed",
               fmt::format("is \"{}\", a whole number from 0 on is wanted for episodes", text));
+}
+
+/// N, or LEAST,MOST.
+Result<CountRange> parseCounts(const std::string& text, const char* option) {
+  const auto numbers = parseNumbers(text, option);
+  if (!numbers) return tl::unexpected(numbers.error());
+  constexpr double kMost = 1024;
+  const auto is_count = [](double number) {
+    return number == std::floor(number) && number >= 1 && number <= kMost;
+  };
+  if (numbers->size() <= 2 && is_count(numbers->front()) && is_count(numbers->back())) {
+    return CountRange{static_cast<std::uint32_t>(numbers->front()),
+                      static_cast<std::uint32_t>(numbers->back())};
+  }
+  return fail(
+      ErrorCode::kInvalidInput, option,
+      fmt::format("is \"{}\", a whole number from 1 to {} or two of them are wanted", text, kMost));
+}
+
+/// LEAST, or LEAST,MOST; `range` stays as it is when the text is empty.
+Result<void> parseDistances(const std::string& text, const char* option, DistanceRange& range) {
+  if (text.empty()) return {};
+  const auto numbers = parseNumbers(text, option);
+  if (!numbers) return tl::unexpected(numbers.error());
+  if (numbers->size() > 2) {
+    return fail(
+        ErrorCode::kInvalidInput, option,
+        fmt::format("has {} numbers in \"{}\", one or two are wanted", numbers->size(), text));
+  }
+  range = {.least = static_cast<float>(numbers->front())};
+  if (numbers->size() == 2) range.most = static_cast<float>(numbers->back());
+  return {};
+}
+
+std::string textOf(const DistanceRange& range) {
+  if (std::isinf(range.most)) return fmt::format("{}", range.least);
+  return fmt::format("{},{}", range.least, range.most);
 }
 
 /// The first of `options` that was typed.
@@ -29,7 +73,6 @@ std::string typedOf(const std::vector<CLI::Option*>& options) {
 }  // namespace
 
 void EpisodeSetOptions::addTo(CLI::App& app, BakeCommand& command) {
-  EpisodeSamplerOptions& sample = command.episodes.sample;
   for_import_ = {
       app.add_option("--only", command.episodes.only,
                      "Import: keep the episodes whose indices stand in this text file")
@@ -54,20 +97,43 @@ void EpisodeSetOptions::addTo(CLI::App& app, BakeCommand& command) {
                      "Import of Habitat's: the first target of an episode, or each as an episode")
           ->check(CLI::IsMember({"first", "each"}))
           ->capture_default_str()};
-  for_sampling_ = {
-      app.add_option("--count", sample.episodes, "Sampling: how many episodes")
+  addGeneration(app, command);
+}
+
+void EpisodeSetOptions::addGeneration(CLI::App& app, BakeCommand& command) {
+  EpisodeGeneratorOptions& generate = command.episodes.generate;
+  for_generation_ = {
+      app.add_option("--count", generate.episodes, "Generate: how many episodes")
           ->check(CLI::Range(1, 1'000'000))
           ->capture_default_str(),
-      app.add_option("--objects", sample.objects,
-                     "Sampling: objects of each episode, the target among them")
-          ->check(CLI::Range(1, 1024))
-          ->capture_default_str(),
+      app.add_option("--objects", objects_,
+                     "Generate: objects of each episode, the target among them (default 10)")
+          ->type_name("N|LEAST,MOST"),
       app.add_option("--heights", heights_,
-                     "Sampling: objects stand this high above the floor, metres (default 0.3,1.2)")
+                     "Generate: objects stand this high above the floor, metres (default 0.3,1.2)")
           ->type_name("LOW,HIGH"),
-      app.add_option("--least-distance", least_distance_,
-                     "Sampling: from target to goal, metres (default 1)")
-          ->type_name("METRES")};
+      app.add_option("--goal-distance", goal_distance_,
+                     "Generate: from target to goal, metres (default 1)")
+          ->type_name("LEAST[,MOST]"),
+      app.add_option("--start-distance", start_distance_,
+                     "Generate: from the robot to the target on the ground, metres (default 0)")
+          ->type_name("LEAST[,MOST]"),
+      app.add_flag("--goal-elsewhere", generate.goal_on_other_support,
+                   "Generate: goals lie on another surface than their targets"),
+      app.add_option("--geometry", geometry_,
+                     "Generate: the mesh a scene was baked from, to settle objects on (may be "
+                     "repeated)")
+          ->type_name("SCENE=FILE")
+          ->allow_extra_args(false),
+      app.add_option("--split", generate.split.side, "Generate: use one part of the scenes")
+          ->transform(CLI::CheckedTransformer(splitNames()))
+          ->option_text("train|validation"),
+      app.add_option("--held-out", held_out_,
+                     "Generate: share of the scenes that is for validation (default 0.2)")
+          ->type_name("SHARE"),
+      app.add_option("--split-seed", generate.split.seed,
+                     "Generate: the number that decides which scenes are held out")
+          ->capture_default_str()};
 }
 
 Result<void> EpisodeSetOptions::understandImport(BakeCommand& command) const {
@@ -91,27 +157,53 @@ Result<void> EpisodeSetOptions::understandImport(BakeCommand& command) const {
   return {};
 }
 
-Result<void> EpisodeSetOptions::understandSampling(BakeCommand& command,
-                                                   const std::vector<std::string>& seeds) const {
-  EpisodeSamplerOptions& sample = command.episodes.sample;
+Result<void> EpisodeSetOptions::understandGeneration(BakeCommand& command,
+                                                     const std::vector<std::string>& seeds) const {
+  EpisodeGeneratorOptions& generate = command.episodes.generate;
+  generate.jobs = command.jobs;
   if (seeds.size() > 1) {
     return fail(ErrorCode::kInvalidInput, "--seed", "is given twice; episodes have one seed");
   }
   if (!seeds.empty()) {
     const auto seed = parseSeed(seeds.front());
     if (!seed) return tl::unexpected(seed.error());
-    sample.seed = *seed;
+    generate.seed = *seed;
+  }
+  if (!objects_.empty()) {
+    const auto objects = parseCounts(objects_, "--objects");
+    if (!objects) return tl::unexpected(objects.error());
+    generate.objects = *objects;
   }
   if (!heights_.empty()) {
     const auto heights = parseExactly(heights_, "--heights", 2);
     if (!heights) return tl::unexpected(heights.error());
-    sample.lowest = static_cast<float>((*heights)[0]);
-    sample.highest = static_cast<float>((*heights)[1]);
+    generate.heights = {static_cast<float>((*heights)[0]), static_cast<float>((*heights)[1])};
   }
-  if (!least_distance_.empty()) {
-    const auto distance = parseExactly(least_distance_, "--least-distance", 1);
-    if (!distance) return tl::unexpected(distance.error());
-    sample.least_distance = static_cast<float>((*distance)[0]);
+  if (!held_out_.empty()) {
+    const auto held_out = parseExactly(held_out_, "--held-out", 1);
+    if (!held_out) return tl::unexpected(held_out.error());
+    generate.split.held_out = static_cast<float>((*held_out)[0]);
+  }
+  if (auto parsed = parseDistances(goal_distance_, "--goal-distance", generate.target_to_goal);
+      !parsed) {
+    return parsed;
+  }
+  if (auto parsed = parseDistances(start_distance_, "--start-distance", generate.start_to_target);
+      !parsed) {
+    return parsed;
+  }
+  return understandGeometry(command);
+}
+
+Result<void> EpisodeSetOptions::understandGeometry(BakeCommand& command) const {
+  for (const std::string& text : geometry_) {
+    auto pair = parsePair(text, "--geometry", "SCENE=FILE");
+    if (!pair) return tl::unexpected(pair.error());
+    const auto [place, fresh] = command.episodes.geometry.insert(std::move(*pair));
+    if (!fresh) {
+      return fail(ErrorCode::kInvalidInput, "--geometry",
+                  fmt::format("names {} twice; give each scene once", place->first));
+    }
   }
   return {};
 }
@@ -120,28 +212,39 @@ Result<void> EpisodeSetOptions::understand(BakeCommand& command,
                                            const std::vector<std::string>& seeds) {
   if (command.kind != AssetKind::kEpisodes) return {};
   const bool sampled = command.episodes.sampled;
-  std::string wrong = typedOf(sampled ? for_import_ : for_sampling_);
+  std::string wrong = typedOf(sampled ? for_import_ : for_generation_);
   if (!sampled && wrong.empty() && !seeds.empty()) wrong = "--seed";
   if (!wrong.empty()) {
     return fail(ErrorCode::kInvalidInput, wrong,
                 sampled ? "goes with the import of *.episode_set.json; the inputs are packs, in "
-                          "which episodes are sampled: leave it out"
-                        : "goes with the sampling of episodes in packs; the inputs are episode "
+                          "which episodes are generated: leave it out"
+                        : "goes with the generation of episodes in packs; the inputs are episode "
                           "sets, which are imported: leave it out");
   }
-  return sampled ? understandSampling(command, seeds) : understandImport(command);
+  return sampled ? understandGeneration(command, seeds) : understandImport(command);
+}
+
+void EpisodeSetOptions::rememberGeneration(BakeCommand& command) {
+  const EpisodeGeneratorOptions& generate = command.episodes.generate;
+  const CountRange& objects = generate.objects;
+  command.remember("count", std::to_string(generate.episodes));
+  command.remember("objects", fmt::format("{},{}", objects.least, objects.most));
+  command.remember("seed", std::to_string(generate.seed));
+  command.remember("heights", textOf(generate.heights));
+  command.remember("goal-distance", textOf(generate.target_to_goal));
+  command.remember("start-distance", textOf(generate.start_to_target));
+  if (generate.goal_on_other_support) command.remember("goal-elsewhere", "true");
+  for (const auto& [scene, file] : command.episodes.geometry) {
+    command.remember("geometry", scene + "=" + file.filename().string());
+  }
+  if (generate.split.side == SplitSide::kAll) return;
+  command.remember("split", nameOf(splitNames(), generate.split.side));
+  command.remember("held-out", fmt::format("{}", generate.split.held_out));
+  command.remember("split-seed", std::to_string(generate.split.seed));
 }
 
 void EpisodeSetOptions::remember(BakeCommand& command) const {
-  if (command.episodes.sampled) {
-    const EpisodeSamplerOptions& sample = command.episodes.sample;
-    command.remember("count", std::to_string(sample.episodes));
-    command.remember("objects", std::to_string(sample.objects));
-    command.remember("seed", std::to_string(sample.seed));
-    command.remember("heights", fmt::format("{},{}", sample.lowest, sample.highest));
-    command.remember("least-distance", fmt::format("{}", sample.least_distance));
-    return;
-  }
+  if (command.episodes.sampled) return rememberGeneration(command);
   command.remember("only", command.episodes.only.filename().string());
   for (const std::string& names : scene_names_) command.remember("scene-name", names);
   command.remember("start-joints", joined(command.episodes.import.start_joints));

@@ -1,12 +1,21 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "bake_run.h"
+#include "galactic/bake/episode_generator.h"
 #include "galactic/bake/source_episodes.h"
 
 namespace galactic::bake {
+
+/// How episodes were generated.
+struct EpisodeGeneration {
+  RejectionCounts rejections;
+  std::vector<GeneratedScene> scenes;
+};
 
 /// What became of one set of episodes.
 struct EpisodeOutcome {
@@ -14,12 +23,15 @@ struct EpisodeOutcome {
   std::string input;
   std::filesystem::path output;
   SourceEpisodes episodes;
+  /// Of generated ones.
+  std::optional<EpisodeGeneration> generation{};
   /// Size of the pack; 0 for a dry run.
   std::uint64_t pack_bytes = 0;
   double seconds = 0;
 };
 
-/// Episodes, scenes, objects, distances from target to goal; with kVerbose the names.
+/// Episodes, scenes, objects, distances from target to goal, what was drawn and not taken; with
+/// kVerbose the names and what was found in each scene.
 void printEpisodeTable(const EpisodeOutcome& outcome, Verbosity verbosity);
 
 /// The set's entry of the report.

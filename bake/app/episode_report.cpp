@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "episode_outcome.h"
 #include "galactic/printable.h"
@@ -37,6 +40,50 @@ std::uint32_t mostPlacements(const SourceEpisodes& set) {
   return most;
 }
 
+/// Each reason with its count.
+std::vector<std::pair<std::string_view, std::uint64_t>> countsOf(const RejectionCounts& counts) {
+  std::vector<std::pair<std::string_view, std::uint64_t>> named;
+  named.reserve(kRejectionCount);
+  for (std::size_t n = 0; n < kRejectionCount; ++n) {
+    const auto reason = static_cast<EpisodeRejection>(n);
+    named.emplace_back(rejectionName(reason), counts[reason]);
+  }
+  return named;
+}
+
+void printGeneration(const EpisodeGeneration& generation, Verbosity verbosity) {
+  std::vector<std::string> texts;
+  for (const auto& [name, count] : countsOf(generation.rejections)) {
+    if (count > 0) texts.push_back(fmt::format("{} {}", name, count));
+  }
+  fmt::print("  drawn and not taken: {}\n",
+             texts.empty() ? "nothing" : fmt::format("{}", fmt::join(texts, ", ")));
+  if (verbosity != Verbosity::kVerbose) return;
+  for (const GeneratedScene& scene : generation.scenes) {
+    fmt::print("  {}: {} episodes; {} floor places, {} support places on {} surfaces{}\n",
+               printable(scene.name), scene.episodes, scene.floor_places, scene.support_places,
+               scene.surfaces, scene.has_mesh ? ", objects settled" : "");
+  }
+}
+
+Json generationReport(const EpisodeGeneration& generation) {
+  Json rejections = Json::object();
+  for (const auto& [name, count] : countsOf(generation.rejections)) {
+    rejections[std::string(name)] = count;
+  }
+  Json scenes = Json::array();
+  for (const GeneratedScene& scene : generation.scenes) {
+    scenes.push_back({{"name", scene.name},
+                      {"episodes", scene.episodes},
+                      {"floor_places", scene.floor_places},
+                      {"support_places", scene.support_places},
+                      {"surfaces", scene.surfaces},
+                      {"receptacles", scene.receptacles},
+                      {"settled", scene.has_mesh}});
+  }
+  return {{"rejections", std::move(rejections)}, {"scenes", std::move(scenes)}};
+}
+
 }  // namespace
 
 void printEpisodeTable(const EpisodeOutcome& outcome, Verbosity verbosity) {
@@ -57,6 +104,7 @@ void printEpisodeTable(const EpisodeOutcome& outcome, Verbosity verbosity) {
                  printable(fmt::format("{}", fmt::join(set.start_joints, ", "))));
     }
   }
+  if (outcome.generation) printGeneration(*outcome.generation, verbosity);
   for (const std::string& warning : set.warnings) {
     fmt::print("  warning: {}\n", printable(warning));
   }
@@ -67,21 +115,23 @@ void printEpisodeTable(const EpisodeOutcome& outcome, Verbosity verbosity) {
 Json episodeReport(const EpisodeOutcome& outcome) {
   const SourceEpisodes& set = outcome.episodes;
   const Distances distances = targetDistances(set);
-  return {{"input", outcome.input},
-          {"output", outcome.output.string()},
-          {"pack_bytes", outcome.pack_bytes},
-          {"name", set.name},
-          {"robot", set.robot},
-          {"episodes", set.episodes.size()},
-          {"placements", set.placements.size()},
-          {"most_placements", mostPlacements(set)},
-          {"scenes", set.scenes},
-          {"objects", set.objects},
-          {"start_joints", set.start_joints},
-          {"target_to_goal",
-           {{"min", distances.min}, {"mean", distances.mean}, {"max", distances.max}}},
-          {"seconds", outcome.seconds},
-          {"warnings", set.warnings}};
+  Json entry{{"input", outcome.input},
+             {"output", outcome.output.string()},
+             {"pack_bytes", outcome.pack_bytes},
+             {"name", set.name},
+             {"robot", set.robot},
+             {"episodes", set.episodes.size()},
+             {"placements", set.placements.size()},
+             {"most_placements", mostPlacements(set)},
+             {"scenes", set.scenes},
+             {"objects", set.objects},
+             {"start_joints", set.start_joints},
+             {"target_to_goal",
+              {{"min", distances.min}, {"mean", distances.mean}, {"max", distances.max}}},
+             {"seconds", outcome.seconds},
+             {"warnings", set.warnings}};
+  if (outcome.generation) entry["generation"] = generationReport(*outcome.generation);
+  return entry;
 }
 
 }  // namespace galactic::bake

@@ -75,7 +75,7 @@ class RobotFileOptions {
   std::vector<std::string> packages_;
 };
 
-/// Episodes: imported from published sets, or sampled.
+/// Episodes: imported from published sets, or generated.
 class EpisodeSetOptions {
  public:
   void addTo(CLI::App& app, BakeCommand& command);
@@ -86,17 +86,24 @@ class EpisodeSetOptions {
 
  private:
   [[nodiscard]] Result<void> understandImport(BakeCommand& command) const;
-  [[nodiscard]] Result<void> understandSampling(BakeCommand& command,
-                                                const std::vector<std::string>& seeds) const;
+  [[nodiscard]] Result<void> understandGeneration(BakeCommand& command,
+                                                  const std::vector<std::string>& seeds) const;
+  [[nodiscard]] Result<void> understandGeometry(BakeCommand& command) const;
+  void addGeneration(CLI::App& app, BakeCommand& command);
+  static void rememberGeneration(BakeCommand& command);
 
   std::vector<CLI::Option*> for_import_;
-  std::vector<CLI::Option*> for_sampling_;
+  std::vector<CLI::Option*> for_generation_;
   std::string object_up_;
   std::string targets_ = "first";
   std::vector<std::string> start_joints_;
   std::vector<std::string> scene_names_;
+  std::string objects_;
   std::string heights_;
-  std::string least_distance_;
+  std::string goal_distance_;
+  std::string start_distance_;
+  std::string held_out_;
+  std::vector<std::string> geometry_;
 };
 
 /// Scene datasets, and how many packs are baked at once.

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "galactic/bake/episode_sampler.h"
+#include "galactic/bake/episode_generator.h"
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/object_baker.h"
@@ -42,15 +42,19 @@ struct RobotOptions {
 
 /// Where episodes come from.
 struct EpisodeOptions {
-  /// Whether the inputs are packs, in which episodes are sampled; else they are episode sets, which
-  /// are imported.
+  /// Whether the inputs are packs, in which episodes are generated; else they are episode sets,
+  /// which are imported.
   bool sampled = false;
   EpisodeImportOptions import;
   /// List of the episodes to keep; empty: all.
   std::filesystem::path only;
   /// Pack of the objects, for where their centres are; empty: none.
   std::filesystem::path object_pack;
-  EpisodeSamplerOptions sample;
+  EpisodeGeneratorOptions generate;
+  /// The meshes that scenes were baked from, by the scenes' names.
+  std::map<std::string, std::filesystem::path> geometry;
+  /// What is known of the scenes where a plan made them; empty: nothing but `geometry`.
+  SceneDetailSource details;
 };
 
 /// What is drawn.
@@ -137,6 +141,7 @@ struct BakeCommand {
     jobs = count;
     scene.jobs = count;
     object.spheres.jobs = count;
+    episodes.generate.jobs = count;
   }
 
   /// Whether to print what was done.

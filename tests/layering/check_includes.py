@@ -41,11 +41,11 @@ HEAVY_LIBRARIES = (
                  re.compile(r"bake/src/import/assimp_reader[^/]*$")),
     HeavyLibrary("Bullet", re.compile(r"(bullet/|Bullet|LinearMath/|bt[A-Z])"),
                  re.compile(r"\bbt[A-Z][a-z]\w+"),
-                 re.compile(r"bake/src/(engines/bullet[^/]*|fit/convex_hull\.cpp)$|"
+                 re.compile(r"bake/src/((engines|episodes)/bullet[^/]*|fit/convex_hull\.cpp)$|"
                             r"tests/bake/(robot|simulation)/bullet[^/]*$|"
                             r"benchmarks/batch_kinematics\.cpp$")),
     HeavyLibrary("Embree", re.compile(r"embree\d/"), re.compile(r"\b(RTC[A-Z]\w+|rtc[A-Z]\w+)"),
-                 re.compile(r"bake/src/(engines|ambient)/embree[^/]*$")),
+                 re.compile(r"bake/src/(engines|ambient|episodes)/embree[^/]*$")),
     HeavyLibrary("urdfdom", re.compile(r"(urdf_|tinyxml|console_bridge/)"),
                  re.compile(r"\b(urdf::|TiXml\w+|console_bridge::)"),
                  re.compile(r"bake/src/urdf/urdf_reader[^/]*$")),

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <system_error>
 
+#include "plan/scene_details.h"
+
 namespace galactic::bake {
 namespace {
 
@@ -69,6 +71,7 @@ Result<WorldPlan> PackList::finish() {
       for (const PlannedPack& pack : plan_.assets) {
         episodes.command.inputs.push_back(pack.command.output);
       }
+      episodes.command.episodes.details = sceneDetails(plan_.assets);
       episodes.folder = folderOf(plan_.folder / episodes.name);
     } else {
       episodes.folder = folderOf(episodes.command.inputs.front());

@@ -28,6 +28,7 @@ float drawPosition(const ControlledJoint& joint, Random& random) {
 
 ArmReach::ArmReach(const Robot& robot) : position_count_(robot.positionCount()) {
   Random random(kSeed);
+  const std::vector<GroupPair> tested = pairsApartAtStart(robot);
   const std::span<const float> start = robot.startPositions();
   std::vector<float> positions(start.begin(), start.end());
   for (std::size_t n = 0; n < kSamples; ++n) {
@@ -35,7 +36,7 @@ ArmReach::ArmReach(const Robot& robot) : position_count_(robot.positionCount()) 
       positions[joint.position] = drawPosition(joint, random);
     }
     const RobotBody body = robotBody(robot, {}, positions);
-    if (touchesItself(robot, body.spheres)) continue;
+    if (anyOverlaps(tested, body.spheres)) continue;
     const Vec3& point = body.grasp_point;
     samples_.push_back({.grasp_point = point,
                         .distance = std::hypot(point.x, point.z),

@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
+#include "episodes/placement_check.h"
 #include "episodes/reach_witness.h"
 
 namespace galactic::bake {
 namespace {
 
-constexpr std::size_t kDrafts = 20;
 constexpr std::size_t kObjectTries = 300;
 constexpr std::size_t kStartTries = 300;
+/// Of places for which only a distance is calculated.
+constexpr std::size_t kDistanceTries = 10000;
 constexpr float kTurn = 2 * std::numbers::pi_v<float>;
 
 using BodySpheres = std::vector<BodySphere>;
@@ -28,26 +32,40 @@ const StablePose& drawStablePose(const ObjectModel& model, Random& random) {
   return model.stable_poses.front();
 }
 
-/// An object on a support surface, and the floor from which that is reached.
+bool isWithin(float distance, const DistanceRange& range) {
+  return distance >= range.least && distance <= range.most;
+}
+
+/// How far an object may still be put from the place that is drawn for it, metres: what settling
+/// allows, and the cell's half diagonal is added to it.
+constexpr float kAside = kSettlingWay;
+
+/// What is put where.
+struct Wanted {
+  std::uint32_t object = 0;
+  const StablePose* stable = nullptr;
+};
+
+/// An object on a support surface.
 struct Draw {
   PlacedObject object;
-  float floor = 0;
+  SupportPlace place;
 };
 
 /// One draft of an episode: what stands where so far.
 class Draft {
  public:
-  Draft(const Stage& stage, Random& random) : stage_(stage), random_(random) {}
+  Draft(const Stage& stage, Random& random, RejectionCounts& rejections)
+      : stage_(stage), random_(random), rejections_(rejections) {}
 
   /// Puts the target on a surface within reach.
   bool placeTarget() {
     for (std::size_t n = 0; n < kObjectTries; ++n) {
-      const std::uint32_t object = drawObject();
-      const ObjectModel& model = stage_.objects.objects()[object];
-      stable_ = &drawStablePose(model, random_);
-      auto draw = drawPlace(model, object, *stable_);
+      wanted_ = drawObject();
+      const auto draw = stand(wanted_, stage_.supports.draw(random_));
       if (!draw || !isReached(*draw)) continue;
       target_ = draw->object;
+      target_surface_ = draw->place.surface_id;
       return true;
     }
     return false;
@@ -55,13 +73,13 @@ class Draft {
 
   /// Draws another place for the target, in the same stable pose.
   bool placeGoal() {
-    for (std::size_t n = 0; n < kObjectTries; ++n) {
-      auto draw = drawPlace(*target_.model, target_.object, *stable_);
-      if (!draw) continue;
-      const Vec3 way = draw->object.pose.translation - target_.pose.translation;
-      if (std::sqrt(dot(way, way)) < stage_.options.least_distance) continue;
-      if (gapBetween(draw->object.footprint, target_.footprint) < kObjectGap) continue;
-      if (!isReached(*draw)) continue;
+    std::size_t tries = 0;
+    for (std::size_t n = 0; n < kDistanceTries && tries < kObjectTries; ++n) {
+      const SupportPlace& place = stage_.supports.draw(random_);
+      if (!mayHoldGoal(place)) continue;
+      ++tries;
+      const auto draw = stand(wanted_, place);
+      if (!draw || !isGoal(draw->object) || !isReached(*draw)) continue;
       goal_ = draw->object;
       return true;
     }
@@ -71,7 +89,10 @@ class Draft {
   /// Places the other objects clear of each other, of target and goal, and of the positions in
   /// which the robot reaches these.
   bool placeOthers() {
-    while (others_.size() + 1 < stage_.options.objects) {
+    const CountRange& objects = stage_.options.objects;
+    const std::uint32_t count = objects.least + random_.below(objects.most - objects.least + 1);
+    others_.reserve(count - std::size_t{1});
+    while (others_.size() + 1 < count) {
       if (!placeOther()) return false;
     }
     return true;
@@ -80,20 +101,22 @@ class Draft {
   /// Puts the robot on the floor, clear of all objects.
   bool placeRobot() {
     const std::vector<FloorPlace>& places = stage_.floor.places();
-    for (std::size_t n = 0; n < kStartTries; ++n) {
+    std::size_t tries = 0;
+    for (std::size_t n = 0; n < kDistanceTries && tries < kStartTries; ++n) {
       const FloorPlace& place = places[random_.below(static_cast<std::uint32_t>(places.size()))];
       const std::uint32_t heading = random_.below(kHeadings);
       base_yaw_ = yawOf(heading) + aside() * kTurn / static_cast<float>(kHeadings);
       base_position_ = stage_.floor.position(place);
       base_position_.x += aside() * stage_.floor.spacing();
       base_position_.z += aside() * stage_.floor.spacing();
-      if (((place.headings >> heading) & 1U) == 0) continue;
-      const auto height = stage_.floor.heightAt(base_position_.x, base_position_.z, place.height);
-      if (!height) continue;
-      base_position_.y = *height;
-      const RobotBody body = robotBody(stage_.robot, groundPose(base_position_, base_yaw_),
-                                       stage_.robot.startPositions());
-      if (isFree(stage_.scene, body.spheres) && isClearOfObjects(body.spheres)) return true;
+      const Vec3 way = target_.pose.translation - base_position_;
+      if (!isWithin(std::hypot(way.x, way.z), stage_.options.start_to_target)) {
+        rejections_.add(EpisodeRejection::kStartDistance);
+        continue;
+      }
+      ++tries;
+      if (((place.headings >> heading) & 1U) != 0 && standsFree(place.height)) return true;
+      rejections_.add(EpisodeRejection::kStartBlocked);
     }
     return false;
   }
@@ -114,45 +137,135 @@ class Draft {
   /// Somewhere in a cell: a share of its size between -1/2 and 1/2.
   float aside() { return static_cast<float>(random_.unit()) - 0.5F; }
 
-  std::uint32_t drawObject() {
-    return random_.below(static_cast<std::uint32_t>(stage_.objects.objects().size()));
+  [[nodiscard]] const ObjectModel& modelOf(const Wanted& wanted) const {
+    return stage_.objects[wanted.object];
   }
 
-  /// A spot on a random place, turned at random, if the object stands there flat and free.
-  std::optional<Draw> drawPlace(const ObjectModel& model, std::uint32_t object,
-                                const StablePose& stable) {
-    const auto& places = stage_.supports.places();
-    const SupportPlace& place = places[random_.below(static_cast<std::uint32_t>(places.size()))];
+  Wanted drawObject() {
+    const std::uint32_t object = random_.below(static_cast<std::uint32_t>(stage_.objects.size()));
+    return {object, &drawStablePose(stage_.objects[object], random_)};
+  }
+
+  bool reject(EpisodeRejection reason) {
+    rejections_.add(reason);
+    return false;
+  }
+
+  /// A spot on the place, turned at random, if the object stands there and stays.
+  std::optional<Draw> stand(const Wanted& wanted, const SupportPlace& place) {
     const float spacing = stage_.scene.grids().front().spacing();
     Spot spot{.x = place.x + spacing * aside(),
               .z = place.z + spacing * aside(),
               .surface = place.surface,
               .yaw = kTurn * static_cast<float>(random_.unit())};
-    const PlacedObject roughly = placeObject(model, object, stable, spot);
-    const auto surface = stage_.supports.surfaceUnder(roughly.footprint, place.surface);
-    if (!surface) return std::nullopt;
+    auto object = put(wanted, spot);
+    if (!object) return std::nullopt;
+    if (stage_.settling != nullptr) {
+      const auto settled = settledSpot(*object, *wanted.stable, spot);
+      if (!settled) return std::nullopt;
+      spot = *settled;
+      object = put(wanted, spot);
+      if (!object) return std::nullopt;
+    }
+    if (canBeReleased(stage_.scene, modelOf(wanted), object->pose)) return Draw{*object, place};
+    rejections_.add(EpisodeRejection::kPlacement);
+    return std::nullopt;
+  }
+
+  /// The object at `spot`, whose height is corrected, if it is flat and free there.
+  std::optional<PlacedObject> put(const Wanted& wanted, Spot& spot) {
+    const ObjectModel& model = modelOf(wanted);
+    const PlacedObject roughly = placeObject(model, wanted.object, *wanted.stable, spot);
+    const auto surface = stage_.supports.surfaceUnder(roughly.footprint, spot.surface);
+    if (!surface) {
+      rejections_.add(EpisodeRejection::kNoRoom);
+      return std::nullopt;
+    }
     spot.surface = *surface;
-    return Draw{placeObject(model, object, stable, spot), place.floor};
+    const PlacedObject object = placeObject(model, wanted.object, *wanted.stable, spot);
+    const Footprint& print = object.footprint;
+    if (!stage_.supports.isAllowed({print.x, spot.surface, print.z})) {
+      rejections_.add(EpisodeRejection::kOutsideReceptacle);
+      return std::nullopt;
+    }
+    if (stage_.rays != nullptr && !stage_.rays->isEven(print, spot.surface, kFlatness)) {
+      rejections_.add(EpisodeRejection::kUneven);
+      return std::nullopt;
+    }
+    return object;
+  }
+
+  /// Where the object comes to rest when it is let go: moved and turned a little.
+  std::optional<Spot> settledSpot(const PlacedObject& object, const StablePose& stable,
+                                  const Spot& spot) {
+    const Settled settled = stage_.settling->settle(stage_.bodies[object.object], object.pose);
+    if (settled.end != SettlingEnd::kRests) {
+      rejections_.add(settled.end == SettlingEnd::kTipped ? EpisodeRejection::kTipped
+                                                          : EpisodeRejection::kMoved);
+      return std::nullopt;
+    }
+    // The object's turn about the vertical; what it leans is too little to see.
+    const Quat turn = settled.pose.rotation * conjugate(stable.rotation);
+    return Spot{.x = settled.pose.translation.x,
+                .z = settled.pose.translation.z,
+                .surface = spot.surface,
+                .yaw = 2 * std::atan2(turn.y, turn.w)};
+  }
+
+  /// Whether the target could be at the right distance, somewhere in the place's cell.
+  bool mayHoldGoal(const SupportPlace& place) {
+    if (stage_.options.goal_on_other_support && place.surface_id == target_surface_) {
+      return reject(EpisodeRejection::kSameSupport);
+    }
+    const float off = kAside + stage_.scene.grids().front().spacing();
+    const Vec3 way =
+        Vec3{place.x, place.surface + wanted_.stable->height, place.z} - target_.pose.translation;
+    const float distance = std::sqrt(dot(way, way));
+    const DistanceRange& range = stage_.options.target_to_goal;
+    if (isWithin(distance, {range.least - off, range.most + off})) return true;
+    return reject(EpisodeRejection::kDistance);
+  }
+
+  bool isGoal(const PlacedObject& object) {
+    const Vec3 way = object.pose.translation - target_.pose.translation;
+    if (!isWithin(std::sqrt(dot(way, way)), stage_.options.target_to_goal)) {
+      return reject(EpisodeRejection::kDistance);
+    }
+    if (gapBetween(object.footprint, target_.footprint) >= kObjectGap) return true;
+    return reject(EpisodeRejection::kOverlap);
   }
 
   /// Remembers the position of the robot that reaches the object.
   bool isReached(const Draw& draw) {
-    auto spheres = findReach(stage_, draw.object, draw.floor, random_);
-    if (!spheres) return false;
+    auto spheres = findReach(stage_, draw.object, draw.place.floor, random_);
+    if (!spheres) return reject(EpisodeRejection::kNotReached);
     reaching_.push_back(std::move(*spheres));
     return true;
   }
 
   bool placeOther() {
     for (std::size_t n = 0; n < kObjectTries; ++n) {
-      const std::uint32_t object = drawObject();
-      const ObjectModel& model = stage_.objects.objects()[object];
-      const auto draw = drawPlace(model, object, drawStablePose(model, random_));
-      if (!draw || !isApart(draw->object)) continue;
-      others_.push_back(draw->object);
-      return true;
+      const Wanted wanted = drawObject();
+      const auto draw = stand(wanted, stage_.supports.draw(random_));
+      if (!draw) continue;
+      if (isApart(draw->object)) {
+        others_.push_back(draw->object);
+        return true;
+      }
+      rejections_.add(EpisodeRejection::kOverlap);
     }
     return false;
+  }
+
+  /// Whether the base, which stands about at `floor`, and the start pose are clear of everything;
+  /// corrects the base's height.
+  bool standsFree(float floor) {
+    const auto height = stage_.floor.heightAt(base_position_.x, base_position_.z, floor);
+    if (!height) return false;
+    base_position_.y = *height;
+    const RobotBody body = robotBody(stage_.robot, groundPose(base_position_, base_yaw_),
+                                     stage_.robot.startPositions());
+    return isFree(stage_.scene, body.spheres) && isClearOfObjects(body.spheres);
   }
 
   [[nodiscard]] bool isApart(const PlacedObject& object) const {
@@ -172,8 +285,11 @@ class Draft {
 
   const Stage& stage_;
   Random& random_;
-  const StablePose* stable_ = nullptr;
+  RejectionCounts& rejections_;
+  /// The target.
+  Wanted wanted_;
   PlacedObject target_;
+  std::uint32_t target_surface_ = 0;
   PlacedObject goal_;
   std::vector<PlacedObject> others_;
   /// The robot where it reaches target and goal.
@@ -184,23 +300,15 @@ class Draft {
 
 }  // namespace
 
-std::optional<DraftedEpisode> draftEpisode(const Stage& stage, Random random,
-                                           DraftFailures& failures) {
-  for (std::size_t n = 0; n < kDrafts; ++n) {
-    Draft draft(stage, random);
-    if (!draft.placeTarget()) {
-      ++failures.target;
-    } else if (!draft.placeGoal()) {
-      ++failures.goal;
-    } else if (!draft.placeOthers()) {
-      ++failures.others;
-    } else if (!draft.placeRobot()) {
-      ++failures.start;
-    } else {
-      return draft.finish();
-    }
-  }
-  return std::nullopt;
+DraftEnd draftEpisode(const Stage& stage, Random& random, DraftedEpisode& episode,
+                      RejectionCounts& rejections) {
+  Draft draft(stage, random, rejections);
+  if (!draft.placeTarget()) return DraftEnd::kTarget;
+  if (!draft.placeGoal()) return DraftEnd::kGoal;
+  if (!draft.placeOthers()) return DraftEnd::kOthers;
+  if (!draft.placeRobot()) return DraftEnd::kStart;
+  episode = draft.finish();
+  return DraftEnd::kDone;
 }
 
 }  // namespace galactic::bake

@@ -1,15 +1,15 @@
 #pragma once
-#include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <string>
+#include <span>
 #include <vector>
 
 #include "episodes/arm_reach.h"
 #include "episodes/floor_map.h"
 #include "episodes/placed_object.h"
+#include "episodes/settling.h"
 #include "episodes/support_places.h"
-#include "galactic/bake/episode_sampler.h"
+#include "episodes/surface_rays.h"
+#include "galactic/bake/episode_generator.h"
 #include "random.h"
 
 namespace galactic::bake {
@@ -23,12 +23,17 @@ inline constexpr float kGraspShare = 0.8F;
 /// Everything of a scene that drafts read. The references outlive it.
 struct Stage {
   const Scene& scene;
-  const ObjectSet& objects;
+  /// Ascending names.
+  std::span<const ObjectModel> objects;
   const Robot& robot;
   const FloorMap& floor;
   const ArmReach& reach;
   const SupportPlaces& supports;
-  const EpisodeSamplerOptions& options;
+  /// Where the scene's triangles are known, else null and empty; one body per object.
+  const SurfaceRays* rays = nullptr;
+  const SettlingScene* settling = nullptr;
+  std::span<const SettlingBody> bodies;
+  const EpisodeGeneratorOptions& options;
 };
 
 /// One episode in world coordinates.
@@ -41,19 +46,14 @@ struct DraftedEpisode {
   float base_yaw = 0;
 };
 
-/// How often each part of a draft found no place.
-struct DraftFailures {
-  std::size_t target = 0;
-  std::size_t goal = 0;
-  std::size_t others = 0;
-  std::size_t start = 0;
-};
+/// The part of a draft that found no place.
+enum class DraftEnd : std::uint8_t { kDone, kTarget, kGoal, kOthers, kStart };
 
-/// Draws one episode: the target, its goal, the other objects, the start. Target and goal are
-/// taken only where a position of base and arm was found in which the grasp point is at the box,
-/// and neither the scene nor any object is touched; the other objects keep clear of it. Gives up
-/// after some drafts and adds up in `failures` why. The result depends on the arguments only.
-[[nodiscard]] std::optional<DraftedEpisode> draftEpisode(const Stage& stage, Random random,
-                                                         DraftFailures& failures);
+/// Tries once to draw an episode: the target, its goal, the other objects, the start. Target and
+/// goal are taken only where a position of base and arm was found in which the grasp point is at
+/// the box, and neither the scene nor any object is touched; the other objects keep clear of it.
+/// Adds up in `rejections` what was drawn and not taken. The result depends on the arguments only.
+[[nodiscard]] DraftEnd draftEpisode(const Stage& stage, Random& random, DraftedEpisode& episode,
+                                    RejectionCounts& rejections);
 
 }  // namespace galactic::bake

@@ -4,6 +4,22 @@
 #include <cmath>
 
 namespace galactic::bake {
+namespace {
+
+/// Whether a sphere of one group overlaps one of the other.
+bool overlap(std::span<const BodySphere> spheres, std::uint32_t first, std::uint32_t second) {
+  for (const BodySphere& a : spheres) {
+    if (a.group != first) continue;
+    for (const BodySphere& b : spheres) {
+      const Vec3 between = a.centre - b.centre;
+      const float reach = a.radius + b.radius;
+      if (b.group == second && dot(between, between) < reach * reach) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
 
 Quat yawRotation(float yaw) { return {0, std::sin(yaw / 2), 0, std::cos(yaw / 2)}; }
 
@@ -38,20 +54,18 @@ bool isFree(const Scene& scene, std::span<const BodySphere> spheres, const Vec3&
   });
 }
 
-bool touchesItself(const Robot& robot, std::span<const BodySphere> spheres) {
-  const auto overlap = [&](std::uint32_t first, std::uint32_t second) {
-    for (const BodySphere& a : spheres) {
-      if (a.group != first) continue;
-      for (const BodySphere& b : spheres) {
-        const Vec3 between = a.centre - b.centre;
-        const float reach = a.radius + b.radius;
-        if (b.group == second && dot(between, between) < reach * reach) return true;
-      }
-    }
-    return false;
-  };
-  return std::any_of(robot.testedPairs().begin(), robot.testedPairs().end(),
-                     [&](const GroupPair& pair) { return overlap(pair.first, pair.second); });
+bool anyOverlaps(std::span<const GroupPair> pairs, std::span<const BodySphere> spheres) {
+  return std::any_of(pairs.begin(), pairs.end(), [&](const GroupPair& pair) {
+    return overlap(spheres, pair.first, pair.second);
+  });
+}
+
+std::vector<GroupPair> pairsApartAtStart(const Robot& robot) {
+  const RobotBody body = robotBody(robot, {}, robot.startPositions());
+  std::vector<GroupPair> pairs = robot.testedPairs();
+  std::erase_if(
+      pairs, [&](const GroupPair& pair) { return overlap(body.spheres, pair.first, pair.second); });
+  return pairs;
 }
 
 }  // namespace galactic::bake

@@ -43,7 +43,12 @@ struct RobotBody {
 [[nodiscard]] bool isFree(const Scene& scene, std::span<const BodySphere> spheres,
                           const Vec3& offset = {});
 
-/// Whether two groups that may touch do.
-[[nodiscard]] bool touchesItself(const Robot& robot, std::span<const BodySphere> spheres);
+/// The pairs of groups whose spheres do not overlap where an episode starts. Spheres stick out of
+/// what they cover: those of neighbours may overlap in every position.
+[[nodiscard]] std::vector<GroupPair> pairsApartAtStart(const Robot& robot);
+
+/// Whether the two groups of any of the pairs overlap.
+[[nodiscard]] bool anyOverlaps(std::span<const GroupPair> pairs,
+                               std::span<const BodySphere> spheres);
 
 }  // namespace galactic::bake

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace galactic::bake {
 namespace {
@@ -30,16 +31,15 @@ float rimOf(const ColumnGrid& grid) {
 /// Finds floors from which the arm reaches a point.
 class ReachTest {
  public:
-  ReachTest(const Scene& scene, const FloorMap& floor, const ArmReach& reach)
-      : floor_(floor), reach_(reach) {
+  ReachTest(const Scene& scene, const Reachable& from) : floor_(from.floor), reach_(from.reach) {
     const float spacing = scene.grids().back().spacing();
     stride_ = std::max(1.0F, std::floor(kFloorStride / spacing)) * spacing;
   }
 
   /// The height of a floor from which the arm reaches `point`, and over which `point` is between
-  /// the heights of the options; the first one in a fixed order.
+  /// `heights`; the first one in a fixed order.
   [[nodiscard]] std::optional<float> floorFor(const Vec3& point,
-                                              const EpisodeSamplerOptions& options) const {
+                                              const DistanceRange& heights) const {
     const auto steps = static_cast<std::int32_t>(reach_.farthest() / stride_);
     for (std::int32_t step_z = -steps; step_z <= steps; ++step_z) {
       for (std::int32_t step_x = -steps; step_x <= steps; ++step_x) {
@@ -47,7 +47,7 @@ class ReachTest {
         const float dz = static_cast<float>(step_z) * stride_;
         for (const FloorPlace& place : floor_.placesAt(point.x + dx, point.z + dz)) {
           const float height = point.y - place.height;
-          if (height < options.lowest || height > options.highest) continue;
+          if (height < heights.least || height > heights.most) continue;
           if (reach_.covers(std::hypot(dx, dz), height)) return place.height;
         }
       }
@@ -61,26 +61,154 @@ class ReachTest {
   float stride_ = 0;
 };
 
+/// Which flat places are one surface: neighbours in a row or a column of the grid that are about
+/// equally high, joined as the places are found, row by row.
+class SurfaceLabels {
+ public:
+  explicit SurfaceLabels(std::uint32_t columns)
+      : above_(columns + std::size_t{1}, 0), row_(above_) {}
+
+  void beginColumn(std::uint32_t i, std::size_t count) { row_[i] = count; }
+
+  /// The last of `places` is a new one in column `i`.
+  void add(std::uint32_t i, const std::vector<SupportPlace>& places) {
+    const auto index = static_cast<std::uint32_t>(places.size() - 1);
+    parents_.push_back(index);
+    if (i > 0) joinAny(places, row_[i - 1], row_[i]);
+    if (has_above_) joinAny(places, above_[i], above_[i + 1]);
+  }
+
+  void endRow(std::size_t count) {
+    row_.back() = count;
+    above_ = row_;
+    has_above_ = true;
+  }
+
+  [[nodiscard]] std::uint32_t labelOf(std::uint32_t place) const {
+    while (parents_[place] != place) place = parents_[place];
+    return place;
+  }
+
+ private:
+  /// Joins the newest place with those of its height among `first` to `last`.
+  void joinAny(const std::vector<SupportPlace>& places, std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) {
+      if (std::abs(places[n].surface - places.back().surface) > kFlatness) continue;
+      const std::uint32_t a = shortened(static_cast<std::uint32_t>(n));
+      const std::uint32_t b = shortened(static_cast<std::uint32_t>(places.size() - 1));
+      parents_[std::max(a, b)] = std::min(a, b);
+    }
+  }
+
+  /// The label, for which later searches need fewer steps.
+  std::uint32_t shortened(std::uint32_t place) {
+    const std::uint32_t label = labelOf(place);
+    while (parents_[place] != label) place = std::exchange(parents_[place], label);
+    return label;
+  }
+
+  std::vector<std::uint32_t> parents_;
+  /// Index of the first place of each column, and the number of places at the end.
+  std::vector<std::size_t> above_;
+  std::vector<std::size_t> row_;
+  bool has_above_ = false;
+};
+
+/// How far below the surface and above it a receptacle's box may be, metres: datasets draw them by
+/// hand, and a run drops objects from inside them.
+constexpr float kUnderRegion = 0.05F;
+constexpr float kOverRegion = 0.02F;
+
 }  // namespace
 
-SupportPlaces::SupportPlaces(const Scene& scene, const FloorMap& floor, const ArmReach& reach,
-                             const EpisodeSamplerOptions& options)
-    : scene_(&scene) {
-  const ColumnGrid& grid = scene.grids().front();
-  const ReachTest test(scene, floor, reach);
+bool contains(const SupportRegion& region, const Vec3& point) {
+  const Pose region_from_world = inverse(region.world_from_region);
+  const Vec3 from = region_from_world * Vec3{point.x, point.y - kOverRegion, point.z};
+  const Vec3 way = rotate(region_from_world.rotation, {0, kOverRegion + kUnderRegion, 0});
+  // The part of the segment, as shares of its length, that lies between each pair of faces.
+  float first = 0;
+  float last = 1;
+  const auto clip = [&](float at, float along, float half) {
+    if (along == 0) {
+      if (std::abs(at) > half) last = -1;
+      return;
+    }
+    const float a = (-half - at) / along;
+    const float b = (half - at) / along;
+    first = std::max(first, std::min(a, b));
+    last = std::min(last, std::max(a, b));
+  };
+  clip(from.x, way.x, region.half_extents.x);
+  clip(from.y, way.y, region.half_extents.y);
+  clip(from.z, way.z, region.half_extents.z);
+  return first <= last;
+}
+
+SupportPlaces::SupportPlaces(const Scene& scene, const Reachable& from,
+                             std::span<const SupportRegion> receptacles,
+                             const EpisodeGeneratorOptions& options)
+    : scene_(&scene), receptacles_(receptacles), choice_(options.supports) {
+  const ReachTest test(scene, from);
+  for (SupportPlace& place : flatPlaces()) {
+    const Vec3 point{place.x, place.surface, place.z};
+    if (!isAllowed(point)) continue;
+    const std::optional<float> floor = test.floorFor(point, options.heights);
+    if (!floor) continue;
+    place.floor = *floor;
+    if (choice_ == SupportChoice::kBoth && isInReceptacle(point)) {
+      in_receptacles_.push_back(static_cast<std::uint32_t>(places_.size()));
+    }
+    places_.push_back(place);
+  }
+}
+
+/// Before anything is left out, so that a table whose middle no arm reaches is still one surface.
+std::vector<SupportPlace> SupportPlaces::flatPlaces() const {
+  const ColumnGrid& grid = scene_->grids().front();
+  std::vector<SupportPlace> flat;
+  SurfaceLabels labels(grid.columnsX());
   for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
     for (std::uint32_t i = 0; i < grid.columnsX(); ++i) {
+      labels.beginColumn(i, flat.size());
       for (const Span& span : spansOf(grid, i, k)) {
         Vec3 point = columnCentre(grid, i, k);
         point.y = span.lo - grid.radius();
         if (!isFlatAround({i, k}, point.y)) continue;
-        const std::optional<float> from = test.floorFor(point, options);
-        if (from) {
-          places_.push_back({.x = point.x, .z = point.z, .surface = point.y, .floor = *from});
-        }
+        flat.push_back({.x = point.x, .z = point.z, .surface = point.y, .floor = 0});
+        labels.add(i, flat);
       }
     }
+    labels.endRow(flat.size());
   }
+  for (std::uint32_t n = 0; n < flat.size(); ++n) flat[n].surface_id = labels.labelOf(n);
+  return flat;
+}
+
+const SupportPlace& SupportPlaces::draw(Random& random) const {
+  const auto any_of = [&random](std::size_t count) {
+    return random.below(static_cast<std::uint32_t>(count));
+  };
+  if (!in_receptacles_.empty() && random.below(2) == 0) {
+    return places_[in_receptacles_[any_of(in_receptacles_.size())]];
+  }
+  return places_[any_of(places_.size())];
+}
+
+std::size_t SupportPlaces::surfaceCount() const {
+  std::vector<std::uint32_t> ids;
+  ids.reserve(places_.size());
+  for (const SupportPlace& place : places_) ids.push_back(place.surface_id);
+  std::sort(ids.begin(), ids.end());
+  return static_cast<std::size_t>(std::unique(ids.begin(), ids.end()) - ids.begin());
+}
+
+bool SupportPlaces::isAllowed(const Vec3& point) const {
+  return choice_ != SupportChoice::kReceptacles || isInReceptacle(point);
+}
+
+bool SupportPlaces::isInReceptacle(const Vec3& point) const {
+  return std::any_of(receptacles_.begin(), receptacles_.end(),
+                     [&](const SupportRegion& region) { return contains(region, point); });
 }
 
 bool SupportPlaces::isFlatAround(const Column& column, float surface) const {

@@ -11,23 +11,26 @@
 
 #include "double_pose.h"
 #include "floor_oracle.h"
-#include "galactic/bake/episode_sampler.h"
+#include "galactic/bake/episode_generator.h"
+#include "galactic/object_set.h"
+#include "galactic/robot.h"
+#include "galactic/scene.h"
 #include "support/box_oracle.h"
 
 namespace galactic::test {
 
-/// What an episode of a sampler promises, asked again by brute force.
+/// What an episode of the generator promises, asked again by brute force.
 class EpisodeOracle {
  public:
   /// Boxes may come this much nearer than promised: rounding of floats, and of the projections.
   static constexpr double kGapTolerance = 1e-3;
-  /// Heights under one object differ by no more than this; the sampler's limit is 2 mm on each
+  /// Heights under one object differ by no more than this; the generator's limit is 2 mm on each
   /// side, and a grid rounds.
   static constexpr double kFlatTolerance = 0.005;
   static constexpr double kGap = 0.05;
 
   EpisodeOracle(const Scene& scene, const ObjectSet& objects, const Robot& robot,
-                const bake::EpisodeSamplerOptions& options)
+                const bake::EpisodeGeneratorOptions& options)
       : scene_(scene),
         objects_(objects),
         robot_(robot),
@@ -178,13 +181,13 @@ class EpisodeOracle {
   }
 
   [[nodiscard]] bool isAtAllowedHeight(const Pose& pose, double surface) const {
-    // The arm's length, and half a column for the place from which the sampler measured.
+    // The arm's length, and half a column for the place from which the generator measured.
     constexpr double kArm = 1.05;
     constexpr double kTolerance = 0.005;
     return floor_.anyOnLargestPart(pointOf(pose.translation), kArm, [&](double floor) {
       const double height = surface - floor;
-      return height > static_cast<double>(options_.lowest) - kTolerance &&
-             height < static_cast<double>(options_.highest) + kTolerance;
+      return height > static_cast<double>(options_.heights.least) - kTolerance &&
+             height < static_cast<double>(options_.heights.most) + kTolerance;
     });
   }
 
@@ -202,7 +205,7 @@ class EpisodeOracle {
 
   [[nodiscard]] bool hasApproach(const PlacedBox& box) const {
     const ColumnGrid& grid = scene_.grids().back();
-    // Twice the largest radius, and what the sampler promises over that, less its rounding.
+    // Twice the largest radius, and what the generator promises over that, less its rounding.
     constexpr double kFree = 0.19;
     constexpr int kSteps = 20;
     const double first = box.top() + static_cast<double>(grid.radius()) + kFlatTolerance;
@@ -217,7 +220,7 @@ class EpisodeOracle {
   const Scene& scene_;
   const ObjectSet& objects_;
   const Robot& robot_;
-  const bake::EpisodeSamplerOptions& options_;
+  const bake::EpisodeGeneratorOptions& options_;
   FloorOracle floor_;
   std::mt19937 random_;
   std::vector<OracleBody> arm_;

@@ -92,7 +92,7 @@ inline RobotPackFields stickRobot() {
   return robot;
 }
 
-/// Everything that a sampler reads, made by hand.
+/// Everything that a generator reads, made by hand.
 class MadeWorld {
  public:
   MadeWorld(const bake::TriangleMesh& mesh, const RobotPackFields& robot)
@@ -104,7 +104,9 @@ class MadeWorld {
     robots_.push_back(MemoryPack::opened(Robot::from(robot_pack_.pack())));
   }
 
-  [[nodiscard]] const std::vector<Scene>& scenes() const { return scenes_; }
+  [[nodiscard]] std::vector<const PackFile*> packs() const {
+    return {&scene_pack_.pack(), &object_pack_.pack(), &robot_pack_.pack()};
+  }
   [[nodiscard]] const Scene& scene() const { return scenes_.front(); }
   [[nodiscard]] const ObjectSet& objects() const { return objects_.front(); }
   [[nodiscard]] const Robot& robot() const { return robots_.front(); }

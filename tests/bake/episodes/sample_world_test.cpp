@@ -1,4 +1,4 @@
-// The sampler on the project's own world: every promise of every episode, by brute force.
+// The generator on the project's own world: every promise of every episode, by brute force.
 #include "support/sample_world.h"
 
 #include <gtest/gtest.h>
@@ -36,6 +36,12 @@ class SampleWorld {
         objects(MemoryPack::opened(ObjectSet::from(object_pack_.pack()))),
         robot(MemoryPack::opened(Robot::from(robot_pack_.pack()))) {}
 
+  [[nodiscard]] bake::EpisodeInputs inputs() const {
+    bake::EpisodeInputs inputs;
+    inputs.packs = {&scene_pack_.pack(), &object_pack_.pack(), &robot_pack_.pack()};
+    return inputs;
+  }
+
  private:
   MemoryPack scene_pack_;
   MemoryPack object_pack_;
@@ -47,9 +53,9 @@ class SampleWorld {
   Robot robot;
 };
 
-bake::SourceEpisodes sampled(const SampleWorld& world, const bake::EpisodeSamplerOptions& options) {
-  return MemoryPack::opened(
-      bake::sampleEpisodes(world.scenes, world.objects, world.robot, options));
+bake::SourceEpisodes generated(const SampleWorld& world,
+                               const bake::EpisodeGeneratorOptions& options) {
+  return MemoryPack::opened(bake::generateEpisodes(world.inputs(), options)).episodes;
 }
 
 /// Grasp points of random arm positions, above the ground and away from the base.
@@ -107,8 +113,9 @@ void expectPromise(const char* promise, const bake::SourceEpisodes& set,
 TEST(EpisodesOfTheSampleWorld, KeepEveryPromise) {
   const SampleWorld world;
   expectReach(world.robot);
-  const bake::EpisodeSamplerOptions options{.episodes = 30};
-  const bake::SourceEpisodes set = sampled(world, options);
+  bake::EpisodeGeneratorOptions options;
+  options.episodes = 30;
+  const bake::SourceEpisodes set = generated(world, options);
   ASSERT_EQ(set.episodes.size(), options.episodes);
   EXPECT_EQ(set.robot, "porter");
   EXPECT_TRUE(set.start_joints.empty());
@@ -145,7 +152,7 @@ TEST(EpisodesOfTheSampleWorld, KeepEveryPromise) {
   expectPromise(
       "the goal is away", set,
       [&](const Set& s, const Episode& e) {
-        return oracle.travel(s, e) >= static_cast<double>(options.least_distance) - 1e-5;
+        return oracle.travel(s, e) >= static_cast<double>(options.target_to_goal.least) - 1e-5;
       },
       [&](Set& s, Episode& e) { e.goal = target(s, e).pose; });
   expectPromise(
@@ -164,16 +171,16 @@ TEST(EpisodesOfTheSampleWorld, KeepEveryPromise) {
   EXPECT_LT(stands, 0.9);
 
   // The same again, alone or as the beginning of more.
-  expectSame(sampled(world, options), set);
-  bake::EpisodeSamplerOptions other = options;
+  expectSame(generated(world, options), set);
+  bake::EpisodeGeneratorOptions other = options;
   other.episodes = 31;
-  bake::SourceEpisodes longer = sampled(world, other);
+  bake::SourceEpisodes longer = generated(world, other);
   longer.episodes.pop_back();
   longer.placements.resize(set.placements.size());
   expectSame(longer, set);
   other = options;
   other.seed = 2;
-  EXPECT_NE(sampled(world, other).episodes.front().base_position,
+  EXPECT_NE(generated(world, other).episodes.front().base_position,
             set.episodes.front().base_position);
 }
 

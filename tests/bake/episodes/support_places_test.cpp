@@ -12,7 +12,7 @@ namespace galactic::test {
 namespace {
 
 using bake::ArmReach;
-using bake::EpisodeSamplerOptions;
+using bake::EpisodeGeneratorOptions;
 using bake::FloorMap;
 using bake::Footprint;
 using bake::SupportPlace;
@@ -30,11 +30,11 @@ bake::TriangleMesh tableRoom() {
 }
 
 struct Supports {
-  explicit Supports(const EpisodeSamplerOptions& options = {})
+  explicit Supports(const EpisodeGeneratorOptions& options = {})
       : world(tableRoom(), stickRobot()),
         floor(world.scene(), world.robot()),
         reach(world.robot()),
-        places(world.scene(), floor, reach, options) {}
+        places(world.scene(), {floor, reach}, {}, options) {}
 
   MadeWorld world;
   FloorMap floor;
@@ -59,8 +59,8 @@ TEST(SupportPlaces, AreTheTopOfTheTableAndNeitherFloorNorHighShelf) {
 }
 
 TEST(SupportPlaces, KeepToTheHeightsAskedFor) {
-  EpisodeSamplerOptions options;
-  options.lowest = 1;
+  EpisodeGeneratorOptions options;
+  options.heights.least = 1;
   const Supports supports(options);
   ASSERT_FALSE(supports.places.places().empty());
   for (const SupportPlace& place : supports.places.places()) {

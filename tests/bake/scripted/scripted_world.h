@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "../episodes/made_world.h"
+#include "galactic/bake/episode_generator.h"
 #include "galactic/bake/episode_pack.h"
-#include "galactic/bake/episode_sampler.h"
 #include "galactic/world.h"
 
 namespace galactic::test {
@@ -64,18 +64,20 @@ inline ScriptedWorld stickWorld(const bake::TriangleMesh& mesh, const Vec3& base
   return ScriptedWorld(std::move(packs));
 }
 
-/// The sample world with `count` sampled episodes; baking takes seconds.
+/// The sample world with `count` generated episodes; baking takes seconds.
 inline ScriptedWorld sampleWorld(std::uint32_t count, std::uint64_t seed) {
   std::vector<MemoryPack> packs;
   packs.reserve(4);
   packs.push_back(bakeSampleApartment());
   packs.push_back(bakeSampleObjects());
   packs.push_back(bakeSampleRobot());
-  const std::vector<Scene> scenes{MemoryPack::opened(Scene::from(packs[0].pack()))};
-  const ObjectSet objects = MemoryPack::opened(ObjectSet::from(packs[1].pack()));
-  const Robot robot = MemoryPack::opened(Robot::from(packs[2].pack()));
-  packs.push_back(episodePackOf(MemoryPack::opened(
-      bake::sampleEpisodes(scenes, objects, robot, {.episodes = count, .seed = seed}))));
+  bake::EpisodeInputs inputs;
+  inputs.packs = {&packs[0].pack(), &packs[1].pack(), &packs[2].pack()};
+  bake::EpisodeGeneratorOptions options;
+  options.episodes = count;
+  options.seed = seed;
+  packs.push_back(
+      episodePackOf(MemoryPack::opened(bake::generateEpisodes(inputs, options)).episodes));
   return ScriptedWorld(std::move(packs));
 }
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "galactic/bake/episode_generator.h"
 #include "galactic/bake/episode_pack.h"
-#include "galactic/bake/episode_sampler.h"
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/batch_simulator.h"
@@ -19,8 +19,8 @@ struct SampleThings {
   MemoryPack robot = bakeSampleRobot();
 };
 
-/// A scene of triangles, and the published episodes that take place in it; sampled ones where there
-/// is no such file.
+/// A scene of triangles, and the published episodes that take place in it; generated ones where
+/// there is no such file.
 struct HomeFiles {
   std::filesystem::path mesh;
   std::filesystem::path episodes{};
@@ -42,7 +42,8 @@ class Home {
       : mesh_(MemoryPack::opened(bake::placeAndClean(asset)).mesh),
         things_(things),
         scene_(bakeScenePack(asset)) {
-    bake::SourceEpisodes episodes = episodes_file.empty() ? sample() : readPublished(episodes_file);
+    bake::SourceEpisodes episodes =
+        episodes_file.empty() ? generate() : readPublished(episodes_file);
     episodes_.emplace(PackKind::kEpisodes, encoded(episodes), "episodes");
     world_.emplace(open());
     putApplesInHands(episodes);
@@ -71,13 +72,12 @@ class Home {
     return MemoryPack::opened(bake::encodeEpisodePack(episodes, testProvenance("episodes")));
   }
 
-  [[nodiscard]] bake::SourceEpisodes sample() const {
-    bake::EpisodeSamplerOptions options;
+  [[nodiscard]] bake::SourceEpisodes generate() const {
+    bake::EpisodeInputs inputs;
+    inputs.packs = {&scene_.pack(), &things_.objects.pack(), &things_.robot.pack()};
+    bake::EpisodeGeneratorOptions options;
     options.episodes = 40;
-    const std::vector<Scene> scenes{MemoryPack::opened(Scene::from(scene_.pack()))};
-    const auto objects = MemoryPack::opened(ObjectSet::from(things_.objects.pack()));
-    const auto robot = MemoryPack::opened(Robot::from(things_.robot.pack()));
-    return MemoryPack::opened(bake::sampleEpisodes(scenes, objects, robot, options));
+    return MemoryPack::opened(bake::generateEpisodes(inputs, options)).episodes;
   }
 
   /// Robots and objects where the file has them, but they are others.

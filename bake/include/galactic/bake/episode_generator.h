@@ -1,0 +1,137 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "galactic/bake/episode_rejection.h"
+#include "galactic/bake/source_episodes.h"
+#include "galactic/bake/triangle_mesh.h"
+#include "galactic/error.h"
+#include "galactic/pack.h"
+#include "galactic/pose.h"
+
+namespace galactic::bake {
+
+/// A place for objects that a dataset names: a box over a surface, as Habitat's receptacles
+/// (user_defined.receptacle_aabb_*), placed in the world.
+struct SupportRegion {
+  std::string name;
+  Pose world_from_region;
+  /// Metres, along the region's axes.
+  Vec3 half_extents;
+};
+
+/// What is known of a scene besides its pack.
+struct SceneDetails {
+  /// The triangles that the scene was baked from, world frame; empty: unknown.
+  TriangleMesh mesh;
+  std::vector<SupportRegion> receptacles;
+};
+
+/// Gives the details of a scene by its name. Called once for each scene, when its turn comes, and
+/// from several threads.
+using SceneDetailSource = std::function<Result<SceneDetails>(std::string_view scene)>;
+
+/// Told how many episodes are done; called from several threads, one at a time.
+using EpisodeProgress = std::function<void(std::size_t done)>;
+
+/// On which surfaces objects and goals are put.
+enum class SupportChoice : std::uint8_t {
+  kAny,          ///< All that the column grids show.
+  kReceptacles,  ///< Those in the scene's receptacles only.
+  kBoth,         ///< All, but half of the draws go to receptacles where the scene has some.
+};
+
+/// A part of the scenes.
+enum class SplitSide : std::uint8_t { kAll, kTrain, kValidation };
+
+/// Which scenes are used. Whether one is held out for validation depends on its name and these
+/// numbers only, not on the other scenes.
+struct SceneSplit {
+  SplitSide side = SplitSide::kAll;
+  /// Expected share of the scenes that is held out, 0 to 1.
+  float held_out = 0.2F;
+  std::uint64_t seed = 1;
+};
+
+/// Whether the scene of this name is for validation.
+[[nodiscard]] bool isHeldOut(std::string_view scene, const SceneSplit& split);
+
+/// Both ends included.
+struct CountRange {
+  std::uint32_t least = 0;
+  std::uint32_t most = 0;
+};
+
+/// Metres, both ends included.
+struct DistanceRange {
+  float least = 0;
+  float most = std::numeric_limits<float>::infinity();
+};
+
+struct EpisodeGeneratorOptions {
+  std::uint32_t episodes = 100;
+  /// Objects per episode, the target among them.
+  CountRange objects{10, 10};
+  std::uint64_t seed = 1;
+  /// Heights above the floor between which objects and goals are placed.
+  DistanceRange heights{0.3F, 1.2F};
+  /// Distance of the target's origin at its start and at its goal.
+  DistanceRange target_to_goal{.least = 1.0F};
+  /// Horizontal distance of the robot's base and the target's origin.
+  DistanceRange start_to_target;
+  /// Whether the goal lies on another surface than the target: one that no flat way connects.
+  bool goal_on_other_support = false;
+  SupportChoice supports = SupportChoice::kAny;
+  SceneSplit split;
+  /// Threads; the result does not depend on it. Each has one scene prepared at a time.
+  unsigned jobs = 1;
+};
+
+/// In what episodes are generated.
+struct EpisodeInputs {
+  /// Scenes, one or more sets of objects, one robot, in any order, baked for the same radii.
+  std::vector<const PackFile*> packs;
+  /// Empty: nothing is known but the packs.
+  SceneDetailSource details;
+};
+
+/// What was found in a scene.
+struct GeneratedScene {
+  std::string name;
+  std::uint32_t episodes = 0;
+  /// Columns with a floor on which the robot stands and drives.
+  std::size_t floor_places = 0;
+  /// Columns over a flat surface within reach, and how many surfaces they make.
+  std::size_t support_places = 0;
+  std::size_t surfaces = 0;
+  std::size_t receptacles = 0;
+  /// Whether the scene's triangles were there to settle objects on.
+  bool has_mesh = false;
+};
+
+struct GeneratedEpisodes {
+  SourceEpisodes episodes;
+  RejectionCounts rejections;
+  /// By name; those of the split only.
+  std::vector<GeneratedScene> scenes;
+};
+
+/// Generates rearrangement episodes: objects in stable poses on what the column grids show to be
+/// flat and free, the robot on the floor where neither it nor its start pose penetrates anything,
+/// target and goal within reach of a place that the robot's base can drive to. Where the scene's
+/// triangles are known, rays see that the surface has no gap, and every object is settled with
+/// Bullet and taken only if it stays. Each episode is replayed for one step in the runtime.
+/// Deterministic: episode k depends on the inputs, the seed and k; not on the order of the packs
+/// nor on the threads. Scene k % scenes, counted by name, is that of episode k.
+/// Fails with kInvalidInput, saying what was tried, on unusable options, packs that do not go
+/// together, and when no place is found; and with the errors of `inputs.details`.
+[[nodiscard]] Result<GeneratedEpisodes> generateEpisodes(const EpisodeInputs& inputs,
+                                                         const EpisodeGeneratorOptions& options,
+                                                         const EpisodeProgress& progress = {});
+
+}  // namespace galactic::bake

@@ -1,0 +1,68 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "galactic/bake/triangle_mesh.h"
+#include "galactic/object_set.h"
+#include "galactic/pose.h"
+
+namespace galactic::bake {
+
+/// The shape of an object that is settled: convex.
+struct SettlingBody {
+  /// object_from_body: the body's origin is its centre of mass.
+  Pose object_from_body;
+  /// Corners of the hull in the frame of the body, metres; empty: the box.
+  std::vector<Vec3> corners;
+  /// Of the box, metres; not used where there are corners.
+  Vec3 half_extents;
+};
+
+/// The box of an object, of even density.
+[[nodiscard]] SettlingBody boxBody(const ObjectModel& model);
+
+/// The convex hull of points in the object's frame (metres), of even density; the box of `model`
+/// where they fill no volume.
+[[nodiscard]] SettlingBody hullBody(std::span<const Vec3> points, const ObjectModel& model);
+
+/// What became of an object that was let go.
+enum class SettlingEnd {
+  kRests,   ///< It came to rest about where it was.
+  kMoved,   ///< It went away further than kSettlingWay, or did not come to rest.
+  kTipped,  ///< It leans by more than kSettlingLean.
+};
+
+struct Settled {
+  SettlingEnd end = SettlingEnd::kRests;
+  /// world_from_object.
+  Pose pose;
+};
+
+/// How far a settled object may have moved, metres, and leaned over, radians.
+inline constexpr float kSettlingWay = 0.01F;
+inline constexpr float kSettlingLean = 0.0873F;
+
+/// The triangles of a scene on which objects are let go, one at a time. Implemented with Bullet, in
+/// bullet_settling.cpp.
+class SettlingScene {
+ public:
+  /// Copies what it needs.
+  explicit SettlingScene(const TriangleMesh& mesh);
+  ~SettlingScene();
+  SettlingScene(SettlingScene&&) noexcept;
+  SettlingScene& operator=(SettlingScene&&) noexcept;
+  SettlingScene(const SettlingScene&) = delete;
+  SettlingScene& operator=(const SettlingScene&) = delete;
+
+  /// Lets the object go at `world_from_object`, a little higher, in a world of its own: nothing is
+  /// left of earlier calls, and the result depends on the arguments only. Steps of fixed length, at
+  /// most two seconds. Thread-safe.
+  [[nodiscard]] Settled settle(const SettlingBody& body, const Pose& world_from_object) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace galactic::bake

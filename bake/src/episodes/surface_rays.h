@@ -1,0 +1,36 @@
+#pragma once
+#include <memory>
+
+#include "episodes/placed_object.h"
+#include "galactic/bake/triangle_mesh.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+/// How far apart rays meet the surface under an object at most, metres: finer than the columns.
+inline constexpr float kRayDistance = 0.01F;
+
+/// The triangles of a scene, asked from above. Implemented with Embree, in embree_surface.cpp.
+class SurfaceRays {
+ public:
+  /// Copies what it needs. Fails with kInternal when memory runs out.
+  [[nodiscard]] static Result<SurfaceRays> build(const TriangleMesh& mesh);
+
+  ~SurfaceRays();
+  SurfaceRays(SurfaceRays&& other) noexcept;
+  SurfaceRays& operator=(SurfaceRays&& other) noexcept;
+  SurfaceRays(const SurfaceRays&) = delete;
+  SurfaceRays& operator=(const SurfaceRays&) = delete;
+
+  /// Whether rays down over the whole footprint, its border included, all meet a surface within
+  /// `flatness` (metres) of the height `surface`, whose normal is upright. Thread-safe.
+  [[nodiscard]] bool isEven(const Footprint& footprint, float surface, float flatness) const;
+
+ private:
+  struct Scene;
+  explicit SurfaceRays(std::unique_ptr<Scene> scene);
+
+  std::unique_ptr<Scene> scene_;
+};
+
+}  // namespace galactic::bake
