@@ -124,6 +124,9 @@ Result<void> GenerationWorld::add(const PackFile& pack) {
       common_packs_.push_back(&pack);
       return {};
     }
+    case PackKind::kTexture:
+      // What scenes look like plays no part.
+      return {};
     case PackKind::kEpisodes:
     case PackKind::kWorld:
       break;
