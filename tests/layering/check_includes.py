@@ -45,7 +45,7 @@ HEAVY_LIBRARIES = (
                             r"tests/bake/(robot|simulation)/bullet[^/]*$|"
                             r"benchmarks/batch_kinematics\.cpp$")),
     HeavyLibrary("Embree", re.compile(r"embree\d/"), re.compile(r"\b(RTC[A-Z]\w+|rtc[A-Z]\w+)"),
-                 re.compile(r"bake/src/(engines|ambient|episodes)/embree[^/]*$")),
+                 re.compile(r"bake/src/(engines|ambient|episodes)/embree[^/]*$|tests/bake/render/embree[^/]*$")),
     HeavyLibrary("urdfdom", re.compile(r"(urdf_|tinyxml|console_bridge/)"),
                  re.compile(r"\b(urdf::|TiXml\w+|console_bridge::)"),
                  re.compile(r"bake/src/urdf/urdf_reader[^/]*$")),
@@ -94,7 +94,7 @@ RULES = (
     Rule("bake/include", ("runtime/include", "bake/include"), frozenset({"tl"}), schema=False),
     Rule("bake/src", ("runtime/include", "bake/include", "bake/src"),
          LEAN | {"Eigen", "flatbuffers", "nlohmann", "xxhash.h"}),
-    Rule("bake/app", ("runtime/include", "bake/include"), LEAN | {"CLI", "nlohmann"}),
+    Rule("bake/app", ("runtime/include", "bake/include", "bake/app"), LEAN | {"CLI", "nlohmann"}),
 )
 # Whose files a folder must not reach, even by a relative path.
 FORBIDDEN_TARGETS = {"runtime": ("bake", "pack_tool", "tests", "benchmarks"),
