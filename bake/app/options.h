@@ -100,8 +100,6 @@ struct PlanOptions {
   Shard shard;
   /// Bytes that bakes at the same time may take together, as far as that can be foreseen.
   std::uint64_t memory = 0;
-  /// A picture report; empty: none.
-  std::filesystem::path html;
 };
 
 /// What the user typed, understood.

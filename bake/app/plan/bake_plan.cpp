@@ -89,7 +89,7 @@ int bakePlan(const BakeCommand& command) {
     summary.world = std::move(*packs);
   }
   if (command.saysMore()) printPlanTable(summary);
-  if (auto written = writePlanReports(summary, command); !written) {
+  if (auto written = writePlanReport(summary, command); !written) {
     const int code = refuse(written.error());
     exit_code = exit_code == kExitOk ? code : exit_code;
   }

@@ -47,7 +47,7 @@ std::string jsonText(const PlanSummary& summary) {
 
 }  // namespace
 
-Result<void> writePlanReports(const PlanSummary& summary, const BakeCommand& command) {
+Result<void> writePlanReport(const PlanSummary& summary, const BakeCommand& command) {
   if (command.report.empty()) return {};
   const std::string text = jsonText(summary);
   return writeFileAtomically(command.report, {std::as_bytes(std::span(text))});

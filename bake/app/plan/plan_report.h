@@ -17,7 +17,7 @@ struct PlanSummary {
   std::vector<LinkedPack> world;
 };
 
-/// The command's --report and --html, as far as it wants them.
-[[nodiscard]] Result<void> writePlanReports(const PlanSummary& summary, const BakeCommand& command);
+/// The command's --report, where it wants one.
+[[nodiscard]] Result<void> writePlanReport(const PlanSummary& summary, const BakeCommand& command);
 
 }  // namespace galactic::bake

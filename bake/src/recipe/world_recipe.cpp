@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::string_view, 17> kCommandLineOnly{
     "as",           "out",     "jobs",     "report",  "config", "dry-run",
     "keep-going",   "verbose", "quiet",    "version", "cache",  "memory",
-    "print-recipe", "shard",   "no-cache", "html",    "help"};
+    "print-recipe", "shard",   "no-cache", "data",    "help"};
 
 /// A single value as it would be typed.
 std::optional<std::string> textOf(const TomlValue& value) {
