@@ -1,4 +1,5 @@
 // What can be wrong with the files of a dataset, one by one.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // The scenes of ReplicaCAD that have their stage, from the real dataset.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -121,6 +121,29 @@ TEST(SceneDataset, AppliesScalesAndFrames) {
   EXPECT_EQ(scene.movable[1].world_from_mesh, shelf);
 }
 
+TEST(SceneDataset, LeavesTheStageWhereItIsAsHabitatDoes) {
+  const SmallDataset small;
+  small.writeScene("moved", R"({"stage_instance": {"template_name": "room",
+      "translation": [1, 2, 3], "rotation": [0, 1, 0, 0], "translation_origin": "COM"}})");
+  const ComposedScene scene = composed(small, "moved");
+  EXPECT_LT(errorOf(scene.scene, "room", boxCorners()), kTolerance);
+  EXPECT_THAT(scene.scene.warnings,
+              ElementsAre("the scene moves, turns or scales its stage; as in Habitat, it stays as "
+                          "it is"));
+}
+
+TEST(SceneDataset, TakesTheCentreOfTheBoxWhereTheLastLayerStatesNoCentreOfMass) {
+  const SmallDataset small;
+  // The layer of high_table states a scale only.
+  small.writeScene("high", R"({"stage_instance": {"template_name": "NONE"}, "object_instances": [
+      {"template_name": "high_table", "motion_type": "STATIC", "translation_origin": "COM"}]})");
+  const ComposedScene scene = composed(small, "high");
+  EXPECT_LT(errorOf(scene.scene, "high_table_:0000", changedCorners([](const auto& p) {
+                      return std::array{p[0] - 1, 3 * (p[1] - 1.25), p[2] - 2.5};
+                    })),
+            kTolerance);
+}
+
 TEST(SceneDataset, PlacesFurnitureInItsRestPose) {
   const ComposedScene scene = composed(SmallDataset());
   std::vector<Points> placed;

@@ -1,5 +1,6 @@
 #include "galactic/bake/scene_files.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
