@@ -10,6 +10,8 @@
 
 #include "bake/dataset/small_dataset.h"
 #include "galactic/bake/render_source.h"
+#include "galactic/bake/triangle_mesh.h"
+#include "support/assets.h"
 
 namespace galactic::test {
 namespace {
@@ -308,6 +310,30 @@ TEST(SceneDataset, OfStagesAloneHasThemAsScenes) {
   const auto other = dataset->compose("xyz", meshes);
   ASSERT_TRUE(other) << textOf(other.error());
   EXPECT_LT(errorOf(other->scene, "xyz", boxCorners()), kTolerance);
+}
+
+TEST(SceneDataset, TurnsAPublishedStageThatLiesOnItsSide) {
+  const auto room = assetsFolder() / "scenes" / "habitat_simple_room";
+  if (!std::filesystem::exists(room / "simple_room.glb")) {
+    GTEST_SKIP() << "set GALACTIC_ASSETS to a folder with scenes/habitat_simple_room/ in it";
+  }
+  const ScratchFolder folder;
+  const auto config = folder.write(
+      "rooms.scene_dataset_config.json",
+      fmt::format(R"({{"stages": {{"paths": {{".glb": ["{}/simple_*"]}}}}}})", room.string()));
+  const auto dataset = SceneDataset::read(config);
+  ASSERT_TRUE(dataset) << textOf(dataset.error());
+  MeshLibrary meshes(bake::datasetMeshOptions());
+  const auto scene = dataset->compose("simple_room", meshes);
+  ASSERT_TRUE(scene) << textOf(scene.error());
+  const auto mesh = placeAndClean(scene->scene);
+  ASSERT_TRUE(mesh) << textOf(mesh.error());
+  // The file has x -5.25 to 5.28, y -5.4 to 5.45, z -0.06 to 2.15, and z is up.
+  constexpr float kRounding = 0.01F;
+  EXPECT_NEAR(mesh->mesh.bounds.min.y, -0.0614F, kRounding);
+  EXPECT_NEAR(mesh->mesh.bounds.max.y, 2.15F, kRounding);
+  EXPECT_NEAR(mesh->mesh.bounds.min.z, -5.45F, kRounding);
+  EXPECT_NEAR(mesh->mesh.bounds.max.x, 5.28F, kRounding);
 }
 
 TEST(SceneDataset, TakesTheFirstOfSeveralMeaningsAndSaysSo) {
