@@ -17,7 +17,6 @@
 namespace galactic::test {
 namespace {
 
-using bake::ComposedScene;
 using bake::MeshLibrary;
 using bake::SceneDataset;
 using Point = std::array<double, 3>;

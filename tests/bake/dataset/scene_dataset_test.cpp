@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "bake/dataset/small_dataset.h"
@@ -375,7 +375,9 @@ TEST(SceneDataset, DoesNotDependOnTheOrderOfScenesOrOnTheLibrary) {
     for (const auto& mesh : scene->scene.meshes) {
       text += fmt::format("{} {} {}\n", mesh.name, mesh.positions.size(), mesh.material);
     }
-    for (const auto& file : scene->scene.files) text += file.name + '\n';
+    for (const auto& file : scene->scene.files) {
+      text += fmt::format("{} {} {}\n", file.name, file.hash_low, file.hash_high);
+    }
     return text;
   };
   MeshLibrary shared(bake::datasetMeshOptions());
@@ -386,6 +388,16 @@ TEST(SceneDataset, DoesNotDependOnTheOrderOfScenesOrOnTheLibrary) {
   EXPECT_EQ(digest("b_home", keeps_nothing), b);
   EXPECT_EQ(digest("a_home", keeps_nothing), a);
   EXPECT_EQ(digest("a_home", shared), a);
+  // Several threads, one of which reads each file.
+  MeshLibrary contended(bake::datasetMeshOptions());
+  std::vector<std::string> digests(6);
+  std::vector<std::thread> threads;
+  for (std::size_t n = 0; n < digests.size(); ++n) {
+    threads.emplace_back(
+        [&, n] { digests[n] = digest(n % 2 == 0 ? "a_home" : "b_home", contended); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (std::size_t n = 0; n < digests.size(); ++n) EXPECT_EQ(digests[n], n % 2 == 0 ? a : b);
 }
 
 TEST(SceneDataset, FingerprintChangesWithTheTemplatesThatAreThere) {
