@@ -52,7 +52,7 @@ bool isDataset(AssetKind kind) { return kind == AssetKind::kDataset; }
 bool isScene(AssetKind kind) { return kind == AssetKind::kScene || isDataset(kind); }
 bool isRobot(AssetKind kind) { return kind == AssetKind::kRobot; }
 bool isEpisodes(AssetKind kind) { return kind == AssetKind::kEpisodes; }
-bool isMesh(AssetKind kind) { return kind == AssetKind::kScene || isObject(kind); }
+bool isMesh(AssetKind kind) { return isScene(kind) || isObject(kind); }
 bool isShape(AssetKind kind) { return isRobot(kind) || isObject(kind); }
 bool hasRadii(AssetKind kind) { return isScene(kind) || isObject(kind) || isRobot(kind); }
 bool hasPlan(AssetKind kind) { return isDataset(kind) || kind == AssetKind::kWorld; }

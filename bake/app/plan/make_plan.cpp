@@ -176,9 +176,15 @@ fs::path worldPackOf(const BakeCommand& command) {
 }  // namespace
 
 Result<std::vector<std::string>> namesOfScenes(const BakeCommand& command) {
+  std::error_code unknown;
+  if (fs::is_directory(command.inputs.front(), unknown)) {
+    const auto files = findSceneFiles(command.inputs.front());
+    if (!files) return tl::unexpected(files.error());
+    return wantedScenes(namesOf(*files), command.dataset);
+  }
   const auto dataset = SceneDataset::read(command.inputs.front());
   if (!dataset) return tl::unexpected(dataset.error());
-  return wantedScenes(*dataset, command.dataset);
+  return wantedScenes(dataset->scenes(), command.dataset);
 }
 
 Result<WorldPlan> makePlan(const BakeCommand& command) {
