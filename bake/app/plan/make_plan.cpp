@@ -165,9 +165,11 @@ class RecipePlanner {
 
 /// NAME.pack, in the folder or under the name that the command gives.
 fs::path worldPackOf(const BakeCommand& command) {
-  std::string name = command.inputs.front().filename().string();
-  name.erase(name.find('.'));
   std::error_code unknown;
+  // "scans/" has no file name, and "." is none.
+  const fs::path input = fs::absolute(command.inputs.front(), unknown).lexically_normal();
+  std::string name = (input.has_filename() ? input : input.parent_path()).filename().string();
+  name = name.substr(0, name.find('.'));
   const bool is_folder = !command.output.empty() && fs::is_directory(command.output, unknown);
   if (command.output.empty() || is_folder) return command.output / (name + ".pack");
   return command.output;
