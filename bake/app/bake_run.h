@@ -31,6 +31,7 @@ class BakeRun {
     read_.push_back(command.episodes.only);
     read_.push_back(command.episodes.object_pack);
     read_.push_back(command.collection);
+    read_.push_back(command.golden_report);
   }
 
   [[nodiscard]] const BakeCommand& command() const { return command_; }
