@@ -53,20 +53,10 @@ Result<void> reportTo(const std::filesystem::path& path, const BakeRun& run) {
   return written ? writeReport(path, run) : written;
 }
 
-int refuse(const Error& error) {
-  printError(error);
-  return static_cast<int>(error.code);
-}
-
-/// The golden report is read first: nothing is baked for one that is not there.
-Result<std::optional<GoldenReport>> goldenOf(const BakeCommand& command) {
-  if (command.golden_report.empty()) return std::nullopt;
-  return readGoldenReport(command.golden_report);
-}
-
 int bakeAll(const BakeCommand& command) {
   BakeRun run(command);
   if (const auto outputs = checkOutputs(run); !outputs) return refuse(outputs.error());
+  // Before anything is baked for a golden report that is not there.
   const auto golden = goldenOf(command);
   if (!golden) return refuse(golden.error());
   bakeInputs(run);

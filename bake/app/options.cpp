@@ -315,9 +315,8 @@ bool BakeCommand::hasPlan() const {
 
 std::vector<std::filesystem::path> BakeCommand::namedFiles() const {
   std::vector<std::filesystem::path> files = inputs;
-  for (const std::filesystem::path& file :
-       {config, robot.recipe, robot.spheres, episodes.only, episodes.object_pack, collection,
-        golden_report}) {
+  for (const std::filesystem::path& file : {config, robot.recipe, robot.spheres, episodes.only,
+                                            episodes.object_pack, collection, golden_report}) {
     if (!file.empty()) files.push_back(file);
   }
   return files;

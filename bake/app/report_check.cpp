@@ -219,4 +219,9 @@ int checkReport(const GoldenReport& golden, const Json& report, const BakeComman
   return same ? kExitOk : kExitDiffers;
 }
 
+Result<std::optional<GoldenReport>> goldenOf(const BakeCommand& command) {
+  if (command.golden_report.empty()) return std::nullopt;
+  return readGoldenReport(command.golden_report);
+}
+
 }  // namespace galactic::bake

@@ -20,6 +20,9 @@ struct GoldenReport {
 /// galactic-bake or its tolerances are none.
 [[nodiscard]] Result<GoldenReport> readGoldenReport(const std::filesystem::path& path);
 
+/// That of the command; none where it wants no comparison.
+[[nodiscard]] Result<std::optional<GoldenReport>> goldenOf(const BakeCommand& command);
+
 /// What a comparison found.
 struct ReportComparison {
   /// How many values were compared.
