@@ -205,6 +205,19 @@ TEST(Geometry, ShowsGapsThatColumnsBridge) {
   EXPECT_GT(seeing.rejections[EpisodeRejection::kUneven], 0U);
 }
 
+TEST(Geometry, OfAnotherPlaceIsRefused) {
+  const MadeWorld world(twoTables(), stickRobot());
+  const EpisodeInputs inputs{world.packs(), [](std::string_view) -> Result<SceneDetails> {
+                               bake::TriangleMesh mesh = twoTables();
+                               mesh.bounds.max = {1, 3, 1};
+                               return SceneDetails{.mesh = mesh, .receptacles = {}};
+                             }};
+  const auto made = bake::generateEpisodes(inputs, optionsFor(1, 1));
+  ASSERT_FALSE(made.has_value());
+  EXPECT_EQ(made.error().where, "room");
+  EXPECT_THAT(made.error().message, testing::HasSubstr("to x 1, z 1 m, its column grids from"));
+}
+
 TEST(GeneratedEpisodes, AreTheSameWithAnyThreadsAndAnyOrderOfPacks) {
   const MadeWorld world(twoTables(), stickRobot());
   const MemoryPack attic = scenePackOf(twoTables(), "attic");
