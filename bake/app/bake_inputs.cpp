@@ -19,7 +19,7 @@ Result<Json> bakeFile(const std::filesystem::path& input, BakeRun& run) {
 
 /// One pack of all inputs.
 Result<Json> bakeTogether(BakeRun& run) {
-  return run.command().kind == AssetKind::kWorld ? linkWorldPack(run) : sampleEpisodePack(run);
+  return run.command().kind == AssetKind::kWorld ? linkWorldPack(run) : generateEpisodePack(run);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ namespace {
 /// The name of the pack that is made of `input`, without its extension.
 std::filesystem::path packNameOf(const BakeCommand& command, const std::filesystem::path& input) {
   if (command.kind == AssetKind::kWorld) return "world";
-  if (command.kind == AssetKind::kEpisodes && command.episodes.sampled) return "episodes";
+  if (command.kind == AssetKind::kEpisodes && command.episodes.generated) return "episodes";
   if (command.kind == AssetKind::kEpisodes) return episodeSetName(input);
   std::error_code unknown;
   if (!std::filesystem::is_directory(input, unknown)) return input.stem();

@@ -138,7 +138,7 @@ Result<Json> importEpisodeFile(const std::filesystem::path& input, BakeRun& run)
   return finish(outcome, std::move(sources), run, start);
 }
 
-Result<Json> sampleEpisodePack(BakeRun& run) {
+Result<Json> generateEpisodePack(BakeRun& run) {
   const BakeCommand& command = run.command();
   const EpisodeOptions& options = command.episodes;
   const auto start = std::chrono::steady_clock::now();

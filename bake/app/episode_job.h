@@ -12,6 +12,6 @@ namespace galactic::bake {
 
 /// Generates episodes in the packs of the command (scenes, objects, one robot), writes them into
 /// one pack and prints the closing table; the entry of the report.
-[[nodiscard]] Result<Json> sampleEpisodePack(BakeRun& run);
+[[nodiscard]] Result<Json> generateEpisodePack(BakeRun& run);
 
 }  // namespace galactic::bake

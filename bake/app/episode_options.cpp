@@ -211,17 +211,17 @@ Result<void> EpisodeSetOptions::understandGeometry(BakeCommand& command) const {
 Result<void> EpisodeSetOptions::understand(BakeCommand& command,
                                            const std::vector<std::string>& seeds) {
   if (command.kind != AssetKind::kEpisodes) return {};
-  const bool sampled = command.episodes.sampled;
-  std::string wrong = typedOf(sampled ? for_import_ : for_generation_);
-  if (!sampled && wrong.empty() && !seeds.empty()) wrong = "--seed";
+  const bool generated = command.episodes.generated;
+  std::string wrong = typedOf(generated ? for_import_ : for_generation_);
+  if (!generated && wrong.empty() && !seeds.empty()) wrong = "--seed";
   if (!wrong.empty()) {
     return fail(ErrorCode::kInvalidInput, wrong,
-                sampled ? "goes with the import of *.episode_set.json; the inputs are packs, in "
-                          "which episodes are generated: leave it out"
-                        : "goes with the generation of episodes in packs; the inputs are episode "
-                          "sets, which are imported: leave it out");
+                generated ? "goes with the import of *.episode_set.json; the inputs are packs, in "
+                            "which episodes are generated: leave it out"
+                          : "goes with the generation of episodes in packs; the inputs are episode "
+                            "sets, which are imported: leave it out");
   }
-  return sampled ? understandGeneration(command, seeds) : understandImport(command);
+  return generated ? understandGeneration(command, seeds) : understandImport(command);
 }
 
 void EpisodeSetOptions::rememberGeneration(BakeCommand& command) {
@@ -244,7 +244,7 @@ void EpisodeSetOptions::rememberGeneration(BakeCommand& command) {
 }
 
 void EpisodeSetOptions::remember(BakeCommand& command) const {
-  if (command.episodes.sampled) return rememberGeneration(command);
+  if (command.episodes.generated) return rememberGeneration(command);
   command.remember("only", command.episodes.only.filename().string());
   for (const std::string& names : scene_names_) command.remember("scene-name", names);
   command.remember("start-joints", joined(command.episodes.import.start_joints));

@@ -66,7 +66,7 @@ constexpr Group kObjectGroup{"Objects", isObject};
 constexpr Group kRobotGroup{"Robots", isRobot};
 constexpr Group kEpisodeGroup{"Episodes", isEpisodes};
 constexpr Group kRenderGroup{"Render meshes (scenes, objects, robots)", hasRadii};
-constexpr Group kSeedGroup{"Scenes, sampled episodes", hasSeed};
+constexpr Group kSeedGroup{"Scenes, generated episodes", hasSeed};
 constexpr Group kDatasetGroup{"Datasets", isDataset};
 constexpr Group kPlanGroup{"Datasets, worlds from recipes", hasPlan};
 constexpr std::array kGroups{kRadiiGroup,   kSceneGroup,   kMeshGroup,   kShapeGroup,
@@ -232,7 +232,7 @@ class CommandLine {
   }
 
   void chooseKind() {
-    command_.episodes.sampled = !allEndWithOneOf({".json", ".json.gz"});
+    command_.episodes.generated = !allEndWithOneOf({".json", ".json.gz"});
     if (app_.get_option("--as")->count() > 0) return;
     command_.kind = AssetKind::kScene;
     if (allEndWithOneOf({".urdf"})) command_.kind = AssetKind::kRobot;

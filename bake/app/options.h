@@ -44,7 +44,7 @@ struct RobotOptions {
 struct EpisodeOptions {
   /// Whether the inputs are packs, in which episodes are generated; else they are episode sets,
   /// which are imported.
-  bool sampled = false;
+  bool generated = false;
   EpisodeImportOptions import;
   /// List of the episodes to keep; empty: all.
   std::filesystem::path only;
@@ -152,7 +152,7 @@ struct BakeCommand {
   /// Whether all inputs go into one pack.
   [[nodiscard]] bool makesOnePack() const {
     return kind == AssetKind::kObject || kind == AssetKind::kWorld ||
-           (kind == AssetKind::kEpisodes && episodes.sampled);
+           (kind == AssetKind::kEpisodes && episodes.generated);
   }
 
   /// Whether it is a recipe or a dataset, of which many packs are made.

@@ -23,6 +23,8 @@
 #include "galactic/render_meshes.h"
 #include "galactic/robot.h"
 #include "galactic/scene.h"
+#include "galactic/schema/pack_generated.h"
+#include "galactic/shared_textures.h"
 #include "support/aligned_bytes.h"
 #include "support/render_mesh_reader.h"
 
@@ -179,6 +181,17 @@ void useWorld(const PackFile& pack) {
   }
 }
 
+void useTexture(const PackFile& pack) {
+  SharedTextures textures;
+  if (!textures.add(pack)) report("a texture pack whose texture is not read");
+  const schema::SharedTexture& stored = *pack.root().asset_as_SharedTexture();
+  const RenderTexture* texture = textures.find(stored.hash()->low(), stored.hash()->high());
+  if (texture == nullptr) report("a texture that is not found by its hash");
+  if (texture->texels.size() != textureBytes(texture->size, texture->format)) {
+    report("a texture with too few or too many texels");
+  }
+}
+
 void draw(const PackFile& pack) {
   const auto meshes = renderMeshesOf(pack);
   if (!meshes) report("a pack whose render meshes are not read");
@@ -187,7 +200,8 @@ void draw(const PackFile& pack) {
 }
 
 void use(const PackFile& pack) {
-  if (pack.kind() != PackKind::kEpisodes && pack.kind() != PackKind::kWorld) draw(pack);
+  const std::array without_meshes{PackKind::kEpisodes, PackKind::kWorld, PackKind::kTexture};
+  if (std::ranges::find(without_meshes, pack.kind()) == without_meshes.end()) draw(pack);
   switch (pack.kind()) {
     case PackKind::kScene:
       return useScene(pack);
@@ -199,12 +213,14 @@ void use(const PackFile& pack) {
       return useEpisodes(pack);
     case PackKind::kWorld:
       return useWorld(pack);
+    case PackKind::kTexture:
+      return useTexture(pack);
   }
 }
 
 /// The kinds of header for a payload; odd first bytes count through them.
-constexpr std::array kKinds{PackKind::kScene, PackKind::kObjects, PackKind::kRobot,
-                            PackKind::kEpisodes, PackKind::kWorld};
+constexpr std::array kKinds{PackKind::kScene,    PackKind::kObjects, PackKind::kRobot,
+                            PackKind::kEpisodes, PackKind::kWorld,   PackKind::kTexture};
 
 test::AlignedBytes fileOf(const std::uint8_t* data, std::size_t size) {
   const auto* first = reinterpret_cast<const std::byte*>(data);
