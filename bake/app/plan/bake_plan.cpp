@@ -59,6 +59,20 @@ Result<std::vector<LinkedPack>> link(const WorldPlan& plan, const PlanOutcome& o
   return packs;
 }
 
+/// Neither world nor report may replace what the command or one of its bakes reads.
+Result<void> checkOutputs(const WorldPlan& plan, const BakeCommand& command) {
+  const auto check = [&](const BakeCommand& reader) -> Result<void> {
+    const BakeRun run(reader);
+    if (auto checked = run.checkNotRead(plan.world); !checked) return checked;
+    return run.checkNotRead(command.report);
+  };
+  if (auto checked = check(command); !checked) return checked;
+  for (const PlannedPack& pack : plan.assets) {
+    if (auto checked = check(pack.command); !checked) return checked;
+  }
+  return {};
+}
+
 /// Whether there is a world to link after this run.
 bool linksWorld(const BakeCommand& command, const PlanOutcome& outcome) {
   if (command.dry_run || command.plan.shard.count > 1 || outcome.stopped) return false;
@@ -80,6 +94,7 @@ int bakePlan(const BakeCommand& command) {
   if (command.dataset.list) return listScenes(command);
   const auto plan = makePlan(command);
   if (!plan) return refuse(plan.error());
+  if (auto checked = checkOutputs(*plan, command); !checked) return refuse(checked.error());
   const PlanOutcome outcome = runPlan(*plan, command);
   int exit_code = exitCodeOf(outcome);
   PlanSummary summary{.plan = *plan, .outcome = outcome, .world = {}};

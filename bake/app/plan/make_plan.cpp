@@ -163,14 +163,26 @@ class RecipePlanner {
   const std::vector<RecipeOption>* common_ = nullptr;
 };
 
+/// "home" of home.scene_dataset_config.json and of home.toml.
+std::string worldName(const fs::path& input) {
+  constexpr std::string_view kDatasetSuffix = ".scene_dataset_config.json";
+  const std::string name = input.filename().string();
+  if (!name.ends_with(kDatasetSuffix)) return input.stem().string();
+  return name.substr(0, name.size() - kDatasetSuffix.size());
+}
+
 /// NAME.pack, in the folder or under the name that the command gives.
-fs::path worldPackOf(const BakeCommand& command) {
-  std::string name = command.inputs.front().filename().string();
-  name.erase(name.find('.'));
+Result<fs::path> worldPackOf(const BakeCommand& command) {
+  const std::string name = worldName(command.inputs.front());
   std::error_code unknown;
-  const bool is_folder = !command.output.empty() && fs::is_directory(command.output, unknown);
-  if (command.output.empty() || is_folder) return command.output / (name + ".pack");
-  return command.output;
+  const fs::path& out = command.output;
+  const bool is_folder = !out.has_filename() || fs::is_directory(out, unknown);
+  if (is_folder) return out / (name + ".pack");
+  if (out.has_extension()) return out;
+  // The other packs go into a folder of this name.
+  return fail(
+      ErrorCode::kInvalidInput, "--out",
+      fmt::format("is \"{}\", NAME.pack or a folder that is there is wanted", out.string()));
 }
 
 }  // namespace
@@ -182,7 +194,9 @@ Result<std::vector<std::string>> namesOfScenes(const BakeCommand& command) {
 }
 
 Result<WorldPlan> makePlan(const BakeCommand& command) {
-  PackList packs(worldPackOf(command));
+  auto world = worldPackOf(command);
+  if (!world) return tl::unexpected(world.error());
+  PackList packs(std::move(*world));
   if (command.kind == AssetKind::kDataset) {
     for (const fs::path& input : command.inputs) {
       BakeCommand one = command;
