@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/plan_folder.h"
+#include "galactic/pack_reference.h"
 #include "galactic/world.h"
 
 namespace galactic::test {
@@ -34,7 +35,9 @@ TEST_F(PlanCli, BakesADatasetIntoPacksAndAWorld) {
   const auto world = PackFile::open(path("out/home.pack"));
   ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
   EXPECT_EQ(world->kind(), PackKind::kWorld);
-  EXPECT_THAT(packsIn("out"), SizeIs(world->root().asset_as_World()->packs()->size() + 1U));
+  const auto listed = packReferences(*world);
+  ASSERT_TRUE(listed.has_value());
+  EXPECT_THAT(packsIn("out"), SizeIs(listed->size() + 1));
   // There is nothing to run in it yet.
   const auto runnable = World::open(std::vector{path("out/home.pack")});
   ASSERT_FALSE(runnable.has_value());
@@ -169,7 +172,8 @@ TEST_F(PlanCli, TreatsScenesThatLackSomethingAsTheUserWants) {
   EXPECT_THAT(packsThatAre("planned"), Contains("scenes/d.pack"));
   const ProgramRun nothing = bake("out", {"--scenes", "e"});
   EXPECT_EQ(nothing.exit_code, 3);
-  EXPECT_THAT(nothing.err, HasSubstr("no scene"));
+  EXPECT_THAT(nothing.err, HasSubstr("out/home.pack: would have no scene, 1 are left out: e: stage "
+                                     "'hall' is in none of the dataset's paths; a world has"));
   EXPECT_FALSE(has("out/home.pack"));
 }
 

@@ -45,6 +45,8 @@ Result<std::vector<LinkedPack>> link(const WorldPlan& plan, const PlanOutcome& o
   }
   const std::vector<fs::path> paths(names.begin(), names.end());
   auto packs = linkPacks(paths, plan.world.parent_path());
+  // Of what the packs lack together, no one of them is the place.
+  if (!packs && packs.error().where.empty()) packs.error().where = plan.world.string();
   if (!packs) return packs;
   std::vector<SourceFile> sources;
   sources.reserve(packs->size());

@@ -84,12 +84,11 @@ Result<void> makeFolder(const fs::path& folder) {
 }
 
 /// Whether the texture packs are there that a bake of before shared.
-bool hasTextures(const PlannedPack& pack, const Json& entry) {
+bool hasTextures(const PlannedPack& pack, const Json& entry, TextureChecks& checks) {
   const std::vector<std::string> textures = texturePacks(entry);
   return std::ranges::all_of(textures, [&](const std::string& texture) {
-    std::error_code problem;
     const fs::path name = fs::path(texture).filename();
-    return fs::exists(pack.command.render.shared_textures / name, problem);
+    return checks.isWhole(pack.command.render.shared_textures / name);
   });
 }
 
@@ -99,7 +98,7 @@ Result<std::optional<Json>> fromCache(const PlannedPack& pack, const std::string
   const auto found = tools.cache->find(key, pack.folder, tools.digests);
   if (!found) return std::nullopt;
   Json entry = Json::parse(found->report, nullptr, /*allow_exceptions=*/false);
-  if (!hasTextures(pack, entry)) return std::nullopt;
+  if (!hasTextures(pack, entry, tools.textures)) return std::nullopt;
   if (auto linked = linkOrCopy(found->pack, pack.command.output); !linked) {
     return tl::unexpected(linked.error());
   }
