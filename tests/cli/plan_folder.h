@@ -84,7 +84,8 @@ class PlanFolder : public BakeFolder {
   /// From the last report: which packs are in this state.
   [[nodiscard]] std::vector<std::string> packsThatAre(const std::string& state) const {
     std::vector<std::string> names;
-    for (const auto& pack : report().at("packs")) {
+    const nlohmann::json last = report();
+    for (const auto& pack : last.at("packs")) {
       if (pack.at("state") == state) names.push_back(pack.at("pack").get<std::string>());
     }
     return names;

@@ -94,7 +94,7 @@ RULES = (
     Rule("bake/include", ("runtime/include", "bake/include"), frozenset({"tl"}), schema=False),
     Rule("bake/src", ("runtime/include", "bake/include", "bake/src"),
          LEAN | {"Eigen", "flatbuffers", "nlohmann", "xxhash.h"}),
-    Rule("bake/app", ("runtime/include", "bake/include"), LEAN | {"CLI", "nlohmann"}),
+    Rule("bake/app", ("runtime/include", "bake/include", "bake/app"), LEAN | {"CLI", "nlohmann"}),
 )
 # Whose files a folder must not reach, even by a relative path.
 FORBIDDEN_TARGETS = {"runtime": ("bake", "pack_tool", "tests", "benchmarks"),

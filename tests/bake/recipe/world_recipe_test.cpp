@@ -136,7 +136,7 @@ TEST_F(WorldRecipeFile, RefusesEachMistakeWithItsLine) {
       {scene + "[[robot]]\nfiles = \"r.urdf\"\n", 3, "robot is wanted as a table, [robot]"},
       {"episodes = 3\n" + scene, 1, "episodes is wanted as a table, [episodes]"},
       {"bake = 3\n" + scene, 1, "bake is wanted as a table, [bake]"},
-      {"[[scenes]]\nfiles = \"a\"\ndataset = \"b\"\n", 3,
+      {"[[scenes]]\nfiles = \"a\"\ndataset = \"b\"\n", 2,
        "both files and dataset are given; keep one of them"},
       {"[[scenes]]\nfiles = 3\n", 2, "files is wanted as a text or a list of texts"},
       {"[[scenes]]\nfiles = [\"a\", 3]\n", 2, "files is wanted as a text or a list of texts"},
@@ -146,9 +146,9 @@ TEST_F(WorldRecipeFile, RefusesEachMistakeWithItsLine) {
       {scene + "radii = [true]\n", 3, "radii is wanted as a list of numbers or texts"},
       {scene + "package = { a = [1] }\n", 3, "a is wanted as a text"},
       {scene + "package = { a = true }\n", 3, "a is wanted as a text"},
-      {scene + "[robots]\nfiles = \"r\"\n", 3, "the key robots is unknown; did you mean robot?"},
+      {scene + "[robots]\nfiles = \"r\"\n", 3, "the key robots is unknown; did you mean 'robot'?"},
       {"radii = 3\n" + scene, 1,
-       "the key radii is unknown; the keys are bake, episodes, objects, robot and scenes"},
+       "the key radii is unknown; known are 'bake', 'scenes', 'objects', 'robot', 'episodes'"},
   };
   for (const Mistake& mistake : mistakes) {
     SCOPED_TRACE(mistake.text);
