@@ -31,7 +31,8 @@ class PlanFolder : public BakeFolder {
     addTemplate("stages/flat.stage_config.json", "apartment.glb");
     addTemplate("objects/mug.object_config.json", "objects/mug.glb");
     addTemplate("objects/box.object_config.json", "objects/cereal_box.glb");
-    const std::string box = R"({"template_name": "box", "motion_type": "DYNAMIC"})";
+    const std::string box = R"({"template_name": "box", "motion_type": "DYNAMIC",
+                                "translation_origin": "asset_local"})";
     addScene("a", "flat", thing("mug", 1) + ", " + box);
     addScene("b", "flat", thing("mug", 2) + ", " + box);
     addScene("c", "flat", "");

@@ -83,13 +83,40 @@ Result<void> makeFolder(const fs::path& folder) {
   return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + problem.message());
 }
 
-/// Whether the texture packs are there that a bake of before shared.
-bool hasTextures(const PlannedPack& pack, const Json& entry, TextureChecks& checks) {
+/// Where a texture pack that scenes share is kept, by its name below the plan's folder.
+struct TexturePlaces {
+  fs::path used;
+  fs::path kept;
+};
+
+TexturePlaces placesOf(const std::string& texture, const PlannedPack& pack,
+                       const PlanTools& tools) {
+  const fs::path name = fs::path(texture).filename();
+  return {.used = pack.command.render.shared_textures / name,
+          .kept = tools.cache->folder() / "textures" / name};
+}
+
+/// Whether the texture packs are there, or put there, that a bake of before shared.
+bool hasTextures(const PlannedPack& pack, const Json& entry, const PlanTools& tools) {
   const std::vector<std::string> textures = texturePacks(entry);
+  if (textures.empty()) return true;
+  if (!makeFolder(pack.command.render.shared_textures)) return false;
   return std::ranges::all_of(textures, [&](const std::string& texture) {
-    const fs::path name = fs::path(texture).filename();
-    return checks.isWhole(pack.command.render.shared_textures / name);
+    const auto [used, kept] = placesOf(texture, pack, tools);
+    if (tools.textures.isWhole(used)) return true;
+    return tools.textures.isWhole(kept) && linkOrCopy(kept, used).has_value();
   });
+}
+
+/// Keeps what a bake shared, for worlds in other folders.
+Result<void> keepTextures(const PlannedPack& pack, const Json& entry, const PlanTools& tools) {
+  for (const std::string& texture : texturePacks(entry)) {
+    const auto [used, kept] = placesOf(texture, pack, tools);
+    if (auto made = makeFolder(kept.parent_path()); !made) return made;
+    if (tools.textures.isWhole(kept)) continue;
+    if (auto linked = linkOrCopy(used, kept); !linked) return linked;
+  }
+  return {};
 }
 
 /// The pack as it was made before, put where it belongs.
@@ -98,7 +125,7 @@ Result<std::optional<Json>> fromCache(const PlannedPack& pack, const std::string
   const auto found = tools.cache->find(key, pack.folder, tools.digests);
   if (!found) return std::nullopt;
   Json entry = Json::parse(found->report, nullptr, /*allow_exceptions=*/false);
-  if (!hasTextures(pack, entry, tools.textures)) return std::nullopt;
+  if (!hasTextures(pack, entry, tools)) return std::nullopt;
   if (auto linked = linkOrCopy(found->pack, pack.command.output); !linked) {
     return tl::unexpected(linked.error());
   }
@@ -120,6 +147,7 @@ Result<Json> bakeAnew(const PlannedPack& pack, const std::string& key, const Pla
   auto inputs = inputsOf(run, pack, tools.digests);
   if (!inputs) return tl::unexpected(inputs.error());
   inputs->key = key;
+  if (auto kept = keepTextures(pack, entry, tools); !kept) return tl::unexpected(kept.error());
   if (auto kept = tools.cache->store(*inputs, command.output, entry.dump()); !kept) {
     return tl::unexpected(kept.error());
   }
