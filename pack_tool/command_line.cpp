@@ -86,6 +86,7 @@ struct AllOptions {
   DiffOptions diff;
   ExportOptions export_;
   PictureOptions picture;
+  ReportOptions report;
 };
 
 void addInfo(CLI::App& app, InfoOptions& options) {
@@ -247,6 +248,14 @@ void addPicture(CLI::App& app, PictureOptions& options) {
   addTrusted(verb, options.trust);
 }
 
+void addReport(CLI::App& app, ReportOptions& options) {
+  CLI::App& verb = *app.add_subcommand(
+      "report", "Write an HTML page with a picture of everything in packs or a world");
+  addPacks(verb, options.packs);
+  addOutput(verb, options.output);
+  addTrusted(verb, options.trust);
+}
+
 void addEpisodeSetOptions(CLI::App& verb, ExportOptions& options) {
   verb.add_option("--object-up", options.object_up,
                   "episode sets: up axis of the objects' mesh files (default z)")
@@ -298,6 +307,7 @@ Request chosenRequest(const CLI::App& app, AllOptions& options) {
   if (app.got_subcommand("column")) return std::move(options.column);
   if (app.got_subcommand("diff")) return std::move(options.diff);
   if (app.got_subcommand("picture")) return std::move(options.picture);
+  if (app.got_subcommand("report")) return std::move(options.report);
   return std::move(options.export_);
 }
 
@@ -311,8 +321,9 @@ int usageError(const Console& console, std::string_view message) {
 
 tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
                                             const Console& console) {
-  CLI::App app("galactic-pack looks into packs, checks, compares, exports and draws them.",
-               "galactic-pack");
+  CLI::App app(
+      "galactic-pack looks into packs, checks, compares, exports, draws and reports on them.",
+      "galactic-pack");
   AllOptions options;
   // Verbs inherit the footer that is set before them.
   app.footer(kFooter);
@@ -324,8 +335,9 @@ tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
   addDiff(app, options.diff);
   addExport(app, options.export_);
   addPicture(app, options.picture);
+  addReport(app, options.report);
 
-  constexpr std::string_view kVerbs = "info, check, column, diff, export or picture";
+  constexpr std::string_view kVerbs = "info, check, column, diff, export, picture or report";
   if (argc < 2) return tl::unexpected(usageError(console, fmt::format("no verb; give {}", kVerbs)));
   const std::string first = argv[1];
   const auto named = [&first](const CLI::App* verb) { return verb->get_name() == first; };

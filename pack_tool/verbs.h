@@ -107,6 +107,16 @@ struct PictureOptions {
 /// several objects on a contact sheet.
 [[nodiscard]] int runPicture(const PictureOptions& options, const Console& console);
 
+struct ReportOptions {
+  std::vector<std::filesystem::path> packs = {};
+  std::filesystem::path output = {};
+  Trust trust = Trust::kVerify;
+};
+
+/// Writes one self-contained HTML page about packs, those of a world among them: a table, warnings,
+/// what runInfo prints, and a picture of every grid and of everything that is drawn.
+[[nodiscard]] int runReport(const ReportOptions& options, const Console& console);
+
 enum class ExportFormat { kObj, kPly, kGlb, kSrdf, kUrdf, kEpisodeSet };
 
 /// How the names of published episode sets end.

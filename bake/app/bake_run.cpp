@@ -69,4 +69,9 @@ void printError(const Error& error) {
   fmt::print(stderr, "galactic-bake: {}: {}\n", printable(error.where), printable(error.message));
 }
 
+int refuse(const Error& error) {
+  printError(error);
+  return static_cast<int>(error.code);
+}
+
 }  // namespace galactic::bake

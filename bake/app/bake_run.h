@@ -92,4 +92,7 @@ class BakeRun {
 /// One line on stderr: program, place, message.
 void printError(const Error& error);
 
+/// The same; the exit code.
+[[nodiscard]] int refuse(const Error& error);
+
 }  // namespace galactic::bake

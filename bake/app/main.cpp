@@ -9,6 +9,7 @@
 #include "options.h"
 #include "plan/bake_plan.h"
 #include "report.h"
+#include "report_check.h"
 
 namespace galactic::bake {
 namespace {
@@ -45,20 +46,27 @@ Result<void> checkOutputs(const BakeRun& run) {
   return {};
 }
 
+/// Writes the report, if one is wanted.
+Result<void> reportTo(const std::filesystem::path& path, const BakeRun& run) {
+  if (path.empty()) return {};
+  auto written = run.checkNotRead(path);
+  return written ? writeReport(path, run) : written;
+}
+
 int bakeAll(const BakeCommand& command) {
   BakeRun run(command);
-  if (const auto outputs = checkOutputs(run); !outputs) {
-    printError(outputs.error());
-    return static_cast<int>(outputs.error().code);
-  }
+  if (const auto outputs = checkOutputs(run); !outputs) return refuse(outputs.error());
+  // Before anything is baked for a golden report that is not there.
+  const auto golden = goldenOf(command);
+  if (!golden) return refuse(golden.error());
   bakeInputs(run);
   run.line().clear();
-  if (command.report.empty()) return run.exitCode();
-  auto written = run.checkNotRead(command.report);
-  if (written) written = writeReport(command.report, run);
-  if (written) return run.exitCode();
-  printError(written.error());
-  return run.exitCode() == kExitOk ? static_cast<int>(written.error().code) : run.exitCode();
+  if (const auto written = reportTo(command.report, run); !written) {
+    const int code = refuse(written.error());
+    return run.exitCode() == kExitOk ? code : run.exitCode();
+  }
+  const int differs = *golden ? checkReport(**golden, reportOf(run), command) : kExitOk;
+  return run.exitCode() == kExitOk ? differs : run.exitCode();
 }
 
 }  // namespace

@@ -18,6 +18,30 @@ constexpr std::array<std::string_view, 8> kMeshExtensions{".glb", ".gltf", ".obj
 /// Files that stand for their whole folder.
 constexpr std::array<std::string_view, 2> kFolderStems{"textured", "model"};
 
+/// Folders that say how a model was made, not what it is: YCB's, the best first, and Google Scanned
+/// Objects'.
+constexpr std::array<std::string_view, 7> kMakeFolders{
+    "google_16k", "google_64k", "google_512k", "poisson", "tsdf", "meshes", "clouds"};
+
+std::size_t makeRank(std::string_view folder) {
+  return static_cast<std::size_t>(std::ranges::find(kMakeFolders, folder) - kMakeFolders.begin());
+}
+
+/// A model that stands for its folder.
+struct FolderModel {
+  ObjectInput input;
+  /// Of several models of one object, that of the lowest rank is taken.
+  std::size_t rank = 0;
+};
+
+FolderModel modelOf(const fs::path& file) {
+  const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
+  const std::string name = folder.filename().string();
+  const std::size_t rank = makeRank(name);
+  if (rank == kMakeFolders.size()) return {{file, name}, 0};
+  return {{file, folder.parent_path().filename().string()}, rank};
+}
+
 std::size_t formatRank(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
@@ -64,10 +88,16 @@ Result<void> addFolder(const fs::path& root, std::vector<ObjectInput>& objects) 
                 "holds no mesh file; .glb, .gltf, .obj, .dae, .fbx, .ply, .stl and .off are looked "
                 "for");
   }
+  // By the folder that the object is named after: one model of each object.
+  std::map<fs::path, FolderModel> models;
   for (const auto& [folder, files] : *folders) {
     const auto whole = std::find_if(files.begin(), files.end(), standsForFolder);
     if (whole != files.end()) {
-      objects.push_back({*whole, fs::absolute(folder).lexically_normal().filename().string()});
+      FolderModel model = modelOf(*whole);
+      const bool is_made = makeRank(folder.filename().string()) < kMakeFolders.size();
+      const auto [known, is_new] =
+          models.try_emplace(is_made ? folder.parent_path() : folder, model);
+      if (!is_new && model.rank < known->second.rank) known->second = std::move(model);
       continue;
     }
     std::set<std::string> stems;
@@ -77,6 +107,7 @@ Result<void> addFolder(const fs::path& root, std::vector<ObjectInput>& objects) 
       }
     }
   }
+  for (auto& [folder, model] : models) objects.push_back(std::move(model.input));
   return {};
 }
 

@@ -52,7 +52,7 @@ bool isDataset(AssetKind kind) { return kind == AssetKind::kDataset; }
 bool isScene(AssetKind kind) { return kind == AssetKind::kScene || isDataset(kind); }
 bool isRobot(AssetKind kind) { return kind == AssetKind::kRobot; }
 bool isEpisodes(AssetKind kind) { return kind == AssetKind::kEpisodes; }
-bool isMesh(AssetKind kind) { return kind == AssetKind::kScene || isObject(kind); }
+bool isMesh(AssetKind kind) { return isScene(kind) || isObject(kind); }
 bool isShape(AssetKind kind) { return isRobot(kind) || isObject(kind); }
 bool hasRadii(AssetKind kind) { return isScene(kind) || isObject(kind) || isRobot(kind); }
 bool hasPlan(AssetKind kind) { return isDataset(kind) || kind == AssetKind::kWorld; }
@@ -103,6 +103,14 @@ void addRunOptions(CLI::App& app, BakeCommand& command) {
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
   app.add_option("--report", command.report, "Write what was done as JSON")->type_name("FILE.json");
+  app.add_option("--check", command.golden_report,
+                 "Compare what was done with a report of an earlier bake; exit code 7 when it "
+                 "differs")
+      ->type_name("FILE.json");
+  app.add_option("--tolerance", command.tolerance,
+                 "Share by which numbers may differ for --check (default: whole ones not at all)")
+      ->check(CLI::Range(0.0, 1e6))
+      ->type_name("SHARE");
   app.set_config("--config", "", "Read options from a TOML file")->type_name("FILE");
   // A misspelt option in the file must not pass unnoticed.
   app.allow_config_extras(CLI::config_extras_mode::error);
@@ -307,8 +315,8 @@ bool BakeCommand::hasPlan() const {
 
 std::vector<std::filesystem::path> BakeCommand::namedFiles() const {
   std::vector<std::filesystem::path> files = inputs;
-  for (const std::filesystem::path& file :
-       {config, robot.recipe, robot.spheres, episodes.only, episodes.object_pack, collection}) {
+  for (const std::filesystem::path& file : {config, robot.recipe, robot.spheres, episodes.only,
+                                            episodes.object_pack, collection, golden_report}) {
     if (!file.empty()) files.push_back(file);
   }
   return files;

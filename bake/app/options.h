@@ -100,8 +100,6 @@ struct PlanOptions {
   Shard shard;
   /// Bytes that bakes at the same time may take together, as far as that can be foreseen.
   std::uint64_t memory = 0;
-  /// A picture report; empty: none.
-  std::filesystem::path html;
 };
 
 /// What the user typed, understood.
@@ -111,6 +109,10 @@ struct BakeCommand {
   /// A file for one pack, a folder for several; empty: NAME.pack in the current folder.
   std::filesystem::path output;
   std::filesystem::path report;
+  /// Golden report to compare with; empty: none. See compareReports.
+  std::filesystem::path golden_report;
+  /// Share by which the numbers of the reports may differ.
+  std::optional<double> tolerance;
   /// The file of options that was read, if any: like the inputs, nothing may replace it.
   std::filesystem::path config;
   MeshImportOptions import;

@@ -76,8 +76,6 @@ void PlannedOptions::addTo(CLI::App& app, BakeCommand& command) {
   app.add_option("--memory", memory_,
                  "GiB that bakes at the same time may take (default: 3/4 of the machine's)")
       ->type_name("GIB");
-  app.add_option("--html", command.plan.html, "Write a page with a picture of every pack")
-      ->type_name("FILE.html");
 }
 
 Result<void> PlannedOptions::understand(BakeCommand& command) const {

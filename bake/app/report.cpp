@@ -7,7 +7,7 @@
 
 namespace galactic::bake {
 
-Result<void> writeReport(const std::filesystem::path& path, const BakeRun& run) {
+Json reportOf(const BakeRun& run) {
   Json json{{"tool", "galactic-bake"}, {"version", GALACTIC_VERSION}};
   json["baked"] = run.baked();
   json["failed"] = Json::array();
@@ -17,7 +17,11 @@ Result<void> writeReport(const std::filesystem::path& path, const BakeRun& run) 
                               {"where", failure.error.where},
                               {"message", failure.error.message}});
   }
-  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json;
+}
+
+Result<void> writeReport(const std::filesystem::path& path, const BakeRun& run) {
+  const std::string text = reportOf(run).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   return writeFileAtomically(path, {std::as_bytes(std::span(text))});
 }
 

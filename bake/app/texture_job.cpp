@@ -27,7 +27,8 @@ Result<void> shareTextures(BakedMaterials& materials, const BakeCommand& command
     return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + problem.message());
   }
   // What a texture looks like says nothing of the asset that it was met in.
-  Provenance provenance = provenanceOf({}, {}, {});
+  const BakeCommand nothing;
+  const Provenance provenance = provenanceOf(nothing, {}, {});
   for (const BakedTexture& texture : materials.textures) {
     const std::filesystem::path pack = folder / (textureHash(texture) + ".pack");
     if (isThere(pack)) continue;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "galactic/schema/pack_generated.h"
+#include "pack_tool/figure/shared_textures_of.h"
 
 namespace galactic::pack_tool {
 
@@ -24,9 +25,7 @@ SurfaceView viewOf(const schema::Surface* surface) {
 /// The render meshes of a pack, where it has them and they are wanted.
 std::shared_ptr<const RenderMeshes> renderMeshesFor(const PackFile& pack, LayerSet layers) {
   if (!layers.has(FigureLayer::kMesh)) return nullptr;
-  auto stored = renderMeshesOf(pack);
-  if (!stored || !*stored) return nullptr;
-  return std::make_shared<const RenderMeshes>(std::move(**stored));
+  return renderMeshesWithTextures(pack);
 }
 
 /// Gives a part its render model.

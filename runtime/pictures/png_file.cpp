@@ -68,6 +68,10 @@ Result<std::string> encodePng(const AlphaImage& image) {
   return encode({image.width, image.height, PNG_FORMAT_RGB, pixels.data()});
 }
 
+Result<std::string> encodePng(const Image& image) {
+  return encode({image.width(), image.height(), PNG_FORMAT_RGB, image.pixels().data()});
+}
+
 Result<void> writePng(const std::filesystem::path& path, const Image& image) {
   static_assert(sizeof(Rgb) == 3, "libpng reads three bytes per pixel");
   return write(path, {image.width(), image.height(), PNG_FORMAT_RGB, image.pixels().data()});

@@ -28,6 +28,9 @@ struct AlphaImage {
 /// the same bytes. Fails with kInternal when libpng refuses the image.
 [[nodiscard]] Result<std::string> encodePng(const AlphaImage& image);
 
+/// The same of an image without alpha.
+[[nodiscard]] Result<std::string> encodePng(const Image& image);
+
 /// Writes an image as a PNG file, 8-bit sRGB, replacing an existing file in one go. The same image
 /// gives the same bytes. Fails with kIo when the file cannot be written, and kInternal when libpng
 /// refuses the image.

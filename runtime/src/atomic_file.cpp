@@ -110,6 +110,10 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& path) {
     return fail(ErrorCode::kIo, path.string(),
                 "cannot write the file: a device or pipe of this name is there; give another name");
   }
+  if (std::filesystem::is_directory(status)) {
+    return fail(ErrorCode::kIo, path.string(),
+                "cannot write the file: a folder of this name is there; give another name");
+  }
   auto temporary = std::make_unique<Temporary>(path, target);
   if (!temporary->isOpen()) return temporary->failure();
   return AtomicFile(std::move(temporary));

@@ -105,7 +105,7 @@ TEST(FindingCodes, NameTheFieldThatOffends) {
   };
   EXPECT_EQ(scene([](auto& f) { f.name.clear(); }), "scene/name");
   EXPECT_EQ(scene([](auto& f) { f.tool.clear(); }), "provenance/tool");
-  EXPECT_EQ(scene([](auto& f) { f.source_name = "/home/me/x.glb"; }), "provenance/sources.name");
+  EXPECT_EQ(scene([](auto& f) { f.source_name = "/x.glb"; }), "provenance/sources.name");
   EXPECT_EQ(scene([](auto& f) { f.grids[1].grid.spec.radius = -1; }), "scene/column_grids.radius");
   EXPECT_EQ(scene([](auto& f) { f.grids[0].grid.cells[0] = ~std::uint64_t{0}; }),
             "scene/column_grids.cells");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "bake_run.h"
@@ -11,6 +12,7 @@
 #include "plan/plan_report.h"
 #include "plan/plan_table.h"
 #include "plan/run_plan.h"
+#include "report_check.h"
 
 namespace galactic::bake {
 namespace {
@@ -18,11 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kExitInterrupted = 130;
-
-int refuse(const Error& error) {
-  printError(error);
-  return static_cast<int>(error.code);
-}
 
 int listScenes(const BakeCommand& command) {
   const auto names = namesOfScenes(command);
@@ -90,6 +87,17 @@ int exitCodeOf(const PlanOutcome& outcome) {
   return kExitOk;
 }
 
+/// Writes the report and compares it, where that is wanted.
+int report(const PlanSummary& summary, std::optional<GoldenReport>& golden,
+           const BakeCommand& command) {
+  if (auto written = writePlanReport(summary, command); !written) return refuse(written.error());
+  if (!golden) return kExitOk;
+  Json made = planReport(summary);
+  made.erase(kRunKey);
+  golden->report.erase(kRunKey);
+  return checkReport(*golden, made, command);
+}
+
 }  // namespace
 
 int bakePlan(const BakeCommand& command) {
@@ -97,8 +105,11 @@ int bakePlan(const BakeCommand& command) {
   const auto plan = makePlan(command);
   if (!plan) return refuse(plan.error());
   if (auto checked = checkOutputs(*plan, command); !checked) return refuse(checked.error());
+  // Before anything is baked for a golden report that is not there.
+  auto golden = goldenOf(command);
+  if (!golden) return refuse(golden.error());
   const PlanOutcome outcome = runPlan(*plan, command);
-  int exit_code = exitCodeOf(outcome);
+  const int exit_code = exitCodeOf(outcome);
   PlanSummary summary{.plan = *plan, .outcome = outcome, .world = {}};
   if (linksWorld(command, outcome)) {
     auto packs = link(*plan, outcome);
@@ -106,11 +117,8 @@ int bakePlan(const BakeCommand& command) {
     summary.world = std::move(*packs);
   }
   if (command.saysMore()) printPlanTable(summary);
-  if (auto written = writePlanReports(summary, command); !written) {
-    const int code = refuse(written.error());
-    exit_code = exit_code == kExitOk ? code : exit_code;
-  }
-  return exit_code;
+  const int reported = report(summary, *golden, command);
+  return exit_code == kExitOk ? reported : exit_code;
 }
 
 }  // namespace galactic::bake

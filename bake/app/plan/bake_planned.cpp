@@ -40,6 +40,7 @@ std::string keyOf(const PlannedPack& pack, const std::string& program) {
   for (const fs::path& file : command.namedFiles()) {
     key += fmt::format("file {}\n", relativeName(file, pack.folder));
   }
+  if (command.import.up) key += fmt::format("up {}\n", static_cast<int>(*command.import.up));
   if (command.import.transform)
     key += fmt::format("{}\n", fmt::join(*command.import.transform, ","));
   if (pack.scene) {

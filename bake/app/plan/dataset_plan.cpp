@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include "galactic/bake/world_recipe.h"
@@ -31,16 +32,41 @@ void addObjects(const SceneSurvey& survey, const BakeCommand& dataset, PackList&
   }
 }
 
+Result<void> addScans(const BakeCommand& command, PackList& packs) {
+  const auto files = findSceneFiles(command.inputs.front());
+  if (!files) return tl::unexpected(files.error());
+  const auto names = wantedScenes(namesOf(*files), command.dataset);
+  if (!names) return tl::unexpected(names.error());
+  for (const SceneFile& file : *files) {
+    if (!std::ranges::binary_search(*names, file.name)) continue;
+    BakeCommand one = command;
+    one.kind = AssetKind::kScene;
+    one.inputs = {file.path};
+    one.asset_name = file.name;
+    if (!one.import.up) one.import.up = file.up;
+    packs.add("scenes/" + file.name, std::move(one), file.path);
+  }
+  return {};
+}
+
 }  // namespace
 
-Result<std::vector<std::string>> wantedScenes(const SceneDataset& dataset,
+std::vector<std::string> namesOf(const std::vector<SceneFile>& files) {
+  std::vector<std::string> names;
+  names.reserve(files.size());
+  for (const SceneFile& file : files) names.push_back(file.name);
+  std::ranges::sort(names);
+  return names;
+}
+
+Result<std::vector<std::string>> wantedScenes(const std::vector<std::string>& scenes,
                                               const DatasetOptions& options) {
-  if (options.scenes.empty()) return dataset.scenes();
-  std::vector<bool> wanted(dataset.scenes().size(), false);
+  if (options.scenes.empty()) return scenes;
+  std::vector<bool> wanted(scenes.size(), false);
   for (const std::string& pattern : options.scenes) {
     bool fits_any = false;
     for (std::size_t n = 0; n < wanted.size(); ++n) {
-      if (!fitsPattern(dataset.scenes()[n], pattern)) continue;
+      if (!fitsPattern(scenes[n], pattern)) continue;
       wanted[n] = true;
       fits_any = true;
     }
@@ -51,16 +77,24 @@ Result<std::vector<std::string>> wantedScenes(const SceneDataset& dataset,
   }
   std::vector<std::string> names;
   for (std::size_t n = 0; n < wanted.size(); ++n) {
-    if (wanted[n]) names.push_back(dataset.scenes()[n]);
+    if (wanted[n]) names.push_back(scenes[n]);
   }
   return names;
 }
 
 Result<void> addDataset(const BakeCommand& command, PackList& packs) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(command.inputs.front(), unknown)) {
+    return addScans(command, packs);
+  }
+  if (command.import.up || command.import.scale || command.import.transform) {
+    return fail(ErrorCode::kInvalidInput, command.inputs.front().string(),
+                "says itself how its meshes stand; leave out --up, --scale and --transform");
+  }
   auto read = SceneDataset::read(command.inputs.front());
   if (!read) return tl::unexpected(read.error());
   const auto dataset = std::make_shared<const SceneDataset>(std::move(*read));
-  const auto names = wantedScenes(*dataset, command.dataset);
+  const auto names = wantedScenes(dataset->scenes(), command.dataset);
   if (!names) return tl::unexpected(names.error());
   const auto meshes = std::make_shared<MeshLibrary>(datasetMeshOptions());
   const auto textures = std::make_shared<TextureLibrary>();

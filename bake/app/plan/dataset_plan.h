@@ -2,20 +2,22 @@
 #include <string>
 #include <vector>
 
-#include "galactic/bake/scene_dataset.h"
+#include "galactic/bake/scene_files.h"
 #include "galactic/error.h"
 #include "options.h"
 #include "plan/pack_list.h"
 
 namespace galactic::bake {
 
-/// The names of the dataset's scenes that `options` want. Fails with kInvalidInput where a pattern
-/// fits none.
-[[nodiscard]] Result<std::vector<std::string>> wantedScenes(const SceneDataset& dataset,
+/// Ascending.
+[[nodiscard]] std::vector<std::string> namesOf(const std::vector<SceneFile>& files);
+
+/// The names among `names` that `options` want. Fails with kInvalidInput where a pattern fits none.
+[[nodiscard]] Result<std::vector<std::string>> wantedScenes(const std::vector<std::string>& names,
                                                             const DatasetOptions& options);
 
 /// Adds a pack for each wanted scene of the command's dataset, and one for each movable object in
-/// them.
+/// them. The command's only input is a dataset's configuration, or a folder of scans.
 [[nodiscard]] Result<void> addDataset(const BakeCommand& command, PackList& packs);
 
 }  // namespace galactic::bake

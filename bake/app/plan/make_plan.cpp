@@ -163,11 +163,15 @@ class RecipePlanner {
   const std::vector<RecipeOption>* common_ = nullptr;
 };
 
-/// "home" of home.scene_dataset_config.json and of home.toml.
+/// "home" of home.scene_dataset_config.json, of home.toml and of the folder home.
 std::string worldName(const fs::path& input) {
   constexpr std::string_view kDatasetSuffix = ".scene_dataset_config.json";
-  const std::string name = input.filename().string();
-  if (!name.ends_with(kDatasetSuffix)) return input.stem().string();
+  std::error_code unknown;
+  // "scans/" has no file name, and "." is none.
+  const fs::path whole = fs::absolute(input, unknown).lexically_normal();
+  std::string name = (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+  if (fs::is_directory(input, unknown)) return name;
+  if (!name.ends_with(kDatasetSuffix)) return whole.stem().string();
   return name.substr(0, name.size() - kDatasetSuffix.size());
 }
 
@@ -188,9 +192,15 @@ Result<fs::path> worldPackOf(const BakeCommand& command) {
 }  // namespace
 
 Result<std::vector<std::string>> namesOfScenes(const BakeCommand& command) {
+  std::error_code unknown;
+  if (fs::is_directory(command.inputs.front(), unknown)) {
+    const auto files = findSceneFiles(command.inputs.front());
+    if (!files) return tl::unexpected(files.error());
+    return wantedScenes(namesOf(*files), command.dataset);
+  }
   const auto dataset = SceneDataset::read(command.inputs.front());
   if (!dataset) return tl::unexpected(dataset.error());
-  return wantedScenes(*dataset, command.dataset);
+  return wantedScenes(dataset->scenes(), command.dataset);
 }
 
 Result<WorldPlan> makePlan(const BakeCommand& command) {

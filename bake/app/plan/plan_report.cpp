@@ -10,15 +10,23 @@
 namespace galactic::bake {
 namespace {
 
-Json jsonOf(const PackOutcome& pack) {
-  Json json{{"pack", pack.name}, {"state", nameOf(pack.state)}, {"seconds", pack.seconds}};
-  if (pack.error) {
-    json["code"] = static_cast<int>(pack.error->code);
-    json["where"] = pack.error->where;
-    json["message"] = pack.error->message;
-  }
-  if (!pack.entry.is_null()) json["bake"] = pack.entry;
+/// What was baked, now or before, as the report of a single bake has it.
+Json bakedOf(const PackOutcome& pack) {
+  Json json{{"pack", pack.name}};
+  json.update(pack.entry);
   return json;
+}
+
+Json failureOf(const PackOutcome& pack) {
+  return {{"pack", pack.name},
+          {"code", static_cast<int>(pack.error->code)},
+          {"where", pack.error->where},
+          {"message", pack.error->message}};
+}
+
+/// How this run came to it.
+Json progressOf(const PackOutcome& pack) {
+  return {{"pack", pack.name}, {"state", nameOf(pack.state)}, {"seconds", pack.seconds}};
 }
 
 Json jsonOf(const LinkedPack& pack) {
@@ -28,13 +36,20 @@ Json jsonOf(const LinkedPack& pack) {
           {"xxh3_128", fmt::format("{:016x}{:016x}", pack.hash_high, pack.hash_low)}};
 }
 
-std::string jsonText(const PlanSummary& summary) {
+}  // namespace
+
+Json planReport(const PlanSummary& summary) {
   Json json{{"tool", "galactic-bake"}, {"version", GALACTIC_VERSION}};
-  json["world"] = summary.plan.world.string();
-  json["seconds"] = summary.outcome.seconds;
-  json["stopped"] = summary.outcome.stopped;
-  json["packs"] = Json::array();
-  for (const PackOutcome& pack : summary.outcome.packs) json["packs"].push_back(jsonOf(pack));
+  json["output"] = summary.plan.world.string();
+  json["baked"] = Json::array();
+  json["failed"] = Json::array();
+  Json run{{"seconds", summary.outcome.seconds}, {"stopped", summary.outcome.stopped}};
+  run["packs"] = Json::array();
+  for (const PackOutcome& pack : summary.outcome.packs) {
+    if (pack.entry.is_object()) json["baked"].push_back(bakedOf(pack));
+    if (pack.error) json["failed"].push_back(failureOf(pack));
+    run["packs"].push_back(progressOf(pack));
+  }
   json["left_out"] = Json::array();
   for (const LeftOut& scene : summary.plan.left_out) {
     json["left_out"].push_back({{"scene", scene.name}, {"reasons", scene.reasons}});
@@ -42,14 +57,14 @@ std::string jsonText(const PlanSummary& summary) {
   json["warnings"] = summary.plan.warnings;
   json["linked"] = Json::array();
   for (const LinkedPack& pack : summary.world) json["linked"].push_back(jsonOf(pack));
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  json[kRunKey] = std::move(run);
+  return json;
 }
 
-}  // namespace
-
-Result<void> writePlanReports(const PlanSummary& summary, const BakeCommand& command) {
+Result<void> writePlanReport(const PlanSummary& summary, const BakeCommand& command) {
   if (command.report.empty()) return {};
-  const std::string text = jsonText(summary);
+  const std::string text =
+      planReport(summary).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   return writeFileAtomically(command.report, {std::as_bytes(std::span(text))});
 }
 

@@ -17,7 +17,14 @@ struct PlanSummary {
   std::vector<LinkedPack> world;
 };
 
-/// The command's --report and --html, as far as it wants them.
-[[nodiscard]] Result<void> writePlanReports(const PlanSummary& summary, const BakeCommand& command);
+/// The member of a plan's report that says how the run went: whatever else is in it does not depend
+/// on what was baked before.
+inline constexpr const char* kRunKey = "run";
+
+/// What was baked, what failed, what was left out, and what the world lists.
+[[nodiscard]] Json planReport(const PlanSummary& summary);
+
+/// The command's --report, where it wants one.
+[[nodiscard]] Result<void> writePlanReport(const PlanSummary& summary, const BakeCommand& command);
 
 }  // namespace galactic::bake

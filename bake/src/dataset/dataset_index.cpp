@@ -73,7 +73,7 @@ void IndexReader::addFile(TemplateKind kind, const fs::path& file) {
     if (fs::is_regular_file(beside, ignored)) entry.config = beside;
   }
   entry.handle = nameRelativeTo(index_.config, entry.config.empty() ? entry.asset : entry.config);
-  block(kind).templates.add(std::move(entry));
+  block(kind).templates.add(entry);
 }
 
 void IndexReader::addMatches(TemplateKind kind, const std::string& ending,

@@ -70,9 +70,29 @@ typename Shelf<T>::Entry sharedEntry(Result<T> content) {
 
 /// Whether only the library holds it. Called under the library's mutex: nobody can take another
 /// copy meanwhile.
-template <class T>
-bool isIdle(const typename Shelf<T>::Entry& entry) {
+template <class Entry>
+bool isIdle(const Entry& entry) {
   return entry.content && entry.content->has_value() && (*entry.content)->use_count() == 1;
+}
+
+template <class T>
+std::uint64_t idleBytes(const Shelf<T>& shelf) {
+  std::uint64_t bytes = 0;
+  for (const auto& [key, entry] : shelf.entries) {
+    if (isIdle(entry)) bytes += entry.bytes;
+  }
+  return bytes;
+}
+
+/// What is idle and was not loaded for longest; the end where nothing is.
+template <class T>
+auto oldestIdle(Shelf<T>& shelf) {
+  auto oldest = shelf.entries.end();
+  for (auto entry = shelf.entries.begin(); entry != shelf.entries.end(); ++entry) {
+    if (!isIdle(entry->second)) continue;
+    if (oldest == shelf.entries.end() || entry->second.used < oldest->second.used) oldest = entry;
+  }
+  return oldest;
 }
 
 }  // namespace
@@ -118,7 +138,7 @@ Result<std::shared_ptr<const T>> MeshLibrary::State::load(Shelf<T>& shelf, const
     throw;
   }
   // Held here, it is not idle when room is made.
-  const Result<std::shared_ptr<const T>> content = *fresh.content;
+  Result<std::shared_ptr<const T>> content = *fresh.content;
   lock.lock();
   fresh.used = ++loads;
   shelf.entries.at(key) = std::move(fresh);
@@ -128,34 +148,15 @@ Result<std::shared_ptr<const T>> MeshLibrary::State::load(Shelf<T>& shelf, const
 }
 
 void MeshLibrary::State::makeRoom() {
-  const auto idle_bytes = [&] {
-    std::uint64_t bytes = 0;
-    for (const auto& [key, entry] : meshes.entries) {
-      if (isIdle<SourceAsset>(entry)) bytes += entry.bytes;
-    }
-    for (const auto& [key, entry] : furniture.entries) {
-      if (isIdle<SourceRobot>(entry)) bytes += entry.bytes;
-    }
-    return bytes;
-  };
-  while (idle_bytes() > memory_limit) {
-    auto oldest_mesh = meshes.entries.end();
-    auto oldest_furniture = furniture.entries.end();
-    std::uint64_t oldest = loads + 1;
-    for (auto entry = meshes.entries.begin(); entry != meshes.entries.end(); ++entry) {
-      if (!isIdle<SourceAsset>(entry->second) || entry->second.used >= oldest) continue;
-      oldest = entry->second.used;
-      oldest_mesh = entry;
-    }
-    for (auto entry = furniture.entries.begin(); entry != furniture.entries.end(); ++entry) {
-      if (!isIdle<SourceRobot>(entry->second) || entry->second.used >= oldest) continue;
-      oldest = entry->second.used;
-      oldest_furniture = entry;
-    }
-    if (oldest_furniture != furniture.entries.end()) {
-      furniture.entries.erase(oldest_furniture);
-    } else if (oldest_mesh != meshes.entries.end()) {
-      meshes.entries.erase(oldest_mesh);
+  while (idleBytes(meshes) + idleBytes(furniture) > memory_limit) {
+    const auto mesh = oldestIdle(meshes);
+    const auto piece = oldestIdle(furniture);
+    const bool has_mesh = mesh != meshes.entries.end();
+    const bool has_piece = piece != furniture.entries.end();
+    if (has_piece && (!has_mesh || piece->second.used < mesh->second.used)) {
+      furniture.entries.erase(piece);
+    } else if (has_mesh) {
+      meshes.entries.erase(mesh);
     } else {
       return;
     }

@@ -169,10 +169,12 @@ Result<void> SceneComposer::placeStage(const SceneItem& item) {
   if (mesh->empty()) return {};
   const auto asset = load(*mesh);
   if (!asset) return tl::unexpected(asset.error());
-  // A stage stands where its own origin is, whatever the translation's origin.
-  const Affine world_from_stage =
-      compose(worldFromObject(item), objectFromAsset(**attributes, item.scale));
-  addMesh(*mesh, **asset, world_from_stage, entry->name);
+  const SceneItem unmoved;
+  if (item.translation != unmoved.translation || item.rotation != unmoved.rotation ||
+      item.scale != unmoved.scale) {
+    warnOnce("the scene moves, turns or scales its stage; as in Habitat, it stays as it is");
+  }
+  addMesh(*mesh, **asset, objectFromAsset(**attributes, unmoved.scale), entry->name);
   result_.has_stage = true;
   return {};
 }

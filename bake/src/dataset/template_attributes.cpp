@@ -62,8 +62,9 @@ class LayerReader {
     checkScale("scale");
     triple("up", kLargestScale, attributes_.up);
     triple("front", kLargestScale, attributes_.front);
-    const JsonNode centre = JsonReader::member(root_, "COM");
-    if (centre.json != nullptr) {
+    // As in Habitat, a file that states none takes back what the defaults stated.
+    attributes_.centre_of_mass.reset();
+    if (JsonReader::member(root_, "COM").json != nullptr) {
       triple("COM", kFarthest, attributes_.centre_of_mass.emplace());
     }
     const JsonNode collidable = JsonReader::member(root_, "is_collidable");

@@ -21,11 +21,9 @@ std::string_view withoutEnding(const DatasetTemplate& entry) {
 
 }  // namespace
 
-void TemplateList::add(DatasetTemplate entry) {
-  std::string name = entry.name;
-  std::string handle = entry.handle;
-  if (!by_handle_.try_emplace(handle, std::move(entry)).second) return;
-  handles_of_name_.emplace(std::move(name), std::move(handle));
+void TemplateList::add(const DatasetTemplate& entry) {
+  if (!by_handle_.try_emplace(entry.handle, entry).second) return;
+  handles_of_name_.emplace(entry.name, entry.handle);
 }
 
 void TemplateList::addLayer(const std::string& handle, AttributeLayer layer) {
@@ -34,7 +32,7 @@ void TemplateList::addLayer(const std::string& handle, AttributeLayer layer) {
 
 void TemplateList::replace(DatasetTemplate entry) {
   const auto known = by_handle_.find(entry.handle);
-  if (known == by_handle_.end()) return add(std::move(entry));
+  if (known == by_handle_.end()) return add(entry);
   entry.name = known->second.name;
   known->second = std::move(entry);
 }

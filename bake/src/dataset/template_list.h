@@ -44,7 +44,7 @@ struct FoundTemplate {
 class TemplateList {
  public:
   /// Ignores what is there already.
-  void add(DatasetTemplate entry);
+  void add(const DatasetTemplate& entry);
   /// Adds layers to the template at `handle`.
   void addLayer(const std::string& handle, AttributeLayer layer);
   /// Puts `entry` in the place of one with the same handle.

@@ -63,23 +63,22 @@ class HabitatReader {
   Result<EpisodeFile> read(const Json& root);
 
  private:
-  /// One of the episode's objects: its name, and where its spawn is.
-  struct Rigid {
-    std::string name;
-    std::uint32_t spawn = 0;
-  };
+  /// The numbers of the episode's objects of each name, ascending.
+  using Instances = std::map<std::string, std::vector<std::size_t>>;
 
   void readEpisode(const JsonNode& node);
   std::uint32_t readScene(const JsonNode& node);
-  std::vector<Rigid> readObjects(const JsonNode& list);
+  /// The names of the episode's objects, whose spawns are the last ones.
+  std::vector<std::string> readObjects(const JsonNode& list);
   void readStart(const JsonNode& node, Episode& episode);
   void readFurniture(const JsonNode& states);
   /// Goals, by the number of the target among the episode's objects.
   std::map<std::size_t, Pose> readTargets(const JsonNode& targets,
-                                          const std::vector<Rigid>& objects);
+                                          const std::vector<std::string>& objects);
   std::optional<std::size_t> targetOf(const JsonNode& target, const std::string& handle,
-                                      const std::vector<Rigid>& objects);
-  void addEpisodes(const Episode& episode, const std::map<std::size_t, Pose>& goals);
+                                      const Instances& instances);
+  void addEpisodes(const JsonNode& node, const Episode& episode,
+                   const std::map<std::size_t, Pose>& goals);
 
   RigidMatrix matrix(const JsonNode& node);
   /// world_from_object in the frame of the object's pack.
@@ -93,6 +92,8 @@ class HabitatReader {
   NameList scenes_;
   NameList objects_;
   std::set<std::string> uncentred_;
+  /// Of all episodes.
+  std::uint64_t placements_ = 0;
   Losses losses_;
 };
 
@@ -160,15 +161,10 @@ std::uint32_t HabitatReader::readScene(const JsonNode& node) {
   return scenes_.numberOf(name);
 }
 
-std::vector<HabitatReader::Rigid> HabitatReader::readObjects(const JsonNode& list) {
-  std::vector<Rigid> objects;
+std::vector<std::string> HabitatReader::readObjects(const JsonNode& list) {
+  std::vector<std::string> objects;
   const auto nodes = json_.elements(list);
   if (nodes.empty()) json_.error(list.place, "is empty, at least one object is wanted");
-  if (file_.spawns.size() + nodes.size() > kMostPlacements) {
-    json_.error(list.place, fmt::format("makes it {} objects in all episodes, one pack holds at "
-                                        "most {}; split the set",
-                                        file_.spawns.size() + nodes.size(), kMostPlacements));
-  }
   objects.reserve(nodes.size());
   for (const JsonNode& node : nodes) {
     const auto pair = json_.elements(node);
@@ -183,7 +179,7 @@ std::vector<HabitatReader::Rigid> HabitatReader::readObjects(const JsonNode& lis
     if (name.empty()) json_.error(pair[0].place, "is empty, an object's template is wanted");
     const Pose placed = pose(pair[1], name);
     if (json_.failed()) break;
-    objects.push_back({name, static_cast<std::uint32_t>(file_.spawns.size())});
+    objects.push_back(name);
     file_.spawns.push_back({objects_.numberOf(name), placed});
   }
   return objects;
@@ -233,7 +229,7 @@ void HabitatReader::readFurniture(const JsonNode& states) {
 
 std::optional<std::size_t> HabitatReader::targetOf(const JsonNode& target,
                                                    const std::string& handle,
-                                                   const std::vector<Rigid>& objects) {
+                                                   const Instances& instances) {
   const auto instance = habitatInstance(handle);
   if (!instance) {
     json_.error(target.place,
@@ -241,29 +237,30 @@ std::optional<std::size_t> HabitatReader::targetOf(const JsonNode& target,
                 "mug_:0000");
     return std::nullopt;
   }
-  std::size_t met = 0;
-  for (std::size_t n = 0; n < objects.size(); ++n) {
-    if (objects[n].name == instance->object && met++ == instance->number) return n;
-  }
+  const auto named = instances.find(instance->object);
+  const std::size_t count = named == instances.end() ? 0 : named->second.size();
+  if (instance->number < count) return named->second[instance->number];
   json_.error(target.place, fmt::format("is number {} of the objects '{}' from 0 on, rigid_objs "
                                         "has {} of them",
-                                        instance->number, instance->object, met));
+                                        instance->number, instance->object, count));
   return std::nullopt;
 }
 
 std::map<std::size_t, Pose> HabitatReader::readTargets(const JsonNode& targets,
-                                                       const std::vector<Rigid>& objects) {
+                                                       const std::vector<std::string>& objects) {
   std::map<std::size_t, Pose> goals;
   if (targets.json == nullptr || json_.failed()) return goals;
   if (!targets.json->is_object()) {
     json_.error(targets.place, "it is wanted as an object");
     return goals;
   }
+  Instances instances;
+  for (std::size_t n = 0; n < objects.size(); ++n) instances[objects[n]].push_back(n);
   for (auto one = targets.json->begin(); one != targets.json->end(); ++one) {
     const JsonNode node{&*one, fmt::format("{}.{}", targets.place, one.key())};
-    const auto target = targetOf(node, one.key(), objects);
+    const auto target = targetOf(node, one.key(), instances);
     if (!target) return goals;
-    if (!goals.emplace(*target, pose(node, objects[*target].name)).second) {
+    if (!goals.emplace(*target, pose(node, objects[*target])).second) {
       json_.error(node.place, "is the second goal of one object, wanted one for each");
     }
   }
@@ -271,13 +268,22 @@ std::map<std::size_t, Pose> HabitatReader::readTargets(const JsonNode& targets,
   return goals;
 }
 
-void HabitatReader::addEpisodes(const Episode& episode, const std::map<std::size_t, Pose>& goals) {
-  if (goals.size() > 1 && options_.targets == HabitatTargets::kFirst) ++losses_.more_targets;
+void HabitatReader::addEpisodes(const JsonNode& node, const Episode& episode,
+                                const std::map<std::size_t, Pose>& goals) {
+  const bool each = options_.targets == HabitatTargets::kEach;
+  if (goals.size() > 1 && !each) ++losses_.more_targets;
+  placements_ += std::uint64_t{episode.placement_count} * (each ? goals.size() : 1);
+  if (placements_ > kMostPlacements) {
+    return json_.error(node.place,
+                       fmt::format("makes it {} objects in all episodes, one pack holds "
+                                   "at most {}; split the set",
+                                   placements_, kMostPlacements));
+  }
   for (const auto& [target, goal] : goals) {
     Episode& added = file_.episodes.emplace_back(FileEpisode{episode, {}}).episode;
     added.target = static_cast<std::uint32_t>(target);
     added.goal = goal;
-    if (options_.targets == HabitatTargets::kFirst) return;
+    if (!each) return;
   }
 }
 
@@ -299,7 +305,7 @@ void HabitatReader::readEpisode(const JsonNode& node) {
   const auto goals = readTargets(json_.require(node, "targets"), objects);
   if (json_.failed()) return;
   ++losses_.episodes;
-  addEpisodes(episode, goals);
+  addEpisodes(node, episode, goals);
 }
 
 void HabitatReader::warnOfLosses() {

@@ -6,6 +6,26 @@
 #include <utility>
 
 namespace galactic::bake {
+namespace {
+
+/// Grids may reach this far beyond the triangles that they were made of, metres.
+constexpr float kGridMargin = 1;
+
+/// The rectangle of a grid; heights are 0.
+Bounds groundOf(const ColumnGrid& grid) {
+  const ColumnGridLayout& layout = grid.layout();
+  const float length = static_cast<float>(layout.columns_x) * layout.spacing;
+  const float width = static_cast<float>(layout.columns_z) * layout.spacing;
+  return {{layout.min_x, 0, layout.min_z}, {layout.min_x + length, 0, layout.min_z + width}};
+}
+
+/// Whether the mesh is about where the grid is: another up axis or unit is not.
+bool covers(const Bounds& mesh, const Bounds& grid) {
+  return mesh.min.x <= grid.min.x + kGridMargin && mesh.min.z <= grid.min.z + kGridMargin &&
+         mesh.max.x >= grid.max.x - kGridMargin && mesh.max.z >= grid.max.z - kGridMargin;
+}
+
+}  // namespace
 
 PreparedScene::PreparedScene(const GenerationContext& context, const Scene& scene,
                              SceneDetails details)
@@ -51,6 +71,16 @@ Result<void> PreparedScene::check() const {
 
 Result<void> PreparedScene::useMesh() {
   if (details_.mesh.triangles.empty()) return {};
+  const Bounds& mesh = details_.mesh.bounds;
+  const Bounds grid = groundOf(scene_.grids().front());
+  if (!covers(mesh, grid)) {
+    return fail(ErrorCode::kInvalidInput, std::string(scene_.name()),
+                fmt::format("the scene's mesh reaches from x {}, z {} to x {}, z {} m, its column "
+                            "grids from x {}, z {} to x {}, z {} m; give the mesh it was baked "
+                            "from, in the world's frame",
+                            mesh.min.x, mesh.min.z, mesh.max.x, mesh.max.z, grid.min.x, grid.min.z,
+                            grid.max.x, grid.max.z));
+  }
   auto rays = SurfaceRays::build(details_.mesh);
   if (!rays) return tl::unexpected(rays.error());
   rays_ = std::make_unique<const SurfaceRays>(std::move(*rays));

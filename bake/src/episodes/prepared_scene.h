@@ -21,7 +21,7 @@ struct GenerationContext {
 class PreparedScene {
  public:
   /// Fails with kInvalidInput when the robot stands nowhere, when the receptacles that were asked
-  /// for are missing, and when no surface is within reach.
+  /// for are missing, when no surface is within reach, and when the mesh is of another place.
   [[nodiscard]] static Result<std::unique_ptr<const PreparedScene>> prepare(
       const GenerationContext& context, const Scene& scene, SceneDetails details);
 

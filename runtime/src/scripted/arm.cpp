@@ -49,6 +49,9 @@ Arm::Arm(const Robot& robot) : robot_(&robot), links_(robot.links().size()) {
       if (moves) movers_.push_back({index, joint});
     }
   }
+  const std::span<const Pose> at_start = placeLinks(robot.startPositions());
+  tested_pairs_ = robot.testedPairs();
+  std::erase_if(tested_pairs_, [&](const GroupPair& pair) { return overlaps(pair, at_start); });
 }
 
 std::span<const Pose> Arm::placeLinks(std::span<const float> positions) {
@@ -116,13 +119,15 @@ void Arm::move(std::size_t joint, float by, Joints& positions) const {
                              : std::clamp(position + by, arm_joint.lower, arm_joint.upper);
 }
 
+bool Arm::overlaps(const GroupPair& pair, std::span<const Pose> links) const {
+  const SphereGroup& first = robot_->groups()[pair.first];
+  const SphereGroup& second = robot_->groups()[pair.second];
+  return overlap(first, links[first.link], second, links[second.link], robot_->radii());
+}
+
 bool Arm::touchesItself(std::span<const Pose> links) const {
-  const std::vector<SphereGroup>& groups = robot_->groups();
-  return std::ranges::any_of(robot_->testedPairs(), [&](const GroupPair& pair) {
-    const SphereGroup& first = groups[pair.first];
-    const SphereGroup& second = groups[pair.second];
-    return overlap(first, links[first.link], second, links[second.link], robot_->radii());
-  });
+  return std::ranges::any_of(tested_pairs_,
+                             [&](const GroupPair& pair) { return overlaps(pair, links); });
 }
 
 }  // namespace galactic::scripted

@@ -63,10 +63,13 @@ class Arm {
   /// Adds `by` to a joint, within its limits.
   void move(std::size_t joint, float by, Joints& positions) const;
 
-  /// Whether spheres of a tested pair of groups overlap.
+  /// Whether spheres of a tested pair of groups overlap. Pairs that overlap where an episode starts
+  /// do not count: spheres stick out of what they cover, and some overlap in every position.
   [[nodiscard]] bool touchesItself(std::span<const Pose> links) const;
 
  private:
+  [[nodiscard]] bool overlaps(const GroupPair& pair, std::span<const Pose> links) const;
+
   const Robot* robot_;
   std::vector<ArmJoint> joints_;
   /// Links that move the end effector, each with the controlled joint whose position moves it.
@@ -75,6 +78,7 @@ class Arm {
     std::size_t joint = 0;
   };
   std::vector<Mover> movers_;
+  std::vector<GroupPair> tested_pairs_;
   std::vector<Pose> links_;
 };
 

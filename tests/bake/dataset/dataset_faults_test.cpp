@@ -1,4 +1,5 @@
 // What can be wrong with the files of a dataset, one by one.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,7 +62,7 @@ const std::vector<Fault>& datasetFaults() {
   return all;
 }
 
-const std::vector<Fault>& sceneFaults() {
+const std::vector<Fault>& instanceFaults() {
   static const std::vector<Fault> all{
       {"SceneList", kScene, "[]", "the file", "it is wanted as an object with members"},
       {"NoStage", kScene, "{}", "stage_instance",
@@ -119,6 +120,12 @@ const std::vector<Fault>& sceneFaults() {
        R"({"stage_instance": {"template_name": "room"}, "articulated_object_instances":
            [{"template_name": "cupboard", "initial_joint_pose": 3}]})",
        "articulated_object_instances[0].initial_joint_pose", "it is wanted as a list"},
+  };
+  return all;
+}
+
+const std::vector<Fault>& attributeFaults() {
+  static const std::vector<Fault> all{
       {"ObjectList", kTable, "[]", "the file", "it is wanted as an object"},
       {"AssetNoText", kTable, R"({"render_asset": ["a.glb"]})", "render_asset",
        "it is wanted as text"},
@@ -182,7 +189,8 @@ TEST_P(SceneFaults, AreNamedWithFileAndField) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DatasetFaults, testing::ValuesIn(datasetFaults()), nameOf);
-INSTANTIATE_TEST_SUITE_P(All, SceneFaults, testing::ValuesIn(sceneFaults()), nameOf);
+INSTANTIATE_TEST_SUITE_P(Instances, SceneFaults, testing::ValuesIn(instanceFaults()), nameOf);
+INSTANTIATE_TEST_SUITE_P(Attributes, SceneFaults, testing::ValuesIn(attributeFaults()), nameOf);
 
 TEST(FaultyDataset, OfTheWholeAreNamed) {
   const SmallDataset small;

@@ -1,4 +1,5 @@
 // The scenes of ReplicaCAD that have their stage, from the real dataset.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +17,6 @@
 namespace galactic::test {
 namespace {
 
-using bake::ComposedScene;
 using bake::MeshLibrary;
 using bake::SceneDataset;
 using Point = std::array<double, 3>;

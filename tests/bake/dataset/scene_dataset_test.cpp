@@ -4,12 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "bake/dataset/small_dataset.h"
 #include "galactic/bake/render_source.h"
+#include "galactic/bake/triangle_mesh.h"
+#include "support/assets.h"
 
 namespace galactic::test {
 namespace {
@@ -119,6 +121,29 @@ TEST(SceneDataset, AppliesScalesAndFrames) {
   // Z up: (x, y, z) becomes (x, z, -y), then the scale.
   const bake::Affine shelf{0.5, 0, 0, 0, 0, 0, 2, 0, 0, -1.5, 0, 0};
   EXPECT_EQ(scene.movable[1].world_from_mesh, shelf);
+}
+
+TEST(SceneDataset, LeavesTheStageWhereItIsAsHabitatDoes) {
+  const SmallDataset small;
+  small.writeScene("moved", R"({"stage_instance": {"template_name": "room",
+      "translation": [1, 2, 3], "rotation": [0, 1, 0, 0], "translation_origin": "COM"}})");
+  const ComposedScene scene = composed(small, "moved");
+  EXPECT_LT(errorOf(scene.scene, "room", boxCorners()), kTolerance);
+  EXPECT_THAT(scene.scene.warnings,
+              ElementsAre("the scene moves, turns or scales its stage; as in Habitat, it stays as "
+                          "it is"));
+}
+
+TEST(SceneDataset, TakesTheCentreOfTheBoxWhereTheLastLayerStatesNoCentreOfMass) {
+  const SmallDataset small;
+  // The layer of high_table states a scale only.
+  small.writeScene("high", R"({"stage_instance": {"template_name": "NONE"}, "object_instances": [
+      {"template_name": "high_table", "motion_type": "STATIC", "translation_origin": "COM"}]})");
+  const ComposedScene scene = composed(small, "high");
+  EXPECT_LT(errorOf(scene.scene, "high_table_:0000", changedCorners([](const auto& p) {
+                      return std::array{p[0] - 1, 3 * (p[1] - 1.25), p[2] - 2.5};
+                    })),
+            kTolerance);
 }
 
 TEST(SceneDataset, PlacesFurnitureInItsRestPose) {
@@ -287,6 +312,30 @@ TEST(SceneDataset, OfStagesAloneHasThemAsScenes) {
   EXPECT_LT(errorOf(other->scene, "xyz", boxCorners()), kTolerance);
 }
 
+TEST(SceneDataset, TurnsAPublishedStageThatLiesOnItsSide) {
+  const auto room = assetsFolder() / "scenes" / "habitat_simple_room";
+  if (!std::filesystem::exists(room / "simple_room.glb")) {
+    GTEST_SKIP() << "set GALACTIC_ASSETS to a folder with scenes/habitat_simple_room/ in it";
+  }
+  const ScratchFolder folder;
+  const auto config = folder.write(
+      "rooms.scene_dataset_config.json",
+      fmt::format(R"({{"stages": {{"paths": {{".glb": ["{}/simple_*"]}}}}}})", room.string()));
+  const auto dataset = SceneDataset::read(config);
+  ASSERT_TRUE(dataset) << textOf(dataset.error());
+  MeshLibrary meshes(bake::datasetMeshOptions());
+  const auto scene = dataset->compose("simple_room", meshes);
+  ASSERT_TRUE(scene) << textOf(scene.error());
+  const auto mesh = placeAndClean(scene->scene);
+  ASSERT_TRUE(mesh) << textOf(mesh.error());
+  // The file has x -5.25 to 5.28, y -5.4 to 5.45, z -0.06 to 2.15, and z is up.
+  constexpr float kRounding = 0.01F;
+  EXPECT_NEAR(mesh->mesh.bounds.min.y, -0.0614F, kRounding);
+  EXPECT_NEAR(mesh->mesh.bounds.max.y, 2.15F, kRounding);
+  EXPECT_NEAR(mesh->mesh.bounds.min.z, -5.45F, kRounding);
+  EXPECT_NEAR(mesh->mesh.bounds.max.x, 5.28F, kRounding);
+}
+
 TEST(SceneDataset, TakesTheFirstOfSeveralMeaningsAndSaysSo) {
   const SmallDataset small;
   small.write("configs/objects/small/table.object_config.json",
@@ -326,7 +375,9 @@ TEST(SceneDataset, DoesNotDependOnTheOrderOfScenesOrOnTheLibrary) {
     for (const auto& mesh : scene->scene.meshes) {
       text += fmt::format("{} {} {}\n", mesh.name, mesh.positions.size(), mesh.material);
     }
-    for (const auto& file : scene->scene.files) text += file.name + '\n';
+    for (const auto& file : scene->scene.files) {
+      text += fmt::format("{} {} {}\n", file.name, file.hash_low, file.hash_high);
+    }
     return text;
   };
   MeshLibrary shared(bake::datasetMeshOptions());
@@ -337,6 +388,16 @@ TEST(SceneDataset, DoesNotDependOnTheOrderOfScenesOrOnTheLibrary) {
   EXPECT_EQ(digest("b_home", keeps_nothing), b);
   EXPECT_EQ(digest("a_home", keeps_nothing), a);
   EXPECT_EQ(digest("a_home", shared), a);
+  // Several threads, one of which reads each file.
+  MeshLibrary contended(bake::datasetMeshOptions());
+  std::vector<std::string> digests(6);
+  std::vector<std::thread> threads;
+  for (std::size_t n = 0; n < digests.size(); ++n) {
+    threads.emplace_back(
+        [&, n] { digests[n] = digest(n % 2 == 0 ? "a_home" : "b_home", contended); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (std::size_t n = 0; n < digests.size(); ++n) EXPECT_EQ(digests[n], n % 2 == 0 ? a : b);
 }
 
 TEST(SceneDataset, FingerprintChangesWithTheTemplatesThatAreThere) {

@@ -1,5 +1,6 @@
 #include "galactic/bake/scene_files.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +14,7 @@ namespace {
 
 using testing::ElementsAre;
 
-std::vector<std::string> found(const ScratchFolder& folder, std::vector<std::string> files) {
+std::vector<std::string> found(const ScratchFolder& folder, const std::vector<std::string>& files) {
   for (const std::string& file : files) static_cast<void>(folder.write(file, "any content"));
   const auto scenes = bake::findSceneFiles(folder.path());
   EXPECT_TRUE(scenes) << scenes.error().message;

@@ -90,5 +90,15 @@ TEST(ArmReach, LeavesOutSamplesInWhichTheRobotTouchesItself) {
   EXPECT_LT(ArmReach(robotOf(pack)).samples().size(), ArmReach(robotOf(plain)).samples().size());
 }
 
+TEST(ArmReach, DoesNotCountLinksThatOverlapAtTheStart) {
+  // The base's sphere reaches the upper arm's in every position, as those of neighbours do.
+  RobotPackFields robot = stickRobot();
+  robot.spheres[0].centre = {0, 0.7F, 0};
+  robot.spheres[1].centre = {0.1F, 0, 0};
+  const MemoryPack pack(buildPack(robot), "stick");
+  const ArmReach reach(robotOf(pack));
+  EXPECT_GT(reach.samples().size(), 10000U);
+}
+
 }  // namespace
 }  // namespace galactic::test

@@ -136,7 +136,7 @@ class FloorOracle {
 
   /// Whether (x, y, z) is on the floor there, and a place of the largest part is not a step away.
   [[nodiscard]] bool isOnLargestPart(double x, double y, double z) const {
-    // The sampler lifts the base's point by 0.1 mm; a floor is known to 0.1 mm.
+    // The generator lifts the base's point by 0.1 mm; a floor is known to 0.1 mm.
     constexpr double kTolerance = 0.001;
     const std::optional<double> part = largestPartAt(x, z);
     if (!part || std::abs(*part - y) > kStep) return false;

@@ -41,17 +41,17 @@ inline MemoryPack scenePackOf(const bake::TriangleMesh& mesh, const std::string&
 }
 
 /// A cube of 8 cm that stands on its bottom only.
-inline MemoryPack cubePack() {
+inline MemoryPack cubePack(const std::string& name = "cube") {
   ObjectPackFields fields;
   fields.radii = madeRadii();
   ObjectFields& cube = fields.objects.emplace_back();
   constexpr float kHalf = 0.04F;
-  cube.name = "cube";
+  cube.name = name;
   cube.box_pose = Pose{{0, kHalf, 0}, {}};
   cube.box_half_extents = Vec3{kHalf, kHalf, kHalf};
   cube.spheres = {{{0, kHalf, 0}, 1}};
   cube.stable_poses = {{{}, 0, 1}};
-  return {buildPack(fields), "cube"};
+  return {buildPack(fields), name};
 }
 
 /// A base of one sphere, a shoulder 0.7 m high that turns and lifts, an upper arm and a forearm of

@@ -1,11 +1,10 @@
 // The generator on the project's own world: every promise of every episode, by brute force.
-#include "support/sample_world.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
 
 #include "episode_oracle.h"
+#include "sample_packs.h"
 
 namespace galactic::test {
 namespace {
@@ -23,34 +22,6 @@ class Tally {
  private:
   double asked_ = 0;
   int yes_ = 0;
-};
-
-/// The sample world, baked once for all that is asked here: baking takes seconds.
-class SampleWorld {
- public:
-  SampleWorld()
-      : scene_pack_(bakeSampleApartment()),
-        object_pack_(bakeSampleObjects()),
-        robot_pack_(bakeSampleRobot()),
-        scenes{MemoryPack::opened(Scene::from(scene_pack_.pack()))},
-        objects(MemoryPack::opened(ObjectSet::from(object_pack_.pack()))),
-        robot(MemoryPack::opened(Robot::from(robot_pack_.pack()))) {}
-
-  [[nodiscard]] bake::EpisodeInputs inputs() const {
-    bake::EpisodeInputs inputs;
-    inputs.packs = {&scene_pack_.pack(), &object_pack_.pack(), &robot_pack_.pack()};
-    return inputs;
-  }
-
- private:
-  MemoryPack scene_pack_;
-  MemoryPack object_pack_;
-  MemoryPack robot_pack_;
-
- public:
-  std::vector<Scene> scenes;
-  ObjectSet objects;
-  Robot robot;
 };
 
 bake::SourceEpisodes generated(const SampleWorld& world,

@@ -162,9 +162,10 @@ TEST_F(WorldRecipeFile, RefusesEachMistakeWithItsLine) {
 }
 
 TEST_F(WorldRecipeFile, RefusesOptionsOfTheCommandLineInEachTable) {
-  for (const char* option : {"as", "out", "jobs", "report", "config", "dry-run", "keep-going",
-                             "verbose", "quiet", "version", "cache", "memory", "print-recipe",
-                             "shard", "no-cache", "html", "help", "data", "list"}) {
+  for (const char* option :
+       {"as",       "out",   "jobs",      "report", "config", "dry-run",      "keep-going",
+        "verbose",  "quiet", "version",   "cache",  "memory", "print-recipe", "shard",
+        "no-cache", "check", "tolerance", "help",   "data",   "list"}) {
     for (const char* table : {"[bake]\n", "[robot]\n", "[episodes]\n", "[[objects]]\n"}) {
       const auto recipe =
           read(fmt::format("[[scenes]]\nfiles = \"a\"\n{}{} = \"1\"\n", table, option));

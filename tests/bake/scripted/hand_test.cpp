@@ -138,5 +138,21 @@ TEST_F(PorterArm, GoesTheShorterWayRoundInContinuousJoints) {
   EXPECT_NEAR(arm.distance(from, to), 0.2831853F, 1e-5F);
 }
 
+TEST(ArmOfLinksThatOverlap, TouchesItselfOnlyWhereItDidNotAtTheStart) {
+  // The base's sphere reaches the upper arm's in every position, as those of neighbours do.
+  RobotPackFields fields = stickRobot();
+  fields.spheres[0].centre = {0, 0.7F, 0};
+  fields.spheres[1].centre = {0.1F, 0, 0};
+  fields.spheres[2].centre = {0.25F, 0, 0};
+  const MemoryPack pack(buildPack(fields), "stick");
+  const Robot robot = MemoryPack::opened(Robot::from(pack.pack()));
+  Arm arm(robot);
+  Joints joints(robot.startPositions().begin(), robot.startPositions().end());
+  EXPECT_FALSE(arm.touchesItself(arm.placeLinks(joints)));
+  // Folded further, the forearm meets the upper arm.
+  joints = {0, 0, 3.0F};
+  EXPECT_TRUE(arm.touchesItself(arm.placeLinks(joints)));
+}
+
 }  // namespace
 }  // namespace galactic::test

@@ -77,7 +77,7 @@ struct TextureBakeOptions {
   /// Threads. The result does not depend on them.
   unsigned jobs = 1;
   /// Where images of other assets may be found again; null: nowhere.
-  std::shared_ptr<TextureLibrary> library;
+  std::shared_ptr<TextureLibrary> library = nullptr;
 };
 
 /// Makes flat colours and small square mip-mapped textures of the materials of an asset.

@@ -6,7 +6,7 @@
 
 namespace galactic::bake {
 
-/// Episodes as importers and samplers give them, ready for encodeEpisodePack. World frame: Y up,
+/// Episodes as importers and the generator give them, ready for encodeEpisodePack. World frame: Y up,
 /// metres, radians; object frames are those of the object packs.
 struct SourceEpisodes {
   std::string name;

@@ -1,6 +1,8 @@
-// From the sample's sources to a world with sampled episodes.
+// From the sample's sources to a world with generated episodes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
 
 #include "cli/bake_folder.h"
 #include "galactic/world.h"
@@ -15,7 +17,7 @@ std::string sample(const char* file) {
   return std::string(GALACTIC_SOURCE_DIR "/packs/sample/") + file;
 }
 
-class SamplingCli : public test::BakeFolder {
+class GenerationCli : public test::BakeFolder {
  protected:
   /// The sample's packs with few spheres: some seconds.
   void bakePacks() const {
@@ -46,12 +48,13 @@ class SamplingCli : public test::BakeFolder {
   }
 };
 
-TEST_F(SamplingCli, DrawsEpisodesThatMakeAWorldWithTheirPacks) {
+TEST_F(GenerationCli, DrawsEpisodesThatMakeAWorldWithTheirPacks) {
   bakePacks();
   const ProgramRun drawn = draw({"--seed", "7"});
   ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
   EXPECT_THAT(drawn.out, HasSubstr("3 packs -> episodes.pack"));
   EXPECT_THAT(drawn.out, HasSubstr("3 episodes; 1 scenes, 2 objects, 6 placements"));
+  EXPECT_THAT(drawn.out, HasSubstr("drawn and not taken: "));
   ASSERT_EQ(draw({"--seed", "7", "-o", "again.pack", "-j", "1"}).exit_code, 0);
   ASSERT_EQ(draw({"--seed", "8", "-o", "other.pack"}).exit_code, 0);
   EXPECT_TRUE(content("episodes.pack") == content("again.pack"));
@@ -63,6 +66,17 @@ TEST_F(SamplingCli, DrawsEpisodesThatMakeAWorldWithTheirPacks) {
   ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
   EXPECT_EQ(world->episodes().episodes().size(), 3U);
   EXPECT_EQ(world->mostObjects(), 2U);
+  const ProgramRun settled =
+      draw({"--geometry", "apartment=" + sample("apartment.glb"), "--report", "r.json", "-v"});
+  ASSERT_EQ(settled.exit_code, 0) << settled.err;
+  EXPECT_THAT(settled.out, HasSubstr("objects settled"));
+  const auto report = nlohmann::json::parse(content("r.json"));
+  const auto& generation = report["baked"][0]["generation"];
+  EXPECT_EQ(generation["scenes"][0]["settled"], true);
+  EXPECT_TRUE(generation["rejections"]["tipped"].is_number());
+  const ProgramRun unused = draw({"--split", "validation", "--held-out", "0", "-o", "none.pack"});
+  EXPECT_EQ(unused.exit_code, 3);
+  EXPECT_THAT(unused.err, HasSubstr("none of the 1 scenes is for validation"));
   const ProgramRun impossible = draw({"--heights", "90,91", "-o", "none.pack"});
   EXPECT_EQ(impossible.exit_code, 3);
   EXPECT_THAT(impossible.err, HasSubstr("no flat surface between 90 and 91 m"));

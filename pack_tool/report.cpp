@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <utility>
+
+#include "galactic/pack_reference.h"
+#include "pack_tool/output_file.h"
+#include "pack_tool/report/html_page.h"
+#include "pack_tool/verbs.h"
+
+namespace galactic::pack_tool {
+
+namespace {
+
+/// The packs, and those that worlds among them list; textures are parts of what shows them.
+Result<std::vector<PackFile>> openAll(const ReportOptions& options) {
+  std::vector<PackFile> packs;
+  for (const std::filesystem::path& path : options.packs) {
+    auto pack = PackFile::open(path, options.trust);
+    if (!pack) return tl::unexpected(pack.error());
+    if (auto checked = checkOutput(*pack, options.output); !checked) {
+      return tl::unexpected(checked.error());
+    }
+    if (pack->kind() == PackKind::kWorld) {
+      const auto references = packReferences(*pack);
+      if (!references) return tl::unexpected(references.error());
+      for (const PackReference& reference : *references) {
+        if (reference.kind == PackKind::kTexture) continue;
+        auto listed = openReference(*pack, reference, options.trust);
+        if (!listed) return tl::unexpected(listed.error());
+        packs.push_back(std::move(*listed));
+      }
+    }
+    packs.push_back(std::move(*pack));
+  }
+  return packs;
+}
+
+Result<PackEntry> entryOf(const PackFile& pack) {
+  PackEntry entry{.description = describePack(pack, Detail::kSummary), .thumbnails = {}};
+  auto thumbnails = thumbnailsOf(pack);
+  if (!thumbnails) return tl::unexpected(thumbnails.error());
+  entry.thumbnails = std::move(*thumbnails);
+  return entry;
+}
+
+/// On all cores; what becomes of a pack does not depend on who draws it.
+std::vector<Result<PackEntry>> entriesOf(const std::vector<PackFile>& packs) {
+  std::vector<Result<PackEntry>> entries(packs.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t n = next++; n < packs.size(); n = next++) entries[n] = entryOf(packs[n]);
+  };
+  std::vector<std::jthread> helpers;
+  const std::size_t threads =
+      std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), packs.size());
+  helpers.reserve(threads);
+  for (std::size_t n = 1; n < threads; ++n) helpers.emplace_back(work);
+  work();
+  helpers.clear();
+  return entries;
+}
+
+Result<void> makeReport(const ReportOptions& options) {
+  const auto packs = openAll(options);
+  if (!packs) return tl::unexpected(packs.error());
+  std::vector<PackEntry> entries;
+  entries.reserve(packs->size());
+  for (Result<PackEntry>& entry : entriesOf(*packs)) {
+    if (!entry) return tl::unexpected(entry.error());
+    entries.push_back(std::move(*entry));
+  }
+  return writeOutput(options.output, htmlPage(options.packs.front().filename().string(), entries));
+}
+
+}  // namespace
+
+int runReport(const ReportOptions& options, const Console& console) {
+  const auto done = makeReport(options);
+  return done ? kExitOk : reportError(console, done.error());
+}
+
+}  // namespace galactic::pack_tool

@@ -1,0 +1,111 @@
+#include "pack_tool/report/thumbnails.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "galactic/scene.h"
+#include "galactic/schema/pack_generated.h"
+#include "pack_tool/figure/figures_of_pack.h"
+#include "pack_tool/open_scene.h"
+#include "pack_tool/pictures/figure_picture.h"
+#include "pack_tool/pictures/pictures.h"
+#include "pack_tool/pictures/scene_picture.h"
+#include "pictures/png_file.h"
+
+namespace galactic::pack_tool {
+namespace {
+
+using pictures::Image;
+using pictures::Rgb;
+
+constexpr int kPlanWidth = 360;
+constexpr int kViewSize = 200;
+
+/// Means of blocks of pixels, at most `width` wide; the cut is that of the plot alone.
+Image shrunk(const Image& image, const pictures::PixelRect& part, int width) {
+  const int step = std::max(1, (part.width + width - 1) / width);
+  Image small(std::max(1, part.width / step), std::max(1, part.height / step), {});
+  for (int y = 0; y < small.height(); ++y) {
+    for (int x = 0; x < small.width(); ++x) {
+      std::array<int, 3> sum{};
+      for (int n = 0; n < step * step; ++n) {
+        const Rgb colour = image.at(part.x + x * step + n % step, part.y + y * step + n / step);
+        sum[0] += colour.r;
+        sum[1] += colour.g;
+        sum[2] += colour.b;
+      }
+      const auto mean = [&](std::size_t channel) {
+        return static_cast<std::uint8_t>(sum[channel] / (step * step));
+      };
+      small.set(x, y, {mean(0), mean(1), mean(2)});
+    }
+  }
+  return small;
+}
+
+Result<Thumbnail> encoded(std::string caption, const Image& image) {
+  auto png = pictures::encodePng(image);
+  if (!png) return tl::unexpected(png.error());
+  return Thumbnail{std::move(caption), image.width(), image.height(), std::move(*png)};
+}
+
+Result<void> addPlans(const Scene& scene, std::vector<Thumbnail>& thumbnails) {
+  for (const ColumnGrid& grid : scene.grids()) {
+    const auto plan = pictures::drawPlan(std::span(&grid, 1), {});
+    auto thumbnail = encoded(fmt::format("free height, radius {:g} m", grid.radius()),
+                             shrunk(plan.image, plan.plots.front(), kPlanWidth));
+    if (!thumbnail) return tl::unexpected(thumbnail.error());
+    thumbnails.push_back(std::move(*thumbnail));
+  }
+  return {};
+}
+
+Result<Image> drawn(const std::vector<Figure>& figures) {
+  if (figures.front().kind == FigureKind::kScene) {
+    return pictures::drawScene(figures.front(), kViewSize);
+  }
+  if (figures.size() > 1) return pictures::drawContactSheet(figures, kViewSize);
+  return pictures::drawFigure(figures.front(), kViewSize);
+}
+
+bool hasFigures(const PackFile& pack) {
+  const schema::Scene* scene = pack.root().asset_as_Scene();
+  if (scene != nullptr) return scene->render_meshes() != nullptr;
+  return pack.kind() == PackKind::kObjects || pack.kind() == PackKind::kRobot;
+}
+
+Result<void> addFigures(const PackFile& pack, std::vector<Thumbnail>& thumbnails) {
+  FigureOptions options;
+  if (pack.kind() == PackKind::kScene) {
+    options.layers = LayerSet::none();
+    options.layers.add(FigureLayer::kMesh);
+  }
+  const auto figures = figuresOf(pack, options);
+  if (!figures) return tl::unexpected(figures.error());
+  const auto image = drawn(*figures);
+  if (!image) return tl::unexpected(image.error());
+  auto thumbnail = encoded("as it is drawn", *image);
+  if (!thumbnail) return tl::unexpected(thumbnail.error());
+  thumbnails.push_back(std::move(*thumbnail));
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<Thumbnail>> thumbnailsOf(const PackFile& pack) {
+  std::vector<Thumbnail> thumbnails;
+  if (hasFigures(pack)) {
+    if (auto added = addFigures(pack, thumbnails); !added) return tl::unexpected(added.error());
+  }
+  if (pack.kind() == PackKind::kScene) {
+    const auto scene = sceneOf(pack);
+    if (!scene) return tl::unexpected(scene.error());
+    if (auto added = addPlans(*scene, thumbnails); !added) return tl::unexpected(added.error());
+  }
+  return thumbnails;
+}
+
+}  // namespace galactic::pack_tool

@@ -1,0 +1,23 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "galactic/error.h"
+#include "galactic/pack.h"
+
+namespace galactic::pack_tool {
+
+/// A small picture of a page.
+struct Thumbnail {
+  std::string caption;
+  int width = 0;
+  int height = 0;
+  /// A PNG file.
+  std::string png;
+};
+
+/// Pictures of what is in a pack: each grid of a scene from above, and its meshes; each object, a
+/// robot from four sides. None of other kinds. Fails as the pictures do.
+[[nodiscard]] Result<std::vector<Thumbnail>> thumbnailsOf(const PackFile& pack);
+
+}  // namespace galactic::pack_tool

@@ -1,0 +1,32 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "galactic/bake/triangle_mesh.h"
+#include "galactic/batch_renderer.h"
+
+namespace galactic::test {
+
+/// Depth images by rays: an oracle for rasterisers. Both sides of triangles are met.
+class EmbreeDepth {
+ public:
+  /// Copies the mesh.
+  explicit EmbreeDepth(const bake::TriangleMesh& mesh);
+  ~EmbreeDepth();
+  EmbreeDepth(const EmbreeDepth&) = delete;
+  EmbreeDepth& operator=(const EmbreeDepth&) = delete;
+
+  /// How far along `direction`, in its lengths, the first triangle lies beyond `near`; 0: none.
+  [[nodiscard]] float first(const Vec3& origin, const Vec3& direction, float near) const;
+
+  /// Shape: height x width, rows from the top; metres along the camera's axis, 0 where nothing is.
+  /// One ray through the middle of each pixel.
+  [[nodiscard]] std::vector<float> image(const RenderCamera& camera,
+                                         const RenderOptions& options) const;
+
+ private:
+  struct Scene;
+  std::unique_ptr<Scene> scene_;
+};
+
+}  // namespace galactic::test
