@@ -48,11 +48,13 @@ TEST_F(PlanCli, ReportsWhatWasMadeAndWhatWasNot) {
   ASSERT_EQ(bake("out").exit_code, 0);
   const nlohmann::json made = report();
   EXPECT_EQ(made.at("tool"), "galactic-bake");
-  EXPECT_EQ(made.at("world"), "out/home.pack");
-  EXPECT_EQ(made.at("stopped"), false);
-  ASSERT_THAT(made.at("packs"), SizeIs(5));
-  EXPECT_EQ(made.at("packs").at(0).at("pack"), "objects/box.pack");
-  EXPECT_EQ(made.at("packs").at(1).at("bake").at("output"), "out/home/scenes/a.pack");
+  EXPECT_EQ(made.at("output"), "out/home.pack");
+  EXPECT_EQ(made.at("run").at("stopped"), false);
+  ASSERT_THAT(made.at("run").at("packs"), SizeIs(5));
+  ASSERT_THAT(made.at("baked"), SizeIs(5));
+  EXPECT_EQ(made.at("baked").at(0).at("pack"), "objects/box.pack");
+  EXPECT_EQ(made.at("baked").at(1).at("output"), "out/home/scenes/a.pack");
+  EXPECT_THAT(made.at("failed"), IsEmpty());
   ASSERT_THAT(made.at("left_out"), SizeIs(1));
   EXPECT_EQ(made.at("left_out").at(0).at("scene"), "e");
   EXPECT_EQ(made.at("linked").size(), packsIn("out").size() - 1);
@@ -128,6 +130,7 @@ TEST_F(PlanCli, KeepsItsCacheWhereTheUserWants) {
   EXPECT_FALSE(has("out/home/.cache"));
   ASSERT_EQ(bake("other", {"--cache", "kept", "--scenes", "c"}).exit_code, 0);
   EXPECT_THAT(packsThatAre("unchanged"), ElementsAre("scenes/c.pack"));
+  EXPECT_EQ(report().at("baked").at(0).at("output"), "other/home/scenes/c.pack");
   ASSERT_EQ(bake("other", {"--no-cache", "--scenes", "c"}).exit_code, 0);
   EXPECT_THAT(packsThatAre("baked"), ElementsAre("scenes/c.pack"));
   expectSamePacks(packsIn("other"), packsIn("out"));

@@ -87,7 +87,7 @@ TEST_F(PlanFaults, StopsBetweenPacksAndGoesOnLater) {
     EXPECT_EQ(stopped.exit_code, 130);
     EXPECT_THAT(stopped.err, HasSubstr("finishing what has begun; once more to stop at once"));
     EXPECT_THAT(stopped.out, HasSubstr("stopped; the same command goes on from here\n"));
-    EXPECT_EQ(report().at("stopped"), true);
+    EXPECT_EQ(report().at("run").at("stopped"), true);
     EXPECT_FALSE(has("out/home.pack"));
     const std::vector<std::string> done = packsThatAre("baked");
     EXPECT_THAT(done, Not(IsEmpty()));

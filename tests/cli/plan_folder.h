@@ -86,7 +86,7 @@ class PlanFolder : public BakeFolder {
   [[nodiscard]] std::vector<std::string> packsThatAre(const std::string& state) const {
     std::vector<std::string> names;
     const nlohmann::json last = report();
-    for (const auto& pack : last.at("packs")) {
+    for (const auto& pack : last.at("run").at("packs")) {
       if (pack.at("state") == state) names.push_back(pack.at("pack").get<std::string>());
     }
     return names;

@@ -130,6 +130,10 @@ Result<std::optional<Json>> fromCache(const PlannedPack& pack, const std::string
   if (auto linked = linkOrCopy(found->pack, pack.command.output); !linked) {
     return tl::unexpected(linked.error());
   }
+  // It may have been made for another folder.
+  if (entry.is_object() && entry.contains("output")) {
+    entry["output"] = pack.command.output.string();
+  }
   return std::optional<Json>(std::move(entry));
 }
 
