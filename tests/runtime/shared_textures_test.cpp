@@ -1,6 +1,7 @@
 // Textures that packs share: every wrong value of their packs, and what is drawn with them.
 #include "galactic/shared_textures.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "galactic/world_models.h"

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -69,8 +70,9 @@ Result<BakeInputs> inputsOf(const BakeRun& run, const PlannedPack& pack, FileDig
   }
   const auto name = [](const SourceFile& file) -> const std::string& { return file.name; };
   std::ranges::sort(inputs.files, {}, name);
-  const auto twice = std::ranges::unique(inputs.files, {}, name);
-  inputs.files.erase(twice.begin(), twice.end());
+  const auto same_name = [](const SourceFile& a, const SourceFile& b) { return a.name == b.name; };
+  inputs.files.erase(std::unique(inputs.files.begin(), inputs.files.end(), same_name),
+                     inputs.files.end());
   for (const fs::path& file : run.absentFiles()) {
     inputs.absent.push_back(relativeName(file, pack.folder));
   }

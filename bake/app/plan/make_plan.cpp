@@ -36,7 +36,7 @@ bool namesFile(std::string_view option) {
 class RecipePlanner {
  public:
   RecipePlanner(const BakeCommand& command, PackList& packs)
-      : command_(command), packs_(packs), roots_(rootsOf(command)) {}
+      : packs_(packs), roots_(rootsOf(command)) {}
 
   Result<void> plan(const WorldRecipe& recipe) {
     common_ = &recipe.common;
@@ -157,7 +157,6 @@ class RecipePlanner {
     return value.substr(0, begin) + found->front().string();
   }
 
-  const BakeCommand& command_;
   PackList& packs_;
   std::vector<fs::path> roots_;
   const std::vector<RecipeOption>* common_ = nullptr;

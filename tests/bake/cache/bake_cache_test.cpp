@@ -1,6 +1,7 @@
 // Bakes that were done before: found when all is as it was, and only then.
 #include "galactic/bake/bake_cache.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 // Digests of files, each read once.
 #include "galactic/bake/file_digests.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <thread>

@@ -1,4 +1,5 @@
 // Patterns of names, against all ways to match them, and the files that they find.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

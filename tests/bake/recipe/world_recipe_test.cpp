@@ -1,6 +1,7 @@
 // Recipes of worlds: what every table may say, and every mistake with its line.
 #include "galactic/bake/world_recipe.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
