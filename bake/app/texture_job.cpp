@@ -3,16 +3,15 @@
 #include <system_error>
 
 #include "galactic/bake/texture_pack.h"
-#include "galactic/pack_header.h"
+#include "galactic/pack.h"
 
 namespace galactic::bake {
 namespace {
 
-/// Whether the pack is there: its name tells what is in it.
-bool isThere(const std::filesystem::path& pack, const BakedTexture& texture) {
-  std::error_code missing;
-  const auto bytes = std::filesystem::file_size(pack, missing);
-  return !missing && bytes > sizeof(PackHeader) + textureBytes(texture.size, texture.format);
+/// Whether the pack is there and whole: its name tells what is in it.
+bool isThere(const std::filesystem::path& pack) {
+  const auto opened = PackFile::open(pack);
+  return opened && opened->kind() == PackKind::kTexture;
 }
 
 }  // namespace
@@ -32,7 +31,7 @@ Result<void> shareTextures(BakedMaterials& materials, const BakeCommand& command
   const Provenance provenance = provenanceOf(nothing, {}, {});
   for (const BakedTexture& texture : materials.textures) {
     const std::filesystem::path pack = folder / (textureHash(texture) + ".pack");
-    if (isThere(pack, texture)) continue;
+    if (isThere(pack)) continue;
     // Its source is the first asset that shows it, which may differ: a name of its own.
     BakedTexture named = texture;
     named.name = textureHash(texture);

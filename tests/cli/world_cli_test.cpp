@@ -77,7 +77,7 @@ TEST_F(WorldCli, ExplainsEveryRefusal) {
   write("text.pack", "no pack");
   ASSERT_EQ(link({"-o", "old.pack"}).exit_code, 0);
   const std::vector<Refusal> refusals{
-      {{"objects.pack", "--as", "world"}, 3, "hold 0 robots and 0 episode sets"},
+      {{"objects.pack", "--as", "world"}, 3, "hold no scene, a world has at least one"},
       {{"old.pack", "--as", "world"}, 3, "old.pack: is a world"},
       {{"text.pack", "--as", "world"}, 3, "text.pack"},
       {{"none.pack", "--as", "world"}, 2, "none.pack"},

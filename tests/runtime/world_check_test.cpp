@@ -61,9 +61,9 @@ TEST(WorldCheck, RefusesWrongPaths) {
 
 TEST(WorldCheck, RefusesWrongKindsSizesAndHashes) {
   refuse({
-      {"world.packs[1].kind", "is \"OBJ\", wanted SCEN, OBJS, RBOT or EPIS",
+      {"world.packs[1].kind", "is \"OBJ\", wanted SCEN, OBJS, RBOT, EPIS or TXTR",
        [](Fields& f) { f.packs[1].kind = "OBJ"; }},
-      {"world.packs[1].kind", "is \"objs\", wanted SCEN, OBJS, RBOT or EPIS",
+      {"world.packs[1].kind", "is \"objs\", wanted SCEN, OBJS, RBOT, EPIS or TXTR",
        [](Fields& f) { f.packs[1].kind = "objs"; }},
       {"world.packs[1].kind", "is \"WRLD\", wanted no world in a world",
        [](Fields& f) { f.packs[1].kind = "WRLD"; }},
@@ -74,19 +74,35 @@ TEST(WorldCheck, RefusesWrongKindsSizesAndHashes) {
   });
 }
 
+TEST(WorldCheck, AcceptsWorldsThatLackAllButAScene) {
+  // Removed one after the other from the front: episodes, objects, robot.
+  Fields fields = smallWorldPack();
+  while (fields.packs.size() > 1) {
+    fields.packs.erase(fields.packs.begin());
+    const AlignedBytes bytes = buildPack(fields);
+    const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
+    EXPECT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  }
+}
+
+TEST(WorldCheck, AcceptsTexturePacks) {
+  Fields fields = smallWorldPack();
+  fields.packs.push_back({.path = "textures/0a.pack", .kind = "TXTR"});
+  fields.packs.push_back({.path = "textures/0b.pack", .kind = "TXTR"});
+  const AlignedBytes bytes = buildPack(fields);
+  EXPECT_TRUE(PackFile::view(bytes.bytes(), "made.pack").has_value());
+}
+
 TEST(WorldCheck, RefusesAListThatIsNoWorld) {
   refuse({
-      {"world.packs", "has 0 robots (RBOT), wanted one",
-       [](Fields& f) { f.packs.erase(f.packs.begin() + 2); }},
-      {"world.packs", "has 2 robots (RBOT), wanted one",
+      {"world.packs", "has 2 robots (RBOT), wanted at most one",
        [](Fields& f) { f.packs[1].kind = "RBOT"; }},
-      {"world.packs", "has 0 episode sets (EPIS), wanted one",
-       [](Fields& f) { f.packs[0].kind = "OBJS"; }},
-      {"world.packs", "has 2 episode sets (EPIS), wanted one",
+      {"world.packs", "has 2 episode sets (EPIS), wanted at most one",
        [](Fields& f) { f.packs[1].kind = "EPIS"; }},
       {"world.packs", "has no scene (SCEN), wanted at least one",
        [](Fields& f) { f.packs.pop_back(); }},
-      {"world.packs", "has 0 robots (RBOT), wanted one", [](Fields& f) { f.packs.clear(); }},
+      {"world.packs", "has no scene (SCEN), wanted at least one",
+       [](Fields& f) { f.packs.clear(); }},
   });
 }
 

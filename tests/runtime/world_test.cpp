@@ -247,6 +247,46 @@ TEST(World, RefusesAWorldThatLacksAKind) {
   expectError(World::open({}), "world", "has no robot (RBOT); give a pack of one, too");
 }
 
+TEST(World, FitsTogetherWithoutRobotOrEpisodes) {
+  const WorldBytes bytes{WorldFields{}};
+  for (const std::size_t lacking : {2U, 3U}) {
+    std::vector<PackFile> packs = packsOf(bytes);
+    packs.erase(packs.begin() + static_cast<std::ptrdiff_t>(lacking));
+    const auto fit = checkTogether(std::move(packs));
+    EXPECT_TRUE(fit.has_value()) << fit.error().where << ": " << fit.error().message;
+  }
+  std::vector<PackFile> scene_alone = packsOf(bytes);
+  scene_alone.erase(scene_alone.begin() + 1, scene_alone.end());
+  EXPECT_TRUE(checkTogether(std::move(scene_alone)).has_value());
+}
+
+TEST(World, PartialWorldsHaveOneSetOfRadiiAndUniqueNames) {
+  WorldFields fields;
+  fields.objects.radii.back() += 0.25F;
+  const WorldBytes bytes{fields};
+  const auto expect_refused = [](std::vector<PackFile> packs, const std::string& part) {
+    const auto fit = checkTogether(std::move(packs));
+    ASSERT_FALSE(fit.has_value());
+    EXPECT_NE(fit.error().message.find(part), std::string::npos) << fit.error().message;
+  };
+  std::vector<PackFile> packs = packsOf(bytes);
+  packs.erase(packs.begin() + 2, packs.end());
+  expect_refused(std::move(packs), "bake them with the same --radii");
+  const WorldBytes sound{WorldFields{}};
+  packs = packsOf(sound);
+  packs.erase(packs.begin() + 2, packs.end());
+  packs.push_back(viewed(sound.scene, "more.pack"));
+  expect_refused(std::move(packs), "has a second scene named \"kitchen\"");
+}
+
+TEST(World, WithAllItsPartsFitsTogetherAsItOpens) {
+  WorldFields fields;
+  EXPECT_TRUE(checkTogether(packsOf(WorldBytes{fields})).has_value());
+  fields.episodes.objects[1] = "pan";
+  const WorldBytes bytes{fields};
+  EXPECT_FALSE(checkTogether(packsOf(bytes)).has_value());
+}
+
 TEST(World, RefusesWhatIsThereTwice) {
   const WorldBytes bytes{WorldFields{}};
   const std::string name = "; names have to be unique in a world, leave one pack out";

@@ -4,10 +4,12 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace galactic::test {
@@ -26,35 +28,61 @@ inline std::string fileContent(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// A program that runs in a folder, until somebody waits for it.
+class StartedProgram {
+ public:
+  /// Starts `program` in `folder` with these arguments. Its stdout goes to `out_path` when one is
+  /// given.
+  StartedProgram(const std::string& program, std::filesystem::path folder,
+                 std::vector<std::string> arguments, std::string out_path = {})
+      : folder_(std::move(folder)), out_path_(std::move(out_path)) {
+    const std::string out = out_path_.empty() ? (folder_ / "stdout.txt").string() : out_path_;
+    const std::string err = (folder_ / "stderr.txt").string();
+    arguments.insert(arguments.begin(), program);
+    std::vector<char*> argv;
+    argv.reserve(arguments.size() + 1);
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+
+    constexpr mode_t kMode = 0600;
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode);
+    posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode);
+    posix_spawn_file_actions_addchdir_np(&actions, folder_.c_str());
+    const int spawned =
+        posix_spawn(&child_, program.c_str(), &actions, nullptr, argv.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (spawned == 0) return;
+    child_ = 0;
+    ADD_FAILURE() << "cannot start " << program << ": error " << spawned;
+  }
+
+  /// Sends it a signal; it may have ended.
+  void signal(int number) const {
+    if (child_ != 0) ::kill(child_, number);
+  }
+  /// Waits for its end.
+  [[nodiscard]] ProgramRun wait() const {
+    if (child_ == 0) return {};
+    int status = 0;
+    waitpid(child_, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+            out_path_.empty() ? fileContent(folder_ / "stdout.txt") : std::string(),
+            fileContent(folder_ / "stderr.txt")};
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::string out_path_;
+  pid_t child_ = 0;
+};
+
 /// Runs `program` in `folder` with these arguments and waits for it. Its stdout goes to `out_path`
 /// when one is given.
 inline ProgramRun runProgram(const std::string& program, const std::filesystem::path& folder,
                              std::vector<std::string> arguments, const std::string& out_path = {}) {
-  const std::string out = out_path.empty() ? (folder / "stdout.txt").string() : out_path;
-  const std::string err = (folder / "stderr.txt").string();
-  arguments.insert(arguments.begin(), program);
-  std::vector<char*> argv;
-  argv.reserve(arguments.size() + 1);
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-
-  constexpr mode_t kMode = 0600;
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode);
-  posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  pid_t child = 0;
-  const int spawned = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (spawned != 0) {
-    ADD_FAILURE() << "cannot start " << program << ": error " << spawned;
-    return {};
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
-          out_path.empty() ? fileContent(out) : std::string(), fileContent(err)};
+  return StartedProgram(program, folder, std::move(arguments), out_path).wait();
 }
 
 }  // namespace galactic::test

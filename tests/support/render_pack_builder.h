@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "galactic/render_layout.h"
@@ -42,6 +43,8 @@ struct RenderTextureFields {
   std::uint32_t size = 2;
   std::uint8_t format = 0;
   std::uint32_t first_byte = 0;
+  /// XXH3-128 of texels in a texture pack, low half first.
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> shared{};
 };
 
 struct RenderMeshesFields {
@@ -194,9 +197,12 @@ inline flatbuffers::Offset<schema::RenderMeshes> buildRenderMeshes(
   const auto material_vector = builder.CreateVector(materials);
   std::vector<flatbuffers::Offset<schema::RenderTexture>> textures;
   for (const RenderTextureFields& texture : fields.textures) {
-    textures.push_back(schema::CreateRenderTextureDirect(
-        builder, texture.name.c_str(), texture.size,
-        static_cast<schema::TexelFormat>(texture.format), texture.first_byte));
+    const auto [low, high] = texture.shared.value_or(std::pair<std::uint64_t, std::uint64_t>{});
+    const schema::Hash128 shared(low, high);
+    textures.push_back(
+        schema::CreateRenderTextureDirect(builder, texture.name.c_str(), texture.size,
+                                          static_cast<schema::TexelFormat>(texture.format),
+                                          texture.first_byte, texture.shared ? &shared : nullptr));
   }
   const auto texture_vector = builder.CreateVector(textures);
   const auto texels = renderPool(builder, fields.texels);

@@ -42,6 +42,8 @@ Result<std::vector<LinkedPack>> link(const WorldPlan& plan, const PlanOutcome& o
   }
   const std::vector<fs::path> paths(names.begin(), names.end());
   auto packs = linkPacks(paths, plan.world.parent_path());
+  // Of what the packs lack together, no one of them is the place.
+  if (!packs && packs.error().where.empty()) packs.error().where = plan.world.string();
   if (!packs) return packs;
   std::vector<SourceFile> sources;
   sources.reserve(packs->size());
@@ -54,6 +56,20 @@ Result<std::vector<LinkedPack>> link(const WorldPlan& plan, const PlanOutcome& o
       writeWorldPack(plan.world, *packs, provenanceOf(linked, std::move(sources), {}));
   if (!written) return tl::unexpected(written.error());
   return packs;
+}
+
+/// Neither world nor report may replace what the command or one of its bakes reads.
+Result<void> checkOutputs(const WorldPlan& plan, const BakeCommand& command) {
+  const auto check = [&](const BakeCommand& reader) -> Result<void> {
+    const BakeRun run(reader);
+    if (auto checked = run.checkNotRead(plan.world); !checked) return checked;
+    return run.checkNotRead(command.report);
+  };
+  if (auto checked = check(command); !checked) return checked;
+  for (const PlannedPack& pack : plan.assets) {
+    if (auto checked = check(pack.command); !checked) return checked;
+  }
+  return {};
 }
 
 /// Whether there is a world to link after this run.
@@ -88,6 +104,7 @@ int bakePlan(const BakeCommand& command) {
   if (command.dataset.list) return listScenes(command);
   const auto plan = makePlan(command);
   if (!plan) return refuse(plan.error());
+  if (auto checked = checkOutputs(*plan, command); !checked) return refuse(checked.error());
   // Before anything is baked for a golden report that is not there.
   auto golden = goldenOf(command);
   if (!golden) return refuse(golden.error());

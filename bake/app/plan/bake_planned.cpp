@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -69,8 +70,9 @@ Result<BakeInputs> inputsOf(const BakeRun& run, const PlannedPack& pack, FileDig
   }
   const auto name = [](const SourceFile& file) -> const std::string& { return file.name; };
   std::ranges::sort(inputs.files, {}, name);
-  const auto twice = std::ranges::unique(inputs.files, {}, name);
-  inputs.files.erase(twice.begin(), twice.end());
+  const auto same_name = [](const SourceFile& a, const SourceFile& b) { return a.name == b.name; };
+  inputs.files.erase(std::unique(inputs.files.begin(), inputs.files.end(), same_name),
+                     inputs.files.end());
   for (const fs::path& file : run.absentFiles()) {
     inputs.absent.push_back(relativeName(file, pack.folder));
   }
@@ -84,14 +86,40 @@ Result<void> makeFolder(const fs::path& folder) {
   return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + problem.message());
 }
 
-/// Whether the texture packs are there that a bake of before shared.
-bool hasTextures(const PlannedPack& pack, const Json& entry) {
+/// Where a texture pack that scenes share is kept, by its name below the plan's folder.
+struct TexturePlaces {
+  fs::path used;
+  fs::path kept;
+};
+
+TexturePlaces placesOf(const std::string& texture, const PlannedPack& pack,
+                       const PlanTools& tools) {
+  const fs::path name = fs::path(texture).filename();
+  return {.used = pack.command.render.shared_textures / name,
+          .kept = tools.cache->folder() / "textures" / name};
+}
+
+/// Whether the texture packs are there, or put there, that a bake of before shared.
+bool hasTextures(const PlannedPack& pack, const Json& entry, const PlanTools& tools) {
   const std::vector<std::string> textures = texturePacks(entry);
+  if (textures.empty()) return true;
+  if (!makeFolder(pack.command.render.shared_textures)) return false;
   return std::ranges::all_of(textures, [&](const std::string& texture) {
-    std::error_code problem;
-    const fs::path name = fs::path(texture).filename();
-    return fs::exists(pack.command.render.shared_textures / name, problem);
+    const auto [used, kept] = placesOf(texture, pack, tools);
+    if (tools.textures.isWhole(used)) return true;
+    return tools.textures.isWhole(kept) && linkOrCopy(kept, used).has_value();
   });
+}
+
+/// Keeps what a bake shared, for worlds in other folders.
+Result<void> keepTextures(const PlannedPack& pack, const Json& entry, const PlanTools& tools) {
+  for (const std::string& texture : texturePacks(entry)) {
+    const auto [used, kept] = placesOf(texture, pack, tools);
+    if (auto made = makeFolder(kept.parent_path()); !made) return made;
+    if (tools.textures.isWhole(kept)) continue;
+    if (auto linked = linkOrCopy(used, kept); !linked) return linked;
+  }
+  return {};
 }
 
 /// The pack as it was made before, put where it belongs.
@@ -100,9 +128,13 @@ Result<std::optional<Json>> fromCache(const PlannedPack& pack, const std::string
   const auto found = tools.cache->find(key, pack.folder, tools.digests);
   if (!found) return std::nullopt;
   Json entry = Json::parse(found->report, nullptr, /*allow_exceptions=*/false);
-  if (!hasTextures(pack, entry)) return std::nullopt;
+  if (!hasTextures(pack, entry, tools)) return std::nullopt;
   if (auto linked = linkOrCopy(found->pack, pack.command.output); !linked) {
     return tl::unexpected(linked.error());
+  }
+  // It may have been made for another folder.
+  if (entry.is_object() && entry.contains("output")) {
+    entry["output"] = pack.command.output.string();
   }
   return std::optional<Json>(std::move(entry));
 }
@@ -122,6 +154,7 @@ Result<Json> bakeAnew(const PlannedPack& pack, const std::string& key, const Pla
   auto inputs = inputsOf(run, pack, tools.digests);
   if (!inputs) return tl::unexpected(inputs.error());
   inputs->key = key;
+  if (auto kept = keepTextures(pack, entry, tools); !kept) return tl::unexpected(kept.error());
   if (auto kept = tools.cache->store(*inputs, command.output, entry.dump()); !kept) {
     return tl::unexpected(kept.error());
   }

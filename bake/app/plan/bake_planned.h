@@ -3,6 +3,7 @@
 #include "galactic/bake/file_digests.h"
 #include "plan/plan.h"
 #include "plan/plan_outcome.h"
+#include "plan/texture_checks.h"
 
 namespace galactic::bake {
 
@@ -11,6 +12,7 @@ struct PlanTools {
   /// Null where nothing is remembered.
   const BakeCache* cache = nullptr;
   FileDigests& digests;
+  TextureChecks& textures;
   /// Of each bake.
   unsigned jobs = 1;
 };

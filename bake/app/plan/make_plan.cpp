@@ -36,7 +36,7 @@ bool namesFile(std::string_view option) {
 class RecipePlanner {
  public:
   RecipePlanner(const BakeCommand& command, PackList& packs)
-      : command_(command), packs_(packs), roots_(rootsOf(command)) {}
+      : packs_(packs), roots_(rootsOf(command)) {}
 
   Result<void> plan(const WorldRecipe& recipe) {
     common_ = &recipe.common;
@@ -157,22 +157,35 @@ class RecipePlanner {
     return value.substr(0, begin) + found->front().string();
   }
 
-  const BakeCommand& command_;
   PackList& packs_;
   std::vector<fs::path> roots_;
   const std::vector<RecipeOption>* common_ = nullptr;
 };
 
-/// NAME.pack, in the folder or under the name that the command gives.
-fs::path worldPackOf(const BakeCommand& command) {
+/// "home" of home.scene_dataset_config.json, of home.toml and of the folder home.
+std::string worldName(const fs::path& input) {
+  constexpr std::string_view kDatasetSuffix = ".scene_dataset_config.json";
   std::error_code unknown;
   // "scans/" has no file name, and "." is none.
-  const fs::path input = fs::absolute(command.inputs.front(), unknown).lexically_normal();
-  std::string name = (input.has_filename() ? input : input.parent_path()).filename().string();
-  name = name.substr(0, name.find('.'));
-  const bool is_folder = !command.output.empty() && fs::is_directory(command.output, unknown);
-  if (command.output.empty() || is_folder) return command.output / (name + ".pack");
-  return command.output;
+  const fs::path whole = fs::absolute(input, unknown).lexically_normal();
+  std::string name = (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+  if (fs::is_directory(input, unknown)) return name;
+  if (!name.ends_with(kDatasetSuffix)) return whole.stem().string();
+  return name.substr(0, name.size() - kDatasetSuffix.size());
+}
+
+/// NAME.pack, in the folder or under the name that the command gives.
+Result<fs::path> worldPackOf(const BakeCommand& command) {
+  const std::string name = worldName(command.inputs.front());
+  std::error_code unknown;
+  const fs::path& out = command.output;
+  const bool is_folder = !out.has_filename() || fs::is_directory(out, unknown);
+  if (is_folder) return out / (name + ".pack");
+  if (out.has_extension()) return out;
+  // The other packs go into a folder of this name.
+  return fail(
+      ErrorCode::kInvalidInput, "--out",
+      fmt::format("is \"{}\", NAME.pack or a folder that is there is wanted", out.string()));
 }
 
 }  // namespace
@@ -190,7 +203,9 @@ Result<std::vector<std::string>> namesOfScenes(const BakeCommand& command) {
 }
 
 Result<WorldPlan> makePlan(const BakeCommand& command) {
-  PackList packs(worldPackOf(command));
+  auto world = worldPackOf(command);
+  if (!world) return tl::unexpected(world.error());
+  PackList packs(std::move(*world));
   if (command.kind == AssetKind::kDataset) {
     for (const fs::path& input : command.inputs) {
       BakeCommand one = command;

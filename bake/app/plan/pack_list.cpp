@@ -51,12 +51,28 @@ void PackList::setEpisodes(BakeCommand command) {
   plan_.episodes = std::move(pack);
 }
 
+Result<void> PackList::checkScenes() const {
+  const auto is_scene = [](const PlannedPack& pack) {
+    return pack.command.kind == AssetKind::kScene;
+  };
+  if (std::ranges::any_of(plan_.assets, is_scene)) return {};
+  std::string why;
+  if (!plan_.left_out.empty()) {
+    const LeftOut& first = plan_.left_out.front();
+    why = fmt::format(", {} are left out: {}: {}", plan_.left_out.size(), first.name,
+                      first.reasons.front());
+  }
+  return fail(ErrorCode::kInvalidInput, plan_.world.string(),
+              fmt::format("would have no scene{}; a world has at least one", why));
+}
+
 bool PackList::has(const std::string& name) const {
   return std::any_of(plan_.assets.begin(), plan_.assets.end(),
                      [&](const PlannedPack& pack) { return pack.name == name + ".pack"; });
 }
 
 Result<WorldPlan> PackList::finish() {
+  if (auto checked = checkScenes(); !checked) return tl::unexpected(checked.error());
   const auto name = [](const PlannedPack& pack) -> const std::string& { return pack.name; };
   std::ranges::sort(plan_.assets, {}, name);
   const auto twice = std::ranges::adjacent_find(plan_.assets, {}, name);

@@ -26,10 +26,12 @@ class PackList {
   /// Whether a pack of this name is there.
   [[nodiscard]] bool has(const std::string& name) const;
 
-  /// The plan, sorted. Fails with kInvalidInput where two packs have one name or nothing is left.
+  /// The plan, sorted. Fails with kInvalidInput where two packs have one name or no scene is left.
   [[nodiscard]] Result<WorldPlan> finish();
 
  private:
+  [[nodiscard]] Result<void> checkScenes() const;
+
   WorldPlan plan_;
 };
 

@@ -92,7 +92,10 @@ class PlanRun {
 
   PackOutcome bakeOne(const PlannedPack& pack, unsigned jobs, PlanProgress& progress) {
     progress.begin(pack.name);
-    const PlanTools tools{.cache = cache_ ? &*cache_ : nullptr, .digests = digests_, .jobs = jobs};
+    const PlanTools tools{.cache = cache_ ? &*cache_ : nullptr,
+                          .digests = digests_,
+                          .textures = textures_,
+                          .jobs = jobs};
     PackOutcome outcome = bakePlanned(pack, tools);
     if (outcome.state == PackState::kFailed) failed_ = true;
     progress.end(outcome);
@@ -106,6 +109,7 @@ class PlanRun {
   StopRequest stop_;
   MemoryBudget budget_;
   FileDigests digests_;
+  TextureChecks textures_;
   std::optional<BakeCache> cache_;
   std::atomic<bool> failed_{false};
   PlanOutcome outcome_;

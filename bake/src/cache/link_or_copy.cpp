@@ -12,8 +12,7 @@ Result<void> linkOrCopy(const std::filesystem::path& source, const std::filesyst
   std::error_code problem;
   if (fs::equivalent(source, target, problem)) return {};
   // A name of this thread alone, then renamed: never half a file.
-  const fs::path temporary =
-      target.string() + fmt::format(".part-{}", ::gettid());
+  const fs::path temporary = target.string() + fmt::format(".part-{}", ::gettid());
   fs::remove(temporary, problem);
   fs::create_hard_link(source, temporary, problem);
   if (problem) {
@@ -21,9 +20,10 @@ Result<void> linkOrCopy(const std::filesystem::path& source, const std::filesyst
     fs::copy_file(source, temporary, problem);
   }
   if (!problem) fs::rename(temporary, target, problem);
-  if (!problem) return {};
+  // Renaming does nothing where another thread has just made the target the same file.
   std::error_code ignored;
   fs::remove(temporary, ignored);
+  if (!problem) return {};
   return fail(ErrorCode::kIo, target.string(),
               fmt::format("cannot write the file: {}; an existing file is left as it was",
                           problem.message()));

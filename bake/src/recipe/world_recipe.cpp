@@ -14,10 +14,10 @@ namespace galactic::bake {
 namespace {
 
 /// Options that say how a command runs, not what is made: they belong to the command line.
-constexpr std::array<std::string_view, 17> kCommandLineOnly{
-    "as",           "out",     "jobs",     "report",  "config", "dry-run",
-    "keep-going",   "verbose", "quiet",    "version", "cache",  "memory",
-    "print-recipe", "shard",   "no-cache", "data",    "help"};
+constexpr std::array<std::string_view, 20> kCommandLineOnly{
+    "as",      "out",   "jobs",    "report", "config",   "dry-run",      "keep-going",
+    "verbose", "quiet", "version", "cache",  "memory",   "print-recipe", "shard",
+    "check",   "help",  "data",    "list",   "no-cache", "tolerance"};
 
 /// A single value as it would be typed.
 std::optional<std::string> textOf(const TomlValue& value) {

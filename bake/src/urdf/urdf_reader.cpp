@@ -92,19 +92,37 @@ Result<const TiXmlElement*> robotElement(TiXmlDocument& document, const std::str
 /// Lists of numbers that the parser splits at blanks only.
 constexpr std::array<std::string_view, 5> kNumberLists{"xyz", "rpy", "scale", "size", "rgba"};
 
-/// Makes blanks of what else separates numbers in real files: commas (with a warning), tabs and
+/// Commas between the numbers of one kind of attribute: files that have any have many.
+struct Commas {
+  std::string attribute;
+  /// Of the first of them.
+  std::string sentence;
+  std::size_t count = 0;
+};
+
+void countCommas(const TiXmlElement& element, const TiXmlAttribute& list,
+                 std::vector<Commas>& commas) {
+  const auto is_of_kind = [&](const Commas& known) { return known.attribute == list.Name(); };
+  auto known = std::find_if(commas.begin(), commas.end(), is_of_kind);
+  if (known == commas.end()) {
+    known = commas.insert(commas.end(), {.attribute = list.Name(),
+                                         .sentence = fmt::format(
+                                             "line {}: {}=\"{}\" has commas, which count as blanks",
+                                             element.Row(), list.Name(), list.Value())});
+  }
+  ++known->count;
+}
+
+/// Makes blanks of what else separates numbers in real files: commas (which are counted), tabs and
 /// line ends. Returns whether anything changed.
-bool separateByBlanks(TiXmlElement& element, std::vector<std::string>& warnings) {
+bool separateByBlanks(TiXmlElement& element, std::vector<Commas>& commas) {
   bool changed = false;
   for (auto* a = element.FirstAttribute(); a != nullptr; a = a->Next()) {
     const bool is_list =
         std::find(kNumberLists.begin(), kNumberLists.end(), a->Name()) != kNumberLists.end();
     std::string value = a->Value();
     if (!is_list || value.find_first_of(",\t\r\n") == std::string::npos) continue;
-    if (value.find(',') != std::string::npos) {
-      warnings.push_back(fmt::format("line {}: {}=\"{}\" has commas, which count as blanks",
-                                     element.Row(), a->Name(), value));
-    }
+    if (value.find(',') != std::string::npos) countCommas(element, *a, commas);
     std::replace_if(
         value.begin(), value.end(),
         [](char c) { return c == ',' || c == '\t' || c == '\r' || c == '\n'; }, ' ');
@@ -118,15 +136,21 @@ bool separateByBlanks(TiXmlElement& element, std::vector<std::string>& warnings)
 std::string textForParser(TiXmlDocument& document, const std::string& text,
                           std::vector<std::string>& warnings) {
   bool changed = false;
+  std::vector<Commas> commas;
   TiXmlElement* at = document.RootElement();
   while (at != nullptr) {
-    changed = separateByBlanks(*at, warnings) || changed;
+    changed = separateByBlanks(*at, commas) || changed;
     TiXmlElement* next = at->FirstChildElement();
     while (next == nullptr && at != nullptr) {
       next = at->NextSiblingElement();
       at = at->Parent() == nullptr ? nullptr : at->Parent()->ToElement();
     }
     at = next;
+  }
+  for (const Commas& kind : commas) {
+    warnings.push_back(kind.count == 1
+                           ? kind.sentence
+                           : fmt::format("{} ({} times in the file)", kind.sentence, kind.count));
   }
   if (!changed) return text;
   TiXmlPrinter printer;

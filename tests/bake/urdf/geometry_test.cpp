@@ -210,6 +210,21 @@ TEST(UrdfGeometry, MayHaveCommasTabsAndLineEndsBetweenNumbers) {
   EXPECT_THAT(robot->warnings[0], HasSubstr("has commas, which count as blanks"));
 }
 
+TEST(UrdfGeometry, WarnsOfCommasOnceForEachKindOfList) {
+  const ScratchFolder folder;
+  const auto robot =
+      importText(folder, robotText(linkText("a", "<box size=\"1, 2, 3\"/>") +
+                                   "\n<link name=\"b\"><collision><origin xyz=\"1,2,3\"/><geometry>"
+                                   "<box size=\"4,5,6\"/></geometry></collision></link>" +
+                                   "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/>"
+                                   "<child link=\"b\"/></joint>"));
+  ASSERT_TRUE(robot.has_value()) << robot.error().message;
+  EXPECT_THAT(robot->warnings,
+              ElementsAre("line 1: size=\"1, 2, 3\" has commas, which count as blanks (2 times in "
+                          "the file)",
+                          "line 2: xyz=\"1,2,3\" has commas, which count as blanks"));
+}
+
 TEST(UrdfColors, AreSrgbFromLocalAndGlobalMaterials) {
   const ScratchFolder folder;
   const auto visual = [](std::string_view material) {

@@ -34,13 +34,13 @@ std::ostream& operator<<(std::ostream& out, const RealRobot& robot) { return out
 /// Counts that lxml gives, less the files that are known to be missing.
 std::vector<RealRobot> realRobots() {
   return {
-      {"replica_cad/urdf/cabinet/cabinet.urdf", 4, 3, 7, 2, 3},
-      {"replica_cad/urdf/cabinet/cabinet_dynamic.urdf", 4, 3, 7, 2, 3},
+      {"replica_cad/urdf/cabinet/cabinet.urdf", 4, 3, 7, 2, 1},
+      {"replica_cad/urdf/cabinet/cabinet_dynamic.urdf", 4, 3, 7, 2, 1},
       {"replica_cad/urdf/doors/door2.urdf", 2, 1, 1, 1, 1},
       {"replica_cad/urdf/fridge/fridge.urdf", 4, 3, 12, 3, 0},
       {"replica_cad/urdf/fridge/fridge_dynamic.urdf", 4, 3, 12, 3, 0},
-      {"replica_cad/urdf/kitchen_counter/kitchen_counter.urdf", 9, 8, 47, 5, 9},
-      {"replica_cad/urdf/kitchen_cupboards/kitchenCupboard_01.urdf", 10, 9, 26, 5, 9},
+      {"replica_cad/urdf/kitchen_counter/kitchen_counter.urdf", 9, 8, 47, 5, 2},
+      {"replica_cad/urdf/kitchen_cupboards/kitchenCupboard_01.urdf", 10, 9, 26, 5, 1},
       {kFetch, 26, 20, 21, 36, 1},
       {kGalacticFetch, 26, 2, 14, 12, 26, true},
       {kSpot, 21, 21, 21, 21, 2},

@@ -102,15 +102,37 @@ TEST_F(WorldPack, RefusesPacksThatMakeNoWorld) {
   auto twice = paths_;
   twice.push_back(paths_[3]);
   expectRefused(linkPacks(twice, folder_.path()), "scenes/kitchen.pack: is there twice");
-  auto no_robot = paths_;
-  no_robot.erase(no_robot.begin() + 2);
-  expectRefused(linkPacks(no_robot, folder_.path()), "hold 0 robots and 1 episode sets");
+  const auto second = [&](std::size_t n, const char* name) {
+    auto more = paths_;
+    more.push_back(at(name));
+    fs::copy_file(paths_[n], more.back());
+    return linkPacks(more, folder_.path());
+  };
+  expectRefused(second(2, "robot.pack"), "hold 2 robots and 1 episode sets, a world has at most");
+  expectRefused(second(0, "tasks.pack"), "hold 1 robots and 2 episode sets, a world has at most");
   auto no_scene = paths_;
   no_scene.pop_back();
   expectRefused(linkPacks(no_scene, folder_.path()), "hold no scene");
   auto no_objects = paths_;
   no_objects.erase(no_objects.begin() + 1);
   expectRefused(linkPacks(no_objects, folder_.path()), "none of the world's 0 objects");
+}
+
+TEST_F(WorldPack, MayLackRobotEpisodesAndObjects) {
+  for (const std::vector<std::size_t>& kept :
+       {std::vector<std::size_t>{0, 1, 3}, {1, 2, 3}, {1, 3}, {2, 3}, {3}}) {
+    std::vector<fs::path> some;
+    for (const std::size_t n : kept) some.push_back(paths_[n]);
+    const auto linked = linkPacks(some, folder_.path());
+    ASSERT_TRUE(linked.has_value()) << linked.error().where << ": " << linked.error().message;
+    EXPECT_EQ(linked->size(), kept.size());
+    ASSERT_TRUE(writeWorldPack(at("part.pack"), *linked, provenance()).has_value());
+    // It is a pack like others, only that there is nothing to run.
+    EXPECT_TRUE(PackFile::open(at("part.pack")).has_value());
+    const auto world = World::open(std::vector{at("part.pack")});
+    ASSERT_FALSE(world.has_value());
+    EXPECT_THAT(world.error().message, HasSubstr("; give a pack of one, too"));
+  }
 }
 
 TEST_F(WorldPack, RefusesAWorldAmongItsPacks) {

@@ -1,0 +1,111 @@
+// What a scene names, found out without its meshes, is what is found when it is put together.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bake/dataset/small_dataset.h"
+
+namespace galactic::test {
+namespace {
+
+namespace fs = std::filesystem;
+using bake::ComposedScene;
+using bake::DatasetObject;
+using bake::MeshLibrary;
+using bake::SceneDataset;
+using bake::SceneSurvey;
+using testing::ElementsAre;
+
+SceneDataset readDataset(const SmallDataset& small) {
+  auto dataset = SceneDataset::read(small.config());
+  EXPECT_TRUE(dataset) << dataset.error().where << ": " << dataset.error().message;
+  return std::move(*dataset);
+}
+
+void expectSame(const SceneSurvey& survey, const ComposedScene& composed) {
+  EXPECT_EQ(survey.has_stage, composed.has_stage);
+  ASSERT_EQ(survey.movable.size(), composed.movable.size());
+  for (std::size_t n = 0; n < survey.movable.size(); ++n) {
+    EXPECT_EQ(survey.movable[n].name, composed.movable[n].name);
+    EXPECT_EQ(survey.movable[n].mesh, composed.movable[n].mesh);
+    EXPECT_EQ(survey.movable[n].object_from_mesh, composed.movable[n].object_from_mesh);
+  }
+}
+
+/// Both ways to look at a scene.
+struct BothWays {
+  SceneSurvey survey;
+  ComposedScene composed;
+};
+
+BothWays lookAt(const SceneDataset& dataset, const std::string& name) {
+  MeshLibrary meshes(bake::datasetMeshOptions());
+  auto survey = dataset.survey(name);
+  auto composed = dataset.compose(name, meshes);
+  EXPECT_TRUE(survey) << name;
+  EXPECT_TRUE(composed) << name;
+  if (!survey || !composed) return {};
+  return {std::move(*survey), std::move(*composed)};
+}
+
+TEST(SceneSurvey, FindsWhatCompositionFinds) {
+  const SmallDataset small;
+  const BothWays found = lookAt(readDataset(small), "a_home");
+  expectSame(found.survey, found.composed);
+  EXPECT_EQ(found.survey.movable.size(), 2U);
+  // A URDF's meshes are not looked at, and how often something lacks is not counted.
+  EXPECT_THAT(found.survey.missing,
+              ElementsAre("object 'ghost': its mesh 'meshes/ghost.glb' is missing",
+                          "object 'lamp' is in none of the dataset's paths"));
+}
+
+TEST(SceneSurvey, CountsTheBytesOfEachMeshOnce) {
+  const SmallDataset small;
+  small.writeScene("twice", R"({"stage_instance": {"template_name": "room"}, "object_instances": [
+      {"template_name": "table", "motion_type": "STATIC"},
+      {"template_name": "made_here", "motion_type": "STATIC"},
+      {"template_name": "crate", "motion_type": "STATIC"}]})");
+  const auto survey = readDataset(small).survey("twice");
+  ASSERT_TRUE(survey);
+  EXPECT_EQ(survey->bytes, fs::file_size(small.folder() / "meshes/room.obj") +
+                               fs::file_size(small.folder() / "meshes/box.obj") +
+                               fs::file_size(small.folder() / "bare/crate.glb"));
+}
+
+TEST(SceneSurvey, AgreesOnStagesThatLackAndScenesThatWantNone) {
+  const SmallDataset small;
+  small.writeScene("none", R"({"stage_instance": {"template_name": "NONE"}})");
+  small.writeScene("unknown", R"({"stage_instance": {"template_name": "hall"}})");
+  small.write("configs/stages/lost.stage_config.json", R"({"render_asset": "lost.glb"})");
+  small.writeScene("lost", R"({"stage_instance": {"template_name": "lost"}})");
+  const SceneDataset dataset = readDataset(small);
+  std::size_t staged = 0;
+  for (const std::string& name : dataset.scenes()) {
+    SCOPED_TRACE(name);
+    const BothWays found = lookAt(dataset, name);
+    expectSame(found.survey, found.composed);
+    staged += found.survey.has_stage ? 1U : 0U;
+  }
+  EXPECT_EQ(dataset.scenes().size(), 4U);
+  EXPECT_EQ(staged, 1U);
+}
+
+TEST(SceneSurvey, FailsAsCompositionDoes) {
+  const SmallDataset small;
+  small.writeScene("broken", R"({"stage_instance": 3})");
+  small.write("configs/objects/small/bad.object_config.json", R"({"render_asset": 3})");
+  small.writeScene("bad", R"({"stage_instance": {"template_name": "room"}, "object_instances": [
+      {"template_name": "bad"}]})");
+  const SceneDataset dataset = readDataset(small);
+  MeshLibrary meshes(bake::datasetMeshOptions());
+  for (const char* name : {"broken", "bad", "nowhere"}) {
+    const auto survey = dataset.survey(name);
+    const auto composed = dataset.compose(name, meshes);
+    ASSERT_FALSE(survey.has_value()) << name;
+    ASSERT_FALSE(composed.has_value()) << name;
+    EXPECT_EQ(survey.error().where, composed.error().where);
+    EXPECT_EQ(survey.error().message, composed.error().message);
+  }
+}
+
+}  // namespace
+}  // namespace galactic::test

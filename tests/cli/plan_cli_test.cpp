@@ -1,0 +1,237 @@
+// Whole datasets and worlds in one command, as a user meets it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/plan_folder.h"
+#include "galactic/pack_reference.h"
+#include "galactic/world.h"
+
+namespace galactic::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+using PlanCli = PlanFolder;
+
+TEST_F(PlanCli, BakesADatasetIntoPacksAndAWorld) {
+  const ProgramRun first = bake("out");
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_THAT(first.err, IsEmpty());
+  EXPECT_THAT(first.out,
+              AllOf(HasSubstr("1 scenes are left out:\n  e: stage 'hall' is in none of"),
+                    HasSubstr("scenes/d.pack: object 'lamp' is in none of the dataset's paths"),
+                    HasSubstr("5 baked, 0 unchanged"), HasSubstr(" MB -> out/home.pack\n")));
+  for (const char* name : {"home.pack", "home/scenes/a.pack", "home/scenes/b.pack",
+                           "home/scenes/c.pack", "home/scenes/d.pack", "home/objects/box.pack"}) {
+    EXPECT_EQ(packsIn("out").count(name), 1U) << name;
+  }
+  const auto world = PackFile::open(path("out/home.pack"));
+  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  EXPECT_EQ(world->kind(), PackKind::kWorld);
+  const auto listed = packReferences(*world);
+  ASSERT_TRUE(listed.has_value());
+  EXPECT_THAT(packsIn("out"), SizeIs(listed->size() + 1));
+  // There is nothing to run in it yet.
+  const auto runnable = World::open(std::vector{path("out/home.pack")});
+  ASSERT_FALSE(runnable.has_value());
+  EXPECT_EQ(runnable.error().message, "has no robot (RBOT); give a pack of one, too");
+}
+
+TEST_F(PlanCli, ReportsWhatWasMadeAndWhatWasNot) {
+  ASSERT_EQ(bake("out").exit_code, 0);
+  const nlohmann::json made = report();
+  EXPECT_EQ(made.at("tool"), "galactic-bake");
+  EXPECT_EQ(made.at("output"), "out/home.pack");
+  EXPECT_EQ(made.at("run").at("stopped"), false);
+  ASSERT_THAT(made.at("run").at("packs"), SizeIs(5));
+  ASSERT_THAT(made.at("baked"), SizeIs(5));
+  EXPECT_EQ(made.at("baked").at(0).at("pack"), "objects/box.pack");
+  EXPECT_EQ(made.at("baked").at(1).at("output"), "out/home/scenes/a.pack");
+  EXPECT_THAT(made.at("failed"), IsEmpty());
+  ASSERT_THAT(made.at("left_out"), SizeIs(1));
+  EXPECT_EQ(made.at("left_out").at(0).at("scene"), "e");
+  EXPECT_EQ(made.at("linked").size(), packsIn("out").size() - 1);
+}
+
+TEST_F(PlanCli, BakesNothingTheSecondTime) {
+  ASSERT_EQ(bake("out").exit_code, 0);
+  const PackContents before = packsIn("out");
+  const ProgramRun second = bake("out");
+  ASSERT_EQ(second.exit_code, 0) << second.err;
+  EXPECT_THAT(second.out, HasSubstr("0 baked, 5 unchanged"));
+  EXPECT_THAT(packsThatAre("unchanged"), SizeIs(5));
+  expectSamePacks(packsIn("out"), before);
+  // Packs that were removed are taken from the cache.
+  fs::remove(path("out/home/scenes/b.pack"));
+  fs::remove(path("out/home.pack"));
+  ASSERT_EQ(bake("out").exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), IsEmpty());
+  expectSamePacks(packsIn("out"), before);
+}
+
+TEST_F(PlanCli, BakesWhatDependsOnAFileThatChangedAndNothingElse) {
+  ASSERT_EQ(bake("out").exit_code, 0);
+  fs::last_write_time(path("data/meshes/objects/mug.glb"), fs::file_time_type::clock::now());
+  ASSERT_EQ(bake("out").exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), IsEmpty()) << "a date says nothing";
+  write("data/meshes/objects/mug.glb", fileContent(sampleFile("objects/bowl.glb")));
+  ASSERT_EQ(bake("out").exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("scenes/a.pack", "scenes/b.pack"));
+  addScene("c", "flat", thing("mug", 3));
+  ASSERT_EQ(bake("out").exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("scenes/c.pack"));
+  write("data/meshes/objects/cereal_box.glb", fileContent(sampleFile("objects/book.glb")));
+  ASSERT_EQ(bake("out").exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("objects/box.pack"));
+  const PackContents incremental = packsIn("out");
+  ASSERT_EQ(bake("clean", {"--no-cache"}).exit_code, 0);
+  EXPECT_FALSE(has("clean/home/.cache"));
+  // Textures of before may lie about, unlisted; what the world lists is the same.
+  for (const auto& [name, bytes] : packsIn("clean")) EXPECT_TRUE(incremental.at(name) == bytes);
+}
+
+TEST_F(PlanCli, BakesASceneAnewWhenWhatItLackedAppears) {
+  ASSERT_EQ(bake("out").exit_code, 0);
+  addTemplate("objects/lamp.object_config.json", "objects/bottle.glb");
+  const ProgramRun run = bake("out");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(packsThatAre("baked"), Contains("scenes/d.pack"));
+  EXPECT_THAT(run.out, Not(HasSubstr("lamp")));
+}
+
+TEST_F(PlanCli, WritesTheSameBytesOnAnyNumberOfThreadsAndInShards) {
+  ASSERT_EQ(bake("one", {"-j", "1"}).exit_code, 0);
+  ASSERT_EQ(bake("two", {"-j", "2", "--memory", "0.001"}).exit_code, 0);
+  const PackContents one = packsIn("one");
+  expectSamePacks(packsIn("two"), one);
+  const ProgramRun first = bake("parts", {"--shard", "1/2"});
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_THAT(packsThatAre("baked"),
+              ElementsAre("objects/box.pack", "scenes/b.pack", "scenes/d.pack"));
+  EXPECT_THAT(packsThatAre("elsewhere"), ElementsAre("scenes/a.pack", "scenes/c.pack"));
+  EXPECT_FALSE(has("parts/home.pack"));
+  ASSERT_EQ(bake("parts", {"--shard", "2/2"}).exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("scenes/a.pack", "scenes/c.pack"));
+  EXPECT_FALSE(has("parts/home.pack"));
+  ASSERT_EQ(bake("parts").exit_code, 0);
+  EXPECT_THAT(packsThatAre("unchanged"), SizeIs(5));
+  expectSamePacks(packsIn("parts"), one);
+}
+
+TEST_F(PlanCli, KeepsItsCacheWhereTheUserWants) {
+  ASSERT_EQ(bake("out", {"--cache", "kept", "--scenes", "c"}).exit_code, 0);
+  EXPECT_FALSE(has("out/home/.cache"));
+  ASSERT_EQ(bake("other", {"--cache", "kept", "--scenes", "c"}).exit_code, 0);
+  EXPECT_THAT(packsThatAre("unchanged"), ElementsAre("scenes/c.pack"));
+  EXPECT_EQ(report().at("baked").at(0).at("output"), "other/home/scenes/c.pack");
+  ASSERT_EQ(bake("other", {"--no-cache", "--scenes", "c"}).exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("scenes/c.pack"));
+  expectSamePacks(packsIn("other"), packsIn("out"));
+  // A dataset that was moved is found again.
+  fs::rename(path("data"), path("moved"));
+  fs::create_directory(path("data"));
+  fs::rename(path("moved"), path("data/in"));
+  auto arguments = datasetArguments("third", {"--cache", "kept", "--scenes", "c"});
+  arguments[0] = "data/in/home.scene_dataset_config.json";
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  EXPECT_THAT(packsThatAre("unchanged"), ElementsAre("scenes/c.pack"));
+}
+
+TEST_F(PlanCli, ListsScenesAndChoosesThemByPattern) {
+  const ProgramRun all = run({"data/home.scene_dataset_config.json", "--list"});
+  EXPECT_EQ(all.out, "a\nb\nc\nd\ne\n");
+  const ProgramRun some =
+      run({"data/home.scene_dataset_config.json", "--list", "--scenes", "[", "--scenes", "a"});
+  EXPECT_EQ(some.exit_code, 3);
+  EXPECT_THAT(some.err, HasSubstr("--scenes: \"[\" fits none of the dataset's 5 scenes; --list"));
+  const ProgramRun two =
+      run({"data/home.scene_dataset_config.json", "--list", "--scenes", "?", "--scenes", "a*"});
+  EXPECT_EQ(two.out, "a\nb\nc\nd\ne\n");
+  const ProgramRun dry = bake("out", {"--dry-run", "--scenes", "b"});
+  EXPECT_EQ(dry.exit_code, 0) << dry.err;
+  EXPECT_THAT(dry.out, HasSubstr("2 planned"));
+  EXPECT_FALSE(has("out"));
+}
+
+TEST_F(PlanCli, TreatsScenesThatLackSomethingAsTheUserWants) {
+  const ProgramRun fails = bake("out", {"--missing", "fail"});
+  EXPECT_EQ(fails.exit_code, 3);
+  EXPECT_THAT(fails.err, HasSubstr("home.scene_dataset_config.json: d: object 'lamp' is in none of "
+                                   "the dataset's paths; add it, or bake with --missing skip or "
+                                   "--missing without"));
+  EXPECT_FALSE(has("out"));
+  const ProgramRun skips = bake("out", {"--missing", "skip", "--dry-run"});
+  EXPECT_EQ(skips.exit_code, 0) << skips.err;
+  EXPECT_THAT(skips.out, HasSubstr("2 scenes are left out:\n"));
+  EXPECT_THAT(packsThatAre("planned"), Not(Contains("scenes/d.pack")));
+  ASSERT_EQ(bake("out", {"--missing", "without", "--dry-run"}).exit_code, 0);
+  EXPECT_THAT(packsThatAre("planned"), Contains("scenes/d.pack"));
+  const ProgramRun nothing = bake("out", {"--scenes", "e"});
+  EXPECT_EQ(nothing.exit_code, 3);
+  EXPECT_THAT(nothing.err, HasSubstr("out/home.pack: would have no scene, 1 are left out: e: stage "
+                                     "'hall' is in none of the dataset's paths; a world has"));
+  EXPECT_FALSE(has("out/home.pack"));
+}
+
+/// A world of the dataset's first scenes, an object and the sample robot.
+constexpr const char* kRecipe = R"([bake]
+radii = [0.05, 0.12]
+[[scenes]]
+dataset = "data/home.scene_dataset_config.json"
+scenes = ["a", "c"]
+check-columns = 0
+[[objects]]
+files = "objects/m*.glb"
+eps = 0.03
+tau = 0.06
+[robot]
+files = "robot/porter.urdf"
+recipe = "robot/robot.toml"
+eps = 0.06
+tau = 0.08
+max-spheres = 30
+[episodes]
+count = 3
+objects = 2
+)";
+
+TEST_F(PlanCli, BakesTheWorldOfARecipe) {
+  write("flat.toml", kRecipe);
+  const std::vector<std::string> arguments{"flat.toml", "--data", sampleFile(""), "--report",
+                                           "report.json"};
+  const ProgramRun first = run(arguments);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_THAT(packsThatAre("baked"),
+              ElementsAre("objects/box.pack", "objects/mug.pack", "robot.pack", "scenes/a.pack",
+                          "scenes/c.pack", "episodes.pack"));
+  const auto world = World::open(std::vector{path("flat.pack")});
+  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  EXPECT_EQ(world->episodes().episodes().size(), 3U);
+  EXPECT_EQ(world->scenes().size(), 2U);
+  const std::string bytes = content("flat.pack");
+
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  EXPECT_THAT(packsThatAre("unchanged"), SizeIs(6));
+  EXPECT_TRUE(content("flat.pack") == bytes);
+  // Episodes stand in all packs, so that they are made anew with any of them.
+  addScene("c", "flat", thing("mug", 3));
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("scenes/c.pack", "episodes.pack"));
+  // In shards episodes wait for the join.
+  auto part = arguments;
+  part.insert(part.end(), {"--shard", "1/2", "-o", "part.pack"});
+  ASSERT_EQ(run(part).exit_code, 0);
+  EXPECT_FALSE(has("part/episodes.pack"));
+  EXPECT_THAT(packsThatAre("baked"),
+              ElementsAre("objects/box.pack", "robot.pack", "scenes/c.pack"));
+}
+
+}  // namespace
+}  // namespace galactic::test

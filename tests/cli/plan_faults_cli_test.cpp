@@ -1,0 +1,270 @@
+// Bakes of whole datasets that are killed, stopped, refused or run out of space.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "cli/plan_folder.h"
+
+namespace galactic::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::AnyOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+class PlanFaults : public PlanFolder {
+ protected:
+  [[nodiscard]] StartedProgram start(const std::string& out,
+                                     const std::vector<std::string>& more) const {
+    return {GALACTIC_BAKE, path(""), datasetArguments(out, more)};
+  }
+  [[nodiscard]] ProgramRun shell(const std::string& script) const {
+    return runProgram("/bin/sh", path(""), {"-c", script});
+  }
+  /// The names of the texture packs below `out`, ascending.
+  [[nodiscard]] std::vector<std::string> textures(const std::string& out) const {
+    std::vector<std::string> names;
+    for (const auto& [name, content] : packsIn(out)) {
+      if (name.find("/textures/") != std::string::npos) names.push_back(out + "/" + name);
+    }
+    return names;
+  }
+  /// Damages the last byte of a file.
+  void damage(const std::string& name) {
+    std::string bytes = content(name);
+    bytes.back() = static_cast<char>(bytes.back() ^ 1);
+    fs::remove(path(name));
+    write(name, bytes);
+  }
+};
+
+TEST_F(PlanFaults, KilledAtAnyMomentItMakesTheSamePacksLater) {
+  ASSERT_EQ(bake("whole", {"--no-cache"}).exit_code, 0);
+  const PackContents whole = packsIn("whole");
+  std::size_t killed = 0;
+  for (const int milliseconds : {20, 150, 400, 700, 1000, 1500}) {
+    const StartedProgram program = start("out", {"-j", "2"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    program.signal(SIGKILL);
+    killed += program.wait().exit_code == -1 ? 1U : 0U;
+    if (milliseconds == 400) fs::remove_all(path("out"));
+  }
+  EXPECT_GE(killed, 2U) << "it did not take long enough to be killed";
+  const ProgramRun last = bake("out");
+  ASSERT_EQ(last.exit_code, 0) << last.err;
+  const PackContents found = packsIn("out");
+  for (const auto& [name, bytes] : whole) {
+    ASSERT_EQ(found.count(name), 1U) << name;
+    EXPECT_TRUE(found.at(name) == bytes) << name;
+  }
+  // What was killed may leave parts of files behind, never a pack that is not whole.
+  for (const auto& [name, bytes] : found) {
+    const bool is_pack = name.ends_with(".pack");
+    EXPECT_TRUE(!is_pack || whole.count(name) == 1) << name;
+  }
+}
+
+TEST_F(PlanFaults, StopsBetweenPacksAndGoesOnLater) {
+  ASSERT_EQ(bake("whole").exit_code, 0);
+  for (const int number : {SIGINT, SIGTERM}) {
+    fs::remove_all(path("out"));
+    const StartedProgram program = start("out", {"-j", "1"});
+    const auto has_begun = [&] {
+      return has("out/home/scenes/a.pack") || has("out/home/scenes/b.pack");
+    };
+    for (int n = 0; n < 5000 && !has_begun(); ++n) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    program.signal(number);
+    const ProgramRun stopped = program.wait();
+    EXPECT_EQ(stopped.exit_code, 130);
+    EXPECT_THAT(stopped.err, HasSubstr("finishing what has begun; once more to stop at once"));
+    EXPECT_THAT(stopped.out, HasSubstr("stopped; the same command goes on from here\n"));
+    EXPECT_EQ(report().at("run").at("stopped"), true);
+    EXPECT_FALSE(has("out/home.pack"));
+    const std::vector<std::string> done = packsThatAre("baked");
+    EXPECT_THAT(done, Not(IsEmpty()));
+    EXPECT_THAT(packsThatAre("planned"), Not(IsEmpty()));
+    ASSERT_EQ(bake("out").exit_code, 0);
+    EXPECT_EQ(packsThatAre("unchanged"), done);
+    expectSamePacks(packsIn("out"), packsIn("whole"));
+  }
+}
+
+/// Bakes twice into a file system of its own, which is full the second time; "before" and "after"
+/// get what was there. Ends with 77 where nothing may be mounted.
+constexpr const char* kFullDisk = R"(
+mkdir full && mount -t tmpfs -o size=16m tmpfs full || exit 77
+$BAKE full/home.pack || exit 76
+cp -r full before
+dd if=/dev/zero of=full/ballast bs=4k 2> /dev/null
+cp changed.json data/scenes/c.scene_instance.json
+$BAKE full/home.pack
+code=$?
+rm full/ballast
+cp -r full after
+exit $code
+)";
+
+TEST_F(PlanFaults, OnAFullDiskSaysSoAndLeavesOldPacksAsTheyWere) {
+  addScene("changed", "flat", thing("mug", 3));
+  fs::rename(path("data/scenes/changed.scene_instance.json"), path("changed.json"));
+  std::string bake = "BAKE=\"" GALACTIC_BAKE;
+  std::vector<std::string> words = datasetArguments("full", {"--scenes", "c", "-o"});
+  words.erase(words.begin() + 1, words.begin() + 3);
+  for (const std::string& word : words) bake += " " + word;
+  write("full.sh", bake + "\"" + kFullDisk);
+  // A name space of mounts for root, one of users besides for others.
+  ProgramRun full = shell("unshare -m sh full.sh");
+  if (full.exit_code != 2) {
+    fs::remove_all(path("full"));
+    full = shell("unshare -rm sh full.sh");
+  }
+  if (!has("before")) GTEST_SKIP() << "no file system may be mounted here: " << full.err;
+  EXPECT_EQ(full.exit_code, 2);
+  EXPECT_THAT(full.err,
+              AllOf(HasSubstr("galactic-bake: full/home/"), HasSubstr("No space left on device")));
+  ASSERT_GE(packsIn("before").size(), 3U);
+  expectSamePacks(packsIn("after"), packsIn("before"));
+}
+
+TEST_F(PlanFaults, ExplainsThatItCannotMakeItsFolder) {
+  write("out/home", "no folder");
+  const ProgramRun blocked = bake("out", {"--scenes", "c", "--no-cache"});
+  EXPECT_EQ(blocked.exit_code, 2);
+  EXPECT_THAT(blocked.err, HasSubstr("out/home/scenes: cannot be made a folder"));
+  EXPECT_EQ(content("out/home"), "no folder");
+  // Where nobody may write, root neither.
+  const ProgramRun nowhere = bake("/proc/none", {"--scenes", "c"});
+  EXPECT_EQ(nowhere.exit_code, 2);
+  EXPECT_THAT(nowhere.err, HasSubstr("/proc/none/home/scenes: cannot be made a folder"));
+}
+
+TEST_F(PlanFaults, RefusesOutputsThatAreInputsOrNoPack) {
+  const std::string config = content("data/home.scene_dataset_config.json");
+  const std::string mesh = content("data/meshes/apartment.glb");
+  write("w.toml", "[[scenes]]\nfiles = \"data/meshes/apartment.glb\"\n");
+  const std::string recipe = content("w.toml");
+  const std::vector<Refusal> refusals{
+      {{"w.toml", "-o", "w.toml"}, 3, "w.toml: is also an input; write to another file"},
+      {{"w.toml", "-o", "data/meshes/apartment.glb"}, 3, "is also an input"},
+      {{"w.toml", "--report", "w.toml"}, 3, "w.toml: is also an input"},
+      {{"data/home.scene_dataset_config.json", "-o", "data/home.scene_dataset_config.json"},
+       3,
+       "is also an input"},
+      {{"w.toml", "-o", "new"}, 3, "--out: is \"new\", NAME.pack or a folder that is there"},
+  };
+  for (const Refusal& refusal : refusals) {
+    SCOPED_TRACE(testing::PrintToString(refusal.arguments));
+    const ProgramRun refused = run(refusal.arguments);
+    EXPECT_EQ(refused.exit_code, refusal.exit_code);
+    EXPECT_THAT(refused.err, HasSubstr(refusal.part));
+    EXPECT_THAT(refused.out, IsEmpty());
+  }
+  EXPECT_TRUE(content("data/home.scene_dataset_config.json") == config);
+  EXPECT_TRUE(content("data/meshes/apartment.glb") == mesh);
+  EXPECT_TRUE(content("w.toml") == recipe);
+}
+
+TEST_F(PlanFaults, RefusesRecipesThatDoNotFit) {
+  const std::string scene = "[[scenes]]\nfiles = \"data/meshes/apartment.glb\"\n";
+  write("twice.toml", scene + scene);
+  write("far.toml", "[[scenes]]\nfiles = \"none/*.glb\"\n");
+  write("option.toml", scene + "[[objects]]\nfiles = \"data/meshes/objects\"\nspacing = 1\n");
+  write("value.toml", scene + "spacing = \"wide\"\n");
+  write("robots.toml", scene + "[robot]\nfiles = \"*.toml\"\n");
+  write("lost.toml", scene + "[robot]\nfiles = \"option.toml\"\nrecipe = \"none.toml\"\n");
+  const std::vector<Refusal> refusals{
+      {{"twice.toml"}, 3, "would be scenes/apartment.pack, as "},
+      {{"far.toml"}, 2, "far.toml:1: none/*.glb: fits no file in "},
+      {{"option.toml"}, 3, "option.toml:3: --spacing: does not go with --as object"},
+      {{"value.toml"}, 3, "value.toml:1: --spacing"},
+      {{"robots.toml"}, 3, "robots.toml:3: [robot] names "},
+      {{"lost.toml"}, 2, "lost.toml:5: recipe: none.toml fits no file in "},
+      {{"none.toml"}, 2, "none.toml"},
+  };
+  for (const Refusal& refusal : refusals) {
+    SCOPED_TRACE(testing::PrintToString(refusal.arguments));
+    const ProgramRun refused = run(refusal.arguments);
+    EXPECT_EQ(refused.exit_code, refusal.exit_code);
+    EXPECT_THAT(refused.err, HasSubstr(refusal.part));
+  }
+}
+
+TEST_F(PlanFaults, RefusesWrongOptions) {
+  const std::vector<Refusal> refusals{
+      {{"--shard", "0/2"}, 1, "--shard: is \"0/2\", I/N is wanted with I from 1 to N"},
+      {{"--shard", "3/2"}, 1, "--shard: is \"3/2\""},
+      {{"--shard", "1"}, 1, "--shard: is \"1\""},
+      {{"--shard", "1/2x"}, 1, "--shard: is \"1/2x\""},
+      {{"--memory", "0"}, 1, "--memory"},
+      {{"--cache", "c", "--no-cache"}, 1, "--no-cache: does not go with --cache; give one"},
+      {{"--missing", "ignore"}, 1, "--missing"},
+      {{"--eps", "0.1"}, 1, "--eps: does not go with --as dataset"},
+  };
+  for (const Refusal& refusal : refusals) {
+    SCOPED_TRACE(testing::PrintToString(refusal.arguments));
+    const ProgramRun refused = bake("out", refusal.arguments);
+    EXPECT_EQ(refused.exit_code, refusal.exit_code);
+    EXPECT_THAT(refused.err, HasSubstr(refusal.part));
+  }
+  EXPECT_FALSE(has("out"));
+}
+
+TEST_F(PlanFaults, GoesOnAfterAnErrorWhereTheUserWants) {
+  write("data/meshes/objects/mug.glb", "no mesh");
+  const ProgramRun stops = bake("out", {"-j", "1", "--missing", "skip"});
+  EXPECT_EQ(stops.exit_code, 3);
+  EXPECT_THAT(stops.err, HasSubstr("mug.glb"));
+  EXPECT_THAT(packsThatAre("failed"), SizeIs(1));
+  EXPECT_FALSE(has("out/home.pack"));
+  const ProgramRun goes_on = bake("out", {"-j", "1", "--missing", "skip", "--keep-going"});
+  EXPECT_EQ(goes_on.exit_code, 3);
+  EXPECT_THAT(packsThatAre("failed"), SizeIs(2));
+  EXPECT_THAT(packsThatAre("baked").size() + packsThatAre("unchanged").size(), 2U);
+  EXPECT_TRUE(has("out/home.pack"));
+}
+
+TEST_F(PlanFaults, MakesTexturePacksAgainThatAreGoneOrDamaged) {
+  ASSERT_EQ(bake("out", {"--scenes", "c"}).exit_code, 0);
+  const PackContents before = packsIn("out");
+  const std::vector<std::string> names = textures("out");
+  ASSERT_GE(names.size(), 3U);
+  fs::remove(path(names[0]));
+  ASSERT_EQ(bake("out", {"--scenes", "c"}).exit_code, 0);
+  EXPECT_THAT(packsThatAre("unchanged"), Contains("scenes/c.pack")) << "the cache has it";
+  expectSamePacks(packsIn("out"), before);
+  const std::string whole = content(names[1]);
+  // In place, where the cache has the same file.
+  write(names[1], whole.substr(0, whole.size() / 2));
+  ASSERT_EQ(bake("out", {"--scenes", "c"}).exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), Contains("scenes/c.pack"));
+  expectSamePacks(packsIn("out"), before);
+  damage(names[2]);
+  ASSERT_EQ(bake("out", {"--scenes", "c", "--no-cache"}).exit_code, 0);
+  expectSamePacks(packsIn("out"), before);
+}
+
+TEST_F(PlanFaults, MakesPacksAgainThatWereDamaged) {
+  ASSERT_EQ(bake("out", {"--scenes", "c"}).exit_code, 0);
+  const PackContents before = packsIn("out");
+  // Once as an editor does it, with a new file, once in place, where the cache has the same file.
+  damage("out/home/scenes/c.pack");
+  ASSERT_EQ(bake("out", {"--scenes", "c"}).exit_code, 0);
+  EXPECT_THAT(packsThatAre("unchanged"), Contains("scenes/c.pack"));
+  expectSamePacks(packsIn("out"), before);
+  fs::resize_file(path("out/home/scenes/c.pack"), 100);
+  ASSERT_EQ(bake("out", {"--scenes", "c"}).exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), Contains("scenes/c.pack"));
+  expectSamePacks(packsIn("out"), before);
+}
+
+}  // namespace
+}  // namespace galactic::test
