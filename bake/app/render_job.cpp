@@ -96,9 +96,9 @@ Json renderReport(const BakedRenderMeshes& meshes) {
             {"bytes", figures.bytes},
             {"largest_error", figures.largest_error},
             {"textures", meshes.materials.textures.size()},
-            {"shared_textures", sharedTextures(meshes.materials)},
             {"source_texture_bytes", figures.source_texture_bytes},
             {"texture_bytes", figures.texture_bytes}};
+  if (meshes.materials.shared) json["shared_textures"] = sharedTextures(meshes.materials);
   json["models"] = Json::array();
   for (const RenderModel& model : meshes.models) {
     json["models"].push_back({{"part", model.part},

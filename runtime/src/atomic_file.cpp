@@ -112,7 +112,8 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& path) {
   }
   if (std::filesystem::is_directory(status)) {
     return fail(ErrorCode::kIo, path.string(),
-                "cannot write the file: a folder of this name is there; give another name");
+                "cannot write the file: " + std::generic_category().message(EISDIR) +
+                    "; an existing file is left as it was");
   }
   auto temporary = std::make_unique<Temporary>(path, target);
   if (!temporary->isOpen()) return temporary->failure();

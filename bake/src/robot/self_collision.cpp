@@ -140,7 +140,6 @@ std::vector<BakedPair> pairsWithSpheres(const BakedRobot& robot) {
 /// Decides the pairs that are still to be tested by what they do in many poses.
 void samplePairs(const BakedRobot& robot, std::vector<BakedPair>& pairs) {
   std::vector<std::size_t> touches(pairs.size());
-  std::vector<bool> at_start(pairs.size());
   PairSampler sampler(robot);
   constexpr std::uint64_t kSeed = 20230613;
   Random random(kSeed);
@@ -150,16 +149,13 @@ void samplePairs(const BakedRobot& robot, std::vector<BakedPair>& pairs) {
     for (std::size_t n = 0; n < pairs.size(); ++n) {
       if (pairs[n].kind == PairKind::kTested && sampler.touch(pairs[n].first, pairs[n].second)) {
         ++touches[n];
-        if (sample == 0) at_start[n] = true;
       }
     }
   }
   for (std::size_t n = 0; n < pairs.size(); ++n) {
     if (pairs[n].kind != PairKind::kTested) continue;
     if (touches[n] == 0) pairs[n].kind = PairKind::kNever;
-    // The robot is not in collision where it starts: what overlaps there are spheres that stick out.
-    // MoveIt's set-up assistant decides likewise ("in collision by default").
-    if (at_start[n] || touches[n] == kSelfCollisionSamples) pairs[n].kind = PairKind::kAlways;
+    if (touches[n] == kSelfCollisionSamples) pairs[n].kind = PairKind::kAlways;
   }
 }
 
