@@ -68,6 +68,17 @@ TEST_F(ObjectCli, BakesAFolderOfFoldersAsYcbIsLaidOut) {
   EXPECT_THAT(namesIn("ycb.pack"), ElementsAre("003_box", "025_mug", "cup"));
 }
 
+TEST_F(ObjectCli, BakesModelsAsYcbAndGoogleScannedObjectsPublishThem) {
+  // Of several models of one object the one that YCB made of the fewest points.
+  write("models/025_mug/google_16k/textured.obj", brick());
+  write("models/025_mug/google_512k/textured.obj", "broken");
+  write("models/025_mug/tsdf/textured.obj", "broken");
+  write("models/Tea_Pot/meshes/model.obj", brick());
+  const ProgramRun run = bake({"models"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(namesIn("models.pack"), ElementsAre("025_mug", "Tea_Pot"));
+}
+
 TEST_F(ObjectCli, NamesThePackAfterTheFolderHoweverItIsWritten) {
   write("things.v2/mug.obj", brick());
   for (const char* input : {"things.v2", "things.v2/", "./things.v2/.", "things.v2/../things.v2"}) {

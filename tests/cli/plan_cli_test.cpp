@@ -202,6 +202,37 @@ count = 3
 objects = 2
 )";
 
+TEST_F(PlanCli, BakesAFolderOfScans) {
+  for (const char* name : {"scans/hall/hall.glb", "scans/loft.glb"}) {
+    write(name, fileContent(sampleFile("apartment.glb")));
+  }
+  const ProgramRun list = run({"scans/", "--as", "dataset", "--list"});
+  EXPECT_EQ(list.out, "hall\nloft\n");
+  const ProgramRun baked =
+      run({"scans", "--as", "dataset", "--scenes", "h*", "--up", "y", "--radii", "0.12"});
+  ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  EXPECT_TRUE(has("scans.pack"));
+  EXPECT_TRUE(has("scans/scenes/hall.pack"));
+  EXPECT_FALSE(has("scans/scenes/loft.pack"));
+  const ProgramRun habitat = bake("out", {"--up", "z"});
+  EXPECT_EQ(habitat.exit_code, 3);
+  EXPECT_THAT(habitat.err, HasSubstr("says itself how its meshes stand; leave out --up"));
+}
+
+TEST_F(PlanCli, ComparesAWholeBakeWithAGoldenReport) {
+  ASSERT_EQ(bake("out").exit_code, 0);
+  std::filesystem::rename(path("report.json"), path("golden.json"));
+  // Made before or now: the same.
+  const ProgramRun same = bake("out", {"--check", "golden.json"});
+  EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
+  addScene("c", "flat", thing("mug", 3));
+  const ProgramRun other = bake("out", {"--check", "golden.json"});
+  EXPECT_EQ(other.exit_code, 7);
+  const ProgramRun none = bake("other", {"--check", "absent.json"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_FALSE(has("other")) << "nothing is baked for a golden report that is not there";
+}
+
 TEST_F(PlanCli, BakesTheWorldOfARecipe) {
   write("flat.toml", kRecipe);
   const std::vector<std::string> arguments{"flat.toml", "--data", sampleFile(""), "--report",

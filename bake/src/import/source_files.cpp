@@ -53,8 +53,11 @@ std::optional<fs::path> findReference(const fs::path& folder, std::string refere
   for (const std::string& spelling : spellings) {
     if (isFile(folder / spelling)) return folder / spelling;
   }
-  const fs::path beside = folder / fs::path(spellings.back()).filename();
-  if (isFile(beside)) return beside;
+  const fs::path name = fs::path(spellings.back()).filename();
+  // As Gazebo's models have them: meshes/model.obj, materials/textures/texture.png.
+  for (const fs::path& place : {folder, folder / ".." / "materials" / "textures"}) {
+    if (isFile(place / name)) return place / name;
+  }
   return std::nullopt;
 }
 
