@@ -25,7 +25,7 @@ struct PackOutcome {
   std::string name;
   PackState state = PackState::kPlanned;
   /// Entry of the report of its bake; null where there was none.
-  Json entry{};
+  Json entry = nullptr;
   std::optional<Error> error{};
   double seconds = 0;
 };

@@ -31,9 +31,4 @@ Result<SourceFile> FileDigests::of(const std::filesystem::path& file) {
   return known_.try_emplace(key, std::move(digest)).first->second;
 }
 
-void FileDigests::note(const std::filesystem::path& file, SourceFile digest) {
-  const std::lock_guard lock(mutex_);
-  known_.try_emplace(plain(file), std::move(digest));
-}
-
 }  // namespace galactic::bake

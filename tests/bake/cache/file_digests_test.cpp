@@ -49,17 +49,6 @@ TEST(FileDigests, TellWhatAFileHeldWhenItWasFirstLookedAt) {
   EXPECT_FALSE(same(*fresh.of(file), *first));
 }
 
-TEST(FileDigests, TakeOverWhatAnotherReaderFoundButNotTwice) {
-  const ScratchFolder folder;
-  const fs::path file = folder.write("a.txt", "content");
-  FileDigests digests;
-  const SourceFile noted{.name = "a.txt", .bytes = 1, .hash_low = 2, .hash_high = 3};
-  digests.note(file, noted);
-  EXPECT_TRUE(same(*digests.of(file), noted));
-  digests.note(file, {.name = "a.txt", .bytes = 4, .hash_low = 5, .hash_high = 6});
-  EXPECT_TRUE(same(*digests.of(file), noted));
-}
-
 TEST(FileDigests, RefuseWhatCannotBeReadEachTime) {
   const ScratchFolder folder;
   FileDigests digests;

@@ -15,9 +15,6 @@ class FileDigests {
   /// Its name is the path as given. Fails with kIo where the file cannot be read, each time.
   [[nodiscard]] Result<SourceFile> of(const std::filesystem::path& file);
 
-  /// Takes over what another reader of the file found; the first one counts.
-  void note(const std::filesystem::path& file, SourceFile digest);
-
  private:
   std::mutex mutex_;
   std::map<std::filesystem::path, Result<SourceFile>> known_;
