@@ -1,12 +1,10 @@
-// The only file that names Bullet's collision detection.
+// The only file that names Bullet's collision worlds for casts.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
-#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
-#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -14,53 +12,12 @@
 #include <optional>
 #include <utility>
 
+#include "engines/bullet_mesh.h"
 #include "engines/columns_by_rows.h"
 #include "galactic/bake/column_engines.h"
 
 namespace galactic::bake {
 namespace {
-
-/// Bullet's quantised tree keeps a triangle's index in 21 bits: bigger meshes go in as several
-/// parts.
-constexpr std::size_t kTrianglesPerPart = std::size_t{1} << 20U;
-
-static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(Triangle) == 3 * sizeof(int));
-
-/// A mesh with its tree as Bullet wants it. Immutable once built: many casters may share it.
-class MeshShape {
- public:
-  explicit MeshShape(const TriangleMesh& mesh)
-      : vertices_(mesh.vertices), triangles_(mesh.triangles) {
-    for (std::size_t first = 0; first < triangles_.size(); first += kTrianglesPerPart) {
-      btIndexedMesh part;
-      part.m_numTriangles =
-          static_cast<int>(std::min(kTrianglesPerPart, triangles_.size() - first));
-      part.m_triangleIndexBase =
-          reinterpret_cast<const unsigned char*>(triangles_.data() + first);  // as Bullet asks
-      part.m_triangleIndexStride = sizeof(Triangle);
-      part.m_numVertices = static_cast<int>(vertices_.size());
-      part.m_vertexBase = reinterpret_cast<const unsigned char*>(vertices_.data());
-      part.m_vertexStride = sizeof(Vec3);
-      part.m_vertexType = PHY_FLOAT;
-      arrays_.addIndexedMesh(part, PHY_INTEGER);
-    }
-    constexpr bool kQuantised = true;
-    shape_ = std::make_unique<btBvhTriangleMeshShape>(&arrays_, kQuantised);
-    // Bullet's default of 4 cm would grow every surface.
-    shape_->setMargin(0);
-  }
-  MeshShape(const MeshShape&) = delete;
-  MeshShape& operator=(const MeshShape&) = delete;
-
-  /// Bullet takes shapes as mutable even where it only reads them.
-  [[nodiscard]] btBvhTriangleMeshShape* get() const { return shape_.get(); }
-
- private:
-  std::vector<Vec3> vertices_;
-  std::vector<Triangle> triangles_;
-  btTriangleIndexVertexArray arrays_;
-  std::unique_ptr<btBvhTriangleMeshShape> shape_;
-};
 
 /// Pools for one pair of objects at a time; Bullet's defaults are megabytes.
 btDefaultCollisionConstructionInfo smallPools() {
@@ -89,7 +46,7 @@ btTransform placedAt(const btVector3& centre) {
 /// One collision object, and the machinery Bullet needs to test spheres against it. For one thread.
 class SphereProbe {
  public:
-  SphereProbe(std::shared_ptr<const MeshShape> shape, const BulletCastOptions& options)
+  SphereProbe(std::shared_ptr<const BulletMesh> shape, const BulletCastOptions& options)
       : options_(options),
         shape_(std::move(shape)),
         configuration_(smallPools()),
@@ -133,7 +90,7 @@ class SphereProbe {
 
  private:
   BulletCastOptions options_;
-  std::shared_ptr<const MeshShape> shape_;
+  std::shared_ptr<const BulletMesh> shape_;
   btCollisionObject mesh_object_;
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;
@@ -241,7 +198,7 @@ class BulletColumnCaster::World : public SphereProbe {
 };
 
 BulletColumnCaster::BulletColumnCaster(const TriangleMesh& mesh, const BulletCastOptions& options)
-    : world_(std::make_unique<World>(std::make_shared<const MeshShape>(mesh), options)) {}
+    : world_(std::make_unique<World>(std::make_shared<const BulletMesh>(mesh), options)) {}
 BulletColumnCaster::~BulletColumnCaster() = default;
 BulletColumnCaster::BulletColumnCaster(BulletColumnCaster&&) noexcept = default;
 BulletColumnCaster& BulletColumnCaster::operator=(BulletColumnCaster&&) noexcept = default;
@@ -251,7 +208,7 @@ std::vector<Span> BulletColumnCaster::column(const GridFrame& frame, ColumnIndex
 }
 
 Columns bulletColumns(const TriangleMesh& mesh, const GridFrame& frame, unsigned jobs) {
-  const auto shape = std::make_shared<const MeshShape>(mesh);
+  const auto shape = std::make_shared<const BulletMesh>(mesh);
   return columnsByRows(frame, jobs, [&](std::uint32_t row) {
     SphereProbe probe(shape, {});
     RowSpans result;

@@ -3,9 +3,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
-#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
-#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -14,14 +12,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "engines/bullet_mesh.h"
 #include "episodes/settling.h"
 
 namespace galactic::bake {
 namespace {
 
-/// Bullet's quantised tree keeps a triangle's index in 21 bits: bigger meshes go in as several
-/// parts.
-constexpr std::size_t kTrianglesPerPart = std::size_t{1} << 20U;
 constexpr btScalar kGravity = -9.81F;
 constexpr btScalar kStep = 1.0F / 120;
 /// At rest: within so many steps it went less far than this, metres, and leaned over less than
@@ -39,8 +35,6 @@ constexpr btScalar kRollingFriction = 0.002F;
 constexpr btScalar kMass = 0.5F;
 /// A box of no thickness has no inertia: half of the least one, metres.
 constexpr float kThinnest = 5e-4F;
-
-static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(Triangle) == 3 * sizeof(int));
 
 btVector3 toBullet(const Vec3& v) { return {v.x, v.y, v.z}; }
 
@@ -161,33 +155,12 @@ class Drop {
 
 class SettlingScene::Impl {
  public:
-  explicit Impl(const TriangleMesh& mesh) : vertices_(mesh.vertices), triangles_(mesh.triangles) {
-    for (std::size_t first = 0; first < triangles_.size(); first += kTrianglesPerPart) {
-      btIndexedMesh part;
-      part.m_numTriangles =
-          static_cast<int>(std::min(kTrianglesPerPart, triangles_.size() - first));
-      part.m_triangleIndexBase =
-          reinterpret_cast<const unsigned char*>(triangles_.data() + first);  // as Bullet asks
-      part.m_triangleIndexStride = sizeof(Triangle);
-      part.m_numVertices = static_cast<int>(vertices_.size());
-      part.m_vertexBase = reinterpret_cast<const unsigned char*>(vertices_.data());
-      part.m_vertexStride = sizeof(Vec3);
-      part.m_vertexType = PHY_FLOAT;
-      arrays_.addIndexedMesh(part, PHY_INTEGER);
-    }
-    constexpr bool kQuantised = true;
-    shape_ = std::make_unique<btBvhTriangleMeshShape>(&arrays_, kQuantised);
-    shape_->setMargin(0);
-  }
+  explicit Impl(const TriangleMesh& mesh) : mesh_(mesh) {}
 
-  /// Bullet takes shapes as mutable even where it only reads them.
-  [[nodiscard]] btBvhTriangleMeshShape& shape() const { return *shape_; }
+  [[nodiscard]] btBvhTriangleMeshShape& shape() const { return *mesh_.get(); }
 
  private:
-  std::vector<Vec3> vertices_;
-  std::vector<Triangle> triangles_;
-  btTriangleIndexVertexArray arrays_;
-  std::unique_ptr<btBvhTriangleMeshShape> shape_;
+  BulletMesh mesh_;
 };
 
 SettlingScene::SettlingScene(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>(mesh)) {}
