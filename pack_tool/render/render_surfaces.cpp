@@ -35,11 +35,11 @@ RenderVertex decoded(const RenderMeshes& meshes, const RenderModel& model,
 }  // namespace
 
 std::string partName(const PackFile& pack, std::uint32_t part) {
-  const auto nameIn = [part](const auto& names) {
+  const auto name_in = [part](const auto& names) {
     return part < names.size() ? names.Get(part)->str() : fmt::format("part {}", part);
   };
   if (const auto* scene = pack.root().asset_as_Scene()) return scene->name()->str();
-  if (const auto* robot = pack.root().asset_as_Robot()) return nameIn(*robot->link_names());
+  if (const auto* robot = pack.root().asset_as_Robot()) return name_in(*robot->link_names());
   const auto* set = pack.root().asset_as_ObjectSet();
   if (set == nullptr || part >= set->objects()->size()) return fmt::format("part {}", part);
   return set->objects()->Get(part)->name()->str();

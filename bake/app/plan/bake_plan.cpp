@@ -38,7 +38,9 @@ Result<std::vector<LinkedPack>> link(const WorldPlan& plan, const PlanOutcome& o
   for (const PackOutcome& pack : outcome.packs) {
     if (!isMade(pack)) continue;
     names.insert(plan.folder / pack.name);
-    for (const std::string& texture : texturePacks(pack.entry)) names.insert(plan.folder / texture);
+    if (!pack.entry) continue;
+    for (const std::string& texture : texturePacks(*pack.entry))
+      names.insert(plan.folder / texture);
   }
   const std::vector<fs::path> paths(names.begin(), names.end());
   auto packs = linkPacks(paths, plan.world.parent_path());

@@ -187,7 +187,7 @@ PackOutcome bakePlanned(const PlannedPack& pack, const PlanTools& tools) {
   auto entry = make(pack, tools, outcome.state);
   outcome.seconds = secondsSince(start);
   if (entry) {
-    outcome.entry = std::move(*entry);
+    if (entry->is_object()) outcome.entry = std::move(*entry);
   } else {
     outcome.state = PackState::kFailed;
     outcome.error = entry.error();

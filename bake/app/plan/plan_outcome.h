@@ -24,8 +24,8 @@ enum class PackState {
 struct PackOutcome {
   std::string name;
   PackState state = PackState::kPlanned;
-  /// Entry of the report of its bake; null where there was none.
-  Json entry = nullptr;
+  /// Entry of the report of its bake, where it was baked, now or before.
+  std::optional<Json> entry{};
   std::optional<Error> error{};
   double seconds = 0;
 };

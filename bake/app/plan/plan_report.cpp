@@ -13,7 +13,7 @@ namespace {
 /// What was baked, now or before, as the report of a single bake has it.
 Json bakedOf(const PackOutcome& pack) {
   Json json{{"pack", pack.name}};
-  json.update(pack.entry);
+  json.update(*pack.entry);
   return json;
 }
 
@@ -46,7 +46,7 @@ Json planReport(const PlanSummary& summary) {
   Json run{{"seconds", summary.outcome.seconds}, {"stopped", summary.outcome.stopped}};
   run["packs"] = Json::array();
   for (const PackOutcome& pack : summary.outcome.packs) {
-    if (pack.entry.is_object()) json["baked"].push_back(bakedOf(pack));
+    if (pack.entry) json["baked"].push_back(bakedOf(pack));
     if (pack.error) json["failed"].push_back(failureOf(pack));
     run["packs"].push_back(progressOf(pack));
   }

@@ -15,8 +15,8 @@ using Sentences = std::map<std::string, std::vector<std::string>>;
 Sentences warningsOf(const PlanOutcome& outcome) {
   Sentences warnings;
   for (const PackOutcome& pack : outcome.packs) {
-    if (!pack.entry.is_object() || !pack.entry.contains("warnings")) continue;
-    for (const Json& warning : pack.entry["warnings"]) {
+    if (!pack.entry || !pack.entry->contains("warnings")) continue;
+    for (const Json& warning : pack.entry->at("warnings")) {
       warnings[warning.get<std::string>()].push_back(pack.name);
     }
   }
