@@ -38,21 +38,39 @@ struct SourceResult {
   std::string fault;
 };
 
-void bakeSource(const TextureSource& source, const TextureBakeOptions& options,
-                const TransferFunction& transfer, SourceResult& result) {
+/// Whether it is done; not where another thread bakes the image and is not waited for.
+bool bakeSource(const TextureSource& source, const TextureBakeOptions& options,
+                const TransferFunction& transfer, WhenBusy when_busy, SourceResult& result) {
   result.fault = source.fault;
-  if (!result.fault.empty()) return;
+  if (!result.fault.empty()) return true;
   std::vector<Look> looks;
   looks.reserve(result.appearances.size());
   for (const auto& [look, appearance] : result.appearances) looks.push_back(look);
-  auto baked = bakeRemembered(source.bytes, looks, options, transfer);
+  auto image = bakeRemembered(source.bytes, looks, options, transfer, when_busy);
+  if (!image) return false;
+  BakedImage& baked = *image;
   if (!baked) {
     result.fault = std::move(baked.error());
-    return;
+    return true;
   }
   result.image_bytes = baked->image_bytes;
   for (std::size_t n = 0; n < looks.size(); ++n) {
     result.appearances[looks[n]] = std::move(baked->appearances[n]);
+  }
+  return true;
+}
+
+/// Bakes all images. Those that other threads are at come last: scenes that are baked side by side
+/// show the same images in the same order.
+void bakeSources(std::span<const TextureSource> sources, const TextureBakeOptions& options,
+                 std::span<SourceResult> results) {
+  const TransferFunction transfer;
+  std::vector<char> done(sources.size());
+  for (const WhenBusy when_busy : {WhenBusy::kSkip, WhenBusy::kWait}) {
+    parallelFor(options.jobs, sources.size(), [&](std::size_t n) {
+      if (done[n] != 0) return;
+      done[n] = bakeSource(sources[n], options, transfer, when_busy, results[n]) ? 1 : 0;
+    });
   }
 }
 
@@ -114,10 +132,7 @@ Result<BakedMaterials> bakeMaterials(std::span<const SourceMaterial> materials,
       results[*source].appearances.try_emplace(lookOf(materials[m]));
     }
   }
-  const TransferFunction transfer;
-  parallelFor(options.jobs, results.size(), [&](std::size_t n) {
-    bakeSource(textures.sources[n], options, transfer, results[n]);
-  });
+  bakeSources(textures.sources, options, results);
 
   BakedMaterials baked;
   std::uint64_t texel_bytes = 0;

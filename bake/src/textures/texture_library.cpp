@@ -1,5 +1,6 @@
 #include "textures/texture_library.h"
 
+#include <condition_variable>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -26,12 +27,10 @@ struct ImageKey {
   }
 };
 
-using Baked = tl::expected<ImageAppearances, std::string>;
-
 /// Beyond this, images are baked each time: a dataset's shared ones take less.
 constexpr std::size_t kMostTexelBytes = std::size_t{1} << 30U;
 
-std::size_t texelBytes(const Baked& baked) {
+std::size_t texelBytes(const BakedImage& baked) {
   std::size_t bytes = 0;
   if (!baked) return bytes;
   for (const Appearance& appearance : baked->appearances) bytes += appearance.texels.size();
@@ -42,39 +41,61 @@ std::size_t texelBytes(const Baked& baked) {
 
 struct TextureLibrary::State {
   std::mutex mutex;
-  std::map<ImageKey, Baked> known;
+  std::condition_variable was_released;
+  /// None while a thread bakes it.
+  std::map<ImageKey, std::optional<BakedImage>> images;
   std::size_t texel_bytes = 0;
 
-  std::optional<Baked> find(const ImageKey& key) {
-    const std::lock_guard lock(mutex);
-    const auto found = known.find(key);
-    return found == known.end() ? std::nullopt : std::optional(found->second);
+  /// Whether the caller is to bake the image, and then release it. Else `known` is the image; none
+  /// where it is busy and not waited for.
+  bool claim(const ImageKey& key, WhenBusy when_busy, std::optional<BakedImage>& known) {
+    std::unique_lock lock(mutex);
+    while (!images.try_emplace(key).second) {
+      known = images.at(key);
+      if (known || when_busy == WhenBusy::kSkip) return false;
+      // It may not be kept, or never be made: then it is this thread's turn.
+      was_released.wait(lock);
+    }
+    return true;
   }
 
-  void keep(ImageKey key, const Baked& baked) {
+  /// Ends a claim; without an image, the next thread that wants it bakes it.
+  void release(const ImageKey& key, const BakedImage* baked) {
     const std::lock_guard lock(mutex);
-    if (texel_bytes + texelBytes(baked) > kMostTexelBytes) return;
-    if (known.try_emplace(std::move(key), baked).second) texel_bytes += texelBytes(baked);
+    if (baked != nullptr && texel_bytes + texelBytes(*baked) <= kMostTexelBytes) {
+      images.at(key) = *baked;
+      texel_bytes += texelBytes(*baked);
+    } else {
+      images.erase(key);
+    }
+    was_released.notify_all();
   }
 };
 
 TextureLibrary::TextureLibrary() : state_(std::make_unique<State>()) {}
 TextureLibrary::~TextureLibrary() = default;
 
-Baked bakeRemembered(std::span<const std::byte> file, std::span<const Look> looks,
-                     const TextureBakeOptions& options, const TransferFunction& transfer) {
+std::optional<BakedImage> bakeRemembered(std::span<const std::byte> file,
+                                         std::span<const Look> looks,
+                                         const TextureBakeOptions& options,
+                                         const TransferFunction& transfer, WhenBusy when_busy) {
   if (!options.library) return bakeIsolated(file, looks, options, transfer);
   TextureLibrary::State& library = options.library->state();
   const SourceFile content = describeBytes({}, file);
-  ImageKey key{content.hash_low,
-               content.hash_high,
-               options.largest,
-               options.format,
-               {looks.begin(), looks.end()}};
-  if (auto known = library.find(key)) return std::move(*known);
-  // Outside of the lock: two threads may bake the same image, with the same result.
-  auto baked = bakeIsolated(file, looks, options, transfer);
-  library.keep(std::move(key), baked);
+  const ImageKey key{content.hash_low,
+                     content.hash_high,
+                     options.largest,
+                     options.format,
+                     {looks.begin(), looks.end()}};
+  std::optional<BakedImage> baked;
+  if (!library.claim(key, when_busy, baked)) return baked;
+  try {
+    baked = bakeIsolated(file, looks, options, transfer);
+  } catch (...) {
+    library.release(key, nullptr);
+    throw;
+  }
+  library.release(key, &*baked);
   return baked;
 }
 

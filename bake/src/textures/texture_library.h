@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <tl/expected.hpp>
@@ -9,9 +10,17 @@
 
 namespace galactic::bake {
 
-/// bakeIsolated, but for images that the options' library knows already.
-[[nodiscard]] tl::expected<ImageAppearances, std::string> bakeRemembered(
-    std::span<const std::byte> file, std::span<const Look> looks, const TextureBakeOptions& options,
-    const TransferFunction& transfer);
+using BakedImage = tl::expected<ImageAppearances, std::string>;
+
+/// What to do about an image that another thread is baking.
+enum class WhenBusy { kSkip, kWait };
+
+/// bakeIsolated, but once for all threads that have the same library in their options. None where
+/// another thread is baking the image and `when_busy` is kSkip.
+[[nodiscard]] std::optional<BakedImage> bakeRemembered(std::span<const std::byte> file,
+                                                       std::span<const Look> looks,
+                                                       const TextureBakeOptions& options,
+                                                       const TransferFunction& transfer,
+                                                       WhenBusy when_busy);
 
 }  // namespace galactic::bake
