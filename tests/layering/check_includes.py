@@ -45,7 +45,7 @@ HEAVY_LIBRARIES = (
                             r"tests/bake/(robot|simulation)/bullet[^/]*$|"
                             r"benchmarks/batch_kinematics\.cpp$")),
     HeavyLibrary("Embree", re.compile(r"embree\d/"), re.compile(r"\b(RTC[A-Z]\w+|rtc[A-Z]\w+)"),
-                 re.compile(r"bake/src/(engines|ambient|episodes)/embree[^/]*$|tests/bake/render/embree[^/]*$")),
+                 re.compile(r"bake/src/engines/embree[^/]*$")),
     HeavyLibrary("urdfdom", re.compile(r"(urdf_|tinyxml|console_bridge/)"),
                  re.compile(r"\b(urdf::|TiXml\w+|console_bridge::)"),
                  re.compile(r"bake/src/urdf/urdf_reader[^/]*$")),

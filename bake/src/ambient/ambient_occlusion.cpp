@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "ambient/occlusion_rays.h"
 #include "ambient/ray_pattern.h"
 #include "ambient/vertex_fans.h"
+#include "engines/triangle_rays.h"
 #include "galactic/bake/parallel_for.h"
 #include "import/affine.h"
 
@@ -55,7 +55,7 @@ PlacedMesh placed(const OccludingMesh& mesh) {
   return result;
 }
 
-Result<Occluders> allOccluders(std::span<const PlacedMesh> meshes, unsigned jobs) {
+Result<TriangleRays> allOccluders(std::span<const PlacedMesh> meshes, unsigned jobs) {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
   for (const PlacedMesh& mesh : meshes) {
@@ -72,7 +72,12 @@ Result<Occluders> allOccluders(std::span<const PlacedMesh> meshes, unsigned jobs
       all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     }
   }
-  return Occluders::build(std::move(all.positions), std::move(all.triangles), jobs);
+  auto occluders = TriangleRays::build(std::move(all.positions), std::move(all.triangles), jobs);
+  if (!occluders) {
+    return fail(ErrorCode::kInternal, "--ambient-occlusion",
+                "could not build its scene, for lack of memory; bake without it");
+  }
+  return *std::move(occluders);
 }
 
 using Vector = std::array<double, 3>;
@@ -87,15 +92,15 @@ std::array<Vector, 2> tangents(const Vector& n) {
           Vector{b, sign + n[1] * n[1] * a, -n[1]}};
 }
 
-/// Rays from the triangles around the vertices of one mesh.
+/// Rays from the triangles around the vertices of one mesh, `length` metres long.
 class RayMaker {
  public:
-  RayMaker(const PlacedMesh& mesh, std::span<const PatternRay> pattern)
-      : mesh_(mesh), pattern_(pattern), fans_(mesh.positions, mesh.triangles) {}
+  RayMaker(const PlacedMesh& mesh, std::span<const PatternRay> pattern, float length)
+      : mesh_(mesh), pattern_(pattern), length_(length), fans_(mesh.positions, mesh.triangles) {}
 
   /// The rays of a vertex, from its triangles' fronts (`side` 1) or backs (-1); none where it has
   /// no triangle of some area.
-  void make(std::size_t vertex, double side, std::vector<OcclusionRay>& rays) const {
+  void make(std::size_t vertex, double side, std::vector<Ray>& rays) const {
     rays.clear();
     const std::span<const FanTriangle> fan = fans_.of(vertex);
     double total = 0;
@@ -113,8 +118,8 @@ class RayMaker {
   }
 
  private:
-  [[nodiscard]] OcclusionRay fromTriangle(const FanTriangle& from, const PatternRay& ray,
-                                          double side) const {
+  [[nodiscard]] Ray fromTriangle(const FanTriangle& from, const PatternRay& ray,
+                                 double side) const {
     const Vector& normal = fans_.normal(from.triangle);
     const auto [first, second] = tangents(normal);
     const Triangle& triangle = mesh_.triangles[from.triangle];
@@ -135,18 +140,20 @@ class RayMaker {
     const auto rounded = [](const Vector& v) {
       return Vec3{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
     };
-    return {.origin = rounded(origin), .direction = rounded(direction)};
+    return {.origin = rounded(origin), .direction = rounded(direction), .farthest = length_};
   }
 
   const PlacedMesh& mesh_;
   std::span<const PatternRay> pattern_;
+  float length_ = 0;
   VertexFans fans_;
 };
 
 /// Part of the rays from one side of a vertex that meet nothing.
-float openPart(const Occluders& occluders, std::span<const OcclusionRay> rays, float distance) {
+float openPart(const TriangleRays& occluders, std::span<const Ray> rays) {
   if (rays.empty()) return 1;
-  const std::size_t open = occluders.countOpen(rays, distance);
+  const auto open = std::count_if(rays.begin(), rays.end(),
+                                  [&](const Ray& ray) { return occluders.isOpen(ray); });
   return static_cast<float>(static_cast<double>(open) / static_cast<double>(rays.size()));
 }
 
@@ -163,20 +170,19 @@ Result<std::vector<std::vector<float>>> ambientOcclusion(std::span<const Occludi
 
   std::vector<std::vector<float>> openness(meshes.size());
   for (std::size_t m = 0; m < meshes.size(); ++m) {
-    const RayMaker maker(world[m], pattern);
+    const RayMaker maker(world[m], pattern, options.largest_distance);
     const std::size_t vertices = world[m].positions.size();
     openness[m].resize(vertices);
     parallelFor(options.jobs, (vertices + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-      std::vector<OcclusionRay> rays;
+      std::vector<Ray> rays;
       rays.reserve(pattern.size());
       const std::size_t end = std::min(vertices, (chunk + 1) * kChunk);
       for (std::size_t v = chunk * kChunk; v < end; ++v) {
         maker.make(v, 1, rays);
-        openness[m][v] = openPart(*occluders, rays, options.largest_distance);
+        openness[m][v] = openPart(*occluders, rays);
         if (!meshes[m].two_sided) continue;
         maker.make(v, -1, rays);
-        openness[m][v] =
-            std::max(openness[m][v], openPart(*occluders, rays, options.largest_distance));
+        openness[m][v] = std::max(openness[m][v], openPart(*occluders, rays));
       }
     });
   }

@@ -1,18 +1,11 @@
-// The only file that names Embree; versions 3 and 4.
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string>
 #include <type_traits>
 
 #include "column_grid/blocked_intervals.h"
 #include "engines/columns_by_rows.h"
+#include "engines/embree.h"
 #include "galactic/bake/column_engines.h"
 #include "galactic/bake/triangle_interval.h"
 
@@ -28,15 +21,6 @@ using RayContext = RTCIntersectContext;
 /// Boxes grow by this part of their coordinates, several units in the last place: for the rounding
 /// of the box and of the ray.
 constexpr float kBoxSlack = 1e-6F;
-
-struct DeviceRelease {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct SceneRelease {
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceRelease>;
-using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneRelease>;
 
 /// What the geometry's callbacks read.
 struct DilatedMesh {
@@ -103,8 +87,8 @@ tl::unexpected<Error> embreeFailure(RTCDevice device) {
                             : "could not build its scene; use --engine exact");
 }
 
-Result<Scene> buildScene(RTCDevice device, DilatedMesh& dilated) {
-  Scene scene(rtcNewScene(device));
+Result<EmbreeScene> buildScene(RTCDevice device, DilatedMesh& dilated) {
+  EmbreeScene scene(rtcNewScene(device));
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
   if (!scene || geometry == nullptr) return embreeFailure(device);
   // Robust: a ray along an axis may run exactly in a box's face.
@@ -158,10 +142,10 @@ void trace(RTCScene scene, const GridFrame& frame, ColumnIndex at,
 
 Result<Columns> embreeColumns(const TriangleMesh& mesh, const GridFrame& frame, unsigned jobs) {
   const std::string settings = "threads=" + std::to_string(std::max(1U, jobs));
-  const Device device(rtcNewDevice(settings.c_str()));
+  const EmbreeDevice device(rtcNewDevice(settings.c_str()));
   if (!device) return embreeFailure(nullptr);
   DilatedMesh dilated{mesh, static_cast<double>(frame.radius)};
-  const Result<Scene> scene = buildScene(device.get(), dilated);
+  const Result<EmbreeScene> scene = buildScene(device.get(), dilated);
   if (!scene) return tl::unexpected(scene.error());
   return columnsByRows(frame, jobs, [&](std::uint32_t row) {
     RowSpans result;

@@ -1,6 +1,7 @@
 #pragma once
-#include <memory>
+#include <utility>
 
+#include "engines/triangle_rays.h"
 #include "episodes/placed_object.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"
@@ -10,27 +11,20 @@ namespace galactic::bake {
 /// How far apart rays meet the surface under an object at most, metres: finer than the columns.
 inline constexpr float kRayDistance = 0.01F;
 
-/// The triangles of a scene, asked from above. Implemented with Embree, in embree_surface.cpp.
+/// The triangles of a scene, asked from above.
 class SurfaceRays {
  public:
   /// Copies what it needs. Fails with kInternal when memory runs out.
   [[nodiscard]] static Result<SurfaceRays> build(const TriangleMesh& mesh);
-
-  ~SurfaceRays();
-  SurfaceRays(SurfaceRays&& other) noexcept;
-  SurfaceRays& operator=(SurfaceRays&& other) noexcept;
-  SurfaceRays(const SurfaceRays&) = delete;
-  SurfaceRays& operator=(const SurfaceRays&) = delete;
 
   /// Whether rays down over the whole footprint, its border included, all meet a surface within
   /// `flatness` (metres) of the height `surface`, whose normal is upright. Thread-safe.
   [[nodiscard]] bool isEven(const Footprint& footprint, float surface, float flatness) const;
 
  private:
-  struct Scene;
-  explicit SurfaceRays(std::unique_ptr<Scene> scene);
+  explicit SurfaceRays(TriangleRays rays) : rays_(std::move(rays)) {}
 
-  std::unique_ptr<Scene> scene_;
+  TriangleRays rays_;
 };
 
 }  // namespace galactic::bake

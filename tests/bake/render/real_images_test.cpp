@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/render/embree_depth.h"
+#include "bake/render/ray_depth.h"
 #include "bake/render/render_helpers.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/render_source.h"
@@ -48,7 +48,7 @@ void read(const std::string& relative, double error, RealScene& scene) {
 }
 
 /// Cameras at random places with free space around them and a floor below, looking about.
-std::vector<RenderView> viewsIn(const RealScene& scene, const EmbreeDepth& rays) {
+std::vector<RenderView> viewsIn(const RealScene& scene, const RayDepth& rays) {
   constexpr float kFree = 0.4F;
   constexpr float kFloor = 3.0F;
   std::mt19937 random(11);
@@ -104,7 +104,7 @@ bool isAtSilhouette(const std::vector<float>& rays, float drawn, std::size_t at,
 }
 
 DepthCounts compare(const RealScene& scene) {
-  const EmbreeDepth rays(scene.triangles);
+  const RayDepth rays(scene.triangles);
   const std::vector<RenderView> views = viewsIn(scene, rays);
   RenderOptions options;
   options.backend = RenderBackend::kSoft;
@@ -159,7 +159,7 @@ void expectAgreement(const std::string& relative) {
   constexpr double kDeepShare = 0.0005;
   RealScene scene;
   ASSERT_NO_FATAL_FAILURE(read(relative, 0.005, scene));
-  const EmbreeDepth rays(scene.triangles);
+  const RayDepth rays(scene.triangles);
   const std::vector<RenderView> views = viewsIn(scene, rays);
   RenderOptions options = glOptions();
   const RenderImages gl = renderViews(scene.library, options, views);

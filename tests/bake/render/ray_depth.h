@@ -1,20 +1,17 @@
 #pragma once
-#include <memory>
 #include <vector>
 
+#include "engines/triangle_rays.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/batch_renderer.h"
 
 namespace galactic::test {
 
 /// Depth images by rays: an oracle for rasterisers. Both sides of triangles are met.
-class EmbreeDepth {
+class RayDepth {
  public:
   /// Copies the mesh.
-  explicit EmbreeDepth(const bake::TriangleMesh& mesh);
-  ~EmbreeDepth();
-  EmbreeDepth(const EmbreeDepth&) = delete;
-  EmbreeDepth& operator=(const EmbreeDepth&) = delete;
+  explicit RayDepth(const bake::TriangleMesh& mesh);
 
   /// How far along `direction`, in its lengths, the first triangle lies beyond `near`; 0: none.
   [[nodiscard]] float first(const Vec3& origin, const Vec3& direction, float near) const;
@@ -25,8 +22,7 @@ class EmbreeDepth {
                                          const RenderOptions& options) const;
 
  private:
-  struct Scene;
-  std::unique_ptr<Scene> scene_;
+  bake::TriangleRays rays_;
 };
 
 }  // namespace galactic::test

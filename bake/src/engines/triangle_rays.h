@@ -1,0 +1,56 @@
+#pragma once
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "galactic/bake/source_asset.h"
+#include "galactic/vec3.h"
+
+namespace galactic::bake {
+
+/// Part of a straight line: from `nearest` to `farthest`, both in lengths of `direction`.
+struct Ray {
+  Vec3 origin;
+  Vec3 direction;
+  float nearest = 0;
+  float farthest = std::numeric_limits<float>::infinity();
+};
+
+/// Where a ray meets a triangle first.
+struct RayHit {
+  /// In lengths of the ray's direction.
+  float distance = 0;
+  /// Of the triangle, as its corners turn; not of unit length.
+  Vec3 normal;
+};
+
+/// Triangles that rays are sent through; both sides are met. The answers are the same on all
+/// processors of one architecture. Implemented with Embree, in embree_rays.cpp.
+class TriangleRays {
+ public:
+  /// `jobs`: threads that build. None where memory runs out.
+  [[nodiscard]] static std::optional<TriangleRays> build(std::vector<Vec3> positions,
+                                                         std::vector<Triangle> triangles,
+                                                         unsigned jobs);
+
+  ~TriangleRays();
+  TriangleRays(TriangleRays&& other) noexcept;
+  TriangleRays& operator=(TriangleRays&& other) noexcept;
+  TriangleRays(const TriangleRays&) = delete;
+  TriangleRays& operator=(const TriangleRays&) = delete;
+
+  /// The triangle that the ray meets first; none where it meets nothing. Thread-safe.
+  [[nodiscard]] std::optional<RayHit> first(const Ray& ray) const;
+
+  /// Whether the ray meets nothing. Thread-safe.
+  [[nodiscard]] bool isOpen(const Ray& ray) const;
+
+ private:
+  struct Scene;
+  explicit TriangleRays(std::unique_ptr<Scene> scene);
+
+  std::unique_ptr<Scene> scene_;
+};
+
+}  // namespace galactic::bake
