@@ -246,6 +246,16 @@ TEST_F(PlanCli, BakesTheWorldOfARecipe) {
   ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
   EXPECT_EQ(world->episodes().episodes().size(), 3U);
   EXPECT_EQ(world->scenes().size(), 2U);
+  unsigned settled = 0;
+  const nlohmann::json made = report();
+  for (const auto& entry : made.at("baked")) {
+    if (!entry.contains("generation")) continue;
+    for (const auto& scene : entry["generation"]["scenes"]) {
+      EXPECT_EQ(scene["settled"], true) << "the meshes of the scenes are at hand: " << scene;
+      ++settled;
+    }
+  }
+  EXPECT_EQ(settled, 2U);
   const std::string bytes = content("flat.pack");
 
   ASSERT_EQ(run(arguments).exit_code, 0);
