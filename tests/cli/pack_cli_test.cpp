@@ -34,8 +34,8 @@ class PackCli : public testing::Test {
     constexpr std::size_t kVersionOffset = 8;
     bytes.bytes()[kVersionOffset] = std::byte{99};
     write("later.pack", test::asText(bytes.bytes()));
-    write("toys.pack", test::asText(test::ToyPackBuilder::build(test::ToyObjects{}).bytes()));
-    write("arm.pack", test::asText(test::ToyPackBuilder::build(test::ToyRobot{}).bytes()));
+    write("toys.pack", test::asText(test::buildPack(test::ToyObjects{}).bytes()));
+    write("arm.pack", test::asText(test::buildPack(test::ToyRobot{}).bytes()));
     write("text.pack", "this is a text and no pack, long enough to hold a whole header of a pack");
   }
 
@@ -310,7 +310,7 @@ TEST_F(PackCli, InfoChecksAndComparesObjectsAndRobots) {
   EXPECT_EQ(run({"check", "toys.pack", "arm.pack"}).exit_code, 0);
   test::ToyRobot shorter;
   shorter.upper_limit = 1;
-  write("shorter.pack", test::asText(test::ToyPackBuilder::build(shorter).bytes()));
+  write("shorter.pack", test::asText(buildPack(shorter).bytes()));
   const ProgramRun differ = run({"diff", "arm.pack", "shorter.pack"});
   EXPECT_EQ(differ.exit_code, kExitDiffers);
   EXPECT_THAT(differ.out, HasSubstr("positions.lift.upper: 2.0 | 1.0"));

@@ -10,7 +10,7 @@
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/episode_set.h"
 #include "galactic/pack.h"
-#include "support/scene_pack_builder.h"
+#include "support/pack_parts.h"
 #include "support/scratch_folder.h"
 
 namespace {
@@ -33,7 +33,7 @@ void checkEpisodes(const SourceEpisodes& episodes) {
   const auto payload = encodeEpisodePack(episodes, provenance);
   if (!payload) report("episodes that the writer refuses");
   const auto file =
-      galactic::test::ScenePackBuilder::withHeader(galactic::PackKind::kEpisodes, *payload);
+      galactic::test::packFile(galactic::PackKind::kEpisodes, *payload);
   const auto pack = galactic::PackFile::view(file.bytes(), "episodes.pack");
   if (!pack) report(pack.error().message);
   const auto set = galactic::EpisodeSet::from(*pack);

@@ -85,8 +85,8 @@ struct Outcome {
 template <class ToyA, class ToyB>
 Outcome diffOf(const ToyA& a, const ToyB& b, DiffOptions options = {}) {
   const test::ScratchFolder folder;
-  options.a = folder.write("a.pack", test::asText(test::ToyPackBuilder::build(a).bytes()));
-  options.b = folder.write("b.pack", test::asText(test::ToyPackBuilder::build(b).bytes()));
+  options.a = folder.write("a.pack", test::asText(buildPack(a).bytes()));
+  options.b = folder.write("b.pack", test::asText(buildPack(b).bytes()));
   std::ostringstream out;
   std::ostringstream err;
   const int exit_code = runDiff(options, Console{out, err});
@@ -100,7 +100,7 @@ TEST(AssetDiff, CallsTheSamePacksIdentical) {
 
 TEST(AssetDiff, TellsHowManySpheresMovedAndHowFar) {
   ToyObjects moved;
-  moved.objects[0].spheres[1] = {schema::Vec3(0, -0.06F, 0.25F), 0};
+  moved.objects[0].spheres[1] = {{0, -0.06F, 0.25F}, 0};
   const Outcome outcome = diffOf(ToyObjects{}, moved);
   EXPECT_EQ(outcome.exit_code, kExitDiffers);
   EXPECT_THAT(outcome.out,
@@ -109,7 +109,7 @@ TEST(AssetDiff, TellsHowManySpheresMovedAndHowFar) {
   EXPECT_EQ(diffOf(ToyObjects{}, moved, {.tolerance = 0.25}).exit_code, kExitOk);
 
   ToyObjects more;
-  more.objects[1].spheres.emplace_back(schema::Vec3(1, 0, 0), 0);
+  more.objects[1].spheres.push_back({{1, 0, 0}, 0});
   EXPECT_THAT(diffOf(ToyObjects{}, more).out,
               HasSubstr("\n  objects.die.spheres: 2 (1+1) | 3 (1+2)\n"));
 }

@@ -65,8 +65,7 @@ std::string goodBytes() {
 
 /// A pack with this payload whose header is right.
 std::string withPayload(std::span<const std::byte> payload) {
-  return std::string(
-      test::asText(test::ScenePackBuilder::withHeader(PackKind::kScene, payload).bytes()));
+  return std::string(test::asText(test::packFile(PackKind::kScene, payload).bytes()));
 }
 
 TEST(FindingCodes, TellEveryDamageOfAFileApart) {

@@ -12,6 +12,7 @@
 #include "pack_tool/episode_set/episode_set_text.h"
 #include "pack_tool/verbs.h"
 #include "support/asset_mesh.h"
+#include "support/pack_parts.h"
 #include "support/pack_tool_fixture.h"
 
 namespace galactic::pack_tool {
@@ -37,7 +38,7 @@ std::vector<std::byte> payloadOf(const SourceEpisodes& episodes) {
 
 /// What the tool writes of episodes.
 std::string exported(const SourceEpisodes& episodes, FileUp up) {
-  const auto file = test::ScenePackBuilder::withHeader(PackKind::kEpisodes, payloadOf(episodes));
+  const auto file = test::packFile(PackKind::kEpisodes, payloadOf(episodes));
   const auto pack = PackFile::view(file.bytes(), "made.pack");
   EXPECT_TRUE(pack.has_value()) << pack.error().message;
   return episodeSetText(*EpisodeSet::from(*pack), up);
@@ -197,7 +198,7 @@ class EpisodeSetVerb : public testing::Test {
     set.placements = {{0, {}}, {0, {}}};
     set.episodes = {ownEpisode(0), ownEpisode(1)};
     set.episodes[1].base_position.y = 0.5F;
-    const auto file = test::ScenePackBuilder::withHeader(PackKind::kEpisodes, payloadOf(set));
+    const auto file = test::packFile(PackKind::kEpisodes, payloadOf(set));
     pack_ = folder_.write("tidy.pack", test::asText(file.bytes()));
   }
   int run(ExportOptions options) {

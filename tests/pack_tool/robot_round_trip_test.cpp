@@ -76,17 +76,17 @@ TEST(ExportedUrdf, MovesAsThePackDoesWhateverTheRotations) {
   const auto number = [&random] { return (static_cast<float>(random() % 2001) - 1000) / 1000; };
   const float half = std::sqrt(0.5F);
   // First at the poles, where roll and yaw are one: a quarter turn about the runtime's Z.
-  std::vector<schema::Quat> rotations{{0, 0, half, half},
-                                      {0, 0, -half, half},
-                                      {0.5F, 0.5F, 0.5F, 0.5F},
-                                      {0.5F, -0.5F, -0.5F, 0.5F}};
+  std::vector<Quat> rotations{{0, 0, half, half},
+                              {0, 0, -half, half},
+                              {0.5F, 0.5F, 0.5F, 0.5F},
+                              {0.5F, -0.5F, -0.5F, 0.5F}};
   while (rotations.size() < 12) {
     const std::array<float, 4> q{number(), number(), number(), number()};
     const float length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (length < 0.1F) continue;
     rotations.emplace_back(q[0] / length, q[1] / length, q[2] / length, q[3] / length);
   }
-  for (const schema::Quat& rotation : rotations) {
+  for (const Quat& rotation : rotations) {
     const ScratchFolder folder;
     const ToyPack pack{ToyRobot{.upper_rotation = rotation}};
     const Robot robot = robotOf(pack);

@@ -10,6 +10,7 @@
 
 #include "galactic/column_cell.h"
 #include "galactic/pack.h"
+#include "galactic/schema/pack_generated.h"
 #include "support/scene_pack_builder.h"
 
 namespace galactic::test {
@@ -77,7 +78,7 @@ TEST(PackCheck, RefusesWrongProvenance) {
 
 TEST(PackCheck, RefusesAnAssetThatIsNotOfTheKindInTheHeader) {
   expectRefused({"asset", "has type 5, the header says SCEN",
-                 [](ScenePackFields& f) { f.asset = schema::Asset::World; }});
+                 [](ScenePackFields& f) { f.holds_world = true; }});
 }
 
 TEST(PackCheck, RefusesWrongValuesOfTheScene) {

@@ -12,6 +12,8 @@
 
 #include "galactic/column_cell.h"
 #include "galactic/scene.h"
+#include "galactic/schema/pack_generated.h"
+#include "support/pack_parts.h"
 #include "support/scene_pack_builder.h"
 
 namespace galactic::test {
@@ -172,7 +174,7 @@ TEST(PackFile, RefusesAPayloadThatIsNoFlatBufferOfOurs) {
   for (const Trust trust : {Trust::kVerify, Trust::kTrusted}) {
     for (const std::size_t size : {0U, 1U, 7U, 8U, 100U}) {
       const std::vector<std::byte> payload(size);
-      const AlignedBytes bytes = ScenePackBuilder::withHeader(PackKind::kScene, payload);
+      const AlignedBytes bytes = packFile(PackKind::kScene, payload);
       const Result<PackFile> pack = PackFile::view(bytes.bytes(), "zeros.pack", trust);
       ASSERT_FALSE(pack.has_value());
       EXPECT_EQ(pack.error().code, ErrorCode::kInvalidInput);
@@ -184,7 +186,7 @@ TEST(PackFile, RefusesAPayloadThatIsNoFlatBufferOfOurs) {
 TEST(Scene, RefusesATrustedPackOfAnotherKind) {
   ScenePackFields fields = smallScene();
   fields.kind = PackKind::kWorld;
-  fields.asset = schema::Asset::World;
+  fields.holds_world = true;
   const AlignedBytes bytes = buildPack(fields);
   const Result<PackFile> pack = PackFile::view(bytes.bytes(), "home.pack", Trust::kTrusted);
   ASSERT_TRUE(pack.has_value());

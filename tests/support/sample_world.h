@@ -18,6 +18,7 @@
 #include "galactic/robot.h"
 #include "galactic/scene.h"
 #include "support/aligned_bytes.h"
+#include "support/pack_parts.h"
 #include "support/scene_pack_builder.h"
 
 namespace galactic::test {
@@ -26,7 +27,7 @@ namespace galactic::test {
 class MemoryPack {
  public:
   MemoryPack(PackKind kind, const std::vector<std::byte>& payload, const std::string& name)
-      : MemoryPack(ScenePackBuilder::withHeader(kind, payload), name) {}
+      : MemoryPack(packFile(kind, payload), name) {}
 
   MemoryPack(AlignedBytes bytes, const std::string& name)
       : bytes_(std::move(bytes)), pack_(opened(PackFile::view(bytes_.bytes(), name))) {}

@@ -1,9 +1,5 @@
 #pragma once
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,31 +31,10 @@ struct WorldPackFields {
 };
 
 /// One pack of each kind; the files are not there.
-inline WorldPackFields smallWorldPack() {
-  WorldPackFields fields;
-  fields.packs = {{.path = "episodes.pack", .kind = "EPIS"},
-                  {.path = "objects.pack", .kind = "OBJS"},
-                  {.path = "robots/helper.pack", .kind = "RBOT"},
-                  {.path = "scenes/kitchen.pack", .kind = "SCEN"}};
-  return fields;
-}
+WorldPackFields smallWorldPack();
 
 /// The whole file: header and payload.
-inline AlignedBytes buildPack(const WorldPackFields& fields) {
-  flatbuffers::FlatBufferBuilder builder;
-  std::vector<flatbuffers::Offset<schema::PackReference>> packs;
-  for (const ReferenceFields& one : fields.packs) {
-    const auto [low, high] = one.hash.value_or(std::pair<std::uint64_t, std::uint64_t>{});
-    const schema::Hash128 hash(low, high);
-    const auto path = builder.CreateString(one.path);
-    const auto kind = builder.CreateString(one.kind);
-    packs.push_back(
-        schema::CreatePackReference(builder, path, kind, one.bytes, one.hash ? &hash : nullptr));
-  }
-  const auto list = builder.CreateVector(packs);
-  const auto world = schema::CreateWorld(builder, list);
-  return finishFile(builder, fields.kind, schema::Asset::World, world.Union());
-}
+AlignedBytes buildPack(const WorldPackFields& fields);
 
 /// The packs of a small world, all for the same radii.
 struct WorldFields {
@@ -76,36 +51,16 @@ struct WorldFields {
 };
 
 /// A file's bytes as text, for ScratchFolder.
-inline std::string_view textOf(const AlignedBytes& file) {
-  return {reinterpret_cast<const char*>(file.bytes().data()), file.size()};
-}
+std::string_view textOf(const AlignedBytes& file);
 
 /// Writes `file` to `name` in `folder`; what a world pack has to say about it.
-inline ReferenceFields writeListed(const ScratchFolder& folder, const std::string& name,
-                                   const AlignedBytes& file) {
-  static_cast<void>(folder.write(name, textOf(file)));
-  PackHeader header;
-  std::memcpy(&header, file.bytes().data(), sizeof(header));
-  const XXH128_hash_t hash = XXH3_128bits(file.bytes().data(), file.size());
-  return {.path = name,
-          .kind = packKindName(header.kind),
-          .bytes = file.size(),
-          .hash = std::pair{hash.low64, hash.high64}};
-}
+ReferenceFields writeListed(const ScratchFolder& folder, const std::string& name,
+                            const AlignedBytes& file);
 
 /// The world's packs in `folder` and what its world pack has to say about them.
-inline WorldPackFields writePacks(const ScratchFolder& folder, const WorldFields& world) {
-  WorldPackFields list;
-  list.packs = {writeListed(folder, "episodes.pack", buildPack(world.episodes)),
-                writeListed(folder, "objects.pack", buildPack(world.objects)),
-                writeListed(folder, "robots/helper.pack", buildPack(world.robot)),
-                writeListed(folder, "scenes/kitchen.pack", buildPack(world.scene))};
-  return list;
-}
+WorldPackFields writePacks(const ScratchFolder& folder, const WorldFields& world);
 
 /// The same, and the world pack itself: "world.pack" in `folder`.
-inline std::filesystem::path writeWorld(const ScratchFolder& folder, const WorldFields& world) {
-  return folder.write("world.pack", textOf(buildPack(writePacks(folder, world))));
-}
+std::filesystem::path writeWorld(const ScratchFolder& folder, const WorldFields& world);
 
 }  // namespace galactic::test

@@ -7,7 +7,7 @@
 
 #include "galactic/object_set.h"
 #include "galactic/pack.h"
-#include "support/scene_pack_builder.h"
+#include "support/pack_parts.h"
 #include "support/scratch_folder.h"
 #include "support/source_asset.h"
 #include "support/test_meshes.h"
@@ -55,7 +55,7 @@ TEST(ObjectPack, OpensAndShowsTheObjectsByAscendingName) {
   const BakedObjectSet set = threeBoxes();
   const auto payload = encodeObjectPack(set, provenance());
   ASSERT_TRUE(payload.has_value());
-  const AlignedBytes bytes = ScenePackBuilder::withHeader(PackKind::kObjects, *payload);
+  const AlignedBytes bytes = packFile(PackKind::kObjects, *payload);
   const auto pack = PackFile::view(bytes.bytes(), "boxes.pack");
   ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
   const auto opened = ObjectSet::from(*pack);

@@ -8,6 +8,7 @@
 #include "galactic/bake/scene_pack.h"
 #include "galactic/pack.h"
 #include "support/aligned_bytes.h"
+#include "support/pack_parts.h"
 #include "support/scene_pack_builder.h"
 #include "support/source_asset.h"
 #include "support/test_meshes.h"
@@ -61,7 +62,7 @@ TEST(RenderPack, OfObjectsHasAModelForEachInTheOrderOfNames) {
   set.objects.push_back(objectOf(ball("apple", 0.2F)));
   const auto payload = bake::encodeObjectPack(set, provenance());
   ASSERT_TRUE(payload);
-  const AlignedBytes file = ScenePackBuilder::withHeader(PackKind::kObjects, *payload);
+  const AlignedBytes file = packFile(PackKind::kObjects, *payload);
   const auto pack = PackFile::view(file.bytes(), "made.pack");
   ASSERT_TRUE(pack) << pack.error().where << ": " << pack.error().message;
   const auto meshes = renderMeshesOf(*pack);
@@ -87,7 +88,7 @@ TEST(RenderPack, OfASceneHasOneModel) {
   scene->render_meshes = meshesOf(asset);
   const auto payload = bake::encodeScenePack(*scene, provenance());
   ASSERT_TRUE(payload);
-  const AlignedBytes file = ScenePackBuilder::withHeader(PackKind::kScene, *payload);
+  const AlignedBytes file = packFile(PackKind::kScene, *payload);
   const auto pack = PackFile::view(file.bytes(), "made.pack");
   ASSERT_TRUE(pack) << pack.error().where << ": " << pack.error().message;
   const auto meshes = renderMeshesOf(*pack);

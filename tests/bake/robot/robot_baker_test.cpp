@@ -10,7 +10,7 @@
 #include "bake/robot/tiny_robots.h"
 #include "galactic/bake/robot_pack.h"
 #include "galactic/robot.h"
-#include "support/scene_pack_builder.h"
+#include "support/pack_parts.h"
 
 namespace galactic::test {
 namespace {
@@ -142,7 +142,7 @@ OpenedPack openPackOf(const BakedRobot& robot) {
   provenance.tool_version = "0.1.0";
   const auto payload = bake::encodeRobotPack(robot, provenance);
   EXPECT_TRUE(payload.has_value());
-  opened.bytes = ScenePackBuilder::withHeader(PackKind::kRobot, *payload);
+  opened.bytes = packFile(PackKind::kRobot, *payload);
   auto pack = PackFile::view(opened.bytes.bytes(), "tiny.pack");
   EXPECT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
   if (!pack) return opened;

@@ -106,7 +106,7 @@ TEST(EpisodePack, MayGiveNoStartPositions) {
   source.robot.clear();
   const auto payload = encodeEpisodePack(source, provenance());
   ASSERT_TRUE(payload.has_value()) << payload.error().message;
-  const AlignedBytes bytes = ScenePackBuilder::withHeader(PackKind::kEpisodes, *payload);
+  const AlignedBytes bytes = packFile(PackKind::kEpisodes, *payload);
   EXPECT_TRUE(PackFile::view(bytes.bytes(), "tidy.pack").has_value());
 }
 
