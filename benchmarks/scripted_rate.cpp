@@ -1,13 +1,16 @@
 // How often the scripted policy solves the episodes of a world, each played once: success rate,
 // mean steps, and where it fails.
 //
-//   scripted_rate WORLD.pack [--steps N] [--threads T] [--verbose] [--frames EPISODE --every N]
+//   scripted_rate WORLD.pack [--first N] [--steps N] [--threads T] [--verbose] [--frames EPISODE
+//   --every N]
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -30,6 +33,7 @@ using galactic::World;
 
 struct Arguments {
   std::filesystem::path world;
+  std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t steps = 500;
   std::uint32_t threads = 1;
   bool verbose = false;
@@ -167,7 +171,10 @@ Result<Tally> run(const Arguments& arguments) {
   SimulationOptions options;
   options.threads = arguments.threads;
   options.order = galactic::EpisodeOrder::kPartition;
-  options.envs = static_cast<std::uint32_t>(world->episodes().episodes().size());
+  const auto episodes = static_cast<std::uint32_t>(world->episodes().episodes().size());
+  options.envs = std::min(episodes, arguments.first);
+  // Env b takes episode b: all others are left to batches that do not run.
+  options.ranks = (episodes + options.envs - 1) / options.envs;
   options.task.most_steps = arguments.steps;
   Result<BatchSimulator> simulator = BatchSimulator::create(*world, options);
   if (!simulator) return tl::unexpected<Error>(simulator.error());
@@ -201,6 +208,8 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("How often the scripted policy solves the episodes of a world.");
   app.add_option("world", arguments.world, "a world pack")->required();
+  app.add_option("--first", arguments.first, "how many episodes; not given: all")
+      ->check(CLI::PositiveNumber);
   app.add_option("--steps", arguments.steps, "steps of an episode")->capture_default_str();
   app.add_option("--threads", arguments.threads, "threads of the simulation");
   app.add_flag("--verbose", arguments.verbose, "one line for each episode");

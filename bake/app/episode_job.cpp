@@ -161,11 +161,16 @@ Result<Json> generateEpisodePack(BakeRun& run) {
   show(0);
   auto generated = generateEpisodes(inputs, options.generate, show);
   if (!generated) return tl::unexpected(generated.error());
+  run.line().show("episodes", "solve", 1);
+  auto sample = solveSample(inputs.packs, generated->episodes,
+                            {.most_episodes = options.solve, .jobs = options.generate.jobs});
+  if (!sample) return tl::unexpected(sample.error());
   EpisodeOutcome outcome{
       .input = fmt::format("{} packs", command.inputs.size()),
       .output = run.outputFor(command.inputs.front()),
       .episodes = std::move(generated->episodes),
-      .generation = EpisodeGeneration{generated->rejections, std::move(generated->scenes)}};
+      .generation = EpisodeGeneration{generated->rejections, std::move(generated->scenes),
+                                      *std::move(sample)}};
   return finish(outcome, std::move(opened->files), run, start);
 }
 

@@ -133,6 +133,10 @@ void EpisodeSetOptions::addGeneration(CLI::App& app, BakeCommand& command) {
           ->type_name("SHARE"),
       app.add_option("--split-seed", generate.split.seed,
                      "Generate: the number that decides which scenes are held out")
+          ->capture_default_str(),
+      app.add_option("--solve", command.episodes.solve,
+                     "Generate: of how many episodes to say whether the scripted policy solves "
+                     "them; 0: none")
           ->capture_default_str()};
 }
 

@@ -7,6 +7,7 @@
 
 #include "bake_run.h"
 #include "galactic/bake/episode_generator.h"
+#include "galactic/bake/episode_solving.h"
 #include "galactic/bake/source_episodes.h"
 
 namespace galactic::bake {
@@ -15,6 +16,7 @@ namespace galactic::bake {
 struct EpisodeGeneration {
   RejectionCounts rejections;
   std::vector<GeneratedScene> scenes;
+  SolvedSample sample;
 };
 
 /// What became of one set of episodes.

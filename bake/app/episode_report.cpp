@@ -51,6 +51,15 @@ std::vector<std::pair<std::string_view, std::uint64_t>> countsOf(const Rejection
   return named;
 }
 
+/// "14 of 16; not: 2 no grasp".
+std::string textOf(const SolvedSample& sample) {
+  std::vector<std::string> ends;
+  ends.reserve(sample.unsolved.size());
+  for (const auto& [end, count] : sample.unsolved) ends.push_back(fmt::format("{} {}", count, end));
+  return fmt::format("{} of {}{}{}", sample.solved, sample.episodes,
+                     ends.empty() ? "" : "; not: ", fmt::join(ends, ", "));
+}
+
 void printGeneration(const EpisodeGeneration& generation, Verbosity verbosity) {
   std::vector<std::string> texts;
   for (const auto& [name, count] : countsOf(generation.rejections)) {
@@ -58,6 +67,9 @@ void printGeneration(const EpisodeGeneration& generation, Verbosity verbosity) {
   }
   fmt::print("  drawn and not taken: {}\n",
              texts.empty() ? "nothing" : fmt::format("{}", fmt::join(texts, ", ")));
+  if (generation.sample.episodes > 0) {
+    fmt::print("  the scripted policy solves {}\n", textOf(generation.sample));
+  }
   if (verbosity != Verbosity::kVerbose) return;
   for (const GeneratedScene& scene : generation.scenes) {
     fmt::print("  {}: {} episodes; {} floor places, {} support places on {} surfaces{}\n",
@@ -81,7 +93,13 @@ Json generationReport(const EpisodeGeneration& generation) {
                       {"receptacles", scene.receptacles},
                       {"settled", scene.has_mesh}});
   }
-  return {{"rejections", std::move(rejections)}, {"scenes", std::move(scenes)}};
+  Json report{{"rejections", std::move(rejections)}, {"scenes", std::move(scenes)}};
+  const SolvedSample& sample = generation.sample;
+  if (sample.episodes > 0) {
+    report["scripted_policy"] = {
+        {"episodes", sample.episodes}, {"solved", sample.solved}, {"unsolved", sample.unsolved}};
+  }
+  return report;
 }
 
 }  // namespace

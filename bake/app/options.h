@@ -51,6 +51,8 @@ struct EpisodeOptions {
   /// Pack of the objects, for where their centres are; empty: none.
   std::filesystem::path object_pack;
   EpisodeGeneratorOptions generate;
+  /// How many of the generated episodes the scripted policy plays; 0: none.
+  std::uint32_t solve = 16;
   /// The meshes that scenes were baked from, by the scenes' names.
   std::map<std::string, std::filesystem::path> geometry;
   /// What is known of the scenes where a plan made them; empty: nothing but `geometry`.

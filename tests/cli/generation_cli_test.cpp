@@ -74,6 +74,10 @@ TEST_F(GenerationCli, DrawsEpisodesThatMakeAWorldWithTheirPacks) {
   const auto& generation = report["baked"][0]["generation"];
   EXPECT_EQ(generation["scenes"][0]["settled"], true);
   EXPECT_TRUE(generation["rejections"]["tipped"].is_number());
+  EXPECT_THAT(settled.out, HasSubstr("the scripted policy solves 3 of 3"));
+  EXPECT_EQ(generation["scripted_policy"]["solved"], 3);
+  const ProgramRun unplayed = draw({"--solve", "0"});
+  EXPECT_THAT(unplayed.out, Not(HasSubstr("scripted policy")));
   const ProgramRun unused = draw({"--split", "validation", "--held-out", "0", "-o", "none.pack"});
   EXPECT_EQ(unused.exit_code, 3);
   EXPECT_THAT(unused.err, HasSubstr("none of the 1 scenes is for validation"));

@@ -32,8 +32,7 @@ void checkEpisodes(const SourceEpisodes& episodes) {
   provenance.tool_version = "0.1.0";
   const auto payload = encodeEpisodePack(episodes, provenance);
   if (!payload) report("episodes that the writer refuses");
-  const auto file =
-      galactic::test::packFile(galactic::PackKind::kEpisodes, *payload);
+  const auto file = galactic::test::packFile(galactic::PackKind::kEpisodes, *payload);
   const auto pack = galactic::PackFile::view(file.bytes(), "episodes.pack");
   if (!pack) report(pack.error().message);
   const auto set = galactic::EpisodeSet::from(*pack);

@@ -2,56 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <utility>
 
-#include "galactic/bake/episode_pack.h"
+#include "episodes/memory_world.h"
 #include "galactic/batch_simulator.h"
-#include "galactic/pack_header.h"
-#include "galactic/world.h"
 
 namespace galactic::bake {
 namespace {
-
-/// A file in memory, aligned as packs have to be.
-class FileBytes {
- public:
-  FileBytes(const PackHeader& header, std::span<const std::byte> payload)
-      : size_(sizeof(header) + payload.size()), blocks_((size_ + kBlock - 1) / kBlock) {
-    std::memcpy(blocks_.data(), &header, sizeof(header));
-    // The header fills the first block.
-    static_assert(sizeof(PackHeader) == kBlock);
-    if (!payload.empty()) std::memcpy(blocks_.data() + 1, payload.data(), payload.size());
-  }
-
-  [[nodiscard]] std::span<const std::byte> bytes() const {
-    return {reinterpret_cast<const std::byte*>(blocks_.data()), size_};
-  }
-
- private:
-  static constexpr std::size_t kBlock = 64;
-  struct alignas(kBlock) Block {
-    std::byte bytes[kBlock];
-  };
-
-  std::size_t size_;
-  std::vector<Block> blocks_;
-};
-
-/// Views of the packs that are open, and of the episodes. Nothing is checked again.
-Result<World> worldOf(std::span<const PackFile* const> packs, const FileBytes& episodes) {
-  std::vector<PackFile> files;
-  files.reserve(packs.size() + 1);
-  for (const PackFile* pack : packs) {
-    auto file = PackFile::view(pack->bytes(), pack->where(), Trust::kTrusted);
-    if (!file) return tl::unexpected(file.error());
-    files.push_back(std::move(*file));
-  }
-  auto file = PackFile::view(episodes.bytes(), "episodes", Trust::kTrusted);
-  if (!file) return tl::unexpected(file.error());
-  files.push_back(std::move(*file));
-  return World::from(std::move(files));
-}
 
 /// The robot follows the floor, whose height it finds again to rounding; a push is more. Metres and
 /// radians.
@@ -99,10 +55,7 @@ void judgeStep(BatchSimulator& simulator, const SourceEpisodes& episodes,
 
 Result<std::vector<ReplayEnd>> replayEpisodes(std::span<const PackFile* const> packs,
                                               const SourceEpisodes& episodes) {
-  const auto payload = encodeEpisodePack(episodes, {});
-  if (!payload) return tl::unexpected(payload.error());
-  const FileBytes file(makePackHeader(PackKind::kEpisodes, *payload), *payload);
-  const auto world = worldOf(packs, file);
+  const auto world = MemoryWorld::open(packs, episodes);
   if (!world) return tl::unexpected(world.error());
   std::vector<ReplayEnd> ends(episodes.episodes.size(), ReplayEnd::kBlocked);
   SimulationOptions options;
@@ -110,7 +63,7 @@ Result<std::vector<ReplayEnd>> replayEpisodes(std::span<const PackFile* const> p
   options.threads = 1;
   options.order = EpisodeOrder::kLinear;
   options.task.kind = TaskKind::kNone;
-  auto simulator = BatchSimulator::create(*world, options);
+  auto simulator = BatchSimulator::create(**world, options);
   if (!simulator) {
     // No episode of these can be started; the robot has all that a run needs.
     if (simulator.error().code == ErrorCode::kInvalidInput) return ends;

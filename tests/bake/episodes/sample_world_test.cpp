@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <map>
+#include <string>
 
 #include "episode_oracle.h"
+#include "galactic/bake/episode_solving.h"
 #include "sample_packs.h"
 
 namespace galactic::test {
@@ -153,6 +156,37 @@ TEST(EpisodesOfTheSampleWorld, KeepEveryPromise) {
   other.seed = 2;
   EXPECT_NE(generated(world, other).episodes.front().base_position,
             set.episodes.front().base_position);
+}
+
+TEST(SolvedSamples, TellEpisodesThatCanBeSolvedFromThoseThatCannot) {
+  const SampleWorld world;
+  bake::EpisodeGeneratorOptions options;
+  options.episodes = 8;
+  options.objects = {3, 3};
+  bake::SourceEpisodes set = generated(world, options);
+  const auto solve = [&](const bake::EpisodeSolvingOptions& how) {
+    return MemoryPack::opened(bake::solveSample(world.inputs().packs, set, how));
+  };
+  const bake::SolvedSample all = solve({.most_episodes = 100});
+  EXPECT_EQ(all.episodes, 8U);
+  EXPECT_EQ(all.solved, 8U);
+  EXPECT_TRUE(all.unsolved.empty());
+  EXPECT_EQ(solve({.most_steps = 5}).unsolved,
+            (std::map<std::string, std::uint32_t>{{"out of time", 8U}}));
+
+  // A goal that no arm reaches, and a robot that stands outside of the scene.
+  set.episodes[0].goal.translation.y += 1.5F;
+  set.episodes[3].goal.translation.y += 1.5F;
+  set.episodes[4].base_position.x = 500;
+  const std::map<std::string, std::uint32_t> ends{{"does not start", 1U}, {"no placement", 2U}};
+  for (const unsigned jobs : {1U, 3U}) {
+    const bake::SolvedSample spoiled = solve({.most_episodes = 8, .jobs = jobs});
+    EXPECT_EQ(spoiled.solved, 5U);
+    EXPECT_EQ(spoiled.unsolved, ends);
+  }
+  // Evenly chosen: 0, 2, 4 and 6.
+  EXPECT_EQ(solve({.most_episodes = 4}).solved, 2U);
+  EXPECT_EQ(solve({.most_episodes = 0}).episodes, 0U);
 }
 
 }  // namespace
