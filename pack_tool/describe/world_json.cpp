@@ -14,6 +14,11 @@ Json describeWorld(const PackFile& pack) {
                              {"bytes", one->bytes()},
                              {"xxh3_128", describeHash(one->hash())}});
   }
+  json["task"] = Json::array();
+  if (world->task() == nullptr) return json;
+  for (const schema::Option* one : *world->task()) {
+    json["task"].push_back({{"name", one->name()->str()}, {"value", one->value()->str()}});
+  }
   return json;
 }
 

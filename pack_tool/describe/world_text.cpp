@@ -12,7 +12,13 @@ std::string worldText(const Json& world) {
     table.add({textOf(pack.at("path")), textOf(pack.at("kind")), countOf(pack.at("bytes")),
                hash.is_null() ? "not recorded" : textOf(hash)});
   }
-  return labelled("packs", countOf(Json(world.at("packs").size()))) + table.text();
+  std::string task;
+  for (const Json& option : world.at("task")) {
+    if (!task.empty()) task += ", ";
+    task += textOf(option.at("name")) + " " + textOf(option.at("value"));
+  }
+  return labelled("packs", countOf(Json(world.at("packs").size()))) +
+         labelled("task", task.empty() ? "as galactic-run has it" : task) + table.text();
 }
 
 }  // namespace galactic::pack_tool

@@ -28,6 +28,7 @@ namespace {
 
 using galactic::Error;
 using galactic::ErrorCode;
+using galactic::OpenedWorld;
 using galactic::RecordingReader;
 using galactic::Result;
 using galactic::RunOptions;
@@ -82,8 +83,8 @@ int describePacks(const RunOptions& options) {
   return flushOutput();
 }
 
-int simulatePacks(const RunOptions& options, RecordingReader* replay) {
-  const Result<galactic::RunReport> run = galactic::simulate(options, replay);
+int simulateWorld(const RunOptions& options, const OpenedWorld& world, RecordingReader* replay) {
+  const Result<galactic::RunReport> run = galactic::simulate(options, world, replay);
   if (!run) return report(run.error());
   fmt::print("{}", galactic::tableOf(*run));
   if (const int written = flushOutput(); written != galactic::kExitOk) return written;
@@ -113,7 +114,19 @@ int replayPacks(int argc, char** argv, const std::string& file) {
   if (const auto fits = galactic::checkReplay(*recording, options); !fits) {
     return report(fits.error());
   }
-  return simulatePacks(options, &*recording);
+  const Result<OpenedWorld> world = galactic::openWorld(options);
+  return world ? simulateWorld(options, *world, &*recording) : report(world.error());
+}
+
+/// The options of the task are those of the world, and what was typed overrides them: the command
+/// line is read again on top of them.
+int simulatePacks(int argc, char** argv, const RunOptions& typed) {
+  const Result<OpenedWorld> world = galactic::openWorld(typed);
+  if (!world) return report(world.error());
+  RunOptions options;
+  options.simulation = world->world.withTask(options.simulation);
+  if (const auto exit_code = galactic::parseCommandLine(argc, argv, options)) return *exit_code;
+  return simulateWorld(options, *world, nullptr);
 }
 
 int run(int argc, char** argv) {
@@ -121,7 +134,7 @@ int run(int argc, char** argv) {
   if (const auto exit_code = galactic::parseCommandLine(argc, argv, options)) return *exit_code;
   if (!options.simulates) return describePacks(options);
   const std::string replayed = options.replayFile();
-  return replayed.empty() ? simulatePacks(options, nullptr) : replayPacks(argc, argv, replayed);
+  return replayed.empty() ? simulatePacks(argc, argv, options) : replayPacks(argc, argv, replayed);
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include <string_view>
 
 #include "galactic/error.h"
+#include "galactic/option_table.h"
 #include "galactic/printable.h"
-#include "option_table.h"
 #include "policy.h"
 #include "render_command_line.h"
 
@@ -82,9 +82,12 @@ class CommandLineVisitor {
     add(name, field, help)->check(finite(within))->option_text(fmt::format("NUMBER [{}]", field));
   }
   void flag(std::string_view name, const Switch& value, std::string_view help) {
-    app_.add_flag_callback(
-            dashed(name), [value] { value.field = value.when_typed; }, std::string(help))
-        ->group(heading_);
+    // --NAME=false, too: a world may have switched it on.
+    const auto set = [value](std::int64_t times) { value.field = (times > 0) == value.when_typed; };
+    app_.add_flag_function(dashed(name), set, std::string(help))
+        ->check(CLI::IsMember({"true", "false"}))
+        ->group(heading_)
+        ->option_text(" ");
   }
   template <class T, std::size_t N>
   void choice(std::string_view name, T& field, const std::array<Named<T>, N>& names,
@@ -102,6 +105,22 @@ class CommandLineVisitor {
         ->check(CLI::IsMember(values))
         ->group(heading_)
         ->option_text(fmt::format("{} [{}]", listed, now));
+  }
+
+  /// Options are read in the order in which they are added, so that its parts refine it.
+  template <class T>
+  void preset(std::string_view name, T& field, const Preset<T>& preset, std::string_view help) {
+    std::map<std::string, T> values;
+    std::string listed;
+    for (const Named<T>& one : preset.names) {
+      values.emplace(one.name, one.value);
+      listed += (listed.empty() ? "" : "|") + std::string(one.name);
+    }
+    const auto set = [&field, values](const std::string& text) { field = values.at(text); };
+    app_.add_option_function<std::string>(dashed(name), set, std::string(help))
+        ->check(CLI::IsMember(values))
+        ->group(heading_)
+        ->option_text(fmt::format("{} [{}]", listed, preset.names.front().name));
   }
 
  private:
@@ -148,20 +167,6 @@ void addRunOptions(CLI::App& app, RunOptions& options) {
   app.option_defaults()->group(kPlainGroup);
 }
 
-/// Sliding by name: what the two other options of sliding then refine.
-void addSlide(CLI::App& app, SlideOptions& slide) {
-  const std::map<std::string, SlideOptions> named{
-      {"pushout", {}},
-      {"published", {.attempts = 5, .direction = SlideDirection::kTowardsBase, .step = 0.05F}},
-      {"off", {.attempts = 0}}};
-  const auto set = [&slide, named](const std::string& text) { slide = named.at(text); };
-  app.add_option_function<std::string>("--slide", set,
-                                       "How a robot that would hit something is pushed clear")
-      ->check(CLI::IsMember({"pushout", "published", "off"}))
-      ->group("Sliding and floor")
-      ->option_text("pushout|published|off [pushout]");
-}
-
 /// What no single option can see to be wrong; empty when nothing is.
 std::string faultOf(const RunOptions& options) {
   if (options.bench && options.simulates) {
@@ -199,10 +204,7 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
   addDrawingOptions(app, options.drawing);
   CommandLineVisitor visitor(app);
   visitBatchOptions(options.simulation, visitor);
-  visitTaskOptions(options.simulation.task, visitor);
-  // Before the options that refine it: they are read in this order.
-  addSlide(app, options.simulation.slide);
-  visitMotionOptions(options.simulation, visitor);
+  visitWorldTask(options.simulation, visitor);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -11,7 +11,7 @@
 
 #include "galactic/pack_header.h"
 #include "galactic/printable.h"
-#include "option_text.h"
+#include "option_lines.h"
 
 namespace galactic {
 namespace {

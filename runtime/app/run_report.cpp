@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "galactic/printable.h"
 
@@ -63,6 +64,21 @@ std::string episodeLines(const RunReport& report) {
                                     ratio(episodes.steps, episodes.ended)));
 }
 
+/// Which options of the task come from the world, and which of the world's were overridden.
+std::string taskLine(const RunReport& report) {
+  if (report.world_task.empty()) return {};
+  std::string in_force;
+  std::string overridden;
+  for (const OptionText& option : report.world_task) {
+    std::string& list = isInForce(option, report.options) ? in_force : overridden;
+    list += fmt::format("{}{} {}", list.empty() ? "" : ", ", option.name, option.value);
+  }
+  if (!overridden.empty()) {
+    overridden = fmt::format("{}not {}", in_force.empty() ? "" : "; ", overridden);
+  }
+  return line("world's task", in_force + overridden);
+}
+
 std::string renderLines(const RunReport& report) {
   const DrawingOptions& drawing = report.options.drawing;
   const RenderReport& drawn = *report.rendering;
@@ -96,6 +112,18 @@ std::string replayLine(const RunReport& report) {
 
 }  // namespace
 
+bool isInForce(const OptionText& option, const RunOptions& options) {
+  const std::vector<OptionText> all = listOptions(options.simulation, OptionScope::kTask);
+  // Values are compared as they are printed, whatever way the pack writes its own.
+  SimulationOptions alone;
+  (void)setOptions(std::span(&option, 1), OptionScope::kTask, alone);
+  const std::vector<OptionText> wanted = listOptions(alone, OptionScope::kTask);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    if (all[n].name == option.name) return all[n].value == wanted[n].value;
+  }
+  return false;
+}
+
 std::string tableOf(const RunReport& report) {
   const RunOptions& options = report.options;
   const SimulationStatistics& sum = report.sum;
@@ -103,6 +131,7 @@ std::string tableOf(const RunReport& report) {
       "{} envs, {} steps each, {} threads, policy {}, seed {}{}\n", options.simulation.envs,
       report.steps, report.threads, printable(options.policy), options.simulation.seed,
       report.is_interrupted ? fmt::format(" (stopped; {} steps were wanted)", options.steps) : "");
+  text += taskLine(report);
   text += line("stepping", rate(report, report.step_seconds));
   text += line("whole loop", rate(report, report.loop_seconds));
   if (report.rendering) text += renderLines(report);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "galactic/batch_simulator.h"
+#include "galactic/option_text.h"
 #include "options.h"
 
 namespace galactic {
@@ -48,6 +49,8 @@ struct RenderReport {
 /// What a run was and what came of it.
 struct RunReport {
   RunOptions options;
+  /// What the world says of the task, whether or not the options are so.
+  std::vector<OptionText> world_task;
   std::size_t threads = 0;
   /// Of the whole batch; fewer than were asked for when the run was interrupted.
   std::uint64_t steps = 0;
@@ -72,6 +75,10 @@ struct RunReport {
   /// The first step in which a replay differs, counted from 0.
   std::optional<std::uint64_t> first_difference;
 };
+
+/// Whether an option of the world's task is in force: neither the command line nor a recording has
+/// given it another value.
+[[nodiscard]] bool isInForce(const OptionText& option, const RunOptions& options);
 
 /// The closing table, lines of text.
 [[nodiscard]] std::string tableOf(const RunReport& report);

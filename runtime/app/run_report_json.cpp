@@ -6,7 +6,7 @@
 #include <concepts>
 #include <string_view>
 
-#include "option_text.h"
+#include "galactic/option_text.h"
 #include "run_report.h"
 
 namespace galactic {
@@ -111,6 +111,11 @@ void writeOptions(JsonWriter& json, const RunReport& report) {
     json.raw(option.name, option.is_word ? jsonString(option.value) : option.value);
   }
   json.end('}');
+  json.begin("from_world", '[');
+  for (const OptionText& option : report.world_task) {
+    if (isInForce(option, options)) json.text("", option.name);
+  }
+  json.end(']');
 }
 
 void writeTimes(JsonWriter& json, const RunReport& report) {

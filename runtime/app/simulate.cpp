@@ -16,7 +16,7 @@
 #include "galactic/world.h"
 #include "interrupt.h"
 #include "live_line.h"
-#include "option_text.h"
+#include "option_lines.h"
 #include "policy.h"
 
 namespace galactic {
@@ -209,21 +209,27 @@ Result<void> checkSubject(const RecordingReader* replay, const World& world,
 
 }  // namespace
 
-Result<RunReport> simulate(const RunOptions& options, RecordingReader* replay) {
-  const Interrupt interrupt;
-  RunReport report;
-  report.options = options;
+Result<OpenedWorld> openWorld(const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   const std::vector<std::filesystem::path> paths(options.packs.begin(), options.packs.end());
-  const Result<World> world =
-      World::open(paths, options.trusted ? Trust::kTrusted : Trust::kVerify);
-  if (!world) return tl::unexpected<Error>(world.error());
-  const Clock::time_point opened = Clock::now();
-  Result<BatchSimulator> simulator = BatchSimulator::create(*world, options.simulation);
+  Result<World> world = World::open(paths, options.trusted ? Trust::kTrusted : Trust::kVerify);
+  if (!world) return tl::unexpected<Error>(std::move(world.error()));
+  return OpenedWorld{std::move(*world), secondsBetween(start, Clock::now())};
+}
+
+Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
+                           RecordingReader* replay) {
+  const Interrupt interrupt;
+  const World& world = opened.world;
+  RunReport report;
+  report.options = options;
+  report.world_task = world.taskOptions();
+  report.open_seconds = opened.seconds;
+  const Clock::time_point start = Clock::now();
+  Result<BatchSimulator> simulator = BatchSimulator::create(world, options.simulation);
   if (!simulator) return tl::unexpected<Error>(simulator.error());
-  report.open_seconds = secondsBetween(start, opened);
-  report.create_seconds = secondsBetween(opened, Clock::now());
-  if (auto same = checkSubject(replay, *world, *simulator); !same) {
+  report.create_seconds = secondsBetween(start, Clock::now());
+  if (auto same = checkSubject(replay, world, *simulator); !same) {
     return tl::unexpected<Error>(same.error());
   }
   constexpr std::uint32_t kSampleEvery = 16;
@@ -231,15 +237,15 @@ Result<RunReport> simulate(const RunOptions& options, RecordingReader* replay) {
   Run run(options, *simulator, report);
   if (replay != nullptr) run.replay(*replay);
   if (replay == nullptr && options.policy == kScriptedPolicy) {
-    if (auto planned = run.plan(*world); !planned) {
+    if (auto planned = run.plan(world); !planned) {
       return tl::unexpected<Error>(planned.error());
     }
   }
   if (options.drawing.draws()) {
-    if (auto drawn = run.draw(*world); !drawn) return tl::unexpected<Error>(drawn.error());
+    if (auto drawn = run.draw(world); !drawn) return tl::unexpected<Error>(drawn.error());
   }
   if (!options.record.empty()) {
-    if (auto opened_file = run.record(*world); !opened_file) {
+    if (auto opened_file = run.record(world); !opened_file) {
       return tl::unexpected<Error>(opened_file.error());
     }
   }
@@ -248,7 +254,7 @@ Result<RunReport> simulate(const RunOptions& options, RecordingReader* replay) {
   report.phases = simulator->phaseTimes();
   report.sampled_steps = (report.steps + kSampleEvery - 1) / kSampleEvery;
   report.sum = simulator->statistics();
-  report.world_episodes = world->episodes().episodes().size();
+  report.world_episodes = world.episodes().episodes().size();
   report.skipped.assign(simulator->skippedEpisodes().begin(), simulator->skippedEpisodes().end());
   report.memory_bytes = simulator->memoryBytes();
   return report;

@@ -149,7 +149,13 @@ std::string worldText(const schema::World& world) {
     text += fmt::format("  {:>6}{:>12.2f}  {}\n", clean(one->kind()),
                         static_cast<double>(one->bytes()) / kMega, clean(one->path()));
   }
-  return text;
+  if (world.task() == nullptr) return text;
+  std::string task;
+  for (const schema::Option* one : *world.task()) {
+    task +=
+        fmt::format("{}{} {}", task.empty() ? "" : ", ", clean(one->name()), clean(one->value()));
+  }
+  return text + fmt::format("  task: {}\n", task);
 }
 
 /// What kind of asset it is, with its name where it has one, and its description.

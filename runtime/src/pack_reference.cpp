@@ -8,11 +8,21 @@
 
 #include "content_hash.h"
 #include "schema_values.h"
+#include "world_check.h"
 
 namespace galactic {
 namespace {
 
 namespace fs = std::filesystem;
+
+Result<const schema::World*> contentOf(const PackFile& world) {
+  if (world.kind() == PackKind::kWorld) {
+    if (const schema::World* stored = world.root().asset_as_World()) return stored;
+  }
+  return fail(ErrorCode::kInvalidInput, world.where(),
+              "is a pack of kind " + packKindName(world.kind()) +
+                  ", wanted a world (WRLD); give a world pack");
+}
 
 /// Whether the open file is the one that was linked.
 Result<void> checkLinked(const PackFile& pack, const PackReference& reference,
@@ -41,13 +51,9 @@ Result<void> checkLinked(const PackFile& pack, const PackReference& reference,
 }  // namespace
 
 Result<std::vector<PackReference>> packReferences(const PackFile& world) {
-  const schema::World* stored =
-      world.kind() == PackKind::kWorld ? world.root().asset_as_World() : nullptr;
-  if (stored == nullptr) {
-    return fail(ErrorCode::kInvalidInput, world.where(),
-                "is a pack of kind " + packKindName(world.kind()) +
-                    ", wanted a world (WRLD); give a world pack");
-  }
+  const auto content = contentOf(world);
+  if (!content) return tl::unexpected<Error>(content.error());
+  const schema::World* stored = *content;
   std::vector<PackReference> references;
   references.reserve(stored->packs()->size());
   for (const schema::PackReference* one : *stored->packs()) {
@@ -60,6 +66,26 @@ Result<std::vector<PackReference>> packReferences(const PackFile& world) {
                           one->hash()->high()});
   }
   return references;
+}
+
+Result<std::vector<OptionText>> taskOptions(const PackFile& world) {
+  const auto content = contentOf(world);
+  if (!content) return tl::unexpected<Error>(content.error());
+  const auto* stored = (*content)->task();
+  if (stored == nullptr) return {};
+  // What was verified before passes; a trusted pack may hold anything.
+  if (auto checked = detail::checkTask(*stored, world.where() + ": world"); !checked) {
+    return tl::unexpected<Error>(std::move(checked.error()));
+  }
+  std::vector<OptionText> options;
+  options.reserve(stored->size());
+  for (const OptionText& known : listOptions({}, OptionScope::kTask)) {
+    if (options.size() == stored->size()) break;
+    const schema::Option& next = *stored->Get(static_cast<flatbuffers::uoffset_t>(options.size()));
+    if (detail::fromSchema(next.name()) != known.name) continue;
+    options.push_back({known.name, next.value()->str(), known.is_word});
+  }
+  return options;
 }
 
 fs::path pathOf(const PackReference& reference, const PackFile& world) {

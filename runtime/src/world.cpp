@@ -309,7 +309,17 @@ Result<World> World::open(std::span<const std::filesystem::path> paths, Trust tr
   if (packs.size() != 1 || packs.front().kind() != PackKind::kWorld) return from(std::move(packs));
   Result<std::vector<PackFile>> listed = openList(packs.front(), trust);
   if (!listed) return tl::unexpected<Error>(std::move(listed.error()));
-  return from(std::move(*listed));
+  auto task_options = galactic::taskOptions(packs.front());
+  if (!task_options) return tl::unexpected<Error>(std::move(task_options.error()));
+  Result<World> world = from(std::move(*listed));
+  if (world) world->task_options_ = std::move(*task_options);
+  return world;
+}
+
+SimulationOptions World::withTask(SimulationOptions base) const {
+  // They were read when the world was opened: none is at fault.
+  (void)setOptions(task_options_, OptionScope::kTask, base);
+  return base;
 }
 
 Result<World> World::from(std::vector<PackFile> packs) {

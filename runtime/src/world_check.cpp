@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "common_check.h"
+#include "galactic/option_text.h"
 #include "galactic/pack_header.h"
 #include "offence.h"
 
@@ -45,7 +48,44 @@ Result<void> checkReference(const schema::PackReference& reference, const std::s
   return offence.result();
 }
 
+/// Whether it is one of `known` from the place `next` on, which moves behind it, and has a value
+/// that it may have.
+Result<void> checkOption(const OptionText& option, std::span<const OptionText> known,
+                         std::size_t& next, const std::string& where) {
+  Offence offence(where);
+  const auto found =
+      std::ranges::find(known, option.name, [](const OptionText& one) { return one.name; });
+  offence.require(found != known.end(), "name",
+                  "is \"{}\", wanted an option of the task, reward or robot of galactic-run",
+                  option.name);
+  if (offence.found()) return offence.result();
+  const auto place = static_cast<std::size_t>(found - known.begin());
+  offence.require(place >= next, "name",
+                  "is \"{}\", wanted each option once, in the order of galactic-run's table",
+                  option.name);
+  next = place + 1;
+  SimulationOptions ignored;
+  const auto fault = setOptions(std::span(&option, 1), OptionScope::kTask, ignored);
+  offence.require(!fault, "value", "is \"{}\", wanted {} for {}", option.value,
+                  fault ? fault->wanted : "", option.name);
+  return offence.result();
+}
+
 }  // namespace
+
+Result<void> checkTask(const flatbuffers::Vector<flatbuffers::Offset<schema::Option>>& task,
+                       const std::string& where) {
+  const std::vector<OptionText> known = listOptions({}, OptionScope::kTask);
+  Offence offence(where);
+  std::size_t next = 0;
+  for (flatbuffers::uoffset_t n = 0; n < task.size() && !offence.found(); ++n) {
+    const schema::Option& stored = *task.Get(n);
+    const OptionText option{stored.name()->str(), stored.value()->str()};
+    offence.require(
+        checkOption(option, known, next, fmt::format("{}.task[{}]", offence.where(), n)));
+  }
+  return offence.result();
+}
 
 Result<void> checkWorld(const schema::World& world, const std::string& where) {
   Offence offence(where + ": world");
@@ -64,6 +104,7 @@ Result<void> checkWorld(const schema::World& world, const std::string& where) {
   offence.require(counts["EPIS"] <= 1, "packs", "has {} episode sets (EPIS), wanted at most one",
                   counts["EPIS"]);
   offence.require(counts["SCEN"] >= 1, "packs", "has no scene (SCEN), wanted at least one");
+  if (world.task() != nullptr) offence.require(checkTask(*world.task(), offence.where()));
   return offence.result();
 }
 

@@ -265,6 +265,15 @@ TEST_F(PlanCli, BakesTheWorldOfARecipe) {
   addScene("c", "flat", thing("mug", 3));
   ASSERT_EQ(run(arguments).exit_code, 0);
   EXPECT_THAT(packsThatAre("baked"), ElementsAre("scenes/c.pack", "episodes.pack"));
+  // What the robot has to do stands in the world alone.
+  write("flat.toml", std::string(kRecipe) + "[task]\nepisode-steps = 300\nsafe-drop = true\n");
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  EXPECT_THAT(packsThatAre("unchanged"), SizeIs(6));
+  EXPECT_EQ(report()["task"], (nlohmann::json{{"episode-steps", "300"}, {"safe-drop", "true"}}));
+  const auto with_task = World::open(std::vector{path("flat.pack")});
+  ASSERT_TRUE(with_task.has_value());
+  EXPECT_EQ(with_task->withTask().task.most_steps, 300U);
+  EXPECT_FALSE(with_task->withTask().task.drop_fails);
   // In shards episodes wait for the join.
   auto part = arguments;
   part.insert(part.end(), {"--shard", "1/2", "-o", "part.pack"});

@@ -180,6 +180,9 @@ TEST_F(PlanFaults, RefusesRecipesThatDoNotFit) {
   write("option.toml", scene + "[[objects]]\nfiles = \"data/meshes/objects\"\nspacing = 1\n");
   write("value.toml", scene + "spacing = \"wide\"\n");
   write("robots.toml", scene + "[robot]\nfiles = \"*.toml\"\n");
+  write("task.toml", scene + "[task]\nsafe-drop = true\nepisode-steps = -1\n");
+  write("mesh.toml", scene + "[episodes]\ngeometry = { apartment = \"none.glb\" }\n");
+  write("pack.toml", scene + "[episodes]\nfiles = \"x.json.gz\"\nobject-pack = \"none.pack\"\n");
   write("lost.toml", scene + "[robot]\nfiles = \"option.toml\"\nrecipe = \"none.toml\"\n");
   const std::vector<Refusal> refusals{
       {{"twice.toml"}, 3, "would be scenes/apartment.pack, as "},
@@ -189,6 +192,11 @@ TEST_F(PlanFaults, RefusesRecipesThatDoNotFit) {
       {{"robots.toml"}, 3, "robots.toml:3: [robot] names "},
       {{"lost.toml"}, 2, "lost.toml:5: recipe: none.toml fits no file in "},
       {{"none.toml"}, 2, "none.toml"},
+      {{"task.toml"},
+       3,
+       "task.toml:5: task.episode-steps = -1: wanted a whole number from 0 to 1073741824"},
+      {{"mesh.toml"}, 2, "mesh.toml:4: geometry: none.glb fits no file in "},
+      {{"pack.toml"}, 2, "pack.toml:5: object-pack: none.pack fits no file in "},
   };
   for (const Refusal& refusal : refusals) {
     SCOPED_TRACE(testing::PrintToString(refusal.arguments));

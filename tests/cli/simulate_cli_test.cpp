@@ -120,6 +120,63 @@ TEST_F(SimulateCli, ReportsAsJson) {
   EXPECT_FALSE(report.contains("first_difference"));
 }
 
+TEST_F(SimulateCli, TakesTheTaskOfTheWorldWhichTheCommandLineOverrides) {
+  test::WorldPackFields list = test::writePacks(folder_, test::smallHomeWorld());
+  list.task = {{"task", "pick"}, {"episode-steps", "20"}, {"safe-drop", "true"}};
+  ASSERT_FALSE(folder_.write("world.pack", test::textOf(buildPack(list))).empty());
+  const std::vector<std::string> plain{"--envs", "4", "--steps", "60", "--threads", "1"};
+  const auto with = [&plain](std::vector<std::string> more) {
+    more.insert(more.begin(), plain.begin(), plain.end());
+    return more;
+  };
+  const json report = reportOf(plain);
+  EXPECT_EQ(report["options"]["task"], "pick");
+  EXPECT_EQ(report["options"]["episode-steps"], 20);
+  EXPECT_EQ(report["options"]["safe-drop"], true);
+  EXPECT_EQ(report["from_world"], json::array({"task", "episode-steps", "safe-drop"}));
+  EXPECT_GE(report["episodes"]["ended"], 12);
+  EXPECT_THAT(run(plain).out,
+              HasSubstr("\n  world's task  task pick, episode-steps 20, safe-drop true\n"));
+
+  const json typed = reportOf(with({"--episode-steps", "0", "--safe-drop=false"}));
+  EXPECT_EQ(typed["options"]["task"], "pick");
+  EXPECT_EQ(typed["options"]["episode-steps"], 0);
+  EXPECT_EQ(typed["options"]["safe-drop"], false);
+  EXPECT_EQ(typed["from_world"], json::array({"task"}));
+  EXPECT_LT(typed["episodes"]["ended"], report["episodes"]["ended"]);
+  EXPECT_THAT(run(with({"--episode-steps", "30", "--task", "none"})).out,
+              HasSubstr("\n  world's task  safe-drop true; not task pick, episode-steps 20\n"));
+  // Its packs one by one say nothing of a task.
+  const ProgramRun loose =
+      runBare({"--pack", "episodes.pack", "--pack", "objects.pack", "--pack", "robots/helper.pack",
+               "--pack", "scenes/kitchen.pack", "--envs", "1", "--steps", "1"});
+  EXPECT_EQ(loose.exit_code, 0) << loose.err;
+  EXPECT_THAT(loose.out, Not(HasSubstr("world's task")));
+  // The same steps as with the options typed.
+  ASSERT_EQ(run(with({"--record", "a.rec"})).exit_code, 0);
+  writeWorld(test::smallHomeWorld());
+  ASSERT_EQ(
+      run(with({"--task", "pick", "--episode-steps", "20", "--safe-drop", "--record", "b.rec"}))
+          .exit_code,
+      0);
+  EXPECT_TRUE(content("a.rec") == content("b.rec"));
+  // A recording has the options that it was made with, whatever the world says.
+  EXPECT_EQ(run({"--policy", "replay:a.rec"}).exit_code, 0);
+  EXPECT_THAT(runBare({"--pack", "world.pack"}).out, Not(HasSubstr("task:")));
+}
+
+TEST_F(SimulateCli, RefusesAWorldWhoseTaskIsNone) {
+  test::WorldPackFields list = test::writePacks(folder_, test::smallHomeWorld());
+  list.task = {{"episode-steps", "many"}};
+  ASSERT_FALSE(folder_.write("world.pack", test::textOf(buildPack(list))).empty());
+  for (const char* trust : {"--body-transforms", "--trusted"}) {
+    const ProgramRun refused = run({"--envs", "1", "--steps", "1", trust});
+    EXPECT_EQ(refused.exit_code, 3);
+    EXPECT_THAT(refused.err,
+                HasSubstr("world.pack: world.task[0].value: is \"many\", wanted 0 to"));
+  }
+}
+
 TEST_F(SimulateCli, EscapesNamesInTheReport) {
   const std::string name = "a \"strange\"\n\\name\xff.pack";
   std::filesystem::rename(folder_.path() / "world.pack", folder_.path() / name);

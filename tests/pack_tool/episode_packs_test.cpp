@@ -80,6 +80,17 @@ TEST(InfoText, ListsThePacksOfAWorld) {
                               "00000000000000020000000000000001\n"));
 }
 
+TEST(InfoText, TellsTheTaskOfAWorld) {
+  EXPECT_THAT(infoText(describe(test::smallWorldPack())),
+              HasSubstr("  task         as galactic-run has it\n"));
+  WorldPackFields fields = test::smallWorldPack();
+  fields.task = {{"episode-steps", "300"}, {"safe-drop", "true"}};
+  const Json json = describe(fields);
+  EXPECT_EQ(json.at("world").at("task"), Json::parse(R"([{"name": "episode-steps", "value": "300"},
+                            {"name": "safe-drop", "value": "true"}])"));
+  EXPECT_THAT(infoText(json), HasSubstr("  task         episode-steps 300, safe-drop true\n"));
+}
+
 struct Outcome {
   int exit_code = 0;
   std::string out;
@@ -218,6 +229,28 @@ TEST(WorldDiff, ComparesListsByPath) {
   EXPECT_THAT(outcome.out, HasSubstr("  packs.objects.pack.bytes: 1000 | 2000\n"
                                      "  packs.scenes/kitchen.pack.kind: SCEN | none\n"));
   EXPECT_THAT(outcome.out, Not(HasSubstr("robots")));
+}
+
+TEST(WorldDiff, ComparesTasksByName) {
+  WorldPackFields a = test::smallWorldPack();
+  WorldPackFields b = a;
+  a.task = {{"episode-steps", "300"}, {"safe-drop", "true"}};
+  b.task = {{"task", "pick"}, {"episode-steps", "200"}, {"safe-drop", "true"}};
+  const Outcome outcome = diffOf(a, b);
+  EXPECT_EQ(outcome.exit_code, kExitDiffers);
+  EXPECT_THAT(outcome.out, HasSubstr("  task.episode-steps: 300 | 200\n"
+                                     "  task.task: none | pick\n"));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("safe-drop")));
+}
+
+TEST(CheckWorld, NamesTheTaskOptionThatIsWrong) {
+  const ScratchFolder folder;
+  WorldPackFields list = test::writePacks(folder, WorldFields{});
+  list.task = {{"safe-drop", "maybe"}};
+  const Outcome outcome = checked(folder.write("world.pack", test::textOf(buildPack(list))));
+  EXPECT_EQ(outcome.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("world.task[0].value: is \"maybe\", wanted true or false for safe-drop"));
 }
 
 TEST(PackVerbs, RefuseEpisodesAndWorldsThatTheyCannotShow) {

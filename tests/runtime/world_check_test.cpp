@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "galactic/pack.h"
@@ -116,6 +117,107 @@ TEST(WorldCheck, RefusesAnotherKindOfAssetThanTheHeaderSays) {
   EXPECT_EQ(pack.error().message, "has type 5, the header says EPIS; bake the pack again");
 }
 
+using Task = std::vector<std::pair<std::string, std::string>>;
+
+WorldPackFields worldWithTask(Task task) {
+  Fields fields = smallWorldPack();
+  fields.task = std::move(task);
+  return fields;
+}
+
+/// An offence of the second of three options of the task.
+Offence option(const std::string& name, const std::string& value, const std::string& field,
+               const std::string& message) {
+  return {"world.task[1]." + field, message, [name, value](Fields& f) {
+            f.task = Task{{"episode-steps", "300"}, {name, value}, {"slide-step", "0.05"}};
+          }};
+}
+
+TEST(WorldCheck, AcceptsTaskOptionsInTheOrderOfTheTable) {
+  for (const Task& task : {Task{}, Task{{"slide-step", "0.1"}},
+                           Task{{"task", "pick"},
+                                {"episode-steps", "0"},
+                                {"safe-drop", "false"},
+                                {"slack-penalty", "-1e-3"},
+                                {"grasp-from", "2"},
+                                {"slide-direction", "towards-base"},
+                                {"place-jitter", "1000"}}}) {
+    const AlignedBytes bytes = buildPack(worldWithTask(task));
+    const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
+    ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+    const auto options = taskOptions(*pack);
+    ASSERT_TRUE(options.has_value());
+    ASSERT_EQ(options->size(), task.size());
+    for (std::size_t n = 0; n < task.size(); ++n) {
+      EXPECT_EQ((*options)[n].name, task[n].first);
+      EXPECT_EQ((*options)[n].value, task[n].second);
+    }
+  }
+}
+
+TEST(WorldCheck, RefusesUnknownTaskOptions) {
+  const std::string wanted = ", wanted an option of the task, reward or robot of galactic-run";
+  refuse({
+      option("", "1", "name", "is \"\"" + wanted),
+      option("wings", "1", "name", "is \"wings\"" + wanted),
+      option("Safe-Drop", "true", "name", "is \"Safe-Drop\"" + wanted),
+      option("--safe-drop", "true", "name", "is \"--safe-drop\"" + wanted),
+      // Options of a batch, and of the command line alone.
+      option("envs", "5", "name", "is \"envs\"" + wanted),
+      option("seed", "5", "name", "is \"seed\"" + wanted),
+      option("slide", "off", "name", "is \"slide\"" + wanted),
+      option("threads", "5", "name", "is \"threads\"" + wanted),
+  });
+}
+
+TEST(WorldCheck, RefusesTaskOptionsTwiceOrInAnotherOrder) {
+  const std::string wanted = ", wanted each option once, in the order of galactic-run's table";
+  refuse({
+      option("episode-steps", "300", "name", "is \"episode-steps\"" + wanted),
+      option("task", "pick", "name", "is \"task\"" + wanted),
+      {"world.task[2].name", "is \"slide-step\"" + wanted,
+       [](Fields& f) {
+         f.task = Task{{"episode-steps", "3"}, {"place-lift", "1"}, {"slide-step", "1"}};
+       }},
+  });
+}
+
+TEST(WorldCheck, RefusesWrongValuesOfTaskOptions) {
+  const auto value = [](const std::string& name, const std::string& found,
+                        const std::string& wanted) {
+    return option(name, found, "value", "is \"" + found + "\", wanted " + wanted + " for " + name);
+  };
+  refuse({
+      value("success-distance", "", "0 to 1000"),
+      value("success-distance", "-0.1", "0 to 1000"),
+      value("success-distance", "1000.5", "0 to 1000"),
+      value("success-distance", "nan", "0 to 1000"),
+      value("success-distance", "inf", "0 to 1000"),
+      value("success-distance", "0x1", "0 to 1000"),
+      value("success-distance", " 1", "0 to 1000"),
+      value("success-distance", "1 m", "0 to 1000"),
+      value("slide-attempts", "2.5", "0 to 1000"),
+      value("slide-attempts", "-1", "0 to 1000"),
+      value("slide-attempts", "1001", "0 to 1000"),
+      value("slide-attempts", "99999999999999999999", "0 to 1000"),
+      value("safe-drop", "yes", "true or false"),
+      value("safe-drop", "1", "true or false"),
+      value("slide-direction", "up", "pushout or towards-base"),
+      value("slide-direction", "", "pushout or towards-base"),
+      value("grasp-from", "2.5", "-2 to 2"),
+      value("pick-reward", "1e7", "-1e+06 to 1e+06"),
+  });
+}
+
+TEST(WorldCheck, RefusesTaskOptionsThatNobodyVerifiedWhenTheyAreRead) {
+  const AlignedBytes bytes = buildPack(worldWithTask({{"wings", "2"}}));
+  const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack", Trust::kTrusted);
+  ASSERT_TRUE(pack.has_value());
+  const auto options = taskOptions(*pack);
+  ASSERT_FALSE(options.has_value());
+  EXPECT_EQ(options.error().where, "made.pack: world.task[0].name");
+}
+
 TEST(DamagedWorldPack, IsRefusedAtEachLengthOfATruncation) {
   expectEachTruncationRefused(buildPack(smallWorldPack()));
 }
@@ -130,6 +232,10 @@ TEST(DamagedWorldPack, IsRefusedAfterEachFlipOfASingleBit) {
 
 /// Reads the whole list; a sanitizer sees a read outside the pack.
 void readEverything(const PackFile& pack) {
+  const auto options = taskOptions(pack);
+  ASSERT_TRUE(options.has_value());
+  SimulationOptions ignored;
+  ASSERT_FALSE(setOptions(*options, OptionScope::kTask, ignored));
   const auto references = packReferences(pack);
   ASSERT_TRUE(references.has_value());
   ASSERT_GE(references->size(), 3U);
@@ -147,6 +253,14 @@ void readEverything(const PackFile& pack) {
 TEST(DamagedWorldPack, WithARecomputedHashIsRefusedOrSafeToReadAfterEachFlip) {
   expectFlipsWithARightHashRefusedOrUsable(buildPack(smallWorldPack()), PackKind::kWorld,
                                            readEverything);
+}
+
+TEST(DamagedWorldPack, WithATaskIsRefusedOrSafeToReadAfterEachFlip) {
+  const AlignedBytes bytes =
+      buildPack(worldWithTask({{"task", "pick"}, {"episode-steps", "300"}, {"safe-drop", "true"}}));
+  expectEachTruncationRefused(bytes);
+  expectEachBitFlipRefused(bytes);
+  expectFlipsWithARightHashRefusedOrUsable(bytes, PackKind::kWorld, readEverything);
 }
 
 }  // namespace

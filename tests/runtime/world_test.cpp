@@ -364,6 +364,70 @@ TEST(World, RefusesARobotThatCannotBeSimulated) {
       "helper.pack", "has no spheres, wanted a robot to simulate; bake it with collision geometry");
 }
 
+/// Opens a small world whose pack has this task.
+Result<World> openWithTask(std::vector<std::pair<std::string, std::string>> task,
+                           Trust trust = Trust::kVerify) {
+  const ScratchFolder folder;
+  WorldPackFields list = writePacks(folder, WorldFields{});
+  list.task = std::move(task);
+  return World::open(std::vector{folder.write("world.pack", textOf(buildPack(list)))}, trust);
+}
+
+TEST(WorldTask, IsWhatTheWorldPackSays) {
+  const Result<World> world = openWithTask(
+      {{"episode-steps", "300"}, {"safe-drop", "true"}, {"slide-direction", "towards-base"}});
+  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  EXPECT_EQ(world->taskOptions(),
+            (std::vector<OptionText>{{"episode-steps", "300"},
+                                     {"safe-drop", "true"},
+                                     {"slide-direction", "towards-base", true}}));
+  const SimulationOptions options = world->withTask();
+  EXPECT_EQ(options.task.most_steps, 300U);
+  EXPECT_FALSE(options.task.drop_fails);
+  EXPECT_EQ(options.slide.direction, SlideDirection::kTowardsBase);
+  // Nothing else changes.
+  SimulationOptions wanted;
+  wanted.task.most_steps = 300;
+  wanted.task.drop_fails = false;
+  wanted.slide.direction = SlideDirection::kTowardsBase;
+  EXPECT_EQ(listOptions(options), listOptions(wanted));
+}
+
+TEST(WorldTask, LeavesWhatItDoesNotSayAsItWas) {
+  const Result<World> world = openWithTask({{"pick-reward", "0.25"}});
+  ASSERT_TRUE(world.has_value());
+  SimulationOptions base;
+  base.envs = 7;
+  base.task.pick_reward = 3;
+  base.task.success_distance = 0.5F;
+  const SimulationOptions options = world->withTask(base);
+  base.task.pick_reward = 0.25F;
+  EXPECT_EQ(listOptions(options), listOptions(base));
+}
+
+TEST(WorldTask, IsEmptyWhereThereIsNone) {
+  const WorldBytes bytes{WorldFields{}};
+  const Result<World> loose = World::from(packsOf(bytes));
+  ASSERT_TRUE(loose.has_value());
+  EXPECT_TRUE(loose->taskOptions().empty());
+  EXPECT_EQ(listOptions(loose->withTask()), listOptions({}));
+  const Result<World> silent = openWithTask({});
+  ASSERT_TRUE(silent.has_value());
+  EXPECT_TRUE(silent->taskOptions().empty());
+}
+
+TEST(WorldTask, IsCheckedInTrustedPacksToo) {
+  for (const Trust trust : {Trust::kVerify, Trust::kTrusted}) {
+    const Result<World> world = openWithTask({{"episode-steps", "many"}}, trust);
+    ASSERT_FALSE(world.has_value());
+    EXPECT_EQ(world.error().code, ErrorCode::kInvalidInput);
+    EXPECT_TRUE(world.error().where.ends_with("world.pack: world.task[0].value"))
+        << world.error().where;
+    EXPECT_EQ(world.error().message,
+              "is \"many\", wanted 0 to 1073741824 for episode-steps; bake the pack again");
+  }
+}
+
 TEST(PackReferences, ShowTheListOfAWorldPackOnly) {
   const AlignedBytes bytes = buildPack(smallWorldPack());
   const PackFile world = viewed(bytes, "homes/world.pack");

@@ -30,7 +30,17 @@ AlignedBytes buildPack(const WorldPackFields& fields) {
         schema::CreatePackReference(builder, path, kind, one.bytes, one.hash ? &hash : nullptr));
   }
   const auto list = builder.CreateVector(packs);
-  const auto world = schema::CreateWorld(builder, list);
+  flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<schema::Option>>> task;
+  if (fields.task) {
+    std::vector<flatbuffers::Offset<schema::Option>> options;
+    for (const auto& [name, value] : *fields.task) {
+      const auto name_text = builder.CreateString(name);
+      const auto value_text = builder.CreateString(value);
+      options.push_back(schema::CreateOption(builder, name_text, value_text));
+    }
+    task = builder.CreateVector(options);
+  }
+  const auto world = schema::CreateWorld(builder, list, task);
   return finishFile(builder, fields.kind, schema::Asset::World, world.Union());
 }
 

@@ -28,6 +28,8 @@ struct ReferenceFields {
 struct WorldPackFields {
   PackKind kind = PackKind::kWorld;
   std::vector<ReferenceFields> packs;
+  /// Names and values of the task's options; none: as worlds were before they had them.
+  std::optional<std::vector<std::pair<std::string, std::string>>> task;
 };
 
 /// One pack of each kind; the files are not there.

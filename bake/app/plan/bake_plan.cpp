@@ -55,7 +55,7 @@ Result<std::vector<LinkedPack>> link(const WorldPlan& plan, const PlanOutcome& o
   BakeCommand linked;
   linked.remember("as", "world");
   const auto written =
-      writeWorldPack(plan.world, *packs, provenanceOf(linked, std::move(sources), {}));
+      writeWorldPack(plan.world, *packs, provenanceOf(linked, std::move(sources), {}), plan.task);
   if (!written) return tl::unexpected(written.error());
   return packs;
 }

@@ -28,8 +28,14 @@ std::vector<fs::path> rootsOf(const BakeCommand& command) {
 
 /// Options whose values are files, which a recipe names as it names its inputs.
 bool namesFile(std::string_view option) {
-  constexpr std::array<std::string_view, 4> kFiles{"recipe", "spheres", "collection", "only"};
+  constexpr std::array<std::string_view, 5> kFiles{"recipe", "spheres", "collection", "only",
+                                                   "object-pack"};
   return std::find(kFiles.begin(), kFiles.end(), option) != kFiles.end();
+}
+
+/// Options whose values are NAME=FILE.
+bool namesFileOfName(std::string_view option) {
+  return option == "package" || option == "geometry";
 }
 
 /// Turns the tables of a recipe into commands, and these into packs.
@@ -146,9 +152,9 @@ class RecipePlanner {
   /// The value as it is typed from the current folder.
   [[nodiscard]] Result<std::string> textOf(const RecipeOption& option,
                                            const std::string& value) const {
-    const bool is_package = option.name == "package";
-    if (!is_package && !namesFile(option.name)) return value;
-    const std::size_t begin = is_package ? value.find('=') + 1 : 0;
+    const bool has_name = namesFileOfName(option.name);
+    if (!has_name && !namesFile(option.name)) return value;
+    const std::size_t begin = has_name ? value.find('=') + 1 : 0;
     const auto found = findInputs({value.substr(begin)}, roots_);
     if (!found) {
       return galactic::fail(found.error().code, option.place + ": " + option.name,
@@ -219,6 +225,7 @@ Result<WorldPlan> makePlan(const BakeCommand& command) {
   if (auto planned = RecipePlanner(command, packs).plan(*recipe); !planned) {
     return tl::unexpected(planned.error());
   }
+  packs.setTask(recipe->task);
   return packs.finish();
 }
 

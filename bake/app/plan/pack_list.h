@@ -19,6 +19,7 @@ class PackList {
                    const std::filesystem::path& input);
   /// Without inputs the episodes are made in the packs of scenes, objects and robot.
   void setEpisodes(BakeCommand command);
+  void setTask(std::vector<OptionText> task) { plan_.task = std::move(task); }
   void leaveOut(LeftOut scene) { plan_.left_out.push_back(std::move(scene)); }
   void warn(const std::string& warning) { plan_.warnings.push_back(warning); }
   /// Where the packs go.

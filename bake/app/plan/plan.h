@@ -8,6 +8,7 @@
 
 #include "galactic/bake/mesh_library.h"
 #include "galactic/bake/scene_dataset.h"
+#include "galactic/option_text.h"
 #include "options.h"
 
 namespace galactic::bake {
@@ -49,6 +50,8 @@ struct WorldPlan {
   std::vector<PlannedPack> assets;
   /// Made in the assets' packs, or imported.
   std::optional<PlannedPack> episodes;
+  /// What the world says of its task, as WorldRecipe has it.
+  std::vector<OptionText> task;
   std::vector<LeftOut> left_out;
   /// One sentence each.
   std::vector<std::string> warnings;

@@ -55,6 +55,8 @@ Json planReport(const PlanSummary& summary) {
     json["left_out"].push_back({{"scene", scene.name}, {"reasons", scene.reasons}});
   }
   json["warnings"] = summary.plan.warnings;
+  // Not where there are none: reports of before stay as they were.
+  for (const OptionText& option : summary.plan.task) json["task"][option.name] = option.value;
   json["linked"] = Json::array();
   for (const LinkedPack& pack : summary.world) json["linked"].push_back(jsonOf(pack));
   json[kRunKey] = std::move(run);

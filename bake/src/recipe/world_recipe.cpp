@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "recipe/recipe_table.h"
+#include "recipe/recipe_task.h"
 #include "recipe/toml_table.h"
 
 namespace galactic::bake {
@@ -44,6 +45,9 @@ class WorldRecipeReader {
     readList(table.list("objects"), "objects", recipe.objects);
     recipe.robot = readOne(table, "robot");
     recipe.episodes = readOne(table, "episodes");
+    if (const TomlTable* task = table.table("task")) {
+      recipe.task = readRecipeTask(*task, table.find("task")->line, errors_);
+    }
     table.finish();
     if (recipe.scenes.empty()) {
       errors_.at(0, "names no scenes; begin a table [[scenes]] with files or a dataset");

@@ -84,6 +84,20 @@ Result<void> checkList(const std::vector<LinkedPack>& packs) {
   return checkCounts(packs);
 }
 
+/// None where there are none: such a world has the bytes that it always had.
+Offset<flatbuffers::Vector<Offset<schema::Option>>> taskVector(FlatBufferBuilder& builder,
+                                                               std::span<const OptionText> task) {
+  if (task.empty()) return 0;
+  std::vector<Offset<schema::Option>> options;
+  options.reserve(task.size());
+  for (const OptionText& option : task) {
+    const auto name = builder.CreateString(option.name);
+    const auto value = builder.CreateString(option.value);
+    options.push_back(schema::CreateOption(builder, name, value));
+  }
+  return builder.CreateVector(options);
+}
+
 bool comesBefore(const LinkedPack& a, const LinkedPack& b) { return a.path < b.path; }
 
 }  // namespace
@@ -118,7 +132,8 @@ Result<std::vector<LinkedPack>> linkPacks(std::span<const fs::path> paths,
 }
 
 Result<std::vector<std::byte>> encodeWorldPack(std::vector<LinkedPack> packs,
-                                               const Provenance& provenance) {
+                                               const Provenance& provenance,
+                                               std::span<const OptionText> task) {
   std::sort(packs.begin(), packs.end(), comesBefore);
   if (auto checked = checkList(packs); !checked) return tl::unexpected(checked.error());
   FlatBufferBuilder builder;
@@ -132,13 +147,15 @@ Result<std::vector<std::byte>> encodeWorldPack(std::vector<LinkedPack> packs,
     references.push_back(schema::CreatePackReference(builder, path, kind, pack.bytes, &hash));
   }
   const auto reference_vector = builder.CreateVector(references);
-  const auto root = schema::CreateWorld(builder, reference_vector);
+  const auto task_vector = taskVector(builder, task);
+  const auto root = schema::CreateWorld(builder, reference_vector, task_vector);
   return finishPack(builder, provenance_table, schema::Asset::World, root.Union());
 }
 
 Result<std::uint64_t> writeWorldPack(const fs::path& path, std::vector<LinkedPack> packs,
-                                     const Provenance& provenance) {
-  const auto payload = encodeWorldPack(std::move(packs), provenance);
+                                     const Provenance& provenance,
+                                     std::span<const OptionText> task) {
+  const auto payload = encodeWorldPack(std::move(packs), provenance, task);
   if (!payload) return tl::unexpected(payload.error());
   return writePackFile(path, PackKind::kWorld, *payload);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "galactic/error.h"
+#include "galactic/option_text.h"
 #include "galactic/pack.h"
 
 namespace galactic {
@@ -24,6 +25,11 @@ struct PackReference {
 /// The list of the world pack `world`, which must outlive it; ascending paths. Fails with
 /// kInvalidInput on another kind of pack.
 [[nodiscard]] Result<std::vector<PackReference>> packReferences(const PackFile& world);
+
+/// What the world pack `world` says of the task: options of OptionScope::kTask in the order of the
+/// option table, each at most once, with values that setOptions takes. Fails with kInvalidInput on
+/// another kind of pack, and on other options, which only a pack that was not verified can have.
+[[nodiscard]] Result<std::vector<OptionText>> taskOptions(const PackFile& world);
 
 /// Where the pack of `reference` lies: beside the file that `world` was opened from.
 [[nodiscard]] std::filesystem::path pathOf(const PackReference& reference, const PackFile& world);

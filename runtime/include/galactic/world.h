@@ -8,9 +8,11 @@
 #include "galactic/episode_set.h"
 #include "galactic/error.h"
 #include "galactic/object_set.h"
+#include "galactic/option_text.h"
 #include "galactic/pack.h"
 #include "galactic/robot.h"
 #include "galactic/scene.h"
+#include "galactic/simulation_options.h"
 
 namespace galactic {
 
@@ -33,6 +35,7 @@ class World {
   /// - an episode names a scene, an object or a joint (of one position, that follows no other) that
   ///   is not there, or the robot is another,
   /// - the packs were baked for different radii,
+  /// - the world pack has an option of the task that is none, or has a wrong value,
   /// - the robot has no end effector, no base or no spheres.
   [[nodiscard]] static Result<World> open(std::span<const std::filesystem::path> paths,
                                           Trust trust = Trust::kVerify);
@@ -66,6 +69,13 @@ class World {
   /// The most objects that one episode has.
   [[nodiscard]] std::size_t mostObjects() const { return most_objects_; }
 
+  /// What the world pack says of the task, in the order of the option table; empty where it says
+  /// nothing, and where the packs were opened one by one.
+  [[nodiscard]] const std::vector<OptionText>& taskOptions() const { return task_options_; }
+  /// `base` with the options of the task that the world pack gives: what it does not say keeps its
+  /// value. For BatchSimulator::create; nothing but galactic-run does this by itself.
+  [[nodiscard]] SimulationOptions withTask(SimulationOptions base = {}) const;
+
  private:
   World() = default;
 
@@ -79,6 +89,7 @@ class World {
   std::vector<ObjectModel> object_of_name_;
   std::vector<std::uint32_t> start_position_indices_;
   std::size_t most_objects_ = 0;
+  std::vector<OptionText> task_options_;
 };
 
 }  // namespace galactic

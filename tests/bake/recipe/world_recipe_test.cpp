@@ -149,7 +149,8 @@ TEST_F(WorldRecipeFile, RefusesEachMistakeWithItsLine) {
       {scene + "package = { a = true }\n", 3, "a is wanted as a text"},
       {scene + "[robots]\nfiles = \"r\"\n", 3, "the key robots is unknown; did you mean 'robot'?"},
       {"radii = 3\n" + scene, 1,
-       "the key radii is unknown; known are 'bake', 'scenes', 'objects', 'robot', 'episodes'"},
+       "the key radii is unknown; known are 'bake', 'scenes', 'objects', 'robot', 'episodes', "
+       "'task'"},
   };
   for (const Mistake& mistake : mistakes) {
     SCOPED_TRACE(mistake.text);

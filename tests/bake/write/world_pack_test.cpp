@@ -65,6 +65,21 @@ TEST_F(WorldPack, IsOpenedAsAWorldWhateverTheOrderOfItsPacks) {
   EXPECT_EQ(world->robot().name(), "helper");
 }
 
+TEST_F(WorldPack, HoldsTheTask) {
+  const auto linked = linkPacks(paths_, folder_.path());
+  ASSERT_TRUE(linked.has_value());
+  const std::vector<OptionText> task{{"task", "pick", true}, {"episode-steps", "300"}};
+  ASSERT_TRUE(writeWorldPack(at("world.pack"), *linked, provenance(), task).has_value());
+  const auto world = World::open(std::vector{at("world.pack")});
+  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  EXPECT_EQ(world->taskOptions(), task);
+  // Without one the pack is what it was before there were tasks: the field is not there.
+  const auto without = encodeWorldPack(*linked, provenance(), {});
+  ASSERT_TRUE(without.has_value());
+  const auto* pack = schema::GetPack(without->data());
+  EXPECT_EQ(pack->asset_as_World()->task(), nullptr);
+}
+
 TEST_F(WorldPack, ListsPathKindSizeAndHash) {
   const auto linked = linkPacks(paths_, folder_.path());
   ASSERT_TRUE(linked.has_value());

@@ -71,6 +71,18 @@ TEST(RunCommandLine, KeepsWhatIsNotTyped) {
   EXPECT_EQ(options.replayFile(), "a:b");
 }
 
+TEST(RunCommandLine, SwitchesOffWhatAWorldHasSwitchedOn) {
+  RunOptions options;
+  options.simulation.task.drop_fails = false;
+  options.simulation.task.observes_current_target = true;
+  EXPECT_EQ(
+      parse({"--safe-drop=false", "--observe-current=false", "--no-distractors=true"}, options),
+      std::nullopt);
+  EXPECT_TRUE(options.simulation.task.drop_fails);
+  EXPECT_FALSE(options.simulation.task.observes_current_target);
+  EXPECT_FALSE(options.simulation.task.distractors);
+}
+
 TEST(RunCommandLine, DrawsWhenTold) {
   EXPECT_FALSE(parsed({"--steps", "5"}).drawing.draws());
   const RunOptions plain = parsed({"--render", "rgbd"});
@@ -127,6 +139,8 @@ TEST(RunCommandLine, RefusesWhatMakesNoSense) {
       {"--success-distance", "1e9"},
       {"--success-distance", "0x1"},
       {"--threads", "-1"},
+      {"--safe-drop=maybe"},
+      {"--safe-drop=2"},
       {"--rank", "1"},
       {"--rank", "2", "--ranks", "2"},
       {"--bench", "--steps", "5"},

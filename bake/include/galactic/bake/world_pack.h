@@ -8,6 +8,7 @@
 
 #include "galactic/bake/provenance.h"
 #include "galactic/error.h"
+#include "galactic/option_text.h"
 #include "galactic/pack_header.h"
 
 namespace galactic::bake {
@@ -32,16 +33,19 @@ struct LinkedPack {
 [[nodiscard]] Result<std::vector<LinkedPack>> linkPacks(
     std::span<const std::filesystem::path> paths, const std::filesystem::path& folder);
 
-/// The bytes of a world pack's FlatBuffer, without the file header; packs by ascending path. Fails
-/// with kInvalidInput when the list is not as schema/world.fbs wants it: a path that is empty,
-/// absolute, leads upwards or is there twice, a world, more than one robot or episode set,
-/// no scene.
+/// The bytes of a world pack's FlatBuffer, without the file header; packs by ascending path.
+/// `task`: what the world says of its task, options of OptionScope::kTask in the order of the
+/// option table. Fails with kInvalidInput when the list is not as schema/world.fbs wants it: a path
+/// that is empty, absolute, leads upwards or is there twice, a world, more than one robot or
+/// episode set, no scene.
 [[nodiscard]] Result<std::vector<std::byte>> encodeWorldPack(std::vector<LinkedPack> packs,
-                                                             const Provenance& provenance);
+                                                             const Provenance& provenance,
+                                                             std::span<const OptionText> task = {});
 
 /// Writes header and payload atomically; returns the file's size in bytes.
 [[nodiscard]] Result<std::uint64_t> writeWorldPack(const std::filesystem::path& path,
                                                    std::vector<LinkedPack> packs,
-                                                   const Provenance& provenance);
+                                                   const Provenance& provenance,
+                                                   std::span<const OptionText> task = {});
 
 }  // namespace galactic::bake

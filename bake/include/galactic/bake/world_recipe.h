@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "galactic/error.h"
+#include "galactic/option_text.h"
 
 namespace galactic::bake {
 
@@ -40,10 +41,14 @@ struct WorldRecipe {
   std::optional<RecipeAssets> robot;
   /// With inputs they are imported, without they are generated.
   std::optional<RecipeAssets> episodes;
+  /// What the world says of its task: options of OptionScope::kTask in the order of the option
+  /// table, with their values as listOptions() writes them. Empty where the recipe says nothing.
+  std::vector<OptionText> task;
 };
 
 /// Reads a recipe. Keys that are not its own are options of galactic-bake, by their long names;
-/// whether there is such an option is seen where it is used. Fails with kIo, or with kInvalidInput
+/// whether there is such an option is seen where it is used. Those of [task] are options of
+/// galactic-run, and checked here. Fails with kIo, or with kInvalidInput
 /// naming file and line.
 [[nodiscard]] Result<WorldRecipe> readWorldRecipe(const std::filesystem::path& path);
 

@@ -1,6 +1,9 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <string_view>
 
 #include "galactic/simulation_options.h"
@@ -31,6 +34,33 @@ inline constexpr std::array<Named<EpisodeOrder>, 3> kOrderNames{
 inline constexpr std::array<Named<SlideDirection>, 2> kSlideNames{
     {{"pushout", SlideDirection::kPushOut}, {"towards-base", SlideDirection::kTowardsBase}}};
 
+/// The names, as errors list them: "a, b or c".
+template <class T>
+[[nodiscard]] std::string namesOf(std::span<const Named<T>> names) {
+  std::string text;
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    if (n > 0) text += n + 1 < names.size() ? ", " : " or ";
+    text += names[n].name;
+  }
+  return text;
+}
+
+/// A name for values of several options, which may be given besides and then count. It is no option
+/// of its own: recordings, reports and packs hold its parts.
+template <class T>
+struct Preset {
+  std::span<const Named<T>> names;
+  /// The options that it gives values.
+  std::span<const std::string_view> parts;
+};
+
+inline constexpr std::array<Named<SlideOptions>, 3> kSlidePresets{
+    {{"pushout", {}},
+     {"published", {.attempts = 5, .direction = SlideDirection::kTowardsBase, .step = 0.05F}},
+     {"off", {.attempts = 0}}}};
+inline constexpr std::array<std::string_view, 3> kSlideParts{"slide-direction", "slide-attempts",
+                                                             "slide-step"};
+
 /// A switch: the field and the value that it gets when the switch is typed.
 struct Switch {
   bool& field;
@@ -38,9 +68,11 @@ struct Switch {
 };
 
 /// Names each option that decides what a simulation does, once, for all who need the list: the
-/// command line, recordings and reports. Calls on `v`
+/// command line of galactic-run, recordings, reports, world packs and the recipes of worlds. Calls
+/// on `v`
 ///   group(heading), whole(name, field, Within, help), real(name, field, Within, help),
-///   choice(name, field, names, help), flag(name, Switch, help), seed(name, field, help).
+///   choice(name, field, names, help), flag(name, Switch, help), seed(name, field, help),
+///   preset(name, field, Preset, help), before its parts.
 template <class Visitor>
 void visitBatchOptions(SimulationOptions& o, Visitor& v) {
   v.group("Simulation");
@@ -90,6 +122,8 @@ void visitMotionOptions(SimulationOptions& o, Visitor& v) {
   v.real("release-below", o.action.release, kThreshold, "A full hand lets go below this value");
   v.real("terminate-from", o.action.terminate, kThreshold, "Terminates from this value on");
   v.group("Sliding and floor");
+  v.preset("slide", o.slide, Preset<SlideOptions>{kSlidePresets, kSlideParts},
+           "How a robot that would hit something is pushed clear");
   v.choice("slide-direction", o.slide.direction, kSlideNames, "Where the base is pushed");
   v.whole("slide-attempts", o.slide.attempts, kAttempts, "Pushes in a step; 0: no sliding");
   v.real("slide-step", o.slide.step, kMetres, "Length of a push, metres");
@@ -104,12 +138,18 @@ void visitMotionOptions(SimulationOptions& o, Visitor& v) {
   v.real("place-jitter", o.placement.jitter, kMetres, "Length of a jitter, in box diagonals");
 }
 
+/// What a world may say of its task, its reward and what the robot does: all but the batch.
+template <class Visitor>
+void visitWorldTask(SimulationOptions& options, Visitor& visitor) {
+  visitTaskOptions(options.task, visitor);
+  visitMotionOptions(options, visitor);
+}
+
 /// All of them, in the order of recordings and reports.
 template <class Visitor>
 void visitOptions(SimulationOptions& options, Visitor& visitor) {
   visitBatchOptions(options, visitor);
-  visitTaskOptions(options.task, visitor);
-  visitMotionOptions(options, visitor);
+  visitWorldTask(options, visitor);
 }
 
 }  // namespace galactic

@@ -2,23 +2,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "galactic/error.h"
+#include "galactic/option_text.h"
 #include "galactic/simulation_options.h"
 
 namespace galactic {
-
-/// An option as text.
-struct OptionText {
-  std::string name;
-  std::string value;
-  /// For JSON: whether the value is a word, not a number or truth value.
-  bool is_word = false;
-};
-
-/// Every option that decides what a simulation does, with its value; numbers read back exactly.
-[[nodiscard]] std::vector<OptionText> listOptions(const SimulationOptions& options);
 
 /// The options as lines "name=value", for a recording.
 [[nodiscard]] std::string optionLines(const SimulationOptions& options);

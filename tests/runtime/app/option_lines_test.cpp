@@ -1,5 +1,5 @@
 // Options as lines of text: what recordings keep and reports show.
-#include "option_text.h"
+#include "option_lines.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ TEST(OptionText, RefusesWhatMakesNoSense) {
       {"envs=-1\n", "envs is \"-1\""},
       {"envs=1x\n", "envs is \"1x\""},
       {"envs=\n", "envs is \"\""},
-      {"task=fly\n", "task is \"fly\", wanted one of its names"},
+      {"task=fly\n", "task is \"fly\", wanted rearrange, pick or none"},
       {"no-terminate=yes\n", "no-terminate is \"yes\", wanted true or false"},
       {"slide-step=nan\n", "slide-step is \"nan\""},
       {"slide-step=inf\n", "slide-step is \"inf\""},

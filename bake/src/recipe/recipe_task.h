@@ -1,0 +1,17 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "galactic/option_text.h"
+#include "recipe/recipe_table.h"
+#include "recipe/toml_table.h"
+
+namespace galactic::bake {
+
+/// The options of a world's task that the table [task], which begins in `line`, gives: each with
+/// its value as listOptions() writes it, in the order of the option table. A preset gives its
+/// parts, which may stand besides it and then count. The first mistake goes to `errors`.
+[[nodiscard]] std::vector<OptionText> readRecipeTask(const TomlTable& table, std::uint32_t line,
+                                                     FirstError& errors);
+
+}  // namespace galactic::bake

@@ -1,0 +1,50 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "galactic/simulation_options.h"
+
+namespace galactic {
+
+/// An option of the table in option_table.h, as text.
+struct OptionText {
+  /// Long name without dashes, for example "episode-steps".
+  std::string name;
+  /// As galactic-run reads it; of a switch "true" or "false".
+  std::string value;
+  /// For JSON: whether the value is a word, not a number or truth value.
+  bool is_word = false;
+
+  friend bool operator==(const OptionText&, const OptionText&) = default;
+};
+
+/// Which options of the table.
+enum class OptionScope {
+  /// All that decide what a simulation does.
+  kAll,
+  /// What a world may say of its task (visitWorldTask): not those of a batch.
+  kTask,
+};
+
+/// Why a list of texts is none of options.
+struct OptionFault {
+  /// Of the offending text in the list.
+  std::size_t index = 0;
+  /// What its value should be, for example "0 to 1000"; empty where the table does not have its
+  /// name, or an earlier text has it.
+  std::string wanted;
+};
+
+/// The options with their values, in the order of the table; numbers read back exactly.
+[[nodiscard]] std::vector<OptionText> listOptions(const SimulationOptions& options,
+                                                  OptionScope scope = OptionScope::kAll);
+
+/// Gives `options` the values of `texts`, in any order; what they do not name keeps its value. On a
+/// fault, the first in the order of the table and unknown names last, `options` are of no use.
+[[nodiscard]] std::optional<OptionFault> setOptions(std::span<const OptionText> texts,
+                                                    OptionScope scope, SimulationOptions& options);
+
+}  // namespace galactic

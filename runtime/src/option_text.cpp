@@ -1,0 +1,159 @@
+#include "galactic/option_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "galactic/option_table.h"
+
+namespace galactic {
+namespace {
+
+/// Collects names and values.
+class Lister {
+ public:
+  explicit Lister(std::vector<OptionText>& list) : list_(list) {}
+
+  void group(std::string_view) {}
+  void whole(std::string_view name, std::uint32_t value, Within<std::uint32_t>, std::string_view) {
+    add(name, fmt::format("{}", value), false);
+  }
+  void seed(std::string_view name, std::uint64_t value, std::string_view) {
+    add(name, fmt::format("{}", value), false);
+  }
+  void real(std::string_view name, float value, Within<float>, std::string_view) {
+    add(name, fmt::format("{}", value), false);
+  }
+  void flag(std::string_view name, const Switch& value, std::string_view) {
+    add(name, value.field == value.when_typed ? "true" : "false", false);
+  }
+  template <class T, std::size_t N>
+  void choice(std::string_view name, T value, const std::array<Named<T>, N>& names,
+              std::string_view) {
+    const auto found = std::find_if(names.begin(), names.end(),
+                                    [&](const Named<T>& one) { return one.value == value; });
+    add(name, found == names.end() ? "" : std::string(found->name), true);
+  }
+  /// Its parts have the values.
+  template <class T>
+  void preset(std::string_view, const T&, const Preset<T>&, std::string_view) {}
+
+ private:
+  void add(std::string_view name, std::string value, bool is_word) {
+    list_.push_back({std::string(name), std::move(value), is_word});
+  }
+
+  std::vector<OptionText>& list_;
+};
+
+/// Gives the options the values of texts.
+class Setter {
+ public:
+  explicit Setter(std::span<const OptionText> texts) : texts_(texts), taken_(texts.size()) {}
+
+  void group(std::string_view) {}
+  void whole(std::string_view name, std::uint32_t& field, Within<std::uint32_t> within,
+             std::string_view) {
+    number(name, field, within);
+  }
+  void seed(std::string_view name, std::uint64_t& field, std::string_view) {
+    number(name, field, Within<std::uint64_t>{0, UINT64_MAX});
+  }
+  void real(std::string_view name, float& field, Within<float> within, std::string_view) {
+    number(name, field, within);
+  }
+  void flag(std::string_view name, const Switch& value, std::string_view) {
+    const std::string* text = take(name);
+    if (text == nullptr) return;
+    require(*text == "true" || *text == "false", "true or false");
+    value.field = (*text == "true") == value.when_typed;
+  }
+  template <class T, std::size_t N>
+  void choice(std::string_view name, T& field, const std::array<Named<T>, N>& names,
+              std::string_view) {
+    const std::string* text = take(name);
+    if (text == nullptr) return;
+    const auto found = std::find_if(names.begin(), names.end(),
+                                    [&](const Named<T>& one) { return one.name == *text; });
+    require(found != names.end(), namesOf<T>(names));
+    if (found != names.end()) field = found->value;
+  }
+  /// Texts give its parts.
+  template <class T>
+  void preset(std::string_view, const T&, const Preset<T>&, std::string_view) {}
+
+  [[nodiscard]] std::optional<OptionFault> fault() const {
+    if (fault_) return fault_;
+    const auto left = std::find(taken_.begin(), taken_.end(), false);
+    if (left == taken_.end()) return std::nullopt;
+    return OptionFault{static_cast<std::size_t>(left - taken_.begin()), {}};
+  }
+
+ private:
+  const std::string* take(std::string_view name) {
+    for (std::size_t n = 0; n < texts_.size(); ++n) {
+      if (texts_[n].name != name) continue;
+      last_ = n;
+      taken_[n] = true;
+      return &texts_[n].value;
+    }
+    return nullptr;
+  }
+
+  template <class T>
+  void number(std::string_view name, T& field, Within<T> within) {
+    const std::string* text = take(name);
+    if (text == nullptr) return;
+    T value{};
+    const char* end = text->data() + text->size();
+    const auto [stop, problem] = std::from_chars(text->data(), end, value);
+    const bool is_good =
+        problem == std::errc() && stop == end && value >= within.least && value <= within.most;
+    require(is_good, fmt::format("{} to {}", within.least, within.most));
+    if (is_good) field = value;
+  }
+
+  /// Of the text that was taken last.
+  void require(bool is_good, std::string wanted) {
+    if (!is_good && !fault_) fault_ = OptionFault{last_, std::move(wanted)};
+  }
+
+  std::span<const OptionText> texts_;
+  std::vector<bool> taken_;
+  std::size_t last_ = 0;
+  std::optional<OptionFault> fault_;
+};
+
+template <class Visitor>
+void visit(SimulationOptions& options, OptionScope scope, Visitor& visitor) {
+  if (scope == OptionScope::kAll) {
+    visitOptions(options, visitor);
+  } else {
+    visitWorldTask(options, visitor);
+  }
+}
+
+}  // namespace
+
+std::vector<OptionText> listOptions(const SimulationOptions& options, OptionScope scope) {
+  std::vector<OptionText> list;
+  SimulationOptions copy = options;
+  Lister lister(list);
+  visit(copy, scope, lister);
+  return list;
+}
+
+std::optional<OptionFault> setOptions(std::span<const OptionText> texts, OptionScope scope,
+                                      SimulationOptions& options) {
+  Setter setter(texts);
+  visit(options, scope, setter);
+  return setter.fault();
+}
+
+}  // namespace galactic

@@ -1,0 +1,145 @@
+// Options as texts: every one of them is written, read back, and refused outside its range.
+#include "galactic/option_text.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "galactic/option_table.h"
+
+namespace galactic {
+namespace {
+
+TEST(OptionTexts, OfATaskAreThoseOfARunWithoutTheBatch) {
+  const std::vector<OptionText> all = listOptions({});
+  const std::vector<OptionText> task = listOptions({}, OptionScope::kTask);
+  ASSERT_GT(task.size(), 20U);
+  ASSERT_LT(task.size(), all.size());
+  for (std::size_t n = 0; n < task.size(); ++n) {
+    EXPECT_EQ(task[n], all[all.size() - task.size() + n]);
+  }
+  EXPECT_EQ(all.front().name, "envs");
+  EXPECT_EQ(task.front(), (OptionText{"task", "rearrange", true}));
+}
+
+TEST(OptionTexts, AreSetInAnyOrderAndLeaveTheRest) {
+  SimulationOptions options;
+  options.envs = 5;
+  const std::vector<OptionText> texts{
+      {"slide-step", "0.25"}, {"safe-drop", "true"}, {"episode-steps", "7"}, {"task", "none"}};
+  EXPECT_FALSE(setOptions(texts, OptionScope::kTask, options));
+  SimulationOptions wanted;
+  wanted.envs = 5;
+  wanted.slide.step = 0.25F;
+  wanted.task.drop_fails = false;
+  wanted.task.most_steps = 7;
+  wanted.task.kind = TaskKind::kNone;
+  EXPECT_EQ(listOptions(options), listOptions(wanted));
+  EXPECT_FALSE(setOptions(listOptions(SimulationOptions()), OptionScope::kAll, options));
+  EXPECT_EQ(listOptions(options), listOptions({}));
+}
+
+TEST(OptionTexts, TellWhichOfThemIsAtFault) {
+  const auto faultOf = [](std::vector<OptionText> texts, OptionScope scope) {
+    SimulationOptions ignored;
+    const auto fault = setOptions(texts, scope, ignored);
+    return fault ? fmt::format("{}: {}", fault->index, fault->wanted) : std::string("none");
+  };
+  constexpr OptionScope kTask = OptionScope::kTask;
+  EXPECT_EQ(faultOf({{"safe-drop", "true"}, {"episode-steps", "x"}}, kTask), "1: 0 to 1073741824");
+  EXPECT_EQ(faultOf({{"safe-drop", "TRUE"}}, kTask), "0: true or false");
+  EXPECT_EQ(faultOf({{"task", "fly"}}, kTask), "0: rearrange, pick or none");
+  EXPECT_EQ(faultOf({{"safe-drop", "true"}, {"wings", "2"}}, kTask), "1: ");
+  EXPECT_EQ(faultOf({{"safe-drop", "true"}, {"safe-drop", "true"}}, kTask), "1: ");
+  EXPECT_EQ(faultOf({{"envs", "5"}}, kTask), "0: ");
+  EXPECT_EQ(faultOf({{"envs", "5"}}, OptionScope::kAll), "none");
+  EXPECT_EQ(faultOf({{"slide", "off"}}, OptionScope::kAll), "0: ");
+}
+
+/// Numbers about the ends of the range of an option of the table, and whether it should take them:
+/// the answer comes from the numbers, before they are text.
+class RangeProbe {
+ public:
+  void group(std::string_view) {}
+  void whole(std::string_view name, std::uint32_t&, Within<std::uint32_t> within,
+             std::string_view) {
+    const std::int64_t least = within.least;
+    const std::int64_t most = within.most;
+    std::uniform_int_distribution<std::int64_t> about(least - (most - least) / 2 - 1,
+                                                      most + (most - least) / 2 + 1);
+    for (int n = 0; n < kDraws; ++n) {
+      const std::int64_t value = about(engine_);
+      probe(name, fmt::format("{}", value), value >= least && value <= most);
+    }
+    probe(name, fmt::format("{}", least), true);
+    probe(name, fmt::format("{}", most), true);
+    probe(name, fmt::format("{}", most + 1), false);
+    probe(name, fmt::format("{}", least - 1), false);
+  }
+  void seed(std::string_view, std::uint64_t&, std::string_view) {}
+  void real(std::string_view name, float&, Within<float> within, std::string_view) {
+    const double least = static_cast<double>(within.least);
+    const double most = static_cast<double>(within.most);
+    std::uniform_real_distribution<double> about(1.5 * least - 0.5 * most,
+                                                 1.5 * most - 0.5 * least);
+    for (int n = 0; n < kDraws; ++n) {
+      const auto value = static_cast<float>(about(engine_));
+      probe(name, fmt::format("{}", value), value >= within.least && value <= within.most);
+    }
+    probe(name, fmt::format("{}", within.least), true);
+    probe(name, fmt::format("{}", within.most), true);
+  }
+  void flag(std::string_view, const Switch&, std::string_view) {}
+  template <class T, std::size_t N>
+  void choice(std::string_view name, T&, const std::array<Named<T>, N>& names, std::string_view) {
+    for (const Named<T>& one : names) {
+      probe(name, std::string(one.name), true);
+      probe(name, std::string(one.name) + "s", false);
+    }
+  }
+  template <class T>
+  void preset(std::string_view, const T&, const Preset<T>&, std::string_view) {}
+
+  [[nodiscard]] double acceptedShare() const {
+    return static_cast<double>(accepted_) / static_cast<double>(probes_);
+  }
+
+ private:
+  static constexpr int kDraws = 40;
+
+  void probe(std::string_view name, const std::string& value, bool is_good) {
+    const OptionText text{std::string(name), value};
+    SimulationOptions options;
+    const auto fault = setOptions(std::span(&text, 1), OptionScope::kTask, options);
+    EXPECT_EQ(!fault, is_good) << name << " = " << value;
+    ++probes_;
+    accepted_ += fault ? 0 : 1;
+    if (fault) return;
+    // What was read is what is written: the same number.
+    for (const OptionText& written : listOptions(options, OptionScope::kTask)) {
+      if (written.name == name) {
+        EXPECT_EQ(written.value, value);
+      }
+    }
+  }
+
+  std::mt19937 engine_{20260};
+  std::size_t probes_ = 0;
+  std::size_t accepted_ = 0;
+};
+
+TEST(OptionTexts, AreTakenWithinTheirRangeAndNotOutside) {
+  SimulationOptions options;
+  RangeProbe probe;
+  visitWorldTask(options, probe);
+  EXPECT_GT(probe.acceptedShare(), 0.1);
+  EXPECT_LT(probe.acceptedShare(), 0.9);
+}
+
+}  // namespace
+}  // namespace galactic
