@@ -165,7 +165,8 @@ Result<Json> generateEpisodePack(BakeRun& run) {
       .input = fmt::format("{} packs", command.inputs.size()),
       .output = run.outputFor(command.inputs.front()),
       .episodes = std::move(generated->episodes),
-      .generation = EpisodeGeneration{generated->rejections, std::move(generated->scenes)}};
+      .generation = EpisodeGeneration{generated->rejections, std::move(generated->scenes),
+                                      std::move(generated->left_out)}};
   return finish(outcome, std::move(opened->files), run, start);
 }
 

@@ -15,6 +15,7 @@ namespace galactic::bake {
 struct EpisodeGeneration {
   RejectionCounts rejections;
   std::vector<GeneratedScene> scenes;
+  std::vector<UnusableScene> left_out;
 };
 
 /// What became of one set of episodes.
