@@ -17,6 +17,14 @@ const std::map<std::string, SplitSide>& splitNames() {
   return names;
 }
 
+const std::map<std::string, SupportChoice>& supportNames() {
+  static const std::map<std::string, SupportChoice> names{
+      {"both", SupportChoice::kBoth},
+      {"found", SupportChoice::kFound},
+      {"receptacles", SupportChoice::kReceptacles}};
+  return names;
+}
+
 Result<std::uint64_t> parseSeed(const std::string& text) {
   std::uint64_t seed = 0;
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seed);
@@ -120,6 +128,11 @@ void EpisodeSetOptions::addGeneration(CLI::App& app, BakeCommand& command) {
           ->type_name("LEAST[,MOST]"),
       app.add_flag("--goal-elsewhere", generate.goal_on_other_support,
                    "Generate: goals lie on another surface than their targets"),
+      app.add_option("--supports", generate.supports,
+                     "Generate: objects stand on all surfaces that are found, in the dataset's "
+                     "receptacles, or half of them in these where a scene has any (default: both)")
+          ->transform(CLI::CheckedTransformer(supportNames()))
+          ->option_text("found|receptacles|both"),
       app.add_option("--geometry", geometry_,
                      "Generate: the mesh a scene was baked from, to settle objects on (may be "
                      "repeated)")
@@ -238,6 +251,7 @@ void EpisodeSetOptions::rememberGeneration(BakeCommand& command) {
   command.remember("goal-distance", textOf(generate.target_to_goal));
   command.remember("start-distance", textOf(generate.start_to_target));
   if (generate.goal_on_other_support) command.remember("goal-elsewhere", "true");
+  command.remember("supports", nameOf(supportNames(), generate.supports));
   for (const auto& [scene, file] : command.episodes.geometry) {
     command.remember("geometry", scene + "=" + file.filename().string());
   }

@@ -16,6 +16,7 @@ namespace galactic::bake {
 struct EpisodeGeneration {
   RejectionCounts rejections;
   std::vector<GeneratedScene> scenes;
+  std::vector<UnusableScene> left_out;
   SolvedSample sample;
 };
 

@@ -72,9 +72,11 @@ void printGeneration(const EpisodeGeneration& generation, Verbosity verbosity) {
   }
   if (verbosity != Verbosity::kVerbose) return;
   for (const GeneratedScene& scene : generation.scenes) {
-    fmt::print("  {}: {} episodes; {} floor places, {} support places on {} surfaces{}\n",
-               printable(scene.name), scene.episodes, scene.floor_places, scene.support_places,
-               scene.surfaces, scene.has_mesh ? ", objects settled" : "");
+    fmt::print(
+        "  {}: {} episodes; {} floor places, {} support places on {} surfaces, {} "
+        "receptacles{}\n",
+        printable(scene.name), scene.episodes, scene.floor_places, scene.support_places,
+        scene.surfaces, scene.receptacles, scene.has_mesh ? ", objects settled" : "");
   }
 }
 
@@ -93,7 +95,13 @@ Json generationReport(const EpisodeGeneration& generation) {
                       {"receptacles", scene.receptacles},
                       {"settled", scene.has_mesh}});
   }
-  Json report{{"rejections", std::move(rejections)}, {"scenes", std::move(scenes)}};
+  Json left_out = Json::array();
+  for (const UnusableScene& scene : generation.left_out) {
+    left_out.push_back({{"scene", scene.name}, {"reason", scene.reason}});
+  }
+  Json report{{"rejections", std::move(rejections)},
+              {"scenes", std::move(scenes)},
+              {"left_out", std::move(left_out)}};
   const SolvedSample& sample = generation.sample;
   if (sample.episodes > 0) {
     report["scripted_policy"] = {

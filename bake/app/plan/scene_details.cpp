@@ -11,22 +11,23 @@
 namespace galactic::bake {
 namespace {
 
-Result<SourceAsset> readScene(const PlannedPack& pack) {
+Result<SourceAsset> readScene(const PlannedPack& pack, SceneDetails& details) {
   if (!pack.scene) return importMesh(pack.command.inputs.front(), pack.command.import);
   auto composed = pack.scene->dataset->compose(pack.scene->name, *pack.scene->meshes);
   if (!composed) return tl::unexpected(composed.error());
+  details.receptacles = std::move(composed->receptacles);
   return std::move(composed->scene);
 }
 
 Result<SceneDetails> readDetails(const PlannedPack& pack) {
-  const auto asset = readScene(pack);
+  SceneDetails details;
+  const auto asset = readScene(pack, details);
   if (!asset) return tl::unexpected(asset.error());
   auto clean = placeAndClean(*asset);
   if (!clean) {
     return fail(clean.error().code, inFile(pack.command.inputs.front(), clean.error().where),
                 clean.error().message);
   }
-  SceneDetails details;
   details.mesh = std::move(clean->mesh);
   return details;
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -176,6 +178,11 @@ Result<void> SceneComposer::placeStage(const SceneItem& item) {
   }
   addMesh(*mesh, **asset, objectFromAsset(**attributes, unmoved.scale), entry->name);
   result_.has_stage = true;
+  // As in Habitat, a stage's boxes are turned with it and not scaled.
+  TemplateAttributes unscaled = **attributes;
+  unscaled.scale = unmoved.scale;
+  addReceptacles((*attributes)->receptacles, item.receptacles,
+                 {.world_from_parent = objectFromAsset(unscaled, unmoved.scale)});
   return {};
 }
 
@@ -202,16 +209,20 @@ Result<void> SceneComposer::placeObject(const SceneItem& item) {
   }
   const auto asset = load(*mesh);
   if (!asset) return tl::unexpected(asset.error());
-  addMesh(*mesh, **asset, *world_from_mesh, nextName(entry->name));
+  const std::string name = nextName(entry->name);
+  addMesh(*mesh, **asset, *world_from_mesh, name);
+  addReceptacles((*attributes)->receptacles, item.receptacles,
+                 {.kind = ReceptacleParent::Kind::kObject,
+                  .name = name,
+                  .world_from_parent = *world_from_mesh});
   return {};
 }
 
-void SceneComposer::placeLinks(const SceneItem& item, const std::string& name,
-                               const SourceRobot& furniture, const fs::path& urdf,
-                               const Affine& world_from_root) {
-  const std::vector<Affine> root_from_link = restPose(furniture, item.joint_positions);
+void SceneComposer::placeLinks(const ReceptacleParent& placed, const SourceRobot& furniture,
+                               const fs::path& urdf) {
+  const std::string& name = placed.name;
   for (std::size_t n = 0; n < furniture.links.size(); ++n) {
-    const Affine world_from_link = compose(world_from_root, root_from_link[n]);
+    const Affine& world_from_link = placed.links[n].world_from_link;
     for (std::size_t visual = 0; visual < furniture.links[n].visuals.size(); ++visual) {
       const LinkShape& shape = furniture.links[n].visuals[visual];
       if (const auto* mesh = std::get_if<MeshShape>(&shape.geometry); mesh != nullptr) {
@@ -259,9 +270,28 @@ Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     root_from_urdf[5 * axis] = (*attributes)->scale[axis] * item.scale[axis];
   }
-  placeLinks(item, nextName(entry->name), **furniture, urdf,
-             compose(worldFromObject(item), root_from_urdf));
+  const Affine world_from_root = compose(worldFromObject(item), root_from_urdf);
+  const std::vector<Affine> root_from_link = restPose(**furniture, item.joint_positions);
+  ReceptacleParent placed{.kind = ReceptacleParent::Kind::kFurniture,
+                          .name = nextName(entry->name)};
+  placed.links.reserve(root_from_link.size());
+  for (std::size_t n = 0; n < root_from_link.size(); ++n) {
+    placed.links.push_back(
+        {(*furniture)->links[n].name, compose(world_from_root, root_from_link[n])});
+  }
+  placeLinks(placed, **furniture, urdf);
+  addReceptacles((*attributes)->receptacles, item.receptacles, placed);
   return {};
+}
+
+void SceneComposer::addReceptacles(ReceptacleTexts stated, const ReceptacleTexts& over,
+                                   const ReceptacleParent& parent) {
+  addStated(over, stated);
+  PlacedReceptacles placed = placeReceptacles(stated, parent);
+  for (const ReceptacleWarning& warning : placed.warnings) {
+    warnOnce(fmt::format("{}: {}", relative(warning.file), warning.message));
+  }
+  std::ranges::move(placed.regions, std::back_inserter(result_.receptacles));
 }
 
 Result<ComposedScene> SceneComposer::run(const std::string& name, const SceneInstance& instance,
@@ -286,6 +316,7 @@ Result<ComposedScene> SceneComposer::run(const std::string& name, const SceneIns
   for (const SceneItem& item : instance.articulated) {
     if (auto placed = placeArticulated(item); !placed) return tl::unexpected(placed.error());
   }
+  addReceptacles(instance.receptacles, {}, {.world_from_parent = kIdentityAffine});
   merger_.finish();
   result_.absent_files.assign(absent_.begin(), absent_.end());
   for (std::string& sentence : result_.missing) {

@@ -6,6 +6,7 @@
 
 #include "dataset/asset_merger.h"
 #include "dataset/dataset_index.h"
+#include "dataset/receptacles.h"
 #include "dataset/scene_instance.h"
 #include "dataset/template_attributes.h"
 #include "galactic/bake/mesh_library.h"
@@ -28,8 +29,11 @@ class SceneComposer {
   [[nodiscard]] Result<void> placeStage(const SceneItem& item);
   [[nodiscard]] Result<void> placeObject(const SceneItem& item);
   [[nodiscard]] Result<void> placeArticulated(const SceneItem& item);
-  void placeLinks(const SceneItem& item, const std::string& name, const SourceRobot& furniture,
-                  const std::filesystem::path& urdf, const Affine& world_from_root);
+  void placeLinks(const ReceptacleParent& placed, const SourceRobot& furniture,
+                  const std::filesystem::path& urdf);
+  /// Those that a template states, and over them those of its instance.
+  void addReceptacles(ReceptacleTexts stated, const ReceptacleTexts& over,
+                      const ReceptacleParent& parent);
   /// Null where the dataset has none; then it is noted as missing.
   const DatasetTemplate* lookUp(TemplateKind kind, const SceneItem& item);
   [[nodiscard]] Result<Attributes> attributesOf(const DatasetTemplate& entry, TemplateKind kind);

@@ -129,6 +129,7 @@ SceneItem SceneReader::readItem(const JsonNode& node) {
   readScale(node, item);
   item.origin = readOrigin(node);
   readMotion(node, item);
+  collectReceptacles(json_.file(), node, item.receptacles);
   return item;
 }
 
@@ -164,6 +165,7 @@ Result<void> SceneReader::read(bool& has_stage) {
   readList("object_instances", scene_.objects, false);
   readList("articulated_object_instances", scene_.articulated, true);
   if (json_.failed()) return json_.failure();
+  collectReceptacles(json_.file(), root_, scene_.receptacles);
   return {};
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "dataset/receptacles.h"
 #include "dataset/template_list.h"
 #include "galactic/error.h"
 
@@ -32,6 +33,8 @@ struct SceneItem {
   MotionType motion = MotionType::kDynamic;
   /// Of articulated objects: by the name of a joint, or in the order of the names. Radians, metres.
   std::vector<std::pair<std::string, double>> joint_positions;
+  /// Stated over those of the template.
+  ReceptacleTexts receptacles;
 };
 
 /// A scene as its file states it.
@@ -41,6 +44,8 @@ struct SceneInstance {
   std::vector<SceneItem> objects;
   std::vector<SceneItem> articulated;
   TranslationOrigin origin = TranslationOrigin::kCentreOfMass;
+  /// Of the scene itself.
+  ReceptacleTexts receptacles;
 };
 
 /// Reads a scene from what is stated about it, each layer over what came before; members of no

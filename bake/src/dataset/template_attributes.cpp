@@ -36,6 +36,7 @@ class LayerReader {
       readRigid();
     }
     if (json_.failed()) return json_.failure();
+    collectReceptacles(json_.file(), root_, attributes_.receptacles);
     return {};
   }
 

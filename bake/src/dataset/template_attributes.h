@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dataset/dataset_index.h"
+#include "dataset/receptacles.h"
 #include "galactic/error.h"
 
 namespace galactic::bake {
@@ -25,6 +26,7 @@ struct TemplateAttributes {
   /// What is stated last decides: Habitat takes it back where a layer states none.
   std::optional<std::array<double, 3>> centre_of_mass;
   bool collidable = true;
+  ReceptacleTexts receptacles;
 };
 
 /// The attributes of `entry`: the block's defaults, the template's own file and its layers, each

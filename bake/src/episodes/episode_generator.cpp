@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -148,7 +149,11 @@ struct SceneTask {
   const SceneOfPack* scene = nullptr;
   std::vector<Slot> slots;
   GeneratedScene summary;
-  Result<void> result;
+  /// Why there can be no episodes; empty when there can be.
+  std::string unusable;
+  /// What came of reading and preparing the scene, and of drawing its episodes.
+  Result<void> prepared;
+  Result<void> drawn;
 };
 
 /// Calls the user's function, one call at a time.
@@ -177,24 +182,80 @@ Result<void> firstFailure(std::span<const Result<void>> results) {
   return {};
 }
 
-/// Prepares the scene, draws its episodes with `jobs` threads, and forgets the scene.
-Result<void> generateIn(const GenerationContext& context, SceneDetails details, unsigned jobs,
-                        SceneTask& task, Counter& counter) {
-  const auto prepared = PreparedScene::prepare(context, task.scene->scene, std::move(details));
-  if (!prepared) return tl::unexpected(prepared.error());
-  task.summary = (*prepared)->summary();
-  task.summary.episodes = static_cast<std::uint32_t>(task.slots.size());
-  const Stage stage = (*prepared)->stage();
-  const Batch batch(context, *task.scene, stage);
-  std::vector<Result<void>> results((task.slots.size() + kBatch - 1) / kBatch);
-  parallelFor(jobs, results.size(), [&](std::size_t n) {
-    const std::size_t first = n * kBatch;
-    const auto slots =
-        std::span(task.slots).subspan(first, std::min(kBatch, task.slots.size() - first));
-    results[n] = batch.fill(slots);
-    counter.add(slots.size());
-  });
-  return firstFailure(results);
+/// Draws episodes in the scenes that they were dealt to.
+class Round {
+ public:
+  Round(const EpisodeInputs& inputs, const GenerationContext& context,
+        const EpisodeProgress& progress)
+      : inputs_(inputs), context_(context), counter_(progress) {}
+
+  /// Once a scene turns out to be unusable, the episodes will be dealt anew: then the others are
+  /// looked at only.
+  void run(std::vector<SceneTask>& tasks) {
+    const unsigned jobs = std::max(1U, context_.options.jobs);
+    const auto for_scenes = static_cast<unsigned>(std::min<std::size_t>(jobs, tasks.size()));
+    parallelFor(for_scenes, tasks.size(),
+                [&](std::size_t n) { runIn(tasks[n], std::max(1U, jobs / for_scenes)); });
+  }
+
+ private:
+  /// Prepares the scene, draws its episodes with `jobs` threads, and forgets the scene.
+  void runIn(SceneTask& task, unsigned jobs) {
+    Result<SceneDetails> details;
+    if (inputs_.details) details = inputs_.details(task.scene->scene.name());
+    const auto prepared =
+        details ? PreparedScene::prepare(context_, task.scene->scene, std::move(*details))
+                : tl::unexpected(details.error());
+    if (!prepared) {
+      task.prepared = tl::unexpected(prepared.error());
+      return;
+    }
+    task.unusable = (*prepared)->unusable();
+    if (!task.unusable.empty()) only_look_ = true;
+    if (only_look_) return;
+    task.summary = (*prepared)->summary();
+    task.summary.episodes = static_cast<std::uint32_t>(task.slots.size());
+    task.drawn = draw(task, (*prepared)->stage(), jobs);
+  }
+
+  Result<void> draw(SceneTask& task, const Stage& stage, unsigned jobs) {
+    const Batch batch(context_, *task.scene, stage);
+    std::vector<Result<void>> results((task.slots.size() + kBatch - 1) / kBatch);
+    parallelFor(jobs, results.size(), [&](std::size_t n) {
+      if (only_look_) return;
+      const std::size_t first = n * kBatch;
+      const auto slots =
+          std::span(task.slots).subspan(first, std::min(kBatch, task.slots.size() - first));
+      results[n] = batch.fill(slots);
+      counter_.add(slots.size());
+    });
+    return firstFailure(results);
+  }
+
+  const EpisodeInputs& inputs_;
+  const GenerationContext& context_;
+  Counter counter_;
+  std::atomic<bool> only_look_{false};
+};
+
+/// Takes the scenes that turned out to be unusable out of `scenes`.
+void takeOutUnusable(const std::vector<SceneTask>& tasks, std::vector<const SceneOfPack*>& scenes,
+                     std::vector<UnusableScene>& left_out) {
+  for (const SceneTask& task : tasks) {
+    if (task.unusable.empty()) continue;
+    std::erase(scenes, task.scene);
+    left_out.push_back({std::string(task.scene->scene.name()), task.unusable});
+  }
+}
+
+/// The error for a set of scenes none of which can be used.
+Error noScene(const std::vector<UnusableScene>& left_out) {
+  const UnusableScene& first = left_out.front();
+  std::string others;
+  if (left_out.size() > 1) {
+    others = fmt::format("; none of the {} other scenes can be used either", left_out.size() - 1);
+  }
+  return {ErrorCode::kInvalidInput, first.name, first.reason + others};
 }
 
 /// The scenes of the split. Fails when there are none.
@@ -234,9 +295,36 @@ std::vector<SceneTask> dealEpisodes(std::span<const SceneOfPack* const> scenes,
   return tasks;
 }
 
+/// Deals the episodes to the scenes and draws them, until no scene is left that turns out to be
+/// unusable: how they are dealt depends on the usable ones only.
+Result<std::vector<SceneTask>> drawInUsable(const EpisodeInputs& inputs,
+                                            const GenerationContext& context,
+                                            const EpisodeProgress& progress,
+                                            std::vector<const SceneOfPack*>& scenes,
+                                            std::vector<UnusableScene>& left_out) {
+  while (!scenes.empty()) {
+    std::vector<SceneTask> tasks = dealEpisodes(scenes, context.options);
+    Round(inputs, context, progress).run(tasks);
+    for (const SceneTask& task : tasks) {
+      if (!task.prepared) return tl::unexpected(task.prepared.error());
+    }
+    const std::size_t before = left_out.size();
+    takeOutUnusable(tasks, scenes, left_out);
+    // What was drawn beside an unusable scene, and how far it came, is no matter.
+    if (left_out.size() > before) continue;
+    for (const SceneTask& task : tasks) {
+      if (!task.drawn) return tl::unexpected(task.drawn.error());
+    }
+    return tasks;
+  }
+  std::ranges::sort(left_out, {}, &UnusableScene::name);
+  return tl::unexpected(noScene(left_out));
+}
+
 GeneratedEpisodes gather(const GenerationWorld& world, std::span<const SceneOfPack* const> scenes,
                          std::span<const SceneTask> tasks) {
-  GeneratedEpisodes generated{.episodes = emptySet(world, scenes), .rejections = {}, .scenes = {}};
+  GeneratedEpisodes generated{
+      .episodes = emptySet(world, scenes), .rejections = {}, .scenes = {}, .left_out = {}};
   std::size_t count = 0;
   generated.scenes.reserve(tasks.size());
   for (const SceneTask& task : tasks) {
@@ -261,29 +349,24 @@ Result<GeneratedEpisodes> generateEpisodes(const EpisodeInputs& inputs,
   if (auto checked = checkOptions(options); !checked) return tl::unexpected(checked.error());
   const auto world = GenerationWorld::open(inputs.packs);
   if (!world) return tl::unexpected(world.error());
-  const auto scenes = scenesOf(*world, options.split);
+  auto scenes = scenesOf(*world, options.split);
   if (!scenes) return tl::unexpected(scenes.error());
   const auto bodies =
       inputs.details ? world->settlingBodies() : Result<std::vector<SettlingBody>>{};
   if (!bodies) return tl::unexpected(bodies.error());
   const ArmReach reach(world->robot());
   const GenerationContext context{*world, reach, *bodies, options};
-  std::vector<SceneTask> tasks = dealEpisodes(*scenes, options);
-  const auto jobs_for_scenes =
-      static_cast<unsigned>(std::min<std::size_t>(std::max(1U, options.jobs), tasks.size()));
-  const unsigned jobs_in_scene = std::max(1U, options.jobs / jobs_for_scenes);
-  Counter counter(progress);
-  parallelFor(jobs_for_scenes, tasks.size(), [&](std::size_t n) {
-    SceneTask& task = tasks[n];
-    Result<SceneDetails> details;
-    if (inputs.details) details = inputs.details(task.scene->scene.name());
-    task.result = details ? generateIn(context, std::move(*details), jobs_in_scene, task, counter)
-                          : tl::unexpected(details.error());
-  });
-  for (const SceneTask& task : tasks) {
-    if (!task.result) return tl::unexpected(task.result.error());
+  std::vector<UnusableScene> left_out;
+  const auto tasks = drawInUsable(inputs, context, progress, *scenes, left_out);
+  if (!tasks) return tl::unexpected(tasks.error());
+  GeneratedEpisodes generated = gather(*world, *scenes, *tasks);
+  std::ranges::sort(left_out, {}, &UnusableScene::name);
+  for (const UnusableScene& scene : left_out) {
+    generated.episodes.warnings.push_back(
+        fmt::format("scene {} is left out: {}", scene.name, scene.reason));
   }
-  return gather(*world, *scenes, tasks);
+  generated.left_out = std::move(left_out);
+  return generated;
 }
 
 }  // namespace galactic::bake

@@ -39,34 +39,32 @@ Result<std::unique_ptr<const PreparedScene>> PreparedScene::prepare(
     const GenerationContext& context, const Scene& scene, SceneDetails details) {
   std::unique_ptr<PreparedScene> prepared(
       new PreparedScene(context, scene, std::move(details)));  // the constructor is private
-  if (auto checked = prepared->check(); !checked) return tl::unexpected(checked.error());
+  prepared->unusable_ = prepared->whyUnusable();
+  if (!prepared->unusable_.empty()) return prepared;
   if (auto used = prepared->useMesh(); !used) return tl::unexpected(used.error());
   return prepared;
 }
 
-Result<void> PreparedScene::check() const {
-  const auto refuse = [this](std::string message) {
-    return fail(ErrorCode::kInvalidInput, std::string(scene_.name()), std::move(message));
-  };
+std::string PreparedScene::whyUnusable() const {
   const Robot& robot = context_.world.robot();
   if (floor_.places().empty()) {
-    return refuse(fmt::format(
+    return fmt::format(
         "the robot {} stands nowhere: {} places on the floor were tried in {} headings each, and "
         "in its start pose one of its {} spheres was blocked at each; give a larger scene or a "
         "smaller start pose",
-        robot.name(), floor_.tried(), kHeadings, robot.spheres().size()));
+        robot.name(), floor_.tried(), kHeadings, robot.spheres().size());
   }
   if (!supports_.places().empty()) return {};
   const bool in_receptacles = context_.options.supports == SupportChoice::kReceptacles;
   if (in_receptacles && details_.receptacles.empty()) {
-    return refuse("no receptacles of the scene are known; let objects stand on any surface");
+    return "no receptacles of the scene are known; let objects stand on any surface";
   }
   const DistanceRange& heights = context_.options.heights;
-  return refuse(fmt::format(
+  return fmt::format(
       "no flat surface {}between {} and {} m over the floor is within reach of the {} places to "
       "which the robot {} can drive; change the heights or the robot's start pose",
       in_receptacles ? "in its receptacles " : "", heights.least, heights.most,
-      floor_.places().size(), robot.name()));
+      floor_.places().size(), robot.name());
 }
 
 Result<void> PreparedScene::useMesh() {

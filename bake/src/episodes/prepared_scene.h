@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <span>
+#include <string>
 
 #include "episodes/episode_draft.h"
 #include "episodes/generation_world.h"
@@ -20,19 +21,22 @@ struct GenerationContext {
 /// generation. Stays where it is: its parts know each other.
 class PreparedScene {
  public:
-  /// Fails with kInvalidInput when the robot stands nowhere, when the receptacles that were asked
-  /// for are missing, when no surface is within reach, and when the mesh is of another place.
+  /// Fails with kInvalidInput when the mesh is of another place.
   [[nodiscard]] static Result<std::unique_ptr<const PreparedScene>> prepare(
       const GenerationContext& context, const Scene& scene, SceneDetails details);
 
-  /// What drafts read; valid as long as this.
+  /// Why there can be no episodes: the robot stands nowhere, the receptacles that were asked for
+  /// are missing, or no surface is within reach. Empty when there can be.
+  [[nodiscard]] const std::string& unusable() const { return unusable_; }
+
+  /// What drafts read; valid as long as this. Only of a scene that is not unusable.
   [[nodiscard]] Stage stage() const;
   /// Without the number of episodes.
   [[nodiscard]] GeneratedScene summary() const;
 
  private:
   PreparedScene(const GenerationContext& context, const Scene& scene, SceneDetails details);
-  [[nodiscard]] Result<void> check() const;
+  [[nodiscard]] std::string whyUnusable() const;
   Result<void> useMesh();
 
   const GenerationContext& context_;
@@ -40,6 +44,7 @@ class PreparedScene {
   SceneDetails details_;
   FloorMap floor_;
   SupportPlaces supports_;
+  std::string unusable_;
   std::unique_ptr<const SurfaceRays> rays_;
   std::unique_ptr<const SettlingScene> settling_;
 };

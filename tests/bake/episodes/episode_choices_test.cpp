@@ -173,7 +173,7 @@ TEST(Receptacles, HoldAllObjectsOrMoreOfThemAsAsked) {
     return static_cast<double>(countNotIn(made.episodes, region)) /
            static_cast<double>(3 * options.episodes);
   };
-  const double any = outside(SupportChoice::kAny);
+  const double any = outside(SupportChoice::kFound);
   const double both = outside(SupportChoice::kBoth);
   EXPECT_EQ(outside(SupportChoice::kReceptacles), 0);
   EXPECT_GT(any, 0.6);
@@ -216,6 +216,115 @@ TEST(Geometry, OfAnotherPlaceIsRefused) {
   ASSERT_FALSE(made.has_value());
   EXPECT_EQ(made.error().where, "room");
   EXPECT_THAT(made.error().message, testing::HasSubstr("to x 1, z 1 m, its column grids from"));
+}
+
+/// A room without anything in it, and one that is too small to stand in.
+bake::TriangleMesh bareRoom() { return madeRoom(3, 3).build(); }
+bake::TriangleMesh shaft() { return madeRoom(0.5F, 0.5F).build(); }
+
+TEST(ScenesWithoutFloorOrSurface, AreLeftOutAsIfTheyWereNotThere) {
+  const MadeWorld world(twoTables(), stickRobot());
+  const MemoryPack kitchen = scenePackOf(twoTables(), "kitchen");
+  const MemoryPack attic = scenePackOf(bareRoom(), "attic");
+  const MemoryPack lift = scenePackOf(shaft(), "lift");
+  EpisodeInputs good{world.packs(), {}};
+  good.packs.push_back(&kitchen.pack());
+  EpisodeInputs all = good;
+  all.packs.push_back(&attic.pack());
+  all.packs.push_back(&lift.pack());
+  for (const std::uint32_t episodes : {1U, 3U, 150U}) {
+    EpisodeGeneratorOptions options = optionsFor(episodes, 2);
+    const auto wanted = generated(good, options);
+    for (const unsigned jobs : {1U, 2U, 5U}) {
+      options.jobs = jobs;
+      std::size_t told = 0;
+      const auto made = MemoryPack::opened(
+          bake::generateEpisodes(all, options, [&told](std::size_t done) { told = done; }));
+      EXPECT_EQ(told, episodes);
+      EXPECT_TRUE(bytesOf(made.episodes) == bytesOf(wanted.episodes)) << episodes << " " << jobs;
+      EXPECT_EQ(made.episodes.scenes, (std::vector<std::string>{"kitchen", "room"}));
+      EXPECT_EQ(made.scenes.size(), wanted.scenes.size());
+      EXPECT_EQ(made.rejections[EpisodeRejection::kNoRoom],
+                wanted.rejections[EpisodeRejection::kNoRoom]);
+      ASSERT_EQ(made.left_out.size(), 2U);
+      EXPECT_EQ(made.left_out[0].name, "attic");
+      EXPECT_THAT(made.left_out[0].reason, testing::HasSubstr("no flat surface between"));
+      EXPECT_EQ(made.left_out[1].name, "lift");
+      EXPECT_THAT(made.left_out[1].reason, testing::HasSubstr("stands nowhere"));
+      EXPECT_THAT(made.episodes.warnings,
+                  testing::ElementsAre(testing::StartsWith("scene attic is left out: no flat"),
+                                       testing::StartsWith("scene lift is left out: the robot")));
+    }
+  }
+}
+
+TEST(ScenesWithoutFloorOrSurface, AreAnErrorWhenNoOtherIsLeft) {
+  const MadeWorld world(bareRoom(), stickRobot());
+  const MemoryPack lift = scenePackOf(shaft(), "lift");
+  EpisodeInputs inputs{world.packs(), {}};
+  inputs.packs.push_back(&lift.pack());
+  for (const std::uint32_t episodes : {1U, 10U}) {
+    const auto none = bake::generateEpisodes(inputs, optionsFor(episodes, 1));
+    ASSERT_FALSE(none.has_value());
+    EXPECT_EQ(none.error().code, ErrorCode::kInvalidInput);
+    EXPECT_EQ(none.error().where, "lift");
+    EXPECT_THAT(none.error().message, testing::HasSubstr("stands nowhere"));
+    EXPECT_THAT(none.error().message,
+                testing::EndsWith("; none of the 1 other scenes can be used either"));
+  }
+}
+
+TEST(ScenesWithoutFloorOrSurface, ChangeNoSplit) {
+  // Which scenes are held out has to be the same whether or not one of them can be used.
+  const MadeWorld world(twoTables(), stickRobot());
+  const std::vector<std::string> names{"attic", "cellar", "hall", "kitchen", "shed"};
+  std::vector<MemoryPack> whole;
+  std::vector<MemoryPack> partly;
+  EpisodeInputs usable{world.packs(), {}};
+  EpisodeInputs mixed = usable;
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    whole.push_back(scenePackOf(twoTables(), names[n]));
+    partly.push_back(scenePackOf(n % 2 == 0 ? twoTables() : bareRoom(), names[n]));
+  }
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    usable.packs.push_back(&whole[n].pack());
+    mixed.packs.push_back(&partly[n].pack());
+  }
+  EpisodeGeneratorOptions options = optionsFor(12, 1);
+  options.split.held_out = 0.5F;
+  std::size_t left_out = 0;
+  for (const SplitSide side : {SplitSide::kTrain, SplitSide::kValidation}) {
+    options.split.side = side;
+    auto wanted = generated(usable, options).episodes.scenes;
+    const auto made = generated(mixed, options);
+    left_out += made.left_out.size();
+    for (const bake::UnusableScene& scene : made.left_out) {
+      EXPECT_EQ(std::erase(wanted, scene.name), 1U) << scene.name << " is on the other side";
+    }
+    EXPECT_EQ(made.episodes.scenes, wanted);
+  }
+  EXPECT_EQ(left_out, 2U);
+}
+
+TEST(Receptacles, ThatAreAskedForLeaveOutScenesThatHaveNone) {
+  const MadeWorld world(twoTables(), stickRobot());
+  const MemoryPack attic = scenePackOf(twoTables(), "attic");
+  EpisodeInputs inputs{
+      world.packs(), [](std::string_view scene) -> Result<SceneDetails> {
+        SceneDetails details;
+        if (scene == "attic") return details;
+        details.receptacles.push_back({"top", {{0.55F, kTop, 0.6F}, {}}, {0.35F, 0.06F, 0.4F}});
+        return details;
+      }};
+  inputs.packs.push_back(&attic.pack());
+  EpisodeGeneratorOptions options = optionsFor(10, 1);
+  options.target_to_goal.least = 0.1F;
+  EXPECT_EQ(generated(inputs, options).episodes.scenes.size(), 2U);
+  options.supports = SupportChoice::kReceptacles;
+  const auto made = generated(inputs, options);
+  EXPECT_EQ(made.episodes.scenes, (std::vector<std::string>{"room"}));
+  ASSERT_EQ(made.left_out.size(), 1U);
+  EXPECT_THAT(made.left_out[0].reason, testing::HasSubstr("no receptacles of the scene are known"));
 }
 
 TEST(GeneratedEpisodes, AreTheSameWithAnyThreadsAndAnyOrderOfPacks) {

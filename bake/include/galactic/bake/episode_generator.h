@@ -9,21 +9,12 @@
 
 #include "galactic/bake/episode_rejection.h"
 #include "galactic/bake/source_episodes.h"
+#include "galactic/bake/support_region.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"
 #include "galactic/pack.h"
-#include "galactic/pose.h"
 
 namespace galactic::bake {
-
-/// A place for objects that a dataset names: a box over a surface, as Habitat's receptacles
-/// (user_defined.receptacle_aabb_*), placed in the world.
-struct SupportRegion {
-  std::string name;
-  Pose world_from_region;
-  /// Metres, along the region's axes.
-  Vec3 half_extents;
-};
 
 /// What is known of a scene besides its pack.
 struct SceneDetails {
@@ -41,7 +32,7 @@ using EpisodeProgress = std::function<void(std::size_t done)>;
 
 /// On which surfaces objects and goals are put.
 enum class SupportChoice : std::uint8_t {
-  kAny,          ///< All that the column grids show.
+  kFound,        ///< All that the column grids show.
   kReceptacles,  ///< Those in the scene's receptacles only.
   kBoth,         ///< All, but half of the draws go to receptacles where the scene has some.
 };
@@ -86,7 +77,7 @@ struct EpisodeGeneratorOptions {
   DistanceRange start_to_target;
   /// Whether the goal lies on another surface than the target: one that no flat way connects.
   bool goal_on_other_support = false;
-  SupportChoice supports = SupportChoice::kAny;
+  SupportChoice supports = SupportChoice::kBoth;
   SceneSplit split;
   /// Threads; the result does not depend on it. Each has one scene prepared at a time.
   unsigned jobs = 1;
@@ -114,11 +105,22 @@ struct GeneratedScene {
   bool has_mesh = false;
 };
 
+/// A scene in which there can be no episodes.
+struct UnusableScene {
+  std::string name;
+  /// One sentence.
+  std::string reason;
+};
+
 struct GeneratedEpisodes {
   SourceEpisodes episodes;
   RejectionCounts rejections;
   /// By name; those of the split only.
   std::vector<GeneratedScene> scenes;
+  /// By name; scenes of the split in which the robot stands nowhere or nothing is within its reach.
+  /// There is a warning in `episodes` for each. With fewer episodes than scenes not all of them are
+  /// looked at.
+  std::vector<UnusableScene> left_out;
 };
 
 /// Generates rearrangement episodes: objects in stable poses on what the column grids show to be
@@ -127,9 +129,11 @@ struct GeneratedEpisodes {
 /// triangles are known, rays see that the surface has no gap, and every object is settled with
 /// Bullet and taken only if it stays. Each episode is replayed for one step in the runtime.
 /// Deterministic: episode k depends on the inputs, the seed and k; not on the order of the packs
-/// nor on the threads. Scene k % scenes, counted by name, is that of episode k.
+/// nor on the threads. Scene k % scenes, counted by name, is that of episode k; scenes without a
+/// floor or without anything within reach are left out and do not count.
 /// Fails with kInvalidInput, saying what was tried, on unusable options, packs that do not go
-/// together, and when no place is found; and with the errors of `inputs.details`.
+/// together, when all scenes are left out and when no place is found for an episode; and with the
+/// errors of `inputs.details`.
 [[nodiscard]] Result<GeneratedEpisodes> generateEpisodes(const EpisodeInputs& inputs,
                                                          const EpisodeGeneratorOptions& options,
                                                          const EpisodeProgress& progress = {});

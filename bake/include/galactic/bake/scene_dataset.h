@@ -8,6 +8,7 @@
 
 #include "galactic/bake/mesh_library.h"
 #include "galactic/bake/source_asset.h"
+#include "galactic/bake/support_region.h"
 #include "galactic/error.h"
 
 namespace galactic::bake {
@@ -47,6 +48,10 @@ struct ComposedScene {
   SourceAsset scene;
   /// What the instance calls dynamic, in its order.
   std::vector<DatasetObject> movable;
+  /// Where the dataset says that things may be put, world frame: the boxes of the scene, of its
+  /// stage and of everything that does not move and is upright. Named "INSTANCE|RECEPTACLE", those
+  /// of scene and stage "RECEPTACLE".
+  std::vector<SupportRegion> receptacles;
   /// One sentence for each thing that the instance names and the dataset lacks; it is left out.
   std::vector<std::string> missing;
   /// Files that were looked for and are not there, relative to the dataset's folder: the result may
