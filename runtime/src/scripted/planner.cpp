@@ -291,7 +291,8 @@ Plan Planner::planPick(const EnvState& state, std::uint32_t attempt) {
 
 Plan Planner::pickWith(const BasePlace& start, const Joints& carried) {
   std::optional<ArmPath> reaching;
-  const FloorSearch::Target target{.point = probe_.objects().box(state_->target).centre};
+  const FloorSearch::Target target{.point = probe_.objects().box(state_->target).centre,
+                                   .bearing = reach_table_.bearing()};
   const FloorSearch::Answer answer =
       floor_search_.search(start, carried, target, [&](const BasePlace& stance) {
         reaching = reachTarget(stance, carried);
@@ -340,7 +341,8 @@ Plan Planner::placeLeaning(const BasePlace& start, const Joints& carried) {
 
 Plan Planner::placeWith(const BasePlace& start, const Joints& carried) {
   std::optional<ArmPath> reaching;
-  const FloorSearch::Target target{.point = state_->goal.translation};
+  const FloorSearch::Target target{.point = state_->goal.translation,
+                                   .bearing = reach_table_.bearing()};
   const FloorSearch::Answer answer =
       floor_search_.search(start, carried, target, [&](const BasePlace& stance) {
         reaching = reachGoal(stance, carried);
