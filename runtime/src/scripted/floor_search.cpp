@@ -310,11 +310,12 @@ std::optional<BasePlace> FloorSearch::offer(std::uint32_t node, const Accept& ac
     if (offered != 0 || !canTurn(cell, heading * eighth_, fine)) continue;
     offered = 1;
     ++offers_;
-    const BasePlace stance = placeOf(cell, fine);
+    BasePlace stance = placeOf(cell, fine);
+    const float yaw = stance.yaw;
     const bool accepted = accept(stance);
     // The answer may have moved the arm.
     probe_.setArm(*carried_);
-    if (accepted) return stance;
+    if (accepted && (stance.yaw == yaw || canTurnFreely(place, stance.yaw))) return stance;
   }
   return std::nullopt;
 }

@@ -35,8 +35,8 @@ class FloorSearch {
     int most_offers = 300;
   };
   /// Whether the robot may stay at a place of the lattice, with the target on the wanted side more
-  /// or less.
-  using Accept = std::function<bool(const BasePlace&)>;
+  /// or less. It may turn the place a little on the spot.
+  using Accept = std::function<bool(BasePlace&)>;
 
   enum class Outcome : std::uint8_t { kFound, kNoWay, kNotAccepted };
   struct Answer {
