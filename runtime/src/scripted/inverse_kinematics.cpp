@@ -13,6 +13,9 @@ constexpr std::size_t kRows = 6;
 using Rows = std::array<double, kRows>;
 using Square = std::array<Rows, kRows>;
 
+/// About the vertical through the root.
+constexpr Arm::Column kTurnOfBase{{0, 1, 0}, {}, {}};
+
 void put(const Vec3& v, std::size_t first, double factor, Rows& rows) {
   rows[first] = factor * static_cast<double>(v.x);
   rows[first + 1] = factor * static_cast<double>(v.y);
@@ -76,7 +79,7 @@ void leastSquares(const std::vector<Rows>& jacobian, const Rows& error, double d
 
 }  // namespace
 
-int handFreedoms(Arm& arm, const Joints& positions) {
+int handFreedoms(Arm& arm, const Joints& positions, Movers movers) {
   // A direction counts as if it were as long as a hand, metres; what is left of a column beside the
   // others counts from here on.
   constexpr double kHand = 0.15;
@@ -86,6 +89,7 @@ int handFreedoms(Arm& arm, const Joints& positions) {
   arm.columns(links, columns);
   const Pose grip = arm.gripOf(links);
   const Vec3 ahead = rotate(grip.rotation, {1, 0, 0});
+  if (movers == Movers::kArmAndTurnOfBase) columns.push_back(kTurnOfBase);
   std::vector<Rows> left;
   left.reserve(columns.size());
   for (const Arm::Column& column : columns) {
@@ -130,7 +134,7 @@ std::optional<TurnedHand> solveHandAndTurn(Arm& arm, const HandGoal& goal, const
   // Chord of the angle.
   const float direction_error = 2 * std::sin(0.5F * std::max(options.direction_tolerance, 0.0F));
   TurnedHand hand{seed, 0};
-  // The base is one joint more, about the vertical through the root.
+  // The base is one joint more.
   std::vector<Arm::Column> columns(joints + (turns ? 1 : 0));
   std::vector<Rows> jacobian(columns.size());
   std::vector<double> moves(columns.size());
@@ -146,7 +150,7 @@ std::optional<TurnedHand> solveHandAndTurn(Arm& arm, const HandGoal& goal, const
     const bool points_there = !directed || dot(turn, turn) <= direction_error * direction_error;
     if (is_there && points_there) return hand;
     arm.columns(links, std::span(columns).first(joints));
-    if (turns) columns.back() = {{0, 1, 0}, {}, {}};
+    if (turns) columns.back() = kTurnOfBase;
     for (std::size_t joint = 0; joint < columns.size(); ++joint) {
       jacobian[joint] = rowsOf(columns[joint], point, direction, weight);
     }

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 
 #include "scripted/arm.h"
@@ -32,10 +33,12 @@ struct InverseKinematicsOptions {
   float longest_move = 0.35F;
 };
 
-/// How many of five things the controlled joints can choose at once about these positions: the
-/// place of the grip, three, and the direction of its X axis, two. At least 5 for a usual arm of
-/// six joints; a lift with a telescope has 2.
-[[nodiscard]] int handFreedoms(Arm& arm, const Joints& positions);
+/// What moves the hand.
+enum class Movers : std::uint8_t { kArm, kArmAndTurnOfBase };
+/// How many of five things `movers` choose at once about these positions: the place of the grip,
+/// three, and the direction of its X axis, two. 5 for a usual arm of five joints or more, 2 for a
+/// lift with a telescope.
+[[nodiscard]] int handFreedoms(Arm& arm, const Joints& positions, Movers movers);
 
 /// Positions of the controlled joints, inside their limits, that reach the goal; none when the
 /// iteration from `seed` does not get there. Damped least squares on position and direction

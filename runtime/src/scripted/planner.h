@@ -32,12 +32,16 @@ class Planner {
     /// Direction in which the hand leaves again.
     Vec3 retreat;
     float retreat_length = 0.1F;
+    /// The hand may come from anywhere, and leaves the way it points or upward.
+    bool any_direction = false;
   };
 
   /// Poses of the arm for driving, the best first: controlled joints from `carries_`, the others
   /// from the env.
   [[nodiscard]] std::vector<Joints> carriesOf(const EnvState& state) const;
   void chooseCarries();
+  /// How the hand leaves from `there`, the best first; empty where it cannot.
+  [[nodiscard]] ArmPath retreatFrom(const BasePlace& base, const Joints& there, const Reach& reach);
   /// The arm's move for this reach, to a free pose at which `isRight`, by way of the retreat. Turns
   /// the base where the arm lacks joints.
   template <class IsRight>
@@ -67,6 +71,8 @@ class Planner {
   ReachView pick_view_;
   /// How far the base turns for a reach, radians.
   float most_turn_ = 0;
+  /// The hand has a direction that even the base's turn cannot choose.
+  bool is_stiff_ = false;
   std::vector<Joints> carries_;
   // Of the current plan:
   const EnvState* state_ = nullptr;
