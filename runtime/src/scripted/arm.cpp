@@ -6,6 +6,7 @@
 namespace galactic::scripted {
 namespace {
 
+constexpr float kPi = 3.14159265F;
 constexpr float kTurn = 6.28318531F;
 
 bool isContinuous(const Robot& robot, std::uint32_t position) {
@@ -49,9 +50,53 @@ Arm::Arm(const Robot& robot) : robot_(&robot), links_(robot.links().size()) {
       if (moves) movers_.push_back({index, joint});
     }
   }
+  joinTelescopes();
   const std::span<const Pose> at_start = placeLinks(robot.startPositions());
   tested_pairs_ = robot.testedPairs();
   std::erase_if(tested_pairs_, [&](const GroupPair& pair) { return overlaps(pair, at_start); });
+}
+
+void Arm::joinTelescopes() {
+  for (std::uint32_t joint = 0; joint < joints_.size(); ++joint) joints_[joint].leader = joint;
+  // Cosine of the angle between two slides that are one: URDFs round their rotations.
+  constexpr float kParallel = 0.9999F;
+  const std::span<const Pose> links = placeLinks(robot_->startPositions());
+  const auto slide_of = [&](const Mover& mover) {
+    const LinkFrame& link = robot_->links()[mover.link];
+    return rotate(links[mover.link].rotation, link.axis) * link.multiplier;
+  };
+  // From the hand to the root.
+  const Mover* last = nullptr;
+  for (const Mover& mover : movers_) {
+    const bool slides = robot_->links()[mover.link].type == JointType::kPrismatic;
+    const bool goes_on = slides && last != nullptr && last->joint != mover.joint &&
+                         dot(slide_of(*last), slide_of(mover)) > kParallel;
+    if (goes_on) {
+      const std::uint32_t old = joints_[last->joint].leader;
+      const auto leader = std::min(old, static_cast<std::uint32_t>(mover.joint));
+      for (ArmJoint& joint : joints_) {
+        if (joint.leader == old || joint.leader == mover.joint) joint.leader = leader;
+      }
+    }
+    last = slides ? &mover : nullptr;
+  }
+}
+
+void Arm::draw(simulation::RandomStream& random, Joints& positions) const {
+  for (std::size_t n = 0; n < joints_.size(); ++n) {
+    const ArmJoint& joint = joints_[n];
+    const ArmJoint& leader = joints_[joint.leader];
+    float share = 0;
+    if (joint.leader == n) {
+      share = random.unit();
+    } else if (leader.upper > leader.lower) {
+      share = (positions[leader.position] - leader.lower) / (leader.upper - leader.lower);
+    }
+    const bool winds = joint.wraps || joint.upper - joint.lower > 2 * kTurn;
+    const float lower = winds ? std::max(joint.lower, -kPi) : joint.lower;
+    const float upper = winds ? std::min(joint.upper, kPi) : joint.upper;
+    positions[joint.position] = lower + share * (upper - lower);
+  }
 }
 
 std::span<const Pose> Arm::placeLinks(std::span<const float> positions) {

@@ -6,6 +6,7 @@
 
 #include "galactic/pose.h"
 #include "galactic/robot.h"
+#include "simulation/random_stream.h"
 
 namespace galactic::scripted {
 
@@ -21,6 +22,9 @@ struct ArmJoint {
   float upper = 0;
   /// A continuous joint: positions that differ by a turn are the same.
   bool wraps = false;
+  /// The first joint of the telescope that it is a segment of; itself when it is of none. Segments
+  /// slide along one line with no turn between them, so that the hand feels their sum only.
+  std::uint32_t leader = 0;
 };
 
 /// The controlled joints of a robot with its end effector, in the frame of the robot's root. Not
@@ -60,6 +64,10 @@ class Arm {
   /// On the straight way in joint space; share 0: `from`, 1: `to`. The other joints are from's.
   void interpolate(std::span<const float> from, std::span<const float> to, float share,
                    Joints& out) const;
+  /// Draws the controlled joints evenly within their limits; the others stay. The segments of a
+  /// telescope all get the same share of their way: drawn one by one, their sum would nearly
+  /// always be about half of the arm, and they would move in more actions.
+  void draw(simulation::RandomStream& random, Joints& positions) const;
   /// Adds `by` to a joint, within its limits.
   void move(std::size_t joint, float by, Joints& positions) const;
 
@@ -68,6 +76,7 @@ class Arm {
   [[nodiscard]] bool touchesItself(std::span<const Pose> links) const;
 
  private:
+  void joinTelescopes();
   [[nodiscard]] bool overlaps(const GroupPair& pair, std::span<const Pose> links) const;
 
   const Robot* robot_;

@@ -8,7 +8,6 @@
 namespace galactic::scripted {
 namespace {
 
-constexpr float kPi = 3.14159265F;
 /// Between the positions on a line that are looked at, radians or metres: finer than a step, so
 /// that nothing of the robot's size is jumped over.
 constexpr float kResolution = 0.07F;
@@ -105,11 +104,7 @@ std::optional<ArmPath> ArmPlanner::connect(const BasePlace& base, const Joints& 
     Tree& growing = trees[n % 2];
     Tree& other = trees[1 - n % 2];
     if (growing.nodes.size() + other.nodes.size() > kMostNodes) break;
-    for (const ArmJoint& joint : probe_.arm().joints()) {
-      const float lower = std::max(joint.lower, -kPi);
-      const float upper = std::min(joint.upper, kPi);
-      drawn[joint.position] = lower + random.unit() * (upper - lower);
-    }
+    probe_.arm().draw(random, drawn);
     if (extend(base, growing, drawn) == Growth::kBlocked) continue;
     const Joints reached = growing.nodes.back();
     Growth growth = Growth::kGrown;

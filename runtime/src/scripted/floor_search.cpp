@@ -303,18 +303,19 @@ std::optional<BasePlace> FloorSearch::offer(std::uint32_t node, const Accept& ac
   const Vec3 way = target_.point - place.position;
   const float distance = targetDistance(cell);
   if (distance < target_.nearest || distance > target_.farthest) return std::nullopt;
-  const float bearing = std::atan2(-way.z, way.x);
+  const float facing = std::atan2(-way.z, way.x) - target_.bearing;
   for (const float beside : {0.0F, 0.44F, -0.44F, 0.87F, -0.87F}) {
-    const std::uint32_t fine = fineOf(bearing + beside);
+    const std::uint32_t fine = fineOf(facing + beside);
     std::uint8_t& offered = offered_[static_cast<std::size_t>(cell) * fines_ + fine];
     if (offered != 0 || !canTurn(cell, heading * eighth_, fine)) continue;
     offered = 1;
     ++offers_;
-    const BasePlace stance = placeOf(cell, fine);
+    BasePlace stance = placeOf(cell, fine);
+    const float yaw = stance.yaw;
     const bool accepted = accept(stance);
     // The answer may have moved the arm.
     probe_.setArm(*carried_);
-    if (accepted) return stance;
+    if (accepted && (stance.yaw == yaw || canTurnFreely(place, stance.yaw))) return stance;
   }
   return std::nullopt;
 }

@@ -28,11 +28,15 @@ class FloorSearch {
     /// Distances of the base from it at which it may stand, metres.
     float nearest = 0.35F;
     float farthest = 1.0F;
+    /// The side of the base that has to face it, more or less: an angle about +Y from the way in
+    /// which the base drives, radians.
+    float bearing = 0;
     /// Places that are offered before the search gives up.
     int most_offers = 300;
   };
-  /// Whether the robot may stay at a place of the lattice, facing the target more or less.
-  using Accept = std::function<bool(const BasePlace&)>;
+  /// Whether the robot may stay at a place of the lattice, with the target on the wanted side more
+  /// or less. It may turn the place a little on the spot.
+  using Accept = std::function<bool(BasePlace&)>;
 
   enum class Outcome : std::uint8_t { kFound, kNoWay, kNotAccepted };
   struct Answer {

@@ -22,6 +22,11 @@ constexpr float kGraspShare = 0.5F;
 /// The share of the distance of success that a planned release may use up.
 constexpr float kLandingShare = 0.7F;
 
+/// See handFreedoms.
+constexpr int kAllFreedoms = 5;
+/// Half of what lies between the headings that the search of the floor offers, radians.
+constexpr float kMostTurn = 0.22F;
+
 constexpr Vec3 kUp{0, 1, 0};
 
 Vec3 unit(const Vec3& v) { return v * (1 / std::sqrt(dot(v, v))); }
@@ -38,6 +43,24 @@ Vec3 pointBefore(const simulation::RestingBox& box, const Vec3& way, float dista
     (is_outside ? far : near) = middle;
   }
   return box.centre - way * far;
+}
+
+/// A goal of the world in the frame of the robot's root.
+HandGoal seenFrom(const Pose& root_from_world, const HandGoal& goal) {
+  HandGoal result = goal;
+  result.place = root_from_world * goal.place;
+  result.toward = rotate(root_from_world.rotation, goal.toward);
+  return result;
+}
+
+/// See handFreedoms; about the table's samples.
+int mostFreedoms(Arm& arm, const ReachTable& table, const Joints& others, Movers movers) {
+  constexpr std::size_t kLooks = 32;
+  int freedoms = 0;
+  for (std::size_t n = 0; n < std::min(kLooks, table.size()); ++n) {
+    freedoms = std::max(freedoms, handFreedoms(arm, table.joints(arm, n, others), movers));
+  }
+  return freedoms;
 }
 
 std::vector<PlanStep> stepsOf(const BasePlace& base, const ArmPath& path) {
@@ -82,6 +105,12 @@ Planner::Planner(const World& world, const SimulationOptions& options)
                    {world.robot().startPositions().begin(), world.robot().startPositions().end()},
                    kReachSamples),
       pick_view_(reach_table_, {}, {1, 0, 0}) {
+  const Joints start{world.robot().startPositions().begin(), world.robot().startPositions().end()};
+  const auto is_stiff_with = [&](Movers movers) {
+    return mostFreedoms(probe_.arm(), reach_table_, start, movers) < kAllFreedoms;
+  };
+  if (is_stiff_with(Movers::kArm)) most_turn_ = kMostTurn;
+  is_stiff_ = is_stiff_with(Movers::kArmAndTurnOfBase);
   chooseCarries();
 }
 
@@ -128,13 +157,16 @@ void Planner::chooseCarries() {
     float reach = 0;
     std::size_t sample = 0;
   };
+  const Vec3 side = headingOf(reach_table_.bearing());
   std::vector<Candidate> candidates;
   candidates.reserve(reach_table_.size());
   for (std::size_t n = 0; n < reach_table_.size(); ++n) {
     const Pose& grip = reach_table_.grips()[n];
     const Vec3& p = grip.translation;
-    // In front, where the robot sees what it holds.
-    if (p.y < kLowest || p.y > kHighest || p.x < std::fabs(p.z)) continue;
+    // In front, where the robot sees what it holds, or on the side on which the arm reaches.
+    const float out = dot(p, side);
+    const bool is_beside = out >= std::fabs(p.x * side.z - p.z * side.x);
+    if (p.y < kLowest || p.y > kHighest || (p.x < std::fabs(p.z) && !is_beside)) continue;
     candidates.push_back({reach_of(reach_table_.joints(probe_.arm(), n, start), grip), n});
   }
   std::ranges::stable_sort(candidates, {}, &Candidate::reach);
@@ -156,56 +188,81 @@ void Planner::chooseCarries() {
   if (!start_is_good) carries_.push_back(start);
 }
 
+ArmPath Planner::retreatFrom(const BasePlace& base, const Joints& there, const Reach& reach) {
+  const Pose root_from_world = inverse(probe_.worldFromRoot(base));
+  const HandGoal goal = seenFrom(root_from_world, reach.goal);
+  ArmPlanner::Slide slide{.length = reach.retreat_length,
+                          .way = rotate(root_from_world.rotation, reach.retreat),
+                          .direction_tolerance = hand_options_.direction_tolerance};
+  if (!reach.any_direction) return arm_planner_.slide(base, there, goal, slide);
+  slide.direction_tolerance = -1;
+  const Pose root_from_grip = probe_.arm().gripOf(probe_.arm().placeLinks(there));
+  slide.way = rotate(root_from_grip.rotation, goal.direction) * -1.0F;
+  ArmPath path = arm_planner_.slide(base, there, goal, slide);
+  if (!path.empty()) return path;
+  slide.way = kUp;
+  return arm_planner_.slide(base, there, goal, slide);
+}
+
 template <class IsRight>
-std::optional<ArmPath> Planner::reach(const BasePlace& base, const Joints& carried,
-                                      const Reach& reach, const IsRight& is_right) {
+std::optional<ArmPath> Planner::reach(BasePlace& base, const Joints& carried, const Reach& reach,
+                                      const IsRight& is_right) {
   std::array<std::uint32_t, kSeeds> seeds{};
-  const std::size_t count = view_->nearest(reach.goal, kSeedReach, seeds);
+  const Pose root_from_world = inverse(probe_.worldFromRoot(base));
+  const HandGoal goal = seenFrom(root_from_world, reach.goal);
+  const std::size_t count = view_->nearest(goal, kSeedReach, seeds);
+  InverseKinematicsOptions options = hand_options_;
+  if (reach.any_direction) options.direction_tolerance = -1;
   Arm& arm = probe_.arm();
   for (const std::uint32_t sample : std::span(seeds).first(count)) {
     const Joints seed = reach_table_.joints(arm, sample, carried);
-    const std::optional<Joints> there = solveHand(arm, reach.goal, seed, hand_options_);
-    if (!there || !probe_.isFree(base, *there) || !is_right(*there)) continue;
-    ArmPath path = arm_planner_.slide(base, *there, reach.goal,
-                                      {.length = reach.retreat_length,
-                                       .way = reach.retreat,
-                                       .direction_tolerance = hand_options_.direction_tolerance});
+    const std::optional<TurnedHand> hand = solveHandAndTurn(arm, goal, seed, most_turn_, options);
+    if (!hand) continue;
+    const Joints& there = hand->joints;
+    const BasePlace turned{base.position, base.yaw + hand->turn};
+    if (!probe_.isFree(turned, there) || !is_right(turned, there)) continue;
+    ArmPath path = retreatFrom(turned, there, reach);
     if (path.empty()) continue;
     std::ranges::reverse(path);
-    path.push_back(*there);
-    std::optional<ArmPath> begin = arm_planner_.plan(base, carried, path.front(), nextSeed());
+    path.push_back(there);
+    std::optional<ArmPath> begin = arm_planner_.plan(turned, carried, path.front(), nextSeed());
     if (!begin) {
       ++failed_motions_;
       continue;
     }
     begin->insert(begin->end(), path.begin() + 1, path.end());
+    base = turned;
     return begin;
   }
   return std::nullopt;
 }
 
-std::optional<ArmPath> Planner::reachTarget(const BasePlace& base, const Joints& carried) {
+std::optional<ArmPath> Planner::reachTarget(BasePlace& base, const Joints& carried) {
   if (failed_motions_ >= kMostFailedMotions) return std::nullopt;
   const simulation::RestingBox& box = probe_.objects().box(state_->target);
   const float radius = world_.robot().endEffector()->grasp_radius;
-  const Pose root_from_world = inverse(probe_.worldFromRoot(base));
   const Vec3 to_target = box.centre - base.position;
   const Vec3 ahead = unit({to_target.x, 0, to_target.z});
-  const std::array<Vec3, 3> ways{Vec3{0, -1, 0}, unit(ahead - kUp), ahead};
-  for (const Vec3& way : ways) {
+  struct Way {
+    Vec3 way;
+    bool any_direction = false;
+  };
+  const std::array<Way, 4> ways{{{Vec3{0, -1, 0}}, {unit(ahead - kUp)}, {ahead}, {ahead, true}}};
+  for (const auto& [way, any_direction] : std::span(ways).first(is_stiff_ ? 4 : 3)) {
     const Vec3 grip = pointBefore(box, way, kGraspShare * radius);
-    const Reach goal{{.point = {},
-                      .direction = {1, 0, 0},
-                      .place = root_from_world * grip,
-                      .toward = rotate(root_from_world.rotation, way)},
-                     rotate(root_from_world.rotation, way) * -1.0F};
-    const auto is_right = [&](const Joints& positions) {
+    const Reach goal{.goal = {.point = {}, .direction = {1, 0, 0}, .place = grip, .toward = way},
+                     .retreat = way * -1.0F,
+                     .any_direction = any_direction};
+    const auto is_right = [&](const BasePlace& place, const Joints& positions) {
       const Pose world_from_grip =
-          probe_.worldFromRoot(base) * probe_.arm().gripOf(probe_.arm().placeLinks(positions));
+          probe_.worldFromRoot(place) * probe_.arm().gripOf(probe_.arm().placeLinks(positions));
       return probe_.objects().nearest(world_from_grip.translation, radius) == state_->target;
     };
-    std::optional<ArmPath> path = reach(base, carried, goal, is_right);
-    if (path && comesAway(base, path->back(), carried)) return path;
+    BasePlace turned = base;
+    std::optional<ArmPath> path = reach(turned, carried, goal, is_right);
+    if (!path || !comesAway(turned, path->back(), carried)) continue;
+    base = turned;
+    return path;
   }
   return std::nullopt;
 }
@@ -218,19 +275,18 @@ bool Planner::comesAway(const BasePlace& base, const Joints& positions, const Jo
   return result;
 }
 
-std::optional<ArmPath> Planner::reachGoal(const BasePlace& base, const Joints& carried) {
+std::optional<ArmPath> Planner::reachGoal(BasePlace& base, const Joints& carried) {
   if (failed_motions_ >= kMostFailedMotions) return std::nullopt;
-  const Pose root_from_world = inverse(probe_.worldFromRoot(base));
   const Pose& goal_pose = state_->goal;
   const Vec3 up_of_object = rotate(conjugate(goal_pose.rotation), kUp);
   for (const float lift : {0.04F, 0.015F}) {
     const Reach goal{{.point = probe_.gripFromObject().translation,
                       .direction = rotate(probe_.gripFromObject().rotation, up_of_object),
-                      .place = root_from_world * (goal_pose.translation + kUp * lift),
+                      .place = goal_pose.translation + kUp * lift,
                       .toward = kUp},
                      kUp};
-    const auto is_right = [&](const Joints& positions) {
-      const std::optional<Pose> landing = probe_.landing(base, positions);
+    const auto is_right = [&](const BasePlace& place, const Joints& positions) {
+      const std::optional<Pose> landing = probe_.landing(place, positions);
       if (!landing) return false;
       const Vec3 away = landing->translation - goal_pose.translation;
       return std::sqrt(dot(away, away)) < kLandingShare * options_.task.success_distance;
@@ -291,9 +347,10 @@ Plan Planner::planPick(const EnvState& state, std::uint32_t attempt) {
 
 Plan Planner::pickWith(const BasePlace& start, const Joints& carried) {
   std::optional<ArmPath> reaching;
-  const FloorSearch::Target target{.point = probe_.objects().box(state_->target).centre};
+  const FloorSearch::Target target{.point = probe_.objects().box(state_->target).centre,
+                                   .bearing = reach_table_.bearing()};
   const FloorSearch::Answer answer =
-      floor_search_.search(start, carried, target, [&](const BasePlace& stance) {
+      floor_search_.search(start, carried, target, [&](BasePlace& stance) {
         reaching = reachTarget(stance, carried);
         return reaching.has_value();
       });
@@ -340,9 +397,10 @@ Plan Planner::placeLeaning(const BasePlace& start, const Joints& carried) {
 
 Plan Planner::placeWith(const BasePlace& start, const Joints& carried) {
   std::optional<ArmPath> reaching;
-  const FloorSearch::Target target{.point = state_->goal.translation};
+  const FloorSearch::Target target{.point = state_->goal.translation,
+                                   .bearing = reach_table_.bearing()};
   const FloorSearch::Answer answer =
-      floor_search_.search(start, carried, target, [&](const BasePlace& stance) {
+      floor_search_.search(start, carried, target, [&](BasePlace& stance) {
         reaching = reachGoal(stance, carried);
         return reaching.has_value();
       });

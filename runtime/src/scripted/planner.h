@@ -25,25 +25,30 @@ class Planner {
   [[nodiscard]] BasePlace baseOf(const EnvState& state) const;
 
  private:
-  /// What the arm has to do at a place where the robot may stand.
+  /// What the arm has to do at a place where the robot may stand: as HandGoal has it, but with
+  /// place and directions in the world.
   struct Reach {
     HandGoal goal;
-    /// Direction in which the hand leaves again, frame of the root.
+    /// Direction in which the hand leaves again.
     Vec3 retreat;
     float retreat_length = 0.1F;
+    /// The hand may come from anywhere, and leaves the way it points or upward.
+    bool any_direction = false;
   };
 
   /// Poses of the arm for driving, the best first: controlled joints from `carries_`, the others
   /// from the env.
   [[nodiscard]] std::vector<Joints> carriesOf(const EnvState& state) const;
   void chooseCarries();
-  /// Ends of the arm's move for this reach: to a free pose at which `isRight`, by way of the
-  /// retreat.
+  /// How the hand leaves from `there`, the best first; empty where it cannot.
+  [[nodiscard]] ArmPath retreatFrom(const BasePlace& base, const Joints& there, const Reach& reach);
+  /// The arm's move for this reach, to a free pose at which `isRight`, by way of the retreat. Turns
+  /// the base where the arm lacks joints.
   template <class IsRight>
-  [[nodiscard]] std::optional<ArmPath> reach(const BasePlace& base, const Joints& carried,
+  [[nodiscard]] std::optional<ArmPath> reach(BasePlace& base, const Joints& carried,
                                              const Reach& reach, const IsRight& is_right);
-  [[nodiscard]] std::optional<ArmPath> reachTarget(const BasePlace& base, const Joints& carried);
-  [[nodiscard]] std::optional<ArmPath> reachGoal(const BasePlace& base, const Joints& carried);
+  [[nodiscard]] std::optional<ArmPath> reachTarget(BasePlace& base, const Joints& carried);
+  [[nodiscard]] std::optional<ArmPath> reachGoal(BasePlace& base, const Joints& carried);
   /// Whether the arm, once it has grasped the target at `positions`, can be folded.
   [[nodiscard]] bool comesAway(const BasePlace& base, const Joints& positions,
                                const Joints& carried);
@@ -64,6 +69,10 @@ class Planner {
   FloorSearch floor_search_;
   ReachTable reach_table_;
   ReachView pick_view_;
+  /// How far the base turns for a reach, radians.
+  float most_turn_ = 0;
+  /// The hand has a direction that even the base's turn cannot choose.
+  bool is_stiff_ = false;
   std::vector<Joints> carries_;
   // Of the current plan:
   const EnvState* state_ = nullptr;

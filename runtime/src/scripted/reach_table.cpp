@@ -10,11 +10,28 @@
 namespace galactic::scripted {
 namespace {
 
-constexpr float kPi = 3.14159265F;
 /// Chooses the samples; any other number would do.
 constexpr std::uint64_t kSeed = 0x7265616368ULL;
 /// A wrong direction counts as much as this distance times its chord, metres.
 constexpr float kDirectionWeight = 0.2F;
+
+/// See ReachTable::bearing.
+float meanBearing(std::span<const Pose> grips) {
+  // Shares of the mean distance: the arm of a robot that turns it all the way round has about 0.
+  constexpr float kOneSided = 0.2F;
+  // Rounding keeps the scatter of the samples out of the bearing of an arm that is the same to its
+  // left and right.
+  constexpr float kRounding = 0.392699082F;
+  Vec3 sum;
+  float distances = 0;
+  for (const Pose& grip : grips) {
+    const Vec3 away{grip.translation.x, 0, grip.translation.z};
+    sum = sum + away;
+    distances += std::sqrt(dot(away, away));
+  }
+  if (!(std::sqrt(dot(sum, sum)) > kOneSided * distances)) return 0;
+  return kRounding * std::round(std::atan2(-sum.z, sum.x) / kRounding);
+}
 
 }  // namespace
 
@@ -25,16 +42,13 @@ ReachTable::ReachTable(Arm& arm, const Joints& positions, std::uint32_t samples)
   rows_.reserve(samples * joints_);
   grips_.reserve(samples);
   for (std::uint32_t n = 0; n < samples; ++n) {
-    for (const ArmJoint& joint : arm.joints()) {
-      const float lower = std::max(joint.lower, -kPi);
-      const float upper = std::min(joint.upper, kPi);
-      drawn[joint.position] = lower + random.unit() * (upper - lower);
-    }
+    arm.draw(random, drawn);
     const std::span<const Pose> links = arm.placeLinks(drawn);
     if (arm.touchesItself(links)) continue;
     grips_.push_back(arm.gripOf(links));
     for (const ArmJoint& joint : arm.joints()) rows_.push_back(drawn[joint.position]);
   }
+  bearing_ = meanBearing(grips_);
 }
 
 Joints ReachTable::joints(const Arm& arm, std::size_t n, const Joints& others) const {

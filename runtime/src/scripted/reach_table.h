@@ -19,6 +19,10 @@ class ReachTable {
   [[nodiscard]] std::size_t size() const { return grips_.size(); }
   /// `others` with the controlled joints of sample n of the table, which was made for `arm`.
   [[nodiscard]] Joints joints(const Arm& arm, std::size_t n, const Joints& others) const;
+  /// The direction from the root in which the arm reaches, on average of the samples: an angle
+  /// about +Y from the way in which the base drives, radians, rounded to a sixteenth of a turn. 0
+  /// where the arm reaches all round alike.
+  [[nodiscard]] float bearing() const { return bearing_; }
   /// root_from_grip of each sample.
   [[nodiscard]] std::span<const Pose> grips() const { return grips_; }
 
@@ -26,6 +30,7 @@ class ReachTable {
   std::size_t joints_ = 0;
   std::vector<float> rows_;
   std::vector<Pose> grips_;
+  float bearing_ = 0;
 };
 
 /// Where one point and one direction of the hand are in each sample of a table.

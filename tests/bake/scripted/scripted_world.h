@@ -38,10 +38,10 @@ inline MemoryPack episodePackOf(const bake::SourceEpisodes& episodes) {
           "episodes"};
 }
 
-/// A made room with the stick robot at `base`, and a cube at `cube` to be brought to `goal`.
+/// A made room with `robot`, which is called "stick", at `base`, and a cube at `cube` to be brought
+/// to `goal`.
 inline ScriptedWorld stickWorld(const bake::TriangleMesh& mesh, const Vec3& base, const Vec3& cube,
-                                const Vec3& goal) {
-  RobotPackFields robot = stickRobot();
+                                const Vec3& goal, const RobotPackFields& robot = stickRobot()) {
   Episode episode;
   episode.placement_count = 1;
   episode.base_position = base;
