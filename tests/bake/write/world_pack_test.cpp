@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "galactic/pack_reference.h"
+#include "galactic/schema/pack_generated.h"
 #include "galactic/world.h"
 #include "support/world_pack_builder.h"
 
