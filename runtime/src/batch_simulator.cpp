@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <thread>
 #include <utility>
 
 #include "simulation/batch_state.h"
@@ -129,9 +128,8 @@ Result<BatchSimulator> BatchSimulator::create(const World& world,
   }
   Result<Model> model = simulation::makeModel(world, options);
   if (!model) return tl::unexpected<Error>(model.error());
-  const std::size_t threads =
-      options.threads != 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
-  return BatchSimulator(std::make_unique<Impl>(std::move(*model), threads));
+  return BatchSimulator(
+      std::make_unique<Impl>(std::move(*model), detail::threadCount(options.threads)));
 }
 
 BatchSimulator::BatchSimulator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -20,6 +20,10 @@ void awaitChange(const std::atomic<std::uint32_t>& value, std::uint32_t old) noe
 
 }  // namespace
 
+std::uint32_t threadCount(std::uint32_t wanted) noexcept {
+  return wanted != 0 ? wanted : std::max(1U, std::thread::hardware_concurrency());
+}
+
 Workers::Workers(std::size_t parts, std::function<void(std::size_t)> work)
     : work_(std::move(work)), begun_(parts) {
   const std::size_t threads = std::max<std::size_t>(1, parts - 1);

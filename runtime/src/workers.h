@@ -8,6 +8,9 @@
 
 namespace galactic::detail {
 
+/// 0: as many threads as there are processors.
+[[nodiscard]] std::uint32_t threadCount(std::uint32_t wanted) noexcept;
+
 /// Threads that share a piece of work in parts, again and again. Each part of a round is done once,
 /// by whichever thread takes it first: a thread begins with the part that it also did last time,
 /// and then helps with what nobody has begun. The caller helps too while it waits, so there is one

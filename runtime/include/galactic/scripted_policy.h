@@ -55,7 +55,8 @@ enum class ScriptedTrouble : std::uint8_t {
 /// nothing is found it gives up: its actions are zero, but for the hand, which keeps what it holds.
 ///
 /// Deterministic: what it does in an env depends on that env's states only. Plans take some tens of
-/// milliseconds and allocate. Not safe to call from several threads at once.
+/// milliseconds and allocate; `options.threads` threads make them. Not safe to call from several
+/// threads at once.
 class ScriptedPolicy {
  public:
   /// For a batch of `options.envs` envs that was made from the same world and options. `world` must

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
 #include "column_grid_kernels.h"
 
@@ -15,11 +14,6 @@ bool isFinite(const Vec3& v) {
 
 bool isFinite(const RigidTransform& t) {
   return isFinite(t.x_axis) && isFinite(t.y_axis) && isFinite(t.z_axis) && isFinite(t.origin);
-}
-
-std::uint32_t threadCount(std::uint32_t wanted) {
-  if (wanted != 0) return wanted;
-  return std::max(1U, std::thread::hardware_concurrency());
 }
 
 /// Edge of the panes that an image is cut in: as few as possible, of like size, of whole tiles.
@@ -40,7 +34,7 @@ float focalLength(const RenderOptions& options, const RenderCamera& camera) {
 
 SoftEngine::SoftEngine(const RenderLibrary& library, const RenderOptions& options, DrawPane draw)
     : options_(options), draw_(draw), scene_(library) {
-  options_.threads = threadCount(options.threads);
+  options_.threads = detail::threadCount(options.threads);
   cutImage();
   memories_.reserve(options_.threads);
   for (std::uint32_t n = 0; n < options_.threads; ++n) {
