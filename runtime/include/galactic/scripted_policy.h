@@ -51,6 +51,9 @@ enum class ScriptedTrouble : std::uint8_t {
 ///   kinematics and a planned motion, reaches the target; drives there and grasps it;
 /// - lifts it, folds the arm, drives on to a place from which the arm brings it just over the goal,
 ///   as upright as it has to lie there, lets go, and terminates.
+/// Works for any arm, also one of few joints, with slides, or that reaches sideways: the base turns
+/// the side on which the arm reaches towards what it is about, and helps with a turn where the arm
+/// cannot choose place and direction of the hand alone.
 /// Where the simulation moves the robot otherwise than planned, it plans again, a few times; when
 /// nothing is found it gives up: its actions are zero, but for the hand, which keeps what it holds.
 ///

@@ -31,18 +31,19 @@ constexpr Vec3 kUp{0, 1, 0};
 
 Vec3 unit(const Vec3& v) { return v * (1 / std::sqrt(dot(v, v))); }
 
-/// The point on the line from the box's centre against `way` that is `distance` off the box.
-Vec3 pointBefore(const simulation::RestingBox& box, const Vec3& way, float distance) {
+/// The point on the line from `inside` the box against `way` that is `distance` off the box.
+Vec3 pointBefore(const simulation::RestingBox& box, const Vec3& inside, const Vec3& way,
+                 float distance) {
   const Vec3& half = box.half_extents;
   float near = 0;
-  float far = std::sqrt(dot(half, half)) + distance;
+  float far = 2 * std::sqrt(dot(half, half)) + distance;
   for (int n = 0; n < 20; ++n) {
     const float middle = 0.5F * (near + far);
     const bool is_outside =
-        simulation::squaredDistance(box, box.centre - way * middle) >= distance * distance;
+        simulation::squaredDistance(box, inside - way * middle) >= distance * distance;
     (is_outside ? far : near) = middle;
   }
-  return box.centre - way * far;
+  return inside - way * far;
 }
 
 /// A goal of the world in the frame of the robot's root.
@@ -243,13 +244,23 @@ std::optional<ArmPath> Planner::reachTarget(BasePlace& base, const Joints& carri
   const float radius = world_.robot().endEffector()->grasp_radius;
   const Vec3 to_target = box.centre - base.position;
   const Vec3 ahead = unit({to_target.x, 0, to_target.z});
+  // Somewhat under the top: a thick hand that comes from the side does not get lower.
+  constexpr float kHigh = 0.9F;
+  constexpr float kAlmostNone = 1e-3F;
+  const Vec3 top = pointBefore(box, box.centre, kUp * -1.0F, kAlmostNone);
+  const Vec3 high = box.centre + (top - box.centre) * kHigh;
   struct Way {
     Vec3 way;
+    Vec3 inside;
     bool any_direction = false;
   };
-  const std::array<Way, 4> ways{{{Vec3{0, -1, 0}}, {unit(ahead - kUp)}, {ahead}, {ahead, true}}};
-  for (const auto& [way, any_direction] : std::span(ways).first(is_stiff_ ? 4 : 3)) {
-    const Vec3 grip = pointBefore(box, way, kGraspShare * radius);
+  const std::array<Way, 5> ways{{{kUp * -1.0F, box.centre},
+                                 {unit(ahead - kUp), box.centre},
+                                 {ahead, box.centre},
+                                 {ahead, high, true},
+                                 {ahead, box.centre, true}}};
+  for (const auto& [way, inside, any_direction] : std::span(ways).first(is_thorough_ ? 5 : 3)) {
+    const Vec3 grip = pointBefore(box, inside, way, kGraspShare * radius);
     const Reach goal{.goal = {.point = {}, .direction = {1, 0, 0}, .place = grip, .toward = way},
                      .retreat = way * -1.0F,
                      .any_direction = any_direction};
@@ -329,18 +340,27 @@ Plan Planner::planPick(const EnvState& state, std::uint32_t attempt) {
   seed_ = (std::uint64_t{state.episode} << 32U) + std::uint64_t{attempt} * 1000;
   probe_.look(state);
   const BasePlace start = baseOf(state);
-  Plan plan{{}, ScriptedTrouble::kNoFold};
   std::vector<Joints> carries = carriesOf(state);
   // Where there is no room to fold the arm it may still be driven as it is.
   carries.push_back(state.joint_positions);
+  is_thorough_ = is_stiff_;
+  Plan plan = pickFolded(start, carries);
+  if (plan.trouble != ScriptedTrouble::kNoGrasp || is_thorough_) return plan;
+  is_thorough_ = true;
+  return pickFolded(start, carries);
+}
+
+Plan Planner::pickFolded(const BasePlace& start, std::span<const Joints> carries) {
+  Plan plan{{}, ScriptedTrouble::kNoFold};
   for (const Joints& carried : carries) {
     failed_motions_ = 0;
-    const std::optional<ArmPath> folding = fold(start, state.joint_positions, carried);
+    const std::optional<ArmPath> folding = fold(start, state_->joint_positions, carried);
     if (!folding) continue;
     plan = pickWith(start, carried);
-    if (plan.trouble != ScriptedTrouble::kNone) continue;
-    prepend(start, *folding, plan);
-    break;
+    if (plan.trouble == ScriptedTrouble::kNone) prepend(start, *folding, plan);
+    // What the arm does not reach it does not reach from another fold.
+    const bool is_reached = plan.trouble != ScriptedTrouble::kNoGrasp || failed_motions_ > 0;
+    if (plan.trouble == ScriptedTrouble::kNone || !is_reached) break;
   }
   return plan;
 }

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "scripted/arm_planner.h"
 #include "scripted/floor_search.h"
@@ -52,6 +54,8 @@ class Planner {
   /// Whether the arm, once it has grasped the target at `positions`, can be folded.
   [[nodiscard]] bool comesAway(const BasePlace& base, const Joints& positions,
                                const Joints& carried);
+  /// With the first of these folds that leads to the target.
+  [[nodiscard]] Plan pickFolded(const BasePlace& start, std::span<const Joints> carries);
   [[nodiscard]] Plan pickWith(const BasePlace& start, const Joints& carried);
   [[nodiscard]] Plan placeLeaning(const BasePlace& start, const Joints& carried);
   [[nodiscard]] Plan placeWith(const BasePlace& start, const Joints& carried);
@@ -79,6 +83,8 @@ class Planner {
   const ReachView* view_ = nullptr;
   std::uint64_t seed_ = 0;
   int failed_motions_ = 0;
+  /// The target is also reached for from other directions than those in which hands usually come.
+  bool is_thorough_ = false;
   InverseKinematicsOptions hand_options_;
 };
 

@@ -51,9 +51,11 @@ class Floor {
   }
 
   FloorSearch::Answer search() {
+    return search([](const BasePlace&) { return true; });
+  }
+  FloorSearch::Answer search(const FloorSearch::Accept& accept) {
     FloorSearch search(probe_, made_.world().robot());
-    return search.search(start_, joints_, {.point = target_},
-                         [](const BasePlace&) { return true; });
+    return search.search(start_, joints_, {.point = target_}, accept);
   }
 
   /// Checks that each leg is a turn or a drive, and that no pose on the way penetrates anything.
@@ -155,6 +157,47 @@ TEST(FloorSearch, TellsPlacesThatAreNotWantedFromNoWay) {
                                     });
   EXPECT_EQ(answer.outcome, FloorSearch::Outcome::kNotAccepted);
   EXPECT_GT(offers, 10);
+}
+
+TEST(FloorSearch, OffersPlacesWithTheTargetOnTheWantedSide) {
+  // Offered headings are up to 0.87 rad off, and rounded to a turn's step.
+  constexpr float kMostBeside = 0.87F + 0.03F;
+  const Vec3 to{2, 0.5F, 2};
+  for (const float bearing : {0.0F, -1.5707963F, 2.0F}) {
+    const ScriptedWorld made = stickWorld(madeRoom(4, 4).build(), kWest, to, {});
+    Probe probe(made.world(), {});
+    EnvState state;
+    state.objects = {{to, {}}};
+    probe.look(state);
+    FloorSearch search(probe, made.world().robot());
+    const auto start = made.world().robot().startPositions();
+    int offers = 0;
+    const auto answer = search.search(
+        {kWest, 0}, {start.begin(), start.end()}, {.point = to, .bearing = bearing},
+        [&](const BasePlace& place) {
+          ++offers;
+          const Vec3 way = to - place.position;
+          const float seen = std::atan2(-way.z, way.x) - place.yaw;
+          EXPECT_LE(std::fabs(std::remainder(seen - bearing, 6.2831853F)), kMostBeside);
+          return false;
+        });
+    EXPECT_EQ(answer.outcome, FloorSearch::Outcome::kNotAccepted);
+    EXPECT_GT(offers, 100);
+  }
+}
+
+TEST(FloorSearch, EndsWhereTheAnswerTurnedThePlace) {
+  Floor floor(twoRooms(0.7F), kWest, kEast);
+  constexpr float kTurn = 0.123F;
+  float offered = 0;
+  const FloorSearch::Answer answer = floor.search([&](BasePlace& place) {
+    offered = place.yaw;
+    place.yaw += kTurn;
+    return true;
+  });
+  ASSERT_EQ(answer.outcome, FloorSearch::Outcome::kFound);
+  EXPECT_EQ(answer.route.back().yaw, offered + kTurn);
+  floor.follow(answer.route);
 }
 
 }  // namespace

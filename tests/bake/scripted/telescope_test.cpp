@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -280,6 +283,12 @@ TEST(ScriptedPolicyWithATelescope, CarriesACubeAlongATable) {
     }
   }
   std::printf("%d of %d episodes solved\n", solved, played);
+}
+
+TEST(ScriptedPolicyWithATelescope, DoesTheSameEachTime) {
+  const auto once = stepsOnATable({}, 0.6F, 1.2F);
+  ASSERT_TRUE(once.has_value());
+  EXPECT_EQ(stepsOnATable({}, 0.6F, 1.2F), once);
 }
 
 }  // namespace
