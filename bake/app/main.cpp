@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <set>
 
 #include "bake_inputs.h"
 #include "bake_run.h"
+#include "galactic/part_files.h"
 #include "options.h"
 #include "plan/bake_plan.h"
 #include "report.h"
@@ -46,6 +48,15 @@ Result<void> checkOutputs(const BakeRun& run) {
   return {};
 }
 
+/// Clears away what killed bakes of the same packs have left beside them.
+void removeLeftovers(const BakeRun& run) {
+  if (run.command().dry_run) return;
+  for (const std::filesystem::path& input : packInputs(run.command())) {
+    const std::filesystem::path output = run.outputFor(input);
+    (void)removeStaleParts(output.parent_path(), {.target = output.filename().string()});
+  }
+}
+
 /// Writes the report, if one is wanted.
 Result<void> reportTo(const std::filesystem::path& path, const BakeRun& run) {
   if (path.empty()) return {};
@@ -59,6 +70,7 @@ int bakeAll(const BakeCommand& command) {
   // Before anything is baked for a golden report that is not there.
   const auto golden = goldenOf(command);
   if (!golden) return refuse(golden.error());
+  removeLeftovers(run);
   bakeInputs(run);
   run.line().clear();
   if (const auto written = reportTo(command.report, run); !written) {
@@ -74,6 +86,8 @@ int bakeAll(const BakeCommand& command) {
 
 int main(int argc, char** argv) {
   namespace bake = galactic::bake;
+  // A file that grows beyond the limit of its size (ulimit -f) is an error of writing it.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     const bake::ParsedCommand parsed = bake::parseCommandLine(argc, argv);
     if (const int* code = std::get_if<int>(&parsed)) return *code;

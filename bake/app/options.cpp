@@ -23,7 +23,7 @@ constexpr std::string_view kRecipeSuffix = ".toml";
 
 constexpr const char* kFooter =
     "Exit codes: 0 ok, 1 command line, 2 I/O, 3 invalid input, 4 internal, 5 unsupported, 7 "
-    "differs.\n"
+    "differs,\n130 interrupted.\n"
     "Examples:\n"
     "  galactic-bake scene.glb --radii 0.015,0.05,0.12\n"
     "  galactic-bake objects/ --as object -o objects.pack\n"

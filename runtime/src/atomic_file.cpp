@@ -8,6 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "galactic/part_files.h"
+
 namespace galactic {
 
 /// A file under a name of its own beside the target, removed unless it was renamed onto the target.
@@ -15,21 +17,23 @@ class AtomicFile::Temporary {
  public:
   /// `path` is what the user named, `target` where it leads.
   Temporary(std::filesystem::path path, std::filesystem::path target)
-      : named_(std::move(path)),
-        target_(std::move(target)),
-        path_(target_.string() + ".part-" + std::to_string(::gettid())) {
-    // Exclusive, so that it neither follows a link nor shares a file; a leftover of a killed
-    // thread with the same number makes way.
-    constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-    descriptor_ = ::open(path_.c_str(), kFlags, 0666);
-    if (descriptor_ < 0 && errno == EEXIST && ::unlink(path_.c_str()) == 0) {
-      descriptor_ = ::open(path_.c_str(), kFlags, 0666);
+      : named_(std::move(path)), target_(std::move(target)) {
+    constexpr unsigned kNames = 16;
+    for (unsigned n = 0; n < kNames && descriptor_ < 0; ++n) {
+      path_ = partPathOf(target_, n);
+      int problem = open();
+      // A leftover of a killed thread with the same number makes way.
+      if (problem == EEXIST && removeStalePart(path_)) problem = open();
+      if (problem == 0 && !holdPart(descriptor_, path_)) close();
+      errno = problem;
+      if (problem != 0 && problem != EEXIST) return;
     }
   }
   ~Temporary() {
     if (descriptor_ < 0) return;
-    ::close(descriptor_);
+    // First, so that it goes while it is held.
     if (!renamed_) ::unlink(path_.c_str());
+    close();
   }
   Temporary(const Temporary&) = delete;
   Temporary& operator=(const Temporary&) = delete;
@@ -67,6 +71,14 @@ class AtomicFile::Temporary {
   }
 
  private:
+  /// Exclusive, so that it neither follows a link nor shares a file. 0, or why it failed.
+  int open() {
+    constexpr int kFlags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+    descriptor_ = ::open(path_.c_str(), kFlags, 0666);
+    return descriptor_ < 0 ? errno : 0;
+  }
+  void close() { ::close(std::exchange(descriptor_, -1)); }
+
   template <class Write>
   static bool writeAll(std::span<const std::byte> bytes, const Write& write) {
     while (!bytes.empty()) {
@@ -89,7 +101,7 @@ class AtomicFile::Temporary {
 
   std::filesystem::path named_;
   std::filesystem::path target_;
-  std::string path_;
+  std::filesystem::path path_;
   int descriptor_ = -1;
   bool renamed_ = false;
 };

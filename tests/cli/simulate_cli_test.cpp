@@ -122,7 +122,7 @@ TEST_F(SimulateCli, ReportsAsJson) {
 
 TEST_F(SimulateCli, TakesTheTaskOfTheWorldWhichTheCommandLineOverrides) {
   test::WorldPackFields list = test::writePacks(folder_, test::smallHomeWorld());
-  list.task = {{"task", "pick"}, {"episode-steps", "20"}, {"safe-drop", "true"}};
+  list.task = test::TaskTexts{{"task", "pick"}, {"episode-steps", "20"}, {"safe-drop", "true"}};
   ASSERT_FALSE(folder_.write("world.pack", test::textOf(buildPack(list))).empty());
   const std::vector<std::string> plain{"--envs", "4", "--steps", "60", "--threads", "1"};
   const auto with = [&plain](std::vector<std::string> more) {
@@ -167,7 +167,7 @@ TEST_F(SimulateCli, TakesTheTaskOfTheWorldWhichTheCommandLineOverrides) {
 
 TEST_F(SimulateCli, RefusesAWorldWhoseTaskIsNone) {
   test::WorldPackFields list = test::writePacks(folder_, test::smallHomeWorld());
-  list.task = {{"episode-steps", "many"}};
+  list.task = test::TaskTexts{{"episode-steps", "many"}};
   ASSERT_FALSE(folder_.write("world.pack", test::textOf(buildPack(list))).empty());
   for (const char* trust : {"--body-transforms", "--trusted"}) {
     const ProgramRun refused = run({"--envs", "1", "--steps", "1", trust});

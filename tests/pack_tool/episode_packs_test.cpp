@@ -84,7 +84,7 @@ TEST(InfoText, TellsTheTaskOfAWorld) {
   EXPECT_THAT(infoText(describe(test::smallWorldPack())),
               HasSubstr("  task         as galactic-run has it\n"));
   WorldPackFields fields = test::smallWorldPack();
-  fields.task = {{"episode-steps", "300"}, {"safe-drop", "true"}};
+  fields.task = test::TaskTexts{{"episode-steps", "300"}, {"safe-drop", "true"}};
   const Json json = describe(fields);
   EXPECT_EQ(json.at("world").at("task"), Json::parse(R"([{"name": "episode-steps", "value": "300"},
                             {"name": "safe-drop", "value": "true"}])"));
@@ -234,8 +234,8 @@ TEST(WorldDiff, ComparesListsByPath) {
 TEST(WorldDiff, ComparesTasksByName) {
   WorldPackFields a = test::smallWorldPack();
   WorldPackFields b = a;
-  a.task = {{"episode-steps", "300"}, {"safe-drop", "true"}};
-  b.task = {{"task", "pick"}, {"episode-steps", "200"}, {"safe-drop", "true"}};
+  a.task = test::TaskTexts{{"episode-steps", "300"}, {"safe-drop", "true"}};
+  b.task = test::TaskTexts{{"task", "pick"}, {"episode-steps", "200"}, {"safe-drop", "true"}};
   const Outcome outcome = diffOf(a, b);
   EXPECT_EQ(outcome.exit_code, kExitDiffers);
   EXPECT_THAT(outcome.out, HasSubstr("  task.episode-steps: 300 | 200\n"
@@ -246,7 +246,7 @@ TEST(WorldDiff, ComparesTasksByName) {
 TEST(CheckWorld, NamesTheTaskOptionThatIsWrong) {
   const ScratchFolder folder;
   WorldPackFields list = test::writePacks(folder, WorldFields{});
-  list.task = {{"safe-drop", "maybe"}};
+  list.task = test::TaskTexts{{"safe-drop", "maybe"}};
   const Outcome outcome = checked(folder.write("world.pack", test::textOf(buildPack(list))));
   EXPECT_EQ(outcome.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
   EXPECT_THAT(outcome.err,

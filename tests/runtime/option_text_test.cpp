@@ -118,7 +118,7 @@ class RangeProbe {
     const auto fault = setOptions(std::span(&text, 1), OptionScope::kTask, options);
     EXPECT_EQ(!fault, is_good) << name << " = " << value;
     ++probes_;
-    accepted_ += fault ? 0 : 1;
+    accepted_ += fault ? 0U : 1U;
     if (fault) return;
     // What was read is what is written: the same number.
     for (const OptionText& written : listOptions(options, OptionScope::kTask)) {

@@ -117,9 +117,7 @@ TEST(WorldCheck, RefusesAnotherKindOfAssetThanTheHeaderSays) {
   EXPECT_EQ(pack.error().message, "has type 5, the header says EPIS; bake the pack again");
 }
 
-using Task = std::vector<std::pair<std::string, std::string>>;
-
-WorldPackFields worldWithTask(Task task) {
+WorldPackFields worldWithTask(TaskTexts task) {
   Fields fields = smallWorldPack();
   fields.task = std::move(task);
   return fields;
@@ -129,19 +127,19 @@ WorldPackFields worldWithTask(Task task) {
 Offence option(const std::string& name, const std::string& value, const std::string& field,
                const std::string& message) {
   return {"world.task[1]." + field, message, [name, value](Fields& f) {
-            f.task = Task{{"episode-steps", "300"}, {name, value}, {"slide-step", "0.05"}};
+            f.task = TaskTexts{{"episode-steps", "300"}, {name, value}, {"slide-step", "0.05"}};
           }};
 }
 
 TEST(WorldCheck, AcceptsTaskOptionsInTheOrderOfTheTable) {
-  for (const Task& task : {Task{}, Task{{"slide-step", "0.1"}},
-                           Task{{"task", "pick"},
-                                {"episode-steps", "0"},
-                                {"safe-drop", "false"},
-                                {"slack-penalty", "-1e-3"},
-                                {"grasp-from", "2"},
-                                {"slide-direction", "towards-base"},
-                                {"place-jitter", "1000"}}}) {
+  for (const TaskTexts& task : {TaskTexts{}, TaskTexts{{"slide-step", "0.1"}},
+                                TaskTexts{{"task", "pick"},
+                                          {"episode-steps", "0"},
+                                          {"safe-drop", "false"},
+                                          {"slack-penalty", "-1e-3"},
+                                          {"grasp-from", "2"},
+                                          {"slide-direction", "towards-base"},
+                                          {"place-jitter", "1000"}}}) {
     const AlignedBytes bytes = buildPack(worldWithTask(task));
     const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
     ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
@@ -177,7 +175,7 @@ TEST(WorldCheck, RefusesTaskOptionsTwiceOrInAnotherOrder) {
       option("task", "pick", "name", "is \"task\"" + wanted),
       {"world.task[2].name", "is \"slide-step\"" + wanted,
        [](Fields& f) {
-         f.task = Task{{"episode-steps", "3"}, {"place-lift", "1"}, {"slide-step", "1"}};
+         f.task = TaskTexts{{"episode-steps", "3"}, {"place-lift", "1"}, {"slide-step", "1"}};
        }},
   });
 }
@@ -210,7 +208,7 @@ TEST(WorldCheck, RefusesWrongValuesOfTaskOptions) {
 }
 
 TEST(WorldCheck, RefusesTaskOptionsThatNobodyVerifiedWhenTheyAreRead) {
-  const AlignedBytes bytes = buildPack(worldWithTask({{"wings", "2"}}));
+  const AlignedBytes bytes = buildPack(worldWithTask(TaskTexts{{"wings", "2"}}));
   const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack", Trust::kTrusted);
   ASSERT_TRUE(pack.has_value());
   const auto options = taskOptions(*pack);

@@ -365,8 +365,7 @@ TEST(World, RefusesARobotThatCannotBeSimulated) {
 }
 
 /// Opens a small world whose pack has this task.
-Result<World> openWithTask(std::vector<std::pair<std::string, std::string>> task,
-                           Trust trust = Trust::kVerify) {
+Result<World> openWithTask(TaskTexts task, Trust trust = Trust::kVerify) {
   const ScratchFolder folder;
   WorldPackFields list = writePacks(folder, WorldFields{});
   list.task = std::move(task);
@@ -394,7 +393,7 @@ TEST(WorldTask, IsWhatTheWorldPackSays) {
 }
 
 TEST(WorldTask, LeavesWhatItDoesNotSayAsItWas) {
-  const Result<World> world = openWithTask({{"pick-reward", "0.25"}});
+  const Result<World> world = openWithTask(TaskTexts{{"pick-reward", "0.25"}});
   ASSERT_TRUE(world.has_value());
   SimulationOptions base;
   base.envs = 7;
@@ -418,7 +417,7 @@ TEST(WorldTask, IsEmptyWhereThereIsNone) {
 
 TEST(WorldTask, IsCheckedInTrustedPacksToo) {
   for (const Trust trust : {Trust::kVerify, Trust::kTrusted}) {
-    const Result<World> world = openWithTask({{"episode-steps", "many"}}, trust);
+    const Result<World> world = openWithTask(TaskTexts{{"episode-steps", "many"}}, trust);
     ASSERT_FALSE(world.has_value());
     EXPECT_EQ(world.error().code, ErrorCode::kInvalidInput);
     EXPECT_TRUE(world.error().where.ends_with("world.pack: world.task[0].value"))

@@ -23,13 +23,16 @@ struct ReferenceFields {
   std::optional<std::pair<std::uint64_t, std::uint64_t>> hash = std::pair{1, 2};
 };
 
+/// Names and values of options of a task.
+using TaskTexts = std::vector<std::pair<std::string, std::string>>;
+
 /// All that a world pack holds. buildPack makes a pack that is valid in every field that was left
 /// as it is.
 struct WorldPackFields {
   PackKind kind = PackKind::kWorld;
   std::vector<ReferenceFields> packs;
-  /// Names and values of the task's options; none: as worlds were before they had them.
-  std::optional<std::vector<std::pair<std::string, std::string>>> task;
+  /// None: as worlds were before they had tasks.
+  std::optional<TaskTexts> task;
 };
 
 /// One pack of each kind; the files are not there.

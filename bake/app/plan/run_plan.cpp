@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "galactic/bake/parallel_for.h"
+#include "galactic/part_files.h"
 #include "plan/bake_planned.h"
 #include "plan/memory_budget.h"
 #include "plan/plan_progress.h"
@@ -56,6 +57,7 @@ class PlanRun {
     PlanProgress progress(order.size() + (with_episodes ? 1 : 0), command_.verbosity);
     for (const std::size_t n : order) outcome_.packs[n].state = PackState::kPlanned;
     if (!command_.dry_run) {
+      removeLeftovers();
       bakeAssets(order, progress);
       if (with_episodes) bakeEpisodes(progress);
     }
@@ -65,6 +67,13 @@ class PlanRun {
   }
 
  private:
+  /// Of runs that were killed: other shards may be at work in the same folders.
+  void removeLeftovers() const {
+    (void)removeStaleParts(plan_.world.parent_path(), {.target = plan_.world.filename().string()});
+    (void)removeStaleParts(plan_.folder, {.is_recursive = true});
+    if (cache_) (void)removeStaleParts(cache_->folder(), {.is_recursive = true});
+  }
+
   void bakeAssets(const std::vector<std::size_t>& order, PlanProgress& progress) {
     if (order.empty()) return;
     const auto at_once = static_cast<unsigned>(std::min<std::size_t>(command_.jobs, order.size()));

@@ -5,7 +5,6 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -48,6 +47,7 @@ constexpr int kExitException = 91;
 constexpr int kExitOutput = 92;
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 18U;
+constexpr int kPipeBytes = 1 << 20;
 constexpr int kWatchIntervalMs = 20;
 
 /// A file descriptor closed on scope exit.
@@ -94,10 +94,12 @@ class SharedStage {
   void* page_;
 };
 
-class MemoryFileChannel final : public ProcessChannel {
+/// The child's end of the pipe: unlike a file in memory, what goes through it counts against no
+/// limit of file sizes.
+class PipeChannel final : public ProcessChannel {
  public:
-  MemoryFileChannel(int file, std::uint64_t limit, SharedStage& stage)
-      : file_(file), left_(limit), stage_(stage) {
+  PipeChannel(int pipe_end, std::uint64_t limit, SharedStage& stage)
+      : pipe_end_(pipe_end), left_(limit), stage_(stage) {
     buffer_.reserve(kBufferBytes);
   }
 
@@ -122,17 +124,65 @@ class MemoryFileChannel final : public ProcessChannel {
  private:
   void writeAll(std::span<const std::byte> bytes) const {
     while (!bytes.empty()) {
-      const ssize_t written = ::write(file_, bytes.data(), bytes.size());
+      const ssize_t written = ::write(pipe_end_, bytes.data(), bytes.size());
       if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) ::_exit(errno == ENOMEM ? kExitOutOfMemory : kExitOutput);
+      if (written <= 0) ::_exit(kExitOutput);
       bytes = bytes.subspan(static_cast<std::size_t>(written));
     }
   }
 
-  int file_;
+  int pipe_end_;
   std::uint64_t left_;
   SharedStage& stage_;
   std::vector<std::byte> buffer_;
+};
+
+/// What came out of the pipe so far, in memory that grows.
+class ReceivedBytes {
+ public:
+  ReceivedBytes() = default;
+  ~ReceivedBytes() {
+    if (capacity_ > 0) ::munmap(memory_, capacity_);
+  }
+  ReceivedBytes(const ReceivedBytes&) = delete;
+  ReceivedBytes& operator=(const ReceivedBytes&) = delete;
+  ReceivedBytes(ReceivedBytes&&) = delete;
+  ReceivedBytes& operator=(ReceivedBytes&&) = delete;
+
+  /// Takes what is there: how many bytes, 0 at the end, or -1 with errno.
+  ssize_t receive(int pipe_end) {
+    if (size_ == capacity_ && !grow()) return -1;
+    const ssize_t count =
+        ::read(pipe_end, static_cast<std::byte*>(memory_) + size_, capacity_ - size_);
+    if (count > 0) size_ += static_cast<std::size_t>(count);
+    return count;
+  }
+
+  /// Hands the bytes over.
+  ProcessOutput take() {
+    if (capacity_ == 0) return ProcessOutput({});
+    const std::size_t page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+    const std::size_t used = (size_ + page - 1) / page * page;
+    if (used < capacity_) ::munmap(static_cast<std::byte*>(memory_) + used, capacity_ - used);
+    capacity_ = 0;
+    return ProcessOutput({static_cast<const std::byte*>(memory_), size_});
+  }
+
+ private:
+  bool grow() {
+    const std::size_t wanted = std::max(kBufferBytes, 2 * capacity_);
+    void* grown = capacity_ == 0 ? ::mmap(nullptr, wanted, PROT_READ | PROT_WRITE,
+                                          MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)
+                                 : ::mremap(memory_, capacity_, wanted, MREMAP_MAYMOVE);
+    if (grown == MAP_FAILED) return false;
+    memory_ = grown;
+    capacity_ = wanted;
+    return true;
+  }
+
+  void* memory_ = nullptr;
+  std::size_t size_ = 0;
+  std::size_t capacity_ = 0;
 };
 
 /// Pages of `process` from /proc: mapped (field 0) or resident (field 1); 0 when unknown.
@@ -161,7 +211,7 @@ void limitResource(Resource resource, std::uint64_t value) {
 
 /// Makes the child harmless: it dies with its parent, handles no signal, holds no descriptor but
 /// its own and prints nothing.
-void settleChild(const std::array<int, 2>& kept, const ProcessLimits& limits) {
+void settleChild(int kept, const ProcessLimits& limits) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGALRM, SIGXCPU,
                            SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGUSR1, SIGUSR2}) {
@@ -173,13 +223,8 @@ void settleChild(const std::array<int, 2>& kept, const ProcessLimits& limits) {
   const int nowhere = ::open("/dev/null", O_RDWR);
   for (const int stream : {0, 1, 2}) ::dup2(nowhere, stream);
   // Also other children's pipes, so that nobody waits for this child by mistake.
-  const int low = std::min(kept[0], kept[1]);
-  const int high = std::max(kept[0], kept[1]);
-  if (low > 3) ::close_range(3, static_cast<unsigned>(low) - 1, 0);
-  if (high > low + 1) {
-    ::close_range(static_cast<unsigned>(low) + 1, static_cast<unsigned>(high) - 1, 0);
-  }
-  ::close_range(static_cast<unsigned>(high) + 1, ~0U, 0);
+  if (kept > 3) ::close_range(3, static_cast<unsigned>(kept) - 1, 0);
+  ::close_range(static_cast<unsigned>(kept) + 1, ~0U, 0);
 
   limitResource(RLIMIT_CORE, 0);
   const auto seconds = std::chrono::ceil<std::chrono::seconds>(limits.wall_clock).count();
@@ -197,7 +242,7 @@ void settleChild(const std::array<int, 2>& kept, const ProcessLimits& limits) {
 #endif
 }
 
-[[noreturn]] void runChild(const IsolatedWork& work, MemoryFileChannel& channel) {
+[[noreturn]] void runChild(const IsolatedWork& work, PipeChannel& channel) {
   try {
     work(channel);
     channel.flush();
@@ -224,21 +269,30 @@ class MemoryWatch {
   std::uint64_t allowed_ = 0;
 };
 
-/// Waits until the child has closed its end of the pipe. Returns why it had to be killed, if so.
-std::optional<ProcessEnd> superviseChild(pid_t child, int pipe_end, const ProcessLimits& limits) {
+/// Receives what the child sends until it has closed its end of the pipe. Returns why it had to be
+/// killed, if so.
+std::optional<ProcessFailure> superviseChild(pid_t child, int pipe_end, const ProcessLimits& limits,
+                                             ReceivedBytes& received) {
+  const auto killed_for = [](ProcessEnd end) {
+    return ProcessFailure{.end = end, .number = SIGKILL};
+  };
   const auto deadline = std::chrono::steady_clock::now() + limits.wall_clock;
   const MemoryWatch memory(limits);
   while (true) {
     const auto left =
         std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
-    if (left.count() <= 0) return ProcessEnd::kTimeLimit;
+    if (left.count() <= 0) return killed_for(ProcessEnd::kTimeLimit);
+    if (memory.exceededBy(child)) return killed_for(ProcessEnd::kMemoryLimit);
     const auto longest = kUnderSanitizer ? kWatchIntervalMs : 1'000'000;
     pollfd waiting{pipe_end, POLLIN, 0};
-    const int ready =
-        ::poll(&waiting, 1, static_cast<int>(std::min<std::int64_t>(left.count(), longest)));
-    if (ready > 0) return std::nullopt;
-    if (ready < 0 && errno != EINTR) return ProcessEnd::kFailed;
-    if (memory.exceededBy(child)) return ProcessEnd::kMemoryLimit;
+    int done = ::poll(&waiting, 1, static_cast<int>(std::min<std::int64_t>(left.count(), longest)));
+    if (done > 0) {
+      const ssize_t count = received.receive(pipe_end);
+      if (count == 0) return std::nullopt;
+      done = count < 0 ? -1 : 1;
+    }
+    if (done < 0 && errno == ENOMEM) return killed_for(ProcessEnd::kMemoryLimit);
+    if (done < 0 && errno != EINTR) return killed_for(ProcessEnd::kFailed);
   }
 }
 
@@ -261,20 +315,6 @@ std::optional<ProcessFailure> judgeExit(int status) {
   return ProcessFailure{.end = end, .number = code};
 }
 
-tl::expected<ProcessOutput, ProcessFailure> mapOutput(int file) {
-  struct stat status {};
-  if (::fstat(file, &status) != 0) {
-    return tl::unexpected(ProcessFailure{.end = ProcessEnd::kFailed, .number = errno});
-  }
-  const auto size = static_cast<std::size_t>(status.st_size);
-  if (size == 0) return ProcessOutput({});
-  void* address = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, file, 0);
-  if (address == MAP_FAILED) {
-    return tl::unexpected(ProcessFailure{.end = ProcessEnd::kFailed, .number = errno});
-  }
-  return ProcessOutput({static_cast<const std::byte*>(address), size});
-}
-
 }  // namespace
 
 ProcessOutput::~ProcessOutput() {
@@ -292,31 +332,32 @@ ProcessOutput& ProcessOutput::operator=(ProcessOutput&& other) noexcept {
 tl::expected<ProcessOutput, ProcessFailure> runIsolated(const IsolatedWork& work,
                                                         const ProcessLimits& limits) {
   const auto not_started = [] { return tl::unexpected(ProcessFailure{.number = errno}); };
-  const Descriptor file(::memfd_create("galactic-import", MFD_CLOEXEC));
   std::array<int, 2> ends{-1, -1};
   SharedStage stage;
-  if (file.get() < 0 || !stage.valid() || ::pipe2(ends.data(), O_CLOEXEC) != 0)
-    return not_started();
+  if (!stage.valid() || ::pipe2(ends.data(), O_CLOEXEC) != 0) return not_started();
   const Descriptor read_end(ends[0]);
   Descriptor write_end(ends[1]);
+  // Fewer turns between the two; without it they are just more.
+  (void)::fcntl(write_end.get(), F_SETPIPE_SZ, kPipeBytes);
 
   const pid_t child = ::fork();
   if (child < 0) return not_started();
   if (child == 0) {
-    settleChild({file.get(), write_end.get()}, limits);
-    MemoryFileChannel channel(file.get(), limits.memory, stage);
+    settleChild(write_end.get(), limits);
+    PipeChannel channel(write_end.get(), limits.memory, stage);
     runChild(work, channel);
   }
   write_end.reset();
-  const auto killed_for = superviseChild(child, read_end.get(), limits);
-  if (killed_for) ::kill(child, SIGKILL);
-  auto failure = judgeExit(reapChild(child));
-  if (killed_for) failure = ProcessFailure{.end = *killed_for, .number = SIGKILL};
+  ReceivedBytes received;
+  auto failure = superviseChild(child, read_end.get(), limits, received);
+  if (failure) ::kill(child, SIGKILL);
+  const auto ended = judgeExit(reapChild(child));
+  if (!failure) failure = ended;
   if (failure) {
     failure->stage = stage.get();
     return tl::unexpected(*failure);
   }
-  return mapOutput(file.get());
+  return received.take();
 }
 
 }  // namespace galactic::bake

@@ -26,7 +26,7 @@ struct ProcessFailure {
   std::uint32_t stage = 0;
 };
 
-/// What a child wrote, mapped read-only; movable, not copyable.
+/// What a child wrote, in pages of its own; movable, not copyable.
 class ProcessOutput {
  public:
   explicit ProcessOutput(std::span<const std::byte> mapped) : bytes_(mapped) {}

@@ -1,0 +1,45 @@
+#pragma once
+#include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+namespace galactic {
+
+// Files that grow under another name beside their target, "TARGET.part-MACHINE-THREAD-NUMBER", and
+// are renamed onto it when they are whole. A program that is killed leaves them behind; they are
+// found by their names, and told from those that somebody still writes by a lock (flock) that goes
+// with its holder. Some file systems keep the locks of each machine apart, or have none: MACHINE
+// says where a file was begun, and others leave it alone until it is old.
+
+/// After this time nobody goes on writing a file that does not change.
+inline constexpr std::chrono::seconds kPartAge = std::chrono::hours(24);
+
+/// The name for what this thread writes to `target`. Threads of all machines have names of their
+/// own, but those of another container on this one; `number` is for trying again.
+[[nodiscard]] std::filesystem::path partPathOf(const std::filesystem::path& target,
+                                               unsigned number);
+
+/// Keeps the file that `descriptor`, open for reading, has open as `part` from being removed as
+/// stale until the descriptor is closed. Answers whether it is there: it may have been removed
+/// since it was made, and has then to be made again.
+[[nodiscard]] bool holdPart(int descriptor, const std::filesystem::path& part);
+
+/// Removes `part` if nobody holds it, and it was begun on this machine since that started, or has
+/// not changed for `age`. Answers whether it has.
+bool removeStalePart(const std::filesystem::path& part, std::chrono::seconds age = kPartAge);
+
+/// Where parts are looked for.
+struct PartSearch {
+  /// Whether in the folders below, too; links are not followed.
+  bool is_recursive = false;
+  /// Only parts of a target of this name; empty: of any.
+  std::string target;
+  std::chrono::seconds age = kPartAge;
+};
+
+/// Removes the stale parts in `folder`; how many they were. What cannot be looked at or removed
+/// stays. Safe while other processes write there.
+std::size_t removeStaleParts(const std::filesystem::path& folder, const PartSearch& search);
+
+}  // namespace galactic
