@@ -150,7 +150,7 @@ Result<Json> generateEpisodePack(BakeRun& run) {
   EpisodeInputs inputs;
   inputs.packs.reserve(opened->packs.size());
   for (const PackFile& pack : opened->packs) inputs.packs.push_back(&pack);
-  if (!options.geometry.empty()) {
+  if (options.details || !options.geometry.empty()) {
     inputs.details = [&options](std::string_view scene) { return readDetails(options, scene); };
   }
   const auto show = [&](std::size_t done) {
