@@ -57,7 +57,9 @@ std::string PreparedScene::whyUnusable() const {
   if (!supports_.places().empty()) return {};
   const bool in_receptacles = context_.options.supports == SupportChoice::kReceptacles;
   if (in_receptacles && details_.receptacles.empty()) {
-    return "no receptacles of the scene are known; let objects stand on any surface";
+    return "no receptacles of the scene are known: packs hold none, a recipe that names the "
+           "scene's "
+           "dataset brings them; or let objects stand on any surface";
   }
   const DistanceRange& heights = context_.options.heights;
   return fmt::format(

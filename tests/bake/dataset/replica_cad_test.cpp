@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -157,6 +159,53 @@ TEST_F(ReplicaCad, StandsFurnitureOnTheFloor) {
   EXPECT_NEAR(heights("cabinet_:0000").second, 0.81, kHand);
   EXPECT_NEAR(heights("door2_:0000").first, -0.04, kHand);
   EXPECT_NEAR(heights("door2_:0000").second, 2.39, kHand);
+}
+
+/// Heights at which the vertical line through (x, z) meets triangles.
+std::vector<float> heightsAt(const bake::TriangleMesh& mesh, float x, float z) {
+  std::vector<float> heights;
+  for (const auto& triangle : mesh.triangles) {
+    const Vec3& a = mesh.positions[triangle[0]];
+    const Vec3 ab = mesh.positions[triangle[1]] - a;
+    const Vec3 ac = mesh.positions[triangle[2]] - a;
+    const float area = ab.x * ac.z - ab.z * ac.x;
+    if (area == 0) continue;
+    const float u = ((x - a.x) * ac.z - (z - a.z) * ac.x) / area;
+    const float v = (ab.x * (z - a.z) - ab.z * (x - a.x)) / area;
+    if (u >= 0 && v >= 0 && u + v <= 1) heights.push_back(a.y + u * ab.y + v * ac.y);
+  }
+  return heights;
+}
+
+TEST_F(ReplicaCad, HasSurfacesUnderItsReceptacles) {
+  const auto scene = dataset_->compose("v3_sc1_staging_00", meshes_);
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto mesh = placeAndClean(scene->scene);
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  std::size_t on_surface = 0;
+  for (const bake::SupportRegion& region : scene->receptacles) {
+    // All stand upright: the lowest corner is as low as the bottom.
+    const Vec3& half = region.half_extents;
+    float bottom = region.world_from_region.translation.y;
+    for (const Vec3& axis : {Vec3{half.x, 0, 0}, Vec3{0, half.y, 0}, Vec3{0, 0, half.z}}) {
+      bottom -= std::abs(rotate(region.world_from_region.rotation, axis).y);
+    }
+    const auto is_bottom = [bottom](float height) {
+      constexpr float kUnder = 0.05F;
+      constexpr float kOver = 0.03F;
+      return height > bottom - kUnder && height < bottom + kOver;
+    };
+    bool found = false;
+    // Some boxes have an edge between two boards right under their middle.
+    for (const Vec3& aside : {Vec3{}, half * 0.3F, half * -0.3F}) {
+      const Vec3 point = region.world_from_region * aside;
+      found = found || std::ranges::any_of(heightsAt(mesh->mesh, point.x, point.z), is_bottom);
+    }
+    if (found) ++on_surface;
+    EXPECT_TRUE(found) << region.name << ", bottom at " << bottom << " m";
+  }
+  EXPECT_GT(scene->receptacles.size(), 40U);
+  EXPECT_EQ(on_surface, scene->receptacles.size());
 }
 
 TEST_F(ReplicaCad, AComposedSceneHasRoomsToMoveIn) {

@@ -218,20 +218,24 @@ TEST(Geometry, OfAnotherPlaceIsRefused) {
   EXPECT_THAT(made.error().message, testing::HasSubstr("to x 1, z 1 m, its column grids from"));
 }
 
-/// A room without anything in it, and one that is too small to stand in.
+/// A room without anything in it, and one that is too low for the robot's arm.
 bake::TriangleMesh bareRoom() { return madeRoom(3, 3).build(); }
-bake::TriangleMesh shaft() { return madeRoom(0.5F, 0.5F).build(); }
+bake::TriangleMesh crawlSpace() {
+  MeshBuilder room = madeRoom(1, 1);
+  room.box({0, 0.5F, 0}, {1, 2.5F, 1});
+  return room.build();
+}
 
 TEST(ScenesWithoutFloorOrSurface, AreLeftOutAsIfTheyWereNotThere) {
   const MadeWorld world(twoTables(), stickRobot());
   const MemoryPack kitchen = scenePackOf(twoTables(), "kitchen");
   const MemoryPack attic = scenePackOf(bareRoom(), "attic");
-  const MemoryPack lift = scenePackOf(shaft(), "lift");
+  const MemoryPack den = scenePackOf(crawlSpace(), "den");
   EpisodeInputs good{world.packs(), {}};
   good.packs.push_back(&kitchen.pack());
   EpisodeInputs all = good;
   all.packs.push_back(&attic.pack());
-  all.packs.push_back(&lift.pack());
+  all.packs.push_back(&den.pack());
   for (const std::uint32_t episodes : {1U, 3U, 150U}) {
     EpisodeGeneratorOptions options = optionsFor(episodes, 2);
     const auto wanted = generated(good, options);
@@ -249,25 +253,25 @@ TEST(ScenesWithoutFloorOrSurface, AreLeftOutAsIfTheyWereNotThere) {
       ASSERT_EQ(made.left_out.size(), 2U);
       EXPECT_EQ(made.left_out[0].name, "attic");
       EXPECT_THAT(made.left_out[0].reason, testing::HasSubstr("no flat surface between"));
-      EXPECT_EQ(made.left_out[1].name, "lift");
+      EXPECT_EQ(made.left_out[1].name, "den");
       EXPECT_THAT(made.left_out[1].reason, testing::HasSubstr("stands nowhere"));
       EXPECT_THAT(made.episodes.warnings,
                   testing::ElementsAre(testing::StartsWith("scene attic is left out: no flat"),
-                                       testing::StartsWith("scene lift is left out: the robot")));
+                                       testing::StartsWith("scene den is left out: the robot")));
     }
   }
 }
 
 TEST(ScenesWithoutFloorOrSurface, AreAnErrorWhenNoOtherIsLeft) {
   const MadeWorld world(bareRoom(), stickRobot());
-  const MemoryPack lift = scenePackOf(shaft(), "lift");
+  const MemoryPack den = scenePackOf(crawlSpace(), "den");
   EpisodeInputs inputs{world.packs(), {}};
-  inputs.packs.push_back(&lift.pack());
+  inputs.packs.push_back(&den.pack());
   for (const std::uint32_t episodes : {1U, 10U}) {
     const auto none = bake::generateEpisodes(inputs, optionsFor(episodes, 1));
     ASSERT_FALSE(none.has_value());
     EXPECT_EQ(none.error().code, ErrorCode::kInvalidInput);
-    EXPECT_EQ(none.error().where, "lift");
+    EXPECT_EQ(none.error().where, "den");
     EXPECT_THAT(none.error().message, testing::HasSubstr("stands nowhere"));
     EXPECT_THAT(none.error().message,
                 testing::EndsWith("; none of the 1 other scenes can be used either"));

@@ -1,0 +1,143 @@
+// Episodes in the worlds of recipes: what a dataset annotates, and scenes that cannot be used.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/plan_folder.h"
+#include "galactic/world.h"
+
+namespace galactic::test {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::Ge;
+using testing::HasSubstr;
+using testing::Le;
+
+/// Scene c is the apartment, well a shaft that is too narrow to stand in.
+class PlanEpisodes : public PlanFolder {
+ protected:
+  void SetUp() override {
+    PlanFolder::SetUp();
+    write("data/meshes/well.obj", R"(v 0 0 0
+v 0.5 0 0
+v 0 2 0
+v 0.5 2 0
+v 0 0 0.5
+v 0.5 0 0.5
+v 0 2 0.5
+v 0.5 2 0.5
+f 1 2 4 3
+f 5 7 8 6
+f 1 5 6 2
+f 3 4 8 7
+f 1 3 7 5
+f 2 6 8 4
+)");
+    write("data/stages/well.stage_config.json", R"({"render_asset": "../meshes/well.obj"})");
+    addScene("well", "well", "");
+    annotate(-2.5);
+  }
+
+  /// Marks all of the apartment that lies within 1.5 m of this x as a receptacle, and another one
+  /// wrongly.
+  void annotate(double x) {
+    write("data/stages/flat.stage_config.json",
+          fmt::format(R"({{"render_asset": "../meshes/apartment.glb", "user_defined": {{
+              "receptacle_aabb_part": {{"position": [{}, 0.7, 0], "scale": [1.5, 0.7, 4]}},
+              "receptacle_aabb_bad": {{"position": [0, 0, 0]}}}}}})",
+                      x));
+  }
+
+  [[nodiscard]] ProgramRun bakeWorld(const std::string& scenes, const std::string& supports) {
+    write("flat.toml", fmt::format(R"([bake]
+radii = [0.05, 0.12]
+[[scenes]]
+dataset = "data/home.scene_dataset_config.json"
+scenes = [{}]
+check-columns = 0
+[[objects]]
+files = "objects/m*.glb"
+eps = 0.03
+tau = 0.06
+[robot]
+files = "robot/porter.urdf"
+recipe = "robot/robot.toml"
+eps = 0.06
+tau = 0.08
+max-spheres = 30
+[episodes]
+count = 6
+objects = 2
+{}
+)",
+                                   scenes, supports));
+    return run({"flat.toml", "--data", sampleFile(""), "--report", "report.json"});
+  }
+
+  /// X of all objects and goals of the world's episodes, metres.
+  [[nodiscard]] std::vector<float> placesAlongX() const {
+    std::vector<float> places;
+    const auto world = World::open(std::vector{path("flat.pack")});
+    EXPECT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+    if (!world) return places;
+    for (const Episode& episode : world->episodes().episodes()) {
+      places.push_back(episode.goal.translation.x);
+      for (const Placement& placement : world->episodes().placements(episode)) {
+        places.push_back(placement.pose.translation.x);
+      }
+    }
+    return places;
+  }
+
+  [[nodiscard]] nlohmann::json generation() const {
+    const nlohmann::json all = report();
+    for (const auto& entry : all.at("baked")) {
+      if (entry.contains("generation")) return entry.at("generation");
+    }
+    return {};
+  }
+};
+
+TEST_F(PlanEpisodes, StandInTheReceptaclesOfTheDataset) {
+  const ProgramRun west = bakeWorld(R"("c", "well")", R"(supports = "receptacles")");
+  ASSERT_EQ(west.exit_code, 0) << west.err;
+  EXPECT_THAT(west.out, HasSubstr("scene well is left out: the robot porter stands nowhere"));
+  EXPECT_THAT(west.out, HasSubstr("stages/flat.stage_config.json: "
+                                  "user_defined.receptacle_aabb_bad.scale: it is missing"));
+  EXPECT_THAT(placesAlongX(), AllOf(testing::SizeIs(18), testing::Each(AllOf(Ge(-4.F), Le(-1.F)))));
+  const nlohmann::json made = generation();
+  ASSERT_EQ(made.at("scenes").size(), 1U);
+  EXPECT_EQ(made["scenes"][0]["name"], "c");
+  EXPECT_EQ(made["scenes"][0]["receptacles"], 1);
+  // The meshes of the dataset are there to settle objects on.
+  EXPECT_EQ(made["scenes"][0]["settled"], true);
+  ASSERT_EQ(made.at("left_out").size(), 1U);
+  EXPECT_EQ(made["left_out"][0]["scene"], "well");
+  EXPECT_THAT(made["left_out"][0]["reason"].get<std::string>(), HasSubstr("stands nowhere"));
+
+  // Another annotation: the scene is baked anew for it, and the episodes with it.
+  annotate(2.5);
+  ASSERT_EQ(bakeWorld(R"("c", "well")", R"(supports = "receptacles")").exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("scenes/c.pack", "episodes.pack"));
+  EXPECT_THAT(placesAlongX(), testing::Each(AllOf(Ge(1.F), Le(4.F))));
+
+  // The scenes come from the cache, what is annotated does not.
+  ASSERT_EQ(bakeWorld(R"("c", "well")", "").exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("episodes.pack"));
+  EXPECT_EQ(generation()["scenes"][0]["receptacles"], 1);
+  EXPECT_THAT(placesAlongX(), AllOf(Contains(Ge(1.F)), Contains(testing::Lt(1.F))));
+}
+
+TEST_F(PlanEpisodes, AreAnErrorWhereNoSceneIsLeft) {
+  const ProgramRun none = bakeWorld(R"("well")", "");
+  EXPECT_EQ(none.exit_code, 3);
+  EXPECT_THAT(none.err, HasSubstr("well: the robot porter stands nowhere"));
+  const ProgramRun wrong = bakeWorld(R"("c")", R"(supports = "tables")");
+  EXPECT_EQ(wrong.exit_code, 3);
+  EXPECT_THAT(wrong.err, HasSubstr("supports"));
+}
+
+}  // namespace
+}  // namespace galactic::test
