@@ -120,6 +120,10 @@ void EpisodeSetOptions::addGeneration(CLI::App& app, BakeCommand& command) {
       app.add_option("--heights", heights_,
                      "Generate: objects stand this high above the floor, metres (default 0.3,1.2)")
           ->type_name("LOW,HIGH"),
+      app.add_option("--flatness", generate.flatness,
+                     "Generate: how far the surface under an object may be from flat, metres; "
+                     "scans need about 0.01")
+          ->capture_default_str(),
       app.add_option("--goal-distance", goal_distance_,
                      "Generate: from target to goal, metres (default 1)")
           ->type_name("LEAST[,MOST]"),

@@ -40,17 +40,6 @@ std::uint32_t mostPlacements(const SourceEpisodes& set) {
   return most;
 }
 
-/// Each reason with its count.
-std::vector<std::pair<std::string_view, std::uint64_t>> countsOf(const RejectionCounts& counts) {
-  std::vector<std::pair<std::string_view, std::uint64_t>> named;
-  named.reserve(kRejectionCount);
-  for (std::size_t n = 0; n < kRejectionCount; ++n) {
-    const auto reason = static_cast<EpisodeRejection>(n);
-    named.emplace_back(rejectionName(reason), counts[reason]);
-  }
-  return named;
-}
-
 /// "14 of 16; not: 2 no grasp".
 std::string textOf(const SolvedSample& sample) {
   std::vector<std::string> ends;
@@ -61,12 +50,7 @@ std::string textOf(const SolvedSample& sample) {
 }
 
 void printGeneration(const EpisodeGeneration& generation, Verbosity verbosity) {
-  std::vector<std::string> texts;
-  for (const auto& [name, count] : countsOf(generation.rejections)) {
-    if (count > 0) texts.push_back(fmt::format("{} {}", name, count));
-  }
-  fmt::print("  drawn and not taken: {}\n",
-             texts.empty() ? "nothing" : fmt::format("{}", fmt::join(texts, ", ")));
+  fmt::print("  drawn and not taken: {}\n", textOf(generation.rejections));
   if (generation.sample.episodes > 0) {
     fmt::print("  the scripted policy solves {}\n", textOf(generation.sample));
   }
@@ -82,8 +66,9 @@ void printGeneration(const EpisodeGeneration& generation, Verbosity verbosity) {
 
 Json generationReport(const EpisodeGeneration& generation) {
   Json rejections = Json::object();
-  for (const auto& [name, count] : countsOf(generation.rejections)) {
-    rejections[std::string(name)] = count;
+  for (std::size_t n = 0; n < kRejectionCount; ++n) {
+    const auto reason = static_cast<EpisodeRejection>(n);
+    rejections[std::string(rejectionName(reason))] = generation.rejections[reason];
   }
   Json scenes = Json::array();
   for (const GeneratedScene& scene : generation.scenes) {

@@ -188,11 +188,16 @@ class Draft {
       rejections_.add(EpisodeRejection::kOutsideReceptacle);
       return std::nullopt;
     }
-    if (stage_.rays != nullptr && !stage_.rays->isEven(print, spot.surface, kFlatness)) {
+    if (!isEven(print, spot.surface)) {
       rejections_.add(EpisodeRejection::kUneven);
       return std::nullopt;
     }
     return object;
+  }
+
+  /// Whether rays, where there are any, see no gap and no bump under the object.
+  [[nodiscard]] bool isEven(const Footprint& print, float surface) const {
+    return stage_.rays == nullptr || stage_.rays->isEven(print, surface, stage_.options.flatness);
   }
 
   /// Where the object comes to rest when it is let go: moved and turned a little.

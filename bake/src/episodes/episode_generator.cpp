@@ -124,18 +124,20 @@ class Batch {
   [[nodiscard]] Error noEpisode(const Slot& slot) const {
     const auto ended = [&slot](DraftEnd end) { return slot.ends[static_cast<std::size_t>(end)]; };
     const EpisodeGeneratorOptions& options = context_.options;
-    return {ErrorCode::kInvalidInput, std::string(scene_.scene.name()),
-            fmt::format(
-                "episode {} found no place in any of {} drafts: {} ended at the target, {} at a "
-                "goal {} to {} m away{}, {} at {} to {} other objects, {} at the robot's start, {} "
-                "in the replay; there are {} support places on {} surfaces and {} floor places: "
-                "ask for fewer objects, other distances or other heights",
-                slot.number, slot.drafts, ended(DraftEnd::kTarget), ended(DraftEnd::kGoal),
-                options.target_to_goal.least, options.target_to_goal.most,
-                options.goal_on_other_support ? " on another surface" : "",
-                ended(DraftEnd::kOthers), options.objects.least - 1, options.objects.most - 1,
-                ended(DraftEnd::kStart), slot.replays_failed, stage_.supports.places().size(),
-                stage_.supports.surfaceCount(), stage_.floor.places().size())};
+    return {
+        ErrorCode::kInvalidInput, std::string(scene_.scene.name()),
+        fmt::format(
+            "episode {} found no place in any of {} drafts: {} ended at the target, {} at a "
+            "goal {} to {} m away{}, {} at {} to {} other objects, {} at the robot's start, {} "
+            "in the replay; drawn and not taken: {}; there are {} support places on {} surfaces "
+            "and "
+            "{} floor places: ask for fewer objects, other distances or other heights",
+            slot.number, slot.drafts, ended(DraftEnd::kTarget), ended(DraftEnd::kGoal),
+            options.target_to_goal.least, options.target_to_goal.most,
+            options.goal_on_other_support ? " on another surface" : "", ended(DraftEnd::kOthers),
+            options.objects.least - 1, options.objects.most - 1, ended(DraftEnd::kStart),
+            slot.replays_failed, textOf(slot.rejections), stage_.supports.places().size(),
+            stage_.supports.surfaceCount(), stage_.floor.places().size())};
   }
 
   const GenerationContext& context_;

@@ -10,4 +10,15 @@ std::string_view rejectionName(EpisodeRejection reason) {
   return kNames[static_cast<std::size_t>(reason)];
 }
 
+std::string textOf(const RejectionCounts& counts) {
+  std::string text;
+  for (std::size_t n = 0; n < kRejectionCount; ++n) {
+    const auto reason = static_cast<EpisodeRejection>(n);
+    if (counts[reason] == 0) continue;
+    if (!text.empty()) text += ", ";
+    text.append(rejectionName(reason)).append(" ").append(std::to_string(counts[reason]));
+  }
+  return text.empty() ? "nothing" : text;
+}
+
 }  // namespace galactic::bake

@@ -37,6 +37,10 @@ Result<void> checkOptions(const EpisodeGeneratorOptions& options) {
     return refuse(fmt::format("heights from {} to {} m are no range; give the lower one first",
                               heights.least, heights.most));
   }
+  if (!(options.flatness > 0) || options.flatness > kMostFlatness) {
+    return refuse(fmt::format("a flatness of {} m is asked for; give more than 0, at most {}",
+                              options.flatness, kMostFlatness));
+  }
   if (auto checked = checkDistances(options.target_to_goal, "the way from target to goal");
       !checked) {
     return checked;

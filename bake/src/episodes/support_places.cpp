@@ -13,19 +13,20 @@ constexpr float kFloorStride = 0.09F;
 
 /// The free height over a surface of about this height in a column of the smallest radius: from the
 /// surface to what is over it. None where there is no such surface.
-std::optional<Span> freeOver(const ColumnGrid& grid, const Column& column, float surface) {
+std::optional<Span> freeOver(const ColumnGrid& grid, const Column& column, float surface,
+                             float flatness) {
   for (const Span& span : spansOf(grid, column.i, column.k)) {
     const float height = span.lo - grid.radius();
-    if (std::abs(height - surface) <= kFlatness) return Span{height, span.hi + grid.radius()};
+    if (std::abs(height - surface) <= flatness) return Span{height, span.hi + grid.radius()};
   }
   return std::nullopt;
 }
 
 /// How far around a footprint the columns have to be flat, metres, so that nothing under it is not:
-/// a column beside an edge still looks flat where the sphere on it sinks by no more than kFlatness,
-/// and the next one is a cell further.
-float rimOf(const ColumnGrid& grid) {
-  return grid.spacing() + std::sqrt(2 * grid.radius() * kFlatness);
+/// a column beside an edge still looks flat where the sphere on it sinks by no more than
+/// `flatness`, and the next one is a cell further.
+float rimOf(const ColumnGrid& grid, float flatness) {
+  return grid.spacing() + std::sqrt(2 * grid.radius() * flatness);
 }
 
 /// Finds floors from which the arm reaches a point.
@@ -65,8 +66,8 @@ class ReachTest {
 /// equally high, joined as the places are found, row by row.
 class SurfaceLabels {
  public:
-  explicit SurfaceLabels(std::uint32_t columns)
-      : above_(columns + std::size_t{1}, 0), row_(above_) {}
+  SurfaceLabels(std::uint32_t columns, float flatness)
+      : flatness_(flatness), above_(columns + std::size_t{1}, 0), row_(above_) {}
 
   void beginColumn(std::uint32_t i, std::size_t count) { row_[i] = count; }
 
@@ -93,7 +94,7 @@ class SurfaceLabels {
   /// Joins the newest place with those of its height among `first` to `last`.
   void joinAny(const std::vector<SupportPlace>& places, std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
-      if (std::abs(places[n].surface - places.back().surface) > kFlatness) continue;
+      if (std::abs(places[n].surface - places.back().surface) > flatness_) continue;
       const std::uint32_t a = shortened(static_cast<std::uint32_t>(n));
       const std::uint32_t b = shortened(static_cast<std::uint32_t>(places.size() - 1));
       parents_[std::max(a, b)] = std::min(a, b);
@@ -107,6 +108,7 @@ class SurfaceLabels {
     return label;
   }
 
+  float flatness_;
   std::vector<std::uint32_t> parents_;
   /// Index of the first place of each column, and the number of places at the end.
   std::vector<std::size_t> above_;
@@ -147,7 +149,10 @@ bool contains(const SupportRegion& region, const Vec3& point) {
 SupportPlaces::SupportPlaces(const Scene& scene, const Reachable& from,
                              std::span<const SupportRegion> receptacles,
                              const EpisodeGeneratorOptions& options)
-    : scene_(&scene), receptacles_(receptacles), choice_(options.supports) {
+    : scene_(&scene),
+      receptacles_(receptacles),
+      choice_(options.supports),
+      flatness_(options.flatness) {
   const ReachTest test(scene, from);
   for (SupportPlace& place : flatPlaces()) {
     const Vec3 point{place.x, place.surface, place.z};
@@ -166,7 +171,7 @@ SupportPlaces::SupportPlaces(const Scene& scene, const Reachable& from,
 std::vector<SupportPlace> SupportPlaces::flatPlaces() const {
   const ColumnGrid& grid = scene_->grids().front();
   std::vector<SupportPlace> flat;
-  SurfaceLabels labels(grid.columnsX());
+  SurfaceLabels labels(grid.columnsX(), flatness_);
   for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
     for (std::uint32_t i = 0; i < grid.columnsX(); ++i) {
       labels.beginColumn(i, flat.size());
@@ -217,7 +222,7 @@ bool SupportPlaces::isFlatAround(const Column& column, float surface) const {
   if (column.i + 1 >= grid.columnsX() || column.k + 1 >= grid.columnsZ()) return false;
   for (std::uint32_t k = column.k - 1; k <= column.k + 1; ++k) {
     for (std::uint32_t i = column.i - 1; i <= column.i + 1; ++i) {
-      if (!freeOver(grid, {i, k}, surface)) return false;
+      if (!freeOver(grid, {i, k}, surface, flatness_)) return false;
     }
   }
   return true;
@@ -225,8 +230,8 @@ bool SupportPlaces::isFlatAround(const Column& column, float surface) const {
 
 std::optional<float> SupportPlaces::surfaceUnder(const Footprint& footprint, float surface) const {
   const ColumnGrid& grid = scene_->grids().front();
-  const float length = footprint.half_length + rimOf(grid);
-  const float width = footprint.half_width + rimOf(grid);
+  const float length = footprint.half_length + rimOf(grid, flatness_);
+  const float width = footprint.half_width + rimOf(grid, flatness_);
   const float reach = std::hypot(length, width);
   const auto first = columnAt(grid, footprint.x - reach, footprint.z - reach);
   const auto last = columnAt(grid, footprint.x + reach, footprint.z + reach);
@@ -239,14 +244,14 @@ std::optional<float> SupportPlaces::surfaceUnder(const Footprint& footprint, flo
       const float dz = centre.z - footprint.z;
       if (std::abs(dx * footprint.along_x + dz * footprint.along_z) > length) continue;
       if (std::abs(dz * footprint.along_x - dx * footprint.along_z) > width) continue;
-      const std::optional<Span> free = freeOver(grid, {i, k}, surface);
+      const std::optional<Span> free = freeOver(grid, {i, k}, surface, flatness_);
       // The object may be lifted by the unevenness of the surface.
-      if (!free || free->hi < footprint.heights.hi + kFlatness + kHeadroom) return std::nullopt;
+      if (!free || free->hi < footprint.heights.hi + flatness_ + kHeadroom) return std::nullopt;
       highest = std::max(highest, free->lo);
     }
   }
   const ColumnGrid& shaft = scene_->grids().back();
-  const float over = footprint.heights.hi + kFlatness + shaft.radius();
+  const float over = footprint.heights.hi + flatness_ + shaft.radius();
   const Contact contact = shaft.contact({footprint.x, over, footprint.z});
   if (contact.clearance != Clearance::kFree || contact.up < kApproachHeight) return std::nullopt;
   return highest;

@@ -20,8 +20,6 @@ namespace galactic::bake {
 inline constexpr float kApproachHeight = 0.2F;
 /// Free height between an object and what is over it, metres.
 inline constexpr float kHeadroom = 0.02F;
-/// Heights within one footprint may differ by this much, metres: a bake rounds them to less.
-inline constexpr float kFlatness = 0.002F;
 
 /// A column over a flat piece of surface that the robot can reach.
 struct SupportPlace {
@@ -80,6 +78,7 @@ class SupportPlaces {
   const Scene* scene_;
   std::span<const SupportRegion> receptacles_;
   SupportChoice choice_;
+  float flatness_ = 0;
   std::vector<SupportPlace> places_;
   /// Those in receptacles, for SupportChoice::kBoth.
   std::vector<std::uint32_t> in_receptacles_;

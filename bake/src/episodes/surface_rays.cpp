@@ -8,15 +8,7 @@ namespace galactic::bake {
 namespace {
 
 /// Rays begin this high over the surface, metres: under what may hang over an object.
-constexpr float kAbove = 0.015F;
-/// The least cosine of a surface's normal with the vertical: 15 degrees, for scanned surfaces.
-constexpr float kUpright = 0.966F;
-
-/// Whether a triangle lies flat, either side up: sources turn them as they like.
-bool isUpright(const Vec3& normal) {
-  return std::abs(normal.y) >= kUpright * std::hypot(normal.x, normal.y, normal.z);
-}
-
+constexpr float kAbove = 0.025F;
 }  // namespace
 
 Result<SurfaceRays> SurfaceRays::build(const TriangleMesh& mesh) {
@@ -45,7 +37,7 @@ bool SurfaceRays::isEven(const Footprint& footprint, float surface, float flatne
       const auto hit = rays_.first({.origin = {x, surface + kAbove, z},
                                     .direction = {0, -1, 0},
                                     .farthest = kAbove + flatness});
-      if (!hit || !isUpright(hit->normal) || hit->distance < kAbove - flatness) return false;
+      if (!hit || hit->distance < kAbove - flatness) return false;
     }
   }
   return true;

@@ -18,7 +18,7 @@ class SurfaceRays {
   [[nodiscard]] static Result<SurfaceRays> build(const TriangleMesh& mesh);
 
   /// Whether rays down over the whole footprint, its border included, all meet a surface within
-  /// `flatness` (metres) of the height `surface`, whose normal is upright. Thread-safe.
+  /// `flatness` (metres) of the height `surface`. Thread-safe.
   [[nodiscard]] bool isEven(const Footprint& footprint, float surface, float flatness) const;
 
  private:

@@ -117,6 +117,8 @@ TEST(EpisodeGenerator, RefusesOptionsThatMakeNoSense) {
                 o.start_to_target = {2, 1};
               }),
               HasSubstr("from start to target from 2 to 1 m is no range"));
+  EXPECT_THAT(refused([](Options& o) { o.flatness = 0.5F; }), HasSubstr("0.5 m is asked for"));
+  EXPECT_THAT(refused([](Options& o) { o.flatness = 0; }), HasSubstr("more than 0"));
   EXPECT_THAT(refused([](Options& o) { o.split.held_out = 1.5F; }), HasSubstr("held out is 1.5"));
 }
 

@@ -68,6 +68,44 @@ TEST(SupportPlaces, KeepToTheHeightsAskedFor) {
   }
 }
 
+/// A table top of cobbles: squares of 6 cm, some of them 6 mm higher.
+bake::TriangleMesh bumpyRoom() {
+  MeshBuilder room = madeRoom(3, 3);
+  room.box({1, 0.6F, 1}, {1.84F, 0.7F, 1.6F});
+  constexpr float kEdge = 0.06F;
+  for (int i = 0; i < 14; ++i) {
+    for (int k = 0; k < 10; ++k) {
+      const float x = 1 + kEdge * static_cast<float>(i);
+      const float z = 1 + kEdge * static_cast<float>(k);
+      const float top = (i + k) % 2 == 0 ? kTable : kTable + 0.006F;
+      room.box({x, 0.7F, z}, {x + kEdge, top, z + kEdge});
+    }
+  }
+  return room.build();
+}
+
+TEST(SupportPlaces, OnBumpySurfacesAreAsFlatAsIsAskedFor) {
+  const MadeWorld world(bumpyRoom(), stickRobot());
+  const FloorMap floor(world.scene(), world.robot());
+  const ArmReach reach(world.robot());
+  const Footprint print{.x = 1.4F,
+                        .z = 1.3F,
+                        .half_length = 0.08F,
+                        .half_width = 0.06F,
+                        .heights = {kTable, kTable + 0.1F}};
+  EpisodeGeneratorOptions options;
+  const SupportPlaces strict(world.scene(), {floor, reach}, {}, options);
+  EXPECT_FALSE(strict.surfaceUnder(print, kTable).has_value());
+  options.flatness = 0.01F;
+  const SupportPlaces lenient(world.scene(), {floor, reach}, {}, options);
+  EXPECT_GT(lenient.places().size(), 4 * std::max<std::size_t>(1, strict.places().size()));
+  EXPECT_EQ(lenient.surfaceCount(), 1U);
+  const auto surface = lenient.surfaceUnder(print, kTable);
+  ASSERT_TRUE(surface.has_value());
+  // The object stands on the highest cobbles.
+  EXPECT_NEAR(*surface, kTable + 0.006F, 0.0005F);
+}
+
 TEST(SupportPlaces, FootprintsFitWhereTheTableIsFlatFreeAndOpenFromAbove) {
   const Supports supports;
   std::mt19937 random(3);

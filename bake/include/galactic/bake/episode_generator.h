@@ -64,6 +64,8 @@ struct DistanceRange {
   float most = std::numeric_limits<float>::infinity();
 };
 
+inline constexpr float kMostFlatness = 0.02F;
+
 struct EpisodeGeneratorOptions {
   std::uint32_t episodes = 100;
   /// Objects per episode, the target among them.
@@ -71,6 +73,9 @@ struct EpisodeGeneratorOptions {
   std::uint64_t seed = 1;
   /// Heights above the floor between which objects and goals are placed.
   DistanceRange heights{0.3F, 1.2F};
+  /// Heights of the surface under an object may differ by this much either way, metres, up to
+  /// kMostFlatness. Scans are bumpy: they need more, and geometry to settle objects on.
+  float flatness = 0.002F;
   /// Distance of the target's origin at its start and at its goal.
   DistanceRange target_to_goal{.least = 1.0F};
   /// Horizontal distance of the robot's base and the target's origin.

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace galactic::bake {
@@ -42,5 +43,8 @@ class RejectionCounts {
  private:
   std::array<std::uint64_t, kRejectionCount> counts_{};
 };
+
+/// For people: "no_room 812, not_reached 14"; "nothing" where all are 0.
+[[nodiscard]] std::string textOf(const RejectionCounts& counts);
 
 }  // namespace galactic::bake
