@@ -365,10 +365,19 @@ Plan Planner::pickFolded(const BasePlace& start, std::span<const Joints> carries
   return plan;
 }
 
+FloorSearch::Target Planner::standsFor(const Vec3& point) const {
+  // An object is reached at its edge.
+  constexpr float kObject = 0.1F;
+  FloorSearch::Target target{.point = point, .bearing = reach_table_.bearing()};
+  // A long arm need not be stretched; a short one has to be near.
+  target.farthest = std::min(target.farthest, reach_table_.farthest() + kObject);
+  target.nearest = std::min(target.nearest, 0.5F * target.farthest);
+  return target;
+}
+
 Plan Planner::pickWith(const BasePlace& start, const Joints& carried) {
   std::optional<ArmPath> reaching;
-  const FloorSearch::Target target{.point = probe_.objects().box(state_->target).centre,
-                                   .bearing = reach_table_.bearing()};
+  const FloorSearch::Target target = standsFor(probe_.objects().box(state_->target).centre);
   const FloorSearch::Answer answer =
       floor_search_.search(start, carried, target, [&](BasePlace& stance) {
         reaching = reachTarget(stance, carried);
@@ -417,8 +426,7 @@ Plan Planner::placeLeaning(const BasePlace& start, const Joints& carried) {
 
 Plan Planner::placeWith(const BasePlace& start, const Joints& carried) {
   std::optional<ArmPath> reaching;
-  const FloorSearch::Target target{.point = state_->goal.translation,
-                                   .bearing = reach_table_.bearing()};
+  const FloorSearch::Target target = standsFor(state_->goal.translation);
   const FloorSearch::Answer answer =
       floor_search_.search(start, carried, target, [&](BasePlace& stance) {
         reaching = reachGoal(stance, carried);

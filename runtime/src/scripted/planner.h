@@ -57,6 +57,8 @@ class Planner {
   /// With the first of these folds that leads to the target.
   [[nodiscard]] Plan pickFolded(const BasePlace& start, std::span<const Joints> carries);
   [[nodiscard]] Plan pickWith(const BasePlace& start, const Joints& carried);
+  /// Where the base may stand for a reach to this point of the world.
+  [[nodiscard]] FloorSearch::Target standsFor(const Vec3& point) const;
   [[nodiscard]] Plan placeLeaning(const BasePlace& start, const Joints& carried);
   [[nodiscard]] Plan placeWith(const BasePlace& start, const Joints& carried);
   /// From where the arm is to its pose for driving; empty when it is there.

@@ -49,6 +49,9 @@ ReachTable::ReachTable(Arm& arm, const Joints& positions, std::uint32_t samples)
     for (const ArmJoint& joint : arm.joints()) rows_.push_back(drawn[joint.position]);
   }
   bearing_ = meanBearing(grips_);
+  for (const Pose& grip : grips_) {
+    farthest_ = std::max(farthest_, std::hypot(grip.translation.x, grip.translation.z));
+  }
 }
 
 Joints ReachTable::joints(const Arm& arm, std::size_t n, const Joints& others) const {

@@ -23,6 +23,8 @@ class ReachTable {
   /// about +Y from the way in which the base drives, radians, rounded to a sixteenth of a turn. 0
   /// where the arm reaches all round alike.
   [[nodiscard]] float bearing() const { return bearing_; }
+  /// The farthest of any grip from the root's vertical axis, metres.
+  [[nodiscard]] float farthest() const { return farthest_; }
   /// root_from_grip of each sample.
   [[nodiscard]] std::span<const Pose> grips() const { return grips_; }
 
@@ -31,6 +33,7 @@ class ReachTable {
   std::vector<float> rows_;
   std::vector<Pose> grips_;
   float bearing_ = 0;
+  float farthest_ = 0;
 };
 
 /// Where one point and one direction of the hand are in each sample of a table.

@@ -9,28 +9,30 @@
 
 namespace galactic::test {
 
-/// A mast on a small base with a lift, from which a telescope of `segments` slides out to the
-/// right, 0.1 m ahead of the base's middle, and where `with_wrist` a wrist that turns the hand
-/// about the vertical. Hand and grip point along the grip's X axis.
 struct TelescopeOptions {
   std::size_t segments = 3;
   bool with_wrist = false;
 };
 
+/// Metres.
 namespace telescope {
 
+/// From the base's middle to the telescope, in the way that the base drives.
 constexpr float kAhead = 0.1F;
-/// Of the lift, height above the floor; of the whole telescope, length to the grip.
+/// Heights of the telescope above the floor.
 constexpr float kLowest = 0.3F;
 constexpr float kHighest = 1.1F;
+/// From the mast to the grip.
 constexpr float kShortest = 0.3F;
 constexpr float kLongest = 0.9F;
+/// From the wrist to the grip.
 constexpr float kHand = 0.2F;
 
 }  // namespace telescope
 
+/// A mast with a lift on a base of one sphere; a telescope that slides out to the base's right, and
+/// at its end the hand, which a wrist turns about the vertical if there is one.
 inline RobotPackFields telescopeRobot(const TelescopeOptions& options) {
-  using namespace telescope;
   RobotPackFields robot;
   robot.name = "stick";
   robot.radii = madeRadii();
@@ -60,20 +62,22 @@ inline RobotPackFields telescopeRobot(const TelescopeOptions& options) {
   const Quat up{0, 0, half, half};
   const Quat down{0, 0, -half, half};
   const Quat right{0, -half, 0, half};
-  const float way = (kLongest - kShortest) / static_cast<float>(options.segments);
+  const float way =
+      (telescope::kLongest - telescope::kShortest) / static_cast<float>(options.segments);
   add("base", {}, JointType::kFixed, {});
-  add("lift", {{kAhead, kLowest, 0}, up}, JointType::kPrismatic, {0, kHighest - kLowest});
+  add("lift", {{telescope::kAhead, telescope::kLowest, 0}, up}, JointType::kPrismatic,
+      {0, telescope::kHighest - telescope::kLowest});
   for (std::size_t n = 0; n < options.segments; ++n) {
     const Pose at = n == 0 ? Pose{{}, down * right} : Pose{};
     add("segment" + std::to_string(n), at, JointType::kPrismatic, {0, way});
   }
-  const Pose wrist{{kShortest - kHand, 0, 0}, {}};
+  const Pose wrist{{telescope::kShortest - telescope::kHand, 0, 0}, {}};
   add("hand", wrist, options.with_wrist ? JointType::kRevolute : JointType::kFixed, {-1.5F, 1.5F});
   if (options.with_wrist) robot.start_positions.back() = 0;
   const auto hand = static_cast<std::uint32_t>(robot.links.size() - 1);
-  robot.end_effector = EndEffectorFields{.link = hand, .grasp_point = Vec3{kHand, 0, 0}};
+  robot.end_effector = EndEffectorFields{.link = hand, .grasp_point = Vec3{telescope::kHand, 0, 0}};
   robot.end_effector->grasp_radius = 0.05F;
-  robot.spheres = {{{0, 0.2F, 0}, 2}, {{kHand - 0.06F, 0, 0}, 1}};
+  robot.spheres = {{{0, 0.2F, 0}, 2}, {{telescope::kHand - 0.06F, 0, 0}, 1}};
   const auto count = static_cast<std::uint32_t>(robot.links.size());
   robot.groups.reserve(count);
   for (std::uint32_t link = 0; link < count; ++link) {

@@ -137,6 +137,9 @@ TEST(Telescope, ReachesToTheRightOfTheBase) {
   Telescope made;
   const ReachTable table(made.arm(), made.start(), kSamples);
   EXPECT_NEAR(table.bearing(), -kPi / 2, 1e-6F);
+  const float farthest = std::hypot(telescope::kAhead, telescope::kLongest);
+  EXPECT_LE(table.farthest(), farthest + 1e-5F);
+  EXPECT_GE(table.farthest(), farthest - 1e-3F);
 }
 
 TEST(Telescope, ReachesWithTheBasesTurnWhatBruteForceReachesAndNothingElse) {
