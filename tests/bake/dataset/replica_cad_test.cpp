@@ -204,7 +204,7 @@ TEST_F(ReplicaCad, HasSurfacesUnderItsReceptacles) {
     if (found) ++on_surface;
   }
   EXPECT_GT(scene->receptacles.size(), 40U);
-  // They were drawn by hand: one in the fridge hangs 8 cm above its board.
+  // They were drawn by hand: one in the fridge is further off its board.
   EXPECT_GE(20 * on_surface, 19 * scene->receptacles.size());
 }
 
