@@ -82,6 +82,58 @@ class FloorGraph {
   const ColumnGrid& grid_;
 };
 
+/// The spheres of a body as the batched queries of grids want them, to be tested in many places.
+class BodyArrays {
+ public:
+  /// `spheres` are ordered by radius.
+  explicit BodyArrays(std::span<const BodySphere> spheres) : moved_(spheres.size()) {
+    centres_.reserve(spheres.size());
+    for (const BodySphere& sphere : spheres) {
+      if (parts_.empty() || parts_.back().radius_index != sphere.radius_index) {
+        parts_.push_back({sphere.radius_index, 0});
+      }
+      ++parts_.back().count;
+      centres_.push_back(sphere.centre);
+    }
+  }
+
+  /// The answer of isFree() for these spheres, moved by `offset`, found faster.
+  [[nodiscard]] bool isFreeAt(const Scene& scene, const Vec3& offset) {
+    std::size_t first = 0;
+    for (const Part& part : parts_) {
+      for (std::size_t n = first; n < first + part.count; ++n) {
+        const Vec3 centre = centres_[n] + offset;
+        moved_.x[n] = centre.x;
+        moved_.y[n] = centre.y;
+        moved_.z[n] = centre.z;
+      }
+      const SphereCentres centres{.x = std::span(moved_.x).subspan(first, part.count),
+                                  .y = std::span(moved_.y).subspan(first, part.count),
+                                  .z = std::span(moved_.z).subspan(first, part.count)};
+      if (scene.grids()[part.radius_index].firstNotFree(centres) < part.count) return false;
+      first += part.count;
+    }
+    return true;
+  }
+
+ private:
+  /// Spheres of one radius, one after the other.
+  struct Part {
+    std::uint32_t radius_index = 0;
+    std::size_t count = 0;
+  };
+  struct Arrays {
+    explicit Arrays(std::size_t count) : x(count), y(count), z(count) {}
+    std::vector<float> x;
+    std::vector<float> y;
+    std::vector<float> z;
+  };
+
+  std::vector<Part> parts_;
+  std::vector<Vec3> centres_;
+  Arrays moved_;
+};
+
 }  // namespace
 
 std::uint32_t nearestHeading(float yaw) {
@@ -102,15 +154,16 @@ FloorMap::FloorMap(const Scene& scene, const Robot& robot)
     for (std::uint32_t i = 0; i < grid_.columnsX(); ++i) addPlaces(i, k);
   }
   tried_ = places_.size();
-  std::array<std::vector<BodySphere>, kHeadings> at_origin;
+  std::vector<BodyArrays> at_origin;
+  at_origin.reserve(kHeadings);
   for (std::uint32_t heading = 0; heading < kHeadings; ++heading) {
-    at_origin[heading] =
-        robotBody(robot, groundPose({}, yawOf(heading)), robot.startPositions()).spheres;
+    at_origin.emplace_back(
+        robotBody(robot, groundPose({}, yawOf(heading)), robot.startPositions()).spheres);
   }
   for (FloorPlace& place : places_) {
     const Vec3 ground = position(place);
     for (std::uint32_t heading = 0; heading < kHeadings; ++heading) {
-      if (isFree(scene, at_origin[heading], ground)) {
+      if (at_origin[heading].isFreeAt(scene, ground)) {
         place.headings = static_cast<std::uint16_t>(place.headings | (1U << heading));
       }
     }

@@ -124,6 +124,11 @@ constexpr float kOverRegion = 0.02F;
 }  // namespace
 
 bool contains(const SupportRegion& region, const Vec3& point) {
+  // Most points are far off: nothing of the box is further from its centre than its corners.
+  const Vec3 aside = point - region.world_from_region.translation;
+  constexpr float kRounding = 1e-3F;
+  const float reach = std::sqrt(dot(region.half_extents, region.half_extents)) + kRounding;
+  if (std::max(std::abs(aside.x), std::abs(aside.z)) > reach) return false;
   const Pose region_from_world = inverse(region.world_from_region);
   const Vec3 from = region_from_world * Vec3{point.x, point.y - kOverRegion, point.z};
   const Vec3 way = rotate(region_from_world.rotation, {0, kOverRegion + kUnderRegion, 0});

@@ -220,11 +220,7 @@ TEST(Geometry, OfAnotherPlaceIsRefused) {
 
 /// A room without anything in it, and one that is too low for the robot's arm.
 bake::TriangleMesh bareRoom() { return madeRoom(3, 3).build(); }
-bake::TriangleMesh crawlSpace() {
-  MeshBuilder room = madeRoom(1, 1);
-  room.box({0, 0.5F, 0}, {1, 2.5F, 1});
-  return room.build();
-}
+bake::TriangleMesh crawlSpace() { return madeRoom(1, 1, 0.5F).build(); }
 
 TEST(ScenesWithoutFloorOrSurface, AreLeftOutAsIfTheyWereNotThere) {
   const MadeWorld world(twoTables(), stickRobot());

@@ -13,17 +13,16 @@ namespace galactic::test {
 /// The radii of all made packs.
 inline std::vector<float> madeRadii() { return {0.015F, 0.05F, 0.12F}; }
 
-/// A closed room from the origin to (width, 2.5, depth), its floor at y = 0.
-inline MeshBuilder madeRoom(float width, float depth) {
+/// A closed room from the origin to (width, height, depth), its floor at y = 0.
+inline MeshBuilder madeRoom(float width, float depth, float height = 2.5F) {
   MeshBuilder room;
   constexpr float kWall = 0.1F;
-  constexpr float kHeight = 2.5F;
   room.box({-kWall, -kWall, -kWall}, {width + kWall, 0, depth + kWall});
-  room.box({-kWall, kHeight, -kWall}, {width + kWall, kHeight + kWall, depth + kWall});
-  room.box({-kWall, 0, -kWall}, {0, kHeight, depth + kWall});
-  room.box({width, 0, -kWall}, {width + kWall, kHeight, depth + kWall});
-  room.box({0, 0, -kWall}, {width, kHeight, 0});
-  room.box({0, 0, depth}, {width, kHeight, depth + kWall});
+  room.box({-kWall, height, -kWall}, {width + kWall, height + kWall, depth + kWall});
+  room.box({-kWall, 0, -kWall}, {0, height, depth + kWall});
+  room.box({width, 0, -kWall}, {width + kWall, height, depth + kWall});
+  room.box({0, 0, -kWall}, {width, height, 0});
+  room.box({0, 0, depth}, {width, height, depth + kWall});
   return room;
 }
 
