@@ -34,7 +34,7 @@ struct PartSearch {
   /// Whether in the folders below, too; links are not followed.
   bool is_recursive = false;
   /// Only parts of a target of this name; empty: of any.
-  std::string target;
+  std::string target{};
   std::chrono::seconds age = kPartAge;
 };
 
