@@ -5,6 +5,7 @@
 #include "cli/plan_folder.h"
 #include "galactic/pack_reference.h"
 #include "galactic/world.h"
+#include "support/habitat_text.h"
 
 namespace galactic::test {
 namespace {
@@ -274,6 +275,21 @@ TEST_F(PlanCli, BakesTheWorldOfARecipe) {
   ASSERT_TRUE(with_task.has_value());
   EXPECT_EQ(with_task->withTask().task.most_steps, 300U);
   EXPECT_FALSE(with_task->withTask().task.drop_fails);
+  const auto stepped = [this](std::vector<std::string> more) {
+    more.insert(more.begin(),
+                {"--pack", "flat.pack", "--envs", "2", "--steps", "3", "--report", "run.json"});
+    const ProgramRun stepping = runProgram(GALACTIC_RUN, path(""), more);
+    EXPECT_EQ(stepping.exit_code, 0) << stepping.err;
+    return nlohmann::json::parse(content("run.json"), nullptr, false);
+  };
+  const nlohmann::json as_baked = stepped({});
+  EXPECT_EQ(as_baked["options"]["episode-steps"], 300);
+  EXPECT_EQ(as_baked["options"]["safe-drop"], true);
+  const nlohmann::json typed = stepped({"--episode-steps", "2", "--safe-drop=false"});
+  EXPECT_EQ(typed["options"]["episode-steps"], 2);
+  EXPECT_EQ(typed["options"]["safe-drop"], false);
+  EXPECT_EQ(typed["from_world"], nlohmann::json::array());
+  EXPECT_GE(typed["episodes"]["ended"], 2);
   // In shards episodes wait for the join.
   auto part = arguments;
   part.insert(part.end(), {"--shard", "1/2", "-o", "part.pack"});
@@ -281,6 +297,35 @@ TEST_F(PlanCli, BakesTheWorldOfARecipe) {
   EXPECT_FALSE(has("part/episodes.pack"));
   EXPECT_THAT(packsThatAre("baked"),
               ElementsAre("objects/box.pack", "robot.pack", "scenes/c.pack"));
+}
+
+TEST_F(PlanCli, FindsFilesOfEpisodesBesideTheRecipeAndThenInItsData) {
+  write("recipes/home.toml",
+        "[[scenes]]\nfiles = \"../data/meshes/apartment.glb\"\ncheck-columns = 0\nradii = [0.05]\n"
+        "[episodes]\nfiles = \"habitat.json\"\nobject-pack = \"objects.pack\"\n");
+  write("recipes/habitat.json", kSmallHabitatSet);
+  const std::string tetrahedron =
+      "v 0 0 0\nv 0.1 0 0\nv 0 0.2 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  write("mug.obj", tetrahedron);
+  write("003_cracker_box.obj", tetrahedron);
+  const ProgramRun objects = run({"mug.obj", "003_cracker_box.obj", "--as", "object", "--up", "y",
+                                  "--radii", "0.05", "-o", "objects.pack"});
+  ASSERT_EQ(objects.exit_code, 0) << objects.err;
+  const std::string pack = content("objects.pack");
+  const std::vector<std::string> arguments{"recipes/home.toml", "--data", "elsewhere", "--report",
+                                           "report.json",       "-o",     "home.pack"};
+  // Beside the caller is not where it is looked for.
+  const ProgramRun lost = run(arguments);
+  EXPECT_EQ(lost.exit_code, 2);
+  EXPECT_THAT(lost.err, HasSubstr("home.toml:7: object-pack: objects.pack fits no file in "));
+  write("elsewhere/objects.pack", pack);
+  const ProgramRun found = run(arguments);
+  ASSERT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("scenes/apartment.pack", "episodes.pack"));
+  write("recipes/objects.pack", "no pack");
+  const ProgramRun beside = run(arguments);
+  EXPECT_EQ(beside.exit_code, 3) << "the one beside the recipe comes first";
+  EXPECT_THAT(beside.err, HasSubstr("recipes/objects.pack"));
 }
 
 }  // namespace

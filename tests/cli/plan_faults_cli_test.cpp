@@ -1,11 +1,14 @@
 // Bakes of whole datasets that are killed, stopped, refused or run out of space.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <thread>
 
 #include "cli/plan_folder.h"
+#include "galactic/part_files.h"
 
 namespace galactic::test {
 namespace {
@@ -45,6 +48,17 @@ class PlanFaults : public PlanFolder {
   }
 };
 
+/// The unfinished files below `folder`.
+std::vector<fs::path> partsBelow(const fs::path& folder) {
+  std::vector<fs::path> parts;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.path().filename().string().find(".part-") != std::string::npos) {
+      parts.push_back(entry.path());
+    }
+  }
+  return parts;
+}
+
 TEST_F(PlanFaults, KilledAtAnyMomentItMakesTheSamePacksLater) {
   ASSERT_EQ(bake("whole", {"--no-cache"}).exit_code, 0);
   const PackContents whole = packsIn("whole");
@@ -64,11 +78,64 @@ TEST_F(PlanFaults, KilledAtAnyMomentItMakesTheSamePacksLater) {
     ASSERT_EQ(found.count(name), 1U) << name;
     EXPECT_TRUE(found.at(name) == bytes) << name;
   }
-  // What was killed may leave parts of files behind, never a pack that is not whole.
+  EXPECT_THAT(partsBelow(path("out")), IsEmpty()) << "left by the killed ones";
+  // Not even those leave a pack that is not whole.
   for (const auto& [name, bytes] : found) {
     const bool is_pack = name.ends_with(".pack");
     EXPECT_TRUE(!is_pack || whole.count(name) == 1) << name;
   }
+}
+
+TEST_F(PlanFaults, ClearsAwayWhatKilledRunsLeftBehindAndNothingElse) {
+  ASSERT_EQ(bake("out", {"--scenes", "c", "--cache", path("cache").string()}).exit_code, 0);
+  // As a killed run leaves them: in the world's folder, in the cache and beside the world pack.
+  const std::vector<fs::path> stale{partPathOf(path("out/home/scenes/c.pack"), 0),
+                                    partPathOf(path("out/home/textures/0.pack"), 1),
+                                    partPathOf(path("cache/textures/0.pack"), 0),
+                                    partPathOf(path("out/home.pack"), 0)};
+  for (const fs::path& part : stale) write(fs::relative(part, path("")).string(), "half");
+  // Another shard's, which is being written, another machine's, and what is none of this world's.
+  const fs::path held = partPathOf(path("out/home/scenes/b.pack"), 0);
+  write(fs::relative(held, path("")).string(), "half");
+  const int descriptor = ::open(held.c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_TRUE(holdPart(descriptor, held));
+  const std::vector<std::string> others{"out/home/scenes/a.pack.part-0123456789abcdef-7-0",
+                                        "out/other.pack.part-0123456789abcdef-7-0",
+                                        "out/home/notes.part-1"};
+  for (const std::string& other : others) write(other, "half");
+  ASSERT_EQ(
+      bake("out", {"--scenes", "c", "--cache", path("cache").string(), "--dry-run"}).exit_code, 0);
+  for (const fs::path& part : stale) EXPECT_TRUE(fs::exists(part)) << part << ": a dry run";
+  ASSERT_EQ(bake("out", {"--scenes", "c", "--cache", path("cache").string()}).exit_code, 0);
+  for (const fs::path& part : stale) EXPECT_FALSE(fs::exists(part)) << part;
+  EXPECT_TRUE(fs::exists(held));
+  for (const std::string& other : others) EXPECT_TRUE(has(other)) << other;
+  ::close(descriptor);
+  ASSERT_EQ(bake("out", {"--scenes", "c", "--cache", path("cache").string()}).exit_code, 0);
+  EXPECT_FALSE(fs::exists(held)) << "nobody writes it any more";
+}
+
+TEST_F(PlanFaults, WhereFilesMayNotGrowSaysSoAndLeavesOldPacksAsTheyWere) {
+  ASSERT_EQ(bake("out", {"--scenes", "c"}).exit_code, 0);
+  const PackContents before = packsIn("out");
+  addScene("c", "flat", thing("mug", 3));
+  std::string line = "ulimit -f 4; exec \"" GALACTIC_BAKE "\"";
+  for (const std::string& word : datasetArguments("out", {"--scenes", "c"})) line += " " + word;
+  const ProgramRun limited = shell(line);
+  EXPECT_EQ(limited.exit_code, 2) << limited.err;
+  EXPECT_THAT(limited.err, AllOf(HasSubstr("galactic-bake: out/home/"), HasSubstr("File too large"),
+                                 HasSubstr("an existing file is left as it was")));
+  expectSamePacks(packsIn("out"), before);
+  EXPECT_THAT(partsBelow(path("out")), IsEmpty());
+  // One pack alone, too.
+  const std::string mesh = path("data/meshes/apartment.glb").string();
+  const std::string alone = "\"" GALACTIC_BAKE "\" --check-columns 0 " + mesh + " -o one.pack";
+  ASSERT_EQ(shell("exec " + alone + " --radii 0.05").exit_code, 0);
+  const std::string one = content("one.pack");
+  const ProgramRun refused = shell("ulimit -f 4; exec " + alone + " --radii 0.12");
+  EXPECT_EQ(refused.exit_code, 2) << refused.err;
+  EXPECT_THAT(refused.err, HasSubstr("one.pack: cannot write the file: File too large"));
+  EXPECT_TRUE(content("one.pack") == one);
 }
 
 TEST_F(PlanFaults, StopsBetweenPacksAndGoesOnLater) {

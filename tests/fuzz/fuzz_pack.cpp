@@ -172,6 +172,11 @@ void useEpisodes(const PackFile& pack) {
 void useWorld(const PackFile& pack) {
   const auto references = packReferences(pack);
   if (!references) report("a pack of a world without a list");
+  const auto task = taskOptions(pack);
+  SimulationOptions options;
+  if (!task || setOptions(*task, OptionScope::kTask, options)) {
+    report("a pack of a world whose task is none");
+  }
   for (const PackReference& reference : *references) {
     const std::filesystem::path path(reference.path);
     if (path.empty() || path.is_absolute()) report("a listed pack that may lie anywhere");

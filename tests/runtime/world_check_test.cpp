@@ -203,7 +203,7 @@ TEST(WorldCheck, RefusesWrongValuesOfTaskOptions) {
       value("slide-direction", "up", "pushout or towards-base"),
       value("slide-direction", "", "pushout or towards-base"),
       value("grasp-from", "2.5", "-2 to 2"),
-      value("pick-reward", "1e7", "-1e+06 to 1e+06"),
+      value("pick-reward", "1e7", "-1000000 to 1000000"),
   });
 }
 
@@ -254,11 +254,11 @@ TEST(DamagedWorldPack, WithARecomputedHashIsRefusedOrSafeToReadAfterEachFlip) {
 }
 
 TEST(DamagedWorldPack, WithATaskIsRefusedOrSafeToReadAfterEachFlip) {
-  const AlignedBytes bytes =
-      buildPack(worldWithTask({{"task", "pick"}, {"episode-steps", "300"}, {"safe-drop", "true"}}));
-  expectEachTruncationRefused(bytes);
-  expectEachBitFlipRefused(bytes);
-  expectFlipsWithARightHashRefusedOrUsable(bytes, PackKind::kWorld, readEverything);
+  const WorldPackFields fields =
+      worldWithTask({{"task", "pick"}, {"episode-steps", "300"}, {"safe-drop", "true"}});
+  expectEachTruncationRefused(buildPack(fields));
+  expectEachBitFlipRefused(buildPack(fields));
+  expectFlipsWithARightHashRefusedOrUsable(buildPack(fields), PackKind::kWorld, readEverything);
 }
 
 }  // namespace
