@@ -144,7 +144,7 @@ TEST_F(PartFiles, MakeWayForTheSameThread) {
 
 TEST_F(PartFiles, ArePublishedWhileOthersClearAway) {
   constexpr std::size_t kWriters = 3;
-  constexpr int kRounds = 300;
+  constexpr int kRounds = 60;
   std::atomic<bool> over{false};
   std::atomic<std::size_t> removed{0};
   std::thread cleaner([&] {
