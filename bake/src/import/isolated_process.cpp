@@ -158,6 +158,8 @@ class ReceivedBytes {
     return count;
   }
 
+  [[nodiscard]] std::size_t size() const { return size_; }
+
   /// Hands the bytes over.
   ProcessOutput take() {
     if (capacity_ == 0) return ProcessOutput({});
@@ -289,6 +291,8 @@ std::optional<ProcessFailure> superviseChild(pid_t child, int pipe_end, const Pr
     if (done > 0) {
       const ssize_t count = received.receive(pipe_end);
       if (count == 0) return std::nullopt;
+      // The child keeps to it by itself, unless its input has got the better of it.
+      if (received.size() > limits.memory) return killed_for(ProcessEnd::kMemoryLimit);
       done = count < 0 ? -1 : 1;
     }
     if (done < 0 && errno == ENOMEM) return killed_for(ProcessEnd::kMemoryLimit);
