@@ -128,6 +128,8 @@ Result<std::optional<Json>> fromCache(const PlannedPack& pack, const std::string
   const auto found = tools.cache->find(key, pack.folder, tools.digests);
   if (!found) return std::nullopt;
   Json entry = Json::parse(found->report, nullptr, /*allow_exceptions=*/false);
+  // It says which textures belong to the pack: without it the pack is made again.
+  if (entry.is_discarded()) return std::nullopt;
   if (!hasTextures(pack, entry, tools)) return std::nullopt;
   if (auto linked = linkOrCopy(found->pack, pack.command.output); !linked) {
     return tl::unexpected(linked.error());

@@ -72,7 +72,7 @@ std::optional<TriangleRays> TriangleRays::build(std::vector<Vec3> positions,
   return TriangleRays(std::move(built));
 }
 
-std::optional<RayHit> TriangleRays::first(const Ray& ray) const {
+std::optional<float> TriangleRays::first(const Ray& ray) const {
   RTCRayHit hit{};
   hit.ray = embreeRay(ray);
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -85,7 +85,7 @@ std::optional<RayHit> TriangleRays::first(const Ray& ray) const {
   rtcIntersect1(scene_->scene.get(), &context, &hit);
 #endif
   if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  return RayHit{.distance = hit.ray.tfar, .normal = {hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z}};
+  return hit.ray.tfar;
 }
 
 bool TriangleRays::isOpen(const Ray& ray) const {

@@ -17,14 +17,6 @@ struct Ray {
   float farthest = std::numeric_limits<float>::infinity();
 };
 
-/// Where a ray meets a triangle first.
-struct RayHit {
-  /// In lengths of the ray's direction.
-  float distance = 0;
-  /// Of the triangle, as its corners turn; not of unit length.
-  Vec3 normal;
-};
-
 /// Triangles that rays are sent through; both sides are met. The answers are the same on all
 /// processors of one architecture. Implemented with Embree, in embree_rays.cpp.
 class TriangleRays {
@@ -40,8 +32,9 @@ class TriangleRays {
   TriangleRays(const TriangleRays&) = delete;
   TriangleRays& operator=(const TriangleRays&) = delete;
 
-  /// The triangle that the ray meets first; none where it meets nothing. Thread-safe.
-  [[nodiscard]] std::optional<RayHit> first(const Ray& ray) const;
+  /// How far away the ray meets a triangle first, in lengths of its direction; none where it meets
+  /// nothing. Thread-safe.
+  [[nodiscard]] std::optional<float> first(const Ray& ray) const;
 
   /// Whether the ray meets nothing. Thread-safe.
   [[nodiscard]] bool isOpen(const Ray& ray) const;

@@ -130,8 +130,7 @@ class Batch {
             "episode {} found no place in any of {} drafts: {} ended at the target, {} at a "
             "goal {} to {} m away{}, {} at {} to {} other objects, {} at the robot's start, {} "
             "in the replay; drawn and not taken: {}; there are {} support places on {} surfaces "
-            "and "
-            "{} floor places: ask for fewer objects, other distances or other heights",
+            "and {} floor places: ask for fewer objects, other distances or other heights",
             slot.number, slot.drafts, ended(DraftEnd::kTarget), ended(DraftEnd::kGoal),
             options.target_to_goal.least, options.target_to_goal.most,
             options.goal_on_other_support ? " on another surface" : "", ended(DraftEnd::kOthers),

@@ -9,6 +9,7 @@ namespace {
 
 /// Rays begin this high over the surface, metres: under what may hang over an object.
 constexpr float kAbove = 0.025F;
+
 }  // namespace
 
 Result<SurfaceRays> SurfaceRays::build(const TriangleMesh& mesh) {
@@ -34,10 +35,10 @@ bool SurfaceRays::isEven(const Footprint& footprint, float surface, float flatne
           footprint.half_width * (2 * static_cast<float>(b) / static_cast<float>(across) - 1);
       const float x = footprint.x + footprint.along_x * length - footprint.along_z * width;
       const float z = footprint.z + footprint.along_z * length + footprint.along_x * width;
-      const auto hit = rays_.first({.origin = {x, surface + kAbove, z},
-                                    .direction = {0, -1, 0},
-                                    .farthest = kAbove + flatness});
-      if (!hit || hit->distance < kAbove - flatness) return false;
+      const auto distance = rays_.first({.origin = {x, surface + kAbove, z},
+                                         .direction = {0, -1, 0},
+                                         .farthest = kAbove + flatness});
+      if (!distance || *distance < kAbove - flatness) return false;
     }
   }
   return true;

@@ -8,8 +8,7 @@ RayDepth::RayDepth(const bake::TriangleMesh& mesh)
     : rays_(bake::TriangleRays::build(mesh.vertices, mesh.triangles, /*jobs=*/1).value()) {}
 
 float RayDepth::first(const Vec3& origin, const Vec3& direction, float near) const {
-  const auto hit = rays_.first({.origin = origin, .direction = direction, .nearest = near});
-  return hit ? hit->distance : 0;
+  return rays_.first({.origin = origin, .direction = direction, .nearest = near}).value_or(0);
 }
 
 std::vector<float> RayDepth::image(const RenderCamera& camera, const RenderOptions& options) const {
