@@ -6,6 +6,10 @@ target_compile_options(galactic_warnings INTERFACE
 # The same bytes on every machine and compiler: no contraction into fused operations.
 # -fno-math-errno lets sqrt become one instruction; it changes no result.
 target_compile_options(galactic_warnings INTERFACE -ffp-contract=off -fno-math-errno)
+# It takes a source that another one includes for a header, where such a type would be a mistake.
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(galactic_warnings INTERFACE -Wno-subobject-linkage)
+endif()
 
 # Tests are compiled for longer than they run: in Release, -O1 takes a third less to compile than -O3, and
 # no result depends on it. Not for programs: the linker keeps one copy of an inline function, which could

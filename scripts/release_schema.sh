@@ -6,7 +6,7 @@
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 settled="common column_grid scene pack"
-open_to_change="render object robot episodes world"
+open_to_change="render object robot episodes world policy"
 
 version=${1:-}
 if ! [[ "$version" =~ ^[1-9][0-9]*$ ]]; then

@@ -3,13 +3,18 @@
 
     tidy.py BUILD_FOLDER
 
-Says what it found and exits with 1 when it found something. A source that passed is not examined again
-until something changes that it is made of: itself, what it includes of ours, its compile command, the
-checks, or an installed package. What passed is remembered for all checkouts of the user, in
-~/.cache/galactic/tidy, or in the folder that GALACTIC_TIDY_CACHE names.
+Says what it found. Exits with 1 when there is a bug among it (an error: WarningsAsErrors of .clang-tidy says what
+is one), with 10 when there are matters of style only.
+
+Sources that can be compiled as one are examined as one, which saves most of the time: it goes into the headers of
+other projects. What was said of a source is remembered until something changes that it is made of: itself, what it
+includes of ours, its compile command, the checks, or an installed package. It is remembered for all checkouts of
+the user, in ~/.cache/galactic/tidy, or in the folder that GALACTIC_TIDY_CACHE names.
 """
 
+import collections
 import concurrent.futures
+import dataclasses
 import functools
 import hashlib
 import json
@@ -20,11 +25,14 @@ import shlex
 import subprocess
 import sys
 
+import source_groups
+
 CLANG_TIDY = "clang-tidy-14"
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = ("bake", "pack_tool", "runtime")
 INCLUDE = re.compile(rb'^[ \t]*#[ \t]*include[ \t]*["<]([^">\n]+)[">]', re.MULTILINE)
-FINDING = re.compile(r"(warning|error): ")
+FINDING = re.compile(r"^(/[^:]*):\d+:\d+: (warning|error): .*$", re.MULTILINE)
+MATTERS_OF_STYLE = 10
 
 
 @functools.cache
@@ -74,23 +82,82 @@ def surroundings() -> bytes:
     return digest.digest()
 
 
-def key_of(entry: dict, common: bytes) -> str:
+def key_of(entry: dict, files: list[pathlib.Path], common: bytes) -> str:
     """Digest of everything that the result for a source depends on, the checkout's place apart."""
-    command = shlex.split(entry["command"])
-    folder = pathlib.Path(entry["directory"])
     digest = hashlib.sha256(common)
     digest.update(entry["command"].replace(str(ROOT), "").encode())
-    for path in made_of(pathlib.Path(entry["file"]), search_folders(command, folder)):
+    for path in files:
         digest.update(os.path.relpath(path, ROOT).encode() + b"\0" + contents(path)[0])
     return digest.hexdigest()
 
 
-def examine(build: pathlib.Path, source: str) -> tuple[int, str]:
-    """Exit code of clang-tidy for a source, and what it said."""
-    run = subprocess.run([CLANG_TIDY, "--quiet", "-p", str(build), source], capture_output=True,
-                         text=True, check=False, stdin=subprocess.DEVNULL)
-    # On stderr it counts what it does not show; that matters only when it could not do its work.
-    return run.returncode, run.stdout if run.stdout or run.returncode == 0 else run.stderr
+@dataclasses.dataclass(frozen=True)
+class Source:
+    path: str
+    flags: tuple[str, ...]
+    folder: str
+    remembered: pathlib.Path
+    made_of: frozenset[str]
+
+
+def sources_of(build: pathlib.Path, cache: pathlib.Path) -> list[Source]:
+    """Our sources of a build folder; one of several targets once."""
+    ours = tuple(f"{ROOT / folder}{os.sep}" for folder in FOLDERS)
+    entries = {entry["file"]: entry for entry in json.loads((build / "compile_commands.json").read_text())
+               if entry["file"].startswith(ours)}
+    common = surroundings()
+    result = []
+    for path, entry in entries.items():
+        command = shlex.split(entry["command"])
+        folder = pathlib.Path(entry["directory"])
+        files = made_of(pathlib.Path(path), search_folders(command, folder))
+        # All but the compiler, and -o OBJECT -c SOURCE at the end.
+        result.append(Source(path, tuple(command[1:-4]), str(folder), cache / key_of(entry, files, common),
+                             frozenset(map(str, files))))
+    return result
+
+
+def groups_of(sources: list[Source]) -> list[list[Source]]:
+    """What can be examined as one, the longest first, so that no core waits at the end."""
+    alike = collections.defaultdict(list)
+    for source in sources:
+        alike[source.flags, source.folder].append(source)
+    groups = []
+    for members in alike.values():
+        by_path = {source.path: source for source in members}
+        groups += [[by_path[path] for path in paths] for paths in source_groups.group_sources(list(by_path))]
+    return sorted(groups, key=lambda group: -sum(os.path.getsize(source.path) for source in group))
+
+
+def findings_in(said: str) -> list[tuple[str, str]]:
+    """The file of each finding, and what was said of it, notes and all."""
+    begins = list(FINDING.finditer(said))
+    ends = [match.start() for match in begins[1:]] + [len(said)]
+    return [(match.group(1), said[match.start():end].rstrip()) for match, end in zip(begins, ends)]
+
+
+def examine(together: pathlib.Path, group: list[Source]) -> dict[Source, list[str]]:
+    """What clang-tidy says of each source of a group. `together` is a folder for what compiles them as one."""
+    main = group[0].path
+    if len(group) > 1:
+        main = str(together / f"{group[0].remembered.name}.cpp")
+        pathlib.Path(main).write_text("".join(
+            f'#include "{source.path}"  // NOLINT(bugprone-suspicious-include)\n' for source in group))
+    header_filter = f"^{re.escape(str(ROOT))}/({'|'.join(source_groups.FOLDERS)})/"
+    run = subprocess.run([CLANG_TIDY, "--quiet", f"--config-file={ROOT / '.clang-tidy'}",
+                          f"--header-filter={header_filter}", main, "--", *group[0].flags],
+                         cwd=group[0].folder, capture_output=True, text=True, check=False,
+                         stdin=subprocess.DEVNULL)
+    found = findings_in(run.stdout)
+    failed = run.returncode != 0 and not found
+    if len(group) == 1:
+        if failed:
+            return {group[0]: [f"{main}:1:1: error: {CLANG_TIDY} could not examine it\n{run.stderr.rstrip()}"]}
+        return {group[0]: [text for _, text in found]}
+    if failed or ": error: " in run.stdout:
+        # What is wrong as one may be right one by one: nothing is called a bug that only the group has.
+        return {source: said for one in group for source, said in examine(together, [one]).items()}
+    return {source: [text for file, text in found if os.path.normpath(file) in source.made_of] for source in group}
 
 
 def main() -> int:
@@ -98,34 +165,28 @@ def main() -> int:
         print("tidy: give the build folder, which has compile_commands.json", file=sys.stderr)
         return 1
     build = pathlib.Path(sys.argv[1]).resolve()
-    passed = pathlib.Path(os.environ.get("GALACTIC_TIDY_CACHE") or pathlib.Path.home() / ".cache/galactic/tidy")
-    passed.mkdir(parents=True, exist_ok=True)
-    ours = tuple(f"{ROOT / folder}{os.sep}" for folder in FOLDERS)
-    # A source of several targets is examined once.
-    entries = {entry["file"]: entry
-               for entry in json.loads((build / "compile_commands.json").read_text())
-               if entry["file"].startswith(ours)}
-    common = surroundings()
-    keys = {source: key_of(entry, common) for source, entry in entries.items()}
-    # The longest first, so that no core waits at the end.
-    waiting = sorted((source for source in keys if not (passed / keys[source]).exists()),
-                     key=lambda source: (-os.path.getsize(source), source))
-    findings: set[str] = set()
-    failed = 0
+    cache = pathlib.Path(os.environ.get("GALACTIC_TIDY_CACHE") or pathlib.Path.home() / ".cache/galactic/tidy")
+    together = build / "together"
+    cache.mkdir(parents=True, exist_ok=True)
+    together.mkdir(exist_ok=True)
+    sources = sources_of(build, cache)
+    waiting = [source for source in sources if not source.remembered.exists()]
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
-        results = pool.map(functools.partial(examine, build), waiting)
-        for source, (code, said) in zip(waiting, results):
-            if code == 0:
-                (passed / keys[source]).touch()
-                continue
-            failed += 1
-            print(said, flush=True)
-            findings.update(line for line in said.splitlines() if FINDING.search(line))
-    for line in sorted(findings):
-        print(line)
-    print(f"clang-tidy: {failed} sources with findings; examined {len(waiting)} of {len(keys)}, the"
-          " others are as they were when they passed")
-    return 1 if failed or not keys else 0
+        for said in pool.map(functools.partial(examine, together), groups_of(waiting)):
+            for source, findings in said.items():
+                unfinished = source.remembered.with_suffix(f".{os.getpid()}")
+                unfinished.write_text(json.dumps(findings).replace(f"{ROOT}/", ""))
+                unfinished.replace(source.remembered)
+    # What a header has is said of all sources that include it.
+    findings = sorted({text for source in sources for text in json.loads(source.remembered.read_text() or "[]")})
+    for text in findings:
+        print(text)
+    bugs = sum(": error: " in text.partition("\n")[0] for text in findings)
+    print(f"clang-tidy: {bugs} bugs, {len(findings) - bugs} matters of style in {len(sources)} sources;"
+          f" examined {len(waiting)}, the others are as they were")
+    if bugs or not sources:
+        return 1
+    return MATTERS_OF_STYLE if findings else 0
 
 
 if __name__ == "__main__":
