@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "galactic/nearest_name.h"
+#include "galactic/number_text.h"
 #include "pack_tool/pictures/figure_picture.h"
 
 namespace galactic::pack_tool {
@@ -21,6 +23,9 @@ constexpr const char* kFooter =
     "Exit codes:\n"
     "  0 ok  1 command line  2 input or output  3 invalid input  4 internal\n"
     "  5 unsupported  7 the packs differ";
+
+/// More than any length in a pack.
+constexpr double kMostMetres = 1000;
 
 /// Exactly `Count` finite numbers separated by commas.
 template <std::size_t Count>
@@ -55,6 +60,7 @@ void addTrusted(CLI::App& verb, Trust& trust) {
 
 void addRadius(CLI::App& verb, std::optional<float>& radius) {
   verb.add_option("--radius", radius, "scenes: only the grid of this sphere radius")
+      ->check(numberCheck(0, kMostMetres))
       ->type_name("METRES");
 }
 
@@ -107,7 +113,7 @@ void addCheck(CLI::App& app, CheckOptions& options) {
                   "also write a JUnit report, for CI; replaced if it is there")
       ->type_name("FILE");
   verb.add_option("-j,--jobs", options.jobs, "threads (default: one for each core)")
-      ->check(CLI::Range(1, 4096))
+      ->check(wholeCheck(1, 4096))
       ->type_name("N");
 }
 
@@ -136,7 +142,7 @@ void addDiff(CLI::App& app, DiffOptions& options) {
   addPack(verb, {"b", "another one of its kind"}, options.b);
   verb.add_option("--tolerance", options.tolerance,
                   "lengths that differ by no more are equal (default 0)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(numberCheck(0, kMostMetres))
       ->type_name("METRES");
   verb.add_flag_callback(
       "--content-only", [&options] { options.scope = DiffScope::kContent; },
@@ -243,7 +249,7 @@ void addPicture(CLI::App& app, PictureOptions& options) {
           fmt::format(
               "meshes, objects and robots: edge of a view (default {}, on a contact sheet {})",
               pictures::kDefaultViewSize, pictures::kDefaultTileSize))
-      ->check(CLI::Range(pictures::kSmallestView, pictures::kLargestView))
+      ->check(wholeCheck(pictures::kSmallestView, pictures::kLargestView))
       ->type_name("PIXELS");
   addTrusted(verb, options.trust);
 }
@@ -311,6 +317,25 @@ Request chosenRequest(const CLI::App& app, AllOptions& options) {
   return std::move(options.export_);
 }
 
+std::vector<std::string> namesOfVerbs(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(verb->get_name());
+  }
+  return names;
+}
+
+/// Of the program and of the verb that was typed.
+std::vector<std::string> longNamesOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  const auto add = [&names](const CLI::App& one) {
+    for (const CLI::Option* option : one.get_options()) names.push_back(option->get_name());
+  };
+  add(app);
+  for (const CLI::App* verb : app.get_subcommands()) add(*verb);
+  return names;
+}
+
 int usageError(const Console& console, std::string_view message) {
   console.err << fmt::format("galactic-pack: command line: {}; see galactic-pack --help\n",
                              printable(message));
@@ -342,15 +367,17 @@ tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
   const std::string first = argv[1];
   const auto named = [&first](const CLI::App* verb) { return verb->get_name() == first; };
   if (!first.starts_with('-') && app.get_subcommands(named).empty()) {
-    return tl::unexpected(
-        usageError(console, fmt::format("\"{}\" is no verb; give {}", first, kVerbs)));
+    const std::string nearest = suggestNames(first, namesOfVerbs(app));
+    const std::string advice =
+        nearest.starts_with("did you") ? nearest : fmt::format("give {}", kVerbs);
+    return tl::unexpected(usageError(console, fmt::format("\"{}\" is no verb; {}", first, advice)));
   }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
     return tl::unexpected(app.exit(help, console.out, console.err));
   } catch (const CLI::ParseError& error) {
-    return tl::unexpected(usageError(console, error.what()));
+    return tl::unexpected(usageError(console, withSuggestions(error.what(), longNamesOf(app))));
   }
   return chosenRequest(app, options);
 }

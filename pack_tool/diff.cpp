@@ -108,8 +108,8 @@ Result<PackDifference> comparePacks(const PackFile& a, const PackFile& b,
     compareRenderMeshes({a, b}, descriptions, options, difference);
     return difference;
   }
-  if (a.kind() == PackKind::kWorld) {
-    compareWorlds(a, b, options, difference);
+  if (a.kind() == PackKind::kWorld || a.kind() == PackKind::kPolicy) {
+    compareLists(a, b, options, difference);
     return difference;
   }
   const auto done = a.kind() == PackKind::kEpisodes ? compareEpisodes(a, b, options, difference)

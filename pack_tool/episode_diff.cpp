@@ -178,11 +178,12 @@ Result<void> compareEpisodes(const PackFile& a, const PackFile& b, const DiffOpt
   return {};
 }
 
-void compareWorlds(const PackFile& a, const PackFile& b, const DiffOptions& options,
-                   PackDifference& difference) {
+void compareLists(const PackFile& a, const PackFile& b, const DiffOptions& options,
+                  PackDifference& difference) {
   const Both<Json> descriptions{describePack(a), describePack(b)};
   compareProvenance(descriptions, options, difference);
-  difference.content = compareFields(descriptions.a.at("world"), descriptions.b.at("world"), 0);
+  const char* const asset = a.kind() == PackKind::kWorld ? "world" : "policy";
+  difference.content = compareFields(descriptions.a.at(asset), descriptions.b.at(asset), 0);
 }
 
 }  // namespace galactic::pack_tool

@@ -110,28 +110,17 @@ Result<std::string> robotDescription(const PackFile& pack, ExportFormat format) 
   return format == ExportFormat::kSrdf ? srdfText(*robot) : spherizedUrdfText(*robot);
 }
 
-/// The episode set, after a warning of the starts that lose their height.
-Result<std::string> publishedEpisodes(const PackFile& pack, const ExportOptions& options,
-                                      const Console& console) {
+Result<std::string> publishedEpisodes(const PackFile& pack, const ExportOptions& options) {
   const auto set = EpisodeSet::from(pack);
   if (!set) return tl::unexpected(set.error());
-  const auto raised =
-      std::count_if(set->episodes().begin(), set->episodes().end(),
-                    [](const Episode& episode) { return !(episode.base_position.y == 0); });
-  if (raised > 0) {
-    console.err << fmt::format(
-        "galactic-pack: {}: warning: {} of {} starts are not at height 0, which is what an episode "
-        "set means\n",
-        printable(pack.where()), raised, set->episodes().size());
-  }
   return episodeSetText(*set, options.object_up.value_or(FileUp::kZ));
 }
 
-Result<std::string> encode(const PackFile& pack, const ExportOptions& options, ExportFormat format,
-                           const Console& console) {
+Result<std::string> encode(const PackFile& pack, const ExportOptions& options,
+                           ExportFormat format) {
   switch (format) {
     case ExportFormat::kEpisodeSet:
-      return publishedEpisodes(pack, options, console);
+      return publishedEpisodes(pack, options);
     case ExportFormat::kGlb:
       return figureScene(pack, options);
     case ExportFormat::kSrdf:
@@ -150,13 +139,13 @@ std::filesystem::path outputOf(const ExportOptions& options) {
   return options.pack.stem().concat(kEpisodeSetSuffix);
 }
 
-Result<void> exportPack(const ExportOptions& options, const Console& console) {
+Result<void> exportPack(const ExportOptions& options) {
   const auto format = formatOf(options);
   if (!format) return tl::unexpected(format.error());
   if (auto checked = checkOptions(options, *format); !checked) return checked;
   const auto pack = PackFile::open(options.pack, options.trust);
   if (!pack) return tl::unexpected(pack.error());
-  const auto bytes = encode(*pack, options, *format, console);
+  const auto bytes = encode(*pack, options, *format);
   if (!bytes) return tl::unexpected(bytes.error());
   const std::filesystem::path output = outputOf(options);
   if (auto checked = checkOutput(*pack, output); !checked) return checked;
@@ -166,7 +155,7 @@ Result<void> exportPack(const ExportOptions& options, const Console& console) {
 }  // namespace
 
 int runExport(const ExportOptions& options, const Console& console) {
-  const auto done = exportPack(options, console);
+  const auto done = exportPack(options);
   return done ? kExitOk : reportError(console, done.error());
 }
 

@@ -1,6 +1,9 @@
 #include <exception>
 #include <iostream>
+#include <new>
+#include <stdexcept>
 
+#include "galactic/out_of_memory.h"
 #include "pack_tool/command_line.h"
 
 namespace galactic::pack_tool {
@@ -38,6 +41,10 @@ int main(int argc, char** argv) {
   const galactic::pack_tool::Console console{std::cout, std::cerr};
   try {
     return galactic::pack_tool::runTool(argc, argv, console);
+  } catch (const std::bad_alloc&) {
+    return galactic::pack_tool::reportError(console, galactic::outOfMemory());
+  } catch (const std::length_error&) {  // a vector that no memory could hold
+    return galactic::pack_tool::reportError(console, galactic::outOfMemory());
   } catch (const std::exception& error) {
     return galactic::pack_tool::reportError(
         console,

@@ -65,6 +65,7 @@ Json describePack(const PackFile& pack, Detail detail) {
     json["episode_set"] = std::move(set);
   }
   if (Json world = describeWorld(pack); !world.is_null()) json["world"] = std::move(world);
+  if (Json policy = describePolicy(pack); !policy.is_null()) json["policy"] = std::move(policy);
   return json;
 }
 

@@ -11,6 +11,7 @@ namespace galactic::pack_tool {
 [[nodiscard]] Json describeRobot(const PackFile& pack);
 [[nodiscard]] Json describeEpisodes(const PackFile& pack, Detail detail);
 [[nodiscard]] Json describeWorld(const PackFile& pack);
+[[nodiscard]] Json describePolicy(const PackFile& pack);
 /// What batch rendering draws; null where the pack has none.
 [[nodiscard]] Json describeRenderMeshes(const PackFile& pack);
 

@@ -12,6 +12,7 @@ namespace galactic::pack_tool {
 [[nodiscard]] std::string robotText(const Json& robot);
 [[nodiscard]] std::string episodesText(const Json& set);
 [[nodiscard]] std::string worldText(const Json& world);
+[[nodiscard]] std::string policyText(const Json& policy);
 /// Of scenes, objects and robots; null: there are none.
 [[nodiscard]] std::string renderMeshesText(const Json& render);
 

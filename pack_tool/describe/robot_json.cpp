@@ -51,6 +51,7 @@ class RobotDescription {
     json["end_effector"] = describeEndEffector();
     json["camera"] = describeCamera();
     json["base"] = describeBase();
+    json["laser"] = describeLaser();
     json["groups"] = describeGroups();
     json["group_pairs"] = describePairs();
     json["surfaces"] = describeSurfaces();
@@ -129,6 +130,17 @@ class RobotDescription {
             {"footprint_min", describePoint(base->footprint_min)},
             {"footprint_max", describePoint(base->footprint_max)},
             {"footprint_radius", jsonNumber(base->footprint_radius)}};
+  }
+
+  [[nodiscard]] Json describeLaser() const {
+    const schema::Laser* laser = stored_.laser();
+    if (laser == nullptr) return nullptr;
+    return {{"link", linkName(laser->link())},
+            {"link_from_laser", describePose(*laser->link_from_laser())},
+            {"field_of_view", jsonNumber(laser->field_of_view())},
+            {"least_range", jsonNumber(laser->least_range())},
+            {"range", jsonNumber(laser->range())},
+            {"noise", jsonNumber(laser->noise())}};
   }
 
   [[nodiscard]] Json describeGroups() const {

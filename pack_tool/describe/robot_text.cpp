@@ -98,6 +98,18 @@ std::string controlledText(const Json& joints) {
   return labelled("controlled", fmt::format("{} joints", joints.size())) + table.text();
 }
 
+constexpr double kDegrees = 57.29577951308232;
+
+std::string laserText(const Json& laser) {
+  if (laser.is_null()) return labelled("laser", "none");
+  return labelled(
+      "laser",
+      fmt::format("{} at {} m, {:.1f} degrees, {} to {} m, noise {} m", textOf(laser.at("link")),
+                  pointOf(laser.at("link_from_laser").at("translation")),
+                  kDegrees * numberOf(laser.at("field_of_view")), lengthOf(laser.at("least_range")),
+                  lengthOf(laser.at("range")), lengthOf(laser.at("noise"))));
+}
+
 std::string toolsText(const Json& robot) {
   const Json& effector = robot.at("end_effector");
   std::string text =
@@ -107,13 +119,13 @@ std::string toolsText(const Json& robot) {
                                           pointOf(effector.at("grasp_point")),
                                           lengthOf(effector.at("grasp_radius"))));
   const Json& camera = robot.at("camera");
-  constexpr double kDegrees = 57.29577951308232;
   text += labelled("camera",
                    camera.is_null()
                        ? "none"
                        : fmt::format("{} at {} m, {:.1f} degrees high", textOf(camera.at("link")),
                                      pointOf(camera.at("link_from_camera").at("translation")),
                                      kDegrees * numberOf(camera.at("vertical_fov"))));
+  text += laserText(robot.at("laser"));
   const Json& base = robot.at("base");
   if (base.is_null()) return text + labelled("base", "none");
   const Json& low = base.at("footprint_min");

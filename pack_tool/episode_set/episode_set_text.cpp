@@ -56,6 +56,20 @@ class Writer {
     const auto [end, ignored] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
     text_.append(digits.data(), end);
   }
+  void coordinate(double value) { number(value); }
+  /// Readers take it for a double and round it: in the rare case that this is another float, the
+  /// digits of the double are written.
+  void coordinate(float value) {
+    std::array<char, 32> digits{};
+    const auto [end, ignored] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    double read = 0;
+    std::from_chars(digits.data(), end, read);
+    if (static_cast<float>(read) == value) {
+      text_.append(digits.data(), end);
+    } else {
+      number(static_cast<double>(value));
+    }
+  }
   void text(std::string_view more) { text_ += more; }
   void quoted(std::string_view name) {
     text_ += nlohmann::json(name).dump(-1, ' ', false, kReplace);
@@ -99,21 +113,6 @@ class Writer {
 
  private:
   static constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
-
-  void coordinate(double value) { number(value); }
-  /// Readers take it for a double and round it: in the rare case that this is another float, the
-  /// digits of the double are written.
-  void coordinate(float value) {
-    std::array<char, 32> digits{};
-    const auto [end, ignored] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-    double read = 0;
-    std::from_chars(digits.data(), end, read);
-    if (static_cast<float>(read) == value) {
-      text_.append(digits.data(), end);
-    } else {
-      number(static_cast<double>(value));
-    }
-  }
 
   Rotation pack_from_file_;
   std::string text_;
@@ -162,8 +161,14 @@ void writeEpisode(Writer& out, const Episode& episode, std::span<const float> st
   out.key("agentStartPos");
   out.list(std::array{episode.base_position.x, episode.base_position.z});
   out.text(", ");
+  // Published sets have one floor, at height 0: readers of theirs know no such key.
+  if (episode.base_position.y != 0) {
+    out.key("agentStartHeight");
+    out.coordinate(episode.base_position.y);
+    out.text(", ");
+  }
   out.key("agentStartYaw");
-  out.number(episode.base_yaw);
+  out.coordinate(episode.base_yaw);
   out.text(", ");
   out.key("robotStartJointPositions");
   out.list(start_positions);
@@ -176,6 +181,24 @@ void writeEpisode(Writer& out, const Episode& episode, std::span<const float> st
   out.text("}");
 }
 
+/// What published sets leave to their collection.
+void writeRobot(Writer& out, const EpisodeSet& set) {
+  if (!set.robotName().empty()) {
+    out.text("  ");
+    out.key("robot");
+    out.quoted(set.robotName());
+    out.text(",\n");
+  }
+  out.text("  ");
+  out.key("startJoints");
+  out.text("[");
+  for (std::size_t n = 0; n < set.startJoints().size(); ++n) {
+    if (n > 0) out.text(", ");
+    out.quoted(set.startJoints()[n]);
+  }
+  out.text("],\n");
+}
+
 }  // namespace
 
 std::string episodeSetText(const EpisodeSet& set, FileUp up) {
@@ -183,6 +206,7 @@ std::string episodeSetText(const EpisodeSet& set, FileUp up) {
   const auto& objects = set.objectNames();
   Writer out(up);
   out.text("{\"episodeSet\": {\n");
+  writeRobot(out, set);
   out.elements("renderAssets", scenes.size() + objects.size(), [&](std::size_t n) {
     out.text("{");
     out.key("name");

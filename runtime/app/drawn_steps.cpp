@@ -27,6 +27,12 @@ Result<DrawnSteps> DrawnSteps::create(const World& world, const BatchSimulator& 
   if (!rendering) return tl::unexpected<Error>(rendering.error());
   Result<PictureOutput> output = PictureOutput::open(options.drawing, length);
   if (!output) return tl::unexpected<Error>(output.error());
+  if (options.drawing.hasSemantics()) {
+    const std::string legend = semanticLegend(rendering->semanticNames());
+    if (auto written = output->writeLegend(legend); !written) {
+      return tl::unexpected<Error>(written.error());
+    }
+  }
   return DrawnSteps(std::move(*rendering), std::move(*output));
 }
 

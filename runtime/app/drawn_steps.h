@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "galactic/batch_simulator.h"
 #include "galactic/error.h"
@@ -32,6 +34,9 @@ class DrawnSteps {
   [[nodiscard]] Result<void> finish(const BatchSimulator& simulator, const RunReport& report);
 
   [[nodiscard]] const BatchRenderer& renderer() const { return rendering_.renderer(); }
+  [[nodiscard]] const std::vector<std::string>& semanticNames() const {
+    return rendering_.semanticNames();
+  }
 
  private:
   DrawnSteps(Rendering rendering, PictureOutput output);

@@ -25,7 +25,13 @@ Image pictureOf(const DrawnImage& image, const ColourOf& colour_of) {
   return picture;
 }
 
-Rgb colourOfId(std::uint32_t id) {
+DeepImage deepImage(const DrawnImage& image) {
+  return {static_cast<int>(image.width), static_cast<int>(image.height), {}};
+}
+
+}  // namespace
+
+Rgb semanticColor(std::uint32_t id) {
   if (id == 0) return {};
   // Numbers that follow each other become colours far apart, none of them dark.
   constexpr std::uint32_t kScatter = 2654435769U;
@@ -36,12 +42,6 @@ Rgb colourOfId(std::uint32_t id) {
   };
   return {channel(24), channel(16), channel(8)};
 }
-
-DeepImage deepImage(const DrawnImage& image) {
-  return {static_cast<int>(image.width), static_cast<int>(image.height), {}};
-}
-
-}  // namespace
 
 Image colorPicture(const DrawnImage& image) {
   const auto bytes = static_cast<std::size_t>(image.format);
@@ -61,7 +61,7 @@ Image depthPicture(const DrawnImage& image) {
 }
 
 Image semanticPicture(const DrawnImage& image) {
-  return pictureOf(image, [&](std::size_t pixel) { return colourOfId(image.semantics[pixel]); });
+  return pictureOf(image, [&](std::size_t pixel) { return semanticColor(image.semantics[pixel]); });
 }
 
 DeepImage depthNumbers(const DrawnImage& image) {

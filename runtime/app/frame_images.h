@@ -29,6 +29,9 @@ struct DrawnImage {
 [[nodiscard]] pictures::Image depthPicture(const DrawnImage& image);
 inline constexpr float kHalfBright = 2;
 
+/// The colour of an id in semanticPicture; black of 0.
+[[nodiscard]] pictures::Rgb semanticColor(std::uint32_t id);
+
 /// Ids to look at: a colour for each; black where nothing is.
 [[nodiscard]] pictures::Image semanticPicture(const DrawnImage& image);
 

@@ -5,8 +5,10 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -14,9 +16,11 @@
 
 #include "galactic/atomic_file.h"
 #include "galactic/error.h"
+#include "galactic/out_of_memory.h"
 #include "galactic/pack.h"
 #include "galactic/printable.h"
 #include "galactic/scene.h"
+#include "learned_run.h"
 #include "options.h"
 #include "query_benchmark.h"
 #include "recording.h"
@@ -28,10 +32,12 @@ namespace {
 
 using galactic::Error;
 using galactic::ErrorCode;
+using galactic::OpenedPolicy;
 using galactic::OpenedWorld;
 using galactic::RecordingReader;
 using galactic::Result;
 using galactic::RunOptions;
+using galactic::RunSource;
 
 int report(const Error& error) {
   fmt::print(stderr, "galactic-run: {}: {}\n", galactic::printable(error.where),
@@ -83,8 +89,8 @@ int describePacks(const RunOptions& options) {
   return flushOutput();
 }
 
-int simulateWorld(const RunOptions& options, const OpenedWorld& world, RecordingReader* replay) {
-  const Result<galactic::RunReport> run = galactic::simulate(options, world, replay);
+int simulateWorld(const RunOptions& options, const OpenedWorld& world, const RunSource& source) {
+  const Result<galactic::RunReport> run = galactic::simulate(options, world, source);
   if (!run) return report(run.error());
   fmt::print("{}", galactic::tableOf(*run));
   if (const int written = flushOutput(); written != galactic::kExitOk) return written;
@@ -115,18 +121,28 @@ int replayPacks(int argc, char** argv, const std::string& file) {
     return report(fits.error());
   }
   const Result<OpenedWorld> world = galactic::openWorld(options);
-  return world ? simulateWorld(options, *world, &*recording) : report(world.error());
+  return world ? simulateWorld(options, *world, {.replay = &*recording}) : report(world.error());
 }
 
-/// The options of the task are those of the world, and what was typed overrides them: the command
-/// line is read again on top of them.
+/// The options of the task are those of the world, then those of a learned policy, and what was
+/// typed overrides them: the command line is read again on top of them.
 int simulatePacks(int argc, char** argv, const RunOptions& typed) {
   const Result<OpenedWorld> world = galactic::openWorld(typed);
   if (!world) return report(world.error());
   RunOptions options;
   options.simulation = world->world.withTask(options.simulation);
+  std::optional<OpenedPolicy> policy;
+  if (!typed.policyFile().empty()) {
+    Result<OpenedPolicy> opened = galactic::openPolicy(typed);
+    if (!opened) return report(opened.error());
+    policy.emplace(std::move(*opened));
+    if (const auto applied = galactic::applyNeeds(*policy, options.simulation); !applied) {
+      return report(applied.error());
+    }
+  }
   if (const auto exit_code = galactic::parseCommandLine(argc, argv, options)) return *exit_code;
-  return simulateWorld(options, *world, nullptr);
+  options.simulation.body_transforms |= policy && policy->needs.image;
+  return simulateWorld(options, *world, {.policy = policy ? &*policy : nullptr});
 }
 
 int run(int argc, char** argv) {
@@ -142,6 +158,10 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return report(galactic::outOfMemory());
+  } catch (const std::length_error&) {  // a vector that no memory could hold
+    return report(galactic::outOfMemory());
   } catch (const std::system_error& failure) {  // what printing throws
     return report({ErrorCode::kIo, "standard output", failure.what()});
   } catch (const std::exception& exception) {

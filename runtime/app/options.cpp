@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <functional>
 #include <limits>
 #include <map>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "galactic/error.h"
+#include "galactic/nearest_name.h"
+#include "galactic/number_text.h"
 #include "galactic/option_table.h"
 #include "galactic/printable.h"
 #include "policy.h"
@@ -28,27 +31,12 @@ constexpr const char* kFooter =
     "  galactic-run --pack world.pack --envs 1024 --steps 1000 --policy random\n"
     "  galactic-run --pack world.pack --steps 100 --record run.rec\n"
     "  galactic-run --pack world.pack --steps 100 --envs 4 --render rgbd --contact-sheet run.png\n"
+    "  galactic-run --pack world.pack --policy picker.pack --contact-sheet run.png --render rgb\n"
     "  galactic-run --pack world.pack --policy replay:run.rec";
 constexpr const char* kReplayPrefix = "replay:";
+constexpr const char* kPolicySuffix = ".pack";
 constexpr const char* kPlainGroup = "Options";
 constexpr const char* kRunGroup = "Simulation";
-
-/// A number from `within`; not infinite and not NaN.
-CLI::Validator finite(Within<float> within) {
-  return CLI::Validator(
-      [within](const std::string& text) {
-        double value = 0;
-        const char* end = text.data() + text.size();
-        const auto [stop, problem] = std::from_chars(text.data(), end, value);
-        const bool is_good = problem == std::errc() && stop == end &&
-                             value >= static_cast<double>(within.least) &&
-                             value <= static_cast<double>(within.most);
-        if (is_good) return std::string();
-        return fmt::format("found {}, wanted a number from {} to {}", text, within.least,
-                           within.most);
-      },
-      "NUMBER", "finite");
-}
 
 CLI::Validator knownPolicy() {
   return CLI::Validator(
@@ -56,8 +44,10 @@ CLI::Validator knownPolicy() {
         if (isGeneratedPolicy(text) || text == kScriptedPolicy) return std::string();
         const std::string_view prefix = kReplayPrefix;
         if (text.starts_with(prefix) && text.size() > prefix.size()) return std::string();
+        if (text.ends_with(kPolicySuffix)) return std::string();
         return fmt::format(
-            "unknown policy {}, wanted random, forward, zero, scripted or replay:FILE", text);
+            "unknown policy {}, wanted random, forward, zero, scripted, FILE.pack or replay:FILE",
+            text);
       },
       "", "policy");
 }
@@ -72,14 +62,19 @@ class CommandLineVisitor {
   void whole(std::string_view name, std::uint32_t& field, Within<std::uint32_t> within,
              std::string_view help) {
     add(name, field, help)
-        ->check(CLI::Range(within.least, within.most))
+        ->check(wholeCheck(within.least, within.most))
         ->option_text(fmt::format("N [{}]", field));
   }
   void seed(std::string_view name, std::uint64_t& field, std::string_view help) {
-    add(name, field, help)->option_text(fmt::format("N [{}]", field))->group(kPlainGroup);
+    add(name, field, help)
+        ->check(wholeCheck(0, std::numeric_limits<std::uint64_t>::max()))
+        ->option_text(fmt::format("N [{}]", field))
+        ->group(kPlainGroup);
   }
   void real(std::string_view name, float& field, Within<float> within, std::string_view help) {
-    add(name, field, help)->check(finite(within))->option_text(fmt::format("NUMBER [{}]", field));
+    add(name, field, help)
+        ->check(numberCheck(static_cast<double>(within.least), static_cast<double>(within.most)))
+        ->option_text(fmt::format("NUMBER [{}]", field));
   }
   void flag(std::string_view name, const Switch& value, std::string_view help) {
     // --NAME=false, too: a world may have switched it on.
@@ -149,14 +144,17 @@ void addPlainOptions(CLI::App& app, RunOptions& options) {
 void addRunOptions(CLI::App& app, RunOptions& options) {
   app.option_defaults()->group(kRunGroup);
   app.add_option("--steps", options.steps, "Steps of the whole batch")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40U))
+      ->check(wholeCheck(1, std::uint64_t{1} << 40U))
       ->option_text(fmt::format("N [{}]", options.steps));
   app.add_option("--policy", options.policy, "Where the actions come from")
       ->check(knownPolicy())
-      ->option_text(fmt::format("random|forward|zero|scripted|replay:FILE [{}]", options.policy));
+      ->option_text(
+          fmt::format("random|forward|zero|scripted|FILE.pack|replay:FILE [{}]", options.policy));
+  app.add_flag("--deterministic,!--policy-sample", options.is_deterministic,
+               "A policy pack takes its likeliest actions, or draws them, as it does by itself");
   app.add_option("--threads", options.simulation.threads,
                  "Threads; the results do not depend on it; 0: one per processor")
-      ->check(CLI::Range(0, 4096))
+      ->check(wholeCheck(0, 4096))
       ->option_text(fmt::format("N [{}]", options.simulation.threads));
   app.add_flag("--body-transforms", options.simulation.body_transforms,
                "Keep the pose of every body of the robot, as rendering needs");
@@ -175,11 +173,20 @@ std::string faultOf(const RunOptions& options) {
   if (options.bench && options.simulation.seed > std::numeric_limits<std::uint32_t>::max()) {
     return "--bench takes a --seed up to 4294967295";
   }
+  if (options.is_deterministic && options.policyFile().empty()) {
+    return "--deterministic is about learned policies; add --policy FILE.pack";
+  }
   if (options.simulation.rank >= options.simulation.ranks) {
     return fmt::format("--rank is {}, wanted a number below --ranks, which is {}",
                        options.simulation.rank, options.simulation.ranks);
   }
   return {};
+}
+
+std::vector<std::string> longNamesOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name());
+  return names;
 }
 
 int refuse(std::string_view message) {
@@ -192,6 +199,10 @@ int refuse(std::string_view message) {
 std::string RunOptions::replayFile() const {
   const std::string_view prefix = kReplayPrefix;
   return policy.starts_with(prefix) ? policy.substr(prefix.size()) : std::string();
+}
+
+std::string RunOptions::policyFile() const {
+  return replayFile().empty() && policy.ends_with(kPolicySuffix) ? policy : std::string();
 }
 
 std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOptions& options) {
@@ -209,12 +220,16 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const bool asked = error.get_exit_code() == 0;  // --help, --version
-    return asked ? app.exit(error) : refuse(error.what());
+    return asked ? app.exit(error) : refuse(withSuggestions(error.what(), longNamesOf(app)));
   }
   for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& value : option->results()) {
+      if (value.empty()) return refuse(option->get_name() + " has an empty value");
+    }
     options.simulates |= option->count() > 0 && option->get_group() != kPlainGroup;
   }
   std::string fault = faultOf(options);
+  options.drawing.policy_may_draw = !options.policyFile().empty();
   if (fault.empty()) fault = drawingFault(options.drawing, app);
   options.simulation.body_transforms |= options.drawing.draws();
   return fault.empty() ? std::nullopt : std::optional<int>(refuse(fault));

@@ -23,6 +23,8 @@ struct RunOptions {
   /// Of the whole batch.
   std::uint64_t steps = 1000;
   std::string policy = "random";
+  /// Whether a learned policy takes its likeliest actions, instead of drawing them.
+  bool is_deterministic = false;
   DrawingOptions drawing;
   /// Files to write; empty for none.
   std::string record;
@@ -30,6 +32,8 @@ struct RunOptions {
 
   /// The file of "replay:FILE"; empty for the other policies.
   [[nodiscard]] std::string replayFile() const;
+  /// The policy pack, where the policy is one; empty for the other policies.
+  [[nodiscard]] std::string policyFile() const;
 };
 
 /// Reads the command line into `options`; what is not typed keeps its value. Prints help, version

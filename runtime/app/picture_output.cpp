@@ -111,6 +111,12 @@ Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const R
   return output;
 }
 
+Result<void> PictureOutput::writeLegend(std::string_view json) const {
+  if (options_.frames.empty()) return {};
+  const std::filesystem::path file = std::filesystem::path(options_.frames) / "semantics.json";
+  return writeFileAtomically(file, {std::as_bytes(std::span(json))});
+}
+
 bool PictureOutput::wants(std::uint64_t step) const {
   const bool takes_all = !options_.frames.empty() || !options_.video.empty();
   return isOnSheet(step) || (takes_all && step % options_.frame_every == 0);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "contact_sheet.h"
@@ -40,6 +41,9 @@ class PictureOutput {
   /// VideoPipe.
   [[nodiscard]] static Result<PictureOutput> open(const DrawingOptions& options,
                                                   const RunLength& length);
+
+  /// Writes what the ids of semantic images mean beside the frames; nothing where there are none.
+  [[nodiscard]] Result<void> writeLegend(std::string_view json) const;
 
   /// Whether the state after `step` steps is shown.
   [[nodiscard]] bool wants(std::uint64_t step) const;

@@ -8,6 +8,8 @@
 #include <optional>
 #include <string_view>
 
+#include "galactic/number_text.h"
+
 namespace galactic {
 namespace {
 
@@ -69,10 +71,10 @@ void addPictures(CLI::App& app, DrawingOptions& drawing) {
       ->type_name("FILE.png");
   app.add_option("--video", drawing.video, "Write a video with ffmpeg")->type_name("FILE");
   app.add_option("--frame-every", drawing.frame_every, "Steps from picture to picture")
-      ->check(CLI::Range(1U, 1U << 30U))
+      ->check(wholeCheck(1, 1U << 30U))
       ->option_text(fmt::format("N [{}]", drawing.frame_every));
   app.add_option("--frame-envs", drawing.frame_envs, "How many envs pictures show")
-      ->check(CLI::Range(1U, 1024U))
+      ->check(wholeCheck(1, 1024))
       ->option_text(fmt::format("N [{}]", drawing.frame_envs));
 }
 
@@ -83,7 +85,7 @@ void addDebug(CLI::App& app, DrawingOptions& drawing) {
       ->option_text(fmt::format("head|follow|top|LINK [{}]", drawing.debug_camera));
   app.add_option("--debug-radius", drawing.debug_radius,
                  "Whose column grid, metres; 0: the smallest sphere's")
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(numberCheck(0, 10))
       ->option_text("NUMBER [0]");
 }
 
@@ -103,7 +105,7 @@ void addDrawingOptions(CLI::App& app, DrawingOptions& drawing) {
   constexpr double kLeastFov = 1;
   constexpr double kMostFov = 175;
   app.add_option("--fov", drawing.fov_degrees, "From the image's lower to its upper edge")
-      ->check(CLI::Range(kLeastFov, kMostFov))
+      ->check(numberCheck(kLeastFov, kMostFov))
       ->option_text("DEGREES");
   addPictures(app, drawing);
   addDebug(app, drawing);
@@ -114,8 +116,13 @@ std::string drawingFault(const DrawingOptions& drawing, const CLI::App& app) {
   if (!drawing.draws()) {
     for (const CLI::Option* option : app.get_options()) {
       if (option->count() == 0 || option->get_group() != kGroup) continue;
-      return fmt::format("{} is an option of drawing; add --render", option->get_name());
+      const std::string name = option->get_name();
+      if (drawing.policy_may_draw && (name == "--backend" || name == "--device")) continue;
+      return fmt::format("{} is an option of drawing; add --render", name);
     }
+  }
+  if (drawing.backend == RenderBackend::kSoft && !drawing.device.empty()) {
+    return "--device is about --backend gl; leave it out";
   }
   const bool shapes_pictures = app.count("--frame-every") + app.count("--frame-envs") > 0;
   if (!drawing.makesPictures() && (drawing.debug_view || shapes_pictures)) {

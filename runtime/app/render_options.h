@@ -21,6 +21,10 @@ struct DrawingOptions {
   /// Between the lower and the upper edge; 0: what belongs to the camera.
   float fov_degrees = 0;
 
+  /// Whether a policy pack is played, which may want images: then backend and device count, whether
+  /// or not anything else is drawn.
+  bool policy_may_draw = false;
+
   /// Folder of PNG files, contact sheet and video; empty for none.
   std::string frames;
   std::string contact_sheet;

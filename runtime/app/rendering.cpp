@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "camera_choice.h"
+#include "galactic/camera_choice.h"
 #include "galactic/debug_models.h"
 #include "galactic/debug_views.h"
 #include "galactic/world_models.h"
@@ -157,5 +157,9 @@ std::span<const EnvFrame> Rendering::frames() {
 }
 
 const BatchRenderer& Rendering::renderer() const { return parts_->images->renderer(); }
+
+const std::vector<std::string>& Rendering::semanticNames() const {
+  return parts_->models.library().semanticNames();
+}
 
 }  // namespace galactic

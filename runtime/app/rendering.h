@@ -26,6 +26,9 @@ class ImageBatch {
 
   /// Of the last end().
   [[nodiscard]] DrawnImage image(std::size_t n) const;
+  /// All images, one behind the other.
+  [[nodiscard]] std::span<const std::uint8_t> color() const { return color_; }
+  [[nodiscard]] std::span<const float> depth() const { return depth_; }
   [[nodiscard]] const BatchRenderer& renderer() const { return renderer_; }
 
  private:
@@ -59,6 +62,8 @@ class Rendering {
   [[nodiscard]] std::span<const EnvFrame> frames();
 
   [[nodiscard]] const BatchRenderer& renderer() const;
+  /// By the ids in the images; 0 is the background.
+  [[nodiscard]] const std::vector<std::string>& semanticNames() const;
 
  private:
   struct Parts;

@@ -102,6 +102,16 @@ std::string renderLines(const RunReport& report) {
                           ratio(drawn.overlapped.mean(), larger)));
 }
 
+std::string learnedLine(const RunReport& report) {
+  if (!report.learned) return {};
+  constexpr double kMicro = 1e-6;
+  const LearnedReport& learned = *report.learned;
+  return line("learned",
+              fmt::format("{}, its {} actions; {:.2f} us per env and step", printable(learned.name),
+                          learned.samples ? "sampled" : "likeliest",
+                          ratio(learned.seconds / kMicro, static_cast<double>(report.sum.steps))));
+}
+
 std::string replayLine(const RunReport& report) {
   if (report.options.replayFile().empty()) return {};
   if (report.first_difference) {
@@ -132,6 +142,7 @@ std::string tableOf(const RunReport& report) {
       report.steps, report.threads, printable(options.policy), options.simulation.seed,
       report.is_interrupted ? fmt::format(" (stopped; {} steps were wanted)", options.steps) : "");
   text += taskLine(report);
+  text += learnedLine(report);
   text += line("stepping", rate(report, report.step_seconds));
   text += line("whole loop", rate(report, report.loop_seconds));
   if (report.rendering) text += renderLines(report);

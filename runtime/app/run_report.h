@@ -39,11 +39,22 @@ struct RenderReport {
   /// BatchRenderer::description(), and whether it is "gl" or "soft".
   std::string description;
   std::string backend;
+  /// By the ids of semantic images; empty where none are drawn.
+  std::vector<std::string> semantic_names;
   std::uint64_t images = 0;
   /// Steps whose drawing and simulation were measured alone, and those of both together.
   StepTime rendering;
   StepTime physics;
   StepTime overlapped;
+};
+
+/// What a policy pack did.
+struct LearnedReport {
+  /// The pack's.
+  std::string name;
+  bool samples = true;
+  /// Wall clock of all its decisions, with the drawing of what it sees.
+  double seconds = 0;
 };
 
 /// What a run was and what came of it.
@@ -72,6 +83,8 @@ struct RunReport {
   std::size_t memory_bytes = 0;
   /// When something was drawn. Then step_seconds holds the drawing, too.
   std::optional<RenderReport> rendering;
+  /// When a policy pack was played.
+  std::optional<LearnedReport> learned;
   /// The first step in which a replay differs, counted from 0.
   std::optional<std::uint64_t> first_difference;
 };
@@ -85,5 +98,8 @@ struct RunReport {
 
 /// The same as JSON, with all options and a line end.
 [[nodiscard]] std::string jsonOf(const RunReport& report);
+
+/// The legend of semantic images as JSON: id, name and the colour in pictures of each.
+[[nodiscard]] std::string semanticLegend(const std::vector<std::string>& names);
 
 }  // namespace galactic

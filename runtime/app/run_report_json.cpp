@@ -6,6 +6,7 @@
 #include <concepts>
 #include <string_view>
 
+#include "frame_images.h"
 #include "galactic/option_text.h"
 #include "run_report.h"
 
@@ -118,6 +119,15 @@ void writeOptions(JsonWriter& json, const RunReport& report) {
   json.end(']');
 }
 
+void writeLearned(JsonWriter& json, const RunReport& report) {
+  if (!report.learned) return;
+  json.begin("learned", '{');
+  json.text("name", report.learned->name);
+  json.truth("samples", report.learned->samples);
+  json.number("seconds", report.learned->seconds);
+  json.end('}');
+}
+
 void writeTimes(JsonWriter& json, const RunReport& report) {
   const auto per_second = [&](double seconds) {
     return static_cast<double>(report.sum.steps) / seconds;
@@ -153,6 +163,11 @@ void writeRendering(JsonWriter& json, const RunReport& report) {
   json.text("description", drawn.description);
   json.number("image_count", drawn.images);
   json.number("images_per_second", static_cast<double>(drawn.images) / report.step_seconds);
+  if (!drawn.semantic_names.empty()) {
+    json.begin("semantics", '[');
+    for (const std::string& name : drawn.semantic_names) json.text("", name);
+    json.end(']');
+  }
   json.begin("seconds_per_step", '{');
   const auto mean = [&json](std::string_view key, const StepTime& time) {
     // Without a step there is no mean: null.
@@ -193,12 +208,30 @@ void writeCounts(JsonWriter& json, const RunReport& report) {
 
 }  // namespace
 
+std::string semanticLegend(const std::vector<std::string>& names) {
+  JsonWriter json;
+  json.begin('{');
+  json.begin("semantics", '[');
+  for (std::uint32_t id = 0; id < names.size(); ++id) {
+    const pictures::Rgb color = semanticColor(id);
+    json.begin("", '{');
+    json.number("id", id);
+    json.text("name", names[id]);
+    json.text("color", fmt::format("#{:02x}{:02x}{:02x}", color.r, color.g, color.b));
+    json.end('}');
+  }
+  json.end(']');
+  json.end('}');
+  return json.take();
+}
+
 std::string jsonOf(const RunReport& report) {
   JsonWriter json;
   json.begin('{');
   json.text("tool", "galactic-run");
   json.text("version", GALACTIC_VERSION);
   writeOptions(json, report);
+  writeLearned(json, report);
   json.number("steps", report.steps);
   json.truth("interrupted", report.is_interrupted);
   writeTimes(json, report);

@@ -113,6 +113,16 @@ class Run {
   }
 
   /// Before go().
+  Result<void> play(const OpenedPolicy& policy, const World& world) {
+    Result<std::unique_ptr<Policy>> made = makeLearnedPolicy(policy, world, simulator_, options_);
+    if (!made) return tl::unexpected<Error>(made.error());
+    policy_ = std::move(*made);
+    report_.learned.emplace(
+        LearnedReport{.name = policy.needs.name, .samples = !options_.is_deterministic});
+    return {};
+  }
+
+  /// Before go().
   Result<void> draw(const World& world) {
     Result<DrawnSteps> drawn = DrawnSteps::create(world, simulator_, options_);
     if (!drawn) return tl::unexpected<Error>(drawn.error());
@@ -121,6 +131,8 @@ class Run {
     report_.rendering.emplace();
     report_.rendering->description = renderer.description();
     report_.rendering->backend = renderer.backend() == RenderBackend::kGl ? "gl" : "soft";
+    if (options_.drawing.hasSemantics())
+      report_.rendering->semantic_names = drawn_->semanticNames();
     return {};
   }
 
@@ -161,8 +173,15 @@ class Run {
   }
 
  private:
+  Result<void> act() {
+    const Clock::time_point before = Clock::now();
+    Result<void> acted = policy_->act(report_.steps, actions_);
+    if (report_.learned) report_.learned->seconds += secondsBetween(before, Clock::now());
+    return acted;
+  }
+
   Result<void> step() {
-    if (Result<void> acted = policy_->act(report_.steps, actions_); !acted) return acted;
+    if (Result<void> acted = act(); !acted) return acted;
     if (drawn_) {
       if (Result<void> drawn = drawn_->step(simulator_, actions_, report_); !drawn) return drawn;
     } else {
@@ -218,7 +237,7 @@ Result<OpenedWorld> openWorld(const RunOptions& options) {
 }
 
 Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
-                           RecordingReader* replay) {
+                           const RunSource& source) {
   const Interrupt interrupt;
   const World& world = opened.world;
   RunReport report;
@@ -229,14 +248,19 @@ Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
   Result<BatchSimulator> simulator = BatchSimulator::create(world, options.simulation);
   if (!simulator) return tl::unexpected<Error>(simulator.error());
   report.create_seconds = secondsBetween(start, Clock::now());
-  if (auto same = checkSubject(replay, world, *simulator); !same) {
+  if (auto same = checkSubject(source.replay, world, *simulator); !same) {
     return tl::unexpected<Error>(same.error());
   }
   constexpr std::uint32_t kSampleEvery = 16;
   simulator->samplePhases(kSampleEvery);
   Run run(options, *simulator, report);
-  if (replay != nullptr) run.replay(*replay);
-  if (replay == nullptr && options.policy == kScriptedPolicy) {
+  if (source.replay != nullptr) run.replay(*source.replay);
+  if (source.policy != nullptr) {
+    if (auto played = run.play(*source.policy, world); !played) {
+      return tl::unexpected<Error>(played.error());
+    }
+  }
+  if (source.replay == nullptr && options.policy == kScriptedPolicy) {
     if (auto planned = run.plan(world); !planned) {
       return tl::unexpected<Error>(planned.error());
     }

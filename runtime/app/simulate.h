@@ -1,6 +1,7 @@
 #pragma once
 #include "galactic/error.h"
 #include "galactic/world.h"
+#include "learned_run.h"
 #include "options.h"
 #include "recording.h"
 #include "run_report.h"
@@ -17,12 +18,17 @@ struct OpenedWorld {
 /// Opens the packs of `options` as a world. Fails with the errors of World::open.
 [[nodiscard]] Result<OpenedWorld> openWorld(const RunOptions& options);
 
+/// Where a run's actions come from, when it is a file; nothing when the policy makes them up.
+struct RunSource {
+  RecordingReader* replay = nullptr;
+  const OpenedPolicy* policy = nullptr;
+};
+
 /// Steps the world as `options` say and writes the recording. On a terminal a line says how it
-/// goes; Ctrl-C ends the run early. `replay`: where the actions come from, nullptr when the policy
-/// makes them up; the run ends at the first step that differs. Fails with the errors of
-/// BatchSimulator::create and the recordings.
+/// goes; Ctrl-C ends the run early. A replay ends at the first step that differs. Fails with the
+/// errors of BatchSimulator::create, makeLearnedPolicy and the recordings.
 [[nodiscard]] Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
-                                         RecordingReader* replay);
+                                         const RunSource& source);
 
 /// Whether a run with these options can be a replay of the recording: kInvalidInput, naming the
 /// option, when not.

@@ -158,6 +158,23 @@ std::string worldText(const schema::World& world) {
   return text + fmt::format("  task: {}\n", task);
 }
 
+std::string policyText(const schema::Policy& policy) {
+  std::string parts;
+  for (const schema::PolicyObservation* part : *policy.observation()) {
+    parts += fmt::format("{}{} ({})", parts.empty() ? "" : ", ", clean(part->name()), part->size());
+  }
+  const schema::PolicyImage* image = policy.image();
+  return fmt::format(
+      "  {} layers, {} continuous and {} discrete actions, robot: {}\n"
+      "  observation: {}\n"
+      "  image: {}\n",
+      policy.layers()->size(), policy.continuous() == nullptr ? 0 : policy.continuous()->count(),
+      policy.discrete()->size(), policy.robot()->size() == 0 ? "any" : clean(policy.robot()), parts,
+      image == nullptr ? std::string("none")
+                       : fmt::format("{} x {}, camera {}", image->width(), image->height(),
+                                     clean(image->camera())));
+}
+
 /// What kind of asset it is, with its name where it has one, and its description.
 std::pair<std::string, std::string> assetText(const schema::Pack& pack) {
   if (const schema::ObjectSet* set = pack.asset_as_ObjectSet()) {
@@ -175,6 +192,9 @@ std::pair<std::string, std::string> assetText(const schema::Pack& pack) {
   }
   if (const schema::World* world = pack.asset_as_World()) {
     return {fmt::format("world of {} packs", world->packs()->size()), worldText(*world)};
+  }
+  if (const schema::Policy* policy = pack.asset_as_Policy()) {
+    return {fmt::format("policy \"{}\"", clean(policy->name())), policyText(*policy)};
   }
   return {"an asset of another kind than the header says", ""};
 }

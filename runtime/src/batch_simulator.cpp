@@ -1,16 +1,19 @@
 #include "galactic/batch_simulator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 #include "simulation/batch_state.h"
 #include "simulation/chunk.h"
 #include "simulation/env_state.h"
-#include "simulation/episode_order.h"
 #include "simulation/episode_start.h"
 #include "simulation/grip_frame.h"
 #include "simulation/model.h"
+#include "simulation/saved_state.h"
 #include "simulation/step.h"
 #include "workers.h"
 
@@ -20,6 +23,17 @@ using simulation::BatchState;
 using simulation::Chunk;
 using simulation::kChunk;
 using simulation::Model;
+using simulation::SavedState;
+
+namespace {
+
+std::vector<std::uint32_t> allEnvs(std::size_t count) {
+  std::vector<std::uint32_t> envs(count);
+  std::iota(envs.begin(), envs.end(), 0U);
+  return envs;
+}
+
+}  // namespace
 
 /// The batch, and the threads that step it.
 class BatchSimulator::Impl {
@@ -33,9 +47,7 @@ class BatchSimulator::Impl {
       parts_.push_back(
           {Chunk(model_), n * chunks / threads * kChunk, (n + 1) * chunks / threads * kChunk, {}});
     }
-    for (std::size_t env = 0; env < state_.paddedCount(); ++env) {
-      simulation::beginEpisode(model_, state_, env, firstStart(env));
-    }
+    beginFirstEpisodes();
     workers_ = std::make_unique<detail::Workers>(threads, [this](std::size_t n) { run(n); });
   }
 
@@ -62,6 +74,59 @@ class BatchSimulator::Impl {
     measures_ = sample_every_ != 0 && steps_ % sample_every_ == 0;
     run(0);
     ++steps_;
+  }
+
+  void reset(std::span<const std::int32_t> episodes) {
+    assert(episodes.size() == model_.options.envs);
+    for (std::size_t env = 0; env < episodes.size(); ++env) {
+      if (episodes[env] == kStays) continue;
+      // With auto_reset the step has kept it.
+      if (!model_.options.auto_reset) state_.keepFinalObservation(env);
+      if (episodes[env] == kNextEpisode) {
+        simulation::beginNextEpisode(model_, state_, env);
+      } else {
+        simulation::beginChosenEpisode(model_, state_, env, episodes[env]);
+      }
+    }
+  }
+
+  void restart(std::uint64_t seed) {
+    model_.options.seed = seed;
+    for (std::size_t env = 0; env < state_.paddedCount(); ++env) {
+      state_.env(env) = {};
+      state_.clearOutcome(env);
+    }
+    beginFirstEpisodes();
+    steps_ = 0;
+  }
+
+  std::vector<std::byte> save(std::span<const std::uint32_t> envs) const {
+    return simulation::saveEnvs(model_, state_, envs, steps_);
+  }
+
+  Result<void> restore(std::span<const std::byte> bytes) {
+    const Result<SavedState> saved = simulation::readState(model_, bytes);
+    if (!saved) return tl::unexpected<Error>(saved.error());
+    const std::vector<std::uint32_t> all = allEnvs(model_.options.envs);
+    if (Result<void> fits = checkCount(*saved, all); !fits) return fits;
+    model_.options.seed = saved->seed;
+    steps_ = saved->steps;
+    put(*saved, all);
+    return {};
+  }
+
+  Result<void> restore(std::span<const std::byte> bytes, std::span<const std::uint32_t> envs) {
+    const Result<SavedState> saved = simulation::readState(model_, bytes);
+    if (!saved) return tl::unexpected<Error>(saved.error());
+    if (Result<void> fits = checkCount(*saved, envs); !fits) return fits;
+    if (saved->seed != model_.options.seed) {
+      return fail(ErrorCode::kInvalidInput, "saved state",
+                  fmt::format("was saved with seed {}, and the simulator has {}; restart it with "
+                              "that seed",
+                              saved->seed, model_.options.seed));
+    }
+    put(*saved, envs);
+    return {};
   }
 
   const Model& model() const { return model_; }
@@ -91,9 +156,23 @@ class BatchSimulator::Impl {
     simulation::PhaseSeconds seconds{};
   };
 
-  std::uint32_t firstStart(std::size_t env) const {
-    return simulation::nthEpisode(model_.options, model_.globalEnv(env), 0,
-                                  static_cast<std::uint32_t>(model_.starts.size()));
+  static Result<void> checkCount(const SavedState& saved, std::span<const std::uint32_t> envs) {
+    if (saved.envs.size() == envs.size()) return {};
+    return fail(ErrorCode::kInvalidInput, "saved state",
+                fmt::format("has {} envs, wanted {}", saved.envs.size(), envs.size()));
+  }
+
+  void put(const SavedState& saved, std::span<const std::uint32_t> envs) {
+    for (std::size_t n = 0; n < envs.size(); ++n) {
+      assert(envs[n] < model_.options.envs);
+      simulation::restoreEnv(model_, state_, envs[n], saved.envs[n]);
+    }
+  }
+
+  void beginFirstEpisodes() {
+    for (std::size_t env = 0; env < state_.paddedCount(); ++env) {
+      simulation::beginNextEpisode(model_, state_, env);
+    }
   }
 
   void run(std::size_t n) noexcept {
@@ -137,6 +216,7 @@ BatchSimulator::~BatchSimulator() = default;
 BatchSimulator::BatchSimulator(BatchSimulator&&) noexcept = default;
 BatchSimulator& BatchSimulator::operator=(BatchSimulator&&) noexcept = default;
 
+const SimulationOptions& BatchSimulator::options() const { return impl_->model().options; }
 std::size_t BatchSimulator::envCount() const { return impl_->model().options.envs; }
 std::size_t BatchSimulator::actionCount() const { return impl_->model().actionCount(); }
 std::size_t BatchSimulator::observationSize() const { return impl_->model().observation_size; }
@@ -153,6 +233,20 @@ void BatchSimulator::beginStep(std::span<const float> actions,
   impl_->begin(actions, resets);
 }
 void BatchSimulator::endStep() { impl_->end(); }
+void BatchSimulator::reset(std::span<const std::int32_t> episodes) { impl_->reset(episodes); }
+void BatchSimulator::restart(std::uint64_t seed) { impl_->restart(seed); }
+
+std::vector<std::byte> BatchSimulator::saveState() const { return saveState(allEnvs(envCount())); }
+std::vector<std::byte> BatchSimulator::saveState(std::span<const std::uint32_t> envs) const {
+  return impl_->save(envs);
+}
+Result<void> BatchSimulator::restoreState(std::span<const std::byte> state) {
+  return impl_->restore(state);
+}
+Result<void> BatchSimulator::restoreState(std::span<const std::byte> state,
+                                          std::span<const std::uint32_t> envs) {
+  return impl_->restore(state, envs);
+}
 
 std::span<const float> BatchSimulator::observations() const {
   return impl_->state().observations();
@@ -169,12 +263,15 @@ std::span<const std::uint8_t> BatchSimulator::dones() const {
 std::span<const std::uint8_t> BatchSimulator::successes() const {
   return impl_->state().successes().first(envCount());
 }
+std::span<const EpisodeEnd> BatchSimulator::endings() const {
+  return impl_->state().endings().first(envCount());
+}
 
 SimulationStatistics BatchSimulator::statistics() const {
   SimulationStatistics sum;
-  sum.steps = impl_->steps() * envCount();
   for (std::size_t n = 0; n < envCount(); ++n) {
-    const simulation::EnvCounters& env = impl_->state().env(n).counters;
+    const SimulationStatistics env = statistics(n);
+    sum.steps += env.steps;
     sum.refused += env.refused;
     sum.slid += env.slid;
     sum.grasps += env.grasps;
@@ -187,6 +284,20 @@ SimulationStatistics BatchSimulator::statistics() const {
     sum.reward += env.reward;
   }
   return sum;
+}
+SimulationStatistics BatchSimulator::statistics(std::size_t env) const {
+  const simulation::EnvCounters& counters = impl_->state().env(env).counters;
+  return {.steps = impl_->steps(),
+          .refused = counters.refused,
+          .slid = counters.slid,
+          .grasps = counters.grasps,
+          .drops = counters.drops,
+          .restored = counters.restored,
+          .episodes = counters.episodes,
+          .successes = counters.successes,
+          .failures = counters.failures,
+          .nan_actions = counters.nan_actions,
+          .reward = counters.reward};
 }
 
 std::span<const std::uint32_t> BatchSimulator::skippedEpisodes() const {

@@ -15,7 +15,7 @@ constexpr int kAllTrue = -1;
 /// The grid's numbers, one copy per lane.
 struct Lanes {
   __m256 min_x, min_z, inverse_spacing, columns_x, columns_z;
-  __m256 lowest, highest, quantum, inverse_quantum;
+  __m256 lowest, highest, quantum, inverse_quantum, margin;
   __m256i tiles_x;
 };
 
@@ -35,7 +35,12 @@ Lanes broadcast(const ColumnGridLayout& grid) {
           _mm256_set1_ps(grid.heights.hi),
           _mm256_set1_ps(grid.quantum),
           _mm256_set1_ps(grid.inverse_quantum),
+          _mm256_set1_ps(contactMargin(grid)),
           _mm256_set1_epi32(static_cast<int>(grid.tiles_x))};
+}
+
+__m256 clearOf(__m256 distance, __m256 margin) {
+  return _mm256_max_ps(_mm256_sub_ps(distance, margin), _mm256_setzero_ps());
 }
 
 __m256 within(__m256 value, __m256 lo, __m256 hi) {
@@ -186,8 +191,12 @@ void contactAvx2(const ColumnGridLayout& grid, const ContactBatch& batch) noexce
                                _mm256_loadu_ps(batch.y + first), _mm256_loadu_ps(batch.z + first));
       storeClearance(found, batch.clearance + first);
       if (batch.down != nullptr) {
-        const __m256 down = _mm256_mul_ps(_mm256_sub_ps(found.code, found.lo), lanes.quantum);
-        const __m256 up = _mm256_mul_ps(_mm256_sub_ps(found.hi, found.code), lanes.quantum);
+        const __m256 above = _mm256_sub_ps(lanes.highest, _mm256_loadu_ps(batch.y + first));
+        const __m256 down = clearOf(
+            _mm256_mul_ps(_mm256_sub_ps(found.code, found.lo), lanes.quantum), lanes.margin);
+        const __m256 up = clearOf(
+            _mm256_min_ps(_mm256_mul_ps(_mm256_sub_ps(found.hi, found.code), lanes.quantum), above),
+            lanes.margin);
         _mm256_storeu_ps(batch.down + first, _mm256_and_ps(down, found.free));
         _mm256_storeu_ps(batch.up + first, _mm256_and_ps(up, found.free));
       }

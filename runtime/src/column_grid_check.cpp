@@ -14,13 +14,15 @@ namespace {
 
 /// Vectors of a grid start at multiples of this in the file (force_align in the schema).
 constexpr std::size_t kVectorAlignment = 32;
-/// Lengths outside this range are no grid's, and their inverse could leave the range of a float.
-constexpr float kSmallestLength = 1e-9F;
-constexpr float kLargestLength = 1e9F;
+/// Grids have a margin about the mesh, which reaches kFarthest.
+constexpr float kFarthestGrid = 1000;
 
-bool isLength(float metres) { return metres >= kSmallestLength && metres <= kLargestLength; }
+bool isInGrid(float metres) { return std::fabs(metres) <= kFarthestGrid; }
 
-bool isCoordinate(float metres) { return std::fabs(metres) <= kLargestLength; }
+/// Where the last column ends, metres.
+float endOf(float min, std::uint32_t columns, float spacing) {
+  return min + static_cast<float>(columns) * spacing;
+}
 
 Result<void> checkFrame(const schema::ColumnGrid& grid, const std::string& where) {
   Offence offence(where);
@@ -33,10 +35,10 @@ Result<void> checkFrame(const schema::ColumnGrid& grid, const std::string& where
                   grid.spacing());
   offence.require(isLength(grid.quantum()), "quantum", "is {} m, wanted a number above 0",
                   grid.quantum());
-  offence.require(isCoordinate(grid.min_x()), "min_x", "is {} m, wanted a finite coordinate",
-                  grid.min_x());
-  offence.require(isCoordinate(grid.min_z()), "min_z", "is {} m, wanted a finite coordinate",
-                  grid.min_z());
+  offence.require(isInGrid(grid.min_x()), "min_x", "is {} m, wanted up to {} m", grid.min_x(),
+                  kFarthestGrid);
+  offence.require(isInGrid(grid.min_z()), "min_z", "is {} m, wanted up to {} m", grid.min_z(),
+                  kFarthestGrid);
   offence.require(grid.columns_x() >= 1 && grid.columns_x() <= kMaxCells, "columns_x",
                   "is {}, wanted 1 to {}", grid.columns_x(), kMaxCells);
   offence.require(grid.columns_z() >= 1 && grid.columns_z() <= kMaxCells, "columns_z",
@@ -48,8 +50,9 @@ Result<void> checkFrame(const schema::ColumnGrid& grid, const std::string& where
   offence.require(heights != nullptr, "heights", "are missing, wanted the grid's range of heights");
   if (offence.found()) return offence.result();
   offence.require(
-      isCoordinate(heights->lo()) && isCoordinate(heights->hi()) && heights->lo() <= heights->hi(),
-      "heights", "are {} to {} m, wanted finite ascending heights", heights->lo(), heights->hi());
+      isInGrid(heights->lo()) && isInGrid(heights->hi()) && heights->lo() <= heights->hi(),
+      "heights", "are {} to {} m, wanted ascending heights of up to {} m", heights->lo(),
+      heights->hi(), kFarthestGrid);
   return offence.result();
 }
 
@@ -77,6 +80,10 @@ Result<void> checkVectors(const schema::ColumnGrid& grid, const std::byte* file,
   offence.require(grid.tile_base()->size() == 0 || grid.tile_base()->size() == tiles, "tile_base",
                   "has {} elements, wanted none or {}, one per tile", grid.tile_base()->size(),
                   tiles);
+  offence.require(isInGrid(endOf(grid.min_x(), grid.columns_x(), grid.spacing())) &&
+                      isInGrid(endOf(grid.min_z(), grid.columns_z(), grid.spacing())),
+                  "columns_x", "and columns_z are {} and {}, wanted an end within {} m",
+                  grid.columns_x(), grid.columns_z(), kFarthestGrid);
   requireAligned(offence, *grid.cells(), file, "cells");
   requireAligned(offence, *grid.tile_base(), file, "tile_base");
   requireAligned(offence, *grid.overflow_codes(), file, "overflow_codes");

@@ -44,6 +44,10 @@ struct CentreBatch {
 /// Whether the AVX2 versions can run on this processor.
 [[nodiscard]] bool hasAvx2() noexcept;
 
+/// What is taken off the distances to contact, metres: more than all rounding from a height to its
+/// code and back, so that whoever moves by a distance and asks again finds the place free.
+[[nodiscard]] float contactMargin(const ColumnGridLayout& grid) noexcept;
+
 /// Element `n` of the overflow cells' spans, as heights; kEndOfSpans for an end mark.
 [[nodiscard]] Span overflowSpan(const ColumnGridLayout& grid, std::uint32_t n) noexcept;
 

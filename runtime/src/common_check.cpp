@@ -37,7 +37,8 @@ Result<void> checkBounds(const schema::Bounds* bounds, const std::string& where)
   if (offence.found()) return offence.result();
   const schema::Vec3& min = bounds->min();
   const schema::Vec3& max = bounds->max();
-  offence.require(isFinite(min) && isFinite(max), "bounds", "are not finite, wanted numbers");
+  offence.require(isPlace(min) && isPlace(max), "bounds",
+                  "reach farther than {} m or are not finite, wanted coordinates", kFarthest);
   offence.require(min.x() <= max.x() && min.y() <= max.y() && min.z() <= max.z(), "bounds",
                   "have a minimum ({}, {}, {}) above the maximum ({}, {}, {})", min.x(), min.y(),
                   min.z(), max.x(), max.y(), max.z());
@@ -69,8 +70,9 @@ Result<void> checkRadii(const flatbuffers::Vector<float>& radii, const std::stri
   float previous = 0;
   for (flatbuffers::uoffset_t n = 0; n < radii.size() && !offence.found(); ++n) {
     const float radius = radii.Get(n);
-    offence.require(std::isfinite(radius) && radius > previous, fmt::format("radii[{}]", n),
-                    "is {} m after {} m, wanted finite ascending radii", radius, previous);
+    offence.require(isLength(radius) && radius > previous, fmt::format("radii[{}]", n),
+                    "is {} m after {} m, wanted ascending radii of up to {} m", radius, previous,
+                    kFarthest);
     previous = radius;
   }
   return offence.result();
@@ -82,7 +84,8 @@ Result<void> checkSpheres(const flatbuffers::Vector<const schema::SetSphere*>& s
   for (std::size_t n = range.begin; n < range.end && !offence.found(); ++n) {
     const schema::SetSphere& sphere = *spheres.Get(static_cast<flatbuffers::uoffset_t>(n));
     const std::string field = fmt::format("spheres[{}]", n);
-    offence.require(isFinite(sphere.centre()), field + ".centre", "is not finite, wanted numbers");
+    offence.require(isPlace(sphere.centre()), field + ".centre",
+                    "is farther than {} m or not finite, wanted coordinates", kFarthest);
     offence.require(sphere.radius_index() < radii, field + ".radius_index",
                     "is {}, wanted less than the number of radii {}", sphere.radius_index(), radii);
     if (n == range.begin || offence.found()) continue;
@@ -119,10 +122,10 @@ Result<void> checkSurface(const schema::Surface& surface, const std::string& whe
   Offence offence(where);
   // Messages are made for the first offender only: surfaces are the bulk of a pack.
   const auto broken = std::find_if(positions.begin(), positions.end(),
-                                   [](const schema::Vec3* p) { return !isFinite(*p); });
+                                   [](const schema::Vec3* p) { return !isPlace(*p); });
   offence.require(broken == positions.end(),
                   fmt::format("positions[{}]", std::distance(positions.begin(), broken)),
-                  "is not finite, wanted numbers");
+                  "is farther than {} m or not finite, wanted coordinates", kFarthest);
   offence.require(corners.size() % 3 == 0, "triangles",
                   "has {} elements, wanted three per triangle", corners.size());
   const auto beyond = std::find_if(corners.begin(), corners.end(),

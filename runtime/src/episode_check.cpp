@@ -65,10 +65,10 @@ class EpisodeChecker {
                      "has {} elements, wanted {}, one per episode and start joint",
                      positions.size(), wanted);
     const auto broken = std::find_if(positions.begin(), positions.end(),
-                                     [](float position) { return !std::isfinite(position); });
+                                     [](float position) { return !isAngle(position); });
     if (broken == positions.end()) return;
     offence_.require(false, fmt::format("start_positions[{}]", broken - positions.begin()),
-                     "is {}, wanted a finite position", *broken);
+                     "is {}, wanted a position of up to {}", *broken, kMostAngle);
   }
 
   void checkPlacements() {
@@ -83,7 +83,7 @@ class EpisodeChecker {
     offence_.require((*broken)->object() < objects, field + ".object",
                      "is {}, wanted one of {} objects", (*broken)->object(), objects);
     offence_.require(isRigid((*broken)->pose()), field + ".pose",
-                     "is no rigid transform, wanted finite numbers and a unit quaternion");
+                     "is no rigid transform, wanted up to {} m and a unit quaternion", kFarthest);
   }
 
   void checkEpisodes() {
@@ -107,8 +107,8 @@ class EpisodeChecker {
 
   [[nodiscard]] bool isSound(const schema::Episode& episode, std::size_t next_placement) const {
     return episode.scene() < set_.scenes()->size() && ownsRange(episode, next_placement) &&
-           episode.target() < episode.placement_count() && isFinite(episode.base_position()) &&
-           std::isfinite(episode.base_yaw()) && isRigid(episode.goal());
+           episode.target() < episode.placement_count() && isPlace(episode.base_position()) &&
+           isAngle(episode.base_yaw()) && isRigid(episode.goal());
   }
 
   void requireSound(const schema::Episode& episode, std::size_t next_placement,
@@ -121,12 +121,12 @@ class EpisodeChecker {
     offence_.require(episode.target() < episode.placement_count(), field + ".target",
                      "is {}, wanted one of the episode's {} placements", episode.target(),
                      episode.placement_count());
-    offence_.require(isFinite(episode.base_position()), field + ".base_position",
-                     "is not finite, wanted numbers");
-    offence_.require(std::isfinite(episode.base_yaw()), field + ".base_yaw",
-                     "is {} rad, wanted a finite angle", episode.base_yaw());
+    offence_.require(isPlace(episode.base_position()), field + ".base_position",
+                     "is farther than {} m or not finite, wanted coordinates", kFarthest);
+    offence_.require(isAngle(episode.base_yaw()), field + ".base_yaw",
+                     "is {} rad, wanted an angle of up to {} rad", episode.base_yaw(), kMostAngle);
     offence_.require(isRigid(episode.goal()), field + ".goal",
-                     "is no rigid transform, wanted finite numbers and a unit quaternion");
+                     "is no rigid transform, wanted up to {} m and a unit quaternion", kFarthest);
   }
 
   const schema::EpisodeSet& set_;

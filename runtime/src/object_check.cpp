@@ -10,11 +10,13 @@ namespace {
 Result<void> checkBox(const schema::Object& object, const std::string& where) {
   Offence offence(where);
   offence.require(object.box_pose() != nullptr && isRigid(*object.box_pose()), "box_pose",
-                  "is missing or no rigid transform, wanted finite numbers and a unit quaternion");
+                  "is missing or no rigid transform, wanted up to {} m and a unit quaternion",
+                  kFarthest);
   const schema::Vec3* half = object.box_half_extents();
   offence.require(
-      half != nullptr && isFinite(*half) && half->x() > 0 && half->y() > 0 && half->z() > 0,
-      "box_half_extents", "are missing or not above 0, wanted finite lengths above 0");
+      half != nullptr && isLength(half->x()) && isLength(half->y()) && isLength(half->z()),
+      "box_half_extents", "are missing or no lengths, wanted more than 0 and up to {} m",
+      kFarthest);
   offence.require(object.box_fit() <= schema::BoxFit::MAX, "box_fit",
                   "is {}, wanted a value up to {}", static_cast<unsigned>(object.box_fit()),
                   static_cast<unsigned>(schema::BoxFit::MAX));
@@ -34,8 +36,8 @@ Result<void> checkStablePoses(const schema::Object& object, const std::string& w
     const std::string field = fmt::format("stable_poses[{}]", n);
     offence.require(isUnit(pose.rotation()), field + ".rotation",
                     "is no unit quaternion, wanted a rotation");
-    offence.require(std::isfinite(pose.height()), field + ".height",
-                    "is {} m, wanted a finite height", pose.height());
+    offence.require(isCoordinate(pose.height()), field + ".height", "is {} m, wanted up to {} m",
+                    pose.height(), kFarthest);
     const float most = n == 0 ? 1.0F : poses.Get(n - 1)->likelihood();
     offence.require(pose.likelihood() >= 0 && pose.likelihood() <= most, field + ".likelihood",
                     "is {}, wanted 0 to {}: the likeliest first", pose.likelihood(), most);

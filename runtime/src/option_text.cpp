@@ -15,6 +15,43 @@
 namespace galactic {
 namespace {
 
+/// Collects names.
+class Namer {
+ public:
+  Namer(std::vector<std::string>& names, bool with_presets)
+      : names_(names), with_presets_(with_presets) {}
+
+  void group(std::string_view) {}
+  template <class... Rest>
+  void whole(std::string_view name, const Rest&...) {
+    names_.emplace_back(name);
+  }
+  template <class... Rest>
+  void seed(std::string_view name, const Rest&...) {
+    names_.emplace_back(name);
+  }
+  template <class... Rest>
+  void real(std::string_view name, const Rest&...) {
+    names_.emplace_back(name);
+  }
+  template <class... Rest>
+  void flag(std::string_view name, const Rest&...) {
+    names_.emplace_back(name);
+  }
+  template <class... Rest>
+  void choice(std::string_view name, const Rest&...) {
+    names_.emplace_back(name);
+  }
+  template <class... Rest>
+  void preset(std::string_view name, const Rest&...) {
+    if (with_presets_) names_.emplace_back(name);
+  }
+
+ private:
+  std::vector<std::string>& names_;
+  bool with_presets_;
+};
+
 /// Collects names and values.
 class Lister {
  public:
@@ -55,7 +92,8 @@ class Lister {
 /// Gives the options the values of texts.
 class Setter {
  public:
-  explicit Setter(std::span<const OptionText> texts) : texts_(texts), taken_(texts.size()) {}
+  Setter(std::span<const OptionText> texts, bool with_presets)
+      : texts_(texts), taken_(texts.size()), with_presets_(with_presets) {}
 
   void group(std::string_view) {}
   void whole(std::string_view name, std::uint32_t& field, Within<std::uint32_t> within,
@@ -77,16 +115,12 @@ class Setter {
   template <class T, std::size_t N>
   void choice(std::string_view name, T& field, const std::array<Named<T>, N>& names,
               std::string_view) {
-    const std::string* text = take(name);
-    if (text == nullptr) return;
-    const auto found = std::find_if(names.begin(), names.end(),
-                                    [&](const Named<T>& one) { return one.name == *text; });
-    require(found != names.end(), namesOf<T>(names));
-    if (found != names.end()) field = found->value;
+    choose<T>(name, field, names);
   }
-  /// Texts give its parts.
   template <class T>
-  void preset(std::string_view, const T&, const Preset<T>&, std::string_view) {}
+  void preset(std::string_view name, T& field, const Preset<T>& preset, std::string_view) {
+    if (with_presets_) choose<T>(name, field, preset.names);
+  }
 
   [[nodiscard]] std::optional<OptionFault> fault() const {
     if (fault_) return fault_;
@@ -104,6 +138,16 @@ class Setter {
       return &texts_[n].value;
     }
     return nullptr;
+  }
+
+  template <class T>
+  void choose(std::string_view name, T& field, std::span<const Named<T>> names) {
+    const std::string* text = take(name);
+    if (text == nullptr) return;
+    const auto found = std::find_if(names.begin(), names.end(),
+                                    [&](const Named<T>& one) { return one.name == *text; });
+    require(found != names.end(), namesOf<T>(names));
+    if (found != names.end()) field = found->value;
   }
 
   template <class T>
@@ -126,20 +170,29 @@ class Setter {
 
   std::span<const OptionText> texts_;
   std::vector<bool> taken_;
+  bool with_presets_;
   std::size_t last_ = 0;
   std::optional<OptionFault> fault_;
 };
 
 template <class Visitor>
 void visit(SimulationOptions& options, OptionScope scope, Visitor& visitor) {
-  if (scope == OptionScope::kAll) {
-    visitOptions(options, visitor);
-  } else {
+  if (scope == OptionScope::kTask) {
     visitWorldTask(options, visitor);
+  } else {
+    visitOptions(options, visitor);
   }
 }
 
 }  // namespace
+
+std::vector<std::string> optionNames(OptionScope scope) {
+  std::vector<std::string> names;
+  SimulationOptions options;
+  Namer namer(names, scope == OptionScope::kTyped);
+  visit(options, scope, namer);
+  return names;
+}
 
 std::vector<OptionText> listOptions(const SimulationOptions& options, OptionScope scope) {
   std::vector<OptionText> list;
@@ -151,7 +204,7 @@ std::vector<OptionText> listOptions(const SimulationOptions& options, OptionScop
 
 std::optional<OptionFault> setOptions(std::span<const OptionText> texts, OptionScope scope,
                                       SimulationOptions& options) {
-  Setter setter(texts);
+  Setter setter(texts, scope == OptionScope::kTyped);
   visit(options, scope, setter);
   return setter.fault();
 }

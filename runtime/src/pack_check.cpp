@@ -4,6 +4,7 @@
 #include "episode_check.h"
 #include "object_check.h"
 #include "offence.h"
+#include "policy_check.h"
 #include "robot_check.h"
 #include "scene_check.h"
 #include "texture_check.h"
@@ -77,6 +78,9 @@ Result<void> checkAsset(const PackHeader& header, std::span<const std::byte> fil
           .and_then([&](const schema::SharedTexture* texture) {
             return checkSharedTexture(*texture, where);
           });
+    case PackKind::kPolicy:
+      return assetOf<schema::Policy>(pack, header, where)
+          .and_then([&](const schema::Policy* policy) { return checkPolicy(*policy, where); });
   }
   return fail(ErrorCode::kInternal, where, "has a kind that reading its header refuses");
 }

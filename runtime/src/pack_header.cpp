@@ -18,6 +18,7 @@ bool isKnownKind(PackKind kind) {
     case PackKind::kEpisodes:
     case PackKind::kWorld:
     case PackKind::kTexture:
+    case PackKind::kPolicy:
       return true;
   }
   return false;

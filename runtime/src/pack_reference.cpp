@@ -74,7 +74,7 @@ Result<std::vector<OptionText>> taskOptions(const PackFile& world) {
   const auto* stored = (*content)->task();
   if (stored == nullptr) return {};
   // What was verified before passes; a trusted pack may hold anything.
-  if (auto checked = detail::checkTask(*stored, world.where() + ": world"); !checked) {
+  if (auto checked = detail::checkOptions(*stored, "task", world.where() + ": world"); !checked) {
     return tl::unexpected<Error>(std::move(checked.error()));
   }
   std::vector<OptionText> options;

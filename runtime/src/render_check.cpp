@@ -132,8 +132,9 @@ class RenderChecker {
                      "is {}, wanted no more than the {} blocks of bounds that are left hold",
                      stored.cluster_count(), blocks - next_block_);
     offence_.require(checkBounds(stored.bounds(), fmt::format("{}.{}", offence_.where(), field)));
-    offence_.require(std::isfinite(stored.largest_error()) && stored.largest_error() >= 0,
-                     field + ".largest_error", "is {} m, wanted 0 or more", stored.largest_error());
+    offence_.require(stored.largest_error() >= 0 && isCoordinate(stored.largest_error()),
+                     field + ".largest_error", "is {} m, wanted 0 to {} m", stored.largest_error(),
+                     kFarthest);
     if (offence_.found()) return;
     checkClusters(stored, field);
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "common_check.h"
 #include "galactic/render_layout.h"
 #include "offence.h"
 
@@ -103,8 +104,11 @@ class ClusterChecker {
   }
 
   void checkBoundsNumbers() {
+    // A box about what reaches from one end of the world to the other.
+    constexpr double kFarthestBound = 4 * static_cast<double>(kFarthest);
     for (std::size_t row = 0; row < kBoundsRows; ++row) {
-      offence_.require(std::isfinite(bound(row)), "bounds", "are not finite in row {}", row);
+      offence_.require(std::abs(bound(row)) <= kFarthestBound, "bounds",
+                       "are {} in row {}, wanted up to {}", bound(row), row, kFarthestBound);
     }
     const double cutoff = bound(kConeCutoffRow);
     double squared = 0;

@@ -35,6 +35,16 @@ std::optional<RobotBase> baseOf(const schema::Base* stored) {
                    .footprint_radius = stored->footprint_radius()};
 }
 
+std::optional<RobotLaser> laserOf(const schema::Laser* stored) {
+  if (stored == nullptr) return std::nullopt;
+  return RobotLaser{.link = stored->link(),
+                    .link_from_laser = detail::fromSchema(*stored->link_from_laser()),
+                    .field_of_view = stored->field_of_view(),
+                    .least_range = stored->least_range(),
+                    .range = stored->range(),
+                    .noise = stored->noise()};
+}
+
 }  // namespace
 
 Result<Robot> Robot::from(const PackFile& pack) {
@@ -67,6 +77,7 @@ Result<Robot> Robot::from(const PackFile& pack) {
   robot.end_effector_ = endEffectorOf(stored->end_effector());
   robot.camera_ = cameraOf(stored->camera());
   robot.base_ = baseOf(stored->base());
+  robot.laser_ = laserOf(stored->laser());
   return robot;
 }
 

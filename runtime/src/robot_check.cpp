@@ -13,6 +13,10 @@ namespace galactic::detail {
 namespace {
 
 constexpr std::size_t kMaxLinks = 65535;
+/// Of a joint that follows another: multiplier and offset.
+constexpr float kMostMultiplier = 1000;
+/// Of one action, radians or metres.
+constexpr float kMostStep = 1000;
 
 /// Checks one robot part by part.
 class RobotChecker {
@@ -72,8 +76,9 @@ class RobotChecker {
     offence_.require(rooted, field + ".parent",
                      "is {}, wanted -1 for the first link and an earlier link for the others",
                      link.parent());
-    offence_.require(isRigid(link.parent_from_joint()), field + ".parent_from_joint",
-                     "is no rigid transform, wanted finite numbers and a unit quaternion");
+    offence_.require(isRigid(link.parent_from_joint(), kChainTolerance),
+                     field + ".parent_from_joint",
+                     "is no rigid transform, wanted up to {} m and a unit quaternion", kFarthest);
     offence_.require(link.type() <= schema::JointType::MAX, field + ".type",
                      "is {}, wanted a value up to {}", static_cast<unsigned>(link.type()),
                      static_cast<unsigned>(schema::JointType::MAX));
@@ -81,15 +86,19 @@ class RobotChecker {
                      "is {} at the root, wanted 0: it has no joint",
                      static_cast<unsigned>(link.type()));
     if (offence_.found()) return;
-    offence_.require(std::isfinite(link.multiplier()) && std::isfinite(link.offset()),
-                     field + ".multiplier", "or offset is not finite, wanted numbers");
+    offence_.require(std::fabs(link.multiplier()) <= kMostMultiplier &&
+                         std::fabs(link.offset()) <= kMostMultiplier,
+                     field + ".multiplier",
+                     "or offset is not finite or too large, wanted up to {} and {}",
+                     kMostMultiplier, kMostMultiplier);
     const std::size_t values = positionCount(static_cast<JointType>(link.type()));
     if (values == 0) {
       offence_.require(link.position() == -1, field + ".position",
                        "is {} at a fixed joint, wanted -1", link.position());
       return;
     }
-    offence_.require(isUnit(link.axis()), field + ".axis", "has not length 1, wanted a direction");
+    offence_.require(isUnit(link.axis(), kChainTolerance), field + ".axis",
+                     "has not length 1, wanted a direction");
     offence_.require(
         link.position() >= 0 && static_cast<std::size_t>(link.position()) + values <= positions(),
         field + ".position", "is {}, wanted {} values among the {} positions", link.position(),
@@ -133,6 +142,8 @@ class RobotChecker {
       offence_.require(start >= limits.lower() && start <= limits.upper(),
                        fmt::format("start_positions[{}]", n), "is {}, wanted {} to {}", start,
                        limits.lower(), limits.upper());
+      offence_.require(isAngle(start), fmt::format("start_positions[{}]", n),
+                       "is {}, wanted up to {}", start, kMostAngle);
     }
   }
 
@@ -207,14 +218,19 @@ class RobotChecker {
       const std::string field = fmt::format("controlled_joints[{}]", n);
       offence_.require(joint.position() < positions(), field + ".position",
                        "is {}, wanted one of {} positions", joint.position(), positions());
-      offence_.require(std::isfinite(joint.step()) && joint.step() > 0, field + ".step",
-                       "is {}, wanted a number above 0", joint.step());
+      offence_.require(joint.step() > 0 && joint.step() <= kMostStep, field + ".step",
+                       "is {}, wanted a number above 0 and up to {}", joint.step(), kMostStep);
       if (offence_.found()) return;
       const schema::PositionLimits& limits = *robot_.limits()->Get(joint.position());
       offence_.require(joint.lower() >= limits.lower() && joint.lower() <= joint.upper() &&
                            joint.upper() <= limits.upper(),
                        field + ".lower", "and upper are {} and {}, wanted ascending, in {} to {}",
                        joint.lower(), joint.upper(), limits.lower(), limits.upper());
+      // Unlimited joints have the largest floats; what they are clamped to has to be a number that
+      // one can reckon with.
+      offence_.require(joint.lower() <= kMostAngle && joint.upper() >= -kMostAngle,
+                       field + ".lower", "and upper are {} and {}, wanted some of -{} to {}",
+                       joint.lower(), joint.upper(), kMostAngle, kMostAngle);
     }
   }
 
@@ -225,41 +241,64 @@ class RobotChecker {
   void checkTools() {
     if (const schema::EndEffector* effector = robot_.end_effector()) {
       requireLink(effector->link(), "end_effector.link");
-      offence_.require(effector->grasp_point() != nullptr && isFinite(*effector->grasp_point()),
-                       "end_effector.grasp_point", "is missing or not finite, wanted numbers");
-      offence_.require(std::isfinite(effector->grasp_radius()) && effector->grasp_radius() > 0,
-                       "end_effector.grasp_radius", "is {} m, wanted a length above 0",
-                       effector->grasp_radius());
+      offence_.require(effector->grasp_point() != nullptr && isPlace(*effector->grasp_point()),
+                       "end_effector.grasp_point",
+                       "is missing, farther than {} m or not finite, wanted coordinates",
+                       kFarthest);
+      offence_.require(isLength(effector->grasp_radius()), "end_effector.grasp_radius",
+                       "is {} m, wanted a length above 0 and up to {} m", effector->grasp_radius(),
+                       kFarthest);
     }
     if (const schema::Camera* camera = robot_.camera()) {
-      constexpr float kHalfTurn = 3.14159274F;
+      // Tangents of half of them, and their inverses, are lengths.
+      constexpr float kLeastView = 0.001F;
+      constexpr float kMostView = 3.14F;
       requireLink(camera->link(), "camera.link");
       offence_.require(
           camera->link_from_camera() != nullptr && isRigid(*camera->link_from_camera()),
           "camera.link_from_camera", "is missing or no rigid transform, wanted a pose");
-      offence_.require(camera->vertical_fov() > 0 && camera->vertical_fov() < kHalfTurn,
-                       "camera.vertical_fov", "is {} rad, wanted 0 to pi", camera->vertical_fov());
+      offence_.require(camera->vertical_fov() >= kLeastView && camera->vertical_fov() <= kMostView,
+                       "camera.vertical_fov", "is {} rad, wanted {} to {}", camera->vertical_fov(),
+                       kLeastView, kMostView);
     }
     if (const schema::Base* base = robot_.base()) checkBase(*base);
+    if (const schema::Laser* laser = robot_.laser()) checkLaser(*laser);
+  }
+
+  void checkLaser(const schema::Laser& laser) {
+    // Radians of a whole turn, rounded up.
+    constexpr float kTurn = 6.2831855F;
+    requireLink(laser.link(), "laser.link");
+    offence_.require(laser.link_from_laser() != nullptr && isRigid(*laser.link_from_laser()),
+                     "laser.link_from_laser", "is missing or no rigid transform, wanted a pose");
+    offence_.require(laser.field_of_view() >= 0 && laser.field_of_view() <= kTurn,
+                     "laser.field_of_view", "is {} rad, wanted 0 to 2 pi", laser.field_of_view());
+    offence_.require(isLength(laser.range()), "laser.range",
+                     "is {} m, wanted a length above 0 and up to {} m", laser.range(), kFarthest);
+    offence_.require(laser.least_range() >= 0 && laser.least_range() < laser.range(),
+                     "laser.least_range", "is {} m, wanted 0 to less than the range",
+                     laser.least_range());
+    offence_.require(laser.noise() >= 0 && isCoordinate(laser.noise()), "laser.noise",
+                     "is {} m, wanted 0 to {} m", laser.noise(), kFarthest);
   }
 
   void checkBase(const schema::Base& base) {
-    const auto is_step = [](float step) { return std::isfinite(step) && step > 0; };
+    const auto is_step = [](float step) { return step > 0 && step <= kFarthest; };
     offence_.require(is_step(base.forward_step()) && is_step(base.turn_step()), "base.forward_step",
-                     "or turn_step is {} or {}, wanted numbers above 0", base.forward_step(),
-                     base.turn_step());
-    offence_.require(std::isfinite(base.root_height()), "base.root_height",
-                     "is {} m, wanted a finite height", base.root_height());
+                     "or turn_step is {} or {}, wanted numbers above 0 and up to {}",
+                     base.forward_step(), base.turn_step(), kFarthest);
+    offence_.require(isCoordinate(base.root_height()), "base.root_height",
+                     "is {} m, wanted up to {} m", base.root_height(), kFarthest);
     const schema::Vec3* min = base.footprint_min();
     const schema::Vec3* max = base.footprint_max();
-    const bool rectangle = min != nullptr && max != nullptr && isFinite(*min) && isFinite(*max) &&
+    const bool rectangle = min != nullptr && max != nullptr && isPlace(*min) && isPlace(*max) &&
                            min->x() <= max->x() && min->z() <= max->z();
     offence_.require(
         rectangle, "base.footprint_min",
         "or footprint_max is missing, not finite or not ascending, wanted a rectangle");
-    offence_.require(isAmount(static_cast<double>(base.footprint_radius())),
-                     "base.footprint_radius", "is {} m, wanted a finite length of 0 or more",
-                     base.footprint_radius());
+    offence_.require(base.footprint_radius() >= 0 && isCoordinate(base.footprint_radius()),
+                     "base.footprint_radius", "is {} m, wanted 0 to {} m", base.footprint_radius(),
+                     kFarthest);
   }
 
   void checkSurfaces() {

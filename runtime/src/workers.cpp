@@ -24,6 +24,19 @@ std::uint32_t threadCount(std::uint32_t wanted) noexcept {
   return wanted != 0 ? wanted : std::max(1U, std::thread::hardware_concurrency());
 }
 
+void forEachPart(std::uint32_t threads, std::size_t count,
+                 const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next{0};
+  const auto help = [&]() noexcept {
+    for (std::size_t n = next++; n < count; n = next++) work(n);
+  };
+  std::vector<std::jthread> helpers;
+  for (std::size_t n = 1; n < std::min<std::size_t>(threads, count); ++n) {
+    helpers.emplace_back(help);
+  }
+  help();
+}
+
 Workers::Workers(std::size_t parts, std::function<void(std::size_t)> work)
     : work_(std::move(work)), begun_(parts) {
   const std::size_t threads = std::max<std::size_t>(1, parts - 1);

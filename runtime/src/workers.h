@@ -11,6 +11,11 @@ namespace galactic::detail {
 /// 0: as many threads as there are processors.
 [[nodiscard]] std::uint32_t threadCount(std::uint32_t wanted) noexcept;
 
+/// Calls `work(n)` once for each n below `count`, in no particular order, on up to `threads`
+/// threads, the caller's included. `work` must not throw. For work that is done once.
+void forEachPart(std::uint32_t threads, std::size_t count,
+                 const std::function<void(std::size_t)>& work);
+
 /// Threads that share a piece of work in parts, again and again. Each part of a round is done once,
 /// by whichever thread takes it first: a thread begins with the part that it also did last time,
 /// and then helps with what nobody has begun. The caller helps too while it waits, so there is one

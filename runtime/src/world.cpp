@@ -90,6 +90,9 @@ Result<void> add(const PackFile& pack, Parts& parts) {
     case PackKind::kTexture:
       // Drawing alone asks for it.
       return {};
+    case PackKind::kPolicy:
+      return fail(kInvalid, pack.where(),
+                  "is a policy, which is no part of a world; give it with --policy");
     case PackKind::kWorld:
       break;
   }

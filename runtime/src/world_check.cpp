@@ -37,7 +37,9 @@ Result<void> checkReference(const schema::PackReference& reference, const std::s
   Offence offence(where);
   const char* fault = faultOf(reference.path()->string_view());
   offence.require(fault[0] == '\0', "path", "{}", fault);
-  const std::optional<PackKind> kind = packKindOf(reference.kind()->string_view());
+  std::optional<PackKind> kind = packKindOf(reference.kind()->string_view());
+  // A policy goes from world to world.
+  if (kind == PackKind::kPolicy) kind.reset();
   offence.require(kind.has_value(), "kind", "is \"{}\", wanted SCEN, OBJS, RBOT, EPIS or TXTR",
                   reference.kind()->string_view());
   offence.require(kind != PackKind::kWorld, "kind", "is \"WRLD\", wanted no world in a world");
@@ -73,16 +75,16 @@ Result<void> checkOption(const OptionText& option, std::span<const OptionText> k
 
 }  // namespace
 
-Result<void> checkTask(const flatbuffers::Vector<flatbuffers::Offset<schema::Option>>& task,
-                       const std::string& where) {
+Result<void> checkOptions(const flatbuffers::Vector<flatbuffers::Offset<schema::Option>>& options,
+                          const std::string& field, const std::string& where) {
   const std::vector<OptionText> known = listOptions({}, OptionScope::kTask);
   Offence offence(where);
   std::size_t next = 0;
-  for (flatbuffers::uoffset_t n = 0; n < task.size() && !offence.found(); ++n) {
-    const schema::Option& stored = *task.Get(n);
+  for (flatbuffers::uoffset_t n = 0; n < options.size() && !offence.found(); ++n) {
+    const schema::Option& stored = *options.Get(n);
     const OptionText option{stored.name()->str(), stored.value()->str()};
     offence.require(
-        checkOption(option, known, next, fmt::format("{}.task[{}]", offence.where(), n)));
+        checkOption(option, known, next, fmt::format("{}.{}[{}]", offence.where(), field, n)));
   }
   return offence.result();
 }
@@ -104,7 +106,8 @@ Result<void> checkWorld(const schema::World& world, const std::string& where) {
   offence.require(counts["EPIS"] <= 1, "packs", "has {} episode sets (EPIS), wanted at most one",
                   counts["EPIS"]);
   offence.require(counts["SCEN"] >= 1, "packs", "has no scene (SCEN), wanted at least one");
-  if (world.task() != nullptr) offence.require(checkTask(*world.task(), offence.where()));
+  if (world.task() != nullptr)
+    offence.require(checkOptions(*world.task(), "task", offence.where()));
   return offence.result();
 }
 

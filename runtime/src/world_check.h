@@ -17,8 +17,9 @@ namespace galactic::detail {
 [[nodiscard]] Result<void> checkWorld(const schema::World& world, const std::string& where);
 
 /// Whether they are options of the task (OptionScope::kTask) in the order of the option table, each
-/// at most once, with values that they may have.
-[[nodiscard]] Result<void> checkTask(
-    const flatbuffers::Vector<flatbuffers::Offset<schema::Option>>& task, const std::string& where);
+/// at most once, with values that they may have. `field` names the list.
+[[nodiscard]] Result<void> checkOptions(
+    const flatbuffers::Vector<flatbuffers::Offset<schema::Option>>& options,
+    const std::string& field, const std::string& where);
 
 }  // namespace galactic::detail

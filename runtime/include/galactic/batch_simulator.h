@@ -23,6 +23,31 @@ struct ObservationPart {
   std::size_t size = 0;
 };
 
+/// How an episode ended. Where a step gives several reasons, the first of them counts.
+enum class EpisodeEnd : std::uint8_t {
+  kNone = 0,  ///< It goes on.
+  kSuccess,
+  kWrongTerminate,  ///< The robot said that the task is done, and it was not.
+  kWrongRelease,    ///< The hand let go of the target away from the goal.
+  kWrongObject,     ///< The hand grasped another object.
+  kTimeOut,         ///< TaskOptions::most_steps are over.
+};
+inline constexpr std::size_t kEpisodeEnds = 6;
+
+/// Whether the rules of the task ended the episode, for better or worse: what learning calls a
+/// termination, with nothing to be earned behind it.
+[[nodiscard]] constexpr bool isTermination(EpisodeEnd end) {
+  return end != EpisodeEnd::kNone && end != EpisodeEnd::kTimeOut;
+}
+
+/// Whether the clock ended the episode, which could have gone on: a truncation.
+[[nodiscard]] constexpr bool isTruncation(EpisodeEnd end) { return end == EpisodeEnd::kTimeOut; }
+
+/// Whether the episode ended by a mistake of the robot.
+[[nodiscard]] constexpr bool isFailure(EpisodeEnd end) {
+  return isTermination(end) && end != EpisodeEnd::kSuccess;
+}
+
 /// What happened in all envs since the simulator was made.
 struct SimulationStatistics {
   std::uint64_t steps = 0;
@@ -103,13 +128,16 @@ class BatchSimulator {
  public:
   /// `world` must outlive the simulator. All envs stand at the start of their first episode. Fails
   /// with kInvalidInput when no episode of the world can be started (the robot penetrates something
-  /// in all of them), and with kUnsupported when an action moves a planar or floating joint.
+  /// in all of them) or a laser sees nothing, and with kUnsupported when an action moves a planar
+  /// or floating joint, or the link that carries the laser.
   [[nodiscard]] static Result<BatchSimulator> create(const World& world,
                                                      const SimulationOptions& options);
   ~BatchSimulator();
   BatchSimulator(BatchSimulator&&) noexcept;
   BatchSimulator& operator=(BatchSimulator&&) noexcept;
 
+  /// As the simulator was made, or restarted.
+  [[nodiscard]] const SimulationOptions& options() const;
   [[nodiscard]] std::size_t envCount() const;
   [[nodiscard]] std::size_t actionCount() const;
   [[nodiscard]] std::size_t observationSize() const;
@@ -118,7 +146,10 @@ class BatchSimulator {
   /// robot_target (3), grip_target (3), robot_grip (3), robot_goal (3), grip_goal (3): points in
   /// the frame of the base (on the floor under the root, turned by the yaw) or of the grip, metres;
   /// is_holding (1); joints (one per controlled joint, radians or metres); time (3): the share f of
-  /// the steps that is left, as min(1, f), min(1, 5 f), min(1, 50 f).
+  /// the steps that is left, as min(1, f), min(1, 5 f), min(1, 50 f). With SensorOptions also: bump
+  /// (1): whether something was in the way of the last step; laser (beams, for each of its planes):
+  /// distances as shares of the range; geodesic (6): length, cosine and sine of the way along the
+  /// floor to the target, and to the goal. See docs/simulation.md.
   [[nodiscard]] const std::vector<ObservationPart>& observationParts() const;
 
   /// One step of all envs. `actions`: envCount() * actionCount(), env after env.
@@ -131,8 +162,34 @@ class BatchSimulator {
   void beginStep(std::span<const float> actions, std::span<const std::int32_t> resets = {});
   void endStep();
 
+  /// What reset() may be given for an env instead of an episode: it stays as it is, or begins the
+  /// episode whose turn it is.
+  static constexpr std::int32_t kStays = -1;
+  static constexpr std::int32_t kNextEpisode = -2;
+  /// Begins episodes between two steps. `episodes`: for each env the index of an episode, kStays or
+  /// kNextEpisode. What the last step returned stays, but for the observations of these envs; where
+  /// that step ended an episode, the one before is their final observation.
+  void reset(std::span<const std::int32_t> episodes);
+  /// All envs stand at the start of their first episode, as if the simulator had just been made
+  /// with this seed; the statistics begin anew, too.
+  void restart(std::uint64_t seed);
+
+  /// The state of all envs as bytes, or of `envs`, in that order (numbers below envCount()): with
+  /// what the last step returned, the statistics and the seed.
+  [[nodiscard]] std::vector<std::byte> saveState() const;
+  [[nodiscard]] std::vector<std::byte> saveState(std::span<const std::uint32_t> envs) const;
+  /// Goes on from a state that a simulator of the same world and the same options saved (other
+  /// numbers of threads do; of envs, rank and ranks too, with `envs`): bit for bit as that one
+  /// would have. The saved envs become all envs, or `envs`, in that order; the random numbers and
+  /// episodes to come are those of the env that a state is restored to. Bytes may be anything:
+  /// fails with kInvalidInput or kUnsupported and changes nothing when they are no such state, have
+  /// another number of envs, or, with `envs`, another seed.
+  [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state);
+  [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state,
+                                          std::span<const std::uint32_t> envs);
+
   /// After the last step. Shape: envs * observationSize(). Where an episode ended, the first
-  /// observation of the next one.
+  /// observation of the next one, or without SimulationOptions::auto_reset still its last.
   [[nodiscard]] std::span<const float> observations() const;
   /// Where an episode ended in the last step, its last observation; elsewhere undefined.
   [[nodiscard]] std::span<const float> finalObservations() const;
@@ -142,8 +199,12 @@ class BatchSimulator {
   [[nodiscard]] std::span<const std::uint8_t> dones() const;
   /// 1 where it ended in success. Shape: envs.
   [[nodiscard]] std::span<const std::uint8_t> successes() const;
+  /// How it ended; kNone where it goes on or the caller reset it. Shape: envs.
+  [[nodiscard]] std::span<const EpisodeEnd> endings() const;
 
   [[nodiscard]] SimulationStatistics statistics() const;
+  /// The same of one env.
+  [[nodiscard]] SimulationStatistics statistics(std::size_t env) const;
   /// Episodes of the world that are skipped because the robot cannot start in them.
   [[nodiscard]] std::span<const std::uint32_t> skippedEpisodes() const;
   [[nodiscard]] EnvState envState(std::size_t env) const;

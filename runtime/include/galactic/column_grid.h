@@ -17,7 +17,9 @@ enum class Clearance : std::uint8_t {
 /// Clearance and the distances to contact along the vertical line.
 struct Contact {
   Clearance clearance = Clearance::kBlocked;
-  /// How far the sphere can sink and rise before it touches; metres; 0 unless free.
+  /// How far the sphere can sink and rise before it touches; metres; 0 unless free. Less by some
+  /// millionths of the grid's height, so that wherever the sphere gets by moving as far or less,
+  /// it is free.
   float down = 0;
   float up = 0;
 };
@@ -94,7 +96,8 @@ class ColumnGrid {
   /// Number of free spans in column (i, k); i < columnsX(), k < columnsZ().
   [[nodiscard]] std::size_t spanCount(std::uint32_t i, std::uint32_t k) const noexcept;
 
-  /// Copies the free spans of column (i, k), ascending, as many as `out` takes; returns how many.
+  /// Copies the free spans of column (i, k), ascending, as many as `out` takes; returns how many
+  /// there are. Every height of a span, its ends included, is free when asked about.
   std::size_t spans(std::uint32_t i, std::uint32_t k, std::span<Span> out) const noexcept;
 
  private:

@@ -106,9 +106,13 @@ void visitTaskOptions(TaskOptions& t, Visitor& v) {
   v.real("pick-reward", t.pick_reward, kReward, "For the first grasp of the target");
   v.real("reach-weight", t.reach_weight, kReward, "For each metre of hand towards target");
   v.real("transport-weight", t.transport_weight, kReward, "For each metre of target towards goal");
+  v.real("geodesic-weight", t.geodesic_weight, kReward,
+         "For each metre of the way along the floor to the target, then to the goal");
   v.real("action-weight", t.action_weight, kReward, "Off for squared changes of joint actions");
   v.real("slack-penalty", t.slack_penalty, kReward, "Off for each step");
   v.real("failure-penalty", t.failure_penalty, kReward, "Off for a failure");
+  v.real("bump-penalty", t.bump_penalty, kReward,
+         "Off for each step that something was in the way of");
 }
 
 /// The same, of what the robot does and meets.
@@ -138,11 +142,38 @@ void visitMotionOptions(SimulationOptions& o, Visitor& v) {
   v.real("place-jitter", o.placement.jitter, kMetres, "Length of a jitter, in box diagonals");
 }
 
-/// What a world may say of its task, its reward and what the robot does: all but the batch.
+/// The same, of what the robot senses.
+template <class Visitor>
+void visitSensorOptions(SensorOptions& s, Visitor& v) {
+  LaserOptions& laser = s.laser;
+  v.group("Sensors (below 0: as the robot's recipe says)");
+  v.flag("bump", Switch{s.bump, true}, "Observe whether something was in the way of the last step");
+  v.whole("laser-beams", laser.beams, Within<std::uint32_t>{0, 1024},
+          "Beams of a planar laser scan; 0: none");
+  v.real("laser-fov", laser.fov_degrees, Within<float>{kOfRobot, 360},
+         "Degrees that the beams spread over");
+  v.real("laser-height", laser.height, Within<float>{kOfRobot, 100},
+         "Height of the scan above the floor, metres");
+  v.real("laser-second-height", laser.second_height, Within<float>{0, 100},
+         "The same of a second scan; 0: none");
+  v.real("laser-range", laser.range, Within<float>{kOfRobot, 1000}, "Farthest distance, metres");
+  v.real("laser-min-range", laser.least_range, Within<float>{kOfRobot, 1000},
+         "Nearest distance, metres");
+  v.real("laser-noise", laser.noise, Within<float>{kOfRobot, 10},
+         "Standard deviation of a distance, metres");
+  v.flag("geodesic", Switch{s.geodesic, true},
+         "Observe the ways along the floor to target and goal");
+  v.whole("geodesic-megabytes", s.geodesic_megabytes, Within<std::uint32_t>{1, 1U << 20U},
+          "Most memory for these ways");
+}
+
+/// What a world may say of its task, its reward and what the robot does and senses: all but the
+/// batch.
 template <class Visitor>
 void visitWorldTask(SimulationOptions& options, Visitor& visitor) {
   visitTaskOptions(options.task, visitor);
   visitMotionOptions(options, visitor);
+  visitSensorOptions(options.sensors, visitor);
 }
 
 /// All of them, in the order of recordings and reports.

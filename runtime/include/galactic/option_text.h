@@ -27,6 +27,8 @@ enum class OptionScope {
   kAll,
   /// What a world may say of its task (visitWorldTask): not those of a batch.
   kTask,
+  /// kAll, and the presets, which what is named besides refines: as somebody types them.
+  kTyped,
 };
 
 /// Why a list of texts is none of options.
@@ -38,7 +40,11 @@ struct OptionFault {
   std::string wanted;
 };
 
-/// The options with their values, in the order of the table; numbers read back exactly.
+/// The names of the options, in the order of the table.
+[[nodiscard]] std::vector<std::string> optionNames(OptionScope scope);
+
+/// The options with their values, in the order of the table; numbers read back exactly. Presets are
+/// none of them: their parts have the values.
 [[nodiscard]] std::vector<OptionText> listOptions(const SimulationOptions& options,
                                                   OptionScope scope = OptionScope::kAll);
 

@@ -22,6 +22,7 @@ enum class PackKind : std::uint32_t {
   kEpisodes = 0x53495045,  // "EPIS"
   kWorld = 0x444c5257,     // "WRLD"
   kTexture = 0x52545854,   // "TXTR"
+  kPolicy = 0x59434c50,    // "PLCY"
 };
 
 /// The four characters of a kind, for messages.

@@ -60,6 +60,19 @@ struct RobotCamera {
   float vertical_fov = 0;
 };
 
+struct RobotLaser {
+  std::uint32_t link = 0;
+  /// The laser scans the XZ plane of its own frame; +X is the middle of its field of view.
+  Pose link_from_laser;
+  /// Radians, up to a whole turn.
+  float field_of_view = 0;
+  /// Nearest and farthest distance, metres.
+  float least_range = 0;
+  float range = 0;
+  /// Standard deviation of a distance, metres.
+  float noise = 0;
+};
+
 struct RobotBase {
   /// Farthest drive of one action, metres, and farthest turn, radians.
   float forward_step = 0;
@@ -109,6 +122,7 @@ class Robot {
   [[nodiscard]] const std::optional<EndEffector>& endEffector() const { return end_effector_; }
   [[nodiscard]] const std::optional<RobotCamera>& camera() const { return camera_; }
   [[nodiscard]] const std::optional<RobotBase>& base() const { return base_; }
+  [[nodiscard]] const std::optional<RobotLaser>& laser() const { return laser_; }
 
  private:
   Robot() = default;
@@ -127,6 +141,7 @@ class Robot {
   std::optional<EndEffector> end_effector_;
   std::optional<RobotCamera> camera_;
   std::optional<RobotBase> base_;
+  std::optional<RobotLaser> laser_;
 };
 
 }  // namespace galactic

@@ -70,9 +70,14 @@ struct TaskOptions {
   float reach_weight = 1.0F;
   float transport_weight = 1.0F;
   float action_weight = 0.001F;
+  /// For each metre of the way along the floor to what matters now: the target, once it is held the
+  /// goal. The paper has none.
+  float geodesic_weight = 0;
   /// Taken away each step, and when an episode fails.
   float slack_penalty = 0.0F;
   float failure_penalty = 0.0F;
+  /// Taken away each step that leaves the robot where it was, for something was in the way.
+  float bump_penalty = 0.0F;
   /// Distance of target and goal that counts as success, metres.
   float success_distance = 0.1F;
   /// Steps after which an episode ends without success or failure; 0 for never.
@@ -88,6 +93,40 @@ struct TaskOptions {
   /// Whether observations give the target where it is; else where it was at the start, as the
   /// published code does.
   bool observes_current_target = false;
+};
+
+/// For values that the robot's recipe gives: what it says counts, or where it says nothing the
+/// default of the value.
+inline constexpr float kOfRobot = -1;
+
+/// A planar laser scan as a part of the observation: distances in horizontal planes around the
+/// robot. Values below 0 are those of the robot's recipe (kOfRobot).
+struct LaserOptions {
+  /// Of one plane; 0: no laser.
+  std::uint32_t beams = 0;
+  /// Degrees, the middle straight ahead of the laser; by default 360.
+  float fov_degrees = kOfRobot;
+  /// Of the plane above the floor, metres; by default 0.25.
+  float height = kOfRobot;
+  /// Of a second plane with as many beams, metres; 0 for none.
+  float second_height = 0;
+  /// Farthest distance, metres; by default 10.
+  float range = kOfRobot;
+  /// Nearest distance, metres: what is nearer is measured as this. By default 0.
+  float least_range = kOfRobot;
+  /// Standard deviation of a distance, metres; by default 0.
+  float noise = kOfRobot;
+};
+
+/// What the robot senses beside its own state; all off by default.
+struct SensorOptions {
+  /// Whether the last step left the robot where it was, for something was in the way.
+  bool bump = false;
+  LaserOptions laser;
+  /// Whether the ways along the floor to target and goal are observed.
+  bool geodesic = false;
+  /// Most memory that these ways may take, megabytes; also for TaskOptions::geodesic_weight.
+  std::uint32_t geodesic_megabytes = 1024;
 };
 
 /// In which order an env takes the episodes of a world.
@@ -113,10 +152,14 @@ struct SimulationOptions {
   std::uint32_t ranks = 1;
   /// Whether a step leaves the pose of every body of the robot, for rendering.
   bool body_transforms = false;
+  /// Whether a step that ends an episode begins the next. Else the env stays where its episode
+  /// ended until BatchSimulator::reset, so that this can be drawn; the episodes are the same.
+  bool auto_reset = true;
   ActionOptions action;
   SlideOptions slide;
   PlacementOptions placement;
   GroundOptions ground;
+  SensorOptions sensors;
   TaskOptions task;
 };
 

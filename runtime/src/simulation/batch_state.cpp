@@ -1,5 +1,7 @@
 #include "simulation/batch_state.h"
 
+#include <algorithm>
+
 namespace galactic::simulation {
 namespace {
 
@@ -14,7 +16,7 @@ std::size_t envBytes(const Model& model) {
          planes * (sizeof(SetPlane) + sizeof(std::uint32_t)) +
          model.most_objects * (sizeof(RestingBox) + sizeof(Pose)) +
          (model.heldWords() + model.bodyWords()) * sizeof(std::uint64_t) + floats * sizeof(float) +
-         2 + model.bodyCount() * sizeof(RigidTransform);
+         3 + model.bodyCount() * sizeof(RigidTransform);
 }
 
 template <class T>
@@ -39,7 +41,9 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   envs_.resize(padded);
   resting_.reserve(padded);
   for (std::size_t n = 0; n < padded; ++n) {
-    resting_.emplace_back(model.most_objects, model.world->radii().back(), &memory_);
+    // Whatever asks for objects: spheres, and the hand.
+    const float reach = std::max(model.world->radii().back(), model.motion.grasp_radius);
+    resting_.emplace_back(model.most_objects, reach, &memory_);
   }
   objects_.resize(padded * most_objects_);
   grips_.resize(padded);
@@ -57,6 +61,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   rewards_.resize(padded);
   dones_.resize(padded);
   successes_.resize(padded);
+  endings_.resize(padded);
 }
 
 PoseArrays BatchState::poses(std::size_t first) {
@@ -72,7 +77,7 @@ std::size_t BatchState::bytes() const {
   std::size_t bytes = bytesOf(envs_) + bytesOf(objects_) + bytesOf(grips_) + bytesOf(ignored_) +
                       bytesOf(leaving_) + bytesOf(last_actions_) + 4 * bytesOf(x_) +
                       bytesOf(variables_) + 2 * bytesOf(observations_) + bytesOf(bodies_) +
-                      bytesOf(rewards_) + 2 * bytesOf(dones_);
+                      bytesOf(rewards_) + 3 * bytesOf(dones_);
   for (const RestingObjects& resting : resting_) bytes += resting.bytes();
   return bytes;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
@@ -61,6 +62,9 @@ struct Env {
   Held held;
   /// Whether the target was in the hand before in this episode.
   bool has_picked = false;
+  /// The last step left the robot where it was: wherever it would have been, it penetrated
+  /// something.
+  bool refused = false;
   /// The object that the hand let go of and that some of the robot's spheres still penetrate; -1
   /// for none. Those spheres do not count against it until each is free of it once; else the hand
   /// could not leave it.
@@ -71,6 +75,10 @@ struct Env {
   /// Of the step before: grip to target, target to goal, metres.
   float reach = 0;
   float transport = 0;
+  /// Of the step before, metres: along the floor to what mattered then, which was the goal or the
+  /// target; below 0 where none is known.
+  float way = -1;
+  bool is_way_to_goal = false;
   EnvCounters counters;
 };
 
@@ -109,8 +117,17 @@ class BatchState {
   [[nodiscard]] std::span<std::uint64_t> leaving(std::size_t n) {
     return std::span(leaving_).subspan(n * body_words_, body_words_);
   }
+  [[nodiscard]] std::span<const std::uint64_t> ignored(std::size_t n) const {
+    return std::span(ignored_).subspan(n * held_words_, held_words_);
+  }
+  [[nodiscard]] std::span<const std::uint64_t> leaving(std::size_t n) const {
+    return std::span(leaving_).subspan(n * body_words_, body_words_);
+  }
   /// The joint actions of the step before.
   [[nodiscard]] std::span<float> lastActions(std::size_t n) {
+    return std::span(last_actions_).subspan(n * joints_, joints_);
+  }
+  [[nodiscard]] std::span<const float> lastActions(std::size_t n) const {
     return std::span(last_actions_).subspan(n * joints_, joints_);
   }
   /// Base and variables of the envs from `first` on.
@@ -127,6 +144,13 @@ class BatchState {
   [[nodiscard]] std::span<float> finalObservation(std::size_t n) {
     return std::span(final_observations_).subspan(n * observation_size_, observation_size_);
   }
+  /// Where the last step ended an episode: its last observation becomes the final one.
+  void keepFinalObservation(std::size_t n) {
+    if (dones_[n] != 0) std::ranges::copy(observation(n), finalObservation(n).begin());
+  }
+  [[nodiscard]] std::span<const float> finalObservation(std::size_t n) const {
+    return std::span(final_observations_).subspan(n * observation_size_, observation_size_);
+  }
   [[nodiscard]] std::span<const float> observations() const {
     return std::span(observations_).first(env_count_ * observation_size_);
   }
@@ -135,6 +159,9 @@ class BatchState {
   }
   /// Root and nodes of the robot; empty where the run does not want them.
   [[nodiscard]] std::span<RigidTransform> bodyTransforms(std::size_t n) {
+    return std::span(bodies_).subspan(n * body_count_, body_count_);
+  }
+  [[nodiscard]] std::span<const RigidTransform> bodyTransforms(std::size_t n) const {
     return std::span(bodies_).subspan(n * body_count_, body_count_);
   }
   [[nodiscard]] std::span<const RigidTransform> bodyTransforms() const {
@@ -146,6 +173,15 @@ class BatchState {
   [[nodiscard]] std::span<const std::uint8_t> dones() const { return dones_; }
   [[nodiscard]] std::span<std::uint8_t> successes() { return successes_; }
   [[nodiscard]] std::span<const std::uint8_t> successes() const { return successes_; }
+  [[nodiscard]] std::span<EpisodeEnd> endings() { return endings_; }
+  [[nodiscard]] std::span<const EpisodeEnd> endings() const { return endings_; }
+  /// As after a step in which no episode ended and nothing was earned.
+  void clearOutcome(std::size_t n) {
+    rewards_[n] = 0;
+    dones_[n] = 0;
+    successes_[n] = 0;
+    endings_[n] = EpisodeEnd::kNone;
+  }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
@@ -175,6 +211,7 @@ class BatchState {
   std::pmr::vector<float> rewards_{&memory_};
   std::pmr::vector<std::uint8_t> dones_{&memory_};
   std::pmr::vector<std::uint8_t> successes_{&memory_};
+  std::pmr::vector<EpisodeEnd> endings_{&memory_};
 };
 
 }  // namespace galactic::simulation

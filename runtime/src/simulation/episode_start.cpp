@@ -51,6 +51,18 @@ std::uint32_t startOf(const Model& model, std::uint32_t episode) {
 
 }  // namespace
 
+void takeStock(const Model& model, BatchState& state, std::size_t n) noexcept {
+  Env& env = state.env(n);
+  const TargetDistances distances = measureTarget(state, n);
+  env.reach = distances.reach;
+  env.transport = distances.transport;
+  const WayLeft way = measureWay(model, state, n);
+  env.way = way.length;
+  env.is_way_to_goal = way.is_to_goal;
+  observe(model, state, n, state.observation(n));
+  sense(model, state, n, state.observation(n));
+}
+
 void beginEpisode(const Model& model, BatchState& state, std::size_t n,
                   std::uint32_t start) noexcept {
   const Episode& episode = model.episodeOf(start);
@@ -68,29 +80,34 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t n,
          .goal = episode.goal.translation,
          .target_start = state.objects(n)[target].translation,
          .counters = env.counters};
-  const TargetDistances distances = measureTarget(state, n);
-  env.reach = distances.reach;
-  env.transport = distances.transport;
-  observe(model, state, n, state.observation(n));
+  takeStock(model, state, n);
+}
+
+void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) noexcept {
+  const auto count = static_cast<std::uint32_t>(model.starts.size());
+  beginEpisode(model, state, env,
+               nthEpisode(model.options, model.globalEnv(env), state.env(env).ordinal, count));
+}
+
+void beginChosenEpisode(const Model& model, BatchState& state, std::size_t env,
+                        std::int32_t episode) noexcept {
+  beginEpisode(model, state, env, startOf(model, static_cast<std::uint32_t>(episode)));
 }
 
 void renewEpisodes(const ChunkStep& step) noexcept {
-  const auto count = static_cast<std::uint32_t>(step.model.starts.size());
+  if (!step.model.options.auto_reset) return;
   for (std::size_t e = 0; e < kChunk; ++e) {
     const std::size_t n = step.first + e;
     if (step.state.dones()[n] == 0) continue;
-    std::ranges::copy(step.state.observation(n), step.state.finalObservation(n).begin());
-    beginEpisode(
-        step.model, step.state, n,
-        nthEpisode(step.model.options, step.model.globalEnv(n), step.state.env(n).ordinal, count));
+    step.state.keepFinalObservation(n);
+    beginNextEpisode(step.model, step.state, n);
   }
 }
 
 void resetEpisodes(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept {
   for (std::size_t n = step.first; n < std::min(step.first + kChunk, resets.size()); ++n) {
     if (resets[n] < 0) continue;
-    beginEpisode(step.model, step.state, n,
-                 startOf(step.model, static_cast<std::uint32_t>(resets[n])));
+    beginChosenEpisode(step.model, step.state, n, resets[n]);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "simulation/chunk.h"
 #include "simulation/move.h"
 #include "simulation/observe.h"
+#include "workers.h"
 
 namespace galactic::simulation {
 namespace {
@@ -121,6 +122,49 @@ class StartFinder {
   Chunk chunk_;
 };
 
+/// Once per start, as many as there are.
+std::vector<sensors::StoodOn> floorsOf(const Model& model) {
+  std::vector<sensors::StoodOn> floors;
+  floors.reserve(model.starts.size());
+  for (std::uint32_t start = 0; start < model.starts.size(); ++start) {
+    floors.push_back(
+        {model.world->sceneIndexOf(model.episodeOf(start)), model.starts[start].base.y});
+  }
+  return floors;
+}
+
+/// One for each start.
+std::vector<sensors::Errand> errandsOf(const Model& model) {
+  std::vector<sensors::Errand> errands;
+  errands.reserve(model.starts.size());
+  for (std::uint32_t start = 0; start < model.starts.size(); ++start) {
+    const Episode& episode = model.episodeOf(start);
+    const Placement& target = model.placements(episode)[model.targetOf(episode)];
+    errands.push_back({.scene = model.world->sceneIndexOf(episode),
+                       .base = model.starts[start].base,
+                       .target = target.pose.translation,
+                       .goal = episode.goal.translation});
+  }
+  return errands;
+}
+
+/// What sensors know of the world, once the starts are found.
+Result<void> makeSensors(const sensors::LaserSettings& laser, Model& model) {
+  const SimulationOptions& options = model.options;
+  const std::uint32_t threads = detail::threadCount(options.threads);
+  Result<sensors::Laser> made = sensors::Laser::make(laser, *model.world, floorsOf(model), threads);
+  if (!made) return tl::unexpected<Error>(made.error());
+  model.laser = std::move(*made);
+  if (!options.sensors.geodesic && options.task.geodesic_weight == 0) return {};
+  const sensors::StandingRobot robot(model.world->robot(), model.motion, model.kernels);
+  Result<sensors::Geodesic> ways =
+      sensors::Geodesic::make(*model.world, robot, options.ground, errandsOf(model),
+                              options.sensors.geodesic_megabytes, threads);
+  if (!ways) return tl::unexpected<Error>(ways.error());
+  model.geodesic = std::move(*ways);
+  return {};
+}
+
 }  // namespace
 
 Result<Model> makeModel(const World& world, const SimulationOptions& options) {
@@ -132,8 +176,15 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
   model.motion = std::move(*motion);
   model.kernels = motionKernels();
   model.tables = motionTables(model.motion);
-  model.observation = observationParts(model.motion.controlled.size());
+  const Result<sensors::LaserSettings> laser =
+      sensors::laserSettings(options.sensors.laser, world.robot(), model.motion);
+  if (!laser) return tl::unexpected<Error>(laser.error());
+  const SensorSizes sensors{.bump = options.sensors.bump ? 1U : 0U,
+                            .laser = laser->size(),
+                            .geodesic = options.sensors.geodesic ? sensors::kGeodesicSize : 0};
+  model.observation = observationParts(model.motion.controlled.size(), sensors);
   model.observation_size = model.observation.back().first + model.observation.back().size;
+  model.sensors_first = model.observation_size - sensors.laser - sensors.geodesic;
   measure(world, model);
   StartFinder(model).find();
   if (model.starts.empty()) {
@@ -142,6 +193,7 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
                     std::to_string(model.skipped.size()) +
                     " episodes; check that scene, robot and episodes belong together");
   }
+  if (auto made = makeSensors(*laser, model); !made) return tl::unexpected<Error>(made.error());
   return model;
 }
 

@@ -9,6 +9,8 @@
 #include "galactic/error.h"
 #include "galactic/simulation_options.h"
 #include "galactic/world.h"
+#include "sensors/geodesic.h"
+#include "sensors/laser.h"
 #include "simulation/motion_kernels.h"
 #include "simulation/motion_model.h"
 
@@ -46,6 +48,11 @@ struct Model {
   std::size_t most_held_spheres = 0;
   std::vector<ObservationPart> observation;
   std::size_t observation_size = 0;
+  /// First element of `observation` that a sensor writes.
+  std::size_t sensors_first = 0;
+  sensors::Laser laser;
+  /// By start; off unless it is observed or rewarded.
+  sensors::Geodesic geodesic;
 
   [[nodiscard]] std::size_t actionCount() const { return motion.controlled.size() + 4; }
   [[nodiscard]] std::size_t variableCount() const { return motion.variables.size(); }

@@ -156,10 +156,6 @@ Push pushTowardsBase(const ChunkStep& step, std::size_t e) {
                          step.chunk.heldBits());
 }
 
-void refuse(const ChunkStep& step, std::size_t e) {
-  ++step.state.env(step.first + e).counters.refused;
-}
-
 }  // namespace
 
 FloorUnder floorUnder(const Scene& scene, const Vec3& base, const GroundOptions& options) noexcept {
@@ -229,13 +225,16 @@ bool pushClear(const ChunkStep& step, std::size_t e) noexcept {
 
 void moveRobots(const ChunkStep& step) noexcept {
   for (std::size_t e = 0; e < kChunk; ++e) {
+    Env& env = step.state.env(step.first + e);
+    env.refused = false;
     if (isFree(step, e)) {
       accept(step, e);
     } else if (pushClear(step, e)) {
-      ++step.state.env(step.first + e).counters.slid;
+      ++env.counters.slid;
       accept(step, e);
     } else {
-      refuse(step, e);
+      ++env.counters.refused;
+      env.refused = true;
     }
   }
 }

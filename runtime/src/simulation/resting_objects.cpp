@@ -113,7 +113,7 @@ unsigned touchingLanes(const RestingView& objects, const SphereArrays& spheres, 
   return lanes;
 }
 
-bool findTouching(const RestingView& objects, const SphereArrays& spheres, SphereGroup& at) {
+bool findTouching(const RestingView& objects, const SphereArrays& spheres, LaneGroup& at) {
   return detail::hasAvx2() ? findTouchingAvx2(objects, spheres, at)
                            : findTouchingPortable(objects, spheres, at);
 }
@@ -131,7 +131,7 @@ SphereArrays arraysOf(const SphereBatch& spheres) {
 }  // namespace
 
 bool findTouchingPortable(const RestingView& objects, const SphereArrays& spheres,
-                          SphereGroup& at) noexcept {
+                          LaneGroup& at) noexcept {
   for (; at.range < spheres.range_count; ++at.range, at.group = 0) {
     const RadiusRange& range = spheres.ranges[at.range];
     for (; at.group * kLanes < range.count; ++at.group) {
@@ -148,6 +148,8 @@ RestingObjects::RestingObjects(std::size_t most_objects, float largest_radius,
       planes_(planesFor(most_objects), memory),
       boxes_(most_objects, memory),
       resting_(planes_.size(), memory) {}
+
+std::uint32_t RestingObjects::bandOf(float y) noexcept { return setOf(y, kBands); }
 
 void RestingObjects::clear() noexcept {
   std::fill(planes_.begin(), planes_.end(), SetPlane{});
@@ -191,7 +193,7 @@ RestingView RestingObjects::view() const noexcept {
 
 bool RestingObjects::touches(const SphereBatch& spheres) const noexcept {
   assert(radiiFit(spheres, largest_radius_));
-  SphereGroup at;
+  LaneGroup at;
   return findTouching(view(), arraysOf(spheres), at);
 }
 
@@ -201,7 +203,7 @@ std::size_t RestingObjects::hits(const SphereBatch& spheres,
   const RestingView objects = view();
   const SphereArrays arrays = arraysOf(spheres);
   std::size_t written = 0;
-  SphereGroup at;
+  LaneGroup at;
   for (; findTouching(objects, arrays, at); ++at.group) {
     const RadiusRange& range = spheres.ranges[at.range];
     for (; at.lanes != 0; at.lanes &= at.lanes - 1) {

@@ -1,4 +1,6 @@
 #pragma once
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
@@ -72,6 +74,19 @@ class RestingObjects {
   /// rounding: the sphere sinks to where its centre enters the box grown by the radius.
   [[nodiscard]] float fall(const Vec3& centre, float radius) const noexcept;
 
+  /// Calls `visit(box)` for each resting object, ascending, whose box comes to the height `y`.
+  template <class Visit>
+  void forEachAtHeight(float y, const Visit& visit) const {
+    const std::uint32_t band = bandOf(y);
+    for (std::size_t p = 0; p < planes_.size(); ++p) {
+      for (std::uint32_t bits = planes_[p].at_height[band]; bits != 0; bits &= bits - 1) {
+        const RestingBox& box =
+            boxes_[p * kPlaneObjects + static_cast<std::size_t>(std::countr_zero(bits))];
+        if (std::fabs(y - box.centre.y) < box.half_height) visit(box);
+      }
+    }
+  }
+
   /// What `touches` reads, for the kernels and the tests that compare them.
   [[nodiscard]] RestingView view() const noexcept;
 
@@ -87,6 +102,9 @@ class RestingObjects {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  /// Index of the set of a height.
+  [[nodiscard]] static std::uint32_t bandOf(float y) noexcept;
+
   /// Calls `change` with each set that object `index` belongs to.
   template <class Change>
   void changeSets(std::uint32_t index, const Change& change) noexcept;

@@ -117,7 +117,7 @@ bool nothingNear(const RestingView& objects, const Places& places) {
 }  // namespace
 
 bool findTouchingAvx2(const RestingView& given_objects, const SphereArrays& given_spheres,
-                      SphereGroup& at) noexcept {
+                      LaneGroup& at) noexcept {
   // Copies: nothing that is written below can change them.
   const RestingView objects = given_objects;
   const SphereArrays spheres = given_spheres;
@@ -145,7 +145,7 @@ namespace galactic::simulation {
 
 // hasAvx2() is false on this architecture; the symbol exists so that callers need no condition.
 bool findTouchingAvx2(const RestingView& objects, const SphereArrays& spheres,
-                      SphereGroup& at) noexcept {
+                      LaneGroup& at) noexcept {
   return findTouchingPortable(objects, spheres, at);
 }
 

@@ -65,8 +65,8 @@ struct SphereArrays {
   std::size_t range_count = 0;
 };
 
-/// A group of eight spheres of a batch.
-struct SphereGroup {
+/// Eight spheres of a batch, one in each lane of a register.
+struct LaneGroup {
   /// Index of the range, and the group's index in it.
   std::size_t range = 0;
   std::size_t group = 0;
@@ -77,11 +77,11 @@ struct SphereGroup {
 /// Moves `at` on to the first group, `at` itself or later, with a sphere that overlaps an object;
 /// false, with `at` anywhere, when there is none.
 bool findTouchingPortable(const RestingView& objects, const SphereArrays& spheres,
-                          SphereGroup& at) noexcept;
+                          LaneGroup& at) noexcept;
 
 /// The same, eight spheres at a time. Call it only where detail::hasAvx2(). Bit for bit the answers
 /// of the portable one: both do the same operations in the same order, and none is contracted.
 bool findTouchingAvx2(const RestingView& objects, const SphereArrays& spheres,
-                      SphereGroup& at) noexcept;
+                      LaneGroup& at) noexcept;
 
 }  // namespace galactic::simulation

@@ -54,9 +54,11 @@ void runPhases(const ChunkStep& step, const StepInput& input, const Lap& lap) no
   lap(6);
   observeAll(step);
   lap(7);
+  senseAll(step);
+  lap(8);
   renewEpisodes(step);
   resetEpisodes(step, input.resets);
-  lap(8);
+  lap(9);
 }
 
 }  // namespace

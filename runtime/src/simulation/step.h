@@ -18,8 +18,9 @@ struct StepInput {
 };
 
 /// The phases of a step, in order.
-inline constexpr std::array<std::string_view, 9> kPhaseNames{
-    "actions", "propose", "floor", "kinematics", "collide", "hands", "task", "observe", "renew"};
+inline constexpr std::array<std::string_view, 10> kPhaseNames{
+    "actions", "propose", "floor",   "kinematics", "collide",
+    "hands",   "task",    "observe", "sense",      "renew"};
 using PhaseSeconds = std::array<double, kPhaseNames.size()>;
 
 /// One step of the chunk's envs.

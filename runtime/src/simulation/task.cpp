@@ -15,14 +15,14 @@ float distance(const Vec3& a, const Vec3& b) {
 
 bool isHeld(const Env& env) { return env.held.object == static_cast<std::int32_t>(env.target); }
 
-Verdict verdictOfRearrange(const TaskOptions& task, const Env& env, float transport) {
+EpisodeEnd endOfRearrange(const TaskOptions& task, const Env& env, float transport) {
   const bool is_there = transport < task.success_distance && !isHeld(env);
   if (task.needs_terminate && env.events.terminates) {
-    return is_there ? Verdict::kSuccess : Verdict::kFailure;
+    return is_there ? EpisodeEnd::kSuccess : EpisodeEnd::kWrongTerminate;
   }
-  if (!task.needs_terminate && env.events.released_target && is_there) return Verdict::kSuccess;
-  if (task.drop_fails && env.events.released_target && !is_there) return Verdict::kFailure;
-  return Verdict::kGoesOn;
+  if (!task.needs_terminate && env.events.released_target && is_there) return EpisodeEnd::kSuccess;
+  if (task.drop_fails && env.events.released_target && !is_there) return EpisodeEnd::kWrongRelease;
+  return EpisodeEnd::kNone;
 }
 
 /// Sum of the squared changes of the joint actions, which become the last ones. None at the first
@@ -43,7 +43,16 @@ float rewardOf(const TaskOptions& task, const Env& env, const TargetDistances& n
   const float pick = env.events.picked ? task.pick_reward : 0;
   return pick + task.reach_weight * (env.reach - now.reach) +
          task.transport_weight * (env.transport - now.transport) -
-         task.action_weight * action_change - task.slack_penalty;
+         task.action_weight * action_change - task.slack_penalty -
+         (env.refused ? task.bump_penalty : 0.0F);
+}
+
+/// For the part of the way along the floor that is behind now. A step in which the way began to
+/// lead elsewhere counts nothing, nor one from or to a place without a way.
+float shapingOf(const TaskOptions& task, const Env& env, const WayLeft& way) {
+  const bool is_one_way = env.is_way_to_goal == way.is_to_goal && env.way >= 0 && way.length >= 0;
+  if (task.kind == TaskKind::kNone || !is_one_way) return 0;
+  return task.geodesic_weight * (env.way - way.length);
 }
 
 }  // namespace
@@ -56,23 +65,32 @@ TargetDistances measureTarget(const BatchState& state, std::size_t env_number) n
   return {target, distance(gripOrigin(grip), target), distance(target, env.goal)};
 }
 
-Verdict verdictOf(const TaskOptions& task, const Env& env, float transport) noexcept {
+EpisodeEnd endOf(const TaskOptions& task, const Env& env, float transport) noexcept {
   const bool holds_another = env.held.object >= 0 && !isHeld(env);
-  Verdict verdict = Verdict::kGoesOn;
+  EpisodeEnd end = EpisodeEnd::kNone;
   switch (task.kind) {
     case TaskKind::kRearrange:
-      verdict = verdictOfRearrange(task, env, transport);
+      end = endOfRearrange(task, env, transport);
       break;
     case TaskKind::kMobilePick:
-      if (isHeld(env)) verdict = Verdict::kSuccess;
+      if (isHeld(env)) end = EpisodeEnd::kSuccess;
       break;
     case TaskKind::kNone:
       break;
   }
   const bool fails = task.kind != TaskKind::kNone && task.drop_fails && holds_another;
-  if (verdict == Verdict::kGoesOn && fails) return Verdict::kFailure;
+  if (end == EpisodeEnd::kNone && fails) return EpisodeEnd::kWrongObject;
   const bool is_late = task.most_steps != 0 && env.step >= task.most_steps;
-  return verdict == Verdict::kGoesOn && is_late ? Verdict::kTimeOut : verdict;
+  return end == EpisodeEnd::kNone && is_late ? EpisodeEnd::kTimeOut : end;
+}
+
+WayLeft measureWay(const Model& model, const BatchState& state, std::size_t env_number) noexcept {
+  if (model.options.task.geodesic_weight == 0) return {};
+  const Env& env = state.env(env_number);
+  const Vec3 base = state.base(env_number);
+  if (isHeld(env)) return {model.geodesic.toGoal(env.start, base).distance, true};
+  const Vec3 target = state.objects(env_number)[env.target].translation;
+  return {model.geodesic.toTarget(env.start, base, target).distance, false};
 }
 
 void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept {
@@ -80,29 +98,32 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
   for (std::size_t e = 0; e < kChunk; ++e) {
     const std::size_t n = step.first + e;
     if (n < resets.size() && resets[n] >= 0) {
-      step.state.rewards()[n] = 0;
-      step.state.dones()[n] = 0;
-      step.state.successes()[n] = 0;
+      step.state.clearOutcome(n);
       continue;
     }
     Env& env = step.state.env(n);
     const bool is_first = env.step == 0;
     ++env.step;
     const TargetDistances now = measureTarget(step.state, n);
-    const Verdict verdict = verdictOf(task, env, now.transport);
+    const WayLeft way = measureWay(step.model, step.state, n);
+    const EpisodeEnd end = endOf(task, env, now.transport);
     float reward = rewardOf(
         task, env, now, actionChange(step.chunk.actions(e), step.state.lastActions(n), is_first));
-    if (verdict == Verdict::kSuccess) reward += task.success_reward;
-    if (verdict == Verdict::kFailure) reward -= task.failure_penalty;
+    reward += shapingOf(task, env, way);
+    if (end == EpisodeEnd::kSuccess) reward += task.success_reward;
+    if (isFailure(end)) reward -= task.failure_penalty;
     env.reach = now.reach;
     env.transport = now.transport;
-    env.counters.successes += verdict == Verdict::kSuccess ? 1 : 0;
-    env.counters.failures += verdict == Verdict::kFailure ? 1 : 0;
-    env.counters.episodes += verdict == Verdict::kGoesOn ? 0 : 1;
+    env.way = way.length;
+    env.is_way_to_goal = way.is_to_goal;
+    env.counters.successes += end == EpisodeEnd::kSuccess ? 1 : 0;
+    env.counters.failures += isFailure(end) ? 1U : 0U;
+    env.counters.episodes += end == EpisodeEnd::kNone ? 0 : 1;
     env.counters.reward += static_cast<double>(reward);
     step.state.rewards()[n] = reward;
-    step.state.dones()[n] = verdict == Verdict::kGoesOn ? 0 : 1;
-    step.state.successes()[n] = verdict == Verdict::kSuccess ? 1 : 0;
+    step.state.dones()[n] = end == EpisodeEnd::kNone ? 0 : 1;
+    step.state.successes()[n] = end == EpisodeEnd::kSuccess ? 1 : 0;
+    step.state.endings()[n] = end;
   }
 }
 

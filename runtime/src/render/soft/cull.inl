@@ -21,7 +21,7 @@ struct PaneEdges {
 
 inline PaneEdges paneEdges(const PaneTask& task) {
   const auto units = [](std::uint32_t pixels, std::uint32_t image) {
-    return static_cast<float>(pixels) * kSubpixels - static_cast<float>(image) * (kSubpixels / 2);
+    return static_cast<float>(pixels) * kSubpixels - static_cast<float>(image) * kHalfPixel;
   };
   return {units(task.left, task.image_width), units(task.left + task.width, task.image_width),
           units(task.top, task.image_height), units(task.top + task.height, task.image_height)};
@@ -171,9 +171,9 @@ struct PixelRange {
 /// `edge`: where the pane begins, in the units of the interval; `count`: its pixels.
 inline PixelRange pixelsWithin(const Interval& interval, Lanes error, float edge,
                                std::uint32_t count) {
-  const float half = kSubpixels / 2;
-  const Lanes low = (interval.low - error - spread(edge + half)) * spread(1.0F / kSubpixels);
-  const Lanes high = (interval.high + error - spread(edge + half)) * spread(1.0F / kSubpixels);
+  const Lanes low = (interval.low - error - spread(edge + kHalfPixel)) * spread(1.0F / kSubpixels);
+  const Lanes high =
+      (interval.high + error - spread(edge + kHalfPixel)) * spread(1.0F / kSubpixels);
   const auto most = static_cast<float>(count);
   const Lanes low_clamped = clampTo(low, 0, most);
   const IntLanes low_int = toInt(low_clamped);

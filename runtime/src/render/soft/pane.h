@@ -20,6 +20,7 @@ inline constexpr std::uint32_t kMostTiles = kPaneEdge / kTileEdge;
 
 /// Lattice points per pixel to which vertices are moved: what makes edge functions exact.
 inline constexpr std::int32_t kSubpixels = 256;
+inline constexpr std::int32_t kHalfPixel = kSubpixels / 2;
 
 /// How a material looks to the shader.
 struct SurfaceTexels {

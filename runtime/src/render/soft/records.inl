@@ -92,10 +92,7 @@ void makeRecords(ClusterState& state, const SmallGroup& group, GroupRecords& rec
   fields[kWDown] = group.z.down;
   storeTransposed(fields, records.records[0]);
   const Quad surface = surfaceFields(state);
-  for (float* record = records.records[0]; record != records.records[0] + kWidth * kRecordStride;
-       record += kRecordStride) {
-    store(record + kTexels, surface);
-  }
+  for (float(&record)[kRecordStride] : records.records) store(record + kTexels, surface);
   if (state.pack->colors != nullptr) makeColors(state, group, records);
 }
 

@@ -31,8 +31,8 @@ VertexFrame vertexFrame(const PaneTask& task, const PlacedModel& placed) {
   }
   frame.left = static_cast<std::int32_t>(task.left) * kSubpixels;
   frame.top = static_cast<std::int32_t>(task.top) * kSubpixels;
-  frame.middle_x = static_cast<float>(task.image_width) * (kSubpixels / 2);
-  frame.middle_y = static_cast<float>(task.image_height) * (kSubpixels / 2);
+  frame.middle_x = static_cast<float>(task.image_width) * kHalfPixel;
+  frame.middle_y = static_cast<float>(task.image_height) * kHalfPixel;
   frame.near = task.near;
   return frame;
 }
@@ -76,7 +76,7 @@ inline unsigned placeEight(const VertexFrame& frame, const RenderCluster& cluste
                            const std::uint16_t* block, std::uint32_t first, ClusterState& state) {
   const Lanes x = onLattice(block, cluster.origin_x);
   const Lanes y = onLattice(block + kWidth, cluster.origin_y);
-  const Lanes z = onLattice(block + 2 * kWidth, cluster.origin_z);
+  const Lanes z = onLattice(block + std::size_t{2} * kWidth, cluster.origin_z);
   const Lanes w = along(frame.w, x, y, z);
   const Lanes right = along(frame.x, x, y, z);
   const Lanes down = along(frame.y, x, y, z);
@@ -129,7 +129,7 @@ void readCoordinates(ClusterState& state) {
   const Lanes v_step = spread(cluster.v_step * edge);
   for (std::uint32_t n = 0; n < cluster.vertex_count; n += kWidth, block += kVertexRows * kWidth) {
     const Lanes u = toFloat(widen(load<EightShorts>(block + 3 * kWidth)));
-    const Lanes v = toFloat(widen(load<EightShorts>(block + 4 * kWidth)));
+    const Lanes v = toFloat(widen(load<EightShorts>(block + std::size_t{4} * kWidth)));
     storePairs(state.uv + std::size_t{2} * n, u_start + u_step * u, v_start + v_step * v);
   }
 }

@@ -1,4 +1,4 @@
-#include "camera_choice.h"
+#include "galactic/camera_choice.h"
 
 #include <fmt/format.h>
 

@@ -14,7 +14,7 @@ struct ChosenCamera {
   float near = 0.05F;
 };
 
-/// What the command line says of a camera.
+/// What a user says of a camera.
 struct CameraWish {
   /// "head": that of the robot's recipe. "follow": behind and above the base. "top": straight down
   /// on the base, without what is higher than a robot, ceilings above all. Or a link of the robot
@@ -22,7 +22,7 @@ struct CameraWish {
   std::string name;
   /// Between the lower and the upper edge; 0: what belongs to the camera.
   float fov_degrees = 0;
-  /// For messages.
+  /// What errors call the option.
   std::string option = "--camera";
 };
 

@@ -1,0 +1,88 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "galactic/batch_simulator.h"
+#include "galactic/error.h"
+#include "galactic/pack.h"
+#include "galactic/policy_pack.h"
+
+namespace galactic {
+
+/// The batch that a policy acts in.
+struct PolicyBatch {
+  std::size_t envs = 0;
+  /// Per env.
+  std::size_t actions = 0;
+  std::size_t observation_size = 0;
+  /// The parts of an env's observation: BatchSimulator::observationParts().
+  std::vector<ObservationPart> observation = {};
+  /// Empty: not known.
+  std::string robot = {};
+};
+
+/// The batch of a simulator.
+[[nodiscard]] PolicyBatch policyBatchOf(const BatchSimulator& simulator, const World& world);
+
+struct LearnedPolicyOptions {
+  /// Whether actions are drawn from the policy's distribution, as in training; else they are its
+  /// means and its likeliest values.
+  bool samples = true;
+  std::uint64_t seed = 1;
+  /// Number of the batch's first env over all ranks.
+  std::uint32_t first_env = 0;
+  /// 0: one per processor. Actions do not depend on it.
+  std::uint32_t threads = 0;
+};
+
+/// What a policy acts on, all envs, env after env.
+struct PolicyInputs {
+  /// Shape: envs x observation_size.
+  std::span<const float> observations = {};
+  /// 1 where an episode ended in the last step; empty: nowhere. Recurrent state and previous action
+  /// begin anew there. Shape: envs.
+  std::span<const std::uint8_t> dones = {};
+  /// Shape: envs x height x width x 3, or x 4, whose last byte plays no part. Empty where the
+  /// policy wants no color.
+  std::span<const std::uint8_t> color = {};
+  /// Shape: envs x height x width, metres. Empty where the policy wants no depth.
+  std::span<const float> depth = {};
+};
+
+/// A policy pack's network, ready to act in a batch. What it does in an env depends on (pack,
+/// options, number of the env, what it has seen there) only: bit for bit the same for any number of
+/// threads and of other envs, and on any processor. Acting neither allocates, nor throws, nor
+/// locks. Not safe to call from several threads at once.
+class LearnedPolicy {
+ public:
+  /// Lays the weights out for this processor; `pack` is not needed afterwards. Fails with
+  /// kInvalidInput when `pack` holds no policy, or robot, observation or actions of the batch are
+  /// not what it was trained for; the message names what differs.
+  [[nodiscard]] static Result<LearnedPolicy> create(const PackFile& pack, const PolicyBatch& batch,
+                                                    const LearnedPolicyOptions& options);
+  ~LearnedPolicy();
+  LearnedPolicy(LearnedPolicy&&) noexcept;
+  LearnedPolicy& operator=(LearnedPolicy&&) noexcept;
+
+  /// The actions of the next step of all envs. Shape of `actions`: envs x actions, as
+  /// BatchSimulator::step takes them. Call it once before each step.
+  void act(const PolicyInputs& inputs, std::span<float> actions) noexcept;
+
+  /// All envs begin anew.
+  void reset() noexcept;
+
+  [[nodiscard]] const PolicyInterface& interface() const;
+  [[nodiscard]] std::size_t threadCount() const;
+  /// Bytes that weights, recurrent states and scratch memory take.
+  [[nodiscard]] std::size_t memoryBytes() const;
+
+ private:
+  class Impl;
+  explicit LearnedPolicy(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace galactic

@@ -1,0 +1,43 @@
+#include "galactic/number_text.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <system_error>
+
+namespace galactic {
+namespace {
+
+std::string_view shown(std::string_view text) { return text.empty() ? "nothing" : text; }
+
+template <class Number>
+bool isWithin(std::string_view text, Number least, Number most) {
+  Number value{};
+  const char* end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data(), end, value);
+  // Every comparison is false for NaN.
+  return problem == std::errc() && stop == end && value >= least && value <= most;
+}
+
+}  // namespace
+
+std::string numberFault(std::string_view text, double least, double most) {
+  if (isWithin(text, least, most)) return {};
+  return fmt::format("found {}, wanted a number from {} to {}", shown(text), least, most);
+}
+
+std::string wholeFault(std::string_view text, std::uint64_t least, std::uint64_t most) {
+  const bool has_leading_zero = text.size() > 1 && text.front() == '0';
+  if (!has_leading_zero && isWithin(text, least, most)) return {};
+  return fmt::format("found {}, wanted a whole number from {} to {}", shown(text), least, most);
+}
+
+TextCheck numberCheck(double least, double most) {
+  return [=](const std::string& text) { return numberFault(text, least, most); };
+}
+
+TextCheck wholeCheck(std::uint64_t least, std::uint64_t most) {
+  return [=](const std::string& text) { return wholeFault(text, least, most); };
+}
+
+}  // namespace galactic

@@ -1,0 +1,45 @@
+#include "galactic/out_of_memory.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+
+namespace galactic {
+namespace {
+
+constexpr double kGigabyte = 1e9;
+
+/// Bytes that are mapped now; 0 when unknown.
+double mappedBytes() {
+  std::FILE* file = std::fopen("/proc/self/statm", "r");
+  if (file == nullptr) return 0;
+  unsigned long long pages = 0;
+  const int read = std::fscanf(file, "%llu", &pages);
+  std::fclose(file);
+  return read == 1 ? static_cast<double>(pages) * static_cast<double>(::sysconf(_SC_PAGESIZE)) : 0;
+}
+
+/// Bytes that the process may have: those of the machine, or fewer where a limit says so.
+double allowedBytes() {
+  const double machine =
+      static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return machine;
+  return std::min(machine, static_cast<double>(limit.rlim_cur));
+}
+
+}  // namespace
+
+Error outOfMemory() {
+  return {ErrorCode::kUnsupported, "memory",
+          fmt::format("this needs more than the {:.1f} GB that there are ({:.1f} GB are in use); "
+                      "do less at once, or raise the limit (ulimit -v)",
+                      allowedBytes() / kGigabyte, mappedBytes() / kGigabyte)};
+}
+
+}  // namespace galactic

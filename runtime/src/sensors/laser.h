@@ -1,0 +1,115 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "galactic/error.h"
+#include "galactic/robot.h"
+#include "galactic/simulation_options.h"
+#include "galactic/world.h"
+#include "sensors/scan_kernels.h"
+#include "sensors/scan_plane.h"
+#include "simulation/motion_model.h"
+#include "simulation/random_stream.h"
+#include "simulation/resting_objects.h"
+
+namespace galactic::sensors {
+
+/// A laser's options after the robot's recipe has had its say.
+struct LaserSettings {
+  /// Of one plane; 0: no laser.
+  std::uint32_t beams = 0;
+  /// Of each plane above the floor, metres.
+  std::vector<float> heights;
+  /// Radians.
+  float field_of_view = 0;
+  /// Metres.
+  float range = 0;
+  float least_range = 0;
+  float noise = 0;
+  /// Where beams leave, in the frame of the base, metres: +X is ahead, +Z to the right.
+  float ahead = 0;
+  float right = 0;
+  /// Yaw of the laser in the frame of the base, radians.
+  float yaw = 0;
+
+  /// Elements of the observation.
+  [[nodiscard]] std::size_t size() const { return beams * heights.size(); }
+};
+
+/// `motion`: of the same robot. Fails with kInvalidInput where the numbers do not fit each other,
+/// and with kUnsupported where an action or an episode moves the link that carries the laser.
+[[nodiscard]] Result<LaserSettings> laserSettings(const LaserOptions& options, const Robot& robot,
+                                                  const simulation::MotionModel& motion);
+
+/// A floor on which robots stand: index of its scene, and height, metres.
+struct StoodOn {
+  std::uint32_t scene = 0;
+  float floor = 0;
+};
+
+/// From where an env's laser looks, and at what.
+struct LaserView {
+  std::uint32_t scene = 0;
+  /// On the floor under the root, world frame.
+  Vec3 base;
+  /// Of the base's yaw.
+  float cosine = 1;
+  float sine = 0;
+  const simulation::RestingObjects& objects;
+  /// Of this env and step.
+  simulation::RandomStream random;
+};
+
+/// The laser of all envs. After construction immutable: any thread may scan.
+class Laser {
+ public:
+  /// None.
+  Laser() = default;
+
+  /// Cuts a plane through each scene at each of the settings' heights above each floor that is
+  /// stood on; floors within kFloorBand share one. Uses up to `threads` threads. Fails with
+  /// kInvalidInput when a plane is blocked everywhere.
+  [[nodiscard]] static Result<Laser> make(const LaserSettings& settings, const World& world,
+                                          std::span<const StoodOn> floors, std::uint32_t threads);
+
+  /// Writes the distances of an env, shares of the range: 1 where nothing is within it. Plane by
+  /// plane, beams from the right to the left. Shape of `out`: settings.size().
+  /// A beam ends where a sphere of the scene's smallest radius would not be free of the static
+  /// scene, or in the box of a resting object; robot and held object are not seen. A robot that has
+  /// left the floors sees the planes of the one whose height is nearest.
+  void scan(const LaserView& view, std::span<float> out) const noexcept;
+
+  /// Elements of a scan.
+  [[nodiscard]] std::size_t size() const { return settings_.size(); }
+  /// Of all planes.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  /// The planes of one floor, one for each of the heights.
+  struct Floor {
+    float height = 0;
+    std::vector<ScanPlane> planes;
+  };
+
+  void aimBeams();
+  [[nodiscard]] const Floor& floorAt(std::uint32_t scene, float height) const noexcept;
+  void scanPlane(const LaserView& view, const ScanPlaneView& plane, const Vec3& origin,
+                 std::span<float> distances) const noexcept;
+  void finish(std::span<const float> distances, simulation::RandomStream& random,
+              std::span<float> out) const noexcept;
+
+  LaserSettings settings_;
+  ScanKernels kernels_;
+  /// Directions of the beams in the frame of the base, padded to whole lanes.
+  std::vector<float> beams_ahead_;
+  std::vector<float> beams_right_;
+  /// By scene, height ascending.
+  std::vector<std::vector<Floor>> floors_;
+};
+
+/// Floors whose heights differ by no more than this share their planes, metres.
+inline constexpr float kFloorBand = 0.1F;
+
+}  // namespace galactic::sensors

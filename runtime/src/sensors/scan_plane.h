@@ -1,0 +1,33 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "galactic/column_grid.h"
+#include "sensors/scan_kernels.h"
+
+namespace galactic::sensors {
+
+/// A horizontal plane through a scene, ready for beams: a byte for each cell of a column grid, 0
+/// where a sphere of the grid's radius is not free at that height, else how far a beam may go from
+/// anywhere in the cell without a look. Around it lies a ring of blocked cells: what the grid does
+/// not know stops a beam as it stops the robot. Immutable.
+class ScanPlane {
+ public:
+  /// Nothing.
+  ScanPlane() = default;
+  /// The plane at `height` of the world frame, metres. O(cells).
+  ScanPlane(const ColumnGrid& grid, float height);
+
+  [[nodiscard]] ScanPlaneView view() const noexcept;
+  /// Cells that block no beam.
+  [[nodiscard]] std::size_t freeCells() const noexcept { return free_cells_; }
+  [[nodiscard]] std::size_t bytes() const noexcept { return cells_.size(); }
+
+ private:
+  ScanPlaneView view_;
+  std::vector<std::uint8_t> cells_;
+  std::size_t free_cells_ = 0;
+};
+
+}  // namespace galactic::sensors

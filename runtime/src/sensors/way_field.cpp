@@ -1,0 +1,201 @@
+#include "sensors/way_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace galactic::sensors {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::array<PlanCell, 4> kAround{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+/// How far above and below a floor a point may be, metres, to be reached from it.
+constexpr Span kReach{-0.3F, 2.2F};
+
+/// Distance in the ground plane.
+float across(const Vec3& a, const Vec3& b) {
+  const float x = a.x - b.x;
+  const float z = a.z - b.z;
+  return std::sqrt(x * x + z * z);
+}
+
+/// Whether nothing of the static scene stands between a point and a place beside it, at one of two
+/// heights above the point.
+bool isInSight(const ColumnGrid& grid, const Vec3& point, const Vec3& from) {
+  // What the point lies on or in is not between them.
+  constexpr float kNear = 0.06F;
+  const float length = across(point, from);
+  for (const float above : {0.06F, 0.2F}) {
+    bool is_open = true;
+    for (float way = kNear; is_open && way < length; way += grid.spacing()) {
+      const float share = way / length;
+      is_open = grid.clearance({point.x + share * (from.x - point.x), point.y + above,
+                                point.z + share * (from.z - point.z)}) == Clearance::kFree;
+    }
+    if (is_open) return true;
+  }
+  return false;
+}
+
+/// Lengths of ways, spreading over a plan.
+class Spreading {
+ public:
+  explicit Spreading(const FloorPlan& plan) : plan_(plan), lengths_(plan.cellCount(), kInfinity) {}
+
+  void begin(const PlanCell& cell, float length) {
+    if (length < lengths_[plan_.indexOf(cell)]) put(cell, length);
+  }
+
+  void run() {
+    while (!waiting_.empty()) {
+      std::ranges::pop_heap(waiting_, std::greater<>());
+      const auto [length, index] = waiting_.back();
+      waiting_.pop_back();
+      if (length > lengths_[index]) continue;
+      const PlanCell cell = cellOf(index);
+      for (const PlanCell& way : kAround) {
+        const PlanCell next{cell.i + way.i, cell.k + way.k};
+        if (!plan_.isPassable(next)) continue;
+        const float reached = reachedFrom(next);
+        if (reached < lengths_[plan_.indexOf(next)]) put(next, reached);
+      }
+    }
+  }
+
+  /// Gives impassable cells beside those with lengths one, too.
+  void widen() {
+    std::vector<float> wide = lengths_;
+    for (std::size_t index = 0; index < lengths_.size(); ++index) {
+      const PlanCell cell = cellOf(index);
+      if (lengths_[index] != kInfinity || plan_.isPassable(cell)) continue;
+      for (std::int32_t k = -1; k <= 1; ++k) {
+        for (std::int32_t i = -1; i <= 1; ++i) {
+          const float step = i != 0 && k != 0 ? kPlanCell * std::sqrt(2.0F) : kPlanCell;
+          wide[index] = std::min(wide[index], at({cell.i + i, cell.k + k}) + step);
+        }
+      }
+    }
+    lengths_ = std::move(wide);
+  }
+
+  [[nodiscard]] const std::vector<float>& lengths() const { return lengths_; }
+
+ private:
+  [[nodiscard]] PlanCell cellOf(std::size_t index) const {
+    const auto columns = static_cast<std::size_t>(plan_.columnsX());
+    return {static_cast<std::int32_t>(index % columns), static_cast<std::int32_t>(index / columns)};
+  }
+  [[nodiscard]] float at(const PlanCell& cell) const {
+    return plan_.isInside(cell) ? lengths_[plan_.indexOf(cell)] : kInfinity;
+  }
+  void put(const PlanCell& cell, float length) {
+    lengths_[plan_.indexOf(cell)] = length;
+    waiting_.emplace_back(length, plan_.indexOf(cell));
+    std::ranges::push_heap(waiting_, std::greater<>());
+  }
+
+  /// The eikonal equation at a cell, upwind.
+  [[nodiscard]] float reachedFrom(const PlanCell& cell) const {
+    const float a = std::min(at({cell.i - 1, cell.k}), at({cell.i + 1, cell.k}));
+    const float b = std::min(at({cell.i, cell.k - 1}), at({cell.i, cell.k + 1}));
+    const float apart = std::fabs(a - b);
+    if (!(apart < kPlanCell)) return std::min(a, b) + kPlanCell;
+    return 0.5F * (a + b + std::sqrt(2 * kPlanCell * kPlanCell - apart * apart));
+  }
+
+  const FloorPlan& plan_;
+  std::vector<float> lengths_;
+  std::vector<std::pair<float, std::size_t>> waiting_;
+};
+
+/// Cells from which the point can be reached for.
+void beginAt(const FloorPlan& plan, const Scene& scene, const Vec3& point, Spreading& spreading) {
+  const ColumnGrid& grid = scene.grids().front();
+  const auto reach = static_cast<std::int32_t>(kLastLeg / kPlanCell) + 1;
+  const PlanCell at = plan.cellAt(point.x, point.z);
+  for (std::int32_t k = at.k - reach; k <= at.k + reach; ++k) {
+    for (std::int32_t i = at.i - reach; i <= at.i + reach; ++i) {
+      if (!plan.isPassable({i, k})) continue;
+      const Vec3 from = plan.middle({i, k});
+      const float above = point.y - from.y;
+      const float length = across(point, from);
+      if (!(above >= kReach.lo && above <= kReach.hi) || length > kLastLeg) continue;
+      if (isInSight(grid, point, from)) spreading.begin({i, k}, length);
+    }
+  }
+}
+
+/// One value of a field; none for what has no way.
+float lengthAt(const FloorPlan& plan, std::span<const std::uint16_t> field, std::int32_t i,
+               std::int32_t k) {
+  const PlanCell cell{i, k};
+  if (!plan.isInside(cell)) return kInfinity;
+  const std::uint16_t value = field[plan.indexOf(cell)];
+  return value == kNoWay ? kInfinity : static_cast<float>(value) * kWayUnit;
+}
+
+/// Change per cell from one neighbor to the other; to one side where only that has a way.
+float slope(float before, float here, float after) {
+  if (before == kInfinity) return after == kInfinity ? 0 : after - here;
+  return after == kInfinity ? here - before : 0.5F * (after - before);
+}
+
+}  // namespace
+
+std::vector<std::uint16_t> wayField(const FloorPlan& plan, const Scene& scene, const Vec3& point) {
+  Spreading spreading(plan);
+  beginAt(plan, scene, point, spreading);
+  spreading.run();
+  constexpr int kBeside = 3;
+  for (int n = 0; n < kBeside; ++n) spreading.widen();
+  std::vector<std::uint16_t> field(plan.cellCount(), kNoWay);
+  for (std::size_t n = 0; n < field.size(); ++n) {
+    const float length = spreading.lengths()[n];
+    if (length == kInfinity) continue;
+    field[n] =
+        static_cast<std::uint16_t>(std::min(std::lround(length / kWayUnit), long{kNoWay} - 1));
+  }
+  return field;
+}
+
+Way wayFrom(const FloorPlan& plan, std::span<const std::uint16_t> field, float x,
+            float z) noexcept {
+  const float u = (x - plan.minX()) / kPlanCell - 0.5F;
+  const float v = (z - plan.minZ()) / kPlanCell - 0.5F;
+  const auto i0 = static_cast<std::int32_t>(std::floor(u));
+  const auto k0 = static_cast<std::int32_t>(std::floor(v));
+  const float part_x = u - static_cast<float>(i0);
+  const float part_z = v - static_cast<float>(k0);
+  float weights = 0;
+  float length = 0;
+  float slope_x = 0;
+  float slope_z = 0;
+  for (const auto& [i, k, weight] : std::array<std::tuple<std::int32_t, std::int32_t, float>, 4>{
+           {{i0, k0, (1 - part_x) * (1 - part_z)},
+            {i0 + 1, k0, part_x * (1 - part_z)},
+            {i0, k0 + 1, (1 - part_x) * part_z},
+            {i0 + 1, k0 + 1, part_x * part_z}}}) {
+    const float here = lengthAt(plan, field, i, k);
+    if (here == kInfinity) continue;
+    weights += weight;
+    length += weight * here;
+    slope_x +=
+        weight * slope(lengthAt(plan, field, i - 1, k), here, lengthAt(plan, field, i + 1, k));
+    slope_z +=
+        weight * slope(lengthAt(plan, field, i, k - 1), here, lengthAt(plan, field, i, k + 1));
+  }
+  if (!(weights > 0)) return {};
+  const float steep = std::sqrt(slope_x * slope_x + slope_z * slope_z);
+  Way way{.distance = length / weights};
+  if (steep > 0) {
+    way.x = -slope_x / steep;
+    way.z = -slope_z / steep;
+  }
+  return way;
+}
+
+}  // namespace galactic::sensors
