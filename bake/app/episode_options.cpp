@@ -2,9 +2,10 @@
 
 #include <charconv>
 #include <cmath>
-#include <system_error>
+#include <limits>
 #include <utility>
 
+#include "galactic/number_text.h"
 #include "option_groups.h"
 #include "option_values.h"
 
@@ -27,8 +28,10 @@ const std::map<std::string, SupportChoice>& supportNames() {
 
 Result<std::uint64_t> parseSeed(const std::string& text) {
   std::uint64_t seed = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  if (problem == std::errc() && end == text.data() + text.size()) return seed;
+  if (wholeFault(text, 0, std::numeric_limits<std::uint64_t>::max()).empty()) {
+    (void)std::from_chars(text.data(), text.data() + text.size(), seed);
+    return seed;
+  }
   return fail(ErrorCode::kInvalidInput, "--seed",
               fmt::format("is \"{}\", a whole number from 0 on is wanted for episodes", text));
 }
@@ -92,7 +95,6 @@ void EpisodeSetOptions::addTo(CLI::App& app, BakeCommand& command) {
       app.add_option("--start-joints", start_joints_,
                      "Import: the joints of robotStartJointPositions (default: Fetch's arm)")
           ->type_name("NAME,NAME,...")
-          ->delimiter(',')
           ->allow_extra_args(false),
       app.add_option(
              "--object-up", object_up_,
@@ -112,7 +114,7 @@ void EpisodeSetOptions::addGeneration(CLI::App& app, BakeCommand& command) {
   EpisodeGeneratorOptions& generate = command.episodes.generate;
   for_generation_ = {
       app.add_option("--count", generate.episodes, "Generate: how many episodes")
-          ->check(CLI::Range(1, 1'000'000))
+          ->check(wholeCheck(1, 1'000'000))
           ->capture_default_str(),
       app.add_option("--objects", objects_,
                      "Generate: objects of each episode, the target among them (default 10)")
@@ -123,6 +125,7 @@ void EpisodeSetOptions::addGeneration(CLI::App& app, BakeCommand& command) {
       app.add_option("--flatness", generate.flatness,
                      "Generate: how far the surface under an object may be from flat, metres; "
                      "scans need about 0.01")
+          ->check(numberCheck(1e-6, static_cast<double>(kMostFlatness)))
           ->capture_default_str(),
       app.add_option("--goal-distance", goal_distance_,
                      "Generate: from target to goal, metres (default 1)")
@@ -150,11 +153,14 @@ void EpisodeSetOptions::addGeneration(CLI::App& app, BakeCommand& command) {
           ->type_name("SHARE"),
       app.add_option("--split-seed", generate.split.seed,
                      "Generate: the number that decides which scenes are held out")
+          ->check(wholeCheck(0, std::numeric_limits<std::uint64_t>::max()))
           ->capture_default_str(),
       app.add_option("--solve", command.episodes.solve,
                      "Generate: of how many episodes to say whether the scripted policy solves "
                      "them; 0: none")
+          ->check(wholeCheck(0, 1'000'000))
           ->capture_default_str()};
+  split_ = app.get_option("--split");
 }
 
 Result<void> EpisodeSetOptions::understandImport(BakeCommand& command) const {
@@ -165,7 +171,11 @@ Result<void> EpisodeSetOptions::understandImport(BakeCommand& command) const {
     import.object_up = *up;
   }
   import.targets = targets_ == "each" ? HabitatTargets::kEach : HabitatTargets::kFirst;
-  if (!start_joints_.empty()) import.start_joints = start_joints_;
+  if (!start_joints_.empty()) {
+    auto joints = parseNames(start_joints_, "--start-joints");
+    if (!joints) return tl::unexpected(joints.error());
+    import.start_joints = std::move(*joints);
+  }
   for (const std::string& text : scene_names_) {
     auto names = parsePair(text, "--scene-name", "OLD=NEW");
     if (!names) return tl::unexpected(names.error());
@@ -233,6 +243,13 @@ Result<void> EpisodeSetOptions::understand(BakeCommand& command,
                                            const std::vector<std::string>& seeds) {
   if (command.kind != AssetKind::kEpisodes) return {};
   const bool generated = command.episodes.generated;
+  for (const CLI::Option* option : for_generation_) {
+    const bool is_of_split =
+        option->get_name() == "--held-out" || option->get_name() == "--split-seed";
+    if (!is_of_split || option->count() == 0 || split_->count() > 0) continue;
+    return fail(ErrorCode::kInvalidInput, option->get_name(),
+                "is about --split; add it, or leave this out");
+  }
   std::string wrong = typedOf(generated ? for_import_ : for_generation_);
   if (!generated && wrong.empty() && !seeds.empty()) wrong = "--seed";
   if (!wrong.empty()) {
@@ -252,6 +269,7 @@ void EpisodeSetOptions::rememberGeneration(BakeCommand& command) {
   command.remember("objects", fmt::format("{},{}", objects.least, objects.most));
   command.remember("seed", std::to_string(generate.seed));
   command.remember("heights", textOf(generate.heights));
+  command.remember("flatness", fmt::format("{}", generate.flatness));
   command.remember("goal-distance", textOf(generate.target_to_goal));
   command.remember("start-distance", textOf(generate.start_to_target));
   if (generate.goal_on_other_support) command.remember("goal-elsewhere", "true");

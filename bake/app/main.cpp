@@ -3,10 +3,16 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <iostream>
+#include <new>
 #include <set>
+#include <stdexcept>
+#include <system_error>
 
 #include "bake_inputs.h"
 #include "bake_run.h"
+#include "galactic/out_of_memory.h"
 #include "galactic/part_files.h"
 #include "options.h"
 #include "plan/bake_plan.h"
@@ -81,6 +87,20 @@ int bakeAll(const BakeCommand& command) {
   return run.exitCode() == kExitOk ? differs : run.exitCode();
 }
 
+/// A full disk behind a redirection must not look like success.
+int flushed(int exit_code) {
+  if (std::fflush(stdout) == 0 && std::cout.flush() && std::ferror(stdout) == 0) return exit_code;
+  fmt::print(stderr, "galactic-bake: standard output: cannot be written; free some space\n");
+  return exit_code == kExitOk ? static_cast<int>(ErrorCode::kIo) : exit_code;
+}
+
+int run(int argc, const char* const* argv) {
+  const ParsedCommand parsed = parseCommandLine(argc, argv);
+  if (const int* code = std::get_if<int>(&parsed)) return *code;
+  const auto& command = std::get<BakeCommand>(parsed);
+  return command.hasPlan() ? bakePlan(command) : bakeAll(command);
+}
+
 }  // namespace
 }  // namespace galactic::bake
 
@@ -89,10 +109,15 @@ int main(int argc, char** argv) {
   // A file that grows beyond the limit of its size (ulimit -f) is an error of writing it.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
-    const bake::ParsedCommand parsed = bake::parseCommandLine(argc, argv);
-    if (const int* code = std::get_if<int>(&parsed)) return *code;
-    const auto& command = std::get<bake::BakeCommand>(parsed);
-    return command.hasPlan() ? bake::bakePlan(command) : bake::bakeAll(command);
+    return bake::flushed(bake::run(argc, argv));
+  } catch (const std::bad_alloc&) {
+    return bake::refuse(galactic::outOfMemory());
+  } catch (const std::length_error&) {  // a vector that no memory could hold
+    return bake::refuse(galactic::outOfMemory());
+  } catch (const std::filesystem::filesystem_error& error) {
+    return bake::refuse({galactic::ErrorCode::kIo, error.path1().string(), error.code().message()});
+  } catch (const std::system_error& error) {  // what printing throws
+    return bake::refuse({galactic::ErrorCode::kIo, "standard output", error.what()});
   } catch (const std::exception& error) {
     fmt::print(stderr, "galactic-bake: internal error: {}; please report it\n", error.what());
     return static_cast<int>(galactic::ErrorCode::kInternal);

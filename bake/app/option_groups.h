@@ -35,6 +35,7 @@ class SceneOptions {
 
  private:
   std::string spacing_ = "0.03";
+  CLI::Option* components_ = nullptr;
   std::vector<std::string> seeds_;
 };
 
@@ -94,6 +95,7 @@ class EpisodeSetOptions {
 
   std::vector<CLI::Option*> for_import_;
   std::vector<CLI::Option*> for_generation_;
+  const CLI::Option* split_ = nullptr;
   std::string object_up_;
   std::string targets_ = "first";
   std::vector<std::string> start_joints_;

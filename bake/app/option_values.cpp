@@ -3,11 +3,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>
 
 namespace galactic::bake {
+namespace {
+
+/// Beyond every length, factor and count that is meant.
+constexpr double kMostNumber = 1e12;
+
+}  // namespace
 
 Result<std::vector<double>> parseNumbers(const std::string& text, const char* option) {
   std::vector<double> numbers;
@@ -21,6 +28,11 @@ Result<std::vector<double>> parseNumbers(const std::string& text, const char* op
       return fail(
           ErrorCode::kInvalidInput, option,
           fmt::format("has \"{}\" in \"{}\", numbers separated by commas are wanted", part, text));
+    }
+    if (std::fabs(number) > kMostNumber) {
+      return fail(ErrorCode::kInvalidInput, option,
+                  fmt::format("has \"{}\" in \"{}\", numbers up to {:g} are wanted", part, text,
+                              kMostNumber));
     }
     numbers.push_back(number);
     if (comma == std::string_view::npos) return numbers;
@@ -69,6 +81,32 @@ Result<std::pair<std::string, std::string>> parsePair(const std::string& text, c
 
 std::string joined(const std::vector<std::string>& parts) {
   return fmt::format("{}", fmt::join(parts, ","));
+}
+
+Result<std::vector<std::string>> parseNames(const std::vector<std::string>& texts,
+                                            const char* option) {
+  std::vector<std::string> names;
+  const std::string text = joined(texts);
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (end == begin) {
+      return fail(
+          ErrorCode::kInvalidInput, option,
+          fmt::format("has an empty name in \"{}\", names separated by commas are wanted", text));
+    }
+    names.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return names;
+}
+
+std::vector<std::string> longNamesOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string& name = option->get_name();
+    if (name.starts_with("--")) names.push_back(name);
+  }
+  return names;
 }
 
 }  // namespace galactic::bake

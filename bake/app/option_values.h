@@ -1,4 +1,5 @@
 #pragma once
+#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <map>
 #include <string>
@@ -29,6 +30,13 @@ namespace galactic::bake {
                                                                     const char* wanted);
 
 [[nodiscard]] std::string joined(const std::vector<std::string>& parts);
+
+/// What stands between the commas of `texts`, none of which may be empty.
+[[nodiscard]] Result<std::vector<std::string>> parseNames(const std::vector<std::string>& texts,
+                                                          const char* option);
+
+/// The long names of all options, with dashes.
+[[nodiscard]] std::vector<std::string> longNamesOf(const CLI::App& app);
 
 /// The name under which `value` is typed.
 template <class T>

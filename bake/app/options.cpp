@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -8,10 +9,15 @@
 #include <cstdio>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string_view>
 #include <thread>
 
+#include "config_file.h"
 #include "galactic/bake/robot_recipe.h"
+#include "galactic/nearest_name.h"
+#include "galactic/number_text.h"
+#include "galactic/printable.h"
 #include "option_groups.h"
 #include "option_values.h"
 
@@ -59,6 +65,7 @@ bool hasPlan(AssetKind kind) { return isDataset(kind) || kind == AssetKind::kWor
 bool hasSeed(AssetKind kind) { return isScene(kind) || isEpisodes(kind); }
 
 constexpr Group kRadiiGroup{"Spheres (scenes, objects, robots)", hasRadii};
+constexpr Group kFileGroup{"Files (scenes, objects, robots)", hasRadii};
 constexpr Group kMeshGroup{"Meshes (scenes, objects)", isMesh};
 constexpr Group kSceneGroup{"Scenes", isScene};
 constexpr Group kShapeGroup{"Spheres and boxes (objects, robots)", isShape};
@@ -69,9 +76,20 @@ constexpr Group kRenderGroup{"Render meshes (scenes, objects, robots)", hasRadii
 constexpr Group kSeedGroup{"Scenes, generated episodes", hasSeed};
 constexpr Group kDatasetGroup{"Datasets", isDataset};
 constexpr Group kPlanGroup{"Datasets, worlds from recipes", hasPlan};
-constexpr std::array kGroups{kRadiiGroup,   kSceneGroup,   kMeshGroup,   kShapeGroup,
-                             kObjectGroup,  kRobotGroup,   kRenderGroup, kSeedGroup,
-                             kEpisodeGroup, kDatasetGroup, kPlanGroup};
+constexpr std::array kGroups{kRadiiGroup, kFileGroup,    kSceneGroup,   kMeshGroup,
+                             kShapeGroup, kObjectGroup,  kRobotGroup,   kRenderGroup,
+                             kSeedGroup,  kEpisodeGroup, kDatasetGroup, kPlanGroup};
+
+/// Whether the option's values are files, which count by their content.
+bool namesFiles(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return type.ends_with("FILE") || type.ends_with("PACK") || type.ends_with("DIR");
+}
+
+/// Which packs are made, where and when; not what is in them.
+bool decidesContent(const Group& group) {
+  return group.is_for != kDatasetGroup.is_for && group.is_for != kPlanGroup.is_for;
+}
 
 /// Options that were typed although their group is for other kinds of asset.
 Result<void> checkGroup(const CLI::App& app, const Group& group, AssetKind kind) {
@@ -100,7 +118,7 @@ void addRunOptions(CLI::App& app, BakeCommand& command) {
                  "Pack to write, or a folder for several packs (default: NAME.pack)")
       ->type_name("OUT");
   app.add_option("-j,--jobs", command.jobs, "Threads; the result does not depend on it")
-      ->check(CLI::Range(1, 4096))
+      ->check(wholeCheck(1, 4096))
       ->capture_default_str();
   app.add_option("--report", command.report, "Write what was done as JSON")->type_name("FILE.json");
   app.add_option("--check", command.golden_report,
@@ -109,11 +127,10 @@ void addRunOptions(CLI::App& app, BakeCommand& command) {
       ->type_name("FILE.json");
   app.add_option("--tolerance", command.tolerance,
                  "Share by which numbers may differ for --check (default: whole ones not at all)")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(numberCheck(0, 1e6))
       ->type_name("SHARE");
   app.set_config("--config", "", "Read options from a TOML file")->type_name("FILE");
-  // A misspelt option in the file must not pass unnoticed.
-  app.allow_config_extras(CLI::config_extras_mode::error);
+  app.config_formatter(std::make_shared<ConfigFile>(app));
   app.add_flag("--dry-run", command.dry_run, "Read and check the inputs, write no pack");
   app.add_flag("--keep-going", command.keep_going, "Go on with the next input after an error");
   app.add_flag_callback(
@@ -149,6 +166,7 @@ class CommandLine {
     addGroup(kRadiiGroup, [&] { addRadii(); });
     addGroup(kSeedGroup, [&] { addSeed(); });
     addGroup(kSceneGroup, [&] { scene_.addTo(app_, command); });
+    addGroup(kFileGroup, [&] { addReach(); });
     addGroup(kMeshGroup, [&] { import_.addTo(app_); });
     addGroup(kShapeGroup, [&] { shape_.addTo(app_, command); });
     addGroup(kObjectGroup, [&] { addCollection(); });
@@ -160,25 +178,32 @@ class CommandLine {
   }
 
   void parse(int argc, const char* const* argv) { app_.parse(argc, argv); }
-  int explain(const CLI::ParseError& error) { return app_.exit(error); }
+  /// Help and version.
+  int answer(const CLI::Success& asked) { return app_.exit(asked); }
+  [[nodiscard]] std::string explain(const CLI::ParseError& error) const {
+    return withSuggestions(error.what(), longNamesOf(app_));
+  }
 
   Result<void> understand() {
+    if (auto filled = checkFilled(); !filled) return filled;
     chooseKind();
     for (const Group& group : kGroups) {
       if (auto fits = checkGroup(app_, group, command_.kind); !fits) return fits;
     }
-    for (const auto& step :
-         {understandRadii(radii_, command_), import_.understand(command_),
-          scene_.understand(command_, seeds_), shape_.understand(command_),
-          robot_.understand(command_), render_.understand(command_),
-          episodes_.understand(command_, seeds_), checkCollection(), plan_.understand(command_)}) {
+    for (const auto& step : {understandRadii(radii_, command_), import_.understand(command_),
+                             scene_.understand(command_, seeds_), shape_.understand(command_),
+                             robot_.understand(command_), render_.understand(command_),
+                             episodes_.understand(command_, seeds_), checkCollection(),
+                             plan_.understand(command_), checkPairs()}) {
       if (!step) return step;
     }
     // Movable objects may be small.
     if (command_.kind == AssetKind::kObject) command_.import.smallest_size = 0;
+    command_.import.allow_outside = command_.allow_outside;
     command_.setJobs(command_.jobs);
     command_.config = app_.get_config_ptr()->as<std::string>();
     remember();
+    keepTyped();
     return {};
   }
 
@@ -192,9 +217,26 @@ class CommandLine {
   void addRadii() {
     app_.add_option("--radii", radii_, "Sphere radii, metres, ascending")
         ->type_name("R,R,...")
-        ->delimiter(',')
         ->allow_extra_args(false)
         ->default_str("0.015,0.05,0.12");
+  }
+
+  /// An empty value is a mistake of a script, not the default.
+  [[nodiscard]] Result<void> checkFilled() const {
+    for (const CLI::Option* option : app_.get_options()) {
+      for (const std::string& value : option->results()) {
+        if (!value.empty()) continue;
+        return fail(ErrorCode::kInvalidInput, option->get_name(),
+                    "has an empty value; give one, or leave the option out");
+      }
+    }
+    return {};
+  }
+
+  void addReach() {
+    app_.add_flag("--allow-outside", command_.allow_outside,
+                  "Read what meshes and robots name wherever it points, not only below their "
+                  "folders and in packages");
   }
 
   void addCollection() {
@@ -210,6 +252,41 @@ class CommandLine {
     return fail(ErrorCode::kInvalidInput, "--collection",
                 "needs the up axis of the meshes, in whose frame its boxes stand: give --up, and "
                 "no --transform");
+  }
+
+  [[nodiscard]] bool isTyped(const char* option) const { return app_.count(option) > 0; }
+
+  /// Options that would be ignored beside others, or without them.
+  [[nodiscard]] Result<void> checkPairs() const {
+    const auto refuse = [](const char* option, const char* message) {
+      return fail(ErrorCode::kInvalidInput, option, message);
+    };
+    if (isTyped("--tolerance") && !isTyped("--check")) {
+      return refuse("--tolerance", "is about --check; add it, or leave this out");
+    }
+    for (const char* drawn :
+         {"--render-error", "--texture-size", "--texture-format", "--ambient-occlusion"}) {
+      if (isTyped(drawn) && isTyped("--no-render-meshes")) {
+        return refuse(drawn, "does not go with --no-render-meshes; leave one of them out");
+      }
+    }
+    for (const char* shape : {"--obb", "--no-support"}) {
+      if (isTyped(shape) && !isObject(command_.kind)) {
+        return refuse(shape, "is about objects; leave it out");
+      }
+    }
+    for (const char* planned : {"--data", "--cache", "--no-cache", "--shard", "--memory"}) {
+      if (isTyped(planned) && !command_.hasPlan()) {
+        return refuse(planned, "goes with a dataset or a recipe, not with packs; leave it out");
+      }
+    }
+    if (isTyped("--seed") && isDataset(command_.kind)) {
+      return refuse("--seed", "is a point of one scene, and a dataset has many; leave it out");
+    }
+    if (isTyped("--data") && isDataset(command_.kind)) {
+      return refuse("--data", "goes with a recipe, not with a dataset; leave it out");
+    }
+    return {};
   }
 
   void addSeed() {
@@ -248,6 +325,7 @@ class CommandLine {
       command_.remember("as", nameOf(kindNames(), command_.kind));
     }
     if (hasRadii(command_.kind)) command_.remember("radii", joined(radii_));
+    if (command_.allow_outside) command_.remember("allow-outside", "yes");
     if (isScene(command_.kind)) scene_.remember(command_);
     if (isShape(command_.kind)) shape_.remember(command_);
     command_.remember("collection", command_.collection.filename().string());
@@ -255,6 +333,19 @@ class CommandLine {
     if (isMesh(command_.kind)) import_.remember(command_);
     if (hasRadii(command_.kind)) render_.remember(command_);
     if (isEpisodes(command_.kind)) episodes_.remember(command_);
+  }
+
+  /// From the parser itself, so that no option can be forgotten.
+  void keepTyped() {
+    for (const Group& group : kGroups) {
+      if (!decidesContent(group)) continue;
+      for (const CLI::Option* option : app_.get_options()) {
+        if (option->get_group() != group.heading || option->count() == 0) continue;
+        if (namesFiles(*option)) continue;
+        command_.typed_options.emplace_back(option->get_name(),
+                                            fmt::format("{}", fmt::join(option->results(), "\n")));
+      }
+    }
   }
 
   BakeCommand& command_;
@@ -279,15 +370,22 @@ ParsedCommand parseCommandLine(int argc, const char* const* argv) {
   CommandLine line(command);
   try {
     line.parse(argc, argv);
+  } catch (const CLI::Success& asked) {
+    return line.answer(asked);
   } catch (const CLI::FileError& error) {
-    fmt::print(stderr, "galactic-bake: --config: {}\n", error.what());
+    fmt::print(stderr, "galactic-bake: --config: {}\n", printable(error.what()));
     return static_cast<int>(ErrorCode::kIo);
+  } catch (const CLI::ConfigError& error) {
+    fmt::print(stderr, "galactic-bake: {}\n", printable(error.what()));
+    return kExitUsage;
   } catch (const CLI::ParseError& error) {
-    return line.explain(error) == kExitOk ? kExitOk : kExitUsage;
+    fmt::print(stderr, "galactic-bake: command line: {}; see --help\n",
+               printable(line.explain(error)));
+    return kExitUsage;
   }
   if (const auto understood = line.understand(); !understood) {
-    fmt::print(stderr, "galactic-bake: {}: {}\n", understood.error().where,
-               understood.error().message);
+    fmt::print(stderr, "galactic-bake: {}: {}\n", printable(understood.error().where),
+               printable(understood.error().message));
     return kExitUsage;
   }
   return command;
@@ -302,7 +400,7 @@ Result<BakeCommand> commandFrom(const std::vector<std::string>& arguments) {
   try {
     line.parse(static_cast<int>(argv.size()), argv.data());
   } catch (const CLI::ParseError& error) {
-    return fail(ErrorCode::kInvalidInput, "", error.what());
+    return fail(ErrorCode::kInvalidInput, "", line.explain(error));
   }
   if (auto understood = line.understand(); !understood) return tl::unexpected(understood.error());
   return command;

@@ -125,6 +125,8 @@ struct BakeCommand {
   RobotOptions robot;
   RenderOptions render;
   EpisodeOptions episodes;
+  /// Whether what assets name is read wherever it points; robot meshes, too.
+  bool allow_outside = false;
   DatasetOptions dataset;
   PlanOptions plan;
   /// Name of the asset in its pack; empty: that of its file.
@@ -139,6 +141,9 @@ struct BakeCommand {
   Verbosity verbosity = Verbosity::kNormal;
   /// The options that decide the pack's content, as text, for its provenance.
   std::vector<std::pair<std::string, std::string>> content_options;
+  /// Every option that was typed and may decide the content or the report, with its texts as typed:
+  /// for the cache's key. Not those that name files: see namedFiles.
+  std::vector<std::pair<std::string, std::string>> typed_options;
 
   /// Bakes on `count` threads, which the result does not depend on.
   void setJobs(unsigned count) {

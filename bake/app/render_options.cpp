@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "galactic/number_text.h"
 #include "option_groups.h"
 #include "option_values.h"
 
@@ -25,6 +26,7 @@ void RenderMeshOptions::addTo(CLI::App& app, BakeCommand& command) {
       ->type_name("METRES");
   app.add_option("--texture-size", command.render.textures.largest,
                  "Longest edge of a texture, texels: a power of two (default: 512)")
+      ->check(wholeCheck(1, 4096))
       ->check(CLI::IsMember({1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096}))
       ->option_text("1..4096");
   app.add_option("--texture-format", command.render.textures.format,

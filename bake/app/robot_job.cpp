@@ -100,6 +100,7 @@ Result<Json> bakeRobotFile(const std::filesystem::path& input, BakeRun& run) {
   const std::string item = input.filename().string();
   run.line().show(item, "import", 0);
   UrdfImportOptions import;
+  import.allow_outside = command.allow_outside;
   import.packages = command.robot.packages;
   import.search_roots = rosPackagePath();
   import.allow_missing = command.robot.allow_missing;

@@ -1,3 +1,4 @@
+#include "galactic/number_text.h"
 #include "option_groups.h"
 #include "option_values.h"
 
@@ -39,12 +40,13 @@ void SceneOptions::addTo(CLI::App& app, BakeCommand& command) {
   app.add_option("--keep", scene.free_space.keep, "What to store: the room, or all free spans")
       ->transform(CLI::CheckedTransformer(keepNames()))
       ->option_text("room|all");
-  app.add_option("--keep-components", scene.free_space.components,
-                 "Without seeds: how many of the largest free parts are the room")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
+  components_ = app.add_option("--keep-components", scene.free_space.components,
+                               "Without seeds: how many of the largest free parts are the room")
+                    ->check(wholeCheck(1, 1000000))
+                    ->capture_default_str();
   app.add_option("--check-columns", scene.check_columns,
                  "Columns per grid to replay with sphere casts; 0: none")
+      ->check(wholeCheck(0, 1000000))
       ->capture_default_str();
 }
 
@@ -53,6 +55,15 @@ Result<void> SceneOptions::understand(BakeCommand& command, const std::vector<st
   if (!spacing) return tl::unexpected(spacing.error());
   command.scene.spacing = static_cast<float>((*spacing)[0]);
   if (command.kind == AssetKind::kScene) seeds_ = seeds;
+  const bool has_components = components_->count() > 0;
+  if (has_components && !seeds_.empty()) {
+    return fail(ErrorCode::kInvalidInput, "--keep-components",
+                "does not go with --seed, whose free parts are the room; leave one of them out");
+  }
+  if (command.scene.free_space.keep == Keep::kAll && (has_components || !seeds_.empty())) {
+    return fail(ErrorCode::kInvalidInput, has_components ? "--keep-components" : "--seed",
+                "says what the room is, and --keep all stores everything; leave one of them out");
+  }
   for (const std::string& seed : seeds_) {
     const auto point = parseExactly(seed, "--seed", 3);
     if (!point) return tl::unexpected(point.error());

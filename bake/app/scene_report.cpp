@@ -14,7 +14,8 @@ Json toJson(const Bounds& bounds) {
 Json toJson(const CastCheck& check) {
   return {{"columns", check.columns},   {"columns_differing", check.columns_differing},
           {"compared", check.compared}, {"method", check.method},
-          {"ties", check.ties},         {"errors", check.errors}};
+          {"ties", check.ties},         {"errors", check.errors},
+          {"longest", check.longest}};
 }
 
 Json toJson(const BakedGrid& baked) {

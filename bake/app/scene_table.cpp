@@ -14,8 +14,16 @@ std::string castCheckText(const BakedGrid& grid) {
   if (!grid.cast_check) return "not checked";
   const CastCheck& check = *grid.cast_check;
   if (check.errors > 0) return fmt::format("{:.1f} mm WRONG", check.errors * 1e3);
-  return fmt::format("0 errors ({} of {} columns differ: method {:.1f} mm, ties {:.1f} mm)",
-                     check.columns_differing, check.columns, check.method * 1e3, check.ties * 1e3);
+  if (check.columns_differing == 0) {
+    return fmt::format("0 errors, {} columns agree", check.columns);
+  }
+  if (check.longest == 0) {
+    return fmt::format("0 errors, {} of {} columns differ in ties: surfaces just at the radius",
+                       check.columns_differing, check.columns);
+  }
+  return fmt::format(
+      "0 errors, {} of {} columns differ, by {:.1f} mm at most: steps and pad of the casts",
+      check.columns_differing, check.columns, check.longest * 1e3);
 }
 
 void printGrids(const BakedScene& scene) {

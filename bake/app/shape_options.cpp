@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "galactic/number_text.h"
 #include "option_groups.h"
 #include "option_values.h"
 
@@ -46,7 +47,7 @@ void ShapeOptions::addTo(CLI::App& app, BakeCommand& command) {
       ->type_name("METRES");
   app.add_option("--max-spheres", command.max_spheres,
                  "Most spheres of an object or robot; 0: as many as the tolerances need")
-      ->check(CLI::Range(0, 1000000));
+      ->check(wholeCheck(0, 1000000));
   app.add_flag("--no-support", any_side_,
                "Let an object's spheres reach below the face on which it rests");
 }

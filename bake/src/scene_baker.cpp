@@ -121,7 +121,16 @@ class SceneBaker {
   std::optional<BulletColumnCaster> caster_;
 };
 
-/// Warns of a grid in which a sphere has no room, and of parts left out that may be rooms too.
+/// Where a room that reaches the grid's border leaves the scene.
+std::string wayOut(const Component& room) {
+  if (room.columns_at_edge == 0) return "it leads over the walls, there is no ceiling";
+  return fmt::format(
+      "it reaches the edge of the scene in {} columns, first at ({:.2f}, {:.2f}, {:.2f})",
+      room.columns_at_edge, room.first_at_edge.x, room.first_at_edge.y, room.first_at_edge.z);
+}
+
+/// Warns of a grid in which a sphere has no room, of rooms that have no bounds, and of parts left
+/// out that may be rooms too.
 void warnOfRegions(const BakedGrid& baked, const SceneBakeOptions& options,
                    std::vector<std::string>& warnings) {
   const float radius = baked.grid.frame.radius;
@@ -131,6 +140,14 @@ void warnOfRegions(const BakedGrid& baked, const SceneBakeOptions& options,
     return;
   }
   if (options.free_space.keep == Keep::kAll) return;
+  for (const Component& part : baked.components) {
+    if (part.region != Region::kRoom || !part.touches_border) continue;
+    warnings.push_back(
+        fmt::format("radius {} m: the room is one with the outside, and all of it is "
+                    "stored: {}; close it in the mesh, unless the scene is meant to "
+                    "be open",
+                    radius, wayOut(part)));
+  }
   for (const Component& part : baked.components) {
     if (part.region != Region::kEnclosed || part.volume < kWorthMentioning * room) continue;
     warnings.push_back(fmt::format(

@@ -32,11 +32,14 @@ std::string relativeName(const fs::path& file, const fs::path& folder) {
 std::string keyOf(const PlannedPack& pack, const std::string& program) {
   const BakeCommand& command = pack.command;
   std::string key = fmt::format("galactic-bake {} {}\n{}\n", GALACTIC_VERSION, program, pack.name);
-  for (const auto& [name, value] : command.content_options) {
-    key += fmt::format("{}={}\n", name, value);
+  for (const auto& options : {command.content_options, command.typed_options}) {
+    for (const auto& [name, value] : options) key += fmt::format("{}={}\n", name, value);
   }
   for (const auto& [name, folder] : command.robot.packages) {
     key += fmt::format("package {}={}\n", name, folder.string());
+  }
+  for (const auto& [scene, file] : command.episodes.geometry) {
+    key += fmt::format("geometry {}={}\n", scene, relativeName(file, pack.folder));
   }
   for (const fs::path& file : command.namedFiles()) {
     key += fmt::format("file {}\n", relativeName(file, pack.folder));

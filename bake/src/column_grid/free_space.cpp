@@ -84,6 +84,12 @@ double overlap(const Span& span, const Bounds& scene) {
                            static_cast<double>(std::max(span.lo, scene.min.y)));
 }
 
+/// Whether a column in the scene's bounds lies at their edge, in the plane.
+bool isAtEdge(float x, float z, const Bounds& scene, float spacing) {
+  return x - scene.min.x < spacing || scene.max.x - x < spacing || z - scene.min.z < spacing ||
+         scene.max.z - z < spacing;
+}
+
 std::vector<Component> measure(const Columns& columns, const Labels& labels) {
   const GridFrame& frame = columns.frame;
   Component empty;
@@ -98,6 +104,7 @@ std::vector<Component> measure(const Columns& columns, const Labels& labels) {
       const bool border = i == 0 || k == 0 || i + 1 == frame.columns_x || k + 1 == frame.columns_z;
       const bool in_scene =
           x >= scene.min.x && x <= scene.max.x && z >= scene.min.z && z <= scene.max.z;
+      const bool at_edge = in_scene && isAtEdge(x, z, scene, frame.spacing);
       const std::size_t at = columns.index(i, k);
       for (std::uint32_t span = columns.first[at]; span < columns.first[at + 1]; ++span) {
         Component& component = components[labels.of_span[span]];
@@ -107,6 +114,9 @@ std::vector<Component> measure(const Columns& columns, const Labels& labels) {
         component.volume +=
             area * (static_cast<double>(heights.hi) - static_cast<double>(heights.lo));
         if (in_scene) component.volume_inside += area * overlap(heights, scene);
+        if (at_edge && overlap(heights, scene) > 0 && component.columns_at_edge++ == 0) {
+          component.first_at_edge = {x, std::max(heights.lo, scene.min.y), z};
+        }
         Bounds& bounds = component.bounds;
         bounds.min = {std::min(bounds.min.x, x), std::min(bounds.min.y, heights.lo),
                       std::min(bounds.min.z, z)};
@@ -137,7 +147,11 @@ Result<std::uint32_t> spanAt(const Columns& columns, const Vec3& seed) {
   const double k = cell(seed.z, frame.min_z);
   const bool inside = i >= 0 && k >= 0 && i < static_cast<double>(frame.columns_x) &&
                       k < static_cast<double>(frame.columns_z);
-  if (!inside) return seedFailure(seed, frame, "outside the scene");
+  // Between the scene and the grid's border nothing is room.
+  const Bounds scene = sceneBounds(frame);
+  const bool in_scene = seed.x >= scene.min.x && seed.x <= scene.max.x && seed.z >= scene.min.z &&
+                        seed.z <= scene.max.z;
+  if (!inside || !in_scene) return seedFailure(seed, frame, "outside the scene");
   const std::size_t at =
       columns.index(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k));
   for (std::uint32_t span = columns.first[at]; span < columns.first[at + 1]; ++span) {

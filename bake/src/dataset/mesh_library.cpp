@@ -180,6 +180,7 @@ Result<std::shared_ptr<const SourceRobot>> MeshLibrary::loadFurniture(const fs::
   UrdfImportOptions options;
   options.up = UpAxis::kY;
   options.allow_missing = true;
+  options.allow_outside = state_->options.allow_outside;
   return state_->load<SourceRobot>(state_->furniture, keyOf(urdf),
                                    [&] { return importUrdf(urdf, options); });
 }

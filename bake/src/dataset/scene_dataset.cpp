@@ -12,7 +12,7 @@
 #include "dataset/scene_surveyor.h"
 #include "dataset/template_attributes.h"
 #include "galactic/bake/source_file.h"
-#include "recipe/nearest_name.h"
+#include "galactic/nearest_name.h"
 
 namespace galactic::bake {
 

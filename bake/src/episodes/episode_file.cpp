@@ -90,6 +90,7 @@ Result<SourceEpisodes> chooseEpisodes(const EpisodeFile& file,
   UsedNames scenes(file.scenes);
   UsedNames objects(file.objects);
   SourceEpisodes source;
+  source.robot = file.robot;
   source.start_joints = file.start_joints;
   source.warnings = file.warnings;
   source.episodes.reserve(kept->size());

@@ -39,6 +39,8 @@ struct EpisodeFile {
   std::vector<std::string> objects;
   std::vector<Spawn> spawns;
   std::vector<FileEpisode> episodes;
+  /// Empty: any.
+  std::string robot;
   std::vector<std::string> start_joints;
   std::vector<std::string> warnings;
 };

@@ -1,6 +1,7 @@
 #include "galactic/bake/episode_set_import.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +45,8 @@ class EpisodeSetReader {
   void readScenes(const JsonNode& list);
   void readObjects(const JsonNode& list, const std::vector<std::string>& assets);
   void readSpawns(const JsonNode& list);
+  /// What sets of our own say of the robot.
+  void readRobot(const JsonNode& set);
   void readEpisode(const JsonNode& node);
   /// The range of spawns and the target among them.
   void readRange(const JsonNode& node, Episode& episode);
@@ -163,21 +166,45 @@ void EpisodeSetReader::readRange(const JsonNode& node, Episode& episode) {
                          "spawns of its episode");
 }
 
+void EpisodeSetReader::readRobot(const JsonNode& set) {
+  file_.start_joints = options_.start_joints;
+  const JsonNode robot = JsonReader::member(set, "robot");
+  if (robot.json != nullptr) file_.robot = json_.text(robot);
+  const JsonNode joints = JsonReader::member(set, "startJoints");
+  if (joints.json == nullptr) return;
+  file_.start_joints.clear();
+  for (const JsonNode& joint : json_.elements(joints)) {
+    file_.start_joints.push_back(json_.text(joint));
+  }
+  const bool is_asked_for = options_.start_joints != EpisodeImportOptions().start_joints;
+  if (is_asked_for && options_.start_joints != file_.start_joints) {
+    json_.error(joints.place, fmt::format("names the start joints {}, and --start-joints is {}; "
+                                          "leave that out",
+                                          fmt::join(file_.start_joints, ","),
+                                          fmt::join(options_.start_joints, ",")));
+  }
+}
+
 void EpisodeSetReader::readEpisode(const JsonNode& node) {
-  json_.onlyKnown(node, {"staticSceneIndex", "numFreeObjectSpawns", "targetObjIndex",
-                         "firstFreeObjectSpawnIndex", "agentStartPos", "agentStartYaw",
-                         "robotStartJointPositions", "targetObjGoalPos", "targetObjGoalRotation"});
+  json_.onlyKnown(
+      node, {"staticSceneIndex", "numFreeObjectSpawns", "targetObjIndex",
+             "firstFreeObjectSpawnIndex", "agentStartPos", "agentStartHeight", "agentStartYaw",
+             "robotStartJointPositions", "targetObjGoalPos", "targetObjGoalRotation"});
   FileEpisode read;
   Episode& episode = read.episode;
   episode.scene = index(json_.require(node, "staticSceneIndex"), file_.scenes.size(), "scenes");
   readRange(node, episode);
   const auto ground = json_.vector<2>(json_.require(node, "agentStartPos"), kFarthest);
-  episode.base_position = {static_cast<float>(ground[0]), 0, static_cast<float>(ground[1])};
+  // Published sets have one floor, at height 0.
+  const JsonNode height = JsonReader::member(node, "agentStartHeight");
+  const double above = height.json == nullptr ? 0 : json_.number(height, -kFarthest, kFarthest);
+  episode.base_position = {static_cast<float>(ground[0]), static_cast<float>(above),
+                           static_cast<float>(ground[1])};
   episode.base_yaw = static_cast<float>(
       json_.number(json_.require(node, "agentStartYaw"), -kLargestPosition, kLargestPosition));
   episode.goal =
       pose(json_.require(node, "targetObjGoalPos"), json_.require(node, "targetObjGoalRotation"));
-  std::vector<double> positions(options_.start_joints.size());
+  std::vector<double> positions(file_.start_joints.size());
   const JsonNode joints = json_.require(node, "robotStartJointPositions");
   if (joints.json != nullptr && joints.json->is_array() &&
       joints.json->size() != positions.size()) {
@@ -192,8 +219,9 @@ void EpisodeSetReader::readEpisode(const JsonNode& node) {
 
 Result<EpisodeFile> EpisodeSetReader::read(const Json& root) {
   const JsonNode set = json_.require({&root, ""}, "episodeSet");
-  json_.onlyKnown(set,
-                  {"renderAssets", "staticScenes", "freeObjects", "freeObjectSpawns", "episodes"});
+  json_.onlyKnown(set, {"renderAssets", "staticScenes", "freeObjects", "freeObjectSpawns",
+                        "episodes", "robot", "startJoints"});
+  readRobot(set);
   const auto assets = readAssets(json_.require(set, "renderAssets"));
   readScenes(json_.require(set, "staticScenes"));
   readObjects(json_.require(set, "freeObjects"), assets);
@@ -208,7 +236,6 @@ Result<EpisodeFile> EpisodeSetReader::read(const Json& root) {
   if (nodes.empty()) json_.error(list.place, "is empty, at least one episode is wanted");
   if (json_.failed()) return json_.failure();
   file_.place = json_.file() + ": episodeSet.episodes";
-  file_.start_joints = options_.start_joints;
   file_.warnings = json_.warnings();
   return std::move(file_);
 }

@@ -128,6 +128,7 @@ Result<void> GenerationWorld::add(const PackFile& pack) {
       // What scenes look like plays no part.
       return {};
     case PackKind::kEpisodes:
+    case PackKind::kPolicy:
     case PackKind::kWorld:
       break;
   }

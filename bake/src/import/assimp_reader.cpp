@@ -13,6 +13,7 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include "import/affine.h"
@@ -62,30 +63,57 @@ Format formatOf(const Assimp::Importer& importer) {
   return {.reader = reader, .name = reader, .convention = statedBy(UpAxis::kY, "assumed")};
 }
 
-/// Opens files for the reader and remembers which, because the reader does not tell.
+/// What the reader asked for, in this order, each once.
+struct AskedFiles {
+  std::vector<std::string> opened;
+  std::vector<std::string> missing;
+  /// Not looked for: they lie outside the asset's folder.
+  std::vector<std::string> outside;
+};
+
+/// Opens files for the reader and remembers which, because the reader does not tell. Nothing but
+/// regular files: opening a pipe would wait for its writer.
 class RecordingFiles final : public Assimp::DefaultIOSystem {
  public:
-  RecordingFiles(std::vector<std::string>& opened, std::vector<std::string>& missing)
-      : opened_(opened), missing_(missing) {}
+  /// `folder`: outside of it, nothing is opened; empty: anything is.
+  RecordingFiles(AskedFiles& asked, std::filesystem::path folder)
+      : asked_(asked), folder_(std::move(folder)) {}
+
+  /// The library's own opens the file to see whether it is there.
+  bool Exists(const char* file) const override { return isPlainFile(file); }
 
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     std::string name = file;
-    Assimp::IOStream* stream = DefaultIOSystem::Open(name.c_str(), mode);
+    Assimp::IOStream* stream = openPlain(name, mode);
     if (stream == nullptr) {
       // Readers hand over URIs as they stand in the file: "my%20scene.bin".
       if (const std::string plain = withoutUriEscapes(name); plain != name) {
-        stream = DefaultIOSystem::Open(plain.c_str(), mode);
+        stream = openPlain(plain, mode);
         if (stream != nullptr) name = plain;
       }
     }
-    auto& list = stream == nullptr ? missing_ : opened_;
+    const bool is_outside = stream == nullptr && !isNear(name);
+    auto& list = is_outside ? asked_.outside : stream == nullptr ? asked_.missing : asked_.opened;
     if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
     return stream;
   }
 
  private:
-  std::vector<std::string>& opened_;
-  std::vector<std::string>& missing_;
+  [[nodiscard]] bool isNear(const std::string& name) const {
+    return folder_.empty() || isBelow(name, folder_);
+  }
+
+  Assimp::IOStream* openPlain(const std::string& name, const char* mode) {
+    return isPlainFile(name) ? DefaultIOSystem::Open(name.c_str(), mode) : nullptr;
+  }
+
+  [[nodiscard]] bool isPlainFile(const std::string& name) const {
+    std::error_code ignored;
+    return isNear(name) && std::filesystem::is_regular_file(name, ignored);
+  }
+
+  AskedFiles& asked_;
+  std::filesystem::path folder_;
 };
 
 /// Listens for the one thing that a reader mentions only in its log: faces that it left out because
@@ -144,8 +172,7 @@ class SceneReader {
   std::unique_ptr<aiScene> scene_;
   Format format_{};
   SourceAsset asset_;
-  std::vector<std::string> opened_;
-  std::vector<std::string> missing_;
+  AskedFiles asked_;
 };
 
 std::string text(const aiString& string) { return {string.C_Str()}; }
@@ -153,7 +180,10 @@ std::string text(const aiString& string) { return {string.C_Str()}; }
 Result<void> SceneReader::load() {
   DroppedFacesLog dropped_faces;
   Assimp::Importer importer;
-  importer.SetIOHandler(new RecordingFiles(opened_, missing_));  // the importer owns it
+  const std::filesystem::path folder = std::filesystem::absolute(path_).parent_path();
+  // The importer owns it.
+  importer.SetIOHandler(
+      new RecordingFiles(asked_, options_.allow_outside ? std::filesystem::path() : folder));
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
@@ -165,6 +195,12 @@ Result<void> SceneReader::load() {
   if (!read) {
     const std::string reason = importer.GetErrorString();
     if (reason.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
+    if (!asked_.outside.empty()) {
+      return invalid(
+          fmt::format("it names '{}', which lies outside its folder; put the file there, "
+                      "or give --allow-outside",
+                      nameRelativeTo(path_, asked_.outside.front())));
+    }
     return invalid(
         fmt::format("its content cannot be read as {}: {}; export it again, or convert "
                     "it to GLB",
@@ -404,16 +440,24 @@ void SceneReader::convertTextures() {
 }
 
 void SceneReader::nameFiles() {
-  for (const std::string& file : opened_) {
+  for (const std::string& file : asked_.opened) {
     asset_.files.push_back({.name = nameRelativeTo(path_, file)});
   }
   // The OBJ reader looks for a namesake of the OBJ when the named MTL is missing: one warning each.
   std::filesystem::path namesake = path_;
   namesake.replace_extension(".mtl");
-  std::erase_if(missing_, [&](const std::string& file) {
-    return file == namesake.string() && file != missing_.front();
+  std::vector<std::string>& missing = asked_.missing;
+  std::erase_if(missing, [&](const std::string& file) {
+    const bool is_asked_first = asked_.outside.empty() && file == missing.front();
+    return file == namesake.string() && !is_asked_first;
   });
-  for (const std::string& file : missing_) {
+  for (const std::string& file : asked_.outside) {
+    asset_.warnings.push_back(fmt::format(
+        "'{}' lies outside the folder of the mesh and is not read; put it there, or give "
+        "--allow-outside",
+        nameRelativeTo(path_, file)));
+  }
+  for (const std::string& file : missing) {
     if (std::filesystem::path(file).extension() != ".mtl") continue;
     asset_.warnings.push_back(
         fmt::format("material file '{}' is missing: its materials get default colours",

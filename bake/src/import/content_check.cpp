@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <string>
 #include <string_view>
@@ -10,9 +11,14 @@
 
 #include "galactic/mapped_file.h"
 #include "import/gltf_extensions.h"
+#include "import/gltf_ranges.h"
+#include "import/ply_counts.h"
+#include "import/text_counts.h"
 
 namespace galactic::bake {
 namespace {
+
+using Warnings = std::vector<std::string>;
 
 std::string lowerCaseExtension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -21,50 +27,56 @@ std::string lowerCaseExtension(const std::filesystem::path& path) {
   return extension;
 }
 
-Result<std::vector<std::string>> checkGltf(const std::filesystem::path& path,
-                                           std::span<const std::byte> content) {
+Result<Warnings> checkGltf(const std::filesystem::path& path, std::span<const std::byte> content) {
   GltfRequirements required = gltfRequirements(content);
-  if (!required.unsupported) return std::move(required.warnings);
-  return fail(ErrorCode::kUnsupported, path.string(),
-              fmt::format("it requires the glTF extension {}, which is not supported; export it "
-                          "without that extension (uncompressed)",
-                          *required.unsupported));
+  if (required.unsupported) {
+    return fail(ErrorCode::kUnsupported, path.string(),
+                fmt::format("it requires the glTF extension {}, which is not supported; export it "
+                            "without that extension (uncompressed)",
+                            *required.unsupported));
+  }
+  if (auto checked = checkGltfRanges(path, content); !checked) {
+    return tl::unexpected(std::move(checked.error()));
+  }
+  return std::move(required.warnings);
 }
 
-Result<void> checkPly(const std::filesystem::path& path, std::span<const std::byte> content) {
-  const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
-  constexpr std::string_view kMagic = "ply";
-  const bool is_ply = text.size() >= kMagic.size() &&
-                      std::equal(kMagic.begin(), kMagic.end(), text.begin(), [](char a, char b) {
-                        return a == std::tolower(static_cast<unsigned char>(b));
-                      });
-  if (!is_ply) return {};  // the reader says so
-  constexpr std::string_view kEnd = "end_header";
-  // The first word of a line, and the line has an end.
-  for (std::size_t at = text.find(kEnd); at != text.npos; at = text.find(kEnd, at + 1)) {
-    const std::size_t next = at + kEnd.size();
-    const bool starts_line = at > 0 && (text[at - 1] == '\n' || text[at - 1] == '\r');
-    if (starts_line && next < text.size() && (text[next] == '\n' || text[next] == '\r')) return {};
-  }
-  return fail(ErrorCode::kInvalidInput, path.string(),
-              "its PLY header has no end_header line; the file is cut off: export or download it "
-              "again");
-}
+/// A format whose files state how much they hold, and that no reader checks.
+struct CountedFormat {
+  std::string_view extension;
+  Result<void> (*check)(std::string_view file, const std::string& where);
+};
+
+constexpr std::array kCountedFormats{
+    CountedFormat{".ply", checkPlyCounts}, CountedFormat{".obj", checkObj},
+    CountedFormat{".stl", checkStl}, CountedFormat{".off", checkOff}};
+
+/// Their readers refuse what is cut off.
+constexpr std::array<std::string_view, 3> kCheckedByReader{".dae", ".fbx", ".zae"};
 
 }  // namespace
 
-Result<std::vector<std::string>> checkContent(const std::filesystem::path& path) {
+Result<Warnings> checkContent(const std::filesystem::path& path) {
   const std::string extension = lowerCaseExtension(path);
-  const bool gltf = extension == ".glb" || extension == ".gltf";
-  const bool ply = extension == ".ply";
-  if (!gltf && !ply) return std::vector<std::string>();
+  const bool is_gltf = extension == ".glb" || extension == ".gltf";
+  const auto counted =
+      std::find_if(kCountedFormats.begin(), kCountedFormats.end(),
+                   [&](const CountedFormat& format) { return format.extension == extension; });
+  if (!is_gltf && counted == kCountedFormats.end()) {
+    if (std::ranges::find(kCheckedByReader, extension) != kCheckedByReader.end()) return Warnings();
+    return Warnings{fmt::format(
+        "nothing tells whether a {} file is whole: should geometry lack, convert it to GLB",
+        extension)};
+  }
   const auto file = MappedFile::open(path);
   if (!file) return tl::unexpected(file.error());
-  if (gltf) return checkGltf(path, file->bytes());
-  if (auto checked = checkPly(path, file->bytes()); !checked) {
+  if (is_gltf) return checkGltf(path, file->bytes());
+  const std::string_view text(reinterpret_cast<const char*>(file->bytes().data()),
+                              file->bytes().size());
+  if (auto checked = counted->check(text, path.string()); !checked) {
     return tl::unexpected(std::move(checked.error()));
   }
-  return std::vector<std::string>();
+  return Warnings();
 }
 
 }  // namespace galactic::bake

@@ -94,19 +94,23 @@ std::uint32_t wordAt(std::span<const std::byte> bytes, std::size_t offset) {
   return word;
 }
 
-/// The JSON of a glTF file: the whole file, or the first chunk of a GLB.
-std::span<const std::byte> jsonPart(std::span<const std::byte> file) {
+constexpr std::size_t kChunkStart = 20;
+
+}  // namespace
+
+bool isGlb(std::span<const std::byte> file) {
   constexpr std::uint32_t kGlbMagic = 0x46546C67;
-  constexpr std::size_t kChunkStart = 20;
-  if (file.size() < kChunkStart || wordAt(file, 0) != kGlbMagic) return file;
+  return file.size() >= kChunkStart && wordAt(file, 0) == kGlbMagic;
+}
+
+std::span<const std::byte> gltfJson(std::span<const std::byte> file) {
+  if (!isGlb(file)) return file;
   const std::size_t length = wordAt(file, 12);
   return file.subspan(kChunkStart, std::min(length, file.size() - kChunkStart));
 }
 
-}  // namespace
-
 GltfRequirements gltfRequirements(std::span<const std::byte> file) {
-  const std::span<const std::byte> json = jsonPart(file);
+  const std::span<const std::byte> json = gltfJson(file);
   const auto* text = reinterpret_cast<const char*>(json.data());
   RequiredExtensions found;
   // The result only tells whether the parse was stopped; broken JSON is the mesh reader's to

@@ -141,7 +141,7 @@ Result<SourceAsset> importMesh(const fs::path& path, const MeshImportOptions& op
   if (auto checked = checkAsset(*asset, path.string()); !checked) {
     return tl::unexpected(checked.error());
   }
-  findTextures(*asset, path);
+  findTextures(*asset, path, options.allow_outside ? Reach::kAnywhere : Reach::kNear);
   if (auto hashed = hashFiles(*asset, path); !hashed) return tl::unexpected(hashed.error());
   warnAboutSize(*asset, options.smallest_size);
   return asset;

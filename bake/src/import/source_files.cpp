@@ -8,6 +8,7 @@
 #include <cctype>
 #include <map>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -41,7 +42,7 @@ bool isFile(const fs::path& path) {
 }
 
 /// The file that `reference` means, if it is there.
-std::optional<fs::path> findReference(const fs::path& folder, std::string reference) {
+std::optional<fs::path> findReference(const fs::path& folder, std::string reference, Reach reach) {
   constexpr std::string_view kFileScheme = "file://";
   if (reference.starts_with(kFileScheme)) reference.erase(0, kFileScheme.size());
   // Exporters leave blanks and carriage returns at the end of MTL lines.
@@ -51,6 +52,8 @@ std::optional<fs::path> findReference(const fs::path& folder, std::string refere
   std::vector<std::string> spellings{reference, withoutUriEscapes(reference)};
   for (std::size_t i = 0; i < 2; ++i) spellings.push_back(withForwardSlashes(spellings[i]));
   for (const std::string& spelling : spellings) {
+    const bool is_near = isBelow(folder / spelling, folder / "..");
+    if (!is_near && reach == Reach::kNear) continue;
     if (isFile(folder / spelling)) return folder / spelling;
   }
   const fs::path name = fs::path(spellings.back()).filename();
@@ -59,6 +62,66 @@ std::optional<fs::path> findReference(const fs::path& folder, std::string refere
     if (isFile(place / name)) return place / name;
   }
   return std::nullopt;
+}
+
+/// The image that belongs to a mesh by its name: that of the mesh or, as Google Scanned Objects
+/// have it, "texture"; beside it, or where Gazebo's models have theirs.
+std::optional<fs::path> namesakeOf(const fs::path& main_input) {
+  const fs::path folder = main_input.parent_path();
+  for (const fs::path& place : {folder, folder / ".." / "materials" / "textures"}) {
+    for (const std::string& stem : {main_input.stem().string(), std::string("texture")}) {
+      for (const char* extension : {".png", ".jpg", ".jpeg"}) {
+        fs::path image = place / (stem + extension);
+        if (isFile(image)) return image;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// How many textures the materials name that are files.
+std::size_t namedTextures(const SourceAsset& asset) {
+  std::set<std::string_view> names;
+  for (const SourceMaterial& material : asset.materials) {
+    const std::string& name = material.base_color_texture;
+    if (!name.empty() && !name.starts_with('*')) names.insert(name);
+  }
+  return names.size();
+}
+
+/// What to draw for the only texture, which is missing: the mesh's namesake. Says so in a warning.
+std::optional<fs::path> substituteFor(const std::string& reference, SourceAsset& asset,
+                                      const fs::path& main_input) {
+  const auto namesake = namesakeOf(main_input);
+  if (!namesake) return std::nullopt;
+  asset.warnings.push_back(fmt::format("texture '{}' is missing: '{}' is drawn instead", reference,
+                                       nameRelativeTo(main_input, *namesake)));
+  return namesake;
+}
+
+/// Gives an OBJ without MTL the mesh's namesake, where there is one. Meshes without texture
+/// coordinates stay as they are.
+void paintWithNamesake(SourceAsset& asset, const fs::path& main_input) {
+  const bool is_obj = asset.format == "Wavefront OBJ";
+  const bool has_coordinates =
+      std::any_of(asset.meshes.begin(), asset.meshes.end(),
+                  [](const SourceMesh& mesh) { return !mesh.uvs.empty(); });
+  // An MTL that was read states what colours there are.
+  const bool has_mtl =
+      std::any_of(asset.files.begin(), asset.files.end(),
+                  [](const SourceFile& file) { return file.name.ends_with(".mtl"); });
+  if (!is_obj || has_mtl || !has_coordinates) return;
+  const auto namesake = namesakeOf(main_input);
+  if (!namesake) return;
+  const std::string name = nameRelativeTo(main_input, *namesake);
+  for (SourceMaterial& material : asset.materials) {
+    material.base_color_texture = name;
+    // What the reader takes for a colour that nobody states is no factor.
+    material.base_color = {1, 1, 1, material.base_color[3]};
+  }
+  asset.files.push_back({.name = name});
+  asset.warnings.push_back(
+      fmt::format("it has no MTL that names a texture: '{}' is drawn on all of it", name));
 }
 
 Result<void> hashFile(SourceFile& file, const fs::path& path) {
@@ -101,14 +164,28 @@ Result<SourceFile> describeFile(const fs::path& path) {
   return file;
 }
 
-void findTextures(SourceAsset& asset, const fs::path& main_input) {
+bool isBelow(const fs::path& file, const fs::path& folder) {
+  const auto plain = [](const fs::path& path) {
+    std::error_code ignored;
+    const fs::path absolute = fs::absolute(path, ignored).lexically_normal();
+    return absolute.has_filename() ? absolute : absolute.parent_path();
+  };
+  const fs::path relative = plain(file).lexically_relative(plain(folder));
+  return !relative.empty() && *relative.begin() != "..";
+}
+
+void findTextures(SourceAsset& asset, const fs::path& main_input, Reach reach) {
   const fs::path folder = main_input.parent_path();
+  const bool only_one = namedTextures(asset) == 1;
   std::map<std::string, std::optional<fs::path>> found;
   for (SourceMaterial& material : asset.materials) {
     const std::string reference = material.base_color_texture;
     if (reference.empty() || reference.starts_with('*')) continue;
     const auto [entry, is_new] = found.try_emplace(reference);
-    if (is_new) entry->second = findReference(folder, reference);
+    if (is_new) entry->second = findReference(folder, reference, reach);
+    if (!entry->second && is_new && only_one) {
+      entry->second = substituteFor(reference, asset, main_input);
+    }
     if (entry->second) {
       material.base_color_texture = nameRelativeTo(main_input, *entry->second);
       if (is_new) asset.files.push_back({.name = material.base_color_texture});
@@ -121,6 +198,7 @@ void findTextures(SourceAsset& asset, const fs::path& main_input) {
                       reference, material.name));
     }
   }
+  if (found.empty()) paintWithNamesake(asset, main_input);
 }
 
 Result<void> hashFiles(SourceAsset& asset, const fs::path& main_input) {

@@ -8,6 +8,12 @@
 
 namespace galactic::bake {
 
+/// Where a file may be that an asset names.
+enum class Reach {
+  kNear,      ///< Below the asset's folder; of textures below the folder above it.
+  kAnywhere,  ///< Wherever it points.
+};
+
 /// `uri` with its escapes (%20) undone.
 [[nodiscard]] std::string withoutUriEscapes(std::string_view uri);
 
@@ -15,11 +21,16 @@ namespace galactic::bake {
 [[nodiscard]] std::string nameRelativeTo(const std::filesystem::path& main_input,
                                          const std::filesystem::path& file);
 
+/// Whether `file` lies in `folder` or below it, as the names say; links are not followed.
+[[nodiscard]] bool isBelow(const std::filesystem::path& file, const std::filesystem::path& folder);
+
 /// Looks for the textures that the materials name, relative to the folder of `main_input`: found
 /// ones join `asset.files` and their materials get the path that was found; of missing ones the
 /// materials get none, with one warning each. Knows %20, backslashes, file:// and absolute paths of
-/// another machine (then the file's name beside the main input counts).
-void findTextures(SourceAsset& asset, const std::filesystem::path& main_input);
+/// another machine (then the file's name beside the main input counts, as it does for files out of
+/// reach). Where the only texture that is named is missing, or an OBJ has no MTL, an image of the
+/// mesh's own name, or "texture", takes its place, with a warning.
+void findTextures(SourceAsset& asset, const std::filesystem::path& main_input, Reach reach);
 
 /// Sorts `asset.files`, main input first, and fills in sizes and XXH3-128 hashes. Fails with kIo
 /// when a file can no longer be read.

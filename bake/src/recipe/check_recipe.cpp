@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "galactic/bake/robot_recipe.h"
-#include "recipe/nearest_name.h"
+#include "galactic/nearest_name.h"
 
 namespace galactic::bake {
 namespace {
@@ -130,6 +130,9 @@ Result<void> RecipeCheck::run() const {
   if (auto checked = checkLink(recipe_.end_effector.link); !checked) return checked;
   if (recipe_.camera) {
     if (auto checked = checkLink(recipe_.camera->link); !checked) return checked;
+  }
+  if (recipe_.laser) {
+    if (auto checked = checkLink(recipe_.laser->link); !checked) return checked;
   }
   for (const RecipeJoint& joint : recipe_.joints) {
     if (auto checked = checkJoint(joint); !checked) return checked;

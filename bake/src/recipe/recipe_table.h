@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "galactic/bake/robot_recipe.h"
-#include "recipe/nearest_name.h"
-#include "recipe/toml_table.h"
+#include "galactic/bake/toml_table.h"
+#include "galactic/nearest_name.h"
 
 namespace galactic::bake {
 

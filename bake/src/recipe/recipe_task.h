@@ -2,9 +2,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "galactic/bake/toml_table.h"
 #include "galactic/option_text.h"
 #include "recipe/recipe_table.h"
-#include "recipe/toml_table.h"
 
 namespace galactic::bake {
 

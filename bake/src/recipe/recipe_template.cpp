@@ -23,6 +23,17 @@ position = [0.2, 0.0, 0.2]      # in the link's frame; default [0, 0, 0]
 rpy_degrees = [0, 20, 0]        # roll, pitch (down is positive), yaw; default [0, 0, 0]
 vertical_fov_degrees = 60
 
+# The planar laser scanner; without this table the robot has none. It scans the plane of its X and Y
+# axes, and its X axis is the middle of its field of view. No joint that moves may carry it.
+[laser]
+link = "laser_link"
+position = [0.0, 0.0, 0.0]      # in the link's frame; default [0, 0, 0]
+rpy_degrees = [0, 0, 0]         # roll, pitch, yaw; default [0, 0, 0]
+fov_degrees = 220
+range = 25.0                    # farthest distance
+min_range = 0.05                # nearest distance; default 0
+noise = 0.02                    # standard deviation of a distance; default 0
+
 # The base: the root link of the URDF, which drives and turns on the ground.
 [base]
 footprint_radius = 0.3          # circle around the root's origin, or:

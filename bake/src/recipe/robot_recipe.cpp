@@ -58,6 +58,8 @@ class RecipeReader {
   }
   void readEndEffector();
   void readCamera();
+  void readLaser();
+  Affine readMount(RecipeTable& table);
   void readBase();
   void readFootprint(RecipeTable& base);
   void readJoints();
@@ -84,19 +86,42 @@ void RecipeReader::readEndEffector() {
   table->finish();
 }
 
+/// Where a sensor sits on its link.
+Affine RecipeReader::readMount(RecipeTable& table) {
+  const std::array<double, 3> zero{};
+  const auto position = table.numbers<3>("position", kCoordinate).value_or(zero);
+  const auto rpy = table.numbers<3>("rpy_degrees", {-360, 360, "degrees"}).value_or(zero);
+  return conjugate(kYUpFromZUp, poseOf(position, rpy), kZUpFromYUp);
+}
+
 void RecipeReader::readCamera() {
   auto table = open(root_, "camera", root_.table("camera"));
   if (!table) return;
   RecipeCamera camera;
   camera.link = table->requiredName("link");
-  const std::array<double, 3> zero{};
-  const auto position = table->numbers<3>("position", kCoordinate).value_or(zero);
-  const auto rpy = table->numbers<3>("rpy_degrees", {-360, 360, "degrees"}).value_or(zero);
-  camera.link_from_camera = conjugate(kYUpFromZUp, poseOf(position, rpy), kZUpFromYUp);
+  camera.link_from_camera = readMount(*table);
   camera.vertical_fov =
       table->requiredNumber("vertical_fov_degrees", {1, 170, "degrees"}) * kRadiansPerDegree;
   table->finish();
   recipe_.camera = std::move(camera);
+}
+
+void RecipeReader::readLaser() {
+  auto table = open(root_, "laser", root_.table("laser"));
+  if (!table) return;
+  RecipeLaser laser;
+  laser.link = table->requiredName("link");
+  laser.link_from_laser = readMount(*table);
+  laser.field_of_view =
+      table->requiredNumber("fov_degrees", {0, 360, "degrees"}) * kRadiansPerDegree;
+  laser.range = table->requiredNumber("range", {0.1, 1000, "m"});
+  laser.least_range = table->number("min_range", {0, 1000, "m"}).value_or(laser.least_range);
+  laser.noise = table->number("noise", {0, 10, "m"}).value_or(laser.noise);
+  if (laser.range > 0 && laser.least_range >= laser.range) {
+    errors_.at(table->line(), "laser.min_range is wanted below laser.range");
+  }
+  table->finish();
+  recipe_.laser = std::move(laser);
 }
 
 void RecipeReader::readFootprint(RecipeTable& base) {
@@ -260,6 +285,7 @@ RobotRecipe RecipeReader::read() {
   recipe_.name = root_.requiredName("name").name;
   readEndEffector();
   readCamera();
+  readLaser();
   readBase();
   readJoints();
   readStartPose();

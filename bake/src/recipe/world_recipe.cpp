@@ -7,9 +7,9 @@
 #include <string_view>
 #include <utility>
 
+#include "galactic/bake/toml_table.h"
 #include "recipe/recipe_table.h"
 #include "recipe/recipe_task.h"
-#include "recipe/toml_table.h"
 
 namespace galactic::bake {
 namespace {

@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "flat_kinematics.h"
+#include "galactic/nearest_name.h"
 #include "group_spheres.h"
 #include "import/affine.h"
 #include "link_geometry.h"
-#include "recipe/nearest_name.h"
 #include "rigid_groups.h"
 #include "self_collision.h"
 #include "sphere_set/check_options.h"
@@ -201,10 +201,20 @@ class RobotBaker {
                                   poseOf(recipe_->camera->link_from_camera),
                                   static_cast<float>(recipe_->camera->vertical_fov)};
     }
+    if (recipe_->laser) baked_.laser = laserOf(*recipe_->laser);
     baked_.base = baseOf(recipe_->base);
     for (const RecipeJoint& joint : recipe_->joints) {
       baked_.controlled_joints.push_back(controlledJoint(joint));
     }
+  }
+
+  [[nodiscard]] RobotLaser laserOf(const RecipeLaser& recipe) const {
+    return {.link = linkIndex(robot_, recipe.link.name),
+            .link_from_laser = poseOf(recipe.link_from_laser),
+            .field_of_view = static_cast<float>(recipe.field_of_view),
+            .least_range = static_cast<float>(recipe.least_range),
+            .range = static_cast<float>(recipe.range),
+            .noise = static_cast<float>(recipe.noise)};
   }
 
   static RobotBase baseOf(const RecipeBase& recipe) {

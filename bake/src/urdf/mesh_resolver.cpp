@@ -145,10 +145,21 @@ MeshResolution MeshResolver::notFound(const std::vector<fs::path>& tried) const 
           .guessed = false};
 }
 
+bool MeshResolver::isInReach(const fs::path& path) const {
+  if (options_.allow_outside || isBelow(path, ancestors_.front() / "..")) return true;
+  const auto is_in = [&](const fs::path& folder) { return isBelow(path, folder); };
+  const auto is_in_package = [&](const auto& package) { return is_in(package.second); };
+  return std::any_of(options_.packages.begin(), options_.packages.end(), is_in_package) ||
+         std::any_of(options_.search_roots.begin(), options_.search_roots.end(), is_in) ||
+         std::any_of(ancestors_.begin(), ancestors_.end(), [&](const fs::path& ancestor) {
+           return isFile(ancestor / "package.xml") && is_in(ancestor);
+         });
+}
+
 MeshResolution MeshResolver::resolvePackage(const std::string& package, const std::string& rest) {
   std::vector<fs::path> tried;
   const auto in = [&](const fs::path& folder, std::string how) -> std::optional<MeshResolution> {
-    if (auto file = fileIn(folder, rest)) {
+    if (auto file = fileIn(folder, rest); file && (isBelow(*file, folder) || isInReach(*file))) {
       return MeshResolution{.file = *file, .how = std::move(how), .guessed = false};
     }
     std::error_code ignored;
@@ -171,7 +182,7 @@ MeshResolution MeshResolver::resolvePackage(const std::string& package, const st
     }
   }
   for (const fs::path& ancestor : ancestors_) {
-    if (auto file = fileIn(ancestor, rest)) {
+    if (auto file = fileIn(ancestor, rest); file && isBelow(*file, ancestor)) {
       return {.file = *file,
               .how = fmt::format("no package '{}'; by its path from above the URDF", package),
               .guessed = true};
@@ -190,11 +201,21 @@ MeshResolution MeshResolver::resolvePackage(const std::string& package, const st
 MeshResolution MeshResolver::resolveRelative(const std::string& reference) const {
   const fs::path path(reference);
   if (path.empty()) return {.file = {}, .how = "a file name, which is empty", .guessed = false};
+  const auto out_of_reach = [this](const fs::path& file) {
+    MeshResolution resolution = notFound({file});
+    resolution.how +=
+        ", which is there, but outside the URDF's folders and packages; give --package "
+        "NAME=DIR or --allow-outside";
+    return resolution;
+  };
   if (path.is_absolute()) {
-    if (auto file = fileIn("/", reference)) return {.file = *file, .how = "absolute path"};
-    return notFound({path.lexically_normal()});
+    const auto file = fileIn("/", reference);
+    if (!file) return notFound({path.lexically_normal()});
+    if (!isInReach(*file)) return out_of_reach(*file);
+    return {.file = *file, .how = "absolute path"};
   }
   if (auto file = fileIn(ancestors_.front(), reference)) {
+    if (!isInReach(*file)) return out_of_reach(*file);
     return {.file = *file, .how = "relative to the URDF"};
   }
   if (*path.begin() != "..") {

@@ -33,6 +33,9 @@ class MeshResolver {
   /// Folders named or described as `package` in the search roots.
   [[nodiscard]] const std::vector<std::filesystem::path>& foldersOf(const std::string& package);
 
+  /// Whether a path that leads anywhere may be followed.
+  [[nodiscard]] bool isInReach(const std::filesystem::path& path) const;
+
   const UrdfImportOptions& options_;
   /// The URDF's folder and its parents, nearest first.
   std::vector<std::filesystem::path> ancestors_;

@@ -145,6 +145,7 @@ Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& fi
   MeshImportOptions mesh_options;
   mesh_options.up = UpAxis::kZ;
   mesh_options.smallest_size = 0;
+  mesh_options.allow_outside = options_.allow_outside;
   auto asset = importMesh(file, mesh_options);
   if (!asset) {
     if (asset.error().code == ErrorCode::kInternal) return tl::unexpected(asset.error());

@@ -249,8 +249,13 @@ Result<std::vector<std::optional<ResolvedMimic>>> resolveMimics(const UrdfModel&
                                         "position (fixed, planar or floating); remove the <mimic>",
                                         leader.name, end->name));
     }
-    if (!std::isfinite(mimic.multiplier) || !std::isfinite(mimic.offset)) {
-      return invalid(place, "the multiplier or offset of its <mimic> is not finite; correct it");
+    // Packs hold no larger ones: no joint follows another a thousand times faster.
+    constexpr double kMost = 1000;
+    if (!(std::abs(mimic.multiplier) <= kMost && std::abs(mimic.offset) <= kMost)) {
+      return invalid(place,
+                     fmt::format("the multiplier {} or offset {} of its <mimic> is not finite "
+                                 "or over {}; correct it",
+                                 mimic.multiplier, mimic.offset, kMost));
     }
     resolved[i] = mimic;
   }

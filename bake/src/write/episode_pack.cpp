@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "galactic/bake/triangle_mesh.h"
 #include "pack_payload.h"
 
 namespace galactic::bake {
@@ -16,9 +17,15 @@ namespace {
 /// What rounding to floats can do to a length of 1, and more.
 constexpr double kUnitTolerance = 5e-4;
 
-bool isFinite(const Vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+/// Angles and joint positions, as readers of packs accept them.
+constexpr float kMostAngle = 1e9F;
+
+bool isPlace(const Vec3& v) {
+  constexpr auto kFarthest = static_cast<float>(kMaxCoordinate);
+  return std::fabs(v.x) <= kFarthest && std::fabs(v.y) <= kFarthest && std::fabs(v.z) <= kFarthest;
 }
+
+bool isAngle(float radians) { return std::fabs(radians) <= kMostAngle; }
 
 bool isRigid(const Pose& pose) {
   const auto square = [](float value) {
@@ -26,7 +33,7 @@ bool isRigid(const Pose& pose) {
   };
   const Quat& q = pose.rotation;
   const double length = std::sqrt(square(q.x) + square(q.y) + square(q.z) + square(q.w));
-  return isFinite(pose.translation) && std::abs(length - 1) <= kUnitTolerance;
+  return isPlace(pose.translation) && std::abs(length - 1) <= kUnitTolerance;
 }
 
 /// Compares episodes with what the schema wants; keeps the first offence.
@@ -77,16 +84,17 @@ class EpisodeCheck {
     require(source_.start_positions.size() == wanted, "start_positions",
             fmt::format("has {} elements, wanted {}, one for each episode and joint",
                         source_.start_positions.size(), wanted));
-    const bool finite = std::all_of(source_.start_positions.begin(), source_.start_positions.end(),
-                                    [](float position) { return std::isfinite(position); });
-    require(finite, "start_positions", "has an element that is not finite");
+    const bool finite =
+        std::all_of(source_.start_positions.begin(), source_.start_positions.end(), isAngle);
+    require(finite, "start_positions",
+            fmt::format("has an element that is not finite or over {}", kMostAngle));
   }
 
   void checkPlacement(std::size_t n) {
     const Placement& placement = source_.placements[n];
     if (placement.object < source_.objects.size() && isRigid(placement.pose)) return;
     require(false, fmt::format("placements[{}]", n),
-            "wanted one of the objects at a finite place with a rotation of length 1");
+            "wanted one of the objects within 800 m with a rotation of length 1");
   }
 
   void checkEpisode(std::size_t n, std::size_t next) {
@@ -102,10 +110,11 @@ class EpisodeCheck {
     require(
         episode.target < episode.placement_count, where + ".target",
         fmt::format("is {}, wanted one of {} placements", episode.target, episode.placement_count));
-    require(isFinite(episode.base_position) && std::isfinite(episode.base_yaw),
-            where + ".base_position", "or the yaw is not finite");
+    require(isPlace(episode.base_position) && isAngle(episode.base_yaw), where + ".base_position",
+            fmt::format("is not within {} m, or the yaw not within {} rad", kMaxCoordinate,
+                        kMostAngle));
     require(isRigid(episode.goal), where + ".goal",
-            "wanted a finite place and a rotation of length 1");
+            "wanted a place within 800 m and a rotation of length 1");
   }
 
   const SourceEpisodes& source_;

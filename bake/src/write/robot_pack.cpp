@@ -62,6 +62,7 @@ struct RecipeTables {
   Offset<schema::EndEffector> end_effector;
   Offset<schema::Camera> camera;
   Offset<schema::Base> base;
+  Offset<schema::Laser> laser;
 };
 
 RecipeTables recipeTables(FlatBufferBuilder& builder, const BakedRobot& robot) {
@@ -87,6 +88,12 @@ RecipeTables recipeTables(FlatBufferBuilder& builder, const BakedRobot& robot) {
     tables.base =
         schema::CreateBase(builder, robot.base->forward_step, robot.base->turn_step,
                            robot.base->root_height, &min, &max, robot.base->footprint_radius);
+  }
+  if (robot.laser) {
+    const schema::Pose pose = toSchema(robot.laser->link_from_laser);
+    tables.laser =
+        schema::CreateLaser(builder, robot.laser->link, &pose, robot.laser->field_of_view,
+                            robot.laser->least_range, robot.laser->range, robot.laser->noise);
   }
   return tables;
 }
@@ -120,7 +127,7 @@ Offset<schema::Robot> robotTable(FlatBufferBuilder& builder, const BakedRobot& r
   return schema::CreateRobot(builder, name, radii, links, link_names, joint_names, limits, start,
                              sphere_vector, group_vector, pair_vector, recipe.controlled_joints,
                              recipe.end_effector, recipe.camera, recipe.base, surfaces,
-                             render_meshes);
+                             render_meshes, recipe.laser);
 }
 
 }  // namespace

@@ -25,6 +25,8 @@ struct CastCheck {
   double ties = 0;
   /// A double-precision distance says that the grid is wrong: must be 0.
   double errors = 0;
+  /// The longest stretch of one column in which the two differ because of the method.
+  double longest = 0;
 };
 
 /// Replays a sample of columns with Bullet and judges each disagreement by the distance to the

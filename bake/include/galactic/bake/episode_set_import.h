@@ -36,7 +36,8 @@ struct EpisodeImportOptions {
   bool centres_needed = false;
   HabitatTargets targets = HabitatTargets::kFirst;
   /// Episode sets: the joints of robotStartJointPositions, which the file counts in the order of
-  /// the collection's actionMap. Default: the published collection's Fetch.
+  /// the collection's actionMap. Default: the published collection's Fetch. Exported sets name
+  /// theirs (`startJoints`).
   std::vector<std::string> start_joints{
       "shoulder_pan_joint", "shoulder_lift_joint", "upperarm_roll_joint", "elbow_flex_joint",
       "forearm_roll_joint", "wrist_flex_joint",    "wrist_roll_joint"};
@@ -50,14 +51,13 @@ struct EpisodeImportOptions {
 /// Reads a published `*.episode_set.json`. An object is named by its render asset, a scene by its
 /// static scene. Quaternions stand as w, x, y, z in the file and are normalised. Objects turn from
 /// their published frame to that of their packs: a point of the object stays where it is in the
-/// world. The robot stands at height 0. Scenes, objects and placements that no kept episode uses
-/// are left out. Names ascend and placements stand in the order of the episodes, as a pack wants
-/// them.
-/// Fails with kIo or kInvalidInput, naming the file and the element, on broken JSON, missing keys,
-/// wrong types, counts and indices out of range, numbers that are not finite or absurdly far,
-/// quaternions that are not of length 1 within 1e-3 (those within 1e-6 are not touched: what was
-/// exported comes back as the same floats), two scenes of one name, a scene to rename or
-/// an episode to keep that is not there.
+/// world. The robot stands at height 0 unless the set, an exported one, says otherwise. Scenes,
+/// objects and placements that no kept episode uses are left out. Names ascend and placements stand
+/// in the order of the episodes, as a pack wants them. Fails with kIo or kInvalidInput, naming the
+/// file and the element, on broken JSON, missing keys, wrong types, counts and indices out of
+/// range, numbers that are not finite or absurdly far, quaternions that are not of length 1 within
+/// 1e-3 (those within 1e-6 are not touched: what was exported comes back as the same floats), two
+/// scenes of one name, a scene to rename or an episode to keep that is not there.
 [[nodiscard]] Result<SourceEpisodes> readEpisodeSet(const std::filesystem::path& path,
                                                     const EpisodeImportOptions& options = {});
 

@@ -22,6 +22,9 @@ struct MeshImportOptions {
   /// Smaller files draw a question about their unit (a warning). Metres; the default is for scenes,
   /// 0 asks never.
   double smallest_size = 0.5;
+  /// Whether what a file names is read wherever it points: without it, files below its folder, and
+  /// textures below the folder above, too.
+  bool allow_outside = false;
   /// The file reader runs in a process of its own, which is stopped after this long and when it
   /// uses more memory than this; so a broken file costs one error message, not the bake.
   std::chrono::seconds time_limit{600};

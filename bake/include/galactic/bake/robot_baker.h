@@ -85,6 +85,7 @@ struct BakedRobot {
   std::optional<EndEffector> end_effector;
   std::optional<RobotCamera> camera;
   std::optional<RobotBase> base;
+  std::optional<RobotLaser> laser;
   /// One per link; empty where a link has none.
   std::vector<Surface> collision_surfaces;
   std::vector<Surface> visual_surfaces;

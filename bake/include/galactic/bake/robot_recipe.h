@@ -38,6 +38,20 @@ struct RecipeCamera {
   double vertical_fov = 0;
 };
 
+/// A planar laser scanner.
+struct RecipeLaser {
+  RecipeName link;
+  /// Rigid. The laser scans the XZ plane of its own frame; +X is the middle of its field of view.
+  Affine link_from_laser{};
+  /// Radians.
+  double field_of_view = 0;
+  /// Metres.
+  double least_range = 0;
+  double range = 0;
+  /// Standard deviation of a distance, metres.
+  double noise = 0;
+};
+
 /// The ground that the base covers, in the root link's frame; metres.
 struct FootprintCircle {
   double radius = 0;
@@ -110,6 +124,7 @@ struct RobotRecipe {
   std::string source;
   RecipeEndEffector end_effector;
   std::optional<RecipeCamera> camera;
+  std::optional<RecipeLaser> laser;
   RecipeBase base;
   /// In the order of the actions.
   std::vector<RecipeJoint> joints;

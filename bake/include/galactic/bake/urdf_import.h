@@ -22,6 +22,9 @@ struct UrdfImportOptions {
   std::vector<std::filesystem::path> search_roots;
   /// A link that lost all its geometry is a warning instead of an error.
   bool allow_missing = false;
+  /// Whether absolute paths, and relative ones that lead upwards, may lead anywhere: without it,
+  /// into packages, and below the folder above the URDF's.
+  bool allow_outside = false;
   /// Up axis of the URDF: kZ, or kY for furniture made for simulators that are Y up.
   UpAxis up = UpAxis::kZ;
   /// The XML is read in a process of its own, which is stopped after this long.

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -27,8 +28,11 @@ struct TomlEntry {
   TomlValue value;
 };
 
-/// The outermost table of a TOML file. Fails with kIo (missing, unreadable or a folder) or
-/// kInvalidInput (broken TOML, with its line; more than 1 MiB).
+/// The outermost table of a text. Fails with kInvalidInput: broken TOML (`where` and its line),
+/// keys of very many parts, more than 1 MiB.
+[[nodiscard]] Result<TomlTable> parseToml(std::string_view text, const std::string& where);
+
+/// The same of a file; fails with kIo, too (missing, unreadable or a folder).
 [[nodiscard]] Result<TomlTable> readToml(const std::filesystem::path& path);
 
 }  // namespace galactic::bake
