@@ -1,0 +1,222 @@
+"""The compiled part of galactic. Its docstrings say what arrays hold; shapes stand beside types."""
+
+import os
+from collections.abc import Iterable, Sequence
+from enum import IntEnum
+from typing import Any, Literal, TypedDict
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+
+class ErrorCode(IntEnum):
+    IO = 2
+    INVALID_INPUT = 3
+    INTERNAL = 4
+    UNSUPPORTED = 5
+
+class EpisodeEnd(IntEnum):
+    NONE = 0
+    SUCCESS = 1
+    WRONG_TERMINATE = 2
+    WRONG_RELEASE = 3
+    WRONG_OBJECT = 4
+    TIME_OUT = 5
+
+_Path = str | os.PathLike[str]
+
+class World:
+    def __init__(self, path: _Path | Sequence[_Path], trusted: bool = False) -> None: ...
+    @property
+    def scenes(self) -> tuple[str, ...]: ...
+    @property
+    def objects(self) -> tuple[str, ...]: ...
+    @property
+    def robot(self) -> str: ...
+    @property
+    def joints(self) -> tuple[str, ...]: ...
+    @property
+    def episodes(self) -> int: ...
+    @property
+    def radii(self) -> tuple[float, ...]: ...
+    @property
+    def options(self) -> dict[str, Any]: ...
+
+class Pose:
+    @property
+    def translation(self) -> NDArray[np.float32]: ...  # (3,)
+    @property
+    def rotation(self) -> NDArray[np.float32]: ...  # (4,): w, x, y, z
+
+class EnvState:
+    @property
+    def scene(self) -> int: ...
+    @property
+    def episode(self) -> int: ...
+    @property
+    def step(self) -> int: ...
+    @property
+    def world_from_root(self) -> Pose: ...
+    @property
+    def joint_positions(self) -> NDArray[np.float32]: ...
+    @property
+    def world_from_grip(self) -> Pose: ...
+    @property
+    def objects(self) -> list[Pose]: ...
+    @property
+    def held(self) -> int | None: ...
+    @property
+    def target(self) -> int: ...
+    @property
+    def goal(self) -> Pose: ...
+
+class Statistics(TypedDict):
+    steps: int
+    refused: int
+    slid: int
+    grasps: int
+    drops: int
+    restored: int
+    episodes: int
+    successes: int
+    failures: int
+    nan_actions: int
+    reward: float
+
+class Simulator:
+    STAYS: int
+    NEXT_EPISODE: int
+    def __init__(
+        self,
+        world: World,
+        *,
+        envs: int = 128,
+        threads: int = 0,
+        seed: int = 1,
+        order: Literal["shuffled", "linear", "partition"] = "shuffled",
+        rank: int = 0,
+        ranks: int = 1,
+        body_transforms: bool = False,
+        auto_reset: bool = True,
+        **options: Any,
+    ) -> None: ...
+    @property
+    def num_envs(self) -> int: ...
+    @property
+    def action_count(self) -> int: ...
+    @property
+    def observation_size(self) -> int: ...
+    @property
+    def observation_parts(self) -> dict[str, slice]: ...
+    @property
+    def thread_count(self) -> int: ...
+    @property
+    def options(self) -> dict[str, Any]: ...
+    @property
+    def skipped_episodes(self) -> list[int]: ...
+    @property
+    def memory_bytes(self) -> int: ...
+    def step(self, actions: ArrayLike, resets: ArrayLike | None = None) -> None: ...
+    def begin_step(self, actions: ArrayLike, resets: ArrayLike | None = None) -> None: ...
+    def end_step(self) -> None: ...
+    def reset(self, episodes: ArrayLike) -> None: ...
+    def restart(self, seed: int) -> None: ...
+    @property
+    def observations(self) -> NDArray[np.float32]: ...  # (num_envs, observation_size)
+    @property
+    def final_observations(self) -> NDArray[np.float32]: ...  # (num_envs, observation_size)
+    @property
+    def rewards(self) -> NDArray[np.float32]: ...  # (num_envs,)
+    @property
+    def dones(self) -> NDArray[np.bool_]: ...  # (num_envs,)
+    @property
+    def successes(self) -> NDArray[np.bool_]: ...  # (num_envs,)
+    @property
+    def endings(self) -> NDArray[np.uint8]: ...  # (num_envs,), of EpisodeEnd
+    def episodes(self, envs: Iterable[int] | None = None) -> NDArray[np.int32]: ...
+    def env_state(self, env: int) -> EnvState: ...
+    def save_state(self, envs: Iterable[int] | None = None) -> bytes: ...
+    def restore_state(self, state: bytes, envs: Iterable[int] | None = None) -> None: ...
+    def statistics(self, env: int | None = None) -> Statistics: ...
+    def sample_phases(self, every: int) -> None: ...
+    def phase_times(self) -> dict[str, float]: ...
+
+class DeviceArray:
+    @property
+    def shape(self) -> tuple[int, ...]: ...
+    def __dlpack__(
+        self,
+        *,
+        stream: int | None = None,
+        max_version: tuple[int, int] | None = None,
+        dl_device: tuple[int, int] | None = None,
+        copy: bool | None = None,
+    ) -> Any: ...
+    def __dlpack_device__(self) -> tuple[int, int]: ...
+
+class Renderer:
+    def __init__(
+        self,
+        simulator: Simulator,
+        *,
+        width: int = 128,
+        height: int = 128,
+        color: Literal["rgb", "rgba"] | None = "rgb",
+        depth: bool = True,
+        semantics: bool = False,
+        camera: str = "head",
+        fov_degrees: float = 0,
+        backend: Literal["auto", "soft", "gl"] = "auto",
+        device: str = "",
+        threads: int = 0,
+    ) -> None: ...
+    def render(
+        self, out: dict[str, NDArray[Any]] | None = None, envs: Iterable[int] | None = None
+    ) -> dict[str, NDArray[Any]]: ...
+    def begin_render(
+        self, out: dict[str, NDArray[Any]] | None = None, envs: Iterable[int] | None = None
+    ) -> None: ...
+    def end_render(self) -> dict[str, NDArray[Any]]: ...
+    def render_to_device(self) -> dict[str, DeviceArray]: ...
+    @property
+    def shapes(self) -> dict[str, tuple[tuple[int, ...], np.dtype[Any]]]: ...
+    @property
+    def backend(self) -> Literal["soft", "gl"]: ...
+    @property
+    def description(self) -> str: ...
+    @property
+    def semantic_names(self) -> tuple[str, ...]: ...
+
+class LearnedPolicy:
+    def __init__(
+        self,
+        path: _Path,
+        envs: int,
+        *,
+        deterministic: bool = False,
+        seed: int = 1,
+        threads: int = 0,
+    ) -> None: ...
+    def act(
+        self,
+        observations: ArrayLike,
+        dones: ArrayLike | None = None,
+        rgb: ArrayLike | None = None,
+        depth: ArrayLike | None = None,
+    ) -> NDArray[np.float32]: ...  # (envs, action_count)
+    def reset(self) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def robot(self) -> str: ...
+    @property
+    def observation(self) -> Any: ...
+    @property
+    def image_size(self) -> tuple[int, int] | None: ...
+    @property
+    def action_count(self) -> int: ...
+
+def write_policy_pack(
+    path: _Path, content: Any, trained_with: Any, source_name: str, source: Any
+) -> None: ...

@@ -1,0 +1,22 @@
+"""What the library refuses."""
+
+from galactic._core import ErrorCode
+
+
+class Error(Exception):
+    """What went wrong and where, in words that one can act on.
+
+    Attributes:
+        code: why, as an ErrorCode.
+        where: the file, element and field, or the option.
+        message: one sentence: what was found, what was wanted, what to do.
+    """
+
+    def __init__(self, code: int, where: str, message: str) -> None:
+        super().__init__(code, where, message)
+        self.code = ErrorCode(code)
+        self.where = where
+        self.message = message
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.message}"

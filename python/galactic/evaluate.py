@@ -1,0 +1,129 @@
+"""Evaluates a policy: `python3 -m galactic.evaluate runs/pick/best.pt world.pack`."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import pathlib
+import sys
+from typing import Optional, Sequence
+
+import torch
+
+import galactic
+from galactic.learning import checkpoint, evaluation, pictures
+from galactic.learning.command import EXIT_CODES, Parser, told
+from galactic.learning.curves import write_json
+from galactic.learning.homes import Homes
+from galactic.learning.settings import SettingsError
+from galactic.learning.trainer import threads_of
+
+
+def make_parser() -> argparse.ArgumentParser:
+    parser = Parser(
+        prog="python3 -m galactic.evaluate",
+        description="Plays each episode of a world once with a policy, and says how well it did.",
+        epilog=EXIT_CODES,
+    )
+    parser.add_argument("policy", type=pathlib.Path, help="best.pt or policy.pt of a run")
+    parser.add_argument("world", type=pathlib.Path, help="world pack")
+    actions = parser.add_mutually_exclusive_group()
+    actions.add_argument(
+        "--sampled", action="store_true", help="actions as in training (this is the default)"
+    )
+    actions.add_argument(
+        "--deterministic", action="store_true", help="the likeliest actions instead"
+    )
+    parser.add_argument("--episodes", type=int, default=0, metavar="N", help="the first N; 0: all")
+    parser.add_argument("--seed", type=int, default=1, help="of sampled actions (1)")
+    parser.add_argument("--threads", type=int, default=0, help="0: one per processor (0)")
+    parser.add_argument(
+        "--report", type=pathlib.Path, metavar="FILE.json", help="write it all there"
+    )
+    shown = parser.add_argument_group("Pictures of successes and failures, from behind the robot")
+    shown.add_argument(
+        "--contact-sheet",
+        type=pathlib.Path,
+        metavar="FILE.png",
+        help="a row for each episode, from start to end",
+    )
+    shown.add_argument(
+        "--video", type=pathlib.Path, metavar="FILE.mp4", help="the same, moving; needs ffmpeg"
+    )
+    shown.add_argument(
+        "--shown", type=int, default=8, metavar="N", help="episodes in the pictures (8)"
+    )
+    return parser
+
+
+def main(arguments: Optional[Sequence[str]] = None) -> int:
+    options = make_parser().parse_args(arguments)
+    return told("galactic.evaluate", lambda: _evaluate(options))
+
+
+def _evaluate(options: argparse.Namespace) -> int:
+    draws = options.contact_sheet or options.video
+    if draws and options.shown < 1:
+        raise SettingsError(f"--shown is {options.shown}; it has to be at least 1")
+    if draws:
+        pictures.require_tools(video=bool(options.video))
+    saved = checkpoint.load_policy(options.policy)
+    threads = threads_of(options.threads, 1)
+    torch.set_num_threads(threads)
+    world = galactic.World(options.world)
+    settings = dataclasses.replace(
+        saved.settings,
+        envs=max(1, min(evaluation.MOST_ENVS, options.episodes or world.episodes)),
+        halves=1,
+        mini_batches=1,
+        seed=options.seed,
+    )
+    homes = Homes(world, settings, threads)
+    if homes.parts != saved.parts:
+        raise checkpoint.CheckpointError(
+            f"{options.policy} was trained on observations of {_sizes(saved.parts)}, and "
+            f"{options.world} gives {_sizes(homes.parts)}; evaluate it on worlds with the same robot"
+        )
+    episodes = homes.playable_episodes()[: options.episodes or None]
+    actor = evaluation.Actor(saved.policy, deterministic=options.deterministic, seed=options.seed)
+    results = evaluation.Evaluator(homes, actor).play(episodes)
+    homes.close()
+    summary = evaluation.summary(results)
+    print(_text(summary))
+    if options.report:
+        contents = {
+            "policy": str(options.policy),
+            "world": str(options.world),
+            "trained_steps": saved.steps,
+            "deterministic": options.deterministic,
+            "seed": options.seed,
+            **summary,
+        }
+        write_json(options.report, contents)
+    if draws and results:
+        chosen = pictures.choose(results, options.shown)
+        films = pictures.film(world, settings, actor, chosen, threads)
+        if options.contact_sheet:
+            pictures.write_contact_sheet(films, options.contact_sheet)
+        if options.video:
+            pictures.write_video(films, options.video)
+    return 0
+
+
+def _sizes(parts: Sequence[tuple[str, int]]) -> str:
+    return ", ".join(f"{name} ({size})" for name, size in parts)
+
+
+def _text(summary: dict[str, object]) -> str:
+    lines = []
+    for name, value in summary.items():
+        if name == "each":
+            continue
+        shown = f"{value:.4g}" if isinstance(value, float) else json.dumps(value)
+        lines.append(f"{name:10} {shown}")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

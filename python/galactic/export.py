@@ -1,0 +1,281 @@
+"""Makes a policy pack of a trained policy: `python3 -m galactic.export runs/pick/best.pt -o picker.pack`.
+
+The pack is played without Python and torch, by `galactic-run --policy picker.pack` or
+galactic.LearnedPolicy. docs/policies.md tells what is in it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import pathlib
+import sys
+from typing import Any, Optional, Sequence
+
+import numpy as np
+import torch
+from torch import nn
+
+import galactic
+from galactic import _core
+from galactic.learning import checkpoint
+from galactic.learning.distributions import DECISIONS, HIGHEST_LOG_STD, LOWEST_LOG_STD
+from galactic.learning.homes import simulation_keywords
+from galactic.learning.networks import (
+    FARTHEST,
+    IMAGE_SIZE,
+    ActorHead,
+    Encoder,
+    Policy,
+    RecurrentPolicy,
+    ResidualBlock,
+    ResNet,
+    SimpleCNN,
+    SpaceToDepth,
+    StateEncoder,
+    StatePolicy,
+)
+from galactic.learning.normalization import MOST
+from galactic.learning.settings import SettingsError
+
+
+class ExportError(Exception):
+    """A module that no layer of a policy pack can say: names it and what is wanted."""
+
+
+class Layers:
+    """The layers of a pack, in order. Every method adds some and returns the number of the last."""
+
+    def __init__(self) -> None:
+        self.list: list[dict[str, Any]] = []
+
+    def add(self, kind: str, *inputs: int, **fields: Any) -> int:
+        """A layer of the kinds of schema/policy.fbs, in snake_case without "Layer"."""
+        self.list.append({"kind": kind, "inputs": list(inputs), **fields})
+        return len(self.list) - 1
+
+    def module(self, module: nn.Module, x: int) -> int:
+        """What a module of torch makes of value `x`."""
+        if isinstance(module, nn.Sequential):
+            for part in module:
+                x = self.module(part, x)
+            return x
+        if isinstance(module, nn.Linear):
+            weight, bias = _numbers(module.weight), _numbers(module.bias)
+            return self.add("linear", x, outputs=module.out_features, weight=weight, bias=bias)
+        if isinstance(module, nn.Conv2d):
+            return self._convolution(module, x)
+        if isinstance(module, nn.AvgPool2d):
+            return self._average_pool(module, x)
+        if isinstance(module, (nn.GroupNorm, nn.LayerNorm)):
+            return self._norm(module, x)
+        if isinstance(module, nn.ReLU):
+            return self.add("relu", x)
+        if isinstance(module, nn.Tanh):
+            return self.add("tanh", x)
+        if isinstance(module, SpaceToDepth):
+            return self.add("space_to_depth", x, block=module.block)
+        if isinstance(module, ResidualBlock):
+            both = self.add("sum", self.module(module.layers, x), self.module(module.around, x))
+            return self.add("relu", both)
+        if isinstance(module, nn.Flatten):
+            return x  # linear layers read images as vectors, in the same order
+        raise ExportError(f"a policy pack has no layer for {module}")
+
+    def gru(self, gru: nn.GRU, x: int) -> int:
+        if gru.num_layers != 1 or gru.bidirectional or not gru.bias:
+            raise ExportError(f"{gru} is not one layer in one direction, with biases")
+        return self.add(
+            "gru",
+            x,
+            size=gru.hidden_size,
+            input_weight=_numbers(gru.weight_ih_l0),
+            state_weight=_numbers(gru.weight_hh_l0),
+            input_bias=_numbers(gru.bias_ih_l0),
+            state_bias=_numbers(gru.bias_hh_l0),
+        )
+
+    def seen(self, policy: Policy, state: int, size: int) -> int:
+        """The state, of `size` numbers, as the encoder reads it."""
+        normal = state
+        if policy.normalize is not None:
+            mean, scale = _numbers(policy.normalize.mean), _numbers(policy.normalize.scale)
+            normal = self.add("normalize", state, mean=mean, inverse_deviation=scale, limit=MOST)
+        if policy.closeup is None:
+            return normal
+        larger = self.add(
+            "normalize",
+            state,
+            mean=np.zeros(size, np.float32),
+            inverse_deviation=np.full(size, 1.0 / policy.closeup.scale, np.float32),
+            limit=float(np.finfo(np.float32).max),
+        )
+        return self.add("concatenate", normal, self.add("tanh", larger))
+
+    def encoder(self, encoder: Encoder, seen: int) -> int:
+        if isinstance(encoder, StateEncoder):
+            return self.module(encoder.layers, seen)
+        if isinstance(encoder, SimpleCNN):
+            image = self.module(encoder.visual, self.add("image"))
+            return self.add("concatenate", image, seen)
+        if isinstance(encoder, ResNet):
+            image = self.module(encoder.visual, self.add("image"))
+            felt = self.module(encoder.state, seen)
+            before = self.module(encoder.previous, self.add("previous_action"))
+            return self.add("concatenate", image, felt, before)
+        raise ExportError(f"the encoder {type(encoder).__name__} is unknown")
+
+    def _convolution(self, module: nn.Conv2d, x: int) -> int:
+        kernel, stride, padding = _edge(module.kernel_size), _edge(module.stride), module.padding
+        plain = module.groups == 1 and _edge(module.dilation) == 1
+        if not plain or isinstance(padding, str) or module.padding_mode != "zeros":
+            raise ExportError(f"{module} has groups, gaps or a border that is not zeros")
+        return self.add(
+            "convolution",
+            x,
+            outputs=module.out_channels,
+            kernel=kernel,
+            stride=stride,
+            padding=_edge(padding),
+            weight=_numbers(module.weight),
+            bias=_numbers(module.bias),
+        )
+
+    def _average_pool(self, module: nn.AvgPool2d, x: int) -> int:
+        if module.ceil_mode or not module.count_include_pad or module.divisor_override:
+            raise ExportError(f"{module} does not count zeros around the image")
+        kernel, stride = _edge(module.kernel_size), _edge(module.stride)
+        padding = _edge(module.padding)
+        return self.add("average_pool", x, kernel=kernel, stride=stride, padding=padding)
+
+    def _norm(self, module: Any, x: int) -> int:
+        if module.weight is None or module.bias is None:
+            raise ExportError(f"{module} has no weights")
+        fields = {
+            "epsilon": module.eps,
+            "weight": _numbers(module.weight),
+            "bias": _numbers(module.bias),
+        }
+        if isinstance(module, nn.GroupNorm):
+            return self.add("group_norm", x, groups=module.num_groups, **fields)
+        return self.add("layer_norm", x, **fields)
+
+
+def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dict[str, Any]:
+    """A saved policy as write_policy_pack() wants it. The critic is left out."""
+    policy = saved.policy
+    layers = Layers()
+    seen = layers.seen(policy, layers.add("observation"), saved.shape.state)
+    if isinstance(policy, StatePolicy):
+        features = layers.module(policy.encoder, seen)
+    elif isinstance(policy, RecurrentPolicy):
+        features = layers.gru(policy.rnn, layers.encoder(policy.encoder, seen))
+    else:
+        raise ExportError(f"the policy {type(policy).__name__} is unknown")
+    actions = _actions(layers, policy.action, features)
+    return {
+        "name": name,
+        "robot": robot,
+        "options": simulation_keywords(saved.settings.simulation),
+        "observation": saved.parts,
+        "image": _image() if policy.needs_images else None,
+        "layers": layers.list,
+        **actions,
+    }
+
+
+def _actions(layers: Layers, head: ActorHead, features: int) -> dict[str, Any]:
+    motions = head.motions
+    rows = layers.module(head.linear, features)
+    mean = layers.add("tanh", layers.add("slice", rows, first=0, size=motions))
+    if head.log_std is None:
+        given = layers.add("slice", rows, first=motions, size=motions)
+    else:
+        given = layers.add("constant", values=_numbers(head.log_std))
+    log_std = layers.add("clamp", given, lower=LOWEST_LOG_STD, upper=HIGHEST_LOG_STD)
+    first = head.linear.out_features - 2 * DECISIONS
+    discrete = []
+    for decision in range(DECISIONS):
+        logits = layers.add("slice", rows, first=first + 2 * decision, size=2)
+        # Where the task does not ask for it, nobody terminates.
+        is_decided = decision + 1 < DECISIONS or head.decides_terminate
+        discrete.append({"logits": logits, "values": [0.0, 1.0] if is_decided else [0.0, 0.0]})
+    continuous = {"count": motions, "mean": mean, "log_deviation": log_std}
+    return {"continuous": continuous, "discrete": discrete}
+
+
+def _image() -> dict[str, Any]:
+    return {
+        "width": IMAGE_SIZE,
+        "height": IMAGE_SIZE,
+        "color": True,
+        "color_scale": 1.0 / 255.0,
+        "depth": True,
+        "depth_limit": FARTHEST,
+        "depth_scale": 1.0 / FARTHEST,
+        "camera": "head",
+        "vertical_fov": 0.0,
+    }
+
+
+def _numbers(tensor: Optional[torch.Tensor]) -> Optional[np.ndarray]:
+    return None if tensor is None else tensor.detach().float().cpu().numpy()
+
+
+def _edge(size: Any) -> int:
+    """The edge of a square."""
+    if isinstance(size, tuple):
+        if len(set(size)) != 1:
+            raise ExportError(f"{size} is no square")
+        return int(size[0])
+    return int(size)
+
+
+def write(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str = "") -> None:
+    """Reads the checkpoint `file` and writes the policy pack `output`."""
+    saved = checkpoint.load_policy(file)
+    trained_with = {
+        field.replace("_", "-"): value for field, value in saved.settings.to_dict().items()
+    }
+    trained_with["trained-steps"] = saved.steps
+    trained_with["success"] = saved.success
+    content = content_of(saved, name or output.stem, robot)
+    _core.write_policy_pack(output, content, trained_with, file.name, file.read_bytes())
+
+
+def make_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python3 -m galactic.export",
+        description="Makes a policy pack of a trained policy, for galactic-run --policy.",
+        epilog="Exit codes: 0 ok, 1 command line, 2 file, 3 invalid input.",
+    )
+    parser.add_argument("policy", type=pathlib.Path, help="best.pt or policy.pt of a run")
+    parser.add_argument(
+        "-o", "--output", type=pathlib.Path, required=True, metavar="FILE.pack", help="the pack"
+    )
+    parser.add_argument("--name", default="", help="of the policy (the pack's file name)")
+    parser.add_argument(
+        "--robot", default="", help="the only robot that it may move (any with as many actions)"
+    )
+    return parser
+
+
+def main(arguments: Optional[Sequence[str]] = None) -> int:
+    options = make_parser().parse_args(arguments)
+    try:
+        write(options.policy, options.output, options.name, options.robot)
+    except galactic.Error as error:
+        return _refuse(error, int(error.code))
+    except (checkpoint.CheckpointError, ExportError, SettingsError) as error:
+        return _refuse(error, 3)
+    except OSError as error:
+        return _refuse(error, 2)
+    return 0
+
+
+def _refuse(error: Exception, code: int) -> int:
+    print(f"galactic.export: {error}", file=sys.stderr)
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,252 @@
+"""A simulator, its cameras, and the sums of its episodes: what a VectorEnv has once, or twice to take turns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galactic import spaces
+from galactic._core import EpisodeEnd, Renderer, Simulator, World
+
+Array = NDArray[Any]
+Observations = Union[Array, dict[str, Array]]
+#: Observations, rewards, terminations, truncations, infos.
+StepResult = tuple[Observations, Array, Array, Array, dict[str, Any]]
+
+# Plain numbers: numpy compares them faster than members of an enum.
+_SUCCESS = int(EpisodeEnd.SUCCESS)
+_TIME_OUT = int(EpisodeEnd.TIME_OUT)
+
+
+class HalfBatch:
+    """Envs that step together, and what Gymnasium wants to know about each step of theirs.
+
+    Args:
+        world: where they are.
+        options: of their Simulator.
+        by_parts: whether the state is observed part by part.
+        images: options of their Renderer, None for no images.
+        copy: whether results are arrays of their own, and no views.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        options: dict[str, Any],
+        *,
+        by_parts: bool,
+        images: Mapping[str, Any] | None,
+        copy: bool,
+    ) -> None:
+        # With images, envs wait where their episodes ended until that has been drawn.
+        self.simulator = Simulator(world, **options, auto_reset=images is None)
+        self._renderer = None if images is None else Renderer(self.simulator, **images)
+        self._image_shapes = {} if self._renderer is None else self._renderer.shapes
+        self._copy = copy
+        self._parts = self.simulator.observation_parts if by_parts else None
+        envs = self.simulator.num_envs
+        self._returns = np.zeros(envs, np.float64)
+        self._lengths = np.zeros(envs, np.int64)
+        self._episodes = self.simulator.episodes()
+        self._is_new = True
+        self._images = {
+            name: np.zeros((envs, *shape), dtype)
+            for name, (shape, dtype) in self._image_shapes.items()
+            if not copy
+        }
+
+    @property
+    def observation_space(self) -> spaces.Space:
+        """Of one env."""
+        size = self.simulator.observation_size
+        if self._parts is None and self._renderer is None:
+            return _unbounded(size)
+        parts = {"state": slice(0, size)} if self._parts is None else self._parts
+        named = {name: _unbounded(part.stop - part.start) for name, part in parts.items()}
+        images = {name: _image(shape, dtype) for name, (shape, dtype) in self._image_shapes.items()}
+        return spaces.Dict({**named, **images})
+
+    def landing_shapes(self) -> dict[str, tuple[tuple[int, ...], Any]]:
+        """What step() can write to: shape, without the env's axis, and type."""
+        return {
+            "state": ((self.simulator.observation_size,), np.float32),
+            **self._image_shapes,
+            "rewards": ((), np.float32),
+            "terminations": ((), np.bool_),
+            "truncations": ((), np.bool_),
+            "endings": ((), np.uint8),
+        }
+
+    def reset(
+        self, seed: int | None, mask: NDArray[np.bool_], episodes: NDArray[np.int32] | None
+    ) -> None:
+        """See VectorEnv.reset."""
+        if seed is not None:
+            self.simulator.restart(seed)
+        untouched = self._is_new or seed is not None
+        self._is_new = False
+        if episodes is not None or not untouched:
+            next_one = Simulator.NEXT_EPISODE
+            chosen = np.full(len(mask), next_one, np.int32) if episodes is None else episodes
+            chosen = np.where(chosen < 0, Simulator.STAYS if untouched else next_one, chosen)
+            self.simulator.reset(np.where(mask, chosen, Simulator.STAYS))
+        self._returns[mask] = 0
+        self._lengths[mask] = 0
+        self._episodes = self.simulator.episodes()
+
+    def observe(self, out: Mapping[str, Array] | None = None) -> Observations:
+        """What all envs see now."""
+        images = self._draw(out)
+        return self._observed(self._landed("state", self.simulator.observations, out), images)
+
+    def save_state(self) -> dict[str, Array]:
+        """Arrays that restore_state() takes."""
+        state = np.frombuffer(self.simulator.save_state(), np.uint8)
+        return {"simulator": state, "returns": self._returns, "lengths": self._lengths}
+
+    def restore_state(self, saved: Mapping[str, Array]) -> None:
+        """Goes on from there. Raises Error for a state that does not fit, and changes nothing."""
+        for name, mine in (("returns", self._returns), ("lengths", self._lengths)):
+            if saved[name].shape != mine.shape or saved[name].dtype != mine.dtype:
+                raise ValueError(f"{name} are {saved[name].dtype} {saved[name].shape}")
+        self.simulator.restore_state(saved["simulator"].tobytes())
+        self._returns[:] = saved["returns"]
+        self._lengths[:] = saved["lengths"]
+        self._episodes = self.simulator.episodes()
+        self._is_new = False
+
+    def step(self, actions: NDArray[np.float32], out: Mapping[str, Array] | None) -> StepResult:
+        """See VectorEnv.step."""
+        if out is not None:
+            _check_places(out, self.landing_shapes(), self.simulator.num_envs)
+        simulator = self.simulator
+        simulator.step(actions)
+        self._is_new = False
+        endings = self._landed("endings", simulator.endings, out)
+        rewards = self._landed("rewards", simulator.rewards, out)
+        truncations = self._landed("truncations", endings == _TIME_OUT, out, True)
+        ended = endings != 0
+        terminations = self._landed("terminations", ended & ~truncations, out, True)
+        self._returns += rewards
+        self._lengths += 1
+        images = self._draw(out)
+        infos = self._finish(ended, endings, images) if ended.any() else {}
+        observations = self._observed(self._landed("state", simulator.observations, out), images)
+        return observations, rewards, terminations, truncations, infos
+
+    def _landed(
+        self, name: str, values: Array, out: Mapping[str, Array] | None, is_own: bool = False
+    ) -> Array:
+        """Values where the caller wants them, or as an array of their own unless they are one."""
+        if out is not None and name in out:
+            np.copyto(out[name], values, casting="no")
+            return out[name]
+        return values.copy() if self._copy and not is_own else values
+
+    def _draw(self, out: Mapping[str, Array] | None) -> dict[str, Array]:
+        """The images of all envs: in the caller's arrays, kept ones, or new ones."""
+        if self._renderer is None:
+            return {}
+        given = {name: out[name] for name in self._image_shapes if name in out} if out else {}
+        return self._renderer.render({**self._images, **given})
+
+    def _observed(self, state: Array, images: Mapping[str, Array]) -> Observations:
+        if self._parts is None:
+            return {"state": state, **images} if images else state
+        return {**{name: state[..., part] for name, part in self._parts.items()}, **images}
+
+    def _renew(self, which: NDArray[np.intp], images: dict[str, Array]) -> Observations:
+        """The last observations of the envs `which` ended an episode; they are in the next one then,
+        in `images`, too."""
+        if self._renderer is None:
+            return self._observed(self.simulator.final_observations[which], {})
+        last = self._observed(
+            self.simulator.observations[which], {name: all[which] for name, all in images.items()}
+        )
+        begins = np.full(self.simulator.num_envs, Simulator.STAYS, np.int32)
+        begins[which] = Simulator.NEXT_EPISODE
+        self.simulator.reset(begins)
+        for name, drawn in self._renderer.render(envs=which).items():
+            images[name][which] = drawn
+        return last
+
+    def _finish(
+        self, ended: NDArray[np.bool_], endings: Array, images: dict[str, Array]
+    ) -> dict[str, Any]:
+        """The infos of a step in which episodes ended; their sums begin anew."""
+        which = np.flatnonzero(ended)
+        last = self._renew(which, images)
+        final_obs = np.full(len(ended), None, object)
+        for row, env in enumerate(which):
+            final_obs[env] = _row(last, row)
+        episode = {
+            "r": _only(self._returns, which, np.float32),
+            "_r": ended,
+            "l": _only(self._lengths, which, np.int64),
+            "_l": ended,
+        }
+        final_info = {
+            "episode": episode,
+            "_episode": ended,
+            "ending": endings.copy(),
+            "_ending": ended,
+            "success": endings == _SUCCESS,
+            "_success": ended,
+            "episode_index": _only(self._episodes, which, np.int32, -1),
+            "_episode_index": ended,
+        }
+        self._returns[which] = 0
+        self._lengths[which] = 0
+        self._episodes[which] = self.simulator.episodes(which)
+        return {
+            "final_obs": final_obs,
+            "_final_obs": ended,
+            "final_info": final_info,
+            "_final_info": ended,
+            "episode": episode,
+            "_episode": ended,
+        }
+
+
+def _only(values: Array, which: NDArray[np.intp], dtype: Any, other: int = 0) -> Array:
+    """The values of some envs, and `other` for the rest."""
+    result = np.full(len(values), other, dtype)
+    result[which] = values[which]
+    return result
+
+
+def _unbounded(size: int) -> spaces.Space:
+    return spaces.Box(-np.inf, np.inf, (size,), np.float32)
+
+
+def _image(shape: tuple[int, ...], dtype: Any) -> spaces.Space:
+    if np.issubdtype(dtype, np.floating):
+        return spaces.Box(0.0, np.inf, shape, np.float32)
+    return spaces.Box(0, np.iinfo(dtype).max, shape, dtype)
+
+
+def _row(observations: Observations, row: int) -> Any:
+    if isinstance(observations, dict):
+        return {name: values[row] for name, values in observations.items()}
+    return observations[row]
+
+
+def _check_places(
+    out: Mapping[str, Array], known: Mapping[str, tuple[tuple[int, ...], Any]], envs: int
+) -> None:
+    """Refuses places that results cannot land in, before anything is done."""
+    for name, place in out.items():
+        if name not in known:
+            raise ValueError(f"out has no place for {name!r}; wanted any of {list(known)}")
+        shape, dtype = known[name]
+        if not isinstance(place, np.ndarray) or place.dtype != dtype:
+            found = getattr(place, "dtype", type(place).__name__)
+            raise TypeError(f"{name} has the type {found}, wanted {np.dtype(dtype)}")
+        if place.shape != (envs, *shape):
+            raise ValueError(f"{name} has the shape {place.shape}, wanted {(envs, *shape)}")
+        if not place.flags.c_contiguous or not place.flags.writeable:
+            fault = "read-only" if place.flags.c_contiguous else "not contiguous"
+            raise ValueError(f"{name} is {fault}; results are written in place")

@@ -1,0 +1,185 @@
+"""Checkpoints: files that appear whole or not at all.
+
+A run's folder holds
+
+    settings.json                    what the run is
+    checkpoints/000001048576/        after so many steps: the latest few
+        policy.pt                    networks and settings: see load_policy()
+        trainer.pt                   optimizer, counters, curves
+        rank-0.pt, rank-1.pt ...     envs, memories and episodes of each rank
+    best.pt                          the policy.pt that did best
+    curves.csv, curves.html          written while it runs
+
+A .pt file is a dictionary that `torch.load(..., weights_only=True)` reads: tensors under their names,
+and under "values" a JSON text with all else (torch 1.13 reads no plain floats that way). In policy.pt:
+
+    policy      the network's state_dict
+    values      format    1
+                settings  Settings.to_dict()
+                shape     PolicyShape._asdict()
+                parts     names and sizes of the parts of an observation, in order: [[name, size], ...]
+                steps     steps of training
+                success   success rate by which it was judged, or null
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import shutil
+from dataclasses import dataclass
+from typing import Any, Callable, Optional
+
+import torch
+
+from galactic.learning.networks import Policy, PolicyShape, make_policy
+from galactic.learning.settings import Settings
+
+FORMAT = 1
+
+
+class CheckpointError(Exception):
+    """A file that is no checkpoint of this version: says which, what was found, what to do."""
+
+
+@dataclass
+class SavedPolicy:
+    """A policy as it was saved. `parts`: names and sizes of the parts of its observations."""
+
+    policy: Policy
+    settings: Settings
+    shape: PolicyShape
+    parts: list[tuple[str, int]]
+    steps: int
+    success: Optional[float]
+
+
+def new_policy(settings: Settings, shape: PolicyShape) -> Policy:
+    """The policy that the settings describe, with weights from torch's global random stream."""
+    free = settings.log_std == "parameter"
+    return make_policy(
+        settings.network,
+        shape,
+        recurrent=settings.recurrent,
+        width=settings.width,
+        layers=settings.layers,
+        activation=settings.activation,
+        initial_log_std=settings.initial_log_std if free else None,
+    )
+
+
+def save_policy(saved: SavedPolicy, file: pathlib.Path) -> None:
+    """Writes a policy.pt, atomically."""
+    values = {
+        "format": FORMAT,
+        "settings": saved.settings.to_dict(),
+        "shape": saved.shape._asdict(),
+        "parts": [list(part) for part in saved.parts],
+        "steps": saved.steps,
+        "success": saved.success,
+    }
+    save(file, values, {"policy": saved.policy.state_dict()})
+
+
+def load_policy(file: pathlib.Path) -> SavedPolicy:
+    """Reads a policy.pt or best.pt; the policy is on the processor, ready to act."""
+    values, tensors = load(file)
+    if values.get("format") != FORMAT or "policy" not in tensors:
+        raise CheckpointError(
+            f"{file} is no policy of format {FORMAT}; take best.pt or a policy.pt of a run"
+        )
+    settings = Settings.from_dict(values["settings"])
+    shape = PolicyShape(**values["shape"])
+    policy = new_policy(settings, shape)
+    policy.load_state_dict(tensors["policy"])
+    policy.eval()
+    parts = [(str(name), int(size)) for name, size in values["parts"]]
+    return SavedPolicy(policy, settings, shape, parts, values["steps"], values["success"])
+
+
+def load(file: pathlib.Path) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Values and tensors of a file. One that wants to run code is refused."""
+    try:
+        contents = torch.load(file, map_location="cpu", weights_only=True)
+        return json.loads(contents.pop("values")), contents
+    except FileNotFoundError:
+        raise CheckpointError(f"{file} is not there") from None
+    except Exception as error:  # torch raises whatever its readers do
+        raise CheckpointError(f"{file} cannot be read as a checkpoint: {error}") from error
+
+
+def write_atomically(file: pathlib.Path, write: Callable[[Any], object], mode: str = "wb") -> None:
+    """Calls write(handle) on a temporary file that then takes the name `file`: readers, and whoever
+    comes after a crash, find the old contents or the new ones."""
+    temporary = file.with_name(f".{file.name}.{os.getpid()}")
+    encoding = None if "b" in mode else "utf-8"
+    try:
+        with open(temporary, mode, encoding=encoding) as handle:
+            write(handle)
+            handle.flush()
+            os.fsync(handle.fileno())
+        os.replace(temporary, file)
+    finally:
+        temporary.unlink(missing_ok=True)
+    _sync_folder(file.parent)
+
+
+def save(file: pathlib.Path, values: dict[str, Any], tensors: dict[str, Any]) -> None:
+    """Writes what load() reads, atomically."""
+    contents = {"values": json.dumps(values), **tensors}
+    write_atomically(file, lambda handle: torch.save(contents, handle))
+
+
+class CheckpointFolder:
+    """The checkpoints of a run. Ranks write into a folder that has its name only when all are done."""
+
+    def __init__(self, run: pathlib.Path, keep: int):
+        self.run = run
+        self.folder = run / "checkpoints"
+        self._keep = keep
+
+    def begin(self, steps: int) -> pathlib.Path:
+        """The folder to write into, for all ranks; the first one calls this before the others write."""
+        unfinished = self._unfinished(steps)
+        shutil.rmtree(unfinished, ignore_errors=True)
+        unfinished.mkdir(parents=True)
+        return unfinished
+
+    def unfinished(self, steps: int) -> pathlib.Path:
+        return self._unfinished(steps)
+
+    def finish(self, steps: int) -> pathlib.Path:
+        """Gives it its name and deletes the oldest; the first rank calls this when all have written."""
+        final = self.folder / f"{steps:012d}"
+        shutil.rmtree(final, ignore_errors=True)
+        os.replace(self._unfinished(steps), final)
+        _sync_folder(self.folder)
+        for old in self.complete()[: -self._keep]:
+            shutil.rmtree(old, ignore_errors=True)
+        return final
+
+    def complete(self) -> list[pathlib.Path]:
+        """All that are whole, the oldest first."""
+        if not self.folder.is_dir():
+            return []
+        return sorted(path for path in self.folder.iterdir() if path.name.isdigit())
+
+    def latest(self) -> pathlib.Path:
+        complete = self.complete()
+        if not complete:
+            raise CheckpointError(
+                f"{self.folder} holds no checkpoint to go on from; begin the run without --resume"
+            )
+        return complete[-1]
+
+    def _unfinished(self, steps: int) -> pathlib.Path:
+        return self.folder / f".{steps:012d}.unfinished"
+
+
+def _sync_folder(folder: pathlib.Path) -> None:
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,273 @@
+"""Fills rollouts: the policy acts, the environments step, half a batch each in turn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, Optional
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from galactic.learning.environments import Environments, Observation, Timeouts
+from galactic.learning.networks import Inputs, Policy
+from galactic.learning.noise import action_noise
+from galactic.learning.precision import Precision
+from galactic.learning.rollout import Rollout
+from galactic.learning.stopwatch import Stopwatch
+
+
+@dataclass
+class EpisodeSums:
+    """Of the episodes that ended in one rollout."""
+
+    episodes: float = 0.0
+    successes: float = 0.0
+    returns: float = 0.0
+    lengths: float = 0.0
+
+
+@dataclass(frozen=True)
+class CollectorOptions:
+    """`first_env`: number over all ranks of this rank's first env."""
+
+    horizon: int
+    seed: int
+    gamma: float
+    first_env: int = 0
+
+
+class Collector:
+    """Steps `envs` with `policy`. Keeps one rollout, which every collect() fills anew, and what has to
+    outlive it: memories, actions before, and the sums of the episodes under way."""
+
+    PHASES = ("inference", "sending", "simulation", "post-processing")
+    """What the stopwatch measures of a rollout; "simulation" is what is waited for it."""
+
+    def __init__(self, envs: Environments, policy: Policy, options: CollectorOptions,
+                 precision: Precision, device: torch.device):  # fmt: skip
+        self.envs = envs
+        self.policy = policy
+        self.options = options
+        self.precision = precision
+        self.device = device
+        self.episodes = EpisodeSums()
+        self.stopwatch = Stopwatch()
+        self.rollout = Rollout.empty(
+            options.horizon,
+            envs.count,
+            envs.state_size,
+            envs.motions + 2,
+            envs.image_size,
+            policy.hidden_size,
+            device,
+        )
+        self._hidden = policy.initial_hidden(envs.count, device)
+        self._returns = np.zeros(envs.count, np.float64)
+        self._lengths = np.zeros(envs.count, np.int64)
+        self._timeouts: list[_Timeout] = []
+
+    def reset(self) -> None:
+        """Starts all envs on their first episodes."""
+        self.envs.reset(self._row(0, slice(None)))
+        self.rollout.starts[0] = True
+
+    def collect(
+        self, update: int, should_stop: Callable[[int], bool] = lambda step: False
+    ) -> Rollout:
+        """Goes on from where the last rollout ended, for `horizon` steps or until should_stop(step).
+        `update` counts from 0 and chooses the random numbers. The rollout is ready for the learner,
+        and overwritten by the next call."""
+        options, rollout = self.options, self.rollout
+        if rollout.steps:
+            self._begin_again()
+        self.episodes = EpisodeSums()
+        self._timeouts.clear()
+        with self.stopwatch.time("post-processing"):
+            noise = self._noise(update)
+        self.policy.eval()
+        with torch.inference_mode():
+            step = 0
+            while step < options.horizon and not should_stop(step):
+                for half, envs in enumerate(self.envs.halves):
+                    if step > 0:
+                        self._receive(half, envs, step - 1)
+                    self._act(half, envs, step, noise[step, envs])
+                step += 1
+            rollout.steps = step
+            for half, envs in enumerate(self.envs.halves):
+                self._receive(half, envs, step - 1)
+            with self.stopwatch.time("inference"):
+                self._fill_values()
+                self._bootstrap_timeouts()
+        return rollout
+
+    def state_dict(self) -> dict[str, Tensor]:
+        """All that the next collect() depends on, but for the policy."""
+        rollout = self.rollout
+        last = rollout.steps
+        hidden = {} if self._hidden is None else {"hidden": self._hidden.cpu()}
+        return {
+            **hidden,
+            "envs": torch.from_numpy(np.frombuffer(self.envs.save(), np.uint8).copy()),
+            "previous": self._previous_after(last).cpu(),
+            "starts": rollout.starts[last].cpu(),
+            "returns": torch.from_numpy(self._returns.copy()),
+            "lengths": torch.from_numpy(self._lengths.copy()),
+        }
+
+    def load_state_dict(self, state: dict[str, Tensor]) -> None:
+        self.envs.restore(state["envs"].numpy().tobytes())
+        self.envs.observe(self._row(0, slice(None)))
+        if self._hidden is not None:
+            self._hidden.copy_(state["hidden"])
+            assert self.rollout.first_hidden is not None
+            self.rollout.first_hidden.copy_(state["hidden"])
+        self.rollout.first_previous.copy_(state["previous"])
+        self.rollout.starts[0].copy_(state["starts"])
+        self.rollout.steps = 0
+        self._returns[:] = state["returns"].numpy()
+        self._lengths[:] = state["lengths"].numpy()
+
+    def _begin_again(self) -> None:
+        """Makes the state after the last step row 0."""
+        rollout, last = self.rollout, self.rollout.steps
+        rollout.first_previous.copy_(self._previous_after(last))
+        for rows in (rollout.state, rollout.rgb, rollout.depth, rollout.starts):
+            if rows is not None:
+                rows[0].copy_(rows[last])
+        if self._hidden is not None:
+            assert rollout.first_hidden is not None
+            rollout.first_hidden.copy_(self._hidden)
+        rollout.steps = 0
+
+    def _previous_after(self, steps: int) -> Tensor:
+        """[N, A]: the action before the step that comes, zero where an episode starts."""
+        if steps == 0:
+            return self.rollout.first_previous
+        before = self.rollout.actions[steps - 1].clamp(-1.0, 1.0)
+        return before * (~self.rollout.starts[steps]).unsqueeze(-1)
+
+    def _noise(self, update: int) -> Tensor:
+        first, horizon = self.options.first_env, self.options.horizon
+        envs = range(first, first + self.envs.count)
+        steps = range(update * horizon, (update + 1) * horizon)
+        noise = action_noise(self.options.seed, envs, steps, self.envs.motions)
+        return torch.from_numpy(noise).to(self.device)
+
+    def _row(self, step: int, envs: slice) -> Observation:
+        rollout = self.rollout
+        return Observation(
+            rollout.state[step, envs],
+            None if rollout.rgb is None else rollout.rgb[step, envs],
+            None if rollout.depth is None else rollout.depth[step, envs],
+        )
+
+    def _act(self, half: int, envs: slice, step: int, noise: Tensor) -> None:
+        rollout = self.rollout
+        with self.stopwatch.time("inference"), self.precision.autocast():
+            inputs = rollout.inputs(step, step + 1, envs, self.policy.needs_previous)
+            hidden = None if self._hidden is None else self._hidden[envs]
+            outputs = self.policy.act(inputs, hidden, rollout.starts[step : step + 1, envs])
+            actions = outputs.actions.sample(noise.unsqueeze(0))
+            rollout.actions[step, envs] = actions[0]
+            rollout.log_probs[step, envs] = outputs.actions.log_prob(actions)[0]
+            rollout.values[step, envs] = outputs.values[0]
+            if self._hidden is not None and outputs.hidden is not None:
+                self._hidden[envs] = outputs.hidden
+            executed = actions[0].cpu().numpy()
+        with self.stopwatch.time("sending"):
+            self.envs.send(half, executed, self._row(step + 1, envs))
+
+    def _receive(self, half: int, envs: slice, step: int) -> None:
+        rollout = self.rollout
+        with self.stopwatch.time("simulation"):
+            result = self.envs.recv(half)
+        with self.stopwatch.time("post-processing"):
+            ended = result.terminated | result.truncated
+            rollout.rewards[step, envs] = torch.from_numpy(result.rewards).to(self.device)
+            ends = torch.from_numpy(ended).to(self.device)
+            rollout.ends[step, envs] = ends
+            rollout.starts[step + 1, envs] = ends
+            self._returns[envs] += result.rewards
+            self._lengths[envs] += 1
+            if ended.any():
+                self._count(envs, ended, result.successes)
+            if result.timeouts is not None:
+                self._timeouts.append(self._timeout(envs, step, result.timeouts))
+
+    def _count(self, envs: slice, ended: np.ndarray, successes: np.ndarray) -> None:
+        returns, lengths = self._returns[envs], self._lengths[envs]
+        self.episodes.episodes += float(ended.sum())
+        self.episodes.successes += float(successes[ended].sum())
+        self.episodes.returns += float(returns[ended].sum())
+        self.episodes.lengths += float(lengths[ended].sum())
+        returns[ended] = 0.0
+        lengths[ended] = 0
+
+    def _timeout(self, envs: slice, step: int, timeouts: Timeouts) -> "_Timeout":
+        """Keeps what the values of cut-off episodes are computed from; that waits for the rollout's
+        end, so that one pass does all of them. The memory is the one after the last action."""
+        index = torch.from_numpy(timeouts.envs).to(self.device) + (envs.start or 0)
+
+        def part(rows: Optional[np.ndarray]) -> Optional[Tensor]:
+            return None if rows is None else torch.from_numpy(rows.copy()).to(self.device)
+
+        state = part(timeouts.state)
+        assert state is not None
+        return _Timeout(
+            step,
+            index,
+            Inputs(
+                state,
+                part(timeouts.rgb),
+                part(timeouts.depth),
+                self.rollout.actions[step, index].clamp(-1.0, 1.0),
+            ),
+            None if self._hidden is None else self._hidden[index],
+        )
+
+    def _fill_values(self) -> None:
+        """The value after the last step, or all of them where that is cheaper."""
+        rollout, last = self.rollout, self.rollout.steps
+        first = 0 if self.policy.values_apart else last
+        inputs = rollout.inputs(first, last + 1, slice(None), self.policy.needs_previous)
+        with self.precision.autocast():
+            values = self.policy.value(inputs, self._hidden, rollout.starts[first : last + 1])
+        rollout.values[first : last + 1] = values
+
+    def _bootstrap_timeouts(self) -> None:
+        """Adds gamma times the value of the last observation to the reward of episodes that only time
+        cut off: the task would have gone on (Pardo et al. 2018)."""
+        if not self._timeouts:
+            return
+        kept = self._timeouts
+        inputs = Inputs(
+            torch.cat([timeout.inputs.state for timeout in kept]).unsqueeze(0),
+            *(_joined([timeout.inputs[part] for timeout in kept]) for part in (1, 2, 3)),
+        )
+        hidden = _joined([timeout.hidden for timeout in kept])
+        hidden = None if hidden is None else hidden[0]
+        count = inputs.state.shape[1]
+        starts = torch.zeros(1, count, dtype=torch.bool, device=self.device)
+        with self.precision.autocast():
+            values = self.policy.value(inputs, hidden, starts)[0]
+        step = torch.cat([torch.full_like(t.envs, t.step) for t in kept])
+        envs = torch.cat([t.envs for t in kept])
+        self.rollout.rewards[step, envs] += self.options.gamma * values
+
+
+@dataclass
+class _Timeout:
+    """The last observations of k episodes that time cut off in one step."""
+
+    step: int
+    envs: Tensor  # [k]
+    inputs: Inputs  # [k, ...]
+    hidden: Optional[Tensor]  # [k, H]
+
+
+def _joined(parts: list[Optional[Tensor]]) -> Optional[Tensor]:
+    """[1, k, ...] from parts of [k_i, ...], all of them there or none."""
+    there = [part for part in parts if part is not None]
+    return torch.cat(there).unsqueeze(0) if there else None

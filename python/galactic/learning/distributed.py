@@ -1,0 +1,130 @@
+"""The processes that train one policy together: sums over ranks, and who waits for whom."""
+
+from __future__ import annotations
+
+import contextlib
+import datetime
+import os
+from typing import Iterator, Optional
+
+import torch
+import torch.distributed
+from torch import Tensor
+from torch.distributed.rendezvous import rendezvous
+
+
+class RankLost(Exception):
+    """Another rank has ended: what it said is above."""
+
+
+class Group:
+    """All ranks of a run; of one process alone, every sum is what it was.
+
+    Started by torchrun (`python3 -m torch.distributed.run`), a process finds its rank in the
+    environment, and join() connects it: gloo between processors, NCCL between GPUs.
+    """
+
+    def __init__(self, rank: int, size: int, device: torch.device):
+        self.rank = rank
+        self.size = size
+        self.device = device
+        self._store: Optional[torch.distributed.Store] = None
+
+    @classmethod
+    def alone(cls, device: Optional[torch.device] = None) -> "Group":
+        """The only process there is."""
+        return cls(0, 1, device or torch.device("cpu"))
+
+    @classmethod
+    def join(cls, device: str = "auto") -> "Group":
+        """The group that the environment describes. `device`: auto, cpu or cuda."""
+        size = int(os.environ.get("WORLD_SIZE", "1"))
+        rank = int(os.environ.get("RANK", "0"))
+        local_rank = int(os.environ.get("LOCAL_RANK", "0"))
+        cuda = device == "cuda" or (device == "auto" and torch.cuda.is_available())
+        if cuda:
+            torch.cuda.set_device(local_rank)
+        group = cls(rank, size, torch.device("cuda", local_rank) if cuda else torch.device("cpu"))
+        if size > 1:
+            store = next(rendezvous("env://"))[0]
+            torch.distributed.init_process_group(
+                "nccl" if cuda else "gloo",
+                store=torch.distributed.PrefixStore("group", store),
+                rank=rank,
+                world_size=size,
+                timeout=datetime.timedelta(minutes=30),
+            )
+            group._store = torch.distributed.PrefixStore("galactic", store)
+        return group
+
+    def leave(self) -> None:
+        if self.size > 1:
+            torch.distributed.destroy_process_group()
+
+    def sum(self, tensor: Tensor) -> Tensor:
+        """Adds up `tensor` over all ranks, in place; all get the same bits. Returns it."""
+        if self.size > 1:
+            with _others():
+                torch.distributed.all_reduce(tensor)
+        return tensor
+
+    def copy_from_first(self, tensor: Tensor) -> None:
+        """Gives every rank the first one's `tensor`, in place."""
+        if self.size > 1:
+            with _others():
+                torch.distributed.broadcast(tensor, 0)
+
+    def wait_for_all(self) -> None:
+        if self.size > 1:
+            with _others():
+                torch.distributed.barrier()
+
+    def stragglers(self, sync_fraction: float, shortest: float) -> "Stragglers":
+        return Stragglers(self._store, self.rank, self.size, sync_fraction, shortest)
+
+
+@contextlib.contextmanager
+def _others() -> Iterator[None]:
+    """Around what all ranks do together."""
+    try:
+        yield
+    except RuntimeError as error:
+        raise RankLost(f"another rank has ended, so this one ends, too ({error})") from error
+
+
+class Stragglers:
+    """Ends the rollouts of slow ranks early, so that fast ones need not wait (DD-PPO, section 3).
+
+    When `sync_fraction` of the ranks have finished their rollout, the others stop where they are and
+    go on to the update with what they have, but not before `shortest` of their rollout. A fraction of
+    1, or a rank alone, waits for all.
+    """
+
+    def __init__(self, store: Optional["torch.distributed.Store"], rank: int, size: int,
+                 sync_fraction: float, shortest: float):  # fmt: skip
+        self._store = store if sync_fraction < 1.0 else None
+        self._rank = rank
+        self._enough = max(1, int(sync_fraction * size))
+        self._shortest = shortest
+
+    def should_stop(self, update: int, step: int, horizon: int) -> bool:
+        """Whether the rollout of `update` ends after `step` of `horizon` steps."""
+        # A look at the store is a trip over the network: sixteen for each rollout are enough.
+        every = max(1, horizon // 16)
+        if self._store is None or step % every or step < self._shortest * horizon:
+            return False
+        return self._store.add(_done(update), 0) >= self._enough
+
+    def finished(self, update: int) -> None:
+        """Tells the others that this rank's rollout has its full length."""
+        if self._store is not None:
+            self._store.add(_done(update), 1)
+
+    def forget(self, update: int) -> None:
+        """Frees what the store knows of an update that all ranks have left behind."""
+        if self._store is not None and self._rank == 0:
+            self._store.delete_key(_done(update))
+
+
+def _done(update: int) -> str:
+    return f"rollouts_done/{update}"

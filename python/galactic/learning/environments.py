@@ -1,0 +1,73 @@
+"""What the trainer asks of environments."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Optional, Protocol, Sequence
+
+import numpy as np
+from torch import Tensor
+
+
+class Observation(NamedTuple):
+    """Rows that environments write into: memory of a rollout, n envs."""
+
+    state: Tensor  # [n, S] float32
+    rgb: Optional[Tensor] = None  # [n, H, W, 3] uint8
+    depth: Optional[Tensor] = None  # [n, H, W] float32, metres
+
+
+class Timeouts(NamedTuple):
+    """The last observations of episodes that time cut off, k of them."""
+
+    envs: np.ndarray  # [k] int64: which envs of the half
+    state: np.ndarray  # [k, S] float32
+    rgb: Optional[np.ndarray] = None  # [k, H, W, 3] uint8
+    depth: Optional[np.ndarray] = None  # [k, H, W] float32
+
+
+class Step(NamedTuple):
+    """What came of an action, n envs."""
+
+    rewards: np.ndarray  # [n] float32
+    terminated: np.ndarray  # [n] bool: the task ended the episode, in success or failure
+    truncated: np.ndarray  # [n] bool: time did
+    successes: np.ndarray  # [n] bool: it ended in success
+    timeouts: Optional[Timeouts] = None  # None: truncated is false everywhere
+
+
+class Environments(Protocol):
+    """`count` envs in one or two halves that can be stepped apart.
+
+    An episode that ends is followed by the next one in the same step: the observation after it is the
+    first of the next episode. Actions are rows of `motions` continuous numbers, which the environments
+    clamp to [-1, 1], then grasp and terminate, each 0 or 1.
+    """
+
+    count: int
+    state_size: int
+    motions: int
+    image_size: Optional[tuple[int, int]]  # height, width; None without pictures
+    decides_terminate: bool  # whether the task asks for the terminate action
+    halves: Sequence[slice]
+
+    def reset(self, into: Observation) -> None:
+        """Starts all envs on their first episodes, and writes what they see: rows of all envs."""
+
+    def observe(self, into: Observation) -> None:
+        """Writes what all envs see now."""
+
+    def send(self, half: int, actions: np.ndarray, into: Observation) -> None:
+        """Begins a step of a half, after which its envs' observations land in `into`. `actions`
+        [n, motions + 2] and `into` belong to the environments until recv()."""
+
+    def recv(self, half: int) -> Step:
+        """Waits for it."""
+
+    def save(self) -> bytes:
+        """The state of all envs, between two steps."""
+
+    def restore(self, state: bytes) -> None:
+        """Takes up that state: what follows is the same, bit for bit."""
+
+    def close(self) -> None:
+        """Frees what the envs hold."""

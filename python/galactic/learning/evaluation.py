@@ -1,0 +1,228 @@
+"""How well a policy does: each episode of a world, exactly once."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any, Optional, Sequence
+
+import numpy as np
+import torch
+
+import galactic
+from galactic.learning.collector import EpisodeSums
+from galactic.learning.environments import Observation
+from galactic.learning.homes import Homes
+from galactic.learning.networks import Inputs, Policy
+from galactic.learning.noise import noise_of
+
+MOST_ENVS = 256
+
+
+@dataclass
+class EpisodeResult:
+    """One episode. `path`: metres that the base went over the floor, but for the last step; `straight`:
+    the length of the straight lines from where it started to where it first held something, and on to
+    where it was last seen: no path by these places is shorter. `refused`, `slid`: steps in which the
+    robot stayed where it was, or was pushed clear, because it would have hit something."""
+
+    episode: int
+    success: bool
+    ending: str
+    reward: float
+    length: int
+    path: float
+    straight: float
+    refused: int
+    slid: int
+
+    @property
+    def path_ratio(self) -> float:
+        """Success weighted by path length, of one episode: 1 for the straight way, 0 for a failure."""
+        if not self.success:
+            return 0.0
+        return self.straight / max(self.path, self.straight) if self.path > 0.0 else 1.0
+
+
+class Actor:
+    """A policy that acts and does not learn, with its memory of each env. Its samples depend on seed,
+    episode and step, not on where an episode is played. `device` is the policy's."""
+
+    def __init__(self, policy: Policy, *, deterministic: bool, seed: int = 1,
+                 device: torch.device = torch.device("cpu")):  # fmt: skip
+        self.policy = policy
+        self._deterministic = deterministic
+        self._seed = seed
+        self._device = device
+        self.begin(0)
+
+    def begin(self, envs: int) -> None:
+        """Forgets all, and acts in so many envs from now on."""
+        actions = self.policy.action.motions + 2
+        self._hidden = self.policy.initial_hidden(envs, self._device)
+        self._previous = torch.zeros(1, envs, actions, device=self._device)
+
+    def act(
+        self, seen: Observation, starts: np.ndarray, episodes: np.ndarray, steps: np.ndarray
+    ) -> np.ndarray:
+        """What to do in each env: float32 [n, motions + 2].
+
+        Args:
+            seen: rows of all envs.
+            starts: bool [n], where an episode begins.
+            episodes: int [n], which episode each env is in.
+            steps: int [n], how many steps it has done.
+        """
+        self.policy.eval()
+        with torch.inference_mode():
+            state, rgb, depth = (
+                None if rows is None else rows.to(self._device).unsqueeze(0) for rows in seen
+            )
+            assert state is not None
+            begun = torch.from_numpy(starts).to(self._device).unsqueeze(0)
+            previous = self._previous * (~begun).unsqueeze(-1)
+            outputs = self.policy.act(Inputs(state, rgb, depth, previous), self._hidden, begun)
+            if self._deterministic:
+                actions = outputs.actions.mode()
+            else:
+                noise = noise_of(self._seed, episodes, steps, self.policy.action.motions)
+                noise_rows = torch.from_numpy(noise).to(self._device).unsqueeze(0)
+                actions = outputs.actions.sample(noise_rows)
+            self._hidden = outputs.hidden
+            self._previous = actions.clamp(-1.0, 1.0)
+            return actions[0].cpu().numpy()
+
+
+class Evaluator:
+    """Plays episodes in `homes`, of one half."""
+
+    def __init__(self, homes: Homes, actor: Actor):
+        self._homes = homes
+        self._actor = actor
+        self._seen = _rows(homes)
+        self._holding = homes.env.simulators[0].observation_parts["is_holding"].start
+        self._players: list[Optional[_Player]] = []
+
+    def play(self, episodes: Sequence[int], *, details: bool = True) -> list[EpisodeResult]:
+        """Plays each of `episodes` once, and returns what came of them, in their order. Without
+        `details`, paths and collisions are left out, which is faster."""
+        homes, waiting = self._homes, list(reversed(episodes))
+        results: dict[int, EpisodeResult] = {}
+        self._players = [None] * homes.count
+        starts = np.ones(homes.count, bool)
+        self._start(starts, waiting, details)
+        self._actor.begin(homes.count)
+        while any(self._players):
+            none = _Player(0)
+            players = [(player or none).result for player in self._players]
+            keys = np.array([result.episode for result in players])
+            ages = np.array([result.length for result in players])
+            homes.send(0, self._actor.act(self._seen, starts, keys, ages), self._seen)
+            step = homes.recv(0)
+            ended = step.terminated | step.truncated
+            self._follow(step.rewards, ended, step.successes, details)
+            for player in (p for p, over in zip(self._players, ended) if p is not None and over):
+                results[player.result.episode] = player.result
+            if ended.any():
+                self._start(ended, waiting, details)
+            starts = ended.copy()
+        return [results[episode] for episode in episodes]
+
+    def _start(self, where: np.ndarray, waiting: list[int], details: bool) -> None:
+        """Gives the next episodes to the envs `where` one ended; those without one idle on."""
+        homes, wanted = self._homes, dict[int, int]()
+        for env in np.flatnonzero(where):
+            self._players[env] = None
+            if waiting:
+                wanted[int(env)] = waiting.pop()
+        homes.begin_episodes(wanted, self._seen)
+        for env, episode in wanted.items():
+            self._players[env] = _Player(episode)
+            if details:
+                place, collisions = homes.base_position(env), homes.collisions(env)
+                self._players[env] = _Player(episode, place, collisions)
+
+    def _follow(self, rewards: np.ndarray, ended: np.ndarray, successes: np.ndarray,
+                details: bool) -> None:  # fmt: skip
+        for env, player in enumerate(self._players):
+            if player is None:
+                continue
+            result = player.result
+            result.reward += float(rewards[env])
+            result.length += 1
+            if ended[env]:
+                result.success = bool(successes[env])
+                result.ending = galactic.EpisodeEnd(self._homes.endings(0)[env]).name.lower()
+                if details:
+                    player.finish(self._homes.collisions(env))
+            elif details:
+                # Behind its end, the env is in the next episode.
+                holds = bool(self._seen.state[env, self._holding])
+                player.follow(self._homes.base_position(env), holds)
+
+
+class _Player:
+    """An episode that is being played in one env."""
+
+    def __init__(self, episode: int, place: Optional[np.ndarray] = None,
+                 collisions: tuple[int, int] = (0, 0)):  # fmt: skip
+        self.result = EpisodeResult(episode, False, "", 0.0, 0, 0.0, 0.0, 0, 0)
+        self._collisions = collisions
+        self._place = place
+        # Where the straight lines begin, and the length of those that are behind.
+        self._corner = place
+        self._behind = 0.0
+        self._has_held = False
+
+    def follow(self, place: np.ndarray, holds: bool) -> None:
+        """Takes in where the base is now, and whether the hand holds something."""
+        self.result.path += float(np.linalg.norm(place - self._place))
+        self._place = place
+        self.result.straight = self._behind + float(np.linalg.norm(place - self._corner))
+        if holds and not self._has_held:
+            self._has_held = True
+            self._corner, self._behind = place, self.result.straight
+
+    def finish(self, collisions: tuple[int, int]) -> None:
+        """Takes in what was counted until the end."""
+        self.result.refused = collisions[0] - self._collisions[0]
+        self.result.slid = collisions[1] - self._collisions[1]
+
+
+def _rows(homes: Homes) -> Observation:
+    """Memory for what all envs see."""
+    state = torch.zeros(homes.count, homes.state_size)
+    if homes.image_size is None:
+        return Observation(state)
+    size = (homes.count, *homes.image_size)
+    return Observation(state, torch.zeros(*size, 3, dtype=torch.uint8), torch.zeros(*size))
+
+
+def sums_of(results: Sequence[EpisodeResult]) -> EpisodeSums:
+    """What the curves want to know."""
+    return EpisodeSums(
+        float(len(results)),
+        float(sum(result.success for result in results)),
+        sum(result.reward for result in results),
+        float(sum(result.length for result in results)),
+    )
+
+
+def summary(results: Sequence[EpisodeResult]) -> dict[str, Any]:
+    """Means, counts of the endings, and every episode: the report of galactic.evaluate."""
+    count = max(len(results), 1)
+    endings: dict[str, int] = {}
+    for result in results:
+        endings[result.ending] = endings.get(result.ending, 0) + 1
+    steps = max(sum(result.length for result in results), 1)
+    return {
+        "episodes": len(results),
+        "success": sum(result.success for result in results) / count,
+        "return": sum(result.reward for result in results) / count,
+        "length": steps / count,
+        "spl": sum(result.path_ratio for result in results) / count,
+        "path": sum(result.path for result in results) / count,
+        "refused": sum(result.refused for result in results) / steps,
+        "slid": sum(result.slid for result in results) / steps,
+        "endings": dict(sorted(endings.items())),
+        "each": [asdict(result) for result in results],
+    }

@@ -1,0 +1,185 @@
+"""Simulated homes as environments of the trainer."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping, Optional, Sequence
+
+import numpy as np
+import torch
+
+import galactic
+from galactic.learning.environments import Observation, Step, Timeouts
+from galactic.learning.networks import IMAGE_SIZE
+from galactic.learning.settings import Settings, SettingsError
+
+SUCCESS = int(galactic.EpisodeEnd.SUCCESS)
+_CHOSEN_BY_TRAINER = ("envs", "seed", "rank", "ranks", "threads", "order")
+
+
+def simulation_keywords(text: str) -> dict[str, Any]:
+    """Settings.simulation as keywords of galactic.Simulator: "task=pick no-distractors" is
+    {"task": "pick", "no_distractors": True}."""
+    keywords: dict[str, Any] = {}
+    for word in text.split():
+        name, equals, value = word.partition("=")
+        keyword = name.lstrip("-").replace("-", "_")
+        if keyword in _CHOSEN_BY_TRAINER:
+            raise SettingsError(
+                f"{keyword} is not for --simulation; the trainer chooses it (see --envs, --seed)"
+            )
+        keywords[keyword] = value if equals else True
+    return keywords
+
+
+class Homes:
+    """A galactic.VectorEnv as the trainer wants it. Observations land in the rollout: on a processor
+    they are written there by the simulator's threads, on a GPU they come by pinned memory."""
+
+    def __init__(self, world: "galactic.World", settings: Settings, threads: int, *,
+                 rank: int = 0, ranks: int = 1, order: str = "shuffled"):  # fmt: skip
+        keywords = simulation_keywords(settings.simulation)
+        images: Optional[Mapping[str, Any]] = None
+        if settings.network != "state":
+            images = {"width": IMAGE_SIZE, "height": IMAGE_SIZE}
+        self.image_size = (IMAGE_SIZE, IMAGE_SIZE) if images else None
+        self.env = galactic.VectorEnv(
+            world,
+            settings.envs,
+            images=images,
+            halves=2 if settings.halves == 2 else 1,
+            copy=False,
+            threads=threads,
+            seed=settings.seed,
+            order=order,
+            rank=rank,
+            ranks=ranks,
+            **keywords,
+        )
+        first = self.env.simulators[0]
+        self.count = settings.envs
+        self.state_size = first.observation_size
+        self.motions = first.action_count - 2
+        self.parts = [
+            (name, part.stop - part.start) for name, part in first.observation_parts.items()
+        ]
+        self.decides_terminate = _decides_terminate(settings.terminate, first.options)
+        self.halves: Sequence[slice] = [self.env.rows(half) for half in range(settings.halves)]
+        self._landings = [_landing(half.stop - half.start) for half in self.halves]
+        self._into: list[Optional[Observation]] = [None] * settings.halves
+        self._staged: list[Optional[Observation]] = [None] * settings.halves
+
+    def reset(self, into: Observation) -> None:
+        self._write(self.env.reset(seed=None)[0], into)
+
+    def observe(self, into: Observation) -> None:
+        self._write(self.env.observe(), into)
+
+    def send(self, half: int, actions: np.ndarray, into: Observation) -> None:
+        host = into if into.state.device.type == "cpu" else self._stage(half, into)
+        self._into[half] = into
+        landing = self._landings[half]
+        landing["state"] = host.state.numpy()
+        if host.rgb is not None and host.depth is not None:
+            landing["rgb"], landing["depth"] = host.rgb.numpy(), host.depth.numpy()
+        self.env.send(actions, half, landing)
+
+    def recv(self, half: int) -> Step:
+        _, rewards, terminated, truncated, infos = self.env.recv(half)
+        staged, into = self._staged[half], self._into[half]
+        if staged is not None and into is not None:
+            for host, device in zip(staged, into):
+                if host is not None and device is not None:
+                    device.copy_(host, non_blocking=True)
+        timeouts = None
+        if infos and truncated.any():
+            timeouts = _timeouts(np.flatnonzero(truncated), infos["final_obs"])
+        successes = self._landings[half]["endings"] == SUCCESS
+        return Step(rewards, terminated, truncated, successes, timeouts)
+
+    def begin_episodes(self, episodes: Mapping[int, int], into: Observation) -> None:
+        """Begins an episode of the world, by its index, in some envs; the others stay. Writes what all
+        see then."""
+        mask, numbers = np.zeros(self.count, np.bool_), np.full(self.count, -1, np.int64)
+        for env, episode in episodes.items():
+            mask[env], numbers[env] = True, episode
+        seen, _ = self.env.reset(options={"reset_mask": mask, "episodes": numbers})
+        self._write(seen, into)
+
+    def playable_episodes(self) -> list[int]:
+        """The world's episodes in which the robot can start."""
+        skipped = set(self.env.simulators[0].skipped_episodes)
+        return [e for e in range(self.env.world.episodes) if e not in skipped]
+
+    def endings(self, half: int) -> np.ndarray:
+        """How episodes ended in the last step, as numbers of EpisodeEnd; [n]."""
+        return self._landings[half]["endings"]
+
+    def base_position(self, env: int) -> np.ndarray:
+        """Where the base of a robot stands, on the floor plane: x and z, metres."""
+        half, row = divmod(env, self.count // len(self.halves))
+        place = self.env.simulators[half].env_state(row).world_from_root.translation
+        return np.array([place[0], place[2]])
+
+    def collisions(self, env: int) -> tuple[int, int]:
+        """Steps of an env so far in which its robot was refused, and in which it slid."""
+        half, row = divmod(env, self.count // len(self.halves))
+        counted = self.env.simulators[half].statistics(row)
+        return counted["refused"], counted["slid"]
+
+    def save(self) -> bytes:
+        return self.env.save_state()
+
+    def restore(self, state: bytes) -> None:
+        self.env.restore_state(state)
+
+    def close(self) -> None:
+        self.env.close()
+
+    def _write(self, observations: Any, into: Observation) -> None:
+        rows = observations if isinstance(observations, dict) else {"state": observations}
+        for name, target in into._asdict().items():
+            if target is not None:
+                target.copy_(torch.from_numpy(np.array(rows[name])))
+
+    def _stage(self, half: int, into: Observation) -> Observation:
+        """Pinned memory that `into` is copied from."""
+        staged = self._staged[half]
+        if staged is None:
+            staged = Observation(
+                _pinned(into.state),
+                None if into.rgb is None else _pinned(into.rgb),
+                None if into.depth is None else _pinned(into.depth),
+            )
+            self._staged[half] = staged
+        return staged
+
+
+def _pinned(like: torch.Tensor) -> torch.Tensor:
+    return torch.empty_like(like, device="cpu").pin_memory()
+
+
+def _landing(envs: int) -> dict[str, np.ndarray]:
+    """Where the results of a half land, but for its observations."""
+    return {
+        "rewards": np.zeros(envs, np.float32),
+        "terminations": np.zeros(envs, np.bool_),
+        "truncations": np.zeros(envs, np.bool_),
+        "endings": np.zeros(envs, np.uint8),
+    }
+
+
+def _timeouts(envs: np.ndarray, final: np.ndarray) -> Timeouts:
+    """The last observations of some envs out of Gymnasium's array of objects."""
+    rows = [final[env] for env in envs]
+    if not isinstance(rows[0], dict):
+        return Timeouts(envs, np.stack(rows))
+    parts = {name: np.stack([row[name] for row in rows]) for name in ("state", "rgb", "depth")}
+    return Timeouts(envs, **parts)
+
+
+def _decides_terminate(terminate: str, options: Mapping[str, Any]) -> bool:
+    """Whether the policy decides it: terminating does nothing when a pick is a success, and when
+    success is judged at each release."""
+    if terminate == "auto":
+        return options["task"] == "rearrange" and not options["no_terminate"]
+    return terminate == "learned"

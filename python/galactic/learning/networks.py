@@ -1,0 +1,409 @@
+"""The policies: the paper's three networks, and `state` for learning without a camera.
+
+Every policy is the same plain chain, kept in these attributes so that an exporter can walk it:
+
+    normalize   Normalizer of the state, or None
+    closeup     Closeup of the state, or None
+    encoder     inputs -> features
+    rnn         nn.GRU of one layer, or None
+    action      ActorHead: one nn.Linear for means, log-stds (unless those are a parameter), decisions
+    critic      nn.Linear: the value
+
+A policy without `rnn` (class StatePolicy) has two encoders, `encoder` for the actor and
+`value_encoder` for the critic, which share nothing but the normalization.
+
+Rows of `action.linear`: a mean for each motion (before tanh), a log-std for each, then two logits (no,
+yes) each for grasp and terminate.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, Optional
+
+import torch
+from torch import Tensor, nn
+
+from galactic.learning.distributions import (
+    DECISIONS,
+    HIGHEST_LOG_STD,
+    LOWEST_LOG_STD,
+    ActionDistribution,
+)
+from galactic.learning.normalization import Closeup, Normalizer
+from galactic.learning.sequences import run_gru
+
+FARTHEST = 10.0
+"""Depth that counts as far away, metres."""
+FEATURES = 512
+"""Width of the paper's networks."""
+IMAGE_SIZE = 128
+"""Height and width that the paper's networks are made for, pixels."""
+
+
+class Inputs(NamedTuple):
+    """What a policy sees, T steps of n envs."""
+
+    state: Tensor  # [T, n, S] float32: a row of observations
+    rgb: Optional[Tensor] = None  # [T, n, H, W, 3] uint8
+    depth: Optional[Tensor] = None  # [T, n, H, W] float32, metres
+    previous: Optional[Tensor] = None  # [T, n, A]: the action before, zero where an episode starts
+
+
+class Outputs(NamedTuple):
+    """What it makes of that."""
+
+    actions: ActionDistribution  # of shape [T, n]
+    values: Tensor  # [T, n]
+    hidden: Optional[Tensor]  # [n, H] after the last step; None without a GRU
+
+
+class PolicyShape(NamedTuple):
+    """Sizes that the world gives, and the choices that are common to all policies."""
+
+    state: int  # numbers in a row of observations
+    motions: int  # continuous actions
+    decides_terminate: bool = True
+    normalize: bool = False
+    closeup: float = 0.0  # scale of a Closeup of the state; 0: none
+
+    @property
+    def seen(self) -> int:
+        """Numbers that the encoder reads."""
+        return self.state * (2 if self.closeup > 0.0 else 1)
+
+
+class ActorHead(nn.Module):
+    """Features [..., F] -> ActionDistribution. One linear layer, so one multiplication.
+
+    `initial_log_std` None: log-stds are outputs of the layer, clamped to [-5, 2] (paper); a number:
+    they are parameters that do not depend on the state, and start there.
+    """
+
+    def __init__(self, features: int, shape: PolicyShape, initial_log_std: Optional[float] = None):
+        super().__init__()
+        self.motions = shape.motions
+        self.decides_terminate = shape.decides_terminate
+        self.log_std: Optional[nn.Parameter] = None
+        if initial_log_std is not None:
+            self.log_std = nn.Parameter(torch.full((shape.motions,), initial_log_std))
+        rows = shape.motions * (2 if self.log_std is None else 1) + 2 * DECISIONS
+        self.linear = nn.Linear(features, rows)
+        _orthogonal(self.linear, 0.01)
+
+    def forward(self, features: Tensor) -> ActionDistribution:
+        rows = self.linear(features).float()
+        mean = torch.tanh(rows[..., : self.motions])
+        if self.log_std is None:
+            log_std = rows[..., self.motions : 2 * self.motions]
+        else:
+            log_std = self.log_std.expand_as(mean)
+        log_std = log_std.clamp(LOWEST_LOG_STD, HIGHEST_LOG_STD)
+        choices = rows[..., -2 * DECISIONS :]
+        return ActionDistribution(
+            mean, log_std, choices[..., 1::2] - choices[..., 0::2], self.decides_terminate
+        )
+
+
+class Tanh(nn.Tanh):
+    """tanh by way of a sigmoid: on processors three times as fast as torch's, and equal to 2e-7."""
+
+    def forward(self, input: Tensor) -> Tensor:
+        return _SigmoidTanh.apply(input) if input.device.type == "cpu" else torch.tanh(input)
+
+
+class _SigmoidTanh(torch.autograd.Function):
+    @staticmethod
+    def forward(context, inputs: Tensor) -> Tensor:  # type: ignore[override]
+        outputs = (inputs + inputs).sigmoid_().mul_(2.0).sub_(1.0)
+        context.save_for_backward(outputs)
+        return outputs
+
+    @staticmethod
+    def backward(context, gradient: Tensor) -> Tensor:  # type: ignore[override]
+        (outputs,) = context.saved_tensors
+        return torch.ops.aten.tanh_backward(gradient, outputs)
+
+
+ACTIVATIONS = {"tanh": Tanh, "relu": nn.ReLU}
+
+
+def perceptron(inputs: int, width: int, layers: int, activation: str) -> nn.Sequential:
+    """`layers` linear layers of `width`, each with its activation."""
+    chain: list[nn.Module] = []
+    for layer in range(layers):
+        chain += [
+            _orthogonal(nn.Linear(inputs if layer == 0 else width, width), math.sqrt(2.0)),
+            ACTIVATIONS[activation](),
+        ]
+    return nn.Sequential(*chain)
+
+
+class Policy(nn.Module):
+    """What the trainer asks of a policy."""
+
+    hidden_size = 0
+    """Numbers of memory for each env; 0 without."""
+    needs_images = False
+    needs_previous = False
+    values_apart = False
+    """Whether value() costs less than forward(): values can then wait until the rollout is over."""
+
+    action: ActorHead
+
+    def __init__(self, shape: PolicyShape):
+        super().__init__()
+        self.normalize = Normalizer(shape.state) if shape.normalize else None
+        self.closeup = Closeup(shape.closeup) if shape.closeup > 0.0 else None
+
+    def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
+        """`hidden` [n, H] from before the first step; `starts` [T, n] bool: where an episode begins,
+        and the memory is empty."""
+        raise NotImplementedError
+
+    def act(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
+        """forward(), for rollouts: `values` are anything when `values_apart`."""
+        return self(inputs, hidden, starts)
+
+    def value(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Tensor:
+        """The values alone, [T, n]."""
+        return self(inputs, hidden, starts).values
+
+    def initial_hidden(self, envs: int, device: torch.device) -> Optional[Tensor]:
+        """An empty memory, [envs, H], or None."""
+        return torch.zeros(envs, self.hidden_size, device=device) if self.hidden_size else None
+
+    def _seen(self, state: Tensor) -> Tensor:
+        """The state as the encoder reads it."""
+        normal = state if self.normalize is None else self.normalize(state)
+        return normal if self.closeup is None else torch.cat([normal, self.closeup(state)], -1)
+
+
+class StatePolicy(Policy):
+    """Two perceptrons side by side, actor and critic: no camera, no memory."""
+
+    values_apart = True
+
+    def __init__(self, shape: PolicyShape, width: int, layers: int, activation: str,
+                 initial_log_std: Optional[float]):  # fmt: skip
+        super().__init__(shape)
+        self.encoder = perceptron(shape.seen, width, layers, activation)
+        self.value_encoder = perceptron(shape.seen, width, layers, activation)
+        self.action = ActorHead(width, shape, initial_log_std)
+        self.critic = _orthogonal(nn.Linear(width, 1), 1.0)
+
+    def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
+        state = self._seen(inputs.state)
+        values = self.critic(self.value_encoder(state)).squeeze(-1)
+        return Outputs(self.action(self.encoder(state)), values, None)
+
+    def act(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
+        state = self._seen(inputs.state)
+        return Outputs(self.action(self.encoder(state)), state[..., 0], None)
+
+    def value(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Tensor:
+        return self.critic(self.value_encoder(self._seen(inputs.state))).squeeze(-1)
+
+
+class RecurrentPolicy(Policy):
+    """An encoder, a GRU, and heads for actor and critic on it."""
+
+    def __init__(self, encoder: "Encoder", shape: PolicyShape, width: int,
+                 initial_log_std: Optional[float]):  # fmt: skip
+        super().__init__(shape)
+        self.hidden_size = width
+        self.needs_images = encoder.needs_images
+        self.needs_previous = encoder.needs_previous
+        self.encoder = encoder
+        self.rnn = nn.GRU(encoder.features, width)
+        self.action = ActorHead(width, shape, initial_log_std)
+        self.critic = _orthogonal(nn.Linear(width, 1), 1.0)
+        for name, parameter in self.rnn.named_parameters():
+            if "weight" in name:
+                nn.init.orthogonal_(parameter)
+            else:
+                nn.init.zeros_(parameter)
+
+    def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
+        assert hidden is not None
+        features = self.encoder(inputs._replace(state=self._seen(inputs.state)))
+        features, hidden = run_gru(self.rnn, features, hidden, starts)
+        return Outputs(self.action(features), self.critic(features).squeeze(-1).float(), hidden)
+
+
+class Encoder(nn.Module):
+    """Inputs -> features [T, n, F], F being `features`."""
+
+    features = 0
+    needs_images = False
+    needs_previous = False
+
+
+class StateEncoder(Encoder):
+    """A perceptron on the state, in front of a GRU."""
+
+    def __init__(self, state: int, width: int, layers: int, activation: str):
+        super().__init__()
+        self.features = width
+        self.layers = perceptron(state, width, layers, activation)
+
+    def forward(self, inputs: Inputs) -> Tensor:
+        return self.layers(inputs.state)
+
+
+class SimpleCNN(Encoder):
+    """Three convolutions and a linear layer, as in Habitat 2.0 (paper, appendix B)."""
+
+    needs_images = True
+
+    def __init__(self, state: int):
+        super().__init__()
+        self.features = FEATURES + state
+        self.visual = nn.Sequential(
+            nn.Conv2d(4, 32, 8, 4),
+            nn.ReLU(inplace=True),
+            nn.Conv2d(32, 64, 4, 2),
+            nn.ReLU(inplace=True),
+            nn.Conv2d(64, 32, 3, 1),
+            nn.Flatten(),
+            nn.Linear(32 * 12 * 12, FEATURES),
+            nn.ReLU(inplace=True),
+        )
+        _kaiming(self.visual)
+
+    def forward(self, inputs: Inputs) -> Tensor:
+        seen = self.visual(images(inputs)).float()
+        return torch.cat([seen.view(*inputs.state.shape[:2], FEATURES), inputs.state], -1)
+
+
+class ResNet(Encoder):
+    """The paper's ResNet9 and ResNet18: space to depth, four stages, GroupNorm everywhere."""
+
+    needs_images = True
+    needs_previous = True
+
+    def __init__(self, state: int, actions: int, blocks: int):
+        super().__init__()
+        self.features = FEATURES + FEATURES + 32
+        stages: list[nn.Module] = []
+        channels = 32
+        for stage, width in enumerate((32, 64, 128, 256)):
+            for block in range(blocks):
+                stride = 2 if stage > 0 and block == 0 else 1
+                stages.append(ResidualBlock(channels, width, stride))
+                channels = width
+        self.visual = nn.Sequential(
+            SpaceToDepth(4),
+            nn.Conv2d(64, 32, 1, bias=False),
+            nn.GroupNorm(16, 32),
+            nn.ReLU(inplace=True),
+            *stages,
+            nn.Conv2d(256, 64, 3, padding=1, bias=False),
+            nn.GroupNorm(16, 64),
+            nn.ReLU(inplace=True),
+            nn.Flatten(),
+            nn.Linear(64 * 4 * 4, FEATURES, bias=False),
+            nn.LayerNorm(FEATURES),
+            nn.ReLU(inplace=True),
+        )
+        self.state = nn.Linear(state, FEATURES)
+        self.previous = nn.Linear(actions, 32)
+        _kaiming(self.visual)
+
+    def forward(self, inputs: Inputs) -> Tensor:
+        assert inputs.previous is not None
+        seen = self.visual(images(inputs)).float().view(*inputs.state.shape[:2], FEATURES)
+        felt = self.state(inputs.state).float()
+        return torch.cat([seen, felt, self.previous(inputs.previous).float()], -1)
+
+
+class ResidualBlock(nn.Module):
+    """Two 3x3 convolutions and a way around them."""
+
+    def __init__(self, channels: int, width: int, stride: int):
+        super().__init__()
+        self.layers = nn.Sequential(
+            nn.Conv2d(channels, width, 3, stride, 1, bias=False),
+            nn.GroupNorm(16, width),
+            nn.ReLU(inplace=True),
+            nn.Conv2d(width, width, 3, 1, 1, bias=False),
+            nn.GroupNorm(16, width),
+        )
+        self.around = nn.Sequential()
+        if stride != 1:
+            self.around.append(nn.AvgPool2d(3, stride, 1))
+        if stride != 1 or channels != width:
+            self.around.append(nn.Conv2d(channels, width, 1, bias=False))
+            self.around.append(nn.GroupNorm(16, width))
+
+    def forward(self, inputs: Tensor) -> Tensor:
+        return torch.relu(self.layers(inputs) + self.around(inputs))
+
+
+class SpaceToDepth(nn.Module):
+    """[B, C, H, W] -> [B, b b C, H/b, W/b]: channel (row in block, column in block, C)."""
+
+    def __init__(self, block: int):
+        super().__init__()
+        self.block = block
+
+    def forward(self, inputs: Tensor) -> Tensor:
+        batch, channels, height, width = inputs.shape
+        size = self.block
+        cut = inputs.view(batch, channels, height // size, size, width // size, size)
+        return (
+            cut.permute(0, 3, 5, 1, 2, 4)
+            .reshape(batch, size * size * channels, height // size, width // size)
+            .contiguous(memory_format=torch.channels_last)
+        )
+
+
+def images(inputs: Inputs) -> Tensor:
+    """The pictures as a network wants them: [T n, 4, H, W], in [0, 1], channels last in memory.
+
+    RGB stays bytes until here. Depth counts up to 10 m.
+    """
+    assert inputs.rgb is not None and inputs.depth is not None
+    batch, (height, width) = inputs.depth.shape[:2].numel(), inputs.depth.shape[2:]
+    packed = torch.empty(batch, height, width, 4, device=inputs.depth.device)
+    packed[..., :3] = inputs.rgb.reshape(batch, height, width, 3)
+    packed[..., :3] *= 1.0 / 255.0
+    packed[..., 3] = inputs.depth.reshape(batch, height, width)
+    packed[..., 3].clamp_(0.0, FARTHEST).mul_(1.0 / FARTHEST)
+    return packed.permute(0, 3, 1, 2)
+
+
+def make_policy(network: str, shape: PolicyShape, *, recurrent: bool = False, width: int = 128,
+                layers: int = 2, activation: str = "tanh",
+                initial_log_std: Optional[float] = None) -> Policy:  # fmt: skip
+    """A policy by its name: `state`, `simple_cnn`, `resnet9` or `resnet18`.
+
+    `recurrent`, `width`, `layers`, `activation` and `initial_log_std` are for `state` alone: the
+    paper's networks are what they are. Weights come from torch's global random stream.
+    """
+    if network == "state" and not recurrent:
+        return StatePolicy(shape, width, layers, activation, initial_log_std)
+    if network == "state":
+        encoder: Encoder = StateEncoder(shape.seen, width, layers, activation)
+        return RecurrentPolicy(encoder, shape, width, initial_log_std)
+    if network == "simple_cnn":
+        return RecurrentPolicy(SimpleCNN(shape.seen), shape, FEATURES, None)
+    if network in ("resnet9", "resnet18"):
+        blocks = 1 if network == "resnet9" else 2
+        encoder = ResNet(shape.seen, shape.motions + DECISIONS, blocks)
+        return RecurrentPolicy(encoder, shape, FEATURES, None)
+    raise ValueError(f'"{network}" is no network; there are state, simple_cnn, resnet9, resnet18')
+
+
+def _orthogonal(layer: nn.Linear, gain: float) -> nn.Linear:
+    nn.init.orthogonal_(layer.weight, gain)
+    nn.init.zeros_(layer.bias)
+    return layer
+
+
+def _kaiming(layers: nn.Module) -> None:
+    for layer in layers.modules():
+        if isinstance(layer, (nn.Conv2d, nn.Linear)):
+            nn.init.kaiming_normal_(layer.weight, nonlinearity="relu")
+            if layer.bias is not None:
+                nn.init.zeros_(layer.bias)

@@ -1,0 +1,78 @@
+"""Random numbers that depend on (seed, env, step) only, or in evaluations on (seed, episode, step).
+
+A sample of an action must not depend on which rank, half-batch or order an env is stepped in, and a
+resumed run must go on with the numbers that it would have had. So there is no stream to keep: every
+number is a hash of what it is for, as in the simulator.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from galactic.learning.distributions import DECISIONS
+
+_GOLDEN = np.uint64(0x9E3779B97F4A7C15)
+
+
+def _mixed(bits: np.ndarray) -> np.ndarray:
+    """The finalizer of SplitMix64 (Steele, Lea, Flood 2014), in place."""
+    bits ^= bits >> np.uint64(30)
+    bits *= np.uint64(0xBF58476D1CE4E5B9)
+    bits ^= bits >> np.uint64(27)
+    bits *= np.uint64(0x94D049BB133111EB)
+    bits ^= bits >> np.uint64(31)
+    return bits
+
+
+def _hashed(seed: int, keys: np.ndarray, steps: np.ndarray, count: int) -> np.ndarray:
+    """uint64 [..., count] for keys and steps that broadcast to [...]."""
+    with np.errstate(over="ignore"):
+        start = _mixed(np.array([seed], np.uint64) + _GOLDEN)
+        key = _mixed(start + keys.astype(np.uint64) * _GOLDEN)
+        row = _mixed(key + steps.astype(np.uint64) * _GOLDEN)
+        return _mixed(row[..., None] + np.arange(1, count + 1, dtype=np.uint64) * _GOLDEN)
+
+
+def noise_of(seed: int, keys: np.ndarray, steps: np.ndarray, motions: int) -> np.ndarray:
+    """float32 [..., motions + 2]: standard normal numbers, then two uniform in [0, 1), for each of
+    `keys` and `steps`, whole numbers that broadcast to [...]."""
+    pairs = (motions + 1) // 2
+    bits = _hashed(seed, keys, steps, pairs + 1)
+    # The two halves of each hash, as 24 bits each: what a float in [0, 1) holds.
+    scale = np.float32(2.0**-24)
+    first = (bits >> np.uint64(40)).astype(np.float32) * scale
+    second = ((bits >> np.uint64(8)) & np.uint64(0xFFFFFF)).astype(np.float32) * scale
+    noise = np.empty(bits.shape[:-1] + (motions + DECISIONS,), np.float32)
+    # Box and Muller; 1 - u is never 0.
+    radius = np.sqrt(-2.0 * np.log1p(-first[..., :pairs]))
+    angle = second[..., :pairs] * np.float32(2.0 * np.pi)
+    noise[..., 0:motions:2] = radius * np.cos(angle)
+    noise[..., 1:motions:2] = (radius * np.sin(angle))[..., : motions // 2]
+    noise[..., motions] = first[..., pairs]
+    noise[..., motions + 1] = second[..., pairs]
+    return noise
+
+
+def action_noise(seed: int, envs: range, steps: range, motions: int) -> np.ndarray:
+    """The noise of rollouts: float32 [steps, envs, motions + 2], see noise_of().
+
+    `envs` are numbers over all ranks, `steps` those since the run began.
+    """
+    return noise_of(seed, _numbers(envs)[None, :], _numbers(steps)[:, None], motions)
+
+
+def mini_batch_envs(seed: int, epoch: int, envs: range, parts: int) -> np.ndarray:
+    """Splits the envs of a rank into mini-batches, differently in each epoch; int64 [parts, n].
+
+    Of each `parts` consecutive envs, one goes into each mini-batch. So all mini-batches of all ranks
+    have the same size, and R ranks of N envs see the same mini-batches as one rank of R N. `epoch`
+    counts from the start of the run; the numbers returned are relative to `envs`.
+    """
+    blocks = range(envs.start // parts, envs.stop // parts)
+    keys = _hashed(seed ^ 0x6D696E69, _numbers(blocks), np.array([epoch]), parts)
+    place = np.argsort(keys, axis=1, kind="stable")
+    return (place + np.arange(len(blocks))[:, None] * parts).T.copy()
+
+
+def _numbers(of: range) -> np.ndarray:
+    return np.arange(of.start, of.stop, dtype=np.uint64)

@@ -1,0 +1,200 @@
+"""One self-contained page with a run's curves: no requests, light and dark."""
+
+from __future__ import annotations
+
+import html
+import json
+import math
+from typing import Any, Mapping, Optional, Sequence
+
+# Title, unit of the vertical axis, columns with their names in the legend.
+CHARTS: Sequence[tuple[str, str, Sequence[tuple[str, str]]]] = (
+    (
+        "Success",
+        "share of episodes",
+        (("success", "training"), ("validation_success", "validation")),
+    ),
+    ("Return", "reward per episode", (("return", "training"), ("validation_return", "validation"))),
+    ("Length", "steps per episode", (("length", "training"), ("validation_length", "validation"))),
+    ("Speed", "steps per second", (("sps", "training"),)),
+    ("Value loss", "", (("value_loss", "value loss"),)),
+    ("Policy loss", "", (("policy_loss", "policy loss"),)),
+    ("Entropy", "nats", (("entropy", "entropy"),)),
+    ("Divergence of an update", "nats", (("kl", "KL"),)),
+    ("Clipped", "share of steps", (("clipped", "clipped"),)),
+    ("Norm of the gradient", "", (("grad_norm", "norm"),)),
+    ("Explained variance", "of the returns", (("explained_variance", "explained"),)),
+    ("Learning rate", "", (("learning_rate", "rate"),)),
+)
+
+MOST_POINTS = 1500
+"""Longer runs are thinned out for the page; the CSV has all."""
+
+
+def curves_page(title: str, columns: Sequence[str], rows: Sequence[Sequence[Optional[float]]],
+                settings: Mapping[str, Any], breakdown: Sequence[tuple[str, float]]) -> str:  # fmt: skip
+    """The page as text. `breakdown`: names and shares of the time of a run."""
+    stride = max(1, math.ceil(len(rows) / MOST_POINTS))
+    validated = [columns.index(name) for name in columns if name.startswith("validation")]
+    kept = [
+        row
+        for number, row in enumerate(rows)
+        if number % stride == 0
+        or number == len(rows) - 1
+        or any(row[column] is not None for column in validated)
+    ]
+    data = {
+        "columns": list(columns),
+        "rows": [[_short(value) for value in row] for row in kept],
+        "charts": [
+            {"title": name, "unit": unit, "lines": [list(line) for line in lines]}
+            for name, unit, lines in CHARTS
+        ],
+    }
+    # "<" would let a string end the script.
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+    return _PAGE.format(
+        title=html.escape(title),
+        data=text,
+        settings=_table([(name, str(value)) for name, value in settings.items()]),
+        breakdown=_table([(name, f"{100.0 * share:.1f} %") for name, share in breakdown]),
+    )
+
+
+def _short(value: Optional[float]) -> Optional[float]:
+    return None if value is None or not math.isfinite(value) else float(f"{value:.6g}")
+
+
+def _table(rows: Sequence[tuple[str, str]]) -> str:
+    lines = (f"<tr><th>{html.escape(a)}</th><td>{html.escape(b)}</td></tr>" for a, b in rows)
+    return "<table>" + "".join(lines) + "</table>"
+
+
+_PAGE = """<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{title}</title>
+<style>
+:root {{ color-scheme: light dark; --back: #fff; --ink: #1c2024; --faint: #8b9198; --grid: #e4e7ea;
+  --first: #2563b0; --second: #d9730d; }}
+@media (prefers-color-scheme: dark) {{
+  :root {{ --back: #16191c; --ink: #e6e8ea; --faint: #8b9198; --grid: #2c3136; --first: #6ea8ec;
+    --second: #f0a35e; }} }}
+body {{ background: var(--back); color: var(--ink); font: 15px/1.45 system-ui, sans-serif;
+  margin: 1.5rem; }}
+h1 {{ font-size: 1.3rem; margin: 0 0 .2rem; }}
+h2 {{ font-size: .95rem; margin: 0; }}
+h2 small {{ color: var(--faint); font-weight: normal; }}
+#now, label {{ color: var(--faint); }}
+#charts {{ display: grid; grid-template-columns: repeat(auto-fill, minmax(21rem, 1fr)); gap: 1.2rem;
+  margin: 1rem 0 2rem; }}
+svg {{ width: 100%; display: block; overflow: visible; }}
+svg text {{ fill: var(--faint); font-size: 11px; font-variant-numeric: tabular-nums; }}
+.grid {{ stroke: var(--grid); }}
+.line {{ fill: none; stroke-width: 1.6; stroke-linejoin: round; }}
+.legend span {{ margin-right: .8rem; }}
+table {{ border-collapse: collapse; font-size: .85rem; }}
+th, td {{ text-align: left; font-weight: normal; padding: .08rem 1.2rem .08rem 0; }}
+th {{ color: var(--faint); }}
+.tables {{ display: flex; gap: 3rem; flex-wrap: wrap; }}
+</style>
+</head>
+<body>
+<h1>{title}</h1>
+<p id="now"></p>
+<label>Against <select id="axis"><option value="steps">steps</option>
+<option value="seconds">wall clock</option></select></label>
+<div id="charts"></div>
+<div class="tables"><div><h2>Where the time went</h2>{breakdown}</div>
+<div><h2>Settings</h2>{settings}</div></div>
+<script>
+"use strict";
+const data = {data};
+const colors = ["var(--first)", "var(--second)"];
+const column = name => data.columns.indexOf(name);
+const svg = (tag, attributes, text) => {{
+  const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+  if (text !== undefined) node.textContent = text;
+  return node;
+}};
+const short = v => {{
+  const a = Math.abs(v);
+  if (a >= 1e9) return +(v / 1e9).toPrecision(3) + " G";
+  if (a >= 1e6) return +(v / 1e6).toPrecision(3) + " M";
+  if (a >= 1e4) return +(v / 1e3).toPrecision(3) + " k";
+  if (a > 0 && a < 1e-3) return v.toExponential(1);
+  return String(+v.toPrecision(3));
+}};
+const clock = s => s < 120 ? Math.round(s) + " s" : s < 7200 ? +(s / 60).toFixed(1) + " min"
+  : +(s / 3600).toFixed(2) + " h";
+const ticks = (low, high, count) => {{
+  const rough = (high - low) / count || 1, power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map(k => k * power).find(s => s >= rough);
+  const found = [];
+  for (let v = Math.ceil(low / step - 1e-9) * step; v <= high + step * 1e-9; v += step) found.push(v);
+  return found;
+}};
+function chart(spec, axis) {{
+  const x = column(axis), lines = spec.lines.map(([name, label], number) => ({{ label, number,
+    points: data.rows.filter(r => r[column(name)] !== null).map(r => [r[x], r[column(name)]]) }}))
+    .filter(line => line.points.length);
+  if (!lines.length) return null;
+  const all = lines.flatMap(line => line.points), ys = all.map(p => p[1]);
+  const right = Math.max(...all.map(p => p[0])) || 1;
+  let low = Math.min(...ys), high = Math.max(...ys);
+  if (spec.title === "Success" || spec.title === "Clipped") {{ low = 0; high = Math.max(high, .1); }}
+  if (spec.title === "Speed" || spec.title === "Length") low = 0;
+  if (high - low < 1e-12) {{ low -= .5; high += .5; }}
+  const W = 400, H = 220, L = 46, R = 8, T = 10, B = 24;
+  const px = v => L + (W - L - R) * v / right, py = v => T + (H - T - B) * (high - v) / (high - low);
+  const root = svg("svg", {{ viewBox: `0 0 ${{W}} ${{H}}`, role: "img", "aria-label": spec.title }});
+  for (const v of ticks(low, high, 5)) {{
+    root.append(svg("line", {{ class: "grid", x1: L, x2: W - R, y1: py(v), y2: py(v) }}),
+      svg("text", {{ x: L - 6, y: py(v) + 4, "text-anchor": "end" }}, short(v)));
+  }}
+  for (const v of ticks(0, right, 4)) root.append(svg("text", {{ x: px(v), y: H - 6,
+    "text-anchor": "middle" }}, axis === "steps" ? short(v) : clock(v)));
+  for (const line of lines) {{
+    const style = `stroke:${{colors[line.number]}}`;
+    root.append(svg("polyline", {{ class: "line", style,
+      points: line.points.map(p => px(p[0]).toFixed(1) + "," + py(p[1]).toFixed(1)).join(" ") }}));
+    if (line.number || line.points.length === 1) for (const p of line.points)
+      root.append(svg("circle", {{ cx: px(p[0]), cy: py(p[1]), r: 2.5,
+        style: `fill:${{colors[line.number]}}` }}));
+  }}
+  const box = document.createElement("div"), head = document.createElement("h2");
+  head.textContent = spec.title + " ";
+  const unit = document.createElement("small");
+  unit.textContent = spec.unit;
+  head.append(unit);
+  box.append(head, root);
+  if (spec.lines.length > 1) {{
+    const legend = document.createElement("div");
+    legend.className = "legend";
+    for (const line of lines) {{
+      const name = document.createElement("span");
+      name.style.color = colors[line.number];
+      name.textContent = line.label + " " + short(line.points[line.points.length - 1][1]);
+      legend.append(name);
+    }}
+    box.append(legend);
+  }}
+  return box;
+}}
+function draw() {{
+  const axis = document.getElementById("axis").value;
+  document.getElementById("charts").replaceChildren(
+    ...data.charts.map(spec => chart(spec, axis)).filter(Boolean));
+}}
+const last = data.rows[data.rows.length - 1];
+if (last) document.getElementById("now").textContent =
+  short(last[column("steps")]) + " steps in " + clock(last[column("seconds")]);
+document.getElementById("axis").addEventListener("change", draw);
+draw();
+</script>
+</body>
+</html>
+"""

@@ -1,0 +1,179 @@
+"""Pictures of a policy at play, from behind the robot: a contact sheet, and a video.
+
+An evaluation plays too many episodes to draw them all, so a few of them are played again, with a camera.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import pathlib
+import shutil
+import subprocess
+from dataclasses import dataclass, field
+from typing import Any, Sequence
+
+import numpy as np
+import torch
+
+import galactic
+from galactic.learning.checkpoint import write_atomically
+from galactic.learning.environments import Observation
+from galactic.learning.evaluation import Actor, EpisodeResult
+from galactic.learning.homes import SUCCESS, simulation_keywords
+from galactic.learning.networks import IMAGE_SIZE
+from galactic.learning.settings import Settings
+
+WIDTH, HEIGHT = 256, 192
+MOMENTS = 6
+"""Columns of a contact sheet."""
+FRAMES_PER_SECOND = 20
+_LABEL_HEIGHT = 16
+_GREEN, _RED = (24, 110, 52), (150, 40, 36)
+
+
+@dataclass
+class Film:
+    """An episode, frame by frame: what it began with, and what each step led to."""
+
+    episode: int
+    frames: list[np.ndarray] = field(default_factory=list)  # each [HEIGHT, WIDTH, 3] uint8
+    ending: int = 0  # an EpisodeEnd
+    reward: float = 0.0  # the sum
+
+    @property
+    def label(self) -> str:
+        ending = galactic.EpisodeEnd(self.ending).name.lower().replace("_", " ")
+        return f"episode {self.episode}: {ending}, {len(self.frames) - 1} steps"
+
+    @property
+    def color(self) -> tuple[int, int, int]:
+        return _GREEN if self.ending == SUCCESS else _RED
+
+
+def require_tools(video: bool) -> None:
+    """Raises galactic.Error, saying what to install, where what pictures are made with is missing."""
+    try:
+        import PIL  # noqa: F401
+    except ImportError:
+        raise _unsupported("Pillow", "python3-pil") from None
+    if video and not shutil.which("ffmpeg"):
+        raise _unsupported("ffmpeg on the PATH", "ffmpeg")
+
+
+def choose(results: Sequence[EpisodeResult], count: int) -> list[int]:
+    """Up to `count` episodes, half of them successes where there are as many, then failures; of each
+    the first."""
+    successes = [one.episode for one in results if one.success]
+    failures = [one.episode for one in results if not one.success]
+    shown = min(len(successes), max((count + 1) // 2, count - len(failures)))
+    return successes[:shown] + failures[: count - shown]
+
+
+def film(world: "galactic.World", settings: Settings, actor: Actor, episodes: Sequence[int],
+         threads: int) -> list[Film]:  # fmt: skip
+    """Plays `episodes` side by side, one env for each. What a policy does may hang on the last bits of
+    sums, and so on how many envs it acts for: how an episode ended here is told by its film."""
+    envs = len(episodes)
+    simulator = galactic.Simulator(
+        world,
+        envs=envs,
+        threads=threads,
+        seed=settings.seed,
+        body_transforms=True,
+        auto_reset=False,
+        **simulation_keywords(settings.simulation),
+    )
+    simulator.reset(np.array(episodes, np.int32))
+    onlooker = galactic.Renderer(
+        simulator, camera="follow", width=WIDTH, height=HEIGHT, depth=False, threads=threads
+    )
+    eyes = None
+    if actor.policy.needs_images:
+        eyes = galactic.Renderer(simulator, width=IMAGE_SIZE, height=IMAGE_SIZE, threads=threads)
+    films = [Film(episode) for episode in episodes]
+    playing = np.arange(envs)
+    actor.begin(envs)
+    step = 0
+    while True:
+        for env, frame in zip(playing, onlooker.render(envs=playing)["rgb"]):
+            films[env].frames.append(frame)
+        playing = np.array([env for env in playing if not films[env].ending], np.int64)
+        if not len(playing):
+            return films
+        simulator.step(
+            actor.act(
+                _seen(simulator, eyes),
+                np.full(envs, step == 0),
+                np.array(episodes),
+                np.full(envs, step),
+            )
+        )
+        step += 1
+        for env in playing:
+            films[env].ending = int(simulator.endings[env])
+            films[env].reward += float(simulator.rewards[env])
+
+
+def write_contact_sheet(films: Sequence[Film], file: pathlib.Path) -> None:
+    """A PNG with a row for each film: from its first frame to its last."""
+    rows = []
+    for one in films:
+        moments = np.linspace(0, len(one.frames) - 1, MOMENTS).round().astype(int)
+        shown = ", ".join(map(str, moments))
+        label = f"{one.label}, return {one.reward:.1f}; shown after {shown}"
+        rows.append(_label(label, one.color, MOMENTS * WIDTH))
+        rows.append(np.concatenate([one.frames[moment] for moment in moments], axis=1))
+    from PIL import Image
+
+    sheet = Image.fromarray(np.concatenate(rows))
+    write_atomically(file, lambda handle: sheet.save(handle, format="PNG"))
+
+
+def write_video(films: Sequence[Film], file: pathlib.Path) -> None:
+    """All films at once, side by side, each until its end; in the format that the name says."""
+    columns = min(4, len(films))
+    rows = -(-len(films) // columns)
+    height = HEIGHT + _LABEL_HEIGHT
+    canvas = np.zeros((rows * height, columns * WIDTH, 3), np.uint8)
+    command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]
+    command += ["-s", f"{columns * WIDTH}x{rows * height}", "-r", str(FRAMES_PER_SECOND), "-i", "-"]
+    command += ["-pix_fmt", "yuv420p", str(file.absolute())]
+    cells = []
+    for number, one in enumerate(films):
+        row, column = divmod(number, columns)
+        cell = canvas[row * height : (row + 1) * height, column * WIDTH : (column + 1) * WIDTH]
+        cell[:_LABEL_HEIGHT] = _label(one.label, one.color, WIDTH)
+        cells.append(cell[_LABEL_HEIGHT:])
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdin is not None and process.stderr is not None
+        with contextlib.suppress(BrokenPipeError):  # It says below why it left.
+            for moment in range(max(len(one.frames) for one in films)):
+                for one, cell in zip(films, cells):
+                    cell[:] = one.frames[min(moment, len(one.frames) - 1)]
+                process.stdin.write(canvas.tobytes())
+            process.stdin.close()
+        said = process.stderr.read().decode(errors="replace").strip()
+    if process.returncode:
+        raise galactic.Error(galactic.ErrorCode.IO, str(file), f"ffmpeg did not write it: {said}")
+
+
+def _seen(simulator: "galactic.Simulator", eyes: Any) -> Observation:
+    state = torch.from_numpy(simulator.observations.copy())
+    if eyes is None:
+        return Observation(state)
+    images = eyes.render()
+    return Observation(state, torch.from_numpy(images["rgb"]), torch.from_numpy(images["depth"]))
+
+
+def _label(text: str, color: tuple[int, int, int], width: int) -> np.ndarray:
+    """A line of text on a strip, [_LABEL_HEIGHT, width, 3] uint8."""
+    from PIL import Image, ImageDraw
+
+    strip = Image.new("RGB", (width, _LABEL_HEIGHT), color)
+    ImageDraw.Draw(strip).text((6, 2), text, fill=(255, 255, 255))
+    return np.asarray(strip)
+
+
+def _unsupported(what: str, package: str) -> "galactic.Error":
+    message = f"need {what}, which is not here; install it (Debian: {package})"
+    return galactic.Error(galactic.ErrorCode.UNSUPPORTED, "pictures", message)

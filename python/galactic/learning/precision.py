@@ -1,0 +1,27 @@
+"""Arithmetic on GPUs: full, TF32, or bfloat16."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import ContextManager
+
+import torch
+
+
+class Precision:
+    """How networks are computed: `fp32`; `tf32`: multiplications with 10 bits of mantissa; `bf16`: the
+    network in bfloat16, heads, losses and parameters in float32. On processors all are fp32."""
+
+    def __init__(self, name: str, device: torch.device):
+        self._bf16 = name == "bf16" and device.type == "cuda"
+        if device.type == "cuda":
+            quick = name in ("tf32", "bf16")
+            torch.backends.cuda.matmul.allow_tf32 = quick
+            torch.backends.cudnn.allow_tf32 = quick
+            torch.backends.cudnn.benchmark = True
+
+    def autocast(self) -> ContextManager[None]:
+        """Around every use of a policy."""
+        if self._bf16:
+            return torch.autocast("cuda", dtype=torch.bfloat16)
+        return contextlib.nullcontext()

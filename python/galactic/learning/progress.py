@@ -1,0 +1,58 @@
+"""How a run goes, on one line."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import Optional, TextIO
+
+
+def duration(seconds: float) -> str:
+    """73 as 1:13, 4000 as 1:06:40."""
+    whole = max(0, round(seconds))
+    minutes, second = divmod(whole, 60)
+    hours, minute = divmod(minutes, 60)
+    return f"{hours}:{minute:02d}:{second:02d}" if hours else f"{minute}:{second:02d}"
+
+
+def amount(number: float) -> str:
+    """1234567 as 1.23 M."""
+    for unit, size in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
+        if abs(number) >= size:
+            return f"{number / size:.3g} {unit}"
+    return f"{number:.0f}"
+
+
+class ProgressLine:
+    """One line that is written over on a terminal; elsewhere plain lines, now and then."""
+
+    def __init__(self, stream: Optional[TextIO] = None, *, quiet: bool = False,
+                 plain_every: float = 15.0):  # fmt: skip
+        self._stream = stream or sys.stderr
+        self._quiet = quiet
+        self._live = self._stream.isatty()
+        self._plain_every = plain_every
+        self._last = -1e9
+        self._open = False
+
+    def show(self, text: str) -> None:
+        if self._quiet:
+            return
+        if self._live:
+            self._stream.write(f"\r\x1b[K{text}")
+            self._stream.flush()
+            self._open = True
+        elif time.monotonic() - self._last >= self._plain_every:
+            self._last = time.monotonic()
+            print(text, file=self._stream, flush=True)
+
+    def say(self, text: str) -> None:
+        """A line that stays."""
+        self.close()
+        if not self._quiet:
+            print(text, file=self._stream, flush=True)
+
+    def close(self) -> None:
+        if self._open:
+            self._stream.write("\n")
+            self._open = False

@@ -1,0 +1,91 @@
+"""The memory of a rollout, and the advantages of what was done in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+import torch
+from torch import Tensor
+
+from galactic.learning.networks import Inputs
+
+
+@dataclass
+class Rollout:
+    """T steps of N envs. Row t of the observations is what the policy saw before action t.
+
+    Row T of `state`, `rgb`, `depth`, `values` and `starts` belongs to the state after the last step.
+    `steps` is how many of the T steps are filled: a rank that was pre-empted has fewer.
+    """
+
+    state: Tensor  # [T + 1, N, S] float32
+    rgb: Optional[Tensor]  # [T + 1, N, H, W, 3] uint8
+    depth: Optional[Tensor]  # [T + 1, N, H, W] float32, metres
+    actions: Tensor  # [T, N, A] float32, as sampled: motions not clamped
+    log_probs: Tensor  # [T, N]
+    values: Tensor  # [T + 1, N]
+    rewards: Tensor  # [T, N]; in the end with the values of what timeouts cut off
+    ends: Tensor  # [T, N] bool: the episode ended with this step
+    starts: Tensor  # [T + 1, N] bool: an episode starts here
+    first_previous: Tensor  # [N, A] the action before step 0, zero at starts
+    first_hidden: Optional[Tensor]  # [N, H] the memory before step 0
+    steps: int = 0
+
+    @classmethod
+    def empty(cls, horizon: int, envs: int, state: int, actions: int,
+              image: Optional[tuple[int, int]] = None, hidden: int = 0,
+              device: torch.device = torch.device("cpu")) -> "Rollout":  # fmt: skip
+
+        def make(*shape: int, dtype: torch.dtype = torch.float32) -> Tensor:
+            return torch.zeros(shape, dtype=dtype, device=device)
+
+        rows = horizon + 1
+        return cls(
+            state=make(rows, envs, state),
+            rgb=make(rows, envs, *image, 3, dtype=torch.uint8) if image else None,
+            depth=make(rows, envs, *image) if image else None,
+            actions=make(horizon, envs, actions),
+            log_probs=make(horizon, envs),
+            values=make(rows, envs),
+            rewards=make(horizon, envs),
+            ends=make(horizon, envs, dtype=torch.bool),
+            starts=make(rows, envs, dtype=torch.bool),
+            first_previous=make(envs, actions),
+            first_hidden=make(envs, hidden) if hidden else None,
+        )
+
+    def inputs(self, first: int, last: int, envs: "slice | Tensor", previous: bool) -> Inputs:
+        """What a policy sees in the steps [first, last) of some envs."""
+
+        def part(tensor: Optional[Tensor]) -> Optional[Tensor]:
+            return None if tensor is None else tensor[first:last, envs]
+
+        before = None
+        if previous:
+            before = torch.empty(
+                (last - first,) + self.first_previous[envs].shape, device=self.actions.device
+            )
+            start = 1 if first == 0 else 0
+            if start:
+                before[0] = self.first_previous[envs]
+            before[start:] = self.actions[first + start - 1 : last - 1, envs].clamp(-1.0, 1.0)
+            before *= (~self.starts[first:last, envs]).unsqueeze(-1)
+        return Inputs(self.state[first:last, envs], part(self.rgb), part(self.depth), before)
+
+
+def advantages(rewards: Tensor, values: Tensor, ends: Tensor, gamma: float, lam: float) -> Tensor:
+    """Generalized advantage estimates (Schulman et al. 2016, equation 16); [T, N].
+
+    values [T + 1, N]; ends [T, N] bool: nothing after such a step counts for it. What a timeout cuts
+    off has to be in `rewards` already, as gamma times the value of the last observation.
+    """
+    goes_on = (~ends).to(rewards.dtype)
+    delta = rewards + gamma * values[1:] * goes_on - values[:-1]
+    factor = (gamma * lam) * goes_on
+    result = torch.empty_like(rewards)
+    following = torch.zeros_like(rewards[0])
+    for step in range(len(rewards) - 1, -1, -1):
+        following = torch.addcmul(delta[step], factor[step], following)
+        result[step] = following
+    return result

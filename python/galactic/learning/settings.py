@@ -1,0 +1,312 @@
+"""Every setting of a training run: one dataclass, from which command line, checkpoints, reports and
+the tables of docs/learning.md come."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+from dataclasses import dataclass
+from typing import Any, Mapping, Optional, Sequence
+
+
+class SettingsError(ValueError):
+    """A setting that cannot be: says which, what was found and what is wanted."""
+
+
+def _setting(default: Any, group: str, text: str, *, low: Optional[float] = None,
+             high: Optional[float] = None, choices: Sequence[str] = (),
+             may_change: bool = False) -> Any:  # fmt: skip
+    """A field of Settings. `may_change`: a resumed run may have another value."""
+    return dataclasses.field(
+        default=default,
+        metadata={
+            "group": group,
+            "text": text,
+            "low": low,
+            "high": high,
+            "choices": tuple(choices),
+            "may_change": may_change,
+        },
+    )
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a run is. The defaults are those of the preset `paper`: table 3 of the paper, and of
+    Habitat's DD-PPO where the table is silent."""
+
+    # What the robot does, and for how long.
+    steps: int = _setting(
+        200_000_000, "Run", "steps of all envs of all ranks, together", low=1, may_change=True
+    )
+    seed: int = _setting(1, "Run", "of everything random", low=0)
+    envs: int = _setting(128, "Run", "environments of each rank", low=1)
+    halves: int = _setting(
+        2,
+        "Run",
+        "groups of envs: with 2, one simulates while the network acts on the other",
+        low=1,
+        high=2,
+    )
+    simulation: str = _setting(
+        "",
+        "Run",
+        "options of the simulation, as NAME=VALUE separated by spaces (those of galactic-run)",
+    )
+    terminate: str = _setting(
+        "auto",
+        "Run",
+        "who decides to terminate: the policy (`learned`), nobody (`never`), or the policy where the "
+        "task asks for it (`auto`)",
+        choices=("auto", "learned", "never"),
+    )
+
+    network: str = _setting(
+        "resnet18",
+        "Network",
+        "`state` sees no pictures; the others are the paper's (table 4)",
+        choices=("state", "simple_cnn", "resnet9", "resnet18"),
+    )
+    recurrent: bool = _setting(
+        False, "Network", "a GRU in the network `state`; the others have one"
+    )
+    width: int = _setting(128, "Network", "of the layers of `state`", low=1)
+    layers: int = _setting(2, "Network", "hidden layers of `state`", low=1)
+    activation: str = _setting(
+        "tanh", "Network", "between the layers of `state`", choices=("tanh", "relu")
+    )
+    log_std: str = _setting(
+        "output",
+        "Network",
+        "standard deviations of `state`: an `output` of the network, clamped to exp(-5)..exp(2), or a "
+        "`parameter`, the same everywhere",
+        choices=("output", "parameter"),
+    )
+    initial_log_std: float = _setting(
+        -0.5, "Network", "where the parameters of `log_std` start", low=-5.0, high=2.0
+    )
+    final_log_std: float = _setting(
+        2.0,
+        "Network",
+        "the most that these parameters may be at the end of the run; the limit falls from "
+        "`initial_log_std` in the last four fifths; 2: no limit",
+        low=-5.0,
+        high=2.0,
+    )
+    normalize: bool = _setting(
+        False, "Network", "observations by their running mean and variance, clamped to 10"
+    )
+    closeup: float = _setting(
+        0.0,
+        "Network",
+        "also show the network tanh(x / this) of each number x of the observation, so that "
+        "centimetres near zero count beside metres; 0: no",
+        low=0.0,
+    )
+
+    learning_rate: float = _setting(3.5e-4, "PPO", "of Adam, at the start", low=0.0)
+    learning_rate_end: float = _setting(0.0, "PPO", "at the end; linear in between", low=0.0)
+    adam_epsilon: float = _setting(1e-5, "PPO", "of Adam", low=0.0)
+    horizon: int = _setting(64, "PPO", "steps of each env in a rollout", low=1)
+    epochs: int = _setting(1, "PPO", "times that a rollout is used", low=1)
+    mini_batches: int = _setting(2, "PPO", "parts of a rollout, by env; divides `envs`", low=1)
+    clip: float = _setting(0.2, "PPO", "of the ratio of probabilities", low=0.0)
+    value_coefficient: float = _setting(
+        0.5, "PPO", "weight of the value loss, which is half the squared error", low=0.0
+    )
+    value_clip: float = _setting(
+        0.0, "PPO", "furthest that an update moves a value before its loss is flat; 0: any", low=0.0
+    )
+    entropy: float = _setting(
+        1e-3, "PPO", "coefficient of the entropy, a plain sum over motions and decisions", low=0.0
+    )
+    entropy_end: float = _setting(
+        -1.0, "PPO", "the same at the end of the run, linear in between; -1: no change", low=-1.0
+    )
+    max_grad_norm: float = _setting(2.0, "PPO", "longest gradient", low=0.0)
+    gamma: float = _setting(0.99, "PPO", "discount", low=0.0, high=1.0)
+    gae_lambda: float = _setting(
+        0.95, "PPO", "lambda of generalized advantage estimates", low=0.0, high=1.0
+    )
+    normalize_advantages: bool = _setting(True, "PPO", "to mean 0, variance 1 over all ranks")
+
+    ranks: int = _setting(
+        1,
+        "Ranks",
+        "processes that train together on this machine; across machines torchrun starts them, and "
+        "this says nothing",
+        low=1,
+    )
+    sync_fraction: float = _setting(
+        0.6,
+        "Ranks",
+        "once this share of the ranks has finished a rollout, the others stop theirs; 1: all wait",
+        low=0.0,
+        high=1.0,
+    )
+    shortest_rollout: float = _setting(
+        0.25, "Ranks", "share of a rollout before which no rank is stopped", low=0.0, high=1.0
+    )
+
+    simulation_threads: int = _setting(
+        0, "Machine", "of each rank; 0: its share of the processors", low=0, may_change=True
+    )
+    torch_threads: int = _setting(
+        0,
+        "Machine",
+        "of each rank; 0: its share of the processors with pictures, 1 for `state`, whose layers are "
+        "too small to share",
+        low=0,
+        may_change=True,
+    )
+    precision: str = _setting(
+        "bf16",
+        "Machine",
+        "of networks on a GPU; on processors always fp32",
+        choices=("fp32", "tf32", "bf16"),
+    )
+
+    validate_every: int = _setting(
+        10_000_000,
+        "Reports",
+        "steps between validations, when there is a world for them; 0: none",
+        low=0,
+    )
+    validation_episodes: int = _setting(
+        200, "Reports", "of the world for validations, the first; 0: all", low=0
+    )
+    checkpoint_every: int = _setting(
+        1_000_000,
+        "Reports",
+        "steps between checkpoints; 0: only at the end",
+        low=0,
+        may_change=True,
+    )
+    keep: int = _setting(
+        3, "Reports", "latest checkpoints that are kept, beside the best", low=1, may_change=True
+    )
+    window: int = _setting(
+        1000, "Reports", "episodes over which the curves of training are averaged", low=1
+    )
+    log_every: float = _setting(
+        2.0, "Reports", "seconds between points of the curves", low=0.0, may_change=True
+    )
+
+    def __post_init__(self) -> None:
+        for field in dataclasses.fields(self):
+            _check(field, getattr(self, field.name))
+        if self.envs % self.mini_batches:
+            raise SettingsError(
+                f"{self.envs} envs cannot be split into {self.mini_batches} mini-batches; take a "
+                "number of envs that mini_batches divides"
+            )
+        if self.envs % self.halves:
+            raise SettingsError(f"{self.envs} envs cannot be split into {self.halves} halves")
+        if self.network != "state" and self.recurrent:
+            raise SettingsError("recurrent is for the network state; the paper's have a GRU anyway")
+
+    def learning_rate_at(self, progress: float) -> float:
+        """`progress`: share of the run that is done, 0 to 1."""
+        return _between(self.learning_rate, self.learning_rate_end, progress)
+
+    def entropy_at(self, progress: float) -> float:
+        end = self.entropy if self.entropy_end < 0.0 else self.entropy_end
+        return _between(self.entropy, end, progress)
+
+    def log_std_limit_at(self, progress: float) -> float:
+        """The most that a parameter of `log_std` may be."""
+        if self.final_log_std >= 2.0:
+            return 2.0
+        return _between(self.initial_log_std, self.final_log_std, (progress - 0.2) / 0.8)
+
+    def to_dict(self) -> dict[str, Any]:
+        return dataclasses.asdict(self)
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> "Settings":
+        """The settings of a checkpoint. Names that this version does not know are refused; what it
+        knows and the checkpoint does not has its default."""
+        unknown = sorted(set(values) - {field.name for field in dataclasses.fields(cls)})
+        if unknown:
+            raise SettingsError(f"the settings {', '.join(unknown)} are unknown to this version")
+        return cls(**values)
+
+
+def _check(field: "dataclasses.Field[Any]", value: Any) -> None:
+    low, high = field.metadata["low"], field.metadata["high"]
+    choices = field.metadata["choices"]
+    if choices and value not in choices:
+        raise SettingsError(f'{field.name} is "{value}"; it can be {", ".join(choices)}')
+    if (low is not None and value < low) or (high is not None and value > high):
+        wanted = f"at least {low:g}" if high is None else f"from {low:g} to {high:g}"
+        raise SettingsError(f"{field.name} is {value}; it has to be {wanted}")
+
+
+def _between(start: float, end: float, progress: float) -> float:
+    return start + (end - start) * min(max(progress, 0.0), 1.0)
+
+
+def option_name(name: str) -> str:
+    """The command line's name of a setting."""
+    return "--" + name.replace("_", "-")
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """One option for each setting, without a default: what is not given stays as the preset has it."""
+    groups: dict[str, Any] = {}
+    for field in dataclasses.fields(Settings):
+        title = field.metadata["group"]
+        group = groups.setdefault(title, parser.add_argument_group(title))
+        keywords: dict[str, Any] = {"default": argparse.SUPPRESS, "dest": "setting_" + field.name}
+        keywords["help"] = f"{field.metadata['text']} ({field.default!r})".replace("%", "%%")
+        if isinstance(field.default, bool):
+            keywords["action"] = argparse.BooleanOptionalAction
+        else:
+            keywords["type"] = _integer if isinstance(field.default, int) else type(field.default)
+            keywords["metavar"] = "|".join(field.metadata["choices"]) or field.name.upper()
+        group.add_argument(option_name(field.name), **keywords)
+
+
+def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The settings that the command line names."""
+    prefix = "setting_"
+    return {
+        name[len(prefix) :]: value
+        for name, value in vars(arguments).items()
+        if name.startswith(prefix)
+    }
+
+
+def _integer(text: str) -> int:
+    """Also 2e6 and 2_000_000."""
+    value = float(text)
+    if value != int(value):
+        raise ValueError(text)
+    return int(value)
+
+
+def resumed(before: Settings, given: Mapping[str, Any]) -> Settings:
+    """The settings of a run that goes on. Refuses those that would make it another run."""
+    fields = {field.name: field for field in dataclasses.fields(Settings)}
+    for name, value in given.items():
+        old = getattr(before, name)
+        if value != old and not fields[name].metadata["may_change"]:
+            raise SettingsError(
+                f"the run began with {option_name(name)} {old}, and cannot go on with {value}; "
+                "begin a new one"
+            )
+    return dataclasses.replace(before, **given)
+
+
+def markdown_tables() -> str:
+    """The tables of docs/learning.md."""
+    lines: list[str] = []
+    group = ""
+    for field in dataclasses.fields(Settings):
+        if field.metadata["group"] != group:
+            group = field.metadata["group"]
+            lines += [*([""] if lines else []), f"**{group}**", ""]
+            lines += ["| option | default | what |", "|---|---|---|"]
+        default = f"`{field.default}`" if field.default != "" else ""
+        lines.append(f"| `{option_name(field.name)}` | {default} | {field.metadata['text']} |")
+    return "\n".join(lines) + "\n"

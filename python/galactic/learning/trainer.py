@@ -1,0 +1,352 @@
+"""The training loop: collect, update, report, save; the same on every rank."""
+
+from __future__ import annotations
+
+import collections
+import dataclasses
+import os
+import pathlib
+import signal
+import time
+from typing import Any, Callable, Optional
+
+import torch
+
+from galactic.learning import checkpoint
+from galactic.learning.checkpoint import CheckpointFolder, SavedPolicy, new_policy
+from galactic.learning.collector import Collector, CollectorOptions, EpisodeSums
+from galactic.learning.curves import Curves, write_json
+from galactic.learning.distributed import Group
+from galactic.learning.environments import Environments
+from galactic.learning.networks import Policy, PolicyShape
+from galactic.learning.ppo import Learner
+from galactic.learning.progress import ProgressLine, amount, duration
+from galactic.learning.settings import Settings
+from galactic.learning.stopwatch import Stopwatch
+
+Validation = Callable[[Policy], EpisodeSums]
+"""Runs the episodes for validation that are this rank's, and returns their sums."""
+
+
+class TrainingError(ArithmeticError):
+    """Training cannot go on: says at which update, what was found, what may help."""
+
+
+class Trainer:
+    """A run: all that `python3 -m galactic.train` does after it has read its command line.
+
+    `folder` None writes nothing. `parts` are names and sizes of the parts of an observation, for those
+    who use the policy. Every rank makes one, and calls the same methods.
+    """
+
+    def __init__(self, settings: Settings, envs: Environments, group: Group,
+                 folder: Optional[pathlib.Path], *, validation: Optional[Validation] = None,
+                 title: str = "run"):  # fmt: skip
+        self.settings = settings
+        self.envs = envs
+        self.group = group
+        self.folder = folder
+        self.validation = validation
+        torch.manual_seed(settings.seed)
+        self.shape = PolicyShape(
+            envs.state_size,
+            envs.motions,
+            envs.decides_terminate,
+            settings.normalize,
+            settings.closeup,
+        )
+        self.parts: list[tuple[str, int]] = list(getattr(envs, "parts", []))
+        self.policy = new_policy(settings, self.shape).to(group.device)
+        if self.policy.needs_images:
+            self.policy = self.policy.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
+        self.learner = Learner(self.policy, settings, group)
+        options = CollectorOptions(
+            settings.horizon, settings.seed, settings.gamma, group.rank * settings.envs
+        )
+        self.collector = Collector(envs, self.policy, options, self.learner.precision, group.device)
+        self.stragglers = group.stragglers(settings.sync_fraction, settings.shortest_rollout)
+        self.stopwatch = self.collector.stopwatch
+        self.checkpoints = CheckpointFolder(folder, settings.keep) if folder else None
+        self.curves = Curves(folder if group.rank == 0 else None, title)
+        self.progress = ProgressLine(quiet=group.rank > 0)
+        self.steps = 0
+        self.updates = 0
+        self.best: Optional[float] = None
+        self._window: collections.deque[EpisodeSums] = collections.deque()
+        self._seconds_before = 0.0
+        self._started = time.perf_counter()
+        self._logged = (0.0, 0)
+        self._interrupted = False
+
+    @property
+    def seconds(self) -> float:
+        """Wall clock since the run began, over all its parts."""
+        return self._seconds_before + time.perf_counter() - self._started
+
+    def begin(self) -> None:
+        """Starts at the first step."""
+        self.collector.reset()
+        self._started = time.perf_counter()
+
+    def train(self) -> bool:
+        """Trains until `settings.steps` are done or a signal asks to stop; saves in either case.
+        Returns whether the run is complete. Raises TrainingError when the loss is no number."""
+        settings = self.settings
+        with _Signals(self._interrupt):
+            while self.steps < settings.steps:
+                before = self.steps
+                losses, stop = self._iterate()
+                done = self.steps >= settings.steps or stop
+                if not stop and self._is_due(settings.validate_every, before, done):
+                    self._validate()
+                if done or self.seconds - self._logged[0] >= settings.log_every:
+                    self._log(losses)
+                if self._is_due(settings.checkpoint_every, before, done):
+                    self.save()
+                if stop:
+                    break
+        self.progress.close()
+        self._write_report()
+        return self.steps >= settings.steps
+
+    def _iterate(self) -> tuple[dict[str, float], bool]:
+        """One rollout and one update. Returns the losses and whether some rank was told to stop."""
+        horizon, update = self.settings.horizon, self.updates
+        rollout = self.collector.collect(
+            update, lambda step: self.stragglers.should_stop(update, step, horizon)
+        )
+        if rollout.steps == horizon:
+            self.stragglers.finished(update)
+        with self.stopwatch.time("update"):
+            losses = self.learner.update(rollout, update, self.steps / self.settings.steps)
+        sums = self.collector.episodes
+        shared = torch.tensor(
+            [
+                float(rollout.steps * self.settings.envs),
+                float(self._interrupted),
+                *dataclasses.astuple(sums),
+            ],
+            dtype=torch.float64,
+            device=self.group.device,
+        )
+        steps, stop, *episodes = self.group.sum(shared).tolist()
+        self.stragglers.forget(update)
+        self.steps += int(steps)
+        self.updates += 1
+        self._remember(EpisodeSums(*episodes))
+        if not all(abs(value) < float("inf") for value in losses.values()):
+            raise TrainingError(
+                f"update {self.updates} gave a loss that is no number ({losses}); a lower "
+                "--learning-rate or --max-grad-norm may help"
+            )
+        return losses, stop > 0.0
+
+    def _is_due(self, every: int, before: int, done: bool) -> bool:
+        return done or (every > 0 and self.steps // every > before // every)
+
+    def _remember(self, sums: EpisodeSums) -> None:
+        """Keeps the episodes of as few rollouts as cover the window."""
+        self._window.append(sums)
+        kept = sum(one.episodes for one in self._window)
+        while kept - self._window[0].episodes >= self.settings.window:
+            kept -= self._window.popleft().episodes
+
+    def recent(self) -> EpisodeSums:
+        """The latest episodes of training, `window` or a few more."""
+        return EpisodeSums(
+            *(sum(column) for column in zip(*map(dataclasses.astuple, self._window)))
+        )
+
+    def _log(self, losses: dict[str, float]) -> None:
+        recent = self.recent()
+        seconds, steps = self._logged
+        speed = (self.steps - steps) / max(self.seconds - seconds, 1e-9)
+        self._logged = (self.seconds, self.steps)
+        values = {
+            "steps": self.steps,
+            "seconds": self.seconds,
+            "updates": self.updates,
+            "sps": speed,
+            "episodes": recent.episodes,
+            "learning_rate": self.learner.optimizer.learning_rate,
+            **losses,
+            **_means(recent, ""),
+        }
+        self.curves.add(values)
+        left = (self.settings.steps - self.steps) / max(speed, 1e-9)
+        success = f"{100.0 * values['success']:.1f} %" if recent.episodes else "-"
+        self.progress.show(
+            f"{amount(self.steps)} of {amount(self.settings.steps)} steps  "
+            f"{amount(speed)} steps/s  success {success}  "
+            f"return {values.get('return', 0.0):.2f}  {duration(left)} left"
+        )
+        with self.stopwatch.time("reports"):
+            self.curves.write(self.settings.to_dict(), self.breakdown())
+
+    def _validate(self) -> None:
+        if self.validation is None or not self.settings.validate_every:
+            return
+        with self.stopwatch.time("validation"):
+            sums = torch.tensor(
+                dataclasses.astuple(self.validation(self.policy)),
+                dtype=torch.float64,
+                device=self.group.device,
+            )
+            found = EpisodeSums(*self.group.sum(sums).tolist())
+        means = _means(found, "validation_")
+        self.curves.add({"steps": self.steps, "seconds": self.seconds, **means})
+        self.progress.say(
+            f"validation after {amount(self.steps)} steps: success "
+            f"{100.0 * means['validation_success']:.1f} % of {found.episodes:.0f} episodes, return "
+            f"{means['validation_return']:.2f}"
+        )
+        self._keep_if_best(means["validation_success"])
+
+    def _keep_if_best(self, success: Optional[float]) -> None:
+        """Writes best.pt when none was better; equal ones replace it, being trained longer."""
+        if self.best is not None and (success is None or success < self.best):
+            return
+        self.best = success
+        if self.folder and self.group.rank == 0:
+            checkpoint.save_policy(self._saved_policy(success), self.folder / "best.pt")
+
+    def save(self) -> None:
+        """Writes a checkpoint; all ranks call it after the same update."""
+        if self.validation is None:
+            self._keep_if_best(_means(self.recent(), "").get("success"))
+        if self.checkpoints is None:
+            return
+        with self.stopwatch.time("reports"):
+            if self.group.rank == 0:
+                self.checkpoints.begin(self.steps)
+            self.group.wait_for_all()
+            folder = self.checkpoints.unfinished(self.steps)
+            checkpoint.save(folder / f"rank-{self.group.rank}.pt", {}, self.collector.state_dict())
+            if self.group.rank == 0:
+                checkpoint.save_policy(self._saved_policy(None), folder / "policy.pt")
+                optimizer = {"optimizer": self.learner.optimizer.state_dict()}
+                checkpoint.save(folder / "trainer.pt", self._counters(), optimizer)
+            self.group.wait_for_all()
+            if self.group.rank == 0:
+                self.checkpoints.finish(self.steps)
+
+    def resume(self) -> None:
+        """Takes up the latest checkpoint: what follows is what would have followed, on a processor
+        bit for bit."""
+        assert self.checkpoints is not None
+        folder = self.checkpoints.latest()
+        trainer, tensors = checkpoint.load(folder / "trainer.pt")
+        if trainer["ranks"] != self.group.size:
+            raise checkpoint.CheckpointError(
+                f"{folder} is of {trainer['ranks']} ranks, not {self.group.size}; start as many"
+            )
+        saved = checkpoint.load_policy(folder / "policy.pt")
+        self.policy.load_state_dict(saved.policy.state_dict())
+        self.learner.optimizer.load_state_dict(tensors["optimizer"])
+        self.collector.load_state_dict(checkpoint.load(folder / f"rank-{self.group.rank}.pt")[1])
+        self.steps, self.updates, self.best = saved.steps, trainer["updates"], trainer["best"]
+        self.curves.rows = trainer["rows"]
+        self.stopwatch.seconds = dict(trainer["stopwatch"])
+        self._window = collections.deque(EpisodeSums(*sums) for sums in trainer["window"])
+        self._seconds_before = trainer["seconds"]
+        self._started = time.perf_counter()
+        self._logged = (self.seconds, self.steps)
+
+    def _saved_policy(self, success: Optional[float]) -> SavedPolicy:
+        return SavedPolicy(self.policy, self.settings, self.shape, self.parts, self.steps, success)
+
+    def _counters(self) -> dict[str, Any]:
+        return {
+            "ranks": self.group.size,
+            "updates": self.updates,
+            "best": self.best,
+            "rows": self.curves.rows,
+            "window": [dataclasses.astuple(sums) for sums in self._window],
+            "seconds": self.seconds,
+            "stopwatch": self.stopwatch.seconds,
+        }
+
+    def breakdown(self) -> list[tuple[str, float]]:
+        """Names and shares of the wall clock of this rank."""
+        measured = self.stopwatch.seconds
+        total = max(self.seconds, 1e-9)
+        shares = [(name, seconds / total) for name, seconds in measured.items()]
+        return [*shares, ("the rest", max(0.0, 1.0 - sum(share for _, share in shares)))]
+
+    def timing(self) -> dict[str, Any]:
+        """Tables 5 and 6 of the paper for this run: milliseconds of this rank's wall clock."""
+        per_update = {
+            name: 1e3 * seconds / max(self.updates, 1)
+            for name, seconds in self.stopwatch.seconds.items()
+        }
+        rollout = {
+            name: value / self.settings.horizon
+            for name, value in per_update.items()
+            if name in Collector.PHASES
+        }
+        return {
+            "rollout_step_ms": {**rollout, "total": sum(rollout.values())},
+            "update_ms": {
+                "compute rollouts": sum(rollout.values()) * self.settings.horizon,
+                "update agent": per_update.get("update", 0.0),
+            },
+        }
+
+    def _write_report(self) -> None:
+        if not self.folder or self.group.rank > 0:
+            return
+        recent = self.recent()
+        write_json(
+            self.folder / "report.json",
+            {
+                "settings": self.settings.to_dict(),
+                "ranks": self.group.size,
+                "device": str(self.group.device),
+                "parameters": self.learner.optimizer.parameters.numel(),
+                "steps": self.steps,
+                "updates": self.updates,
+                "seconds": self.seconds,
+                "processor_seconds": time.process_time(),
+                "steps_per_second": self.steps / max(self.seconds, 1e-9),
+                "best_success": self.best,
+                "training": _means(recent, ""),
+                "timing": self.timing(),
+            },
+        )
+
+    def _interrupt(self) -> None:
+        if self._interrupted:
+            raise KeyboardInterrupt
+        self._interrupted = True
+        self.progress.say("stopping after this update; once more to stop without saving")
+
+
+class _Signals:
+    """While in force, SIGINT and SIGTERM call `handler` instead of ending the process."""
+
+    def __init__(self, handler: Callable[[], None]):
+        self._handler = handler
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> None:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            self._before[number] = signal.signal(number, lambda *_: self._handler())
+
+    def __exit__(self, *_: object) -> None:
+        for number, before in self._before.items():
+            signal.signal(number, before)
+
+
+def _means(sums: EpisodeSums, prefix: str) -> dict[str, float]:
+    if not sums.episodes:
+        return {}
+    return {
+        prefix + "success": sums.successes / sums.episodes,
+        prefix + "return": sums.returns / sums.episodes,
+        prefix + "length": sums.lengths / sums.episodes,
+    }
+
+
+def threads_of(wanted: int, local_ranks: int) -> int:
+    """Of one rank; 0: its share of the processors that this process may use."""
+    return wanted or max(1, len(os.sched_getaffinity(0)) // local_ranks)

@@ -1,0 +1,181 @@
+"""Trains a policy: `python3 -m galactic.train world.pack -o runs/pick --preset quick`."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import os
+import pathlib
+import sys
+from typing import Optional, Sequence
+
+import torch
+
+import galactic
+from galactic.learning import checkpoint, evaluation
+from galactic.learning.collector import EpisodeSums
+from galactic.learning.command import EXIT_CODES, INTERRUPTED, OK, Parser, told
+from galactic.learning.curves import write_json
+from galactic.learning.distributed import Group
+from galactic.learning.homes import Homes
+from galactic.learning.launch import launch
+from galactic.learning.networks import Policy
+from galactic.learning.presets import PRESETS, preset
+from galactic.learning.settings import (
+    Settings,
+    SettingsError,
+    add_options,
+    given_options,
+    resumed,
+)
+from galactic.learning.trainer import Trainer, Validation, threads_of
+
+
+@dataclasses.dataclass
+class Run:
+    """What a run is about: kept in its settings.json."""
+
+    world: pathlib.Path
+    validation: Optional[pathlib.Path]
+    settings: Settings
+
+
+def make_parser() -> argparse.ArgumentParser:
+    parser = Parser(
+        prog="python3 -m galactic.train",
+        description="Trains a policy in the homes of a world.",
+        epilog=f"{EXIT_CODES}, 130 interrupted and saved.",
+    )
+    parser.add_argument("world", type=pathlib.Path, nargs="?", help="world pack; not with --resume")
+    parser.add_argument(
+        "-o", "--output", type=pathlib.Path, required=True, metavar="FOLDER", help="of the run"
+    )
+    parser.add_argument("--preset", default=None, metavar="|".join(PRESETS), help="(paper)")
+    parser.add_argument(
+        "--validation", type=pathlib.Path, metavar="WORLD", help="world with episodes held out"
+    )
+    parser.add_argument(
+        "--resume", action="store_true", help="go on from the latest checkpoint in FOLDER"
+    )
+    parser.add_argument(
+        "--device", default="auto", choices=("auto", "cpu", "cuda"), help="of the networks (auto)"
+    )
+    add_options(parser)
+    return parser
+
+
+def main(arguments: Optional[Sequence[str]] = None) -> int:
+    given = sys.argv[1:] if arguments is None else list(arguments)
+    options = make_parser().parse_args(given)
+
+    def train() -> int:
+        run = _resumed_run(options) if options.resume else _new_run(options)
+        if "RANK" not in os.environ:
+            return launch(run.settings.ranks, [sys.executable, "-m", "galactic.train", *given])
+        group = Group.join(options.device)
+        try:
+            return _train(run, options, group)
+        finally:
+            group.leave()
+
+    return told("galactic.train", train)
+
+
+def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
+    folder: pathlib.Path = options.output
+    settings = run.settings
+    # Everybody has looked for a run in the folder before there is one.
+    group.wait_for_all()
+    if group.rank == 0:
+        folder.mkdir(parents=True, exist_ok=True)
+        _write_run(run, folder)
+    local_ranks = int(os.environ.get("LOCAL_WORLD_SIZE", "1"))
+    threads = threads_of(settings.simulation_threads, local_ranks)
+    sharing = 1 if settings.network == "state" else 0
+    torch.set_num_threads(threads_of(settings.torch_threads or sharing, local_ranks))
+    envs = Homes(galactic.World(run.world), settings, threads, rank=group.rank, ranks=group.size)
+    validation = _validation(run, threads, group)
+    trainer = Trainer(
+        settings, envs, group, folder, validation=validation, title=folder.resolve().name
+    )
+    if options.resume:
+        trainer.resume()
+        trainer.progress.say(f"going on after {trainer.steps:,} steps")
+    else:
+        trainer.begin()
+    complete = trainer.train()
+    envs.close()
+    if not complete:
+        trainer.progress.say(
+            f"stopped and saved after {trainer.steps:,} steps; go on with "
+            f"python3 -m galactic.train -o {folder} --resume"
+        )
+        return INTERRUPTED
+    trainer.progress.say(f"{folder}: curves.html, curves.csv, report.json, best.pt")
+    return OK
+
+
+def _new_run(options: argparse.Namespace) -> Run:
+    if options.world is None:
+        raise SettingsError("which world? Name a world pack, or --resume a run")
+    if (options.output / "settings.json").exists():
+        raise SettingsError(
+            f"{options.output} holds a run already; go on with it (--resume), or take another folder"
+        )
+    settings = preset(options.preset or "paper", **given_options(options))
+    return Run(options.world.resolve(), _absolute(options.validation), settings)
+
+
+def _resumed_run(options: argparse.Namespace) -> Run:
+    if options.world or options.preset or options.validation:
+        raise SettingsError("a run that goes on has its world and its preset; leave them out")
+    file = options.output / "settings.json"
+    if not file.is_file():
+        raise checkpoint.CheckpointError(f"{file} is not there: {options.output} holds no run")
+    run = json.loads(file.read_text(encoding="utf-8"))
+    settings = resumed(Settings.from_dict(run["settings"]), given_options(options))
+    validation = run["validation"]
+    return Run(
+        pathlib.Path(run["world"]), pathlib.Path(validation) if validation else None, settings
+    )
+
+
+def _write_run(run: Run, folder: pathlib.Path) -> None:
+    write_json(
+        folder / "settings.json",
+        {
+            "world": str(run.world),
+            "validation": str(run.validation) if run.validation else None,
+            "settings": run.settings.to_dict(),
+        },
+    )
+
+
+def _validation(run: Run, threads: int, group: Group) -> Optional[Validation]:
+    """Plays the episodes held out, this rank's share of them, with sampled actions as in training."""
+    settings = run.settings
+    if run.validation is None or not settings.validate_every:
+        return None
+    envs = min(settings.envs, evaluation.MOST_ENVS)
+    held_out = dataclasses.replace(settings, envs=envs, halves=1, mini_batches=1)
+    homes = Homes(galactic.World(run.validation), held_out, threads)
+    playable = homes.playable_episodes()
+    episodes = playable[: settings.validation_episodes or None][group.rank :: group.size]
+
+    def validate(policy: Policy) -> EpisodeSums:
+        actor = evaluation.Actor(
+            policy, deterministic=False, seed=settings.seed, device=group.device
+        )
+        player = evaluation.Evaluator(homes, actor)
+        return evaluation.sums_of(player.play(episodes, details=False))
+
+    return validate
+
+
+def _absolute(path: Optional[pathlib.Path]) -> Optional[pathlib.Path]:
+    return None if path is None else path.resolve()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

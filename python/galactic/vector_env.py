@@ -1,0 +1,399 @@
+"""The vector environment of Gymnasium 1.x over a batch of simulated homes."""
+
+from __future__ import annotations
+
+import io
+import os
+import zipfile
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from enum import Enum
+from typing import Any, Literal, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galactic import spaces
+from galactic._core import ErrorCode, Renderer, Simulator, World
+from galactic.errors import Error
+from galactic.half_batch import HalfBatch, Observations, StepResult
+
+try:
+    from gymnasium.vector import VectorEnv as _Base
+except ImportError:
+    _Base = object
+
+try:
+    from gymnasium.vector import AutoresetMode
+except ImportError:
+
+    class AutoresetMode(Enum):  # type: ignore[no-redef]
+        """When envs whose episode ended begin the next one."""
+
+        NEXT_STEP = "NextStep"
+        SAME_STEP = "SameStep"
+        DISABLED = "Disabled"
+
+
+Paths = Union[str, os.PathLike, Sequence[Union[str, os.PathLike]]]
+#: Places for the results of one step: see VectorEnv.step.
+Row = Mapping[str, NDArray[Any]]
+
+
+class VectorEnv(_Base):
+    """`num_envs` environments of one world, stepped together: Gymnasium 1.x's vector API.
+
+    A subclass of gymnasium.vector.VectorEnv where that is installed, else the same by its methods.
+
+    Episodes that end begin anew in the same step (`metadata["autoreset_mode"]` is SAME_STEP): the
+    observation is then the first of the next episode, and `infos` has
+
+    - final_obs: object array (num_envs,), the last observation of each env whose episode ended,
+    - final_info: {"episode": {"r", "l"}, "ending", "success", "episode_index"}, arrays
+      (num_envs,): return and length of the episode, how it ended (EpisodeEnd), and which one of
+      the world's it was,
+    - episode: the same {"r", "l"} again, as Gymnasium's RecordEpisodeStatistics has it,
+
+    each beside a mask of its name with "_" in front, bool (num_envs,). In steps in which no episode
+    ends, `infos` is empty.
+
+    Observations are one flat float32 array (num_envs, observation_size), or with
+    `observation="dict"` a dictionary of its named parts (docs/simulation.md lists them). With
+    images they are a dictionary with "state" (the flat array) or the parts, and
+
+    - rgb: uint8 (num_envs, height, width, 3),
+    - depth: float32 (num_envs, height, width), metres, 0 where nothing is seen,
+    - semantics: uint32 (num_envs, height, width).
+
+    Two halves of the batch can take turns, each working on threads of its own while the other's
+    results are used: `halves=2`, `send()` and `recv()`. Which envs do what does not depend on it.
+
+    Args:
+        world: a World, or the path or paths of its packs.
+        num_envs: environments; with two halves an even number.
+        observation: "flat" or "dict".
+        images: options of galactic.Renderer, such as {"width": 128, "height": 128}; None for none.
+        actions: "box": one float32 array in [-1, 1], (num_envs, action_count). "paper": a
+            dictionary of "continuous", float32 (num_envs, action_count - 2) for joints, forward and
+            turn, and "discrete", 0 or 1, (num_envs, 2) for hand and terminate.
+        halves: 1, or 2 for send() and recv() in turns.
+        copy: whether results are arrays of their own. Else they are views, overwritten by the next
+            step, unless they were written to `out`.
+        render_mode: None, or "rgb_array" for render().
+        threads, seed, order, rank, ranks, options: of galactic.Simulator.
+    """
+
+    metadata: dict[str, Any] = {
+        "render_modes": ["rgb_array"],
+        "autoreset_mode": AutoresetMode.SAME_STEP,
+    }
+    spec = None
+
+    def __init__(
+        self,
+        world: World | Paths,
+        num_envs: int = 128,
+        *,
+        observation: Literal["flat", "dict"] = "flat",
+        images: Mapping[str, Any] | None = None,
+        actions: Literal["box", "paper"] = "box",
+        halves: Literal[1, 2] = 1,
+        copy: bool = True,
+        render_mode: str | None = None,
+        threads: int = 0,
+        seed: int = 1,
+        order: str = "shuffled",
+        rank: int = 0,
+        ranks: int = 1,
+        **options: Any,
+    ) -> None:
+        _require(observation in ("flat", "dict"), "observation", observation, '"flat" or "dict"')
+        _require(actions in ("box", "paper"), "actions", actions, '"box" or "paper"')
+        _require(halves in (1, 2), "halves", halves, "1 or 2")
+        _require(num_envs % halves == 0, "num_envs", num_envs, "an even number for two halves")
+        _require(render_mode in (None, "rgb_array"), "render_mode", render_mode, '"rgb_array"')
+        _require("envs" not in options, "envs", options.get("envs"), "num_envs instead")
+        self.world = world if isinstance(world, World) else World(world)
+        self.num_envs = num_envs
+        self.render_mode = render_mode
+        self.closed = False
+        self._actions = actions
+        draws = images is not None or render_mode is not None
+        options |= {"threads": threads, "seed": seed, "order": order, "body_transforms": draws}
+        if images is not None:
+            images = {"threads": threads, **images}
+        # Half h of batch r is batch 2 r + h of twice as many: the same envs as undivided.
+        self._halves = [
+            HalfBatch(
+                self.world,
+                {
+                    **options,
+                    "envs": num_envs // halves,
+                    "rank": halves * rank + half,
+                    "ranks": halves * ranks,
+                },
+                by_parts=observation == "dict",
+                images=images,
+                copy=copy,
+            )
+            for half in range(halves)
+        ]
+        self._threads = [ThreadPoolExecutor(1, f"galactic-half-{n}") for n in range(halves)]
+        self._pending: list[Future[StepResult] | None] = [None] * halves
+        self._onlookers: list[Renderer] = []
+        first = self._halves[0]
+        self.single_observation_space = first.observation_space
+        self.observation_space = spaces.batch_space(first.observation_space, num_envs)
+        self.single_action_space = _action_space(first.simulator.action_count, actions)
+        self.action_space = spaces.batch_space(self.single_action_space, num_envs)
+
+    @property
+    def simulators(self) -> tuple[Simulator, ...]:
+        """The simulator of each half: for its statistics and states."""
+        return tuple(half.simulator for half in self._halves)
+
+    @property
+    def halves(self) -> int:
+        """1, or 2 when they take turns."""
+        return len(self._halves)
+
+    @property
+    def unwrapped(self) -> VectorEnv:
+        return self
+
+    def rows(self, half: int) -> slice:
+        """The envs of a half."""
+        size = self.num_envs // self.halves
+        return slice(half * size, (half + 1) * size)
+
+    def buffers(self, steps: int) -> dict[str, NDArray[Any]]:
+        """Memory for a rollout, [time, env, ...], to be passed on row by row: see step().
+
+        Observations ("state", and "rgb", "depth", "semantics" with images) have `steps` + 1 rows,
+        for the one before the first step; "rewards" float32, "terminations" and "truncations" bool,
+        and "endings" uint8 have `steps`.
+        """
+        shapes = self._halves[0].landing_shapes()
+        after = {"rewards", "terminations", "truncations", "endings"}
+        return {
+            name: np.zeros((steps + (name not in after), self.num_envs, *shape), dtype)
+            for name, (shape, dtype) in shapes.items()
+        }
+
+    def reset(
+        self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
+    ) -> tuple[Observations, dict[str, Any]]:
+        """Begins episodes.
+
+        Args:
+            seed: as if the env had just been made with this seed. None goes on: each env begins
+                the next of its episodes; the first call finds them at the start of the first.
+            options: None, or
+                "reset_mask": bool (num_envs,), the envs that begin an episode; the others stay;
+                "episodes": int (num_envs,), the index of the episode that each env begins, negative
+                for the next of its own.
+
+        Returns:
+            The observations of all envs, and an empty dictionary.
+        """
+        self._require_idle()
+        mask, episodes = _reset_options(options, self.num_envs)
+        if seed is not None and options and options.get("reset_mask") is not None:
+            raise ValueError("seed and reset_mask exclude each other: a seed is of all envs")
+        if seed is not None and _Base is not object:
+            super().reset(seed=seed)
+        for number, half in enumerate(self._halves):
+            rows = self.rows(number)
+            half.reset(seed, mask[rows], None if episodes is None else episodes[rows])
+        return self.observe(), {}
+
+    def observe(self, out: Row | None = None) -> Observations:
+        """What all envs see now, in `out` as in step()."""
+        self._require_idle()
+        parts = [_part(out, self.rows(number)) for number in range(self.halves)]
+        seen = [half.observe(part) for half, part in zip(self._halves, parts)]
+        return _joined(seen)
+
+    def step(self, actions: Any, out: Row | None = None) -> StepResult:
+        """One step of all envs.
+
+        Args:
+            actions: as `action_space` has them; see the class.
+            out: where results land instead of new arrays: any of "state" (the flat observation),
+                "rgb", "depth", "semantics", "rewards", "terminations", "truncations" and "endings",
+                each an array [num_envs, ...] without gaps of exactly the result's type, as the
+                rows of buffers() are. Images are drawn there, the rest is copied once.
+
+        Returns:
+            Observations, rewards float32 (num_envs,), terminations and truncations bool
+            (num_envs,), and infos; of an env with one half, what landed in `out` as it lies there.
+        """
+        self._require_idle()
+        rows = self._action_rows(actions, self.num_envs)
+        if self.halves == 1:
+            return self._halves[0].step(rows, out)
+        for half in range(self.halves):
+            self._begin(half, rows[self.rows(half)], _part(out, self.rows(half)))
+        return _joined_results([self.recv(half) for half in range(self.halves)])
+
+    def send(self, actions: Any, half: int = 0, out: Row | None = None) -> None:
+        """Begins a step of one half, and returns at once.
+
+        Args:
+            actions: of the half's envs; they must stay as they are until recv().
+            half: which.
+            out: as in step(), with the rows of the half's envs.
+        """
+        if self._pending[half] is not None:
+            raise RuntimeError(f"half {half} is under way; call recv({half}) first")
+        self._begin(half, self._action_rows(actions, self.num_envs // self.halves), out)
+
+    def recv(self, half: int = 0) -> StepResult:
+        """Waits for the step that send() began, and returns its results for the half's envs."""
+        pending = self._pending[half]
+        if pending is None:
+            raise RuntimeError(f"half {half} has nothing under way; call send() first")
+        self._pending[half] = None
+        return pending.result()
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """A picture of each env, uint8 (240, 320, 3), from behind the robot; None without a
+        render_mode."""
+        self._require_idle()
+        if self.render_mode is None:
+            return None
+        if not self._onlookers:
+            look: dict[str, Any] = {"width": 320, "height": 240, "depth": False, "camera": "follow"}
+            self._onlookers = [Renderer(one, **look) for one in self.simulators]
+        return tuple(frame for one in self._onlookers for frame in one.render()["rgb"])
+
+    def save_state(self) -> bytes:
+        """All that later steps depend on, and the sums of the episodes under way."""
+        self._require_idle()
+        arrays = {
+            f"{name}_{number}": array
+            for number, half in enumerate(self._halves)
+            for name, array in half.save_state().items()
+        }
+        file = io.BytesIO()
+        np.savez(file, **arrays)
+        return file.getvalue()
+
+    def restore_state(self, state: bytes) -> None:
+        """Goes on, bit for bit, from a state that an env of the same world, options and halves
+        saved; observe() shows it. Raises Error for bytes that are none, and changes nothing."""
+        self._require_idle()
+        before = [half.save_state() for half in self._halves]
+        before = [{name: array.copy() for name, array in one.items()} for one in before]
+        try:
+            with np.load(io.BytesIO(state), allow_pickle=False) as arrays:
+                for number, half in enumerate(self._halves):
+                    names = ("simulator", "returns", "lengths")
+                    half.restore_state({name: arrays[f"{name}_{number}"] for name in names})
+        except (Error, ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile) as problem:
+            for half, saved in zip(self._halves, before):
+                half.restore_state(saved)
+            if isinstance(problem, Error):
+                raise
+            message = f"is none of this env ({problem}); give what save_state() returned"
+            raise Error(ErrorCode.INVALID_INPUT, "saved state", message) from problem
+
+    def close(self, **kwargs: Any) -> None:
+        """Waits for what is under way. What was returned stays valid."""
+        if not self.closed:
+            for thread in self._threads:
+                thread.shutdown()
+        self.closed = True
+
+    def _begin(self, half: int, rows: NDArray[np.float32], out: Row | None) -> None:
+        self._pending[half] = self._threads[half].submit(self._halves[half].step, rows, out)
+
+    def _require_idle(self) -> None:
+        busy = [half for half, pending in enumerate(self._pending) if pending is not None]
+        if busy:
+            raise RuntimeError(f"half {busy[0]} is under way; call recv({busy[0]}) first")
+
+    def _action_rows(self, actions: Any, envs: int) -> NDArray[np.float32]:
+        """Actions as the simulator takes them."""
+        if self._actions == "box":
+            return np.asarray(actions, np.float32)
+        count = self._halves[0].simulator.action_count
+        rows = np.empty((envs, count), np.float32)
+        rows[:, : count - 2] = actions["continuous"]
+        rows[:, count - 2 :] = actions["discrete"]
+        return rows
+
+
+def _require(holds: bool, name: str, found: object, wanted: str) -> None:
+    if not holds:
+        raise ValueError(f"{name} is {found!r}, wanted {wanted}")
+
+
+def _action_space(count: int, kind: str) -> spaces.Space:
+    if kind == "box":
+        return spaces.Box(-1.0, 1.0, (count,), np.float32)
+    return spaces.Dict(
+        {
+            "continuous": spaces.Box(-1.0, 1.0, (count - 2,), np.float32),
+            "discrete": spaces.MultiDiscrete([2, 2]),
+        }
+    )
+
+
+def _reset_options(
+    options: Mapping[str, Any] | None, envs: int
+) -> tuple[NDArray[np.bool_], NDArray[np.int32] | None]:
+    """Which envs begin an episode, and which, if that is asked for."""
+    options = options or {}
+    unknown = set(options) - {"reset_mask", "episodes"}
+    if unknown:
+        raise ValueError(f"reset() has no option {unknown.pop()!r}: reset_mask and episodes")
+    mask = options.get("reset_mask")
+    mask = np.ones(envs, np.bool_) if mask is None else np.asarray(mask)
+    if mask.shape != (envs,) or mask.dtype != np.bool_:
+        raise ValueError(f"reset_mask is {mask.dtype} {mask.shape}, wanted bool ({envs},)")
+    episodes = options.get("episodes")
+    if episodes is None:
+        return mask, None
+    episodes = np.asarray(episodes)
+    if episodes.shape != (envs,) or not np.issubdtype(episodes.dtype, np.integer):
+        raise ValueError(f"episodes are {episodes.dtype} {episodes.shape}, wanted int ({envs},)")
+    return mask, episodes.astype(np.int32)
+
+
+def _part(out: Row | None, rows: slice) -> Row | None:
+    return None if out is None else {name: array[rows] for name, array in out.items()}
+
+
+def _joined(parts: list[Any]) -> Any:
+    """Results of the halves as results of the batch."""
+    if len(parts) == 1:
+        return parts[0]
+    if isinstance(parts[0], dict):
+        return {name: _joined([part[name] for part in parts]) for name in parts[0]}
+    return np.concatenate(parts)
+
+
+def _joined_results(results: list[StepResult]) -> StepResult:
+    observations, rewards, terminations, truncations, infos = zip(*results)
+    ended = [info for info in infos if info]
+    info: dict[str, Any] = {}
+    if ended:
+        # A half in which nothing ended says so with masks that are false everywhere.
+        filled = [one or _blank(ended[0], len(rewards[n])) for n, one in enumerate(infos)]
+        info = _joined(filled)
+    return (
+        _joined(list(observations)),
+        _joined(list(rewards)),
+        _joined(list(terminations)),
+        _joined(list(truncations)),
+        info,
+    )
+
+
+def _blank(infos: Any, envs: int) -> Any:
+    if isinstance(infos, dict):
+        return {name: _blank(value, envs) for name, value in infos.items()}
+    if infos.dtype == object:
+        return np.full(envs, None, object)
+    return np.zeros(envs, infos.dtype)

@@ -1,0 +1,87 @@
+#include "arrays.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace galactic::python {
+namespace {
+
+std::span<const py::ssize_t> shapeOf(const py::array& array) {
+  return {array.shape(), static_cast<std::size_t>(array.ndim())};
+}
+
+void requireShape(const py::array& array, const char* name, const Shape& wanted) {
+  if (std::ranges::equal(shapeOf(array), wanted)) return;
+  throw py::value_error(fmt::format("{} has the shape {}, wanted {}", name,
+                                    shapeText(shapeOf(array)), shapeText(wanted)));
+}
+
+std::string typeText(const py::handle& type) { return py::str(type).cast<std::string>(); }
+
+}  // namespace
+
+std::string shapeText(std::span<const py::ssize_t> shape) {
+  std::string text = "(";
+  for (std::size_t n = 0; n < shape.size(); ++n) {
+    text += fmt::format("{}{}", n == 0 ? "" : ", ", shape[n]);
+  }
+  return text + (shape.size() == 1 ? ",)" : ")");
+}
+
+template <class T>
+py::array_t<T, py::array::c_style | py::array::forcecast> inputOf(const py::handle& given,
+                                                                  const char* name,
+                                                                  const Shape& shape) {
+  using Input = py::array_t<T, py::array::c_style | py::array::forcecast>;
+  Input array = Input::ensure(given);
+  if (!array) {
+    PyErr_Clear();
+    throw py::type_error(fmt::format("{} is a {}, wanted an array of numbers", name,
+                                     typeText(py::type::of(given).attr("__name__"))));
+  }
+  requireShape(array, name, shape);
+  return array;
+}
+
+template <class T>
+std::span<T> outputOf(const py::handle& given, const char* name, const Shape& shape) {
+  if (!py::isinstance<py::array>(given)) {
+    throw py::type_error(fmt::format("{} is a {}, wanted a numpy array to write to", name,
+                                     typeText(py::type::of(given).attr("__name__"))));
+  }
+  auto array = py::reinterpret_borrow<py::array>(given);
+  if (!py::isinstance<py::array_t<T>>(given)) {
+    throw py::type_error(fmt::format("{} has the type {}, wanted {}", name, typeText(array.dtype()),
+                                     typeText(py::dtype::of<T>())));
+  }
+  requireShape(array, name, shape);
+  const bool has_gaps = (array.flags() & py::array::c_style) == 0;
+  if (has_gaps || !array.writeable()) {
+    throw py::value_error(fmt::format("{} is {}; results are written in place", name,
+                                      has_gaps ? "not contiguous" : "read-only"));
+  }
+  return {static_cast<T*>(array.mutable_data()), static_cast<std::size_t>(array.size())};
+}
+
+InputBytes::InputBytes(const py::handle& given) {
+  if (PyObject_GetBuffer(given.ptr(), &view_, PyBUF_SIMPLE) != 0) throw py::error_already_set();
+}
+
+py::array_t<float> arrayOf(std::span<const float> values) {
+  return py::array_t<float>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+template py::array_t<float, py::array::c_style | py::array::forcecast> inputOf<float>(
+    const py::handle&, const char*, const Shape&);
+template py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast> inputOf<std::uint8_t>(
+    const py::handle&, const char*, const Shape&);
+template py::array_t<std::int32_t, py::array::c_style | py::array::forcecast> inputOf<std::int32_t>(
+    const py::handle&, const char*, const Shape&);
+template std::span<float> outputOf<float>(const py::handle&, const char*, const Shape&);
+template std::span<std::uint8_t> outputOf<std::uint8_t>(const py::handle&, const char*,
+                                                        const Shape&);
+template std::span<std::uint32_t> outputOf<std::uint32_t>(const py::handle&, const char*,
+                                                          const Shape&);
+
+}  // namespace galactic::python

@@ -1,0 +1,25 @@
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include <initializer_list>
+#include <utility>
+
+namespace galactic::python {
+
+namespace py = pybind11;
+
+/// What the module holds, in the order in which it has to be made.
+void bindErrors(py::module_& module);
+void bindWorld(py::module_& module);
+void bindSimulator(py::module_& module);
+void bindPolicy(py::module_& module);
+void bindRenderer(py::module_& module);
+
+/// An enum.IntEnum, whose values are the numbers that arrays hold.
+void bindEnum(py::module_& module, const char* name,
+              std::initializer_list<std::pair<const char*, int>> values, const char* documentation);
+
+/// Makes pickling and copying objects of a class a TypeError that says what to do `instead`.
+void refusePickling(const py::object& type, const char* instead);
+
+}  // namespace galactic::python

@@ -1,0 +1,46 @@
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+
+#include "arrays.h"
+
+namespace galactic::python {
+
+enum class ElementType : std::uint8_t { kUint8, kUint32, kFloat32 };
+
+/// Memory of a CUDA device as Python's array libraries take it over: DLPack (v0.8, the unversioned
+/// capsule that all of them know), without a copy. Rows without gaps.
+class DeviceArray {
+ public:
+  /// `address`: on the device whose context is current. `owner` stays as long as anybody uses the
+  /// memory.
+  DeviceArray(std::uint64_t address, Shape shape, ElementType type, py::object owner);
+
+  /// What a consumer may ask for, by the array API standard.
+  struct Wish {
+    /// Where it will use the memory: None and 1 for the legacy default stream, 2 for that of the
+    /// thread, -1 for no synchronisation, else a cudaStream_t. 0 is forbidden.
+    py::object stream;
+    /// Another device than this one, and a copy, are not given; None asks for neither.
+    py::object device;
+    py::object copy;
+  };
+
+  /// The capsule "dltensor"; BufferError for a wish that cannot be met.
+  [[nodiscard]] py::capsule capsule(const Wish& wish) const;
+  /// (kDLCUDA, number of the device).
+  [[nodiscard]] py::tuple device() const;
+
+  [[nodiscard]] const Shape& shape() const { return shape_; }
+  [[nodiscard]] ElementType type() const { return type_; }
+
+ private:
+  std::uint64_t address_;
+  Shape shape_;
+  ElementType type_;
+  py::object owner_;
+  int device_;
+};
+
+}  // namespace galactic::python

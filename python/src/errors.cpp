@@ -1,0 +1,33 @@
+#include "errors.h"
+
+#include <exception>
+
+#include "bindings.h"
+
+namespace galactic::python {
+namespace {
+
+void translate(std::exception_ptr thrown) {
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+  } catch (const Refusal& refusal) {
+    const Error& error = refusal.error;
+    const py::object type = py::module_::import("galactic.errors").attr("Error");
+    const py::object raised = type(static_cast<int>(error.code), error.where, error.message);
+    PyErr_SetObject(type.ptr(), raised.ptr());
+  }
+}
+
+}  // namespace
+
+void bindErrors(py::module_& module) {
+  bindEnum(module, "ErrorCode",
+           {{"IO", static_cast<int>(ErrorCode::kIo)},
+            {"INVALID_INPUT", static_cast<int>(ErrorCode::kInvalidInput)},
+            {"INTERNAL", static_cast<int>(ErrorCode::kInternal)},
+            {"UNSUPPORTED", static_cast<int>(ErrorCode::kUnsupported)}},
+           "Why something failed. The values are the exit codes of galactic's programs.");
+  py::register_exception_translator(&translate);
+}
+
+}  // namespace galactic::python

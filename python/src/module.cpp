@@ -1,0 +1,40 @@
+// galactic._core: thin, typed mirrors of the library's classes. It knows numpy and DLPack, no
+// torch.
+#include <string>
+
+#include "bindings.h"
+
+namespace galactic::python {
+
+void bindEnum(py::module_& module, const char* name,
+              std::initializer_list<std::pair<const char*, int>> values,
+              const char* documentation) {
+  py::dict members;
+  for (const auto& [member, value] : values) members[member] = value;
+  const py::object make = py::module_::import("enum").attr("IntEnum");
+  const py::object type = make(name, members, py::arg("module") = "galactic");
+  type.attr("__doc__") = documentation;
+  module.attr(name) = type;
+}
+
+void refusePickling(const py::object& type, const char* instead) {
+  const std::string message = "a galactic." + py::str(type.attr("__name__")).cast<std::string>() +
+                              " cannot be pickled or copied: " + instead;
+  type.attr("__reduce_ex__") = py::cpp_function(
+      [message](const py::object&, const py::object&) -> py::object {
+        throw py::type_error(message);
+      },
+      py::is_method(type));
+}
+
+}  // namespace galactic::python
+
+PYBIND11_MODULE(_core, module) {
+  module.doc() = "The compiled part of galactic; import galactic instead.";
+  module.attr("__version__") = GALACTIC_VERSION;
+  galactic::python::bindErrors(module);
+  galactic::python::bindWorld(module);
+  galactic::python::bindSimulator(module);
+  galactic::python::bindPolicy(module);
+  galactic::python::bindRenderer(module);
+}

@@ -1,0 +1,122 @@
+#include "options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "errors.h"
+#include "galactic/option_text.h"
+
+namespace galactic::python {
+namespace {
+
+std::string dashed(std::string name) {
+  std::ranges::replace(name, '_', '-');
+  return name;
+}
+
+std::string underscored(std::string name) {
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
+/// A value as galactic-run reads it.
+std::string textOf(const std::string& keyword, const py::handle& value) {
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
+  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+  if (PyIndex_Check(value.ptr()) != 0) {
+    return py::str(py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr())));
+  }
+  if (PyNumber_Check(value.ptr()) != 0) return py::repr(py::float_(value.cast<double>()));
+  throw py::type_error(
+      fmt::format("the option {} is a {}, wanted a number, a truth value or a word", keyword,
+                  py::str(py::type::of(value).attr("__name__")).cast<std::string>()));
+}
+
+/// Of a listed option.
+py::object valueOf(const OptionText& option) {
+  if (option.is_word) return py::str(option.value);
+  if (option.value == "true" || option.value == "false") return py::bool_(option.value == "true");
+  const py::str text(option.value);
+  const bool is_whole = option.value.find_first_not_of("-0123456789") == std::string::npos;
+  return is_whole ? py::object(py::int_(text)) : py::object(py::float_(text));
+}
+
+[[noreturn]] void refuseKeyword(const std::string& keyword) {
+  py::list known;
+  for (const std::string& name : optionNames(OptionScope::kTyped)) known.append(underscored(name));
+  known.append("threads");
+  known.append("body_transforms");
+  known.append("auto_reset");
+  const py::list near = py::module_::import("difflib").attr("get_close_matches")(keyword, known, 1);
+  const std::string hint =
+      near.empty()
+          ? fmt::format("the options are {}", py::str(", ").attr("join")(known).cast<std::string>())
+          : fmt::format("did you mean {}?", near[0].cast<std::string>());
+  throw py::type_error(fmt::format("there is no option {}; {}", keyword, hint));
+}
+
+std::uint32_t threadsOf(const py::handle& value) {
+  constexpr std::int64_t kMost = 4096;
+  const std::int64_t threads = PyIndex_Check(value.ptr()) != 0 ? value.cast<std::int64_t>() : -1;
+  if (threads >= 0 && threads <= kMost) return static_cast<std::uint32_t>(threads);
+  throw Refusal{{ErrorCode::kInvalidInput, "threads",
+                 fmt::format("is {}, wanted 0 to {}; 0 takes one per processor",
+                             py::repr(value).cast<std::string>(), kMost)}};
+}
+
+/// Gives `options` what keywords name; the names that are of the option table.
+std::vector<OptionText> setKeywords(const py::dict& keywords, SimulationOptions& options) {
+  std::vector<OptionText> texts;
+  for (const auto& [key, value] : keywords) {
+    const auto keyword = key.cast<std::string>();
+    if (value.is_none()) continue;
+    if (keyword == "threads") {
+      options.threads = threadsOf(value);
+    } else if (keyword == "body_transforms" || keyword == "auto_reset") {
+      (keyword == "auto_reset" ? options.auto_reset : options.body_transforms) = value.cast<bool>();
+    } else {
+      texts.push_back({dashed(keyword), textOf(keyword, value)});
+    }
+  }
+  const std::optional<OptionFault> fault = setOptions(texts, OptionScope::kTyped, options);
+  if (!fault) return texts;
+  const OptionText& text = texts[fault->index];
+  if (fault->wanted.empty()) refuseKeyword(underscored(text.name));
+  throw Refusal{{ErrorCode::kInvalidInput, underscored(text.name),
+                 fmt::format("is {}, wanted {}", text.value, fault->wanted)}};
+}
+
+}  // namespace
+
+SimulationOptions optionsOf(const World& world, const py::dict& keywords) {
+  SimulationOptions options = world.withTask();
+  (void)setKeywords(keywords, options);
+  return options;
+}
+
+std::vector<OptionText> taskTextsOf(const py::dict& keywords) {
+  SimulationOptions options;
+  const std::vector<OptionText> named = setKeywords(keywords, options);
+  const std::vector<OptionText> plain = listOptions({}, OptionScope::kTask);
+  const std::vector<OptionText> all = listOptions(options, OptionScope::kTask);
+  std::vector<OptionText> texts;
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    const bool is_named = std::ranges::find(named, all[n].name, &OptionText::name) != named.end();
+    if (is_named || all[n].value != plain[n].value) texts.push_back(all[n]);
+  }
+  return texts;
+}
+
+py::dict keywordsOf(const SimulationOptions& options) {
+  py::dict keywords;
+  for (const OptionText& option : listOptions(options)) {
+    keywords[underscored(option.name).c_str()] = valueOf(option);
+  }
+  return keywords;
+}
+
+}  // namespace galactic::python

@@ -1,0 +1,192 @@
+#include "renderer.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include "arrays.h"
+#include "dlpack.h"
+#include "errors.h"
+
+namespace galactic::python {
+namespace {
+
+const char* colorName(ColorFormat format) { return format == ColorFormat::kRgba8 ? "rgba" : "rgb"; }
+
+Shape imageShape(std::size_t count, const RenderOptions& options) {
+  return {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(options.height),
+          static_cast<py::ssize_t>(options.width)};
+}
+
+Shape colorShape(std::size_t count, const RenderOptions& options) {
+  Shape shape = imageShape(count, options);
+  shape.push_back(static_cast<py::ssize_t>(options.color));
+  return shape;
+}
+
+/// The caller's array of that name, or a new one; remembered in `images`.
+template <class T>
+std::span<T> targetOf(const py::dict& out, const char* name, const Shape& shape, py::dict& images) {
+  const py::object array =
+      out.contains(name) ? py::object(out[name]) : py::object(py::array_t<T>(shape));
+  images[name] = array;
+  return outputOf<T>(array, name, shape);
+}
+
+}  // namespace
+
+Renderer::Renderer(const py::object& simulator, WorldModels models)
+    : simulator_(simulator), models_(std::move(models)) {}
+
+Renderer::~Renderer() {
+  // The images are still written to.
+  if (is_rendering_) renderer_->endRender();
+}
+
+std::unique_ptr<Renderer> Renderer::create(const py::object& simulator,
+                                           const CameraOptions& options) {
+  auto& shown = simulator.cast<Simulator&>();
+  if (!shown.batch().options().body_transforms) {
+    throw Refusal{{ErrorCode::kInvalidInput, "simulator",
+                   "was made without body_transforms, which drawing needs; make it with "
+                   "body_transforms=True"}};
+  }
+  const ChosenCamera camera = valueOf(chooseCamera(shown.world().robot(), options.camera));
+  std::unique_ptr<Renderer> renderer(
+      new Renderer(simulator, valueOf(WorldModels::from(shown.world()))));
+  RenderOptions render = options.render;
+  render.near = camera.near;
+  const Confinement::Use use = shown.readState();
+  const py::gil_scoped_release unlocked;
+  renderer->renderer_.emplace(valueOf(BatchRenderer::create(renderer->models_.library(), render)));
+  renderer->views_.emplace(shown.world(), renderer->models_, shown.batch(), camera.mount);
+  return renderer;
+}
+
+void Renderer::requireIdle() const {
+  if (is_rendering_) throw std::runtime_error("a rendering is under way; call end_render() first");
+}
+
+std::span<const RenderView> Renderer::viewsOf(const py::object& envs) {
+  auto& simulator = simulator_.cast<Simulator&>();
+  const std::vector<std::uint32_t> numbers =
+      envs.is_none() ? std::vector<std::uint32_t>() : simulator.envNumbers(envs);
+  const Confinement::Use use = simulator.readState();
+  views_->update(simulator.batch());
+  if (envs.is_none()) return views_->views();
+  chosen_.clear();
+  for (const std::uint32_t env : numbers) chosen_.push_back(views_->views()[env]);
+  return chosen_;
+}
+
+RenderTargets Renderer::targetsFor(std::size_t count, const py::object& out) {
+  const py::dict given = out.is_none() ? py::dict() : py::dict(out);
+  const RenderOptions& options = renderer_->options();
+  py::dict images;
+  RenderTargets targets;
+  if (options.color != ColorFormat::kNone) {
+    targets.color =
+        targetOf<std::uint8_t>(given, colorName(options.color), colorShape(count, options), images);
+  }
+  if (options.depth) {
+    targets.depth = targetOf<float>(given, "depth", imageShape(count, options), images);
+  }
+  if (options.semantics) {
+    targets.semantics =
+        targetOf<std::uint32_t>(given, "semantics", imageShape(count, options), images);
+  }
+  for (const auto& [name, array] : given) {
+    if (images.contains(name)) continue;
+    throw py::value_error(fmt::format("out has {}, which this renderer does not draw",
+                                      py::repr(name).cast<std::string>()));
+  }
+  images_ = images;
+  return targets;
+}
+
+py::dict Renderer::render(const py::object& out, const py::object& envs) {
+  const Confinement::Use use = confinement_.enter();
+  requireIdle();
+  const std::span<const RenderView> views = viewsOf(envs);
+  const RenderTargets targets = targetsFor(views.size(), out);
+  {
+    const py::gil_scoped_release unlocked;
+    renderer_->render(views, targets);
+  }
+  return std::exchange(images_, py::dict());
+}
+
+void Renderer::beginRender(const py::object& out, const py::object& envs) {
+  const Confinement::Use use = confinement_.enter();
+  requireIdle();
+  const std::span<const RenderView> views = viewsOf(envs);
+  const RenderTargets targets = targetsFor(views.size(), out);
+  is_rendering_ = true;
+  const py::gil_scoped_release unlocked;
+  renderer_->beginRender(views, targets);
+}
+
+py::dict Renderer::endRender() {
+  const Confinement::Use use = confinement_.enter();
+  if (!is_rendering_) {
+    throw std::runtime_error("no rendering is under way; call begin_render() first");
+  }
+  {
+    const py::gil_scoped_release unlocked;
+    renderer_->endRender();
+  }
+  is_rendering_ = false;
+  return std::exchange(images_, py::dict());
+}
+
+py::dict Renderer::renderToDevice() {
+  const Confinement::Use use = confinement_.enter();
+  requireIdle();
+  const std::span<const RenderView> views = viewsOf(py::none());
+  const DeviceImages images = [&] {
+    const py::gil_scoped_release unlocked;
+    return valueOf(renderer_->renderToDevice(views));
+  }();
+  const RenderOptions& options = renderer_->options();
+  const py::object self = py::cast(this);
+  py::dict arrays;
+  const auto add = [&](const char* name, std::uint64_t address, const Shape& shape,
+                       ElementType type) {
+    if (address != 0) arrays[name] = py::cast(DeviceArray(address, shape, type, self));
+  };
+  add(colorName(options.color), images.color, colorShape(views.size(), options),
+      ElementType::kUint8);
+  add("depth", images.depth, imageShape(views.size(), options), ElementType::kFloat32);
+  add("semantics", images.semantics, imageShape(views.size(), options), ElementType::kUint32);
+  return arrays;
+}
+
+py::tuple Renderer::semanticNames() const {
+  py::list names;
+  for (const auto& name : models_.library().semanticNames()) names.append(py::str(name));
+  return py::tuple(names);
+}
+
+py::dict Renderer::shapes() const {
+  const RenderOptions& options = renderer_->options();
+  const auto height = static_cast<py::ssize_t>(options.height);
+  const auto width = static_cast<py::ssize_t>(options.width);
+  py::dict shapes;
+  if (options.color != ColorFormat::kNone) {
+    shapes[colorName(options.color)] =
+        py::make_tuple(py::make_tuple(height, width, static_cast<int>(options.color)),
+                       py::dtype::of<std::uint8_t>());
+  }
+  if (options.depth) {
+    shapes["depth"] = py::make_tuple(py::make_tuple(height, width), py::dtype::of<float>());
+  }
+  if (options.semantics) {
+    shapes["semantics"] =
+        py::make_tuple(py::make_tuple(height, width), py::dtype::of<std::uint32_t>());
+  }
+  return shapes;
+}
+
+}  // namespace galactic::python

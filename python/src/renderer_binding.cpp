@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <string>
+
+#include "bindings.h"
+#include "dlpack.h"
+#include "errors.h"
+#include "renderer.h"
+
+namespace galactic::python {
+namespace {
+
+ColorFormat colorOf(const std::optional<std::string>& name) {
+  if (!name) return ColorFormat::kNone;
+  if (*name == "rgb") return ColorFormat::kRgb8;
+  if (*name == "rgba") return ColorFormat::kRgba8;
+  throw Refusal{{ErrorCode::kInvalidInput, "color", "is " + *name + ", wanted rgb, rgba or None"}};
+}
+
+RenderBackend backendOf(const std::string& name) {
+  if (name == "auto") return RenderBackend::kAuto;
+  if (name == "soft") return RenderBackend::kSoft;
+  if (name == "gl") return RenderBackend::kGl;
+  throw Refusal{{ErrorCode::kInvalidInput, "backend", "is " + name + ", wanted auto, soft or gl"}};
+}
+
+/// The keywords of Renderer, with their defaults.
+CameraOptions optionsFrom(const py::kwargs& keywords) {
+  CameraOptions options;
+  RenderOptions& render = options.render;
+  render.color = ColorFormat::kRgb8;
+  options.camera = {.name = "head", .option = "camera"};
+  for (const auto& [key, value] : keywords) {
+    const auto name = key.cast<std::string>();
+    if (name == "width") {
+      render.width = value.cast<std::uint32_t>();
+    } else if (name == "height") {
+      render.height = value.cast<std::uint32_t>();
+    } else if (name == "color") {
+      render.color = colorOf(value.cast<std::optional<std::string>>());
+    } else if (name == "depth") {
+      render.depth = value.cast<bool>();
+    } else if (name == "semantics") {
+      render.semantics = value.cast<bool>();
+    } else if (name == "camera") {
+      options.camera.name = value.cast<std::string>();
+    } else if (name == "fov_degrees") {
+      options.camera.fov_degrees = value.cast<float>();
+    } else if (name == "backend") {
+      render.backend = backendOf(value.cast<std::string>());
+    } else if (name == "device") {
+      render.device = value.cast<std::string>();
+    } else if (name == "threads") {
+      render.threads = value.cast<std::uint32_t>();
+    } else {
+      throw py::type_error(fmt::format(
+          "there is no option {}; the options are width, height, color, depth, semantics, camera, "
+          "fov_degrees, backend, device and threads",
+          name));
+    }
+  }
+  return options;
+}
+
+void bindDeviceArray(py::module_& module) {
+  py::class_<DeviceArray> type(module, "DeviceArray");
+  type.def(
+          "__dlpack__",
+          // The capsule without a version is one that any `max_version` allows.
+          [](const DeviceArray& one, const py::object& stream, const py::object&,
+             const py::object& device, const py::object& copy) {
+            return one.capsule({stream, device, copy});
+          },
+          py::kw_only(), py::arg("stream") = py::none(), py::arg("max_version") = py::none(),
+          py::arg("dl_device") = py::none(), py::arg("copy") = py::none())
+      .def("__dlpack_device__", &DeviceArray::device)
+      .def_property_readonly(
+          "shape", [](const DeviceArray& one) { return py::tuple(py::cast(one.shape())); });
+  type.attr("__module__") = "galactic";
+  type.doc() =
+      "Images in the memory of a CUDA device, for from_dlpack() of an array library: no copy.\n\n"
+      "They stay as they are until the renderer draws again; what uses them has to be enqueued\n"
+      "before that, on the default stream or a stream that it waits for.";
+}
+
+}  // namespace
+
+void bindRenderer(py::module_& module) {
+  bindDeviceArray(module);
+  py::class_<Renderer> type(module, "Renderer");
+  type.def(
+      py::init([](const py::object& simulator, const py::kwargs& keywords) {
+        if (!py::isinstance<Simulator>(simulator)) {
+          throw py::type_error("simulator is no galactic.Simulator");
+        }
+        return Renderer::create(simulator, optionsFrom(keywords));
+      }),
+      py::arg("simulator"),
+      "Draws what cameras on the robots of a simulator see, all envs together.\n\n"
+      "The simulator must have been made with body_transforms=True. Keywords: width=128,\n"
+      "height=128, pixels; color='rgb', 'rgba' or None; depth=True; semantics=False;\n"
+      "camera='head', 'follow', 'top' or a link; fov_degrees, vertical, 0 for the camera's own;\n"
+      "backend='auto', 'soft' or 'gl'; device=''; threads=0.\n\n"
+      "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
+      "(N, height, width), metres along the camera's axis, 0 where nothing is drawn;\n"
+      "'semantics' uint32 (N, height, width), indices into semantic_names.");
+  type.def("render", &Renderer::render, py::arg("out") = py::none(), py::arg("envs") = py::none(),
+           "Draws the simulator's state and returns the images by name.\n\n"
+           "out: arrays by name that are drawn to, of exactly the images' shape and type; what it\n"
+           "does not have becomes a new array. envs: numbers of the envs to draw, None for all.");
+  type.def(
+      "begin_render", &Renderer::beginRender, py::arg("out") = py::none(),
+      py::arg("envs") = py::none(),
+      "The first half of render(): copies the state, so that the simulator may step meanwhile.");
+  type.def("end_render", &Renderer::endRender,
+           "The second half: waits, and returns the images by name.");
+  type.def("render_to_device", &Renderer::renderToDevice,
+           "Draws all envs and leaves the images on the CUDA device, as DeviceArrays by name.\n\n"
+           "Error (UNSUPPORTED) with the soft backend and without CUDA.");
+  type.def_property_readonly("shapes", &Renderer::shapes,
+                             "Of one env's images, by name: shape and dtype.");
+  type.def_property_readonly("backend", [](const Renderer& one) {
+    return one.batch().backend() == RenderBackend::kGl ? "gl" : "soft";
+  });
+  type.def_property_readonly("description",
+                             [](const Renderer& one) { return one.batch().description(); });
+  type.def_property_readonly("semantic_names", &Renderer::semanticNames);
+  type.def("__repr__", [](const Renderer& one) {
+    return fmt::format("<galactic.Renderer, {}>", one.batch().description());
+  });
+  type.attr("__module__") = "galactic";
+  refusePickling(type, "make it again from its simulator");
+}
+
+}  // namespace galactic::python

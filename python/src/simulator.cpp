@@ -1,0 +1,117 @@
+#include "simulator.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "errors.h"
+#include "options.h"
+
+namespace galactic::python {
+
+std::span<const float> Simulator::StepInput::actionSpan() const {
+  return {actions.data(), static_cast<std::size_t>(actions.size())};
+}
+
+std::span<const std::int32_t> Simulator::StepInput::resetSpan() const {
+  return {resets.data(), static_cast<std::size_t>(resets.size())};
+}
+
+Simulator::Simulator(std::shared_ptr<const World> world, BatchSimulator batch)
+    : world_(std::move(world)), batch_(std::move(batch)) {}
+
+std::unique_ptr<Simulator> Simulator::create(std::shared_ptr<const World> world,
+                                             const py::dict& keywords) {
+  const SimulationOptions options = optionsOf(*world, keywords);
+  BatchSimulator batch = [&] {
+    const py::gil_scoped_release unlocked;
+    return valueOf(BatchSimulator::create(*world, options));
+  }();
+  return std::unique_ptr<Simulator>(new Simulator(std::move(world), std::move(batch)));
+}
+
+Simulator::StepInput Simulator::inputOfStep(const py::object& actions,
+                                            const py::object& resets) const {
+  StepInput input;
+  input.actions =
+      inputOf<float>(actions, "actions", {envs(), static_cast<py::ssize_t>(batch_.actionCount())});
+  if (!resets.is_none()) input.resets = inputOf<std::int32_t>(resets, "resets", {envs()});
+  return input;
+}
+
+Confinement::Use Simulator::readState() {
+  Confinement::Use use = confinement_.enter();
+  if (is_stepping_) throw std::runtime_error("a step is under way; call end_step() first");
+  return use;
+}
+
+void Simulator::step(const py::object& actions, const py::object& resets) {
+  const StepInput input = inputOfStep(actions, resets);
+  const Confinement::Use use = readState();
+  const py::gil_scoped_release unlocked;
+  batch_.step(input.actionSpan(), input.resetSpan());
+}
+
+void Simulator::beginStep(const py::object& actions, const py::object& resets) {
+  StepInput input = inputOfStep(actions, resets);
+  const Confinement::Use use = readState();
+  input_ = std::move(input);
+  is_stepping_ = true;
+  batch_.beginStep(input_.actionSpan(), input_.resetSpan());
+}
+
+void Simulator::endStep() {
+  const Confinement::Use use = confinement_.enter();
+  if (!is_stepping_) throw std::runtime_error("no step is under way; call begin_step() first");
+  {
+    const py::gil_scoped_release unlocked;
+    batch_.endStep();
+  }
+  is_stepping_ = false;
+  input_ = {};
+}
+
+void Simulator::reset(const py::object& episodes) {
+  const auto chosen = inputOf<std::int32_t>(episodes, "episodes", {envs()});
+  const Confinement::Use use = readState();
+  const std::span<const std::int32_t> values{chosen.data(),
+                                             static_cast<std::size_t>(chosen.size())};
+  const py::gil_scoped_release unlocked;
+  batch_.reset(values);
+}
+
+void Simulator::restart(std::uint64_t seed) {
+  const Confinement::Use use = readState();
+  const py::gil_scoped_release unlocked;
+  batch_.restart(seed);
+}
+
+std::vector<std::uint32_t> Simulator::envNumbers(const py::object& envs) const {
+  std::vector<std::uint32_t> numbers;
+  for (const py::handle one : envs) {
+    const auto env = one.cast<std::int64_t>();
+    if (env < 0 || env >= this->envs()) {
+      throw py::index_error(
+          fmt::format("there is no env {}, the last is {}", env, this->envs() - 1));
+    }
+    numbers.push_back(static_cast<std::uint32_t>(env));
+  }
+  return numbers;
+}
+
+py::bytes Simulator::saveState(const py::object& envs) {
+  const Confinement::Use use = readState();
+  const std::vector<std::byte> state =
+      envs.is_none() ? batch_.saveState() : batch_.saveState(envNumbers(envs));
+  return {reinterpret_cast<const char*>(state.data()), state.size()};
+}
+
+void Simulator::restoreState(const py::object& state, const py::object& envs) {
+  const InputBytes input(state);
+  const Confinement::Use use = readState();
+  require(envs.is_none() ? batch_.restoreState(input.bytes())
+                         : batch_.restoreState(input.bytes(), envNumbers(envs)));
+}
+
+}  // namespace galactic::python

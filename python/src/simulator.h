@@ -1,0 +1,71 @@
+#pragma once
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "arrays.h"
+#include "confinement.h"
+#include "galactic/batch_simulator.h"
+#include "galactic/world.h"
+
+namespace galactic::python {
+
+/// galactic.Simulator: a BatchSimulator that keeps its world, is used by one thread at a time, and
+/// knows whether a step is under way. Every member needs the interpreter's lock; the long ones give
+/// it away while they work.
+class Simulator {
+ public:
+  /// `keywords`: see optionsOf(). Throws what that throws, and the errors of
+  /// BatchSimulator::create as a Refusal.
+  [[nodiscard]] static std::unique_ptr<Simulator> create(std::shared_ptr<const World> world,
+                                                         const py::dict& keywords);
+
+  /// `actions` and `resets` (or None) as BatchSimulator::step takes them, one row per env.
+  void step(const py::object& actions, const py::object& resets);
+  void beginStep(const py::object& actions, const py::object& resets);
+  void endStep();
+  /// `episodes`: see BatchSimulator::reset.
+  void reset(const py::object& episodes);
+  void restart(std::uint64_t seed);
+  /// `envs`: None for all, or numbers of envs.
+  [[nodiscard]] py::bytes saveState(const py::object& envs);
+  void restoreState(const py::object& state, const py::object& envs);
+
+  /// A use of what is there between two steps: RuntimeError while a step is under way.
+  [[nodiscard]] Confinement::Use readState();
+
+  [[nodiscard]] const World& world() const { return *world_; }
+  [[nodiscard]] const BatchSimulator& batch() const { return batch_; }
+  [[nodiscard]] BatchSimulator& batch() { return batch_; }
+
+  /// What numbers of envs mean; IndexError for those that are not there.
+  [[nodiscard]] std::vector<std::uint32_t> envNumbers(const py::object& envs) const;
+
+  /// For shapes.
+  [[nodiscard]] py::ssize_t envs() const { return static_cast<py::ssize_t>(batch_.envCount()); }
+
+ private:
+  /// What a step reads, which has to stay as it is while the step is under way.
+  struct StepInput {
+    py::array_t<float, py::array::c_style | py::array::forcecast> actions;
+    py::array_t<std::int32_t, py::array::c_style | py::array::forcecast> resets;
+
+    [[nodiscard]] std::span<const float> actionSpan() const;
+    [[nodiscard]] std::span<const std::int32_t> resetSpan() const;
+  };
+
+  Simulator(std::shared_ptr<const World> world, BatchSimulator batch);
+  [[nodiscard]] StepInput inputOfStep(const py::object& actions, const py::object& resets) const;
+
+  std::shared_ptr<const World> world_;
+  Confinement confinement_{"Simulator"};
+  /// Of the step under way, which reads it until the batch is gone: so before the batch.
+  StepInput input_;
+  bool is_stepping_ = false;
+  BatchSimulator batch_;
+};
+
+}  // namespace galactic::python

@@ -1,0 +1,290 @@
+#include <fmt/format.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "galactic/batch_simulator.h"
+#include "options.h"
+#include "simulator.h"
+
+namespace galactic::python {
+namespace {
+
+using Self = const py::object&;
+
+Simulator& of(Self self) { return self.cast<Simulator&>(); }
+
+/// A view of one value per env.
+template <class T>
+py::array perEnv(Self self, std::span<const T> values, const py::dtype& type = py::dtype::of<T>()) {
+  return viewOf(values, {of(self).envs()}, self, type);
+}
+
+py::array rowsOf(Self self, std::span<const float> values) {
+  const Simulator& simulator = of(self);
+  return viewOf(values,
+                {simulator.envs(), static_cast<py::ssize_t>(simulator.batch().observationSize())},
+                self);
+}
+
+py::dict observationParts(const Simulator& simulator) {
+  py::dict parts;
+  for (const ObservationPart& part : simulator.batch().observationParts()) {
+    parts[part.name.c_str()] = py::slice(static_cast<py::ssize_t>(part.first),
+                                         static_cast<py::ssize_t>(part.first + part.size), 1);
+  }
+  return parts;
+}
+
+void requireEnv(const Simulator& simulator, std::size_t env) {
+  if (env < simulator.batch().envCount()) return;
+  throw py::index_error(
+      fmt::format("there is no env {}, the last is {}", env, simulator.batch().envCount() - 1));
+}
+
+py::dict statistics(Simulator& simulator, std::optional<std::size_t> env) {
+  if (env) requireEnv(simulator, *env);
+  const Confinement::Use use = simulator.readState();
+  const BatchSimulator& batch = simulator.batch();
+  const SimulationStatistics sum = env ? batch.statistics(*env) : batch.statistics();
+  py::dict figures;
+  figures["steps"] = sum.steps;
+  figures["refused"] = sum.refused;
+  figures["slid"] = sum.slid;
+  figures["grasps"] = sum.grasps;
+  figures["drops"] = sum.drops;
+  figures["restored"] = sum.restored;
+  figures["episodes"] = sum.episodes;
+  figures["successes"] = sum.successes;
+  figures["failures"] = sum.failures;
+  figures["nan_actions"] = sum.nan_actions;
+  figures["reward"] = sum.reward;
+  return figures;
+}
+
+py::dict phaseTimes(Simulator& simulator) {
+  const Confinement::Use use = simulator.readState();
+  py::dict times;
+  for (const PhaseTime& phase : simulator.batch().phaseTimes()) {
+    times[py::str(phase.name)] = phase.seconds;
+  }
+  return times;
+}
+
+EnvState envState(Simulator& simulator, std::size_t env) {
+  requireEnv(simulator, env);
+  const Confinement::Use use = simulator.readState();
+  return simulator.batch().envState(env);
+}
+
+py::array_t<std::int32_t> episodes(Simulator& simulator, const py::object& envs) {
+  const Confinement::Use use = simulator.readState();
+  const std::vector<std::uint32_t> chosen =
+      envs.is_none() ? std::vector<std::uint32_t>() : simulator.envNumbers(envs);
+  const std::size_t count = envs.is_none() ? simulator.batch().envCount() : chosen.size();
+  py::array_t<std::int32_t> numbers(static_cast<py::ssize_t>(count));
+  for (std::size_t n = 0; n < count; ++n) {
+    const EnvObjects objects = simulator.batch().envObjects(envs.is_none() ? n : chosen[n]);
+    numbers.mutable_data()[n] = static_cast<std::int32_t>(objects.episode);
+  }
+  return numbers;
+}
+
+void bindPose(py::module_& module) {
+  py::class_<Pose> type(module, "Pose");
+  type.def_property_readonly("translation",
+                             [](const Pose& pose) {
+                               const Vec3& t = pose.translation;
+                               return arrayOf(std::array{t.x, t.y, t.z});
+                             })
+      .def_property_readonly("rotation", [](const Pose& pose) {
+        const Quat& q = pose.rotation;
+        return arrayOf(std::array{q.w, q.x, q.y, q.z});
+      });
+  type.def("__repr__", [](const Pose& pose) {
+    const auto& [t, q] = pose;
+    return fmt::format(
+        "Pose(translation=({:.4g}, {:.4g}, {:.4g}), rotation=({:.4g}, {:.4g}, {:.4g}, "
+        "{:.4g}))",
+        t.x, t.y, t.z, q.w, q.x, q.y, q.z);
+  });
+  type.attr("__module__") = "galactic";
+  type.doc() =
+      "A rigid transform a_from_b: rotate, then translate.\n\n"
+      "translation: float32 (3,), metres. rotation: float32 (4,), the unit quaternion (w, x, y, "
+      "z).";
+}
+
+void bindEnvState(py::module_& module) {
+  py::class_<EnvState> type(module, "EnvState");
+  type.def_readonly("scene", &EnvState::scene)
+      .def_readonly("episode", &EnvState::episode)
+      .def_readonly("step", &EnvState::step)
+      .def_readonly("world_from_root", &EnvState::world_from_root)
+      .def_property_readonly("joint_positions",
+                             [](const EnvState& state) { return arrayOf(state.joint_positions); })
+      .def_readonly("world_from_grip", &EnvState::world_from_grip)
+      .def_readonly("objects", &EnvState::objects)
+      .def_property_readonly("held",
+                             [](const EnvState& state) -> py::object {
+                               if (state.held < 0) return py::none();
+                               return py::int_(state.held);
+                             })
+      .def_readonly("target", &EnvState::target)
+      .def_readonly("goal", &EnvState::goal);
+  type.attr("__module__") = "galactic";
+  type.doc() =
+      "The state of one env: a copy.\n\n"
+      "scene, episode: indices into the world's scenes and episodes. step: steps of the episode.\n"
+      "world_from_root, world_from_grip, goal: Pose. joint_positions: float32, the robot's whole\n"
+      "vector, radians or metres. objects: the world poses of the episode's objects. held: index\n"
+      "into objects, None with an empty hand. target: index into objects.";
+}
+
+void bindStepping(py::class_<Simulator>& type) {
+  type.def("step", &Simulator::step, py::arg("actions"), py::arg("resets") = py::none(),
+           "One step of all envs.\n\n"
+           "actions: (num_envs, action_count), float32 without a copy; clamped to [-1, 1], NaN\n"
+           "counts as 0. resets: int32 (num_envs,), for each env the index of an episode that\n"
+           "begins instead of this step's end, -1 for none.");
+  type.def("begin_step", &Simulator::beginStep, py::arg("actions"), py::arg("resets") = py::none(),
+           "The first half of step(): the simulator's threads work, the caller goes on.\n\n"
+           "Do not write to actions and resets, nor read what the simulator shows, before\n"
+           "end_step() returns.");
+  type.def("end_step", &Simulator::endStep, "The second half: helps, and waits for the end.");
+  type.def(
+      "reset", &Simulator::reset, py::arg("episodes"),
+      "Begins episodes between two steps.\n\n"
+      "episodes: int32 (num_envs,), for each env the index of an episode, NEXT_EPISODE for the\n"
+      "one whose turn it is, or STAYS.");
+  type.def("restart", &Simulator::restart, py::arg("seed"),
+           "All envs stand at the start of their first episode, as if just made with this seed.");
+  type.def("save_state", &Simulator::saveState, py::arg("envs") = py::none(),
+           "The state of all envs as bytes, or of those with the numbers `envs`, in that order:\n"
+           "with what the last step returned, the statistics and the seed.");
+  type.def(
+      "restore_state", &Simulator::restoreState, py::arg("state"), py::arg("envs") = py::none(),
+      "Goes on from a state that a simulator of the same world and options saved, bit for bit\n"
+      "as that one would have; into all envs, or into those with the numbers `envs`, whose\n"
+      "random numbers and episodes to come stay their own. Error for bytes that are no such\n"
+      "state; nothing changes then.");
+}
+
+void bindResults(py::class_<Simulator>& type) {
+  type.def_property_readonly(
+      "observations", [](Self self) { return rowsOf(self, of(self).batch().observations()); },
+      "After the last step: float32 (num_envs, observation_size), a view. Where an episode ended,\n"
+      "the first row of the next.");
+  type.def_property_readonly(
+      "final_observations",
+      [](Self self) { return rowsOf(self, of(self).batch().finalObservations()); },
+      "Where an episode ended in the last step, its last row: float32 (num_envs,\n"
+      "observation_size), a view; other rows mean nothing.");
+  type.def_property_readonly(
+      "rewards", [](Self self) { return perEnv(self, of(self).batch().rewards()); },
+      "Of the last step: float32 (num_envs,), a view.");
+  type.def_property_readonly(
+      "dones",
+      [](Self self) { return perEnv(self, of(self).batch().dones(), py::dtype::of<bool>()); },
+      "Where an episode ended in the last step: bool (num_envs,), a view.");
+  type.def_property_readonly(
+      "successes",
+      [](Self self) { return perEnv(self, of(self).batch().successes(), py::dtype::of<bool>()); },
+      "Where it ended in success: bool (num_envs,), a view.");
+  type.def_property_readonly(
+      "endings",
+      [](Self self) {
+        return perEnv(self, of(self).batch().endings(), py::dtype::of<std::uint8_t>());
+      },
+      "How it ended, as numbers of EpisodeEnd: uint8 (num_envs,), a view.");
+}
+
+void bindQueries(py::class_<Simulator>& type) {
+  type.def_property_readonly("num_envs",
+                             [](const Simulator& one) { return one.batch().envCount(); });
+  type.def_property_readonly("action_count",
+                             [](const Simulator& one) { return one.batch().actionCount(); });
+  type.def_property_readonly("observation_size",
+                             [](const Simulator& one) { return one.batch().observationSize(); });
+  type.def_property_readonly("observation_parts", &observationParts,
+                             "The parts of a row of the observations: name to slice, in order.");
+  type.def_property_readonly("thread_count",
+                             [](const Simulator& one) { return one.batch().threadCount(); });
+  type.def_property_readonly(
+      "options", [](const Simulator& one) { return keywordsOf(one.batch().options()); });
+  type.def_property_readonly(
+      "skipped_episodes",
+      [](const Simulator& one) {
+        const std::span<const std::uint32_t> skipped = one.batch().skippedEpisodes();
+        return std::vector<std::uint32_t>(skipped.begin(), skipped.end());
+      },
+      "Indices of the episodes in which the robot cannot start.");
+  type.def_property_readonly("memory_bytes",
+                             [](const Simulator& one) { return one.batch().memoryBytes(); });
+  type.def("episodes", &episodes, py::arg("envs") = py::none(),
+           "The index of the episode that each env is in, or each of the numbers `envs`: int32,\n"
+           "a copy.");
+  type.def("env_state", &envState, py::arg("env"), "The state of one env, as a copy.");
+  type.def("statistics", &statistics, py::arg("env") = py::none(),
+           "What happened in all envs since they were made, added up; or in one of them.");
+  type.def(
+      "sample_phases",
+      [](Simulator& one, std::uint32_t every) {
+        const Confinement::Use use = one.readState();
+        one.batch().samplePhases(every);
+      },
+      py::arg("every"), "Measures one step in `every` from now on; 0 switches it off.");
+  type.def("phase_times", &phaseTimes,
+           "Seconds that the threads spent in each phase of the measured steps, added up.");
+}
+
+}  // namespace
+
+void bindSimulator(py::module_& module) {
+  bindEnum(module, "EpisodeEnd",
+           {{"NONE", static_cast<int>(EpisodeEnd::kNone)},
+            {"SUCCESS", static_cast<int>(EpisodeEnd::kSuccess)},
+            {"WRONG_TERMINATE", static_cast<int>(EpisodeEnd::kWrongTerminate)},
+            {"WRONG_RELEASE", static_cast<int>(EpisodeEnd::kWrongRelease)},
+            {"WRONG_OBJECT", static_cast<int>(EpisodeEnd::kWrongObject)},
+            {"TIME_OUT", static_cast<int>(EpisodeEnd::kTimeOut)}},
+           "How an episode ended. TIME_OUT is a truncation, all behind NONE but it terminations.");
+  bindPose(module);
+  bindEnvState(module);
+  py::class_<Simulator> type(module, "Simulator");
+  type.def(
+      py::init([](std::shared_ptr<World> world, const py::kwargs& options) {
+        return Simulator::create(std::move(world), options);
+      }),
+      py::arg("world"),
+      "N environments of one world, stepped together.\n\n"
+      "Keywords: every option of galactic-run's simulation with '_' for '-' (envs=128, seed=1,\n"
+      "order='shuffled', task='pick', no_distractors=True, ...; docs/simulation.md has them),\n"
+      "threads=0 (one per processor), body_transforms=False (rendering needs them) and\n"
+      "auto_reset=True (False: envs whose episode ended wait for reset()). Options of the\n"
+      "world's task apply where no keyword says otherwise.\n\n"
+      "Arrays that it shows are views: no copy, read-only, valid as long as they are kept\n"
+      "(they keep the simulator), with new contents after each step. One thread at a time.");
+  type.attr("STAYS") = BatchSimulator::kStays;
+  type.attr("NEXT_EPISODE") = BatchSimulator::kNextEpisode;
+  bindStepping(type);
+  bindResults(type);
+  bindQueries(type);
+  type.def("__repr__", [](const Simulator& one) {
+    return fmt::format("<galactic.Simulator of {} envs, {} threads>", one.batch().envCount(),
+                       one.batch().threadCount());
+  });
+  type.attr("__module__") = "galactic";
+  refusePickling(type,
+                 "make it again from its world in each process, and carry its state over with "
+                 "save_state() and restore_state()");
+}
+
+}  // namespace galactic::python

@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# learn.sh [SEED]: a robot learns to pick things up in the sample apartment, without a camera or a
+# graphics processor, and shows what it learned. After scripts/quickstart.sh; works from any folder.
+# What it makes is in build/release/learn.
+set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/phases.sh"
+cd "$galactic_root"
+
+seed=${1:-1}
+bin=build/release/bin
+sample=build/release/sample
+out=build/release/learn
+run=$out/seed-$seed
+packs=("$sample/apartment.pack" "$sample/objects.pack" "$sample/robot.pack")
+export PYTHONPATH=build/release/python
+
+for pack in "${packs[@]}"; do
+  if [ ! -f "$pack" ]; then
+    echo "learn: $pack is not there; run scripts/quickstart.sh first" >&2
+    exit 2
+  fi
+done
+
+# world NAME EPISODES SEED: a world of the sample's packs with episodes of its own.
+world() {
+  local name=$1 count=$2 episode_seed=$3
+  "$bin/galactic-bake" "${packs[@]}" --as episodes --count "$count" --seed "$episode_seed" \
+    -o "$out/$name-episodes.pack"
+  "$bin/galactic-bake" "${packs[@]}" "$out/$name-episodes.pack" --as world -o "$out/$name.pack"
+}
+
+phase learn-configure "Configuring (preset release)" cmake --preset release
+phase learn-build "Building the Python package" \
+  cmake --build --preset release --target galactic-bake galactic-run galactic_python
+
+heading "Drawing episodes: 2000 to learn from, 400 that it never sees"
+mkdir -p "$out"
+world homes 2000 101
+world unseen 400 202
+
+heading "Learning to pick (preset quick)"
+/usr/bin/python3 -m galactic.train "$out/homes.pack" --preset quick --seed "$seed" \
+  --validation "$out/unseen.pack" -o "$run"
+
+heading "Playing each unseen episode once: sampled actions, then the likeliest"
+/usr/bin/python3 -m galactic.evaluate "$run/best.pt" "$out/unseen.pack" \
+  --report "$run/unseen.json" --contact-sheet "$run/unseen.png"
+/usr/bin/python3 -m galactic.evaluate "$run/best.pt" "$out/unseen.pack" --deterministic \
+  --report "$run/unseen-deterministic.json"
+
+heading "The same policy without Python"
+/usr/bin/python3 -m galactic.export "$run/best.pt" -o "$run/picker.pack"
+"$bin/galactic-run" --pack "$out/unseen.pack" --policy "$run/picker.pack" --policy-sample \
+  --envs 64 --steps 400
+
+cat <<END
+
+Look at these, in $run/:
+  curves.html    success, return and losses while it learned; open it in a browser
+  unseen.png     moments of episodes that it had never seen: successes and failures
+  unseen.json    all 400 of them, with path and ending
+  best.pt        the policy, for Python
+  picker.pack    the policy, for galactic-run
+END
