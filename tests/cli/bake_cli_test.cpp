@@ -6,7 +6,7 @@
 #include "cli/bake_folder.h"
 #include "support/mesh_files.h"
 
-namespace galactic {
+namespace galactic::bake_cli_test {
 namespace {
 
 using nlohmann::json;
@@ -15,6 +15,7 @@ using test::Refusal;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::StartsWith;
 
 /// A folder with a closed room and a file that is no mesh.
@@ -86,6 +87,55 @@ TEST_F(BakeCli, ReadsOptionsFromAConfigFile) {
   EXPECT_FLOAT_EQ(grids[0]["spacing"], 0.04F);
 }
 
+TEST_F(BakeCli, RefusesAConfigFileThatIsNone) {
+  struct Fault {
+    std::string text;
+    std::string message;
+  };
+  for (const Fault& fault : std::vector<Fault>{
+           {"[a\n", "galactic-bake: bake.toml:1: it is not TOML: "},
+           {"radii = [0.05]\n[a]\nradii = [0.1]\n", "bake.toml:2: a is no option; "},
+           {"\nspacin = 0.04\n",
+            "galactic-bake: bake.toml:2: spacin is no option; did you mean '--spacing'?\n"},
+           {"radii = [[0.05]]\n", "bake.toml:1: radii is a table or a list of lists"},
+           {"radii = [0.05]\nradii = [0.1]\n", "bake.toml:2: it is not TOML: "},
+           {"version = true\n", "bake.toml:1: version belongs on the command line"},
+           {"spacing = nan\n", "galactic-bake: --spacing: has \"nan\""},
+           {"jobs = -1\n", "galactic-bake: command line: --jobs: found -1, wanted a whole number"},
+           {"keep-components = 1.5\n", "--keep-components: found 1.5, wanted a whole number"}}) {
+    write("bake.toml", fault.text);
+    const ProgramRun bake = run({"room.obj", "--config", "bake.toml"});
+    EXPECT_EQ(bake.exit_code, 1) << fault.text;
+    EXPECT_THAT(bake.err, HasSubstr(fault.message)) << fault.text;
+    EXPECT_THAT(bake.err, StartsWith("galactic-bake: ")) << fault.text;
+    EXPECT_EQ(std::count(bake.err.begin(), bake.err.end(), '\n'), 1) << bake.err;
+  }
+}
+
+TEST_F(BakeCli, TellsAFullDiskBehindItsOutput) {
+  const ProgramRun ended =
+      test::runProgram(GALACTIC_BAKE, path(""), {"room.obj", "--radii", "0.12"}, "/dev/full");
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_THAT(ended.err, HasSubstr("galactic-bake: standard output: cannot be written"));
+  EXPECT_TRUE(has("room.pack"));
+}
+
+TEST_F(BakeCli, TellsThatARoomIsOpen) {
+  // The ceiling of the box is left out.
+  test::MeshContent box = test::unevenBox();
+  std::erase_if(box.triangles, [&](const auto& triangle) {
+    return std::all_of(triangle.begin(), triangle.end(),
+                       [&](std::uint32_t corner) { return box.positions[corner][1] > 2; });
+  });
+  write("open.obj", test::objFile(box));
+  const ProgramRun open = run({"open.obj", "--radii", "0.05"});
+  EXPECT_EQ(open.exit_code, 0);
+  EXPECT_THAT(
+      open.out,
+      HasSubstr("radius 0.05 m: the room is one with the outside, and all of it is stored: "));
+  EXPECT_THAT(run({"room.obj", "--radii", "0.05"}).out, Not(HasSubstr("one with the outside")));
+}
+
 TEST_F(BakeCli, LeavesAnOldPackIntactWhenABakeFails) {
   write("room.pack", "the old pack");
   EXPECT_EQ(run({"room.obj", "--seed", "100,0,0"}).exit_code, 3);
@@ -132,7 +182,9 @@ TEST_F(BakeCli, RefusesTwoInputsForOnePack) {
 TEST_F(BakeCli, ExplainsEveryRefusal) {
   const std::vector<Refusal> refusals{
       {{}, 1, "input is required"},
-      {{"room.obj", "--no-such-option"}, 1, "--no-such-option"},
+      {{"room.obj", "--no-such-option"}, 1, "galactic-bake: command line: "},
+      {{"room.obj", "--radi", "0.1"}, 1, "--radi; did you mean '--radii'?; see --help"},
+      {{"room.obj", "--radii", "0.1,,0.2"}, 1, "--radii: has \"\" in \"0.1,,0.2\""},
       {{"room.obj", "--radii", "0.05,x"}, 1, "--radii: has \"x\" in \"0.05,x\""},
       {{"room.obj", "--seed", "1,2"}, 1, "--seed: has 2 numbers in \"1,2\", 3 are wanted"},
       {{"room.obj", "--up", "w"}, 1, "--up: is \"w\""},
@@ -179,4 +231,4 @@ TEST_F(BakeCli, AppliesUpScaleAndTransformInThisOrder) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::bake_cli_test

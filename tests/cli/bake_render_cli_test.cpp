@@ -9,7 +9,7 @@
 #include "galactic/render_meshes.h"
 #include "support/mesh_files.h"
 
-namespace galactic {
+namespace galactic::bake_render_cli_test {
 namespace {
 
 using nlohmann::json;
@@ -97,4 +97,4 @@ TEST_F(BakeRenderCli, DoesNotTakeThemForEpisodes) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::bake_render_cli_test

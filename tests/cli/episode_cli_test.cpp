@@ -12,7 +12,7 @@
 #include "support/gzip_text.h"
 #include "support/habitat_text.h"
 
-namespace galactic {
+namespace galactic::episode_cli_test {
 namespace {
 
 using nlohmann::json;
@@ -221,4 +221,4 @@ TEST_F(EpisodeCli, ExplainsEveryRefusal) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::episode_cli_test

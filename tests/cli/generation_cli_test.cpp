@@ -6,15 +6,16 @@
 
 #include "cli/bake_folder.h"
 #include "galactic/world.h"
+#include "support/source_folder.h"
 
-namespace galactic {
+namespace galactic::generation_cli_test {
 namespace {
 
 using test::ProgramRun;
 using testing::HasSubstr;
 
 std::string sample(const char* file) {
-  return std::string(GALACTIC_SOURCE_DIR "/packs/sample/") + file;
+  return (test::sourceFolder() / "packs/sample/" / file).string();
 }
 
 class GenerationCli : public test::BakeFolder {
@@ -88,4 +89,4 @@ TEST_F(GenerationCli, DrawsEpisodesThatMakeAWorldWithTheirPacks) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::generation_cli_test

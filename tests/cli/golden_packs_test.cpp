@@ -14,13 +14,13 @@
 #include "galactic/scene.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
+#include "support/source_folder.h"
 
-namespace galactic {
+namespace galactic::golden_packs_test {
 namespace {
 
 const std::filesystem::path& goldenFolder() {
-  static const std::filesystem::path folder =
-      std::filesystem::path(GALACTIC_SOURCE_DIR) / "packs" / "golden";
+  static const std::filesystem::path folder = test::sourceFolder() / "packs" / "golden";
   return folder;
 }
 
@@ -130,4 +130,4 @@ TEST(GoldenPacks, AnswerAsTheRoomIsBuilt) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::golden_packs_test

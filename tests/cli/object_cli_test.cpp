@@ -9,7 +9,7 @@
 #include "galactic/pack.h"
 #include "support/mesh_files.h"
 
-namespace galactic {
+namespace galactic::object_cli_test {
 namespace {
 
 using nlohmann::json;
@@ -288,4 +288,4 @@ TEST_F(ObjectCli, ExplainsWhatACollectionLacks) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::object_cli_test

@@ -7,7 +7,7 @@
 #include "galactic/world.h"
 #include "support/habitat_text.h"
 
-namespace galactic::test {
+namespace galactic::test::plan_cli_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -299,6 +299,21 @@ TEST_F(PlanCli, BakesTheWorldOfARecipe) {
               ElementsAre("objects/box.pack", "robot.pack", "scenes/c.pack"));
 }
 
+TEST_F(PlanCli, BakesEpisodesAnewForEachOptionThatTheReportOrThePackShows) {
+  const std::vector<std::string> arguments{"flat.toml", "--data", sampleFile(""), "--report",
+                                           "report.json"};
+  write("flat.toml", kRecipe);
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  // In the pack, and in the report alone.
+  for (const char* option : {"flatness = 0.004", "solve = 0"}) {
+    write("flat.toml", fmt::format("{}{}\n", kRecipe, option));
+    ASSERT_EQ(run(arguments).exit_code, 0) << option;
+    EXPECT_THAT(packsThatAre("baked"), ElementsAre("episodes.pack")) << option;
+    ASSERT_EQ(run(arguments).exit_code, 0) << option;
+    EXPECT_THAT(packsThatAre("baked"), IsEmpty()) << option;
+  }
+}
+
 TEST_F(PlanCli, FindsFilesOfEpisodesBesideTheRecipeAndThenInItsData) {
   write("recipes/home.toml",
         "[[scenes]]\nfiles = \"../data/meshes/apartment.glb\"\ncheck-columns = 0\nradii = [0.05]\n"
@@ -329,4 +344,4 @@ TEST_F(PlanCli, FindsFilesOfEpisodesBesideTheRecipeAndThenInItsData) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::plan_cli_test

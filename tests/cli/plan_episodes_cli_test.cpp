@@ -5,7 +5,7 @@
 #include "cli/plan_folder.h"
 #include "galactic/world.h"
 
-namespace galactic::test {
+namespace galactic::test::plan_episodes_cli_test {
 namespace {
 
 using testing::AllOf;
@@ -140,4 +140,4 @@ TEST_F(PlanEpisodes, AreAnErrorWhereNoSceneIsLeft) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::plan_episodes_cli_test

@@ -10,7 +10,7 @@
 #include "cli/plan_folder.h"
 #include "galactic/part_files.h"
 
-namespace galactic::test {
+namespace galactic::test::plan_faults_cli_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -342,4 +342,4 @@ TEST_F(PlanFaults, MakesPacksAgainThatWereDamaged) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::plan_faults_cli_test

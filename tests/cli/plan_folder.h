@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/bake_folder.h"
+#include "support/source_folder.h"
 
 namespace galactic::test {
 
@@ -16,7 +17,7 @@ namespace galactic::test {
 using PackContents = std::map<std::string, std::string>;
 
 inline std::string sampleFile(const std::string& name) {
-  return std::string(GALACTIC_SOURCE_DIR "/packs/sample/") + name;
+  return (test::sourceFolder() / "packs/sample/" / name).string();
 }
 
 /// A scene dataset of the sample apartment in `data`: scenes a and b with a mug that stands there

@@ -14,7 +14,7 @@
 #include "support/scratch_folder.h"
 #include "support/small_home_models.h"
 
-namespace galactic {
+namespace galactic::render_cli_test {
 namespace {
 
 using nlohmann::json;
@@ -23,6 +23,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::StartsWith;
 
 /// The small home with render meshes, drawn by the soft renderer.
@@ -82,6 +83,7 @@ TEST_F(RenderCli, ReportsAsJson) {
   EXPECT_EQ(rendering["backend"], "soft");
   EXPECT_THAT(rendering["description"].get<std::string>(), StartsWith("soft"));
   EXPECT_EQ(rendering["image_count"], 60);
+  EXPECT_EQ(rendering["semantics"][0], "background");
   EXPECT_GT(rendering["images_per_second"].get<double>(), 0);
   for (const char* part : {"rendering_alone", "physics_alone", "overlapped"}) {
     EXPECT_GT(rendering["seconds_per_step"][part].get<double>(), 0) << part;
@@ -107,7 +109,7 @@ TEST_F(RenderCli, WritesFramesAndASheetThatDependOnNothingElse) {
   ASSERT_EQ(with("three", "3").exit_code, 0);
   const std::vector<std::string> names = files("one");
   // States 0, 8 and 16 of two envs, four images each.
-  EXPECT_EQ(names.size(), 3U * 2 * 4);
+  EXPECT_EQ(names.size(), 3U * 2 * 4 + 1) << "and the legend of the semantic ids";
   EXPECT_THAT(names, AllOf(testing::Contains("env_0001_step_000016_rgb.png"),
                            testing::Contains("env_0000_step_000008_depth.png"),
                            testing::Contains("env_0000_step_000000_semantic.png"),
@@ -118,6 +120,15 @@ TEST_F(RenderCli, WritesFramesAndASheetThatDependOnNothingElse) {
   }
   EXPECT_EQ(content("one.png"), content("three.png"));
   EXPECT_THAT(content("one.png"), StartsWith("\x89PNG"));
+  const json legend = json::parse(content("one/semantics.json"))["semantics"];
+  ASSERT_GT(legend.size(), 1U);
+  for (std::size_t id = 0; id < legend.size(); ++id) {
+    EXPECT_EQ(legend[id]["id"], id);
+    EXPECT_THAT(legend[id]["name"].get<std::string>(), Not(IsEmpty()));
+    EXPECT_THAT(legend[id]["color"].get<std::string>(), testing::MatchesRegex("#[0-9a-f]{6}"));
+  }
+  EXPECT_EQ(legend[0]["name"], "background");
+  EXPECT_EQ(legend[0]["color"], "#000000");
   // The robot has moved.
   EXPECT_NE(content("one/env_0000_step_000000_rgb.png"),
             content("one/env_0000_step_000016_rgb.png"));
@@ -223,4 +234,4 @@ TEST_F(RenderCli, ARunThatIsStoppedFinishesItsPictures) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::render_cli_test

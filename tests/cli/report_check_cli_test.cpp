@@ -9,7 +9,7 @@
 #include "galactic/error.h"
 #include "support/episode_set_text.h"
 
-namespace galactic {
+namespace galactic::report_check_cli_test {
 namespace {
 
 using nlohmann::json;
@@ -197,4 +197,4 @@ TEST_F(ReportCheck, ExplainsEveryRefusal) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::report_check_cli_test

@@ -10,7 +10,7 @@
 #include "galactic/schema/pack_generated.h"
 #include "support/mesh_files.h"
 
-namespace galactic {
+namespace galactic::robot_cli_test {
 namespace {
 
 using nlohmann::json;
@@ -253,4 +253,4 @@ TEST_F(RobotCli, ExplainsEveryRefusal) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::robot_cli_test

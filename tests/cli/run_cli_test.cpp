@@ -6,7 +6,7 @@
 #include "support/scratch_folder.h"
 #include "support/world_pack_builder.h"
 
-namespace galactic {
+namespace galactic::run_cli_test {
 namespace {
 
 using test::ProgramRun;
@@ -104,4 +104,4 @@ TEST_F(RunCli, ListsItsExitCodesInHelp) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::run_cli_test

@@ -9,7 +9,7 @@
 #include "support/scratch_folder.h"
 #include "support/small_home.h"
 
-namespace galactic {
+namespace galactic::simulate_cli_test {
 namespace {
 
 using nlohmann::json;
@@ -105,7 +105,7 @@ TEST_F(SimulateCli, ReportsAsJson) {
   EXPECT_EQ(report["options"]["envs"], 12);
   EXPECT_EQ(report["options"]["no-distractors"], true);
   EXPECT_EQ(report["options"]["safe-drop"], false);
-  EXPECT_EQ(report["phase_ns_per_step"].size(), 9U);
+  EXPECT_EQ(report["phase_ns_per_step"].size(), 10U);
   EXPECT_GT(report["steps_per_second"].get<double>(),
             report["loop_steps_per_second"].get<double>());
   EXPECT_EQ(report["episodes"]["skipped"], json::array({2}));
@@ -334,4 +334,4 @@ TEST_F(SimulateCli, EndsCleanlyWhenItIsInterrupted) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::simulate_cli_test

@@ -8,7 +8,7 @@
 #include "galactic/world.h"
 #include "support/world_pack_builder.h"
 
-namespace galactic {
+namespace galactic::world_cli_test {
 namespace {
 
 using nlohmann::json;
@@ -137,4 +137,4 @@ TEST_F(WorldCli, ExplainsEveryRefusal) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::world_cli_test

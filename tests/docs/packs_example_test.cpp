@@ -9,8 +9,9 @@
 
 #include "galactic/bake/grid_encoder.h"
 #include "galactic/column_cell.h"
+#include "support/source_folder.h"
 
-namespace galactic::bake {
+namespace galactic::bake::packs_example_test {
 namespace {
 
 using testing::HasSubstr;
@@ -30,7 +31,7 @@ Columns exampleColumns() {
 }
 
 std::string readDocument() {
-  std::ifstream file(GALACTIC_SOURCE_DIR "/docs/packs.md");
+  std::ifstream file(test::sourceFolder() / "docs/packs.md");
   std::stringstream text;
   text << file.rdbuf();
   return text.str();
@@ -62,4 +63,4 @@ TEST(PacksDocument, ShowsTheOverflowOfItsExample) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::packs_example_test

@@ -8,8 +8,9 @@
 
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
+#include "support/source_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::ci_job_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -22,7 +23,7 @@ class CiJob : public testing::Test {
  protected:
   /// Runs the script with what env(1) takes before it.
   [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
-    const fs::path script = fs::path(GALACTIC_SOURCE_DIR) / "examples/ci/check_packs.sh";
+    const fs::path script = test::sourceFolder() / "examples/ci/check_packs.sh";
     std::vector<std::string> line{std::string("GALACTIC_BIN=") + GALACTIC_BIN,
                                   "GOLDEN=" + golden_.string(), "bash", script.string()};
     line.insert(line.end(), arguments.begin(), arguments.end());
@@ -30,7 +31,7 @@ class CiJob : public testing::Test {
   }
 
   ScratchFolder folder_;
-  fs::path golden_ = fs::path(GALACTIC_SOURCE_DIR) / "examples/ci/golden";
+  fs::path golden_ = test::sourceFolder() / "examples/ci/golden";
 };
 
 TEST_F(CiJob, PassesOnTheSampleWorld) {
@@ -76,10 +77,10 @@ TEST_F(CiJob, ExplainsAWrongCommandLine) {
 }
 
 TEST_F(CiJob, IsWhatTheWorkflowRuns) {
-  const std::string workflow = fileContent(fs::path(GALACTIC_SOURCE_DIR) / "examples/ci/packs.yml");
+  const std::string workflow = fileContent(test::sourceFolder() / "examples/ci/packs.yml");
   EXPECT_THAT(workflow, AllOf(HasSubstr("examples/ci/check_packs.sh out"),
                               HasSubstr("scripts/setup.sh"), Not(HasSubstr("\t"))));
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::ci_job_test

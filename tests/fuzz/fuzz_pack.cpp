@@ -2,7 +2,7 @@
 // the payload, and a header with its right size and hash is put before it, so that the checks
 // behind the hash are reached; the byte's other bits choose the kind in that header. What opens has
 // to be safe to use: grids answer queries alike, one by one and in batches; objects and robots
-// show only what is in the pack, and the robot moves.
+// show only what is in the pack, the robot moves, and the policy acts.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,6 +17,7 @@
 
 #include "galactic/episode_set.h"
 #include "galactic/kinematics.h"
+#include "galactic/learned_policy.h"
 #include "galactic/object_set.h"
 #include "galactic/pack.h"
 #include "galactic/pack_reference.h"
@@ -146,6 +147,7 @@ void useRobot(const PackFile& pack) {
   }
   if (robot->endEffector() && robot->endEffector()->link >= links) report("a hand without a link");
   if (robot->camera() && robot->camera()->link >= links) report("a camera without a link");
+  if (robot->laser() && robot->laser()->link >= links) report("a laser without a link");
 }
 
 void useEpisodes(const PackFile& pack) {
@@ -197,6 +199,35 @@ void useTexture(const PackFile& pack) {
   }
 }
 
+/// Acts for two steps on two envs; what takes too much memory or time is left out.
+void usePolicy(const PackFile& pack) {
+  const auto needs = policyInterface(pack);
+  if (!needs) report("a policy pack without a policy");
+  PolicyBatch batch{.envs = 2,
+                    .actions = std::size_t{needs->continuous_actions} + needs->discrete_actions,
+                    .observation_size = 0,
+                    .observation = {},
+                    .robot = {}};
+  for (const PolicyPart& part : needs->observation) {
+    batch.observation.push_back({part.name, batch.observation_size, part.size});
+    batch.observation_size += part.size;
+  }
+  constexpr std::size_t kMost = 1U << 16U;
+  const std::size_t pixels =
+      needs->image ? std::size_t{needs->image->width} * needs->image->height : 0;
+  if (batch.observation_size > kMost || batch.actions > kMost || pixels > kMost) return;
+  auto policy = LearnedPolicy::create(pack, batch, {.threads = 1});
+  if (!policy) report("a policy that does not fit what it asks for");
+  const std::vector<float> observations(batch.envs * batch.observation_size, 0.5F);
+  const std::vector<std::uint8_t> color(batch.envs * pixels * 3, 100);
+  const std::vector<float> depth(batch.envs * pixels, 2);
+  const std::vector<std::uint8_t> dones{0, 1};
+  std::vector<float> actions(batch.envs * batch.actions);
+  for (int step = 0; step < 2; ++step) {
+    policy->act({observations, dones, color, depth}, actions);
+  }
+}
+
 void draw(const PackFile& pack) {
   const auto meshes = renderMeshesOf(pack);
   if (!meshes) report("a pack whose render meshes are not read");
@@ -205,7 +236,8 @@ void draw(const PackFile& pack) {
 }
 
 void use(const PackFile& pack) {
-  const std::array without_meshes{PackKind::kEpisodes, PackKind::kWorld, PackKind::kTexture};
+  const std::array without_meshes{PackKind::kEpisodes, PackKind::kWorld, PackKind::kTexture,
+                                  PackKind::kPolicy};
   if (std::ranges::find(without_meshes, pack.kind()) == without_meshes.end()) draw(pack);
   switch (pack.kind()) {
     case PackKind::kScene:
@@ -220,12 +252,15 @@ void use(const PackFile& pack) {
       return useWorld(pack);
     case PackKind::kTexture:
       return useTexture(pack);
+    case PackKind::kPolicy:
+      return usePolicy(pack);
   }
 }
 
 /// The kinds of header for a payload; odd first bytes count through them.
 constexpr std::array kKinds{PackKind::kScene,    PackKind::kObjects, PackKind::kRobot,
-                            PackKind::kEpisodes, PackKind::kWorld,   PackKind::kTexture};
+                            PackKind::kEpisodes, PackKind::kWorld,   PackKind::kTexture,
+                            PackKind::kPolicy};
 
 test::AlignedBytes fileOf(const std::uint8_t* data, std::size_t size) {
   const auto* first = reinterpret_cast<const std::byte*>(data);

@@ -90,6 +90,9 @@ void checkBatch(const BatchSimulator& simulator) {
   for (std::size_t env = 0; env < simulator.envCount(); ++env) {
     checkEnv(simulator.envState(env));
     if (simulator.successes()[env] > simulator.dones()[env]) report("a success that is no end");
+    const galactic::EpisodeEnd end = simulator.endings()[env];
+    const bool says_done = galactic::isTermination(end) || galactic::isTruncation(end);
+    if (says_done != (simulator.dones()[env] != 0)) report("an end without a reason");
   }
   const galactic::SimulationStatistics seen = simulator.statistics();
   if (seen.refused + seen.slid > seen.steps) report("more steps refused and slid than done");

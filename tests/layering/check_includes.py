@@ -56,6 +56,8 @@ HEAVY_LIBRARIES = (
                  re.compile(r"(runtime/src/render/gl/[^/]*|tests/runtime/render/gl_[^/]*)$")),
     HeavyLibrary("CUDA", re.compile(r"(cuda|nv)\w*\.h"), re.compile(r"\bCU(result|context|device(ptr)?|graphicsResource)\b"),
                  re.compile(r"runtime/src/render/gl/cuda[^/]*$")),
+    HeavyLibrary("pybind11", re.compile(r"(pybind11/|Python\.h|numpy/)"), re.compile(r"\b(pybind11::|PyObject)"),
+                 re.compile(r"^python/src/")),
     HeavyLibrary("toml++", re.compile(r"toml\+\+/"), re.compile(r"\btoml::"),
                  re.compile(r"bake/src/recipe/toml_table[^/]*$")),
     HeavyLibrary("libpng", re.compile(r"png\.h"), re.compile(r"\bpng_(struct|info|byte)p+\b"),
@@ -90,6 +92,7 @@ RULES = (
     Rule("runtime/pictures", ("runtime/include", "runtime"), LEAN, schema=False),
     # xxHash as headers: digests of recordings.
     Rule("runtime/app", ("runtime/include", "runtime/app", "runtime"), LEAN | {"CLI", "xxhash.h"}),
+    Rule("python", ("runtime/include", "python/src"), LEAN, schema=False),
     Rule("pack_tool", ("runtime/include", "runtime", "."), LEAN | {"CLI", "nlohmann"}),
     Rule("bake/include", ("runtime/include", "bake/include"), frozenset({"tl"}), schema=False),
     Rule("bake/src", ("runtime/include", "bake/include", "bake/src"),
@@ -100,6 +103,7 @@ RULES = (
 FORBIDDEN_TARGETS = {"runtime": ("bake", "pack_tool", "tests", "benchmarks"),
                      "runtime/pictures": ("runtime/src", "runtime/app"),
                      "runtime/app": ("runtime/src",),
+                     "python": ("bake", "pack_tool", "tests", "benchmarks", "runtime/src", "runtime/app"),
                      "pack_tool": ("bake", "tests", "benchmarks", "runtime/src", "runtime/app"),
                      "bake": ("pack_tool", "tests", "benchmarks", "runtime/src", "runtime/app")}
 

@@ -52,6 +52,7 @@ class IncludesTest(PlantedTree):
             "runtime/pictures/image.h": "",
             "runtime/pictures/png_file.cpp": '#include "pictures/image.h"\n#include <png.h>\n',
             "runtime/app/b.cpp": '#include "pictures/image.h"\n',
+            "python/src/a.cpp": '#include <pybind11/numpy.h>\n#include "galactic/pack.h"\n',
             "pack_tool/a.cpp": '#include <nlohmann/json.hpp>\n#include "pictures/image.h"\n',
             "bake/src/import/assimp_reader.cpp": "#include <assimp/scene.h>\nconst aiScene* s;\n",
             "bake/src/engines/bullet_columns.cpp":
@@ -114,6 +115,14 @@ class IncludesTest(PlantedTree):
                             "btCollisionWorld")
         (self.root / "bake/include/galactic/bake/caster.h").unlink()
         self.assert_refused("bake/src/import/reader.h", "struct aiScene;\n", "aiScene")
+
+    def test_refuses_python_outside_its_module(self):
+        self.assert_refused("runtime/app/a.cpp", "struct Shown { PyObject* self; };\n",
+                            "may name types of pybind11")
+
+    def test_refuses_internals_in_the_python_module(self):
+        self.assert_refused("python/src/a.cpp", '#include "../../runtime/src/inner.h"\n',
+                            "python may not know runtime/src")
 
     def test_lets_comments_name_heavy_types(self):
         self.assertEqual(self.offences("bake/src/a.cpp", "// as aiScene and RTCScene do\n"), [])

@@ -10,7 +10,7 @@
 #include "pack_tool/verbs.h"
 #include "support/pack_tool_fixture.h"
 
-namespace galactic::pack_tool {
+namespace galactic::pack_tool::asset_description_test {
 namespace {
 
 using test::ToyObject;
@@ -47,6 +47,13 @@ TEST(DescribeRobot, TellsLinksPositionsGroupsAndTools) {
   EXPECT_EQ(robot.at("end_effector").at("link"), "slide");
   EXPECT_EQ(robot.at("camera").at("vertical_fov"), 1.0);
   EXPECT_EQ(robot.at("base").at("root_height"), 0.5);
+  const Json& laser = robot.at("laser");
+  EXPECT_EQ(laser.at("link"), "base");
+  EXPECT_EQ(laser.at("link_from_laser").at("translation"), Json::parse("[0.25, 0.125, 0.0]"));
+  EXPECT_EQ(laser.at("field_of_view"), 4.0);
+  EXPECT_EQ(laser.at("least_range"), 0.0625);
+  EXPECT_EQ(laser.at("range"), 8.0);
+  EXPECT_EQ(laser.at("noise"), 0.015625);
 }
 
 TEST(InfoText, HasOneLinePerObject) {
@@ -68,11 +75,13 @@ TEST(InfoText, ShowsARobotWithAndWithoutARecipe) {
   EXPECT_THAT(text, ContainsRegex("\n    base +2 +2 +1\\+1 +5.0/10.0/20.0"));
   EXPECT_THAT(text, HasSubstr("pairs        1 tested, 1 adjacent, 0 always, 1 never, 0 ignored\n"));
   EXPECT_THAT(text, HasSubstr("grasp        slide at (0.1250, 0.0000, 0.0000) m"));
+  EXPECT_THAT(text, HasSubstr("laser        base at (0.2500, 0.1250, 0.0000) m, 229.2 degrees, "));
 
   const ToyPack bare{ToyRobot{.with_recipe = false}};
   const std::string short_text = infoText(describePack(*bare));
   EXPECT_THAT(short_text,
-              HasSubstr("  grasp        none\n  camera       none\n  base         none\n"
+              HasSubstr("  grasp        none\n  camera       none\n  laser        none\n"
+                        "  base         none\n"
                         "  controlled   none\n"));
 }
 
@@ -154,4 +163,4 @@ TEST(AssetDiff, RefusesPacksOfTwoKinds) {
 }
 
 }  // namespace
-}  // namespace galactic::pack_tool
+}  // namespace galactic::pack_tool::asset_description_test

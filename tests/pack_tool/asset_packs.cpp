@@ -159,9 +159,11 @@ class ToyPackBuilder {
     const schema::Vec3 low(-0.25F, 0, -0.25F);
     const schema::Vec3 high(0.25F, 0, 0.25F);
     const auto base = schema::CreateBase(fbb_, 0.1F, 0.2F, 0.5F, &low, &high, 0);
+    const schema::Pose low_ahead({0.25F, 0.125F, 0}, no_turn_);
+    const auto laser = schema::CreateLaser(fbb_, 0, &low_ahead, 4, 0.0625F, 8, 0.015625F);
     return schema::CreateRobot(fbb_, name, radii, frames, link_names, joint_names, limits, start,
                                stored_spheres, groups, pairs, controlled, effector, camera, base,
-                               surfaces, render_meshes);
+                               surfaces, render_meshes, laser);
   }
 
   const schema::Quat no_turn_{0, 0, 0, 1};

@@ -15,9 +15,10 @@
 #include "pack_tool/xml_text.h"
 #include "support/pack_tool_fixture.h"
 #include "support/program_run.h"
+#include "support/source_folder.h"
 #include "support/world_pack_builder.h"
 
-namespace galactic::pack_tool {
+namespace galactic::pack_tool::check_test {
 namespace {
 
 using test::EpisodePackFields;
@@ -157,8 +158,7 @@ TEST(FindingCodes, TellFilesThatAreNone) {
 }
 
 TEST(FindingCodes, AreUniqueAndKnownToTheDocuments) {
-  const std::string document =
-      test::fileContent(std::filesystem::path(GALACTIC_SOURCE_DIR) / "docs/ci.md");
+  const std::string document = test::fileContent(test::sourceFolder() / "docs/ci.md");
   std::set<std::string_view> codes;
   for (const FindingKind& kind : findingKinds()) {
     EXPECT_TRUE(codes.insert(kind.code).second) << kind.code;
@@ -184,8 +184,7 @@ TEST(FindingCodes, CoverEveryMessageOfTheReadersOfFilesAndWorlds) {
   std::set<std::string_view> met;
   for (const char* file :
        {"mapped_file", "pack_header", "pack", "pack_check", "pack_reference", "world"}) {
-    const auto path =
-        std::filesystem::path(GALACTIC_SOURCE_DIR) / "runtime/src" / (std::string(file) + ".cpp");
+    const auto path = test::sourceFolder() / "runtime/src" / (std::string(file) + ".cpp");
     for (const std::string& literal : literalsOf(test::fileContent(path))) {
       std::size_t kinds = 0;
       for (const FindingKind& kind : findingKinds()) {
@@ -332,4 +331,4 @@ TEST(JUnit, IsNotWrittenOverAPackNorIntoNowhere) {
 }
 
 }  // namespace
-}  // namespace galactic::pack_tool
+}  // namespace galactic::pack_tool::check_test

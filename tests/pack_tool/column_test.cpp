@@ -10,7 +10,7 @@
 #include "pack_tool/verbs.h"
 #include "support/pack_tool_fixture.h"
 
-namespace galactic::pack_tool {
+namespace galactic::pack_tool::column_test {
 namespace {
 
 using test::GridBuilder;
@@ -141,4 +141,4 @@ TEST(ColumnVerb, NamesTheRadiiThereAreForAnotherRadius) {
 }
 
 }  // namespace
-}  // namespace galactic::pack_tool
+}  // namespace galactic::pack_tool::column_test

@@ -12,7 +12,7 @@
 #include "pack_tool/text_table.h"
 #include "support/pack_tool_fixture.h"
 
-namespace galactic::pack_tool {
+namespace galactic::pack_tool::description_test {
 namespace {
 
 using testing::HasSubstr;
@@ -143,4 +143,4 @@ TEST(InfoText, StripsControlCharactersFromNames) {
 }
 
 }  // namespace
-}  // namespace galactic::pack_tool
+}  // namespace galactic::pack_tool::description_test

@@ -7,7 +7,7 @@
 #include "pack_tool/verbs.h"
 #include "support/pack_tool_fixture.h"
 
-namespace galactic::pack_tool {
+namespace galactic::pack_tool::diff_test {
 namespace {
 
 using test::GridBuilder;
@@ -250,4 +250,4 @@ TEST(DiffVerb, PrintsTheMostDifferentColumnsAsTextAndJson) {
 }
 
 }  // namespace
-}  // namespace galactic::pack_tool
+}  // namespace galactic::pack_tool::diff_test

@@ -10,7 +10,7 @@
 #include "pack_tool/verbs.h"
 #include "support/world_pack_builder.h"
 
-namespace galactic::pack_tool {
+namespace galactic::pack_tool::episode_packs_test {
 namespace {
 
 using test::EpisodePackFields;
@@ -270,4 +270,4 @@ TEST(PackVerbs, RefuseEpisodesAndWorldsThatTheyCannotShow) {
 }
 
 }  // namespace
-}  // namespace galactic::pack_tool
+}  // namespace galactic::pack_tool::episode_packs_test

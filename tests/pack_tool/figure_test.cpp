@@ -7,7 +7,7 @@
 #include "pack_tool/asset_packs.h"
 #include "pack_tool/figure/figures_of_pack.h"
 
-namespace galactic::pack_tool {
+namespace galactic::pack_tool::figure_test {
 namespace {
 
 using test::ToyObjects;
@@ -141,4 +141,4 @@ TEST(Figures, RefuseOptionsOfTheOtherKind) {
 }
 
 }  // namespace
-}  // namespace galactic::pack_tool
+}  // namespace galactic::pack_tool::figure_test

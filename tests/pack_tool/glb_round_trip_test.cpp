@@ -18,7 +18,7 @@
 #include "support/scene_pack_builder.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::pack_tool {
+namespace galactic::pack_tool::glb_round_trip_test {
 namespace {
 
 using test::paintedMeshes;
@@ -208,4 +208,4 @@ TEST(ExportedRenderMeshes, StandAtTheLinksOfARobot) {
 }
 
 }  // namespace
-}  // namespace galactic::pack_tool
+}  // namespace galactic::pack_tool::glb_round_trip_test

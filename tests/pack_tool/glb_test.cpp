@@ -13,7 +13,7 @@
 #include "pack_tool/mesh/sphere_mesh.h"
 #include "pack_tool/pack_description.h"
 
-namespace galactic::pack_tool {
+namespace galactic::pack_tool::glb_test {
 namespace {
 
 using test::ToyObject;
@@ -243,4 +243,4 @@ TEST(SphereMesh, IsClosedAndFacesOutwards) {
 }
 
 }  // namespace
-}  // namespace galactic::pack_tool
+}  // namespace galactic::pack_tool::glb_test

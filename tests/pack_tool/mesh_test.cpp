@@ -8,7 +8,7 @@
 #include "pack_tool/mesh/grid_mesh.h"
 #include "support/pack_tool_fixture.h"
 
-namespace galactic::pack_tool {
+namespace galactic::pack_tool::mesh_test {
 namespace {
 
 using test::GridBuilder;
@@ -144,4 +144,4 @@ TEST(EncodePly, AcceptsAGridWithoutFreeSpace) {
 }
 
 }  // namespace
-}  // namespace galactic::pack_tool
+}  // namespace galactic::pack_tool::mesh_test

@@ -12,7 +12,7 @@
 #include "support/pack_tool_fixture.h"
 #include "support/program_run.h"
 
-namespace galactic::pictures {
+namespace galactic::pictures::pictures_test {
 namespace {
 
 using test::GridBuilder;
@@ -211,4 +211,4 @@ TEST(WritePng, WritesSixteenBitsOfGrey) {
 }
 
 }  // namespace
-}  // namespace galactic::pictures
+}  // namespace galactic::pictures::pictures_test

@@ -16,7 +16,7 @@
 #include "pack_tool/pictures/mesh_raster.h"
 #include "pictures/palette.h"
 
-namespace galactic::pictures {
+namespace galactic::pictures::raster_test {
 namespace {
 
 using pack_tool::Figure;
@@ -276,4 +276,4 @@ TEST(ContactSheet, RefusesToBecomeHuge) {
 }
 
 }  // namespace
-}  // namespace galactic::pictures
+}  // namespace galactic::pictures::raster_test

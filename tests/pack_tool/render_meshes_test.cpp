@@ -13,7 +13,7 @@
 #include "pack_tool/verbs.h"
 #include "support/pack_tool_fixture.h"
 
-namespace galactic::pack_tool {
+namespace galactic::pack_tool::render_meshes_test {
 namespace {
 
 using test::paintedMeshes;
@@ -246,4 +246,4 @@ TEST(ScenePicture, ShowsTheMeshesWhenAskedTo) {
 }
 
 }  // namespace
-}  // namespace galactic::pack_tool
+}  // namespace galactic::pack_tool::render_meshes_test

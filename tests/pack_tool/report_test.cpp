@@ -10,14 +10,15 @@
 
 #include "pack_tool/verbs.h"
 #include "support/pack_tool_fixture.h"
+#include "support/source_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::report_test {
 namespace {
 
 namespace fs = std::filesystem;
 using pack_tool::ReportOptions;
 
-const fs::path kGolden = fs::path(GALACTIC_SOURCE_DIR) / "packs" / "golden";
+const fs::path kGolden = test::sourceFolder() / "packs" / "golden";
 
 struct Ran {
   int exit_code = 0;
@@ -101,4 +102,4 @@ TEST(Report, OfAFileThatIsNoPackFailsAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::report_test

@@ -14,7 +14,7 @@
 #include "pack_tool/robot_text/robot_text.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::pack_tool {
+namespace galactic::pack_tool::robot_round_trip_test {
 namespace {
 
 using test::ScratchFolder;
@@ -122,4 +122,4 @@ TEST(ExportedSrdf, BringsBackTheSpheres) {
 }
 
 }  // namespace
-}  // namespace galactic::pack_tool
+}  // namespace galactic::pack_tool::robot_round_trip_test

@@ -7,7 +7,7 @@
 
 #include "pack_tool/asset_packs.h"
 
-namespace galactic::pack_tool {
+namespace galactic::pack_tool::robot_text_test {
 namespace {
 
 using test::ToyPack;
@@ -65,4 +65,4 @@ TEST(UrdfText, MakesARevoluteJointWithoutLimitsContinuous) {
 }
 
 }  // namespace
-}  // namespace galactic::pack_tool
+}  // namespace galactic::pack_tool::robot_text_test

@@ -14,7 +14,7 @@
 
 #include "support/scratch_folder.h"
 
-namespace galactic {
+namespace galactic::atomic_file_test {
 namespace {
 
 std::span<const std::byte> bytesOf(std::string_view text) {
@@ -136,4 +136,4 @@ TEST(AtomicFile, IsRefusedWithTheReasonWhereNoFileCanBe) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::atomic_file_test

@@ -10,7 +10,7 @@
 #include "column_grid_kernels.h"
 #include "support/grid_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::column_kernels_test {
 namespace {
 
 /// Draws coordinates: mostly inside a range, often exactly at or next to a cell border or the
@@ -227,4 +227,4 @@ TEST(ColumnKernels, AnswerTheClearanceAloneWhenNoDistancesAreWanted) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::column_kernels_test

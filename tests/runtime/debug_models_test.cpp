@@ -19,7 +19,7 @@
 #include "support/box_room.h"
 #include "support/small_home.h"
 
-namespace galactic::debug {
+namespace galactic::debug::debug_models_test {
 namespace {
 
 using testing::HasSubstr;
@@ -194,4 +194,4 @@ TEST(DebugModels, TheGridIsThatOfTheRadius) {
 }
 
 }  // namespace
-}  // namespace galactic::debug
+}  // namespace galactic::debug::debug_models_test

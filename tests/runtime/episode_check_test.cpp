@@ -12,7 +12,7 @@
 #include "runtime/pack_offence.h"
 #include "support/episode_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::episode_check_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -74,15 +74,15 @@ TEST(EpisodeCheck, RefusesWrongStartPositions) {
          [](Fields& f) { f.start_positions.pop_back(); }),
       in("start_positions", "has 4 elements, wanted 2, one per episode and start joint",
          [](Fields& f) { f.start_joints.pop_back(); }),
-      in("start_positions[2]", "is nan, wanted a finite position",
+      in("start_positions[2]", "is nan, wanted a position of up to 1000000000",
          [](Fields& f) { f.start_positions[2] = kNan; }),
-      in("start_positions[3]", "is -inf, wanted a finite position",
+      in("start_positions[3]", "is -inf, wanted a position of up to 1000000000",
          [](Fields& f) { f.start_positions[3] = -kInfinity; }),
   });
 }
 
 TEST(EpisodeCheck, RefusesWrongPlacements) {
-  const std::string rigid = "is no rigid transform, wanted finite numbers and a unit quaternion";
+  const std::string rigid = "is no rigid transform, wanted up to 800 m and a unit quaternion";
   refuse({
       in("placements[1].object", "is 2, wanted one of 2 objects",
          [](Fields& f) { f.placements[1].object = 2; }),
@@ -99,7 +99,7 @@ TEST(EpisodeCheck, RefusesWrongPlacements) {
 }
 
 TEST(EpisodeCheck, RefusesWrongEpisodes) {
-  const std::string rigid = "is no rigid transform, wanted finite numbers and a unit quaternion";
+  const std::string rigid = "is no rigid transform, wanted up to 800 m and a unit quaternion";
   refuse({
       in("episodes", "is empty, wanted at least one episode",
          [](Fields& f) { f.episodes.clear(); }),
@@ -117,9 +117,9 @@ TEST(EpisodeCheck, RefusesWrongEpisodes) {
          [](Fields& f) { f.episodes[0].placement_count = 0xffffffff; }),
       in("episodes[0].target", "is 3, wanted one of the episode's 3 placements",
          [](Fields& f) { f.episodes[0].target = 3; }),
-      in("episodes[1].base_position", "is not finite, wanted numbers",
+      in("episodes[1].base_position", "is farther than 800 m or not finite, wanted coordinates",
          [](Fields& f) { f.episodes[1].base_position.y = kNan; }),
-      in("episodes[1].base_yaw", "is inf rad, wanted a finite angle",
+      in("episodes[1].base_yaw", "is inf rad, wanted an angle of up to 1000000000 rad",
          [](Fields& f) { f.episodes[1].base_yaw = kInfinity; }),
       in("episodes[0].goal", rigid,
          [](Fields& f) { f.episodes[0].goal.translation.y = -kInfinity; }),
@@ -179,4 +179,4 @@ TEST(DamagedEpisodePack, WithARecomputedHashIsRefusedOrSafeToReadAfterEachFlip) 
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::episode_check_test

@@ -8,7 +8,7 @@
 #include "support/episode_pack_builder.h"
 #include "support/robot_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::episode_set_test {
 namespace {
 
 template <class Views>
@@ -102,4 +102,4 @@ TEST(EpisodeSet, RefusesATrustedPackWhoseHeaderLies) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::episode_set_test

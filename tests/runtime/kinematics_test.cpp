@@ -11,7 +11,7 @@
 
 #include "support/chain_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::kinematics_test {
 namespace {
 
 /// Single precision along chains of a dozen links and a few metres.
@@ -206,4 +206,4 @@ TEST(PlanarDirections, AreUnitVectorsAcrossTheAxis) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::kinematics_test

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-namespace galactic::test {
+namespace galactic::test::mapped_file_test {
 namespace {
 
 /// A file in the test's folder for scratch files, gone at the end.
@@ -77,4 +77,4 @@ TEST(MappedFile, RefusesAFolder) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::mapped_file_test

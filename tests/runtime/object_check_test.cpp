@@ -12,7 +12,7 @@
 #include "runtime/pack_offence.h"
 #include "support/object_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::object_check_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -42,13 +42,13 @@ TEST(ObjectCheck, RefusesWrongValuesOfTheSet) {
        [](ObjectPackFields& f) { f.radii.clear(); }},
       {"objects.radii", "has 9 elements, wanted 1 to 8",
        [](ObjectPackFields& f) { f.radii.assign(9, 1); }},
-      {"objects.radii[0]", "is nan m after 0 m, wanted finite ascending radii",
+      {"objects.radii[0]", "is nan m after 0 m, wanted ascending radii of up to 800 m",
        [](ObjectPackFields& f) { f.radii[0] = kNan; }},
-      {"objects.radii[0]", "is 0 m after 0 m, wanted finite ascending radii",
+      {"objects.radii[0]", "is 0 m after 0 m, wanted ascending radii of up to 800 m",
        [](ObjectPackFields& f) { f.radii[0] = 0; }},
-      {"objects.radii[1]", "is 0.015 m after 0.015 m, wanted finite ascending radii",
+      {"objects.radii[1]", "is 0.015 m after 0.015 m, wanted ascending radii of up to 800 m",
        [](ObjectPackFields& f) { f.radii[1] = f.radii[0]; }},
-      {"objects.radii[1]", "is inf m after 0.015 m, wanted finite ascending radii",
+      {"objects.radii[1]", "is inf m after 0.015 m, wanted ascending radii of up to 800 m",
        [](ObjectPackFields& f) { f.radii[1] = kInfinity; }},
       {"objects.objects", "is empty, wanted at least one object",
        [](ObjectPackFields& f) { f.objects.clear(); }},
@@ -61,8 +61,8 @@ TEST(ObjectCheck, RefusesWrongValuesOfTheSet) {
 
 TEST(ObjectCheck, RefusesWrongBoxes) {
   const std::string rigid =
-      "is missing or no rigid transform, wanted finite numbers and a unit quaternion";
-  const std::string lengths = "are missing or not above 0, wanted finite lengths above 0";
+      "is missing or no rigid transform, wanted up to 800 m and a unit quaternion";
+  const std::string lengths = "are missing or no lengths, wanted more than 0 and up to 800 m";
   const std::string volumes = "are missing or not finite, wanted volumes of 0 or more";
   refuse({
       inObject("name", "is empty, wanted the object's name",
@@ -92,7 +92,7 @@ TEST(ObjectCheck, RefusesWrongSpheres) {
   refuse({
       inObject("spheres", "is empty, wanted at least one sphere",
                [](ObjectFields& o) { o.spheres.clear(); }),
-      inObject("spheres[1].centre", "is not finite, wanted numbers",
+      inObject("spheres[1].centre", "is farther than 800 m or not finite, wanted coordinates",
                [](ObjectFields& o) { o.spheres[1].centre.z = kNan; }),
       inObject("spheres[0].radius_index", "is 2, wanted less than the number of radii 2",
                [](ObjectFields& o) { o.spheres[0].radius_index = 2; }),
@@ -138,7 +138,7 @@ TEST(ObjectCheck, RefusesWrongStablePoses) {
                [](ObjectFields& o) { o.stable_poses.clear(); }),
       inObject("stable_poses[1].rotation", "is no unit quaternion, wanted a rotation",
                [](ObjectFields& o) { o.stable_poses[1].rotation.x = 0.5F; }),
-      inObject("stable_poses[0].height", "is nan m, wanted a finite height",
+      inObject("stable_poses[0].height", "is nan m, wanted up to 800 m",
                [](ObjectFields& o) { o.stable_poses[0].height = kNan; }),
       inObject("stable_poses[0].likelihood", "is 1.5, wanted 0 to 1: the likeliest first",
                [](ObjectFields& o) { o.stable_poses[0].likelihood = 1.5F; }),
@@ -155,7 +155,7 @@ TEST(ObjectCheck, RefusesWrongBoundsAndCounts) {
   refuse({
       inObject("bounds", "are missing, wanted the mesh's bounds",
                [](ObjectFields& o) { o.bounds.reset(); }),
-      inObject("bounds", "are not finite, wanted numbers",
+      inObject("bounds", "reach farther than 800 m or are not finite, wanted coordinates",
                [](ObjectFields& o) { o.bounds->max.y = kInfinity; }),
       inObject("bounds", "have a minimum (-0.1, 1, -0.1) above the maximum (0.1, 0.2, 0.1)",
                [](ObjectFields& o) { o.bounds->min.y = 1; }),
@@ -171,7 +171,7 @@ TEST(ObjectCheck, RefusesWrongBoundsAndCounts) {
 
 TEST(ObjectCheck, RefusesWrongSurfaces) {
   refuse({
-      inObject("surface.positions[2]", "is not finite, wanted numbers",
+      inObject("surface.positions[2]", "is farther than 800 m or not finite, wanted coordinates",
                [](ObjectFields& o) { o.surface.positions[2].x = kNan; }),
       inObject("surface.triangles", "has 11 elements, wanted three per triangle",
                [](ObjectFields& o) { o.surface.triangles.pop_back(); }),
@@ -237,4 +237,4 @@ TEST(DamagedObjectPack, WithARecomputedHashIsRefusedOrSafeToReadAfterEachFlip) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::object_check_test

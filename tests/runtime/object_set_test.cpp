@@ -5,7 +5,7 @@
 #include "support/object_pack_builder.h"
 #include "support/robot_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::object_set_test {
 namespace {
 
 TEST(ObjectSet, ShowsWhatThePackHolds) {
@@ -86,4 +86,4 @@ TEST(ObjectSet, RefusesATrustedPackWhoseHeaderLies) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::object_set_test

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <random>
@@ -12,7 +13,7 @@
 
 #include "galactic/option_table.h"
 
-namespace galactic {
+namespace galactic::option_text_test {
 namespace {
 
 TEST(OptionTexts, OfATaskAreThoseOfARunWithoutTheBatch) {
@@ -59,6 +60,25 @@ TEST(OptionTexts, TellWhichOfThemIsAtFault) {
   EXPECT_EQ(faultOf({{"envs", "5"}}, kTask), "0: ");
   EXPECT_EQ(faultOf({{"envs", "5"}}, OptionScope::kAll), "none");
   EXPECT_EQ(faultOf({{"slide", "off"}}, OptionScope::kAll), "0: ");
+  EXPECT_EQ(faultOf({{"slide", "of"}}, OptionScope::kTyped), "0: pushout, published or off");
+}
+
+TEST(OptionTexts, ThatSomebodyTypesMayBePresetsWhichTheirPartsRefine) {
+  SimulationOptions options;
+  const std::vector<OptionText> texts{{"slide-step", "0.25"}, {"slide", "published"}};
+  EXPECT_FALSE(setOptions(texts, OptionScope::kTyped, options));
+  EXPECT_EQ(options.slide.direction, SlideDirection::kTowardsBase);
+  EXPECT_EQ(options.slide.attempts, 5U);
+  EXPECT_EQ(options.slide.step, 0.25F);
+}
+
+TEST(OptionTexts, HaveTheNamesOfTheTable) {
+  std::vector<std::string> listed;
+  for (const OptionText& option : listOptions({})) listed.push_back(option.name);
+  EXPECT_EQ(optionNames(OptionScope::kAll), listed);
+  const std::vector<std::string> typed = optionNames(OptionScope::kTyped);
+  EXPECT_EQ(typed.size(), listed.size() + 1);
+  EXPECT_NE(std::find(typed.begin(), typed.end(), "slide"), typed.end());
 }
 
 /// Numbers about the ends of the range of an option of the table, and whether it should take them:
@@ -142,4 +162,4 @@ TEST(OptionTexts, AreTakenWithinTheirRangeAndNotOutside) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::option_text_test

@@ -13,7 +13,7 @@
 #include "galactic/schema/pack_generated.h"
 #include "support/scene_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::pack_check_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -85,9 +85,9 @@ TEST(PackCheck, RefusesWrongValuesOfTheScene) {
   expectRefused({
       {"scene.name", "is empty, wanted the scene's name",
        [](ScenePackFields& f) { f.name.clear(); }},
-      {"scene.bounds", "are not finite, wanted numbers",
+      {"scene.bounds", "reach farther than 800 m or are not finite, wanted coordinates",
        [](ScenePackFields& f) { f.bounds_min.y = kNan; }},
-      {"scene.bounds", "are not finite, wanted numbers",
+      {"scene.bounds", "reach farther than 800 m or are not finite, wanted coordinates",
        [](ScenePackFields& f) { f.bounds_max.x = kInfinity; }},
       {"scene.bounds", "have a minimum (6, 0, 0) above the maximum (5, 8, 3)",
        [](ScenePackFields& f) { f.bounds_min.x = 6; }},
@@ -136,13 +136,13 @@ TEST(PackCheck, RefusesWrongLengthsOfAGrid) {
       inGrid("spacing", "is 1e-40 m, wanted a number above 0", spec(&GridSpec::spacing, 1e-40F)),
       inGrid("quantum", "is 0 m, wanted a number above 0", spec(&GridSpec::quantum, 0.0F)),
       inGrid("quantum", "is nan m, wanted a number above 0", spec(&GridSpec::quantum, kNan)),
-      inGrid("min_x", "is nan m, wanted a finite coordinate", spec(&GridSpec::min_x, kNan)),
-      inGrid("min_z", "is -inf m, wanted a finite coordinate", spec(&GridSpec::min_z, -kInfinity)),
-      inGrid("heights", "are nan to 8 m, wanted finite ascending heights",
+      inGrid("min_x", "is nan m, wanted up to 1000 m", spec(&GridSpec::min_x, kNan)),
+      inGrid("min_z", "is -inf m, wanted up to 1000 m", spec(&GridSpec::min_z, -kInfinity)),
+      inGrid("heights", "are nan to 8 m, wanted ascending heights of up to 1000 m",
              spec(&GridSpec::heights, Span{kNan, 8})),
-      inGrid("heights", "are 0 to inf m, wanted finite ascending heights",
+      inGrid("heights", "are 0 to inf m, wanted ascending heights of up to 1000 m",
              spec(&GridSpec::heights, Span{0, kInfinity})),
-      inGrid("heights", "are 9 to 8 m, wanted finite ascending heights",
+      inGrid("heights", "are 9 to 8 m, wanted ascending heights of up to 1000 m",
              spec(&GridSpec::heights, Span{9, 8})),
       inGrid("heights", "are missing, wanted the grid's range of heights",
              [](GridFields& g) { g.has_heights = false; }),
@@ -165,6 +165,9 @@ TEST(PackCheck, RefusesWrongSizesOfAGrid) {
                g.grid.spec.columns_x = 1U << 14U;
                g.grid.spec.columns_z = 1U << 14U;
              }),
+      inGrid("columns_x", "and columns_z are 5 and 3, wanted an end within 1000 m",
+             [](GridFields& g) { g.grid.spec.min_x = 999.9F; }),
+      inGrid("min_x", "is 1e+20 m, wanted up to 1000 m", spec(&GridSpec::min_x, 1e20F)),
       inGrid("cells", "has 36 elements, wanted 52 for 9 x 3 columns",
              spec(&GridSpec::columns_x, 9U)),
       inGrid("cells", "has 37 elements, wanted 36 for 5 x 3 columns",
@@ -408,4 +411,4 @@ TEST(PackCheck, JudgesAnyCellAsTheSchemaDoes) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::pack_check_test

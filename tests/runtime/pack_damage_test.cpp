@@ -10,7 +10,7 @@
 #include "galactic/scene.h"
 #include "support/scene_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::pack_damage_test {
 namespace {
 
 TEST(DamagedPack, IsRefusedAtEachLengthOfATruncation) {
@@ -72,4 +72,4 @@ TEST(DamagedPack, WithARecomputedHashIsRefusedOrSafeToQueryAfterEachFlip) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::pack_damage_test

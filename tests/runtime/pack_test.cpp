@@ -16,7 +16,7 @@
 #include "support/pack_parts.h"
 #include "support/scene_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::pack_test {
 namespace {
 
 using testing::HasSubstr;
@@ -199,4 +199,4 @@ TEST(Scene, RefusesATrustedPackOfAnotherKind) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::pack_test

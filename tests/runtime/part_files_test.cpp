@@ -16,7 +16,7 @@
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::part_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -170,4 +170,4 @@ TEST_F(PartFiles, ArePublishedWhileOthersClearAway) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::part_files_test

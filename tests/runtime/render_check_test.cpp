@@ -15,7 +15,7 @@
 #include "support/robot_pack_builder.h"
 #include "support/scene_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::render_check_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -157,9 +157,9 @@ TEST(RenderCheck, RefusesWrongModels) {
          [](RenderMeshesFields& f) { f.bounds.resize(88); }),
       in("models[0].bounds", "are missing, wanted the mesh's bounds",
          [](RenderMeshesFields& f) { f.models[0].has_bounds = false; }),
-      in("models[0].largest_error", "is inf m, wanted 0 or more",
+      in("models[0].largest_error", "is inf m, wanted 0 to 800 m",
          [](RenderMeshesFields& f) { f.models[0].largest_error = kInfinity; }),
-      in("models[0].largest_error", "is -1 m, wanted 0 or more",
+      in("models[0].largest_error", "is -1 m, wanted 0 to 800 m",
          [](RenderMeshesFields& f) { f.models[0].largest_error = -1; }),
       in("models[1].triangles", "is 7, wanted the 6 of its clusters",
          [](RenderMeshesFields& f) { f.models[1].triangles = 7; }),
@@ -220,8 +220,8 @@ TEST(RenderCheck, RefusesWrongVerticesAndTriangles) {
 
 TEST(RenderCheck, RefusesWrongBoundsOfClusters) {
   refuse({
-      inBounds("are not finite in row 0", kCentreRow, kNan),
-      inBounds("are not finite in row 6", kRadiusRow, kInfinity),
+      inBounds("are nan in row 0, wanted up to 3200", kCentreRow, kNan),
+      inBounds("are inf in row 6, wanted up to 3200", kRadiusRow, kInfinity),
       inBounds("reach from 0.1796875 to 0.2421875 m, wanted around all vertices: 0.1953125 to "
                "0.2578125 m",
                kCentreRow, 0.2109375F),
@@ -277,4 +277,4 @@ TEST(RenderCheck, OfAPackWithARecomputedHashRefusesItOrItIsSafeToDraw) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::render_check_test

@@ -16,14 +16,12 @@
 #include <string>
 #include <vector>
 
-namespace galactic {
+namespace galactic::render_mesh_builder_test {
 namespace {
 
 using testing::HasSubstr;
 
 constexpr double kHalfFinestStep = 0.5 / (1 << 14);
-/// What float arithmetic of a dozen operations on coordinates of a few metres may add.
-constexpr double kFloatSlack = 1e-6;
 
 RenderMeshSource sourceOf(std::vector<RenderPart> parts) {
   RenderMeshSource source;
@@ -88,8 +86,8 @@ class Reader {
     ReadVertex read;
     read.position = {step * (cluster.origin_x + row(0)), step * (cluster.origin_y + row(1)),
                      step * (cluster.origin_z + row(2))};
-    read.u = double{cluster.u_minimum} + double{cluster.u_step} * row(3);
-    read.v = double{cluster.v_minimum} + double{cluster.v_step} * row(4);
+    read.u = static_cast<double>(cluster.u_minimum) + static_cast<double>(cluster.u_step) * row(3);
+    read.v = static_cast<double>(cluster.v_minimum) + static_cast<double>(cluster.v_step) * row(4);
     read.color = meshes_.colors.empty() ? 0xFFFFFFFFU : meshes_.colors[number];
     return read;
   }
@@ -416,4 +414,4 @@ TEST(RenderMeshBuilder, PartsTexturesAndMaterialsAreChecked) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::render_mesh_builder_test

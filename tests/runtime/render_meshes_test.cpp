@@ -7,7 +7,7 @@
 #include "support/object_pack_builder.h"
 #include "support/scene_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::render_meshes_test {
 namespace {
 
 TEST(RenderMeshes, AreWhatThePackHoldsInPlace) {
@@ -53,4 +53,4 @@ TEST(RenderMeshes, TextureBytesCountAllLevels) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::render_meshes_test

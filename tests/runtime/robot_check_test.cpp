@@ -13,7 +13,7 @@
 #include "runtime/pack_offence.h"
 #include "support/robot_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::robot_check_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -69,7 +69,7 @@ TEST(RobotCheck, RefusesWrongNamesAndSizes) {
   refuse({
       {"name", "is empty, wanted the robot's name", [](Fields& r) { r.name.clear(); }},
       {"radii", "has 0 elements, wanted 1 to 8", [](Fields& r) { r.radii.clear(); }},
-      {"radii[1]", "is 0.01 m after 0.015 m, wanted finite ascending radii",
+      {"radii[1]", "is 0.01 m after 0.015 m, wanted ascending radii of up to 800 m",
        [](Fields& r) { r.radii[1] = 0.01F; }},
       {"links", "has 0 links, wanted 1 to 65535", [](Fields& r) { r.links.clear(); }},
       {"link_names", "has 7" + per_link, [](Fields& r) { r.link_names.pop_back(); }},
@@ -87,8 +87,8 @@ TEST(RobotCheck, RefusesWrongNamesAndSizes) {
 
 TEST(RobotCheck, RefusesWrongLinks) {
   const std::string parent = ", wanted -1 for the first link and an earlier link for the others";
-  const std::string rigid = "is no rigid transform, wanted finite numbers and a unit quaternion";
-  const std::string numbers = "or offset is not finite, wanted numbers";
+  const std::string rigid = "is no rigid transform, wanted up to 800 m and a unit quaternion";
+  const std::string numbers = "or offset is not finite or too large, wanted up to 1000 and 1000";
   const std::string axis = "has not length 1, wanted a direction";
   refuse({
       {"links[0].parent", "is 0" + parent, [](Fields& r) { r.links[0].parent = 0; }},
@@ -103,6 +103,7 @@ TEST(RobotCheck, RefusesWrongLinks) {
       {"links[7].type", "is 6, wanted a value up to 5", [](Fields& r) { r.last_type = 6; }},
       {"links[4].multiplier", numbers, [](Fields& r) { r.links[4].multiplier = kNan; }},
       {"links[4].multiplier", numbers, [](Fields& r) { r.links[4].offset = kInfinity; }},
+      {"links[4].multiplier", numbers, [](Fields& r) { r.links[4].multiplier = 3e38F; }},
       {"links[0].type", "is 1 at the root, wanted 0: it has no joint",
        [](Fields& r) {
          r.links[0].type = JointType::kRevolute;
@@ -172,7 +173,7 @@ TEST(RobotCheck, RefusesWrongGroups) {
        [](Fields& r) { r.groups[2].sphere_count = 0xffffffff; }},
       {"groups[2].statistics.tau", "is nan, wanted a finite number of 0 or more",
        [](Fields& r) { r.groups[2].statistics->tau = kNan; }},
-      {"spheres[3].centre", "is not finite, wanted numbers",
+      {"spheres[3].centre", "is farther than 800 m or not finite, wanted coordinates",
        [](Fields& r) { r.spheres[3].centre.x = kNan; }},
       {"spheres[0].radius_index", "is 2, wanted less than the number of radii 2",
        [](Fields& r) { r.spheres[0].radius_index = 2; }},
@@ -203,9 +204,9 @@ TEST(RobotCheck, RefusesWrongControlledJoints) {
   refuse({
       {"controlled_joints[1].position", "is 13, wanted one of 13 positions",
        [](Fields& r) { r.controlled_joints[1].position = 13; }},
-      {"controlled_joints[0].step", "is 0, wanted a number above 0",
+      {"controlled_joints[0].step", "is 0, wanted a number above 0 and up to 1000",
        [](Fields& r) { r.controlled_joints[0].step = 0; }},
-      {"controlled_joints[0].step", "is inf, wanted a number above 0",
+      {"controlled_joints[0].step", "is inf, wanted a number above 0 and up to 1000",
        [](Fields& r) { r.controlled_joints[0].step = kInfinity; }},
       {"controlled_joints[0].lower", "and upper are -2 and 1.5, wanted ascending, in -1 to 2",
        [](Fields& r) { r.controlled_joints[0].lower = -2; }},
@@ -222,7 +223,7 @@ TEST(RobotCheck, RefusesWrongControlledJoints) {
 }
 
 TEST(RobotCheck, RefusesWrongEndEffectorsAndCameras) {
-  const std::string point = "is missing or not finite, wanted numbers";
+  const std::string point = "is missing, farther than 800 m or not finite, wanted coordinates";
   const std::string pose = "is missing or no rigid transform, wanted a pose";
   refuse({
       {"end_effector.link", "is 8, wanted one of 8 links",
@@ -230,18 +231,46 @@ TEST(RobotCheck, RefusesWrongEndEffectorsAndCameras) {
       {"end_effector.grasp_point", point, [](Fields& r) { r.end_effector->grasp_point.reset(); }},
       {"end_effector.grasp_point", point,
        [](Fields& r) { r.end_effector->grasp_point->y = kInfinity; }},
-      {"end_effector.grasp_radius", "is 0 m, wanted a length above 0",
+      {"end_effector.grasp_point", point,
+       [](Fields& r) { r.end_effector->grasp_point->y = 1e20F; }},
+      {"end_effector.grasp_radius", "is 0 m, wanted a length above 0 and up to 800 m",
        [](Fields& r) { r.end_effector->grasp_radius = 0; }},
       {"camera.link", "is 9, wanted one of 8 links", [](Fields& r) { r.camera->link = 9; }},
       {"camera.link_from_camera", pose, [](Fields& r) { r.camera->link_from_camera.reset(); }},
       {"camera.link_from_camera", pose,
        [](Fields& r) { r.camera->link_from_camera->rotation.y = 1; }},
-      {"camera.vertical_fov", "is 0 rad, wanted 0 to pi",
+      {"camera.vertical_fov", "is 0 rad, wanted 0.001 to 3.14",
        [](Fields& r) { r.camera->vertical_fov = 0; }},
-      {"camera.vertical_fov", "is 3.5 rad, wanted 0 to pi",
+      {"camera.vertical_fov", "is 3.5 rad, wanted 0.001 to 3.14",
        [](Fields& r) { r.camera->vertical_fov = 3.5F; }},
-      {"camera.vertical_fov", "is nan rad, wanted 0 to pi",
+      {"camera.vertical_fov", "is nan rad, wanted 0.001 to 3.14",
        [](Fields& r) { r.camera->vertical_fov = kNan; }},
+  });
+}
+
+TEST(RobotCheck, RefusesWrongLasers) {
+  const std::string pose = "is missing or no rigid transform, wanted a pose";
+  refuse({
+      {"laser.link", "is 8, wanted one of 8 links", [](Fields& r) { r.laser->link = 8; }},
+      {"laser.link_from_laser", pose, [](Fields& r) { r.laser->link_from_laser.reset(); }},
+      {"laser.link_from_laser", pose,
+       [](Fields& r) { r.laser->link_from_laser->translation.x = kInfinity; }},
+      {"laser.field_of_view", "is -1 rad, wanted 0 to 2 pi",
+       [](Fields& r) { r.laser->field_of_view = -1; }},
+      {"laser.field_of_view", "is 6.5 rad, wanted 0 to 2 pi",
+       [](Fields& r) { r.laser->field_of_view = 6.5F; }},
+      {"laser.field_of_view", "is nan rad, wanted 0 to 2 pi",
+       [](Fields& r) { r.laser->field_of_view = kNan; }},
+      {"laser.range", "is 0 m, wanted a length above 0 and up to 800 m",
+       [](Fields& r) { r.laser->range = 0; }},
+      {"laser.range", "is inf m, wanted a length above 0 and up to 800 m",
+       [](Fields& r) { r.laser->range = kInfinity; }},
+      {"laser.least_range", "is -1 m, wanted 0 to less than the range",
+       [](Fields& r) { r.laser->least_range = -1; }},
+      {"laser.least_range", "is 8 m, wanted 0 to less than the range",
+       [](Fields& r) { r.laser->least_range = 8; }},
+      {"laser.noise", "is -1 m, wanted 0 to 800 m", [](Fields& r) { r.laser->noise = -1; }},
+      {"laser.noise", "is nan m, wanted 0 to 800 m", [](Fields& r) { r.laser->noise = kNan; }},
   });
 }
 
@@ -249,17 +278,17 @@ TEST(RobotCheck, RefusesWrongBases) {
   const std::string rectangle =
       "or footprint_max is missing, not finite or not ascending, wanted a rectangle";
   refuse({
-      {"base.forward_step", "or turn_step is 0 or 0.05, wanted numbers above 0",
+      {"base.forward_step", "or turn_step is 0 or 0.05, wanted numbers above 0 and up to 800",
        [](Fields& r) { r.base->forward_step = 0; }},
-      {"base.forward_step", "or turn_step is 0.1 or nan, wanted numbers above 0",
+      {"base.forward_step", "or turn_step is 0.1 or nan, wanted numbers above 0 and up to 800",
        [](Fields& r) { r.base->turn_step = kNan; }},
-      {"base.root_height", "is inf m, wanted a finite height",
+      {"base.root_height", "is inf m, wanted up to 800 m",
        [](Fields& r) { r.base->root_height = kInfinity; }},
       {"base.footprint_min", rectangle, [](Fields& r) { r.base->footprint_min.reset(); }},
       {"base.footprint_min", rectangle, [](Fields& r) { r.base->footprint_max.reset(); }},
       {"base.footprint_min", rectangle, [](Fields& r) { r.base->footprint_min->z = 0.5F; }},
       {"base.footprint_min", rectangle, [](Fields& r) { r.base->footprint_max->x = kNan; }},
-      {"base.footprint_radius", "is -1 m, wanted a finite length of 0 or more",
+      {"base.footprint_radius", "is -1 m, wanted 0 to 800 m",
        [](Fields& r) { r.base->footprint_radius = -1; }},
   });
 }
@@ -269,7 +298,8 @@ TEST(RobotCheck, RefusesWrongSurfaces) {
   refuse({
       {"surfaces[2].link", "is 8" + link, [](Fields& r) { r.surfaces[2].link = 8; }},
       {"surfaces[1].link", "is 0" + link, [](Fields& r) { r.surfaces[1].link = 0; }},
-      {"surfaces[0].collision.positions[3]", "is not finite, wanted numbers",
+      {"surfaces[0].collision.positions[3]",
+       "is farther than 800 m or not finite, wanted coordinates",
        [](Fields& r) { r.surfaces[0].collision->positions[3].y = kNan; }},
       {"surfaces[2].visual.triangles[0]", "is not the index of one of the 4 positions",
        [](Fields& r) { r.surfaces[2].visual->triangles[0] = 4; }},
@@ -336,4 +366,4 @@ TEST(DamagedRobotPack, WithARecomputedHashIsRefusedOrSafeToUseAfterEachFlip) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::robot_check_test

@@ -5,7 +5,7 @@
 #include "support/object_pack_builder.h"
 #include "support/robot_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::robot_test {
 namespace {
 
 TEST(Robot, ShowsTheTreeThatThePackHolds) {
@@ -79,6 +79,13 @@ TEST(Robot, ShowsWhatTheRecipeAdded) {
   EXPECT_EQ(robot->camera()->link, 1U);
   EXPECT_EQ(robot->camera()->link_from_camera, (Pose{{0, 0.2F, 0}, {0, 0, 0, 1}}));
   EXPECT_EQ(robot->camera()->vertical_fov, 1);
+  ASSERT_TRUE(robot->laser().has_value());
+  EXPECT_EQ(robot->laser()->link, 0U);
+  EXPECT_EQ(robot->laser()->link_from_laser, (Pose{{0.1F, 0.2F, 0}, {0, 0, 0, 1}}));
+  EXPECT_EQ(robot->laser()->field_of_view, 4);
+  EXPECT_EQ(robot->laser()->least_range, 0.05F);
+  EXPECT_EQ(robot->laser()->range, 8);
+  EXPECT_EQ(robot->laser()->noise, 0.01F);
   ASSERT_TRUE(robot->base().has_value());
   EXPECT_EQ(robot->base()->forward_step, 0.1F);
   EXPECT_EQ(robot->base()->turn_step, 0.05F);
@@ -88,11 +95,12 @@ TEST(Robot, ShowsWhatTheRecipeAdded) {
   EXPECT_EQ(robot->base()->footprint_radius, 0);
 }
 
-TEST(Robot, IsWithoutHandCameraAndBaseWhereNoRecipeGaveThem) {
+TEST(Robot, IsWithoutHandSensorsAndBaseWhereNoRecipeGaveThem) {
   RobotPackFields fields = smallRobotPack();
   fields.end_effector.reset();
   fields.camera.reset();
   fields.base.reset();
+  fields.laser.reset();
   fields.controlled_joints.clear();
   const AlignedBytes bytes = buildPack(fields);
   const Result<PackFile> pack = PackFile::view(bytes.bytes(), "helper.pack");
@@ -102,6 +110,7 @@ TEST(Robot, IsWithoutHandCameraAndBaseWhereNoRecipeGaveThem) {
   EXPECT_FALSE(robot->endEffector().has_value());
   EXPECT_FALSE(robot->camera().has_value());
   EXPECT_FALSE(robot->base().has_value());
+  EXPECT_FALSE(robot->laser().has_value());
   EXPECT_TRUE(robot->controlledJoints().empty());
 }
 
@@ -118,4 +127,4 @@ TEST(Robot, RefusesAPackOfAnotherKind) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::robot_test

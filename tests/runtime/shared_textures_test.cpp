@@ -10,7 +10,7 @@
 #include "support/small_home_models.h"
 #include "support/texture_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::shared_textures_test {
 namespace {
 
 using Fields = TexturePackFields;
@@ -153,4 +153,4 @@ TEST(SharedTextureOfAPack, HasNoPlaceAmongThePacksOwnTexels) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::shared_textures_test

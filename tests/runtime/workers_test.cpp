@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-namespace galactic::test {
+namespace galactic::test::workers_test {
 namespace {
 
 using detail::Workers;
@@ -106,4 +106,4 @@ TEST(Workers, CanBeDestroyedWhileTheyWait) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::workers_test

@@ -12,7 +12,7 @@
 #include "runtime/pack_offence.h"
 #include "support/world_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::world_check_test {
 namespace {
 
 using Fields = WorldPackFields;
@@ -262,4 +262,4 @@ TEST(DamagedWorldPack, WithATaskIsRefusedOrSafeToReadAfterEachFlip) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::world_check_test

@@ -11,7 +11,7 @@
 #include "galactic/pack_reference.h"
 #include "support/world_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::world_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -462,4 +462,4 @@ TEST(PackReferences, RefuseATrustedListWithoutAKindOrAHash) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::world_test

@@ -15,7 +15,7 @@
 #include "support/small_home_actor.h"
 #include "support/small_home_models.h"
 
-namespace galactic {
+namespace galactic::world_views_test {
 namespace {
 
 using test::SmallHomeRow;
@@ -248,4 +248,4 @@ TEST_F(WorldViewsOfAHome, TheDebugViewShowsSpheresBoxesAndTheGoal) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::world_views_test

@@ -53,6 +53,7 @@ inline RobotPackFields cartRobot() {
   robot.controlled_joints = {{0, 0.3F, 0, 0.6F}, {1, 0.25F, -kUnlimited, kUnlimited}};
   robot.end_effector = EndEffectorFields{2, Vec3{}, 0.12F};
   robot.camera.reset();
+  robot.laser.reset();
   robot.base->root_height = 0;
   return robot;
 }

@@ -67,6 +67,13 @@ inline std::string plyBinaryFile(const MeshContent& mesh) {
   return file;
 }
 
+inline std::string offFile(const MeshContent& mesh) {
+  std::string file = fmt::format("OFF\n{} {} 0\n", mesh.positions.size(), mesh.triangles.size());
+  for (const auto& p : mesh.positions) file += fmt::format("{} {} {}\n", p[0], p[1], p[2]);
+  for (const auto& t : mesh.triangles) file += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
+  return file;
+}
+
 inline std::string stlAsciiFile(const MeshContent& mesh) {
   std::string file = "solid box\n";
   for (const auto& t : mesh.triangles) {

@@ -40,9 +40,10 @@ class RobotPackBuilder {
     const auto base = buildBase();
     const auto surfaces = buildSurfaces();
     const auto meshes = buildRenderMeshesField(builder_, fields_.render_meshes);
-    const auto robot = schema::CreateRobot(
-        builder_, name, radii, links, link_names, joint_names, limit_vector, start_positions,
-        spheres, groups, pair_vector, joint_vector, end_effector, camera, base, surfaces, meshes);
+    const auto robot =
+        schema::CreateRobot(builder_, name, radii, links, link_names, joint_names, limit_vector,
+                            start_positions, spheres, groups, pair_vector, joint_vector,
+                            end_effector, camera, base, surfaces, meshes, buildLaser());
     return finishFile(builder_, fields_.kind, schema::Asset::Robot, robot.Union());
   }
 
@@ -87,6 +88,15 @@ class RobotPackBuilder {
     const schema::Pose pose = stored(fields.link_from_camera.value_or(Pose{}));
     return schema::CreateCamera(builder_, fields.link, fields.link_from_camera ? &pose : nullptr,
                                 fields.vertical_fov);
+  }
+
+  flatbuffers::Offset<schema::Laser> buildLaser() {
+    if (!fields_.laser) return {};
+    const LaserFields& fields = *fields_.laser;
+    const schema::Pose pose = stored(fields.link_from_laser.value_or(Pose{}));
+    return schema::CreateLaser(builder_, fields.link, fields.link_from_laser ? &pose : nullptr,
+                               fields.field_of_view, fields.least_range, fields.range,
+                               fields.noise);
   }
 
   flatbuffers::Offset<schema::Base> buildBase() {

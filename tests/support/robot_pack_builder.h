@@ -46,6 +46,15 @@ struct BaseFields {
   float footprint_radius = 0;
 };
 
+struct LaserFields {
+  std::uint32_t link = 0;
+  std::optional<Pose> link_from_laser = Pose{{0.1F, 0.2F, 0}, {0, 0, 0, 1}};
+  float field_of_view = 4;
+  float least_range = 0.05F;
+  float range = 8;
+  float noise = 0.01F;
+};
+
 struct LinkSurfaceFields {
   std::uint32_t link = 0;
   std::optional<SurfaceFields> collision;
@@ -74,6 +83,7 @@ struct RobotPackFields {
   std::optional<BaseFields> base = BaseFields{};
   std::vector<LinkSurfaceFields> surfaces;
   RenderMeshesField render_meshes;
+  std::optional<LaserFields> laser = LaserFields{};
 };
 
 /// base - torso (prismatic) - arm (revolute) - hand (continuous), with a finger that mimics the

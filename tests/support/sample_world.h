@@ -20,6 +20,7 @@
 #include "support/aligned_bytes.h"
 #include "support/pack_parts.h"
 #include "support/scene_pack_builder.h"
+#include "support/source_folder.h"
 
 namespace galactic::test {
 
@@ -57,7 +58,7 @@ inline bake::Provenance testProvenance(const std::string& input) {
 
 /// The apartment of packs/sample as a scene pack; 0.3 s.
 inline MemoryPack bakeSampleApartment() {
-  const std::filesystem::path folder = std::filesystem::path(GALACTIC_SOURCE_DIR) / "packs/sample";
+  const std::filesystem::path folder = test::sourceFolder() / "packs/sample";
   const auto asset = MemoryPack::opened(bake::importMesh(folder / "apartment.glb"));
   bake::SceneBakeOptions options;
   options.check_columns = 0;
@@ -71,7 +72,7 @@ inline MemoryPack bakeSampleApartment() {
 
 /// The objects of packs/sample as an object pack; some seconds.
 inline MemoryPack bakeSampleObjects() {
-  const std::filesystem::path folder = std::filesystem::path(GALACTIC_SOURCE_DIR) / "packs/sample";
+  const std::filesystem::path folder = test::sourceFolder() / "packs/sample";
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder / "objects")) {
     files.push_back(entry.path());
@@ -92,8 +93,7 @@ inline MemoryPack bakeSampleObjects() {
 
 /// The robot of packs/sample as a robot pack; some seconds.
 inline MemoryPack bakeSampleRobot() {
-  const std::filesystem::path folder =
-      std::filesystem::path(GALACTIC_SOURCE_DIR) / "packs/sample/robot";
+  const std::filesystem::path folder = test::sourceFolder() / "packs/sample/robot";
   const auto source = MemoryPack::opened(bake::importUrdf(folder / "porter.urdf"));
   const auto recipe = MemoryPack::opened(bake::readRobotRecipe(folder / "robot.toml"));
   const auto robot = MemoryPack::opened(bake::bakeRobot(source, &recipe, {}));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "galactic/batch_simulator.h"
@@ -52,6 +53,7 @@ struct Judgement {
   bool done = false;
   bool success = false;
   bool failure = false;
+  EpisodeEnd end = EpisodeEnd::kNone;
 };
 
 /// One env's episode.
@@ -105,22 +107,30 @@ class TaskOracle {
     const bool near = transportOf(after) < static_cast<double>(task_.success_distance);
     const bool released = before.held == target && after.held < 0;
     const bool holds_another = after.held >= 0 && after.held != target;
-    bool success = false;
-    bool failure = task_.drop_fails && holds_another;
+    const bool late = task_.most_steps != 0 && steps_ >= task_.most_steps;
+    // All that is true of the step, in the order in which it counts.
+    std::vector<std::pair<bool, EpisodeEnd>> reasons;
     if (task_.kind == TaskKind::kMobilePick) {
-      success = after.held == target;
+      reasons = {{after.held == target, EpisodeEnd::kSuccess},
+                 {task_.drop_fails && holds_another, EpisodeEnd::kWrongObject}};
     } else if (task_.kind == TaskKind::kRearrange) {
       const bool says_so = terminate >= actions_.terminate;
       const bool is_asked = task_.needs_terminate ? says_so : released;
-      success = is_asked && near && after.held != target;
-      failure = failure || (task_.needs_terminate && says_so && !success);
-      failure = failure || (task_.drop_fails && released && !near);
-    } else {
-      failure = false;
+      reasons = {{is_asked && near && after.held != target, EpisodeEnd::kSuccess},
+                 {task_.needs_terminate && says_so, EpisodeEnd::kWrongTerminate},
+                 {task_.drop_fails && released && !near, EpisodeEnd::kWrongRelease},
+                 {task_.drop_fails && holds_another, EpisodeEnd::kWrongObject}};
     }
-    failure = failure && !success;
-    const bool late = task_.most_steps != 0 && steps_ >= task_.most_steps;
-    return {.done = success || failure || late, .success = success, .failure = failure};
+    reasons.emplace_back(late, EpisodeEnd::kTimeOut);
+    for (const auto& [holds, end] : reasons) {
+      if (!holds) continue;
+      const bool success = end == EpisodeEnd::kSuccess;
+      return {.done = true,
+              .success = success,
+              .failure = !success && end != EpisodeEnd::kTimeOut,
+              .end = end};
+    }
+    return {};
   }
 
   [[nodiscard]] double actionChange(std::span<const float> row) {

@@ -8,7 +8,7 @@
 
 #include "occlusion_meshes.h"
 
-namespace galactic::test {
+namespace galactic::test::ambient_occlusion_test {
 namespace {
 
 using bake::OccludingMesh;
@@ -181,4 +181,4 @@ TEST(DarkenedColours, AreMultipliedInLinearLightButForAlpha) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::ambient_occlusion_test

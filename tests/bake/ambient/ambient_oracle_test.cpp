@@ -7,7 +7,7 @@
 
 #include "occlusion_meshes.h"
 
-namespace galactic::test {
+namespace galactic::test::ambient_oracle_test {
 namespace {
 
 using bake::OccludingMesh;
@@ -146,4 +146,4 @@ TEST(AmbientOracle, AgreesInARoomOfRandomBoxes) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::ambient_oracle_test

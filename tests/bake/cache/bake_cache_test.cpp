@@ -11,7 +11,7 @@
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::bake_cache_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -269,4 +269,4 @@ TEST_F(Cache, ServesSeveralThreadsAtOnce) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::bake_cache_test

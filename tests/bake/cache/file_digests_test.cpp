@@ -9,7 +9,7 @@
 #include "galactic/bake/source_file.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::file_digests_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -83,4 +83,4 @@ TEST(FileDigests, AreTheSameForAllThreads) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::file_digests_test

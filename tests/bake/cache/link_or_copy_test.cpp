@@ -8,7 +8,7 @@
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::link_or_copy_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,4 +92,4 @@ TEST_F(LinkOrCopy, LeavesNothingOverWhereThreadsLinkToOneName) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::link_or_copy_test

@@ -14,7 +14,7 @@
 #include "support/encoded_grid_view.h"
 #include "support/scene_meshes.h"
 
-namespace galactic::bake {
+namespace galactic::bake::cell_coverage_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250309;
@@ -223,4 +223,4 @@ TEST(CellCoverage, IsNoFreerThanTheColumnAndAsFreeOverLevelGround) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::cell_coverage_test

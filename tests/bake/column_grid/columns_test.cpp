@@ -13,7 +13,7 @@
 #include "galactic/column_cell.h"
 #include "support/test_meshes.h"
 
-namespace galactic::bake {
+namespace galactic::bake::columns_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250310;
@@ -201,4 +201,4 @@ TEST(TriangleBins, ListEachTriangleInEveryStripThatItsGrownFootprintReaches) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::columns_test

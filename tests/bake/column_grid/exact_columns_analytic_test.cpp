@@ -11,7 +11,7 @@
 #include "galactic/bake/triangle_interval.h"
 #include "support/test_meshes.h"
 
-namespace galactic::bake {
+namespace galactic::bake::exact_columns_analytic_test {
 namespace {
 
 using test::MeshBuilder;
@@ -275,4 +275,4 @@ TEST(ExactColumns, OfANeedleAreThoseOfASegment) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::exact_columns_analytic_test

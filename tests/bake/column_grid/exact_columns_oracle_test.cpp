@@ -11,7 +11,7 @@
 #include "support/scene_meshes.h"
 #include "support/test_meshes.h"
 
-namespace galactic::bake {
+namespace galactic::bake::exact_columns_oracle_test {
 namespace {
 
 using test::ColumnOracle;
@@ -277,4 +277,4 @@ TEST(ExactColumns, CountTheGapsThatTheyClose) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::exact_columns_oracle_test

@@ -7,7 +7,7 @@
 #include "oracle_comparison.h"
 #include "support/asset_mesh.h"
 
-namespace galactic::bake {
+namespace galactic::bake::exact_columns_scenes_test {
 namespace {
 
 /// An asset and how its columns are sampled.
@@ -51,4 +51,4 @@ INSTANTIATE_TEST_SUITE_P(Assets, ExactColumnsOfARealScene,
                          [](const auto& param) { return std::string(param.param.name); });
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::exact_columns_scenes_test

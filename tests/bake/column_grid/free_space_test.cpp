@@ -16,7 +16,7 @@
 #include "galactic/bake/column_engines.h"
 #include "support/test_meshes.h"
 
-namespace galactic::bake {
+namespace galactic::bake::free_space_test {
 namespace {
 
 using test::MeshBuilder;
@@ -209,10 +209,10 @@ TEST(FreeSpace, RefusesASeedInAColumnWithoutFreeHeights) {
   columns.frame.radius = 0.05F;
   columns.frame.spacing = 1;
   columns.frame.heights = {0, 2};
-  columns.frame.columns_x = columns.frame.columns_z = 1;
-  columns.first = {0, 0};
-  EXPECT_EQ(seedError(columns, {0.5F, 1, 0.5F}).message,
-            "(0.5, 1, 0.5) is blocked for radius 0.05 m; give a point where a sphere of that "
+  columns.frame.columns_x = columns.frame.columns_z = 3;
+  columns.first.assign(10, 0);
+  EXPECT_EQ(seedError(columns, {1.5F, 1, 1.5F}).message,
+            "(1.5, 1, 1.5) is blocked for radius 0.05 m; give a point where a sphere of that "
             "radius fits, in metres with y up");
 }
 
@@ -224,6 +224,12 @@ TEST(FreeSpace, RefusesASeedOutsideTheGrid) {
     const Error error = seedError(columns, seed);
     EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
     EXPECT_THAT(error.message, testing::HasSubstr("is outside the scene for radius 0.05 m"));
+  }
+  // In the margin of the grid about the walls, some of which the walls block.
+  for (const float out : {0.06F, 0.09F}) {
+    for (const Vec3 seed : {Vec3{-out, 1, 1}, {3 + out, 1, 1}, {1, 1, -out}, {1, 1, 2 + out}}) {
+      EXPECT_EQ(seedError(columns, seed).code, ErrorCode::kInvalidInput);
+    }
   }
   // Above the roof the grid knows nothing, and says where it does.
   EXPECT_THAT(seedError(columns, {1, 50, 1}).message, testing::HasSubstr("is blocked (free there"));
@@ -422,4 +428,4 @@ TEST(FreeSpace, EqualsABreadthFirstSearchOnRandomColumns) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::free_space_test

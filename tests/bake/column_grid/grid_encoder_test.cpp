@@ -12,7 +12,7 @@
 #include "galactic/column_cell.h"
 #include "support/encoded_grid_view.h"
 
-namespace galactic::bake {
+namespace galactic::bake::grid_encoder_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250311;
@@ -135,13 +135,21 @@ void expectReadTheSame(const EncodedGrid& grid) {
   const double rounding = 4e-7 * static_cast<double>(greatest);
   for (std::uint32_t k = 0; k < grid.frame.columns_z; ++k) {
     for (std::uint32_t i = 0; i < grid.frame.columns_x; ++i) {
-      const auto expected = decode(grid, i, k);
-      ASSERT_EQ(view.spanCount(i, k), expected.size());
-      ASSERT_EQ(view.spans(i, k, spans), expected.size());
-      for (std::size_t s = 0; s < expected.size(); ++s) {
-        ASSERT_NEAR(static_cast<double>(spans[s].lo), expected[s][0], rounding);
-        ASSERT_NEAR(static_cast<double>(spans[s].hi), expected[s][1], rounding);
+      const std::size_t count = view.spans(i, k, spans);
+      ASSERT_EQ(view.spanCount(i, k), count);
+      std::size_t s = 0;
+      for (const auto& wanted : decode(grid, i, k)) {
+        const bool is_there =
+            s < count && std::abs(static_cast<double>(spans[s].lo) - wanted[0]) <= rounding;
+        if (!is_there) {
+          // Of hardly more than one height, rounding to free ones may leave nothing.
+          ASSERT_LE(wanted[1] - wanted[0], 2 * rounding);
+          continue;
+        }
+        ASSERT_NEAR(static_cast<double>(spans[s].hi), wanted[1], rounding);
+        ++s;
       }
+      ASSERT_EQ(s, count);
     }
   }
 }
@@ -320,8 +328,9 @@ TEST(GridEncoder, KeepsAColumnOfFiftyMetresBesideItsCell) {
   const auto z = static_cast<float>(columns.frame.centreZ(0));
   const Contact contact = view.contact({x, 20, z});
   EXPECT_EQ(contact.clearance, Clearance::kFree);
-  EXPECT_FLOAT_EQ(contact.down, 20);
-  EXPECT_FLOAT_EQ(contact.up, 30);
+  // Distances stay clear of the contact by some millionths of the grid's height.
+  EXPECT_NEAR(static_cast<double>(contact.down), 20, 2e-4);
+  EXPECT_NEAR(static_cast<double>(contact.up), 30, 2e-4);
 }
 
 /// The tallest scene that the importer lets through.
@@ -337,4 +346,4 @@ TEST(GridEncoder, ReachesTheTopOfTheTallestScene) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::grid_encoder_test

@@ -14,7 +14,7 @@
 #include "support/scene_meshes.h"
 #include "support/triangle_corners.h"
 
-namespace galactic::bake {
+namespace galactic::bake::scatter_kernels_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250308;
@@ -192,4 +192,4 @@ TEST(ScatterKernels, AreChosenAmongThoseThatTheProcessorRuns) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::scatter_kernels_test

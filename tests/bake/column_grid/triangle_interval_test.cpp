@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace galactic::bake {
+namespace galactic::bake::triangle_interval_test {
 namespace {
 
 using Triangle = std::array<Point, 3>;
@@ -376,4 +376,4 @@ TEST(TriangleDistance, AgreesWithSearchingTheTriangle) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::triangle_interval_test

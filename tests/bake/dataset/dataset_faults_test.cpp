@@ -10,7 +10,7 @@
 #include "bake/dataset/small_dataset.h"
 #include "galactic/bake/scene_dataset.h"
 
-namespace galactic::test {
+namespace galactic::test::dataset_faults_test {
 namespace {
 
 struct Fault {
@@ -232,4 +232,4 @@ TEST(FaultyDataset, OfMeshesAndUrdfsAreThoseOfTheImporters) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::dataset_faults_test

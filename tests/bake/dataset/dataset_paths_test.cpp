@@ -11,7 +11,7 @@
 
 #include "support/scratch_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::dataset_paths_test {
 namespace {
 
 using bake::matchesPattern;
@@ -110,4 +110,4 @@ TEST(DatasetPaths, FindFilesAndFoldersInsideAndOutside) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::dataset_paths_test

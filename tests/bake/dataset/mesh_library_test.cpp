@@ -10,7 +10,7 @@
 #include "bake/dataset/small_dataset.h"
 #include "galactic/bake/scene_dataset.h"
 
-namespace galactic::test {
+namespace galactic::test::mesh_library_test {
 namespace {
 
 using bake::MeshLibrary;
@@ -111,4 +111,4 @@ TEST(MeshLibrary, StaysCorrectWhenThreadsAlwaysLackRoom) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::mesh_library_test

@@ -9,7 +9,7 @@
 #include "bake/dataset/small_dataset.h"
 #include "galactic/bake/scene_dataset.h"
 
-namespace galactic::test {
+namespace galactic::test::placement_test {
 namespace {
 
 using Point = std::array<double, 3>;
@@ -212,4 +212,4 @@ TEST(Placement, OfRandomInstancesIsThatOfTheirPoints) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::placement_test

@@ -14,7 +14,7 @@
 #include "support/assets.h"
 #include "support/box_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::receptacles_test {
 namespace {
 
 using bake::ComposedScene;
@@ -343,4 +343,4 @@ TEST(Receptacles, ThatAnUnevenScaleLeavesObliqueAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::receptacles_test

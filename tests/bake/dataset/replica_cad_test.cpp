@@ -16,7 +16,7 @@
 #include "galactic/bake/triangle_mesh.h"
 #include "support/assets.h"
 
-namespace galactic::test {
+namespace galactic::test::replica_cad_test {
 namespace {
 
 using bake::MeshLibrary;
@@ -231,4 +231,4 @@ TEST_F(ReplicaCad, AComposedSceneHasRoomsToMoveIn) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::replica_cad_test

@@ -13,7 +13,7 @@
 #include "galactic/bake/triangle_mesh.h"
 #include "support/assets.h"
 
-namespace galactic::test {
+namespace galactic::test::scene_dataset_test {
 namespace {
 
 using bake::ComposedScene;
@@ -412,4 +412,4 @@ TEST(SceneDataset, FingerprintChangesWithTheTemplatesThatAreThere) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::scene_dataset_test

@@ -9,7 +9,7 @@
 
 #include "support/scratch_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::scene_files_test {
 namespace {
 
 using testing::ElementsAre;
@@ -77,4 +77,4 @@ TEST(SceneFiles, OfNothingAreAnError) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::scene_files_test

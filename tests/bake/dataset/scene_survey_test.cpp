@@ -4,7 +4,7 @@
 
 #include "bake/dataset/small_dataset.h"
 
-namespace galactic::test {
+namespace galactic::test::scene_survey_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +108,4 @@ TEST(SceneSurvey, FailsAsCompositionDoes) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::scene_survey_test

@@ -9,7 +9,7 @@
 #include "bake/engines/engine_scenes.h"
 #include "galactic/bake/column_engines.h"
 
-namespace galactic::bake {
+namespace galactic::bake::analytic_scenes_test {
 namespace {
 
 using test::MeshBuilder;
@@ -140,4 +140,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& engine) { return engine.param.name; });
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::analytic_scenes_test

@@ -9,7 +9,7 @@
 
 #include "galactic/bake/columns.h"
 
-namespace galactic::bake {
+namespace galactic::bake::blocked_intervals_test {
 namespace {
 
 using testing::ElementsAre;
@@ -108,4 +108,4 @@ TEST(BlockedIntervals, AgreeWithTestingEachHeight) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::blocked_intervals_test

@@ -6,7 +6,7 @@
 #include "bake/engines/engine_scenes.h"
 #include "galactic/bake/column_engines.h"
 
-namespace galactic::bake {
+namespace galactic::bake::bullet_columns_test {
 namespace {
 
 using test::MeshBuilder;
@@ -122,4 +122,4 @@ TEST(BulletColumns, EndEvenWhereTheHeightsAreAllInsideAnObstacle) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::bullet_columns_test

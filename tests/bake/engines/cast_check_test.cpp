@@ -7,7 +7,7 @@
 
 #include "bake/engines/engine_scenes.h"
 
-namespace galactic::bake {
+namespace galactic::bake::cast_check_test {
 namespace {
 
 using test::MeshBuilder;
@@ -174,4 +174,4 @@ TEST(CastCheck, OfAGridWithoutSpansComparesNothing) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::cast_check_test

@@ -3,7 +3,7 @@
 #include "bake/engines/engine_scenes.h"
 #include "galactic/bake/column_engines.h"
 
-namespace galactic::bake {
+namespace galactic::bake::embree_columns_test {
 namespace {
 
 using test::MeshBuilder;
@@ -73,4 +73,4 @@ TEST(EmbreeColumns, FindAGapOfOneMillimetreInsideASlab) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::embree_columns_test

@@ -7,7 +7,7 @@
 #include "made_world.h"
 #include "support/box_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::arm_reach_test {
 namespace {
 
 using bake::ArmReach;
@@ -101,4 +101,4 @@ TEST(ArmReach, DoesNotCountLinksThatOverlapAtTheStart) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::arm_reach_test

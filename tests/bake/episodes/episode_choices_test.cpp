@@ -13,7 +13,7 @@
 #include "made_world.h"
 #include "support/box_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::episode_choices_test {
 namespace {
 
 using bake::EpisodeGeneratorOptions;
@@ -405,4 +405,4 @@ TEST(Replay, TellsEpisodesThatStandFromThoseThatDoNot) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::episode_choices_test

@@ -6,7 +6,7 @@
 #include "episode_oracle.h"
 #include "made_world.h"
 
-namespace galactic::test {
+namespace galactic::test::episode_generator_test {
 namespace {
 
 using bake::EpisodeGeneratorOptions;
@@ -172,4 +172,4 @@ TEST(EpisodeGenerator, RefusesPacksThatDoNotGoTogether) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::episode_generator_test

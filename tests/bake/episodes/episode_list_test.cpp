@@ -4,7 +4,7 @@
 #include "galactic/bake/episode_set_import.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::episode_list_test {
 namespace {
 
 using testing::ElementsAre;
@@ -44,4 +44,4 @@ TEST(EpisodeLists, ThatAreMissingAreAnIoError) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::episode_list_test

@@ -7,7 +7,7 @@
 #include "episode_oracle.h"
 #include "sample_packs.h"
 
-namespace galactic::test {
+namespace galactic::test::episode_promises_test {
 namespace {
 
 using bake::DistanceRange;
@@ -87,4 +87,4 @@ TEST(PromisesOfManyEpisodes, AreKeptWithEveryOption) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::episode_promises_test

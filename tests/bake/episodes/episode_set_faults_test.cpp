@@ -7,7 +7,7 @@
 
 #include "bake/episodes/episode_texts.h"
 
-namespace galactic::test {
+namespace galactic::test::episode_set_faults_test {
 namespace {
 
 using testing::HasSubstr;
@@ -176,4 +176,4 @@ TEST(EpisodeSetOptions, ThatDoNotFitTheFileAreErrors) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::episode_set_faults_test

@@ -4,7 +4,7 @@
 
 #include "bake/episodes/episode_texts.h"
 
-namespace galactic::test {
+namespace galactic::test::episode_set_test {
 namespace {
 
 using testing::ElementsAre;
@@ -139,4 +139,4 @@ TEST(EpisodeSets, AreNamedByTheirFile) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::episode_set_test

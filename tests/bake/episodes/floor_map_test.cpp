@@ -7,7 +7,7 @@
 #include "floor_oracle.h"
 #include "made_world.h"
 
-namespace galactic::test {
+namespace galactic::test::floor_map_test {
 namespace {
 
 using bake::FloorMap;
@@ -102,4 +102,4 @@ TEST(FloorMap, HeadingsAreEvenlySpreadYaws) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::floor_map_test

@@ -9,7 +9,7 @@
 #include "support/habitat_text.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::habitat_faults_test {
 namespace {
 
 struct Fault {
@@ -143,4 +143,4 @@ TEST(HabitatFaults, KeepNothingOfAFileThatIsNeither) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::habitat_faults_test

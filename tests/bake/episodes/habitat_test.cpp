@@ -12,7 +12,7 @@
 #include "support/habitat_text.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::habitat_test {
 namespace {
 
 using bake::EpisodeImportOptions;
@@ -237,4 +237,4 @@ TEST(HabitatEpisodes, TakeFilesWithoutWhatIsNotNeeded) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::habitat_test

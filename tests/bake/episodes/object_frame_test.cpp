@@ -6,7 +6,7 @@
 #include "galactic/bake/triangle_mesh.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::object_frame_test {
 namespace {
 
 using bake::UpAxis;
@@ -51,4 +51,4 @@ TEST(ObjectFrames, MultiplyAsQuaternionsDo) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::object_frame_test

@@ -8,7 +8,7 @@
 #include "double_pose.h"
 #include "support/box_oracle.h"
 
-namespace galactic::bake {
+namespace galactic::bake::placed_object_test {
 namespace {
 
 using test::PlacedBox;
@@ -135,4 +135,4 @@ TEST(PlacedObject, TouchesSpheresThatAreNearerThanTheirRadius) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::placed_object_test

@@ -11,7 +11,7 @@
 #include "simulation/resting_objects.h"
 #include "support/box_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::placement_check_test {
 namespace {
 
 TEST(PlacementCheck, AgreesWithTheRunsPlacement) {
@@ -52,4 +52,4 @@ TEST(PlacementCheck, AgreesWithTheRunsPlacement) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::placement_check_test

@@ -13,7 +13,7 @@
 #include "galactic/bake/triangle_mesh.h"
 #include "support/asset_mesh.h"
 
-namespace galactic::test {
+namespace galactic::test::published_episodes_test {
 namespace {
 
 using bake::readEpisodeSet;
@@ -217,4 +217,4 @@ INSTANTIATE_TEST_SUITE_P(Ycb, PublishedObjects,
                          [](const auto& object) { return std::string(object.param).substr(4); });
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::published_episodes_test

@@ -9,7 +9,7 @@
 #include "galactic/bake/episode_solving.h"
 #include "sample_packs.h"
 
-namespace galactic::test {
+namespace galactic::test::sample_world_test {
 namespace {
 
 /// Counts how often a question is answered with yes.
@@ -165,7 +165,8 @@ TEST(SolvedSamples, TellEpisodesThatCanBeSolvedFromThoseThatCannot) {
   options.objects = {3, 3};
   bake::SourceEpisodes set = generated(world, options);
   const auto solve = [&](const bake::EpisodeSolvingOptions& how) {
-    return MemoryPack::opened(bake::solveSample(world.inputs().packs, set, how));
+    auto sample = bake::solveSample(world.inputs().packs, set, how);
+    return MemoryPack::opened(std::move(sample));
   };
   const bake::SolvedSample all = solve({.most_episodes = 100});
   EXPECT_EQ(all.episodes, 8U);
@@ -190,4 +191,4 @@ TEST(SolvedSamples, TellEpisodesThatCanBeSolvedFromThoseThatCannot) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::sample_world_test

@@ -9,7 +9,7 @@
 #include "made_world.h"
 #include "support/box_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::settling_test {
 namespace {
 
 using bake::SettlingBody;
@@ -141,4 +141,4 @@ TEST(Settling, TakesTheCentreOfMassOfTheHull) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::settling_test

@@ -8,7 +8,7 @@
 #include "made_world.h"
 #include "support/box_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::support_places_test {
 namespace {
 
 using bake::ArmReach;
@@ -165,4 +165,4 @@ TEST(SupportPlaces, FootprintsOutsideTheGridFitNowhere) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::support_places_test

@@ -8,7 +8,7 @@
 #include "made_world.h"
 #include "support/box_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::surface_rays_test {
 namespace {
 
 using bake::Footprint;
@@ -77,4 +77,4 @@ TEST(SurfaceRays, AgreeWithTheCornersOfFootprintsOnATable) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::surface_rays_test

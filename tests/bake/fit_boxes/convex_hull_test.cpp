@@ -11,7 +11,7 @@
 
 #include "fit_boxes/fit_shapes.h"
 
-namespace galactic::bake::fit {
+namespace galactic::bake::fit::convex_hull_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250410;
@@ -100,4 +100,4 @@ TEST(ConvexHull, OfAThinTurnedPlateKeepsItsThickness) {
 }
 
 }  // namespace
-}  // namespace galactic::bake::fit
+}  // namespace galactic::bake::fit::convex_hull_test

@@ -11,7 +11,7 @@
 #include "galactic/bake/stable_poses.h"
 #include "support/asset_mesh.h"
 
-namespace galactic::bake {
+namespace galactic::bake::fit_assets_test {
 namespace {
 
 constexpr const char* kObjects[] = {"ycb/002_master_chef_can/textured.obj",
@@ -65,4 +65,4 @@ std::string nameOf(const testing::TestParamInfo<const char*>& object) {
 INSTANTIATE_TEST_SUITE_P(Assets, ScannedObject, testing::ValuesIn(kObjects), nameOf);
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::fit_assets_test

@@ -10,7 +10,7 @@
 #include "galactic/bake/oriented_box.h"
 #include "galactic/bake/stable_poses.h"
 
-namespace galactic::bake {
+namespace galactic::bake::odd_input_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250416;
@@ -61,10 +61,8 @@ void expectResting(const std::vector<StablePose>& poses) {
   double sum = 0;
   for (const StablePose& pose : poses) {
     EXPECT_TRUE(std::isfinite(pose.height));
-    EXPECT_NEAR(dot({pose.rotation.x, pose.rotation.y, pose.rotation.z},
-                    {pose.rotation.x, pose.rotation.y, pose.rotation.z}) +
-                    pose.rotation.w * pose.rotation.w,
-                1, 1e-6F);
+    const Vec3 axis{pose.rotation.x, pose.rotation.y, pose.rotation.z};
+    EXPECT_NEAR(dot(axis, axis) + pose.rotation.w * pose.rotation.w, 1, 1e-6F);
     sum += static_cast<double>(pose.likelihood);
   }
   EXPECT_LE(sum, 1 + 1e-5);
@@ -102,4 +100,4 @@ TEST(OddInput, HasABoxAroundItAndAWayToRest) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::odd_input_test

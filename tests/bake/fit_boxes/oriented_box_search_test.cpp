@@ -11,7 +11,7 @@
 #include "galactic/bake/oriented_box.h"
 #include "support/box_oracle.h"
 
-namespace galactic::bake {
+namespace galactic::bake::oriented_box_search_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250412;
@@ -140,4 +140,4 @@ TEST(OrientedBox, IsTheSameBytesForAnyOrderAndOnAnyThread) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::oriented_box_search_test

@@ -11,7 +11,7 @@
 #include "fit_boxes/fit_shapes.h"
 #include "galactic/bake/oriented_box.h"
 
-namespace galactic::bake {
+namespace galactic::bake::oriented_box_shapes_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250413;
@@ -137,4 +137,4 @@ TEST(OrientedBox, HoldsPointsFarFromTheOriginInFloatArithmetic) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::oriented_box_shapes_test

@@ -10,7 +10,7 @@
 
 #include "fit_boxes/fit_shapes.h"
 
-namespace galactic::bake::fit {
+namespace galactic::bake::fit::rectangle_calipers_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250411;
@@ -87,4 +87,4 @@ TEST(RectangleCalipers, DropCornersOnASide) {
 }
 
 }  // namespace
-}  // namespace galactic::bake::fit
+}  // namespace galactic::bake::fit::rectangle_calipers_test

@@ -10,7 +10,7 @@
 #include "fit_boxes/fit_shapes.h"
 #include "galactic/bake/stable_poses.h"
 
-namespace galactic::bake {
+namespace galactic::bake::rolling_oracle_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250414;
@@ -66,4 +66,4 @@ TEST(StablePoses, AreAsLikelyAsManyDropsTell) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::rolling_oracle_test

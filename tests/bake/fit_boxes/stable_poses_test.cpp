@@ -14,7 +14,7 @@
 
 #include "fit_boxes/fit_shapes.h"
 
-namespace galactic::bake {
+namespace galactic::bake::stable_poses_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250415;
@@ -282,4 +282,4 @@ TEST(StablePoses, AreTheSameBytesForAnyOrderAndOnAnyThread) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::stable_poses_test

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <vector>
 
-namespace galactic::test {
+namespace galactic::test::asset_transfer_test {
 namespace {
 
 using bake::AlphaMode;
@@ -139,4 +139,4 @@ TEST(AssetTransfer, SurvivesAnyLengthField) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::asset_transfer_test

@@ -3,7 +3,7 @@
 
 #include "bake/import/import_helpers.h"
 
-namespace galactic::test {
+namespace galactic::test::errors_test {
 namespace {
 
 using bake::importMesh;
@@ -219,4 +219,4 @@ TEST(MeshErrors, RefuseScalesAndTransformsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::errors_test

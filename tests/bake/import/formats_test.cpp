@@ -3,7 +3,7 @@
 
 #include "bake/import/import_helpers.h"
 
-namespace galactic::test {
+namespace galactic::test::formats_test {
 namespace {
 
 using bake::MeshImportOptions;
@@ -217,4 +217,4 @@ TEST(MeshFormats, KeepExtensionsInCapitalsReadable) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::formats_test

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-namespace galactic::test {
+namespace galactic::test::isolated_process_test {
 namespace {
 
 using bake::IsolatedWork;
@@ -149,4 +149,4 @@ TEST(IsolatedProcess, DoesNotWaitForTheChildrenOfOtherThreads) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::isolated_process_test

@@ -1,12 +1,16 @@
 // What materials say, as the formats say it.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <chrono>
 
 #include "import_helpers.h"
 #include "support/mesh_files.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::materials_test {
 namespace {
 
 using bake::AlphaMode;
@@ -115,11 +119,135 @@ TEST(ObjMaterials, UseTheAlphaOfTheirTextureWhenTheySaySo) {
                   "into the alpha of its colour texture"));
 }
 
-TEST(ObjMaterials, NameNoTextureThatIsMissing) {
+TEST(ObjMaterials, TakeTheImageOfTheirStemForATextureThatIsMissing) {
   const ObjImport import = objMaterial("Kd 1 0 0\nmap_Kd absent.png\n");
-  EXPECT_EQ(import.material.base_color_texture, "");
+  EXPECT_EQ(import.material.base_color_texture, "a.png");
   EXPECT_EQ(import.warnings.size(), 1U);
 }
 
+/// An OBJ with texture coordinates.
+std::string objWithCoordinates(const std::string& head) {
+  return head + "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+}
+
+bake::SourceMaterial materialOf(const ScratchFolder& folder, const std::string& obj) {
+  const auto asset = importMesh(folder.write("model.obj", obj));
+  EXPECT_TRUE(asset.has_value()) << asset.error().message;
+  if (!asset) return {};
+  // Whatever is drawn is among the files, with its hash.
+  for (const SourceMaterial& material : asset->materials) {
+    const std::string& name = material.base_color_texture;
+    const bool is_listed = std::any_of(asset->files.begin(), asset->files.end(),
+                                       [&](const auto& file) { return file.name == name; });
+    EXPECT_TRUE(name.empty() || is_listed) << name;
+  }
+  return asset->materials[asset->meshes[0].material];
+}
+
+TEST(ObjTextures, AreFoundByTheNameOfTheMeshWhereNoneIsNamed) {
+  const std::string named = "mtllib lost.mtl\nusemtl m\n";
+  {
+    // As Google Scanned Objects are shared: the MTL is left out.
+    const ScratchFolder folder;
+    (void)folder.write("texture.png", "image");
+    const SourceMaterial material = materialOf(folder, objWithCoordinates(named));
+    EXPECT_EQ(material.base_color_texture, "texture.png");
+    EXPECT_THAT(material.base_color, ElementsAre(1.F, 1.F, 1.F, 1.F));
+    // The mesh's own name comes first.
+    (void)folder.write("model.jpg", "image");
+    EXPECT_EQ(materialOf(folder, objWithCoordinates("")).base_color_texture, "model.jpg");
+    // Nothing to put it on.
+    EXPECT_EQ(materialOf(folder, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").base_color_texture, "");
+  }
+  {
+    const ScratchFolder folder;
+    (void)folder.write("other.png", "image");
+    EXPECT_EQ(materialOf(folder, objWithCoordinates(named)).base_color_texture, "");
+  }
+}
+
+TEST(ObjTextures, ThatAreMissingGiveWayToTheMeshesNamesakeWhereNoOtherIsMeant) {
+  const ScratchFolder folder;
+  (void)folder.write("model.mtl", "newmtl m\nmap_Kd model_8k.png\n");
+  const std::string obj = objWithCoordinates("mtllib model.mtl\nusemtl m\n");
+  EXPECT_EQ(materialOf(folder, obj).base_color_texture, "");
+  // A scan with a resized texture.
+  (void)folder.write("model.jpg", "image");
+  EXPECT_EQ(materialOf(folder, obj).base_color_texture, "model.jpg");
+  // Which of two it is, nobody knows.
+  (void)folder.write("model.mtl", "newmtl m\nmap_Kd model_8k.png\nnewmtl n\nmap_Kd wall_8k.png\n");
+  EXPECT_EQ(materialOf(folder, obj + "usemtl n\nf 1/1 3/3 2/2\n").base_color_texture, "");
+  // What is there is drawn.
+  (void)folder.write("model.mtl", "newmtl m\nmap_Kd wood.png\n");
+  (void)folder.write("wood.png", "image");
+  EXPECT_EQ(materialOf(folder, obj).base_color_texture, "wood.png");
+}
+
+TEST(NamedFiles, OutsideOfTheMeshesFolderAreReadOnlyWhenAllowed) {
+  const ScratchFolder folder;
+  (void)folder.write("far/lost.mtl", "newmtl m\nmap_Kd wood.png\n");
+  (void)folder.write("far/image.png", "image");
+  const std::string obj = objWithCoordinates("mtllib ../../../far/lost.mtl\nusemtl m\n");
+  const auto mesh = folder.write("a/b/c/model.obj", obj);
+  const auto refused = importMesh(mesh);
+  ASSERT_TRUE(refused.has_value());
+  EXPECT_EQ(refused->files.size(), 1U);
+  EXPECT_THAT(refused->warnings, testing::Contains(testing::HasSubstr(
+                                     "'../../../far/lost.mtl' lies outside the folder "
+                                     "of the mesh and is not read")));
+  bake::MeshImportOptions options;
+  options.allow_outside = true;
+  const auto allowed = importMesh(mesh, options);
+  ASSERT_TRUE(allowed.has_value());
+  EXPECT_EQ(allowed->files.size(), 2U);
+
+  // Textures may lie beside the folder, not farther off.
+  (void)folder.write("a/b/c/model.mtl", "newmtl m\nmap_Kd ../../../far/image.png\n");
+  (void)folder.write("a/b/textures/near.png", "image");
+  const auto with_texture = [&](const char* texture, const bake::MeshImportOptions& how) {
+    (void)folder.write("a/b/c/model.mtl", fmt::format("newmtl m\nmap_Kd {}\n", texture));
+    const auto asset = importMesh(
+        folder.write("a/b/c/model.obj", objWithCoordinates("mtllib model.mtl\nusemtl m\n")), how);
+    return asset ? asset->materials[asset->meshes[0].material].base_color_texture : "none";
+  };
+  EXPECT_EQ(with_texture("../../../far/image.png", {}), "");
+  EXPECT_EQ(with_texture("../../../far/image.png", options), "../../../far/image.png");
+  EXPECT_EQ(with_texture("../textures/near.png", {}), "../textures/near.png");
+  const std::string absolute = (folder.path() / "far/image.png").string();
+  EXPECT_EQ(with_texture(absolute.c_str(), {}), "");
+  EXPECT_EQ(with_texture(absolute.c_str(), options), "../../../far/image.png");
+
+  GltfPieces pieces;
+  pieces.buffer_uri = R"("uri":"../../far/a.bin",)";
+  (void)folder.write("far/a.bin", gltfBuffer(unevenBox()));
+  const auto gltf = folder.write("a/b/box.gltf", gltfFile(unevenBox(), pieces));
+  const auto without_buffer = importMesh(gltf);
+  ASSERT_FALSE(without_buffer.has_value());
+  EXPECT_THAT(without_buffer.error().message,
+              testing::HasSubstr("it names '../../far/a.bin', which lies outside its folder"));
+  EXPECT_TRUE(importMesh(gltf, options).has_value());
+}
+
+TEST(NamedFiles, ThatArePipesOrDevicesAreNotWaitedFor) {
+  const ScratchFolder folder;
+  for (const char* pipe : {"model.mtl", "wood.png", "a.bin"}) {
+    ASSERT_EQ(::mkfifo((folder.path() / pipe).c_str(), 0600), 0) << pipe;
+  }
+  bake::MeshImportOptions options;
+  options.time_limit = std::chrono::seconds(20);
+  const auto obj = importMesh(
+      folder.write("model.obj", objWithCoordinates("mtllib model.mtl\nusemtl m\n")), options);
+  ASSERT_TRUE(obj.has_value()) << obj.error().message;
+  EXPECT_EQ(obj->files.size(), 1U);
+  GltfPieces pieces;
+  pieces.buffer_uri = R"("uri":"a.bin",)";
+  EXPECT_FALSE(importMesh(folder.write("a.gltf", gltfFile(unevenBox(), pieces)), options));
+  options.allow_outside = true;
+  const auto zero = importMesh(
+      folder.write("zero.obj", objWithCoordinates("mtllib /dev/zero\nusemtl m\n")), options);
+  ASSERT_TRUE(zero.has_value()) << zero.error().message;
+  EXPECT_EQ(zero->files.size(), 1U);
+}
+
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::materials_test

@@ -10,7 +10,7 @@
 #include <numeric>
 #include <random>
 
-namespace galactic::test {
+namespace galactic::test::polygon_triangulation_test {
 namespace {
 
 using bake::Triangle;
@@ -144,4 +144,4 @@ TEST(PolygonTriangulation, LeavesCornersOutOfRangeForTheChecks) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::polygon_triangulation_test

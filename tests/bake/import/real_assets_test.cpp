@@ -4,7 +4,7 @@
 #include "bake/import/import_helpers.h"
 #include "support/assets.h"
 
-namespace galactic::test {
+namespace galactic::test::real_assets_test {
 namespace {
 
 using bake::importMesh;
@@ -105,4 +105,4 @@ TEST_P(RealScenes, HaveTheReportedTrianglesAndBounds) {
 INSTANTIATE_TEST_SUITE_P(Assets, RealScenes, testing::ValuesIn(realScenes()));
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::real_assets_test

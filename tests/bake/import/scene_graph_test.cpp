@@ -10,7 +10,7 @@
 
 #include "bake/import/import_helpers.h"
 
-namespace galactic::test {
+namespace galactic::test::scene_graph_test {
 namespace {
 
 using bake::importMesh;
@@ -252,4 +252,4 @@ TEST(SceneGraph, AsksForTheUnitOfASceneSmallerThanAnyRoom) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::scene_graph_test

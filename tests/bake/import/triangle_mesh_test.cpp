@@ -8,7 +8,7 @@
 
 #include "bake/import/import_helpers.h"
 
-namespace galactic::test {
+namespace galactic::test::triangle_mesh_test {
 namespace {
 
 using bake::Affine;
@@ -178,4 +178,4 @@ TEST(TriangleMesh, DropsExactlyWhatAPlainQuadraticSearchDrops) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::triangle_mesh_test

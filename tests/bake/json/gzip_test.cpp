@@ -8,7 +8,7 @@
 
 #include "support/gzip_text.h"
 
-namespace galactic::test {
+namespace galactic::test::gzip_test {
 namespace {
 
 constexpr std::size_t kPlenty = std::size_t{64} << 20U;
@@ -104,4 +104,4 @@ TEST(Gzip, TakesATextThatJustFits) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::gzip_test

@@ -9,7 +9,7 @@
 #include "support/source_asset.h"
 #include "support/test_meshes.h"
 
-namespace galactic::test {
+namespace galactic::test::object_baker_test {
 namespace {
 
 using bake::BakedObject;
@@ -190,4 +190,4 @@ TEST(ObjectBaker, FitsSpheresWhereOnlyABoxIsGivenAndDoubtsABoxOfAnotherMesh) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::object_baker_test

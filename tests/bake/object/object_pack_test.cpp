@@ -12,7 +12,7 @@
 #include "support/source_asset.h"
 #include "support/test_meshes.h"
 
-namespace galactic::test {
+namespace galactic::test::object_pack_test {
 namespace {
 
 using bake::BakedObjectSet;
@@ -118,4 +118,4 @@ TEST(ObjectPack, IsWrittenWithItsHeader) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::object_pack_test

@@ -6,7 +6,7 @@
 
 #include "support/source_asset.h"
 
-namespace galactic::test {
+namespace galactic::test::surface_test {
 namespace {
 
 using bake::append;
@@ -79,4 +79,4 @@ TEST(Surface, AppendsPartsWithAndWithoutColours) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::surface_test

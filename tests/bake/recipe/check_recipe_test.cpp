@@ -5,7 +5,7 @@
 
 #include "bake/recipe/recipe_helpers.h"
 
-namespace galactic::test {
+namespace galactic::test::check_recipe_test {
 namespace {
 
 struct Misfit {
@@ -29,6 +29,9 @@ std::vector<Misfit> misfits() {
        "name = \"r\"\n[end_effector]\nlink = \"hnad\"\n[base]\nfootprint_radius = 0.3\n",
        "r.toml:3", "the robot 'small' has no link 'hnad'; did you mean 'hand'?"},
       {"Camera", with("[camera]\nlink = \"eye\"\nvertical_fov_degrees = 60\n"), "r.toml:7",
+       "the robot 'small' has no link 'eye'; known are 'base', 'arm', 'hand', 'finger', 'camera', "
+       "'lock'"},
+      {"Laser", with("[laser]\nlink = \"eye\"\nfov_degrees = 60\nrange = 9\n"), "r.toml:7",
        "the robot 'small' has no link 'eye'; known are 'base', 'arm', 'hand', 'finger', 'camera', "
        "'lock'"},
       {"Joint", joint("wirst"), "r.toml:7",
@@ -97,4 +100,4 @@ TEST(RecipesThatFit, NeedARobotWithLinks) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::check_recipe_test

@@ -9,7 +9,7 @@
 
 #include "support/asset_mesh.h"
 
-namespace galactic::test {
+namespace galactic::test::collection_shape_test {
 namespace {
 
 using bake::CollectionObject;
@@ -139,4 +139,4 @@ TEST(PublishedSpheres, AreAsManyAsThePublishedSimulatorMakes) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::collection_shape_test

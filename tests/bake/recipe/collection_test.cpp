@@ -9,7 +9,7 @@
 #include "galactic/bake/urdf_import.h"
 #include "support/asset_mesh.h"
 
-namespace galactic::test {
+namespace galactic::test::collection_test {
 namespace {
 
 using testing::ElementsAre;
@@ -252,4 +252,4 @@ TEST(PublishedCollections, OfSpotReadWithAWarning) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::collection_test

@@ -8,7 +8,7 @@
 #include "galactic/bake/world_recipe.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::find_inputs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -115,4 +115,4 @@ TEST_F(FindInputs, NamesThePatternThatFitsNothingAndWhereItLooked) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::find_inputs_test

@@ -5,7 +5,7 @@
 
 #include "bake/recipe/recipe_helpers.h"
 
-namespace galactic::test {
+namespace galactic::test::recipe_faults_test {
 namespace {
 
 struct Fault {
@@ -20,10 +20,23 @@ std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << 
 /// Line 6 is the first of `more`.
 std::string with(const std::string& more) { return kLeastRecipe + more; }
 
+/// A key of 20,000 parts.
+std::string deepKey() {
+  std::string key = "a";
+  for (int n = 1; n < 20'000; ++n) key += ".a";
+  return key;
+}
+
 std::vector<Fault> faults() {
   return {
       {"NoToml", "name = = 1", "r.toml:1",
        "it is not TOML: Error while parsing value: could not determine value type"},
+      {"DeepKey", "name = \"r\"\n" + deepKey() + " = 1\n", "r.toml:2",
+       "it has a key of more than 32 parts; is it a recipe?"},
+      {"DeepTable", "# a.b\n[" + deepKey() + "]\nx = 1\n", "r.toml:2",
+       "it has a key of more than 32 parts; is it a recipe?"},
+      {"DeepInlineTable", "a = { x = \"\"\"\n...\"\"\", " + deepKey() + " = 1 }\n", "r.toml:2",
+       "it has a key of more than 32 parts; is it a recipe?"},
       {"Empty", "", "r.toml", "the key name is missing"},
       {"NoName", "[end_effector]\nlink = \"hand\"\n[base]\nfootprint_radius = 0.3\n", "r.toml",
        "the key name is missing"},
@@ -77,6 +90,15 @@ std::vector<Fault> faults() {
        "the key camera.vertical_fov_degrees is missing"},
       {"FieldOfViewOutOfRange", with("[camera]\nlink = \"head\"\nvertical_fov_degrees = 180\n"),
        "r.toml:8", "camera.vertical_fov_degrees = 180: wanted 1 to 170 degrees"},
+      {"LaserWithoutFieldOfView", with("[laser]\nlink = \"head\"\nrange = 5\n"), "r.toml:6",
+       "the key laser.fov_degrees is missing"},
+      {"LaserWithoutRange", with("[laser]\nlink = \"head\"\nfov_degrees = 360\n"), "r.toml:6",
+       "the key laser.range is missing"},
+      {"LaserBeyondAWholeTurn", with("[laser]\nlink = \"head\"\nfov_degrees = 361\nrange = 5\n"),
+       "r.toml:8", "laser.fov_degrees = 361: wanted 0 to 360 degrees"},
+      {"LaserRangeEmpty",
+       with("[laser]\nlink = \"head\"\nfov_degrees = 9\nrange = 5\nmin_range = 5\n"), "r.toml:6",
+       "laser.min_range is wanted below laser.range"},
       {"JointsNoList", with("[joints]\nname = \"a\"\n"), "r.toml:6", "joints is wanted as a list"},
       {"JointWithoutName", with("[[joints]]\nstep = 0.1\n"), "r.toml:6",
        "the key joints[0].name is missing"},
@@ -156,4 +178,4 @@ TEST(RecipeFiles, BeyondOneMebibyteAreRefused) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::recipe_faults_test

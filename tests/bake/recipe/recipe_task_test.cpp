@@ -7,7 +7,7 @@
 #include "galactic/option_table.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::recipe_task_test {
 namespace {
 
 using bake::WorldRecipe;
@@ -134,4 +134,4 @@ TEST_F(RecipeTask, IsATable) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::recipe_task_test

@@ -4,8 +4,9 @@
 #include <numbers>
 
 #include "bake/recipe/recipe_helpers.h"
+#include "galactic/nearest_name.h"
 
-namespace galactic::test {
+namespace galactic::test::recipe_test {
 namespace {
 
 using testing::DoubleNear;
@@ -67,6 +68,14 @@ link = "head"
 position = [1, 2, 3]
 rpy_degrees = [0, 30, 90]
 vertical_fov_degrees = 60
+[laser]
+link = "base"
+position = [1, 2, 3]
+rpy_degrees = [0, 0, 90]
+fov_degrees = 180
+range = 6
+min_range = 0.5
+noise = 0.25
 [spheres.links.hand]
 spheres = [[1, 2, 3, 0.05]]
 )");
@@ -88,6 +97,16 @@ spheres = [[1, 2, 3, 0.05]]
   EXPECT_THAT((std::array{pose[1], pose[5], pose[9]}),
               Pointwise(DoubleNear(kRounding), std::array{0.0, std::numbers::sqrt3 / 2, -0.5}));
   EXPECT_THAT((std::array{pose[3], pose[7], pose[11]}), ElementsAre(1, 3, -2));
+  ASSERT_TRUE(recipe->laser.has_value());
+  const bake::RecipeLaser& laser = *recipe->laser;
+  EXPECT_NEAR(laser.field_of_view, 180 * kDegree, kRounding);
+  EXPECT_EQ(laser.range, 6);
+  EXPECT_EQ(laser.least_range, 0.5);
+  EXPECT_EQ(laser.noise, 0.25);
+  const bake::Affine& mount = laser.link_from_laser;
+  EXPECT_THAT((std::array{mount[0], mount[4], mount[8]}),
+              Pointwise(DoubleNear(kRounding), std::array{0.0, 0.0, -1.0}));
+  EXPECT_THAT((std::array{mount[3], mount[7], mount[11]}), ElementsAre(1, 3, -2));
   EXPECT_EQ(recipe->spheres.links.at(0).spheres.at(0),
             (bake::HandSphere{.centre = {1, 3, -2}, .radius = 0.05}));
 }
@@ -124,14 +143,14 @@ TEST(Recipes, KeepTheOrderOfJointsAndTheirRanges) {
 
 TEST(Suggestions, NameTheNearestInTheOrderOfDistance) {
   const std::vector<std::string> known{"elbow_flex_link", "elbow_flix_lnk", "wrist_link"};
-  EXPECT_EQ(bake::suggestNames("elbow_flx_link", known),
+  EXPECT_EQ(suggestNames("elbow_flx_link", known),
             "did you mean 'elbow_flex_link' or 'elbow_flix_lnk'?");
-  EXPECT_EQ(bake::suggestNames("ELBOW_FLEX_LINK", known),
+  EXPECT_EQ(suggestNames("ELBOW_FLEX_LINK", known),
             "did you mean 'elbow_flex_link' or 'elbow_flix_lnk'?");
-  EXPECT_EQ(bake::suggestNames("camera", known),
+  EXPECT_EQ(suggestNames("camera", known),
             "known are 'elbow_flex_link', 'elbow_flix_lnk', 'wrist_link'");
-  EXPECT_EQ(bake::suggestNames("x", {}), "there are none");
+  EXPECT_EQ(suggestNames("x", {}), "there are none");
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::recipe_test

@@ -8,8 +8,9 @@
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/urdf_import.h"
 #include "support/asset_mesh.h"
+#include "support/source_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::shipped_recipes_test {
 namespace {
 
 struct Shipped {
@@ -23,7 +24,7 @@ std::ostream& operator<<(std::ostream& out, const Shipped& shipped) { return out
 class ShippedRecipes : public testing::TestWithParam<Shipped> {
  protected:
   [[nodiscard]] static Result<bake::RobotRecipe> read() {
-    const std::filesystem::path folder(GALACTIC_SOURCE_DIR "/packs/robots");
+    const std::filesystem::path folder = test::sourceFolder() / "packs/robots";
     return bake::readRobotRecipe(folder / (std::string(GetParam().name) + ".toml"));
   }
 };
@@ -64,7 +65,7 @@ TEST(TheFetchRecipe, IsThePublishedOne) {
   if (!hasAsset(kPublished) || !hasAsset(kPublishedFetch)) {
     GTEST_SKIP() << "no asset " << kPublished;
   }
-  const auto ours = bake::readRobotRecipe(GALACTIC_SOURCE_DIR "/packs/robots/fetch.toml");
+  const auto ours = bake::readRobotRecipe(test::sourceFolder() / "packs/robots/fetch.toml");
   const auto collection = bake::readCollection(assetsFolder() / kPublished);
   bake::UrdfImportOptions options;
   options.allow_missing = true;
@@ -91,4 +92,4 @@ TEST(TheFetchRecipe, IsThePublishedOne) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::shipped_recipes_test

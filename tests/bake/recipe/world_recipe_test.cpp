@@ -6,8 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "support/scratch_folder.h"
+#include "support/source_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::world_recipe_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -195,7 +196,7 @@ TEST_F(WorldRecipeFile, RefusesWhatIsNoToml) {
 
 TEST_F(WorldRecipeFile, ThatComeWithTheProjectAreRead) {
   std::size_t count = 0;
-  for (const auto& entry : fs::directory_iterator(GALACTIC_SOURCE_DIR "/packs/worlds")) {
+  for (const auto& entry : fs::directory_iterator(test::sourceFolder() / "packs/worlds")) {
     if (entry.path().extension() != ".toml") continue;
     const auto recipe = bake::readWorldRecipe(entry.path());
     EXPECT_TRUE(recipe.has_value()) << recipe.error().where << ": " << recipe.error().message;
@@ -205,4 +206,4 @@ TEST_F(WorldRecipeFile, ThatComeWithTheProjectAreRead) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::world_recipe_test

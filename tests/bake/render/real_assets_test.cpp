@@ -14,7 +14,7 @@
 #include "support/asset_mesh.h"
 #include "support/distance_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::real_assets_test {
 namespace {
 
 /// The bake measures corners and middles of triangles; points between them were seen to move twice
@@ -99,4 +99,4 @@ TEST(RealRenderMeshes, OfClosedFurnitureStayClosed) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::real_assets_test

@@ -16,7 +16,7 @@
 #include "support/asset_mesh.h"
 #include "support/render_images.h"
 
-namespace galactic::test {
+namespace galactic::test::real_images_test {
 namespace {
 
 /// Metres: what is farther off than this is another surface.
@@ -190,4 +190,4 @@ TEST(RealImages, OfBothBackendsAgree) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::real_images_test

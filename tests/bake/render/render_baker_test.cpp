@@ -11,7 +11,7 @@
 #include "bake/render/render_helpers.h"
 #include "support/test_meshes.h"
 
-namespace galactic::test {
+namespace galactic::test::render_baker_test {
 namespace {
 
 constexpr double kFinest = kFinestStep;
@@ -361,4 +361,4 @@ TEST(RenderBaker, MergesPacksWithTheirTexturesStoredOnce) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::render_baker_test

@@ -13,7 +13,7 @@
 #include "support/source_asset.h"
 #include "support/test_meshes.h"
 
-namespace galactic::test {
+namespace galactic::test::render_pack_test {
 namespace {
 
 bake::Provenance provenance() {
@@ -97,4 +97,4 @@ TEST(RenderPack, OfASceneHasOneModel) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::render_pack_test

@@ -8,7 +8,7 @@
 #include "support/source_asset.h"
 #include "support/test_meshes.h"
 
-namespace galactic::test {
+namespace galactic::test::render_source_test {
 namespace {
 
 using bake::SourceAsset;
@@ -167,4 +167,4 @@ TEST(RenderSource, IsDarkenedWhereLightDoesNotReach) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::render_source_test

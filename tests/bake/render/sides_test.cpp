@@ -4,7 +4,7 @@
 #include "bake/render/render_helpers.h"
 #include "support/test_meshes.h"
 
-namespace galactic::test {
+namespace galactic::test::sides_test {
 namespace {
 
 constexpr bool kOneSided = false;
@@ -125,4 +125,4 @@ TEST(Sides, OfASphereAreOneAfterSimplificationAndItHasNoCrack) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::sides_test

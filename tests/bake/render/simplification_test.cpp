@@ -10,7 +10,7 @@
 #include "support/distance_oracle.h"
 #include "support/test_meshes.h"
 
-namespace galactic::test {
+namespace galactic::test::simplification_test {
 namespace {
 
 /// Corners and middles of triangles are measured by the bake; points between them move further.
@@ -237,4 +237,4 @@ TEST(Simplification, OpensNoCrackBetweenMaterials) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::simplification_test

@@ -15,7 +15,7 @@
 #include "support/asset_mesh.h"
 #include "support/chain_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::bullet_kinematics_test {
 namespace {
 
 /// Single precision along the chains of real robots.
@@ -199,4 +199,4 @@ INSTANTIATE_TEST_SUITE_P(
                     "robots/stretch/SE3/stretch_description_SE3_eoa_wrist_dw3_tool_sg3.urdf"));
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::bullet_kinematics_test

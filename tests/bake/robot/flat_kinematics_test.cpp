@@ -9,7 +9,7 @@
 
 #include "bake/robot/tiny_robots.h"
 
-namespace galactic::test {
+namespace galactic::test::flat_kinematics_test {
 namespace {
 
 using bake::FlatKinematics;
@@ -111,4 +111,4 @@ TEST(PoseOf, GivesTheUnitQuaternionWithPositiveRealPart) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::flat_kinematics_test

@@ -11,7 +11,7 @@
 
 #include "bake/urdf/link_points.h"
 
-namespace galactic::test {
+namespace galactic::test::link_geometry_test {
 namespace {
 
 using bake::BoxShape;
@@ -173,4 +173,4 @@ TEST(LinkGeometry, OfAMeshIsItsInstancesPlacedAndColoured) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::link_geometry_test

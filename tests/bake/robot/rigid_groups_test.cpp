@@ -7,7 +7,7 @@
 #include "bake/robot/tiny_robots.h"
 #include "bake/urdf/link_points.h"
 
-namespace galactic::test {
+namespace galactic::test::rigid_groups_test {
 namespace {
 
 using bake::findRigidGroups;
@@ -101,4 +101,4 @@ TEST(RigidGroups, HoldEachLinkOnceOverManyRandomTrees) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::rigid_groups_test

@@ -12,7 +12,7 @@
 #include "galactic/robot.h"
 #include "support/pack_parts.h"
 
-namespace galactic::test {
+namespace galactic::test::robot_baker_test {
 namespace {
 
 using bake::BakedRobot;
@@ -72,6 +72,12 @@ RobotRecipe armRecipe() {
   recipe.end_effector.grasp_radius = 0.02;
   recipe.camera = bake::RecipeCamera{
       .link = {"base", ""}, .link_from_camera = shifted(0, 0.3, 0), .vertical_fov = 1.5};
+  recipe.laser = bake::RecipeLaser{.link = {"base", ""},
+                                   .link_from_laser = shifted(0.1, 0.2, 0),
+                                   .field_of_view = 4,
+                                   .least_range = 0.25,
+                                   .range = 9,
+                                   .noise = 0.125};
   recipe.base.footprint = bake::FootprintRectangle{-0.1, 0.2, -0.3, 0.4};
   recipe.base.forward_step = 0.25;
   recipe.base.turn_step = 0.125;
@@ -105,6 +111,10 @@ TEST(RobotBaker, AppliesTheRecipe) {
   EXPECT_EQ(robot.camera->link, 0U);
   EXPECT_EQ(robot.camera->link_from_camera, (Pose{{0, 0.3F, 0}, {}}));
   EXPECT_EQ(robot.camera->vertical_fov, 1.5F);
+  ASSERT_TRUE(robot.laser.has_value());
+  EXPECT_EQ(robot.laser->link, 0U);
+  EXPECT_EQ(robot.laser->link_from_laser, (Pose{{0.1F, 0.2F, 0}, {}}));
+  EXPECT_EQ(robot.laser->field_of_view, 4);
   ASSERT_TRUE(robot.base.has_value());
   EXPECT_EQ(robot.base->forward_step, 0.25F);
   EXPECT_EQ(robot.base->turn_step, 0.125F);
@@ -117,7 +127,7 @@ TEST(RobotBaker, AppliesTheRecipe) {
 TEST(RobotBaker, WithoutARecipeHasNoHandCameraBaseOrActions) {
   const BakedRobot robot = bakeWell(smallArm(), nullptr, coarse());
   EXPECT_EQ(robot.name, "tiny");
-  EXPECT_FALSE(robot.end_effector || robot.camera || robot.base);
+  EXPECT_FALSE(robot.end_effector || robot.camera || robot.laser || robot.base);
   EXPECT_TRUE(robot.controlled_joints.empty());
 }
 
@@ -171,6 +181,11 @@ TEST(RobotPack, OpensAndShowsWhatWasBaked) {
   EXPECT_EQ(robot.controlledJoints().size(), 2U);
   EXPECT_EQ(robot.endEffector()->link, 2U);
   EXPECT_EQ(robot.camera()->vertical_fov, 1.5F);
+  EXPECT_EQ(robot.laser()->link_from_laser, (Pose{{0.1F, 0.2F, 0}, {}}));
+  EXPECT_EQ(robot.laser()->field_of_view, 4);
+  EXPECT_EQ(robot.laser()->least_range, 0.25F);
+  EXPECT_EQ(robot.laser()->range, 9);
+  EXPECT_EQ(robot.laser()->noise, 0.125F);
   EXPECT_EQ(robot.base()->turn_step, 0.125F);
 }
 
@@ -418,4 +433,4 @@ TEST(RobotBaker, ExplainsARecipeThatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::robot_baker_test

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-namespace galactic::test {
+namespace galactic::test::self_collision_test {
 namespace {
 
 using bake::BakedPair;
@@ -226,4 +226,4 @@ TEST(SelfCollision, AgreesWithOtherSamplesOfRandomRobots) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::self_collision_test

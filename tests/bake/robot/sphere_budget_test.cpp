@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace galactic::test {
+namespace galactic::test::sphere_budget_test {
 namespace {
 
 using bake::spendBudget;
@@ -143,4 +143,4 @@ TEST(SphereBudget, WeighsErrorsByArea) {
 TEST(SphereBudget, OfNoCurvesIsNoChoice) { EXPECT_TRUE(spendBudget({}, 10).empty()); }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::sphere_budget_test

@@ -14,8 +14,9 @@
 #include "support/asset_mesh.h"
 #include "support/scene_meshes.h"
 #include "support/source_asset.h"
+#include "support/source_folder.h"
 
-namespace galactic::bake {
+namespace galactic::bake::scene_baker_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250314;
@@ -140,8 +141,7 @@ TEST(SceneBaker, IsNotContradictedByCastsInAFurnishedRoom) {
 }
 
 TEST(SceneBaker, IsNotContradictedByCastsInTheSampleApartment) {
-  const std::filesystem::path path =
-      std::filesystem::path(GALACTIC_SOURCE_DIR) / "packs" / "sample" / "apartment.glb";
+  const std::filesystem::path path = test::sourceFolder() / "packs" / "sample" / "apartment.glb";
   const auto asset = importMesh(path);
   ASSERT_TRUE(asset) << asset.error().message;
   const auto scene = bake(*asset, {.check_columns = 64, .jobs = 2});
@@ -220,4 +220,4 @@ TEST(SceneBaker, CallsTheProgressInOrderAndMeasuresItsStages) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::scene_baker_test

@@ -8,7 +8,7 @@
 
 #include "scripted_world.h"
 
-namespace galactic::test {
+namespace galactic::test::floor_search_test {
 namespace {
 
 using scripted::BasePlace;
@@ -201,4 +201,4 @@ TEST(FloorSearch, EndsWhereTheAnswerTurnedThePlace) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::floor_search_test

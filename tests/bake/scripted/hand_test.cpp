@@ -11,7 +11,7 @@
 #include "scripted/reach_table.h"
 #include "scripted_world.h"
 
-namespace galactic::test {
+namespace galactic::test::hand_test {
 namespace {
 
 using scripted::Arm;
@@ -175,4 +175,4 @@ TEST(ArmOfLinksThatOverlap, TouchesItselfOnlyWhereItDidNotAtTheStart) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::hand_test

@@ -9,7 +9,7 @@
 #include "galactic/batch_simulator.h"
 #include "scripted_world.h"
 
-namespace galactic::test {
+namespace galactic::test::scripted_policy_test {
 namespace {
 
 /// What came of each env's first episode.
@@ -168,4 +168,4 @@ TEST(ScriptedPolicy, GivesUpWhereThereIsNoWayAndStandsStill) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::scripted_policy_test

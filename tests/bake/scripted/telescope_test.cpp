@@ -18,7 +18,7 @@
 #include "scripted_world.h"
 #include "telescope_robot.h"
 
-namespace galactic::test {
+namespace galactic::test::telescope_test {
 namespace {
 
 using scripted::Arm;
@@ -295,4 +295,4 @@ TEST(ScriptedPolicyWithATelescope, DoesTheSameEachTime) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::telescope_test

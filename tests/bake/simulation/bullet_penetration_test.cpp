@@ -9,8 +9,9 @@
 #include "home.h"
 #include "state_checker.h"
 #include "support/asset_mesh.h"
+#include "support/source_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::bullet_penetration_test {
 namespace {
 
 constexpr const char* kPublishedScene = "published_physics/scene.ply";
@@ -104,7 +105,7 @@ void expectNothingPenetrates(const Home& home) {
 }
 
 TEST(Penetration, NeverHappensInTheSampleApartment) {
-  const auto file = std::filesystem::path(GALACTIC_SOURCE_DIR) / "packs/sample/apartment.glb";
+  const auto file = test::sourceFolder() / "packs/sample/apartment.glb";
   expectNothingPenetrates(Home({file}, things()));
 }
 
@@ -115,4 +116,4 @@ TEST(Penetration, NeverHappensInThePublishedScene) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::bullet_penetration_test

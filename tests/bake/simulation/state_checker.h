@@ -38,9 +38,9 @@ struct Findings {
 /// Bullet.
 class StateChecker {
  public:
-  /// A sphere is judged by the nearest column, half the diagonal of a cell of 3 cm away at most;
-  /// heights are rounded to fractions of a millimetre.
-  static constexpr float kDeepest = 0.0213F;
+  /// A sphere is judged by the nearest column, half the diagonal of a cell of 3 cm (21.2 mm) away
+  /// at most; heights are rounded to a tenth of a millimetre, and Bullet answers to some tenths.
+  static constexpr float kDeepest = 0.0216F;
   /// Spheres farther from a box than this overlap it in no case.
   static constexpr float kNear = 0.2F;
 

@@ -8,7 +8,7 @@
 #include "galactic/bake/sphere_set.h"
 #include "sphere_set/shapes.h"
 
-namespace galactic::bake {
+namespace galactic::bake::broken_meshes_test {
 namespace {
 
 using test::KnownSolid;
@@ -156,4 +156,4 @@ TEST(SphereSetOfAnObject, FarFromItsOriginIsAsGood) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::broken_meshes_test

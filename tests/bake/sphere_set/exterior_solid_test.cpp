@@ -9,7 +9,7 @@
 #include "galactic/bake/triangle_interval.h"
 #include "sphere_set/shapes.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_fit::exterior_solid_test {
 namespace {
 
 using test::KnownSolid;
@@ -182,4 +182,4 @@ TEST(ExteriorSolid, KeepsItsMemoryForAnythingUpToTenMetres) {
 }
 
 }  // namespace
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_fit::exterior_solid_test

@@ -6,7 +6,7 @@
 #include "galactic/bake/sphere_set.h"
 #include "sphere_set/shapes.h"
 
-namespace galactic::bake {
+namespace galactic::bake::known_solids_test {
 namespace {
 
 using test::KnownSolid;
@@ -109,4 +109,4 @@ TEST(SphereSetOfAThinPlate, CoversItWithTheLeastProtrusionAndSaysSo) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::known_solids_test

@@ -9,7 +9,7 @@
 #include "galactic/bake/sphere_set.h"
 #include "sphere_set/shapes.h"
 
-namespace galactic::bake {
+namespace galactic::bake::options_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250405;
@@ -287,4 +287,4 @@ TEST(SphereSetResult, DependsOnNothingButItsInput) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::options_test

@@ -8,7 +8,7 @@
 #include "sphere_set/shapes.h"
 #include "support/asset_mesh.h"
 
-namespace galactic::bake {
+namespace galactic::bake::real_objects_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250406;
@@ -81,4 +81,4 @@ TEST(SphereSetsOfScans, AreTheSameOnAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::real_objects_test

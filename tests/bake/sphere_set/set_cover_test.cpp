@@ -12,7 +12,7 @@
 #include "sphere_set/local_search.h"
 #include "sphere_set/point_grid.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_fit::set_cover_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250403;
@@ -191,4 +191,4 @@ TEST(BallWeight, IsTheSameOnEveryMachine) {
 }
 
 }  // namespace
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_fit::set_cover_test

@@ -5,7 +5,7 @@
 
 #include "texture_helpers.h"
 
-namespace galactic::test {
+namespace galactic::test::bc1_test {
 namespace {
 
 using bake::BakedMaterials;
@@ -91,4 +91,4 @@ TEST(Bc1, IsNotUsedWhereShapesAreCutOut) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::bc1_test

@@ -9,7 +9,7 @@
 #include "texture_helpers.h"
 #include "textures/isolated_bake.h"
 
-namespace galactic::test {
+namespace galactic::test::image_decoder_test {
 namespace {
 
 using bake::DecodedImage;
@@ -269,4 +269,4 @@ TEST(IsolatedBake, PassesTheDecodersMessageOn) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::image_decoder_test

@@ -6,7 +6,7 @@
 #include "support/scratch_folder.h"
 #include "texture_helpers.h"
 
-namespace galactic::test {
+namespace galactic::test::materials_test {
 namespace {
 
 using bake::AlphaMode;
@@ -290,4 +290,4 @@ TEST(Baking, GivesTheSameBytesOnAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::materials_test

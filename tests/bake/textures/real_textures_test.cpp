@@ -5,7 +5,7 @@
 #include "galactic/bake/render_textures.h"
 #include "support/assets.h"
 
-namespace galactic::test {
+namespace galactic::test::real_textures_test {
 namespace {
 
 using bake::BakedMaterials;
@@ -48,4 +48,4 @@ TEST_F(RealTextures, OfAYcbObjectAreFilesBesideIt) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::real_textures_test

@@ -8,7 +8,7 @@
 #include "textures/linear_image.h"
 #include "textures/transfer_function.h"
 
-namespace galactic::test {
+namespace galactic::test::resize_test {
 namespace {
 
 using bake::BakedMaterials;
@@ -180,4 +180,4 @@ TEST(TextureLayout, BeginsEachTextureAtAMultipleOf32) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::resize_test

@@ -9,7 +9,7 @@
 
 #include "texture_helpers.h"
 
-namespace galactic::test {
+namespace galactic::test::texture_library_test {
 namespace {
 
 using bake::BakedMaterials;
@@ -78,4 +78,4 @@ TEST(TextureLibrary, KeepsImagesOfDifferentOptionsApart) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::texture_library_test

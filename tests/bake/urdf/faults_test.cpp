@@ -5,7 +5,7 @@
 
 #include "bake/urdf/urdf_helpers.h"
 
-namespace galactic::test {
+namespace galactic::test::faults_test {
 namespace {
 
 struct Fault {
@@ -167,7 +167,8 @@ std::vector<Fault> jointFaults() {
                  jointText("j", "continuous", "a,b", "<mimic joint=\"k\" multiplier=\"1e200\"/>") +
                  jointText("k", "continuous", "b,c", "<mimic joint=\"l\" multiplier=\"1e200\"/>") +
                  jointText("l", "continuous", "c,d")),
-       "r.urdf: joint 'j'", "the multiplier or offset of its <mimic> is not finite; correct it"},
+       "r.urdf: joint 'j'",
+       "the multiplier inf or offset 0 of its <mimic> is not finite or over 1000; correct it"},
       {"MimicMultiplierNotANumber",
        withJoint("continuous", "<mimic joint=\"j\" multiplier=\"twice\"/>"), "r.urdf",
        "the URDF parser refuses it: multiplier value (twice) is not a valid float; Could not parse "
@@ -307,4 +308,4 @@ TEST(UrdfOptions, RefuseUpAxesThatAreNeitherYNorZ) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::faults_test

@@ -8,7 +8,7 @@
 #include "bake/urdf/link_points.h"
 #include "bake/urdf/urdf_helpers.h"
 
-namespace galactic::test {
+namespace galactic::test::frames_test {
 namespace {
 
 using testing::DoubleNear;
@@ -151,4 +151,4 @@ TEST(UrdfFrames, AgreeWithElementaryRotationsOnRandomJoints) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::frames_test

@@ -7,7 +7,7 @@
 #include "bake/urdf/urdf_helpers.h"
 #include "support/mesh_files.h"
 
-namespace galactic::test {
+namespace galactic::test::geometry_test {
 namespace {
 
 using testing::ElementsAre;
@@ -267,4 +267,4 @@ TEST(UrdfImport, GivesTheSameRobotEveryTime) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::geometry_test

@@ -5,7 +5,7 @@
 
 #include "bake/urdf/urdf_helpers.h"
 
-namespace galactic::test {
+namespace galactic::test::hand_spheres_test {
 namespace {
 
 using bake::HandSphere;
@@ -95,4 +95,4 @@ TEST(SrdfSpheres, ThatAreBrokenNameTheirLine) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::hand_spheres_test

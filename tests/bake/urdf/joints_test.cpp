@@ -3,7 +3,7 @@
 
 #include "bake/urdf/urdf_helpers.h"
 
-namespace galactic::test {
+namespace galactic::test::joints_test {
 namespace {
 
 using testing::ElementsAre;
@@ -159,4 +159,4 @@ TEST(UrdfTrees, OfOneLinkNeedNoJoint) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::joints_test

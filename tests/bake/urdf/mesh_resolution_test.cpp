@@ -4,7 +4,7 @@
 #include "bake/urdf/urdf_helpers.h"
 #include "urdf/mesh_resolver.h"
 
-namespace galactic::test {
+namespace galactic::test::mesh_resolution_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -103,6 +103,25 @@ TEST_F(MeshReferences, ByPathAreRelativeToTheUrdf) {
   EXPECT_TRUE(guessed.guessed);
 }
 
+TEST_F(MeshReferences, LeadIntoPackagesAndTheUrdfsFoldersOnly) {
+  const fs::path secret = put("secret/m.stl");
+  const std::string relative = "../../../../secret/m.stl";
+  for (const std::string& reference : {secret.string(), "file://" + secret.string(), relative,
+                                       "package://pkg_description/" + relative}) {
+    SCOPED_TRACE(reference);
+    const MeshResolution refused = resolve(reference);
+    EXPECT_TRUE(refused.file.empty());
+    EXPECT_FALSE(refused.how.empty());
+  }
+  EXPECT_THAT(resolve(secret.string()).how, HasSubstr("--package NAME=DIR or --allow-outside"));
+  options_.packages["secrets"] = secret.parent_path();
+  EXPECT_EQ(resolve(secret.string()).file, secret);
+  options_.packages.clear();
+  options_.allow_outside = true;
+  EXPECT_EQ(resolve(secret.string()).file, secret);
+  EXPECT_EQ(resolve(relative).file, secret);
+}
+
 TEST_F(MeshReferences, MayHaveUriEscapes) {
   const fs::path mesh = put("ws/src/pkg_description/meshes/my mesh.stl");
   EXPECT_EQ(resolve("package://pkg_description/meshes/my%20mesh.stl").file, mesh);
@@ -126,4 +145,4 @@ TEST_F(MeshReferences, ThatLeadNowhereSayWhereTheyWereLookedFor) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::mesh_resolution_test

@@ -10,7 +10,7 @@
 #include "bake/urdf/urdf_helpers.h"
 #include "support/asset_mesh.h"
 
-namespace galactic::test {
+namespace galactic::test::real_robots_test {
 namespace {
 
 constexpr const char* kFetch = "robots/fetch/fetch_description/robots/fetch.urdf";
@@ -151,4 +151,4 @@ TEST(FetchInItsZeroPose, StandsUprightAndLooksForward) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::real_robots_test

@@ -13,7 +13,7 @@
 #include "support/episode_pack_builder.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::episode_pack_test {
 namespace {
 
 using bake::encodeEpisodePack;
@@ -194,4 +194,4 @@ TEST(EpisodePack, LeavesTheOldFileWhenTheEpisodesAreRefused) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::episode_pack_test

@@ -20,7 +20,7 @@
 #include "support/scratch_folder.h"
 #include "support/source_asset.h"
 
-namespace galactic::bake {
+namespace galactic::bake::scene_pack_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250313;
@@ -227,4 +227,4 @@ TEST(ScenePack, ThatCannotBeWrittenIsAnError) {
 }
 
 }  // namespace
-}  // namespace galactic::bake
+}  // namespace galactic::bake::scene_pack_test

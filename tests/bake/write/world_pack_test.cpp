@@ -10,7 +10,7 @@
 #include "galactic/world.h"
 #include "support/world_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::world_pack_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -189,4 +189,4 @@ TEST(WorldPackLists, HoldPathsBelowTheirFolderOnly) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::world_pack_test

@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-namespace galactic {
+namespace galactic::option_lines_test {
 namespace {
 
 using testing::HasSubstr;
@@ -29,14 +29,26 @@ SimulationOptions unusualOptions() {
                        .direction_spread = 3.14159265F,
                        .jitter = 1e-8F};
   options.ground = {.most_rise = 0.2F, .most_drop = 0.4F};
+  options.sensors = {.bump = true,
+                     .laser = {.beams = 24,
+                               .fov_degrees = 220,
+                               .height = 0.1F / 3,
+                               .second_height = 0.8F,
+                               .range = 4,
+                               .least_range = 0.05F,
+                               .noise = 0.01F},
+                     .geodesic = true,
+                     .geodesic_megabytes = 7};
   options.task = {.kind = TaskKind::kMobilePick,
                   .success_reward = 1,
                   .pick_reward = -2.5F,
                   .reach_weight = 0.3F,
                   .transport_weight = 0.7F,
                   .action_weight = 1e-5F,
+                  .geodesic_weight = 0.9F,
                   .slack_penalty = 0.01F,
                   .failure_penalty = 3,
+                  .bump_penalty = 0.05F,
                   .success_distance = 0.15F,
                   .most_steps = 0,
                   .needs_terminate = false,
@@ -118,4 +130,4 @@ TEST(OptionText, FindsTheFirstDifference) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::option_lines_test

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <regex>
 #include <string>
 #include <vector>
 
 #include "galactic/error.h"
 
-namespace galactic {
+namespace galactic::options_test {
 namespace {
 
 std::optional<int> parse(std::vector<std::string> arguments, RunOptions& options) {
@@ -35,6 +37,63 @@ TEST(RunCommandLine, SimulatesWhenAnOptionOfTheSimulationIsTyped) {
   EXPECT_TRUE(parsed({"--steps", "5"}).simulates);
   EXPECT_TRUE(parsed({"--slide", "off"}).simulates);
   EXPECT_TRUE(parsed({"--reach-weight", "2"}).simulates);
+}
+
+/// The options of --help whose values are numbers.
+std::vector<std::string> numberOptions() {
+  testing::internal::CaptureStdout();
+  RunOptions options;
+  EXPECT_EQ(parse({"--help"}, options), 0);
+  std::fflush(stdout);
+  const std::string help = testing::internal::GetCapturedStdout();
+  std::vector<std::string> names;
+  const std::regex option(R"((--[a-z-]+) (?:N|NUMBER|DEGREES|N\|WxH)[ \n])");
+  for (std::sregex_iterator at(help.begin(), help.end(), option), end; at != end; ++at) {
+    names.push_back((*at)[1]);
+  }
+  return names;
+}
+
+TEST(RunCommandLine, RefusesWhatIsNoNumber) {
+  const std::vector<std::string> names = numberOptions();
+  EXPECT_GT(names.size(), 30U);
+  for (const std::string& name : names) {
+    for (const char* value : {"nan", "-nan", "inf", "-inf", "1e999", "abc", "", " ", "1,2", "1 ",
+                              "0x10", "99999999999999999999999", "--1", "+1"}) {
+      RunOptions options;
+      testing::internal::CaptureStderr();
+      EXPECT_EQ(parse({"--render", "rgb", "--frames", "dir", "--debug-view", name + "=" + value},
+                      options),
+                kExitUsage)
+          << name << "=" << value;
+      EXPECT_EQ(testing::internal::GetCapturedStderr().find("galactic-run: command line: "), 0U);
+    }
+  }
+}
+
+TEST(RunCommandLine, RefusesNegativeAndOctalWholeNumbers) {
+  for (const char* name : {"--seed", "--steps", "--threads", "--envs", "--rank", "--ranks",
+                           "--frame-every", "--frame-envs", "--episode-steps"}) {
+    for (const char* value : {"-1", "010", "1.5", "1e2"}) {
+      RunOptions options;
+      testing::internal::CaptureStderr();
+      EXPECT_EQ(
+          parse({"--render", "rgb", "--frames", "dir", std::string(name) + "=" + value}, options),
+          kExitUsage)
+          << name << "=" << value;
+      (void)testing::internal::GetCapturedStderr();
+    }
+  }
+}
+
+TEST(RunCommandLine, RefusesADeviceThatNothingUsesAndSuggestsNames) {
+  RunOptions options;
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(parse({"--render", "rgb", "--backend", "soft", "--device", "0"}, options), kExitUsage);
+  EXPECT_EQ(parse({"--env", "3"}, options), kExitUsage);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("--device is about --backend gl"), std::string::npos) << said;
+  EXPECT_NE(said.find("did you mean '--envs'"), std::string::npos) << said;
 }
 
 TEST(RunCommandLine, HasUsefulDefaults) {
@@ -154,4 +213,4 @@ TEST(RunCommandLine, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::options_test

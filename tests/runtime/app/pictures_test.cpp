@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "camera_choice.h"
 #include "contact_sheet.h"
 #include "frame_images.h"
+#include "galactic/camera_choice.h"
 #include "picture_output.h"
 #include "pictures/drawing.h"
 #include "pictures/palette.h"
@@ -19,7 +19,7 @@
 #include "support/small_home.h"
 #include "video_pipe.h"
 
-namespace galactic {
+namespace galactic::pictures_test {
 namespace {
 
 using pictures::Image;
@@ -347,4 +347,4 @@ TEST(CameraChoice, AnUnknownLinkIsRefusedWithThoseThereAre) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::pictures_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace galactic {
+namespace galactic::policy_test {
 namespace {
 
 constexpr std::size_t kActions = 11;
@@ -81,4 +81,4 @@ TEST(Policy, IsUniformAndTerminatesSeldom) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::policy_test

@@ -11,7 +11,7 @@
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 
-namespace galactic {
+namespace galactic::recording_test {
 namespace {
 
 using testing::HasSubstr;
@@ -157,4 +157,4 @@ TEST_F(Recording, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::recording_test

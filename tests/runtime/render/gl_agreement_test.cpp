@@ -5,7 +5,7 @@
 
 #include "runtime/render/gl_scene.h"
 
-namespace galactic::test {
+namespace galactic::test::gl_agreement_test {
 namespace {
 
 /// Pixels at the edge of two surfaces may fall to either: drivers round positions differently.
@@ -52,4 +52,4 @@ TEST(BackendAgreement, ImagesOfTheOpenGlDriverAndOfTheRasteriserDifferLessThanCa
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::gl_agreement_test

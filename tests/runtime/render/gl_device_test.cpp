@@ -7,7 +7,7 @@
 #include "render/gl/gl_engine.h"
 #include "runtime/render/gl_scene.h"
 
-namespace galactic::render::gl {
+namespace galactic::render::gl::gl_device_test {
 namespace {
 
 using testing::ElementsAre;
@@ -203,4 +203,4 @@ TEST(GlStart, LeavesTheCallersContextCurrent) {
 }
 
 }  // namespace
-}  // namespace galactic::render::gl
+}  // namespace galactic::render::gl::gl_device_test

@@ -11,7 +11,7 @@
 #include "render/gl/gl_engine.h"
 #include "runtime/render/gl_scene.h"
 
-namespace galactic::test {
+namespace galactic::test::gl_image_test {
 namespace {
 
 /// Depths are near / x in 32-bit floats, interpolated by the driver.
@@ -464,4 +464,4 @@ TEST_F(GlImage, WithoutCudaDeviceImagesAreRefusedInWords) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::gl_image_test

@@ -8,7 +8,7 @@
 #include "render/gl/view_lists.h"
 #include "runtime/render/gl_scene.h"
 
-namespace galactic::render::gl {
+namespace galactic::render::gl::gl_library_test {
 namespace {
 
 /// A library of textures alone.
@@ -156,4 +156,4 @@ TEST(ViewLists, WriteWhatTheyCounted) {
 }
 
 }  // namespace
-}  // namespace galactic::render::gl
+}  // namespace galactic::render::gl::gl_library_test

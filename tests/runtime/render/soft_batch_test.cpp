@@ -13,7 +13,7 @@
 #include "support/render_images.h"
 #include "support/render_model_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::soft_batch_test {
 namespace {
 
 constexpr std::uint32_t kBackground = 0x11223344;
@@ -390,4 +390,4 @@ TEST(SoftRenderer, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::soft_batch_test

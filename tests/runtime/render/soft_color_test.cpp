@@ -12,7 +12,7 @@
 #include "support/render_images.h"
 #include "support/render_model_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::soft_color_test {
 namespace {
 
 constexpr std::uint32_t kRed = 0xFF0000FF;
@@ -32,7 +32,8 @@ RenderOptions colorOptions(std::uint32_t width, std::uint32_t height) {
 
 std::uint32_t pixel(const RenderImages& images, std::size_t number) {
   const std::uint8_t* p = images.color.data() + 4 * number;
-  return p[0] | p[1] << 8U | p[2] << 16U | static_cast<std::uint32_t>(p[3]) << 24U;
+  return std::uint32_t{p[0]} | std::uint32_t{p[1]} << 8U | std::uint32_t{p[2]} << 16U |
+         std::uint32_t{p[3]} << 24U;
 }
 
 /// A square of this edge in the plane x = `x`, facing the camera at the origin, upright.
@@ -360,4 +361,4 @@ TEST(SoftColor, Bc1BlocksDecodeToTheColorsOfTheirFormat) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::soft_color_test

@@ -13,7 +13,7 @@
 #include "support/render_images.h"
 #include "support/render_model_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::soft_coverage_test {
 namespace {
 
 RenderOptions softOptions(std::uint32_t width, std::uint32_t height) {
@@ -253,4 +253,4 @@ TEST_F(SoftCulling, IsTheSameForModelsFarFromTheOrigin) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::soft_coverage_test

@@ -11,7 +11,7 @@
 #include "support/render_model_builder.h"
 #include "support/render_ray_caster.h"
 
-namespace galactic::test {
+namespace galactic::test::soft_depth_test {
 namespace {
 
 /// Metres: what the issue of rendering asks for.
@@ -110,7 +110,7 @@ TEST(SoftDepth, OfAGlobeIsThatOfTheSphereWithinItsFacets) {
   const RenderImages images = renderViews(library, depthOptions(128, 128), {&view, 1});
   std::size_t inside = 0;
   std::size_t outside = 0;
-  const double focal = 64 / std::tan(radians(25));
+  const double focal = static_cast<double>(64 / std::tan(radians(25)));
   for (std::uint32_t y = 0; y < 128; ++y) {
     for (std::uint32_t x = 0; x < 128; ++x) {
       const double right = (x + 0.5 - 64) / focal;
@@ -198,4 +198,4 @@ TEST(SoftDepth, OfRandomTrianglesAgreesWithRays) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::soft_depth_test

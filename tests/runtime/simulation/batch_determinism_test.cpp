@@ -7,7 +7,7 @@
 
 #include "batch_trace.h"
 
-namespace galactic::test {
+namespace galactic::test::batch_determinism_test {
 namespace {
 
 BatchSimulator made(const BoxWorld& world, const SimulationOptions& options) {
@@ -77,6 +77,31 @@ TEST(BatchSimulator, DoesNotLetEnvsInfluenceEachOther) {
     const auto sharded = tracesOf(shard, 100, 5 * 64);
     EXPECT_TRUE(std::equal(sharded.begin(), sharded.end(), traces.begin() + 5 * 64));
   }
+}
+
+TEST(BatchSimulator, CountsWhatHappenedInOneEnvAsIfItWereAlone) {
+  const BoxWorld world = furnishedWorld();
+  SimulationOptions options = optionsFor(64, 2);
+  BatchSimulator many = made(world, options);
+  (void)tracesOf(many, 200);
+  options.envs = 1;
+  options.ranks = 64;
+  std::uint64_t slid = 0;
+  for (std::uint32_t env = 0; env < 64; ++env) {
+    options.rank = env;
+    BatchSimulator single = made(world, options);
+    (void)tracesOf(single, 200, env);
+    const SimulationStatistics own = many.statistics(env);
+    const SimulationStatistics alone = single.statistics();
+    EXPECT_EQ(own.steps, alone.steps);
+    EXPECT_EQ(own.refused, alone.refused);
+    EXPECT_EQ(own.slid, alone.slid);
+    EXPECT_EQ(own.reward, alone.reward);
+    slid += own.slid;
+  }
+  EXPECT_EQ(slid, many.statistics().slid);
+  EXPECT_GT(slid, 500U);
+  EXPECT_GT(many.statistics().refused, 50U);
 }
 
 TEST(BatchSimulator, SharesEpisodesAmongRanksInAPartition) {
@@ -169,4 +194,4 @@ TEST(BatchSimulator, DoesTheSameWithTheRobotsSpheresInAnyOrder) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::batch_determinism_test

@@ -8,7 +8,7 @@
 
 #include "batch_trace.h"
 
-namespace galactic::test {
+namespace galactic::test::batch_inputs_test {
 namespace {
 
 using testing::Each;
@@ -140,6 +140,85 @@ TEST(Resets, InTheStepThatEndsAnEpisodeWin) {
   EXPECT_EQ(simulator.statistics().episodes, 1U);
 }
 
+TEST(Resets, BetweenStepsBeginTheNextEpisodeOrTheOneThatIsAskedFor) {
+  const BoxWorld world = furnishedWorld();
+  constexpr std::uint32_t kEnvs = 20;
+  SimulationOptions options = optionsFor(kEnvs);
+  options.task.most_steps = 40;
+  BatchSimulator simulator = made(world, options);
+  BatchSimulator stepped = made(world, options);
+  for (std::uint32_t step = 0; step < 30; ++step) {
+    simulator.step(actionsFor(simulator, 0, step));
+    stepped.step(actionsFor(stepped, 0, step));
+  }
+  const SimulationStatistics before = simulator.statistics();
+  std::vector<std::int32_t> episodes(kEnvs, BatchSimulator::kStays);
+  episodes[3] = 6;
+  episodes[17] = BatchSimulator::kNextEpisode;
+  simulator.reset(episodes);
+  EXPECT_EQ(simulator.envState(3).episode, 6U);
+  EXPECT_EQ(simulator.envState(17).step, 0U);
+  EXPECT_EQ(simulator.rewards()[17], stepped.rewards()[17]);
+  EXPECT_EQ(simulator.statistics().steps, before.steps);
+  EXPECT_EQ(simulator.statistics().episodes, before.episodes);
+  for (const std::size_t env : {0U, 16U, 19U}) {
+    EXPECT_EQ(simulator.envState(env).step, stepped.envState(env).step);
+    EXPECT_EQ(simulator.envState(env).world_from_root, stepped.envState(env).world_from_root);
+  }
+  // The next one is that which the end of the time would have begun.
+  while (stepped.envState(17).step != 0) stepped.step(actionsFor(stepped, 0, 99));
+  EXPECT_EQ(simulator.envState(17).episode, stepped.envState(17).episode);
+}
+
+TEST(Resets, ThatTheCallerMakesAfterEachEndGiveTheEpisodesOfThoseThatStepsMake) {
+  const BoxWorld world = furnishedWorld();
+  constexpr std::uint32_t kEnvs = 20;
+  SimulationOptions options = optionsFor(kEnvs);
+  options.task.most_steps = 15;
+  options.body_transforms = true;
+  BatchSimulator renewing = made(world, options);
+  options.auto_reset = false;
+  BatchSimulator staying = made(world, options);
+  int ends = 0;
+  for (std::uint32_t step = 0; step < 100; ++step) {
+    const std::vector<float> actions = actionsFor(renewing, 0, step);
+    renewing.step(actions);
+    staying.step(actions);
+    std::vector<std::int32_t> episodes(kEnvs, BatchSimulator::kStays);
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      if (staying.dones()[env] == 0) continue;
+      ++ends;
+      episodes[env] = BatchSimulator::kNextEpisode;
+      EXPECT_GT(staying.envState(env).step, 0U);
+    }
+    staying.reset(episodes);
+    ASSERT_EQ(BatchTrace(staying).hashes(), BatchTrace(renewing).hashes()) << "step " << step;
+  }
+  EXPECT_GT(ends, 100);
+}
+
+TEST(Resets, OfEverythingAreAsGoodAsNew) {
+  const BoxWorld world = furnishedWorld();
+  SimulationOptions options = optionsFor(20);
+  options.task.most_steps = 25;
+  BatchSimulator used = made(world, options);
+  for (std::uint32_t step = 0; step < 60; ++step) used.step(actionsFor(used, 0, step));
+  options.seed = 99;
+  BatchSimulator fresh = made(world, options);
+  used.restart(99);
+  BatchTrace of_used(used);
+  BatchTrace of_fresh(fresh);
+  EXPECT_EQ(used.statistics().steps, 0U);
+  EXPECT_EQ(used.statistics().episodes, 0U);
+  for (std::uint32_t step = 0; step < 60; ++step) {
+    used.step(actionsFor(used, 0, step));
+    fresh.step(actionsFor(fresh, 0, step));
+    of_used.add(used);
+    of_fresh.add(fresh);
+  }
+  EXPECT_EQ(of_used.hashes(), of_fresh.hashes());
+}
+
 TEST(Episodes, InWhichTheRobotCannotStartAreSkippedAndListed) {
   const BoxWorld world = furnishedWorld();
   SimulationOptions options = optionsFor(50);
@@ -216,4 +295,4 @@ TEST(Options, ThatMakeNoSenseAreErrors) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::batch_inputs_test

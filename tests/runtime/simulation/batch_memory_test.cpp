@@ -6,7 +6,7 @@
 #include "batch_trace.h"
 #include "counted_new.h"
 
-namespace galactic::test {
+namespace galactic::test::batch_memory_test {
 namespace {
 
 TEST(BatchMemory, IsNotAllocatedInAStep) {
@@ -62,4 +62,4 @@ TEST(BatchMemory, IsWhatTheBatchSaysForEachEnv) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::batch_memory_test

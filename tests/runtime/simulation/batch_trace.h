@@ -94,6 +94,7 @@ class BatchTrace {
     const float reward = simulator.rewards()[env];
     addAll(hash, std::span(&reward, 1));
     mixIn(hash, simulator.dones()[env] * 2U + simulator.successes()[env]);
+    mixIn(hash, static_cast<std::uint32_t>(simulator.endings()[env]));
     if (!simulator.bodyTransforms().empty()) {
       const std::size_t bodies = simulator.bodyCount();
       for (const RigidTransform& body : simulator.bodyTransforms().subspan(env * bodies, bodies)) {

@@ -15,7 +15,7 @@
 #include "support/box_room.h"
 #include "support/grid_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::collision_test {
 namespace {
 
 using namespace galactic::simulation;
@@ -407,4 +407,4 @@ TEST(Penetration, PushesAddUpTheSameForSpheresInAnyOrder) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::collision_test

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace galactic::test {
+namespace galactic::test::episode_order_test {
 namespace {
 
 using namespace galactic::simulation;
@@ -142,4 +142,4 @@ TEST(EpisodeOrder, NeverLeavesTheEpisodesHoweverLongItRuns) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::episode_order_test

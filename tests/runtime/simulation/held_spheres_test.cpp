@@ -8,7 +8,7 @@
 
 #include "support/resting_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::held_spheres_test {
 namespace {
 
 using simulation::HeldSpheres;
@@ -52,4 +52,4 @@ TEST(HeldSpheres, StandInLanesRadiusByRadius) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::held_spheres_test

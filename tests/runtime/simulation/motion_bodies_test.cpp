@@ -13,8 +13,9 @@
 #include "column_grid_kernels.h"
 #include "motion_batch.h"
 #include "support/random_robot.h"
+#include "support/source_folder.h"
 
-namespace galactic::test {
+namespace galactic::test::motion_bodies_test {
 namespace {
 
 using namespace galactic::simulation;
@@ -31,7 +32,7 @@ AlignedBytes readFile(const std::filesystem::path& path) {
 }
 
 MotionRobot goldenArm() {
-  const auto path = std::filesystem::path(GALACTIC_SOURCE_DIR) / "packs/golden/arm.pack";
+  const auto path = test::sourceFolder() / "packs/golden/arm.pack";
   return {readFile(path), {}};
 }
 
@@ -257,4 +258,4 @@ TEST(MotionModel, RefusesRobotsWithoutSpheresOrEndEffectorOrBase) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::motion_bodies_test

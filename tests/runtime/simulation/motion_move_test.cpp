@@ -9,7 +9,7 @@
 #include "motion_batch.h"
 #include "support/random_robot.h"
 
-namespace galactic::test {
+namespace galactic::test::motion_move_test {
 namespace {
 
 using namespace galactic::simulation;
@@ -213,4 +213,4 @@ TEST(Move, KnowsSineAndCosineOfAllAnglesUpToAThousandRadians) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::motion_move_test

@@ -11,7 +11,7 @@
 #include "simulation/move.h"
 #include "support/box_world.h"
 
-namespace galactic::test {
+namespace galactic::test::move_robots_test {
 namespace {
 
 using namespace galactic::simulation;
@@ -272,4 +272,4 @@ TEST(MoveRobots, IsNotPushedTowardsItsBaseByTheBaseItself) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::move_robots_test

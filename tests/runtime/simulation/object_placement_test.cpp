@@ -10,7 +10,7 @@
 #include "support/box_room.h"
 #include "support/resting_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::object_placement_test {
 namespace {
 
 using simulation::HeldSpheres;
@@ -441,4 +441,4 @@ TEST(ObjectPlacement, DependsOnTheStreamAndNotOnTheOrderOfSpheres) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::object_placement_test

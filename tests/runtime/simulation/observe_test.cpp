@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,7 @@
 #include "support/task_oracle.h"
 #include "support/task_twins.h"
 
-namespace galactic::test {
+namespace galactic::test::observe_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 7;
@@ -166,5 +167,40 @@ TEST(Observation, CountsTheTimeDown) {
   EXPECT_EQ(time()[2], 1);
 }
 
+TEST(Observation, FeelsWhatWasInTheWayAndPaysForIt) {
+  const SmallHome home;
+  SimulationOptions options = optionsOf({.most_steps = 50});
+  options.envs = 1;
+  options.slide.attempts = 0;
+  BatchSimulator plain = simulatorOf(home.world(), options);
+  options.sensors.bump = true;
+  options.task.bump_penalty = 0.5F;
+  BatchSimulator feeling = simulatorOf(home.world(), options);
+  ASSERT_EQ(feeling.observationParts().back().name, "bump");
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  std::vector<float> actions(kSmallHomeActions);
+  int bumps = 0;
+  constexpr int kSteps = 400;
+  for (int step = 0; step < kSteps; ++step) {
+    for (float& action : actions) action = uniform(random);
+    actions[kSmallHomeActions - 4] = 1;
+    const std::uint64_t before = feeling.statistics().refused;
+    plain.step(actions);
+    feeling.step(actions);
+    const bool bumped = feeling.statistics().refused != before;
+    bumps += bumped ? 1 : 0;
+    const bool ended = feeling.dones()[0] != 0;
+    const auto last = ended ? feeling.finalObservations() : feeling.observations();
+    EXPECT_EQ(last.back(), bumped ? 1 : 0) << "step " << step;
+    if (ended) {
+      EXPECT_EQ(feeling.observations().back(), 0) << "step " << step;
+    }
+    EXPECT_NEAR(static_cast<double>(plain.rewards()[0] - feeling.rewards()[0]), bumped ? 0.5 : 0.0,
+                kTolerance);
+  }
+  expectBothSides(bumps, kSteps);
+}
+
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::observe_test

@@ -8,7 +8,7 @@
 
 #include "support/resting_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::resting_box_test {
 namespace {
 
 using simulation::nearestPoint;
@@ -81,4 +81,4 @@ TEST(RestingBox, ShiftsOfBoxesWithParallelAxesAreExact) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::resting_box_test

@@ -9,7 +9,7 @@
 #include "support/resting_bodies.h"
 #include "support/resting_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::resting_fall_test {
 namespace {
 
 using simulation::RestingObjects;
@@ -101,4 +101,4 @@ TEST(RestingObjects, FallIsExactOnSmallCases) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::resting_fall_test

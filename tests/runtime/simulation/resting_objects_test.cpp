@@ -15,7 +15,7 @@
 #include "support/resting_bodies.h"
 #include "support/resting_oracle.h"
 
-namespace galactic::test {
+namespace galactic::test::resting_objects_test {
 namespace {
 
 using simulation::findTouchingAvx2;
@@ -23,13 +23,13 @@ using simulation::findTouchingPortable;
 using simulation::kBands;
 using simulation::kSquareEdge;
 using simulation::kStrips;
+using simulation::LaneGroup;
 using simulation::overlaps;
 using simulation::RadiusRange;
 using simulation::RestingObjects;
 using simulation::RestingView;
 using simulation::SphereArrays;
 using simulation::SphereBatch;
-using simulation::SphereGroup;
 using simulation::SphereHit;
 using testing::ElementsAre;
 
@@ -288,8 +288,8 @@ TEST(RestingObjects, AnswerAlikeBitForBitWithBothKernels) {
     const SphereBatch spheres = batch.view();
     const SphereArrays arrays{spheres.x, spheres.y, spheres.z, spheres.ranges.data(), 1};
     for (std::size_t first = 0; first < centres.size() / 8; ++first) {
-      SphereGroup portable{.group = first};
-      SphereGroup vectorised{.group = first};
+      LaneGroup portable{.group = first};
+      LaneGroup vectorised{.group = first};
       const bool found = findTouchingPortable(objects.view(), arrays, portable);
       ASSERT_EQ(found, findTouchingAvx2(objects.view(), arrays, vectorised));
       if (!found) break;
@@ -342,4 +342,4 @@ TEST(RestingObjects, NearestPrefersTheLowerIndexOfTwoThatHoldTheCentre) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::resting_objects_test

@@ -2,6 +2,7 @@
 // appendix A that sees only what an onlooker sees.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <ostream>
@@ -12,7 +13,7 @@
 #include "support/task_oracle.h"
 #include "support/task_twins.h"
 
-namespace galactic::test {
+namespace galactic::test::task_rules_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20240611;
@@ -27,6 +28,7 @@ struct Tally {
   int successes = 0;
   int failures = 0;
   int late = 0;
+  std::array<int, kEpisodeEnds> endings{};
   int grasps = 0;
 };
 
@@ -37,6 +39,8 @@ struct Case {
   bool sees_success = true;
   bool sees_failure = true;
   bool sees_late = true;
+  /// The mistakes that the case is to show, each at least five times.
+  std::vector<EpisodeEnd> mistakes{};
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& one) { return out << one.name; }
@@ -50,7 +54,15 @@ SimulationOptions optionsOf(const TaskOptions& task) {
   return options;
 }
 
-Case paperCase() { return {.name = "Paper", .options = optionsOf({})}; }
+constexpr EpisodeEnd kWrongTerminate = EpisodeEnd::kWrongTerminate;
+constexpr EpisodeEnd kWrongRelease = EpisodeEnd::kWrongRelease;
+constexpr EpisodeEnd kWrongObject = EpisodeEnd::kWrongObject;
+
+Case paperCase() {
+  return {.name = "Paper",
+          .options = optionsOf({}),
+          .mistakes = {kWrongTerminate, kWrongRelease, kWrongObject}};
+}
 
 Case unusualCase() {
   TaskOptions task;
@@ -79,11 +91,13 @@ std::vector<Case> cases() {
   const TaskOptions alone{.distractors = false};
   return {paperCase(),
           unusualCase(),
-          {.name = "NoTerminate", .options = optionsOf(no_terminate)},
-          {.name = "SafeDrop", .options = optionsOf(safe_drop)},
+          {.name = "NoTerminate",
+           .options = optionsOf(no_terminate),
+           .mistakes = {kWrongRelease, kWrongObject}},
+          {.name = "SafeDrop", .options = optionsOf(safe_drop), .mistakes = {kWrongTerminate}},
           {.name = "SafeDropNoTerminate", .options = optionsOf(neither), .sees_failure = false},
           {.name = "NoDistractors", .options = optionsOf(alone)},
-          {.name = "MobilePick", .options = optionsOf(pick)},
+          {.name = "MobilePick", .options = optionsOf(pick), .mistakes = {kWrongObject}},
           {.name = "MobilePickAnything", .options = optionsOf(lenient_pick), .sees_failure = false},
           {.name = "None",
            .options = optionsOf(none),
@@ -100,6 +114,8 @@ class TaskRules : public testing::TestWithParam<Case> {
     ASSERT_NEAR(static_cast<double>(batch.rewards()[env]), wanted.reward, kRewardTolerance);
     ASSERT_EQ(batch.dones()[env] != 0, wanted.done);
     ASSERT_EQ(batch.successes()[env] != 0, wanted.success);
+    ASSERT_EQ(batch.endings()[env], wanted.end);
+    ++tally_.endings[static_cast<std::size_t>(wanted.end)];
     if (!wanted.done) {
       expectSameState(batch.envState(env), after);
       return;
@@ -170,6 +186,9 @@ TEST_P(TaskRules, AreThoseOfThePaper) {
   expectSeen(GetParam().sees_success, tally_.successes);
   expectSeen(GetParam().sees_failure, tally_.failures);
   expectSeen(GetParam().sees_late, tally_.late);
+  for (const EpisodeEnd mistake : GetParam().mistakes) {
+    EXPECT_GE(tally_.endings[static_cast<std::size_t>(mistake)], 5) << static_cast<int>(mistake);
+  }
   std::printf("seed %u: %d episodes, %d successes, %d failures, %d late, %d grasps\n", kSeed,
               tally_.ended, tally_.successes, tally_.failures, tally_.late, tally_.grasps);
 }
@@ -178,4 +197,4 @@ INSTANTIATE_TEST_SUITE_P(Options, TaskRules, testing::ValuesIn(cases()),
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::task_rules_test

@@ -9,7 +9,7 @@
 #include "support/task_oracle.h"
 #include "support/task_twins.h"
 
-namespace galactic::test {
+namespace galactic::test::task_test {
 namespace {
 
 /// Sums of some hundred rewards in floats.
@@ -424,4 +424,4 @@ TEST(Hand, RestoresTheWholePose) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::task_test

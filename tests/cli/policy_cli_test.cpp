@@ -1,0 +1,209 @@
+// Policy packs with galactic-run as a user meets them: what is played, drawn, recorded and refused.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/policy_networks.h"
+#include "support/program_run.h"
+#include "support/scratch_folder.h"
+#include "support/small_home_models.h"
+
+namespace galactic {
+namespace {
+
+using nlohmann::json;
+using test::ProgramRun;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+/// The joints that actions move in the small home.
+constexpr std::uint32_t kJoints = 4;
+
+/// A policy for the small home's robot: with images, they decide, too.
+PolicyContent homePolicy(bool has_image) {
+  test::PolicyBuilder b(3);
+  b.content.interface.name = "wanderer";
+  b.content.interface.robot = "helper";
+  b.content.interface.options = {{.name = "task", .value = "pick"},
+                                 {.name = "episode-steps", .value = "7"}};
+  b.content.interface.observation = test::plainObservation(kJoints);
+  std::uint32_t x = b.add({{}, layer::Observation{}});
+  std::uint32_t size = 19 + kJoints;
+  if (has_image) {
+    b.content.interface.image = PolicyImage{.width = 16, .height = 12};
+    std::uint32_t seen = b.add({{}, layer::Image{}});
+    seen = b.convolution(seen, {.inputs = 4, .outputs = 8, .size = 4, .stride = 4, .bias = true});
+    seen = b.linear(b.relu(seen), 8 * 4 * 3, 10);
+    x = b.add({{x, seen}, layer::Concatenate{}});
+    size += 10;
+  }
+  b.heads(b.gru(x, size, 12), 12, kJoints + 2);
+  return std::move(b.content);
+}
+
+class PolicyCli : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(
+        std::filesystem::exists(test::writeWorld(folder_, test::smallHomeWorldWithModels())));
+    write("blind.pack", homePolicy(false));
+    write("seeing.pack", homePolicy(true));
+  }
+
+  void write(const std::string& name, const PolicyContent& content) const {
+    const auto written =
+        writePolicyPack(folder_.path() / name, content, test::smallPolicyProvenance());
+    ASSERT_TRUE(written.has_value()) << written.error().where << ": " << written.error().message;
+  }
+  [[nodiscard]] ProgramRun runBare(std::vector<std::string> arguments) const {
+    return test::runProgram(GALACTIC_RUN, folder_.path(), std::move(arguments));
+  }
+  [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
+    const std::vector<std::string> first{"--pack", "world.pack", "--envs", "5", "--steps", "20"};
+    arguments.insert(arguments.begin(), first.begin(), first.end());
+    return runBare(std::move(arguments));
+  }
+  [[nodiscard]] std::string content(const std::string& name) const {
+    return test::fileContent(folder_.path() / name);
+  }
+  /// The recording of a run: its actions and what came of them.
+  [[nodiscard]] std::string recordingOf(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--record", "run.rec"});
+    const ProgramRun result = run(std::move(arguments));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return content("run.rec");
+  }
+
+  test::ScratchFolder folder_;
+};
+
+TEST_F(PolicyCli, PlaysAPackAndNamesIt) {
+  const ProgramRun result = run({"--policy", "blind.pack", "--report", "report.json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, StartsWith("5 envs, 20 steps each, "));
+  EXPECT_THAT(result.out, AllOf(HasSubstr("policy blind.pack, seed 1\n"),
+                                HasSubstr("\n  learned       wanderer, its sampled actions; "),
+                                HasSubstr(" us per env and step\n")));
+  EXPECT_THAT(result.err, IsEmpty());
+  const json report = json::parse(content("report.json"));
+  EXPECT_EQ(report["policy"], "blind.pack");
+  EXPECT_EQ(report["learned"]["name"], "wanderer");
+  EXPECT_EQ(report["learned"]["samples"], true);
+  EXPECT_GT(report["learned"]["seconds"], 0);
+}
+
+TEST_F(PolicyCli, TakesTheOptionsThatThePolicyNeedsUnlessOthersAreTyped) {
+  ASSERT_EQ(run({"--policy", "blind.pack", "--report", "report.json"}).exit_code, 0);
+  json options = json::parse(content("report.json"))["options"];
+  EXPECT_EQ(options["task"], "pick");
+  EXPECT_EQ(options["episode-steps"], 7);
+  ASSERT_EQ(
+      run({"--policy", "blind.pack", "--episode-steps", "9", "--report", "report.json"}).exit_code,
+      0);
+  options = json::parse(content("report.json"))["options"];
+  EXPECT_EQ(options["task"], "pick");
+  EXPECT_EQ(options["episode-steps"], 9);
+}
+
+TEST_F(PolicyCli, DrawsWhatThePolicyWantsToSee) {
+  // The recordings have other actions as soon as anything is seen.
+  const std::string once = recordingOf({"--policy", "seeing.pack", "--backend", "soft"});
+  EXPECT_TRUE(recordingOf({"--policy", "seeing.pack", "--backend", "soft", "--threads", "1"}) ==
+              once)
+      << "the same on any number of threads";
+  EXPECT_THAT(runBare({"--pack", "seeing.pack"}).out,
+              AllOf(HasSubstr("policy \"wanderer\""), HasSubstr("image: 16 x 12, camera head")));
+}
+
+TEST_F(PolicyCli, DrawsActionsOrTakesTheLikeliest) {
+  const std::string sampled = recordingOf({"--policy", "blind.pack"});
+  EXPECT_TRUE(recordingOf({"--policy", "blind.pack", "--policy-sample"}) == sampled);
+  const std::string likeliest = recordingOf({"--policy", "blind.pack", "--deterministic"});
+  EXPECT_FALSE(likeliest == sampled);
+  const ProgramRun result = run({"--policy", "blind.pack", "--deterministic"});
+  EXPECT_THAT(result.out, HasSubstr("wanderer, its likeliest actions; "));
+}
+
+TEST_F(PolicyCli, IsRecordedAndReplayedBitForBit) {
+  for (const char* pack : {"blind.pack", "seeing.pack"}) {
+    const ProgramRun recorded =
+        run({"--policy", pack, "--backend", "soft", "--record", "run.rec", "--threads", "2"});
+    ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+    const ProgramRun replayed =
+        runBare({"--pack", "world.pack", "--policy", "replay:run.rec", "--threads", "1"});
+    EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
+    EXPECT_THAT(replayed.out, HasSubstr("20 steps, bit for bit the same"));
+  }
+}
+
+TEST_F(PolicyCli, IsShownInPicturesOfAnotherCamera) {
+  const ProgramRun result =
+      run({"--policy", "seeing.pack", "--backend", "soft", "--render", "rgb", "--size", "40",
+           "--camera", "follow", "--contact-sheet", "sheet.png", "--record", "shown.rec"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("drawing       rgb 40 x 40, camera follow"));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "sheet.png"));
+  EXPECT_TRUE(content("shown.rec") == recordingOf({"--policy", "seeing.pack", "--backend", "soft"}))
+      << "pictures for people change nothing";
+}
+
+TEST_F(PolicyCli, DescribesAPolicyPack) {
+  const ProgramRun result = runBare({"--pack", "blind.pack"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out,
+              AllOf(StartsWith("blind.pack: policy \"wanderer\", format 1, by galactic.export"),
+                    HasSubstr("6 continuous and 2 discrete actions, robot: helper"),
+                    HasSubstr("robot_target (3), grip_target (3)"), HasSubstr("image: none")));
+}
+
+struct Refusal {
+  std::vector<std::string> arguments;
+  int exit_code = 0;
+  std::string message;
+};
+
+TEST_F(PolicyCli, SaysWhatDoesNotFit) {
+  PolicyContent other_robot = homePolicy(false);
+  other_robot.interface.robot = "fetch";
+  write("fetch.pack", other_robot);
+  PolicyContent laser = homePolicy(false);
+  laser.interface.observation[0].name = "sonar";
+  write("sonar.pack", laser);
+  PolicyContent wide = homePolicy(false);
+  wide.interface.observation[6].size = 3;
+  wide.interface.observation[7].size = 4;
+  write("wide.pack", wide);
+  PolicyContent camera = homePolicy(true);
+  camera.interface.image->camera = "nose";
+  write("nose.pack", camera);
+  static_cast<void>(folder_.write("text.pack", "no pack at all"));
+  const std::vector<Refusal> refusals{
+      {{"--policy", "fetch.pack"}, 3, "moves the robot \"fetch\", and the world has \"helper\""},
+      {{"--policy", "sonar.pack"}, 3, "reads the observation \"sonar\", and the simulation has"},
+      {{"--policy", "wide.pack"},
+       3,
+       "reads 3 numbers of the observation \"joints\", and the simulation has 4"},
+      {{"--policy", "nose.pack", "--backend", "soft"}, 3, "found no link nose in helper"},
+      {{"--policy", "world.pack"}, 3, "is a pack of kind WRLD, wanted a policy (PLCY)"},
+      {{"--policy", "text.pack"}, 3, "has 14 bytes, a pack has at least 64"},
+      {{"--policy", "none.pack"}, 2, "none.pack"},
+      {{"--deterministic"}, 1, "--deterministic is about learned policies; add --policy FILE.pack"},
+      {{"--policy", "random", "--backend", "soft"}, 1, "is an option of drawing; add --render"},
+      {{"--policy", "learned"}, 1, "wanted random, forward, zero, scripted, FILE.pack or replay"}};
+  for (const Refusal& refusal : refusals) {
+    const ProgramRun result = run(refusal.arguments);
+    EXPECT_EQ(result.exit_code, refusal.exit_code) << refusal.message << "\n" << result.err;
+    EXPECT_THAT(result.err, AllOf(StartsWith("galactic-run: "), HasSubstr(refusal.message)));
+    EXPECT_THAT(result.out, Not(HasSubstr("steps each")));
+  }
+}
+
+}  // namespace
+}  // namespace galactic

@@ -1,0 +1,32 @@
+"""What the tests share: the small home, and random actions in it."""
+
+import os
+import pathlib
+
+import numpy as np
+import pytest
+
+import galactic
+
+
+@pytest.fixture(scope="session")
+def world_path() -> pathlib.Path:
+    return pathlib.Path(os.environ["GALACTIC_TEST_WORLD"])
+
+
+@pytest.fixture(scope="session")
+def world(world_path: pathlib.Path) -> galactic.World:
+    return galactic.World(world_path)
+
+
+@pytest.fixture
+def draw_actions():
+    """A function that draws actions: from -1 to 1, seldom terminating."""
+    generator = np.random.default_rng(20240611)
+
+    def draw(envs: int, count: int) -> np.ndarray:
+        actions = generator.uniform(-1, 1, (envs, count)).astype(np.float32)
+        actions[:, -1] = np.where(generator.random(envs) < 0.01, 1, -1)
+        return actions
+
+    return draw

@@ -1,0 +1,76 @@
+"""What each rank does in the tests of test_trainer.py; started by torch.distributed.run."""
+
+from __future__ import annotations
+
+import dataclasses
+import pathlib
+import sys
+import time
+
+import torch
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+
+from galactic.learning.distributed import Group  # noqa: E402
+from galactic.learning.environments import Step  # noqa: E402
+from galactic.learning.trainer import Trainer  # noqa: E402
+from test_trainer import SETTINGS  # noqa: E402
+from toys import ReachAndGrasp  # noqa: E402
+
+
+def train(group: Group, folder: pathlib.Path, envs: int) -> None:
+    # The epsilon keeps Adam from making much of gradients that are but rounding.
+    settings = dataclasses.replace(
+        SETTINGS, envs=envs, steps=8 * 32 * 10, sync_fraction=1.0, adam_epsilon=1e-2
+    )
+    toy = ReachAndGrasp(envs, halves=2, first_env=group.rank * envs)
+    trainer = Trainer(settings, toy, group, folder)
+    if group.size == 1:
+        torch.save(trainer.learner.optimizer.parameters.detach(), folder / "start.pt")
+    trainer.begin()
+    trainer.train()
+    parameters = trainer.learner.optimizer.parameters.detach()
+    torch.save(parameters, folder / f"parameters-{group.rank}.pt")
+
+
+class Slow(ReachAndGrasp):
+    """Takes its time in the second rank."""
+
+    rank = 0
+
+    def recv(self, half: int) -> Step:
+        time.sleep(0.1 * self.rank)
+        return super().recv(half)
+
+
+def straggle(group: Group, folder: pathlib.Path) -> None:
+    settings = dataclasses.replace(
+        SETTINGS, envs=16, halves=1, horizon=16, sync_fraction=0.5, checkpoint_every=0
+    )
+    toy = Slow(16, first_env=group.rank * 16)
+    toy.rank = group.rank
+    trainer = Trainer(settings, toy, group, None)
+    trainer.begin()
+    lengths = []
+    for _ in range(3):
+        trainer._iterate()
+        lengths.append(trainer.collector.rollout.steps)
+    found = {
+        "rollouts": lengths,
+        "steps": trainer.steps,
+        "parameters": trainer.learner.optimizer.parameters.detach(),
+    }
+    torch.save(found, folder / f"steps-{group.rank}.pt")
+
+
+def main() -> None:
+    group = Group.join("cpu")
+    folder = pathlib.Path(sys.argv[2])
+    if sys.argv[1] == "train":
+        train(group, folder, int(sys.argv[3]))
+    else:
+        straggle(group, folder)
+    group.leave()
+
+
+main()

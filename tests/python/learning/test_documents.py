@@ -1,0 +1,73 @@
+"""docs/learning.md says what the settings are."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import pathlib
+
+import pytest
+
+from galactic.learning.presets import PRESETS, preset
+from galactic.learning.settings import (
+    Settings,
+    SettingsError,
+    add_options,
+    given_options,
+    markdown_tables,
+    resumed,
+)
+
+MANUAL = pathlib.Path(__file__).parents[3] / "docs" / "learning.md"
+
+
+def test_the_manual_has_the_tables_of_the_settings() -> None:
+    text = MANUAL.read_text(encoding="utf-8")
+    tables = text.split("<!-- settings -->\n")[1].split("<!-- end of settings -->")[0]
+    assert (
+        tables == markdown_tables()
+    ), "copy what settings.markdown_tables() returns into the manual"
+
+
+def test_the_defaults_are_table_3_of_the_paper() -> None:
+    paper = preset("paper")
+    assert (paper.learning_rate, paper.learning_rate_end) == (3.5e-4, 0.0)
+    assert paper.learning_rate_at(0.5) == pytest.approx(1.75e-4)
+    assert (paper.entropy, paper.max_grad_norm, paper.horizon) == (1e-3, 2.0, 64)
+    assert (paper.epochs, paper.mini_batches, paper.network) == (1, 2, "resnet18")
+    assert (paper.clip, paper.value_coefficient, paper.gamma) == (0.2, 0.5, 0.99)
+    assert (paper.gae_lambda, paper.adam_epsilon) == (0.95, 1e-5)
+    assert paper.normalize_advantages and paper.sync_fraction == 0.6
+
+
+def test_every_setting_can_be_typed() -> None:
+    parser = argparse.ArgumentParser()
+    add_options(parser)
+    typed, expected = [], {}
+    for field in dataclasses.fields(Settings):
+        name = "--" + field.name.replace("_", "-")
+        if isinstance(field.default, bool):
+            typed.append(name if not field.default else "--no-" + name[2:])
+            expected[field.name] = not field.default
+        else:
+            typed += [name, str(field.default)]
+            expected[field.name] = field.default
+    assert given_options(parser.parse_args(typed)) == expected
+    assert given_options(parser.parse_args(["--steps", "2.5e6"])) == {"steps": 2_500_000}
+    assert given_options(parser.parse_args([])) == {}
+
+
+def test_presets_are_settings_that_can_be() -> None:
+    for name in PRESETS:
+        assert Settings.from_dict(preset(name).to_dict()) == preset(name)
+    with pytest.raises(SettingsError, match='"none" is no preset'):
+        preset("none")
+    with pytest.raises(SettingsError, match="unknown to this version"):
+        Settings.from_dict({"colour": 1})
+
+
+def test_a_resumed_run_stays_what_it_is() -> None:
+    before = preset("quick")
+    assert resumed(before, {"steps": 7, "gamma": before.gamma}).steps == 7
+    with pytest.raises(SettingsError, match="cannot go on with 0.5; begin a new one"):
+        resumed(before, {"gamma": 0.5})

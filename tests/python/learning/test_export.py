@@ -1,0 +1,245 @@
+"""Policy packs of torch's policies: what galactic plays is what torch computes."""
+
+from __future__ import annotations
+
+import pathlib
+from typing import Any, Optional
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch", reason="torch is missing: nothing to compare with")
+_core = pytest.importorskip("galactic._core", reason="the compiled module is not built")
+
+import galactic  # noqa: E402
+from galactic import export  # noqa: E402
+from galactic.learning import checkpoint  # noqa: E402
+from galactic.learning.networks import Inputs, PolicyShape  # noqa: E402
+from galactic.learning.settings import Settings  # noqa: E402
+
+PARTS = [("robot_target", 3), ("joints", 7), ("laser", 16)]
+STATE = 26
+TOLERANCE = 1e-4
+"""Of actions; float sums in another order differ by a tenth of it."""
+
+
+def saved_policy(terminate: bool = True, **settings: Any) -> checkpoint.SavedPolicy:
+    """A policy with random weights, none of them where it began: heads as large as the others."""
+    torch.manual_seed(11)
+    made = Settings(**{"envs": 4, "mini_batches": 1, "simulation": "task=pick", **settings})
+    shape = PolicyShape(
+        state=STATE,
+        motions=9,
+        decides_terminate=terminate,
+        normalize=made.normalize,
+        closeup=made.closeup,
+    )
+    policy = checkpoint.new_policy(made, shape)
+    policy.action.linear.weight.data.normal_(0.0, 0.1)
+    policy.action.linear.bias.data.normal_(0.0, 0.3)
+    # Decisions that hang on what is seen.
+    policy.action.linear.weight.data[-4:].normal_(0.0, 0.5)
+    policy.action.linear.bias.data[-4:] = 0.0
+    for module in policy.modules():
+        if isinstance(module, (torch.nn.GroupNorm, torch.nn.LayerNorm)):
+            module.weight.data.uniform_(0.5, 1.5)
+            module.bias.data.normal_(0.0, 0.3)
+        if isinstance(module, torch.nn.GRU):
+            module.bias_ih_l0.data.normal_(0.0, 0.2)
+            module.bias_hh_l0.data.normal_(0.0, 0.2)
+    if policy.normalize is not None:
+        policy.normalize.mean.normal_()
+        policy.normalize.scale.uniform_(0.3, 3.0)
+    policy.eval()
+    return checkpoint.SavedPolicy(policy, made, shape, PARTS, 123, 0.5)
+
+
+class Recorded:
+    """What `envs` envs see in `steps` steps, and where their episodes end."""
+
+    def __init__(self, envs: int, steps: int, pictures: bool):
+        draws = np.random.default_rng(5)
+        self.state = draws.normal(0.0, 1.5, (steps, envs, STATE)).astype(np.float32)
+        self.dones = draws.random((steps, envs)) < 0.15
+        self.dones[0] = False
+        self.rgb: Optional[np.ndarray] = None
+        self.depth: Optional[np.ndarray] = None
+        if pictures:
+            # Rough pictures, each with its own colors, and grain.
+            rough = draws.uniform(0.0, 235.0, (steps, envs, 4, 4, 3)).repeat(32, 2).repeat(32, 3)
+            grain = draws.uniform(0.0, 20.0, (steps, envs, 128, 128, 3))
+            self.rgb = (rough + grain).astype(np.uint8)
+            far = draws.uniform(0.0, 13.0, (steps, envs, 4, 4)).repeat(32, 2).repeat(32, 3)
+            self.depth = far.astype(np.float32)
+
+
+def by_torch(saved: checkpoint.SavedPolicy, seen: Recorded) -> list[Any]:
+    """The action distributions of all steps, acting by their modes."""
+    steps, envs = seen.dones.shape
+    hidden = saved.policy.initial_hidden(envs, torch.device("cpu"))
+    previous = torch.zeros(1, envs, 11)
+    said = []
+    with torch.inference_mode():
+        for step in range(steps):
+            starts = torch.from_numpy(seen.dones[step : step + 1].copy())
+            if step == 0:
+                starts[:] = True
+            inputs = Inputs(
+                torch.from_numpy(seen.state[step : step + 1]),
+                None if seen.rgb is None else torch.from_numpy(seen.rgb[step : step + 1]),
+                None if seen.depth is None else torch.from_numpy(seen.depth[step : step + 1]),
+                previous * (~starts).unsqueeze(-1),
+            )
+            outputs = saved.policy.act(inputs, hidden, starts)
+            hidden = outputs.hidden
+            previous = outputs.actions.mode().clamp(-1.0, 1.0)
+            said.append(outputs.actions)
+    return said
+
+
+def by_pack(pack: pathlib.Path, seen: Recorded) -> np.ndarray:
+    """Likeliest actions [steps, envs, A]."""
+    steps, envs = seen.dones.shape
+    player = _core.LearnedPolicy(pack, envs, deterministic=True, threads=2)
+    return np.stack(
+        [
+            player.act(
+                seen.state[step],
+                seen.dones[step],
+                None if seen.rgb is None else seen.rgb[step],
+                None if seen.depth is None else seen.depth[step],
+            )
+            for step in range(steps)
+        ]
+    )
+
+
+def write(content: dict[str, Any], file: pathlib.Path) -> pathlib.Path:
+    _core.write_policy_pack(file, content, {}, "policy.pt", b"")
+    return file
+
+
+NETWORKS = {
+    "state": {"network": "state"},
+    "state_normalized": {"network": "state", "normalize": True, "closeup": 0.2},
+    "state_closeup": {"network": "state", "closeup": 0.2, "activation": "relu"},
+    "state_recurrent": {"network": "state", "recurrent": True, "log_std": "parameter"},
+    "simple_cnn": {"network": "simple_cnn", "normalize": True},
+    "resnet9": {"network": "resnet9"},
+    "resnet18": {"network": "resnet18"},
+}
+
+
+@pytest.mark.parametrize("name", NETWORKS)
+def test_a_pack_acts_as_torch_does(name: str, tmp_path: pathlib.Path) -> None:
+    saved = saved_policy(**NETWORKS[name])
+    pictures = saved.policy.needs_images
+    seen = Recorded(envs=2 if pictures else 7, steps=20, pictures=pictures)
+    pack = write(export.content_of(saved, name), tmp_path / "policy.pack")
+    wanted = np.stack([actions.mode()[0].numpy() for actions in by_torch(saved, seen)])
+    played = by_pack(pack, seen)
+    assert played.shape == wanted.shape
+    np.testing.assert_allclose(played, wanted, atol=TOLERANCE)
+    decisions = wanted[..., 9:].mean()
+    assert 0.1 < decisions < 0.9, "decisions go both ways"
+
+
+@pytest.mark.parametrize("name", ["state_normalized", "state_recurrent", "simple_cnn"])
+def test_deviations_and_odds_are_those_of_torch(name: str, tmp_path: pathlib.Path) -> None:
+    saved = saved_policy(**NETWORKS[name])
+    seen = Recorded(envs=3, steps=5, pictures=saved.policy.needs_images)
+    content = export.content_of(saved, name)
+    # A policy whose actions are all that the network says.
+    heads = [content["continuous"]["mean"], content["continuous"]["log_deviation"]]
+    heads += [action["logits"] for action in content["discrete"]]
+    layers = content["layers"]
+    layers.append({"kind": "concatenate", "inputs": heads})
+    everything = {"count": 22, "mean": len(layers) - 1, "log_deviation": len(layers) - 1}
+    content.update(continuous=everything, discrete=[])
+    played = by_pack(write(content, tmp_path / "all.pack"), seen)
+    for step, actions in enumerate(by_torch(saved, seen)):
+        np.testing.assert_allclose(played[step, :, :9], actions.mean[0], atol=TOLERANCE)
+        np.testing.assert_allclose(played[step, :, 9:18], actions.log_std[0], atol=TOLERANCE)
+        odds = played[step, :, 19::2] - played[step, :, 18::2]
+        np.testing.assert_allclose(odds, actions.logits[0], atol=TOLERANCE)
+
+
+def test_nobody_terminates_where_the_task_does_not_ask(tmp_path: pathlib.Path) -> None:
+    saved = saved_policy(terminate=False, network="state")
+    seen = Recorded(envs=20, steps=3, pictures=False)
+    played = by_pack(write(export.content_of(saved, "p"), tmp_path / "p.pack"), seen)
+    assert 0.1 < played[..., 9].mean() < 0.9
+    assert not played[..., 10].any()
+
+
+def test_a_checkpoint_becomes_a_pack(tmp_path: pathlib.Path, capsys: Any) -> None:
+    saved = saved_policy(network="state", simulation="task=pick slide=off no-distractors")
+    checkpoint.save_policy(saved, tmp_path / "best.pt")
+    pack = tmp_path / "picker.pack"
+    assert export.main([str(tmp_path / "best.pt"), "-o", str(pack)]) == 0
+    player = _core.LearnedPolicy(pack, 1)
+    assert player.name == "picker"
+    assert player.robot == ""
+    assert player.observation == PARTS
+    assert player.image_size is None
+    assert player.action_count == 11
+    # The same checkpoint gives the same bytes.
+    again = tmp_path / "again" / "picker.pack"
+    again.parent.mkdir()
+    assert export.main([str(tmp_path / "best.pt"), "-o", str(again)]) == 0
+    assert again.read_bytes() == pack.read_bytes()
+    for word in (b"slide-attempts", b"no-distractors", b"best.pt", b"trained-steps"):
+        assert word in pack.read_bytes()
+    assert capsys.readouterr().err == ""
+
+
+def test_errors_say_what_to_do(tmp_path: pathlib.Path, capsys: Any) -> None:
+    missing = tmp_path / "no.pt"
+    assert export.main([str(missing), "-o", str(tmp_path / "p.pack")]) == 3
+    assert "no.pt is not there" in capsys.readouterr().err
+    checkpoint.save_policy(saved_policy(network="state"), tmp_path / "best.pt")
+    assert export.main([str(tmp_path / "best.pt"), "-o", "/nowhere/p.pack"]) == 2
+    assert "/nowhere" in capsys.readouterr().err
+    infinite = saved_policy(network="state")
+    infinite.policy.action.linear.weight.data[0, 0] = float("inf")
+    checkpoint.save_policy(infinite, tmp_path / "bad.pt")
+    assert export.main([str(tmp_path / "bad.pt"), "-o", str(tmp_path / "p.pack")]) == 3
+    assert "is not finite, wanted a number" in capsys.readouterr().err
+    assert not (tmp_path / "p.pack").exists()
+
+
+def test_modules_that_no_layer_can_say_are_refused() -> None:
+    layers = export.Layers()
+    for module in (
+        torch.nn.Conv2d(4, 8, 3, groups=2),
+        torch.nn.Conv2d(4, 8, (3, 5)),
+        torch.nn.Conv2d(4, 8, 3, padding="same"),
+        torch.nn.AvgPool2d(3, count_include_pad=False),
+        torch.nn.GroupNorm(2, 4, affine=False),
+        torch.nn.Sigmoid(),
+    ):
+        with pytest.raises(export.ExportError):
+            layers.module(module, 0)
+    with pytest.raises(export.ExportError):
+        layers.gru(torch.nn.GRU(4, 4, num_layers=2), 0)
+
+
+def test_a_played_policy_checks_its_arrays(tmp_path: pathlib.Path) -> None:
+    pack = write(export.content_of(saved_policy(network="simple_cnn"), "p"), tmp_path / "p.pack")
+    player = _core.LearnedPolicy(pack, 2)
+    assert player.image_size == (128, 128)
+    state = np.zeros((2, STATE), np.float32)
+    rgb, depth = np.zeros((2, 128, 128, 3), np.uint8), np.zeros((2, 128, 128), np.float32)
+    assert player.act(state, None, rgb, depth).shape == (2, 11)
+    for wrong in (
+        (state[:1], None, rgb, depth),
+        (state, np.zeros(3, np.uint8), rgb, depth),
+        (state, None, rgb[..., :2], depth),
+        (state, None, rgb, depth[:, :64]),
+    ):
+        with pytest.raises(ValueError):
+            player.act(*wrong)
+    with pytest.raises(TypeError):
+        player.act(state, None, None, depth)
+    with pytest.raises(galactic.Error):
+        _core.LearnedPolicy(tmp_path / "no.pack", 2)

@@ -1,0 +1,197 @@
+"""The policies: the paper's parameter counts, memory across episodes, normalization."""
+
+import pytest
+import torch
+
+from galactic.learning.distributions import ActionDistribution
+from galactic.learning.networks import Inputs, PolicyShape, Tanh, make_policy
+from galactic.learning.normalization import Normalizer
+from galactic.learning.sequences import run_gru
+
+ARM_OF_SEVEN = PolicyShape(state=26, motions=9)
+
+
+def parameters(policy: torch.nn.Module) -> int:
+    return sum(parameter.numel() for parameter in policy.parameters())
+
+
+@pytest.mark.parametrize(
+    "network, count", [("simple_cnn", 4_046_999), ("resnet9", 4_338_007), ("resnet18", 5_906_647)]
+)
+def test_the_networks_have_exactly_the_parameters_of_table_4(network: str, count: int) -> None:
+    assert parameters(make_policy(network, ARM_OF_SEVEN)) == count
+
+
+@pytest.mark.parametrize("network", ["simple_cnn", "resnet9", "resnet18"])
+def test_the_heads_have_the_parameters_of_the_paper(network: str) -> None:
+    policy = make_policy(network, ARM_OF_SEVEN)
+    assert parameters(policy.action) + parameters(policy.critic) == 11_799
+
+
+def some_inputs(policy: torch.nn.Module, steps: int, envs: int) -> Inputs:
+    random = torch.Generator().manual_seed(7)
+    state = torch.randn(steps, envs, 26, generator=random)
+    if not policy.needs_images:
+        return Inputs(state)
+    rgb = torch.randint(0, 256, (steps, envs, 128, 128, 3), generator=random).to(torch.uint8)
+    depth = 12.0 * torch.rand(steps, envs, 128, 128, generator=random)
+    previous = torch.randn(steps, envs, 11, generator=random) if policy.needs_previous else None
+    return Inputs(state, rgb, depth, previous)
+
+
+POLICIES = [("state", False), ("state", True), ("simple_cnn", False), ("resnet9", False)]
+
+
+@pytest.mark.parametrize("network, recurrent", POLICIES)
+def test_a_sequence_equals_its_steps_one_after_another(network: str, recurrent: bool) -> None:
+    torch.manual_seed(3)
+    policy = make_policy(network, ARM_OF_SEVEN, recurrent=recurrent)
+    steps, envs = 6, 3
+    inputs = some_inputs(policy, steps, envs)
+    starts = torch.zeros(steps, envs, dtype=torch.bool)
+    starts[0, 1] = starts[2, 0] = starts[5, 2] = starts[2, 1] = starts[3, 1] = True
+    hidden = policy.initial_hidden(envs, torch.device("cpu"))
+    if hidden is not None:
+        hidden = torch.randn_like(hidden)
+    with torch.no_grad():
+        whole = policy(inputs, hidden, starts)
+        for step in range(steps):
+            row = Inputs(*(None if part is None else part[step : step + 1] for part in inputs))
+            one = policy(row, hidden, starts[step : step + 1])
+            hidden = one.hidden
+            torch.testing.assert_close(one.values[0], whole.values[step])
+            torch.testing.assert_close(one.actions.mean[0], whole.actions.mean[step])
+    if hidden is not None:
+        torch.testing.assert_close(hidden, whole.hidden)
+
+
+def test_memory_does_not_cross_the_start_of_an_episode() -> None:
+    torch.manual_seed(4)
+    rnn = torch.nn.GRU(5, 8)
+    inputs = torch.randn(10, 4, 5)
+    starts = torch.rand(10, 4) < 0.3
+    hidden = torch.randn(4, 8)
+    outputs, last = run_gru(rnn, inputs, hidden, starts)
+    for env in range(4):
+        memory = hidden[env]
+        for step in range(10):
+            if starts[step, env]:
+                memory = torch.zeros(8)
+            memory = rnn(inputs[step, env].view(1, 1, 5), memory.view(1, 1, 8))[0].view(8)
+            torch.testing.assert_close(outputs[step, env], memory)
+        torch.testing.assert_close(last[env], memory)
+    assert 4 < int(starts.sum()) < 36
+
+
+def test_gradients_stop_at_the_start_of_an_episode() -> None:
+    torch.manual_seed(5)
+    rnn = torch.nn.GRU(5, 8)
+    inputs = torch.randn(6, 1, 5, requires_grad=True)
+    starts = torch.zeros(6, 1, dtype=torch.bool)
+    starts[3] = True
+    outputs, _ = run_gru(rnn, inputs, torch.zeros(1, 8), starts)
+    outputs[5].sum().backward()
+    assert inputs.grad is not None
+    assert (inputs.grad[:3] == 0).all() and (inputs.grad[3:] != 0).any(dim=-1).all()
+
+
+def test_values_apart_are_the_same_values() -> None:
+    policy = make_policy("state", ARM_OF_SEVEN)
+    inputs = some_inputs(policy, 4, 3)
+    starts = torch.zeros(4, 3, dtype=torch.bool)
+    whole = policy(inputs, None, starts)
+    torch.testing.assert_close(policy.value(inputs, None, starts), whole.values)
+    torch.testing.assert_close(policy.act(inputs, None, starts).actions.mean, whole.actions.mean)
+
+
+def test_pictures_are_scaled_as_the_paper_says() -> None:
+    from galactic.learning.networks import images
+
+    rgb = torch.full((1, 1, 2, 2, 3), 255, dtype=torch.uint8)
+    depth = torch.tensor([0.0, 5.0, 10.0, 70.0]).view(1, 1, 2, 2)
+    seen = images(Inputs(torch.zeros(1, 1, 26), rgb, depth))
+    assert seen.shape == (1, 4, 2, 2) and seen.is_contiguous(memory_format=torch.channels_last)
+    assert (seen[0, :3] == 1.0).all()
+    torch.testing.assert_close(seen[0, 3].flatten(), torch.tensor([0.0, 0.5, 1.0, 1.0]))
+
+
+def test_the_quick_tanh_is_tanh() -> None:
+    inputs = torch.linspace(-20.0, 20.0, 4001, requires_grad=True)
+    ours = Tanh()(inputs)
+    (gradient,) = torch.autograd.grad(ours.sum(), inputs)
+    torch.testing.assert_close(ours, torch.tanh(inputs), rtol=0.0, atol=3e-7)
+    (expected,) = torch.autograd.grad(torch.tanh(inputs).sum(), inputs)
+    torch.testing.assert_close(gradient, expected, rtol=0.0, atol=6e-7)
+
+
+@pytest.mark.parametrize("decides", [True, False])
+def test_log_probability_and_entropy_equal_those_of_torch(decides: bool) -> None:
+    random = torch.Generator().manual_seed(6)
+    mean = torch.randn(50, 9, generator=random)
+    log_std = torch.randn(50, 9, generator=random)
+    logits = 2.0 * torch.randn(50, 2, generator=random)
+    ours = ActionDistribution(mean, log_std, logits, decides)
+    noise = torch.cat(
+        [torch.randn(50, 9, generator=random), torch.rand(50, 2, generator=random)], 1
+    )
+    action = ours.sample(noise)
+    gaussian = torch.distributions.Normal(mean, log_std.exp())
+    decisions = torch.distributions.Bernoulli(logits=logits)
+    count = 2 if decides else 1
+    log_prob = gaussian.log_prob(action[:, :9]).sum(1)
+    log_prob += decisions.log_prob(action[:, 9:])[:, :count].sum(1)
+    entropy = gaussian.entropy().sum(1) + decisions.entropy()[:, :count].sum(1)
+    torch.testing.assert_close(ours.log_prob(action), log_prob, rtol=1e-5, atol=1e-5)
+    torch.testing.assert_close(ours.entropy(), entropy, rtol=1e-5, atol=1e-5)
+    if decides:
+        assert 0.1 < float(action[:, 10].mean()) < 0.9
+    else:
+        assert (action[:, 10] == 0.0).all() and (ours.mode()[:, 10] == 0.0).all()
+
+
+def test_samples_follow_the_odds() -> None:
+    logits = torch.tensor([[-2.0, 1.0]]).expand(20_000, 2)
+    uniform = torch.rand(20_000, 2, generator=torch.Generator().manual_seed(8))
+    noise = torch.cat([torch.zeros(20_000, 1), uniform], 1)
+    ones = torch.zeros(20_000, 1)
+    action = ActionDistribution(ones, ones, logits, True).sample(noise)
+    # Three standard errors of 20,000 draws are below 0.011.
+    torch.testing.assert_close(
+        action[:, 1:].mean(0), torch.sigmoid(logits[0]), rtol=0.0, atol=0.011
+    )
+
+
+def test_a_normalizer_that_absorbs_in_parts_knows_the_whole() -> None:
+    random = torch.Generator().manual_seed(9)
+    rows = 5.0 + 3.0 * torch.randn(1000, 4, generator=random)
+    rows[:, 3] = 2.0
+    normalizer = Normalizer(4)
+    for part in rows.split([10, 490, 500]):
+        # Two ranks of half a part each.
+        ranks = [normalizer.sums(half, normalizer.centre) for half in part.chunk(2)]
+        normalizer.absorb(ranks[0] + ranks[1])
+    expected = (rows - rows.mean(0)) / torch.sqrt(rows.var(0, unbiased=False) + 1e-5)
+    torch.testing.assert_close(normalizer(rows), expected.clamp(-10.0, 10.0), rtol=0.0, atol=1e-4)
+    assert float(normalizer(torch.full((1, 4), 1e6)).max()) == 10.0
+
+
+def test_a_normalizer_stands_still_until_it_absorbs() -> None:
+    policy = make_policy("state", ARM_OF_SEVEN._replace(normalize=True))
+    before = {name: value.clone() for name, value in policy.state_dict().items()}
+    policy(some_inputs(policy, 3, 5), None, torch.zeros(3, 5, dtype=torch.bool))
+    assert all(torch.equal(value, before[name]) for name, value in policy.state_dict().items())
+    assert "normalize.mean" in before
+
+
+def test_a_closeup_is_seen_beside_the_normalized_state() -> None:
+    shape = PolicyShape(state=26, motions=9, normalize=True, closeup=0.2)
+    for recurrent in (False, True):
+        policy = make_policy("state", shape, recurrent=recurrent)
+        state = torch.full((1, 1, 26), 0.05)
+        seen = policy._seen(state)
+        assert seen.shape == (1, 1, 52)
+        torch.testing.assert_close(seen[..., :26], policy.normalize(state))
+        torch.testing.assert_close(seen[..., 26:], torch.tanh(state * 5.0))
+        starts = torch.ones(1, 1, dtype=torch.bool)
+        hidden = policy.initial_hidden(1, torch.device("cpu"))
+        assert policy(Inputs(state), hidden, starts).actions.mean.shape == (1, 1, 9)

@@ -1,0 +1,113 @@
+"""Pictures of policies at play: what is on them, and what is refused."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import shutil
+
+import numpy as np
+import pytest
+import torch
+
+import galactic
+from galactic import evaluate
+from galactic.learning import checkpoint, pictures
+from galactic.learning.evaluation import Actor, EpisodeResult, Evaluator
+from galactic.learning.homes import Homes
+from galactic.learning.networks import PolicyShape
+from galactic.learning.settings import Settings
+
+WORLD = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none")) / "held_out.pack"
+SIMULATION = "task=pick episode-steps=12"
+
+needs_world = pytest.mark.skipif(
+    not WORLD.is_file(), reason="GALACTIC_LEARNING_WORLDS has no worlds"
+)
+
+
+def result(episode: int, success: bool) -> EpisodeResult:
+    return EpisodeResult(episode, success, "", 0.0, 1, 0.0, 0.0, 0, 0)
+
+
+def untrained(network: str) -> tuple[Settings, Homes, checkpoint.SavedPolicy]:
+    """A policy that moves about, and the homes that it is for."""
+    settings = Settings(
+        envs=6, halves=1, mini_batches=1, network=network, width=16, simulation=SIMULATION
+    )
+    homes = Homes(galactic.World(WORLD), settings, 1)
+    shape = PolicyShape(homes.state_size, homes.motions, homes.decides_terminate)
+    torch.manual_seed(3)
+    policy = checkpoint.new_policy(settings, shape)
+    policy.action.linear.weight.data.normal_(0.0, 0.2)
+    return settings, homes, checkpoint.SavedPolicy(policy, settings, shape, homes.parts, 0, None)
+
+
+@pytest.mark.parametrize(
+    "successes, failures, shown",
+    [(9, 9, 3), (9, 1, 5), (1, 9, 1), (0, 9, 0), (9, 0, 6), (2, 1, 2)],
+)
+def test_half_of_the_episodes_shown_are_successes(
+    successes: int, failures: int, shown: int
+) -> None:
+    results = [result(episode, episode % 2 == 0) for episode in range(40)]
+    good = [one for one in results if one.success][:successes]
+    bad = [one for one in results if not one.success][:failures]
+    chosen = pictures.choose(sorted(good + bad, key=lambda one: one.episode), 6)
+    assert len(chosen) == len(set(chosen)) == min(6, successes + failures)
+    assert [episode % 2 for episode in chosen] == [0] * shown + [1] * (len(chosen) - shown)
+
+
+@needs_world
+@pytest.mark.parametrize("network", ["state", "simple_cnn", "resnet9"])
+def test_what_is_filmed_is_what_was_played(network: str) -> None:
+    settings, homes, saved = untrained(network)
+    actor = Actor(saved.policy, deterministic=False)
+    episodes = homes.playable_episodes()[:6]
+    played = Evaluator(homes, actor).play(episodes)
+    films = pictures.film(homes.env.world, settings, actor, episodes, 1)
+    for one, film in zip(played, films):
+        assert film.episode == one.episode
+        assert galactic.EpisodeEnd(film.ending).name.lower() == one.ending
+        assert film.reward == pytest.approx(one.reward, abs=1e-3)
+        # What it began with, and what each step led to, the last one, too.
+        assert len(film.frames) == one.length + 1
+        assert film.frames[0].shape == (pictures.HEIGHT, pictures.WIDTH, 3)
+        assert not np.array_equal(film.frames[0], film.frames[-1])
+    # They are told apart by what they were paid.
+    assert len({round(one.reward, 3) for one in played}) == len(played)
+
+
+@needs_world
+def test_an_evaluation_draws_a_contact_sheet_and_a_video(tmp_path: pathlib.Path) -> None:
+    image = pytest.importorskip("PIL.Image")
+    _, _, saved = untrained("state")
+    checkpoint.save_policy(saved, tmp_path / "policy.pt")
+    command = [str(tmp_path / "policy.pt"), str(WORLD), "--episodes", "5", "--shown", "3"]
+    assert evaluate.main([*command, "--contact-sheet", str(tmp_path / "sheet.png")]) == 0
+    sheet = np.asarray(image.open(tmp_path / "sheet.png"))
+    row = pictures.HEIGHT + 16
+    assert sheet.shape == (3 * row, pictures.MOMENTS * pictures.WIDTH, 3)
+    for top in range(0, 3 * row, row):
+        # The strip says how the episode ended, in red as none of them is a success.
+        assert tuple(sheet[top, -1]) == pictures._RED
+        assert sheet[top : top + 16].max() == 255 and sheet[top + 16 : top + row].std() > 10
+    if not shutil.which("ffmpeg"):
+        return
+    assert evaluate.main([*command, "--video", str(tmp_path / "film.mp4")]) == 0
+    assert b"ftyp" in (tmp_path / "film.mp4").read_bytes()[:16]
+    assert evaluate.main([*command, "--video", str(tmp_path / "film.none")]) == 2
+
+
+@needs_world
+def test_tools_that_are_missing_are_named(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("PIL")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert evaluate.main(["none.pt", str(WORLD), "--video", str(tmp_path / "film.mp4")]) == 5
+    assert "pictures: need ffmpeg on the PATH, which is not here" in capsys.readouterr().err
+    assert (
+        evaluate.main(["none.pt", str(WORLD), "--contact-sheet", "sheet.png", "--shown", "0"]) == 1
+    )
+    assert "--shown is 0" in capsys.readouterr().err

@@ -1,0 +1,229 @@
+"""The training loop on a toy: resume, checkpoints, signals, ranks."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import os
+import pathlib
+import signal
+import sys
+from typing import Any
+
+import pytest
+import torch
+
+from galactic.learning import checkpoint
+from galactic.learning.checkpoint import CheckpointError, CheckpointFolder, load_policy
+from galactic.learning.curves import read_curves
+from galactic.learning.distributed import Group
+from galactic.learning.launch import launch
+from galactic.learning.settings import Settings
+from galactic.learning.trainer import Trainer
+from toys import ReachAndGrasp, Remember
+
+HERE = pathlib.Path(__file__).parent
+UPDATE = 16 * 10
+SETTINGS = Settings(
+    envs=16,
+    horizon=10,
+    steps=8 * UPDATE,
+    network="state",
+    width=16,
+    normalize=True,
+    log_std="parameter",
+    mini_batches=2,
+    epochs=2,
+    learning_rate=3e-3,
+    entropy_end=0.0,
+    checkpoint_every=3 * UPDATE,
+    validate_every=0,
+    log_every=0.0,
+    window=20,
+)
+# Columns that are measured, and differ from run to run.
+MEASURED = ("seconds", "sps")
+
+
+def make_trainer(folder: pathlib.Path | None, settings: Settings = SETTINGS, toy: Any = ReachAndGrasp,
+                 **options: Any) -> Trainer:  # fmt: skip
+    envs = toy(settings.envs, halves=settings.halves)
+    return Trainer(settings, envs, Group.alone(), folder, **options)
+
+
+def parameters(trainer: Trainer) -> torch.Tensor:
+    return trainer.learner.optimizer.parameters.detach().clone()
+
+
+def curve(folder: pathlib.Path) -> list[dict[str, float | None]]:
+    rows = read_curves(folder / "curves.csv")
+    return [{key: row[key] for key in row if key not in MEASURED} for row in rows]
+
+
+@pytest.mark.parametrize("toy, recurrent", [(ReachAndGrasp, False), (Remember, True)])
+def test_a_resumed_run_is_the_same_run_bit_for_bit(
+    tmp_path: pathlib.Path, toy: Any, recurrent: bool
+) -> None:
+    settings = dataclasses.replace(SETTINGS, recurrent=recurrent)
+    whole = make_trainer(tmp_path / "whole", settings, toy)
+    (tmp_path / "whole").mkdir()
+    whole.begin()
+    assert whole.train()
+    # The same run, killed after its fifth update, when the last checkpoint is from the third.
+    (tmp_path / "cut").mkdir()
+    cut = make_trainer(tmp_path / "cut", settings, toy)
+    cut.begin()
+    for update in range(5):
+        losses, _ = cut._iterate()
+        cut._log(losses)
+        if update == 2:
+            cut.save()
+    again = make_trainer(tmp_path / "cut", settings, toy)
+    again.resume()
+    assert again.steps == 3 * UPDATE
+    assert again.train()
+    assert torch.equal(parameters(again), parameters(whole))
+    assert torch.equal(again.policy.normalize.mean, whole.policy.normalize.mean)
+    assert curve(tmp_path / "cut") == curve(tmp_path / "whole")
+    assert len(curve(tmp_path / "whole")) == 8
+
+
+def test_a_checkpoint_holds_a_policy_that_acts_the_same(tmp_path: pathlib.Path) -> None:
+    trainer = make_trainer(tmp_path)
+    trainer.begin()
+    trainer.train()
+    saved = load_policy(trainer.checkpoints.latest() / "policy.pt")
+    assert saved.settings == SETTINGS and saved.steps == SETTINGS.steps
+    for name, value in trainer.policy.state_dict().items():
+        assert torch.equal(saved.policy.state_dict()[name], value)
+    assert load_policy(tmp_path / "best.pt").success is not None
+
+
+def test_only_the_latest_checkpoints_stay(tmp_path: pathlib.Path) -> None:
+    settings = dataclasses.replace(SETTINGS, checkpoint_every=UPDATE, keep=2)
+    trainer = make_trainer(tmp_path, settings)
+    trainer.begin()
+    trainer.train()
+    names = [path.name for path in sorted((tmp_path / "checkpoints").iterdir())]
+    assert names == [f"{7 * UPDATE:012d}", f"{8 * UPDATE:012d}"]
+
+
+def test_an_unfinished_checkpoint_is_passed_over(tmp_path: pathlib.Path) -> None:
+    trainer = make_trainer(tmp_path)
+    trainer.begin()
+    trainer._iterate()
+    trainer.save()
+    # Killed while it wrote the next one.
+    trainer._iterate()
+    checkpoint.save(trainer.checkpoints.begin(trainer.steps) / "policy.pt", {}, {})
+    again = make_trainer(tmp_path)
+    again.resume()
+    assert again.steps == UPDATE
+    again._iterate()
+    again.save()
+    assert again.checkpoints.latest().name == f"{2 * UPDATE:012d}"
+
+
+def test_a_write_that_fails_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
+    file = tmp_path / "file"
+    checkpoint.write_atomically(file, lambda handle: handle.write(b"old"))
+
+    def fail(handle: Any) -> None:
+        handle.write(b"ne")
+        raise OSError("disk full")
+
+    with pytest.raises(OSError, match="disk full"):
+        checkpoint.write_atomically(file, fail)
+    assert file.read_bytes() == b"old" and os.listdir(tmp_path) == ["file"]
+
+
+def test_what_is_no_checkpoint_is_refused(tmp_path: pathlib.Path) -> None:
+    with pytest.raises(CheckpointError, match="holds no checkpoint to go on from"):
+        CheckpointFolder(tmp_path, 1).latest()
+    (tmp_path / "policy.pt").write_bytes(b"nonsense")
+    with pytest.raises(CheckpointError, match="cannot be read as a checkpoint"):
+        load_policy(tmp_path / "policy.pt")
+    checkpoint.save(tmp_path / "policy.pt", {"format": 99}, {})
+    with pytest.raises(CheckpointError, match="is no policy of format 1"):
+        load_policy(tmp_path / "policy.pt")
+    with pytest.raises(CheckpointError, match="is not there"):
+        load_policy(tmp_path / "none.pt")
+
+
+def test_an_interrupted_run_saves_and_goes_on(tmp_path: pathlib.Path) -> None:
+    trainer = make_trainer(tmp_path)
+    trainer.begin()
+    iterate = trainer._iterate
+
+    def interrupted_in_the_second() -> Any:
+        if trainer.updates == 1:
+            os.kill(os.getpid(), signal.SIGINT)
+        return iterate()
+
+    trainer._iterate = interrupted_in_the_second  # type: ignore[method-assign]
+    assert not trainer.train()
+    assert trainer.updates == 2 and trainer.checkpoints.latest().name == f"{2 * UPDATE:012d}"
+    again = make_trainer(tmp_path)
+    again.resume()
+    assert again.train()
+    undisturbed = make_trainer(None)
+    undisturbed.begin()
+    undisturbed.train()
+    assert torch.equal(parameters(again), parameters(undisturbed))
+
+
+def test_a_loss_that_is_no_number_ends_the_run(tmp_path: pathlib.Path) -> None:
+    from galactic.learning.trainer import TrainingError
+
+    trainer = make_trainer(tmp_path)
+    trainer.begin()
+    trainer.learner.optimizer.parameters.data.fill_(float("nan"))
+    with pytest.raises(TrainingError, match="update 1 gave a loss that is no number"):
+        trainer.train()
+
+
+def test_the_page_of_the_curves_asks_for_nothing(tmp_path: pathlib.Path) -> None:
+    trainer = make_trainer(tmp_path, title="</script> & <b>")
+    trainer.begin()
+    trainer.train()
+    page = (tmp_path / "curves.html").read_text(encoding="utf-8")
+    assert "http" not in page.replace("http://www.w3.org/2000/svg", "")
+    assert page.count("</script>") == 1 and "prefers-color-scheme: dark" in page
+    with open(tmp_path / "curves.csv", encoding="utf-8") as file:
+        assert len(list(csv.reader(file))) == 1 + 8
+
+
+def run_ranks(ranks: int, *arguments: str) -> None:
+    """Runs ranks.py in as many processes."""
+    assert launch(ranks, [sys.executable, "-B", str(HERE / "ranks.py"), *arguments]) == 0
+
+
+def test_two_ranks_are_one_of_twice_the_envs(tmp_path: pathlib.Path) -> None:
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+    run_ranks(1, "train", str(tmp_path / "one"), "32")
+    run_ranks(2, "train", str(tmp_path / "two"), "16")
+    first = torch.load(tmp_path / "two" / "parameters-0.pt")
+    second = torch.load(tmp_path / "two" / "parameters-1.pt")
+    whole = torch.load(tmp_path / "one" / "parameters-0.pt")
+    assert torch.equal(first, second)
+    start = torch.load(tmp_path / "one" / "start.pt")
+    moved = (whole - start).abs().max()
+    # Sums in another order, carried through eight updates.
+    assert moved > 0.01 and (first - whole).abs().max() < 1e-3 * moved
+    one, two = curve(tmp_path / "one"), curve(tmp_path / "two")
+    assert len(one) == len(two) == 8
+    for row, other in zip(one, two):
+        for name, value in row.items():
+            assert value == pytest.approx(other[name], rel=1e-3, abs=1e-4), name
+
+
+def test_stragglers_are_stopped_and_their_steps_counted(tmp_path: pathlib.Path) -> None:
+    run_ranks(2, "straggle", str(tmp_path))
+    steps = [torch.load(tmp_path / f"steps-{rank}.pt") for rank in range(2)]
+    assert steps[0]["rollouts"] == [16, 16, 16]
+    # Not before a quarter of the rollout, nor as late as its end.
+    assert all(4 <= length < 16 for length in steps[1]["rollouts"]), steps
+    total = sum(steps[0]["rollouts"]) + sum(steps[1]["rollouts"])
+    assert steps[0]["steps"] == steps[1]["steps"] == 16 * total
+    assert torch.equal(steps[0]["parameters"], steps[1]["parameters"])

@@ -1,0 +1,193 @@
+"""The programs galactic.train and galactic.evaluate on the sample world: what they say, what they leave
+behind, and that a policy learns."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+import torch
+
+from galactic.learning import checkpoint
+from galactic.learning.curves import read_curves
+
+WORLDS = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none"))
+WORLD, HELD_OUT = WORLDS / "world.pack", WORLDS / "held_out.pack"
+SMALL = ["--preset", "quick", "--ranks", "1", "--envs", "16", "--horizon", "8", "--log-every", "0"]
+UPDATE = 16 * 8
+SENSORS = "laser-beams=8 laser-noise=0.01 geodesic geodesic-weight=1 bump"
+TO_BE_CUT = [*SMALL, "--halves", "2", "--simulation", f"task=pick episode-steps=60 {SENSORS}",
+             "--checkpoint-every", 10 * UPDATE, "--steps", 80 * UPDATE]  # fmt: skip
+
+pytestmark = pytest.mark.skipif(
+    not WORLD.is_file(), reason="GALACTIC_LEARNING_WORLDS has no worlds"
+)
+
+
+def command(program: str, *arguments: object) -> list[str]:
+    return [sys.executable, "-B", "-m", f"galactic.{program}", *map(str, arguments)]
+
+
+def run(program: str, *arguments: object) -> "subprocess.CompletedProcess[str]":
+    return subprocess.run(
+        command(program, *arguments), capture_output=True, text=True, timeout=600, check=False
+    )
+
+
+def curve(folder: pathlib.Path) -> list[dict[str, float | None]]:
+    rows = read_curves(folder / "curves.csv")
+    return [{k: v for k, v in row.items() if k not in ("seconds", "sps")} for row in rows]
+
+
+def test_a_policy_learns_what_chance_does_not(tmp_path: pathlib.Path) -> None:
+    """Mobile Pick on unseen episodes. An untrained policy picks a few percent; see docs/learning.md
+    for what longer runs reach."""
+    # Fewer envs than the preset, for more updates in fewer steps, and nothing that costs to sense.
+    common = ["--preset", "quick", "--seed", "5", "--validation", HELD_OUT, "--envs", "128"]
+    common += ["--simulation", "task=pick episode-steps=200", "--final-log-std", "2"]
+    assert run("train", WORLD, "-o", tmp_path / "raw", *common, "--steps", "1").returncode == 0
+    done = run("train", WORLD, "-o", tmp_path / "run", *common, "--steps", "800_000")
+    assert done.returncode == 0, done.stderr
+    rates = {}
+    for name in ("raw", "run"):
+        report = tmp_path / f"{name}.json"
+        found = run("evaluate", tmp_path / name / "best.pt", HELD_OUT, "--report", report)
+        assert found.returncode == 0, found.stderr
+        rates[name] = json.loads(report.read_text(encoding="utf-8"))
+        # Each episode exactly once.
+        assert [one["episode"] for one in rates[name]["each"]] == list(range(100))
+    # Of 100 episodes: chance would have to be wrong by more than five standard errors.
+    assert rates["raw"]["success"] <= 0.08 and rates["run"]["success"] >= 0.2, rates
+    assert rates["run"]["spl"] > 0.1 and rates["run"]["path"] > 0.5
+    assert sum(rates["run"]["endings"].values()) == 100
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
+    """A run with all sensors that goes through to its end."""
+    folder = tmp_path_factory.mktemp("undisturbed") / "run"
+    done = run("train", WORLD, "-o", folder, *TO_BE_CUT)
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+@pytest.mark.parametrize("sign, code", [(signal.SIGKILL, -9), (signal.SIGINT, 130)])
+def test_a_run_that_was_cut_goes_on_as_if_it_had_not_been(
+    tmp_path: pathlib.Path, undisturbed: pathlib.Path, sign: signal.Signals, code: int
+) -> None:
+    """Killed, it loses what came after its latest checkpoint; interrupted, nothing."""
+    # As a rank without its launcher, so that there is one process to kill.
+    cut = subprocess.Popen(
+        command("train", WORLD, "-o", tmp_path / "cut", *TO_BE_CUT),
+        env={**os.environ, "RANK": "0", "WORLD_SIZE": "1"},
+        stderr=subprocess.DEVNULL,
+    )
+    while not list((tmp_path / "cut").glob("checkpoints/[0-9]*")):
+        assert cut.poll() is None
+        time.sleep(0.01)
+    cut.send_signal(sign)
+    assert cut.wait(timeout=120) == code, "it was over before it was cut"
+    resumed = run("train", "-o", tmp_path / "cut", "--resume")
+    assert resumed.returncode == 0, resumed.stderr
+    assert "going on after" in resumed.stderr
+    assert curve(tmp_path / "cut") == curve(undisturbed)
+    assert len(curve(undisturbed)) == 80
+    final = f"checkpoints/{80 * UPDATE:012d}/policy.pt"
+    found, wanted = (
+        checkpoint.load_policy(folder / final).policy.state_dict()
+        for folder in (tmp_path / "cut", undisturbed)
+    )
+    assert all(torch.equal(found[name], value) for name, value in wanted.items())
+
+
+def test_an_interrupt_saves_and_says_how_to_go_on(tmp_path: pathlib.Path) -> None:
+    process = subprocess.Popen(
+        command("train", WORLD, "-o", tmp_path / "run", *SMALL, "--ranks", "2"),
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    while not (tmp_path / "run" / "curves.csv").is_file():
+        assert process.poll() is None
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=120)
+    assert process.returncode == 130, said
+    assert f"go on with python3 -m galactic.train -o {tmp_path / 'run'} --resume" in said
+    assert list((tmp_path / "run").glob("checkpoints/[0-9]*/rank-1.pt"))
+
+
+@pytest.mark.parametrize(
+    "arguments, code, message",
+    [
+        (["--preset", "quick"], 1, "which world? Name a world pack, or --resume a run"),
+        ([WORLD, "--preset", "swift"], 1, '"swift" is no preset; there are paper, quick'),
+        ([WORLD, "--envs", "6", "--mini-batches", "4"], 1, "cannot be split into 4 mini-batches"),
+        ([WORLD, "--gamma", "1.5"], 1, "gamma is 1.5; it has to be from 0 to 1"),
+        ([WORLD, "--network", "big"], 1, 'network is "big"; it can be state'),
+        ([WORLD, *SMALL, "--simulation", "seed=3"], 1, "seed is not for --simulation"),
+        (["nowhere.pack", *SMALL], 2, "nowhere.pack"),
+        (["--resume"], 3, "holds no run"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_a_sentence(
+    tmp_path: pathlib.Path, arguments: list[object], code: int, message: str
+) -> None:
+    done = run("train", "-o", tmp_path / "run", *arguments)
+    assert message in done.stderr and "Traceback" not in done.stderr
+    assert done.returncode == code
+
+
+def test_a_run_is_not_written_over_nor_turned_into_another(tmp_path: pathlib.Path) -> None:
+    options = [*SMALL, "--steps", UPDATE]
+    assert run("train", WORLD, "-o", tmp_path / "run", *options).returncode == 0
+    again = run("train", WORLD, "-o", tmp_path / "run", *options)
+    assert again.returncode == 1 and "holds a run already" in again.stderr
+    other = run("train", "-o", tmp_path / "run", "--resume", "--gamma", "0.9")
+    assert other.returncode == 1 and "cannot go on with 0.9" in other.stderr
+    longer = run("train", "-o", tmp_path / "run", "--resume", "--steps", 3 * UPDATE)
+    assert longer.returncode == 0 and len(curve(tmp_path / "run")) == 3
+
+
+def test_an_evaluation_repeats_itself(tmp_path: pathlib.Path) -> None:
+    assert run("train", WORLD, "-o", tmp_path / "run", *SMALL, "--steps", UPDATE).returncode == 0
+    reports = []
+    for number, mode in enumerate(("--sampled", "--sampled", "--deterministic")):
+        file = tmp_path / f"{number}.json"
+        done = run("evaluate", tmp_path / "run" / "best.pt", HELD_OUT, mode, "--episodes", "20",
+                   "--report", file)  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        reports.append(json.loads(file.read_text(encoding="utf-8")))
+    assert reports[0] == reports[1] and reports[0]["each"] != reports[2]["each"]
+    assert len(reports[0]["each"]) == 20
+
+
+def test_a_policy_that_sees_pictures_trains_and_is_evaluated(tmp_path: pathlib.Path) -> None:
+    """Two updates of the paper's preset, small."""
+    done = run("train", WORLD, "-o", tmp_path / "run", "--network", "simple_cnn", "--envs", 4,
+               "--horizon", 8, "--steps", 2 * 4 * 8, "--log-every", 0, "--validation", HELD_OUT,
+               "--validation-episodes", 3, "--simulation", "task=pick episode-steps=6")  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    rows = read_curves(tmp_path / "run" / "curves.csv")
+    updates = [row for row in rows if row["policy_loss"] is not None]
+    assert len(updates) == 2 and "validation after 64 steps" in done.stderr
+    for row in updates:
+        for name in ("policy_loss", "value_loss", "entropy", "grad_norm"):
+            assert row[name] is not None and math.isfinite(row[name]), row
+    report = tmp_path / "report.json"
+    done = run("evaluate", tmp_path / "run" / "best.pt", HELD_OUT, "--episodes", 5, "--report",
+               report)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    each = json.loads(report.read_text(encoding="utf-8"))["each"]
+    assert len(each) == 5 and all(1 <= one["length"] <= 6 for one in each)
+
+
+def test_an_evaluation_refuses_what_is_no_policy(tmp_path: pathlib.Path) -> None:
+    done = run("evaluate", tmp_path / "none.pt", HELD_OUT)
+    assert done.returncode == 3 and "none.pt is not there" in done.stderr

@@ -1,0 +1,130 @@
+"""Small environments whose best policy is known, in the place of simulated homes."""
+
+from __future__ import annotations
+
+import io
+from typing import Optional
+
+import numpy as np
+
+from galactic.learning.environments import Observation, Step, Timeouts
+
+
+class ReachAndGrasp:
+    """A point on a plane has to go to a place and grasp there.
+
+    State: the way to the place (2), time left (1), noise (1). Motions: 2, each moves the point by up to
+    0.2. Grasping within 0.2 of the place is a success and pays 10, elsewhere it is a failure; time cuts
+    off after `limit` steps. The way that was gained is paid, too. Random actions fail.
+    """
+
+    state_size = 4
+    motions = 2
+    decides_terminate = False
+
+    def __init__(self, count: int, halves: int = 1, seed: int = 1, first_env: int = 0,
+                 limit: int = 20, image_size: Optional[tuple[int, int]] = None):  # fmt: skip
+        self.count = count
+        self.image_size = image_size
+        self.seed = seed
+        self.limit = limit
+        size = count // halves
+        self.halves = [slice(size * half, size * (half + 1)) for half in range(halves)]
+        self.envs = np.arange(first_env, first_env + count)
+        self.episode = np.zeros(count, np.int64)
+        self.age = np.zeros(count, np.int64)
+        self.way = np.zeros((count, 2), np.float32)
+        self._sent: dict[int, tuple[np.ndarray, Observation]] = {}
+
+    def _uniform(self, which: np.ndarray) -> np.ndarray:
+        """[k, 4] in [0, 1), of (env, episode) alone."""
+        seeds = [(self.seed, self.envs[env], self.episode[env]) for env in which]
+        rows = [np.random.default_rng(seed).random(4, np.float32) for seed in seeds]
+        return np.array(rows, np.float32).reshape(-1, 4)
+
+    def _begin(self, which: np.ndarray) -> None:
+        self.way[which] = 2.0 * self._uniform(which)[:, :2] - 1.0
+        self.age[which] = 0
+
+    def _rows(self, envs: slice) -> np.ndarray:
+        left = 1.0 - self.age[envs] / self.limit
+        noise = np.sin(1e3 * self.way[envs, 0] + self.age[envs])
+        return np.column_stack([self.way[envs], left, noise]).astype(np.float32)
+
+    def _write(self, envs: slice, into: Observation) -> None:
+        into.state.numpy()[:] = self._rows(envs)
+        if into.rgb is not None and into.depth is not None:
+            into.rgb.numpy()[:] = (127.0 + 100.0 * self.way[envs, :1, None, None]).astype(np.uint8)
+            into.depth.numpy()[:] = 2.0 + self.way[envs, 1, None, None]
+
+    def reset(self, into: Observation) -> None:
+        self.episode[:] = 0
+        self._begin(np.arange(self.count))
+        self._write(slice(0, self.count), into)
+
+    def observe(self, into: Observation) -> None:
+        self._write(slice(0, self.count), into)
+
+    def send(self, half: int, actions: np.ndarray, into: Observation) -> None:
+        assert actions.shape[1] == 4 and half not in self._sent
+        self._sent[half] = actions, into
+
+    def recv(self, half: int) -> Step:
+        (actions, into), envs = self._sent.pop(half), self.halves[half]
+        before = np.linalg.norm(self.way[envs], axis=1)
+        self.way[envs] -= 0.2 * np.clip(actions[:, :2], -1.0, 1.0)
+        after = np.linalg.norm(self.way[envs], axis=1)
+        self.age[envs] += 1
+        grasped = actions[:, 2] > 0.5
+        successes = grasped & (after < 0.2)
+        truncated = ~grasped & (self.age[envs] >= self.limit)
+        rewards = (before - after + 10.0 * successes).astype(np.float32)
+        timeouts = None
+        if truncated.any():
+            index = np.flatnonzero(truncated)
+            timeouts = Timeouts(index, self._rows(envs)[index])
+        ended = np.flatnonzero(grasped | truncated) + envs.start
+        self.episode[ended] += 1
+        self._begin(ended)
+        self._write(envs, into)
+        return Step(rewards, grasped, truncated, successes, timeouts)
+
+    def save(self) -> bytes:
+        file = io.BytesIO()
+        np.savez(file, episode=self.episode, age=self.age, way=self.way)
+        return file.getvalue()
+
+    def restore(self, state: bytes) -> None:
+        saved = np.load(io.BytesIO(state))
+        self.episode[:], self.age[:], self.way[:] = saved["episode"], saved["age"], saved["way"]
+
+    def close(self) -> None:
+        pass
+
+
+class Remember(ReachAndGrasp):
+    """A sign is shown in the first step of four; in the last, grasping has to follow it.
+
+    State: the sign (+1 or -1, 0 after the first step), steps left, nothing (2). Success pays 1, and
+    comes in half of the episodes without memory.
+    """
+
+    def __init__(self, count: int, **options: int):
+        super().__init__(count, limit=4, **options)
+
+    def _rows(self, envs: slice) -> np.ndarray:
+        sign = np.sign(self.way[envs, 0]) * (self.age[envs] == 0)
+        rest = np.zeros_like(sign)
+        return np.column_stack([sign, 4 - self.age[envs], rest, rest]).astype(np.float32)
+
+    def recv(self, half: int) -> Step:
+        (actions, into), envs = self._sent.pop(half), self.halves[half]
+        self.age[envs] += 1
+        ended = self.age[envs] >= self.limit
+        right = (actions[:, 2] > 0.5) == (self.way[envs, 0] > 0.0)
+        successes = ended & right
+        which = np.flatnonzero(ended) + envs.start
+        self.episode[which] += 1
+        self._begin(which)
+        self._write(envs, into)
+        return Step(successes.astype(np.float32), ended, np.zeros_like(ended), successes, None)

@@ -1,0 +1,151 @@
+"""Renderer: its images, where they are drawn to, and what is refused."""
+
+import gc
+import pickle
+import threading
+
+import numpy as np
+import pytest
+
+from galactic import Error, ErrorCode, Renderer, Simulator
+
+ENVS = 6
+CAMERA = {"camera": "follow", "backend": "soft", "threads": 1, "width": 32, "height": 20}
+
+
+@pytest.fixture
+def simulator(world):
+    return Simulator(world, envs=ENVS, threads=1, body_transforms=True)
+
+
+def test_images_have_the_shapes_and_types_that_they_promise(simulator):
+    for options, wanted in (
+        ({}, {"rgb": ((ENVS, 20, 32, 3), np.uint8), "depth": ((ENVS, 20, 32), np.float32)}),
+        ({"color": "rgba", "depth": False}, {"rgba": ((ENVS, 20, 32, 4), np.uint8)}),
+        ({"color": None, "semantics": True, "depth": False},
+         {"semantics": ((ENVS, 20, 32), np.uint32)}),
+    ):  # fmt: skip
+        renderer = Renderer(simulator, **CAMERA, **options)
+        images = renderer.render()
+        assert {name: (one.shape, one.dtype) for name, one in images.items()} == wanted
+        assert {n: ((ENVS, *s), t) for n, (s, t) in renderer.shapes.items()} == wanted
+    assert renderer.backend == "soft"
+    assert "soft" in repr(renderer)
+    assert len(renderer.semantic_names) > images["semantics"].max() > 0
+
+
+def test_images_are_drawn_where_the_caller_wants_them(simulator, draw_actions):
+    renderer = Renderer(simulator, **CAMERA)
+    wanted = renderer.render()
+    memory = np.zeros((4, ENVS, 20, 32, 3), np.uint8)
+    images = renderer.render(out={"rgb": memory[2]})
+    assert np.shares_memory(images["rgb"], memory)
+    np.testing.assert_array_equal(memory[2], wanted["rgb"])
+    np.testing.assert_array_equal(images["depth"], wanted["depth"])
+    assert not memory[[0, 1, 3]].any()
+    some = renderer.render(envs=[4, 1])
+    np.testing.assert_array_equal(some["rgb"], wanted["rgb"][[4, 1]])
+    assert not np.shares_memory(renderer.render()["rgb"], renderer.render()["rgb"])
+
+
+def test_the_simulator_may_step_while_it_draws(simulator, draw_actions):
+    renderer = Renderer(simulator, **CAMERA)
+    for _ in range(5):
+        wanted = renderer.render()
+        renderer.begin_render()
+        simulator.step(draw_actions(ENVS, 8))
+        drawn = renderer.end_render()
+        np.testing.assert_array_equal(drawn["rgb"], wanted["rgb"])
+        np.testing.assert_array_equal(drawn["depth"], wanted["depth"])
+    assert not np.array_equal(renderer.render()["depth"], wanted["depth"])
+
+
+def test_calls_out_of_turn_are_refused(simulator, draw_actions):
+    renderer = Renderer(simulator, **CAMERA)
+    with pytest.raises(RuntimeError, match="no rendering is under way"):
+        renderer.end_render()
+    renderer.begin_render()
+    for call in (renderer.render, renderer.begin_render, renderer.render_to_device):
+        with pytest.raises(RuntimeError, match="a rendering is under way"):
+            call()
+    renderer.end_render()
+    simulator.begin_step(draw_actions(ENVS, 8))
+    with pytest.raises(RuntimeError, match="a step is under way"):
+        renderer.render()
+    simulator.end_step()
+    renderer.render()
+
+
+def test_what_is_drawn_to_stays_until_it_is_done(world):
+    for _ in range(10):
+        simulator = Simulator(world, envs=64, threads=1, body_transforms=True)
+        renderer = Renderer(simulator, **CAMERA)
+        renderer.begin_render(out={"rgb": np.zeros((64, 20, 32, 3), np.uint8)})
+        del simulator
+        gc.collect()
+        del renderer
+        gc.collect()
+
+
+def test_two_threads_cannot_use_one_renderer_at_once(world):
+    simulator = Simulator(world, envs=256, threads=1, body_transforms=True)
+    renderer = Renderer(simulator, **CAMERA)
+    refusals = []
+    begin = threading.Barrier(2)
+
+    def work():
+        begin.wait()
+        for _ in range(20):
+            try:
+                renderer.render()
+            except RuntimeError as error:
+                refusals.append(str(error))
+
+    threads = [threading.Thread(target=work) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert refusals
+    assert all("another thread is using this galactic." in text for text in refusals)
+    renderer.render()
+
+
+@pytest.mark.parametrize(
+    "options, error, message",
+    [
+        ({"widht": 3}, TypeError, "there is no option widht; the options are width"),
+        ({"width": 0}, Error, "found images of 0 x 20 pixels"),
+        ({"color": "bgr"}, Error, "color: is bgr, wanted rgb, rgba or None"),
+        ({"backend": "cuda"}, Error, "backend: is cuda, wanted auto, soft or gl"),
+        ({"color": None, "depth": False}, Error, "found no image to make"),
+        ({"camera": "tail"}, Error, "camera: found no link tail in helper"),
+    ],
+)
+def test_wrong_options_are_refused(simulator, options, error, message):
+    with pytest.raises(error) as caught:
+        Renderer(simulator, **{**CAMERA, **options})
+    assert message in str(caught.value)
+
+
+def test_wrong_simulators_and_uses_are_refused(world, simulator):
+    with pytest.raises(Error, match="without body_transforms"):
+        Renderer(Simulator(world, envs=2, threads=1), **CAMERA)
+    with pytest.raises(TypeError, match="no galactic.Simulator"):
+        Renderer(world)
+    renderer = Renderer(simulator, **CAMERA)
+    with pytest.raises(Error) as caught:
+        renderer.render_to_device()
+    assert caught.value.code is ErrorCode.UNSUPPORTED
+    with pytest.raises(IndexError, match="there is no env 6"):
+        renderer.render(envs=[ENVS])
+    with pytest.raises(ValueError, match="out has 'semantics', which this renderer does not draw"):
+        renderer.render(out={"semantics": np.zeros((ENVS, 20, 32), np.uint32)})
+    with pytest.raises(TypeError, match="depth is a list, wanted a numpy array"):
+        renderer.render(out={"depth": [0]})
+    frozen = np.zeros((ENVS, 20, 32), np.float32)
+    frozen.flags.writeable = False
+    with pytest.raises(ValueError, match="depth is read-only"):
+        renderer.render(out={"depth": frozen})
+    with pytest.raises(TypeError, match="cannot be pickled or copied"):
+        pickle.dumps(renderer)

@@ -1,0 +1,359 @@
+"""World and Simulator: what arrays are, how long they live, what is refused."""
+
+import copy
+import gc
+import pickle
+import threading
+import weakref
+
+import numpy as np
+import pytest
+
+import galactic
+from galactic import EpisodeEnd, Error, ErrorCode, Simulator, World
+
+ENVS = 20
+
+
+@pytest.fixture
+def simulator(world):
+    return Simulator(world, envs=ENVS, threads=1, seed=7, episode_steps=30)
+
+
+def test_world_says_what_is_in_it(world):
+    assert world.scenes == ("room",) or len(world.scenes) == 1
+    assert world.robot == "helper"
+    assert world.joints == ("lift", "elbow", "reach", "wrist")
+    assert world.episodes == 4
+    assert len(world.objects) == 2
+    assert world.radii == pytest.approx((0.016, 0.05, 0.12))
+    assert world.options["task"] == "rearrange"
+    assert "helper" in repr(world)
+
+
+def test_world_takes_a_path_a_text_or_a_list_of_them(world_path):
+    for given in (str(world_path), world_path, [world_path], [str(world_path)]):
+        assert World(given).episodes == 4
+    assert World(world_path, trusted=True).episodes == 4
+
+
+def test_errors_of_the_library_have_code_place_and_message(tmp_path):
+    with pytest.raises(Error) as caught:
+        World(tmp_path / "none.pack")
+    error = caught.value
+    assert error.code is ErrorCode.IO
+    assert error.where.endswith("none.pack")
+    assert "No such file" in error.message
+    assert str(error) == f"{error.where}: {error.message}"
+    assert isinstance(error, Exception)
+    assert pickle.loads(pickle.dumps(error)).code is ErrorCode.IO
+    (tmp_path / "bad.pack").write_bytes(b"nothing" * 100)
+    with pytest.raises(Error) as caught:
+        World(tmp_path / "bad.pack")
+    assert caught.value.code is ErrorCode.INVALID_INPUT
+
+
+def test_arrays_have_the_shapes_and_types_that_they_promise(simulator, draw_actions):
+    assert (simulator.num_envs, simulator.action_count, simulator.observation_size) == (ENVS, 8, 23)
+    simulator.step(draw_actions(ENVS, 8))
+    for name, shape, dtype in (
+        ("observations", (ENVS, 23), np.float32),
+        ("final_observations", (ENVS, 23), np.float32),
+        ("rewards", (ENVS,), np.float32),
+        ("dones", (ENVS,), np.bool_),
+        ("successes", (ENVS,), np.bool_),
+        ("endings", (ENVS,), np.uint8),
+    ):
+        array = getattr(simulator, name)
+        assert (array.shape, array.dtype) == (shape, dtype), name
+        assert array.flags.c_contiguous
+        assert not array.flags.writeable
+        assert not array.flags.owndata
+        with pytest.raises(ValueError):
+            array[0] = 0
+        with pytest.raises(ValueError):
+            array.flags.writeable = True
+
+
+def test_parts_of_an_observation_tile_its_row(simulator):
+    parts = simulator.observation_parts
+    assert list(parts) == [
+        "robot_target",
+        "grip_target",
+        "robot_grip",
+        "robot_goal",
+        "grip_goal",
+        "is_holding",
+        "joints",
+        "time",
+    ]
+    covered = [n for part in parts.values() for n in range(part.start, part.stop)]
+    assert covered == list(range(simulator.observation_size))
+
+
+def test_arrays_are_views_that_follow_the_simulator(simulator, draw_actions):
+    observations = simulator.observations
+    before = observations.copy()
+    simulator.step(draw_actions(ENVS, 8))
+    assert np.shares_memory(observations, simulator.observations)
+    assert not np.array_equal(observations, before)
+    state = simulator.env_state(3)
+    joints = simulator.observation_parts["joints"]
+    np.testing.assert_array_equal(observations[3, joints], state.joint_positions)
+
+
+def test_arrays_keep_the_simulator_and_its_world_alive(world_path, draw_actions):
+    simulator = Simulator(World(world_path), envs=ENVS, threads=2)
+    simulator.step(draw_actions(ENVS, 8))
+    arrays = [simulator.observations, simulator.rewards, simulator.endings]
+    copies = [array.copy() for array in arrays]
+    owner = weakref.ref(simulator)
+    del simulator
+    gc.collect()
+    assert owner() is not None
+    for array, wanted in zip(arrays, copies):
+        np.testing.assert_array_equal(array, wanted)
+    del arrays, array
+    gc.collect()
+    assert owner() is None
+
+
+def test_actions_are_converted_unless_they_fit_already(world, draw_actions):
+    actions = draw_actions(ENVS, 8)
+    results = []
+    for given in (
+        actions,
+        actions.astype(np.float64),
+        np.asfortranarray(actions),
+        np.repeat(actions, 2, axis=0)[::2],
+        actions.tolist(),
+    ):
+        simulator = Simulator(world, envs=ENVS, threads=1)
+        simulator.step(given)
+        results.append(simulator.observations)
+    for result in results[1:]:
+        np.testing.assert_array_equal(result, results[0])
+
+
+@pytest.mark.parametrize(
+    "actions, error, message",
+    [
+        (np.zeros((ENVS, 7), np.float32), ValueError, "has the shape (20, 7), wanted (20, 8)"),
+        (np.zeros(ENVS * 8, np.float32), ValueError, "has the shape (160,), wanted (20, 8)"),
+        (np.zeros((ENVS, 8, 1), np.float32), ValueError, "has the shape (20, 8, 1)"),
+        ("drive", (TypeError, ValueError), "actions"),
+        (None, (TypeError, ValueError), "actions"),
+        (object(), TypeError, "actions is a object, wanted an array of numbers"),
+    ],
+)
+def test_wrong_actions_are_refused(simulator, actions, error, message):
+    before = simulator.observations.copy()
+    with pytest.raises(error) as caught:
+        simulator.step(actions)
+    assert message in str(caught.value)
+    np.testing.assert_array_equal(simulator.observations, before)
+
+
+def test_resets_begin_the_episode_that_they_name(simulator, draw_actions):
+    resets = np.full(ENVS, -1, np.int32)
+    resets[4] = 3
+    simulator.step(draw_actions(ENVS, 8), resets)
+    assert simulator.episodes()[4] == 3
+    assert simulator.env_state(4).step == 0
+    assert simulator.env_state(5).step == 1
+    with pytest.raises(ValueError, match="resets"):
+        simulator.step(draw_actions(ENVS, 8), resets[1:])
+    chosen = np.full(ENVS, Simulator.STAYS, np.int32)
+    chosen[0] = 1
+    chosen[1] = Simulator.NEXT_EPISODE
+    simulator.reset(chosen)
+    assert simulator.episodes()[0] == 1
+    assert [simulator.env_state(n).step for n in (0, 1, 2)] == [0, 0, 1]
+
+
+def test_options_are_those_of_the_option_table(world):
+    simulator = Simulator(
+        world,
+        envs=3,
+        threads=1,
+        task="pick",
+        no_distractors=True,
+        slide="published",
+        slide_step=0.25,
+        episode_steps=np.int64(9),
+        success_reward=np.float32(2.5),
+        order=None,
+    )
+    options = simulator.options
+    assert options["task"] == "pick"
+    assert options["no_distractors"] is True
+    assert (options["slide_direction"], options["slide_attempts"]) == ("towards-base", 5)
+    assert (options["slide_step"], options["episode_steps"]) == (0.25, 9)
+    assert (options["success_reward"], options["order"]) == (2.5, "shuffled")
+    again = Simulator(world, threads=1, **options)
+    assert again.options == options
+
+
+@pytest.mark.parametrize(
+    "options, error, message",
+    [
+        ({"tusk": "pick"}, TypeError, "there is no option tusk; did you mean task?"),
+        ({"no_distractor": True}, TypeError, "did you mean no_distractors?"),
+        ({"xyzzy": 1}, TypeError, "there is no option xyzzy; the options are envs"),
+        ({"task": "fly"}, Error, "task: is fly, wanted rearrange, pick or none"),
+        ({"envs": 0}, Error, "envs: is 0, wanted 1 to 1048576"),
+        ({"envs": -1}, Error, "envs: is -1, wanted 1 to 1048576"),
+        ({"envs": 2.5}, Error, "envs: is 2.5, wanted 1 to 1048576"),
+        ({"safe_drop": 1}, Error, "safe_drop: is 1, wanted true or false"),
+        ({"slide_step": float("nan")}, Error, "slide_step: is nan, wanted 0 to 1000"),
+        ({"slide_step": float("inf")}, Error, "slide_step: is inf, wanted 0 to 1000"),
+        ({"slide_step": [1]}, TypeError, "the option slide_step is a list"),
+        ({"threads": -1}, Error, "threads: is -1, wanted 0 to 4096"),
+        ({"rank": 2, "ranks": 2}, Error, "rank 2 of 2"),
+        ({"slide": "of"}, Error, "slide: is of, wanted pushout, published or off"),
+    ],
+)
+def test_wrong_options_are_refused(world, options, error, message):
+    with pytest.raises(error) as caught:
+        Simulator(world, **options)
+    assert message in str(caught.value)
+
+
+def test_steps_in_halves_are_steps(world, draw_actions):
+    whole = Simulator(world, envs=ENVS, threads=1)
+    for threads in (1, 2):
+        halved = Simulator(world, envs=ENVS, threads=threads)
+        whole.restart(5)
+        halved.restart(5)
+        for _ in range(20):
+            actions = draw_actions(ENVS, 8)
+            whole.step(actions)
+            halved.begin_step(actions)
+            del actions
+            halved.end_step()
+            np.testing.assert_array_equal(halved.observations, whole.observations)
+
+
+def test_calls_out_of_turn_are_refused(simulator, draw_actions):
+    actions = draw_actions(ENVS, 8)
+    with pytest.raises(RuntimeError, match="no step is under way"):
+        simulator.end_step()
+    simulator.begin_step(actions)
+    for call in (
+        lambda: simulator.step(actions),
+        lambda: simulator.begin_step(actions),
+        lambda: simulator.env_state(0),
+        lambda: simulator.save_state(),
+        lambda: simulator.statistics(),
+        lambda: simulator.restart(1),
+    ):
+        with pytest.raises(RuntimeError, match="a step is under way"):
+            call()
+    simulator.end_step()
+    assert simulator.statistics()["steps"] == ENVS
+
+
+def test_a_simulator_may_go_while_a_step_is_under_way(world, draw_actions):
+    for _ in range(20):
+        simulator = Simulator(world, envs=500, threads=2)
+        simulator.begin_step(draw_actions(500, 8))
+        del simulator
+
+
+def test_two_threads_cannot_use_one_simulator_at_once(world, draw_actions):
+    simulator = Simulator(world, envs=4096, threads=1)
+    actions = draw_actions(4096, 8)
+    refusals = []
+    begin = threading.Barrier(2)
+
+    def work():
+        begin.wait()
+        for _ in range(40):
+            try:
+                simulator.step(actions)
+            except RuntimeError as error:
+                refusals.append(str(error))
+
+    threads = [threading.Thread(target=work) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert refusals
+    assert set(refusals) == {
+        "another thread is using this galactic.Simulator; give each thread its own"
+    }
+    simulator.step(actions)
+    assert simulator.statistics()["steps"] == 4096 * (81 - len(refusals))
+
+
+def test_other_threads_run_while_it_steps(world, draw_actions):
+    simulator = Simulator(world, envs=4096, threads=1)
+    actions = draw_actions(4096, 8)
+    is_done = threading.Event()
+
+    def work():
+        for _ in range(10):
+            simulator.step(actions)
+        is_done.set()
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    turns = 0
+    while not is_done.is_set():
+        turns += 1
+    thread.join()
+    assert turns > 100
+
+
+@pytest.mark.parametrize("action", [pickle.dumps, copy.copy, copy.deepcopy])
+def test_nothing_is_pickled_or_copied(world, simulator, action):
+    for one in (world, simulator):
+        with pytest.raises(TypeError, match="cannot be pickled or copied: "):
+            action(one)
+
+
+def test_endings_agree_with_dones_and_successes(world, draw_actions):
+    simulator = Simulator(world, envs=64, threads=2, task="pick", episode_steps=40, seed=2)
+    seen = set()
+    for _ in range(300):
+        simulator.step(draw_actions(64, 8))
+        endings = simulator.endings
+        np.testing.assert_array_equal(simulator.dones, endings != EpisodeEnd.NONE)
+        np.testing.assert_array_equal(simulator.successes, endings == EpisodeEnd.SUCCESS)
+        seen |= set(endings.tolist())
+    assert {EpisodeEnd.NONE, EpisodeEnd.TIME_OUT} <= seen
+    figures = simulator.statistics()
+    assert figures["steps"] == 64 * 300
+    assert figures["episodes"] >= 64 * 7
+
+
+def test_states_have_frames_and_objects(simulator):
+    state = simulator.env_state(0)
+    assert state.world_from_root.translation.shape == (3,)
+    assert np.linalg.norm(state.world_from_root.rotation) == pytest.approx(1, abs=1e-5)
+    assert 0 <= state.target < len(state.objects)
+    assert state.held is None
+    assert state.step == 0
+    assert "Pose(translation=" in repr(state.goal)
+    with pytest.raises(IndexError, match="there is no env 20, the last is 19"):
+        simulator.env_state(ENVS)
+
+
+def test_phases_are_measured_on_demand(simulator, draw_actions):
+    simulator.sample_phases(1)
+    for _ in range(5):
+        simulator.step(draw_actions(ENVS, 8))
+    times = simulator.phase_times()
+    assert list(times)[:2] == ["actions", "propose"]
+    assert sum(times.values()) > 0
+
+
+def test_skipped_episodes_are_listed(simulator):
+    assert simulator.skipped_episodes == [2]
+    assert simulator.memory_bytes > 0
+    assert simulator.thread_count == 1
+
+
+def test_the_version_is_that_of_the_project():
+    assert galactic.__version__.count(".") == 2

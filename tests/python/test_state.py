@@ -1,0 +1,88 @@
+"""States of simulators and environments: saved, restored, and gone on from."""
+
+import numpy as np
+import pytest
+
+import galactic
+from galactic import Error, ErrorCode, Simulator, VectorEnv
+
+
+def test_a_state_goes_on_bit_for_bit_elsewhere(world, draw_actions):
+    options = {"episode_steps": 40, "laser_beams": 12, "laser_noise": 0.02}
+    first = Simulator(world, envs=33, threads=1, seed=4, **options)
+    for _ in range(70):
+        first.step(draw_actions(33, 8))
+    saved = first.save_state()
+    assert isinstance(saved, bytes)
+    second = Simulator(world, envs=33, threads=2, seed=9, **options)
+    second.restore_state(saved)
+    assert second.save_state() == saved
+    assert second.options["seed"] == 4
+    for _ in range(100):
+        actions = draw_actions(33, 8)
+        first.step(actions)
+        second.step(actions)
+        for name in ("observations", "rewards", "endings"):
+            np.testing.assert_array_equal(getattr(second, name), getattr(first, name))
+    assert second.statistics() == first.statistics()
+
+
+def test_chosen_envs_are_put_into_chosen_envs(world, draw_actions):
+    simulator = Simulator(world, envs=8, threads=1)
+    for _ in range(10):
+        simulator.step(draw_actions(8, 8))
+    simulator.restore_state(simulator.save_state(envs=[6, 1]), envs=np.array([0, 3]))
+    np.testing.assert_array_equal(simulator.observations[0], simulator.observations[6])
+    np.testing.assert_array_equal(simulator.observations[3], simulator.observations[1])
+    for call in (lambda: simulator.save_state(envs=[8]), lambda: simulator.save_state(envs=[-1])):
+        with pytest.raises(IndexError, match="there is no env"):
+            call()
+
+
+def test_bytes_that_are_no_state_are_refused_and_change_nothing(world, draw_actions):
+    simulator = Simulator(world, envs=4, threads=1)
+    simulator.step(draw_actions(4, 8))
+    saved = simulator.save_state()
+    for bad in (b"", b"GALSTATE", saved[:-1], saved + b"\0", saved[:100] + b"\xff" + saved[101:]):
+        with pytest.raises(Error) as caught:
+            simulator.restore_state(bad)
+        assert caught.value.where == "saved state"
+        assert caught.value.code in (ErrorCode.INVALID_INPUT, ErrorCode.UNSUPPORTED)
+        assert simulator.save_state() == saved
+    with pytest.raises(Error, match="has 4 envs, wanted 5"):
+        Simulator(world, envs=5, threads=1).restore_state(saved)
+    with pytest.raises(Error, match="wanted success-distance=0.2"):
+        Simulator(world, envs=4, threads=1, success_distance=0.2).restore_state(saved)
+    simulator.restore_state(bytearray(saved))
+    simulator.restore_state(np.frombuffer(saved, np.uint8))
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_environments_go_on_with_their_sums(world, draw_actions, halves):
+    def made():
+        return VectorEnv(world, 12, halves=halves, threads=1, episode_steps=25, seed=6)
+
+    first, second = made(), made()
+    first.reset(seed=3)
+    for _ in range(40):
+        first.step(draw_actions(12, 8))
+    saved = first.save_state()
+    second.restore_state(saved)
+    np.testing.assert_array_equal(second.observe(), first.observe())
+    ends = 0
+    for _ in range(60):
+        actions = draw_actions(12, 8)
+        a, b = first.step(actions), second.step(actions)
+        for one, other in zip(a[:4], b[:4]):
+            np.testing.assert_array_equal(one, other)
+        assert a[4].keys() == b[4].keys()
+        if a[4]:
+            ends += 1
+            for name in ("r", "l"):
+                np.testing.assert_array_equal(a[4]["episode"][name], b[4]["episode"][name])
+    assert ends > 2
+    before = second.save_state()
+    for bad in (b"", b"zip", before[:-30], saved[:50] + saved[60:]):
+        with pytest.raises(galactic.Error):
+            second.restore_state(bad)
+    np.testing.assert_array_equal(second.observe(), first.observe())

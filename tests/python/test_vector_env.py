@@ -1,0 +1,336 @@
+"""VectorEnv step by step against the simulator, and what Gymnasium 1.x asks of it."""
+
+import numpy as np
+import pytest
+
+from galactic import EpisodeEnd, Renderer, Simulator, VectorEnv
+
+ENVS = 24
+OPTIONS = {"threads": 1, "seed": 11, "episode_steps": 35}
+IMAGES = {"width": 24, "height": 16, "camera": "follow", "backend": "soft", "semantics": True}
+
+
+class Follower:
+    """The plain loop that VectorEnv stands for: a simulator, and sums kept env by env."""
+
+    def __init__(self, world, **options):
+        self.simulator = Simulator(world, envs=ENVS, **{**OPTIONS, **options})
+        self.returns = [0.0] * ENVS
+        self.lengths = [0] * ENVS
+
+    def step(self, actions):
+        """Of the step: what ended, with its return, its length, and which episode it was."""
+        episodes = self.simulator.episodes()
+        self.simulator.step(actions)
+        ended = {}
+        for env in range(ENVS):
+            self.returns[env] += float(self.simulator.rewards[env])
+            self.lengths[env] += 1
+            if self.simulator.dones[env]:
+                ended[env] = (self.returns[env], self.lengths[env], episodes[env])
+                self.returns[env], self.lengths[env] = 0.0, 0
+        return ended
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+@pytest.mark.parametrize("task", ["rearrange", "pick"])
+def test_steps_are_those_of_the_simulator(world, draw_actions, halves, task):
+    env = VectorEnv(world, ENVS, halves=halves, task=task, **OPTIONS)
+    plain = Follower(world, task=task)
+    observations, infos = env.reset()
+    assert infos == {}
+    np.testing.assert_array_equal(observations, plain.simulator.observations)
+    ends = {end: 0 for end in EpisodeEnd}
+    for _ in range(200):
+        actions = draw_actions(ENVS, 8)
+        observations, rewards, terminations, truncations, infos = env.step(actions)
+        ended = plain.step(actions)
+        simulator = plain.simulator
+        np.testing.assert_array_equal(observations, simulator.observations)
+        np.testing.assert_array_equal(rewards, simulator.rewards)
+        np.testing.assert_array_equal(truncations, simulator.endings == EpisodeEnd.TIME_OUT)
+        np.testing.assert_array_equal(terminations | truncations, simulator.dones)
+        assert not (terminations & truncations).any()
+        for end in simulator.endings:
+            ends[EpisodeEnd(end)] += 1
+        check_infos(infos, ended, simulator)
+    assert ends[EpisodeEnd.TIME_OUT] > 20
+    assert ends[EpisodeEnd.NONE] > 1000
+
+
+def check_infos(infos, ended, simulator):
+    if not ended:
+        assert infos == {}
+        return
+    mask = simulator.dones
+    assert set(infos) == {"final_obs", "final_info", "episode"} | {
+        "_final_obs",
+        "_final_info",
+        "_episode",
+    }
+    for name in ("_final_obs", "_final_info", "_episode"):
+        np.testing.assert_array_equal(infos[name], mask)
+    assert infos["final_obs"].dtype == object
+    final = infos["final_info"]
+    for env in range(ENVS):
+        if env not in ended:
+            assert infos["final_obs"][env] is None
+            continue
+        total, length, episode = ended[env]
+        np.testing.assert_array_equal(infos["final_obs"][env], simulator.final_observations[env])
+        assert infos["episode"]["r"][env] == pytest.approx(total, abs=1e-5)
+        assert infos["episode"]["l"][env] == length
+        assert final["episode"]["l"][env] == length
+        assert final["ending"][env] == simulator.endings[env]
+        assert final["success"][env] == simulator.successes[env]
+        assert final["episode_index"][env] == episode
+
+
+def test_results_stay_as_they_were(world, draw_actions):
+    env = VectorEnv(world, ENVS, **OPTIONS)
+    first = env.step(draw_actions(ENVS, 8))
+    kept = [array.copy() for array in first[:4]]
+    for _ in range(5):
+        env.step(draw_actions(ENVS, 8))
+    for array, wanted in zip(first[:4], kept):
+        np.testing.assert_array_equal(array, wanted)
+    view = VectorEnv(world, ENVS, copy=False, **OPTIONS)
+    observations = view.step(draw_actions(ENVS, 8))[0]
+    assert np.shares_memory(observations, view.simulators[0].observations)
+
+
+def test_resets_by_seed_mask_and_episode(world, draw_actions):
+    env = VectorEnv(world, ENVS, **OPTIONS)
+    start = env.reset(seed=5)[0].copy()
+    fresh = VectorEnv(world, ENVS, **{**OPTIONS, "seed": 5})
+    np.testing.assert_array_equal(start, fresh.reset()[0])
+    for _ in range(10):
+        env.step(draw_actions(ENVS, 8))
+    np.testing.assert_array_equal(env.reset(seed=5)[0], start)
+    # Without a seed the next episodes begin, and without steps in between, too.
+    after = env.reset()[0].copy()
+    assert not np.array_equal(after, start)
+    before = env.step(draw_actions(ENVS, 8))[0].copy()
+    mask = np.zeros(ENVS, bool)
+    mask[[2, 20]] = True
+    observations, infos = env.reset(options={"reset_mask": mask})
+    assert infos == {}
+    np.testing.assert_array_equal(observations[~mask], before[~mask])
+    steps = [env.simulators[0].env_state(n).step for n in range(ENVS)]
+    assert [n for n in range(ENVS) if steps[n] == 0] == [2, 20]
+    episodes = np.full(ENVS, -1)
+    episodes[2] = 3
+    env.reset(options={"reset_mask": mask, "episodes": episodes})
+    assert env.simulators[0].episodes()[2] == 3
+    env.reset(seed=5, options={"episodes": episodes})
+    assert env.simulators[0].episodes()[2] == 3
+    np.testing.assert_array_equal(env.observe()[3:], start[3:])
+
+
+def test_a_reset_begins_the_sums_anew(world, draw_actions):
+    env = VectorEnv(world, ENVS, **OPTIONS)
+    mask = np.zeros(ENVS, bool)
+    mask[7] = True
+    for step in range(35):
+        if step == 20:
+            env.reset(options={"reset_mask": mask})
+        actions = draw_actions(ENVS, 8)
+        actions[:, -2:] = -1
+        infos = env.step(actions)[4]
+    assert not infos["_episode"][7]
+    np.testing.assert_array_equal(infos["episode"]["l"][~mask], 35)
+    for _ in range(20):
+        actions = draw_actions(ENVS, 8)
+        actions[:, -2:] = -1
+        infos = env.step(actions)[4]
+    assert infos["_episode"][7]
+    assert infos["episode"]["l"][7] == 35
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"mask": None}, "no option 'mask'"),
+        ({"reset_mask": np.ones(ENVS)}, "reset_mask is float64 (24,), wanted bool (24,)"),
+        ({"reset_mask": np.ones(3, bool)}, "reset_mask is bool (3,)"),
+        ({"episodes": np.ones(ENVS)}, "episodes are float64 (24,), wanted int (24,)"),
+        ({"episodes": np.ones(3, int)}, "episodes are int64 (3,)"),
+    ],
+)
+def test_wrong_resets_are_refused(world, options, message):
+    env = VectorEnv(world, ENVS, **OPTIONS)
+    with pytest.raises(ValueError) as caught:
+        env.reset(options=options)
+    assert message in str(caught.value)
+    with pytest.raises(ValueError, match="exclude each other"):
+        env.reset(seed=1, options={"reset_mask": np.ones(ENVS, bool)})
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        {"observation": "parts"},
+        {"actions": "discrete"},
+        {"halves": 3},
+        {"num_envs": 7, "halves": 2},
+        {"render_mode": "human"},
+        {"envs": 4},
+    ],
+)
+def test_wrong_arguments_are_refused(world, arguments):
+    with pytest.raises(ValueError, match="wanted"):
+        VectorEnv(world, **{"num_envs": ENVS, **arguments})
+
+
+def test_observations_by_parts_are_the_flat_ones(world, draw_actions):
+    flat = VectorEnv(world, ENVS, **OPTIONS)
+    parts = VectorEnv(world, ENVS, observation="dict", **OPTIONS)
+    for _ in range(40):
+        actions = draw_actions(ENVS, 8)
+        row = flat.step(actions)
+        by_name = parts.step(actions)
+        np.testing.assert_array_equal(np.concatenate(list(by_name[0].values()), 1), row[0])
+        assert parts.observation_space.contains(by_name[0])
+        assert flat.observation_space.contains(row[0])
+        if row[4]:
+            env = int(np.flatnonzero(row[4]["_final_obs"])[0])
+            joined = np.concatenate(list(by_name[4]["final_obs"][env].values()))
+            np.testing.assert_array_equal(joined, row[4]["final_obs"][env])
+
+
+def test_actions_of_the_paper_are_the_box_of_all(world):
+    box = VectorEnv(world, ENVS, **OPTIONS)
+    paper = VectorEnv(world, ENVS, actions="paper", **OPTIONS)
+    paper.action_space.seed(3)
+    for _ in range(30):
+        actions = paper.action_space.sample()
+        assert actions["continuous"].shape == (ENVS, 6)
+        assert set(np.unique(actions["discrete"])) <= {0, 1}
+        rows = np.concatenate([actions["continuous"], actions["discrete"]], 1)
+        np.testing.assert_array_equal(paper.step(actions)[0], box.step(rows)[0])
+
+
+def test_spaces_have_what_comes_and_goes(world):
+    env = VectorEnv(world, ENVS, images=IMAGES, **OPTIONS)
+    single, batch = env.single_observation_space, env.observation_space
+    assert single["state"].shape == (23,)
+    assert batch["rgb"].shape == (ENVS, 16, 24, 3) and batch["rgb"].dtype == np.uint8
+    assert batch["depth"].shape == (ENVS, 16, 24) and batch["depth"].dtype == np.float32
+    assert batch["semantics"].dtype == np.uint32
+    assert env.single_action_space.shape == (8,)
+    assert env.action_space.shape == (ENVS, 8)
+    observations = env.reset()[0]
+    assert batch.contains(observations)
+    assert env.action_space.contains(env.action_space.sample())
+    assert env.metadata["autoreset_mode"].value == "SameStep"
+    assert (env.num_envs, env.spec, env.unwrapped) == (ENVS, None, env)
+
+
+@pytest.mark.parametrize("copy", [True, False])
+@pytest.mark.parametrize("halves", [1, 2])
+def test_images_show_what_the_state_says(world, draw_actions, halves, copy):
+    env = VectorEnv(world, ENVS, images=IMAGES, halves=halves, copy=copy, **OPTIONS)
+    plain = Simulator(world, envs=ENVS, body_transforms=True, auto_reset=False, **OPTIONS)
+    eye = Renderer(plain, **IMAGES)
+    ends = 0
+    observations = env.reset()[0]
+    for name, image in eye.render().items():
+        np.testing.assert_array_equal(observations[name], image)
+    for _ in range(80):
+        actions = draw_actions(ENVS, 8)
+        observations, _, _, _, infos = env.step(actions)
+        plain.step(actions)
+        last = {"state": plain.observations.copy(), **eye.render()}
+        done = plain.dones.copy()
+        plain.reset(np.where(done, Simulator.NEXT_EPISODE, Simulator.STAYS).astype(np.int32))
+        now = {"state": plain.observations, **eye.render()}
+        for name in ("state", "rgb", "depth", "semantics"):
+            np.testing.assert_array_equal(observations[name], now[name])
+            for number in np.flatnonzero(done):
+                np.testing.assert_array_equal(infos["final_obs"][number][name], last[name][number])
+        ends += int(done.sum())
+    assert ends > 20
+    assert len(np.unique(observations["rgb"])) > 5
+    assert observations["depth"].max() > 0.5
+
+
+@pytest.mark.parametrize("images", [None, IMAGES])
+@pytest.mark.parametrize("halves", [1, 2])
+def test_rollouts_land_in_buffers(world, draw_actions, halves, images):
+    steps = 30
+    env = VectorEnv(world, ENVS, images=images, halves=halves, copy=False, **OPTIONS)
+    twin = VectorEnv(world, ENVS, images=images, **OPTIONS)
+    buffers = env.buffers(steps)
+    seen = ["state", "rgb", "depth", "semantics"] if images else ["state"]
+    assert set(buffers) == {*seen, "rewards", "terminations", "truncations", "endings"}
+    env.reset()
+    env.observe(out={name: buffers[name][0] for name in seen})
+    twin.reset()
+    for step in range(steps):
+        actions = draw_actions(ENVS, 8)
+        for half in range(halves):
+            rows = env.rows(half)
+            out = {name: buffer[step + (name in seen)][rows] for name, buffer in buffers.items()}
+            env.send(actions[rows], half, out)
+        for half in range(halves):
+            observations, rewards, *_ = env.recv(half)
+            assert np.shares_memory(rewards, buffers["rewards"])
+            state = observations["state"] if images else observations
+            assert np.shares_memory(state, buffers["state"])
+        wanted, rewards, terminations, truncations, _ = twin.step(actions)
+        for name in seen:
+            one = wanted[name] if images else wanted
+            np.testing.assert_array_equal(buffers[name][step + 1], one)
+        np.testing.assert_array_equal(buffers["rewards"][step], rewards)
+        np.testing.assert_array_equal(buffers["terminations"][step], terminations)
+        np.testing.assert_array_equal(buffers["truncations"][step], truncations)
+        ended = buffers["endings"][step] != 0
+        np.testing.assert_array_equal(ended, terminations | truncations)
+
+
+def test_wrong_buffers_are_refused(world, draw_actions):
+    env = VectorEnv(world, ENVS, images=IMAGES, **OPTIONS)
+    actions = draw_actions(ENVS, 8)
+    with pytest.raises(ValueError, match="out has no place for 'reward'"):
+        env.step(actions, out={"reward": np.zeros(ENVS, np.float32)})
+    with pytest.raises(TypeError, match="rewards has the type float64, wanted float32"):
+        env.step(actions, out={"rewards": np.zeros(ENVS, np.float64)})
+    with pytest.raises(TypeError, match="state has the type list"):
+        env.step(actions, out={"state": [0.0]})
+    with pytest.raises(TypeError, match="rgb has the type float32, wanted uint8"):
+        env.step(actions, out={"rgb": np.zeros((ENVS, 16, 24, 3), np.float32)})
+    with pytest.raises(ValueError, match="depth is not contiguous"):
+        env.step(actions, out={"depth": np.zeros((ENVS, 16, 48), np.float32)[:, :, ::2]})
+    with pytest.raises(ValueError, match="rgb has the shape"):
+        env.step(actions, out={"rgb": np.zeros((ENVS, 24, 16, 3), np.uint8)})
+    assert env.simulators[0].statistics()["steps"] == 0
+
+
+def test_halves_take_turns(world, draw_actions):
+    env = VectorEnv(world, ENVS, halves=2, **OPTIONS)
+    actions = draw_actions(ENVS // 2, 8)
+    with pytest.raises(RuntimeError, match="half 0 has nothing under way"):
+        env.recv(0)
+    env.send(actions, 0)
+    for call in (lambda: env.send(actions, 0), env.reset, env.observe, env.save_state):
+        with pytest.raises(RuntimeError, match="half 0 is under way"):
+            call()
+    env.send(actions, 1)
+    assert env.recv(1)[0].shape == (ENVS // 2, 23)
+    assert env.recv(0)[0].shape == (ENVS // 2, 23)
+    # What goes wrong on the way comes out at the end.
+    env.send(actions[1:], 0)
+    with pytest.raises(ValueError, match="actions has the shape"):
+        env.recv(0)
+    env.reset(seed=1)
+    env.close()
+    env.close()
+
+
+def test_pictures_are_drawn_for_those_who_ask(world):
+    assert VectorEnv(world, 3, **OPTIONS).render() is None
+    env = VectorEnv(world, 3, render_mode="rgb_array", **OPTIONS)
+    frames = env.render()
+    assert len(frames) == 3
+    assert all(frame.shape == (240, 320, 3) and frame.dtype == np.uint8 for frame in frames)
+    assert len(np.unique(frames[0])) > 5

@@ -1,0 +1,281 @@
+// States of envs: saved, restored, and gone on from; and bytes that are none.
+#define XXH_INLINE_ALL
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <xxhash.h>
+
+#include <cstdio>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "batch_trace.h"
+#include "support/small_home_actor.h"
+#include "support/task_twins.h"
+
+namespace galactic::test {
+namespace {
+
+using testing::HasSubstr;
+using Bytes = std::vector<std::byte>;
+
+constexpr std::uint32_t kSeed = 5150;
+constexpr std::size_t kHeaderBytes = 64;
+
+SimulationOptions homeOptions(std::uint32_t envs, std::uint32_t threads = 1) {
+  SimulationOptions options;
+  options.envs = envs;
+  options.threads = threads;
+  options.seed = 3;
+  options.task.most_steps = 60;
+  options.sensors.bump = true;
+  options.sensors.geodesic = true;
+  options.task.geodesic_weight = 0.5F;
+  options.sensors.laser.beams = 8;
+  options.sensors.laser.noise = 0.01F;
+  return options;
+}
+
+/// Steps simulators of the small home alike, with actors that grasp, carry, drop and terminate.
+class WildRun {
+ public:
+  explicit WildRun(std::uint32_t envs) : actions_(envs * kSmallHomeActions) {
+    for (std::uint32_t env = 0; env < envs; ++env) actors_.emplace_back(kSeed + env);
+  }
+
+  /// Actions for the state of `simulator`.
+  const std::vector<float>& act(const BatchSimulator& simulator) {
+    for (std::size_t env = 0; env < actors_.size(); ++env) {
+      if (simulator.dones()[env] != 0) actors_[env].begin();
+      const SmallHomeRow row = actors_[env].act(simulator.envState(env));
+      std::ranges::copy(row, actions_.begin() + static_cast<std::ptrdiff_t>(env * row.size()));
+    }
+    return actions_;
+  }
+
+ private:
+  std::vector<WildActor> actors_;
+  std::vector<float> actions_;
+};
+
+std::vector<std::uint64_t> traceOf(const BatchSimulator& simulator) {
+  return BatchTrace(simulator).hashes();
+}
+
+void expectSameStatistics(const SimulationStatistics& a, const SimulationStatistics& b) {
+  EXPECT_EQ(a.steps, b.steps);
+  EXPECT_EQ(a.refused, b.refused);
+  EXPECT_EQ(a.slid, b.slid);
+  EXPECT_EQ(a.grasps, b.grasps);
+  EXPECT_EQ(a.drops, b.drops);
+  EXPECT_EQ(a.restored, b.restored);
+  EXPECT_EQ(a.episodes, b.episodes);
+  EXPECT_EQ(a.successes, b.successes);
+  EXPECT_EQ(a.failures, b.failures);
+  EXPECT_EQ(a.nan_actions, b.nan_actions);
+  EXPECT_EQ(a.reward, b.reward);
+}
+
+TEST(SavedState, GoesOnBitForBitInTheSameAndInOtherSimulators) {
+  const SmallHome home;
+  constexpr std::uint32_t kEnvs = 37;
+  for (const bool bodies : {false, true}) {
+    SimulationOptions options = homeOptions(kEnvs);
+    options.body_transforms = bodies;
+    BatchSimulator first = simulatorOf(home.world(), options);
+    WildRun run(kEnvs);
+    const auto is_held = [&] {
+      int count = 0;
+      for (std::size_t env = 0; env < kEnvs; ++env) count += first.envState(env).held >= 0 ? 1 : 0;
+      return count;
+    };
+    for (int step = 0; step < 70 || is_held() < 5; ++step) first.step(run.act(first));
+    const int held = is_held();
+    EXPECT_GE(held, 5);
+    EXPECT_LE(held, static_cast<int>(kEnvs) - 5);
+    const Bytes saved = first.saveState();
+    options.threads = 2;
+    options.seed = 77;  // The state brings its own.
+    BatchSimulator second = simulatorOf(home.world(), options);
+    second.step(std::vector<float>(kEnvs * kSmallHomeActions, 1.0F));
+    ASSERT_TRUE(second.restoreState(saved));
+    EXPECT_EQ(second.saveState(), saved);
+    EXPECT_EQ(traceOf(second), traceOf(first));
+    std::vector<std::vector<float>> played;
+    std::vector<std::vector<std::uint64_t>> seen;
+    for (int step = 0; step < 500; ++step) {
+      played.push_back(run.act(first));
+      first.step(played.back());
+      second.step(played.back());
+      seen.push_back(traceOf(first));
+      ASSERT_EQ(traceOf(second), seen.back()) << "step " << step;
+    }
+    expectSameStatistics(second.statistics(), first.statistics());
+    EXPECT_GT(first.statistics().drops, 20U);
+    EXPECT_GT(first.statistics().episodes, 200U);
+    // And back in the simulator that saved it.
+    ASSERT_TRUE(first.restoreState(saved));
+    for (std::size_t step = 0; step < played.size(); ++step) {
+      first.step(played[step]);
+      ASSERT_EQ(traceOf(first), seen[step]) << "step " << step;
+    }
+  }
+}
+
+TEST(SavedState, OfChosenEnvsIsPutIntoChosenEnvs) {
+  const SmallHome home;
+  constexpr std::uint32_t kEnvs = 20;
+  BatchSimulator batch = simulatorOf(home.world(), homeOptions(kEnvs));
+  WildRun run(kEnvs);
+  for (int step = 0; step < 45; ++step) batch.step(run.act(batch));
+  const std::vector<std::uint32_t> chosen{17, 2};
+  const Bytes saved = batch.saveState(chosen);
+  // One env, with the number over all ranks that env 17 had, does what env 17 does.
+  SimulationOptions alone = homeOptions(1);
+  alone.ranks = kEnvs;
+  alone.rank = 17;
+  BatchSimulator single = simulatorOf(home.world(), alone);
+  const Bytes of_17 = batch.saveState(std::vector<std::uint32_t>{17});
+  ASSERT_TRUE(single.restoreState(of_17, std::vector<std::uint32_t>{0}));
+  // Planning: the same two states again and again, here in other envs.
+  const std::vector<std::uint32_t> places{4, 19};
+  const EnvState untouched = batch.envState(5);
+  ASSERT_TRUE(batch.restoreState(saved, places));
+  expectSameState(batch.envState(4), batch.envState(17));
+  expectSameState(batch.envState(19), batch.envState(2));
+  expectSameState(batch.envState(5), untouched);
+  for (int step = 0; step < 200; ++step) {
+    const std::vector<float>& actions = run.act(batch);
+    const std::size_t first = 17 * kSmallHomeActions;
+    single.step(std::span(actions).subspan(first, kSmallHomeActions));
+    batch.step(actions);
+    ASSERT_EQ(traceOf(single)[0], traceOf(batch)[17]);
+  }
+}
+
+/// The state's header says that it is what it is.
+void sign(Bytes& state) {
+  constexpr std::size_t kHashAt = 56;
+  std::uint64_t hash = 0;
+  std::memcpy(state.data() + kHashAt, &hash, sizeof(hash));
+  hash = XXH3_64bits(state.data(), state.size());
+  std::memcpy(state.data() + kHashAt, &hash, sizeof(hash));
+}
+
+std::string refusalOf(BatchSimulator& simulator, const Bytes& state) {
+  const Result<void> restored = simulator.restoreState(state);
+  return restored ? "" : restored.error().where + " " + restored.error().message;
+}
+
+class DamagedState : public testing::Test {
+ protected:
+  DamagedState() : simulator_(simulatorOf(home_.world(), homeOptions(3))) {
+    WildRun run(3);
+    for (int step = 0; step < 40; ++step) simulator_.step(run.act(simulator_));
+    state_ = simulator_.saveState();
+    trace_ = traceOf(simulator_);
+  }
+
+  /// A refusal, after which everything is as it was.
+  void expectRefused(const Bytes& state, const std::string& why) {
+    EXPECT_THAT(refusalOf(simulator_, state), HasSubstr(why));
+    EXPECT_EQ(traceOf(simulator_), trace_);
+  }
+
+  SmallHome home_;
+  BatchSimulator simulator_;
+  Bytes state_;
+  std::vector<std::uint64_t> trace_;
+};
+
+TEST_F(DamagedState, IsRefusedAtEachLength) {
+  for (std::size_t length = 0; length < state_.size(); ++length) {
+    Bytes cut(state_.begin(), state_.begin() + static_cast<std::ptrdiff_t>(length));
+    ASSERT_NE(refusalOf(simulator_, cut), "") << length;
+    if (length < kHeaderBytes) continue;
+    sign(cut);
+    ASSERT_NE(refusalOf(simulator_, cut), "") << length;
+  }
+  state_.push_back(std::byte{0});
+  sign(state_);
+  expectRefused(state_, "goes on behind its last env");
+}
+
+TEST_F(DamagedState, IsRefusedForEachFlippedBit) {
+  for (std::size_t bit = 0; bit < 8 * state_.size(); ++bit) {
+    Bytes flipped = state_;
+    flipped[bit / 8] ^= std::byte{1} << (bit % 8);
+    ASSERT_NE(refusalOf(simulator_, flipped), "") << bit;
+  }
+  EXPECT_EQ(traceOf(simulator_), trace_);
+}
+
+TEST_F(DamagedState, WithARightHashIsRefusedOrSteps) {
+  constexpr std::array<std::uint32_t, 6> kWords{0,          1,          0xFFFFFFFF,
+                                                0x7FC00000, 0x7F7FFFFF, 0x49742400};
+  int refused = 0;
+  int taken = 0;
+  std::mt19937 random(kSeed);
+  for (std::size_t at = kHeaderBytes; at + 4 <= state_.size(); at += 4) {
+    for (const std::uint32_t word : kWords) {
+      Bytes changed = state_;
+      std::memcpy(changed.data() + at, &word, sizeof(word));
+      sign(changed);
+      if (!simulator_.restoreState(changed)) {
+        ++refused;
+        continue;
+      }
+      ++taken;
+      for (std::uint32_t step = 0; step < 3; ++step) {
+        std::vector<float> actions(3 * kSmallHomeActions);
+        for (float& action : actions) action = static_cast<float>(random()) * 0x1p-31F - 1;
+        simulator_.step(actions);
+      }
+    }
+  }
+  std::printf("seed %u: %d refused, %d taken\n", kSeed, refused, taken);
+  EXPECT_GT(10 * refused, refused + taken);
+  EXPECT_GT(10 * taken, refused + taken);
+}
+
+TEST_F(DamagedState, IsRefusedWithWhatIsWrong) {
+  expectRefused({}, "is none; give what saving a state returned");
+  Bytes other = state_;
+  other[0] = std::byte{'g'};
+  expectRefused(other, "is none");
+  other = state_;
+  other[8] = std::byte{9};
+  expectRefused(other, "has format version 9, wanted 1");
+  other = state_;
+  other[40] ^= std::byte{1};
+  sign(other);
+  expectRefused(other, "is of another world");
+  const Bytes two = simulator_.saveState(std::vector<std::uint32_t>{0, 1});
+  expectRefused(two, "has 2 envs, wanted 3");
+}
+
+TEST_F(DamagedState, OfOtherOptionsIsRefusedByTheirNames) {
+  SimulationOptions options = homeOptions(3);
+  options.task.success_distance = 0.25F;
+  BatchSimulator far = simulatorOf(home_.world(), options);
+  EXPECT_THAT(refusalOf(far, state_), HasSubstr("wanted success-distance=0.25, found "
+                                                "success-distance=0.1"));
+  options = homeOptions(3);
+  options.body_transforms = true;
+  BatchSimulator drawn = simulatorOf(home_.world(), options);
+  EXPECT_THAT(refusalOf(drawn, state_), HasSubstr("without body_transforms"));
+  // The other way round the bodies are left out.
+  EXPECT_EQ(refusalOf(simulator_, drawn.saveState()), "");
+}
+
+TEST_F(DamagedState, OfAnotherSeedIsRefusedWhereItIsOnlyAPart) {
+  const Bytes one = simulator_.saveState(std::vector<std::uint32_t>{0});
+  simulator_.restart(8);
+  const Result<void> restored = simulator_.restoreState(one, std::vector<std::uint32_t>{2});
+  ASSERT_FALSE(restored);
+  EXPECT_THAT(restored.error().message, HasSubstr("saved with seed 3, and the simulator has 8"));
+}
+
+}  // namespace
+}  // namespace galactic::test
