@@ -9,16 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galactic import spaces
-from galactic._core import EpisodeEnd, Renderer, Simulator, World
+from galactic._core import EpisodeTally, Renderer, Simulator, World
 
 Array = NDArray[Any]
 Observations = Union[Array, dict[str, Array]]
 #: Observations, rewards, terminations, truncations, infos.
 StepResult = tuple[Observations, Array, Array, Array, dict[str, Any]]
-
-# Plain numbers: numpy compares them faster than members of an enum.
-_SUCCESS = int(EpisodeEnd.SUCCESS)
-_TIME_OUT = int(EpisodeEnd.TIME_OUT)
 
 
 class HalfBatch:
@@ -48,9 +44,7 @@ class HalfBatch:
         self._copy = copy
         self._parts = self.simulator.observation_parts if by_parts else None
         envs = self.simulator.num_envs
-        self._returns = np.zeros(envs, np.float64)
-        self._lengths = np.zeros(envs, np.int64)
-        self._episodes = self.simulator.episodes()
+        self._tally = EpisodeTally(self.simulator)
         self._is_new = True
         self._images = {
             name: np.zeros((envs, *shape), dtype)
@@ -93,9 +87,7 @@ class HalfBatch:
             chosen = np.full(len(mask), next_one, np.int32) if episodes is None else episodes
             chosen = np.where(chosen < 0, Simulator.STAYS if untouched else next_one, chosen)
             self.simulator.reset(np.where(mask, chosen, Simulator.STAYS))
-        self._returns[mask] = 0
-        self._lengths[mask] = 0
-        self._episodes = self.simulator.episodes()
+        self._tally.restart(mask)
 
     def observe(self, out: Mapping[str, Array] | None = None) -> Observations:
         """What all envs see now."""
@@ -105,17 +97,15 @@ class HalfBatch:
     def save_state(self) -> dict[str, Array]:
         """Arrays that restore_state() takes."""
         state = np.frombuffer(self.simulator.save_state(), np.uint8)
-        return {"simulator": state, "returns": self._returns, "lengths": self._lengths}
+        return {"simulator": state, "returns": self._tally.returns, "lengths": self._tally.lengths}
 
     def restore_state(self, saved: Mapping[str, Array]) -> None:
         """Goes on from there. Raises Error for a state that does not fit, and changes nothing."""
-        for name, mine in (("returns", self._returns), ("lengths", self._lengths)):
+        for name, mine in (("returns", self._tally.returns), ("lengths", self._tally.lengths)):
             if saved[name].shape != mine.shape or saved[name].dtype != mine.dtype:
                 raise ValueError(f"{name} are {saved[name].dtype} {saved[name].shape}")
         self.simulator.restore_state(saved["simulator"].tobytes())
-        self._returns[:] = saved["returns"]
-        self._lengths[:] = saved["lengths"]
-        self._episodes = self.simulator.episodes()
+        self._tally.restore(saved["returns"], saved["lengths"])
         self._is_new = False
 
     def step(self, actions: NDArray[np.float32], out: Mapping[str, Array] | None) -> StepResult:
@@ -125,15 +115,14 @@ class HalfBatch:
         simulator = self.simulator
         simulator.step(actions)
         self._is_new = False
-        endings = self._landed("endings", simulator.endings, out)
+        terminated, truncated, ended = self._tally.add()
+        terminations = self._landed("terminations", terminated, out, True)
+        truncations = self._landed("truncations", truncated, out, True)
         rewards = self._landed("rewards", simulator.rewards, out)
-        truncations = self._landed("truncations", endings == _TIME_OUT, out, True)
-        ended = endings != 0
-        terminations = self._landed("terminations", ended & ~truncations, out, True)
-        self._returns += rewards
-        self._lengths += 1
+        if out is not None and "endings" in out:
+            self._landed("endings", simulator.endings, out)
         images = self._draw(out)
-        infos = self._finish(ended, endings, images) if ended.any() else {}
+        infos = self._finish(ended, images) if len(ended) else {}
         observations = self._observed(self._landed("state", simulator.observations, out), images)
         return observations, rewards, terminations, truncations, infos
 
@@ -158,7 +147,7 @@ class HalfBatch:
             return {"state": state, **images} if images else state
         return {**{name: state[..., part] for name, part in self._parts.items()}, **images}
 
-    def _renew(self, which: NDArray[np.intp], images: dict[str, Array]) -> Observations:
+    def _renew(self, which: NDArray[np.int64], images: dict[str, Array]) -> Observations:
         """The last observations of the envs `which` ended an episode; they are in the next one then,
         in `images`, too."""
         if self._renderer is None:
@@ -173,34 +162,19 @@ class HalfBatch:
             images[name][which] = drawn
         return last
 
-    def _finish(
-        self, ended: NDArray[np.bool_], endings: Array, images: dict[str, Array]
-    ) -> dict[str, Any]:
-        """The infos of a step in which episodes ended; their sums begin anew."""
-        which = np.flatnonzero(ended)
+    def _finish(self, which: NDArray[np.int64], images: dict[str, Array]) -> dict[str, Any]:
+        """The infos of a step in which the episodes of the envs `which` ended; their sums begin anew."""
         last = self._renew(which, images)
+        sums = self._tally.take_ended()
+        ended = sums.pop("ended")
         final_obs = np.full(len(ended), None, object)
         for row, env in enumerate(which):
             final_obs[env] = _row(last, row)
-        episode = {
-            "r": _only(self._returns, which, np.float32),
-            "_r": ended,
-            "l": _only(self._lengths, which, np.int64),
-            "_l": ended,
-        }
-        final_info = {
-            "episode": episode,
-            "_episode": ended,
-            "ending": endings.copy(),
-            "_ending": ended,
-            "success": endings == _SUCCESS,
-            "_success": ended,
-            "episode_index": _only(self._episodes, which, np.int32, -1),
-            "_episode_index": ended,
-        }
-        self._returns[which] = 0
-        self._lengths[which] = 0
-        self._episodes[which] = self.simulator.episodes(which)
+        episode = {"r": sums.pop("r"), "_r": ended, "l": sums.pop("l"), "_l": ended}
+        final_info = {"episode": episode, "_episode": ended}
+        for name, values in sums.items():
+            final_info[name] = values
+            final_info["_" + name] = ended
         return {
             "final_obs": final_obs,
             "_final_obs": ended,
@@ -209,13 +183,6 @@ class HalfBatch:
             "episode": episode,
             "_episode": ended,
         }
-
-
-def _only(values: Array, which: NDArray[np.intp], dtype: Any, other: int = 0) -> Array:
-    """The values of some envs, and `other` for the rest."""
-    result = np.full(len(values), other, dtype)
-    result[which] = values[which]
-    return result
 
 
 def _unbounded(size: int) -> spaces.Space:

@@ -72,6 +72,12 @@ py::array_t<float> arrayOf(std::span<const float> values) {
   return py::array_t<float>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
+template py::array_t<bool, py::array::c_style | py::array::forcecast> inputOf<bool>(
+    const py::handle&, const char*, const Shape&);
+template py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> inputOf<std::int64_t>(
+    const py::handle&, const char*, const Shape&);
+template py::array_t<double, py::array::c_style | py::array::forcecast> inputOf<double>(
+    const py::handle&, const char*, const Shape&);
 template py::array_t<float, py::array::c_style | py::array::forcecast> inputOf<float>(
     const py::handle&, const char*, const Shape&);
 template py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast> inputOf<std::uint8_t>(

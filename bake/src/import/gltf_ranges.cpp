@@ -117,7 +117,7 @@ class GltfRanges {
   }
 
  private:
-  [[nodiscard]] tl::unexpected<Error> broken(std::string message) const {
+  [[nodiscard]] tl::unexpected<Error> broken(const std::string& message) const {
     return fail(ErrorCode::kInvalidInput, path_.string(),
                 message + "; the file is cut off or damaged: export or download it again");
   }

@@ -101,7 +101,7 @@ class PlyCounter {
   }
 
  private:
-  [[nodiscard]] tl::unexpected<Error> broken(std::string message) const {
+  [[nodiscard]] tl::unexpected<Error> broken(const std::string& message) const {
     return fail(ErrorCode::kInvalidInput, where_,
                 message + "; the file is cut off or damaged: export or download it again");
   }

@@ -92,7 +92,7 @@ std::size_t namedTextures(const SourceAsset& asset) {
 /// What to draw for the only texture, which is missing: the mesh's namesake. Says so in a warning.
 std::optional<fs::path> substituteFor(const std::string& reference, SourceAsset& asset,
                                       const fs::path& main_input) {
-  const auto namesake = namesakeOf(main_input);
+  auto namesake = namesakeOf(main_input);
   if (!namesake) return std::nullopt;
   asset.warnings.push_back(fmt::format("texture '{}' is missing: '{}' is drawn instead", reference,
                                        nameRelativeTo(main_input, *namesake)));

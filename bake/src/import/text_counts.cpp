@@ -13,7 +13,7 @@
 namespace galactic::bake {
 namespace {
 
-tl::unexpected<Error> cutOff(const std::string& where, std::string message) {
+tl::unexpected<Error> cutOff(const std::string& where, const std::string& message) {
   return fail(ErrorCode::kInvalidInput, where,
               message + "; the file is cut off or damaged: export or download it again");
 }

@@ -60,8 +60,8 @@ inline Plane planeOf(const LargeTriangle& triangle, double a, double b, double c
   const double scale = kSubpixels / triangle.double_area;
   const double right = (ac_y * (b - a) - ab_y * (c - a)) * scale;
   const double down = (ab_x * (c - a) - ac_x * (b - a)) * scale;
-  const double dx = (kSubpixels / 2 - first.x) * (1.0 / kSubpixels);
-  const double dy = (kSubpixels / 2 - first.y) * (1.0 / kSubpixels);
+  const double dx = (kHalfPixel - first.x) * (1.0 / kSubpixels);
+  const double dy = (kHalfPixel - first.y) * (1.0 / kSubpixels);
   return {a + (right * dx + down * dy), right, down};
 }
 
