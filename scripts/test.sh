@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$galactic_root"
 
 phase setup "Installing packages" scripts/setup.sh
-phase test-configure "Configuring (preset ci)" cmake --preset ci
-phase test-build "Building" cmake --build --preset ci
+phase test-configure "Configuring (preset release)" cmake --preset release
+phase test-build "Building" cmake --build --preset release
 heading "Testing"
-scripts/run_ctest.sh ci
+scripts/run_ctest.sh release
