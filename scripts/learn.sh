@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # learn.sh [SEED]: a robot learns to pick things up in the sample apartment, without a camera or a
 # graphics processor, and shows what it learned. After scripts/quickstart.sh; works from any folder.
-# What it makes is in build/release/learn.
+# What it makes is in build/release/learn; the worlds lie beside the packs that they list.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/phases.sh"
 cd "$galactic_root"
@@ -25,8 +25,8 @@ done
 world() {
   local name=$1 count=$2 episode_seed=$3
   "$bin/galactic-bake" "${packs[@]}" --as episodes --count "$count" --seed "$episode_seed" \
-    -o "$out/$name-episodes.pack"
-  "$bin/galactic-bake" "${packs[@]}" "$out/$name-episodes.pack" --as world -o "$out/$name.pack"
+    -o "$sample/$name-episodes.pack"
+  "$bin/galactic-bake" "${packs[@]}" "$sample/$name-episodes.pack" --as world -o "$sample/$name.pack"
 }
 
 phase learn-configure "Configuring (preset release)" cmake --preset release
@@ -39,18 +39,18 @@ world homes 2000 101
 world unseen 400 202
 
 heading "Learning to pick (preset quick)"
-/usr/bin/python3 -m galactic.train "$out/homes.pack" --preset quick --seed "$seed" \
-  --validation "$out/unseen.pack" -o "$run"
+/usr/bin/python3 -m galactic.train "$sample/homes.pack" --preset quick --seed "$seed" \
+  --validation "$sample/unseen.pack" -o "$run"
 
 heading "Playing each unseen episode once: sampled actions, then the likeliest"
-/usr/bin/python3 -m galactic.evaluate "$run/best.pt" "$out/unseen.pack" \
+/usr/bin/python3 -m galactic.evaluate "$run/best.pt" "$sample/unseen.pack" \
   --report "$run/unseen.json" --contact-sheet "$run/unseen.png"
-/usr/bin/python3 -m galactic.evaluate "$run/best.pt" "$out/unseen.pack" --deterministic \
+/usr/bin/python3 -m galactic.evaluate "$run/best.pt" "$sample/unseen.pack" --deterministic \
   --report "$run/unseen-deterministic.json"
 
 heading "The same policy without Python"
 /usr/bin/python3 -m galactic.export "$run/best.pt" -o "$run/picker.pack"
-"$bin/galactic-run" --pack "$out/unseen.pack" --policy "$run/picker.pack" --policy-sample \
+"$bin/galactic-run" --pack "$sample/unseen.pack" --policy "$run/picker.pack" --policy-sample \
   --envs 64 --steps 400
 
 cat <<END
