@@ -112,7 +112,7 @@ FinishedPiece finishPiece(PartMesh piece, const RenderSource& source, double err
   FinishedPiece finished;
   const PieceShape shape = measurePiece(piece);
   finished.has_outside = showOutside(piece, shape, source);
-  Simplified simplified = simplifyWithin(piece, allowedError(shape, error));
+  Simplified simplified = simplifyWithin(piece, allowedError(shape, error)).surface;
   const std::size_t fewest = shape.closed ? kFewestClosed : 1;
   if (simplified.triangles.size() >= fewest) {
     piece.triangles = std::move(simplified.triangles);

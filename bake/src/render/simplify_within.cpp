@@ -75,67 +75,153 @@ Vec3d middleOf(const PartMesh& piece, const Triangle& t) {
          (1.0 / 3);
 }
 
-/// Measures how far the source lies from what became of it, and marks corners that are too far off.
-class Deviation {
+/// What became of a piece, for questions about how far the source lies from it. Neighbours in the
+/// source lie near the same triangles, so what was found for a corner answers most questions about
+/// the points around it without a search.
+class SimplifiedSurface {
  public:
-  Deviation(const PartMesh& piece, double allowed) : piece_(piece), allowed_(allowed) {}
-
-  /// Whether all of the source is near enough; if not, there are new marks in `kept`.
-  bool check(const std::vector<Triangle>& triangles, std::vector<bool>& kept) {
-    const sphere_fit::TriangleTree tree = treeOf(piece_, triangles);
-    largest_ = 0;
-    bool near = true;
-    for (std::uint32_t n = 0; n < piece_.vertices.size(); ++n) {
-      if (kept[n] || isNear(tree, widen(piece_.vertices[n].position))) continue;
-      kept[n] = true;
-      near = false;
+  /// Counts its work in `counted`.
+  SimplifiedSurface(const PartMesh& piece, const std::vector<Triangle>& triangles,
+                    MeasuredSimplified& counted)
+      : piece_(piece),
+        counted_(counted),
+        tree_(treeOf(piece, triangles)),
+        facet_near_(piece.vertices.size(), sphere_fit::kNoFacet),
+        survives_(piece.vertices.size()) {
+    for (std::uint32_t n = 0; n < triangles.size(); ++n) {
+      for (const std::uint32_t corner : triangles[n]) {
+        facet_near_[corner] = n;
+        survives_[corner] = true;
+      }
     }
-    for (const Triangle& triangle : piece_.triangles) {
-      if (isNear(tree, middleOf(piece_, triangle))) continue;
-      near = false;
-      for (const std::uint32_t corner : triangle) kept[corner] = true;
-    }
-    return near;
   }
 
-  /// Of the last check, metres.
-  [[nodiscard]] double largest() const { return largest_; }
+  /// Whether a corner of the source lies no further than `distance` from the surface.
+  bool cornerWithin(std::uint32_t corner, const Triangle& around, double distance) {
+    if (survives_[corner]) return true;
+    return within(widen(piece_.vertices[corner].position), around, distance, facet_near_[corner]);
+  }
+
+  /// The same for the middle of a triangle of the source.
+  bool middleWithin(const Triangle& triangle, double distance) {
+    std::uint32_t facet = sphere_fit::kNoFacet;
+    return within(middleOf(piece_, triangle), triangle, distance, facet);
+  }
+
+  /// The largest distance of the source's corners and middles, metres.
+  [[nodiscard]] double largestDistance() const {
+    double largest = 0;
+    const auto raise = [&](const Vec3d& point, std::uint32_t hint) {
+      const auto nearest = tree_.nearest(point, {.squared_enough = largest, .hint = hint});
+      largest = std::max(largest, nearest.squared);
+    };
+    for (const Triangle& triangle : piece_.triangles) {
+      for (const std::uint32_t corner : triangle) {
+        if (!survives_[corner]) raise(widen(piece_.vertices[corner].position), facet_near_[corner]);
+      }
+      raise(middleOf(piece_, triangle), facet_near_[triangle[0]]);
+    }
+    return std::sqrt(largest);
+  }
 
  private:
-  bool isNear(const sphere_fit::TriangleTree& tree, const Vec3d& point) {
-    const double distance = std::sqrt(tree.nearest({point.x, point.y, point.z}).squared);
-    largest_ = std::max(largest_, distance);
-    return distance <= allowed_;
+  /// Tries what is near the corners of `around` first; `facet` becomes one that is near enough.
+  bool within(const Vec3d& point, const Triangle& around, double distance, std::uint32_t& facet) {
+    const double squared = distance * distance;
+    ++counted_.comparisons;
+    std::uint32_t tried = sphere_fit::kNoFacet;
+    const auto isNear = [&](std::uint32_t candidate) {
+      if (candidate == sphere_fit::kNoFacet || candidate == tried) return false;
+      tried = candidate;
+      const Vec3d nearest = sphere_fit::nearestOnFacet(point, tree_.facets()[candidate]);
+      if (sphere_fit::squaredLength(nearest - point) > squared) return false;
+      facet = candidate;
+      return true;
+    };
+    if (isNear(facet)) return true;
+    for (const std::uint32_t corner : around) {
+      if (isNear(facet_near_[corner])) return true;
+    }
+    ++counted_.searches;
+    const auto nearest =
+        tree_.nearest(point, {.squared_limit = squared * kJustBeyond, .squared_enough = squared});
+    if (nearest.facet == sphere_fit::kNoFacet || nearest.squared > squared) return false;
+    facet = nearest.facet;
+    return true;
   }
+
+  /// A search counts only what is nearer than its limit; what lies at the distance itself counts.
+  static constexpr double kJustBeyond = 1 + 1e-9;
 
   const PartMesh& piece_;
-  double allowed_;
-  double largest_ = 0;
+  MeasuredSimplified& counted_;
+  sphere_fit::TriangleTree tree_;
+  /// By corner of the source: a triangle of the surface that is near it, where one is known.
+  std::vector<std::uint32_t> facet_near_;
+  /// By corner of the source: whether it is a corner of the surface.
+  std::vector<bool> survives_;
 };
 
-/// The piece simplified by what quadrics estimate as `asked`, corners kept until all of it is near
-/// enough; the piece itself if that takes too many rounds.
-Simplified simplifyKeeping(const PartMesh& piece, double asked, Deviation& deviation,
-                           std::vector<bool> kept) {
-  for (int round = 0; round <= kRoundsOfKeeping; ++round) {
-    Simplified simplified = simplify(piece, asked, kept);
-    if (simplified.triangles.empty()) break;
-    if (!deviation.check(simplified.triangles, kept)) continue;
-    simplified.error = deviation.largest();
-    return simplified;
+/// Whether all of the source lies within `allowed` metres of the surface; if not, marks in `kept`
+/// the corners that are too far off.
+bool keepFarCorners(const PartMesh& piece, SimplifiedSurface& surface, double allowed,
+                    std::vector<bool>& kept) {
+  bool near = true;
+  std::vector<bool> asked = kept;
+  for (const Triangle& triangle : piece.triangles) {
+    for (const std::uint32_t corner : triangle) {
+      if (asked[corner]) continue;
+      asked[corner] = true;
+      if (surface.cornerWithin(corner, triangle, allowed)) continue;
+      kept[corner] = true;
+      near = false;
+    }
   }
-  return {piece.triangles, 0};
+  for (const Triangle& triangle : piece.triangles) {
+    if (surface.middleWithin(triangle, allowed)) continue;
+    near = false;
+    for (const std::uint32_t corner : triangle) kept[corner] = true;
+  }
+  return near;
+}
+
+/// What simplifies a piece again and again, asking for less and keeping more.
+struct Keeping {
+  const PartMesh& piece;
+  /// How far a point may lie from the result, metres.
+  double allowed = 0;
+  /// The best so far, and the work that went into it.
+  MeasuredSimplified& best;
+};
+
+/// Simplifies by what quadrics estimate as `asked`, and keeps corners until all of the piece is
+/// near enough. Each round keeps more corners and so leaves more triangles: false when a round
+/// leaves no fewer than the best, or when it takes too many of them.
+bool improve(const Keeping& keeping, double asked, std::vector<bool> kept) {
+  for (int round = 0; round <= kRoundsOfKeeping; ++round) {
+    Simplified simplified = simplify(keeping.piece, asked, kept);
+    const std::size_t left = simplified.triangles.size();
+    if (left == 0 || left >= keeping.best.surface.triangles.size()) break;
+    SimplifiedSurface surface(keeping.piece, simplified.triangles, keeping.best);
+    if (!keepFarCorners(keeping.piece, surface, keeping.allowed, kept)) continue;
+    simplified.error = surface.largestDistance();
+    keeping.best.surface = std::move(simplified);
+    return true;
+  }
+  return false;
 }
 
 }  // namespace
 
-Simplified simplifyWithin(const PartMesh& piece, double error) {
+MeasuredSimplified simplifyWithin(const PartMesh& piece, double error) {
   const std::vector<bool> details = coloredDetails(piece);
-  Deviation deviation(piece, error);
-  Simplified best{piece.triangles, 0};
+  MeasuredSimplified best{.surface = {piece.triangles, 0}};
+  bool found = false;
   for (const double share : kSharesAsked) {
-    Simplified simplified = simplifyKeeping(piece, share * error, deviation, details);
-    if (simplified.triangles.size() < best.triangles.size()) best = std::move(simplified);
+    const bool better = improve({piece, error, best}, share * error, details);
+    // A smaller share leaves more triangles to begin with: after one that does not help, none does.
+    if (found && !better) break;
+    found = found || better;
   }
   return best;
 }
