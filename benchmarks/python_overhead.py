@@ -76,13 +76,17 @@ def main() -> None:
             )
             steps = (options.steps - options.steps // 10) * options.envs
             rates[name].append((long - short) / steps * 1e9)
-    print(f"{options.envs} envs, {options.threads} threads: nanoseconds of the processor a step, medians")
+    print(
+        f"{options.envs} envs, {options.threads} threads: nanoseconds of the processor a step, medians"
+    )
     base, drawing = rates["galactic-run"], rates["drawing in numpy"]
     for name, values in rates.items():
         line = f"  {name:17} {statistics.median(values):6.0f}"
         if name in ("Simulator", "VectorEnv"):
             whole = statistics.median(one / run for one, run in zip(values, base))
-            rest = statistics.median((one - draw) / run for one, draw, run in zip(values, drawing, base))
+            rest = statistics.median(
+                (one - draw) / run for one, draw, run in zip(values, drawing, base)
+            )
             line += f"   {whole:5.3f} of galactic-run, {rest:5.3f} less the drawing"
         print(line)
 

@@ -84,14 +84,15 @@ class Layers:
     def gru(self, gru: nn.GRU, x: int) -> int:
         if gru.num_layers != 1 or gru.bidirectional or not gru.bias:
             raise ExportError(f"{gru} is not one layer in one direction, with biases")
+        parameters = dict(gru.named_parameters())
         return self.add(
             "gru",
             x,
             size=gru.hidden_size,
-            input_weight=_numbers(gru.weight_ih_l0),
-            state_weight=_numbers(gru.weight_hh_l0),
-            input_bias=_numbers(gru.bias_ih_l0),
-            state_bias=_numbers(gru.bias_hh_l0),
+            input_weight=_numbers(parameters["weight_ih_l0"]),
+            state_weight=_numbers(parameters["weight_hh_l0"]),
+            input_bias=_numbers(parameters["bias_ih_l0"]),
+            state_bias=_numbers(parameters["bias_hh_l0"]),
         )
 
     def seen(self, policy: Policy, state: int, size: int) -> int:
