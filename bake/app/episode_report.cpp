@@ -9,6 +9,7 @@
 
 #include "episode_outcome.h"
 #include "galactic/printable.h"
+#include "warning_list.h"
 
 namespace galactic::bake {
 namespace {
@@ -116,9 +117,7 @@ void printEpisodeTable(const EpisodeOutcome& outcome, Verbosity verbosity) {
     }
   }
   if (outcome.generation) printGeneration(*outcome.generation, verbosity);
-  for (const std::string& warning : set.warnings) {
-    fmt::print("  warning: {}\n", printable(warning));
-  }
+  printWarnings(set.warnings, verbosity);
   fmt::print("  {:.3f} s; {:.2f} MB\n", outcome.seconds,
              static_cast<double>(outcome.pack_bytes) / 1e6);
 }

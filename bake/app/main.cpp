@@ -18,6 +18,7 @@
 #include "plan/bake_plan.h"
 #include "report.h"
 #include "report_check.h"
+#include "robot_job.h"
 
 namespace galactic::bake {
 namespace {
@@ -98,6 +99,10 @@ int run(int argc, const char* const* argv) {
   const ParsedCommand parsed = parseCommandLine(argc, argv);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const auto& command = std::get<BakeCommand>(parsed);
+  if (command.robot.print_recipe) {
+    const auto printed = printRecipeDraft(command);
+    return printed ? kExitOk : refuse(printed.error());
+  }
   return command.hasPlan() ? bakePlan(command) : bakeAll(command);
 }
 

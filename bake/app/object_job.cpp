@@ -192,7 +192,7 @@ void bakeObjectFiles(BakeRun& run) {
   if (!bytes) return run.fail(outcome.output, bytes.error());
   outcome.pack_bytes = *bytes;
   outcome.seconds = secondsSince(start);
-  if (command.saysMore()) printObjectTable(outcome, set.objects);
+  if (command.saysMore()) printObjectTable(outcome, set.objects, command.verbosity);
   for (std::size_t n = 0; n < set.objects.size(); ++n) {
     run.succeed(objectReport(set.objects[n], outcomes[n], outcome));
   }

@@ -27,7 +27,8 @@ struct ObjectSetOutcome {
 };
 
 /// A line per object: triangles, box, spheres per radius, gap, protrusion, seconds.
-void printObjectTable(const ObjectSetOutcome& outcome, const std::vector<BakedObject>& objects);
+void printObjectTable(const ObjectSetOutcome& outcome, const std::vector<BakedObject>& objects,
+                      Verbosity verbosity);
 
 /// The object's entry of the report.
 [[nodiscard]] Json objectReport(const BakedObject& object, const ObjectOutcome& outcome,

@@ -5,6 +5,7 @@
 #include "galactic/printable.h"
 #include "object_outcome.h"
 #include "render_job.h"
+#include "warning_list.h"
 
 namespace galactic::bake {
 namespace {
@@ -64,7 +65,8 @@ std::string millimetres(const LengthStatistics& lengths) {
                      1e3 * lengths.max);
 }
 
-void printObjectTable(const ObjectSetOutcome& outcome, const std::vector<BakedObject>& objects) {
+void printObjectTable(const ObjectSetOutcome& outcome, const std::vector<BakedObject>& objects,
+                      Verbosity verbosity) {
   std::size_t longest = 6;
   for (const BakedObject& object : objects) longest = std::max(longest, object.name.size());
   const int name_width = static_cast<int>(longest);
@@ -78,14 +80,13 @@ void printObjectTable(const ObjectSetOutcome& outcome, const std::vector<BakedOb
     printObject(object, outcome.radii.size(), name_width);
   }
   printAllRenderMeshes(objects);
-  for (const std::string& warning : outcome.warnings) {
-    fmt::print("  warning: {}\n", printable(warning));
-  }
+  std::vector<std::string> warnings = outcome.warnings;
   for (const BakedObject& object : objects) {
     for (const std::string& warning : object.warnings) {
-      fmt::print("  warning: {}: {}\n", printable(object.name), printable(warning));
+      warnings.push_back(fmt::format("object '{}': {}", object.name, warning));
     }
   }
+  printWarnings(warnings, verbosity);
   fmt::print("  spheres of radius {} m; gap and protrusion: mean/p95/max\n", fmt::join(radii, "+"));
   fmt::print("  {:.3f} s; {:.2f} MB\n", outcome.seconds,
              static_cast<double>(outcome.pack_bytes) / 1e6);

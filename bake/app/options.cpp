@@ -139,11 +139,14 @@ void addRunOptions(CLI::App& app, BakeCommand& command) {
       "-q,--quiet", [&command] { command.verbosity = Verbosity::kQuiet; }, "Only errors");
   app.add_flag_callback(
       "--print-recipe",
-      [] {
+      [&command] {
+        // The inputs, which stand first among the options, have been read.
+        command.robot.print_recipe = !command.inputs.empty();
+        if (command.robot.print_recipe) return;
         fmt::print("{}", describeRobotRecipe());
         throw CLI::Success();
       },
-      "Print a robot recipe with every key explained");
+      "Print a robot recipe: with every key explained, or a draft for the URDF that is given");
   app.set_version_flag("--version", "galactic-bake " GALACTIC_VERSION);
 }
 
@@ -194,7 +197,7 @@ class CommandLine {
                              scene_.understand(command_, seeds_), shape_.understand(command_),
                              robot_.understand(command_), render_.understand(command_),
                              episodes_.understand(command_, seeds_), checkCollection(),
-                             plan_.understand(command_), checkPairs()}) {
+                             plan_.understand(command_), checkDraft(), checkPairs()}) {
       if (!step) return step;
     }
     // Movable objects may be small.
@@ -255,6 +258,22 @@ class CommandLine {
   }
 
   [[nodiscard]] bool isTyped(const char* option) const { return app_.count(option) > 0; }
+
+  /// A draft is of one robot, and printed.
+  [[nodiscard]] Result<void> checkDraft() const {
+    if (!command_.robot.print_recipe) return {};
+    if (!isRobot(command_.kind) || command_.inputs.size() != 1) {
+      return fail(ErrorCode::kInvalidInput, "--print-recipe",
+                  "drafts a recipe of one URDF; give one, or no input to see every key");
+    }
+    for (const char* ignored : {"--out", "--recipe", "--spheres", "--report", "--check"}) {
+      if (!isTyped(ignored)) continue;
+      return fail(ErrorCode::kInvalidInput, ignored,
+                  "does not go with --print-recipe, which prints a recipe and bakes nothing; leave "
+                  "it out");
+    }
+    return {};
+  }
 
   /// Options that would be ignored beside others, or without them.
   [[nodiscard]] Result<void> checkPairs() const {

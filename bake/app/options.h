@@ -38,6 +38,8 @@ struct RobotOptions {
   /// Hand-made spheres (spherized URDF, SRDF); empty: none.
   std::filesystem::path spheres;
   bool allow_missing = false;
+  /// Print a draft of a recipe for the robot, and bake nothing.
+  bool print_recipe = false;
 };
 
 /// Where episodes come from.

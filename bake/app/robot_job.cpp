@@ -1,5 +1,7 @@
 #include "robot_job.h"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <optional>
 #include <string_view>
@@ -45,6 +47,15 @@ Result<std::optional<RobotRecipe>> readRecipe(const std::filesystem::path& path,
   append(collection->warnings, robot.warnings);
   append(converted->warnings, robot.warnings);
   return std::move(converted->recipe);
+}
+
+Result<SourceRobot> readRobot(const std::filesystem::path& input, const BakeCommand& command) {
+  UrdfImportOptions import;
+  import.allow_outside = command.allow_outside;
+  import.packages = command.robot.packages;
+  import.search_roots = rosPackagePath();
+  import.allow_missing = command.robot.allow_missing;
+  return importUrdf(input, import);
 }
 
 Result<std::optional<HandSpheres>> readSpheres(const std::filesystem::path& path,
@@ -99,12 +110,7 @@ Result<Json> bakeRobotFile(const std::filesystem::path& input, BakeRun& run) {
   outcome.output = run.outputFor(input);
   const std::string item = input.filename().string();
   run.line().show(item, "import", 0);
-  UrdfImportOptions import;
-  import.allow_outside = command.allow_outside;
-  import.packages = command.robot.packages;
-  import.search_roots = rosPackagePath();
-  import.allow_missing = command.robot.allow_missing;
-  auto robot = importUrdf(input, import);
+  auto robot = readRobot(input, command);
   if (!robot) return tl::unexpected(robot.error());
   outcome.import_seconds = secondsSince(start);
   outcome.resolutions = robot->resolutions;
@@ -137,6 +143,13 @@ Result<Json> bakeRobotFile(const std::filesystem::path& input, BakeRun& run) {
   run.line().clear();
   if (command.saysMore()) printRobotTable(outcome, command.verbosity);
   return robotReport(outcome);
+}
+
+Result<void> printRecipeDraft(const BakeCommand& command) {
+  const auto robot = readRobot(command.inputs.front(), command);
+  if (!robot) return tl::unexpected(robot.error());
+  fmt::print("{}", draftRobotRecipe(*robot));
+  return {};
 }
 
 }  // namespace galactic::bake

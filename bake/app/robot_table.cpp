@@ -7,6 +7,7 @@
 #include "object_outcome.h"
 #include "render_job.h"
 #include "robot_outcome.h"
+#include "warning_list.h"
 
 namespace galactic::bake {
 namespace {
@@ -59,9 +60,7 @@ void printRobotTable(const RobotOutcome& outcome, Verbosity verbosity) {
   if (verbosity == Verbosity::kVerbose) {
     for (const std::string& found : outcome.resolutions) fmt::print("  {}\n", printable(found));
   }
-  for (const std::string& warning : robot.warnings) {
-    fmt::print("  warning: {}\n", printable(warning));
-  }
+  printWarnings(robot.warnings, verbosity);
   fmt::print(
       "  {:.3f} s: import {:.3f}, spheres {:.3f}, self-collision {:.3f}, render {:.3f}; {:.2f} "
       "MB\n",

@@ -6,6 +6,7 @@
 #include "galactic/printable.h"
 #include "render_job.h"
 #include "scene_outcome.h"
+#include "warning_list.h"
 
 namespace galactic::bake {
 namespace {
@@ -73,8 +74,7 @@ void printSceneTable(const SceneOutcome& outcome, Verbosity verbosity) {
   printGrids(scene);
   printRenderMeshes(scene.render_meshes);
   if (verbosity == Verbosity::kVerbose) printDetails(scene);
-  for (const std::string& warning : scene.warnings)
-    fmt::print("  warning: {}\n", printable(warning));
+  printWarnings(scene.warnings, verbosity);
   const StageTimes& t = outcome.times;
   const double total =
       t.import + t.clean + t.columns + t.regions + t.encode + t.check + t.render + t.write;

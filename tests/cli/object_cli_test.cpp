@@ -153,7 +153,8 @@ TEST_F(ObjectCli, AsksAboutUnits) {
   write("mug.obj", brick());
   const ProgramRun tiny = run({"mug.obj", "--as", "object", "--scale", "0.0005"});
   EXPECT_EQ(tiny.exit_code, 0) << tiny.err;
-  EXPECT_THAT(tiny.out, HasSubstr("warning: mug: is only 1.5 mm large; is the unit right?"));
+  EXPECT_THAT(tiny.out,
+              HasSubstr("warning: object 'mug': is only 1.5 mm large; is the unit right?"));
   const ProgramRun huge = run({"mug.obj", "--as", "object", "--scale", "30"});
   EXPECT_EQ(huge.exit_code, 5);
   EXPECT_THAT(huge.err, AllOf(StartsWith("galactic-bake: mug.obj: mesh: its extents are"),
@@ -167,7 +168,7 @@ TEST_F(ObjectCli, UnderstandsEveryOptionOfObjects) {
   EXPECT_EQ(bake({"mug.obj", "--no-support"}).exit_code, 0);
   const ProgramRun one = bake({"mug.obj", "--max-spheres", "1", "--report", "report.json"});
   EXPECT_EQ(one.exit_code, 0);
-  EXPECT_THAT(one.out, HasSubstr("warning: mug: 1 spheres leave a gap"));
+  EXPECT_THAT(one.out, HasSubstr("warning: object 'mug': 1 spheres leave a gap"));
   EXPECT_EQ(json::parse(content("report.json"))["baked"][0]["spheres"]["count"], 1);
   EXPECT_EQ(bake({"mug.obj", "--dry-run", "-o", "none.pack"}).exit_code, 0);
   EXPECT_FALSE(has("none.pack"));
@@ -232,10 +233,11 @@ TEST_F(ObjectCli, TakesBoxesAndSpheresOfACollection) {
   const ProgramRun run =
       bake({"set", "--up", "z", "--collection", "c.collection.json", "--report", "report.json"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out,
-              AllOf(HasSubstr("as given"), HasSubstr("warning: collection.author is not used"),
-                    HasSubstr("warning: cup: the collection does not name it: box and spheres are "
-                              "fitted")));
+  EXPECT_THAT(
+      run.out,
+      AllOf(HasSubstr("as given"), HasSubstr("warning: collection.author is not used"),
+            HasSubstr("warning: object 'cup': the collection does not name it: box and spheres are "
+                      "fitted")));
   const json baked = json::parse(content("report.json"))["baked"];
   ASSERT_EQ(baked.size(), 2U);
   EXPECT_EQ(baked[0]["authored_spheres"], false);

@@ -1,4 +1,5 @@
 // galactic-bake --as robot as a user meets it.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,6 +21,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::StartsWith;
 
 /// A post of 10 cm with an arm that turns, and a hand that slides along it.
@@ -161,6 +163,45 @@ TEST_F(RobotCli, PrintsARecipeThatItReads) {
                                HasSubstr("the robot 'arm' has no link")));
 }
 
+TEST_F(RobotCli, DraftsARecipeThatBakes) {
+  const ProgramRun printed = run({"arm.urdf", "--print-recipe"});
+  EXPECT_EQ(printed.exit_code, 0) << printed.err;
+  EXPECT_THAT(printed.out, AllOf(HasSubstr("link = \"hand\""), HasSubstr("Guess")));
+  EXPECT_FALSE(has("arm.pack"));
+  write("draft.toml", printed.out);
+  const ProgramRun baked = bake({"arm.urdf", "--recipe", "draft.toml"});
+  EXPECT_EQ(baked.exit_code, 0) << baked.err;
+  const Opened opened = open("arm.pack");
+  ASSERT_TRUE(opened.robot);
+  EXPECT_EQ(opened.robot->endEffector()->link, *opened.robot->findLink("hand"));
+}
+
+TEST_F(RobotCli, BakesARobotOfOtherSimulatorsWithWarnings) {
+  std::string robot =
+      "<robot name=\"cart\"><joint name=\"x\" type=\"prismatic\"><parent link=\"world\"/><child "
+      "link=\"base\"/></joint><link name=\"base\"><collision><geometry><box size=\"0.2 0.2 "
+      "0.2\"/></geometry></collision></link>";
+  for (const char* arm : {"a", "b", "c", "d"}) {
+    robot += fmt::format(
+        "<link name=\"{0}\"/><joint name=\"j{0}\" type=\"revolute\"><parent link=\"base\"/><child "
+        "link=\"{0}\"/></joint>",
+        arm);
+  }
+  write("cart.urdf", robot + "</robot>");
+  const ProgramRun baked = bake({"cart.urdf"});
+  EXPECT_EQ(baked.exit_code, 0) << baked.err;
+  EXPECT_THAT(
+      baked.out,
+      AllOf(HasSubstr("warning: joint 'x': it hangs from a link 'world'"),
+            HasSubstr("warning: joint 'x': the URDF states no limits for it; -1 to 1 m are "
+                      "assumed"),
+            HasSubstr("warning: joint 'ja': the URDF states no limits for it; -3.14 to 3.14 rad "
+                      "are assumed, [limits] of the recipe may state others (and 3 more of this "
+                      "kind; -v lists them)"),
+            Not(HasSubstr("'jb'"))));
+  EXPECT_THAT(bake({"cart.urdf", "-v"}).out, HasSubstr("'jd': the URDF states no limits"));
+}
+
 TEST_F(RobotCli, TakesHandMadeSpheresAndWarnsOfOtherRadii) {
   write("arm.srdf",
         "<robot name=\"arm\"><link_sphere_approximation link=\"boom\"><sphere center=\"0.1 0 0\" "
@@ -227,6 +268,15 @@ TEST_F(RobotCli, ExplainsEveryRefusal) {
       {{"arm.urdf", "--as", "scene", "--recipe", "arm.toml"},
        1,
        "--recipe: does not go with --as scene"},
+      {{"arm.urdf", "arm.urdf", "--print-recipe"},
+       1,
+       "--print-recipe: drafts a recipe of one URDF; give one, or no input to see every key"},
+      {{"--print-recipe", "arm.stl"}, 1, "--print-recipe: drafts a recipe of one URDF"},
+      {{"arm.urdf", "--print-recipe", "-o", "r.toml"},
+       1,
+       "--out: does not go with --print-recipe, which prints a recipe and bakes nothing; leave it "
+       "out"},
+      {{"missing.urdf", "--print-recipe"}, 2, "missing.urdf"},
       {{"missing.urdf"}, 2, "missing.urdf"},
       {{"arm.urdf", "--recipe", "missing.toml"}, 2, "missing.toml"},
       {{"arm.urdf", "--spheres", "missing.srdf"}, 2, "missing.srdf"},

@@ -39,6 +39,7 @@ class RecipeCheck {
   /// The link below a joint that can be set.
   [[nodiscard]] Result<const SourceLink*> findJoint(const RecipeName& name) const;
   [[nodiscard]] Result<void> checkJoint(const RecipeJoint& joint) const;
+  [[nodiscard]] Result<void> checkLimits(const RecipeLimits& given) const;
   [[nodiscard]] Result<void> checkStart(const RecipeStart& start) const;
   [[nodiscard]] Result<void> checkSpheres(const RecipeLinkSpheres& spheres) const;
 
@@ -79,7 +80,7 @@ Result<const SourceLink*> RecipeCheck::findJoint(const RecipeName& name) const {
 Result<void> RecipeCheck::checkJoint(const RecipeJoint& joint) const {
   const auto found = findJoint(joint.joint);
   if (!found) return tl::unexpected(found.error());
-  const auto& limits = (*found)->limits;
+  const auto limits = jointLimits(**found, &recipe_);
   if (!limits) return {};
   for (const auto& [value, key] : {std::pair(joint.min, "min"), std::pair(joint.max, "max")}) {
     if (!value || (*value >= limits->lower && *value <= limits->upper)) continue;
@@ -94,14 +95,24 @@ Result<void> RecipeCheck::checkJoint(const RecipeJoint& joint) const {
   return {};
 }
 
+Result<void> RecipeCheck::checkLimits(const RecipeLimits& given) const {
+  const auto found = findJoint(given.joint);
+  if (!found) return tl::unexpected(found.error());
+  if ((*found)->joint_type != JointType::kContinuous) return {};
+  return invalid(given.joint.where,
+                 fmt::format("joint '{}' is continuous and has no limits; narrow what actions do "
+                             "with min and max of its [[joints]]",
+                             given.joint.name));
+}
+
 Result<void> RecipeCheck::checkStart(const RecipeStart& start) const {
   const auto found = findJoint(start.joint);
   if (!found) return tl::unexpected(found.error());
   std::optional<double> lower;
   std::optional<double> upper;
-  if ((*found)->limits) {
-    lower = (*found)->limits->lower;
-    upper = (*found)->limits->upper;
+  if (const auto limits = jointLimits(**found, &recipe_)) {
+    lower = limits->lower;
+    upper = limits->upper;
   }
   for (const RecipeJoint& joint : recipe_.joints) {
     if (joint.joint.name != start.joint.name) continue;
@@ -134,6 +145,9 @@ Result<void> RecipeCheck::run() const {
   if (recipe_.laser) {
     if (auto checked = checkLink(recipe_.laser->link); !checked) return checked;
   }
+  for (const RecipeLimits& limits : recipe_.limits) {
+    if (auto checked = checkLimits(limits); !checked) return checked;
+  }
   for (const RecipeJoint& joint : recipe_.joints) {
     if (auto checked = checkJoint(joint); !checked) return checked;
   }
@@ -155,6 +169,14 @@ Result<void> RecipeCheck::run() const {
 }
 
 }  // namespace
+
+std::optional<JointLimits> jointLimits(const SourceLink& link, const RobotRecipe* recipe) {
+  if (recipe == nullptr) return link.limits;
+  for (const RecipeLimits& given : recipe->limits) {
+    if (given.joint.name == link.joint_name) return given.limits;
+  }
+  return link.limits;
+}
 
 Result<void> checkRecipe(const RobotRecipe& recipe, const SourceRobot& robot) {
   if (robot.links.empty()) {

@@ -53,6 +53,11 @@ max = 1.5
 name = "shoulder_lift_joint"
 step = 0.196
 
+# Limits instead of the URDF's, or for want of them: lower, upper; of any revolute or prismatic joint.
+# Without both, a revolute joint has -pi to pi and a prismatic one -1 to 1 m, with a warning.
+[limits]
+torso_lift_joint = [0.0, 0.38]
+
 # Where joints start, controlled or not; default 0, or the limit nearest to 0.
 [start_pose]
 torso_lift_joint = 0.2
@@ -62,7 +67,9 @@ elbow_flex_joint = 1.57
 [spheres]
 eps = 0.020                     # farthest gap between surface and spheres; default 0.020
 tau = 0.040                     # farthest protrusion of a sphere; default 0.040
-max_spheres = 100               # of the whole robot; default 100
+max_gap = 0.050                 # without max_spheres: no gap is wider, if eps allows; default 0.050
+# max_spheres = 100             # of the whole robot, instead of max_gap; default: 100, and more
+#                               # where gaps would be wider than max_gap
 clip_height = 0.020             # lowest height above the ground that matters; default 0.020
 
 # A link that differs, by its name. One of: other tolerances, skip, merge_with_parent, spheres.

@@ -64,6 +64,7 @@ class RecipeReader {
   void readFootprint(RecipeTable& base);
   void readJoints();
   void readJoint(const TomlValue& entry, std::size_t index);
+  void readLimits();
   void readStartPose();
   void readSpheres();
   void readLinkSpheres(const std::string& link, const TomlValue& entry);
@@ -191,6 +192,19 @@ void RecipeReader::readJoints() {
   for (std::size_t i = 0; i < list->size(); ++i) readJoint((*list)[i], i);
 }
 
+void RecipeReader::readLimits() {
+  auto table = open(root_, "limits", root_.table("limits"));
+  if (!table) return;
+  for (const auto& [joint, value] : *root_.table("limits")) {
+    const auto [lower, upper] = table->numbersOf<2>(value, table->full(joint), kJointPosition);
+    if (lower > upper) {
+      errors_.at(value.line, fmt::format("{} = [{}, {}]: the lower limit comes first",
+                                         table->full(joint), lower, upper));
+    }
+    recipe_.limits.push_back({{joint, errors_.place(value.line)}, {lower, upper}});
+  }
+}
+
 void RecipeReader::readStartPose() {
   auto table = open(root_, "start_pose", root_.table("start_pose"));
   if (!table) return;
@@ -255,7 +269,15 @@ void RecipeReader::readSpheres() {
   RecipeSpheres& spheres = recipe_.spheres;
   spheres.eps = table->number("eps", kTolerance).value_or(spheres.eps);
   spheres.tau = table->number("tau", kTolerance).value_or(spheres.tau);
-  spheres.max_spheres = table->count("max_spheres", kSphereCount).value_or(spheres.max_spheres);
+  spheres.max_spheres = table->count("max_spheres", kSphereCount);
+  const auto max_gap = table->number("max_gap", kTolerance);
+  if (max_gap && spheres.max_spheres) {
+    errors_.at(
+        table->line(),
+        "spheres has both max_spheres and max_gap; keep one of them: a number of spheres, or "
+        "the widest gap");
+  }
+  spheres.max_gap = max_gap.value_or(spheres.max_gap);
   spheres.clip_height = table->number("clip_height", kHeight).value_or(spheres.clip_height);
   if (const TomlTable* links = table->table("links")) {
     for (const auto& [link, entry] : *links) readLinkSpheres(link, entry);
@@ -288,6 +310,7 @@ RobotRecipe RecipeReader::read() {
   readLaser();
   readBase();
   readJoints();
+  readLimits();
   readStartPose();
   readSpheres();
   readIgnoredPairs();

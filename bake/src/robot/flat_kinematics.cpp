@@ -22,22 +22,24 @@ float nearestFloat(double value) {
   return static_cast<float>(std::clamp(value, -kLargest, kLargest));
 }
 
-/// Limits of each value of a joint: the URDF's belong to joints of one value.
-PositionLimits limitsOf(const SourceLink& link) {
-  if (!link.limits || positionCount(link.joint_type) != 1) return {-kUnlimited, kUnlimited};
-  return {nearestFloat(link.limits->lower), nearestFloat(link.limits->upper)};
+/// Limits of each value of a joint: those that are given belong to joints of one value.
+PositionLimits positionLimits(const SourceLink& link, const RobotRecipe* recipe) {
+  const std::optional<JointLimits> limits = jointLimits(link, recipe);
+  if (!limits || positionCount(link.joint_type) != 1) return {-kUnlimited, kUnlimited};
+  return {nearestFloat(limits->lower), nearestFloat(limits->upper)};
 }
 
 float nearestToZero(const PositionLimits& limits) {
   return std::clamp(0.0F, limits.lower, limits.upper);
 }
 
-void addPositions(const SourceLink& link, LinkFrame& frame, FlatKinematics& flat) {
+void addPositions(const SourceLink& link, const RobotRecipe* recipe, LinkFrame& frame,
+                  FlatKinematics& flat) {
   const std::uint32_t count = positionCount(link.joint_type);
   if (count == 0) return;
   frame.position = static_cast<std::int32_t>(flat.limits.size());
   for (std::uint32_t n = 0; n < count; ++n) {
-    flat.limits.push_back(limitsOf(link));
+    flat.limits.push_back(positionLimits(link, recipe));
     flat.start_positions.push_back(nearestToZero(flat.limits.back()));
   }
   // The quaternion of a floating joint starts as no rotation.
@@ -93,7 +95,7 @@ FlatKinematics flattenKinematics(const SourceRobot& robot, const RobotRecipe* re
     frame.axis = vectorOf(link.axis);
     frame.parent = link.parent;
     frame.type = link.parent < 0 ? JointType::kFixed : link.joint_type;
-    if (link.parent >= 0 && !link.mimic) addPositions(link, frame, flat);
+    if (link.parent >= 0 && !link.mimic) addPositions(link, recipe, frame, flat);
   }
   for (std::size_t n = 0; n < robot.links.size(); ++n) {
     const SourceLink& link = robot.links[n];

@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kDefaultEps = 0.020;
 constexpr double kDefaultTau = 0.040;
-constexpr std::uint32_t kDefaultMaxSpheres = 100;
+/// What a robot gets where nobody states a number, and more where gaps would be wide.
+constexpr std::uint32_t kUsualSpheres = 100;
 constexpr double kDefaultClipHeight = 0.020;
 
 /// What one group asks for.
@@ -191,12 +192,23 @@ Result<void> takeByHand(const GroupPlan& plan, const std::string& link, BakedGro
   return {};
 }
 
-/// The spheres that the groups without hand-made ones may have together; 0: no limit.
-std::uint32_t budgetOf(const SphereTask& task, std::size_t by_hand) {
-  const std::uint32_t most = task.options.max_spheres.value_or(
-      task.recipe == nullptr ? kDefaultMaxSpheres : task.recipe->spheres.max_spheres);
-  if (most == 0) return 0;
-  return most > by_hand ? most - static_cast<std::uint32_t>(by_hand) : 1;
+/// The spheres that the groups without hand-made ones may have together.
+struct SphereBudget {
+  /// 0: no limit.
+  std::uint32_t most = 0;
+  /// Where nobody stated a number: sets with wider gaps are not taken, whatever it takes. Metres.
+  std::optional<double> widest_gap;
+};
+
+SphereBudget budgetOf(const SphereTask& task, std::size_t by_hand) {
+  const RecipeSpheres spheres = task.recipe == nullptr ? RecipeSpheres() : task.recipe->spheres;
+  const auto stated = task.options.max_spheres ? task.options.max_spheres : spheres.max_spheres;
+  SphereBudget budget;
+  if (!stated) budget.widest_gap = spheres.max_gap;
+  const std::uint32_t most = stated.value_or(kUsualSpheres);
+  if (most == 0) return budget;
+  budget.most = most > by_hand ? most - static_cast<std::uint32_t>(by_hand) : 1;
+  return budget;
 }
 
 /// A curve is refined while one of its tightest sets, this many, is taken: the next may be worth
@@ -211,7 +223,7 @@ class BudgetedCurves {
       : plans_(plans), groups_(groups), task_(task), curves_(plans.size()) {}
 
   /// Refines each curve as far as the budget reaches.
-  Result<void> spend(std::uint32_t budget) {
+  Result<void> spend(const SphereBudget& budget) {
     std::vector<std::size_t> wanted;
     for (std::size_t n = 0; n < plans_.size(); ++n) {
       if (!plans_[n].authored && plans_[n].hasSurface()) wanted.push_back(n);
@@ -221,7 +233,8 @@ class BudgetedCurves {
                      [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
     while (!wanted.empty()) {
       if (auto refined = refine(wanted); !refined) return refined;
-      chosen_ = spendBudget(sets(), budget);
+      chosen_ = budget.widest_gap ? spendBudgetWithin(sets(), budget.most, *budget.widest_gap)
+                                  : spendBudget(sets(), budget.most);
       std::erase_if(wanted, [&](std::size_t n) {
         return curves_[n]->complete() || chosen_[n] + kLookAhead < curves_[n]->sets().size();
       });
@@ -297,7 +310,7 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
                      .tau = plans.back().fit.tau,
                      .authored = plans.back().authored});
   }
-  const std::uint32_t budget = budgetOf(task, by_hand);
+  const SphereBudget budget = budgetOf(task, by_hand);
   BudgetedCurves curves(plans, groups, task);
   if (auto spent = curves.spend(budget); !spent) return tl::unexpected(spent.error());
   std::size_t fitted = 0;
@@ -317,11 +330,11 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
       fitted += baked[n].spheres.spheres.size();
     }
   }
-  if (budget != 0 && fitted > budget) {
+  if (!budget.widest_gap && budget.most != 0 && fitted > budget.most) {
     warnings.push_back(fmt::format(
         "{} spheres are the fewest that cover every group of links, {} are allowed; merge links in "
         "the recipe or allow more with --max-spheres",
-        fitted, budget));
+        fitted, budget.most));
   }
   return baked;
 }

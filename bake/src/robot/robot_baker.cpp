@@ -121,6 +121,7 @@ class RobotBaker {
       baked_.joint_names.push_back(link.joint_name);
     }
     baked_.kinematics = flattenKinematics(robot_, recipe_);
+    warnOfAssumedLimits();
     makeSurfaces();
     if (auto made = makeSpheres(); !made) return tl::unexpected(made.error());
     {
@@ -132,6 +133,22 @@ class RobotBaker {
   }
 
  private:
+  void warnOfAssumedLimits() {
+    for (const SourceLink& link : robot_.links) {
+      if (!link.limits_are_assumed || link.mimic) continue;
+      const bool is_given =
+          recipe_ != nullptr &&
+          std::any_of(recipe_->limits.begin(), recipe_->limits.end(),
+                      [&](const RecipeLimits& l) { return l.joint.name == link.joint_name; });
+      if (is_given) continue;
+      baked_.warnings.push_back(
+          fmt::format("joint '{}': the URDF states no limits for it; {:.3g} to {:.3g} {} are "
+                      "assumed, [limits] of the recipe may state others",
+                      link.joint_name, link.limits->lower, link.limits->upper,
+                      link.joint_type == JointType::kPrismatic ? "m" : "rad"));
+    }
+  }
+
   void makeSurfaces() {
     for (const SourceLink& link : robot_.links) {
       baked_.collision_surfaces.push_back(surfaceOfShapes(robot_, link.collisions));

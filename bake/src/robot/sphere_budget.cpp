@@ -99,4 +99,25 @@ std::vector<std::size_t> spendBudget(const std::vector<SphereSets>& curves, std:
   return table.best(curves);
 }
 
+std::vector<std::size_t> spendBudgetWithin(const std::vector<SphereSets>& curves,
+                                           std::uint32_t budget, double widest_gap) {
+  std::vector<SphereSets> narrow(curves.size());
+  std::vector<std::vector<std::size_t>> places(curves.size());
+  for (std::size_t n = 0; n < curves.size(); ++n) {
+    for (std::size_t set = 0; set < curves[n].size(); ++set) {
+      const bool is_last = set + 1 == curves[n].size();
+      const bool fits = curves[n][set].quality.gap.max <= widest_gap;
+      if (!fits && !(is_last && places[n].empty())) continue;
+      narrow[n].push_back(curves[n][set]);
+      places[n].push_back(set);
+    }
+  }
+  const auto fewest = static_cast<std::uint32_t>(coarsestCount(narrow));
+  std::vector<std::size_t> chosen = spendBudget(narrow, std::max(budget, fewest));
+  for (std::size_t n = 0; n < curves.size(); ++n) {
+    if (!places[n].empty()) chosen[n] = places[n][chosen[n]];
+  }
+  return chosen;
+}
+
 }  // namespace galactic::bake

@@ -19,4 +19,9 @@ using SphereSets = std::vector<SphereSet>;
 [[nodiscard]] std::vector<std::size_t> spendBudget(const std::vector<SphereSets>& curves,
                                                    std::uint32_t budget);
 
+/// The same among the sets without gaps wider than `widest_gap`, metres; of a curve that has none
+/// of them, its finest set. The budget gives way where these alone have more spheres.
+[[nodiscard]] std::vector<std::size_t> spendBudgetWithin(const std::vector<SphereSets>& curves,
+                                                         std::uint32_t budget, double widest_gap);
+
 }  // namespace galactic::bake

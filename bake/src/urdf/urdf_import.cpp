@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -16,6 +17,12 @@ namespace galactic::bake {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// A revolute joint turns all the way round, a prismatic one moves a metre either way.
+JointLimits assumedLimits(JointType type) {
+  const double most = type == JointType::kRevolute ? std::numbers::pi : 1;
+  return {-most, most};
+}
 
 /// Puts the joints of the model, in the runtime's frame, into the links of `robot`.
 void addJoints(const UrdfModel& model, const std::vector<TreeLink>& tree,
@@ -39,7 +46,12 @@ void addJoints(const UrdfModel& model, const std::vector<TreeLink>& tree,
     link.joint_type = joint.type;
     link.parent_from_joint = conjugate(up_from_urdf, joint.parent_from_joint, urdf_from_up);
     link.axis = transformed(up_from_urdf, joint.axis);
-    if (joint.has_limits) link.limits = JointLimits{joint.lower, joint.upper};
+    if (joint.has_limits) {
+      link.limits = JointLimits{joint.lower, joint.upper};
+    } else if (joint.type == JointType::kRevolute || joint.type == JointType::kPrismatic) {
+      link.limits = assumedLimits(joint.type);
+      link.limits_are_assumed = true;
+    }
     if (const auto& mimic = mimics[*tree[i].joint]) {
       link.mimic = Mimic{.link = link_of_joint[mimic->joint],
                          .multiplier = mimic->multiplier,

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "import/affine.h"
+#include "urdf/urdf_reader_text.h"
 
 namespace galactic::bake {
 namespace {
@@ -87,75 +88,6 @@ Result<const TiXmlElement*> robotElement(TiXmlDocument& document, const std::str
     }
   }
   return robot;
-}
-
-/// Lists of numbers that the parser splits at blanks only.
-constexpr std::array<std::string_view, 5> kNumberLists{"xyz", "rpy", "scale", "size", "rgba"};
-
-/// Commas between the numbers of one kind of attribute: files that have any have many.
-struct Commas {
-  std::string attribute;
-  /// Of the first of them.
-  std::string sentence;
-  std::size_t count = 0;
-};
-
-void countCommas(const TiXmlElement& element, const TiXmlAttribute& list,
-                 std::vector<Commas>& commas) {
-  const auto is_of_kind = [&](const Commas& known) { return known.attribute == list.Name(); };
-  auto known = std::find_if(commas.begin(), commas.end(), is_of_kind);
-  if (known == commas.end()) {
-    known = commas.insert(commas.end(), {.attribute = list.Name(),
-                                         .sentence = fmt::format(
-                                             "line {}: {}=\"{}\" has commas, which count as blanks",
-                                             element.Row(), list.Name(), list.Value())});
-  }
-  ++known->count;
-}
-
-/// Makes blanks of what else separates numbers in real files: commas (which are counted), tabs and
-/// line ends. Returns whether anything changed.
-bool separateByBlanks(TiXmlElement& element, std::vector<Commas>& commas) {
-  bool changed = false;
-  for (auto* a = element.FirstAttribute(); a != nullptr; a = a->Next()) {
-    const bool is_list =
-        std::find(kNumberLists.begin(), kNumberLists.end(), a->Name()) != kNumberLists.end();
-    std::string value = a->Value();
-    if (!is_list || value.find_first_of(",\t\r\n") == std::string::npos) continue;
-    if (value.find(',') != std::string::npos) countCommas(element, *a, commas);
-    std::replace_if(
-        value.begin(), value.end(),
-        [](char c) { return c == ',' || c == '\t' || c == '\r' || c == '\n'; }, ' ');
-    a->SetValue(value);
-    changed = true;
-  }
-  return changed;
-}
-
-/// The text for the parser: as it is, or printed again where separators had to change.
-std::string textForParser(TiXmlDocument& document, const std::string& text,
-                          std::vector<std::string>& warnings) {
-  bool changed = false;
-  std::vector<Commas> commas;
-  TiXmlElement* at = document.RootElement();
-  while (at != nullptr) {
-    changed = separateByBlanks(*at, commas) || changed;
-    TiXmlElement* next = at->FirstChildElement();
-    while (next == nullptr && at != nullptr) {
-      next = at->NextSiblingElement();
-      at = at->Parent() == nullptr ? nullptr : at->Parent()->ToElement();
-    }
-    at = next;
-  }
-  for (const Commas& kind : commas) {
-    warnings.push_back(kind.count == 1
-                           ? kind.sentence
-                           : fmt::format("{} ({} times in the file)", kind.sentence, kind.count));
-  }
-  if (!changed) return text;
-  TiXmlPrinter printer;
-  document.Accept(&printer);
-  return printer.Str();
 }
 
 /// Names of the children of <robot> called `tag`, in the order of the text: the parser's library
@@ -298,11 +230,11 @@ Result<UrdfModel> parseUrdf(const std::string& text, const std::string& where) {
   const auto robot = robotElement(document, text, where);
   if (!robot) return tl::unexpected(robot.error());
   UrdfModel model;
-  const std::string plain_text = textForParser(document, text, model.warnings);
+  const ParserText prepared = textForParser(document, text, model.warnings);
   LogCapture log;
   urdf::ModelInterfaceSharedPtr parsed;
   try {
-    parsed = urdf::parseURDF(plain_text);
+    parsed = urdf::parseURDF(prepared.text);
   } catch (const std::exception& e) {
     return fail(ErrorCode::kInvalidInput, where, fmt::format("it cannot be read: {}", e.what()));
   }
@@ -313,7 +245,10 @@ Result<UrdfModel> parseUrdf(const std::string& text, const std::string& where) {
     if (const auto link = parsed->getLink(name)) model.links.push_back(toLink(*link));
   }
   for (const std::string& name : namesInOrder(**robot, "joint")) {
-    if (const auto joint = parsed->getJoint(name)) model.joints.push_back(toJoint(*joint));
+    const auto joint = parsed->getJoint(name);
+    if (!joint) continue;
+    UrdfJoint& converted = model.joints.emplace_back(toJoint(*joint));
+    if (prepared.without_limits.contains(name)) converted.has_limits = false;
   }
   for (std::string& warning : log.takeWarnings()) model.warnings.push_back(std::move(warning));
   return model;

@@ -189,9 +189,7 @@ Result<void> checkLimits(UrdfJoint& joint, const std::string& place,
     joint.has_limits = false;
     return {};
   }
-  if (!joint.has_limits) {
-    return invalid(place, "it has no <limit>; give lower and upper, or make it continuous");
-  }
+  if (!joint.has_limits) return {};
   if (joint.lower > joint.upper) {
     return invalid(place, fmt::format("its lower limit {} is above its upper limit {}; swap or "
                                       "correct them",

@@ -51,6 +51,16 @@ std::vector<Misfit> misfits() {
        "joint 'shoulder' starts at 3, above its limit 2"},
       {"StartBelowNarrowedRange", joint("shoulder", "min = 0.5\n[start_pose]\nshoulder = 0\n"),
        "r.toml:11", "joint 'shoulder' starts at 0, below its limit 0.5"},
+      {"LimitsOfUnknownJoint", with("[limits]\nshouldr = [0, 1]\n"), "r.toml:7",
+       "the robot 'small' has no joint 'shouldr'; did you mean 'shoulder'?"},
+      {"LimitsOfAContinuousJoint", with("[limits]\nwrist = [0, 1]\n"), "r.toml:7",
+       "joint 'wrist' is continuous and has no limits; narrow what actions do with min and max of "
+       "its [[joints]]"},
+      {"LimitsThatLockAControlledJoint", joint("shoulder", "[limits]\nshoulder = [1, 1]\n"),
+       "r.toml:7", "joint 'shoulder' cannot move: both its limits are 1"},
+      {"StartBeyondTheRecipesLimits",
+       with("[limits]\nshoulder = [0, 1]\n[start_pose]\nshoulder = 1.5\n"), "r.toml:9",
+       "joint 'shoulder' starts at 1.5, above its limit 1"},
       {"SpheresOfUnknownLink", with("[spheres.links.arms]\nskip = true\n"), "r.toml:6",
        "the robot 'small' has no link 'arms'; did you mean 'arm'?"},
       {"RootMerged", with("[spheres.links.base]\nmerge_with_parent = true\n"), "r.toml:6",
@@ -90,6 +100,19 @@ TEST(RecipesThatFit, PassTheCheck) {
   ASSERT_TRUE(recipe.has_value()) << recipe.error().message;
   const auto checked = bake::checkRecipe(*recipe, smallRobot());
   EXPECT_TRUE(checked.has_value()) << checked.error().message;
+}
+
+TEST(RecipesThatFit, MayWidenLimitsAndFreeLockedJoints) {
+  const ScratchFolder folder;
+  const auto recipe = readText(folder, joint("locked",
+                                             "[limits]\nlocked = [-0.1, 0.3]\nshoulder = [-3, 3]\n"
+                                             "[start_pose]\nlocked = 0.2\nshoulder = -2.5\n"));
+  ASSERT_TRUE(recipe.has_value()) << recipe.error().message;
+  const auto checked = bake::checkRecipe(*recipe, smallRobot());
+  EXPECT_TRUE(checked.has_value()) << checked.error().message;
+  const bake::SourceLink& arm = smallRobot().links[1];
+  EXPECT_EQ(bake::jointLimits(arm, &*recipe)->lower, -3);
+  EXPECT_EQ(bake::jointLimits(arm, nullptr)->lower, -1);
 }
 
 TEST(RecipesThatFit, NeedARobotWithLinks) {

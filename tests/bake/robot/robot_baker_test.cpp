@@ -238,6 +238,54 @@ TEST(RobotBaker, KeepsToTheBudgetAndSaysWhenItCannot) {
   }
 }
 
+TEST(RobotBaker, WarnsOfAssumedLimitsUntilTheRecipeStatesThem) {
+  SourceRobot robot = smallArm();
+  robot.links[1].joint_type = JointType::kPrismatic;
+  robot.links[1].limits = JointLimits{-1, 1};
+  robot.links[1].limits_are_assumed = true;
+  const std::string joint = robot.links[1].joint_name;
+  RobotRecipe recipe = recipeFor("hand");
+  const BakedRobot guessed = bakeWell(robot, &recipe, coarse());
+  EXPECT_THAT(guessed.warnings,
+              ElementsAre("joint '" + joint +
+                          "': the URDF states no limits for it; -1 to 1 m are assumed, [limits] of "
+                          "the recipe may state others"));
+  recipe.limits.push_back({{joint, ""}, {0.25, 0.5}});
+  const BakedRobot stated = bakeWell(robot, &recipe, coarse());
+  EXPECT_THAT(stated.warnings, IsEmpty());
+  const auto position = static_cast<std::size_t>(stated.kinematics.links[1].position);
+  EXPECT_EQ(stated.kinematics.limits[position].lower, 0.25F);
+  EXPECT_EQ(stated.kinematics.limits[position].upper, 0.5F);
+  EXPECT_EQ(stated.kinematics.start_positions[position], 0.25F);
+}
+
+TEST(RobotBaker, SpendsMoreThanTheUsualNumberWhereGapsWouldBeWide) {
+  // Spheres made by hand use up most of the usual number: what is left would leave holes.
+  const SourceRobot robot = RobotMaker("rod")
+                                .link("base")
+                                .box({0.1, 0.1, 0.1})
+                                .link("rod", 0, {.type = JointType::kContinuous})
+                                .box({0.6, 0.01, 0.01}, shifted(0, 0.5, 0))
+                                .robot();
+  RobotBakeOptions options;
+  options.radii = {0.04F};
+  RobotRecipe recipe = recipeFor("base");
+  recipe.spheres.links.emplace_back().link = {"base", ""};
+  recipe.spheres.links.back().spheres.assign(98, {{0, 0, 0}, 0.04});
+  const auto widestGap = [](const BakedRobot& baked) {
+    return baked.groups[1].spheres.quality.gap.max;
+  };
+  recipe.spheres.max_spheres = 100;
+  const BakedRobot counted = bakeWell(robot, &recipe, options);
+  EXPECT_LE(spheresOf(counted), 100U);
+  EXPECT_GT(widestGap(counted), recipe.spheres.max_gap);
+  recipe.spheres.max_spheres.reset();
+  const BakedRobot judged = bakeWell(robot, &recipe, options);
+  EXPECT_GT(spheresOf(judged), 100U);
+  EXPECT_LE(widestGap(judged), recipe.spheres.max_gap);
+  EXPECT_THAT(judged.warnings, IsEmpty());
+}
+
 HandSpheres spheresByHand() {
   return {.links = {{"hand", {{{0, 0, 0}, 0.04}}},
                     {"base", {{{0.01, 0.05, 0}, 0.02}, {{0, 0.05, 0}, 0.04}}},

@@ -140,6 +140,28 @@ TEST(SphereBudget, WeighsErrorsByArea) {
   EXPECT_THAT(spendBudget(curves, 3), ElementsAre(0, 1));
 }
 
+/// A set whose widest gap is this.
+SphereSet withGap(std::size_t spheres, double error, double widest) {
+  SphereSet set = setOf(spheres, error);
+  set.quality.gap.max = widest;
+  return set;
+}
+
+TEST(SphereBudgetByQuality, PassesOverSetsWithWideGapsAndSpendsMoreThanTheBudget) {
+  const std::vector<SphereSets> curves{
+      {withGap(1, 9, 0.2), withGap(5, 2, 0.06), withGap(9, 1, 0.04), withGap(30, 0.5, 0.03)},
+      {},
+      // A finer set may have a wider gap than the one before.
+      {withGap(2, 3, 0.05), withGap(4, 2, 0.06), withGap(8, 1, 0.02)},
+      // None is good enough: the finest.
+      {withGap(1, 9, 0.5), withGap(3, 8, 0.4)}};
+  EXPECT_THAT(bake::spendBudgetWithin(curves, 1, 0.05), ElementsAre(2, 0, 0, 1)) << "9 + 2 + 3";
+  EXPECT_THAT(bake::spendBudgetWithin(curves, 20, 0.05), ElementsAre(2, 0, 2, 1)) << "9 + 8 + 3";
+  EXPECT_THAT(bake::spendBudgetWithin(curves, 99, 0.05), ElementsAre(3, 0, 2, 1));
+  EXPECT_THAT(bake::spendBudgetWithin(curves, 12, 1), ElementsAre(1, 0, 1, 1))
+      << "where every gap will do, errors alone count";
+}
+
 TEST(SphereBudget, OfNoCurvesIsNoChoice) { EXPECT_TRUE(spendBudget({}, 10).empty()); }
 
 }  // namespace

@@ -96,6 +96,9 @@ std::vector<Fault> treeFaults() {
        "to be explicitly defined in the robot description. To fix this problem you can either "
        "remove this joint [j] from your urdf file, or add \"<link name=\"x\" />\" to your urdf "
        "file"},
+      {"WorldAsAChild", robotText(kTwoLinks + jointText("j", "fixed", "a,world")), "r.urdf",
+       "the URDF parser refuses it: Failed to build tree: child link [world] of joint [j] not "
+       "found"},
       {"UnknownChild", robotText(kTwoLinks + jointText("j", "fixed", "a,x")), "r.urdf",
        "the URDF parser refuses it: Failed to build tree: child link [x] of joint [j] not found"},
       {"NoParent",
@@ -114,10 +117,6 @@ std::vector<Fault> jointFaults() {
        robotText(kTwoLinks + "<joint name=\"j\"><parent link=\"a\"/><child link=\"b\"/></joint>"),
        "r.urdf",
        "the URDF parser refuses it: joint [j] has no type, check to see if it's a reference"},
-      {"RevoluteWithoutLimit", withJoint("revolute", ""), "r.urdf",
-       "the URDF parser refuses it: Joint [j] is of type REVOLUTE but it does not specify limits"},
-      {"PrismaticWithoutLimit", withJoint("prismatic", ""), "r.urdf",
-       "the URDF parser refuses it: Joint [j] is of type PRISMATIC without limits"},
       {"LowerAboveUpper", withJoint("revolute", limitText("1", "-1")), "r.urdf: joint 'j'",
        "its lower limit 1 is above its upper limit -1; swap or correct them"},
       {"LimitNotANumber", withJoint("revolute", limitText("nan", "1")), "r.urdf",
@@ -129,10 +128,11 @@ std::vector<Fault> jointFaults() {
       {"LimitOutOfRange", withJoint("revolute", limitText("0", "1e999")), "r.urdf",
        "the URDF parser refuses it: upper value (1e999) is not a valid float; Could not parse "
        "limit element for joint [j]"},
-      {"LimitWithoutEffort",
-       withJoint("revolute", "<limit lower=\"0\" upper=\"1\" velocity=\"1\"/>"), "r.urdf",
-       "the URDF parser refuses it: joint limit: no effort; Could not parse limit element for "
-       "joint [j]"},
+      {"EffortNotANumber",
+       withJoint("revolute", "<limit lower=\"0\" upper=\"1\" effort=\"much\"/>"), "r.urdf",
+       "the URDF parser refuses it: effort value (much) is not a valid float; Could not parse "
+       "limit "
+       "element for joint [j]"},
       {"AxisZero", withJoint("continuous", "<axis xyz=\"0 0 0\"/>"), "r.urdf: joint 'j'",
        "its axis (0 0 0) has no direction; give a unit vector"},
       {"AxisOfTwoNumbers", withJoint("continuous", "<axis xyz=\"0 1\"/>"), "r.urdf",

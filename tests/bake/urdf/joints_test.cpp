@@ -1,6 +1,8 @@
 // Types of joints, limits, mimics and the order of links.
 #include <gmock/gmock.h>
 
+#include <numbers>
+
 #include "bake/urdf/urdf_helpers.h"
 
 namespace galactic::test::joints_test {
@@ -55,6 +57,57 @@ TEST(UrdfJoints, WithLimitsThatAreAbsentTakeZero) {
   ASSERT_TRUE(robot.has_value());
   EXPECT_EQ(robot->links[1].limits->lower, 0);
   EXPECT_EQ(robot->links[1].limits->upper, 1);
+}
+
+TEST(UrdfJoints, WithoutLimitsAssumeSome) {
+  const ScratchFolder folder;
+  const auto robot =
+      importText(folder, robotText(links("abcde") + jointText("r", "revolute", "a,b") +
+                                   jointText("p", "prismatic", "b,c", "<axis xyz=\"0 0 1\"/>") +
+                                   jointText("q", "prismatic", "c,d", "<limit effort=\"1\"/>") +
+                                   jointText("c", "continuous", "d,e", "<limit velocity=\"1\"/>")));
+  ASSERT_TRUE(robot.has_value()) << robot.error().message;
+  const auto limitsOf = [&](const char* link) { return *linkOf(*robot, link).limits; };
+  EXPECT_EQ(limitsOf("b").lower, -std::numbers::pi);
+  EXPECT_EQ(limitsOf("b").upper, std::numbers::pi);
+  for (const char* prismatic : {"c", "d"}) {
+    EXPECT_EQ(limitsOf(prismatic).lower, -1);
+    EXPECT_EQ(limitsOf(prismatic).upper, 1);
+  }
+  for (const char* assumed : {"b", "c", "d"}) {
+    EXPECT_TRUE(linkOf(*robot, assumed).limits_are_assumed) << assumed;
+  }
+  EXPECT_FALSE(linkOf(*robot, "e").limits.has_value());
+  EXPECT_THAT(linkOf(*robot, "c").axis, ElementsAre(0, 1, 0)) << "the joint stays what it was";
+}
+
+TEST(UrdfJoints, MayHaveLimitsWithoutEffortAndVelocity) {
+  const ScratchFolder folder;
+  const auto robot =
+      importText(folder, robotText(links("ab") + jointText("j", "revolute", "a,b",
+                                                           "<limit lower=\"-1\" upper=\"2\"/>")));
+  ASSERT_TRUE(robot.has_value()) << robot.error().message;
+  EXPECT_EQ(robot->links[1].limits->upper, 2);
+  EXPECT_FALSE(robot->links[1].limits_are_assumed);
+}
+
+TEST(UrdfJoints, MayHangFromAWorldThatNobodyDeclares) {
+  const ScratchFolder folder;
+  // As simulators drive a base: along x and y, and about z.
+  const auto robot = importText(
+      folder, robotText(links("abc") + jointText("x", "prismatic", "world,a") +
+                        jointText("y", "prismatic", "a,b") + jointText("z", "continuous", "b,c")));
+  ASSERT_TRUE(robot.has_value()) << robot.error().message;
+  ASSERT_EQ(robot->links.size(), 4U);
+  EXPECT_EQ(robot->links.front().name, "world");
+  EXPECT_THAT(robot->links.front().collisions, IsEmpty());
+  EXPECT_THAT(robot->warnings,
+              ElementsAre("joint 'x': it hangs from a link 'world', which the file does not "
+                          "declare; it counts as an empty link"));
+  const auto declared = importText(folder, robotText("<link name=\"world\"/>" + links("a") +
+                                                     jointText("x", "fixed", "world,a")));
+  ASSERT_TRUE(declared.has_value()) << declared.error().message;
+  EXPECT_THAT(declared->warnings, IsEmpty());
 }
 
 TEST(UrdfJoints, ThatAreDoubtfulDrawWarnings) {

@@ -23,7 +23,7 @@ struct RobotBakeOptions {
   std::optional<float> eps;
   std::optional<float> tau;
   /// Of the whole robot; 0: as many as the tolerances need. Overrides the recipe's; without either,
-  /// 100.
+  /// 100, and more where gaps would be wider than the recipe's max_gap (50 mm).
   std::optional<std::uint32_t> max_spheres;
   /// Spheres made by hand or by another tool. Links named here take them instead of fitted ones;
   /// the others get none.

@@ -82,6 +82,12 @@ struct RecipeJoint {
   std::optional<double> max;
 };
 
+/// What stands in for the limits of the URDF, or for their absence: radians or metres.
+struct RecipeLimits {
+  RecipeName joint;
+  JointLimits limits;
+};
+
 struct RecipeStart {
   RecipeName joint;
   /// Radians or metres.
@@ -108,8 +114,11 @@ struct RecipeSpheres {
   /// Metres.
   double eps = 0.020;
   double tau = 0.040;
-  /// Of the whole robot.
-  std::uint32_t max_spheres = 100;
+  /// Of the whole robot; none: as many as `max_gap` takes.
+  std::optional<std::uint32_t> max_spheres;
+  /// Without max_spheres, no gap between surface and spheres is wider than this where the
+  /// tolerances allow; metres.
+  double max_gap = 0.050;
   /// At the start pose, surfaces lower than this above the ground need no cover, and no sphere
   /// reaches below; metres.
   double clip_height = 0.020;
@@ -128,6 +137,8 @@ struct RobotRecipe {
   RecipeBase base;
   /// In the order of the actions.
   std::vector<RecipeJoint> joints;
+  /// Of revolute and prismatic joints, by name.
+  std::vector<RecipeLimits> limits;
   /// Joints that do not start at 0 (or at their limit nearest to 0), by name.
   std::vector<RecipeStart> start_pose;
   RecipeSpheres spheres;
@@ -144,6 +155,16 @@ struct RobotRecipe {
 
 /// A complete recipe with every key explained, for --print-recipe; readRobotRecipe reads it.
 [[nodiscard]] std::string describeRobotRecipe();
+
+/// A recipe for `robot`, which has a link at least: end effector, camera, base, joints and start
+/// pose guessed from names, tree and shapes, with comments that say so. readRobotRecipe reads it
+/// and it fits the robot. Deterministic.
+[[nodiscard]] std::string draftRobotRecipe(const SourceRobot& robot);
+
+/// The limits of a link's joint: the recipe's where it has some, else the URDF's. `recipe` may be
+/// null.
+[[nodiscard]] std::optional<JointLimits> jointLimits(const SourceLink& link,
+                                                     const RobotRecipe* recipe);
 
 /// Whether the recipe fits the robot: links and joints exist (with the nearest names otherwise),
 /// controlled joints can move and mimic nothing, ranges and start positions lie within limits, the

@@ -63,6 +63,8 @@ struct SourceLink {
   std::array<double, 3> axis{1, 0, 0};
   /// None: unlimited.
   std::optional<JointLimits> limits;
+  /// Whether the file says nothing of limits although the joint needs some: these are a guess.
+  bool limits_are_assumed = false;
   std::optional<Mimic> mimic;
   std::vector<LinkShape> collisions;
   std::vector<LinkShape> visuals;

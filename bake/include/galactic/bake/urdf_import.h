@@ -51,9 +51,11 @@ struct UrdfImportOptions {
 /// visuals but without collision elements a warning says that the visuals stand in for them.
 ///
 /// Colours are taken as sRGB and converted to linear; material textures are not used (warning).
-/// Joints: continuous joints have no limits; revolute and prismatic ones need <limit>, in which
-/// lower and upper are 0 when absent (URDF); planar axes are the plane's normal. Chains of mimics
-/// are resolved, so that Mimic::link never mimics itself.
+/// Joints: continuous joints have no limits. Of revolute and prismatic ones lower or upper is 0
+/// when it alone is absent (URDF); without both, -pi to pi and -1 to 1 m are assumed
+/// (SourceLink::limits_are_assumed). Planar axes are the plane's normal. Chains of mimics are
+/// resolved, so that Mimic::link never mimics itself. Joints may hang from a link "world" that
+/// nothing declares: it is added, with a warning.
 ///
 /// Fails with kIo (missing or unreadable file), kUnsupported (xacro, an up axis other than Y or Z)
 /// or kInvalidInput: broken XML, no or several roots, loops, two parents, duplicate or unknown
