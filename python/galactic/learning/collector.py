@@ -10,6 +10,7 @@ import torch
 from torch import Tensor
 
 from galactic.learning.environments import Environments, Observation, Timeouts
+from galactic.learning.graphs import Replayed, Tensors, record_cuda
 from galactic.learning.networks import Inputs, Policy
 from galactic.learning.noise import action_noise
 from galactic.learning.precision import Precision
@@ -29,12 +30,14 @@ class EpisodeSums:
 
 @dataclass(frozen=True)
 class CollectorOptions:
-    """`first_env`: number over all ranks of this rank's first env."""
+    """`first_env`: number over all ranks of this rank's first env. `cuda_graphs`: whether a GPU replays the
+    policy's launches."""
 
     horizon: int
     seed: int
     gamma: float
     first_env: int = 0
+    cuda_graphs: bool = False
 
 
 class Collector:
@@ -66,6 +69,10 @@ class Collector:
         self._returns = np.zeros(envs.count, np.float64)
         self._lengths = np.zeros(envs.count, np.int64)
         self._timeouts: list[_Timeout] = []
+        replays = options.cuda_graphs and device.type == "cuda"
+        self._decisions = [
+            Replayed(self._decide, record_cuda) if replays else self._decide for _ in envs.halves
+        ]
 
     def reset(self) -> None:
         """Starts all envs on their first episodes."""
@@ -165,19 +172,31 @@ class Collector:
 
     def _act(self, half: int, envs: slice, step: int, noise: Tensor) -> None:
         rollout = self.rollout
-        with self.stopwatch.time("inference"), self.precision.autocast():
+        with self.stopwatch.time("inference"):
             inputs = rollout.inputs(step, step + 1, envs, self.policy.needs_previous)
-            hidden = None if self._hidden is None else self._hidden[envs]
-            outputs = self.policy.act(inputs, hidden, rollout.starts[step : step + 1, envs])
-            actions = outputs.actions.sample(noise.unsqueeze(0))
+            memory = None if self._hidden is None else self._hidden[envs]
+            starts = rollout.starts[step : step + 1, envs]
+            actions, log_probs, values, hidden = self._decisions[half](
+                *inputs, memory, starts, noise.unsqueeze(0)
+            )
+            assert actions is not None and log_probs is not None and values is not None
             rollout.actions[step, envs] = actions[0]
-            rollout.log_probs[step, envs] = outputs.actions.log_prob(actions)[0]
-            rollout.values[step, envs] = outputs.values[0]
-            if self._hidden is not None and outputs.hidden is not None:
-                self._hidden[envs] = outputs.hidden
+            rollout.log_probs[step, envs] = log_probs[0]
+            rollout.values[step, envs] = values[0]
+            if self._hidden is not None and hidden is not None:
+                self._hidden[envs] = hidden
             executed = actions[0].cpu().numpy()
         with self.stopwatch.time("sending"):
             self.envs.send(half, executed, self._row(step + 1, envs))
+
+    def _decide(self, state: Tensor, rgb: Optional[Tensor], depth: Optional[Tensor],
+                previous: Optional[Tensor], hidden: Optional[Tensor], starts: Tensor,
+                noise: Tensor) -> Tensors:  # fmt: skip
+        """Actions, their log-probabilities, values, and the memory behind them."""
+        with self.precision.autocast():
+            outputs = self.policy.act(Inputs(state, rgb, depth, previous), hidden, starts)
+            actions = outputs.actions.sample(noise)
+            return actions, outputs.actions.log_prob(actions), outputs.values, outputs.hidden
 
     def _receive(self, half: int, envs: slice, step: int) -> None:
         rollout = self.rollout

@@ -165,6 +165,11 @@ class Settings:
         "of networks on a GPU; on processors always fp32",
         choices=("fp32", "tf32", "bf16"),
     )
+    cuda_graphs: bool = _setting(
+        False,
+        "Machine",
+        "on a GPU, launch what the policy computes in a rollout's step as one graph",
+    )
 
     validate_every: int = _setting(
         10_000_000,

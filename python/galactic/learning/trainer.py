@@ -61,7 +61,11 @@ class Trainer:
             self.policy = self.policy.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         self.learner = Learner(self.policy, settings, group)
         options = CollectorOptions(
-            settings.horizon, settings.seed, settings.gamma, group.rank * settings.envs
+            settings.horizon,
+            settings.seed,
+            settings.gamma,
+            group.rank * settings.envs,
+            settings.cuda_graphs,
         )
         self.collector = Collector(envs, self.policy, options, self.learner.precision, group.device)
         self.stragglers = group.stragglers(settings.sync_fraction, settings.shortest_rollout)

@@ -1,0 +1,83 @@
+"""Recorded policies decide as they do otherwise; with a GPU, as CUDA graphs."""
+
+from __future__ import annotations
+
+from typing import Callable
+
+import pytest
+import torch
+from torch import Tensor
+
+from galactic.learning.collector import Collector, CollectorOptions
+from galactic.learning.graphs import Function, Replayed, Tensors, record_cuda
+from galactic.learning.networks import PolicyShape, make_policy
+from galactic.learning.precision import Precision
+from toys import ReachAndGrasp
+
+
+def record_here(function: Function, places: Tensors) -> tuple[Tensors, Callable[[], None]]:
+    """What record_cuda does, for processors: fixed places for arguments and results."""
+    results = tuple(None if one is None else one.clone() for one in function(*places))
+
+    def replay() -> None:
+        for place, one in zip(results, function(*places)):
+            if place is not None:
+                place.copy_(one)
+
+    return results, replay
+
+
+def rollouts(device: torch.device, recurrent: bool, record: object) -> list[dict[str, Tensor]]:
+    """Two in a row, the second with other parameters, of two halves."""
+    torch.manual_seed(5)
+    envs = ReachAndGrasp(16, halves=2)
+    shape = PolicyShape(envs.state_size, envs.motions, False, normalize=True)
+    policy = make_policy("state", shape, recurrent=recurrent, width=16).to(device)
+    options = CollectorOptions(horizon=12, seed=3, gamma=0.99)
+    collector = Collector(envs, policy, options, Precision("fp32", device), device)
+    if record is not None:
+        collector._decisions = [Replayed(collector._decide, record) for _ in envs.halves]
+    collector.reset()
+    kept = []
+    for update in range(2):
+        rollout = collector.collect(update)
+        names = ("actions", "log_probs", "values", "rewards", "ends")
+        kept.append({name: getattr(rollout, name).clone() for name in names})
+        with torch.no_grad():
+            for parameter in policy.parameters():
+                parameter.add_(0.05)
+    return kept
+
+
+def the_same(one: dict[str, Tensor], other: dict[str, Tensor], tolerance: float) -> None:
+    for name, values in one.items():
+        torch.testing.assert_close(values, other[name], rtol=0.0, atol=tolerance, msg=name)
+
+
+@pytest.mark.parametrize("recurrent", [False, True])
+def test_a_replayed_policy_decides_the_same(recurrent: bool) -> None:
+    cpu = torch.device("cpu")
+    plain, replayed = rollouts(cpu, recurrent, None), rollouts(cpu, recurrent, record_here)
+    assert not torch.equal(plain[0]["log_probs"], plain[1]["log_probs"])
+    for one, other in zip(plain, replayed):
+        the_same(one, other, 0.0)
+
+
+@pytest.mark.skipif(not torch.cuda.is_available(), reason="no GPU")
+@pytest.mark.parametrize("recurrent", [False, True])
+def test_a_graph_decides_the_same(recurrent: bool) -> None:
+    gpu = torch.device("cuda")
+    plain, replayed = rollouts(gpu, recurrent, None), rollouts(gpu, recurrent, record_cuda)
+    for one, other in zip(plain, replayed):
+        the_same(one, other, 1e-4)
+
+
+def test_other_shapes_are_refused() -> None:
+    doubled = Replayed(lambda x, y: (2 * x, y), record_here)
+    assert doubled(torch.ones(3), None)[0].tolist() == [2.0, 2.0, 2.0]
+    assert doubled(torch.full((3,), 4.0), None)[0].tolist() == [8.0, 8.0, 8.0]
+    for wrong in ((torch.ones(4), None), (torch.ones(3), torch.ones(1)), (torch.ones(3),)):
+        with pytest.raises(ValueError):
+            doubled(*wrong)
+    with pytest.raises(ValueError, match="float64"):
+        doubled(torch.ones(3, dtype=torch.float64), None)
