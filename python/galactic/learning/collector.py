@@ -10,7 +10,7 @@ import torch
 from torch import Tensor
 
 from galactic.learning.environments import Environments, Observation, Timeouts
-from galactic.learning.graphs import Replayed, Tensors, record_cuda
+from galactic.learning.graphs import Function, Replayed, Tensors, record_cuda
 from galactic.learning.networks import Inputs, Policy
 from galactic.learning.noise import action_noise
 from galactic.learning.precision import Precision
@@ -70,7 +70,7 @@ class Collector:
         self._lengths = np.zeros(envs.count, np.int64)
         self._timeouts: list[_Timeout] = []
         replays = options.cuda_graphs and device.type == "cuda"
-        self._decisions = [
+        self._decisions: list[Function] = [
             Replayed(self._decide, record_cuda) if replays else self._decide for _ in envs.halves
         ]
 
