@@ -69,10 +69,9 @@ class Collector:
         self._returns = np.zeros(envs.count, np.float64)
         self._lengths = np.zeros(envs.count, np.int64)
         self._timeouts: list[_Timeout] = []
-        replays = options.cuda_graphs and device.type == "cuda"
-        self._decisions: list[Function] = [
-            Replayed(self._decide, record_cuda) if replays else self._decide for _ in envs.halves
-        ]
+        self._decisions: list[Function] = [self._decide for _ in envs.halves]
+        if options.cuda_graphs and device.type == "cuda":
+            self._decisions = [Replayed(self._decide, record_cuda) for _ in envs.halves]
 
     def reset(self) -> None:
         """Starts all envs on their first episodes."""
