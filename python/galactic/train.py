@@ -85,16 +85,16 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
 def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
     folder: pathlib.Path = options.output
     settings = run.settings
-    # Everybody has looked for a run in the folder before there is one.
-    group.wait_for_all()
-    if group.rank == 0:
-        folder.mkdir(parents=True, exist_ok=True)
-        _write_run(run, folder)
     local_ranks = int(os.environ.get("LOCAL_WORLD_SIZE", "1"))
     threads = threads_of(settings.simulation_threads, local_ranks)
     sharing = 1 if settings.network == "state" else 0
     torch.set_num_threads(threads_of(settings.torch_threads or sharing, local_ranks))
     envs = Homes(galactic.World(run.world), settings, threads, rank=group.rank, ranks=group.size)
+    # Everybody has looked for a run in the folder, and has homes, before there is one.
+    group.wait_for_all()
+    if group.rank == 0:
+        folder.mkdir(parents=True, exist_ok=True)
+        _write_run(run, folder)
     validation = _validation(run, threads, group)
     trainer = Trainer(
         settings, envs, group, folder, validation=validation, title=folder.resolve().name

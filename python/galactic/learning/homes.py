@@ -42,19 +42,22 @@ class Homes:
         if settings.network != "state":
             images = {"width": IMAGE_SIZE, "height": IMAGE_SIZE}
         self.image_size = (IMAGE_SIZE, IMAGE_SIZE) if images else None
-        self.env = galactic.VectorEnv(
-            world,
-            settings.envs,
-            images=images,
-            halves=2 if settings.halves == 2 else 1,
-            copy=False,
-            threads=threads,
-            seed=settings.seed,
-            order=order,
-            rank=rank,
-            ranks=ranks,
-            **keywords,
-        )
+        try:
+            self.env = galactic.VectorEnv(
+                world,
+                settings.envs,
+                images=images,
+                halves=2 if settings.halves == 2 else 1,
+                copy=False,
+                threads=threads,
+                seed=settings.seed,
+                order=order,
+                rank=rank,
+                ranks=ranks,
+                **keywords,
+            )
+        except (TypeError, ValueError) as problem:
+            raise SettingsError(f"--simulation: {problem}") from problem
         first = self.env.simulators[0]
         self.count = settings.envs
         self.state_size = first.observation_size

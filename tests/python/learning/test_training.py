@@ -133,6 +133,8 @@ def test_an_interrupt_saves_and_says_how_to_go_on(tmp_path: pathlib.Path) -> Non
         ([WORLD, "--network", "big"], 1, 'network is "big"; it can be state'),
         ([WORLD, *SMALL, "--simulation", "seed=3"], 1, "seed is not for --simulation"),
         (["nowhere.pack", *SMALL], 2, "nowhere.pack"),
+        ([WORLD, *SMALL, "--simulation", "no-such"], 1, "--simulation: there is no option no_such"),
+        ([WORLD, *SMALL, "--simulation", "laser-range=nan"], 3, "laser_range: is nan, wanted"),
         (["--resume"], 3, "holds no run"),
     ],
 )
@@ -142,6 +144,7 @@ def test_what_cannot_be_is_refused_with_a_sentence(
     done = run("train", "-o", tmp_path / "run", *arguments)
     assert message in done.stderr and "Traceback" not in done.stderr
     assert done.returncode == code
+    assert not (tmp_path / "run").exists()
 
 
 def test_a_run_is_not_written_over_nor_turned_into_another(tmp_path: pathlib.Path) -> None:
