@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -93,6 +94,7 @@ struct AllOptions {
   ExportOptions export_;
   PictureOptions picture;
   ReportOptions report;
+  ViewOptions view;
 };
 
 void addInfo(CLI::App& app, InfoOptions& options) {
@@ -262,6 +264,28 @@ void addReport(CLI::App& app, ReportOptions& options) {
   addTrusted(verb, options.trust);
 }
 
+void addView(CLI::App& app, ViewOptions& options) {
+  CLI::App& verb = *app.add_subcommand(
+      "view", "Write an HTML page that shows a pack or a world in three dimensions");
+  addPack(verb, {"pack", "a pack of any kind"}, options.pack);
+  addOutput(verb, options.output);
+  const CLI::Validator is_power_of_two(
+      [](const std::string& text) {
+        std::uint32_t edge = 0;
+        std::from_chars(text.data(), text.data() + text.size(), edge);
+        return std::has_single_bit(edge) ? std::string()
+                                         : fmt::format("found {}, wanted a power of two", text);
+      },
+      "", "texture_size");
+  verb.add_option(
+          "--texture-size", options.texture_size,
+          fmt::format("longest edge of a texture, texels (default {})", options.texture_size))
+      ->check(wholeCheck(1, 4096))
+      ->check(is_power_of_two)
+      ->type_name("N");
+  addTrusted(verb, options.trust);
+}
+
 void addEpisodeSetOptions(CLI::App& verb, ExportOptions& options) {
   verb.add_option("--object-up", options.object_up,
                   "episode sets: up axis of the objects' mesh files (default z)")
@@ -314,6 +338,7 @@ Request chosenRequest(const CLI::App& app, AllOptions& options) {
   if (app.got_subcommand("diff")) return std::move(options.diff);
   if (app.got_subcommand("picture")) return std::move(options.picture);
   if (app.got_subcommand("report")) return std::move(options.report);
+  if (app.got_subcommand("view")) return std::move(options.view);
   return std::move(options.export_);
 }
 
@@ -346,9 +371,8 @@ int usageError(const Console& console, std::string_view message) {
 
 tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
                                             const Console& console) {
-  CLI::App app(
-      "galactic-pack looks into packs, checks, compares, exports, draws and reports on them.",
-      "galactic-pack");
+  CLI::App app("galactic-pack looks into packs, checks, compares, exports, draws and shows them.",
+               "galactic-pack");
   AllOptions options;
   // Verbs inherit the footer that is set before them.
   app.footer(kFooter);
@@ -361,8 +385,9 @@ tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
   addExport(app, options.export_);
   addPicture(app, options.picture);
   addReport(app, options.report);
+  addView(app, options.view);
 
-  constexpr std::string_view kVerbs = "info, check, column, diff, export, picture or report";
+  constexpr std::string_view kVerbs = "info, check, column, diff, export, picture, report or view";
   if (argc < 2) return tl::unexpected(usageError(console, fmt::format("no verb; give {}", kVerbs)));
   const std::string first = argv[1];
   const auto named = [&first](const CLI::App* verb) { return verb->get_name() == first; };

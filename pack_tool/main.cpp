@@ -21,6 +21,7 @@ struct Runner {
   int operator()(const ExportOptions& options) const { return runExport(options, console); }
   int operator()(const PictureOptions& options) const { return runPicture(options, console); }
   int operator()(const ReportOptions& options) const { return runReport(options, console); }
+  int operator()(const ViewOptions& options) const { return runView(options, console); }
 };
 
 int runTool(int argc, const char* const* argv, const Console& console) {

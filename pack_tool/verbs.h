@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -116,6 +117,18 @@ struct ReportOptions {
 /// Writes one self-contained HTML page about packs, those of a world among them: a table, warnings,
 /// what runInfo prints, and a picture of every grid and of everything that is drawn.
 [[nodiscard]] int runReport(const ReportOptions& options, const Console& console);
+
+struct ViewOptions {
+  std::filesystem::path pack = {};
+  std::filesystem::path output = {};
+  /// Longest edge of a texture on the page, texels: a power of two.
+  std::uint32_t texture_size = 512;
+  Trust trust = Trust::kVerify;
+};
+
+/// Writes one self-contained HTML page that shows a pack in three dimensions, or a world with all
+/// its packs. See docs/view.md.
+[[nodiscard]] int runView(const ViewOptions& options, const Console& console);
 
 enum class ExportFormat { kObj, kPly, kGlb, kSrdf, kUrdf, kEpisodeSet };
 

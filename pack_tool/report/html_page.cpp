@@ -6,6 +6,7 @@
 
 #include "pack_tool/info_text.h"
 #include "pack_tool/xml_text.h"
+#include "view/page_data.h"
 
 namespace galactic::pack_tool {
 namespace {
@@ -23,24 +24,6 @@ img { max-width: 100%; height: auto; border: 1px solid #ddd; }
 pre { overflow-x: auto; background: #f6f6f7; padding: .75rem; }
 .warnings { color: #8a4b00; }
 )css";
-
-std::string base64(std::string_view bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t at = 0; at < bytes.size(); at += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - at);
-    std::uint32_t block = 0;
-    for (std::size_t n = 0; n < 3; ++n) {
-      block = block << 8U | (n < count ? static_cast<std::uint8_t>(bytes[at + n]) : 0U);
-    }
-    for (std::size_t n = 0; n < 4; ++n) {
-      text += n <= count ? kDigits[block >> (18U - 6U * static_cast<unsigned>(n)) & 63U] : '=';
-    }
-  }
-  return text;
-}
 
 std::string textAt(const Json& json, const char* key) {
   return xmlEscaped(json.at(key).get<std::string>());

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <map>
@@ -17,6 +18,7 @@
 #include "galactic/printable.h"
 #include "policy.h"
 #include "render_command_line.h"
+#include "run_page.h"
 
 namespace galactic {
 namespace {
@@ -32,6 +34,7 @@ constexpr const char* kFooter =
     "  galactic-run --pack world.pack --steps 100 --record run.rec\n"
     "  galactic-run --pack world.pack --steps 100 --envs 4 --render rgbd --contact-sheet run.png\n"
     "  galactic-run --pack world.pack --policy picker.pack --contact-sheet run.png --render rgb\n"
+    "  galactic-run --pack world.pack --policy scripted --steps 500 --envs 4 --view run.html\n"
     "  galactic-run --pack world.pack --policy replay:run.rec";
 constexpr const char* kReplayPrefix = "replay:";
 constexpr const char* kPolicySuffix = ".pack";
@@ -162,6 +165,11 @@ void addRunOptions(CLI::App& app, RunOptions& options) {
       ->type_name("FILE");
   app.add_option("--report", options.report, "Write the closing table as JSON")
       ->type_name("FILE.json");
+  app.add_option("--view", options.view, "Write a page that plays the run in a browser")
+      ->type_name("FILE.html");
+  app.add_option("--view-envs", options.view_envs, "How many envs the page shows")
+      ->check(wholeCheck(1, 1024))
+      ->option_text(fmt::format("N [{}]", options.view_envs));
   app.option_defaults()->group(kPlainGroup);
 }
 
@@ -175,6 +183,13 @@ std::string faultOf(const RunOptions& options) {
   }
   if (options.is_deterministic && options.policyFile().empty()) {
     return "--deterministic is about learned policies; add --policy FILE.pack";
+  }
+  const std::uint64_t viewed = std::min(options.view_envs, options.simulation.envs);
+  if (!options.view.empty() && options.steps > RunPage::kMostSteps / viewed) {
+    return fmt::format(
+        "--view keeps {} steps of {} envs, at most {} of all envs together fit; ask for "
+        "fewer --steps or --view-envs",
+        options.steps, viewed, RunPage::kMostSteps);
   }
   if (options.simulation.rank >= options.simulation.ranks) {
     return fmt::format("--rank is {}, wanted a number below --ranks, which is {}",
@@ -229,6 +244,9 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
     options.simulates |= option->count() > 0 && option->get_group() != kPlainGroup;
   }
   std::string fault = faultOf(options);
+  if (fault.empty() && options.view.empty() && app.count("--view-envs") > 0) {
+    fault = "--view-envs is about the page of a run; add --view FILE.html";
+  }
   options.drawing.policy_may_draw = !options.policyFile().empty();
   if (fault.empty()) fault = drawingFault(options.drawing, app);
   options.simulation.body_transforms |= options.drawing.draws();

@@ -29,6 +29,9 @@ struct RunOptions {
   /// Files to write; empty for none.
   std::string record;
   std::string report;
+  /// The page that plays the run, and how many of the first envs it shows.
+  std::string view;
+  std::uint32_t view_envs = 4;
 
   /// The file of "replay:FILE"; empty for the other policies.
   [[nodiscard]] std::string replayFile() const;

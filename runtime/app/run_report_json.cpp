@@ -1,104 +1,14 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <concepts>
 #include <string_view>
 
 #include "frame_images.h"
 #include "galactic/option_text.h"
 #include "run_report.h"
+#include "view/json_writer.h"
 
 namespace galactic {
 namespace {
-
-/// Bytes of the UTF-8 character that `text` begins with; 0 when it begins with none.
-std::size_t utf8Length(std::string_view text) {
-  const auto byte = [&](std::size_t n) { return static_cast<unsigned char>(text[n]); };
-  constexpr std::array<std::array<unsigned, 3>, 4> kLeads{
-      {{0x00, 0x7F, 1}, {0xC2, 0xDF, 2}, {0xE0, 0xEF, 3}, {0xF0, 0xF4, 4}}};
-  for (const auto& [first, last, length] : kLeads) {
-    if (byte(0) < first || byte(0) > last) continue;
-    if (text.size() < length) return 0;
-    for (std::size_t n = 1; n < length; ++n) {
-      if ((byte(n) & 0xC0U) != 0x80U) return 0;
-    }
-    return length;
-  }
-  return 0;
-}
-
-/// Text as a JSON string; bytes that are no UTF-8 become question marks.
-std::string jsonString(std::string_view text) {
-  std::string result = "\"";
-  while (!text.empty()) {
-    const std::size_t length = std::max<std::size_t>(utf8Length(text), 1);
-    const std::string_view character = text.substr(0, length);
-    const auto code = static_cast<unsigned char>(text.front());
-    constexpr unsigned char kFirstPrintable = 0x20;
-    if (code < kFirstPrintable) {
-      result += fmt::format("\\u{:04x}", code);
-    } else if (text.front() == '"' || text.front() == '\\') {
-      result += '\\';
-      result += text.front();
-    } else {
-      result += utf8Length(text) == 0 ? "?" : character;
-    }
-    text.remove_prefix(length);
-  }
-  return result + '"';
-}
-
-/// Writes objects and arrays, indented, in the order of the calls.
-class JsonWriter {
- public:
-  void begin(char bracket) {
-    text_ += bracket;
-    is_first_ = true;
-    ++depth_;
-  }
-  void begin(std::string_view key, char bracket) {
-    separate(key);
-    begin(bracket);
-  }
-  void end(char bracket) {
-    --depth_;
-    if (!is_first_) newLine();
-    text_ += bracket;
-    is_first_ = false;
-  }
-  void text(std::string_view key, std::string_view value) { raw(key, jsonString(value)); }
-  void truth(std::string_view key, bool value) { raw(key, value ? "true" : "false"); }
-  void number(std::string_view key, std::unsigned_integral auto value) {
-    raw(key, fmt::format("{}", value));
-  }
-  void number(std::string_view key, double value) {
-    raw(key, std::isfinite(value) ? fmt::format("{}", value) : "null");
-  }
-  void raw(std::string_view key, std::string_view value) {
-    separate(key);
-    text_ += value;
-  }
-  [[nodiscard]] std::string take() { return std::move(text_) + "\n"; }
-
- private:
-  void newLine() {
-    text_ += '\n';
-    text_.append(2 * depth_, ' ');
-  }
-  /// `key` is empty in arrays.
-  void separate(std::string_view key) {
-    if (!is_first_) text_ += ',';
-    is_first_ = false;
-    newLine();
-    if (!key.empty()) text_ += jsonString(key) + ": ";
-  }
-
-  std::string text_;
-  bool is_first_ = true;
-  std::size_t depth_ = 0;
-};
 
 void writeOptions(JsonWriter& json, const RunReport& report) {
   const RunOptions& options = report.options;

@@ -18,6 +18,7 @@
 #include "live_line.h"
 #include "option_lines.h"
 #include "policy.h"
+#include "run_page.h"
 
 namespace galactic {
 namespace {
@@ -136,6 +137,14 @@ class Run {
     return {};
   }
 
+  /// Before go().
+  Result<void> show(const World& world) {
+    Result<RunPage> page = RunPage::create(world, simulator_, options_);
+    if (!page) return tl::unexpected<Error>(page.error());
+    page_.emplace(std::move(*page));
+    return {};
+  }
+
   Result<void> record(const World& world) {
     const RecordingSubject subject{
         options_.simulation, static_cast<std::uint32_t>(simulator_.actionCount()), stampsOf(world)};
@@ -169,6 +178,9 @@ class Run {
     if (drawn_) {
       if (Result<void> finished = drawn_->finish(simulator_, report_); !finished) return finished;
     }
+    if (page_) {
+      if (Result<void> shown = page_->finish(); !shown) return shown;
+    }
     return writer_ ? writer_->finish() : Result<void>();
   }
 
@@ -190,6 +202,7 @@ class Run {
       report_.step_seconds += secondsBetween(before, Clock::now());
     }
     tally_.add(simulator_, report_.episodes);
+    if (page_) page_->add(simulator_, actions_);
     if (writer_ || replay_ != nullptr) {
       const std::uint64_t digest = digestOf(simulator_);
       if (writer_) {
@@ -213,6 +226,7 @@ class Run {
   const ReplayPolicy* replay_ = nullptr;
   std::optional<RecordingWriter> writer_;
   std::optional<DrawnSteps> drawn_;
+  std::optional<RunPage> page_;
 };
 
 /// Whether the recording is of this world and robot.
@@ -267,6 +281,9 @@ Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
   }
   if (options.drawing.draws()) {
     if (auto drawn = run.draw(world); !drawn) return tl::unexpected<Error>(drawn.error());
+  }
+  if (!options.view.empty()) {
+    if (auto shown = run.show(world); !shown) return tl::unexpected<Error>(shown.error());
   }
   if (!options.record.empty()) {
     if (auto opened_file = run.record(world); !opened_file) {

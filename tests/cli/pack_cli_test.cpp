@@ -104,6 +104,10 @@ TEST_F(PackCli, ExplainsAWrongCommandLineWithExitCodeOne) {
       {{"export", "good.pack", "-o", "a.png", "--to", "gif"}, "--to"},
       {{"export", "good.pack", "--to", "ply"}, "--output is required"},
       {{"export", "good.pack", "-o", "x.json", "--object-up", "w"}, "--object-up"},
+      {{"view", "good.pack"}, "--output is required"},
+      {{"view", "good.pack", "-o", "a.html", "--texture-size", "100"}, "found 100, wanted a power"},
+      {{"view", "good.pack", "-o", "a.html", "--texture-size", "0"}, "--texture-size: found 0"},
+      {{"view", "good.pack", "-o", "a.html", "--texture-size", "8192"}, "--texture-size"},
   };
   for (const auto& [arguments, message] : lines) {
     const ProgramRun result = run(arguments);
@@ -189,7 +193,8 @@ TEST_F(PackCli, EveryVerbRefusesADamagedPack) {
                                                       {"column", pack, "--at", "1,1"},
                                                       {"diff", "good.pack", pack},
                                                       {"picture", pack, "-o", "a.png"},
-                                                      {"export", pack, "-o", "a.glb"}}) {
+                                                      {"export", pack, "-o", "a.glb"},
+                                                      {"view", pack, "-o", "a.html"}}) {
       const ProgramRun result = run(arguments);
       EXPECT_EQ(result.exit_code, kInvalidInput) << arguments.front();
       EXPECT_THAT(result.out, IsEmpty());
@@ -224,7 +229,7 @@ TEST_F(PackCli, DiffReturnsSevenWhenPacksDiffer) {
   EXPECT_EQ(json::parse(same.out).at("identical"), true);
 }
 
-TEST_F(PackCli, PictureAndExportWriteTheirFilesQuietly) {
+TEST_F(PackCli, PictureExportAndViewWriteTheirFilesQuietly) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> runs{
       {{"picture", "good.pack", "-o", "all.png"}, "\x89PNG"},
       {{"picture", "good.pack", "-o", "one.PNG", "--radius", "0.75", "--value", "lowest"},
@@ -244,6 +249,9 @@ TEST_F(PackCli, PictureAndExportWriteTheirFilesQuietly) {
       {{"export", "arm.pack", "-o", "arm.GLB", "--all-zero"}, "glTF"},
       {{"export", "arm.pack", "-o", "arm.srdf"}, "<?xml"},
       {{"export", "arm.pack", "-o", "arm.urdf"}, "<?xml"},
+      {{"view", "good.pack", "-o", "good.html"}, "<!doctype html>"},
+      {{"view", "toys.pack", "-o", "toys.html", "--texture-size", "64"}, "<!doctype html>"},
+      {{"view", "arm.pack", "-o", "arm.html", "--trusted"}, "<!doctype html>"},
   };
   for (const auto& [arguments, start] : runs) {
     const ProgramRun result = run(arguments);

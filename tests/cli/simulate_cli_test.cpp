@@ -305,6 +305,11 @@ TEST_F(SimulateCli, EndsWithACodeForEachKindOfMistake) {
       {{"--envs", "1", "--steps", "1", "--record", "missing/run.rec"}, 2},
       {{"--envs", "1", "--steps", "1", "--report", "missing/report.json"}, 2},
       {{"--policy", "replay:world.pack"}, 3},
+      {{"--steps", "1", "--view-envs", "2"}, 1},
+      {{"--steps", "1", "--view", "run.html", "--view-envs", "0"}, 1},
+      {{"--steps", "1000000", "--envs", "2", "--view", "run.html"}, 1},
+      {{"--envs", "1", "--steps", "1", "--view", "missing/run.html"}, 2},
+      {{"--envs", "1", "--steps", "1", "--view", "world.pack"}, 3},
   };
   for (const auto& [arguments, code] : mistakes) {
     SCOPED_TRACE(testing::PrintToString(arguments));
@@ -316,6 +321,21 @@ TEST_F(SimulateCli, EndsWithACodeForEachKindOfMistake) {
   EXPECT_EQ(alone.exit_code, 3);
   std::filesystem::remove(folder_.path() / "objects.pack");
   EXPECT_EQ(run({"--steps", "1"}).exit_code, 3);
+}
+
+TEST_F(SimulateCli, WritesTheSamePageForARunAndItsReplay) {
+  record();
+  const auto page = [this](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--policy", "replay:run.rec", "--view", "page.html"});
+    const ProgramRun result = run(std::move(arguments));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return content("page.html");
+  };
+  const std::string one = page({"--threads", "1"});
+  EXPECT_THAT(one, AllOf(StartsWith("<!doctype html>"), HasSubstr("<title>page</title>")));
+  EXPECT_EQ(page({"--threads", "3"}), one);
+  EXPECT_NE(page({"--view-envs", "1"}), one);
+  EXPECT_LT(page({"--view-envs", "1"}).size(), one.size());
 }
 
 TEST_F(SimulateCli, EndsCleanlyWhenItIsInterrupted) {

@@ -1,0 +1,195 @@
+#!/usr/bin/env python3
+"""Pages in a real browser: they open without an error or a request, and show what the packs hold.
+
+    test_pages.py --packs PROGRAM --pack GALACTIC_PACK --run GALACTIC_RUN
+
+PROGRAM writes the packs. Ends with 77 where there is no Chromium.
+"""
+
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from browser import Browser, Page, find_chromium
+
+SKIPPED = 77
+OPTIONS = argparse.Namespace()
+# Of tests/support/small_home_models.h.
+ROOM, TABLE = (0xE0, 0xD8, 0xD0), (0x80, 0x50, 0x30)
+# Poses on pages are whole numbers of 0.1 mm and 1/32767, joints of 0.0001; the hand is 1 m away.
+POSE_TOLERANCE = 6e-4
+# Of the PNG's filters in the test's own reader: small pictures suffice.
+SMALL = (900, 520)
+
+
+def tool(program: str, *arguments: object) -> str:
+    return subprocess.run([program, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
+
+
+class Pages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory(prefix="galactic-pages-")
+        cls.folder = pathlib.Path(cls.scratch.name)
+        tool(OPTIONS.packs, cls.folder)
+        for name in ("world", "hostile_scene", "hostile_objects", "hostile_robot"):
+            tool(OPTIONS.pack, "view", cls.folder / f"{name}.pack", "-o", cls.folder / f"{name}.html")
+        tool(OPTIONS.run, "--pack", cls.folder / "world.pack", "--policy", f"replay:{cls.folder}/run.rec",
+             "--view", cls.folder / "run.html", "--view-envs", 2)
+        cls.browser = Browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.__exit__()
+        cls.scratch.cleanup()
+
+    def open(self, name: str, fragment: str, shown: str, size: tuple[int, int] = SMALL) -> Page:
+        page = self.browser.open(self.folder / f"{name}.html", "#" + fragment, size)
+        self.addCleanup(self.expect_peace, page)
+        page.shown(shown)
+        return page
+
+    def expect_peace(self, page: Page):
+        """Neither an error nor a request but for the page itself."""
+        page.evaluate("1")
+        self.assertEqual(page.errors, [])
+        self.assertEqual({url.split("#")[0] for url in page.requests}, {page.url})
+
+    def show_all_parts(self, page: Page) -> int:
+        count = page.evaluate("galactic.parts.length")
+        for number in range(count):
+            page.evaluate(f"galactic.show(galactic.parts[{number}]).then(() => 1)")
+            problem = page.evaluate("document.getElementById('progress').hidden ? '' : document.getElementById('progress').textContent")
+            self.assertEqual(problem, "", f"part {number}")
+        return count
+
+    def count(self, page: Page, color: tuple[int, int, int]) -> int:
+        _, _, rgb = page.pixels()
+        wanted = bytes(color)
+        return sum(rgb[n:n + 3] == wanted for n in range(0, len(rgb), 3))
+
+    def test_all_parts_of_a_world_open(self):
+        page = self.open("world", "", "scene 0")
+        self.assertGreater(self.show_all_parts(page), 8)
+
+    def test_the_mesh_has_the_colours_of_its_materials(self):
+        page = self.open("world", "view=scene&shade=0&sliced=0&slice=1.2", "scene 0")
+        self.assertGreater(self.count(page, TABLE), 1000)
+        self.assertGreater(self.count(page, ROOM), 5000)
+        # Cut off under the table top, it is not seen from above.
+        page.evaluate("galactic.view.setHeight(0.3); galactic.stage.drawNow(); 1")
+        self.assertLess(self.count(page, TABLE), 1000)
+
+    def test_columns_are_those_of_the_pack(self):
+        scene = self.folder / "scenes/kitchen.pack"
+        page = self.open("world", "view=scene&radius=0.05", "scene 0")
+        spans = 0
+        for x, z in ((0.5, 0.5), (1.5, 1.5), (1.02, 1.4), (2.7, 0.31), (2.02, 2.0)):
+            told = json.loads(tool(OPTIONS.pack, "column", scene, "--at", f"{x},{z}", "--radius", 0.05, "--json"))
+            wanted = told["columns"][0]["spans"]
+            shown = page.evaluate(f"(() => {{ const {{ grid }} = galactic.view.layer; galactic.view.mark(grid.cellAt({x}, {z}));"
+                                  "return [...document.querySelectorAll('#panel td.number')].map((one) => one.textContent); })()")
+            for n, span in enumerate(wanted):
+                low, high = (float(text) for text in shown[3 * n:3 * n + 2])
+                self.assertAlmostEqual(low, span["lo"], delta=1e-4)
+                self.assertAlmostEqual(high, span["hi"], delta=1e-4)
+                spans += 1
+        self.assertGreater(spans, 5)
+
+    def test_a_click_marks_what_a_sphere_reaches(self):
+        page = self.open("world", "view=scene&radius=0.05&slice=0.4", "scene 0")
+        self.assertNotIn("free space", page.evaluate("document.getElementById('panel').textContent"))
+        x, y = page.evaluate("(() => { const { stage, view } = galactic; const { x, z } = view.layer.grid.centreOf({ i: 9, k: 9 });"
+                             "const at = stage.camera.position.clone().set(x, 0.4, z).project(stage.camera); const area = stage.canvas.getBoundingClientRect();"
+                             "return [area.left + (at.x + 1) / 2 * area.width, area.top + (1 - at.y) / 2 * area.height]; })()")
+        page.click(x, y)
+        page.wait("document.getElementById('panel').textContent.includes('of the free space')")
+        self.assertEqual(page.evaluate("galactic.view.pinned.cell"), {"i": 9, "k": 9})
+
+    def test_a_drag_turns_the_view(self):
+        page = self.open("world", "view=object&n=0", "object 0")
+        before = page.evaluate("galactic.stage.camera.position.toArray()")
+        page.drag((330, 200), (420, 240))
+        self.assertNotEqual(page.evaluate("galactic.stage.camera.position.toArray()"), before)
+
+    def test_keys_move_a_joint(self):
+        page = self.open("world", "view=robot", "robot 0")
+        before = page.evaluate("galactic.view.figure.poses.at(-1).position.toArray()")
+        page.evaluate("document.querySelector('#panel input[type=range]').focus()")
+        page.key("ArrowRight")
+        moved = page.evaluate("[galactic.view.positions[0], galactic.view.robot.start[0], ...galactic.view.figure.poses.at(-1).position.toArray()]")
+        self.assertGreater(moved[0], moved[1])
+        # The lift goes up, and the hand with it.
+        self.assertAlmostEqual(moved[3] - before[1], moved[0] - moved[1], delta=1e-5)
+
+    def test_the_list_is_searched(self):
+        page = self.open("world", "", "scene 0")
+        page.key("/", "Slash", "/")
+        page.call("Input.insertText", text="episode 1")
+        names = page.evaluate("[...document.querySelectorAll('#list li button')].map((one) => one.firstChild.textContent)")
+        self.assertEqual(names, ["Episode 1"])
+
+    def test_a_run_shows_the_poses_of_the_simulator(self):
+        page = self.open("run", "env=1&t=0", "run 1")
+        frames = json.loads((self.folder / "poses.json").read_text())
+        self.assertEqual(len(frames), 61)
+        for env in (0, 1):
+            page.evaluate(f"galactic.view.chooseEnv({env}, 0).then(() => 1)")
+            for number in range(0, len(frames), 3):
+                shown = page.evaluate(f"galactic.view.timeline.go({number}).then(() => ({{"
+                                      "links: galactic.view.home.robot.poses.map((one) => [...one.position.toArray(), ...one.rotation.toArray()]),"
+                                      "objects: galactic.view.home.objects.map((one) => [...one.group.position.toArray(), ...one.group.quaternion.toArray()]) }))")
+                self.expect_poses(shown["links"], frames[number][env]["links"], number)
+                self.expect_poses(shown["objects"], frames[number][env]["objects"], number)
+
+    def expect_poses(self, shown: list, wanted: list, frame: int):
+        self.assertEqual(len(shown), len(wanted))
+        for a, b in zip(shown, wanted):
+            sign = 1 if sum(p * q for p, q in zip(a[3:], b[3:])) >= 0 else -1
+            difference = max(*(abs(p - q) for p, q in zip(a[:3], b[:3])), *(abs(p - sign * q) for p, q in zip(a[3:], b[3:])))
+            self.assertLess(difference, POSE_TOLERANCE, f"frame {frame}")
+
+    def test_the_timeline_is_worked_with_keys(self):
+        page = self.open("run", "env=0&t=10", "run 0")
+        self.assertEqual(page.evaluate("galactic.view.frame"), 10)
+        page.key("ArrowRight")
+        page.key("ArrowRight")
+        page.wait("galactic.view.frame === 12")
+        page.wait("location.hash.includes('t=12')")
+        page.key("End")
+        page.wait("galactic.view.frame === 60")
+        page.key("Home")
+        page.wait("galactic.view.frame === 0")
+        page.key(" ", "Space", " ")
+        page.wait("galactic.view.frame > 3")
+        page.key(" ", "Space", " ")
+        self.assertEqual(page.evaluate("galactic.view.timeline.playing"), 0)
+
+    def test_names_of_packs_are_no_markup(self):
+        for name in ("hostile_scene", "hostile_objects", "hostile_robot"):
+            page = self.open(name, "", {"hostile_scene": "scene 0", "hostile_objects": "object 0", "hostile_robot": "robot 0"}[name])
+            self.show_all_parts(page)
+            page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
+            self.assertEqual(page.evaluate("[document.querySelectorAll('img').length, document.title === 'owned']"), [0, False])
+            self.assertIn("<img", page.evaluate("document.body.innerText"))
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in ("packs", "pack", "run"):
+        parser.add_argument(f"--{name}", required=True)
+    parser.add_argument("tests", nargs="*")
+    parser.parse_args(namespace=OPTIONS)
+    if not find_chromium():
+        print("skipped: no Chromium found (Debian: chromium), pages are not tested in a browser")
+        return SKIPPED
+    result = unittest.main(argv=[sys.argv[0], "-v", *OPTIONS.tests], exit=False).result
+    return 0 if result.wasSuccessful() else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

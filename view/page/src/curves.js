@@ -1,0 +1,81 @@
+// Curves under the picture, with a cursor: one small chart for each group of values.
+import { el } from "./dom.js";
+
+const kColors = ["--blue", "--orange", "--green", "--purple", "--sky", "--red"];
+const kDashes = [[], [6, 3], [2, 3]];
+const kHeight = 44;
+
+export class Curves {
+  /// `charts`: { name, series: [{ name, values, steps }] }; `onPick(frame)` when somebody points at one.
+  constructor(charts, frames, onPick) {
+    this.frames = frames;
+    this.cursor = 0;
+    this.charts = charts.map((chart) => this.makeChart(chart, onPick));
+    this.element = el("div", { className: "curves" }, ...this.charts.flatMap((one) => [one.legend, one.canvas]));
+    new ResizeObserver(() => this.draw()).observe(this.element);
+  }
+
+  makeChart(chart, onPick) {
+    const canvas = el("canvas", { height: kHeight, role: "img", "aria-label": `Curves: ${chart.name}` });
+    const outputs = chart.series.map(() => el("span", { className: "number" }));
+    const legend = el("div", { className: "legend" }, el("b", {}, chart.unit ? `${chart.name}, ${chart.unit}` : chart.name), ...chart.series.map((one, n) => {
+      const line = el("i");
+      line.style.borderTopColor = `var(${kColors[n % kColors.length]})`;
+      line.style.borderTopStyle = ["solid", "dashed", "dotted"][Math.floor(n / kColors.length) % 3];
+      return el("span", {}, line, `${one.name} `, outputs[n]);
+    }));
+    const pick = (event) => {
+      const area = canvas.getBoundingClientRect();
+      onPick(Math.round(((event.clientX - area.left) / area.width) * (this.frames - 1)));
+    };
+    canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); pick(event); });
+    canvas.addEventListener("pointermove", (event) => { if (event.buttons) pick(event); });
+    const all = chart.series.flatMap((one) => [one.values.reduce((a, b) => Math.min(a, b), 0), one.values.reduce((a, b) => Math.max(a, b), 0)]);
+    return { ...chart, canvas, legend, outputs, least: Math.min(...all), most: Math.max(...all, 1e-6) };
+  }
+
+  setCursor(frame) {
+    this.cursor = frame;
+    this.draw();
+  }
+
+  draw() {
+    const style = getComputedStyle(document.documentElement);
+    for (const chart of this.charts) this.drawChart(chart, style);
+  }
+
+  drawChart(chart, style) {
+    const ratio = devicePixelRatio;
+    const width = chart.canvas.clientWidth;
+    if (width === 0) return;
+    chart.canvas.width = width * ratio;
+    chart.canvas.height = kHeight * ratio;
+    const context = chart.canvas.getContext("2d");
+    context.scale(ratio, ratio);
+    const x = (frame) => (frame / Math.max(1, this.frames - 1)) * width;
+    const y = (value) => kHeight - 4 - ((value - chart.least) / (chart.most - chart.least)) * (kHeight - 8);
+    context.strokeStyle = style.getPropertyValue("--line");
+    context.strokeRect(0.5, 0.5, width - 1, kHeight - 1);
+    context.beginPath();
+    context.moveTo(0, y(0));
+    context.lineTo(width, y(0));
+    context.stroke();
+    chart.series.forEach((one, n) => {
+      context.strokeStyle = style.getPropertyValue(kColors[n % kColors.length]);
+      context.setLineDash(kDashes[Math.floor(n / kColors.length) % 3]);
+      context.lineWidth = 1.4;
+      context.beginPath();
+      // Values of steps stand at the frame after the step.
+      one.values.forEach((value, step) => context.lineTo(x(step + one.first), y(value)));
+      context.stroke();
+      const shown = one.values[this.cursor - one.first];
+      chart.outputs[n].textContent = shown === undefined ? "" : shown.toFixed(3).replace(/\.?0+$/, "");
+    });
+    context.setLineDash([]);
+    context.strokeStyle = style.getPropertyValue("--ink");
+    context.beginPath();
+    context.moveTo(x(this.cursor), 0);
+    context.lineTo(x(this.cursor), kHeight);
+    context.stroke();
+  }
+}

@@ -1,0 +1,74 @@
+// Episodes, one after the other: placements, target, goal, robot start.
+import { Vector3 } from "three";
+import { addressNumber, setAddress } from "./address.js";
+import { button, checkbox, el, heading, legendRow, note, table } from "./dom.js";
+import { Home } from "./home.js";
+
+export class EpisodeView {
+  constructor(page, number) {
+    this.page = page;
+    this.number = number;
+    this.hasReach = false;
+  }
+
+  async open() {
+    this.home = new Home(this.page);
+    await this.home.open();
+    this.facts = el("div");
+    await this.go(addressNumber("episode", 0));
+    this.fillPanel();
+  }
+
+  async go(number) {
+    const { episodes, stage } = this.page;
+    this.number = Math.max(0, Math.min(episodes.count - 1, Math.round(number)));
+    const episode = episodes.at(this.number);
+    await this.home.setEpisode(episode);
+    if (this.hasReach) await this.home.setReach(true);
+    // Cut through the room at the height of a person, so that one sees into it.
+    stage.setCut(this.isCut === false ? null : episode.base.y + 1.6);
+    stage.frame(this.home.bounds(), new Vector3(0.5, 1.1, 0.8));
+    setAddress({ episode: this.number });
+    this.fillFacts(episode);
+    this.page.listPart?.("episode", this.number);
+  }
+
+  fillFacts(episode) {
+    const { placements, target, goal, base } = episode;
+    const place = placements[target].pose.position;
+    const point = ({ x, y, z }) => [x, y, z].map((one) => one.toFixed(2)).join(", ");
+    this.facts.replaceChildren(
+      table([["Scene", episode.scene], ["Target", placements[target].object], ["Target at", point(place)], ["Goal at", point(goal.position)],
+        ["From target to goal", `${place.distanceTo(goal.position).toFixed(3)} m`], ["Robot at", point(base)], ["Robot's yaw", `${base.yaw.toFixed(3)} rad`]]),
+      heading(`Objects (${placements.length})`),
+      el("ul", {}, ...placements.map((one, n) => el("li", {}, one.object + (n === target ? ", the target" : "")))));
+    if (!this.page.scenes.has(episode.scene)) this.facts.prepend(note("The scene is in another pack: open the world to see it."));
+  }
+
+  fillPanel() {
+    const toggle = (key) => (on) => this.home.show({ ...this.home.shown, [key]: on });
+    this.page.fillPanel([
+      heading("Episode"),
+      el("div", { className: "buttons" }, button("Previous", () => this.go(this.number - 1)), button("Next", () => this.go(this.number + 1))),
+      this.facts,
+      heading("Show"),
+      checkbox("Scene", true, toggle("scene")),
+      this.page.shadeBox(),
+      checkbox("Cut off what is above 1.6 m", true, (on) => { this.isCut = on; this.page.stage.setCut(on ? this.home.episode.base.y + 1.6 : null); }),
+      checkbox("Meshes of robot and objects", true, toggle("mesh")),
+      checkbox("Spheres", false, toggle("spheres")),
+      checkbox("Oriented boxes", false, toggle("boxes")),
+      checkbox("Camera, grasp point, footprint", false, toggle("marks")),
+      checkbox("Floor that it can drive to", false, (on) => { this.hasReach = on; this.home.setReach(on); }),
+      legendRow("#e69f00", "Target"),
+      legendRow("#009e73", "Goal"),
+    ]);
+  }
+
+  key(event) {
+    const step = { ArrowRight: 1, ArrowLeft: -1, n: 1, p: -1 }[event.key];
+    if (!step) return false;
+    this.go(this.number + step);
+    return true;
+  }
+}

@@ -1,0 +1,279 @@
+// The page: what it holds on the left, the picture, options and numbers on the right, a timeline below.
+import { address, onAddress, setAddress } from "./address.js";
+import { PageData } from "./data.js";
+import { button, checkbox, el, heading, megabytes, note, tree } from "./dom.js";
+import { EpisodeView } from "./episode_view.js";
+import { EpisodeList } from "./home.js";
+import { MeshLibrary } from "./meshes.js";
+import { ObjectView } from "./object_view.js";
+import { RobotView } from "./robot_view.js";
+import { RunView } from "./run_view.js";
+import { SceneView } from "./scene_view.js";
+import { Stage } from "./stage.js";
+
+const kKeys = [
+  ["Drag, wheel, right button", "turn, come closer, move; on a touch screen one, two and two fingers"],
+  ["/", "search the list"], ["D", "light or dark"], ["?", "these keys"],
+  ["Page up, Page down", "scene: move the slice (with shift: further)"],
+  ["Left, right", "episodes: previous, next; run: a step (with shift: ten)"],
+  ["Space", "run: play or pause"], ["Home, End", "run: begin, end"], ["+, −", "run: faster, slower"],
+  ["F, C", "run: follow the robot, see with its camera"],
+];
+
+class Page {
+  constructor(manifest, data) {
+    this.manifest = manifest;
+    this.data = data;
+    this.stage = new Stage(document.getElementById("canvas"));
+    this.library = new MeshLibrary(data, manifest.textures, this.stage);
+    this.library.isShaded = address.get("shade") !== "0";
+    this.scenes = new Map();
+    this.objects = new Map();
+    this.listeners = [];
+    this.parts = [];
+    this.opening = Promise.resolve();
+    for (const pack of manifest.packs) this.addPack(pack);
+    this.makeParts();
+  }
+
+  addPack(pack) {
+    if (pack.scene) this.scenes.set(pack.scene.name, pack);
+    (pack.objects ?? []).forEach((one, number) => this.objects.set(one.name, { pack, number }));
+    if (pack.robot) this.robotPack = pack;
+    if (pack.episodes) this.episodePack = pack;
+  }
+
+  /// What can be shown: { kind, number, name, hint, make }.
+  makeParts() {
+    const add = (kind, number, name, hint, make) => this.parts.push({ kind, number, name, hint, make });
+    const { run, packs } = this.manifest;
+    (run?.envs ?? []).forEach((_, n) => add("run", n, `Env ${n}`, "", () => new RunView(this, run)));
+    [...this.scenes.values()].forEach((pack, n) => add("scene", n, pack.scene.name, "", () => new SceneView(this, pack)));
+    [...this.objects.values()].forEach(({ pack, number }, n) => add("object", n, pack.objects[number].name, "", () => new ObjectView(this, pack, number)));
+    if (this.robotPack) add("robot", 0, this.robotPack.robot.name, "", () => new RobotView(this, this.robotPack));
+    for (let n = 0; n < (this.episodes?.count ?? 0); ++n) {
+      add("episode", n, `Episode ${this.episodes.which[n]}`, this.episodes.titleOf(n), () => new EpisodeView(this, n));
+    }
+    packs.forEach((pack, n) => add("pack", n, pack.file, `${pack.kind}, ${megabytes(pack.bytes)}`, null));
+  }
+
+  async open() {
+    if (this.episodePack) {
+      this.episodes = await EpisodeList.load(this.data, this.episodePack.episodes);
+      this.parts = [];
+      this.makeParts();
+    }
+    document.getElementById("title").textContent = this.manifest.title;
+    document.title = this.manifest.title;
+    document.getElementById("subtitle").textContent = this.manifest.generator;
+    this.makeList();
+    this.listenForKeys();
+    const wanted = this.parts.find((one) => one.kind === address.get("view") && one.number === Number(address.get("n") ?? 0));
+    await this.show(wanted ?? this.firstPart());
+  }
+
+  firstPart() {
+    if (address.has("env")) {
+      const run = this.parts.find((one) => one.kind === "run" && one.number === Number(address.get("env")));
+      if (run) return run;
+    }
+    const order = ["run", "scene", "robot", "object", "episode", "pack"];
+    return order.map((kind) => this.parts.find((one) => one.kind === kind)).find((one) => one);
+  }
+
+  /// Shows a part; one after the other, however fast somebody clicks.
+  show(part) {
+    this.opening = this.opening.then(() => this.showNow(part)).catch((problem) => this.fail(problem));
+    return this.opening;
+  }
+
+  async showNow(part) {
+    delete document.documentElement.dataset.shown;
+    this.current = part;
+    setAddress(part.kind === "run" ? { view: null, n: null } : { view: part.kind, n: part.number });
+    if (part.kind === "run") setAddress({ env: part.number });
+    if (part.kind === "episode") setAddress({ episode: part.number });
+    this.markList();
+    closeDrawers();
+    if (part.kind === "pack") this.showFacts(part);
+    else if (part.kind === "run" && this.view instanceof RunView) await this.view.chooseEnv(part.number, this.view.frame);
+    else if (part.kind === "episode" && this.view instanceof EpisodeView) await this.view.go(part.number);
+    else await this.showView(part);
+    document.getElementById("progress").hidden = true;
+    this.stage.drawNow();
+    document.documentElement.dataset.shown = `${part.kind} ${part.number}`;
+  }
+
+  async showView(part) {
+    for (const [target, name, handler] of this.listeners.splice(0)) target.removeEventListener(name, handler);
+    this.stage.clear();
+    this.readout("");
+    document.getElementById("timeline").hidden = true;
+    const progress = document.getElementById("progress");
+    this.data.wanted = this.data.done = 0;
+    progress.hidden = false;
+    this.view = part.make();
+    await this.view.open();
+  }
+
+  /// What is written about a pack, in place of options.
+  showFacts(part) {
+    const pack = this.manifest.packs[part.number];
+    const facts = pack.facts ? Object.entries(pack.facts).map(([key, value]) => tree(value, key)) : [note("The page was written without more about this pack.")];
+    this.fillPanel([heading(pack.file), note(`${pack.kind}, ${megabytes(pack.bytes)}`), ...facts]);
+    if (!this.view) document.getElementById("progress").hidden = true;
+  }
+
+  fail(problem) {
+    const status = document.getElementById("progress");
+    status.hidden = false;
+    status.querySelector("span").textContent = `This part cannot be shown: ${problem.message}`;
+    console.error(problem);
+  }
+
+  /// For views: forgotten when another one opens.
+  on(target, name, handler) {
+    target.addEventListener(name, handler);
+    this.listeners.push([target, name, handler]);
+  }
+
+  fillPanel(children) {
+    document.getElementById("panel").replaceChildren(...children.filter((child) => child));
+  }
+
+  readout(text) { document.getElementById("readout").textContent = text; }
+
+  shadeBox() {
+    return checkbox("Light and shade", this.library.isShaded, (on) => {
+      setAddress({ shade: on ? null : 0 });
+      this.library.setShaded(on);
+    });
+  }
+
+  makeList() {
+    const search = el("input", { type: "search", placeholder: "Search", "aria-label": "Search the list" });
+    this.lists = el("div");
+    search.addEventListener("input", () => this.fillList(search.value));
+    document.getElementById("list").replaceChildren(search, this.lists);
+    this.fillList("");
+  }
+
+  fillList(text) {
+    const names = { run: "Run", scene: "Scenes", object: "Objects", robot: "Robot", episode: "Episodes", pack: "Packs" };
+    const words = text.toLowerCase().split(/\s+/).filter((word) => word);
+    const most = 300;
+    const sections = [];
+    for (const [kind, title] of Object.entries(names)) {
+      const all = this.parts.filter((one) => one.kind === kind);
+      const fitting = all.filter((one) => words.every((word) => `${one.name} ${one.hint}`.toLowerCase().includes(word)));
+      if (fitting.length === 0) continue;
+      const items = fitting.slice(0, most).map((one) => {
+        const item = button(one.name, () => this.show(one));
+        item.part = one;
+        if (one.hint) item.append(el("small", {}, one.hint));
+        return el("li", {}, item);
+      });
+      sections.push(heading(fitting.length > 1 ? `${title} (${fitting.length})` : title), el("ul", {}, ...items));
+      if (fitting.length > most) sections.push(note(`${fitting.length - most} more: search for them`));
+    }
+    this.lists.replaceChildren(...(sections.length > 0 ? sections : [el("div", { className: "none" }, "Nothing of this name")]));
+    this.markList();
+  }
+
+  markList() {
+    for (const item of this.lists.querySelectorAll("button")) {
+      if (item.part === this.current) item.setAttribute("aria-current", "true");
+      else item.removeAttribute("aria-current");
+    }
+  }
+
+  /// A view went on to another of its kind by itself.
+  listPart(kind, number) {
+    this.current = this.parts.find((one) => one.kind === kind && one.number === number) ?? this.current;
+    if (kind === "episode") setAddress({ n: number });
+    this.markList();
+  }
+
+  listenForKeys() {
+    addEventListener("keydown", (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      const isTyping = event.target.matches("input[type=search], select, textarea");
+      // A focused control keeps its own keys.
+      const isControl = event.target.matches("input, button, summary") && [" ", "Enter", "ArrowLeft", "ArrowRight", "Home", "End", "PageUp", "PageDown"].includes(event.key);
+      if (isTyping || isControl) return;
+      const own = { "/": () => document.querySelector("#list input").focus(), "?": showKeys, d: () => toggleTheme(this) }[event.key];
+      if (own) own();
+      else if (this.current.kind === "pack" || !this.view?.key?.(event)) return;
+      event.preventDefault();
+    });
+  }
+}
+
+function closeDrawers() {
+  for (const id of ["list", "panel"]) {
+    document.getElementById(id).classList.remove("open");
+    document.getElementById(`show-${id}`).setAttribute("aria-expanded", "false");
+  }
+}
+
+function makeDrawers() {
+  for (const id of ["list", "panel"]) {
+    document.getElementById(`show-${id}`).addEventListener("click", (event) => {
+      const isOpen = document.getElementById(id).classList.contains("open");
+      closeDrawers();
+      document.getElementById(id).classList.toggle("open", !isOpen);
+      event.target.setAttribute("aria-expanded", String(!isOpen));
+    });
+  }
+}
+
+function showKeys() {
+  const dialog = document.getElementById("keys");
+  dialog.replaceChildren(el("h2", {}, "Keys"), el("table", {}, ...kKeys.map(([key, what]) => el("tr", {}, el("td", {}, el("kbd", {}, key)), el("td", {}, what)))),
+    el("div", { className: "buttons" }, button("Close", () => dialog.close())));
+  dialog.showModal();
+}
+
+function setTheme(theme) {
+  document.documentElement.dataset.theme = theme;
+}
+
+function toggleTheme(page) {
+  const theme = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+  setTheme(theme);
+  setAddress({ theme });
+  page.stage.setTheme();
+  page.view?.timeline?.curves?.draw();
+}
+
+async function main() {
+  const isDark = matchMedia("(prefers-color-scheme: dark)").matches;
+  setTheme(["light", "dark"].includes(address.get("theme")) ? address.get("theme") : isDark ? "dark" : "light");
+  makeDrawers();
+  const status = document.getElementById("progress");
+  try {
+    const data = new PageData(document.querySelectorAll("script.chunk"));
+    data.onProgress = (share) => { status.querySelector("progress").value = share; };
+    const page = new Page(await data.manifest(), data);
+    // For scripts, as tests are.
+    globalThis.galactic = page;
+    page.stage.setTheme();
+    document.getElementById("help").addEventListener("click", showKeys);
+    document.getElementById("theme").addEventListener("click", () => toggleTheme(page));
+    onAddress(() => {
+      const { view } = page;
+      if (view instanceof RunView && page.current.kind === "run" && !address.has("view")) {
+        view.chooseEnv(Number(address.get("env") ?? view.env), Number(address.get("t") ?? view.frame));
+      } else {
+        page.show(page.parts.find((one) => one.kind === address.get("view") && one.number === Number(address.get("n") ?? 0)) ?? page.firstPart());
+      }
+    });
+    await page.open();
+  } catch (problem) {
+    status.querySelector("progress").remove();
+    status.querySelector("span").textContent = `The page cannot be opened: ${problem.message}`;
+    console.error(problem);
+  }
+}
+
+main();

@@ -1,0 +1,176 @@
+// A run: the home of an env, and a timeline that plays it.
+import { Box3, Vector3 } from "three";
+import { address, addressNumber, setAddress } from "./address.js";
+import { button, checkbox, el, heading, legendRow, metres, note, table, tree } from "./dom.js";
+import { Home } from "./home.js";
+import { Pose } from "./kinematics.js";
+import { Timeline } from "./timeline.js";
+import { kEndings, Track } from "./track.js";
+
+const kCameras = [["Free", "free"], ["Follow", "follow"], ["Robot's own", "own"]];
+
+export class RunView {
+  constructor(page, run) {
+    this.page = page;
+    this.run = run;
+    this.frame = -1;
+    this.facts = el("div");
+  }
+
+  async open() {
+    this.home = new Home(this.page);
+    await this.home.open();
+    this.camera = kCameras.some(([, key]) => key === address.get("camera")) ? address.get("camera") : "follow";
+    this.timeline = new Timeline(this.page, this.run, {
+      onFrame: (frame) => this.go(frame), onBetween: (frame, share) => this.showBetween(frame, share),
+    });
+    await this.chooseEnv(Math.max(0, Math.min(this.run.envs.length - 1, addressNumber("env", 0))), addressNumber("t", 0));
+    this.page.stage.beforeDraw = () => this.moveCamera();
+    this.frameHome();
+    this.fillPanel();
+  }
+
+  async chooseEnv(number, frame = 0) {
+    this.env = number;
+    this.track = await Track.load(this.page.data, this.run, number);
+    this.shownEpisode = null;
+    this.timeline.setTrack(this.track);
+    setAddress({ env: number });
+    this.page.listPart?.("run", number);
+    await this.timeline.go(Math.max(0, Math.min(this.track.frameCount - 1, Math.round(frame))));
+  }
+
+  frameHome() {
+    const root = this.home.robot.poses[0].position;
+    const around = new Box3().setFromCenterAndSize(root, new Vector3(2.2, 1.6, 2.2));
+    this.page.stage.frame(this.camera === "free" ? this.home.bounds() : around, new Vector3(0.5, 0.95, 0.8));
+    this.lastRoot = null;
+  }
+
+  /// Shows a frame. Another episode may want another scene, which has to be unpacked first.
+  async go(frame) {
+    this.frame = frame;
+    const begin = this.track.beginOf(frame);
+    const key = `${this.env} ${begin}`;
+    if (this.shownEpisode !== key) {
+      this.shownEpisode = key;
+      await this.home.setEpisode(this.page.episodes.withNumber(this.track.episode(frame)));
+      if (this.hasReach) await this.home.setReach(true);
+      this.page.stage.setCut(this.isCut === false ? null : this.home.episode.base.y + 1.6);
+      // Somebody may have gone on meanwhile.
+      if (this.frame !== frame) return;
+    }
+    this.showPoses(frame);
+  }
+
+  showPoses(frame) {
+    const { placements, target } = this.home.episode;
+    const moved = this.track.movedObjects(frame);
+    placements.forEach((one, n) => this.home.setObject(n, moved.get(n) ?? one.pose));
+    if (this.run.target_only) this.home.objects.forEach((one, n) => { one.group.visible = n === target; });
+    const { robot } = this.home;
+    robot.setPose(this.track.root(frame), this.track.joints(frame));
+    setAddress({ t: frame });
+    this.fillFacts(frame);
+    this.page.stage.draw();
+  }
+
+  /// Between a frame and the next, while the run is played: robot and what it holds move evenly.
+  showBetween(frame, share) {
+    const { track, home } = this;
+    const next = frame + 1;
+    if (next >= track.frameCount || track.endings[frame] !== 0 || this.shownEpisode !== `${this.env} ${track.beginOf(frame)}`) return;
+    const mixed = (a, b) => new Pose(a.position.clone().lerp(b.position, share), a.rotation.clone().slerp(b.rotation, share));
+    const joints = track.joints(frame).map((value, n) => value + (track.joints(next)[n] - value) * share);
+    home.robot.setPose(mixed(track.root(frame), track.root(next)), joints);
+    const held = track.held(frame);
+    if (held >= 0 && held === track.held(next)) {
+      const [from, to] = [track.movedObjects(frame).get(held), track.movedObjects(next).get(held)];
+      if (from && to) home.setObject(held, mixed(from, to));
+    }
+    this.page.stage.draw();
+  }
+
+  /// Before each picture: the camera goes where the robot goes.
+  moveCamera() {
+    const { robot } = this.home;
+    if (!robot?.poses) return;
+    const { camera, controls } = this.page.stage;
+    if (this.camera === "own" && robot.robot.camera) {
+      const own = robot.ownCamera();
+      camera.position.copy(own.position);
+      camera.quaternion.copy(own.quaternion);
+      return;
+    }
+    const root = robot.poses[0].position;
+    if (this.camera === "follow") {
+      if (this.lastRoot) {
+        const step = root.clone().sub(this.lastRoot);
+        camera.position.add(step);
+        controls.target.add(step);
+      } else {
+        const step = root.clone().sub(controls.target);
+        camera.position.add(step);
+        controls.target.add(step);
+        camera.lookAt(controls.target);
+      }
+      this.lastRoot = root.clone();
+    }
+  }
+
+  setCamera(key) {
+    this.camera = key;
+    this.lastRoot = null;
+    setAddress({ camera: key === "follow" ? null : key });
+    const { robot } = this.home;
+    const isOwn = key === "own" && robot?.robot.camera;
+    this.page.stage.setOwnCamera(isOwn ? robot.ownCamera() : null);
+    if (!isOwn) this.frameHome();
+    this.cameraButtons.forEach((one) => one.setAttribute("aria-pressed", one.value === key));
+  }
+
+  fillFacts(frame) {
+    const { track } = this;
+    const held = track.held(frame);
+    const { placements, target } = this.home.episode;
+    const ended = frame > 0 ? kEndings[track.endings[frame - 1]] : "";
+    const rows = [["Episode", track.episode(frame)], ["Step of the episode", frame - track.beginOf(frame)],
+      ["Target", placements[target].object], ["In the hand", held < 0 ? "nothing" : placements[held]?.object ?? ""]];
+    if (frame > 0) {
+      rows.push(["Reward of the step", track.rewards[frame - 1].toFixed(4)]);
+      this.run.distances.forEach((name, n) => rows.push([name.replace("_", " to "), metres(track.distances[(frame - 1) * this.run.distances.length + n])]));
+    }
+    this.facts.replaceChildren(table(rows), ended ? note(`The step before ended an episode: ${ended}.`) : "");
+  }
+
+  fillPanel() {
+    const toggle = (key) => (on) => this.home.show({ ...this.home.shown, [key]: on });
+    this.cameraButtons = kCameras.map(([text, key]) => button(text, () => this.setCamera(key), { value: key, "aria-pressed": key === this.camera }));
+    this.page.fillPanel([
+      heading("Camera"),
+      el("div", { className: "buttons" }, ...this.cameraButtons),
+      heading("Now"),
+      this.facts,
+      heading("Show"),
+      checkbox("Scene", true, toggle("scene")),
+      this.page.shadeBox(),
+      checkbox("Cut off what is above 1.6 m", true, (on) => { this.isCut = on; this.page.stage.setCut(on ? this.home.episode.base.y + 1.6 : null); }),
+      checkbox("Meshes of robot and objects", true, toggle("mesh")),
+      checkbox("Spheres", false, toggle("spheres")),
+      checkbox("Oriented boxes", false, toggle("boxes")),
+      checkbox("Camera, grasp point, footprint", false, toggle("marks")),
+      checkbox("Floor that it can drive to", false, (on) => { this.hasReach = on; this.home.setReach(on); }),
+      legendRow("#e69f00", "Target"),
+      legendRow("#009e73", "Goal"),
+      ...(this.run.facts ? [heading("About the run"), tree(this.run.facts, "facts")] : []),
+    ]);
+    if (this.camera === "own") this.setCamera("own");
+  }
+
+  key(event) {
+    if (event.key === "f") this.setCamera("follow");
+    else if (event.key === "c") this.setCamera(this.camera === "own" ? "free" : "own");
+    else return this.timeline.key(event);
+    return true;
+  }
+}

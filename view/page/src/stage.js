@@ -1,0 +1,147 @@
+// The picture: one renderer, one camera, drawn when something changed.
+import {
+  AmbientLight, Box3, Color, DirectionalLight, GridHelper, Group, PerspectiveCamera, Plane, Raycaster, Scene,
+  Vector2, Vector3, WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+
+const kFov = 50;
+
+/// Frees what a group drew.
+export function disposeOf(group) {
+  group.traverse((one) => {
+    one.geometry?.dispose();
+    if (one.isInstancedMesh) one.dispose();
+    for (const material of [one.material ?? []].flat()) material.dispose();
+  });
+  group.removeFromParent();
+}
+
+export class Stage {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.scene = new Scene();
+    this.camera = new PerspectiveCamera(kFov, 1, 0.02, 300);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = false;
+    this.controls.addEventListener("change", () => this.draw());
+    this.raycaster = new Raycaster();
+    this.cut = new Plane(new Vector3(0, -1, 0), 0);
+    this.beforeDraw = () => {};
+    this.frames = 0;
+    this.addLights();
+    this.content = new Group();
+    this.scene.add(this.content);
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    this.resize();
+  }
+
+  addLights() {
+    // Level faces keep their colour, walls are a little darker.
+    this.scene.add(new AmbientLight(0xffffff, 0.56 * Math.PI));
+    const sun = new DirectionalLight(0xffffff, 0.38 * Math.PI);
+    sun.position.set(0.25, 1, 0.4);
+    const fill = new DirectionalLight(0xffffff, 0.12 * Math.PI);
+    fill.position.set(-0.6, 0.1, -0.5);
+    this.scene.add(sun, fill);
+  }
+
+  setTheme() {
+    const style = getComputedStyle(document.documentElement);
+    this.scene.background = new Color(style.getPropertyValue("--stage").trim());
+    this.draw();
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.drawNow();
+  }
+
+  draw() {
+    if (this.pending) return;
+    this.pending = requestAnimationFrame(() => this.drawNow());
+  }
+
+  drawNow() {
+    cancelAnimationFrame(this.pending);
+    this.pending = 0;
+    this.beforeDraw();
+    this.renderer.render(this.scene, this.camera);
+    ++this.frames;
+  }
+
+  clear() {
+    disposeOf(this.content);
+    this.content = new Group();
+    this.scene.add(this.content);
+    this.setCut(null);
+    this.setOwnCamera(null);
+    this.beforeDraw = () => {};
+  }
+
+  /// A floor of squares of a tenth of a metre or a metre, for what has no room around it.
+  addFloor(size) {
+    const step = size > 3 ? 1 : 0.1;
+    const squares = Math.max(4, 2 * Math.ceil(size / step));
+    const floor = new GridHelper(squares * step, squares, 0x7a8088, 0x9aa0a8);
+    floor.material.transparent = true;
+    floor.material.opacity = 0.35;
+    this.content.add(floor);
+  }
+
+  /// Turns the camera to see a box, from a direction.
+  frame(box, direction = new Vector3(0.9, 0.75, 1.1)) {
+    if (box.isEmpty()) box = new Box3(new Vector3(-1, 0, -1), new Vector3(1, 1, 1));
+    const centre = box.getCenter(new Vector3());
+    const radius = Math.max(0.05, box.getSize(new Vector3()).length() / 2);
+    const narrow = Math.min(1, this.camera.aspect);
+    const distance = radius / Math.tan((kFov * Math.PI) / 360) / narrow;
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(direction.clone().normalize(), distance);
+    this.camera.near = Math.max(0.005, radius / 200);
+    this.camera.far = Math.max(50, radius * 12);
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.draw();
+  }
+
+  /// Leaves out what is above a height; null: nothing.
+  setCut(height) {
+    this.cut.constant = height ?? 0;
+    this.renderer.localClippingEnabled = height !== null;
+    this.draw();
+  }
+
+  /// What meshes of a scene are cut with.
+  get clippingPlanes() { return [this.cut]; }
+
+  /// Sees with a camera that something carries: { position, quaternion (looking along -Z), fov }.
+  setOwnCamera(own) {
+    this.controls.enabled = own === null;
+    if (own) {
+      this.camera.position.copy(own.position);
+      this.camera.quaternion.copy(own.quaternion);
+      this.camera.fov = own.fov;
+    } else if (this.camera.fov !== kFov) {
+      this.camera.fov = kFov;
+      this.controls.update();
+    }
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  /// The ray under a pointer event.
+  rayAt(event) {
+    const area = this.canvas.getBoundingClientRect();
+    const point = new Vector2(((event.clientX - area.left) / area.width) * 2 - 1,
+                              1 - ((event.clientY - area.top) / area.height) * 2);
+    this.raycaster.setFromCamera(point, this.camera);
+    return this.raycaster;
+  }
+}

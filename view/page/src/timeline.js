@@ -1,0 +1,160 @@
+// Play, pause, step, scrub; events as marks; curves.
+import { address, addressNumber, setAddress } from "./address.js";
+import { Curves } from "./curves.js";
+import { button, el } from "./dom.js";
+import { kEndings, kEvents } from "./track.js";
+
+const kSpeeds = [0.25, 0.5, 1, 2, 4, 8];
+const kCurves = ["Reward", "Distance", "Contact", "Actions"];
+// Told apart by shape; colours only help.
+const kMarks = { grasp: ["▲", "--green", "grasped"], drop: ["▼", "--blue", "let go"], restore: ["↺", "--purple", "found no place to let go, the object went back"] };
+
+export class Timeline {
+  constructor(page, run, { onFrame, onBetween }) {
+    this.page = page;
+    this.run = run;
+    this.onFrame = onFrame;
+    this.onBetween = onBetween;
+    this.frame = 0;
+    this.speed = addressNumber("speed", 1);
+    this.playing = 0;
+    this.element = document.getElementById("timeline");
+    this.element.hidden = false;
+    this.makeTransport();
+  }
+
+  makeTransport() {
+    this.playButton = button("Play", () => this.toggle(), { title: "Play or pause (space)" });
+    this.speedChoice = el("select", { "aria-label": "Speed" }, ...kSpeeds.map((one) => el("option", { value: one, selected: one === this.speed }, `${one} ×`)));
+    this.speedChoice.addEventListener("change", () => this.setSpeed(Number(this.speedChoice.value)));
+    this.envChoice = el("select", { "aria-label": "Environment" }, ...this.run.envs.map((_, n) => el("option", { value: n }, `Env ${n}`)));
+    this.envChoice.addEventListener("change", () => this.page.view.chooseEnv(Number(this.envChoice.value)));
+    this.clock = el("span", { className: "clock" });
+    this.scrub = el("input", { type: "range", min: 0, max: this.run.steps, step: 1, value: 0, "aria-label": "Step" });
+    this.scrub.addEventListener("input", () => { this.pause(); this.go(Number(this.scrub.value)); });
+    this.marks = el("div", { className: "marks" });
+    this.curvePart = el("div");
+    this.shownCurves = new Set((address.get("curves") ?? "Reward,Distance").split(","));
+    this.curveButtons = kCurves.map((name) => button(name, () => this.toggleCurve(name), { "aria-pressed": this.shownCurves.has(name) }));
+    this.element.replaceChildren(
+      el("div", { className: "transport" }, this.playButton,
+        button("◀", () => this.step(-1), { title: "One step back (left)", "aria-label": "One step back" }),
+        button("▶", () => this.step(1), { title: "One step on (right)", "aria-label": "One step on" }),
+        this.speedChoice, this.run.envs.length > 1 ? this.envChoice : "", this.clock, el("span", { className: "space" }), ...this.curveButtons),
+      el("div", { className: "track" }, this.scrub, this.marks), this.curvePart);
+  }
+
+  setTrack(track) {
+    this.pause();
+    this.track = track;
+    this.envChoice.value = this.page.view.env;
+    this.fillMarks();
+    const width = this.run.distances.length;
+    const held = Array.from({ length: track.frameCount }, (_, frame) => (track.held(frame) >= 0 ? 1 : 0));
+    const bits = (bit) => Array.from(track.events, (events) => (events & bit ? 1 : 0));
+    this.charts = [
+      { name: "Reward", series: [{ name: "of the step", values: [...track.rewards], first: 1 }] },
+      { name: "Distance", unit: "m", series: this.run.distances.map((name, n) => ({ name: name.replace("_", " to "), values: track.column(track.distances, width, n), first: 1 })) },
+      { name: "Contact", series: [{ name: "holds", values: held, first: 0 }, { name: "refused", values: bits(kEvents.refuse), first: 1 }, { name: "slid", values: bits(kEvents.slide), first: 1 }] },
+      { name: "Actions", series: this.run.actions.map((name, n) => ({ name, values: track.column(track.actions, this.run.actions.length, n), first: 1 })) },
+    ];
+    this.makeCurves();
+  }
+
+  makeCurves() {
+    const shown = this.charts.filter((one) => this.shownCurves.has(one.name));
+    this.curves = new Curves(shown, this.track.frameCount, (frame) => { this.pause(); this.go(frame); });
+    this.curvePart.replaceChildren(this.curves.element);
+    this.curves.setCursor(this.frame);
+  }
+
+  toggleCurve(name) {
+    if (!this.shownCurves.delete(name)) this.shownCurves.add(name);
+    this.curveButtons.forEach((one, n) => one.setAttribute("aria-pressed", this.shownCurves.has(kCurves[n])));
+    setAddress({ curves: [...this.shownCurves].join(",") });
+    this.makeCurves();
+  }
+
+  fillMarks() {
+    const { track } = this;
+    const marks = [];
+    const add = (step, symbol, color, text) => {
+      const mark = button(symbol, () => { this.pause(); this.go(step + 1); }, { title: `Step ${step + 1}: ${text}`, "aria-label": `Step ${step + 1}: ${text}` });
+      // Of one step, one beside the other.
+      const before = marks.filter((one) => one.step === step).length;
+      mark.step = step;
+      mark.style.left = `calc(${(100 * (step + 1)) / this.run.steps}% + ${before * 0.95}rem)`;
+      mark.style.color = `var(${color})`;
+      marks.push(mark);
+    };
+    track.events.forEach((events, step) => {
+      for (const [name, [symbol, color, text]] of Object.entries(kMarks)) if (events & kEvents[name]) add(step, symbol, color, text);
+    });
+    track.endings.forEach((ending, step) => {
+      if (ending === 1) add(step, "★", "--orange", "success");
+      else if (ending > 1) add(step, "✕", "--red", kEndings[ending]);
+    });
+    this.marks.replaceChildren(...marks);
+  }
+
+  async go(frame) {
+    this.frame = Math.max(0, Math.min(this.run.steps, frame));
+    this.scrub.value = this.frame;
+    this.clock.textContent = `Step ${this.frame} of ${this.run.steps}, episode ${this.track.episode(this.frame)}`;
+    this.scrub.setAttribute("aria-valuetext", this.clock.textContent);
+    this.curves.setCursor(this.frame);
+    await this.onFrame(this.frame);
+  }
+
+  step(by) {
+    this.pause();
+    this.go(this.frame + by);
+  }
+
+  toggle() {
+    if (this.playing) this.pause();
+    else this.play();
+  }
+
+  play() {
+    if (this.frame >= this.run.steps) this.go(0);
+    this.playButton.textContent = "Pause";
+    this.played = this.frame;
+    let last = performance.now();
+    const tick = async (now) => {
+      this.played += ((now - last) / 1000) * this.run.steps_per_second * this.speed;
+      last = now;
+      const frame = Math.min(this.run.steps, Math.floor(this.played));
+      if (frame !== this.frame) await this.go(frame);
+      else this.onBetween(frame, this.played - frame);
+      if (frame >= this.run.steps) this.pause();
+      else if (this.playing) this.playing = requestAnimationFrame(tick);
+    };
+    this.playing = requestAnimationFrame(tick);
+  }
+
+  pause() {
+    cancelAnimationFrame(this.playing);
+    this.playing = 0;
+    this.playButton.textContent = "Play";
+  }
+
+  setSpeed(speed) {
+    this.speed = speed;
+    this.speedChoice.value = speed;
+    setAddress({ speed: speed === 1 ? null : speed });
+  }
+
+  key(event) {
+    const at = kSpeeds.indexOf(this.speed);
+    const by = event.shiftKey ? 10 : 1;
+    const actions = {
+      " ": () => this.toggle(), ArrowRight: () => this.step(by), ArrowLeft: () => this.step(-by),
+      Home: () => this.go(0), End: () => this.go(this.run.steps),
+      "+": () => this.setSpeed(kSpeeds[Math.min(kSpeeds.length - 1, at + 1)]), "-": () => this.setSpeed(kSpeeds[Math.max(0, at - 1)]),
+    };
+    if (!actions[event.key]) return false;
+    actions[event.key]();
+    return true;
+  }
+}

@@ -1,0 +1,74 @@
+// A run, unpacked: view/page_run.h is the writer.
+import { Pose } from "./kinematics.js";
+
+/// Columns of differences as columns of values.
+function undoDeltas(table, columns) {
+  const rows = table.length / columns;
+  for (let column = 0; column < columns; ++column) {
+    for (let row = 1; row < rows; ++row) table[column * rows + row] += table[column * rows + row - 1];
+  }
+  return { rows, at: (row, column) => table[column * rows + row] };
+}
+
+export const kEvents = { grasp: 1, drop: 2, restore: 4, refuse: 8, slide: 16 };
+export const kEndings = ["", "success", "said done too early", "let go away from the goal", "grasped another object", "out of time"];
+
+export class Track {
+  static async load(data, run, number) {
+    const track = new Track();
+    const arrays = await data.arrays(run.envs[number]);
+    Object.assign(track, arrays, { run });
+    track.table = undoDeltas(arrays.frames.slice(), 9 + run.positions);
+    track.frameCount = track.table.rows;
+    track.moveTable = undoDeltas(arrays.moves.slice(), 9);
+    return track;
+  }
+
+  pose(table, row, first) {
+    const { length_step: length, rotation_step: turn } = this.run;
+    const numbers = [0, 1, 2].map((n) => table.at(row, first + n) * length).concat([3, 4, 5, 6].map((n) => table.at(row, first + n) * turn));
+    const pose = Pose.of(numbers);
+    pose.rotation.normalize();
+    return pose;
+  }
+
+  root(frame) { return this.pose(this.table, frame, 0); }
+  joints(frame) {
+    return Array.from({ length: this.run.positions }, (_, n) => this.table.at(frame, 7 + n) * this.run.length_step);
+  }
+  held(frame) { return this.table.at(frame, 7 + this.run.positions); }
+  episode(frame) { return this.table.at(frame, 8 + this.run.positions); }
+
+  /// The frame in which the episode of a frame began: after an ending, or the first.
+  beginOf(frame) {
+    let begin = frame;
+    while (begin > 0 && this.endings[begin - 1] === 0) --begin;
+    return begin;
+  }
+
+  /// Rows of moves are in the order of their frames: the first one that is not before a frame.
+  firstMoveAt(frame) {
+    let [low, high] = [0, this.moveTable.rows];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.moveTable.at(middle, 0) < frame) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+
+  /// Poses of the objects that are elsewhere than the episode has them, by placement.
+  movedObjects(frame) {
+    const begin = this.beginOf(frame);
+    const moved = new Map();
+    for (let row = this.firstMoveAt(begin); row < this.moveTable.rows && this.moveTable.at(row, 0) <= frame; ++row) {
+      moved.set(this.moveTable.at(row, 1), row);
+    }
+    return new Map([...moved].map(([placement, row]) => [placement, this.pose(this.moveTable, row, 2)]));
+  }
+
+  /// Numbers of a step by column: of `width` numbers for each.
+  column(values, width, n) {
+    return Array.from({ length: values.length / width }, (_, step) => values[step * width + n]);
+  }
+}

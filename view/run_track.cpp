@@ -1,0 +1,101 @@
+#include "view/run_track.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace galactic {
+namespace {
+
+std::uint8_t bitOf(RunEvent event, std::uint64_t before, std::uint64_t after) {
+  return after > before ? static_cast<std::uint8_t>(event) : std::uint8_t{0};
+}
+
+std::uint8_t eventsOf(const SimulationStatistics& before, const SimulationStatistics& after) {
+  unsigned events = 0;
+  events |= bitOf(RunEvent::kGrasp, before.grasps, after.grasps);
+  events |= bitOf(RunEvent::kDrop, before.drops, after.drops);
+  events |= bitOf(RunEvent::kRestore, before.restored, after.restored);
+  events |= bitOf(RunEvent::kRefuse, before.refused, after.refused);
+  events |= bitOf(RunEvent::kSlide, before.slid, after.slid);
+  return static_cast<std::uint8_t>(events);
+}
+
+}  // namespace
+
+RunTrack::RunTrack(const World& world, const BatchSimulator& simulator, std::size_t envs)
+    : world_(&world),
+      actions_(simulator.actionCount()),
+      envs_(std::min(envs, simulator.envCount())),
+      objects_(envs_.size()),
+      statistics_(envs_.size()) {
+  for (const ObservationPart& part : simulator.observationParts()) {
+    const auto found = std::find(kTrackDistances.begin(), kTrackDistances.end(), part.name);
+    if (found == kTrackDistances.end()) continue;
+    distance_at_[static_cast<std::size_t>(found - kTrackDistances.begin())] = part.first;
+  }
+  for (std::size_t env = 0; env < envs_.size(); ++env) {
+    addFrame(simulator, env);
+    statistics_[env] = simulator.statistics(env);
+  }
+}
+
+void RunTrack::add(const BatchSimulator& simulator, std::span<const float> actions) {
+  for (std::size_t env = 0; env < envs_.size(); ++env) {
+    EnvTrack& track = envs_[env];
+    track.rewards.push_back(simulator.rewards()[env]);
+    track.endings.push_back(simulator.endings()[env]);
+    const SimulationStatistics now = simulator.statistics(env);
+    track.events.push_back(eventsOf(statistics_[env], now));
+    statistics_[env] = now;
+    const auto taken = actions.subspan(env * actions_, actions_);
+    track.actions.insert(track.actions.end(), taken.begin(), taken.end());
+    addDistances(simulator, env);
+    addFrame(simulator, env);
+  }
+}
+
+void RunTrack::addFrame(const BatchSimulator& simulator, std::size_t env) {
+  EnvTrack& track = envs_[env];
+  const EnvState state = simulator.envState(env);
+  addMoves(simulator, env);
+  track.episodes.push_back(state.episode);
+  track.world_from_root.push_back(state.world_from_root);
+  track.held.push_back(state.held);
+  track.joints.insert(track.joints.end(), state.joint_positions.begin(),
+                      state.joint_positions.end());
+}
+
+void RunTrack::addMoves(const BatchSimulator& simulator, std::size_t env) {
+  EnvTrack& track = envs_[env];
+  const EnvObjects now = simulator.envObjects(env);
+  const Episode& episode = world_->episodes().episodes()[now.episode];
+  const bool is_alone = now.placements.size() < episode.placement_count;
+  is_target_only_ = is_target_only_ || is_alone;
+  std::vector<Pose>& objects = objects_[env];
+  const auto ended = !track.endings.empty() && track.endings.back() != EpisodeEnd::kNone;
+  if (track.episodes.empty() || ended || track.episodes.back() != now.episode) {
+    objects.clear();
+    for (const Placement& placement : now.placements) objects.push_back(placement.pose);
+  }
+  const auto frame = static_cast<std::uint32_t>(track.episodes.size());
+  for (std::size_t n = 0; n < now.objects.size(); ++n) {
+    const bool is_held = now.held == static_cast<std::int32_t>(n);
+    const Pose& pose = is_held ? now.world_from_held : now.objects[n];
+    if (pose == objects[n]) continue;
+    objects[n] = pose;
+    const auto placement = is_alone ? episode.target : static_cast<std::uint32_t>(n);
+    track.moves.push_back({frame, placement, pose});
+  }
+}
+
+void RunTrack::addDistances(const BatchSimulator& simulator, std::size_t env) {
+  // Where the step ended an episode, the observation is of the next one.
+  const bool ended = simulator.dones()[env] != 0;
+  const auto all = ended ? simulator.finalObservations() : simulator.observations();
+  const auto row = all.subspan(env * simulator.observationSize(), simulator.observationSize());
+  for (const std::size_t at : distance_at_) {
+    envs_[env].distances.push_back(std::hypot(row[at], row[at + 1], row[at + 2]));
+  }
+}
+
+}  // namespace galactic
