@@ -48,10 +48,10 @@ heading "Playing each unseen episode once: sampled actions, then the likeliest"
 /usr/bin/python3 -m galactic.evaluate "$run/best.pt" "$sample/unseen.pack" --deterministic \
   --report "$run/unseen-deterministic.json"
 
-heading "The same policy without Python"
+heading "The same policy without Python: the likeliest actions in each unseen episode once"
 /usr/bin/python3 -m galactic.export "$run/best.pt" -o "$run/picker.pack"
-"$bin/galactic-run" --pack "$sample/unseen.pack" --policy "$run/picker.pack" --policy-sample \
-  --envs 64 --steps 400
+"$bin/galactic-run" --pack "$sample/unseen.pack" --policy "$run/picker.pack" --deterministic \
+  --order partition --envs 64 --steps 100000
 
 cat <<END
 

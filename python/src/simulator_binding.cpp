@@ -204,6 +204,11 @@ void bindResults(py::class_<Simulator>& type) {
         return perEnv(self, of(self).batch().endings(), py::dtype::of<std::uint8_t>());
       },
       "How it ended, as numbers of EpisodeEnd: uint8 (num_envs,), a view.");
+  type.def_property_readonly(
+      "idle",
+      [](Self self) { return perEnv(self, of(self).batch().idle(), py::dtype::of<bool>()); },
+      "Where an env has had its share of the episodes (order='partition'): it stays as it is, and\n"
+      "nothing of it counts, until reset() chooses an episode. bool (num_envs,), a view.");
 }
 
 void bindQueries(py::class_<Simulator>& type) {

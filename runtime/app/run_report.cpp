@@ -56,8 +56,11 @@ std::string skippedLine(const RunReport& report) {
 std::string episodeLines(const RunReport& report) {
   const SimulationStatistics& sum = report.sum;
   const EpisodeSums& episodes = report.episodes;
-  return line("episodes", fmt::format("{} ended: {} successes, {} failures, {} out of time",
-                                      sum.episodes, sum.successes, sum.failures,
+  const std::size_t playable = report.world_episodes - report.skipped.size();
+  const bool is_once = report.options.simulation.order == EpisodeOrder::kPartition;
+  const std::string of_all = is_once ? fmt::format(" of {}", playable) : "";
+  return line("episodes", fmt::format("{}{} ended: {} successes, {} failures, {} out of time",
+                                      sum.episodes, of_all, sum.successes, sum.failures,
                                       sum.episodes - sum.successes - sum.failures)) +
          line("return", fmt::format("{:.4f} in {:.1f} steps, means of the episodes that ended",
                                     ratio(episodes.returns, static_cast<double>(episodes.ended)),

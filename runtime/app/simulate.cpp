@@ -166,12 +166,13 @@ class Run {
     constexpr auto kLookEvery = std::chrono::milliseconds(250);
     const Clock::time_point start = Clock::now();
     Clock::time_point next_look = start + kLookEvery;
-    while (report_.steps < options_.steps && !report_.first_difference) {
+    while (report_.steps < options_.steps && !report_.first_difference && !hasPlayedAll()) {
       if (Result<void> stepped = step(); !stepped) return stepped;
       if (Clock::now() < next_look) continue;
       next_look = Clock::now() + kLookEvery;
       if (line.isEnabled()) line.show(report_.steps, simulator_.statistics());
-      report_.is_interrupted = report_.steps < options_.steps && interrupt.came();
+      report_.is_interrupted =
+          report_.steps < options_.steps && !hasPlayedAll() && interrupt.came();
       if (report_.is_interrupted) break;
     }
     report_.loop_seconds = secondsBetween(start, Clock::now());
@@ -185,6 +186,11 @@ class Run {
   }
 
  private:
+  /// Whether every env has had its share of the episodes.
+  [[nodiscard]] bool hasPlayedAll() const {
+    return std::ranges::all_of(simulator_.idle(), [](std::uint8_t idle) { return idle != 0; });
+  }
+
   Result<void> act() {
     const Clock::time_point before = Clock::now();
     Result<void> acted = policy_->act(report_.steps, actions_);

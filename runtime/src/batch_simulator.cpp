@@ -267,6 +267,10 @@ std::span<const EpisodeEnd> BatchSimulator::endings() const {
   return impl_->state().endings().first(envCount());
 }
 
+std::span<const std::uint8_t> BatchSimulator::idle() const {
+  return impl_->state().idle().first(envCount());
+}
+
 SimulationStatistics BatchSimulator::statistics() const {
   SimulationStatistics sum;
   for (std::size_t n = 0; n < envCount(); ++n) {
@@ -287,7 +291,7 @@ SimulationStatistics BatchSimulator::statistics() const {
 }
 SimulationStatistics BatchSimulator::statistics(std::size_t env) const {
   const simulation::EnvCounters& counters = impl_->state().env(env).counters;
-  return {.steps = impl_->steps(),
+  return {.steps = impl_->steps() - counters.idle_steps,
           .refused = counters.refused,
           .slid = counters.slid,
           .grasps = counters.grasps,

@@ -73,6 +73,7 @@ class ScriptedPolicy::Impl {
     try {
       const std::size_t count = simulator_->actionCount();
       for (std::size_t env = next_++; env < envs_.size(); env = next_++) {
+        if (simulator_->idle()[env] != 0) continue;
         act(simulator_->envState(env), envs_[env], actions_.subspan(env * count, count), n);
       }
     } catch (...) {

@@ -355,5 +355,21 @@ def test_skipped_episodes_are_listed(simulator):
     assert simulator.thread_count == 1
 
 
+def test_a_partition_plays_each_episode_once_and_then_idles(world, draw_actions):
+    envs = 2
+    simulator = galactic.Simulator(world, envs=envs, order="partition", episode_steps=20, threads=1)
+    assert simulator.idle.dtype == np.bool_ and not simulator.idle.all()
+    played = []
+    while not simulator.idle.all():
+        episodes = simulator.episodes()
+        simulator.step(draw_actions(envs, simulator.action_count))
+        played += episodes[simulator.dones].tolist()
+    assert sorted(played) == sorted(set(played)) and len(played) > 0
+    assert simulator.statistics()["episodes"] == len(played)
+    seen = simulator.observations.copy()
+    simulator.step(draw_actions(envs, simulator.action_count))
+    assert np.array_equal(seen, simulator.observations)
+
+
 def test_the_version_is_that_of_the_project():
     assert galactic.__version__.count(".") == 2

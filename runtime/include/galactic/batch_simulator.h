@@ -50,6 +50,7 @@ inline constexpr std::size_t kEpisodeEnds = 6;
 
 /// What happened in all envs since the simulator was made.
 struct SimulationStatistics {
+  /// Those of idle envs do not count.
   std::uint64_t steps = 0;
   /// Steps in which the robot kept its pose because the candidate penetrated something.
   std::uint64_t refused = 0;
@@ -201,6 +202,11 @@ class BatchSimulator {
   [[nodiscard]] std::span<const std::uint8_t> successes() const;
   /// How it ended; kNone where it goes on or the caller reset it. Shape: envs.
   [[nodiscard]] std::span<const EpisodeEnd> endings() const;
+
+  /// 1 where an env has had its share of the episodes (EpisodeOrder::kPartition): it stays as it
+  /// is, whatever its actions, and nothing of it counts, until the caller chooses an episode.
+  /// Shape: envs.
+  [[nodiscard]] std::span<const std::uint8_t> idle() const;
 
   [[nodiscard]] SimulationStatistics statistics() const;
   /// The same of one env.

@@ -135,8 +135,9 @@ enum class EpisodeOrder : std::uint8_t {
   kShuffled = 0,
   /// As they are stored: env b begins with episode b.
   kLinear = 1,
-  /// Env b of all N envs (of all ranks) takes episodes b, b + N, ...: together each once, for
-  /// evaluations. The only order in which an env's episodes depend on the number of envs.
+  /// Env b of all N envs (of all ranks) takes episodes b, b + N, ..., then none: together each
+  /// once,
+  /// for evaluations. The only order in which an env's episodes depend on the number of envs.
   kPartition = 2,
 };
 

@@ -62,6 +62,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   dones_.resize(padded);
   successes_.resize(padded);
   endings_.resize(padded);
+  idle_.resize(padded);
 }
 
 PoseArrays BatchState::poses(std::size_t first) {
@@ -77,7 +78,7 @@ std::size_t BatchState::bytes() const {
   std::size_t bytes = bytesOf(envs_) + bytesOf(objects_) + bytesOf(grips_) + bytesOf(ignored_) +
                       bytesOf(leaving_) + bytesOf(last_actions_) + 4 * bytesOf(x_) +
                       bytesOf(variables_) + 2 * bytesOf(observations_) + bytesOf(bodies_) +
-                      bytesOf(rewards_) + 3 * bytesOf(dones_);
+                      bytesOf(rewards_) + 4 * bytesOf(dones_);
   for (const RestingObjects& resting : resting_) bytes += resting.bytes();
   return bytes;
 }

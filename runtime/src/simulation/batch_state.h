@@ -28,6 +28,8 @@ struct EnvCounters {
   std::uint32_t successes = 0;
   std::uint32_t failures = 0;
   std::uint64_t nan_actions = 0;
+  /// Steps in which the env was idle.
+  std::uint64_t idle_steps = 0;
   double reward = 0;
 };
 
@@ -176,6 +178,9 @@ class BatchState {
   [[nodiscard]] std::span<EpisodeEnd> endings() { return endings_; }
   [[nodiscard]] std::span<const EpisodeEnd> endings() const { return endings_; }
   /// As after a step in which no episode ended and nothing was earned.
+  /// 1 where an env has had all its episodes; see BatchSimulator::idle().
+  [[nodiscard]] std::span<std::uint8_t> idle() { return idle_; }
+  [[nodiscard]] std::span<const std::uint8_t> idle() const { return idle_; }
   void clearOutcome(std::size_t n) {
     rewards_[n] = 0;
     dones_[n] = 0;
@@ -212,6 +217,7 @@ class BatchState {
   std::pmr::vector<std::uint8_t> dones_{&memory_};
   std::pmr::vector<std::uint8_t> successes_{&memory_};
   std::pmr::vector<EpisodeEnd> endings_{&memory_};
+  std::pmr::vector<std::uint8_t> idle_{&memory_};
 };
 
 }  // namespace galactic::simulation

@@ -25,14 +25,15 @@ std::uint32_t permuted(std::uint32_t index, std::uint32_t count, std::uint64_t k
   return static_cast<std::uint32_t>(value);
 }
 
-std::uint32_t nthEpisode(const SimulationOptions& options, std::uint64_t env, std::uint64_t nth,
-                         std::uint32_t count) noexcept {
+std::optional<std::uint32_t> nthEpisode(const SimulationOptions& options, std::uint64_t env,
+                                        std::uint64_t nth, std::uint32_t count) noexcept {
   switch (options.order) {
     case EpisodeOrder::kLinear:
       return static_cast<std::uint32_t>((env + nth) % count);
     case EpisodeOrder::kPartition: {
       const std::uint64_t envs = std::uint64_t{options.envs} * options.ranks;
-      return static_cast<std::uint32_t>((env + nth * envs) % count);
+      if (env >= count || nth > (count - 1 - env) / envs) return std::nullopt;
+      return static_cast<std::uint32_t>(env + nth * envs);
     }
     case EpisodeOrder::kShuffled:
       break;

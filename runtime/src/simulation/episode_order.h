@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "galactic/simulation_options.h"
 
@@ -12,7 +13,9 @@ namespace galactic::simulation {
                                      std::uint64_t key) noexcept;
 
 /// The `nth` episode that env `env` (counted over all ranks) begins, as an index below `count`.
-[[nodiscard]] std::uint32_t nthEpisode(const SimulationOptions& options, std::uint64_t env,
-                                       std::uint64_t nth, std::uint32_t count) noexcept;
+/// None when the env has had its share, which ends with EpisodeOrder::kPartition alone.
+[[nodiscard]] std::optional<std::uint32_t> nthEpisode(const SimulationOptions& options,
+                                                      std::uint64_t env, std::uint64_t nth,
+                                                      std::uint32_t count) noexcept;
 
 }  // namespace galactic::simulation

@@ -80,13 +80,20 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t n,
          .goal = episode.goal.translation,
          .target_start = state.objects(n)[target].translation,
          .counters = env.counters};
+  state.idle()[n] = 0;
   takeStock(model, state, n);
 }
 
 void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) noexcept {
   const auto count = static_cast<std::uint32_t>(model.starts.size());
-  beginEpisode(model, state, env,
-               nthEpisode(model.options, model.globalEnv(env), state.env(env).ordinal, count));
+  const std::uint64_t number = model.globalEnv(env);
+  const auto next = nthEpisode(model.options, number, state.env(env).ordinal, count);
+  // An env that never has one stands somewhere, too.
+  const bool has_begun = state.env(env).ordinal > 0;
+  if (next || !has_begun) {
+    beginEpisode(model, state, env, next.value_or(static_cast<std::uint32_t>(number % count)));
+  }
+  state.idle()[env] = next ? 0 : 1;
 }
 
 void beginChosenEpisode(const Model& model, BatchState& state, std::size_t env,

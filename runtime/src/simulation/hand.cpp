@@ -81,6 +81,7 @@ void useHands(const ChunkStep& step) noexcept {
   const ActionOptions& options = step.model.options.action;
   const std::size_t hand_action = step.model.motion.controlled.size() + 2;
   for (std::size_t e = 0; e < kChunk; ++e) {
+    if (step.state.idle()[step.first + e] != 0) continue;
     Env& env = step.state.env(step.first + e);
     const float value = step.chunk.actions(e)[hand_action];
     env.events = {.terminates = step.chunk.actions(e)[hand_action + 1] >= options.terminate};

@@ -226,6 +226,7 @@ bool pushClear(const ChunkStep& step, std::size_t e) noexcept {
 void moveRobots(const ChunkStep& step) noexcept {
   for (std::size_t e = 0; e < kChunk; ++e) {
     Env& env = step.state.env(step.first + e);
+    if (step.state.idle()[step.first + e] != 0) continue;
     env.refused = false;
     if (isFree(step, e)) {
       accept(step, e);

@@ -48,6 +48,7 @@ static_assert(sizeof(Header) == 64);
 struct EnvRecord {
   std::uint64_t ordinal = 0;
   std::uint64_t nan_actions = 0;
+  std::uint64_t idle_steps = 0;
   double reward_sum = 0;
   /// Index into the world's episodes.
   std::uint32_t episode = 0;
@@ -62,11 +63,12 @@ struct EnvRecord {
   GripFrame grip{};
   float reward = 0;
   std::uint32_t ending = 0;
-  std::uint32_t has_picked = 0;
-  std::uint32_t was_refused = 0;
+  std::uint16_t has_picked = 0;
+  std::uint16_t was_refused = 0;
+  std::uint32_t is_idle = 0;
 };
 static_assert(std::is_trivially_copyable_v<EnvRecord> &&
-              sizeof(EnvRecord) == 24 + 16 + 32 + 56 + 16 + sizeof(GripFrame) + 16);
+              sizeof(EnvRecord) == 32 + 16 + 32 + 56 + 16 + sizeof(GripFrame) + 16);
 
 /// What tells a world from all others: kinds, sizes and hashes of its packs, in any order.
 std::uint64_t worldHash(const World& world) {
@@ -170,6 +172,7 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
   out.add(EnvRecord{
       .ordinal = env.ordinal,
       .nan_actions = counters.nan_actions,
+      .idle_steps = counters.idle_steps,
       .reward_sum = counters.reward,
       .episode = model.starts[env.start].episode,
       .step = env.step,
@@ -184,8 +187,9 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
       .grip = state.grip(n),
       .reward = state.rewards()[n],
       .ending = static_cast<std::uint32_t>(state.endings()[n]),
-      .has_picked = env.has_picked ? 1U : 0U,
-      .was_refused = env.refused ? 1U : 0U});
+      .has_picked = static_cast<std::uint16_t>(env.has_picked ? 1 : 0),
+      .was_refused = static_cast<std::uint16_t>(env.refused ? 1 : 0),
+      .is_idle = state.idle()[n]});
   for (std::size_t v = 0; v < model.variableCount(); ++v) out.add(state.variable(v, n));
   out.add(state.lastActions(n));
   out.add(state.ignored(n));
@@ -225,7 +229,7 @@ std::string faultOf(const Model& model, const EnvRecord& record) {
     return fmt::format("leaves object {} of {}", record.leaves, objects);
   }
   if (record.ending >= kEpisodeEnds) return fmt::format("ended in way {}", record.ending);
-  if (record.has_picked > 1 || record.was_refused > 1 || record.ordinal == 0)
+  if (record.has_picked > 1 || record.was_refused > 1 || record.is_idle > 1 || record.ordinal == 0)
     return "has a wrong flag or count";
   const bool is_held_plain =
       record.held < 0 || (isPlain(record.grip_from_held) && isPlain(record.before));
@@ -249,6 +253,7 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
   saved.env.has_picked = record.has_picked != 0;
   saved.env.refused = record.was_refused != 0;
   saved.env.leaves = record.leaves;
+  saved.is_idle = record.is_idle != 0;
   saved.env.counters = {.refused = refused,
                         .slid = slid,
                         .grasps = grasps,
@@ -258,6 +263,7 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
                         .successes = successes,
                         .failures = failures,
                         .nan_actions = record.nan_actions,
+                        .idle_steps = record.idle_steps,
                         .reward = record.reward_sum};
   saved.base = record.base;
   saved.yaw = record.yaw;
@@ -405,6 +411,7 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
     if (static_cast<std::int32_t>(object) == env.held.object) continue;
     resting.insert(object, restingBox(model.object(env.start, object).box, pose));
   }
+  state.idle()[n] = saved.is_idle ? 1 : 0;
   state.rewards()[n] = saved.reward;
   state.endings()[n] = saved.ending;
   state.dones()[n] = saved.ending == EpisodeEnd::kNone ? 0 : 1;

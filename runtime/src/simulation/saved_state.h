@@ -29,6 +29,7 @@ struct SavedEnv {
   GripFrame grip{};
   float reward = 0;
   EpisodeEnd ending = EpisodeEnd::kNone;
+  bool is_idle = false;
   std::vector<float> variables;
   std::vector<float> last_actions;
   std::vector<std::uint64_t> ignored;

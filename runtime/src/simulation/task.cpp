@@ -102,6 +102,11 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
       continue;
     }
     Env& env = step.state.env(n);
+    if (step.state.idle()[n] != 0) {
+      step.state.clearOutcome(n);
+      ++env.counters.idle_steps;
+      continue;
+    }
     const bool is_first = env.step == 0;
     ++env.step;
     const TargetDistances now = measureTarget(step.state, n);
