@@ -30,10 +30,10 @@ std::span<const Clearance> askScene(const Scene& scene, const SphereBatch& spher
 
 /// Calls visit(sphere, range) for each sphere that the static scene blocks.
 template <class Visit>
-void visitBlocked(const Obstacles& obstacles, const SphereBatch& spheres, CollisionScratch& scratch,
+void visitBlocked(const Scene& scene, const SphereBatch& spheres, CollisionScratch& scratch,
                   const Visit& visit) {
   for (const RadiusRange& range : spheres.ranges) {
-    const std::span<const Clearance> answers = askScene(obstacles.scene, spheres, range, scratch);
+    const std::span<const Clearance> answers = askScene(scene, spheres, range, scratch);
     for (std::uint32_t n = 0; n < range.count; ++n) {
       if (answers[n] != Clearance::kFree) visit(range.first + n, range);
     }
@@ -49,6 +49,24 @@ float radiusOf(const SphereBatch& spheres, std::uint32_t sphere) {
 
 Vec3 centreOf(const SphereBatch& spheres, std::uint32_t sphere) {
   return {spheres.x[sphere], spheres.y[sphere], spheres.z[sphere]};
+}
+
+void setBit(std::span<std::uint64_t> bits, std::uint32_t sphere) {
+  bits[sphere / kBitsPerWord] |= std::uint64_t{1} << (sphere % kBitsPerWord);
+}
+
+/// Sets the bit of each sphere that penetrates a resting object. Returns whether any does.
+bool addTouching(const RestingObjects& objects, const SphereBatch& spheres,
+                 std::span<std::uint64_t> bits) {
+  bool any = false;
+  for (const RadiusRange& range : spheres.ranges) {
+    for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
+      if (!objects.nearest(centreOf(spheres, n), range.radius)) continue;
+      setBit(bits, n);
+      any = true;
+    }
+  }
+  return any;
 }
 
 }  // namespace
@@ -146,12 +164,13 @@ Push pushOutOfBox(const RestingBox& box, const Vec3& centre, float radius) noexc
 std::size_t pushOut(const Obstacles& obstacles, const SphereBatch& spheres, IgnoredSpheres ignored,
                     float reach, CollisionScratch& scratch, PushSum& sum) noexcept {
   std::size_t count = 0;
-  visitBlocked(obstacles, spheres, scratch, [&](std::uint32_t sphere, const RadiusRange& range) {
-    if (isIgnored(ignored, sphere)) return;
-    sum.add(pushOutOfScene(obstacles.scene.grids()[range.radius_index], centreOf(spheres, sphere),
-                           reach));
-    ++count;
-  });
+  visitBlocked(obstacles.scene, spheres, scratch,
+               [&](std::uint32_t sphere, const RadiusRange& range) {
+                 if (isIgnored(ignored, sphere)) return;
+                 sum.add(pushOutOfScene(obstacles.scene.grids()[range.radius_index],
+                                        centreOf(spheres, sphere), reach));
+                 ++count;
+               });
   const std::size_t hits = obstacles.objects.hits(spheres, scratch.hits());
   for (const SphereHit& hit : scratch.hits().first(hits)) {
     if (isIgnored(ignored, hit.sphere)) continue;
@@ -169,26 +188,34 @@ bool overlapping(const RestingBox& box, const SphereBatch& spheres,
   for (const RadiusRange& range : spheres.ranges) {
     for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
       if (!overlaps(box, centreOf(spheres, n), range.radius)) continue;
-      bits[n / kBitsPerWord] |= std::uint64_t{1} << (n % kBitsPerWord);
+      setBit(bits, n);
       any = true;
     }
   }
   return any;
 }
 
+bool penetratingScene(const Scene& scene, const SphereBatch& spheres, CollisionScratch& scratch,
+                      std::span<std::uint64_t> bits) noexcept {
+  std::fill(bits.begin(), bits.end(), 0);
+  bool any = false;
+  visitBlocked(scene, spheres, scratch, [&](std::uint32_t sphere, const RadiusRange&) {
+    setBit(bits, sphere);
+    any = true;
+  });
+  return any;
+}
+
+bool penetratingObjects(const RestingObjects& objects, const SphereBatch& spheres,
+                        std::span<std::uint64_t> bits) noexcept {
+  std::fill(bits.begin(), bits.end(), 0);
+  return addTouching(objects, spheres, bits);
+}
+
 void penetrating(const Obstacles& obstacles, const SphereBatch& spheres, CollisionScratch& scratch,
                  std::span<std::uint64_t> bits) noexcept {
-  std::fill(bits.begin(), bits.end(), 0);
-  const auto set = [&](std::uint32_t sphere) {
-    bits[sphere / kBitsPerWord] |= std::uint64_t{1} << (sphere % kBitsPerWord);
-  };
-  visitBlocked(obstacles, spheres, scratch,
-               [&](std::uint32_t sphere, const RadiusRange&) { set(sphere); });
-  for (const RadiusRange& range : spheres.ranges) {
-    for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
-      if (obstacles.objects.nearest(centreOf(spheres, n), range.radius)) set(n);
-    }
-  }
+  penetratingScene(obstacles.scene, spheres, scratch, bits);
+  addTouching(obstacles.objects, spheres, bits);
 }
 
 }  // namespace galactic::simulation

@@ -80,7 +80,14 @@ std::size_t pushOut(const Obstacles& obstacles, const SphereBatch& spheres, Igno
 bool overlapping(const RestingBox& box, const SphereBatch& spheres,
                  std::span<std::uint64_t> bits) noexcept;
 
-/// Sets the bit of each sphere that penetrates something, clears the others.
+/// Sets the bit of each sphere that penetrates the static scene, clears the others. Returns whether
+/// any does.
+bool penetratingScene(const Scene& scene, const SphereBatch& spheres, CollisionScratch& scratch,
+                      std::span<std::uint64_t> bits) noexcept;
+/// The same for resting objects.
+bool penetratingObjects(const RestingObjects& objects, const SphereBatch& spheres,
+                        std::span<std::uint64_t> bits) noexcept;
+/// The same for both.
 void penetrating(const Obstacles& obstacles, const SphereBatch& spheres, CollisionScratch& scratch,
                  std::span<std::uint64_t> bits) noexcept;
 

@@ -147,12 +147,17 @@ void addVariables(const Robot& robot, std::span<const std::uint32_t> also_variab
 
 void addSpheres(const Robot& robot, const std::vector<Attached>& links, MotionModel& model) {
   const std::span<const float> radii = robot.radii();
+  // Place in the robot's own order, and index into the model's spheres.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> places;
   for (std::uint32_t r = 0; r < radii.size(); ++r) {
     const auto first = static_cast<std::uint32_t>(model.spheres.size());
+    std::uint32_t place = 0;
     for (const SphereGroup& group : robot.groups()) {
       const Attached& link = links[group.link];
       for (const SetSphere& sphere : group.spheres) {
+        ++place;
         if (sphere.radius_index != r) continue;
+        places.emplace_back(place, static_cast<std::uint32_t>(model.spheres.size()));
         model.spheres.push_back({link.node, link.node_from_link * sphere.centre});
       }
     }
@@ -161,6 +166,8 @@ void addSpheres(const Robot& robot, const std::vector<Attached>& links, MotionMo
     model.ranges.push_back({r, radii[r], first, count});
     model.spheres.resize(first + paddedToLanes(count), model.spheres.back());
   }
+  std::ranges::sort(places);
+  for (const auto& [place, sphere] : places) model.spheres_by_link.push_back(sphere);
 }
 
 }  // namespace

@@ -73,6 +73,8 @@ struct MotionModel {
   /// Shape: paddedToLanes of each range, in the order of `ranges`; padded with copies.
   std::vector<BodySphere> spheres;
   std::vector<RadiusRange> ranges;
+  /// The spheres, as indices into `spheres` without padding, link by link as the robot has them.
+  std::vector<std::uint32_t> spheres_by_link;
   /// Origin at the grasp point, axes of the end effector's link.
   FixedFrame grip;
   /// Of each link of the robot.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "simulation/collision.h"
 #include "simulation/grip_frame.h"
@@ -126,35 +127,75 @@ Push pushOf(const ChunkStep& step, std::size_t e) {
   return sum.total(options.step);
 }
 
-/// The jitter of the published rule for the first sphere of a batch that penetrates something and
-/// is not ignored: towards the base.
-Push pushTowardsBase(const ChunkStep& step, std::size_t e, const SphereBatch& spheres,
-                     IgnoredSpheres ignored, std::span<std::uint64_t> bits) {
-  penetrating(obstaclesOf(step, e), spheres, step.chunk.collision(), bits);
-  for (std::size_t w = 0; w < bits.size(); ++w) {
-    const std::uint64_t word = w < ignored.size() ? bits[w] & ~ignored[w] : bits[w];
-    if (word == 0) continue;
-    const std::size_t sphere = 64 * w + static_cast<std::size_t>(std::countr_zero(word));
-    const Vec3 base = step.chunk.base(e);
-    const float x = base.x - spheres.x[sphere];
-    const float z = base.z - spheres.z[sphere];
-    const float length = std::sqrt(x * x + z * z);
-    constexpr float kNoDirection = 1e-3F;
-    if (!(length > kNoDirection)) return {};
-    const float scale = step.model.options.slide.step / length;
-    return {x * scale, z * scale};
-  }
-  return {};
+/// The jitter of the published rule away from a sphere: towards the base.
+Push pushFrom(const ChunkStep& step, std::size_t e, const SphereBatch& spheres,
+              std::uint32_t sphere) {
+  const Vec3 base = step.chunk.base(e);
+  const float x = base.x - spheres.x[sphere];
+  const float z = base.z - spheres.z[sphere];
+  const float length = std::sqrt(x * x + z * z);
+  constexpr float kNoDirection = 1e-3F;
+  if (!(length > kNoDirection)) return {};
+  const float scale = step.model.options.slide.step / length;
+  return {x * scale, z * scale};
 }
 
-Push pushTowardsBase(const ChunkStep& step, std::size_t e) {
-  const Push push = withoutLeft(step, e, [&] {
-    return pushTowardsBase(step, e, step.chunk.spheres(e), {}, step.chunk.bodyBits());
-  });
-  if (push.x != 0 || push.z != 0 || step.state.env(step.first + e).held.object < 0) return push;
-  return pushTowardsBase(step, e, heldSpheres(step, e), step.state.ignored(step.first + e),
-                         step.chunk.heldBits());
-}
+/// The published rule asks about one thing after the other, and the first sphere in contact
+/// decides: the robot in the scene, what it holds in the scene, then both among the objects. In the
+/// scene, attempts take turns to begin with the robot's last sphere and with its first.
+class TowardsBase {
+ public:
+  TowardsBase(const ChunkStep& step, std::size_t e, std::uint32_t attempt)
+      : step_(step), e_(e), from_last_(attempt % 2 == 0), obstacles_(obstaclesOf(step, e)) {}
+
+  [[nodiscard]] Push push() const {
+    const SphereBatch body = step_.chunk.spheres(e_);
+    const std::span<std::uint64_t> body_bits = step_.chunk.bodyBits();
+    const bool holds = step_.state.env(step_.first + e_).held.object >= 0;
+    const SphereBatch held = holds ? heldSpheres(step_, e_) : SphereBatch{};
+    if (penetratingScene(obstacles_.scene, body, step_.chunk.collision(), body_bits)) {
+      return pushFrom(step_, e_, body, firstOfBody(from_last_));
+    }
+    if (holds) {
+      penetratingScene(obstacles_.scene, held, step_.chunk.collision(), step_.chunk.heldBits());
+      if (const auto sphere = firstHeld()) return pushFrom(step_, e_, held, *sphere);
+    }
+    const bool touches = withoutLeft(
+        step_, e_, [&] { return penetratingObjects(obstacles_.objects, body, body_bits); });
+    if (touches) return pushFrom(step_, e_, body, firstOfBody(false));
+    if (!holds) return {};
+    penetratingObjects(obstacles_.objects, held, step_.chunk.heldBits());
+    const auto sphere = firstHeld();
+    return sphere ? pushFrom(step_, e_, held, *sphere) : Push{};
+  }
+
+ private:
+  /// Of those whose bit is set, one of which there is.
+  [[nodiscard]] std::uint32_t firstOfBody(bool from_last) const {
+    const std::span<const std::uint32_t> order = step_.model.motion.spheres_by_link;
+    const std::span<const std::uint64_t> bits = step_.chunk.bodyBits();
+    const auto is_set = [&](std::uint32_t n) { return (bits[n / 64] >> (n % 64) & 1U) != 0; };
+    return from_last ? *std::find_if(order.rbegin(), order.rend(), is_set)
+                     : *std::find_if(order.begin(), order.end(), is_set);
+  }
+
+  [[nodiscard]] std::optional<std::uint32_t> firstHeld() const {
+    const IgnoredSpheres ignored = step_.state.ignored(step_.first + e_);
+    const std::span<const std::uint64_t> bits = step_.chunk.heldBits();
+    for (std::size_t w = 0; w < bits.size(); ++w) {
+      const std::uint64_t word = bits[w] & ~ignored[w];
+      if (word != 0)
+        return static_cast<std::uint32_t>(64 * w) +
+               static_cast<std::uint32_t>(std::countr_zero(word));
+    }
+    return std::nullopt;
+  }
+
+  const ChunkStep& step_;
+  std::size_t e_;
+  bool from_last_;
+  Obstacles obstacles_;
+};
 
 }  // namespace
 
@@ -210,8 +251,9 @@ bool pushClear(const ChunkStep& step, std::size_t e) noexcept {
   const float floor_before = *step.state.poses(step.first + e).y;
   for (std::uint32_t attempt = 0; attempt < options.attempts; ++attempt) {
     if (step.chunk.floor(e) == Floor::kDrops) return false;
-    const Push push =
-        options.direction == SlideDirection::kPushOut ? pushOf(step, e) : pushTowardsBase(step, e);
+    const Push push = options.direction == SlideDirection::kPushOut
+                          ? pushOf(step, e)
+                          : TowardsBase(step, e, attempt).push();
     if (push.x == 0 && push.z == 0) return false;
     const Vec3 base = step.chunk.base(e);
     const FloorUnder under = floorUnder(scene, {base.x + push.x, floor_before, base.z + push.z},

@@ -264,6 +264,20 @@ TEST(MoveRobots, IsPushedTowardsItsBaseInThePublishedVariant) {
   expectAt(twice, {1.6175F, 0, 1.5F});
 }
 
+TEST(MoveRobots, BeginsWithTheLastSphereAndThenWithTheFirstInThePublishedVariant) {
+  const SlideOptions published{
+      .attempts = 8, .direction = SlideDirection::kTowardsBase, .step = 0.05F};
+  // The cart's ball is 5 mm in the wall, the arm's 10 cm: the arm gives the direction, and its
+  // first push frees the cart.
+  Drive drive({plainFloor(), kWall}, {.base = {1.85F, 0, 1.5F}}, published);
+  drive.step({.arm = 0.5F, .forward = 0.35F});
+  EXPECT_EQ(drive.slid(), 1U);
+  expectAt(drive, {1.785F, 0, 1.5F});
+  // 7 cm in, the cart is still in the wall when it is asked first, and has no direction.
+  Drive deeper({plainFloor(), kWall}, {.base = {1.85F, 0, 1.5F}}, published);
+  deeper.expectRefused({.arm = 0.5F, .forward = 1});
+}
+
 TEST(MoveRobots, IsNotPushedTowardsItsBaseByTheBaseItself) {
   const SlideOptions published{
       .attempts = 5, .direction = SlideDirection::kTowardsBase, .step = 0.05F};
