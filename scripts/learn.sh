@@ -52,11 +52,14 @@ heading "The same policy without Python: the likeliest actions in each unseen ep
 /usr/bin/python3 -m galactic.export "$run/best.pt" -o "$run/picker.pack"
 "$bin/galactic-run" --pack "$sample/unseen.pack" --policy "$run/picker.pack" --deterministic \
   --order partition --envs 64 --steps 100000
+"$bin/galactic-run" --pack "$sample/unseen.pack" --policy "$run/picker.pack" --envs 8 --steps 300 \
+  --view "$run/run.html" >"$run/run.txt"
 
 cat <<END
 
 Look at these, in $run/:
   curves.html    success, return and losses while it learned; open it in a browser
+  run.html       eight homes to watch: play, scrub, look around; open it in a browser
   unseen.png     moments of episodes that it had never seen: successes and failures
   unseen.json    all 400 of them, with path and ending
   best.pt        the policy, for Python
