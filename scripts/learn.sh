@@ -39,8 +39,13 @@ world homes 2000 101
 world unseen 400 202
 
 heading "Learning to pick (preset quick)"
-/usr/bin/python3 -m galactic.train "$sample/homes.pack" --preset quick --seed "$seed" \
-  --validation "$sample/unseen.pack" -o "$run"
+if [ -f "$run/settings.json" ]; then
+  # A run that was interrupted goes on; one that is complete stays as it is.
+  /usr/bin/python3 -m galactic.train -o "$run" --resume
+else
+  /usr/bin/python3 -m galactic.train "$sample/homes.pack" --preset quick --seed "$seed" \
+    --validation "$sample/unseen.pack" -o "$run"
+fi
 
 heading "Playing each unseen episode once: sampled actions, then the likeliest"
 /usr/bin/python3 -m galactic.evaluate "$run/best.pt" "$sample/unseen.pack" \
