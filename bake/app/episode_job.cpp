@@ -170,7 +170,8 @@ Result<Json> generateEpisodePack(BakeRun& run) {
       .output = run.outputFor(command.inputs.front()),
       .episodes = std::move(generated->episodes),
       .generation = EpisodeGeneration{generated->rejections, std::move(generated->scenes),
-                                      std::move(generated->left_out), *std::move(sample)}};
+                                      std::move(generated->left_out), *std::move(sample),
+                                      generated->skipped, generated->with_fewer_objects}};
   return finish(outcome, std::move(opened->files), run, start);
 }
 

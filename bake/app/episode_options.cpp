@@ -128,11 +128,16 @@ void EpisodeSetOptions::addGeneration(CLI::App& app, BakeCommand& command) {
           ->check(numberCheck(1e-6, static_cast<double>(kMostFlatness)))
           ->capture_default_str(),
       app.add_option("--goal-distance", goal_distance_,
-                     "Generate: from target to goal, metres (default 1)")
+                     "Generate: from target to goal, metres (default 1, less in small scenes)")
           ->type_name("LEAST[,MOST]"),
       app.add_option("--start-distance", start_distance_,
                      "Generate: from the robot to the target on the ground, metres (default 0)")
           ->type_name("LEAST[,MOST]"),
+      app.add_option("--most-skipped", generate.most_skipped,
+                     "Generate: share of the episodes that may find no place; they are skipped")
+          ->check(numberCheck(0, 1))
+          ->type_name("SHARE")
+          ->capture_default_str(),
       app.add_flag("--goal-elsewhere", generate.goal_on_other_support,
                    "Generate: goals lie on another surface than their targets"),
       app.add_option("--supports", generate.supports,
@@ -215,6 +220,7 @@ Result<void> EpisodeSetOptions::understandGeneration(BakeCommand& command,
     if (!held_out) return tl::unexpected(held_out.error());
     generate.split.held_out = static_cast<float>((*held_out)[0]);
   }
+  generate.shorten_way = goal_distance_.empty();
   if (auto parsed = parseDistances(goal_distance_, "--goal-distance", generate.target_to_goal);
       !parsed) {
     return parsed;

@@ -18,6 +18,8 @@ struct EpisodeGeneration {
   std::vector<GeneratedScene> scenes;
   std::vector<UnusableScene> left_out;
   SolvedSample sample;
+  std::uint32_t skipped = 0;
+  std::uint32_t with_fewer_objects = 0;
 };
 
 /// What became of one set of episodes.

@@ -80,6 +80,8 @@ Json generationReport(const EpisodeGeneration& generation) {
                       {"surfaces", scene.surfaces},
                       {"receptacles", scene.receptacles},
                       {"settled", scene.has_mesh}});
+    if (scene.skipped > 0) scenes.back()["skipped"] = scene.skipped;
+    if (scene.shortened_way) scenes.back()["shortened_way"] = *scene.shortened_way;
   }
   Json left_out = Json::array();
   for (const UnusableScene& scene : generation.left_out) {
@@ -88,6 +90,10 @@ Json generationReport(const EpisodeGeneration& generation) {
   Json report{{"rejections", std::move(rejections)},
               {"scenes", std::move(scenes)},
               {"left_out", std::move(left_out)}};
+  if (generation.skipped > 0) report["skipped"] = generation.skipped;
+  if (generation.with_fewer_objects > 0) {
+    report["with_fewer_objects"] = generation.with_fewer_objects;
+  }
   const SolvedSample& sample = generation.sample;
   if (sample.episodes > 0) {
     report["scripted_policy"] = {

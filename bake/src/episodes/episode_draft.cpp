@@ -16,6 +16,9 @@ constexpr std::size_t kObjectTries = 300;
 constexpr std::size_t kStartTries = 300;
 /// Of places for which only a distance is calculated.
 constexpr std::size_t kDistanceTries = 10000;
+/// Of a survey: tries to find a goal for one target, and pairs that are enough.
+constexpr std::size_t kGoalTries = 100;
+constexpr std::size_t kEnoughPairs = 32;
 constexpr float kTurn = 2 * std::numbers::pi_v<float>;
 
 using BodySpheres = std::vector<BodySphere>;
@@ -55,35 +58,57 @@ struct Draw {
 /// One draft of an episode: what stands where so far.
 class Draft {
  public:
-  Draft(const Stage& stage, Random& random, RejectionCounts& rejections)
-      : stage_(stage), random_(random), rejections_(rejections) {}
+  Draft(const Stage& stage, const DraftEase& ease, Random& random, RejectionCounts& rejections)
+      : stage_(stage), ease_(ease), random_(random), rejections_(rejections) {}
 
   /// Puts the target on a surface within reach.
   bool placeTarget() {
     for (std::size_t n = 0; n < kObjectTries; ++n) {
-      wanted_ = drawObject();
-      const auto draw = stand(wanted_, stage_.supports.draw(random_));
-      if (!draw || !isReached(*draw)) continue;
-      target_ = draw->object;
-      target_surface_ = draw->place.surface_id;
-      return true;
+      chooseTarget();
+      if (tryTarget(drawPlace(&ProvenPair::target))) return true;
     }
     return false;
+  }
+
+  void chooseTarget() { wanted_ = drawObject(); }
+
+  /// Puts the chosen target on this place, if it stands there and is reached.
+  bool tryTarget(const SupportPlace& place) {
+    const auto draw = stand(wanted_, place);
+    if (!draw || !isReached(*draw)) return false;
+    target_ = draw->object;
+    target_surface_ = draw->place.surface_id;
+    return true;
   }
 
   /// Draws another place for the target, in the same stable pose.
   bool placeGoal() {
     std::size_t tries = 0;
     for (std::size_t n = 0; n < kDistanceTries && tries < kObjectTries; ++n) {
-      const SupportPlace& place = stage_.supports.draw(random_);
+      const SupportPlace& place = drawPlace(&ProvenPair::goal);
       if (!mayHoldGoal(place)) continue;
       ++tries;
-      const auto draw = stand(wanted_, place);
-      if (!draw || !isGoal(draw->object) || !isReached(*draw)) continue;
-      goal_ = draw->object;
-      return true;
+      if (tryGoal(place)) return true;
     }
     return false;
+  }
+
+  /// Puts the goal on this place, if it suits the target.
+  bool tryGoal(const SupportPlace& place) {
+    const auto draw = stand(wanted_, place);
+    if (!draw || !isGoal(draw->object) || !isReached(*draw)) return false;
+    goal_ = draw->object;
+    return true;
+  }
+
+  /// The places at which the goal may be, by distance.
+  [[nodiscard]] std::vector<std::uint32_t> goalPlaces() {
+    std::vector<std::uint32_t> found;
+    const auto& places = stage_.supports.places();
+    for (std::uint32_t n = 0; n < places.size(); ++n) {
+      if (mayHoldGoal(places[n])) found.push_back(n);
+    }
+    return found;
   }
 
   /// Places the other objects clear of each other, of target and goal, and of the positions in
@@ -93,7 +118,7 @@ class Draft {
     const std::uint32_t count = objects.least + random_.below(objects.most - objects.least + 1);
     others_.reserve(count - std::size_t{1});
     while (others_.size() + 1 < count) {
-      if (!placeOther()) return false;
+      if (!placeOther()) return ease_.may_lack_objects;
     }
     return true;
   }
@@ -139,6 +164,13 @@ class Draft {
 
   [[nodiscard]] const ObjectModel& modelOf(const Wanted& wanted) const {
     return stage_.objects[wanted.object];
+  }
+
+  /// Any place, or, half of the time, one that was proven as this end of the way.
+  const SupportPlace& drawPlace(std::uint32_t ProvenPair::*end) {
+    if (ease_.proven.empty() || random_.below(2) == 0) return stage_.supports.draw(random_);
+    const std::uint32_t pair = random_.below(static_cast<std::uint32_t>(ease_.proven.size()));
+    return stage_.supports.places()[ease_.proven[pair].*end];
   }
 
   Wanted drawObject() {
@@ -226,14 +258,14 @@ class Draft {
     const Vec3 way =
         Vec3{place.x, place.surface + wanted_.stable->height, place.z} - target_.pose.translation;
     const float distance = std::sqrt(dot(way, way));
-    const DistanceRange& range = stage_.options.target_to_goal;
+    const DistanceRange& range = stage_.target_to_goal;
     if (isWithin(distance, {range.least - off, range.most + off})) return true;
     return reject(EpisodeRejection::kDistance);
   }
 
   bool isGoal(const PlacedObject& object) {
     const Vec3 way = object.pose.translation - target_.pose.translation;
-    if (!isWithin(std::sqrt(dot(way, way)), stage_.options.target_to_goal)) {
+    if (!isWithin(std::sqrt(dot(way, way)), stage_.target_to_goal)) {
       return reject(EpisodeRejection::kDistance);
     }
     if (gapBetween(object.footprint, target_.footprint) >= kObjectGap) return true;
@@ -251,7 +283,7 @@ class Draft {
   bool placeOther() {
     for (std::size_t n = 0; n < kObjectTries; ++n) {
       const Wanted wanted = drawObject();
-      const auto draw = stand(wanted, stage_.supports.draw(random_));
+      const auto draw = stand(wanted, drawPlace(&ProvenPair::goal));
       if (!draw) continue;
       if (isApart(draw->object)) {
         others_.push_back(draw->object);
@@ -289,6 +321,7 @@ class Draft {
   }
 
   const Stage& stage_;
+  const DraftEase& ease_;
   Random& random_;
   RejectionCounts& rejections_;
   /// The target.
@@ -305,9 +338,34 @@ class Draft {
 
 }  // namespace
 
-DraftEnd draftEpisode(const Stage& stage, Random& random, DraftedEpisode& episode,
-                      RejectionCounts& rejections) {
-  Draft draft(stage, random, rejections);
+std::vector<ProvenPair> findProvenPairs(const Stage& stage) {
+  std::vector<ProvenPair> pairs;
+  const auto count = static_cast<std::uint32_t>(stage.supports.places().size());
+  // What is drawn here is told nowhere, and the stream is no episode's.
+  RejectionCounts untold;
+  Random random(~stage.options.seed);
+  const DraftEase anywhere;
+  std::size_t tries = 0;
+  while (tries < kSurveyTries && pairs.size() < kEnoughPairs) {
+    ++tries;
+    Draft draft(stage, anywhere, random, untold);
+    draft.chooseTarget();
+    const std::uint32_t target = random.below(count);
+    if (!draft.tryTarget(stage.supports.places()[target])) continue;
+    const std::vector<std::uint32_t> goals = draft.goalPlaces();
+    for (std::size_t n = 0; n < kGoalTries && !goals.empty(); ++n, ++tries) {
+      const std::uint32_t goal = goals[random.below(static_cast<std::uint32_t>(goals.size()))];
+      if (!draft.tryGoal(stage.supports.places()[goal])) continue;
+      pairs.push_back({target, goal});
+      break;
+    }
+  }
+  return pairs;
+}
+
+DraftEnd draftEpisode(const Stage& stage, const DraftEase& ease, Random& random,
+                      DraftedEpisode& episode, RejectionCounts& rejections) {
+  Draft draft(stage, ease, random, rejections);
   if (!draft.placeTarget()) return DraftEnd::kTarget;
   if (!draft.placeGoal()) return DraftEnd::kGoal;
   if (!draft.placeOthers()) return DraftEnd::kOthers;

@@ -34,6 +34,8 @@ struct Stage {
   const SettlingScene* settling = nullptr;
   std::span<const SettlingBody> bodies;
   const EpisodeGeneratorOptions& options;
+  /// Distance of the target's origin at its start and at its goal, in this scene.
+  DistanceRange target_to_goal;
 };
 
 /// One episode in world coordinates.
@@ -49,11 +51,33 @@ struct DraftedEpisode {
 /// The part of a draft that found no place.
 enum class DraftEnd : std::uint8_t { kDone, kTarget, kGoal, kOthers, kStart };
 
+inline constexpr std::size_t kSurveyTries = 20'000;
+
+/// Two places, as indices into SupportPlaces::places(), at which some object stood and was reached,
+/// at a distance that suits target and goal.
+struct ProvenPair {
+  std::uint32_t target = 0;
+  std::uint32_t goal = 0;
+};
+
+/// Looks for proven pairs in kSurveyTries tries, by going from places that held an object to all
+/// those at the right distance. None where the scene is all but hopeless. Depends on the stage
+/// only.
+[[nodiscard]] std::vector<ProvenPair> findProvenPairs(const Stage& stage);
+
+/// What a draft may make use of, and do without, after others have failed.
+struct DraftEase {
+  /// Target and goal are put near these half of the time, other objects as well; empty: anywhere.
+  std::span<const ProvenPair> proven;
+  /// Whether to make do with the objects that find a place, the target among them.
+  bool may_lack_objects = false;
+};
+
 /// Tries once to draw an episode: the target, its goal, the other objects, the start. Target and
 /// goal are taken only where a position of base and arm was found in which the grasp point is at
 /// the box, and neither the scene nor any object is touched; the other objects keep clear of it.
 /// Adds up in `rejections` what was drawn and not taken. The result depends on the arguments only.
-[[nodiscard]] DraftEnd draftEpisode(const Stage& stage, Random& random, DraftedEpisode& episode,
-                                    RejectionCounts& rejections);
+[[nodiscard]] DraftEnd draftEpisode(const Stage& stage, const DraftEase& ease, Random& random,
+                                    DraftedEpisode& episode, RejectionCounts& rejections);
 
 }  // namespace galactic::bake

@@ -20,8 +20,11 @@ namespace {
 /// Put between the floor and the base's point on it, metres, so that rounding never leaves the
 /// point under the floor; far below what the run counts as a step.
 constexpr float kFloorMargin = 1e-4F;
-/// Drafts of one episode before it is given up.
-constexpr std::uint32_t kDrafts = 50;
+/// Drafts of one episode: so many with places drawn anywhere, then near places that are known to
+/// hold objects, then with fewer objects; after the last of them it is skipped.
+constexpr std::uint32_t kDraftsAnywhere = 50;
+constexpr std::uint32_t kDraftsWithAll = 100;
+constexpr std::uint32_t kDrafts = 150;
 /// Episodes that are replayed together: enough for the simulator's chunks, few enough for threads
 /// to share a scene's episodes.
 constexpr std::size_t kBatch = 64;
@@ -62,6 +65,7 @@ struct Slot {
   Random random{0};
   DraftedEpisode episode;
   bool is_done = false;
+  bool is_skipped = false;
   std::uint32_t drafts = 0;
   std::uint32_t replays_failed = 0;
   /// How many drafts ended at each part.
@@ -72,8 +76,12 @@ struct Slot {
 /// Draws the episodes of one batch in a scene and replays them until all stand.
 class Batch {
  public:
-  Batch(const GenerationContext& context, const SceneOfPack& scene, const Stage& stage)
-      : context_(context), scene_(scene), stage_(stage), packs_(context.world.commonPacks()) {
+  Batch(const GenerationContext& context, const SceneOfPack& scene, const PreparedScene& prepared)
+      : context_(context),
+        scene_(scene),
+        stage_(prepared.stage()),
+        packs_(context.world.commonPacks()),
+        proven_(prepared.provenPairs()) {
     packs_.push_back(scene.pack);
   }
 
@@ -82,9 +90,9 @@ class Batch {
     open.reserve(slots.size());
     for (Slot& slot : slots) open.push_back(&slot);
     while (!open.empty()) {
-      for (Slot* slot : open) {
-        if (auto drawn = draw(*slot); !drawn) return drawn;
-      }
+      for (Slot* slot : open) draw(*slot);
+      std::erase_if(open, [](const Slot* slot) { return slot->is_skipped; });
+      if (open.empty()) break;
       if (auto replayed = replay(open); !replayed) return replayed;
       std::erase_if(open, [](const Slot* slot) { return slot->is_done; });
     }
@@ -92,15 +100,18 @@ class Batch {
   }
 
  private:
-  /// Drafts until a draft succeeds.
-  Result<void> draw(Slot& slot) const {
+  /// Drafts until a draft succeeds, or the episode is skipped.
+  void draw(Slot& slot) const {
     while (slot.drafts < kDrafts) {
+      DraftEase ease;
+      if (slot.drafts >= kDraftsAnywhere) ease.proven = proven_;
+      ease.may_lack_objects = slot.drafts >= kDraftsWithAll;
       ++slot.drafts;
-      const DraftEnd end = draftEpisode(stage_, slot.random, slot.episode, slot.rejections);
+      const DraftEnd end = draftEpisode(stage_, ease, slot.random, slot.episode, slot.rejections);
       ++slot.ends[static_cast<std::size_t>(end)];
-      if (end == DraftEnd::kDone) return {};
+      if (end == DraftEnd::kDone) return;
     }
-    return tl::unexpected(noEpisode(slot));
+    slot.is_skipped = true;
   }
 
   Result<void> replay(std::span<Slot* const> slots) const {
@@ -121,28 +132,11 @@ class Batch {
     return {};
   }
 
-  [[nodiscard]] Error noEpisode(const Slot& slot) const {
-    const auto ended = [&slot](DraftEnd end) { return slot.ends[static_cast<std::size_t>(end)]; };
-    const EpisodeGeneratorOptions& options = context_.options;
-    return {
-        ErrorCode::kInvalidInput, std::string(scene_.scene.name()),
-        fmt::format(
-            "episode {} found no place in any of {} drafts: {} ended at the target, {} at a "
-            "goal {} to {} m away{}, {} at {} to {} other objects, {} at the robot's start, {} "
-            "in the replay; drawn and not taken: {}; there are {} support places on {} surfaces "
-            "and {} floor places: ask for fewer objects, other distances or other heights",
-            slot.number, slot.drafts, ended(DraftEnd::kTarget), ended(DraftEnd::kGoal),
-            options.target_to_goal.least, options.target_to_goal.most,
-            options.goal_on_other_support ? " on another surface" : "", ended(DraftEnd::kOthers),
-            options.objects.least - 1, options.objects.most - 1, ended(DraftEnd::kStart),
-            slot.replays_failed, textOf(slot.rejections), stage_.supports.places().size(),
-            stage_.supports.surfaceCount(), stage_.floor.places().size())};
-  }
-
   const GenerationContext& context_;
   const SceneOfPack& scene_;
-  const Stage& stage_;
+  const Stage stage_;
   std::vector<const PackFile*> packs_;
+  std::span<const ProvenPair> proven_;
 };
 
 /// One scene, its part of the episodes and what became of them.
@@ -156,6 +150,24 @@ struct SceneTask {
   Result<void> prepared;
   Result<void> drawn;
 };
+
+/// Why an episode was skipped, and what may help.
+std::string whySkipped(const Slot& slot, const SceneTask& task,
+                       const EpisodeGeneratorOptions& options) {
+  const auto ended = [&slot](DraftEnd end) { return slot.ends[static_cast<std::size_t>(end)]; };
+  const GeneratedScene& scene = task.summary;
+  return fmt::format(
+      "episode {} found no place in any of {} drafts: {} ended at the target, {} at a "
+      "goal {} to {} m away{}, {} at {} to {} other objects, {} at the robot's start, {} "
+      "in the replay; drawn and not taken: {}; there are {} support places on {} surfaces "
+      "and {} floor places: ask for fewer objects, other distances or other heights",
+      slot.number, slot.drafts, ended(DraftEnd::kTarget), ended(DraftEnd::kGoal),
+      scene.shortened_way.value_or(options.target_to_goal.least), options.target_to_goal.most,
+      options.goal_on_other_support ? " on another surface" : "", ended(DraftEnd::kOthers),
+      options.objects.least - 1, options.objects.most - 1, ended(DraftEnd::kStart),
+      slot.replays_failed, textOf(slot.rejections), scene.support_places, scene.surfaces,
+      scene.floor_places);
+}
 
 /// Calls the user's function, one call at a time.
 class Counter {
@@ -216,11 +228,15 @@ class Round {
     if (only_look_) return;
     task.summary = (*prepared)->summary();
     task.summary.episodes = static_cast<std::uint32_t>(task.slots.size());
-    task.drawn = draw(task, (*prepared)->stage(), jobs);
+    task.drawn = draw(task, **prepared, jobs);
+    for (const Slot& slot : task.slots) {
+      task.summary.skipped += slot.is_skipped ? 1U : 0U;
+    }
+    task.summary.episodes -= task.summary.skipped;
   }
 
-  Result<void> draw(SceneTask& task, const Stage& stage, unsigned jobs) {
-    const Batch batch(context_, *task.scene, stage);
+  Result<void> draw(SceneTask& task, const PreparedScene& prepared, unsigned jobs) {
+    const Batch batch(context_, *task.scene, prepared);
     std::vector<Result<void>> results((task.slots.size() + kBatch - 1) / kBatch);
     parallelFor(jobs, results.size(), [&](std::size_t n) {
       if (only_look_) return;
@@ -296,6 +312,26 @@ std::vector<SceneTask> dealEpisodes(std::span<const SceneOfPack* const> scenes,
   return tasks;
 }
 
+/// Sees that no more episodes were skipped than may be.
+Result<void> checkSkipped(std::span<const SceneTask> tasks,
+                          const EpisodeGeneratorOptions& options) {
+  std::size_t skipped = 0;
+  const SceneTask* worst = &tasks.front();
+  for (const SceneTask& task : tasks) {
+    skipped += task.summary.skipped;
+    if (task.summary.skipped > worst->summary.skipped) worst = &task;
+  }
+  const auto most = static_cast<double>(options.most_skipped) * options.episodes;
+  if (static_cast<double>(skipped) <= most && skipped < options.episodes) return {};
+  const auto first = std::ranges::find_if(worst->slots, &Slot::is_skipped);
+  return fail(
+      ErrorCode::kInvalidInput, worst->summary.name,
+      fmt::format("{} of {} episodes found no place, a share of {} may be skipped; {} of them in "
+                  "this scene: {}",
+                  skipped, options.episodes, options.most_skipped, worst->summary.skipped,
+                  whySkipped(*first, *worst, options)));
+}
+
 /// Deals the episodes to the scenes and draws them, until no scene is left that turns out to be
 /// unusable: how they are dealt depends on the usable ones only.
 Result<std::vector<SceneTask>> drawInUsable(const EpisodeInputs& inputs,
@@ -316,6 +352,9 @@ Result<std::vector<SceneTask>> drawInUsable(const EpisodeInputs& inputs,
     for (const SceneTask& task : tasks) {
       if (!task.drawn) return tl::unexpected(task.drawn.error());
     }
+    if (auto enough = checkSkipped(tasks, context.options); !enough) {
+      return tl::unexpected(enough.error());
+    }
     return tasks;
   }
   std::ranges::sort(left_out, {}, &UnusableScene::name);
@@ -323,23 +362,47 @@ Result<std::vector<SceneTask>> drawInUsable(const EpisodeInputs& inputs,
 }
 
 GeneratedEpisodes gather(const GenerationWorld& world, std::span<const SceneOfPack* const> scenes,
-                         std::span<const SceneTask> tasks) {
-  GeneratedEpisodes generated{
-      .episodes = emptySet(world, scenes), .rejections = {}, .scenes = {}, .left_out = {}};
+                         std::span<const SceneTask> tasks, std::uint32_t least_objects) {
+  GeneratedEpisodes generated;
+  generated.episodes = emptySet(world, scenes);
   std::size_t count = 0;
   generated.scenes.reserve(tasks.size());
   for (const SceneTask& task : tasks) {
     generated.scenes.push_back(task.summary);
+    generated.skipped += task.summary.skipped;
     count += task.slots.size();
   }
-  generated.episodes.episodes.reserve(count);
+  generated.episodes.episodes.reserve(count - generated.skipped);
   for (std::size_t n = 0; n < count; ++n) {
     const std::size_t scene = n % tasks.size();
     const Slot& slot = tasks[scene].slots[n / tasks.size()];
-    append(slot.episode, static_cast<std::uint32_t>(scene), generated.episodes);
     generated.rejections.add(slot.rejections);
+    if (slot.is_skipped) continue;
+    append(slot.episode, static_cast<std::uint32_t>(scene), generated.episodes);
+    generated.with_fewer_objects += slot.episode.objects.size() < least_objects ? 1U : 0U;
   }
   return generated;
+}
+
+/// Says what is not as it was asked for.
+void warn(const EpisodeGeneratorOptions& options, GeneratedEpisodes& generated) {
+  std::vector<std::string>& warnings = generated.episodes.warnings;
+  for (const UnusableScene& scene : generated.left_out) {
+    warnings.push_back(fmt::format("scene {} is left out: {}", scene.name, scene.reason));
+  }
+  for (const GeneratedScene& scene : generated.scenes) {
+    if (scene.shortened_way) {
+      warnings.push_back(
+          fmt::format("scene {} is too small for goals {} m away: they are {:.2f} m away at least",
+                      scene.name, options.target_to_goal.least, *scene.shortened_way));
+    }
+    if (scene.skipped == 0) continue;
+    warnings.push_back(fmt::format("scene {}: {} of {} episodes found no place and are skipped",
+                                   scene.name, scene.skipped, scene.skipped + scene.episodes));
+  }
+  if (generated.with_fewer_objects == 0) return;
+  warnings.push_back(fmt::format("{} episodes have fewer than {} objects: no more found a place",
+                                 generated.with_fewer_objects, options.objects.least));
 }
 
 }  // namespace
@@ -360,13 +423,10 @@ Result<GeneratedEpisodes> generateEpisodes(const EpisodeInputs& inputs,
   std::vector<UnusableScene> left_out;
   const auto tasks = drawInUsable(inputs, context, progress, *scenes, left_out);
   if (!tasks) return tl::unexpected(tasks.error());
-  GeneratedEpisodes generated = gather(*world, *scenes, *tasks);
+  GeneratedEpisodes generated = gather(*world, *scenes, *tasks, options.objects.least);
   std::ranges::sort(left_out, {}, &UnusableScene::name);
-  for (const UnusableScene& scene : left_out) {
-    generated.episodes.warnings.push_back(
-        fmt::format("scene {} is left out: {}", scene.name, scene.reason));
-  }
   generated.left_out = std::move(left_out);
+  warn(options, generated);
   return generated;
 }
 

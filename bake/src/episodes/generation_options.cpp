@@ -49,6 +49,10 @@ Result<void> checkOptions(const EpisodeGeneratorOptions& options) {
       !checked) {
     return checked;
   }
+  if (!(options.most_skipped >= 0 && options.most_skipped <= 1)) {
+    return refuse(fmt::format("the share of episodes that may be skipped is {}; give 0 to 1",
+                              options.most_skipped));
+  }
   const float held_out = options.split.held_out;
   if (held_out >= 0 && held_out <= 1) return {};
   return refuse(fmt::format("the share of scenes held out is {}; give 0 to 1", held_out));

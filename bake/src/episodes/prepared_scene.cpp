@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -33,15 +37,18 @@ PreparedScene::PreparedScene(const GenerationContext& context, const Scene& scen
       scene_(scene),
       details_(std::move(details)),
       floor_(scene, context.world.robot()),
-      supports_(scene, {floor_, context.reach}, details_.receptacles, context.options) {}
+      supports_(scene, {floor_, context.reach}, details_.receptacles, context.options),
+      target_to_goal_(context.options.target_to_goal) {}
 
 Result<std::unique_ptr<const PreparedScene>> PreparedScene::prepare(
     const GenerationContext& context, const Scene& scene, SceneDetails details) {
   std::unique_ptr<PreparedScene> prepared(
       new PreparedScene(context, scene, std::move(details)));  // the constructor is private
+  prepared->chooseWay();
   prepared->unusable_ = prepared->whyUnusable();
   if (!prepared->unusable_.empty()) return prepared;
   if (auto used = prepared->useMesh(); !used) return tl::unexpected(used.error());
+  prepared->survey();
   return prepared;
 }
 
@@ -54,7 +61,13 @@ std::string PreparedScene::whyUnusable() const {
         "smaller start pose",
         robot.name(), floor_.tried(), kHeadings, robot.spheres().size());
   }
-  if (!supports_.places().empty()) return {};
+  if (!supports_.places().empty()) {
+    if (target_to_goal_.least <= widestWay()) return {};
+    return fmt::format(
+        "its surfaces within reach are {:.2f} m apart at most, and goals are wanted {} m away; ask "
+        "for a shorter way from target to goal",
+        widestWay(), target_to_goal_.least);
+  }
   const bool in_receptacles = context_.options.supports == SupportChoice::kReceptacles;
   if (in_receptacles && details_.receptacles.empty()) {
     return "no receptacles of the scene are known: packs hold none, a recipe that names the "
@@ -67,6 +80,57 @@ std::string PreparedScene::whyUnusable() const {
       "which the robot {} can drive; change the heights or the robot's start pose",
       in_receptacles ? "in its receptacles " : "", heights.least, heights.most,
       floor_.places().size(), robot.name());
+}
+
+float PreparedScene::widestWay() const {
+  // The extents in so many directions of the ground tell the longest way within a hundredth.
+  constexpr int kDirections = 16;
+  constexpr float kHundredth = 1.01F;
+  const auto extent = [this](const Vec3& direction) {
+    float least = std::numeric_limits<float>::max();
+    float most = std::numeric_limits<float>::lowest();
+    for (const SupportPlace& place : supports_.places()) {
+      const float at = dot(direction, {place.x, place.surface, place.z});
+      least = std::min(least, at);
+      most = std::max(most, at);
+    }
+    return most - least;
+  };
+  float across = 0;
+  for (int n = 0; n < kDirections; ++n) {
+    const float angle = std::numbers::pi_v<float> * static_cast<float>(n) / kDirections;
+    across = std::max(across, extent({std::cos(angle), 0, std::sin(angle)}));
+  }
+  // Origins of objects may be off their places, and settle aside.
+  const float off = 2 * (scene_.grids().front().spacing() + kSettlingWay);
+  return std::hypot(across * kHundredth, extent({0, 1, 0})) + off;
+}
+
+void PreparedScene::chooseWay() {
+  // Where only the farthest corners are that far apart, hardly an episode finds two of them.
+  constexpr float kAmple = 0.75F;
+  if (!context_.options.shorten_way || supports_.places().empty()) return;
+  const float widest = widestWay();
+  if (target_to_goal_.least > kAmple * widest) target_to_goal_.least = widest / 2;
+}
+
+void PreparedScene::survey() {
+  // Goals nearer than that to their targets are hardly a task.
+  constexpr float kLeastWay = 0.2F;
+  proven_ = findProvenPairs(stage());
+  while (proven_.empty() && context_.options.shorten_way &&
+         target_to_goal_.least / 2 >= kLeastWay) {
+    target_to_goal_.least /= 2;
+    proven_ = findProvenPairs(stage());
+  }
+  if (!proven_.empty()) return;
+  unusable_ = fmt::format(
+      "no places were found for a target and its goal {} to {} m away{} in {} tries on its {} "
+      "support places, which are at most {:.2f} m apart; ask for other distances, other heights or "
+      "smaller objects",
+      target_to_goal_.least, target_to_goal_.most,
+      context_.options.goal_on_other_support ? " on another surface" : "", kSurveyTries,
+      supports_.places().size(), widestWay());
 }
 
 Result<void> PreparedScene::useMesh() {
@@ -100,17 +164,21 @@ Stage PreparedScene::stage() const {
           .rays = rays_.get(),
           .settling = settling_.get(),
           .bodies = context_.bodies,
-          .options = context_.options};
+          .options = context_.options,
+          .target_to_goal = target_to_goal_};
 }
 
 GeneratedScene PreparedScene::summary() const {
+  const bool is_shortened = target_to_goal_.least < context_.options.target_to_goal.least;
   return {.name = std::string(scene_.name()),
           .episodes = 0,
+          .skipped = 0,
           .floor_places = floor_.places().size(),
           .support_places = supports_.places().size(),
           .surfaces = supports_.surfaceCount(),
           .receptacles = details_.receptacles.size(),
-          .has_mesh = settling_ != nullptr};
+          .has_mesh = settling_ != nullptr,
+          .shortened_way = is_shortened ? std::optional(target_to_goal_.least) : std::nullopt};
 }
 
 }  // namespace galactic::bake

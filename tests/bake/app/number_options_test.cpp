@@ -41,6 +41,7 @@ const std::map<std::string, Texts>& numberOptions() {
       {"--flatness", kGenerate},
       {"--goal-distance", kGenerate},
       {"--start-distance", kGenerate},
+      {"--most-skipped", kGenerate},
       {"--solve", kGenerate},
       {"--memory", kDataset},
       {"--shard", kDataset},

@@ -75,6 +75,7 @@ const std::vector<ContentOption>& contentOptions() {
       {"--flatness", kGenerate, "0.004", "0.01"},
       {"--goal-distance", kGenerate, "1", "1,2"},
       {"--start-distance", kGenerate, "1", "1,2"},
+      {"--most-skipped", kGenerate, "0.2", "0.3"},
       {"--goal-elsewhere", kGenerate, "", ""},
       {"--supports", kGenerate, "found", "both"},
       {"--split", kGenerate, "train", "validation"},

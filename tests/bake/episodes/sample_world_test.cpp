@@ -165,8 +165,9 @@ TEST(SolvedSamples, TellEpisodesThatCanBeSolvedFromThoseThatCannot) {
   options.objects = {3, 3};
   bake::SourceEpisodes set = generated(world, options);
   const auto solve = [&](const bake::EpisodeSolvingOptions& how) {
-    auto sample = bake::solveSample(world.inputs().packs, set, how);
-    return MemoryPack::opened(std::move(sample));
+    const auto sample = bake::solveSample(world.inputs().packs, set, how);
+    EXPECT_TRUE(sample.has_value());
+    return sample.value_or(bake::SolvedSample{});
   };
   const bake::SolvedSample all = solve({.most_episodes = 100});
   EXPECT_EQ(all.episodes, 8U);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -78,10 +79,15 @@ struct EpisodeGeneratorOptions {
   float flatness = 0.002F;
   /// Distance of the target's origin at its start and at its goal.
   DistanceRange target_to_goal{.least = 1.0F};
+  /// Whether a scene too small for the least of these distances gets half of what it has, with a
+  /// warning, instead of being left out.
+  bool shorten_way = false;
   /// Horizontal distance of the robot's base and the target's origin.
   DistanceRange start_to_target;
   /// Whether the goal lies on another surface than the target: one that no flat way connects.
   bool goal_on_other_support = false;
+  /// Share of the episodes that may find no place: they are skipped. More are an error. 0 to 1.
+  float most_skipped = 0.1F;
   SupportChoice supports = SupportChoice::kBoth;
   SceneSplit split;
   /// Threads; the result does not depend on it. Each has one scene prepared at a time.
@@ -100,6 +106,8 @@ struct EpisodeInputs {
 struct GeneratedScene {
   std::string name;
   std::uint32_t episodes = 0;
+  /// Episodes that found no place in it.
+  std::uint32_t skipped = 0;
   /// Columns with a floor on which the robot stands and drives.
   std::size_t floor_places = 0;
   /// Columns over a flat surface within reach, and how many surfaces they make.
@@ -108,6 +116,8 @@ struct GeneratedScene {
   std::size_t receptacles = 0;
   /// Whether the scene's triangles were there to settle objects on.
   bool has_mesh = false;
+  /// The least distance of target and goal, where it is not the one of the options.
+  std::optional<float> shortened_way;
 };
 
 /// A scene in which there can be no episodes.
@@ -126,6 +136,10 @@ struct GeneratedEpisodes {
   /// There is a warning in `episodes` for each. With fewer episodes than scenes not all of them are
   /// looked at.
   std::vector<UnusableScene> left_out;
+  /// Episodes that found no place. They have no number: those after them follow at once.
+  std::uint32_t skipped = 0;
+  /// Episodes with fewer objects than the options ask for, where no more found a place.
+  std::uint32_t with_fewer_objects = 0;
 };
 
 /// Generates rearrangement episodes: objects in stable poses on what the column grids show to be
@@ -135,10 +149,12 @@ struct GeneratedEpisodes {
 /// Bullet and taken only if it stays. Each episode is replayed for one step in the runtime.
 /// Deterministic: episode k depends on the inputs, the seed and k; not on the order of the packs
 /// nor on the threads. Scene k % scenes, counted by name, is that of episode k; scenes without a
-/// floor or without anything within reach are left out and do not count.
+/// floor or without anything within reach are left out and do not count. An episode for which no
+/// place is found is drawn longer, near places that have proven to hold objects, then with fewer
+/// objects, and skipped at last; what becomes of it depends on no other episode.
 /// Fails with kInvalidInput, saying what was tried, on unusable options, packs that do not go
-/// together, when all scenes are left out and when no place is found for an episode; and with the
-/// errors of `inputs.details`.
+/// together, when all scenes are left out and when more than the options' share of the episodes is
+/// skipped, or all; and with the errors of `inputs.details`.
 [[nodiscard]] Result<GeneratedEpisodes> generateEpisodes(const EpisodeInputs& inputs,
                                                          const EpisodeGeneratorOptions& options,
                                                          const EpisodeProgress& progress = {});
