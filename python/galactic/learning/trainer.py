@@ -96,6 +96,8 @@ class Trainer:
         """Trains until `settings.steps` are done or a signal asks to stop; saves in either case.
         Returns whether the run is complete. Raises TrainingError when the loss is no number."""
         settings = self.settings
+        if self.steps >= settings.steps:
+            return True
         with _Signals(self._interrupt):
             while self.steps < settings.steps:
                 before = self.steps
