@@ -21,8 +21,7 @@ std::string textOf(const std::vector<std::byte>& file) {
 }
 
 TEST(GoldenPolicyPack, IsMadeAgainByteForByte) {
-  const std::filesystem::path golden =
-      test::sourceFolder() / "packs" / "golden" / "policy.pack";
+  const std::filesystem::path golden = test::sourceFolder() / "packs" / "golden" / "policy.pack";
   const std::vector<std::byte> made = encodePolicyPack(smallPolicy(), smallPolicyProvenance());
   if (std::getenv("GALACTIC_WRITE_GOLDEN") != nullptr) {
     ASSERT_TRUE(writePolicyPack(golden, smallPolicy(), smallPolicyProvenance()).has_value());
