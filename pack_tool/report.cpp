@@ -3,7 +3,7 @@
 #include <thread>
 #include <utility>
 
-#include "galactic/pack_reference.h"
+#include "pack_tool/open_listed.h"
 #include "pack_tool/output_file.h"
 #include "pack_tool/report/html_page.h"
 #include "pack_tool/verbs.h"
@@ -11,30 +11,6 @@
 namespace galactic::pack_tool {
 
 namespace {
-
-/// The packs, and those that worlds among them list; textures are parts of what shows them.
-Result<std::vector<PackFile>> openAll(const ReportOptions& options) {
-  std::vector<PackFile> packs;
-  for (const std::filesystem::path& path : options.packs) {
-    auto pack = PackFile::open(path, options.trust);
-    if (!pack) return tl::unexpected(pack.error());
-    if (auto checked = checkOutput(*pack, options.output); !checked) {
-      return tl::unexpected(checked.error());
-    }
-    if (pack->kind() == PackKind::kWorld) {
-      const auto references = packReferences(*pack);
-      if (!references) return tl::unexpected(references.error());
-      for (const PackReference& reference : *references) {
-        if (reference.kind == PackKind::kTexture) continue;
-        auto listed = openReference(*pack, reference, options.trust);
-        if (!listed) return tl::unexpected(listed.error());
-        packs.push_back(std::move(*listed));
-      }
-    }
-    packs.push_back(std::move(*pack));
-  }
-  return packs;
-}
 
 Result<PackEntry> entryOf(const PackFile& pack) {
   PackEntry entry{.description = describePack(pack, Detail::kSummary), .thumbnails = {}};
@@ -62,7 +38,8 @@ std::vector<Result<PackEntry>> entriesOf(const std::vector<PackFile>& packs) {
 }
 
 Result<void> makeReport(const ReportOptions& options) {
-  const auto packs = openAll(options);
+  const auto packs =
+      openListed({.packs = options.packs, .output = options.output, .trust = options.trust});
   if (!packs) return tl::unexpected(packs.error());
   std::vector<PackEntry> entries;
   entries.reserve(packs->size());

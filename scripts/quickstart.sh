@@ -29,6 +29,8 @@ draw() {
   "$bin/galactic-pack" export "$apartment" --radius 0.05 --surface -o "$out/surfaces.ply"
   "$bin/galactic-pack" picture "$objects" -o "$out/objects.png"
   "$bin/galactic-pack" picture "$robot" -o "$out/robot.png"
+  "$bin/galactic-pack" view "$world" -o "$out/world.html"
+  "$bin/galactic-run" --pack "$world" --envs 4 --steps 500 --policy scripted --view "$out/run.html"
 }
 
 phase setup "Installing packages" scripts/setup.sh
@@ -60,6 +62,8 @@ phase quickstart-draw "Drawing it" draw
 cat <<END
 
 Look at these, in $out/:
+  run.html          four robots tidying up: a page for any browser. Space plays.
+  world.html        all of the world, to look around in and to take apart.
   plans.png         the apartment from above, once for each of the three sphere radii: the brighter,
                     the more free height a sphere's centre has; dark is blocked. North is up.
   plan-r0.05.png    the same for one radius, larger (also plan-r0.015.png and plan-r0.12.png).

@@ -57,7 +57,13 @@ void JsonWriter::end(char bracket) {
   is_first_ = false;
 }
 
+std::string JsonWriter::take() {
+  if (layout_ == JsonLayout::kIndented) text_ += '\n';
+  return std::move(text_);
+}
+
 void JsonWriter::newLine() {
+  if (layout_ == JsonLayout::kCompact) return;
   text_ += '\n';
   text_.append(2 * depth_, ' ');
 }
@@ -66,7 +72,7 @@ void JsonWriter::separate(std::string_view key) {
   if (!is_first_) text_ += ',';
   is_first_ = false;
   newLine();
-  if (!key.empty()) text_ += jsonString(key) + ": ";
+  if (!key.empty()) text_ += jsonString(key) + (layout_ == JsonLayout::kCompact ? ":" : ": ");
 }
 
 }  // namespace galactic

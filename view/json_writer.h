@@ -14,9 +14,16 @@ namespace galactic {
 /// Text as a JSON string; bytes that are no UTF-8 become question marks.
 [[nodiscard]] std::string jsonString(std::string_view text);
 
-/// Writes JSON objects and arrays, indented, in the order of the calls. Keys are empty in arrays.
+enum class JsonLayout {
+  kIndented,  ///< For people, closed by a newline.
+  kCompact,   ///< Without any blank.
+};
+
+/// Writes JSON objects and arrays in the order of the calls. Keys are empty in arrays.
 class JsonWriter {
  public:
+  explicit JsonWriter(JsonLayout layout = JsonLayout::kIndented) : layout_(layout) {}
+
   void begin(char bracket);
   void begin(std::string_view key, char bracket) {
     separate(key);
@@ -47,12 +54,13 @@ class JsonWriter {
     separate(key);
     text_ += value;
   }
-  [[nodiscard]] std::string take() { return std::move(text_) + "\n"; }
+  [[nodiscard]] std::string take();
 
  private:
   void newLine();
   void separate(std::string_view key);
 
+  JsonLayout layout_;
   std::string text_;
   bool is_first_ = true;
   std::size_t depth_ = 0;

@@ -29,7 +29,7 @@ void replace(std::string& page, std::string_view mark, std::string_view text) {
 
 Result<std::string> viewPage(std::span<const PageAsset> assets, const PageRun& run,
                              const PageOptions& options) {
-  JsonWriter json;
+  JsonWriter json(JsonLayout::kCompact);
   PageData data;
   json.begin('{');
   json.text("title", options.title);

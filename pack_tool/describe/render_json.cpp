@@ -8,7 +8,7 @@
 #include "galactic/render_meshes.h"
 #include "pack_tool/describe/asset_json.h"
 #include "pack_tool/describe/json_parts.h"
-#include "pack_tool/render/render_surfaces.h"
+#include "view/render_surfaces.h"
 
 namespace galactic::pack_tool {
 

@@ -4,9 +4,9 @@
 
 #include <map>
 
-#include "pack_tool/mesh/glb_file.h"
-#include "pack_tool/mesh/render_glb.h"
 #include "pack_tool/mesh/sphere_mesh.h"
+#include "view/glb_file.h"
+#include "view/render_glb.h"
 
 namespace galactic::pack_tool {
 

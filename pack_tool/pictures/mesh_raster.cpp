@@ -9,8 +9,8 @@
 #include "galactic/batch_renderer.h"
 #include "galactic/render_library.h"
 #include "pack_tool/mesh/sphere_mesh.h"
-#include "pack_tool/render/render_surfaces.h"
 #include "pictures/palette.h"
+#include "view/render_surfaces.h"
 
 namespace galactic::pictures {
 
@@ -218,7 +218,7 @@ void MeshRaster::openRooms(const RoomCut& cut) { cut_ = cut; }
 void MeshRaster::drawRenderModel(const RenderMeshes& meshes, const RenderModel& model,
                                  const Pose& world_from_model) {
   const std::size_t first = firstMaterialOf(meshes);
-  for (RenderSurface& stored : pack_tool::surfacesOf(meshes, model)) {
+  for (RenderSurface& stored : surfacesOf(meshes, model)) {
     RenderSurface& surface = source_.parts[0].surfaces.emplace_back();
     surface.material = static_cast<std::uint16_t>(first + stored.material);
     surface.two_sided = stored.two_sided;

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "galactic/render_layout.h"
-#include "pack_tool/render/render_surfaces.h"
+#include "view/render_surfaces.h"
 
 namespace galactic::pack_tool {
 

@@ -18,7 +18,7 @@
 #include "galactic/printable.h"
 #include "policy.h"
 #include "render_command_line.h"
-#include "run_page.h"
+#include "tracked_run.h"
 
 namespace galactic {
 namespace {
@@ -170,6 +170,9 @@ void addRunOptions(CLI::App& app, RunOptions& options) {
   app.add_option("--view-envs", options.view_envs, "How many envs the page shows")
       ->check(wholeCheck(1, 1024))
       ->option_text(fmt::format("N [{}]", options.view_envs));
+  app.add_option("--animation", options.animation,
+                 "Write the first episode of the first env as an animated scene (glTF)")
+      ->type_name("FILE.glb");
   app.option_defaults()->group(kPlainGroup);
 }
 
@@ -184,12 +187,14 @@ std::string faultOf(const RunOptions& options) {
   if (options.is_deterministic && options.policyFile().empty()) {
     return "--deterministic is about learned policies; add --policy FILE.pack";
   }
-  const std::uint64_t viewed = std::min(options.view_envs, options.simulation.envs);
-  if (!options.view.empty() && options.steps > RunPage::kMostSteps / viewed) {
+  const bool is_tracked = !options.view.empty() || !options.animation.empty();
+  const std::uint64_t kept =
+      options.view.empty() ? 1 : std::min(options.view_envs, options.simulation.envs);
+  if (is_tracked && options.steps > TrackedRun::kMostSteps / kept) {
     return fmt::format(
-        "--view keeps {} steps of {} envs, at most {} of all envs together fit; ask for "
-        "fewer --steps or --view-envs",
-        options.steps, viewed, RunPage::kMostSteps);
+        "--view and --animation keep what envs do: {} steps of {} envs were asked for, at most {} "
+        "together fit; ask for fewer --steps or --view-envs",
+        options.steps, kept, TrackedRun::kMostSteps);
   }
   if (options.simulation.rank >= options.simulation.ranks) {
     return fmt::format("--rank is {}, wanted a number below --ranks, which is {}",

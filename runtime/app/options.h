@@ -32,6 +32,8 @@ struct RunOptions {
   /// The page that plays the run, and how many of the first envs it shows.
   std::string view;
   std::uint32_t view_envs = 4;
+  /// The first episode of the first env as an animated scene.
+  std::string animation;
 
   /// The file of "replay:FILE"; empty for the other policies.
   [[nodiscard]] std::string replayFile() const;

@@ -18,7 +18,7 @@
 #include "live_line.h"
 #include "option_lines.h"
 #include "policy.h"
-#include "run_page.h"
+#include "tracked_run.h"
 
 namespace galactic {
 namespace {
@@ -138,10 +138,10 @@ class Run {
   }
 
   /// Before go().
-  Result<void> show(const World& world) {
-    Result<RunPage> page = RunPage::create(world, simulator_, options_);
-    if (!page) return tl::unexpected<Error>(page.error());
-    page_.emplace(std::move(*page));
+  Result<void> track(const World& world) {
+    Result<TrackedRun> tracked = TrackedRun::create(world, simulator_, options_);
+    if (!tracked) return tl::unexpected<Error>(tracked.error());
+    tracked_.emplace(std::move(*tracked));
     return {};
   }
 
@@ -179,8 +179,8 @@ class Run {
     if (drawn_) {
       if (Result<void> finished = drawn_->finish(simulator_, report_); !finished) return finished;
     }
-    if (page_) {
-      if (Result<void> shown = page_->finish(); !shown) return shown;
+    if (tracked_) {
+      if (Result<void> written = tracked_->finish(); !written) return written;
     }
     return writer_ ? writer_->finish() : Result<void>();
   }
@@ -208,7 +208,7 @@ class Run {
       report_.step_seconds += secondsBetween(before, Clock::now());
     }
     tally_.add(simulator_, report_.episodes);
-    if (page_) page_->add(simulator_, actions_);
+    if (tracked_) tracked_->add(simulator_, actions_);
     if (writer_ || replay_ != nullptr) {
       const std::uint64_t digest = digestOf(simulator_);
       if (writer_) {
@@ -232,7 +232,7 @@ class Run {
   const ReplayPolicy* replay_ = nullptr;
   std::optional<RecordingWriter> writer_;
   std::optional<DrawnSteps> drawn_;
-  std::optional<RunPage> page_;
+  std::optional<TrackedRun> tracked_;
 };
 
 /// Whether the recording is of this world and robot.
@@ -288,8 +288,8 @@ Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
   if (options.drawing.draws()) {
     if (auto drawn = run.draw(world); !drawn) return tl::unexpected<Error>(drawn.error());
   }
-  if (!options.view.empty()) {
-    if (auto shown = run.show(world); !shown) return tl::unexpected<Error>(shown.error());
+  if (!options.view.empty() || !options.animation.empty()) {
+    if (auto tracked = run.track(world); !tracked) return tl::unexpected<Error>(tracked.error());
   }
   if (!options.record.empty()) {
     if (auto opened_file = run.record(world); !opened_file) {

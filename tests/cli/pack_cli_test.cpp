@@ -277,6 +277,8 @@ TEST_F(PackCli, PictureAndExportRefuseWhatTheyCannotWrite) {
       {{"export", "good.pack", "-o", "a.jpg"},
        kUnsupported,
        "use .glb, .srdf, .urdf, .obj, .ply or .episode_set.json"},
+      {{"view", "good.pack", "-o", "good.pack"}, kInvalidInput, "good.pack"},
+      {{"view", "good.pack", "-o", "none/a.html"}, kIo, "galactic-pack: none/a.html: "},
       {{"export", "good.pack", "-o", "a.png"}, kUnsupported, "draw it with galactic-pack picture"},
       {{"picture", "good.pack", "-o", "a.jpg"}, kUnsupported, "end the name with .png"},
       {{"picture", "good.pack", "-o", "none/a.png"}, kIo, "galactic-pack: none/a.png: "},

@@ -310,6 +310,9 @@ TEST_F(SimulateCli, EndsWithACodeForEachKindOfMistake) {
       {{"--steps", "1000000", "--envs", "2", "--view", "run.html"}, 1},
       {{"--envs", "1", "--steps", "1", "--view", "missing/run.html"}, 2},
       {{"--envs", "1", "--steps", "1", "--view", "world.pack"}, 3},
+      {{"--steps", "1000001", "--envs", "2", "--animation", "run.glb"}, 1},
+      {{"--envs", "1", "--steps", "1", "--animation", "missing/run.glb"}, 2},
+      {{"--envs", "1", "--steps", "1", "--animation", "objects.pack"}, 3},
   };
   for (const auto& [arguments, code] : mistakes) {
     SCOPED_TRACE(testing::PrintToString(arguments));

@@ -92,7 +92,7 @@ RULES = (
     Rule("runtime/pictures", ("runtime/include", "runtime"), LEAN, schema=False),
     # xxHash as headers: digests of recordings.
     Rule("runtime/app", ("runtime/include", "runtime/app", "runtime", "."), LEAN | {"CLI", "xxhash.h"}),
-    Rule("view", ("runtime/include", "."), LEAN),
+    Rule("view", ("runtime/include", "runtime", "."), LEAN),
     Rule("python", ("runtime/include", "python/src"), LEAN, schema=False),
     Rule("pack_tool", ("runtime/include", "runtime", "."), LEAN | {"CLI", "nlohmann"}),
     Rule("bake/include", ("runtime/include", "bake/include"), frozenset({"tl"}), schema=False),

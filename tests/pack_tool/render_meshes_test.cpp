@@ -9,7 +9,7 @@
 #include "pack_tool/info_text.h"
 #include "pack_tool/mesh/figure_glb.h"
 #include "pack_tool/painted_meshes.h"
-#include "pack_tool/render/render_surfaces.h"
+#include "view/render_surfaces.h"
 #include "pack_tool/verbs.h"
 #include "support/pack_tool_fixture.h"
 

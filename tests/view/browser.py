@@ -21,13 +21,33 @@ import zlib
 
 PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
 # Drawing in software: the same pixels on every machine, with or without a graphics processor.
-ARGUMENTS = ("--headless=new", "--no-sandbox", "--disable-gpu", "--use-angle=swiftshader",
-             "--enable-unsafe-swiftshader", "--hide-scrollbars", "--mute-audio", "--no-first-run",
-             "--disable-background-networking", "--disable-component-update", "--disable-extensions",
-             "--force-device-scale-factor=1", "--force-color-profile=srgb",
-             "--remote-debugging-pipe", "about:blank")
+ARGUMENTS = (
+    "--headless=new",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--hide-scrollbars",
+    "--mute-audio",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-extensions",
+    "--force-device-scale-factor=1",
+    "--force-color-profile=srgb",
+    "--remote-debugging-pipe",
+    "about:blank",
+)
 # What controls of a browser look at, beside the name of a key.
-KEY_NUMBERS = {" ": 32, "PageUp": 33, "PageDown": 34, "End": 35, "Home": 36, "ArrowLeft": 37, "ArrowRight": 39}
+KEY_NUMBERS = {
+    " ": 32,
+    "PageUp": 33,
+    "PageDown": 34,
+    "End": 35,
+    "Home": 36,
+    "ArrowLeft": 37,
+    "ArrowRight": 39,
+}
 PATIENCE_SECONDS = 120
 
 
@@ -47,7 +67,9 @@ class Page:
 
     def evaluate(self, expression: str):
         """The value of JavaScript, waited for if it is a promise."""
-        answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        answer = self.call(
+            "Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True
+        )
         if "exceptionDetails" in answer:
             raise RuntimeError(json.dumps(answer["exceptionDetails"])[:800])
         return answer["result"].get("value")
@@ -66,8 +88,13 @@ class Page:
         self.wait(f"document.documentElement?.dataset.shown === {json.dumps(part)}")
 
     def size(self, width: int, height: int):
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
-                  mobile=False)
+        self.call(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=False,
+        )
 
     def screenshot(self) -> bytes:
         """As PNG."""
@@ -88,7 +115,12 @@ class Page:
     def drag(self, start: tuple[float, float], end: tuple[float, float]):
         self.mouse("mousePressed", *start, button="left", buttons=1, clickCount=1)
         for n in range(1, 6):
-            self.mouse("mouseMoved", *(a + (b - a) * n / 5 for a, b in zip(start, end)), button="left", buttons=1)
+            self.mouse(
+                "mouseMoved",
+                *(a + (b - a) * n / 5 for a, b in zip(start, end)),
+                button="left",
+                buttons=1,
+            )
         self.mouse("mouseReleased", *end, button="left", buttons=0, clickCount=1)
 
     def key(self, key: str, code: str = "", text: str = ""):
@@ -104,9 +136,19 @@ class Browser:
         self.back, from_child = os.pipe()
         # Chromium reads commands from descriptor 3 and answers on 4.
         self.process = subprocess.Popen(
-            ["/bin/sh", "-c", f'exec "$@" 3<&{to_child} 4>&{from_child}', "sh", find_chromium(),
-             f"--user-data-dir={self.folder.name}", *ARGUMENTS],
-            pass_fds=(to_child, from_child), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            [
+                "/bin/sh",
+                "-c",
+                f'exec "$@" 3<&{to_child} 4>&{from_child}',
+                "sh",
+                find_chromium(),
+                f"--user-data-dir={self.folder.name}",
+                *ARGUMENTS,
+            ],
+            pass_fds=(to_child, from_child),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         os.close(to_child)
         os.close(from_child)
         self.buffer = b""
@@ -123,9 +165,13 @@ class Browser:
         os.close(self.back)
         self.folder.cleanup()
 
-    def open(self, file: pathlib.Path, fragment: str = "", size: tuple[int, int] = (1280, 800)) -> Page:
+    def open(
+        self, file: pathlib.Path, fragment: str = "", size: tuple[int, int] = (1280, 800)
+    ) -> Page:
         target = self.call("Target.createTarget", {"url": "about:blank"})["targetId"]
-        session = self.call("Target.attachToTarget", {"targetId": target, "flatten": True})["sessionId"]
+        session = self.call("Target.attachToTarget", {"targetId": target, "flatten": True})[
+            "sessionId"
+        ]
         page = self.pages[session] = Page(self, session)
         for domain in ("Runtime", "Network", "Page", "Log"):
             page.call(f"{domain}.enable")
@@ -167,7 +213,11 @@ class Browser:
         method, parameters = event["method"], event["params"]
         if method == "Runtime.exceptionThrown":
             page.errors.append(json.dumps(parameters["exceptionDetails"])[:500])
-        elif method == "Runtime.consoleAPICalled" and parameters["type"] in ("error", "warning", "assert"):
+        elif method == "Runtime.consoleAPICalled" and parameters["type"] in (
+            "error",
+            "warning",
+            "assert",
+        ):
             page.errors.append(json.dumps(parameters["args"])[:500])
         elif method == "Log.entryAdded" and parameters["entry"]["level"] in ("error", "warning"):
             text = parameters["entry"]["text"]
@@ -186,9 +236,9 @@ def decode_png(png: bytes) -> tuple[int, int, bytes]:
     data = b""
     at = 8
     while at < len(png):
-        length, kind = struct.unpack(">I4s", png[at:at + 8])
+        length, kind = struct.unpack(">I4s", png[at : at + 8])
         if kind == b"IDAT":
-            data += png[at + 8:at + 8 + length]
+            data += png[at + 8 : at + 8 + length]
         at += 12 + length
     raw = zlib.decompress(data)
     stride = width * channels
@@ -196,8 +246,14 @@ def decode_png(png: bytes) -> tuple[int, int, bytes]:
     before = bytearray(stride)
     for y in range(height):
         begin = y * (stride + 1)
-        before = unfiltered(raw[begin], bytearray(raw[begin + 1:begin + 1 + stride]), before, channels)
-        rows.append(bytes(before) if channels == 3 else b"".join(before[n:n + 3] for n in range(0, stride, 4)))
+        before = unfiltered(
+            raw[begin], bytearray(raw[begin + 1 : begin + 1 + stride]), before, channels
+        )
+        rows.append(
+            bytes(before)
+            if channels == 3
+            else b"".join(before[n : n + 3] for n in range(0, stride, 4))
+        )
     return width, height, b"".join(rows)
 
 

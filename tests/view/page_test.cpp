@@ -129,7 +129,7 @@ TEST(PageTemplate, HasTheLicenseOfWhatItContains) {
 }
 
 TEST_F(Page, HoldsTheSceneInItsFirstChunk) {
-  EXPECT_THAT(chunkOf(pageOf("kitchen"), 0), HasSubstr("\"name\": \"kitchen\""));
+  EXPECT_THAT(chunkOf(pageOf("kitchen"), 0), HasSubstr("\"name\":\"kitchen\""));
 }
 
 TEST_F(Page, IsTheSameEachTime) { EXPECT_EQ(pageOf("kitchen"), pageOf("kitchen")); }
@@ -153,7 +153,7 @@ TEST_F(Page, TitlesAreNoMarkup) {
 }
 
 TEST_F(Page, NamesThatAreNoUtf8BecomeQuestionMarks) {
-  EXPECT_THAT(chunkOf(pageOf("kitchen", "a\xff"), 0), HasSubstr("\"title\": \"a?\""));
+  EXPECT_THAT(chunkOf(pageOf("kitchen", "a\xff"), 0), HasSubstr("\"title\":\"a?\""));
 }
 
 }  // namespace

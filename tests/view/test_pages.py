@@ -27,7 +27,9 @@ SMALL = (900, 520)
 
 
 def tool(program: str, *arguments: object) -> str:
-    return subprocess.run([program, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
+    return subprocess.run(
+        [program, *map(str, arguments)], check=True, capture_output=True, text=True
+    ).stdout
 
 
 class Pages(unittest.TestCase):
@@ -37,9 +39,20 @@ class Pages(unittest.TestCase):
         cls.folder = pathlib.Path(cls.scratch.name)
         tool(OPTIONS.packs, cls.folder)
         for name in ("world", "hostile_scene", "hostile_objects", "hostile_robot"):
-            tool(OPTIONS.pack, "view", cls.folder / f"{name}.pack", "-o", cls.folder / f"{name}.html")
-        tool(OPTIONS.run, "--pack", cls.folder / "world.pack", "--policy", f"replay:{cls.folder}/run.rec",
-             "--view", cls.folder / "run.html", "--view-envs", 2)
+            tool(
+                OPTIONS.pack, "view", cls.folder / f"{name}.pack", "-o", cls.folder / f"{name}.html"
+            )
+        tool(
+            OPTIONS.run,
+            "--pack",
+            cls.folder / "world.pack",
+            "--policy",
+            f"replay:{cls.folder}/run.rec",
+            "--view",
+            cls.folder / "run.html",
+            "--view-envs",
+            2,
+        )
         cls.browser = Browser()
 
     @classmethod
@@ -63,14 +76,16 @@ class Pages(unittest.TestCase):
         count = page.evaluate("galactic.parts.length")
         for number in range(count):
             page.evaluate(f"galactic.show(galactic.parts[{number}]).then(() => 1)")
-            problem = page.evaluate("document.getElementById('progress').hidden ? '' : document.getElementById('progress').textContent")
+            problem = page.evaluate(
+                "document.getElementById('progress').hidden ? '' : document.getElementById('progress').textContent"
+            )
             self.assertEqual(problem, "", f"part {number}")
         return count
 
     def count(self, page: Page, color: tuple[int, int, int]) -> int:
         _, _, rgb = page.pixels()
         wanted = bytes(color)
-        return sum(rgb[n:n + 3] == wanted for n in range(0, len(rgb), 3))
+        return sum(rgb[n : n + 3] == wanted for n in range(0, len(rgb), 3))
 
     def test_all_parts_of_a_world_open(self):
         page = self.open("world", "", "scene 0")
@@ -89,23 +104,60 @@ class Pages(unittest.TestCase):
         page = self.open("world", "view=scene&radius=0.05", "scene 0")
         spans = 0
         for x, z in ((0.5, 0.5), (1.5, 1.5), (1.02, 1.4), (2.7, 0.31), (2.02, 2.0)):
-            told = json.loads(tool(OPTIONS.pack, "column", scene, "--at", f"{x},{z}", "--radius", 0.05, "--json"))
+            told = json.loads(
+                tool(OPTIONS.pack, "column", scene, "--at", f"{x},{z}", "--radius", 0.05, "--json")
+            )
             wanted = told["columns"][0]["spans"]
-            shown = page.evaluate(f"(() => {{ const {{ grid }} = galactic.view.layer; galactic.view.mark(grid.cellAt({x}, {z}));"
-                                  "return [...document.querySelectorAll('#panel td.number')].map((one) => one.textContent); })()")
+            shown = page.evaluate(
+                f"(() => {{ const {{ grid }} = galactic.view.layer; galactic.view.mark(grid.cellAt({x}, {z}));"
+                "return [...document.querySelectorAll('#panel td.number')].map((one) => one.textContent); })()"
+            )
             for n, span in enumerate(wanted):
-                low, high = (float(text) for text in shown[3 * n:3 * n + 2])
+                low, high = (float(text) for text in shown[3 * n : 3 * n + 2])
                 self.assertAlmostEqual(low, span["lo"], delta=1e-4)
                 self.assertAlmostEqual(high, span["hi"], delta=1e-4)
                 spans += 1
         self.assertGreater(spans, 5)
 
+    def test_numbers_are_those_of_info(self):
+        files = ("scenes/kitchen.pack", "objects.pack", "robots/helper.pack", "episodes.pack")
+        scene, objects, robot, episodes = json.loads(
+            tool(OPTIONS.pack, "info", "--json", *(self.folder / file for file in files))
+        )
+        page = self.open("world", "view=scene", "scene 0")
+        grid = scene["scene"]["column_grids"][0]
+        text = page.evaluate("document.getElementById('panel').innerText")
+        self.assertIn(f"Spans\t{grid['content']['spans']}", text)
+        self.assertIn(f"Columns\t{grid['columns_x']} × {grid['columns_z']}", text)
+        for number, one in enumerate(objects["object_set"]["objects"]):
+            page.evaluate(
+                f"galactic.show(galactic.parts.find((one) => one.name === '{one['name']}')).then(() => 1)"
+            )
+            text = page.evaluate("document.getElementById('panel').innerText")
+            self.assertIn(f"Spheres\t{len(one['spheres'])}", text)
+            sides = " × ".join(f"{200 * half:.1f}" for half in one["box"]["half_extents"])
+            self.assertIn(f"Box\t{sides} cm", text)
+        page.evaluate(
+            "galactic.show(galactic.parts.find((one) => one.kind === 'robot')).then(() => 1)"
+        )
+        names = page.evaluate(
+            "[...document.querySelectorAll('#panel .slider span')].map((one) => one.textContent)"
+        )
+        self.assertEqual(names[:4], [one["name"] for one in robot["robot"]["controlled_joints"]])
+        self.assertEqual(
+            page.evaluate("galactic.episodes.count"), episodes["episode_set"]["episode_count"]
+        )
+
     def test_a_click_marks_what_a_sphere_reaches(self):
         page = self.open("world", "view=scene&radius=0.05&slice=0.4", "scene 0")
-        self.assertNotIn("free space", page.evaluate("document.getElementById('panel').textContent"))
-        x, y = page.evaluate("(() => { const { stage, view } = galactic; const { x, z } = view.layer.grid.centreOf({ i: 9, k: 9 });"
-                             "const at = stage.camera.position.clone().set(x, 0.4, z).project(stage.camera); const area = stage.canvas.getBoundingClientRect();"
-                             "return [area.left + (at.x + 1) / 2 * area.width, area.top + (1 - at.y) / 2 * area.height]; })()")
+        self.assertNotIn(
+            "free space", page.evaluate("document.getElementById('panel').textContent")
+        )
+        x, y = page.evaluate(
+            "(() => { const { stage, view } = galactic; const { x, z } = view.layer.grid.centreOf({ i: 9, k: 9 });"
+            "const at = stage.camera.position.clone().set(x, 0.4, z).project(stage.camera); const area = stage.canvas.getBoundingClientRect();"
+            "return [area.left + (at.x + 1) / 2 * area.width, area.top + (1 - at.y) / 2 * area.height]; })()"
+        )
         page.click(x, y)
         page.wait("document.getElementById('panel').textContent.includes('of the free space')")
         self.assertEqual(page.evaluate("galactic.view.pinned.cell"), {"i": 9, "k": 9})
@@ -121,7 +173,9 @@ class Pages(unittest.TestCase):
         before = page.evaluate("galactic.view.figure.poses.at(-1).position.toArray()")
         page.evaluate("document.querySelector('#panel input[type=range]').focus()")
         page.key("ArrowRight")
-        moved = page.evaluate("[galactic.view.positions[0], galactic.view.robot.start[0], ...galactic.view.figure.poses.at(-1).position.toArray()]")
+        moved = page.evaluate(
+            "[galactic.view.positions[0], galactic.view.robot.start[0], ...galactic.view.figure.poses.at(-1).position.toArray()]"
+        )
         self.assertGreater(moved[0], moved[1])
         # The lift goes up, and the hand with it.
         self.assertAlmostEqual(moved[3] - before[1], moved[0] - moved[1], delta=1e-5)
@@ -130,7 +184,9 @@ class Pages(unittest.TestCase):
         page = self.open("world", "", "scene 0")
         page.key("/", "Slash", "/")
         page.call("Input.insertText", text="episode 1")
-        names = page.evaluate("[...document.querySelectorAll('#list li button')].map((one) => one.firstChild.textContent)")
+        names = page.evaluate(
+            "[...document.querySelectorAll('#list li button')].map((one) => one.firstChild.textContent)"
+        )
         self.assertEqual(names, ["Episode 1"])
 
     def test_a_run_shows_the_poses_of_the_simulator(self):
@@ -140,9 +196,11 @@ class Pages(unittest.TestCase):
         for env in (0, 1):
             page.evaluate(f"galactic.view.chooseEnv({env}, 0).then(() => 1)")
             for number in range(0, len(frames), 3):
-                shown = page.evaluate(f"galactic.view.timeline.go({number}).then(() => ({{"
-                                      "links: galactic.view.home.robot.poses.map((one) => [...one.position.toArray(), ...one.rotation.toArray()]),"
-                                      "objects: galactic.view.home.objects.map((one) => [...one.group.position.toArray(), ...one.group.quaternion.toArray()]) }))")
+                shown = page.evaluate(
+                    f"galactic.view.timeline.go({number}).then(() => ({{"
+                    "links: galactic.view.home.robot.poses.map((one) => [...one.position.toArray(), ...one.rotation.toArray()]),"
+                    "objects: galactic.view.home.objects.map((one) => [...one.group.position.toArray(), ...one.group.quaternion.toArray()]) }))"
+                )
                 self.expect_poses(shown["links"], frames[number][env]["links"], number)
                 self.expect_poses(shown["objects"], frames[number][env]["objects"], number)
 
@@ -150,7 +208,10 @@ class Pages(unittest.TestCase):
         self.assertEqual(len(shown), len(wanted))
         for a, b in zip(shown, wanted):
             sign = 1 if sum(p * q for p, q in zip(a[3:], b[3:])) >= 0 else -1
-            difference = max(*(abs(p - q) for p, q in zip(a[:3], b[:3])), *(abs(p - sign * q) for p, q in zip(a[3:], b[3:])))
+            difference = max(
+                *(abs(p - q) for p, q in zip(a[:3], b[:3])),
+                *(abs(p - sign * q) for p, q in zip(a[3:], b[3:])),
+            )
             self.assertLess(difference, POSE_TOLERANCE, f"frame {frame}")
 
     def test_the_timeline_is_worked_with_keys(self):
@@ -171,15 +232,32 @@ class Pages(unittest.TestCase):
 
     def test_names_of_packs_are_no_markup(self):
         for name in ("hostile_scene", "hostile_objects", "hostile_robot"):
-            page = self.open(name, "", {"hostile_scene": "scene 0", "hostile_objects": "object 0", "hostile_robot": "robot 0"}[name])
+            page = self.open(
+                name,
+                "",
+                {
+                    "hostile_scene": "scene 0",
+                    "hostile_objects": "object 0",
+                    "hostile_robot": "robot 0",
+                }[name],
+            )
             self.show_all_parts(page)
-            page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
-            self.assertEqual(page.evaluate("[document.querySelectorAll('img').length, document.title === 'owned']"), [0, False])
+            page.evaluate(
+                "document.querySelectorAll('details').forEach((one) => { one.open = true; })"
+            )
+            self.assertEqual(
+                page.evaluate(
+                    "[document.querySelectorAll('img').length, document.title === 'owned']"
+                ),
+                [0, False],
+            )
             self.assertIn("<img", page.evaluate("document.body.innerText"))
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     for name in ("packs", "pack", "run"):
         parser.add_argument(f"--{name}", required=True)
     parser.add_argument("tests", nargs="*")

@@ -2,6 +2,7 @@
 // JSON that says what the others are. view/page_data.h is the writer.
 
 const kBytes = { u8: 1, u16: 2, u32: 4, i32: 4, f32: 4 };
+const kMostKept = 256e6;
 const kArrays = { u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i32: Int32Array, f32: Float32Array };
 
 function bytesOfBase64(text) {
@@ -33,30 +34,35 @@ function fromPlanes(bytes, type, count) {
 export class PageData {
   constructor(elements) {
     this.elements = [...elements];
+    // The oldest is forgotten first, and unpacked again when somebody comes back to it.
     this.unpacked = new Map();
+    this.kept = 0;
     this.onProgress = () => {};
     this.wanted = 0;
     this.done = 0;
   }
 
   async unpack(number) {
-    const element = this.elements[number];
-    const bytes = bytesOfBase64(element.textContent);
-    element.textContent = "";
-    return inflate(bytes);
+    return inflate(bytesOfBase64(this.elements[number].textContent));
   }
 
   async manifest() {
     return JSON.parse(new TextDecoder().decode(await this.unpack(0)));
   }
 
-  /// The arrays of a chunk by name; each chunk is unpacked once. A number of a texture may be asked
-  /// for by several meshes at once, so that it is the promise that is kept.
+  /// The arrays of a chunk by name, which nobody may change. Several parts of a view may ask for a chunk
+  /// at once, so that it is the promise that is kept.
   arrays(reference) {
-    if (!this.unpacked.has(reference.chunk)) {
-      this.unpacked.set(reference.chunk, this.load(reference));
+    const { chunk, bytes } = reference;
+    const found = this.unpacked.get(chunk) ?? { promise: this.load(reference), bytes };
+    if (!this.unpacked.delete(chunk)) this.kept += bytes;
+    this.unpacked.set(chunk, found);
+    for (const [oldest, one] of this.unpacked) {
+      if (this.kept <= kMostKept || oldest === chunk) break;
+      this.unpacked.delete(oldest);
+      this.kept -= one.bytes;
     }
-    return this.unpacked.get(reference.chunk);
+    return found.promise;
   }
 
   async load(reference) {

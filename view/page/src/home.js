@@ -4,6 +4,7 @@ import { boxLines, ObjectFigure, RobotFigure } from "./figures.js";
 import { Grid } from "./grid.js";
 import { GridLayer } from "./grid_layer.js";
 import { Pose } from "./kinematics.js";
+import { disposeOf } from "./stage.js";
 
 const kTargetColor = 0xe69f00;
 const kGoalColor = 0x009e73;
@@ -62,9 +63,15 @@ export class Home {
     if (!this.scenes.has(name)) {
       const pack = this.page.scenes.get(name);
       const mesh = pack ? await this.page.library.model(pack.meshes, 0, { cut: true }) : null;
-      this.scenes.set(name, { pack, mesh: mesh ?? new Group() });
+      this.scenes.set(name, { name, pack, mesh: mesh ?? new Group() });
     }
     return this.scenes.get(name);
+  }
+
+  forgetScene() {
+    if (!this.scene) return;
+    disposeOf(this.scene.mesh);
+    this.scenes.delete(this.scene.name);
   }
 
   /// Shows the start of an episode. Figures of objects are made anew where others are needed.
@@ -72,13 +79,13 @@ export class Home {
     this.episode = episode;
     const scene = await this.sceneOf(episode.scene);
     if (this.scene !== scene) {
-      this.scene?.mesh.removeFromParent();
+      this.forgetScene();
       this.reach?.group.removeFromParent();
       this.reach = null;
       this.scene = scene;
       this.group.add(scene.mesh);
     }
-    for (const one of this.objects) one.group.removeFromParent();
+    for (const one of this.objects) disposeOf(one.group);
     this.objects = [];
     for (const { object } of episode.placements) this.objects.push(await this.objectFigure(object));
     this.addTask(episode);

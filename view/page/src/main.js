@@ -65,11 +65,17 @@ class Page {
     }
     document.getElementById("title").textContent = this.manifest.title;
     document.title = this.manifest.title;
-    document.getElementById("subtitle").textContent = this.manifest.generator;
+    document.getElementById("subtitle").textContent = this.subtitle();
     this.makeList();
     this.listenForKeys();
     const wanted = this.parts.find((one) => one.kind === address.get("view") && one.number === Number(address.get("n") ?? 0));
     await this.show(wanted ?? this.firstPart());
+  }
+
+  subtitle() {
+    const { generator, run, packs } = this.manifest;
+    if (run) return `${generator}: ${run.facts?.policy ?? "a"} policy, ${run.steps} steps, ${run.envs.length === 1 ? "1 env" : `${run.envs.length} envs`}`;
+    return `${generator}: ${packs.length === 1 ? packs[0].kind : `${packs.length} packs`}, ${megabytes(packs.reduce((sum, one) => sum + one.bytes, 0))}`;
   }
 
   firstPart() {

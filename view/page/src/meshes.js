@@ -95,7 +95,8 @@ export function decodeBlocks(blocks, size) {
 }
 
 /// The writer keeps what differs from the texel to the left.
-function undoDifferences(bytes) {
+function undoDifferences(differences) {
+  const bytes = differences.slice();
   for (let n = 4; n < bytes.length; ++n) bytes[n] += bytes[n - 4];
   return bytes;
 }

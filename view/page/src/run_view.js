@@ -145,7 +145,7 @@ export class RunView {
 
   fillPanel() {
     const toggle = (key) => (on) => this.home.show({ ...this.home.shown, [key]: on });
-    this.cameraButtons = kCameras.map(([text, key]) => button(text, () => this.setCamera(key), { value: key, "aria-pressed": key === this.camera }));
+    this.cameraButtons = kCameras.filter(([, key]) => key !== "own" || this.home.robot.robot.camera).map(([text, key]) => button(text, () => this.setCamera(key), { value: key, "aria-pressed": key === this.camera }));
     this.page.fillPanel([
       heading("Camera"),
       el("div", { className: "buttons" }, ...this.cameraButtons),

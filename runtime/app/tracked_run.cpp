@@ -1,4 +1,4 @@
-#include "run_page.h"
+#include "tracked_run.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -13,6 +13,7 @@
 #include "galactic/option_text.h"
 #include "galactic/shared_textures.h"
 #include "view/page.h"
+#include "view/run_animation.h"
 
 namespace galactic {
 namespace {
@@ -96,34 +97,59 @@ Result<void> writeText(const std::string& path, std::string_view text) {
   return writeFileAtomically(path, {std::as_bytes(std::span(text))});
 }
 
-}  // namespace
-
-Result<RunPage> RunPage::create(const World& world, const BatchSimulator& simulator,
-                                const RunOptions& options) {
+/// A run may take hours: a file that cannot be written is found out before it.
+Result<void> tryFile(const std::string& file, const World& world, const RunOptions& options) {
   std::vector<std::string> read = options.packs;
   read.push_back(options.replayFile());
   read.push_back(options.policyFile());
-  for (const std::string& file : read) {
+  for (const PackFile& pack : world.packs()) read.push_back(pack.where());
+  for (const std::string& one : read) {
     std::error_code missing;
-    if (!std::filesystem::equivalent(file, options.view, missing)) continue;
-    return fail(ErrorCode::kInvalidInput, options.view,
-                "is a file that the run reads; choose another name for the page");
+    if (!std::filesystem::equivalent(one, file, missing)) continue;
+    return fail(ErrorCode::kInvalidInput, file,
+                "is a file that the run reads; choose another name to write to");
   }
-  // A run may take hours: a file that cannot be written is found out before it.
-  if (auto tried = AtomicFile::create(options.view); !tried) return tl::unexpected(tried.error());
-  return RunPage(RunTrack(world, simulator, options.view_envs), options);
+  if (auto tried = AtomicFile::create(file); !tried) return tl::unexpected(tried.error());
+  return {};
 }
 
-Result<void> RunPage::finish() const { return writePage(); }
+}  // namespace
 
-Result<void> RunPage::writePage() const {
+Result<TrackedRun> TrackedRun::create(const World& world, const BatchSimulator& simulator,
+                                      const RunOptions& options) {
+  for (const std::string& file : {options.view, options.animation}) {
+    if (file.empty()) continue;
+    if (auto tried = tryFile(file, world, options); !tried) return tl::unexpected(tried.error());
+  }
+  // An animation shows the first env.
+  return TrackedRun(RunTrack(world, simulator, options.view.empty() ? 1 : options.view_envs),
+                    options);
+}
+
+Result<void> TrackedRun::finish() const {
   const auto assets = assetsOf(track_);
   if (!assets) return tl::unexpected(assets.error());
+  if (!options_.view.empty()) {
+    if (auto written = writePage(*assets); !written) return written;
+  }
+  return options_.animation.empty() ? Result<void>() : writeAnimation(*assets);
+}
+
+Result<void> TrackedRun::writePage(std::span<const PageAsset> assets) const {
   const auto page = viewPage(
-      *assets, {.track = &track_, .facts = factsOf(options_)},
+      assets, {.track = &track_, .facts = factsOf(options_)},
       {.title = std::filesystem::path(options_.view).stem().string(), .generator = "galactic-run"});
   if (!page) return tl::unexpected(page.error());
   return writeText(options_.view, *page);
+}
+
+Result<void> TrackedRun::writeAnimation(std::span<const PageAsset> assets) const {
+  auto glb = animationGlb(track_, 0, assets);
+  if (!glb) {
+    glb.error().where = options_.animation;
+    return tl::unexpected(glb.error());
+  }
+  return writeText(options_.animation, *glb);
 }
 
 }  // namespace galactic

@@ -8,7 +8,7 @@
 #include "galactic/render_mesh_builder.h"
 #include "galactic/render_meshes.h"
 
-namespace galactic::pack_tool {
+namespace galactic {
 
 /// What the part of a render model is called: the scene, an object of the set, a link.
 [[nodiscard]] std::string partName(const PackFile& pack, std::uint32_t part);
@@ -27,4 +27,4 @@ void appendCluster(const RenderMeshes& meshes, const RenderModel& model,
 [[nodiscard]] std::vector<RenderSurface> surfacesOf(const RenderMeshes& meshes,
                                                     const RenderModel& model);
 
-}  // namespace galactic::pack_tool
+}  // namespace galactic

@@ -1,4 +1,4 @@
-#include "pack_tool/render/render_surfaces.h"
+#include "view/render_surfaces.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "galactic/render_layout.h"
 #include "galactic/schema/pack_generated.h"
 
-namespace galactic::pack_tool {
+namespace galactic {
 
 namespace {
 
@@ -82,4 +82,4 @@ std::vector<RenderSurface> surfacesOf(const RenderMeshes& meshes, const RenderMo
   return surfaces;
 }
 
-}  // namespace galactic::pack_tool
+}  // namespace galactic

@@ -1,4 +1,4 @@
-#include "pack_tool/mesh/render_glb.h"
+#include "view/render_glb.h"
 
 #include <algorithm>
 #include <array>
@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "galactic/render_texels.h"
-#include "pack_tool/render/render_surfaces.h"
 #include "pictures/png_file.h"
+#include "view/render_surfaces.h"
 
-namespace galactic::pack_tool {
+namespace galactic {
 
 namespace {
 
@@ -100,4 +100,4 @@ Result<void> RenderGlbWriter::write(const RenderModel& model, const std::string&
   return {};
 }
 
-}  // namespace galactic::pack_tool
+}  // namespace galactic

@@ -1,7 +1,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,8 +9,9 @@
 
 #include "galactic/error.h"
 #include "galactic/pose.h"
+#include "view/json_writer.h"
 
-namespace galactic::pack_tool {
+namespace galactic {
 
 /// How the corners of a mesh are joined; the values are those of glTF.
 enum class GlbShape { kLines = 1, kTriangles = 4 };
@@ -62,6 +62,12 @@ struct GlbNode {
   std::optional<std::size_t> parent = std::nullopt;
 };
 
+/// Where a node is in time: one key for each of the times.
+struct GlbMotion {
+  std::size_t node = 0;
+  std::vector<Pose> parent_from_node;
+};
+
 /// Collects meshes and nodes, and writes them as glTF 2.0 in binary (GLB): metres, Y up. The same
 /// content gives the same bytes. See the glTF 2.0 specification, sections 3 and 4.
 class GlbFile {
@@ -72,34 +78,47 @@ class GlbFile {
   std::size_t addMaterial(const GlbMaterial& material);
   std::size_t addMesh(std::string_view name, std::span<const GlbPrimitive> primitives);
   std::size_t addNode(const GlbNode& node);
+  /// Moves nodes evenly between the keys. `times`: ascending seconds, at least one; each motion has
+  /// as many keys.
+  void addAnimation(std::string_view name, std::span<const float> times,
+                    std::span<const GlbMotion> motions);
 
   /// The file's bytes. Fails with kUnsupported, an empty `where`, beyond the 4 GiB of a GLB file.
   [[nodiscard]] Result<std::string> bytes() const;
 
  private:
-  using Json = nlohmann::ordered_json;
+  struct Node {
+    GlbNode node;
+    std::optional<std::size_t> camera;
+    std::vector<std::size_t> children;
+  };
 
   /// Appends data as a buffer view of its own; returns its index. `target`: what vertices and
   /// indices are bound to.
   std::size_t addView(std::span<const std::byte> data, std::optional<int> target);
   std::size_t addUvs(std::span<const std::array<float, 2>> uvs);
-  Json primitiveOf(const GlbPrimitive& primitive);
+  void writePrimitive(JsonWriter& json, const GlbPrimitive& primitive);
+  static void writeNode(JsonWriter& json, const Node& node);
   std::size_t addVectors(std::span<const Vec3> vectors);
   std::size_t addColors(std::span<const std::uint32_t> colors);
+  std::size_t addKeys(std::span<const std::byte> keys, std::size_t count, std::string_view type);
   std::size_t addIndices(std::span<const std::uint32_t> indices);
-  std::size_t addAccessor(Json accessor);
+  /// `accessor`: a JSON object that was begun.
+  std::size_t addAccessor(JsonWriter accessor);
 
-  Json images_ = Json::array();
-  Json textures_ = Json::array();
-  Json materials_ = Json::array();
+  // The lists of the file: each element as JSON.
+  std::vector<std::string> images_;
+  std::vector<std::string> textures_;
+  std::vector<std::string> materials_;
   bool has_unlit_ = false;
-  Json views_ = Json::array();
-  Json accessors_ = Json::array();
-  Json meshes_ = Json::array();
-  Json cameras_ = Json::array();
-  Json nodes_ = Json::array();
+  std::vector<std::string> views_;
+  std::vector<std::string> accessors_;
+  std::vector<std::string> meshes_;
+  std::vector<std::string> cameras_;
+  std::vector<std::string> animations_;
+  std::vector<Node> nodes_;
   std::vector<std::size_t> roots_;
   std::string binary_;
 };
 
-}  // namespace galactic::pack_tool
+}  // namespace galactic

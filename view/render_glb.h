@@ -7,9 +7,9 @@
 
 #include "galactic/error.h"
 #include "galactic/render_meshes.h"
-#include "pack_tool/mesh/glb_file.h"
+#include "view/glb_file.h"
 
-namespace galactic::pack_tool {
+namespace galactic {
 
 /// Puts the models of one pack into a GLB file: unlit, with their textures as PNG images inside the
 /// file. What vertex colours multiply is linear there and sRGB in a renderer's images, so products
@@ -37,4 +37,4 @@ class RenderGlbWriter {
   std::map<std::size_t, std::size_t> textures_;
 };
 
-}  // namespace galactic::pack_tool
+}  // namespace galactic
