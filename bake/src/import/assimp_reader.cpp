@@ -156,12 +156,12 @@ class SceneReader {
   Result<Affine> worldFromRoot();
   [[nodiscard]] Result<void> checkAffine(const aiNode& node) const;
   Result<void> placeNodes(const Affine& world_from_root);
-  void convertMeshes();
+  Result<void> convertMeshes();
   void convertMaterials();
   void convertAlpha(const aiMaterial& material, SourceMaterial& converted);
   void convertTextures();
   void nameFiles();
-  [[nodiscard]] SourceMesh convertMesh(const aiMesh& mesh, unsigned index);
+  [[nodiscard]] Result<SourceMesh> convertMesh(const aiMesh& mesh, unsigned index);
   [[nodiscard]] tl::unexpected<Error> invalid(std::string message) const {
     return fail(ErrorCode::kInvalidInput, path_.string(), std::move(message));
   }
@@ -173,6 +173,9 @@ class SceneReader {
   Format format_{};
   SourceAsset asset_;
   AskedFiles asked_;
+  /// For cutting polygons: a second's worth, and far beyond what polygons of models take.
+  static constexpr std::uint64_t kMostComparisons = 200'000'000;
+  std::uint64_t comparisons_left_ = kMostComparisons;
 };
 
 std::string text(const aiString& string) { return {string.C_Str()}; }
@@ -312,7 +315,7 @@ Result<void> SceneReader::placeNodes(const Affine& world_from_root) {
   return {};
 }
 
-SourceMesh SceneReader::convertMesh(const aiMesh& mesh, unsigned index) {
+Result<SourceMesh> SceneReader::convertMesh(const aiMesh& mesh, unsigned index) {
   SourceMesh converted;
   converted.name = text(mesh.mName);
   converted.material = mesh.mMaterialIndex;
@@ -338,7 +341,13 @@ SourceMesh SceneReader::convertMesh(const aiMesh& mesh, unsigned index) {
   std::size_t others = 0;
   for (const aiFace& face : faces) {
     if (face.mNumIndices < 3) ++others;
-    triangulatePolygon({face.mIndices, face.mNumIndices}, converted.positions, converted.triangles);
+    if (!triangulatePolygon({face.mIndices, face.mNumIndices}, converted.positions,
+                            comparisons_left_, converted.triangles)) {
+      return invalid(
+          fmt::format("mesh '{}' has a polygon of {} corners, and the file's polygons take more "
+                      "than {} comparisons to be cut into triangles; export triangles",
+                      converted.name, face.mNumIndices, kMostComparisons));
+    }
   }
   if (others != 0) {
     asset_.warnings.push_back(fmt::format("mesh '{}' ({}) has {} points or lines: ignored",
@@ -347,11 +356,14 @@ SourceMesh SceneReader::convertMesh(const aiMesh& mesh, unsigned index) {
   return converted;
 }
 
-void SceneReader::convertMeshes() {
+Result<void> SceneReader::convertMeshes() {
   for (unsigned i = 0; i < scene_->mNumMeshes; ++i) {
-    callbacks_.on_mesh(convertMesh(*scene_->mMeshes[i], i));
+    auto mesh = convertMesh(*scene_->mMeshes[i], i);
+    if (!mesh) return tl::unexpected(mesh.error());
+    callbacks_.on_mesh(std::move(*mesh));
     delete std::exchange(scene_->mMeshes[i], nullptr);  // peak memory: one mesh twice, not all
   }
+  return {};
 }
 
 float unitInterval(float value) { return std::isfinite(value) ? std::clamp(value, 0.F, 1.F) : 1.F; }
@@ -472,7 +484,9 @@ Result<SourceAsset> SceneReader::read() {
   if (auto placed = placeNodes(*world_from_root); !placed) {
     return tl::unexpected(std::move(placed.error()));
   }
-  convertMeshes();
+  if (auto converted = convertMeshes(); !converted) {
+    return tl::unexpected(std::move(converted.error()));
+  }
   convertMaterials();
   convertTextures();
   nameFiles();

@@ -120,6 +120,13 @@ class PlyCounter {
     Header header;
     bool is_known = false;
     for (Lines lines(file_); lines.next();) {
+      // The reader's time grows with the square of their number.
+      if (lines.number() > kMostHeaderLines) {
+        return fail(ErrorCode::kInvalidInput, where_,
+                    fmt::format("its PLY header has more than {} lines, at most so many are read; "
+                                "remove its comments",
+                                kMostHeaderLines));
+      }
       Words words(lines.line());
       const std::string_view keyword = words.next();
       if (keyword == "end_header" && lines.hasEnd()) {
@@ -248,6 +255,7 @@ class PlyCounter {
   }
 
   static constexpr std::size_t kQuotedCharacters = 40;
+  static constexpr std::size_t kMostHeaderLines = 10'000;
 
   std::string_view file_;
   const std::string& where_;

@@ -64,13 +64,15 @@ std::vector<FlatPoint> flattened(std::span<const std::uint32_t> corners,
 /// What is left of a polygon while its ears are cut off.
 class EarClipper {
  public:
-  explicit EarClipper(std::vector<FlatPoint> points) : points_(std::move(points)) {
+  EarClipper(std::vector<FlatPoint> points, std::uint64_t& comparisons_left)
+      : points_(std::move(points)), comparisons_left_(comparisons_left) {
     for (std::size_t i = 0; i < points_.size(); ++i) left_.push_back(i);
   }
 
-  /// Calls `cut` with the three corners of each ear, in the polygon's order.
+  /// Calls `cut` with the three corners of each ear, in the polygon's order. False when it takes
+  /// more comparisons than are left.
   template <class Cut>
-  void run(const Cut& cut) {
+  bool run(const Cut& cut) {
     std::size_t at = 0;
     std::size_t failures = 0;
     while (left_.size() > 3) {
@@ -79,6 +81,7 @@ class EarClipper {
       const std::size_t here = left_[at % n];
       const std::size_t after = left_[(at + 1) % n];
       // When a whole round finds no ear the polygon crosses itself: cut anywhere, to end.
+      if (comparisons_left_ == 0) return false;
       if (failures < n && !isEar(before, here, after)) {
         ++failures;
         at = (at + 1) % n;
@@ -90,15 +93,17 @@ class EarClipper {
       at %= left_.size();
     }
     cut(left_[0], left_[1], left_[2]);
+    return true;
   }
 
  private:
-  [[nodiscard]] bool isEar(std::size_t before, std::size_t here, std::size_t after) const {
+  [[nodiscard]] bool isEar(std::size_t before, std::size_t here, std::size_t after) {
     const FlatPoint& a = points_[before];
     const FlatPoint& b = points_[here];
     const FlatPoint& c = points_[after];
+    comparisons_left_ -= std::min<std::uint64_t>(comparisons_left_, 1);
     if (cross(a, b, c) <= 0) return false;
-    return std::none_of(left_.begin(), left_.end(), [&](std::size_t other) {
+    const auto obstacle = std::find_if(left_.begin(), left_.end(), [&](std::size_t other) {
       const FlatPoint& p = points_[other];
       if (other == before || other == here || other == after) return false;
       // Corners at the same place (a bridge to a hole) do not obstruct.
@@ -106,17 +111,21 @@ class EarClipper {
       if (same(a) || same(b) || same(c)) return false;
       return cross(a, b, p) >= 0 && cross(b, c, p) >= 0 && cross(c, a, p) >= 0;
     });
+    const auto compared = static_cast<std::uint64_t>(obstacle - left_.begin());
+    comparisons_left_ -= std::min(comparisons_left_, compared);
+    return obstacle == left_.end();
   }
 
   std::vector<FlatPoint> points_;
+  std::uint64_t& comparisons_left_;
   std::vector<std::size_t> left_;
 };
 
 }  // namespace
 
-void triangulatePolygon(std::span<const std::uint32_t> corners, std::span<const Vec3> positions,
-                        std::vector<Triangle>& triangles) {
-  if (corners.size() < 3) return;
+bool triangulatePolygon(std::span<const std::uint32_t> corners, std::span<const Vec3> positions,
+                        std::uint64_t& comparisons_left, std::vector<Triangle>& triangles) {
+  if (corners.size() < 3) return true;
   const bool in_range = std::all_of(corners.begin(), corners.end(), [&](std::uint32_t corner) {
     return corner < positions.size();
   });
@@ -124,11 +133,12 @@ void triangulatePolygon(std::span<const std::uint32_t> corners, std::span<const 
     for (std::size_t i = 2; i < corners.size(); ++i) {
       triangles.push_back({corners[0], corners[i - 1], corners[i]});
     }
-    return;
+    return true;
   }
-  EarClipper(flattened(corners, positions)).run([&](std::size_t a, std::size_t b, std::size_t c) {
-    triangles.push_back({corners[a], corners[b], corners[c]});
-  });
+  return EarClipper(flattened(corners, positions), comparisons_left)
+      .run([&](std::size_t a, std::size_t b, std::size_t c) {
+        triangles.push_back({corners[a], corners[b], corners[c]});
+      });
 }
 
 }  // namespace galactic::bake

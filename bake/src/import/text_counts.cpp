@@ -113,6 +113,9 @@ Result<void> checkStlBinary(std::string_view file, const std::string& where) {
                                    file.size(), (file.size() - kHead) / kTriangle));
 }
 
+/// Each is looked for, read and told of; real files name one.
+constexpr std::size_t kMostLibraries = 1000;
+
 /// Whether the lines of an OFF file hold what they should.
 class OffCounter {
  public:
@@ -170,12 +173,19 @@ class OffCounter {
 Result<void> checkObj(std::string_view file, const std::string& where) {
   std::uint64_t vertices = 0;
   std::uint64_t largest = 0;
+  std::size_t libraries = 0;
   std::size_t line_of_largest = 0;
   Lines lines(file);
   while (lines.next()) {
     Words words(lines.line());
     const std::string_view keyword = words.next();
     if (keyword == "v") ++vertices;
+    if (keyword == "mtllib" && ++libraries > kMostLibraries) {
+      return fail(ErrorCode::kInvalidInput, where,
+                  fmt::format("it names more than {} material files, at most so many are read; "
+                              "export it with one",
+                              kMostLibraries));
+    }
     if (keyword != "f") continue;
     const std::uint64_t vertex = largestVertex(words);
     if (vertex > largest) line_of_largest = lines.number();

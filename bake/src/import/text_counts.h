@@ -9,8 +9,9 @@ namespace galactic::bake {
 // Whether mesh files are whole, as far as they tell. Each fails with kInvalidInput; what it cannot
 // judge passes to the reader. `where` is for messages.
 
-/// An OBJ does not end inside a statement, and its faces use vertices that it has. A last line
-/// without an end is no offence if it can be whole: published models have such.
+/// An OBJ does not end inside a statement, its faces use vertices that it has, and it names at most
+/// 1000 material files. A last line without an end is no offence if it can be whole: published
+/// models have such.
 [[nodiscard]] Result<void> checkObj(std::string_view file, const std::string& where);
 
 /// A binary STL has the size of the triangles that it states; in one of text every solid, and every

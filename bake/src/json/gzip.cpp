@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <string_view>
 
 namespace galactic::bake {
 namespace {
 
 /// zlib's code for a window of 32 KiB in the wrapping of gzip.
 constexpr int kGzipWindow = 15 + 16;
-constexpr std::size_t kSmallestOutput = std::size_t{64} << 10U;
+constexpr std::size_t kPieceBytes = std::size_t{64} << 10U;
 
 /// Ends the stream whatever happens.
 class Inflater {
@@ -35,21 +36,22 @@ uInt atOnce(std::size_t bytes) {
       std::min<std::size_t>(bytes, std::numeric_limits<uInt>::max() / std::size_t{2}));
 }
 
-/// Inflates member after member into one text.
+/// Inflates member after member of one file.
 class Gunzip {
  public:
   Gunzip(std::span<const std::byte> bytes, const std::string& where, std::size_t max_bytes)
-      : in_(bytes), where_(where), max_bytes_(max_bytes) {}
+      : in_(bytes), where_(where), max_bytes_(max_bytes), piece_(kPieceBytes, '\0') {}
 
-  Result<std::string> run() {
+  /// Calls `take` with the text, piece by piece. Returns its length.
+  template <class Take>
+  Result<std::size_t> run(const Take& take) {
     if (!inflater_.ready()) {
       return fail(ErrorCode::kInternal, where_, "zlib cannot begin to decompress");
     }
     while (!in_.empty()) {
-      if (auto done = member(); !done) return tl::unexpected(done.error());
+      if (auto done = member(take); !done) return tl::unexpected(done.error());
     }
-    text_.resize(used_);
-    return std::move(text_);
+    return length_;
   }
 
  private:
@@ -58,48 +60,43 @@ class Gunzip {
   }
 
   /// One member, from the beginning of what is left.
-  Result<void> member() {
+  template <class Take>
+  Result<void> member(const Take& take) {
     if (!isGzip(in_)) {
       return invalid(
           fmt::format("has {} bytes behind its gzip data that are none; is it whole?", in_.size()));
     }
     inflateReset(&inflater_.stream());
     while (true) {
-      if (auto room = makeRoom(); !room) return room;
-      const int code = step();
-      if (code == Z_STREAM_END) return makeRoom();
+      std::size_t made = 0;
+      const int code = step(made);
+      length_ += made;
+      if (length_ > max_bytes_) {
+        return invalid(fmt::format("holds more than {} bytes, at most so many are read; split it",
+                                   max_bytes_));
+      }
+      take(std::string_view(piece_).substr(0, made));
+      if (code == Z_STREAM_END) return {};
       if (code != Z_OK && code != Z_BUF_ERROR) {
         return invalid("is damaged: its gzip data cannot be decompressed; fetch or make it again");
       }
-      if (in_.empty() && used_ < text_.size()) {
+      if (in_.empty() && made < piece_.size()) {
         return invalid("ends in the middle of its gzip data; fetch or make it again");
       }
     }
   }
 
-  /// Room for the next bytes, or the failure of a text that is too long, which one byte more than
-  /// is allowed tells from one that just fits.
-  Result<void> makeRoom() {
-    if (used_ > max_bytes_) {
-      return invalid(
-          fmt::format("holds more than {} bytes, at most so many are read; split it", max_bytes_));
-    }
-    if (used_ < text_.size()) return {};
-    text_.resize(std::min(max_bytes_ + 1, std::max(kSmallestOutput, 2 * text_.size())));
-    return {};
-  }
-
-  int step() {
+  int step(std::size_t& made) {
     z_stream& stream = inflater_.stream();
     const uInt given = atOnce(in_.size());
-    const uInt room = atOnce(text_.size() - used_);
+    const uInt room = atOnce(piece_.size());
     stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(in_.data()));
     stream.avail_in = given;
-    stream.next_out = reinterpret_cast<Bytef*>(text_.data() + used_);
+    stream.next_out = reinterpret_cast<Bytef*>(piece_.data());
     stream.avail_out = room;
     const int code = inflate(&stream, Z_NO_FLUSH);
     in_ = in_.subspan(given - stream.avail_in);
-    used_ += room - stream.avail_out;
+    made = room - stream.avail_out;
     return code;
   }
 
@@ -107,8 +104,8 @@ class Gunzip {
   const std::string& where_;
   std::size_t max_bytes_;
   Inflater inflater_;
-  std::string text_;
-  std::size_t used_ = 0;
+  std::string piece_;
+  std::size_t length_ = 0;
 };
 
 }  // namespace
@@ -119,7 +116,15 @@ bool isGzip(std::span<const std::byte> bytes) {
 
 Result<std::string> gunzip(std::span<const std::byte> bytes, const std::string& where,
                            std::size_t max_bytes) {
-  return Gunzip(bytes, where, max_bytes).run();
+  // A text that is too long, and damage, are found before any memory is taken for it.
+  const auto length = Gunzip(bytes, where, max_bytes).run([](std::string_view) {});
+  if (!length) return tl::unexpected(length.error());
+  std::string text;
+  text.reserve(*length);
+  const auto again =
+      Gunzip(bytes, where, max_bytes).run([&](std::string_view piece) { text += piece; });
+  if (!again) return tl::unexpected(again.error());
+  return text;
 }
 
 }  // namespace galactic::bake

@@ -1,7 +1,9 @@
 // Broken files of every format: an error or a sound mesh, never a crash, a hang or nonsense.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "bake/import/import_helpers.h"
@@ -188,6 +190,47 @@ TEST(StatedCounts, AreWhatIsThere) {
   expect_refused("a.obj", objFile(mesh) + "f 1/1 2/2 3", "it ends inside line 9");
   expect_refused("a.obj", objFile(mesh) + "v 1 2", "it ends inside line 9");
   expect_refused("a.obj", objFile(mesh) + "usemtl re", "it ends inside line 9");
+}
+
+std::string repeated(const std::string& line, std::size_t times) {
+  std::string lines;
+  lines.reserve(times * line.size());
+  for (std::size_t n = 0; n < times; ++n) lines += line;
+  return lines;
+}
+
+TEST(SlowInputs, AreRefusedByTheirCounts) {
+  const MeshContent mesh = tetrahedron();
+  const auto expect_refused = [](const std::string& name, const std::string& content,
+                                 const std::string& message) {
+    const Error error = importError(name, content);
+    EXPECT_EQ(error.code, ErrorCode::kInvalidInput) << name;
+    EXPECT_THAT(error.message, testing::HasSubstr(message)) << name;
+  };
+  const std::string comment = "comment nothing to say\n";
+  std::string ply = plyAsciiFile(mesh);
+  const std::size_t element = ply.find("element vertex ");
+  const ScratchFolder folder;
+  EXPECT_TRUE(importMesh(
+      folder.write("a.ply", std::string(ply).insert(element, repeated(comment, 900))), {}));
+  expect_refused("a.ply", ply.insert(element, repeated(comment, 500'000)),
+                 "its PLY header has more than 10000 lines, at most so many are read; remove its "
+                 "comments");
+  const std::string obj = objFile(mesh);
+  EXPECT_TRUE(importMesh(folder.write("a.obj", repeated("mtllib none.mtl\n", 900) + obj), {}));
+  expect_refused("a.obj", repeated("mtllib none.mtl\n", 100'000) + obj,
+                 "it names more than 1000 material files, at most so many are read; export it with "
+                 "one");
+  std::string circle;
+  std::string face = "f";
+  for (int n = 1; n <= 25'000; ++n) {
+    const double angle = 2 * std::numbers::pi * n / 25'000;
+    circle += fmt::format("v {:.6f} {:.6f} 0\n", std::cos(angle), std::sin(angle));
+    face += fmt::format(" {}", n);
+  }
+  expect_refused("circle.obj", circle + face + "\n",
+                 "has a polygon of 25000 corners, and the file's polygons take more than "
+                 "200000000 comparisons to be cut into triangles; export triangles");
 }
 
 TEST(StatedCounts, OfGltfAreWhatIsThere) {

@@ -16,6 +16,8 @@ namespace {
 using bake::Triangle;
 using bake::triangulatePolygon;
 
+constexpr std::uint64_t kPlenty = 1'000'000;
+
 /// Signed area, positive counter-clockwise, of a triangle in the (x, z) plane seen from above: z
 /// points down in that view.
 double areaFromAbove(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -49,7 +51,8 @@ std::vector<Triangle> triangulated(const std::vector<Vec3>& corners) {
   std::vector<std::uint32_t> order(corners.size());
   std::iota(order.begin(), order.end(), 0U);
   std::vector<Triangle> triangles;
-  triangulatePolygon(order, corners, triangles);
+  std::uint64_t comparisons_left = kPlenty;
+  EXPECT_TRUE(triangulatePolygon(order, corners, comparisons_left, triangles));
   return triangles;
 }
 
@@ -91,6 +94,36 @@ TEST(PolygonTriangulation, CoversStarsOnceAndNothingElse) {
   EXPECT_GE(within, kPolygons * kPoints / 10);
   EXPECT_LE(within, kPolygons * kPoints * 9 / 10);
   EXPECT_GE(concave, kPolygons) << "too few notches to mean anything";
+}
+
+/// A circle, or a comb whose teeth hide one another's roots.
+std::vector<Vec3> manyCorners(std::size_t count, bool comb) {
+  std::vector<Vec3> corners;
+  for (std::size_t n = 0; n < count; ++n) {
+    const float share = static_cast<float>(n) / static_cast<float>(count);
+    const float angle = 2 * std::numbers::pi_v<float> * share;
+    corners.push_back(comb ? Vec3{n % 2 == 0 ? 0.0F : 1 - share, 0, share}
+                           : Vec3{std::cos(angle), 0, -std::sin(angle)});
+  }
+  if (comb) corners.push_back({-1, 0, 0.5F});
+  return corners;
+}
+
+TEST(PolygonTriangulation, EndsWhereItTakesMoreComparisonsThanAllowed) {
+  for (const bool comb : {false, true}) {
+    SCOPED_TRACE(comb ? "comb" : "circle");
+    for (const std::size_t count : {100U, 2000U}) {
+      const std::vector<Vec3> corners = manyCorners(count, comb);
+      std::vector<std::uint32_t> order(corners.size());
+      std::iota(order.begin(), order.end(), 0U);
+      // Enough for the small one, and a small share of what the large one takes.
+      std::uint64_t left = 200'000;
+      std::vector<Triangle> triangles;
+      EXPECT_EQ(triangulatePolygon(order, corners, left, triangles), count == 100);
+      EXPECT_EQ(left == 0, count != 100);
+      EXPECT_EQ(triangles.size() == corners.size() - 2, count == 100);
+    }
+  }
 }
 
 TEST(PolygonTriangulation, KeepsTheWindingInEveryPlane) {
@@ -137,9 +170,12 @@ TEST(PolygonTriangulation, EndsOnPolygonsThatCrossThemselvesOrHaveNoArea) {
 TEST(PolygonTriangulation, LeavesCornersOutOfRangeForTheChecks) {
   const std::vector<Vec3> positions(3);
   std::vector<Triangle> triangles;
-  triangulatePolygon(std::vector<std::uint32_t>{0, 1, 2, 9}, positions, triangles);
+  std::uint64_t comparisons_left = kPlenty;
+  EXPECT_TRUE(triangulatePolygon(std::vector<std::uint32_t>{0, 1, 2, 9}, positions,
+                                 comparisons_left, triangles));
   EXPECT_THAT(triangles, testing::ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 9}));
-  triangulatePolygon(std::vector<std::uint32_t>{0, 1}, positions, triangles);
+  EXPECT_TRUE(
+      triangulatePolygon(std::vector<std::uint32_t>{0, 1}, positions, comparisons_left, triangles));
   EXPECT_EQ(triangles.size(), 2U) << "points and lines have no triangles";
 }
 

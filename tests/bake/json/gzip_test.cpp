@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <random>
 #include <string>
@@ -32,6 +33,13 @@ std::string someText(std::size_t length) {
   text.reserve(length);
   for (std::size_t n = 0; n < length; ++n) text += static_cast<char>('a' + random() % 20);
   return text;
+}
+
+/// The most memory that this process ever had.
+long peakKilobytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
 }
 
 TEST(Gzip, GivesBackWhatWasPacked) {
@@ -93,6 +101,19 @@ TEST(Gzip, StopsABombAtTheLimit) {
   ASSERT_LT(bomb.size(), 50'000U);
   expectRefused(unpack(bomb, 1'000'000),
                 "holds more than 1000000 bytes, at most so many are read; split it");
+}
+
+TEST(Gzip, TakesNoMemoryForABomb) {
+  const std::string member = gzipped(std::string(10'000'000, ' '));
+  std::string bomb;
+  for (int n = 0; n < 30; ++n) bomb += member;
+  constexpr std::size_t kLimit = 250'000'000;
+  // A tenth of the limit: what the allocator may do besides.
+  constexpr long kSpareKilobytes = 25'000;
+  const long before = peakKilobytes();
+  expectRefused(unpack(bomb, kLimit),
+                "holds more than 250000000 bytes, at most so many are read; split it");
+  EXPECT_LT(peakKilobytes() - before, kSpareKilobytes);
 }
 
 TEST(Gzip, TakesATextThatJustFits) {
