@@ -1,5 +1,5 @@
-// What the texture bake makes of mesh files: bytes for each largest size and format, with times;
-// and what ambient occlusion of their vertices takes.
+// What the texture bake makes of mesh files: bytes for each largest size and format, with times.
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "galactic/bake/ambient_occlusion.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/render_textures.h"
 
@@ -72,33 +71,6 @@ void bakeAll(const std::vector<Input>& inputs, const bake::TextureBakeOptions& o
              watch.seconds());
 }
 
-void occludeAll(const std::vector<Input>& inputs, unsigned jobs) {
-  std::size_t vertices = 0;
-  double sum = 0;
-  const Stopwatch watch;
-  for (const Input& input : inputs) {
-    std::vector<bake::OccludingMesh> meshes;
-    meshes.reserve(input.asset.instances.size());
-    for (const bake::SourceInstance& instance : input.asset.instances) {
-      const bake::SourceMesh& mesh = input.asset.meshes[instance.mesh];
-      meshes.push_back({.positions = mesh.positions,
-                        .triangles = mesh.triangles,
-                        .world_from_mesh = instance.world_from_mesh});
-    }
-    const auto openness = bake::ambientOcclusion(meshes, {.jobs = jobs});
-    if (!openness) {
-      fmt::print("{}: {}\n", openness.error().where, openness.error().message);
-      continue;
-    }
-    for (const auto& mesh : *openness) {
-      vertices += mesh.size();
-      for (const float factor : mesh) sum += static_cast<double>(factor);
-    }
-  }
-  fmt::print("\nambient occlusion: {} vertices, mean factor {:.3f}, {:.2f} s\n", vertices,
-             sum / static_cast<double>(std::max<std::size_t>(vertices, 1)), watch.seconds());
-}
-
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -117,6 +89,5 @@ int main(int count, char** arguments) {
               largest == 256 && format == galactic::TexelFormat::kRgba8);
     }
   }
-  occludeAll(inputs, jobs);
   return 0;
 }

@@ -284,7 +284,7 @@ class CommandLine {
       return refuse("--tolerance", "is about --check; add it, or leave this out");
     }
     for (const char* drawn :
-         {"--render-error", "--texture-size", "--texture-format", "--ambient-occlusion"}) {
+         {"--render-error", "--texture-size", "--texture-format", "--lighting"}) {
       if (isTyped(drawn) && isTyped("--no-render-meshes")) {
         return refuse(drawn, "does not go with --no-render-meshes; leave one of them out");
       }

@@ -66,7 +66,6 @@ struct RenderOptions {
   bool wanted = true;
   RenderBakeOptions meshes;
   TextureBakeOptions textures;
-  bool ambient_occlusion = false;
   /// Folder for texture packs that assets share; empty: each pack has its own.
   std::filesystem::path shared_textures{};
 };

@@ -23,10 +23,6 @@ Result<OptionalMeshes> bakeFrom(Result<RenderSource> source, const RenderTask& t
     return tl::unexpected(std::move(error));
   };
   if (!source) return located(source.error());
-  if (task.command.render.ambient_occlusion) {
-    const auto darkened = addAmbientOcclusion(*source, {.jobs = task.jobs});
-    if (!darkened) return located(darkened.error());
-  }
   RenderBakeOptions options = task.command.render.meshes;
   options.jobs = task.jobs;
   auto meshes = bakeRenderMeshes(*source, options);
@@ -62,10 +58,11 @@ Result<OptionalMeshes> renderObject(const SourceAsset& object, const RenderTask&
 }
 
 Result<OptionalMeshes> renderRobot(const SourceRobot& robot, const RenderTask& task,
-                                   std::vector<std::string>& warnings) {
+                                   BakedRobot& baked) {
   if (!task.command.render.wanted) return std::nullopt;
-  return bakeFrom(robotRenderSource(robot, task.input.parent_path(), texturesOf(task)), task,
-                  warnings);
+  auto source = robotRenderSource(robot, task.input.parent_path(), texturesOf(task));
+  if (source) standInStartPose(*source, baked.kinematics);
+  return bakeFrom(std::move(source), task, baked.warnings);
 }
 
 void printRenderMeshes(const RenderBakeStatistics& figures, std::size_t textures) {

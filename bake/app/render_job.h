@@ -6,6 +6,7 @@
 
 #include "bake_run.h"
 #include "galactic/bake/render_baker.h"
+#include "galactic/bake/robot_baker.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/bake/source_robot.h"
 
@@ -26,8 +27,9 @@ struct RenderTask {
                                                  std::vector<std::string>& warnings);
 [[nodiscard]] Result<OptionalMeshes> renderObject(const SourceAsset& object, const RenderTask& task,
                                                   std::vector<std::string>& warnings);
+/// `baked`: the robot in whose start pose links are lit, and to which warnings are added.
 [[nodiscard]] Result<OptionalMeshes> renderRobot(const SourceRobot& robot, const RenderTask& task,
-                                                 std::vector<std::string>& warnings);
+                                                 BakedRobot& baked);
 
 /// Two lines: triangles, clusters and bytes before and after; textures. Nothing where there is
 /// none.

@@ -17,6 +17,12 @@ const std::map<std::string, TexelFormat>& formatNames() {
   return names;
 }
 
+const std::map<std::string, Lighting>& lightingNames() {
+  static const std::map<std::string, Lighting> names{
+      {"auto", Lighting::kAuto}, {"all", Lighting::kAll}, {"none", Lighting::kNone}};
+  return names;
+}
+
 }  // namespace
 
 void RenderMeshOptions::addTo(CLI::App& app, BakeCommand& command) {
@@ -33,8 +39,11 @@ void RenderMeshOptions::addTo(CLI::App& app, BakeCommand& command) {
                  "bc1: an eighth of the size, for graphics processors; opaque textures only")
       ->transform(CLI::CheckedTransformer(formatNames()))
       ->option_text("rgba8|bc1");
-  app.add_flag("--ambient-occlusion", command.render.ambient_occlusion,
-               "Darken corners, for meshes whose textures have no light in them");
+  app.add_option("--lighting", command.render.meshes.lighting,
+                 "What is shaded by its place and direction: all, what has no light of its own "
+                 "(auto, the default), or nothing (none)")
+      ->transform(CLI::CheckedTransformer(lightingNames()))
+      ->option_text("auto|all|none");
 }
 
 Result<void> RenderMeshOptions::understand(BakeCommand& command) const {
@@ -60,7 +69,7 @@ void RenderMeshOptions::remember(BakeCommand& command) const {
   command.remember("render-error", fmt::format("{}", command.render.meshes.error));
   command.remember("texture-size", std::to_string(command.render.textures.largest));
   command.remember("texture-format", nameOf(formatNames(), command.render.textures.format));
-  if (command.render.ambient_occlusion) command.remember("ambient-occlusion", "yes");
+  command.remember("lighting", nameOf(lightingNames(), command.render.meshes.lighting));
 }
 
 }  // namespace galactic::bake

@@ -127,7 +127,7 @@ Result<Json> bakeRobotFile(const std::filesystem::path& input, BakeRun& run) {
   outcome.robot = std::move(*baked);
   run.line().show(item, "render meshes", 0.9);
   const auto render_start = std::chrono::steady_clock::now();
-  auto meshes = renderRobot(*robot, {command, input, command.jobs}, outcome.robot.warnings);
+  auto meshes = renderRobot(*robot, {command, input, command.jobs}, outcome.robot);
   if (!meshes) return tl::unexpected(meshes.error());
   outcome.robot.render_meshes = std::move(*meshes);
   outcome.robot.times.render = secondsSince(render_start);

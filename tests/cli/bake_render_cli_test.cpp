@@ -60,17 +60,31 @@ TEST_F(BakeRenderCli, LeavesThemOutWhenAsked) {
   EXPECT_EQ(modelsIn("brick.pack"), std::nullopt);
 }
 
-TEST_F(BakeRenderCli, BakesAmbientOcclusionIntoVertexColours) {
+TEST_F(BakeRenderCli, BakesLightIntoVertexColoursUnlessToldNotTo) {
   write("brick.obj", test::objFile(test::unevenBox()));
-  ASSERT_EQ(bake({"brick.obj", "-o", "plain.pack"}).exit_code, 0);
-  ASSERT_EQ(bake({"brick.obj", "-o", "dark.pack", "--ambient-occlusion"}).exit_code, 0);
+  ASSERT_EQ(bake({"brick.obj", "-o", "auto.pack"}).exit_code, 0);
+  ASSERT_EQ(bake({"brick.obj", "-o", "all.pack", "--lighting", "all"}).exit_code, 0);
+  ASSERT_EQ(bake({"brick.obj", "-o", "none.pack", "--lighting", "none"}).exit_code, 0);
   const auto colors_in = [&](const char* name) {
     const auto pack = PackFile::open(path(name));
     EXPECT_TRUE(pack);
     return (*renderMeshesOf(*pack))->colors.size();
   };
-  EXPECT_EQ(colors_in("plain.pack"), 0U);
-  EXPECT_GE(colors_in("dark.pack"), 8U);
+  EXPECT_EQ(colors_in("none.pack"), 0U);
+  EXPECT_GE(colors_in("auto.pack"), 24U);
+  EXPECT_GE(colors_in("all.pack"), 24U);
+}
+
+TEST_F(BakeRenderCli, RefusesLightingThatIsNone) {
+  write("brick.obj", test::objFile(test::unevenBox()));
+  for (const char* wrong : {"", "baked", "yes", "auto,all", "3"}) {
+    const ProgramRun run = bake({"brick.obj", "--lighting", wrong});
+    EXPECT_EQ(run.exit_code, 1) << wrong;
+    EXPECT_THAT(run.err, HasSubstr("--lighting")) << wrong;
+  }
+  const ProgramRun run = bake({"brick.obj", "--lighting", "none", "--no-render-meshes"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("--lighting: does not go with --no-render-meshes"));
 }
 
 TEST_F(BakeRenderCli, RefusesErrorsAndSizesThatAreNone) {

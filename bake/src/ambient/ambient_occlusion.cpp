@@ -31,6 +31,15 @@ Result<void> checkOptions(const AmbientOcclusionOptions& options) {
                 fmt::format("{} is no distance; give a positive number of metres",
                             options.largest_distance));
   }
+  if (!(options.least_distance >= 0) || !(options.least_distance < options.largest_distance)) {
+    return fail(ErrorCode::kInvalidInput, "ambient occlusion: least distance",
+                fmt::format("{} is not between 0 and the largest distance, {}",
+                            options.least_distance, options.largest_distance));
+  }
+  if (!(options.dim >= 0 && options.dim <= 1)) {
+    return fail(ErrorCode::kInvalidInput, "ambient occlusion: dim",
+                fmt::format("{} is no factor of light; give 0 to 1", options.dim));
+  }
   return {};
 }
 
@@ -74,8 +83,8 @@ Result<TriangleRays> allOccluders(std::span<const PlacedMesh> meshes, unsigned j
   }
   auto occluders = TriangleRays::build(std::move(all.positions), std::move(all.triangles), jobs);
   if (!occluders) {
-    return fail(ErrorCode::kInternal, "--ambient-occlusion",
-                "could not build its scene, for lack of memory; bake without it");
+    return fail(ErrorCode::kInternal, "--lighting",
+                "could not build its scene, for lack of memory; bake with --lighting none");
   }
   return *std::move(occluders);
 }
@@ -92,11 +101,12 @@ std::array<Vector, 2> tangents(const Vector& n) {
           Vector{b, sign + n[1] * n[1] * a, -n[1]}};
 }
 
-/// Rays from the triangles around the vertices of one mesh, `length` metres long.
+/// Rays from the triangles around the vertices of one mesh.
 class RayMaker {
  public:
-  RayMaker(const PlacedMesh& mesh, std::span<const PatternRay> pattern, float length)
-      : mesh_(mesh), pattern_(pattern), length_(length), fans_(mesh.positions, mesh.triangles) {}
+  RayMaker(const PlacedMesh& mesh, std::span<const PatternRay> pattern,
+           const AmbientOcclusionOptions& options)
+      : mesh_(mesh), pattern_(pattern), options_(options), fans_(mesh.positions, mesh.triangles) {}
 
   /// The rays of a vertex, from its triangles' fronts (`side` 1) or backs (-1); none where it has
   /// no triangle of some area.
@@ -140,12 +150,15 @@ class RayMaker {
     const auto rounded = [](const Vector& v) {
       return Vec3{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
     };
-    return {.origin = rounded(origin), .direction = rounded(direction), .farthest = length_};
+    return {.origin = rounded(origin),
+            .direction = rounded(direction),
+            .nearest = options_.least_distance,
+            .farthest = options_.largest_distance};
   }
 
   const PlacedMesh& mesh_;
   std::span<const PatternRay> pattern_;
-  float length_ = 0;
+  const AmbientOcclusionOptions& options_;
   VertexFans fans_;
 };
 
@@ -159,8 +172,8 @@ float openPart(const TriangleRays& occluders, std::span<const Ray> rays) {
 
 }  // namespace
 
-Result<std::vector<std::vector<float>>> ambientOcclusion(std::span<const OccludingMesh> meshes,
-                                                         const AmbientOcclusionOptions& options) {
+Result<std::vector<std::vector<Openness>>> ambientOcclusion(
+    std::span<const OccludingMesh> meshes, const AmbientOcclusionOptions& options) {
   if (auto checked = checkOptions(options); !checked) return tl::unexpected(checked.error());
   std::vector<PlacedMesh> world(meshes.size());
   parallelFor(options.jobs, meshes.size(), [&](std::size_t m) { world[m] = placed(meshes[m]); });
@@ -168,9 +181,10 @@ Result<std::vector<std::vector<float>>> ambientOcclusion(std::span<const Occludi
   if (!occluders) return tl::unexpected(occluders.error());
   const std::vector<PatternRay> pattern = rayPattern(options.rays);
 
-  std::vector<std::vector<float>> openness(meshes.size());
+  std::vector<std::vector<Openness>> openness(meshes.size());
   for (std::size_t m = 0; m < meshes.size(); ++m) {
-    const RayMaker maker(world[m], pattern, options.largest_distance);
+    if (meshes[m].lit == LitSides::kNone) continue;
+    const RayMaker maker(world[m], pattern, options);
     const std::size_t vertices = world[m].positions.size();
     openness[m].resize(vertices);
     parallelFor(options.jobs, (vertices + kChunk - 1) / kChunk, [&](std::size_t chunk) {
@@ -178,28 +192,16 @@ Result<std::vector<std::vector<float>>> ambientOcclusion(std::span<const Occludi
       rays.reserve(pattern.size());
       const std::size_t end = std::min(vertices, (chunk + 1) * kChunk);
       for (std::size_t v = chunk * kChunk; v < end; ++v) {
+        Openness& of_vertex = openness[m][v];
         maker.make(v, 1, rays);
-        openness[m][v] = openPart(*occluders, rays);
-        if (!meshes[m].two_sided) continue;
+        of_vertex.front = openPart(*occluders, rays);
+        if (meshes[m].lit != LitSides::kBoth || of_vertex.front >= options.dim) continue;
         maker.make(v, -1, rays);
-        openness[m][v] = std::max(openness[m][v], openPart(*occluders, rays));
+        of_vertex.back = openPart(*occluders, rays);
       }
     });
   }
   return openness;
-}
-
-std::vector<std::array<float, 4>> darkened(std::span<const std::array<float, 4>> colors,
-                                           std::span<const float> openness) {
-  std::vector<std::array<float, 4>> result;
-  result.reserve(openness.size());
-  for (std::size_t v = 0; v < openness.size(); ++v) {
-    const std::array<float, 4> color =
-        v < colors.size() ? colors[v] : std::array<float, 4>{1, 1, 1, 1};
-    const float factor = openness[v];
-    result.push_back({color[0] * factor, color[1] * factor, color[2] * factor, color[3]});
-  }
-  return result;
 }
 
 }  // namespace galactic::bake

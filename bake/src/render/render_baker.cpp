@@ -9,6 +9,7 @@
 
 #include "galactic/bake/parallel_for.h"
 #include "render/lattice.h"
+#include "render/light.h"
 #include "render/part_mesh.h"
 #include "render/piece.h"
 
@@ -52,6 +53,11 @@ Result<PartWork> bakePart(const RenderPart& part, const RenderSource& source,
   parallelFor(options.jobs, pieces.size(), [&](std::size_t n) {
     finished[n] = finishPiece(std::move(pieces[n]), source, options.error);
   });
+  const std::vector<bool> lit = litMaterials(source, options.lighting);
+  if (std::find(lit.begin(), lit.end(), true) != lit.end()) {
+    auto lighted = lightPieces(finished, part, source, options);
+    if (!lighted) return tl::unexpected(lighted.error());
+  }
   PartWork work;
   work.model = cutModel(finished, source, options.jobs);
   work.figures.part = part.part;
@@ -64,7 +70,9 @@ Result<PartWork> bakePart(const RenderPart& part, const RenderSource& source,
   return work;
 }
 
-bool hasColors(const RenderSource& source) {
+bool hasColors(const RenderSource& source, Lighting lighting) {
+  const std::vector<bool> lit = litMaterials(source, lighting);
+  if (std::find(lit.begin(), lit.end(), true) != lit.end()) return true;
   return std::any_of(source.parts.begin(), source.parts.end(), [](const RenderPart& part) {
     return std::any_of(part.meshes.begin(), part.meshes.end(),
                        [](const PlacedMesh& placed) { return !placed.mesh->colors.empty(); });
@@ -92,7 +100,7 @@ Result<BakedRenderMeshes> bakeRenderMeshes(const RenderSource& source,
   BakedRenderMeshes meshes;
   meshes.materials = source.baked;
   meshes.semantics = source.semantics;
-  const bool colored = hasColors(source);
+  const bool colored = hasColors(source, options.lighting);
   for (std::size_t n = 0; n < work.size(); ++n) {
     Result<PartWork>& part = *work[n];
     if (!part) return tl::unexpected(part.error());

@@ -1,11 +1,13 @@
 #include "galactic/bake/render_source.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "galactic/kinematics.h"
 #include "import/affine.h"
 #include "render/material_list.h"
 #include "robot/link_geometry.h"
@@ -127,6 +129,7 @@ class RobotPlacer {
 Result<RenderSource> sceneRenderSource(const SourceAsset& scene, const fs::path& folder,
                                        const TextureBakeOptions& options) {
   RenderSource source;
+  source.may_hold_light = true;
   SemanticNames semantics(source.semantics);
   MaterialList materials(source);
   RenderPart& part = source.parts.emplace_back();
@@ -149,6 +152,7 @@ Result<RenderSource> objectRenderSource(const SourceAsset& object, const fs::pat
                                         const TextureBakeOptions& options) {
   auto source = sceneRenderSource(object, folder, options);
   if (!source) return source;
+  source->may_hold_light = false;
   source->semantics.assign(1, object.name);
   for (PlacedMesh& placed : source->parts.front().meshes) placed.semantic = 0;
   return source;
@@ -161,6 +165,21 @@ Result<RenderSource> robotRenderSource(const SourceRobot& robot, const fs::path&
     return tl::unexpected(placed.error());
   }
   return source;
+}
+
+void standInStartPose(RenderSource& source, const FlatKinematics& kinematics) {
+  std::vector<Pose> base_from_link(kinematics.links.size());
+  forwardKinematics(kinematics.links, {}, kinematics.start_positions, base_from_link);
+  for (RenderPart& part : source.parts) {
+    const Quat& rotation = base_from_link[part.part].rotation;
+    const std::array<Vec3, 3> columns{rotate(rotation, {1, 0, 0}), rotate(rotation, {0, 1, 0}),
+                                      rotate(rotation, {0, 0, 1})};
+    for (std::size_t column = 0; column < 3; ++column) {
+      part.light_from_part[column] = static_cast<double>(columns[column].x);
+      part.light_from_part[4 + column] = static_cast<double>(columns[column].y);
+      part.light_from_part[8 + column] = static_cast<double>(columns[column].z);
+    }
+  }
 }
 
 }  // namespace galactic::bake

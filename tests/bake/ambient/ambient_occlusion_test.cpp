@@ -11,13 +11,16 @@
 namespace galactic::test::ambient_occlusion_test {
 namespace {
 
+using bake::LitSides;
 using bake::OccludingMesh;
+using bake::Openness;
 using testing::Each;
 using testing::ElementsAre;
 
 /// Of a factor from 1,024 rays.
 constexpr float kRayError = 0.015F;
 constexpr bake::AmbientOcclusionOptions kManyRays{.rays = 1024};
+constexpr Openness kOpen{};
 
 /// Floor and two walls of 1 m that meet at the origin and face each other, in cells of 2.5 cm.
 struct CornerOfThree {
@@ -39,23 +42,23 @@ TEST(AmbientOcclusion, LeavesAQuarterInACornerAndAHalfAtAnEdge) {
   // The walls end after 1 m, so a little more light comes than under endless ones.
   constexpr float kEnds = 0.01F;
   for (const auto& side : openness) {
-    EXPECT_NEAR(side[0], 0.25F, kRayError + kEnds);
+    EXPECT_NEAR(side[0].front, 0.25F, kRayError + kEnds);
     constexpr unsigned kMiddle = CornerOfThree::kCells / 2;
-    EXPECT_NEAR(side[kMiddle], 0.5F, 0.1F);
-    EXPECT_NEAR(side[kMiddle * (CornerOfThree::kCells + 1)], 0.5F, 0.1F);
-    EXPECT_GT(side.back(), 0.85F);
+    EXPECT_NEAR(side[kMiddle].front, 0.5F, 0.1F);
+    EXPECT_NEAR(side[kMiddle * (CornerOfThree::kCells + 1)].front, 0.5F, 0.1F);
+    EXPECT_GT(side.back().front, 0.85F);
   }
 }
 
 TEST(AmbientOcclusion, IsNoneOnAnOpenPlaneAndOnAConvexBody) {
   const TestMesh plane = sheet({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, 5);
-  EXPECT_THAT(opennessOf({plane.placed()})[0], Each(1.F));
+  EXPECT_THAT(opennessOf({plane.placed()})[0], Each(kOpen));
   // Eight vertices that three sides share: a mean normal would look into the neighbours.
-  EXPECT_THAT(opennessOf({box({0.5F, 0.2F, 0.4F}).placed()})[0], Each(1.F));
+  EXPECT_THAT(opennessOf({box({0.5F, 0.2F, 0.4F}).placed()})[0], Each(kOpen));
 }
 
 TEST(AmbientOcclusion, IsCompleteInsideAClosedBox) {
-  EXPECT_THAT(opennessOf({box({0.3F, 0.3F, 0.3F}, true).placed()})[0], Each(0.F));
+  EXPECT_THAT(opennessOf({box({0.3F, 0.3F, 0.3F}, true).placed()})[0], Each(Openness{.front = 0}));
 }
 
 TEST(AmbientOcclusion, UnderADiscIsItsFormFactor) {
@@ -74,7 +77,7 @@ TEST(AmbientOcclusion, UnderADiscIsItsFormFactor) {
     }
     const auto openness = opennessOf({patch.placed(), disc.placed()}, kManyRays);
     const float wanted = 1 - kRadius * kRadius / (kRadius * kRadius + height * height);
-    EXPECT_NEAR(openness[0][4], wanted, kRayError) << "height " << height;
+    EXPECT_NEAR(openness[0][4].front, wanted, kRayError) << "height " << height;
   }
 }
 
@@ -82,18 +85,18 @@ TEST(AmbientOcclusion, EndsAtTheLargestDistance) {
   const TestMesh floor = sheet({-0.1F, 0, -0.1F}, {0, 0, 0.2F}, {0.2F, 0, 0}, 2);
   const TestMesh lid = sheet({-5, 0.5F, -5}, {10, 0, 0}, {0, 0, 10}, 1);
   const std::vector meshes{floor.placed(), lid.placed()};
-  EXPECT_THAT(opennessOf(meshes, {.largest_distance = 0.4F})[0], Each(1.F));
-  EXPECT_LT(opennessOf(meshes, {.largest_distance = 40})[0][4], 0.05F);
+  EXPECT_THAT(opennessOf(meshes, {.largest_distance = 0.4F})[0], Each(kOpen));
+  EXPECT_LT(opennessOf(meshes, {.largest_distance = 40})[0][4].front, 0.05F);
   // Rays of 1 m reach the lid when they rise by 0.5 m: cos^2 < 0.25 misses it.
-  EXPECT_NEAR(opennessOf(meshes, kManyRays)[0][4], 0.25F, kRayError);
+  EXPECT_NEAR(opennessOf(meshes, kManyRays)[0][4].front, 0.25F, kRayError);
 }
 
 TEST(AmbientOcclusion, PaintsNoDarknessOfCornersOverCoarseWalls) {
   // A room of 12 triangles: the value at its corners would be a quarter.
   const auto openness = opennessOf({box({2, 1.3F, 2.5F}, true).placed()}, kManyRays);
-  for (const float value : openness[0]) {
-    EXPECT_GT(value, 0.6F);
-    EXPECT_LT(value, 0.95F);
+  for (const Openness& value : openness[0]) {
+    EXPECT_GT(value.front, 0.6F);
+    EXPECT_LT(value.front, 0.95F);
   }
 }
 
@@ -112,18 +115,42 @@ TEST(AmbientOcclusion, IsTheSameOnBothSidesOfASeam) {
   for (std::size_t i = 0; i < 9; ++i) {
     // The last row of one piece and the first row of the other.
     EXPECT_EQ(openness[0][8 * 9 + i], openness[0][first + i]) << i;
-    shaded = shaded || openness[0][first + i] < 0.9F;
+    shaded = shaded || openness[0][first + i].front < 0.9F;
   }
   EXPECT_TRUE(shaded);
 }
 
-TEST(AmbientOcclusion, OfATwoSidedSheetIsThatOfItsBrighterSide) {
+TEST(AmbientOcclusion, MeasuresTheBackOfATwoSidedSheetWhereItsFrontIsDim) {
   const TestMesh leaf = sheet({-0.1F, 0, -0.1F}, {0, 0, 0.2F}, {0.2F, 0, 0}, 2);
   const TestMesh lid = sheet({-9, 0.05F, -9}, {18, 0, 0}, {0, 0, 18}, 1);
   OccludingMesh placed = leaf.placed();
-  EXPECT_LT(opennessOf({placed, lid.placed()})[0][4], 0.1F);
-  placed.two_sided = true;
-  EXPECT_EQ(opennessOf({placed, lid.placed()})[0][4], 1.F);
+  const float front = opennessOf({placed, lid.placed()})[0][4].front;
+  EXPECT_LT(front, 0.1F);
+  EXPECT_EQ(opennessOf({placed, lid.placed()})[0][4].back, 0.F);
+  placed.lit = LitSides::kBoth;
+  EXPECT_EQ(opennessOf({placed, lid.placed()})[0][4], (Openness{.front = front, .back = 1}));
+  EXPECT_EQ(opennessOf({placed, lid.placed()}, {.dim = 0})[0][4].back, 0.F);
+  EXPECT_EQ(opennessOf({placed})[0][4], kOpen) << "a bright front is enough";
+}
+
+TEST(AmbientOcclusion, MeasuresNothingOfWhatOnlyKeepsLightAway) {
+  const TestMesh leaf = sheet({-0.1F, 0, -0.1F}, {0, 0, 0.2F}, {0.2F, 0, 0}, 2);
+  const TestMesh lid = sheet({-9, 0.05F, -9}, {18, 0, 0}, {0, 0, 18}, 1);
+  OccludingMesh unlit = lid.placed();
+  unlit.lit = LitSides::kNone;
+  const auto openness = opennessOf({leaf.placed(), unlit});
+  EXPECT_LT(openness[0][4].front, 0.1F);
+  EXPECT_THAT(openness[1], ElementsAre());
+}
+
+TEST(AmbientOcclusion, PassesThroughWhatIsNearerThanTheLeastDistance) {
+  const TestMesh leaf = sheet({-0.1F, 0, -0.1F}, {0, 0, 0.2F}, {0.2F, 0, 0}, 2);
+  const TestMesh lid = sheet({-9, 0.004F, -9}, {18, 0, 0}, {0, 0, 18}, 1);
+  const std::vector meshes{leaf.placed(), lid.placed()};
+  EXPECT_LT(opennessOf(meshes)[0][4].front, 0.01F);
+  // Rays that graze stay under the lid for longer: cos^2 of those that rise 4 mm in 10 is 0.16.
+  EXPECT_NEAR(opennessOf(meshes, {.rays = 1024, .least_distance = 0.01F})[0][4].front, 0.84F,
+              kRayError);
 }
 
 TEST(AmbientOcclusion, FollowsTransformsAndMirrors) {
@@ -137,7 +164,7 @@ TEST(AmbientOcclusion, FollowsTransformsAndMirrors) {
   for (std::size_t m = 0; m < 3; ++m) {
     for (std::size_t v = 0; v < wanted[m].size(); v += 7) {
       // Other tangents, so other rays.
-      EXPECT_NEAR(found[m][v], wanted[m][v], 2 * kRayError) << m << " " << v;
+      EXPECT_NEAR(found[m][v].front, wanted[m][v].front, 2 * kRayError) << m << " " << v;
     }
   }
 }
@@ -147,9 +174,9 @@ TEST(AmbientOcclusion, LeavesVerticesWithoutAreaAlone) {
   mesh.positions.push_back({std::nanf(""), 0, 0});
   mesh.positions.push_back({3, 0, 0});
   mesh.triangles.push_back({5, 5, 5});
-  EXPECT_THAT(opennessOf({mesh.placed()})[0], Each(1.F));
+  EXPECT_THAT(opennessOf({mesh.placed()})[0], Each(kOpen));
   EXPECT_THAT(opennessOf({}), ElementsAre());
-  EXPECT_THAT(opennessOf({OccludingMesh{}}), ElementsAre(std::vector<float>()));
+  EXPECT_THAT(opennessOf({OccludingMesh{}}), ElementsAre(std::vector<Openness>()));
 }
 
 TEST(AmbientOcclusion, DoesNotDependOnThreads) {
@@ -169,15 +196,12 @@ TEST(AmbientOcclusion, RefusesOptionsOutOfRange) {
   for (const float distance : {0.F, -1.F, std::nanf(""), INFINITY}) {
     EXPECT_FALSE(bake::ambientOcclusion({}, {.largest_distance = distance}).has_value());
   }
-}
-
-TEST(DarkenedColours, AreMultipliedInLinearLightButForAlpha) {
-  const std::vector<std::array<float, 4>> colors{{1, 0.5F, 0.25F, 0.5F}, {1, 1, 1, 1}};
-  const std::vector<float> openness{0.5F, 1};
-  EXPECT_THAT(bake::darkened(colors, openness),
-              ElementsAre(std::array{0.5F, 0.25F, 0.125F, 0.5F}, std::array{1.F, 1.F, 1.F, 1.F}));
-  EXPECT_THAT(bake::darkened({}, openness),
-              ElementsAre(std::array{0.5F, 0.5F, 0.5F, 1.F}, std::array{1.F, 1.F, 1.F, 1.F}));
+  for (const float distance : {-0.1F, 1.F, std::nanf(""), INFINITY}) {
+    EXPECT_FALSE(bake::ambientOcclusion({}, {.least_distance = distance}).has_value());
+  }
+  for (const float dim : {-0.1F, 1.1F, std::nanf("")}) {
+    EXPECT_FALSE(bake::ambientOcclusion({}, {.dim = dim}).has_value());
+  }
 }
 
 }  // namespace

@@ -136,7 +136,7 @@ TEST(AmbientOracle, AgreesInARoomOfRandomBoxes) {
       const double wanted = oracle.openness(meshes[m], v, static_cast<double>(kDistance));
       // Four standard deviations of 10,000 random rays, and as much for the pattern.
       constexpr double kNoise = 0.028;
-      EXPECT_NEAR(static_cast<double>(openness[m][v]), wanted, kNoise) << m << " " << v;
+      EXPECT_NEAR(static_cast<double>(openness[m][v].front), wanted, kNoise) << m << " " << v;
       dark += wanted < 0.5 ? 1U : 0U;
       ++cases;
     }

@@ -60,12 +60,12 @@ inline TestMesh box(const Vec3& half, bool inwards = false) {
   return mesh;
 }
 
-inline std::vector<std::vector<float>> opennessOf(
+inline std::vector<std::vector<bake::Openness>> opennessOf(
     const std::vector<bake::OccludingMesh>& meshes,
     const bake::AmbientOcclusionOptions& options = {}) {
   auto result = bake::ambientOcclusion(meshes, options);
   EXPECT_TRUE(result.has_value()) << result.error().message;
-  return result ? *std::move(result) : std::vector<std::vector<float>>();
+  return result ? *std::move(result) : std::vector<std::vector<bake::Openness>>();
 }
 
 }  // namespace galactic::test

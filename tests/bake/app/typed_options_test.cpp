@@ -64,7 +64,7 @@ const std::vector<ContentOption>& contentOptions() {
       {"--render-error", kScene, "0.01", "0.02"},
       {"--texture-size", kScene, "256", "128"},
       {"--texture-format", kScene, "rgba8", "bc1"},
-      {"--ambient-occlusion", kScene, "", ""},
+      {"--lighting", kScene, "none", "all"},
       {"--scene-name", kImport, "a=b", "a=c"},
       {"--start-joints", kImport, "a,b", "b,a"},
       {"--object-up", kImport, "y", "z"},

@@ -18,7 +18,8 @@ constexpr double kFinest = kFinestStep;
 
 bake::BakedRenderMeshes bakedMeshes(const SourceBuilder& builder, double error = 0,
                                     unsigned jobs = 1) {
-  auto meshes = bake::bakeRenderMeshes(builder.source(), {.error = error, .jobs = jobs});
+  auto meshes = bake::bakeRenderMeshes(
+      builder.source(), {.error = error, .lighting = bake::Lighting::kNone, .jobs = jobs});
   EXPECT_TRUE(meshes) << meshes.error().where << ": " << meshes.error().message;
   return meshes ? std::move(*meshes) : bake::BakedRenderMeshes{};
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <set>
 #include <vector>
 
 #include "render/soft/bc1.h"
@@ -209,6 +210,77 @@ TEST(SoftColor, CornersColorsMultiplyAndFollowPerspective) {
     }
   }
   EXPECT_GT(checked, 1000U);
+}
+
+/// Random triangles in front of the camera, near, far and across its near plane: textured, plain
+/// and with holes, in shades of grey. `colored`: a red corner that nobody sees in each cluster.
+RenderModelBuilder greyTriangles(bool colored) {
+  std::mt19937 random(11);
+  RenderModelBuilder builder(1.0F / 4096);
+  std::vector<std::uint32_t> texels = randomTexels(random, 16);
+  const std::int32_t opaque = builder.texture(16, texels);
+  for (std::uint32_t& texel : texels) {
+    if (random() % 3 == 0) texel &= 0xFFFFFFU;
+  }
+  const std::int32_t leaf = builder.texture(16, texels);
+  const std::array materials{builder.material(0xFFFFFFFF, opaque), builder.material(0xFF40C080),
+                             builder.material(0xFFFFFFFF, leaf, 0.5F)};
+  builder.keepColors();
+  builder.model();
+  const auto corner = [&](const Vec3& middle, float reach) {
+    const auto off = [&] { return uniform(random, -reach, reach); };
+    const auto grey = static_cast<std::uint32_t>(random() % 256);
+    return RenderVertex{{middle.x + off(), middle.y + off(), middle.z + off()},
+                        uniform(random, 0, 3),
+                        uniform(random, 0, 3),
+                        0xFF000000U | grey * 0x010101U};
+  };
+  for (int cluster = 0; cluster < 24; ++cluster) {
+    const RenderSurface surface{.material = materials[static_cast<std::size_t>(cluster) % 3],
+                                .semantic = builder.semantic("thing"),
+                                .two_sided = true};
+    const Vec3 middle{uniform(random, 0.3F, 4), uniform(random, -1, 1), uniform(random, -1, 1)};
+    for (int n = 0; n < 10; ++n) {
+      const float reach = n == 0 ? 2.0F : 0.4F;
+      builder.triangle({corner(middle, reach), corner(middle, reach), corner(middle, reach)},
+                       surface);
+    }
+    const std::uint32_t behind = colored ? kRed : 0xFF808080U;
+    builder.triangle({RenderVertex{{-3, 0, 0}, 0, 0, behind},
+                      {{-3, 0, 1}, 0, 0, behind},
+                      {{-3, 1, 0}, 0, 0, behind}},
+                     surface);
+  }
+  builder.finish();
+  return builder;
+}
+
+TEST(SoftColor, GreyCornersGiveTheBitsThatColoredOnesGive) {
+  // Light that is baked in is grey and goes a shorter way.
+  const RenderImages grey = draw(greyTriangles(false), colorOptions(200, 150));
+  const RenderImages colored = draw(greyTriangles(true), colorOptions(200, 150));
+  EXPECT_EQ(grey.color, colored.color);
+  EXPECT_EQ(grey.depth, colored.depth);
+  EXPECT_EQ(grey.semantics, colored.semantics);
+  std::set<std::uint32_t> seen;
+  for (std::size_t n = 0; n < std::size_t{200} * 150; ++n) seen.insert(pixel(grey, n));
+  EXPECT_GT(seen.size(), 5000U);
+}
+
+TEST(SoftColor, WhiteCornersChangeNothing) {
+  const auto square = [](bool keep) {
+    RenderModelBuilder builder;
+    std::mt19937 random(5);
+    const std::uint16_t wood =
+        builder.material(0xFFFFFFFF, builder.texture(8, randomTexels(random, 8)));
+    if (keep) builder.keepColors();
+    builder.model();
+    builder.quad(facing(1.5F, 1.3F), {.material = wood});
+    builder.finish();
+    return builder;
+  };
+  EXPECT_EQ(draw(square(true), colorOptions(90, 90)).color,
+            draw(square(false), colorOptions(90, 90)).color);
 }
 
 TEST(SoftColor, TwoSidedLeavesShowFromBehindAndOthersDoNot) {

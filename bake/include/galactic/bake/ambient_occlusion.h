@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,6 +9,13 @@
 
 namespace galactic::bake {
 
+/// From which sides light on a mesh is wanted.
+enum class LitSides : std::uint8_t {
+  kNone,   ///< It only keeps light away.
+  kFront,  ///< Where it is seen from the front alone.
+  kBoth
+};
+
 /// One placement of a mesh: what light is kept away from, and what keeps it away.
 struct OccludingMesh {
   std::span<const Vec3> positions;
@@ -17,23 +23,35 @@ struct OccludingMesh {
   std::span<const Triangle> triangles;
   /// Row-major; mirroring ones turn the triangles round.
   Affine world_from_mesh{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-  /// A sheet that is seen from both sides: the side that gets more light counts. Not for closed
-  /// bodies, whose inside nobody sees.
-  bool two_sided = false;
+  LitSides lit = LitSides::kFront;
 };
 
 struct AmbientOcclusionOptions {
   /// For each vertex (and side), 1 to 65,536. In a cluttered room factors from 128 rays are off by
   /// 0.025 (root mean square), from 1,024 by 0.007.
   unsigned rays = 128;
+  /// Backs are measured where the front's factor is smaller, 0 to 1.
+  float dim = 0.25F;
+  /// What is nearer keeps no light away: surfaces that were simplified may pass through each other.
+  /// Metres, 0 or more, less than `largest_distance`.
+  float least_distance = 0;
   /// What is farther away keeps no light away. Metres, > 0.
   float largest_distance = 1;
   /// Threads. The result does not depend on them.
   unsigned jobs = 1;
 };
 
+/// Factors of light at a vertex, 0 (dark) to 1 (open).
+struct Openness {
+  float front = 1;
+  /// Where it was measured, else 0.
+  float back = 0;
+
+  friend bool operator==(const Openness&, const Openness&) = default;
+};
+
 /// How much of the light that comes evenly from all sides reaches each vertex: for each mesh and
-/// vertex a factor in linear light, 0 (dark) to 1 (open), to be multiplied into its colour.
+/// vertex factors in linear light. None for meshes that are not lit.
 ///
 /// The factor is a mean over the triangles around the vertex, weighted with its share (barycentric
 /// coordinate) in them, of the part of cosine-weighted rays that meet nothing. So in a coarse mesh
@@ -45,14 +63,9 @@ struct AmbientOcclusionOptions {
 /// Triangles occlude from both sides and wholly, whatever their material. A vertex without a
 /// triangle of some area gets 1.
 ///
-/// Deterministic: fixed directions (the R5 sequence, Roberts 2018), and Embree's instructions
-/// pinned. Fails with kInvalidInput when an option is out of range, kInternal when Embree does.
-/// Thread-safe.
-[[nodiscard]] Result<std::vector<std::vector<float>>> ambientOcclusion(
+/// Deterministic: fixed directions (Hammersley points), and Embree's instructions pinned. Fails
+/// with kInvalidInput when an option is out of range, kInternal when Embree does. Thread-safe.
+[[nodiscard]] Result<std::vector<std::vector<Openness>>> ambientOcclusion(
     std::span<const OccludingMesh> meshes, const AmbientOcclusionOptions& options);
-
-/// `colors` (linear RGBA; none counts as white) darkened by `openness`, one per vertex.
-[[nodiscard]] std::vector<std::array<float, 4>> darkened(
-    std::span<const std::array<float, 4>> colors, std::span<const float> openness);
 
 }  // namespace galactic::bake

@@ -29,6 +29,8 @@ struct RenderPart {
   /// Of the object in its set, or of the link in its robot; 0 for a scene.
   std::uint32_t part = 0;
   std::vector<PlacedMesh> meshes;
+  /// How the part stands while it is lit; only the rotation counts. Y is up.
+  Affine light_from_part{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 };
 
 /// What render meshes are made of.
@@ -40,8 +42,19 @@ struct RenderSource {
   BakedMaterials baked;
   /// Names of what semantic ids tell apart; at least one.
   std::vector<std::string> semantics;
-  /// Meshes that no asset owns: primitive shapes, copies with other colours.
+  /// Meshes that no asset owns: primitive shapes.
   std::vector<std::unique_ptr<SourceMesh>> own_meshes;
+  /// Whether textures and vertex colours may hold the light of the place, as those of scans do.
+  bool may_hold_light = false;
+};
+
+/// Which surfaces get light, baked into their vertex colours: a sky and a key light by normal, kept
+/// away by what is near.
+enum class Lighting : std::uint8_t {
+  kNone,  ///< Colours as the source gives them.
+  kAuto,  ///< Those without light of their own: robots and objects, and in scenes what has neither
+          ///< texture nor vertex colours.
+  kAll
 };
 
 struct RenderBakeOptions {
@@ -49,6 +62,7 @@ struct RenderBakeOptions {
   /// flat faces alone. Small and thin pieces move less: at most kLargestShare of their extent, and
   /// kLargestThinness of their area per extent.
   double error = 0.005;
+  Lighting lighting = Lighting::kAuto;
   /// Threads. The result does not depend on them.
   unsigned jobs = 1;
 };
@@ -101,7 +115,8 @@ struct BakedRenderMeshes : RenderPools {
 /// Makes the render meshes of a source: places and welds the meshes of each part, simplifies each
 /// connected piece (Garland and Heckbert's quadrics, through meshoptimizer) with its seams kept,
 /// decides for each piece whether it needs to be seen from both sides, puts the corners on one
-/// lattice per model, and cuts clusters in spatial order.
+/// lattice per model, and cuts clusters in spatial order. Light is added after simplification, so
+/// that neither stands in the other's way.
 ///
 /// Pieces touch at equal corners, whatever their materials, so no crack opens between materials or
 /// clusters. Closed pieces of two-sided materials become one-sided, and are turned outside out if

@@ -1,8 +1,8 @@
 #pragma once
 #include <filesystem>
 
-#include "galactic/bake/ambient_occlusion.h"
 #include "galactic/bake/render_baker.h"
+#include "galactic/bake/robot_baker.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/bake/source_robot.h"
 #include "galactic/error.h"
@@ -30,10 +30,8 @@ namespace galactic::bake {
                                                      const std::filesystem::path& folder,
                                                      const TextureBakeOptions& options);
 
-/// Darkens the vertex colours of all meshes where the rest of their part keeps light away from
-/// them. Of meshes seen from both sides the brighter side counts, unless all their pieces are
-/// closed. Fails as ambientOcclusion and bakeRenderMeshes do.
-[[nodiscard]] Result<void> addAmbientOcclusion(RenderSource& source,
-                                               const AmbientOcclusionOptions& options);
+/// Lights each link as it stands in the robot's start pose. `kinematics` are those of the robot
+/// that `source` was made of.
+void standInStartPose(RenderSource& source, const FlatKinematics& kinematics);
 
 }  // namespace galactic::bake

@@ -96,7 +96,7 @@ inline ClipVertex clipVertex(const ClusterState& state, std::uint32_t number) {
     vertex.u = state.uv[2 * number];
     vertex.v = state.uv[2 * number + 1];
   }
-  if (state.pack->colors != nullptr) {
+  if (state.color_kind != 0) {
     const std::uint32_t color = state.pack->colors[cluster.first_vertex + number];
     for (int n = 0; n < 4; ++n) {
       vertex.color[n] = static_cast<float>((color >> (8 * n)) & 0xFFU);

@@ -86,7 +86,12 @@ void recordLarge(const Pane& pane, const ClusterState& state, const LargeTriangl
   record[kWRight] = static_cast<float>(depth.right);
   record[kWDown] = static_cast<float>(depth.down);
   store(record + kTexels, surfaceFields(state));
-  if (state.pack->colors == nullptr) return;
+  store(record + kLightRight, Quad{});
+  if (state.color_kind == kHasLight) {
+    recordPlane(record + kLightRight, planeOf(triangle, over_w(a.color[0], a),
+                                              over_w(b.color[0], b), over_w(c.color[0], c)));
+  }
+  if (state.color_kind != kHasColors) return;
   float* fields = colorsAt(pane, pane.records);
   for (int n = 0; n < 4; ++n, fields += 3) {
     recordPlane(fields, planeOf(triangle, over_w(a.color[n], a), over_w(b.color[n], b),

@@ -26,14 +26,16 @@ inline constexpr std::int32_t kHalfPixel = kSubpixels / 2;
 struct SurfaceTexels {
   /// Flat: the colour, RGBA, R lowest. Else the number of the first texel, from the base.
   std::uint32_t texels = 0;
-  /// kFlatSurface, or log2 of the edge of the texture and, from bit 8 on, the number of the base.
+  /// kFlatSurface, or log2 of the edge of the texture and, in bits 8 to 29, the number of the base.
   std::uint32_t kind = 0;
   /// What has less alpha than this, of 255, is not there. 0: opaque.
   std::uint32_t least_alpha = 0;
 };
 inline constexpr std::uint32_t kFlatSurface = 0xFF;
-/// Bit of a triangle's kind: its corners have colours.
+/// Bits of a triangle's kind: its corners have colours; or shades of grey, as light has that is
+/// baked into them, which take a quarter of the work.
 inline constexpr std::uint32_t kHasColors = 1U << 31U;
+inline constexpr std::uint32_t kHasLight = 1U << 30U;
 
 /// The pools of one pack.
 struct PackTables {
@@ -42,6 +44,8 @@ struct PackTables {
   const std::uint16_t* vertices = nullptr;
   /// Null where there are none.
   const std::uint32_t* colors = nullptr;
+  /// For each cluster kHasColors, kHasLight or, where all is white, 0. Null where there are none.
+  const std::uint32_t* color_kinds = nullptr;
   const std::uint8_t* triangles = nullptr;
   const SurfaceTexels* surfaces = nullptr;
   /// Semantic id in images of the pack's semantic 0.
@@ -122,7 +126,11 @@ enum RecordField : std::uint32_t {
   kTexels,  ///< SurfaceTexels::texels; this field and the next two hold integers.
   kKind,
   kSemantic,
-  kRecordFields = 12
+  kRecordFields = 12,
+  /// Plane of the light: behind what all records have.
+  kLightRight = 12,
+  kLightDown,
+  kLightStart
 };
 /// Fields of the colours' planes: red, green, blue, alpha, each as right, down, start.
 inline constexpr std::uint32_t kColorFields = 12;

@@ -123,6 +123,9 @@ void drawCluster(Pane& pane, const SeenCluster& seen) {
   state.pack = model.pack;
   state.cluster = model.pack->clusters + model.first_cluster + seen.cluster;
   state.frame = &frame;
+  const std::uint32_t* color_kinds = model.pack->color_kinds;
+  state.color_kind =
+      color_kinds == nullptr ? 0 : color_kinds[model.first_cluster + seen.cluster];
   state.surface = model.pack->surfaces[state.cluster->material];
   state.semantic = model.pack->first_semantic + state.cluster->semantic;
   placeVertices(state);

@@ -49,7 +49,7 @@ inline void planeFields(const SmallGroup& group, Lanes a, Lanes b, Lanes c, Lane
 }
 
 inline std::uint32_t kindOf(const ClusterState& state) {
-  return state.pack->colors != nullptr ? state.surface.kind | kHasColors : state.surface.kind;
+  return state.surface.kind | state.color_kind;
 }
 
 /// The fields from kTexels on.
@@ -75,6 +75,15 @@ void makeColors(const ClusterState& state, const SmallGroup& group, GroupRecords
   storeTransposed(fields + kWidth, records.colors[0] + kWidth);
 }
 
+/// The plane of the light, from the red of the colours.
+inline void makeLight(const ClusterState& state, const SmallGroup& group, Lanes* fields) {
+  const std::int32_t* colors =
+      reinterpret_cast<const std::int32_t*>(state.pack->colors) + state.cluster->first_vertex;
+  const auto light = [&](IntLanes corner) { return toFloat(gather(colors, corner) & 0xFF); };
+  planeFields(group, light(group.corners.a) * group.z_a, light(group.corners.b) * group.z_b,
+              light(group.corners.c) * group.z_c, fields);
+}
+
 /// The records of a group of small triangles.
 void makeRecords(ClusterState& state, const SmallGroup& group, GroupRecords& records) {
   Lanes fields[kWidth] = {};
@@ -91,9 +100,12 @@ void makeRecords(ClusterState& state, const SmallGroup& group, GroupRecords& rec
   fields[kWRight] = group.z.right;
   fields[kWDown] = group.z.down;
   storeTransposed(fields, records.records[0]);
+  Lanes more[kWidth] = {};
   const Quad surface = surfaceFields(state);
-  for (float(&record)[kRecordStride] : records.records) store(record + kTexels, surface);
-  if (state.pack->colors != nullptr) makeColors(state, group, records);
+  for (int n = 0; n < 4; ++n) more[n] = spread(surface[n]);
+  if (state.color_kind == kHasLight) makeLight(state, group, more + (kLightRight - kTexels));
+  storeTransposed(more, records.records[0] + kTexels);
+  if (state.color_kind == kHasColors) makeColors(state, group, records);
 }
 
 /// Moves the records of triangles that are seen to the next free numbers.
@@ -103,7 +115,7 @@ void keepRecords(const Pane& pane, const ClusterState& state, const GroupRecords
   for (; seen != 0; seen &= seen - 1, ++number) {
     const int n = __builtin_ctz(seen);
     __builtin_memcpy(recordAt(pane, number), records.records[n], kBytes);
-    if (state.pack->colors == nullptr) continue;
+    if (state.color_kind != kHasColors) continue;
     __builtin_memcpy(colorsAt(pane, number), records.colors[n], kBytes);
   }
 }

@@ -15,6 +15,12 @@ inline IntLanes shade(const Pane& pane, const std::int32_t* ids, const PixelLane
     const EachRecord planes = loadRecords(pane.scratch->colors, colored);
     colors = pick(kind >> 31, timesColors(colors, planes, pixels), colors);
   }
+  const IntLanes lit = kind << 1;
+  if (signBits(lit) != 0) {
+    Lanes light[4];
+    loadFour(pane.scratch->records + kLightRight, ids, light);
+    colors = pick(lit >> 31, timesLight(colors, light, pixels), colors);
+  }
   // What is drawn hides all behind it.
   return pick(id == spread(0), colors, colors | static_cast<std::int32_t>(0xFF000000U));
 }

@@ -99,7 +99,7 @@ inline IntLanes sampleTexels(const PaneTask& task, const TexturePlaces& places) 
   unsigned left = ~signBits(flat) & kAllLanes;
   if (left == 0) return places.texels;
   const LevelPlace place = levelPlace(places, flat);
-  const IntLanes base = (places.kind >> 8) & 0x7FFFFF;
+  const IntLanes base = (places.kind >> 8) & 0x3FFFFF;
   FourTexels texels{};
   while (left != 0) {
     const IntLanes number = laneOf(base, __builtin_ctz(left));
@@ -201,6 +201,20 @@ inline IntLanes timesColors(IntLanes texels, const Records& colors, const PixelL
     result |= byteProduct((texels >> shift) & 0xFF, factor) << shift;
   }
   return result;
+}
+
+/// timesColors() where red, green and blue are one, and alpha is whole: the same bits. `light`:
+/// the record's fields from kLightRight on.
+inline IntLanes timesLight(IntLanes texels, const Lanes* light, const PixelLanes& pixels) {
+  const Lanes w = spread(1.0F) / pixels.z;
+  const Lanes value = (light[0] * pixels.x + light[1] * pixels.y + light[2]) * w;
+  const IntLanes factor = toInt(clampTo(value + spread(0.5F), 0, 255));
+  // Red and blue in one product.
+  const WordLanes both = as<WordLanes>(texels & 0x00FF00FF) * as<WordLanes>(factor) + 0x00800080U;
+  const WordLanes red_blue = (both + ((both >> 8) & 0x00FF00FFU)) >> 8;
+  const IntLanes green = byteProduct((texels >> 8) & 0xFF, factor);
+  return (as<IntLanes>(red_blue) & 0x00FF00FF) | green << 8 |
+         (texels & static_cast<std::int32_t>(0xFF000000U));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 
 #include "galactic/pose.h"
 #include "render/soft/bc1.h"
@@ -31,12 +32,35 @@ PackTables tablesOf(const RenderMeshes& meshes) {
           .triangles = meshes.triangles.data()};
 }
 
+std::uint32_t colorKind(std::span<const std::uint32_t> colors) {
+  constexpr std::uint32_t kWhite = 0xFFFFFFFF;
+  std::uint32_t kind = 0;
+  for (const std::uint32_t color : colors) {
+    const std::uint32_t red = color & 0xFFU;
+    if (color != (0xFF000000U | red << 16U | red << 8U | red)) return kHasColors;
+    if (color != kWhite) kind = kHasLight;
+  }
+  return kind;
+}
+
+/// Of each cluster of a pack; none where it has no colours.
+std::vector<std::uint32_t> colorKinds(const RenderMeshes& meshes) {
+  std::vector<std::uint32_t> kinds;
+  if (meshes.colors.empty()) return kinds;
+  kinds.reserve(meshes.clusters.size());
+  for (const RenderCluster& cluster : meshes.clusters) {
+    kinds.push_back(colorKind(meshes.colors.subspan(cluster.first_vertex, cluster.vertex_count)));
+  }
+  return kinds;
+}
+
 }  // namespace
 
 SoftScene::SoftScene(const RenderLibrary& library) {
   const std::vector<RenderMeshes>& packs = library.packs();
   surfaces_.resize(packs.size());
   packs_.reserve(packs.size());
+  color_kinds_.reserve(packs.size());
   bases_.push_back(nullptr);  // of what is unpacked
   for (std::size_t p = 0; p < packs.size(); ++p) {
     std::vector<SurfaceTexels> textures;
@@ -50,6 +74,8 @@ SoftScene::SoftScene(const RenderLibrary& library) {
     }
     PackTables tables = tablesOf(packs[p]);
     tables.surfaces = surfaces_[p].data();
+    color_kinds_.push_back(colorKinds(packs[p]));
+    if (!color_kinds_.back().empty()) tables.color_kinds = color_kinds_.back().data();
     tables.first_semantic = library.firstSemantic(p);
     packs_.push_back(tables);
   }

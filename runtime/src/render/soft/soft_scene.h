@@ -26,6 +26,7 @@ class SoftScene {
   void addModel(const RenderLibrary& library, std::uint32_t number);
 
   std::vector<std::vector<SurfaceTexels>> surfaces_;
+  std::vector<std::vector<std::uint32_t>> color_kinds_;
   std::vector<PackTables> packs_;
   std::vector<ModelTables> models_;
   /// Texels that no pack has as they are drawn.

@@ -54,6 +54,8 @@ struct ClusterState {
   const RenderCluster* cluster;
   const VertexFrame* frame;
   SurfaceTexels surface;
+  /// kHasColors, kHasLight or 0.
+  std::uint32_t color_kind;
   /// In images.
   std::uint32_t semantic;
 };
