@@ -12,7 +12,7 @@ constexpr double kLengthStep = 1e-4;
 constexpr double kRotationStep = 1.0 / 32767;
 
 std::int32_t wholeOf(float value, double step) {
-  constexpr double kMost = std::numeric_limits<std::int32_t>::max() / 4;
+  constexpr double kMost = std::numeric_limits<std::int32_t>::max() / 4.0;
   return static_cast<std::int32_t>(
       std::lround(std::clamp(static_cast<double>(value) / step, -kMost, kMost)));
 }
@@ -81,6 +81,7 @@ std::vector<std::int32_t> movesOf(const EnvTrack& env) {
 template <class T>
 std::vector<std::uint8_t> bytesOf(const std::vector<T>& values) {
   std::vector<std::uint8_t> bytes;
+  bytes.reserve(values.size());
   for (const T value : values) bytes.push_back(static_cast<std::uint8_t>(value));
   return bytes;
 }

@@ -53,6 +53,11 @@ class Pages(unittest.TestCase):
             "--view-envs",
             2,
         )
+        tool(
+            OPTIONS.run,
+            *("--pack", cls.folder / "bare/world.pack", "--envs", 1, "--steps", 5),
+            *("--view", cls.folder / "bare.html"),
+        )
         cls.browser = Browser()
 
     @classmethod
@@ -148,6 +153,21 @@ class Pages(unittest.TestCase):
             page.evaluate("galactic.episodes.count"), episodes["episode_set"]["episode_count"]
         )
 
+    def test_blocks_are_decoded_as_the_renderer_does(self):
+        page = self.open("world", "", "scene 0")
+        # Red and blue, the two colours between them, and a block whose middle is one half.
+        decoded = page.evaluate(
+            "(() => { const decode = (...bytes) => [...galactic.library.constructor.decodeBlocks(new Uint8Array(bytes), 4)];"
+            "return [decode(0, 0xf8, 0x1f, 0, 0b11100100, 0, 0, 0), decode(0x1f, 0, 0, 0xf8, 0b11100100, 0, 0, 0)]; })()"
+        )
+        self.assertEqual(
+            decoded[0][:16], [255, 0, 0, 255, 0, 0, 255, 255, 170, 0, 85, 255, 85, 0, 170, 255]
+        )
+        self.assertEqual(
+            decoded[1][:16], [0, 0, 255, 255, 255, 0, 0, 255, 128, 0, 128, 255, 0, 0, 0, 255]
+        )
+        self.assertEqual(decoded[0][16:20], [255, 0, 0, 255])
+
     def test_a_click_marks_what_a_sphere_reaches(self):
         page = self.open("world", "view=scene&radius=0.05&slice=0.4", "scene 0")
         self.assertNotIn(
@@ -213,6 +233,17 @@ class Pages(unittest.TestCase):
                 *(abs(p - sign * q) for p, q in zip(a[3:], b[3:])),
             )
             self.assertLess(difference, POSE_TOLERANCE, f"frame {frame}")
+
+    def test_worlds_without_meshes_show_spheres_boxes_and_floors(self):
+        page = self.open("bare", "", "run 0")
+        seen = page.evaluate(
+            "(() => { const { scene, robot, objects } = galactic.view.home;"
+            "return [scene.mesh.children.some((one) => one.visible && one.geometry), robot.clouds[0].mesh.visible, objects[0].box.visible]; })()"
+        )
+        self.assertEqual(seen, [True, True, True])
+        _, _, rgb = page.pixels()
+        self.assertGreater(len({rgb[n : n + 3] for n in range(0, len(rgb), 300)}), 20)
+        self.show_all_parts(page)
 
     def test_the_timeline_is_worked_with_keys(self):
         page = self.open("run", "env=0&t=10", "run 0")

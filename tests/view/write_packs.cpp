@@ -1,5 +1,5 @@
-// Writes for the tests of pages: the small home, a recording of a run in it with the poses that the
-// simulator had, and packs whose names are markup.
+// Writes for the tests of pages: the small home, the same without meshes, a recording of a run in
+// it with the poses that the simulator had, and packs whose names are markup.
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -25,9 +25,9 @@ void write(const std::filesystem::path& file, const AlignedBytes& pack) {
   if (!stream.flush()) throw std::runtime_error(file.string() + " cannot be written");
 }
 
-void writeHome(const std::filesystem::path& folder) {
+void writeHome(const WorldFields& fields, const std::filesystem::path& folder) {
   const ScratchFolder scratch;
-  const std::filesystem::path world = writeWorld(scratch, smallHomeWorldWithModels());
+  const std::filesystem::path world = writeWorld(scratch, fields);
   std::filesystem::copy(
       world.parent_path(), folder,
       std::filesystem::copy_options::overwrite_existing | std::filesystem::copy_options::recursive);
@@ -120,7 +120,9 @@ int main(int argc, char** argv) {
   }
   try {
     std::filesystem::create_directories(argv[1]);
-    galactic::test::writeHome(argv[1]);
+    const std::filesystem::path folder = argv[1];
+    galactic::test::writeHome(galactic::test::smallHomeWorldWithModels(), folder);
+    galactic::test::writeHome(galactic::test::smallHomeWorld(), folder / "bare");
     galactic::test::writeRun(argv[1]);
     galactic::test::writeHostile(argv[1]);
   } catch (const std::exception& problem) {

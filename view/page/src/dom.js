@@ -71,7 +71,7 @@ export function tree(value, name = "") {
   }
   const entries = Object.entries(value);
   if (Array.isArray(value) && value.length <= 8 && value.every((one) => typeof one !== "object")) {
-    return el("div", { className: "tree" }, el("b", {}, name + " "), value.join(", "));
+    return el("div", { className: "tree" }, el("b", {}, name + " "), value.join(", ") || "none");
   }
   const inside = el("div");
   const details = el("details", { className: "tree" }, el("summary", {}, `${name} (${entries.length})`), inside);

@@ -20,7 +20,7 @@ export class Palette {
   color(radius) { return kSphereColors[this.radii.indexOf(radius) % kSphereColors.length]; }
 }
 
-const unitSphere = () => new IcosahedronGeometry(1, 3);
+const unitSphere = () => new IcosahedronGeometry(1, 6);
 
 function material(color, opacity) {
   return new MeshLambertMaterial({ color, transparent: opacity < 1, opacity, depthWrite: opacity >= 1 });

@@ -56,16 +56,27 @@ export class Home {
     if (robotPack) {
       this.robot = await RobotFigure.load(library, robotPack);
       this.group.add(this.robot.group);
+      // A world for physics alone: then what it collides with is what there is to see.
+      const isBare = !robotPack.meshes && !robotPack.robot.links.some((one) => one.surface);
+      this.shown.spheres = this.shown.boxes = isBare;
     }
   }
 
   async sceneOf(name) {
     if (!this.scenes.has(name)) {
       const pack = this.page.scenes.get(name);
-      const mesh = pack ? await this.page.library.model(pack.meshes, 0, { cut: true }) : null;
+      const mesh = pack ? await this.page.library.model(pack.meshes, 0, { cut: true }) ?? await this.floorsOf(pack) : null;
       this.scenes.set(name, { name, pack, mesh: mesh ?? new Group() });
     }
     return this.scenes.get(name);
+  }
+
+  /// For a scene without a mesh.
+  async floorsOf(pack) {
+    const layer = new GridLayer(this.page.stage, await Grid.load(this.page.data, pack.scene.grids[0]));
+    layer.slice.visible = false;
+    layer.setFloors(true);
+    return layer.group;
   }
 
   forgetScene() {

@@ -87,6 +87,12 @@ class Page {
     return order.map((kind) => this.parts.find((one) => one.kind === kind)).find((one) => one);
   }
 
+  /// What somebody chose in the list: the address's pose was that of another object.
+  choose(part) {
+    setAddress({ pose: null });
+    this.show(part);
+  }
+
   /// Shows a part; one after the other, however fast somebody clicks.
   show(part) {
     this.opening = this.opening.then(() => this.showNow(part)).catch((problem) => this.fail(problem));
@@ -127,7 +133,9 @@ class Page {
     const pack = this.manifest.packs[part.number];
     const facts = pack.facts ? Object.entries(pack.facts).map(([key, value]) => tree(value, key)) : [note("The page was written without more about this pack.")];
     this.fillPanel([heading(pack.file), note(`${pack.kind}, ${megabytes(pack.bytes)}`), ...facts]);
-    if (!this.view) document.getElementById("progress").hidden = true;
+    if (this.view) return;
+    document.getElementById("progress").hidden = true;
+    this.readout("Nothing in this pack can be drawn: what is known about it stands in the panel.");
   }
 
   fail(problem) {
@@ -174,7 +182,7 @@ class Page {
       const fitting = all.filter((one) => words.every((word) => `${one.name} ${one.hint}`.toLowerCase().includes(word)));
       if (fitting.length === 0) continue;
       const items = fitting.slice(0, most).map((one) => {
-        const item = button(one.name, () => this.show(one));
+        const item = button(one.name, () => this.choose(one));
         item.part = one;
         if (one.hint) item.append(el("small", {}, one.hint));
         return el("li", {}, item);

@@ -28,12 +28,19 @@ const kLinear = Uint16Array.from({ length: 256 }, (_, n) => {
   return Math.round(65535 * (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
 });
 
+/// Whether vertices of these clusters have colours of their own: light that was baked, or scanned. White
+/// is what the others of a pack have.
+function haveColors(clusters, { colors }) {
+  const isColored = (color) => (color & 0xffffff) !== 0xffffff;
+  return clusters.some((one) => colors.subarray(one.firstVertex, one.firstVertex + one.vertices).some(isColored));
+}
+
 function geometryOf(clusters, arrays, step) {
   const vertexCount = clusters.reduce((sum, one) => sum + one.vertices, 0);
   const triangleCount = clusters.reduce((sum, one) => sum + one.triangles, 0);
   const positions = new Float32Array(3 * vertexCount);
   const uvs = new Float32Array(2 * vertexCount);
-  const colors = arrays.colors.length > 0 ? new Uint16Array(3 * vertexCount) : null;
+  const colors = haveColors(clusters, arrays) ? new Uint16Array(3 * vertexCount) : null;
   const corners = new Uint32Array(3 * triangleCount);
   let vertex = 0;
   let corner = 0;
@@ -64,8 +71,8 @@ function geometryOf(clusters, arrays, step) {
   return geometry;
 }
 
-/// A level of BC1 blocks as RGBA.
-export function decodeBlocks(blocks, size) {
+/// A level of BC1 blocks as RGBA, as runtime/src/render/soft/bc1.cpp decodes it.
+function decodeBlocks(blocks, size) {
   const out = new Uint8Array(4 * size * size);
   const edge = Math.max(1, size >> 2);
   const palette = new Uint8Array(12);
@@ -78,7 +85,7 @@ export function decodeBlocks(blocks, size) {
     });
     for (let c = 0; c < 3; ++c) {
       const [a, b] = [palette[c], palette[3 + c]];
-      palette[6 + c] = ends[0] > ends[1] ? (2 * a + b + 1) / 3 : (a + b) >> 1;
+      palette[6 + c] = ends[0] > ends[1] ? (2 * a + b + 1) / 3 : (a + b + 1) >> 1;
       palette[9 + c] = ends[0] > ends[1] ? (a + 2 * b + 1) / 3 : 0;
     }
     for (let texel = 0; texel < 16; ++texel) {
@@ -102,6 +109,9 @@ function undoDifferences(differences) {
 }
 
 export class MeshLibrary {
+  // For tests.
+  static decodeBlocks = decodeBlocks;
+
   constructor(data, textures, stage) {
     this.data = data;
     this.textures = textures;
@@ -130,10 +140,12 @@ export class MeshLibrary {
     return texture;
   }
 
-  /// A mesh that is lit or shown as it is, as the page's switch says.
-  mesh(geometry, options) {
-    const lit = new MeshLambertMaterial({ ...options, flatShading: true });
-    const plain = new MeshBasicMaterial(options);
+  /// A mesh that is lit or shown as it is, as the page's switch says. What has its light in the colours of
+  /// its vertices needs no other.
+  mesh(geometry, options, hasLight) {
+    const vertexColors = geometry.hasAttribute("color");
+    const plain = new MeshBasicMaterial({ ...options, vertexColors });
+    const lit = hasLight ? plain : new MeshLambertMaterial({ ...options, vertexColors, flatShading: true });
     const mesh = new Mesh(geometry, this.isShaded ? lit : plain);
     mesh.userData.materials = { lit, plain };
     return mesh;
@@ -166,13 +178,13 @@ export class MeshLibrary {
       const material = meshes.materials[key >> 1];
       const options = {
         side: key & 1 ? DoubleSide : FrontSide,
-        vertexColors: arrays.colors.length > 0,
         alphaTest: material.alpha_cutoff,
         clippingPlanes: cut ? this.stage.clippingPlanes : null,
       };
       if (material.texture !== undefined) options.map = await this.texture(material.texture);
       else options.color = new Color().setRGB((material.color & 255) / 255, ((material.color >>> 8) & 255) / 255, ((material.color >>> 16) & 255) / 255, SRGBColorSpace);
-      group.add(this.mesh(geometryOf(clusters, arrays, model.step), options));
+      const geometry = geometryOf(clusters, arrays, model.step);
+      group.add(this.mesh(geometry, options, geometry.hasAttribute("color")));
     }
     return group;
   }
@@ -189,6 +201,6 @@ export class MeshLibrary {
         (_, n) => kLinear[(arrays.colors[Math.floor(n / 3)] >>> (8 * (n % 3))) & 255]);
       geometry.setAttribute("color", new BufferAttribute(colors, 3, true));
     }
-    return this.mesh(geometry, { side: DoubleSide, vertexColors: hasColors, color: hasColors ? 0xffffff : 0xb4b6ba });
+    return this.mesh(geometry, { side: DoubleSide, color: hasColors ? 0xffffff : 0xb4b6ba }, false);
   }
 }

@@ -22,6 +22,8 @@ export class RobotView {
       const value = Number.parseFloat(text);
       if (n < this.positions.length && Number.isFinite(value)) this.positions[n] = value;
     });
+    // Without a mesh the spheres are what there is to see.
+    this.shown.spheres = !this.pack.meshes && !this.robot.links.some((one) => one.surface);
     stage.content.add(this.figure.group);
     this.touchPart = el("div", { role: "status" });
     this.fillPanel();

@@ -56,7 +56,7 @@ export class RunView {
       this.shownEpisode = key;
       await this.home.setEpisode(this.page.episodes.withNumber(this.track.episode(frame)));
       if (this.hasReach) await this.home.setReach(true);
-      this.page.stage.setCut(this.isCut === false ? null : this.home.episode.base.y + 1.6);
+      this.cut();
       // Somebody may have gone on meanwhile.
       if (this.frame !== frame) return;
     }
@@ -118,8 +118,15 @@ export class RunView {
     }
   }
 
+  /// So that one sees into the room from above; the robot sees its ceiling.
+  cut() {
+    const isCut = this.isCut !== false && this.camera !== "own";
+    this.page.stage.setCut(isCut ? this.home.episode.base.y + 1.6 : null);
+  }
+
   setCamera(key) {
     this.camera = key;
+    this.cut();
     this.lastRoot = null;
     setAddress({ camera: key === "follow" ? null : key });
     const { robot } = this.home;
@@ -134,10 +141,10 @@ export class RunView {
     const held = track.held(frame);
     const { placements, target } = this.home.episode;
     const ended = frame > 0 ? kEndings[track.endings[frame - 1]] : "";
-    const rows = [["Episode", track.episode(frame)], ["Step of the episode", frame - track.beginOf(frame)],
+    const rows = [["Episode", track.episode(frame)], ["Its step", frame - track.beginOf(frame)],
       ["Target", placements[target].object], ["In the hand", held < 0 ? "nothing" : placements[held]?.object ?? ""]];
     if (frame > 0) {
-      rows.push(["Reward of the step", track.rewards[frame - 1].toFixed(4)]);
+      rows.push(["Reward", track.rewards[frame - 1].toFixed(4)]);
       this.run.distances.forEach((name, n) => rows.push([name.replace("_", " to "), metres(track.distances[(frame - 1) * this.run.distances.length + n])]));
     }
     this.facts.replaceChildren(table(rows), ended ? note(`The step before ended an episode: ${ended}.`) : "");
@@ -154,10 +161,10 @@ export class RunView {
       heading("Show"),
       checkbox("Scene", true, toggle("scene")),
       this.page.shadeBox(),
-      checkbox("Cut off what is above 1.6 m", true, (on) => { this.isCut = on; this.page.stage.setCut(on ? this.home.episode.base.y + 1.6 : null); }),
+      checkbox("Cut off what is above 1.6 m", true, (on) => { this.isCut = on; this.cut(); }),
       checkbox("Meshes of robot and objects", true, toggle("mesh")),
-      checkbox("Spheres", false, toggle("spheres")),
-      checkbox("Oriented boxes", false, toggle("boxes")),
+      checkbox("Spheres", this.home.shown.spheres, toggle("spheres")),
+      checkbox("Oriented boxes", this.home.shown.boxes, toggle("boxes")),
       checkbox("Camera, grasp point, footprint", false, toggle("marks")),
       checkbox("Floor that it can drive to", false, (on) => { this.hasReach = on; this.home.setReach(on); }),
       legendRow("#e69f00", "Target"),

@@ -18,6 +18,8 @@ export class SceneView {
     const { stage, library } = this.page;
     this.mesh = await library.model(this.pack.meshes, 0, { cut: true });
     if (this.mesh) stage.content.add(this.mesh);
+    // Without a mesh the floors are what there is to see.
+    this.hasFloors = !this.mesh;
     const radius = addressNumber("radius", this.stored.grids[0].radius);
     await this.chooseGrid(this.stored.grids.find((one) => Math.abs(one.radius - radius) < 1e-6) ?? this.stored.grids[0]);
     const bounds = new Box3(new Vector3(...this.stored.min), new Vector3(...this.stored.max));
@@ -39,7 +41,7 @@ export class SceneView {
     this.pinned = null;
     this.showSlice(this.isSliced ?? address.get("sliced") !== "0");
     this.setCut(this.isCut ?? address.get("cut") !== "0");
-    this.layer.setFloors(this.hasFloors ?? false);
+    this.layer.setFloors(this.hasFloors);
     if (this.panel) this.fillPanel();
   }
 
@@ -74,7 +76,7 @@ export class SceneView {
       this.page.shadeBox(),
       checkbox("Slice", this.isSliced, (on) => this.showSlice(on)),
       checkbox("Cut off what is above the slice", this.isCut, (on) => this.setCut(on)),
-      checkbox("Floors of all spans, coloured by height", this.hasFloors ?? false, (on) => { this.hasFloors = on; this.layer.setFloors(on); }),
+      checkbox("Floors of all spans, coloured by height", this.hasFloors, (on) => { this.hasFloors = on; this.layer.setFloors(on); }),
       heading("Sphere radius"),
       ...radios("radius", this.stored.grids.map((one) => [metres(one.radius), one]), this.stored.grids.find((one) => one.radius === grid.radius),
         (stored) => { setAddress({ radius: stored.radius }); this.chooseGrid(stored); }),

@@ -80,8 +80,9 @@ export class Timeline {
     const marks = [];
     const add = (step, symbol, color, text) => {
       const mark = button(symbol, () => { this.pause(); this.go(step + 1); }, { title: `Step ${step + 1}: ${text}`, "aria-label": `Step ${step + 1}: ${text}` });
-      // Of one step, one beside the other.
-      const before = marks.filter((one) => one.step === step).length;
+      // Those of one moment stand one beside the other.
+      const near = Math.ceil(0.006 * this.run.steps);
+      const before = marks.filter((one) => step - one.step < near).length;
       mark.step = step;
       mark.style.left = `calc(${(100 * (step + 1)) / this.run.steps}% + ${before * 0.95}rem)`;
       mark.style.color = `var(${color})`;
@@ -89,8 +90,7 @@ export class Timeline {
     };
     track.events.forEach((events, step) => {
       for (const [name, [symbol, color, text]] of Object.entries(kMarks)) if (events & kEvents[name]) add(step, symbol, color, text);
-    });
-    track.endings.forEach((ending, step) => {
+      const ending = track.endings[step];
       if (ending === 1) add(step, "★", "--orange", "success");
       else if (ending > 1) add(step, "✕", "--red", kEndings[ending]);
     });
