@@ -25,7 +25,8 @@ ChosenCamera followCamera() {
   return {{.frame = CameraFrame::kBase,
            .link = 0,
            .frame_from_camera = pitchedDown(place, kDown),
-           .vertical_fov = kFov * kRadiansPerDegree}};
+           .vertical_fov = kFov * kRadiansPerDegree,
+           .keeps_sight = true}};
 }
 
 ChosenCamera topCamera() {

@@ -3,6 +3,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "camera_sight.h"
+
 namespace galactic {
 namespace {
 
@@ -27,18 +29,25 @@ std::optional<CameraMount> robotCamera(const Robot& robot) {
 
 MountedCamera::MountedCamera(const World& world, const BatchSimulator& simulator,
                              const CameraMount& mount)
-    : frame_(mount.frame),
+    : world_(&world),
+      frame_(mount.frame),
+      keeps_sight_(mount.frame == CameraFrame::kBase && mount.keeps_sight),
       on_body_(simulator.linkOnBody(mount.frame == CameraFrame::kLink ? mount.link : 0)),
       frame_from_camera_(rigidTransform(mount.frame_from_camera)),
       vertical_fov_(mount.vertical_fov),
       root_height_(world.robot().base() ? world.robot().base()->root_height : 0) {}
 
-RenderCamera MountedCamera::at(std::span<const RigidTransform> bodies) const noexcept {
+RenderCamera MountedCamera::at(std::span<const RigidTransform> bodies,
+                               std::uint32_t scene) const noexcept {
   RenderCamera camera{frame_from_camera_, vertical_fov_};
   if (frame_ == CameraFrame::kWorld) return camera;
   const RigidTransform link = bodies[on_body_.body] * on_body_.place;
   const RigidTransform frame = frame_ == CameraFrame::kLink ? link : baseFrame(link, root_height_);
   camera.world_from_camera = frame * frame_from_camera_;
+  if (keeps_sight_) {
+    camera.world_from_camera =
+        inSight(world_->scenes()[scene], frame.origin, camera.world_from_camera).world_from_camera;
+  }
   return camera;
 }
 
@@ -78,7 +87,7 @@ void WorldViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
     room[count++] = {link.model, bodies[link.on_body.body] * link.on_body.place};
   }
   views_[env].instances = room.first(count);
-  views_[env].camera = camera_.at(bodies);
+  views_[env].camera = camera_.at(bodies, state.scene);
 }
 
 }  // namespace galactic

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "galactic/batch_simulator.h"
+#include "galactic/camera_choice.h"
 #include "galactic/debug_models.h"
 #include "galactic/debug_views.h"
 #include "galactic/kinematics.h"
@@ -127,6 +128,27 @@ TEST_F(WorldViewsOfAHome, TheCameraOfTheBaseStandsOnTheFloor) {
                          rigidTransform(base * mount.frame_from_camera)),
               kPlaceTolerance);
   }
+}
+
+TEST_F(WorldViewsOfAHome, ACameraThatKeepsSightStaysInTheRoom) {
+  // 1.3 m behind a robot that stands 0.6 m from the end of the room; both kinds of views.
+  CameraMount mount = chooseCamera(world_->robot(), {.name = "follow"})->mount;
+  ASSERT_TRUE(mount.keeps_sight);
+  const auto inside = [](const RenderCamera& camera) {
+    const Vec3& at = camera.world_from_camera.origin;
+    return at.x > 0 && at.x < 3 && at.z > 0 && at.z < 3 && at.y > 0.3F;
+  };
+  const WorldViews views(*world_, *models_, *simulator_, mount);
+  auto models = DebugModels::from(*world_, {});
+  ASSERT_TRUE(models);
+  const DebugViews debug_views(*world_, *models, *simulator_, mount, 1);
+  EXPECT_TRUE(inside(views.views()[0].camera));
+  EXPECT_EQ(difference(debug_views.views()[0].camera.world_from_camera,
+                       views.views()[0].camera.world_from_camera),
+            0);
+  mount.keeps_sight = false;
+  const WorldViews outside(*world_, *models_, *simulator_, mount);
+  EXPECT_FALSE(inside(outside.views()[0].camera));
 }
 
 TEST_F(WorldViewsOfAHome, ACameraOfTheWorldStaysWhereItIs) {

@@ -16,7 +16,8 @@ struct ChosenCamera {
 
 /// What a user says of a camera.
 struct CameraWish {
-  /// "head": that of the robot's recipe. "follow": behind and above the base. "top": straight down
+  /// "head": that of the robot's recipe. "follow": behind and above the base, or
+  /// from where nothing stands between. "top": straight down
   /// on the base, without what is higher than a robot, ceilings above all. Or a link of the robot
   /// ("NAME", or "link:NAME" where it has one of these names), looking along its +X.
   std::string name;

@@ -28,6 +28,9 @@ struct CameraMount {
   Pose frame_from_camera;
   /// Radians between the lower and the upper edge of the image.
   float vertical_fov = 1.57079633F;
+  /// For kBase: the camera turns about the robot, or comes nearer, where something of the scene
+  /// stands between the two, as the column grids can tell.
+  bool keeps_sight = false;
 };
 
 /// The camera of the robot's recipe; none when it has none.
@@ -39,11 +42,14 @@ class MountedCamera {
   /// `world` must outlive the result.
   MountedCamera(const World& world, const BatchSimulator& simulator, const CameraMount& mount);
 
-  /// `bodies`: BatchSimulator::bodyTransforms() of one env.
-  [[nodiscard]] RenderCamera at(std::span<const RigidTransform> bodies) const noexcept;
+  /// `bodies`: BatchSimulator::bodyTransforms() of one env, which is in World::scenes()[scene].
+  [[nodiscard]] RenderCamera at(std::span<const RigidTransform> bodies,
+                                std::uint32_t scene) const noexcept;
 
  private:
+  const World* world_;
   CameraFrame frame_;
+  bool keeps_sight_;
   /// The camera's link; the root for kBase.
   LinkOnBody on_body_;
   RigidTransform frame_from_camera_;
