@@ -11,6 +11,7 @@
 #include <array>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <cmath>
 #include <memory>
 #include <system_error>
@@ -52,10 +53,24 @@ constexpr std::array kFormats{
     Format{kFbxReader, "Autodesk FBX", statedBy(UpAxis::kY, "file")},
 };
 
-Format formatOf(const Assimp::Importer& importer) {
+/// The reader that was chosen for the file; null when it does not tell.
+const aiImporterDesc* readerOf(const Assimp::Importer& importer) {
   const int index = importer.GetPropertyInteger("importerIndex", -1);
-  const aiImporterDesc* description =
-      index < 0 ? nullptr : importer.GetImporterInfo(static_cast<std::size_t>(index));
+  return index < 0 ? nullptr : importer.GetImporterInfo(static_cast<std::size_t>(index));
+}
+
+/// Whether the reader is one for files of this name: where none of these accepts the content, the
+/// library takes any other that does.
+bool isForName(const aiImporterDesc& reader, const std::filesystem::path& path) {
+  std::string extension = path.extension().string().substr(1);
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return fmt::format(" {} ", reader.mFileExtensions).find(" " + extension + " ") !=
+         std::string::npos;
+}
+
+Format formatOf(const Assimp::Importer& importer) {
+  const aiImporterDesc* description = readerOf(importer);
   const std::string_view reader = description == nullptr ? "unknown" : description->mName;
   const auto* known = std::find_if(kFormats.begin(), kFormats.end(),
                                    [&](const Format& format) { return format.reader == reader; });
@@ -209,12 +224,24 @@ Result<void> SceneReader::load() {
                     "it to GLB",
                     path_.extension().string(), reason.empty() ? "no reason given" : reason));
   }
+  // What is checked before goes by the name, too.
+  const aiImporterDesc* reader = readerOf(importer);
+  if (reader != nullptr && !isForName(*reader, path_)) {
+    return invalid(
+        fmt::format("its content is not what its name says, but of the kind '{}'; name "
+                    "it as such, or export it again",
+                    reader->mName));
+  }
   if (dropped_faces.seen()) {
     return invalid("it has faces that use vertices out of range; export it again");
   }
   format_ = formatOf(importer);
   asset_.format = format_.name;
   scene_.reset(importer.GetOrphanedScene());
+  // Of some broken files a reader makes a scene without any node.
+  if (scene_->mRootNode == nullptr) {
+    return invalid("it has no scene, so nothing in it has a place; export it again");
+  }
   return {};
 }
 

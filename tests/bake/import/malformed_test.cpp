@@ -136,6 +136,17 @@ TEST_P(MalformedMesh, IsRefusedOrSoundAfterRandomChanges) {
   EXPECT_LE(refused, kTrials * 9 / 10);
 }
 
+/// Checks go by the name of a file, and so do readers.
+TEST_P(MalformedMesh, IsRefusedUnderTheNameOfAnotherFormat) {
+  const auto& [name, content] = GetParam();
+  const auto extension = std::filesystem::path(name).extension();
+  for (const char* other : {".obj", ".ply", ".stl", ".off", ".glb", ".gltf", ".dae", ".fbx"}) {
+    if (other == extension) continue;
+    const Trial trial("a" + std::string(other));
+    EXPECT_EQ(trial.run(content), Outcome::kRefused) << name << " as " << other;
+  }
+}
+
 /// The text with the first number behind `before` changed by `difference`.
 std::string withCount(std::string text, std::string_view before, int difference) {
   const std::size_t begin = text.find(before) + before.size();
