@@ -28,8 +28,8 @@ Result<void> checkFrame(const schema::ColumnGrid& grid, const std::string& where
   Offence offence(where);
   offence.require(isLength(grid.radius()), "radius", "is {} m, wanted a number above 0",
                   grid.radius());
-  offence.require(isLength(grid.spacing()), "spacing", "is {} m, wanted a number above 0",
-                  grid.spacing());
+  offence.require(isLength(grid.spacing()) && grid.spacing() >= kLeastSpacing, "spacing",
+                  "is {} m, wanted a length of at least {} m", grid.spacing(), kLeastSpacing);
   offence.require(grid.radius() >= 0.5F * grid.spacing(), "radius",
                   "is {} m, wanted at least half the spacing of {} m", grid.radius(),
                   grid.spacing());
