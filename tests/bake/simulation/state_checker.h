@@ -1,9 +1,12 @@
 #pragma once
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "bullet_scene.h"
@@ -27,11 +30,17 @@ struct Findings {
   /// Spheres shown to Bullet, and those that touch the exact scene, which the column method allows.
   std::uint64_t exact = 0;
   std::uint64_t shallow = 0;
+  /// How deep the deepest of these is in the scene, metres, and where it is.
+  float deepest = 0;
+  Vec3 deepest_centre{};
+  float deepest_radius = 0;
   /// Of the robot, then of held objects: blocked by the column grid, overlapping an object, deeper
   /// in the exact scene than the column method allows.
   std::array<std::uint64_t, 2> in_grid{};
   std::array<std::uint64_t, 2> in_objects{};
   std::array<std::uint64_t, 2> in_scene{};
+  /// The first spheres of robots in objects, in words.
+  std::vector<std::string> notes{};
 };
 
 /// Looks at the states of a batch from outside: column grids and boxes asked sphere by sphere, and
@@ -70,7 +79,10 @@ class StateChecker {
       const InObjects in = inObjects(around, ball, before.released, found);
       before.leaving[n] = before.leaving[n] && in.released;
       found.released_into += before.leaving[n] ? 1U : 0U;
-      found.in_objects[0] += in.other || (in.released && !before.leaving[n]) ? 1U : 0U;
+      if (in.other || (in.released && !before.leaving[n])) {
+        ++found.in_objects[0];
+        note(env, state, n, before, in, found);
+      }
       if (exactly) found.in_scene[0] += isInScene(ball, found) ? 1U : 0U;
     }
     found.robot_spheres += spheres_.size();
@@ -122,6 +134,17 @@ class StateChecker {
     if (!goes_on || before.object < 0 || before.object == state.held) return;
     before.released = before.object;
     before.leaving.assign(spheres_.size(), true);
+  }
+
+  static void note(std::size_t env, const EnvState& state, std::size_t sphere,
+                   const HeldBefore& before, const InObjects& in, Findings& found) {
+    constexpr std::size_t kMost = 5;
+    if (found.notes.size() == kMost) return;
+    found.notes.push_back(
+        fmt::format("env {}, step {} of episode {}: sphere {} is in {}; object {} was released "
+                    "last, {} is held",
+                    env, state.step, state.episode, sphere,
+                    in.other ? "another object" : "it again", before.released, state.held));
   }
 
   static Vec3 at(const RigidTransform& frame, const Vec3& point) {
@@ -181,12 +204,32 @@ class StateChecker {
   }
 
   [[nodiscard]] bool isInScene(const Ball& ball, Findings& found) {
-    // Bullet counts contacts up to 2 % of the radius away.
-    const float radius = (world_.radii()[ball.radius_index] - kDeepest) / 1.02F;
-    if (!(radius > 0)) return false;
+    if (!(world_.radii()[ball.radius_index] > kDeepest)) return false;
     ++found.exact;
-    found.shallow += scene_.touches(ball.centre, world_.radii()[ball.radius_index]) ? 1U : 0U;
-    return scene_.touches(ball.centre, radius);
+    found.shallow += isDeeper(ball, 0) ? 1U : 0U;
+    if (isDeeper(ball, found.deepest)) {
+      found.deepest = depthOf(ball, found.deepest);
+      found.deepest_centre = ball.centre;
+      found.deepest_radius = world_.radii()[ball.radius_index];
+    }
+    return isDeeper(ball, kDeepest);
+  }
+
+  /// Whether a ball that is smaller by `depth` touches the scene.
+  [[nodiscard]] bool isDeeper(const Ball& ball, float depth) const {
+    // Bullet counts contacts up to 2 % of the radius away.
+    const float radius = (world_.radii()[ball.radius_index] - depth) / 1.02F;
+    return radius > 0 && scene_.touches(ball.centre, radius);
+  }
+
+  /// How deep a ball is that is deeper than `at_least`, to a hundredth of a millimetre.
+  [[nodiscard]] float depthOf(const Ball& ball, float at_least) const {
+    float at_most = world_.radii()[ball.radius_index];
+    while (at_most - at_least > 1e-5F) {
+      const float middle = 0.5F * (at_least + at_most);
+      (isDeeper(ball, middle) ? at_least : at_most) = middle;
+    }
+    return at_least;
   }
 
   void checkHeld(std::size_t env, const EnvState& state, const Surroundings& around,
