@@ -2,10 +2,9 @@
 // compressed. The import has to give an error, or episodes
 // that the writer takes and the runtime reads.
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string_view>
 
+#include "finding.h"
 #include "galactic/bake/episode_pack.h"
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/episode_set.h"
@@ -16,28 +15,20 @@
 namespace {
 
 using galactic::bake::SourceEpisodes;
-
-[[noreturn]] void report(std::string_view finding) {
-  std::fprintf(stderr, "finding: %.*s\n", static_cast<int>(finding.size()), finding.data());
-  std::abort();
-}
-
-void checkError(const galactic::Error& error) {
-  if (error.code == galactic::ErrorCode::kInternal) report(error.message);
-  if (error.where.empty() || error.message.empty()) report("an error without place or message");
-}
+using galactic::test::expectGoodError;
+using galactic::test::reportFinding;
 
 void checkEpisodes(const SourceEpisodes& episodes) {
   galactic::bake::Provenance provenance;
   provenance.tool_version = "0.1.0";
   const auto payload = encodeEpisodePack(episodes, provenance);
-  if (!payload) report("episodes that the writer refuses");
+  if (!payload) reportFinding("episodes that the writer refuses");
   const auto file = galactic::test::packFile(galactic::PackKind::kEpisodes, *payload);
   const auto pack = galactic::PackFile::view(file.bytes(), "episodes.pack");
-  if (!pack) report(pack.error().message);
+  if (!pack) reportFinding(pack.error().message);
   const auto set = galactic::EpisodeSet::from(*pack);
-  if (!set) report(set.error().message);
-  if (set->episodes().size() != episodes.episodes.size()) report("episodes that are lost");
+  if (!set) reportFinding(set.error().message);
+  if (set->episodes().size() != episodes.episodes.size()) reportFinding("episodes that are lost");
 }
 
 }  // namespace
@@ -52,7 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (episodes) {
     checkEpisodes(*episodes);
   } else {
-    checkError(episodes.error());
+    expectGoodError(episodes.error());
   }
   return 0;
 }

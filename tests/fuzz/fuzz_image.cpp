@@ -3,30 +3,26 @@
 // size that it states; what is baked of it must have the layout of a pack.
 #include <bit>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <span>
 #include <string_view>
 
+#include "finding.h"
 #include "textures/appearance.h"
 #include "textures/image_decoder.h"
 
 namespace {
 
-[[noreturn]] void report(std::string_view finding) {
-  std::fprintf(stderr, "finding: %.*s\n", static_cast<int>(finding.size()), finding.data());
-  std::abort();
-}
+using galactic::test::reportFinding;
 
 void checkAppearance(const galactic::bake::Appearance& baked) {
-  if (!(baked.alpha_cutoff >= 0 && baked.alpha_cutoff <= 1)) report("a cutoff out of range");
+  if (!(baked.alpha_cutoff >= 0 && baked.alpha_cutoff <= 1)) reportFinding("a cutoff out of range");
   if (baked.size == 0) {
-    if (!baked.texels.empty()) report("texels of no texture");
+    if (!baked.texels.empty()) reportFinding("texels of no texture");
     return;
   }
-  if (!std::has_single_bit(baked.size) || baked.size > 64) report("a size out of range");
+  if (!std::has_single_bit(baked.size) || baked.size > 64) reportFinding("a size out of range");
   if (baked.texels.size() != galactic::textureBytes(baked.size, baked.format)) {
-    report("texels that do not fit the size");
+    reportFinding("texels that do not fit the size");
   }
 }
 
@@ -37,11 +33,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const auto image = bake::decodeImage(std::as_bytes(std::span(data + 1, size - 1)));
   if (!image) {
-    if (image.error().empty()) report("a refusal without a reason");
+    if (image.error().empty()) reportFinding("a refusal without a reason");
     return 0;
   }
   const std::size_t texels = std::size_t{image->width} * image->height;
-  if (texels == 0 || image->rgba.size() != 4 * texels) report("an image of another size");
+  if (texels == 0 || image->rgba.size() != 4 * texels) reportFinding("an image of another size");
   // Filters of large images take the fuzzer's time and tell nothing new.
   constexpr std::size_t kManyTexels = std::size_t{1} << 16U;
   if (texels > kManyTexels) return 0;

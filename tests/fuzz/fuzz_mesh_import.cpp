@@ -5,39 +5,31 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string_view>
 
+#include "finding.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "support/scratch_folder.h"
 
 namespace {
 
+using galactic::test::expectGoodError;
+using galactic::test::reportFinding;
+
 constexpr std::array<std::string_view, 8> kNames{"a.obj",  "a.ply", "a.stl", "a.glb",
                                                  "a.gltf", "a.dae", "a.fbx", "a.off"};
 
-[[noreturn]] void report(std::string_view finding) {
-  std::fprintf(stderr, "finding: %.*s\n", static_cast<int>(finding.size()), finding.data());
-  std::abort();
-}
-
-void checkError(const galactic::Error& error) {
-  if (error.code == galactic::ErrorCode::kInternal) report(error.message);
-  if (error.where.empty() || error.message.empty()) report("an error without place or message");
-}
-
 void checkMesh(const galactic::bake::TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) report("a mesh without triangles");
+  if (mesh.triangles.empty()) reportFinding("a mesh without triangles");
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t vertex : triangle) {
-      if (vertex >= mesh.vertices.size()) report("an index out of range");
+      if (vertex >= mesh.vertices.size()) reportFinding("an index out of range");
       const galactic::Vec3& v = mesh.vertices[vertex];
       const float farthest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
       const bool sound = std::isfinite(v.x + v.y + v.z) &&
                          farthest <= static_cast<float>(galactic::bake::kMaxCoordinate);
-      if (!sound) report("a vertex out of bounds");
+      if (!sound) reportFinding("a vertex out of bounds");
     }
   }
 }
@@ -56,14 +48,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                                   .memory_limit = std::uint64_t{1} << 30U};
   const auto asset = galactic::bake::importMesh(path, options);
   if (!asset) {
-    checkError(asset.error());
+    expectGoodError(asset.error());
     return 0;
   }
   const auto clean = galactic::bake::placeAndClean(*asset);
   if (clean) {
     checkMesh(clean->mesh);
   } else {
-    checkError(clean.error());
+    expectGoodError(clean.error());
   }
   return 0;
 }

@@ -7,14 +7,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include "finding.h"
 #include "galactic/episode_set.h"
 #include "galactic/kinematics.h"
 #include "galactic/learned_policy.h"
@@ -32,11 +31,7 @@
 namespace {
 
 using namespace galactic;
-
-[[noreturn]] void report(const char* finding) {
-  std::fprintf(stderr, "finding: %s\n", finding);
-  std::abort();
-}
+using test::reportFinding;
 
 /// Centres over, beside and beyond a grid.
 struct Centres {
@@ -81,8 +76,8 @@ void query(const ColumnGrid& grid) {
     const Contact contact = grid.contact({centres.x[n], centres.y[n], centres.z[n]});
     const bool same = contact.clearance == clearance[n] && sameBits(contact.down, down[n]) &&
                       sameBits(contact.up, up[n]);
-    if (!same) report("the batched query differs from the scalar one");
-    if (!(contact.down >= 0 && contact.up >= 0)) report("a negative or undefined distance");
+    if (!same) reportFinding("the batched query differs from the scalar one");
+    if (!(contact.down >= 0 && contact.up >= 0)) reportFinding("a negative or undefined distance");
   }
   std::vector<Span> spans(grid.spanCount(grid.columnsX() - 1, grid.columnsZ() - 1));
   grid.spans(grid.columnsX() - 1, grid.columnsZ() - 1, spans);
@@ -90,119 +85,125 @@ void query(const ColumnGrid& grid) {
 
 void useScene(const PackFile& pack) {
   const auto scene = Scene::from(pack);
-  if (!scene) report("a pack of scenes without a scene");
+  if (!scene) reportFinding("a pack of scenes without a scene");
   for (const ColumnGrid& grid : scene->grids()) query(grid);
 }
 
 /// Whether every sphere has a radius of the working set and a place.
 void useSpheres(std::span<const SetSphere> spheres, std::span<const float> radii) {
   for (const SetSphere& sphere : spheres) {
-    if (sphere.radius_index >= radii.size()) report("a sphere without a radius");
+    if (sphere.radius_index >= radii.size()) reportFinding("a sphere without a radius");
     const Vec3& centre = sphere.centre;
     if (!std::isfinite(centre.x) || !std::isfinite(centre.y) || !std::isfinite(centre.z)) {
-      report("a sphere without a place");
+      reportFinding("a sphere without a place");
     }
   }
 }
 
 void useObjects(const PackFile& pack) {
   const auto set = ObjectSet::from(pack);
-  if (!set) report("a pack of objects without objects");
+  if (!set) reportFinding("a pack of objects without objects");
   for (std::size_t n = 0; n < set->objects().size(); ++n) {
     const ObjectModel& object = set->objects()[n];
-    if (set->find(object.name) != n) report("an object that its name does not find");
-    if (object.spheres.empty() || object.stable_poses.empty()) report("an object without a part");
+    if (set->find(object.name) != n) reportFinding("an object that its name does not find");
+    if (object.spheres.empty() || object.stable_poses.empty())
+      reportFinding("an object without a part");
     useSpheres(object.spheres, set->radii());
-    if (!(object.box.half_extents.x > 0)) report("a box without volume");
+    if (!(object.box.half_extents.x > 0)) reportFinding("a box without volume");
     for (const StablePose& pose : object.stable_poses) {
-      if (!(pose.likelihood >= 0 && pose.likelihood <= 1)) report("a share beyond 0 to 1");
+      if (!(pose.likelihood >= 0 && pose.likelihood <= 1)) reportFinding("a share beyond 0 to 1");
     }
   }
 }
 
 void useRobot(const PackFile& pack) {
   const auto robot = Robot::from(pack);
-  if (!robot) report("a pack of a robot without a robot");
+  if (!robot) reportFinding("a pack of a robot without a robot");
   const std::size_t links = robot->links().size();
   std::vector<Pose> poses(links);
   forwardKinematics(robot->links(), {}, robot->startPositions(), poses);
   for (std::size_t n = 0; n < links; ++n) {
-    if (robot->findLink(robot->linkName(n)) != n) report("a link that its name does not find");
-    if (robot->jointName(n).empty() != (n == 0)) report("a joint without a name");
+    if (robot->findLink(robot->linkName(n)) != n)
+      reportFinding("a link that its name does not find");
+    if (robot->jointName(n).empty() != (n == 0)) reportFinding("a joint without a name");
   }
   useSpheres(robot->spheres(), robot->radii());
   std::size_t spheres = 0;
   for (const SphereGroup& group : robot->groups()) {
-    if (group.link >= links) report("a group without a link");
+    if (group.link >= links) reportFinding("a group without a link");
     spheres += group.spheres.size();
   }
-  if (spheres != robot->spheres().size()) report("a sphere without a group");
+  if (spheres != robot->spheres().size()) reportFinding("a sphere without a group");
   for (const GroupPair& pair : robot->testedPairs()) {
     if (pair.first >= pair.second || pair.second >= robot->groups().size()) {
-      report("a pair of no two groups");
+      reportFinding("a pair of no two groups");
     }
   }
   for (const ControlledJoint& joint : robot->controlledJoints()) {
-    if (joint.position >= robot->positionCount()) report("an action without a joint");
+    if (joint.position >= robot->positionCount()) reportFinding("an action without a joint");
   }
-  if (robot->endEffector() && robot->endEffector()->link >= links) report("a hand without a link");
-  if (robot->camera() && robot->camera()->link >= links) report("a camera without a link");
-  if (robot->laser() && robot->laser()->link >= links) report("a laser without a link");
+  if (robot->endEffector() && robot->endEffector()->link >= links)
+    reportFinding("a hand without a link");
+  if (robot->camera() && robot->camera()->link >= links) reportFinding("a camera without a link");
+  if (robot->laser() && robot->laser()->link >= links) reportFinding("a laser without a link");
 }
 
 void useEpisodes(const PackFile& pack) {
   const auto set = EpisodeSet::from(pack);
-  if (!set) report("a pack of episodes without episodes");
+  if (!set) reportFinding("a pack of episodes without episodes");
   for (std::size_t n = 0; n < set->episodes().size(); ++n) {
     const Episode& episode = set->episodes()[n];
-    if (episode.scene >= set->sceneNames().size()) report("an episode without a scene");
+    if (episode.scene >= set->sceneNames().size()) reportFinding("an episode without a scene");
     if (!std::isfinite(episode.base_position.y) || !std::isfinite(episode.base_yaw)) {
-      report("an episode that starts nowhere");
+      reportFinding("an episode that starts nowhere");
     }
-    if (episode.target >= set->placements(episode).size()) report("an episode without a target");
+    if (episode.target >= set->placements(episode).size())
+      reportFinding("an episode without a target");
     for (const Placement& placement : set->placements(episode)) {
-      if (placement.object >= set->objectNames().size()) report("a placement without an object");
+      if (placement.object >= set->objectNames().size())
+        reportFinding("a placement without an object");
       const Quat& turn = placement.pose.rotation;
-      if (!(turn.x * turn.x + turn.w * turn.w <= 1.1F)) report("a placement without a rotation");
+      if (!(turn.x * turn.x + turn.w * turn.w <= 1.1F))
+        reportFinding("a placement without a rotation");
     }
     for (const float position : set->startPositions(n)) {
-      if (!std::isfinite(position)) report("a joint that starts nowhere");
+      if (!std::isfinite(position)) reportFinding("a joint that starts nowhere");
     }
   }
 }
 
 void useWorld(const PackFile& pack) {
   const auto references = packReferences(pack);
-  if (!references) report("a pack of a world without a list");
+  if (!references) reportFinding("a pack of a world without a list");
   const auto task = taskOptions(pack);
   SimulationOptions options;
   if (!task || setOptions(*task, OptionScope::kTask, options)) {
-    report("a pack of a world whose task is none");
+    reportFinding("a pack of a world whose task is none");
   }
   for (const PackReference& reference : *references) {
     const std::filesystem::path path(reference.path);
-    if (path.empty() || path.is_absolute()) report("a listed pack that may lie anywhere");
+    if (path.empty() || path.is_absolute()) reportFinding("a listed pack that may lie anywhere");
     for (const auto& part : path) {
-      if (part == "..") report("a listed pack outside the folder");
+      if (part == "..") reportFinding("a listed pack outside the folder");
     }
   }
 }
 
 void useTexture(const PackFile& pack) {
   SharedTextures textures;
-  if (!textures.add(pack)) report("a texture pack whose texture is not read");
+  if (!textures.add(pack)) reportFinding("a texture pack whose texture is not read");
   const schema::SharedTexture& stored = *pack.root().asset_as_SharedTexture();
   const RenderTexture* texture = textures.find(stored.hash()->low(), stored.hash()->high());
-  if (texture == nullptr) report("a texture that is not found by its hash");
+  if (texture == nullptr) reportFinding("a texture that is not found by its hash");
   if (texture->texels.size() != textureBytes(texture->size, texture->format)) {
-    report("a texture with too few or too many texels");
+    reportFinding("a texture with too few or too many texels");
   }
 }
 
 /// Acts for two steps on two envs; what takes too much memory or time is left out.
 void usePolicy(const PackFile& pack) {
   const auto needs = policyInterface(pack);
-  if (!needs) report("a policy pack without a policy");
+  if (!needs) reportFinding("a policy pack without a policy");
   PolicyBatch batch{.envs = 2,
                     .actions = std::size_t{needs->continuous_actions} + needs->discrete_actions,
                     .observation_size = 0,
@@ -217,7 +218,7 @@ void usePolicy(const PackFile& pack) {
       needs->image ? std::size_t{needs->image->width} * needs->image->height : 0;
   if (batch.observation_size > kMost || batch.actions > kMost || pixels > kMost) return;
   auto policy = LearnedPolicy::create(pack, batch, {.threads = 1});
-  if (!policy) report("a policy that does not fit what it asks for");
+  if (!policy) reportFinding("a policy that does not fit what it asks for");
   const std::vector<float> observations(batch.envs * batch.observation_size, 0.5F);
   const std::vector<std::uint8_t> color(batch.envs * pixels * 3, 100);
   const std::vector<float> depth(batch.envs * pixels, 2);
@@ -230,9 +231,9 @@ void usePolicy(const PackFile& pack) {
 
 void draw(const PackFile& pack) {
   const auto meshes = renderMeshesOf(pack);
-  if (!meshes) report("a pack whose render meshes are not read");
+  if (!meshes) reportFinding("a pack whose render meshes are not read");
   if (!*meshes) return;
-  if (const char* offence = test::drawingOffence(**meshes)) report(offence);
+  if (const char* offence = test::drawingOffence(**meshes)) reportFinding(offence);
 }
 
 void use(const PackFile& pack) {
@@ -282,7 +283,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (pack) {
     use(*pack);
   } else if (pack.error().where.empty() || pack.error().message.empty()) {
-    report("an error without place or message");
+    reportFinding("an error without place or message");
   }
   return 0;
 }

@@ -3,44 +3,35 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
+#include "finding.h"
 #include "galactic/bake/scene_dataset.h"
 #include "support/scratch_folder.h"
 
 namespace {
 
 using galactic::bake::ComposedScene;
-
-[[noreturn]] void report(std::string_view finding) {
-  std::fprintf(stderr, "finding: %.*s\n", static_cast<int>(finding.size()), finding.data());
-  std::abort();
-}
-
-void checkError(const galactic::Error& error) {
-  if (error.code == galactic::ErrorCode::kInternal) report(error.message);
-  if (error.where.empty() || error.message.empty()) report("an error without place or message");
-}
+using galactic::test::expectGoodError;
+using galactic::test::reportFinding;
 
 void checkFinite(const galactic::bake::Affine& affine) {
   for (const double value : affine) {
-    if (!std::isfinite(value)) report("a transform that is not finite");
+    if (!std::isfinite(value)) reportFinding("a transform that is not finite");
   }
 }
 
 void checkScene(const ComposedScene& composed) {
   const auto& scene = composed.scene;
   for (const auto& instance : scene.instances) {
-    if (instance.mesh >= scene.meshes.size()) report("an instance of no mesh");
-    if (instance.name.empty()) report("an instance without a name");
+    if (instance.mesh >= scene.meshes.size()) reportFinding("an instance of no mesh");
+    if (instance.name.empty()) reportFinding("an instance without a name");
     checkFinite(instance.world_from_mesh);
   }
   for (const auto& object : composed.movable) checkFinite(object.world_from_mesh);
   for (std::size_t i = 1; i < scene.files.size(); ++i) {
-    if (scene.files[i - 1].name >= scene.files[i].name) report("files out of order");
+    if (scene.files[i - 1].name >= scene.files[i].name) reportFinding("files out of order");
   }
 }
 
@@ -86,7 +77,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto dataset =
       galactic::bake::SceneDataset::read(folder.path() / "home.scene_dataset_config.json");
   if (!dataset) {
-    checkError(dataset.error());
+    expectGoodError(dataset.error());
     return 0;
   }
   for (const std::string& name : dataset->scenes()) {
@@ -94,7 +85,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (scene) {
       checkScene(*scene);
     } else {
-      checkError(scene.error());
+      expectGoodError(scene.error());
     }
   }
   return 0;

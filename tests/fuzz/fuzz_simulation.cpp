@@ -3,49 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "finding.h"
+#include "input.h"
 #include "runtime/simulation/batch_trace.h"
 
 namespace {
 
 using galactic::BatchSimulator;
 using galactic::EnvState;
-
-[[noreturn]] void report(std::string_view finding) {
-  std::fprintf(stderr, "finding: %.*s\n", static_cast<int>(finding.size()), finding.data());
-  std::abort();
-}
-
-/// Takes values from the input; zeros after its end.
-class Input {
- public:
-  explicit Input(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
-
-  [[nodiscard]] bool isEmpty() const { return bytes_.empty(); }
-
-  template <class T>
-  T take() {
-    T value{};
-    const std::size_t size = std::min(sizeof(T), bytes_.size());
-    std::copy_n(bytes_.begin(), size, reinterpret_cast<std::uint8_t*>(&value));
-    bytes_ = bytes_.subspan(size);
-    return value;
-  }
-
-  /// Any bits, or, so that robots get somewhere, one of 255 values in [-1, 1].
-  float action() {
-    const auto first = take<std::int8_t>();
-    return first == -128 ? take<float>() : static_cast<float>(first) / 127;
-  }
-
- private:
-  std::span<const std::uint8_t> bytes_;
-};
+using galactic::test::Input;
+using galactic::test::reportFinding;
 
 galactic::SimulationOptions optionsOf(Input& input) {
   const auto bits = input.take<std::uint8_t>();
@@ -63,24 +34,25 @@ galactic::SimulationOptions optionsOf(Input& input) {
 
 void checkFinite(std::span<const float> values, std::string_view finding) {
   for (const float value : values) {
-    if (!std::isfinite(value)) report(finding);
+    if (!std::isfinite(value)) reportFinding(finding);
   }
 }
 
 void checkEnv(const EnvState& state) {
   const galactic::Vec3& at = state.world_from_root.translation;
-  if (!(at.x >= 0 && at.x <= 3 && at.z >= 0 && at.z <= 3)) report("a robot outside the room");
-  if (!(at.y >= -0.06F && at.y <= 0.06F)) report("a robot that is not on the floor");
+  if (!(at.x >= 0 && at.x <= 3 && at.z >= 0 && at.z <= 3))
+    reportFinding("a robot outside the room");
+  if (!(at.y >= -0.06F && at.y <= 0.06F)) reportFinding("a robot that is not on the floor");
   checkFinite(state.joint_positions, "a joint that is no number");
   if (state.held < -1 || state.held >= static_cast<std::int32_t>(state.objects.size())) {
-    report("an object held that is not there");
+    reportFinding("an object held that is not there");
   }
   for (const galactic::Pose& pose : state.objects) {
     const galactic::Quat& q = pose.rotation;
     const float length = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
-    if (!(std::abs(length - 1) < 1e-3F)) report("an object whose rotation is none");
+    if (!(std::abs(length - 1) < 1e-3F)) reportFinding("an object whose rotation is none");
     const galactic::Vec3& point = pose.translation;
-    if (!std::isfinite(point.x + point.y + point.z)) report("an object that is nowhere");
+    if (!std::isfinite(point.x + point.y + point.z)) reportFinding("an object that is nowhere");
   }
 }
 
@@ -89,15 +61,16 @@ void checkBatch(const BatchSimulator& simulator) {
   checkFinite(simulator.rewards(), "a reward that is no number");
   for (std::size_t env = 0; env < simulator.envCount(); ++env) {
     checkEnv(simulator.envState(env));
-    if (simulator.successes()[env] > simulator.dones()[env]) report("a success that is no end");
+    if (simulator.successes()[env] > simulator.dones()[env])
+      reportFinding("a success that is no end");
     const galactic::EpisodeEnd end = simulator.endings()[env];
     const bool says_done = galactic::isTermination(end) || galactic::isTruncation(end);
-    if (says_done != (simulator.dones()[env] != 0)) report("an end without a reason");
+    if (says_done != (simulator.dones()[env] != 0)) reportFinding("an end without a reason");
   }
   const galactic::SimulationStatistics seen = simulator.statistics();
-  if (seen.refused + seen.slid > seen.steps) report("more steps refused and slid than done");
-  if (seen.drops + seen.restored > seen.grasps) report("more released than grasped");
-  if (seen.successes + seen.failures > seen.episodes) report("more ends than episodes");
+  if (seen.refused + seen.slid > seen.steps) reportFinding("more steps refused and slid than done");
+  if (seen.drops + seen.restored > seen.grasps) reportFinding("more released than grasped");
+  if (seen.successes + seen.failures > seen.episodes) reportFinding("more ends than episodes");
 }
 
 }  // namespace
@@ -106,7 +79,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const galactic::test::BoxWorld world = galactic::test::furnishedWorld();
   Input input({data, size});
   auto simulator = BatchSimulator::create(world.world(), optionsOf(input));
-  if (!simulator) report(simulator.error().message);
+  if (!simulator) reportFinding(simulator.error().message);
   std::vector<float> actions(simulator->envCount() * simulator->actionCount());
   std::vector<std::int32_t> resets(simulator->envCount());
   constexpr int kMostSteps = 400;

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string_view>
 
+#include "finding.h"
 #include "galactic/bake/urdf_import.h"
 #include "support/scratch_folder.h"
 
@@ -15,16 +14,8 @@ namespace {
 using galactic::JointType;
 using galactic::bake::SourceLink;
 using galactic::bake::SourceRobot;
-
-[[noreturn]] void report(std::string_view finding) {
-  std::fprintf(stderr, "finding: %.*s\n", static_cast<int>(finding.size()), finding.data());
-  std::abort();
-}
-
-void checkError(const galactic::Error& error) {
-  if (error.code == galactic::ErrorCode::kInternal) report(error.message);
-  if (error.where.empty() || error.message.empty()) report("an error without place or message");
-}
+using galactic::test::expectGoodError;
+using galactic::test::reportFinding;
 
 bool isFinite(const galactic::bake::Affine& affine) {
   return std::all_of(affine.begin(), affine.end(), [](double v) { return std::isfinite(v); });
@@ -35,22 +26,23 @@ void checkLink(const SourceRobot& robot, std::size_t index) {
   const SourceLink& link = robot.links[index];
   const bool is_root = index == 0;
   if ((link.parent < 0) != is_root || link.parent >= static_cast<int>(index)) {
-    report("a parent that does not stand before its child");
+    reportFinding("a parent that does not stand before its child");
   }
-  if (!isFinite(link.parent_from_joint)) report("a joint frame that is not finite");
+  if (!isFinite(link.parent_from_joint)) reportFinding("a joint frame that is not finite");
   const double length = std::hypot(link.axis[0], link.axis[1], link.axis[2]);
-  if (std::abs(length - 1) > kRounding) report("an axis that is not of unit length");
+  if (std::abs(length - 1) > kRounding) reportFinding("an axis that is not of unit length");
   const bool limited =
       link.joint_type == JointType::kRevolute || link.joint_type == JointType::kPrismatic;
-  if (link.limits.has_value() != limited) report("limits where none belong, or none");
-  if (link.limits && !(link.limits->lower <= link.limits->upper)) report("limits out of order");
+  if (link.limits.has_value() != limited) reportFinding("limits where none belong, or none");
+  if (link.limits && !(link.limits->lower <= link.limits->upper))
+    reportFinding("limits out of order");
   if (link.mimic &&
       (link.mimic->link >= robot.links.size() || robot.links[link.mimic->link].mimic.has_value())) {
-    report("a mimic that leads nowhere");
+    reportFinding("a mimic that leads nowhere");
   }
   for (const auto* shapes : {&link.collisions, &link.visuals}) {
     for (const auto& shape : *shapes) {
-      if (!isFinite(shape.link_from_shape)) report("a shape whose frame is not finite");
+      if (!isFinite(shape.link_from_shape)) reportFinding("a shape whose frame is not finite");
     }
   }
 }
@@ -66,10 +58,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.time_limit = std::chrono::seconds(5);
   const auto robot = galactic::bake::importUrdf(path, options);
   if (!robot) {
-    checkError(robot.error());
+    expectGoodError(robot.error());
     return 0;
   }
-  if (robot->links.empty()) report("a robot without links");
+  if (robot->links.empty()) reportFinding("a robot without links");
   for (std::size_t i = 0; i < robot->links.size(); ++i) checkLink(*robot, i);
   return 0;
 }

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 
+#include "finding.h"
 #include "support/changed_world.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -32,11 +31,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     world.setWord(change.pack, change.at, value);
   }
   constexpr int kSteps = 8;
-  const auto outcome = world.use(kSteps);
-  if (!outcome.finding.empty()) {
-    std::fprintf(stderr, "finding: %s\n", outcome.finding.c_str());
-    std::abort();
-  }
+  const galactic::SensorOptions all_sensors{
+      .bump = true, .laser = {.beams = 8, .second_height = 0.5F}, .geodesic = true};
+  const auto outcome = world.use(kSteps, all_sensors);
+  if (!outcome.finding.empty()) galactic::test::reportFinding(outcome.finding);
   for (std::size_t n = count; n-- > 0;) {
     world.setWord(changes[n].pack, changes[n].at, changes[n].before);
   }

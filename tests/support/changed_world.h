@@ -46,7 +46,7 @@ class ChangedWorld {
   }
 
   /// Opens the packs; where they are accepted, simulates and draws them for `steps` steps.
-  [[nodiscard]] Outcome use(int steps) {
+  [[nodiscard]] Outcome use(int steps, const SensorOptions& sensors = {}) {
     std::vector<PackFile> packs;
     for (std::size_t n = 0; n < files_.size(); ++n) {
       const std::span<std::byte> file = files_[n].bytes();
@@ -58,7 +58,7 @@ class ChangedWorld {
     }
     const Result<World> world = World::from(std::move(packs));
     if (!world) return {};
-    return {.accepted = true, .finding = findingIn(*world, steps)};
+    return {.accepted = true, .finding = findingIn(*world, steps, sensors)};
   }
 
  private:
@@ -84,12 +84,13 @@ class ChangedWorld {
            finite(transform.origin);
   }
 
-  static std::string findingIn(const World& world, int steps) {
+  static std::string findingIn(const World& world, int steps, const SensorOptions& sensors) {
     SimulationOptions options;
     options.envs = kEnvs;
     options.threads = 1;
     options.body_transforms = true;
     options.order = EpisodeOrder::kLinear;
+    options.sensors = sensors;
     auto simulator = BatchSimulator::create(world, options);
     // Said so: no robot need be able to start.
     if (!simulator) return {};

@@ -109,17 +109,8 @@ Result<std::string> readText(const fs::path& path) {
   if (!file) return tl::unexpected(file.error());
   const auto bytes = file->bytes();
   std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (text.find('\0') != std::string::npos) {
-    return fail(ErrorCode::kInvalidInput, path.string(),
-                "it has zero bytes, so it is no XML text; is it a URDF?");
-  }
-  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
-    return fail(ErrorCode::kInvalidInput, path.string(), "the file is empty; generate it again");
-  }
-  if (!nestsModerately(text)) {
-    return fail(
-        ErrorCode::kInvalidInput, path.string(),
-        fmt::format("its elements are nested more than {} deep; is it a URDF?", kMaxNesting));
+  if (const auto fits = checkUrdfText(text, path.string()); !fits) {
+    return tl::unexpected(fits.error());
   }
   return text;
 }
@@ -185,6 +176,22 @@ Result<T> parseIsolated(const fs::path& path, std::chrono::seconds time_limit, P
 }
 
 }  // namespace
+
+Result<void> checkUrdfText(std::string_view text, const std::string& where) {
+  if (text.find('\0') != std::string_view::npos) {
+    return fail(ErrorCode::kInvalidInput, where,
+                "it has zero bytes, so it is no XML text; is it a URDF?");
+  }
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
+    return fail(ErrorCode::kInvalidInput, where, "the file is empty; generate it again");
+  }
+  if (!nestsModerately(text)) {
+    return fail(
+        ErrorCode::kInvalidInput, where,
+        fmt::format("its elements are nested more than {} deep; is it a URDF?", kMaxNesting));
+  }
+  return {};
+}
 
 Result<UrdfModel> readUrdf(const fs::path& path, std::chrono::seconds time_limit) {
   return parseIsolated<UrdfModel>(path, time_limit, parseUrdf);

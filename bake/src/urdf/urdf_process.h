@@ -1,12 +1,18 @@
 #pragma once
 #include <chrono>
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "galactic/error.h"
 #include "urdf/urdf_model.h"
 
 namespace galactic::bake {
+
+/// Refuses, with kInvalidInput, what the XML parser must not see: no text, or one that is nested so
+/// deep that the parser would exhaust the stack. `where` is put in front of errors.
+[[nodiscard]] Result<void> checkUrdfText(std::string_view text, const std::string& where);
 
 /// Reads a URDF file in a process of its own, so that no XML can crash or hang this one. Fails with
 /// kIo, kUnsupported (xacro) or kInvalidInput (empty, beyond kMaxUrdfBytes, refused by the parser,
