@@ -22,7 +22,7 @@ constexpr const char* kWholeRecipe =
     "[bake]\n"                                            // 1
     "radii = [0.05, 0.1]\n"                               // 2
     "no-render-meshes = true\n"                           // 3
-    "keep-going = false\n"                                // 4
+    "allow-missing = false\n"                             // 4
     "[[scenes]]\n"                                        // 5
     "dataset = \"a.scene_dataset_config.json\"\n"         // 6
     "scenes = [\"v3_*\", \"v2_*\"]\n"                     // 7
