@@ -96,6 +96,39 @@ void writeModels(JsonWriter& json, const RenderMeshes& meshes) {
   json.end(']');
 }
 
+/// What a texel is expected to be: the median of its neighbours and of the plane through them
+/// (LOCO-I, Weinberger et al. 2000).
+std::uint8_t expected(std::uint8_t left, std::uint8_t above, std::uint8_t corner) {
+  const auto [low, high] = std::minmax(left, above);
+  if (corner >= high) return low;
+  if (corner <= low) return high;
+  return static_cast<std::uint8_t>(left + above - corner);
+}
+
+/// An image of RGBA as four planes (red less green, green, blue less green, alpha) of what differs
+/// from the expected: compresses better than texels do.
+std::vector<std::uint8_t> residualsOf(std::span<const std::uint8_t> texels, std::size_t size) {
+  const std::size_t count = size * size;
+  std::vector<std::uint8_t> residuals;
+  residuals.reserve(4 * count);
+  std::vector<std::uint8_t> plane(count);
+  for (std::size_t channel = 0; channel < 4; ++channel) {
+    const bool is_relative = channel == 0 || channel == 2;
+    for (std::size_t n = 0; n < count; ++n) {
+      const int green = is_relative ? texels[4 * n + 1] : 0;
+      plane[n] = static_cast<std::uint8_t>(texels[4 * n + channel] - green);
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+      const std::uint8_t left = n % size > 0 ? plane[n - 1] : std::uint8_t{0};
+      const std::uint8_t above = n >= size ? plane[n - size] : std::uint8_t{0};
+      const bool has_corner = n % size > 0 && n >= size;
+      const std::uint8_t corner = has_corner ? plane[n - size - 1] : std::uint8_t{0};
+      residuals.push_back(static_cast<std::uint8_t>(plane[n] - expected(left, above, corner)));
+    }
+  }
+  return residuals;
+}
+
 void writeMarks(JsonWriter& json, const Robot& robot) {
   if (const auto& hand = robot.endEffector()) {
     json.begin("grasp", '{');
@@ -345,18 +378,16 @@ void AssetWriter::writeTextures(std::string_view key) {
     };
     for (; size > texture_size_; size /= 2) texels = texels.subspan(level_bytes(size));
     texels = texels.first(level_bytes(size));
-    // What differs from the texel to the left compresses better than the texel.
-    std::vector<std::uint8_t> differences(texels.begin(), texels.end());
-    const std::size_t pixel = is_blocks ? differences.size() : sizeof(std::uint32_t);
-    for (std::size_t n = differences.size(); n-- > pixel;) {
-      differences[n] = static_cast<std::uint8_t>(texels[n] - texels[n - pixel]);
-    }
     json_.begin("", '{');
     json_.text("name", texture->name);
     json_.number("size", size);
     json_.text("format", is_blocks ? "bc1" : "rgba8");
     Chunk chunk;
-    chunk.add("texels", std::span<const std::uint8_t>(differences));
+    if (is_blocks) {
+      chunk.add("texels", texels);
+    } else {
+      chunk.add("texels", std::span<const std::uint8_t>(residualsOf(texels, size)));
+    }
     data_.add(json_, "data", chunk);
     json_.end('}');
   }

@@ -9,12 +9,13 @@ PROGRAM writes the packs. Ends with 77 where there is no Chromium.
 import argparse
 import json
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
 import unittest
 
-from browser import Browser, Page, find_chromium
+from browser import Browser, Page, decode_png, find_chromium
 
 SKIPPED = 77
 OPTIONS = argparse.Namespace()
@@ -32,13 +33,25 @@ def tool(program: str, *arguments: object) -> str:
     ).stdout
 
 
+def images_of(glb: bytes) -> dict[str, bytes]:
+    """The images of a GLB file, as PNG, by name."""
+    (length,) = struct.unpack("<I", glb[12:16])
+    content = json.loads(glb[20 : 20 + length])
+    binary = glb[28 + length :]
+    found = {}
+    for image in content["images"]:
+        view = content["bufferViews"][image["bufferView"]]
+        found[image["name"]] = binary[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]
+    return found
+
+
 class Pages(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.scratch = tempfile.TemporaryDirectory(prefix="galactic-pages-")
         cls.folder = pathlib.Path(cls.scratch.name)
         tool(OPTIONS.packs, cls.folder)
-        for name in ("world", "hostile_scene", "hostile_objects", "hostile_robot"):
+        for name in ("world", "hostile_scene", "hostile_objects", "hostile_robot", "painted"):
             tool(
                 OPTIONS.pack, "view", cls.folder / f"{name}.pack", "-o", cls.folder / f"{name}.html"
             )
@@ -167,6 +180,21 @@ class Pages(unittest.TestCase):
             decoded[1][:16], [0, 0, 255, 255, 255, 0, 0, 255, 128, 0, 128, 255, 0, 0, 0, 255]
         )
         self.assertEqual(decoded[0][16:20], [255, 0, 0, 255])
+
+    def test_textures_have_the_texels_of_the_pack(self):
+        glb = self.folder / "painted.glb"
+        tool(OPTIONS.pack, "export", self.folder / "painted.pack", "-o", glb, "--what", "mesh")
+        images = images_of(glb.read_bytes())
+        page = self.open("painted", "", "object 0")
+        textures = page.evaluate(
+            "Promise.all(galactic.library.textures.map((_, n) => galactic.library.texture(n)"
+            ".then((one) => [...one.image.data])))"
+        )
+        names = page.evaluate("galactic.library.textures.map((one) => one.name)")
+        self.assertEqual(sorted(names), sorted(images))
+        for name, texels in zip(names, textures):
+            colors = bytes(value for n, value in enumerate(texels) if n % 4 != 3)
+            self.assertEqual(colors, decode_png(images[name])[2], name)
 
     def test_a_click_marks_what_a_sphere_reaches(self):
         page = self.open("world", "view=scene&radius=0.05&slice=0.4", "scene 0")

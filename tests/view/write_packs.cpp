@@ -9,6 +9,7 @@
 
 #include "galactic/batch_simulator.h"
 #include "galactic/kinematics.h"
+#include "pack_tool/painted_meshes.h"
 #include "recording.h"
 #include "support/scratch_folder.h"
 #include "support/small_home_models.h"
@@ -32,6 +33,13 @@ void writeHome(const WorldFields& fields, const std::filesystem::path& folder) {
       world.parent_path(), folder,
       std::filesystem::copy_options::overwrite_existing | std::filesystem::copy_options::recursive);
   std::filesystem::rename(folder / world.filename(), folder / "world.pack");
+}
+
+/// Objects with textures of noise.
+void writePainted(const std::filesystem::path& folder) {
+  ObjectPackFields objects = smallObjects();
+  objects.render_meshes = paintedMeshes({.parts = {0, 1}});
+  write(folder / "painted.pack", buildPack(objects));
 }
 
 void writeHostile(const std::filesystem::path& folder) {
@@ -123,8 +131,9 @@ int main(int argc, char** argv) {
     const std::filesystem::path folder = argv[1];
     galactic::test::writeHome(galactic::test::smallHomeWorldWithModels(), folder);
     galactic::test::writeHome(galactic::test::smallHomeWorld(), folder / "bare");
-    galactic::test::writeRun(argv[1]);
-    galactic::test::writeHostile(argv[1]);
+    galactic::test::writeRun(folder);
+    galactic::test::writePainted(folder);
+    galactic::test::writeHostile(folder);
   } catch (const std::exception& problem) {
     std::fprintf(stderr, "%s\n", problem.what());
     return 4;

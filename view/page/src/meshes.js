@@ -101,11 +101,31 @@ function decodeBlocks(blocks, size) {
   return out;
 }
 
-/// The writer keeps what differs from the texel to the left.
-function undoDifferences(differences) {
-  const bytes = differences.slice();
-  for (let n = 4; n < bytes.length; ++n) bytes[n] += bytes[n - 4];
-  return bytes;
+/// Texels of residuals: view/page_assets.cpp writes four planes of what differs from the expected.
+function undoResiduals(residuals, size) {
+  const count = size * size;
+  const planes = residuals.slice();
+  for (let channel = 0; channel < 4; ++channel) {
+    const plane = planes.subarray(channel * count, (channel + 1) * count);
+    for (let n = 0; n < count; ++n) {
+      const isFirst = n % size === 0;
+      const left = isFirst ? 0 : plane[n - 1];
+      const above = n < size ? 0 : plane[n - size];
+      const corner = isFirst || n < size ? 0 : plane[n - size - 1];
+      const low = Math.min(left, above);
+      const high = Math.max(left, above);
+      plane[n] += corner >= high ? low : corner <= low ? high : left + above - corner;
+    }
+  }
+  const texels = new Uint8Array(4 * count);
+  for (let n = 0; n < count; ++n) {
+    const green = planes[count + n];
+    texels[4 * n] = planes[n] + green;
+    texels[4 * n + 1] = green;
+    texels[4 * n + 2] = planes[2 * count + n] + green;
+    texels[4 * n + 3] = planes[3 * count + n];
+  }
+  return texels;
 }
 
 export class MeshLibrary {
@@ -128,7 +148,7 @@ export class MeshLibrary {
 
   async loadTexture(stored) {
     const { texels } = await this.data.arrays(stored.data);
-    const pixels = stored.format === "bc1" ? decodeBlocks(texels, stored.size) : undoDifferences(texels);
+    const pixels = stored.format === "bc1" ? decodeBlocks(texels, stored.size) : undoResiduals(texels, stored.size);
     const texture = new DataTexture(pixels, stored.size, stored.size);
     texture.colorSpace = SRGBColorSpace;
     texture.wrapS = texture.wrapT = RepeatWrapping;
