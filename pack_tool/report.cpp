@@ -12,8 +12,19 @@ namespace galactic::pack_tool {
 
 namespace {
 
-Result<PackEntry> entryOf(const PackFile& pack) {
+/// A pack as seen from `folder`, or its file's name where that would lead upwards: what pages say
+/// does not depend on where packs lie.
+std::string nameFrom(const std::filesystem::path& folder, const std::filesystem::path& pack) {
+  std::error_code ignored;
+  const std::filesystem::path relative =
+      std::filesystem::absolute(pack, ignored).lexically_normal().lexically_relative(folder);
+  const bool is_below = !relative.empty() && *relative.begin() != "..";
+  return (is_below ? relative : pack.filename()).generic_string();
+}
+
+Result<PackEntry> entryOf(const PackFile& pack, const std::filesystem::path& folder) {
   PackEntry entry{.description = describePack(pack, Detail::kSummary), .thumbnails = {}};
+  entry.description["file"] = nameFrom(folder, entry.description.at("file").get<std::string>());
   auto thumbnails = thumbnailsOf(pack);
   if (!thumbnails) return tl::unexpected(thumbnails.error());
   entry.thumbnails = std::move(*thumbnails);
@@ -21,11 +32,14 @@ Result<PackEntry> entryOf(const PackFile& pack) {
 }
 
 /// On all cores; what becomes of a pack does not depend on who draws it.
-std::vector<Result<PackEntry>> entriesOf(const std::vector<PackFile>& packs) {
+std::vector<Result<PackEntry>> entriesOf(const std::vector<PackFile>& packs,
+                                         const std::filesystem::path& folder) {
   std::vector<Result<PackEntry>> entries(packs.size());
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
-    for (std::size_t n = next++; n < packs.size(); n = next++) entries[n] = entryOf(packs[n]);
+    for (std::size_t n = next++; n < packs.size(); n = next++) {
+      entries[n] = entryOf(packs[n], folder);
+    }
   };
   std::vector<std::jthread> helpers;
   const std::size_t threads =
@@ -43,7 +57,10 @@ Result<void> makeReport(const ReportOptions& options) {
   if (!packs) return tl::unexpected(packs.error());
   std::vector<PackEntry> entries;
   entries.reserve(packs->size());
-  for (Result<PackEntry>& entry : entriesOf(*packs)) {
+  std::error_code ignored;
+  const std::filesystem::path folder =
+      std::filesystem::absolute(options.packs.front(), ignored).lexically_normal().parent_path();
+  for (Result<PackEntry>& entry : entriesOf(*packs, folder)) {
     if (!entry) return tl::unexpected(entry.error());
     entries.push_back(std::move(*entry));
   }

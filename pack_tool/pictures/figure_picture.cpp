@@ -95,24 +95,37 @@ struct SheetLayout {
   std::uint64_t tile_height = 0;
 };
 
-SheetLayout layOut(std::size_t count, int view_size) {
+/// As wide as a view, or as the widest text over one; names that never end are cut off.
+int tileWidth(std::span<const Figure> figures, int view_size) {
+  int widest = view_size;
+  for (const Figure& figure : figures) {
+    widest = std::max(widest, textWidth(printable(figure.name)));
+    for (const std::string& line : figure.short_caption) widest = std::max(widest, textWidth(line));
+  }
+  constexpr int kMostText = 500;
+  return std::min(widest, std::max(view_size, kMostText));
+}
+
+SheetLayout layOut(std::span<const Figure> figures, int view_size) {
   SheetLayout layout;
+  const std::size_t count = figures.size();
   while (layout.columns * layout.columns < count) ++layout.columns;
   layout.rows = (count + layout.columns - 1) / layout.columns;
-  layout.tile_width = static_cast<std::uint64_t>(view_size) + kMargin;
+  layout.tile_width = static_cast<std::uint64_t>(tileWidth(figures, view_size) + kMargin);
   // Name and two lines of caption above, the scale bar below.
   constexpr int kTileTextHeight = 4 * kLine + kMargin;
   layout.tile_height = static_cast<std::uint64_t>(view_size) + kTileTextHeight;
   return layout;
 }
 
-void drawTile(Image& image, const ViewPlace& place, const Figure& figure) {
+/// `width` is what texts may take.
+void drawTile(Image& image, const ViewPlace& place, int width, const Figure& figure) {
   const ViewAxes axes = threeQuarterView();
   const double scale = fittingScale(windowOf(figure, axes).extent(), place.size);
-  drawText(image, {place.left, place.top}, shortened(printable(figure.name), place.size), kInk);
+  drawText(image, {place.left, place.top}, shortened(printable(figure.name), width), kInk);
   int y = place.top + kLine;
   for (const std::string& line : figure.short_caption) {
-    drawText(image, {place.left, y}, shortened(line, place.size), kFaintInk);
+    drawText(image, {place.left, y}, shortened(line, width), kFaintInk);
     y += kLine;
   }
   const ViewPlace view{place.left, place.top + 3 * kLine, place.size};
@@ -158,7 +171,7 @@ Image drawFigure(const Figure& figure, int view_size) {
 }
 
 Result<Image> drawContactSheet(std::span<const Figure> figures, int view_size) {
-  const SheetLayout layout = layOut(figures.size(), view_size);
+  const SheetLayout layout = layOut(figures, view_size);
   const std::vector<LegendEntry> legend = legendOf(figures.front());
   const std::uint64_t width =
       std::max(std::uint64_t(kMargin) + layout.columns * layout.tile_width,
@@ -175,7 +188,7 @@ Result<Image> drawContactSheet(std::span<const Figure> figures, int view_size) {
   for (std::size_t n = 0; n < figures.size(); ++n) {
     const auto x = static_cast<int>(kMargin + n % layout.columns * layout.tile_width);
     const auto y = static_cast<int>(kMargin + n / layout.columns * layout.tile_height);
-    drawTile(image, {x, y, view_size}, figures[n]);
+    drawTile(image, {x, y, view_size}, static_cast<int>(layout.tile_width) - kMargin, figures[n]);
   }
   const int legend_top = static_cast<int>(kMargin + layout.rows * layout.tile_height);
   drawLegend(image, legend, legend_top);

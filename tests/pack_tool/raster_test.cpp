@@ -267,6 +267,20 @@ TEST(ContactSheet, HasATileForEachObject) {
   EXPECT_LT(sheet->height(), 2 * 256);
 }
 
+TEST(ContactSheet, HasRoomForNamesAndCaptions) {
+  std::vector<Figure> figures(2);
+  figures[0].name = "a_name_that_is_wider_than_the_view";
+  figures[1].short_caption = {"a caption that is even wider than the name"};
+  const auto sheet = drawContactSheet(figures, 64);
+  ASSERT_TRUE(sheet.has_value());
+  EXPECT_GE(sheet->width(), 2 * textWidth(figures[1].short_caption[0]));
+  // Not for names without an end.
+  figures[0].name.assign(10000, 'x');
+  const auto bounded = drawContactSheet(figures, 64);
+  ASSERT_TRUE(bounded.has_value());
+  EXPECT_LT(bounded->width(), 2000);
+}
+
 TEST(ContactSheet, RefusesToBecomeHuge) {
   const std::vector<Figure> figures(10000);
   const auto sheet = drawContactSheet(figures, kLargestView);

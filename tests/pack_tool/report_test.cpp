@@ -61,6 +61,19 @@ TEST(Report, ShowsEveryGridAndEverythingThatIsDrawn) {
   EXPECT_EQ(countOf(html, "http"), 0U) << "the page must not need the network";
 }
 
+TEST(Report, NamesPacksWithoutTheFoldersOfThisMachine) {
+  const ScratchFolder folder;
+  const fs::path pack = writePack(folder, "home/kitchen.pack", kitchenScene());
+  const fs::path page = folder.path() / "page.html";
+  const Ran ran = run({.packs = {pack, kGolden / "arm.pack"}, .output = page});
+  ASSERT_EQ(ran.exit_code, kExitOk) << ran.err;
+  const std::string html = contentOf(page);
+  EXPECT_EQ(countOf(html, "<h2>kitchen.pack</h2>"), 1U);
+  EXPECT_EQ(countOf(html, "<h2>arm.pack</h2>"), 1U);
+  EXPECT_EQ(countOf(html, folder.path().string()), 0U);
+  EXPECT_EQ(countOf(html, kGolden.string()), 0U);
+}
+
 TEST(Report, IsTheSameEachTime) {
   const ScratchFolder folder;
   for (const char* name : {"a.html", "b.html"}) {
