@@ -102,6 +102,15 @@ Result<void> checkGroup(const CLI::App& app, const Group& group, AssetKind kind)
   return {};
 }
 
+/// The parser would wait for what comes through a pipe.
+std::string refusePipe(const std::string& path) {
+  std::error_code missing;
+  const auto type = std::filesystem::status(path, missing).type();
+  using Type = std::filesystem::file_type;
+  if (type != Type::fifo && type != Type::character && type != Type::socket) return {};
+  throw CLI::FileError(path + " is not a regular file; give the path of a file");
+}
+
 void addRunOptions(CLI::App& app, BakeCommand& command) {
   app.add_option("input", command.inputs,
                  "Meshes (GLB, glTF, OBJ, PLY, STL, DAE, ...), folders of objects, URDF robots, "
@@ -129,7 +138,9 @@ void addRunOptions(CLI::App& app, BakeCommand& command) {
                  "Share by which numbers may differ for --check (default: whole ones not at all)")
       ->check(numberCheck(0, 1e6))
       ->type_name("SHARE");
-  app.set_config("--config", "", "Read options from a TOML file")->type_name("FILE");
+  app.set_config("--config", "", "Read options from a TOML file")
+      ->type_name("FILE")
+      ->check(CLI::Validator(refusePipe, ""));
   app.config_formatter(std::make_shared<ConfigFile>(app));
   app.add_flag("--dry-run", command.dry_run, "Read and check the inputs, write no pack");
   app.add_flag("--keep-going", command.keep_going, "Go on with the next input after an error");
@@ -238,8 +249,8 @@ class CommandLine {
 
   void addReach() {
     app_.add_flag("--allow-outside", command_.allow_outside,
-                  "Read what meshes and robots name wherever it points, not only below their "
-                  "folders and in packages");
+                  "Read what meshes, robots and datasets name wherever it points, not only below "
+                  "their folders and in packages");
   }
 
   void addCollection() {

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
 
@@ -26,6 +27,16 @@ class BakeCli : public test::BakeFolder {
     write("broken.obj", "this is no mesh\n");
   }
 };
+
+TEST_F(BakeCli, WaitsForNoPipeWithOptions) {
+  ASSERT_EQ(::mkfifo(path("pipe.toml").c_str(), 0600), 0);
+  for (const std::string& file : {path("pipe.toml").string(), std::string("/dev/zero")}) {
+    const ProgramRun refused = run({"room.obj", "--config", file});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_EQ(refused.err, "galactic-bake: --config: " + file +
+                               " is not a regular file; give the path of a file\n");
+  }
+}
 
 TEST_F(BakeCli, WritesAPackNamedAfterItsInputWithTheOptionsAsUsersTypeThem) {
   const ProgramRun bake = run({"room.obj", "--radii", "0.015,0.05,0.12"});

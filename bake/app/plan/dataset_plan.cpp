@@ -17,6 +17,7 @@ BakeCommand assetCommand(const BakeCommand& dataset, AssetKind kind) {
   BakeCommand command = dataset;
   command.kind = kind;
   command.import = datasetMeshOptions();
+  command.import.allow_outside = dataset.allow_outside;
   return command;
 }
 
@@ -91,12 +92,14 @@ Result<void> addDataset(const BakeCommand& command, PackList& packs) {
     return fail(ErrorCode::kInvalidInput, command.inputs.front().string(),
                 "says itself how its meshes stand; leave out --up, --scale and --transform");
   }
-  auto read = SceneDataset::read(command.inputs.front());
+  auto read = SceneDataset::read(command.inputs.front(), {.allow_outside = command.allow_outside});
   if (!read) return tl::unexpected(read.error());
   const auto dataset = std::make_shared<const SceneDataset>(std::move(*read));
   const auto names = wantedScenes(dataset->scenes(), command.dataset);
   if (!names) return tl::unexpected(names.error());
-  const auto meshes = std::make_shared<MeshLibrary>(datasetMeshOptions());
+  MeshImportOptions mesh_options = datasetMeshOptions();
+  mesh_options.allow_outside = command.allow_outside;
+  const auto meshes = std::make_shared<MeshLibrary>(mesh_options);
   const auto textures = std::make_shared<TextureLibrary>();
   for (const std::string& warning : dataset->warnings()) packs.warn(warning);
   for (const std::string& name : *names) {

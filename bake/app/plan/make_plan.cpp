@@ -203,7 +203,8 @@ Result<std::vector<std::string>> namesOfScenes(const BakeCommand& command) {
     if (!files) return tl::unexpected(files.error());
     return wantedScenes(namesOf(*files), command.dataset);
   }
-  const auto dataset = SceneDataset::read(command.inputs.front());
+  const auto dataset =
+      SceneDataset::read(command.inputs.front(), {.allow_outside = command.allow_outside});
   if (!dataset) return tl::unexpected(dataset.error());
   return wantedScenes(dataset->scenes(), command.dataset);
 }

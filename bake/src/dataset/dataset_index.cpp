@@ -91,6 +91,9 @@ void IndexReader::addMatches(TemplateKind kind, const std::string& ending,
         fmt::format("'{}' finds more than {} files and folders; narrow it", pattern, kMostMatches));
   }
   for (const fs::path& match : *matches) {
+    if (auto near = index_.checkReach(match, pattern_node.place); !near) {
+      return json_.error(pattern_node.place, near.error().message);
+    }
     if (fs::is_directory(match, ignored)) {
       block(kind).searched.push_back({nameRelativeTo(index_.config, match), suffix});
       for (const fs::path& file : filesIn(match, suffix)) {
@@ -185,10 +188,19 @@ const TemplateKindNames& namesOf(TemplateKind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-Result<DatasetIndex> readDatasetIndex(const fs::path& config) {
+Result<void> DatasetIndex::checkReach(const fs::path& file, const std::string& where) const {
+  if (allow_outside || isBelow(file, folder / "..")) return {};
+  return fail(ErrorCode::kInvalidInput, where,
+              fmt::format("'{}' lies outside of the folder above the dataset's; put it there, or "
+                          "bake with --allow-outside",
+                          nameRelativeTo(config, file)));
+}
+
+Result<DatasetIndex> readDatasetIndex(const fs::path& config, bool allow_outside) {
   const auto root = readJsonFile(config, kDatasetFile);
   if (!root) return tl::unexpected(root.error());
   DatasetIndex index;
+  index.allow_outside = allow_outside;
   std::error_code ignored;
   index.config = fs::absolute(config, ignored).lexically_normal();
   index.folder = index.config.parent_path();

@@ -48,6 +48,13 @@ struct DatasetIndex {
   std::filesystem::path folder;
   std::array<DatasetBlock, kTemplateKinds> blocks;
   std::vector<std::string> warnings;
+  /// Whether its files may lie anywhere.
+  bool allow_outside = false;
+
+  /// Refuses a file that is not below the folder above the dataset's, unless that is allowed. It is
+  /// named at `where`.
+  [[nodiscard]] Result<void> checkReach(const std::filesystem::path& file,
+                                        const std::string& where) const;
 
   [[nodiscard]] const DatasetBlock& block(TemplateKind kind) const {
     return blocks[static_cast<std::size_t>(kind)];
@@ -56,6 +63,7 @@ struct DatasetIndex {
 
 /// Reads the configuration of a dataset and looks for the files that its "paths" mean. Fails with
 /// kIo or kInvalidInput.
-[[nodiscard]] Result<DatasetIndex> readDatasetIndex(const std::filesystem::path& config);
+[[nodiscard]] Result<DatasetIndex> readDatasetIndex(const std::filesystem::path& config,
+                                                    bool allow_outside);
 
 }  // namespace galactic::bake

@@ -116,6 +116,9 @@ Result<fs::path> SceneComposer::meshOf(const DatasetTemplate& entry,
                 "it is missing; name the mesh to place");
   }
   fs::path mesh = stated.empty() ? entry.asset : fileOf(entry, stated);
+  if (auto near = index_.checkReach(mesh, placeOf(entry)); !near) {
+    return tl::unexpected(near.error());
+  }
   if (isFile(mesh)) return mesh;
   noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kind).noun, entry.name,
                           relative(mesh)));
@@ -249,6 +252,7 @@ Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
   const auto attributes = attributesOf(*entry, kKind);
   if (!attributes) return tl::unexpected(attributes.error());
   const fs::path urdf = urdfOf(*entry, **attributes);
+  if (auto near = index_.checkReach(urdf, placeOf(*entry)); !near) return near;
   if (!isFile(urdf)) {
     noteMissing(fmt::format("{} '{}': its URDF '{}' is missing", namesOf(kKind).noun, entry->name,
                             relative(urdf)));

@@ -68,8 +68,8 @@ SceneDataset::~SceneDataset() = default;
 SceneDataset::SceneDataset(SceneDataset&&) noexcept = default;
 SceneDataset& SceneDataset::operator=(SceneDataset&&) noexcept = default;
 
-Result<SceneDataset> SceneDataset::read(const fs::path& config) {
-  auto index = readDatasetIndex(config);
+Result<SceneDataset> SceneDataset::read(const fs::path& config, const DatasetReadOptions& options) {
+  auto index = readDatasetIndex(config, options.allow_outside);
   if (!index) return tl::unexpected(index.error());
   auto state = std::make_unique<State>();
   state->index = std::move(*index);

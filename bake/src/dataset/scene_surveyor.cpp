@@ -47,6 +47,9 @@ Result<bool> SceneSurveyor::surveyMesh(TemplateKind kind, const SceneItem& item)
   const std::string& stated =
       attributes.render_asset.empty() ? attributes.collision_asset : attributes.render_asset;
   const fs::path mesh = stated.empty() ? known->entry->asset : fileOf(*known->entry, stated);
+  if (auto near = index_.checkReach(mesh, placeOf(*known->entry)); !near) {
+    return tl::unexpected(near.error());
+  }
   if (!hasFile(mesh)) {
     noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kind).noun,
                             known->entry->name, nameRelativeTo(index_.config, mesh)));
@@ -67,6 +70,7 @@ Result<void> SceneSurveyor::surveyFurniture(const SceneItem& item) {
   if (!known) return tl::unexpected(known.error());
   if (known->entry == nullptr) return {};
   const fs::path urdf = urdfOf(*known->entry, known->attributes);
+  if (auto near = index_.checkReach(urdf, placeOf(*known->entry)); !near) return near;
   if (hasFile(urdf)) return {};
   noteMissing(fmt::format("{} '{}': its URDF '{}' is missing",
                           namesOf(TemplateKind::kArticulated).noun, known->entry->name,

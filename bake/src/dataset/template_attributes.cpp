@@ -153,11 +153,14 @@ Result<TemplateAttributes> readAttributes(const DatasetTemplate& entry, const Da
   }
   insertName(attributes.render_asset, entry.name);
   insertName(attributes.collision_asset, entry.name);
-  const std::string where = entry.config.empty() ? entry.handle : entry.config.string();
-  if (auto checked = checkFrame(attributes, where); !checked) {
+  if (auto checked = checkFrame(attributes, placeOf(entry)); !checked) {
     return tl::unexpected(checked.error());
   }
   return attributes;
+}
+
+std::string placeOf(const DatasetTemplate& entry) {
+  return entry.config.empty() ? entry.handle : entry.config.string();
 }
 
 fs::path fileOf(const DatasetTemplate& entry, const std::string& stated) {

@@ -43,6 +43,9 @@ struct TemplateAttributes {
                                                            const DatasetBlock& block,
                                                            TemplateKind kind);
 
+/// Where messages say that something is stated of `entry`.
+[[nodiscard]] std::string placeOf(const DatasetTemplate& entry);
+
 /// The file that `stated` means, absolute.
 [[nodiscard]] std::filesystem::path fileOf(const DatasetTemplate& entry, const std::string& stated);
 

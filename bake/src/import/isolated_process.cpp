@@ -213,8 +213,10 @@ void limitResource(Resource resource, std::uint64_t value) {
 
 /// Makes the child harmless: it dies with its parent, handles no signal, holds no descriptor but
 /// its own and prints nothing.
-void settleChild(int kept, const ProcessLimits& limits) {
+void settleChild(int kept, pid_t parent, const ProcessLimits& limits) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  // A parent that ended before that sends no signal any more.
+  if (::getppid() != parent) ::_exit(kExitException);
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGALRM, SIGXCPU,
                            SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGUSR1, SIGUSR2}) {
     std::signal(signal, SIG_DFL);
@@ -344,10 +346,11 @@ tl::expected<ProcessOutput, ProcessFailure> runIsolated(const IsolatedWork& work
   // Fewer turns between the two; without it they are just more.
   (void)::fcntl(write_end.get(), F_SETPIPE_SZ, kPipeBytes);
 
+  const pid_t parent = ::getpid();
   const pid_t child = ::fork();
   if (child < 0) return not_started();
   if (child == 0) {
-    settleChild(write_end.get(), limits);
+    settleChild(write_end.get(), parent, limits);
     PipeChannel channel(write_end.get(), limits.memory, stage);
     runChild(work, channel);
   }

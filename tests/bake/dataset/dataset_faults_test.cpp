@@ -192,6 +192,57 @@ INSTANTIATE_TEST_SUITE_P(All, DatasetFaults, testing::ValuesIn(datasetFaults()),
 INSTANTIATE_TEST_SUITE_P(Instances, SceneFaults, testing::ValuesIn(instanceFaults()), nameOf);
 INSTANTIATE_TEST_SUITE_P(Attributes, SceneFaults, testing::ValuesIn(attributeFaults()), nameOf);
 
+TEST(DatasetsThatNameFilesElsewhere, NeedLeaveToReadThem) {
+  const SmallDataset small;
+  const ScratchFolder elsewhere;
+  const std::string mesh = elsewhere.write("secret.obj", objFile(unevenBox())).string();
+  const auto name = [&](const std::string& file) {
+    small.write("configs/stages/room.stage_config.json",
+                R"({"render_asset": ")" + file + R"(", "up": [0, 1, 0], "front": [0, 0, -1]})");
+  };
+  const auto composed = [&](bool allow_outside) -> Result<bake::ComposedScene> {
+    const auto dataset = bake::SceneDataset::read(small.config(), {.allow_outside = allow_outside});
+    if (!dataset) return tl::unexpected(dataset.error());
+    const auto survey = dataset->survey("a_home");
+    bake::MeshLibrary meshes(bake::datasetMeshOptions());
+    auto scene = dataset->compose("a_home", meshes);
+    EXPECT_EQ(survey.has_value(), scene.has_value());
+    return scene;
+  };
+  for (const std::string& file :
+       {mesh, "../../../../" + elsewhere.path().filename().string() + "/secret.obj"}) {
+    name(file);
+    const auto refused = composed(false);
+    ASSERT_FALSE(refused.has_value()) << file;
+    EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
+    EXPECT_THAT(refused.error().where, testing::EndsWith("room.stage_config.json"));
+    EXPECT_THAT(refused.error().message,
+                testing::HasSubstr("lies outside of the folder above the dataset's; put it there, "
+                                   "or bake with --allow-outside"));
+    EXPECT_TRUE(composed(true).has_value()) << file;
+  }
+  // Datasets share their objects with the ones beside them.
+  (void)small.scratch().write("beside/room.obj", objFile(unevenBox()));
+  name("../../../beside/room.obj");
+  EXPECT_TRUE(composed(false).has_value());
+}
+
+TEST(DatasetsThatNameFilesElsewhere, NeedLeaveToLookForThem) {
+  const SmallDataset small;
+  const ScratchFolder elsewhere;
+  (void)elsewhere.write("secret.stage_config.json", R"({"render_asset": "x.obj"})");
+  const std::string config = R"({"stages": {"paths": {".json": [")" + elsewhere.path().string() +
+                             R"(/*", "configs/stages"]}}})";
+  const auto path = small.write("far.scene_dataset_config.json", config);
+  const auto refused = bake::SceneDataset::read(path);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_THAT(refused.error().where, testing::HasSubstr("stages.paths['.json'][0]"));
+  EXPECT_THAT(refused.error().message, testing::HasSubstr("lies outside of the folder above"));
+  const auto allowed = bake::SceneDataset::read(path, {.allow_outside = true});
+  ASSERT_TRUE(allowed.has_value()) << allowed.error().message;
+  EXPECT_EQ(allowed->scenes().size(), 2U);
+}
+
 TEST(FaultyDataset, OfTheWholeAreNamed) {
   const SmallDataset small;
   bake::MeshLibrary meshes(bake::datasetMeshOptions());

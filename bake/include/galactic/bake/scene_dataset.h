@@ -17,6 +17,13 @@ namespace galactic::bake {
 /// dataset's `up` and `front` that say how to turn them. For the MeshLibrary of compose().
 [[nodiscard]] MeshImportOptions datasetMeshOptions();
 
+/// What a dataset may read.
+struct DatasetReadOptions {
+  /// Whether files that the dataset names may lie anywhere: without it, below the folder above the
+  /// configuration's.
+  bool allow_outside = false;
+};
+
 /// A movable object that a scene instance places.
 struct DatasetObject {
   /// Name of its template.
@@ -68,7 +75,8 @@ class SceneDataset {
   /// Reads the dataset's configuration and finds stages, objects, articulated objects and scene
   /// instances by its globs. The many configurations are read when they are needed. Fails with kIo
   /// or kInvalidInput, naming file and field.
-  [[nodiscard]] static Result<SceneDataset> read(const std::filesystem::path& config);
+  [[nodiscard]] static Result<SceneDataset> read(const std::filesystem::path& config,
+                                                 const DatasetReadOptions& options = {});
   ~SceneDataset();
   SceneDataset(SceneDataset&&) noexcept;
   SceneDataset& operator=(SceneDataset&&) noexcept;
