@@ -27,7 +27,7 @@ import subprocess
 import sys
 import time
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SAMPLE = ROOT / "packs/sample"
@@ -343,14 +343,14 @@ def kind_of_warning(text: str) -> str:
     return re.sub(r"^[^ :]+: ", "", text)
 
 
-def print_table(verdicts: list[Verdict]) -> None:
-    width = max(len(one.asset.name) for one in verdicts)
-    print(f"{'asset':{width}}  {'kind':8} {'bake':10} {'check':6} {'simulate':11} {'draw':6} warnings  seconds")
-    for one in verdicts:
-        print(
-            f"{one.asset.name:{width}}  {one.asset.kind:8} {one.bake:10} {one.check:6} {one.simulate:11} {one.draw:6} "
-            f"{len(one.warnings):8} {one.seconds:8.1f}"
-        )
+def table_row(cells: Sequence[object]) -> str:
+    name, kind, bake, check, simulate, draw, warnings, seconds = cells
+    return f"{name:72} {kind:8} {bake:10} {check:6} {simulate:11} {draw:6} {warnings:>8} {seconds:>8}"
+
+
+def row_of(one: Verdict) -> str:
+    cells = (one.asset.name, one.asset.kind, one.bake, one.check, one.simulate, one.draw, len(one.warnings))
+    return table_row((*cells, f"{one.seconds:.1f}"))
 
 
 def print_reasons(verdicts: list[Verdict]) -> None:
@@ -417,9 +417,12 @@ def main() -> int:
     shutil.rmtree(out / "logs", ignore_errors=True)
     trial = Trial(Tools(arguments.bin.resolve(), out), out)
     trial.bake_sample()
+    verdicts: list[Verdict] = []
+    print(table_row(("asset", "kind", "bake", "check", "simulate", "draw", "warnings", "seconds")), flush=True)
     with concurrent.futures.ThreadPoolExecutor(max(1, arguments.jobs)) as pool:
-        verdicts = [one for tried in pool.map(trial.run, found) for one in tried]
-    print_table(verdicts)
+        for tried in pool.map(trial.run, found):
+            verdicts += tried
+            print("\n".join(map(row_of, tried)), flush=True)
     print_reasons(verdicts)
     write_page(verdicts, out)
     print(f"\nPictures: {out / 'index.html'}")
