@@ -39,14 +39,22 @@ double spacingOf(const FitTask& task) {
                     std::sqrt(area / kLeastPoints));
 }
 
+void spreadPoints(const FitTask& task, SurfacePoints& surface) {
+  const double spacing = spacingOf(task);
+  if (surface.spacing == spacing) return;
+  surface.spacing = spacing;
+  surface.points = sampleSurface(*task.solid, task.support, {spacing, kPointSeed, 10});
+  surface.dense = sampleSurface(*task.solid, task.support, {kDenser * spacing, kDenseSeed, 8});
+}
+
 class CoverSolver {
  public:
-  CoverSolver(const FitTask& task, const Effort& effort)
+  CoverSolver(const FitTask& task, const Effort& effort, const SurfacePoints& surface)
       : task_(task),
         effort_(effort),
-        spacing_(spacingOf(task)),
-        points_(sampleSurface(*task.solid, task.support, {spacing_, kPointSeed, 10})),
-        dense_(sampleSurface(*task.solid, task.support, {kDenser * spacing_, kDenseSeed, 8})) {}
+        spacing_(surface.spacing),
+        points_(surface.points),
+        dense_(surface.dense) {}
 
   [[nodiscard]] Cover solve() {
     if (points_.empty()) return {};
@@ -198,7 +206,7 @@ class CoverSolver {
   /// What the search has to cover.
   std::vector<Vec3d> points_;
   /// What the cover is checked on.
-  std::vector<Vec3d> dense_;
+  const std::vector<Vec3d>& dense_;
   /// From the coarse lattices.
   std::vector<Candidate> coarse_;
   std::vector<Candidate> chosen_;
@@ -206,8 +214,9 @@ class CoverSolver {
 
 }  // namespace
 
-Cover solveCover(const FitTask& task, const Effort& effort) {
-  return CoverSolver(task, effort).solve();
+Cover solveCover(const FitTask& task, const Effort& effort, SurfacePoints& surface) {
+  spreadPoints(task, surface);
+  return CoverSolver(task, effort, surface).solve();
 }
 
 }  // namespace galactic::bake::sphere_fit

@@ -18,6 +18,16 @@ struct Effort {
   int polish_sweeps = 16;
 };
 
+/// The points of a surface that covers are made and checked on. They depend on their spacing only,
+/// so covers of one solid for several tolerances may share them.
+struct SurfacePoints {
+  /// Of the points to cover, metres; 0: none yet.
+  double spacing = 0;
+  std::vector<Vec3d> points;
+  /// Denser ones, which the cover is checked on.
+  std::vector<Vec3d> dense;
+};
+
 /// A small set of spheres that covers a solid, and what its solver can promise.
 struct Cover {
   std::vector<Candidate> spheres;
@@ -30,7 +40,7 @@ struct Cover {
 };
 
 /// As few spheres as found that cover the task's solid. Empty where the surface has no point that
-/// needs cover.
-[[nodiscard]] Cover solveCover(const FitTask& task, const Effort& effort);
+/// needs cover. `surface`: of the same solid and support; replaced where other spacings are needed.
+[[nodiscard]] Cover solveCover(const FitTask& task, const Effort& effort, SurfacePoints& surface);
 
 }  // namespace galactic::bake::sphere_fit

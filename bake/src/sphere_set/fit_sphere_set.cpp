@@ -17,6 +17,7 @@ using sphere_fit::Cover;
 using sphere_fit::Effort;
 using sphere_fit::ExteriorSolid;
 using sphere_fit::FitTask;
+using sphere_fit::SurfacePoints;
 using sphere_fit::Yardstick;
 
 /// Tolerances grow by this from one step of a curve to the next looser one: eightfold in 8 steps.
@@ -85,15 +86,15 @@ bool comesFirst(const SetSphere& a, const SetSphere& b) {
   return a.centre.z < b.centre.z;
 }
 
-/// Measured, but for the thin points, and judged by the tolerances of `task`, whichever the cover
-/// was made for.
+/// Measured, but for volume and thin points, and judged by the tolerances of `task`, whichever the
+/// cover was made for.
 SphereSet finished(const FitTask& task, const Yardstick& yardstick, const Cover& cover) {
   SphereSet set;
   for (const Candidate& sphere : cover.spheres) {
     set.spheres.push_back({narrow(sphere.centre), sphere.radius_index});
   }
   std::sort(set.spheres.begin(), set.spheres.end(), comesFirst);
-  set.quality = yardstick.measure(cover.spheres);
+  set.quality = yardstick.measureLengths(cover.spheres);
   // Where the solid's border is no facet (a small hole, the bottom of a crevice), a sphere may be
   // further from the facets than from the solid: what was measured counts.
   set.guaranteed_gap = std::max(cover.guaranteed_gap, set.quality.gap.max);
@@ -104,9 +105,9 @@ SphereSet finished(const FitTask& task, const Yardstick& yardstick, const Cover&
 }
 
 /// The best cover with at most `most` spheres: the least loosened tolerances that need no more.
-Cover coverWithin(const FitTask& task, std::size_t most, Cover best) {
+Cover coverWithin(const FitTask& task, std::size_t most, SurfacePoints& surface, Cover best) {
   const auto attempt = [&](double steps, const Effort& effort) {
-    Cover cover = sphere_fit::solveCover(loosened(task, steps), effort);
+    Cover cover = sphere_fit::solveCover(loosened(task, steps), effort, surface);
     const bool fits = cover.spheres.size() <= most;
     if (fits) best = std::move(cover);
     return fits;
@@ -134,14 +135,15 @@ Result<SphereSet> fitSphereSet(const TriangleMesh& mesh, const SphereSetOptions&
   const auto prepared = prepare(mesh, options);
   if (!prepared) return tl::unexpected(prepared.error());
   const FitTask& task = prepared->task;
-  Cover cover = sphere_fit::solveCover(task, {});
+  SurfacePoints surface;
+  Cover cover = sphere_fit::solveCover(task, {}, surface);
   if (cover.spheres.empty()) return nothingToCover();
   if (options.max_spheres > 0 && cover.spheres.size() > options.max_spheres) {
-    cover = coverWithin(task, options.max_spheres, std::move(cover));
+    cover = coverWithin(task, options.max_spheres, surface, std::move(cover));
   }
   const Yardstick yardstick(task);
   SphereSet set = finished(task, yardstick, cover);
-  set.quality.thin_points = yardstick.countThin(cover.spheres);
+  yardstick.complete(cover.spheres, set.quality);
   return set;
 }
 
@@ -155,7 +157,7 @@ class SphereCurve::Fitter {
     if (complete()) return {};
     FitTask task = loosened(prepared_.task, step_);
     task.jobs = jobs;
-    const Cover cover = sphere_fit::solveCover(task, kCurveEffort);
+    const Cover cover = sphere_fit::solveCover(task, kCurveEffort, surface_);
     if (cover.spheres.empty()) return nothingToCover();
     --step_;
     if (most_ > 0 && cover.spheres.size() > most_) {
@@ -178,7 +180,7 @@ class SphereCurve::Fitter {
 
   [[nodiscard]] SphereSet take(std::size_t n) const {
     SphereSet set = sets_[n];
-    set.quality.thin_points = yardstick_.countThin(covers_[n]);
+    yardstick_.complete(covers_[n], set.quality);
     return set;
   }
 
@@ -189,6 +191,7 @@ class SphereCurve::Fitter {
   Yardstick yardstick_;
   std::uint32_t most_ = 0;
   int step_ = kCurveSteps;
+  SurfacePoints surface_;
   std::vector<SphereSet> sets_;
   /// What each set was made of.
   std::vector<std::vector<Candidate>> covers_;
@@ -235,8 +238,8 @@ Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
     placed.push_back({centre, sphere.radius_index, 0});
   }
   const Yardstick yardstick(prepared->task);
-  SphereSetQuality quality = yardstick.measure(placed);
-  quality.thin_points = yardstick.countThin(placed);
+  SphereSetQuality quality = yardstick.measureLengths(placed);
+  yardstick.complete(placed, quality);
   return quality;
 }
 

@@ -1,8 +1,35 @@
 #include "sphere_set/gaps.h"
 
+#include <algorithm>
+
 #include "galactic/bake/parallel_for.h"
+#include "sphere_set/cover_matrix.h"
+#include "sphere_set/point_grid.h"
 
 namespace galactic::bake::sphere_fit {
+namespace {
+
+/// Up to so many spheres are compared with each point.
+constexpr std::size_t kFewSpheres = 64;
+/// Most points of a cover are no further from a sphere than this share of eps.
+constexpr double kNearShare = 1.25;
+
+/// Right where some sphere is within the share of eps; elsewhere no sphere that near was found.
+void lowerNearSpheres(const FitTask& task, std::span<const Candidate> spheres,
+                      std::span<const Vec3d> points, std::vector<double>& gaps) {
+  // Rounding must not leave a point out.
+  constexpr double kRounding = 1 + 1e-9;
+  const PointGrid grid(points, gridCell(task));
+  for (const Candidate& sphere : spheres) {
+    const double reach = (task.radii[sphere.radius_index] + kNearShare * task.eps) * kRounding;
+    grid.visitWithin(sphere.centre, reach, [&](std::uint32_t at, double) {
+      gaps[at] = std::min(gaps[at], outside(task, sphere, points[at]));
+      return true;
+    });
+  }
+}
+
+}  // namespace
 
 double outside(const FitTask& task, const Candidate& sphere, const Vec3d& p) {
   return length(p - sphere.centre) - task.radii[sphere.radius_index];
@@ -10,11 +37,14 @@ double outside(const FitTask& task, const Candidate& sphere, const Vec3d& p) {
 
 std::vector<double> gapsOf(const FitTask& task, std::span<const Candidate> spheres,
                            std::span<const Vec3d> points) {
-  constexpr std::size_t kChunk = 1024;
   std::vector<double> gaps(points.size(), HUGE_VAL);
+  const bool is_many = spheres.size() > kFewSpheres;
+  if (is_many) lowerNearSpheres(task, spheres, points, gaps);
+  constexpr std::size_t kChunk = 1024;
   parallelFor(task.jobs, (points.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
     const std::size_t end = std::min(points.size(), (chunk + 1) * kChunk);
     for (std::size_t at = chunk * kChunk; at < end; ++at) {
+      if (is_many && gaps[at] <= kNearShare * task.eps) continue;
       for (const Candidate& sphere : spheres) {
         gaps[at] = std::min(gaps[at], outside(task, sphere, points[at]));
       }

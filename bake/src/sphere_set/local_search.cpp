@@ -13,6 +13,9 @@ constexpr std::size_t kMostScores = 100'000;
 /// Four distances cost about what one step of the bookkeeping costs.
 constexpr std::size_t kScoresPerOperation = 4;
 constexpr std::uint64_t kOperationsPerIteration = 100;
+/// So many chosen candidates are looked through at no cost beyond that, and more at this rate.
+constexpr std::size_t kChosenPerIteration = 128;
+constexpr std::size_t kChosenPerOperation = 4;
 
 }  // namespace
 
@@ -182,7 +185,8 @@ Selection LocalSearch::improve(const Selection& cover, std::uint64_t budget) {
       tabu = candidate;
     }
     for (const std::uint32_t row : open_) ++weight_[row];
-    operations_ += open_.size();
+    const std::size_t beyond = chosen_.size() - std::min(chosen_.size(), kChosenPerIteration);
+    operations_ += open_.size() + beyond / kChosenPerOperation;
     ++iteration_;
   }
   return smallest;

@@ -24,6 +24,9 @@ class LocalSearch {
   /// operations.
   [[nodiscard]] Selection improve(const Selection& cover, std::uint64_t budget);
 
+  /// How many exchanges the last search took: looking for the cheapest of many spheres costs, too.
+  [[nodiscard]] std::int64_t exchanges() const { return iteration_; }
+
  private:
   /// Open points side by side, for the vector unit.
   struct OpenPoints {

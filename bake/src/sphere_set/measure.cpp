@@ -158,7 +158,7 @@ Yardstick::Yardstick(const FitTask& task)
     : task_(task),
       samples_(sampleSurface(*task.solid, task.support, {sampleSpacing(task), kSeed, 10})) {}
 
-SphereSetQuality Yardstick::measure(std::span<const Candidate> spheres) const {
+SphereSetQuality Yardstick::measureLengths(std::span<const Candidate> spheres) const {
   SphereSetQuality quality;
   quality.samples = samples_.size();
   quality.area = task_.solid->area();
@@ -169,8 +169,12 @@ SphereSetQuality Yardstick::measure(std::span<const Candidate> spheres) const {
   }
   quality.gap = statisticsOf(std::move(gaps));
   quality.protrusion = protrusionOf(task_, spheres);
-  quality.volume_ratio = volumeRatioOf(task_, spheres);
   return quality;
+}
+
+void Yardstick::complete(std::span<const Candidate> spheres, SphereSetQuality& quality) const {
+  if (quality.samples > 0 && !spheres.empty()) quality.volume_ratio = volumeRatioOf(task_, spheres);
+  quality.thin_points = countThin(spheres);
 }
 
 std::uint64_t Yardstick::countThin(std::span<const Candidate> spheres) const {

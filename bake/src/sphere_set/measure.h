@@ -14,15 +14,18 @@ class Yardstick {
   /// Keeps a copy of the task, whose solid must outlive it.
   explicit Yardstick(const FitTask& task);
 
-  /// Of spheres whose protrusions may be wrong: they are measured. All but the thin points; zero
-  /// where no surface needs cover or without spheres.
-  [[nodiscard]] SphereSetQuality measure(std::span<const Candidate> spheres) const;
+  /// Of spheres whose protrusions may be wrong: they are measured. Gap and protrusion, and how many
+  /// samples of what area; zero where no surface needs cover or without spheres.
+  [[nodiscard]] SphereSetQuality measureLengths(std::span<const Candidate> spheres) const;
 
+  /// The rest of a quality: volume and thin points.
+  void complete(std::span<const Candidate> spheres, SphereSetQuality& quality) const;
+
+ private:
   /// Number of samples that no sphere within tau can cover, the same for all `spheres`: those near
   /// them only save a search where they are within tau themselves.
   [[nodiscard]] std::uint64_t countThin(std::span<const Candidate> spheres) const;
 
- private:
   FitTask task_;
   std::vector<Vec3d> samples_;
 };

@@ -15,6 +15,8 @@ constexpr int kTries = 8;
 /// The first step, as a share of the smallest radius, and what is left of it after each sweep.
 constexpr double kFirstStep = 0.4;
 constexpr double kStepDecay = 0.82;
+/// Moves are this many steps long along each axis, or up to one more.
+constexpr double kLeastOfStep = 0.3;
 /// What the square of a gap's excess over eps weighs: closing it comes first.
 constexpr double kRepair = 1e4;
 
@@ -35,6 +37,9 @@ class Polisher {
         random_(kSeed) {}
 
   void sweep(double step) {
+    // No sphere moves further in a sweep.
+    const double furthest = kTries * (kLeastOfStep + 1) * step * std::sqrt(3.0);
+    neighbours_ = neighboursWithin(2 * furthest);
     for (std::size_t at = 0; at < spheres_.size(); ++at) improve(at, step);
   }
 
@@ -45,7 +50,7 @@ class Polisher {
     double cost = costOf(sphere, near);
     for (int attempt = 0; attempt < kTries; ++attempt) {
       const Vec3d direction{random_.unit() * 2 - 1, random_.unit() * 2 - 1, random_.unit() * 2 - 1};
-      const double length = step * (0.3 + random_.unit());
+      const double length = step * (kLeastOfStep + random_.unit());
       Candidate moved = sphere;
       moved.centre = asStored(sphere.centre + direction * length);
       if (!allowed(sphere, moved)) continue;
@@ -71,10 +76,10 @@ class Polisher {
     constexpr double kRounding = 1e-6;
     const double reach = task_.radii[spheres_[at].radius_index] + most_ + kRounding;
     std::vector<const Candidate*> neighbours;
-    for (std::size_t other = 0; other < spheres_.size(); ++other) {
+    for (const std::uint32_t other : neighbours_[at]) {
       const double reaches = reach + most_ + task_.radii[spheres_[other].radius_index];
       const double squared = squaredLength(spheres_[other].centre - spheres_[at].centre);
-      if (other != at && squared < reaches * reaches) neighbours.push_back(&spheres_[other]);
+      if (squared < reaches * reaches) neighbours.push_back(&spheres_[other]);
     }
     std::vector<NearPoint> near;
     grid_.visitWithin(spheres_[at].centre, reach, [&](std::uint32_t index, double) {
@@ -87,6 +92,24 @@ class Polisher {
       return true;
     });
     return near;
+  }
+
+  /// By sphere: the others that may cover what it may, when each is up to `margin` nearer.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> neighboursWithin(double margin) const {
+    constexpr double kRounding = 1e-6;
+    const double largest = task_.radii.back() + most_;
+    std::vector<Vec3d> centres;
+    for (const Candidate& sphere : spheres_) centres.push_back(sphere.centre);
+    const PointGrid grid(centres, largest);
+    std::vector<std::vector<std::uint32_t>> neighbours(centres.size());
+    for (std::size_t at = 0; at < centres.size(); ++at) {
+      const double reach = task_.radii[spheres_[at].radius_index] + most_ + largest;
+      grid.visitWithin(centres[at], reach + margin + kRounding, [&](std::uint32_t other, double) {
+        if (other != at) neighbours[at].push_back(other);
+        return true;
+      });
+    }
+    return neighbours;
   }
 
   /// Infinite where a gap would be too large.
@@ -111,6 +134,8 @@ class Polisher {
   /// No gap may be larger.
   double most_;
   Random random_;
+  /// By sphere, during a sweep.
+  std::vector<std::vector<std::uint32_t>> neighbours_;
 };
 
 }  // namespace

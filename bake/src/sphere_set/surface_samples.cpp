@@ -1,5 +1,6 @@
 #include "sphere_set/surface_samples.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 
@@ -20,13 +21,14 @@ class SparseGrid {
   /// Whether some point is nearer to `p` than the edge of a cube.
   [[nodiscard]] bool hasNear(const Vec3d& p, const std::vector<Vec3d>& points) const {
     const Cube at = cubeOf(p);
+    // Most points have a neighbour in their own cube.
+    if (holdsNear(at, p, points)) return true;
     for (std::int64_t z = at[2] - 1; z <= at[2] + 1; ++z) {
       for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y) {
         for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x) {
-          // Other cubes of the same slot only cost a comparison.
-          for (std::uint32_t i = heads_[slotOf({x, y, z})]; i != kNone; i = next_[i]) {
-            if (squaredLength(points[i] - p) < edge_ * edge_) return true;
-          }
+          const Cube cube{x, y, z};
+          if (cube == at || squaredDistance(cube, p) >= edge_ * edge_) continue;
+          if (holdsNear(cube, p, points)) return true;
         }
       }
     }
@@ -47,6 +49,27 @@ class SparseGrid {
   [[nodiscard]] Cube cubeOf(const Vec3d& p) const {
     const auto along = [&](double at) { return static_cast<std::int64_t>(std::floor(at / edge_)); };
     return {along(p.x), along(p.y), along(p.z)};
+  }
+
+  /// Other cubes of the same slot only cost a comparison.
+  [[nodiscard]] bool holdsNear(const Cube& cube, const Vec3d& p,
+                               const std::vector<Vec3d>& points) const {
+    for (std::uint32_t i = heads_[slotOf(cube)]; i != kNone; i = next_[i]) {
+      if (squaredLength(points[i] - p) < edge_ * edge_) return true;
+    }
+    return false;
+  }
+
+  /// Of `p` to the cube, a little less so that rounding leaves no cube out.
+  [[nodiscard]] double squaredDistance(const Cube& cube, const Vec3d& p) const {
+    const auto along = [&](std::int64_t at, double x) {
+      const double from = static_cast<double>(at) * edge_;
+      return std::max({from - x, x - (from + edge_), 0.0});
+    };
+    const double x = along(cube[0], p.x);
+    const double y = along(cube[1], p.y);
+    const double z = along(cube[2], p.z);
+    return (x * x + y * y + z * z) * (1 - 1e-9);
   }
 
   [[nodiscard]] std::size_t slotOf(const Cube& cube) const {

@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <random>
 #include <set>
 #include <vector>
 
 #include "sphere_set/ball_weight.h"
+#include "sphere_set/gaps.h"
 #include "sphere_set/local_search.h"
 #include "sphere_set/point_grid.h"
 
@@ -107,6 +110,57 @@ TEST(SetCover, LocalSearchFindsTheSmallestCover) {
   }
   EXPECT_GT(improved, kInstances / 10);
   EXPECT_LT(improved, kInstances * 9 / 10);
+}
+
+TEST(SetCover, ALargeCoverGetsFewerExchangesForTheSameBudget) {
+  const FitTask task = someTask();
+  constexpr std::uint64_t kBudget = 400'000;
+  std::vector<std::int64_t> exchanges;
+  for (const std::size_t count : {50U, 4000U}) {
+    // Points too far apart for a sphere to cover two, and two spheres for each.
+    Instance instance;
+    std::vector<Candidate> spheres;
+    for (std::size_t n = 0; n < count; ++n) {
+      const Vec3d p{static_cast<double>(n), 0, 0};
+      instance.points.push_back(p);
+      for (std::uint32_t radius : {0U, 1U}) spheres.push_back({p, radius, 0});
+    }
+    appendCovering(task, PointGrid(instance.points, 0.1), spheres, instance.pool);
+    Selection greedy;
+    completeGreedily(instance.pool, instance.points.size(), greedy);
+    LocalSearch search(task, instance.points, instance.pool);
+    EXPECT_EQ(search.improve(greedy, kBudget).size(), count);
+    exchanges.push_back(search.exchanges());
+  }
+  // Of 4000 spheres, each exchange looks through nearly all: without a price for that, it took as
+  // many exchanges as the small one.
+  EXPECT_GT(exchanges[0], 2000);
+  EXPECT_LT(exchanges[1], exchanges[0] / 5);
+  EXPECT_GT(exchanges[1], 100);
+}
+
+TEST(SetCover, GapsToManySpheresAreThoseToTheNearest) {
+  std::mt19937 random(kSeed + 2);
+  const auto unit = [&] { return static_cast<double>(random()) * 0x1p-32; };
+  const FitTask task = someTask();
+  std::vector<Candidate> spheres;
+  for (std::uint32_t n = 0; n < 300; ++n) {
+    spheres.push_back({{3 * unit(), 3 * unit(), 3 * unit()}, n % 2, 0});
+  }
+  std::vector<Vec3d> points;
+  for (int n = 0; n < 3000; ++n) points.push_back({3 * unit(), 3 * unit(), 3 * unit()});
+  const std::vector<double> gaps = gapsOf(task, spheres, points);
+  std::size_t near = 0;
+  for (std::size_t at = 0; at < points.size(); ++at) {
+    double nearest = HUGE_VAL;
+    for (const Candidate& sphere : spheres) {
+      nearest = std::min(nearest, outside(task, sphere, points[at]));
+    }
+    ASSERT_EQ(gaps[at], nearest) << "seed " << kSeed + 2 << ", point " << at;
+    near += nearest <= task.eps ? 1U : 0U;
+  }
+  EXPECT_GT(near, points.size() / 10);
+  EXPECT_LT(near, points.size() * 9 / 10);
 }
 
 TEST(SetCover, WithoutDominatedIsAsSmall) {

@@ -111,10 +111,10 @@ class SphereCurve {
   /// has more than their `max_spheres`.
   [[nodiscard]] bool complete() const;
 
-  /// By rising count. Quality, all but the thin points, and `meets_tolerances` are by the
+  /// By rising count. Quality, all but volume and thin points, and `meets_tolerances` are by the
   /// tolerances of the options.
   [[nodiscard]] const std::vector<SphereSet>& sets() const;
-  /// A copy of one of the sets with its thin points counted.
+  /// A copy of one of the sets with volume and thin points counted.
   [[nodiscard]] SphereSet take(std::size_t set) const;
 
  private:
