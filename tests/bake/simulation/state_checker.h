@@ -47,9 +47,10 @@ struct Findings {
 /// Bullet.
 class StateChecker {
  public:
-  /// A sphere is judged by the nearest column, half the diagonal of a cell of 3 cm (21.2 mm) away
-  /// at most; heights are rounded to a tenth of a millimetre, and Bullet answers to some tenths.
-  static constexpr float kDeepest = 0.0216F;
+  /// A sphere is judged by the nearest column, at most half the diagonal of a cell of 3 cm (21.213
+  /// mm) away, and isInGrid forgives 0.01 mm more along each axis (21.227 mm); heights are rounded
+  /// to a tenth of a millimetre, across that way (21.228 mm). The rest is for floats.
+  static constexpr float kDeepest = 0.0213F;
   /// Spheres farther from a box than this overlap it in no case.
   static constexpr float kNear = 0.2F;
 
@@ -217,8 +218,7 @@ class StateChecker {
 
   /// Whether a ball that is smaller by `depth` touches the scene.
   [[nodiscard]] bool isDeeper(const Ball& ball, float depth) const {
-    // Bullet counts contacts up to 2 % of the radius away.
-    const float radius = (world_.radii()[ball.radius_index] - depth) / 1.02F;
+    const float radius = (world_.radii()[ball.radius_index] - depth) / BulletScene::kReach;
     return radius > 0 && scene_.touches(ball.centre, radius);
   }
 
