@@ -78,8 +78,8 @@ class StateChecker {
       const Ball ball{at(transforms[sphere.body], sphere.centre), sphere.radius_index};
       found.in_grid[0] += isInGrid(around, ball) ? 1U : 0U;
       const InObjects in = inObjects(around, ball, before.released, found);
-      before.leaving[n] = before.leaving[n] && in.released;
-      found.released_into += before.leaving[n] ? 1U : 0U;
+      before.leaving[n] = before.leaving[n] && in.touches_released;
+      found.released_into += before.leaving[n] && in.released ? 1U : 0U;
       if (in.other || (in.released && !before.leaving[n])) {
         ++found.in_objects[0];
         note(env, state, n, before, in, found);
@@ -124,6 +124,8 @@ class StateChecker {
   struct InObjects {
     bool released = false;
     bool other = false;
+    /// Whether it may not be free of the one released, but for rounding.
+    bool touches_released = false;
   };
 
   void noteRelease(const EnvState& state, HeldBefore& before) const {
@@ -196,9 +198,10 @@ class StateChecker {
       if (dot(away, away) > object.reach * object.reach) continue;
       near = true;
       const double distance = object.solid.distance(toPoint3(ball.centre));
-      if (!(distance < static_cast<double>(world_.radii()[ball.radius_index]) - kRounding))
-        continue;
-      (object.number == released ? in.released : in.other) = true;
+      const auto radius = static_cast<double>(world_.radii()[ball.radius_index]);
+      const bool is_released = object.number == released;
+      in.touches_released = in.touches_released || (is_released && distance < radius + kRounding);
+      if (distance < radius - kRounding) (is_released ? in.released : in.other) = true;
     }
     found.near_objects += near ? 1U : 0U;
     return in;
