@@ -321,7 +321,7 @@ TEST(SceneDataset, TurnsAPublishedStageThatLiesOnItsSide) {
   const auto config = folder.write(
       "rooms.scene_dataset_config.json",
       fmt::format(R"({{"stages": {{"paths": {{".glb": ["{}/simple_*"]}}}}}})", room.string()));
-  const auto dataset = SceneDataset::read(config);
+  const auto dataset = SceneDataset::read(config, {.allow_outside = true});
   ASSERT_TRUE(dataset) << textOf(dataset.error());
   MeshLibrary meshes(bake::datasetMeshOptions());
   const auto scene = dataset->compose("simple_room", meshes);
