@@ -9,9 +9,9 @@
 #include "pack_tool/info_text.h"
 #include "pack_tool/mesh/figure_glb.h"
 #include "pack_tool/painted_meshes.h"
-#include "view/render_surfaces.h"
 #include "pack_tool/verbs.h"
 #include "support/pack_tool_fixture.h"
+#include "view/render_surfaces.h"
 
 namespace galactic::pack_tool::render_meshes_test {
 namespace {

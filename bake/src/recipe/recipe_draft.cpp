@@ -204,7 +204,8 @@ class RecipeDraft {
     }
     const double root_height =
         points.empty() ? 0 : std::clamp(-static_cast<double>(lowest), -2., 2.);
-    const double footprint = points.empty() ? 0.3 : std::clamp(static_cast<double>(radius), 0.05, 2.0);
+    const double footprint =
+        points.empty() ? 0.3 : std::clamp(static_cast<double>(radius), 0.05, 2.0);
     text_ += fmt::format(
         "# The base: the root link, '{}', which drives and turns on the ground. Guess: what is "
         "near\n"
