@@ -58,7 +58,7 @@ heading "The same policy without Python: the likeliest actions in each unseen ep
 "$bin/galactic-run" --pack "$sample/unseen.pack" --policy "$run/picker.pack" --deterministic \
   --order partition --envs 64 --steps 100000
 "$bin/galactic-run" --pack "$sample/unseen.pack" --policy "$run/picker.pack" --envs 8 --steps 300 \
-  --view "$run/run.html" >"$run/run.txt"
+  --view "$run/run.html" --view-envs 8 >"$run/run.txt"
 
 cat <<END
 
