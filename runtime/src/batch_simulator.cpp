@@ -291,7 +291,8 @@ SimulationStatistics BatchSimulator::statistics() const {
 }
 SimulationStatistics BatchSimulator::statistics(std::size_t env) const {
   const simulation::EnvCounters& counters = impl_->state().env(env).counters;
-  return {.steps = impl_->steps() - counters.idle_steps,
+  // An env that came from a longer run may have idled for longer than this one has run.
+  return {.steps = impl_->steps() - std::min(impl_->steps(), counters.idle_steps),
           .refused = counters.refused,
           .slid = counters.slid,
           .grasps = counters.grasps,

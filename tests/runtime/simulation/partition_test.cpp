@@ -123,6 +123,11 @@ TEST(PartitionIdle, IsSavedRestoredAndRestarted) {
   EXPECT_EQ(other.statistics().steps, ended.steps);
   EXPECT_EQ(other.statistics().episodes, ended.episodes);
   EXPECT_FALSE(rest.empty());
+  // Envs that come into a run of their own bring no steps with them.
+  BatchSimulator young = made(world, partition(4));
+  const std::vector<std::uint32_t> all{0, 1, 2, 3};
+  ASSERT_TRUE(young.restoreState(simulator.saveState(), all));
+  EXPECT_EQ(young.statistics().steps, 0U);
   other.restart(5);
   EXPECT_EQ(std::ranges::count(other.idle(), 1), 0);
 }
