@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "check/offence.h"
 #include "galactic/schema/pack_generated.h"
-#include "offence.h"
 
 namespace galactic::policy {
 namespace {

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "workers.h"
+#include "support/workers.h"
 
 namespace galactic::sensors {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "workers.h"
+#include "support/workers.h"
 
 namespace galactic::sensors {
 namespace {

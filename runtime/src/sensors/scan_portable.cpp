@@ -1,6 +1,6 @@
 // The kernels of a scan for any processor, one beam at a time: what scan_avx2.cpp repeats operation
 // by operation.
-#include "column_grid_kernels.h"
+#include "column_grid/column_grid_kernels.h"
 #include "sensors/scan_kernels.h"
 
 namespace galactic::sensors {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "galactic/pose.h"
-#include "huge_pages.h"
 #include "simulation/model.h"
 #include "simulation/resting_objects.h"
+#include "support/huge_pages.h"
 
 namespace galactic::simulation {
 

@@ -9,7 +9,7 @@
 #include "simulation/chunk.h"
 #include "simulation/move.h"
 #include "simulation/observe.h"
-#include "workers.h"
+#include "support/workers.h"
 
 namespace galactic::simulation {
 namespace {

@@ -1,4 +1,4 @@
-#include "column_grid_kernels.h"
+#include "column_grid/column_grid_kernels.h"
 #include "simulation/motion_kernels.h"
 
 // Vectors of eight floats are passed between functions of this file only.

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "column_grid_kernels.h"
+#include "column_grid/column_grid_kernels.h"
 
 namespace galactic::simulation {
 namespace {

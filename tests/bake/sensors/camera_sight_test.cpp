@@ -1,5 +1,5 @@
 // Cameras that follow a robot through the sample apartment, against rays through its triangles.
-#include "camera_sight.h"
+#include "views/camera_sight.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include <variant>
 
 #include "galactic/learned_policy.h"
-#include "runtime/pack_damage.h"
-#include "runtime/pack_offence.h"
+#include "runtime/check/pack_damage.h"
+#include "runtime/check/pack_offence.h"
 #include "runtime/policy/policy_run.h"
 #include "support/policy_pack_builder.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "column_grid_kernels.h"
+#include "column_grid/column_grid_kernels.h"
 #include "render/soft/soft_engine.h"
 #include "support/render_images.h"
 #include "support/render_model_builder.h"

@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-#include "column_grid_kernels.h"
+#include "column_grid/column_grid_kernels.h"
 #include "scattered_grid.h"
 #include "sensors/scan_plane.h"
 #include "support/resting_oracle.h"

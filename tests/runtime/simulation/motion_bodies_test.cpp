@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-#include "column_grid_kernels.h"
+#include "column_grid/column_grid_kernels.h"
 #include "motion_batch.h"
 #include "support/random_robot.h"
 #include "support/source_folder.h"

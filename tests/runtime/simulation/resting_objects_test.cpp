@@ -11,7 +11,7 @@
 #include <optional>
 #include <set>
 
-#include "column_grid_kernels.h"
+#include "column_grid/column_grid_kernels.h"
 #include "support/resting_bodies.h"
 #include "support/resting_oracle.h"
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "huge_pages.h"
 #include "render/soft/pane.h"
+#include "support/huge_pages.h"
 
 namespace galactic::render {
 

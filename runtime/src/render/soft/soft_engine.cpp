@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "column_grid_kernels.h"
+#include "column_grid/column_grid_kernels.h"
 
 namespace galactic::render {
 namespace {

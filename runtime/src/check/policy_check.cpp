@@ -1,0 +1,118 @@
+#include "check/policy_check.h"
+
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <string_view>
+#include <vector>
+
+#include "check/common_check.h"
+#include "check/offence.h"
+#include "check/world_check.h"
+#include "policy/layer_shapes.h"
+
+namespace galactic::detail {
+namespace {
+
+using policy::LayerShape;
+
+constexpr std::uint32_t kLargestImage = 4096;
+
+/// Checks what a policy says around its layers.
+class PolicyChecker {
+ public:
+  PolicyChecker(const schema::Policy& policy, const std::string& where)
+      : policy_(policy), offence_(where + ": policy") {}
+
+  Result<void> run() {
+    offence_.require(!isEmpty(policy_.name()), "name", "is empty, wanted the policy's name");
+    offence_.require(checkOptions(*policy_.options(), "options", offence_.where()));
+    checkObservation();
+    if (policy_.image() != nullptr) checkImage(*policy_.image());
+    if (offence_.found()) return offence_.result();
+    const auto shapes = policy::layerShapes(policy_, offence_.where());
+    if (!shapes) return tl::unexpected<Error>(shapes.error());
+    checkActions(*shapes);
+    return offence_.result();
+  }
+
+ private:
+  void checkObservation() {
+    std::set<std::string_view> seen;
+    const auto& parts = *policy_.observation();
+    for (flatbuffers::uoffset_t n = 0; n < parts.size() && !offence_.found(); ++n) {
+      const std::string field = fmt::format("observation[{}]", n);
+      const std::string_view name = parts.Get(n)->name()->string_view();
+      offence_.require(!name.empty() && seen.insert(name).second, field + ".name",
+                       "is empty or a repeated name, wanted each part's own");
+      offence_.require(parts.Get(n)->size() >= 1, field + ".size", "is 0, wanted at least 1");
+    }
+  }
+
+  void checkImage(const schema::PolicyImage& image) {
+    const auto is_edge = [](std::uint32_t edge) { return edge >= 1 && edge <= kLargestImage; };
+    offence_.require(is_edge(image.width()), "image.width", "is {}, wanted 1 to {}", image.width(),
+                     kLargestImage);
+    offence_.require(is_edge(image.height()), "image.height", "is {}, wanted 1 to {}",
+                     image.height(), kLargestImage);
+    offence_.require(image.color() || image.depth(), "image.color",
+                     "and depth are false, wanted one of them at least");
+    offence_.require(std::isfinite(image.color_scale()), "image.color_scale",
+                     "is {}, wanted a finite number", image.color_scale());
+    offence_.require(std::isfinite(image.depth_limit()) && image.depth_limit() > 0,
+                     "image.depth_limit", "is {} m, wanted a finite length above 0",
+                     image.depth_limit());
+    offence_.require(std::isfinite(image.depth_scale()), "image.depth_scale",
+                     "is {}, wanted a finite number", image.depth_scale());
+    offence_.require(!isEmpty(image.camera()), "image.camera", "is empty, wanted a camera's name");
+    offence_.require(image.vertical_fov() >= 0 && image.vertical_fov() < std::numbers::pi_v<float>,
+                     "image.vertical_fov", "is {} rad, wanted 0 or more, less than pi",
+                     image.vertical_fov());
+  }
+
+  void checkActions(const std::vector<LayerShape>& shapes) {
+    const auto& discrete = *policy_.discrete();
+    offence_.require(policy_.continuous() != nullptr || discrete.size() >= 1, "discrete",
+                     "is empty, and there is no continuous action, wanted an action at least");
+    if (const schema::ContinuousActions* continuous = policy_.continuous()) {
+      offence_.require(continuous->count() >= 1, "continuous.count", "is 0, wanted at least 1");
+      requireVector(shapes, continuous->mean(), continuous->count(), "continuous.mean");
+      requireVector(shapes, continuous->log_deviation(), continuous->count(),
+                    "continuous.log_deviation");
+    }
+    for (flatbuffers::uoffset_t n = 0; n < discrete.size() && !offence_.found(); ++n) {
+      const schema::DiscreteAction& action = *discrete.Get(n);
+      const std::string field = fmt::format("discrete[{}]", n);
+      const auto& values = *action.values();
+      offence_.require(values.size() >= 2, field + ".values", "has {} elements, wanted 2 or more",
+                       values.size());
+      for (const float value : values) {
+        offence_.require(std::isfinite(value), field + ".values", "holds {}, wanted finite numbers",
+                         value);
+      }
+      requireVector(shapes, action.logits(), values.size(), field + ".logits");
+    }
+  }
+
+  void requireVector(const std::vector<LayerShape>& shapes, std::uint32_t layer, std::size_t size,
+                     const std::string& field) {
+    offence_.require(layer < shapes.size(), field, "is {}, wanted one of {} layers", layer,
+                     shapes.size());
+    if (offence_.found()) return;
+    const LayerShape& shape = shapes[layer];
+    offence_.require(shape.isVector() && shape.channels == size, field,
+                     "leads to {} x {} x {} elements, wanted a vector of {}", shape.channels,
+                     shape.height, shape.width, size);
+  }
+
+  const schema::Policy& policy_;
+  Offence offence_;
+};
+
+}  // namespace
+
+Result<void> checkPolicy(const schema::Policy& policy, const std::string& where) {
+  return PolicyChecker(policy, where).run();
+}
+
+}  // namespace galactic::detail

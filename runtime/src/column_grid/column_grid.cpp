@@ -1,0 +1,240 @@
+#include "galactic/column_grid.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "column_grid/column_grid_kernels.h"
+#include "galactic/column_cell.h"
+
+namespace galactic {
+namespace {
+
+/// A cell's two inline spans, in codes.
+struct InlineSpans {
+  std::uint32_t lo0, hi0, lo1, hi1;
+};
+
+InlineSpans inlineSpans(std::uint64_t cell) {
+  constexpr std::uint64_t kCodeMask = 0xffff;
+  return {static_cast<std::uint32_t>(cell & kCodeMask),
+          static_cast<std::uint32_t>((cell >> 16U) & kCodeMask),
+          static_cast<std::uint32_t>((cell >> 32U) & kCodeMask),
+          static_cast<std::uint32_t>(cell >> 48U)};
+}
+
+std::uint32_t tileBase(const ColumnGridLayout& grid, std::uint32_t cell_index) {
+  return grid.tile_base == nullptr ? 0U : grid.tile_base[cell_index / kCellsPerTile];
+}
+
+/// The answer for a centre that is not over the grid or is not a number.
+Clearance clearanceElsewhere(Vec3 centre) {
+  const bool is_nan = std::isnan(centre.x) || std::isnan(centre.y) || std::isnan(centre.z);
+  return is_nan ? Clearance::kBlocked : Clearance::kOutside;
+}
+
+/// Where a height lies among the codes of a tile.
+inline float codeOf(const ColumnGridLayout& grid, float y, std::uint32_t tile_base) {
+  return (y - grid.heights.lo) * grid.inverse_quantum -
+         static_cast<float>(kCodesPerTileBase * tile_base);
+}
+
+/// The heights at the ends of spans: those of the codes, rounded to where a query finds the span.
+/// Codes of heights ascend with them, so that everything between two ends is found, too.
+class SpanEnds {
+ public:
+  SpanEnds(const ColumnGridLayout& grid, std::uint32_t tile_base)
+      : grid_(grid), tile_base_(tile_base) {}
+
+  [[nodiscard]] float lowest(std::uint32_t code) const {
+    float y = height(code);
+    while (codeOf(grid_, y, tile_base_) < static_cast<float>(code)) {
+      y = std::max(std::nextafter(y, std::numeric_limits<float>::infinity()), y + step());
+    }
+    return y;
+  }
+
+  [[nodiscard]] float highest(std::uint32_t code) const {
+    float y = std::min(height(code), grid_.heights.hi);
+    while (codeOf(grid_, y, tile_base_) > static_cast<float>(code)) {
+      y = std::min(std::nextafter(y, -std::numeric_limits<float>::infinity()), y - step());
+    }
+    return y;
+  }
+
+ private:
+  [[nodiscard]] float height(std::uint32_t code) const {
+    const std::uint32_t above = code + kCodesPerTileBase * tile_base_;
+    return static_cast<float>(static_cast<double>(grid_.heights.lo) +
+                              static_cast<double>(grid_.quantum) * above);
+  }
+
+  /// About what codes are rounded to: near the height 0 the next float is no step at all.
+  [[nodiscard]] float step() const { return 0x1p-24F * (grid_.heights.hi - grid_.heights.lo); }
+
+  const ColumnGridLayout& grid_;
+  std::uint32_t tile_base_;
+};
+
+/// A distance to contact that stays clear of it; 0 at the contact.
+float clearOf(float distance, float margin) {
+  const float clear = distance - margin;
+  return clear > 0 ? clear : 0;
+}
+
+float lesser(float a, float b) { return a < b ? a : b; }
+
+/// The one definition of a query. contactAvx2 repeats it operation by operation.
+inline Contact contactAt(const ColumnGridLayout& grid, Vec3 centre) {
+  const float cell_x = (centre.x - grid.min_x) * grid.inverse_spacing;
+  const float cell_z = (centre.z - grid.min_z) * grid.inverse_spacing;
+  // Every comparison is false for NaN.
+  const bool inside = cell_x >= 0 && cell_x < static_cast<float>(grid.columns_x) && cell_z >= 0 &&
+                      cell_z < static_cast<float>(grid.columns_z) && centre.y >= grid.heights.lo &&
+                      centre.y <= grid.heights.hi;
+  if (!inside) return {.clearance = clearanceElsewhere(centre)};
+
+  const std::uint32_t index = cellIndex(static_cast<std::uint32_t>(cell_x),
+                                        static_cast<std::uint32_t>(cell_z), grid.tiles_x);
+  const std::uint64_t cell = grid.cells[index];
+  if (isOverflow(cell)) return detail::contactInOverflow(grid, overflowStart(cell), centre.y);
+
+  const float code = codeOf(grid, centre.y, tileBase(grid, index));
+  const InlineSpans spans = inlineSpans(cell);
+  const bool in_second =
+      code >= static_cast<float>(spans.lo1) && code <= static_cast<float>(spans.hi1);
+  const auto lo = static_cast<float>(in_second ? spans.lo1 : spans.lo0);
+  const auto hi = static_cast<float>(in_second ? spans.hi1 : spans.hi0);
+  if (!(code >= lo && code <= hi)) return {};
+  const float margin = detail::contactMargin(grid);
+  // The highest code may lie above the grid's heights.
+  const float up = lesser((hi - code) * grid.quantum, grid.heights.hi - centre.y);
+  return {Clearance::kFree, clearOf((code - lo) * grid.quantum, margin), clearOf(up, margin)};
+}
+
+}  // namespace
+
+namespace detail {
+
+// A height's code is off by less than 2^-21 of the height above the grid's lowest one: four
+// roundings of a product and a difference. It is computed twice, once to get the distance and once
+// when the place is asked about; the distance and the place itself are rounded, too.
+float contactMargin(const ColumnGridLayout& grid) noexcept {
+  constexpr float kOfHeight = 0x1p-19F;
+  constexpr float kOfCoordinate = 0x1p-22F;
+  const float farthest = std::max(std::fabs(grid.heights.lo), std::fabs(grid.heights.hi));
+  return kOfHeight * (grid.heights.hi - grid.heights.lo) + kOfCoordinate * farthest;
+}
+
+Span overflowSpan(const ColumnGridLayout& grid, std::uint32_t n) noexcept {
+  if (grid.overflow_codes == nullptr) return grid.overflow_spans[n];
+  const std::uint32_t codes = grid.overflow_codes[n];
+  if (codes == kEndOfCodes) return kEndOfSpans;
+  return {grid.heights.lo + grid.quantum * static_cast<float>(lowCode(codes)),
+          grid.heights.lo + grid.quantum * static_cast<float>(highCode(codes))};
+}
+
+Contact contactInOverflow(const ColumnGridLayout& grid, std::uint32_t start, float y) noexcept {
+  // The end mark lies above every height: the walk stops there.
+  std::uint32_t n = start;
+  Span span = overflowSpan(grid, n);
+  while (y > span.hi) span = overflowSpan(grid, ++n);
+  if (y < span.lo) return {};
+  const float margin = contactMargin(grid);
+  const float up = lesser(span.hi, grid.heights.hi) - y;
+  return {Clearance::kFree, clearOf(y - span.lo, margin), clearOf(up, margin)};
+}
+
+void contactPortable(const ColumnGridLayout& grid, const ContactBatch& batch) noexcept {
+  for (std::size_t n = 0; n < batch.count; ++n) {
+    const Contact contact = contactAt(grid, {batch.x[n], batch.y[n], batch.z[n]});
+    batch.clearance[n] = contact.clearance;
+    if (batch.down == nullptr) continue;
+    batch.down[n] = contact.down;
+    batch.up[n] = contact.up;
+  }
+}
+
+std::size_t firstNotFreePortable(const ColumnGridLayout& grid, const CentreBatch& batch) noexcept {
+  for (std::size_t n = 0; n < batch.count; ++n) {
+    const Contact contact = contactAt(grid, {batch.x[n], batch.y[n], batch.z[n]});
+    if (contact.clearance != Clearance::kFree) return n;
+  }
+  return batch.count;
+}
+
+bool hasAvx2() noexcept {
+#if defined(__x86_64__)
+  return __builtin_cpu_supports("avx2") != 0;
+#else
+  return false;
+#endif
+}
+
+}  // namespace detail
+
+Clearance ColumnGrid::clearance(Vec3 centre) const noexcept {
+  return contactAt(layout_, centre).clearance;
+}
+
+Contact ColumnGrid::contact(Vec3 centre) const noexcept { return contactAt(layout_, centre); }
+
+void ColumnGrid::contact(const SphereCentres& centres, const ContactArrays& out) const noexcept {
+  const std::size_t count = centres.x.size();
+  assert(centres.y.size() == count && centres.z.size() == count);
+  assert(out.clearance.size() == count);
+  assert(out.down.size() == out.up.size() && (out.down.empty() || out.down.size() == count));
+  const bool distances = !out.down.empty();
+  const detail::ContactBatch batch{.x = centres.x.data(),
+                                   .y = centres.y.data(),
+                                   .z = centres.z.data(),
+                                   .count = count,
+                                   .clearance = out.clearance.data(),
+                                   .down = distances ? out.down.data() : nullptr,
+                                   .up = distances ? out.up.data() : nullptr};
+  if (detail::hasAvx2()) {
+    detail::contactAvx2(layout_, batch);
+  } else {
+    detail::contactPortable(layout_, batch);
+  }
+}
+
+std::size_t ColumnGrid::firstNotFree(const SphereCentres& centres) const noexcept {
+  const std::size_t count = centres.x.size();
+  assert(centres.y.size() == count && centres.z.size() == count);
+  const detail::CentreBatch batch{centres.x.data(), centres.y.data(), centres.z.data(), count};
+  return detail::hasAvx2() ? detail::firstNotFreeAvx2(layout_, batch)
+                           : detail::firstNotFreePortable(layout_, batch);
+}
+
+std::size_t ColumnGrid::spanCount(std::uint32_t i, std::uint32_t k) const noexcept {
+  return spans(i, k, {});
+}
+
+std::size_t ColumnGrid::spans(std::uint32_t i, std::uint32_t k,
+                              std::span<Span> out) const noexcept {
+  assert(i < layout_.columns_x && k < layout_.columns_z);
+  const std::uint32_t index = cellIndex(i, k, layout_.tiles_x);
+  const std::uint64_t cell = layout_.cells[index];
+  std::size_t count = 0;
+  const auto append = [&](const Span& span) {
+    if (!(span.lo <= span.hi)) return;
+    if (count < out.size()) out[count] = span;
+    ++count;
+  };
+  if (isOverflow(cell)) {
+    for (std::uint32_t n = overflowStart(cell);; ++n) {
+      const Span span = detail::overflowSpan(layout_, n);
+      if (span == kEndOfSpans) return count;
+      append({span.lo, lesser(span.hi, layout_.heights.hi)});
+    }
+  }
+  const SpanEnds ends(layout_, tileBase(layout_, index));
+  const InlineSpans codes = inlineSpans(cell);
+  if (codes.lo0 <= codes.hi0) append({ends.lowest(codes.lo0), ends.highest(codes.hi0)});
+  if (codes.lo1 <= codes.hi1) append({ends.lowest(codes.lo1), ends.highest(codes.hi1)});
+  return count;
+}
+
+}  // namespace galactic

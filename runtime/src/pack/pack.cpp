@@ -1,0 +1,63 @@
+#include "galactic/pack.h"
+
+#include <cstdint>
+#include <utility>
+
+#include "check/pack_check.h"
+#include "galactic/mapped_file.h"
+#include "galactic/schema/pack_generated.h"
+
+namespace galactic {
+namespace {
+
+/// What the vectors in a pack are aligned to, relative to the file's first byte.
+constexpr std::size_t kPackAlignment = 32;
+
+}  // namespace
+
+/// Keeps the file mapped; nothing to keep for a view of somebody else's memory.
+class PackFile::Storage {
+ public:
+  explicit Storage(MappedFile file) : file_(std::move(file)) {}
+
+ private:
+  MappedFile file_;
+};
+
+PackFile::~PackFile() = default;
+PackFile::PackFile(PackFile&&) noexcept = default;
+PackFile& PackFile::operator=(PackFile&&) noexcept = default;
+
+Result<PackFile> PackFile::open(const std::filesystem::path& path, Trust trust) {
+  Result<MappedFile> file = MappedFile::open(path);
+  if (!file) return tl::unexpected<Error>(std::move(file.error()));
+  Result<PackFile> pack = view(file->bytes(), path.string(), trust);
+  // Moving the mapping does not move the bytes that the pack points to.
+  if (pack) pack->storage_ = std::make_unique<Storage>(std::move(*file));
+  return pack;
+}
+
+Result<PackFile> PackFile::view(std::span<const std::byte> file, std::string where, Trust trust) {
+  if (reinterpret_cast<std::uintptr_t>(file.data()) % kPackAlignment != 0) {
+    return fail(ErrorCode::kInvalidInput, std::move(where),
+                "lies at an address that is not a multiple of 32; copy it to aligned memory");
+  }
+  Result<PackHeader> header = readPackHeader(file, where);
+  if (!header) return tl::unexpected<Error>(std::move(header.error()));
+  const auto payload = file.subspan(sizeof(PackHeader));
+  Result<void> checked = detail::checkPayloadStart(payload, where);
+  if (trust == Trust::kVerify) {
+    // The hash first: a damaged file is told apart from one that was written wrongly.
+    if (auto intact = checkPackHash(*header, payload, where); !intact) checked = intact;
+    if (checked) checked = detail::checkPack(*header, file, where);
+  }
+  if (!checked) return tl::unexpected<Error>(std::move(checked.error()));
+  PackFile pack;
+  pack.bytes_ = file;
+  pack.header_ = *header;
+  pack.root_ = schema::GetPack(payload.data());
+  pack.where_ = std::move(where);
+  return pack;
+}
+
+}  // namespace galactic

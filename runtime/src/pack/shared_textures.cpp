@@ -1,0 +1,27 @@
+#include "galactic/shared_textures.h"
+
+#include "pack/schema_values.h"
+
+namespace galactic {
+
+Result<void> SharedTextures::add(const PackFile& pack) {
+  const schema::SharedTexture* stored =
+      pack.kind() == PackKind::kTexture ? pack.root().asset_as_SharedTexture() : nullptr;
+  if (stored == nullptr) {
+    return fail(ErrorCode::kInvalidInput, pack.where(),
+                "is a pack of kind " + packKindName(pack.kind()) + ", wanted a texture (TXTR)");
+  }
+  by_hash_.try_emplace({stored->hash()->low(), stored->hash()->high()},
+                       RenderTexture{.name = detail::fromSchema(stored->name()),
+                                     .size = stored->size(),
+                                     .format = static_cast<TexelFormat>(stored->format()),
+                                     .texels = detail::inPlace<std::uint8_t>(stored->texels())});
+  return {};
+}
+
+const RenderTexture* SharedTextures::find(std::uint64_t hash_low, std::uint64_t hash_high) const {
+  const auto found = by_hash_.find({hash_low, hash_high});
+  return found == by_hash_.end() ? nullptr : &found->second;
+}
+
+}  // namespace galactic

@@ -1,0 +1,203 @@
+#include "galactic/scripted_policy.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scripted/plan_player.h"
+#include "scripted/planner.h"
+#include "support/workers.h"
+
+namespace galactic {
+namespace {
+
+/// Plans per episode, after which a robot that is stuck or misses gives up.
+constexpr std::uint32_t kMostPlans = 8;
+
+struct EnvPlan {
+  scripted::PlanPlayer player;
+  ScriptedPhase phase = ScriptedPhase::kPick;
+  ScriptedTrouble trouble = ScriptedTrouble::kNone;
+  std::uint32_t plans = 0;
+};
+
+}  // namespace
+
+std::string_view nameOf(ScriptedTrouble trouble) {
+  constexpr std::array<std::string_view, 8> kNames{
+      "none",         "no way to target", "no way to goal", "no grasp",
+      "no placement", "no fold",          "stuck",          "missed"};
+  return kNames[static_cast<std::size_t>(trouble)];
+}
+
+class ScriptedPolicy::Impl {
+ public:
+  Impl(const World& world, const SimulationOptions& options)
+      : world_(world),
+        options_(options),
+        arm_(world.robot()),
+        envs_(options.envs),
+        planners_(std::min(detail::threadCount(options.threads), options.envs)),
+        faults_(planners_.size()) {
+    const std::size_t threads = planners_.size();
+    if (threads == 1) return;
+    workers_ = std::make_unique<detail::Workers>(threads, [this](std::size_t n) { work(n); });
+  }
+
+  void act(const BatchSimulator& simulator, std::span<float> actions) {
+    simulator_ = &simulator;
+    actions_ = actions;
+    next_ = 0;
+    if (workers_ == nullptr) {
+      work(0);
+    } else {
+      workers_->begin();
+      workers_->end();
+    }
+    for (std::exception_ptr& fault : faults_) {
+      if (fault) std::rethrow_exception(std::exchange(fault, nullptr));
+    }
+  }
+
+  [[nodiscard]] const EnvPlan& env(std::size_t n) const { return envs_[n]; }
+
+ private:
+  /// Acts in one env after the other, with the planner of thread `n`, as long as there are any.
+  void work(std::size_t n) noexcept {
+    try {
+      const std::size_t count = simulator_->actionCount();
+      for (std::size_t env = next_++; env < envs_.size(); env = next_++) {
+        if (simulator_->idle()[env] != 0) continue;
+        act(simulator_->envState(env), envs_[env], actions_.subspan(env * count, count), n);
+      }
+    } catch (...) {
+      faults_[n] = std::current_exception();
+    }
+  }
+
+  /// The planner of a thread: it takes a while to make, and memory.
+  [[nodiscard]] scripted::Planner& planner(std::size_t thread) {
+    std::optional<scripted::Planner>& planner = planners_[thread];
+    if (!planner) planner.emplace(world_, options_);
+    return *planner;
+  }
+
+  void act(const EnvState& state, EnvPlan& env, std::span<float> actions, std::size_t thread) {
+    if (state.step == 0) begin(state, env, thread);
+    while (true) {
+      std::ranges::fill(actions, 0.0F);
+      const scripted::ActionRow row = scripted::rowOf(actions);
+      // Letting go is an action of its own.
+      row.grasp = state.held >= 0 ? 1.0F : 0.0F;
+      if (env.phase == ScriptedPhase::kGaveUp) return;
+      using Progress = scripted::PlanPlayer::Progress;
+      const Progress progress = env.player.play(arm_, *world_.robot().base(), state, row);
+      if (progress == Progress::kActs) return;
+      if (progress == Progress::kStuck) {
+        std::ranges::fill(actions, 0.0F);
+        env.trouble = ScriptedTrouble::kStuck;
+      }
+      planNext(state, env, progress == Progress::kDone, thread);
+    }
+  }
+
+  /// An episode begins.
+  void begin(const EnvState& state, EnvPlan& env, std::size_t thread) {
+    env = {};
+    if (isAtGoal(state)) {
+      finish(env);
+    } else {
+      use(env, planner(thread).planPick(state, env.plans));
+    }
+  }
+
+  [[nodiscard]] bool isAtGoal(const EnvState& state) const {
+    if (options_.task.kind != TaskKind::kRearrange || state.held >= 0) return false;
+    const Vec3 away = state.objects[state.target].translation - state.goal.translation;
+    return std::sqrt(dot(away, away)) < options_.task.success_distance;
+  }
+
+  static void finish(EnvPlan& env) {
+    env.phase = ScriptedPhase::kFinish;
+    scripted::Plan plan;
+    plan.steps.push_back({scripted::PlanStep::Kind::kTerminate, {}, {}});
+    env.player = scripted::PlanPlayer(std::move(plan));
+  }
+
+  static void giveUp(EnvPlan& env) { env.phase = ScriptedPhase::kGaveUp; }
+
+  static void use(EnvPlan& env, scripted::Plan plan) {
+    if (plan.trouble != ScriptedTrouble::kNone) {
+      env.trouble = plan.trouble;
+      giveUp(env);
+      return;
+    }
+    env.player = scripted::PlanPlayer(std::move(plan));
+  }
+
+  /// The plan is played to its end, or the robot is stuck in it.
+  void planNext(const EnvState& state, EnvPlan& env, bool is_done, std::size_t thread) {
+    const bool holds_target = state.held == static_cast<std::int32_t>(state.target);
+    const bool holds_another = state.held >= 0 && !holds_target;
+    const bool missed = is_done && !holds_target && !isAtGoal(state);
+    if (missed || holds_another) env.trouble = ScriptedTrouble::kMissed;
+    ++env.plans;
+    if (isAtGoal(state)) {
+      // Another time would change nothing: the simulation wants something else.
+      env.phase == ScriptedPhase::kFinish ? giveUp(env) : finish(env);
+    } else if (holds_another || env.plans >= kMostPlans ||
+               (holds_target && options_.task.kind == TaskKind::kMobilePick)) {
+      giveUp(env);
+    } else if (holds_target) {
+      env.phase = ScriptedPhase::kPlace;
+      use(env, planner(thread).planPlace(state, env.plans));
+    } else {
+      env.phase = ScriptedPhase::kPick;
+      use(env, planner(thread).planPick(state, env.plans));
+    }
+  }
+
+  const World& world_;
+  SimulationOptions options_;
+  scripted::Arm arm_;
+  std::vector<EnvPlan> envs_;
+  /// One for each thread, made when it plans for the first time.
+  std::vector<std::optional<scripted::Planner>> planners_;
+  std::vector<std::exception_ptr> faults_;
+  // Of the current call:
+  const BatchSimulator* simulator_ = nullptr;
+  std::span<float> actions_;
+  std::atomic<std::size_t> next_{0};
+  /// The last member: its threads see the others.
+  std::unique_ptr<detail::Workers> workers_;
+};
+
+Result<ScriptedPolicy> ScriptedPolicy::create(const World& world,
+                                              const SimulationOptions& options) {
+  if (options.task.kind == TaskKind::kNone) {
+    return fail(ErrorCode::kUnsupported, "scripted policy",
+                "the task is none, which has nothing to plan for; use rearrange or mobile pick");
+  }
+  return ScriptedPolicy(std::make_unique<Impl>(world, options));
+}
+
+ScriptedPolicy::ScriptedPolicy(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+ScriptedPolicy::~ScriptedPolicy() = default;
+ScriptedPolicy::ScriptedPolicy(ScriptedPolicy&&) noexcept = default;
+ScriptedPolicy& ScriptedPolicy::operator=(ScriptedPolicy&&) noexcept = default;
+
+void ScriptedPolicy::act(const BatchSimulator& simulator, std::span<float> actions) {
+  impl_->act(simulator, actions);
+}
+
+ScriptedPhase ScriptedPolicy::phase(std::size_t env) const { return impl_->env(env).phase; }
+
+ScriptedTrouble ScriptedPolicy::trouble(std::size_t env) const { return impl_->env(env).trouble; }
+
+}  // namespace galactic

@@ -1,0 +1,336 @@
+#include "galactic/batch_simulator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+#include <utility>
+
+#include "simulation/batch_state.h"
+#include "simulation/chunk.h"
+#include "simulation/env_state.h"
+#include "simulation/episode_start.h"
+#include "simulation/grip_frame.h"
+#include "simulation/model.h"
+#include "simulation/saved_state.h"
+#include "simulation/step.h"
+#include "support/workers.h"
+
+namespace galactic {
+
+using simulation::BatchState;
+using simulation::Chunk;
+using simulation::kChunk;
+using simulation::Model;
+using simulation::SavedState;
+
+namespace {
+
+std::vector<std::uint32_t> allEnvs(std::size_t count) {
+  std::vector<std::uint32_t> envs(count);
+  std::iota(envs.begin(), envs.end(), 0U);
+  return envs;
+}
+
+}  // namespace
+
+/// The batch, and the threads that step it.
+class BatchSimulator::Impl {
+ public:
+  Impl(Model model, std::size_t threads)
+      : model_(std::move(model)), state_(model_, model_.options.envs) {
+    const std::size_t chunks = state_.paddedCount() / kChunk;
+    threads = std::min(threads, chunks);
+    parts_.reserve(threads);
+    for (std::size_t n = 0; n < threads; ++n) {
+      parts_.push_back(
+          {Chunk(model_), n * chunks / threads * kChunk, (n + 1) * chunks / threads * kChunk, {}});
+    }
+    beginFirstEpisodes();
+    workers_ = std::make_unique<detail::Workers>(threads, [this](std::size_t n) { run(n); });
+  }
+
+  void begin(std::span<const float> actions, std::span<const std::int32_t> resets) {
+    assert(actions.size() == model_.options.envs * model_.actionCount());
+    assert(resets.empty() || resets.size() == model_.options.envs);
+    input_ = {actions, resets};
+    measures_ = sample_every_ != 0 && steps_ % sample_every_ == 0;
+    workers_->begin();
+  }
+
+  void end() {
+    workers_->end();
+    ++steps_;
+  }
+
+  void step(std::span<const float> actions, std::span<const std::int32_t> resets) {
+    if (parts_.size() > 1) {
+      begin(actions, resets);
+      end();
+      return;
+    }
+    input_ = {actions, resets};
+    measures_ = sample_every_ != 0 && steps_ % sample_every_ == 0;
+    run(0);
+    ++steps_;
+  }
+
+  void reset(std::span<const std::int32_t> episodes) {
+    assert(episodes.size() == model_.options.envs);
+    for (std::size_t env = 0; env < episodes.size(); ++env) {
+      if (episodes[env] == kStays) continue;
+      // With auto_reset the step has kept it.
+      if (!model_.options.auto_reset) state_.keepFinalObservation(env);
+      if (episodes[env] == kNextEpisode) {
+        simulation::beginNextEpisode(model_, state_, env);
+      } else {
+        simulation::beginChosenEpisode(model_, state_, env, episodes[env]);
+      }
+    }
+  }
+
+  void restart(std::uint64_t seed) {
+    model_.options.seed = seed;
+    for (std::size_t env = 0; env < state_.paddedCount(); ++env) {
+      state_.env(env) = {};
+      state_.clearOutcome(env);
+    }
+    beginFirstEpisodes();
+    steps_ = 0;
+  }
+
+  std::vector<std::byte> save(std::span<const std::uint32_t> envs) const {
+    return simulation::saveEnvs(model_, state_, envs, steps_);
+  }
+
+  Result<void> restore(std::span<const std::byte> bytes) {
+    const Result<SavedState> saved = simulation::readState(model_, bytes);
+    if (!saved) return tl::unexpected<Error>(saved.error());
+    const std::vector<std::uint32_t> all = allEnvs(model_.options.envs);
+    if (Result<void> fits = checkCount(*saved, all); !fits) return fits;
+    model_.options.seed = saved->seed;
+    steps_ = saved->steps;
+    put(*saved, all);
+    return {};
+  }
+
+  Result<void> restore(std::span<const std::byte> bytes, std::span<const std::uint32_t> envs) {
+    const Result<SavedState> saved = simulation::readState(model_, bytes);
+    if (!saved) return tl::unexpected<Error>(saved.error());
+    if (Result<void> fits = checkCount(*saved, envs); !fits) return fits;
+    if (saved->seed != model_.options.seed) {
+      return fail(ErrorCode::kInvalidInput, "saved state",
+                  fmt::format("was saved with seed {}, and the simulator has {}; restart it with "
+                              "that seed",
+                              saved->seed, model_.options.seed));
+    }
+    put(*saved, envs);
+    return {};
+  }
+
+  const Model& model() const { return model_; }
+  BatchState& state() { return state_; }
+  const BatchState& state() const { return state_; }
+  std::size_t threads() const { return parts_.size(); }
+  std::uint64_t steps() const { return steps_; }
+  void sample(std::uint32_t every) { sample_every_ = every; }
+
+  std::vector<PhaseTime> phaseTimes() const {
+    std::vector<PhaseTime> times;
+    times.reserve(simulation::kPhaseNames.size());
+    for (std::size_t n = 0; n < simulation::kPhaseNames.size(); ++n) {
+      double seconds = 0;
+      for (const Part& part : parts_) seconds += part.seconds[n];
+      times.push_back({simulation::kPhaseNames[n], seconds});
+    }
+    return times;
+  }
+
+ private:
+  /// The envs of one thread.
+  struct Part {
+    Chunk chunk;
+    std::size_t first = 0;
+    std::size_t last = 0;
+    simulation::PhaseSeconds seconds{};
+  };
+
+  static Result<void> checkCount(const SavedState& saved, std::span<const std::uint32_t> envs) {
+    if (saved.envs.size() == envs.size()) return {};
+    return fail(ErrorCode::kInvalidInput, "saved state",
+                fmt::format("has {} envs, wanted {}", saved.envs.size(), envs.size()));
+  }
+
+  void put(const SavedState& saved, std::span<const std::uint32_t> envs) {
+    for (std::size_t n = 0; n < envs.size(); ++n) {
+      assert(envs[n] < model_.options.envs);
+      simulation::restoreEnv(model_, state_, envs[n], saved.envs[n]);
+    }
+  }
+
+  void beginFirstEpisodes() {
+    for (std::size_t env = 0; env < state_.paddedCount(); ++env) {
+      simulation::beginNextEpisode(model_, state_, env);
+    }
+  }
+
+  void run(std::size_t n) noexcept {
+    Part& part = parts_[n];
+    for (std::size_t first = part.first; first < part.last; first += kChunk) {
+      const simulation::ChunkStep step{model_, state_, part.chunk, first};
+      if (measures_) {
+        simulation::stepChunkMeasured(step, input_, part.seconds);
+      } else {
+        simulation::stepChunk(step, input_);
+      }
+    }
+  }
+
+  Model model_;
+  BatchState state_;
+  std::vector<Part> parts_;
+  simulation::StepInput input_;
+  std::uint64_t steps_ = 0;
+  std::uint32_t sample_every_ = 0;
+  bool measures_ = false;
+  std::unique_ptr<detail::Workers> workers_;
+};
+
+Result<BatchSimulator> BatchSimulator::create(const World& world,
+                                              const SimulationOptions& options) {
+  if (options.envs == 0 || options.ranks == 0 || options.rank >= options.ranks) {
+    return fail(ErrorCode::kInvalidInput, "simulation options",
+                "found " + std::to_string(options.envs) + " envs, rank " +
+                    std::to_string(options.rank) + " of " + std::to_string(options.ranks) +
+                    "; wanted at least one env and a rank below the number of ranks");
+  }
+  Result<Model> model = simulation::makeModel(world, options);
+  if (!model) return tl::unexpected<Error>(model.error());
+  return BatchSimulator(
+      std::make_unique<Impl>(std::move(*model), detail::threadCount(options.threads)));
+}
+
+BatchSimulator::BatchSimulator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+BatchSimulator::~BatchSimulator() = default;
+BatchSimulator::BatchSimulator(BatchSimulator&&) noexcept = default;
+BatchSimulator& BatchSimulator::operator=(BatchSimulator&&) noexcept = default;
+
+const SimulationOptions& BatchSimulator::options() const { return impl_->model().options; }
+std::size_t BatchSimulator::envCount() const { return impl_->model().options.envs; }
+std::size_t BatchSimulator::actionCount() const { return impl_->model().actionCount(); }
+std::size_t BatchSimulator::observationSize() const { return impl_->model().observation_size; }
+std::size_t BatchSimulator::threadCount() const { return impl_->threads(); }
+const std::vector<ObservationPart>& BatchSimulator::observationParts() const {
+  return impl_->model().observation;
+}
+
+void BatchSimulator::step(std::span<const float> actions, std::span<const std::int32_t> resets) {
+  impl_->step(actions, resets);
+}
+void BatchSimulator::beginStep(std::span<const float> actions,
+                               std::span<const std::int32_t> resets) {
+  impl_->begin(actions, resets);
+}
+void BatchSimulator::endStep() { impl_->end(); }
+void BatchSimulator::reset(std::span<const std::int32_t> episodes) { impl_->reset(episodes); }
+void BatchSimulator::restart(std::uint64_t seed) { impl_->restart(seed); }
+
+std::vector<std::byte> BatchSimulator::saveState() const { return saveState(allEnvs(envCount())); }
+std::vector<std::byte> BatchSimulator::saveState(std::span<const std::uint32_t> envs) const {
+  return impl_->save(envs);
+}
+Result<void> BatchSimulator::restoreState(std::span<const std::byte> state) {
+  return impl_->restore(state);
+}
+Result<void> BatchSimulator::restoreState(std::span<const std::byte> state,
+                                          std::span<const std::uint32_t> envs) {
+  return impl_->restore(state, envs);
+}
+
+std::span<const float> BatchSimulator::observations() const {
+  return impl_->state().observations();
+}
+std::span<const float> BatchSimulator::finalObservations() const {
+  return impl_->state().finalObservations();
+}
+std::span<const float> BatchSimulator::rewards() const {
+  return impl_->state().rewards().first(envCount());
+}
+std::span<const std::uint8_t> BatchSimulator::dones() const {
+  return impl_->state().dones().first(envCount());
+}
+std::span<const std::uint8_t> BatchSimulator::successes() const {
+  return impl_->state().successes().first(envCount());
+}
+std::span<const EpisodeEnd> BatchSimulator::endings() const {
+  return impl_->state().endings().first(envCount());
+}
+
+std::span<const std::uint8_t> BatchSimulator::idle() const {
+  return impl_->state().idle().first(envCount());
+}
+
+SimulationStatistics BatchSimulator::statistics() const {
+  SimulationStatistics sum;
+  for (std::size_t n = 0; n < envCount(); ++n) {
+    const SimulationStatistics env = statistics(n);
+    sum.steps += env.steps;
+    sum.refused += env.refused;
+    sum.slid += env.slid;
+    sum.grasps += env.grasps;
+    sum.drops += env.drops;
+    sum.restored += env.restored;
+    sum.episodes += env.episodes;
+    sum.successes += env.successes;
+    sum.failures += env.failures;
+    sum.nan_actions += env.nan_actions;
+    sum.reward += env.reward;
+  }
+  return sum;
+}
+SimulationStatistics BatchSimulator::statistics(std::size_t env) const {
+  const simulation::EnvCounters& counters = impl_->state().env(env).counters;
+  // An env that came from a longer run may have idled for longer than this one has run.
+  return {.steps = impl_->steps() - std::min(impl_->steps(), counters.idle_steps),
+          .refused = counters.refused,
+          .slid = counters.slid,
+          .grasps = counters.grasps,
+          .drops = counters.drops,
+          .restored = counters.restored,
+          .episodes = counters.episodes,
+          .successes = counters.successes,
+          .failures = counters.failures,
+          .nan_actions = counters.nan_actions,
+          .reward = counters.reward};
+}
+
+std::span<const std::uint32_t> BatchSimulator::skippedEpisodes() const {
+  return impl_->model().skipped;
+}
+
+EnvState BatchSimulator::envState(std::size_t env) const {
+  return simulation::envStateOf(impl_->model(), impl_->state(), env);
+}
+
+EnvObjects BatchSimulator::envObjects(std::size_t env) const noexcept {
+  return simulation::envObjectsOf(impl_->model(), impl_->state(), env);
+}
+
+std::size_t BatchSimulator::bodyCount() const { return impl_->model().motion.nodes.size() + 1; }
+
+LinkOnBody BatchSimulator::linkOnBody(std::size_t link) const {
+  const simulation::FixedFrame& frame = impl_->model().motion.links[link];
+  return {static_cast<std::size_t>(frame.node + 1),
+          {frame.x_axis, frame.y_axis, frame.z_axis, frame.origin}};
+}
+
+std::span<const RigidTransform> BatchSimulator::bodyTransforms() const {
+  return impl_->state().bodyTransforms();
+}
+
+void BatchSimulator::samplePhases(std::uint32_t every) { impl_->sample(every); }
+std::vector<PhaseTime> BatchSimulator::phaseTimes() const { return impl_->phaseTimes(); }
+std::size_t BatchSimulator::memoryBytes() const { return impl_->state().bytes(); }
+
+}  // namespace galactic

@@ -1,0 +1,38 @@
+#include "support/huge_pages.h"
+
+#include <algorithm>
+#include <new>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+namespace galactic::detail {
+namespace {
+
+constexpr std::size_t kHugePage = std::size_t{2} << 20U;
+
+std::size_t alignmentFor(std::size_t bytes, std::size_t alignment) {
+  return bytes < kHugePage ? alignment : std::max(alignment, kHugePage);
+}
+
+}  // namespace
+
+void* HugePages::do_allocate(std::size_t bytes, std::size_t alignment) {
+  void* memory = ::operator new (bytes, std::align_val_t{alignmentFor(bytes, alignment)});
+#if defined(__linux__)
+  // A wish; without it the memory is the same, and slower.
+  if (bytes >= kHugePage) static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));
+#endif
+  return memory;
+}
+
+void HugePages::do_deallocate(void* memory, std::size_t bytes, std::size_t alignment) {
+  ::operator delete (memory, std::align_val_t{alignmentFor(bytes, alignment)});
+}
+
+bool HugePages::do_is_equal(const std::pmr::memory_resource& other) const noexcept {
+  return dynamic_cast<const HugePages*>(&other) != nullptr;
+}
+
+}  // namespace galactic::detail

@@ -1,0 +1,114 @@
+#include "views/camera_sight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace galactic {
+namespace {
+
+/// A ball of this size moves along the line, if there is a grid for it: so wide is what the near
+/// plane of an image shows.
+constexpr float kRadius = 0.05F;
+/// Turns that are tried, to either side.
+constexpr int kTurns = 12;
+constexpr float kTurn = std::numbers::pi_v<float> / kTurns;
+/// To turn half about is as bad as to come so much nearer, as a share of the distance.
+constexpr float kPriceOfHalfATurn = 0.5F;
+/// The camera rises by so much, too; each of these steps is as bad as to come so much nearer.
+constexpr int kRises = 2;
+constexpr float kRise = std::numbers::pi_v<float> / 9;
+constexpr float kPriceOfARise = 0.1F;
+/// Targets that are tried, metres below each other.
+constexpr float kLower = 0.15F;
+constexpr float kPriceOfMetresLower = 0.4F;
+constexpr float kLowestTarget = 0.1F;
+
+const ColumnGrid& gridFor(const Scene& scene) {
+  const auto wide = std::find_if(scene.grids().begin(), scene.grids().end(),
+                                 [](const ColumnGrid& grid) { return grid.radius() >= kRadius; });
+  return wide != scene.grids().end() ? *wide : scene.grids().back();
+}
+
+/// Turned about the vertical line through `pivot`.
+RigidTransform turned(const RigidTransform& from, const Vec3& pivot, float angle) {
+  const float c = std::cos(angle);
+  const float s = std::sin(angle);
+  const auto turn = [&](const Vec3& v) { return Vec3{c * v.x + s * v.z, v.y, c * v.z - s * v.x}; };
+  return {turn(from.x_axis), turn(from.y_axis), turn(from.z_axis),
+          pivot + turn(from.origin - pivot)};
+}
+
+/// On a circle about `pivot`, which is on the camera's axis, upwards.
+RigidTransform raised(const RigidTransform& from, const Vec3& pivot, float angle) {
+  const float c = std::cos(angle);
+  const float s = std::sin(angle);
+  const Vec3 away = from.origin - pivot;
+  const Vec3 ahead = from.x_axis * c - from.y_axis * s;
+  return {ahead, from.y_axis * c + from.x_axis * s, from.z_axis,
+          pivot - ahead * std::sqrt(dot(away, away))};
+}
+
+/// How much of the way from `from` to `to` is free, 0 to 1.
+float freeShare(const ColumnGrid& grid, const Vec3& from, const Vec3& to) {
+  const Vec3 way = to - from;
+  const float length = std::sqrt(dot(way, way));
+  const float pace = 0.5F * std::min(grid.radius(), grid.spacing());
+  const auto steps = std::max(1, static_cast<int>(std::ceil(length / pace)));
+  for (int n = 0; n <= steps; ++n) {
+    const float share = static_cast<float>(n) / static_cast<float>(steps);
+    if (grid.clearance(from + way * share) != Clearance::kFree) {
+      return static_cast<float>(std::max(n - 1, 0)) / static_cast<float>(steps);
+    }
+  }
+  return 1;
+}
+
+/// The point of the camera's axis that is nearest to the vertical line through `base`.
+Vec3 targetOf(const RigidTransform& camera, const Vec3& base) {
+  const Vec3& axis = camera.x_axis;
+  const float level = axis.x * axis.x + axis.z * axis.z;
+  const Vec3 way = base - camera.origin;
+  return camera.origin + axis * (level > 0 ? (way.x * axis.x + way.z * axis.z) / level : 0);
+}
+
+}  // namespace
+
+SightLine inSight(const Scene& scene, const Vec3& base, const RigidTransform& wanted) noexcept {
+  const ColumnGrid& grid = gridFor(scene);
+  const Vec3 highest = targetOf(wanted, base);
+  SightLine found{wanted, highest};
+  float best = -1;
+  const auto consider = [&](const RigidTransform& start, const Vec3& target, float price) {
+    for (int n = 0; n < 2 * kTurns; ++n) {
+      // 0, then to the left and to the right by turns.
+      const int turns = (n % 2 == 0 ? 1 : -1) * ((n + 1) / 2);
+      const float whole = price + kPriceOfHalfATurn * std::abs(static_cast<float>(turns)) / kTurns;
+      if (1 - whole <= best) return;
+      RigidTransform camera = turned(start, target, static_cast<float>(turns) * kTurn);
+      const float share = freeShare(grid, target, camera.origin);
+      if (share - whole <= best) continue;
+      best = share - whole;
+      camera.origin = target + (camera.origin - target) * share;
+      found = {camera, target};
+    }
+  };
+  float lowered = 0;
+  // Not above the base either: a place that is none.
+  while (highest.y - lowered >= base.y + kLowestTarget) {
+    const Vec3 target = highest - Vec3{0, lowered, 0};
+    RigidTransform start = wanted;
+    start.origin.y -= lowered;
+    const float price = kPriceOfMetresLower * lowered;
+    for (int rise = 0; rise <= kRises; ++rise) {
+      if (grid.clearance(target) != Clearance::kFree) break;
+      const float angle = static_cast<float>(rise) * kRise;
+      consider(raised(start, target, angle), target,
+               price + kPriceOfARise * static_cast<float>(rise));
+    }
+    lowered += kLower;
+  }
+  return found;
+}
+
+}  // namespace galactic

@@ -1,0 +1,109 @@
+#include "galactic/debug_models.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+#include "galactic/render_mesh_builder.h"
+#include "views/grid_surface.h"
+#include "views/shapes.h"
+
+namespace galactic {
+namespace {
+
+// RGBA, R lowest: as in figure 3 of the paper.
+constexpr std::uint32_t kGreen = 0xFF48B028;
+constexpr std::uint32_t kBlue = 0xFFE8742E;
+constexpr std::uint32_t kOrange = 0xFF1482F0;
+constexpr std::uint32_t kMagenta = 0xFF8C1ED6;
+
+/// What semantic ids tell apart, in their order.
+enum Semantic : std::uint16_t { kGrid, kRobotSphere, kHeldSphere, kRestingBox, kGoal };
+
+Result<std::size_t> gridIndexOf(const World& world, float radius) {
+  if (radius == 0) return 0;
+  if (const auto index = world.scenes().front().gridIndex(radius)) return *index;
+  std::string known;
+  for (const float one : world.radii())
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", one);
+  return fail(ErrorCode::kInvalidInput, "debug view",
+              fmt::format("found a radius of {} m; wanted one of the world's: {}", radius, known));
+}
+
+/// Collects parts, numbered as they come.
+class PartList {
+ public:
+  PartList() {
+    source_.materials = {{.name = "debug"}};
+    source_.semantics = {"grid", "robot sphere", "held sphere", "resting box", "goal"};
+  }
+
+  /// Returns its number.
+  std::uint32_t add(RenderSurface surface, Semantic semantic) {
+    const std::uint32_t number = count();
+    surface.semantic = semantic;
+    RenderPart& part = source_.parts.emplace_back();
+    part.part = number;
+    part.source_triangles = static_cast<std::uint32_t>(surface.corners.size() / 3);
+    part.surfaces.push_back(std::move(surface));
+    return number;
+  }
+  [[nodiscard]] std::uint32_t count() const {
+    return static_cast<std::uint32_t>(source_.parts.size());
+  }
+  [[nodiscard]] const RenderMeshSource& source() const { return source_; }
+
+ private:
+  RenderMeshSource source_;
+};
+
+/// The box of each object that the episodes name; a point where no episode places one.
+std::vector<OrientedBox> boxesOf(const World& world) {
+  std::vector<OrientedBox> boxes(world.episodes().objectNames().size());
+  for (const Episode& episode : world.episodes().episodes()) {
+    for (const Placement& placement : world.episodes().placements(episode)) {
+      boxes[placement.object] = world.objectOf(placement).box;
+    }
+  }
+  return boxes;
+}
+
+}  // namespace
+
+Result<DebugModels> DebugModels::from(const World& world, const DebugOptions& options) {
+  const Result<std::size_t> grid = gridIndexOf(world, options.radius);
+  if (!grid) return tl::unexpected<Error>(grid.error());
+  DebugModels models;
+  PartList parts;
+  for (const Scene& scene : world.scenes()) {
+    parts.add(debug::gridSurface(scene.grids()[*grid]), kGrid);
+  }
+  models.first_robot_sphere_ = parts.count();
+  for (const float radius : world.radii()) {
+    parts.add(debug::sphereSurface(radius, kGreen), kRobotSphere);
+  }
+  models.first_held_sphere_ = parts.count();
+  for (const float radius : world.radii()) {
+    parts.add(debug::sphereSurface(radius, kBlue), kHeldSphere);
+  }
+  const std::vector<OrientedBox> boxes = boxesOf(world);
+  models.first_box_ = parts.count();
+  for (const OrientedBox& box : boxes) parts.add(debug::boxSurface(box, kOrange), kRestingBox);
+  models.first_goal_ = parts.count();
+  for (const OrientedBox& box : boxes) parts.add(debug::boxFrameSurface(box, kMagenta), kGoal);
+
+  Result<RenderMeshStorage> built = buildRenderMeshes(parts.source());
+  if (!built) return tl::unexpected<Error>(built.error());
+  auto memory = std::make_shared<const RenderMeshStorage>(std::move(*built));
+  models.library_.add(memory->view());
+  models.memory_ = std::move(memory);
+  return models;
+}
+
+std::optional<std::uint32_t> DebugModels::sceneModel(std::uint32_t scene) const {
+  if (library_.model(scene).cluster_count == 0) return std::nullopt;
+  return scene;
+}
+
+}  // namespace galactic

@@ -1,0 +1,240 @@
+// One wrong value per field of an object pack whose hash is right: each has its own message.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "galactic/object_set.h"
+#include "galactic/pack.h"
+#include "runtime/check/pack_damage.h"
+#include "runtime/check/pack_offence.h"
+#include "support/object_pack_builder.h"
+
+namespace galactic::test::object_check_test {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr double kNanDouble = std::numeric_limits<double>::quiet_NaN();
+
+using Offence = PackOffence<ObjectPackFields>;
+
+/// An offence of the first object.
+Offence inObject(const std::string& field, const std::string& message,
+                 std::function<void(ObjectFields&)> change) {
+  return {"objects.objects[0]." + field, message,
+          [change = std::move(change)](ObjectPackFields& f) { change(f.objects[0]); }};
+}
+
+void refuse(const std::vector<Offence>& offences) { expectRefused(smallObjects(), offences); }
+
+TEST(ObjectCheck, AcceptsTheObjectsThatTheOffencesBelowStartFrom) {
+  const AlignedBytes bytes = buildPack(smallObjects());
+  const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
+  ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+}
+
+TEST(ObjectCheck, RefusesWrongValuesOfTheSet) {
+  refuse({
+      {"objects.radii", "has 0 elements, wanted 1 to 8",
+       [](ObjectPackFields& f) { f.radii.clear(); }},
+      {"objects.radii", "has 9 elements, wanted 1 to 8",
+       [](ObjectPackFields& f) { f.radii.assign(9, 1); }},
+      {"objects.radii[0]", "is nan m after 0 m, wanted ascending radii of up to 800 m",
+       [](ObjectPackFields& f) { f.radii[0] = kNan; }},
+      {"objects.radii[0]", "is 0 m after 0 m, wanted ascending radii of up to 800 m",
+       [](ObjectPackFields& f) { f.radii[0] = 0; }},
+      {"objects.radii[1]", "is 0.015 m after 0.015 m, wanted ascending radii of up to 800 m",
+       [](ObjectPackFields& f) { f.radii[1] = f.radii[0]; }},
+      {"objects.radii[1]", "is inf m after 0.015 m, wanted ascending radii of up to 800 m",
+       [](ObjectPackFields& f) { f.radii[1] = kInfinity; }},
+      {"objects.objects", "is empty, wanted at least one object",
+       [](ObjectPackFields& f) { f.objects.clear(); }},
+      {"objects.objects[1].name", "does not come after its predecessor's, wanted ascending names",
+       [](ObjectPackFields& f) { f.objects[1].name = "bowl"; }},
+      {"objects.objects[1].name", "does not come after its predecessor's, wanted ascending names",
+       [](ObjectPackFields& f) { f.objects[0].name = "nut"; }},
+  });
+}
+
+TEST(ObjectCheck, RefusesWrongBoxes) {
+  const std::string rigid =
+      "is missing or no rigid transform, wanted up to 800 m and a unit quaternion";
+  const std::string lengths = "are missing or no lengths, wanted more than 0 and up to 800 m";
+  const std::string volumes = "are missing or not finite, wanted volumes of 0 or more";
+  refuse({
+      inObject("name", "is empty, wanted the object's name",
+               [](ObjectFields& o) { o.name.clear(); }),
+      inObject("box_pose", rigid, [](ObjectFields& o) { o.box_pose.reset(); }),
+      inObject("box_pose", rigid, [](ObjectFields& o) { o.box_pose->translation.y = kNan; }),
+      inObject("box_pose", rigid, [](ObjectFields& o) { o.box_pose->rotation.w = 0.9F; }),
+      inObject("box_pose", rigid, [](ObjectFields& o) { o.box_pose->rotation.x = kNan; }),
+      inObject("box_half_extents", lengths, [](ObjectFields& o) { o.box_half_extents.reset(); }),
+      inObject("box_half_extents", lengths, [](ObjectFields& o) { o.box_half_extents->y = 0; }),
+      inObject("box_half_extents", lengths, [](ObjectFields& o) { o.box_half_extents->z = -1; }),
+      inObject("box_half_extents", lengths,
+               [](ObjectFields& o) { o.box_half_extents->x = kInfinity; }),
+      inObject("box_fit", "is 3, wanted a value up to 2", [](ObjectFields& o) { o.box_fit = 3; }),
+      inObject("box_statistics", volumes, [](ObjectFields& o) { o.box_statistics.reset(); }),
+      inObject("box_statistics", volumes, [](ObjectFields& o) { o.box_statistics->volume = -1; }),
+      inObject("box_statistics", volumes,
+               [](ObjectFields& o) { o.box_statistics->axis_aligned = kNanDouble; }),
+      inObject("box_statistics", volumes,
+               [](ObjectFields& o) { o.box_statistics->pca = kNanDouble; }),
+  });
+}
+
+TEST(ObjectCheck, RefusesWrongSpheres) {
+  const std::string order =
+      "comes before its predecessor, wanted descending radii, then ascending centres";
+  refuse({
+      inObject("spheres", "is empty, wanted at least one sphere",
+               [](ObjectFields& o) { o.spheres.clear(); }),
+      inObject("spheres[1].centre", "is farther than 800 m or not finite, wanted coordinates",
+               [](ObjectFields& o) { o.spheres[1].centre.z = kNan; }),
+      inObject("spheres[0].radius_index", "is 2, wanted less than the number of radii 2",
+               [](ObjectFields& o) { o.spheres[0].radius_index = 2; }),
+      inObject("spheres[3].radius_index", "is 4294967295, wanted less than the number of radii 2",
+               [](ObjectFields& o) { o.spheres[3].radius_index = 0xffffffff; }),
+      inObject("spheres[1]", order, [](ObjectFields& o) { o.spheres[0].radius_index = 0; }),
+      inObject("spheres[2]", order, [](ObjectFields& o) { o.spheres[2].centre.x = -0.06F; }),
+      inObject("spheres[3]", order, [](ObjectFields& o) { o.spheres[3].centre.y = 0.04F; }),
+      inObject("spheres[2]", order, [](ObjectFields& o) { o.spheres[2].radius_index = 1; }),
+  });
+}
+
+TEST(ObjectCheck, RefusesWrongSphereStatistics) {
+  const auto in = [](const std::string& field, const std::string& message, auto change) {
+    return inObject("sphere_statistics." + field, message,
+                    [=](ObjectFields& o) { change(o.statistics); });
+  };
+  using Fields = SphereStatisticsFields;
+  const std::string number = ", wanted a finite number of 0 or more";
+  const std::string length = " m, wanted a finite length of 0 or more";
+  refuse({
+      in("eps", "is nan" + number, [](Fields& s) { s.eps = kNan; }),
+      in("tau", "is -1" + number, [](Fields& s) { s.tau = -1; }),
+      in("gap.mean", "is missing, wanted the lengths measured", [](Fields& s) { s.gap.reset(); }),
+      in("gap.mean", "is -1" + length, [](Fields& s) { s.gap->mean = -1; }),
+      in("gap.max", "is nan" + length, [](Fields& s) { s.gap->max = kNanDouble; }),
+      in("gap.p95", "is 0.005 m, wanted 0 to the maximum of 0.004 m",
+         [](Fields& s) { s.gap->p95 = 0.005; }),
+      in("protrusion.mean", "is missing, wanted the lengths measured",
+         [](Fields& s) { s.protrusion.reset(); }),
+      in("protrusion.p95", "is nan m, wanted 0 to the maximum of 0.004 m",
+         [](Fields& s) { s.protrusion->p95 = kNanDouble; }),
+      in("volume_ratio", "is -1" + number, [](Fields& s) { s.volume_ratio = -1; }),
+      in("guaranteed_gap", "is nan" + number, [](Fields& s) { s.guaranteed_gap = kNanDouble; }),
+      in("guaranteed_protrusion", "is inf" + number,
+         [](Fields& s) { s.guaranteed_protrusion = std::numeric_limits<double>::infinity(); }),
+  });
+}
+
+TEST(ObjectCheck, RefusesWrongStablePoses) {
+  refuse({
+      inObject("stable_poses", "is empty, wanted at least one pose",
+               [](ObjectFields& o) { o.stable_poses.clear(); }),
+      inObject("stable_poses[1].rotation", "is no unit quaternion, wanted a rotation",
+               [](ObjectFields& o) { o.stable_poses[1].rotation.x = 0.5F; }),
+      inObject("stable_poses[0].height", "is nan m, wanted up to 800 m",
+               [](ObjectFields& o) { o.stable_poses[0].height = kNan; }),
+      inObject("stable_poses[0].likelihood", "is 1.5, wanted 0 to 1: the likeliest first",
+               [](ObjectFields& o) { o.stable_poses[0].likelihood = 1.5F; }),
+      inObject("stable_poses[0].likelihood", "is nan, wanted 0 to 1: the likeliest first",
+               [](ObjectFields& o) { o.stable_poses[0].likelihood = kNan; }),
+      inObject("stable_poses[1].likelihood", "is 0.8, wanted 0 to 0.75: the likeliest first",
+               [](ObjectFields& o) { o.stable_poses[1].likelihood = 0.8F; }),
+      inObject("stable_poses[1].likelihood", "is -1, wanted 0 to 0.75: the likeliest first",
+               [](ObjectFields& o) { o.stable_poses[1].likelihood = -1; }),
+  });
+}
+
+TEST(ObjectCheck, RefusesWrongBoundsAndCounts) {
+  refuse({
+      inObject("bounds", "are missing, wanted the mesh's bounds",
+               [](ObjectFields& o) { o.bounds.reset(); }),
+      inObject("bounds", "reach farther than 800 m or are not finite, wanted coordinates",
+               [](ObjectFields& o) { o.bounds->max.y = kInfinity; }),
+      inObject("bounds", "have a minimum (-0.1, 1, -0.1) above the maximum (0.1, 0.2, 0.1)",
+               [](ObjectFields& o) { o.bounds->min.y = 1; }),
+      inObject("import_statistics.format", "is empty, wanted a format's name",
+               [](ObjectFields& o) { o.format.clear(); }),
+      inObject("import_statistics.triangles_read",
+               "is 0, wanted at least the 1 degenerate and 0 duplicate triangles dropped",
+               [](ObjectFields& o) { o.triangles_read = 0; }),
+      inObject("import_statistics.triangles", "is 6, wanted the 5 that remain of those read",
+               [](ObjectFields& o) { o.triangles = 6; }),
+  });
+}
+
+TEST(ObjectCheck, RefusesWrongSurfaces) {
+  refuse({
+      inObject("surface.positions[2]", "is farther than 800 m or not finite, wanted coordinates",
+               [](ObjectFields& o) { o.surface.positions[2].x = kNan; }),
+      inObject("surface.triangles", "has 11 elements, wanted three per triangle",
+               [](ObjectFields& o) { o.surface.triangles.pop_back(); }),
+      inObject("surface.triangles[4]", "is not the index of one of the 4 positions",
+               [](ObjectFields& o) { o.surface.triangles[4] = 4; }),
+      inObject("surface.triangles[11]", "is not the index of one of the 4 positions",
+               [](ObjectFields& o) { o.surface.triangles[11] = 0xffffffff; }),
+      inObject("surface.colors", "has 3 elements, wanted none or 4, one per position",
+               [](ObjectFields& o) { o.surface.colors.pop_back(); }),
+  });
+}
+
+TEST(ObjectCheck, RefusesAnotherKindOfAssetThanTheHeaderSays) {
+  for (const PackKind kind : {PackKind::kScene, PackKind::kRobot}) {
+    ObjectPackFields fields = smallObjects();
+    fields.kind = kind;
+    const AlignedBytes bytes = buildPack(fields);
+    const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
+    ASSERT_FALSE(pack.has_value());
+    EXPECT_EQ(pack.error().where, "made.pack: asset");
+    EXPECT_EQ(pack.error().message,
+              "has type 2, the header says " + packKindName(kind) + "; bake the pack again");
+  }
+}
+
+TEST(DamagedObjectPack, IsRefusedAtEachLengthOfATruncation) {
+  expectEachTruncationRefused(buildPack(smallObjects()));
+}
+
+TEST(DamagedObjectPack, IsRefusedWithBytesTooMany) {
+  expectBytesTooManyRefused(buildPack(smallObjects()));
+}
+
+TEST(DamagedObjectPack, IsRefusedAfterEachFlipOfASingleBit) {
+  expectEachBitFlipRefused(buildPack(smallObjects()));
+}
+
+/// Reads everything that the views show; a sanitizer sees a read outside the pack.
+void readEverything(const PackFile& pack) {
+  const Result<ObjectSet> set = ObjectSet::from(pack);
+  ASSERT_TRUE(set.has_value());
+  ASSERT_FALSE(set->objects().empty());
+  for (const ObjectModel& object : set->objects()) {
+    ASSERT_FALSE(object.name.empty());
+    ASSERT_EQ(set->find(object.name), static_cast<std::size_t>(&object - set->objects().data()));
+    ASSERT_FALSE(object.spheres.empty());
+    for (const SetSphere& sphere : object.spheres) {
+      ASSERT_GT(set->radii()[sphere.radius_index], 0);
+      for (const float coordinate : {sphere.centre.x, sphere.centre.y, sphere.centre.z}) {
+        ASSERT_TRUE(std::isfinite(coordinate));
+      }
+    }
+    float share = 0;
+    for (const StablePose& pose : object.stable_poses) share += pose.likelihood;
+    ASSERT_GE(share, 0);
+    ASSERT_GT(object.box.half_extents.x, 0);
+  }
+}
+
+TEST(DamagedObjectPack, WithARecomputedHashIsRefusedOrSafeToReadAfterEachFlip) {
+  expectFlipsWithARightHashRefusedOrUsable(buildPack(smallObjects()), PackKind::kObjects,
+                                           readEverything);
+}
+
+}  // namespace
+}  // namespace galactic::test::object_check_test

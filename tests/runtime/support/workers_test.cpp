@@ -1,0 +1,109 @@
+// Threads that step together: to be run under ThreadSanitizer too.
+#include "support/workers.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <thread>
+#include <vector>
+
+namespace galactic::test::workers_test {
+namespace {
+
+using detail::Workers;
+
+constexpr std::array<std::size_t, 4> kThreadCounts{1, 2, 3, 7};
+
+/// What one thread writes, a cache line of its own. Not atomic: the rounds have to order it.
+struct alignas(64) Slot {
+  std::uint64_t rounds = 0;
+  std::uint64_t sum = 0;
+};
+
+TEST(Workers, RunEveryThreadOnceInEachOfManyRounds) {
+  for (const std::size_t threads : kThreadCounts) {
+    std::vector<Slot> slots(threads);
+    std::uint64_t input = 0;
+    Workers workers(threads, [&](std::size_t n) {
+      ++slots[n].rounds;
+      slots[n].sum += input * (n + 1);
+    });
+    std::uint64_t wanted = 0;
+    const std::uint64_t rounds = 2000 / threads;
+    for (std::uint64_t round = 1; round <= rounds; ++round) {
+      input = round;
+      wanted += round;
+      workers.begin();
+      workers.end();
+      for (std::size_t n = 0; n < threads; ++n) {
+        ASSERT_EQ(slots[n].rounds, round);
+        ASSERT_EQ(slots[n].sum, wanted * (n + 1));
+      }
+    }
+  }
+}
+
+TEST(Workers, LeaveTheCallerFreeBetweenBeginAndEnd) {
+  for (const std::size_t threads : kThreadCounts) {
+    std::atomic<bool> may_go{false};
+    std::vector<Slot> slots(threads);
+    Workers workers(threads, [&](std::size_t n) {
+      while (!may_go.load()) std::this_thread::yield();
+      ++slots[n].rounds;
+    });
+    // Could not come back if begin() waited for the work.
+    workers.begin();
+    may_go.store(true);
+    workers.end();
+    for (const Slot& slot : slots) EXPECT_EQ(slot.rounds, 1U);
+  }
+}
+
+TEST(Workers, WakeUpAfterTheyFellAsleep) {
+  for (const std::size_t threads : kThreadCounts) {
+    std::vector<Slot> slots(threads);
+    Workers workers(threads, [&](std::size_t n) { ++slots[n].rounds; });
+    for (std::uint64_t round = 1; round <= 5; ++round) {
+      // Much longer than the threads stay awake.
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      workers.begin();
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      workers.end();
+      for (const Slot& slot : slots) ASSERT_EQ(slot.rounds, round);
+    }
+  }
+}
+
+TEST(Workers, WaitForASlowThread) {
+  std::vector<Slot> slots(7);
+  Workers workers(slots.size(), [&](std::size_t n) {
+    if (n == 3) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    ++slots[n].rounds;
+  });
+  for (int round = 0; round < 3; ++round) {
+    workers.begin();
+    workers.end();
+    EXPECT_EQ(slots[3].rounds, slots[0].rounds);
+  }
+}
+
+TEST(Workers, CanBeDestroyedWhileTheyWait) {
+  for (const std::size_t threads : kThreadCounts) {
+    for (int n = 0; n < 50; ++n) {
+      std::vector<Slot> slots(threads);
+      auto workers = std::make_unique<Workers>(threads, [&](std::size_t t) { ++slots[t].rounds; });
+      for (int round = 0; round < n % 3; ++round) {
+        workers->begin();
+        workers->end();
+      }
+      workers.reset();
+      for (const Slot& slot : slots) ASSERT_EQ(slot.rounds, static_cast<std::uint64_t>(n % 3));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace galactic::test::workers_test
