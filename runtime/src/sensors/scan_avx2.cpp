@@ -38,6 +38,8 @@ struct Plane {
 
 /// Eight beams on their way.
 struct Beams {
+  /// Of the first one, in the batch.
+  std::size_t number;
   Headings heading;
   __m256 inverse_x, inverse_z, beyond_x, beyond_z, way;
   /// Lanes that go on.
@@ -46,6 +48,7 @@ struct Beams {
 
 Beams beamsOf(const BeamBatch& batch, std::size_t n, const Plane& plane) {
   Beams beams;
+  beams.number = n;
   beams.heading = headingsOf(batch, n);
   beams.inverse_x = inverseOf(beams.heading.x);
   beams.inverse_z = inverseOf(beams.heading.z);
@@ -62,7 +65,7 @@ __m256 cellsOf(__m256 from, __m256 way, __m256 heading, __m256 last) {
   return _mm256_round_ps(inside, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
 }
 
-void goOn(const Plane& plane, Beams& beams) {
+[[gnu::always_inline]] inline void goOn(const Plane& plane, Beams& beams) {
   const __m256 i = cellsOf(plane.from_x, beams.way, beams.heading.x, plane.last_i);
   const __m256 k = cellsOf(plane.from_z, beams.way, beams.heading.z, plane.last_k);
   const __m256i index = _mm256_add_epi32(
@@ -86,11 +89,27 @@ void goOn(const Plane& plane, Beams& beams) {
 }
 
 void store(const Beams& beams, const ScanPlaneView& view, float range, float* distances) {
-  _mm256_storeu_ps(distances, _mm256_min_ps(_mm256_mul_ps(beams.way, _mm256_set1_ps(view.spacing)),
-                                            _mm256_set1_ps(range)));
+  const __m256 metres = _mm256_mul_ps(beams.way, _mm256_set1_ps(view.spacing));
+  _mm256_storeu_ps(distances + beams.number, _mm256_min_ps(metres, _mm256_set1_ps(range)));
 }
 
 bool anyOpen(__m256 lanes) { return _mm256_movemask_ps(lanes) != 0; }
+
+__m256 either(__m256 one) { return one; }
+
+template <class... More>
+__m256 either(__m256 one, More... more) {
+  return _mm256_or_ps(one, either(more...));
+}
+
+/// Casts a few eights of beams side by side: while the cells of one are on their way from memory,
+/// the others are computed.
+template <class... Eight>
+void castTogether(const Plane& plane, const ScanPlaneView& view, const BeamBatch& batch,
+                  float* distances, Eight... eights) {
+  while (anyOpen(either(eights.open...))) (goOn(plane, eights), ...);
+  (store(eights, view, batch.range, distances), ...);
+}
 
 void castSceneAvx2(const ScanPlaneView& view, const BeamBatch& batch, float* distances) noexcept {
   const Plane plane{_mm256_set1_ps((batch.origin.x - view.min_x) * view.inverse_spacing),
@@ -100,22 +119,24 @@ void castSceneAvx2(const ScanPlaneView& view, const BeamBatch& batch, float* dis
                     _mm256_set1_ps(batch.range * view.inverse_spacing),
                     _mm256_set1_epi32(view.columns_x),
                     reinterpret_cast<const int*>(view.cells)};
+  const auto eight = [&](std::size_t n) { return beamsOf(batch, n * kBeamLanes, plane); };
+  const std::size_t eights = batch.count / kBeamLanes;
   std::size_t n = 0;
-  // Sixteen beams at a time: while the cells of eight are on their way, the others are computed.
-  for (; n + 2 * kBeamLanes <= batch.count; n += 2 * kBeamLanes) {
-    Beams first = beamsOf(batch, n, plane);
-    Beams second = beamsOf(batch, n + kBeamLanes, plane);
-    while (anyOpen(_mm256_or_ps(first.open, second.open))) {
-      goOn(plane, first);
-      goOn(plane, second);
-    }
-    store(first, view, batch.range, distances + n);
-    store(second, view, batch.range, distances + n + kBeamLanes);
+  for (; n + 4 <= eights; n += 4) {
+    castTogether(plane, view, batch, distances, eight(n), eight(n + 1), eight(n + 2), eight(n + 3));
   }
-  for (; n < batch.count; n += kBeamLanes) {
-    Beams beams = beamsOf(batch, n, plane);
-    while (anyOpen(beams.open)) goOn(plane, beams);
-    store(beams, view, batch.range, distances + n);
+  switch (eights - n) {
+    case 3:
+      castTogether(plane, view, batch, distances, eight(n), eight(n + 1), eight(n + 2));
+      break;
+    case 2:
+      castTogether(plane, view, batch, distances, eight(n), eight(n + 1));
+      break;
+    case 1:
+      castTogether(plane, view, batch, distances, eight(n));
+      break;
+    default:
+      break;
   }
 }
 
