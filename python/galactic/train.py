@@ -39,6 +39,7 @@ class Run:
     world: pathlib.Path
     validation: Optional[pathlib.Path]
     settings: Settings
+    start_from: Optional[pathlib.Path] = None
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -54,6 +55,12 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument("--preset", default=None, metavar="|".join(PRESETS), help="(paper)")
     parser.add_argument(
         "--validation", type=pathlib.Path, metavar="WORLD", help="world with episodes held out"
+    )
+    parser.add_argument(
+        "--start-from",
+        type=pathlib.Path,
+        metavar="POLICY",
+        help="begin with the weights of this best.pt or policy.pt, learned in another task or world",
     )
     parser.add_argument(
         "--resume", action="store_true", help="go on from the latest checkpoint in FOLDER"
@@ -90,17 +97,23 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
     sharing = 1 if settings.network == "state" else 0
     torch.set_num_threads(threads_of(settings.torch_threads or sharing, local_ranks))
     envs = Homes(galactic.World(run.world), settings, threads, rank=group.rank, ranks=group.size)
-    # Everybody has looked for a run in the folder, and has homes, before there is one.
-    group.wait_for_all()
-    if group.rank == 0:
-        folder.mkdir(parents=True, exist_ok=True)
-        _write_run(run, folder)
     validation = _validation(run, threads, group)
     trainer = Trainer(
         settings, envs, group, folder, validation=validation, title=folder.resolve().name
     )
     if options.resume:
         trainer.resume()
+    elif run.start_from:
+        checkpoint.begin_with(
+            trainer.policy, settings, trainer.shape, trainer.parts, run.start_from
+        )
+    # Everybody has looked for a run in the folder, and has all that it needs, before there is one.
+    group.wait_for_all()
+    if group.rank == 0:
+        folder.mkdir(parents=True, exist_ok=True)
+        _write_run(run, folder)
+    group.wait_for_all()
+    if options.resume:
         trainer.progress.say(f"going on after {trainer.steps:,} steps")
     else:
         trainer.begin()
@@ -124,12 +137,19 @@ def _new_run(options: argparse.Namespace) -> Run:
             f"{options.output} holds a run already; go on with it (--resume), or take another folder"
         )
     settings = preset(options.preset or "paper", **given_options(options))
-    return Run(options.world.resolve(), _absolute(options.validation), settings)
+    return Run(
+        options.world.resolve(),
+        _absolute(options.validation),
+        settings,
+        _absolute(options.start_from),
+    )
 
 
 def _resumed_run(options: argparse.Namespace) -> Run:
-    if options.world or options.preset or options.validation:
-        raise SettingsError("a run that goes on has its world and its preset; leave them out")
+    if options.world or options.preset or options.validation or options.start_from:
+        raise SettingsError(
+            "a run that goes on has its world, its preset and its weights; leave them out"
+        )
     file = options.output / "settings.json"
     if not file.is_file():
         raise checkpoint.CheckpointError(f"{file} is not there: {options.output} holds no run")
@@ -137,7 +157,10 @@ def _resumed_run(options: argparse.Namespace) -> Run:
     settings = resumed(Settings.from_dict(run["settings"]), given_options(options))
     validation = run["validation"]
     return Run(
-        pathlib.Path(run["world"]), pathlib.Path(validation) if validation else None, settings
+        pathlib.Path(run["world"]),
+        pathlib.Path(validation) if validation else None,
+        settings,
+        pathlib.Path(run["start_from"]) if run.get("start_from") else None,
     )
 
 
@@ -147,6 +170,7 @@ def _write_run(run: Run, folder: pathlib.Path) -> None:
         {
             "world": str(run.world),
             "validation": str(run.validation) if run.validation else None,
+            "start_from": str(run.start_from) if run.start_from else None,
             "settings": run.settings.to_dict(),
         },
     )

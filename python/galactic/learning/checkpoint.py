@@ -98,6 +98,42 @@ def load_policy(file: pathlib.Path) -> SavedPolicy:
     return SavedPolicy(policy, settings, shape, parts, values["steps"], values["success"])
 
 
+NEW_TERMINATE_LOGIT = -4.0
+"""Log-odds, in every state, of a terminate action that the policy has not learned yet: one step in 55."""
+
+_NETWORK = ("network", "recurrent", "width", "layers", "activation", "log_std")
+
+
+def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
+               parts: list[tuple[str, int]], file: pathlib.Path) -> None:  # fmt: skip
+    """Gives `policy`, a new_policy(settings, shape) that sees `parts`, the weights of the policy in
+    `file`: networks, standard deviations, means and variances of observations.
+
+    Both must be the same network and see the same observations; CheckpointError says where they differ.
+    The task may be another one. Where only the new one is about to terminate, it starts with
+    NEW_TERMINATE_LOGIT, since what the head holds was never used.
+    """
+    saved = load_policy(file)
+    ours = {name: getattr(settings, name) for name in _NETWORK}
+    theirs = {name: getattr(saved.settings, name) for name in _NETWORK}
+    if ours["network"] != "state":
+        ours = {"network": ours["network"]}
+    ours.update(
+        motions=shape.motions, normalize=shape.normalize, closeup=shape.closeup, parts=parts
+    )
+    theirs.update(motions=saved.shape.motions, normalize=saved.shape.normalize,
+                  closeup=saved.shape.closeup, parts=saved.parts)  # fmt: skip
+    for name, wanted in ours.items():
+        if theirs[name] != wanted:
+            raise CheckpointError(
+                f"{file} is a policy of another form: its {name} is {theirs[name]}, that of this run "
+                f"{wanted}; give this run the same network, simulation and robot, or start without it"
+            )
+    policy.load_state_dict(saved.policy.state_dict())
+    if shape.decides_terminate and not saved.shape.decides_terminate:
+        policy.action.start_terminate(NEW_TERMINATE_LOGIT)
+
+
 def load(file: pathlib.Path) -> tuple[dict[str, Any], dict[str, Any]]:
     """Values and tensors of a file. One that wants to run code is refused."""
     try:

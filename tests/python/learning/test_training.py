@@ -158,6 +158,33 @@ def test_a_run_is_not_written_over_nor_turned_into_another(tmp_path: pathlib.Pat
     assert longer.returncode == 0 and len(curve(tmp_path / "run")) == 3
 
 
+def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
+    """The weights of Mobile Pick begin a run of Rearrange, which has a decision more."""
+    pick, rearrange = tmp_path / "pick", tmp_path / "rearrange"
+    small = [*SMALL, "--steps", UPDATE, "--learning-rate", "0"]
+    assert run("train", WORLD, "-o", pick, *small).returncode == 0
+    sensors = checkpoint.load_policy(pick / "best.pt").settings.simulation.replace("task=pick ", "")
+    other = [*small, "--simulation", f"task=rearrange {sensors}", "--start-from", pick / "best.pt"]
+    done = run("train", WORLD, "-o", rearrange, *other)
+    assert done.returncode == 0, done.stderr
+    learned, begun = (checkpoint.load_policy(one / "best.pt").policy for one in (pick, rearrange))
+    head, begun_head = learned.action.linear, begun.action.linear
+    assert torch.equal(begun.encoder[0].weight, learned.encoder[0].weight)
+    assert torch.equal(begun_head.weight[:-2], head.weight[:-2])
+    # Nobody decided to terminate before: the decision starts rare instead of even.
+    assert begun_head.weight[-2:].count_nonzero() == 0 and head.weight[-2:].count_nonzero() > 0
+    assert begun_head.bias[-1] - begun_head.bias[-2] == checkpoint.NEW_TERMINATE_LOGIT
+    blind = run("train", WORLD, "-o", tmp_path / "blind", *small, "--simulation", "task=pick",
+                "--start-from", pick / "best.pt")  # fmt: skip
+    assert blind.returncode == 3 and "a policy of another form: its parts is" in blind.stderr
+    wide = run("train", WORLD, "-o", tmp_path / "wide", *small, "--width", "64",
+               "--start-from", pick / "best.pt")  # fmt: skip
+    assert wide.returncode == 3 and "its width is 128, that of this run 64" in wide.stderr
+    assert not (tmp_path / "blind").exists() and not (tmp_path / "wide").exists()
+    resumed = run("train", "-o", rearrange, "--resume", "--start-from", pick / "best.pt")
+    assert resumed.returncode == 1 and "leave them out" in resumed.stderr
+
+
 def test_an_evaluation_repeats_itself(tmp_path: pathlib.Path) -> None:
     assert run("train", WORLD, "-o", tmp_path / "run", *SMALL, "--steps", UPDATE).returncode == 0
     reports = []
