@@ -17,8 +17,8 @@
 #include "galactic/kinematics.h"
 #include "galactic/pack.h"
 #include "galactic/robot.h"
-#include "simulation/motion_kernels.h"
-#include "simulation/motion_model.h"
+#include "simulation/motion/motion_kernels.h"
+#include "simulation/motion/motion_model.h"
 
 namespace {
 

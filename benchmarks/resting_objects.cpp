@@ -6,7 +6,7 @@
 // and an arm) stand anywhere in it; those that overlap an object are left out, as most steps of a
 // simulation find none, and so every competitor has to look at every sphere. `envs` rooms are
 // queried in turn: with 4096 of them the windows come from the last cache level or from memory.
-#include "simulation/resting_objects.h"
+#include "simulation/collision/resting_objects.h"
 
 #include <benchmark/benchmark.h>
 

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "simulation/resting_objects.h"
+#include "simulation/collision/resting_objects.h"
 #include "support/resting_oracle.h"
 
 namespace galactic::test {

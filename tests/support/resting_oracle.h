@@ -11,8 +11,8 @@
 
 #include "galactic/oriented_box.h"
 #include "galactic/pose.h"
-#include "simulation/resting_box.h"
-#include "simulation/sphere_batch.h"
+#include "simulation/collision/resting_box.h"
+#include "simulation/collision/sphere_batch.h"
 #include "support/box_oracle.h"
 
 namespace galactic::test {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "policy/kernels.h"
-#include "simulation/random_stream.h"
+#include "simulation/state/random_stream.h"
 
 namespace galactic::policy {
 

@@ -6,7 +6,7 @@
 
 #include "galactic/pose.h"
 #include "galactic/robot.h"
-#include "simulation/random_stream.h"
+#include "simulation/state/random_stream.h"
 
 namespace galactic::scripted {
 

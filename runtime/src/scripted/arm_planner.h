@@ -5,7 +5,7 @@
 
 #include "scripted/inverse_kinematics.h"
 #include "scripted/probe.h"
-#include "simulation/random_stream.h"
+#include "simulation/state/random_stream.h"
 
 namespace galactic::scripted {
 

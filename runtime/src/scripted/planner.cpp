@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "simulation/resting_box.h"
+#include "simulation/collision/resting_box.h"
 
 namespace galactic::scripted {
 namespace {

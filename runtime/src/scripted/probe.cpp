@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/move.h"
+#include "simulation/phases/move.h"
 
 namespace galactic::scripted {
 namespace {

@@ -9,9 +9,9 @@
 #include "galactic/world.h"
 #include "scripted/arm.h"
 #include "scripted/sphere_cloud.h"
-#include "simulation/collision.h"
-#include "simulation/object_placement.h"
-#include "simulation/resting_objects.h"
+#include "simulation/collision/collision.h"
+#include "simulation/collision/resting_objects.h"
+#include "simulation/phases/object_placement.h"
 
 namespace galactic::scripted {
 

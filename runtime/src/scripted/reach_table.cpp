@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "simulation/random_stream.h"
+#include "simulation/state/random_stream.h"
 
 namespace galactic::scripted {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "galactic/pose.h"
 #include "galactic/sphere_set.h"
-#include "simulation/sphere_batch.h"
+#include "simulation/collision/sphere_batch.h"
 
 namespace galactic::scripted {
 

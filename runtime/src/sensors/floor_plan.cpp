@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "simulation/move.h"
+#include "simulation/phases/move.h"
 
 namespace galactic::sensors {
 namespace {

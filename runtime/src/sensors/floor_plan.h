@@ -7,7 +7,7 @@
 #include "galactic/robot.h"
 #include "galactic/scene.h"
 #include "galactic/simulation_options.h"
-#include "simulation/motion_kernels.h"
+#include "simulation/motion/motion_kernels.h"
 
 namespace galactic::sensors {
 

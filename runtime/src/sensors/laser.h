@@ -10,9 +10,9 @@
 #include "galactic/world.h"
 #include "sensors/scan_kernels.h"
 #include "sensors/scan_plane.h"
-#include "simulation/motion_model.h"
-#include "simulation/random_stream.h"
-#include "simulation/resting_objects.h"
+#include "simulation/collision/resting_objects.h"
+#include "simulation/motion/motion_model.h"
+#include "simulation/state/random_stream.h"
 
 namespace galactic::sensors {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "galactic/vec3.h"
-#include "simulation/resting_box.h"
-#include "simulation/sphere_batch.h"
+#include "simulation/collision/resting_box.h"
+#include "simulation/collision/sphere_batch.h"
 
 namespace galactic::sensors {
 

@@ -7,14 +7,14 @@
 #include <numeric>
 #include <utility>
 
-#include "simulation/batch_state.h"
-#include "simulation/chunk.h"
-#include "simulation/env_state.h"
-#include "simulation/episode_start.h"
-#include "simulation/grip_frame.h"
-#include "simulation/model.h"
-#include "simulation/saved_state.h"
-#include "simulation/step.h"
+#include "simulation/phases/chunk.h"
+#include "simulation/phases/episode_start.h"
+#include "simulation/phases/step.h"
+#include "simulation/state/batch_state.h"
+#include "simulation/state/env_state.h"
+#include "simulation/state/grip_frame.h"
+#include "simulation/state/model.h"
+#include "simulation/state/saved_state.h"
 #include "support/workers.h"
 
 namespace galactic {

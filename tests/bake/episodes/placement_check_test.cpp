@@ -7,8 +7,8 @@
 #include <random>
 
 #include "made_world.h"
-#include "simulation/object_placement.h"
-#include "simulation/resting_objects.h"
+#include "simulation/collision/resting_objects.h"
+#include "simulation/phases/object_placement.h"
 #include "support/box_oracle.h"
 
 namespace galactic::test::placement_check_test {

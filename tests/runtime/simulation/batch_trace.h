@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "galactic/batch_simulator.h"
-#include "simulation/random_stream.h"
+#include "simulation/state/random_stream.h"
 #include "support/box_world.h"
 
 namespace galactic::test {

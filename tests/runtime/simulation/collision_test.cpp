@@ -1,5 +1,5 @@
 // What penetrates what, and the ways out: by hand on small grids, and against brute force.
-#include "simulation/collision.h"
+#include "simulation/collision/collision.h"
 
 #include <gtest/gtest.h>
 

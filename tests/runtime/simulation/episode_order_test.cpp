@@ -1,5 +1,5 @@
 // In which order envs take episodes.
-#include "simulation/episode_order.h"
+#include "simulation/state/episode_order.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "simulation/held_spheres.h"
+#include "simulation/collision/held_spheres.h"
 
 #include <gtest/gtest.h>
 

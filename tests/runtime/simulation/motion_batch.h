@@ -11,7 +11,7 @@
 
 #include "galactic/batch_simulator.h"
 #include "galactic/robot.h"
-#include "simulation/motion_kernels.h"
+#include "simulation/motion/motion_kernels.h"
 #include "support/assets.h"
 #include "support/resting_oracle.h"
 #include "support/robot_pack_builder.h"

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "galactic/batch_simulator.h"
-#include "simulation/move.h"
+#include "simulation/phases/move.h"
 #include "support/box_world.h"
 
 namespace galactic::test::move_robots_test {

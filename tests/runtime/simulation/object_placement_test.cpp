@@ -1,6 +1,6 @@
 // Released objects: small cases by hand, and a brute-force settle in double precision that lowers
 // the object in steps of a tenth of a millimetre.
-#include "simulation/object_placement.h"
+#include "simulation/phases/object_placement.h"
 
 #include <gtest/gtest.h>
 

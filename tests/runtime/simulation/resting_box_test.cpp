@@ -1,5 +1,5 @@
 // Boxes against an oracle in double precision that shares no code with them.
-#include "simulation/resting_box.h"
+#include "simulation/collision/resting_box.h"
 
 #include <gtest/gtest.h>
 

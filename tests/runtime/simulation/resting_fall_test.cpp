@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "simulation/resting_objects.h"
+#include "simulation/collision/resting_objects.h"
 #include "support/resting_bodies.h"
 #include "support/resting_oracle.h"
 

@@ -1,6 +1,6 @@
 // The four-grid query against all pairs in double precision, its bookkeeping against a model, and
 // its two kernels against each other.
-#include "simulation/resting_objects.h"
+#include "simulation/collision/resting_objects.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

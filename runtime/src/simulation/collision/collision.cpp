@@ -1,0 +1,221 @@
+#include "simulation/collision/collision.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace galactic::simulation {
+namespace {
+
+constexpr std::size_t kBitsPerWord = 64;
+
+bool isIgnored(IgnoredSpheres ignored, std::size_t sphere) {
+  return !ignored.empty() && (ignored[sphere / kBitsPerWord] >> (sphere % kBitsPerWord) & 1U) != 0;
+}
+
+/// The spheres of one radius with their padding.
+SphereCentres centresOf(const SphereBatch& spheres, const RadiusRange& range) {
+  const std::size_t count = paddedToLanes(range.count);
+  return {std::span(spheres.x + range.first, count), std::span(spheres.y + range.first, count),
+          std::span(spheres.z + range.first, count)};
+}
+
+/// Asks the grid of one radius about its spheres, whole lanes at a time.
+std::span<const Clearance> askScene(const Scene& scene, const SphereBatch& spheres,
+                                    const RadiusRange& range, CollisionScratch& scratch) {
+  const std::span<Clearance> answers = scratch.clearance(paddedToLanes(range.count));
+  scene.grids()[range.radius_index].contact(centresOf(spheres, range), {answers, {}, {}});
+  return answers;
+}
+
+/// Calls visit(sphere, range) for each sphere that the static scene blocks.
+template <class Visit>
+void visitBlocked(const Scene& scene, const SphereBatch& spheres, CollisionScratch& scratch,
+                  const Visit& visit) {
+  for (const RadiusRange& range : spheres.ranges) {
+    const std::span<const Clearance> answers = askScene(scene, spheres, range, scratch);
+    for (std::uint32_t n = 0; n < range.count; ++n) {
+      if (answers[n] != Clearance::kFree) visit(range.first + n, range);
+    }
+  }
+}
+
+float radiusOf(const SphereBatch& spheres, std::uint32_t sphere) {
+  for (const RadiusRange& range : spheres.ranges) {
+    if (sphere >= range.first && sphere < range.first + range.count) return range.radius;
+  }
+  return 0;
+}
+
+Vec3 centreOf(const SphereBatch& spheres, std::uint32_t sphere) {
+  return {spheres.x[sphere], spheres.y[sphere], spheres.z[sphere]};
+}
+
+void setBit(std::span<std::uint64_t> bits, std::uint32_t sphere) {
+  bits[sphere / kBitsPerWord] |= std::uint64_t{1} << (sphere % kBitsPerWord);
+}
+
+/// Sets the bit of each sphere that penetrates a resting object. Returns whether any does.
+bool addTouching(const RestingObjects& objects, const SphereBatch& spheres,
+                 std::span<std::uint64_t> bits) {
+  bool any = false;
+  for (const RadiusRange& range : spheres.ranges) {
+    for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
+      if (!objects.nearest(centreOf(spheres, n), range.radius)) continue;
+      setBit(bits, n);
+      any = true;
+    }
+  }
+  return any;
+}
+
+}  // namespace
+
+CollisionScratch::CollisionScratch(std::size_t most_spheres) {
+  clearance_.resize(paddedToLanes(most_spheres));
+  // More overlaps at a time change no push; only the largest in each direction count.
+  constexpr std::size_t kHitsPerSphere = 4;
+  hits_.resize(kHitsPerSphere * most_spheres);
+}
+
+bool penetrates(const Obstacles& obstacles, const SphereBatch& spheres) noexcept {
+  // Whole lanes at a time: the padding repeats a sphere.
+  for (std::size_t n = spheres.ranges.size(); n-- > 0;) {
+    const RadiusRange& range = spheres.ranges[n];
+    const SphereCentres centres = centresOf(spheres, range);
+    const ColumnGrid& grid = obstacles.scene.grids()[range.radius_index];
+    if (grid.firstNotFree(centres) != centres.x.size()) return true;
+  }
+  return obstacles.objects.touches(spheres);
+}
+
+void PushSum::add(const Push& push) noexcept {
+  least_x_ = std::min(least_x_, push.x);
+  most_x_ = std::max(most_x_, push.x);
+  least_z_ = std::min(least_z_, push.z);
+  most_z_ = std::max(most_z_, push.z);
+}
+
+Push PushSum::total(float longest) const noexcept {
+  const Push sum{least_x_ + most_x_, least_z_ + most_z_};
+  const float length = std::sqrt(sum.x * sum.x + sum.z * sum.z);
+  if (!(length > longest)) return sum;
+  return {sum.x * (longest / length), sum.z * (longest / length)};
+}
+
+Push pushOutOfScene(const ColumnGrid& grid, const Vec3& centre, float reach) noexcept {
+  // The nearest column decides, so a sphere gets free where it enters the cell of a free column.
+  // Eight candidates at a time: the next cell in four directions, and the one behind it.
+  using Eight = std::array<float, kLanes>;
+  constexpr Eight kX{1, -1, 0, 0, 1, -1, 0, 0};
+  constexpr Eight kZ{0, 0, 1, -1, 0, 0, 1, -1};
+  constexpr float kIntoCell = 1e-4F;
+  constexpr int kCellsAtATime = 2;
+  const ColumnGridLayout& layout = grid.layout();
+  const float cell_x = (centre.x - layout.min_x) * layout.inverse_spacing;
+  const float cell_z = (centre.z - layout.min_z) * layout.inverse_spacing;
+  const float part_x = cell_x - std::floor(cell_x);
+  const float part_z = cell_z - std::floor(cell_z);
+  const Eight to_border{1 - part_x, part_x,     1 - part_z, part_z,
+                        2 - part_x, 1 + part_x, 2 - part_z, 1 + part_z};
+  Eight x{};
+  Eight y{};
+  Eight z{};
+  Eight way{};
+  std::array<Clearance, kLanes> answers{};
+  y.fill(centre.y);
+  for (int cells = 0; static_cast<float>(cells) * layout.spacing <= reach; cells += kCellsAtATime) {
+    const float further = static_cast<float>(cells) * layout.spacing + kIntoCell;
+    for (std::size_t n = 0; n < kLanes; ++n) {
+      way[n] = to_border[n] * layout.spacing + further;
+      x[n] = centre.x + way[n] * kX[n];
+      z[n] = centre.z + way[n] * kZ[n];
+    }
+    grid.contact({x, y, z}, {answers, {}, {}});
+    std::size_t best = kLanes;
+    float shortest = reach;
+    for (std::size_t n = 0; n < kLanes; ++n) {
+      const bool is_better = answers[n] == Clearance::kFree && way[n] <= shortest;
+      shortest = is_better ? way[n] : shortest;
+      best = is_better ? n : best;
+    }
+    if (best != kLanes) return {way[best] * kX[best], way[best] * kZ[best]};
+  }
+  return {};
+}
+
+Push pushOutOfBox(const RestingBox& box, const Vec3& centre, float radius) noexcept {
+  const Vec3 normal = centre - nearestPoint(box, centre);
+  const float across = std::sqrt(normal.x * normal.x + normal.z * normal.z);
+  constexpr float kNoDirection = 1e-6F;
+  constexpr float kMargin = 1e-4F;
+  if (across > kNoDirection) {
+    // Moving by t along the horizontal part of the normal makes its length the radius.
+    const float needed = std::sqrt(std::max(0.0F, radius * radius - normal.y * normal.y));
+    const float t = std::max(0.0F, needed - across) + kMargin;
+    return {normal.x / across * t, normal.z / across * t};
+  }
+  const Vec3 away = centre - box.centre;
+  const float length = std::sqrt(away.x * away.x + away.z * away.z);
+  if (!(length > kNoDirection)) return {radius, 0};
+  return {away.x / length * radius, away.z / length * radius};
+}
+
+std::size_t pushOut(const Obstacles& obstacles, const SphereBatch& spheres, IgnoredSpheres ignored,
+                    float reach, CollisionScratch& scratch, PushSum& sum) noexcept {
+  std::size_t count = 0;
+  visitBlocked(obstacles.scene, spheres, scratch,
+               [&](std::uint32_t sphere, const RadiusRange& range) {
+                 if (isIgnored(ignored, sphere)) return;
+                 sum.add(pushOutOfScene(obstacles.scene.grids()[range.radius_index],
+                                        centreOf(spheres, sphere), reach));
+                 ++count;
+               });
+  const std::size_t hits = obstacles.objects.hits(spheres, scratch.hits());
+  for (const SphereHit& hit : scratch.hits().first(hits)) {
+    if (isIgnored(ignored, hit.sphere)) continue;
+    sum.add(pushOutOfBox(obstacles.objects.box(hit.object), centreOf(spheres, hit.sphere),
+                         radiusOf(spheres, hit.sphere)));
+    ++count;
+  }
+  return count;
+}
+
+bool overlapping(const RestingBox& box, const SphereBatch& spheres,
+                 std::span<std::uint64_t> bits) noexcept {
+  std::fill(bits.begin(), bits.end(), 0);
+  bool any = false;
+  for (const RadiusRange& range : spheres.ranges) {
+    for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
+      if (!overlaps(box, centreOf(spheres, n), range.radius)) continue;
+      setBit(bits, n);
+      any = true;
+    }
+  }
+  return any;
+}
+
+bool penetratingScene(const Scene& scene, const SphereBatch& spheres, CollisionScratch& scratch,
+                      std::span<std::uint64_t> bits) noexcept {
+  std::fill(bits.begin(), bits.end(), 0);
+  bool any = false;
+  visitBlocked(scene, spheres, scratch, [&](std::uint32_t sphere, const RadiusRange&) {
+    setBit(bits, sphere);
+    any = true;
+  });
+  return any;
+}
+
+bool penetratingObjects(const RestingObjects& objects, const SphereBatch& spheres,
+                        std::span<std::uint64_t> bits) noexcept {
+  std::fill(bits.begin(), bits.end(), 0);
+  return addTouching(objects, spheres, bits);
+}
+
+void penetrating(const Obstacles& obstacles, const SphereBatch& spheres, CollisionScratch& scratch,
+                 std::span<std::uint64_t> bits) noexcept {
+  penetratingScene(obstacles.scene, spheres, scratch, bits);
+  addTouching(obstacles.objects, spheres, bits);
+}
+
+}  // namespace galactic::simulation

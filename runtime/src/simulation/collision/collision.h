@@ -1,0 +1,94 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "galactic/column_grid.h"
+#include "galactic/scene.h"
+#include "galactic/vec3.h"
+#include "simulation/collision/resting_objects.h"
+#include "simulation/collision/sphere_batch.h"
+
+namespace galactic::simulation {
+
+/// Room for the answers about the spheres of one batch, allocated once.
+class CollisionScratch {
+ public:
+  /// `most_spheres`: padded to lanes, of any batch.
+  explicit CollisionScratch(std::size_t most_spheres);
+
+  [[nodiscard]] std::span<Clearance> clearance(std::size_t count) {
+    return std::span(clearance_).first(count);
+  }
+  [[nodiscard]] std::span<SphereHit> hits() { return hits_; }
+
+ private:
+  std::vector<Clearance> clearance_;
+  std::vector<SphereHit> hits_;
+};
+
+/// What a robot, and an object that it holds or releases, can hit.
+struct Obstacles {
+  const Scene& scene;
+  const RestingObjects& objects;
+};
+
+/// Whether any sphere penetrates the static scene or a resting object. A place that the grid does
+/// not know counts as penetrated.
+[[nodiscard]] bool penetrates(const Obstacles& obstacles, const SphereBatch& spheres) noexcept;
+
+/// A direction in the ground plane in which something gets free, metres; (0, 0) for none.
+struct Push {
+  float x = 0;
+  float z = 0;
+};
+
+/// Adds up pushes so that their order changes nothing: the largest in each of the four directions
+/// of the axes, opposite ones against each other.
+class PushSum {
+ public:
+  void add(const Push& push) noexcept;
+  /// At most `longest` metres long; (0, 0) when nothing was added or pushes cancel out.
+  [[nodiscard]] Push total(float longest) const noexcept;
+
+ private:
+  float least_x_ = 0;
+  float most_x_ = 0;
+  float least_z_ = 0;
+  float most_z_ = 0;
+};
+
+/// The way out of the static scene for a sphere that is blocked at `centre`: the shortest way along
+/// an axis of the ground plane into a column in which it is free, up to `reach` metres.
+[[nodiscard]] Push pushOutOfScene(const ColumnGrid& grid, const Vec3& centre, float reach) noexcept;
+
+/// The way out of a box for a sphere that overlaps it: the shortest horizontal one along the normal
+/// of contact.
+[[nodiscard]] Push pushOutOfBox(const RestingBox& box, const Vec3& centre, float radius) noexcept;
+
+/// Spheres that do not count, as one bit each: those of a held object that penetrated something
+/// already when it was grasped (its spheres reach further than the box as which it rested), until
+/// they are free. Empty: all count.
+using IgnoredSpheres = std::span<const std::uint64_t>;
+
+/// The way out for all spheres that penetrate something and are not ignored. Returns their number.
+std::size_t pushOut(const Obstacles& obstacles, const SphereBatch& spheres, IgnoredSpheres ignored,
+                    float reach, CollisionScratch& scratch, PushSum& sum) noexcept;
+
+/// Sets the bit of each sphere that overlaps the box, clears the others. Returns whether any does.
+bool overlapping(const RestingBox& box, const SphereBatch& spheres,
+                 std::span<std::uint64_t> bits) noexcept;
+
+/// Sets the bit of each sphere that penetrates the static scene, clears the others. Returns whether
+/// any does.
+bool penetratingScene(const Scene& scene, const SphereBatch& spheres, CollisionScratch& scratch,
+                      std::span<std::uint64_t> bits) noexcept;
+/// The same for resting objects.
+bool penetratingObjects(const RestingObjects& objects, const SphereBatch& spheres,
+                        std::span<std::uint64_t> bits) noexcept;
+/// The same for both.
+void penetrating(const Obstacles& obstacles, const SphereBatch& spheres, CollisionScratch& scratch,
+                 std::span<std::uint64_t> bits) noexcept;
+
+}  // namespace galactic::simulation

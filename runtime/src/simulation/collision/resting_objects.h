@@ -1,0 +1,118 @@
+#pragma once
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "galactic/pose.h"
+#include "galactic/vec3.h"
+#include "simulation/collision/resting_box.h"
+#include "simulation/collision/resting_objects_kernels.h"
+#include "simulation/collision/sphere_batch.h"
+
+namespace galactic::simulation {
+
+/// A sphere of a batch that overlaps an object.
+struct SphereHit {
+  /// Index into the batch's arrays.
+  std::uint32_t sphere = 0;
+  std::uint32_t object = 0;
+
+  friend bool operator==(const SphereHit&, const SphereHit&) = default;
+};
+
+/// The objects of one env that rest in the scene. Sets of objects are bits, in as many planes of 32
+/// as the objects need, so no capacity can overflow: up to 32 objects take one plane, 64 take two,
+/// and each plane costs a query the same. How the sets work: resting_objects_kernels.h. After
+/// construction nothing allocates and nothing throws. One thread at a time; const members from any.
+class RestingObjects {
+ public:
+  /// Room for `most_objects` objects, in `memory`. Queries are for spheres of up to
+  /// `largest_radius`, metres.
+  RestingObjects(std::size_t most_objects, float largest_radius,
+                 std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+
+  /// Forgets all objects.
+  void clear() noexcept;
+
+  /// Object `index` (less than capacity()) rests at `box` from now on. It must not be resting
+  /// already. It may be anywhere: there is no frame to be outside of.
+  void insert(std::uint32_t index, const RestingBox& box) noexcept;
+
+  /// Object `index`, which must be resting, rests no more (it was grasped).
+  void remove(std::uint32_t index) noexcept;
+
+  /// Objects that there is room for.
+  [[nodiscard]] std::uint32_t capacity() const noexcept {
+    return static_cast<std::uint32_t>(boxes_.size());
+  }
+  [[nodiscard]] bool isResting(std::uint32_t index) const noexcept;
+  /// Of a resting object.
+  [[nodiscard]] const RestingBox& box(std::uint32_t index) const noexcept { return boxes_[index]; }
+  [[nodiscard]] float largestRadius() const noexcept { return largest_radius_; }
+
+  /// Whether any sphere overlaps any object. No radius may exceed the frame's. A sphere with a
+  /// centre that is not a number overlaps nothing; one outside the frame is looked up in the
+  /// windows at the border, where everything outside is.
+  [[nodiscard]] bool touches(const SphereBatch& spheres) const noexcept;
+
+  /// All overlaps, by sphere, then object; as many as `out` takes. Returns how many were written.
+  [[nodiscard]] std::size_t hits(const SphereBatch& spheres,
+                                 std::span<SphereHit> out) const noexcept;
+
+  /// The object whose box is nearest to `centre` among those that a sphere of `radius` (at most the
+  /// largest) overlaps; the lower index when equally near.
+  [[nodiscard]] std::optional<std::uint32_t> nearest(const Vec3& centre,
+                                                     float radius) const noexcept;
+
+  /// How far a sphere (radius at most the largest) can sink from `centre` before it touches an
+  /// object: 0 when it overlaps one already, infinity when nothing is under it. Exact but for
+  /// rounding: the sphere sinks to where its centre enters the box grown by the radius.
+  [[nodiscard]] float fall(const Vec3& centre, float radius) const noexcept;
+
+  /// Calls `visit(box)` for each resting object, ascending, whose box comes to the height `y`.
+  template <class Visit>
+  void forEachAtHeight(float y, const Visit& visit) const {
+    const std::uint32_t band = bandOf(y);
+    for (std::size_t p = 0; p < planes_.size(); ++p) {
+      for (std::uint32_t bits = planes_[p].at_height[band]; bits != 0; bits &= bits - 1) {
+        const RestingBox& box =
+            boxes_[p * kPlaneObjects + static_cast<std::size_t>(std::countr_zero(bits))];
+        if (std::fabs(y - box.centre.y) < box.half_height) visit(box);
+      }
+    }
+  }
+
+  /// What `touches` reads, for the kernels and the tests that compare them.
+  [[nodiscard]] RestingView view() const noexcept;
+
+  /// Asks for what `touches` reads, so that it is in the nearest cache when it is needed.
+  void prefetch() const noexcept {
+    constexpr std::size_t kCacheLine = 64;
+    for (const SetPlane& plane : planes_) {
+      const auto* bytes = reinterpret_cast<const char*>(&plane);
+      for (std::size_t n = 0; n < sizeof(plane); n += kCacheLine) __builtin_prefetch(bytes + n);
+    }
+  }
+
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  /// Index of the set of a height.
+  [[nodiscard]] static std::uint32_t bandOf(float y) noexcept;
+
+  /// Calls `change` with each set that object `index` belongs to.
+  template <class Change>
+  void changeSets(std::uint32_t index, const Change& change) noexcept;
+
+  float largest_radius_;
+  std::pmr::vector<SetPlane> planes_;
+  std::pmr::vector<RestingBox> boxes_;
+  std::pmr::vector<std::uint32_t> resting_;
+};
+
+}  // namespace galactic::simulation

@@ -1,0 +1,13 @@
+// Compiled for AVX2: instantiates no library templates, see column_grid_avx2.cpp.
+#include "simulation/motion/motion_kernels.h"
+
+#if !defined(__AVX2__)
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+#include "simulation/motion/motion_kernel.inl"
+
+namespace galactic::simulation {
+
+MotionKernels avx2Motion() noexcept { return {moveKernel, placeKernel}; }
+
+}  // namespace galactic::simulation

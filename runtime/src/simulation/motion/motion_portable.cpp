@@ -1,0 +1,29 @@
+#include "column_grid/column_grid_kernels.h"
+#include "simulation/motion/motion_kernels.h"
+
+// Vectors of eight floats are passed between functions of this file only.
+#pragma GCC diagnostic ignored "-Wpsabi"
+#include "simulation/motion/motion_kernel.inl"
+
+namespace galactic::simulation {
+
+MotionKernels portableMotion() noexcept { return {moveKernel, placeKernel}; }
+
+MotionKernels motionKernels() noexcept {
+  return detail::hasAvx2() ? avx2Motion() : portableMotion();
+}
+
+MotionTables motionTables(const MotionModel& model) {
+  return {.variables = model.variables.data(),
+          .variable_count = static_cast<std::uint32_t>(model.variables.size()),
+          .nodes = model.nodes.data(),
+          .node_count = static_cast<std::uint32_t>(model.nodes.size()),
+          .spheres = model.spheres.data(),
+          .sphere_count = static_cast<std::uint32_t>(model.spheres.size()),
+          .grip = model.grip,
+          .forward_step = model.base.forward_step,
+          .turn_step = model.base.turn_step,
+          .root_height = model.base.root_height};
+}
+
+}  // namespace galactic::simulation

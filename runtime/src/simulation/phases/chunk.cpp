@@ -1,0 +1,62 @@
+#include "simulation/phases/chunk.h"
+
+#include <algorithm>
+
+namespace galactic::simulation {
+
+Chunk::Chunk(const Model& model)
+    : action_count_(model.actionCount()),
+      sphere_count_(model.sphereCount()),
+      body_count_(model.bodyCount()),
+      ranges_(model.motion.ranges),
+      actions_(kChunk * model.actionCount()),
+      variables_(kChunk * model.variableCount()),
+      centres_(kChunk * 3 * model.sphereCount()),
+      bodies_(kChunk * body_count_),
+      frames_(frameScratchSize(model.motion.nodes.size()) / kLanes),
+      collision_(std::max(model.sphereCount(), model.most_held_spheres)),
+      placement_(model.most_held_spheres, model.world->radii()),
+      held_bits_(model.heldWords()),
+      body_bits_(model.bodyWords()) {}
+
+PoseArrays Chunk::candidates(std::size_t first) {
+  return {.x = x_.data() + first,
+          .y = y_.data() + first,
+          .z = z_.data() + first,
+          .yaw = yaw_.data() + first,
+          .variables = variables_.data() + first,
+          .stride = kChunk};
+}
+
+BodyArrays Chunk::bodies(std::size_t first) {
+  static_assert(sizeof(RigidTransform) == 12 * sizeof(float));
+  return {.centres = centres_.data() + first * 3 * sphere_count_,
+          .grips = grips_[first].data(),
+          .bodies = body_count_ == 0
+                        ? nullptr
+                        : reinterpret_cast<float*>(bodies_.data() + first * body_count_)};
+}
+
+void Chunk::shift(std::size_t env, const Vec3& by) {
+  x_[env] += by.x;
+  y_[env] += by.y;
+  z_[env] += by.z;
+  float* row = centres_.data() + env * 3 * sphere_count_;
+  for (std::size_t n = 0; n < sphere_count_; ++n) {
+    row[n] += by.x;
+    row[sphere_count_ + n] += by.y;
+    row[2 * sphere_count_ + n] += by.z;
+  }
+  GripFrame& grip = grips_[env];
+  grip[9] += by.x;
+  grip[10] += by.y;
+  grip[11] += by.z;
+  for (RigidTransform& body : bodyTransforms(env)) body.origin = body.origin + by;
+}
+
+SphereBatch Chunk::spheres(std::size_t env) const {
+  const float* row = centres_.data() + env * 3 * sphere_count_;
+  return {row, row + sphere_count_, row + 2 * sphere_count_, ranges_};
+}
+
+}  // namespace galactic::simulation

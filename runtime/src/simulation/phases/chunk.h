@@ -1,0 +1,88 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "galactic/vec3.h"
+#include "simulation/collision/collision.h"
+#include "simulation/phases/object_placement.h"
+#include "simulation/state/batch_state.h"
+#include "simulation/state/model.h"
+
+namespace galactic::simulation {
+
+/// What the floor under a candidate's base allows.
+enum class Floor : std::uint8_t {
+  kCarries = 0,
+  /// Higher than the base may climb, or no height for it.
+  kBlocks = 1,
+  /// Deeper than the base may drop, or unknown.
+  kDrops = 2,
+};
+
+/// Room for kChunk envs on their way through a step, allocated once for each thread.
+class Chunk {
+ public:
+  explicit Chunk(const Model& model);
+
+  /// Actions of the chunk's envs, each in [-1, 1]. Shape: kChunk * actions.
+  [[nodiscard]] std::span<float> actions() { return actions_; }
+  [[nodiscard]] std::span<const float> actions(std::size_t env) const {
+    return std::span(actions_).subspan(env * action_count_, action_count_);
+  }
+  /// Candidates of the envs from `first` of the chunk on.
+  [[nodiscard]] PoseArrays candidates(std::size_t first);
+  [[nodiscard]] BodyArrays bodies(std::size_t first);
+  [[nodiscard]] float* frames() { return frames_.data()->values.data(); }
+  [[nodiscard]] Vec3 base(std::size_t env) const { return {x_[env], y_[env], z_[env]}; }
+  /// Moves a candidate with all its spheres and its grip.
+  void shift(std::size_t env, const Vec3& by);
+  [[nodiscard]] SphereBatch spheres(std::size_t env) const;
+  [[nodiscard]] GripFrame& grip(std::size_t env) { return grips_[env]; }
+  /// Root and nodes of a candidate; empty where the run does not want them.
+  [[nodiscard]] std::span<RigidTransform> bodyTransforms(std::size_t env) {
+    return std::span(bodies_).subspan(env * body_count_, body_count_);
+  }
+  [[nodiscard]] Floor& floor(std::size_t env) { return floor_[env]; }
+  [[nodiscard]] CollisionScratch& collision() { return collision_; }
+  [[nodiscard]] PlacementScratch& placement() { return placement_; }
+  /// One bit for each sphere of the held object that penetrates something, and of the robot that
+  /// penetrates the object which it leaves: what isFree() found last.
+  [[nodiscard]] std::span<std::uint64_t> heldBits() { return held_bits_; }
+  [[nodiscard]] std::span<std::uint64_t> bodyBits() { return body_bits_; }
+
+ private:
+  struct alignas(32) AlignedLanes {
+    std::array<float, kLanes> values{};
+  };
+
+  std::size_t action_count_ = 0;
+  std::size_t sphere_count_ = 0;
+  /// 0 where the run does not want them.
+  std::size_t body_count_ = 0;
+  std::span<const RadiusRange> ranges_;
+  std::vector<float> actions_;
+  std::array<float, kChunk> x_{}, y_{}, z_{}, yaw_{};
+  std::vector<float> variables_;
+  std::vector<float> centres_;
+  std::array<GripFrame, kChunk> grips_{};
+  std::vector<RigidTransform> bodies_;
+  std::vector<AlignedLanes> frames_;
+  std::array<Floor, kChunk> floor_{};
+  CollisionScratch collision_;
+  PlacementScratch placement_;
+  std::vector<std::uint64_t> held_bits_;
+  std::vector<std::uint64_t> body_bits_;
+};
+
+/// The envs [first, first + kChunk) of a batch in one step.
+struct ChunkStep {
+  const Model& model;
+  BatchState& state;
+  Chunk& chunk;
+  std::size_t first = 0;
+};
+
+}  // namespace galactic::simulation

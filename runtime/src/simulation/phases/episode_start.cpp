@@ -1,0 +1,121 @@
+#include "simulation/phases/episode_start.h"
+
+#include <algorithm>
+
+#include "simulation/phases/observe.h"
+#include "simulation/phases/task.h"
+#include "simulation/state/episode_order.h"
+
+namespace galactic::simulation {
+namespace {
+
+void placeRobot(const Model& model, BatchState& state, std::size_t n, std::uint32_t start) {
+  const EpisodeStart& from = model.starts[start];
+  const PoseArrays to = state.poses(n);
+  *to.x = from.base.x;
+  *to.y = from.base.y;
+  *to.z = from.base.z;
+  *to.yaw = from.yaw;
+  const std::size_t variables = model.variableCount();
+  for (std::size_t v = 0; v < variables; ++v) {
+    to.variables[v * to.stride] = model.start_variables[start * variables + v];
+  }
+  state.grip(n) = from.grip;
+  const std::size_t bodies = model.bodyCount();
+  std::ranges::copy(std::span(model.start_bodies).subspan(start * bodies, bodies),
+                    state.bodyTransforms(n).begin());
+  std::ranges::fill(state.lastActions(n), 0.0F);
+}
+
+void placeObjects(const Model& model, BatchState& state, std::size_t n, const Episode& episode) {
+  const std::span<const Placement> placements = model.placements(episode);
+  RestingObjects& resting = state.resting(n);
+  resting.clear();
+  for (std::uint32_t object = 0; object < placements.size(); ++object) {
+    const Placement& placement = placements[object];
+    state.objects(n)[object] = placement.pose;
+    resting.insert(object, restingBox(model.world->objectOf(placement).box, placement.pose));
+  }
+}
+
+/// The start of episode `episode`, or the next that can be started.
+std::uint32_t startOf(const Model& model, std::uint32_t episode) {
+  const auto by_episode = [](const EpisodeStart& start, std::uint32_t wanted) {
+    return start.episode < wanted;
+  };
+  const auto found =
+      std::lower_bound(model.starts.begin(), model.starts.end(), episode, by_episode);
+  return found == model.starts.end() ? 0U
+                                     : static_cast<std::uint32_t>(found - model.starts.begin());
+}
+
+}  // namespace
+
+void takeStock(const Model& model, BatchState& state, std::size_t n) noexcept {
+  Env& env = state.env(n);
+  const TargetDistances distances = measureTarget(state, n);
+  env.reach = distances.reach;
+  env.transport = distances.transport;
+  const WayLeft way = measureWay(model, state, n);
+  env.way = way.length;
+  env.is_way_to_goal = way.is_to_goal;
+  observe(model, state, n, state.observation(n));
+  sense(model, state, n, state.observation(n));
+}
+
+void beginEpisode(const Model& model, BatchState& state, std::size_t n,
+                  std::uint32_t start) noexcept {
+  const Episode& episode = model.episodeOf(start);
+  placeRobot(model, state, n, start);
+  placeObjects(model, state, n, episode);
+  const std::uint32_t target = model.targetOf(episode);
+  Env& env = state.env(n);
+  env = {.start = start,
+         .scene = model.world->sceneIndexOf(episode),
+         .objects = static_cast<std::uint32_t>(model.placements(episode).size()),
+         .target = target,
+         .ordinal = env.ordinal + 1,
+         .held = {},
+         .events = {},
+         .goal = episode.goal.translation,
+         .target_start = state.objects(n)[target].translation,
+         .counters = env.counters};
+  state.idle()[n] = 0;
+  takeStock(model, state, n);
+}
+
+void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) noexcept {
+  const auto count = static_cast<std::uint32_t>(model.starts.size());
+  const std::uint64_t number = model.globalEnv(env);
+  const auto next = nthEpisode(model.options, number, state.env(env).ordinal, count);
+  // An env that never has one stands somewhere, too.
+  const bool has_begun = state.env(env).ordinal > 0;
+  if (next || !has_begun) {
+    beginEpisode(model, state, env, next.value_or(static_cast<std::uint32_t>(number % count)));
+  }
+  state.idle()[env] = next ? 0 : 1;
+}
+
+void beginChosenEpisode(const Model& model, BatchState& state, std::size_t env,
+                        std::int32_t episode) noexcept {
+  beginEpisode(model, state, env, startOf(model, static_cast<std::uint32_t>(episode)));
+}
+
+void renewEpisodes(const ChunkStep& step) noexcept {
+  if (!step.model.options.auto_reset) return;
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    const std::size_t n = step.first + e;
+    if (step.state.dones()[n] == 0) continue;
+    step.state.keepFinalObservation(n);
+    beginNextEpisode(step.model, step.state, n);
+  }
+}
+
+void resetEpisodes(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept {
+  for (std::size_t n = step.first; n < std::min(step.first + kChunk, resets.size()); ++n) {
+    if (resets[n] < 0) continue;
+    beginChosenEpisode(step.model, step.state, n, resets[n]);
+  }
+}
+
+}  // namespace galactic::simulation

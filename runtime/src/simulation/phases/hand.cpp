@@ -1,0 +1,94 @@
+#include "simulation/phases/hand.h"
+
+#include <cmath>
+#include <optional>
+
+#include "simulation/phases/object_placement.h"
+#include "simulation/state/grip_frame.h"
+#include "simulation/state/random_stream.h"
+
+namespace galactic::simulation {
+namespace {
+
+void grasp(const ChunkStep& step, std::size_t e) {
+  const std::size_t n = step.first + e;
+  Env& env = step.state.env(n);
+  RestingObjects& resting = step.state.resting(n);
+  const GripFrame& grip = step.state.grip(n);
+  const std::optional<std::uint32_t> object =
+      resting.nearest(gripOrigin(grip), step.model.motion.grasp_radius);
+  if (!object) return;
+  const Pose before = step.state.objects(n)[*object];
+  env.held = {static_cast<std::int32_t>(*object), inverse(gripPose(grip)) * before, before};
+  resting.remove(*object);
+  if (env.leaves == env.held.object) env.leaves = -1;
+  const SphereBatch spheres =
+      holdSpheres(heldModel(step.model, env), before, step.chunk.placement().spheres);
+  penetrating({step.model.world->scenes()[env.scene], resting}, spheres, step.chunk.collision(),
+              step.state.ignored(n));
+  ++env.counters.grasps;
+  env.events.picked = *object == env.target && !env.has_picked;
+  env.has_picked = env.has_picked || env.events.picked;
+}
+
+/// Whether the task lets the held object rest at `pose`.
+bool mayRestAt(const ChunkStep& step, const Env& env, const Pose& pose) {
+  const TaskOptions& task = step.model.options.task;
+  const bool is_target = env.held.object == static_cast<std::int32_t>(env.target);
+  if (task.drop_fails || task.kind != TaskKind::kRearrange || !is_target) return true;
+  const Vec3 away = pose.translation - env.goal;
+  return dot(away, away) < task.success_distance * task.success_distance;
+}
+
+/// The robot's spheres that penetrate the object which the hand has let go of do not count against
+/// it until they are free of it.
+void beginToLeave(const ChunkStep& step, std::size_t e, std::uint32_t object) {
+  // The chunk's spheres are those of a candidate that may have been refused.
+  const std::size_t group = e / kLanes * kLanes;
+  step.model.kernels.place(step.model.tables, {.pose = step.state.poses(step.first + group),
+                                               .body = step.chunk.bodies(group),
+                                               .scratch = step.chunk.frames()});
+  const std::size_t n = step.first + e;
+  const RestingBox& box = step.state.resting(n).box(object);
+  const bool any = overlapping(box, step.chunk.spheres(e), step.state.leaving(n));
+  step.state.env(n).leaves = any ? static_cast<std::int32_t>(object) : -1;
+}
+
+void release(const ChunkStep& step, std::size_t e) {
+  const std::size_t n = step.first + e;
+  Env& env = step.state.env(n);
+  RestingObjects& resting = step.state.resting(n);
+  const ObjectModel& object = heldModel(step.model, env);
+  const Pose released = gripPose(step.state.grip(n)) * env.held.grip_from_object;
+  RandomStream random(step.model.options.seed, step.model.globalEnv(n), env.ordinal, env.step);
+  const Landing landing =
+      placeObject({step.model.world->scenes()[env.scene], resting}, object, released, random,
+                  step.model.options.placement, step.chunk.placement());
+  const Pose rest = landing.placed ? landing.pose : env.held.before;
+  if (!mayRestAt(step, env, rest)) return;
+  const auto number = static_cast<std::uint32_t>(env.held.object);
+  step.state.objects(n)[number] = rest;
+  resting.insert(number, restingBox(object.box, rest));
+  beginToLeave(step, e, number);
+  env.events.released_target = number == env.target;
+  env.held.object = -1;
+  ++(landing.placed ? env.counters.drops : env.counters.restored);
+}
+
+}  // namespace
+
+void useHands(const ChunkStep& step) noexcept {
+  const ActionOptions& options = step.model.options.action;
+  const std::size_t hand_action = step.model.motion.controlled.size() + 2;
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    if (step.state.idle()[step.first + e] != 0) continue;
+    Env& env = step.state.env(step.first + e);
+    const float value = step.chunk.actions(e)[hand_action];
+    env.events = {.terminates = step.chunk.actions(e)[hand_action + 1] >= options.terminate};
+    const bool is_empty = env.held.object < 0;
+    if (is_empty && value >= options.grasp) grasp(step, e);
+    if (!is_empty && value < options.release) release(step, e);
+  }
+}
+
+}  // namespace galactic::simulation

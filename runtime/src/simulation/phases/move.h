@@ -1,0 +1,37 @@
+#pragma once
+#include <cstddef>
+
+#include "simulation/phases/chunk.h"
+#include "simulation/state/batch_state.h"
+#include "simulation/state/model.h"
+
+namespace galactic::simulation {
+
+/// Where the robots would be after their actions: base, then joints, each within its limits.
+void proposePoses(const ChunkStep& step) noexcept;
+
+/// Puts the candidates on the floor under them.
+void followFloor(const ChunkStep& step) noexcept;
+
+/// Forward kinematics of the candidates, down to spheres and grip.
+void placeBodies(const ChunkStep& step) noexcept;
+
+/// Accepts each candidate that penetrates nothing, if need be after it was pushed clear (paper,
+/// appendix I.1); where that fails the robot stays where it was.
+void moveRobots(const ChunkStep& step) noexcept;
+
+/// How far a base at `base` (its y: the floor it comes from) is from the floor under it.
+struct FloorUnder {
+  Floor floor = Floor::kDrops;
+  float height = 0;
+};
+[[nodiscard]] FloorUnder floorUnder(const Scene& scene, const Vec3& base,
+                                    const GroundOptions& options) noexcept;
+
+/// Whether the candidate of the chunk's env `e` stands on a floor and penetrates nothing.
+[[nodiscard]] bool isFree(const ChunkStep& step, std::size_t e) noexcept;
+
+/// Pushes the candidate of the chunk's env `e` clear; whether it succeeded.
+bool pushClear(const ChunkStep& step, std::size_t e) noexcept;
+
+}  // namespace galactic::simulation

@@ -1,0 +1,81 @@
+#include "simulation/phases/step.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "simulation/phases/episode_start.h"
+#include "simulation/phases/hand.h"
+#include "simulation/phases/move.h"
+#include "simulation/phases/observe.h"
+#include "simulation/phases/task.h"
+
+namespace galactic::simulation {
+namespace {
+
+/// Copies the actions of the chunk's envs, clamped; what is not a number becomes 0 and is counted.
+/// Envs that are only padding get 0.
+void readActions(const ChunkStep& step, std::span<const float> all) noexcept {
+  const std::size_t count = step.model.actionCount();
+  const std::span<float> actions = step.chunk.actions();
+  const std::size_t first = std::min(step.first * count, all.size());
+  const std::size_t given = std::min(actions.size(), all.size() - first);
+  std::uint32_t nan_count = 0;
+  for (std::size_t n = 0; n < given; ++n) {
+    const float value = all[first + n];
+    const float low = value < -1.0F ? -1.0F : value;
+    const float both = low > 1.0F ? 1.0F : low;
+    nan_count += value == value ? 0U : 1U;
+    actions[n] = value == value ? both : 0.0F;
+  }
+  std::fill(actions.begin() + static_cast<std::ptrdiff_t>(given), actions.end(), 0.0F);
+  if (nan_count == 0) return;
+  for (std::size_t n = 0; n < given; ++n) {
+    const float value = all[first + n];
+    if (value != value) ++step.state.env(step.first + n / count).counters.nan_actions;
+  }
+}
+
+/// Runs the phases, telling `lap` after each of them.
+template <class Lap>
+void runPhases(const ChunkStep& step, const StepInput& input, const Lap& lap) noexcept {
+  readActions(step, input.actions);
+  lap(0);
+  proposePoses(step);
+  lap(1);
+  followFloor(step);
+  lap(2);
+  placeBodies(step);
+  lap(3);
+  moveRobots(step);
+  lap(4);
+  useHands(step);
+  lap(5);
+  judge(step, input.resets);
+  lap(6);
+  observeAll(step);
+  lap(7);
+  senseAll(step);
+  lap(8);
+  renewEpisodes(step);
+  resetEpisodes(step, input.resets);
+  lap(9);
+}
+
+}  // namespace
+
+void stepChunk(const ChunkStep& step, const StepInput& input) noexcept {
+  runPhases(step, input, [](std::size_t) {});
+}
+
+void stepChunkMeasured(const ChunkStep& step, const StepInput& input,
+                       PhaseSeconds& seconds) noexcept {
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point before = Clock::now();
+  runPhases(step, input, [&](std::size_t phase) {
+    const Clock::time_point now = Clock::now();
+    seconds[phase] += std::chrono::duration<double>(now - before).count();
+    before = now;
+  });
+}
+
+}  // namespace galactic::simulation

@@ -1,0 +1,33 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "simulation/phases/chunk.h"
+
+namespace galactic::simulation {
+
+/// What the caller gives for a step of the whole batch.
+struct StepInput {
+  /// Env after env, not padded.
+  std::span<const float> actions;
+  /// Empty, or one per env.
+  std::span<const std::int32_t> resets;
+};
+
+/// The phases of a step, in order.
+inline constexpr std::array<std::string_view, 10> kPhaseNames{
+    "actions", "propose", "floor",   "kinematics", "collide",
+    "hands",   "task",    "observe", "sense",      "renew"};
+using PhaseSeconds = std::array<double, kPhaseNames.size()>;
+
+/// One step of the chunk's envs.
+void stepChunk(const ChunkStep& step, const StepInput& input) noexcept;
+
+/// The same, adding to `seconds` what each phase took.
+void stepChunkMeasured(const ChunkStep& step, const StepInput& input,
+                       PhaseSeconds& seconds) noexcept;
+
+}  // namespace galactic::simulation

@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "simulation/phases/chunk.h"
+
+namespace galactic::simulation {
+
+/// Where the target is, and how far from grip and goal, metres.
+struct TargetDistances {
+  Vec3 target;
+  float reach = 0;
+  float transport = 0;
+};
+[[nodiscard]] TargetDistances measureTarget(const BatchState& state, std::size_t env) noexcept;
+
+/// The length of the way along the floor to what matters now, the target or once it is held the
+/// goal, metres; below 0 without a way, and where TaskOptions::geodesic_weight is 0.
+struct WayLeft {
+  float length = -1;
+  bool is_to_goal = false;
+};
+[[nodiscard]] WayLeft measureWay(const Model& model, const BatchState& state,
+                                 std::size_t env) noexcept;
+
+/// How the rules of the task end the episode (paper, appendix A). `transport` is the distance of
+/// target and goal after the step, in metres.
+[[nodiscard]] EpisodeEnd endOf(const TaskOptions& task, const Env& env, float transport) noexcept;
+
+/// Counts the step; rewards (paper, equation 1), dones, successes and endings of it. Envs of the
+/// batch that the caller resets (`resets`: empty, or not negative where so) get none: their episode
+/// is neither rewarded nor counted.
+void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept;
+
+}  // namespace galactic::simulation

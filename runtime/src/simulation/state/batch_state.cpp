@@ -1,0 +1,86 @@
+#include "simulation/state/batch_state.h"
+
+#include <algorithm>
+
+namespace galactic::simulation {
+namespace {
+
+/// What the vectors of one env take, so that a batch asks for its memory at once.
+std::size_t envBytes(const Model& model) {
+  // What the alignment of an env's own vectors may cost.
+  constexpr std::size_t kPadding = 96;
+  const std::size_t planes = (model.most_objects + kPlaneObjects - 1) / kPlaneObjects;
+  const std::size_t floats =
+      model.motion.controlled.size() + model.variableCount() + 2 * model.observation_size + 5;
+  return kPadding + sizeof(Env) + sizeof(RestingObjects) + sizeof(GripFrame) +
+         planes * (sizeof(SetPlane) + sizeof(std::uint32_t)) +
+         model.most_objects * (sizeof(RestingBox) + sizeof(Pose)) +
+         (model.heldWords() + model.bodyWords()) * sizeof(std::uint64_t) + floats * sizeof(float) +
+         3 + model.bodyCount() * sizeof(RigidTransform);
+}
+
+template <class T>
+std::size_t bytesOf(const std::pmr::vector<T>& values) {
+  return values.size() * sizeof(T);
+}
+
+std::size_t paddedToChunks(std::size_t count) { return (count + kChunk - 1) / kChunk * kChunk; }
+
+}  // namespace
+
+BatchState::BatchState(const Model& model, std::size_t envs)
+    : memory_(paddedToChunks(envs) * envBytes(model), &huge_pages_),
+      env_count_(envs),
+      most_objects_(model.most_objects),
+      held_words_(model.heldWords()),
+      body_words_(model.bodyWords()),
+      joints_(model.motion.controlled.size()),
+      observation_size_(model.observation_size),
+      body_count_(model.bodyCount()) {
+  const std::size_t padded = paddedToChunks(env_count_);
+  envs_.resize(padded);
+  resting_.reserve(padded);
+  for (std::size_t n = 0; n < padded; ++n) {
+    // Whatever asks for objects: spheres, and the hand.
+    const float reach = std::max(model.world->radii().back(), model.motion.grasp_radius);
+    resting_.emplace_back(model.most_objects, reach, &memory_);
+  }
+  objects_.resize(padded * most_objects_);
+  grips_.resize(padded);
+  ignored_.resize(padded * held_words_);
+  leaving_.resize(padded * body_words_);
+  last_actions_.resize(padded * joints_);
+  x_.resize(padded);
+  y_.resize(padded);
+  z_.resize(padded);
+  yaw_.resize(padded);
+  variables_.resize(padded * model.variableCount());
+  observations_.resize(padded * observation_size_);
+  final_observations_.resize(padded * observation_size_);
+  bodies_.resize(padded * body_count_);
+  rewards_.resize(padded);
+  dones_.resize(padded);
+  successes_.resize(padded);
+  endings_.resize(padded);
+  idle_.resize(padded);
+}
+
+PoseArrays BatchState::poses(std::size_t first) {
+  return {.x = x_.data() + first,
+          .y = y_.data() + first,
+          .z = z_.data() + first,
+          .yaw = yaw_.data() + first,
+          .variables = variables_.data() + first,
+          .stride = envs_.size()};
+}
+
+std::size_t BatchState::bytes() const {
+  std::size_t bytes = bytesOf(envs_) + bytesOf(objects_) + bytesOf(grips_) + bytesOf(ignored_) +
+                      bytesOf(leaving_) + bytesOf(last_actions_) + 4 * bytesOf(x_) +
+                      bytesOf(variables_) + 2 * bytesOf(observations_) + bytesOf(bodies_) +
+                      bytesOf(rewards_) + 4 * bytesOf(dones_);
+  for (const RestingObjects& resting : resting_) bytes += resting.bytes();
+  return bytes;
+}
+
+}  // namespace galactic::simulation

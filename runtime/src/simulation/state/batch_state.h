@@ -1,0 +1,223 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+#include "galactic/pose.h"
+#include "simulation/collision/resting_objects.h"
+#include "simulation/state/model.h"
+#include "support/huge_pages.h"
+
+namespace galactic::simulation {
+
+/// Envs are stepped this many at a time, so that what they need stays in the nearest cache.
+inline constexpr std::size_t kChunk = 16;
+static_assert(kChunk % kLanes == 0);
+
+/// What happened in one env; added up by SimulationStatistics.
+struct EnvCounters {
+  std::uint32_t refused = 0;
+  std::uint32_t slid = 0;
+  std::uint32_t grasps = 0;
+  std::uint32_t drops = 0;
+  std::uint32_t restored = 0;
+  std::uint32_t episodes = 0;
+  std::uint32_t successes = 0;
+  std::uint32_t failures = 0;
+  std::uint64_t nan_actions = 0;
+  /// Steps in which the env was idle.
+  std::uint64_t idle_steps = 0;
+  double reward = 0;
+};
+
+/// The object in the hand.
+struct Held {
+  /// Counted in the episode; -1 for none.
+  std::int32_t object = -1;
+  Pose grip_from_object;
+  /// world_from_object where it rested before.
+  Pose before;
+};
+
+/// What a step did that decides its reward and the episode's end.
+struct StepEvents {
+  /// The first time in the episode that the target is in the hand.
+  bool picked = false;
+  /// The target was released, and rests.
+  bool released_target = false;
+  bool terminates = false;
+};
+
+/// One environment, apart from what the motion kernels read.
+struct Env {
+  /// Index into Model::starts.
+  std::uint32_t start = 0;
+  std::uint32_t scene = 0;
+  std::uint32_t step = 0;
+  std::uint32_t objects = 0;
+  std::uint32_t target = 0;
+  /// Episodes begun.
+  std::uint64_t ordinal = 0;
+  Held held;
+  /// Whether the target was in the hand before in this episode.
+  bool has_picked = false;
+  /// The last step left the robot where it was: wherever it would have been, it penetrated
+  /// something.
+  bool refused = false;
+  /// The object that the hand let go of and that some of the robot's spheres still penetrate; -1
+  /// for none. Those spheres do not count against it until each is free of it once; else the hand
+  /// could not leave it.
+  std::int32_t leaves = -1;
+  StepEvents events;
+  Vec3 goal;
+  Vec3 target_start;
+  /// Of the step before: grip to target, target to goal, metres.
+  float reach = 0;
+  float transport = 0;
+  /// Of the step before, metres: along the floor to what mattered then, which was the goal or the
+  /// target; below 0 where none is known.
+  float way = -1;
+  bool is_way_to_goal = false;
+  EnvCounters counters;
+};
+
+/// The object in the env's hand, which must not be empty.
+[[nodiscard]] inline const ObjectModel& heldModel(const Model& model, const Env& env) {
+  return model.object(env.start, static_cast<std::uint32_t>(env.held.object));
+}
+
+/// Everything that changes in a run: N envs, padded to whole chunks with envs that nobody sees.
+class BatchState {
+ public:
+  BatchState(const Model& model, std::size_t envs);
+
+  [[nodiscard]] std::size_t envCount() const { return env_count_; }
+  /// A multiple of kChunk.
+  [[nodiscard]] std::size_t paddedCount() const { return envs_.size(); }
+
+  [[nodiscard]] Env& env(std::size_t n) { return envs_[n]; }
+  [[nodiscard]] const Env& env(std::size_t n) const { return envs_[n]; }
+  [[nodiscard]] RestingObjects& resting(std::size_t n) { return resting_[n]; }
+  [[nodiscard]] const RestingObjects& resting(std::size_t n) const { return resting_[n]; }
+  /// World poses of the episode's objects; that of a held one is where it was grasped.
+  [[nodiscard]] std::span<Pose> objects(std::size_t n) {
+    return std::span(objects_).subspan(n * most_objects_, most_objects_);
+  }
+  [[nodiscard]] std::span<const Pose> objects(std::size_t n) const {
+    return std::span(objects_).subspan(n * most_objects_, most_objects_);
+  }
+  [[nodiscard]] GripFrame& grip(std::size_t n) { return grips_[n]; }
+  [[nodiscard]] const GripFrame& grip(std::size_t n) const { return grips_[n]; }
+  /// Spheres of the held object that do not count yet.
+  [[nodiscard]] std::span<std::uint64_t> ignored(std::size_t n) {
+    return std::span(ignored_).subspan(n * held_words_, held_words_);
+  }
+  /// Spheres of the robot that do not count against Env::leaves yet.
+  [[nodiscard]] std::span<std::uint64_t> leaving(std::size_t n) {
+    return std::span(leaving_).subspan(n * body_words_, body_words_);
+  }
+  [[nodiscard]] std::span<const std::uint64_t> ignored(std::size_t n) const {
+    return std::span(ignored_).subspan(n * held_words_, held_words_);
+  }
+  [[nodiscard]] std::span<const std::uint64_t> leaving(std::size_t n) const {
+    return std::span(leaving_).subspan(n * body_words_, body_words_);
+  }
+  /// The joint actions of the step before.
+  [[nodiscard]] std::span<float> lastActions(std::size_t n) {
+    return std::span(last_actions_).subspan(n * joints_, joints_);
+  }
+  [[nodiscard]] std::span<const float> lastActions(std::size_t n) const {
+    return std::span(last_actions_).subspan(n * joints_, joints_);
+  }
+  /// Base and variables of the envs from `first` on.
+  [[nodiscard]] PoseArrays poses(std::size_t first);
+  [[nodiscard]] float variable(std::size_t v, std::size_t env) const {
+    return variables_[v * envs_.size() + env];
+  }
+  [[nodiscard]] Vec3 base(std::size_t n) const { return {x_[n], y_[n], z_[n]}; }
+  [[nodiscard]] float yaw(std::size_t n) const { return yaw_[n]; }
+
+  [[nodiscard]] std::span<float> observation(std::size_t n) {
+    return std::span(observations_).subspan(n * observation_size_, observation_size_);
+  }
+  [[nodiscard]] std::span<float> finalObservation(std::size_t n) {
+    return std::span(final_observations_).subspan(n * observation_size_, observation_size_);
+  }
+  /// Where the last step ended an episode: its last observation becomes the final one.
+  void keepFinalObservation(std::size_t n) {
+    if (dones_[n] != 0) std::ranges::copy(observation(n), finalObservation(n).begin());
+  }
+  [[nodiscard]] std::span<const float> finalObservation(std::size_t n) const {
+    return std::span(final_observations_).subspan(n * observation_size_, observation_size_);
+  }
+  [[nodiscard]] std::span<const float> observations() const {
+    return std::span(observations_).first(env_count_ * observation_size_);
+  }
+  [[nodiscard]] std::span<const float> finalObservations() const {
+    return std::span(final_observations_).first(env_count_ * observation_size_);
+  }
+  /// Root and nodes of the robot; empty where the run does not want them.
+  [[nodiscard]] std::span<RigidTransform> bodyTransforms(std::size_t n) {
+    return std::span(bodies_).subspan(n * body_count_, body_count_);
+  }
+  [[nodiscard]] std::span<const RigidTransform> bodyTransforms(std::size_t n) const {
+    return std::span(bodies_).subspan(n * body_count_, body_count_);
+  }
+  [[nodiscard]] std::span<const RigidTransform> bodyTransforms() const {
+    return std::span(bodies_).first(env_count_ * body_count_);
+  }
+  [[nodiscard]] std::span<float> rewards() { return rewards_; }
+  [[nodiscard]] std::span<const float> rewards() const { return rewards_; }
+  [[nodiscard]] std::span<std::uint8_t> dones() { return dones_; }
+  [[nodiscard]] std::span<const std::uint8_t> dones() const { return dones_; }
+  [[nodiscard]] std::span<std::uint8_t> successes() { return successes_; }
+  [[nodiscard]] std::span<const std::uint8_t> successes() const { return successes_; }
+  [[nodiscard]] std::span<EpisodeEnd> endings() { return endings_; }
+  [[nodiscard]] std::span<const EpisodeEnd> endings() const { return endings_; }
+  /// As after a step in which no episode ended and nothing was earned.
+  /// 1 where an env has had all its episodes; see BatchSimulator::idle().
+  [[nodiscard]] std::span<std::uint8_t> idle() { return idle_; }
+  [[nodiscard]] std::span<const std::uint8_t> idle() const { return idle_; }
+  void clearOutcome(std::size_t n) {
+    rewards_[n] = 0;
+    dones_[n] = 0;
+    successes_[n] = 0;
+    endings_[n] = EpisodeEnd::kNone;
+  }
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  detail::HugePages huge_pages_;
+  /// All vectors are made once, one after the other, in here.
+  std::pmr::monotonic_buffer_resource memory_;
+  std::size_t env_count_ = 0;
+  std::size_t most_objects_ = 0;
+  std::size_t held_words_ = 0;
+  std::size_t body_words_ = 0;
+  std::size_t joints_ = 0;
+  std::size_t observation_size_ = 0;
+  std::size_t body_count_ = 0;
+  std::pmr::vector<Env> envs_{&memory_};
+  std::pmr::vector<RestingObjects> resting_{&memory_};
+  std::pmr::vector<Pose> objects_{&memory_};
+  std::pmr::vector<GripFrame> grips_{&memory_};
+  std::pmr::vector<std::uint64_t> ignored_{&memory_};
+  std::pmr::vector<std::uint64_t> leaving_{&memory_};
+  std::pmr::vector<float> last_actions_{&memory_};
+  std::pmr::vector<float> x_{&memory_}, y_{&memory_}, z_{&memory_}, yaw_{&memory_};
+  /// Variable v of env n at v * paddedCount() + n.
+  std::pmr::vector<float> variables_{&memory_};
+  std::pmr::vector<float> observations_{&memory_};
+  std::pmr::vector<float> final_observations_{&memory_};
+  std::pmr::vector<RigidTransform> bodies_{&memory_};
+  std::pmr::vector<float> rewards_{&memory_};
+  std::pmr::vector<std::uint8_t> dones_{&memory_};
+  std::pmr::vector<std::uint8_t> successes_{&memory_};
+  std::pmr::vector<EpisodeEnd> endings_{&memory_};
+  std::pmr::vector<std::uint8_t> idle_{&memory_};
+};
+
+}  // namespace galactic::simulation

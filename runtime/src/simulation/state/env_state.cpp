@@ -1,0 +1,50 @@
+#include "simulation/state/env_state.h"
+
+#include <cmath>
+
+#include "simulation/state/grip_frame.h"
+
+namespace galactic::simulation {
+
+EnvObjects envObjectsOf(const Model& model, const BatchState& state, std::size_t n) noexcept {
+  const Env& env = state.env(n);
+  EnvObjects result{.scene = env.scene,
+                    .episode = model.starts[env.start].episode,
+                    .placements = model.placements(model.episodeOf(env.start)),
+                    .objects = state.objects(n).first(env.objects),
+                    .held = env.held.object,
+                    .world_from_held = {}};
+  if (env.held.object >= 0) {
+    result.world_from_held = gripPose(state.grip(n)) * env.held.grip_from_object;
+  }
+  return result;
+}
+
+EnvState envStateOf(const Model& model, const BatchState& state, std::size_t n) {
+  const Env& env = state.env(n);
+  const EnvObjects objects = envObjectsOf(model, state, n);
+  const Vec3 base = state.base(n);
+  const float half_yaw = 0.5F * state.yaw(n);
+  EnvState result;
+  result.scene = objects.scene;
+  result.episode = objects.episode;
+  result.step = env.step;
+  result.world_from_root = {{base.x, base.y + model.motion.base.root_height, base.z},
+                            {0, std::sin(half_yaw), 0, std::cos(half_yaw)}};
+  const std::span<const float> start = model.world->robot().startPositions();
+  result.joint_positions.assign(start.begin(), start.end());
+  for (std::size_t v = 0; v < model.variableCount(); ++v) {
+    result.joint_positions[model.motion.variables[v].position] = state.variable(v, n);
+  }
+  result.world_from_grip = gripPose(state.grip(n));
+  result.objects.assign(objects.objects.begin(), objects.objects.end());
+  result.held = objects.held;
+  if (objects.held >= 0) {
+    result.objects[static_cast<std::size_t>(objects.held)] = objects.world_from_held;
+  }
+  result.target = env.target;
+  result.goal = model.episodeOf(env.start).goal;
+  return result;
+}
+
+}  // namespace galactic::simulation

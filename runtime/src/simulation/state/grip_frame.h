@@ -1,0 +1,34 @@
+#pragma once
+#include "galactic/pose.h"
+#include "galactic/vec3.h"
+#include "simulation/state/model.h"
+
+namespace galactic::simulation {
+
+/// Origin of the grip in the world, metres.
+[[nodiscard]] inline Vec3 gripOrigin(const GripFrame& grip) {
+  return {grip[9], grip[10], grip[11]};
+}
+
+/// Of the base's yaw.
+[[nodiscard]] inline float headingCosine(const GripFrame& grip) { return grip[12]; }
+[[nodiscard]] inline float headingSine(const GripFrame& grip) { return grip[13]; }
+
+/// A point in the grip's frame, in the world.
+[[nodiscard]] inline Vec3 gripToWorld(const GripFrame& grip, const Vec3& point) {
+  return {grip[0] * point.x + grip[3] * point.y + grip[6] * point.z + grip[9],
+          grip[1] * point.x + grip[4] * point.y + grip[7] * point.z + grip[10],
+          grip[2] * point.x + grip[5] * point.y + grip[8] * point.z + grip[11]};
+}
+
+/// A point in the world, in the grip's frame.
+[[nodiscard]] inline Vec3 worldToGrip(const GripFrame& grip, const Vec3& point) {
+  const Vec3 away = point - gripOrigin(grip);
+  return {dot(away, {grip[0], grip[1], grip[2]}), dot(away, {grip[3], grip[4], grip[5]}),
+          dot(away, {grip[6], grip[7], grip[8]})};
+}
+
+/// The frame as a pose: world_from_grip.
+[[nodiscard]] Pose gripPose(const GripFrame& grip);
+
+}  // namespace galactic::simulation

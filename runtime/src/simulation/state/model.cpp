@@ -1,0 +1,200 @@
+#include "simulation/state/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "simulation/phases/chunk.h"
+#include "simulation/phases/move.h"
+#include "simulation/phases/observe.h"
+#include "simulation/state/batch_state.h"
+#include "support/workers.h"
+
+namespace galactic::simulation {
+namespace {
+
+/// Spheres of an object as a SphereBatch has them: each radius padded to whole lanes.
+std::size_t paddedSpheres(const ObjectModel& object, std::size_t radii) {
+  std::size_t padded = 0;
+  for (std::uint32_t radius = 0; radius < radii; ++radius) {
+    padded += paddedToLanes(static_cast<std::size_t>(
+        std::ranges::count(object.spheres, radius, &SetSphere::radius_index)));
+  }
+  return padded;
+}
+
+void measure(const World& world, Model& model) {
+  model.most_objects = model.options.task.distractors ? world.mostObjects() : 1;
+  for (const Episode& episode : world.episodes().episodes()) {
+    for (const Placement& placement : model.placements(episode)) {
+      model.most_held_spheres = std::max(
+          model.most_held_spheres, paddedSpheres(world.objectOf(placement), world.radii().size()));
+    }
+  }
+}
+
+/// Tries the episodes one after the other in a batch of one chunk, whose first env is used.
+class StartFinder {
+ public:
+  explicit StartFinder(Model& model) : model_(model), state_(model, 1), chunk_(model) {}
+
+  void find() {
+    const World& world = *model_.world;
+    const std::size_t count = world.episodes().episodes().size();
+    model_.starts.reserve(count);
+    model_.start_variables.reserve(count * model_.variableCount());
+    for (std::uint32_t n = 0; n < count; ++n) {
+      if (!tryEpisode(n)) model_.skipped.push_back(n);
+    }
+  }
+
+ private:
+  void setVariables(std::uint32_t episode) {
+    const World& world = *model_.world;
+    const std::span<const float> recipe = world.robot().startPositions();
+    const std::span<const float> given = world.episodes().startPositions(episode);
+    const std::span<const std::uint32_t> positions = world.startPositionIndices();
+    const PoseArrays pose = chunk_.candidates(0);
+    for (std::size_t v = 0; v < model_.variableCount(); ++v) {
+      const MotionVariable& variable = model_.motion.variables[v];
+      float value = recipe[variable.position];
+      for (std::size_t n = 0; n < positions.size(); ++n) {
+        if (positions[n] == variable.position) value = given[n];
+      }
+      constexpr float kTurn = 6.28318531F;
+      pose.variables[v * pose.stride] = variable.wraps
+                                            ? std::remainder(value, kTurn)
+                                            : std::clamp(value, variable.lower, variable.upper);
+    }
+  }
+
+  /// The floor at or under the episode's base: at once, or further down.
+  bool setBase(const Episode& episode) {
+    constexpr float kDeepestSearch = 0.5F;
+    const Scene& scene = model_.world->sceneOf(episode);
+    GroundOptions options = model_.options.ground;
+    options.most_drop = std::max(options.most_drop, kDeepestSearch);
+    const FloorUnder under = floorUnder(scene, episode.base_position, options);
+    const PoseArrays pose = chunk_.candidates(0);
+    *pose.x = episode.base_position.x;
+    *pose.y = under.height;
+    *pose.z = episode.base_position.z;
+    // Episodes may have turned any number of times; the motion kernels want one turn.
+    constexpr double kTurn = 6.283185307179586;
+    *pose.yaw = static_cast<float>(std::remainder(static_cast<double>(episode.base_yaw), kTurn));
+    *state_.poses(0).y = under.height;
+    chunk_.floor(0) = under.floor;
+    return under.floor != Floor::kDrops;
+  }
+
+  void setObjects(const Episode& episode) {
+    RestingObjects& resting = state_.resting(0);
+    const std::uint32_t scene = model_.world->sceneIndexOf(episode);
+    resting.clear();
+    std::uint32_t number = 0;
+    for (const Placement& placement : model_.placements(episode)) {
+      resting.insert(number++, restingBox(model_.world->objectOf(placement).box, placement.pose));
+    }
+    state_.env(0).scene = scene;
+  }
+
+  bool tryEpisode(std::uint32_t n) {
+    const Episode& episode = model_.world->episodes().episodes()[n];
+    setVariables(n);
+    if (!setBase(episode)) return false;
+    setObjects(episode);
+    const ChunkStep step{model_, state_, chunk_, 0};
+    placeBodies(step);
+    if (!isFree(step, 0) && !pushClear(step, 0)) return false;
+    const PoseArrays pose = chunk_.candidates(0);
+    model_.starts.push_back({n, chunk_.base(0), *pose.yaw, chunk_.grip(0)});
+    const std::span<const RigidTransform> bodies = chunk_.bodyTransforms(0);
+    model_.start_bodies.insert(model_.start_bodies.end(), bodies.begin(), bodies.end());
+    for (std::size_t v = 0; v < model_.variableCount(); ++v) {
+      model_.start_variables.push_back(pose.variables[v * pose.stride]);
+    }
+    return true;
+  }
+
+  Model& model_;
+  BatchState state_;
+  Chunk chunk_;
+};
+
+/// Once per start, as many as there are.
+std::vector<sensors::StoodOn> floorsOf(const Model& model) {
+  std::vector<sensors::StoodOn> floors;
+  floors.reserve(model.starts.size());
+  for (std::uint32_t start = 0; start < model.starts.size(); ++start) {
+    floors.push_back(
+        {model.world->sceneIndexOf(model.episodeOf(start)), model.starts[start].base.y});
+  }
+  return floors;
+}
+
+/// One for each start.
+std::vector<sensors::Errand> errandsOf(const Model& model) {
+  std::vector<sensors::Errand> errands;
+  errands.reserve(model.starts.size());
+  for (std::uint32_t start = 0; start < model.starts.size(); ++start) {
+    const Episode& episode = model.episodeOf(start);
+    const Placement& target = model.placements(episode)[model.targetOf(episode)];
+    errands.push_back({.scene = model.world->sceneIndexOf(episode),
+                       .base = model.starts[start].base,
+                       .target = target.pose.translation,
+                       .goal = episode.goal.translation});
+  }
+  return errands;
+}
+
+/// What sensors know of the world, once the starts are found.
+Result<void> makeSensors(const sensors::LaserSettings& laser, Model& model) {
+  const SimulationOptions& options = model.options;
+  const std::uint32_t threads = detail::threadCount(options.threads);
+  Result<sensors::Laser> made = sensors::Laser::make(laser, *model.world, floorsOf(model), threads);
+  if (!made) return tl::unexpected<Error>(made.error());
+  model.laser = std::move(*made);
+  if (!options.sensors.geodesic && options.task.geodesic_weight == 0) return {};
+  const sensors::StandingRobot robot(model.world->robot(), model.motion, model.kernels);
+  Result<sensors::Geodesic> ways =
+      sensors::Geodesic::make(*model.world, robot, options.ground, errandsOf(model),
+                              options.sensors.geodesic_megabytes, threads);
+  if (!ways) return tl::unexpected<Error>(ways.error());
+  model.geodesic = std::move(*ways);
+  return {};
+}
+
+}  // namespace
+
+Result<Model> makeModel(const World& world, const SimulationOptions& options) {
+  Model model;
+  model.world = &world;
+  model.options = options;
+  Result<MotionModel> motion = makeMotionModel(world.robot(), world.startPositionIndices());
+  if (!motion) return tl::unexpected<Error>(motion.error());
+  model.motion = std::move(*motion);
+  model.kernels = motionKernels();
+  model.tables = motionTables(model.motion);
+  const Result<sensors::LaserSettings> laser =
+      sensors::laserSettings(options.sensors.laser, world.robot(), model.motion);
+  if (!laser) return tl::unexpected<Error>(laser.error());
+  const SensorSizes sensors{.bump = options.sensors.bump ? 1U : 0U,
+                            .laser = laser->size(),
+                            .geodesic = options.sensors.geodesic ? sensors::kGeodesicSize : 0};
+  model.observation = observationParts(model.motion.controlled.size(), sensors);
+  model.observation_size = model.observation.back().first + model.observation.back().size;
+  model.sensors_first = model.observation_size - sensors.laser - sensors.geodesic;
+  measure(world, model);
+  StartFinder(model).find();
+  if (model.starts.empty()) {
+    return fail(ErrorCode::kInvalidInput, "episodes " + std::string(world.episodes().name()),
+                "the robot penetrates the scene or an object at the start of all " +
+                    std::to_string(model.skipped.size()) +
+                    " episodes; check that scene, robot and episodes belong together");
+  }
+  if (auto made = makeSensors(*laser, model); !made) return tl::unexpected<Error>(made.error());
+  return model;
+}
+
+}  // namespace galactic::simulation

@@ -1,0 +1,93 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "galactic/batch_simulator.h"
+#include "galactic/error.h"
+#include "galactic/simulation_options.h"
+#include "galactic/world.h"
+#include "sensors/geodesic.h"
+#include "sensors/laser.h"
+#include "simulation/motion/motion_kernels.h"
+#include "simulation/motion/motion_model.h"
+
+namespace galactic::simulation {
+
+/// world_from_grip and the base's heading, as the motion kernels write them: see BodyArrays.
+using GripFrame = std::array<float, kGripStride>;
+
+/// How an env stands when an episode begins.
+struct EpisodeStart {
+  /// Index into the episode set.
+  std::uint32_t episode = 0;
+  /// Base in the world frame; y is the floor's height.
+  Vec3 base;
+  float yaw = 0;
+  GripFrame grip{};
+};
+
+/// What never changes in a run: computed once, shared by all threads.
+struct Model {
+  const World* world = nullptr;
+  SimulationOptions options;
+  MotionModel motion;
+  MotionKernels kernels;
+  MotionTables tables;
+  /// Episodes that can be started, ascending; and those that cannot.
+  std::vector<EpisodeStart> starts;
+  /// Variables of each start. Shape: starts * variables.
+  std::vector<float> start_variables;
+  /// Shape: starts * bodyCount().
+  std::vector<RigidTransform> start_bodies;
+  std::vector<std::uint32_t> skipped;
+  std::size_t most_objects = 0;
+  /// Spheres of the largest object, padded to lanes.
+  std::size_t most_held_spheres = 0;
+  std::vector<ObservationPart> observation;
+  std::size_t observation_size = 0;
+  /// First element of `observation` that a sensor writes.
+  std::size_t sensors_first = 0;
+  sensors::Laser laser;
+  /// By start; off unless it is observed or rewarded.
+  sensors::Geodesic geodesic;
+
+  [[nodiscard]] std::size_t actionCount() const { return motion.controlled.size() + 4; }
+  [[nodiscard]] std::size_t variableCount() const { return motion.variables.size(); }
+  /// Spheres of the robot, padded to lanes.
+  [[nodiscard]] std::size_t sphereCount() const { return motion.spheres.size(); }
+  /// Root and nodes, or none where the run does not want their poses.
+  [[nodiscard]] std::size_t bodyCount() const {
+    return options.body_transforms ? motion.nodes.size() + 1 : 0;
+  }
+  /// The number that an env's random numbers and episodes depend on.
+  [[nodiscard]] std::uint32_t globalEnv(std::size_t env) const {
+    return options.rank * options.envs + static_cast<std::uint32_t>(env);
+  }
+  /// 64-bit words of one bit for each sphere of a held object.
+  [[nodiscard]] std::size_t heldWords() const { return (most_held_spheres + 63) / 64; }
+  /// The same for the robot.
+  [[nodiscard]] std::size_t bodyWords() const { return (sphereCount() + 63) / 64; }
+  [[nodiscard]] const Episode& episodeOf(std::uint32_t start) const {
+    return world->episodes().episodes()[starts[start].episode];
+  }
+  /// The objects of an episode that are there, and which of them is the target.
+  [[nodiscard]] std::span<const Placement> placements(const Episode& episode) const {
+    const std::span<const Placement> all = world->episodes().placements(episode);
+    return options.task.distractors ? all : all.subspan(episode.target, 1);
+  }
+  [[nodiscard]] std::uint32_t targetOf(const Episode& episode) const {
+    return options.task.distractors ? episode.target : 0;
+  }
+  /// The object of that number in the episode of that start.
+  [[nodiscard]] const ObjectModel& object(std::uint32_t start, std::uint32_t number) const {
+    return world->objectOf(placements(episodeOf(start))[number]);
+  }
+};
+
+/// See BatchSimulator::create for how it fails. Tries every episode once.
+[[nodiscard]] Result<Model> makeModel(const World& world, const SimulationOptions& options);
+
+}  // namespace galactic::simulation

@@ -1,0 +1,423 @@
+#include "simulation/state/saved_state.h"
+
+#define XXH_INLINE_ALL
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "galactic/option_text.h"
+#include "simulation/collision/resting_box.h"
+#include "simulation/phases/episode_start.h"
+
+namespace galactic::simulation {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr std::array<char, 8> kMagic{'G', 'A', 'L', 'S', 'T', 'A', 'T', 'E'};
+constexpr std::uint32_t kVersion = 2;
+/// Far beyond any world, metres, and any joint; keeps arithmetic on what comes from outside finite.
+constexpr float kLargest = 1e6F;
+constexpr const char* kWhere = "saved state";
+
+struct Header {
+  std::array<char, 8> magic = kMagic;
+  std::uint32_t version = kVersion;
+  std::uint32_t envs = 0;
+  std::uint32_t option_bytes = 0;
+  /// 0 without the poses of the robot's bodies.
+  std::uint32_t bodies = 0;
+  std::uint64_t seed = 0;
+  std::uint64_t steps = 0;
+  std::uint64_t world = 0;
+  std::uint64_t reserved = 0;
+  /// XXH3 of the header with this field 0 and of all that follows.
+  std::uint64_t hash = 0;
+};
+static_assert(sizeof(Header) == 64);
+
+/// The numbers of an env in one piece.
+struct EnvRecord {
+  std::uint64_t ordinal = 0;
+  std::uint64_t nan_actions = 0;
+  std::uint64_t idle_steps = 0;
+  double reward_sum = 0;
+  /// Index into the world's episodes.
+  std::uint32_t episode = 0;
+  std::uint32_t step = 0;
+  std::int32_t held = -1;
+  std::int32_t leaves = -1;
+  std::array<std::uint32_t, 8> counts{};
+  Pose grip_from_held;
+  Pose before;
+  Vec3 base;
+  float yaw = 0;
+  GripFrame grip{};
+  float reward = 0;
+  std::uint32_t ending = 0;
+  std::uint16_t has_picked = 0;
+  std::uint16_t was_refused = 0;
+  std::uint32_t is_idle = 0;
+};
+static_assert(std::is_trivially_copyable_v<EnvRecord> &&
+              sizeof(EnvRecord) == 32 + 16 + 32 + 56 + 16 + sizeof(GripFrame) + 16);
+
+/// What tells a world from all others: kinds, sizes and hashes of its packs, in any order.
+std::uint64_t worldHash(const World& world) {
+  std::vector<std::array<std::uint64_t, 3>> stamps;
+  stamps.reserve(world.packs().size());
+  for (const PackFile& pack : world.packs()) {
+    const PackHeader& header = pack.header();
+    stamps.push_back(
+        {static_cast<std::uint64_t>(header.kind), header.payload_bytes, header.payload_xxh64});
+  }
+  std::ranges::sort(stamps);
+  return XXH3_64bits(stamps.data(), stamps.size() * sizeof(stamps.front()));
+}
+
+/// The options that two simulators must share for a state of one to mean something in the other.
+std::vector<OptionText> sharedOptions(const SimulationOptions& options) {
+  std::vector<OptionText> shared = listOptions(options);
+  std::erase_if(shared, [](const OptionText& option) {
+    return option.name == "envs" || option.name == "seed" || option.name == "rank" ||
+           option.name == "ranks";
+  });
+  return shared;
+}
+
+std::string linesOf(const std::vector<OptionText>& options) {
+  std::string lines;
+  for (const OptionText& option : options) lines += option.name + "=" + option.value + "\n";
+  return lines;
+}
+
+/// Of a whole state, as it belongs into the header.
+std::uint64_t hashOf(Header header, std::span<const std::byte> rest) {
+  header.hash = 0;
+  XXH3_state_t state;
+  XXH3_64bits_reset(&state);
+  XXH3_64bits_update(&state, &header, sizeof(header));
+  XXH3_64bits_update(&state, rest.data(), rest.size());
+  return XXH3_64bits_digest(&state);
+}
+
+/// Appends values to bytes.
+class Writer {
+ public:
+  explicit Writer(std::vector<std::byte>& bytes) : bytes_(bytes) {}
+
+  template <class T>
+  void add(const T& value) {
+    add(std::span(&value, 1));
+  }
+  template <class T, std::size_t N>
+  void add(std::span<T, N> values) {
+    if (values.empty()) return;
+    const std::size_t end = bytes_.size();
+    bytes_.resize(end + values.size_bytes());
+    std::memcpy(bytes_.data() + end, values.data(), values.size_bytes());
+  }
+
+ private:
+  std::vector<std::byte>& bytes_;
+};
+
+/// Takes values from bytes; what is not there any more is zeros, and the reader exhausted.
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  template <class T>
+  void take(T& value) {
+    take(std::span(&value, 1));
+  }
+  template <class T>
+  void take(std::span<T> values) {
+    if (values.size_bytes() > bytes_.size()) {
+      is_exhausted_ = true;
+      bytes_ = {};
+    } else if (!values.empty()) {
+      std::memcpy(values.data(), bytes_.data(), values.size_bytes());
+      bytes_ = bytes_.subspan(values.size_bytes());
+    }
+  }
+  /// `count` values, as far as there can be so many.
+  template <class T>
+  [[nodiscard]] std::vector<T> takeMany(std::size_t count) {
+    std::vector<T> values(count * sizeof(T) <= bytes_.size() ? count : 0);
+    if (values.size() != count) is_exhausted_ = true;
+    take(std::span<T>(values));
+    return values;
+  }
+
+  [[nodiscard]] bool isExhausted() const { return is_exhausted_; }
+  [[nodiscard]] std::size_t left() const { return bytes_.size(); }
+
+ private:
+  std::span<const std::byte> bytes_;
+  bool is_exhausted_ = false;
+};
+
+void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer& out) {
+  const Env& env = state.env(n);
+  const EnvCounters& counters = env.counters;
+  out.add(EnvRecord{
+      .ordinal = env.ordinal,
+      .nan_actions = counters.nan_actions,
+      .idle_steps = counters.idle_steps,
+      .reward_sum = counters.reward,
+      .episode = model.starts[env.start].episode,
+      .step = env.step,
+      .held = env.held.object,
+      .leaves = env.leaves,
+      .counts = {counters.refused, counters.slid, counters.grasps, counters.drops,
+                 counters.restored, counters.episodes, counters.successes, counters.failures},
+      .grip_from_held = env.held.grip_from_object,
+      .before = env.held.before,
+      .base = state.base(n),
+      .yaw = state.yaw(n),
+      .grip = state.grip(n),
+      .reward = state.rewards()[n],
+      .ending = static_cast<std::uint32_t>(state.endings()[n]),
+      .has_picked = static_cast<std::uint16_t>(env.has_picked ? 1 : 0),
+      .was_refused = static_cast<std::uint16_t>(env.refused ? 1 : 0),
+      .is_idle = state.idle()[n]});
+  for (std::size_t v = 0; v < model.variableCount(); ++v) out.add(state.variable(v, n));
+  out.add(state.lastActions(n));
+  out.add(state.ignored(n));
+  out.add(state.leaving(n));
+  out.add(state.objects(n).first(env.objects));
+  out.add(state.bodyTransforms(n));
+  if (state.endings()[n] != EpisodeEnd::kNone) out.add(state.finalObservation(n));
+}
+
+bool isPlain(float value) { return std::abs(value) <= kLargest; }
+bool arePlain(std::span<const float> values) { return std::ranges::all_of(values, isPlain); }
+bool isPlain(const Vec3& v) { return isPlain(v.x) && isPlain(v.y) && isPlain(v.z); }
+bool isPlain(const Pose& pose) {
+  const Quat& q = pose.rotation;
+  const float length = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+  return isPlain(pose.translation) && std::abs(length - 1) < 0.01F;
+}
+bool isPlain(const RigidTransform& transform) {
+  return arePlain(
+      std::bit_cast<std::array<float, sizeof(RigidTransform) / sizeof(float)>>(transform));
+}
+
+/// What is wrong with an env's record in a world that it may not be of; empty when nothing is.
+std::string faultOf(const Model& model, const EnvRecord& record) {
+  const auto start =
+      std::ranges::lower_bound(model.starts, record.episode, {}, &EpisodeStart::episode);
+  if (start == model.starts.end() || start->episode != record.episode) {
+    return fmt::format("is in episode {}, which cannot be started", record.episode);
+  }
+  const Episode& episode = model.world->episodes().episodes()[record.episode];
+  const auto objects = static_cast<std::int32_t>(model.placements(episode).size());
+  if (record.held < -1 || record.held >= objects) {
+    return fmt::format("holds object {} of {}", record.held, objects);
+  }
+  if (record.leaves < -1 || record.leaves >= objects ||
+      (record.leaves >= 0 && record.leaves == record.held)) {
+    return fmt::format("leaves object {} of {}", record.leaves, objects);
+  }
+  if (record.ending >= kEpisodeEnds) return fmt::format("ended in way {}", record.ending);
+  if (record.has_picked > 1 || record.was_refused > 1 || record.is_idle > 1 || record.ordinal == 0)
+    return "has a wrong flag or count";
+  const bool is_held_plain =
+      record.held < 0 || (isPlain(record.grip_from_held) && isPlain(record.before));
+  if (!isPlain(record.base) || !isPlain(record.yaw) || !arePlain(record.grip) ||
+      !isPlain(record.reward) || !std::isfinite(record.reward_sum) || !is_held_plain) {
+    return "has a number that no simulation leaves";
+  }
+  return {};
+}
+
+SavedEnv envOf(const Model& model, const EnvRecord& record) {
+  const auto start =
+      std::ranges::lower_bound(model.starts, record.episode, {}, &EpisodeStart::episode);
+  const auto& [refused, slid, grasps, drops, restored, episodes, successes, failures] =
+      record.counts;
+  SavedEnv saved;
+  saved.env.start = static_cast<std::uint32_t>(start - model.starts.begin());
+  saved.env.step = record.step;
+  saved.env.ordinal = record.ordinal;
+  saved.env.held = {record.held, record.grip_from_held, record.before};
+  saved.env.has_picked = record.has_picked != 0;
+  saved.env.refused = record.was_refused != 0;
+  saved.env.leaves = record.leaves;
+  saved.is_idle = record.is_idle != 0;
+  saved.env.counters = {.refused = refused,
+                        .slid = slid,
+                        .grasps = grasps,
+                        .drops = drops,
+                        .restored = restored,
+                        .episodes = episodes,
+                        .successes = successes,
+                        .failures = failures,
+                        .nan_actions = record.nan_actions,
+                        .idle_steps = record.idle_steps,
+                        .reward = record.reward_sum};
+  saved.base = record.base;
+  saved.yaw = record.yaw;
+  saved.grip = record.grip;
+  saved.reward = record.reward;
+  saved.ending = static_cast<EpisodeEnd>(record.ending);
+  return saved;
+}
+
+tl::unexpected<Error> refused(std::string message) {
+  return fail(ErrorCode::kInvalidInput, kWhere, std::move(message));
+}
+
+/// Env number `n` of the state.
+Result<SavedEnv> readEnv(const Model& model, std::size_t bodies, std::size_t n, Reader& in) {
+  EnvRecord record;
+  in.take(record);
+  if (in.isExhausted()) return refused("ends before its last env; it is damaged");
+  const std::string fault = faultOf(model, record);
+  if (!fault.empty()) return refused(fmt::format("env {} {}; it is damaged", n, fault));
+  SavedEnv saved = envOf(model, record);
+  saved.variables = in.takeMany<float>(model.variableCount());
+  saved.last_actions = in.takeMany<float>(model.motion.controlled.size());
+  saved.ignored = in.takeMany<std::uint64_t>(model.heldWords());
+  saved.leaving = in.takeMany<std::uint64_t>(model.bodyWords());
+  saved.objects = in.takeMany<Pose>(model.placements(model.episodeOf(saved.env.start)).size());
+  saved.bodies = in.takeMany<RigidTransform>(bodies);
+  if (saved.ending != EpisodeEnd::kNone) {
+    saved.final_observation = in.takeMany<float>(model.observation_size);
+  }
+  if (in.isExhausted()) return refused("ends before its last env; it is damaged");
+  const auto plain = [](const auto& one) { return isPlain(one); };
+  if (!arePlain(saved.variables) || !arePlain(saved.last_actions) ||
+      !std::ranges::all_of(saved.objects, plain) || !std::ranges::all_of(saved.bodies, plain)) {
+    return refused(fmt::format("env {} has a number that no simulation leaves; it is damaged", n));
+  }
+  return saved;
+}
+
+/// Of the header and the options, apart from the envs.
+Result<void> checkSubject(const Model& model, const Header& header, std::string_view lines) {
+  if (header.world != worldHash(*model.world)) {
+    return refused("is of another world; restore it where it was saved");
+  }
+  const std::vector<OptionText> options = sharedOptions(model.options);
+  for (const OptionText& option : options) {
+    const std::string line = option.name + "=" + option.value + "\n";
+    if (lines.starts_with(line)) {
+      lines.remove_prefix(line.size());
+      continue;
+    }
+    const std::string_view found = lines.substr(0, lines.find('\n'));
+    return refused(fmt::format("was saved with other options: wanted {}={}, found {}", option.name,
+                               option.value, found.empty() ? "nothing" : found));
+  }
+  if (!lines.empty()) return refused("was saved with options that this version does not know");
+  if (header.bodies != 0 || model.bodyCount() == 0) return {};
+  return refused("was saved without body_transforms, which this simulator has");
+}
+
+}  // namespace
+
+std::vector<std::byte> saveEnvs(const Model& model, const BatchState& state,
+                                std::span<const std::uint32_t> envs, std::uint64_t steps) {
+  const std::string lines = linesOf(sharedOptions(model.options));
+  Header header{.envs = static_cast<std::uint32_t>(envs.size()),
+                .option_bytes = static_cast<std::uint32_t>(lines.size()),
+                .bodies = static_cast<std::uint32_t>(model.bodyCount()),
+                .seed = model.options.seed,
+                .steps = steps,
+                .world = worldHash(*model.world)};
+  std::vector<std::byte> bytes;
+  Writer out(bytes);
+  out.add(header);
+  out.add(std::span(lines));
+  for (const std::uint32_t env : envs) writeEnv(model, state, env, out);
+  header.hash = hashOf(header, std::span(bytes).subspan(sizeof(header)));
+  std::memcpy(bytes.data(), &header, sizeof(header));
+  return bytes;
+}
+
+Result<SavedState> readState(const Model& model, std::span<const std::byte> bytes) {
+  Header header;
+  Reader in(bytes);
+  in.take(header);
+  if (in.isExhausted() || header.magic != kMagic) {
+    return refused("is none; give what saving a state returned");
+  }
+  if (header.version != kVersion) {
+    return fail(ErrorCode::kUnsupported, kWhere,
+                fmt::format("has format version {}, wanted {}; use the version that saved it",
+                            header.version, kVersion));
+  }
+  if (header.hash != hashOf(header, bytes.subspan(sizeof(header)))) {
+    return refused("does not have the hash that it states; it is damaged");
+  }
+  const std::vector<char> lines = in.takeMany<char>(header.option_bytes);
+  const auto checked = checkSubject(model, header, std::string_view(lines.data(), lines.size()));
+  if (!checked) return tl::unexpected<Error>(checked.error());
+  const std::size_t bodies = model.motion.nodes.size() + 1;
+  if (header.bodies != 0 && header.bodies != bodies) {
+    return refused(fmt::format("has {} bodies, wanted {}; it is damaged", header.bodies, bodies));
+  }
+  SavedState saved{.seed = header.seed, .steps = header.steps, .envs = {}};
+  for (std::uint32_t n = 0; n < header.envs; ++n) {
+    Result<SavedEnv> env = readEnv(model, header.bodies, n, in);
+    if (!env) return tl::unexpected<Error>(env.error());
+    saved.envs.push_back(std::move(*env));
+  }
+  if (in.left() != 0) return refused("goes on behind its last env; it is damaged");
+  return saved;
+}
+
+void restoreEnv(const Model& model, BatchState& state, std::size_t n, const SavedEnv& saved) {
+  // Brings what the episode says; all that has changed since follows.
+  beginEpisode(model, state, n, saved.env.start);
+  Env& env = state.env(n);
+  env.step = saved.env.step;
+  env.ordinal = saved.env.ordinal;
+  env.held = saved.env.held;
+  env.has_picked = saved.env.has_picked;
+  env.refused = saved.env.refused;
+  env.leaves = saved.env.leaves;
+  env.counters = saved.env.counters;
+  const PoseArrays to = state.poses(n);
+  *to.x = saved.base.x;
+  *to.y = saved.base.y;
+  *to.z = saved.base.z;
+  *to.yaw = saved.yaw;
+  for (std::size_t v = 0; v < saved.variables.size(); ++v) {
+    to.variables[v * to.stride] = saved.variables[v];
+  }
+  state.grip(n) = saved.grip;
+  std::ranges::copy(saved.last_actions, state.lastActions(n).begin());
+  std::ranges::copy(saved.ignored, state.ignored(n).begin());
+  std::ranges::copy(saved.leaving, state.leaving(n).begin());
+  if (!state.bodyTransforms(n).empty()) {
+    std::ranges::copy(saved.bodies, state.bodyTransforms(n).begin());
+  }
+  RestingObjects& resting = state.resting(n);
+  resting.clear();
+  for (std::uint32_t object = 0; object < env.objects; ++object) {
+    const Pose& pose = saved.objects[object];
+    state.objects(n)[object] = pose;
+    if (static_cast<std::int32_t>(object) == env.held.object) continue;
+    resting.insert(object, restingBox(model.object(env.start, object).box, pose));
+  }
+  state.idle()[n] = saved.is_idle ? 1 : 0;
+  state.rewards()[n] = saved.reward;
+  state.endings()[n] = saved.ending;
+  state.dones()[n] = saved.ending == EpisodeEnd::kNone ? 0 : 1;
+  state.successes()[n] = saved.ending == EpisodeEnd::kSuccess ? 1 : 0;
+  std::ranges::copy(saved.final_observation, state.finalObservation(n).begin());
+  takeStock(model, state, n);
+}
+
+}  // namespace galactic::simulation
