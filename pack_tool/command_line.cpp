@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 
+#include "galactic/exit_codes.h"
 #include "galactic/nearest_name.h"
 #include "galactic/number_text.h"
 #include "pack_tool/pictures/figure_picture.h"
@@ -19,11 +20,6 @@
 namespace galactic::pack_tool {
 
 namespace {
-
-constexpr const char* kFooter =
-    "Exit codes:\n"
-    "  0 ok  1 command line  2 input or output  3 invalid input  4 internal\n"
-    "  5 unsupported  7 the packs differ";
 
 /// More than any length in a pack.
 constexpr double kMostMetres = 1000;
@@ -375,7 +371,7 @@ tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
                "galactic-pack");
   AllOptions options;
   // Verbs inherit the footer that is set before them.
-  app.footer(kFooter);
+  app.footer(kExitCodesHelp);
   app.set_version_flag("--version", "galactic-pack " GALACTIC_VERSION);
   app.require_subcommand(1);
   addInfo(app, options.info);

@@ -15,6 +15,7 @@
 
 #include "config_file.h"
 #include "galactic/bake/robot_recipe.h"
+#include "galactic/exit_codes.h"
 #include "galactic/nearest_name.h"
 #include "galactic/number_text.h"
 #include "galactic/printable.h"
@@ -28,8 +29,6 @@ constexpr std::string_view kDatasetSuffix = ".scene_dataset_config.json";
 constexpr std::string_view kRecipeSuffix = ".toml";
 
 constexpr const char* kFooter =
-    "Exit codes: 0 ok, 1 command line, 2 I/O, 3 invalid input, 4 internal, 5 unsupported, 7 "
-    "differs,\n130 interrupted.\n"
     "Examples:\n"
     "  galactic-bake scene.glb --radii 0.015,0.05,0.12\n"
     "  galactic-bake objects/ --as object -o objects.pack\n"
@@ -174,7 +173,7 @@ Result<void> understandRadii(const std::vector<std::string>& texts, BakeCommand&
 class CommandLine {
  public:
   explicit CommandLine(BakeCommand& command) : command_(command) {
-    app_.footer(kFooter);
+    app_.footer(std::string(kFooter) + "\n\n" + kExitCodesHelp);
     app_.get_formatter()->column_width(34);
     addRunOptions(app_, command);
     addGroup(kRadiiGroup, [&] { addRadii(); });

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "galactic/error.h"
+#include "galactic/exit_codes.h"
 #include "galactic/nearest_name.h"
 #include "galactic/number_text.h"
 #include "galactic/option_table.h"
@@ -24,8 +25,6 @@ namespace galactic {
 namespace {
 
 constexpr const char* kFooter =
-    "Exit codes: 0 ok, 1 command line, 2 input or output, 3 invalid input, 4 internal error,\n"
-    "5 unsupported, 7 a replay differs.\n"
     "Any option of the groups below \"Options\" starts a simulation; without one, packs are\n"
     "described.\n"
     "Examples:\n"
@@ -227,7 +226,7 @@ std::string RunOptions::policyFile() const {
 
 std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOptions& options) {
   CLI::App app{"Opens packs and says what is inside, or steps a world of them.", "galactic-run"};
-  app.footer(kFooter);
+  app.footer(std::string(kFooter) + "\n\n" + kExitCodesHelp);
   constexpr std::size_t kHelpColumn = 34;
   app.get_formatter()->column_width(kHelpColumn);
   addPlainOptions(app, options);

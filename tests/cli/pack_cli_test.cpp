@@ -54,15 +54,15 @@ TEST_F(PackCli, ListsItsVerbsAndExitCodesInHelp) {
   const ProgramRun help = run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_EQ(help.err, "");
-  for (const char* part : {"info", "check", "column", "diff", "export", "picture", "0 ok",
+  for (const char* part : {"info", "check", "column", "diff", "export", "picture", "0    success",
                            "1 command line", "2 input or output", "3 invalid input", "4 internal",
-                           "5 unsupported", "7 the packs differ"}) {
+                           "5    not supported", "7    packs or runs differ"}) {
     EXPECT_THAT(help.out, HasSubstr(part));
   }
   const ProgramRun verb = run({"diff", "--help"});
   EXPECT_EQ(verb.exit_code, 0);
   EXPECT_THAT(verb.out, HasSubstr("--tolerance"));
-  EXPECT_THAT(verb.out, HasSubstr("7 the packs differ"));
+  EXPECT_THAT(verb.out, HasSubstr("7    packs or runs differ"));
 }
 
 TEST_F(PackCli, PrintsItsVersion) {

@@ -1,0 +1,11 @@
+#include <cstdio>
+
+#include "galactic/pack.h"
+#include "galactic/scene.h"
+
+int main(int, char** argv) {
+  const auto pack = galactic::PackFile::open(argv[1]);
+  const auto scene = pack ? galactic::Scene::from(*pack) : tl::unexpected(pack.error());
+  if (!scene) return std::fprintf(stderr, "%s\n", scene.error().message.c_str()), 3;
+  std::printf("%zu grids\n", scene->grids().size());
+}
