@@ -55,8 +55,8 @@ TEST_F(PackCli, ListsItsVerbsAndExitCodesInHelp) {
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_EQ(help.err, "");
   for (const char* part : {"info", "check", "column", "diff", "export", "picture", "0    success",
-                           "1 command line", "2 input or output", "3 invalid input", "4 internal",
-                           "5    not supported", "7    packs or runs differ"}) {
+                           "1    wrong command line", "2    a file", "3    invalid input",
+                           "4    internal", "5    not supported", "7    packs or runs differ"}) {
     EXPECT_THAT(help.out, HasSubstr(part));
   }
   const ProgramRun verb = run({"diff", "--help"});
