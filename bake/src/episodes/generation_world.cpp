@@ -68,7 +68,6 @@ std::vector<Vec3> drawnPoints(const RenderMeshes& meshes, std::uint32_t model_nu
   std::vector<Vec3> points;
   for (std::uint32_t c = 0; c < model.cluster_count; ++c) {
     const RenderCluster& cluster = meshes.clusters[model.first_cluster + c];
-    points.reserve(points.size() + cluster.vertex_count);
     for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
       const std::size_t vertex = cluster.first_vertex + std::size_t{v};
       const auto coordinate = [&](std::int32_t origin, VertexRow row) {

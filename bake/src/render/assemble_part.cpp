@@ -45,7 +45,6 @@ Result<void> appendPlaced(const PlacedMesh& placed, const RenderSource& source, 
   const auto first = static_cast<std::uint32_t>(to.vertices.size());
   const std::vector<bool> used = usedVertices(mesh);
   const bool textured = source.baked.materials[placed.material].texture >= 0 && !mesh.uvs.empty();
-  to.vertices.reserve(to.vertices.size() + mesh.positions.size());
   for (std::size_t n = 0; n < mesh.positions.size(); ++n) {
     RenderVertex& vertex = to.vertices.emplace_back();
     vertex.surface = {static_cast<std::uint16_t>(placed.material),
@@ -63,7 +62,6 @@ Result<void> appendPlaced(const PlacedMesh& placed, const RenderSource& source, 
     if (!mesh.colors.empty()) vertex.color = surfaceColor(mesh.colors[n]);
   }
   const bool mirrors = determinant(placed.part_from_mesh) < 0;
-  to.triangles.reserve(to.triangles.size() + mesh.triangles.size());
   for (const Triangle& triangle : mesh.triangles) {
     Triangle moved{first + triangle[0], first + triangle[1], first + triangle[2]};
     if (mirrors) std::swap(moved[1], moved[2]);
@@ -96,6 +94,21 @@ void dropRepeated(std::vector<Triangle>& triangles) {
     if (!repeated[n]) triangles[kept++] = triangles[n];
   }
   triangles.resize(kept);
+}
+
+/// Room for all meshes of a part at once: a vector that makes room for one after the other moves
+/// what it has each time, and a part may have 200,000.
+PartMesh emptyMesh(const RenderPart& part) {
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  for (const PlacedMesh& placed : part.meshes) {
+    vertices += placed.mesh->positions.size();
+    triangles += placed.mesh->triangles.size();
+  }
+  PartMesh mesh;
+  mesh.vertices.reserve(vertices);
+  mesh.triangles.reserve(triangles);
+  return mesh;
 }
 
 bool coincide(const Vec3& a, const Vec3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
@@ -141,7 +154,7 @@ class Sets {
 }  // namespace
 
 Result<PartMesh> assemblePart(const RenderPart& part, const RenderSource& source) {
-  PartMesh mesh;
+  PartMesh mesh = emptyMesh(part);
   for (const PlacedMesh& placed : part.meshes) {
     if (placed.material >= source.materials.size() || placed.semantic >= source.semantics.size()) {
       return fail(ErrorCode::kInvalidInput, fmt::format("mesh '{}'", placed.mesh->name),

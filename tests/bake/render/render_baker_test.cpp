@@ -361,5 +361,18 @@ TEST(RenderBaker, MergesPacksWithTheirTexturesStoredOnce) {
   }
 }
 
+// Room made for one mesh after the other moves a terabyte.
+TEST(RenderBaker, TakesManyThousandPlacesOfOneMesh) {
+  constexpr std::size_t kPlaces = 200'000;
+  SourceBuilder builder;
+  const std::uint32_t material = builder.material(false);
+  builder.place(soup(1, 1), material);
+  bake::RenderSource& source = builder.source();
+  source.parts.front().meshes.resize(kPlaces, source.parts.front().meshes.front());
+  const bake::BakedRenderMeshes meshes = bakedMeshes(builder);
+  EXPECT_EQ(meshes.statistics().source_triangles, kPlaces);
+  EXPECT_EQ(meshes.statistics().triangles, 1U);
+}
+
 }  // namespace
 }  // namespace galactic::test::render_baker_test
