@@ -1,15 +1,38 @@
 #include "column_grid/column_strip.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
-
-#include "column_grid/blocked_intervals.h"
 
 namespace galactic::bake {
 namespace {
 
 constexpr float kEmptyLo = std::numeric_limits<float>::max();
 constexpr float kEmptyHi = std::numeric_limits<float>::lowest();
+/// What head_ has of a column without a list, and of one whose intervals are in tall_.
+constexpr std::int32_t kNone = -1;
+constexpr std::int32_t kTall = -2;
+/// Longest list that is walked through: rooms have shorter ones, and 200,000 things above one
+/// another would take a time that grows with the square of their number.
+constexpr unsigned kMostWalked = 32;
+
+/// Takes those that overlap `added` out of disjoint intervals; returns all of them as one.
+BlockedInterval takeJoined(std::map<float, float>& intervals, BlockedInterval added) {
+  auto first = intervals.lower_bound(added.lo);
+  while (first != intervals.begin() && std::prev(first)->second >= added.lo) --first;
+  auto end = first;
+  for (; end != intervals.end() && end->first <= added.hi; ++end) {
+    added.lo = std::min(added.lo, end->first);
+    added.hi = std::max(added.hi, end->second);
+  }
+  intervals.erase(first, end);
+  return added;
+}
+
+void put(std::map<float, float>& intervals, BlockedInterval added) {
+  const BlockedInterval joined = takeJoined(intervals, added);
+  intervals.emplace(joined.lo, joined.hi);
+}
 
 }  // namespace
 
@@ -20,11 +43,16 @@ ColumnStrip::ColumnStrip(const GridFrame& frame, std::uint32_t first_row, std::u
       stride_(frame.columns_x + kPadding),
       lo_(stride_ * (end_row - first_row), kEmptyLo),
       hi_(stride_ * (end_row - first_row), kEmptyHi),
-      head_(stride_ * (end_row - first_row), -1) {}
+      head_(stride_ * (end_row - first_row), kNone) {}
 
 void ColumnStrip::spill(std::uint32_t row, std::uint32_t column, float lo, float hi) {
   const std::size_t at = rowStart(row) + column;
-  for (std::int32_t index = head_[at]; index >= 0;) {
+  if (head_[at] == kTall) {
+    spillTall(at, {lo, hi});
+    return;
+  }
+  unsigned walked = 0;
+  for (std::int32_t index = head_[at]; index >= 0; ++walked) {
     Node& node = nodes_[static_cast<std::size_t>(index)];
     if (lo <= node.hi && hi >= node.lo) {
       const float merged_lo = std::min(lo, node.lo);
@@ -37,10 +65,33 @@ void ColumnStrip::spill(std::uint32_t row, std::uint32_t column, float lo, float
     }
     index = node.next;
   }
+  if (walked >= kMostWalked) {
+    makeTall(at);
+    spillTall(at, {lo, hi});
+    return;
+  }
   nodes_.push_back({lo_[at], hi_[at], head_[at]});
   head_[at] = static_cast<std::int32_t>(nodes_.size() - 1);
   lo_[at] = lo;
   hi_[at] = hi;
+}
+
+void ColumnStrip::makeTall(std::size_t at) {
+  std::map<float, float>& intervals = tall_[at];
+  for (std::int32_t index = head_[at]; index >= 0;) {
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    put(intervals, {node.lo, node.hi});
+    index = node.next;
+  }
+  head_[at] = kTall;
+}
+
+void ColumnStrip::spillTall(std::size_t at, BlockedInterval added) {
+  std::map<float, float>& intervals = tall_[at];
+  put(intervals, {lo_[at], hi_[at]});
+  const BlockedInterval joined = takeJoined(intervals, added);
+  lo_[at] = joined.lo;
+  hi_[at] = joined.hi;
 }
 
 void ColumnStrip::add(std::uint32_t row, std::uint32_t column, float lo, float hi) {
@@ -67,6 +118,9 @@ std::uint64_t ColumnStrip::appendFree(std::vector<std::uint32_t>& counts,
         const Node& node = nodes_[static_cast<std::size_t>(index)];
         blocked.push_back({node.lo, node.hi});
         index = node.next;
+      }
+      if (head_[at] == kTall) {
+        for (const auto& [lo, hi] : tall_.at(at)) blocked.push_back({lo, hi});
       }
       const std::size_t before = spans.size();
       merged_gaps += appendFreeSpans(blocked, frame_.heights, spans);

@@ -1,16 +1,19 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <unordered_map>
 #include <vector>
 
+#include "column_grid/blocked_intervals.h"
 #include "galactic/bake/columns.h"
 
 namespace galactic::bake {
 
 /// The blocked heights of a strip of rows while triangles are scattered into it. Each column has
 /// one current interval, kept in plain arrays so that many columns are extended at once; an
-/// interval disjoint from it goes to a short list. Memory is proportional to the columns, not to
-/// the triangles.
+/// interval disjoint from it goes to a short list, which becomes an ordered map where it gets long.
+/// Memory is proportional to the columns and their gaps, not to the triangles.
 class ColumnStrip {
  public:
   /// Widest vector that may be loaded at any column of a row.
@@ -56,15 +59,22 @@ class ColumnStrip {
     return std::size_t{row - first_row_} * stride_;
   }
 
+  /// Moves the list of the column at `at` to tall_.
+  void makeTall(std::size_t at);
+  /// spill() in such a column.
+  void spillTall(std::size_t at, BlockedInterval added);
+
   GridFrame frame_;
   std::uint32_t first_row_;
   std::uint32_t end_row_;
   std::size_t stride_;
   std::vector<float> lo_;
   std::vector<float> hi_;
-  /// Index of each column's first node, -1 for none.
+  /// Index of each column's first node, or that it has none, or that it is in tall_.
   std::vector<std::int32_t> head_;
   std::vector<Node> nodes_;
+  /// Of columns with many intervals: the higher end of each by its lower one, disjoint.
+  std::unordered_map<std::size_t, std::map<float, float>> tall_;
 };
 
 }  // namespace galactic::bake
