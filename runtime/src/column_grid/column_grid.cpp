@@ -117,16 +117,6 @@ inline Contact contactAt(const ColumnGridLayout& grid, Vec3 centre) {
 
 namespace detail {
 
-// A height's code is off by less than 2^-21 of the height above the grid's lowest one: four
-// roundings of a product and a difference. It is computed twice, once to get the distance and once
-// when the place is asked about; the distance and the place itself are rounded, too.
-float contactMargin(const ColumnGridLayout& grid) noexcept {
-  constexpr float kOfHeight = 0x1p-19F;
-  constexpr float kOfCoordinate = 0x1p-22F;
-  const float farthest = std::max(std::fabs(grid.heights.lo), std::fabs(grid.heights.hi));
-  return kOfHeight * (grid.heights.hi - grid.heights.lo) + kOfCoordinate * farthest;
-}
-
 Span overflowSpan(const ColumnGridLayout& grid, std::uint32_t n) noexcept {
   if (grid.overflow_codes == nullptr) return grid.overflow_spans[n];
   const std::uint32_t codes = grid.overflow_codes[n];
@@ -146,6 +136,13 @@ Contact contactInOverflow(const ColumnGridLayout& grid, std::uint32_t start, flo
   return {Clearance::kFree, clearOf(y - span.lo, margin), clearOf(up, margin)};
 }
 
+bool isFreeInOverflow(const ColumnGridLayout& grid, std::uint32_t start, float y) noexcept {
+  std::uint32_t n = start;
+  Span span = overflowSpan(grid, n);
+  while (y > span.hi) span = overflowSpan(grid, ++n);
+  return !(y < span.lo);
+}
+
 void contactPortable(const ColumnGridLayout& grid, const ContactBatch& batch) noexcept {
   for (std::size_t n = 0; n < batch.count; ++n) {
     const Contact contact = contactAt(grid, {batch.x[n], batch.y[n], batch.z[n]});
@@ -162,6 +159,18 @@ std::size_t firstNotFreePortable(const ColumnGridLayout& grid, const CentreBatch
     if (contact.clearance != Clearance::kFree) return n;
   }
   return batch.count;
+}
+
+std::uint64_t notFreePortable(const ColumnGridLayout& grid,
+                              const EightsOfCentres& centres) noexcept {
+  constexpr unsigned kEight = 8;
+  std::uint64_t not_free = 0;
+  for (unsigned n = 0; n < kEight * kEight; ++n) {
+    if ((centres.eights >> n / kEight & 1U) == 0) continue;
+    const Contact contact = contactAt(grid, {centres.x[n], centres.y[n], centres.z[n]});
+    not_free |= std::uint64_t{contact.clearance != Clearance::kFree} << n;
+  }
+  return not_free;
 }
 
 bool hasAvx2() noexcept {

@@ -6,125 +6,10 @@
 #if defined(__x86_64__)
 #include <immintrin.h>
 
+#include "column_grid/column_query.inl"
+
 namespace galactic::detail {
 namespace {
-
-constexpr std::size_t kLanes = 8;
-constexpr int kAllTrue = -1;
-
-/// The grid's numbers, one copy per lane.
-struct Lanes {
-  __m256 min_x, min_z, inverse_spacing, columns_x, columns_z;
-  __m256 lowest, highest, quantum, inverse_quantum, margin;
-  __m256i tiles_x;
-};
-
-/// What eight centres found: masks of all-ones lanes, codes as floats.
-struct Found {
-  __m256 inside, not_a_number, overflow, free, code, lo, hi;
-  __m256i upper_half;
-};
-
-Lanes broadcast(const ColumnGridLayout& grid) {
-  return {_mm256_set1_ps(grid.min_x),
-          _mm256_set1_ps(grid.min_z),
-          _mm256_set1_ps(grid.inverse_spacing),
-          _mm256_set1_ps(static_cast<float>(grid.columns_x)),
-          _mm256_set1_ps(static_cast<float>(grid.columns_z)),
-          _mm256_set1_ps(grid.heights.lo),
-          _mm256_set1_ps(grid.heights.hi),
-          _mm256_set1_ps(grid.quantum),
-          _mm256_set1_ps(grid.inverse_quantum),
-          _mm256_set1_ps(contactMargin(grid)),
-          _mm256_set1_epi32(static_cast<int>(grid.tiles_x))};
-}
-
-__m256 clearOf(__m256 distance, __m256 margin) {
-  return _mm256_max_ps(_mm256_sub_ps(distance, margin), _mm256_setzero_ps());
-}
-
-__m256 within(__m256 value, __m256 lo, __m256 hi) {
-  return _mm256_and_ps(_mm256_cmp_ps(value, lo, _CMP_GE_OQ), _mm256_cmp_ps(value, hi, _CMP_LE_OQ));
-}
-
-__m256 withinHalfOpen(__m256 value, __m256 end) {
-  return _mm256_and_ps(_mm256_cmp_ps(value, _mm256_setzero_ps(), _CMP_GE_OQ),
-                       _mm256_cmp_ps(value, end, _CMP_LT_OQ));
-}
-
-__m256 lowCode(__m256i half) {
-  return _mm256_cvtepi32_ps(_mm256_and_si256(half, _mm256_set1_epi32(0xffff)));
-}
-
-__m256 highCode(__m256i half) { return _mm256_cvtepi32_ps(_mm256_srli_epi32(half, 16)); }
-
-/// The bases of eight tiles, in codes. A gather reads 32 bits: the pair that ends with the wanted
-/// base, or begins with it for tile 0, so that nothing outside the array is read. Needs two tiles.
-__m256 baseCodes(const std::uint16_t* tile_base, __m256i tile) {
-  const __m256i is_first = _mm256_cmpeq_epi32(tile, _mm256_setzero_si256());
-  const __m256i pair = _mm256_sub_epi32(tile, _mm256_andnot_si256(is_first, _mm256_set1_epi32(1)));
-  const __m256i bases = _mm256_i32gather_epi32(reinterpret_cast<const int*>(tile_base), pair, 2);
-  const __m256i shift = _mm256_andnot_si256(is_first, _mm256_set1_epi32(16));
-  const __m256i base = _mm256_and_si256(_mm256_srlv_epi32(bases, shift), _mm256_set1_epi32(0xffff));
-  return _mm256_cvtepi32_ps(_mm256_slli_epi32(base, 10));  // kCodesPerTileBase = 1 << 10
-}
-
-/// Eight cells, as their lower and their upper 32 bits in the order of the indices.
-struct CellHalves {
-  __m256i lower, upper;
-};
-
-CellHalves gatherCells(const std::uint64_t* cells, __m256i index) {
-  const auto* base = reinterpret_cast<const long long*>(cells);
-  const __m256 first = _mm256_castsi256_ps(
-      _mm256_i32gather_epi64(base, _mm256_castsi256_si128(index), sizeof(std::uint64_t)));
-  const __m256 second = _mm256_castsi256_ps(
-      _mm256_i32gather_epi64(base, _mm256_extracti128_si256(index, 1), sizeof(std::uint64_t)));
-  // shuffle_ps works within 128-bit halves: put the four pairs back in order.
-  constexpr int kInOrder = 0xd8;
-  const __m256 lower = _mm256_shuffle_ps(first, second, 0x88);
-  const __m256 upper = _mm256_shuffle_ps(first, second, 0xdd);
-  return {_mm256_permute4x64_epi64(_mm256_castps_si256(lower), kInOrder),
-          _mm256_permute4x64_epi64(_mm256_castps_si256(upper), kInOrder)};
-}
-
-inline Found find(const ColumnGridLayout& grid, const Lanes& lanes, __m256 x, __m256 y, __m256 z) {
-  const __m256 cell_x = _mm256_mul_ps(_mm256_sub_ps(x, lanes.min_x), lanes.inverse_spacing);
-  const __m256 cell_z = _mm256_mul_ps(_mm256_sub_ps(z, lanes.min_z), lanes.inverse_spacing);
-  Found found;
-  found.inside = _mm256_and_ps(_mm256_and_ps(withinHalfOpen(cell_x, lanes.columns_x),
-                                             withinHalfOpen(cell_z, lanes.columns_z)),
-                               within(y, lanes.lowest, lanes.highest));
-  found.not_a_number =
-      _mm256_or_ps(_mm256_cmp_ps(x, y, _CMP_UNORD_Q), _mm256_cmp_ps(z, z, _CMP_UNORD_Q));
-
-  // Lanes outside read cell 0; their answer is replaced.
-  const __m256i mask = _mm256_castps_si256(found.inside);
-  const __m256i i = _mm256_and_si256(_mm256_cvttps_epi32(cell_x), mask);
-  const __m256i k = _mm256_and_si256(_mm256_cvttps_epi32(cell_z), mask);
-  const __m256i tile = _mm256_add_epi32(_mm256_mullo_epi32(_mm256_srli_epi32(k, 1), lanes.tiles_x),
-                                        _mm256_srli_epi32(i, 2));
-  const __m256i in_tile =
-      _mm256_or_si256(_mm256_slli_epi32(_mm256_and_si256(k, _mm256_set1_epi32(1)), 2),
-                      _mm256_and_si256(i, _mm256_set1_epi32(3)));
-  const CellHalves cells =
-      gatherCells(grid.cells, _mm256_or_si256(_mm256_slli_epi32(tile, 3), in_tile));
-  found.upper_half = cells.upper;
-  found.overflow = _mm256_and_ps(found.inside, _mm256_castsi256_ps(_mm256_cmpeq_epi32(
-                                                   cells.lower, _mm256_set1_epi32(kAllTrue))));
-
-  found.code = _mm256_mul_ps(_mm256_sub_ps(y, lanes.lowest), lanes.inverse_quantum);
-  if (grid.tile_base != nullptr) {
-    found.code = _mm256_sub_ps(found.code, baseCodes(grid.tile_base, tile));
-  }
-  const __m256 lo1 = lowCode(cells.upper);
-  const __m256 hi1 = highCode(cells.upper);
-  const __m256 in_second = within(found.code, lo1, hi1);
-  found.lo = _mm256_blendv_ps(lowCode(cells.lower), lo1, in_second);
-  found.hi = _mm256_blendv_ps(highCode(cells.lower), hi1, in_second);
-  found.free = _mm256_and_ps(found.inside, within(found.code, found.lo, found.hi));
-  return found;
-}
 
 void storeClearance(const Found& found, Clearance* out) {
   const __m256i one = _mm256_set1_epi32(static_cast<int>(Clearance::kBlocked));
@@ -157,46 +42,25 @@ void answerOverflow(const ColumnGridLayout& grid, const ContactBatch& batch, std
   }
 }
 
-/// The lanes, as bits, whose cells keep their spans in the overflow block and are free.
-unsigned freeInOverflow(const ColumnGridLayout& grid, const CentreBatch& batch, std::size_t first,
-                        const Found& found) {
-  auto lanes = static_cast<unsigned>(_mm256_movemask_ps(found.overflow));
-  if (lanes == 0) return 0;
-  alignas(32) std::uint32_t start[kLanes];
-  _mm256_store_si256(reinterpret_cast<__m256i*>(start), found.upper_half);
-  unsigned free = 0;
-  while (lanes != 0) {
-    const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
-    lanes &= lanes - 1;
-    const Contact contact = contactInOverflow(grid, start[lane], batch.y[first + lane]);
-    if (contact.clearance == Clearance::kFree) free |= 1U << lane;
-  }
-  return free;
-}
-
-/// Whether baseCodes may be used: one tile's base is half of what it reads.
-bool readsWholePairs(const ColumnGridLayout& grid) {
-  const bool one_tile = grid.tiles_x == 1 && grid.columns_z <= 2;
-  return grid.tile_base == nullptr || !one_tile;
-}
-
 }  // namespace
 
 void contactAvx2(const ColumnGridLayout& grid, const ContactBatch& batch) noexcept {
   std::size_t first = 0;
   if (readsWholePairs(grid)) {
     const Lanes lanes = broadcast(grid);
+    const __m256 quantum = _mm256_set1_ps(grid.quantum);
+    const __m256 margin = _mm256_set1_ps(batch.down == nullptr ? 0.0F : contactMargin(grid));
     for (; first + kLanes <= batch.count; first += kLanes) {
       const Found found = find(grid, lanes, _mm256_loadu_ps(batch.x + first),
                                _mm256_loadu_ps(batch.y + first), _mm256_loadu_ps(batch.z + first));
       storeClearance(found, batch.clearance + first);
       if (batch.down != nullptr) {
         const __m256 above = _mm256_sub_ps(lanes.highest, _mm256_loadu_ps(batch.y + first));
-        const __m256 down = clearOf(
-            _mm256_mul_ps(_mm256_sub_ps(found.code, found.lo), lanes.quantum), lanes.margin);
+        const __m256 down =
+            clearOf(_mm256_mul_ps(_mm256_sub_ps(found.code, found.lo), quantum), margin);
         const __m256 up = clearOf(
-            _mm256_min_ps(_mm256_mul_ps(_mm256_sub_ps(found.hi, found.code), lanes.quantum), above),
-            lanes.margin);
+            _mm256_min_ps(_mm256_mul_ps(_mm256_sub_ps(found.hi, found.code), quantum), above),
+            margin);
         _mm256_storeu_ps(batch.down + first, _mm256_and_ps(down, found.free));
         _mm256_storeu_ps(batch.up + first, _mm256_and_ps(up, found.free));
       }
@@ -216,17 +80,27 @@ std::size_t firstNotFreeAvx2(const ColumnGridLayout& grid, const CentreBatch& ba
     const Lanes lanes = broadcast(grid);
     for (; first + kLanes <= batch.count; first += kLanes) {
       const __m256 y = _mm256_loadu_ps(batch.y + first);
-      const Found found =
-          find(grid, lanes, _mm256_loadu_ps(batch.x + first), y, _mm256_loadu_ps(batch.z + first));
-      constexpr unsigned kAllLanes = 0xff;
-      auto not_free = static_cast<unsigned>(_mm256_movemask_ps(found.free)) ^ kAllLanes;
-      if (not_free == 0) continue;
-      not_free &= ~freeInOverflow(grid, batch, first, found);
+      const unsigned not_free = notFreeLanes(grid, lanes, _mm256_loadu_ps(batch.x + first), y,
+                                             _mm256_loadu_ps(batch.z + first));
       if (not_free != 0) return first + static_cast<std::size_t>(__builtin_ctz(not_free));
     }
   }
   const CentreBatch rest{batch.x + first, batch.y + first, batch.z + first, batch.count - first};
   return rest.count == 0 ? first : first + firstNotFreePortable(grid, rest);
+}
+
+std::uint64_t notFreeAvx2(const ColumnGridLayout& grid, const EightsOfCentres& centres) noexcept {
+  if (!readsWholePairs(grid)) return notFreePortable(grid, centres);
+  const Lanes lanes = broadcast(grid);
+  std::uint64_t not_free = 0;
+  for (unsigned left = centres.eights; left != 0; left &= left - 1) {
+    const std::size_t n = static_cast<std::size_t>(__builtin_ctz(left)) * kLanes;
+    const unsigned bits =
+        notFreeLanes(grid, lanes, _mm256_loadu_ps(centres.x + n), _mm256_loadu_ps(centres.y + n),
+                     _mm256_loadu_ps(centres.z + n));
+    not_free |= std::uint64_t{bits} << n;
+  }
+  return not_free;
 }
 
 }  // namespace galactic::detail
@@ -242,6 +116,10 @@ void contactAvx2(const ColumnGridLayout& grid, const ContactBatch& batch) noexce
 
 std::size_t firstNotFreeAvx2(const ColumnGridLayout& grid, const CentreBatch& batch) noexcept {
   return firstNotFreePortable(grid, batch);
+}
+
+std::uint64_t notFreeAvx2(const ColumnGridLayout& grid, const EightsOfCentres& centres) noexcept {
+  return notFreePortable(grid, centres);
 }
 
 }  // namespace galactic::detail

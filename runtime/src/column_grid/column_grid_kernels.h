@@ -41,12 +41,38 @@ struct CentreBatch {
 [[nodiscard]] std::size_t firstNotFreeAvx2(const ColumnGridLayout& grid,
                                            const CentreBatch& batch) noexcept;
 
+/// Up to eight times eight centres.
+struct EightsOfCentres {
+  const float* x = nullptr;
+  const float* y = nullptr;
+  const float* z = nullptr;
+  /// Which eights are asked about, as bits.
+  unsigned eights = 1;
+};
+
+/// Which of the centres that are asked about are not free, as bits.
+[[nodiscard]] std::uint64_t notFreePortable(const ColumnGridLayout& grid,
+                                            const EightsOfCentres& centres) noexcept;
+[[nodiscard]] std::uint64_t notFreeAvx2(const ColumnGridLayout& grid,
+                                        const EightsOfCentres& centres) noexcept;
+
 /// Whether the AVX2 versions can run on this processor.
 [[nodiscard]] bool hasAvx2() noexcept;
 
 /// What is taken off the distances to contact, metres: more than all rounding from a height to its
 /// code and back, so that whoever moves by a distance and asks again finds the place free.
-[[nodiscard]] float contactMargin(const ColumnGridLayout& grid) noexcept;
+// A height's code is off by less than 2^-21 of the height above the grid's lowest one: four
+// roundings of a product and a difference. It is computed twice, once to get the distance and once
+// when the place is asked about; the distance and the place itself are rounded, too.
+[[nodiscard, gnu::always_inline]] constexpr float contactMargin(
+    const ColumnGridLayout& grid) noexcept {
+  constexpr float kOfHeight = 0x1p-19F;
+  constexpr float kOfCoordinate = 0x1p-22F;
+  const float below = grid.heights.lo < 0 ? -grid.heights.lo : grid.heights.lo;
+  const float above = grid.heights.hi < 0 ? -grid.heights.hi : grid.heights.hi;
+  const float farthest = below < above ? above : below;
+  return kOfHeight * (grid.heights.hi - grid.heights.lo) + kOfCoordinate * farthest;
+}
 
 /// Element `n` of the overflow cells' spans, as heights; kEndOfSpans for an end mark.
 [[nodiscard]] Span overflowSpan(const ColumnGridLayout& grid, std::uint32_t n) noexcept;
@@ -55,5 +81,9 @@ struct CentreBatch {
 /// inside the grid's heights.
 [[nodiscard]] Contact contactInOverflow(const ColumnGridLayout& grid, std::uint32_t start,
                                         float y) noexcept;
+
+/// Whether that answer is "free".
+[[nodiscard]] bool isFreeInOverflow(const ColumnGridLayout& grid, std::uint32_t start,
+                                    float y) noexcept;
 
 }  // namespace galactic::detail

@@ -134,6 +134,26 @@ GridSpec towerSpec() {
   return spec;
 }
 
+/// Up to 64 centres at a time, some of their eights: the clearances as bits.
+void compareNotFree(const ColumnGridLayout& grid, const Queries& queries, const Answers& answers,
+                    std::mt19937& random) {
+  constexpr std::size_t kMost = 64;
+  for (std::size_t first = 0; first + kMost <= queries.x.size(); first += kMost) {
+    const detail::EightsOfCentres centres{queries.x.data() + first, queries.y.data() + first,
+                                          queries.z.data() + first,
+                                          static_cast<unsigned>(random() % 256)};
+    std::uint64_t expected = 0;
+    for (std::size_t n = 0; n < kMost; ++n) {
+      const bool is_asked = (centres.eights >> n / 8 & 1U) != 0;
+      const bool is_free = answers.clearance[first + n] == Clearance::kFree;
+      expected |= std::uint64_t{is_asked && !is_free} << n;
+    }
+    ASSERT_EQ(detail::notFreePortable(grid, centres), expected);
+    if (!detail::hasAvx2()) continue;
+    ASSERT_EQ(detail::notFreeAvx2(grid, centres), expected);
+  }
+}
+
 void compareKernels(const GridSpec& spec, std::uint32_t seed, std::size_t count) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
@@ -148,6 +168,7 @@ void compareKernels(const GridSpec& spec, std::uint32_t seed, std::size_t count)
   Answers chosen(count);
   view.contact({queries.x, queries.y, queries.z}, {chosen.clearance, chosen.down, chosen.up});
   expectSame(queries, scalar, chosen);
+  compareNotFree(view.layout(), queries, scalar, random);
   if (detail::hasAvx2()) {
     Answers vectorised(count);
     detail::contactAvx2(view.layout(), batchOf(queries, vectorised));

@@ -12,6 +12,7 @@
 #include <random>
 #include <vector>
 
+#include "column_grid/column_grid_kernels.h"
 #include "support/box_room.h"
 #include "support/grid_builder.h"
 
@@ -185,6 +186,33 @@ TEST(PushOutOfScene, FindsWhatASearchOfAllCellsFinds) {
       if (!way) continue;
       ASSERT_EQ(grid.view().clearance({centre.x + push.x, centre.y, centre.z + push.z}),
                 Clearance::kFree);
+    }
+  }
+  found.expectBothSides();
+}
+
+TEST(PushOutOfScene, IsTheSameBitForBitWithBothKernels) {
+  if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2";
+  constexpr std::uint32_t kSeed = 605;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  GridSpec spec{.spacing = 0.03125F, .heights = {0, 2}, .quantum = 0x1p-14F};
+  spec.columns_x = 40;
+  spec.columns_z = 40;
+  Tally found;
+  for (int round = 0; round < 20; ++round) {
+    const TestGrid grid = randomGrid(spec, random);
+    const ColumnGrid view = grid.view();
+    const ColumnGridLayout& layout = view.layout();
+    for (int n = 0; n < 1000; ++n) {
+      const Vec3 centre{uniformIn(random, -0.1F, 1.35F), uniformIn(random, -0.1F, 0.2F),
+                        uniformIn(random, -0.1F, 1.35F)};
+      const float reach = uniformIn(random, 0, 0.2F);
+      const Push portable = pushOutPortable(layout, centre, reach);
+      const Push fast = pushOutAvx2(layout, centre, reach);
+      ASSERT_EQ(portable.x, fast.x);
+      ASSERT_EQ(portable.z, fast.z);
+      found.add(portable.x != 0 || portable.z != 0);
     }
   }
   found.expectBothSides();

@@ -50,10 +50,19 @@ class MotionBatch {
         centres_(kEnvs * 3 * robot.model.spheres.size()),
         grips_(kEnvs * simulation::kGripStride),
         bodies_(kEnvs * bodyCount()),
+        bounds_(kEnvs * simulation::kBounds * groupStride() / kEnvs),
         scratch_(simulation::frameScratchSize(robot.model.nodes.size()) / kEnvs) {}
 
   [[nodiscard]] std::size_t actionCount() const { return robot_.model.controlled.size() + 4; }
   [[nodiscard]] std::size_t bodyCount() const { return robot_.model.nodes.size() + 1; }
+  [[nodiscard]] std::size_t groupStride() const {
+    return simulation::paddedToLanes(robot_.model.spheres.size() / simulation::kLanes);
+  }
+  /// Bound b of group n.
+  [[nodiscard]] float bound(std::size_t env, std::size_t b, std::size_t group) const {
+    return bounds_.data()->data()[(simulation::kBounds * env + b) * groupStride() + group];
+  }
+  [[nodiscard]] float extent(std::size_t env, std::size_t b) const { return extents_[env][b]; }
 
   /// Poses and variables anywhere in their ranges, often at an end; actions often 0 or +-1.
   void draw(std::mt19937& random) {
@@ -90,7 +99,9 @@ class MotionBatch {
     kernels.place(robot_.tables, {.pose = poses(),
                                   .body = {.centres = centres_.data(),
                                            .grips = grips_.data(),
-                                           .bodies = &bodies_.front().x_axis.x},
+                                           .bodies = &bodies_.front().x_axis.x,
+                                           .bounds = bounds_.data()->data(),
+                                           .extents = extents_.data()->data()},
                                   .scratch = scratch_.data()->data()});
   }
 
@@ -173,6 +184,8 @@ class MotionBatch {
   std::vector<float> centres_;
   std::vector<float> grips_;
   std::vector<RigidTransform> bodies_;
+  std::vector<AlignedLanes> bounds_;
+  std::array<AlignedLanes, kEnvs> extents_{};
   std::vector<AlignedLanes> scratch_;
 };
 

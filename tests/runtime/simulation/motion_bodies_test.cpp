@@ -191,6 +191,47 @@ TEST(MotionKernels, AgreeBitForBitWithAndWithoutAvx2) {
   compareKernels(goldenArm(), random);
 }
 
+/// Least and most of each coordinate of the spheres from `first` on.
+std::array<float, kBounds> boundsOf(const MotionBatch& batch, std::size_t env, std::size_t first,
+                                    std::size_t end) {
+  const Vec3 at = batch.centre(env, first);
+  std::array<float, kBounds> bounds{at.x, at.x, at.y, at.y, at.z, at.z};
+  for (std::size_t n = first; n < end; ++n) {
+    const Vec3 centre = batch.centre(env, n);
+    const std::array<float, 3> axes{centre.x, centre.y, centre.z};
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+      bounds[2 * axis] = std::min(bounds[2 * axis], axes[axis]);
+      bounds[2 * axis + 1] = std::max(bounds[2 * axis + 1], axes[axis]);
+    }
+  }
+  return bounds;
+}
+
+TEST(MotionBodies, HaveTheBoundsOfTheirSpheresEightByEight) {
+  constexpr std::uint32_t kSeed = 504;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  for (int round = 0; round < 50; ++round) {
+    const MotionRobot robot = randomRobot(random);
+    const std::size_t spheres = robot.model.spheres.size();
+    MotionBatch batch(robot);
+    batch.draw(random);
+    batch.place(motionKernels());
+    for (std::size_t env = 0; env < MotionBatch::kEnvs; ++env) {
+      const std::array<float, kBounds> all = boundsOf(batch, env, 0, spheres);
+      for (std::size_t b = 0; b < kBounds; ++b) {
+        ASSERT_EQ(batch.extent(env, b), all[b]);
+        for (std::size_t group = 0; group < batch.groupStride(); ++group) {
+          // Beyond the last group the first of its eight is repeated.
+          const bool is_there = group < spheres / kLanes;
+          const std::size_t from = (is_there ? group : group / kLanes * kLanes) * kLanes;
+          ASSERT_EQ(batch.bound(env, b, group), boundsOf(batch, env, from, from + kLanes)[b]);
+        }
+      }
+    }
+  }
+}
+
 TEST(MotionModel, HasOneVariableForEachJointThatMovesAndFoldsTheOthers) {
   RobotPackFields fields = smallRobotPack();
   fields.start_positions[1] = 0.5F;

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+
+#include "column_grid/column_grid_kernels.h"
 
 namespace galactic::simulation {
 namespace {
@@ -78,6 +81,43 @@ CollisionScratch::CollisionScratch(std::size_t most_spheres) {
   hits_.resize(kHitsPerSphere * most_spheres);
 }
 
+std::vector<SphereGroup> sphereGroups(std::span<const RadiusRange> ranges) {
+  std::vector<SphereGroup> groups;
+  for (const RadiusRange& range : ranges) {
+    for (std::uint32_t n = 0; n < range.count; n += kLanes) {
+      const std::uint32_t left = std::min(range.count - n, static_cast<std::uint32_t>(kLanes));
+      groups.push_back({range.radius_index, range.radius, (1U << left) - 1});
+    }
+  }
+  return groups;
+}
+
+std::uint64_t blockedSpheres(const Scene& scene, const SphereBatch& spheres,
+                             std::span<const SphereGroup> groups, std::size_t first,
+                             unsigned asked) noexcept {
+  std::uint64_t blocked = 0;
+  while (asked != 0) {
+    // All groups of one radius at once.
+    const std::uint32_t radius =
+        groups[first + static_cast<std::size_t>(std::countr_zero(asked))].radius_index;
+    unsigned same = 0;
+    std::uint64_t real = 0;
+    for (unsigned left = asked; left != 0; left &= left - 1) {
+      const auto n = static_cast<std::size_t>(std::countr_zero(left));
+      if (groups[first + n].radius_index != radius) continue;
+      same |= 1U << n;
+      real |= std::uint64_t{groups[first + n].spheres} << (kLanes * n);
+    }
+    const std::size_t n = first * kLanes;
+    const detail::EightsOfCentres centres{spheres.x + n, spheres.y + n, spheres.z + n, same};
+    const ColumnGridLayout& grid = scene.grids()[radius].layout();
+    blocked |= real & (detail::hasAvx2() ? detail::notFreeAvx2(grid, centres)
+                                         : detail::notFreePortable(grid, centres));
+    asked &= ~same;
+  }
+  return blocked;
+}
+
 bool penetrates(const Obstacles& obstacles, const SphereBatch& spheres) noexcept {
   // Whole lanes at a time: the padding repeats a sphere.
   for (std::size_t n = spheres.ranges.size(); n-- > 0;) {
@@ -103,15 +143,12 @@ Push PushSum::total(float longest) const noexcept {
   return {sum.x * (longest / length), sum.z * (longest / length)};
 }
 
-Push pushOutOfScene(const ColumnGrid& grid, const Vec3& centre, float reach) noexcept {
+Push pushOutPortable(const ColumnGridLayout& layout, const Vec3& centre, float reach) noexcept {
   // The nearest column decides, so a sphere gets free where it enters the cell of a free column.
   // Eight candidates at a time: the next cell in four directions, and the one behind it.
   using Eight = std::array<float, kLanes>;
   constexpr Eight kX{1, -1, 0, 0, 1, -1, 0, 0};
   constexpr Eight kZ{0, 0, 1, -1, 0, 0, 1, -1};
-  constexpr float kIntoCell = 1e-4F;
-  constexpr int kCellsAtATime = 2;
-  const ColumnGridLayout& layout = grid.layout();
   const float cell_x = (centre.x - layout.min_x) * layout.inverse_spacing;
   const float cell_z = (centre.z - layout.min_z) * layout.inverse_spacing;
   const float part_x = cell_x - std::floor(cell_x);
@@ -122,7 +159,6 @@ Push pushOutOfScene(const ColumnGrid& grid, const Vec3& centre, float reach) noe
   Eight y{};
   Eight z{};
   Eight way{};
-  std::array<Clearance, kLanes> answers{};
   y.fill(centre.y);
   for (int cells = 0; static_cast<float>(cells) * layout.spacing <= reach; cells += kCellsAtATime) {
     const float further = static_cast<float>(cells) * layout.spacing + kIntoCell;
@@ -131,17 +167,22 @@ Push pushOutOfScene(const ColumnGrid& grid, const Vec3& centre, float reach) noe
       x[n] = centre.x + way[n] * kX[n];
       z[n] = centre.z + way[n] * kZ[n];
     }
-    grid.contact({x, y, z}, {answers, {}, {}});
+    const std::uint64_t not_free = detail::notFreePortable(layout, {x.data(), y.data(), z.data()});
     std::size_t best = kLanes;
     float shortest = reach;
     for (std::size_t n = 0; n < kLanes; ++n) {
-      const bool is_better = answers[n] == Clearance::kFree && way[n] <= shortest;
+      const bool is_better = (not_free >> n & 1U) == 0 && way[n] <= shortest;
       shortest = is_better ? way[n] : shortest;
       best = is_better ? n : best;
     }
     if (best != kLanes) return {way[best] * kX[best], way[best] * kZ[best]};
   }
   return {};
+}
+
+Push pushOutOfScene(const ColumnGrid& grid, const Vec3& centre, float reach) noexcept {
+  return detail::hasAvx2() ? pushOutAvx2(grid.layout(), centre, reach)
+                           : pushOutPortable(grid.layout(), centre, reach);
 }
 
 Push pushOutOfBox(const RestingBox& box, const Vec3& centre, float radius) noexcept {
@@ -161,6 +202,20 @@ Push pushOutOfBox(const RestingBox& box, const Vec3& centre, float radius) noexc
   return {away.x / length * radius, away.z / length * radius};
 }
 
+std::size_t pushOutOfObjects(const RestingObjects& objects, const SphereBatch& spheres,
+                             IgnoredSpheres ignored, CollisionScratch& scratch,
+                             PushSum& sum) noexcept {
+  std::size_t count = 0;
+  const std::size_t hits = objects.hits(spheres, scratch.hits());
+  for (const SphereHit& hit : scratch.hits().first(hits)) {
+    if (isIgnored(ignored, hit.sphere)) continue;
+    sum.add(pushOutOfBox(objects.box(hit.object), centreOf(spheres, hit.sphere),
+                         radiusOf(spheres, hit.sphere)));
+    ++count;
+  }
+  return count;
+}
+
 std::size_t pushOut(const Obstacles& obstacles, const SphereBatch& spheres, IgnoredSpheres ignored,
                     float reach, CollisionScratch& scratch, PushSum& sum) noexcept {
   std::size_t count = 0;
@@ -171,14 +226,7 @@ std::size_t pushOut(const Obstacles& obstacles, const SphereBatch& spheres, Igno
                                         centreOf(spheres, sphere), reach));
                  ++count;
                });
-  const std::size_t hits = obstacles.objects.hits(spheres, scratch.hits());
-  for (const SphereHit& hit : scratch.hits().first(hits)) {
-    if (isIgnored(ignored, hit.sphere)) continue;
-    sum.add(pushOutOfBox(obstacles.objects.box(hit.object), centreOf(spheres, hit.sphere),
-                         radiusOf(spheres, hit.sphere)));
-    ++count;
-  }
-  return count;
+  return count + pushOutOfObjects(obstacles.objects, spheres, ignored, scratch, sum);
 }
 
 bool overlapping(const RestingBox& box, const SphereBatch& spheres,

@@ -7,6 +7,7 @@
 #include "galactic/column_grid.h"
 #include "galactic/scene.h"
 #include "galactic/vec3.h"
+#include "simulation/collision/push_kernels.h"
 #include "simulation/collision/resting_objects.h"
 #include "simulation/collision/sphere_batch.h"
 
@@ -28,6 +29,19 @@ class CollisionScratch {
   std::vector<SphereHit> hits_;
 };
 
+/// Eight spheres of one radius, side by side in a SphereBatch.
+struct SphereGroup {
+  /// Index into the working set.
+  std::uint32_t radius_index = 0;
+  /// Metres.
+  float radius = 0;
+  /// Which of the eight are spheres, as bits; the others repeat the last one.
+  unsigned spheres = 0;
+};
+
+/// The groups of a batch with these ranges, in order.
+[[nodiscard]] std::vector<SphereGroup> sphereGroups(std::span<const RadiusRange> ranges);
+
 /// What a robot, and an object that it holds or releases, can hit.
 struct Obstacles {
   const Scene& scene;
@@ -38,11 +52,11 @@ struct Obstacles {
 /// not know counts as penetrated.
 [[nodiscard]] bool penetrates(const Obstacles& obstacles, const SphereBatch& spheres) noexcept;
 
-/// A direction in the ground plane in which something gets free, metres; (0, 0) for none.
-struct Push {
-  float x = 0;
-  float z = 0;
-};
+/// Which spheres of up to eight groups the static scene blocks, as bits from the first of the
+/// groups on. `groups`: of the whole batch; `asked`: which of those from `first` on, as bits.
+[[nodiscard]] std::uint64_t blockedSpheres(const Scene& scene, const SphereBatch& spheres,
+                                           std::span<const SphereGroup> groups, std::size_t first,
+                                           unsigned asked) noexcept;
 
 /// Adds up pushes so that their order changes nothing: the largest in each of the four directions
 /// of the axes, opposite ones against each other.
@@ -75,6 +89,11 @@ using IgnoredSpheres = std::span<const std::uint64_t>;
 /// The way out for all spheres that penetrate something and are not ignored. Returns their number.
 std::size_t pushOut(const Obstacles& obstacles, const SphereBatch& spheres, IgnoredSpheres ignored,
                     float reach, CollisionScratch& scratch, PushSum& sum) noexcept;
+
+/// The same for the resting objects alone.
+std::size_t pushOutOfObjects(const RestingObjects& objects, const SphereBatch& spheres,
+                             IgnoredSpheres ignored, CollisionScratch& scratch,
+                             PushSum& sum) noexcept;
 
 /// Sets the bit of each sphere that overlaps the box, clears the others. Returns whether any does.
 bool overlapping(const RestingBox& box, const SphereBatch& spheres,

@@ -56,6 +56,19 @@ void forEachSet(std::span<std::uint32_t> sets, float centre, float reach, const 
   for (std::int32_t n = *first; n <= *last; ++n) change(sets[setOf(n, count)]);
 }
 
+/// The objects in the sets of any centre from `least` to `most`.
+std::uint32_t inAnySet(std::span<const std::uint32_t> sets, float least, float most) {
+  const std::optional<std::int32_t> first = squareOf(least);
+  const std::optional<std::int32_t> last = squareOf(most);
+  const auto count = static_cast<std::uint32_t>(sets.size());
+  if (!first || !last || *last - *first >= static_cast<std::int32_t>(count)) {
+    return ~std::uint32_t{0};
+  }
+  std::uint32_t any = 0;
+  for (std::int32_t n = *first; n <= *last; ++n) any |= sets[setOf(n, count)];
+  return any;
+}
+
 /// All bits: the objects of every height.
 constexpr std::uint32_t kAnyHeight = ~std::uint32_t{0};
 
@@ -195,6 +208,13 @@ bool RestingObjects::touches(const SphereBatch& spheres) const noexcept {
   assert(radiiFit(spheres, largest_radius_));
   LaneGroup at;
   return findTouching(view(), arraysOf(spheres), at);
+}
+
+bool RestingObjects::mayTouch(const Vec3& least, const Vec3& most) const noexcept {
+  return std::ranges::any_of(planes_, [&](const SetPlane& plane) {
+    return (inAnySet(plane.along_x, least.x, most.x) & inAnySet(plane.along_z, least.z, most.z)) !=
+           0;
+  });
 }
 
 std::size_t RestingObjects::hits(const SphereBatch& spheres,

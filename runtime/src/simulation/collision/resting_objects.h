@@ -60,6 +60,10 @@ class RestingObjects {
   /// windows at the border, where everything outside is.
   [[nodiscard]] bool touches(const SphereBatch& spheres) const noexcept;
 
+  /// Whether a sphere (radius at most the largest) whose centre is between `least` and `most` along
+  /// X and along Z could overlap an object. No means no.
+  [[nodiscard]] bool mayTouch(const Vec3& least, const Vec3& most) const noexcept;
+
   /// All overlaps, by sphere, then object; as many as `out` takes. Returns how many were written.
   [[nodiscard]] std::size_t hits(const SphereBatch& spheres,
                                  std::span<SphereHit> out) const noexcept;

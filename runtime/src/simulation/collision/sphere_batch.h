@@ -8,6 +8,9 @@ namespace galactic::simulation {
 /// Spheres are handled eight at a time.
 inline constexpr std::size_t kLanes = 8;
 
+/// Numbers that bound centres: least and most x, then y, then z, metres.
+inline constexpr std::size_t kBounds = 6;
+
 /// The next multiple of kLanes.
 [[nodiscard]] constexpr std::size_t paddedToLanes(std::size_t count) {
   return (count + kLanes - 1) / kLanes * kLanes;

@@ -36,6 +36,10 @@ inline Lanes pick(IntLanes mask, Lanes yes, Lanes no) {
   return result;
 }
 
+/// The first one where neither is less: what vminps and vmaxps do with their operands swapped.
+inline Lanes lesser(Lanes a, Lanes b) { return b < a ? b : a; }
+inline Lanes greater(Lanes a, Lanes b) { return b > a ? b : a; }
+
 inline Lanes clampTo(Lanes value, float lower, float upper) {
   value = pick(value < spread(lower), spread(lower), value);
   return pick(value > spread(upper), spread(upper), value);
@@ -156,9 +160,24 @@ inline void transpose(Lanes rows[kLanes]) {
   }
 }
 
-/// The centres of eight spheres in eight envs, to the rows of the envs.
+/// Least and most of a coordinate of eight spheres.
+struct LaneBounds {
+  Lanes least, most;
+};
+
+inline LaneBounds boundsOf(const Lanes values[kLanes]) {
+  LaneBounds bounds{values[0], values[0]};
+  for (std::size_t n = 1; n < kLanes; ++n) {
+    bounds.least = lesser(bounds.least, values[n]);
+    bounds.most = greater(bounds.most, values[n]);
+  }
+  return bounds;
+}
+
+/// The centres of eight spheres in eight envs, to the rows of the envs. `bounds`: of these spheres,
+/// kBounds vectors; null when nobody wants them.
 inline void placeEightSpheres(const MotionTables& tables, const LaneFrame* frames,
-                              std::uint32_t first, float* centres) {
+                              std::uint32_t first, float* centres, Lanes* bounds) {
   Lanes x[kLanes];
   Lanes y[kLanes];
   Lanes z[kLanes];
@@ -168,6 +187,10 @@ inline void placeEightSpheres(const MotionTables& tables, const LaneFrame* frame
     x[n] = centre.x;
     y[n] = centre.y;
     z[n] = centre.z;
+  }
+  if (bounds != nullptr) {
+    const LaneBounds all[3] = {boundsOf(x), boundsOf(y), boundsOf(z)};
+    __builtin_memcpy(bounds, all, sizeof(all));
   }
   transpose(x);
   transpose(y);
@@ -254,11 +277,59 @@ void moveKernel(const MotionTables& tables, const MoveBatch& batch) noexcept {
   }
 }
 
+/// The bounds of eight groups in eight envs, to the rows of the envs from `to` on.
+inline void storeBounds(const Lanes groups[kLanes][kBounds], float* to, std::size_t stride) {
+  for (std::size_t b = 0; b < kBounds; ++b) {
+    Lanes rows[kLanes];
+    for (std::size_t n = 0; n < kLanes; ++n) rows[n] = groups[n][b];
+    transpose(rows);
+    for (std::size_t env = 0; env < kLanes; ++env)
+      store(to + (kBounds * env + b) * stride, rows[env]);
+  }
+}
+
+/// Bounds that hold both.
+inline void extend(Lanes all[kBounds], const Lanes more[kBounds]) {
+  for (std::size_t b = 0; b < kBounds; b += 2) {
+    all[b] = lesser(all[b], more[b]);
+    all[b + 1] = greater(all[b + 1], more[b + 1]);
+  }
+}
+
+/// The bounds of all spheres of eight envs, to the rows of the envs.
+inline void storeExtents(const Lanes all[kBounds], float* to) {
+  Lanes rows[kLanes] = {all[0], all[1], all[2], all[3], all[4], all[5], all[4], all[5]};
+  transpose(rows);
+  for (std::size_t env = 0; env < kLanes; ++env) store(to + kExtentStride * env, rows[env]);
+}
+
+/// All spheres, and the bounds of each eight of them.
+inline void placeSpheres(const MotionTables& tables, const LaneFrame* frames,
+                         const BodyArrays& body) {
+  const std::uint32_t groups = tables.sphere_count / kLanes;
+  const std::size_t stride = paddedToLanes(groups);
+  Lanes bounds[kLanes][kBounds];
+  Lanes all[kBounds]{};
+  for (std::uint32_t first = 0; first < groups; first += kLanes) {
+    const std::uint32_t here = groups - first < kLanes ? groups - first : kLanes;
+    for (std::uint32_t n = 0; n < here; ++n) {
+      placeEightSpheres(tables, frames, (first + n) * kLanes, body.centres,
+                        body.bounds == nullptr ? nullptr : bounds[n]);
+    }
+    if (body.bounds == nullptr) continue;
+    for (std::size_t n = here; n < kLanes; ++n) {
+      __builtin_memcpy(bounds[n], bounds[0], sizeof(bounds[0]));
+    }
+    storeBounds(bounds, body.bounds + first, stride);
+    if (first == 0) __builtin_memcpy(all, bounds[0], sizeof(all));
+    for (std::uint32_t n = 0; n < here; ++n) extend(all, bounds[n]);
+  }
+  if (body.bounds != nullptr) storeExtents(all, body.extents);
+}
+
 void placeKernel(const MotionTables& tables, const BodyBatch& batch) noexcept {
   const LaneFrame* frames = nodeFrames(tables, batch.pose, batch.scratch);
-  for (std::uint32_t first = 0; first < tables.sphere_count; first += kLanes) {
-    placeEightSpheres(tables, frames, first, batch.body.centres);
-  }
+  placeSpheres(tables, frames, batch.body);
   placeGrip(tables, frames, batch.body.grips);
   if (batch.body.bodies == nullptr) return;
   const std::size_t stride = std::size_t{12} * (tables.node_count + 1);

@@ -46,7 +46,17 @@ struct BodyArrays {
   /// From bodies[12 * (nodes + 1) * e] on: axes x, y, z and origin of the root, then of each node,
   /// in the world. Null when nobody wants them.
   float* bodies = nullptr;
+  /// Bounds of each eight spheres: env e, bound b of kBounds, group n:
+  /// bounds[(kBounds * e + b) * paddedToLanes(groups) + n]; padded with copies of a group. 32-byte
+  /// aligned. Null when nobody wants them.
+  float* bounds = nullptr;
+  /// Bounds of all spheres: env e, bound b: extents[kExtentStride * e + b]. Wanted where bounds
+  /// are.
+  float* extents = nullptr;
 };
+
+/// Bounds of one env, padded to whole lanes.
+inline constexpr std::size_t kExtentStride = 8;
 
 /// Fourteen numbers, padded to whole lanes.
 inline constexpr std::size_t kGripStride = 16;

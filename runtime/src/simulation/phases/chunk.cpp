@@ -7,15 +7,18 @@ namespace galactic::simulation {
 Chunk::Chunk(const Model& model)
     : action_count_(model.actionCount()),
       sphere_count_(model.sphereCount()),
+      group_stride_(paddedToLanes(model.sphereCount() / kLanes)),
       body_count_(model.bodyCount()),
       ranges_(model.motion.ranges),
       actions_(kChunk * model.actionCount()),
       variables_(kChunk * model.variableCount()),
       centres_(kChunk * 3 * model.sphereCount()),
+      bounds_(kChunk * kBounds * group_stride_ / kLanes),
       bodies_(kChunk * body_count_),
       frames_(frameScratchSize(model.motion.nodes.size()) / kLanes),
       collision_(std::max(model.sphereCount(), model.most_held_spheres)),
       placement_(model.most_held_spheres, model.world->radii()),
+      blocked_bits_(model.bodyWords()),
       held_bits_(model.heldWords()),
       body_bits_(model.bodyWords()) {}
 
@@ -34,7 +37,9 @@ BodyArrays Chunk::bodies(std::size_t first) {
           .grips = grips_[first].data(),
           .bodies = body_count_ == 0
                         ? nullptr
-                        : reinterpret_cast<float*>(bodies_.data() + first * body_count_)};
+                        : reinterpret_cast<float*>(bodies_.data() + first * body_count_),
+          .bounds = bounds_.data()->values.data() + first * kBounds * group_stride_,
+          .extents = extents_[first].values.data()};
 }
 
 void Chunk::shift(std::size_t env, const Vec3& by) {
@@ -47,11 +52,32 @@ void Chunk::shift(std::size_t env, const Vec3& by) {
     row[sphere_count_ + n] += by.y;
     row[2 * sphere_count_ + n] += by.z;
   }
+  shiftBounds(env, by);
   GripFrame& grip = grips_[env];
   grip[9] += by.x;
   grip[10] += by.y;
   grip[11] += by.z;
   for (RigidTransform& body : bodyTransforms(env)) body.origin = body.origin + by;
+}
+
+void Chunk::shiftBounds(std::size_t env, const Vec3& by) {
+  // Rounding keeps order: the bounds of what has moved are the bounds moved.
+  const std::array<float, kBounds> each{by.x, by.x, by.y, by.y, by.z, by.z};
+  float* row = bounds_.data()->values.data() + env * kBounds * group_stride_;
+  for (std::size_t b = 0; b < kBounds; ++b) {
+    extents_[env].values[b] += each[b];
+    for (std::size_t n = 0; n < group_stride_; ++n) row[b * group_stride_ + n] += each[b];
+  }
+}
+
+Vec3 Chunk::least(std::size_t env) const {
+  const std::array<float, kLanes>& bounds = extents_[env].values;
+  return {bounds[0], bounds[2], bounds[4]};
+}
+
+Vec3 Chunk::most(std::size_t env) const {
+  const std::array<float, kLanes>& bounds = extents_[env].values;
+  return {bounds[1], bounds[3], bounds[5]};
 }
 
 SphereBatch Chunk::spheres(std::size_t env) const {

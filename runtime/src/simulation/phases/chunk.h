@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "galactic/vec3.h"
+#include "simulation/collision/clearance_map.h"
 #include "simulation/collision/collision.h"
 #include "simulation/phases/object_placement.h"
 #include "simulation/state/batch_state.h"
@@ -40,6 +41,13 @@ class Chunk {
   /// Moves a candidate with all its spheres and its grip.
   void shift(std::size_t env, const Vec3& by);
   [[nodiscard]] SphereBatch spheres(std::size_t env) const;
+  /// Bounds of the candidate's sphere centres, eight by eight.
+  [[nodiscard]] GroupBounds bounds(std::size_t env) const {
+    return {bounds_.data()->values.data() + env * kBounds * group_stride_, group_stride_};
+  }
+  /// The least and the most of all their coordinates.
+  [[nodiscard]] Vec3 least(std::size_t env) const;
+  [[nodiscard]] Vec3 most(std::size_t env) const;
   [[nodiscard]] GripFrame& grip(std::size_t env) { return grips_[env]; }
   /// Root and nodes of a candidate; empty where the run does not want them.
   [[nodiscard]] std::span<RigidTransform> bodyTransforms(std::size_t env) {
@@ -48,18 +56,25 @@ class Chunk {
   [[nodiscard]] Floor& floor(std::size_t env) { return floor_[env]; }
   [[nodiscard]] CollisionScratch& collision() { return collision_; }
   [[nodiscard]] PlacementScratch& placement() { return placement_; }
+  /// One bit for each sphere of the robot that the scene blocks: what isFree() found last on a
+  /// floor that carries the base.
+  [[nodiscard]] std::span<std::uint64_t> blockedBits() { return blocked_bits_; }
   /// One bit for each sphere of the held object that penetrates something, and of the robot that
   /// penetrates the object which it leaves: what isFree() found last.
   [[nodiscard]] std::span<std::uint64_t> heldBits() { return held_bits_; }
   [[nodiscard]] std::span<std::uint64_t> bodyBits() { return body_bits_; }
 
  private:
+  void shiftBounds(std::size_t env, const Vec3& by);
+
   struct alignas(32) AlignedLanes {
     std::array<float, kLanes> values{};
   };
 
   std::size_t action_count_ = 0;
   std::size_t sphere_count_ = 0;
+  /// Groups of eight spheres, padded to lanes.
+  std::size_t group_stride_ = 0;
   /// 0 where the run does not want them.
   std::size_t body_count_ = 0;
   std::span<const RadiusRange> ranges_;
@@ -67,12 +82,15 @@ class Chunk {
   std::array<float, kChunk> x_{}, y_{}, z_{}, yaw_{};
   std::vector<float> variables_;
   std::vector<float> centres_;
+  std::vector<AlignedLanes> bounds_;
+  std::array<AlignedLanes, kChunk> extents_{};
   std::array<GripFrame, kChunk> grips_{};
   std::vector<RigidTransform> bodies_;
   std::vector<AlignedLanes> frames_;
   std::array<Floor, kChunk> floor_{};
   CollisionScratch collision_;
   PlacementScratch placement_;
+  std::vector<std::uint64_t> blocked_bits_;
   std::vector<std::uint64_t> held_bits_;
   std::vector<std::uint64_t> body_bits_;
 };

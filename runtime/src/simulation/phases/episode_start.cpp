@@ -72,6 +72,7 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t n,
   Env& env = state.env(n);
   env = {.start = start,
          .scene = model.world->sceneIndexOf(episode),
+         .clearance_map = model.starts[start].clearance_map,
          .objects = static_cast<std::uint32_t>(model.placements(episode).size()),
          .target = target,
          .ordinal = env.ordinal + 1,

@@ -19,7 +19,11 @@ void grasp(const ChunkStep& step, std::size_t e) {
       resting.nearest(gripOrigin(grip), step.model.motion.grasp_radius);
   if (!object) return;
   const Pose before = step.state.objects(n)[*object];
-  env.held = {static_cast<std::int32_t>(*object), inverse(gripPose(grip)) * before, before};
+  env.held = {};
+  env.held.object = static_cast<std::int32_t>(*object);
+  env.held.grip_from_object = inverse(gripPose(grip)) * before;
+  env.held.before = before;
+  measureHeld(heldModel(step.model, env), env.held);
   resting.remove(*object);
   if (env.leaves == env.held.object) env.leaves = -1;
   const SphereBatch spheres =

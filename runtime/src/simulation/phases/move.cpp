@@ -1,6 +1,7 @@
 #include "simulation/phases/move.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <optional>
@@ -50,23 +51,72 @@ bool anyCounts(std::span<const std::uint64_t> bits, IgnoredSpheres ignored) {
   return any != 0;
 }
 
-bool bodyPenetrates(const ChunkStep& step, std::size_t e) {
+/// Finds the robot's spheres that the scene blocks, in the chunk's bits. Whether there is any.
+bool findBlocked(const ChunkStep& step, std::size_t e) {
+  const Env& env = step.state.env(step.first + e);
+  const Scene& scene = step.model.world->scenes()[env.scene];
   const SphereBatch spheres = step.chunk.spheres(e);
-  const bool in_others =
-      withoutLeft(step, e, [&] { return penetrates(obstaclesOf(step, e), spheres); });
-  const std::int32_t leaves = step.state.env(step.first + e).leaves;
-  if (in_others || leaves < 0) return in_others;
+  const std::span<const SphereGroup> groups = step.model.groups;
+  const std::span<std::uint64_t> bits = step.chunk.blockedBits();
+  std::uint64_t any = 0;
+  for (std::size_t eight = 0; eight * kLanes < groups.size(); ++eight) {
+    const std::size_t here = std::min(groups.size() - eight * kLanes, kLanes);
+    const unsigned free =
+        step.model.clearance.surelyFree(env.clearance_map, eight, step.chunk.bounds(e));
+    const unsigned asked = ((1U << here) - 1) & ~free;
+    const std::uint64_t blocked =
+        asked == 0 ? 0 : blockedSpheres(scene, spheres, groups, eight * kLanes, asked);
+    bits[eight] = blocked;
+    any |= blocked;
+  }
+  return any != 0;
+}
+
+bool bodyTouchesObjects(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
-  const RestingBox& box = step.state.resting(n).box(static_cast<std::uint32_t>(leaves));
-  overlapping(box, spheres, step.chunk.bodyBits());
+  const RestingObjects& objects = step.state.resting(n);
+  if (!objects.mayTouch(step.chunk.least(e), step.chunk.most(e))) {
+    std::ranges::fill(step.chunk.bodyBits(), 0U);
+    return false;
+  }
+  const SphereBatch spheres = step.chunk.spheres(e);
+  const bool in_others = withoutLeft(step, e, [&] { return objects.touches(spheres); });
+  const std::int32_t leaves = step.state.env(n).leaves;
+  if (in_others || leaves < 0) return in_others;
+  overlapping(objects.box(static_cast<std::uint32_t>(leaves)), spheres, step.chunk.bodyBits());
   return anyCounts(step.chunk.bodyBits(), step.state.leaving(n));
+}
+
+/// Whether a look at the ball around the held object's spheres says that all are free.
+bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) {
+  const Env& env = step.state.env(step.first + e);
+  // More than the spheres can leave the ball by through rounding, metres.
+  constexpr float kSlack = 1e-3F;
+  const Vec3 centre = gripToWorld(step.chunk.grip(e), env.held.ball_centre);
+  const float reach = env.held.ball_radius + kSlack;
+  const Vec3 least{centre.x - reach, centre.y - reach, centre.z - reach};
+  const Vec3 most{centre.x + reach, centre.y + reach, centre.z + reach};
+  if (step.state.resting(step.first + e).mayTouch(least, most)) return false;
+  alignas(32) std::array<float, kBounds * kLanes> bounds;
+  const std::array<float, kBounds> each{least.x, most.x, least.y, most.y, least.z, most.z};
+  for (std::size_t b = 0; b < kBounds; ++b) {
+    std::fill_n(bounds.data() + b * kLanes, kLanes, each[b]);
+  }
+  const ClearanceMaps& maps = step.model.clearance;
+  const unsigned free =
+      maps.surelyFree(env.clearance_map, maps.eights() - 1, {bounds.data(), kLanes});
+  return (env.held.radii & ~free) == 0;
 }
 
 bool heldPenetrates(const ChunkStep& step, std::size_t e) {
   if (step.state.env(step.first + e).held.object < 0) return false;
+  const std::span<std::uint64_t> bits = step.chunk.heldBits();
+  if (heldIsSurelyFree(step, e)) {
+    std::ranges::fill(bits, 0U);
+    return false;
+  }
   const Obstacles obstacles = obstaclesOf(step, e);
   const SphereBatch spheres = heldSpheres(step, e);
-  const std::span<std::uint64_t> bits = step.chunk.heldBits();
   if (!penetrates(obstacles, spheres)) {
     std::ranges::fill(bits, 0U);
     return false;
@@ -107,16 +157,37 @@ void accept(const ChunkStep& step, std::size_t e) {
   }
 }
 
-/// Where the base has to go so that what penetrates gets free, in one jitter.
+/// Adds the ways out of the scene for the robot's spheres that it blocks.
+void pushBodyOutOfScene(const ChunkStep& step, std::size_t e, PushSum& sum) {
+  const Scene& scene = obstaclesOf(step, e).scene;
+  const SphereBatch spheres = step.chunk.spheres(e);
+  const std::span<const std::uint64_t> bits = step.chunk.blockedBits();
+  for (std::size_t w = 0; w < bits.size(); ++w) {
+    for (std::uint64_t word = bits[w]; word != 0; word &= word - 1) {
+      const std::size_t n = 64 * w + static_cast<std::size_t>(std::countr_zero(word));
+      const ColumnGrid& grid = scene.grids()[step.model.groups[n / kLanes].radius_index];
+      sum.add(pushOutOfScene(grid, {spheres.x[n], spheres.y[n], spheres.z[n]},
+                             step.model.options.slide.step));
+    }
+  }
+}
+
+/// Where the base has to go so that what penetrates gets free, in one jitter: after isFree() has
+/// said that something does.
 Push pushOf(const ChunkStep& step, std::size_t e) {
   const SlideOptions& options = step.model.options.slide;
   const Obstacles obstacles = obstaclesOf(step, e);
   const Env& env = step.state.env(step.first + e);
   PushSum sum;
-  withoutLeft(step, e, [&] {
-    return pushOut(obstacles, step.chunk.spheres(e), {}, options.step, step.chunk.collision(), sum);
-  });
-  if (env.held.object >= 0) {
+  if (step.chunk.floor(e) != Floor::kCarries) findBlocked(step, e);
+  pushBodyOutOfScene(step, e, sum);
+  if (obstacles.objects.mayTouch(step.chunk.least(e), step.chunk.most(e))) {
+    withoutLeft(step, e, [&] {
+      return pushOutOfObjects(obstacles.objects, step.chunk.spheres(e), {}, step.chunk.collision(),
+                              sum);
+    });
+  }
+  if (env.held.object >= 0 && !heldIsSurelyFree(step, e)) {
     pushOut(obstacles, heldSpheres(step, e), step.state.ignored(step.first + e), options.step,
             step.chunk.collision(), sum);
   }
@@ -212,7 +283,7 @@ FloorUnder floorUnder(const Scene& scene, const Vec3& base, const GroundOptions&
 
 bool isFree(const ChunkStep& step, std::size_t e) noexcept {
   if (step.chunk.floor(e) != Floor::kCarries) return false;
-  return !bodyPenetrates(step, e) && !heldPenetrates(step, e);
+  return !findBlocked(step, e) && !bodyTouchesObjects(step, e) && !heldPenetrates(step, e);
 }
 
 void proposePoses(const ChunkStep& step) noexcept {

@@ -38,6 +38,11 @@ struct Held {
   /// Counted in the episode; -1 for none.
   std::int32_t object = -1;
   Pose grip_from_object;
+  /// A ball around the centres of its spheres: centre in the grip's frame, metres.
+  Vec3 ball_centre;
+  float ball_radius = 0;
+  /// Which radii of the working set its spheres have, as bits.
+  std::uint32_t radii = 0;
   /// world_from_object where it rested before.
   Pose before;
 };
@@ -56,6 +61,8 @@ struct Env {
   /// Index into Model::starts.
   std::uint32_t start = 0;
   std::uint32_t scene = 0;
+  /// In Model::clearance.
+  std::uint32_t clearance_map = kNoClearanceMap;
   std::uint32_t step = 0;
   std::uint32_t objects = 0;
   std::uint32_t target = 0;
@@ -88,6 +95,9 @@ struct Env {
 [[nodiscard]] inline const ObjectModel& heldModel(const Model& model, const Env& env) {
   return model.object(env.start, static_cast<std::uint32_t>(env.held.object));
 }
+
+/// Sets what is kept about the spheres of the object in the hand.
+void measureHeld(const ObjectModel& object, Held& held) noexcept;
 
 /// Everything that changes in a run: N envs, padded to whole chunks with envs that nobody sees.
 class BatchState {

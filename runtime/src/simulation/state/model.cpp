@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "simulation/phases/chunk.h"
@@ -48,6 +51,9 @@ class StartFinder {
       if (!tryEpisode(n)) model_.skipped.push_back(n);
     }
   }
+
+  /// Of the robot's sphere centres at the starts.
+  [[nodiscard]] const HeightsOverFloor& heights() const { return heights_; }
 
  private:
   void setVariables(std::uint32_t episode) {
@@ -108,6 +114,9 @@ class StartFinder {
     placeBodies(step);
     if (!isFree(step, 0) && !pushClear(step, 0)) return false;
     const PoseArrays pose = chunk_.candidates(0);
+    const float floor = chunk_.base(0).y;
+    heights_.lowest = std::min(heights_.lowest, chunk_.least(0).y - floor);
+    heights_.highest = std::max(heights_.highest, chunk_.most(0).y - floor);
     model_.starts.push_back({n, chunk_.base(0), *pose.yaw, chunk_.grip(0)});
     const std::span<const RigidTransform> bodies = chunk_.bodyTransforms(0);
     model_.start_bodies.insert(model_.start_bodies.end(), bodies.begin(), bodies.end());
@@ -120,7 +129,45 @@ class StartFinder {
   Model& model_;
   BatchState state_;
   Chunk chunk_;
+  HeightsOverFloor heights_{.lowest = std::numeric_limits<float>::infinity(),
+                            .highest = -std::numeric_limits<float>::infinity()};
 };
+
+/// Makes a map for each floor of each scene on which episodes start.
+void mapClearance(const HeightsOverFloor& heights, Model& model) {
+  // Starts whose floors differ by no more stand on one floor, with rugs.
+  constexpr float kUnevenness = 0.03F;
+  // What the hand holds may be higher than the robot was at any start.
+  constexpr float kOverRobot = 0.25F;
+  const HeightsOverFloor raised{heights.lowest, heights.highest + kOverRobot};
+  const std::size_t radii = model.world->radii().size();
+  if (radii > kLanes) return;
+  std::vector<std::uint32_t> radius_of_lane;
+  for (const SphereGroup& group : model.groups) radius_of_lane.push_back(group.radius_index);
+  radius_of_lane.resize(paddedToLanes(radius_of_lane.size()), radius_of_lane.front());
+  for (std::uint32_t radius = 0; radius < radii; ++radius) radius_of_lane.push_back(radius);
+  model.clearance = ClearanceMaps(std::move(radius_of_lane));
+  const auto scene_of = [&](std::uint32_t start) {
+    return model.world->sceneIndexOf(model.episodeOf(start));
+  };
+  std::vector<std::uint32_t> order(model.starts.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
+    return std::tuple(scene_of(a), model.starts[a].base.y, a) <
+           std::tuple(scene_of(b), model.starts[b].base.y, b);
+  });
+  for (std::size_t n = 0; n < order.size();) {
+    const std::uint32_t scene = scene_of(order[n]);
+    const float floor = model.starts[order[n]].base.y;
+    const std::uint32_t map =
+        model.clearance.add(model.world->scenes()[scene], floor, kUnevenness, raised);
+    for (; n < order.size() && scene_of(order[n]) == scene &&
+           model.starts[order[n]].base.y <= floor + kUnevenness;
+         ++n) {
+      model.starts[order[n]].clearance_map = map;
+    }
+  }
+}
 
 /// Once per start, as many as there are.
 std::vector<sensors::StoodOn> floorsOf(const Model& model) {
@@ -186,13 +233,16 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
   model.observation_size = model.observation.back().first + model.observation.back().size;
   model.sensors_first = model.observation_size - sensors.laser - sensors.geodesic;
   measure(world, model);
-  StartFinder(model).find();
+  model.groups = sphereGroups(model.motion.ranges);
+  StartFinder finder(model);
+  finder.find();
   if (model.starts.empty()) {
     return fail(ErrorCode::kInvalidInput, "episodes " + std::string(world.episodes().name()),
                 "the robot penetrates the scene or an object at the start of all " +
                     std::to_string(model.skipped.size()) +
                     " episodes; check that scene, robot and episodes belong together");
   }
+  mapClearance(finder.heights(), model);
   if (auto made = makeSensors(*laser, model); !made) return tl::unexpected<Error>(made.error());
   return model;
 }

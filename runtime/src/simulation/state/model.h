@@ -11,6 +11,8 @@
 #include "galactic/world.h"
 #include "sensors/geodesic.h"
 #include "sensors/laser.h"
+#include "simulation/collision/clearance_map.h"
+#include "simulation/collision/collision.h"
 #include "simulation/motion/motion_kernels.h"
 #include "simulation/motion/motion_model.h"
 
@@ -27,6 +29,8 @@ struct EpisodeStart {
   Vec3 base;
   float yaw = 0;
   GripFrame grip{};
+  /// In Model::clearance.
+  std::uint32_t clearance_map = kNoClearanceMap;
 };
 
 /// What never changes in a run: computed once, shared by all threads.
@@ -43,6 +47,11 @@ struct Model {
   /// Shape: starts * bodyCount().
   std::vector<RigidTransform> start_bodies;
   std::vector<std::uint32_t> skipped;
+  /// The robot's spheres in eights.
+  std::vector<SphereGroup> groups;
+  /// A lane for each group, padded to whole eights; then one for each radius of the working set,
+  /// for what the robot holds.
+  ClearanceMaps clearance;
   std::size_t most_objects = 0;
   /// Spheres of the largest object, padded to lanes.
   std::size_t most_held_spheres = 0;

@@ -249,7 +249,9 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
   saved.env.start = static_cast<std::uint32_t>(start - model.starts.begin());
   saved.env.step = record.step;
   saved.env.ordinal = record.ordinal;
-  saved.env.held = {record.held, record.grip_from_held, record.before};
+  saved.env.held.object = record.held;
+  saved.env.held.grip_from_object = record.grip_from_held;
+  saved.env.held.before = record.before;
   saved.env.has_picked = record.has_picked != 0;
   saved.env.refused = record.was_refused != 0;
   saved.env.leaves = record.leaves;
@@ -384,6 +386,7 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
   env.step = saved.env.step;
   env.ordinal = saved.env.ordinal;
   env.held = saved.env.held;
+  if (env.held.object >= 0) measureHeld(heldModel(model, env), env.held);
   env.has_picked = saved.env.has_picked;
   env.refused = saved.env.refused;
   env.leaves = saved.env.leaves;

@@ -1,0 +1,218 @@
+#include "simulation/collision/clearance_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "column_grid/column_grid_kernels.h"
+
+namespace galactic::simulation {
+namespace {
+
+/// Columns of a grid along the edge of a cell. A power of two: no rounding tells a sphere's cell
+/// from its column's.
+constexpr std::uint32_t kColumnsPerCell = 2;
+/// Cells along the edge of a tile: 64 bytes.
+constexpr std::uint32_t kTileEdge = 8;
+/// What a band's height and the spheres that it clears differ by at least, metres: more than any
+/// rounding.
+constexpr float kSlack = 1e-3F;
+/// How far above the lowest height that it can have a sphere is looked for, metres.
+constexpr float kOverContact = 5e-3F;
+
+struct Heights {
+  float lowest = 0;
+  float highest = 0;
+  float band_from = 0;
+  float band_height = 0;
+
+  /// The least height of a centre that a band clears.
+  [[nodiscard]] float lowOf(std::uint32_t band) const {
+    const float low = band_from + static_cast<float>(band) * band_height;
+    return band == 0 ? lowest : low;
+  }
+};
+
+/// Cells of one radius, row by row.
+struct Cells {
+  std::uint32_t x = 0;
+  std::uint32_t z = 0;
+
+  [[nodiscard]] std::uint32_t tilesX() const { return (x + kTileEdge - 1) / kTileEdge; }
+  [[nodiscard]] std::uint32_t tilesZ() const { return (z + kTileEdge - 1) / kTileEdge; }
+  [[nodiscard]] std::uint32_t bytes() const { return tilesX() * tilesZ() * kTileEdge * kTileEdge; }
+  [[nodiscard]] std::size_t tiled(std::uint32_t i, std::uint32_t k) const {
+    const std::uint32_t tile = k / kTileEdge * tilesX() + i / kTileEdge;
+    return (std::size_t{tile} * kTileEdge + k % kTileEdge) * kTileEdge + i % kTileEdge;
+  }
+};
+
+Cells cellsOf(const ColumnGrid& grid) {
+  return {(grid.columnsX() + kColumnsPerCell - 1) / kColumnsPerCell,
+          (grid.columnsZ() + kColumnsPerCell - 1) / kColumnsPerCell};
+}
+
+/// For each cell the height from which on all its columns are free up to `highest`; infinity where
+/// one is not, or is missing.
+std::vector<float> lowestFree(const ColumnGrid& grid, const Cells& cells, float highest) {
+  const ColumnGridLayout& layout = grid.layout();
+  const std::uint32_t columns = cells.x * kColumnsPerCell;
+  std::vector<float> x(columns);
+  const std::vector<float> y(columns, highest);
+  std::vector<float> z(columns);
+  std::vector<Clearance> clearance(columns);
+  std::vector<float> down(columns);
+  std::vector<float> up(columns);
+  for (std::uint32_t i = 0; i < columns; ++i) {
+    x[i] = layout.min_x + (static_cast<float>(i) + 0.5F) * layout.spacing;
+  }
+  std::vector<float> lowest(std::size_t{cells.x} * cells.z,
+                            -std::numeric_limits<float>::infinity());
+  for (std::uint32_t k = 0; k < cells.z * kColumnsPerCell; ++k) {
+    std::ranges::fill(z, layout.min_z + (static_cast<float>(k) + 0.5F) * layout.spacing);
+    grid.contact({x, y, z}, {clearance, down, up});
+    float* row = lowest.data() + std::size_t{k / kColumnsPerCell} * cells.x;
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const bool is_free = clearance[i] == Clearance::kFree;
+      const float from = is_free ? highest - down[i] : std::numeric_limits<float>::infinity();
+      row[i / kColumnsPerCell] = std::max(row[i / kColumnsPerCell], from);
+    }
+  }
+  return lowest;
+}
+
+/// To each cell the distance, in moves of a chess king, to the nearest that is not clear or
+/// outside; 255 where it is farther. One sweep down and one up (Rosenfeld and Pfaltz 1968).
+void spreadDistances(const Cells& cells, std::vector<std::uint8_t>& distance) {
+  // A border of zeros around the cells spares all questions about neighbours.
+  const std::size_t row = std::size_t{cells.x} + 2;
+  const auto sweep = [&](std::size_t n, std::ptrdiff_t sign) {
+    const auto step = static_cast<std::ptrdiff_t>(row);
+    std::uint8_t* at = distance.data() + n;
+    const int before =
+        std::min({at[-sign], at[-sign * step - 1], at[-sign * step], at[-sign * step + 1]});
+    *at = static_cast<std::uint8_t>(std::min(static_cast<int>(*at), std::min(before, 254) + 1));
+  };
+  for (std::size_t k = 1; k <= cells.z; ++k) {
+    for (std::size_t i = 1; i <= cells.x; ++i) sweep(k * row + i, 1);
+  }
+  for (std::size_t k = cells.z; k > 0; --k) {
+    for (std::size_t i = cells.x; i > 0; --i) sweep(k * row + i, -1);
+  }
+}
+
+/// The distances of one band, tile by tile, to `out`.
+void fillBand(const Cells& cells, std::span<const float> lowest_free, float low,
+              std::span<std::uint8_t> out) {
+  const std::size_t row = std::size_t{cells.x} + 2;
+  std::vector<std::uint8_t> distance(row * (std::size_t{cells.z} + 2));
+  for (std::uint32_t k = 0; k < cells.z; ++k) {
+    for (std::uint32_t i = 0; i < cells.x; ++i) {
+      const bool is_clear = lowest_free[std::size_t{k} * cells.x + i] <= low - kSlack;
+      distance[(k + 1) * row + i + 1] = is_clear ? std::uint8_t{255} : std::uint8_t{0};
+    }
+  }
+  spreadDistances(cells, distance);
+  for (std::uint32_t k = 0; k < cells.z; ++k) {
+    for (std::uint32_t i = 0; i < cells.x; ++i) {
+      out[cells.tiled(i, k)] = distance[(k + 1) * row + i + 1];
+    }
+  }
+}
+
+}  // namespace
+
+ClearanceMaps::ClearanceMaps(std::vector<std::uint32_t> radius_of_lane)
+    : radius_of_lane_(std::move(radius_of_lane)),
+      eights_(paddedToLanes(radius_of_lane_.size()) / kLanes) {
+  // Lanes beyond the last group repeat the first of their eight, as bounds do.
+  for (std::size_t n = radius_of_lane_.size(); n < eights_ * kLanes; ++n) {
+    radius_of_lane_.push_back(radius_of_lane_[n / kLanes * kLanes]);
+  }
+}
+
+std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenness,
+                                 const HeightsOverFloor& heights) {
+  const std::size_t map = lanes_.size() / std::max<std::size_t>(eights_, 1);
+  lanes_.resize(lanes_.size() + eights_);
+  const std::span<ClearanceLanes> lanes = std::span(lanes_).last(eights_);
+  constexpr std::size_t kReadBeyond = 3;
+  for (std::uint32_t radius = 0; radius < scene.grids().size(); ++radius) {
+    if (std::ranges::find(radius_of_lane_, radius) == radius_of_lane_.end()) continue;
+    const ColumnGrid& grid = scene.grids()[radius];
+    const float from = floor + heights.lowest - 2 * kSlack;
+    const float highest = floor + unevenness + heights.highest + 2 * kSlack;
+    const Heights asked{.lowest = std::max(from, floor + unevenness + grid.radius() + kOverContact),
+                        .highest = highest,
+                        .band_from = from,
+                        .band_height = (highest - from) / static_cast<float>(kClearanceBands)};
+    const Cells cells = cellsOf(grid);
+    const std::vector<float> lowest_free = lowestFree(grid, cells, highest);
+    const std::size_t first = cells_.empty() ? 0 : cells_.size() - kReadBeyond;
+    cells_.resize(first + std::size_t{kClearanceBands} * cells.bytes() + kReadBeyond);
+    for (std::uint32_t band = 0; band < kClearanceBands; ++band) {
+      fillBand(cells, lowest_free, asked.lowOf(band),
+               std::span(cells_).subspan(first + std::size_t{band} * cells.bytes(), cells.bytes()));
+    }
+    for (std::size_t n = 0; n < radius_of_lane_.size(); ++n) {
+      if (radius_of_lane_[n] != radius) continue;
+      ClearanceLanes& to = lanes[n / kLanes];
+      const std::size_t lane = n % kLanes;
+      to.min_x[lane] = grid.layout().min_x;
+      to.min_z[lane] = grid.layout().min_z;
+      to.inverse_cell[lane] = grid.layout().inverse_spacing / static_cast<float>(kColumnsPerCell);
+      to.cells_x[lane] = static_cast<float>(cells.x);
+      to.cells_z[lane] = static_cast<float>(cells.z);
+      to.lowest[lane] = asked.lowest;
+      to.highest[lane] = asked.highest;
+      to.band_from[lane] = asked.band_from;
+      to.inverse_band[lane] = 1 / asked.band_height;
+      to.first[lane] = static_cast<std::int32_t>(first);
+      to.band_bytes[lane] = static_cast<std::int32_t>(cells.bytes());
+      to.tiles_x[lane] = static_cast<std::int32_t>(cells.tilesX());
+    }
+  }
+  return static_cast<std::uint32_t>(map);
+}
+
+unsigned ClearanceMaps::surelyFree(std::uint32_t map, std::size_t eight,
+                                   const GroupBounds& bounds) const noexcept {
+  if (map == kNoClearanceMap) return 0;
+  const ClearanceLanes& lanes = lanes_[map * eights_ + eight];
+  const float* first = bounds.values + eight * kLanes;
+  return detail::hasAvx2() ? surelyFreeAvx2(lanes, cells_.data(), first, bounds.stride)
+                           : surelyFreePortable(lanes, cells_.data(), first, bounds.stride);
+}
+
+unsigned surelyFreePortable(const ClearanceLanes& lanes, const std::uint8_t* cells,
+                            const float* bounds, std::size_t stride) noexcept {
+  unsigned free = 0;
+  for (std::size_t n = 0; n < kLanes; ++n) {
+    const float* at = bounds + n;
+    const float x = (0.5F * (at[0] + at[stride]) - lanes.min_x[n]) * lanes.inverse_cell[n];
+    const float z =
+        (0.5F * (at[4 * stride] + at[5 * stride]) - lanes.min_z[n]) * lanes.inverse_cell[n];
+    const bool inside = x >= 0 && x < lanes.cells_x[n] && z >= 0 && z < lanes.cells_z[n] &&
+                        at[2 * stride] >= lanes.lowest[n] && at[3 * stride] <= lanes.highest[n];
+    if (!inside) continue;
+    const auto i = static_cast<std::uint32_t>(x);
+    const auto k = static_cast<std::uint32_t>(z);
+    const float above = (at[2 * stride] - lanes.band_from[n]) * lanes.inverse_band[n];
+    const auto band =
+        std::min(static_cast<std::int32_t>(above), static_cast<std::int32_t>(kClearanceBands) - 1);
+    const std::uint32_t tile =
+        k / kTileEdge * static_cast<std::uint32_t>(lanes.tiles_x[n]) + i / kTileEdge;
+    const std::size_t cell =
+        (std::size_t{tile} * kTileEdge + k % kTileEdge) * kTileEdge + i % kTileEdge;
+    const std::uint8_t distance =
+        cells[static_cast<std::size_t>(lanes.first[n] + band * lanes.band_bytes[n]) + cell];
+    const float wide = at[stride] - at[0];
+    const float deep = at[5 * stride] - at[4 * stride];
+    const float half = 0.5F * (deep > wide ? deep : wide) * lanes.inverse_cell[n];
+    free |= static_cast<unsigned>(half + kBeyondHalf <= static_cast<float>(distance)) << n;
+  }
+  return free;
+}
+
+}  // namespace galactic::simulation

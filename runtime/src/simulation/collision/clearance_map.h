@@ -1,0 +1,68 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "galactic/scene.h"
+#include "simulation/collision/clearance_kernels.h"
+#include "simulation/collision/sphere_batch.h"
+
+namespace galactic::simulation {
+
+// How most spheres are known to be free without a look at their columns.
+//
+// Around each place of a scene's floor there is a square in which nothing stands higher than some
+// height. A map stores half the edge of that square, in cells, for a few heights (bands) and each
+// radius of the robot: one byte per cell and band, a chessboard distance transform (Rosenfeld and
+// Pfaltz 1968). Eight spheres whose bounds lie within the square, and between the band's height and
+// the map's highest one, are free: one look-up answers for eight columns. A map only ever says
+// "surely free"; wherever it does not, the columns are asked, so no answer depends on it.
+
+/// Where a robot's sphere centres are over a floor, metres above it.
+struct HeightsOverFloor {
+  float lowest = 0;
+  float highest = 0;
+};
+
+/// The bounds of the groups of one env, as BodyArrays::bounds has them.
+struct GroupBounds {
+  const float* values = nullptr;
+  /// From one bound to the next: groups, padded to lanes.
+  std::size_t stride = 0;
+};
+
+/// Where no map is known.
+inline constexpr std::uint32_t kNoClearanceMap = ~std::uint32_t{0};
+
+/// The maps of the floors of all scenes. Any thread may ask.
+class ClearanceMaps {
+ public:
+  ClearanceMaps() = default;
+  /// `radius_of_lane`: index into the working set, of each group that will be asked about.
+  explicit ClearanceMaps(std::vector<std::uint32_t> radius_of_lane);
+
+  /// Adds the maps of a floor of a scene. `floor`: the least height of that floor, metres; the
+  /// robot's centres are `heights` above it, or above floors up to `unevenness` higher. Returns the
+  /// number by which surelyFree() knows it.
+  std::uint32_t add(const Scene& scene, float floor, float unevenness,
+                    const HeightsOverFloor& heights);
+
+  /// Which of eight groups are surely free, as bits: the lanes from 8 * `eight` on. `map`: as add()
+  /// returned it; none are for kNoClearanceMap.
+  [[nodiscard]] unsigned surelyFree(std::uint32_t map, std::size_t eight,
+                                    const GroupBounds& bounds) const noexcept;
+
+  /// How many eights of lanes there are.
+  [[nodiscard]] std::size_t eights() const { return eights_; }
+
+ private:
+  std::vector<std::uint32_t> radius_of_lane_;
+  std::size_t eights_ = 0;
+  /// Shape: maps x eights_.
+  std::vector<ClearanceLanes> lanes_;
+  /// Of all maps, and three bytes more than that: look-ups read four at a time.
+  std::vector<std::uint8_t> cells_;
+};
+
+}  // namespace galactic::simulation

@@ -1,0 +1,87 @@
+// Compiled for AVX2: instantiates no library templates, see column_grid_avx2.cpp.
+#include "simulation/collision/clearance_kernels.h"
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+
+namespace galactic::simulation {
+namespace {
+
+__m256 half(__m256 a, __m256 b) { return _mm256_mul_ps(_mm256_set1_ps(0.5F), _mm256_add_ps(a, b)); }
+
+__m256 both(__m256 a, __m256 b) { return _mm256_and_ps(a, b); }
+
+__m256 atLeast(__m256 a, __m256 b) { return _mm256_cmp_ps(a, b, _CMP_GE_OQ); }
+
+__m256i integers(const std::int32_t* from) {
+  return _mm256_load_si256(reinterpret_cast<const __m256i*>(from));
+}
+
+/// Where the bytes of eight cells are, in tiles of eight by eight.
+__m256i cellIndex(__m256i i, __m256i k, __m256i tiles_x) {
+  const __m256i in_tile = _mm256_set1_epi32(7);
+  const __m256i tile = _mm256_add_epi32(_mm256_mullo_epi32(_mm256_srli_epi32(k, 3), tiles_x),
+                                        _mm256_srli_epi32(i, 3));
+  const __m256i row = _mm256_slli_epi32(_mm256_and_si256(k, in_tile), 3);
+  return _mm256_or_si256(_mm256_slli_epi32(tile, 6),
+                         _mm256_or_si256(row, _mm256_and_si256(i, in_tile)));
+}
+
+}  // namespace
+
+unsigned surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells, const float* bounds,
+                        std::size_t stride) noexcept {
+  const __m256 least_x = _mm256_loadu_ps(bounds);
+  const __m256 most_x = _mm256_loadu_ps(bounds + stride);
+  const __m256 least_y = _mm256_loadu_ps(bounds + 2 * stride);
+  const __m256 most_y = _mm256_loadu_ps(bounds + 3 * stride);
+  const __m256 least_z = _mm256_loadu_ps(bounds + 4 * stride);
+  const __m256 most_z = _mm256_loadu_ps(bounds + 5 * stride);
+  const __m256 inverse_cell = _mm256_load_ps(lanes.inverse_cell);
+  const __m256 x = _mm256_mul_ps(_mm256_sub_ps(half(least_x, most_x), _mm256_load_ps(lanes.min_x)),
+                                 inverse_cell);
+  const __m256 z = _mm256_mul_ps(_mm256_sub_ps(half(least_z, most_z), _mm256_load_ps(lanes.min_z)),
+                                 inverse_cell);
+  const __m256 zero = _mm256_setzero_ps();
+  const __m256 over =
+      both(both(atLeast(x, zero), _mm256_cmp_ps(x, _mm256_load_ps(lanes.cells_x), _CMP_LT_OQ)),
+           both(atLeast(z, zero), _mm256_cmp_ps(z, _mm256_load_ps(lanes.cells_z), _CMP_LT_OQ)));
+  const __m256 inside = both(over, both(atLeast(least_y, _mm256_load_ps(lanes.lowest)),
+                                        atLeast(_mm256_load_ps(lanes.highest), most_y)));
+  const __m256i mask = _mm256_castps_si256(inside);
+  // Lanes elsewhere read byte 0; their answer is no.
+  const __m256 above = _mm256_mul_ps(_mm256_sub_ps(least_y, _mm256_load_ps(lanes.band_from)),
+                                     _mm256_load_ps(lanes.inverse_band));
+  const __m256i band =
+      _mm256_min_epi32(_mm256_cvttps_epi32(above), _mm256_set1_epi32(kClearanceBands - 1));
+  const __m256i cell =
+      cellIndex(_mm256_cvttps_epi32(x), _mm256_cvttps_epi32(z), integers(lanes.tiles_x));
+  const __m256i plane =
+      _mm256_add_epi32(integers(lanes.first), _mm256_mullo_epi32(band, integers(lanes.band_bytes)));
+  const __m256i index = _mm256_and_si256(_mm256_add_epi32(plane, cell), mask);
+  // See resting_objects_avx2.cpp for why the gather is given a zero.
+  const __m256i words = _mm256_mask_i32gather_epi32(
+      _mm256_setzero_si256(), reinterpret_cast<const int*>(cells), index, _mm256_set1_epi32(-1), 1);
+  const __m256 distance = _mm256_cvtepi32_ps(_mm256_and_si256(words, _mm256_set1_epi32(0xff)));
+  const __m256 edge = _mm256_max_ps(_mm256_sub_ps(most_z, least_z), _mm256_sub_ps(most_x, least_x));
+  const __m256 reach =
+      _mm256_add_ps(_mm256_mul_ps(_mm256_mul_ps(_mm256_set1_ps(0.5F), edge), inverse_cell),
+                    _mm256_set1_ps(kBeyondHalf));
+  return static_cast<unsigned>(_mm256_movemask_ps(both(inside, atLeast(distance, reach))));
+}
+
+}  // namespace galactic::simulation
+
+#else
+
+namespace galactic::simulation {
+
+// hasAvx2() is false on this architecture; the symbol exists so that callers need no condition.
+unsigned surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells, const float* bounds,
+                        std::size_t stride) noexcept {
+  return surelyFreePortable(lanes, cells, bounds, stride);
+}
+
+}  // namespace galactic::simulation
+
+#endif

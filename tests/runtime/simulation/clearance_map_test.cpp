@@ -1,0 +1,147 @@
+// What the maps call surely free, against the columns themselves, and the two kernels.
+#include "simulation/collision/clearance_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "column_grid/column_grid_kernels.h"
+#include "simulation/collision/collision.h"
+#include "support/box_room.h"
+#include "support/grid_builder.h"
+
+namespace galactic::test::clearance_map_test {
+namespace {
+
+using namespace galactic::simulation;
+
+constexpr HeightsOverFloor kHeights{.lowest = 0.2F, .highest = 1.25F};
+constexpr float kUnevenness = 0.03F;
+
+/// Furniture of random places and heights on a floor at height 0.
+BoxRoom furnishedRoom(std::mt19937& random) {
+  std::vector<Block> blocks{{{-1, -0.4F, -1}, {4, 0, 4}}};
+  for (int n = 0; n < 5; ++n) {
+    const float x = uniformIn(random, 0, 2.5F);
+    const float z = uniformIn(random, 0, 2.5F);
+    blocks.push_back({{x, 0, z}, {x + 0.4F, uniformIn(random, 0.1F, 1.2F), z + 0.3F}});
+  }
+  return BoxRoom(std::move(blocks));
+}
+
+/// Eight centres near each other, as one of eight groups whose bounds are alike.
+struct Eight {
+  explicit Eight(std::mt19937& random) {
+    const float size = uniformIn(random, 0, 0.3F);
+    const float from_x = uniformIn(random, -0.2F, 3);
+    const float from_y = uniformIn(random, 0.15F, 1.3F);
+    const float from_z = uniformIn(random, -0.2F, 3);
+    for (std::size_t n = 0; n < kLanes; ++n) {
+      x[n] = from_x + uniformIn(random, 0, size);
+      y[n] = from_y + uniformIn(random, 0, size);
+      z[n] = from_z + uniformIn(random, 0, size);
+    }
+    const auto fill = [&](std::size_t bound, const std::array<float, kLanes>& values) {
+      const auto [least, most] = std::ranges::minmax(values);
+      std::fill_n(bounds.begin() + static_cast<std::ptrdiff_t>(bound * kLanes), kLanes, least);
+      std::fill_n(bounds.begin() + static_cast<std::ptrdiff_t>((bound + 1) * kLanes), kLanes, most);
+    };
+    fill(0, x);
+    fill(2, y);
+    fill(4, z);
+  }
+
+  std::array<float, kLanes> x{}, y{}, z{};
+  alignas(32) std::array<float, kBounds * kLanes> bounds{};
+};
+
+TEST(ClearanceMaps, CallNothingSurelyFreeThatAColumnBlocks) {
+  constexpr std::uint32_t kSeed = 1501;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  std::size_t sure = 0;
+  std::size_t all_free = 0;
+  std::size_t asked = 0;
+  for (int round = 0; round < 20; ++round) {
+    const BoxRoom room = furnishedRoom(random);
+    const auto radii = static_cast<std::uint32_t>(room.scene().grids().size());
+    ClearanceMaps maps({0, 1, 2});
+    const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
+    for (int n = 0; n < 2000; ++n) {
+      const Eight eight(random);
+      const unsigned free = maps.surelyFree(map, 0, {eight.bounds.data(), kLanes});
+      for (std::uint32_t radius = 0; radius < radii; ++radius) {
+        const bool is_free =
+            room.scene().grids()[radius].firstNotFree({eight.x, eight.y, eight.z}) == kLanes;
+        const bool is_sure = (free >> radius & 1U) != 0;
+        ASSERT_TRUE(is_free || !is_sure) << "radius " << radius << " at " << eight.x[0] << " "
+                                         << eight.y[0] << " " << eight.z[0];
+        ++asked;
+        all_free += is_free ? 1U : 0U;
+        sure += is_sure ? 1U : 0U;
+      }
+    }
+  }
+  // Both answers, and a use: the maps know of a good part of what is free.
+  EXPECT_GT(sure, asked / 10);
+  EXPECT_LT(sure, asked * 9 / 10);
+  EXPECT_GT(sure, all_free / 3);
+}
+
+TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
+  if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2";
+  constexpr std::uint32_t kSeed = 1502;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  // A map by hand: distances at random.
+  ClearanceLanes lanes{};
+  std::vector<std::uint8_t> cells(64 * 8 * 8 * kClearanceBands + 3);
+  for (std::uint8_t& cell : cells) cell = static_cast<std::uint8_t>(random() % 8);
+  for (std::size_t n = 0; n < kLanes; ++n) {
+    lanes.inverse_cell[n] = 16;
+    lanes.cells_x[n] = 50;
+    lanes.cells_z[n] = 60;
+    lanes.lowest[n] = 0.2F;
+    lanes.highest[n] = 1.4F;
+    lanes.band_from[n] = 0.1F;
+    lanes.inverse_band[n] = kClearanceBands / 1.3F;
+    lanes.band_bytes[n] = 64 * 8 * 8;
+    lanes.tiles_x[n] = 7;
+  }
+  std::size_t sure = 0;
+  constexpr int kRounds = 20000;
+  for (int n = 0; n < kRounds; ++n) {
+    const Eight eight(random);
+    const unsigned free = surelyFreePortable(lanes, cells.data(), eight.bounds.data(), kLanes);
+    ASSERT_EQ(surelyFreeAvx2(lanes, cells.data(), eight.bounds.data(), kLanes), free);
+    sure += free == 0 ? 0U : 1U;
+  }
+  EXPECT_GT(sure, kRounds / 10);
+  EXPECT_LT(sure, kRounds * 9 / 10);
+}
+
+TEST(ClearanceMaps, KnowNothingWithoutAMap) {
+  std::mt19937 random(1503);
+  const Eight eight(random);
+  EXPECT_EQ(ClearanceMaps({0}).surelyFree(kNoClearanceMap, 0, {eight.bounds.data(), kLanes}), 0U);
+}
+
+TEST(ClearanceMaps, AreNotFooledByWhatIsNoNumber) {
+  std::mt19937 random(1504);
+  const BoxRoom room = furnishedRoom(random);
+  ClearanceMaps maps({0});
+  const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
+  for (const float odd : {std::numeric_limits<float>::quiet_NaN(), 1e30F, -1e30F}) {
+    alignas(32) std::array<float, kBounds * kLanes> bounds;
+    bounds.fill(odd);
+    EXPECT_EQ(maps.surelyFree(map, 0, {bounds.data(), kLanes}), 0U) << odd;
+  }
+}
+
+}  // namespace
+}  // namespace galactic::test::clearance_map_test
