@@ -9,7 +9,7 @@ class Error(Exception):
     Attributes:
         code: why, as an ErrorCode.
         where: the file, element and field, or the option.
-        message: one sentence: what was found, what was wanted, what to do.
+        message: one sentence: what was found, what was expected, what to do.
     """
 
     def __init__(self, code: int, where: str, message: str) -> None:

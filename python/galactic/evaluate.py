@@ -30,29 +30,34 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument("world", type=pathlib.Path, help="world pack")
     actions = parser.add_mutually_exclusive_group()
     actions.add_argument(
-        "--sampled", action="store_true", help="actions as in training (this is the default)"
+        "--sampled", action="store_true", help="sample actions, as in training (the default)"
     )
-    actions.add_argument(
-        "--deterministic", action="store_true", help="the likeliest actions instead"
-    )
-    parser.add_argument("--episodes", type=int, default=0, metavar="N", help="the first N; 0: all")
-    parser.add_argument("--seed", type=int, default=1, help="of sampled actions (1)")
-    parser.add_argument("--threads", type=int, default=0, help="0: one per processor (0)")
+    actions.add_argument("--deterministic", action="store_true", help="take the likeliest actions")
     parser.add_argument(
-        "--report", type=pathlib.Path, metavar="FILE.json", help="write it all there"
+        "--episodes", type=int, default=0, metavar="N", help="play the first N episodes; 0: all"
+    )
+    parser.add_argument("--seed", type=int, default=1, help="seed of sampled actions (1)")
+    parser.add_argument(
+        "--threads", type=int, default=0, help="number of threads; 0: one per processor (0)"
+    )
+    parser.add_argument(
+        "--report", type=pathlib.Path, metavar="FILE.json", help="write the report to this file"
     )
     shown = parser.add_argument_group("Pictures of successes and failures, from behind the robot")
     shown.add_argument(
         "--contact-sheet",
         type=pathlib.Path,
         metavar="FILE.png",
-        help="a row for each episode, from start to end",
+        help="draw a row for each episode, from start to end",
     )
     shown.add_argument(
-        "--video", type=pathlib.Path, metavar="FILE.mp4", help="the same, moving; needs ffmpeg"
+        "--video",
+        type=pathlib.Path,
+        metavar="FILE.mp4",
+        help="show the same episodes moving; needs ffmpeg",
     )
     shown.add_argument(
-        "--shown", type=int, default=8, metavar="N", help="episodes in the pictures (8)"
+        "--shown", type=int, default=8, metavar="N", help="how many episodes the pictures show (8)"
     )
     return parser
 

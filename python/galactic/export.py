@@ -39,7 +39,7 @@ from galactic.learning.settings import SettingsError
 
 
 class ExportError(Exception):
-    """A module that no layer of a policy pack can say: names it and what is wanted."""
+    """A module that no layer of a policy pack can express: names it and says what was expected."""
 
 
 class Layers:
@@ -129,7 +129,7 @@ class Layers:
         kernel, stride, padding = _edge(module.kernel_size), _edge(module.stride), module.padding
         plain = module.groups == 1 and _edge(module.dilation) == 1
         if not plain or isinstance(padding, str) or module.padding_mode != "zeros":
-            raise ExportError(f"{module} has groups, gaps or a border that is not zeros")
+            raise ExportError(f"{module} has groups, dilation or padding other than zeros")
         return self.add(
             "convolution",
             x,
@@ -226,7 +226,7 @@ def _edge(size: Any) -> int:
     """The edge of a square."""
     if isinstance(size, tuple):
         if len(set(size)) != 1:
-            raise ExportError(f"{size} is no square")
+            raise ExportError(f"{size} is not a perfect square")
         return int(size[0])
     return int(size)
 
@@ -251,11 +251,20 @@ def make_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("policy", type=pathlib.Path, help="best.pt or policy.pt of a run")
     parser.add_argument(
-        "-o", "--output", type=pathlib.Path, required=True, metavar="FILE.pack", help="the pack"
+        "-o",
+        "--output",
+        type=pathlib.Path,
+        required=True,
+        metavar="FILE.pack",
+        help="the pack to write",
     )
-    parser.add_argument("--name", default="", help="of the policy (the pack's file name)")
     parser.add_argument(
-        "--robot", default="", help="the only robot that it may move (any with as many actions)"
+        "--name", default="", help="name of the policy (default: the pack's file name)"
+    )
+    parser.add_argument(
+        "--robot",
+        default="",
+        help="the only robot that it may move (default: any with as many actions)",
     )
     return parser
 

@@ -207,13 +207,13 @@ def _check_places(
     """Refuses places that results cannot land in, before anything is done."""
     for name, place in out.items():
         if name not in known:
-            raise ValueError(f"out has no place for {name!r}; wanted any of {list(known)}")
+            raise ValueError(f"out has no place for {name!r}; expected any of {list(known)}")
         shape, dtype = known[name]
         if not isinstance(place, np.ndarray) or place.dtype != dtype:
             found = getattr(place, "dtype", type(place).__name__)
-            raise TypeError(f"{name} has the type {found}, wanted {np.dtype(dtype)}")
+            raise TypeError(f"{name} has the type {found}, expected {np.dtype(dtype)}")
         if place.shape != (envs, *shape):
-            raise ValueError(f"{name} has the shape {place.shape}, wanted {(envs, *shape)}")
+            raise ValueError(f"{name} has the shape {place.shape}, expected {(envs, *shape)}")
         if not place.flags.c_contiguous or not place.flags.writeable:
             fault = "read-only" if place.flags.c_contiguous else "not contiguous"
             raise ValueError(f"{name} is {fault}; results are written in place")

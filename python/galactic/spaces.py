@@ -142,7 +142,7 @@ except ImportError:
             )
         if isinstance(space, MultiDiscrete):
             return MultiDiscrete(np.broadcast_to(space.nvec, (n, *space.nvec.shape)))
-        raise TypeError(f"there is no batch of {space}")
+        raise TypeError(f"cannot batch the space {space}")
 
 
 __all__ = ["Box", "Dict", "MultiDiscrete", "Space", "batch_space"]

@@ -48,25 +48,37 @@ def make_parser() -> argparse.ArgumentParser:
         description="Trains a policy in the homes of a world.",
         epilog=f"{EXIT_CODES}, 130 interrupted and saved.",
     )
-    parser.add_argument("world", type=pathlib.Path, nargs="?", help="world pack; not with --resume")
     parser.add_argument(
-        "-o", "--output", type=pathlib.Path, required=True, metavar="FOLDER", help="of the run"
+        "world", type=pathlib.Path, nargs="?", help="world pack; leave it out with --resume"
     )
-    parser.add_argument("--preset", default=None, metavar="|".join(PRESETS), help="(paper)")
     parser.add_argument(
-        "--validation", type=pathlib.Path, metavar="WORLD", help="world with episodes held out"
+        "-o",
+        "--output",
+        type=pathlib.Path,
+        required=True,
+        metavar="FOLDER",
+        help="folder of the run",
+    )
+    parser.add_argument(
+        "--preset", default=None, metavar="|".join(PRESETS), help="settings to start from (paper)"
+    )
+    parser.add_argument(
+        "--validation", type=pathlib.Path, metavar="WORLD", help="world with held-out episodes"
     )
     parser.add_argument(
         "--start-from",
         type=pathlib.Path,
         metavar="POLICY",
-        help="begin with the weights of this best.pt or policy.pt, learned in another task or world",
+        help="begin with the weights of this best.pt or policy.pt from another task or world",
     )
     parser.add_argument(
-        "--resume", action="store_true", help="go on from the latest checkpoint in FOLDER"
+        "--resume", action="store_true", help="continue from the latest checkpoint in FOLDER"
     )
     parser.add_argument(
-        "--device", default="auto", choices=("auto", "cpu", "cuda"), help="of the networks (auto)"
+        "--device",
+        default="auto",
+        choices=("auto", "cpu", "cuda"),
+        help="where the networks run (auto)",
     )
     add_options(parser)
     return parser
@@ -134,7 +146,7 @@ def _new_run(options: argparse.Namespace) -> Run:
         raise SettingsError("which world? Name a world pack, or --resume a run")
     if (options.output / "settings.json").exists():
         raise SettingsError(
-            f"{options.output} holds a run already; go on with it (--resume), or take another folder"
+            f"{options.output} already holds a run; continue it with --resume, or choose another folder"
         )
     settings = preset(options.preset or "paper", **given_options(options))
     return Run(
@@ -148,11 +160,11 @@ def _new_run(options: argparse.Namespace) -> Run:
 def _resumed_run(options: argparse.Namespace) -> Run:
     if options.world or options.preset or options.validation or options.start_from:
         raise SettingsError(
-            "a run that goes on has its world, its preset and its weights; leave them out"
+            "a resumed run keeps its world, its preset and its weights; leave them out"
         )
     file = options.output / "settings.json"
     if not file.is_file():
-        raise checkpoint.CheckpointError(f"{file} is not there: {options.output} holds no run")
+        raise checkpoint.CheckpointError(f"{file} does not exist: {options.output} holds no run")
     run = json.loads(file.read_text(encoding="utf-8"))
     settings = resumed(Settings.from_dict(run["settings"]), given_options(options))
     validation = run["validation"]

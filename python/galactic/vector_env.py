@@ -326,7 +326,7 @@ class VectorEnv(_Base):
 
 def _require(holds: bool, name: str, found: object, wanted: str) -> None:
     if not holds:
-        raise ValueError(f"{name} is {found!r}, wanted {wanted}")
+        raise ValueError(f"{name} is {found!r}, expected {wanted}")
 
 
 def _action_space(count: int, kind: str) -> spaces.Space:
@@ -351,13 +351,13 @@ def _reset_options(
     mask = options.get("reset_mask")
     mask = np.ones(envs, np.bool_) if mask is None else np.asarray(mask)
     if mask.shape != (envs,) or mask.dtype != np.bool_:
-        raise ValueError(f"reset_mask is {mask.dtype} {mask.shape}, wanted bool ({envs},)")
+        raise ValueError(f"reset_mask is {mask.dtype} {mask.shape}, expected bool ({envs},)")
     episodes = options.get("episodes")
     if episodes is None:
         return mask, None
     episodes = np.asarray(episodes)
     if episodes.shape != (envs,) or not np.issubdtype(episodes.dtype, np.integer):
-        raise ValueError(f"episodes are {episodes.dtype} {episodes.shape}, wanted int ({envs},)")
+        raise ValueError(f"episodes are {episodes.dtype} {episodes.shape}, expected int ({envs},)")
     return mask, episodes.astype(np.int32)
 
 

@@ -151,9 +151,9 @@ def test_a_reset_begins_the_sums_anew(world, draw_actions):
     "options, message",
     [
         ({"mask": None}, "no option 'mask'"),
-        ({"reset_mask": np.ones(ENVS)}, "reset_mask is float64 (24,), wanted bool (24,)"),
+        ({"reset_mask": np.ones(ENVS)}, "reset_mask is float64 (24,), expected bool (24,)"),
         ({"reset_mask": np.ones(3, bool)}, "reset_mask is bool (3,)"),
-        ({"episodes": np.ones(ENVS)}, "episodes are float64 (24,), wanted int (24,)"),
+        ({"episodes": np.ones(ENVS)}, "episodes are float64 (24,), expected int (24,)"),
         ({"episodes": np.ones(3, int)}, "episodes are int64 (3,)"),
     ],
 )
@@ -178,7 +178,7 @@ def test_wrong_resets_are_refused(world, options, message):
     ],
 )
 def test_wrong_arguments_are_refused(world, arguments):
-    with pytest.raises(ValueError, match="wanted"):
+    with pytest.raises(ValueError, match="expected"):
         VectorEnv(world, **{"num_envs": ENVS, **arguments})
 
 
@@ -293,11 +293,11 @@ def test_wrong_buffers_are_refused(world, draw_actions):
     actions = draw_actions(ENVS, 8)
     with pytest.raises(ValueError, match="out has no place for 'reward'"):
         env.step(actions, out={"reward": np.zeros(ENVS, np.float32)})
-    with pytest.raises(TypeError, match="rewards has the type float64, wanted float32"):
+    with pytest.raises(TypeError, match="rewards has the type float64, expected float32"):
         env.step(actions, out={"rewards": np.zeros(ENVS, np.float64)})
     with pytest.raises(TypeError, match="state has the type list"):
         env.step(actions, out={"state": [0.0]})
-    with pytest.raises(TypeError, match="rgb has the type float32, wanted uint8"):
+    with pytest.raises(TypeError, match="rgb has the type float32, expected uint8"):
         env.step(actions, out={"rgb": np.zeros((ENVS, 16, 24, 3), np.float32)})
     with pytest.raises(ValueError, match="depth is not contiguous"):
         env.step(actions, out={"depth": np.zeros((ENVS, 16, 48), np.float32)[:, :, ::2]})

@@ -40,7 +40,7 @@ FORMAT = 1
 
 
 class CheckpointError(Exception):
-    """A file that is no checkpoint of this version: says which, what was found, what to do."""
+    """A file that is not a checkpoint of this version: says which, what was found, what to do."""
 
 
 @dataclass
@@ -87,7 +87,7 @@ def load_policy(file: pathlib.Path) -> SavedPolicy:
     values, tensors = load(file)
     if values.get("format") != FORMAT or "policy" not in tensors:
         raise CheckpointError(
-            f"{file} is no policy of format {FORMAT}; take best.pt or a policy.pt of a run"
+            f"{file} is not a policy of format {FORMAT}; take best.pt or a policy.pt of a run"
         )
     settings = Settings.from_dict(values["settings"])
     shape = PolicyShape(**values["shape"])
@@ -126,7 +126,7 @@ def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
     for name, wanted in ours.items():
         if theirs[name] != wanted:
             raise CheckpointError(
-                f"{file} is a policy of another form: its {name} is {theirs[name]}, that of this run "
+                f"{file} does not fit this run: {name}: found {theirs[name]}, expected "
                 f"{wanted}; give this run the same network, simulation and robot, or start without it"
             )
     policy.load_state_dict(saved.policy.state_dict())
@@ -135,12 +135,12 @@ def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
 
 
 def load(file: pathlib.Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Values and tensors of a file. One that wants to run code is refused."""
+    """Values and tensors of a file. Rejects files that would run code."""
     try:
         contents = torch.load(file, map_location="cpu", weights_only=True)
         return json.loads(contents.pop("values")), contents
     except FileNotFoundError:
-        raise CheckpointError(f"{file} is not there") from None
+        raise CheckpointError(f"{file} does not exist") from None
     except Exception as error:  # torch raises whatever its readers do
         raise CheckpointError(f"{file} cannot be read as a checkpoint: {error}") from error
 

@@ -398,7 +398,9 @@ def make_policy(network: str, shape: PolicyShape, *, recurrent: bool = False, wi
         blocks = 1 if network == "resnet9" else 2
         encoder = ResNet(shape.seen, shape.motions + DECISIONS, blocks)
         return RecurrentPolicy(encoder, shape, FEATURES, None)
-    raise ValueError(f'"{network}" is no network; there are state, simple_cnn, resnet9, resnet18')
+    raise ValueError(
+        f'"{network}" is not a network; the networks are state, simple_cnn, resnet9, resnet18'
+    )
 
 
 def _orthogonal(layer: nn.Linear, gain: float) -> nn.Linear:

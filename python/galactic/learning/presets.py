@@ -39,5 +39,5 @@ PRESETS: Mapping[str, Mapping[str, Any]] = {
 def preset(name: str, **changes: Any) -> Settings:
     """The settings of a preset, with changes."""
     if name not in PRESETS:
-        raise SettingsError(f'"{name}" is no preset; there are {", ".join(PRESETS)}')
+        raise SettingsError(f'"{name}" is not a preset; the presets are {", ".join(PRESETS)}')
     return dataclasses.replace(Settings(), **{**PRESETS[name], **changes})

@@ -10,7 +10,7 @@ from typing import Any, Mapping, Optional, Sequence
 
 
 class SettingsError(ValueError):
-    """A setting that cannot be: says which, what was found and what is wanted."""
+    """An invalid setting: says which, what was found and what was expected."""
 
 
 def _setting(default: Any, group: str, text: str, *, low: Optional[float] = None,
@@ -32,15 +32,15 @@ def _setting(default: Any, group: str, text: str, *, low: Optional[float] = None
 
 @dataclass(frozen=True)
 class Settings:
-    """What a run is. The defaults are those of the preset `paper`: table 3 of the paper, and of
+    """What defines a run. The defaults are those of the preset `paper`: table 3 of the paper, and of
     Habitat's DD-PPO where the table is silent."""
 
     # What the robot does, and for how long.
     steps: int = _setting(
-        200_000_000, "Run", "steps of all envs of all ranks, together", low=1, may_change=True
+        200_000_000, "Run", "total steps of all envs of all ranks", low=1, may_change=True
     )
-    seed: int = _setting(1, "Run", "of everything random", low=0)
-    envs: int = _setting(128, "Run", "environments of each rank", low=1)
+    seed: int = _setting(1, "Run", "seed of everything random", low=0)
+    envs: int = _setting(128, "Run", "environments per rank", low=1)
     halves: int = _setting(
         2,
         "Run",
@@ -56,7 +56,7 @@ class Settings:
     terminate: str = _setting(
         "auto",
         "Run",
-        "who decides to terminate: the policy (`learned`), nobody (`never`), or the policy where the "
+        "who decides to terminate: the policy (`learned`), nobody (`never`), or the policy if the "
         "task asks for it (`auto`)",
         choices=("auto", "learned", "never"),
     )
@@ -64,16 +64,16 @@ class Settings:
     network: str = _setting(
         "resnet18",
         "Network",
-        "`state` sees no pictures; the others are the paper's (table 4)",
+        "`state` sees no images; the others are the paper's (table 4)",
         choices=("state", "simple_cnn", "resnet9", "resnet18"),
     )
     recurrent: bool = _setting(
-        False, "Network", "a GRU in the network `state`; the others have one"
+        False, "Network", "put a GRU into the network `state`; the others always have one"
     )
-    width: int = _setting(128, "Network", "of the layers of `state`", low=1)
+    width: int = _setting(128, "Network", "units per layer of `state`", low=1)
     layers: int = _setting(2, "Network", "hidden layers of `state`", low=1)
     activation: str = _setting(
-        "tanh", "Network", "between the layers of `state`", choices=("tanh", "relu")
+        "tanh", "Network", "activation between the layers of `state`", choices=("tanh", "relu")
     )
     log_std: str = _setting(
         "output",
@@ -83,58 +83,67 @@ class Settings:
         choices=("output", "parameter"),
     )
     initial_log_std: float = _setting(
-        -0.5, "Network", "where the parameters of `log_std` start", low=-5.0, high=2.0
+        -0.5, "Network", "initial value of the parameters of `log_std`", low=-5.0, high=2.0
     )
     final_log_std: float = _setting(
         2.0,
         "Network",
-        "the most that these parameters may be at the end of the run; the limit falls from "
-        "`initial_log_std` in the last four fifths; 2: no limit",
+        "upper limit of these parameters at the end of the run; the limit falls from "
+        "`initial_log_std` over the last four fifths; 2: no limit",
         low=-5.0,
         high=2.0,
     )
     normalize: bool = _setting(
-        False, "Network", "observations by their running mean and variance, clamped to 10"
+        False, "Network", "normalize observations by their running mean and variance, clamped to 10"
     )
     closeup: float = _setting(
         0.0,
         "Network",
         "also show the network tanh(x / this) of each number x of the observation, so that "
-        "centimetres near zero count beside metres; 0: no",
+        "centimeters near zero count beside meters; 0: off",
         low=0.0,
     )
 
-    learning_rate: float = _setting(3.5e-4, "PPO", "of Adam, at the start", low=0.0)
-    learning_rate_end: float = _setting(0.0, "PPO", "at the end; linear in between", low=0.0)
-    adam_epsilon: float = _setting(1e-5, "PPO", "of Adam", low=0.0)
-    horizon: int = _setting(64, "PPO", "steps of each env in a rollout", low=1)
-    epochs: int = _setting(1, "PPO", "times that a rollout is used", low=1)
+    learning_rate: float = _setting(3.5e-4, "PPO", "Adam's learning rate at the start", low=0.0)
+    learning_rate_end: float = _setting(
+        0.0, "PPO", "learning rate at the end; linear in between", low=0.0
+    )
+    adam_epsilon: float = _setting(1e-5, "PPO", "Adam's epsilon", low=0.0)
+    horizon: int = _setting(64, "PPO", "steps per env in a rollout", low=1)
+    epochs: int = _setting(1, "PPO", "how many times a rollout is used", low=1)
     mini_batches: int = _setting(2, "PPO", "parts of a rollout, by env; divides `envs`", low=1)
-    clip: float = _setting(0.2, "PPO", "of the ratio of probabilities", low=0.0)
+    clip: float = _setting(0.2, "PPO", "clipping range of the probability ratio", low=0.0)
     value_coefficient: float = _setting(
         0.5, "PPO", "weight of the value loss, which is half the squared error", low=0.0
     )
     value_clip: float = _setting(
-        0.0, "PPO", "furthest that an update moves a value before its loss is flat; 0: any", low=0.0
+        0.0,
+        "PPO",
+        "how far an update may move a value before its loss is flat; 0: any distance",
+        low=0.0,
     )
     entropy: float = _setting(
         1e-3, "PPO", "coefficient of the entropy, a plain sum over motions and decisions", low=0.0
     )
     entropy_end: float = _setting(
-        -1.0, "PPO", "the same at the end of the run, linear in between; -1: no change", low=-1.0
+        -1.0, "PPO", "its value at the end of the run, linear in between; -1: no change", low=-1.0
     )
-    max_grad_norm: float = _setting(2.0, "PPO", "longest gradient", low=0.0)
-    gamma: float = _setting(0.99, "PPO", "discount", low=0.0, high=1.0)
+    max_grad_norm: float = _setting(
+        2.0, "PPO", "largest norm of the gradient; longer ones are scaled down", low=0.0
+    )
+    gamma: float = _setting(0.99, "PPO", "discount factor", low=0.0, high=1.0)
     gae_lambda: float = _setting(
         0.95, "PPO", "lambda of generalized advantage estimates", low=0.0, high=1.0
     )
-    normalize_advantages: bool = _setting(True, "PPO", "to mean 0, variance 1 over all ranks")
+    normalize_advantages: bool = _setting(
+        True, "PPO", "normalize advantages to mean 0, variance 1 over all ranks"
+    )
 
     ranks: int = _setting(
         1,
         "Ranks",
-        "processes that train together on this machine; across machines torchrun starts them, and "
-        "this says nothing",
+        "processes that train together on this machine; ignored under torchrun, which starts them "
+        "across machines",
         low=1,
     )
     sync_fraction: float = _setting(
@@ -145,16 +154,16 @@ class Settings:
         high=1.0,
     )
     shortest_rollout: float = _setting(
-        0.25, "Ranks", "share of a rollout before which no rank is stopped", low=0.0, high=1.0
+        0.25, "Ranks", "no rank is stopped before this share of its rollout", low=0.0, high=1.0
     )
 
     simulation_threads: int = _setting(
-        0, "Machine", "of each rank; 0: its share of the processors", low=0, may_change=True
+        0, "Machine", "threads per rank; 0: its share of the processors", low=0, may_change=True
     )
     torch_threads: int = _setting(
         0,
         "Machine",
-        "of each rank; 0: its share of the processors with pictures, 1 for `state`, whose layers are "
+        "threads per rank; 0: its share of the processors with images, 1 for `state`, whose layers are "
         "too small to share",
         low=0,
         may_change=True,
@@ -162,7 +171,7 @@ class Settings:
     precision: str = _setting(
         "bf16",
         "Machine",
-        "of networks on a GPU; on processors always fp32",
+        "precision of networks on a GPU; on processors always fp32",
         choices=("fp32", "tf32", "bf16"),
     )
     cuda_graphs: bool = _setting(
@@ -174,11 +183,14 @@ class Settings:
     validate_every: int = _setting(
         10_000_000,
         "Reports",
-        "steps between validations, when there is a world for them; 0: none",
+        "steps between validations, if there is a world for them; 0: none",
         low=0,
     )
     validation_episodes: int = _setting(
-        200, "Reports", "of the world for validations, the first; 0: all", low=0
+        200,
+        "Reports",
+        "how many episodes of the validation world to play, from the first on; 0: all",
+        low=0,
     )
     checkpoint_every: int = _setting(
         1_000_000,
@@ -188,10 +200,14 @@ class Settings:
         may_change=True,
     )
     keep: int = _setting(
-        3, "Reports", "latest checkpoints that are kept, beside the best", low=1, may_change=True
+        3,
+        "Reports",
+        "how many of the latest checkpoints to keep, besides the best",
+        low=1,
+        may_change=True,
     )
     window: int = _setting(
-        1000, "Reports", "episodes over which the curves of training are averaged", low=1
+        1000, "Reports", "number of episodes over which the training curves are averaged", low=1
     )
     log_every: float = _setting(
         2.0, "Reports", "seconds between points of the curves", low=0.0, may_change=True
@@ -208,7 +224,9 @@ class Settings:
         if self.envs % self.halves:
             raise SettingsError(f"{self.envs} envs cannot be split into {self.halves} halves")
         if self.network != "state" and self.recurrent:
-            raise SettingsError("recurrent is for the network state; the paper's have a GRU anyway")
+            raise SettingsError(
+                "recurrent applies only to the network state; the paper's networks always have a GRU"
+            )
 
     def learning_rate_at(self, progress: float) -> float:
         """`progress`: share of the run that is done, 0 to 1."""
@@ -229,8 +247,8 @@ class Settings:
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "Settings":
-        """The settings of a checkpoint. Names that this version does not know are refused; what it
-        knows and the checkpoint does not has its default."""
+        """The settings of a checkpoint. Names that this version does not know are rejected; a
+        setting that the checkpoint does not have takes its default."""
         unknown = sorted(set(values) - {field.name for field in dataclasses.fields(cls)})
         if unknown:
             raise SettingsError(f"the settings {', '.join(unknown)} are unknown to this version")
@@ -291,13 +309,13 @@ def _integer(text: str) -> int:
 
 
 def resumed(before: Settings, given: Mapping[str, Any]) -> Settings:
-    """The settings of a run that goes on. Refuses those that would make it another run."""
+    """The settings of a resumed run. Rejects those that would make it another run."""
     fields = {field.name: field for field in dataclasses.fields(Settings)}
     for name, value in given.items():
         old = getattr(before, name)
         if value != old and not fields[name].metadata["may_change"]:
             raise SettingsError(
-                f"the run began with {option_name(name)} {old}, and cannot go on with {value}; "
+                f"the run began with {option_name(name)} {old}, and cannot continue with {value}; "
                 "begin a new one"
             )
     return dataclasses.replace(before, **given)

@@ -94,7 +94,7 @@ class Trainer:
 
     def train(self) -> bool:
         """Trains until `settings.steps` are done or a signal asks to stop; saves in either case.
-        Returns whether the run is complete. Raises TrainingError when the loss is no number."""
+        Returns whether the run is complete. Raises TrainingError when the loss is not a number."""
         settings = self.settings
         if self.steps >= settings.steps:
             return True
@@ -142,7 +142,7 @@ class Trainer:
         self._remember(EpisodeSums(*episodes))
         if not all(abs(value) < float("inf") for value in losses.values()):
             raise TrainingError(
-                f"update {self.updates} gave a loss that is no number ({losses}); a lower "
+                f"update {self.updates} gave a loss that is not a number ({losses}); a lower "
                 "--learning-rate or --max-grad-norm may help"
             )
         return losses, stop > 0.0

@@ -60,7 +60,7 @@ def test_every_setting_can_be_typed() -> None:
 def test_presets_are_settings_that_can_be() -> None:
     for name in PRESETS:
         assert Settings.from_dict(preset(name).to_dict()) == preset(name)
-    with pytest.raises(SettingsError, match='"none" is no preset'):
+    with pytest.raises(SettingsError, match='"none" is not a preset'):
         preset("none")
     with pytest.raises(SettingsError, match="unknown to this version"):
         Settings.from_dict({"colour": 1})
@@ -69,5 +69,5 @@ def test_presets_are_settings_that_can_be() -> None:
 def test_a_resumed_run_stays_what_it_is() -> None:
     before = preset("quick")
     assert resumed(before, {"steps": 7, "gamma": before.gamma}).steps == 7
-    with pytest.raises(SettingsError, match="cannot go on with 0.5; begin a new one"):
+    with pytest.raises(SettingsError, match="cannot continue with 0.5; begin a new one"):
         resumed(before, {"gamma": 0.5})

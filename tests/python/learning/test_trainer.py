@@ -144,9 +144,9 @@ def test_what_is_no_checkpoint_is_refused(tmp_path: pathlib.Path) -> None:
     with pytest.raises(CheckpointError, match="cannot be read as a checkpoint"):
         load_policy(tmp_path / "policy.pt")
     checkpoint.save(tmp_path / "policy.pt", {"format": 99}, {})
-    with pytest.raises(CheckpointError, match="is no policy of format 1"):
+    with pytest.raises(CheckpointError, match="is not a policy of format 1"):
         load_policy(tmp_path / "policy.pt")
-    with pytest.raises(CheckpointError, match="is not there"):
+    with pytest.raises(CheckpointError, match="does not exist"):
         load_policy(tmp_path / "none.pt")
 
 
@@ -178,7 +178,7 @@ def test_a_loss_that_is_no_number_ends_the_run(tmp_path: pathlib.Path) -> None:
     trainer = make_trainer(tmp_path)
     trainer.begin()
     trainer.learner.optimizer.parameters.data.fill_(float("nan"))
-    with pytest.raises(TrainingError, match="update 1 gave a loss that is no number"):
+    with pytest.raises(TrainingError, match="update 1 gave a loss that is not a number"):
         trainer.train()
 
 

@@ -127,7 +127,7 @@ def test_an_interrupt_saves_and_says_how_to_go_on(tmp_path: pathlib.Path) -> Non
     "arguments, code, message",
     [
         (["--preset", "quick"], 1, "which world? Name a world pack, or --resume a run"),
-        ([WORLD, "--preset", "swift"], 1, '"swift" is no preset; there are paper, quick'),
+        ([WORLD, "--preset", "swift"], 1, '"swift" is not a preset; the presets are paper, quick'),
         ([WORLD, "--envs", "6", "--mini-batches", "4"], 1, "cannot be split into 4 mini-batches"),
         ([WORLD, "--gamma", "1.5"], 1, "gamma is 1.5; it has to be from 0 to 1"),
         ([WORLD, "--network", "big"], 1, 'network is "big"; it can be state'),
@@ -151,9 +151,9 @@ def test_a_run_is_not_written_over_nor_turned_into_another(tmp_path: pathlib.Pat
     options = [*SMALL, "--steps", UPDATE]
     assert run("train", WORLD, "-o", tmp_path / "run", *options).returncode == 0
     again = run("train", WORLD, "-o", tmp_path / "run", *options)
-    assert again.returncode == 1 and "holds a run already" in again.stderr
+    assert again.returncode == 1 and "already holds a run" in again.stderr
     other = run("train", "-o", tmp_path / "run", "--resume", "--gamma", "0.9")
-    assert other.returncode == 1 and "cannot go on with 0.9" in other.stderr
+    assert other.returncode == 1 and "cannot continue with 0.9" in other.stderr
     longer = run("train", "-o", tmp_path / "run", "--resume", "--steps", 3 * UPDATE)
     assert longer.returncode == 0 and len(curve(tmp_path / "run")) == 3
 
@@ -176,10 +176,10 @@ def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
     assert begun_head.bias[-1] - begun_head.bias[-2] == checkpoint.NEW_TERMINATE_LOGIT
     blind = run("train", WORLD, "-o", tmp_path / "blind", *small, "--simulation", "task=pick",
                 "--start-from", pick / "best.pt")  # fmt: skip
-    assert blind.returncode == 3 and "a policy of another form: its parts is" in blind.stderr
+    assert blind.returncode == 3 and "does not fit this run: parts: found" in blind.stderr
     wide = run("train", WORLD, "-o", tmp_path / "wide", *small, "--width", "64",
                "--start-from", pick / "best.pt")  # fmt: skip
-    assert wide.returncode == 3 and "its width is 128, that of this run 64" in wide.stderr
+    assert wide.returncode == 3 and "width: found 128, expected 64" in wide.stderr
     assert not (tmp_path / "blind").exists() and not (tmp_path / "wide").exists()
     resumed = run("train", "-o", rearrange, "--resume", "--start-from", pick / "best.pt")
     assert resumed.returncode == 1 and "leave them out" in resumed.stderr
@@ -220,4 +220,4 @@ def test_a_policy_that_sees_pictures_trains_and_is_evaluated(tmp_path: pathlib.P
 
 def test_an_evaluation_refuses_what_is_no_policy(tmp_path: pathlib.Path) -> None:
     done = run("evaluate", tmp_path / "none.pt", HELD_OUT)
-    assert done.returncode == 3 and "none.pt is not there" in done.stderr
+    assert done.returncode == 3 and "none.pt does not exist" in done.stderr
