@@ -44,6 +44,32 @@ std::array<double, Count> parseNumbers(const std::string& option, const std::str
   return numbers;
 }
 
+/// Turns one of `names` into the number of its value. CLI's own transformer takes these numbers,
+/// too.
+template <class T>
+CLI::Validator choice(std::map<std::string, T> names) {
+  return CLI::Validator(
+      [names = std::move(names)](std::string& text) {
+        const auto found = names.find(text);
+        if (found != names.end()) {
+          text = std::to_string(static_cast<int>(found->second));
+          return std::string();
+        }
+        std::string wanted;
+        for (const auto& [name, value] : names) wanted += (wanted.empty() ? "" : ", ") + name;
+        return fmt::format("found \"{}\", wanted one of {}", text, wanted);
+      },
+      "", "choice");
+}
+
+void checkSwitches(CLI::App& app) {
+  for (CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    for (CLI::Option* option : verb->get_options()) {
+      if (option->get_expected_max() == 0) option->check(switchCheck());
+    }
+  }
+}
+
 void addJson(CLI::App& verb, OutputForm& form) {
   verb.add_flag_callback(
       "--json", [&form] { form = OutputForm::kJson; }, "print JSON instead of text");
@@ -228,10 +254,9 @@ void addGridPictureOptions(CLI::App& verb, GridPictureOptions& options) {
   verb.add_option("--value", options.value,
                   "scenes: colour a plan by total free height, by the height of the lowest span, "
                   "or by the number of spans (default total)")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, PlanValue>{{"total", PlanValue::kTotalHeight},
-                                           {"lowest", PlanValue::kLowestHeight},
-                                           {"spans", PlanValue::kSpanCount}}))
+      ->transform(choice(std::map<std::string, PlanValue>{{"total", PlanValue::kTotalHeight},
+                                                          {"lowest", PlanValue::kLowestHeight},
+                                                          {"spans", PlanValue::kSpanCount}}))
       ->type_name("total|lowest|spans");
 }
 
@@ -285,12 +310,12 @@ void addView(CLI::App& app, ViewOptions& options) {
 void addEpisodeSetOptions(CLI::App& verb, ExportOptions& options) {
   verb.add_option("--object-up", options.object_up,
                   "episode sets: up axis of the objects' mesh files (default z)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, FileUp>{{"x", FileUp::kX},
-                                                                        {"y", FileUp::kY},
-                                                                        {"z", FileUp::kZ},
-                                                                        {"-x", FileUp::kMinusX},
-                                                                        {"-y", FileUp::kMinusY},
-                                                                        {"-z", FileUp::kMinusZ}}))
+      ->transform(choice(std::map<std::string, FileUp>{{"x", FileUp::kX},
+                                                       {"y", FileUp::kY},
+                                                       {"z", FileUp::kZ},
+                                                       {"-x", FileUp::kMinusX},
+                                                       {"-y", FileUp::kMinusY},
+                                                       {"-z", FileUp::kMinusZ}}))
       ->type_name("AXIS");
   verb.final_callback([&options] {
     if (options.output.empty() && options.format != ExportFormat::kEpisodeSet) {
@@ -309,13 +334,13 @@ void addExport(CLI::App& app, ExportOptions& options) {
       ->type_name("FILE");
   addEpisodeSetOptions(verb, options);
   verb.add_option("--to", options.format, "format (default: by the extension of FILE)")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, ExportFormat>{{"obj", ExportFormat::kObj},
-                                              {"ply", ExportFormat::kPly},
-                                              {"glb", ExportFormat::kGlb},
-                                              {"srdf", ExportFormat::kSrdf},
-                                              {"urdf", ExportFormat::kUrdf},
-                                              {"episode_set", ExportFormat::kEpisodeSet}}))
+      ->transform(
+          choice(std::map<std::string, ExportFormat>{{"obj", ExportFormat::kObj},
+                                                     {"ply", ExportFormat::kPly},
+                                                     {"glb", ExportFormat::kGlb},
+                                                     {"srdf", ExportFormat::kSrdf},
+                                                     {"urdf", ExportFormat::kUrdf},
+                                                     {"episode_set", ExportFormat::kEpisodeSet}}))
       ->type_name("glb|srdf|urdf|obj|ply|episode_set");
   addFigureOptions(verb, options.figures);
   addRadius(verb, options.radius);
@@ -382,6 +407,7 @@ tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
   addPicture(app, options.picture);
   addReport(app, options.report);
   addView(app, options.view);
+  checkSwitches(app);
 
   constexpr std::string_view kVerbs = "info, check, column, diff, export, picture, report or view";
   if (argc < 2) return tl::unexpected(usageError(console, fmt::format("no verb; give {}", kVerbs)));

@@ -82,7 +82,7 @@ class CommandLineVisitor {
     // --NAME=false, too: a world may have switched it on.
     const auto set = [value](std::int64_t times) { value.field = (times > 0) == value.when_typed; };
     app_.add_flag_function(dashed(name), set, std::string(help))
-        ->check(CLI::IsMember({"true", "false"}))
+        ->check(switchCheck())
         ->group(heading_)
         ->option_text(" ");
   }
@@ -139,8 +139,10 @@ void addPlainOptions(CLI::App& app, RunOptions& options) {
       ->allow_extra_args(false)
       ->type_name("FILE");
   app.add_flag("--trusted", options.trusted,
-               "Skip the verification of packs that this machine has verified before");
-  app.add_flag("--bench", options.bench, "Measure queries on all grids of all packs");
+               "Skip the verification of packs that this machine has verified before")
+      ->check(switchCheck());
+  app.add_flag("--bench", options.bench, "Measure queries on all grids of all packs")
+      ->check(switchCheck());
 }
 
 void addRunOptions(CLI::App& app, RunOptions& options) {
@@ -153,13 +155,15 @@ void addRunOptions(CLI::App& app, RunOptions& options) {
       ->option_text(
           fmt::format("random|forward|zero|scripted|FILE.pack|replay:FILE [{}]", options.policy));
   app.add_flag("--deterministic,!--policy-sample", options.is_deterministic,
-               "A policy pack takes its likeliest actions, or draws them, as it does by itself");
+               "A policy pack takes its likeliest actions, or draws them, as it does by itself")
+      ->check(switchCheck());
   app.add_option("--threads", options.simulation.threads,
                  "Threads; the results do not depend on it; 0: one per processor")
       ->check(wholeCheck(0, 4096))
       ->option_text(fmt::format("N [{}]", options.simulation.threads));
   app.add_flag("--body-transforms", options.simulation.body_transforms,
-               "Keep the pose of every body of the robot, as rendering needs");
+               "Keep the pose of every body of the robot, as rendering needs")
+      ->check(switchCheck());
   app.add_option("--record", options.record, "Write actions and digests, for replay:FILE")
       ->type_name("FILE");
   app.add_option("--report", options.report, "Write the closing table as JSON")

@@ -80,7 +80,8 @@ void addPictures(CLI::App& app, DrawingOptions& drawing) {
 
 void addDebug(CLI::App& app, DrawingOptions& drawing) {
   app.add_flag("--debug-view", drawing.debug_view,
-               "Pictures show column grid, spheres and boxes beside the camera's image");
+               "Pictures show column grid, spheres and boxes beside the camera's image")
+      ->check(switchCheck());
   app.add_option("--debug-camera", drawing.debug_camera, "From where, as --camera")
       ->option_text(fmt::format("head|follow|top|LINK [{}]", drawing.debug_camera));
   app.add_option("--debug-radius", drawing.debug_radius,

@@ -63,15 +63,11 @@ class SpawnSetup {
 };
 
 std::vector<std::string> ffmpegCommand(const std::filesystem::path& path, const Image& like) {
-  return {"ffmpeg",    "-y",
-          "-loglevel", "error",
-          "-f",        "rawvideo",
-          "-pix_fmt",  "rgb24",
-          "-s",        fmt::format("{}x{}", like.width(), like.height()),
-          "-r",        std::to_string(VideoPipe::kRate),
-          "-i",        "-",
-          "-an",       "-pix_fmt",
-          "yuv420p",   path.string()};
+  return {"ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
+          fmt::format("{}x{}", like.width(), like.height()), "-r", std::to_string(VideoPipe::kRate),
+          "-i", "-", "-an", "-pix_fmt",
+          // Whatever the name begins with, it is no option and no protocol.
+          "yuv420p", (path.is_absolute() ? path : "." / path).string()};
 }
 
 /// "name.partial.mp4": the ending tells ffmpeg the format.
@@ -97,6 +93,10 @@ class VideoPipe::Child {
   Child& operator=(Child&&) = delete;
 
   Result<void> start(const Image& like) {
+    if (path_.extension().empty()) {
+      return fail(ErrorCode::kInvalidInput, path_.string(),
+                  "has no ending that tells ffmpeg the format; name it, for example, run.mp4");
+    }
     // A socket, unlike a pipe, can be told to raise no signal when nobody reads it.
     std::array<int, 2> ends{-1, -1};
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {

@@ -21,5 +21,8 @@ namespace galactic {
 using TextCheck = std::function<std::string(const std::string& text)>;
 [[nodiscard]] TextCheck numberCheck(double least, double most);
 [[nodiscard]] TextCheck wholeCheck(std::uint64_t least, std::uint64_t most);
+/// The same of switches, which may be given as --NAME=true and --NAME=false: parsers would take
+/// numbers, too.
+[[nodiscard]] TextCheck switchCheck();
 
 }  // namespace galactic

@@ -40,4 +40,11 @@ TextCheck wholeCheck(std::uint64_t least, std::uint64_t most) {
   return [=](const std::string& text) { return wholeFault(text, least, most); };
 }
 
+TextCheck switchCheck() {
+  return [](const std::string& text) {
+    if (text == "true" || text == "false") return std::string();
+    return fmt::format("found \"{}\", wanted nothing, =true or =false", text);
+  };
+}
+
 }  // namespace galactic
