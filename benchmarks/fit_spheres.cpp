@@ -103,7 +103,9 @@ Result<std::vector<SphereSet>> makeSets(const TriangleMesh& mesh, const Request&
       if (auto refined = curve->refine(options.jobs); !refined)
         return tl::unexpected(refined.error());
     }
-    return curve->sets();
+    std::vector<SphereSet> sets;
+    for (std::size_t n = 0; n < curve->points().size(); ++n) sets.push_back(curve->take(n));
+    return sets;
   }
   auto set = fitSphereSet(mesh, options);
   if (!set) return tl::unexpected(set.error());

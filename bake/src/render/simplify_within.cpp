@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sphere_set/triangle_tree.h"
+#include "sphere_set/solid/triangle_tree.h"
 #include "vec3d.h"
 
 namespace galactic::bake {

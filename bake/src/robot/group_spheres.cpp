@@ -231,21 +231,27 @@ class BudgetedCurves {
     // The largest first, so that it does not keep all others waiting at the end.
     std::stable_sort(wanted.begin(), wanted.end(),
                      [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
+    fitted_ = wanted;
     while (!wanted.empty()) {
-      if (auto refined = refine(wanted); !refined) return refined;
-      chosen_ = budget.widest_gap ? spendBudgetWithin(sets(), budget.most, *budget.widest_gap)
-                                  : spendBudget(sets(), budget.most);
+      if (auto refined = refine(wanted, budget); !refined) return refined;
+      chosen_ = budget.widest_gap ? spendBudgetWithin(points(), budget.most, *budget.widest_gap)
+                                  : spendBudget(points(), budget.most);
       std::erase_if(wanted, [&](std::size_t n) {
-        return curves_[n]->complete() || chosen_[n] + kLookAhead < curves_[n]->sets().size();
+        return curves_[n]->complete() || chosen_[n] + kLookAhead < curves_[n]->points().size();
       });
     }
+    if (!budget.widest_gap) chosen_ = spendBudgetEvenly(points(), budget.most);
     return {};
   }
 
-  /// The set that the budget takes of a group that is fitted.
-  [[nodiscard]] std::optional<SphereSet> take(std::size_t group) const {
-    if (!curves_[group]) return std::nullopt;
-    return curves_[group]->take(chosen_[group]);
+  /// The sets that the budget takes, one per group; none where a group is not fitted.
+  [[nodiscard]] std::vector<std::optional<SphereSet>> take() const {
+    std::vector<std::optional<SphereSet>> sets(curves_.size());
+    parallelFor(task_.options.jobs, fitted_.size(), [&](std::size_t n) {
+      const std::size_t group = fitted_[n];
+      sets[group] = curves_[group]->take(chosen_[group]);
+    });
+    return sets;
   }
 
  private:
@@ -254,19 +260,19 @@ class BudgetedCurves {
     return (b.max.x - b.min.x) + (b.max.y - b.min.y) + (b.max.z - b.min.z);
   }
 
-  [[nodiscard]] std::vector<SphereSets> sets() const {
-    std::vector<SphereSets> sets;
-    for (const auto& curve : curves_) sets.push_back(curve ? curve->sets() : SphereSets());
-    return sets;
+  [[nodiscard]] std::vector<CurvePoints> points() const {
+    std::vector<CurvePoints> points;
+    for (const auto& curve : curves_) points.push_back(curve ? curve->points() : CurvePoints());
+    return points;
   }
 
-  Result<void> refine(const std::vector<std::size_t>& groups) {
+  Result<void> refine(const std::vector<std::size_t>& groups, const SphereBudget& budget) {
     std::vector<std::optional<Error>> errors(groups.size());
     const unsigned jobs = task_.options.jobs;
     const unsigned jobs_each =
         std::max(1U, jobs / static_cast<unsigned>(std::min<std::size_t>(groups.size(), jobs)));
     parallelFor(jobs, groups.size(), [&](std::size_t n) {
-      const auto refined = refineGroup(groups[n], jobs_each);
+      const auto refined = refineGroup(groups[n], budget.most == 0, jobs_each);
       if (!refined) errors[n] = refined.error();
     });
     for (std::size_t n = 0; n < groups.size(); ++n) {
@@ -275,19 +281,21 @@ class BudgetedCurves {
     return {};
   }
 
-  Result<void> refineGroup(std::size_t group, unsigned jobs) {
+  Result<void> refineGroup(std::size_t group, bool unlimited, unsigned jobs) {
     if (!curves_[group]) {
       auto curve = SphereCurve::begin(plans_[group].mesh, plans_[group].fit);
       if (!curve) return tl::unexpected(curve.error());
       curves_[group] = std::move(*curve);
     }
-    return curves_[group]->refine(jobs);
+    return unlimited ? curves_[group]->finish(jobs) : curves_[group]->refine(jobs);
   }
 
   const std::vector<GroupPlan>& plans_;
   const std::vector<RigidGroup>& groups_;
   const SphereTask& task_;
   std::vector<std::optional<SphereCurve>> curves_;
+  /// Groups that have a curve.
+  std::vector<std::size_t> fitted_;
   std::vector<std::size_t> chosen_;
 };
 
@@ -314,6 +322,7 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
   BudgetedCurves curves(plans, groups, task);
   if (auto spent = curves.spend(budget); !spent) return tl::unexpected(spent.error());
   std::size_t fitted = 0;
+  std::vector<std::optional<SphereSet>> sets = curves.take();
   for (std::size_t n = 0; n < plans.size(); ++n) {
     if (plans[n].authored) {
       const auto taken =
@@ -324,8 +333,8 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
           "link '{}': all of it is lower than the clip height at the start pose, so it gets no "
           "spheres; lower clip_height in the recipe if it needs some",
           task.robot.links[baked[n].link].name));
-    } else if (auto set = curves.take(n)) {
-      baked[n].spheres = std::move(*set);
+    } else if (sets[n]) {
+      baked[n].spheres = std::move(*sets[n]);
       baked[n].measured = true;
       fitted += baked[n].spheres.spheres.size();
     }

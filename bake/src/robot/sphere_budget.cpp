@@ -1,47 +1,53 @@
 #include "sphere_budget.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 namespace galactic::bake {
 namespace {
 
-/// A protrusion costs room, a gap lets the robot pass through things: it counts twice as much.
-constexpr double kProtrusionWeight = 0.5;
-/// The tails count beside the mean.
-constexpr double kTailWeight = 0.5;
+/// The widest gap may cost this share of the least error.
+constexpr double kEvenness = 0.1;
 
-double errorOf(const LengthStatistics& lengths) { return lengths.mean + kTailWeight * lengths.p95; }
-
-/// What a set gets wrong, metres times square metres.
-double errorOf(const SphereSet& set) {
-  const SphereSetQuality& quality = set.quality;
-  return quality.area * (errorOf(quality.gap) + kProtrusionWeight * errorOf(quality.protrusion));
-}
-
-std::size_t coarsestCount(const std::vector<SphereSets>& curves) {
+std::size_t coarsestCount(const std::vector<CurvePoints>& curves) {
   std::size_t count = 0;
-  for (const SphereSets& curve : curves) {
-    if (!curve.empty()) count += curve.front().spheres.size();
+  for (const CurvePoints& curve : curves) {
+    if (!curve.empty()) count += curve.front().spheres;
   }
   return count;
 }
 
-std::size_t finestCount(const std::vector<SphereSets>& curves) {
+std::size_t finestCount(const std::vector<CurvePoints>& curves) {
   std::size_t count = 0;
-  for (const SphereSets& curve : curves) {
-    if (!curve.empty()) count += curve.back().spheres.size();
+  for (const CurvePoints& curve : curves) {
+    if (!curve.empty()) count += curve.back().spheres;
   }
   return count;
 }
 
-std::vector<std::size_t> finestSets(const std::vector<SphereSets>& curves) {
+std::vector<std::size_t> finestSets(const std::vector<CurvePoints>& curves) {
   std::vector<std::size_t> chosen;
   chosen.reserve(curves.size());
-  for (const SphereSets& curve : curves) {
+  for (const CurvePoints& curve : curves) {
     chosen.push_back(curve.empty() ? 0 : curve.size() - 1);
   }
   return chosen;
+}
+
+/// All sets together: spheres and errors added up, and the widest gap of any.
+CurvePoint chosenOf(const std::vector<CurvePoints>& curves,
+                    const std::vector<std::size_t>& chosen) {
+  CurvePoint all;
+  for (std::size_t n = 0; n < curves.size(); ++n) {
+    if (curves[n].empty()) continue;
+    const CurvePoint& set = curves[n][chosen[n]];
+    all.spheres += set.spheres;
+    all.error += set.error;
+    all.widest_gap = std::max(all.widest_gap, set.widest_gap);
+  }
+  return all;
 }
 
 /// The least error of the first curves for each number of spheres, and the set of the last of them
@@ -50,13 +56,13 @@ class BudgetTable {
  public:
   explicit BudgetTable(std::size_t most) : least_(most + 1, 0) {}
 
-  void add(const SphereSets& sets) {
+  void add(const CurvePoints& sets) {
     constexpr double kImpossible = std::numeric_limits<double>::infinity();
     std::vector<double> least(least_.size(), kImpossible);
     std::vector<std::uint32_t> choice(least_.size(), 0);
     for (std::uint32_t set = 0; set < sets.size(); ++set) {
-      const std::size_t count = sets[set].spheres.size();
-      const double error = errorOf(sets[set]);
+      const std::size_t count = sets[set].spheres;
+      const double error = sets[set].error;
       for (std::size_t used = count; used < least.size(); ++used) {
         const double sum = least_[used - count] + error;
         if (sum < least[used]) {
@@ -70,14 +76,14 @@ class BudgetTable {
   }
 
   /// The sets of all curves that were added, with at most this many spheres.
-  [[nodiscard]] std::vector<std::size_t> best(const std::vector<SphereSets>& curves) const {
+  [[nodiscard]] std::vector<std::size_t> best(const std::vector<CurvePoints>& curves) const {
     std::vector<std::size_t> chosen(curves.size(), 0);
     std::size_t left = least_.size() - 1;
     std::size_t row = choices_.size();
     for (std::size_t n = curves.size(); n-- > 0;) {
       if (curves[n].empty()) continue;
       chosen[n] = choices_[--row][left];
-      left -= curves[n][chosen[n]].spheres.size();
+      left -= curves[n][chosen[n]].spheres;
     }
     return chosen;
   }
@@ -89,24 +95,24 @@ class BudgetTable {
 
 }  // namespace
 
-std::vector<std::size_t> spendBudget(const std::vector<SphereSets>& curves, std::uint32_t budget) {
+std::vector<std::size_t> spendBudget(const std::vector<CurvePoints>& curves, std::uint32_t budget) {
   if (budget == 0) return finestSets(curves);
   if (coarsestCount(curves) > budget) return std::vector<std::size_t>(curves.size(), 0);
   BudgetTable table(std::min<std::size_t>(budget, finestCount(curves)));
-  for (const SphereSets& curve : curves) {
+  for (const CurvePoints& curve : curves) {
     if (!curve.empty()) table.add(curve);
   }
   return table.best(curves);
 }
 
-std::vector<std::size_t> spendBudgetWithin(const std::vector<SphereSets>& curves,
+std::vector<std::size_t> spendBudgetWithin(const std::vector<CurvePoints>& curves,
                                            std::uint32_t budget, double widest_gap) {
-  std::vector<SphereSets> narrow(curves.size());
+  std::vector<CurvePoints> narrow(curves.size());
   std::vector<std::vector<std::size_t>> places(curves.size());
   for (std::size_t n = 0; n < curves.size(); ++n) {
     for (std::size_t set = 0; set < curves[n].size(); ++set) {
       const bool is_last = set + 1 == curves[n].size();
-      const bool fits = curves[n][set].quality.gap.max <= widest_gap;
+      const bool fits = curves[n][set].widest_gap <= widest_gap;
       if (!fits && !(is_last && places[n].empty())) continue;
       narrow[n].push_back(curves[n][set]);
       places[n].push_back(set);
@@ -118,6 +124,20 @@ std::vector<std::size_t> spendBudgetWithin(const std::vector<SphereSets>& curves
     if (!places[n].empty()) chosen[n] = places[n][chosen[n]];
   }
   return chosen;
+}
+
+std::vector<std::size_t> spendBudgetEvenly(const std::vector<CurvePoints>& curves,
+                                           std::uint32_t budget) {
+  std::vector<std::size_t> chosen = spendBudget(curves, budget);
+  if (budget == 0) return chosen;
+  const double most = (1 + kEvenness) * chosenOf(curves, chosen).error;
+  while (true) {
+    const double widest = chosenOf(curves, chosen).widest_gap;
+    auto narrower = spendBudgetWithin(curves, budget, std::nextafter(widest, 0.0));
+    const CurvePoint now = chosenOf(curves, narrower);
+    if (now.spheres > budget || now.widest_gap >= widest || now.error > most) return chosen;
+    chosen = std::move(narrower);
+  }
 }
 
 }  // namespace galactic::bake

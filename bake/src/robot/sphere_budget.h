@@ -8,20 +8,25 @@
 namespace galactic::bake {
 
 /// The sets of one curve, by rising count.
-using SphereSets = std::vector<SphereSet>;
+using CurvePoints = std::vector<CurvePoint>;
 
 /// Which set of each curve to take, so that all together have at most `budget` spheres (0: no
-/// limit, the finest sets) and the sum of error times area over all curves is least; exact, by
+/// limit, the finest sets) and the sum of their errors is least; exact, by
 /// dynamic programming over the number of spheres (a multiple-choice knapsack). Of equally good
 /// ways the one with the coarser last curves is taken. Where even the coarsest sets have more than
 /// the budget, those are taken. Curves may be empty; the sets of one rise in count. Deterministic;
 /// work grows with budget times sets.
-[[nodiscard]] std::vector<std::size_t> spendBudget(const std::vector<SphereSets>& curves,
+[[nodiscard]] std::vector<std::size_t> spendBudget(const std::vector<CurvePoints>& curves,
                                                    std::uint32_t budget);
 
 /// The same among the sets without gaps wider than `widest_gap`, metres; of a curve that has none
 /// of them, its finest set. The budget gives way where these alone have more spheres.
-[[nodiscard]] std::vector<std::size_t> spendBudgetWithin(const std::vector<SphereSets>& curves,
+[[nodiscard]] std::vector<std::size_t> spendBudgetWithin(const std::vector<CurvePoints>& curves,
                                                          std::uint32_t budget, double widest_gap);
+
+/// As spendBudget, but with the widest gap of all curves as narrow as costs no more than a tenth of
+/// the error.
+[[nodiscard]] std::vector<std::size_t> spendBudgetEvenly(const std::vector<CurvePoints>& curves,
+                                                         std::uint32_t budget);
 
 }  // namespace galactic::bake

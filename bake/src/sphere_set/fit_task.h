@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "galactic/bake/sphere_set.h"
-#include "sphere_set/exterior_solid.h"
+#include "sphere_set/solid/exterior_solid.h"
 
 namespace galactic::bake::sphere_fit {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "galactic/bake/parallel_for.h"
-#include "sphere_set/cover_matrix.h"
-#include "sphere_set/point_grid.h"
+#include "sphere_set/cover/cover_matrix.h"
+#include "sphere_set/solid/point_grid.h"
 
 namespace galactic::bake::sphere_fit {
 namespace {

@@ -4,9 +4,9 @@
 #include <numeric>
 
 #include "galactic/bake/parallel_for.h"
-#include "sphere_set/candidates.h"
+#include "sphere_set/cover/candidates.h"
 #include "sphere_set/gaps.h"
-#include "sphere_set/surface_samples.h"
+#include "sphere_set/solid/surface_samples.h"
 
 namespace galactic::bake::sphere_fit {
 namespace {

@@ -12,43 +12,34 @@
 namespace galactic::test::sphere_budget_test {
 namespace {
 
+using bake::CurvePoint;
+using bake::CurvePoints;
 using bake::spendBudget;
-using bake::SphereSet;
-using bake::SphereSets;
 using testing::ElementsAre;
 
-/// A set of so many spheres whose gap and protrusion give this error, on one square metre.
-SphereSet setOf(std::size_t spheres, double error) {
-  SphereSet set;
-  set.spheres.resize(spheres);
-  set.quality.gap.mean = error;
-  set.quality.area = 1;
-  return set;
-}
+/// A set of so many spheres with this error.
+CurvePoint setOf(std::uint32_t spheres, double error) { return {spheres, error, 0}; }
 
-/// What is minimised, written down anew: error times area over all links.
-double errorOf(const std::vector<SphereSets>& curves, const std::vector<std::size_t>& chosen) {
+/// What is minimised: the errors of all links.
+double errorOf(const std::vector<CurvePoints>& curves, const std::vector<std::size_t>& chosen) {
   double sum = 0;
   for (std::size_t n = 0; n < curves.size(); ++n) {
-    if (curves[n].empty()) continue;
-    const bake::SphereSetQuality& quality = curves[n][chosen[n]].quality;
-    sum += quality.area * (quality.gap.mean + quality.protrusion.mean +
-                           (quality.gap.p95 + quality.protrusion.p95) / 2);
+    if (!curves[n].empty()) sum += curves[n][chosen[n]].error;
   }
   return sum;
 }
 
-std::size_t spheresOf(const std::vector<SphereSets>& curves,
+std::size_t spheresOf(const std::vector<CurvePoints>& curves,
                       const std::vector<std::size_t>& chosen) {
   std::size_t sum = 0;
   for (std::size_t n = 0; n < curves.size(); ++n) {
-    if (!curves[n].empty()) sum += curves[n][chosen[n]].spheres.size();
+    if (!curves[n].empty()) sum += curves[n][chosen[n]].spheres;
   }
   return sum;
 }
 
 /// The least error of all ways to stay within the budget.
-double leastError(const std::vector<SphereSets>& curves, std::size_t budget) {
+double leastError(const std::vector<CurvePoints>& curves, std::size_t budget) {
   std::vector<std::size_t> chosen(curves.size(), 0);
   double least = errorOf(curves, chosen);
   while (true) {
@@ -66,19 +57,19 @@ double leastError(const std::vector<SphereSets>& curves, std::size_t budget) {
 }
 
 /// Curves with falling gains per sphere; each step adds 1 to `widest` spheres.
-std::vector<SphereSets> randomCurves(std::mt19937& random, std::uint32_t widest) {
+std::vector<CurvePoints> randomCurves(std::mt19937& random, std::uint32_t widest) {
   const auto uniform = [&] { return static_cast<double>(random()) * 0x1p-32; };
-  std::vector<SphereSets> curves(2 + random() % 3);
-  for (SphereSets& curve : curves) {
+  std::vector<CurvePoints> curves(2 + random() % 3);
+  for (CurvePoints& curve : curves) {
     const std::size_t steps = 2 + random() % 5;
     std::vector<double> gains;
     for (std::size_t n = 0; n < steps; ++n) gains.push_back(uniform());
     std::sort(gains.rbegin(), gains.rend());
-    std::size_t spheres = 1 + random() % 3;
+    auto spheres = static_cast<std::uint32_t>(1 + random() % 3);
     double error = 10;
     curve.push_back(setOf(spheres, error));
     for (const double gain : gains) {
-      const std::size_t more = 1 + random() % widest;
+      const auto more = static_cast<std::uint32_t>(1 + random() % widest);
       spheres += more;
       error -= gain * static_cast<double>(more) / widest;
       curve.push_back(setOf(spheres, error));
@@ -113,12 +104,12 @@ TEST(SphereBudget, IsSpentAsWellAsAnyWayAllows) {
 }
 
 TEST(SphereBudget, WithoutALimitTakesTheFinestSets) {
-  const std::vector<SphereSets> curves{{setOf(1, 3), setOf(2, 2), setOf(9, 1)}, {}, {setOf(4, 1)}};
+  const std::vector<CurvePoints> curves{{setOf(1, 3), setOf(2, 2), setOf(9, 1)}, {}, {setOf(4, 1)}};
   EXPECT_THAT(spendBudget(curves, 0), ElementsAre(2, 0, 0));
 }
 
 TEST(SphereBudget, BelowTheCoarsestSetsTakesThem) {
-  const std::vector<SphereSets> curves{{setOf(5, 3), setOf(6, 1)}, {setOf(5, 3), setOf(6, 1)}};
+  const std::vector<CurvePoints> curves{{setOf(5, 3), setOf(6, 1)}, {setOf(5, 3), setOf(6, 1)}};
   EXPECT_THAT(spendBudget(curves, 1), ElementsAre(0, 0));
   EXPECT_THAT(spendBudget(curves, 9), ElementsAre(0, 0));
   EXPECT_THAT(spendBudget(curves, 11), ElementsAre(1, 0)) << "of equals the first";
@@ -126,29 +117,21 @@ TEST(SphereBudget, BelowTheCoarsestSetsTakesThem) {
 
 TEST(SphereBudget, PassesOverAStepThatDoesNotFitOrDoesNotHelp) {
   // The second set is worse than the first; the third is worth its two spheres.
-  const std::vector<SphereSets> curves{{setOf(1, 3), setOf(2, 4), setOf(3, 1)}};
+  const std::vector<CurvePoints> curves{{setOf(1, 3), setOf(2, 4), setOf(3, 1)}};
   EXPECT_THAT(spendBudget(curves, 2), ElementsAre(0));
   EXPECT_THAT(spendBudget(curves, 3), ElementsAre(2));
   // The best step of all adds too many; the next best one fits.
-  const std::vector<SphereSets> two{{setOf(1, 9), setOf(20, 0)}, {setOf(1, 2), setOf(2, 1.9)}};
+  const std::vector<CurvePoints> two{{setOf(1, 9), setOf(20, 0)}, {setOf(1, 2), setOf(2, 1.9)}};
   EXPECT_THAT(spendBudget(two, 4), ElementsAre(0, 1));
 }
 
-TEST(SphereBudget, WeighsErrorsByArea) {
-  std::vector<SphereSets> curves{{setOf(1, 2), setOf(2, 1)}, {setOf(1, 2), setOf(2, 1)}};
-  for (SphereSet& set : curves[1]) set.quality.area = 5;
-  EXPECT_THAT(spendBudget(curves, 3), ElementsAre(0, 1));
-}
-
 /// A set whose widest gap is this.
-SphereSet withGap(std::size_t spheres, double error, double widest) {
-  SphereSet set = setOf(spheres, error);
-  set.quality.gap.max = widest;
-  return set;
+CurvePoint withGap(std::uint32_t spheres, double error, double widest) {
+  return {spheres, error, widest};
 }
 
 TEST(SphereBudgetByQuality, PassesOverSetsWithWideGapsAndSpendsMoreThanTheBudget) {
-  const std::vector<SphereSets> curves{
+  const std::vector<CurvePoints> curves{
       {withGap(1, 9, 0.2), withGap(5, 2, 0.06), withGap(9, 1, 0.04), withGap(30, 0.5, 0.03)},
       {},
       // A finer set may have a wider gap than the one before.
@@ -160,6 +143,50 @@ TEST(SphereBudgetByQuality, PassesOverSetsWithWideGapsAndSpendsMoreThanTheBudget
   EXPECT_THAT(bake::spendBudgetWithin(curves, 99, 0.05), ElementsAre(3, 0, 2, 1));
   EXPECT_THAT(bake::spendBudgetWithin(curves, 12, 1), ElementsAre(1, 0, 1, 1))
       << "where every gap will do, errors alone count";
+}
+
+double widestOf(const std::vector<CurvePoints>& curves, const std::vector<std::size_t>& chosen) {
+  double widest = 0;
+  for (std::size_t n = 0; n < curves.size(); ++n) {
+    if (!curves[n].empty()) widest = std::max(widest, curves[n][chosen[n]].widest_gap);
+  }
+  return widest;
+}
+
+TEST(SphereBudgetEvenly, NarrowsTheWidestGapWhereThatCostsLittle) {
+  const std::vector<CurvePoints> curves{{withGap(1, 10, 0.09), withGap(2, 9.5, 0.05)},
+                                        {withGap(1, 10, 0.04), withGap(2, 9, 0.03)}};
+  EXPECT_THAT(spendBudget(curves, 3), ElementsAre(0, 1));
+  EXPECT_THAT(bake::spendBudgetEvenly(curves, 3), ElementsAre(1, 0));
+  const std::vector<CurvePoints> costly{{withGap(1, 10, 0.09), withGap(2, 9.5, 0.05)},
+                                        {withGap(1, 10, 0.04), withGap(2, 5, 0.03)}};
+  EXPECT_THAT(bake::spendBudgetEvenly(costly, 3), ElementsAre(0, 1));
+}
+
+TEST(SphereBudgetEvenly, KeepsToTheBudgetAndToATenthMoreError) {
+  constexpr std::uint32_t kSeed = 12;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  int narrowed = 0;
+  constexpr int kRounds = 400;
+  for (int round = 0; round < kRounds; ++round) {
+    auto curves = randomCurves(random, 3);
+    for (CurvePoints& curve : curves) {
+      for (CurvePoint& set : curve) {
+        set.widest_gap = (0.5 + static_cast<double>(random()) * 0x1p-32) / set.spheres;
+      }
+    }
+    const auto budget = static_cast<std::uint32_t>(10 + random() % 30);
+    const auto least = spendBudget(curves, budget);
+    const auto chosen = bake::spendBudgetEvenly(curves, budget);
+    constexpr double kRounding = 1e-12;
+    EXPECT_LE(spheresOf(curves, chosen), std::max<std::size_t>(budget, spheresOf(curves, least)));
+    EXPECT_LE(errorOf(curves, chosen), 1.1 * errorOf(curves, least) + kRounding);
+    EXPECT_LE(widestOf(curves, chosen), widestOf(curves, least));
+    if (widestOf(curves, chosen) < widestOf(curves, least)) ++narrowed;
+  }
+  EXPECT_GT(narrowed, kRounds / 10);
+  EXPECT_LT(narrowed, kRounds * 9 / 10);
 }
 
 TEST(SphereBudget, OfNoCurvesIsNoChoice) { EXPECT_TRUE(spendBudget({}, 10).empty()); }

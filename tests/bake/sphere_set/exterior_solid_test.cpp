@@ -1,5 +1,5 @@
 // Distances to meshes, and what a probe makes of them.
-#include "sphere_set/exterior_solid.h"
+#include "sphere_set/solid/exterior_solid.h"
 
 #include <gtest/gtest.h>
 

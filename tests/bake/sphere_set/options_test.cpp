@@ -214,45 +214,63 @@ TEST(SphereSetLimit, IsKeptAndCostsGap) {
   EXPECT_EQ(fitSphereSet(mesh, options)->spheres, all->spheres);
 }
 
-/// All sets of a curve.
-std::vector<SphereSet> wholeCurve(const TriangleMesh& mesh, const SphereSetOptions& options,
-                                  unsigned jobs) {
+/// A curve with all its points.
+Result<SphereCurve> wholeCurve(const TriangleMesh& mesh, const SphereSetOptions& options,
+                               unsigned jobs) {
   auto curve = SphereCurve::begin(mesh, options);
-  EXPECT_TRUE(curve);
   while (curve && !curve->complete()) EXPECT_TRUE(curve->refine(jobs));
-  return curve ? curve->sets() : std::vector<SphereSet>{};
+  return curve;
 }
 
-TEST(SphereCurve, RisesInCountAndFallsInGap) {
+TEST(SphereCurve, HasASetForEachNumberOfSpheresWithASmallerError) {
   const TriangleMesh mesh = slenderCylinder();
   SphereSetOptions options;
   options.eps = 0.008F;
   options.tau = 0.01F;
-  const std::vector<SphereSet> sets = wholeCurve(mesh, options, 1);
-  ASSERT_GE(sets.size(), 5U);
-  for (std::size_t at = 1; at < sets.size(); ++at) {
-    EXPECT_GT(sets[at].spheres.size(), sets[at - 1].spheres.size());
-    EXPECT_LT(sets[at].guaranteed_gap, sets[at - 1].guaranteed_gap);
+  auto curve = wholeCurve(mesh, options, 1);
+  ASSERT_TRUE(curve);
+  const std::vector<CurvePoint>& points = curve->points();
+  ASSERT_GE(points.size(), 5U);
+  for (std::size_t at = 0; at < points.size(); ++at) {
+    EXPECT_EQ(points[at].spheres, at + 1);
+    EXPECT_LT(points[at].error, at > 0 ? points[at - 1].error : HUGE_VAL);
+    const SphereSet set = curve->take(at);
+    EXPECT_EQ(set.spheres.size(), points[at].spheres);
+    // Judged from outside: by points and distances of our own.
+    EXPECT_LE(largestGap(mesh, set, options), set.guaranteed_gap);
+    EXPECT_LE(set.quality.protrusion.max, set.guaranteed_protrusion);
+    constexpr double kLooserTau = 1.6;
+    EXPECT_LE(set.guaranteed_protrusion, kLooserTau * static_cast<double>(options.tau) + 1e-6);
   }
-  EXPECT_FALSE(sets.front().meets_tolerances);
-  EXPECT_TRUE(sets.back().meets_tolerances);
-  options.max_spheres = static_cast<std::uint32_t>(sets[2].spheres.size());
-  EXPECT_EQ(wholeCurve(mesh, options, 1).size(), 3U);
+  EXPECT_FALSE(curve->take(0).meets_tolerances);
+  EXPECT_GT(curve->take(0).quality.gap.max, 2 * curve->take(points.size() - 1).quality.gap.max);
+  options.max_spheres = 3;
+  EXPECT_EQ(wholeCurve(mesh, options, 1)->points().size(), 3U);
+}
+
+TEST(SphereCurve, FinishedHasOneSetThatMeetsTheTolerances) {
+  auto curve = SphereCurve::begin(slenderCylinder(), {});
+  ASSERT_TRUE(curve);
+  ASSERT_TRUE(curve->refine(1));
+  ASSERT_TRUE(curve->finish(1));
+  EXPECT_TRUE(curve->complete());
+  ASSERT_EQ(curve->points().size(), 1U);
+  EXPECT_TRUE(curve->take(0).meets_tolerances);
 }
 
 TEST(SphereCurve, IsTheSameForAnyNumberOfJobsAndStaysCompleteOnceItIs) {
   const TriangleMesh mesh = test::cylinder(0.05, 0.1).mesh;
-  const std::vector<SphereSet> one = wholeCurve(mesh, {}, 1);
-  const std::vector<SphereSet> three = wholeCurve(mesh, {}, 3);
-  ASSERT_EQ(one.size(), three.size());
-  for (std::size_t at = 0; at < one.size(); ++at) EXPECT_EQ(one[at].spheres, three[at].spheres);
-  auto curve = SphereCurve::begin(mesh, {});
-  ASSERT_TRUE(curve);
-  EXPECT_TRUE(curve->sets().empty());
-  while (!curve->complete()) ASSERT_TRUE(curve->refine(1));
-  ASSERT_TRUE(curve->refine(1));
-  EXPECT_EQ(curve->sets().size(), one.size());
-  EXPECT_EQ(curve->take(0).spheres, one[0].spheres);
+  auto one = wholeCurve(mesh, {}, 1);
+  auto three = wholeCurve(mesh, {}, 3);
+  ASSERT_TRUE(one && three);
+  ASSERT_EQ(one->points().size(), three->points().size());
+  for (std::size_t at = 0; at < one->points().size(); ++at) {
+    EXPECT_EQ(one->points()[at].error, three->points()[at].error);
+    EXPECT_EQ(one->take(at).spheres, three->take(at).spheres);
+  }
+  const std::size_t points = one->points().size();
+  ASSERT_TRUE(one->refine(1));
+  EXPECT_EQ(one->points().size(), points);
 }
 
 TEST(SphereSetResult, IsSorted) {

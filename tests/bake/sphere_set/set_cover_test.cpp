@@ -1,5 +1,5 @@
 // Small set covers against an exhaustive search, and the parts that the search is made of.
-#include "sphere_set/set_cover.h"
+#include "sphere_set/cover/set_cover.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <set>
 #include <vector>
 
-#include "sphere_set/ball_weight.h"
+#include "sphere_set/cover/ball_weight.h"
+#include "sphere_set/cover/local_search.h"
 #include "sphere_set/gaps.h"
-#include "sphere_set/local_search.h"
-#include "sphere_set/point_grid.h"
+#include "sphere_set/solid/point_grid.h"
 
 namespace galactic::bake::sphere_fit::set_cover_test {
 namespace {

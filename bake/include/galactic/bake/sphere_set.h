@@ -83,18 +83,27 @@ struct SphereSet {
 ///
 /// Set cover over spheres on lattices through the solid: lazy greedy, then the row weighting local
 /// search of Gao, Weise and Li (EJOR 2015), then refinement on finer lattices and denser samples.
-/// With `max_spheres` the least loosened tolerances that need no more are used.
+/// Where the tolerances need more than `max_spheres`, the set of a SphereCurve with that many.
 /// Fails with kInvalidInput on options out of range or a mesh without a reachable surface, and with
 /// kUnsupported where the extents are beyond 10 m.
 [[nodiscard]] Result<SphereSet> fitSphereSet(const TriangleMesh& mesh,
                                              const SphereSetOptions& options);
 
-/// The trade-off of a mesh: sphere sets for a falling sequence of tolerances, so that a budget of
-/// spheres can be spent over several meshes. The sets are made one after the other, from the
-/// loosest on: the tight ones take most of the time, and a budget may not reach them. There are
-/// nine, from eight times `options.eps` to that itself; tau grows with the cube root of what eps
-/// grows by, since a loose set may leave wide gaps but has no business far outside. Less work goes
-/// into each than with fitSphereSet, whose set may be a little smaller. Movable, not copyable.
+/// One set of a trade-off curve, before it is made ready.
+struct CurvePoint {
+  std::uint32_t spheres = 0;
+  /// What the set gets wrong: the square of gaps (and more beyond twice eps) integrated over the
+  /// surface, and the square of protrusions integrated over the spheres; m^4. Errors of several
+  /// meshes with the same eps may be compared and added.
+  double error = 0;
+  /// Metres: no gap is wider before the set is settled.
+  double widest_gap = 0;
+};
+
+/// The trade-off of a mesh: sphere sets of 1, 2, 3... spheres, each with a small error, so that a
+/// budget of spheres can be spent over several meshes. They are made one after the other, each from
+/// the one before it: a sphere is added, spheres are exchanged and moved while that helps. A set of
+/// a few spheres cannot keep to a small tau: up to 1.6 of it is allowed. Movable, not copyable.
 class SphereCurve {
  public:
   /// The curve of `mesh`, without sets yet. Fails as fitSphereSet does.
@@ -104,18 +113,21 @@ class SphereCurve {
   SphereCurve(SphereCurve&&) noexcept;
   SphereCurve& operator=(SphereCurve&&) noexcept;
 
-  /// Adds the next tighter set, on up to `jobs` threads, which never change it; a set that it beats
-  /// in count is dropped. Does nothing when the curve is complete. Fails as fitSphereSet does.
+  /// Adds the set with one more sphere, on up to `jobs` threads, which never change it. Does
+  /// nothing when the curve is complete. Where parts are so thin that nothing stays within tau, the
+  /// curve is finished at once. Fails as fitSphereSet does.
   [[nodiscard]] Result<void> refine(unsigned jobs);
-  /// Whether the set for the tolerances of the options themselves has been made, or the next one
-  /// has more than their `max_spheres`.
+  /// Replaces all sets by one that meets the tolerances, as fitSphereSet makes it, with less work.
+  [[nodiscard]] Result<void> finish(unsigned jobs);
+  /// Whether the last set leaves no gap wider than eps, has the most spheres allowed, or cannot be
+  /// bettered by one more.
   [[nodiscard]] bool complete() const;
 
-  /// By rising count. Quality, all but volume and thin points, and `meets_tolerances` are by the
+  /// By rising count, which is that of the sets.
+  [[nodiscard]] const std::vector<CurvePoint>& points() const;
+  /// The set of one of the points, settled on denser samples and measured; it is judged by the
   /// tolerances of the options.
-  [[nodiscard]] const std::vector<SphereSet>& sets() const;
-  /// A copy of one of the sets with volume and thin points counted.
-  [[nodiscard]] SphereSet take(std::size_t set) const;
+  [[nodiscard]] SphereSet take(std::size_t point) const;
 
  private:
   class Fitter;

@@ -1,0 +1,103 @@
+#include "sphere_set/cover/cover_matrix.h"
+
+#include "galactic/bake/parallel_for.h"
+
+namespace galactic::bake::sphere_fit {
+namespace {
+
+constexpr std::size_t kChunk = 256;
+
+}  // namespace
+
+CoverMatrix CoverMatrix::transposed(std::size_t rows) const {
+  CoverMatrix result;
+  result.first_.assign(rows + 1, 0);
+  for (const std::uint32_t row : rows_) ++result.first_[row + 1];
+  for (std::size_t row = 0; row < rows; ++row) result.first_[row + 1] += result.first_[row];
+  result.rows_.resize(rows_.size());
+  std::vector<std::size_t> next(result.first_.begin(), result.first_.end() - 1);
+  for (std::size_t at = 0; at < columns(); ++at) {
+    for (const std::uint32_t row : column(at)) {
+      result.rows_[next[row]++] = static_cast<std::uint32_t>(at);
+    }
+  }
+  return result;
+}
+
+void appendCovering(const FitTask& task, const PointGrid& grid, std::span<const Candidate> found,
+                    CandidatePool& pool) {
+  const std::size_t chunks = (found.size() + kChunk - 1) / kChunk;
+  std::vector<CoverMatrix> parts(chunks);
+  parallelFor(task.jobs, chunks, [&](std::size_t chunk) {
+    std::vector<std::uint32_t> rows;
+    for (std::size_t at = chunk * kChunk; at < std::min(found.size(), (chunk + 1) * kChunk); ++at) {
+      rows.clear();
+      grid.visitWithin(found[at].centre, task.radii[found[at].radius_index] + task.eps,
+                       [&](std::uint32_t row, double) {
+                         rows.push_back(row);
+                         return true;
+                       });
+      parts[chunk].append(rows);
+    }
+  });
+  for (std::size_t at = 0; at < found.size(); ++at) {
+    const auto rows = parts[at / kChunk].column(at % kChunk);
+    if (rows.empty()) continue;
+    pool.candidates.push_back(found[at]);
+    pool.cover.append(rows);
+  }
+}
+
+CandidatePool withoutDominated(const FitTask& task, std::span<const Vec3d> points,
+                               const CandidatePool& pool, double distance) {
+  std::vector<Vec3d> centres;
+  for (const Candidate& candidate : pool.candidates) centres.push_back(candidate.centre);
+  const PointGrid grid(centres, distance);
+  const auto comes_first = [&](std::uint32_t a, std::uint32_t b) {
+    const std::size_t size_a = pool.cover.column(a).size();
+    const std::size_t size_b = pool.cover.column(b).size();
+    if (size_a != size_b) return size_a > size_b;
+    const double protrusion_a = pool.candidates[a].protrusion;
+    const double protrusion_b = pool.candidates[b].protrusion;
+    return protrusion_a != protrusion_b ? protrusion_a < protrusion_b : a < b;
+  };
+  const auto covers_all = [&](std::uint32_t other, std::uint32_t at) {
+    const Candidate& sphere = pool.candidates[other];
+    const double reach = task.radii[sphere.radius_index] + task.eps;
+    const auto rows = pool.cover.column(at);
+    return std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) {
+      return squaredLength(points[row] - sphere.centre) <= reach * reach;
+    });
+  };
+  std::vector<char> dominated(centres.size(), 0);
+  parallelFor(task.jobs, (centres.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+    const std::size_t end = std::min(centres.size(), (chunk + 1) * kChunk);
+    for (std::size_t i = chunk * kChunk; i < end; ++i) {
+      const auto at = static_cast<std::uint32_t>(i);
+      grid.visitWithin(centres[at], distance, [&](std::uint32_t other, double) {
+        dominated[at] = other != at && comes_first(other, at) && covers_all(other, at) ? 1 : 0;
+        return dominated[at] == 0;
+      });
+    }
+  });
+  CandidatePool kept;
+  for (std::size_t at = 0; at < centres.size(); ++at) {
+    if (dominated[at] != 0) continue;
+    kept.candidates.push_back(pool.candidates[at]);
+    kept.cover.append(pool.cover.column(at));
+  }
+  return kept;
+}
+
+void markCovered(const CandidatePool& pool, std::size_t from, std::vector<char>& covered) {
+  for (std::size_t at = from; at < pool.candidates.size(); ++at) {
+    for (const std::uint32_t row : pool.cover.column(at)) covered[row] = 1;
+  }
+}
+
+double gridCell(const FitTask& task) {
+  // Half the reach of the smallest sphere: its queries touch few cells and few points in vain.
+  return (task.radii.front() + task.eps) / 2;
+}
+
+}  // namespace galactic::bake::sphere_fit

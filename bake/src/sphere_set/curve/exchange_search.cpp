@@ -1,0 +1,346 @@
+#include "sphere_set/curve/exchange_search.h"
+
+#include <array>
+#include <limits>
+#include <numbers>
+
+#include "galactic/bake/parallel_for.h"
+#include "sphere_set/cover/candidates.h"
+
+namespace galactic::bake::sphere_fit {
+namespace {
+
+constexpr std::uint64_t kSeed = 23;
+/// Directions in which a sphere's protrusion is looked up.
+constexpr std::size_t kDirections = 48;
+/// About so many candidates of each radius are looked through.
+constexpr double kMostCandidates = 1500;
+/// A sphere whose centre is further outside than this share of its radius mostly sticks out.
+constexpr double kFurthestOutside = 0.25;
+/// Centres are pulled this much deeper than they need be, metres: rounding must not lift them.
+constexpr double kBelowHighest = 1e-6;
+/// A sphere may protrude more where gaps are wide: by this power of what the widest is above eps.
+constexpr double kProtrusionGrowth = 0.4;
+constexpr std::size_t kChunk = 256;
+constexpr std::size_t kMostExchanges = 12;
+/// An exchange that makes the error less by a smaller share is not worth a pass.
+constexpr double kWorthwhile = 1e-3;
+/// What it may cost, as a share of the error, to exchange a sphere that protrudes too much by now.
+constexpr double kWorthOfLimit = 0.5;
+constexpr int kSweeps = 12;
+/// Tries to move a sphere in each sweep.
+constexpr int kTries = 8;
+/// The last step of a search's moves, as a share of the first one.
+constexpr double kLastStep = 0.08;
+
+std::array<Vec3d, kDirections> evenDirections() {
+  constexpr double kGoldenAngle = std::numbers::pi * (3 - 2.23606797749978969641);
+  std::array<Vec3d, kDirections> directions;
+  for (std::size_t n = 0; n < kDirections; ++n) {
+    const double z = 1 - 2 * (static_cast<double>(n) + 0.5) / static_cast<double>(kDirections);
+    const double ring = std::sqrt(1 - z * z);
+    const double turn = kGoldenAngle * static_cast<double>(n);
+    directions[n] = {ring * std::cos(turn), ring * std::sin(turn), z};
+  }
+  return directions;
+}
+
+Sphere narrowed(const Vec3d& centre, double radius) {
+  const Vec3 c = narrow(centre);
+  return {c.x, c.y, c.z, static_cast<float>(radius)};
+}
+
+}  // namespace
+
+double costOfGap(const GapCost& cost, double gap) {
+  if (gap <= 0) return 0;
+  const double squared = gap * gap;
+  return static_cast<double>(cost.linear) * gap +
+         squared * (1 + static_cast<double>(cost.fourth) * squared);
+}
+
+double protrusionIntegral(const DistanceGrid& grid, const Vec3d& centre, double radius) {
+  static const std::array<Vec3d, kDirections> directions = evenDirections();
+  double sum = 0;
+  for (const Vec3d& direction : directions) {
+    const double outside = std::max(0.0, grid.at(centre + direction * radius));
+    sum += outside * outside;
+  }
+  return sum * 4 * std::numbers::pi * radius * radius / static_cast<double>(kDirections);
+}
+
+ExchangeSearch::ExchangeSearch(const FitTask& task, const DistanceGrid& grid,
+                               std::span<const Vec3d> points, const ErrorWeights& weights)
+    : ExchangeSearch(task, grid, points, weights, {}) {
+  findCandidates();
+}
+
+ExchangeSearch::ExchangeSearch(const FitTask& task, const DistanceGrid& grid,
+                               std::span<const Vec3d> points, const ErrorWeights& weights,
+                               std::span<const Candidate> spheres)
+    : task_(task), grid_(grid), points_(points), weights_(weights), random_(kSeed) {
+  for (const Candidate& sphere : spheres) {
+    chosen_.push_back({sphere, protrusionCost(sphere.centre, sphere.radius_index)});
+  }
+  assign();
+}
+
+double ExchangeSearch::error() const {
+  return sum_ * task_.solid->area() / static_cast<double>(points_.size());
+}
+
+double ExchangeSearch::protrusionCost(const Vec3d& centre, std::uint32_t radius_index) const {
+  // In the unit of the points' sum, each of which stands for its share of the area.
+  const double per_area = static_cast<double>(points_.size()) / task_.solid->area();
+  return weights_.protrusion * per_area *
+         protrusionIntegral(grid_, centre, task_.radii[radius_index]);
+}
+
+void ExchangeSearch::findCandidates() {
+  for (std::uint32_t radius_index = 0; radius_index < task_.radii.size(); ++radius_index) {
+    for (const Candidate& found : candidatesOf(radius_index)) {
+      candidates_.push_back({found, protrusionCost(found.centre, radius_index)});
+    }
+  }
+}
+
+std::vector<Candidate> ExchangeSearch::candidatesOf(std::uint32_t radius_index) const {
+  const double radius = task_.radii[radius_index];
+  const double highest = std::min(kLooserTau * task_.tau - radius, kFurthestOutside * radius);
+  // Deeper, a sphere does not reach the surface, and a larger one does better.
+  const bool is_largest = radius_index + 1 == task_.radii.size();
+  const double lowest = is_largest ? -HUGE_VAL : -radius;
+  std::vector<std::size_t> nodes;
+  for (std::size_t node = 0; node < grid_.nodes(); ++node) {
+    const double distance = grid_.distance(node);
+    if (distance <= highest + grid_.step() && distance >= lowest) nodes.push_back(node);
+  }
+  const std::size_t stride =
+      1 + static_cast<std::size_t>(static_cast<double>(nodes.size()) / kMostCandidates);
+  std::vector<Candidate> candidates;
+  for (std::size_t at = 0; at < nodes.size(); at += stride) {
+    const Vec3d centre = asStored(grid_.position(nodes[at]));
+    std::optional<Candidate> candidate;
+    if (grid_.distance(nodes[at]) > highest) {
+      candidate = pulledInwards(centre, radius_index, highest);
+    } else {
+      candidate =
+          Candidate{centre, radius_index, std::max(0.0, grid_.distance(nodes[at]) + radius)};
+    }
+    if (candidate && staysAbove(task_, candidate->centre, radius)) {
+      candidates.push_back(*candidate);
+    }
+  }
+  return candidates;
+}
+
+std::optional<Candidate> ExchangeSearch::pulledInwards(const Vec3d& from,
+                                                       std::uint32_t radius_index,
+                                                       double highest) const {
+  const SurfaceDistance here = task_.solid->distance(from);
+  if (here.distance == 0) return std::nullopt;
+  const Vec3d outwards = (from - here.nearest) * (1 / here.distance);
+  const Vec3d centre = asStored(from - outwards * (here.distance - highest + kBelowHighest));
+  const double there = task_.solid->distance(centre, here.facet).distance;
+  if (there > highest) return std::nullopt;
+  return Candidate{centre, radius_index, std::max(0.0, there + task_.radii[radius_index])};
+}
+
+ExchangeSearch::Place ExchangeSearch::placeOf(const Vec3d& point) const {
+  // Without spheres a point costs as much as with one at the other end.
+  const double furthest = length(task_.solid->bounds().size());
+  Place place{0, furthest, furthest};
+  for (std::uint32_t rank = 0; rank < chosen_.size(); ++rank) {
+    const Candidate& sphere = chosen_[rank].sphere;
+    const double gap = length(point - sphere.centre) - task_.radii[sphere.radius_index];
+    if (gap < place.gap) {
+      place = {rank, gap, place.gap};
+    } else {
+      place.next_gap = std::min(place.next_gap, gap);
+    }
+  }
+  return place;
+}
+
+void ExchangeSearch::assign() {
+  cells_.assign(std::max<std::size_t>(1, chosen_.size()), {});
+  for (auto* column : {&x_, &y_, &z_, &nearest_, &next_}) column->clear();
+  std::vector<Place> places;
+  std::vector<std::vector<std::uint32_t>> members(cells_.size());
+  widest_ = 0;
+  for (std::uint32_t at = 0; at < points_.size(); ++at) {
+    places.push_back(placeOf(points_[at]));
+    members[places.back().owner].push_back(at);
+    widest_ = std::max(widest_, places.back().gap);
+  }
+  most_protrusion_ =
+      task_.tau * std::clamp(std::pow(widest_ / task_.eps, kProtrusionGrowth), 1.0, kLooserTau);
+  sum_ = 0;
+  for (std::size_t rank = 0; rank < cells_.size(); ++rank) {
+    fillCell(cells_[rank], members[rank], places);
+    if (rank >= chosen_.size()) continue;
+    cells_[rank].loss -= chosen_[rank].cost;
+    sum_ += chosen_[rank].cost;
+  }
+  for (std::size_t rank = 0; rank < chosen_.size(); ++rank) {
+    const bool is_over = chosen_[rank].sphere.protrusion > most_protrusion_;
+    if (is_over) cells_[rank].loss -= kWorthOfLimit * sum_;
+  }
+}
+
+void ExchangeSearch::fillCell(Cell& cell, const std::vector<std::uint32_t>& members,
+                              const std::vector<Place>& places) {
+  cell.first = x_.size();
+  Box box;
+  for (const std::uint32_t at : members) {
+    const double nearest = costOfGap(weights_.gap, places[at].gap);
+    const double next = costOfGap(weights_.gap, places[at].next_gap);
+    const Vec3 p = narrow(points_[at]);
+    box.grow(points_[at]);
+    x_.push_back(p.x);
+    y_.push_back(p.y);
+    z_.push_back(p.z);
+    nearest_.push_back(static_cast<float>(nearest));
+    next_.push_back(static_cast<float>(next));
+    sum_ += nearest;
+    cell.loss += next - nearest;
+    cell.highest_next = std::max(cell.highest_next, next);
+  }
+  while (x_.size() % kGainLanes != 0) {
+    for (auto* column : {&x_, &y_, &z_, &nearest_, &next_}) column->push_back(0);
+  }
+  cell.count = x_.size() - cell.first;
+  if (members.empty()) return;
+  cell.middle = (box.min + box.max) * 0.5;
+  cell.radius = length(box.size()) / 2;
+}
+
+CostedPoints ExchangeSearch::pointsOf(const Cell& cell) const {
+  return {&x_[cell.first],       &y_[cell.first],    &z_[cell.first],
+          &nearest_[cell.first], &next_[cell.first], cell.count};
+}
+
+ExchangeSearch::Offers ExchangeSearch::offersOf(std::uint32_t candidate) const {
+  const Chosen& offered = candidates_[candidate];
+  if (offered.sphere.protrusion > most_protrusion_) {
+    return {{-HUGE_VAL, candidate, 0}, {-HUGE_VAL, candidate, 0}};
+  }
+  const double radius = task_.radii[offered.sphere.radius_index];
+  const Sphere ball = narrowed(offered.sphere.centre, radius);
+  double added = -offered.cost;
+  double instead = -HUGE_VAL;
+  std::uint32_t leaves = 0;
+  for (std::uint32_t rank = 0; rank < cells_.size(); ++rank) {
+    const Cell& cell = cells_[rank];
+    GapGain gain;
+    const double least = length(offered.sphere.centre - cell.middle) - cell.radius - radius;
+    if (cell.count > 0 && costOfGap(weights_.gap, least) < cell.highest_next) {
+      gain = gain_of_(pointsOf(cell), weights_.gap, ball);
+    }
+    added += static_cast<double>(gain.staying);
+    const double once_gone =
+        static_cast<double>(gain.gone) - static_cast<double>(gain.staying) - cell.loss;
+    if (once_gone > instead) {
+      instead = once_gone;
+      leaves = rank;
+    }
+  }
+  return {{added, candidate, leaves}, {added + instead, candidate, leaves}};
+}
+
+void ExchangeSearch::Offers::include(const Offers& other) {
+  if (other.added.gain > added.gain) added = other.added;
+  if (other.exchanged.gain > exchanged.gain) exchanged = other.exchanged;
+}
+
+ExchangeSearch::Offers ExchangeSearch::bestOffers() const {
+  const Offers none{{-HUGE_VAL, 0, 0}, {-HUGE_VAL, 0, 0}};
+  std::vector<Offers> parts((candidates_.size() + kChunk - 1) / kChunk, none);
+  parallelFor(task_.jobs, parts.size(), [&](std::size_t chunk) {
+    const std::size_t end = std::min(candidates_.size(), (chunk + 1) * kChunk);
+    for (std::size_t at = chunk * kChunk; at < end; ++at) {
+      parts[chunk].include(offersOf(static_cast<std::uint32_t>(at)));
+    }
+  });
+  Offers best = none;
+  for (const Offers& part : parts) best.include(part);
+  return best;
+}
+
+void ExchangeSearch::exchange() {
+  Offers best = bestOffers();
+  // One sphere stands where it does best already.
+  for (std::size_t n = 0; n < kMostExchanges && chosen_.size() > 1; ++n) {
+    if (!(best.exchanged.gain > kWorthwhile * sum_)) break;
+    chosen_[best.exchanged.leaves] = candidates_[best.exchanged.candidate];
+    assign();
+    best = bestOffers();
+  }
+  next_added_ = best.added.candidate;
+}
+
+bool ExchangeSearch::grow() {
+  if (candidates_.empty()) return false;
+  // Small moves since the last pass hardly change which candidate is best.
+  if (chosen_.empty() || !(offersOf(next_added_).added.gain > 0)) {
+    const Offer best = bestOffers().added;
+    if (!(best.gain > 0)) return false;
+    next_added_ = best.candidate;
+  }
+  chosen_.push_back(candidates_[next_added_]);
+  assign();
+  exchange();
+  settle(kSweeps);
+  return true;
+}
+
+void ExchangeSearch::cheapenProtrusion(double factor) {
+  weights_.protrusion *= factor;
+  for (auto* spheres : {&candidates_, &chosen_}) {
+    for (Chosen& sphere : *spheres) sphere.cost *= factor;
+  }
+  assign();
+}
+
+double ExchangeSearch::costIn(const Cell& cell, const Chosen& chosen) const {
+  if (cell.count == 0) return chosen.cost;
+  const Sphere ball = narrowed(chosen.sphere.centre, task_.radii[chosen.sphere.radius_index]);
+  return chosen.cost - static_cast<double>(gain_of_(pointsOf(cell), weights_.gap, ball).gone);
+}
+
+void ExchangeSearch::settleOne(std::size_t rank, double step) {
+  Chosen& chosen = chosen_[rank];
+  const double radius = task_.radii[chosen.sphere.radius_index];
+  double least = costIn(cells_[rank], chosen);
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    const Vec3d direction{random_.unit() * 2 - 1, random_.unit() * 2 - 1, random_.unit() * 2 - 1};
+    Chosen moved = chosen;
+    moved.sphere.centre = asStored(chosen.sphere.centre + direction * step);
+    if (!staysAbove(task_, moved.sphere.centre, radius)) continue;
+    moved.cost = protrusionCost(moved.sphere.centre, moved.sphere.radius_index);
+    const double cost = costIn(cells_[rank], moved);
+    if (cost >= least) continue;
+    const double outside = task_.solid->distance(moved.sphere.centre).distance + radius;
+    if (outside > std::max(most_protrusion_, chosen.sphere.protrusion)) continue;
+    moved.sphere.protrusion = std::max(0.0, outside);
+    least = cost;
+    chosen = moved;
+  }
+}
+
+void ExchangeSearch::settle(int sweeps) {
+  double step = grid_.step();
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (std::size_t rank = 0; rank < chosen_.size(); ++rank) settleOne(rank, step);
+    assign();
+    step *= std::pow(kLastStep, 1.0 / sweeps);
+  }
+}
+
+std::vector<Candidate> ExchangeSearch::spheres() const {
+  std::vector<Candidate> spheres;
+  for (const Chosen& chosen : chosen_) spheres.push_back(chosen.sphere);
+  return spheres;
+}
+
+}  // namespace galactic::bake::sphere_fit

@@ -1,0 +1,202 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "galactic/bake/sphere_set.h"
+#include "sphere_set/curve/exchange_search.h"
+#include "sphere_set/gaps.h"
+#include "sphere_set/prepared_fit.h"
+#include "sphere_set/solid/surface_samples.h"
+
+namespace galactic::bake {
+
+using sphere_fit::Candidate;
+using sphere_fit::Cover;
+using sphere_fit::DistanceGrid;
+using sphere_fit::ErrorWeights;
+using sphere_fit::ExchangeSearch;
+using sphere_fit::FitTask;
+using sphere_fit::PreparedFit;
+using sphere_fit::Vec3d;
+using sphere_fit::Yardstick;
+
+namespace {
+
+/// A gap of eps costs its square, and this much more; one of some eps costs twice its square.
+constexpr double kLinear = 2;
+constexpr double kWideGap = 1.75;
+/// What a protrusion costs beside a gap, and what is left of that when it keeps wide gaps open.
+constexpr double kProtrusionWeight = 1.5;
+constexpr double kCheaper = 0.5;
+constexpr double kCheapest = 0.05;
+/// Points of the surface that the search sees: this far apart, metres, but no more nor fewer.
+constexpr double kFewestPoints = 400;
+constexpr double kMostPoints = 1500;
+constexpr double kPointSpacing = 0.025;
+/// What a set is settled on in the end, and promises are made on.
+constexpr double kFinalPoints = 3000;
+constexpr int kFinalSweeps = 28;
+/// Poisson discs leave room: so many of a spacing's squares of an area become points.
+constexpr double kPacking = 0.7;
+constexpr std::uint64_t kPointSeed = 1;
+constexpr std::uint64_t kFinalSeed = 2;
+constexpr double kGridNodes = 15'000;
+/// For one of many covers.
+constexpr sphere_fit::Effort kCurveEffort{400'000, 200'000, 8'000'000, 2, 12};
+constexpr double kCurvePlaces = 15'000;
+
+double spacingFor(const FitTask& task, double points) {
+  return std::sqrt(kPacking * task.solid->area() / points);
+}
+
+/// Of the points that the search sees.
+double searchSpacing(const FitTask& task) {
+  const double wanted = task.solid->area() / (kPointSpacing * kPointSpacing);
+  return spacingFor(task, std::clamp(wanted, kFewestPoints, kMostPoints));
+}
+
+ErrorWeights weightsFor(double eps) {
+  const double wide = kWideGap * eps;
+  ErrorWeights weights;
+  weights.gap.linear = static_cast<float>(kLinear * eps);
+  weights.gap.fourth = static_cast<float>(1 / (wide * wide));
+  weights.protrusion = kProtrusionWeight;
+  return weights;
+}
+
+}  // namespace
+
+/// The solver's state between two sets of a curve.
+class SphereCurve::Fitter {
+ public:
+  Fitter(PreparedFit prepared, std::uint32_t most)
+      : prepared_(std::move(prepared)),
+        most_(most),
+        spacing_(searchSpacing(prepared_.task)),
+        points_(sphere_fit::sampleSurface(*prepared_.task.solid, prepared_.task.support,
+                                          {spacing_, kPointSeed, 10})),
+        weights_(weightsFor(prepared_.task.eps)) {}
+
+  Result<void> refine(unsigned jobs) {
+    if (points_.empty()) return sphere_fit::nothingToCover();
+    if (complete_) return {};
+    FitTask& task = prepared_.task;
+    task.jobs = jobs;
+    if (!search_) {
+      grid_.emplace(*task.solid, sphere_fit::kLooserTau * task.tau, kGridNodes, jobs);
+      search_.emplace(task, *grid_, points_, weights_);
+    }
+    if (!grow()) {
+      if (steps_.empty()) return finish(jobs);
+      complete_ = true;
+      return {};
+    }
+    complete_ = search_->widestGap() <= task.eps || steps_.back().spheres == most_;
+    return {};
+  }
+
+  Result<void> finish(unsigned jobs) {
+    if (complete_) return {};
+    FitTask task = prepared_.task;
+    task.jobs = jobs;
+    task.most_places = kCurvePlaces;
+    sphere_fit::SurfacePoints surface;
+    Cover cover = sphere_fit::solveCover(task, kCurveEffort, surface);
+    if (cover.spheres.empty()) return sphere_fit::nothingToCover();
+    steps_.clear();
+    sets_.clear();
+    add(cover.spheres, 0, cover.guaranteed_gap);
+    cover_ = std::move(cover);
+    complete_ = true;
+    return {};
+  }
+
+  [[nodiscard]] bool complete() const { return complete_; }
+  [[nodiscard]] const std::vector<CurvePoint>& points() const { return steps_; }
+
+  [[nodiscard]] SphereSet take(std::size_t n) const {
+    const Yardstick yardstick(prepared_.task);
+    const Cover cover = cover_ ? *cover_ : settled(sets_[n]);
+    SphereSet set = sphere_fit::finishedSet(prepared_.task, yardstick, cover);
+    yardstick.complete(cover.spheres, set.quality);
+    return set;
+  }
+
+ private:
+  /// Where a sphere would close wide gaps at too high a price, protrusions cost less from there on.
+  bool grow() {
+    for (double weight = 1; weight > kCheapest; weight *= kCheaper) {
+      const double before = search_->error();
+      if (search_->grow()) {
+        const double error =
+            steps_.empty() ? search_->error() : steps_.back().error - before + search_->error();
+        // Between the points a gap can only be wider by their spacing.
+        add(search_->spheres(), error, search_->widestGap() + spacing_);
+        return true;
+      }
+      search_->cheapenProtrusion(kCheaper);
+    }
+    return false;
+  }
+
+  void add(std::vector<Candidate> spheres, double error, double widest_gap) {
+    steps_.push_back({static_cast<std::uint32_t>(spheres.size()), error, widest_gap});
+    sets_.push_back(std::move(spheres));
+  }
+
+  /// Moved a little, by points that are denser than those of the search, and what can be promised.
+  [[nodiscard]] Cover settled(const std::vector<Candidate>& spheres) const {
+    const FitTask& task = prepared_.task;
+    const double spacing = spacingFor(task, kFinalPoints);
+    const std::vector<Vec3d> dense =
+        sphere_fit::sampleSurface(*task.solid, task.support, {spacing, kFinalSeed, 10});
+    ExchangeSearch search(task, *grid_, dense, weights_, spheres);
+    search.settle(kFinalSweeps);
+    Cover cover;
+    cover.spheres = search.spheres();
+    // Between the points a gap can only be larger by their spacing.
+    cover.slack = spacing;
+    cover.guaranteed_gap =
+        sphere_fit::largestOf(sphere_fit::gapsOf(task, cover.spheres, dense)) + spacing;
+    for (Candidate& sphere : cover.spheres) {
+      const double radius = task.radii[sphere.radius_index];
+      sphere.protrusion = std::max(0.0, task.solid->distance(sphere.centre).distance + radius);
+      cover.guaranteed_protrusion = std::max(cover.guaranteed_protrusion, sphere.protrusion);
+    }
+    return cover;
+  }
+
+  PreparedFit prepared_;
+  std::uint32_t most_ = 0;
+  double spacing_ = 0;
+  std::vector<Vec3d> points_;
+  ErrorWeights weights_;
+  std::optional<DistanceGrid> grid_;
+  std::optional<ExchangeSearch> search_;
+  std::vector<CurvePoint> steps_;
+  /// What each step was made of.
+  std::vector<std::vector<Candidate>> sets_;
+  /// The only set where finish() made it.
+  std::optional<Cover> cover_;
+  bool complete_ = false;
+};
+
+SphereCurve::SphereCurve(std::unique_ptr<Fitter> fitter) : fitter_(std::move(fitter)) {}
+SphereCurve::~SphereCurve() = default;
+SphereCurve::SphereCurve(SphereCurve&&) noexcept = default;
+SphereCurve& SphereCurve::operator=(SphereCurve&&) noexcept = default;
+
+Result<SphereCurve> SphereCurve::begin(const TriangleMesh& mesh, const SphereSetOptions& options) {
+  auto prepared = sphere_fit::prepareFit(mesh, options);
+  if (!prepared) return tl::unexpected(prepared.error());
+  return SphereCurve(std::make_unique<Fitter>(std::move(*prepared), options.max_spheres));
+}
+
+Result<void> SphereCurve::refine(unsigned jobs) { return fitter_->refine(jobs); }
+Result<void> SphereCurve::finish(unsigned jobs) { return fitter_->finish(jobs); }
+bool SphereCurve::complete() const { return fitter_->complete(); }
+const std::vector<CurvePoint>& SphereCurve::points() const { return fitter_->points(); }
+SphereSet SphereCurve::take(std::size_t point) const { return fitter_->take(point); }
+
+}  // namespace galactic::bake

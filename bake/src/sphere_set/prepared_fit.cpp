@@ -1,0 +1,61 @@
+#include "sphere_set/prepared_fit.h"
+
+#include <algorithm>
+
+#include "sphere_set/check_options.h"
+
+namespace galactic::bake::sphere_fit {
+namespace {
+
+bool comesFirst(const SetSphere& a, const SetSphere& b) {
+  if (a.radius_index != b.radius_index) return a.radius_index > b.radius_index;
+  if (a.centre.x != b.centre.x) return a.centre.x < b.centre.x;
+  if (a.centre.y != b.centre.y) return a.centre.y < b.centre.y;
+  return a.centre.z < b.centre.z;
+}
+
+}  // namespace
+
+Result<PreparedFit> prepareFit(const TriangleMesh& mesh, const SphereSetOptions& options) {
+  if (auto checked = checkOptions(options); !checked) return tl::unexpected(checked.error());
+  if (auto checked = checkMesh(mesh); !checked) return tl::unexpected(checked.error());
+  PreparedFit prepared;
+  prepared.solid = std::make_unique<const ExteriorSolid>(
+      mesh, static_cast<double>(options.radii.front()), options.jobs);
+  if (!(prepared.solid->area() > 0)) {
+    return fail(ErrorCode::kInvalidInput, "mesh",
+                "none of its surface can be reached from outside; give a surface with an area");
+  }
+  FitTask& task = prepared.task;
+  task.solid = prepared.solid.get();
+  for (const float radius : options.radii) task.radii.push_back(static_cast<double>(radius));
+  task.eps = static_cast<double>(options.eps);
+  task.tau = static_cast<double>(options.tau);
+  task.support = options.support;
+  task.jobs = options.jobs;
+  return prepared;
+}
+
+tl::unexpected<Error> nothingToCover() {
+  return fail(ErrorCode::kInvalidInput, "support",
+              "all of the reachable surface is beyond the plane, so there is nothing to cover; "
+              "check its normal and offset");
+}
+
+SphereSet finishedSet(const FitTask& task, const Yardstick& yardstick, const Cover& cover) {
+  SphereSet set;
+  for (const Candidate& sphere : cover.spheres) {
+    set.spheres.push_back({narrow(sphere.centre), sphere.radius_index});
+  }
+  std::sort(set.spheres.begin(), set.spheres.end(), comesFirst);
+  set.quality = yardstick.measureLengths(cover.spheres);
+  // Where the solid's border is no facet (a small hole, the bottom of a crevice), a sphere may be
+  // further from the facets than from the solid: what was measured counts.
+  set.guaranteed_gap = std::max(cover.guaranteed_gap, set.quality.gap.max);
+  set.guaranteed_protrusion = std::max(cover.guaranteed_protrusion, set.quality.protrusion.max);
+  set.meets_tolerances =
+      set.guaranteed_gap <= task.eps + cover.slack && set.guaranteed_protrusion <= task.tau;
+  return set;
+}
+
+}  // namespace galactic::bake::sphere_fit

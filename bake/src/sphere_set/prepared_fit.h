@@ -1,0 +1,29 @@
+#pragma once
+#include <memory>
+
+#include "galactic/bake/sphere_set.h"
+#include "sphere_set/cover/cover_solver.h"
+#include "sphere_set/fit_task.h"
+#include "sphere_set/measure.h"
+
+namespace galactic::bake::sphere_fit {
+
+/// A mesh made ready, and the task on it.
+struct PreparedFit {
+  std::unique_ptr<const ExteriorSolid> solid;
+  FitTask task;
+};
+
+/// Fails with kInvalidInput and kUnsupported as fitSphereSet does.
+[[nodiscard]] Result<PreparedFit> prepareFit(const TriangleMesh& mesh,
+                                             const SphereSetOptions& options);
+
+/// Why there is nothing to fit to: the surface is beyond the support's plane.
+[[nodiscard]] tl::unexpected<Error> nothingToCover();
+
+/// The cover as a sorted set, measured, but for volume and thin points, and judged by the
+/// tolerances of `task`, whichever the cover was made for.
+[[nodiscard]] SphereSet finishedSet(const FitTask& task, const Yardstick& yardstick,
+                                    const Cover& cover);
+
+}  // namespace galactic::bake::sphere_fit

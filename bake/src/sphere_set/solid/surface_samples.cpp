@@ -1,0 +1,137 @@
+#include "sphere_set/solid/surface_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "random.h"
+
+namespace galactic::bake::sphere_fit {
+namespace {
+
+/// Every facet set gets at least this many tries.
+constexpr double kLeastTries = 50;
+
+/// Points in a hash table of cubes: how big the object is does not matter.
+class SparseGrid {
+ public:
+  SparseGrid(double edge, std::size_t expected)
+      : edge_(edge), heads_(std::bit_ceil(2 * expected + 16), kNone) {}
+
+  /// Whether some point is nearer to `p` than the edge of a cube.
+  [[nodiscard]] bool hasNear(const Vec3d& p, const std::vector<Vec3d>& points) const {
+    const Cube at = cubeOf(p);
+    // Most points have a neighbour in their own cube.
+    if (holdsNear(at, p, points)) return true;
+    for (std::int64_t z = at[2] - 1; z <= at[2] + 1; ++z) {
+      for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y) {
+        for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x) {
+          const Cube cube{x, y, z};
+          if (cube == at || squaredDistance(cube, p) >= edge_ * edge_) continue;
+          if (holdsNear(cube, p, points)) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  /// Adds the point that was appended to the list last.
+  void add(const Vec3d& p) {
+    std::uint32_t& head = heads_[slotOf(cubeOf(p))];
+    next_.push_back(head);
+    head = static_cast<std::uint32_t>(next_.size() - 1);
+  }
+
+ private:
+  using Cube = std::array<std::int64_t, 3>;
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+  [[nodiscard]] Cube cubeOf(const Vec3d& p) const {
+    const auto along = [&](double at) { return static_cast<std::int64_t>(std::floor(at / edge_)); };
+    return {along(p.x), along(p.y), along(p.z)};
+  }
+
+  /// Other cubes of the same slot only cost a comparison.
+  [[nodiscard]] bool holdsNear(const Cube& cube, const Vec3d& p,
+                               const std::vector<Vec3d>& points) const {
+    for (std::uint32_t i = heads_[slotOf(cube)]; i != kNone; i = next_[i]) {
+      if (squaredLength(points[i] - p) < edge_ * edge_) return true;
+    }
+    return false;
+  }
+
+  /// Of `p` to the cube, a little less so that rounding leaves no cube out.
+  [[nodiscard]] double squaredDistance(const Cube& cube, const Vec3d& p) const {
+    const auto along = [&](std::int64_t at, double x) {
+      const double from = static_cast<double>(at) * edge_;
+      return std::max({from - x, x - (from + edge_), 0.0});
+    };
+    const double x = along(cube[0], p.x);
+    const double y = along(cube[1], p.y);
+    const double z = along(cube[2], p.z);
+    return (x * x + y * y + z * z) * (1 - 1e-9);
+  }
+
+  [[nodiscard]] std::size_t slotOf(const Cube& cube) const {
+    std::uint64_t mixed = 0;
+    for (const std::int64_t at : cube) {
+      mixed = (mixed ^ static_cast<std::uint64_t>(at)) * 0x9E3779B97F4A7C15ULL;
+      mixed ^= mixed >> 29U;
+    }
+    return static_cast<std::size_t>(mixed) & (heads_.size() - 1);
+  }
+
+  double edge_;
+  std::vector<std::uint32_t> heads_;
+  std::vector<std::uint32_t> next_;
+};
+
+Vec3d pointOn(const Facet& facet, Random& random) {
+  const double a = std::sqrt(random.unit());
+  const double b = random.unit();
+  return widen(facet[0]) * (1 - a) + widen(facet[1]) * (a * (1 - b)) + widen(facet[2]) * (a * b);
+}
+
+}  // namespace
+
+std::vector<Vec3d> thinnedOut(const std::vector<Vec3d>& points, double spacing) {
+  std::vector<Vec3d> kept;
+  SparseGrid grid(spacing, points.size());
+  for (const Vec3d& p : points) {
+    if (grid.hasNear(p, kept)) continue;
+    kept.push_back(p);
+    grid.add(p);
+  }
+  return kept;
+}
+
+double heightAbove(const std::optional<HalfSpace>& support, const Vec3d& p) {
+  if (!support) return HUGE_VAL;
+  return dot(widen(support->normal), p) - static_cast<double>(support->offset);
+}
+
+std::vector<Vec3d> sampleSurface(const ExteriorSolid& solid,
+                                 const std::optional<HalfSpace>& support,
+                                 const SampleOptions& options) {
+  const auto facets = solid.facets();
+  const double per_spacing = solid.area() / (options.spacing * options.spacing);
+  const double tries = std::floor(options.tries * per_spacing) + kLeastTries;
+  Random random(options.seed);
+  std::vector<Vec3d> points;
+  SparseGrid grid(options.spacing, static_cast<std::size_t>(per_spacing));
+  std::size_t at = 0;
+  double ends = facets.empty() ? 0 : length(facetNormal(facets[0])) / 2;
+  for (double n = 0; n < tries && !facets.empty(); ++n) {
+    const double wanted = (n + random.unit()) / tries * solid.area();
+    while (wanted > ends && at + 1 < facets.size()) {
+      ends += length(facetNormal(facets[++at])) / 2;
+    }
+    const Vec3d p = asStored(pointOn(facets[at], random));
+    if (heightAbove(support, p) < 0 || grid.hasNear(p, points) || !solid.reachable(p)) continue;
+    points.push_back(p);
+    grid.add(p);
+  }
+  return points;
+}
+
+}  // namespace galactic::bake::sphere_fit
