@@ -189,7 +189,7 @@ std::vector<JointValue> parseJoints(const std::string& text) {
     if (joint.name.empty() || parsed.ec != std::errc() || parsed.ptr != end ||
         !std::isfinite(joint.value)) {
       throw CLI::ValidationError(
-          "--joints", fmt::format("\"{}\" is no joint=value, for example elbow=1.57", entry));
+          "--joints", fmt::format("\"{}\" is not joint=value, for example elbow=1.57", entry));
     }
     joints.push_back(std::move(joint));
     from = comma + 1;
@@ -417,7 +417,8 @@ tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
     const std::string nearest = suggestNames(first, namesOfVerbs(app));
     const std::string advice =
         nearest.starts_with("did you") ? nearest : fmt::format("give {}", kVerbs);
-    return tl::unexpected(usageError(console, fmt::format("\"{}\" is no verb; {}", first, advice)));
+    return tl::unexpected(
+        usageError(console, fmt::format("\"{}\" is not a verb; {}", first, advice)));
   }
   try {
     app.parse(argc, argv);

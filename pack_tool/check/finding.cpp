@@ -33,7 +33,7 @@ constexpr std::array kKinds{
     FindingKind{"world/bad-pack", kInvalid, "of them are bad; see"},
     FindingKind{"world/repeated-name", kInvalid, "names have to be unique in a world"},
     FindingKind{"world/repeated-part", kInvalid, "a world has one, leave one out"},
-    FindingKind{"world/policy", kInvalid, "is a policy, which is no part of a world"},
+    FindingKind{"world/policy", kInvalid, "is a policy, which cannot be part of a world"},
     FindingKind{"world/nested", kInvalid, "is a world pack among others"},
     FindingKind{"world/missing-part", kInvalid, "give a pack of one, too"},
     FindingKind{"world/other-radii", kInvalid, "was baked for the radii"},

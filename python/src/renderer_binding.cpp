@@ -94,7 +94,7 @@ void bindRenderer(py::module_& module) {
   type.def(
       py::init([](const py::object& simulator, const py::kwargs& keywords) {
         if (!py::isinstance<Simulator>(simulator)) {
-          throw py::type_error("simulator is no galactic.Simulator");
+          throw py::type_error("simulator is not a galactic.Simulator");
         }
         return Renderer::create(simulator, optionsFrom(keywords));
       }),

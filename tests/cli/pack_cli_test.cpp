@@ -74,8 +74,8 @@ TEST_F(PackCli, PrintsItsVersion) {
 TEST_F(PackCli, ExplainsAWrongCommandLineWithExitCodeOne) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> lines{
       {{}, "no verb; give info, check"},
-      {{"frobnicate", "good.pack"}, "\"frobnicate\" is no verb; give info, check"},
-      {{"inof", "good.pack"}, "\"inof\" is no verb; did you mean 'info'?"},
+      {{"frobnicate", "good.pack"}, "\"frobnicate\" is not a verb; give info, check"},
+      {{"inof", "good.pack"}, "\"inof\" is not a verb; did you mean 'info'?"},
       {{"info", "good.pack", "--jsn"}, "--jsn; did you mean '--json'?"},
       {{"diff", "good.pack", "good.pack", "--tolerance", "nan"}, "--tolerance: found nan"},
       {{"diff", "good.pack", "good.pack", "--tolerance", "inf"}, "--tolerance: found inf"},
@@ -97,8 +97,8 @@ TEST_F(PackCli, ExplainsAWrongCommandLineWithExitCodeOne) {
       {{"export", "good.pack"}, "--output is required"},
       {{"picture", "good.pack", "-o", "a.png", "--slice", "1,2,3"}, "is not 4 numbers"},
       {{"picture", "good.pack"}, "--output is required"},
-      {{"picture", "arm.pack", "-o", "a.png", "--joints", "lift"}, "is no joint=value"},
-      {{"picture", "arm.pack", "-o", "a.png", "--joints", "lift=1,"}, "is no joint=value"},
+      {{"picture", "arm.pack", "-o", "a.png", "--joints", "lift"}, "is not joint=value"},
+      {{"picture", "arm.pack", "-o", "a.png", "--joints", "lift=1,"}, "is not joint=value"},
       {{"picture", "arm.pack", "-o", "a.png", "--what", "mesh,bones"}, "\"bones\" is none of"},
       {{"picture", "arm.pack", "-o", "a.png", "--size", "10"}, "--size"},
       {{"export", "good.pack", "-o", "a.png", "--to", "gif"}, "--to"},

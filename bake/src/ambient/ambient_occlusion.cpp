@@ -28,7 +28,7 @@ Result<void> checkOptions(const AmbientOcclusionOptions& options) {
   }
   if (!(options.largest_distance > 0) || !std::isfinite(options.largest_distance)) {
     return fail(ErrorCode::kInvalidInput, "ambient occlusion: largest distance",
-                fmt::format("{} is no distance; give a positive number of metres",
+                fmt::format("the distance {} is not valid; give a positive number of meters",
                             options.largest_distance));
   }
   if (!(options.least_distance >= 0) || !(options.least_distance < options.largest_distance)) {
@@ -38,7 +38,7 @@ Result<void> checkOptions(const AmbientOcclusionOptions& options) {
   }
   if (!(options.dim >= 0 && options.dim <= 1)) {
     return fail(ErrorCode::kInvalidInput, "ambient occlusion: dim",
-                fmt::format("{} is no factor of light; give 0 to 1", options.dim));
+                fmt::format("the light factor {} is out of range; give 0 to 1", options.dim));
   }
   return {};
 }

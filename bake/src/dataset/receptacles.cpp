@@ -53,7 +53,7 @@ class BoxReader {
 
   std::optional<StatedBox> read(const std::string& key) {
     StatedBox box;
-    if (!node_.json->is_object()) json_.error(node_.place, "it is wanted as an object");
+    if (!node_.json->is_object()) json_.error(node_.place, "it has to be an object");
     box.name = json_.text(JsonReader::member(node_, "name"));
     if (box.name.empty()) box.name = key;
     json_.numbers(json_.require(node_, "position"), kFarthest, box.centre);

@@ -79,7 +79,7 @@ void SceneReader::readPose(const JsonNode& node, SceneItem& item) {
   if (squared < kSmallest) {
     return json_.error(rotation.place,
                        "it is a quaternion (w, x, y, z) of length 0, which turns to nowhere; "
-                       "[1, 0, 0, 0] is no rotation");
+                       "[1, 0, 0, 0] leaves it unrotated");
   }
   const double length = std::sqrt(squared);
   for (double& v : item.rotation) v /= length;
@@ -119,7 +119,7 @@ void SceneReader::readJoints(const JsonNode& node, SceneItem& item) {
 SceneItem SceneReader::readItem(const JsonNode& node) {
   SceneItem item;
   if (!node.json->is_object()) {
-    json_.error(node.place, "it is wanted as an object with members");
+    json_.error(node.place, "it has to be an object with members");
     return item;
   }
   const JsonNode name = json_.require(node, "template_name");
@@ -153,7 +153,7 @@ void SceneReader::readList(const char* key, std::vector<SceneItem>& items, bool 
 Result<void> SceneReader::read(bool& has_stage) {
   if (!root_.json->is_object()) {
     json_.error(root_.place.empty() ? "the file" : root_.place,
-                "it is wanted as an object with members");
+                "it has to be an object with members");
   }
   const auto origin = readOrigin(root_);
   if (origin) scene_.origin = *origin;

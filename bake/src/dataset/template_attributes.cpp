@@ -29,7 +29,7 @@ class LayerReader {
       : json_(layer.file), root_{&layer.json, layer.place}, attributes_(attributes) {}
 
   Result<void> read(TemplateKind kind) {
-    if (!root_.json->is_object()) json_.error(placeOfRoot(), "it is wanted as an object");
+    if (!root_.json->is_object()) json_.error(placeOfRoot(), "it has to be an object");
     if (kind == TemplateKind::kArticulated) {
       readArticulated();
     } else {

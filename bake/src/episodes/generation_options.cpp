@@ -17,8 +17,9 @@ auto refuse(std::string message) {
 /// Infinity is allowed as the upper end.
 Result<void> checkDistances(const DistanceRange& range, std::string_view what) {
   if (std::isfinite(range.least) && range.least >= 0 && range.least <= range.most) return {};
-  return refuse(fmt::format("{} from {} to {} m is no range; give the shorter one first, 0 or more",
-                            what, range.least, range.most));
+  return refuse(
+      fmt::format("{} from {} to {} m is not a range; give the shorter one first, 0 or more", what,
+                  range.least, range.most));
 }
 
 }  // namespace

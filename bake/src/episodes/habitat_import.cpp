@@ -118,9 +118,10 @@ RigidMatrix HabitatReader::matrix(const JsonNode& node) {
                       std::abs(dot(axes[n], axes[(n + 1) % 3]))});
   }
   if (worst > kUnitTolerance || dot(cross(axes[0], axes[1]), axes[2]) < 0) {
-    json_.error(node.place,
-                "it is no rigid transform: wanted columns that are perpendicular, right-handed and "
-                "of length 1, the translation in the last one, and a last row of 0, 0, 0, 1");
+    json_.error(
+        node.place,
+        "it is not a rigid transform: its columns have to be perpendicular, right-handed and "
+        "of length 1, with the translation in the last one, and its last row 0, 0, 0, 1");
     return {};
   }
   axes[0] = normalized(axes[0]);
@@ -213,11 +214,11 @@ void HabitatReader::readStart(const JsonNode& node, Episode& episode) {
 
 void HabitatReader::readFurniture(const JsonNode& states) {
   if (states.json == nullptr) return;
-  if (!states.json->is_object()) return json_.error(states.place, "it is wanted as an object");
+  if (!states.json->is_object()) return json_.error(states.place, "it has to be an object");
   bool open = false;
   for (auto one = states.json->begin(); one != states.json->end(); ++one) {
     const JsonNode links{&*one, fmt::format("{}.{}", states.place, one.key())};
-    if (!one->is_object()) return json_.error(links.place, "it is wanted as an object");
+    if (!one->is_object()) return json_.error(links.place, "it has to be an object");
     for (auto link = one->begin(); link != one->end(); ++link) {
       const double state = json_.number({&*link, fmt::format("{}.{}", links.place, link.key())},
                                         -kLargestState, kLargestState);
@@ -251,7 +252,7 @@ std::map<std::size_t, Pose> HabitatReader::readTargets(const JsonNode& targets,
   std::map<std::size_t, Pose> goals;
   if (targets.json == nullptr || json_.failed()) return goals;
   if (!targets.json->is_object()) {
-    json_.error(targets.place, "it is wanted as an object");
+    json_.error(targets.place, "it has to be an object");
     return goals;
   }
   Instances instances;

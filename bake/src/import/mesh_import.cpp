@@ -26,7 +26,8 @@ Result<void> checkOptions(const MeshImportOptions& options) {
   if (options.scale && !(std::isfinite(*options.scale) && *options.scale > 0)) {
     return fail(
         ErrorCode::kInvalidInput, "--scale",
-        fmt::format("{} is no scale; give a positive number of metres per unit", *options.scale));
+        fmt::format("the scale {} is out of range; give a positive number of meters per unit",
+                    *options.scale));
   }
   if (options.transform && !(isFinite(*options.transform) && isInvertible(*options.transform))) {
     return fail(ErrorCode::kInvalidInput, "--transform",

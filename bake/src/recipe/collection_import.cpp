@@ -93,9 +93,9 @@ double CollectionReader::readStep(const JsonNode& action) {
   const double max =
       max_node.json == nullptr ? 1 : json_.number(max_node, -kLargestStep, kLargestStep);
   if (max <= 0 || min != -max) {
-    json_.error(
-        action.place,
-        fmt::format("its steps {} to {} are wanted as -x to x, the same both ways", min, max));
+    json_.error(action.place,
+                fmt::format("its steps are {} to {}, but have to be -x to x, the same both ways",
+                            min, max));
   }
   return max;
 }

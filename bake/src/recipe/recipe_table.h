@@ -72,7 +72,7 @@ class RecipeTable {
     const TomlValue* value = find(key);
     if (value == nullptr) return std::nullopt;
     if (!std::holds_alternative<std::int64_t>(value->value)) {
-      errors_.at(value->line, fmt::format("{} is wanted as a whole number", full(key)));
+      errors_.at(value->line, fmt::format("{} has to be a whole number", full(key)));
       return std::nullopt;
     }
     const auto checked = numberOf(*value, key, range);
@@ -84,7 +84,7 @@ class RecipeTable {
     const TomlValue* value = find(key);
     if (value == nullptr) return false;
     if (const bool* truth = std::get_if<bool>(&value->value)) return *truth;
-    errors_.at(value->line, fmt::format("{} is wanted as true or false", full(key)));
+    errors_.at(value->line, fmt::format("{} has to be true or false", full(key)));
     return false;
   }
 
@@ -108,7 +108,7 @@ class RecipeTable {
     std::array<double, kCount> numbers{};
     const auto* array = std::get_if<TomlArray>(&value.value);
     if (array == nullptr || array->size() != kCount) {
-      errors_.at(value.line, fmt::format("{} is wanted as a list of {} numbers", what, kCount));
+      errors_.at(value.line, fmt::format("{} has to be a list of {} numbers", what, kCount));
       return numbers;
     }
     for (std::size_t i = 0; i < kCount; ++i) {
@@ -122,7 +122,7 @@ class RecipeTable {
     const TomlValue* value = find(key);
     if (value == nullptr) return nullptr;
     if (const auto* inner = std::get_if<TomlTable>(&value->value)) return inner;
-    errors_.at(value->line, fmt::format("{} is wanted as a table, [{}]", full(key), full(key)));
+    errors_.at(value->line, fmt::format("{} has to be a table, [{}]", full(key), full(key)));
     return nullptr;
   }
 
@@ -138,14 +138,14 @@ class RecipeTable {
     const TomlValue* value = find(key);
     if (value == nullptr) return nullptr;
     if (const auto* array = std::get_if<TomlArray>(&value->value)) return array;
-    errors_.at(value->line, fmt::format("{} is wanted as a list", full(key)));
+    errors_.at(value->line, fmt::format("{} has to be a list", full(key)));
     return nullptr;
   }
 
   RecipeName nameOf(const TomlValue& value, const std::string& what) {
     const auto* text = std::get_if<std::string>(&value.value);
     if (text == nullptr || text->empty()) {
-      errors_.at(value.line, fmt::format("{} is wanted as a name in quotes", what));
+      errors_.at(value.line, fmt::format("{} has to be a name in quotes", what));
       return {};
     }
     return {*text, errors_.place(value.line)};
@@ -196,7 +196,7 @@ class RecipeTable {
     } else if (const auto* integer = std::get_if<std::int64_t>(&value.value)) {
       number = static_cast<double>(*integer);
     } else {
-      errors_.at(value.line, fmt::format("{} is wanted as a number", what));
+      errors_.at(value.line, fmt::format("{} has to be a number", what));
       return std::nullopt;
     }
     const bool within = number >= range.min && number <= range.max;  // false for NaN

@@ -137,7 +137,7 @@ void RecipeReader::readFootprint(RecipeTable& base) {
     const auto& [min_x, min_y, max_x, max_y] = *rectangle;
     if (min_x >= max_x || min_y >= max_y) {
       errors_.at(base.line(),
-                 "base.footprint_rectangle is wanted as [min x, min y, max x, max y] with each "
+                 "base.footprint_rectangle has to be [min x, min y, max x, max y] with each "
                  "min below its max");
     }
     recipe_.base.footprint =
@@ -164,7 +164,7 @@ void RecipeReader::readJoint(const TomlValue& entry, std::size_t index) {
   const std::string name = fmt::format("joints[{}]", index);
   const auto* content = std::get_if<TomlTable>(&entry.value);
   if (content == nullptr) {
-    errors_.at(entry.line, fmt::format("{} is wanted as a table, [[joints]]", name));
+    errors_.at(entry.line, fmt::format("{} has to be a table, [[joints]]", name));
     return;
   }
   RecipeTable table(*content, name, entry.line, errors_);
@@ -237,7 +237,7 @@ void RecipeReader::readLinkSpheres(const std::string& link, const TomlValue& ent
   const std::string name = fmt::format("spheres.links.{}", link);
   const auto* content = std::get_if<TomlTable>(&entry.value);
   if (content == nullptr) {
-    errors_.at(entry.line, fmt::format("{} is wanted as a table, [{}]", name, name));
+    errors_.at(entry.line, fmt::format("{} has to be a table, [{}]", name, name));
     return;
   }
   RecipeTable table(*content, name, entry.line, errors_);
@@ -293,7 +293,7 @@ void RecipeReader::readIgnoredPairs() {
       const auto* pair = std::get_if<TomlArray>(&entry.value);
       const std::string what = "each entry of self_collision.ignore";
       if (pair == nullptr || pair->size() != 2) {
-        errors_.at(entry.line, what + " is wanted as a pair of links, [\"a\", \"b\"]");
+        errors_.at(entry.line, what + " has to be a pair of links, [\"a\", \"b\"]");
         continue;
       }
       recipe_.ignored_pairs.emplace_back(table->nameOf((*pair)[0], what),

@@ -61,7 +61,8 @@ class WorldRecipeReader {
     for (const TomlValue& entry : *list) {
       const auto* table = std::get_if<TomlTable>(&entry.value);
       if (table == nullptr) {
-        return errors_.at(entry.line, fmt::format("{0} is wanted as tables, [[{0}]]", name));
+        return errors_.at(entry.line,
+                          fmt::format("{0} has to be an array of tables, [[{0}]]", name));
       }
       assets.push_back(readAssets(*table, entry.line));
       if (assets.back().inputs.empty()) {
@@ -104,7 +105,7 @@ class WorldRecipeReader {
       for (const TomlValue& value : *list) found.push_back(std::get<std::string>(value.value));
     } else {
       errors_.at(entry.value.line,
-                 fmt::format("{} is wanted as a text or a list of texts", entry.key));
+                 fmt::format("{} has to be a string or a list of strings", entry.key));
     }
     return found;
   }
@@ -132,7 +133,7 @@ class WorldRecipeReader {
     std::vector<std::string> values;
     for (const TomlEntry& pair : std::get<TomlTable>(entry.value.value)) {
       const auto text = textOf(pair.value);
-      if (!text) errors_.at(pair.value.line, fmt::format("{} is wanted as a text", pair.key));
+      if (!text) errors_.at(pair.value.line, fmt::format("{} has to be a string", pair.key));
       values.push_back(pair.key + "=" + text.value_or(""));
     }
     return values;
@@ -144,8 +145,7 @@ class WorldRecipeReader {
     for (const TomlValue& value : list) {
       const auto text = textOf(value);
       if (!text) {
-        errors_.at(value.line,
-                   fmt::format("{} is wanted as a list of numbers or texts", entry.key));
+        errors_.at(value.line, fmt::format("{} has to be a list of numbers or strings", entry.key));
         return {};
       }
       if (are_texts || values.empty()) {

@@ -31,8 +31,8 @@ Result<void> checkRadii(const std::vector<float>& radii) {
   for (std::size_t at = 0; at < radii.size(); ++at) {
     const std::string where = fmt::format("radii[{}]", at);
     if (!isLength(radii[at])) {
-      return refuse(where, fmt::format("{} m is no radius; give {} to {} m", radii[at],
-                                       kLeastLength, kGreatestLength));
+      return refuse(where, fmt::format("the radius {} m is out of range; give {} to {} m",
+                                       radii[at], kLeastLength, kGreatestLength));
     }
     if (at > 0 && radii[at] <= radii[at - 1]) {
       return refuse(where, fmt::format("{} m comes after {} m; list each radius once, ascending",
@@ -63,8 +63,9 @@ Result<void> checkOptions(const SphereSetOptions& options) {
         fmt::format("({}, {}, {}) has the length {}; give a unit vector", n.x, n.y, n.z, norm));
   }
   if (!std::isfinite(options.support->offset)) {
-    return refuse("support.offset", fmt::format("{} is no distance; give metres along the normal",
-                                                options.support->offset));
+    return refuse("support.offset",
+                  fmt::format("the distance {} is not valid; give meters along the normal",
+                              options.support->offset));
   }
   return {};
 }

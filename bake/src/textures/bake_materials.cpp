@@ -26,7 +26,7 @@ constexpr std::uint64_t kMostTexelBytes = std::uint64_t{2} << 30U;
 Result<void> checkOptions(const TextureBakeOptions& options) {
   if (std::has_single_bit(options.largest) && options.largest <= kLargestTexture) return {};
   return fail(ErrorCode::kInvalidInput, "largest texture",
-              fmt::format("{} is no size of a texture; give a power of two from 1 to {}",
+              fmt::format("the texture size {} is not allowed; give a power of two from 1 to {}",
                           options.largest, kLargestTexture));
 }
 

@@ -83,7 +83,8 @@ class EpisodeChecker {
     offence_.require((*broken)->object() < objects, field + ".object",
                      "is {}, wanted one of {} objects", (*broken)->object(), objects);
     offence_.require(isRigid((*broken)->pose()), field + ".pose",
-                     "is no rigid transform, wanted up to {} m and a unit quaternion", kFarthest);
+                     "is not a rigid transform, wanted up to {} m and a unit quaternion",
+                     kFarthest);
   }
 
   void checkEpisodes() {
@@ -126,7 +127,8 @@ class EpisodeChecker {
     offence_.require(isAngle(episode.base_yaw()), field + ".base_yaw",
                      "is {} rad, wanted an angle of up to {} rad", episode.base_yaw(), kMostAngle);
     offence_.require(isRigid(episode.goal()), field + ".goal",
-                     "is no rigid transform, wanted up to {} m and a unit quaternion", kFarthest);
+                     "is not a rigid transform, wanted up to {} m and a unit quaternion",
+                     kFarthest);
   }
 
   const schema::EpisodeSet& set_;

@@ -76,9 +76,9 @@ class RobotChecker {
     offence_.require(rooted, field + ".parent",
                      "is {}, wanted -1 for the first link and an earlier link for the others",
                      link.parent());
-    offence_.require(isRigid(link.parent_from_joint(), kChainTolerance),
-                     field + ".parent_from_joint",
-                     "is no rigid transform, wanted up to {} m and a unit quaternion", kFarthest);
+    offence_.require(
+        isRigid(link.parent_from_joint(), kChainTolerance), field + ".parent_from_joint",
+        "is not a rigid transform, wanted up to {} m and a unit quaternion", kFarthest);
     offence_.require(link.type() <= schema::JointType::MAX, field + ".type",
                      "is {}, wanted a value up to {}", static_cast<unsigned>(link.type()),
                      static_cast<unsigned>(schema::JointType::MAX));

@@ -92,7 +92,7 @@ Result<void> add(const PackFile& pack, Parts& parts) {
       return {};
     case PackKind::kPolicy:
       return fail(kInvalid, pack.where(),
-                  "is a policy, which is no part of a world; give it with --policy");
+                  "is a policy, which cannot be part of a world; give it with --policy");
     case PackKind::kWorld:
       break;
   }

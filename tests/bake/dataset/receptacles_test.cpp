@@ -238,7 +238,7 @@ struct Fault {
 std::vector<Fault> faultsOfAll() {
   const std::string key = "receptacle_aabb_x";
   return {
-      {key, "7", "user_defined.receptacle_aabb_x: it is wanted as an object"},
+      {key, "7", "user_defined.receptacle_aabb_x: it has to be an object"},
       {key, R"({"scale": [1, 1, 1]})", "receptacle_aabb_x.position: it is missing"},
       {key, R"({"position": [1, 1, 1]})", "receptacle_aabb_x.scale: it is missing"},
       {key, R"({"position": [1, 1], "scale": [1, 1, 1]})", ".position: it has 2 numbers, wanted 3"},

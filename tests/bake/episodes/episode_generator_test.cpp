@@ -111,13 +111,13 @@ TEST(EpisodeGenerator, RefusesOptionsThatMakeNoSense) {
   EXPECT_THAT(refused([](Options& o) { o.heights = {1, 0.5F}; }), HasSubstr("from 1 to 0.5 m"));
   EXPECT_THAT(refused([](Options& o) { o.heights.least = kNoNumber; }), HasSubstr("no range"));
   EXPECT_THAT(refused([](Options& o) { o.target_to_goal.least = -1; }),
-              HasSubstr("from target to goal from -1 to inf m is no range"));
+              HasSubstr("from target to goal from -1 to inf m is not a range"));
   EXPECT_THAT(refused([](Options& o) { o.target_to_goal.least = kNoNumber; }),
               HasSubstr("is no range"));
   EXPECT_THAT(refused([](Options& o) {
                 o.start_to_target = {2, 1};
               }),
-              HasSubstr("from start to target from 2 to 1 m is no range"));
+              HasSubstr("from start to target from 2 to 1 m is not a range"));
   EXPECT_THAT(refused([](Options& o) { o.flatness = 0.5F; }), HasSubstr("0.5 m is asked for"));
   EXPECT_THAT(refused([](Options& o) { o.flatness = 0; }), HasSubstr("more than 0"));
   EXPECT_THAT(refused([](Options& o) { o.split.held_out = 1.5F; }), HasSubstr("held out is 1.5"));

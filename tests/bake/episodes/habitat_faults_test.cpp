@@ -25,8 +25,8 @@ struct Fault {
 std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
 
 constexpr const char* kNotRigid =
-    "it is no rigid transform: wanted columns that are perpendicular, right-handed and of length "
-    "1, the translation in the last one, and a last row of 0, 0, 0, 1";
+    "it is not a rigid transform: its columns have to be perpendicular, right-handed and of length "
+    "1, with the translation in the last one, and its last row 0, 0, 0, 1";
 constexpr const char* kFirstMatrix =
     "[[1, 0, 0, 0.5], [0, 1, 0, 1], [0, 0, 1, -0.25], [0, 0, 0, 1]]";
 constexpr const char* kFirst = "episodes[0].rigid_objs[0][1]";
@@ -34,14 +34,14 @@ constexpr const char* kFirst = "episodes[0].rigid_objs[0][1]";
 const std::vector<Fault>& faults() {
   static const std::vector<Fault> all{
       {"EpisodesNoList", "\"episodes\": [", "\"episodes\": 3, \"old\": [", "episodes",
-       "it is wanted as a list"},
+       "it has to be a list"},
       {"NoEpisode", "\"episodes\": [", "\"episodes\": [], \"old\": [", "episodes",
        "is empty, at least one episode is wanted"},
       {"EpisodeNoObject", "\"episodes\": [", "\"episodes\": [3, ", "episodes[0].scene_id",
        "it is missing"},
       {"NoScene", "\"scene_id\"", "\"scene\"", "episodes[0].scene_id", "it is missing"},
       {"SceneNotText", "\"scene_id\": \"v3_sc0_staging_00\"", "\"scene_id\": 3",
-       "episodes[1].scene_id", "it is wanted as text"},
+       "episodes[1].scene_id", "it has to be a string"},
       {"SceneEmpty", "\"scene_id\": \"v3_sc0_staging_00\"", "\"scene_id\": \"data/\"",
        "episodes[1].scene_id", "is empty, a scene's name or file is wanted"},
       {"NoStart", "\"start_position\"", "\"start\"", "episodes[0].start_position", "it is missing"},
@@ -57,11 +57,11 @@ const std::vector<Fault>& faults() {
       {"HeadingUp", "[0, 0.7071068, 0, 0.7071068]", "[0, 0, 0.7071068, 0.7071068]",
        "episodes[0].start_rotation", "points the robot up or down, a heading is wanted"},
       {"FurnitureNoObject", "\"ao_states\": {}", "\"ao_states\": []", "episodes[1].ao_states",
-       "it is wanted as an object"},
+       "it has to be an object"},
       {"FurnitureLinksNoObject", "{\"7\": 0.45, \"6\": 0}", "[0.45]",
-       "episodes[0].ao_states.kitchen_counter_:0000", "it is wanted as an object"},
+       "episodes[0].ao_states.kitchen_counter_:0000", "it has to be an object"},
       {"FurnitureStateNoNumber", "{\"7\": 0.45, \"6\": 0}", "{\"7\": \"open\"}",
-       "episodes[0].ao_states.kitchen_counter_:0000.7", "it is wanted as a number"},
+       "episodes[0].ao_states.kitchen_counter_:0000.7", "it has to be a number"},
       {"NoObjects", "\"rigid_objs\"", "\"objects\"", "episodes[0].rigid_objs", "it is missing"},
       {"ObjectsEmpty", "\"rigid_objs\": [", "\"rigid_objs\": [], \"old\": [",
        "episodes[0].rigid_objs", "is empty, at least one object is wanted"},
@@ -69,16 +69,16 @@ const std::vector<Fault>& faults() {
        "episodes[0].rigid_objs[0]",
        "it has 1 elements, wanted an object's template and its transform"},
       {"ObjectNotText", "\"003_cracker_box.object_config.json\"", "3",
-       "episodes[0].rigid_objs[0][0]", "it is wanted as text"},
+       "episodes[0].rigid_objs[0][0]", "it has to be a string"},
       {"ObjectWithoutName", "\"003_cracker_box.object_config.json\"", "\"\"",
        "episodes[0].rigid_objs[0][0]", "is empty, an object's template is wanted"},
-      {"MatrixNoList", kFirstMatrix, "7", kFirst, "it is wanted as a list"},
+      {"MatrixNoList", kFirstMatrix, "7", kFirst, "it has to be a list"},
       {"MatrixOfThreeRows", kFirstMatrix, "[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]", kFirst,
        "it has 3 rows, wanted 4 of 4 numbers"},
       {"MatrixOfShortRows", kFirstMatrix, "[[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0]]",
        "episodes[0].rigid_objs[0][1][0]", "it has 3 numbers, wanted 4"},
       {"MatrixNoNumber", "[0, 1, 0, 1], [0, 0, 1, -0.25]", "[0, 1, 0, 1], [0, 0, null, 0]",
-       "episodes[0].rigid_objs[0][1][2][2]", "it is wanted as a number"},
+       "episodes[0].rigid_objs[0][1][2][2]", "it has to be a number"},
       {"MatrixScaled", kFirstMatrix,
        "[[2, 0, 0, 0.5], [0, 2, 0, 1], [0, 0, 2, -0.25], [0, 0, 0, 1]]", kFirst, kNotRigid},
       {"MatrixMirrored", kFirstMatrix,
@@ -89,7 +89,7 @@ const std::vector<Fault>& faults() {
        "[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0.5, 1, -0.25, 1]]", kFirst, kNotRigid},
       {"NoTargets", "\"targets\"", "\"goals\"", "episodes[0].targets", "it is missing"},
       {"TargetsNoObject", "\"targets\": {\"mug_:0000\"", "\"targets\": 1, \"o\": {\"mug_:0000\"",
-       "episodes[1].targets", "it is wanted as an object"},
+       "episodes[1].targets", "it has to be an object"},
       {"TargetsEmpty", "\"targets\": {\"mug_:0000\"", "\"targets\": {}, \"o\": {\"mug_:0000\"",
        "episodes[1].targets", "is empty, at least one target is wanted"},
       {"TargetNoHandle", "\"003_cracker_box_:0000\"", "\"003_cracker_box\"",

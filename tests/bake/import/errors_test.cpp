@@ -211,7 +211,8 @@ TEST(MeshErrors, RefuseScalesAndTransformsThatAreNone) {
                              std::numeric_limits<double>::infinity()}) {
     const Error error = importError("box.obj", box, {.up = {}, .scale = scale, .transform = {}});
     EXPECT_EQ(error.where, "--scale");
-    EXPECT_THAT(error.message, EndsWith("is no scale; give a positive number of metres per unit"));
+    EXPECT_THAT(error.message,
+                EndsWith("is out of range; give a positive number of meters per unit"));
   }
   const Error error =
       importError("box.obj", box, {.up = {}, .scale = {}, .transform = bake::Affine{}});

@@ -126,11 +126,11 @@ TEST_F(RecipeTask, IsATable) {
       bake::readWorldRecipe(folder_.write("w.toml", "task = \"pick\"\n" + std::string(kScene)));
   ASSERT_FALSE(word.has_value());
   EXPECT_EQ(word.error().where, place(1));
-  EXPECT_EQ(word.error().message, "task is wanted as a table, [task]");
+  EXPECT_EQ(word.error().message, "task has to be a table, [task]");
   const auto list =
       bake::readWorldRecipe(folder_.write("w.toml", std::string(kScene) + "[[task]]\n"));
   ASSERT_FALSE(list.has_value());
-  EXPECT_EQ(list.error().message, "task is wanted as a table, [task]");
+  EXPECT_EQ(list.error().message, "task has to be a table, [task]");
 }
 
 }  // namespace

@@ -45,11 +45,12 @@ std::vector<WrongOption> wrongOptions() {
        "0 radii were given; give 1 to 8, in metres, ascending"},
       {with([](auto& o) { o.radii.assign(9, 0.1F); }), "radii",
        "9 radii were given; give 1 to 8, in metres, ascending"},
-      {with([](auto& o) { o.radii = {-1}; }), "radii[0]", "-1 m is no radius; give 0.0001 to 10 m"},
+      {with([](auto& o) { o.radii = {-1}; }), "radii[0]",
+       "the radius -1 m is out of range; give 0.0001 to 10 m"},
       {with([](auto& o) {
          o.radii = {0.1F, kNaN};
        }),
-       "radii[1]", "nan m is no radius; give 0.0001 to 10 m"},
+       "radii[1]", "the radius nan m is out of range; give 0.0001 to 10 m"},
       {with([](auto& o) {
          o.radii = {0.1F, 0.1F};
        }),
@@ -65,7 +66,7 @@ std::vector<WrongOption> wrongOptions() {
       {with([](auto& o) {
          o.support = HalfSpace{{0, 1, 0}, kNaN};
        }),
-       "support.offset", "nan is no distance; give metres along the normal"},
+       "support.offset", "the distance nan is not valid; give meters along the normal"},
       {with([](auto& o) {
          o.support = HalfSpace{{0, 1, 0}, 3};
        }),

@@ -65,9 +65,9 @@ TEST(TextureSize, RefusesALargestThatIsNoPowerOfTwo) {
     const auto baked = bake::bakeMaterials({}, {}, {}, {.largest = largest});
     ASSERT_FALSE(baked.has_value());
     EXPECT_EQ(baked.error().code, ErrorCode::kInvalidInput);
-    EXPECT_EQ(
-        baked.error().message,
-        fmt::format("{} is no size of a texture; give a power of two from 1 to 4096", largest));
+    EXPECT_EQ(baked.error().message,
+              fmt::format("the texture size {} is not allowed; give a power of two from 1 to 4096",
+                          largest));
   }
 }
 

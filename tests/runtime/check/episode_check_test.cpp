@@ -82,7 +82,7 @@ TEST(EpisodeCheck, RefusesWrongStartPositions) {
 }
 
 TEST(EpisodeCheck, RefusesWrongPlacements) {
-  const std::string rigid = "is no rigid transform, wanted up to 800 m and a unit quaternion";
+  const std::string rigid = "is not a rigid transform, wanted up to 800 m and a unit quaternion";
   refuse({
       in("placements[1].object", "is 2, wanted one of 2 objects",
          [](Fields& f) { f.placements[1].object = 2; }),
@@ -99,7 +99,7 @@ TEST(EpisodeCheck, RefusesWrongPlacements) {
 }
 
 TEST(EpisodeCheck, RefusesWrongEpisodes) {
-  const std::string rigid = "is no rigid transform, wanted up to 800 m and a unit quaternion";
+  const std::string rigid = "is not a rigid transform, wanted up to 800 m and a unit quaternion";
   refuse({
       in("episodes", "is empty, wanted at least one episode",
          [](Fields& f) { f.episodes.clear(); }),

@@ -87,7 +87,7 @@ TEST(RobotCheck, RefusesWrongNamesAndSizes) {
 
 TEST(RobotCheck, RefusesWrongLinks) {
   const std::string parent = ", wanted -1 for the first link and an earlier link for the others";
-  const std::string rigid = "is no rigid transform, wanted up to 800 m and a unit quaternion";
+  const std::string rigid = "is not a rigid transform, wanted up to 800 m and a unit quaternion";
   const std::string numbers = "or offset is not finite or too large, wanted up to 1000 and 1000";
   const std::string axis = "has not length 1, wanted a direction";
   refuse({

@@ -84,7 +84,7 @@ TEST(PolicyPackAmongOthers, IsNoPartOfAWorld) {
   const auto world = World::open(paths);
   ASSERT_FALSE(world.has_value());
   EXPECT_EQ(world.error().message,
-            "is a policy, which is no part of a world; give it with --policy");
+            "is a policy, which cannot be part of a world; give it with --policy");
 }
 
 }  // namespace
