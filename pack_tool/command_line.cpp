@@ -78,7 +78,7 @@ void addJson(CLI::App& verb, OutputForm& form) {
 void addTrusted(CLI::App& verb, Trust& trust) {
   verb.add_flag_callback(
       "--trusted", [&trust] { trust = Trust::kTrusted; },
-      "skip the verification: only for packs verified before");
+      "skip verification: use it only for packs verified before");
 }
 
 void addRadius(CLI::App& verb, std::optional<float>& radius) {
@@ -98,7 +98,7 @@ void addPack(CLI::App& verb, const PackOption& option, std::filesystem::path& pa
 }
 
 void addOutput(CLI::App& verb, std::filesystem::path& output) {
-  verb.add_option("-o,--output", output, "the file to write; replaced if it is there")
+  verb.add_option("-o,--output", output, "the file to write; replaced if it exists")
       ->required()
       ->type_name("FILE");
 }
@@ -134,9 +134,9 @@ void addCheck(CLI::App& app, CheckOptions& options) {
       ->type_name("PACK");
   addJson(verb, options.form);
   verb.add_option("--junit", options.junit,
-                  "also write a JUnit report, for CI; replaced if it is there")
+                  "also write a JUnit report, for CI; replaced if it exists")
       ->type_name("FILE");
-  verb.add_option("-j,--jobs", options.jobs, "threads (default: one for each core)")
+  verb.add_option("-j,--jobs", options.jobs, "threads (default: one per core)")
       ->check(wholeCheck(1, 4096))
       ->type_name("N");
 }
@@ -161,9 +161,9 @@ void addColumn(CLI::App& app, ColumnOptions& options) {
 
 void addDiff(CLI::App& app, DiffOptions& options) {
   CLI::App& verb = *app.add_subcommand(
-      "diff", "Compare two packs of one kind by their meaning; exit code 7 when they differ");
+      "diff", "Compare two packs of one kind by their meaning; exit code 7 if they differ");
   addPack(verb, {"a", "a pack of a scene, of objects or of a robot"}, options.a);
-  addPack(verb, {"b", "another one of its kind"}, options.b);
+  addPack(verb, {"b", "another pack of the same kind"}, options.b);
   verb.add_option("--tolerance", options.tolerance,
                   "lengths that differ by no more are equal (default 0)")
       ->check(numberCheck(0, kMostMetres))
@@ -208,7 +208,7 @@ LayerSet parseLayers(const std::string& text) {
     const auto found = names.find(name);
     if (found == names.end()) {
       throw CLI::ValidationError("--what",
-                                 fmt::format("\"{}\" is none of mesh, spheres and boxes", name));
+                                 fmt::format("\"{}\" is not mesh, spheres or boxes", name));
     }
     layers.add(found->second);
     from = comma + 1;
@@ -223,19 +223,19 @@ void addFigureOptions(CLI::App& verb, std::optional<FigureOptions>& figures) {
   };
   verb.add_option_function<std::string>(
           "--object", [given](const std::string& name) { given().object = name; },
-          "objects: only the one of this name")
+          "objects: only the object of this name")
       ->type_name("NAME");
   verb.add_option_function<std::string>(
           "--joints",
           [given](const std::string& text) { given().joints.values = parseJoints(text); },
-          "robots: joint values, radians or metres; the others are at the start pose")
+          "robots: joint values, radians or meters; the other joints are in the start pose")
       ->type_name("NAME=VALUE,...");
   verb.add_flag_callback(
       "--all-zero", [given] { given().joints.others = OtherJoints::kZero; },
-      "robots: joints that --joints does not name are at 0");
+      "robots: put joints that --joints does not name at 0");
   verb.add_option_function<std::string>(
           "--what", [given](const std::string& text) { given().layers = parseLayers(text); },
-          "what is shown (objects and robots: by default all of mesh,spheres,boxes; picture of a "
+          "what to show (objects and robots: by default all of mesh,spheres,boxes; picture of a "
           "scene: mesh, instead of its grids)")
       ->type_name("LAYER,...");
 }
@@ -249,10 +249,10 @@ void addGridPictureOptions(CLI::App& verb, GridPictureOptions& options) {
             const auto [x0, z0, x1, z1] = parseNumbers<4>("--slice", text);
             options.slice = SliceLine{{x0, z0}, {x1, z1}};
           },
-          "scenes: a vertical slice along this line instead of a plan, metres")
+          "scenes: a vertical slice along this line instead of a plan, meters")
       ->type_name("X0,Z0,X1,Z1");
   verb.add_option("--value", options.value,
-                  "scenes: colour a plan by total free height, by the height of the lowest span, "
+                  "scenes: color a plan by total free height, by the height of the lowest span, "
                   "or by the number of spans (default total)")
       ->transform(choice(std::map<std::string, PlanValue>{{"total", PlanValue::kTotalHeight},
                                                           {"lowest", PlanValue::kLowestHeight},
@@ -329,7 +329,7 @@ void addExport(CLI::App& app, ExportOptions& options) {
       "export", "Write a scene's grid, objects, a robot or episodes for other programs");
   addPack(verb, {"pack", "a pack of a scene, of objects, of a robot or of episodes"}, options.pack);
   verb.add_option("-o,--output", options.output,
-                  "the file to write; replaced if it is there (default for episode_set: "
+                  "the file to write; replaced if it exists (default for episode_set: "
                   "NAME.episode_set.json)")
       ->type_name("FILE");
   addEpisodeSetOptions(verb, options);
@@ -346,7 +346,7 @@ void addExport(CLI::App& app, ExportOptions& options) {
   addRadius(verb, options.radius);
   verb.add_flag_callback(
       "--surface", [&options] { options.patch_height = PatchHeight::kSurface; },
-      "OBJ, PLY: patches a radius beyond the free spans, where level surfaces are");
+      "OBJ, PLY: patches one radius beyond the free spans, where level surfaces are");
   verb.add_flag_callback(
       "--floors-only", [&options] { options.parts = MeshParts::kFloors; }, "OBJ, PLY: no ceilings");
   addTrusted(verb, options.trust);
@@ -392,7 +392,7 @@ int usageError(const Console& console, std::string_view message) {
 
 tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
                                             const Console& console) {
-  CLI::App app("galactic-pack looks into packs, checks, compares, exports, draws and shows them.",
+  CLI::App app("galactic-pack inspects, checks, compares, exports, draws and shows packs.",
                "galactic-pack");
   AllOptions options;
   // Verbs inherit the footer that is set before them.

@@ -102,7 +102,7 @@ int simulateWorld(const RunOptions& options, const OpenedWorld& world, const Run
   }
   if (!run->first_difference) return galactic::kExitOk;
   fmt::print(stderr,
-             "galactic-run: {}: step {} returns something else than when it was recorded; "
+             "galactic-run: {}: step {} differs from the recording; "
              "compare the versions of galactic-run and the processors\n",
              galactic::printable(options.replayFile()), *run->first_difference);
   return galactic::kExitDiffers;

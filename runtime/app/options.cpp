@@ -134,7 +134,7 @@ class CommandLineVisitor {
 
 void addPlainOptions(CLI::App& app, RunOptions& options) {
   app.set_version_flag("--version", "galactic-run " GALACTIC_VERSION);
-  app.add_option("--pack", options.packs, "Pack to open; may be given several times")
+  app.add_option("--pack", options.packs, "Pack to open; repeat it for several")
       ->required()
       ->allow_extra_args(false)
       ->type_name("FILE");
@@ -155,14 +155,14 @@ void addRunOptions(CLI::App& app, RunOptions& options) {
       ->option_text(
           fmt::format("random|forward|zero|scripted|FILE.pack|replay:FILE [{}]", options.policy));
   app.add_flag("--deterministic,!--policy-sample", options.is_deterministic,
-               "A policy pack takes its likeliest actions, or draws them, as it does by itself")
+               "Let a policy pack take its likeliest actions, or sample them (the default)")
       ->check(switchCheck());
   app.add_option("--threads", options.simulation.threads,
                  "Threads; the results do not depend on it; 0: one per processor")
       ->check(wholeCheck(0, 4096))
       ->option_text(fmt::format("N [{}]", options.simulation.threads));
   app.add_flag("--body-transforms", options.simulation.body_transforms,
-               "Keep the pose of every body of the robot, as rendering needs")
+               "Keep the pose of every body of the robot; rendering implies it")
       ->check(switchCheck());
   app.add_option("--record", options.record, "Write actions and digests, for replay:FILE")
       ->type_name("FILE");
@@ -188,7 +188,7 @@ std::string faultOf(const RunOptions& options) {
     return "--bench takes a --seed up to 4294967295";
   }
   if (options.is_deterministic && options.policyFile().empty()) {
-    return "--deterministic is about learned policies; add --policy FILE.pack";
+    return "--deterministic applies to learned policies only; add --policy FILE.pack";
   }
   const bool is_tracked = !options.view.empty() || !options.animation.empty();
   const std::uint64_t kept =
@@ -253,7 +253,7 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
   }
   std::string fault = faultOf(options);
   if (fault.empty() && options.view.empty() && app.count("--view-envs") > 0) {
-    fault = "--view-envs is about the page of a run; add --view FILE.html";
+    fault = "--view-envs applies to the page of a run only; add --view FILE.html";
   }
   options.drawing.policy_may_draw = !options.policyFile().empty();
   if (fault.empty()) fault = drawingFault(options.drawing, app);

@@ -88,7 +88,7 @@ Result<Header> readHeader(std::ifstream& file, const std::string& where, std::ui
   if (size < sizeof(Header) || !fill(file, std::as_writable_bytes(std::span(&header, 1))) ||
       header.magic != kMagic) {
     return fail(ErrorCode::kInvalidInput, where,
-                "is no recording; give a file that --record wrote");
+                "is not a recording; give a file that --record wrote");
   }
   if (header.version != kVersion) {
     return fail(ErrorCode::kUnsupported, where,
@@ -99,7 +99,7 @@ Result<Header> readHeader(std::ifstream& file, const std::string& where, std::ui
   const bool makes_sense = header.envs >= 1 && header.envs <= kMostEnvs && header.actions >= 1 &&
                            header.actions <= kMostActions && header.packs <= kMostPacks &&
                            header.text_bytes <= kMostText;
-  if (!makes_sense) return damaged(where, "has a header with senseless counts");
+  if (!makes_sense) return damaged(where, "has a header with impossible counts");
   const std::uint64_t front =
       sizeof(Header) + std::uint64_t{header.packs} * sizeof(PackStamp) + header.text_bytes;
   const std::uint64_t step =

@@ -55,8 +55,7 @@ void addBackend(CLI::App& app, DrawingOptions& drawing) {
   const auto set = [&drawing, backends](const std::string& text) {
     drawing.backend = backends.at(text);
   };
-  app.add_option_function<std::string>("--backend", set,
-                                       "What draws: OpenGL, or the processor alone")
+  app.add_option_function<std::string>("--backend", set, "Renderer: OpenGL, or the processor alone")
       ->check(CLI::IsMember({"auto", "gl", "soft"}))
       ->option_text("auto|gl|soft [auto]");
   app.add_option("--device", drawing.device, "For gl: an index, cuda:N, a UUID, or software")
@@ -67,25 +66,26 @@ void addPictures(CLI::App& app, DrawingOptions& drawing) {
   app.add_option("--frames", drawing.frames, "Write PNG files of the first envs")
       ->type_name("FOLDER");
   app.add_option("--contact-sheet", drawing.contact_sheet,
-                 "Write a picture of envs (columns) at moments (rows)")
+                 "Write a sheet of envs (columns) at several moments (rows)")
       ->type_name("FILE.png");
   app.add_option("--video", drawing.video, "Write a video with ffmpeg")->type_name("FILE");
   app.add_option("--frame-every", drawing.frame_every, "Steps from picture to picture")
       ->check(wholeCheck(1, 1U << 30U))
       ->option_text(fmt::format("N [{}]", drawing.frame_every));
-  app.add_option("--frame-envs", drawing.frame_envs, "How many envs pictures show")
+  app.add_option("--frame-envs", drawing.frame_envs, "How many envs the pictures show")
       ->check(wholeCheck(1, 1024))
       ->option_text(fmt::format("N [{}]", drawing.frame_envs));
 }
 
 void addDebug(CLI::App& app, DrawingOptions& drawing) {
   app.add_flag("--debug-view", drawing.debug_view,
-               "Pictures show column grid, spheres and boxes beside the camera's image")
+               "Show column grid, spheres and boxes beside the camera's image")
       ->check(switchCheck());
-  app.add_option("--debug-camera", drawing.debug_camera, "From where, as --camera")
+  app.add_option("--debug-camera", drawing.debug_camera,
+                 "Camera of the debug view, chosen as with --camera")
       ->option_text(fmt::format("head|follow|top|LINK [{}]", drawing.debug_camera));
   app.add_option("--debug-radius", drawing.debug_radius,
-                 "Whose column grid, metres; 0: the smallest sphere's")
+                 "Radius whose column grid is shown, meters; 0: the smallest")
       ->check(numberCheck(0, 10))
       ->option_text("NUMBER [0]");
 }
@@ -95,7 +95,7 @@ void addDebug(CLI::App& app, DrawingOptions& drawing) {
 void addDrawingOptions(CLI::App& app, DrawingOptions& drawing) {
   app.option_defaults()->group(kGroup);
   app.add_option("--render", drawing.images,
-                 "Draw each step: colour, depth, both, both and semantic ids")
+                 "Draw each step: color, depth, both, or both and semantic ids")
       ->check(CLI::IsMember({"rgb", "depth", "rgbd", "rgbds"}))
       ->option_text("rgb|depth|rgbd|rgbds");
   addSize(app, drawing);
@@ -105,7 +105,8 @@ void addDrawingOptions(CLI::App& app, DrawingOptions& drawing) {
       ->option_text(fmt::format("head|follow|top|LINK [{}]", drawing.camera));
   constexpr double kLeastFov = 1;
   constexpr double kMostFov = 175;
-  app.add_option("--fov", drawing.fov_degrees, "From the image's lower to its upper edge")
+  app.add_option("--fov", drawing.fov_degrees,
+                 "Vertical field of view, from the image's lower to its upper edge")
       ->check(numberCheck(kLeastFov, kMostFov))
       ->option_text("DEGREES");
   addPictures(app, drawing);
@@ -119,19 +120,19 @@ std::string drawingFault(const DrawingOptions& drawing, const CLI::App& app) {
       if (option->count() == 0 || option->get_group() != kGroup) continue;
       const std::string name = option->get_name();
       if (drawing.policy_may_draw && (name == "--backend" || name == "--device")) continue;
-      return fmt::format("{} is an option of drawing; add --render", name);
+      return fmt::format("{} applies to rendering only; add --render", name);
     }
   }
   if (drawing.backend == RenderBackend::kSoft && !drawing.device.empty()) {
-    return "--device is about --backend gl; leave it out";
+    return "--device applies to --backend gl only; leave it out";
   }
   const bool shapes_pictures = app.count("--frame-every") + app.count("--frame-envs") > 0;
   if (!drawing.makesPictures() && (drawing.debug_view || shapes_pictures)) {
-    return fmt::format("{} is about pictures; add --frames, --contact-sheet or --video",
+    return fmt::format("{} applies to pictures only; add --frames, --contact-sheet or --video",
                        drawing.debug_view ? "--debug-view" : "--frame-every or --frame-envs");
   }
   if (!drawing.debug_view && app.count("--debug-camera") + app.count("--debug-radius") > 0) {
-    return "--debug-camera and --debug-radius are about the debug view; add --debug-view";
+    return "--debug-camera and --debug-radius apply to the debug view only; add --debug-view";
   }
   return {};
 }

@@ -194,8 +194,10 @@ TEST_F(PolicyCli, SaysWhatDoesNotFit) {
       {{"--policy", "world.pack"}, 3, "is a pack of kind WRLD, wanted a policy (PLCY)"},
       {{"--policy", "text.pack"}, 3, "has 14 bytes, a pack has at least 64"},
       {{"--policy", "none.pack"}, 2, "none.pack"},
-      {{"--deterministic"}, 1, "--deterministic is about learned policies; add --policy FILE.pack"},
-      {{"--policy", "random", "--backend", "soft"}, 1, "is an option of drawing; add --render"},
+      {{"--deterministic"},
+       1,
+       "--deterministic applies to learned policies only; add --policy FILE.pack"},
+      {{"--policy", "random", "--backend", "soft"}, 1, "applies to rendering only; add --render"},
       {{"--policy", "learned"}, 1, "wanted random, forward, zero, scripted, FILE.pack or replay"}};
   for (const Refusal& refusal : refusals) {
     const ProgramRun result = run(refusal.arguments);

@@ -266,7 +266,8 @@ TEST_F(SimulateCli, EndsWithSevenWhereAReplayDiffers) {
   const ProgramRun result =
       run({"--policy", "replay:other.rec", "--report", "report.json", "--envs", "5"});
   EXPECT_EQ(result.exit_code, 7);
-  EXPECT_THAT(result.err, StartsWith("galactic-run: other.rec: step 23 returns something else"));
+  EXPECT_THAT(result.err,
+              StartsWith("galactic-run: other.rec: step 23 differs from the recording"));
   EXPECT_THAT(result.out, HasSubstr("replay        differs at step 23\n"));
   EXPECT_EQ(json::parse(content("report.json"))["first_difference"], 23);
 }
@@ -275,8 +276,8 @@ TEST_F(SimulateCli, RefusesADamagedRecording) {
   record();
   const std::string whole = content("run.rec");
   const std::vector<std::pair<std::string, std::string>> damages{
-      {"", "is no recording"},
-      {"x" + whole, "is no recording"},
+      {"", "is not a recording"},
+      {"x" + whole, "is not a recording"},
       {whole.substr(0, whole.size() - 1), "has "},
       {whole.substr(0, 100), "has 100 bytes"},
   };

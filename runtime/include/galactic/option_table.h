@@ -80,8 +80,8 @@ void visitBatchOptions(SimulationOptions& o, Visitor& v) {
   v.seed("seed", o.seed, "Seed of episodes, placements and policy, and of --bench");
   v.choice("order", o.order, kOrderNames, "Order in which an env takes the episodes");
   v.whole("rank", o.rank, Within<std::uint32_t>{0, 65535},
-          "Number of this batch among several that share the episodes");
-  v.whole("ranks", o.ranks, Within<std::uint32_t>{1, 65536}, "How many batches there are");
+          "Number of this batch among those that share the episodes");
+  v.whole("ranks", o.ranks, Within<std::uint32_t>{1, 65536}, "How many batches share the episodes");
 }
 
 /// The same, of the task and its reward.
@@ -93,26 +93,27 @@ void visitTaskOptions(TaskOptions& t, Visitor& v) {
   v.whole("episode-steps", t.most_steps, Within<std::uint32_t>{0, 1U << 30U},
           "Steps after which an episode ends; 0: never");
   v.real("success-distance", t.success_distance, Within<float>{0, 1000},
-         "Distance of target and goal that is a success, metres");
+         "Largest distance between target and goal that is a success, meters");
   v.flag("no-terminate", Switch{t.needs_terminate, false},
          "Judge success at each release; the terminate action does nothing");
   v.flag("safe-drop", Switch{t.drop_fails, false},
-         "Releases away from the goal are not carried out, instead of failures");
-  v.flag("no-distractors", Switch{t.distractors, false}, "Leave all objects out but the target");
+         "Ignore releases away from the goal, instead of counting them as failures");
+  v.flag("no-distractors", Switch{t.distractors, false}, "Leave out all objects except the target");
   v.flag("observe-current", Switch{t.observes_current_target, true},
          "Observe the target where it is, not where it was at the start");
   v.group("Reward");
-  v.real("success-reward", t.success_reward, kReward, "For success");
-  v.real("pick-reward", t.pick_reward, kReward, "For the first grasp of the target");
-  v.real("reach-weight", t.reach_weight, kReward, "For each metre of hand towards target");
-  v.real("transport-weight", t.transport_weight, kReward, "For each metre of target towards goal");
+  v.real("success-reward", t.success_reward, kReward, "Reward for success");
+  v.real("pick-reward", t.pick_reward, kReward, "Reward for the first grasp of the target");
+  v.real("reach-weight", t.reach_weight, kReward,
+         "Reward per meter that the hand gets closer to the target");
+  v.real("transport-weight", t.transport_weight, kReward,
+         "Reward per meter that the target gets closer to the goal");
   v.real("geodesic-weight", t.geodesic_weight, kReward,
-         "For each metre of the way along the floor to the target, then to the goal");
-  v.real("action-weight", t.action_weight, kReward, "Off for squared changes of joint actions");
-  v.real("slack-penalty", t.slack_penalty, kReward, "Off for each step");
-  v.real("failure-penalty", t.failure_penalty, kReward, "Off for a failure");
-  v.real("bump-penalty", t.bump_penalty, kReward,
-         "Off for each step that something was in the way of");
+         "Reward per meter by which the path along the floor to target, then goal, gets shorter");
+  v.real("action-weight", t.action_weight, kReward, "Penalty on squared changes of joint actions");
+  v.real("slack-penalty", t.slack_penalty, kReward, "Penalty for each step");
+  v.real("failure-penalty", t.failure_penalty, kReward, "Penalty for a failure");
+  v.real("bump-penalty", t.bump_penalty, kReward, "Penalty for each step that something blocked");
 }
 
 /// The same, of what the robot does and meets.
@@ -122,21 +123,25 @@ void visitMotionOptions(SimulationOptions& o, Visitor& v) {
   constexpr Within<float> kMetres{0, 1000};
   constexpr Within<std::uint32_t> kAttempts{0, 1000};
   v.group("Actions");
-  v.real("grasp-from", o.action.grasp, kThreshold, "An empty hand grasps from this value on");
-  v.real("release-below", o.action.release, kThreshold, "A full hand lets go below this value");
-  v.real("terminate-from", o.action.terminate, kThreshold, "Terminates from this value on");
+  v.real("grasp-from", o.action.grasp, kThreshold,
+         "An empty hand grasps if its action is at least this");
+  v.real("release-below", o.action.release, kThreshold,
+         "A full hand lets go if its action is below this");
+  v.real("terminate-from", o.action.terminate, kThreshold,
+         "The robot terminates if its action is at least this");
   v.group("Sliding and floor");
   v.preset("slide", o.slide, Preset<SlideOptions>{kSlidePresets, kSlideParts},
            "How a robot that would hit something is pushed clear");
-  v.choice("slide-direction", o.slide.direction, kSlideNames, "Where the base is pushed");
-  v.whole("slide-attempts", o.slide.attempts, kAttempts, "Pushes in a step; 0: no sliding");
-  v.real("slide-step", o.slide.step, kMetres, "Length of a push, metres");
-  v.real("floor-rise", o.ground.most_rise, kMetres, "Highest step up, metres");
-  v.real("floor-drop", o.ground.most_drop, kMetres, "Deepest step down, metres");
+  v.choice("slide-direction", o.slide.direction, kSlideNames,
+           "Direction in which the base is pushed");
+  v.whole("slide-attempts", o.slide.attempts, kAttempts, "Pushes per step; 0: no sliding");
+  v.real("slide-step", o.slide.step, kMetres, "Length of a push, meters");
+  v.real("floor-rise", o.ground.most_rise, kMetres, "Highest step up, meters");
+  v.real("floor-drop", o.ground.most_drop, kMetres, "Deepest step down, meters");
   v.group("Placing released objects");
-  v.whole("place-attempts", o.placement.attempts, kAttempts, "Poses that are tried");
-  v.real("place-lift", o.placement.most_lift, kMetres, "Highest lift out of something, metres");
-  v.real("place-clearance", o.placement.clearance, kMetres, "Left below the object, metres");
+  v.whole("place-attempts", o.placement.attempts, kAttempts, "Poses to try for a released object");
+  v.real("place-lift", o.placement.most_lift, kMetres, "Highest lift out of a collision, meters");
+  v.real("place-clearance", o.placement.clearance, kMetres, "Gap left below the object, meters");
   v.real("place-spread", o.placement.direction_spread, Within<float>{0, 4},
          "Half the range of random directions, radians");
   v.real("place-jitter", o.placement.jitter, kMetres, "Length of a jitter, in box diagonals");
@@ -147,24 +152,24 @@ template <class Visitor>
 void visitSensorOptions(SensorOptions& s, Visitor& v) {
   LaserOptions& laser = s.laser;
   v.group("Sensors (below 0: as the robot's recipe says)");
-  v.flag("bump", Switch{s.bump, true}, "Observe whether something was in the way of the last step");
+  v.flag("bump", Switch{s.bump, true}, "Observe whether something blocked the last step");
   v.whole("laser-beams", laser.beams, Within<std::uint32_t>{0, 1024},
           "Beams of a planar laser scan; 0: none");
   v.real("laser-fov", laser.fov_degrees, Within<float>{kOfRobot, 360},
-         "Degrees that the beams spread over");
+         "Field of view of the scan, degrees");
   v.real("laser-height", laser.height, Within<float>{kOfRobot, 100},
-         "Height of the scan above the floor, metres");
+         "Height of the scan above the floor, meters");
   v.real("laser-second-height", laser.second_height, Within<float>{0, 100},
-         "The same of a second scan; 0: none");
-  v.real("laser-range", laser.range, Within<float>{kOfRobot, 1000}, "Farthest distance, metres");
+         "Height of a second scan, meters; 0: none");
+  v.real("laser-range", laser.range, Within<float>{kOfRobot, 1000}, "Farthest distance, meters");
   v.real("laser-min-range", laser.least_range, Within<float>{kOfRobot, 1000},
-         "Nearest distance, metres");
+         "Nearest distance, meters");
   v.real("laser-noise", laser.noise, Within<float>{kOfRobot, 10},
-         "Standard deviation of a distance, metres");
+         "Standard deviation of a distance, meters");
   v.flag("geodesic", Switch{s.geodesic, true},
-         "Observe the ways along the floor to target and goal");
+         "Observe the paths along the floor to target and goal");
   v.whole("geodesic-megabytes", s.geodesic_megabytes, Within<std::uint32_t>{1, 1U << 20U},
-          "Most memory for these ways");
+          "Most memory for these paths, MB");
 }
 
 /// What a world may say of its task, its reward and what the robot does and senses: all but the

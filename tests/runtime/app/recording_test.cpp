@@ -137,13 +137,13 @@ TEST_F(Recording, SaysWhatIsWrong) {
     std::memcpy(changed.data() + offset, &value, sizeof(value));
     return errorOf(changed).value_or(Error{});
   };
-  EXPECT_THAT(errorOf("hello")->message, HasSubstr("is no recording"));
-  EXPECT_THAT(with(0, 'X').message, HasSubstr("is no recording"));
+  EXPECT_THAT(errorOf("hello")->message, HasSubstr("is not a recording"));
+  EXPECT_THAT(with(0, 'X').message, HasSubstr("is not a recording"));
   const Error later = with(8, 2U);
   EXPECT_EQ(later.code, ErrorCode::kUnsupported);
   EXPECT_THAT(later.message, HasSubstr("format version 2, wanted 1"));
-  EXPECT_THAT(with(12, 0U).message, HasSubstr("senseless counts"));
-  EXPECT_THAT(with(12, UINT32_MAX).message, HasSubstr("senseless counts"));
+  EXPECT_THAT(with(12, 0U).message, HasSubstr("impossible counts"));
+  EXPECT_THAT(with(12, UINT32_MAX).message, HasSubstr("impossible counts"));
   EXPECT_THAT(with(32, std::uint64_t{4}).message, HasSubstr("not what 4 steps of 2 envs take"));
   EXPECT_THAT(with(32, UINT64_MAX).message, HasSubstr("not what"));
   EXPECT_THAT(with(kHeaderBytes, '\x7f').message, HasSubstr("does not match its hash"));
