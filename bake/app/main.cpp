@@ -122,6 +122,7 @@ int main(int argc, char** argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     return bake::refuse({galactic::ErrorCode::kIo, error.path1().string(), error.code().message()});
   } catch (const std::system_error& error) {  // what printing throws
+    if (galactic::isOutOfMemory(error)) return bake::refuse(galactic::outOfMemory());
     return bake::refuse({galactic::ErrorCode::kIo, "standard output", error.what()});
   } catch (const std::exception& error) {
     fmt::print(stderr, "galactic-bake: internal error: {}; please report it\n", error.what());

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import json
-import pathlib
 import sys
 from typing import Optional, Sequence
 
@@ -13,10 +12,9 @@ import torch
 
 import galactic
 from galactic.learning import checkpoint, evaluation, pictures
-from galactic.learning.command import EXIT_CODES, Parser, told
+from galactic.learning.command import EXIT_CODES, Parser, named_path, told, whole
 from galactic.learning.curves import write_json
 from galactic.learning.homes import Homes
-from galactic.learning.settings import SettingsError
 from galactic.learning.trainer import threads_of
 
 
@@ -26,38 +24,56 @@ def make_parser() -> argparse.ArgumentParser:
         description="Plays each episode of a world once with a policy, and says how well it did.",
         epilog=EXIT_CODES,
     )
-    parser.add_argument("policy", type=pathlib.Path, help="best.pt or policy.pt of a run")
-    parser.add_argument("world", type=pathlib.Path, help="world pack")
+    parser.add_argument("policy", type=named_path, help="best.pt or policy.pt of a run")
+    parser.add_argument("world", type=named_path, help="world pack")
     actions = parser.add_mutually_exclusive_group()
     actions.add_argument(
         "--sampled", action="store_true", help="sample actions, as in training (the default)"
     )
     actions.add_argument("--deterministic", action="store_true", help="take the likeliest actions")
     parser.add_argument(
-        "--episodes", type=int, default=0, metavar="N", help="play the first N episodes; 0: all"
+        "--episodes",
+        type=whole(0, 1 << 31),
+        default=0,
+        metavar="N",
+        help="play the first N episodes; 0: all",
     )
-    parser.add_argument("--seed", type=int, default=1, help="seed of sampled actions (1)")
     parser.add_argument(
-        "--threads", type=int, default=0, help="number of threads; 0: one per processor (0)"
+        "--seed",
+        type=whole(0, 2**63 - 1),
+        metavar="N",
+        default=1,
+        help="seed of sampled actions (1)",
     )
     parser.add_argument(
-        "--report", type=pathlib.Path, metavar="FILE.json", help="write the report to this file"
+        "--threads",
+        type=whole(0, 4096),
+        metavar="N",
+        default=0,
+        help="number of threads; 0: one per processor (0)",
+    )
+    parser.add_argument(
+        "--report", type=named_path, metavar="FILE.json", help="write the report to this file"
     )
     shown = parser.add_argument_group("Pictures of successes and failures, from behind the robot")
     shown.add_argument(
         "--contact-sheet",
-        type=pathlib.Path,
+        type=named_path,
         metavar="FILE.png",
         help="draw a row for each episode, from start to end",
     )
     shown.add_argument(
         "--video",
-        type=pathlib.Path,
+        type=named_path,
         metavar="FILE.mp4",
         help="show the same episodes moving; needs ffmpeg",
     )
     shown.add_argument(
-        "--shown", type=int, default=8, metavar="N", help="how many episodes the pictures show (8)"
+        "--shown",
+        type=whole(1, 1000),
+        default=8,
+        metavar="N",
+        help="how many episodes the pictures show (8)",
     )
     return parser
 
@@ -69,8 +85,6 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
 
 def _evaluate(options: argparse.Namespace) -> int:
     draws = options.contact_sheet or options.video
-    if draws and options.shown < 1:
-        raise SettingsError(f"--shown is {options.shown}; it has to be at least 1")
     if draws:
         pictures.require_tools(video=bool(options.video))
     saved = checkpoint.load_policy(options.policy)

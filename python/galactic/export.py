@@ -18,6 +18,7 @@ from torch import nn
 import galactic
 from galactic import _core
 from galactic.learning import checkpoint
+from galactic.learning.command import Parser, named_path
 from galactic.learning.distributions import DECISIONS, HIGHEST_LOG_STD, LOWEST_LOG_STD
 from galactic.learning.homes import simulation_keywords
 from galactic.learning.networks import (
@@ -244,16 +245,16 @@ def write(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str =
 
 
 def make_parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="python3 -m galactic.export",
         description="Makes a policy pack of a trained policy, for galactic-run --policy.",
         epilog="Exit codes: 0 ok, 1 command line, 2 file, 3 invalid input.",
     )
-    parser.add_argument("policy", type=pathlib.Path, help="best.pt or policy.pt of a run")
+    parser.add_argument("policy", type=named_path, help="best.pt or policy.pt of a run")
     parser.add_argument(
         "-o",
         "--output",
-        type=pathlib.Path,
+        type=named_path,
         required=True,
         metavar="FILE.pack",
         help="the pack to write",

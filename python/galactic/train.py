@@ -15,7 +15,7 @@ import torch
 import galactic
 from galactic.learning import checkpoint, evaluation
 from galactic.learning.collector import EpisodeSums
-from galactic.learning.command import EXIT_CODES, INTERRUPTED, OK, Parser, told
+from galactic.learning.command import EXIT_CODES, INTERRUPTED, OK, Parser, named_path, told
 from galactic.learning.curves import write_json
 from galactic.learning.distributed import Group
 from galactic.learning.homes import Homes
@@ -49,12 +49,12 @@ def make_parser() -> argparse.ArgumentParser:
         epilog=f"{EXIT_CODES}, 130 interrupted and saved.",
     )
     parser.add_argument(
-        "world", type=pathlib.Path, nargs="?", help="world pack; leave it out with --resume"
+        "world", type=named_path, nargs="?", help="world pack; leave it out with --resume"
     )
     parser.add_argument(
         "-o",
         "--output",
-        type=pathlib.Path,
+        type=named_path,
         required=True,
         metavar="FOLDER",
         help="folder of the run",
@@ -63,11 +63,11 @@ def make_parser() -> argparse.ArgumentParser:
         "--preset", default=None, metavar="|".join(PRESETS), help="settings to start from (paper)"
     )
     parser.add_argument(
-        "--validation", type=pathlib.Path, metavar="WORLD", help="world with held-out episodes"
+        "--validation", type=named_path, metavar="WORLD", help="world with held-out episodes"
     )
     parser.add_argument(
         "--start-from",
-        type=pathlib.Path,
+        type=named_path,
         metavar="POLICY",
         help="begin with the weights of this best.pt or policy.pt from another task or world",
     )
@@ -148,7 +148,9 @@ def _new_run(options: argparse.Namespace) -> Run:
         raise SettingsError(
             f"{options.output} already holds a run; continue it with --resume, or choose another folder"
         )
-    settings = preset(options.preset or "paper", **given_options(options))
+    settings = preset(
+        "paper" if options.preset is None else options.preset, **given_options(options)
+    )
     return Run(
         options.world.resolve(),
         _absolute(options.validation),

@@ -163,6 +163,7 @@ int main(int argc, char** argv) {
   } catch (const std::length_error&) {  // a vector that no memory could hold
     return report(galactic::outOfMemory());
   } catch (const std::system_error& failure) {  // what printing throws
+    if (galactic::isOutOfMemory(failure)) return report(galactic::outOfMemory());
     return report({ErrorCode::kIo, "standard output", failure.what()});
   } catch (const std::exception& exception) {
     return report({ErrorCode::kInternal, "internal error", exception.what()});

@@ -15,7 +15,7 @@ constexpr float kAbove = 0.025F;
 Result<SurfaceRays> SurfaceRays::build(const TriangleMesh& mesh) {
   auto rays = TriangleRays::build(mesh.vertices, mesh.triangles, /*jobs=*/1);
   if (!rays) {
-    return fail(ErrorCode::kInternal, "episodes",
+    return fail(ErrorCode::kUnsupported, "episodes",
                 "could not build a scene for rays, for lack of memory; generate without geometry");
   }
   return SurfaceRays(*std::move(rays));

@@ -367,4 +367,9 @@ tl::expected<ProcessOutput, ProcessFailure> runIsolated(const IsolatedWork& work
   return received.take();
 }
 
+std::uint64_t ownMemoryLimit() {
+  rlimit limit{};
+  return ::getrlimit(RLIMIT_AS, &limit) == 0 ? limit.rlim_cur : RLIM_INFINITY;
+}
+
 }  // namespace galactic::bake

@@ -63,4 +63,8 @@ using IsolatedWork = std::function<void(ProcessChannel&)>;
 [[nodiscard]] tl::expected<ProcessOutput, ProcessFailure> runIsolated(const IsolatedWork& work,
                                                                       const ProcessLimits& limits);
 
+/// Bytes that this process may map (RLIMIT_AS): where they are fewer than a child's limit, it is
+/// they that it ran into.
+[[nodiscard]] std::uint64_t ownMemoryLimit();
+
 }  // namespace galactic::bake

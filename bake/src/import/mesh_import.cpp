@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "galactic/out_of_memory.h"
 #include "import/affine.h"
 #include "import/asset_check.h"
 #include "import/asset_transfer.h"
@@ -85,6 +86,11 @@ Error readingFailure(const fs::path& path, const ProcessFailure& failure,
           reader, options.time_limit.count());
       return error;
     case ProcessEnd::kMemoryLimit:
+      if (ownMemoryLimit() < options.memory_limit) {
+        error = outOfMemory();
+        error.where = path.string();
+        return error;
+      }
       error.message = fmt::format(
           "{} needs more than {:.3g} GiB of memory; the file is broken or "
           "too large: export it again or split it",

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import pathlib
+import re
 import sys
-from typing import Callable, NoReturn
+from typing import Any, Callable, NoReturn
 
 import galactic
 from galactic.learning.checkpoint import CheckpointError
@@ -18,11 +20,50 @@ EXIT_CODES = "Exit codes: 0 ok, 1 command line, 2 I/O, 3 invalid input, 4 intern
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser whose errors end with the exit code of all tools."""
+    """An argument parser whose errors are one line, with the exit code of all tools. Options are
+    typed whole, and once."""
+
+    def __init__(self, **keywords: Any) -> None:
+        super().__init__(allow_abbrev=False, **keywords)
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        words = sys.argv[1:] if args is None else list(args)
+        seen: set[str] = set()
+        for word in words:
+            action = self._option_string_actions.get(word.partition("=")[0])
+            if action is not None and action.dest in seen:
+                self.error(f"argument {'/'.join(action.option_strings)}: given more than once")
+            if action is not None:
+                seen.add(action.dest)
+        return super().parse_known_args(words, namespace)
 
     def error(self, message: str) -> NoReturn:
-        self.print_usage(sys.stderr)
-        self.exit(COMMAND_LINE, f"{self.prog}: {message}\n")
+        self.exit(COMMAND_LINE, f"{program_of(self.prog)}: command line: {message}; see --help\n")
+
+
+def program_of(prog: str) -> str:
+    """`galactic.train` of `python3 -m galactic.train`."""
+    return prog.split()[-1]
+
+
+def whole(least: int, most: int) -> Callable[[str], int]:
+    """The type of an option that takes whole numbers of a range: digits alone."""
+
+    def parse(text: str) -> int:
+        if not re.fullmatch(r"-?[0-9]{1,20}", text) or not least <= int(text) <= most:
+            raise argparse.ArgumentTypeError(
+                f'found "{text}", wanted a whole number from {least} to {most}'
+            )
+        return int(text)
+
+    return parse
+
+
+def named_path(text: str) -> pathlib.Path:
+    """The type of an option that takes a file or a folder. An empty name would be the current one."""
+    if not text:
+        raise argparse.ArgumentTypeError("is empty; name a file or a folder")
+    return pathlib.Path(text)
 
 
 def told(program: str, work: Callable[[], int]) -> int:
@@ -30,7 +71,7 @@ def told(program: str, work: Callable[[], int]) -> int:
     try:
         return work()
     except SettingsError as error:
-        code, message = COMMAND_LINE, str(error)
+        code, message = COMMAND_LINE, f"command line: {error}"
     except CheckpointError as error:
         code, message = INVALID_INPUT, str(error)
     except galactic.Error as error:

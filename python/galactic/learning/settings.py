@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import math
+import re
 from dataclasses import dataclass
 from typing import Any, Mapping, Optional, Sequence
 
@@ -13,10 +15,17 @@ class SettingsError(ValueError):
     """An invalid setting: says which, what was found and what was expected."""
 
 
+# Of a setting without a limit of its own.
+MOST_WHOLE = 2**53
+MOST_NUMBER = 1e9
+
+
 def _setting(default: Any, group: str, text: str, *, low: Optional[float] = None,
              high: Optional[float] = None, choices: Sequence[str] = (),
              may_change: bool = False) -> Any:  # fmt: skip
     """A field of Settings. `may_change`: a resumed run may have another value."""
+    if high is None and isinstance(default, (int, float)) and not isinstance(default, bool):
+        high = MOST_WHOLE if isinstance(default, int) else MOST_NUMBER
     return dataclasses.field(
         default=default,
         metadata={
@@ -40,7 +49,7 @@ class Settings:
         200_000_000, "Run", "total steps of all envs of all ranks", low=1, may_change=True
     )
     seed: int = _setting(1, "Run", "seed of everything random", low=0)
-    envs: int = _setting(128, "Run", "environments per rank", low=1)
+    envs: int = _setting(128, "Run", "environments per rank", low=1, high=1 << 20)
     halves: int = _setting(
         2,
         "Run",
@@ -70,8 +79,8 @@ class Settings:
     recurrent: bool = _setting(
         False, "Network", "put a GRU into the network `state`; the others always have one"
     )
-    width: int = _setting(128, "Network", "units per layer of `state`", low=1)
-    layers: int = _setting(2, "Network", "hidden layers of `state`", low=1)
+    width: int = _setting(128, "Network", "units per layer of `state`", low=1, high=65536)
+    layers: int = _setting(2, "Network", "hidden layers of `state`", low=1, high=64)
     activation: str = _setting(
         "tanh", "Network", "activation between the layers of `state`", choices=("tanh", "relu")
     )
@@ -109,8 +118,8 @@ class Settings:
         0.0, "PPO", "learning rate at the end; linear in between", low=0.0
     )
     adam_epsilon: float = _setting(1e-5, "PPO", "Adam's epsilon", low=0.0)
-    horizon: int = _setting(64, "PPO", "steps per env in a rollout", low=1)
-    epochs: int = _setting(1, "PPO", "how many times a rollout is used", low=1)
+    horizon: int = _setting(64, "PPO", "steps per env in a rollout", low=1, high=1 << 20)
+    epochs: int = _setting(1, "PPO", "how many times a rollout is used", low=1, high=1000)
     mini_batches: int = _setting(2, "PPO", "parts of a rollout, by env; divides `envs`", low=1)
     clip: float = _setting(0.2, "PPO", "clipping range of the probability ratio", low=0.0)
     value_coefficient: float = _setting(
@@ -145,6 +154,7 @@ class Settings:
         "processes that train together on this machine; ignored under torchrun, which starts them "
         "across machines",
         low=1,
+        high=1024,
     )
     sync_fraction: float = _setting(
         0.6,
@@ -158,7 +168,12 @@ class Settings:
     )
 
     simulation_threads: int = _setting(
-        0, "Machine", "threads per rank; 0: its share of the processors", low=0, may_change=True
+        0,
+        "Machine",
+        "threads per rank; 0: its share of the processors",
+        low=0,
+        high=4096,
+        may_change=True,
     )
     torch_threads: int = _setting(
         0,
@@ -166,6 +181,7 @@ class Settings:
         "threads per rank; 0: its share of the processors with images, 1 for `state`, whose layers are "
         "too small to share",
         low=0,
+        high=4096,
         may_change=True,
     )
     precision: str = _setting(
@@ -260,8 +276,10 @@ def _check(field: "dataclasses.Field[Any]", value: Any) -> None:
     choices = field.metadata["choices"]
     if choices and value not in choices:
         raise SettingsError(f'{field.name} is "{value}"; it can be {", ".join(choices)}')
-    if (low is not None and value < low) or (high is not None and value > high):
-        wanted = f"at least {low:g}" if high is None else f"from {low:g} to {high:g}"
+    # A comparison with NaN is false.
+    if low is not None and high is not None and not low <= value <= high:
+        is_whole = isinstance(field.default, int)
+        wanted = f"from {low} to {high}" if is_whole else f"from {low:g} to {high:g}"
         raise SettingsError(f"{field.name} is {value}; it has to be {wanted}")
 
 
@@ -285,7 +303,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         if isinstance(field.default, bool):
             keywords["action"] = argparse.BooleanOptionalAction
         else:
-            keywords["type"] = _integer if isinstance(field.default, int) else type(field.default)
+            readers = {int: _integer, float: _real, str: str}
+            keywords["type"] = readers[type(field.default)]
             keywords["metavar"] = "|".join(field.metadata["choices"]) or field.name.upper()
         group.add_argument(option_name(field.name), **keywords)
 
@@ -302,10 +321,24 @@ def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def _integer(text: str) -> int:
     """Also 2e6 and 2_000_000."""
-    value = float(text)
+    if re.fullmatch(r"-?[0-9]+(_[0-9]+)*", text):
+        return int(text)
+    value = _real(text, "a whole number")
     if value != int(value):
-        raise ValueError(text)
+        raise argparse.ArgumentTypeError(f'found "{text}", wanted a whole number')
     return int(value)
+
+
+def _real(text: str, wanted: str = "a number") -> float:
+    """A finite number, without blanks around it."""
+    if re.fullmatch(r"[-+0-9._eE]+", text):
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if math.isfinite(value):
+            return value
+    raise argparse.ArgumentTypeError(f'found "{text}", wanted {wanted}')
 
 
 def resumed(before: Settings, given: Mapping[str, Any]) -> Settings:

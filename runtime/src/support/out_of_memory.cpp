@@ -42,4 +42,9 @@ Error outOfMemory() {
                       allowedBytes() / kGigabyte, mappedBytes() / kGigabyte)};
 }
 
+bool isOutOfMemory(const std::system_error& failure) {
+  return failure.code() == std::errc::resource_unavailable_try_again ||
+         failure.code() == std::errc::not_enough_memory;
+}
+
 }  // namespace galactic

@@ -20,7 +20,8 @@ from galactic.learning.curves import read_curves
 
 WORLDS = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none"))
 WORLD, HELD_OUT = WORLDS / "world.pack", WORLDS / "held_out.pack"
-SMALL = ["--preset", "quick", "--ranks", "1", "--envs", "16", "--horizon", "8", "--log-every", "0"]
+SMALL_OF_ANY_RANKS = ["--preset", "quick", "--envs", "16", "--horizon", "8", "--log-every", "0"]
+SMALL = [*SMALL_OF_ANY_RANKS, "--ranks", "1"]
 UPDATE = 16 * 8
 SENSORS = "laser-beams=8 laser-noise=0.01 geodesic geodesic-weight=1 bump"
 TO_BE_CUT = [*SMALL, "--halves", "2", "--simulation", f"task=pick episode-steps=60 {SENSORS}",
@@ -109,7 +110,7 @@ def test_a_run_that_was_cut_goes_on_as_if_it_had_not_been(
 
 def test_an_interrupt_saves_and_says_how_to_go_on(tmp_path: pathlib.Path) -> None:
     process = subprocess.Popen(
-        command("train", WORLD, "-o", tmp_path / "run", *SMALL, "--ranks", "2"),
+        command("train", WORLD, "-o", tmp_path / "run", *SMALL_OF_ANY_RANKS, "--ranks", "2"),
         stderr=subprocess.PIPE,
         text=True,
     )

@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""Runs the programs with less and less memory than they need.
+
+    limit_memory.py FOLDER_OF_PROGRAMS WORLD PACKS
+
+WORLD is a world pack, PACKS the folder of the golden packs. Each program does something that needs memory, under
+limits of its address space from what --version gets along with up to what is enough. Where it does not succeed, it
+says so in one line PROGRAM: WHERE: MESSAGE, and that memory is what it lacks; it never ends by a signal or in an
+internal error.
+"""
+
+import pathlib
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+
+STEP = 1.25
+MEGABYTE = 1 << 20
+MOST = 16384 * MEGABYTE
+# A file that cannot be read or mapped, or what is not supported.
+CODES = (2, 5)
+
+
+def run(command: list[str], limit: int) -> "subprocess.CompletedProcess[str]":
+    def set_limit() -> None:
+        resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+
+    with tempfile.TemporaryDirectory() as folder:
+        return subprocess.run(command, capture_output=True, text=True, preexec_fn=set_limit, cwd=folder, timeout=120)
+
+
+def faults_of(command: list[str]) -> list[str]:
+    """What a program says wrong, and nothing but its name where it never lacks memory."""
+    limit = 8 * MEGABYTE
+    # The loader's own errors are none of ours.
+    while run([command[0], "--version"], limit).returncode != 0:
+        limit = int(limit * STEP)
+    name = pathlib.Path(command[0]).name
+    faults, refused = [], 0
+    while limit < MOST:
+        done = run(command, limit)
+        if done.returncode == 0:
+            print(f"{name}: enough with {limit / MEGABYTE:.0f} MB, refused {refused} times")
+            return faults if refused else [f"{name} never lacked memory"]
+        refused += 1
+        line = done.stderr.strip()
+        told = re.fullmatch(rf"{name}: [^\n]+: [^\n]+", line) and re.search("memory| GB ", line) and "internal" not in line
+        if done.returncode not in CODES or not told:
+            faults.append(f"{name} with {limit / MEGABYTE:.0f} MB ended with {done.returncode}: {line!r}")
+        limit = int(limit * STEP)
+    return [*faults, f"{name} never had enough memory"]
+
+
+def main() -> int:
+    programs, world, packs = (pathlib.Path(text).resolve() for text in sys.argv[1:4])
+    commands = [
+        ["galactic-run", "--pack", world, "--envs", 65536, "--steps", 1, "--threads", 1],
+        ["galactic-pack", "picture", packs / "crate.pack", "--size", 2048, "-o", "crate.png"],
+        ["galactic-bake", packs / "room.obj", "--spacing", 0.004, "--check-columns", 0, "-q", "-o", "room.pack"],
+    ]
+    faults = []
+    for program, *words in commands:
+        if (programs / program).exists():
+            faults += faults_of([str(programs / program), *map(str, words)])
+    print("\n".join(faults))
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

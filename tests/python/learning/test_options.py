@@ -1,0 +1,110 @@
+"""Every option of the programs, as their --help lists them, with every kind of bad value."""
+
+from __future__ import annotations
+
+import argparse
+import pathlib
+import re
+from typing import Any, Callable
+
+import pytest
+
+from galactic import evaluate, export, train
+
+NO_NUMBER = ("", "nan", "-nan", "inf", "-inf", "1e300", "-1e300", "nonsense", "1x", " 1", "1,1")
+NO_WHOLE_NUMBER = (*NO_NUMBER, "-1", "1.5", "9" * 20)
+NO_CHOICE = ("", "nan", "-1", "0", "nonsense")
+# Numbers that may be below 0: logarithms, and where it says "no change".
+BELOW_ZERO = ("--initial-log-std", "--final-log-std", "--entropy-end")
+PROGRAMS: dict[str, tuple[Any, list[str]]] = {
+    "train": (train, ["none.pack", "--output", "run"]),
+    "evaluate": (evaluate, ["none.pt", "none.pack"]),
+    "export": (export, ["none.pt", "--output", "out.pack"]),
+}
+Run = Callable[[list[str]], tuple[int, str]]
+
+
+def options_of(name: str) -> list[argparse.Action]:
+    """The options of a program but --help. --help prints the same list."""
+    parser: argparse.ArgumentParser = PROGRAMS[name][0].make_parser()
+    options = [one for one in parser._actions if one.option_strings and one.dest != "help"]
+    printed = set(re.findall(r"--[a-z][a-z-]+", parser.format_help()))
+    assert {text for one in options for text in one.option_strings if text[1] == "-"} <= printed
+    return options
+
+
+CASES = [
+    pytest.param(name, action, id=f"{name} {action.option_strings[-1]}")
+    for name in PROGRAMS
+    for action in options_of(name)
+]
+
+
+def bad_values(action: argparse.Action) -> tuple[str, ...]:
+    """Values that are none of the option's kind; () for a switch."""
+    option = action.option_strings[-1]
+    if action.nargs == 0:
+        return ()
+    if action.choices or (isinstance(action.metavar, str) and "|" in action.metavar):
+        return NO_CHOICE
+    if action.type is None or action.type is str:
+        return ()  # a name or a text may be anything
+    if action.type.__name__ == "named_path":
+        return ("",)
+    if action.type.__name__ == "_real":
+        return NO_NUMBER + (() if option in BELOW_ZERO else ("-1",))
+    # What is not known here has to be a whole number.
+    return NO_WHOLE_NUMBER
+
+
+@pytest.fixture
+def run(monkeypatch: Any, capsys: Any, tmp_path: pathlib.Path) -> Callable[[str, list[str]], Any]:
+    """Runs a program until it has read its options; the exit code and what it says."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("RANK", raising=False)
+    monkeypatch.setattr(train, "launch", lambda ranks, command: 0)
+
+    def run_program(name: str, words: list[str]) -> tuple[int, str]:
+        try:
+            code = PROGRAMS[name][0].main(words)
+        except SystemExit as stop:
+            code = stop.code
+        return code, capsys.readouterr().err
+
+    return run_program
+
+
+def needed(name: str, action: argparse.Action) -> list[str]:
+    """What the program cannot do without, but for the option itself."""
+    words = PROGRAMS[name][1]
+    if action.dest != "output":
+        return words
+    return words[: words.index("--output")]
+
+
+@pytest.mark.parametrize("name,action", CASES)
+def test_a_bad_value_is_refused_in_one_line_that_names_the_option(
+    name: str, action: argparse.Action, run: Any
+) -> None:
+    option = action.option_strings[-1]
+    for value in bad_values(action):
+        code, said = run(name, [*needed(name, action), f"{option}={value}"])
+        assert code == 1, f"{value!r}: {said}"
+        assert re.fullmatch(rf"galactic\.{name}: command line: .*\n", said), f"{value!r}: {said}"
+        assert option in said or option[2:].replace("-", "_") in said, f"{value!r}: {said}"
+
+
+@pytest.mark.parametrize("name,action", CASES)
+def test_an_option_is_given_once(name: str, action: argparse.Action, run: Any) -> None:
+    option = action.option_strings[-1]
+    word = option if action.nargs == 0 else f"{option}=1"
+    code, said = run(name, [*needed(name, action), word, word])
+    assert code == 1 and "given more than once" in said
+
+
+def test_the_walk_reaches_options_that_are_taken(run: Any) -> None:
+    words = [*PROGRAMS["train"][1], "--steps", "2e6", "--envs", "4", "--learning-rate", "1e-3"]
+    assert run("train", [*words, "--entropy-end", "-1", "--no-normalize"]) == (0, "")
+    # The policy that is missing is looked for after the options.
+    assert run("evaluate", ["none.pt", "none.pack", "--seed", "7", "--shown", "1"])[0] == 3
+    assert run("export", ["none.pt", "-o", "out.pack", "--name", "a"])[0] == 3
