@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -77,12 +78,18 @@ class StateChecker {
       const RobotSphere& sphere = spheres_[n];
       const Ball ball{at(transforms[sphere.body], sphere.centre), sphere.radius_index};
       found.in_grid[0] += isInGrid(around, ball) ? 1U : 0U;
-      const InObjects in = inObjects(around, ball, before.released, found);
-      before.leaving[n] = before.leaving[n] && in.touches_released;
-      found.released_into += before.leaving[n] && in.released ? 1U : 0U;
-      if (in.other || (in.released && !before.leaving[n])) {
+      const InObjects objects = inObjects(around, ball, found);
+      for (auto& [object, spheres] : before.leaving) {
+        spheres[n] = spheres[n] && std::ranges::count(objects.touches, object) != 0;
+      }
+      for (const std::int32_t object : objects.in) {
+        const auto leaving = before.leaving.find(object);
+        if (leaving != before.leaving.end() && leaving->second[n]) {
+          ++found.released_into;
+          continue;
+        }
         ++found.in_objects[0];
-        note(env, state, n, before, in, found);
+        note(env, state, n, object, found);
       }
       if (exactly) found.in_scene[0] += isInScene(ball, found) ? 1U : 0U;
     }
@@ -116,38 +123,31 @@ class StateChecker {
     std::int32_t object = -1;
     std::uint32_t step = 0;
     std::vector<bool> excepted;
-    /// The object that was released last, and the robot's spheres that have been in it since.
-    std::int32_t released = -1;
-    std::vector<bool> leaving;
+    /// Objects that were released, and the robot's spheres that have been in each since.
+    std::map<std::int32_t, std::vector<bool>> leaving;
   };
-  /// Whether a sphere is in the object that was released last, and in another one.
+  /// The objects that a sphere is in.
   struct InObjects {
-    bool released = false;
-    bool other = false;
-    /// Whether it may not be free of the one released, but for rounding.
-    bool touches_released = false;
+    std::vector<std::int32_t> in;
+    /// Those that it may not be free of, but for rounding.
+    std::vector<std::int32_t> touches;
   };
 
   void noteRelease(const EnvState& state, HeldBefore& before) const {
     const bool goes_on = state.step == before.step + 1;
-    if (!goes_on || before.leaving.empty()) {
-      before.released = -1;
-      before.leaving.assign(spheres_.size(), false);
-    }
+    if (!goes_on) before.leaving.clear();
+    before.leaving.erase(state.held);
     if (!goes_on || before.object < 0 || before.object == state.held) return;
-    before.released = before.object;
-    before.leaving.assign(spheres_.size(), true);
+    before.leaving[before.object].assign(spheres_.size(), true);
   }
 
-  static void note(std::size_t env, const EnvState& state, std::size_t sphere,
-                   const HeldBefore& before, const InObjects& in, Findings& found) {
+  static void note(std::size_t env, const EnvState& state, std::size_t sphere, std::int32_t object,
+                   Findings& found) {
     constexpr std::size_t kMost = 5;
     if (found.notes.size() == kMost) return;
     found.notes.push_back(
-        fmt::format("env {}, step {} of episode {}: sphere {} is in {}; object {} was released "
-                    "last, {} is held",
-                    env, state.step, state.episode, sphere,
-                    in.other ? "another object" : "it again", before.released, state.held));
+        fmt::format("env {}, step {} of episode {}: sphere {} is in object {}, {} is held", env,
+                    state.step, state.episode, sphere, object, state.held));
   }
 
   static Vec3 at(const RigidTransform& frame, const Vec3& point) {
@@ -189,9 +189,9 @@ class StateChecker {
   }
 
   [[nodiscard]] InObjects inObjects(const Surroundings& around, const Ball& ball,
-                                    std::int32_t released, Findings& found) const {
+                                    Findings& found) const {
     constexpr double kRounding = 1e-5;
-    InObjects in;
+    InObjects objects;
     bool near = false;
     for (const RestingSolid& object : around.objects) {
       const Vec3 away = ball.centre - object.centre;
@@ -199,12 +199,11 @@ class StateChecker {
       near = true;
       const double distance = object.solid.distance(toPoint3(ball.centre));
       const auto radius = static_cast<double>(world_.radii()[ball.radius_index]);
-      const bool is_released = object.number == released;
-      in.touches_released = in.touches_released || (is_released && distance < radius + kRounding);
-      if (distance < radius - kRounding) (is_released ? in.released : in.other) = true;
+      if (distance < radius + kRounding) objects.touches.push_back(object.number);
+      if (distance < radius - kRounding) objects.in.push_back(object.number);
     }
     found.near_objects += near ? 1U : 0U;
-    return in;
+    return objects;
   }
 
   [[nodiscard]] bool isInScene(const Ball& ball, Findings& found) {
@@ -251,7 +250,7 @@ class StateChecker {
                       object.spheres[n].radius_index};
       ++found.held_spheres;
       const bool in_grid = isInGrid(around, ball);
-      const bool in_object = inObjects(around, ball, -1, found).other;
+      const bool in_object = !inObjects(around, ball, found).in.empty();
       before.excepted[n] = before.excepted[n] && (in_grid || in_object);
       found.excepted += before.excepted[n] ? 1U : 0U;
       if (before.excepted[n]) continue;

@@ -180,9 +180,8 @@ unsigned ClearanceMaps::surelyFree(std::uint32_t map, std::size_t eight,
                                    const GroupBounds& bounds) const noexcept {
   if (map == kNoClearanceMap) return 0;
   const ClearanceLanes& lanes = lanes_[map * eights_ + eight];
-  const float* first = bounds.values + eight * kLanes;
-  return detail::hasAvx2() ? surelyFreeAvx2(lanes, cells_.data(), first, bounds.stride)
-                           : surelyFreePortable(lanes, cells_.data(), first, bounds.stride);
+  return detail::hasAvx2() ? surelyFreeAvx2(lanes, cells_.data(), bounds.values, bounds.stride)
+                           : surelyFreePortable(lanes, cells_.data(), bounds.values, bounds.stride);
 }
 
 unsigned surelyFreePortable(const ClearanceLanes& lanes, const std::uint8_t* cells,

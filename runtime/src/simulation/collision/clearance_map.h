@@ -25,7 +25,7 @@ struct HeightsOverFloor {
   float highest = 0;
 };
 
-/// The bounds of the groups of one env, as BodyArrays::bounds has them.
+/// The bounds of eight groups of one env, as BodyArrays::bounds has them.
 struct GroupBounds {
   const float* values = nullptr;
   /// From one bound to the next: groups, padded to lanes.
@@ -48,8 +48,8 @@ class ClearanceMaps {
   std::uint32_t add(const Scene& scene, float floor, float unevenness,
                     const HeightsOverFloor& heights);
 
-  /// Which of eight groups are surely free, as bits: the lanes from 8 * `eight` on. `map`: as add()
-  /// returned it; none are for kNoClearanceMap.
+  /// Which of eight groups are surely free, as bits: those of the lanes from 8 * `eight` on, with
+  /// these bounds. `map`: as add() returned it; none are for kNoClearanceMap.
   [[nodiscard]] unsigned surelyFree(std::uint32_t map, std::size_t eight,
                                     const GroupBounds& bounds) const noexcept;
 

@@ -81,8 +81,8 @@ CollisionScratch::CollisionScratch(std::size_t most_spheres) {
   hits_.resize(kHitsPerSphere * most_spheres);
 }
 
-std::vector<SphereGroup> sphereGroups(std::span<const RadiusRange> ranges) {
-  std::vector<SphereGroup> groups;
+std::vector<EightSpheres> spheresByEights(std::span<const RadiusRange> ranges) {
+  std::vector<EightSpheres> groups;
   for (const RadiusRange& range : ranges) {
     for (std::uint32_t n = 0; n < range.count; n += kLanes) {
       const std::uint32_t left = std::min(range.count - n, static_cast<std::uint32_t>(kLanes));
@@ -93,7 +93,7 @@ std::vector<SphereGroup> sphereGroups(std::span<const RadiusRange> ranges) {
 }
 
 std::uint64_t blockedSpheres(const Scene& scene, const SphereBatch& spheres,
-                             std::span<const SphereGroup> groups, std::size_t first,
+                             std::span<const EightSpheres> groups, std::size_t first,
                              unsigned asked) noexcept {
   std::uint64_t blocked = 0;
   while (asked != 0) {

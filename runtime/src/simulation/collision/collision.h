@@ -30,7 +30,7 @@ class CollisionScratch {
 };
 
 /// Eight spheres of one radius, side by side in a SphereBatch.
-struct SphereGroup {
+struct EightSpheres {
   /// Index into the working set.
   std::uint32_t radius_index = 0;
   /// Metres.
@@ -40,7 +40,7 @@ struct SphereGroup {
 };
 
 /// The groups of a batch with these ranges, in order.
-[[nodiscard]] std::vector<SphereGroup> sphereGroups(std::span<const RadiusRange> ranges);
+[[nodiscard]] std::vector<EightSpheres> spheresByEights(std::span<const RadiusRange> ranges);
 
 /// What a robot, and an object that it holds or releases, can hit.
 struct Obstacles {
@@ -55,7 +55,7 @@ struct Obstacles {
 /// Which spheres of up to eight groups the static scene blocks, as bits from the first of the
 /// groups on. `groups`: of the whole batch; `asked`: which of those from `first` on, as bits.
 [[nodiscard]] std::uint64_t blockedSpheres(const Scene& scene, const SphereBatch& spheres,
-                                           std::span<const SphereGroup> groups, std::size_t first,
+                                           std::span<const EightSpheres> groups, std::size_t first,
                                            unsigned asked) noexcept;
 
 /// Adds up pushes so that their order changes nothing: the largest in each of the four directions

@@ -41,9 +41,10 @@ class Chunk {
   /// Moves a candidate with all its spheres and its grip.
   void shift(std::size_t env, const Vec3& by);
   [[nodiscard]] SphereBatch spheres(std::size_t env) const;
-  /// Bounds of the candidate's sphere centres, eight by eight.
-  [[nodiscard]] GroupBounds bounds(std::size_t env) const {
-    return {bounds_.data()->values.data() + env * kBounds * group_stride_, group_stride_};
+  /// Bounds of the candidate's sphere centres, eight by eight, from group 8 * `eight` on.
+  [[nodiscard]] GroupBounds bounds(std::size_t env, std::size_t eight) const {
+    return {bounds_.data()->values.data() + env * kBounds * group_stride_ + eight * kLanes,
+            group_stride_};
   }
   /// The least and the most of all their coordinates.
   [[nodiscard]] Vec3 least(std::size_t env) const;
@@ -59,9 +60,10 @@ class Chunk {
   /// One bit for each sphere of the robot that the scene blocks: what isFree() found last on a
   /// floor that carries the base.
   [[nodiscard]] std::span<std::uint64_t> blockedBits() { return blocked_bits_; }
-  /// One bit for each sphere of the held object that penetrates something, and of the robot that
-  /// penetrates the object which it leaves: what isFree() found last.
+  /// One bit for each sphere of the held object that penetrates something: what isFree() found
+  /// last.
   [[nodiscard]] std::span<std::uint64_t> heldBits() { return held_bits_; }
+  /// Room for a bit for each sphere of the robot.
   [[nodiscard]] std::span<std::uint64_t> bodyBits() { return body_bits_; }
 
  private:

@@ -81,6 +81,7 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t n,
          .goal = episode.goal.translation,
          .target_start = state.objects(n)[target].translation,
          .counters = env.counters};
+  std::ranges::fill(state.leaving(n), 0U);
   state.idle()[n] = 0;
   takeStock(model, state, n);
 }

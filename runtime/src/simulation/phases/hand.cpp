@@ -1,5 +1,6 @@
 #include "simulation/phases/hand.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -25,7 +26,9 @@ void grasp(const ChunkStep& step, std::size_t e) {
   env.held.before = before;
   measureHeld(heldModel(step.model, env), env.held);
   resting.remove(*object);
-  if (env.leaves == env.held.object) env.leaves = -1;
+  const std::span<std::uint64_t> leaving = step.state.leaving(n, *object);
+  if (std::ranges::any_of(leaving, [](std::uint64_t word) { return word != 0; })) --env.left;
+  std::ranges::fill(leaving, 0U);
   const SphereBatch spheres =
       holdSpheres(heldModel(step.model, env), before, step.chunk.placement().spheres);
   penetrating({step.model.world->scenes()[env.scene], resting}, spheres, step.chunk.collision(),
@@ -54,8 +57,8 @@ void beginToLeave(const ChunkStep& step, std::size_t e, std::uint32_t object) {
                                                .scratch = step.chunk.frames()});
   const std::size_t n = step.first + e;
   const RestingBox& box = step.state.resting(n).box(object);
-  const bool any = overlapping(box, step.chunk.spheres(e), step.state.leaving(n));
-  step.state.env(n).leaves = any ? static_cast<std::int32_t>(object) : -1;
+  const bool any = overlapping(box, step.chunk.spheres(e), step.state.leaving(n, object));
+  step.state.env(n).left += any ? 1U : 0U;
 }
 
 void release(const ChunkStep& step, std::size_t e) {

@@ -30,17 +30,29 @@ SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) {
   return holdSpheres(heldModel(step.model, env), world_from_object, step.chunk.placement().spheres);
 }
 
-/// Calls `ask` while the object that the robot leaves is not there.
+bool isEmpty(std::span<const std::uint64_t> bits) {
+  return std::ranges::all_of(bits, [](std::uint64_t word) { return word == 0; });
+}
+
+/// Calls visit(object) for each resting object that the robot leaves.
+template <class Visit>
+void forEachLeft(const ChunkStep& step, std::size_t e, const Visit& visit) {
+  const std::size_t n = step.first + e;
+  const Env& env = step.state.env(n);
+  if (env.left == 0) return;
+  for (std::uint32_t object = 0; object < env.objects; ++object) {
+    if (!isEmpty(step.state.leaving(n, object))) visit(object);
+  }
+}
+
+/// Calls `ask` while the objects that the robot leaves are not there.
 template <class Ask>
 auto withoutLeft(const ChunkStep& step, std::size_t e, const Ask& ask) {
-  const std::int32_t leaves = step.state.env(step.first + e).leaves;
-  if (leaves < 0) return ask();
-  const auto object = static_cast<std::uint32_t>(leaves);
   RestingObjects& resting = step.state.resting(step.first + e);
-  const RestingBox box = resting.box(object);
-  resting.remove(object);
+  forEachLeft(step, e, [&](std::uint32_t object) { resting.remove(object); });
   const auto answer = ask();
-  resting.insert(object, box);
+  // A box that rests no more is still known.
+  forEachLeft(step, e, [&](std::uint32_t object) { resting.insert(object, resting.box(object)); });
   return answer;
 }
 
@@ -56,13 +68,13 @@ bool findBlocked(const ChunkStep& step, std::size_t e) {
   const Env& env = step.state.env(step.first + e);
   const Scene& scene = step.model.world->scenes()[env.scene];
   const SphereBatch spheres = step.chunk.spheres(e);
-  const std::span<const SphereGroup> groups = step.model.groups;
+  const std::span<const EightSpheres> groups = step.model.groups;
   const std::span<std::uint64_t> bits = step.chunk.blockedBits();
   std::uint64_t any = 0;
   for (std::size_t eight = 0; eight * kLanes < groups.size(); ++eight) {
     const std::size_t here = std::min(groups.size() - eight * kLanes, kLanes);
     const unsigned free =
-        step.model.clearance.surelyFree(env.clearance_map, eight, step.chunk.bounds(e));
+        step.model.clearance.surelyFree(env.clearance_map, eight, step.chunk.bounds(e, eight));
     const unsigned asked = ((1U << here) - 1) & ~free;
     const std::uint64_t blocked =
         asked == 0 ? 0 : blockedSpheres(scene, spheres, groups, eight * kLanes, asked);
@@ -75,16 +87,14 @@ bool findBlocked(const ChunkStep& step, std::size_t e) {
 bool bodyTouchesObjects(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
   const RestingObjects& objects = step.state.resting(n);
-  if (!objects.mayTouch(step.chunk.least(e), step.chunk.most(e))) {
-    std::ranges::fill(step.chunk.bodyBits(), 0U);
-    return false;
-  }
+  if (!objects.mayTouch(step.chunk.least(e), step.chunk.most(e))) return false;
   const SphereBatch spheres = step.chunk.spheres(e);
-  const bool in_others = withoutLeft(step, e, [&] { return objects.touches(spheres); });
-  const std::int32_t leaves = step.state.env(n).leaves;
-  if (in_others || leaves < 0) return in_others;
-  overlapping(objects.box(static_cast<std::uint32_t>(leaves)), spheres, step.chunk.bodyBits());
-  return anyCounts(step.chunk.bodyBits(), step.state.leaving(n));
+  bool touches = withoutLeft(step, e, [&] { return objects.touches(spheres); });
+  forEachLeft(step, e, [&](std::uint32_t object) {
+    overlapping(objects.box(object), spheres, step.chunk.bodyBits());
+    touches = touches || anyCounts(step.chunk.bodyBits(), step.state.leaving(n, object));
+  });
+  return touches;
 }
 
 /// Whether a look at the ball around the held object's spheres says that all are free.
@@ -152,9 +162,11 @@ void accept(const ChunkStep& step, std::size_t e) {
   // The bits are those of the accepted candidate.
   Env& env = step.state.env(n);
   if (env.held.object >= 0) keepPenetrating(step.state.ignored(n), step.chunk.heldBits());
-  if (env.leaves >= 0 && !keepPenetrating(step.state.leaving(n), step.chunk.bodyBits())) {
-    env.leaves = -1;
-  }
+  forEachLeft(step, e, [&](std::uint32_t object) {
+    overlapping(step.state.resting(n).box(object), step.chunk.spheres(e), step.chunk.bodyBits());
+    const bool any = keepPenetrating(step.state.leaving(n, object), step.chunk.bodyBits());
+    env.left -= any ? 0U : 1U;
+  });
 }
 
 /// Adds the ways out of the scene for the robot's spheres that it blocks.

@@ -16,8 +16,8 @@ std::size_t envBytes(const Model& model) {
   return kPadding + sizeof(Env) + sizeof(RestingObjects) + sizeof(GripFrame) +
          planes * (sizeof(SetPlane) + sizeof(std::uint32_t)) +
          model.most_objects * (sizeof(RestingBox) + sizeof(Pose)) +
-         (model.heldWords() + model.bodyWords()) * sizeof(std::uint64_t) + floats * sizeof(float) +
-         3 + model.bodyCount() * sizeof(RigidTransform);
+         (model.heldWords() + model.most_objects * model.bodyWords()) * sizeof(std::uint64_t) +
+         floats * sizeof(float) + 3 + model.bodyCount() * sizeof(RigidTransform);
 }
 
 template <class T>
@@ -70,7 +70,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   objects_.resize(padded * most_objects_);
   grips_.resize(padded);
   ignored_.resize(padded * held_words_);
-  leaving_.resize(padded * body_words_);
+  leaving_.resize(padded * most_objects_ * body_words_);
   last_actions_.resize(padded * joints_);
   x_.resize(padded);
   y_.resize(padded);

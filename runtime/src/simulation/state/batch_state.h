@@ -74,10 +74,10 @@ struct Env {
   /// The last step left the robot where it was: wherever it would have been, it penetrated
   /// something.
   bool refused = false;
-  /// The object that the hand let go of and that some of the robot's spheres still penetrate; -1
-  /// for none. Those spheres do not count against it until each is free of it once; else the hand
-  /// could not leave it.
-  std::int32_t leaves = -1;
+  /// Objects that the hand let go of and that some of the robot's spheres have penetrated since.
+  /// Those spheres do not count against them until each is free of it once; else the hand could not
+  /// leave them. BatchState::leaving() says which.
+  std::uint32_t left = 0;
   StepEvents events;
   Vec3 goal;
   Vec3 target_start;
@@ -125,15 +125,22 @@ class BatchState {
   [[nodiscard]] std::span<std::uint64_t> ignored(std::size_t n) {
     return std::span(ignored_).subspan(n * held_words_, held_words_);
   }
-  /// Spheres of the robot that do not count against Env::leaves yet.
-  [[nodiscard]] std::span<std::uint64_t> leaving(std::size_t n) {
-    return std::span(leaving_).subspan(n * body_words_, body_words_);
+  /// Spheres of the robot that do not count against a resting object yet: an object that the hand
+  /// let go of.
+  [[nodiscard]] std::span<std::uint64_t> leaving(std::size_t n, std::size_t object) {
+    return std::span(leaving_).subspan((n * most_objects_ + object) * body_words_, body_words_);
   }
   [[nodiscard]] std::span<const std::uint64_t> ignored(std::size_t n) const {
     return std::span(ignored_).subspan(n * held_words_, held_words_);
   }
+  /// Those of all objects. Shape: objects x words.
   [[nodiscard]] std::span<const std::uint64_t> leaving(std::size_t n) const {
-    return std::span(leaving_).subspan(n * body_words_, body_words_);
+    return std::span(leaving_).subspan(n * most_objects_ * body_words_,
+                                       most_objects_ * body_words_);
+  }
+  [[nodiscard]] std::span<std::uint64_t> leaving(std::size_t n) {
+    return std::span(leaving_).subspan(n * most_objects_ * body_words_,
+                                       most_objects_ * body_words_);
   }
   /// The joint actions of the step before.
   [[nodiscard]] std::span<float> lastActions(std::size_t n) {

@@ -143,7 +143,7 @@ void mapClearance(const HeightsOverFloor& heights, Model& model) {
   const std::size_t radii = model.world->radii().size();
   if (radii > kLanes) return;
   std::vector<std::uint32_t> radius_of_lane;
-  for (const SphereGroup& group : model.groups) radius_of_lane.push_back(group.radius_index);
+  for (const EightSpheres& group : model.groups) radius_of_lane.push_back(group.radius_index);
   radius_of_lane.resize(paddedToLanes(radius_of_lane.size()), radius_of_lane.front());
   for (std::uint32_t radius = 0; radius < radii; ++radius) radius_of_lane.push_back(radius);
   model.clearance = ClearanceMaps(std::move(radius_of_lane));
@@ -233,7 +233,7 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
   model.observation_size = model.observation.back().first + model.observation.back().size;
   model.sensors_first = model.observation_size - sensors.laser - sensors.geodesic;
   measure(world, model);
-  model.groups = sphereGroups(model.motion.ranges);
+  model.groups = spheresByEights(model.motion.ranges);
   StartFinder finder(model);
   finder.find();
   if (model.starts.empty()) {

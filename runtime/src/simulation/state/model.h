@@ -48,7 +48,7 @@ struct Model {
   std::vector<RigidTransform> start_bodies;
   std::vector<std::uint32_t> skipped;
   /// The robot's spheres in eights.
-  std::vector<SphereGroup> groups;
+  std::vector<EightSpheres> groups;
   /// A lane for each group, padded to whole eights; then one for each radius of the working set,
   /// for what the robot holds.
   ClearanceMaps clearance;

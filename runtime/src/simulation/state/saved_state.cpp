@@ -23,7 +23,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::array<char, 8> kMagic{'G', 'A', 'L', 'S', 'T', 'A', 'T', 'E'};
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 /// Far beyond any world, metres, and any joint; keeps arithmetic on what comes from outside finite.
 constexpr float kLargest = 1e6F;
 constexpr const char* kWhere = "saved state";
@@ -54,7 +54,8 @@ struct EnvRecord {
   std::uint32_t episode = 0;
   std::uint32_t step = 0;
   std::int32_t held = -1;
-  std::int32_t leaves = -1;
+  /// Objects that the robot leaves.
+  std::uint32_t left = 0;
   std::array<std::uint32_t, 8> counts{};
   Pose grip_from_held;
   Pose before;
@@ -177,7 +178,7 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
       .episode = model.starts[env.start].episode,
       .step = env.step,
       .held = env.held.object,
-      .leaves = env.leaves,
+      .left = env.left,
       .counts = {counters.refused, counters.slid, counters.grasps, counters.drops,
                  counters.restored, counters.episodes, counters.successes, counters.failures},
       .grip_from_held = env.held.grip_from_object,
@@ -193,7 +194,7 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
   for (std::size_t v = 0; v < model.variableCount(); ++v) out.add(state.variable(v, n));
   out.add(state.lastActions(n));
   out.add(state.ignored(n));
-  out.add(state.leaving(n));
+  out.add(state.leaving(n).first(env.objects * model.bodyWords()));
   out.add(state.objects(n).first(env.objects));
   out.add(state.bodyTransforms(n));
   if (state.endings()[n] != EpisodeEnd::kNone) out.add(state.finalObservation(n));
@@ -224,10 +225,6 @@ std::string faultOf(const Model& model, const EnvRecord& record) {
   if (record.held < -1 || record.held >= objects) {
     return fmt::format("holds object {} of {}", record.held, objects);
   }
-  if (record.leaves < -1 || record.leaves >= objects ||
-      (record.leaves >= 0 && record.leaves == record.held)) {
-    return fmt::format("leaves object {} of {}", record.leaves, objects);
-  }
   if (record.ending >= kEpisodeEnds) return fmt::format("ended in way {}", record.ending);
   if (record.has_picked > 1 || record.was_refused > 1 || record.is_idle > 1 || record.ordinal == 0)
     return "has a wrong flag or count";
@@ -254,7 +251,9 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
   saved.env.held.before = record.before;
   saved.env.has_picked = record.has_picked != 0;
   saved.env.refused = record.was_refused != 0;
-  saved.env.leaves = record.leaves;
+  saved.env.left = record.left;
+  saved.env.objects =
+      static_cast<std::uint32_t>(model.placements(model.episodeOf(saved.env.start)).size());
   saved.is_idle = record.is_idle != 0;
   saved.env.counters = {.refused = refused,
                         .slid = slid,
@@ -275,6 +274,19 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
   return saved;
 }
 
+/// Whether the robot leaves as many objects as the state says, and not the one in its hand.
+bool leavesAsSaid(const Model& model, const SavedEnv& saved) {
+  const std::size_t words = model.bodyWords();
+  std::uint32_t left = 0;
+  for (std::uint32_t object = 0; object < saved.env.objects; ++object) {
+    const auto row = std::span(saved.leaving).subspan(object * words, words);
+    if (std::ranges::all_of(row, [](std::uint64_t word) { return word == 0; })) continue;
+    if (static_cast<std::int32_t>(object) == saved.env.held.object) return false;
+    ++left;
+  }
+  return left == saved.env.left;
+}
+
 tl::unexpected<Error> refused(std::string message) {
   return fail(ErrorCode::kInvalidInput, kWhere, std::move(message));
 }
@@ -290,13 +302,16 @@ Result<SavedEnv> readEnv(const Model& model, std::size_t bodies, std::size_t n, 
   saved.variables = in.takeMany<float>(model.variableCount());
   saved.last_actions = in.takeMany<float>(model.motion.controlled.size());
   saved.ignored = in.takeMany<std::uint64_t>(model.heldWords());
-  saved.leaving = in.takeMany<std::uint64_t>(model.bodyWords());
-  saved.objects = in.takeMany<Pose>(model.placements(model.episodeOf(saved.env.start)).size());
+  saved.leaving = in.takeMany<std::uint64_t>(saved.env.objects * model.bodyWords());
+  saved.objects = in.takeMany<Pose>(saved.env.objects);
   saved.bodies = in.takeMany<RigidTransform>(bodies);
   if (saved.ending != EpisodeEnd::kNone) {
     saved.final_observation = in.takeMany<float>(model.observation_size);
   }
   if (in.isExhausted()) return refused("ends before its last env; it is damaged");
+  if (!leavesAsSaid(model, saved)) {
+    return refused(fmt::format("env {} leaves other objects than it says; it is damaged", n));
+  }
   const auto plain = [](const auto& one) { return isPlain(one); };
   if (!arePlain(saved.variables) || !arePlain(saved.last_actions) ||
       !std::ranges::all_of(saved.objects, plain) || !std::ranges::all_of(saved.bodies, plain)) {
@@ -389,7 +404,7 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
   if (env.held.object >= 0) measureHeld(heldModel(model, env), env.held);
   env.has_picked = saved.env.has_picked;
   env.refused = saved.env.refused;
-  env.leaves = saved.env.leaves;
+  env.left = saved.env.left;
   env.counters = saved.env.counters;
   const PoseArrays to = state.poses(n);
   *to.x = saved.base.x;
