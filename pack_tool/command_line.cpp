@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "galactic/exit_codes.h"
+#include "galactic/error.h"
 #include "galactic/nearest_name.h"
 #include "galactic/number_text.h"
 #include "pack_tool/pictures/figure_picture.h"

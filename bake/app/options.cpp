@@ -15,7 +15,7 @@
 
 #include "config_file.h"
 #include "galactic/bake/robot_recipe.h"
-#include "galactic/exit_codes.h"
+#include "galactic/error.h"
 #include "galactic/nearest_name.h"
 #include "galactic/number_text.h"
 #include "galactic/printable.h"

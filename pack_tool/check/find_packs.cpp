@@ -19,11 +19,13 @@ Result<std::vector<fs::path>> findPacks(const fs::path& folder) {
     }
   }
   if (problem) {
-    return fail(ErrorCode::kIo, folder.string(), "cannot read the folder: " + problem.message());
+    return fail(ErrorCode::kIo, folder.string(), "cannot read the folder: " + problem.message(),
+                "file/unreadable");
   }
   if (packs.empty()) {
     return fail(ErrorCode::kInvalidInput, folder.string(),
-                "has no files *.pack in it or below; give packs, or a folder with packs");
+                "has no files *.pack in it or below; give packs, or a folder with packs",
+                "file/no-packs");
   }
   std::sort(packs.begin(), packs.end());
   return packs;

@@ -24,7 +24,8 @@ CheckedPack verdict(const PackFile& world, std::vector<PackFile> good_packs, std
   if (good_packs.size() < listed) {
     return badPack(world.where(), {ErrorCode::kInvalidInput, world.where(),
                                    fmt::format("lists {} packs, {} of them are bad; see above",
-                                               listed, listed - good_packs.size())});
+                                               listed, listed - good_packs.size()),
+                                   "world/bad-pack"});
   }
   const auto fits = checkTogether(std::move(good_packs));
   return fits ? goodPack(world) : badPack(world.where(), fits.error());

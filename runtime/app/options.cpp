@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "galactic/error.h"
-#include "galactic/exit_codes.h"
 #include "galactic/nearest_name.h"
 #include "galactic/number_text.h"
 #include "galactic/option_table.h"

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 
 namespace galactic {
@@ -11,6 +12,17 @@ enum class ErrorCode { kIo = 2, kInvalidInput = 3, kInternal = 4, kUnsupported =
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitUsage = 1;
 inline constexpr int kExitDiffers = 7;
+/// What --help of all tools says about exit codes.
+inline constexpr const char* kExitCodesHelp =
+    "Exit codes:\n"
+    "  0    success\n"
+    "  1    wrong command line\n"
+    "  2    a file cannot be read or written\n"
+    "  3    invalid input\n"
+    "  4    internal error\n"
+    "  5    not supported\n"
+    "  7    packs or runs differ\n"
+    "  130  interrupted\n";
 
 /// What went wrong and where, in words a user can act on.
 struct Error {
@@ -20,16 +32,19 @@ struct Error {
   std::string where;
   /// One sentence: what was found, what was wanted, what to do.
   std::string message;
+  /// A name for programs that never changes, for example "pack/hash" (docs/ci.md lists them); empty
+  /// for most errors. Points to a literal.
+  std::string_view name = {};
 };
 
 /// A value, or the error that stands in its way.
 template <class T>
 using Result = tl::expected<T, Error>;
 
-/// An error as the unexpected state of any Result.
+/// An error as the unexpected state of any Result. `name` is a literal.
 [[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code, std::string where,
-                                                std::string message) {
-  return tl::unexpected<Error>(Error{code, std::move(where), std::move(message)});
+                                                std::string message, std::string_view name = {}) {
+  return tl::unexpected<Error>(Error{code, std::move(where), std::move(message), name});
 }
 
 }  // namespace galactic

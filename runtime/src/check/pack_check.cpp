@@ -48,7 +48,8 @@ Result<const Asset*> assetOf(const schema::Pack& pack, const PackHeader& header,
   if (const Asset* asset = pack.asset_as<Asset>()) return asset;
   return fail(ErrorCode::kInvalidInput, where + ": asset",
               fmt::format("has type {}, the header says {}; bake the pack again",
-                          static_cast<unsigned>(pack.asset_type()), packKindName(header.kind)));
+                          static_cast<unsigned>(pack.asset_type()), packKindName(header.kind)),
+              "pack/asset");
 }
 
 Result<void> checkAsset(const PackHeader& header, std::span<const std::byte> file,
@@ -91,14 +92,16 @@ Result<void> checkPayloadStart(std::span<const std::byte> payload, const std::st
   if (payload.size() > kMaxPayloadBytes) {
     return fail(ErrorCode::kInvalidInput, where,
                 fmt::format("has a payload of {} bytes, a pack has at most {}; split the asset",
-                            payload.size(), kMaxPayloadBytes));
+                            payload.size(), kMaxPayloadBytes),
+                "pack/too-large");
   }
   constexpr std::size_t kSmallest = 2 * sizeof(flatbuffers::uoffset_t);
   if (payload.size() < kSmallest || !schema::PackBufferHasIdentifier(payload.data())) {
     return fail(ErrorCode::kInvalidInput, where,
                 fmt::format("payload does not carry the identifier \"{}\"; it was not written by "
                             "galactic-bake, bake it again",
-                            schema::PackIdentifier()));
+                            schema::PackIdentifier()),
+                "pack/identifier");
   }
   return {};
 }
@@ -111,7 +114,8 @@ Result<void> checkPack(const PackHeader& header, std::span<const std::byte> file
   if (!schema::VerifyPackBuffer(verifier)) {
     return fail(ErrorCode::kInvalidInput, where,
                 "payload is not a well-formed FlatBuffer of the pack schema: a required field is "
-                "missing or an offset leads astray; bake it again");
+                "missing or an offset leads astray; bake it again",
+                "pack/structure");
   }
   const schema::Pack& pack = *schema::GetPack(bytes);
   if (auto checked = checkProvenance(*pack.provenance(), where); !checked) return checked;

@@ -40,7 +40,8 @@ Result<PackFile> PackFile::open(const std::filesystem::path& path, Trust trust) 
 Result<PackFile> PackFile::view(std::span<const std::byte> file, std::string where, Trust trust) {
   if (reinterpret_cast<std::uintptr_t>(file.data()) % kPackAlignment != 0) {
     return fail(ErrorCode::kInvalidInput, std::move(where),
-                "lies at an address that is not a multiple of 32; copy it to aligned memory");
+                "lies at an address that is not a multiple of 32; copy it to aligned memory",
+                "pack/alignment");
   }
   Result<PackHeader> header = readPackHeader(file, where);
   if (!header) return tl::unexpected<Error>(std::move(header.error()));

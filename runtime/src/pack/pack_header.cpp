@@ -49,42 +49,47 @@ PackHeader makePackHeader(PackKind kind, std::span<const std::byte> payload) {
 }
 
 Result<PackHeader> readPackHeader(std::span<const std::byte> file, std::string_view where) {
-  const auto invalid = [&](std::string message) {
-    return fail(ErrorCode::kInvalidInput, std::string(where), std::move(message));
+  const auto invalid = [&](std::string_view name, std::string message) {
+    return fail(ErrorCode::kInvalidInput, std::string(where), std::move(message), name);
   };
   if (file.size() < sizeof(PackHeader)) {
-    return invalid(fmt::format("has {} bytes, a pack has at least {}; it is truncated or no pack",
+    return invalid("pack/truncated",
+                   fmt::format("has {} bytes, a pack has at least {}; it is truncated or no pack",
                                file.size(), sizeof(PackHeader)));
   }
   PackHeader header;
   std::memcpy(&header, file.data(), sizeof(PackHeader));
   if (header.magic != kPackMagic) {
     return invalid(
+        "pack/not-a-pack",
         "does not begin with \"GALAPACK\": it is not a pack; bake one with galactic-bake");
   }
   if (header.format_version < kOldestPackVersion) {
     return fail(ErrorCode::kUnsupported, std::string(where),
                 fmt::format("has format version {}, this program reads {} to {}; bake it again",
-                            header.format_version, kOldestPackVersion, kLatestPackVersion));
+                            header.format_version, kOldestPackVersion, kLatestPackVersion),
+                "pack/version-old");
   }
   if (header.format_version > kLatestPackVersion) {
     return fail(ErrorCode::kUnsupported, std::string(where),
                 fmt::format("has format version {}, this program reads up to {}; update galactic",
-                            header.format_version, kLatestPackVersion));
+                            header.format_version, kLatestPackVersion),
+                "pack/version-new");
   }
   if (!isKnownKind(header.kind)) {
-    return invalid(fmt::format("has the unknown kind 0x{:08x}; the file is damaged",
-                               static_cast<std::uint32_t>(header.kind)));
+    return invalid("pack/kind", fmt::format("has the unknown kind 0x{:08x}; the file is damaged",
+                                            static_cast<std::uint32_t>(header.kind)));
   }
   if (header.payload_bytes != file.size() - sizeof(PackHeader)) {
-    return invalid(
-        fmt::format("announces {} payload bytes but has {}; it is truncated or has "
-                    "bytes too many, copy or bake it again",
-                    header.payload_bytes, file.size() - sizeof(PackHeader)));
+    return invalid("pack/size",
+                   fmt::format("announces {} payload bytes but has {}; it is truncated or has "
+                               "bytes too many, copy or bake it again",
+                               header.payload_bytes, file.size() - sizeof(PackHeader)));
   }
   if (std::any_of(header.reserved.begin(), header.reserved.end(),
                   [](std::byte b) { return b != std::byte{0}; })) {
-    return invalid("has reserved header bytes that are not zero; the file is damaged");
+    return invalid("pack/reserved",
+                   "has reserved header bytes that are not zero; the file is damaged");
   }
   return header;
 }
@@ -96,7 +101,8 @@ Result<void> checkPackHash(const PackHeader& header, std::span<const std::byte> 
   return fail(ErrorCode::kInvalidInput, std::string(where),
               fmt::format("payload hash is {:016x}, the header says {:016x}; the file is damaged, "
                           "copy or bake it again",
-                          actual, header.payload_xxh64));
+                          actual, header.payload_xxh64),
+              "pack/hash");
 }
 
 }  // namespace galactic

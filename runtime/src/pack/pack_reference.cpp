@@ -30,7 +30,8 @@ Result<void> checkLinked(const PackFile& pack, const PackReference& reference,
   const auto other = [&](std::string what) {
     return fail(ErrorCode::kInvalidInput, where,
                 fmt::format("{}: it is not the pack that was linked; link the world again",
-                            std::move(what)));
+                            std::move(what)),
+                "world/other-pack");
   };
   if (pack.kind() != reference.kind) {
     return other(fmt::format("lists {}, which is of kind {}, wanted {}", pack.where(),
@@ -98,7 +99,8 @@ Result<PackFile> openReference(const PackFile& world, const PackReference& refer
   if (fs::status(path, ignored).type() == fs::file_type::not_found) {
     return fail(ErrorCode::kInvalidInput, world.where(),
                 fmt::format("lists {}, which is missing; put it there or link the world again",
-                            path.string()));
+                            path.string()),
+                "world/missing-pack");
   }
   // Compared with the list first: another pack is told apart from a damaged one. All on one
   // mapping, so that what is verified is what was compared.

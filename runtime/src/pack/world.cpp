@@ -40,7 +40,8 @@ tl::unexpected<Error> repeated(const PackFile& pack, std::string_view what, std:
   return fail(kInvalid, pack.where(),
               fmt::format("has a second {} named \"{}\", the first is in {}; names have to be "
                           "unique in a world, leave one pack out",
-                          what, name, first.where()));
+                          what, name, first.where()),
+              "world/repeated-name");
 }
 
 Result<void> addScene(const PackFile& pack, Parts& parts) {
@@ -69,7 +70,8 @@ Result<void> addOnly(const PackFile& pack, std::optional<Packed<T>>& only, std::
   if (only) {
     return fail(kInvalid, pack.where(),
                 fmt::format("has a second {}, the first is in {}; a world has one, leave one out",
-                            what, only->pack->where()));
+                            what, only->pack->where()),
+                "world/repeated-part");
   }
   Result<T> content = T::from(pack);
   if (!content) return tl::unexpected<Error>(std::move(content.error()));
@@ -92,12 +94,14 @@ Result<void> add(const PackFile& pack, Parts& parts) {
       return {};
     case PackKind::kPolicy:
       return fail(kInvalid, pack.where(),
-                  "is a policy, which cannot be part of a world; give it with --policy");
+                  "is a policy, which cannot be part of a world; give it with --policy",
+                  "world/policy");
     case PackKind::kWorld:
       break;
   }
   return fail(kInvalid, pack.where(),
-              "is a world pack among others; give one world pack alone, or the packs themselves");
+              "is a world pack among others; give one world pack alone, or the packs themselves",
+              "world/nested");
 }
 
 Result<Parts> sortByKind(const std::vector<PackFile>& packs) {
@@ -111,7 +115,8 @@ Result<Parts> sortByKind(const std::vector<PackFile>& packs) {
 /// Whether none of the wanted kinds is missing.
 Result<void> checkComplete(const Parts& parts) {
   const auto missing = [](std::string_view what) {
-    return fail(kInvalid, "world", fmt::format("has no {}; give a pack of one, too", what));
+    return fail(kInvalid, "world", fmt::format("has no {}; give a pack of one, too", what),
+                "world/missing-part");
   };
   if (!parts.robot) return missing("robot (RBOT)");
   if (!parts.episodes) return missing("episode set (EPIS)");
@@ -131,11 +136,12 @@ Result<void> checkRadii(const StatedRadii& stated, const StatedRadii& first) {
                  same)) {
     return {};
   }
-  return fail(kInvalid, stated.pack->where(),
-              fmt::format("was baked for the radii {} m, {} for {} m; bake them with the same "
-                          "--radii",
-                          fmt::join(stated.radii, ", "), first.pack->where(),
-                          fmt::join(first.radii, ", ")));
+  return fail(
+      kInvalid, stated.pack->where(),
+      fmt::format("was baked for the radii {} m, {} for {} m; bake them with the same "
+                  "--radii",
+                  fmt::join(stated.radii, ", "), first.pack->where(), fmt::join(first.radii, ", ")),
+      "world/other-radii");
 }
 
 /// The robot's first, against which the others are held.
@@ -176,22 +182,33 @@ Result<void> checkAbilities(const Packed<Robot>& robot) {
     return fail(kInvalid, robot.pack->where(),
                 fmt::format("has no {}, wanted a robot to simulate; bake it with a recipe that has "
                             "one",
-                            what));
+                            what),
+                "world/incomplete-robot");
   };
   if (!robot.content.endEffector()) return lacks("end effector");
   if (!robot.content.base()) return lacks("base");
   if (robot.content.spheres().empty()) {
     return fail(kInvalid, robot.pack->where(),
-                "has no spheres, wanted a robot to simulate; bake it with collision geometry");
+                "has no spheres, wanted a robot to simulate; bake it with collision geometry",
+                "world/incomplete-robot");
   }
   return {};
 }
 
-/// The failure of a name in the episode pack.
-tl::unexpected<Error> unknown(const PackFile& episodes, std::string_view field, std::size_t n,
+/// A list of names in the episode pack, and the name of the error about one that the world lacks.
+struct NameList {
+  std::string_view field;
+  std::string_view error_name;
+};
+constexpr NameList kSceneNames{"scenes", "world/unknown-scene"};
+constexpr NameList kObjectNames{"objects", "world/unknown-object"};
+constexpr NameList kJointNames{"start_joints", "world/other-robot"};
+
+/// The failure of name `n` of a list in the episode pack.
+tl::unexpected<Error> unknown(const PackFile& episodes, const NameList& list, std::size_t n,
                               std::string message) {
-  return fail(kInvalid, fmt::format("{}: episode_set.{}[{}]", episodes.where(), field, n),
-              std::move(message));
+  return fail(kInvalid, fmt::format("{}: episode_set.{}[{}]", episodes.where(), list.field, n),
+              std::move(message), list.error_name);
 }
 
 /// For each of the episode set's scenes its place among the sorted scenes.
@@ -202,7 +219,7 @@ Result<std::vector<std::uint32_t>> findScenes(const Parts& parts) {
   for (std::size_t n = 0; n < names.size(); ++n) {
     const auto found = parts.scenes.find(names[n]);
     if (found == parts.scenes.end()) {
-      return unknown(*parts.episodes->pack, "scenes", n,
+      return unknown(*parts.episodes->pack, kSceneNames, n,
                      fmt::format("is \"{}\", which is none of the world's {} scenes; add its pack",
                                  names[n], parts.scenes.size()));
     }
@@ -218,7 +235,7 @@ Result<std::vector<ObjectModel>> findObjects(const Parts& parts) {
   for (std::size_t n = 0; n < names.size(); ++n) {
     const auto found = parts.objects.find(names[n]);
     if (found == parts.objects.end()) {
-      return unknown(*parts.episodes->pack, "objects", n,
+      return unknown(*parts.episodes->pack, kObjectNames, n,
                      fmt::format("is \"{}\", which is none of the world's {} objects; add its pack",
                                  names[n], parts.objects.size()));
     }
@@ -243,7 +260,7 @@ Result<std::vector<std::uint32_t>> findStartPositions(const Parts& parts) {
   indices.reserve(names.size());
   for (std::size_t n = 0; n < names.size(); ++n) {
     const auto refuse = [&](std::string_view fault) {
-      return unknown(*parts.episodes->pack, "start_joints", n,
+      return unknown(*parts.episodes->pack, kJointNames, n,
                      fmt::format("is \"{}\", which {} of the robot \"{}\"; give the robot that the "
                                  "episodes were made for",
                                  names[n], fault, robot.name()));
@@ -268,7 +285,8 @@ Result<void> checkRobotName(const Parts& parts) {
   return fail(kInvalid, parts.episodes->pack->where() + ": episode_set.robot",
               fmt::format("is \"{}\", the robot in {} is \"{}\"; give the robot that the episodes "
                           "were made for",
-                          wanted, parts.robot->pack->where(), parts.robot->content.name()));
+                          wanted, parts.robot->pack->where(), parts.robot->content.name()),
+              "world/other-robot");
 }
 
 Result<void> checkParts(const std::vector<PackFile>& packs, const Parts& parts) {

@@ -14,7 +14,8 @@ namespace {
 
 tl::unexpected<Error> ioFailure(const std::filesystem::path& path, const char* action) {
   return fail(ErrorCode::kIo, path.string(),
-              std::string("cannot ") + action + ": " + std::generic_category().message(errno));
+              std::string("cannot ") + action + ": " + std::generic_category().message(errno),
+              "file/unreadable");
 }
 
 }  // namespace
@@ -31,7 +32,8 @@ Result<MappedFile> MappedFile::open(const std::filesystem::path& path) {
   }
   if (!S_ISREG(status.st_mode)) {
     ::close(descriptor);
-    return fail(ErrorCode::kIo, path.string(), "is not a regular file; give the path of a file");
+    return fail(ErrorCode::kIo, path.string(), "is not a regular file; give the path of a file",
+                "file/not-regular");
   }
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size == 0) {
