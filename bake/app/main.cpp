@@ -1,91 +1,185 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <new>
 #include <set>
 #include <stdexcept>
 #include <system_error>
 
-#include "bake_inputs.h"
-#include "bake_run.h"
+#include "command.h"
+#include "followers.h"
+#include "galactic/bake/robot_recipe.h"
 #include "galactic/out_of_memory.h"
-#include "galactic/part_files.h"
-#include "options.h"
-#include "plan/bake_plan.h"
 #include "report.h"
 #include "report_check.h"
-#include "robot_job.h"
+#include "terminal.h"
 
 namespace galactic::bake {
 namespace {
 
-/// What one pack each is made of: the first input stands for all that share one.
-std::vector<std::filesystem::path> packInputs(const BakeCommand& command) {
-  if (command.makesOnePack()) return {command.inputs.front()};
-  return command.inputs;
+namespace fs = std::filesystem;
+
+constexpr int kExitInterrupted = 130;
+
+/// What the command and its jobs name: whatever else they read is known when they have.
+ReadLog namedFiles(const BakeCommand& command, const JobList& list) {
+  ReadLog named;
+  for (const fs::path& input : command.inputs) named.noteRead(input);
+  named.noteRead(command.config);
+  named.noteRead(command.run.golden_report);
+  for (const PackJob& pack : list.assets) {
+    for (const fs::path& file : filesOf(pack.job)) named.noteRead(file);
+  }
+  return named;
 }
 
 /// Two outputs must not be one file, and none may replace an input or the options' file.
-Result<void> checkOutputs(const BakeRun& run) {
-  const BakeCommand& command = run.command();
-  std::set<std::filesystem::path> outputs;
-  if (!command.report.empty()) outputs.insert(command.report.lexically_normal());
-  if (auto checked = run.checkNotRead(command.report); !checked) return checked;
-  const std::vector<std::filesystem::path> inputs = packInputs(command);
-  for (const std::filesystem::path& input : inputs) {
-    const std::filesystem::path output = run.outputFor(input);
-    if (auto checked = run.checkNotRead(output); !checked) return checked;
-    if (!outputs.insert(output.lexically_normal()).second) {
-      return fail(ErrorCode::kInvalidInput, output.string(),
-                  "would be written twice: two inputs of one name, or the report; use -o");
-    }
-  }
-  if (inputs.size() > 1 && !command.output.empty() && !command.dry_run) {
-    std::error_code problem;
-    std::filesystem::create_directories(command.output, problem);
-    if (problem) {
-      return fail(ErrorCode::kIo, command.output.string(),
-                  "cannot be made a folder: " + problem.message());
-    }
+Result<void> checkOutputs(const BakeCommand& command, const JobList& list) {
+  const ReadLog named = namedFiles(command, list);
+  std::set<fs::path> outputs;
+  const fs::path& report = command.run.report;
+  if (!report.empty()) outputs.insert(report.lexically_normal());
+  if (auto checked = named.checkNotRead(report); !checked) return checked;
+  if (list.world) return named.checkNotRead(list.world->output);
+  for (const PackJob& pack : list.assets) {
+    if (auto checked = named.checkNotRead(pack.output); !checked) return checked;
+    if (outputs.insert(pack.output.lexically_normal()).second) continue;
+    return fail(ErrorCode::kInvalidInput, pack.output.string(),
+                "would be written twice: two inputs of one name, or the report; use -o");
   }
   return {};
 }
 
-/// Clears away what killed bakes of the same packs have left beside them.
-void removeLeftovers(const BakeRun& run) {
-  if (run.command().dry_run) return;
-  for (const std::filesystem::path& input : packInputs(run.command())) {
-    const std::filesystem::path output = run.outputFor(input);
-    (void)removeStaleParts(output.parent_path(), {.target = output.filename().string()});
+/// Several packs go into a folder, which is made.
+Result<void> makeOutputFolder(const BakeCommand& command, const JobList& list) {
+  if (list.world || list.assets.size() < 2 || command.run.out.empty() || command.run.dry_run) {
+    return {};
   }
+  std::error_code problem;
+  fs::create_directories(command.run.out, problem);
+  if (!problem) return {};
+  return fail(ErrorCode::kIo, command.run.out.string(),
+              "cannot be made a folder: " + problem.message());
 }
 
-/// Writes the report, if one is wanted.
-Result<void> reportTo(const std::filesystem::path& path, const BakeRun& run) {
-  if (path.empty()) return {};
-  auto written = run.checkNotRead(path);
-  return written ? writeReport(path, run) : written;
+/// Three quarters of what the machine has.
+std::uint64_t mostOfMemory() {
+  const auto pages = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES));
+  const auto page_bytes = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return pages / 4 * 3 * page_bytes;
 }
 
-int bakeAll(const BakeCommand& command) {
-  BakeRun run(command);
-  if (const auto outputs = checkOutputs(run); !outputs) return refuse(outputs.error());
+BuildOptions buildOptions(const BakeCommand& command, const JobList& list) {
+  BuildOptions options{.jobs = command.run.jobs, .keep_going = command.run.keep_going};
+  if (!list.world) {
+    // One file after the other, each on all threads, as they are named.
+    options.at_once = 1;
+    options.mode = command.run.dry_run ? BuildMode::kTry : BuildMode::kBake;
+    return options;
+  }
+  const PlanOptions& plan = command.plan;
+  options.mode = command.run.dry_run ? BuildMode::kList : BuildMode::kBake;
+  options.shard = plan.shard;
+  options.memory = plan.memory > 0 ? plan.memory : mostOfMemory();
+  if (!plan.no_cache) options.cache = plan.cache.empty() ? list.folder / ".cache" : plan.cache;
+  return options;
+}
+
+/// The packs that a build with these options makes.
+std::size_t countOf(const JobList& list, const BuildOptions& options) {
+  const Shard& shard = options.shard;
+  const std::size_t assets =
+      (list.assets.size() + shard.count - 1 - std::min(shard.index, list.assets.size())) /
+      shard.count;
+  return assets + (list.episodes && shard.count == 1 ? 1 : 0);
+}
+
+BuildOutcome buildAll(const BakeCommand& command, const JobList& list) {
+  const BuildOptions options = buildOptions(command, list);
+  std::unique_ptr<BuildObserver> follower;
+  if (list.world) {
+    follower = std::make_unique<WorldFollower>(command, countOf(list, options));
+  } else {
+    follower = std::make_unique<FileFollower>(command);
+  }
+  return build(list, options, *follower);
+}
+
+/// Writes the report, where one is wanted and nothing that was read would be lost.
+Result<void> saveReport(const BakeCommand& command, const BuildOutcome& outcome,
+                        const Json& report) {
+  if (command.run.report.empty()) return {};
+  for (const PackOutcome& pack : outcome.packs) {
+    if (auto checked = pack.log.checkNotRead(command.run.report); !checked) return checked;
+  }
+  return writeReport(command.run.report, report);
+}
+
+int exitCodeOf(const BuildOutcome& outcome) {
+  if (outcome.stopped) return kExitInterrupted;
+  const Error* error = outcome.firstError();
+  return error == nullptr ? kExitOk : static_cast<int>(error->code);
+}
+
+int bakeList(const BakeCommand& command, const JobList& list) {
+  if (auto checked = checkOutputs(command, list); !checked) return refuse(checked.error());
   // Before anything is baked for a golden report that is not there.
-  const auto golden = goldenOf(command);
+  auto golden = goldenOf(command);
   if (!golden) return refuse(golden.error());
-  removeLeftovers(run);
-  bakeInputs(run);
-  run.line().clear();
-  if (const auto written = reportTo(command.report, run); !written) {
-    const int code = refuse(written.error());
-    return run.exitCode() == kExitOk ? code : run.exitCode();
+  if (auto made = makeOutputFolder(command, list); !made) return refuse(made.error());
+  const BuildOutcome outcome = buildAll(command, list);
+  const int exit_code = exitCodeOf(outcome);
+  if (outcome.world && !outcome.world->isThere()) return exit_code;
+  if (list.world && command.saysMore()) printWorldTable(list, outcome);
+  Json report = reportOf(list, outcome);
+  if (list.world && command.run.dry_run) {
+    const std::vector<LeftOut> missing = findMissing(list, command.run.jobs);
+    if (command.saysMore()) printMissing(missing);
+    report["missing"] = missingReport(missing);
   }
-  const int differs = *golden ? checkReport(**golden, reportOf(run), command) : kExitOk;
-  return run.exitCode() == kExitOk ? differs : run.exitCode();
+  if (const auto written = saveReport(command, outcome, report); !written) {
+    const int code = refuse(written.error());
+    return exit_code == kExitOk ? code : exit_code;
+  }
+  if (!*golden) return exit_code;
+  report.erase(kRunKey);
+  (**golden).report.erase(kRunKey);
+  const int differs = checkReport(**golden, report, command);
+  return exit_code == kExitOk ? differs : exit_code;
+}
+
+int printSceneNames(const BakeCommand& command, DatasetJobs dataset) {
+  for (const fs::path& input : command.inputs) {
+    dataset.input = input;
+    const auto names = sceneNames(dataset);
+    if (!names) return refuse(names.error());
+    for (const std::string& name : *names) fmt::print("{}\n", name);
+  }
+  return kExitOk;
+}
+
+int printRecipeDraft(const BakeCommand& command) {
+  auto job = std::get<RobotJob>(std::get<Job>(command.what));
+  job.input = command.inputs.front();
+  const auto robot = readRobotFile(job);
+  if (!robot) return refuse(robot.error());
+  fmt::print("{}", draftRobotRecipe(*robot));
+  return kExitOk;
+}
+
+int bakeCommand(const BakeCommand& command) {
+  if (command.prints_recipe) return printRecipeDraft(command);
+  const auto* dataset = std::get_if<DatasetCommand>(&command.what);
+  if (dataset != nullptr && dataset->list) return printSceneNames(command, dataset->jobs);
+  const auto list = jobsOf(command);
+  return list ? bakeList(command, *list) : refuse(list.error());
 }
 
 /// A full disk behind a redirection must not look like success.
@@ -98,12 +192,7 @@ int flushed(int exit_code) {
 int run(int argc, const char* const* argv) {
   const ParsedCommand parsed = parseCommandLine(argc, argv);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
-  const auto& command = std::get<BakeCommand>(parsed);
-  if (command.robot.print_recipe) {
-    const auto printed = printRecipeDraft(command);
-    return printed ? kExitOk : refuse(printed.error());
-  }
-  return command.hasPlan() ? bakePlan(command) : bakeAll(command);
+  return bakeCommand(std::get<BakeCommand>(parsed));
 }
 
 }  // namespace

@@ -1,28 +1,183 @@
 #include "report.h"
 
+#include <fmt/format.h>
+
+#include <map>
 #include <span>
 #include <string>
 
 #include "galactic/atomic_file.h"
+#include "galactic/printable.h"
+#include "terminal.h"
 
 namespace galactic::bake {
+namespace {
 
-Json reportOf(const BakeRun& run) {
-  Json json{{"tool", "galactic-bake"}, {"version", GALACTIC_VERSION}};
-  json["baked"] = run.baked();
-  json["failed"] = Json::array();
-  for (const BakeFailure& failure : run.failures()) {
-    json["failed"].push_back({{"input", failure.input.string()},
-                              {"code", static_cast<int>(failure.error.code)},
-                              {"where", failure.error.where},
-                              {"message", failure.error.message}});
+/// The entries of a pack that was made, now or before. What is kept of it may have been made for
+/// another folder.
+Json entriesOf(const PackOutcome& pack, const JobList& list) {
+  Json entries = Json::parse(pack.record->report, nullptr, /*allow_exceptions=*/false);
+  if (!entries.is_array()) return Json::array();
+  if (!list.world) return entries;
+  Json named = Json::array();
+  for (const Json& entry : entries) {
+    Json one{{"pack", pack.name}};
+    one.update(entry);
+    one["output"] = (list.folder / pack.name).string();
+    named.push_back(std::move(one));
+  }
+  return named;
+}
+
+Json failureOf(const PackOutcome& pack, const BakeFailure& failure, const JobList& list) {
+  Json json;
+  if (list.world) {
+    json["pack"] = pack.name;
+  } else {
+    json["input"] = failure.input.string();
+  }
+  json["code"] = static_cast<int>(failure.error.code);
+  json["where"] = failure.error.where;
+  json["message"] = withFlags(failure.error.message);
+  return json;
+}
+
+/// How this run came to it.
+Json progressOf(const PackOutcome& pack) {
+  return {{"pack", pack.name}, {"state", nameOf(pack.state)}, {"seconds", pack.seconds}};
+}
+
+Json scenesOf(const std::vector<LeftOut>& scenes) {
+  Json json = Json::array();
+  for (const LeftOut& scene : scenes) {
+    json.push_back({{"scene", scene.name}, {"reasons", scene.reasons}});
   }
   return json;
 }
 
-Result<void> writeReport(const std::filesystem::path& path, const BakeRun& run) {
-  const std::string text = reportOf(run).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+void addWorld(const JobList& list, const BuildOutcome& outcome, Json& json) {
+  json["left_out"] = scenesOf(list.left_out);
+  json["warnings"] = list.warnings;
+  // Not where there are none: reports of before stay as they were.
+  for (const OptionText& option : std::get<WorldJob>(list.world->job).task) {
+    json["task"][option.name] = option.value;
+  }
+  json["linked"] = Json::array();
+  for (const LinkedPack& pack : outcome.linked) json["linked"].push_back(jsonOf(pack));
+  Json run{{"seconds", outcome.seconds}, {"stopped", outcome.stopped}};
+  run["packs"] = Json::array();
+  for (const PackOutcome& pack : outcome.packs) run["packs"].push_back(progressOf(pack));
+  json[kRunKey] = std::move(run);
+}
+
+/// Sentences, and of which packs they are said: many scenes lack the same things.
+using Sentences = std::map<std::string, std::vector<std::string>>;
+
+Sentences warningsOf(const BuildOutcome& outcome) {
+  Sentences warnings;
+  for (const PackOutcome& pack : outcome.packs) {
+    if (!pack.record) continue;
+    for (const std::string& warning : pack.record->warnings) warnings[warning].push_back(pack.name);
+  }
+  return warnings;
+}
+
+Sentences reasonsOf(const std::vector<LeftOut>& scenes) {
+  Sentences reasons;
+  for (const LeftOut& scene : scenes) {
+    for (const std::string& reason : scene.reasons) reasons[reason].push_back(scene.name);
+  }
+  return reasons;
+}
+
+void print(const Sentences& sentences) {
+  for (const auto& [sentence, of] : sentences) {
+    const std::string more =
+        of.size() > 1 ? fmt::format(" and {} more", of.size() - 1) : std::string();
+    fmt::print("  {}{}: {}\n", printable(of.front()), more, printable(withFlags(sentence)));
+  }
+}
+
+void printWorld(const JobList& list, const BuildOutcome& outcome) {
+  std::uint64_t bytes = 0;
+  for (const LinkedPack& pack : outcome.linked) bytes += pack.bytes;
+  fmt::print("{} packs, {:.2f} MB -> {}\n", outcome.linked.size(), static_cast<double>(bytes) / 1e6,
+             list.world->output.string());
+}
+
+}  // namespace
+
+const char* nameOf(PackState state) {
+  switch (state) {
+    case PackState::kBaked:
+      return "baked";
+    case PackState::kUnchanged:
+      return "unchanged";
+    case PackState::kElsewhere:
+      return "elsewhere";
+    case PackState::kFailed:
+      return "failed";
+    case PackState::kPlanned:
+      break;
+  }
+  return "planned";
+}
+
+Json reportOf(const JobList& list, const BuildOutcome& outcome) {
+  Json json{{"tool", "galactic-bake"}, {"version", GALACTIC_VERSION}};
+  if (list.world) json["output"] = list.world->output.string();
+  json["baked"] = Json::array();
+  json["failed"] = Json::array();
+  for (const PackOutcome& pack : outcome.packs) {
+    if (pack.record) {
+      for (Json& entry : entriesOf(pack, list)) json["baked"].push_back(std::move(entry));
+    }
+    for (const BakeFailure& failure : pack.failures) {
+      json["failed"].push_back(failureOf(pack, failure, list));
+    }
+  }
+  if (list.world) addWorld(list, outcome, json);
+  return json;
+}
+
+Result<void> writeReport(const std::filesystem::path& path, const Json& report) {
+  const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   return writeFileAtomically(path, {std::as_bytes(std::span(text))});
+}
+
+void printWorldTable(const JobList& list, const BuildOutcome& outcome) {
+  if (!list.left_out.empty()) {
+    fmt::print("{} scenes are left out:\n", list.left_out.size());
+    print(reasonsOf(list.left_out));
+  }
+  const Sentences warnings = warningsOf(outcome);
+  if (!warnings.empty() || !list.warnings.empty()) fmt::print("warnings:\n");
+  for (const std::string& warning : list.warnings) {
+    fmt::print("  {}\n", printable(withFlags(warning)));
+  }
+  print(warnings);
+  fmt::print("{} baked, {} unchanged", outcome.count(PackState::kBaked),
+             outcome.count(PackState::kUnchanged));
+  for (const PackState state : {PackState::kFailed, PackState::kElsewhere, PackState::kPlanned}) {
+    if (outcome.count(state) > 0) fmt::print(", {} {}", outcome.count(state), nameOf(state));
+  }
+  fmt::print("; {:.2f} s\n", outcome.seconds);
+  if (!outcome.linked.empty()) printWorld(list, outcome);
+  if (outcome.stopped) fmt::print("stopped; the same command goes on from here\n");
+}
+
+void printMissing(const std::vector<LeftOut>& missing) {
+  if (missing.empty()) return fmt::print("nothing is missing\n");
+  fmt::print("missing:\n");
+  print(reasonsOf(missing));
+}
+
+Json missingReport(const std::vector<LeftOut>& missing) {
+  Json json = Json::array();
+  for (const LeftOut& pack : missing) {
+    json.push_back({{"pack", pack.name}, {"reasons", pack.reasons}});
+  }
+  return json;
 }
 
 }  // namespace galactic::bake

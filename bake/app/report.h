@@ -1,15 +1,31 @@
 #pragma once
 #include <filesystem>
 
-#include "bake_run.h"
+#include "command.h"
+#include "galactic/bake/build.h"
 #include "galactic/error.h"
+#include "views.h"
 
 namespace galactic::bake {
 
-/// What was baked and what failed.
-[[nodiscard]] Json reportOf(const BakeRun& run);
+/// The member of a world's report that says how the run went: whatever else is in it does not
+/// depend on what was baked before.
+inline constexpr const char* kRunKey = "run";
 
-/// Writes what was baked and what failed as JSON, atomically.
-[[nodiscard]] Result<void> writeReport(const std::filesystem::path& path, const BakeRun& run);
+[[nodiscard]] const char* nameOf(PackState state);
+
+/// What was baked, what failed, what was left out, and what the world lists.
+[[nodiscard]] Json reportOf(const JobList& list, const BuildOutcome& outcome);
+
+/// Writes a report, atomically.
+[[nodiscard]] Result<void> writeReport(const std::filesystem::path& path, const Json& report);
+
+/// What was made of a dataset or recipe, what is left out, and warnings, for people.
+void printWorldTable(const JobList& list, const BuildOutcome& outcome);
+
+/// What is missing, for people.
+void printMissing(const std::vector<LeftOut>& missing);
+/// The same for programs.
+[[nodiscard]] Json missingReport(const std::vector<LeftOut>& missing);
 
 }  // namespace galactic::bake

@@ -205,7 +205,7 @@ ReportComparison compareReports(const GoldenReport& golden, const Json& report,
 }
 
 int checkReport(const GoldenReport& golden, const Json& report, const BakeCommand& command) {
-  const ReportComparison result = compareReports(golden, report, command.tolerance);
+  const ReportComparison result = compareReports(golden, report, command.run.tolerance);
   for (const std::string& difference : result.differences) {
     fmt::print("{}: {}\n", printable(golden.path.string()), printable(difference));
   }
@@ -213,15 +213,15 @@ int checkReport(const GoldenReport& golden, const Json& report, const BakeComman
   if (!same) {
     fmt::print("{}: {} differences in {} values\n", printable(golden.path.string()),
                result.differences.size(), result.compared);
-  } else if (command.verbosity != Verbosity::kQuiet) {
+  } else if (command.run.verbosity != Verbosity::kQuiet) {
     fmt::print("{}: as wanted in {} values\n", printable(golden.path.string()), result.compared);
   }
   return same ? kExitOk : kExitDiffers;
 }
 
 Result<std::optional<GoldenReport>> goldenOf(const BakeCommand& command) {
-  if (command.golden_report.empty()) return std::nullopt;
-  return readGoldenReport(command.golden_report);
+  if (command.run.golden_report.empty()) return std::nullopt;
+  return readGoldenReport(command.run.golden_report);
 }
 
 }  // namespace galactic::bake

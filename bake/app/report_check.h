@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "bake_run.h"
 #include "galactic/error.h"
+#include "views.h"
 
 namespace galactic::bake {
 

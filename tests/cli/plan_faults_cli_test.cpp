@@ -254,8 +254,8 @@ TEST_F(PlanFaults, RefusesRecipesThatDoNotFit) {
   const std::vector<Refusal> refusals{
       {{"twice.toml"}, 3, "would be scenes/apartment.pack, as "},
       {{"far.toml"}, 2, "far.toml:1: none/*.glb: fits no file in "},
-      {{"option.toml"}, 3, "option.toml:3: --spacing: does not go with --as object"},
-      {{"value.toml"}, 3, "value.toml:1: --spacing"},
+      {{"option.toml"}, 3, "option.toml:5: spacing: does not go with --as object"},
+      {{"value.toml"}, 3, "value.toml:3: spacing: found wide, wanted a number above 0"},
       {{"robots.toml"}, 3, "robots.toml:3: [robot] names "},
       {{"lost.toml"}, 2, "lost.toml:5: recipe: none.toml fits no file in "},
       {{"none.toml"}, 2, "none.toml"},

@@ -8,10 +8,10 @@
 #include <string_view>
 
 #include "bake/recipe/recipe_helpers.h"
+#include "command.h"
 #include "finding.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/world_recipe.h"
-#include "options.h"
 #include "support/scratch_folder.h"
 
 namespace {
@@ -30,7 +30,7 @@ void readWorld(const std::filesystem::path& path) {
       if (one.inputs.empty() || one.place.empty()) reportFinding("assets of no files or no place");
     }
   }
-  for (const RecipeOption& option : recipe->common) {
+  for (const GivenOption& option : recipe->common) {
     if (option.place.empty()) reportFinding("an option of no place");
   }
 }

@@ -69,7 +69,7 @@ Result<void> makeFolder(const fs::path& folder) {
   fs::create_directories(folder, problem);
   if (!problem) return {};
   return fail(ErrorCode::kIo, folder.string(),
-              fmt::format("cannot be made a folder: {}; give another --cache", problem.message()));
+              fmt::format("cannot be made a folder: {}; give another `cache`", problem.message()));
 }
 
 void removeOldEntries(const fs::path& folder) {
@@ -88,17 +88,17 @@ std::optional<CachedBake> BakeCache::find(const std::string& key, const fs::path
   for (const fs::path& path : entriesIn(folder_ / hexOf(key))) {
     auto entry = readCacheEntry(path);
     if (!entry || entry->inputs.key != key || !holds(entry->inputs, folder, digests)) continue;
-    CachedBake found{packBeside(path), entry->pack, std::move(entry->report)};
+    CachedBake found{packBeside(path), entry->pack, std::move(entry->record)};
     if (isIntact(found.pack, found.digest)) return found;
   }
   return std::nullopt;
 }
 
 Result<void> BakeCache::store(const BakeInputs& inputs, const fs::path& pack,
-                              const std::string& report) const {
+                              const BakeRecord& record) const {
   auto digest = describeFile(pack);
   if (!digest) return tl::unexpected(digest.error());
-  const std::string text = encodeCacheEntry({inputs, *digest, report});
+  const std::string text = encodeCacheEntry({inputs, *digest, record});
   // One name for one set of inputs, whatever the report says of times and places.
   const std::string name = hexOf(encodeCacheEntry({inputs, {}, {}}));
   const fs::path folder = folder_ / hexOf(inputs.key);

@@ -12,7 +12,7 @@ struct CacheEntry {
   BakeInputs inputs;
   /// Content of the pack.
   SourceFile pack;
-  std::string report;
+  BakeRecord record;
 };
 
 /// As JSON. BakeInputs::folder is not part of it.

@@ -34,6 +34,9 @@ class FirstError {
     if (error_) return;
     error_ = Error{ErrorCode::kInvalidInput, place(line), std::move(message)};
   }
+  void take(const Error& error) {
+    if (!error_) error_ = error;
+  }
   [[nodiscard]] std::string place(std::uint32_t line) const {
     return line == 0 ? file_ : fmt::format("{}:{}", file_, line);
   }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 #include <utility>
 
@@ -13,21 +12,6 @@
 
 namespace galactic::bake {
 namespace {
-
-/// Options that say how a command runs, not what is made: they belong to the command line.
-constexpr std::array<std::string_view, 20> kCommandLineOnly{
-    "as",      "out",   "jobs",    "report", "config",   "dry-run",      "keep-going",
-    "verbose", "quiet", "version", "cache",  "memory",   "print-recipe", "shard",
-    "check",   "help",  "data",    "list",   "no-cache", "tolerance"};
-
-/// A single value as it would be typed.
-std::optional<std::string> textOf(const TomlValue& value) {
-  if (const auto* text = std::get_if<std::string>(&value.value)) return *text;
-  if (const auto* whole = std::get_if<std::int64_t>(&value.value)) return fmt::format("{}", *whole);
-  // The shortest text that reads back as the same number.
-  if (const auto* real = std::get_if<double>(&value.value)) return fmt::format("{}", *real);
-  return std::nullopt;
-}
 
 bool isText(const TomlValue& value) { return std::holds_alternative<std::string>(value.value); }
 
@@ -39,7 +23,7 @@ class WorldRecipeReader {
     WorldRecipe recipe;
     RecipeTable table(root, "", 0, errors_);
     if (const TomlTable* common = table.table("bake")) {
-      for (const TomlEntry& entry : *common) addOption(entry, recipe.common);
+      recipe.common = options(*common);
     }
     readList(table.list("scenes"), "scenes", recipe.scenes);
     readList(table.list("objects"), "objects", recipe.objects);
@@ -82,16 +66,14 @@ class WorldRecipeReader {
     RecipeAssets assets;
     assets.place = errors_.place(line);
     for (const TomlEntry& entry : table) {
-      if (entry.key == "files" || entry.key == "dataset") {
-        if (!assets.inputs.empty()) {
-          errors_.at(entry.value.line, "both files and dataset are given; keep one of them");
-        }
-        assets.is_dataset = entry.key == "dataset";
-        assets.inputs = texts(entry);
-      } else {
-        addOption(entry, assets.options);
+      if (!namesInputs(entry.key)) continue;
+      if (!assets.inputs.empty()) {
+        errors_.at(entry.value.line, "both files and dataset are given; keep one of them");
       }
+      assets.is_dataset = entry.key == "dataset";
+      assets.inputs = texts(entry);
     }
+    assets.options = options(table);
     return assets;
   }
 
@@ -110,51 +92,13 @@ class WorldRecipeReader {
     return found;
   }
 
-  void addOption(const TomlEntry& entry, std::vector<RecipeOption>& options) {
-    if (std::find(kCommandLineOnly.begin(), kCommandLineOnly.end(), entry.key) !=
-        kCommandLineOnly.end()) {
-      return errors_.at(entry.value.line,
-                        fmt::format("{} belongs on the command line, not into a recipe; leave it "
-                                    "out",
-                                    entry.key));
-    }
-    const auto* flag = std::get_if<bool>(&entry.value.value);
-    if (flag != nullptr && !*flag) return;
-    options.push_back({entry.key, {}, errors_.place(entry.value.line)});
-    if (flag == nullptr) options.back().values = valuesOf(entry);
-  }
+  static bool namesInputs(std::string_view key) { return key == "files" || key == "dataset"; }
 
-  /// A list of numbers is one value, a list of texts are several; a table is NAME=VALUE each.
-  std::vector<std::string> valuesOf(const TomlEntry& entry) {
-    if (auto text = textOf(entry.value)) return {std::move(*text)};
-    if (const auto* list = std::get_if<TomlArray>(&entry.value.value)) {
-      return valuesOf(*list, entry);
-    }
-    std::vector<std::string> values;
-    for (const TomlEntry& pair : std::get<TomlTable>(entry.value.value)) {
-      const auto text = textOf(pair.value);
-      if (!text) errors_.at(pair.value.line, fmt::format("{} has to be a string", pair.key));
-      values.push_back(pair.key + "=" + text.value_or(""));
-    }
-    return values;
-  }
-
-  std::vector<std::string> valuesOf(const TomlArray& list, const TomlEntry& entry) {
-    const bool are_texts = std::all_of(list.begin(), list.end(), isText);
-    std::vector<std::string> values;
-    for (const TomlValue& value : list) {
-      const auto text = textOf(value);
-      if (!text) {
-        errors_.at(value.line, fmt::format("{} has to be a list of numbers or strings", entry.key));
-        return {};
-      }
-      if (are_texts || values.empty()) {
-        values.push_back(*text);
-      } else {
-        values.back() += "," + *text;
-      }
-    }
-    return values;
+  std::vector<GivenOption> options(const TomlTable& table) {
+    auto given = givenIn(table, errors_.place(0), namesInputs);
+    if (given) return std::move(*given);
+    errors_.take(given.error());
+    return {};
   }
 
   FirstError& errors_;

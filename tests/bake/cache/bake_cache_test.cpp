@@ -23,6 +23,10 @@ using bake::FileDigests;
 constexpr const char* kKey = "galactic-bake 1\nradii=0.05\n";
 
 /// A data set of two files, a pack that was made of them, and a cache.
+bake::BakeRecord recordOf(const std::string& report) {
+  return {.textures = {"0123"}, .warnings = {"look"}, .report = report};
+}
+
 class Cache : public testing::Test {
  protected:
   void SetUp() override {
@@ -52,7 +56,7 @@ class Cache : public testing::Test {
   }
   void store(const std::string& report = "{}") const { store(inputs(), report); }
   void store(const BakeInputs& inputs, const std::string& report) const {
-    const auto kept = cache_.store(inputs, at("out/room.pack"), report);
+    const auto kept = cache_.store(inputs, at("out/room.pack"), recordOf(report));
     ASSERT_TRUE(kept.has_value()) << kept.error().where << ": " << kept.error().message;
   }
   [[nodiscard]] std::optional<CachedBake> find(const std::string& key = kKey,
@@ -82,7 +86,7 @@ TEST_F(Cache, FindsWhatWasStoredWithPackAndReport) {
   ASSERT_TRUE(found.has_value());
   EXPECT_EQ(fileContent(found->pack), "a pack");
   EXPECT_EQ(found->digest.bytes, 6U);
-  EXPECT_EQ(found->report, R"({"seconds": 3})");
+  EXPECT_EQ(found->record, recordOf(R"({"seconds": 3})"));
 }
 
 TEST_F(Cache, DoesNotCareAboutDatesOfFiles) {
@@ -131,11 +135,11 @@ TEST_F(Cache, KeepsResultsOfSeveralVersionsOfAFile) {
   fs::remove(at("out/room.pack"));
   write("out/room.pack", "another pack");
   store("second");
-  EXPECT_EQ(find()->report, "second");
+  EXPECT_EQ(find()->record.report, "second");
   EXPECT_EQ(fileContent(find()->pack), "another pack");
   write("data/room.obj", "a room");
   ASSERT_TRUE(find().has_value());
-  EXPECT_EQ(find()->report, "first");
+  EXPECT_EQ(find()->record.report, "first");
 }
 
 TEST_F(Cache, LetsTheOldestResultsMakeWay) {
@@ -165,7 +169,7 @@ TEST_F(Cache, StoringTheSameAgainKeepsOneEntryWithTheLastReport) {
   store("2 s");
   EXPECT_EQ(kept(".json").size(), 1U);
   EXPECT_EQ(kept(".pack").size(), 1U);
-  EXPECT_EQ(find()->report, "2 s");
+  EXPECT_EQ(find()->record.report, "2 s");
 }
 
 TEST_F(Cache, DoesNotFindAPackThatWasDamaged) {
@@ -216,14 +220,16 @@ TEST_F(Cache, TakesGarbageForNone) {
       "{}",
       "\xff\xfe",
       std::string(1000, '['),
-      with("\"version\": 1", "\"version\": 2"),
-      with("\"version\": 1", "\"version\": \"1\""),
+      with("\"version\": 2", "\"version\": 3"),
+      with("\"version\": 2", "\"version\": \"2\""),
       with("\"key\": ", "\"Key\": "),
       with("\"files\": [", "\"files\": [[],"),
       with("\"files\": [", "\"files\": [[\"a\", -1, \"0\"],"),
       with("\"files\": [", "\"files\": [[\"a\", 1, \"0123456789abcdef0123456789abcdeg\"],"),
       with("\"absent\": [", "\"absent\": [1,"),
       with("\"report\": \"a report\"", "\"report\": 7"),
+      with("\"textures\": [", "\"textures\": [1,"),
+      with("\"warnings\": ", "\"Warnings\": "),
   };
   for (const std::string& text : garbage) {
     std::ofstream(entry, std::ios::binary | std::ios::trunc) << text;
@@ -238,11 +244,11 @@ TEST_F(Cache, TakesGarbageForNone) {
 TEST_F(Cache, ExplainsThatItCannotStore) {
   write("file", "no folder");
   const BakeCache blocked(at("file"));
-  const auto kept = blocked.store(inputs(), at("out/room.pack"), "{}");
+  const auto kept = blocked.store(inputs(), at("out/room.pack"), recordOf("{}"));
   ASSERT_FALSE(kept.has_value());
   EXPECT_EQ(kept.error().code, ErrorCode::kIo);
   EXPECT_THAT(kept.error().message, testing::HasSubstr("give another --cache"));
-  const auto no_pack = cache_.store(inputs(), at("out/none.pack"), "{}");
+  const auto no_pack = cache_.store(inputs(), at("out/none.pack"), recordOf("{}"));
   ASSERT_FALSE(no_pack.has_value());
   EXPECT_EQ(no_pack.error().code, ErrorCode::kIo);
 }
@@ -258,7 +264,7 @@ TEST_F(Cache, ServesSeveralThreadsAtOnce) {
     threads.emplace_back([&, t] {
       const BakeInputs of_thread = inputs(fmt::format("key {}", t % 2));
       for (std::size_t n = 0; n < kRounds; ++n) {
-        if (!cache_.store(of_thread, at("out/room.pack"), "{}")) continue;
+        if (!cache_.store(of_thread, at("out/room.pack"), recordOf("{}"))) continue;
         found[t] += cache_.find(of_thread.key, at("data"), digests) ? 1U : 0U;
       }
     });

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "galactic/bake/build.h"
 #include "galactic/bake/file_digests.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/error.h"
@@ -27,8 +28,7 @@ struct CachedBake {
   /// The pack, inside the cache.
   std::filesystem::path pack;
   SourceFile digest;
-  /// Its entry of the report, JSON.
-  std::string report;
+  BakeRecord record;
 };
 
 /// Packs by content: a bake whose key, files and absent files are what they were is not done again,
@@ -54,7 +54,7 @@ class BakeCache {
   /// Keeps the pack at `pack` (linked where the file system allows it, else copied) as the result
   /// of `inputs`. Fails with kIo. Thread-safe.
   [[nodiscard]] Result<void> store(const BakeInputs& inputs, const std::filesystem::path& pack,
-                                   const std::string& report) const;
+                                   const BakeRecord& record) const;
 
  private:
   std::filesystem::path folder_;

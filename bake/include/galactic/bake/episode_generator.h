@@ -83,13 +83,13 @@ struct EpisodeGeneratorOptions {
   /// warning, instead of being left out.
   bool shorten_way = false;
   /// Horizontal distance of the robot's base and the target's origin.
-  DistanceRange start_to_target;
+  DistanceRange start_to_target{};
   /// Whether the goal lies on another surface than the target: one that no flat way connects.
   bool goal_on_other_support = false;
   /// Share of the episodes that may find no place: they are skipped. More are an error. 0 to 1.
   float most_skipped = 0.1F;
   SupportChoice supports = SupportChoice::kBoth;
-  SceneSplit split;
+  SceneSplit split{};
   /// Threads; the result does not depend on it. Each has one scene prepared at a time.
   unsigned jobs = 1;
 };

@@ -14,11 +14,11 @@ enum class UpAxis { kX, kY, kZ, kMinusX, kMinusY, kMinusZ };
 /// How to read a mesh file. Everything has a default from the file or its format.
 struct MeshImportOptions {
   /// Overrides the up axis of the file (glTF, DAE, FBX) or of the format (OBJ: Y; PLY, STL: Z).
-  std::optional<UpAxis> up;
+  std::optional<UpAxis> up{};
   /// Metres per unit of the file; overrides the file's own unit.
-  std::optional<double> scale;
+  std::optional<double> scale{};
   /// Applied last, to points that are already Y up and in metres.
-  std::optional<Affine> transform;
+  std::optional<Affine> transform{};
   /// Smaller files draw a question about their unit (a warning). Metres; the default is for scenes,
   /// 0 asks never.
   double smallest_size = 0.5;

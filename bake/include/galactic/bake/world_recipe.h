@@ -5,20 +5,11 @@
 #include <string_view>
 #include <vector>
 
+#include "galactic/bake/option_reader.h"
 #include "galactic/error.h"
 #include "galactic/option_text.h"
 
 namespace galactic::bake {
-
-/// An option of galactic-bake as a recipe gives it.
-struct RecipeOption {
-  /// Its long name, without dashes.
-  std::string name;
-  /// One text for each time that the option is typed; none for a flag.
-  std::vector<std::string> values;
-  /// File and line.
-  std::string place;
-};
 
 /// One table of a recipe: what is baked, and how.
 struct RecipeAssets {
@@ -28,13 +19,13 @@ struct RecipeAssets {
   std::vector<std::string> inputs;
   /// Whether the inputs are scene datasets, not scenes.
   bool is_dataset = false;
-  std::vector<RecipeOption> options;
+  std::vector<GivenOption> options;
 };
 
 /// What a world is made of (TOML); docs/worlds.md tells its form.
 struct WorldRecipe {
   /// For all scenes, objects and the robot.
-  std::vector<RecipeOption> common;
+  std::vector<GivenOption> common;
   /// At least one.
   std::vector<RecipeAssets> scenes;
   std::vector<RecipeAssets> objects;
@@ -46,10 +37,9 @@ struct WorldRecipe {
   std::vector<OptionText> task;
 };
 
-/// Reads a recipe. Keys that are not its own are options of galactic-bake, by their long names;
-/// whether there is such an option is seen where it is used. Those of [task] are options of
-/// galactic-run, and checked here. Fails with kIo, or with kInvalidInput
-/// naming file and line.
+/// Reads a recipe. Keys that are not its own are options of jobs, by their names; they are read
+/// where it is known of which kind of job. Those of [task] are options of galactic-run, and checked
+/// here. Fails with kIo, or with kInvalidInput naming file and line.
 [[nodiscard]] Result<WorldRecipe> readWorldRecipe(const std::filesystem::path& path);
 
 /// The files and folders that `patterns` name, ascending, each once. A pattern is looked for from

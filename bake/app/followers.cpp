@@ -1,0 +1,81 @@
+#include "followers.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "galactic/printable.h"
+#include "report.h"
+#include "views.h"
+
+namespace galactic::bake {
+namespace {
+
+std::string clockText(double seconds) {
+  const auto whole = static_cast<std::uint64_t>(std::ceil(seconds));
+  const std::uint64_t minutes = whole / 60;
+  if (minutes < 60) return fmt::format("{}:{:02}", minutes, whole % 60);
+  return fmt::format("{}:{:02}:{:02}", minutes / 60, minutes % 60, whole % 60);
+}
+
+std::string entriesText(const Made& made) {
+  return reportEntries(made).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+void FileFollower::show(std::string_view item, std::string_view stage, double fraction) {
+  const std::lock_guard lock(mutex_);
+  line_.show(item, stage, fraction);
+}
+
+void FileFollower::end(const PackJob& /*pack*/, const PackOutcome& outcome, const Made* made) {
+  const std::lock_guard lock(mutex_);
+  line_.clear();
+  for (const BakeFailure& failure : outcome.failures) printError(failure.error);
+  if (made != nullptr && verbosity_ >= Verbosity::kNormal) printTable(*made, verbosity_);
+}
+
+std::string FileFollower::describe(const Made& made) { return entriesText(made); }
+
+void WorldFollower::begin(const PackJob& pack) {
+  const std::lock_guard lock(mutex_);
+  running_.insert(pack.name);
+  redraw();
+}
+
+void WorldFollower::end(const PackJob& pack, const PackOutcome& outcome, const Made* /*made*/) {
+  const std::lock_guard lock(mutex_);
+  const bool is_world = std::holds_alternative<WorldJob>(pack.job);
+  running_.erase(pack.name);
+  line_.clear();
+  for (const BakeFailure& failure : outcome.failures) printError(failure.error);
+  if (is_world) return;
+  ++done_;
+  if (outcome.state == PackState::kBaked) ++baked_;
+  const bool is_news = outcome.state == PackState::kBaked || verbosity_ == Verbosity::kVerbose;
+  if (verbosity_ >= Verbosity::kNormal && is_news && outcome.failures.empty()) {
+    fmt::print("  [{}/{}] {} {} in {:.1f} s\n", done_, count_, printable(pack.name),
+               nameOf(outcome.state), outcome.seconds);
+    std::fflush(stdout);
+  }
+  redraw();
+}
+
+std::string WorldFollower::describe(const Made& made) { return entriesText(made); }
+
+void WorldFollower::redraw() {
+  if (running_.empty()) return line_.clear();
+  std::string left = "?";
+  // What was found in the cache says nothing of how long the rest takes.
+  if (baked_ > 0) {
+    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - start_;
+    left = clockText(since.count() / static_cast<double>(baked_) *
+                     static_cast<double>(count_ - done_));
+  }
+  line_.show(fmt::format("{}/{}, {} left", done_, count_, left), printable(*running_.begin()),
+             static_cast<double>(done_) / static_cast<double>(count_));
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <system_error>
+
+#include "command.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isFolder(const fs::path& path) {
+  std::error_code unknown;
+  return fs::is_directory(path, unknown);
+}
+
+/// The path without dots, and without the slash at its end.
+fs::path wholePath(const fs::path& path) {
+  std::error_code unknown;
+  const fs::path whole = fs::absolute(path, unknown).lexically_normal();
+  return whole.has_filename() ? whole : whole.parent_path();
+}
+
+/// The name of the pack that is made of `input`, without its extension.
+fs::path packName(const Job& job, const fs::path& input) {
+  if (std::holds_alternative<WorldJob>(job)) return "world";
+  if (std::holds_alternative<EpisodeGenerationJob>(job)) return "episodes";
+  if (std::holds_alternative<EpisodeImportJob>(job)) return episodeSetName(input);
+  if (!isFolder(input)) return input.stem();
+  // A dot in a folder's name begins no extension.
+  const fs::path folder = wholePath(input);
+  return folder.has_filename() ? folder.filename() : "objects";
+}
+
+/// Gives the job these inputs: one, or all that go into one pack.
+void setInputs(Job& job, const std::vector<fs::path>& inputs) {
+  struct Set {
+    const std::vector<fs::path>& inputs;
+    void operator()(ObjectJob& one) const { one.inputs = inputs; }
+    void operator()(EpisodeGenerationJob& one) const { one.packs = inputs; }
+    void operator()(WorldJob& one) const { one.packs = inputs; }
+    void operator()(SceneJob& one) const { one.input = inputs.front(); }
+    void operator()(RobotJob& one) const { one.input = inputs.front(); }
+    void operator()(EpisodeImportJob& one) const { one.input = inputs.front(); }
+  };
+  std::visit(Set{inputs}, job);
+}
+
+bool makesOnePack(const Job& job) {
+  return std::holds_alternative<ObjectJob>(job) || std::holds_alternative<WorldJob>(job) ||
+         std::holds_alternative<EpisodeGenerationJob>(job);
+}
+
+JobList jobsOfFiles(const BakeCommand& command, const Job& job) {
+  JobList list;
+  const fs::path& out = command.run.out;
+  const bool is_one = makesOnePack(job) || command.inputs.size() == 1;
+  const auto add = [&](const fs::path& first, const std::vector<fs::path>& inputs) {
+    fs::path name = packName(job, first);
+    name += ".pack";
+    const bool is_folder = !is_one || isFolder(out);
+    PackJob pack{.name = name.string(), .job = job, .output = name};
+    if (!out.empty()) pack.output = is_folder ? out / name : out;
+    setInputs(pack.job, inputs);
+    list.assets.push_back(std::move(pack));
+  };
+  if (makesOnePack(job)) {
+    add(command.inputs.front(), command.inputs);
+  } else {
+    for (const fs::path& input : command.inputs) add(input, {input});
+  }
+  return list;
+}
+
+/// "home" of home.scene_dataset_config.json, of home.toml and of the folder home.
+std::string worldName(const fs::path& input) {
+  constexpr std::string_view kDatasetSuffix = ".scene_dataset_config.json";
+  const fs::path whole = wholePath(input);
+  std::string name = whole.filename().string();
+  if (isFolder(input)) return name;
+  if (!name.ends_with(kDatasetSuffix)) return whole.stem().string();
+  return name.substr(0, name.size() - kDatasetSuffix.size());
+}
+
+/// NAME.pack, in the folder or under the name that the command gives.
+Result<fs::path> worldPack(const BakeCommand& command) {
+  const std::string name = worldName(command.inputs.front());
+  const fs::path& out = command.run.out;
+  if (!out.has_filename() || isFolder(out)) return out / (name + ".pack");
+  if (out.has_extension()) return out;
+  // The other packs go into a folder of this name.
+  return fail(
+      ErrorCode::kInvalidInput, "out",
+      fmt::format("is \"{}\", NAME.pack or a folder that is there is wanted", out.string()));
+}
+
+}  // namespace
+
+Result<JobList> jobsOf(const BakeCommand& command) {
+  if (const auto* job = std::get_if<Job>(&command.what)) return jobsOfFiles(command, *job);
+  auto world = worldPack(command);
+  if (!world) return tl::unexpected(world.error());
+  if (const auto* recipe = std::get_if<RecipeCommand>(&command.what)) {
+    return jobsOfRecipe({.recipe = command.inputs.front(),
+                         .data = recipe->data,
+                         .is_of_command_line = isOfCommandLine},
+                        *world);
+  }
+  std::vector<DatasetJobs> datasets(command.inputs.size(),
+                                    std::get<DatasetCommand>(command.what).jobs);
+  for (std::size_t n = 0; n < datasets.size(); ++n) datasets[n].input = command.inputs[n];
+  return jobsOfDatasets(datasets, *world);
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,38 @@
+#include "stop_request.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <ctime>
+
+namespace galactic::bake {
+
+StopRequest::StopRequest() {
+  sigemptyset(&signals_);
+  sigaddset(&signals_, SIGINT);
+  sigaddset(&signals_, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals_, &before_);
+  watcher_ = std::thread([this] { watch(); });
+}
+
+StopRequest::~StopRequest() {
+  over_ = true;
+  watcher_.join();
+  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+void StopRequest::watch() {
+  constexpr timespec kTick{.tv_sec = 0, .tv_nsec = 50'000'000};
+  constexpr int kSignalBase = 128;
+  while (!over_) {
+    const int signal = sigtimedwait(&signals_, nullptr, &kTick);
+    if (signal <= 0) continue;
+    // Files appear only when they are whole, so that leaving at once loses nothing.
+    if (came_.exchange(true)) ::_exit(kSignalBase + signal);
+    fmt::print(stderr, "\ngalactic-bake: finishing what has begun; once more to stop at once\n");
+    std::fflush(stderr);
+  }
+}
+
+}  // namespace galactic::bake

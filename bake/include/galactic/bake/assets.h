@@ -1,0 +1,189 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "galactic/bake/episode_solving.h"
+#include "galactic/bake/jobs.h"
+#include "galactic/bake/world_pack.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+// Whole packs from files: import, bake, render meshes, textures and provenance, written in one
+// step. What galactic-bake does, a program does with these.
+
+/// A file that a bake read.
+struct ReadFile {
+  std::filesystem::path path;
+  /// What it held, where the reader said so.
+  std::optional<SourceFile> content;
+};
+
+/// What bakes read and looked for.
+class ReadLog {
+ public:
+  void noteRead(const std::filesystem::path& file) { read_.push_back({file, std::nullopt}); }
+  /// `files` by their names below `folder`.
+  void noteRead(const std::filesystem::path& folder, const std::vector<SourceFile>& files);
+  /// Remembers a file that was looked for and is not there.
+  void noteAbsent(const std::filesystem::path& file) { absent_.push_back(file); }
+
+  [[nodiscard]] const std::vector<ReadFile>& files() const { return read_; }
+  [[nodiscard]] const std::vector<std::filesystem::path>& absent() const { return absent_; }
+
+  /// Refuses to write `output` over a file that was read.
+  [[nodiscard]] Result<void> checkNotRead(const std::filesystem::path& output) const;
+
+ private:
+  std::vector<ReadFile> read_;
+  std::vector<std::filesystem::path> absent_;
+};
+
+/// Told what is worked on, what is being done with it, and how far it is (0 to 1).
+using BakeProgress =
+    std::function<void(std::string_view item, std::string_view stage, double fraction)>;
+
+/// What a bake is given besides its job.
+struct BakeContext {
+  /// The pack; with `dry_run` nothing is written.
+  std::filesystem::path output{};
+  ReadLog& log;
+  BakeProgress show = [](std::string_view, std::string_view, double) {};
+  bool dry_run = false;
+  /// Whether a pack of several objects holds those that succeeded when others fail.
+  bool keep_going = false;
+};
+
+/// What became of one scene.
+struct SceneOutcome {
+  std::filesystem::path input;
+  /// How axes and unit were read.
+  std::string convention;
+  BakedScene scene;
+  StageTimes times;
+};
+
+/// One input that could not be baked.
+struct BakeFailure {
+  std::filesystem::path input;
+  Error error;
+};
+
+/// What became of a set of objects.
+struct ObjectSetOutcome {
+  /// Where an object came from.
+  struct Origin {
+    std::filesystem::path input;
+    double import_seconds = 0;
+  };
+  std::vector<float> radii;
+  std::vector<BakedObject> objects;
+  /// One for each object.
+  std::vector<Origin> origins;
+  /// Of the collection.
+  std::vector<std::string> warnings;
+  /// Objects that could not be baked. Without BakeContext::keep_going there is then no pack.
+  std::vector<BakeFailure> failures;
+  double seconds = 0;
+};
+
+/// What became of one robot.
+struct RobotOutcome {
+  std::filesystem::path input;
+  BakedRobot robot;
+  /// Where each mesh was found.
+  std::vector<std::string> resolutions;
+  double import_seconds = 0;
+  double seconds = 0;
+};
+
+/// How episodes were generated.
+struct EpisodeGeneration {
+  RejectionCounts rejections;
+  std::vector<GeneratedScene> scenes;
+  std::vector<UnusableScene> left_out;
+  SolvedSample sample;
+  std::uint32_t skipped = 0;
+  std::uint32_t with_fewer_objects = 0;
+};
+
+/// What became of one set of episodes.
+struct EpisodeOutcome {
+  /// What it was made from, for people.
+  std::string input;
+  SourceEpisodes episodes;
+  /// Of generated ones.
+  std::optional<EpisodeGeneration> generation{};
+  double seconds = 0;
+};
+
+/// What became of a world.
+struct WorldOutcome {
+  std::vector<LinkedPack> packs;
+  double seconds = 0;
+};
+
+/// A pack that was made, and everything that is known of it.
+struct Made {
+  std::variant<SceneOutcome, ObjectSetOutcome, RobotOutcome, EpisodeOutcome, WorldOutcome> outcome;
+  std::filesystem::path output;
+  /// Size of the pack; 0 for a dry run.
+  std::uint64_t pack_bytes = 0;
+};
+
+/// What the user should look at, one sentence each.
+[[nodiscard]] std::vector<std::string> warningsOf(const Made& made);
+
+/// The texture packs that it shares with others, by their hashes: HASH.pack in
+/// DrawOptions::shared_textures.
+[[nodiscard]] std::vector<std::string> sharedTexturesOf(const Made& made);
+
+/// Bakes one scene, its render meshes and textures into its pack. What an instance of a dataset
+/// lacks is left out, with a warning. Fails with the errors of importer, bakers and writer, and
+/// with kInvalidInput where the output is a file that was read; `where` names the file.
+[[nodiscard]] Result<Made> bakeSceneFile(const SceneJob& job, BakeContext& context);
+
+/// Bakes all objects of a job into one pack. An object that fails is in the outcome's failures; it
+/// is the result's error where no object is left, or where there is no pack for another reason.
+[[nodiscard]] Result<Made> bakeObjectFiles(const ObjectJob& job, BakeContext& context);
+
+/// Bakes one URDF with its recipe and meshes into its pack.
+[[nodiscard]] Result<Made> bakeRobotFile(const RobotJob& job, BakeContext& context);
+
+/// Reads a URDF as bakeRobotFile does.
+[[nodiscard]] Result<SourceRobot> readRobotFile(const RobotJob& job);
+
+/// Imports a published set of episodes into a pack.
+[[nodiscard]] Result<Made> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context);
+
+/// Generates episodes in packs and lets the scripted policy play a sample of them.
+[[nodiscard]] Result<Made> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context);
+
+/// Lists packs in a world pack, after seeing that together they make a world.
+[[nodiscard]] Result<Made> linkWorld(const WorldJob& job, BakeContext& context);
+
+/// Whichever the job is. Notes the files that the job names as read.
+[[nodiscard]] Result<Made> bake(const Job& job, BakeContext& context);
+
+/// One mesh file that becomes an object.
+struct ObjectInput {
+  std::filesystem::path path;
+  /// Name of the object in the pack.
+  std::string name;
+};
+
+/// The objects that `inputs` (mesh files, and folders that are searched) name, by ascending name.
+/// A file is an object named by its stem. In a folder below an input, a file whose stem is
+/// "textured" or "model" stands for the whole folder and takes its name: so are YCB and Google
+/// Scanned Objects laid out. Fails with kIo where a folder cannot be read, and with kInvalidInput
+/// where one holds no mesh or two objects have one name.
+[[nodiscard]] Result<std::vector<ObjectInput>> findObjects(
+    const std::vector<std::filesystem::path>& inputs);
+
+}  // namespace galactic::bake

@@ -1,0 +1,159 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "galactic/bake/assets.h"
+#include "galactic/bake/jobs.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+// A build makes a list of packs: of single files, of a dataset or of a recipe. Packs that were made
+// before come from a cache; the bytes of all of them depend on neither threads nor shards nor the
+// cache.
+
+/// One pack that is to be made.
+struct PackJob {
+  /// For people, and by which lists are sorted: "scenes/kitchen.pack".
+  std::string name;
+  Job job;
+  std::filesystem::path output;
+  /// Names of files that the pack depends on begin here.
+  std::filesystem::path folder{};
+  /// Size of its main input: the large ones are baked first.
+  std::uint64_t source_bytes = 0;
+};
+
+/// A scene that is not baked and why, or a pack and what is missing for it.
+struct LeftOut {
+  std::string name;
+  std::vector<std::string> reasons;
+};
+
+/// Everything that one build makes.
+struct JobList {
+  /// None of them needs another.
+  std::vector<PackJob> assets;
+  /// Made in the assets' packs, or imported.
+  std::optional<PackJob> episodes;
+  /// Lists them all.
+  std::optional<PackJob> world;
+  /// Where the packs of a world go; empty where there is none.
+  std::filesystem::path folder;
+  std::vector<LeftOut> left_out;
+  /// One sentence each.
+  std::vector<std::string> warnings;
+};
+
+/// One part of work that is split: the packs whose number, modulo `count`, is `index`.
+struct Shard {
+  std::size_t index = 0;
+  std::size_t count = 1;
+};
+
+enum class BuildMode {
+  kBake,
+  kTry,   ///< Everything is baked and nothing written.
+  kList,  ///< Nothing is baked.
+};
+
+struct BuildOptions {
+  BuildMode mode = BuildMode::kBake;
+  /// Threads, of all bakes together.
+  unsigned jobs = 1;
+  /// Most packs that are baked at the same time.
+  std::size_t at_once = std::numeric_limits<std::size_t>::max();
+  /// Whether to begin the next pack after an error.
+  bool keep_going = false;
+  /// Folder of bakes that were done before; none: nothing is remembered.
+  std::optional<std::filesystem::path> cache{};
+  /// Without the episodes and the world where there are several shards.
+  Shard shard{};
+  /// Bytes that bakes at the same time may take together, as far as that can be foreseen.
+  std::uint64_t memory = std::numeric_limits<std::uint64_t>::max();
+};
+
+enum class PackState {
+  kPlanned,    ///< Nothing became of it: a list, or the build was stopped.
+  kBaked,      ///< Made now.
+  kUnchanged,  ///< Made before.
+  kElsewhere,  ///< It belongs to another shard.
+  kFailed,
+};
+
+/// What is kept of a bake beside its pack, and comes back with it from the cache.
+struct BakeRecord {
+  /// Texture packs that it shares with others, by their hashes.
+  std::vector<std::string> textures{};
+  std::vector<std::string> warnings{};
+  /// What the observer said of it.
+  std::string report{};
+
+  friend bool operator==(const BakeRecord&, const BakeRecord&) = default;
+};
+
+struct PackOutcome {
+  std::string name;
+  PackState state = PackState::kPlanned;
+  /// Of a pack that was made, now or before.
+  std::optional<BakeRecord> record{};
+  /// With BuildOptions::keep_going a set of objects may be made and have failures.
+  std::vector<BakeFailure> failures{};
+  /// What was read now.
+  ReadLog log{};
+  double seconds = 0;
+
+  [[nodiscard]] bool isThere() const {
+    return state == PackState::kBaked || state == PackState::kUnchanged;
+  }
+};
+
+struct BuildOutcome {
+  /// The assets in their order, then the episodes.
+  std::vector<PackOutcome> packs;
+  /// Where a world was linked, or could not be.
+  std::optional<PackOutcome> world;
+  /// What the world lists.
+  std::vector<LinkedPack> linked;
+  bool stopped = false;
+  double seconds = 0;
+
+  [[nodiscard]] std::size_t count(PackState state) const;
+  /// The first error in the order of the packs; null where there is none.
+  [[nodiscard]] const Error* firstError() const;
+};
+
+/// Follows a build. Its functions are called from several threads, at the same time.
+class BuildObserver {
+ public:
+  BuildObserver() = default;
+  virtual ~BuildObserver() = default;
+  BuildObserver(const BuildObserver&) = delete;
+  BuildObserver& operator=(const BuildObserver&) = delete;
+
+  virtual void begin(const PackJob& /*pack*/) {}
+  virtual void show(std::string_view /*item*/, std::string_view /*stage*/, double /*fraction*/) {}
+  /// `made` is null where the pack failed or was made before.
+  virtual void end(const PackJob& /*pack*/, const PackOutcome& /*outcome*/, const Made* /*made*/) {}
+  /// What to keep of it in BakeRecord::report.
+  [[nodiscard]] virtual std::string describe(const Made& made) = 0;
+  /// Whether to begin nothing more.
+  [[nodiscard]] virtual bool stops() { return false; }
+};
+
+/// What the packs of the list name and what is not there: inputs, meshes that a scene of a dataset
+/// places, textures, meshes of robots. Reads the meshes, on `threads` threads, and bakes nothing.
+/// In the order of the list; packs that miss nothing are left out.
+[[nodiscard]] std::vector<LeftOut> findMissing(const JobList& list, unsigned threads);
+
+/// Makes the packs of the list. Clears away what killed builds of the same packs have left.
+[[nodiscard]] BuildOutcome build(const JobList& list, const BuildOptions& options,
+                                 BuildObserver& observer);
+
+}  // namespace galactic::bake

@@ -1,0 +1,98 @@
+#include "asset/asset_parts.h"
+
+#include <system_error>
+#include <utility>
+
+#include "galactic/bake/source_file.h"
+#include "galactic/bake/texture_pack.h"
+#include "galactic/pack.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<OptionalMeshes> drawFrom(Result<RenderSource> source, const DrawOptions& options,
+                                const fs::path& input, std::vector<std::string>& warnings) {
+  const auto located = [&](Error error) {
+    error.where = inFile(input, error.where);
+    return tl::unexpected(std::move(error));
+  };
+  if (!source) return located(source.error());
+  auto meshes = bakeRenderMeshes(*source, options.meshes);
+  if (!meshes) return located(meshes.error());
+  const std::vector<std::string>& more = meshes->materials.warnings;
+  warnings.insert(warnings.end(), more.begin(), more.end());
+  return OptionalMeshes(std::move(*meshes));
+}
+
+/// Whether the pack is there and whole: its name tells what is in it.
+bool isThere(const fs::path& pack) {
+  const auto opened = PackFile::open(pack);
+  return opened && opened->kind() == PackKind::kTexture;
+}
+
+}  // namespace
+
+std::string inFile(const fs::path& file, const std::string& where) {
+  return where.empty() ? file.string() : file.string() + ": " + where;
+}
+
+Result<void> addSources(const std::vector<fs::path>& files, std::vector<SourceFile>& sources) {
+  for (const fs::path& path : files) {
+    if (path.empty()) continue;
+    auto file = describeFile(path);
+    if (!file) return tl::unexpected(file.error());
+    sources.push_back(std::move(*file));
+  }
+  return {};
+}
+
+Result<OptionalMeshes> drawScene(const SourceAsset& scene, const DrawOptions& options,
+                                 const fs::path& input, std::vector<std::string>& warnings) {
+  if (!options.wanted) return std::nullopt;
+  return drawFrom(sceneRenderSource(scene, input.parent_path(), options.textures), options, input,
+                  warnings);
+}
+
+Result<OptionalMeshes> drawObject(const SourceAsset& object, const DrawOptions& options,
+                                  const fs::path& input, std::vector<std::string>& warnings) {
+  if (!options.wanted) return std::nullopt;
+  return drawFrom(objectRenderSource(object, input.parent_path(), options.textures), options, input,
+                  warnings);
+}
+
+Result<OptionalMeshes> drawRobot(const SourceRobot& robot, const DrawOptions& options,
+                                 const fs::path& input, BakedRobot& baked) {
+  if (!options.wanted) return std::nullopt;
+  auto source = robotRenderSource(robot, input.parent_path(), options.textures);
+  if (source) standInStartPose(*source, baked.kinematics);
+  return drawFrom(std::move(source), options, input, baked.warnings);
+}
+
+Result<void> shareTextures(BakedMaterials& materials, const DrawOptions& options, bool dry_run) {
+  const fs::path& folder = options.shared_textures;
+  if (folder.empty()) return {};
+  materials.shared = true;
+  if (dry_run) return {};
+  std::error_code problem;
+  fs::create_directories(folder, problem);
+  if (problem) {
+    return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + problem.message());
+  }
+  // What a texture looks like says nothing of the asset that it was met in.
+  Provenance provenance = provenanceOf(SceneJob{}, {}, {});
+  provenance.options.clear();
+  for (const BakedTexture& texture : materials.textures) {
+    const fs::path pack = folder / (textureHash(texture) + ".pack");
+    if (isThere(pack)) continue;
+    // Its source is the first asset that shows it, which may differ: a name of its own.
+    BakedTexture named = texture;
+    named.name = textureHash(texture);
+    const auto written = writeTexturePack(pack, materials, named, provenance);
+    if (!written) return tl::unexpected(written.error());
+  }
+  return {};
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,43 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "galactic/bake/assets.h"
+#include "galactic/bake/render_source.h"
+
+namespace galactic::bake {
+
+// What the bakes of whole assets have in common.
+
+/// The place of an error in `file`, from the place that a baker named, which knows no files.
+[[nodiscard]] std::string inFile(const std::filesystem::path& file, const std::string& where);
+
+/// Adds the description of each of `files` that is not empty.
+[[nodiscard]] Result<void> addSources(const std::vector<std::filesystem::path>& files,
+                                      std::vector<SourceFile>& sources);
+
+/// Render meshes of one asset, or none where none are wanted.
+using OptionalMeshes = std::optional<BakedRenderMeshes>;
+
+/// Bake what is drawn of an asset that was read from `input`, and add the warnings. Errors name the
+/// input.
+[[nodiscard]] Result<OptionalMeshes> drawScene(const SourceAsset& scene, const DrawOptions& options,
+                                               const std::filesystem::path& input,
+                                               std::vector<std::string>& warnings);
+[[nodiscard]] Result<OptionalMeshes> drawObject(const SourceAsset& object,
+                                                const DrawOptions& options,
+                                                const std::filesystem::path& input,
+                                                std::vector<std::string>& warnings);
+/// Links are lit in the start pose of `baked`, to which the warnings are added.
+[[nodiscard]] Result<OptionalMeshes> drawRobot(const SourceRobot& robot, const DrawOptions& options,
+                                               const std::filesystem::path& input,
+                                               BakedRobot& baked);
+
+/// Where `options` share textures between packs, writes those of `materials` that are not there
+/// yet, each into a pack named by its content, and leaves their texels out of the asset's own pack.
+[[nodiscard]] Result<void> shareTextures(BakedMaterials& materials, const DrawOptions& options,
+                                         bool dry_run);
+
+}  // namespace galactic::bake

@@ -1,0 +1,99 @@
+#include "galactic/bake/assets.h"
+
+#include <chrono>
+#include <system_error>
+#include <utility>
+
+#include "galactic/bake/texture_pack.h"
+
+namespace galactic::bake {
+namespace {
+
+template <class... T>
+struct Overload : T... {
+  using T::operator()...;
+};
+template <class... T>
+Overload(T...) -> Overload<T...>;
+
+}  // namespace
+
+void ReadLog::noteRead(const std::filesystem::path& folder, const std::vector<SourceFile>& files) {
+  for (const SourceFile& file : files) read_.push_back({folder / file.name, file});
+}
+
+Result<void> ReadLog::checkNotRead(const std::filesystem::path& output) const {
+  for (const ReadFile& source : read_) {
+    std::error_code missing;
+    if (output.empty() || !std::filesystem::equivalent(source.path, output, missing)) continue;
+    return fail(ErrorCode::kInvalidInput, output.string(),
+                "is also an input; write to another file");
+  }
+  return {};
+}
+
+std::vector<std::string> warningsOf(const Made& made) {
+  return std::visit(Overload{[](const SceneOutcome& one) { return one.scene.warnings; },
+                             [](const ObjectSetOutcome& one) {
+                               std::vector<std::string> all = one.warnings;
+                               for (const BakedObject& object : one.objects) {
+                                 all.insert(all.end(), object.warnings.begin(),
+                                            object.warnings.end());
+                               }
+                               return all;
+                             },
+                             [](const RobotOutcome& one) { return one.robot.warnings; },
+                             [](const EpisodeOutcome& one) { return one.episodes.warnings; },
+                             [](const WorldOutcome&) { return std::vector<std::string>(); }},
+                    made.outcome);
+}
+
+std::vector<std::string> sharedTexturesOf(const Made& made) {
+  std::vector<std::string> hashes;
+  const auto* scene = std::get_if<SceneOutcome>(&made.outcome);
+  if (scene == nullptr || !scene->scene.render_meshes) return hashes;
+  const BakedMaterials& materials = scene->scene.render_meshes->materials;
+  if (!materials.shared) return hashes;
+  for (const BakedTexture& texture : materials.textures) hashes.push_back(textureHash(texture));
+  return hashes;
+}
+
+Result<Made> linkWorld(const WorldJob& job, BakeContext& context) {
+  const auto start = std::chrono::steady_clock::now();
+  context.show(context.output.filename().string(), "verify", 0);
+  auto packs = linkPacks(job.packs, context.output.parent_path());
+  if (!packs) return tl::unexpected(packs.error());
+  if (auto checked = context.log.checkNotRead(context.output); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  Made made{.outcome = {}, .output = context.output};
+  if (!context.dry_run) {
+    std::vector<SourceFile> sources;
+    sources.reserve(packs->size());
+    for (const LinkedPack& pack : *packs) {
+      sources.push_back({pack.path, pack.bytes, pack.hash_low, pack.hash_high});
+    }
+    const auto bytes =
+        writeWorldPack(context.output, *packs, provenanceOf(job, std::move(sources), {}), job.task);
+    if (!bytes) return tl::unexpected(bytes.error());
+    made.pack_bytes = *bytes;
+  }
+  made.outcome =
+      WorldOutcome{std::move(*packs),
+                   std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+  return made;
+}
+
+Result<Made> bake(const Job& job, BakeContext& context) {
+  for (const std::filesystem::path& file : filesOf(job)) context.log.noteRead(file);
+  return std::visit(
+      Overload{[&](const SceneJob& one) { return bakeSceneFile(one, context); },
+               [&](const ObjectJob& one) { return bakeObjectFiles(one, context); },
+               [&](const RobotJob& one) { return bakeRobotFile(one, context); },
+               [&](const EpisodeImportJob& one) { return bakeEpisodes(one, context); },
+               [&](const EpisodeGenerationJob& one) { return bakeEpisodes(one, context); },
+               [&](const WorldJob& one) { return linkWorld(one, context); }},
+      job);
+}
+
+}  // namespace galactic::bake

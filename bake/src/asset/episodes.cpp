@@ -1,0 +1,184 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <set>
+#include <utility>
+
+#include "asset/asset_parts.h"
+#include "galactic/bake/episode_pack.h"
+#include "galactic/bake/mesh_import.h"
+#include "galactic/bake/source_file.h"
+#include "galactic/bake/triangle_mesh.h"
+#include "galactic/pack.h"
+#include "galactic/scene.h"
+
+namespace galactic::bake {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Writes what the outcome holds.
+Result<Made> finish(EpisodeOutcome outcome, const Job& job, std::vector<SourceFile> sources,
+                    const BakeContext& context) {
+  if (auto checked = context.log.checkNotRead(context.output); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  Made made{.outcome = {}, .output = context.output};
+  if (!context.dry_run) {
+    const auto bytes =
+        writeEpisodePack(context.output, outcome.episodes,
+                         provenanceOf(job, std::move(sources), outcome.episodes.warnings));
+    if (!bytes) {
+      const Error& error = bytes.error();
+      return fail(error.code, inFile(outcome.input, error.where), error.message);
+    }
+    made.pack_bytes = *bytes;
+  }
+  made.outcome = std::move(outcome);
+  return made;
+}
+
+/// The packs in which episodes are generated.
+struct OpenPacks {
+  std::vector<PackFile> packs;
+  std::vector<SourceFile> files;
+};
+
+Result<OpenPacks> openPacks(const std::vector<std::filesystem::path>& inputs) {
+  OpenPacks opened;
+  opened.packs.reserve(inputs.size());
+  opened.files.reserve(inputs.size());
+  for (const std::filesystem::path& input : inputs) {
+    auto pack = PackFile::open(input);
+    if (!pack) return tl::unexpected(pack.error());
+    opened.files.push_back(describeBytes(input.filename().string(), pack->bytes()));
+    opened.packs.push_back(std::move(*pack));
+  }
+  return opened;
+}
+
+/// Sees that each mesh of `geometry` is for one of the scenes, and describes it.
+Result<void> addGeometry(const EpisodeGenerationJob& job, ReadLog& log, OpenPacks& opened) {
+  std::set<std::string, std::less<>> names;
+  for (const PackFile& pack : opened.packs) {
+    if (pack.kind() != PackKind::kScene) continue;
+    const auto scene = Scene::from(pack);
+    if (!scene) return tl::unexpected(scene.error());
+    names.emplace(scene->name());
+  }
+  for (const auto& [scene, file] : job.geometry) {
+    if (!names.contains(scene)) {
+      return fail(ErrorCode::kInvalidInput, "geometry",
+                  fmt::format("is for the scene {}, which none of the packs holds; they hold {}",
+                              scene, fmt::join(names, ", ")));
+    }
+    if (auto added = addSources({file}, opened.files); !added) return added;
+    log.noteRead(file);
+  }
+  return {};
+}
+
+/// The mesh of `geometry` for a scene; nothing where there is none.
+Result<SceneDetails> readDetails(const EpisodeGenerationJob& job, std::string_view scene) {
+  if (job.details) return job.details(scene);
+  SceneDetails details;
+  const auto file = job.geometry.find(std::string(scene));
+  if (file == job.geometry.end()) return details;
+  const auto asset = importMesh(file->second);
+  if (!asset) return tl::unexpected(asset.error());
+  auto clean = placeAndClean(*asset);
+  if (!clean) {
+    const Error& error = clean.error();
+    return fail(error.code, inFile(file->second, error.where), error.message);
+  }
+  details.mesh = std::move(clean->mesh);
+  return details;
+}
+
+Result<GeneratedEpisodes> generate(const EpisodeGenerationJob& job, const EpisodeInputs& inputs,
+                                   const BakeContext& context) {
+  const auto show = [&](std::size_t done) {
+    const std::uint32_t all = job.generate.episodes;
+    context.show("episodes", fmt::format("{} of {}", done, all), static_cast<double>(done) / all);
+  };
+  show(0);
+  return generateEpisodes(inputs, job.generate, show);
+}
+
+/// The options of an import, with what stands in other files.
+Result<EpisodeImportOptions> importOptions(const EpisodeImportJob& job) {
+  EpisodeImportOptions options = job.import;
+  if (!job.only.empty()) {
+    auto only = readEpisodeList(job.only);
+    if (!only) return tl::unexpected(only.error());
+    options.only = std::move(*only);
+  }
+  if (!job.object_pack.empty()) {
+    const auto pack = PackFile::open(job.object_pack);
+    if (!pack) return tl::unexpected(pack.error());
+    auto centres = objectCentres(*pack);
+    if (!centres) return tl::unexpected(centres.error());
+    options.object_centres = std::move(*centres);
+    options.centres_needed = true;
+  }
+  return options;
+}
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+Result<Made> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context) {
+  const auto start = Clock::now();
+  context.show(job.input.filename().string(), "import", 0);
+  const auto options = importOptions(job);
+  if (!options) return tl::unexpected(options.error());
+  auto episodes = readEpisodeFile(job.input, *options);
+  if (!episodes) return tl::unexpected(episodes.error());
+  std::vector<SourceFile> sources;
+  if (auto added = addSources({job.input, job.only, job.object_pack}, sources); !added) {
+    return tl::unexpected(added.error());
+  }
+  return finish({.input = job.input.string(),
+                 .episodes = std::move(*episodes),
+                 .seconds = secondsSince(start)},
+                job, std::move(sources), context);
+}
+
+Result<Made> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context) {
+  const auto start = Clock::now();
+  auto opened = openPacks(job.packs);
+  if (!opened) return tl::unexpected(opened.error());
+  if (auto added = addGeometry(job, context.log, *opened); !added) {
+    return tl::unexpected(added.error());
+  }
+  // The bytes of the pack do not depend on the order of the inputs.
+  std::ranges::sort(opened->files, {}, &SourceFile::name);
+  EpisodeInputs inputs;
+  inputs.packs.reserve(opened->packs.size());
+  for (const PackFile& pack : opened->packs) inputs.packs.push_back(&pack);
+  if (job.details || !job.geometry.empty()) {
+    inputs.details = [&job](std::string_view scene) { return readDetails(job, scene); };
+  }
+  auto generated = generate(job, inputs, context);
+  if (!generated) return tl::unexpected(generated.error());
+  context.show("episodes", "solve", 1);
+  auto sample = solveSample(inputs.packs, generated->episodes,
+                            {.most_episodes = job.solve, .jobs = job.generate.jobs});
+  if (!sample) return tl::unexpected(sample.error());
+  return finish(
+      {.input = fmt::format("{} packs", job.packs.size()),
+       .episodes = std::move(generated->episodes),
+       .generation = EpisodeGeneration{generated->rejections, std::move(generated->scenes),
+                                       std::move(generated->left_out), *std::move(sample),
+                                       generated->skipped, generated->with_fewer_objects},
+       .seconds = secondsSince(start)},
+      job, std::move(opened->files), context);
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,131 @@
+#include <chrono>
+#include <cstdlib>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "asset/asset_parts.h"
+#include "galactic/bake/collection_import.h"
+#include "galactic/bake/robot_pack.h"
+#include "galactic/bake/robot_recipe.h"
+#include "galactic/bake/urdf_import.h"
+#include "stage_timer.h"
+
+namespace galactic::bake {
+namespace {
+
+/// The folders of ROS_PACKAGE_PATH, separated by colons.
+std::vector<std::filesystem::path> rosPackagePath() {
+  std::vector<std::filesystem::path> folders;
+  const char* text = std::getenv("ROS_PACKAGE_PATH");
+  std::string_view rest = text == nullptr ? "" : text;
+  while (!rest.empty()) {
+    const std::size_t colon = rest.find(':');
+    if (colon != 0) folders.emplace_back(rest.substr(0, colon));
+    rest.remove_prefix(colon == std::string_view::npos ? rest.size() : colon + 1);
+  }
+  return folders;
+}
+
+void append(const std::vector<std::string>& more, std::vector<std::string>& warnings) {
+  warnings.insert(warnings.end(), more.begin(), more.end());
+}
+
+/// A recipe from TOML or a published collection; its warnings go to the robot.
+Result<std::optional<RobotRecipe>> readRecipe(const std::filesystem::path& path,
+                                              SourceRobot& robot) {
+  if (path.empty()) return std::nullopt;
+  if (path.extension() != ".json") return readRobotRecipe(path);
+  const auto collection = readCollection(path);
+  if (!collection) return tl::unexpected(collection.error());
+  auto converted = recipeFromCollection(*collection, robot);
+  if (!converted) return tl::unexpected(converted.error());
+  append(collection->warnings, robot.warnings);
+  append(converted->warnings, robot.warnings);
+  return std::move(converted->recipe);
+}
+
+Result<std::optional<HandSpheres>> readSpheres(const std::filesystem::path& path,
+                                               SourceRobot& robot) {
+  if (path.empty()) return std::nullopt;
+  auto spheres = path.extension() == ".srdf" ? readSrdfSpheres(path) : readSpherizedUrdf(path);
+  if (!spheres) return tl::unexpected(spheres.error());
+  append(spheres->warnings, robot.warnings);
+  return std::move(*spheres);
+}
+
+Result<BakedRobot> bakeWithRecipe(const RobotJob& job, SourceRobot& robot) {
+  auto recipe = readRecipe(job.recipe, robot);
+  if (!recipe) return tl::unexpected(recipe.error());
+  auto spheres = readSpheres(job.spheres, robot);
+  if (!spheres) return tl::unexpected(spheres.error());
+  RobotBakeOptions options = job.shape;
+  options.hand_spheres = std::move(*spheres);
+  auto baked = bakeRobot(robot, *recipe ? &**recipe : nullptr, options);
+  if (!baked && !(*recipe && baked.error().where.starts_with((*recipe)->source))) {
+    baked.error().where = inFile(job.input, baked.error().where);
+  }
+  return baked;
+}
+
+Result<BakedRobot> bakeParts(const RobotJob& job, SourceRobot& robot, const BakeContext& context) {
+  const std::string item = job.input.filename().string();
+  context.show(item, "spheres", 0.3);
+  auto baked = bakeWithRecipe(job, robot);
+  if (!baked) return baked;
+  context.show(item, "render meshes", 0.9);
+  const StageTimer timer(baked->times.render);
+  auto meshes = drawRobot(robot, job.draw, job.input, *baked);
+  if (!meshes) return tl::unexpected(meshes.error());
+  baked->render_meshes = std::move(*meshes);
+  return baked;
+}
+
+}  // namespace
+
+Result<SourceRobot> readRobotFile(const RobotJob& job) {
+  UrdfImportOptions import;
+  import.allow_outside = job.allow_outside;
+  import.packages = job.packages;
+  import.search_roots = rosPackagePath();
+  import.allow_missing = job.allow_missing;
+  return importUrdf(job.input, import);
+}
+
+Result<Made> bakeRobotFile(const RobotJob& job, BakeContext& context) {
+  RobotOutcome outcome;
+  const auto start = std::chrono::steady_clock::now();
+  const std::string item = job.input.filename().string();
+  context.show(item, "import", 0);
+  auto robot = [&] {
+    const StageTimer timer(outcome.import_seconds);
+    return readRobotFile(job);
+  }();
+  if (!robot) return tl::unexpected(robot.error());
+  outcome.input = job.input;
+  outcome.resolutions = robot->resolutions;
+  context.log.noteRead(job.input.parent_path(), robot->files);
+  if (auto checked = context.log.checkNotRead(context.output); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  auto baked = bakeParts(job, *robot, context);
+  if (!baked) return tl::unexpected(baked.error());
+  outcome.robot = std::move(*baked);
+  if (auto added = addSources({job.recipe, job.spheres}, robot->files); !added) {
+    return tl::unexpected(added.error());
+  }
+  Made made{.outcome = {}, .output = context.output};
+  if (!context.dry_run) {
+    context.show(item, "write", 1);
+    const auto bytes =
+        writeRobotPack(context.output, outcome.robot,
+                       provenanceOf(job, std::move(robot->files), outcome.robot.warnings));
+    if (!bytes) return tl::unexpected(bytes.error());
+    made.pack_bytes = *bytes;
+  }
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  made.outcome = std::move(outcome);
+  return made;
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,179 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include "build/pack_list.h"
+#include "galactic/bake/scene_files.h"
+#include "galactic/bake/world_recipe.h"
+
+namespace galactic::bake {
+namespace {
+
+constexpr std::array<Named<MissingPolicy>, 3> kMissingNames{{{"fail", MissingPolicy::kFail},
+                                                             {"skip", MissingPolicy::kSkip},
+                                                             {"without", MissingPolicy::kWithout}}};
+
+bool isFolder(const std::filesystem::path& path) {
+  std::error_code unknown;
+  return std::filesystem::is_directory(path, unknown);
+}
+
+/// Ascending.
+std::vector<std::string> namesOf(const std::vector<SceneFile>& files) {
+  std::vector<std::string> names;
+  names.reserve(files.size());
+  for (const SceneFile& file : files) names.push_back(file.name);
+  std::ranges::sort(names);
+  return names;
+}
+
+/// The names among `scenes` that fit the patterns.
+Result<std::vector<std::string>> wantedScenes(const std::vector<std::string>& scenes,
+                                              const std::vector<std::string>& patterns) {
+  if (patterns.empty()) return scenes;
+  std::vector<std::string> names;
+  for (const std::string& pattern : patterns) {
+    const std::size_t before = names.size();
+    std::ranges::copy_if(scenes, std::back_inserter(names),
+                         [&](const std::string& name) { return fitsPattern(name, pattern); });
+    if (names.size() > before) continue;
+    return fail(ErrorCode::kInvalidInput, "scenes",
+                fmt::format("\"{}\" fits none of the dataset's {} scenes; `list` prints them",
+                            pattern, scenes.size()));
+  }
+  std::ranges::sort(names);
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+MeshImportOptions meshOptionsOf(const DatasetJobs& dataset) {
+  MeshImportOptions options = datasetMeshOptions();
+  options.allow_outside = dataset.scene.import.allow_outside;
+  return options;
+}
+
+void addObjects(const SceneSurvey& survey, const DatasetJobs& dataset, PackList& packs) {
+  for (const DatasetObject& object : survey.movable) {
+    const std::string name = "objects/" + object.name;
+    if (packs.has(name)) continue;
+    ObjectJob job{.inputs = {object.mesh}, .name = object.name};
+    job.import = meshOptionsOf(dataset);
+    job.import.transform = object.object_from_mesh;
+    job.shape.spheres.radii = dataset.scene.grids.radii;
+    job.draw = dataset.scene.draw;
+    packs.add(name, std::move(job), object.mesh);
+  }
+}
+
+Result<void> addScans(const DatasetJobs& dataset, PackList& packs) {
+  const auto files = findSceneFiles(dataset.input);
+  if (!files) return tl::unexpected(files.error());
+  const auto names = wantedScenes(namesOf(*files), dataset.scenes);
+  if (!names) return tl::unexpected(names.error());
+  for (const SceneFile& file : *files) {
+    if (!std::ranges::binary_search(*names, file.name)) continue;
+    SceneJob job = dataset.scene;
+    job.input = file.path;
+    job.name = file.name;
+    if (!job.import.up) job.import.up = file.up;
+    packs.add("scenes/" + file.name, std::move(job), file.path);
+  }
+  return {};
+}
+
+/// What the scenes of one dataset share.
+struct SharedParts {
+  std::shared_ptr<const SceneDataset> dataset;
+  std::shared_ptr<MeshLibrary> meshes;
+  std::shared_ptr<TextureLibrary> textures;
+};
+
+Result<void> addInstance(const std::string& name, const DatasetJobs& dataset,
+                         const SharedParts& shared, PackList& packs) {
+  auto survey = shared.dataset->survey(name);
+  if (!survey) return tl::unexpected(survey.error());
+  const bool lacks = !survey->missing.empty();
+  if (lacks && dataset.missing == MissingPolicy::kFail) {
+    return fail(
+        ErrorCode::kInvalidInput, fmt::format("{}: {}", dataset.input.string(), name),
+        survey->missing.front() + "; add it, or bake with `missing` skip or `missing` without");
+  }
+  // Without its stage nothing else matters; the stage is looked for first.
+  if (!survey->has_stage && lacks) survey->missing.resize(1);
+  if (!survey->has_stage || (lacks && dataset.missing == MissingPolicy::kSkip)) {
+    packs.leaveOut({name, std::move(survey->missing)});
+    return {};
+  }
+  SceneJob job = dataset.scene;
+  job.input = dataset.input;
+  job.instance = InstancedScene{shared.dataset, shared.meshes, name};
+  job.name = name;
+  job.draw.textures.library = shared.textures;
+  job.draw.shared_textures = packs.folder() / "textures";
+  packs.add("scenes/" + name, std::move(job), dataset.input).source_bytes = survey->bytes;
+  addObjects(*survey, dataset, packs);
+  return {};
+}
+
+}  // namespace
+
+void visitOptions(DatasetJobs& dataset, OptionVisitor& v) {
+  auto& [input, scenes, missing, scene] = dataset;
+  visitOptions(scene, v);
+  v.group("Datasets");
+  v.option(
+      {"scenes", "PATTERN", "Only scenes whose names fit a pattern with * and ? (may be repeated)"},
+      texts(scenes));
+  v.option({"missing", "fail|skip|without",
+            "A scene of which something is missing: an error, left out, or baked without it"},
+           choice(missing, kMissingNames));
+  v.internals(input);
+}
+
+Result<std::vector<std::string>> sceneNames(const DatasetJobs& dataset) {
+  if (isFolder(dataset.input)) {
+    const auto files = findSceneFiles(dataset.input);
+    if (!files) return tl::unexpected(files.error());
+    return wantedScenes(namesOf(*files), dataset.scenes);
+  }
+  const auto read =
+      SceneDataset::read(dataset.input, {.allow_outside = dataset.scene.import.allow_outside});
+  if (!read) return tl::unexpected(read.error());
+  return wantedScenes(read->scenes(), dataset.scenes);
+}
+
+Result<void> addDataset(const DatasetJobs& dataset, PackList& packs) {
+  if (isFolder(dataset.input)) return addScans(dataset, packs);
+  const MeshImportOptions& import = dataset.scene.import;
+  if (import.up || import.scale || import.transform) {
+    return fail(ErrorCode::kInvalidInput, dataset.input.string(),
+                "says itself how its meshes stand; leave out `up`, `scale` and `transform`");
+  }
+  auto read = SceneDataset::read(dataset.input, {.allow_outside = import.allow_outside});
+  if (!read) return tl::unexpected(read.error());
+  const SharedParts shared{std::make_shared<const SceneDataset>(std::move(*read)),
+                           std::make_shared<MeshLibrary>(meshOptionsOf(dataset)),
+                           std::make_shared<TextureLibrary>()};
+  const auto names = wantedScenes(shared.dataset->scenes(), dataset.scenes);
+  if (!names) return tl::unexpected(names.error());
+  for (const std::string& warning : shared.dataset->warnings()) packs.warn(warning);
+  for (const std::string& name : *names) {
+    if (auto added = addInstance(name, dataset, shared, packs); !added) return added;
+  }
+  return {};
+}
+
+Result<JobList> jobsOfDatasets(const std::vector<DatasetJobs>& datasets,
+                               const std::filesystem::path& world) {
+  PackList packs(world);
+  for (const DatasetJobs& dataset : datasets) {
+    if (auto added = addDataset(dataset, packs); !added) return tl::unexpected(added.error());
+  }
+  return packs.finish();
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "galactic/bake/build.h"
+#include "galactic/bake/mesh_import.h"
+#include "galactic/bake/parallel_for.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isThere(const fs::path& path) {
+  std::error_code unknown;
+  return fs::exists(path, unknown);
+}
+
+std::string sentenceOf(const Error& error) { return error.where + ": " + error.message; }
+
+/// What a job lacks, kind by kind.
+class Search {
+ public:
+  std::vector<std::string> in(const Job& job) {
+    for (const fs::path& file : filesOf(job)) {
+      if (!isThere(file)) add(fmt::format("{} is not there", file.string()));
+    }
+    if (reasons_.empty()) std::visit([this](const auto& one) { lookInto(one); }, job);
+    return std::move(reasons_);
+  }
+
+ private:
+  void lookInto(const SceneJob& job) {
+    if (!job.instance) return lookIntoMesh(job.input, job.import);
+    const InstancedScene& instance = *job.instance;
+    const auto composed = instance.dataset->compose(instance.name, *instance.meshes);
+    if (!composed) return add(sentenceOf(composed.error()));
+    for (const std::string& missing : composed->missing) add(missing);
+    lookForTextures(composed->scene, instance.dataset->folder());
+  }
+  void lookInto(const ObjectJob& job) {
+    const auto objects = findObjects(job.inputs);
+    if (!objects) return add(sentenceOf(objects.error()));
+    for (const ObjectInput& object : *objects) lookIntoMesh(object.path, job.import);
+  }
+  void lookInto(const RobotJob& job) {
+    const auto robot = readRobotFile(job);
+    if (!robot) add(sentenceOf(robot.error()));
+  }
+  template <class Other>
+  void lookInto(const Other& /*job*/) {}
+
+  void lookIntoMesh(const fs::path& mesh, const MeshImportOptions& options) {
+    const auto asset = importMesh(mesh, options);
+    if (!asset) return add(sentenceOf(asset.error()));
+    lookForTextures(*asset, mesh.parent_path());
+  }
+
+  void lookForTextures(const SourceAsset& asset, const fs::path& folder) {
+    for (const SourceMaterial& material : asset.materials) {
+      const std::string& texture = material.base_color_texture;
+      const bool is_file = !texture.empty() && !texture.starts_with('*');
+      if (is_file && !isThere(folder / texture))
+        add(fmt::format("texture {} is not there", texture));
+    }
+  }
+
+  void add(std::string sentence) {
+    if (said_.insert(sentence).second) reasons_.push_back(std::move(sentence));
+  }
+
+  std::set<std::string> said_;
+  std::vector<std::string> reasons_;
+};
+
+}  // namespace
+
+std::vector<LeftOut> findMissing(const JobList& list, unsigned threads) {
+  std::vector<LeftOut> all(list.assets.size());
+  parallelFor(threads, all.size(), [&](std::size_t n) {
+    all[n] = {list.assets[n].name, Search().in(list.assets[n].job)};
+  });
+  // What is generated is made in packs that are not there yet.
+  if (list.episodes && !std::holds_alternative<EpisodeGenerationJob>(list.episodes->job)) {
+    all.push_back({list.episodes->name, Search().in(list.episodes->job)});
+  }
+  std::erase_if(all, [](const LeftOut& one) { return one.reasons.empty(); });
+  return all;
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,226 @@
+#include "build/make_pack.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <system_error>
+#include <utility>
+
+#include "galactic/bake/source_file.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// This program's own content: another build may bake other bytes.
+Result<std::string> programDigest(FileDigests& digests) {
+  const auto program = digests.of("/proc/self/exe");
+  if (!program) return tl::unexpected(program.error());
+  return fmt::format("{:016x}{:016x}", program->hash_high, program->hash_low);
+}
+
+std::string relativeName(const fs::path& file, const fs::path& folder) {
+  std::error_code problem;
+  return fs::absolute(file, problem).lexically_normal().lexically_relative(folder).generic_string();
+}
+
+/// What the bake read, for the cache: with the content that the readers saw.
+Result<BakeInputs> inputsOf(const ReadLog& log, const PackJob& pack, FileDigests& digests) {
+  BakeInputs inputs;
+  inputs.folder = pack.folder;
+  for (const ReadFile& file : log.files()) {
+    auto digest = file.content ? Result<SourceFile>(*file.content) : digests.of(file.path);
+    if (!digest) return tl::unexpected(digest.error());
+    digest->name = relativeName(file.path, pack.folder);
+    inputs.files.push_back(std::move(*digest));
+  }
+  std::ranges::sort(inputs.files, {}, &SourceFile::name);
+  const auto same_name = [](const SourceFile& a, const SourceFile& b) { return a.name == b.name; };
+  inputs.files.erase(std::unique(inputs.files.begin(), inputs.files.end(), same_name),
+                     inputs.files.end());
+  for (const fs::path& file : log.absent()) {
+    inputs.absent.push_back(relativeName(file, pack.folder));
+  }
+  return inputs;
+}
+
+Result<void> makeFolder(const fs::path& folder) {
+  std::error_code problem;
+  if (!folder.empty()) fs::create_directories(folder, problem);
+  if (!problem) return {};
+  return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + problem.message());
+}
+
+/// Where a texture pack that scenes share is kept.
+struct TexturePlaces {
+  fs::path used;
+  fs::path kept;
+};
+
+fs::path texturesOf(const PackJob& pack) {
+  const auto* scene = std::get_if<SceneJob>(&pack.job);
+  return scene == nullptr ? fs::path() : scene->draw.shared_textures;
+}
+
+TexturePlaces placesOf(const std::string& hash, const PackJob& pack, const BuildTools& tools) {
+  const std::string name = hash + ".pack";
+  return {.used = texturesOf(pack) / name, .kept = tools.cache->folder() / "textures" / name};
+}
+
+/// Whether the texture packs are there, or put there, that a bake of before shared.
+bool hasTextures(const PackJob& pack, const BakeRecord& record, const BuildTools& tools) {
+  if (record.textures.empty()) return true;
+  if (!makeFolder(texturesOf(pack))) return false;
+  return std::ranges::all_of(record.textures, [&](const std::string& hash) {
+    const auto [used, kept] = placesOf(hash, pack, tools);
+    if (tools.textures.isWhole(used)) return true;
+    return tools.textures.isWhole(kept) && linkOrCopy(kept, used).has_value();
+  });
+}
+
+/// Keeps what a bake shared, for worlds in other folders.
+Result<void> keepTextures(const PackJob& pack, const BakeRecord& record, const BuildTools& tools) {
+  for (const std::string& hash : record.textures) {
+    const auto [used, kept] = placesOf(hash, pack, tools);
+    if (auto made = makeFolder(kept.parent_path()); !made) return made;
+    if (tools.textures.isWhole(kept)) continue;
+    if (auto linked = linkOrCopy(used, kept); !linked) return linked;
+  }
+  return {};
+}
+
+/// A pack on its way from its job to its outcome.
+class Making {
+ public:
+  Making(const PackJob& pack, const BuildTools& tools) : pack_(pack), tools_(tools) {
+    outcome_.name = pack.name;
+  }
+
+  Result<void> make(unsigned jobs) {
+    if (tools_.options.mode == BuildMode::kBake) {
+      // A single pack is written where its folder is.
+      const bool is_planned = !pack_.folder.empty();
+      if (is_planned) {
+        if (auto made = makeFolder(pack_.output.parent_path()); !made) return made;
+      }
+    }
+    if (tools_.cache == nullptr) return bakeAnew(jobs);
+    const auto program = programDigest(tools_.digests);
+    if (!program) return tl::unexpected(program.error());
+    key_ = fmt::format("{}program {}\npack {}\n", keyOf(pack_.job, pack_.folder), *program,
+                       pack_.name);
+    auto cached = takeFromCache();
+    if (!cached) return tl::unexpected(cached.error());
+    return *cached ? Result<void>{} : bakeAnew(jobs);
+  }
+
+  [[nodiscard]] PackOutcome& outcome() { return outcome_; }
+  [[nodiscard]] const Made* made() const { return made_ ? &*made_ : nullptr; }
+
+ private:
+  /// Whether the pack was made before; it is then put where it belongs.
+  Result<bool> takeFromCache() {
+    auto found = tools_.cache->find(key_, pack_.folder, tools_.digests);
+    if (!found || !hasTextures(pack_, found->record, tools_)) return false;
+    if (auto linked = linkOrCopy(found->pack, pack_.output); !linked) {
+      return tl::unexpected(linked.error());
+    }
+    outcome_.state = PackState::kUnchanged;
+    outcome_.record = std::move(found->record);
+    return true;
+  }
+
+  /// Bakes the pack and keeps it in the cache.
+  Result<void> bakeAnew(unsigned jobs) {
+    Job job = pack_.job;
+    setThreads(job, jobs);
+    // Before they are read: should one change meanwhile, the pack is found to be old the next time.
+    if (tools_.cache != nullptr) {
+      for (const fs::path& file : filesOf(job)) (void)tools_.digests.of(file);
+    }
+    BakeContext context{
+        .output = pack_.output,
+        .log = outcome_.log,
+        .show = [this](std::string_view item, std::string_view stage,
+                       double fraction) { tools_.observer.show(item, stage, fraction); },
+        .dry_run = tools_.options.mode != BuildMode::kBake,
+        .keep_going = tools_.options.keep_going};
+    auto made = bake(job, context);
+    if (!made) return tl::unexpected(made.error());
+    if (const auto* objects = std::get_if<ObjectSetOutcome>(&made->outcome)) {
+      outcome_.failures = objects->failures;
+      const bool is_made = tools_.options.keep_going && !objects->objects.empty();
+      if (!objects->failures.empty() && !is_made) {
+        outcome_.state = PackState::kFailed;
+        return {};
+      }
+    }
+    outcome_.state = PackState::kBaked;
+    outcome_.record = BakeRecord{.textures = sharedTexturesOf(*made),
+                                 .warnings = warningsOf(*made),
+                                 .report = tools_.observer.describe(*made)};
+    made_ = std::move(*made);
+    return keep();
+  }
+
+  Result<void> keep() {
+    if (tools_.cache == nullptr || !outcome_.failures.empty()) return {};
+    auto inputs = inputsOf(outcome_.log, pack_, tools_.digests);
+    if (!inputs) return tl::unexpected(inputs.error());
+    inputs->key = key_;
+    if (auto kept = keepTextures(pack_, *outcome_.record, tools_); !kept) return kept;
+    return tools_.cache->store(*inputs, pack_.output, *outcome_.record);
+  }
+
+  const PackJob& pack_;
+  const BuildTools& tools_;
+  PackOutcome outcome_;
+  std::string key_;
+  std::optional<Made> made_;
+};
+
+/// Where an input stands in messages of an error.
+fs::path inputOf(const PackJob& pack) {
+  const std::vector<fs::path> files = filesOf(pack.job);
+  return files.empty() ? pack.output : files.front();
+}
+
+}  // namespace
+
+PackOutcome makePack(const PackJob& pack, unsigned jobs, const BuildTools& tools) {
+  const auto start = std::chrono::steady_clock::now();
+  tools.observer.begin(pack);
+  Making making(pack, tools);
+  auto done = making.make(jobs);
+  PackOutcome& outcome = making.outcome();
+  if (!done) {
+    outcome.state = PackState::kFailed;
+    outcome.record.reset();
+    outcome.failures.push_back({inputOf(pack), std::move(done.error())});
+  }
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  tools.observer.end(pack, outcome, outcome.isThere() ? making.made() : nullptr);
+  return std::move(outcome);
+}
+
+PackOutcome makeWorld(const PackJob& world, std::vector<LinkedPack>& linked,
+                      const BuildTools& tools) {
+  PackOutcome outcome{.name = world.name};
+  BakeContext context{.output = world.output, .log = outcome.log};
+  auto made = bake(world.job, context);
+  if (made) {
+    outcome.state = PackState::kBaked;
+    linked = std::get<WorldOutcome>(made->outcome).packs;
+  } else {
+    outcome.state = PackState::kFailed;
+    // Of what the packs lack together, no one of them is the place.
+    if (made.error().where.empty()) made.error().where = world.output.string();
+    outcome.failures.push_back({world.output, std::move(made.error())});
+  }
+  tools.observer.end(world, outcome, made ? &*made : nullptr);
+  return outcome;
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,47 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "galactic/bake/build.h"
+#include "galactic/bake/job_lists.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+/// Collects the packs of a world.
+class PackList {
+ public:
+  explicit PackList(const std::filesystem::path& world);
+
+  /// A pack NAME.pack below the world's folder; `input` is the job's main one.
+  PackJob& add(const std::string& name, Job job, const std::filesystem::path& input);
+  void setEpisodes(EpisodeImportJob job);
+  /// In the packs of scenes, objects and robot.
+  void setEpisodes(EpisodeGenerationJob job);
+  void setTask(std::vector<OptionText> task);
+  void leaveOut(LeftOut scene) { list_.left_out.push_back(std::move(scene)); }
+  void warn(const std::string& warning) { list_.warnings.push_back(warning); }
+  /// Where the packs go.
+  [[nodiscard]] const std::filesystem::path& folder() const { return list_.folder; }
+  /// Whether a pack of this name is there.
+  [[nodiscard]] bool has(const std::string& name) const;
+
+  /// The list, sorted. Fails with kInvalidInput where two packs have one name or no scene is left.
+  [[nodiscard]] Result<JobList> finish();
+
+ private:
+  [[nodiscard]] Result<void> checkScenes() const;
+  void completeEpisodes();
+
+  JobList list_;
+};
+
+/// Adds a pack for each wanted scene of the dataset, and one for each movable object in them.
+[[nodiscard]] Result<void> addDataset(const DatasetJobs& dataset, PackList& packs);
+
+/// The triangles of the scenes among `assets`, and the receptacles of those of a dataset, read
+/// again from what their packs are made of: a pack holds neither, and may come from the cache.
+[[nodiscard]] SceneDetailSource sceneDetails(const std::vector<PackJob>& assets);
+
+}  // namespace galactic::bake

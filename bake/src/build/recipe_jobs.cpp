@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "build/pack_list.h"
+#include "galactic/bake/world_recipe.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where files of a recipe are looked for.
+std::vector<fs::path> rootsOf(const RecipeSource& source) {
+  const fs::path beside = source.recipe.parent_path();
+  std::vector<fs::path> roots{beside.empty() ? fs::path(".") : beside};
+  if (!source.data.empty()) roots.push_back(source.data);
+  return roots;
+}
+
+tl::unexpected<Error> located(Error error, const std::string& place) {
+  error.where = error.where.empty() ? place : place + ": " + error.where;
+  return tl::unexpected<Error>(std::move(error));
+}
+
+/// Makes jobs of the tables of a recipe.
+class RecipeJobs {
+ public:
+  RecipeJobs(const RecipeSource& source, const WorldRecipe& recipe, PackList& packs)
+      : source_(source), recipe_(recipe), packs_(packs), roots_(rootsOf(source)) {}
+
+  Result<void> add() {
+    for (const RecipeAssets& assets : recipe_.scenes) {
+      if (auto added = addScenes(assets); !added) return added;
+    }
+    for (const RecipeAssets& assets : recipe_.objects) {
+      if (auto added = addObjects(assets); !added) return added;
+    }
+    if (recipe_.robot) {
+      if (auto added = addRobot(*recipe_.robot); !added) return added;
+    }
+    return recipe_.episodes ? addEpisodes(*recipe_.episodes) : Result<void>{};
+  }
+
+ private:
+  Result<void> addScenes(const RecipeAssets& assets) {
+    const auto inputs = inputsOf(assets);
+    if (!inputs) return tl::unexpected(inputs.error());
+    DatasetJobs dataset;
+    SceneJob scene;
+    auto read = assets.is_dataset ? readOptions(assets, "a dataset", dataset)
+                                  : readOptions(assets, "--as scene", scene);
+    if (!read) return read;
+    for (const fs::path& input : *inputs) {
+      if (!assets.is_dataset) {
+        scene.input = input;
+        packs_.add("scenes/" + input.stem().string(), scene, input);
+        continue;
+      }
+      dataset.input = input;
+      auto added = addDataset(dataset, packs_);
+      if (!added && added.error().where == "scenes") return located(added.error(), assets.place);
+      if (!added) return added;
+    }
+    return {};
+  }
+
+  Result<void> addObjects(const RecipeAssets& assets) {
+    const auto inputs = inputsOf(assets);
+    if (!inputs) return tl::unexpected(inputs.error());
+    ObjectJob job;
+    if (auto read = readOptions(assets, "--as object", job); !read) return read;
+    const auto objects = findObjects(*inputs);
+    if (!objects) return tl::unexpected(objects.error());
+    for (const ObjectInput& object : *objects) {
+      job.inputs = {object.path};
+      job.name = object.name;
+      packs_.add("objects/" + object.name, job, object.path);
+    }
+    return {};
+  }
+
+  Result<void> addRobot(const RecipeAssets& assets) {
+    const auto inputs = inputsOf(assets);
+    if (!inputs) return tl::unexpected(inputs.error());
+    RobotJob job;
+    if (auto read = readOptions(assets, "--as robot", job); !read) return read;
+    if (inputs->size() != 1) {
+      return fail(ErrorCode::kInvalidInput, assets.place,
+                  fmt::format("[robot] names {} files, one URDF is wanted", inputs->size()));
+    }
+    job.input = inputs->front();
+    packs_.add("robot", job, job.input);
+    return {};
+  }
+
+  Result<void> addEpisodes(const RecipeAssets& assets) {
+    // Those that are generated are made in packs that do not exist yet.
+    if (assets.inputs.empty()) {
+      EpisodeGenerationJob job;
+      if (auto read = readOptions(assets, "generated episodes", job); !read) return read;
+      packs_.setEpisodes(std::move(job));
+      return {};
+    }
+    const auto inputs = inputsOf(assets);
+    if (!inputs) return tl::unexpected(inputs.error());
+    EpisodeImportJob job;
+    if (auto read = readOptions(assets, "imported episodes", job); !read) return read;
+    if (inputs->size() != 1) {
+      return fail(ErrorCode::kInvalidInput, assets.place,
+                  fmt::format("[episodes] names {} files, one is wanted", inputs->size()));
+    }
+    job.input = inputs->front();
+    packs_.setEpisodes(std::move(job));
+    return {};
+  }
+
+  [[nodiscard]] Result<std::vector<fs::path>> inputsOf(const RecipeAssets& assets) const {
+    auto inputs = findInputs(assets.inputs, roots_);
+    if (!inputs) return located(inputs.error(), assets.place);
+    return inputs;
+  }
+
+  /// The options of a table, and before them those for all tables, which episodes have nothing of.
+  template <class Target>
+  Result<void> readOptions(const RecipeAssets& assets, std::string_view what, Target& target) {
+    constexpr bool kIsEpisodes =
+        std::is_same_v<Target, EpisodeGenerationJob> || std::is_same_v<Target, EpisodeImportJob>;
+    std::vector<GivenOption> given;
+    if (!kIsEpisodes) given = recipe_.common;
+    given.insert(given.end(), assets.options.begin(), assets.options.end());
+    for (const GivenOption& option : given) {
+      if (!source_.is_of_command_line || !source_.is_of_command_line(option.name)) continue;
+      return fail(ErrorCode::kInvalidInput, option.place,
+                  "belongs on the command line, not into a recipe; leave it out");
+    }
+    OptionReader reader(given, [this](const fs::path& path) -> Result<fs::path> {
+      const auto found = findInputs({path.string()}, roots_);
+      if (!found) return tl::unexpected(found.error());
+      return found->front();
+    });
+    visitOptions(target, reader);
+    std::vector<std::string> known = optionNames();
+    known.insert(known.end(), {"files", "dataset", "scenes", "missing"});
+    if (auto finished = reader.finish(what, known); !finished) return finished;
+    return checkTogether(target, reader);
+  }
+
+  const RecipeSource& source_;
+  const WorldRecipe& recipe_;
+  PackList& packs_;
+  std::vector<fs::path> roots_;
+};
+
+}  // namespace
+
+Result<JobList> jobsOfRecipe(const RecipeSource& source, const fs::path& world) {
+  const auto recipe = readWorldRecipe(source.recipe);
+  if (!recipe) return tl::unexpected(recipe.error());
+  PackList packs(world);
+  packs.setTask(recipe->task);
+  if (auto added = RecipeJobs(source, *recipe, packs).add(); !added) {
+    return tl::unexpected(added.error());
+  }
+  return packs.finish();
+}
+
+}  // namespace galactic::bake

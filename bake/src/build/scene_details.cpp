@@ -1,0 +1,51 @@
+#include <map>
+#include <string>
+#include <utility>
+
+#include "asset/asset_parts.h"
+#include "build/pack_list.h"
+#include "galactic/bake/mesh_import.h"
+#include "galactic/bake/triangle_mesh.h"
+
+namespace galactic::bake {
+namespace {
+
+Result<SourceAsset> readScene(const SceneJob& job, SceneDetails& details) {
+  if (!job.instance) return importMesh(job.input, job.import);
+  auto composed = job.instance->dataset->compose(job.instance->name, *job.instance->meshes);
+  if (!composed) return tl::unexpected(composed.error());
+  details.receptacles = std::move(composed->receptacles);
+  return std::move(composed->scene);
+}
+
+Result<SceneDetails> readDetails(const SceneJob& job) {
+  SceneDetails details;
+  const auto asset = readScene(job, details);
+  if (!asset) return tl::unexpected(asset.error());
+  auto clean = placeAndClean(*asset);
+  if (!clean) {
+    return fail(clean.error().code, inFile(job.input, clean.error().where), clean.error().message);
+  }
+  details.mesh = std::move(clean->mesh);
+  return details;
+}
+
+std::string sceneName(const SceneJob& job) {
+  return job.name.empty() ? job.input.stem().string() : job.name;
+}
+
+}  // namespace
+
+SceneDetailSource sceneDetails(const std::vector<PackJob>& assets) {
+  std::map<std::string, SceneJob, std::less<>> scenes;
+  for (const PackJob& pack : assets) {
+    if (const auto* job = std::get_if<SceneJob>(&pack.job)) scenes.emplace(sceneName(*job), *job);
+  }
+  return [scenes = std::move(scenes)](std::string_view name) -> Result<SceneDetails> {
+    const auto found = scenes.find(name);
+    if (found == scenes.end()) return SceneDetails{};
+    return readDetails(found->second);
+  };
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,82 @@
+#include <array>
+#include <string_view>
+
+#include "galactic/bake/job_lists.h"
+
+namespace galactic::bake {
+namespace {
+
+/// An option that says nothing unless another one is given.
+struct Need {
+  std::string_view option;
+  std::string_view other;
+  const char* message;
+};
+constexpr std::array<Need, 2> kNeeds{
+    {{"held-out", "split", "is about `split`; add it, or leave this out"},
+     {"split-seed", "split", "is about `split`; add it, or leave this out"}}};
+
+constexpr std::array<std::string_view, 4> kDrawn{"render-error", "texture-size", "texture-format",
+                                                 "lighting"};
+
+Result<void> checkDrawing(const DrawOptions& draw, const OptionReader& given) {
+  for (const std::string_view option : kDrawn) {
+    if (draw.wanted || !given.isGiven(option)) continue;
+    return given.refuse(option, "does not go with `no-render-meshes`; leave one of them out");
+  }
+  return {};
+}
+
+Result<void> checkOne(const SceneJob& job, const OptionReader& given) {
+  const bool has_components = given.isGiven("keep-components");
+  if (has_components && given.isGiven("seed")) {
+    return given.refuse("keep-components",
+                        "does not go with `seed`, whose free parts are the room; leave one of "
+                        "them out");
+  }
+  if (job.grids.free_space.keep == Keep::kAll && (has_components || given.isGiven("seed"))) {
+    return given.refuse(has_components ? "keep-components" : "seed",
+                        "says what the room is, and `keep` all stores everything; leave one of "
+                        "them out");
+  }
+  return checkDrawing(job.draw, given);
+}
+
+/// A collection's boxes stand in the frame of the mesh files.
+Result<void> checkOne(const ObjectJob& job, const OptionReader& given) {
+  if (!job.collection.empty() && (!job.import.up || job.import.transform)) {
+    return given.refuse("collection",
+                        "needs the up axis of the meshes, in whose frame its boxes stand: give "
+                        "`up`, and no `transform`");
+  }
+  return checkDrawing(job.draw, given);
+}
+
+Result<void> checkOne(const RobotJob& job, const OptionReader& given) {
+  return checkDrawing(job.draw, given);
+}
+
+template <class Other>
+Result<void> checkOne(const Other& /*job*/, const OptionReader& /*given*/) {
+  return {};
+}
+
+}  // namespace
+
+Result<void> checkTogether(const Job& job, const OptionReader& given) {
+  for (const Need& need : kNeeds) {
+    if (given.isGiven(need.option) && !given.isGiven(need.other)) {
+      return given.refuse(need.option, need.message);
+    }
+  }
+  return std::visit([&](const auto& one) { return checkOne(one, given); }, job);
+}
+
+Result<void> checkTogether(const DatasetJobs& dataset, const OptionReader& given) {
+  if (given.isGiven("seed")) {
+    return given.refuse("seed", "is a point of one scene, and a dataset has many; leave it out");
+  }
+  return checkOne(dataset.scene, given);
+}
+
+}  // namespace galactic::bake

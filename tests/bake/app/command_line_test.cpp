@@ -1,0 +1,284 @@
+// Every option of the tool, with everything that is no value of it.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <regex>
+#include <set>
+
+#include "bake/options/option_walk.h"
+#include "command.h"
+#include "support/scratch_folder.h"
+
+namespace galactic::bake::command_line_test {
+namespace {
+
+using test::WalkedOption;
+using testing::HasSubstr;
+using testing::StartsWith;
+using Texts = std::vector<std::string>;
+
+const Texts kScene{"room.glb"};
+const Texts kObject{"--as", "object", "mug.glb"};
+const Texts kRobot{"robot.urdf"};
+const Texts kImport{"home.episode_set.json"};
+const Texts kGenerate{"--as", "episodes", "home.pack"};
+const Texts kLink{"--as", "world", "a.pack", "b.pack"};
+const Texts kDataset{"home.scene_dataset_config.json"};
+const Texts kRecipe{"home.toml"};
+
+/// What a command line made: a command, or an exit code and what stood on stderr.
+struct Parsed {
+  ParsedCommand command;
+  std::string said;
+
+  [[nodiscard]] bool isRefused() const { return std::holds_alternative<int>(command); }
+};
+
+Parsed parse(const Texts& arguments) {
+  std::vector<const char*> argv{"galactic-bake"};
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  testing::internal::CaptureStderr();
+  Parsed parsed{parseCommandLine(static_cast<int>(argv.size()), argv.data()), {}};
+  std::fflush(stderr);
+  parsed.said = testing::internal::GetCapturedStderr();
+  return parsed;
+}
+
+Texts with(Texts arguments, const std::string& more) {
+  arguments.push_back(more);
+  return arguments;
+}
+
+/// Options, and arguments with which they make sense.
+struct Walked {
+  Texts base;
+  std::vector<WalkedOption> options;
+};
+
+const std::vector<Walked>& allOptions() {
+  static const std::vector<Walked> all{
+      {kScene, test::walk(RunOptions{})},        {kScene, test::walk(SceneJob{})},
+      {kObject, test::walk(ObjectJob{})},        {kRobot, test::walk(RobotJob{})},
+      {kImport, test::walk(EpisodeImportJob{})}, {kGenerate, test::walk(EpisodeGenerationJob{})},
+      {kLink, test::walk(WorldJob{})},           {kDataset, test::walk(DatasetCommand{})},
+      {kDataset, test::walk(PlanOptions{})},     {kRecipe, test::walk(RecipeCommand{})}};
+  return all;
+}
+
+/// What no option of a kind takes.
+const Texts& badValues(OptionKind kind) {
+  static const Texts no_switch{"maybe", "2.5", "nan"};
+  static const Texts no_choice{"", "nonsense", "ALL", "1", "nan", "-1"};
+  static const Texts no_whole{
+      "",    "nan", "inf", "-inf", "-1",  "-0",  "010", "1.5",
+      "1e2", "+1",  "0x1", "abc",  "1,2", "1 2", "--1", "99999999999999999999999"};
+  static const Texts no_number{"",    "nan", "-nan", "inf", "-inf", "1e999", "1e300", "-1",
+                               "abc", "1,2", "1 2",  " ",   "--1",  "0x10",  "+1"};
+  static const Texts no_numbers{"",     "nan", "inf", "-inf", "1e999", "1e300", "abc",
+                                "1,,2", ",1",  "1,",  "1 2",  " ",     "0x10",  "1,nan,2"};
+  static const Texts no_text{""};
+  static const Texts no_pair{"", "a", "=b", "a=", "="};
+  switch (kind) {
+    case OptionKind::kSwitch:
+      return no_switch;
+    case OptionKind::kChoice:
+      return no_choice;
+    case OptionKind::kWhole:
+      return no_whole;
+    case OptionKind::kNumber:
+      return no_number;
+    case OptionKind::kNumbers:
+      return no_numbers;
+    case OptionKind::kNamedText:
+    case OptionKind::kNamedPath:
+      return no_pair;
+    case OptionKind::kText:
+    case OptionKind::kPath:
+      break;
+  }
+  return no_text;
+}
+
+/// PROGRAM: WHERE: MESSAGE, in one line.
+void expectRefusal(const Parsed& parsed, const std::string& option) {
+  ASSERT_TRUE(parsed.isRefused());
+  EXPECT_EQ(std::get<int>(parsed.command), kExitUsage);
+  EXPECT_THAT(parsed.said, StartsWith("galactic-bake: "));
+  EXPECT_THAT(parsed.said, HasSubstr("--" + option));
+  EXPECT_EQ(std::count(parsed.said.begin(), parsed.said.end(), '\n'), 1) << parsed.said;
+}
+
+TEST(CommandLine, RefusesWhatIsNoValueOfAnOption) {
+  std::size_t refused = 0;
+  for (const auto& [base, options] : allOptions()) {
+    for (const WalkedOption& option : options) {
+      for (const std::string& value : badValues(option.kind)) {
+        SCOPED_TRACE(fmt::format("--{}={}", option.name, value));
+        expectRefusal(parse(with(base, fmt::format("--{}={}", option.name, value))), option.name);
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 500U);
+}
+
+TEST(CommandLine, RefusesOptionsThatAreGivenTwice) {
+  std::size_t refused = 0;
+  for (const auto& [base, options] : allOptions()) {
+    for (const WalkedOption& option : options) {
+      if (option.repeats || option.kind == OptionKind::kSwitch) continue;
+      SCOPED_TRACE(option.name);
+      const std::string once = fmt::format("--{}=1", option.name);
+      const Parsed parsed = parse(with(with(base, once), once));
+      expectRefusal(parsed, option.name);
+      EXPECT_THAT(parsed.said, HasSubstr("is given twice; give it once"));
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 40U);
+}
+
+TEST(CommandLine, TakesAValueOfEveryOption) {
+  const std::set<std::string> needs_another{"held-out", "split-seed", "tolerance", "seed",
+                                            "collection"};
+  for (const auto& [base, options] : allOptions()) {
+    for (const WalkedOption& option : options) {
+      if (needs_another.contains(option.name)) continue;
+      SCOPED_TRACE(option.name);
+      const bool is_taken = std::ranges::any_of(test::candidateValues(), [&](const auto& value) {
+        return !parse(with(base, fmt::format("--{}={}", option.name, value))).isRefused();
+      });
+      EXPECT_TRUE(is_taken);
+    }
+  }
+}
+
+/// All long options of --help.
+std::set<std::string> optionsOfHelp() {
+  testing::internal::CaptureStdout();
+  const Parsed parsed = parse({"--help"});
+  std::fflush(stdout);
+  const std::string help = testing::internal::GetCapturedStdout();
+  EXPECT_EQ(std::get<int>(parsed.command), 0);
+  std::set<std::string> options;
+  const std::regex option(R"((?:^|\n)\s+(?:-\w,)?--([a-z-]+))");
+  for (std::sregex_iterator at(help.begin(), help.end(), option), end; at != end; ++at) {
+    options.insert((*at)[1]);
+  }
+  return options;
+}
+
+TEST(CommandLine, ExplainsEveryOptionInHelp) {
+  std::set<std::string> names{"as", "config", "help", "print-recipe", "version"};
+  for (const auto& [base, options] : allOptions()) {
+    for (const WalkedOption& option : options) names.insert(option.name);
+  }
+  EXPECT_EQ(optionsOfHelp(), names);
+}
+
+TEST(CommandLine, RefusesWhatWouldBeIgnored) {
+  struct Pair {
+    Texts arguments;
+    std::string said;
+  };
+  for (const Pair& pair : std::vector<Pair>{
+           {{"room.glb", "--seed", "0,1,0", "--keep-components", "2"},
+            "--keep-components: does not go with --seed"},
+           {{"room.glb", "--keep", "all", "--seed", "0,1,0"},
+            "--seed: says what the room is, and --keep all stores"},
+           {{"room.glb", "--keep", "all", "--keep-components", "2"},
+            "--keep-components: says what the room is, and --keep all"},
+           {{"room.glb", "--tolerance", "0.1"}, "--tolerance: is about --check"},
+           {{"room.glb", "--no-render-meshes", "--texture-size", "64"},
+            "--texture-size: does not go with --no-render-meshes"},
+           {{"robot.urdf", "--obb", "min"}, "--obb: does not go with --as robot"},
+           {{"robot.urdf", "--no-support"}, "--no-support: does not go with --as robot"},
+           {{"--as", "world", "a.pack", "b.pack", "--shard", "1/2"},
+            "--shard: does not go with --as world of packs"},
+           {{"--as", "world", "a.pack", "--memory", "2"}, "--memory: does not go with --as world"},
+           {{"home.scene_dataset_config.json", "--data", "dir"},
+            "--data: does not go with --as dataset"},
+           {{"home.toml", "--eps", "0.1"}, "--eps: does not go with a world's recipe"},
+           {{"--as", "episodes", "a.pack", "--held-out", "0.1"}, "--held-out: is about --split"},
+           {{"--as", "episodes", "a.pack", "--split-seed", "3"}, "--split-seed: is about --split"},
+           {{"home.scene_dataset_config.json", "--seed", "0,1,0"}, "--seed: is a point of one"},
+           {{"room.glb", "--quiet", "--verbose"}, "--verbose: does not go with --quiet"},
+           {{"room.glb", "--as", "scene", "--as", "scene"}, "--as: is given twice"},
+           {{"room.glb", "--as", "house"}, "--as: is \"house\", one of scene, object"},
+           {{"home.episode_set.json", "--start-joints", "a,,b"},
+            "--start-joints: has an empty name"}}) {
+    const Parsed parsed = parse(pair.arguments);
+    ASSERT_TRUE(parsed.isRefused()) << pair.said;
+    EXPECT_THAT(parsed.said, StartsWith("galactic-bake: " + pair.said));
+  }
+}
+
+TEST(CommandLine, SuggestsTheNearestOption) {
+  EXPECT_THAT(parse({"room.glb", "--radi", "0.1"}).said, HasSubstr("did you mean '--radii'?"));
+}
+
+/// The keys of all jobs of a command.
+std::set<std::string> keysOf(const Parsed& parsed) {
+  std::set<std::string> keys;
+  if (parsed.isRefused()) return keys;
+  const auto list = jobsOf(std::get<BakeCommand>(parsed.command));
+  EXPECT_TRUE(list.has_value()) << list.error().where << ": " << list.error().message;
+  if (!list) return keys;
+  for (const PackJob& pack : list->assets) keys.insert(keyOf(pack.job, pack.folder));
+  return keys;
+}
+
+TEST(Recipes, TakeNoOptionsOfTheCommandLine) {
+  const test::ScratchFolder folder;
+  folder.write("a.glb", "a mesh");
+  std::size_t refused = 0;
+  for (const WalkedOption& option : test::walk(RunOptions{})) {
+    for (const char* table : {"", "[bake]\n"}) {
+      const std::string text =
+          fmt::format("[[scenes]]\nfiles = \"a.glb\"\n{}{} = \"1\"\n", table, option.name);
+      const auto list = jobsOf(*commandFrom({folder.write("w.toml", text).string()}));
+      ASSERT_FALSE(list.has_value()) << option.name;
+      EXPECT_THAT(list.error().where, testing::EndsWith(": " + option.name));
+      EXPECT_EQ(list.error().message,
+                "belongs on the command line, not into a recipe; leave it out");
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 15U);
+}
+
+/// How the tool runs is in no key of the cache.
+TEST(CommandLine, KeepsTheKeysOfJobsWhateverTheRunIsLike) {
+  const test::ScratchFolder folder;
+  folder.write("room.glb", "a mesh");
+  const std::string recipe =
+      folder.write("home.toml", "[[scenes]]\nfiles = \"room.glb\"\n").string();
+  std::size_t walked = 0;
+  for (const auto& options :
+       {test::walk(RunOptions{}), test::walk(PlanOptions{}), test::walk(RecipeCommand{})}) {
+    for (const WalkedOption& option : options) {
+      // Where the packs go, and what needs another option.
+      if (option.name == "tolerance") continue;
+      SCOPED_TRACE(option.name);
+      const auto before = keysOf(parse({recipe}));
+      ASSERT_EQ(before.size(), 1U);
+      bool is_taken = false;
+      for (const std::string& value : test::candidateValues()) {
+        const std::string text = option.name == "out" ? "some.pack" : value;
+        const Parsed parsed = parse({recipe, fmt::format("--{}={}", option.name, text)});
+        if (parsed.isRefused()) continue;
+        is_taken = true;
+        EXPECT_EQ(keysOf(parsed), before) << text;
+      }
+      EXPECT_TRUE(is_taken);
+      ++walked;
+    }
+  }
+  EXPECT_GE(walked, 12U);
+}
+
+}  // namespace
+}  // namespace galactic::bake::command_line_test
