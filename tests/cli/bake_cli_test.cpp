@@ -33,8 +33,8 @@ TEST_F(BakeCli, WaitsForNoPipeWithOptions) {
   for (const std::string& file : {path("pipe.toml").string(), std::string("/dev/zero")}) {
     const ProgramRun refused = run({"room.obj", "--config", file});
     EXPECT_EQ(refused.exit_code, 2);
-    EXPECT_EQ(refused.err, "galactic-bake: --config: " + file +
-                               " is not a regular file; give the path of a file\n");
+    EXPECT_EQ(refused.err,
+              "galactic-bake: " + file + ": is not a regular file; give the path of a file\n");
   }
 }
 
@@ -105,13 +105,15 @@ TEST_F(BakeCli, RefusesAConfigFileThatIsNone) {
   };
   for (const Fault& fault : std::vector<Fault>{
            {"[a\n", "galactic-bake: bake.toml:1: it is not TOML: "},
-           {"radii = [0.05]\n[a]\nradii = [0.1]\n", "bake.toml:2: a: is a table or a list of lists"},
+           {"radii = [0.05]\n[a]\nradii = [0.1]\n",
+            "bake.toml:2: a: is a table or a list of lists"},
            {"\nspacin = 0.04\n",
             "galactic-bake: bake.toml:2: spacin: is no option; did you mean 'spacing'?\n"},
            {"radii = [[[0.05]]]\n", "bake.toml:1: radii: is a table or a list of lists"},
            {"radii = [0.05]\nradii = [0.1]\n", "bake.toml:2: it is not TOML: "},
            {"version = true\n", "bake.toml:1: version: belongs on the command line"},
-           {"spacing = nan\n", "galactic-bake: bake.toml:1: spacing: found nan, wanted a number above 0"},
+           {"spacing = nan\n",
+            "galactic-bake: bake.toml:1: spacing: found nan, wanted a number above 0"},
            {"jobs = -1\n", "galactic-bake: bake.toml:1: jobs: found -1, wanted a whole number"},
            {"keep-components = 1.5\n", "keep-components: found 1.5, wanted a whole number"}}) {
     write("bake.toml", fault.text);

@@ -71,7 +71,7 @@ TEST_F(EpisodeCli, ImportsASetIntoAPackOfItsName) {
   const Names names = namesIn("tidy.pack");
   EXPECT_EQ(names.set, "tidy");
   EXPECT_EQ(names.episodes, 2U);
-  EXPECT_THAT(names.options, ElementsAre("as=episodes", "start-joints=pan,lift"));
+  EXPECT_THAT(names.options, ElementsAre("as=episodes", "start-joints=pan,lift", "targets=first"));
   EXPECT_THAT(names.sources, ElementsAre("tidy.episode_set.json"));
 }
 
@@ -92,7 +92,7 @@ TEST_F(EpisodeCli, KeepsAndRenamesWhatItIsToldTo) {
   EXPECT_THAT(names.scenes, ElementsAre("kitchen"));
   EXPECT_THAT(names.options,
               ElementsAre("as=episodes", "only=good.txt", "scene-name=a_room=kitchen",
-                          "start-joints=pan,lift", "object-up=y"));
+                          "start-joints=pan,lift", "object-up=y", "targets=first"));
   EXPECT_THAT(names.sources, ElementsAre("tidy.episode_set.json", "good.txt"));
 }
 
@@ -203,7 +203,9 @@ TEST_F(EpisodeCli, ExplainsEveryRefusal) {
       {{set, "--object-up", "w"}, 1, "--object-up: is \"w\", one of x, y, z"},
       {{set, "--count", "5"}, 1, "--count: does not go with --as episodes of published episodes"},
       {{set, "--seed", "5"}, 1, "--seed: does not go with --as episodes of published episodes"},
-      {{set, "--radii", "0.05"}, 1, "--radii: does not go with --as episodes of published episodes; leave it out"},
+      {{set, "--radii", "0.05"},
+       1,
+       "--radii: does not go with --as episodes of published episodes; leave it out"},
       {{set, "--up", "z"}, 1, "--up: does not go with --as episodes"},
       {{set, "--recipe", "x"}, 1, "--recipe: does not go with --as episodes"},
       {{set, "--as", "scene", "--only", "bad.txt"}, 1, "--only: does not go with --as scene"},

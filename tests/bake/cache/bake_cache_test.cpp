@@ -247,7 +247,7 @@ TEST_F(Cache, ExplainsThatItCannotStore) {
   const auto kept = blocked.store(inputs(), at("out/room.pack"), recordOf("{}"));
   ASSERT_FALSE(kept.has_value());
   EXPECT_EQ(kept.error().code, ErrorCode::kIo);
-  EXPECT_THAT(kept.error().message, testing::HasSubstr("give another --cache"));
+  EXPECT_THAT(kept.error().message, testing::HasSubstr("give another `cache`"));
   const auto no_pack = cache_.store(inputs(), at("out/none.pack"), recordOf("{}"));
   ASSERT_FALSE(no_pack.has_value());
   EXPECT_EQ(no_pack.error().code, ErrorCode::kIo);

@@ -177,7 +177,7 @@ TEST_F(WorldRecipeFile, RefusesEachMistakeWithItsLine) {
 }
 
 TEST_F(WorldRecipeFile, RefusesValuesThatAreNone) {
-  for (const char* value : {"[]", "[{ a = 1 }]", "[[[1]]]", "{ a = [1] }", "{}", "[[]]"}) {
+  for (const char* value : {"[{ a = 1 }]", "[[[1]]]", "{ a = [1] }", "{}", "[[]]"}) {
     const auto recipe = read(fmt::format("[[scenes]]\nfiles = \"a\"\nradii = {}\n", value));
     ASSERT_FALSE(recipe.has_value()) << value;
     EXPECT_EQ(recipe.error().where, place(3) + ": radii");
