@@ -249,7 +249,7 @@ TEST_F(PlanFaults, RefusesRecipesThatDoNotFit) {
   write("robots.toml", scene + "[robot]\nfiles = \"*.toml\"\n");
   write("task.toml", scene + "[task]\nsafe-drop = true\nepisode-steps = -1\n");
   write("mesh.toml", scene + "[episodes]\ngeometry = { apartment = \"none.glb\" }\n");
-  write("pack.toml", scene + "[episodes]\nfiles = \"x.json.gz\"\nobject-pack = \"none.pack\"\n");
+  write("pack.toml", scene + "[episodes]\nfiles = \"value.toml\"\nobject-pack = \"none.pack\"\n");
   write("lost.toml", scene + "[robot]\nfiles = \"option.toml\"\nrecipe = \"none.toml\"\n");
   const std::vector<Refusal> refusals{
       {{"twice.toml"}, 3, "would be scenes/apartment.pack, as "},
