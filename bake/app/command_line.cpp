@@ -12,7 +12,7 @@
 #include "command.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/toml_table.h"
-#include "galactic/exit_codes.h"
+#include "galactic/error.h"
 #include "galactic/nearest_name.h"
 #include "galactic/printable.h"
 #include "terminal.h"

@@ -1,6 +1,4 @@
 #pragma once
-#include <math.h>
-
 #include "sphere_set/curve/gap_gain.h"
 
 namespace galactic::bake::sphere_fit {
