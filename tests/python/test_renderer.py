@@ -131,7 +131,7 @@ def test_wrong_options_are_refused(simulator, options, error, message):
 def test_wrong_simulators_and_uses_are_refused(world, simulator):
     with pytest.raises(Error, match="without body_transforms"):
         Renderer(Simulator(world, envs=2, threads=1), **CAMERA)
-    with pytest.raises(TypeError, match="no galactic.Simulator"):
+    with pytest.raises(TypeError, match="not a galactic.Simulator"):
         Renderer(world)
     renderer = Renderer(simulator, **CAMERA)
     with pytest.raises(Error) as caught:

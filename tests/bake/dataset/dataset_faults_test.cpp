@@ -91,8 +91,8 @@ const std::vector<Fault>& instanceFaults() {
       {"ZeroRotation", kScene,
        R"({"stage_instance": {"template_name": "room", "rotation": [0, 0, 0, 0]}})",
        "stage_instance.rotation",
-       "it is a quaternion (w, x, y, z) of length 0, which turns to nowhere; [1, 0, 0, 0] is no "
-       "rotation"},
+       "it is a quaternion (w, x, y, z) of length 0, which turns to nowhere; [1, 0, 0, 0] leaves "
+       "it unrotated"},
       {"ZeroUniformScale", kScene,
        R"({"stage_instance": {"template_name": "room", "uniform_scale": 0}})",
        "stage_instance.uniform_scale", "a scale of 0 flattens it"},

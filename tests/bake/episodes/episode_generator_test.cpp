@@ -113,7 +113,7 @@ TEST(EpisodeGenerator, RefusesOptionsThatMakeNoSense) {
   EXPECT_THAT(refused([](Options& o) { o.target_to_goal.least = -1; }),
               HasSubstr("from target to goal from -1 to inf m is not a range"));
   EXPECT_THAT(refused([](Options& o) { o.target_to_goal.least = kNoNumber; }),
-              HasSubstr("is no range"));
+              HasSubstr("is not a range"));
   EXPECT_THAT(refused([](Options& o) {
                 o.start_to_target = {2, 1};
               }),

@@ -1,6 +1,7 @@
 // Every shader that a renderer can be made of, judged by the reference compiler of the language: a
 // driver of one vendor accepts what another one refuses.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstddef>
 #include <cstdlib>
@@ -61,8 +62,8 @@ class ShaderFiles : public ::testing::Test {
   [[nodiscard]] std::size_t count() const { return count_; }
 
  private:
-  std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) / "galactic_shader_files";
+  std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) /
+                                  ("galactic_shader_files_" + std::to_string(::getpid()));
   std::size_t count_ = 0;
 };
 
