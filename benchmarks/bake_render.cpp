@@ -1,7 +1,7 @@
 // Render meshes of mesh files and URDFs: triangles, clusters and bytes before and after, the error
 // that was measured, and seconds, as a markdown table.
 //
-//   bake_render [--error METRES] [--texture-size N] [--jobs N] FILE...
+//   bake_render [--error METERS] [--texture-size N] [--jobs N] FILE...
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -118,7 +118,7 @@ int main(int argc, char** argv) {
   galactic::bake::Options options;
   CLI::App app{"Bakes render meshes and prints their figures as a markdown table"};
   app.add_option("files", options.files, "Meshes and URDFs")->required();
-  app.add_option("--error", options.meshes.error, "Of the surface, metres")->capture_default_str();
+  app.add_option("--error", options.meshes.error, "Of the surface, meters")->capture_default_str();
   app.add_option("--texture-size", options.textures.largest, "Longest edge, texels")
       ->capture_default_str();
   app.add_option("-j,--jobs", options.meshes.jobs, "Threads")->capture_default_str();

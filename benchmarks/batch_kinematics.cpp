@@ -90,7 +90,7 @@ void batched(benchmark::State& state) {
     float values[kLanes];
   };
   std::vector<Lanes> scratch(simulation::frameScratchSize(model->nodes.size()) / kLanes);
-  std::vector<float> centres(3 * model->spheres.size() * kRobots);
+  std::vector<float> centers(3 * model->spheres.size() * kRobots);
   std::vector<float> grips(simulation::kGripStride * kRobots);
   const std::size_t body_floats = 12 * (model->nodes.size() + 1);
   std::vector<float> bodies(body_floats * kRobots);
@@ -98,12 +98,12 @@ void batched(benchmark::State& state) {
     for (std::size_t n = 0; n < kRobots; n += kLanes) {
       kernels.place(tables, {.pose = {x.data() + n, y.data() + n, z.data() + n, yaw.data() + n,
                                       variables.data() + n, kRobots},
-                             .body = {centres.data() + 3 * model->spheres.size() * n,
+                             .body = {centers.data() + 3 * model->spheres.size() * n,
                                       grips.data() + simulation::kGripStride * n,
                                       bodies.data() + body_floats * n},
                              .scratch = scratch.data()->values});
     }
-    benchmark::DoNotOptimize(centres.data());
+    benchmark::DoNotOptimize(centers.data());
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kRobots));

@@ -153,7 +153,7 @@ void askBatched(const Layouts& layouts, const QueryWorkload& workload, bool dist
   for (const QueryGroup& group : workload.groups) {
     const std::size_t wanted = distances ? group.count : 0;
     layouts.ours()[group.scene][group.grid].contact(
-        workload.centres(group),
+        workload.centers(group),
         {std::span(scratch.clearance).first(group.count), std::span(scratch.down).first(wanted),
          std::span(scratch.up).first(wanted)});
     benchmark::DoNotOptimize(scratch.clearance.data());

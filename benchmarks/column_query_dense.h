@@ -20,11 +20,11 @@ class DenseGrid {
   /// Copies the spans of `grid` into layers in `arena`.
   DenseGrid(const ColumnGrid& grid, Arena& arena);
 
-  /// Distance down to contact, or a negative number when the centre is not free. `layer` is the
+  /// Distance down to contact, or a negative number when the center is not free. `layer` is the
   /// layer to start from and becomes the one found.
-  [[nodiscard]] float distanceDown(Vec3 centre, std::int8_t& layer) const {
-    const float cell_x = (centre.x - min_x_) * inverse_spacing_;
-    const float cell_z = (centre.z - min_z_) * inverse_spacing_;
+  [[nodiscard]] float distanceDown(Vec3 center, std::int8_t& layer) const {
+    const float cell_x = (center.x - min_x_) * inverse_spacing_;
+    const float cell_z = (center.z - min_z_) * inverse_spacing_;
     if (!(cell_x >= 0 && cell_z >= 0 && cell_x < columns_x_ && cell_z < columns_z_))
       return kContact;
     const std::size_t column =
@@ -33,15 +33,15 @@ class DenseGrid {
     const int last = static_cast<int>(layers_.size()) - 1;
     int at = layer < 0 ? 0 : (layer > last ? last : layer);
     Span span = layers_[static_cast<std::size_t>(at)][column];
-    const bool upwards = centre.y > span.hi;
-    while (!(centre.y >= span.lo && centre.y <= span.hi)) {
+    const bool upwards = center.y > span.hi;
+    while (!(center.y >= span.lo && center.y <= span.hi)) {
       // Between two spans: the search has passed the height that it looks for.
-      if (upwards ? centre.y < span.lo : centre.y > span.hi) return found(layer, at, kContact);
+      if (upwards ? center.y < span.lo : center.y > span.hi) return found(layer, at, kContact);
       at += upwards ? 1 : -1;
       if (at < 0 || at > last) return found(layer, at < 0 ? 0 : last, kContact);
       span = layers_[static_cast<std::size_t>(at)][column];
     }
-    return found(layer, at, centre.y - span.lo);
+    return found(layer, at, center.y - span.lo);
   }
 
  private:

@@ -60,7 +60,7 @@ std::vector<Block> furnishings(const test::GridSpec& spec, std::mt19937& random)
   return blocks;
 }
 
-/// Free heights of a sphere's centre between solids.
+/// Free heights of a sphere's center between solids.
 std::vector<Span> freeSpans(const std::vector<Span>& solids, float radius) {
   std::vector<Span> spans;
   float lo = radius;

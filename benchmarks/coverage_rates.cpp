@@ -44,7 +44,7 @@ struct Mode {
   float spacing = 0;
   EncodedGrid grid;
   std::uint64_t false_blocked = 0;
-  /// How deep the falsely free spheres are inside an obstacle, metres.
+  /// How deep the falsely free spheres are inside an obstacle, meters.
   std::vector<double> depths{};
   /// Its answer for the current position.
   bool answered_free = false;
@@ -121,12 +121,12 @@ struct Truth {
       : mesh(scene), distances(scene, kReach), columns(scene, kReach) {}
 };
 
-/// Asks every grid for a centre that is `depth` inside an obstacle (outside where it is negative);
+/// Asks every grid for a center that is `depth` inside an obstacle (outside where it is negative);
 /// returns whether any says free.
-bool askModes(const Vec3& centre, double depth, std::vector<Mode>& modes) {
+bool askModes(const Vec3& center, double depth, std::vector<Mode>& modes) {
   bool any_free = false;
   for (Mode& mode : modes) {
-    mode.answered_free = test::viewOf(mode.grid).clearance(centre) == Clearance::kFree;
+    mode.answered_free = test::viewOf(mode.grid).clearance(center) == Clearance::kFree;
     any_free = any_free || mode.answered_free;
     if (mode.answered_free && depth > 0) mode.depths.push_back(depth);
   }
@@ -149,12 +149,12 @@ Positions ask(const Truth& truth, std::uint64_t wanted, std::vector<Mode>& modes
   Positions positions;
   while (positions.in_room < wanted && positions.drawn < 100 * wanted) {
     ++positions.drawn;
-    const Vec3 centre{number(bounds.min.x, bounds.max.x), number(bounds.min.y, bounds.max.y),
+    const Vec3 center{number(bounds.min.x, bounds.max.x), number(bounds.min.y, bounds.max.y),
                       number(bounds.min.z, bounds.max.z)};
-    const double distance = truth.distances.distance(test::toPoint(centre));
+    const double distance = truth.distances.distance(test::toPoint(center));
     const double depth = radius - distance;
-    const bool any_free = askModes(centre, depth, modes);
-    if (depth > 0 || !(any_free || judge.isInRoom(test::toPoint(centre)))) continue;
+    const bool any_free = askModes(center, depth, modes);
+    if (depth > 0 || !(any_free || judge.isInRoom(test::toPoint(center)))) continue;
     ++positions.in_room;
     positions.near += distance < radius + kNear ? 1U : 0U;
     for (Mode& mode : modes) mode.false_blocked += mode.answered_free ? 0U : 1U;

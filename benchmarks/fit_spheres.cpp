@@ -2,7 +2,7 @@
 //
 //   fit_spheres [OPTIONS] MESH...
 //
-// Lengths are in millimetres; gap and protrusion are mean / 95th percentile / maximum over samples
+// Lengths are in millimeters; gap and protrusion are mean / 95th percentile / maximum over samples
 // that the solver has not seen. Seconds are of user time, so that other programs on the machine
 // matter little.
 #include <fmt/format.h>
@@ -56,7 +56,7 @@ std::string perRadius(const std::vector<SetSphere>& spheres, std::size_t radii) 
   return text;
 }
 
-std::string inMillimetres(const LengthStatistics& lengths) {
+std::string inMillimeters(const LengthStatistics& lengths) {
   return fmt::format("{:.1f} / {:.1f} / {:.1f}", 1000 * lengths.mean, 1000 * lengths.p95,
                      1000 * lengths.max);
 }
@@ -64,8 +64,8 @@ std::string inMillimetres(const LengthStatistics& lengths) {
 void printRow(const std::string& name, const SphereSet& set, std::size_t radii, double seconds) {
   const SphereSetQuality& quality = set.quality;
   fmt::print("| {} | {} | {} | {} | {} | {:.1f} / {:.1f} | {:.2f} | {} of {} | {:.2f} |\n", name,
-             set.spheres.size(), perRadius(set.spheres, radii), inMillimetres(quality.gap),
-             inMillimetres(quality.protrusion), 1000 * set.guaranteed_gap,
+             set.spheres.size(), perRadius(set.spheres, radii), inMillimeters(quality.gap),
+             inMillimeters(quality.protrusion), 1000 * set.guaranteed_gap,
              1000 * set.guaranteed_protrusion, quality.volume_ratio, quality.thin_points,
              quality.samples, seconds);
   std::fflush(stdout);
@@ -154,9 +154,9 @@ int main(int argc, char** argv) {
     CLI::App app("Sphere sets of meshes and their quality, as a markdown table");
     galactic::bake::Request request;
     app.add_option("MESH", request.meshes, "Mesh files")->required();
-    app.add_option("--eps", request.options.eps, "Largest gap, metres");
-    app.add_option("--tau", request.options.tau, "Largest protrusion, metres");
-    app.add_option("--radii", request.options.radii, "Working set, metres, ascending");
+    app.add_option("--eps", request.options.eps, "Largest gap, meters");
+    app.add_option("--tau", request.options.tau, "Largest protrusion, meters");
+    app.add_option("--radii", request.options.radii, "Working set, meters, ascending");
     app.add_option("--max-spheres", request.options.max_spheres, "Most spheres; 0: no limit");
     app.add_option("--jobs", request.options.jobs, "Threads");
     app.add_flag("--z-up", request.z_up, "The files are Z up");

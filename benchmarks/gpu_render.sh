@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Images per second of the OpenGL backend on a graphics processor, for batches of 128, 512 and 2048 envs:
-# 128 x 128 pixels, colour and depth, in the caller's memory.
+# 128 x 128 pixels, color and depth, in the caller's memory.
 #
 #   benchmarks/gpu_render.sh [BUILD_FOLDER] [DEVICE]
 #

@@ -19,7 +19,7 @@ using test::RenderVertex;
 
 constexpr int kRoomsX = 3;
 constexpr int kRoomsZ = 2;
-/// Metres.
+/// Meters.
 constexpr float kRoom = 4;
 constexpr float kHeight = 2.7F;
 constexpr float kWall = 0.05F;
@@ -88,7 +88,7 @@ float power(float value, float exponent) {
 }
 
 /// A rounded box, or an egg: exponents from 0.1 to 1.
-Sheet roundedBox(const Vec3& centre, const Vec3& radii, float exponent, int across, int up) {
+Sheet roundedBox(const Vec3& center, const Vec3& radii, float exponent, int across, int up) {
   return {.across = across,
           .up = up,
           .at =
@@ -97,7 +97,7 @@ Sheet roundedBox(const Vec3& centre, const Vec3& radii, float exponent, int acro
                 const float polar = kPi * (v - 0.5F);
                 const float ring = power(std::cos(polar), exponent);
                 return RenderVertex{
-                    centre + Vec3{radii.x * ring * power(std::cos(around), exponent),
+                    center + Vec3{radii.x * ring * power(std::cos(around), exponent),
                                   radii.y * power(std::sin(polar), exponent),
                                   radii.z * ring * power(std::sin(around), exponent)},
                     u, v};

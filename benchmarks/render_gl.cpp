@@ -1,4 +1,4 @@
-// Images of 128 x 128 pixels, colour and depth, by the OpenGL backend, by the rasteriser, and by
+// Images of 128 x 128 pixels, color and depth, by the OpenGL backend, by the rasterizer, and by
 // OpenGL one env after the other with nothing culled:
 //
 //   render_gl                                        on a home made in code

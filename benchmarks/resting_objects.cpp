@@ -96,20 +96,20 @@ struct Robot {
   std::array<float, kRoom> x{}, y{}, z{};
 
  private:
-  void put(std::size_t n, const Vec3& centre) {
-    x[n] = centre.x;
-    y[n] = centre.y;
-    z[n] = centre.z;
+  void put(std::size_t n, const Vec3& center) {
+    x[n] = center.x;
+    y[n] = center.y;
+    z[n] = center.z;
   }
   void fill(std::size_t first, std::size_t end) {
     for (std::size_t n = first; n < end; ++n) put(n, {x[first - 1], y[first - 1], z[first - 1]});
   }
 };
 
-bool touchesAny(const std::vector<RestingBox>& boxes, const Vec3& centre, float radius) {
+bool touchesAny(const std::vector<RestingBox>& boxes, const Vec3& center, float radius) {
   return std::any_of(boxes.begin(), boxes.end(), [&](const RestingBox& box) {
-    return std::fabs(centre.y - box.centre.y) < box.half_height + radius &&
-           overlaps(box, centre, radius);
+    return std::fabs(center.y - box.center.y) < box.half_height + radius &&
+           overlaps(box, center, radius);
   });
 }
 
@@ -131,22 +131,22 @@ class RegularGrid {
     lists_.resize(std::size_t{kColumns} * kRows);
     for (std::size_t n = 0; n < boxes.size(); ++n) {
       const Vec3 half = halfBounds(boxes[n]);
-      forEachCell(boxes[n].centre, half.x, half.z, [&](std::vector<std::uint16_t>& list) {
+      forEachCell(boxes[n].center, half.x, half.z, [&](std::vector<std::uint16_t>& list) {
         list.push_back(static_cast<std::uint16_t>(n));
         return false;
       });
     }
   }
 
-  [[nodiscard]] bool touches(const Vec3& centre, float radius) {
+  [[nodiscard]] bool touches(const Vec3& center, float radius) {
     std::bitset<kObjects> seen;
-    return forEachCell(centre, radius, radius, [&](const std::vector<std::uint16_t>& list) {
+    return forEachCell(center, radius, radius, [&](const std::vector<std::uint16_t>& list) {
       return std::any_of(list.begin(), list.end(), [&](std::uint16_t n) {
         if (seen[n]) return false;
         seen[n] = true;
         const RestingBox& box = (*boxes_)[n];
-        return std::fabs(centre.y - box.centre.y) < box.half_height + radius &&
-               overlaps(box, centre, radius);
+        return std::fabs(center.y - box.center.y) < box.half_height + radius &&
+               overlaps(box, center, radius);
       });
     });
   }
@@ -157,12 +157,12 @@ class RegularGrid {
   static constexpr int kRows = 30;
 
   template <class Visit>
-  bool forEachCell(const Vec3& centre, float reach_x, float reach_z, const Visit& visit) {
+  bool forEachCell(const Vec3& center, float reach_x, float reach_z, const Visit& visit) {
     const auto cell = [](float at, int count) {
       return std::clamp(static_cast<int>(at / kCell), 0, count - 1);
     };
-    for (int k = cell(centre.z - reach_z, kRows); k <= cell(centre.z + reach_z, kRows); ++k) {
-      for (int i = cell(centre.x - reach_x, kColumns); i <= cell(centre.x + reach_x, kColumns);
+    for (int k = cell(center.z - reach_z, kRows); k <= cell(center.z + reach_z, kRows); ++k) {
+      for (int i = cell(center.x - reach_x, kColumns); i <= cell(center.x + reach_x, kColumns);
            ++i) {
         if (visit(lists_[static_cast<std::size_t>(k) * kColumns + static_cast<std::size_t>(i)]))
           return true;
@@ -189,8 +189,8 @@ struct Workload {
     while (robots.size() < kRobots) {
       Robot robot(random, {between(random, 0.5F, 7.5F), 0, between(random, 0.5F, 13.5F)});
       const auto& room = rooms[robots.size() % envs];
-      if (!anySphere(robot.batch(), [&](const Vec3& centre, float radius) {
-            return touchesAny(room, centre, radius);
+      if (!anySphere(robot.batch(), [&](const Vec3& center, float radius) {
+            return touchesAny(room, center, radius);
           })) {
         robots.push_back(robot);
       }
@@ -248,8 +248,8 @@ void fourGridsNothingNear(benchmark::State& state) {
 void allBoxes(benchmark::State& state) {
   const Workload workload(static_cast<std::size_t>(state.range(0)));
   measure(state, workload, [&](std::size_t env, const SphereBatch& spheres) {
-    return anySphere(spheres, [&](const Vec3& centre, float radius) {
-      return touchesAny(workload.rooms[env], centre, radius);
+    return anySphere(spheres, [&](const Vec3& center, float radius) {
+      return touchesAny(workload.rooms[env], center, radius);
     });
   });
 }
@@ -260,8 +260,8 @@ void mergedLists(benchmark::State& state) {
   envs.reserve(workload.rooms.size());
   for (const auto& room : workload.rooms) envs.emplace_back(room);
   measure(state, workload, [&](std::size_t env, const SphereBatch& spheres) {
-    return anySphere(spheres, [&](const Vec3& centre, float radius) {
-      return envs[env].touches(centre, radius);
+    return anySphere(spheres, [&](const Vec3& center, float radius) {
+      return envs[env].touches(center, radius);
     });
   });
 }

@@ -4,7 +4,7 @@
 //
 // All joints stand at 0 and the robot on the ground: the surface is that of all links (collision
 // geometry, else what is seen), hidden parts left out; points lower than 20 mm need no cover.
-// Lengths are in millimetres, mean / 95th percentile / maximum. Seconds are of wall clock, spheres
+// Lengths are in millimeters, mean / 95th percentile / maximum. Seconds are of wall clock, spheres
 // only.
 #include <fmt/format.h>
 
@@ -56,7 +56,7 @@ class Yardstick {
     std::vector<SetSphere> spheres;
     for (const BakedGroup& group : robot_.groups) {
       for (SetSphere sphere : group.spheres.spheres) {
-        sphere.centre = poses_[group.link] * sphere.centre;
+        sphere.center = poses_[group.link] * sphere.center;
         spheres.push_back(sphere);
       }
     }
@@ -86,7 +86,7 @@ class Yardstick {
   SphereSetOptions options_;
 };
 
-std::string inMillimetres(const LengthStatistics& lengths) {
+std::string inMillimeters(const LengthStatistics& lengths) {
   return fmt::format("{:.1f} / {:.1f} / {:.1f}", 1000 * lengths.mean, 1000 * lengths.p95,
                      1000 * lengths.max);
 }
@@ -106,7 +106,7 @@ Result<void> printRow(const std::string& label, const SourceRobot& source,
     }
   }
   fmt::print("| {} | {} ({}) | {} | {} | {:.2f} | {:.1f} |\n", label, all, fmt::join(counts, "/"),
-             inMillimetres(quality->gap), inMillimetres(quality->protrusion), quality->volume_ratio,
+             inMillimeters(quality->gap), inMillimeters(quality->protrusion), quality->volume_ratio,
              robot->times.spheres);
   std::fflush(stdout);
   return {};

@@ -90,7 +90,7 @@ std::optional<FieldDifference> compareSpheres(const std::string& field,
   std::size_t moved = 0;
   double farthest = 0;
   for (std::size_t n = 0; n < spheres.a.size(); ++n) {
-    const double way = distance(spheres.a[n].at("centre"), spheres.b[n].at("centre"));
+    const double way = distance(spheres.a[n].at("center"), spheres.b[n].at("center"));
     if (way <= tolerance) continue;
     ++moved;
     farthest = std::max(farthest, way);

@@ -27,9 +27,9 @@ Json answerJson(const ColumnAnswer& answer) {
   json["radius"] = jsonNumber(answer.grid.radius());
   json["inside"] = answer.cell.has_value();
   if (!answer.cell) return json;
-  const GroundPoint centre = columnCentre(answer.grid, *answer.cell);
+  const GroundPoint center = columnCenter(answer.grid, *answer.cell);
   json["cell"] = {answer.cell->i, answer.cell->k};
-  json["centre"] = {centre.x, centre.z};
+  json["center"] = {center.x, center.z};
   json["spans"] = Json::array();
   for (const Span& span : answer.spans) {
     json["spans"].push_back({{"lo", jsonNumber(span.lo)},
@@ -43,18 +43,18 @@ Json answerJson(const ColumnAnswer& answer) {
 std::string answerText(const ColumnAnswer& answer) {
   const float radius = answer.grid.radius();
   if (!answer.cell) return fmt::format("radius {} m: outside this grid\n", radius);
-  const GroundPoint centre = columnCentre(answer.grid, *answer.cell);
+  const GroundPoint center = columnCenter(answer.grid, *answer.cell);
   const std::string heading =
       fmt::format("radius {} m: cell ({}, {}), column at x {:.6g}, z {:.6g}", radius,
-                  answer.cell->i, answer.cell->k, centre.x, centre.z);
+                  answer.cell->i, answer.cell->k, center.x, center.z);
   if (answer.spans.empty()) return heading + ": blocked at all heights\n";
   TextTable table(2);
-  table.add({"span", "centre from", "centre to", "height", "surface below", "surface above"});
+  table.add({"span", "center from", "center to", "height", "surface below", "surface above"});
   for (std::size_t s = 0; s < answer.spans.size(); ++s) {
     const Span& span = answer.spans[s];
-    const auto metres = [](float value) { return fmt::format("{:.4f}", value); };
-    table.add({std::to_string(s), metres(span.lo), metres(span.hi), metres(span.hi - span.lo),
-               metres(span.lo - radius), metres(span.hi + radius)});
+    const auto meters = [](float value) { return fmt::format("{:.4f}", value); };
+    table.add({std::to_string(s), meters(span.lo), meters(span.hi), meters(span.hi - span.lo),
+               meters(span.lo - radius), meters(span.hi + radius)});
   }
   return heading + '\n' + table.text();
 }

@@ -22,7 +22,7 @@ namespace galactic::pack_tool {
 namespace {
 
 /// More than any length in a pack.
-constexpr double kMostMetres = 1000;
+constexpr double kMostMeters = 1000;
 
 /// Exactly `Count` finite numbers separated by commas.
 template <std::size_t Count>
@@ -83,8 +83,8 @@ void addTrusted(CLI::App& verb, Trust& trust) {
 
 void addRadius(CLI::App& verb, std::optional<float>& radius) {
   verb.add_option("--radius", radius, "scenes: only the grid of this sphere radius")
-      ->check(numberCheck(0, kMostMetres))
-      ->type_name("METRES");
+      ->check(numberCheck(0, kMostMeters))
+      ->type_name("METERS");
 }
 
 /// Which packs a verb takes.
@@ -151,7 +151,7 @@ void addColumn(CLI::App& app, ColumnOptions& options) {
             const auto [x, z] = parseNumbers<2>("--at", text);
             options.at = {x, z};
           },
-          "the point, metres")
+          "the point, meters")
       ->required()
       ->type_name("X,Z");
   addRadius(verb, options.radius);
@@ -166,8 +166,8 @@ void addDiff(CLI::App& app, DiffOptions& options) {
   addPack(verb, {"b", "another pack of the same kind"}, options.b);
   verb.add_option("--tolerance", options.tolerance,
                   "lengths that differ by no more are equal (default 0)")
-      ->check(numberCheck(0, kMostMetres))
-      ->type_name("METRES");
+      ->check(numberCheck(0, kMostMeters))
+      ->type_name("METERS");
   verb.add_flag_callback(
       "--content-only", [&options] { options.scope = DiffScope::kContent; },
       "ignore provenance, options and statistics: compare what is simulated");

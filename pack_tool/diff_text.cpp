@@ -31,7 +31,7 @@ std::string worstText(const std::vector<ColumnDifference>& worst) {
   TextTable table(4);
   table.add({"most different columns", "x", "z", "cell", "spans A", "spans B", "height (m)"});
   for (const ColumnDifference& column : worst) {
-    table.add({"", fmt::format("{:.4f}", column.centre.x), fmt::format("{:.4f}", column.centre.z),
+    table.add({"", fmt::format("{:.4f}", column.center.x), fmt::format("{:.4f}", column.center.z),
                fmt::format("({}, {})", column.cell.i, column.cell.k),
                std::to_string(column.spans_a), std::to_string(column.spans_b),
                fmt::format("{:.6f}", column.height)});
@@ -89,8 +89,8 @@ Json gridJson(const GridDifference& grid) {
   json["free_only_in_b"] = grid.free_only_in_b;
   json["worst"] = Json::array();
   for (const ColumnDifference& column : grid.worst) {
-    json["worst"].push_back({{"x", column.centre.x},
-                             {"z", column.centre.z},
+    json["worst"].push_back({{"x", column.center.x},
+                             {"z", column.center.z},
                              {"cell", Json::array({column.cell.i, column.cell.k})},
                              {"spans_a", column.spans_a},
                              {"spans_b", column.spans_b},

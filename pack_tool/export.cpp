@@ -48,7 +48,7 @@ Result<void> checkOptions(const ExportOptions& options, ExportFormat format) {
     return fail(ErrorCode::kInvalidInput, options.output.string(),
                 "--object-up is for episode sets; leave it out");
   }
-  const bool patches = options.radius || options.patch_height != PatchHeight::kSphereCentre ||
+  const bool patches = options.radius || options.patch_height != PatchHeight::kSphereCenter ||
                        options.parts != MeshParts::kFloorsAndCeilings;
   if (patches && !grid) {
     return fail(ErrorCode::kInvalidInput, options.output.string(),

@@ -24,7 +24,7 @@ std::optional<Cell> nearestColumn(const ColumnGrid& grid, GroundPoint point) {
   return Cell{*i, *k};
 }
 
-GroundPoint columnCentre(const ColumnGrid& grid, Cell cell) {
+GroundPoint columnCenter(const ColumnGrid& grid, Cell cell) {
   const ColumnGridLayout& layout = grid.layout();
   const double spacing = static_cast<double>(layout.spacing);
   return {static_cast<double>(layout.min_x) + (cell.i + 0.5) * spacing,

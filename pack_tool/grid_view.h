@@ -7,7 +7,7 @@
 
 namespace galactic::pack_tool {
 
-/// A point of the ground plane, world frame, metres.
+/// A point of the ground plane, world frame, meters.
 struct GroundPoint {
   double x = 0;
   double z = 0;
@@ -25,7 +25,7 @@ struct Cell {
 [[nodiscard]] std::optional<Cell> nearestColumn(const ColumnGrid& grid, GroundPoint point);
 
 /// Where the column of `cell` stands.
-[[nodiscard]] GroundPoint columnCentre(const ColumnGrid& grid, Cell cell);
+[[nodiscard]] GroundPoint columnCenter(const ColumnGrid& grid, Cell cell);
 
 /// Replaces `spans` by the free spans of `cell`, ascending. The cell must be inside the grid.
 void readSpans(const ColumnGrid& grid, Cell cell, std::vector<Span>& spans);

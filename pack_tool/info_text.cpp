@@ -13,21 +13,21 @@ namespace {
 std::string headerText(const Json& pack) {
   const Json& provenance = pack.at("provenance");
   std::string text = textOf(pack.at("file")) + '\n';
-  text += labelled("kind", fmt::format("{}, format version {}", textOf(pack.at("kind")),
-                                       pack.at("format_version").get<std::uint32_t>()));
-  text += labelled("size", fmt::format("{} bytes, payload XXH64 {}", countOf(pack.at("bytes")),
-                                       textOf(pack.at("payload_xxh64"))));
-  text += labelled("written by", fmt::format("{} {}", textOf(provenance.at("tool")),
-                                             textOf(provenance.at("tool_version"))));
+  text += labeled("kind", fmt::format("{}, format version {}", textOf(pack.at("kind")),
+                                      pack.at("format_version").get<std::uint32_t>()));
+  text += labeled("size", fmt::format("{} bytes, payload XXH64 {}", countOf(pack.at("bytes")),
+                                      textOf(pack.at("payload_xxh64"))));
+  text += labeled("written by", fmt::format("{} {}", textOf(provenance.at("tool")),
+                                            textOf(provenance.at("tool_version"))));
   return text;
 }
 
 /// A label, and a table with its rows to the right of it; "none" without rows.
 std::string listText(std::string_view label, const std::vector<std::string>& rows) {
-  if (rows.empty()) return labelled(label, "none");
+  if (rows.empty()) return labeled(label, "none");
   std::string text;
   for (const std::string& row : rows) {
-    text += labelled(text.empty() ? label : std::string_view(), row);
+    text += labeled(text.empty() ? label : std::string_view(), row);
   }
   return text;
 }

@@ -82,7 +82,7 @@ class GridComparison {
     } else {
       return;
     }
-    remember({cell, columnCentre(a_, cell), spans_a_.size(), spans_b_.size(), only_a + only_b});
+    remember({cell, columnCenter(a_, cell), spans_a_.size(), spans_b_.size(), only_a + only_b});
   }
 
   /// Whether an end of the current columns, which have equally many spans, differs.

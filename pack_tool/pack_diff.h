@@ -21,10 +21,10 @@ struct FieldDifference {
 /// A column that is not the same on both sides.
 struct ColumnDifference {
   Cell cell;
-  GroundPoint centre;
+  GroundPoint center;
   std::size_t spans_a = 0;
   std::size_t spans_b = 0;
-  /// Height that is free on one side only, metres.
+  /// Height that is free on one side only, meters.
   double height = 0;
 };
 
@@ -39,11 +39,11 @@ struct GridDifference {
   std::uint64_t count_differs = 0;
   std::uint64_t ends_differ = 0;
   /// Span ends that differ by more than the tolerance in the columns of ends_differ: how many, the
-  /// largest and the mean difference in metres.
+  /// largest and the mean difference in meters.
   std::uint64_t ends = 0;
   double largest_end = 0;
   double mean_end = 0;
-  /// Volume of sphere centres that is free on one side only, in all columns, cubic metres.
+  /// Volume of sphere centers that is free on one side only, in all columns, cubic meters.
   double free_only_in_a = 0;
   double free_only_in_b = 0;
   /// The differing columns with the most height that is free on one side only, at most
@@ -58,7 +58,7 @@ struct GridDifference {
 inline constexpr std::size_t kWorstColumns = 5;
 
 /// Compares two grids column by column. Frame lengths and span ends that differ by no more than
-/// `tolerance` (metres) are equal.
+/// `tolerance` (meters) are equal.
 [[nodiscard]] GridDifference compareGrids(const ColumnGrid& a, const ColumnGrid& b,
                                           double tolerance);
 
@@ -68,7 +68,7 @@ inline constexpr std::size_t kWorstColumns = 5;
 [[nodiscard]] std::vector<FieldDifference> compareFields(const Json& a, const Json& b,
                                                          double tolerance);
 
-/// Height that is free in both of two lists of ascending, disjoint spans, metres.
+/// Height that is free in both of two lists of ascending, disjoint spans, meters.
 [[nodiscard]] double commonHeight(const std::vector<Span>& a, const std::vector<Span>& b);
 
 }  // namespace galactic::pack_tool

@@ -26,7 +26,7 @@ std::string TextTable::text() const {
   return text;
 }
 
-std::string labelled(std::string_view label, std::string_view value) {
+std::string labeled(std::string_view label, std::string_view value) {
   return fmt::format("  {:<12} {}\n", label, value);
 }
 

@@ -24,7 +24,7 @@ class TextTable {
 };
 
 /// A line "label  value" whose values line up when all labels are short.
-[[nodiscard]] std::string labelled(std::string_view label, std::string_view value);
+[[nodiscard]] std::string labeled(std::string_view label, std::string_view value);
 
 /// A whole number with commas between thousands.
 [[nodiscard]] std::string grouped(std::uint64_t number);

@@ -45,7 +45,7 @@ struct CheckOptions {
 struct ColumnOptions {
   std::filesystem::path pack = {};
   GroundPoint at;
-  /// Only the grid of this radius, metres.
+  /// Only the grid of this radius, meters.
   std::optional<float> radius = std::nullopt;
   OutputForm form = OutputForm::kText;
   Trust trust = Trust::kVerify;
@@ -63,7 +63,7 @@ enum class DiffScope {
 struct DiffOptions {
   std::filesystem::path a = {};
   std::filesystem::path b = {};
-  /// Lengths that differ by no more than this are equal, metres.
+  /// Lengths that differ by no more than this are equal, meters.
   double tolerance = 0;
   DiffScope scope = DiffScope::kEverything;
   OutputForm form = OutputForm::kText;
@@ -82,7 +82,7 @@ struct SliceLine {
 
 /// What is drawn of a scene's grids.
 struct GridPictureOptions {
-  /// Only the grid of this radius, metres. Not given: all of them.
+  /// Only the grid of this radius, meters. Not given: all of them.
   std::optional<float> radius = std::nullopt;
   /// A slice instead of a plan.
   std::optional<SliceLine> slice = std::nullopt;
@@ -137,7 +137,7 @@ inline constexpr std::string_view kEpisodeSetSuffix = ".episode_set.json";
 
 /// Where the patches of an exported mesh lie.
 enum class PatchHeight {
-  kSphereCentre,  ///< At the ends of the free spans.
+  kSphereCenter,  ///< At the ends of the free spans.
   kSurface,       ///< A radius further: where a sphere touches a level surface.
 };
 
@@ -150,9 +150,9 @@ struct ExportOptions {
   std::filesystem::path output = {};
   /// Not given: by the output's extension.
   std::optional<ExportFormat> format = std::nullopt;
-  /// Only the grid of this radius, metres. Not given: the only one. OBJ and PLY.
+  /// Only the grid of this radius, meters. Not given: the only one. OBJ and PLY.
   std::optional<float> radius = std::nullopt;
-  PatchHeight patch_height = PatchHeight::kSphereCentre;
+  PatchHeight patch_height = PatchHeight::kSphereCenter;
   MeshParts parts = MeshParts::kFloorsAndCeilings;
   /// For GLB.
   std::optional<FigureOptions> figures = std::nullopt;

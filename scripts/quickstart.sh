@@ -65,7 +65,7 @@ Look at these, in $out/:
   run.html          four robots tidying up: a page for any browser. Space plays.
   world.html        all of the world, to look around in and to take apart.
   plans.png         the apartment from above, once for each of the three sphere radii: the brighter,
-                    the more free height a sphere's centre has; dark is blocked. North is up.
+                    the more free height a sphere's center has; dark is blocked. North is up.
   plan-r0.05.png    the same for one radius, larger (also plan-r0.015.png and plan-r0.12.png).
   slice.png         the apartment cut open from west to east: coffee table, armchair, the ten boards
                     of the bookshelf, and on the right the loft, free above and below.

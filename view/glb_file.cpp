@@ -42,7 +42,7 @@ void appendChunk(std::string& file, std::uint32_t type, const std::string& conte
   file += content;
 }
 
-/// Vertex colours of glTF are linear: 16 bits keep the dark ones apart.
+/// Vertex colors of glTF are linear: 16 bits keep the dark ones apart.
 std::uint16_t linearFromSrgb(std::uint32_t value) {
   constexpr double kEight = 255;
   constexpr double kSixteen = 65535;

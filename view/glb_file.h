@@ -47,7 +47,7 @@ struct GlbMaterial {
   bool unlit = false;
 };
 
-/// An sRGB colour of 8 bits each, R lowest, as glTF has it: linear but for alpha.
+/// An sRGB color of 8 bits each, R lowest, as glTF has it: linear but for alpha.
 [[nodiscard]] std::array<float, 4> linearColor(std::uint32_t color);
 
 /// A named place in the scene.
@@ -68,7 +68,7 @@ struct GlbMotion {
   std::vector<Pose> parent_from_node;
 };
 
-/// Collects meshes and nodes, and writes them as glTF 2.0 in binary (GLB): metres, Y up. The same
+/// Collects meshes and nodes, and writes them as glTF 2.0 in binary (GLB): meters, Y up. The same
 /// content gives the same bytes. See the glTF 2.0 specification, sections 3 and 4.
 class GlbFile {
  public:

@@ -39,13 +39,13 @@ void writeNames(JsonWriter& json, std::string_view key,
   json.end(']');
 }
 
-/// Four numbers a sphere: centre in its frame, radius.
+/// Four numbers a sphere: center in its frame, radius.
 void writeSpheres(JsonWriter& json, std::span<const SetSphere> spheres,
                   std::span<const float> radii) {
   std::vector<float> numbers;
   for (const SetSphere& sphere : spheres) {
-    const Vec3& centre = sphere.centre;
-    numbers.insert(numbers.end(), {centre.x, centre.y, centre.z, radii[sphere.radius_index]});
+    const Vec3& center = sphere.center;
+    numbers.insert(numbers.end(), {center.x, center.y, center.z, radii[sphere.radius_index]});
   }
   json.numbers("spheres", std::span<const float>(numbers));
 }
@@ -96,7 +96,7 @@ void writeModels(JsonWriter& json, const RenderMeshes& meshes) {
   json.end(']');
 }
 
-/// What a texel is expected to be: the median of its neighbours and of the plane through them
+/// What a texel is expected to be: the median of its neighbors and of the plane through them
 /// (LOCO-I, Weinberger et al. 2000).
 std::uint8_t expected(std::uint8_t left, std::uint8_t above, std::uint8_t corner) {
   const auto [low, high] = std::minmax(left, above);

@@ -61,7 +61,7 @@ Result<std::size_t> RenderGlbWriter::material(const MaterialKey& key) {
     material.texture = *number;
   } else {
     material.color = linearColor(stored.color);
-    // Whether a plain colour is there is decided by the cut-off, not by blending.
+    // Whether a plain color is there is decided by the cut-off, not by blending.
     if (material.alpha_cutoff == 0) material.color[3] = 1;
   }
   found->second = file_.addMaterial(material);

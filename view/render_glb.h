@@ -12,7 +12,7 @@
 namespace galactic {
 
 /// Puts the models of one pack into a GLB file: unlit, with their textures as PNG images inside the
-/// file. What vertex colours multiply is linear there and sRGB in a renderer's images, so products
+/// file. What vertex colors multiply is linear there and sRGB in a renderer's images, so products
 /// differ a little.
 class RenderGlbWriter {
  public:

@@ -18,7 +18,7 @@ namespace galactic {
                                                         const RenderModel& model);
 
 /// Appends the triangles of a cluster: vertices at step * (origin + stored), exactly as a renderer
-/// sees them; colours white where the pack has none.
+/// sees them; colors white where the pack has none.
 void appendCluster(const RenderMeshes& meshes, const RenderModel& model,
                    const RenderCluster& cluster, RenderSurface& surface);
 

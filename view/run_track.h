@@ -40,7 +40,7 @@ struct EnvTrack {
   std::vector<std::uint8_t> events;
   /// Shape: steps x actions.
   std::vector<float> actions;
-  /// Shape: steps x kTrackDistances, metres.
+  /// Shape: steps x kTrackDistances, meters.
   std::vector<float> distances;
 };
 

@@ -14,7 +14,7 @@
 namespace galactic::bake {
 namespace {
 
-/// From the target's start to its goal, metres.
+/// From the target's start to its goal, meters.
 struct Distances {
   double min = 0;
   double mean = 0;

@@ -33,8 +33,8 @@ void printObject(const BakedObject& object, std::size_t radii, int name_width) {
                   2e3F * box.half_extents.z),
       nameOf(object.box.used), object.box.volume / object.box.axis_aligned_volume,
       object.stable_poses.size(), sphereCounts(object.spheres.spheres, radii),
-      object.spheres.spheres.size(), millimetres(object.spheres.quality.gap),
-      millimetres(object.spheres.quality.protrusion), object.spheres.quality.thin_points,
+      object.spheres.spheres.size(), millimeters(object.spheres.quality.gap),
+      millimeters(object.spheres.quality.protrusion), object.spheres.quality.thin_points,
       times.box + times.stable_poses + times.spheres, object.authored_spheres ? "  as given" : "");
 }
 
@@ -62,7 +62,7 @@ Json toJson(const LengthStatistics& lengths) {
 }
 
 Json toJson(const BoxFitResult& fit) {
-  return {{"centre", toJson(fit.box.pose.translation)},
+  return {{"center", toJson(fit.box.pose.translation)},
           {"rotation_wxyz", toJson(fit.box.pose.rotation)},
           {"half_extents", toJson(fit.box.half_extents)},
           {"volume", fit.volume},
@@ -107,7 +107,7 @@ std::string sphereCounts(const std::vector<SetSphere>& spheres, std::size_t radi
   return fmt::format("{}", fmt::join(counts, "+"));
 }
 
-std::string millimetres(const LengthStatistics& lengths) {
+std::string millimeters(const LengthStatistics& lengths) {
   return fmt::format("{:.1f}/{:.1f}/{:.1f}", 1e3 * lengths.mean, 1e3 * lengths.p95,
                      1e3 * lengths.max);
 }

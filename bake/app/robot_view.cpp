@@ -21,8 +21,8 @@ void printGroup(const BakedRobot& robot, const BakedGroup& group, int name_width
   const SphereSetQuality& quality = group.spheres.quality;
   fmt::print("  {:<{}} {:>5} {:>9} {:>4} {:>16} {:>16} {:>6.2f} {:>5}{}\n", name, name_width,
              group.links.size(), sphereCounts(group.spheres.spheres, robot.radii.size()),
-             group.spheres.spheres.size(), millimetres(quality.gap),
-             millimetres(quality.protrusion), quality.volume_ratio, quality.thin_points,
+             group.spheres.spheres.size(), millimeters(quality.gap),
+             millimeters(quality.protrusion), quality.volume_ratio, quality.thin_points,
              group.authored ? "  by hand" : "");
 }
 

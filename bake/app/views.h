@@ -41,8 +41,8 @@ void printRenderMeshes(const RenderBakeStatistics& figures, std::size_t textures
 
 /// Spheres of each radius, largest radius first, as "2+5+0".
 [[nodiscard]] std::string sphereCounts(const std::vector<SetSphere>& spheres, std::size_t radii);
-/// A length's mean, 95th percentile and maximum in millimetres.
-[[nodiscard]] std::string millimetres(const LengthStatistics& lengths);
+/// A length's mean, 95th percentile and maximum in millimeters.
+[[nodiscard]] std::string millimeters(const LengthStatistics& lengths);
 /// The figures of a sphere set for a report.
 [[nodiscard]] Json sphereSetReport(const SphereSet& set, std::size_t radii);
 

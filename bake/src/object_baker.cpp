@@ -11,7 +11,7 @@
 namespace galactic::bake {
 namespace {
 
-/// A movable object smaller than this probably has another unit, metres; too large ones are refused
+/// A movable object smaller than this probably has another unit, meters; too large ones are refused
 /// by the sphere fitter with the same question.
 constexpr float kDoubtfulSmallness = 0.002F;
 
@@ -24,7 +24,7 @@ void warnOfSize(const Bounds& bounds, std::vector<std::string>& warnings) {
   const float size = largestExtent(bounds);
   if (size < kDoubtfulSmallness) {
     warnings.push_back(
-        fmt::format("is only {:.4g} mm large; is the unit right? --scale sets metres "
+        fmt::format("is only {:.4g} mm large; is the unit right? --scale sets meters "
                     "per unit",
                     1000 * size));
   }
@@ -52,7 +52,7 @@ void warnOfSpheres(const SphereSet& set, const SphereSetOptions& options,
 }
 
 /// A published box that differs more from the mesh's stands in another frame, or is another
-/// object's. Metres.
+/// object's. Meters.
 constexpr float kDoubtfulBoxDifference = 0.005F;
 
 float farthestApart(const Vec3& a, const Vec3& b) {

@@ -107,8 +107,8 @@ class SceneBaker {
     if (options_.coverage == Coverage::kColumn) {
       return checkWithCasts(mesh_, columns, *caster_, check_options);
     }
-    // Casts know single lines only: they check the centre lines, and what is free over a cell has
-    // to be free on its centre line.
+    // Casts know single lines only: they check the center lines, and what is free over a cell has
+    // to be free on its center line.
     const ExactColumns lines = exactColumns(mesh_, frame, {.jobs = options_.jobs});
     CastCheck check = checkWithCasts(mesh_, lines.columns, *caster_, check_options);
     check.errors += freeBeyond(columns, lines.columns);

@@ -8,7 +8,7 @@
 namespace galactic::bake {
 namespace {
 
-/// Where a surface has colours and a part of it has none.
+/// Where a surface has colors and a part of it has none.
 constexpr std::array<float, 4> kNeutral{0.6F, 0.6F, 0.6F, 1.0F};
 
 /// The sRGB transfer function (IEC 61966-2-1), 0 to 1.

@@ -36,12 +36,12 @@ std::string episodesText(const Json& set) {
                  countOf(object.at("targets"))});
   }
   const Json& robot = set.at("robot");
-  return labelled("name", textOf(set.at("name"))) +
-         labelled("episodes", countOf(set.at("episode_count"))) +
-         labelled("robot", robot.is_null() ? "any" : textOf(robot)) +
-         labelled("start joints", namesOf(set.at("start_joints"))) +
-         labelled("objects", spreadOf(set.at("objects_per_episode")) + " per episode") +
-         labelled("to the goal", spreadOf(set.at("target_to_goal")) + " m") + scenes.text() +
+  return labeled("name", textOf(set.at("name"))) +
+         labeled("episodes", countOf(set.at("episode_count"))) +
+         labeled("robot", robot.is_null() ? "any" : textOf(robot)) +
+         labeled("start joints", namesOf(set.at("start_joints"))) +
+         labeled("objects", spreadOf(set.at("objects_per_episode")) + " per episode") +
+         labeled("to the goal", spreadOf(set.at("target_to_goal")) + " m") + scenes.text() +
          objects.text();
 }
 

@@ -59,7 +59,7 @@ Json describeSpheres(const flatbuffers::Vector<const schema::SetSphere*>& sphere
   Json json = Json::array();
   for (std::size_t n = range.first; n < range.first + range.count; ++n) {
     const schema::SetSphere& sphere = *spheres.Get(static_cast<flatbuffers::uoffset_t>(n));
-    json.push_back({{"centre", describePoint(sphere.centre())},
+    json.push_back({{"center", describePoint(sphere.center())},
                     {"radius", jsonNumber(radii.Get(sphere.radius_index()))}});
   }
   return json;
@@ -92,7 +92,7 @@ Json describeSurface(const schema::Surface* surface) {
   hash = bytes_of(hash, *surface->colors(), sizeof(std::uint32_t));
   return {{"vertices", surface->positions()->size()},
           {"triangles", surface->triangles()->size() / 3},
-          {"coloured", surface->colors()->size() > 0},
+          {"colored", surface->colors()->size() > 0},
           {"fnv1a_64", fmt::format("{:016x}", hash)}};
 }
 

@@ -23,7 +23,7 @@ namespace galactic::pack_tool {
 /// "radii" of the working set.
 [[nodiscard]] Json describeRadii(const flatbuffers::Vector<float>& radii);
 
-/// The spheres [first, first + count), each with its centre and radius.
+/// The spheres [first, first + count), each with its center and radius.
 struct SphereRange {
   std::size_t first = 0;
   std::size_t count = 0;
@@ -35,7 +35,7 @@ struct SphereRange {
 /// Null without statistics.
 [[nodiscard]] Json describeQuality(const schema::SphereSetStatistics* statistics);
 
-/// How large a mesh is, and a hash (FNV-1a, 64 bits) of its vertices, triangles and colours; null
+/// How large a mesh is, and a hash (FNV-1a, 64 bits) of its vertices, triangles and colors; null
 /// without one.
 [[nodiscard]] Json describeSurface(const schema::Surface* surface);
 

@@ -8,7 +8,7 @@ namespace galactic::pack_tool {
 
 namespace {
 
-/// Full extents of a box in millimetres.
+/// Full extents of a box in millimeters.
 std::string extentsOf(const Json& box) {
   const Json& half = box.at("half_extents");
   return fmt::format("{:.0f}x{:.0f}x{:.0f}", 2e3 * numberOf(half.at(0)), 2e3 * numberOf(half.at(1)),
@@ -26,8 +26,8 @@ std::vector<std::string> objectLine(const Json& object, const Json& radii) {
           fmt::format("{:.3f}", share),
           std::to_string(object.at("spheres").size()),
           countsByRadius(object.at("spheres"), radii),
-          millimetresOf(quality.at("gap")),
-          millimetresOf(quality.at("protrusion")),
+          millimetersOf(quality.at("gap")),
+          millimetersOf(quality.at("protrusion")),
           quality.at("meets_tolerances").get<bool>() ? "yes" : "no",
           std::to_string(poses.size()),
           fmt::format("{:.2f}", numberOf(poses.at(0).at("likelihood"))),
@@ -42,8 +42,8 @@ std::string objectsText(const Json& set) {
   table.add({"name", "box (mm)", "fit", "/aabb", "spheres", "by radius", "gap (mm)",
              "protrusion (mm)", "met", "poses", "likeliest", "triangles"});
   for (const Json& object : set.at("objects")) table.add(objectLine(object, radii));
-  return labelled("radii", radiiOf(radii) + " m") +
-         labelled("objects", std::to_string(set.at("objects").size())) + table.text() +
+  return labeled("radii", radiiOf(radii) + " m") +
+         labeled("objects", std::to_string(set.at("objects").size())) + table.text() +
          "    gap and protrusion: mean/p95/max; met: whether the tolerances are; /aabb: volume of "
          "the "
          "box by\n    that of the axis-aligned one\n";

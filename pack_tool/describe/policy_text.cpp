@@ -80,13 +80,12 @@ std::string policyText(const Json& policy) {
                            fields.empty() ? "" : ": ", fields),
                inputsText(layer.at("inputs")), countOf(Json(weightsOf(layer)))});
   }
-  return labelled("policy", textOf(policy.at("name"))) +
-         labelled("robot", robot.empty() ? "any with as many actions" : robot) +
-         labelled("options", options.empty() ? "as the world has them" : options) +
-         labelled("observation", observation.empty() ? "none" : observation) +
-         labelled("image", imageText(policy.at("image"))) +
-         labelled("actions", actionsText(policy)) +
-         labelled("weights", countOf(policy.at("weights"))) + table.text();
+  return labeled("policy", textOf(policy.at("name"))) +
+         labeled("robot", robot.empty() ? "any with as many actions" : robot) +
+         labeled("options", options.empty() ? "as the world has them" : options) +
+         labeled("observation", observation.empty() ? "none" : observation) +
+         labeled("image", imageText(policy.at("image"))) + labeled("actions", actionsText(policy)) +
+         labeled("weights", countOf(policy.at("weights"))) + table.text();
 }
 
 }  // namespace galactic::pack_tool

@@ -106,7 +106,7 @@ Json describeRenderMeshes(const PackFile& pack) {
   }
   json["source_triangles"] = source_triangles;
   json["largest_error"] = jsonNumber(largest_error);
-  json["coloured"] = !meshes.colors.empty();
+  json["colored"] = !meshes.colors.empty();
   json["geometry_bytes"] = meshes.clusters.size_bytes() + meshes.cluster_bounds.size_bytes() +
                            meshes.vertices.size_bytes() + meshes.colors.size_bytes() +
                            meshes.triangles.size_bytes();

@@ -22,7 +22,7 @@ std::string percentOf(const Json& part, const Json& whole) {
       "{:.0f} %", 100 * static_cast<double>(part.get<std::uint64_t>()) / static_cast<double>(all));
 }
 
-std::string millimetreOf(const Json& length) {
+std::string millimeterOf(const Json& length) {
   return fmt::format("{:.2f}", 1e3 * numberOf(length));
 }
 
@@ -45,16 +45,16 @@ std::string appearanceText(const Json& render) {
   const auto cut_out = std::ranges::count_if(render.at("materials"), [](const Json& material) {
     return numberOf(material.at("alpha_cutoff")) > 0;
   });
-  std::string text = labelled(
-      "materials",
-      fmt::format("{}, {} with a cut-out shape; {}", render.at("materials").size(), cut_out,
-                  render.at("coloured").get<bool>() ? "vertices have colours"
-                                                    : "vertices have no colours"));
-  text += labelled("textures", textures.empty() ? "none"
-                                                : fmt::format("{}, {} bytes: {}", textures.size(),
-                                                              countOf(render.at("texture_bytes")),
-                                                              textureSizes(textures)));
-  return text + labelled("semantics", fmt::format("{} names", render.at("semantics").size()));
+  std::string text =
+      labeled("materials",
+              fmt::format("{}, {} with a cut-out shape; {}", render.at("materials").size(), cut_out,
+                          render.at("colored").get<bool>() ? "vertices have colors"
+                                                           : "vertices have no colors"));
+  text += labeled("textures", textures.empty() ? "none"
+                                               : fmt::format("{}, {} bytes: {}", textures.size(),
+                                                             countOf(render.at("texture_bytes")),
+                                                             textureSizes(textures)));
+  return text + labeled("semantics", fmt::format("{} names", render.at("semantics").size()));
 }
 
 std::string modelsText(const Json& models) {
@@ -64,7 +64,7 @@ std::string modelsText(const Json& models) {
     table.add({textOf(model.at("name")), countOf(model.at("clusters")),
                percentOf(model.at("two_sided_clusters"), model.at("clusters")),
                countOf(model.at("vertices")), countOf(model.at("triangles")),
-               countOf(model.at("source_triangles")), millimetreOf(model.at("largest_error"))});
+               countOf(model.at("source_triangles")), millimeterOf(model.at("largest_error"))});
   }
   return table.text();
 }
@@ -73,17 +73,17 @@ std::string modelsText(const Json& models) {
 
 std::string renderMeshesText(const Json& render) {
   if (render.is_null()) {
-    return labelled("render", "no render meshes: nothing to draw in batches, nothing textured");
+    return labeled("render", "no render meshes: nothing to draw in batches, nothing textured");
   }
-  std::string text = labelled(
+  std::string text = labeled(
       "render", fmt::format("{} models, {} clusters ({} two-sided), {} vertices, {} bytes",
                             render.at("models").size(), countOf(render.at("clusters")),
                             percentOf(render.at("two_sided_clusters"), render.at("clusters")),
                             countOf(render.at("vertices")), countOf(render.at("geometry_bytes"))));
-  text += labelled(
+  text += labeled(
       "", fmt::format("{} of {} triangles, moved by at most {} mm", countOf(render.at("triangles")),
                       countOf(render.at("source_triangles")),
-                      millimetreOf(render.at("largest_error"))));
+                      millimeterOf(render.at("largest_error"))));
   text += appearanceText(render);
   if (render.at("models").size() > 1) text += modelsText(render.at("models"));
   return text;

@@ -49,8 +49,8 @@ std::string linksText(const Json& robot) {
     }
     table.add(std::move(line));
   }
-  return labelled("links", fmt::format("{}, {} joint positions; radians, metres",
-                                       robot.at("links").size(), robot.at("positions").size())) +
+  return labeled("links", fmt::format("{}, {} joint positions; radians, meters",
+                                      robot.at("links").size(), robot.at("positions").size())) +
          table.text();
 }
 
@@ -68,14 +68,14 @@ std::string groupsText(const Json& robot) {
     const Json& quality = group.at("sphere_quality");
     if (!quality.is_null()) {
       line.insert(line.end(),
-                  {millimetresOf(quality.at("gap")), millimetresOf(quality.at("protrusion")),
+                  {millimetersOf(quality.at("gap")), millimetersOf(quality.at("protrusion")),
                    fmt::format("{:.2f}", numberOf(quality.at("volume_ratio"))),
                    quality.at("authored").get<bool>() ? "yes" : "no"});
     }
     table.add(std::move(line));
   }
-  return labelled("spheres", fmt::format("{} in {} groups; gap and protrusion: mean/p95/max",
-                                         spheres, robot.at("groups").size())) +
+  return labeled("spheres", fmt::format("{} in {} groups; gap and protrusion: mean/p95/max",
+                                        spheres, robot.at("groups").size())) +
          table.text();
 }
 
@@ -84,25 +84,25 @@ std::string pairsText(const Json& pairs) {
   for (const auto& [kind, list] : pairs.items()) {
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", list.size(), kind);
   }
-  return labelled("pairs", text);
+  return labeled("pairs", text);
 }
 
 std::string controlledText(const Json& joints) {
-  if (joints.empty()) return labelled("controlled", "none");
+  if (joints.empty()) return labeled("controlled", "none");
   TextTable table(4);
   table.add({"controlled joint", "step", "lower", "upper"});
   for (const Json& joint : joints) {
     table.add({textOf(joint.at("name")), numberText(joint.at("step")),
                numberText(joint.at("lower")), numberText(joint.at("upper"))});
   }
-  return labelled("controlled", fmt::format("{} joints", joints.size())) + table.text();
+  return labeled("controlled", fmt::format("{} joints", joints.size())) + table.text();
 }
 
 constexpr double kDegrees = 57.29577951308232;
 
 std::string laserText(const Json& laser) {
-  if (laser.is_null()) return labelled("laser", "none");
-  return labelled(
+  if (laser.is_null()) return labeled("laser", "none");
+  return labeled(
       "laser",
       fmt::format("{} at {} m, {:.1f} degrees, {} to {} m, noise {} m", textOf(laser.at("link")),
                   pointOf(laser.at("link_from_laser").at("translation")),
@@ -113,21 +113,21 @@ std::string laserText(const Json& laser) {
 std::string toolsText(const Json& robot) {
   const Json& effector = robot.at("end_effector");
   std::string text =
-      labelled("grasp", effector.is_null()
-                            ? "none"
-                            : fmt::format("{} at {} m, radius {} m", textOf(effector.at("link")),
-                                          pointOf(effector.at("grasp_point")),
-                                          lengthOf(effector.at("grasp_radius"))));
+      labeled("grasp", effector.is_null()
+                           ? "none"
+                           : fmt::format("{} at {} m, radius {} m", textOf(effector.at("link")),
+                                         pointOf(effector.at("grasp_point")),
+                                         lengthOf(effector.at("grasp_radius"))));
   const Json& camera = robot.at("camera");
-  text += labelled("camera",
-                   camera.is_null()
-                       ? "none"
-                       : fmt::format("{} at {} m, {:.1f} degrees high", textOf(camera.at("link")),
-                                     pointOf(camera.at("link_from_camera").at("translation")),
-                                     kDegrees * numberOf(camera.at("vertical_fov"))));
+  text += labeled("camera",
+                  camera.is_null()
+                      ? "none"
+                      : fmt::format("{} at {} m, {:.1f} degrees high", textOf(camera.at("link")),
+                                    pointOf(camera.at("link_from_camera").at("translation")),
+                                    kDegrees * numberOf(camera.at("vertical_fov"))));
   text += laserText(robot.at("laser"));
   const Json& base = robot.at("base");
-  if (base.is_null()) return text + labelled("base", "none");
+  if (base.is_null()) return text + labeled("base", "none");
   const Json& low = base.at("footprint_min");
   const Json& high = base.at("footprint_max");
   const std::string footprint =
@@ -135,11 +135,11 @@ std::string toolsText(const Json& robot) {
           ? fmt::format("circle of radius {} m", lengthOf(base.at("footprint_radius")))
           : fmt::format("x {} to {}, z {} to {} m", lengthOf(low.at(0)), lengthOf(high.at(0)),
                         lengthOf(low.at(2)), lengthOf(high.at(2)));
-  return text + labelled("base", fmt::format("steps of {} m and {:.4g} rad, root {} m above the "
-                                             "ground, footprint {}",
-                                             lengthOf(base.at("forward_step")),
-                                             numberOf(base.at("turn_step")),
-                                             lengthOf(base.at("root_height")), footprint));
+  return text + labeled("base", fmt::format("steps of {} m and {:.4g} rad, root {} m above the "
+                                            "ground, footprint {}",
+                                            lengthOf(base.at("forward_step")),
+                                            numberOf(base.at("turn_step")),
+                                            lengthOf(base.at("root_height")), footprint));
 }
 
 std::string surfacesText(const Json& surfaces) {
@@ -153,15 +153,15 @@ std::string surfacesText(const Json& surfaces) {
     collision += triangles("collision");
     visual += triangles("visual");
   }
-  return labelled("triangles",
-                  fmt::format("{} collision, {} visual", grouped(collision), grouped(visual)));
+  return labeled("triangles",
+                 fmt::format("{} collision, {} visual", grouped(collision), grouped(visual)));
 }
 
 }  // namespace
 
 std::string robotText(const Json& robot) {
-  return labelled("robot", textOf(robot.at("name"))) +
-         labelled("radii", radiiOf(robot.at("radii")) + " m") + surfacesText(robot.at("surfaces")) +
+  return labeled("robot", textOf(robot.at("name"))) +
+         labeled("radii", radiiOf(robot.at("radii")) + " m") + surfacesText(robot.at("surfaces")) +
          toolsText(robot) + controlledText(robot.at("controlled_joints")) + linksText(robot) +
          groupsText(robot) + pairsText(robot.at("group_pairs"));
 }

@@ -17,12 +17,12 @@ std::string headText(const Json& scene) {
     return fmt::format("{} to {}", lengthOf(low.at(axis)), lengthOf(high.at(axis)));
   };
   const Json& import = scene.at("import");
-  std::string text = labelled("scene", textOf(scene.at("name")));
-  text += labelled("bounds", fmt::format("x {}, y {}, z {} m", range(0), range(1), range(2)));
-  text += labelled("import",
-                   fmt::format("{}, {} meshes, {} instances", textOf(import.at("format")),
-                               countOf(import.at("meshes")), countOf(import.at("instances"))));
-  text += labelled(
+  std::string text = labeled("scene", textOf(scene.at("name")));
+  text += labeled("bounds", fmt::format("x {}, y {}, z {} m", range(0), range(1), range(2)));
+  text +=
+      labeled("import", fmt::format("{}, {} meshes, {} instances", textOf(import.at("format")),
+                                    countOf(import.at("meshes")), countOf(import.at("instances"))));
+  text += labeled(
       "triangles",
       fmt::format("{} read, {} degenerate and {} duplicate dropped, {} kept",
                   countOf(import.at("triangles_read")), countOf(import.at("triangles_degenerate")),
@@ -113,17 +113,17 @@ void addCastRows(TextTable& table, const Json& grids) {
       return check.is_null() ? "-" : field(check);
     });
   };
-  const auto metres = [&](std::string label, const char* key) {
+  const auto meters = [&](std::string label, const char* key) {
     cast(std::move(label),
          [key](const Json& check) { return fmt::format("{:.6g}", check.at(key).get<double>()); });
   };
   cast("casts: columns", [](const Json& check) { return countOf(check.at("columns")); });
   cast("casts: differing",
        [](const Json& check) { return countOf(check.at("columns_differing")); });
-  metres("casts: compared (m)", "compared");
-  metres("casts: method (m)", "method");
-  metres("casts: ties (m)", "ties");
-  metres("casts: errors (m)", "errors");
+  meters("casts: compared (m)", "compared");
+  meters("casts: method (m)", "method");
+  meters("casts: ties (m)", "ties");
+  meters("casts: errors (m)", "errors");
 }
 
 }  // namespace

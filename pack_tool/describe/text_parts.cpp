@@ -24,7 +24,7 @@ std::string pointOf(const Json& json) {
                      numberOf(json.at(2)));
 }
 
-std::string millimetresOf(const Json& lengths) {
+std::string millimetersOf(const Json& lengths) {
   if (lengths.is_null()) return "-";
   return fmt::format("{:.1f}/{:.1f}/{:.1f}", 1e3 * numberOf(lengths.at("mean")),
                      1e3 * numberOf(lengths.at("p95")), 1e3 * numberOf(lengths.at("max")));

@@ -22,13 +22,13 @@ namespace galactic::pack_tool {
 /// (x, y, z) with four decimals.
 [[nodiscard]] std::string pointOf(const Json& json);
 
-/// Mean, 95th percentile and maximum in millimetres; "-" where there is nothing.
-[[nodiscard]] std::string millimetresOf(const Json& lengths);
+/// Mean, 95th percentile and maximum in millimeters; "-" where there is nothing.
+[[nodiscard]] std::string millimetersOf(const Json& lengths);
 
 /// The number of spheres of each radius, largest radius first, as "1+4+2"; and of all.
 [[nodiscard]] std::string countsByRadius(const Json& spheres, const Json& radii);
 
-/// The radii, largest first, in metres.
+/// The radii, largest first, in meters.
 [[nodiscard]] std::string radiiOf(const Json& radii);
 
 }  // namespace galactic::pack_tool

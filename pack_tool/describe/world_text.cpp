@@ -17,8 +17,8 @@ std::string worldText(const Json& world) {
     if (!task.empty()) task += ", ";
     task += textOf(option.at("name")) + " " + textOf(option.at("value"));
   }
-  return labelled("packs", countOf(Json(world.at("packs").size()))) +
-         labelled("task", task.empty() ? "as galactic-run has it" : task) + table.text();
+  return labeled("packs", countOf(Json(world.at("packs").size()))) +
+         labeled("task", task.empty() ? "as galactic-run has it" : task) + table.text();
 }
 
 }  // namespace galactic::pack_tool

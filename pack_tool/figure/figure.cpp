@@ -30,7 +30,7 @@ FigureBounds boundsOf(const Figure& figure) {
       for (const Vec3& corner : renderBoxOf(figure, part)) include(bounds, corner);
     }
     for (const SetSphere& sphere : part.spheres) {
-      include(bounds, pose * sphere.centre, figure.radii[sphere.radius_index]);
+      include(bounds, pose * sphere.center, figure.radii[sphere.radius_index]);
     }
     if (!part.box) continue;
     for (const Vec3& corner : cornersOf(*part.box)) include(bounds, pose * corner);

@@ -17,7 +17,7 @@ namespace galactic::pack_tool {
 
 /// A triangle mesh of a pack: views.
 struct SurfaceView {
-  /// Metres.
+  /// Meters.
   std::span<const Vec3> positions;
   /// Three corner indices per triangle, counter-clockwise seen from outside.
   std::span<const std::uint32_t> corners;
@@ -45,8 +45,8 @@ enum class FigureKind { kObject, kRobot, kScene };
 
 /// Where the robot grasps.
 struct GraspMark {
-  Vec3 centre_in_world;
-  /// Metres.
+  Vec3 center_in_world;
+  /// Meters.
   float radius = 0;
 };
 
@@ -57,18 +57,18 @@ struct CameraMark {
   float vertical_fov = 0;
 };
 
-/// What the robot covers of the ground: a closed line, metres.
+/// What the robot covers of the ground: a closed line, meters.
 using Footprint = std::vector<Vec3>;
 
 /// An object, a robot in one pose, or a scene, ready to be drawn or exported. Views into the pack
-/// it was made from, which must outlive it. World frame: Y up, metres.
+/// it was made from, which must outlive it. World frame: Y up, meters.
 struct Figure {
   FigureKind kind = FigureKind::kObject;
   std::string name;
   /// What the spheres are and how good they are, in a few words; and the same in short lines.
   std::string caption;
   std::vector<std::string> short_caption;
-  /// Working set, metres: SetSphere::radius_index counts in it.
+  /// Working set, meters: SetSphere::radius_index counts in it.
   std::span<const float> radii;
   /// What the pack has to draw; nullptr for none. Figures of one pack share it.
   std::shared_ptr<const RenderMeshes> render_meshes;
@@ -111,7 +111,7 @@ inline constexpr std::array<std::pair<int, int>, 12> kBoxEdges{{{0, 1},
                                                                 {2, 6},
                                                                 {3, 7}}};
 
-/// The four far corners of the pyramid that a camera sees, `length` metres away, in its own frame;
+/// The four far corners of the pyramid that a camera sees, `length` meters away, in its own frame;
 /// images are square.
 [[nodiscard]] std::array<Vec3, 4> viewPyramid(const CameraMark& camera, float length);
 

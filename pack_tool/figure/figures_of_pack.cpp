@@ -36,7 +36,7 @@ void addRenderModel(Figure& figure, std::size_t part, std::uint32_t number) {
 }
 
 /// Mean, 95th percentile and maximum.
-std::string millimetres(const schema::LengthStatistics* lengths) {
+std::string millimeters(const schema::LengthStatistics* lengths) {
   if (lengths == nullptr) return "-";
   return fmt::format("{:.1f}/{:.1f}/{:.1f} mm", 1e3 * lengths->mean(), 1e3 * lengths->p95(),
                      1e3 * lengths->max());
@@ -51,9 +51,9 @@ Figure objectFigure(const ObjectSet& set, const ObjectModel& object, const schem
   const schema::SphereSetStatistics& quality = *stored.sphere_statistics();
   const std::string counts = fmt::format("{} spheres ({})", object.spheres.size(),
                                          sphereCounts(object.spheres, set.radii().size()));
-  const std::string gap = fmt::format("gap {}", millimetres(quality.gap()));
+  const std::string gap = fmt::format("gap {}", millimeters(quality.gap()));
   figure.caption = fmt::format("{}, {}, protrusion {}: mean/p95/max", counts, gap,
-                               millimetres(quality.protrusion()));
+                               millimeters(quality.protrusion()));
   figure.short_caption = {counts, gap};
   FigurePart& part = figure.parts.emplace_back();
   part.name = object.name;

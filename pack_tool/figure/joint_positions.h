@@ -16,7 +16,7 @@ namespace galactic::pack_tool {
 /// joints; with ".x", ".y", ".z", ".qx", ".qy", ".qz" and ".qw" for floating ones.
 [[nodiscard]] std::vector<std::string> positionNames(const Robot& robot);
 
-/// One joint value as the user gave it, radians or metres.
+/// One joint value as the user gave it, radians or meters.
 struct JointValue {
   std::string name;
   float value = 0;

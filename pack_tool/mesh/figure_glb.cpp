@@ -12,9 +12,9 @@ namespace galactic::pack_tool {
 
 namespace {
 
-/// Linear colours as in pictures: grey, green, blue, orange.
+/// Linear colors as in pictures: gray, green, blue, orange.
 constexpr GlbMaterial kMeshMaterial{"mesh", {0.44F, 0.45F, 0.48F, 1}};
-constexpr GlbMaterial kColoredMaterial{"coloured mesh", {1, 1, 1, 1}};
+constexpr GlbMaterial kColoredMaterial{"colored mesh", {1, 1, 1, 1}};
 constexpr GlbMaterial kRobotSphereMaterial{"robot spheres", {0.02F, 0.43F, 0.07F, 0.45F}};
 constexpr GlbMaterial kObjectSphereMaterial{"object spheres", {0.03F, 0.17F, 0.80F, 0.45F}};
 constexpr GlbMaterial kBoxMaterial{"boxes", {0.87F, 0.22F, 0.01F, 1}};
@@ -41,7 +41,7 @@ class FigureWriter {
     }
     if (figure.grasp) {
       file_.addNode({.name = "grasp point",
-                     .parent_from_node = {figure.grasp->centre_in_world, {}},
+                     .parent_from_node = {figure.grasp->center_in_world, {}},
                      .parent = root});
     }
     if (figure.camera) {
@@ -101,7 +101,7 @@ class FigureWriter {
     for (std::size_t n = 0; n < part.spheres.size(); ++n) {
       const SetSphere& sphere = part.spheres[n];
       file_.addNode({.name = fmt::format("{} sphere {}", part.name, n),
-                     .parent_from_node = {sphere.centre, {}},
+                     .parent_from_node = {sphere.center, {}},
                      .mesh = sphereOf(figure.radii[sphere.radius_index], figure.kind),
                      .parent = group});
     }

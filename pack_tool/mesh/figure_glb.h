@@ -7,9 +7,9 @@
 
 namespace galactic::pack_tool {
 
-/// Figures as a GLB file (glTF 2.0, metres, Y up). Every figure and part is a named node, parts
+/// Figures as a GLB file (glTF 2.0, meters, Y up). Every figure and part is a named node, parts
 /// under those that carry them; under a part lie "NAME mesh" with its materials and textures (or
-/// vertex colours, without render meshes; a scene has a node for each semantic instead), "NAME
+/// vertex colors, without render meshes; a scene has a node for each semantic instead), "NAME
 /// spheres" with a node for each sphere, which share one mesh for each radius, and "NAME box" as
 /// lines. A robot has nodes "grasp point" and "camera", the latter a camera of glTF. Fails with
 /// kUnsupported, an empty `where`, when the file would be larger than 4 GiB, and with kInternal

@@ -8,7 +8,7 @@
 namespace galactic::pack_tool {
 
 /// A level rectangle that closes free space from below (floor) or above (ceiling); world frame,
-/// metres.
+/// meters.
 struct Patch {
   enum class Side { kFloor, kCeiling };
 
@@ -21,11 +21,11 @@ struct Patch {
 };
 
 struct GridMeshOptions {
-  PatchHeight height = PatchHeight::kSphereCentre;
+  PatchHeight height = PatchHeight::kSphereCenter;
   MeshParts parts = MeshParts::kFloorsAndCeilings;
 };
 
-/// The ends of all free spans as patches. Neighbouring cells at exactly the same height share one
+/// The ends of all free spans as patches. Neighboring cells at exactly the same height share one
 /// patch where they form a rectangle. Without the walls between heights: they would hide the rest.
 [[nodiscard]] std::vector<Patch> gridPatches(const ColumnGrid& grid,
                                              const GridMeshOptions& options);
@@ -33,12 +33,12 @@ struct GridMeshOptions {
 /// The most patches that a mesh file may hold: its indices are 32 signed bits.
 inline constexpr std::size_t kMaxPatches = (std::size_t{1} << 31) / 4 - 1;
 
-/// The patches as a binary PLY file: quads that face free space, coloured by height (floors) or
-/// grey (ceilings). At most kMaxPatches.
+/// The patches as a binary PLY file: quads that face free space, colored by height (floors) or
+/// gray (ceilings). At most kMaxPatches.
 [[nodiscard]] std::string encodePly(const std::vector<Patch>& patches);
 
 /// The patches as an OBJ file: the objects "floors" and "ceilings" of quads that face free space,
-/// without colours. At most kMaxPatches.
+/// without colors. At most kMaxPatches.
 [[nodiscard]] std::string encodeObj(const std::vector<Patch>& patches);
 
 }  // namespace galactic::pack_tool

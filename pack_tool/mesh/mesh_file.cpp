@@ -16,7 +16,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "PLY files are written as they lie");
 
 constexpr std::size_t kCorners = 4;
-constexpr pictures::Rgb kCeilingColour{176, 180, 190};
+constexpr pictures::Rgb kCeilingColor{176, 180, 190};
 
 /// The corners counter-clockwise as seen from free space: floors face up, ceilings down.
 std::array<Vec3, kCorners> cornersOf(const Patch& patch) {
@@ -45,10 +45,10 @@ Span floorRange(const std::vector<Patch>& patches) {
   return range;
 }
 
-pictures::Rgb colourOf(const Patch& patch, const Span& range) {
-  if (patch.side == Patch::Side::kCeiling) return kCeilingColour;
-  if (!(range.hi > range.lo)) return pictures::scaleColour(0);
-  return pictures::scaleColour(static_cast<double>((patch.y - range.lo) / (range.hi - range.lo)));
+pictures::Rgb colorOf(const Patch& patch, const Span& range) {
+  if (patch.side == Patch::Side::kCeiling) return kCeilingColor;
+  if (!(range.hi > range.lo)) return pictures::scaleColor(0);
+  return pictures::scaleColor(static_cast<double>((patch.y - range.lo) / (range.hi - range.lo)));
 }
 
 void appendObject(std::string& text, const std::vector<Patch>& patches, Patch::Side side,
@@ -72,17 +72,17 @@ void appendObject(std::string& text, const std::vector<Patch>& patches, Patch::S
 std::string encodePly(const std::vector<Patch>& patches) {
   std::string file = fmt::format(
       "ply\nformat binary_little_endian 1.0\n"
-      "comment free space of a column grid; metres, Y up\n"
+      "comment free space of a column grid; meters, Y up\n"
       "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
       "property uchar red\nproperty uchar green\nproperty uchar blue\n"
       "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
       patches.size() * kCorners, patches.size());
   const Span range = floorRange(patches);
   for (const Patch& patch : patches) {
-    const pictures::Rgb colour = colourOf(patch, range);
+    const pictures::Rgb color = colorOf(patch, range);
     for (const Vec3& corner : cornersOf(patch)) {
       appendBytes(file, corner);
-      appendBytes(file, colour);
+      appendBytes(file, color);
     }
   }
   for (std::size_t p = 0; p < patches.size(); ++p) {
@@ -95,7 +95,7 @@ std::string encodePly(const std::vector<Patch>& patches) {
 }
 
 std::string encodeObj(const std::vector<Patch>& patches) {
-  std::string text = "# free space of a column grid; metres, Y up\n";
+  std::string text = "# free space of a column grid; meters, Y up\n";
   std::size_t vertices = 0;
   appendObject(text, patches, Patch::Side::kFloor, vertices);
   appendObject(text, patches, Patch::Side::kCeiling, vertices);

@@ -45,7 +45,7 @@ std::vector<Tick> axisTicks(const AxisScale& scale, int gap) {
   const double low = std::min(scale.first_value, scale.last_value);
   const double high = std::max(scale.first_value, scale.last_value);
   std::vector<Tick> ticks;
-  // Far from zero, neighbouring multiples of a tiny step are one number.
+  // Far from zero, neighboring multiples of a tiny step are one number.
   constexpr double kFinest = 1e-12;
   if (!(step > kFinest * std::max(std::abs(low), std::abs(high)))) return ticks;
   const double first = std::ceil(low / step);
@@ -62,11 +62,11 @@ void drawHorizontalAxis(Image& image, const PixelRect& plot, const AxisScale& sc
                         std::string_view name) {
   for (const Tick& tick : axisTicks(scale, kHorizontalGap)) {
     fillRect(image, {tick.pixel, plot.bottom() + 1, 1, kTickLength}, kInk);
-    drawText(image, {tick.pixel, plot.bottom() + kTickLength + 5, Anchor::kCentre}, tick.label,
+    drawText(image, {tick.pixel, plot.bottom() + kTickLength + 5, Anchor::kCenter}, tick.label,
              kInk);
   }
   const int name_y = plot.bottom() + kTickLength + 5 + kTextHeight + 8;
-  drawText(image, {plot.x + plot.width / 2, name_y, Anchor::kCentre}, name, kInk);
+  drawText(image, {plot.x + plot.width / 2, name_y, Anchor::kCenter}, name, kInk);
 }
 
 void drawVerticalAxis(Image& image, const PixelRect& plot, const AxisScale& scale,
@@ -79,29 +79,29 @@ void drawVerticalAxis(Image& image, const PixelRect& plot, const AxisScale& scal
   drawText(image, {plot.x - kAxisLabelWidth, plot.y - kAxisNameHeight}, name, kInk);
 }
 
-void drawScaleBar(Image& image, const BarPlace& place, double pixels_per_metre, int longest) {
-  const double metres = roundDown(longest / pixels_per_metre);
-  const int length = static_cast<int>(std::lround(metres * pixels_per_metre));
+void drawScaleBar(Image& image, const BarPlace& place, double pixels_per_meter, int longest) {
+  const double meters = roundDown(longest / pixels_per_meter);
+  const int length = static_cast<int>(std::lround(meters * pixels_per_meter));
   fillRect(image, {place.x, place.y + kTextHeight / 2 - 1, length, 3}, kInk);
   fillRect(image, {place.x, place.y, 2, kTextHeight}, kInk);
   fillRect(image, {place.x + length - 2, place.y, 2, kTextHeight}, kInk);
-  drawText(image, {place.x + length + 10, place.y}, fmt::format("{:g} m", metres), kInk);
+  drawText(image, {place.x + length + 10, place.y}, fmt::format("{:g} m", meters), kInk);
 }
 
 int swatchWidth(std::string_view meaning) { return kTextHeight + 8 + textWidth(meaning) + 28; }
 
-int drawSwatch(Image& image, int x, int y, Rgb colour, std::string_view meaning) {
+int drawSwatch(Image& image, int x, int y, Rgb color, std::string_view meaning) {
   const PixelRect square{x, y, kTextHeight, kTextHeight};
-  fillRect(image, square, colour);
+  fillRect(image, square, color);
   drawFrame(image, square, kInk);
   drawText(image, {square.right() + 8, y}, meaning, kInk);
   return swatchWidth(meaning);
 }
 
-void drawColourBar(Image& image, const PixelRect& bar, double top_value) {
+void drawColorBar(Image& image, const PixelRect& bar, double top_value) {
   for (int row = 0; row < bar.height; ++row) {
     const double share = 1 - (row + 0.5) / bar.height;
-    fillRect(image, {bar.x, bar.y + row, bar.width, 1}, scaleColour(share));
+    fillRect(image, {bar.x, bar.y + row, bar.width, 1}, scaleColor(share));
   }
   drawFrame(image, bar, kInk);
   const AxisScale scale{0, top_value, bar.bottom(), bar.y};

@@ -18,7 +18,7 @@ struct AxisScale {
   [[nodiscard]] double pixelsPerUnit() const;
 };
 
-/// A labelled mark of an axis.
+/// A labeled mark of an axis.
 struct Tick {
   double value = 0;
   int pixel = 0;
@@ -48,19 +48,19 @@ struct BarPlace {
 /// The length in pixels that a scale bar does not exceed when nothing else is wanted.
 inline constexpr int kScaleBarPixels = 220;
 
-/// A bar of the longest round length in metres that is no longer than `longest` pixels, and its
+/// A bar of the longest round length in meters that is no longer than `longest` pixels, and its
 /// label on its right.
-void drawScaleBar(Image& image, const BarPlace& place, double pixels_per_metre,
+void drawScaleBar(Image& image, const BarPlace& place, double pixels_per_meter,
                   int longest = kScaleBarPixels);
 
 /// The width that drawSwatch uses, pixels.
 [[nodiscard]] int swatchWidth(std::string_view meaning);
 
-/// A square of `colour` and its meaning; returns the width used, gap to the next one included.
-int drawSwatch(Image& image, int x, int y, Rgb colour, std::string_view meaning);
+/// A square of `color` and its meaning; returns the width used, gap to the next one included.
+int drawSwatch(Image& image, int x, int y, Rgb color, std::string_view meaning);
 
-/// A vertical colour bar with ticks on its right side. `bar` is the bar alone.
-void drawColourBar(Image& image, const PixelRect& bar, double top_value);
+/// A vertical color bar with ticks on its right side. `bar` is the bar alone.
+void drawColorBar(Image& image, const PixelRect& bar, double top_value);
 
 // Room around a plot that the functions above draw in, pixels.
 inline constexpr int kAxisLabelWidth = 5 * kTextAdvance + 12;

@@ -34,7 +34,7 @@ std::string shortened(const std::string& text, int pixels) {
 }
 
 struct LegendEntry {
-  Rgb colour;
+  Rgb color;
   std::string meaning;
 };
 
@@ -46,7 +46,7 @@ std::vector<LegendEntry> legendOf(const Figure& figure) {
   std::vector<LegendEntry> legend;
   const bool textured = any([](const FigurePart& part) { return part.render_model.has_value(); });
   if (textured || any([](const FigurePart& part) { return !part.surface.empty(); })) {
-    legend.push_back({kMeshGrey, robot || textured ? "mesh, in its own colours" : "mesh"});
+    legend.push_back({kMeshGray, robot || textured ? "mesh, in its own colors" : "mesh"});
   }
   if (any([](const FigurePart& part) { return !part.spheres.empty(); })) {
     std::string radii;
@@ -74,7 +74,7 @@ int legendWidth(const std::vector<LegendEntry>& legend) {
 void drawLegend(Image& image, const std::vector<LegendEntry>& legend, int y) {
   int x = kMargin;
   for (const LegendEntry& entry : legend) {
-    x += drawSwatch(image, x, y, entry.colour, entry.meaning);
+    x += drawSwatch(image, x, y, entry.color, entry.meaning);
   }
 }
 
@@ -160,7 +160,7 @@ Image drawFigure(const Figure& figure, int view_size) {
   drawText(image, {kMargin, kMargin + kLine}, figure.caption, kFaintInk);
   int x = kMargin;
   for (const NamedView& view : views) {
-    drawText(image, {x + view_size / 2, kMargin + 2 * kLine, Anchor::kCentre}, view.name, kInk);
+    drawText(image, {x + view_size / 2, kMargin + 2 * kLine, Anchor::kCenter}, view.name, kInk);
     drawFigureView(image, {x, views_top, view_size}, figure, view.axes, scale);
     drawFrame(image, {x, views_top, view_size, view_size}, kFaintInk);
     x += view_size + kMargin;

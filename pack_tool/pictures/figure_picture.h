@@ -16,8 +16,8 @@ inline constexpr int kDefaultTileSize = 288;
 
 /// Draws a figure from the front, from its right side, from above and from between them, all at one
 /// scale, with name, caption, legend and scale bar. Render meshes are
-/// drawn as they are, where a pack has them; else meshes of objects are grey, and those of robots
-/// have their own colours. `view_size`: edge of each view, kSmallestView to kLargestView pixels.
+/// drawn as they are, where a pack has them; else meshes of objects are gray, and those of robots
+/// have their own colors. `view_size`: edge of each view, kSmallestView to kLargestView pixels.
 /// Coordinates must be finite. Safe to call from many threads.
 [[nodiscard]] Image drawFigure(const pack_tool::Figure& figure, int view_size = kDefaultViewSize);
 

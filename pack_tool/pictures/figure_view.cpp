@@ -27,8 +27,8 @@ double along(const Vec3& axis, const Vec3& point) {
 }
 
 void include(ViewWindow& window, const ViewAxes& axes, const RasterSphere& sphere) {
-  const double right = along(axes.right, sphere.centre);
-  const double up = along(axes.up, sphere.centre);
+  const double right = along(axes.right, sphere.center);
+  const double up = along(axes.up, sphere.center);
   const auto radius = static_cast<double>(sphere.radius);
   window.low_right = std::min(window.low_right, right - radius);
   window.high_right = std::max(window.high_right, right + radius);
@@ -51,7 +51,7 @@ std::vector<RasterLine> cameraLines(const CameraMark& camera, float length) {
   return lines;
 }
 
-/// The longest edge of the box around a figure, metres.
+/// The longest edge of the box around a figure, meters.
 float sizeOf(const Figure& figure) {
   const pack_tool::FigureBounds bounds = boundsOf(figure);
   // Marks are drawn also where nothing else is.
@@ -75,8 +75,8 @@ std::vector<RasterLine> markLines(const Figure& figure) {
   if (figure.grasp) {
     const float half = std::max(figure.grasp->radius, kGraspCross * size);
     for (const Vec3& arm : {Vec3{half, 0, 0}, Vec3{0, half, 0}, Vec3{0, 0, half}}) {
-      const Vec3& centre = figure.grasp->centre_in_world;
-      lines.push_back({centre - arm, centre + arm, kGraspMark});
+      const Vec3& center = figure.grasp->center_in_world;
+      lines.push_back({center - arm, center + arm, kGraspMark});
     }
   }
   return lines;
@@ -99,11 +99,11 @@ void drawPart(MeshRaster& raster, const Figure& figure, const FigurePart& part) 
     raster.drawRenderModel(meshes, meshes.models[*part.render_model], part.world_from_part);
   } else {
     const auto colors = robot ? part.surface.colors : std::span<const std::uint32_t>();
-    raster.drawMesh({part.surface.positions, part.surface.corners, colors, kMeshGrey},
+    raster.drawMesh({part.surface.positions, part.surface.corners, colors, kMeshGray},
                     part.world_from_part);
   }
   for (const SetSphere& sphere : part.spheres) {
-    raster.drawSphere({part.world_from_part * sphere.centre, figure.radii[sphere.radius_index]},
+    raster.drawSphere({part.world_from_part * sphere.center, figure.radii[sphere.radius_index]},
                       robot ? kRobotSpheres : kObjectSpheres);
   }
   if (!part.box) return;
@@ -130,7 +130,7 @@ ViewWindow windowOf(const Figure& figure, const ViewAxes& axes) {
       for (const Vec3& corner : renderBoxOf(figure, part)) include(window, axes, {corner, 0});
     }
     for (const SetSphere& sphere : part.spheres) {
-      include(window, axes, {pose * sphere.centre, figure.radii[sphere.radius_index]});
+      include(window, axes, {pose * sphere.center, figure.radii[sphere.radius_index]});
     }
     if (!part.box) continue;
     for (const Vec3& corner : pack_tool::cornersOf(*part.box)) {
@@ -144,15 +144,15 @@ ViewWindow windowOf(const Figure& figure, const ViewAxes& axes) {
   return window.low_right > window.high_right ? ViewWindow{} : window;
 }
 
-double fittingScale(double metres, int pixels) { return (1 - 2 * kBorder) * pixels / metres; }
+double fittingScale(double meters, int pixels) { return (1 - 2 * kBorder) * pixels / meters; }
 
 void drawFigureView(Image& image, const ViewPlace& place, const Figure& figure,
-                    const ViewAxes& axes, double pixels_per_metre) {
+                    const ViewAxes& axes, double pixels_per_meter) {
   const ViewWindow window = windowOf(figure, axes);
   const auto right = static_cast<float>(0.5 * (window.low_right + window.high_right));
   const auto up = static_cast<float>(0.5 * (window.low_up + window.high_up));
   MeshRaster raster(
-      {axes, axes.right * right + axes.up * up, pixels_per_metre, place.size, place.size});
+      {axes, axes.right * right + axes.up * up, pixels_per_meter, place.size, place.size});
   if (figure.kind == FigureKind::kScene) raster.openRooms(ceilingsOf(figure));
   for (const FigurePart& part : figure.parts) drawPart(raster, figure, part);
   for (const RasterLine& line : markLines(figure)) raster.drawLine(line);

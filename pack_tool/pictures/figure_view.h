@@ -5,8 +5,8 @@
 
 namespace galactic::pictures {
 
-// What is drawn in which colour: as in figure 3 of the Galactic paper.
-inline constexpr Rgb kMeshGrey{176, 178, 184};
+// What is drawn in which color: as in figure 3 of the Galactic paper.
+inline constexpr Rgb kMeshGray{176, 178, 184};
 inline constexpr Rgb kObjectSpheres{46, 116, 232};
 inline constexpr Rgb kRobotSpheres{40, 176, 72};
 inline constexpr Rgb kBoxEdge{240, 130, 20};
@@ -14,7 +14,7 @@ inline constexpr Rgb kGraspMark{214, 30, 140};
 inline constexpr Rgb kCameraMark{120, 60, 200};
 inline constexpr Rgb kFootprintMark{120, 120, 128};
 
-/// The rectangle that a figure takes along the axes of a view, metres; marks are part of it. Empty
+/// The rectangle that a figure takes along the axes of a view, meters; marks are part of it. Empty
 /// while low is above high.
 struct ViewWindow {
   double low_right = 0;
@@ -24,14 +24,14 @@ struct ViewWindow {
 
   [[nodiscard]] double width() const { return high_right - low_right; }
   [[nodiscard]] double height() const { return high_up - low_up; }
-  /// The longer edge; a millimetre where there is nothing.
+  /// The longer edge; a millimeter where there is nothing.
   [[nodiscard]] double extent() const;
 };
 
 [[nodiscard]] ViewWindow windowOf(const pack_tool::Figure& figure, const ViewAxes& axes);
 
-/// The scale at which `metres` fill most of `pixels`.
-[[nodiscard]] double fittingScale(double metres, int pixels);
+/// The scale at which `meters` fill most of `pixels`.
+[[nodiscard]] double fittingScale(double meters, int pixels);
 
 /// Where a view goes: its top left corner, and the length of its edges; pixels.
 struct ViewPlace {
@@ -42,6 +42,6 @@ struct ViewPlace {
 
 /// Draws a figure along `axes` into the square `place` of `image`, in its middle.
 void drawFigureView(Image& image, const ViewPlace& place, const pack_tool::Figure& figure,
-                    const ViewAxes& axes, double pixels_per_metre);
+                    const ViewAxes& axes, double pixels_per_meter);
 
 }  // namespace galactic::pictures

@@ -55,11 +55,11 @@ double dotProduct(const Vec3& a, const Vec3& b) {
 
 Vec3 unit(const Vec3& v) { return v * static_cast<float>(1 / std::sqrt(dotProduct(v, v))); }
 
-Rgb shaded(Rgb colour, double light) {
+Rgb shaded(Rgb color, double light) {
   const auto scaled = [light](std::uint8_t value) {
     return static_cast<std::uint8_t>(std::lround(std::clamp(value * light, 0.0, 255.0)));
   };
-  return {scaled(colour.r), scaled(colour.g), scaled(colour.b)};
+  return {scaled(color.r), scaled(color.g), scaled(color.b)};
 }
 
 /// Light on a side whose normal, in the view's axes, is (x, y, z) with z towards the viewer.
@@ -76,7 +76,7 @@ struct SampleRange {
   int end = 0;
 };
 
-/// Those whose centres lie between two positions and inside the picture.
+/// Those whose centers lie between two positions and inside the picture.
 SampleRange samplesBetween(double low, double high, int count) {
   const auto clamped = [count](double value) {
     return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(count)));
@@ -84,8 +84,8 @@ SampleRange samplesBetween(double low, double high, int count) {
   return {clamped(std::ceil(low - 0.5)), clamped(std::floor(high - 0.5) + 1)};
 }
 
-std::uint32_t packed(Rgb colour) {
-  return std::uint32_t{colour.r} | std::uint32_t{colour.g} << 8U | std::uint32_t{colour.b} << 16U |
+std::uint32_t packed(Rgb color) {
+  return std::uint32_t{color.r} | std::uint32_t{color.g} << 8U | std::uint32_t{color.b} << 16U |
          kOpaque;
 }
 
@@ -136,11 +136,11 @@ MeshRaster::MeshRaster(const RasterView& view)
     : view_(view),
       width_(view.width * kSamples),
       height_(view.height * kSamples),
-      samples_per_metre_(view.pixels_per_metre * kSamples),
+      samples_per_meter_(view.pixels_per_meter * kSamples),
       distance_(kLens * std::max(width_, height_) / kSamplesPerUnit) {
   source_.parts.resize(2);
   source_.parts[1].part = 1;
-  source_.materials.push_back({.name = "colour of the vertices"});
+  source_.materials.push_back({.name = "color of the vertices"});
   source_.semantics.emplace_back("figure");
   for (RenderPart& part : source_.parts) {
     part.surfaces.resize(1);
@@ -149,17 +149,17 @@ MeshRaster::MeshRaster(const RasterView& view)
 }
 
 Vec3 MeshRaster::inView(const Vec3& point) const {
-  const Vec3 offset = point - view_.centre;
-  const double scale = samples_per_metre_ / kSamplesPerUnit;
+  const Vec3 offset = point - view_.center;
+  const double scale = samples_per_meter_ / kSamplesPerUnit;
   return {static_cast<float>(-scale * dotProduct(offset, view_.axes.toward)),
           static_cast<float>(scale * dotProduct(offset, view_.axes.up)),
           static_cast<float>(scale * dotProduct(offset, view_.axes.right))};
 }
 
 MeshRaster::Sample MeshRaster::project(const Vec3& point) const {
-  const Vec3 offset = point - view_.centre;
-  const double depth = dotProduct(offset, view_.axes.toward) * samples_per_metre_ / kSamplesPerUnit;
-  const double scale = samples_per_metre_ * distance_ / (distance_ - depth);
+  const Vec3 offset = point - view_.center;
+  const double depth = dotProduct(offset, view_.axes.toward) * samples_per_meter_ / kSamplesPerUnit;
+  const double scale = samples_per_meter_ * distance_ / (distance_ - depth);
   return {0.5 * width_ + scale * dotProduct(offset, view_.axes.right),
           0.5 * height_ - scale * dotProduct(offset, view_.axes.up), depth};
 }
@@ -192,7 +192,7 @@ void MeshRaster::drawMesh(const RasterMesh& mesh, const Pose& world_from_mesh) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const std::uint32_t index = mesh.corners[n + corner];
       corners[corner].position = inView(world_from_mesh * mesh.positions[index]);
-      corners[corner].color = mesh.colors.empty() ? packed(mesh.colour) : mesh.colors[index];
+      corners[corner].color = mesh.colors.empty() ? packed(mesh.color) : mesh.colors[index];
     }
     addTriangle(surface, corners, kAmbient);
   }
@@ -240,11 +240,11 @@ void MeshRaster::drawRenderModel(const RenderMeshes& meshes, const RenderModel& 
   }
 }
 
-void MeshRaster::drawSphere(const RasterSphere& sphere, Rgb colour) {
-  const Vec3 centre = inView(sphere.centre);
+void MeshRaster::drawSphere(const RasterSphere& sphere, Rgb color) {
+  const Vec3 center = inView(sphere.center);
   const auto radius =
-      static_cast<float>(static_cast<double>(sphere.radius) * samples_per_metre_ / kSamplesPerUnit);
-  if (!isNear(centre) || !(radius < kFarthest)) return;
+      static_cast<float>(static_cast<double>(sphere.radius) * samples_per_meter_ / kSamplesPerUnit);
+  if (!isNear(center) || !(radius < kFarthest)) return;
   const pack_tool::SphereMesh unit = pack_tool::makeSphereMesh(kSphereCuts);
   RenderSurface& surface = source_.parts[1].surfaces.emplace_back();
   surface.vertices.reserve(unit.points.size());
@@ -252,7 +252,7 @@ void MeshRaster::drawSphere(const RasterSphere& sphere, Rgb colour) {
     const double light =
         lightOn(static_cast<double>(p.z), static_cast<double>(p.y), -static_cast<double>(p.x));
     surface.vertices.push_back(
-        {.position = centre + p * radius, .color = packed(shaded(colour, light))});
+        {.position = center + p * radius, .color = packed(shaded(color, light))});
   }
   surface.corners = unit.corners;
 }
@@ -261,7 +261,7 @@ std::array<MeshRaster::Layer, 2> MeshRaster::render() const {
   const std::size_t samples = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   std::array<Layer, 2> layers;
   for (Layer& layer : layers) {
-    layer.colours.assign(samples, kPaper);
+    layer.colors.assign(samples, kPaper);
     layer.depths.assign(samples, kNothing);
   }
   // Whatever the layout or the renderer could refuse was left out before.
@@ -283,7 +283,7 @@ std::array<MeshRaster::Layer, 2> MeshRaster::render() const {
   camera.world_from_camera = rigidTransform({{static_cast<float>(-distance_), 0, 0}, Quat{}});
   camera.vertical_fov =
       static_cast<float>(2 * std::atan(0.5 * height_ / kSamplesPerUnit / distance_));
-  std::vector<std::uint8_t> colours(std::size_t{6} * samples);
+  std::vector<std::uint8_t> colors(std::size_t{6} * samples);
   std::vector<float> depths(2 * samples);
   const std::array<RenderInstance, 2> instances{
       {{.model = 0, .world_from_model = {}}, {.model = 1, .world_from_model = {}}}};
@@ -292,11 +292,11 @@ std::array<MeshRaster::Layer, 2> MeshRaster::render() const {
     const bool any = library.model(static_cast<std::uint32_t>(n)).cluster_count > 0;
     views[n] = {camera, std::span(instances).subspan(n, any ? 1 : 0)};
   }
-  renderer->render(views, {.color = colours, .depth = depths, .semantics = {}});
+  renderer->render(views, {.color = colors, .depth = depths, .semantics = {}});
   for (std::size_t n = 0; n < 2 * samples; ++n) {
     if (!(depths[n] > 0)) continue;
     Layer& layer = layers[n / samples];
-    layer.colours[n % samples] = {colours[3 * n], colours[3 * n + 1], colours[3 * n + 2]};
+    layer.colors[n % samples] = {colors[3 * n], colors[3 * n + 1], colors[3 * n + 2]};
     layer.depths[n % samples] = static_cast<float>(distance_ - static_cast<double>(depths[n]));
   }
   return layers;
@@ -332,17 +332,17 @@ void MeshRaster::plotLine(const RasterLine& line, const Layer& meshes,
       const std::size_t index = indexOf({x, y});
       const double depth = from.depth + way * (to.depth - from.depth) + bias;
       const bool hidden = depth < static_cast<double>(meshes.depths[index]);
-      samples[index] = blend(samples[index], line.colour, hidden ? kHiddenLineShare : kLineShare);
+      samples[index] = blend(samples[index], line.color, hidden ? kHiddenLineShare : kLineShare);
     }
   }
 }
 
 void MeshRaster::compose(Image& image, int left, int top) const {
   const auto [meshes, spheres] = render();
-  std::vector<Rgb> samples = meshes.colours;
+  std::vector<Rgb> samples = meshes.colors;
   for (std::size_t n = 0; n < samples.size(); ++n) {
     if (spheres.depths[n] > meshes.depths[n]) {
-      samples[n] = blend(samples[n], spheres.colours[n], kSphereShare);
+      samples[n] = blend(samples[n], spheres.colors[n], kSphereShare);
     }
   }
   for (const RasterLine& line : lines_) plotLine(line, meshes, samples);

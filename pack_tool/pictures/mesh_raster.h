@@ -30,9 +30,9 @@ inline constexpr ViewAxes kTopView{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
 /// An orthographic window on the world.
 struct RasterView {
   ViewAxes axes;
-  /// The point of the world in the middle of the picture, metres.
-  Vec3 centre;
-  double pixels_per_metre = 1;
+  /// The point of the world in the middle of the picture, meters.
+  Vec3 center;
+  double pixels_per_meter = 1;
   /// Pixels.
   int width = 1;
   int height = 1;
@@ -43,26 +43,26 @@ struct RasterMesh {
   std::span<const Vec3> positions;
   /// Three per triangle; both sides are seen.
   std::span<const std::uint32_t> corners;
-  /// RGBA, R lowest: one per position, or none for `colour`.
+  /// RGBA, R lowest: one per position, or none for `color`.
   std::span<const std::uint32_t> colors;
-  Rgb colour;
+  Rgb color;
 };
 
-/// A sphere in the world, metres.
+/// A sphere in the world, meters.
 struct RasterSphere {
-  Vec3 centre;
+  Vec3 center;
   float radius = 0;
 };
 
-/// A straight line in the world, metres.
+/// A straight line in the world, meters.
 struct RasterLine {
   Vec3 from;
   Vec3 to;
-  Rgb colour;
+  Rgb color;
 };
 
 /// What is left out of rooms so that one can look into them: triangles wholly above these heights
-/// of the world, metres.
+/// of the world, meters.
 struct RoomCut {
   float any = 0;
   /// Of those that are about level.
@@ -84,7 +84,7 @@ class MeshRaster {
   /// With materials and textures, shaded so that its shape is seen. `meshes` outlives this.
   void drawRenderModel(const RenderMeshes& meshes, const RenderModel& model,
                        const Pose& world_from_model);
-  void drawSphere(const RasterSphere& sphere, Rgb colour);
+  void drawSphere(const RasterSphere& sphere, Rgb color);
   void drawLine(const RasterLine& line);
 
   /// Puts the picture into `image`, its top left corner at (left, top).
@@ -98,9 +98,9 @@ class MeshRaster {
     double depth = 0;
   };
 
-  /// One thing per sample: its colour and how near it is.
+  /// One thing per sample: its color and how near it is.
   struct Layer {
-    std::vector<Rgb> colours;
+    std::vector<Rgb> colors;
     std::vector<float> depths;
   };
 
@@ -114,7 +114,7 @@ class MeshRaster {
   [[nodiscard]] Vec3 inView(const Vec3& point) const;
   [[nodiscard]] Sample project(const Vec3& point) const;
   [[nodiscard]] std::size_t indexOf(SamplePlace place) const;
-  /// `least_light`: what is left of a colour in the shadow.
+  /// `least_light`: what is left of a color in the shadow.
   void addTriangle(RenderSurface& to, std::array<RenderVertex, 3> corners,
                    double least_light) const;
   /// The first material of a pack among those of the picture.
@@ -126,7 +126,7 @@ class MeshRaster {
   RasterView view_;
   int width_;
   int height_;
-  double samples_per_metre_;
+  double samples_per_meter_;
   /// From the viewer to the middle of the picture, units.
   double distance_;
   /// Part 0: meshes; part 1: spheres.

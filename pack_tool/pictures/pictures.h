@@ -17,10 +17,10 @@ struct Picture {
   std::vector<PixelRect> plots;
 };
 
-/// What the colour of a column in a plan says.
+/// What the color of a column in a plan says.
 enum class PlanValue {
-  kTotalHeight,   ///< Sum of the heights of its free spans, metres.
-  kLowestHeight,  ///< Height of its lowest free span, metres.
+  kTotalHeight,   ///< Sum of the heights of its free spans, meters.
+  kLowestHeight,  ///< Height of its lowest free span, meters.
   kSpanCount,     ///< Number of its free spans.
 };
 
@@ -30,8 +30,8 @@ struct PlanOptions {
   std::string title = {};
 };
 
-/// Draws the grids from above, side by side on one colour scale: x to the right, z down, as seen
-/// looking down the Y axis. Blocked columns are dark grey. One grid is about 1000 pixels wide, a
+/// Draws the grids from above, side by side on one color scale: x to the right, z down, as seen
+/// looking down the Y axis. Blocked columns are dark gray. One grid is about 1000 pixels wide, a
 /// whole number of pixels per cell where a cell is at least one pixel. `grids` must not be empty.
 /// Safe to call from many threads.
 [[nodiscard]] Picture drawPlan(std::span<const ColumnGrid> grids, const PlanOptions& options);
@@ -45,7 +45,7 @@ struct SliceOptions {
 };
 
 /// Draws a vertical slice through the grids, one below the other: free heights of the sphere's
-/// centre are light, blocked ones dark. One scale for both axes unless the line is very short.
+/// center are light, blocked ones dark. One scale for both axes unless the line is very short.
 /// Fails with kInvalidInput when the line is shorter than a cell, is not finite, or misses every
 /// grid. `grids` must not be empty. Safe to call from many threads.
 [[nodiscard]] Result<Picture> drawSlice(std::span<const ColumnGrid> grids,

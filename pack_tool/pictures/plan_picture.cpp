@@ -14,7 +14,7 @@ namespace {
 constexpr int kMargin = 24;
 constexpr int kBarWidth = 24;
 constexpr int kBarHeight = 320;
-/// Room for the colour bar, its labels and its caption.
+/// Room for the color bar, its labels and its caption.
 constexpr int kLegendWidth = 12 * kTextAdvance;
 /// Width that a single plot and one of several plots aim at, and the largest height of a plot.
 constexpr int kSingleWidth = 1000;
@@ -76,7 +76,7 @@ void drawColumns(Image& image, const Panel& panel, double top_value) {
       const float value = panel.values[row + cell_at(x, plot.width, grid.columnsX())];
       const bool blocked = value == kBlockedValue;
       image.set(plot.x + x, plot.y + y,
-                blocked ? kBlocked : scaleColour(static_cast<double>(value) / top_value));
+                blocked ? kBlocked : scaleColor(static_cast<double>(value) / top_value));
     }
   }
 }
@@ -89,7 +89,7 @@ void drawPanel(Image& image, const Panel& panel, double top_value) {
   const auto min_z = static_cast<double>(layout.min_z);
   drawColumns(image, panel, top_value);
   drawFrame(image, plot, kInk);
-  drawText(image, {plot.x + plot.width / 2, plot.y - kAxisNameHeight, Anchor::kCentre},
+  drawText(image, {plot.x + plot.width / 2, plot.y - kAxisNameHeight, Anchor::kCenter},
            fmt::format("radius {} m", layout.radius), kInk);
   const AxisScale x_scale{min_x, min_x + layout.columns_x * spacing, plot.x, plot.right()};
   drawHorizontalAxis(image, plot, x_scale, "x (m)");
@@ -110,7 +110,7 @@ std::string_view captionOf(PlanValue value) {
   return "total free height";
 }
 
-/// The top of the colour scale: the largest value, or 1 when everything is blocked.
+/// The top of the color scale: the largest value, or 1 when everything is blocked.
 double topValue(const std::vector<Panel>& panels) {
   float largest = 0;
   for (const Panel& panel : panels) {
@@ -120,9 +120,9 @@ double topValue(const std::vector<Panel>& panels) {
 }
 
 void drawLegend(Image& image, int x, int y, double top_value, PlanValue value) {
-  drawText(image, {x, y}, value == PlanValue::kSpanCount ? "spans" : "metres", kInk);
+  drawText(image, {x, y}, value == PlanValue::kSpanCount ? "spans" : "meters", kInk);
   const PixelRect bar{x, y + kTextHeight + 14, kBarWidth, kBarHeight};
-  drawColourBar(image, bar, top_value);
+  drawColorBar(image, bar, top_value);
   drawSwatch(image, x, bar.bottom() + 22, kBlocked, "blocked");
 }
 

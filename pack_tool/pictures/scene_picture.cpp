@@ -36,7 +36,7 @@ constexpr float kFov = std::numbers::pi_v<float> / 2;
 /// Places on a grid over the ground, each with views along +X, -Z, -X and +Z.
 std::vector<RenderCamera> candidates(const RenderModel& model) {
   constexpr int kPlaces = 7;
-  // Metres; of low scenes, this share of their height.
+  // Meters; of low scenes, this share of their height.
   constexpr float kEyes = 1.5F;
   constexpr float kEyeShare = 0.6F;
   constexpr float kHalf = 0.707106781F;
@@ -57,7 +57,7 @@ std::vector<RenderCamera> candidates(const RenderModel& model) {
   return cameras;
 }
 
-/// How much room a view shows: its mean depth, metres, counted up to a few; nothing where something
+/// How much room a view shows: its mean depth, meters, counted up to a few; nothing where something
 /// stands right before the eye. `depths`: 0 where nothing is.
 double roomIn(std::span<const float> depths) {
   constexpr double kFar = 6;
@@ -167,7 +167,7 @@ Result<Image> drawScene(const Figure& scene, int view_size) {
   std::array<ViewPlace, 4> places;
   for (std::size_t n = 0; n < places.size(); ++n) {
     places[n] = {kMargin + static_cast<int>(n) * (view_size + kMargin), top, view_size};
-    drawText(image, {places[n].left + view_size / 2, kMargin + kLine, Anchor::kCentre}, kNames[n],
+    drawText(image, {places[n].left + view_size / 2, kMargin + kLine, Anchor::kCenter}, kNames[n],
              kInk);
     if (n < axes.size()) drawFigureView(image, places[n], scene, axes[n], scale);
   }

@@ -35,9 +35,9 @@ double heightRange(const ColumnGrid& grid) {
 
 PixelRect plotSize(const ColumnGrid& grid, double length) {
   const double range = std::max(heightRange(grid), 1e-3);
-  const double pixels_per_metre = std::min(kPlotWidth / length, kLargestPlotHeight / range);
-  const int width = static_cast<int>(std::lround(length * pixels_per_metre));
-  const int height = static_cast<int>(std::lround(range * pixels_per_metre));
+  const double pixels_per_meter = std::min(kPlotWidth / length, kLargestPlotHeight / range);
+  const int width = static_cast<int>(std::lround(length * pixels_per_meter));
+  const int height = static_cast<int>(std::lround(range * pixels_per_meter));
   return {0, 0, std::max(width, kSmallestPlotWidth), std::max(height, 1)};
 }
 
@@ -46,7 +46,7 @@ void drawSpans(Image& image, const PixelRect& plot, int x, const AxisScale& heig
                const std::vector<Span>& spans) {
   fillRect(image, {x, plot.y, 1, plot.height}, kBlocked);
   for (const Span& span : spans) {
-    // A pixel is free when its centre is.
+    // A pixel is free when its center is.
     // Clamped as doubles: a span may lie far outside what an integer holds.
     const auto pixel_of = [&](double position) {
       return static_cast<int>(std::clamp(position, static_cast<double>(plot.y - 1),
@@ -86,7 +86,7 @@ void drawPlot(Image& image, const PixelRect& plot, const ColumnGrid& grid,
   }
   drawHeightLines(image, plot, heights);
   drawFrame(image, plot, kInk);
-  drawText(image, {plot.x + plot.width / 2, plot.y - kAxisNameHeight, Anchor::kCentre},
+  drawText(image, {plot.x + plot.width / 2, plot.y - kAxisNameHeight, Anchor::kCenter},
            fmt::format("radius {} m", grid.radius()), kInk);
   drawHorizontalAxis(image, plot, {0, lengthOf(options), plot.x, plot.right()},
                      "along the line (m)");
@@ -123,7 +123,7 @@ Result<void> checkLine(std::span<const ColumnGrid> grids, const SliceOptions& op
 }
 
 void drawMeanings(Image& image, int x, int y) {
-  x += drawSwatch(image, x, y, kFree, "free for the sphere's centre");
+  x += drawSwatch(image, x, y, kFree, "free for the sphere's center");
   x += drawSwatch(image, x, y, kBlocked, "blocked");
   drawSwatch(image, x, y, kUncovered, "outside the grid");
 }

@@ -67,7 +67,7 @@ class ModelComparison {
                     fmt::format("{}, {} others", vertices_, other_uvs_)});
     }
     if (other_colors_ > 0) {
-      to.push_back({field + ".colours", std::to_string(vertices_),
+      to.push_back({field + ".colors", std::to_string(vertices_),
                     fmt::format("{}, {} others", vertices_, other_colors_)});
     }
   }

@@ -12,7 +12,7 @@ struct PackPair {
 
 /// Compares the render meshes of two scenes, objects or robots. What is drawn goes to
 /// `difference.content`: models by the names of their parts, with their clusters' triangles,
-/// materials and sides, the places, texture coordinates and colours of their vertices (places and
+/// materials and sides, the places, texture coordinates and colors of their vertices (places and
 /// texture coordinates within the tolerance); materials; textures by their texels; semantics. What
 /// the source had and how far simplification went goes to `difference.provenance`. `descriptions`:
 /// of the packs, by describePack.

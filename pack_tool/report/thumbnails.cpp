@@ -32,10 +32,10 @@ Image shrunk(const Image& image, const pictures::PixelRect& part, int width) {
     for (int x = 0; x < small.width(); ++x) {
       std::array<int, 3> sum{};
       for (int n = 0; n < step * step; ++n) {
-        const Rgb colour = image.at(part.x + x * step + n % step, part.y + y * step + n / step);
-        sum[0] += colour.r;
-        sum[1] += colour.g;
-        sum[2] += colour.b;
+        const Rgb color = image.at(part.x + x * step + n % step, part.y + y * step + n / step);
+        sum[0] += color.r;
+        sum[1] += color.g;
+        sum[2] += color.b;
       }
       const auto mean = [&](std::size_t channel) {
         return static_cast<std::uint8_t>(sum[channel] / (step * step));

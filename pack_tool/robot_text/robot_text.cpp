@@ -102,7 +102,7 @@ class UrdfWriter {
       text += fmt::format(
           "    <collision>\n      <origin xyz=\"{}\" rpy=\"0 0 0\"/>\n"
           "      <geometry><sphere radius=\"{}\"/></geometry>\n    </collision>\n",
-          vectorText(zUp(sphere.centre)), robot_.radii()[sphere.radius_index]);
+          vectorText(zUp(sphere.center)), robot_.radii()[sphere.radius_index]);
     }
     return text + "  </link>\n";
   }
@@ -169,7 +169,7 @@ std::string srdfText(const Robot& robot) {
         fmt::format("  <link_sphere_approximation link=\"{}\">\n", xmlEscaped(robot.linkName(n)));
     for (const SetSphere& sphere : spheres[n]) {
       text += fmt::format("    <sphere center=\"{}\" radius=\"{}\"/>\n",
-                          vectorText(zUp(sphere.centre)), robot.radii()[sphere.radius_index]);
+                          vectorText(zUp(sphere.center)), robot.radii()[sphere.radius_index]);
     }
     if (spheres[n].empty()) text += "    <sphere center=\"0 0 0\" radius=\"0\"/>\n";
     text += "  </link_sphere_approximation>\n";

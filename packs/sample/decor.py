@@ -43,8 +43,8 @@ def bowl():
     return Mesh("bowl", [lathe("prints", profile, 15, swatch("porcelain"))])
 
 
-def fruit(name, colour):
-    return Mesh(name, [ellipsoid("prints", (0.039, 0.036, 0.039), 5, 7, swatch(colour))])
+def fruit(name, color):
+    return Mesh(name, [ellipsoid("prints", (0.039, 0.036, 0.039), 5, 7, swatch(color))])
 
 
 def vase():
@@ -61,11 +61,11 @@ def flower_pot():
                                      (0.0, 0.281, 0.0))])
 
 
-def leaf(name, colour):
+def leaf(name, color):
     """A long closed leaf that stands on its stem. Frame: the stem's foot, the leaf along +y."""
-    blade = moved(ellipsoid("prints", (0.067, 0.257, 0.0073), 5, 5, swatch(colour)), (0.0, 0.477, 0.057),
+    blade = moved(ellipsoid("prints", (0.067, 0.257, 0.0073), 5, 5, swatch(color)), (0.0, 0.477, 0.057),
                   about_x=14.0)
-    stem = moved(cylinder("prints", 0.0057, 0.0, 0.273, 4, swatch(colour)), about_x=4.0)
+    stem = moved(cylinder("prints", 0.0057, 0.0, 0.273, 4, swatch(color)), about_x=4.0)
     return Mesh(name, [blade, stem])
 
 

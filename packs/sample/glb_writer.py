@@ -81,7 +81,7 @@ def _corner_normals(part):
 
 
 def _clean(value):
-    """Round to 6 decimals (a micrometre) and drop the sign of zero."""
+    """Round to 6 decimals (a micrometer) and drop the sign of zero."""
     return round(value, 6) + 0.0
 
 
@@ -166,8 +166,8 @@ def _node_json(node, document, mesh_ids, mesh_list):
 
 
 def _material_json(name, material, image_names):
-    image, colour, metallic, roughness, _ = material
-    surface = {"baseColorFactor": list(colour) + [1.0]}
+    image, color, metallic, roughness, _ = material
+    surface = {"baseColorFactor": list(color) + [1.0]}
     if image is not None:
         surface["baseColorTexture"] = {"index": image_names.index(image)}
     surface.update(metallicFactor=metallic, roughnessFactor=roughness)

@@ -1,6 +1,6 @@
 """Meshes of the movable objects: things that a gripper opening 0.09 m can take.
 
-Metres, Y up, standing on y = 0 around the y axis. Handles and covers reach into the parts they are
+Meters, Y up, standing on y = 0 around the y axis. Handles and covers reach into the parts they are
 fixed to, as those of the furniture do.
 """
 

@@ -8,9 +8,9 @@ import geometry
 import glb_reader
 import layout as L
 
-# A landmark may not lie so near to touching that rounding could decide: metres.
+# A landmark may not lie so near to touching that rounding could decide: meters.
 _DECISION_MARGIN = 0.004
-_HEIGHT_TOLERANCE = 2e-6  # positions are rounded to a micrometre, then to float32
+_HEIGHT_TOLERANCE = 2e-6  # positions are rounded to a micrometer, then to float32
 
 
 def _middle(box):
@@ -207,7 +207,7 @@ def derive(glb):
                "top": round(L.shelf_board_bottom(i) + L.SHELF_BOARD, 6)} for i in range(L.SHELF_BOARDS)]
     shelf_x, shelf_z = _shelf_column()
     return {
-        "frame": "right-handed, Y up, metres; the floor is y = 0, north is -z, east is +x",
+        "frame": "right-handed, Y up, meters; the floor is y = 0, north is -z, east is +x",
         "asset": "apartment.glb", "counts": _counts(document), "radii": list(L.RADII),
         "bounds": _box_json(L.OUTSIDE), "rooms": _rooms(parts),
         "cavities": [{"name": "cabinet", **_box_json(L.CABINET_CAVITY)}],

@@ -1,6 +1,6 @@
 """The numbers of the apartment: one place for the builders and for the landmarks.
 
-Metres, Y up, the floor is y = 0. North is -z, east is +x. Sizes are those of a real home and
+Meters, Y up, the floor is y = 0. North is -z, east is +x. Sizes are those of a real home and
 avoid round numbers, so that no wall lies exactly on a column of a likely grid.
 """
 

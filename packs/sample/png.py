@@ -16,7 +16,7 @@ def encode(width, height, rgb):
     if len(rgb) != width * height * 3:
         raise ValueError(f"expected {width * height * 3} bytes of RGB, got {len(rgb)}")
     stride = width * 3
-    # Filter 0 on every row: the textures use few distinct colours, so plain
+    # Filter 0 on every row: the textures use few distinct colors, so plain
     # repeats compress better than differences.
     rows = b"".join(b"\0" + rgb[y * stride:(y + 1) * stride] for y in range(height))
     header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
@@ -59,8 +59,8 @@ def decode(data):
         elif kind == b"IDAT":
             packed += payload
         position += 12 + length
-    width, height, depth, colour, _, _, interlace = shape
-    if (depth, colour, interlace) != (8, 2, 0):
+    width, height, depth, color, _, _, interlace = shape
+    if (depth, color, interlace) != (8, 2, 0):
         raise ValueError("expected 8-bit RGB without interlacing")
     raw, stride = zlib.decompress(packed), width * 3
     rows, previous = [], bytearray(stride)

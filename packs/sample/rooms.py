@@ -33,7 +33,7 @@ def _books(shelf, meshes):
             rotation = None
             if leans and i == count - 1:
                 rotation = quaternion("z", 13.0)
-                # Turned about its left foot, the book rests against its neighbour.
+                # Turned about its left foot, the book rests against its neighbor.
                 x += size[1] * sin_cos(13.0)[0]
             shelf.add_part(f"book_{serial:02d}", meshes[serial * 3 % len(meshes)],
                            at=(x, top, back), rotation=rotation,

@@ -111,11 +111,11 @@ def box(material, low, high, rect=None):
     return Part(material, points, faces, rect_uvs(points, faces, rect) if rect else None)
 
 
-def box_at(material, centre_x, bottom, centre_z, size, rect=None):
+def box_at(material, center_x, bottom, center_z, size, rect=None):
     """A box given by the middle of its bottom face and its size (x, y, z)."""
     half_x, half_z = size[0] / 2, size[2] / 2
-    return box(material, (centre_x - half_x, bottom, centre_z - half_z),
-               (centre_x + half_x, bottom + size[1], centre_z + half_z), rect)
+    return box(material, (center_x - half_x, bottom, center_z - half_z),
+               (center_x + half_x, bottom + size[1], center_z + half_z), rect)
 
 
 def cushion(material, low, high, bevel):
@@ -139,8 +139,8 @@ def cushion(material, low, high, bevel):
                 j = i | 1 << along
                 faces.append((at[i, a], at[j, a], at[j, b], at[i, b]))
     faces += [(at[i, 0], at[i, 1], at[i, 2]) for i in range(8)]
-    centre = tuple((a + b) / 2 for a, b in zip(low, high))
-    faces = [f if dot(area_vector(points, f), sub(points[f[0]], centre)) > 0 else f[::-1]
+    center = tuple((a + b) / 2 for a, b in zip(low, high))
+    faces = [f if dot(area_vector(points, f), sub(points[f[0]], center)) > 0 else f[::-1]
              for f in faces]
     return Part(material, points, faces, crease=0.5)
 

@@ -18,7 +18,7 @@ SWATCHES = {
     "soil": (70, 52, 40), "brass": (196, 158, 84), "teal": (52, 118, 122),
 }
 
-# material: (image, base colour factor, metallic, roughness, metres per repeat in u and v)
+# material: (image, base color factor, metallic, roughness, meters per repeat in u and v)
 MATERIALS = {
     "plaster": ("plaster", (1.0, 1.0, 1.0), 0.0, 0.95, (1.3, 1.3)),
     "planks": ("planks", (1.0, 1.0, 1.0), 0.0, 0.6, (1.46, 0.73)),
@@ -34,7 +34,7 @@ MATERIALS = {
     "prints": ("prints", (1.0, 1.0, 1.0), 0.0, 0.7, (1.0, 1.0)),
 }
 
-# The same for the movable objects, each of which is a file of its own: most are plain colours, which
+# The same for the movable objects, each of which is a file of its own: most are plain colors, which
 # need no image.
 OBJECT_MATERIALS = {
     "glaze": (None, (0.89, 0.87, 0.80), 0.0, 0.25, (1.0, 1.0)),
@@ -56,7 +56,7 @@ GRAINED = frozenset(("planks", "oak", "walnut"))
 
 
 def tile_size(material):
-    """Metres per repeat of the material's image in u and v."""
+    """Meters per repeat of the material's image in u and v."""
     return (MATERIALS.get(material) or OBJECT_MATERIALS[material])[4]
 
 
@@ -85,24 +85,24 @@ def _mix(a, b, t):
 
 
 def _levels(t, count):
-    """`t` in [0, 1] on `count` levels: few colours make small PNG files."""
+    """`t` in [0, 1] on `count` levels: few colors make small PNG files."""
     return min(count - 1, max(0, int(t * count))) / (count - 1)
 
 
-def _picture(size, colour_at):
+def _picture(size, color_at):
     out = bytearray()
     for y in range(size):
         for x in range(size):
-            out += bytes(min(255, max(0, int(c + 0.5))) for c in colour_at(x, y))
+            out += bytes(min(255, max(0, int(c + 0.5))) for c in color_at(x, y))
     return size, size, bytes(out)
 
 
 def _plaster():
-    def colour(x, y):
+    def color(x, y):
         u, v = x / 64, y / 64
         t = 0.5 * _noise(u, v, 5, 5, 11) + 0.3 * _noise(u, v, 13, 13, 12) + 0.2 * _hash01(x, y, 13)
         return _mix((222, 214, 200), (240, 234, 222), _levels(t, 9))
-    return _picture(64, colour)
+    return _picture(64, color)
 
 
 def _wood(u, v, seed, period_v):
@@ -114,13 +114,13 @@ def _wood(u, v, seed, period_v):
 
 
 def _timber(dark, light, seed, size):
-    def colour(x, y):
+    def color(x, y):
         return _mix(dark, light, _levels(_wood(x / size, y / size, seed, 15), 12))
-    return _picture(size, colour)
+    return _picture(size, color)
 
 
 def _planks():
-    def colour(x, y):
+    def color(x, y):
         row, inside = divmod(y, 32)
         start = (int(_hash01(row, 0, 21) * 4) * 16 + row * 40) % 128
         along = (x - start) % 128
@@ -128,39 +128,39 @@ def _planks():
             return (104, 74, 48)
         t = 0.6 * _wood(x / 128, y / 128, 22, 24) + 0.4 * _hash01(row, 1, 23)
         return _mix((146, 104, 64), (204, 160, 108), _levels(t, 12))
-    return _picture(128, colour)
+    return _picture(128, color)
 
 
 def _tiles():
-    def colour(x, y):
+    def color(x, y):
         if x % 32 < 2 or y % 32 < 2:
             return (150, 150, 144)
         t = 0.55 * _hash01(x // 32, y // 32, 31) + 0.45 * _noise(x / 64, y / 64, 9, 9, 32)
         edge = x % 32 in (2, 31) or y % 32 in (2, 31)
         return _mix((190, 200, 198), (222, 228, 222), _levels(t, 8) * (0.5 if edge else 1.0))
-    return _picture(64, colour)
+    return _picture(64, color)
 
 
 def _lacquer():
-    def colour(x, y):
+    def color(x, y):
         t = 0.7 * _noise(x / 64, y / 64, 4, 4, 41) + 0.3 * _hash01(x // 2, y, 42)
         return _mix((168, 182, 166), (182, 195, 179), _levels(t, 5))
-    return _picture(64, colour)
+    return _picture(64, color)
 
 
 def _weave():
-    def colour(x, y):
+    def color(x, y):
         over = ((x // 4) + (y // 4)) % 2
         across = (x % 4, y % 4)[over]
         t = (0.55, 1.0, 0.85, 0.4)[across] * 0.7 + 0.3 * _hash01(x // 4, y // 4, 51 + over)
         return _mix((168, 168, 168), (250, 250, 250), _levels(t, 10))
-    return _picture(64, colour)
+    return _picture(64, color)
 
 
 def _rug():
     cream, red, navy, gold = (224, 208, 176), (150, 54, 46), (42, 56, 86), (200, 148, 72)
 
-    def colour(x, y):
+    def color(x, y):
         # The pattern is symmetric: fold the square, then draw one corner.
         a, b = min(x, 127 - x), min(y, 127 - y)
         rim = min(a, b)
@@ -180,24 +180,24 @@ def _rug():
             else:
                 base = gold if small < 3 else (cream if small < 5 else navy)
         return _mix(base, (255, 255, 255), 0.10 * _levels(_hash01(x, y // 2, 61), 4))
-    return _picture(128, colour)
+    return _picture(128, color)
 
 
 def _steel():
-    def colour(x, y):
+    def color(x, y):
         t = 0.7 * _hash01(0, y, 71) + 0.3 * _noise(x / 64, y / 64, 3, 64, 72)
         return _mix((168, 171, 175), (198, 201, 204), _levels(t, 8))
-    return _picture(64, colour)
+    return _picture(64, color)
 
 
-_BOOK_COLOURS = (
+_BOOK_COLORS = (
     (134, 44, 40), (38, 70, 106), (52, 92, 66), (214, 184, 120), (92, 58, 92), (196, 106, 50),
     (48, 52, 58), (224, 218, 200), (28, 104, 112), (156, 132, 84), (110, 30, 48), (92, 124, 148),
     (70, 82, 44), (206, 158, 150), (62, 44, 36), (170, 176, 178))
 
 
-def _book_colour(x, y):
-    base = _BOOK_COLOURS[x // 8]
+def _book_color(x, y):
+    base = _BOOK_COLORS[x // 8]
     light = sum(base) > 400
     ink = (60, 50, 44) if light else (222, 200, 142)
     if y in (8, 9, 54, 55) or (16 <= y < 40 and x % 8 in (3, 4) and _hash01(x // 8, y // 2, 81) > 0.3):
@@ -205,7 +205,7 @@ def _book_colour(x, y):
     return _mix(base, (128, 128, 128), 0.12 * _levels(_hash01(x // 8, y // 4, 82), 4))
 
 
-def _painting_colour(x, y):
+def _painting_color(x, y):
     """A sunset over hills: u and v in [0, 1] over the painting."""
     u, v = x / 62, y / 44
     if (u - 0.64) * (u - 0.64) * 2 + (v - 0.40) * (v - 0.40) < 0.021:
@@ -219,7 +219,7 @@ def _painting_colour(x, y):
     return _mix((86, 120, 158), (238, 156, 104), _levels(v * 1.7, 9))
 
 
-def _view_colour(x, y):
+def _view_color(x, y):
     """A bright sky with clouds over trees, as seen through a window."""
     u, v = x / 62, y / 44
     if v > 0.80 + 0.10 * _noise(u, 0.5, 9, 1, 95):
@@ -232,22 +232,22 @@ def _view_colour(x, y):
 def _prints():
     swatches = list(SWATCHES.values())
 
-    def colour(x, y):
+    def color(x, y):
         if y < 64:
-            return _book_colour(x, y)
+            return _book_color(x, y)
         if y >= 112:
             return swatches[min(x // 8, len(swatches) - 1)]
         # The margin around each picture repeats its rim, against bleeding.
         inside_y = min(max(y - 66, 0), 44)
         if x < 64:
-            return _painting_colour(min(max(x - 1, 0), 62), inside_y)
-        return _view_colour(min(max(x - 65, 0), 62), inside_y)
-    return _picture(PRINTS_SIZE, colour)
+            return _painting_color(min(max(x - 1, 0), 62), inside_y)
+        return _view_color(min(max(x - 65, 0), 62), inside_y)
+    return _picture(PRINTS_SIZE, color)
 
 
 def _label():
-    """A printed label, bright so that the material's colour shows: a seal over lines of print."""
-    def colour(x, y):
+    """A printed label, bright so that the material's color shows: a seal over lines of print."""
+    def color(x, y):
         u, v = (x + 0.5) / 64, (y + 0.5) / 64
         round_seal = (u - 0.5) * (u - 0.5) + (v - 0.36) * (v - 0.36)
         if v < 0.08 or v > 0.94:
@@ -259,7 +259,7 @@ def _label():
         if 0.64 < v < 0.90 and 0.2 < u < 0.8 and int(v * 64) % 4 < 2:
             return (130, 130, 130) if _hash01(x // 2, y // 4, 101) > 0.3 else (255, 255, 255)
         return (255, 255, 255)
-    return _picture(64, colour)
+    return _picture(64, color)
 
 
 def object_images():
@@ -283,7 +283,7 @@ def _uv_rect(x0, y0, x1, y1):
 
 
 def swatch(name):
-    """Return the rectangle (u0, v0, u1, v1) of a plain colour on the `prints` texture."""
+    """Return the rectangle (u0, v0, u1, v1) of a plain color on the `prints` texture."""
     x = list(SWATCHES).index(name) * 8
     return _uv_rect(x + 2, 115, x + 6, 125)
 

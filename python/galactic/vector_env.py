@@ -62,7 +62,7 @@ class VectorEnv(_Base):
     images they are a dictionary with "state" (the flat array) or the parts, and
 
     - rgb: uint8 (num_envs, height, width, 3),
-    - depth: float32 (num_envs, height, width), metres, 0 where nothing is seen,
+    - depth: float32 (num_envs, height, width), meters, 0 where nothing is seen,
     - semantics: uint32 (num_envs, height, width).
 
     Two halves of the batch can take turns, each working on threads of its own while the other's

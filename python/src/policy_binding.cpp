@@ -289,7 +289,7 @@ row. The same actions for any number of threads and of other envs.)");
 observations  [envs, S] float32
 dones         [envs] bool or uint8: where an episode ended in the last step; None: nowhere
 rgb           [envs, height, width, 3] uint8, where the policy wants images
-depth         [envs, height, width] float32, metres)")
+depth         [envs, height, width] float32, meters)")
       .def("reset", &PlayedPolicy::reset, "All envs begin anew.")
       .def_property_readonly("name", [](const PlayedPolicy& p) { return p.needs().name; })
       .def_property_readonly(

@@ -118,7 +118,7 @@ void bindPose(py::module_& module) {
   type.attr("__module__") = "galactic";
   type.doc() =
       "A rigid transform a_from_b: rotate, then translate.\n\n"
-      "translation: float32 (3,), metres. rotation: float32 (4,), the unit quaternion (w, x, y, "
+      "translation: float32 (3,), meters. rotation: float32 (4,), the unit quaternion (w, x, y, "
       "z).";
 }
 
@@ -144,7 +144,7 @@ void bindEnvState(py::module_& module) {
       "The state of one env: a copy.\n\n"
       "scene, episode: indices into the world's scenes and episodes. step: steps of the episode.\n"
       "world_from_root, world_from_grip, goal: Pose. joint_positions: float32, the robot's whole\n"
-      "vector, radians or metres. objects: the world poses of the episode's objects. held: index\n"
+      "vector, radians or meters. objects: the world poses of the episode's objects. held: index\n"
       "into objects, None with an empty hand. target: index into objects.";
 }
 

@@ -12,14 +12,14 @@ using pictures::Rgb;
 
 constexpr std::uint32_t kMostDeep = 65535;
 
-/// A picture whose pixel n is `colour_of(n)`.
-template <class ColourOf>
-Image pictureOf(const DrawnImage& image, const ColourOf& colour_of) {
+/// A picture whose pixel n is `color_of(n)`.
+template <class ColorOf>
+Image pictureOf(const DrawnImage& image, const ColorOf& color_of) {
   Image picture(static_cast<int>(image.width), static_cast<int>(image.height), {});
   for (std::uint32_t y = 0; y < image.height; ++y) {
     for (std::uint32_t x = 0; x < image.width; ++x) {
       const std::size_t pixel = std::size_t{y} * image.width + x;
-      picture.set(static_cast<int>(x), static_cast<int>(y), colour_of(pixel));
+      picture.set(static_cast<int>(x), static_cast<int>(y), color_of(pixel));
     }
   }
   return picture;
@@ -33,7 +33,7 @@ DeepImage deepImage(const DrawnImage& image) {
 
 Rgb semanticColor(std::uint32_t id) {
   if (id == 0) return {};
-  // Numbers that follow each other become colours far apart, none of them dark.
+  // Numbers that follow each other become colors far apart, none of them dark.
   constexpr std::uint32_t kScatter = 2654435769U;
   constexpr std::uint32_t kDarkest = 64;
   const std::uint32_t bits = id * kScatter;
@@ -55,8 +55,8 @@ Image depthPicture(const DrawnImage& image) {
   return pictureOf(image, [&](std::size_t pixel) {
     const float depth = image.depth[pixel];
     if (!(depth > 0)) return Rgb{};
-    const auto grey = static_cast<std::uint8_t>(std::lround(255 / (1 + depth / kHalfBright)));
-    return Rgb{grey, grey, grey};
+    const auto gray = static_cast<std::uint8_t>(std::lround(255 / (1 + depth / kHalfBright)));
+    return Rgb{gray, gray, gray};
   });
 }
 
@@ -65,11 +65,11 @@ Image semanticPicture(const DrawnImage& image) {
 }
 
 DeepImage depthNumbers(const DrawnImage& image) {
-  constexpr float kMillimetres = 1000;
+  constexpr float kMillimeters = 1000;
   DeepImage numbers = deepImage(image);
   numbers.pixels.reserve(image.depth.size());
   for (const float depth : image.depth) {
-    const float clamped = std::clamp<float>(depth * kMillimetres, 0, kMostDeep);
+    const float clamped = std::clamp<float>(depth * kMillimeters, 0, kMostDeep);
     numbers.pixels.push_back(static_cast<std::uint16_t>(std::lround(clamped)));
   }
   return numbers;

@@ -9,33 +9,33 @@
 
 namespace galactic {
 
-/// One image of a batch, as a renderer left it: spans of width * height pixels (colour: times the
+/// One image of a batch, as a renderer left it: spans of width * height pixels (color: times the
 /// bytes of the format), empty where it was not asked for.
 struct DrawnImage {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   ColorFormat format = ColorFormat::kRgb8;
   std::span<const std::uint8_t> color;
-  /// Metres; 0 where nothing is.
+  /// Meters; 0 where nothing is.
   std::span<const float> depth;
   std::span<const std::uint32_t> semantics;
 };
 
-/// Colours as they are.
+/// Colors as they are.
 [[nodiscard]] pictures::Image colorPicture(const DrawnImage& image);
 
-/// Depth to look at: white at the camera, half as bright at kHalfBright metres, black where nothing
+/// Depth to look at: white at the camera, half as bright at kHalfBright meters, black where nothing
 /// is.
 [[nodiscard]] pictures::Image depthPicture(const DrawnImage& image);
 inline constexpr float kHalfBright = 2;
 
-/// The colour of an id in semanticPicture; black of 0.
+/// The color of an id in semanticPicture; black of 0.
 [[nodiscard]] pictures::Rgb semanticColor(std::uint32_t id);
 
-/// Ids to look at: a colour for each; black where nothing is.
+/// Ids to look at: a color for each; black where nothing is.
 [[nodiscard]] pictures::Image semanticPicture(const DrawnImage& image);
 
-/// Depth in millimetres, rounded; 0 where nothing is, 65535 for that far and farther.
+/// Depth in millimeters, rounded; 0 where nothing is, 65535 for that far and farther.
 [[nodiscard]] pictures::DeepImage depthNumbers(const DrawnImage& image);
 
 /// Ids; 65535 for that and higher ones.

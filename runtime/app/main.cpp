@@ -65,7 +65,7 @@ Result<galactic::PackFile> openAndDescribe(const std::string& path, bool trusted
     times.verify = Seconds(Clock::now() - mapped).count();
     if (!verified) return tl::unexpected<Error>(verified.error());
   }
-  fmt::print("{}", galactic::summarise(*pack, times));
+  fmt::print("{}", galactic::summarize(*pack, times));
   return pack;
 }
 

@@ -17,7 +17,7 @@ struct RunOptions {
   bool trusted = false;
   bool bench = false;
   /// Whether any option of a simulation was typed: then the packs are a world and step, else they
-  /// are summarised.
+  /// are summarized.
   bool simulates = false;
   SimulationOptions simulation;
   /// Of the whole batch.

@@ -27,7 +27,7 @@ struct RunLength {
   std::size_t envs = 0;
 };
 
-/// What `frame` looks like in sheets and videos: colour, depth, semantics and debug view side by
+/// What `frame` looks like in sheets and videos: color, depth, semantics and debug view side by
 /// side, as far as they are there.
 [[nodiscard]] pictures::Image tileOf(const EnvFrame& frame);
 

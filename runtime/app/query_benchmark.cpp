@@ -20,15 +20,15 @@ struct Answers {
   std::vector<float> down, up;
 };
 
-void askBatched(const ColumnGrid& grid, const SphereCentres& centres, Answers& answers) {
-  const std::size_t count = centres.x.size();
-  grid.contact(centres, {std::span(answers.clearance).first(count),
+void askBatched(const ColumnGrid& grid, const SphereCenters& centers, Answers& answers) {
+  const std::size_t count = centers.x.size();
+  grid.contact(centers, {std::span(answers.clearance).first(count),
                          std::span(answers.down).first(count), std::span(answers.up).first(count)});
 }
 
-void askOneByOne(const ColumnGrid& grid, const SphereCentres& centres, Answers& answers) {
-  for (std::size_t n = 0; n < centres.x.size(); ++n) {
-    const Contact contact = grid.contact({centres.x[n], centres.y[n], centres.z[n]});
+void askOneByOne(const ColumnGrid& grid, const SphereCenters& centers, Answers& answers) {
+  for (std::size_t n = 0; n < centers.x.size(); ++n) {
+    const Contact contact = grid.contact({centers.x[n], centers.y[n], centers.z[n]});
     answers.clearance[n] = contact.clearance;
     answers.down[n] = contact.down;
     answers.up[n] = contact.up;
@@ -45,7 +45,7 @@ double measure(std::span<const SceneGrids> scenes, const QueryWorkload& workload
   for (int pass = 0; pass < kPasses; ++pass) {
     const auto start = std::chrono::steady_clock::now();
     for (const QueryGroup& group : workload.groups) {
-      ask(scenes[group.scene][group.grid], workload.centres(group), answers);
+      ask(scenes[group.scene][group.grid], workload.centers(group), answers);
     }
     const Seconds seconds = std::chrono::steady_clock::now() - start;
     best = std::min(best, seconds.count());
@@ -58,7 +58,7 @@ std::size_t countFree(std::span<const SceneGrids> scenes, const QueryWorkload& w
   Answers answers(workload.longest);
   std::ptrdiff_t free = 0;
   for (const QueryGroup& group : workload.groups) {
-    askBatched(scenes[group.scene][group.grid], workload.centres(group), answers);
+    askBatched(scenes[group.scene][group.grid], workload.centers(group), answers);
     const auto asked = std::span(answers.clearance).first(group.count);
     free += std::count(asked.begin(), asked.end(), Clearance::kFree);
   }

@@ -14,7 +14,7 @@ constexpr std::size_t kHandSpheres = 16;
 constexpr std::size_t kArmSpheres = 16;
 constexpr std::size_t kBodySpheres = 8;
 constexpr std::size_t kRobotSpheres = kHandSpheres + kArmSpheres + kBodySpheres;
-/// Farthest that a robot drives in a step, metres.
+/// Farthest that a robot drives in a step, meters.
 constexpr float kStep = 0.02F;
 
 /// Uniform numbers, the same with every standard library.
@@ -100,10 +100,10 @@ void appendGroup(QueryWorkload& workload, std::uint32_t scene, std::uint32_t gri
   workload.longest = std::max(workload.longest, count);
 }
 
-void appendCentre(QueryWorkload& workload, Vec3 centre) {
-  workload.x.push_back(centre.x);
-  workload.y.push_back(centre.y);
-  workload.z.push_back(centre.z);
+void appendCenter(QueryWorkload& workload, Vec3 center) {
+  workload.x.push_back(center.x);
+  workload.y.push_back(center.y);
+  workload.z.push_back(center.z);
 }
 
 void appendRobot(QueryWorkload& workload, const Robot& robot, std::size_t grids) {
@@ -118,7 +118,7 @@ void appendRobot(QueryWorkload& workload, const Robot& robot, std::size_t grids)
       appendGroup(workload, robot.scene, static_cast<std::uint32_t>(grids - 1), kBodySpheres);
     }
     const Vec3& sphere = robot.spheres[n];
-    appendCentre(workload, {robot.base.x + c * sphere.x - s * sphere.z, robot.base.y + sphere.y,
+    appendCenter(workload, {robot.base.x + c * sphere.x - s * sphere.z, robot.base.y + sphere.y,
                             robot.base.z + s * sphere.x + c * sphere.z});
   }
 }
@@ -159,7 +159,7 @@ QueryWorkload randomWorkload(std::span<const SceneGrids> scenes, std::uint32_t g
     const ColumnGridLayout& grid = scenes[scene][index].layout();
     appendGroup(workload, scene, index, kGroup);
     for (std::size_t sphere = 0; sphere < kGroup; ++sphere) {
-      appendCentre(workload,
+      appendCenter(workload,
                    {grid.min_x + uniform(0, static_cast<float>(grid.columns_x) * grid.spacing),
                     uniform(grid.heights.lo, grid.heights.hi),
                     grid.min_z + uniform(0, static_cast<float>(grid.columns_z) * grid.spacing)});

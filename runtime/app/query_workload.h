@@ -32,7 +32,7 @@ struct QueryWorkload {
   /// Longest group.
   std::size_t longest = 0;
 
-  [[nodiscard]] SphereCentres centres(const QueryGroup& group) const {
+  [[nodiscard]] SphereCenters centers(const QueryGroup& group) const {
     const auto part = [&](const std::vector<float>& all) {
       return std::span(all).subspan(group.first, group.count);
     };

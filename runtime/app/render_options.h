@@ -36,7 +36,7 @@ struct DrawingOptions {
   /// Whether pictures show what the simulation knows beside what the camera sees.
   bool debug_view = false;
   std::string debug_camera = "follow";
-  /// Whose column grid is shown, metres; 0: the smallest of the world.
+  /// Whose column grid is shown, meters; 0: the smallest of the world.
   float debug_radius = 0;
 
   [[nodiscard]] bool draws() const { return !images.empty(); }

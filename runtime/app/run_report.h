@@ -99,7 +99,7 @@ struct RunReport {
 /// The same as JSON, with all options and a line end.
 [[nodiscard]] std::string jsonOf(const RunReport& report);
 
-/// The legend of semantic images as JSON: id, name and the colour in pictures of each.
+/// The legend of semantic images as JSON: id, name and the color in pictures of each.
 [[nodiscard]] std::string semanticLegend(const std::vector<std::string>& names);
 
 }  // namespace galactic

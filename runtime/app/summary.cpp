@@ -201,7 +201,7 @@ std::pair<std::string, std::string> assetText(const schema::Pack& pack) {
 
 }  // namespace
 
-std::string summarise(const PackFile& pack, const OpenTimes& times) {
+std::string summarize(const PackFile& pack, const OpenTimes& times) {
   const schema::Provenance& provenance = *pack.root().provenance();
   const auto [title, content] = assetText(pack.root());
   std::string text = fmt::format("{}: {}, format {}, by {} {}\n", printable(pack.where()), title,

@@ -15,6 +15,6 @@ struct OpenTimes {
 };
 
 /// What a pack of any kind holds, several lines of text, each ended.
-[[nodiscard]] std::string summarise(const PackFile& pack, const OpenTimes& times);
+[[nodiscard]] std::string summarize(const PackFile& pack, const OpenTimes& times);
 
 }  // namespace galactic

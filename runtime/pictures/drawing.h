@@ -17,7 +17,7 @@ struct PixelRect {
 };
 
 /// Which part of a text stands at the given x.
-enum class Anchor { kLeft, kCentre, kRight };
+enum class Anchor { kLeft, kCenter, kRight };
 
 /// Where a text goes: x by `anchor`, y is its top row.
 struct TextPlace {
@@ -32,15 +32,15 @@ inline constexpr int kTextHeight = 7 * kTextScale;
 inline constexpr int kTextAdvance = 6 * kTextScale;
 
 /// Fills a rectangle; what lies outside the image is cut off.
-void fillRect(Image& image, const PixelRect& rect, Rgb colour);
+void fillRect(Image& image, const PixelRect& rect, Rgb color);
 
 /// A frame one pixel wide just outside `rect`.
-void drawFrame(Image& image, const PixelRect& rect, Rgb colour);
+void drawFrame(Image& image, const PixelRect& rect, Rgb color);
 
 /// Width of a text in pixels; a UTF-8 character counts once.
 [[nodiscard]] int textWidth(std::string_view text);
 
 /// Draws a text in one line; characters beyond ASCII appear as '?'.
-void drawText(Image& image, TextPlace place, std::string_view text, Rgb colour);
+void drawText(Image& image, TextPlace place, std::string_view text, Rgb color);
 
 }  // namespace galactic::pictures

@@ -30,7 +30,7 @@ Rgb blend(Rgb under, Rgb over, double share) {
   return {mix(under.r, over.r, share), mix(under.g, over.g, share), mix(under.b, over.b, share)};
 }
 
-Rgb scaleColour(double share) {
+Rgb scaleColor(double share) {
   const double clamped = share > 0 ? std::min(share, 1.0) : 0.0;
   const double position = clamped * (kViridis.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(position), kViridis.size() - 2);

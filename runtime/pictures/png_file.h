@@ -36,7 +36,7 @@ struct AlphaImage {
 /// refuses the image.
 [[nodiscard]] Result<void> writePng(const std::filesystem::path& path, const Image& image);
 
-/// The same as a grey PNG of 16 bits, which holds the numbers as they are.
+/// The same as a gray PNG of 16 bits, which holds the numbers as they are.
 [[nodiscard]] Result<void> writePng(const std::filesystem::path& path, const DeepImage& image);
 
 }  // namespace galactic::pictures

@@ -164,13 +164,13 @@ TEST_F(BakeCli, RefusesToReplaceItsInput) {
 }
 
 TEST_F(BakeCli, NeverReplacesAnythingThatItReads) {
-  write("textured.obj", "mtllib colours.mtl\n" + test::objFile(test::unevenBox()));
-  write("colours.mtl", "newmtl red\nKd 1 0 0\n");
+  write("textured.obj", "mtllib colors.mtl\n" + test::objFile(test::unevenBox()));
+  write("colors.mtl", "newmtl red\nKd 1 0 0\n");
   write("bake.toml", "radii = [0.05]\n");
   const std::vector<std::pair<std::string, std::vector<std::string>>> attempts{
       {"room.obj", {"room.obj", "--report", "room.obj"}},
-      {"colours.mtl", {"textured.obj", "-o", "colours.mtl"}},
-      {"colours.mtl", {"textured.obj", "--report", "colours.mtl"}},
+      {"colors.mtl", {"textured.obj", "-o", "colors.mtl"}},
+      {"colors.mtl", {"textured.obj", "--report", "colors.mtl"}},
       {"bake.toml", {"room.obj", "--config", "bake.toml", "--report", "bake.toml"}},
   };
   for (const auto& [file, arguments] : attempts) {

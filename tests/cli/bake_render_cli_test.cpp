@@ -60,7 +60,7 @@ TEST_F(BakeRenderCli, LeavesThemOutWhenAsked) {
   EXPECT_EQ(modelsIn("brick.pack"), std::nullopt);
 }
 
-TEST_F(BakeRenderCli, BakesLightIntoVertexColoursUnlessToldNotTo) {
+TEST_F(BakeRenderCli, BakesLightIntoVertexColorsUnlessToldNotTo) {
   write("brick.obj", test::objFile(test::unevenBox()));
   ASSERT_EQ(bake({"brick.obj", "-o", "auto.pack"}).exit_code, 0);
   ASSERT_EQ(bake({"brick.obj", "-o", "all.pack", "--lighting", "all"}).exit_code, 0);

@@ -150,7 +150,7 @@ TEST_F(EpisodeCli, ImportsDatasetsOfHabitat) {
   EXPECT_THAT(names.options, testing::Contains("targets=each"));
 }
 
-TEST_F(EpisodeCli, TakesTheCentresOfHabitatsObjectsFromTheirPack) {
+TEST_F(EpisodeCli, TakesTheCentersOfHabitatsObjectsFromTheirPack) {
   // A tetrahedron of 10 and 20 cm whose origin is at a corner.
   const std::string box =
       "v 0 0 0\nv 0.1 0 0\nv 0 0.2 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";

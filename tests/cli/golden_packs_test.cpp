@@ -71,14 +71,14 @@ TEST(GoldenPacks, ShowTheCrateAsItIsBuilt) {
   ASSERT_TRUE(set);
   ASSERT_EQ(set->find("crate"), 0U);
   const ObjectModel& crate = set->objects()[0];
-  // 16 x 10 x 10 cm with its handle; boxes are grown by micrometres.
+  // 16 x 10 x 10 cm with its handle; boxes are grown by micrometers.
   constexpr float kGrowth = 1e-5F;
   EXPECT_NEAR(crate.box.half_extents.x, 0.08F, kGrowth);
   EXPECT_NEAR(crate.box.half_extents.y, 0.05F, kGrowth);
   EXPECT_NEAR(crate.box.half_extents.z, 0.05F, kGrowth);
   EXPECT_NEAR(crate.box.pose.translation.y, 0.05F, kGrowth);
   for (const SetSphere& sphere : crate.spheres) {
-    EXPECT_GE(sphere.centre.y, set->radii()[sphere.radius_index] - kGrowth) << "above the floor";
+    EXPECT_GE(sphere.center.y, set->radii()[sphere.radius_index] - kGrowth) << "above the floor";
   }
   // It rests likeliest on its floor, as it stands in the file.
   EXPECT_NEAR(crate.stable_poses[0].height, 0, kGrowth);

@@ -158,7 +158,7 @@ TEST_F(ObjectCli, AsksAboutUnits) {
   const ProgramRun huge = run({"mug.obj", "--as", "object", "--scale", "30"});
   EXPECT_EQ(huge.exit_code, 5);
   EXPECT_THAT(huge.err, AllOf(StartsWith("galactic-bake: mug.obj: mesh: its extents are"),
-                              HasSubstr("is its unit the millimetre?")));
+                              HasSubstr("is its unit the millimeter?")));
 }
 
 TEST_F(ObjectCli, UnderstandsEveryOptionOfObjects) {
@@ -255,8 +255,8 @@ TEST_F(ObjectCli, TakesBoxesAndSpheresOfACollection) {
   EXPECT_NEAR(object.box.half_extents.y, 0.045F, 1e-8F);
   EXPECT_NEAR(object.box.half_extents.z, 0.03F, 1e-8F);
   ASSERT_EQ(object.spheres.size(), 1U);
-  EXPECT_NEAR(object.spheres[0].centre.y, 0.045F, 1e-8F);
-  EXPECT_NEAR(object.spheres[0].centre.z, -0.03F, 1e-8F);
+  EXPECT_NEAR(object.spheres[0].center.y, 0.045F, 1e-8F);
+  EXPECT_NEAR(object.spheres[0].center.z, -0.03F, 1e-8F);
 }
 
 TEST_F(ObjectCli, ExplainsWhatACollectionLacks) {

@@ -76,7 +76,7 @@ objects = 2
     return run({"flat.toml", "--data", sampleFile(""), "--report", "report.json"});
   }
 
-  /// X of all objects and goals of the world's episodes, metres.
+  /// X of all objects and goals of the world's episodes, meters.
   [[nodiscard]] std::vector<float> placesAlongX() const {
     std::vector<float> places;
     const auto world = World::open(std::vector{path("flat.pack")});

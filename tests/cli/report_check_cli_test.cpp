@@ -72,8 +72,8 @@ TEST_F(ReportCheck, TellsEachDifference) {
                    "baked[0].scenes: 2 elements, wanted 3");
   expectDifference([](json& g) { g["baked"][0].erase("robot"); },
                    "baked[0].robot: \"\", wanted nothing");
-  expectDifference([](json& g) { g["baked"][0]["colour"] = 1; },
-                   "baked[0].colour: nothing, wanted 1");
+  expectDifference([](json& g) { g["baked"][0]["color"] = 1; },
+                   "baked[0].color: nothing, wanted 1");
   expectDifference([](json& g) { g["baked"][0]["pack_bytes"] = "many"; },
                    "baked[0].pack_bytes: " +
                        json::parse(content("golden.json"))["baked"][0]["pack_bytes"].dump() +

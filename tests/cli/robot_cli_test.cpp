@@ -214,7 +214,7 @@ TEST_F(RobotCli, TakesHandMadeSpheresAndWarnsOfOtherRadii) {
   const Opened opened = open("arm.pack");
   ASSERT_TRUE(opened.robot);
   ASSERT_EQ(opened.robot->spheres().size(), 1U);
-  EXPECT_EQ(opened.robot->spheres()[0].centre, (Vec3{0.1F, 0, 0}));
+  EXPECT_EQ(opened.robot->spheres()[0].center, (Vec3{0.1F, 0, 0}));
 }
 
 TEST_F(RobotCli, FindsMeshesOfPackagesAndSaysWhere) {

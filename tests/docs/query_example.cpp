@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
   }
   const galactic::ColumnGrid& grid = scene->grids()[*index];
 
-  // One sphere. World frame: y up, metres.
+  // One sphere. World frame: y up, meters.
   const galactic::Contact contact = grid.contact({-0.5F, 1.2F, -2.0F});
   if (contact.clearance == galactic::Clearance::kFree) {
     std::printf("free: %.3f m down and %.3f m up to contact\n", static_cast<double>(contact.down),

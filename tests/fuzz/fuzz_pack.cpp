@@ -33,11 +33,11 @@ namespace {
 using namespace galactic;
 using test::reportFinding;
 
-/// Centres over, beside and beyond a grid.
-struct Centres {
+/// Centers over, beside and beyond a grid.
+struct Centers {
   std::vector<float> x, y, z;
 
-  explicit Centres(const ColumnGrid& grid) {
+  explicit Centers(const ColumnGrid& grid) {
     const ColumnGridLayout& layout = grid.layout();
     const float height = layout.heights.hi - layout.heights.lo;
     const std::uint32_t step_x = std::max(1U, layout.columns_x / 16);
@@ -67,13 +67,13 @@ struct Centres {
 bool sameBits(float a, float b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
 
 void query(const ColumnGrid& grid) {
-  const Centres centres(grid);
-  std::vector<Clearance> clearance(centres.x.size());
-  std::vector<float> down(centres.x.size());
-  std::vector<float> up(centres.x.size());
-  grid.contact({centres.x, centres.y, centres.z}, {clearance, down, up});
-  for (std::size_t n = 0; n < centres.x.size(); ++n) {
-    const Contact contact = grid.contact({centres.x[n], centres.y[n], centres.z[n]});
+  const Centers centers(grid);
+  std::vector<Clearance> clearance(centers.x.size());
+  std::vector<float> down(centers.x.size());
+  std::vector<float> up(centers.x.size());
+  grid.contact({centers.x, centers.y, centers.z}, {clearance, down, up});
+  for (std::size_t n = 0; n < centers.x.size(); ++n) {
+    const Contact contact = grid.contact({centers.x[n], centers.y[n], centers.z[n]});
     const bool same = contact.clearance == clearance[n] && sameBits(contact.down, down[n]) &&
                       sameBits(contact.up, up[n]);
     if (!same) reportFinding("the batched query differs from the scalar one");
@@ -93,8 +93,8 @@ void useScene(const PackFile& pack) {
 void useSpheres(std::span<const SetSphere> spheres, std::span<const float> radii) {
   for (const SetSphere& sphere : spheres) {
     if (sphere.radius_index >= radii.size()) reportFinding("a sphere without a radius");
-    const Vec3& centre = sphere.centre;
-    if (!std::isfinite(centre.x) || !std::isfinite(centre.y) || !std::isfinite(centre.z)) {
+    const Vec3& center = sphere.center;
+    if (!std::isfinite(center.x) || !std::isfinite(center.y) || !std::isfinite(center.z)) {
       reportFinding("a sphere without a place");
     }
   }

@@ -134,11 +134,11 @@ TEST(AssetDiff, NamesAnObjectThatOneSideLacksOnce) {
 TEST(AssetDiff, TakesStatisticsAndMeshesForProvenance) {
   ToyObjects other;
   other.objects[0].gap = 0.014;
-  other.objects[0].coloured = true;
+  other.objects[0].colored = true;
   const Outcome everything = diffOf(ToyObjects{}, other);
   EXPECT_EQ(everything.exit_code, kExitDiffers);
   EXPECT_THAT(everything.out, HasSubstr("objects.block.sphere_quality.gap.max: 0.012 | 0.014"));
-  EXPECT_THAT(everything.out, HasSubstr("objects.block.surface.coloured: false | true"));
+  EXPECT_THAT(everything.out, HasSubstr("objects.block.surface.colored: false | true"));
   const Outcome content = diffOf(ToyObjects{}, other, {.scope = DiffScope::kContent});
   EXPECT_EQ(content.exit_code, kExitOk);
   EXPECT_THAT(content.out, HasSubstr("\nequal\n"));

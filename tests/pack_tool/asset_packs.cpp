@@ -42,7 +42,7 @@ class ToyPackBuilder {
   auto names(const std::vector<std::string>& texts) { return fbb_.CreateVectorOfStrings(texts); }
 
   /// A block around the origin as 12 triangles that face outwards.
-  flatbuffers::Offset<schema::Surface> block(const Vec3& half, bool coloured) {
+  flatbuffers::Offset<schema::Surface> block(const Vec3& half, bool colored) {
     std::vector<schema::Vec3> corners;
     for (unsigned n = 0; n < 8; ++n) {
       corners.emplace_back((n & 1U) != 0 ? half.x : -half.x, (n & 2U) != 0 ? half.y : -half.y,
@@ -54,8 +54,8 @@ class ToyPackBuilder {
     const auto positions = alignedStructs(fbb_, corners);
     const auto indices = alignedNumbers(fbb_, triangles);
     // Pure red.
-    const auto colors = alignedNumbers(
-        fbb_, std::vector<std::uint32_t>(coloured ? corners.size() : 0, 0xff0000ffU));
+    const auto colors =
+        alignedNumbers(fbb_, std::vector<std::uint32_t>(colored ? corners.size() : 0, 0xff0000ffU));
     return schema::CreateSurface(fbb_, positions, indices, colors);
   }
 
@@ -75,7 +75,7 @@ class ToyPackBuilder {
                                          schema::StablePose({1, 0, 0, 0}, h.y, 0.25F)});
     const auto import =
         schema::CreateImportStatistics(fbb_, fbb_.CreateString("toy"), 1, 1, 12, 0, 0, 12);
-    const auto surface = block(h, toy.coloured);
+    const auto surface = block(h, toy.colored);
     const auto statistics = quality(toy.gap);
     const schema::Pose box_pose({0, 0, 0}, no_turn_);
     const schema::Vec3 half(h.x, h.y, h.z);

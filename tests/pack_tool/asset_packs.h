@@ -14,10 +14,10 @@ namespace galactic::test {
 /// One object of a small pack; a test changes what it wants to differ.
 struct ToyObject {
   std::string name = "block";
-  /// Of an axis-aligned block around the object's origin, metres.
+  /// Of an axis-aligned block around the object's origin, meters.
   Vec3 half{0.05F, 0.1F, 0.03F};
   std::vector<SetSphere> spheres{{{0, 0.02F, 0}, 1}, {{0, -0.06F, 0}, 0}};
-  bool coloured = false;
+  bool colored = false;
   double gap = 0.012;
 };
 

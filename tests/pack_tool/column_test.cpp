@@ -39,7 +39,7 @@ TEST(NearestColumn, IsNoneOutsideTheRectangleAndForNan) {
   }
 }
 
-TEST(NearestColumn, HasTheNearestCentreOfAllColumns) {
+TEST(NearestColumn, HasTheNearestCenterOfAllColumns) {
   const auto grid = GridBuilder(GridSpec{.spacing = 0.25F, .min_x = -0.5F, .min_z = 1}).build();
   std::mt19937 random(kSeed);
   std::uniform_real_distribution<double> x(-1.2, 1.4);
@@ -54,8 +54,8 @@ TEST(NearestColumn, HasTheNearestCentreOfAllColumns) {
     if (!cell) continue;
     ++inside;
     const auto distance_to = [&](Cell other) {
-      const GroundPoint centre = columnCentre(grid.view(), other);
-      return std::hypot(centre.x - point.x, centre.z - point.z);
+      const GroundPoint center = columnCenter(grid.view(), other);
+      return std::hypot(center.x - point.x, center.z - point.z);
     };
     for (std::uint32_t k = 0; k < 3; ++k) {
       for (std::uint32_t i = 0; i < 5; ++i) {
@@ -88,7 +88,7 @@ TEST(ColumnVerb, PrintsSpansCellAndSurfacesOfEveryGrid) {
   EXPECT_EQ(outcome.exit_code, kExitOk) << outcome.err;
   EXPECT_EQ(outcome.out,
             "radius 0.5 m: cell (1, 0), column at x 1.5, z 0.5\n"
-            "  span  centre from  centre to  height  surface below  surface above\n"
+            "  span  center from  center to  height  surface below  surface above\n"
             "  0          1.0000     2.0000  1.0000         0.5000         2.5000\n"
             "  1          3.0000     4.0000  1.0000         2.5000         4.5000\n"
             "radius 0.75 m: cell (1, 0), column at x 1.5, z 0.5: blocked at all heights\n");

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr unsigned kSeed = 20230609;
-/// Sums of exact eighths of metres: only the last bit may differ.
+/// Sums of exact eighths of meters: only the last bit may differ.
 constexpr double kSumTolerance = 1e-12;
 
 GridBuilder threeColumns() {
@@ -53,7 +53,7 @@ TEST(CompareGrids, MeasuresAMovedEnd) {
   ASSERT_EQ(difference.worst.size(), 2U);
   EXPECT_EQ(difference.worst.front().cell, (Cell{1, 1}));
   EXPECT_EQ(difference.worst.front().height, 0.5);
-  EXPECT_EQ(difference.worst.front().centre.x, 1.5);
+  EXPECT_EQ(difference.worst.front().center.x, 1.5);
 }
 
 TEST(CompareGrids, CountsAMissingSpan) {

@@ -59,7 +59,7 @@ TEST(DescribeEpisodes, LeavesTheListOutOfASummary) {
   EXPECT_EQ(set.at("episode_count"), 2);
 }
 
-TEST(InfoText, SummarisesEpisodes) {
+TEST(InfoText, SummarizesEpisodes) {
   const std::string text = infoText(describe(test::smallEpisodes(), Detail::kSummary));
   EXPECT_THAT(text, HasSubstr("  kind         EPIS, format version 1\n"));
   EXPECT_THAT(text, HasSubstr("  name         tidy\n  episodes     2\n  robot        helper\n"

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-/// A few roundings of floats of about a metre.
+/// A few roundings of floats of about a meter.
 constexpr float kRounding = 1e-6F;
 
 Robot robotOf(const ToyPack& pack) { return *Robot::from(*pack); }
@@ -64,7 +64,7 @@ TEST(RobotFigure, HasItsLinksWhereTheKinematicsPutThem) {
   ASSERT_THAT(*figures, SizeIs(1));
   const Figure& figure = figures->front();
   ASSERT_THAT(figure.parts, SizeIs(5));
-  // The root stands half a metre above the ground; the upper link turns x to y.
+  // The root stands half a meter above the ground; the upper link turns x to y.
   const Vec3 base = figure.parts[0].world_from_part.translation;
   const Vec3 slide = figure.parts[2].world_from_part.translation;
   EXPECT_EQ(base, (Vec3{0, 0.5F, 0}));
@@ -72,7 +72,7 @@ TEST(RobotFigure, HasItsLinksWhereTheKinematicsPutThem) {
   EXPECT_NEAR(slide.y, 0.5F + 1 + 0.5F + 0.5F, kRounding);
   EXPECT_NEAR(slide.z, 0.25F, kRounding);
   ASSERT_TRUE(figure.grasp.has_value());
-  EXPECT_NEAR(figure.grasp->centre_in_world.y, slide.y + 0.125F, kRounding);
+  EXPECT_NEAR(figure.grasp->center_in_world.y, slide.y + 0.125F, kRounding);
   ASSERT_TRUE(figure.camera.has_value());
   EXPECT_EQ(figure.camera->world_from_camera.translation, (Vec3{0.25F, 2.5F, 0}));
   EXPECT_THAT(figure.footprint, SizeIs(4));

@@ -78,13 +78,13 @@ TEST(ExportedGlb, HasASphereForEachOfThePack) {
   const FigureOptions options{.layers = only(FigureLayer::kSpheres)};
   const bake::Surface surface = importedOf(pack, options);
   EXPECT_EQ(surface.triangles.size(), 4U * 320);
-  // Flat triangles stay inside the sphere: by up to 3 % of the larger radius, a quarter metre.
+  // Flat triangles stay inside the sphere: by up to 3 % of the larger radius, a quarter meter.
   expectBounds(surface, boundsOf(figuresOf(*pack, options)->front()), 0.0075F);
 }
 
-TEST(ExportedGlb, KeepsTheColoursOfVertices) {
+TEST(ExportedGlb, KeepsTheColorsOfVertices) {
   ToyObjects toys;
-  toys.objects = {{.coloured = true}};
+  toys.objects = {{.colored = true}};
   const ToyPack pack{toys};
   const bake::Surface surface = importedOf(pack, {.layers = only(FigureLayer::kMesh)});
   ASSERT_FALSE(surface.colors.empty());
@@ -166,7 +166,7 @@ TEST(ExportedRenderMeshes, KeepTheTexelsOfTextures) {
     const RenderMeshes meshes = storage.view();
     const RenderTexture& wanted = meshes.textures[wood ? 0 : 1];
     ASSERT_EQ(texture.size, wanted.size);
-    // The level that came from the pack; what alpha hides has no colour that matters.
+    // The level that came from the pack; what alpha hides has no color that matters.
     for (std::size_t n = 0; n < std::size_t{4} * wanted.size * wanted.size; ++n) {
       if (!wood && wanted.texels[n / 4 * 4 + 3] == 0) continue;
       ASSERT_EQ(baked->texels[texture.first_byte + n], wanted.texels[n]) << name << ' ' << n;
@@ -174,7 +174,7 @@ TEST(ExportedRenderMeshes, KeepTheTexelsOfTextures) {
   }
 }
 
-TEST(ExportedRenderMeshes, KeepTextureCoordinatesAndColours) {
+TEST(ExportedRenderMeshes, KeepTextureCoordinatesAndColors) {
   const test::AlignedBytes bytes = paintedScene({.colored = true});
   const auto pack = PackFile::view(bytes.bytes(), "kitchen.pack");
   ASSERT_TRUE(pack.has_value());
@@ -198,7 +198,7 @@ TEST(ExportedRenderMeshes, StandAtTheLinksOfARobot) {
   const ToyPack pack{toy};
   FigureOptions options{.layers = only(FigureLayer::kMesh)};
   const bake::Surface surface = bake::surfaceOf(importedAsset(*pack, options), kAsItIs);
-  // Six of the base, six of the head two metres above it, and the surface of the upper arm, which
+  // Six of the base, six of the head two meters above it, and the surface of the upper arm, which
   // has no render model.
   EXPECT_EQ(surface.triangles.size(), 6U + 6 + 12);
   float top = 0;

@@ -134,7 +134,7 @@ void checkMesh(const Glb& glb, const Json& primitive) {
 }
 
 TEST(Glb, KeepsTheRulesOfTheFormat) {
-  const ToyPack objects{ToyObjects{{{.coloured = true}}}};
+  const ToyPack objects{ToyObjects{{{.colored = true}}}};
   const ToyPack robot{ToyRobot{}};
   for (const Glb& glb : {glbOf(objects), glbOf(robot)}) {
     EXPECT_EQ(glb.json.at("asset").at("version"), "2.0");
@@ -186,19 +186,19 @@ TEST(Glb, PutsLinksAndSpheresWhereTheFigureHasThem) {
     expectNear(pose * Vec3{1, 2, 3}, part.world_from_part * Vec3{1, 2, 3});
     for (std::size_t n = 0; n < part.spheres.size(); ++n, ++spheres) {
       expectNear(poses.at(part.name + " sphere " + std::to_string(n)).translation,
-                 part.world_from_part * part.spheres[n].centre);
+                 part.world_from_part * part.spheres[n].center);
     }
   }
   EXPECT_EQ(spheres, 4);
-  expectNear(poses.at("grasp point").translation, figures->front().grasp->centre_in_world);
+  expectNear(poses.at("grasp point").translation, figures->front().grasp->center_in_world);
   // A camera of glTF looks along its -Z, one of a robot along its +X.
   const CameraMark& camera = *figures->front().camera;
   expectNear(poses.at("camera") * Vec3{0, 0, -1}, camera.world_from_camera * Vec3{1, 0, 0});
   expectNear(poses.at("camera") * Vec3{0, 1, 0}, camera.world_from_camera * Vec3{0, 1, 0});
 }
 
-TEST(Glb, WritesColoursLinear) {
-  const ToyPack pack{ToyObjects{{{.coloured = true}}}};
+TEST(Glb, WritesColorsLinear) {
+  const ToyPack pack{ToyObjects{{{.colored = true}}}};
   const Glb glb = glbOf(pack);
   const Json& attributes = glb.json.at("meshes").at(0).at("primitives").at(0).at("attributes");
   using Color = std::array<std::uint16_t, 4>;

@@ -49,7 +49,7 @@ TEST(GridPatches, CoverEachSpanEndOfEachColumnExactlyOnce) {
     for (std::uint32_t i = 0; i < 24; ++i) {
       std::multimap<float, Patch::Side> found;
       for (const Patch& patch : patches) {
-        if (covers(patch, columnCentre(grid.view(), {i, k}))) found.emplace(patch.y, patch.side);
+        if (covers(patch, columnCenter(grid.view(), {i, k}))) found.emplace(patch.y, patch.side);
       }
       readSpans(grid.view(), {i, k}, spans);
       std::multimap<float, Patch::Side> wanted;
@@ -83,7 +83,7 @@ TEST(GridPatches, CoverEachFloorOnceWhereHeightsRepeat) {
       const std::size_t wanted = grid.view().spanCount(i, k);
       std::size_t found = 0;
       for (const Patch& patch : patches) {
-        if (!covers(patch, columnCentre(grid.view(), {i, k}))) continue;
+        if (!covers(patch, columnCenter(grid.view(), {i, k}))) continue;
         ++found;
         EXPECT_EQ(patch.y, grid.columns[std::size_t{k} * 30 + i].front().lo);
       }
@@ -133,7 +133,7 @@ TEST(EncodePly, HoldsQuadsThatFaceFreeSpace) {
 TEST(EncodeObj, NumbersItsVerticesFromOne) {
   const auto grid = GridBuilder(GridSpec{}).column(0, 0, {{1, 2.5F}}).build();
   EXPECT_EQ(encodeObj(gridPatches(grid.view(), {})),
-            "# free space of a column grid; metres, Y up\n"
+            "# free space of a column grid; meters, Y up\n"
             "o floors\nv 0 1 0\nv 0 1 1\nv 1 1 1\nv 1 1 0\nf 1 2 3 4\n"
             "o ceilings\nv 0 2.5 0\nv 1 2.5 0\nv 1 2.5 1\nv 0 2.5 1\nf 5 6 7 8\n");
 }

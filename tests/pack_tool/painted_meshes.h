@@ -16,7 +16,7 @@ namespace galactic::test {
 struct Painting {
   /// One model for each.
   std::vector<std::uint32_t> parts{0};
-  /// Of the walls' front edge, metres.
+  /// Of the walls' front edge, meters.
   float front = 1;
   std::uint32_t seed = 20231106;
   bool bc1 = false;
@@ -39,7 +39,7 @@ inline std::vector<std::uint8_t> noiseTexels(std::uint32_t size, std::uint32_t s
 }
 
 /// Each model: a wall (opaque texture, seen from the front), a leaf (cut-out texture, seen from
-/// both sides) and a floor (plain colour), each with its semantic; a metre or two in size.
+/// both sides) and a floor (plain color), each with its semantic; a meter or two in size.
 inline RenderMeshStorage paintedStorage(const Painting& painting = {}) {
   constexpr std::uint32_t kSize = 16;
   std::vector<std::uint8_t> wood = noiseTexels(kSize, painting.seed, 0);

@@ -20,8 +20,8 @@ using test::GridSpec;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Colour in the middle of a cell of a plan.
-Rgb cellColour(const Picture& picture, const ColumnGrid& grid, pack_tool::Cell cell) {
+/// Color in the middle of a cell of a plan.
+Rgb cellColor(const Picture& picture, const ColumnGrid& grid, pack_tool::Cell cell) {
   const PixelRect& plot = picture.plots.front();
   const auto middle = [](int first, int length, std::uint32_t index, std::uint32_t count) {
     return first + static_cast<int>((index + 0.5) * length / count);
@@ -39,24 +39,24 @@ test::TestGrid fourKinds() {
       .build();
 }
 
-TEST(PlanPicture, ColoursEachCellByItsTotalFreeHeight) {
+TEST(PlanPicture, ColorsEachCellByItsTotalFreeHeight) {
   const auto grid = fourKinds();
   const Picture picture = drawPlan(std::vector{grid.view()}, {});
-  EXPECT_EQ(cellColour(picture, grid.view(), {0, 0}), scaleColour(1));
-  EXPECT_EQ(cellColour(picture, grid.view(), {1, 0}), scaleColour(0.5));
-  EXPECT_EQ(cellColour(picture, grid.view(), {2, 1}), scaleColour(0.5));
-  EXPECT_EQ(cellColour(picture, grid.view(), {4, 2}), scaleColour(0.25));
-  EXPECT_EQ(cellColour(picture, grid.view(), {3, 2}), kBlocked);
+  EXPECT_EQ(cellColor(picture, grid.view(), {0, 0}), scaleColor(1));
+  EXPECT_EQ(cellColor(picture, grid.view(), {1, 0}), scaleColor(0.5));
+  EXPECT_EQ(cellColor(picture, grid.view(), {2, 1}), scaleColor(0.5));
+  EXPECT_EQ(cellColor(picture, grid.view(), {4, 2}), scaleColor(0.25));
+  EXPECT_EQ(cellColor(picture, grid.view(), {3, 2}), kBlocked);
 }
 
-TEST(PlanPicture, ColoursByTheLowestSpanOrTheNumberOfSpans) {
+TEST(PlanPicture, ColorsByTheLowestSpanOrTheNumberOfSpans) {
   const auto grid = fourKinds();
   const Picture lowest = drawPlan(std::vector{grid.view()}, {.value = PlanValue::kLowestHeight});
-  EXPECT_EQ(cellColour(lowest, grid.view(), {0, 0}), scaleColour(1));
-  EXPECT_EQ(cellColour(lowest, grid.view(), {1, 0}), scaleColour(1.0 / 8));
+  EXPECT_EQ(cellColor(lowest, grid.view(), {0, 0}), scaleColor(1));
+  EXPECT_EQ(cellColor(lowest, grid.view(), {1, 0}), scaleColor(1.0 / 8));
   const Picture count = drawPlan(std::vector{grid.view()}, {.value = PlanValue::kSpanCount});
-  EXPECT_EQ(cellColour(count, grid.view(), {2, 1}), scaleColour(1));
-  EXPECT_EQ(cellColour(count, grid.view(), {4, 2}), scaleColour(1.0 / 3));
+  EXPECT_EQ(cellColor(count, grid.view(), {2, 1}), scaleColor(1));
+  EXPECT_EQ(cellColor(count, grid.view(), {4, 2}), scaleColor(1.0 / 3));
 }
 
 TEST(PlanPicture, GivesEachCellAWholeNumberOfPixels) {
@@ -84,18 +84,18 @@ TEST(PlanPicture, PutsSeveralGridsSideBySideOnOneScale) {
   EXPECT_LT(picture.plots[0].right(), picture.plots[1].x);
   EXPECT_LT(picture.plots[1].right(), picture.image.width());
   EXPECT_EQ(picture.plots[0].y, picture.plots[1].y);
-  EXPECT_EQ(picture.image.at(picture.plots[0].x, picture.plots[0].y), scaleColour(0.5));
-  EXPECT_EQ(picture.image.at(picture.plots[1].x, picture.plots[1].y), scaleColour(1));
+  EXPECT_EQ(picture.image.at(picture.plots[0].x, picture.plots[0].y), scaleColor(0.5));
+  EXPECT_EQ(picture.image.at(picture.plots[1].x, picture.plots[1].y), scaleColor(1));
 }
 
 TEST(PlanPicture, DrawsAGridWithoutFreeSpace) {
   const auto grid = GridBuilder(GridSpec{}).build();
   const Picture picture = drawPlan(std::vector{grid.view()}, {});
-  EXPECT_EQ(cellColour(picture, grid.view(), {0, 0}), kBlocked);
+  EXPECT_EQ(cellColor(picture, grid.view(), {0, 0}), kBlocked);
 }
 
-/// Colour of a slice at a distance along its line and a height, metres.
-Rgb sliceColour(const Picture& picture, double along_share, double height_share) {
+/// Color of a slice at a distance along its line and a height, meters.
+Rgb sliceColor(const Picture& picture, double along_share, double height_share) {
   const PixelRect& plot = picture.plots.front();
   return picture.image.at(plot.x + static_cast<int>(along_share * plot.width),
                           plot.bottom() - 1 - static_cast<int>(height_share * plot.height));
@@ -114,7 +114,7 @@ TEST(SlicePicture, ShowsFreeHeightsLightAndBlockedOnesDark) {
   const auto grid = sliceGrid();
   const auto picture = drawSlice(std::vector{grid.view()}, {.from = {0, 2.5}, .to = {5, 2.5}});
   ASSERT_TRUE(picture) << picture.error().message;
-  const auto at = [&](double x, double y) { return sliceColour(*picture, x / 5, y / 8); };
+  const auto at = [&](double x, double y) { return sliceColor(*picture, x / 5, y / 8); };
   EXPECT_EQ(at(0.5, 0.3), kFree);
   EXPECT_EQ(at(0.5, 2.8), kFree);
   EXPECT_EQ(at(0.5, 3.3), kBlocked);
@@ -129,8 +129,8 @@ TEST(SlicePicture, MarksWhatTheGridDoesNotCover) {
   const auto grid = sliceGrid();
   const auto picture = drawSlice(std::vector{grid.view()}, {.from = {-5, 2.5}, .to = {5, 2.5}});
   ASSERT_TRUE(picture) << picture.error().message;
-  EXPECT_EQ(sliceColour(*picture, 0.25, 0.8), kUncovered);
-  EXPECT_EQ(sliceColour(*picture, 0.55, 0.3), kFree);
+  EXPECT_EQ(sliceColor(*picture, 0.25, 0.8), kUncovered);
+  EXPECT_EQ(sliceColor(*picture, 0.55, 0.3), kFree);
 }
 
 TEST(SlicePicture, RefusesALineThatIsTooShortOrMissesTheGrid) {
@@ -146,20 +146,20 @@ TEST(SlicePicture, RefusesALineThatIsTooShortOrMissesTheGrid) {
   EXPECT_FALSE(drawSlice(std::vector{grid.view()}, {.from = {nan, 0}, .to = {1, 1}}));
 }
 
-TEST(ScaleColour, RunsFromVioletToYellowAndClamps) {
-  EXPECT_EQ(scaleColour(0), (Rgb{0x44, 0x01, 0x54}));
-  EXPECT_EQ(scaleColour(1), (Rgb{0xfd, 0xe7, 0x25}));
-  EXPECT_EQ(scaleColour(-3), scaleColour(0));
-  EXPECT_EQ(scaleColour(7), scaleColour(1));
-  EXPECT_EQ(scaleColour(std::nan("")), scaleColour(0));
+TEST(ScaleColor, RunsFromVioletToYellowAndClamps) {
+  EXPECT_EQ(scaleColor(0), (Rgb{0x44, 0x01, 0x54}));
+  EXPECT_EQ(scaleColor(1), (Rgb{0xfd, 0xe7, 0x25}));
+  EXPECT_EQ(scaleColor(-3), scaleColor(0));
+  EXPECT_EQ(scaleColor(7), scaleColor(1));
+  EXPECT_EQ(scaleColor(std::nan("")), scaleColor(0));
 }
 
-TEST(ScaleColour, GrowsBrighterAllTheWay) {
-  const auto brightness = [](Rgb colour) {
-    return 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b;
+TEST(ScaleColor, GrowsBrighterAllTheWay) {
+  const auto brightness = [](Rgb color) {
+    return 0.2126 * color.r + 0.7152 * color.g + 0.0722 * color.b;
   };
   for (int n = 0; n < 100; ++n) {
-    EXPECT_LE(brightness(scaleColour(n / 100.0)), brightness(scaleColour((n + 1) / 100.0)) + 1);
+    EXPECT_LE(brightness(scaleColor(n / 100.0)), brightness(scaleColor((n + 1) / 100.0)) + 1);
   }
 }
 
@@ -201,12 +201,12 @@ TEST(WritePng, WritesASignedFileOfTheImagesSizeAndTheSameBytesAgain) {
   EXPECT_EQ(test::countEntries(folder.path()), 2U);
 }
 
-TEST(WritePng, WritesSixteenBitsOfGrey) {
+TEST(WritePng, WritesSixteenBitsOfGray) {
   const test::ScratchFolder folder;
   ASSERT_TRUE(writePng(folder.path() / "deep.png", DeepImage{2, 1, {0x1234, 65535}}));
   const std::string bytes = test::fileContent(folder.path() / "deep.png");
   EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\0\2\0\0\0\1", 8));
-  // Bits of a sample, and grey.
+  // Bits of a sample, and gray.
   EXPECT_EQ(bytes.substr(24, 2), std::string("\x10\0", 2));
 }
 

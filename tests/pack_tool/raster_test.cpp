@@ -1,4 +1,4 @@
-// The software rasteriser and the pictures of figures.
+// The software rasterizer and the pictures of figures.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ using testing::HasSubstr;
 
 constexpr unsigned kSeed = 20230611;
 constexpr int kSize = 64;
-/// One pixel per centimetre, the origin in the middle.
+/// One pixel per centimeter, the origin in the middle.
 const RasterView kSide{kSideView, {0, 0, 0}, 100, kSize, kSize};
 constexpr Rgb kRed{200, 0, 0};
 constexpr Rgb kBlue{0, 0, 200};
@@ -45,9 +45,9 @@ Vec3 pointOf(int x, int y) {
           (kSize / 2 - static_cast<float>(y) - 0.5F) / 100, 0};
 }
 
-void drawTriangle(MeshRaster& raster, const std::array<Vec3, 3>& corners, Rgb colour) {
+void drawTriangle(MeshRaster& raster, const std::array<Vec3, 3>& corners, Rgb color) {
   constexpr std::array<std::uint32_t, 3> kCorners{0, 1, 2};
-  raster.drawMesh({corners, kCorners, {}, colour}, {});
+  raster.drawMesh({corners, kCorners, {}, color}, {});
 }
 
 /// Least distance of a point from the lines through the edges of a triangle in the plane z = 0,
@@ -64,7 +64,7 @@ double depthInside(const std::array<Vec3, 3>& c, const Vec3& p) {
       {turn * side(c[0], c[1], p), turn * side(c[1], c[2], p), turn * side(c[2], c[0], p)});
 }
 
-TEST(MeshRaster, ColoursExactlyThePixelsInsideATriangle) {
+TEST(MeshRaster, ColorsExactlyThePixelsInsideATriangle) {
   std::mt19937 random(kSeed);
   const auto coordinate = [&random] {
     return (static_cast<float>(random() % 1000) - 500) * 0.0012F;
@@ -163,19 +163,19 @@ TEST(MeshRaster, DrawsRenderModelsWithTheirTexturesAndSides) {
   const RenderMeshStorage storage = test::paintedStorage();
   const RenderMeshes meshes = storage.view();
   // From the front, the leaf with its holes before the wall; from behind, the leaf alone.
-  const auto coloursFrom = [&](const ViewAxes& axes, const Vec3& centre) {
-    MeshRaster raster({axes, centre, 60, kSize, kSize});
+  const auto colorsFrom = [&](const ViewAxes& axes, const Vec3& center) {
+    MeshRaster raster({axes, center, 60, kSize, kSize});
     raster.drawRenderModel(meshes, meshes.models.front(), {});
     const Image image = imageOf(raster);
-    std::vector<Rgb> colours;
+    std::vector<Rgb> colors;
     for (const Rgb& pixel : image.pixels()) {
-      if (pixel != kPaper) colours.push_back(pixel);
+      if (pixel != kPaper) colors.push_back(pixel);
     }
-    return colours.size();
+    return colors.size();
   };
-  const std::size_t front = coloursFrom(kSideView, {0.5F, 0.5F, 0});
+  const std::size_t front = colorsFrom(kSideView, {0.5F, 0.5F, 0});
   const ViewAxes behind{{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
-  const std::size_t back = coloursFrom(behind, {0.5F, 0.5F, 0});
+  const std::size_t back = colorsFrom(behind, {0.5F, 0.5F, 0});
   // The leaf is 60 by 60 pixels, the wall covers what its holes show.
   EXPECT_GT(front, 60U * 60);
   EXPECT_GT(back, 60U * 60 / 2);
@@ -194,7 +194,7 @@ TEST(ViewAxes, AreRightHanded) {
   }
 }
 
-/// How many pixels of views are clearly of a colour's kind: its strongest channel leads by far.
+/// How many pixels of views are clearly of a color's kind: its strongest channel leads by far.
 int pixelsLike(const Image& image, int channel) {
   int count = 0;
   for (const Rgb& pixel : image.pixels()) {
@@ -225,7 +225,7 @@ TEST(FigurePicture, ShowsObjectsWithBlueSpheresAndRobotsWithGreenOnes) {
   ASSERT_TRUE(arm.has_value());
   const Image picture = drawFigure(arm->front(), 128);
   EXPECT_GT(pixelsLike(picture, kGreenChannel), 200);
-  // The mesh has its own colour, red.
+  // The mesh has its own color, red.
   EXPECT_GT(pixelsLike(picture, kRedChannel), 200);
 }
 

@@ -73,7 +73,7 @@ TEST(DescribeRenderMeshes, TellsSumsModelsMaterialsAndTextures) {
   EXPECT_EQ(render.at("triangles"), 6);
   EXPECT_EQ(render.at("source_triangles"), 50);
   EXPECT_EQ(render.at("largest_error"), 0.004);
-  EXPECT_EQ(render.at("coloured"), true);
+  EXPECT_EQ(render.at("colored"), true);
   EXPECT_EQ(render.at("texture_bytes"), 1364 + 340);
   const Json& model = render.at("models").at(0);
   EXPECT_EQ(model.at("name"), "kitchen");
@@ -108,7 +108,7 @@ TEST(InfoText, SumsUpRenderMeshes) {
               HasSubstr("  render       1 models, 3 clusters (33 % two-sided), 12 vertices, "));
   EXPECT_THAT(text, HasSubstr("               6 of 50 triangles, moved by at most 4.00 mm\n"));
   EXPECT_THAT(text,
-              HasSubstr("  materials    3, 1 with a cut-out shape; vertices have no colours\n"));
+              HasSubstr("  materials    3, 1 with a cut-out shape; vertices have no colors\n"));
   EXPECT_THAT(text, HasSubstr("  textures     2, 524 bytes: 1 of 16 texels (bc1), 1 of 8 texels "
                               "(rgba8)\n"));
   EXPECT_THAT(text, HasSubstr("  semantics    3 names\n"));
@@ -153,7 +153,7 @@ TEST(RenderDiff, ComparesTexturesByTheirTexels) {
   EXPECT_THAT(other.out, Not(HasSubstr(".places")));
 }
 
-TEST(RenderDiff, TellsOtherMaterialsAndColours) {
+TEST(RenderDiff, TellsOtherMaterialsAndColors) {
   const Answer renamed = diffOf(paintedMeshes(), paintedMeshes({.paint = "varnish"}));
   EXPECT_EQ(renamed.exit_code, kExitDiffers);
   EXPECT_THAT(renamed.out,
@@ -161,10 +161,9 @@ TEST(RenderDiff, TellsOtherMaterialsAndColours) {
   EXPECT_THAT(renamed.out,
               HasSubstr("  render_meshes.models.kitchen.clusters: 3 | 3, 1 with other triangles, "
                         "materials or sides\n"));
-  const Answer coloured = diffOf(paintedMeshes(), paintedMeshes({.colored = true}));
-  EXPECT_EQ(coloured.exit_code, kExitDiffers);
-  EXPECT_THAT(coloured.out,
-              HasSubstr("  render_meshes.models.kitchen.colours: 12 | 12, 6 others\n"));
+  const Answer colored = diffOf(paintedMeshes(), paintedMeshes({.colored = true}));
+  EXPECT_EQ(colored.exit_code, kExitDiffers);
+  EXPECT_THAT(colored.out, HasSubstr("  render_meshes.models.kitchen.colors: 12 | 12, 6 others\n"));
 }
 
 TEST(RenderDiff, CountsHowTheyWereMadeAsProvenance) {

@@ -22,7 +22,7 @@ using test::ToyPack;
 using test::ToyRobot;
 
 constexpr unsigned kSeed = 20230612;
-/// Poses of a robot of two metres, through quaternions and angles in floats.
+/// Poses of a robot of two meters, through quaternions and angles in floats.
 constexpr float kPoseTolerance = 1e-5F;
 
 Robot robotOf(const ToyPack& pack) { return *Robot::from(*pack); }
@@ -117,7 +117,7 @@ TEST(ExportedSrdf, BringsBackTheSpheres) {
   EXPECT_EQ(spheres->links[0].link, "base");
   ASSERT_EQ(spheres->links[0].spheres.size(), 2U);
   const bake::HandSphere& sphere = spheres->links[0].spheres[1];
-  EXPECT_EQ(sphere.centre, (std::array<double, 3>{0.125, 0.5, -0.25}));
+  EXPECT_EQ(sphere.center, (std::array<double, 3>{0.125, 0.5, -0.25}));
   EXPECT_EQ(sphere.radius, 0.05);
 }
 

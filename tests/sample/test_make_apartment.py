@@ -24,7 +24,7 @@ import png  # noqa: E402
 
 # Landmarks are written with six decimals.
 _JSON_TOLERANCE = 1e-6
-# Twice the area of the smallest triangle we accept, in square metres.
+# Twice the area of the smallest triangle we accept, in square meters.
 _SMALLEST_DOUBLE_AREA = 1e-8
 _COMPONENT_BYTES = {5123: 2, 5126: 4}
 _COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}

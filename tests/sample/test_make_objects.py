@@ -21,7 +21,7 @@ import make_objects  # noqa: E402
 import png  # noqa: E402
 
 _NAMES = ["apple", "book", "bottle", "bowl", "cereal_box", "mug", "plate", "soup_can"]
-# Between the fingers of the sample robot, metres.
+# Between the fingers of the sample robot, meters.
 _GRIPPER_OPENING = 0.09
 # Positions are floats: half a unit in the last place below 0.25 m.
 _FLOAT_ROUNDING = 2e-8

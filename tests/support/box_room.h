@@ -50,16 +50,16 @@ class BoxRoom {
     return fields;
   }
 
-  /// Whether the grid's exact counterpart blocks a centre: outside, or too near to a block in the
-  /// middle of the centre's cell.
-  [[nodiscard]] bool isBlocked(const Point3& centre, double radius) const {
-    Point3 at = centre;
+  /// Whether the grid's exact counterpart blocks a center: outside, or too near to a block in the
+  /// middle of the center's cell.
+  [[nodiscard]] bool isBlocked(const Point3& center, double radius) const {
+    Point3 at = center;
     for (const std::size_t axis : {0U, 2U}) {
-      const double cell = std::floor(centre[axis] / static_cast<double>(kSpacing));
+      const double cell = std::floor(center[axis] / static_cast<double>(kSpacing));
       if (!(cell >= 0 && cell < kColumns)) return true;
       at[axis] = (cell + 0.5) * static_cast<double>(kSpacing);
     }
-    if (centre[1] < static_cast<double>(kHeights.lo)) return true;
+    if (center[1] < static_cast<double>(kHeights.lo)) return true;
     return std::any_of(blocks_.begin(), blocks_.end(),
                        [&](const Block& block) { return distance(at, block) < radius; });
   }

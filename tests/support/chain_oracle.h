@@ -101,7 +101,7 @@ inline Eigen::Isometry3d toEigen(const Pose& pose) {
 
 /// The largest differences of two sets of poses.
 struct PoseDifference {
-  /// Metres.
+  /// Meters.
   double translation = 0;
   /// Radians.
   double rotation = 0;

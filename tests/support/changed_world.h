@@ -148,8 +148,8 @@ class ChangedWorld {
     std::vector<float> depth(kCount);
     std::vector<std::uint32_t> semantics(kCount);
     renderer.render(views.views(), {color, depth, semantics});
-    for (const float metres : depth) {
-      if (!(metres >= 0 && std::isfinite(metres))) return "a depth that is no distance";
+    for (const float meters : depth) {
+      if (!(meters >= 0 && std::isfinite(meters))) return "a depth that is no distance";
     }
     return {};
   }

@@ -18,7 +18,7 @@ namespace galactic::test {
 /// one triangle. A grid of squares in the ground plane spares it the triangles that are far away.
 class ColumnOracle {
  public:
-  /// Right for spheres of up to `reach`, metres.
+  /// Right for spheres of up to `reach`, meters.
   ColumnOracle(const bake::TriangleMesh& mesh, double reach)
       : triangles_(allCorners(mesh)),
         min_x_(static_cast<double>(mesh.bounds.min.x) - reach),

@@ -17,7 +17,7 @@ namespace galactic::test {
 /// `reach` of it.
 class DistanceOracle {
  public:
-  /// Answers are right up to `reach`, metres.
+  /// Answers are right up to `reach`, meters.
   DistanceOracle(const bake::TriangleMesh& mesh, double reach)
       : triangles_(allCorners(mesh)), reach_(reach) {
     const bake::Point lo = toPoint(mesh.bounds.min);
@@ -84,8 +84,8 @@ class DistanceOracle {
       for (std::size_t z = first[2]; z <= last[2]; ++z) {
         for (std::size_t y = first[1]; y <= last[1]; ++y) {
           for (std::size_t x = first[0]; x <= last[0]; ++x) {
-            const bake::Point centre = centreOf({x, y, z});
-            if (bake::squaredDistance(centre, triangles_[t]) > around * around) continue;
+            const bake::Point center = centerOf({x, y, z});
+            if (bake::squaredDistance(center, triangles_[t]) > around * around) continue;
             visit((z * count_[1] + y) * count_[0] + x, t);
           }
         }
@@ -98,12 +98,12 @@ class DistanceOracle {
     return static_cast<std::size_t>(std::clamp(cell, 0.0, static_cast<double>(count_[axis] - 1)));
   }
 
-  [[nodiscard]] bake::Point centreOf(const std::array<std::size_t, 3>& cube) const {
-    bake::Point centre{};
+  [[nodiscard]] bake::Point centerOf(const std::array<std::size_t, 3>& cube) const {
+    bake::Point center{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      centre[axis] = min_[axis] + (static_cast<double>(cube[axis]) + 0.5) * kCubeEdge;
+      center[axis] = min_[axis] + (static_cast<double>(cube[axis]) + 0.5) * kCubeEdge;
     }
-    return centre;
+    return center;
   }
 
   std::vector<Corners> triangles_;

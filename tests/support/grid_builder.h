@@ -26,7 +26,7 @@ struct GridSpec {
 /// A grid in the layout of schema/column_grid.fbs, with the spans it was made from.
 struct TestGrid {
   GridSpec spec;
-  /// Spans of each column in metres, row by row, as they were given.
+  /// Spans of each column in meters, row by row, as they were given.
   std::vector<std::vector<Span>> columns;
   /// The tiles, without the padding that a pack adds.
   std::vector<std::uint64_t> cells;
@@ -65,7 +65,7 @@ class GridBuilder {
     grid_.columns.resize(std::size_t{spec.columns_x} * spec.columns_z);
   }
 
-  /// Gives column (i, k) these spans: ascending, disjoint, metres.
+  /// Gives column (i, k) these spans: ascending, disjoint, meters.
   GridBuilder& column(std::uint32_t i, std::uint32_t k, std::vector<Span> spans) {
     grid_.columns[std::size_t{k} * grid_.spec.columns_x + i] = std::move(spans);
     return *this;

@@ -70,7 +70,7 @@ struct JpegKind {
   bool progressive = false;
 };
 
-/// The bytes of a JPEG file, colours not subsampled.
+/// The bytes of a JPEG file, colors not subsampled.
 inline std::string jpegFile(const ImageContent& image, const JpegKind& kind = {}) {
   jpeg_compress_struct encoder{};
   jpeg_error_mgr errors{};

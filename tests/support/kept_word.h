@@ -89,8 +89,8 @@ class KeptWord {
       if (clearance_[n] == Clearance::kFree) continue;
       broken_ = fmt::format("({}, {}, {}) is not free in a batch", x_[n], y_[n], z_[n]);
     }
-    const SphereCentres centres{x_, y_, z_};
-    if (grid_.firstNotFree(centres) != x_.size() && broken_.empty()) {
+    const SphereCenters centers{x_, y_, z_};
+    if (grid_.firstNotFree(centers) != x_.size() && broken_.empty()) {
       broken_ = "firstNotFree finds one";
     }
     for (std::size_t n = 0; n < y_.size(); ++n) y_[n] -= down_[n];

@@ -187,7 +187,7 @@ inline std::string daeFile(const MeshContent& mesh, const DaePieces& pieces) {
       indices, pieces.transform);
 }
 
-/// A minimal ASCII FBX with the given global settings; `unit` is in centimetres.
+/// A minimal ASCII FBX with the given global settings; `unit` is in centimeters.
 struct FbxPieces {
   int up_axis = 1;
   int up_sign = 1;

@@ -49,7 +49,7 @@ struct ObjectPackFields {
   RenderMeshesField render_meshes;
 };
 
-/// Two objects; the second one without colours, with one sphere and one pose.
+/// Two objects; the second one without colors, with one sphere and one pose.
 ObjectPackFields smallObjects();
 
 /// The whole file: header and payload.

@@ -8,7 +8,7 @@ namespace galactic::test {
 
 void sortSpheres(std::span<SetSphere> spheres) {
   const auto key = [](const SetSphere& sphere) {
-    const Vec3& at = sphere.centre;
+    const Vec3& at = sphere.center;
     return std::tuple(-static_cast<std::int64_t>(sphere.radius_index), at.x, at.y, at.z);
   };
   std::sort(spheres.begin(), spheres.end(),

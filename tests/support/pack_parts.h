@@ -29,7 +29,7 @@ struct SphereStatisticsFields {
   double guaranteed_protrusion = 0.02;
 };
 
-/// A tetrahedron with a colour for each corner.
+/// A tetrahedron with a color for each corner.
 struct SurfaceFields {
   std::vector<Vec3> positions{{0, 0, 0}, {0.1F, 0, 0}, {0, 0.1F, 0}, {0, 0, 0.1F}};
   std::vector<std::uint32_t> triangles{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};

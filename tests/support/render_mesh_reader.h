@@ -13,7 +13,7 @@ namespace galactic::test {
 struct DrawnCorner {
   /// On the lattice of the model.
   std::array<std::int64_t, 3> at{};
-  /// Metres.
+  /// Meters.
   std::array<double, 3> position{};
   std::array<double, 2> uv{};
   std::uint32_t color = 0xFFFFFFFF;

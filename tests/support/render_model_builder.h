@@ -14,7 +14,7 @@
 
 namespace galactic::test {
 
-/// A corner of a triangle: place in metres, texture coordinates with v down, colour.
+/// A corner of a triangle: place in meters, texture coordinates with v down, color.
 struct RenderVertex {
   Vec3 position;
   float u = 0;
@@ -36,7 +36,7 @@ struct RenderSurface {
 /// shows; may be moved, not copied.
 class RenderModelBuilder {
  public:
-  /// `step`: metres between lattice points, a power of two.
+  /// `step`: meters between lattice points, a power of two.
   explicit RenderModelBuilder(float step = 1.0F / 4096) : step_(step) {
     semantics_ = {"thing"};
     material(0xFFFFFFFF);
@@ -73,7 +73,7 @@ class RenderModelBuilder {
     return static_cast<std::uint16_t>(semantics_.size() - 1);
   }
 
-  /// Keeps the corners' colours, which are left out otherwise.
+  /// Keeps the corners' colors, which are left out otherwise.
   void keepColors() { has_colors_ = true; }
 
   /// Begins the next model, of the next part.

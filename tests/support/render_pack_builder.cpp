@@ -100,7 +100,7 @@ void addCluster(RenderMeshesFields& fields, const std::array<std::int32_t, 3>& o
   // All of it is a multiple of half a step: exact.
   double squared = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    fields.bound(lane, kCentreRow + axis) = static_cast<float>((low[axis] + high[axis]) / 2);
+    fields.bound(lane, kCenterRow + axis) = static_cast<float>((low[axis] + high[axis]) / 2);
     fields.bound(lane, kHalfExtentRow + axis) = static_cast<float>((high[axis] - low[axis]) / 2);
     squared += (high[axis] - low[axis]) * (high[axis] - low[axis]) / 4;
   }

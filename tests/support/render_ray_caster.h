@@ -11,7 +11,7 @@
 namespace galactic::test {
 
 /// Depths by rays in double precision against every triangle of a model that stands in the world's
-/// frame, seen from both sides: slow, and nothing in common with a rasteriser.
+/// frame, seen from both sides: slow, and nothing in common with a rasterizer.
 class RenderRayCaster {
  public:
   RenderRayCaster(const RenderMeshes& meshes, std::uint32_t model_number) {
@@ -55,14 +55,14 @@ class RenderRayCaster {
     return std::isinf(nearest) ? 0 : nearest;
   }
 
-  /// Depth at a pixel's centre, and the range of depths within a pixel of it.
-  struct Neighbourhood {
+  /// Depth at a pixel's center, and the range of depths within a pixel of it.
+  struct Neighborhood {
     double middle, lowest, highest;
   };
-  [[nodiscard]] Neighbourhood around(const RenderCamera& camera, const RenderOptions& options,
-                                     std::uint32_t x, std::uint32_t y) const {
+  [[nodiscard]] Neighborhood around(const RenderCamera& camera, const RenderOptions& options,
+                                    std::uint32_t x, std::uint32_t y) const {
     const double middle = depthAt(camera, options, x + 0.5, y + 0.5);
-    Neighbourhood range{middle, middle, middle};
+    Neighborhood range{middle, middle, middle};
     for (const double dx : {-1.0, -0.02, 0.02, 1.0}) {
       for (const double dy : {-1.0, -0.02, 0.02, 1.0}) {
         const double depth = depthAt(camera, options, x + 0.5 + dx, y + 0.5 + dy);

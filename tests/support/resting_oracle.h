@@ -59,11 +59,11 @@ class BoxSolid {
       }
       return result;
     };
-    centre_ = turned(q, toPoint3(box.pose.translation));
+    center_ = turned(q, toPoint3(box.pose.translation));
     const Point3 origin = toPoint3(world_from_object.translation);
     half_ = toPoint3(box.half_extents);
     for (std::size_t n = 0; n < 3; ++n) {
-      centre_[n] += origin[n];
+      center_[n] += origin[n];
       Point3 unit{};
       unit[n] = 1;
       axes_[n] = turned(q, turned(box.pose.rotation, unit));
@@ -82,14 +82,14 @@ class BoxSolid {
 
   /// A point of the box by its coordinates along the axes, each from -1 to 1.
   [[nodiscard]] Point3 at(const Point3& share) const {
-    Point3 point = centre_;
+    Point3 point = center_;
     for (std::size_t n = 0; n < 3; ++n) {
       for (std::size_t m = 0; m < 3; ++m) point[m] += share[n] * half_[n] * axes_[n][m];
     }
     return point;
   }
 
-  void shiftUp(double by) { centre_[1] += by; }
+  void shiftUp(double by) { center_[1] += by; }
 
   [[nodiscard]] bool anyEdgeMeets(const BoxSolid& other) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -107,11 +107,11 @@ class BoxSolid {
   }
 
  private:
-  /// Coordinates along the axes, from the centre.
+  /// Coordinates along the axes, from the center.
   [[nodiscard]] Point3 local(const Point3& point) const {
     Point3 result{};
     for (std::size_t n = 0; n < 3; ++n) {
-      for (std::size_t m = 0; m < 3; ++m) result[n] += axes_[n][m] * (point[m] - centre_[m]);
+      for (std::size_t m = 0; m < 3; ++m) result[n] += axes_[n][m] * (point[m] - center_[m]);
     }
     return result;
   }
@@ -133,7 +133,7 @@ class BoxSolid {
     return first < last;
   }
 
-  Point3 centre_{};
+  Point3 center_{};
   Point3 half_{};
   std::array<Point3, 3> axes_{};
 };
@@ -194,14 +194,14 @@ struct Tally {
 class OwnedBatch {
  public:
   /// Adds the spheres of one radius.
-  OwnedBatch& add(std::uint32_t radius_index, float radius, const std::vector<Vec3>& centres) {
+  OwnedBatch& add(std::uint32_t radius_index, float radius, const std::vector<Vec3>& centers) {
     const auto first = static_cast<std::uint32_t>(x_.size());
-    ranges_.push_back({radius_index, radius, first, static_cast<std::uint32_t>(centres.size())});
-    for (std::size_t n = 0; n < simulation::paddedToLanes(centres.size()); ++n) {
-      const Vec3& centre = centres[std::min(n, centres.size() - 1)];
-      x_.push_back(centre.x);
-      y_.push_back(centre.y);
-      z_.push_back(centre.z);
+    ranges_.push_back({radius_index, radius, first, static_cast<std::uint32_t>(centers.size())});
+    for (std::size_t n = 0; n < simulation::paddedToLanes(centers.size()); ++n) {
+      const Vec3& center = centers[std::min(n, centers.size() - 1)];
+      x_.push_back(center.x);
+      y_.push_back(center.y);
+      z_.push_back(center.z);
     }
     return *this;
   }
@@ -209,7 +209,7 @@ class OwnedBatch {
   [[nodiscard]] simulation::SphereBatch view() const {
     return {x_.data(), y_.data(), z_.data(), ranges_};
   }
-  [[nodiscard]] Vec3 centre(std::size_t n) const { return {x_[n], y_[n], z_[n]}; }
+  [[nodiscard]] Vec3 center(std::size_t n) const { return {x_[n], y_[n], z_[n]}; }
 
  private:
   std::vector<float> x_, y_, z_;

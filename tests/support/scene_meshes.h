@@ -115,7 +115,7 @@ inline double leastAltitude(const Corners& t) {
   return twice_area / std::max({length(a), length(b), length(edge(1, 2))});
 }
 
-/// `count` random triangles of all awkward kinds in turn, spread over the cube of one metre whose
+/// `count` random triangles of all awkward kinds in turn, spread over the cube of one meter whose
 /// lowest corner is `corner`. None is lower than kDegenerateHeight, as in a cleaned mesh.
 inline bake::TriangleMesh awkwardTriangles(std::uint32_t seed, int count, const Vec3& corner = {}) {
   AwkwardSource source(seed);

@@ -14,7 +14,7 @@ flatbuffers::Offset<flatbuffers::Vector<const schema::SetSphere*>> buildSpheres(
     flatbuffers::FlatBufferBuilder& builder, const std::vector<SetSphere>& spheres) {
   std::vector<schema::SetSphere> made;
   for (const SetSphere& sphere : spheres) {
-    made.emplace_back(stored(sphere.centre), sphere.radius_index);
+    made.emplace_back(stored(sphere.center), sphere.radius_index);
   }
   return alignedStructs(builder, made);
 }

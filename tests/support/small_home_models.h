@@ -34,7 +34,7 @@ inline RenderSurface boxModel(const Block& box, std::uint16_t material, bool inw
   return surface;
 }
 
-/// Render meshes of these surfaces, one part each; material n has the n-th colour (RGBA, R lowest).
+/// Render meshes of these surfaces, one part each; material n has the n-th color (RGBA, R lowest).
 inline RenderMeshesFields modelsOf(std::vector<std::pair<std::uint32_t, RenderSurface>> parts,
                                    const std::vector<std::uint32_t>& colors) {
   RenderMeshSource source;
@@ -51,7 +51,7 @@ inline RenderMeshesFields modelsOf(std::vector<std::pair<std::uint32_t, RenderSu
   return fieldsOf(*built);
 }
 
-// What is drawn in which colour in the small home.
+// What is drawn in which color in the small home.
 inline constexpr std::uint32_t kRoomColor = 0xFFD0D8E0;
 inline constexpr std::uint32_t kTableColor = 0xFF305080;
 inline constexpr std::uint32_t kBowlColor = 0xFF2020C0;

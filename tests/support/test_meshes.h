@@ -47,16 +47,16 @@ class MeshBuilder {
 
   /// A sphere of `rings` rows of triangles between the poles and twice as many around; its vertices
   /// lie on the sphere.
-  MeshBuilder& sphere(Vec3 centre, float radius, int rings) {
+  MeshBuilder& sphere(Vec3 center, float radius, int rings) {
     const int around = 2 * rings;
     const auto point = [&](int ring, int step) {
       const double polar = std::numbers::pi * ring / rings;
       const double turn = 2 * std::numbers::pi * (step % around) / around;
       const double r = static_cast<double>(radius);
       return Vec3{
-          static_cast<float>(static_cast<double>(centre.x) + r * std::sin(polar) * std::cos(turn)),
-          static_cast<float>(static_cast<double>(centre.y) + r * std::cos(polar)),
-          static_cast<float>(static_cast<double>(centre.z) + r * std::sin(polar) * std::sin(turn))};
+          static_cast<float>(static_cast<double>(center.x) + r * std::sin(polar) * std::cos(turn)),
+          static_cast<float>(static_cast<double>(center.y) + r * std::cos(polar)),
+          static_cast<float>(static_cast<double>(center.z) + r * std::sin(polar) * std::sin(turn))};
     };
     for (int ring = 0; ring < rings; ++ring) {
       for (int step = 0; step < around; ++step) {

@@ -109,7 +109,7 @@ class Pages(unittest.TestCase):
         page = self.open("world", "", "scene 0")
         self.assertGreater(self.show_all_parts(page), 8)
 
-    def test_the_mesh_has_the_colours_of_its_materials(self):
+    def test_the_mesh_has_the_colors_of_its_materials(self):
         page = self.open("world", "view=scene&shade=0&sliced=0&slice=1.2", "scene 0")
         self.assertGreater(self.count(page, TABLE), 1000)
         self.assertGreater(self.count(page, ROOM), 5000)
@@ -168,7 +168,7 @@ class Pages(unittest.TestCase):
 
     def test_blocks_are_decoded_as_the_renderer_does(self):
         page = self.open("world", "", "scene 0")
-        # Red and blue, the two colours between them, and a block whose middle is one half.
+        # Red and blue, the two colors between them, and a block whose middle is one half.
         decoded = page.evaluate(
             "(() => { const decode = (...bytes) => [...galactic.library.constructor.decodeBlocks(new Uint8Array(bytes), 4)];"
             "return [decode(0, 0xf8, 0x1f, 0, 0b11100100, 0, 0, 0), decode(0x1f, 0, 0, 0xf8, 0b11100100, 0, 0, 0)]; })()"
@@ -202,7 +202,7 @@ class Pages(unittest.TestCase):
             "free space", page.evaluate("document.getElementById('panel').textContent")
         )
         x, y = page.evaluate(
-            "(() => { const { stage, view } = galactic; const { x, z } = view.layer.grid.centreOf({ i: 9, k: 9 });"
+            "(() => { const { stage, view } = galactic; const { x, z } = view.layer.grid.centerOf({ i: 9, k: 9 });"
             "const at = stage.camera.position.clone().set(x, 0.4, z).project(stage.camera); const area = stage.canvas.getBoundingClientRect();"
             "return [area.left + (at.x + 1) / 2 * area.width, area.top + (1 - at.y) / 2 * area.height]; })()"
         )

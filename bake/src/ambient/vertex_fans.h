@@ -27,7 +27,7 @@ class VertexFans {
   [[nodiscard]] std::span<const FanTriangle> of(std::size_t vertex) const {
     return std::span(entries_).subspan(begins_[vertex], begins_[vertex + 1] - begins_[vertex]);
   }
-  /// Unit normal and area (square metres; 0 for a triangle without area).
+  /// Unit normal and area (square meters; 0 for a triangle without area).
   [[nodiscard]] const std::array<double, 3>& normal(std::size_t triangle) const {
     return normals_[triangle];
   }

@@ -119,10 +119,10 @@ Result<EpisodeImportOptions> importOptions(const EpisodeImportJob& job) {
   if (!job.object_pack.empty()) {
     const auto pack = PackFile::open(job.object_pack);
     if (!pack) return tl::unexpected(pack.error());
-    auto centres = objectCentres(*pack);
-    if (!centres) return tl::unexpected(centres.error());
-    options.object_centres = std::move(*centres);
-    options.centres_needed = true;
+    auto centers = objectCenters(*pack);
+    if (!centers) return tl::unexpected(centers.error());
+    options.object_centers = std::move(*centers);
+    options.centers_needed = true;
   }
   return options;
 }

@@ -7,7 +7,7 @@
 
 namespace galactic::bake {
 
-/// Heights of one column in which a ball touches something; metres.
+/// Heights of one column in which a ball touches something; meters.
 struct BlockedInterval {
   float lo = 0;
   float hi = 0;

@@ -26,7 +26,7 @@ std::array<Point, 3> cornersOf(const TriangleMesh& mesh, std::uint32_t index) {
 double distanceTo(double at, double lo, double hi) { return std::max({lo - at, at - hi, 0.0}); }
 
 /// What a square and its heights are padded by: the merge tolerance, and what a query loses when it
-/// computes the cell and the code of a centre in floats, three roundings of up to `size`. Metres.
+/// computes the cell and the code of a center in floats, three roundings of up to `size`. Meters.
 double padOver(double size) {
   return static_cast<double>(kMergeTolerance) +
          2 * static_cast<double>(std::numeric_limits<float>::epsilon()) * size;
@@ -42,7 +42,7 @@ double padInHeight(const GridFrame& frame) {
   return padOver(std::max({hi - lo, std::abs(lo), std::abs(hi)}));
 }
 
-/// One triangle and the squares around columns' centres over which the ball is swept.
+/// One triangle and the squares around columns' centers over which the ball is swept.
 class CellScatter {
  public:
   CellScatter(const TriangleMesh& mesh, const GridFrame& frame, std::uint32_t index)
@@ -72,8 +72,8 @@ class CellScatter {
   [[nodiscard]] double radius() const { return static_cast<double>(frame_.radius); }
 
   void addCell(std::uint32_t i, std::uint32_t k, ColumnStrip& strip) const {
-    const double x = frame_.centreX(i);
-    const double z = frame_.centreZ(k);
+    const double x = frame_.centerX(i);
+    const double z = frame_.centerZ(k);
     // The box of the triangle bounds what the triangle can block: most cells need no more.
     const double dx = distanceTo(x, min_[0] - half_, max_[0] + half_);
     const double dz = distanceTo(z, min_[2] - half_, max_[2] + half_);

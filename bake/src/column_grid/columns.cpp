@@ -43,7 +43,7 @@ Result<GridFrame> makeGridFrame(const Bounds& bounds, float radius, float spacin
   }
   if (!std::isfinite(radius) || !(radius >= spacing / 2)) {
     return fail(ErrorCode::kInvalidInput, "--radii",
-                fmt::format("radius {} m is under half the spacing of {} m: neighbouring columns "
+                fmt::format("radius {} m is under half the spacing of {} m: neighboring columns "
                             "could lie on both sides of a closed wall and the room would leak; "
                             "use a spacing of at most {} m",
                             radius, spacing, 2 * radius));

@@ -15,21 +15,21 @@ namespace {
 
 using Corners = std::array<Point, 3>;
 
-/// Where the columns' centres stand relative to the grid's corner: x split in two floats, so that
+/// Where the columns' centers stand relative to the grid's corner: x split in two floats, so that
 /// differences to a triangle's corner lose nothing, and z in double.
-struct Centres {
+struct Centers {
   std::vector<float> x_high;
   std::vector<float> x_low;
   std::vector<double> z;
 
-  explicit Centres(const GridFrame& frame) {
+  explicit Centers(const GridFrame& frame) {
     for (std::uint32_t i = 0; i < frame.columns_x + ColumnStrip::kPadding; ++i) {
-      const double x = frame.centreX(i) - static_cast<double>(frame.min_x);
+      const double x = frame.centerX(i) - static_cast<double>(frame.min_x);
       x_high.push_back(static_cast<float>(x));
       x_low.push_back(static_cast<float>(x - static_cast<double>(x_high.back())));
     }
     for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
-      z.push_back(frame.centreZ(k) - static_cast<double>(frame.min_z));
+      z.push_back(frame.centerZ(k) - static_cast<double>(frame.min_z));
     }
   }
 };
@@ -58,7 +58,7 @@ HeightInterval extentBetween(const Corners& corners, double min_z, double max_z)
 class MeshScatter {
  public:
   MeshScatter(const TriangleMesh& mesh, const GridFrame& frame)
-      : mesh_(mesh), frame_(frame), centres_(frame), kernels_(fastestScatter()) {}
+      : mesh_(mesh), frame_(frame), centers_(frame), kernels_(fastestScatter()) {}
 
   /// Adds the blocked heights of triangle `index` to the rows of `strip`.
   void operator()(std::uint32_t index, ColumnStrip& strip) const {
@@ -82,7 +82,7 @@ class MeshScatter {
       return;
     }
     for (std::uint32_t row = box.first_row; row < box.end_row; ++row) {
-      const HeightInterval x = extentBetween(corners, centres_.z[row] - r, centres_.z[row] + r);
+      const HeightInterval x = extentBetween(corners, centers_.z[row] - r, centers_.z[row] + r);
       const IndexRange run = columnRange(x.lo - r, x.hi + r);
       scatter(triangle, {row, row + 1, run.first, run.end}, target);
     }
@@ -101,10 +101,10 @@ class MeshScatter {
   }
 
   [[nodiscard]] IndexRange rowRange(double lo, double hi) const {
-    return centresWithin(lo, hi, static_cast<double>(frame_.spacing), frame_.columns_z);
+    return centersWithin(lo, hi, static_cast<double>(frame_.spacing), frame_.columns_z);
   }
   [[nodiscard]] IndexRange columnRange(double lo, double hi) const {
-    return centresWithin(lo, hi, static_cast<double>(frame_.spacing), frame_.columns_x);
+    return centersWithin(lo, hi, static_cast<double>(frame_.spacing), frame_.columns_x);
   }
 
   [[nodiscard]] ScatterTarget targetOf(ColumnStrip& strip) const {
@@ -112,9 +112,9 @@ class MeshScatter {
             .hi = strip.hi(),
             .first_row = strip.firstRow(),
             .stride = strip.stride(),
-            .x_high = centres_.x_high.data(),
-            .x_low = centres_.x_low.data(),
-            .z = centres_.z.data(),
+            .x_high = centers_.x_high.data(),
+            .x_low = centers_.x_low.data(),
+            .z = centers_.z.data(),
             .strip = &strip};
   }
 
@@ -127,7 +127,7 @@ class MeshScatter {
 
   const TriangleMesh& mesh_;
   const GridFrame& frame_;
-  Centres centres_;
+  Centers centers_;
   ScatterFunctions kernels_;
 };
 

@@ -98,9 +98,9 @@ std::vector<Component> measure(const Columns& columns, const Labels& labels) {
   const Bounds scene = sceneBounds(frame);
   const double area = static_cast<double>(frame.spacing) * static_cast<double>(frame.spacing);
   for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
-    const auto z = static_cast<float>(frame.centreZ(k));
+    const auto z = static_cast<float>(frame.centerZ(k));
     for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
-      const auto x = static_cast<float>(frame.centreX(i));
+      const auto x = static_cast<float>(frame.centerX(i));
       const bool border = i == 0 || k == 0 || i + 1 == frame.columns_x || k + 1 == frame.columns_z;
       const bool in_scene =
           x >= scene.min.x && x <= scene.max.x && z >= scene.min.z && z <= scene.max.z;
@@ -132,7 +132,7 @@ tl::unexpected<Error> seedFailure(const Vec3& seed, const GridFrame& frame,
                                   const std::string& finding) {
   return fail(ErrorCode::kInvalidInput, "--seed",
               fmt::format("({}, {}, {}) is {} for radius {} m; give a point where a sphere of that "
-                          "radius fits, in metres with y up",
+                          "radius fits, in meters with y up",
                           seed.x, seed.y, seed.z, finding, frame.radius));
 }
 

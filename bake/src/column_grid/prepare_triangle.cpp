@@ -8,7 +8,7 @@ namespace {
 
 using Corner = std::array<double, 3>;
 
-/// A horizontal length under this makes an edge vertical, metres.
+/// A horizontal length under this makes an edge vertical, meters.
 constexpr double kVerticalLength = 1e-7;
 /// A unit normal with a smaller y makes a face vertical.
 constexpr double kVerticalNormal = 1e-6;

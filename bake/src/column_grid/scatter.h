@@ -78,8 +78,8 @@ struct ScatterTarget {
   std::uint32_t first_row = 0;
   /// Elements from one row to the next.
   std::uint64_t stride = 0;
-  /// x of the columns' centres relative to the grid's corner, as sums of two floats, as long as the
-  /// rows; z of all rows' centres relative to it.
+  /// x of the columns' centers relative to the grid's corner, as sums of two floats, as long as the
+  /// rows; z of all rows' centers relative to it.
   const float* x_high = nullptr;
   const float* x_low = nullptr;
   const double* z = nullptr;

@@ -42,11 +42,11 @@ inline Floats includeEdge(const ScatterEdge& edge, Floats x, float z, float radi
   const Floats rest = broadcast(radius * radius) - distance * distance;
   const Floats half = squareRoot(maximum(rest, zero)) * broadcast(edge.secant);
   const Floats start_y = broadcast(edge.start_y);
-  const Floats centre = start_y + along * broadcast(edge.slope);
+  const Floats center = start_y + along * broadcast(edge.slope);
   const Floats end_a = start_y - along * broadcast(edge.cotangent);
   const Floats end_b = end_a + broadcast(edge.end_rise);
-  const Floats lo = maximum(centre - half, minimum(end_a, end_b));
-  const Floats hi = minimum(centre + half, maximum(end_a, end_b));
+  const Floats lo = maximum(center - half, minimum(end_a, end_b));
+  const Floats hi = minimum(center + half, maximum(end_a, end_b));
   includeWhere(both(less(zero, rest), less(lo, hi)), lo, hi, heights);
   return distance;
 }

@@ -11,7 +11,7 @@ constexpr double kIndexMargin = 1e-3;
 
 }  // namespace
 
-IndexRange centresWithin(double lo, double hi, double spacing, std::uint32_t count) {
+IndexRange centersWithin(double lo, double hi, double spacing, std::uint32_t count) {
   const double limit = static_cast<double>(count);
   const double inverse = 1 / spacing;
   // Truncation is the floor of what is not negative, and without a call into the maths library.
@@ -23,12 +23,12 @@ IndexRange centresWithin(double lo, double hi, double spacing, std::uint32_t cou
 
 IndexRange rowsWithin(const GridFrame& frame, double lo, double hi) {
   const double min = static_cast<double>(frame.min_z);
-  return centresWithin(lo - min, hi - min, static_cast<double>(frame.spacing), frame.columns_z);
+  return centersWithin(lo - min, hi - min, static_cast<double>(frame.spacing), frame.columns_z);
 }
 
 IndexRange columnsWithin(const GridFrame& frame, double lo, double hi) {
   const double min = static_cast<double>(frame.min_x);
-  return centresWithin(lo - min, hi - min, static_cast<double>(frame.spacing), frame.columns_x);
+  return centersWithin(lo - min, hi - min, static_cast<double>(frame.spacing), frame.columns_x);
 }
 
 TriangleBins::TriangleBins(const TriangleMesh& mesh, const GridFrame& frame,

@@ -14,11 +14,11 @@ struct IndexRange {
   std::uint32_t end = 0;
 };
 
-/// Those of `count` centres at (index + 0.5) * spacing that lie within [lo, hi], and perhaps one
+/// Those of `count` centers at (index + 0.5) * spacing that lie within [lo, hi], and perhaps one
 /// more at either end: rounding loses none.
-[[nodiscard]] IndexRange centresWithin(double lo, double hi, double spacing, std::uint32_t count);
+[[nodiscard]] IndexRange centersWithin(double lo, double hi, double spacing, std::uint32_t count);
 
-/// The rows and columns of a grid whose centres lie within [lo, hi], world frame.
+/// The rows and columns of a grid whose centers lie within [lo, hi], world frame.
 [[nodiscard]] IndexRange rowsWithin(const GridFrame& frame, double lo, double hi);
 [[nodiscard]] IndexRange columnsWithin(const GridFrame& frame, double lo, double hi);
 

@@ -11,7 +11,7 @@ namespace {
 // each edge, and the prism that the face sweeps when it moves by the radius along its normal. A
 // vertical line meets each piece in one interval, and their hull is the answer. Every piece is
 // computed so that its ends lie within rounding of the grown triangle, however thin or steep the
-// triangle is; what a badly conditioned piece loses, its neighbours cover.
+// triangle is; what a badly conditioned piece loses, its neighbors cover.
 
 using Triangle = std::array<Point, 3>;
 
@@ -181,26 +181,26 @@ std::optional<HeightInterval> inWorld(const Hull& hull, double height) {
   return HeightInterval{hull.lo + height, hull.hi + height};
 }
 
-/// A square of centres.
+/// A square of centers.
 struct Cell {
-  Line centre;
+  Line center;
   double half = 0;
 };
 
-/// The centre of the cell nearest to a corner reaches furthest up and down on its ball.
+/// The center of the cell nearest to a corner reaches furthest up and down on its ball.
 void addCornerOverCell(const Point& corner, const Cell& cell, double radius, Hull& hull) {
-  const double dx = std::max(std::abs(cell.centre.x - corner[0]) - cell.half, 0.0);
-  const double dz = std::max(std::abs(cell.centre.z - corner[2]) - cell.half, 0.0);
+  const double dx = std::max(std::abs(cell.center.x - corner[0]) - cell.half, 0.0);
+  const double dz = std::max(std::abs(cell.center.z - corner[2]) - cell.half, 0.0);
   addCorner(corner, {corner[0] + dx, corner[2] + dz}, radius, hull);
 }
 
-/// Where a centre on one side of the cell touches the edge with a contact normal square to both: a
+/// Where a center on one side of the cell touches the edge with a contact normal square to both: a
 /// height can be extreme there between the cell's corners. `side_axis` (0 or 2) is the axis along
 /// which the side runs.
 void addEdgeOverSide(const Point& from, const Point& edge, const Cell& cell, std::size_t side_axis,
                      Hull& hull, double radius) {
   const std::size_t across_axis = 2 - side_axis;
-  const std::array<double, 3> centre{cell.centre.x, 0, cell.centre.z};
+  const std::array<double, 3> center{cell.center.x, 0, cell.center.z};
   // An edge that runs in a plane square to the side's offset has a horizontal normal (or, parallel
   // to the side, is covered by the sides across it): no extreme height.
   if (edge[across_axis] == 0) return;
@@ -209,11 +209,11 @@ void addEdgeOverSide(const Point& from, const Point& edge, const Cell& cell, std
   const double normal_up = edge[across_axis] / length;
   for (const double side : {-cell.half, cell.half}) {
     for (const double reach : {-radius, radius}) {
-      const double gap = centre[across_axis] + side - from[across_axis];
+      const double gap = center[across_axis] + side - from[across_axis];
       const double part = (gap - reach * normal_across) / edge[across_axis];
       if (!(part >= 0 && part <= 1)) continue;
       const double along = from[side_axis] + part * edge[side_axis];
-      if (std::abs(centre[side_axis] - along) > cell.half) continue;
+      if (std::abs(center[side_axis] - along) > cell.half) continue;
       const double height = from[1] + part * edge[1] + reach * normal_up;
       hull.add(height, height);
     }
@@ -243,7 +243,7 @@ std::optional<HeightInterval> touchingHeights(const std::array<Point, 3>& triang
 std::optional<HeightInterval> touchingHeightsOverCell(const std::array<Point, 3>& triangle,
                                                       double x, double z, double half,
                                                       double radius) {
-  // The upper (lower) end over the square of centres is a concave (convex) function: its extreme
+  // The upper (lower) end over the square of centers is a concave (convex) function: its extreme
   // lies over a corner of the triangle, at a corner of the square, or on a side of the square where
   // an edge's contact normal is square to that side.
   const Triangle corners = relativeToFirstCorner(triangle);
@@ -252,7 +252,7 @@ std::optional<HeightInterval> touchingHeightsOverCell(const std::array<Point, 3>
   Hull hull;
   for (const double dx : {-half, half}) {
     for (const double dz : {-half, half}) {
-      addTriangle(corners, face, {cell.centre.x + dx, cell.centre.z + dz}, radius, hull);
+      addTriangle(corners, face, {cell.center.x + dx, cell.center.z + dz}, radius, hull);
     }
   }
   for (std::size_t k = 0; k < 3; ++k) {

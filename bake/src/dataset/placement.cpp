@@ -84,18 +84,18 @@ Affine worldFromObject(const SceneItem& item) {
           2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y), t[2]};
 }
 
-Triple boxCentre(const SourceAsset& asset, const Affine& object_from_asset) {
+Triple boxCenter(const SourceAsset& asset, const Affine& object_from_asset) {
   Box box = kNothing;
   for (const SourceInstance& instance : asset.instances) {
     const SourceMesh& mesh = asset.meshes[instance.mesh];
     if (mesh.triangles.empty()) continue;
     includePlaced(box, boxOf(mesh), compose(object_from_asset, instance.world_from_mesh));
   }
-  Triple centre{};
+  Triple center{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (box.low[axis] <= box.high[axis]) centre[axis] = (box.low[axis] + box.high[axis]) / 2;
+    if (box.low[axis] <= box.high[axis]) center[axis] = (box.low[axis] + box.high[axis]) / 2;
   }
-  return centre;
+  return center;
 }
 
 Affine translationBy(const Triple& offset) {

@@ -15,9 +15,9 @@ namespace galactic::bake {
 /// Translation and rotation of an instance.
 [[nodiscard]] Affine worldFromObject(const SceneItem& item);
 
-/// The centre of the box around `asset` as `object_from_asset` places it: around the placed box of
+/// The center of the box around `asset` as `object_from_asset` places it: around the placed box of
 /// each mesh, as Habitat computes it.
-[[nodiscard]] std::array<double, 3> boxCentre(const SourceAsset& asset,
+[[nodiscard]] std::array<double, 3> boxCenter(const SourceAsset& asset,
                                               const Affine& object_from_asset);
 
 [[nodiscard]] Affine translationBy(const std::array<double, 3>& offset);

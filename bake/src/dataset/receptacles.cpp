@@ -23,7 +23,7 @@ using Triple = std::array<double, 3>;
 constexpr std::string_view kPrefix = "receptacle_";
 constexpr std::string_view kBoxPrefix = "receptacle_aabb_";
 constexpr std::string_view kMeshPrefix = "receptacle_mesh_";
-/// Metres.
+/// Meters.
 constexpr double kFarthest = 1e6;
 /// Cosine between a box's `up` and the vertical from which on it counts as upright: 26 degrees.
 constexpr double kUpright = 0.9;
@@ -33,7 +33,7 @@ constexpr double kRightAngle = 1e-3;
 /// A box as it is stated.
 struct StatedBox {
   std::string name;
-  Triple centre{};
+  Triple center{};
   Triple half_extents{};
   /// (w, x, y, z), of length 1.
   std::array<double, 4> rotation{1, 0, 0, 0};
@@ -56,7 +56,7 @@ class BoxReader {
     if (!node_.json->is_object()) json_.error(node_.place, "it has to be an object");
     box.name = json_.text(JsonReader::member(node_, "name"));
     if (box.name.empty()) box.name = key;
-    json_.numbers(json_.require(node_, "position"), kFarthest, box.centre);
+    json_.numbers(json_.require(node_, "position"), kFarthest, box.center);
     readUp(box);
     readScale(box);
     readRotation(box);
@@ -140,13 +140,13 @@ std::optional<Affine> frameOf(const StatedBox& box, const ReceptacleParent& pare
   return std::nullopt;
 }
 
-/// The frame of the box itself: its centre and the axes along which its half extents count.
+/// The frame of the box itself: its center and the axes along which its half extents count.
 std::optional<Affine> boxFrame(const StatedBox& box, const ReceptacleParent& parent,
                                BoxReader& reader) {
   const auto world_from_frame = frameOf(box, parent, reader);
   if (!world_from_frame) return std::nullopt;
   SceneItem turned;
-  turned.translation = box.centre;
+  turned.translation = box.center;
   if (parent.kind == ReceptacleParent::Kind::kPlace) turned.rotation = box.rotation;
   return compose(*world_from_frame, worldFromObject(turned));
 }

@@ -58,7 +58,7 @@ struct PlacedReceptacles {
 };
 
 /// The boxes that are stated for `parent`, in the world, by ascending key. As in Habitat,
-/// `position` is the box's centre and `scale` its half extents, of either sign. Boxes whose `up`
+/// `position` is the box's center and `scale` its half extents, of either sign. Boxes whose `up`
 /// does not point upwards in the world hold nothing and are left out. What is malformed is left out
 /// with a warning; so are receptacles made of meshes, all of a file with one. Source: habitat-lab,
 /// datasets/rearrange/samplers/receptacle.py.

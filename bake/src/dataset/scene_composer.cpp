@@ -143,18 +143,18 @@ Result<Affine> SceneComposer::placement(const SceneItem& item, const TemplateAtt
   if (item.origin.value_or(default_origin_) == TranslationOrigin::kAssetOrigin) {
     return compose(world_from_object, object_from_asset);
   }
-  std::array<double, 3> centre{};
-  if (attributes.centre_of_mass) {
+  std::array<double, 3> center{};
+  if (attributes.center_of_mass) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      centre[axis] = (*attributes.centre_of_mass)[axis] * attributes.scale[axis] * item.scale[axis];
+      center[axis] = (*attributes.center_of_mass)[axis] * attributes.scale[axis] * item.scale[axis];
     }
   } else {
     const auto asset = load(mesh);
     if (!asset) return tl::unexpected(asset.error());
-    centre = boxCentre(**asset, object_from_asset);
+    center = boxCenter(**asset, object_from_asset);
   }
-  const Affine centred = translationBy({-centre[0], -centre[1], -centre[2]});
-  return compose(world_from_object, compose(centred, object_from_asset));
+  const Affine centered = translationBy({-center[0], -center[1], -center[2]});
+  return compose(world_from_object, compose(centered, object_from_asset));
 }
 
 void SceneComposer::addMesh(const fs::path& mesh, const SourceAsset& asset,
@@ -269,7 +269,7 @@ Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
                             reference));
     if (reference.find("://") == std::string::npos) noteAbsent(folder / reference);
   }
-  // Neither the centre of mass nor a frame: Habitat takes a URDF's root as it is.
+  // Neither the center of mass nor a frame: Habitat takes a URDF's root as it is.
   Affine root_from_urdf = kIdentityAffine;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     root_from_urdf[5 * axis] = (*attributes)->scale[axis] * item.scale[axis];
@@ -303,7 +303,7 @@ Result<ComposedScene> SceneComposer::run(const std::string& name, const SceneIns
   SourceAsset& scene = result_.scene;
   scene.name = name;
   scene.format = "Habitat scene dataset";
-  scene.convention = "Y up, metres (Habitat)";
+  scene.convention = "Y up, meters (Habitat)";
   for (const fs::path& file : read) {
     if (auto noted = merger_.noteFile(file); !noted) return tl::unexpected(noted.error());
   }

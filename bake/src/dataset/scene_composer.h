@@ -60,7 +60,7 @@ class SceneComposer {
 
   const DatasetIndex& index_;
   MeshLibrary& meshes_;
-  TranslationOrigin default_origin_ = TranslationOrigin::kCentreOfMass;
+  TranslationOrigin default_origin_ = TranslationOrigin::kCenterOfMass;
   ComposedScene result_;
   AssetMerger merger_;
   std::map<std::string, Attributes> attributes_;

@@ -10,10 +10,10 @@
 namespace galactic::bake {
 namespace {
 
-/// Metres; more is checked when the scene is baked, which cannot name the instance.
+/// Meters; more is checked when the scene is baked, which cannot name the instance.
 constexpr double kFarthest = 1e6;
 constexpr double kLargestScale = 1e4;
-/// Radians or metres.
+/// Radians or meters.
 constexpr double kLargestPosition = 1e6;
 constexpr std::string_view kNoStage = "NONE";
 
@@ -43,7 +43,7 @@ std::optional<TranslationOrigin> SceneReader::readOrigin(const JsonNode& owner) 
   const JsonNode node = JsonReader::member(owner, "translation_origin");
   const std::string stated = json_.text(node);
   const std::string name = lowerCase(stated);
-  if (name == "com") return TranslationOrigin::kCentreOfMass;
+  if (name == "com") return TranslationOrigin::kCenterOfMass;
   if (name == "asset_local") return TranslationOrigin::kAssetOrigin;
   if (!name.empty() && name != "unknown" && name != "unspecified") {
     json_.error(node.place, fmt::format("'{}' is unknown; known are 'COM', 'asset_local' and "

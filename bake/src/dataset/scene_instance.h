@@ -13,7 +13,7 @@
 namespace galactic::bake {
 
 /// What the translation of an instance places.
-enum class TranslationOrigin : std::uint8_t { kCentreOfMass, kAssetOrigin };
+enum class TranslationOrigin : std::uint8_t { kCenterOfMass, kAssetOrigin };
 
 /// How an instance may move.
 enum class MotionType : std::uint8_t { kStatic, kKinematic, kDynamic };
@@ -21,7 +21,7 @@ enum class MotionType : std::uint8_t { kStatic, kKinematic, kDynamic };
 /// One thing that a scene places.
 struct SceneItem {
   std::string template_name;
-  /// Metres, world frame.
+  /// Meters, world frame.
   std::array<double, 3> translation{};
   /// (w, x, y, z), of length 1.
   std::array<double, 4> rotation{1, 0, 0, 0};
@@ -31,7 +31,7 @@ struct SceneItem {
   std::optional<TranslationOrigin> origin;
   /// Habitat takes what states none for dynamic.
   MotionType motion = MotionType::kDynamic;
-  /// Of articulated objects: by the name of a joint, or in the order of the names. Radians, metres.
+  /// Of articulated objects: by the name of a joint, or in the order of the names. Radians, meters.
   std::vector<std::pair<std::string, double>> joint_positions;
   /// Stated over those of the template.
   ReceptacleTexts receptacles;
@@ -43,7 +43,7 @@ struct SceneInstance {
   std::optional<SceneItem> stage;
   std::vector<SceneItem> objects;
   std::vector<SceneItem> articulated;
-  TranslationOrigin origin = TranslationOrigin::kCentreOfMass;
+  TranslationOrigin origin = TranslationOrigin::kCenterOfMass;
   /// Of the scene itself.
   ReceptacleTexts receptacles;
 };

@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20U;
-/// Metres; more is checked when the scene is baked, which cannot name the object.
+/// Meters; more is checked when the scene is baked, which cannot name the object.
 constexpr double kFarthest = 1e6;
 constexpr double kLargestScale = 1e4;
 constexpr double kLargestId = 2e9;
@@ -64,9 +64,9 @@ class LayerReader {
     triple("up", kLargestScale, attributes_.up);
     triple("front", kLargestScale, attributes_.front);
     // As in Habitat, a file that states none takes back what the defaults stated.
-    attributes_.centre_of_mass.reset();
+    attributes_.center_of_mass.reset();
     if (JsonReader::member(root_, "COM").json != nullptr) {
-      triple("COM", kFarthest, attributes_.centre_of_mass.emplace());
+      triple("COM", kFarthest, attributes_.center_of_mass.emplace());
     }
     const JsonNode collidable = JsonReader::member(root_, "is_collidable");
     if (collidable.json != nullptr) attributes_.collidable = json_.flag(collidable);

@@ -22,9 +22,9 @@ struct TemplateAttributes {
   /// Directions in the asset's frame that become +Y and -Z.
   std::array<double, 3> up{0, 1, 0};
   std::array<double, 3> front{0, 0, -1};
-  /// In the asset's frame after `up` and `front`, before the scale. None: the centre of its box.
+  /// In the asset's frame after `up` and `front`, before the scale. None: the center of its box.
   /// What is stated last decides: Habitat takes it back where a layer states none.
-  std::optional<std::array<double, 3>> centre_of_mass;
+  std::optional<std::array<double, 3>> center_of_mass;
   bool collidable = true;
   ReceptacleTexts receptacles;
 };

@@ -39,8 +39,8 @@ struct AnyContact : btCollisionWorld::ContactResultCallback {
   }
 };
 
-btTransform placedAt(const btVector3& centre) {
-  return btTransform(btQuaternion::getIdentity(), centre);
+btTransform placedAt(const btVector3& center) {
+  return btTransform(btQuaternion::getIdentity(), center);
 }
 
 /// One collision object, and the machinery Bullet needs to test spheres against it. For one thread.
@@ -57,13 +57,13 @@ class SphereProbe {
 
   [[nodiscard]] const BulletCastOptions& options() const { return options_; }
 
-  /// Whether a ball of `radius` at `centre` touches the mesh as Bullet sees it: Bullet counts
+  /// Whether a ball of `radius` at `center` touches the mesh as Bullet sees it: Bullet counts
   /// contacts up to 2 % of the radius away.
-  [[nodiscard]] bool overlaps(const btVector3& centre, float radius) {
+  [[nodiscard]] bool overlaps(const btVector3& center, float radius) {
     btSphereShape sphere(radius);
     btCollisionObject object;
     object.setCollisionShape(&sphere);
-    object.setWorldTransform(placedAt(centre));
+    object.setWorldTransform(placedAt(center));
     AnyContact contact;
     // Without adding the ball to the world first: the same contacts, less bookkeeping.
     collision_world_.contactPairTest(&object, &mesh_object_, contact);
@@ -104,8 +104,8 @@ class ColumnSearch {
  public:
   ColumnSearch(SphereProbe& probe, const GridFrame& frame, ColumnIndex at)
       : sphere_(probe),
-        x_(static_cast<float>(frame.centreX(at.i))),
-        z_(static_cast<float>(frame.centreZ(at.k))),
+        x_(static_cast<float>(frame.centerX(at.i))),
+        z_(static_cast<float>(frame.centerZ(at.k))),
         radius_(frame.radius),
         heights_(frame.heights),
         probe_(frame.heights.lo),
@@ -125,15 +125,15 @@ class ColumnSearch {
   }
 
  private:
-  [[nodiscard]] btVector3 centre(float height) const { return {x_, height, z_}; }
+  [[nodiscard]] btVector3 center(float height) const { return {x_, height, z_}; }
 
   [[nodiscard]] bool isClear(float height) {
-    return !sphere_.overlaps(centre(height), radius_ + sphere_.options().contact_pad);
+    return !sphere_.overlaps(center(height), radius_ + sphere_.options().contact_pad);
   }
 
   /// From a clear probe: the open span ends where a ball moving up touches, or never.
   void sweepUp() {
-    const auto hit = sphere_.sweep(centre(probe_), centre(heights_.hi), radius_);
+    const auto hit = sphere_.sweep(center(probe_), center(heights_.hi), radius_);
     if (!hit) {
       top_ = heights_.hi;
       store();
@@ -152,7 +152,7 @@ class ColumnSearch {
         probe_ += sphere_.options().step;
         continue;
       }
-      const auto hit = sphere_.sweep(centre(probe_), centre(top_), radius_);
+      const auto hit = sphere_.sweep(center(probe_), center(top_), radius_);
       // The published code reads the first of the hits before it asks whether there is one, which
       // is undefined when there is none; asking first gives what it meant.
       if (!hit) {

@@ -32,8 +32,8 @@ class BulletMesh {
       part.m_vertexType = PHY_FLOAT;
       arrays_.addIndexedMesh(part, PHY_INTEGER);
     }
-    constexpr bool kQuantised = true;
-    shape_ = std::make_unique<btBvhTriangleMeshShape>(&arrays_, kQuantised);
+    constexpr bool kQuantized = true;
+    shape_ = std::make_unique<btBvhTriangleMeshShape>(&arrays_, kQuantized);
     // Bullet's default of 4 cm would grow every surface.
     shape_->setMargin(0);
   }
@@ -44,7 +44,7 @@ class BulletMesh {
   [[nodiscard]] btBvhTriangleMeshShape* get() const { return shape_.get(); }
 
  private:
-  /// Bullet's quantised tree keeps a triangle's index in 21 bits: bigger meshes go in as several
+  /// Bullet's quantized tree keeps a triangle's index in 21 bits: bigger meshes go in as several
   /// parts.
   static constexpr std::size_t kTrianglesPerPart = std::size_t{1} << 20U;
 

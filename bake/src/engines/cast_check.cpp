@@ -13,9 +13,9 @@ namespace galactic::bake {
 namespace {
 
 /// How far from the end of a piece its first and last height are judged: more than a span end's own
-/// rounding, less than anything that matters. Metres.
+/// rounding, less than anything that matters. Meters.
 constexpr double kPulledIn = 1e-4;
-/// A disagreement is judged in parts about this long, metres, so that one that is a tie at one end
+/// A disagreement is judged in parts about this long, meters, so that one that is a tie at one end
 /// and the method's at the other is split between the two.
 constexpr double kPartLength = 0.01;
 /// More parts than this are made longer instead.
@@ -131,8 +131,8 @@ void gatherTriangles(const TriangleMesh& mesh, const GridFrame& frame, double re
       } else if (column->at.i < across.first) {
         column = from(column, column->at.k);
       } else {
-        const double dx = outside(frame.centreX(column->at.i), x);
-        const double dz = outside(frame.centreZ(column->at.k), z);
+        const double dx = outside(frame.centerX(column->at.i), x);
+        const double dz = outside(frame.centerZ(column->at.k), z);
         const double aside_squared = dx * dx + dz * dz;
         if (aside_squared <= reach * reach) column->near.push_back({t, aside_squared, y});
         ++column;
@@ -151,8 +151,8 @@ class Judge {
         double tolerance)
       : mesh_(mesh),
         column_(column),
-        x_(frame.centreX(column.at.i)),
-        z_(frame.centreZ(column.at.k)),
+        x_(frame.centerX(column.at.i)),
+        z_(frame.centerZ(column.at.k)),
         radius_(static_cast<double>(frame.radius)),
         tolerance_(tolerance) {}
 

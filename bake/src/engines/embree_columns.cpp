@@ -114,8 +114,8 @@ void trace(RTCScene scene, const GridFrame& frame, ColumnIndex at,
            std::vector<BlockedInterval>& blocked) {
   blocked.clear();
   ColumnRay ray{};
-  ray.x = frame.centreX(at.i);
-  ray.z = frame.centreZ(at.k);
+  ray.x = frame.centerX(at.i);
+  ray.z = frame.centerZ(at.k);
   ray.blocked = &blocked;
   RTCRayHit hit{};
   hit.ray.org_x = static_cast<float>(ray.x);

@@ -10,7 +10,7 @@ namespace galactic::bake {
 
 /// One sampled position of the arm, with the base at the origin, looking along +X.
 struct ArmSample {
-  /// The grasp point, metres above the ground and away from the base's centre.
+  /// The grasp point, meters above the ground and away from the base's center.
   Vec3 grasp_point;
   float distance = 0;
   /// Row of positions.
@@ -27,15 +27,15 @@ class ArmReach {
 
   /// By rising height of the grasp point.
   [[nodiscard]] std::span<const ArmSample> samples() const { return samples_; }
-  /// The samples whose grasp point is between these heights above the ground, metres.
+  /// The samples whose grasp point is between these heights above the ground, meters.
   [[nodiscard]] std::span<const ArmSample> between(float low, float high) const;
   /// The joint positions of a sample: one per position of the robot.
   [[nodiscard]] std::span<const float> positions(const ArmSample& sample) const;
 
   /// Whether some sample's grasp point is about there: within the cell of a table of 5 cm by 5 cm.
-  /// Height above the ground and distance from the base's centre, metres.
+  /// Height above the ground and distance from the base's center, meters.
   [[nodiscard]] bool covers(float distance, float height) const;
-  /// The farthest distance of any sample, metres.
+  /// The farthest distance of any sample, meters.
   [[nodiscard]] float farthest() const { return farthest_; }
 
  private:

@@ -20,20 +20,20 @@ namespace {
 
 constexpr btScalar kGravity = -9.81F;
 constexpr btScalar kStep = 1.0F / 120;
-/// At rest: within so many steps it went less far than this, metres, and leaned over less than
+/// At rest: within so many steps it went less far than this, meters, and leaned over less than
 /// this, radians. Speeds say little: contacts without margins come and go, and things tremble.
 constexpr int kWindow = 24;
 constexpr float kQuietWay = 5e-4F;
 constexpr float kQuietLean = 0.01F;
 constexpr int kMostWindows = 8;
-/// The object is let go this high over where it is put, metres, so that it begins outside of the
+/// The object is let go this high over where it is put, meters, so that it begins outside of the
 /// triangles: a grid rounds heights by less.
 constexpr float kDrop = 0.0005F;
 constexpr btScalar kFriction = 0.8F;
 /// Holds what is nearly round, as the carpet or the dent of a real apple does.
 constexpr btScalar kRollingFriction = 0.002F;
 constexpr btScalar kMass = 0.5F;
-/// A box of no thickness has no inertia: half of the least one, metres.
+/// A box of no thickness has no inertia: half of the least one, meters.
 constexpr float kThinnest = 5e-4F;
 
 btVector3 toBullet(const Vec3& v) { return {v.x, v.y, v.z}; }

@@ -20,8 +20,8 @@ struct Column {
   return spans;
 }
 
-/// Where column (i, k) stands: x and z in metres, y 0.
-[[nodiscard]] inline Vec3 columnCentre(const ColumnGrid& grid, std::uint32_t i, std::uint32_t k) {
+/// Where column (i, k) stands: x and z in meters, y 0.
+[[nodiscard]] inline Vec3 columnCenter(const ColumnGrid& grid, std::uint32_t i, std::uint32_t k) {
   const ColumnGridLayout& layout = grid.layout();
   return {layout.min_x + (static_cast<float>(i) + 0.5F) * layout.spacing, 0,
           layout.min_z + (static_cast<float>(k) + 0.5F) * layout.spacing};

@@ -39,7 +39,7 @@ bool isWithin(float distance, const DistanceRange& range) {
   return distance >= range.least && distance <= range.most;
 }
 
-/// How far an object may still be put from the place that is drawn for it, metres: what settling
+/// How far an object may still be put from the place that is drawn for it, meters: what settling
 /// allows, and the cell's half diagonal is added to it.
 constexpr float kAside = kSettlingWay;
 

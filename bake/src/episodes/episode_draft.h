@@ -14,7 +14,7 @@
 
 namespace galactic::bake {
 
-/// Objects keep this distance between their boxes, metres.
+/// Objects keep this distance between their boxes, meters.
 inline constexpr float kObjectGap = 0.05F;
 /// Share of the grasp radius within which the grasp point of a test of reach comes to the box: a
 /// run counts what is nearer than the whole radius, and moves in floats of its own.
@@ -43,7 +43,7 @@ struct DraftedEpisode {
   std::vector<PlacedObject> objects;
   std::uint32_t target = 0;
   PlacedObject goal;
-  /// On the floor, metres; radians.
+  /// On the floor, meters; radians.
   Vec3 base_position;
   float base_yaw = 0;
 };

@@ -10,7 +10,7 @@
 
 namespace galactic::bake {
 
-/// Metres from the world's origin.
+/// Meters from the world's origin.
 inline constexpr double kFarthest = 10'000;
 /// Saved with seven decimals, a unit quaternion is off by far less; so is an axis of a rotation.
 inline constexpr double kUnitTolerance = 1e-3;

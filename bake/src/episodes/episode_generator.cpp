@@ -17,7 +17,7 @@
 namespace galactic::bake {
 namespace {
 
-/// Put between the floor and the base's point on it, metres, so that rounding never leaves the
+/// Put between the floor and the base's point on it, meters, so that rounding never leaves the
 /// point under the floor; far below what the run counts as a step.
 constexpr float kFloorMargin = 1e-4F;
 /// Drafts of one episode: so many with places drawn anywhere, then near places that are known to

@@ -9,7 +9,7 @@
 namespace galactic::bake {
 namespace {
 
-/// The robot follows the floor, whose height it finds again to rounding; a push is more. Metres and
+/// The robot follows the floor, whose height it finds again to rounding; a push is more. Meters and
 /// radians.
 constexpr float kStill = 1e-4F;
 

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Radians or metres of a joint, and the base's yaw: continuous joints may have turned often.
+/// Radians or meters of a joint, and the base's yaw: continuous joints may have turned often.
 constexpr double kLargestPosition = 1e6;
 constexpr std::int64_t kMostElements = std::numeric_limits<std::int32_t>::max();
 

@@ -12,7 +12,7 @@ namespace galactic::bake {
 namespace {
 
 constexpr std::uint32_t kNoPlace = 0xFFFFFFFF;
-/// A step that the run's base takes in both directions, metres.
+/// A step that the run's base takes in both directions, meters.
 constexpr float kMostStep = std::min(GroundOptions{}.most_rise, GroundOptions{}.most_drop);
 
 /// Which headings of which places have been seen by a flood fill.
@@ -87,13 +87,13 @@ class BodyArrays {
  public:
   /// `spheres` are ordered by radius.
   explicit BodyArrays(std::span<const BodySphere> spheres) : moved_(spheres.size()) {
-    centres_.reserve(spheres.size());
+    centers_.reserve(spheres.size());
     for (const BodySphere& sphere : spheres) {
       if (parts_.empty() || parts_.back().radius_index != sphere.radius_index) {
         parts_.push_back({sphere.radius_index, 0});
       }
       ++parts_.back().count;
-      centres_.push_back(sphere.centre);
+      centers_.push_back(sphere.center);
     }
   }
 
@@ -102,15 +102,15 @@ class BodyArrays {
     std::size_t first = 0;
     for (const Part& part : parts_) {
       for (std::size_t n = first; n < first + part.count; ++n) {
-        const Vec3 centre = centres_[n] + offset;
-        moved_.x[n] = centre.x;
-        moved_.y[n] = centre.y;
-        moved_.z[n] = centre.z;
+        const Vec3 center = centers_[n] + offset;
+        moved_.x[n] = center.x;
+        moved_.y[n] = center.y;
+        moved_.z[n] = center.z;
       }
-      const SphereCentres centres{.x = std::span(moved_.x).subspan(first, part.count),
+      const SphereCenters centers{.x = std::span(moved_.x).subspan(first, part.count),
                                   .y = std::span(moved_.y).subspan(first, part.count),
                                   .z = std::span(moved_.z).subspan(first, part.count)};
-      if (scene.grids()[part.radius_index].firstNotFree(centres) < part.count) return false;
+      if (scene.grids()[part.radius_index].firstNotFree(centers) < part.count) return false;
       first += part.count;
     }
     return true;
@@ -130,7 +130,7 @@ class BodyArrays {
   };
 
   std::vector<Part> parts_;
-  std::vector<Vec3> centres_;
+  std::vector<Vec3> centers_;
   Arrays moved_;
 };
 
@@ -176,9 +176,9 @@ FloorMap::FloorMap(const Scene& scene, const Robot& robot)
 void FloorMap::addPlaces(std::uint32_t i, std::uint32_t k) {
   std::optional<float> last;
   for (const Span& span : spansOf(grid_, i, k)) {
-    Vec3 centre = columnCentre(grid_, i, k);
-    centre.y = span.lo;
-    const std::optional<float> floor = floorUnder(centre);
+    Vec3 center = columnCenter(grid_, i, k);
+    center.y = span.lo;
+    const std::optional<float> floor = floorUnder(center);
     // Two spans of the large sphere may lie in one of the small one, over one floor.
     if (!floor || floor == last) continue;
     places_.push_back({.i = i, .k = k, .height = *floor, .headings = 0});
@@ -187,10 +187,10 @@ void FloorMap::addPlaces(std::uint32_t i, std::uint32_t k) {
 }
 
 /// As the smallest radius sees it: a small sphere is not held up by what stands beside it.
-std::optional<float> FloorMap::floorUnder(const Vec3& free_centre) const {
-  const Contact contact = fine_grid_.contact(free_centre);
+std::optional<float> FloorMap::floorUnder(const Vec3& free_center) const {
+  const Contact contact = fine_grid_.contact(free_center);
   if (contact.clearance != Clearance::kFree) return std::nullopt;
-  return free_centre.y - contact.down - fine_grid_.radius();
+  return free_center.y - contact.down - fine_grid_.radius();
 }
 
 std::optional<float> FloorMap::heightAt(float x, float z, float height) const {
@@ -238,9 +238,9 @@ void FloorMap::keepLargestPart() {
 }
 
 Vec3 FloorMap::position(const FloorPlace& place) const {
-  Vec3 centre = columnCentre(grid_, place.i, place.k);
-  centre.y = place.height;
-  return centre;
+  Vec3 center = columnCenter(grid_, place.i, place.k);
+  center.y = place.height;
+  return center;
 }
 
 std::span<const FloorPlace> FloorMap::placesAt(float x, float z) const {

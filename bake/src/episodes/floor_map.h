@@ -16,11 +16,11 @@ namespace galactic::bake {
 /// n * 2 pi / kHeadings.
 inline constexpr std::uint32_t kHeadings = 16;
 
-/// A place on the floor under the centre of a column of the largest radius.
+/// A place on the floor under the center of a column of the largest radius.
 struct FloorPlace {
   std::uint32_t i = 0;
   std::uint32_t k = 0;
-  /// Metres.
+  /// Meters.
   float height = 0;
   /// Bit n: the robot in its start pose is free in heading n, and can drive here from anywhere else
   /// on the map.
@@ -31,9 +31,9 @@ struct FloorPlace {
 class FloorMap {
  public:
   /// Takes the floor from the columns of the largest radius and tests all spheres of the robot in
-  /// its start pose against the scene. Places in neighbouring columns are connected in one heading
+  /// its start pose against the scene. Places in neighboring columns are connected in one heading
   /// when their heights differ by no more than the run's GroundOptions allow; headings are
-  /// connected with their neighbours. Empty when the robot stands nowhere.
+  /// connected with their neighbors. Empty when the robot stands nowhere.
   FloorMap(const Scene& scene, const Robot& robot);
 
   /// Row by row, the lower place of a column first; each with at least one heading.
@@ -41,12 +41,12 @@ class FloorMap {
   /// Places with a floor at which the robot was tried.
   [[nodiscard]] std::size_t tried() const { return tried_; }
 
-  /// Point on the floor at the centre of the place's column, metres.
+  /// Point on the floor at the center of the place's column, meters.
   [[nodiscard]] Vec3 position(const FloorPlace& place) const;
-  /// Edge of a column's cell, metres.
+  /// Edge of a column's cell, meters.
   [[nodiscard]] float spacing() const { return grid_.spacing(); }
 
-  /// The height of the floor under (x, z) itself, metres: what the column of the smallest radius
+  /// The height of the floor under (x, z) itself, meters: what the column of the smallest radius
   /// there shows within a step of `height`, the nearest one. None where there is no such floor.
   [[nodiscard]] std::optional<float> heightAt(float x, float z, float height) const;
 
@@ -55,7 +55,7 @@ class FloorMap {
 
  private:
   void addPlaces(std::uint32_t i, std::uint32_t k);
-  [[nodiscard]] std::optional<float> floorUnder(const Vec3& free_centre) const;
+  [[nodiscard]] std::optional<float> floorUnder(const Vec3& free_center) const;
   void indexColumns();
   void keepLargestPart();
 

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using fit::Axes;
 
 constexpr double kLargestState = 1e6;
-/// Furniture that is open less than this counts as closed: radians or metres.
+/// Furniture that is open less than this counts as closed: radians or meters.
 constexpr double kClosed = 1e-3;
 
 /// A rigid transform as Habitat writes it.
@@ -91,7 +91,7 @@ class HabitatReader {
   EpisodeFile file_;
   NameList scenes_;
   NameList objects_;
-  std::set<std::string> uncentred_;
+  std::set<std::string> uncentered_;
   /// Of all episodes.
   std::uint64_t placements_ = 0;
   Losses losses_;
@@ -138,18 +138,18 @@ Pose HabitatReader::pose(const JsonNode& node, const std::string& object) {
                       static_cast<double>(turned.y), static_cast<double>(turned.z)},
                      file_from_pack_));
   Vec3d origin = read.translation;
-  const auto centre = options_.object_centres.find(object);
-  if (centre != options_.object_centres.end()) {
-    const Vec3& c = centre->second;
+  const auto center = options_.object_centers.find(object);
+  if (center != options_.object_centers.end()) {
+    const Vec3& c = center->second;
     const Axes axes = fit::axesOf(rotation);
     origin = origin - axes[0] * static_cast<double>(c.x) - axes[1] * static_cast<double>(c.y) -
              axes[2] * static_cast<double>(c.z);
-  } else if (options_.centres_needed) {
+  } else if (options_.centers_needed) {
     json_.error(node.place, fmt::format("is of '{}', which is not in the object pack; bake it into "
                                         "it",
                                         object));
   } else {
-    uncentred_.insert(object);
+    uncentered_.insert(object);
   }
   return {
       {static_cast<float>(origin.x), static_cast<float>(origin.y), static_cast<float>(origin.z)},
@@ -319,11 +319,11 @@ void HabitatReader::warnOfLosses() {
   warn(losses_.open_furniture,
        "open furniture (ao_states), which stands in the scenes' packs as they were baked");
   warn(losses_.no_start, "give no start: the robot stands at the origin");
-  if (uncentred_.empty()) return;
+  if (uncentered_.empty()) return;
   file_.warnings.push_back(
-      fmt::format("{} objects, first '{}', stand with their origins where their centres belong; "
+      fmt::format("{} objects, first '{}', stand with their origins where their centers belong; "
                   "give --object-pack, unless these are the same",
-                  uncentred_.size(), *uncentred_.begin()));
+                  uncentered_.size(), *uncentered_.begin()));
 }
 
 Result<EpisodeFile> HabitatReader::read(const Json& root) {

@@ -27,7 +27,7 @@ using Rotation = std::array<double, 4>;
 /// frame and back cannot show in parts that are nearly 0.
 [[nodiscard]] Quat narrow(const Rotation& rotation);
 
-/// The same as a pose at `point`, metres.
+/// The same as a pose at `point`, meters.
 [[nodiscard]] Pose narrow(const std::array<double, 3>& point, const Rotation& rotation);
 
 }  // namespace galactic::bake

@@ -43,13 +43,13 @@ PlacedObject placeObject(const ObjectModel& model, std::uint32_t object, const S
   const StandingSize size = standingSize(model, stable);
   const Quat yaw = yawRotation(spot.yaw);
   const Vec3 along = rotate(yaw, {1, 0, 0});
-  const Vec3 centre =
+  const Vec3 center =
       rotate(yaw, {(size.min.x + size.max.x) / 2, 0, (size.min.z + size.max.z) / 2});
   return {.model = &model,
           .object = object,
           .pose = {{spot.x, spot.surface + stable.height, spot.z}, yaw * stable.rotation},
-          .footprint = {.x = spot.x + centre.x,
-                        .z = spot.z + centre.z,
+          .footprint = {.x = spot.x + center.x,
+                        .z = spot.z + center.z,
                         .half_length = (size.max.x - size.min.x) / 2,
                         .half_width = (size.max.z - size.min.z) / 2,
                         .along_x = along.x,
@@ -77,7 +77,7 @@ float distanceToBox(const PlacedObject& object, const Vec3& point) {
 
 bool touches(const PlacedObject& object, std::span<const BodySphere> spheres) {
   return std::any_of(spheres.begin(), spheres.end(), [&](const BodySphere& sphere) {
-    return distanceToBox(object, sphere.centre) < sphere.radius;
+    return distanceToBox(object, sphere.center) < sphere.radius;
   });
 }
 

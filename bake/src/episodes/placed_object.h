@@ -9,7 +9,7 @@
 namespace galactic::bake {
 
 /// The outline of an object's box seen from above, and its heights: a rectangle that contains the
-/// box's corners. Metres.
+/// box's corners. Meters.
 struct Footprint {
   float x = 0;
   float z = 0;
@@ -32,7 +32,7 @@ struct PlacedObject {
 };
 
 /// The size of a model in one of its stable poses, before it is turned: the corners of its box in
-/// the plane's frame, relative to the object's origin over the plane. Metres.
+/// the plane's frame, relative to the object's origin over the plane. Meters.
 struct StandingSize {
   Vec3 min;
   Vec3 max;
@@ -49,11 +49,11 @@ struct Spot {
 [[nodiscard]] PlacedObject placeObject(const ObjectModel& model, std::uint32_t object,
                                        const StablePose& stable, const Spot& spot);
 
-/// A lower bound of the distance of two placed boxes, metres: that of their footprints, or of their
+/// A lower bound of the distance of two placed boxes, meters: that of their footprints, or of their
 /// heights where this is more; 0 or less where both overlap.
 [[nodiscard]] float gapBetween(const Footprint& a, const Footprint& b);
 
-/// Distance of a point and an object's box, metres; 0 inside.
+/// Distance of a point and an object's box, meters; 0 inside.
 [[nodiscard]] float distanceToBox(const PlacedObject& object, const Vec3& point);
 
 /// Whether any sphere is nearer to the object's box than its radius.

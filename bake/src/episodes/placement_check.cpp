@@ -12,18 +12,18 @@ namespace galactic::bake {
 namespace {
 
 constexpr float kMostLift = PlacementOptions{}.most_lift;
-/// As in the run: rounding does not ask for the same lift again, metres.
+/// As in the run: rounding does not ask for the same lift again, meters.
 constexpr float kNudge = 1e-4F;
 constexpr int kMostLifts = 16;
 
-/// How far up a centre has to go to be free; none when there is no free height above it.
-std::optional<float> liftOutOf(const ColumnGrid& grid, const Vec3& centre) {
-  if (grid.clearance(centre) == Clearance::kFree) return 0.0F;
-  const std::optional<Column> column = columnAt(grid, centre.x, centre.z);
+/// How far up a center has to go to be free; none when there is no free height above it.
+std::optional<float> liftOutOf(const ColumnGrid& grid, const Vec3& center) {
+  if (grid.clearance(center) == Clearance::kFree) return 0.0F;
+  const std::optional<Column> column = columnAt(grid, center.x, center.z);
   if (!column) return std::nullopt;
   for (const Span& span : spansOf(grid, column->i, column->k)) {
     // A column may call a height free that the query, which counts in quanta, does not.
-    if (span.hi > centre.y) return std::max(span.lo - centre.y, kNudge);
+    if (span.hi > center.y) return std::max(span.lo - center.y, kNudge);
   }
   return std::nullopt;
 }
@@ -35,9 +35,9 @@ std::optional<float> liftOutOfScene(const Scene& scene, const ObjectModel& model
   for (int n = 0; n < kMostLifts; ++n) {
     float more = 0;
     for (const SetSphere& sphere : model.spheres) {
-      Vec3 centre = world_from_object * sphere.centre;
-      centre.y += lift;
-      const auto needed = liftOutOf(scene.grids()[sphere.radius_index], centre);
+      Vec3 center = world_from_object * sphere.center;
+      center.y += lift;
+      const auto needed = liftOutOf(scene.grids()[sphere.radius_index], center);
       if (!needed) return std::nullopt;
       more = std::max(more, *needed);
     }
@@ -55,9 +55,9 @@ bool canBeReleased(const Scene& scene, const ObjectModel& model, const Pose& wor
   if (!lift) return false;
   float fall = std::numeric_limits<float>::max();
   for (const SetSphere& sphere : model.spheres) {
-    Vec3 centre = world_from_object * sphere.centre;
-    centre.y += *lift;
-    fall = std::min(fall, scene.grids()[sphere.radius_index].contact(centre).down);
+    Vec3 center = world_from_object * sphere.center;
+    center.y += *lift;
+    fall = std::min(fall, scene.grids()[sphere.radius_index].contact(center).down);
   }
   return std::abs(*lift - fall) <= kMostLift;
 }

@@ -12,7 +12,7 @@
 namespace galactic::bake {
 namespace {
 
-/// Grids may reach this far beyond the triangles that they were made of, metres.
+/// Grids may reach this far beyond the triangles that they were made of, meters.
 constexpr float kGridMargin = 1;
 
 /// The rectangle of a grid; heights are 0.

@@ -43,7 +43,7 @@ class PreparedScene {
   PreparedScene(const GenerationContext& context, const Scene& scene, SceneDetails details);
   [[nodiscard]] std::string whyUnusable() const;
   Result<void> useMesh();
-  /// How far apart two objects can be, metres: a little more than is possible, never less.
+  /// How far apart two objects can be, meters: a little more than is possible, never less.
   [[nodiscard]] float widestWay() const;
   void chooseWay();
   /// Finds proven pairs, nearer ones where none are as far apart as is asked for and that is

@@ -7,9 +7,9 @@ namespace galactic::bake {
 namespace {
 
 constexpr std::size_t kTries = 400;
-/// Half the range of heights of arm samples that are taken for one aim, metres.
+/// Half the range of heights of arm samples that are taken for one aim, meters.
 constexpr float kHeightRange = 0.015F;
-/// Floors within this of the given height count as it, metres: rugs and thresholds.
+/// Floors within this of the given height count as it, meters: rugs and thresholds.
 constexpr float kFloorRange = 0.05F;
 
 float between(float low, float high, Random& random) {

@@ -11,7 +11,7 @@ bool overlap(std::span<const BodySphere> spheres, std::uint32_t first, std::uint
   for (const BodySphere& a : spheres) {
     if (a.group != first) continue;
     for (const BodySphere& b : spheres) {
-      const Vec3 between = a.centre - b.centre;
+      const Vec3 between = a.center - b.center;
       const float reach = a.radius + b.radius;
       if (b.group == second && dot(between, between) < reach * reach) return true;
     }
@@ -34,7 +34,7 @@ RobotBody robotBody(const Robot& robot, const Pose& world_from_ground,
   for (std::uint32_t group = 0; group < robot.groups().size(); ++group) {
     const SphereGroup& spheres = robot.groups()[group];
     for (const SetSphere& sphere : spheres.spheres) {
-      body.spheres.push_back({.centre = world_from_link[spheres.link] * sphere.centre,
+      body.spheres.push_back({.center = world_from_link[spheres.link] * sphere.center,
                               .radius = robot.radii()[sphere.radius_index],
                               .radius_index = sphere.radius_index,
                               .group = group});
@@ -50,7 +50,7 @@ RobotBody robotBody(const Robot& robot, const Pose& world_from_ground,
 bool isFree(const Scene& scene, std::span<const BodySphere> spheres, const Vec3& offset) {
   return std::all_of(spheres.begin(), spheres.end(), [&](const BodySphere& sphere) {
     const ColumnGrid& grid = scene.grids()[sphere.radius_index];
-    return grid.clearance(sphere.centre + offset) == Clearance::kFree;
+    return grid.clearance(sphere.center + offset) == Clearance::kFree;
   });
 }
 

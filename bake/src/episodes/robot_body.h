@@ -11,7 +11,7 @@ namespace galactic::bake {
 
 /// A sphere of the robot in the world.
 struct BodySphere {
-  Vec3 centre;
+  Vec3 center;
   float radius = 0;
   std::uint32_t radius_index = 0;
   std::uint32_t group = 0;
@@ -34,17 +34,17 @@ struct RobotBody {
 }
 
 /// Spheres and grasp point with the base at `world_from_ground` and the joints at `positions`
-/// (radians or metres, one per position of the robot). The robot must have base and end effector.
+/// (radians or meters, one per position of the robot). The robot must have base and end effector.
 [[nodiscard]] RobotBody robotBody(const Robot& robot, const Pose& world_from_ground,
                                   std::span<const float> positions);
 
-/// Whether every sphere, moved by `offset` (metres), is free in the column grid of its radius; the
+/// Whether every sphere, moved by `offset` (meters), is free in the column grid of its radius; the
 /// scene's radii must be the robot's. Spheres outside the grid are not free.
 [[nodiscard]] bool isFree(const Scene& scene, std::span<const BodySphere> spheres,
                           const Vec3& offset = {});
 
 /// The pairs of groups whose spheres do not overlap where an episode starts. Spheres stick out of
-/// what they cover: those of neighbours may overlap in every position.
+/// what they cover: those of neighbors may overlap in every position.
 [[nodiscard]] std::vector<GroupPair> pairsApartAtStart(const Robot& robot);
 
 /// Whether the two groups of any of the pairs overlap.

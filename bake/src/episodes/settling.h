@@ -11,18 +11,18 @@ namespace galactic::bake {
 
 /// The shape of an object that is settled: convex.
 struct SettlingBody {
-  /// object_from_body: the body's origin is its centre of mass.
+  /// object_from_body: the body's origin is its center of mass.
   Pose object_from_body;
-  /// Corners of the hull in the frame of the body, metres; empty: the box.
+  /// Corners of the hull in the frame of the body, meters; empty: the box.
   std::vector<Vec3> corners;
-  /// Of the box, metres; not used where there are corners.
+  /// Of the box, meters; not used where there are corners.
   Vec3 half_extents;
 };
 
 /// The box of an object, of even density.
 [[nodiscard]] SettlingBody boxBody(const ObjectModel& model);
 
-/// The convex hull of points in the object's frame (metres), of even density; the box of `model`
+/// The convex hull of points in the object's frame (meters), of even density; the box of `model`
 /// where they fill no volume.
 [[nodiscard]] SettlingBody hullBody(std::span<const Vec3> points, const ObjectModel& model);
 
@@ -39,7 +39,7 @@ struct Settled {
   Pose pose;
 };
 
-/// How far a settled object may have moved, metres, and leaned over, radians.
+/// How far a settled object may have moved, meters, and leaned over, radians.
 inline constexpr float kSettlingWay = 0.01F;
 inline constexpr float kSettlingLean = 0.0873F;
 

@@ -7,7 +7,7 @@
 namespace galactic::bake {
 namespace {
 
-/// A hull this small (cubic metres) has no centre of mass in floats.
+/// A hull this small (cubic meters) has no center of mass in floats.
 constexpr double kLeastVolume = 1e-12;
 
 struct Mass {
@@ -53,11 +53,11 @@ SettlingBody hullBody(std::span<const Vec3> points, const ObjectModel& model) {
   if (hull.shape != fit::HullShape::kSolid) return boxBody(model);
   const Mass mass = massOf(hull);
   if (!(mass.volume > kLeastVolume)) return boxBody(model);
-  const Vec3 centre = narrow(mass.moment * (1 / mass.volume));
-  SettlingBody body{.object_from_body = {centre, {}}, .corners = {}, .half_extents = {}};
+  const Vec3 center = narrow(mass.moment * (1 / mass.volume));
+  SettlingBody body{.object_from_body = {center, {}}, .corners = {}, .half_extents = {}};
   body.corners.reserve(hull.corners.size());
   for (const fit::HullCorner& corner : hull.corners) {
-    body.corners.push_back(points[corner.source] - centre);
+    body.corners.push_back(points[corner.source] - center);
   }
   return body;
 }

@@ -7,7 +7,7 @@
 namespace galactic::bake {
 namespace {
 
-/// How far apart the floor places are looked at when a surface is tested for reach, metres: less
+/// How far apart the floor places are looked at when a surface is tested for reach, meters: less
 /// than what the arm reaches without the base being anywhere special.
 constexpr float kFloorStride = 0.09F;
 
@@ -22,7 +22,7 @@ std::optional<Span> freeOver(const ColumnGrid& grid, const Column& column, float
   return std::nullopt;
 }
 
-/// How far around a footprint the columns have to be flat, metres, so that nothing under it is not:
+/// How far around a footprint the columns have to be flat, meters, so that nothing under it is not:
 /// a column beside an edge still looks flat where the sphere on it sinks by no more than
 /// `flatness`, and the next one is a cell further.
 float rimOf(const ColumnGrid& grid, float flatness) {
@@ -62,7 +62,7 @@ class ReachTest {
   float stride_ = 0;
 };
 
-/// Which flat places are one surface: neighbours in a row or a column of the grid that are about
+/// Which flat places are one surface: neighbors in a row or a column of the grid that are about
 /// equally high, joined as the places are found, row by row.
 class SurfaceLabels {
  public:
@@ -116,7 +116,7 @@ class SurfaceLabels {
   bool has_above_ = false;
 };
 
-/// How far below the surface and above it a receptacle's box may be, metres: datasets draw them by
+/// How far below the surface and above it a receptacle's box may be, meters: datasets draw them by
 /// hand, and a run drops objects from inside them.
 constexpr float kUnderRegion = 0.05F;
 constexpr float kOverRegion = 0.02F;
@@ -124,7 +124,7 @@ constexpr float kOverRegion = 0.02F;
 }  // namespace
 
 bool contains(const SupportRegion& region, const Vec3& point) {
-  // Most points are far off: nothing of the box is further from its centre than its corners.
+  // Most points are far off: nothing of the box is further from its center than its corners.
   const Vec3 aside = point - region.world_from_region.translation;
   constexpr float kRounding = 1e-3F;
   const float reach = std::sqrt(dot(region.half_extents, region.half_extents)) + kRounding;
@@ -181,7 +181,7 @@ std::vector<SupportPlace> SupportPlaces::flatPlaces() const {
     for (std::uint32_t i = 0; i < grid.columnsX(); ++i) {
       labels.beginColumn(i, flat.size());
       for (const Span& span : spansOf(grid, i, k)) {
-        Vec3 point = columnCentre(grid, i, k);
+        Vec3 point = columnCenter(grid, i, k);
         point.y = span.lo - grid.radius();
         if (!isFlatAround({i, k}, point.y)) continue;
         flat.push_back({.x = point.x, .z = point.z, .surface = point.y, .floor = 0});
@@ -244,9 +244,9 @@ std::optional<float> SupportPlaces::surfaceUnder(const Footprint& footprint, flo
   float highest = surface;
   for (std::uint32_t k = first->k; k <= last->k; ++k) {
     for (std::uint32_t i = first->i; i <= last->i; ++i) {
-      const Vec3 centre = columnCentre(grid, i, k);
-      const float dx = centre.x - footprint.x;
-      const float dz = centre.z - footprint.z;
+      const Vec3 center = columnCenter(grid, i, k);
+      const float dx = center.x - footprint.x;
+      const float dz = center.z - footprint.z;
       if (std::abs(dx * footprint.along_x + dz * footprint.along_z) > length) continue;
       if (std::abs(dz * footprint.along_x - dx * footprint.along_z) > width) continue;
       const std::optional<Span> free = freeOver(grid, {i, k}, surface, flatness_);

@@ -15,25 +15,25 @@
 
 namespace galactic::bake {
 
-/// Free height over an object in which a gripper comes from above, metres: as wide as the largest
+/// Free height over an object in which a gripper comes from above, meters: as wide as the largest
 /// sphere.
 inline constexpr float kApproachHeight = 0.2F;
-/// Free height between an object and what is over it, metres.
+/// Free height between an object and what is over it, meters.
 inline constexpr float kHeadroom = 0.02F;
 
 /// A column over a flat piece of surface that the robot can reach.
 struct SupportPlace {
   float x = 0;
   float z = 0;
-  /// Height of the surface, metres.
+  /// Height of the surface, meters.
   float surface = 0;
-  /// Height of the floor from which it is reached, metres.
+  /// Height of the floor from which it is reached, meters.
   float floor = 0;
-  /// Number of the flat surface that it belongs to: neighbouring columns of one height.
+  /// Number of the flat surface that it belongs to: neighboring columns of one height.
   std::uint32_t surface_id = 0;
 };
 
-/// Whether a point on a surface (world frame, metres) belongs to the region: whether the region's
+/// Whether a point on a surface (world frame, meters) belongs to the region: whether the region's
 /// box is there, or somewhat over it, as the boxes of datasets are.
 [[nodiscard]] bool contains(const SupportRegion& region, const Vec3& point);
 
@@ -67,7 +67,7 @@ class SupportPlaces {
 
   /// The highest surface under an object's footprint, which must be flat and free up to kHeadroom
   /// over the object, and have room for a gripper over its middle; one cell around it, too. None
-  /// where it is not so. Only the footprint's rectangle and top count; heights in metres.
+  /// where it is not so. Only the footprint's rectangle and top count; heights in meters.
   [[nodiscard]] std::optional<float> surfaceUnder(const Footprint& footprint, float surface) const;
 
  private:

@@ -7,7 +7,7 @@
 namespace galactic::bake {
 namespace {
 
-/// Rays begin this high over the surface, metres: under what may hang over an object.
+/// Rays begin this high over the surface, meters: under what may hang over an object.
 constexpr float kAbove = 0.025F;
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 namespace galactic::bake {
 
-/// How far apart rays meet the surface under an object at most, metres: finer than the columns.
+/// How far apart rays meet the surface under an object at most, meters: finer than the columns.
 inline constexpr float kRayDistance = 0.01F;
 
 /// The triangles of a scene, asked from above.
@@ -18,7 +18,7 @@ class SurfaceRays {
   [[nodiscard]] static Result<SurfaceRays> build(const TriangleMesh& mesh);
 
   /// Whether rays down over the whole footprint, its border included, all meet a surface within
-  /// `flatness` (metres) of the height `surface`. Thread-safe.
+  /// `flatness` (meters) of the height `surface`. Thread-safe.
   [[nodiscard]] bool isEven(const Footprint& footprint, float surface, float flatness) const;
 
  private:

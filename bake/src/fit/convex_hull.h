@@ -29,7 +29,7 @@ struct ConvexHull {
   /// Point: one. Line: its two ends. Plane: the polygon, counter-clockwise about frame[2].
   std::vector<HullCorner> corners;
   /// Of a solid only: each face's corners, counter-clockwise seen from outside. Faces are planar
-  /// up to rounding; neighbours may be coplanar up to rounding too.
+  /// up to rounding; neighbors may be coplanar up to rounding too.
   std::vector<std::vector<std::uint32_t>> faces;
 };
 
@@ -41,7 +41,7 @@ inline constexpr double kHullRounding = 1e-4;
 inline constexpr double kFlatRatio = 1e-6;
 inline constexpr double kFloatNoise = 2.5e-7;
 
-/// The convex hull of `points` (metres, finite, at least one), by Bullet's exact integer hull
+/// The convex hull of `points` (meters, finite, at least one), by Bullet's exact integer hull
 /// (Preparata and Hong) of the points rounded to a grid. What fills no volume is a point, a line or
 /// a plane, found without Bullet. Deterministic: a function of the points in their order.
 [[nodiscard]] ConvexHull convexHull(std::span<const Vec3> points);

@@ -44,7 +44,7 @@ class FacetBuilder {
     for (const auto& face : hull.faces) {
       areas_.push_back(areaOf(face, [&](std::uint32_t c) { return hull.corners[c].rounded; }));
     }
-    linkNeighbours();
+    linkNeighbors();
   }
 
   std::vector<Facet> build() {
@@ -64,7 +64,7 @@ class FacetBuilder {
  private:
   static constexpr std::uint32_t kNone = ~0U;
 
-  void linkNeighbours() {
+  void linkNeighbors() {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> face_of_edge;
     const auto for_each_edge = [&](const auto& visit) {
       for (std::uint32_t face = 0; face < hull_.faces.size(); ++face) {
@@ -77,10 +77,10 @@ class FacetBuilder {
     for_each_edge([&](std::uint32_t face, std::uint32_t a, std::uint32_t b) {
       face_of_edge.emplace(std::pair(a, b), face);
     });
-    neighbours_.resize(hull_.faces.size());
+    neighbors_.resize(hull_.faces.size());
     for_each_edge([&](std::uint32_t face, std::uint32_t a, std::uint32_t b) {
       const auto beyond = face_of_edge.find({b, a});
-      if (beyond != face_of_edge.end()) neighbours_[face].push_back(beyond->second);
+      if (beyond != face_of_edge.end()) neighbors_[face].push_back(beyond->second);
     });
   }
 
@@ -98,7 +98,7 @@ class FacetBuilder {
     Facet facet{seed};
     facet_of_face_[seed] = facet_index;
     for (std::size_t at = 0; at < facet.size(); ++at) {
-      for (const std::uint32_t next : neighbours_[facet[at]]) {
+      for (const std::uint32_t next : neighbors_[facet[at]]) {
         if (facet_of_face_[next] != kNone || !joins(next)) continue;
         facet_of_face_[next] = facet_index;
         facet.push_back(next);
@@ -110,7 +110,7 @@ class FacetBuilder {
   const ConvexHull& hull_;
   double tolerance_ = 0;
   std::vector<Vec3d> areas_;
-  std::vector<std::vector<std::uint32_t>> neighbours_;
+  std::vector<std::vector<std::uint32_t>> neighbors_;
   std::vector<std::uint32_t> facet_of_face_;
 };
 

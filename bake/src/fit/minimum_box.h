@@ -7,7 +7,7 @@
 
 namespace galactic::bake::fit {
 
-/// The axes of a box of (nearly) least volume around `points` (metres, finite, at least one): over
+/// The axes of a box of (nearly) least volume around `points` (meters, finite, at least one): over
 /// ten scanned objects at most 0.05 % above the best of 200 random starts walked downhill. Sides
 /// shorter than `min_side` count as that long. Flat points get the smallest rectangle, collinear
 /// ones their line. Candidates are the points' own axes, DiTO-14 and the exact best box around each

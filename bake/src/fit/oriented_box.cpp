@@ -21,11 +21,11 @@ using fit::PointSet;
 
 constexpr double kMinSide = 2 * static_cast<double>(kMinHalfExtent);
 /// Added to each half extent, so that points are inside whatever order of float operations a reader
-/// uses: this many metres, and this share of the greatest coordinate (eight roundings).
+/// uses: this many meters, and this share of the greatest coordinate (eight roundings).
 constexpr double kPadding = 1e-6;
 constexpr double kRelativePadding = 8 * 6e-8;
 
-/// How far points reach from the centre along each axis, in the float arithmetic of a reader.
+/// How far points reach from the center along each axis, in the float arithmetic of a reader.
 std::array<float, 3> floatReach(const PointSet& points, const Pose& object_from_box) {
   const Pose box_from_object = inverse(object_from_box);
   std::array<float, 3> reach{};
@@ -46,14 +46,14 @@ OrientedBox boxAround(const PointSet& points, const Axes& axes) {
   // From here on with the axes that the rounded rotation stands for.
   const Axes stored = fit::axesOf(box.pose.rotation);
   std::array<fit::Interval, 3> sides;
-  Vec3d centre;
+  Vec3d center;
   double magnitude = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     sides[axis] = fit::intervalAlong(points, stored[axis]);
-    centre = centre + stored[axis] * ((sides[axis].lo + sides[axis].hi) / 2);
+    center = center + stored[axis] * ((sides[axis].lo + sides[axis].hi) / 2);
     magnitude = std::max({magnitude, std::abs(sides[axis].lo), std::abs(sides[axis].hi)});
   }
-  box.pose.translation = narrow(centre);
+  box.pose.translation = narrow(center);
   const Vec3d origin = widen(box.pose.translation);
   const std::array<float, 3> in_floats = floatReach(points, box.pose);
   std::array<float, 3> half{};

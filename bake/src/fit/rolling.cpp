@@ -10,7 +10,7 @@
 
 namespace galactic::bake::fit {
 
-Vec3d centreOfMass(const ConvexHull& hull) {
+Vec3d centerOfMass(const ConvexHull& hull) {
   const Vec3d origin = hull.corners[0].rounded;
   Vec3d moment;
   double volume = 0;
@@ -29,10 +29,10 @@ Vec3d centreOfMass(const ConvexHull& hull) {
 
 namespace {
 
-/// A face seen from the centre of mass, which is the origin.
+/// A face seen from the center of mass, which is the origin.
 struct Face {
   Vec3d normal;
-  /// Of the centre above the face's plane.
+  /// Of the center above the face's plane.
   double height = 0;
   double solid_angle = 0;
 };
@@ -55,9 +55,9 @@ struct DirectedEdge {
 class RollingBody {
  public:
   explicit RollingBody(const ConvexHull& hull) : hull_(hull) {
-    const Vec3d centre = centreOfMass(hull);
+    const Vec3d center = centerOfMass(hull);
     corners_.reserve(hull.corners.size());
-    for (const HullCorner& corner : hull.corners) corners_.push_back(corner.rounded - centre);
+    for (const HullCorner& corner : hull.corners) corners_.push_back(corner.rounded - center);
     faces_.reserve(hull.faces.size());
     for (const auto& loop : hull.faces) faces_.push_back(measure(loop));
     listEdges();

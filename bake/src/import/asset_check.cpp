@@ -41,7 +41,7 @@ Result<void> checkIndices(const SourceAsset& asset, std::size_t index, const std
                       (!mesh.colors.empty() && mesh.colors.size() != vertices);
   if (ragged) {
     return invalid(meshPlace(asset, index, where),
-                   "texture coordinates or colours are not one per vertex; export the file again");
+                   "texture coordinates or colors are not one per vertex; export the file again");
   }
   if (!asset.materials.empty() && mesh.material >= asset.materials.size()) {
     return invalid(meshPlace(asset, index, where),
@@ -136,8 +136,8 @@ void warnAboutSize(SourceAsset& asset, double smallest_size) {
     }
   }
   asset.warnings.push_back(fmt::format(
-      "the whole scene is only {:.3g} x {:.3g} x {:.3g} m large: is its unit the metre? "
-      "Give metres per unit with --scale",
+      "the whole scene is only {:.3g} x {:.3g} x {:.3g} m large: is its unit the meter? "
+      "Give meters per unit with --scale",
       high[0] - low[0], high[1] - low[1], high[2] - low[2]));
 }
 

@@ -11,7 +11,7 @@ namespace galactic::bake {
 /// all. `where` starts the place of each error, usually the file. All errors are kInvalidInput.
 [[nodiscard]] Result<void> checkAsset(const SourceAsset& asset, const std::string& where);
 
-/// Adds a warning when the whole asset is smaller than `smallest_size` metres in all directions:
+/// Adds a warning when the whole asset is smaller than `smallest_size` meters in all directions:
 /// its unit is then in doubt. 0: never. `asset` has passed checkAsset.
 void warnAboutSize(SourceAsset& asset, double smallest_size);
 

@@ -34,7 +34,7 @@ struct Format {
 };
 
 constexpr AxisConvention statedBy(UpAxis up, std::string_view by) {
-  return {.up = {up, by}, .metres = {1.0, by}};
+  return {.up = {up, by}, .meters = {1.0, by}};
 }
 
 constexpr std::string_view kColladaReader = "Collada Importer";
@@ -258,15 +258,15 @@ std::optional<T> metadata(const aiScene& scene, const char* key) {
   return value;
 }
 
-/// FBX: axis number and sign, and centimetres per unit; the reader applies neither.
+/// FBX: axis number and sign, and centimeters per unit; the reader applies neither.
 AxisConvention fbxConvention(const aiScene& scene, AxisConvention convention) {
   const int axis = metadata<std::int32_t>(scene, "UpAxis").value_or(1);
   const int sign = metadata<std::int32_t>(scene, "UpAxisSign").value_or(1);
   if (axis >= 0 && axis <= 2) {
     convention.up.value = static_cast<UpAxis>(axis + (sign < 0 ? 3 : 0));
   }
-  const auto centimetres = metadata<float>(scene, "UnitScaleFactor");
-  convention.metres.value = centimetres ? shortestDecimal(*centimetres) / 100 : 0.01;
+  const auto centimeters = metadata<float>(scene, "UnitScaleFactor");
+  convention.meters.value = centimeters ? shortestDecimal(*centimeters) / 100 : 0.01;
   return convention;
 }
 
@@ -279,7 +279,7 @@ Result<Affine> SceneReader::worldFromRoot() {
     const auto stated = conventionOf(file_from_root, "file");
     if (!stated && !(options_.up && options_.scale)) {
       return invalid(
-          "the metres of its <unit> are not a positive number; correct them, or give "
+          "the meters of its <unit> are not a positive number; correct them, or give "
           "--scale and --up");
     }
     convention = stated.value_or(convention);
@@ -288,8 +288,8 @@ Result<Affine> SceneReader::worldFromRoot() {
     convention = fbxConvention(*scene_, convention);
   }
   convention = withOverrides(convention, options_);
-  if (!std::isfinite(convention.metres.value) || convention.metres.value <= 0) {
-    return invalid("its unit is not a positive number of metres; give --scale");
+  if (!std::isfinite(convention.meters.value) || convention.meters.value <= 0) {
+    return invalid("its unit is not a positive number of meters; give --scale");
   }
   asset_.convention = describe(convention);
   return compose(compose(options_.transform.value_or(kIdentityAffine), worldFromFile(convention)),
@@ -421,13 +421,13 @@ void SceneReader::convertAlpha(const aiMaterial& material, SourceMaterial& conve
   } else {
     asset_.warnings.push_back(fmt::format(
         "the opacity texture '{}' of material '{}' is not used; put opacity into the alpha of "
-        "its colour texture",
+        "its color texture",
         text(string), converted.name));
   }
 }
 
 /// Whether `color` cannot be meant to be multiplied with a texture: black, or what the OBJ reader
-/// puts where the file states no colour.
+/// puts where the file states no color.
 bool isNoFactor(const aiColor4D& color, std::string_view reader) {
   if (reader == kGltf2Reader) return false;
   constexpr float kUnstatedInObj = 0.6F;
@@ -499,7 +499,7 @@ void SceneReader::nameFiles() {
   for (const std::string& file : missing) {
     if (std::filesystem::path(file).extension() != ".mtl") continue;
     asset_.warnings.push_back(
-        fmt::format("material file '{}' is missing: its materials get default colours",
+        fmt::format("material file '{}' is missing: its materials get default colors",
                     nameRelativeTo(path_, file)));
   }
 }

@@ -35,20 +35,20 @@ Affine rotationFor(UpAxis up) {
 
 AxisConvention withOverrides(AxisConvention stated, const MeshImportOptions& options) {
   if (options.up) stated.up = {*options.up, "--up"};
-  if (options.scale) stated.metres = {*options.scale, "--scale"};
+  if (options.scale) stated.meters = {*options.scale, "--scale"};
   return stated;
 }
 
 Affine worldFromFile(const AxisConvention& convention) {
   Affine matrix = rotationFor(convention.up.value);
-  for (double& value : matrix) value *= convention.metres.value;
+  for (double& value : matrix) value *= convention.meters.value;
   return matrix;
 }
 
 std::string describe(const AxisConvention& convention) {
   return fmt::format("{} up ({}), {} m per unit ({})",
                      kAxisNames[static_cast<std::size_t>(convention.up.value)], convention.up.by,
-                     convention.metres.value, convention.metres.by);
+                     convention.meters.value, convention.meters.by);
 }
 
 double shortestDecimal(float value) {
@@ -71,8 +71,8 @@ std::optional<AxisConvention> conventionOf(const Affine& world_from_file,
       deviation = std::max(deviation, std::abs(world_from_file[i] - scale * rotation[i]));
     }
     if (deviation > kFloatRounding * scale) continue;
-    const double metres = shortestDecimal(static_cast<float>(scale));
-    return AxisConvention{.up = {up, stated_by}, .metres = {metres, stated_by}};
+    const double meters = shortestDecimal(static_cast<float>(scale));
+    return AxisConvention{.up = {up, stated_by}, .meters = {meters, stated_by}};
   }
   return std::nullopt;
 }

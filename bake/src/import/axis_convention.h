@@ -18,14 +18,14 @@ struct Stated {
 /// How the points of a file are to be read.
 struct AxisConvention {
   Stated<UpAxis> up;
-  /// Metres per unit, > 0.
-  Stated<double> metres;
+  /// Meters per unit, > 0.
+  Stated<double> meters;
 };
 
 /// `stated` with what the user overrides put in its place.
 [[nodiscard]] AxisConvention withOverrides(AxisConvention stated, const MeshImportOptions& options);
 
-/// Rotation to Y up and scale to metres: a proper rotation (never a mirror image) times a scale.
+/// Rotation to Y up and scale to meters: a proper rotation (never a mirror image) times a scale.
 /// Z up becomes (x, z, -y), as in glTF and COLLADA exporters.
 [[nodiscard]] Affine worldFromFile(const AxisConvention& convention);
 

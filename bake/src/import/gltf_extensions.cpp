@@ -65,7 +65,7 @@ class RequiredExtensions final : public Json::json_sax_t {
       return false;
     }
     found_.warnings.push_back(
-        fmt::format("textures in {} ({}) cannot be read: their surfaces keep their plain colour; "
+        fmt::format("textures in {} ({}) cannot be read: their surfaces keep their plain color; "
                     "export them as PNG or JPEG",
                     image->format, image->name));
     return true;

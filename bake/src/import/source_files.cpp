@@ -106,7 +106,7 @@ void paintWithNamesake(SourceAsset& asset, const fs::path& main_input) {
   const bool has_coordinates =
       std::any_of(asset.meshes.begin(), asset.meshes.end(),
                   [](const SourceMesh& mesh) { return !mesh.uvs.empty(); });
-  // An MTL that was read states what colours there are.
+  // An MTL that was read states what colors there are.
   const bool has_mtl =
       std::any_of(asset.files.begin(), asset.files.end(),
                   [](const SourceFile& file) { return file.name.ends_with(".mtl"); });
@@ -116,7 +116,7 @@ void paintWithNamesake(SourceAsset& asset, const fs::path& main_input) {
   const std::string name = nameRelativeTo(main_input, *namesake);
   for (SourceMaterial& material : asset.materials) {
     material.base_color_texture = name;
-    // What the reader takes for a colour that nobody states is no factor.
+    // What the reader takes for a color that nobody states is no factor.
     material.base_color = {1, 1, 1, material.base_color[3]};
   }
   asset.files.push_back({.name = name});
@@ -194,7 +194,7 @@ void findTextures(SourceAsset& asset, const fs::path& main_input, Reach reach) {
       if (!is_new) continue;
       asset.warnings.push_back(
           fmt::format("texture '{}' of material '{}' is missing: its surfaces "
-                      "keep their plain colour",
+                      "keep their plain color",
                       reference, material.name));
     }
   }

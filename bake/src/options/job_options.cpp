@@ -6,8 +6,8 @@
 namespace galactic::bake {
 namespace {
 
-constexpr OptionRange kMetresAboveZero{.least = 0, .most = 1e4, .above = true};
-constexpr OptionRange kMetres{.least = 0, .most = 1e4};
+constexpr OptionRange kMetersAboveZero{.least = 0, .most = 1e4, .above = true};
+constexpr OptionRange kMeters{.least = 0, .most = 1e4};
 constexpr OptionRange kShare{.least = 0, .most = 1};
 constexpr std::uint64_t kMostSeed = std::numeric_limits<std::uint64_t>::max();
 
@@ -37,7 +37,7 @@ constexpr std::array<Named<SupportChoice>, 3> kSupportNames{
 constexpr std::array<Named<SplitSide>, 2> kSplitNames{
     {{"train", SplitSide::kTrain}, {"validation", SplitSide::kValidation}}};
 
-/// Tolerances of spheres by name, metres.
+/// Tolerances of spheres by name, meters.
 struct Tolerances {
   float eps = 0;
   float tau = 0;
@@ -48,13 +48,13 @@ constexpr std::array<Named<Tolerances>, 4> kProfiles{{{"object", {0.015F, 0.020F
                                                       {"coarse", {0.020F, 0.030F}}}};
 
 constexpr OptionInfo kSeedInfo{"seed", "X,Y,Z|N",
-                               "Scenes: a point of the room (may be repeated), x,y,z in metres, y "
+                               "Scenes: a point of the room (may be repeated), x,y,z in meters, y "
                                "up; episodes: the number from which the random ones are drawn"};
 
 void visitRadii(std::vector<float>& radii, OptionVisitor& v) {
   v.group("Spheres (scenes, objects, robots)");
-  v.option({"radii", "R,R,...", "Sphere radii, metres, ascending"},
-           numbers(radii, kMetresAboveZero));
+  v.option({"radii", "R,R,...", "Sphere radii, meters, ascending"},
+           numbers(radii, kMetersAboveZero));
 }
 
 void visitReach(bool& allow_outside, OptionVisitor& v) {
@@ -69,13 +69,13 @@ void visitGrids(SceneBakeOptions& options, OptionVisitor& v) {
   auto& [radii, spacing, engine, coverage, free_space, check_columns, jobs] = options;
   auto& [keep, seeds, components] = free_space;
   v.group("Scenes");
-  v.option({"spacing", "METRES", "Edge of a cell, metres; at most twice the least radius"},
-           number(spacing, kMetresAboveZero));
+  v.option({"spacing", "METERS", "Edge of a cell, meters; at most twice the least radius"},
+           number(spacing, kMetersAboveZero));
   v.option({"engine", "exact|bullet|embree",
             "exact: closed form; bullet: the published sphere casts; embree: rays"},
            choice(engine, kEngineNames));
   v.option({"coverage", "column|cell",
-            "column: free on the cell's centre line; cell: free over the whole cell"},
+            "column: free on the cell's center line; cell: free over the whole cell"},
            choice(coverage, kCoverageNames));
   v.option({"keep", "room|all", "What to store: the room, or all free spans"},
            choice(keep, kKeepNames));
@@ -95,9 +95,9 @@ void visitImport(MeshImportOptions& options, OptionVisitor& v) {
   v.group("Meshes (scenes, objects)");
   v.option({"up", "AXIS", "Up axis of the input: x, y, z, -x, -y, -z (default: the file's)"},
            choice(up, kAxisNames));
-  v.option({"scale", "METRES", "Metres per unit of the input (default: the file's)"},
+  v.option({"scale", "METERS", "Meters per unit of the input (default: the file's)"},
            number(scale, {.least = 0, .most = 1e9, .above = true}));
-  v.option({"transform", "N,N,...", "Applied last, Y up and metres: 12 or 16 numbers, row by row"},
+  v.option({"transform", "N,N,...", "Applied last, Y up and meters: 12 or 16 numbers, row by row"},
            transform(affine));
   v.internals(smallest_size, allow_outside, time_limit, memory_limit);
 }
@@ -109,9 +109,9 @@ void visitDrawing(DrawOptions& options, OptionVisitor& v) {
   v.group("Render meshes (scenes, objects, robots)");
   v.option({"no-render-meshes", "", "Leave out what is drawn: a pack for physics alone"},
            flag(wanted, false));
-  v.option({"render-error", "METRES",
+  v.option({"render-error", "METERS",
             "How far simplification may move a surface (default: 0.005 of scenes, else 0.002)"},
-           number(error, kMetres));
+           number(error, kMeters));
   v.option({"texture-size", "N", "Longest edge of a texture, texels: a power of two up to 4096"},
            powerOfTwo(largest, {1, 4096}));
   v.option({"texture-format", "rgba8|bc1",
@@ -143,10 +143,10 @@ void visitSpheres(SphereFields<Length, Count> fields, OptionVisitor& v) {
              fields.eps = kProfiles[n].value.eps;
              fields.tau = kProfiles[n].value.tau;
            }));
-  v.option({"eps", "METRES", "Every reachable surface point lies this near to a sphere, metres"},
-           number(fields.eps, kMetresAboveZero));
-  v.option({"tau", "METRES", "No sphere sticks out further, but for thin parts, metres"},
-           number(fields.tau, kMetresAboveZero));
+  v.option({"eps", "METERS", "Every reachable surface point lies this near to a sphere, meters"},
+           number(fields.eps, kMetersAboveZero));
+  v.option({"tau", "METERS", "No sphere sticks out further, but for thin parts, meters"},
+           number(fields.tau, kMetersAboveZero));
   v.option(
       {"max-spheres", "N", "Most spheres of an object or robot; 0: as many as the tolerances need"},
       whole(fields.max_spheres, {0, 1'000'000}));
@@ -174,7 +174,7 @@ void visitShape(RobotBakeOptions& options, OptionVisitor& v) {
 }
 
 void visitImport(EpisodeImportOptions& options, OptionVisitor& v) {
-  auto& [object_up, object_centres, centres_needed, targets, start_joints, scene_names, only] =
+  auto& [object_up, object_centers, centers_needed, targets, start_joints, scene_names, only] =
       options;
   v.option({"scene-name", "OLD=NEW",
             "Import: the name of a scene's pack for that of the file (may be repeated)"},
@@ -188,7 +188,7 @@ void visitImport(EpisodeImportOptions& options, OptionVisitor& v) {
   v.option({"targets", "first|each",
             "Import of Habitat's: the first target of an episode, or each as an episode"},
            choice(targets, kTargetNames));
-  v.internals(object_centres, centres_needed, only);
+  v.internals(object_centers, centers_needed, only);
 }
 
 void visitSplit(SceneSplit& split, OptionVisitor& v) {
@@ -210,17 +210,17 @@ void visitGeneration(EpisodeGeneratorOptions& options, OptionVisitor& v) {
   v.option({"count", "N", "Generate: how many episodes"}, whole(episodes, {1, 1'000'000}));
   v.option({"objects", "N|LEAST,MOST", "Generate: objects of each episode, the target among them"},
            counts(objects, {1, 1024}));
-  v.option({"heights", "LOW,HIGH", "Generate: objects stand this high above the floor, metres"},
+  v.option({"heights", "LOW,HIGH", "Generate: objects stand this high above the floor, meters"},
            bounds(heights));
-  v.option({"flatness", "METRES",
-            "Generate: how far the surface under an object may be from flat, metres; scans need "
+  v.option({"flatness", "METERS",
+            "Generate: how far the surface under an object may be from flat, meters; scans need "
             "about 0.01"},
            number(flatness, {.least = 1e-6, .most = static_cast<double>(kMostFlatness)}));
   v.option({"goal-distance", "LEAST[,MOST]",
-            "Generate: from target to goal, metres (default 1, less in small scenes)"},
+            "Generate: from target to goal, meters (default 1, less in small scenes)"},
            distances(target_to_goal, shorten_way));
   v.option({"start-distance", "LEAST[,MOST]",
-            "Generate: from the robot to the target on the ground, metres"},
+            "Generate: from the robot to the target on the ground, meters"},
            distances(start_to_target));
   v.option({"most-skipped", "SHARE",
             "Generate: share of the episodes that may find no place; they are skipped"},
@@ -288,7 +288,7 @@ void visitOptions(EpisodeImportJob& job, OptionVisitor& v) {
            path(only));
   visitImport(import, v);
   v.option({"object-pack", "PACK",
-            "Import of Habitat's: the objects' pack, which says where their centres are"},
+            "Import of Habitat's: the objects' pack, which says where their centers are"},
            path(object_pack));
   v.internals(input);
 }

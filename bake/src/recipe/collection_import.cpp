@@ -46,9 +46,9 @@ std::vector<HandSphere> CollectionReader::readSpheres(const JsonNode& list) {
   std::vector<HandSphere> spheres;
   for (const JsonNode& sphere : json_.elements(list)) {
     json_.onlyKnown(sphere, {"origin", "radius"});
-    const auto centre = point(json_.require(sphere, "origin"));
+    const auto center = point(json_.require(sphere, "origin"));
     const double radius = json_.number(json_.require(sphere, "radius"), 1e-4, kLargestRadius);
-    spheres.push_back({.centre = centre, .radius = radius});
+    spheres.push_back({.center = center, .radius = radius});
   }
   return spheres;
 }
@@ -208,7 +208,7 @@ double footprintRadius(const CollectionRobot& robot, const std::string& root) {
   for (const LinkSpheres& link : robot.links) {
     if (link.link != root) continue;
     for (const HandSphere& sphere : link.spheres) {
-      radius = std::max(radius, std::hypot(sphere.centre[0], sphere.centre[2]) + sphere.radius);
+      radius = std::max(radius, std::hypot(sphere.center[0], sphere.center[2]) + sphere.radius);
     }
   }
   return radius;

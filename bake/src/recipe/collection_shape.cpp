@@ -38,7 +38,7 @@ Result<AuthoredShape> shapeFromCollection(const CollectionObject& object, UpAxis
     return fail(ErrorCode::kInvalidInput, fmt::format("object '{}'", object.name),
                 "has a box without volume; give it extents above 0");
   }
-  const Affine pack_from_file = worldFromFile({.up = {up, ""}, .metres = {1, ""}});
+  const Affine pack_from_file = worldFromFile({.up = {up, ""}, .meters = {1, ""}});
   const Point a = turned(pack_from_file, object.box_min);
   const Point b = turned(pack_from_file, object.box_max);
   AuthoredShape shape;
@@ -47,7 +47,7 @@ Result<AuthoredShape> shapeFromCollection(const CollectionObject& object, UpAxis
   std::vector<HandSphere> spheres = object.technique == SphereTechnique::kListed
                                         ? object.spheres
                                         : publishedSpheres(object, radii);
-  for (HandSphere& sphere : spheres) sphere.centre = turned(pack_from_file, sphere.centre);
+  for (HandSphere& sphere : spheres) sphere.center = turned(pack_from_file, sphere.center);
   SnappedSpheres snapped = snapRadii(spheres, radii);
   if (snapped.largest_change > kRadiusChangeWorthMentioning) {
     return fail(ErrorCode::kInvalidInput, fmt::format("object '{}'", object.name),

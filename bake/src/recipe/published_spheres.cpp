@@ -12,7 +12,7 @@ namespace {
 /// Above this radius spheres stand side by side, below it they leave gaps of a radius.
 constexpr double kLargeRadius = 0.1;
 /// The published simulator computes in floats and compares fuzzily.
-constexpr double kSameCentre = 1e-7;
+constexpr double kSameCenter = 1e-7;
 
 /// The rule for one box; x across, y deep, z up.
 class PublishedRule {
@@ -90,23 +90,23 @@ class PublishedRule {
     }
   }
 
-  void add(Triple centre) {
+  void add(Triple center) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double middle = (lo_[axis] + hi_[axis]) / 2;
-      double& at = centre[axis];
+      double& at = center[axis];
       at = at < middle ? std::clamp(at, std::min(lo_[axis] + radius_, middle), middle)
                        : std::clamp(at, middle, std::max(hi_[axis] - radius_, middle));
     }
     const bool known =
-        std::any_of(spheres_.begin(), spheres_.end(), [&centre, this](const HandSphere& sphere) {
-          return sphere.radius == radius_ && isNear(sphere.centre, centre);
+        std::any_of(spheres_.begin(), spheres_.end(), [&center, this](const HandSphere& sphere) {
+          return sphere.radius == radius_ && isNear(sphere.center, center);
         });
-    if (!known) spheres_.push_back({.centre = centre, .radius = radius_});
+    if (!known) spheres_.push_back({.center = center, .radius = radius_});
   }
 
   static bool isNear(const Triple& a, const Triple& b) {
-    return std::abs(a[0] - b[0]) < kSameCentre && std::abs(a[1] - b[1]) < kSameCentre &&
-           std::abs(a[2] - b[2]) < kSameCentre;
+    return std::abs(a[0] - b[0]) < kSameCenter && std::abs(a[1] - b[1]) < kSameCenter &&
+           std::abs(a[2] - b[2]) < kSameCenter;
   }
 
   static constexpr double kMostAlong = 100;

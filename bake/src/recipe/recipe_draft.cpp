@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 3> kLaserNames{"laser", "lidar", "scan"};
 /// Farthest moves of one action: the angle is the Galactic paper's.
 constexpr double kRevoluteStep = 0.196;
 constexpr double kPrismaticStep = 0.05;
-/// Parts of the robot lower than this, above its lowest point, cover the ground. Metres.
+/// Parts of the robot lower than this, above its lowest point, cover the ground. Meters.
 constexpr float kBaseHeight = 0.25F;
 
 /// A TOML string.
@@ -241,7 +241,7 @@ class RecipeDraft {
     for (const SourceLink& link : robot_.links) {
       if (!link.limits_are_assumed || link.mimic) continue;
       if (!any) {
-        text_ += "# The URDF states no limits for these: guesses, radians or metres.\n[limits]\n";
+        text_ += "# The URDF states no limits for these: guesses, radians or meters.\n[limits]\n";
       }
       any = true;
       text_ += fmt::format("{} = [{}, {}]\n", tomlText(link.joint_name), link.limits->lower,

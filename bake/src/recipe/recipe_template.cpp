@@ -4,7 +4,7 @@ namespace galactic::bake {
 
 std::string describeRobotRecipe() {
   return R"toml(# Robot recipe: what a URDF does not say. Every key is shown; those with a default may be left out.
-# Positions and rotations are in frames of the URDF (X forward, Y left, Z up); metres, radians unless
+# Positions and rotations are in frames of the URDF (X forward, Y left, Z up); meters, radians unless
 # a key says degrees.
 
 name = "fetch"
@@ -42,7 +42,7 @@ forward_step = 0.1              # farthest drive of one action; default 0.1
 turn_step_degrees = 5.0         # farthest turn of one action; default 5.002 (0.0873 rad)
 root_height = 0.0               # height of the root's origin above the ground; default 0
 
-# The joints that actions move, in the order of the actions: radians, or metres where prismatic.
+# The joints that actions move, in the order of the actions: radians, or meters where prismatic.
 [[joints]]
 name = "shoulder_pan_joint"
 step = 0.196                    # farthest move of one action

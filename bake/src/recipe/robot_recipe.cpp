@@ -170,7 +170,7 @@ void RecipeReader::readJoint(const TomlValue& entry, std::size_t index) {
   RecipeTable table(*content, name, entry.line, errors_);
   RecipeJoint joint;
   joint.joint = table.requiredName("name");
-  joint.step = table.requiredNumber("step", {1e-4, 3.2, "(radians or metres)"});
+  joint.step = table.requiredNumber("step", {1e-4, 3.2, "(radians or meters)"});
   joint.min = table.number("min", kJointPosition);
   joint.max = table.number("max", kJointPosition);
   if (joint.min && joint.max && *joint.min >= *joint.max) {
@@ -224,8 +224,8 @@ void RecipeReader::readVerbatim(RecipeTable& table, RecipeLinkSpheres& link) {
       errors_.at((*spheres)[i].line, fmt::format("{} has the radius {}: wanted {} to {} m", what,
                                                  numbers[3], kRadius.min, kRadius.max));
     }
-    const auto centre = transformed(kYUpFromZUp, std::array{numbers[0], numbers[1], numbers[2]});
-    link.spheres.push_back({.centre = centre, .radius = numbers[3]});
+    const auto center = transformed(kYUpFromZUp, std::array{numbers[0], numbers[1], numbers[2]});
+    link.spheres.push_back({.center = center, .radius = numbers[3]});
   }
   if (spheres->empty()) {
     errors_.at(table.line(), fmt::format("{} is empty; a link without spheres says skip = true",

@@ -54,7 +54,7 @@ Result<void> appendPlaced(const PlacedMesh& placed, const RenderSource& source, 
     if (!canBePlaced(position)) {
       return fail(ErrorCode::kInvalidInput, fmt::format("mesh '{}'", mesh.name),
                   fmt::format("vertex {} is at ({}, {}, {}) m, at most {} m are possible; is the "
-                              "unit metres?",
+                              "unit meters?",
                               n, position[0], position[1], position[2], kMaxCoordinate));
     }
     vertex.position = rounded(position);

@@ -27,7 +27,7 @@ std::int32_t onLattice(float coordinate, double step) {
   return static_cast<std::int32_t>(std::llround(static_cast<double>(coordinate) / step));
 }
 
-/// Largest extent of a triangle, metres: a lattice has to hold that much in a cluster.
+/// Largest extent of a triangle, meters: a lattice has to hold that much in a cluster.
 double largestExtent(std::span<const FinishedPiece> pieces) {
   float largest = 0;
   const auto spread = [](float a, float b, float c) {
@@ -159,25 +159,25 @@ std::uint64_t spreadBits(std::uint64_t value) {
   return spread;
 }
 
-/// Neighbours in space become neighbours in the list.
+/// Neighbors in space become neighbors in the list.
 void sortInSpace(std::vector<LatticeCluster>& clusters) {
   if (clusters.empty()) return;
-  std::vector<std::array<std::int64_t, 3>> centres;
-  centres.reserve(clusters.size());
+  std::vector<std::array<std::int64_t, 3>> centers;
+  centers.reserve(clusters.size());
   for (const LatticeCluster& cluster : clusters) {
     const Box box = boxOf(cluster);
-    std::array<std::int64_t, 3>& centre = centres.emplace_back();
+    std::array<std::int64_t, 3>& center = centers.emplace_back();
     for (std::size_t n = 0; n < 3; ++n) {
-      centre[n] = (std::int64_t{box.low[n]} + box.high[n]) / 2;
+      center[n] = (std::int64_t{box.low[n]} + box.high[n]) / 2;
     }
   }
-  std::array<std::int64_t, 3> low = centres.front();
+  std::array<std::int64_t, 3> low = centers.front();
   std::int64_t widest = 0;
   for (std::size_t n = 0; n < 3; ++n) {
-    std::int64_t high = centres.front()[n];
-    for (const auto& centre : centres) {
-      low[n] = std::min(low[n], centre[n]);
-      high = std::max(high, centre[n]);
+    std::int64_t high = centers.front()[n];
+    for (const auto& center : centers) {
+      low[n] = std::min(low[n], center[n]);
+      high = std::max(high, center[n]);
     }
     widest = std::max(widest, high - low[n]);
   }
@@ -185,10 +185,10 @@ void sortInSpace(std::vector<LatticeCluster>& clusters) {
   while (widest >> shift >= std::int64_t{1} << 21U) ++shift;
   std::vector<std::pair<std::uint64_t, std::size_t>> order;
   order.reserve(clusters.size());
-  for (const auto& centre : centres) {
+  for (const auto& center : centers) {
     std::uint64_t key = 0;
     for (std::size_t n = 0; n < 3; ++n) {
-      key |= spreadBits(static_cast<std::uint64_t>(centre[n] - low[n]) >> shift) << n;
+      key |= spreadBits(static_cast<std::uint64_t>(center[n] - low[n]) >> shift) << n;
     }
     order.emplace_back(key, order.size());
   }

@@ -17,7 +17,7 @@ namespace {
 
 /// Triangles at one place that face less than 40 degrees apart are one surface, which bends there.
 constexpr double kCosineOfBend = 0.766;
-/// Rays for each corner: with one pattern for all, neighbours err alike, which no eye sees.
+/// Rays for each corner: with one pattern for all, neighbors err alike, which no eye sees.
 constexpr unsigned kRays = 64;
 /// Of a front with less of the light the other side shows as well: it may be the inside of
 /// something.
@@ -219,7 +219,7 @@ std::uint32_t colorTimes(std::uint32_t color, std::uint32_t light) {
   return product;
 }
 
-/// Gives the corners of a piece the colours of their points; those of unlit materials keep theirs.
+/// Gives the corners of a piece the colors of their points; those of unlit materials keep theirs.
 void paint(PartMesh& mesh, std::span<const Triangle> points,
            const std::vector<std::uint32_t>& light, const std::vector<bool>& lit) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> painted;

@@ -10,9 +10,9 @@ namespace galactic::bake {
 /// For each material whether its surfaces are lit by the bake.
 [[nodiscard]] std::vector<bool> litMaterials(const RenderSource& source, Lighting lighting);
 
-/// Multiplies light into the vertex colours of the finished pieces of a part, where their material
+/// Multiplies light into the vertex colors of the finished pieces of a part, where their material
 /// is lit: light by normal, kept away by what is near. Corners where a surface has an edge get a
-/// colour for each side of it. Fails as ambientOcclusion does.
+/// color for each side of it. Fails as ambientOcclusion does.
 [[nodiscard]] Result<void> lightPieces(std::vector<FinishedPiece>& pieces, const RenderPart& part,
                                        const RenderSource& source,
                                        const RenderBakeOptions& options);

@@ -11,7 +11,7 @@
 namespace galactic::bake {
 
 /// Whether the file of a mesh says what it looks like: by a named material, a texture or vertex
-/// colours.
+/// colors.
 [[nodiscard]] bool hasLooks(const SourceAsset& asset, const SourceMesh& mesh);
 
 /// The materials of a RenderSource while its meshes are placed: those that are used, once each.
@@ -22,7 +22,7 @@ class MaterialList {
   /// The material of a mesh of `asset`; without its texture when the mesh does not say where on it.
   std::uint32_t add(const SourceAsset& asset, const SourceMesh& mesh);
 
-  /// A plain colour, linear RGBA.
+  /// A plain color, linear RGBA.
   std::uint32_t addColor(const std::array<float, 4>& color, bool two_sided);
 
   /// Bakes what was added since the last call; `embedded` are the images of the asset that it came

@@ -36,11 +36,11 @@ template <class T>
 
 struct Simplified {
   std::vector<Triangle> triangles;
-  /// How far the surface moved at most, metres, as the quadrics estimate.
+  /// How far the surface moved at most, meters, as the quadrics estimate.
   double error = 0;
 };
 
-/// Fewer triangles over the same vertices, the surface moved by up to `error` metres. What is equal
+/// Fewer triangles over the same vertices, the surface moved by up to `error` meters. What is equal
 /// by position moves together, so no crack opens between vertices that differ in the rest. `kept`:
 /// a mark for each vertex; what is marked at a position keeps all vertices there where they are.
 [[nodiscard]] Simplified simplify(const PartMesh& mesh, double error,

@@ -11,7 +11,7 @@
 namespace galactic::bake {
 namespace {
 
-/// A closed piece all of whose edges are longer may be a room with the camera in it. Metres.
+/// A closed piece all of whose edges are longer may be a room with the camera in it. Meters.
 constexpr double kRoomSize = 1.5;
 /// A closed piece with less volume than this times its area to the power of 1.5 is two sheets back
 /// to back: no inside to speak of.

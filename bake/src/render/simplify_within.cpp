@@ -17,7 +17,7 @@ constexpr int kRoundsOfKeeping = 5;
 /// fewer triangles, because fewer corners have to be kept; on flat ones with edges a larger one
 /// does.
 constexpr std::array<double, 3> kSharesAsked{1, 0.5, 0.25};
-/// A corner's colour that differs by more from the mean of its neighbours' is a detail to keep, of
+/// A corner's color that differs by more from the mean of its neighbors' is a detail to keep, of
 /// 255: about what an eye sees in a small image.
 constexpr int kColorDetail = 12;
 
@@ -33,7 +33,7 @@ bool hasOneColor(const PartMesh& piece) {
   });
 }
 
-/// The corners whose colour cannot be told from their neighbours'. Seams of colours are seams of
+/// The corners whose color cannot be told from their neighbors'. Seams of colors are seams of
 /// the surface and need no mark.
 std::vector<bool> coloredDetails(const PartMesh& piece) {
   std::vector<bool> details(piece.vertices.size());
@@ -75,7 +75,7 @@ Vec3d middleOf(const PartMesh& piece, const Triangle& t) {
          (1.0 / 3);
 }
 
-/// What became of a piece, for questions about how far the source lies from it. Neighbours in the
+/// What became of a piece, for questions about how far the source lies from it. Neighbors in the
 /// source lie near the same triangles, so what was found for a corner answers most questions about
 /// the points around it without a search.
 class SimplifiedSurface {
@@ -108,7 +108,7 @@ class SimplifiedSurface {
     return within(middleOf(piece_, triangle), triangle, distance, facet);
   }
 
-  /// The largest distance of the source's corners and middles, metres.
+  /// The largest distance of the source's corners and middles, meters.
   [[nodiscard]] double largestDistance() const {
     double largest = 0;
     const auto raise = [&](const Vec3d& point, std::uint32_t hint) {
@@ -162,7 +162,7 @@ class SimplifiedSurface {
   std::vector<bool> survives_;
 };
 
-/// Whether all of the source lies within `allowed` metres of the surface; if not, marks in `kept`
+/// Whether all of the source lies within `allowed` meters of the surface; if not, marks in `kept`
 /// the corners that are too far off.
 bool keepFarCorners(const PartMesh& piece, SimplifiedSurface& surface, double allowed,
                     std::vector<bool>& kept) {
@@ -188,7 +188,7 @@ bool keepFarCorners(const PartMesh& piece, SimplifiedSurface& surface, double al
 /// What simplifies a piece again and again, asking for less and keeping more.
 struct Keeping {
   const PartMesh& piece;
-  /// How far a point may lie from the result, metres.
+  /// How far a point may lie from the result, meters.
   double allowed = 0;
   /// The best so far, and the work that went into it.
   MeasuredSimplified& best;

@@ -17,9 +17,9 @@ struct MeasuredSimplified {
 };
 
 /// Simplifies a piece such that no point of it that is looked at, its corners and the middles of
-/// its triangles, lies farther than `error` metres from the result. Where the quadrics let the
-/// surface move further (they hold the root mean square) or the colours of corners show more than
-/// their neighbours do, the corners are kept and the rest is simplified again.
+/// its triangles, lies farther than `error` meters from the result. Where the quadrics let the
+/// surface move further (they hold the root mean square) or the colors of corners show more than
+/// their neighbors do, the corners are kept and the rest is simplified again.
 [[nodiscard]] MeasuredSimplified simplifyWithin(const PartMesh& piece, double error);
 
 }  // namespace galactic::bake

@@ -119,8 +119,8 @@ class Planner {
       HandSphere placed = sphere;
       for (std::size_t row = 0; row < 3; ++row) {
         const double* m = &group_from_link[4 * row];
-        placed.centre[row] =
-            m[0] * sphere.centre[0] + m[1] * sphere.centre[1] + m[2] * sphere.centre[2] + m[3];
+        placed.center[row] =
+            m[0] * sphere.center[0] + m[1] * sphere.center[1] + m[2] * sphere.center[2] + m[3];
       }
       plan.by_hand.push_back(placed);
     }
@@ -196,7 +196,7 @@ Result<void> takeByHand(const GroupPlan& plan, const std::string& link, BakedGro
 struct SphereBudget {
   /// 0: no limit.
   std::uint32_t most = 0;
-  /// Where nobody stated a number: sets with wider gaps are not taken, whatever it takes. Metres.
+  /// Where nobody stated a number: sets with wider gaps are not taken, whatever it takes. Meters.
   std::optional<double> widest_gap;
 };
 

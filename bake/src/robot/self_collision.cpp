@@ -12,12 +12,12 @@ namespace {
 
 /// A sphere of a group in the world.
 struct Ball {
-  Vec3 centre;
+  Vec3 center;
   float radius = 0;
 };
 
 bool overlap(const Ball& a, const Ball& b) {
-  const Vec3 between = a.centre - b.centre;
+  const Vec3 between = a.center - b.center;
   const float reach = a.radius + b.radius;
   return dot(between, between) < reach * reach;
 }
@@ -25,12 +25,12 @@ bool overlap(const Ball& a, const Ball& b) {
 /// The ball around a group's spheres, in the group's frame.
 Ball boundingBall(const BakedGroup& group, const std::vector<float>& radii) {
   Vec3 sum;
-  for (const SetSphere& sphere : group.spheres.spheres) sum = sum + sphere.centre;
+  for (const SetSphere& sphere : group.spheres.spheres) sum = sum + sphere.center;
   Ball ball{sum * (1 / static_cast<float>(group.spheres.spheres.size())), 0};
   for (const SetSphere& sphere : group.spheres.spheres) {
-    const Vec3 from_centre = sphere.centre - ball.centre;
+    const Vec3 from_center = sphere.center - ball.center;
     ball.radius = std::max(ball.radius,
-                           std::sqrt(dot(from_centre, from_centre)) + radii[sphere.radius_index]);
+                           std::sqrt(dot(from_center, from_center)) + radii[sphere.radius_index]);
   }
   return ball;
 }
@@ -57,7 +57,7 @@ class PairSampler {
       const Pose& world_from_group = world_from_link_[group.link];
       balls_[n].clear();
       for (const SetSphere& sphere : group.spheres.spheres) {
-        balls_[n].push_back({world_from_group * sphere.centre, robot_.radii[sphere.radius_index]});
+        balls_[n].push_back({world_from_group * sphere.center, robot_.radii[sphere.radius_index]});
       }
     }
   }
@@ -74,7 +74,7 @@ class PairSampler {
 
  private:
   [[nodiscard]] Ball placed(std::size_t group) const {
-    return {world_from_link_[robot_.groups[group].link] * bounds_[group].centre,
+    return {world_from_link_[robot_.groups[group].link] * bounds_[group].center,
             bounds_[group].radius};
   }
 

@@ -19,7 +19,7 @@ using CurvePoints = std::vector<CurvePoint>;
 [[nodiscard]] std::vector<std::size_t> spendBudget(const std::vector<CurvePoints>& curves,
                                                    std::uint32_t budget);
 
-/// The same among the sets without gaps wider than `widest_gap`, metres; of a curve that has none
+/// The same among the sets without gaps wider than `widest_gap`, meters; of a curve that has none
 /// of them, its finest set. The budget gives way where these alone have more spheres.
 [[nodiscard]] std::vector<std::size_t> spendBudgetWithin(const std::vector<CurvePoints>& curves,
                                                          std::uint32_t budget, double widest_gap);

@@ -19,14 +19,14 @@ SnappedSpheres snapRadii(const std::vector<HandSphere>& by_hand, const std::vect
         radii.begin(), radii.end(), [&change](float a, float b) { return change(a) < change(b); });
     snapped.largest_change = std::max(snapped.largest_change, change(*nearest));
     snapped.spheres.push_back(
-        {{static_cast<float>(sphere.centre[0]), static_cast<float>(sphere.centre[1]),
-          static_cast<float>(sphere.centre[2])},
+        {{static_cast<float>(sphere.center[0]), static_cast<float>(sphere.center[1]),
+          static_cast<float>(sphere.center[2])},
          static_cast<std::uint32_t>(nearest - radii.begin())});
   }
   std::sort(snapped.spheres.begin(), snapped.spheres.end(),
             [](const SetSphere& a, const SetSphere& b) {
-              return std::tuple(~a.radius_index, a.centre.x, a.centre.y, a.centre.z) <
-                     std::tuple(~b.radius_index, b.centre.x, b.centre.y, b.centre.z);
+              return std::tuple(~a.radius_index, a.center.x, a.center.y, a.center.z) <
+                     std::tuple(~b.radius_index, b.center.x, b.center.y, b.center.z);
             });
   return snapped;
 }

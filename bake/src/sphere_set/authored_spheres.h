@@ -16,11 +16,11 @@ inline constexpr double kRadiusChangeWorthMentioning = 1e-6;
 struct SnappedSpheres {
   /// In the order of packs: radius descending, then x, y, z ascending.
   std::vector<SetSphere> spheres;
-  /// Of a radius, metres.
+  /// Of a radius, meters.
   double largest_change = 0;
 };
 
-/// Gives each sphere the nearest radius of the working set (metres, ascending, not empty).
+/// Gives each sphere the nearest radius of the working set (meters, ascending, not empty).
 [[nodiscard]] SnappedSpheres snapRadii(const std::vector<HandSphere>& by_hand,
                                        const std::vector<float>& radii);
 

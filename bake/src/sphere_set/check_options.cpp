@@ -9,12 +9,12 @@ namespace galactic::bake::sphere_fit {
 namespace {
 
 constexpr std::size_t kMostRadii = 8;
-/// Metres; below, spheres would be smaller than the rounding of their centres.
+/// Meters; below, spheres would be smaller than the rounding of their centers.
 constexpr float kLeastLength = 1e-4F;
 constexpr float kGreatestLength = 10.0F;
 /// How far the length of a normal may be from 1.
 constexpr float kUnitTolerance = 1e-3F;
-/// Metres.
+/// Meters.
 constexpr float kGreatestExtent = 10.0F;
 
 tl::unexpected<Error> refuse(const std::string& where, std::string message) {
@@ -25,7 +25,7 @@ bool isLength(float value) { return value >= kLeastLength && value <= kGreatestL
 
 Result<void> checkRadii(const std::vector<float>& radii) {
   if (radii.empty() || radii.size() > kMostRadii) {
-    return refuse("radii", fmt::format("{} radii were given; give 1 to {}, in metres, ascending",
+    return refuse("radii", fmt::format("{} radii were given; give 1 to {}, in meters, ascending",
                                        radii.size(), kMostRadii));
   }
   for (std::size_t at = 0; at < radii.size(); ++at) {
@@ -92,7 +92,7 @@ Result<void> checkMesh(const TriangleMesh& mesh) {
   if (!(std::max({size.x, size.y, size.z}) <= kGreatestExtent)) {
     return fail(ErrorCode::kUnsupported, "mesh",
                 fmt::format("its extents are {:.3g} x {:.3g} x {:.3g} m, and sphere sets are made "
-                            "for up to {} m; is its unit the millimetre? Give the scale, or cut it",
+                            "for up to {} m; is its unit the millimeter? Give the scale, or cut it",
                             size.x, size.y, size.z, kGreatestExtent));
   }
   return {};

@@ -60,12 +60,12 @@ Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
                   fmt::format("{} is not in the working set of {} radii; give its index",
                               sphere.radius_index, options.radii.size()));
     }
-    const sphere_fit::Vec3d centre = widen(sphere.centre);
-    if (!std::isfinite(centre.x + centre.y + centre.z)) {
-      return fail(ErrorCode::kInvalidInput, fmt::format("spheres[{}].centre", at),
-                  "it is not finite; give metres in the object's frame");
+    const sphere_fit::Vec3d center = widen(sphere.center);
+    if (!std::isfinite(center.x + center.y + center.z)) {
+      return fail(ErrorCode::kInvalidInput, fmt::format("spheres[{}].center", at),
+                  "it is not finite; give meters in the object's frame");
     }
-    placed.push_back({centre, sphere.radius_index, 0});
+    placed.push_back({center, sphere.radius_index, 0});
   }
   const Yardstick yardstick(prepared->task);
   SphereSetQuality quality = yardstick.measureLengths(placed);

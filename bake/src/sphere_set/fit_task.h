@@ -8,7 +8,7 @@
 
 namespace galactic::bake::sphere_fit {
 
-/// What one cover has to do, and on which solid. Lengths in metres.
+/// What one cover has to do, and on which solid. Lengths in meters.
 struct FitTask {
   const ExteriorSolid* solid = nullptr;
   /// Ascending.
@@ -24,14 +24,14 @@ struct FitTask {
 /// A sphere that may be chosen.
 struct Candidate {
   /// Exactly as it would be stored.
-  Vec3d centre;
+  Vec3d center;
   std::uint32_t radius_index = 0;
   /// No point of the sphere is further outside the solid than this.
   double protrusion = 0;
 };
 
-/// How far the centre of a sphere may be outside (negative: must be inside) under `tau`.
-[[nodiscard]] inline double highestCentre(const FitTask& task, std::uint32_t radius_index) {
+/// How far the center of a sphere may be outside (negative: must be inside) under `tau`.
+[[nodiscard]] inline double highestCenter(const FitTask& task, std::uint32_t radius_index) {
   return task.tau - task.radii[radius_index];
 }
 

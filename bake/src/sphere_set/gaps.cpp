@@ -22,7 +22,7 @@ void lowerNearSpheres(const FitTask& task, std::span<const Candidate> spheres,
   const PointGrid grid(points, gridCell(task));
   for (const Candidate& sphere : spheres) {
     const double reach = (task.radii[sphere.radius_index] + kNearShare * task.eps) * kRounding;
-    grid.visitWithin(sphere.centre, reach, [&](std::uint32_t at, double) {
+    grid.visitWithin(sphere.center, reach, [&](std::uint32_t at, double) {
       gaps[at] = std::min(gaps[at], outside(task, sphere, points[at]));
       return true;
     });
@@ -32,7 +32,7 @@ void lowerNearSpheres(const FitTask& task, std::span<const Candidate> spheres,
 }  // namespace
 
 double outside(const FitTask& task, const Candidate& sphere, const Vec3d& p) {
-  return length(p - sphere.centre) - task.radii[sphere.radius_index];
+  return length(p - sphere.center) - task.radii[sphere.radius_index];
 }
 
 std::vector<double> gapsOf(const FitTask& task, std::span<const Candidate> spheres,

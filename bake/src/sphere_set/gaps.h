@@ -6,7 +6,7 @@
 
 namespace galactic::bake::sphere_fit {
 
-/// Distance of `p` to the sphere's inside: negative in it, metres.
+/// Distance of `p` to the sphere's inside: negative in it, meters.
 [[nodiscard]] double outside(const FitTask& task, const Candidate& sphere, const Vec3d& p);
 
 /// For each point its distance to the union of the spheres: negative inside, infinite without any.

@@ -60,35 +60,35 @@ double sampleSpacing(const FitTask& task) {
 }
 
 /// Points spread evenly over the sphere, on a Fibonacci spiral.
-std::vector<Vec3d> spherePoints(const Vec3d& centre, double radius, std::size_t count) {
+std::vector<Vec3d> spherePoints(const Vec3d& center, double radius, std::size_t count) {
   constexpr double kGoldenAngle = std::numbers::pi * (3 - 2.23606797749978969641);
   std::vector<Vec3d> points;
   for (std::size_t n = 0; n < count; ++n) {
     const double z = 1 - 2 * (static_cast<double>(n) + 0.5) / static_cast<double>(count);
     const double ring = std::sqrt(1 - z * z);
     const double turn = kGoldenAngle * static_cast<double>(n);
-    points.push_back(centre + Vec3d{ring * std::cos(turn), ring * std::sin(turn), z} * radius);
+    points.push_back(center + Vec3d{ring * std::cos(turn), ring * std::sin(turn), z} * radius);
   }
   return points;
 }
 
 /// The spheres that meet each sphere.
-std::vector<std::vector<const Candidate*>> neighboursOf(const FitTask& task,
-                                                        std::span<const Candidate> spheres) {
-  std::vector<std::vector<const Candidate*>> neighbours(spheres.size());
+std::vector<std::vector<const Candidate*>> neighborsOf(const FitTask& task,
+                                                       std::span<const Candidate> spheres) {
+  std::vector<std::vector<const Candidate*>> neighbors(spheres.size());
   for (std::size_t a = 0; a < spheres.size(); ++a) {
     for (std::size_t b = 0; b < spheres.size(); ++b) {
       const double reach =
           task.radii[spheres[a].radius_index] + task.radii[spheres[b].radius_index];
-      const bool meets = squaredLength(spheres[a].centre - spheres[b].centre) < reach * reach;
-      if (a != b && meets) neighbours[a].push_back(&spheres[b]);
+      const bool meets = squaredLength(spheres[a].center - spheres[b].center) < reach * reach;
+      if (a != b && meets) neighbors[a].push_back(&spheres[b]);
     }
   }
-  return neighbours;
+  return neighbors;
 }
 
 LengthStatistics protrusionOf(const FitTask& task, std::span<const Candidate> spheres) {
-  const auto neighbours = neighboursOf(task, spheres);
+  const auto neighbors = neighborsOf(task, spheres);
   std::vector<std::vector<Weighted>> parts(spheres.size());
   parallelFor(task.jobs, spheres.size(), [&](std::size_t at) {
     const double radius = task.radii[spheres[at].radius_index];
@@ -97,9 +97,9 @@ LengthStatistics protrusionOf(const FitTask& task, std::span<const Candidate> sp
     const double share = radius * radius / count;
     std::uint32_t hint = kNoFacet;
     for (const Vec3d& p :
-         spherePoints(spheres[at].centre, radius, static_cast<std::size_t>(count))) {
+         spherePoints(spheres[at].center, radius, static_cast<std::size_t>(count))) {
       const bool hidden =
-          std::any_of(neighbours[at].begin(), neighbours[at].end(),
+          std::any_of(neighbors[at].begin(), neighbors[at].end(),
                       [&](const Candidate* other) { return outside(task, *other, p) < -1e-9; });
       if (hidden) continue;
       const SurfaceDistance surface = task.solid->distance(p, hint);
@@ -116,8 +116,8 @@ double volumeRatioOf(const FitTask& task, std::span<const Candidate> spheres) {
   Box box = task.solid->bounds();
   for (const Candidate& sphere : spheres) {
     const double radius = task.radii[sphere.radius_index];
-    box.grow(sphere.centre - Vec3d{radius, radius, radius});
-    box.grow(sphere.centre + Vec3d{radius, radius, radius});
+    box.grow(sphere.center - Vec3d{radius, radius, radius});
+    box.grow(sphere.center + Vec3d{radius, radius, radius});
   }
   const Vec3d size = box.size();
   const double step = std::cbrt(size.x * size.y * size.z / kVolumeSamples);
@@ -181,8 +181,8 @@ std::uint64_t Yardstick::countThin(std::span<const Candidate> spheres) const {
   std::vector<Candidate> within;
   for (const Candidate& sphere : spheres) {
     const double radius = task_.radii[sphere.radius_index];
-    const double protrusion = task_.solid->distance(sphere.centre).distance + radius;
-    const bool above = staysAbove(task_, sphere.centre, radius);
+    const double protrusion = task_.solid->distance(sphere.center).distance + radius;
+    const bool above = staysAbove(task_, sphere.center, radius);
     if (protrusion <= task_.tau && above) within.push_back(sphere);
   }
   const std::vector<double> gaps = gapsOf(task_, within, samples_);

@@ -9,9 +9,9 @@ namespace {
 
 bool comesFirst(const SetSphere& a, const SetSphere& b) {
   if (a.radius_index != b.radius_index) return a.radius_index > b.radius_index;
-  if (a.centre.x != b.centre.x) return a.centre.x < b.centre.x;
-  if (a.centre.y != b.centre.y) return a.centre.y < b.centre.y;
-  return a.centre.z < b.centre.z;
+  if (a.center.x != b.center.x) return a.center.x < b.center.x;
+  if (a.center.y != b.center.y) return a.center.y < b.center.y;
+  return a.center.z < b.center.z;
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ tl::unexpected<Error> nothingToCover() {
 SphereSet finishedSet(const FitTask& task, const Yardstick& yardstick, const Cover& cover) {
   SphereSet set;
   for (const Candidate& sphere : cover.spheres) {
-    set.spheres.push_back({narrow(sphere.centre), sphere.radius_index});
+    set.spheres.push_back({narrow(sphere.center), sphere.radius_index});
   }
   std::sort(set.spheres.begin(), set.spheres.end(), comesFirst);
   set.quality = yardstick.measureLengths(cover.spheres);

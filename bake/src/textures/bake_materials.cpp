@@ -144,7 +144,7 @@ Result<BakedMaterials> bakeMaterials(std::span<const SourceMaterial> materials,
     }
     if (result.fault.empty() || textures.sources[n].fault_is_known) continue;
     baked.warnings.push_back(
-        fmt::format("texture '{}' of material '{}' {}: its surfaces keep their plain colour",
+        fmt::format("texture '{}' of material '{}' {}: its surfaces keep their plain color",
                     textures.sources[n].name, textures.sources[n].material, result.fault));
   }
   if (texel_bytes > kMostTexelBytes) {

@@ -39,7 +39,7 @@ struct JpegReader {
   std::longjmp(errors.jump, 1);
 }
 
-/// The library calls damage a warning and goes on with grey.
+/// The library calls damage a warning and goes on with gray.
 void onMessage(j_common_ptr decoder, int level) {
   const int code = decoder->err->msg_code;
   const bool harmless = level >= 0 || code == JWRN_EXTRANEOUS_DATA || code == JWRN_ADOBE_XFORM ||
@@ -92,7 +92,7 @@ DecodedImage decodeJpeg(std::span<const std::byte> file) {
   }
   const J_COLOR_SPACE space = reader.decoder.jpeg_color_space;
   if (space == JCS_CMYK || space == JCS_YCCK) {
-    return refused("is a JPEG for print (CMYK); wanted RGB or grey");
+    return refused("is a JPEG for print (CMYK); wanted RGB or gray");
   }
   const std::size_t texels = std::size_t{image.width} * image.height;
   std::vector<std::uint8_t> rgb(texels * 3);

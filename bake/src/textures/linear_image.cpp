@@ -45,8 +45,8 @@ class Taps {
 
   /// Equal sizes give a weight of 1 alone.
   void addLinear(std::uint32_t i, std::uint32_t source, std::uint32_t result) {
-    const double centre = (i + 0.5) * source / result - 0.5;
-    const double clamped = std::clamp(centre, 0.0, static_cast<double>(source - 1));
+    const double center = (i + 0.5) * source / result - 0.5;
+    const double clamped = std::clamp(center, 0.0, static_cast<double>(source - 1));
     const auto texel = static_cast<std::uint32_t>(clamped);
     const auto part = static_cast<float>(clamped - texel);
     first_.push_back(texel);

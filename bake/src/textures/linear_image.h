@@ -20,8 +20,8 @@ struct LinearImage {
 /// What happens to an image's alpha.
 enum class AlphaUse { kIgnored, kKept };
 
-/// `image` stretched to a square of `size` texels, in linear light, colours weighted with alpha:
-/// by area where it shrinks, linearly between texels' centres where it grows, unchanged where
+/// `image` stretched to a square of `size` texels, in linear light, colors weighted with alpha:
+/// by area where it shrinks, linearly between texels' centers where it grows, unchanged where
 /// it does neither. Ignored alpha is 1.
 [[nodiscard]] LinearImage resampled(const Image& image, std::uint32_t size, AlphaUse alpha,
                                     const TransferFunction& transfer);

@@ -29,7 +29,7 @@ std::uint8_t encodedAlpha(float alpha, float from, float cutoff) {
                                                  : std::min(byte, least_visible - 1));
 }
 
-/// Colours not multiplied with alpha. Where there is no alpha, the colour of the level below.
+/// Colors not multiplied with alpha. Where there is no alpha, the color of the level below.
 std::vector<std::array<float, 3>> straightColors(const LinearImage& level,
                                                  const std::vector<std::array<float, 3>>& below) {
   const std::size_t size = level.size;
@@ -56,7 +56,7 @@ std::vector<std::uint8_t> encodeMipChain(LinearImage base, const CutOut& cut_out
   std::vector<std::uint8_t> chain(textureBytes(levels.front().size, TexelFormat::kRgba8));
   std::size_t end = chain.size();
   std::vector<std::array<float, 3>> colors;
-  // From the smallest level up, because the larger ones borrow colours.
+  // From the smallest level up, because the larger ones borrow colors.
   for (std::size_t n = levels.size(); n-- > 0;) {
     const LinearImage& level = levels[n];
     colors = straightColors(level, colors);

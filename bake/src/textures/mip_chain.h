@@ -18,7 +18,7 @@ struct CutOut {
 /// All levels from `base` down to one texel, as RenderMeshes stores them with kRgba8: the largest
 /// first, without gaps. Where shapes are cut out, alpha of each level is scaled so that its
 /// visible share comes as near to the coverage as its texels can, and invisible texels get the
-/// colours of visible ones around them. `base.size`: a power of two.
+/// colors of visible ones around them. `base.size`: a power of two.
 [[nodiscard]] std::vector<std::uint8_t> encodeMipChain(LinearImage base, const CutOut& cut_out,
                                                        const TransferFunction& transfer);
 

@@ -20,14 +20,14 @@ constexpr std::chrono::seconds kTimeLimit{60};
 
 Result<void> checkSphere(const HandSphere& sphere, const std::string& place) {
   const auto within = [](double v) { return std::abs(v) <= kMaxCoordinate; };
-  const auto& c = sphere.centre;
+  const auto& c = sphere.center;
   // NaN compares false.
   if (within(c[0]) && within(c[1]) && within(c[2]) && within(sphere.radius) && sphere.radius > 0) {
     return {};
   }
   return fail(ErrorCode::kInvalidInput, place,
-              fmt::format("a sphere at ({} {} {}) of radius {}: wanted a finite centre and a "
-                          "positive radius, in metres",
+              fmt::format("a sphere at ({} {} {}) of radius {}: wanted a finite center and a "
+                          "positive radius, in meters",
                           c[0], c[1], c[2], sphere.radius));
 }
 
@@ -37,7 +37,7 @@ Result<HandSpheres> finish(HandSpheres spheres, const fs::path& path, std::strin
     for (HandSphere& sphere : link.spheres) {
       auto checked = checkSphere(sphere, fmt::format("{}: link '{}'", path.string(), link.link));
       if (!checked) return tl::unexpected(checked.error());
-      sphere.centre = transformed(kYUpFromZUp, sphere.centre);
+      sphere.center = transformed(kYUpFromZUp, sphere.center);
     }
   }
   if (spheres.links.empty()) {
@@ -63,7 +63,7 @@ Result<HandSpheres> readSpherizedUrdf(const fs::path& path) {
         continue;
       }
       const Affine& t = shape.link_from_shape;
-      set.spheres.push_back({.centre = {t[3], t[7], t[11]}, .radius = shape.size[0]});
+      set.spheres.push_back({.center = {t[3], t[7], t[11]}, .radius = shape.size[0]});
     }
     if (others == 0) continue;
     spheres.warnings.push_back(

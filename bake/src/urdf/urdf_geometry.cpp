@@ -19,11 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Parts smaller or larger than this, in all directions, draw a question about their unit. Metres.
+/// Parts smaller or larger than this, in all directions, draw a question about their unit. Meters.
 constexpr double kSmallestPart = 0.002;
 constexpr double kLargestPart = 10;
 
-/// A colour channel on a screen (IEC 61966-2-1) as linear light.
+/// A color channel on a screen (IEC 61966-2-1) as linear light.
 float linearFromSrgb(double value) {
   constexpr double kLinearPart = 0.04045;
   const double v = std::clamp(value, 0.0, 1.0);
@@ -79,7 +79,7 @@ Result<void> checkShape(const UrdfShape& shape, const std::string& place) {
   if (farthest > kMaxCoordinate) {
     return fail(ErrorCode::kInvalidInput, place,
                 fmt::format("its origin is {} m away, at most {} m are possible; is the unit "
-                            "metres?",
+                            "meters?",
                             farthest, kMaxCoordinate));
   }
   if (shape.geometry == UrdfGeometry::kMesh) {
@@ -92,7 +92,7 @@ Result<void> checkShape(const UrdfShape& shape, const std::string& place) {
     if (size > kMaxCoordinate) {
       return fail(
           ErrorCode::kInvalidInput, place,
-          describe(fmt::format("at most {} m are possible; is the unit metres?", kMaxCoordinate)));
+          describe(fmt::format("at most {} m are possible; is the unit meters?", kMaxCoordinate)));
     }
   }
   return {};
@@ -214,7 +214,7 @@ Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const UrdfShape& 
     largest = std::max(largest, mesh.size[i] * std::abs(shape.size[i]));
   }
   if (largest < kSmallestPart || largest > kLargestPart) {
-    warn(place, fmt::format("mesh '{}' is {:.3g} m large: is its unit the metre? Correct the scale "
+    warn(place, fmt::format("mesh '{}' is {:.3g} m large: is its unit the meter? Correct the scale "
                             "of the <mesh>",
                             shape.mesh, largest));
   }

@@ -28,7 +28,7 @@ class GeometryBuilder {
   /// A mesh that was loaded, or why there is none.
   struct LoadedMesh {
     std::optional<std::uint32_t> index;
-    /// Of the box around its points, in the frame of the file; metres.
+    /// Of the box around its points, in the frame of the file; meters.
     std::array<double, 3> size{};
     std::string failure;
   };

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A revolute joint turns all the way round, a prismatic one moves a metre either way.
+/// A revolute joint turns all the way round, a prismatic one moves a meter either way.
 JointLimits assumedLimits(JointType type) {
   const double most = type == JointType::kRevolute ? std::numbers::pi : 1;
   return {-most, most};

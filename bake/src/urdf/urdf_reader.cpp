@@ -146,7 +146,7 @@ void addMaterial(UrdfShape& shape, const urdf::Material& material) {
   const urdf::Color& c = material.color;
   shape.color = {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b),
                  static_cast<double>(c.a)};
-  // The library does not tell a missing colour from black; with a texture it is the former.
+  // The library does not tell a missing color from black; with a texture it is the former.
   shape.has_color = shape.texture.empty() || c.r + c.g + c.b > 0;
 }
 
@@ -271,15 +271,15 @@ Result<std::vector<LinkSpheres>> parseSrdf(const std::string& text, const std::s
     link.link = name;
     for (const auto* s = e->FirstChildElement("sphere"); s != nullptr;
          s = s->NextSiblingElement("sphere")) {
-      const auto centre = numbersOf(s->Attribute("center"), 3);
+      const auto center = numbersOf(s->Attribute("center"), 3);
       const auto radius = numbersOf(s->Attribute("radius"), 1);
-      if (!centre || !radius) {
+      if (!center || !radius) {
         return fail(ErrorCode::kInvalidInput, fmt::format("{}:{}", where, s->Row()),
                     fmt::format("a <sphere> of link '{}' is wanted with center=\"x y z\" and "
                                 "radius=\"r\"",
                                 name));
       }
-      link.spheres.push_back({{(*centre)[0], (*centre)[1], (*centre)[2]}, (*radius)[0]});
+      link.spheres.push_back({{(*center)[0], (*center)[1], (*center)[2]}, (*radius)[0]});
     }
   }
   return links;

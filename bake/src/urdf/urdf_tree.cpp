@@ -277,7 +277,7 @@ Result<void> checkJoints(UrdfModel& model, const std::string& where,
     if (farthest > kMaxCoordinate) {
       return invalid(place,
                      fmt::format("its origin is {} m away, at most {} m are possible; is the "
-                                 "unit metres?",
+                                 "unit meters?",
                                  farthest, kMaxCoordinate));
     }
     if (auto checked = checkAxis(joint, place, warnings); !checked) return checked;

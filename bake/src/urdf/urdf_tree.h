@@ -38,7 +38,7 @@ struct ResolvedMimic {
     const UrdfModel& model, const std::string& where);
 
 /// Checks the numbers of joints: finite, within bounds, limits in order, axes with a direction.
-/// Normalises the axes; what is doubtful is added to `warnings`.
+/// Normalizes the axes; what is doubtful is added to `warnings`.
 [[nodiscard]] Result<void> checkJoints(UrdfModel& model, const std::string& where,
                                        std::vector<std::string>& warnings);
 

@@ -13,7 +13,7 @@ class Observation(NamedTuple):
 
     state: Tensor  # [n, S] float32
     rgb: Optional[Tensor] = None  # [n, H, W, 3] uint8
-    depth: Optional[Tensor] = None  # [n, H, W] float32, metres
+    depth: Optional[Tensor] = None  # [n, H, W] float32, meters
 
 
 class Timeouts(NamedTuple):

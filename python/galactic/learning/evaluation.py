@@ -20,7 +20,7 @@ MOST_ENVS = 256
 
 @dataclass
 class EpisodeResult:
-    """One episode. `path`: metres that the base went over the floor, but for the last step; `straight`:
+    """One episode. `path`: meters that the base went over the floor, but for the last step; `straight`:
     the length of the straight lines from where it started to where it first held something, and on to
     where it was last seen: no path by these places is shorter. `refused`, `slid`: steps in which the
     robot stayed where it was, or was pushed clear, because it would have hit something."""

@@ -118,7 +118,7 @@ class Homes:
         return self._landings[half]["endings"]
 
     def base_position(self, env: int) -> np.ndarray:
-        """Where the base of a robot stands, on the floor plane: x and z, metres."""
+        """Where the base of a robot stands, on the floor plane: x and z, meters."""
         half, row = divmod(env, self.count // len(self.halves))
         place = self.env.simulators[half].env_state(row).world_from_root.translation
         return np.array([place[0], place[2]])

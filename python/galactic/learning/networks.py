@@ -34,7 +34,7 @@ from galactic.learning.normalization import Closeup, Normalizer
 from galactic.learning.sequences import run_gru
 
 FARTHEST = 10.0
-"""Depth that counts as far away, metres."""
+"""Depth that counts as far away, meters."""
 FEATURES = 512
 """Width of the paper's networks."""
 IMAGE_SIZE = 128
@@ -46,7 +46,7 @@ class Inputs(NamedTuple):
 
     state: Tensor  # [T, n, S] float32: a row of observations
     rgb: Optional[Tensor] = None  # [T, n, H, W, 3] uint8
-    depth: Optional[Tensor] = None  # [T, n, H, W] float32, metres
+    depth: Optional[Tensor] = None  # [T, n, H, W] float32, meters
     previous: Optional[Tensor] = None  # [T, n, A]: the action before, zero where an episode starts
 
 

@@ -21,7 +21,7 @@ class Normalizer(nn.Module):
     mean: Tensor
     scale: Tensor
     count: Tensor
-    centre: Tensor
+    center: Tensor
     square: Tensor
 
     def __init__(self, size: int):
@@ -30,41 +30,41 @@ class Normalizer(nn.Module):
         self.register_buffer("scale", torch.ones(size))
         # Exact enough to add up billions of steps.
         self.register_buffer("count", torch.zeros((), dtype=torch.float64))
-        self.register_buffer("centre", torch.zeros(size, dtype=torch.float64))
+        self.register_buffer("center", torch.zeros(size, dtype=torch.float64))
         self.register_buffer("square", torch.zeros(size, dtype=torch.float64))
 
     def forward(self, inputs: Tensor) -> Tensor:
         return torch.clamp((inputs - self.mean) * self.scale, -MOST, MOST)
 
     @staticmethod
-    def sums(batch: Tensor, centre: Tensor) -> Tensor:
-        """Count, sums and sums of squares about `centre` of rows [..., S]; float64 [1 + 2 S].
+    def sums(batch: Tensor, center: Tensor) -> Tensor:
+        """Count, sums and sums of squares about `center` of rows [..., S]; float64 [1 + 2 S].
 
-        Sums of several ranks may be added, when they share the centre.
+        Sums of several ranks may be added, when they share the center.
         """
-        rows = batch.reshape(-1, batch.shape[-1]).double() - centre
+        rows = batch.reshape(-1, batch.shape[-1]).double() - center
         count = torch.full((1,), float(len(rows)), dtype=torch.float64, device=rows.device)
         return torch.cat([count, rows.sum(0), (rows * rows).sum(0)])
 
     def absorb(self, sums: Tensor) -> None:
-        """Takes in what sums() found about `self.centre` (Chan, Golub, LeVeque 1979)."""
+        """Takes in what sums() found about `self.center` (Chan, Golub, LeVeque 1979)."""
         size = self.mean.numel()
         count, first, second = sums[0], sums[1 : 1 + size], sums[1 + size :]
         total = self.count + count
         shift = first / count
         self.square += second - count * shift * shift
         self.square += shift * shift * (self.count * count / total)
-        self.centre += shift * (count / total)
+        self.center += shift * (count / total)
         self.count.copy_(total)
-        self.mean.copy_(self.centre)
+        self.mean.copy_(self.center)
         self.scale.copy_(torch.rsqrt(self.square / total + _EPSILON))
 
 
 class Closeup(nn.Module):
     """tanh(x / scale), element by element: what is near zero, seen through a magnifying glass.
 
-    Normalized by their variance, metres to a target that may be anywhere in a home leave five
-    centimetres of reach within a hundredth of a unit, and a network needs millions of steps to
+    Normalized by their variance, meters to a target that may be anywhere in a home leave five
+    centimeters of reach within a hundredth of a unit, and a network needs millions of steps to
     learn weights that tell them apart. Beside the normalized row, this one saturates far away and
     is linear where hands meet objects.
     """

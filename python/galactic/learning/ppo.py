@@ -150,7 +150,7 @@ class Learner:
     def _absorb_observations(self, rollout: Rollout) -> None:
         if self.policy.normalize is not None:
             seen = rollout.state[: rollout.steps]
-            sums = self.policy.normalize.sums(seen, self.policy.normalize.centre)
+            sums = self.policy.normalize.sums(seen, self.policy.normalize.center)
             self.policy.normalize.absorb(self.group.sum(sums))
 
     def _report(self, totals: Tensor, raw: Tensor, returns: Tensor) -> dict[str, float]:

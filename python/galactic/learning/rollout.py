@@ -21,7 +21,7 @@ class Rollout:
 
     state: Tensor  # [T + 1, N, S] float32
     rgb: Optional[Tensor]  # [T + 1, N, H, W, 3] uint8
-    depth: Optional[Tensor]  # [T + 1, N, H, W] float32, metres
+    depth: Optional[Tensor]  # [T + 1, N, H, W] float32, meters
     actions: Tensor  # [T, N, A] float32, as sampled: motions not clamped
     log_probs: Tensor  # [T, N]
     values: Tensor  # [T + 1, N]

@@ -15,11 +15,11 @@ namespace galactic {
 /// What draws.
 enum class RenderBackend : std::uint8_t {
   kAuto,  ///< `gl` where there is a graphics processor, else `soft`.
-  kSoft,  ///< The rasteriser of this library, on all cores of the processor.
+  kSoft,  ///< The rasterizer of this library, on all cores of the processor.
   kGl,    ///< OpenGL 4.5 through EGL, without a display.
 };
 
-/// Bytes per pixel of colour images.
+/// Bytes per pixel of color images.
 enum class ColorFormat : std::uint8_t { kNone = 0, kRgb8 = 3, kRgba8 = 4 };
 
 struct RenderOptions {
@@ -30,7 +30,7 @@ struct RenderOptions {
   ColorFormat color = ColorFormat::kRgba8;
   bool depth = true;
   bool semantics = false;
-  /// What is nearer to the camera's plane is cut off, metres, > 0.
+  /// What is nearer to the camera's plane is cut off, meters, > 0.
   float near = 0.05F;
   /// RGBA, sRGB, R lowest, where nothing is drawn.
   std::uint32_t background = 0;
@@ -71,7 +71,7 @@ struct RenderView {
 struct RenderTargets {
   /// Shape: views x height x width x 3 or 4. sRGB; alpha is 255 where something is drawn.
   std::span<std::uint8_t> color;
-  /// Shape: views x height x width. Metres along the camera's axis; 0 where nothing is drawn.
+  /// Shape: views x height x width. Meters along the camera's axis; 0 where nothing is drawn.
   std::span<float> depth;
   /// Shape: views x height x width. Indices into RenderLibrary::semanticNames().
   std::span<std::uint32_t> semantics;

@@ -121,7 +121,7 @@ struct PhaseTime {
 /// locks. Not safe to call from several threads at once.
 ///
 /// Actions, for each env: one per controlled joint of the robot, in the order of its recipe (+-1:
-/// the largest step); forward (+1: forward_step metres ahead); turn (+1: turn_step radians
+/// the largest step); forward (+1: forward_step meters ahead); turn (+1: turn_step radians
 /// clockwise, seen from above); grasp (1: grasp what the gripper touches, or keep it; 0: release);
 /// terminate (1: the robot says that the task is done). Values are clamped to [-1, 1]; NaN is taken
 /// as 0 and counted.
@@ -145,8 +145,8 @@ class BatchSimulator {
   [[nodiscard]] std::size_t threadCount() const;
   /// The parts of an observation, in order:
   /// robot_target (3), grip_target (3), robot_grip (3), robot_goal (3), grip_goal (3): points in
-  /// the frame of the base (on the floor under the root, turned by the yaw) or of the grip, metres;
-  /// is_holding (1); joints (one per controlled joint, radians or metres); time (3): the share f of
+  /// the frame of the base (on the floor under the root, turned by the yaw) or of the grip, meters;
+  /// is_holding (1); joints (one per controlled joint, radians or meters); time (3): the share f of
   /// the steps that is left, as min(1, f), min(1, 5 f), min(1, 50 f). With SensorOptions also: bump
   /// (1): whether something was in the way of the last step; laser (beams, for each of its planes):
   /// distances as shares of the range; geodesic (6): length, cosine and sine of the way along the

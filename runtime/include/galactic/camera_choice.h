@@ -10,7 +10,7 @@ namespace galactic {
 /// A camera and what is cut off in front of it.
 struct ChosenCamera {
   CameraMount mount;
-  /// Metres.
+  /// Meters.
   float near = 0.05F;
 };
 

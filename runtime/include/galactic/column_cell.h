@@ -22,7 +22,7 @@ inline constexpr std::size_t kTilePaddingCells = 4;
 inline constexpr std::uint32_t kMaxCode = 65534;
 /// Codes per unit of a tile's base.
 inline constexpr std::uint32_t kCodesPerTileBase = 1024;
-/// Least edge of a cell, metres: what walks from cell to cell over a distance ends in time.
+/// Least edge of a cell, meters: what walks from cell to cell over a distance ends in time.
 inline constexpr float kLeastSpacing = 1e-5F;
 /// Most cells of a grid: the batched query computes cell indices in 32 signed bits.
 inline constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 27;

@@ -7,7 +7,7 @@
 
 namespace galactic {
 
-/// The answer to "may the sphere's centre be here?".
+/// The answer to "may the sphere's center be here?".
 enum class Clearance : std::uint8_t {
   kFree = 0,     ///< Inside a free span, both ends included.
   kBlocked = 1,  ///< Inside the grid and in no free span; also when a coordinate is NaN.
@@ -17,21 +17,21 @@ enum class Clearance : std::uint8_t {
 /// Clearance and the distances to contact along the vertical line.
 struct Contact {
   Clearance clearance = Clearance::kBlocked;
-  /// How far the sphere can sink and rise before it touches; metres; 0 unless free. Less by some
+  /// How far the sphere can sink and rise before it touches; meters; 0 unless free. Less by some
   /// millionths of the grid's height, so that wherever the sphere gets by moving as far or less,
   /// it is free.
   float down = 0;
   float up = 0;
 };
 
-/// Centres of n spheres in the world frame, as three arrays of the same length.
-struct SphereCentres {
+/// Centers of n spheres in the world frame, as three arrays of the same length.
+struct SphereCenters {
   std::span<const float> x;
   std::span<const float> y;
   std::span<const float> z;
 };
 
-/// Where the answers of a batched query go: arrays as long as the centres. `down` and `up` may both
+/// Where the answers of a batched query go: arrays as long as the centers. `down` and `up` may both
 /// be empty when only the clearance is wanted.
 struct ContactArrays {
   std::span<Clearance> clearance;
@@ -68,7 +68,7 @@ class ColumnGrid {
  public:
   explicit ColumnGrid(const ColumnGridLayout& layout) : layout_(layout) {}
 
-  /// Sphere radius and cell edge, metres.
+  /// Sphere radius and cell edge, meters.
   [[nodiscard]] float radius() const { return layout_.radius; }
   [[nodiscard]] float spacing() const { return layout_.spacing; }
   [[nodiscard]] std::uint32_t columnsX() const { return layout_.columns_x; }
@@ -77,21 +77,21 @@ class ColumnGrid {
   [[nodiscard]] Span heights() const { return layout_.heights; }
   [[nodiscard]] const ColumnGridLayout& layout() const { return layout_; }
 
-  /// Whether a sphere centred at `centre` (world frame) is free, judged by the nearest column.
-  [[nodiscard]] Clearance clearance(Vec3 centre) const noexcept;
+  /// Whether a sphere centered at `center` (world frame) is free, judged by the nearest column.
+  [[nodiscard]] Clearance clearance(Vec3 center) const noexcept;
 
   /// The same with the distances down and up to contact in that column.
-  [[nodiscard]] Contact contact(Vec3 centre) const noexcept;
+  [[nodiscard]] Contact contact(Vec3 center) const noexcept;
 
-  /// `contact` for each centre, eight at a time where the processor has AVX2 (chosen at run time).
+  /// `contact` for each center, eight at a time where the processor has AVX2 (chosen at run time).
   /// The answers equal those of `contact` bit for bit. Neither allocates nor throws.
-  /// All spans of `centres` and `out.clearance` have one length; `out.down` and `out.up` have that
+  /// All spans of `centers` and `out.clearance` have one length; `out.down` and `out.up` have that
   /// length or are both empty.
-  void contact(const SphereCentres& centres, const ContactArrays& out) const noexcept;
+  void contact(const SphereCenters& centers, const ContactArrays& out) const noexcept;
 
-  /// Index of the first of these centres that is not free, their number when all are. The same
+  /// Index of the first of these centers that is not free, their number when all are. The same
   /// answers as those of `contact`, found faster. Neither allocates nor throws.
-  [[nodiscard]] std::size_t firstNotFree(const SphereCentres& centres) const noexcept;
+  [[nodiscard]] std::size_t firstNotFree(const SphereCenters& centers) const noexcept;
 
   /// Number of free spans in column (i, k); i < columnsX(), k < columnsZ().
   [[nodiscard]] std::size_t spanCount(std::uint32_t i, std::uint32_t k) const noexcept;

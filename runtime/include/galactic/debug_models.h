@@ -12,7 +12,7 @@
 namespace galactic {
 
 struct DebugOptions {
-  /// Whose column grid is shown, metres, one of the world's radii; 0: the smallest.
+  /// Whose column grid is shown, meters, one of the world's radii; 0: the smallest.
   float radius = 0;
 };
 
@@ -23,7 +23,7 @@ enum class DebugSpheres : std::uint8_t {
 };
 
 /// What the simulation knows of a world, as models to draw (paper, figures 3 and 13): the free
-/// space of the column grid as grey floors, walls and ceilings, seen from inside; spheres of each
+/// space of the column grid as gray floors, walls and ceilings, seen from inside; spheres of each
 /// radius; the oriented box of each object in orange; its edges alone, for a goal. Movable;
 /// immutable, so safe to share between threads.
 class DebugModels {

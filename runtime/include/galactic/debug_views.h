@@ -29,7 +29,7 @@ class DebugViews {
   struct PlacedSphere {
     std::uint32_t model = 0;
     std::size_t body = 0;
-    Vec3 centre;
+    Vec3 center;
   };
 
   void updateEnv(const BatchSimulator& simulator, std::size_t env) noexcept;

@@ -28,7 +28,7 @@ struct Episode {
   std::uint32_t placement_count = 0;
   /// The object to move, counted within the episode's placements.
   std::uint32_t target = 0;
-  /// Point on the ground under the root link's origin, world frame, metres. The run looks for the
+  /// Point on the ground under the root link's origin, world frame, meters. The run looks for the
   /// floor at or under its height.
   Vec3 base_position;
   /// Rotation of the base about +Y, radians: 0 looks along +X, positive turns counter-clockwise
@@ -60,7 +60,7 @@ class EpisodeSet {
   [[nodiscard]] std::span<const Placement> placements(const Episode& episode) const {
     return placements_.subspan(episode.first_placement, episode.placement_count);
   }
-  /// Positions of startJoints() in episode `n`, radians or metres.
+  /// Positions of startJoints() in episode `n`, radians or meters.
   [[nodiscard]] std::span<const float> startPositions(std::size_t n) const {
     return start_positions_.subspan(n * start_joints_.size(), start_joints_.size());
   }

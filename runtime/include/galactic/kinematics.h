@@ -11,9 +11,9 @@ enum class JointType : std::uint8_t {
   kFixed = 0,       ///< No position.
   kRevolute = 1,    ///< One position: angle about the axis, radians, within limits.
   kContinuous = 2,  ///< One position: angle about the axis, radians, without limits.
-  kPrismatic = 3,   ///< One position: metres along the axis, within limits.
-  kPlanar = 4,      ///< Three positions: metres along planarDirections(axis), angle about the axis.
-  kFloating = 5,    ///< Seven positions: translation, metres, and quaternion (x, y, z, w).
+  kPrismatic = 3,   ///< One position: meters along the axis, within limits.
+  kPlanar = 4,      ///< Three positions: meters along planarDirections(axis), angle about the axis.
+  kFloating = 5,    ///< Seven positions: translation, meters, and quaternion (x, y, z, w).
 };
 
 /// Values that a joint of this type takes from the vector of joint positions.
@@ -60,7 +60,7 @@ struct PlanarDirections {
 
 /// The pose of each link in the world for a vector of joint positions (forward kinematics).
 /// `links`: root first, parents before children. `world_from_root`: pose of the root link.
-/// `positions`: one value per position of the robot, radians or metres. `world_from_link`: as many
+/// `positions`: one value per position of the robot, radians or meters. `world_from_link`: as many
 /// as links, overwritten. Neither allocates nor throws.
 void forwardKinematics(std::span<const LinkFrame> links, const Pose& world_from_root,
                        std::span<const float> positions, std::span<Pose> world_from_link) noexcept;

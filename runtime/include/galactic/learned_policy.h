@@ -48,7 +48,7 @@ struct PolicyInputs {
   /// Shape: envs x height x width x 3, or x 4, whose last byte plays no part. Empty where the
   /// policy wants no color.
   std::span<const std::uint8_t> color = {};
-  /// Shape: envs x height x width, metres. Empty where the policy wants no depth.
+  /// Shape: envs x height x width, meters. Empty where the policy wants no depth.
   std::span<const float> depth = {};
 };
 

@@ -13,7 +13,7 @@
 
 namespace galactic {
 
-/// One movable rigid body, in its own frame (Y up, metres): views into the pack.
+/// One movable rigid body, in its own frame (Y up, meters): views into the pack.
 struct ObjectModel {
   std::string_view name;
   /// What it is when it rests.
@@ -31,7 +31,7 @@ class ObjectSet {
   /// of pack.
   [[nodiscard]] static Result<ObjectSet> from(const PackFile& pack);
 
-  /// The working set, metres, ascending: SetSphere::radius_index counts in it.
+  /// The working set, meters, ascending: SetSphere::radius_index counts in it.
   [[nodiscard]] std::span<const float> radii() const { return radii_; }
 
   /// Ascending names.

@@ -120,7 +120,7 @@ void visitTaskOptions(TaskOptions& t, Visitor& v) {
 template <class Visitor>
 void visitMotionOptions(SimulationOptions& o, Visitor& v) {
   constexpr Within<float> kThreshold{-2, 2};
-  constexpr Within<float> kMetres{0, 1000};
+  constexpr Within<float> kMeters{0, 1000};
   constexpr Within<std::uint32_t> kAttempts{0, 1000};
   v.group("Actions");
   v.real("grasp-from", o.action.grasp, kThreshold,
@@ -135,16 +135,16 @@ void visitMotionOptions(SimulationOptions& o, Visitor& v) {
   v.choice("slide-direction", o.slide.direction, kSlideNames,
            "Direction in which the base is pushed");
   v.whole("slide-attempts", o.slide.attempts, kAttempts, "Pushes per step; 0: no sliding");
-  v.real("slide-step", o.slide.step, kMetres, "Length of a push, meters");
-  v.real("floor-rise", o.ground.most_rise, kMetres, "Highest step up, meters");
-  v.real("floor-drop", o.ground.most_drop, kMetres, "Deepest step down, meters");
+  v.real("slide-step", o.slide.step, kMeters, "Length of a push, meters");
+  v.real("floor-rise", o.ground.most_rise, kMeters, "Highest step up, meters");
+  v.real("floor-drop", o.ground.most_drop, kMeters, "Deepest step down, meters");
   v.group("Placing released objects");
   v.whole("place-attempts", o.placement.attempts, kAttempts, "Poses to try for a released object");
-  v.real("place-lift", o.placement.most_lift, kMetres, "Highest lift out of a collision, meters");
-  v.real("place-clearance", o.placement.clearance, kMetres, "Gap left below the object, meters");
+  v.real("place-lift", o.placement.most_lift, kMeters, "Highest lift out of a collision, meters");
+  v.real("place-clearance", o.placement.clearance, kMeters, "Gap left below the object, meters");
   v.real("place-spread", o.placement.direction_spread, Within<float>{0, 4},
          "Half the range of random directions, radians");
-  v.real("place-jitter", o.placement.jitter, kMetres, "Length of a jitter, in box diagonals");
+  v.real("place-jitter", o.placement.jitter, kMeters, "Length of a jitter, in box diagonals");
 }
 
 /// The same, of what the robot senses.

@@ -6,9 +6,9 @@ namespace galactic {
 
 /// A box in the frame of its object.
 struct OrientedBox {
-  /// object_from_box: centre and rotation.
+  /// object_from_box: center and rotation.
   Pose pose;
-  /// Metres, > 0.
+  /// Meters, > 0.
   Vec3 half_extents;
 
   friend bool operator==(const OrientedBox&, const OrientedBox&) = default;

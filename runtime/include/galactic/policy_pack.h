@@ -111,7 +111,7 @@ struct PolicyImage {
   bool color = true;
   float color_scale = 1.0F / 255;
   bool depth = true;
-  /// Metres.
+  /// Meters.
   float depth_limit = 10;
   float depth_scale = 0.1F;
   /// As galactic-run --camera names it.

@@ -13,7 +13,7 @@ struct Quat {
   friend bool operator==(const Quat&, const Quat&) = default;
 };
 
-/// A rigid transform a_from_b: rotate, then translate. Metres.
+/// A rigid transform a_from_b: rotate, then translate. Meters.
 struct Pose {
   Vec3 translation;
   Quat rotation;

@@ -7,7 +7,7 @@
 namespace galactic {
 
 // Where things stand in the pools of RenderMeshes, which are stored by eight. For whoever writes,
-// checks or walks them one by one; rasterisers read whole rows.
+// checks or walks them one by one; rasterizers read whole rows.
 
 /// Of element `index` in row `row` of a pool with `rows` rows of eight.
 [[nodiscard]] constexpr std::size_t pooledAt(std::size_t index, std::size_t row, std::size_t rows) {
@@ -24,7 +24,7 @@ enum VertexRow : std::uint8_t { kVertexX, kVertexY, kVertexZ, kVertexU, kVertexV
 
 /// Rows of RenderMeshes::cluster_bounds.
 enum BoundsRow : std::uint8_t {
-  kCentreRow = 0,
+  kCenterRow = 0,
   kHalfExtentRow = 3,
   kRadiusRow = 6,
   kConeAxisRow = 7,

@@ -13,7 +13,7 @@ namespace galactic {
 
 /// A corner of triangles to draw.
 struct RenderVertex {
-  /// Metres, in the frame of the part.
+  /// Meters, in the frame of the part.
   Vec3 position;
   /// Texture coordinates: u to the right, v down from the image's top; images repeat.
   float u = 0;
@@ -40,7 +40,7 @@ struct RenderPart {
   std::uint32_t part = 0;
   std::vector<RenderSurface> surfaces = {};
   /// What is stored beside the geometry: triangles of the source, and how far simplification moved
-  /// the surface, metres.
+  /// the surface, meters.
   std::uint32_t source_triangles = 0;
   float largest_error = 0;
 };
@@ -85,7 +85,7 @@ struct RenderMeshStorage : RenderPools {
 /// becomes nothing. Positions are rounded to the lattice of their part: the finest with a step of
 /// 2^-14 m or more that every cluster fits on, so equal positions stay equal across clusters.
 /// Bounds hold what is drawn, rounded outwards; one-sided clusters get a cone of normals where they
-/// have one. Colours are left out when all are white. The same source gives the same bytes. Fails
+/// have one. Colors are left out when all are white. The same source gives the same bytes. Fails
 /// with kInvalidInput, naming part and surface, on numbers that are not finite or too large for the
 /// layout, on indices out of range, on parts that do not ascend, and on textures that are no power
 /// of two or have the wrong number of bytes.

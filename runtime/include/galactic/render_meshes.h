@@ -72,7 +72,7 @@ struct RenderCluster {
 inline constexpr std::size_t kMostInCluster = 128;
 /// Clusters' bounds, vertices and triangles are stored by eight, so that eight are read at once.
 inline constexpr std::size_t kRenderLanes = 8;
-/// Rows of a block of bounds: box centre x, y, z; half extents x, y, z; radius; cone axis x, y, z;
+/// Rows of a block of bounds: box center x, y, z; half extents x, y, z; radius; cone axis x, y, z;
 /// cone cutoff. schema/render.fbs says what they mean.
 inline constexpr std::size_t kBoundsRows = 11;
 /// Rows of eight vertices: x, y, z on the lattice, counted from the cluster's origin; u, v.
@@ -84,19 +84,19 @@ inline constexpr std::size_t kTriangleRows = 3;
 struct RenderModel {
   /// Of the object in its set, or of the link in its robot; 0 for a scene.
   std::uint32_t part = 0;
-  /// Metres between neighbouring lattice points: a power of two. The vertex (x, y, z) of a cluster
+  /// Meters between neighboring lattice points: a power of two. The vertex (x, y, z) of a cluster
   /// stands at step * (origin + (x, y, z)), exactly.
   float step = 0;
   std::uint32_t first_cluster = 0;
   std::uint32_t cluster_count = 0;
   /// Bounds of cluster first_cluster + i are in block first_block + i / 8, lane i % 8.
   std::uint32_t first_block = 0;
-  /// Axis-aligned, metres, in the frame of the part.
+  /// Axis-aligned, meters, in the frame of the part.
   Vec3 bounds_min;
   Vec3 bounds_max;
   std::uint32_t source_triangles = 0;
   std::uint32_t triangles = 0;
-  /// Farthest that simplification moved the surface, metres, as measured.
+  /// Farthest that simplification moved the surface, meters, as measured.
   float largest_error = 0;
 };
 
@@ -125,7 +125,7 @@ struct RenderMeshes {
   std::vector<RenderTexture> textures;
   /// Names of what semantic ids tell apart.
   std::vector<std::string_view> semantics;
-  /// Textures that are in other packs and were not found: their materials have plain colours.
+  /// Textures that are in other packs and were not found: their materials have plain colors.
   std::vector<MissingTexture> missing_textures;
 
   /// The model of this object or link; none when it has nothing to show.

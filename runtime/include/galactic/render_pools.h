@@ -48,7 +48,7 @@ struct RenderPools {
   [[nodiscard]] RenderMeshes geometry() const;
 };
 
-/// Finest step of a lattice, metres: finer than a float at the far end of a large scene.
+/// Finest step of a lattice, meters: finer than a float at the far end of a large scene.
 inline constexpr double kFinestStep = 1.0 / 16384;
 /// Most steps that a cluster spans along an axis.
 inline constexpr std::int64_t kMostSteps = 65535;
@@ -76,7 +76,7 @@ struct LatticeCluster {
 
 /// A model on its lattice.
 struct LatticeModel {
-  /// Metres: a power of two, at least kFinestStep.
+  /// Meters: a power of two, at least kFinestStep.
   double step = 0;
   /// In the order in which they are stored.
   std::vector<LatticeCluster> clusters;
@@ -87,7 +87,7 @@ struct RenderModelFigures {
   std::uint32_t part = 0;
   std::uint32_t source_triangles = 0;
   float largest_error = 0;
-  /// Whether vertices of the pools have colours: the same for all models.
+  /// Whether vertices of the pools have colors: the same for all models.
   bool colored = false;
 };
 

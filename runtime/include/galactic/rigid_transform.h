@@ -3,7 +3,7 @@
 
 namespace galactic {
 
-/// A rigid transform as a matrix: the axes and the origin of one frame in another, metres. Faster
+/// A rigid transform as a matrix: the axes and the origin of one frame in another, meters. Faster
 /// to apply than a Pose.
 struct RigidTransform {
   Vec3 x_axis{1, 0, 0};

@@ -13,7 +13,7 @@
 
 namespace galactic {
 
-/// Limits of one value of the vector of joint positions, radians or metres; the largest floats
+/// Limits of one value of the vector of joint positions, radians or meters; the largest floats
 /// where there is none. The memory layout is that of a pack.
 struct PositionLimits {
   float lower = 0;
@@ -24,7 +24,7 @@ struct PositionLimits {
 struct ControlledJoint {
   /// Index into the vector of joint positions.
   std::uint32_t position = 0;
-  /// Farthest move of one action, radians or metres.
+  /// Farthest move of one action, radians or meters.
   float step = 0;
   /// Limits of the controlled motion, inside those of the joint.
   float lower = 0;
@@ -46,9 +46,9 @@ struct SphereGroup {
 
 struct EndEffector {
   std::uint32_t link = 0;
-  /// In the link's frame, metres.
+  /// In the link's frame, meters.
   Vec3 grasp_point;
-  /// Metres.
+  /// Meters.
   float grasp_radius = 0;
 };
 
@@ -66,20 +66,20 @@ struct RobotLaser {
   Pose link_from_laser;
   /// Radians, up to a whole turn.
   float field_of_view = 0;
-  /// Nearest and farthest distance, metres.
+  /// Nearest and farthest distance, meters.
   float least_range = 0;
   float range = 0;
-  /// Standard deviation of a distance, metres.
+  /// Standard deviation of a distance, meters.
   float noise = 0;
 };
 
 struct RobotBase {
-  /// Farthest drive of one action, metres, and farthest turn, radians.
+  /// Farthest drive of one action, meters, and farthest turn, radians.
   float forward_step = 0;
   float turn_step = 0;
-  /// Height of the root link's origin above the ground, metres.
+  /// Height of the root link's origin above the ground, meters.
   float root_height = 0;
-  /// Rectangle on the ground in the root link's frame, metres.
+  /// Rectangle on the ground in the root link's frame, meters.
   Vec3 footprint_min;
   Vec3 footprint_max;
   /// > 0: the footprint is a circle of this radius around the middle of the rectangle.
@@ -95,7 +95,7 @@ class Robot {
   [[nodiscard]] static Result<Robot> from(const PackFile& pack);
 
   [[nodiscard]] std::string_view name() const { return name_; }
-  /// The working set, metres, ascending.
+  /// The working set, meters, ascending.
   [[nodiscard]] std::span<const float> radii() const { return radii_; }
 
   /// Root first, parents before children: what forwardKinematics reads.

@@ -20,7 +20,7 @@ class Scene {
   /// One grid per radius of the working set, ascending.
   [[nodiscard]] const std::vector<ColumnGrid>& grids() const { return grids_; }
 
-  /// Index of the grid of exactly this radius (within 1 micrometre), none if it is not in the
+  /// Index of the grid of exactly this radius (within 1 micrometer), none if it is not in the
   /// working set. Look it up once, not in a hot loop.
   [[nodiscard]] std::optional<std::size_t> gridIndex(float radius) const;
 

@@ -15,7 +15,7 @@ struct SlideOptions {
   /// Jitters of the base per step; 0 switches sliding off.
   std::uint32_t attempts = 3;
   SlideDirection direction = SlideDirection::kPushOut;
-  /// Length of one jitter in metres: the longest with kPushOut, the only one with kTowardsBase.
+  /// Length of one jitter in meters: the longest with kPushOut, the only one with kTowardsBase.
   float step = 0.1F;
 };
 
@@ -23,9 +23,9 @@ struct SlideOptions {
 struct PlacementOptions {
   /// Candidate poses: the one of the release, and jittered ones.
   std::uint32_t attempts = 6;
-  /// A candidate that would have to be lifted further than this to be free is given up, metres.
+  /// A candidate that would have to be lifted further than this to be free is given up, meters.
   float most_lift = 0.05F;
-  /// Left between the object and what it rests on, metres.
+  /// Left between the object and what it rests on, meters.
   float clearance = 0.001F;
   /// Half the range of random directions about the direction away from the object that was hit,
   /// radians; with none to go away from, all directions are equally likely.
@@ -36,7 +36,7 @@ struct PlacementOptions {
 
 /// How the base follows the floor.
 struct GroundOptions {
-  /// Highest rise and deepest drop of the floor under the base within one step, metres. A higher
+  /// Highest rise and deepest drop of the floor under the base within one step, meters. A higher
   /// step is a wall; a deeper drop is refused.
   float most_rise = 0.05F;
   float most_drop = 0.05F;
@@ -70,7 +70,7 @@ struct TaskOptions {
   float reach_weight = 1.0F;
   float transport_weight = 1.0F;
   float action_weight = 0.001F;
-  /// For each metre of the way along the floor to what matters now: the target, once it is held the
+  /// For each meter of the way along the floor to what matters now: the target, once it is held the
   /// goal. The paper has none.
   float geodesic_weight = 0;
   /// Taken away each step, and when an episode fails.
@@ -78,7 +78,7 @@ struct TaskOptions {
   float failure_penalty = 0.0F;
   /// Taken away each step that leaves the robot where it was, for something was in the way.
   float bump_penalty = 0.0F;
-  /// Distance of target and goal that counts as success, metres.
+  /// Distance of target and goal that counts as success, meters.
   float success_distance = 0.1F;
   /// Steps after which an episode ends without success or failure; 0 for never.
   std::uint32_t most_steps = 500;
@@ -106,15 +106,15 @@ struct LaserOptions {
   std::uint32_t beams = 0;
   /// Degrees, the middle straight ahead of the laser; by default 360.
   float fov_degrees = kOfRobot;
-  /// Of the plane above the floor, metres; by default 0.25.
+  /// Of the plane above the floor, meters; by default 0.25.
   float height = kOfRobot;
-  /// Of a second plane with as many beams, metres; 0 for none.
+  /// Of a second plane with as many beams, meters; 0 for none.
   float second_height = 0;
-  /// Farthest distance, metres; by default 10.
+  /// Farthest distance, meters; by default 10.
   float range = kOfRobot;
-  /// Nearest distance, metres: what is nearer is measured as this. By default 0.
+  /// Nearest distance, meters: what is nearer is measured as this. By default 0.
   float least_range = kOfRobot;
-  /// Standard deviation of a distance, metres; by default 0.
+  /// Standard deviation of a distance, meters; by default 0.
   float noise = kOfRobot;
 };
 

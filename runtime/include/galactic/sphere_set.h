@@ -7,8 +7,8 @@ namespace galactic {
 
 /// A sphere of an object or link, in its frame. The memory layout is that of a pack.
 struct SetSphere {
-  /// Metres.
-  Vec3 centre;
+  /// Meters.
+  Vec3 center;
   /// Index into the working set of radii.
   std::uint32_t radius_index = 0;
 

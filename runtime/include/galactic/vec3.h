@@ -2,7 +2,7 @@
 
 namespace galactic {
 
-/// A point or direction in the world frame: right-handed, Y up, metres.
+/// A point or direction in the world frame: right-handed, Y up, meters.
 struct Vec3 {
   float x = 0;
   float y = 0;
@@ -11,7 +11,7 @@ struct Vec3 {
   friend bool operator==(const Vec3&, const Vec3&) = default;
 };
 
-/// A closed interval of heights, metres; lo <= hi.
+/// A closed interval of heights, meters; lo <= hi.
 struct Span {
   float lo = 0;
   float hi = 0;

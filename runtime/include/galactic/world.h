@@ -43,7 +43,7 @@ class World {
   /// The same from packs that are already open, none of them a world.
   [[nodiscard]] static Result<World> from(std::vector<PackFile> packs);
 
-  /// The working set of radii, metres, ascending: the same in all packs.
+  /// The working set of radii, meters, ascending: the same in all packs.
   [[nodiscard]] std::span<const float> radii() const { return robot_.front().radii(); }
   /// Ascending names, whatever the order of the packs.
   [[nodiscard]] const std::vector<Scene>& scenes() const { return scenes_; }

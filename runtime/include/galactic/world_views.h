@@ -54,7 +54,7 @@ class MountedCamera {
   LinkOnBody on_body_;
   RigidTransform frame_from_camera_;
   float vertical_fov_;
-  /// Of the root link above the floor, metres.
+  /// Of the root link above the floor, meters.
   float root_height_;
 };
 

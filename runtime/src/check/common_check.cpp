@@ -12,8 +12,8 @@ constexpr std::size_t kMaxRadii = 8;
 
 /// The order of spheres: radius descending, then x, y, z ascending.
 auto sphereKey(const schema::SetSphere& sphere) {
-  const schema::Vec3& centre = sphere.centre();
-  return std::tuple(~sphere.radius_index(), centre.x(), centre.y(), centre.z());
+  const schema::Vec3& center = sphere.center();
+  return std::tuple(~sphere.radius_index(), center.x(), center.y(), center.z());
 }
 
 Result<void> checkLengths(const schema::LengthStatistics* lengths, const std::string& where) {
@@ -84,7 +84,7 @@ Result<void> checkSpheres(const flatbuffers::Vector<const schema::SetSphere*>& s
   for (std::size_t n = range.begin; n < range.end && !offence.found(); ++n) {
     const schema::SetSphere& sphere = *spheres.Get(static_cast<flatbuffers::uoffset_t>(n));
     const std::string field = fmt::format("spheres[{}]", n);
-    offence.require(isPlace(sphere.centre()), field + ".centre",
+    offence.require(isPlace(sphere.center()), field + ".center",
                     "is farther than {} m or not finite, wanted coordinates", kFarthest);
     offence.require(sphere.radius_index() < radii, field + ".radius_index",
                     "is {}, wanted less than the number of radii {}", sphere.radius_index(), radii);
@@ -92,7 +92,7 @@ Result<void> checkSpheres(const flatbuffers::Vector<const schema::SetSphere*>& s
     const schema::SetSphere& before = *spheres.Get(static_cast<flatbuffers::uoffset_t>(n - 1));
     offence.require(
         sphereKey(before) <= sphereKey(sphere), field,
-        "comes before its predecessor, wanted descending radii, then ascending centres");
+        "comes before its predecessor, wanted descending radii, then ascending centers");
   }
   return offence.result();
 }

@@ -15,26 +15,26 @@ namespace galactic::detail {
   return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
 }
 
-/// Coordinates and lengths of packs reach this far, metres, as docs/packs.md says: beyond, floats
+/// Coordinates and lengths of packs reach this far, meters, as docs/packs.md says: beyond, floats
 /// are coarser than 0.1 mm, and far beyond, their squares are infinite.
 inline constexpr float kFarthest = 800;
 /// Angles, however often something has turned, and positions of joints: what becomes of them along
 /// the longest chain of links, squared, is still finite.
 inline constexpr float kMostAngle = 1e9F;
 
-/// A coordinate, metres.
-[[nodiscard]] inline bool isCoordinate(float metres) { return std::fabs(metres) <= kFarthest; }
+/// A coordinate, meters.
+[[nodiscard]] inline bool isCoordinate(float meters) { return std::fabs(meters) <= kFarthest; }
 
-/// A point, metres.
+/// A point, meters.
 [[nodiscard]] inline bool isPlace(const schema::Vec3& v) {
   return isCoordinate(v.x()) && isCoordinate(v.y()) && isCoordinate(v.z());
 }
 
-/// A length above 0, metres.
-[[nodiscard]] inline bool isLength(float metres) {
+/// A length above 0, meters.
+[[nodiscard]] inline bool isLength(float meters) {
   // Its inverse is no infinity.
   constexpr float kSmallestLength = 1e-9F;
-  return metres >= kSmallestLength && metres <= kFarthest;
+  return meters >= kSmallestLength && meters <= kFarthest;
 }
 
 /// An angle, radians, or a position of a joint.
@@ -80,7 +80,7 @@ inline constexpr double kChainTolerance = 1e-5;
 [[nodiscard]] Result<void> checkRadii(const flatbuffers::Vector<float>& radii,
                                       const std::string& where);
 
-/// Centres that are places, radii of the working set, in the order of the schema from `begin` to
+/// Centers that are places, radii of the working set, in the order of the schema from `begin` to
 /// `end`.
 struct SphereRange {
   std::size_t begin = 0;
@@ -94,7 +94,7 @@ struct SphereRange {
 [[nodiscard]] Result<void> checkSphereStatistics(const schema::SphereSetStatistics& statistics,
                                                  const std::string& where);
 
-/// Positions that are places, whole triangles of existing corners, a colour for each vertex or
+/// Positions that are places, whole triangles of existing corners, a color for each vertex or
 /// none.
 [[nodiscard]] Result<void> checkSurface(const schema::Surface& surface, const std::string& where);
 

@@ -16,7 +16,7 @@ namespace {
 /// Materials and semantics are numbered in 16 bits.
 constexpr std::size_t kMostNumbers = 65536;
 constexpr std::size_t kTexelAlignment = 32;
-/// Steps of a lattice: powers of two between these, metres.
+/// Steps of a lattice: powers of two between these, meters.
 constexpr float kLeastStep = 0x1p-20F;
 constexpr float kMostStep = 1.0F;
 

@@ -174,11 +174,11 @@ class ClusterChecker {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double low = step * (origin[axis] + low_[axis]);
       const double high = step * (origin[axis] + high_[axis]);
-      const double centre = bound(kCentreRow + axis);
+      const double center = bound(kCenterRow + axis);
       const double half = bound(kHalfExtentRow + axis);
-      offence_.require(low >= centre - half && high <= centre + half, "bounds",
+      offence_.require(low >= center - half && high <= center + half, "bounds",
                        "reach from {} to {} m, wanted around all vertices: {} to {} m",
-                       centre - half, centre + half, low, high);
+                       center - half, center + half, low, high);
       offence_.require(low >= static_cast<double>(model_low[axis]) &&
                            high <= static_cast<double>(model_high[axis]),
                        "vertices", "reach from {} to {} m, wanted within the model's {} to {} m",
@@ -193,7 +193,7 @@ class ClusterChecker {
       const Point at = lattice(n);
       double squared = 0;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double away = at[axis] * step - bound(kCentreRow + axis);
+        const double away = at[axis] * step - bound(kCenterRow + axis);
         squared += away * away;
       }
       farthest = std::max(farthest, squared);

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMaxLinks = 65535;
 /// Of a joint that follows another: multiplier and offset.
 constexpr float kMostMultiplier = 1000;
-/// Of one action, radians or metres.
+/// Of one action, radians or meters.
 constexpr float kMostStep = 1000;
 
 /// Checks one robot part by part.

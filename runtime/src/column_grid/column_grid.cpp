@@ -28,9 +28,9 @@ std::uint32_t tileBase(const ColumnGridLayout& grid, std::uint32_t cell_index) {
   return grid.tile_base == nullptr ? 0U : grid.tile_base[cell_index / kCellsPerTile];
 }
 
-/// The answer for a centre that is not over the grid or is not a number.
-Clearance clearanceElsewhere(Vec3 centre) {
-  const bool is_nan = std::isnan(centre.x) || std::isnan(centre.y) || std::isnan(centre.z);
+/// The answer for a center that is not over the grid or is not a number.
+Clearance clearanceElsewhere(Vec3 center) {
+  const bool is_nan = std::isnan(center.x) || std::isnan(center.y) || std::isnan(center.z);
   return is_nan ? Clearance::kBlocked : Clearance::kOutside;
 }
 
@@ -86,21 +86,21 @@ float clearOf(float distance, float margin) {
 float lesser(float a, float b) { return a < b ? a : b; }
 
 /// The one definition of a query. contactAvx2 repeats it operation by operation.
-inline Contact contactAt(const ColumnGridLayout& grid, Vec3 centre) {
-  const float cell_x = (centre.x - grid.min_x) * grid.inverse_spacing;
-  const float cell_z = (centre.z - grid.min_z) * grid.inverse_spacing;
+inline Contact contactAt(const ColumnGridLayout& grid, Vec3 center) {
+  const float cell_x = (center.x - grid.min_x) * grid.inverse_spacing;
+  const float cell_z = (center.z - grid.min_z) * grid.inverse_spacing;
   // Every comparison is false for NaN.
   const bool inside = cell_x >= 0 && cell_x < static_cast<float>(grid.columns_x) && cell_z >= 0 &&
-                      cell_z < static_cast<float>(grid.columns_z) && centre.y >= grid.heights.lo &&
-                      centre.y <= grid.heights.hi;
-  if (!inside) return {.clearance = clearanceElsewhere(centre)};
+                      cell_z < static_cast<float>(grid.columns_z) && center.y >= grid.heights.lo &&
+                      center.y <= grid.heights.hi;
+  if (!inside) return {.clearance = clearanceElsewhere(center)};
 
   const std::uint32_t index = cellIndex(static_cast<std::uint32_t>(cell_x),
                                         static_cast<std::uint32_t>(cell_z), grid.tiles_x);
   const std::uint64_t cell = grid.cells[index];
-  if (isOverflow(cell)) return detail::contactInOverflow(grid, overflowStart(cell), centre.y);
+  if (isOverflow(cell)) return detail::contactInOverflow(grid, overflowStart(cell), center.y);
 
-  const float code = codeOf(grid, centre.y, tileBase(grid, index));
+  const float code = codeOf(grid, center.y, tileBase(grid, index));
   const InlineSpans spans = inlineSpans(cell);
   const bool in_second =
       code >= static_cast<float>(spans.lo1) && code <= static_cast<float>(spans.hi1);
@@ -109,7 +109,7 @@ inline Contact contactAt(const ColumnGridLayout& grid, Vec3 centre) {
   if (!(code >= lo && code <= hi)) return {};
   const float margin = detail::contactMargin(grid);
   // The highest code may lie above the grid's heights.
-  const float up = lesser((hi - code) * grid.quantum, grid.heights.hi - centre.y);
+  const float up = lesser((hi - code) * grid.quantum, grid.heights.hi - center.y);
   return {Clearance::kFree, clearOf((code - lo) * grid.quantum, margin), clearOf(up, margin)};
 }
 
@@ -153,7 +153,7 @@ void contactPortable(const ColumnGridLayout& grid, const ContactBatch& batch) no
   }
 }
 
-std::size_t firstNotFreePortable(const ColumnGridLayout& grid, const CentreBatch& batch) noexcept {
+std::size_t firstNotFreePortable(const ColumnGridLayout& grid, const CenterBatch& batch) noexcept {
   for (std::size_t n = 0; n < batch.count; ++n) {
     const Contact contact = contactAt(grid, {batch.x[n], batch.y[n], batch.z[n]});
     if (contact.clearance != Clearance::kFree) return n;
@@ -162,12 +162,12 @@ std::size_t firstNotFreePortable(const ColumnGridLayout& grid, const CentreBatch
 }
 
 std::uint64_t notFreePortable(const ColumnGridLayout& grid,
-                              const EightsOfCentres& centres) noexcept {
+                              const EightsOfCenters& centers) noexcept {
   constexpr unsigned kEight = 8;
   std::uint64_t not_free = 0;
   for (unsigned n = 0; n < kEight * kEight; ++n) {
-    if ((centres.eights >> n / kEight & 1U) == 0) continue;
-    const Contact contact = contactAt(grid, {centres.x[n], centres.y[n], centres.z[n]});
+    if ((centers.eights >> n / kEight & 1U) == 0) continue;
+    const Contact contact = contactAt(grid, {centers.x[n], centers.y[n], centers.z[n]});
     not_free |= std::uint64_t{contact.clearance != Clearance::kFree} << n;
   }
   return not_free;
@@ -183,21 +183,21 @@ bool hasAvx2() noexcept {
 
 }  // namespace detail
 
-Clearance ColumnGrid::clearance(Vec3 centre) const noexcept {
-  return contactAt(layout_, centre).clearance;
+Clearance ColumnGrid::clearance(Vec3 center) const noexcept {
+  return contactAt(layout_, center).clearance;
 }
 
-Contact ColumnGrid::contact(Vec3 centre) const noexcept { return contactAt(layout_, centre); }
+Contact ColumnGrid::contact(Vec3 center) const noexcept { return contactAt(layout_, center); }
 
-void ColumnGrid::contact(const SphereCentres& centres, const ContactArrays& out) const noexcept {
-  const std::size_t count = centres.x.size();
-  assert(centres.y.size() == count && centres.z.size() == count);
+void ColumnGrid::contact(const SphereCenters& centers, const ContactArrays& out) const noexcept {
+  const std::size_t count = centers.x.size();
+  assert(centers.y.size() == count && centers.z.size() == count);
   assert(out.clearance.size() == count);
   assert(out.down.size() == out.up.size() && (out.down.empty() || out.down.size() == count));
   const bool distances = !out.down.empty();
-  const detail::ContactBatch batch{.x = centres.x.data(),
-                                   .y = centres.y.data(),
-                                   .z = centres.z.data(),
+  const detail::ContactBatch batch{.x = centers.x.data(),
+                                   .y = centers.y.data(),
+                                   .z = centers.z.data(),
                                    .count = count,
                                    .clearance = out.clearance.data(),
                                    .down = distances ? out.down.data() : nullptr,
@@ -209,10 +209,10 @@ void ColumnGrid::contact(const SphereCentres& centres, const ContactArrays& out)
   }
 }
 
-std::size_t ColumnGrid::firstNotFree(const SphereCentres& centres) const noexcept {
-  const std::size_t count = centres.x.size();
-  assert(centres.y.size() == count && centres.z.size() == count);
-  const detail::CentreBatch batch{centres.x.data(), centres.y.data(), centres.z.data(), count};
+std::size_t ColumnGrid::firstNotFree(const SphereCenters& centers) const noexcept {
+  const std::size_t count = centers.x.size();
+  assert(centers.y.size() == count && centers.z.size() == count);
+  const detail::CenterBatch batch{centers.x.data(), centers.y.data(), centers.z.data(), count};
   return detail::hasAvx2() ? detail::firstNotFreeAvx2(layout_, batch)
                            : detail::firstNotFreePortable(layout_, batch);
 }

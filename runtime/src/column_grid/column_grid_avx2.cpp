@@ -74,7 +74,7 @@ void contactAvx2(const ColumnGridLayout& grid, const ContactBatch& batch) noexce
                          distances ? batch.up + first : nullptr});
 }
 
-std::size_t firstNotFreeAvx2(const ColumnGridLayout& grid, const CentreBatch& batch) noexcept {
+std::size_t firstNotFreeAvx2(const ColumnGridLayout& grid, const CenterBatch& batch) noexcept {
   std::size_t first = 0;
   if (readsWholePairs(grid)) {
     const Lanes lanes = broadcast(grid);
@@ -85,19 +85,19 @@ std::size_t firstNotFreeAvx2(const ColumnGridLayout& grid, const CentreBatch& ba
       if (not_free != 0) return first + static_cast<std::size_t>(__builtin_ctz(not_free));
     }
   }
-  const CentreBatch rest{batch.x + first, batch.y + first, batch.z + first, batch.count - first};
+  const CenterBatch rest{batch.x + first, batch.y + first, batch.z + first, batch.count - first};
   return rest.count == 0 ? first : first + firstNotFreePortable(grid, rest);
 }
 
-std::uint64_t notFreeAvx2(const ColumnGridLayout& grid, const EightsOfCentres& centres) noexcept {
-  if (!readsWholePairs(grid)) return notFreePortable(grid, centres);
+std::uint64_t notFreeAvx2(const ColumnGridLayout& grid, const EightsOfCenters& centers) noexcept {
+  if (!readsWholePairs(grid)) return notFreePortable(grid, centers);
   const Lanes lanes = broadcast(grid);
   std::uint64_t not_free = 0;
-  for (unsigned left = centres.eights; left != 0; left &= left - 1) {
+  for (unsigned left = centers.eights; left != 0; left &= left - 1) {
     const std::size_t n = static_cast<std::size_t>(__builtin_ctz(left)) * kLanes;
     const unsigned bits =
-        notFreeLanes(grid, lanes, _mm256_loadu_ps(centres.x + n), _mm256_loadu_ps(centres.y + n),
-                     _mm256_loadu_ps(centres.z + n));
+        notFreeLanes(grid, lanes, _mm256_loadu_ps(centers.x + n), _mm256_loadu_ps(centers.y + n),
+                     _mm256_loadu_ps(centers.z + n));
     not_free |= std::uint64_t{bits} << n;
   }
   return not_free;
@@ -114,12 +114,12 @@ void contactAvx2(const ColumnGridLayout& grid, const ContactBatch& batch) noexce
   contactPortable(grid, batch);
 }
 
-std::size_t firstNotFreeAvx2(const ColumnGridLayout& grid, const CentreBatch& batch) noexcept {
+std::size_t firstNotFreeAvx2(const ColumnGridLayout& grid, const CenterBatch& batch) noexcept {
   return firstNotFreePortable(grid, batch);
 }
 
-std::uint64_t notFreeAvx2(const ColumnGridLayout& grid, const EightsOfCentres& centres) noexcept {
-  return notFreePortable(grid, centres);
+std::uint64_t notFreeAvx2(const ColumnGridLayout& grid, const EightsOfCenters& centers) noexcept {
+  return notFreePortable(grid, centers);
 }
 
 }  // namespace galactic::detail

@@ -17,9 +17,9 @@ constexpr std::size_t kVectorAlignment = 32;
 /// Grids have a margin about the mesh, which reaches kFarthest.
 constexpr float kFarthestGrid = 1000;
 
-bool isInGrid(float metres) { return std::fabs(metres) <= kFarthestGrid; }
+bool isInGrid(float meters) { return std::fabs(meters) <= kFarthestGrid; }
 
-/// Where the last column ends, metres.
+/// Where the last column ends, meters.
 float endOf(float min, std::uint32_t columns, float spacing) {
   return min + static_cast<float>(columns) * spacing;
 }

@@ -26,23 +26,23 @@ void contactPortable(const ColumnGridLayout& grid, const ContactBatch& batch) no
 /// of contactPortable: both do the same operations in the same order, and none is contracted.
 void contactAvx2(const ColumnGridLayout& grid, const ContactBatch& batch) noexcept;
 
-/// The centres of one batched query as bare pointers, each to `count` elements.
-struct CentreBatch {
+/// The centers of one batched query as bare pointers, each to `count` elements.
+struct CenterBatch {
   const float* x = nullptr;
   const float* y = nullptr;
   const float* z = nullptr;
   std::size_t count = 0;
 };
 
-/// Index of the first centre that is not free, `count` when all are: on any processor, and eight at
+/// Index of the first center that is not free, `count` when all are: on any processor, and eight at
 /// a time where hasAvx2().
 [[nodiscard]] std::size_t firstNotFreePortable(const ColumnGridLayout& grid,
-                                               const CentreBatch& batch) noexcept;
+                                               const CenterBatch& batch) noexcept;
 [[nodiscard]] std::size_t firstNotFreeAvx2(const ColumnGridLayout& grid,
-                                           const CentreBatch& batch) noexcept;
+                                           const CenterBatch& batch) noexcept;
 
-/// Up to eight times eight centres.
-struct EightsOfCentres {
+/// Up to eight times eight centers.
+struct EightsOfCenters {
   const float* x = nullptr;
   const float* y = nullptr;
   const float* z = nullptr;
@@ -50,16 +50,16 @@ struct EightsOfCentres {
   unsigned eights = 1;
 };
 
-/// Which of the centres that are asked about are not free, as bits.
+/// Which of the centers that are asked about are not free, as bits.
 [[nodiscard]] std::uint64_t notFreePortable(const ColumnGridLayout& grid,
-                                            const EightsOfCentres& centres) noexcept;
+                                            const EightsOfCenters& centers) noexcept;
 [[nodiscard]] std::uint64_t notFreeAvx2(const ColumnGridLayout& grid,
-                                        const EightsOfCentres& centres) noexcept;
+                                        const EightsOfCenters& centers) noexcept;
 
 /// Whether the AVX2 versions can run on this processor.
 [[nodiscard]] bool hasAvx2() noexcept;
 
-/// What is taken off the distances to contact, metres: more than all rounding from a height to its
+/// What is taken off the distances to contact, meters: more than all rounding from a height to its
 /// code and back, so that whoever moves by a distance and asks again finds the place free.
 // A height's code is off by less than 2^-21 of the height above the grid's lowest one: four
 // roundings of a product and a difference. It is computed twice, once to get the distance and once
@@ -77,7 +77,7 @@ struct EightsOfCentres {
 /// Element `n` of the overflow cells' spans, as heights; kEndOfSpans for an end mark.
 [[nodiscard]] Span overflowSpan(const ColumnGridLayout& grid, std::uint32_t n) noexcept;
 
-/// The answer of the overflow cell whose spans begin at element `start` for a centre at height `y`,
+/// The answer of the overflow cell whose spans begin at element `start` for a center at height `y`,
 /// inside the grid's heights.
 [[nodiscard]] Contact contactInOverflow(const ColumnGridLayout& grid, std::uint32_t start,
                                         float y) noexcept;

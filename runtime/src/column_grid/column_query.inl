@@ -1,4 +1,4 @@
-// The query of a column grid for eight centres at a time: included by the files that are compiled
+// The query of a column grid for eight centers at a time: included by the files that are compiled
 // for AVX2 and need it, after column_grid_kernels.h and immintrin.h. No library templates here: see
 // column_grid_avx2.cpp.
 namespace galactic::detail {
@@ -14,7 +14,7 @@ struct Lanes {
   __m256i tiles_x;
 };
 
-/// What eight centres found: masks of all-ones lanes, codes as floats.
+/// What eight centers found: masks of all-ones lanes, codes as floats.
 struct Found {
   __m256 inside, not_a_number, overflow, free, code, lo, hi;
   __m256i upper_half;

@@ -62,7 +62,7 @@ class PreviousActionOperation final : public Operation {
   BufferId to_;
 };
 
-/// Bytes and metres to numbers, pixel after pixel.
+/// Bytes and meters to numbers, pixel after pixel.
 class ImageOperation final : public Operation {
  public:
   ImageOperation(BufferId to, const schema::PolicyImage& image)

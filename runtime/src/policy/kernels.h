@@ -33,7 +33,7 @@ struct Product {
   std::size_t outputs = 0;
 };
 
-/// One image's normalization by groups of neighbouring channels.
+/// One image's normalization by groups of neighboring channels.
 struct GroupNormalization {
   const float* from = nullptr;
   float* to = nullptr;

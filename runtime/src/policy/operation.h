@@ -27,7 +27,7 @@ struct NetworkInputs {
   std::size_t action_count = 0;
 };
 
-/// Some neighbouring envs of a batch, computed together.
+/// Some neighboring envs of a batch, computed together.
 struct Tile {
   const Kernels* kernels = nullptr;
   const BufferPlan* plan = nullptr;

@@ -27,7 +27,7 @@ Result<void> checkOptions(const RenderOptions& options) {
                   " m; wanted a distance above 0");
   }
   if (options.color == ColorFormat::kNone && !options.depth && !options.semantics) {
-    return refuse("found no image to make; wanted colour, depth or semantics");
+    return refuse("found no image to make; wanted color, depth or semantics");
   }
   return {};
 }

@@ -116,11 +116,11 @@ ClusterBounds boundsOf(const LatticeCluster& cluster, double step) {
   // Lattice points are floats.
   bounds.low = narrow(low);
   bounds.high = narrow(high);
-  const Vec3 centre = nearestFloats((low + high) * 0.5);
-  const Vec3d stored = widen(centre);
-  bounds.rows[kCentreRow] = centre.x;
-  bounds.rows[kCentreRow + 1] = centre.y;
-  bounds.rows[kCentreRow + 2] = centre.z;
+  const Vec3 center = nearestFloats((low + high) * 0.5);
+  const Vec3d stored = widen(center);
+  bounds.rows[kCenterRow] = center.x;
+  bounds.rows[kCenterRow + 1] = center.y;
+  bounds.rows[kCenterRow + 2] = center.z;
   bounds.rows[kHalfExtentRow] = roundedUp(std::max(high.x - stored.x, stored.x - low.x));
   bounds.rows[kHalfExtentRow + 1] = roundedUp(std::max(high.y - stored.y, stored.y - low.y));
   bounds.rows[kHalfExtentRow + 2] = roundedUp(std::max(high.z - stored.z, stored.z - low.z));

@@ -15,7 +15,7 @@ struct ClusterBounds {
 
 /// Box, sphere and cone of a cluster, rounded so that they hold every corner and every normal as a
 /// renderer computes them. The cone is for one-sided clusters whose normals lie within 84 degrees
-/// of their mean. `step`: of the lattice, metres.
+/// of their mean. `step`: of the lattice, meters.
 [[nodiscard]] ClusterBounds boundsOf(const LatticeCluster& cluster, double step);
 
 }  // namespace galactic::render

@@ -16,7 +16,7 @@ struct ClusterDraft {
 };
 
 /// The triangles of a surface, whose indices are within range, in drafts of at most kMostInCluster
-/// vertices and triangles: taken along a Morton curve through their centres, and a new draft begun
+/// vertices and triangles: taken along a Morton curve through their centers, and a new draft begun
 /// where the one before is full.
 [[nodiscard]] std::vector<ClusterDraft> splitSurface(const RenderSurface& surface);
 

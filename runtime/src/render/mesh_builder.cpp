@@ -22,7 +22,7 @@ constexpr std::size_t kTextureAlignment = 32;
 constexpr double kCoarsestStep = 1;
 /// Lattice numbers up to here are floats.
 constexpr std::int64_t kMostLattice = std::int64_t{1} << 24U;
-/// Farthest from the origin of its part that a vertex may be, metres.
+/// Farthest from the origin of its part that a vertex may be, meters.
 constexpr float kFarthest = 65536;
 
 bool isFinite(const RenderVertex& vertex) {

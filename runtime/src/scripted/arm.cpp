@@ -21,9 +21,9 @@ bool overlap(const SphereGroup& a, const Pose& root_from_a, const SphereGroup& b
              const Pose& root_from_b, std::span<const float> radii) {
   const Pose a_from_b = inverse(root_from_a) * root_from_b;
   for (const SetSphere& other : b.spheres) {
-    const Vec3 centre = a_from_b * other.centre;
+    const Vec3 center = a_from_b * other.center;
     for (const SetSphere& own : a.spheres) {
-      const Vec3 away = centre - own.centre;
+      const Vec3 away = center - own.center;
       const float reach = radii[own.radius_index] + radii[other.radius_index];
       if (dot(away, away) < reach * reach) return true;
     }

@@ -10,7 +10,7 @@
 
 namespace galactic::scripted {
 
-/// All joint positions of a robot, radians or metres.
+/// All joint positions of a robot, radians or meters.
 using Joints = std::vector<float>;
 
 /// A controlled joint as the planning of motions sees it.

@@ -8,15 +8,15 @@
 namespace galactic::scripted {
 namespace {
 
-/// Between the positions on a line that are looked at, radians or metres: finer than a step, so
+/// Between the positions on a line that are looked at, radians or meters: finer than a step, so
 /// that nothing of the robot's size is jumped over.
 constexpr float kResolution = 0.07F;
-/// Longest edge of a tree, radians or metres.
+/// Longest edge of a tree, radians or meters.
 constexpr float kEdge = 0.4F;
 /// Nodes of both trees together, and random positions, after which the search is given up.
 constexpr std::size_t kMostNodes = 1200;
 constexpr int kMostDraws = 500;
-/// Length of the pieces in which the hand moves straight, metres.
+/// Length of the pieces in which the hand moves straight, meters.
 constexpr float kPiece = 0.02F;
 /// A larger move of a joint within a piece is a jump to another bend of the arm, radians.
 constexpr float kJump = 0.6F;

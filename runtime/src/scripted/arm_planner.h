@@ -29,7 +29,7 @@ class ArmPlanner {
                                             const Joints& to, std::uint64_t seed);
 
   struct Slide {
-    /// How far the point moves, metres; it moves up to this, as far as it can.
+    /// How far the point moves, meters; it moves up to this, as far as it can.
     float length = 0.1F;
     /// The unit vector along which, frame of the robot's root.
     Vec3 way;

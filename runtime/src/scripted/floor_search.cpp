@@ -17,9 +17,9 @@ constexpr float kBackwards = 1.5F;
 /// How much more the way that is left counts than the way behind: more than 1 finds a way sooner,
 /// and one that is longer by this factor at most.
 constexpr float kHurry = 1.5F;
-/// How far from where it stands the robot looks for the lattice, metres.
+/// How far from where it stands the robot looks for the lattice, meters.
 constexpr float kEntryReach = 0.25F;
-/// A place this near is on the lattice already, metres.
+/// A place this near is on the lattice already, meters.
 constexpr float kOnLattice = 1e-3F;
 /// Actions are counted with this much let through, which rounding may add.
 constexpr float kSlack = 1e-3F;

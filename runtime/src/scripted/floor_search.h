@@ -25,7 +25,7 @@ class FloorSearch {
   struct Target {
     /// What the robot has to get near to; y is not looked at.
     Vec3 point;
-    /// Distances of the base from it at which it may stand, metres.
+    /// Distances of the base from it at which it may stand, meters.
     float nearest = 0.35F;
     float farthest = 1.0F;
     /// The side of the base that has to face it, more or less: an angle about +Y from the way in
@@ -109,7 +109,7 @@ class FloorSearch {
   std::uint32_t eighth_;
   std::uint32_t fines_;
   // Of the current search:
-  /// Edge of a cell, metres.
+  /// Edge of a cell, meters.
   float edge_ = 0;
   const Joints* carried_ = nullptr;
   Target target_;

@@ -80,7 +80,7 @@ void leastSquares(const std::vector<Rows>& jacobian, const Rows& error, double d
 }  // namespace
 
 int handFreedoms(Arm& arm, const Joints& positions, Movers movers) {
-  // A direction counts as if it were as long as a hand, metres; what is left of a column beside the
+  // A direction counts as if it were as long as a hand, meters; what is left of a column beside the
   // others counts from here on.
   constexpr double kHand = 0.15;
   constexpr double kLeast = 0.02;

@@ -9,11 +9,11 @@ namespace galactic::scripted {
 /// What the hand has to do: a point fixed to it comes to a place, and a direction fixed to it to a
 /// direction. Turns about that direction stay free.
 struct HandGoal {
-  /// Frame of the grip, metres.
+  /// Frame of the grip, meters.
   Vec3 point;
   /// Frame of the grip, unit vector.
   Vec3 direction{1, 0, 0};
-  /// Where the point has to be, frame of the robot's root, metres.
+  /// Where the point has to be, frame of the robot's root, meters.
   Vec3 place;
   /// Where the direction has to point, frame of the robot's root, unit vector.
   Vec3 toward{1, 0, 0};
@@ -21,15 +21,15 @@ struct HandGoal {
 
 struct InverseKinematicsOptions {
   int most_iterations = 30;
-  /// Farthest that the point may stay from its place, metres.
+  /// Farthest that the point may stay from its place, meters.
   float tolerance = 0.002F;
   /// Farthest angle between direction and goal, radians. Negative: any direction does.
   float direction_tolerance = 0.15F;
-  /// How much a radian of direction counts beside a metre of position.
+  /// How much a radian of direction counts beside a meter of position.
   float direction_weight = 0.15F;
-  /// Damping of the least squares, metres per radian.
+  /// Damping of the least squares, meters per radian.
   float damping = 0.03F;
-  /// Farthest move of a joint in one iteration, radians or metres.
+  /// Farthest move of a joint in one iteration, radians or meters.
   float longest_move = 0.35F;
 };
 

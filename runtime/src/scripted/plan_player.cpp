@@ -7,7 +7,7 @@ namespace galactic::scripted {
 namespace {
 
 constexpr float kTurn = 6.28318531F;
-/// A base this far off the plan's line is astray, metres.
+/// A base this far off the plan's line is astray, meters.
 constexpr float kStray = 5e-3F;
 /// So much of an action is nothing left to do.
 constexpr float kNothing = 1e-3F;

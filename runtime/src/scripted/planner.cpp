@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kReachSamples = 20000;
 /// Seeds of the inverse kinematics for each reach.
 constexpr std::size_t kSeeds = 3;
-/// A sample is no seed when its grip is further away than this, metres.
+/// A sample is no seed when its grip is further away than this, meters.
 constexpr float kSeedReach = 0.15F;
 /// Motions of the arm that are searched for in vain before a plan is given up.
 constexpr int kMostFailedMotions = 12;
@@ -137,7 +137,7 @@ std::vector<Joints> Planner::carriesOf(const EnvState& state) const {
 }
 
 void Planner::chooseCarries() {
-  // Room for what is held, metres, and how much farther out the start pose may reach to be kept: it
+  // Room for what is held, meters, and how much farther out the start pose may reach to be kept: it
   // is what the robot's maker chose.
   constexpr float kHeldRoom = 0.15F;
   constexpr float kStartBonus = 1.15F;
@@ -242,23 +242,23 @@ std::optional<ArmPath> Planner::reachTarget(BasePlace& base, const Joints& carri
   if (failed_motions_ >= kMostFailedMotions) return std::nullopt;
   const simulation::RestingBox& box = probe_.objects().box(state_->target);
   const float radius = world_.robot().endEffector()->grasp_radius;
-  const Vec3 to_target = box.centre - base.position;
+  const Vec3 to_target = box.center - base.position;
   const Vec3 ahead = unit({to_target.x, 0, to_target.z});
   // Somewhat under the top: a thick hand that comes from the side does not get lower.
   constexpr float kHigh = 0.9F;
   constexpr float kAlmostNone = 1e-3F;
-  const Vec3 top = pointBefore(box, box.centre, kUp * -1.0F, kAlmostNone);
-  const Vec3 high = box.centre + (top - box.centre) * kHigh;
+  const Vec3 top = pointBefore(box, box.center, kUp * -1.0F, kAlmostNone);
+  const Vec3 high = box.center + (top - box.center) * kHigh;
   struct Way {
     Vec3 way;
     Vec3 inside;
     bool any_direction = false;
   };
-  const std::array<Way, 5> ways{{{kUp * -1.0F, box.centre},
-                                 {unit(ahead - kUp), box.centre},
-                                 {ahead, box.centre},
+  const std::array<Way, 5> ways{{{kUp * -1.0F, box.center},
+                                 {unit(ahead - kUp), box.center},
+                                 {ahead, box.center},
                                  {ahead, high, true},
-                                 {ahead, box.centre, true}}};
+                                 {ahead, box.center, true}}};
   for (const auto& [way, inside, any_direction] : std::span(ways).first(is_thorough_ ? 5 : 3)) {
     const Vec3 grip = pointBefore(box, inside, way, kGraspShare * radius);
     const Reach goal{.goal = {.point = {}, .direction = {1, 0, 0}, .place = grip, .toward = way},
@@ -377,7 +377,7 @@ FloorSearch::Target Planner::standsFor(const Vec3& point) const {
 
 Plan Planner::pickWith(const BasePlace& start, const Joints& carried) {
   std::optional<ArmPath> reaching;
-  const FloorSearch::Target target = standsFor(probe_.objects().box(state_->target).centre);
+  const FloorSearch::Target target = standsFor(probe_.objects().box(state_->target).center);
   const FloorSearch::Answer answer =
       floor_search_.search(start, carried, target, [&](BasePlace& stance) {
         reaching = reachTarget(stance, carried);

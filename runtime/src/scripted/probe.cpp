@@ -121,10 +121,10 @@ bool Probe::isFreeOfScene(const BasePlace& base) {
   const simulation::SphereBatch spheres = robot_.at(base, root_height_);
   return std::ranges::all_of(spheres.ranges, [&](const simulation::RadiusRange& range) {
     const std::size_t count = simulation::paddedToLanes(range.count);
-    const SphereCentres centres{{spheres.x + range.first, count},
+    const SphereCenters centers{{spheres.x + range.first, count},
                                 {spheres.y + range.first, count},
                                 {spheres.z + range.first, count}};
-    return scene_->grids()[range.radius_index].firstNotFree(centres) == count;
+    return scene_->grids()[range.radius_index].firstNotFree(centers) == count;
   });
 }
 
@@ -138,8 +138,8 @@ bool Probe::isAnyNear(const Vec3& position) const {
     if (!resting_.isResting(n)) continue;
     const simulation::RestingBox& box = resting_.box(n);
     const Vec3 half = box.half_extents;
-    const float x = box.centre.x - position.x;
-    const float z = box.centre.z - position.z;
+    const float x = box.center.x - position.x;
+    const float z = box.center.z - position.z;
     const float reach = robot_reach_ + std::sqrt(dot(half, half));
     if (x * x + z * z < reach * reach) return true;
   }

@@ -43,7 +43,7 @@ class Probe {
 
   /// Joint positions for the calls of isFreeAt and touching that follow.
   void setArm(std::span<const float> positions);
-  /// How far the robot reaches from its root's vertical axis, metres.
+  /// How far the robot reaches from its root's vertical axis, meters.
   [[nodiscard]] float robotReach() const { return robot_reach_; }
   [[nodiscard]] bool isFreeAt(const BasePlace& base);
   [[nodiscard]] bool isFree(const BasePlace& base, std::span<const float> positions) {

@@ -12,7 +12,7 @@ namespace {
 
 /// Chooses the samples; any other number would do.
 constexpr std::uint64_t kSeed = 0x7265616368ULL;
-/// A wrong direction counts as much as this distance times its chord, metres.
+/// A wrong direction counts as much as this distance times its chord, meters.
 constexpr float kDirectionWeight = 0.2F;
 
 /// See ReachTable::bearing.

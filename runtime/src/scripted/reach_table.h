@@ -23,7 +23,7 @@ class ReachTable {
   /// about +Y from the way in which the base drives, radians, rounded to a sixteenth of a turn. 0
   /// where the arm reaches all round alike.
   [[nodiscard]] float bearing() const { return bearing_; }
-  /// The farthest of any grip from the root's vertical axis, metres.
+  /// The farthest of any grip from the root's vertical axis, meters.
   [[nodiscard]] float farthest() const { return farthest_; }
   /// root_from_grip of each sample.
   [[nodiscard]] std::span<const Pose> grips() const { return grips_; }

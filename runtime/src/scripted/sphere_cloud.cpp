@@ -31,7 +31,7 @@ SphereCloud::SphereCloud(std::span<const Sphere> spheres, std::span<const float>
 
 void SphereCloud::assemble(std::span<const Pose> parts) {
   for (std::size_t n = 0; n < entries_.size(); ++n) {
-    in_root_[n] = parts[entries_[n].part] * entries_[n].sphere.centre;
+    in_root_[n] = parts[entries_[n].part] * entries_[n].sphere.center;
   }
 }
 

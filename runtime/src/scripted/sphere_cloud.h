@@ -30,13 +30,13 @@ class SphereCloud {
     SetSphere sphere;
   };
   SphereCloud() = default;
-  /// `radii` of the working set, metres.
+  /// `radii` of the working set, meters.
   SphereCloud(std::span<const Sphere> spheres, std::span<const float> radii);
 
   [[nodiscard]] std::size_t paddedCount() const { return entries_.size(); }
   /// root_from_part of all parts.
   void assemble(std::span<const Pose> parts);
-  /// The farthest that an assembled sphere reaches from the root's vertical axis, metres.
+  /// The farthest that an assembled sphere reaches from the root's vertical axis, meters.
   [[nodiscard]] float reach() const;
   /// The assembled spheres in the world, for a root that lies `root_height` above the base's place;
   /// valid until the next call.

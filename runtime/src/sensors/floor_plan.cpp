@@ -29,7 +29,7 @@ constexpr std::array<std::array<float, 2>, 9> kPlaces{{{0, 0},
                                                        {-kAside, kAside},
                                                        {kAside, -kAside},
                                                        {-kAside, -kAside}}};
-/// Two floors at one place are further apart, metres.
+/// Two floors at one place are further apart, meters.
 constexpr float kStorey = 0.5F;
 
 /// Lanes as the kernels of the motion want them.
@@ -41,7 +41,7 @@ struct alignas(32) Lanes {
 
 StandingRobot::StandingRobot(const Robot& robot, const simulation::MotionModel& motion,
                              const simulation::MotionKernels& kernels)
-    : ranges_(motion.ranges), spheres_(motion.spheres.size()), centres_(3 * kLanes * spheres_) {
+    : ranges_(motion.ranges), spheres_(motion.spheres.size()), centers_(3 * kLanes * spheres_) {
   static_assert(kHeadings == kLanes);
   Lanes zero;
   Lanes yaw;
@@ -68,7 +68,7 @@ StandingRobot::StandingRobot(const Robot& robot, const simulation::MotionModel& 
                           .yaw = yaw.values.data(),
                           .variables = variables.empty() ? nullptr : variables[0].values.data(),
                           .stride = kLanes},
-                 .body = {.centres = centres_.data(), .grips = grips.data(), .bodies = nullptr},
+                 .body = {.centers = centers_.data(), .grips = grips.data(), .bodies = nullptr},
                  .scratch = frames[0].values.data()});
 }
 
@@ -78,17 +78,17 @@ StandingRobot::Scratch StandingRobot::scratch() const {
 
 bool StandingRobot::isFree(const Scene& scene, const Vec3& base, Scratch& scratch) const {
   for (std::size_t heading = 0; heading < kHeadings; ++heading) {
-    const float* from = centres_.data() + 3 * heading * spheres_;
+    const float* from = centers_.data() + 3 * heading * spheres_;
     for (std::size_t n = 0; n < spheres_; ++n) {
       scratch.x[n] = from[n] + base.x;
       scratch.y[n] = from[spheres_ + n] + base.y;
       scratch.z[n] = from[2 * spheres_ + n] + base.z;
     }
     const bool is_free = std::ranges::all_of(ranges_, [&](const simulation::RadiusRange& range) {
-      const SphereCentres centres{std::span(scratch.x).subspan(range.first, range.count),
+      const SphereCenters centers{std::span(scratch.x).subspan(range.first, range.count),
                                   std::span(scratch.y).subspan(range.first, range.count),
                                   std::span(scratch.z).subspan(range.first, range.count)};
-      return scene.grids()[range.radius_index].firstNotFree(centres) == range.count;
+      return scene.grids()[range.radius_index].firstNotFree(centers) == range.count;
     });
     if (is_free) return true;
   }

@@ -11,7 +11,7 @@
 
 namespace galactic::sensors {
 
-/// Edge of a cell of a floor plan, metres.
+/// Edge of a cell of a floor plan, meters.
 inline constexpr float kPlanCell = 0.1F;
 
 /// The robot in its start pose, to be tried in many places.
@@ -23,7 +23,7 @@ class StandingRobot {
   StandingRobot(const Robot& robot, const simulation::MotionModel& motion,
                 const simulation::MotionKernels& kernels);
 
-  /// Room for the centres of one heading.
+  /// Room for the centers of one heading.
   struct Scratch {
     std::vector<float> x, y, z;
   };
@@ -35,8 +35,8 @@ class StandingRobot {
  private:
   std::vector<simulation::RadiusRange> ranges_;
   std::size_t spheres_ = 0;
-  /// Centres around a base at the origin: heading by heading, x, y and z of all spheres.
-  std::vector<float> centres_;
+  /// Centers around a base at the origin: heading by heading, x, y and z of all spheres.
+  std::vector<float> centers_;
 };
 
 /// Index of a cell of a plan.
@@ -58,7 +58,7 @@ class FloorPlan {
   [[nodiscard]] std::int32_t columnsX() const { return columns_x_; }
   [[nodiscard]] std::int32_t columnsZ() const { return columns_z_; }
   [[nodiscard]] std::size_t cellCount() const { return heights_.size(); }
-  /// Corner of cell (0, 0), world frame, metres.
+  /// Corner of cell (0, 0), world frame, meters.
   [[nodiscard]] float minX() const { return min_x_; }
   [[nodiscard]] float minZ() const { return min_z_; }
 
@@ -83,7 +83,7 @@ class FloorPlan {
   std::int32_t columns_z_ = 0;
   float min_x_ = 0;
   float min_z_ = 0;
-  /// Of the floor, metres; NaN where the robot cannot go.
+  /// Of the floor, meters; NaN where the robot cannot go.
   std::vector<float> heights_;
 };
 

@@ -12,7 +12,7 @@
 namespace galactic::sensors {
 namespace {
 
-/// Heights of points that share a field, metres.
+/// Heights of points that share a field, meters.
 constexpr float kLevel = 0.25F;
 
 bool isNear(const Vec3& a, const Vec3& b) {

@@ -23,7 +23,7 @@ struct Errand {
 
 /// Elements of the observation: to the target and to the goal, length and direction.
 inline constexpr std::size_t kGeodesicSize = 6;
-/// A target this near to where it began, or to the goal, metres, is taken to be there.
+/// A target this near to where it began, or to the goal, meters, is taken to be there.
 inline constexpr float kSamePlace = 0.3F;
 
 /// The ways along the floor of all episodes, worked out at the start. Immutable afterwards.

@@ -17,7 +17,7 @@ namespace {
 
 using simulation::RestingBox;
 
-/// What a robot without a laser in its recipe gets: metres and radians.
+/// What a robot without a laser in its recipe gets: meters and radians.
 constexpr float kHeight = 0.25F;
 constexpr float kRange = 10.0F;
 constexpr float kTurn = 2 * std::numbers::pi_v<float>;
@@ -216,7 +216,7 @@ void Laser::scanPlane(const LaserView& view, const ScanPlaneView& plane, const V
   view.objects.forEachAtHeight(origin.y, [&](const RestingBox& box) {
     const Vec3 half = simulation::halfBounds(box);
     const float reach = settings_.range + half.x + half.z;
-    const Vec3 away = box.centre - origin;
+    const Vec3 away = box.center - origin;
     if (std::fabs(away.x) > reach || std::fabs(away.z) > reach) return;
     kernels_.cast_box(box, beams, distances.data());
   });

@@ -20,15 +20,15 @@ namespace galactic::sensors {
 struct LaserSettings {
   /// Of one plane; 0: no laser.
   std::uint32_t beams = 0;
-  /// Of each plane above the floor, metres.
+  /// Of each plane above the floor, meters.
   std::vector<float> heights;
   /// Radians.
   float field_of_view = 0;
-  /// Metres.
+  /// Meters.
   float range = 0;
   float least_range = 0;
   float noise = 0;
-  /// Where beams leave, in the frame of the base, metres: +X is ahead, +Z to the right.
+  /// Where beams leave, in the frame of the base, meters: +X is ahead, +Z to the right.
   float ahead = 0;
   float right = 0;
   /// Yaw of the laser in the frame of the base, radians.
@@ -43,7 +43,7 @@ struct LaserSettings {
 [[nodiscard]] Result<LaserSettings> laserSettings(const LaserOptions& options, const Robot& robot,
                                                   const simulation::MotionModel& motion);
 
-/// A floor on which robots stand: index of its scene, and height, metres.
+/// A floor on which robots stand: index of its scene, and height, meters.
 struct StoodOn {
   std::uint32_t scene = 0;
   float floor = 0;
@@ -109,7 +109,7 @@ class Laser {
   std::vector<std::vector<Floor>> floors_;
 };
 
-/// Floors whose heights differ by no more than this share their planes, metres.
+/// Floors whose heights differ by no more than this share their planes, meters.
 inline constexpr float kFloorBand = 0.1F;
 
 }  // namespace galactic::sensors

@@ -89,8 +89,8 @@ __m256 cellsOf(__m256 from, __m256 way, __m256 heading, __m256 last) {
 }
 
 void store(const Beams& beams, const ScanPlaneView& view, float range, float* distances) {
-  const __m256 metres = _mm256_mul_ps(beams.way, _mm256_set1_ps(view.spacing));
-  _mm256_storeu_ps(distances + beams.number, _mm256_min_ps(metres, _mm256_set1_ps(range)));
+  const __m256 meters = _mm256_mul_ps(beams.way, _mm256_set1_ps(view.spacing));
+  _mm256_storeu_ps(distances + beams.number, _mm256_min_ps(meters, _mm256_set1_ps(range)));
 }
 
 bool anyOpen(__m256 lanes) { return _mm256_movemask_ps(lanes) != 0; }
@@ -164,8 +164,8 @@ __m256 along(const Vec3& axis, const Headings& heading) {
 
 void castBoxAvx2(const simulation::RestingBox& box, const BeamBatch& batch,
                  float* distances) noexcept {
-  const Vec3 offset{batch.origin.x - box.centre.x, batch.origin.y - box.centre.y,
-                    batch.origin.z - box.centre.z};
+  const Vec3 offset{batch.origin.x - box.center.x, batch.origin.y - box.center.y,
+                    batch.origin.z - box.center.z};
   const float x = along(box.axis_x, offset);
   const float y = along(box.axis_y, offset);
   const float z = along(box.axis_z, offset);

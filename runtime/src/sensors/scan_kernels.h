@@ -15,7 +15,7 @@ inline constexpr std::size_t kBeamLanes = simulation::kLanes;
 /// it, in cells. Finer promises end sooner: a byte reaches 127 cells, 3.8 m of a usual grid.
 inline constexpr float kJump = 0.5F;
 /// How far a beam goes on beyond a border that it has come to, in cells: more than the rounding of
-/// a coordinate in the largest grid, and a hundredth of a millimetre.
+/// a coordinate in the largest grid, and a hundredth of a millimeter.
 inline constexpr float kNudge = 1.0F / 1024;
 /// Bytes after the last cell that a gather may read.
 inline constexpr std::size_t kGatherSlack = 3;
@@ -27,7 +27,7 @@ struct ScanPlaneView {
   const std::uint8_t* cells = nullptr;
   std::int32_t columns_x = 0;
   std::int32_t columns_z = 0;
-  /// Corner of the ring, world frame, and edge of a cell, metres.
+  /// Corner of the ring, world frame, and edge of a cell, meters.
   float min_x = 0;
   float min_z = 0;
   float spacing = 0;
@@ -36,7 +36,7 @@ struct ScanPlaneView {
 
 /// The beams of one scan, which leave one point in a horizontal plane.
 struct BeamBatch {
-  /// World frame, metres.
+  /// World frame, meters.
   Vec3 origin;
   /// Of the yaw of the frame of the directions.
   float cosine = 1;
@@ -46,14 +46,14 @@ struct BeamBatch {
   const float* ahead = nullptr;
   const float* right = nullptr;
   std::size_t count = 0;
-  /// Metres.
+  /// Meters.
   float range = 0;
 };
 
 /// The kernels of a scan. Both versions do the same operations in the same order for each beam, and
 /// none is contracted: they agree bit for bit.
 struct ScanKernels {
-  /// Writes for each beam the metres to where it enters a blocked cell of the plane, `range` when
+  /// Writes for each beam the meters to where it enters a blocked cell of the plane, `range` when
   /// it does not get to one: exactly, but for kNudge at each border of a cell that it crosses.
   void (*cast_scene)(const ScanPlaneView&, const BeamBatch&, float* distances) noexcept = nullptr;
   /// Lowers the distance of each beam that meets the box to where it enters it; 0 from inside.

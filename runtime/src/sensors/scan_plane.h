@@ -16,7 +16,7 @@ class ScanPlane {
  public:
   /// Nothing.
   ScanPlane() = default;
-  /// The plane at `height` of the world frame, metres. O(cells).
+  /// The plane at `height` of the world frame, meters. O(cells).
   ScanPlane(const ColumnGrid& grid, float height);
 
   [[nodiscard]] ScanPlaneView view() const noexcept;

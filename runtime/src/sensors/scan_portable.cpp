@@ -55,7 +55,7 @@ void castScenePortable(const ScanPlaneView& plane, const BeamBatch& beams,
   }
 }
 
-/// The part of a beam that lies within all slabs so far, metres.
+/// The part of a beam that lies within all slabs so far, meters.
 struct Within {
   float from = 0;
   float to = 0;
@@ -81,7 +81,7 @@ struct Faces {
 
 void castBoxPortable(const simulation::RestingBox& box, const BeamBatch& beams,
                      float* distances) noexcept {
-  const Vec3 offset = beams.origin - box.centre;
+  const Vec3 offset = beams.origin - box.center;
   const Faces x(box.axis_x, box.half_extents.x, offset);
   const Faces y(box.axis_y, box.half_extents.y, offset);
   const Faces z(box.axis_z, box.half_extents.z, offset);

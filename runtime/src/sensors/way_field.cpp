@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::array<PlanCell, 4> kAround{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-/// How far above and below a floor a point may be, metres, to be reached from it.
+/// How far above and below a floor a point may be, meters, to be reached from it.
 constexpr Span kReach{-0.3F, 2.2F};
 
 /// Distance in the ground plane.

@@ -10,14 +10,14 @@ namespace galactic::sensors {
 
 /// A way along the floor to a point.
 struct Way {
-  /// Metres; below 0: there is none, or none is known.
+  /// Meters; below 0: there is none, or none is known.
   float distance = -1;
   /// Unit direction in which it begins, world frame; (0, 0) without a way or at its end.
   float x = 0;
   float z = 0;
 };
 
-/// Lengths in a field, metres, and what stands for "no way".
+/// Lengths in a field, meters, and what stands for "no way".
 inline constexpr float kWayUnit = 1.0F / 512;
 inline constexpr std::uint16_t kNoWay = 0xFFFF;
 
@@ -30,7 +30,7 @@ inline constexpr std::uint16_t kNoWay = 0xFFFF;
 [[nodiscard]] std::vector<std::uint16_t> wayField(const FloorPlan& plan, const Scene& scene,
                                                   const Vec3& point);
 
-/// How far a hand that stands on the floor is taken to reach, metres.
+/// How far a hand that stands on the floor is taken to reach, meters.
 inline constexpr float kLastLeg = 1.25F;
 
 /// The way from (x, z), from the four cells around it.

@@ -19,9 +19,9 @@ constexpr float kPriceOfHalfATurn = 0.5F;
 constexpr int kRises = 2;
 constexpr float kRise = std::numbers::pi_v<float> / 9;
 constexpr float kPriceOfARise = 0.1F;
-/// Targets that are tried, metres below each other.
+/// Targets that are tried, meters below each other.
 constexpr float kLower = 0.15F;
-constexpr float kPriceOfMetresLower = 0.4F;
+constexpr float kPriceOfMetersLower = 0.4F;
 constexpr float kLowestTarget = 0.1F;
 
 const ColumnGrid& gridFor(const Scene& scene) {
@@ -99,7 +99,7 @@ SightLine inSight(const Scene& scene, const Vec3& base, const RigidTransform& wa
     const Vec3 target = highest - Vec3{0, lowered, 0};
     RigidTransform start = wanted;
     start.origin.y -= lowered;
-    const float price = kPriceOfMetresLower * lowered;
+    const float price = kPriceOfMetersLower * lowered;
     for (int rise = 0; rise <= kRises; ++rise) {
       if (grid.clearance(target) != Clearance::kFree) break;
       const float angle = static_cast<float>(rise) * kRise;

@@ -7,9 +7,9 @@ namespace galactic {
 namespace {
 
 /// Spheres look the same from everywhere: shaded as if the light stood still in the world.
-RigidTransform sphereAt(const Vec3& centre_in_world) {
+RigidTransform sphereAt(const Vec3& center_in_world) {
   RigidTransform place;
-  place.origin = centre_in_world;
+  place.origin = center_in_world;
   return place;
 }
 
@@ -36,7 +36,7 @@ DebugViews::DebugViews(const World& world, const DebugModels& models,
     const LinkOnBody link = simulator.linkOnBody(group.link);
     for (const SetSphere& sphere : group.spheres) {
       spheres_.push_back({models.sphereModel(DebugSpheres::kRobot, sphere.radius_index), link.body,
-                          link.place * sphere.centre});
+                          link.place * sphere.center});
     }
   }
   // A scene, the objects, the goal, the robot and what it holds.
@@ -67,13 +67,13 @@ void DebugViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
   }
   room[count++] = {models_->goalModel(target.object), rigidTransform(episode.goal)};
   for (const PlacedSphere& sphere : spheres_) {
-    room[count++] = {sphere.model, sphereAt(bodies[sphere.body] * sphere.centre)};
+    room[count++] = {sphere.model, sphereAt(bodies[sphere.body] * sphere.center)};
   }
   if (state.held >= 0) {
     const Placement& held = state.placements[static_cast<std::size_t>(state.held)];
     for (const SetSphere& sphere : world_->objectOf(held).spheres) {
       room[count++] = {models_->sphereModel(DebugSpheres::kHeld, sphere.radius_index),
-                       sphereAt(state.world_from_held * sphere.centre)};
+                       sphereAt(state.world_from_held * sphere.center)};
     }
   }
   views_[env].instances = room.first(count);

@@ -16,7 +16,7 @@ namespace {
 enum Facing : std::int32_t { kUp, kDown, kPlusX, kMinusX, kPlusZ, kMinusZ };
 
 /// Light comes from above and a little from +X.
-constexpr std::array<std::uint32_t, 6> kGreys{0xFFBEBEBE, 0xFF6E6E6E, 0xFFA0A0A0,
+constexpr std::array<std::uint32_t, 6> kGrays{0xFFBEBEBE, 0xFF6E6E6E, 0xFFA0A0A0,
                                               0xFF828282, 0xFF929292, 0xFF8A8A8A};
 
 /// A free interval of heights in steps: low < high.
@@ -121,7 +121,7 @@ class FaceGatherer {
     }
   }
 
-  /// Between a column and its neighbour at +X or +Z.
+  /// Between a column and its neighbor at +X or +Z.
   void addWalls(const Column& a, const Column& b) {
     const bool along_x = a.i != b.i;
     // Walls on one line through the grid join along it.
@@ -196,7 +196,7 @@ class SurfaceWriter {
     const auto first = static_cast<std::uint32_t>(surface_.vertices.size());
     for (const Vec3& corner : corners) {
       surface_.vertices.push_back(
-          {.position = corner, .color = kGreys[static_cast<std::size_t>(facing)]});
+          {.position = corner, .color = kGrays[static_cast<std::size_t>(facing)]});
     }
     const std::array<std::uint32_t, 6> order = turned
                                                    ? std::array<std::uint32_t, 6>{0, 2, 1, 0, 3, 2}

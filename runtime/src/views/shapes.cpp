@@ -63,9 +63,9 @@ class Icosphere {
   }
 
  private:
-  /// The twenty triples of points that are neighbours of each other.
+  /// The twenty triples of points that are neighbors of each other.
   void addFaces() {
-    // Neighbours see each other under 63 degrees, others under 116 or more.
+    // Neighbors see each other under 63 degrees, others under 116 or more.
     constexpr float kBetween = 0.2F;
     const auto is_edge = [this](std::uint32_t a, std::uint32_t b) {
       return dot(points_[a], points_[b]) > kBetween;
@@ -99,7 +99,7 @@ struct LocalBox {
   Vec3 high;
 };
 
-/// Adds a box with a colour for each face.
+/// Adds a box with a color for each face.
 void addBox(RenderSurface& surface, const Pose& object_from_box, const LocalBox& box,
             std::uint32_t color) {
   // Corner n is high along the axes whose bits are set.

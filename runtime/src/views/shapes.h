@@ -4,10 +4,10 @@
 
 namespace galactic::debug {
 
-// Closed shapes seen from outside, in colours that show their form: balls as if light
+// Closed shapes seen from outside, in colors that show their form: balls as if light
 // came from above, boxes with a shade for each direction.
 
-/// About the origin, of 320 triangles with corners on the sphere; metres. `color`: RGBA, R lowest.
+/// About the origin, of 320 triangles with corners on the sphere; meters. `color`: RGBA, R lowest.
 [[nodiscard]] RenderSurface sphereSurface(float radius, std::uint32_t color);
 
 [[nodiscard]] RenderSurface boxSurface(const OrientedBox& box, std::uint32_t color);
@@ -15,7 +15,7 @@ namespace galactic::debug {
 /// The twelve edges of the box as beams around them.
 [[nodiscard]] RenderSurface boxFrameSurface(const OrientedBox& box, std::uint32_t color);
 
-/// Half the thickness of the beams, metres.
+/// Half the thickness of the beams, meters.
 inline constexpr float kBeamHalfThickness = 0.004F;
 
 }  // namespace galactic::debug

@@ -53,7 +53,7 @@ TEST(AmbientOcclusion, LeavesAQuarterInACornerAndAHalfAtAnEdge) {
 TEST(AmbientOcclusion, IsNoneOnAnOpenPlaneAndOnAConvexBody) {
   const TestMesh plane = sheet({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, 5);
   EXPECT_THAT(opennessOf({plane.placed()})[0], Each(kOpen));
-  // Eight vertices that three sides share: a mean normal would look into the neighbours.
+  // Eight vertices that three sides share: a mean normal would look into the neighbors.
   EXPECT_THAT(opennessOf({box({0.5F, 0.2F, 0.4F}).placed()})[0], Each(kOpen));
 }
 

@@ -40,7 +40,7 @@ TEST(WarningLines, OfAFewAreAllOfThem) {
 
 TEST(WarningLines, ThatDifferInAWordStaySingle) {
   const std::vector<std::string> warnings{"link 'a': it is red", "link 'a': it is blue",
-                                          "link 'a': it is grey", "link 'a': it's gone",
+                                          "link 'a': it is gray", "link 'a': it's gone",
                                           "link 'a: it is cut off"};
   EXPECT_THAT(warningLines(warnings, Verbosity::kNormal), ElementsAreArray(warnings));
   EXPECT_TRUE(warningLines({}, Verbosity::kNormal).empty());

@@ -31,7 +31,7 @@ class Cache : public testing::Test {
  protected:
   void SetUp() override {
     write("data/room.obj", "a room");
-    write("data/room.mtl", "its colours");
+    write("data/room.mtl", "its colors");
     write("out/room.pack", "a pack");
   }
   void write(const std::string& name, std::string_view content) const {
@@ -92,7 +92,7 @@ TEST_F(Cache, FindsWhatWasStoredWithPackAndReport) {
 TEST_F(Cache, DoesNotCareAboutDatesOfFiles) {
   store();
   fs::last_write_time(at("data/room.obj"), fs::file_time_type::clock::now());
-  write("data/room.mtl", "its colours");
+  write("data/room.mtl", "its colors");
   EXPECT_TRUE(find().has_value());
 }
 
@@ -104,7 +104,7 @@ TEST_F(Cache, DoesNotFindWhatWasMadeOfOtherFilesOrWithAnotherKey) {
   EXPECT_FALSE(find().has_value()) << "of one size, but not the same";
   write("data/room.obj", "a room");
   EXPECT_TRUE(find().has_value()) << "as it was";
-  write("data/room.mtl", "its colours, and more");
+  write("data/room.mtl", "its colors, and more");
   EXPECT_FALSE(find().has_value());
   fs::remove(at("data/room.mtl"));
   EXPECT_FALSE(find().has_value());

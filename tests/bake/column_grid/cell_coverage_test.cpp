@@ -35,12 +35,12 @@ EncodedGrid bakeRoom(const TriangleMesh& mesh, float radius, Coverage coverage) 
   return encodeGrid(chooseFreeSpace(columns).value().columns);
 }
 
-/// Draws sphere centres: half of them anywhere in a box, half where errors would be: on the
+/// Draws sphere centers: half of them anywhere in a box, half where errors would be: on the
 /// border or at the corner of a cell, close to the end of one of its spans.
-class CentreSource {
+class CenterSource {
  public:
   /// Within `bounds` and their surroundings.
-  CentreSource(const EncodedGrid& grid, const Bounds& bounds, std::uint32_t seed)
+  CenterSource(const EncodedGrid& grid, const Bounds& bounds, std::uint32_t seed)
       : frame_(grid.frame), view_(test::viewOf(grid)), bounds_(bounds), random_(seed) {}
 
   Vec3 next() {
@@ -53,8 +53,8 @@ class CentreSource {
     if (count == 0) return place;
     const Span& span = spans[random_() % count];
     const float end = random_() % 2 == 0 ? span.lo : span.hi;
-    return {static_cast<float>(frame_.centreX(i) + offset()), end + number(-2e-4F, 2e-4F),
-            static_cast<float>(frame_.centreZ(k) + offset())};
+    return {static_cast<float>(frame_.centerX(i) + offset()), end + number(-2e-4F, 2e-4F),
+            static_cast<float>(frame_.centerZ(k) + offset())};
   }
 
  private:
@@ -99,13 +99,13 @@ Answers ask(const EncodedGrid& grid, const test::DistanceOracle& oracle, int cou
             std::uint32_t seed, const Bounds& bounds) {
   const ColumnGrid view = test::viewOf(grid);
   const auto radius = static_cast<double>(grid.frame.radius);
-  CentreSource source(grid, bounds, seed);
+  CenterSource source(grid, bounds, seed);
   Answers answers;
   for (; answers.asked < count; ++answers.asked) {
-    const Vec3 centre = source.next();
-    if (view.clearance(centre) != Clearance::kFree) continue;
+    const Vec3 center = source.next();
+    if (view.clearance(center) != Clearance::kFree) continue;
     ++answers.free;
-    const double depth = radius - oracle.distance(test::toPoint(centre));
+    const double depth = radius - oracle.distance(test::toPoint(center));
     if (depth <= 0) continue;
     ++answers.falsely_free;
     answers.deepest = std::max(answers.deepest, depth);
@@ -136,8 +136,8 @@ TEST(CellCoverage, IsNeverFalselyFreeFarFromTheOrigin) {
   expectNeverFalselyFree(test::furnishedRoom(kSeed, {300, -20, -350}), 150000, kSeed);
 }
 
-/// Which cell a centre falls in is decided in floats, whose error grows with the size of the grid:
-/// on a steep ramp a cell's free heights are soon wrong for a centre beside it.
+/// Which cell a center falls in is decided in floats, whose error grows with the size of the grid:
+/// on a steep ramp a cell's free heights are soon wrong for a center beside it.
 TEST(CellCoverage, IsNeverFalselyFreeOnASteepRampInAVeryWideScene) {
   const TriangleMesh ramp =
       test::MeshBuilder()
@@ -212,7 +212,7 @@ TEST(CellCoverage, IsNoFreerThanTheColumnAndAsFreeOverLevelGround) {
           return outer.lo <= span.lo && span.hi <= outer.hi;
         }));
       }
-      if (std::max(std::abs(frame.centreX(i)), std::abs(frame.centreZ(k))) > 0.9) continue;
+      if (std::max(std::abs(frame.centerX(i)), std::abs(frame.centerZ(k))) > 0.9) continue;
       ++level;
       ASSERT_EQ(over_cell.size(), 3U);
       EXPECT_NEAR(static_cast<double>(over_cell[2].lo), 0.05, 2.1e-5);

@@ -32,7 +32,7 @@ TEST(GridFrame, PadsTheSceneByTheRadiusAndOneCellInThePlane) {
   EXPECT_EQ(frame.spacing, 0.03F);
 }
 
-TEST(GridFrame, PadsTheSceneByTheRadiusAndACentimetreInHeight) {
+TEST(GridFrame, PadsTheSceneByTheRadiusAndACentimeterInHeight) {
   const GridFrame frame = makeGridFrame(kRoom, 0.12F, 0.03F).value();
   EXPECT_FLOAT_EQ(frame.heights.lo, -0.13F);
   EXPECT_FLOAT_EQ(frame.heights.hi, 2.63F);
@@ -51,10 +51,10 @@ TEST(GridFrame, KeepsItsBorderColumnsOutOfReachOfTheScene) {
     const auto frame = makeGridFrame(bounds, radius, spacing);
     ASSERT_TRUE(frame) << "seed " << kSeed << ", round " << round;
     const auto r = static_cast<double>(radius);
-    EXPECT_LT(frame->centreX(0), static_cast<double>(bounds.min.x) - r);
-    EXPECT_LT(frame->centreZ(0), static_cast<double>(bounds.min.z) - r);
-    EXPECT_GT(frame->centreX(frame->columns_x - 1), static_cast<double>(bounds.max.x) + r);
-    EXPECT_GT(frame->centreZ(frame->columns_z - 1), static_cast<double>(bounds.max.z) + r);
+    EXPECT_LT(frame->centerX(0), static_cast<double>(bounds.min.x) - r);
+    EXPECT_LT(frame->centerZ(0), static_cast<double>(bounds.min.z) - r);
+    EXPECT_GT(frame->centerX(frame->columns_x - 1), static_cast<double>(bounds.max.x) + r);
+    EXPECT_GT(frame->centerZ(frame->columns_z - 1), static_cast<double>(bounds.max.z) + r);
     EXPECT_LT(static_cast<double>(frame->heights.lo), static_cast<double>(bounds.min.y) - r);
     EXPECT_GT(static_cast<double>(frame->heights.hi), static_cast<double>(bounds.max.y) + r);
   }
@@ -72,7 +72,7 @@ TEST(GridFrame, RefusesARadiusUnderHalfTheSpacingAndSaysWhy) {
   EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
   EXPECT_EQ(error.where, "--radii");
   EXPECT_EQ(error.message,
-            "radius 0.01 m is under half the spacing of 0.03 m: neighbouring columns could lie on "
+            "radius 0.01 m is under half the spacing of 0.03 m: neighboring columns could lie on "
             "both sides of a closed wall and the room would leak; use a spacing of at most 0.02 m");
 }
 
@@ -132,7 +132,7 @@ TEST(GridFrame, HasNoMoreCellsThanTheLayoutAllowsOnceTilesAreFilledUp) {
   EXPECT_LT(accepted, kSpacings * 9 / 10);
 }
 
-TEST(CentresWithin, LosesNoCentreAndAddsAtMostOneAtEitherEnd) {
+TEST(CentersWithin, LosesNoCenterAndAddsAtMostOneAtEitherEnd) {
   std::mt19937_64 random(kSeed);
   std::uniform_real_distribution<double> number(-2, 8);
   constexpr std::uint32_t kCount = 150;
@@ -143,16 +143,16 @@ TEST(CentresWithin, LosesNoCentreAndAddsAtMostOneAtEitherEnd) {
     double lo = number(random);
     double hi = number(random);
     if (round % 2 == 0) hi = lo + 0.001 * number(random);
-    // Ends exactly on a centre.
+    // Ends exactly on a center.
     if (round % 3 == 0) lo = (std::floor(lo / kSpacing) + 0.5) * kSpacing;
     if (round % 5 == 0) hi = (std::floor(hi / kSpacing) + 0.5) * kSpacing;
-    const IndexRange range = centresWithin(lo, hi, kSpacing, kCount);
+    const IndexRange range = centersWithin(lo, hi, kSpacing, kCount);
     std::uint32_t inside = 0;
     for (std::uint32_t i = 0; i < kCount; ++i) {
-      const double centre = (i + 0.5) * kSpacing;
-      if (centre < lo || centre > hi) continue;
+      const double center = (i + 0.5) * kSpacing;
+      if (center < lo || center > hi) continue;
       ++inside;
-      ASSERT_TRUE(i >= range.first && i < range.end) << lo << " to " << hi << ", centre " << centre;
+      ASSERT_TRUE(i >= range.first && i < range.end) << lo << " to " << hi << ", center " << center;
     }
     ASSERT_LE(range.first, range.end);
     ASSERT_LE(range.end, kCount);
@@ -187,8 +187,8 @@ TEST(TriangleBins, ListEachTriangleInEveryStripThatItsGrownFootprintReaches) {
           bool reaches = false;
           for (std::uint32_t k = strip * rows_per_strip; k < end; ++k) {
             reaches = reaches ||
-                      (frame.centreZ(k) >= static_cast<double>(lo) - static_cast<double>(radius) &&
-                       frame.centreZ(k) <= static_cast<double>(hi) + static_cast<double>(radius));
+                      (frame.centerZ(k) >= static_cast<double>(lo) - static_cast<double>(radius) &&
+                       frame.centerZ(k) <= static_cast<double>(hi) + static_cast<double>(radius));
           }
           ASSERT_TRUE(!reaches || found.contains(t)) << "strip " << strip << ", triangle " << t;
           ++all;

@@ -19,7 +19,7 @@ using Blocked = std::vector<HeightInterval>;
 
 /// Ends are floats computed in float arithmetic relative to the triangle.
 constexpr double kEndTolerance = 1e-5;
-/// Columns whose surface is this close to the radius are ties; metres.
+/// Columns whose surface is this close to the radius are ties; meters.
 constexpr double kTie = 2e-6;
 constexpr float kSpacing = 0.03F;
 constexpr float kRadii[] = {0.015F, 0.05F, 0.12F};
@@ -64,7 +64,7 @@ Compared compare(const TriangleMesh& mesh, float radius, const ClosedForm& close
   for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
     for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
       Blocked blocked;
-      const Line line{frame.centreX(i), frame.centreZ(k), static_cast<double>(radius)};
+      const Line line{frame.centerX(i), frame.centerZ(k), static_cast<double>(radius)};
       if (!closed_form(line, blocked)) continue;
       ++compared.all;
       compared.touching += blocked.empty() ? 0 : 1;
@@ -90,7 +90,7 @@ void expectClosedForm(const TriangleMesh& mesh, const ClosedForm& closed_form) {
   }
 }
 
-/// Half height of a ball's vertical chord at distance `aside` from its centre; 0 beyond the radius.
+/// Half height of a ball's vertical chord at distance `aside` from its center; 0 beyond the radius.
 double halfChord(double radius, double aside) {
   return aside < radius ? std::sqrt(radius * radius - aside * aside) : 0;
 }
@@ -184,7 +184,7 @@ TEST(ExactColumns, OfASphereEndAtTheSumOfBothRadii) {
     const Columns columns = exactColumns(mesh, frame).columns;
     for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
       for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
-        const double aside = std::hypot(frame.centreX(i) - 0.01, frame.centreZ(k) - 0.02);
+        const double aside = std::hypot(frame.centerX(i) - 0.01, frame.centerZ(k) - 0.02);
         const auto spans = columns.column(columns.index(i, k));
         if (aside > kSphereRadius + r) {
           EXPECT_EQ(spans.size(), 1U);

@@ -196,7 +196,7 @@ TEST(ExactColumnsAgainstSampledDistance, AgreeInAFurnishedRoom) {
     for (std::uint32_t at = 3; at < frame.columnCount(); at += 97) {
       const std::uint32_t i = at % frame.columns_x;
       const std::uint32_t k = at / frame.columns_x;
-      const SampledColumn line(oracle, frame.centreX(i), frame.centreZ(k));
+      const SampledColumn line(oracle, frame.centerX(i), frame.centerZ(k));
       compareSampled(line, frame, columns.column(at), sampled);
       ASSERT_FALSE(HasFatalFailure()) << "radius " << radius << ", column " << i << ", " << k;
     }
@@ -258,15 +258,15 @@ TEST(ExactColumns, CountTheGapsThatTheyClose) {
   const Vec3 min{0, 0, 0};
   const Vec3 max{1, 0, 1};
   constexpr float kRadius = 0.0625F;
-  // Two sheets two radii and 5 micrometres apart: less than the merge tolerance.
+  // Two sheets two radii and 5 micrometers apart: less than the merge tolerance.
   const TriangleMesh mesh =
       test::MeshBuilder().floor(min, max, 0).floor(min, max, 2 * kRadius + 5e-6F).build();
   const GridFrame frame = makeGridFrame(mesh.bounds, kRadius, kSpacing).value();
   const ExactColumns found = exactColumns(mesh, frame);
   std::uint64_t over_both = 0;
   for (std::size_t at = 0; at < frame.columnCount(); ++at) {
-    const double x = frame.centreX(static_cast<std::uint32_t>(at % frame.columns_x));
-    const double z = frame.centreZ(static_cast<std::uint32_t>(at / frame.columns_x));
+    const double x = frame.centerX(static_cast<std::uint32_t>(at % frame.columns_x));
+    const double z = frame.centerZ(static_cast<std::uint32_t>(at / frame.columns_x));
     // Beyond the sheets' border the gap opens.
     if (!(x > 0 && x < 1 && z > 0 && z < 1)) continue;
     EXPECT_EQ(found.columns.column(at).size(), 2U);

@@ -201,7 +201,7 @@ TEST(FreeSpace, RefusesASeedInsideAnObstacleAndNamesTheFreeHeights) {
   EXPECT_EQ(error.message,
             "(1.5, 0.02, 1) is blocked (free there: -0.160 to -0.150 m, 0.050 to 2.550 m, "
             "2.750 to 2.760 m) for radius 0.05 m; give a point where a sphere of that radius fits, "
-            "in metres with y up");
+            "in meters with y up");
 }
 
 TEST(FreeSpace, RefusesASeedInAColumnWithoutFreeHeights) {
@@ -213,7 +213,7 @@ TEST(FreeSpace, RefusesASeedInAColumnWithoutFreeHeights) {
   columns.first.assign(10, 0);
   EXPECT_EQ(seedError(columns, {1.5F, 1, 1.5F}).message,
             "(1.5, 1, 1.5) is blocked for radius 0.05 m; give a point where a sphere of that "
-            "radius fits, in metres with y up");
+            "radius fits, in meters with y up");
 }
 
 TEST(FreeSpace, RefusesASeedOutsideTheGrid) {
@@ -361,8 +361,8 @@ std::vector<double> volumesInside(const Columns& columns, const Search& search) 
   const Bounds scene = sceneBounds(frame);
   for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
     for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
-      const auto x = static_cast<float>(frame.centreX(i));
-      const auto z = static_cast<float>(frame.centreZ(k));
+      const auto x = static_cast<float>(frame.centerX(i));
+      const auto z = static_cast<float>(frame.centerZ(k));
       if (x < scene.min.x || x > scene.max.x || z < scene.min.z || z > scene.max.z) continue;
       const std::size_t at = columns.index(i, k);
       for (std::uint32_t s = columns.first[at]; s < columns.first[at + 1]; ++s) {
@@ -376,7 +376,7 @@ std::vector<double> volumesInside(const Columns& columns, const Search& search) 
 }
 
 TEST(FreeSpace, IsTheRoomThoughThePaddingAroundItHoldsMore) {
-  // A closed room of one metre, and spheres so big that the padding is wider than the room.
+  // A closed room of one meter, and spheres so big that the padding is wider than the room.
   const TriangleMesh mesh = test::MeshBuilder().box({-0.5F, 0, -0.5F}, {0.5F, 1, 0.5F}).build();
   const GridFrame frame = makeGridFrame(mesh.bounds, 0.3F, 0.1F).value();
   const FreeSpace free = chooseFreeSpace(exactColumns(mesh, frame).columns).value();

@@ -16,7 +16,7 @@ namespace galactic::bake::grid_encoder_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250311;
-/// What storing may take from either end of a span, metres.
+/// What storing may take from either end of a span, meters.
 constexpr double kStorageTolerance = 1e-4;
 
 using ColumnList = std::vector<std::vector<Span>>;
@@ -177,7 +177,7 @@ ColumnList randomColumns(std::mt19937& random, std::size_t count, Span heights) 
   return lists;
 }
 
-TEST(GridEncoder, StoresSpansToTheBlockedSideWithinATenthOfAMillimetre) {
+TEST(GridEncoder, StoresSpansToTheBlockedSideWithinATenthOfAMillimeter) {
   RecordProperty("seed", static_cast<int>(kSeed));
   std::mt19937 random(kSeed);
   const Span ranges[] = {{-0.06F, 2.61F}, {0, 6.2F}, {-3.3F, 2.92F}, {-1, 7.5F},
@@ -223,9 +223,9 @@ TEST(GridEncoder, AnswersFreeOnlyWhereTheColumnIsFree) {
       const auto i = static_cast<std::uint32_t>(random() % 12);
       const auto k = static_cast<std::uint32_t>(random() % 9);
       const float y = std::uniform_real_distribution<float>(heights.lo, heights.hi)(random);
-      const Vec3 centre{static_cast<float>(columns.frame.centreX(i)), y,
-                        static_cast<float>(columns.frame.centreZ(k))};
-      const bool is_free = view.clearance(centre) == Clearance::kFree;
+      const Vec3 center{static_cast<float>(columns.frame.centerX(i)), y,
+                        static_cast<float>(columns.frame.centerZ(k))};
+      const bool is_free = view.clearance(center) == Clearance::kFree;
       free += is_free ? 1 : 0;
       const auto spans = columns.column(columns.index(i, k));
       const bool expected = std::any_of(spans.begin(), spans.end(), [&](const Span& span) {
@@ -310,7 +310,7 @@ TEST(GridEncoder, GivesTilesABaseOnlyWhenTheHeightsNeedIt) {
   EXPECT_TRUE(grid.overflow_spans.empty());
 }
 
-TEST(GridEncoder, KeepsAColumnOfFiftyMetresBesideItsCell) {
+TEST(GridEncoder, KeepsAColumnOfFiftyMetersBesideItsCell) {
   const ColumnList lists{{{0, 50}}, {{0, 0.4F}}, {{1, 3}, {4, 49.5F}}};
   const Columns columns = columnsOf(3, 1, {0, 50}, lists);
   const EncodedGrid grid = encodeGrid(columns);
@@ -324,8 +324,8 @@ TEST(GridEncoder, KeepsAColumnOfFiftyMetresBesideItsCell) {
   expectFaithful(columns, grid, seen);
   EXPECT_EQ(seen.stored, 4U);
   const ColumnGrid view = test::viewOf(grid);
-  const auto x = static_cast<float>(columns.frame.centreX(0));
-  const auto z = static_cast<float>(columns.frame.centreZ(0));
+  const auto x = static_cast<float>(columns.frame.centerX(0));
+  const auto z = static_cast<float>(columns.frame.centerZ(0));
   const Contact contact = view.contact({x, 20, z});
   EXPECT_EQ(contact.clearance, Clearance::kFree);
   // Distances stay clear of the contact by some millionths of the grid's height.

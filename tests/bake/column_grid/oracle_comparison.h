@@ -11,9 +11,9 @@
 
 namespace galactic::test {
 
-/// A surface whose distance is within this of the radius may fall on either side; metres.
+/// A surface whose distance is within this of the radius may fall on either side; meters.
 inline constexpr double kTieTolerance = 2e-6;
-/// How far a span end of the exact engine may be from the oracle's; metres. The engine computes in
+/// How far a span end of the exact engine may be from the oracle's; meters. The engine computes in
 /// floats relative to the triangle, and heights are floats.
 inline constexpr double kEndTolerance = 1e-5;
 
@@ -42,8 +42,8 @@ class OracleComparison {
 
   void compare(std::uint32_t i, std::uint32_t k) {
     const bake::GridFrame& frame = columns_.frame;
-    const double x = frame.centreX(i);
-    const double z = frame.centreZ(k);
+    const double x = frame.centerX(i);
+    const double z = frame.centerZ(k);
     const auto radius = static_cast<double>(frame.radius);
     const auto found = columns_.column(columns_.index(i, k));
     const Free greater = oracle_.freeSpans(x, z, frame, radius + kTieTolerance);
@@ -118,8 +118,8 @@ class OracleComparison {
   void offend(std::uint32_t i, std::uint32_t k, const std::string& what) {
     if (!result_.offence.empty()) return;
     result_.offence = "column (" + std::to_string(i) + ", " + std::to_string(k) + ") at x " +
-                      std::to_string(columns_.frame.centreX(i)) + ", z " +
-                      std::to_string(columns_.frame.centreZ(k)) + ": " + what;
+                      std::to_string(columns_.frame.centerX(i)) + ", z " +
+                      std::to_string(columns_.frame.centerZ(k)) + ": " + what;
   }
 
   const ColumnOracle& oracle_;

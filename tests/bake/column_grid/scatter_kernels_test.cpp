@@ -43,11 +43,11 @@ class TestStrip {
 
   TestStrip() : strip_(frame(), kFirstRow, kEndRow) {
     for (std::uint32_t i = 0; i < kColumns + ColumnStrip::kPadding; ++i) {
-      const double x = frame().centreX(i);
+      const double x = frame().centerX(i);
       x_high_.push_back(static_cast<float>(x));
       x_low_.push_back(static_cast<float>(x - static_cast<double>(x_high_.back())));
     }
-    for (std::uint32_t k = 0; k < frame().columns_z; ++k) z_.push_back(frame().centreZ(k));
+    for (std::uint32_t k = 0; k < frame().columns_z; ++k) z_.push_back(frame().centerZ(k));
   }
 
   void scatter(const Kernel& kernel, const ScatterTriangle& triangle, const ScatterBlock& block,

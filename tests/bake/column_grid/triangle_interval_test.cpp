@@ -14,7 +14,7 @@ namespace {
 using Triangle = std::array<Point, 3>;
 
 constexpr unsigned kSeed = 20240611;
-/// Rounding of double arithmetic on coordinates of one metre, with room for a few hundred
+/// Rounding of double arithmetic on coordinates of one meter, with room for a few hundred
 /// operations; grows with the size of the triangle.
 constexpr double kRounding = 1e-12;
 
@@ -239,7 +239,7 @@ TEST(TriangleInterval, HoldsOnALongSliver) {
   EXPECT_NEAR(distanceAt(q, found->hi), 0.05, 1e-9);
 }
 
-/// Extreme ends over a square of centres by zooming in on the best of a grid.
+/// Extreme ends over a square of centers by zooming in on the best of a grid.
 class SquareSearch {
  public:
   SquareSearch(const Question& q, double half) : q_(q), half_(half) {}
@@ -297,7 +297,7 @@ class SquareSearch {
   double half_;
 };
 
-TEST(TriangleIntervalOverCell, EqualsTheHullOverAFineSquareOfCentres) {
+TEST(TriangleIntervalOverCell, EqualsTheHullOverAFineSquareOfCenters) {
   RecordProperty("seed", static_cast<int>(kSeed + 2));
   constexpr int kCases = 1500;
   constexpr double kHalf = 0.015;

@@ -41,7 +41,7 @@ struct Template {
   Point scale{1, 1, 1};
   Point up{0, 1, 0};
   Point front{0, 0, -1};
-  std::optional<Point> centre_of_mass = std::nullopt;
+  std::optional<Point> center_of_mass = std::nullopt;
 };
 
 /// One instance as the test writes it.
@@ -78,27 +78,27 @@ std::vector<Point> expected(const Template& of, const Item& item) {
       high[axis] = std::max(high[axis], points.back()[axis]);
     }
   }
-  Point centre = scaled(low + high, 0.5);
-  if (of.centre_of_mass) {
-    centre = scaled(*of.centre_of_mass * of.scale * item.scale, item.uniform);
+  Point center = scaled(low + high, 0.5);
+  if (of.center_of_mass) {
+    center = scaled(*of.center_of_mass * of.scale * item.scale, item.uniform);
   }
-  if (item.asset_origin) centre = {};
-  for (Point& p : points) p = turned(item.rotation, p - centre) + item.translation;
+  if (item.asset_origin) center = {};
+  for (Point& p : points) p = turned(item.rotation, p - center) + item.translation;
   return points;
 }
 
 class RandomScene {
  public:
   explicit RandomScene(std::size_t count) : random_(kSeed) {
-    templates_ = {{.name = "plain", .centre_of_mass = Point{0, 0, 0}},
-                  {.name = "centred"},
-                  {.name = "weighted", .scale = {0.5, 2, 1}, .centre_of_mass = Point{1, -2, 0.5}},
+    templates_ = {{.name = "plain", .center_of_mass = Point{0, 0, 0}},
+                  {.name = "centered"},
+                  {.name = "weighted", .scale = {0.5, 2, 1}, .center_of_mass = Point{1, -2, 0.5}},
                   {.name = "lying", .up = {0, 0, 1}, .front = {0, 1, 0}},
                   {.name = "askew",
                    .scale = {1, 1, 3},
                    .up = {0.6, 0.8, 0},
                    .front = {-0.8, 0.6, 0},
-                   .centre_of_mass = Point{0.25, 0.5, 0.75}}};
+                   .center_of_mass = Point{0.25, 0.5, 0.75}}};
     for (std::size_t i = 0; i < count; ++i) items_.push_back(randomItem());
   }
 
@@ -107,7 +107,7 @@ class RandomScene {
       std::string json = fmt::format(
           R"({{"render_asset": "../../../meshes/box.obj", "scale": {}, "up": {}, "front": {})",
           listOf(one.scale), listOf(one.up), listOf(one.front));
-      if (one.centre_of_mass) json += fmt::format(R"(, "COM": {})", listOf(*one.centre_of_mass));
+      if (one.center_of_mass) json += fmt::format(R"(, "COM": {})", listOf(*one.center_of_mass));
       small.write("configs/objects/big/" + one.name + ".object_config.json", json + "}");
     }
     std::string objects;
@@ -175,13 +175,13 @@ TEST(Placement, OfRandomInstancesIsThatOfTheirPoints) {
   std::size_t fixed = 0;
   std::size_t movable = 0;
   std::size_t origins = 0;
-  std::size_t computed_centres = 0;
+  std::size_t computed_centers = 0;
   for (std::size_t i = 0; i < kCount; ++i) {
     SCOPED_TRACE(i);
     const Item& item = random.items()[i];
     const Template& of = random.templates()[item.of];
     origins += item.asset_origin ? 1U : 0U;
-    computed_centres += of.centre_of_mass ? 0U : 1U;
+    computed_centers += of.center_of_mass ? 0U : 1U;
     const std::vector<Point> wanted = expected(of, item);
     if (item.moves) {
       ASSERT_LT(movable, scene->movable.size());
@@ -205,7 +205,7 @@ TEST(Placement, OfRandomInstancesIsThatOfTheirPoints) {
   }
   EXPECT_EQ(fixed, scene->scene.instances.size());
   EXPECT_EQ(movable, scene->movable.size());
-  for (const std::size_t count : {movable, origins, computed_centres}) {
+  for (const std::size_t count : {movable, origins, computed_centers}) {
     EXPECT_GT(count, kCount / 10);
     EXPECT_LT(count, 9 * kCount / 10);
   }

@@ -28,7 +28,7 @@ using testing::IsEmpty;
 using Point = std::array<double, 3>;
 using Points = std::vector<Point>;
 
-/// Regions hold floats; places are a few metres from the origin.
+/// Regions hold floats; places are a few meters from the origin.
 constexpr double kTolerance = 1e-5;
 
 ComposedScene composed(const SmallDataset& small, const std::string& name = "a_home") {
@@ -46,11 +46,11 @@ std::string sceneOf(const std::string& more, const std::string& user = "{}") {
                      user, more);
 }
 
-/// The corners of a box around `centre`, in its own frame.
-Points cornersAround(const Point& centre, const Point& halves) {
+/// The corners of a box around `center`, in its own frame.
+Points cornersAround(const Point& center, const Point& halves) {
   Points corners;
   for (unsigned corner = 0; corner < 8; ++corner) {
-    Point& p = corners.emplace_back(centre);
+    Point& p = corners.emplace_back(center);
     for (unsigned axis = 0; axis < 3; ++axis) {
       p[axis] += (corner >> axis & 1U) != 0 ? halves[axis] : -halves[axis];
     }
@@ -96,7 +96,7 @@ std::vector<std::string> namesOf(const std::vector<SupportRegion>& regions) {
   return names;
 }
 
-TEST(Receptacles, FollowTheirObjectThroughFrameScaleCentreAndPose) {
+TEST(Receptacles, FollowTheirObjectThroughFrameScaleCenterAndPose) {
   const SmallDataset small;
   // Z up, front along +Y: (x, y, z) of the mesh becomes (x, z, -y), then comes the scale.
   small.write("configs/objects/big/shelf.object_config.json",

@@ -103,7 +103,7 @@ TEST_F(ReplicaCad, PlacesObjectsWhereTheirFilesSay) {
     const std::string of = object.at("template_name");
     const auto file = folder_ / "objects" / (of + ".glb");
     if (!std::filesystem::exists(file)) continue;
-    // All of them have their centre of mass at the origin of their mesh.
+    // All of them have their center of mass at the origin of their mesh.
     const auto asset = bake::importMesh(file, bake::datasetMeshOptions());
     ASSERT_TRUE(asset);
     std::vector<Point> wanted;
@@ -149,7 +149,7 @@ TEST_F(ReplicaCad, StandsFurnitureOnTheFloor) {
     }
     return range;
   };
-  // Metres above the floor: the sizes of the meshes, turned and placed by hand.
+  // Meters above the floor: the sizes of the meshes, turned and placed by hand.
   constexpr double kHand = 0.02;
   EXPECT_NEAR(heights("fridge_:0000").first, 0.05, kHand);
   EXPECT_NEAR(heights("fridge_:0000").second, 1.98, kHand);

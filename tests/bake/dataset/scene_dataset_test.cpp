@@ -91,7 +91,7 @@ TEST(SceneDataset, PlacesWhatDoesNotMoveAndListsWhatDoes) {
   EXPECT_EQ(scene.scene.name, "a_home");
 }
 
-TEST(SceneDataset, PlacesTheCentreOfMassOrTheOriginOfTheAsset) {
+TEST(SceneDataset, PlacesTheCenterOfMassOrTheOriginOfTheAsset) {
   const ComposedScene scene = composed(SmallDataset());
   // A quarter turn about Y takes (x, y, z) to (z, y, -x).
   EXPECT_LT(errorOf(scene.scene, "table_:0000", changedCorners([](const auto& p) {
@@ -103,7 +103,7 @@ TEST(SceneDataset, PlacesTheCentreOfMassOrTheOriginOfTheAsset) {
                     })),
             kTolerance)
       << "the dataset's default is asset_local";
-  // The layer moved the cup's centre of mass.
+  // The layer moved the cup's center of mass.
   const bake::Affine cup{1, 0, 0, -1, 0, 1, 0, 0, 0, 0, 1, -1};
   EXPECT_EQ(scene.movable[0].world_from_mesh, cup);
 }
@@ -134,7 +134,7 @@ TEST(SceneDataset, LeavesTheStageWhereItIsAsHabitatDoes) {
                           "it is"));
 }
 
-TEST(SceneDataset, TakesTheCentreOfTheBoxWhereTheLastLayerStatesNoCentreOfMass) {
+TEST(SceneDataset, TakesTheCenterOfTheBoxWhereTheLastLayerStatesNoCenterOfMass) {
   const SmallDataset small;
   // The layer of high_table states a scale only.
   small.writeScene("high", R"({"stage_instance": {"template_name": "NONE"}, "object_instances": [

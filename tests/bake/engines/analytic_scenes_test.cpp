@@ -73,7 +73,7 @@ TEST_P(AnalyticScene, IsFreeInsideAHollowBoxOnAFloor) {
 }
 
 TEST_P(AnalyticScene, SeesTheRoundedEdgeOfABox) {
-  // The ball's centre is 3 cm outside the wall: it rests on the edge, 4 cm above it.
+  // The ball's center is 3 cm outside the wall: it rests on the edge, 4 cm above it.
   const TriangleMesh mesh = MeshBuilder().box({-0.5F, 0, -0.5F}, {0.5F, 1, 0.5F}).build();
   expectSpans(freeAt(mesh, 0.53F, 0, 0.05F), {{kBottom, -0.04F}, {1.04F, kTop}});
 }
@@ -114,7 +114,7 @@ TEST_P(AnalyticScene, KeepsTheRadiusFromAnInclinedPlane) {
   }
 }
 
-TEST_P(AnalyticScene, ClosesASlabOfTwoSheetsFiveMillimetresApart) {
+TEST_P(AnalyticScene, ClosesASlabOfTwoSheetsFiveMillimetersApart) {
   const TriangleMesh mesh = MeshBuilder()
                                 .floor({-1, 0, -1}, {1, 0, 1}, 1.0F)
                                 .floor({-1, 0, -1}, {1, 0, 1}, 0.995F)
@@ -123,7 +123,7 @@ TEST_P(AnalyticScene, ClosesASlabOfTwoSheetsFiveMillimetresApart) {
 }
 
 TEST_P(AnalyticScene, IsBlockedByNeedles) {
-  // A metre long, ten micrometres wide.
+  // A meter long, ten micrometers wide.
   const TriangleMesh mesh =
       MeshBuilder().triangle({-0.5F, 1, 0}, {0.5F, 1, 0}, {0.1F, 1, 1e-5F}).build();
   expectSpans(freeAt(mesh, 0.2F, 0, 0.05F), {{kBottom, 0.95F}, {1.05F, kTop}});

@@ -90,7 +90,7 @@ TEST_P(CastCheckOfARoom, SeesAnAddedSpan) {
   EXPECT_GT(result.errors, 0.5);
 }
 
-TEST_P(CastCheckOfARoom, SeesAnEndMovedByAMillimetre) {
+TEST_P(CastCheckOfARoom, SeesAnEndMovedByAMillimeter) {
   const auto move = [](float Span::*end, float by) {
     return [end, by](std::vector<Span>& spans) {
       if (!spans.empty()) spans.back().*end += by;

@@ -59,7 +59,7 @@ TEST(EmbreeColumns, DoNotDependOnTheNumberOfThreads) {
   }
 }
 
-TEST(EmbreeColumns, FindAGapOfOneMillimetreInsideASlab) {
+TEST(EmbreeColumns, FindAGapOfOneMillimeterInsideASlab) {
   const TriangleMesh mesh = MeshBuilder()
                                 .floor({-1, 0, -1}, {1, 0, 1}, 1.0F)
                                 .floor({-1, 0, -1}, {1, 0, 1}, 0.995F)

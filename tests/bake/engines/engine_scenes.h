@@ -47,7 +47,7 @@ inline bake::Columns bruteForceColumns(const bake::TriangleMesh& mesh,
     for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
       std::vector<bake::BlockedInterval> blocked;
       for (const auto& corners : triangles) {
-        const auto found = bake::touchingHeights(corners, frame.centreX(i), frame.centreZ(k),
+        const auto found = bake::touchingHeights(corners, frame.centerX(i), frame.centerZ(k),
                                                  static_cast<double>(frame.radius));
         if (!found) continue;
         blocked.push_back({static_cast<float>(found->lo), static_cast<float>(found->hi)});
@@ -59,7 +59,7 @@ inline bake::Columns bruteForceColumns(const bake::TriangleMesh& mesh,
   return columns;
 }
 
-/// `count` small rooms' worth of random triangles in a cube of one metre, its corner at `corner`.
+/// `count` small rooms' worth of random triangles in a cube of one meter, its corner at `corner`.
 inline bake::TriangleMesh randomSoup(std::uint32_t seed, int count, Vec3 corner = {}) {
   return MeshBuilder()
       .soup(seed, count, {corner, {corner.x + 1, corner.y + 1, corner.z + 1}}, 0.15F)

@@ -84,17 +84,17 @@ TEST(ArmReach, FindsTheSamplesBetweenTwoHeights) {
 TEST(ArmReach, LeavesOutSamplesInWhichTheRobotTouchesItself) {
   RobotPackFields fields = stickRobot();
   // The forearm's sphere reaches the base's where the arm hangs down.
-  fields.spheres[0].centre.y = 0.45F;
+  fields.spheres[0].center.y = 0.45F;
   const MemoryPack pack(buildPack(fields), "stick");
   const MemoryPack plain(buildPack(stickRobot()), "stick");
   EXPECT_LT(ArmReach(robotOf(pack)).samples().size(), ArmReach(robotOf(plain)).samples().size());
 }
 
 TEST(ArmReach, DoesNotCountLinksThatOverlapAtTheStart) {
-  // The base's sphere reaches the upper arm's in every position, as those of neighbours do.
+  // The base's sphere reaches the upper arm's in every position, as those of neighbors do.
   RobotPackFields robot = stickRobot();
-  robot.spheres[0].centre = {0, 0.7F, 0};
-  robot.spheres[1].centre = {0.1F, 0, 0};
+  robot.spheres[0].center = {0, 0.7F, 0};
+  robot.spheres[1].center = {0.1F, 0, 0};
   const MemoryPack pack(buildPack(robot), "stick");
   const ArmReach reach(robotOf(pack));
   EXPECT_GT(reach.samples().size(), 10000U);

@@ -65,9 +65,9 @@ std::vector<std::byte> bytesOf(const SourceEpisodes& set) {
 
 std::size_t countNotIn(const SourceEpisodes& set, const SupportRegion& region) {
   const auto origins = originsOf(set);
-  const Vec3 centre = region.world_from_region.translation;
+  const Vec3 center = region.world_from_region.translation;
   const auto outside = [&](const Vec3& p) {
-    const Vec3 at = rotate(conjugate(region.world_from_region.rotation), p - centre);
+    const Vec3 at = rotate(conjugate(region.world_from_region.rotation), p - center);
     constexpr float kRounding = 1e-4F;
     return std::abs(at.x) > region.half_extents.x + kRounding ||
            std::abs(at.z) > region.half_extents.z + kRounding;

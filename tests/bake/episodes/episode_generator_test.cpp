@@ -140,7 +140,7 @@ TEST(EpisodeGenerator, SaysWhatIsMissingWhereNothingFits) {
 
 TEST(EpisodeGenerator, SaysWhenTheRobotStandsNowhere) {
   RobotPackFields tall = stickRobot();
-  tall.spheres[0].centre.y = 2.45F;
+  tall.spheres[0].center.y = 2.45F;
   const MadeWorld world(tablesRoom(), tall);
   EXPECT_THAT(refusal(world, {}), HasSubstr("the robot stick stands nowhere"));
 }

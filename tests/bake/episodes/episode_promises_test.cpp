@@ -43,7 +43,7 @@ TEST(PromisesOfManyEpisodes, AreKeptWithEveryOption) {
   ASSERT_EQ(set.episodes.size(), options.episodes);
   const EpisodeOracle oracle(world.scenes.front(), world.objects, world.robot, options);
   std::vector<std::size_t> counts(options.objects.most + 1, 0);
-  // The shelves and tables that hold targets, told apart by their height in centimetres.
+  // The shelves and tables that hold targets, told apart by their height in centimeters.
   std::set<long> heights;
   for (std::size_t n = 0; n < set.episodes.size(); ++n) {
     const Episode& episode = set.episodes[n];

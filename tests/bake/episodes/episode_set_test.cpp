@@ -113,14 +113,14 @@ TEST(EpisodeSets, WarnOncePerKeyThatIsNotUsed) {
     text.insert(at, more);
     at += more.size() + 1;
   }
-  text = replaced(text, "\"agentStartYaw\"", "\"colour\": 7, \"agentStartYaw\"");
+  text = replaced(text, "\"agentStartYaw\"", "\"color\": 7, \"agentStartYaw\"");
   const auto set = importText(text);
   ASSERT_TRUE(set.has_value()) << set.error().message;
   EXPECT_THAT(set->warnings, ElementsAre("episodeSet.freeObjectSpawns[0].mass is not used",
-                                         "episodeSet.episodes[0].colour is not used"));
+                                         "episodeSet.episodes[0].color is not used"));
 }
 
-TEST(EpisodeSets, NormaliseRotations) {
+TEST(EpisodeSets, NormalizeRotations) {
   const auto set = importText(
       replaced(kSmallEpisodeSet, "[0.7071068, -0.7071068, 0, 0]", "[0.7078, -0.7078, 0, 0]"));
   ASSERT_TRUE(set.has_value()) << set.error().message;

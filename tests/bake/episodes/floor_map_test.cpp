@@ -13,7 +13,7 @@ namespace {
 using bake::FloorMap;
 using bake::FloorPlace;
 
-/// A large and a small room: the wall between them leaves a gap of `gap` metres.
+/// A large and a small room: the wall between them leaves a gap of `gap` meters.
 bake::TriangleMesh twoRooms(float gap) {
   MeshBuilder rooms = madeRoom(4, 2);
   rooms.box({2.6F, 0, gap}, {2.7F, 2.5F, 2});
@@ -42,7 +42,7 @@ TEST(FloorMap, AgreesWithBruteForceOnWhereTheRobotStands) {
   const ColumnGrid& grid = world.scene().grids().back();
   for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
     for (std::uint32_t i = 0; i < grid.columnsX(); ++i) {
-      // Off the centre, where the columns of the other radii do not tie.
+      // Off the center, where the columns of the other radii do not tie.
       const float x = grid.layout().min_x + (static_cast<float>(i) + 0.4F) * grid.spacing();
       const float z = grid.layout().min_z + (static_cast<float>(k) + 0.4F) * grid.spacing();
       const auto expected = oracle.largestPartAt(static_cast<double>(x), static_cast<double>(z));
@@ -84,7 +84,7 @@ TEST(FloorMap, TakesStepsThatTheBaseTakesAndNoHigherOnes) {
 TEST(FloorMap, IsEmptyWhereTheRobotStandsNowhere) {
   RobotPackFields tall = stickRobot();
   // A sphere above the ceiling.
-  tall.spheres[0].centre.y = 2.45F;
+  tall.spheres[0].center.y = 2.45F;
   const MadeWorld world(madeRoom(2, 2).build(), tall);
   const FloorMap map(world.scene(), world.robot());
   EXPECT_TRUE(map.places().empty());

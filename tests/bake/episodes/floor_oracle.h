@@ -37,7 +37,7 @@ inline Point turned(const Point& p, double yaw) {
 /// The robot's spheres and grasp point, in double precision.
 struct OracleBody {
   struct Ball {
-    Point centre{};
+    Point center{};
     double radius = 0;
     std::size_t grid = 0;
   };
@@ -51,14 +51,14 @@ struct OracleBody {
       const Point q = turned(p, yaw);
       return Point{q[0] + offset[0], q[1] + offset[1], q[2] + offset[2]};
     };
-    for (Ball& ball : result.balls) ball.centre = move(ball.centre);
+    for (Ball& ball : result.balls) ball.center = move(ball.center);
     result.grasp_point = move(grasp_point);
     return result;
   }
 
   [[nodiscard]] bool isFree(const Scene& scene) const {
     return std::all_of(balls.begin(), balls.end(), [&](const Ball& ball) {
-      return scene.grids()[ball.grid].clearance(floatOf(ball.centre)) == Clearance::kFree;
+      return scene.grids()[ball.grid].clearance(floatOf(ball.center)) == Clearance::kFree;
     });
   }
 
@@ -66,7 +66,7 @@ struct OracleBody {
     // Rounding of the floats in which the sampler decided.
     constexpr double kTolerance = 1e-5;
     return std::any_of(balls.begin(), balls.end(), [&](const Ball& ball) {
-      return distance(ball.centre, box.nearest(ball.centre)) < ball.radius - kTolerance;
+      return distance(ball.center, box.nearest(ball.center)) < ball.radius - kTolerance;
     });
   }
 };
@@ -79,7 +79,7 @@ inline OracleBody oracleBody(const Robot& robot, std::span<const float> position
   OracleBody body;
   for (const SphereGroup& group : robot.groups()) {
     for (const SetSphere& sphere : group.spheres) {
-      body.balls.push_back({transformed(ground_from_link[group.link], pointOf(sphere.centre)),
+      body.balls.push_back({transformed(ground_from_link[group.link], pointOf(sphere.center)),
                             static_cast<double>(robot.radii()[sphere.radius_index]),
                             sphere.radius_index});
     }
@@ -107,7 +107,7 @@ class FloorOracle {
     }
     first_.push_back(places_.size());
     testHeadings(scene, robot);
-    joinNeighbours();
+    joinNeighbors();
     std::vector<std::size_t> sizes(places_.size(), 0);
     for (std::size_t n = 0; n < places_.size(); ++n) {
       if (places_[n].stands) ++sizes[rootOf(n)];
@@ -191,7 +191,7 @@ class FloorOracle {
     for (std::size_t n = 0; n < parent_.size(); ++n) parent_[n] = n;
   }
 
-  void joinNeighbours() {
+  void joinNeighbors() {
     const std::size_t width = grid_.columnsX();
     const auto join = [&](std::size_t a, std::size_t b) {
       for (std::size_t n = first_[a]; n < first_[a + 1]; ++n) {
@@ -225,7 +225,7 @@ class FloorOracle {
     return {first_[column], first_[column + 1]};
   }
 
-  /// The step that a run's base takes, metres.
+  /// The step that a run's base takes, meters.
   static constexpr double kStep = 0.05;
 
   ColumnGrid grid_;

@@ -86,7 +86,7 @@ TEST(HabitatEpisodes, WarnOfWhatAPackCannotHold) {
           "1 of 2 episodes open furniture (ao_states), which stands in the scenes' packs as they "
           "were baked",
           "1 of 2 episodes give no start: the robot stands at the origin",
-          "2 objects, first '003_cracker_box', stand with their origins where their centres "
+          "2 objects, first '003_cracker_box', stand with their origins where their centers "
           "belong; give --object-pack, unless these are the same"));
 }
 
@@ -132,12 +132,12 @@ TEST(HabitatEpisodes, KeepAndRenameWhatIsAskedFor) {
   EXPECT_THAT(two.error().message, HasSubstr("is the name of two scenes"));
 }
 
-TEST(HabitatEpisodes, PutObjectsWhereTheirCentresBelong) {
+TEST(HabitatEpisodes, PutObjectsWhereTheirCentersBelong) {
   EpisodeImportOptions options;
-  options.object_centres = {{"003_cracker_box", {0.1F, 0.2F, 0.3F}}, {"mug", {0, 0.05F, 0}}};
+  options.object_centers = {{"003_cracker_box", {0.1F, 0.2F, 0.3F}}, {"mug", {0, 0.05F, 0}}};
   const auto set = import(kSmallHabitatSet, options);
   ASSERT_TRUE(set.has_value());
-  // No turn: straight back. A quarter about X: the centre is 5 cm along Z of the world.
+  // No turn: straight back. A quarter about X: the center is 5 cm along Z of the world.
   const Vec3 first = set->placements[0].pose.translation;
   EXPECT_NEAR(first.x, 0.4F, kRounding);
   EXPECT_NEAR(first.y, 0.8F, kRounding);
@@ -146,8 +146,8 @@ TEST(HabitatEpisodes, PutObjectsWhereTheirCentresBelong) {
   EXPECT_NEAR(third.x, 4, kRounding);
   EXPECT_NEAR(third.y, 0.5F, kRounding);
   EXPECT_NEAR(third.z, 4.95F, kRounding);
-  options.object_centres.erase("mug");
-  options.centres_needed = true;
+  options.object_centers.erase("mug");
+  options.centers_needed = true;
   const auto missing = import(kSmallHabitatSet, options);
   ASSERT_FALSE(missing.has_value());
   EXPECT_THAT(missing.error().where, HasSubstr("episodes[0].rigid_objs[1][1]"));
@@ -199,9 +199,9 @@ TEST(HabitatEpisodes, PutEveryPointWhereTheMatrixPutsIt) {
     const Matrix m = randomMatrix(random);
     if (m[1][1] > 0) ++tilted;
     const std::string matrix = jsonOf(m);
-    const Vec3 centre{0.25F, -0.5F, 0.125F};
+    const Vec3 center{0.25F, -0.5F, 0.125F};
     EpisodeImportOptions options;
-    options.object_centres = {{"mug", centre}};
+    options.object_centers = {{"mug", center}};
     const auto set = import(
         R"({"episodes": [{"scene_id": "s", "start_position": [0, 0, 0],
             "start_rotation": [0, 0, 0, 1], "rigid_objs": [["mug", )" +
@@ -209,9 +209,9 @@ TEST(HabitatEpisodes, PutEveryPointWhereTheMatrixPutsIt) {
         options);
     ASSERT_TRUE(set.has_value()) << set.error().where << ": " << set.error().message;
     EXPECT_EQ(set->episodes[0].goal, set->placements[0].pose);
-    // A point of the pack's frame is (centre + p); the matrix counts from the centre.
+    // A point of the pack's frame is (center + p); the matrix counts from the center.
     const Vec3 p{0.3F, 0.7F, -0.9F};
-    const Vec3 found = set->placements[0].pose * (centre + p);
+    const Vec3 found = set->placements[0].pose * (center + p);
     const std::array<double, 3> q{0.3, 0.7, -0.9};
     const std::array<double, 3> world{static_cast<double>(found.x), static_cast<double>(found.y),
                                       static_cast<double>(found.z)};
@@ -227,13 +227,13 @@ TEST(HabitatEpisodes, PutEveryPointWhereTheMatrixPutsIt) {
 TEST(HabitatEpisodes, TakeFilesWithoutWhatIsNotNeeded) {
   const auto set = import(
       R"({"episodes": [{"scene_id": "00001/mesh.basis.glb", "start_position": [0, 0, 0],
-          "start_rotation": [0, 0, 0, 1], "colour": 1,
+          "start_rotation": [0, 0, 0, 1], "color": 1,
           "rigid_objs": [["a.b.object_config.json", [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]]],
           "targets": {"a.b_:0000": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}}]})");
   ASSERT_TRUE(set.has_value()) << set.error().where << ": " << set.error().message;
   EXPECT_THAT(set->scenes, ElementsAre("mesh"));
   EXPECT_THAT(set->objects, ElementsAre("a.b"));
-  EXPECT_THAT(set->warnings, Contains("episodes[0].colour is not used"));
+  EXPECT_THAT(set->warnings, Contains("episodes[0].color is not used"));
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 
 using bake::UpAxis;
 
-/// Points of about a metre in float.
+/// Points of about a meter in float.
 constexpr float kRounding = 1e-6F;
 
 TEST(ObjectFrames, UndoWhatTheMeshImporterDoes) {

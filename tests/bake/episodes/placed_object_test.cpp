@@ -16,7 +16,7 @@ using test::Point;
 using test::uniform;
 
 constexpr std::uint32_t kSeed = 11;
-/// Rounding of floats over a metre.
+/// Rounding of floats over a meter.
 constexpr double kRounding = 1e-5;
 
 double between(double low, double high, std::mt19937& random) {
@@ -120,11 +120,11 @@ TEST(PlacedObject, TouchesSpheresThatAreNearerThanTheirRadius) {
     const PlacedBox box(object.model.box, placed.pose);
     BodySphere sphere;
     sphere.radius = 0.05F;
-    const Point centre =
+    const Point center =
         box.at(between(-2, 2, random), between(-2, 2, random), between(-2, 2, random));
-    sphere.centre = test::floatOf(centre);
-    const double distance = test::distance(centre, box.nearest(centre));
-    EXPECT_NEAR(static_cast<double>(distanceToBox(placed, sphere.centre)), distance, kRounding);
+    sphere.center = test::floatOf(center);
+    const double distance = test::distance(center, box.nearest(center));
+    EXPECT_NEAR(static_cast<double>(distanceToBox(placed, sphere.center)), distance, kRounding);
     if (std::abs(distance - 0.05) < kRounding) continue;
     const bool expected = distance < 0.05;
     EXPECT_EQ(touches(placed, {&sphere, 1}), expected);

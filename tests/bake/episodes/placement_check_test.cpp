@@ -39,7 +39,7 @@ TEST(PlacementCheck, AgreesWithTheRunsPlacement) {
     const simulation::Landing landing =
         simulation::placeObject({world.scene(), nothing}, cube, pose, stream, options, scratch);
     const float moved = landing.pose.translation.y - pose.translation.y;
-    // The run leaves a millimetre under the object; nearer to the limit the two may differ.
+    // The run leaves a millimeter under the object; nearer to the limit the two may differ.
     constexpr float kUndecided = 0.002F;
     if (landing.placed && std::abs(std::abs(moved) - options.most_lift) < kUndecided) continue;
     const bool expected = landing.placed && std::abs(moved) < options.most_lift;

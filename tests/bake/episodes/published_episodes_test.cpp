@@ -26,7 +26,7 @@ constexpr const char* kGoodEpisodes = "published_physics/good_episodes.txt";
 constexpr const char* kTenEpisodes = "galactic/data/tidy_house_10ep.episode_set.json";
 constexpr const char* kCollection = "galactic/data/replicacad_composite.collection.json";
 
-/// Poses are rounded to floats: 10 m from the origin to half a micrometre; rotations to 1e-7.
+/// Poses are rounded to floats: 10 m from the origin to half a micrometer; rotations to 1e-7.
 constexpr double kSamePlace = 2e-6;
 /// The published boxes are those of the meshes' vertices.
 constexpr double kSameBox = 1e-6;

@@ -59,7 +59,7 @@ TEST(Settling, KeepsABoxOnATable) {
   for (const SettlingBody& body : {bake::boxBody(model), bake::hullBody(cornersOf(model), model)}) {
     const auto settled = scene.settle(body, put);
     EXPECT_EQ(settled.end, SettlingEnd::kRests);
-    // Less than a millimetre: Bullet lets contacts overlap a little.
+    // Less than a millimeter: Bullet lets contacts overlap a little.
     EXPECT_LT(distanceBetween(settled.pose.translation, put.translation), 0.001);
     EXPECT_NEAR(settled.pose.rotation.y, put.rotation.y, 0.002F);
   }
@@ -89,7 +89,7 @@ TEST(Settling, LetsABoxGoWhoseMiddleIsOverTheEdge) {
     const ObjectModel model = boxModel({static_cast<float>(half), 0.05F, static_cast<float>(half)});
     // How far the middle is inside of the edge at x = 1.
     const double inside = 0.06 * uniform(random) - 0.03;
-    // Bullet takes contacts for one that are this near, metres: a box is held a little longer.
+    // Bullet takes contacts for one that are this near, meters: a box is held a little longer.
     constexpr double kUndecided = 0.004;
     if (std::abs(inside) < kUndecided) continue;
     const Pose put{{static_cast<float>(1 - inside), kTable, 0.5F}, {}};
@@ -126,8 +126,8 @@ TEST(Settling, LetsABoxFallThatHangsInTheAir) {
   EXPECT_EQ(settled.end, SettlingEnd::kMoved);
 }
 
-TEST(Settling, TakesTheCentreOfMassOfTheHull) {
-  // A wedge: a right triangle's centre is at a third of its legs.
+TEST(Settling, TakesTheCenterOfMassOfTheHull) {
+  // A wedge: a right triangle's center is at a third of its legs.
   const std::vector<Vec3> wedge{{0, 0, 0}, {0.3F, 0, 0}, {0, 0.3F, 0},
                                 {0, 0, 1}, {0.3F, 0, 1}, {0, 0.3F, 1}};
   const ObjectModel model = boxModel({0.15F, 0.15F, 0.5F});

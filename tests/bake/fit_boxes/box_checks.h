@@ -15,7 +15,7 @@ namespace galactic::test {
 /// Every point lies in the box by float arithmetic, as a reader computes it, and the box is no
 /// looser than its padding: each face has a point near it, unless that side is at its minimum.
 inline void expectTightAround(std::span<const Vec3> points, const OrientedBox& box) {
-  // Padding, and the float rounding of coordinates up to a few metres.
+  // Padding, and the float rounding of coordinates up to a few meters.
   constexpr float kSlack = 5e-6F;
   const Pose box_from_object = inverse(box.pose);
   Vec3 lo = box.half_extents;

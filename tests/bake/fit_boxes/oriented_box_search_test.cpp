@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint32_t kSeed = 20250412;
 /// How far above the best of the search a box of least volume may be.
 constexpr double kNearOptimum = 1.01;
-/// The volume that padding by a micrometre adds to boxes of a few centimetres.
+/// The volume that padding by a micrometer adds to boxes of a few centimeters.
 constexpr double kPaddingShare = 1 + 5e-4;
 
 TEST(MinimumBox, IsWithinOnePerCentOfAnExhaustiveSearch) {

@@ -15,7 +15,7 @@ namespace galactic::bake::oriented_box_shapes_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250413;
-/// Padding, and the rounding of coordinates of a metre.
+/// Padding, and the rounding of coordinates of a meter.
 constexpr float kExact = 4e-6F;
 
 std::array<float, 3> sortedHalves(const OrientedBox& box) {

@@ -38,14 +38,14 @@ class RollingOracle {
           {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
     }
     findFaces();
-    findCentre();
+    findCenter();
   }
 
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
 
   [[nodiscard]] Rest drop(std::mt19937& random) const {
     const Point down = randomDirection(random);
-    // The face that the ray from the centre leaves the body through.
+    // The face that the ray from the center leaves the body through.
     Rest rest;
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t at = 0; at < faces_.size(); ++at) {
@@ -132,7 +132,7 @@ class RollingOracle {
   }
 
   /// Of the pyramids over the faces with their apex at the first point.
-  void findCentre() {
+  void findCenter() {
     double volume = 0;
     for (const Face& face : faces_) {
       for (std::size_t at = 2; at < face.corners.size(); ++at) {
@@ -142,17 +142,17 @@ class RollingOracle {
         const double part = product(a, outer(b, c)) / 6;
         volume += part;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          centre_[axis] += part * (a[axis] + b[axis] + c[axis]) / 4;
+          center_[axis] += part * (a[axis] + b[axis] + c[axis]) / 4;
         }
       }
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      centre_[axis] = points_[0][axis] + centre_[axis] / volume;
+      center_[axis] = points_[0][axis] + center_[axis] / volume;
     }
   }
 
   [[nodiscard]] double heightAbove(const Face& face) const {
-    return face.offset - product(face.normal, centre_);
+    return face.offset - product(face.normal, center_);
   }
 
   static double distanceToSegment(const Point& p, const Point& a, const Point& b) {
@@ -165,7 +165,7 @@ class RollingOracle {
   /// the one that it is farther beyond.
   [[nodiscard]] std::size_t roll(std::size_t index) const {
     const Face& face = faces_[index];
-    Point foot = centre_;
+    Point foot = center_;
     for (std::size_t axis = 0; axis < 3; ++axis)
       foot[axis] += face.normal[axis] * heightAbove(face);
     double nearest = std::numeric_limits<double>::infinity();
@@ -202,7 +202,7 @@ class RollingOracle {
 
   std::vector<Point> points_;
   std::vector<Face> faces_;
-  Point centre_{};
+  Point center_{};
 };
 
 }  // namespace galactic::test

@@ -49,13 +49,13 @@ void expectValid(const std::vector<StablePose>& poses, std::span<const Vec3> poi
   }
 }
 
-/// The share of the sphere that a centred rectangle of these half sides covers at a distance.
+/// The share of the sphere that a centered rectangle of these half sides covers at a distance.
 double rectangleShare(double a, double b, double distance) {
   return std::atan(a * b / (distance * std::sqrt(distance * distance + a * a + b * b))) /
          std::numbers::pi;
 }
 
-/// The share of the sphere that a centred disc covers at a distance.
+/// The share of the sphere that a centered disc covers at a distance.
 double discShare(double radius, double distance) {
   return (1 - distance / std::hypot(radius, distance)) / 2;
 }
@@ -162,7 +162,7 @@ TEST(StablePoses, OfABowlAreUprightAndUpsideDown) {
   ASSERT_EQ(poses.size(), 2U);
   EXPECT_NEAR(downOf(poses[0]).y, -1, 1e-6F);
   EXPECT_NEAR(downOf(poses[1]).y, 1, 1e-6F);
-  // The centre of a half ball is 3/8 of its radius below the rim; the foot shifts it little.
+  // The center of a half ball is 3/8 of its radius below the rim; the foot shifts it little.
   EXPECT_NEAR(static_cast<double>(poses[1].likelihood), discShare(0.1, 0.0375), 0.01);
   EXPECT_NEAR(sumOf(poses), 1, 1e-6);
 }

@@ -120,8 +120,8 @@ TEST(MeshErrors, AskForTheUnitOfAnAbsurdlyLargeScene) {
   EXPECT_EQ(
       clean.error().message,
       "it is 9000 m large and reaches 9000 m from the origin, but only 800 m are possible; is "
-      "its unit the metre? Give --scale 0.01 for centimetres or --scale 0.001 for "
-      "millimetres");
+      "its unit the meter? Give --scale 0.01 for centimeters or --scale 0.001 for "
+      "millimeters");
 }
 
 TEST(MeshErrors, SuggestMovingASceneThatIsFarFromTheOrigin) {
@@ -159,7 +159,7 @@ TEST(MeshErrors, RefuseAColladaUnitThatIsNoLengthUnlessOverridden) {
     const std::string file = daeFile(unevenBox(), {"Y_UP", meter, ""});
     const Error error = importError("box.dae", file);
     EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
-    EXPECT_THAT(error.message, StartsWith("the metres of its <unit> are not a positive number"));
+    EXPECT_THAT(error.message, StartsWith("the meters of its <unit> are not a positive number"));
     EXPECT_TRUE(
         importContent("box.dae", file, {.up = bake::UpAxis::kY, .scale = 1.0, .transform = {}})
             .has_value());

@@ -37,7 +37,7 @@ struct Case {
   std::string name;
   std::string content;
   Expected expected;
-  double metres;
+  double meters;
   std::string convention;
   MeshImportOptions options;
 };
@@ -60,7 +60,7 @@ void expectBox(const Case& c) {
   ASSERT_TRUE(clean.has_value()) << clean.error().message;
   EXPECT_EQ(clean->counts.degenerate + clean->counts.duplicate, 0U);
   const auto expected =
-      inCanonicalOrder(scaled(expectedTriangles(unevenBox(), c.expected), c.metres));
+      inCanonicalOrder(scaled(expectedTriangles(unevenBox(), c.expected), c.meters));
   EXPECT_LE(largestDifference(worldTriangles(clean->mesh), expected), kFloatTolerance);
 }
 
@@ -171,7 +171,7 @@ TEST(MeshFormats, TurnEveryUpAxisUpWithoutMirroring) {
 }
 
 TEST(MeshFormats, ApplyTheTransformOverrideAfterAxesAndUnit) {
-  // Z up and centimetres first; then 90 degrees about Y (x, y, z) -> (z, y, -x) and a shift.
+  // Z up and centimeters first; then 90 degrees about Y (x, y, z) -> (z, y, -x) and a shift.
   const bake::Affine turn{0, 0, 1, 5, 0, 1, 0, 6, -1, 0, 0, 7};
   const auto asset = importContent("box.ply", plyAsciiFile(unevenBox()),
                                    {.up = {}, .scale = 0.01, .transform = turn});

@@ -64,7 +64,7 @@ TEST(GltfMaterials, LoseImagesInOtherFormatsWithAWarning) {
     EXPECT_EQ(asset->materials[asset->meshes[0].material].base_color_texture, "");
     EXPECT_THAT(asset->warnings,
                 ElementsAre(fmt::format("textures in {} ({}) cannot be read: their surfaces keep "
-                                        "their plain colour; export them as PNG or JPEG",
+                                        "their plain color; export them as PNG or JPEG",
                                         format, extension)));
   }
 }
@@ -87,7 +87,7 @@ ObjImport objMaterial(std::string_view lines) {
   return {asset->materials[asset->meshes[0].material], asset->warnings};
 }
 
-TEST(ObjMaterials, MultiplyATextureOnlyWithAColourThatIsMeant) {
+TEST(ObjMaterials, MultiplyATextureOnlyWithAColorThatIsMeant) {
   const auto factor = [](std::string_view lines) { return objMaterial(lines).material.base_color; };
   EXPECT_THAT(factor("map_Kd a.png\n"), ElementsAre(1.F, 1.F, 1.F, 1.F));
   EXPECT_THAT(factor("Kd 0 0 0\nmap_Kd a.png\n"), ElementsAre(1.F, 1.F, 1.F, 1.F));
@@ -116,7 +116,7 @@ TEST(ObjMaterials, UseTheAlphaOfTheirTextureWhenTheySaySo) {
   EXPECT_THAT(
       other.warnings,
       ElementsAre("the opacity texture 'b.png' of material 'paint' is not used; put opacity "
-                  "into the alpha of its colour texture"));
+                  "into the alpha of its color texture"));
 }
 
 TEST(ObjMaterials, TakeTheImageOfTheirStemForATextureThatIsMissing) {

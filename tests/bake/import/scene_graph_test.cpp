@@ -152,7 +152,7 @@ TEST(SceneGraph, AppliesColladaNodeTransformsBeforeAxesAndUnit) {
   ASSERT_TRUE(asset.has_value()) << asset.error().message;
   const auto clean = placeAndClean(*asset);
   ASSERT_TRUE(clean.has_value());
-  // (x, y, z) -> (100 - y, 200 + x, 300 + z) centimetres, Z up -> (x, z, -y) metres.
+  // (x, y, z) -> (100 - y, 200 + x, 300 + z) centimeters, Z up -> (x, z, -y) meters.
   const auto& b = clean->mesh.bounds;
   EXPECT_NEAR(static_cast<double>(b.min.x), 1 - 0.0225, kNodeTolerance);
   EXPECT_NEAR(static_cast<double>(b.max.x), 1 - 0.0025, kNodeTolerance);
@@ -196,7 +196,7 @@ TEST(SceneGraph, WarnsOfEachMissingTextureByName) {
   ASSERT_TRUE(asset.has_value());
   EXPECT_THAT(asset->warnings,
               ElementsAre("texture 'missing.png' of material 'steel' is missing: its surfaces keep "
-                          "their plain colour"));
+                          "their plain color"));
 }
 
 TEST(SceneGraph, WarnsOfAMissingMaterialFileOnce) {
@@ -204,7 +204,7 @@ TEST(SceneGraph, WarnsOfAMissingMaterialFileOnce) {
       importContent("room.obj", "mtllib a.mtl\nv 0 0 0\nv 3 0 0\nv 0 0 3\nf 1 2 3\n");
   ASSERT_TRUE(asset.has_value());
   EXPECT_THAT(asset->warnings, ElementsAre("material file 'a.mtl' is missing: its materials get "
-                                           "default colours"));
+                                           "default colors"));
 }
 
 TEST(SceneGraph, ListsTheFilesItReadWithSizesAndHashes) {
@@ -247,8 +247,8 @@ TEST(SceneGraph, AsksForTheUnitOfASceneSmallerThanAnyRoom) {
   const auto asset = importContent("cup.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0 0.2\nf 1 2 3\n");
   ASSERT_TRUE(asset.has_value());
   EXPECT_THAT(asset->warnings,
-              ElementsAre("the whole scene is only 0.1 x 0 x 0.2 m large: is its unit the metre? "
-                          "Give metres per unit with --scale"));
+              ElementsAre("the whole scene is only 0.1 x 0 x 0.2 m large: is its unit the meter? "
+                          "Give meters per unit with --scale"));
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// What the box may be larger than its points by, metres.
+/// What the box may be larger than its points by, meters.
 constexpr float kBoxGrowth = 5e-6F;
 
 /// 6 x 10 x 8 cm around the origin, moved up by `lift`.
@@ -81,7 +81,7 @@ TEST(ObjectBaker, KeepsSpheresAboveTheFaceOnWhichTheObjectRests) {
   const auto lowest = [&](const BakedObject& made) {
     float low = 1;
     for (const SetSphere& sphere : made.spheres.spheres) {
-      low = std::min(low, sphere.centre.y - coarse().spheres.radii[sphere.radius_index]);
+      low = std::min(low, sphere.center.y - coarse().spheres.radii[sphere.radius_index]);
     }
     return low;
   };
@@ -109,7 +109,7 @@ TEST(ObjectBaker, AsksAboutTheUnitOfTinyObjectsAndRefusesHugeOnes) {
   ObjectBakeOptions options = coarse();
   options.spheres.radii = {0.0005F};
   EXPECT_THAT(bakeWell(tiny, options).warnings,
-              testing::Contains("is only 1 mm large; is the unit right? --scale sets metres per "
+              testing::Contains("is only 1 mm large; is the unit right? --scale sets meters per "
                                 "unit"));
   bake::SourceAsset huge = brick();
   for (Vec3& p : huge.meshes[0].positions) p = p * 1000;
@@ -117,7 +117,7 @@ TEST(ObjectBaker, AsksAboutTheUnitOfTinyObjectsAndRefusesHugeOnes) {
   ASSERT_FALSE(refused.has_value());
   EXPECT_EQ(refused.error().code, ErrorCode::kUnsupported);
   EXPECT_EQ(refused.error().where, "mesh");
-  EXPECT_THAT(refused.error().message, HasSubstr("is its unit the millimetre?"));
+  EXPECT_THAT(refused.error().message, HasSubstr("is its unit the millimeter?"));
 }
 
 TEST(ObjectBaker, KeepsTheWarningsOfTheImport) {

@@ -1,4 +1,4 @@
-// Coloured surfaces of assets.
+// Colored surfaces of assets.
 #include "galactic/bake/surface.h"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ using bake::surfaceOf;
 using testing::ElementsAre;
 
 constexpr bake::Affine kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-/// What parts without a colour get among parts with one: linear 0.6.
+/// What parts without a color get among parts with one: linear 0.6.
 constexpr std::uint32_t kNeutral = 0xffcbcbcb;
 
 TEST(SurfaceColor, IsSrgbWithRedLowestAndLinearAlpha) {
@@ -39,7 +39,7 @@ bake::SourceAsset triangle() {
   return asset;
 }
 
-TEST(Surface, TakesTheMaterialTimesTheVertexColours) {
+TEST(Surface, TakesTheMaterialTimesTheVertexColors) {
   bake::SourceAsset asset = triangle();
   EXPECT_THAT(surfaceOf(asset, kIdentity).colors, testing::Each(0xff0080ffU));
   asset.meshes[0].colors = {{1, 1, 1, 1}, {0, 1, 1, 1}, {1, 0, 1, 0}};
@@ -58,7 +58,7 @@ TEST(Surface, PlacesInstancesAndKeepsMirroredOnesOutsideOut) {
   EXPECT_THAT(surface.triangles, ElementsAre(bake::Triangle{0, 1, 2}, bake::Triangle{3, 5, 4}));
 }
 
-TEST(Surface, AppendsPartsWithAndWithoutColours) {
+TEST(Surface, AppendsPartsWithAndWithoutColors) {
   Surface plain;
   plain.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   plain.triangles = {{0, 1, 2}};

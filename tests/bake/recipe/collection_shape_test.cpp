@@ -44,8 +44,8 @@ TEST(CollectionShapes, TurnBoxesFromTheMeshFilesFrame) {
 
 TEST(CollectionShapes, TakeListedSpheresAsTheyAre) {
   CollectionObject listed = object(SphereTechnique::kListed);
-  listed.spheres = {{.centre = {0.01, 0.02, 0.03}, .radius = 0.015},
-                    {.centre = {0, 0.04, 0.05}, .radius = 0.05}};
+  listed.spheres = {{.center = {0.01, 0.02, 0.03}, .radius = 0.015},
+                    {.center = {0, 0.04, 0.05}, .radius = 0.05}};
   const auto shape = shapeFromCollection(listed, UpAxis::kZ, kRadii);
   ASSERT_TRUE(shape.has_value()) << shape.error().message;
   const std::vector<SetSphere> wanted{{{0, 0.05F, -0.04F}, 1}, {{0.01F, 0.03F, -0.02F}, 0}};
@@ -58,7 +58,7 @@ TEST(CollectionShapes, TakeListedSpheresAsTheyAre) {
 
 TEST(CollectionShapes, RefuseRadiiOutsideTheWorkingSetAndFlatBoxes) {
   CollectionObject listed = object(SphereTechnique::kListed);
-  listed.spheres = {{.centre = {0, 0, 0}, .radius = 0.04}};
+  listed.spheres = {{.center = {0, 0, 0}, .radius = 0.04}};
   auto shape = shapeFromCollection(listed, UpAxis::kZ, kRadii);
   ASSERT_FALSE(shape.has_value());
   EXPECT_EQ(shape.error().code, ErrorCode::kInvalidInput);
@@ -81,11 +81,11 @@ TEST(PublishedSpheres, FillABoxByHand) {
   const auto spheres = publishedSpheres(cube, kRadii);
   ASSERT_EQ(spheres.size(), 16U);
   EXPECT_NEAR(spheres[0].radius, 0.05, 1e-8);
-  EXPECT_NEAR(spheres[0].centre[0], 0.05, 1e-8);
-  EXPECT_NEAR(spheres[7].centre[2], 0.075, 1e-8);
+  EXPECT_NEAR(spheres[0].center[0], 0.05, 1e-8);
+  EXPECT_NEAR(spheres[7].center[2], 0.075, 1e-8);
   EXPECT_NEAR(spheres[8].radius, 0.015, 1e-8);
-  EXPECT_NEAR(spheres[8].centre[1], 0.015, 1e-8);
-  EXPECT_NEAR(spheres[15].centre[1], 0.11, 1e-8);
+  EXPECT_NEAR(spheres[8].center[1], 0.015, 1e-8);
+  EXPECT_NEAR(spheres[15].center[1], 0.11, 1e-8);
 }
 
 TEST(PublishedSpheres, MissTheTopOfSlenderCylinders) {
@@ -94,7 +94,7 @@ TEST(PublishedSpheres, MissTheTopOfSlenderCylinders) {
   slender.box_max = {0.02, 0.02, 0.3};
   double top = 0;
   for (const HandSphere& sphere : publishedSpheres(slender, kRadii)) {
-    top = std::max(top, sphere.centre[2] + sphere.radius);
+    top = std::max(top, sphere.center[2] + sphere.radius);
   }
   EXPECT_LT(top, 0.15) << "the published rule counts its rings along x";
 }
@@ -106,8 +106,8 @@ TEST(PublishedSpheres, StayInTheBoxOrAtItsMiddle) {
     ASSERT_FALSE(spheres.empty());
     for (const HandSphere& sphere : spheres) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        EXPECT_GE(sphere.centre[axis] - sphere.radius, thing.box_min[axis] - 1e-9);
-        EXPECT_LE(sphere.centre[axis] + sphere.radius, thing.box_max[axis] + 1e-9);
+        EXPECT_GE(sphere.center[axis] - sphere.radius, thing.box_min[axis] - 1e-9);
+        EXPECT_LE(sphere.center[axis] + sphere.radius, thing.box_max[axis] + 1e-9);
       }
     }
   }

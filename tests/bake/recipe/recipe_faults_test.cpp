@@ -65,8 +65,8 @@ std::vector<Fault> faults() {
       {"UnknownKey", with("foward_step = 0.1\n"), "r.toml:6",
        "the key base.foward_step is unknown; did you mean 'forward_step'?"},
       {"UnknownKeyFarFromAll",
-       with("[camera]\nlink = \"head\"\nvertical_fov_degrees = 60\ncolour = 3\n"), "r.toml:9",
-       "the key camera.colour is unknown; known are 'link', 'position', 'rpy_degrees', "
+       with("[camera]\nlink = \"head\"\nvertical_fov_degrees = 60\ncolor = 3\n"), "r.toml:9",
+       "the key camera.color is unknown; known are 'link', 'position', 'rpy_degrees', "
        "'vertical_fov_degrees'"},
       {"TableOfOtherType", "name = \"r\"\nend_effector = 3\n", "r.toml:2",
        "end_effector has to be a table, [end_effector]"},
@@ -116,7 +116,7 @@ std::vector<Fault> faults() {
       {"JointWithoutStep", with("[[joints]]\nname = \"a\"\n"), "r.toml:6",
        "the key joints[0].step is missing"},
       {"JointStepZero", with("[[joints]]\nname = \"a\"\nstep = 0\n"), "r.toml:8",
-       "joints[0].step = 0: wanted 0.0001 to 3.2 (radians or metres)"},
+       "joints[0].step = 0: wanted 0.0001 to 3.2 (radians or meters)"},
       {"JointRangeEmpty", with("[[joints]]\nname = \"a\"\nstep = 0.1\nmin = 1\nmax = 1\n"),
        "r.toml:6", "joints[0].min = 1 is not below joints[0].max = 1"},
       {"StartNotANumber", with("[start_pose]\na = \"up\"\n"), "r.toml:7",

@@ -108,7 +108,7 @@ spheres = [[1, 2, 3, 0.05]]
               Pointwise(DoubleNear(kRounding), std::array{0.0, 0.0, -1.0}));
   EXPECT_THAT((std::array{mount[3], mount[7], mount[11]}), ElementsAre(1, 3, -2));
   EXPECT_EQ(recipe->spheres.links.at(0).spheres.at(0),
-            (bake::HandSphere{.centre = {1, 3, -2}, .radius = 0.05}));
+            (bake::HandSphere{.center = {1, 3, -2}, .radius = 0.05}));
 }
 
 TEST(Recipes, TurnACameraOnAnOpticalFrameToLookAlongItsZ) {

@@ -1,4 +1,4 @@
-// Light that the bake puts into vertex colours.
+// Light that the bake puts into vertex colors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ SourceMesh box(const Vec3& half) {
   return mesh;
 }
 
-/// A level rectangle that faces up, its corner at `corner`, `x` by `z` metres.
+/// A level rectangle that faces up, its corner at `corner`, `x` by `z` meters.
 SourceMesh level(const Vec3& corner, float x, float z) {
   SourceMesh mesh;
   mesh.name = "level";
@@ -75,8 +75,8 @@ std::array<double, 3> normalOf(const DrawnTriangle& t) {
   return {c[0] / length, c[1] / length, c[2] / length};
 }
 
-/// The grey of a face of a box, the same at all its corners; the axis is 0 to 2.
-unsigned greyFacing(const std::vector<DrawnTriangle>& triangles, std::size_t axis, double sign) {
+/// The gray of a face of a box, the same at all its corners; the axis is 0 to 2.
+unsigned grayFacing(const std::vector<DrawnTriangle>& triangles, std::size_t axis, double sign) {
   std::set<std::uint32_t> colors;
   for (const DrawnTriangle& triangle : triangles) {
     if (normalOf(triangle)[axis] * sign < 0.99) continue;
@@ -85,7 +85,7 @@ unsigned greyFacing(const std::vector<DrawnTriangle>& triangles, std::size_t axi
   EXPECT_EQ(colors.size(), 1U) << "axis " << axis << ", " << sign;
   if (colors.empty()) return 0;
   const std::uint32_t color = *colors.begin();
-  EXPECT_EQ(color, 0xFF000000U | (color & 0xFFU) * 0x010101U) << "no grey";
+  EXPECT_EQ(color, 0xFF000000U | (color & 0xFFU) * 0x010101U) << "no gray";
   return color & 0xFFU;
 }
 
@@ -94,18 +94,18 @@ TEST(Light, EachFaceOfABoxHasItsOwnAndTheTopTheMost) {
   builder.place(box({0.1F, 0.2F, 0.15F}), builder.material(false));
   const auto triangles = drawnOf(bakeLit(builder.source()));
   ASSERT_EQ(triangles.size(), 12U);
-  std::set<unsigned> greys;
+  std::set<unsigned> grays;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const double sign : {-1.0, 1.0}) greys.insert(greyFacing(triangles, axis, sign));
+    for (const double sign : {-1.0, 1.0}) grays.insert(grayFacing(triangles, axis, sign));
   }
-  EXPECT_EQ(greys.size(), 6U);
-  EXPECT_EQ(*greys.rbegin(), greyFacing(triangles, 1, 1));
-  EXPECT_EQ(*greys.begin(), greyFacing(triangles, 1, -1));
-  // An eye tells neighbours of one colour apart when they differ by some ten of 255.
-  for (auto next = std::next(greys.begin()); next != greys.end(); ++next) {
+  EXPECT_EQ(grays.size(), 6U);
+  EXPECT_EQ(*grays.rbegin(), grayFacing(triangles, 1, 1));
+  EXPECT_EQ(*grays.begin(), grayFacing(triangles, 1, -1));
+  // An eye tells neighbors of one color apart when they differ by some ten of 255.
+  for (auto next = std::next(grays.begin()); next != grays.end(); ++next) {
     EXPECT_GE(*next - *std::prev(next), 5U);
   }
-  EXPECT_GE(*greys.begin(), 120U) << "dark, but not black";
+  EXPECT_GE(*grays.begin(), 120U) << "dark, but not black";
 }
 
 TEST(Light, FollowsTheWayInWhichAPartStands) {
@@ -117,10 +117,10 @@ TEST(Light, FollowsTheWayInWhichAPartStands) {
   turned.source().parts[0].light_from_part = {0, -1, 0, 5, 1, 0, 0, 5, 0, 0, 1, 5};
   const auto plain = drawnOf(bakeLit(upright.source()));
   const auto moved = drawnOf(bakeLit(turned.source()));
-  EXPECT_EQ(greyFacing(moved, 0, 1), greyFacing(plain, 1, 1));
-  EXPECT_EQ(greyFacing(moved, 0, -1), greyFacing(plain, 1, -1));
-  EXPECT_EQ(greyFacing(moved, 1, 1), greyFacing(plain, 0, -1));
-  EXPECT_EQ(greyFacing(moved, 2, 1), greyFacing(plain, 2, 1));
+  EXPECT_EQ(grayFacing(moved, 0, 1), grayFacing(plain, 1, 1));
+  EXPECT_EQ(grayFacing(moved, 0, -1), grayFacing(plain, 1, -1));
+  EXPECT_EQ(grayFacing(moved, 1, 1), grayFacing(plain, 0, -1));
+  EXPECT_EQ(grayFacing(moved, 2, 1), grayFacing(plain, 2, 1));
 }
 
 TEST(Light, LinksAreLitAsTheyStandInTheStartPose) {
@@ -139,8 +139,8 @@ TEST(Light, LinksAreLitAsTheyStandInTheStartPose) {
   const auto meshes = bakeLit(builder.source());
   const auto base = drawnOf(meshes, 0);
   const auto arm = drawnOf(meshes, 1);
-  EXPECT_EQ(greyFacing(arm, 0, 1), greyFacing(base, 1, 1));
-  EXPECT_EQ(greyFacing(arm, 1, 1), greyFacing(base, 0, -1));
+  EXPECT_EQ(grayFacing(arm, 0, 1), grayFacing(base, 1, 1));
+  EXPECT_EQ(grayFacing(arm, 1, 1), grayFacing(base, 0, -1));
 }
 
 TEST(Light, ChangesNoTriangleAndSplitsNoRoundSurface) {
@@ -199,7 +199,7 @@ TEST(Light, IsKeptAwayByWhatIsNear) {
 TEST(Light, OfASheetSeenFromBothSidesIsThatOfTheBackWhereTheFrontIsCovered) {
   // A floor that faces down, onto a slab: what one sees is its back.
   SourceMesh floor = insideOut(level({-1, 0, -1}, 2, 2));
-  const auto greyOfFloor = [&](bool two_sided) {
+  const auto grayOfFloor = [&](bool two_sided) {
     SourceBuilder builder;
     const std::uint32_t cloth = builder.material(two_sided);
     builder.place(floor, cloth);
@@ -209,11 +209,11 @@ TEST(Light, OfASheetSeenFromBothSidesIsThatOfTheBackWhereTheFrontIsCovered) {
     }
     return 0U;
   };
-  EXPECT_GT(greyOfFloor(true), 230U);
-  EXPECT_LT(greyOfFloor(false), 130U);
+  EXPECT_GT(grayOfFloor(true), 230U);
+  EXPECT_LT(grayOfFloor(false), 130U);
 }
 
-TEST(Light, MultipliesColoursAndKeepsAlpha) {
+TEST(Light, MultipliesColorsAndKeepsAlpha) {
   SourceBuilder builder;
   SourceMesh mesh = box({0.1F, 0.2F, 0.15F});
   mesh.colors.assign(mesh.positions.size(), {1, 0.2F, 0, 0.5F});
@@ -230,7 +230,7 @@ TEST(Light, MultipliesColoursAndKeepsAlpha) {
   }
 }
 
-/// Boxes with a plain, a textured and a vertex-coloured material, and whether each is lit.
+/// Boxes with a plain, a textured and a vertex-colored material, and whether each is lit.
 std::array<bool, 3> whichAreLit(Lighting lighting, bool may_hold_light) {
   SourceBuilder builder;
   SourceMesh mesh = box({0.1F, 0.1F, 0.1F});

@@ -23,7 +23,7 @@ std::vector<float> RayDepth::image(const RenderCamera& camera, const RenderOptio
           side * (2 * (static_cast<float>(column) + 0.5F) / static_cast<float>(options.width) - 1);
       const float above =
           up * (1 - 2 * (static_cast<float>(row) + 0.5F) / static_cast<float>(options.height));
-      // One metre along the axis, so that distances along the ray are depths.
+      // One meter along the axis, so that distances along the ray are depths.
       const Vec3 direction = frame.x_axis + frame.y_axis * above + frame.z_axis * right;
       depths.push_back(first(frame.origin, direction, options.near));
     }

@@ -19,7 +19,7 @@
 namespace galactic::test::real_images_test {
 namespace {
 
-/// Metres: what is farther off than this is another surface.
+/// Meters: what is farther off than this is another surface.
 constexpr float kSameDepth = 0.01F;
 constexpr std::size_t kCameras = 24;
 
@@ -31,7 +31,7 @@ struct RealScene {
   std::vector<RenderInstance> instances{{.model = 0, .world_from_model = {}}};
 };
 
-/// `error`: how far simplification may move a surface, metres.
+/// `error`: how far simplification may move a surface, meters.
 void read(const std::string& relative, double error, RealScene& scene) {
   const std::filesystem::path file = assetsFolder() / relative;
   const auto asset = bake::importMesh(file);
@@ -77,14 +77,14 @@ std::vector<RenderView> viewsIn(const RealScene& scene, const RayDepth& rays) {
 struct DepthCounts {
   std::size_t pixels = 0;
   std::size_t off = 0;
-  /// Off, and no neighbour's ray meets what was drawn.
+  /// Off, and no neighbor's ray meets what was drawn.
   std::size_t off_inside = 0;
   std::size_t empty = 0;
 };
 
 bool isSame(float drawn, float wanted) { return std::abs(drawn - wanted) <= kSameDepth; }
 
-/// Whether a pixel lies where something ends in front of something else: a neighbour's ray meets
+/// Whether a pixel lies where something ends in front of something else: a neighbor's ray meets
 /// what was drawn here, as far as a slanting surface allows.
 bool isAtSilhouette(const std::vector<float>& rays, float drawn, std::size_t at,
                     const RenderOptions& options) {
@@ -176,7 +176,7 @@ void expectAgreement(const std::string& relative) {
     far += isSame(gl.depth[n], soft.depth[n]) ? 0U : 1U;
   }
   const auto pixels = static_cast<double>(gl.depth.size());
-  std::printf("%s: mean colour difference %.4f of 255, depth off on %.5f %%\n", relative.c_str(),
+  std::printf("%s: mean color difference %.4f of 255, depth off on %.5f %%\n", relative.c_str(),
               color / (3 * pixels), 100 * static_cast<double>(far) / pixels);
   EXPECT_LT(color / (3 * pixels), kMeanColor);
   EXPECT_LT(static_cast<double>(far) / pixels, kDeepShare);

@@ -146,9 +146,9 @@ TEST(RenderBaker, BoundsHoldTheirClustersAndConesFaceAwayWhereTrianglesDo) {
       double along = 0;
       double squared = 0;
       for (std::size_t n = 0; n < 3; ++n) {
-        const double to_centre = bound(kCentreRow + n) - at[n];
-        along += to_centre * bound(kConeAxisRow + n);
-        squared += to_centre * to_centre;
+        const double to_center = bound(kCenterRow + n) - at[n];
+        along += to_center * bound(kConeAxisRow + n);
+        squared += to_center * to_center;
       }
       ++asked;
       const bool faces_away =
@@ -171,7 +171,7 @@ TEST(RenderBaker, BoundsHoldTheirClustersAndConesFaceAwayWhereTrianglesDo) {
       for (const DrawnCorner& corner : triangles[t].corners) {
         double squared = 0;
         for (std::size_t n = 0; n < 3; ++n) {
-          const double off = std::abs(corner.position[n] - bound(kCentreRow + n));
+          const double off = std::abs(corner.position[n] - bound(kCenterRow + n));
           EXPECT_LE(off, bound(kHalfExtentRow + n));
           squared += off * off;
         }
@@ -223,7 +223,7 @@ TEST(RenderBaker, ForgetsTextureCoordinatesWhereThereIsNoTexture) {
   }
 }
 
-TEST(RenderBaker, BringsVertexColoursAsScreensWantThem) {
+TEST(RenderBaker, BringsVertexColorsAsScreensWantThem) {
   SourceBuilder builder;
   const std::uint32_t material = builder.material(true);
   bake::SourceMesh red = meshOf(MeshBuilder().triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).build());
@@ -239,7 +239,7 @@ TEST(RenderBaker, BringsVertexColoursAsScreensWantThem) {
   EXPECT_EQ(colors.count(0xFFFFFFFFU), 3U);
 }
 
-TEST(RenderBaker, HasNoColoursWhereNoMeshHasAny) {
+TEST(RenderBaker, HasNoColorsWhereNoMeshHasAny) {
   SourceBuilder builder;
   const std::uint32_t material = builder.material(true);
   EXPECT_TRUE(bakedMeshes(builder.place(soup(8, 10), material)).colors.empty());

@@ -114,7 +114,7 @@ inline std::size_t openEdges(const std::vector<DrawnTriangle>& triangles) {
   return open;
 }
 
-/// Volume that the triangles enclose, seen from outside; cubic metres.
+/// Volume that the triangles enclose, seen from outside; cubic meters.
 inline double enclosedVolume(const std::vector<DrawnTriangle>& triangles) {
   double volume = 0;
   for (const DrawnTriangle& triangle : triangles) {

@@ -74,7 +74,7 @@ bake::SourceRobot robot() {
   made.links[2].visuals.push_back({.geometry = bake::CylinderShape{.radius = 0.05, .length = 0.4},
                                    .link_from_shape = kHere,
                                    .color = {}});
-  made.meshes.push_back(cubeAsset("grey"));
+  made.meshes.push_back(cubeAsset("gray"));
   made.meshes.push_back(cubeAsset("painted"));
   made.meshes[0].materials[0].name = "DefaultMaterial";
   made.meshes[1].materials[0].name = "paint";
@@ -101,7 +101,7 @@ TEST(RenderSource, OfARobotHasAPartForEachLinkThatIsSeen) {
     return source->baked.materials[placed.material].color;
   };
   EXPECT_EQ(colorOf(source->parts[0].meshes[0]), 0xFF0000FFU);
-  // The URDF's blue is for the mesh that has no colour of its own.
+  // The URDF's blue is for the mesh that has no color of its own.
   EXPECT_EQ(colorOf(source->parts[1].meshes[0]), 0xFFFF0000U);
   EXPECT_EQ(colorOf(source->parts[1].meshes[1]), 0xFFFFFFFFU);
 }

@@ -32,7 +32,7 @@ Outcome simplified(const bake::SourceMesh& mesh, double error, bool textured = f
   return {drawnTriangles(meshes->view(), 0), static_cast<double>(meshes->models[0].largest_error)};
 }
 
-/// Largest distance from points spread over `from` to `to`, metres; `reach` at most.
+/// Largest distance from points spread over `from` to `to`, meters; `reach` at most.
 double deviation(const bake::TriangleMesh& from, const bake::TriangleMesh& to, double reach) {
   const DistanceOracle oracle(to, reach);
   std::mt19937 random(17);
@@ -110,7 +110,7 @@ bake::PartMesh pieceOf(const bake::TriangleMesh& mesh) {
   return piece;
 }
 
-/// Of all corners and middles of triangles, from the nearest triangle of `surface`, metres.
+/// Of all corners and middles of triangles, from the nearest triangle of `surface`, meters.
 double largestDistance(const bake::PartMesh& piece, const std::vector<bake::Triangle>& surface) {
   const auto cornersOf = [&](const bake::Triangle& t) {
     return bake::sphere_fit::Facet{piece.vertices[t[0]].position, piece.vertices[t[1]].position,

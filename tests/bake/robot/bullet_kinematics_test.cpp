@@ -130,7 +130,7 @@ class BulletChain {
   btAlignedObjectArray<btVector3> vectors_;
 };
 
-/// Within the limits, half a turn or half a metre to each side where there is none.
+/// Within the limits, half a turn or half a meter to each side where there is none.
 std::vector<float> randomPositions(const bake::FlatKinematics& flat, std::mt19937& random) {
   constexpr float kFar = 100;
   std::vector<float> positions;

@@ -137,7 +137,7 @@ TEST(LinkGeometry, IsPlacedTurnedAndMirroredWithItsOutsideOut) {
   expectBounds(boundsOf(surfaceOf(shapes[1])), {0.95, 1.95, 2.85}, {1.05, 2.05, 3.15});
 }
 
-TEST(LinkGeometry, OfSeveralShapesIsTheirSumWithEachItsColour) {
+TEST(LinkGeometry, OfSeveralShapesIsTheirSumWithEachItsColor) {
   const std::array<float, 4> red{1, 0, 0, 1};
   const Surface both = surfaceOfShapes({}, {{BoxShape{{0.1, 0.1, 0.1}}, kIdentity, red},
                                             {BoxShape{{0.2, 0.2, 0.2}}, kIdentity, {}}});
@@ -151,7 +151,7 @@ TEST(LinkGeometry, OfSeveralShapesIsTheirSumWithEachItsColour) {
   }
 }
 
-TEST(LinkGeometry, OfAMeshIsItsInstancesPlacedAndColoured) {
+TEST(LinkGeometry, OfAMeshIsItsInstancesPlacedAndColored) {
   bake::SourceRobot robot;
   bake::SourceAsset& asset = robot.meshes.emplace_back();
   bake::SourceMesh& mesh = asset.meshes.emplace_back();
@@ -159,7 +159,7 @@ TEST(LinkGeometry, OfAMeshIsItsInstancesPlacedAndColoured) {
   mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
   asset.materials.emplace_back().base_color = {0, 0, 1, 1};
   asset.instances = {{"a", 0, kIdentity}, {"b", 0, {1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0}}};
-  // Millimetres, mirrored.
+  // Millimeters, mirrored.
   const bake::Affine scaled{-1e-3, 0, 0, 0, 0, 1e-3, 0, 0, 0, 0, 1e-3, 0};
   const Surface surface = surfaceOfShapes(robot, {{bake::MeshShape{0}, scaled, {}}});
   EXPECT_EQ(surface.positions.size(), 8U);

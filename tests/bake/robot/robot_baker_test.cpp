@@ -359,7 +359,7 @@ TEST(RobotBaker, SkipsAndMergesLinksAsTheRecipeSays) {
   // Arm and hand together reach from 0 to 28 cm.
   float farthest = 0;
   for (const SetSphere& sphere : robot.groups[1].spheres.spheres) {
-    farthest = std::max(farthest, sphere.centre.x + 0.04F);
+    farthest = std::max(farthest, sphere.center.x + 0.04F);
   }
   EXPECT_GT(farthest, 0.25F);
 }
@@ -398,7 +398,7 @@ TEST(RobotBaker, KeepsSpheresAboveTheClipHeight) {
   const BakedRobot robot = bakeWell(smallArm(), &recipe, coarse());
   for (const SetSphere& sphere : robot.groups[0].spheres.spheres) {
     constexpr float kRounding = 1e-5F;
-    EXPECT_GE(sphere.centre.y - 0.04F, 0.02F - kRounding);
+    EXPECT_GE(sphere.center.y - 0.04F, 0.02F - kRounding);
   }
 }
 
@@ -445,7 +445,7 @@ TEST(RobotBaker, ExplainsWhatItCannotBake) {
          o.radii.clear();
          o.hand_spheres = spheresByHand();
        },
-       "radii", "0 radii were given; give 1 to 8, in metres, ascending"},
+       "radii", "0 radii were given; give 1 to 8, in meters, ascending"},
       {[=](SourceRobot&, RobotBakeOptions& o) { o.eps = nan; }, "eps",
        "a tolerance of nan m was given"},
       {[=](SourceRobot&, RobotBakeOptions& o) {

@@ -48,7 +48,7 @@ class BallRobot {
   BakedRobot robot_;
 };
 
-std::vector<SetSphere> ballAt(Vec3 centre) { return {{centre, 1}}; }
+std::vector<SetSphere> ballAt(Vec3 center) { return {{center, 1}}; }
 
 PairKind kindOf(const std::vector<BakedPair>& pairs, int first, int second) {
   for (const BakedPair& pair : pairs) {
@@ -148,8 +148,8 @@ class PlaneChain {
   [[nodiscard]] bool touch(std::size_t a, std::size_t b) const {
     for (const SetSphere& p : robot_.groups[a].spheres.spheres) {
       for (const SetSphere& q : robot_.groups[b].spheres.spheres) {
-        const Pose2 one = at(poses_[a], p.centre);
-        const Pose2 other = at(poses_[b], q.centre);
+        const Pose2 one = at(poses_[a], p.center);
+        const Pose2 other = at(poses_[b], q.center);
         const double reach = static_cast<double>(robot_.radii[p.radius_index]) +
                              static_cast<double>(robot_.radii[q.radius_index]);
         if (std::hypot(one.x - other.x, one.y - other.y, one.z - other.z) < reach) return true;

@@ -127,7 +127,7 @@ void expectNoCastErrors(const BakedScene& scene, std::uint32_t columns) {
     EXPECT_EQ(grid.cast_check->columns, columns);
     EXPECT_GT(grid.cast_check->compared, 0.1 * columns);
     EXPECT_EQ(grid.cast_check->errors, 0);
-    // The casting method's own error: some centimetres per column around thin spans.
+    // The casting method's own error: some centimeters per column around thin spans.
     EXPECT_LT(grid.cast_check->method, 0.1 * grid.cast_check->compared);
   }
 }
@@ -166,7 +166,7 @@ TEST(SceneBaker, ChecksNothingWhenAskedTo) {
   EXPECT_FALSE(scene->grids[0].cast_check);
 }
 
-/// Two closed rooms, the second as big as the first but for `shorter` metres.
+/// Two closed rooms, the second as big as the first but for `shorter` meters.
 SourceAsset twoClosedRooms(float shorter) {
   test::MeshBuilder builder;
   builder.box({0, 0, 0}, {3, 2.5F, 3}).box({3.5F, 0, 0}, {6.5F - shorter, 2.5F, 3});

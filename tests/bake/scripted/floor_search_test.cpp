@@ -17,7 +17,7 @@ using scripted::FloorSearch;
 using scripted::Joints;
 using scripted::Probe;
 
-/// A room of 4 m by 3 m, cut at x = 2 m by a wall with a door of `door` metres at z = 1.5 m.
+/// A room of 4 m by 3 m, cut at x = 2 m by a wall with a door of `door` meters at z = 1.5 m.
 MeshBuilder twoRooms(float door) {
   MeshBuilder room = madeRoom(4, 3);
   constexpr float kMiddle = 1.5F;
@@ -59,7 +59,7 @@ class Floor {
   }
 
   /// Checks that each leg is a turn or a drive, and that no pose on the way penetrates anything.
-  /// Returns metres driven.
+  /// Returns meters driven.
   float follow(const BaseRoute& route) {
     // Finer than actions, so some poses here were not looked at; the radius of the base's sphere
     // and the cells of the grid let through this much.
@@ -111,7 +111,7 @@ TEST(FloorSearch, GoesThroughADoor) {
 }
 
 TEST(FloorSearch, GoesThroughADoorOnlyAFinerLatticeFits) {
-  // Centres of the base's sphere of 12 cm fit through 1 to 4 cm here: one in ten coarse doors.
+  // Centers of the base's sphere of 12 cm fit through 1 to 4 cm here: one in ten coarse doors.
   int found = 0;
   for (int n = 0; n < 5; ++n) {
     Floor floor(twoRooms(0.32F + 0.02F * static_cast<float>(n)), kWest, kEast);

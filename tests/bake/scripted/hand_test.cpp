@@ -159,11 +159,11 @@ TEST_F(PorterArm, GoesTheShorterWayRoundInContinuousJoints) {
 }
 
 TEST(ArmOfLinksThatOverlap, TouchesItselfOnlyWhereItDidNotAtTheStart) {
-  // The base's sphere reaches the upper arm's in every position, as those of neighbours do.
+  // The base's sphere reaches the upper arm's in every position, as those of neighbors do.
   RobotPackFields fields = stickRobot();
-  fields.spheres[0].centre = {0, 0.7F, 0};
-  fields.spheres[1].centre = {0.1F, 0, 0};
-  fields.spheres[2].centre = {0.25F, 0, 0};
+  fields.spheres[0].center = {0, 0.7F, 0};
+  fields.spheres[1].center = {0.1F, 0, 0};
+  fields.spheres[2].center = {0.25F, 0, 0};
   const MemoryPack pack(buildPack(fields), "stick");
   const Robot robot = MemoryPack::opened(Robot::from(pack.pack()));
   Arm arm(robot);

@@ -14,7 +14,7 @@ struct TelescopeOptions {
   bool with_wrist = false;
 };
 
-/// Metres.
+/// Meters.
 namespace telescope {
 
 /// From the base's middle to the telescope, in the way that the base drives.

@@ -62,7 +62,7 @@ Vec3 gripAt(float lift, float length, float turn) {
   return turned({telescope::kAhead, telescope::kLowest + lift, length}, turn);
 }
 
-/// Every position of lift, telescope and base, a few millimetres apart.
+/// Every position of lift, telescope and base, a few millimeters apart.
 class BruteForce {
  public:
   explicit BruteForce(float most_turn) {
@@ -78,7 +78,7 @@ class BruteForce {
     }
   }
 
-  /// From the nearest of all positions, metres.
+  /// From the nearest of all positions, meters.
   [[nodiscard]] float distance(const Vec3& place) const {
     // The lift takes the grip to any height by itself.
     const float height = std::clamp(place.y, telescope::kLowest, telescope::kHighest);
@@ -144,7 +144,7 @@ TEST(Telescope, ReachesToTheRightOfTheBase) {
 
 TEST(Telescope, ReachesWithTheBasesTurnWhatBruteForceReachesAndNothingElse) {
   constexpr float kMostTurn = 0.22F;
-  // Half of the brute force's longest way between neighbours, with room; a place that is nearer to
+  // Half of the brute force's longest way between neighbors, with room; a place that is nearer to
   // none than the second is out of reach for certain.
   constexpr float kReached = 0.006F;
   constexpr float kUnreached = 0.012F;

@@ -23,7 +23,7 @@ using bake::TriangleRays;
 constexpr std::uint32_t kSeed = 33;
 constexpr std::size_t kBeams = 32;
 constexpr float kRange = 6;
-/// Metres. A cell is blocked when a triangle comes within 15 mm of the column in its middle: the
+/// Meters. A cell is blocked when a triangle comes within 15 mm of the column in its middle: the
 /// beam ends at its edge, at most half the diagonal of a cell of 3 cm further away.
 constexpr float kAround = 0.015F + 0.0213F + 0.001F;
 /// A beam that crosses a surface in the corner of a free cell ends in the next one, a diagonal on.

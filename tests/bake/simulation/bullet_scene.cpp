@@ -46,18 +46,18 @@ class BulletScene::Impl {
                              toBullet(mesh.vertices[triangle[1]]),
                              toBullet(mesh.vertices[triangle[2]]));
     }
-    constexpr bool kQuantised = false;
-    shape_ = std::make_unique<btBvhTriangleMeshShape>(&triangles_, kQuantised);
+    constexpr bool kQuantized = false;
+    shape_ = std::make_unique<btBvhTriangleMeshShape>(&triangles_, kQuantized);
     // Bullet's default of 4 cm would grow every surface.
     shape_->setMargin(0);
     object_.setCollisionShape(shape_.get());
   }
 
-  bool touches(const Vec3& centre, float radius) {
+  bool touches(const Vec3& center, float radius) {
     btSphereShape sphere(radius);
     btCollisionObject ball;
     ball.setCollisionShape(&sphere);
-    ball.setWorldTransform(btTransform(btQuaternion::getIdentity(), toBullet(centre)));
+    ball.setWorldTransform(btTransform(btQuaternion::getIdentity(), toBullet(center)));
     AnyContact contact;
     world_.contactPairTest(&ball, &object_, contact);
     return contact.found;
@@ -76,8 +76,8 @@ class BulletScene::Impl {
 BulletScene::BulletScene(const bake::TriangleMesh& mesh) : impl_(std::make_unique<Impl>(mesh)) {}
 BulletScene::~BulletScene() = default;
 
-bool BulletScene::touches(const Vec3& centre, float radius) {
-  return impl_->touches(centre, radius);
+bool BulletScene::touches(const Vec3& center, float radius) {
+  return impl_->touches(center, radius);
 }
 
 }  // namespace galactic::test

@@ -20,7 +20,7 @@ class BulletScene {
   static constexpr float kReach = 1.03465F;
 
   /// Whether a ball touches the mesh, or comes within kReach radii of it.
-  [[nodiscard]] bool touches(const Vec3& centre, float radius);
+  [[nodiscard]] bool touches(const Vec3& center, float radius);
 
  private:
   class Impl;

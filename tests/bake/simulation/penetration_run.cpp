@@ -60,7 +60,7 @@ PenetrationReport searchPenetrations(const PenetrationRun& run) {
   report.seen = simulator.statistics();
   const DistanceOracle oracle(home.mesh(), 0.2);
   report.deepest_exactly = static_cast<double>(report.found.deepest_radius) -
-                           oracle.distance(toPoint(report.found.deepest_centre));
+                           oracle.distance(toPoint(report.found.deepest_center));
   return report;
 }
 
@@ -76,7 +76,7 @@ void print(const PenetrationReport& report) {
       "(%llu touch)\n",
       number(found.robot_spheres), number(found.held_spheres), number(found.excepted),
       number(found.near_objects), number(found.exact), number(found.shallow));
-  const Vec3& deepest = found.deepest_centre;
+  const Vec3& deepest = found.deepest_center;
   std::printf(
       "deepest in the scene: %.2f mm, exactly %.2f (allowed %.2f), a sphere of %g m at (%g, %g, "
       "%g)\n",

@@ -29,7 +29,7 @@ struct PenetrationReport {
   SimulationStatistics seen;
   std::size_t episodes = 0;
   std::size_t skipped = 0;
-  /// Depth of the deepest sphere that Bullet found, computed in double over all triangles, metres.
+  /// Depth of the deepest sphere that Bullet found, computed in double over all triangles, meters.
   double deepest_exactly = 0;
 };
 

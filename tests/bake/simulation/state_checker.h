@@ -31,9 +31,9 @@ struct Findings {
   /// Spheres shown to Bullet, and those that touch the exact scene, which the column method allows.
   std::uint64_t exact = 0;
   std::uint64_t shallow = 0;
-  /// How deep the deepest of these is in the scene, metres, and where it is.
+  /// How deep the deepest of these is in the scene, meters, and where it is.
   float deepest = 0;
-  Vec3 deepest_centre{};
+  Vec3 deepest_center{};
   float deepest_radius = 0;
   /// Of the robot, then of held objects: blocked by the column grid, overlapping an object, deeper
   /// in the exact scene than the column method allows.
@@ -50,7 +50,7 @@ class StateChecker {
  public:
   /// A sphere is judged by the nearest column, at most half the diagonal of a cell of 3 cm (21.213
   /// mm) away, and isInGrid forgives 0.01 mm more along each axis (21.227 mm); heights are rounded
-  /// to a tenth of a millimetre, across that way (21.228 mm). The rest is for floats.
+  /// to a tenth of a millimeter, across that way (21.228 mm). The rest is for floats.
   static constexpr float kDeepest = 0.0213F;
   /// Spheres farther from a box than this overlap it in no case.
   static constexpr float kNear = 0.2F;
@@ -61,7 +61,7 @@ class StateChecker {
     for (const galactic::SphereGroup& group : robot.groups()) {
       const LinkOnBody link = simulator.linkOnBody(group.link);
       for (const SetSphere& sphere : group.spheres) {
-        spheres_.push_back({link.body, at(link.place, sphere.centre), sphere.radius_index});
+        spheres_.push_back({link.body, at(link.place, sphere.center), sphere.radius_index});
       }
     }
   }
@@ -76,7 +76,7 @@ class StateChecker {
     noteRelease(state, before);
     for (std::size_t n = 0; n < spheres_.size(); ++n) {
       const RobotSphere& sphere = spheres_[n];
-      const Ball ball{at(transforms[sphere.body], sphere.centre), sphere.radius_index};
+      const Ball ball{at(transforms[sphere.body], sphere.center), sphere.radius_index};
       found.in_grid[0] += isInGrid(around, ball) ? 1U : 0U;
       const InObjects objects = inObjects(around, ball, found);
       for (auto& [object, spheres] : before.leaving) {
@@ -101,17 +101,17 @@ class StateChecker {
  private:
   struct RobotSphere {
     std::size_t body = 0;
-    Vec3 centre;
+    Vec3 center;
     std::uint32_t radius_index = 0;
   };
   struct Ball {
-    Vec3 centre;
+    Vec3 center;
     std::uint32_t radius_index = 0;
   };
   struct RestingSolid {
     std::int32_t number = -1;
     BoxSolid solid;
-    Vec3 centre;
+    Vec3 center;
     float reach = 0;
   };
   struct Surroundings {
@@ -164,26 +164,26 @@ class StateChecker {
       if (static_cast<std::int32_t>(n) == state.held) continue;
       const OrientedBox& box = world_.objectOf(placementOf(state, n)).box;
       const Vec3& half = box.half_extents;
-      const Vec3 centre = state.objects[n] * box.pose.translation;
-      const Vec3 away = centre - state.world_from_root.translation;
+      const Vec3 center = state.objects[n] * box.pose.translation;
+      const Vec3 away = center - state.world_from_root.translation;
       constexpr float kFar = 2.5F;
       if (dot(away, away) > kFar * kFar) continue;
       around.objects.push_back({static_cast<std::int32_t>(n), BoxSolid(box, state.objects[n]),
-                                centre, std::sqrt(dot(half, half)) + kNear});
+                                center, std::sqrt(dot(half, half)) + kNear});
     }
     return around;
   }
 
-  /// Blocked, and not only by rounding: centres are computed in another way here.
+  /// Blocked, and not only by rounding: centers are computed in another way here.
   [[nodiscard]] static bool isInGrid(const Surroundings& around, const Ball& ball) {
     constexpr float kRounding = 1e-5F;
     const ColumnGrid& grid = around.scene->grids()[ball.radius_index];
-    if (grid.clearance(ball.centre) == Clearance::kFree) return false;
+    if (grid.clearance(ball.center) == Clearance::kFree) return false;
     for (unsigned corner = 0; corner < 8; ++corner) {
       const auto by = [&](unsigned bit) {
         return (corner >> bit & 1U) != 0 ? kRounding : -kRounding;
       };
-      if (grid.clearance(ball.centre + Vec3{by(0), by(1), by(2)}) == Clearance::kFree) return false;
+      if (grid.clearance(ball.center + Vec3{by(0), by(1), by(2)}) == Clearance::kFree) return false;
     }
     return true;
   }
@@ -194,10 +194,10 @@ class StateChecker {
     InObjects objects;
     bool near = false;
     for (const RestingSolid& object : around.objects) {
-      const Vec3 away = ball.centre - object.centre;
+      const Vec3 away = ball.center - object.center;
       if (dot(away, away) > object.reach * object.reach) continue;
       near = true;
-      const double distance = object.solid.distance(toPoint3(ball.centre));
+      const double distance = object.solid.distance(toPoint3(ball.center));
       const auto radius = static_cast<double>(world_.radii()[ball.radius_index]);
       if (distance < radius + kRounding) objects.touches.push_back(object.number);
       if (distance < radius - kRounding) objects.in.push_back(object.number);
@@ -212,7 +212,7 @@ class StateChecker {
     found.shallow += isDeeper(ball, 0) ? 1U : 0U;
     if (isDeeper(ball, found.deepest)) {
       found.deepest = depthOf(ball, found.deepest);
-      found.deepest_centre = ball.centre;
+      found.deepest_center = ball.center;
       found.deepest_radius = world_.radii()[ball.radius_index];
     }
     return isDeeper(ball, kDeepest);
@@ -221,10 +221,10 @@ class StateChecker {
   /// Whether a ball that is smaller by `depth` touches the scene.
   [[nodiscard]] bool isDeeper(const Ball& ball, float depth) const {
     const float radius = (world_.radii()[ball.radius_index] - depth) / BulletScene::kReach;
-    return radius > 0 && scene_.touches(ball.centre, radius);
+    return radius > 0 && scene_.touches(ball.center, radius);
   }
 
-  /// How deep a ball is that is deeper than `at_least`, to a hundredth of a millimetre.
+  /// How deep a ball is that is deeper than `at_least`, to a hundredth of a millimeter.
   [[nodiscard]] float depthOf(const Ball& ball, float at_least) const {
     float at_most = world_.radii()[ball.radius_index];
     while (at_most - at_least > 1e-5F) {
@@ -246,7 +246,7 @@ class StateChecker {
     // Whatever penetrates something when it is grasped does not count until it is free.
     if (!goes_on) before.excepted.assign(object.spheres.size(), true);
     for (std::size_t n = 0; n < object.spheres.size(); ++n) {
-      const Ball ball{state.objects[number] * object.spheres[n].centre,
+      const Ball ball{state.objects[number] * object.spheres[n].center,
                       object.spheres[n].radius_index};
       ++found.held_spheres;
       const bool in_grid = isInGrid(around, ball);

@@ -39,14 +39,14 @@ double errorOf(const Scene& scene, const std::vector<Candidate>& spheres) {
   for (const Vec3d& point : scene.points) {
     double gap = HUGE_VAL;
     for (const Candidate& sphere : spheres) {
-      gap = std::min(gap, length(point - sphere.centre) - scene.task.radii[sphere.radius_index]);
+      gap = std::min(gap, length(point - sphere.center) - scene.task.radii[sphere.radius_index]);
     }
     gap = std::max(gap, 0.0);
     sum += 0.04 * gap + gap * gap + 400 * gap * gap * gap * gap;
   }
   double error = sum * scene.solid.area() / static_cast<double>(scene.points.size());
   for (const Candidate& sphere : spheres) {
-    error += protrusionIntegral(scene.grid, sphere.centre, scene.task.radii[sphere.radius_index]);
+    error += protrusionIntegral(scene.grid, sphere.center, scene.task.radii[sphere.radius_index]);
   }
   return error;
 }
@@ -67,7 +67,7 @@ TEST(ExchangeSearch, KeepsTheErrorThatItsSpheresHave) {
     previous = error;
     for (const Candidate& sphere : spheres) {
       const double radius = scene.task.radii[sphere.radius_index];
-      const double outside = scene.solid.distance(sphere.centre).distance + radius;
+      const double outside = scene.solid.distance(sphere.center).distance + radius;
       EXPECT_LE(outside, kLooserTau * scene.task.tau + scene.grid.step());
     }
   }
@@ -85,9 +85,9 @@ TEST(ExchangeSearch, FindsThreeSpheresAsGoodAsAnyOfRandomTries) {
   for (int attempt = 0; attempt < 3000; ++attempt) {
     std::vector<Candidate> spheres;
     while (spheres.size() < 3) {
-      const Vec3d centre{0.5 * uniform(), 0.1 * uniform(), 0.2 * uniform()};
-      const double outside = scene.solid.distance(centre).distance + scene.task.radii[1];
-      if (outside <= scene.task.tau) spheres.push_back({centre, 1, outside});
+      const Vec3d center{0.5 * uniform(), 0.1 * uniform(), 0.2 * uniform()};
+      const double outside = scene.solid.distance(center).distance + scene.task.radii[1];
+      if (outside <= scene.task.tau) spheres.push_back({center, 1, outside});
     }
     best = std::min(best, errorOf(scene, spheres));
   }

@@ -172,7 +172,7 @@ TEST(ExteriorSolid, CutsFacetsThatAreHiddenInPart) {
   EXPECT_TRUE(solid.reachable({0.03, 0, 0.1}));
 }
 
-TEST(ExteriorSolid, KeepsItsMemoryForAnythingUpToTenMetres) {
+TEST(ExteriorSolid, KeepsItsMemoryForAnythingUpToTenMeters) {
   MeshBuilder builder;
   builder.box({-5, -5, -5}, {5, 5, 5});
   const ExteriorSolid solid(builder.build(), kSmallestRadius, 1);

@@ -12,7 +12,7 @@ namespace {
 using test::KnownSolid;
 
 constexpr std::uint32_t kSeed = 20250401;
-/// Float rounding of stored centres.
+/// Float rounding of stored centers.
 constexpr double kRounding = 1e-6;
 /// Points this near to the surface count as outside, wherever they are, when protrusion is
 /// measured.
@@ -27,7 +27,7 @@ SphereSetOptions tolerances(float eps, float tau) {
 
 /// A solid, its tolerances, and the fewest spheres that can do: by hand, n spheres along an edge or
 /// axis of length L each cover at most 2 sqrt((r + eps)^2 - d^2) of it, d being the distance of
-/// their centres from it, which tau bounds from below.
+/// their centers from it, which tau bounds from below.
 struct KnownCover {
   std::string name;
   KnownSolid solid;

@@ -42,9 +42,9 @@ std::vector<WrongOption> wrongOptions() {
   };
   return {
       {with([](auto& o) { o.radii.clear(); }), "radii",
-       "0 radii were given; give 1 to 8, in metres, ascending"},
+       "0 radii were given; give 1 to 8, in meters, ascending"},
       {with([](auto& o) { o.radii.assign(9, 0.1F); }), "radii",
-       "9 radii were given; give 1 to 8, in metres, ascending"},
+       "9 radii were given; give 1 to 8, in meters, ascending"},
       {with([](auto& o) { o.radii = {-1}; }), "radii[0]",
        "the radius -1 m is out of range; give 0.0001 to 10 m"},
       {with([](auto& o) {
@@ -106,7 +106,7 @@ TEST(SphereSetOptions, MeshesThatCannotBeCoveredAreRefused) {
   EXPECT_EQ(large.error().code, ErrorCode::kUnsupported);
   EXPECT_EQ(large.error().message,
             "its extents are 100 x 60 x 200 m, and sphere sets are made for up to 10 m; is its "
-            "unit the millimetre? Give the scale, or cut it");
+            "unit the millimeter? Give the scale, or cut it");
 }
 
 TEST(MeasureSphereSet, RefusesSpheresThatAreNoneOfTheWorkingSet) {
@@ -119,7 +119,7 @@ TEST(MeasureSphereSet, RefusesSpheresThatAreNoneOfTheWorkingSet) {
   EXPECT_EQ(unknown.error().message, "3 is not in the working set of 3 radii; give its index");
   const auto not_finite = measureSphereSet(someBox(), {{{0, kNaN, 0}, 0}}, {});
   ASSERT_FALSE(not_finite);
-  EXPECT_EQ(not_finite.error().where, "spheres[0].centre");
+  EXPECT_EQ(not_finite.error().where, "spheres[0].center");
 }
 
 /// One ball in the middle of a box: all lengths are known.
@@ -146,7 +146,7 @@ TEST(SphereSetSupport, KeepsSpheresAboveThePlane) {
     const auto set = fitSphereSet(someBox(), options);
     ASSERT_TRUE(set);
     for (const SetSphere& sphere : set->spheres) {
-      EXPECT_GE(sphere.centre.y, options.radii[sphere.radius_index] + offset - 1e-6F);
+      EXPECT_GE(sphere.center.y, options.radii[sphere.radius_index] + offset - 1e-6F);
     }
     EXPECT_LE(largestGap(someBox(), *set, options), set->guaranteed_gap);
     EXPECT_TRUE(set->meets_tolerances) << set->guaranteed_gap << ' ' << set->guaranteed_protrusion;
@@ -159,7 +159,7 @@ TEST(SphereSetSupport, MayBeTilted) {
   const auto set = fitSphereSet(someBox(), options);
   ASSERT_TRUE(set);
   for (const SetSphere& sphere : set->spheres) {
-    EXPECT_GE(0.6F * sphere.centre.x + 0.8F * sphere.centre.y,
+    EXPECT_GE(0.6F * sphere.center.x + 0.8F * sphere.center.y,
               options.radii[sphere.radius_index] - 0.054F - 1e-6F);
   }
 }
@@ -280,8 +280,8 @@ TEST(SphereSetResult, IsSorted) {
   ASSERT_GT(set->spheres.size(), 3U);
   EXPECT_TRUE(std::is_sorted(
       set->spheres.begin(), set->spheres.end(), [](const SetSphere& a, const SetSphere& b) {
-        return std::tuple(b.radius_index, a.centre.x, a.centre.y, a.centre.z) <
-               std::tuple(a.radius_index, b.centre.x, b.centre.y, b.centre.z);
+        return std::tuple(b.radius_index, a.center.x, a.center.y, a.center.z) <
+               std::tuple(a.radius_index, b.center.x, b.center.y, b.center.z);
       }));
 }
 

@@ -199,19 +199,19 @@ TEST(PointGrid, FindsWhatBruteForceFinds) {
   const PointGrid grid(points, 0.07);
   std::size_t found = 0;
   for (int n = 0; n < 200; ++n) {
-    const Vec3d centre{2 * unit() - 0.5, unit() - 0.5, 2 * unit() - 0.5};
+    const Vec3d center{2 * unit() - 0.5, unit() - 0.5, 2 * unit() - 0.5};
     const double radius = 0.6 * unit();
     std::set<std::uint32_t> by_grid;
-    grid.visitWithin(centre, radius, [&](std::uint32_t index, double) {
+    grid.visitWithin(center, radius, [&](std::uint32_t index, double) {
       by_grid.insert(index);
       return true;
     });
     std::set<std::uint32_t> by_force;
     for (std::uint32_t at = 0; at < points.size(); ++at) {
-      if (squaredLength(points[at] - centre) <= radius * radius) by_force.insert(at);
+      if (squaredLength(points[at] - center) <= radius * radius) by_force.insert(at);
     }
     EXPECT_EQ(by_grid, by_force);
-    EXPECT_EQ(grid.anyWithin(centre, radius), !by_force.empty());
+    EXPECT_EQ(grid.anyWithin(center, radius), !by_force.empty());
     found += by_force.empty() ? 0U : 1U;
   }
   EXPECT_GT(found, 20U) << "seed " << kSeed;

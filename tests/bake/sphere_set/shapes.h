@@ -21,9 +21,9 @@ namespace galactic::test {
 /// A solid whose signed distance is known in closed form: the oracle of these tests.
 struct KnownSolid {
   bake::TriangleMesh mesh;
-  /// Signed distance of a point, negative inside, metres.
+  /// Signed distance of a point, negative inside, meters.
   std::function<double(const bake::Point&)> distance;
-  /// How far the triangles lie from the true surface at most, metres.
+  /// How far the triangles lie from the true surface at most, meters.
   double error = 0;
 };
 
@@ -63,7 +63,7 @@ inline KnownSolid ball(double radius) {
           2 * sagitta(radius, 96)};
 }
 
-/// Centred on the origin.
+/// Centered on the origin.
 inline KnownSolid box(double x, double y, double z) {
   MeshBuilder builder;
   builder.box({static_cast<float>(-x / 2), static_cast<float>(-y / 2), static_cast<float>(-z / 2)},
@@ -77,7 +77,7 @@ inline KnownSolid box(double x, double y, double z) {
           }};
 }
 
-/// Upright and centred on the origin.
+/// Upright and centered on the origin.
 inline KnownSolid cylinder(double radius, double length) {
   constexpr int kAround = 96;
   std::vector<std::pair<double, double>> profile{{0, -length / 2}};
@@ -95,7 +95,7 @@ inline KnownSolid cylinder(double radius, double length) {
           sagitta(radius, kAround)};
 }
 
-/// Upright: `length` between the centres of the caps.
+/// Upright: `length` between the centers of the caps.
 inline KnownSolid capsule(double radius, double length) {
   constexpr int kAround = 96;
   constexpr int kRows = 24;
@@ -161,7 +161,7 @@ inline double gapOf(const bake::Point& p, const std::vector<SetSphere>& spheres,
                     const std::vector<float>& radii) {
   double least = HUGE_VAL;
   for (const SetSphere& sphere : spheres) {
-    const bake::Point c = toPoint(sphere.centre);
+    const bake::Point c = toPoint(sphere.center);
     least = std::min(least, std::hypot(p[0] - c[0], p[1] - c[1], p[2] - c[2]) -
                                 static_cast<double>(radii.at(sphere.radius_index)));
   }
@@ -181,7 +181,7 @@ inline std::vector<bake::Point> randomSpherePoints(const std::vector<SetSphere>&
       const double y = 2 * unit() - 1;
       const double turn = 2 * std::numbers::pi * unit();
       const double ring = std::sqrt(1 - y * y);
-      const bake::Point c = toPoint(sphere.centre);
+      const bake::Point c = toPoint(sphere.center);
       points.push_back({c[0] + radius * ring * std::cos(turn), c[1] + radius * y,
                         c[2] + radius * ring * std::sin(turn)});
     }

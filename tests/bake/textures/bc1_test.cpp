@@ -31,7 +31,7 @@ std::array<double, 3> bc1Texel(const std::uint8_t* blocks, unsigned edge,
   const auto a = expanded565(first);
   const auto b = expanded565(second);
   const unsigned code = codes >> (2 * (at.second % 4 * 4 + at.first % 4)) & 3U;
-  EXPECT_TRUE(first > second || code == 0) << "a block of three colours and black";
+  EXPECT_TRUE(first > second || code == 0) << "a block of three colors and black";
   const std::array<double, 4> share{0, 1, 1. / 3, 2. / 3};
   std::array<double, 3> color{};
   for (std::size_t c = 0; c < 3; ++c) color[c] = a[c] + (b[c] - a[c]) * share[code];

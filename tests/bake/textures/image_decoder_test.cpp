@@ -55,14 +55,14 @@ TEST(ImageDecoder, GivesPngWithoutAlphaFullAlpha) {
               ElementsAre(1, 2, 3, 255, 4, 5, 6, 255));
 }
 
-TEST(ImageDecoder, ReadsGreyPngWithAndWithoutAlpha) {
+TEST(ImageDecoder, ReadsGrayPngWithAndWithoutAlpha) {
   EXPECT_THAT(decodedBytes(pngFile({2, 1, {7, 200}}, {.color_type = PNG_COLOR_TYPE_GRAY})),
               ElementsAre(7, 7, 7, 255, 200, 200, 200, 255));
   EXPECT_THAT(decodedBytes(pngFile({1, 1, {9, 100}}, {.color_type = PNG_COLOR_TYPE_GRAY_ALPHA})),
               ElementsAre(9, 9, 9, 100));
 }
 
-TEST(ImageDecoder, ReadsGreyPngOfOneBitATexel) {
+TEST(ImageDecoder, ReadsGrayPngOfOneBitATexel) {
   const std::string file =
       pngFile({4, 1, {0b10100000}}, {.color_type = PNG_COLOR_TYPE_GRAY, .bit_depth = 1});
   EXPECT_THAT(decodedBytes(file),
@@ -92,7 +92,7 @@ TEST(ImageDecoder, IgnoresGammaAsGltfDemands) {
 /// What a JPEG of quality 100 without subsampling may be off: its transform rounds.
 constexpr int kJpegError = 3;
 
-TEST(ImageDecoder, ReadsJpegBaselineProgressiveAndGrey) {
+TEST(ImageDecoder, ReadsJpegBaselineProgressiveAndGray) {
   const ImageContent smooth = rgbaImage(40, 24, [](unsigned x, unsigned y) {
     return std::array<std::uint8_t, 4>{static_cast<std::uint8_t>(x * 6),
                                        static_cast<std::uint8_t>(y * 10), 90, 255};
@@ -105,18 +105,18 @@ TEST(ImageDecoder, ReadsJpegBaselineProgressiveAndGrey) {
       ASSERT_NEAR(decoded[i], smooth.bytes[i], kJpegError) << "byte " << i;
     }
   }
-  const auto grey = decodedBytes(
+  const auto gray = decodedBytes(
       jpegFile({8, 8, std::vector<std::uint8_t>(64, 100)}, {.color_space = JCS_GRAYSCALE}));
-  ASSERT_EQ(grey.size(), 256U);
-  EXPECT_NEAR(grey[0], 100, 1);
-  EXPECT_EQ(grey[0], grey[2]);
-  EXPECT_EQ(grey[3], 255);
+  ASSERT_EQ(gray.size(), 256U);
+  EXPECT_NEAR(gray[0], 100, 1);
+  EXPECT_EQ(gray[0], gray[2]);
+  EXPECT_EQ(gray[3], 255);
 }
 
 TEST(ImageDecoder, RefusesJpegForPrint) {
   const std::string file =
       jpegFile({8, 8, std::vector<std::uint8_t>(256, 9)}, {.color_space = JCS_CMYK});
-  EXPECT_EQ(faultOf(file), "is a JPEG for print (CMYK); wanted RGB or grey");
+  EXPECT_EQ(faultOf(file), "is a JPEG for print (CMYK); wanted RGB or gray");
 }
 
 TEST(ImageDecoder, NamesOtherFormats) {

@@ -1,4 +1,4 @@
-// Colours, factors, alpha modes, sharing of textures, and what happens to unusable images.
+// Colors, factors, alpha modes, sharing of textures, and what happens to unusable images.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -23,7 +23,7 @@ SourceMaterial withAlpha(SourceMaterial material, AlphaMode mode, float cutoff =
 
 SourceMaterial plain(std::array<float, 4> color) { return textured("", color); }
 
-TEST(PlainMaterials, StoreTheirColourInSrgb) {
+TEST(PlainMaterials, StoreTheirColorInSrgb) {
   const BakedMaterials baked =
       bakeEmbedded({plain({1, 0.2159F, 0, 0.25F}), plain({0.5F, 0.5F, 0.5F, 1})}, {});
   ASSERT_EQ(baked.materials.size(), 2U);
@@ -96,7 +96,7 @@ TEST(SharedTextures, NameNoFolderOfThisMachine) {
   EXPECT_EQ(baked->textures[0].name, "a.png");
 }
 
-TEST(UniformImages, BecomeFlatColours) {
+TEST(UniformImages, BecomeFlatColors) {
   const ImageContent image = rgbaImage(32, 16, [](unsigned x, unsigned) {
     return std::array<std::uint8_t, 4>{10, 200, 30, static_cast<std::uint8_t>(x)};
   });
@@ -107,7 +107,7 @@ TEST(UniformImages, BecomeFlatColours) {
   EXPECT_EQ(baked.source_bytes, 2048U);
 }
 
-TEST(UnusableImages, LeaveTheColourAndGiveOneWarningEach) {
+TEST(UnusableImages, LeaveTheColorAndGiveOneWarningEach) {
   const ScratchFolder folder;
   const std::string good = pngFile(busyImage(8, 8));
   static_cast<void>(folder.write("cut.png", good.substr(0, 60)));
@@ -128,20 +128,20 @@ TEST(UnusableImages, LeaveTheColourAndGiveOneWarningEach) {
       baked->warnings,
       ElementsAre(
           "texture 'cut.png' of material 'paint' is a broken PNG (it ends too early): its surfaces "
-          "keep their plain colour",
+          "keep their plain color",
           "texture 'basis.ktx2' of material 'paint' is KTX2 (Basis); wanted PNG or JPEG: its "
-          "surfaces keep their plain colour",
+          "surfaces keep their plain color",
           "texture 'webp.png' of material 'paint' is WebP; wanted PNG or JPEG: its surfaces keep "
-          "their plain colour",
-          "texture 'empty.png' of material 'paint' is empty: its surfaces keep their plain colour",
+          "their plain color",
+          "texture 'empty.png' of material 'paint' is empty: its surfaces keep their plain color",
           "texture 'folder.png' of material 'paint' is no file: its surfaces keep their plain "
-          "colour",
+          "color",
           "texture 'absent.png' of material 'paint' is missing: its surfaces keep their plain "
-          "colour",
+          "color",
           "texture '*7' of material 'paint' is missing: there are 2 embedded images: its surfaces "
-          "keep their plain colour",
+          "keep their plain color",
           "texture '*x' of material 'paint' is missing: there are 2 embedded images: its surfaces "
-          "keep their plain colour"));
+          "keep their plain color"));
   ASSERT_EQ(baked->materials.size(), materials.size());
   for (std::size_t m = 0; m < materials.size(); ++m) {
     const bool usable = materials[m].base_color_texture == "*0";
@@ -194,7 +194,7 @@ TEST(CutOuts, KeepTheirVisibleShareInAllLevels) {
   }
 }
 
-TEST(CutOuts, ShowNoColourOfWhatIsNotThere) {
+TEST(CutOuts, ShowNoColorOfWhatIsNotThere) {
   const BakedMaterials baked =
       bakeEmbedded({withAlpha(textured("*0"), AlphaMode::kMask)}, {embedded(pngFile(leaf(64, 5)))});
   unsigned edge = 64;

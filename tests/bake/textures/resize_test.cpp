@@ -78,7 +78,7 @@ TEST(MipChain, KeepsAnImageOfThatSizeExactly) {
   EXPECT_TRUE(std::equal(image.bytes.begin(), image.bytes.end(), baked.texels.begin()));
 }
 
-TEST(MipChain, HalvesACheckerboardExactlyUntilItIsGreyInLinearLight) {
+TEST(MipChain, HalvesACheckerboardExactlyUntilItIsGrayInLinearLight) {
   const BakedMaterials baked = bakeImage(pngFile(checkerboard(16, 4)));
   ASSERT_EQ(baked.textures[0].size, 16U);
   // Fields of 4 stay sharp for two levels.
@@ -121,12 +121,12 @@ TEST(Resampling, AveragesAreasInLinearLight) {
   }
 }
 
-TEST(Resampling, EnlargesLinearlyBetweenCentres) {
+TEST(Resampling, EnlargesLinearlyBetweenCenters) {
   const ImageContent image =
       rgbaImage(3, 1, [](unsigned x, unsigned) { return x == 0 ? kBlack : kWhite; });
   const BakedMaterials baked = bakeImage(pngFile(image));
   ASSERT_EQ(baked.textures[0].size, 4U);
-  // Centres of 4 texels at 0.375, 1.125, 1.875, 2.625 of 3: shares of white 0, 0.625, 1, 1.
+  // Centers of 4 texels at 0.375, 1.125, 1.875, 2.625 of 3: shares of white 0, 0.625, 1, 1.
   const int mixed = static_cast<int>(std::lround(linearToSrgb(0.625)));
   for (unsigned y = 0; y < 4; ++y) {
     EXPECT_EQ(texelAt(baked, 0, 0, {0, y})[0], 0);

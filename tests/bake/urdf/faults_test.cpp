@@ -145,7 +145,7 @@ std::vector<Fault> jointFaults() {
        "the URDF parser refuses it: Unable to parse component [far] to a double (while parsing a "
        "vector value); Malformed parent origin element for joint [j]"},
       {"OriginFarAway", withJoint("fixed", "<origin xyz=\"0 0 1000\"/>"), "r.urdf: joint 'j'",
-       "its origin is 1000 m away, at most 800 m are possible; is the unit metres?"},
+       "its origin is 1000 m away, at most 800 m are possible; is the unit meters?"},
       {"MimicOfUnknown", withJoint("continuous", "<mimic joint=\"k\"/>"), "r.urdf: joint 'j'",
        "it mimics joint 'k', which does not exist; correct the name"},
       {"MimicOfItself", withJoint("continuous", "<mimic joint=\"j\"/>"), "r.urdf: joint 'j'",
@@ -195,7 +195,7 @@ std::vector<Fault> geometryFaults() {
        "r.urdf: link 'a' collision 1", "a sphere of radius -1: negative; correct it"},
       {"HugeCylinder", robotText(linkText("a", "<cylinder radius=\"1\" length=\"5000\"/>")),
        "r.urdf: link 'a' collision 1",
-       "a cylinder of radius and length 1 5000: at most 800 m are possible; is the unit metres?"},
+       "a cylinder of radius and length 1 5000: at most 800 m are possible; is the unit meters?"},
       {"SphereNotANumber", robotText(linkText("a", "<sphere radius=\"nan\"/>")), "r.urdf",
        "the URDF parser refuses it: radius [nan] is not a valid float; Could not parse collision "
        "element for Link [a]"},
@@ -203,7 +203,7 @@ std::vector<Fault> geometryFaults() {
        robotText("<link name=\"a\"><collision><origin xyz=\"0 900 0\"/><geometry><sphere "
                  "radius=\"1\"/></geometry></collision></link>"),
        "r.urdf: link 'a' collision 1",
-       "its origin is 900 m away, at most 800 m are possible; is the unit metres?"},
+       "its origin is 900 m away, at most 800 m are possible; is the unit meters?"},
       {"MeshWithoutName", robotText(linkText("a", "<mesh/>")), "r.urdf",
        "the URDF parser refuses it: Mesh must contain a filename attribute; Could not parse "
        "collision element for Link [a]"},

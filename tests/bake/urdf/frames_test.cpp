@@ -87,12 +87,12 @@ TEST(UrdfFrames, OfAYUpUrdfStayAsTheyAre) {
   // The box keeps its sides along the same axes: its frame is turned, and the turn is undone.
   const bake::LinkShape& box = robot->links[0].collisions.at(0);
   const auto size = std::get<bake::BoxShape>(box.geometry).size;
-  const Point3 centre = pointIn(box.link_from_shape, {0, 0, 0});
+  const Point3 center = pointIn(box.link_from_shape, {0, 0, 0});
   const Point3 corner = pointIn(box.link_from_shape, {size[0] / 2, size[1] / 2, size[2] / 2});
-  EXPECT_THAT(centre, ElementsAre(1, 2, 3));
-  EXPECT_NEAR(std::abs(corner[0] - centre[0]), 0.05, kRounding);
-  EXPECT_NEAR(std::abs(corner[1] - centre[1]), 0.10, kRounding);
-  EXPECT_NEAR(std::abs(corner[2] - centre[2]), 0.15, kRounding);
+  EXPECT_THAT(center, ElementsAre(1, 2, 3));
+  EXPECT_NEAR(std::abs(corner[0] - center[0]), 0.05, kRounding);
+  EXPECT_NEAR(std::abs(corner[1] - center[1]), 0.10, kRounding);
+  EXPECT_NEAR(std::abs(corner[2] - center[2]), 0.15, kRounding);
 }
 
 /// The rotation of roll, pitch and yaw, by three elementary rotations.

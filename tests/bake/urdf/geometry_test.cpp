@@ -1,4 +1,4 @@
-// Meshes, primitives and colours of links; what happens to geometry that is missing.
+// Meshes, primitives and colors of links; what happens to geometry that is missing.
 #include <gmock/gmock.h>
 
 #include <array>
@@ -22,7 +22,7 @@ std::string meshLink(std::string_view name, std::string_view file, std::string_v
 const Point3 kLow{0.5, 1, -2.25};
 const Point3 kHigh{1.5, 4, -0.25};
 constexpr double kBoxVolume = 6;
-/// Volumes of boxes a few metres large from float coordinates.
+/// Volumes of boxes a few meters large from float coordinates.
 constexpr double kVolumeRounding = 1e-4;
 
 TEST(UrdfMeshes, CountAsTheyStandInTheFileWhateverItsUpAxis) {
@@ -105,9 +105,9 @@ TEST(UrdfMeshes, OfDoubtfulSizeDrawAQuestionAboutTheUnit) {
   ASSERT_TRUE(robot.has_value()) << robot.error().message;
   EXPECT_THAT(robot->warnings,
               ElementsAre("link 'a' collision 1: mesh 'box.stl' is 3e+03 m large: is its unit the "
-                          "metre? Correct the scale of the <mesh>",
+                          "meter? Correct the scale of the <mesh>",
                           "link 'b' collision 1: mesh 'box.stl' is 0.0003 m large: is its unit the "
-                          "metre? Correct the scale of the <mesh>"));
+                          "meter? Correct the scale of the <mesh>"));
 }
 
 constexpr const char* kBoxCollision =

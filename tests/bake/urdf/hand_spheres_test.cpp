@@ -46,8 +46,8 @@ TEST(SpherizedUrdfs, WithoutSpheresOrWithBrokenOnesAreErrors) {
   ASSERT_FALSE(flat.has_value());
   EXPECT_THAT(flat.error().where, testing::EndsWith("f.urdf: link 'a'"));
   EXPECT_EQ(flat.error().message,
-            "a sphere at (0 0 0) of radius 0: wanted a finite centre and a positive radius, in "
-            "metres");
+            "a sphere at (0 0 0) of radius 0: wanted a finite center and a positive radius, in "
+            "meters");
 }
 
 TEST(SrdfSpheres, AreReadYUpWithoutMoveItsEmptyLinks) {
@@ -90,7 +90,7 @@ TEST(SrdfSpheres, ThatAreBrokenNameTheirLine) {
     SCOPED_TRACE(sphere);
     const Error broken = error(fmt::format(
         "<link_sphere_approximation link=\"a\">{}</link_sphere_approximation>", sphere));
-    EXPECT_THAT(broken.message, testing::HasSubstr("wanted a finite centre and a positive radius"));
+    EXPECT_THAT(broken.message, testing::HasSubstr("wanted a finite center and a positive radius"));
   }
 }
 

@@ -70,11 +70,11 @@ void expectSameAnswers(const ColumnGrid& found, const ColumnGrid& expected) {
   int free = 0;
   constexpr int kQueries = 20000;
   for (int n = 0; n < kQueries; ++n) {
-    const Vec3 centre{layout.min_x + number(-0.1F, width + 0.1F),
+    const Vec3 center{layout.min_x + number(-0.1F, width + 0.1F),
                       number(layout.heights.lo - 0.1F, layout.heights.hi + 0.1F),
                       layout.min_z + number(-0.1F, depth + 0.1F)};
-    const Contact a = found.contact(centre);
-    const Contact b = expected.contact(centre);
+    const Contact a = found.contact(center);
+    const Contact b = expected.contact(center);
     ASSERT_EQ(a.clearance, b.clearance);
     ASSERT_EQ(a.down, b.down);
     ASSERT_EQ(a.up, b.up);

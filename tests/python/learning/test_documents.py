@@ -63,7 +63,7 @@ def test_presets_are_settings_that_can_be() -> None:
     with pytest.raises(SettingsError, match='"none" is not a preset'):
         preset("none")
     with pytest.raises(SettingsError, match="unknown to this version"):
-        Settings.from_dict({"colour": 1})
+        Settings.from_dict({"color": 1})
 
 
 def test_a_resumed_run_stays_what_it_is() -> None:

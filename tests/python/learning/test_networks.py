@@ -168,7 +168,7 @@ def test_a_normalizer_that_absorbs_in_parts_knows_the_whole() -> None:
     normalizer = Normalizer(4)
     for part in rows.split([10, 490, 500]):
         # Two ranks of half a part each.
-        ranks = [normalizer.sums(half, normalizer.centre) for half in part.chunk(2)]
+        ranks = [normalizer.sums(half, normalizer.center) for half in part.chunk(2)]
         normalizer.absorb(ranks[0] + ranks[1])
     expected = (rows - rows.mean(0)) / torch.sqrt(rows.var(0, unbiased=False) + 1e-5)
     torch.testing.assert_close(normalizer(rows), expected.clamp(-10.0, 10.0), rtol=0.0, atol=1e-4)

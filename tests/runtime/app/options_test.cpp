@@ -166,7 +166,7 @@ TEST(RunCommandLine, DrawsWhenTold) {
 
 TEST(RunCommandLine, RefusesWhatMakesNoSense) {
   const std::vector<std::vector<std::string>> mistakes{
-      {"--render", "colour"},
+      {"--render", "color"},
       {"--render", "rgb", "--size", "0"},
       {"--render", "rgb", "--size", "128x"},
       {"--render", "rgb", "--size", "12x5000"},

@@ -41,7 +41,7 @@ struct SmallImage {
   [[nodiscard]] EnvFrame frame() const { return {image(), std::nullopt}; }
 };
 
-TEST(FrameImages, ColoursAreTakenAsTheyAre) {
+TEST(FrameImages, ColorsAreTakenAsTheyAre) {
   const SmallImage small;
   const Image rgba = colorPicture(small.image());
   EXPECT_EQ(rgba.width(), 2);
@@ -62,13 +62,13 @@ TEST(FrameImages, DepthIsBrightWhereItIsNearAndBlackWhereNothingIs) {
   EXPECT_EQ(picture.at(3, 0), (Rgb{}));
 }
 
-TEST(FrameImages, DepthNumbersAreMillimetres) {
+TEST(FrameImages, DepthNumbersAreMillimeters) {
   const std::vector<float> depth{0, 0.0004F, 0.0006F, 1.2345F, 65.534F, 65.5351F, 1e9F};
   const auto numbers = depthNumbers({7, 1, ColorFormat::kNone, {}, depth, {}});
   EXPECT_THAT(numbers.pixels, ElementsAre(0, 0, 1, 1235, 65534, 65535, 65535));
 }
 
-TEST(FrameImages, IdsHaveNumbersAndColoursOfTheirOwn) {
+TEST(FrameImages, IdsHaveNumbersAndColorsOfTheirOwn) {
   const std::vector<std::uint32_t> ids{0, 1, 2, 70000};
   const DrawnImage image{4, 1, ColorFormat::kNone, {}, {}, ids};
   EXPECT_THAT(semanticNumbers(image).pixels, ElementsAre(0, 1, 2, 65535));
@@ -101,7 +101,7 @@ TEST(ContactSheet, PutsCellsInRowsWithTheirCaptionsBelow) {
             pictures::kInk);
 }
 
-TEST(PictureOutput, ATileHasColourDepthIdsAndDebugSideBySide) {
+TEST(PictureOutput, ATileHasColorDepthIdsAndDebugSideBySide) {
   const SmallImage small;
   EnvFrame frame = small.frame();
   const Image tile = tileOf(frame);

@@ -88,19 +88,19 @@ TEST(ObjectCheck, RefusesWrongBoxes) {
 
 TEST(ObjectCheck, RefusesWrongSpheres) {
   const std::string order =
-      "comes before its predecessor, wanted descending radii, then ascending centres";
+      "comes before its predecessor, wanted descending radii, then ascending centers";
   refuse({
       inObject("spheres", "is empty, wanted at least one sphere",
                [](ObjectFields& o) { o.spheres.clear(); }),
-      inObject("spheres[1].centre", "is farther than 800 m or not finite, wanted coordinates",
-               [](ObjectFields& o) { o.spheres[1].centre.z = kNan; }),
+      inObject("spheres[1].center", "is farther than 800 m or not finite, wanted coordinates",
+               [](ObjectFields& o) { o.spheres[1].center.z = kNan; }),
       inObject("spheres[0].radius_index", "is 2, wanted less than the number of radii 2",
                [](ObjectFields& o) { o.spheres[0].radius_index = 2; }),
       inObject("spheres[3].radius_index", "is 4294967295, wanted less than the number of radii 2",
                [](ObjectFields& o) { o.spheres[3].radius_index = 0xffffffff; }),
       inObject("spheres[1]", order, [](ObjectFields& o) { o.spheres[0].radius_index = 0; }),
-      inObject("spheres[2]", order, [](ObjectFields& o) { o.spheres[2].centre.x = -0.06F; }),
-      inObject("spheres[3]", order, [](ObjectFields& o) { o.spheres[3].centre.y = 0.04F; }),
+      inObject("spheres[2]", order, [](ObjectFields& o) { o.spheres[2].center.x = -0.06F; }),
+      inObject("spheres[3]", order, [](ObjectFields& o) { o.spheres[3].center.y = 0.04F; }),
       inObject("spheres[2]", order, [](ObjectFields& o) { o.spheres[2].radius_index = 1; }),
   });
 }
@@ -220,7 +220,7 @@ void readEverything(const PackFile& pack) {
     ASSERT_FALSE(object.spheres.empty());
     for (const SetSphere& sphere : object.spheres) {
       ASSERT_GT(set->radii()[sphere.radius_index], 0);
-      for (const float coordinate : {sphere.centre.x, sphere.centre.y, sphere.centre.z}) {
+      for (const float coordinate : {sphere.center.x, sphere.center.y, sphere.center.z}) {
         ASSERT_TRUE(std::isfinite(coordinate));
       }
     }

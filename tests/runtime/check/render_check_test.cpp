@@ -220,11 +220,11 @@ TEST(RenderCheck, RefusesWrongVerticesAndTriangles) {
 
 TEST(RenderCheck, RefusesWrongBoundsOfClusters) {
   refuse({
-      inBounds("are nan in row 0, wanted up to 3200", kCentreRow, kNan),
+      inBounds("are nan in row 0, wanted up to 3200", kCenterRow, kNan),
       inBounds("are inf in row 6, wanted up to 3200", kRadiusRow, kInfinity),
       inBounds("reach from 0.1796875 to 0.2421875 m, wanted around all vertices: 0.1953125 to "
                "0.2578125 m",
-               kCentreRow, 0.2109375F),
+               kCenterRow, 0.2109375F),
       inBounds("have a radius of 0.03125 m, wanted 0.04419417382415922 m, to the farthest vertex",
                kRadiusRow, 0.03125F),
       inBounds("have a radius of -1 m, wanted 0.04419417382415922 m, to the farthest vertex",

@@ -30,7 +30,7 @@ GridSpec publishedSpec() {
   return spec;
 }
 
-Clearance clearanceAt(const TestGrid& grid, Vec3 centre) { return grid.view().clearance(centre); }
+Clearance clearanceAt(const TestGrid& grid, Vec3 center) { return grid.view().clearance(center); }
 
 TEST(ColumnGrid, AnswersBlockedInEveryColumnOfAnEmptyGrid) {
   const TestGrid grid = GridBuilder(publishedSpec()).build();
@@ -222,20 +222,20 @@ struct Expected {
   double up = 0;
 };
 
-Expected bruteForce(const TestGrid& grid, Vec3 centre) {
+Expected bruteForce(const TestGrid& grid, Vec3 center) {
   // An end is rounded by up to one code, and a code is computed in float.
   const double tolerance = 1.5 * static_cast<double>(grid.spec.quantum);
   constexpr double kBorderTolerance = 1e-4;
-  const double fx = (static_cast<double>(centre.x) - static_cast<double>(grid.spec.min_x)) /
+  const double fx = (static_cast<double>(center.x) - static_cast<double>(grid.spec.min_x)) /
                     static_cast<double>(grid.spec.spacing);
-  const double fz = (static_cast<double>(centre.z) - static_cast<double>(grid.spec.min_z)) /
+  const double fz = (static_cast<double>(center.z) - static_cast<double>(grid.spec.min_z)) /
                     static_cast<double>(grid.spec.spacing);
   Expected expected;
   expected.certain = std::fabs(fx - std::round(fx)) > kBorderTolerance &&
                      std::fabs(fz - std::round(fz)) > kBorderTolerance;
   const auto i = static_cast<std::size_t>(fx);
   const auto k = static_cast<std::size_t>(fz);
-  const auto y = static_cast<double>(centre.y);
+  const auto y = static_cast<double>(center.y);
   for (const Span& span : grid.columns[k * grid.spec.columns_x + i]) {
     const double down = y - static_cast<double>(span.lo);
     const double up = static_cast<double>(span.hi) - y;
@@ -266,14 +266,14 @@ void compareWithBruteForce(const GridSpec& spec, std::uint32_t seed) {
   int certain = 0;
   int free = 0;
   for (int n = 0; n < kQueries; ++n) {
-    const Vec3 centre{spec.min_x + x(random), y(random), spec.min_z + z(random)};
-    const Expected expected = bruteForce(grid, centre);
+    const Vec3 center{spec.min_x + x(random), y(random), spec.min_z + z(random)};
+    const Expected expected = bruteForce(grid, center);
     if (!expected.certain) continue;
     ++certain;
     free += expected.free ? 1 : 0;
-    const Contact contact = view.contact(centre);
+    const Contact contact = view.contact(center);
     ASSERT_EQ(contact.clearance == Clearance::kFree, expected.free)
-        << centre.x << " " << centre.y << " " << centre.z;
+        << center.x << " " << center.y << " " << center.z;
     ASSERT_EQ(contact.clearance == Clearance::kBlocked, !expected.free);
     ASSERT_NEAR(static_cast<double>(contact.down), expected.down, tolerance);
     ASSERT_NEAR(static_cast<double>(contact.up), expected.up, tolerance);

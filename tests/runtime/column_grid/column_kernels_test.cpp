@@ -94,9 +94,9 @@ void expectSame(const Queries& queries, const Answers& a, const Answers& b) {
 Answers answerOneByOne(const ColumnGrid& grid, const Queries& queries) {
   Answers answers(queries.x.size());
   for (std::size_t n = 0; n < queries.x.size(); ++n) {
-    const Vec3 centre{queries.x[n], queries.y[n], queries.z[n]};
-    const Contact contact = grid.contact(centre);
-    EXPECT_EQ(grid.clearance(centre), contact.clearance);
+    const Vec3 center{queries.x[n], queries.y[n], queries.z[n]};
+    const Contact contact = grid.contact(center);
+    EXPECT_EQ(grid.clearance(center), contact.clearance);
     answers.clearance[n] = contact.clearance;
     answers.down[n] = contact.down;
     answers.up[n] = contact.up;
@@ -134,23 +134,23 @@ GridSpec towerSpec() {
   return spec;
 }
 
-/// Up to 64 centres at a time, some of their eights: the clearances as bits.
+/// Up to 64 centers at a time, some of their eights: the clearances as bits.
 void compareNotFree(const ColumnGridLayout& grid, const Queries& queries, const Answers& answers,
                     std::mt19937& random) {
   constexpr std::size_t kMost = 64;
   for (std::size_t first = 0; first + kMost <= queries.x.size(); first += kMost) {
-    const detail::EightsOfCentres centres{queries.x.data() + first, queries.y.data() + first,
+    const detail::EightsOfCenters centers{queries.x.data() + first, queries.y.data() + first,
                                           queries.z.data() + first,
                                           static_cast<unsigned>(random() % 256)};
     std::uint64_t expected = 0;
     for (std::size_t n = 0; n < kMost; ++n) {
-      const bool is_asked = (centres.eights >> n / 8 & 1U) != 0;
+      const bool is_asked = (centers.eights >> n / 8 & 1U) != 0;
       const bool is_free = answers.clearance[first + n] == Clearance::kFree;
       expected |= std::uint64_t{is_asked && !is_free} << n;
     }
-    ASSERT_EQ(detail::notFreePortable(grid, centres), expected);
+    ASSERT_EQ(detail::notFreePortable(grid, centers), expected);
     if (!detail::hasAvx2()) continue;
-    ASSERT_EQ(detail::notFreeAvx2(grid, centres), expected);
+    ASSERT_EQ(detail::notFreeAvx2(grid, centers), expected);
   }
 }
 

@@ -14,7 +14,7 @@
 namespace galactic::test::kinematics_test {
 namespace {
 
-/// Single precision along chains of a dozen links and a few metres.
+/// Single precision along chains of a dozen links and a few meters.
 constexpr double kLengthTolerance = 1e-5;
 constexpr double kAngleTolerance = 1e-5;
 
@@ -24,7 +24,7 @@ constexpr std::array kTypes{JointType::kFixed,     JointType::kRevolute, JointTy
 /// A random tree of a robot's size.
 struct RandomTree {
   std::vector<LinkFrame> links;
-  /// Farthest from 0 that each position goes: a turn, or half a metre.
+  /// Farthest from 0 that each position goes: a turn, or half a meter.
   std::vector<float> reach;
   std::size_t mimics = 0;
 };

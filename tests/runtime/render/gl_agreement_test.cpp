@@ -13,7 +13,7 @@ constexpr double kMeanColor = 0.2;
 constexpr float kDepth = 0.01F;
 constexpr double kDeepShare = 0.0005;
 
-TEST(BackendAgreement, ImagesOfTheOpenGlDriverAndOfTheRasteriserDifferLessThanCanBeSeen) {
+TEST(BackendAgreement, ImagesOfTheOpenGlDriverAndOfTheRasterizerDifferLessThanCanBeSeen) {
   GALACTIC_SKIP_WITHOUT_GL();
   GlHome home;
   const std::vector<RenderView> views = home.views(48);
@@ -41,7 +41,7 @@ TEST(BackendAgreement, ImagesOfTheOpenGlDriverAndOfTheRasteriserDifferLessThanCa
   const auto share = [&](std::size_t count) {
     return static_cast<double>(count) / static_cast<double>(pixels);
   };
-  std::printf("mean colour difference %.4f of 255, depth off on %.5f %%, another id on %.5f %%\n",
+  std::printf("mean color difference %.4f of 255, depth off on %.5f %%, another id on %.5f %%\n",
               mean, 100 * share(far), 100 * share(other));
   EXPECT_LT(mean, kMeanColor);
   EXPECT_LT(share(far), kDeepShare);

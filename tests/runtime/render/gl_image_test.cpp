@@ -314,7 +314,7 @@ TEST_F(GlImage, SemanticIdsCountOnOverTheModelsOfALibrary) {
   EXPECT_EQ(names[images.semantics[128 * 128 + 64]], "background");
 }
 
-TEST_F(GlImage, VertexColoursMultiplyTheMaterial) {
+TEST_F(GlImage, VertexColorsMultiplyTheMaterial) {
   OneModel wall;
   wall.builder.keepColors();
   wall.builder.model();
@@ -414,7 +414,7 @@ TEST_F(GlImage, CompressedTexturesLookAlikeDecodedOrNot) {
   const RenderImages decoded = renderTuned(wall.library, glOptions(), {.core_only = true}, views);
   std::map<std::uint32_t, std::size_t> colors;
   for (std::size_t i = 0; i < stored.color.size(); ++i) {
-    // Drivers may round the colours between the two ends.
+    // Drivers may round the colors between the two ends.
     ASSERT_NEAR(stored.color[i], decoded.color[i], 2) << i;
   }
   for (std::size_t i = 0; i < stored.depth.size(); ++i) ++colors[pixelOf(decoded, i)];

@@ -102,7 +102,7 @@ TEST(LibraryGeometry, KeepsEveryTriangleAndOrdersClustersByClass) {
            ++c) {
         ++found[kind];
         const GpuBounds& bounds = geometry.bounds[c];
-        // Indices of neighbours follow each other, so that runs of clusters are one draw.
+        // Indices of neighbors follow each other, so that runs of clusters are one draw.
         const std::uint32_t next = c + 1 < geometry.bounds.size()
                                        ? geometry.bounds[c + 1].first_index
                                        : static_cast<std::uint32_t>(geometry.indices.size());

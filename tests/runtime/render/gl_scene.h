@@ -40,14 +40,14 @@ inline RenderCamera cameraAt(const Vec3& place, float yaw_degrees = 0, float pit
   return {rigidTransform({place, turned}), radians(fov_degrees)};
 }
 
-/// A wall across the X axis, 2 x `half` metres, seen from -X.
+/// A wall across the X axis, 2 x `half` meters, seen from -X.
 inline void addWall(RenderModelBuilder& builder, float x, float half,
                     const RenderSurface& surface = {}) {
   builder.quad({{{x, -half, -half}, {x, -half, half}, {x, half, half}, {x, half, -half}}}, surface);
 }
 
 /// A box with one side open at -X, of many small squares: `cells` along each edge of a side.
-inline void addBox(RenderModelBuilder& builder, const Vec3& centre, float half, int cells,
+inline void addBox(RenderModelBuilder& builder, const Vec3& center, float half, int cells,
                    const RenderSurface& surface = {}) {
   const std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -60,7 +60,7 @@ inline void addBox(RenderModelBuilder& builder, const Vec3& centre, float half, 
         const auto at = [&](int a, int b) {
           const float s = 2 * static_cast<float>(a) / static_cast<float>(cells) - 1;
           const float t = 2 * static_cast<float>(b) / static_cast<float>(cells) - 1;
-          return centre + out + u * s + v * t;
+          return center + out + u * s + v * t;
         };
         const int a = i % cells;
         const int b = i / cells;

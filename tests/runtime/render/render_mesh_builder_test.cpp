@@ -31,7 +31,7 @@ RenderMeshSource sourceOf(std::vector<RenderPart> parts) {
   return source;
 }
 
-/// A sphere of `rings` x 2 `rings` quads, radius `radius`, with texture coordinates and colours.
+/// A sphere of `rings` x 2 `rings` quads, radius `radius`, with texture coordinates and colors.
 RenderSurface sphereSurface(std::uint32_t rings, double radius, bool with_colors) {
   RenderSurface surface;
   const std::uint32_t columns = 2 * rings;
@@ -154,7 +154,7 @@ TEST(RenderMeshBuilder, EveryTriangleOfALargeSurfaceIsThereOnceWithinHalfAStep) 
   ASSERT_TRUE(built) << built.error().message;
   const RenderMeshes meshes = built->view();
   const Reader reader(meshes, meshes.models[0]);
-  // Colours number the vertices.
+  // Colors number the vertices.
   std::map<std::uint32_t, RenderVertex> by_color;
   for (const RenderVertex& vertex : surface.vertices) by_color[vertex.color] = vertex;
   using Key = std::array<std::uint32_t, 3>;
@@ -213,13 +213,13 @@ TEST(RenderMeshBuilder, BoundsHoldWhatIsDrawn) {
     const Reader reader(meshes, model);
     for (std::size_t c = 0; c < model.cluster_count; ++c) {
       const RenderCluster& cluster = reader.clusters()[c];
-      const std::array<double, 3> centre{double{reader.bound(c, 0)}, double{reader.bound(c, 1)},
+      const std::array<double, 3> center{double{reader.bound(c, 0)}, double{reader.bound(c, 1)},
                                          double{reader.bound(c, 2)}};
       for (std::size_t n = 0; n < cluster.vertex_count; ++n) {
         const std::array<double, 3> p = reader.vertex(cluster, n).position;
-        EXPECT_LE(distance(p, centre), double{reader.bound(c, 6)});
+        EXPECT_LE(distance(p, center), double{reader.bound(c, 6)});
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          EXPECT_LE(std::abs(p[axis] - centre[axis]), double{reader.bound(c, 3 + axis)});
+          EXPECT_LE(std::abs(p[axis] - center[axis]), double{reader.bound(c, 3 + axis)});
           EXPECT_GE(p[axis], wide(model.bounds_min)[axis]);
           EXPECT_LE(p[axis], wide(model.bounds_max)[axis]);
         }

@@ -29,7 +29,7 @@ RenderOptions batchOptions(std::uint32_t width, std::uint32_t height, std::uint3
   return options;
 }
 
-/// Clutter with everything that a pack can have: textures, masks, colours, flat surfaces, both
+/// Clutter with everything that a pack can have: textures, masks, colors, flat surfaces, both
 /// kinds of sides, large and small triangles.
 class SoftBatch : public testing::Test {
  protected:
@@ -80,11 +80,11 @@ class SoftBatch : public testing::Test {
       return Vec3{uniform(random_, -size, size), uniform(random_, -size, size),
                   uniform(random_, -size, size)};
     };
-    const Vec3 centre = place(reach);
+    const Vec3 center = place(reach);
     const float size = reach * std::exp(uniform(random_, -4, 0));
     std::array<RenderVertex, 3> corners;
     for (RenderVertex& corner : corners) {
-      corner = {centre + place(size), uniform(random_, 0, 3), uniform(random_, 0, 3),
+      corner = {center + place(size), uniform(random_, 0, 3), uniform(random_, 0, 3),
                 static_cast<std::uint32_t>(random_())};
     }
     builder.triangle(corners, {.material = material,
@@ -347,7 +347,7 @@ TEST_F(SoftBatch, AFullListOfRecordsChangesNothing) {
   RenderOptions options = batchOptions(256, 256);
   options.culling = false;
   const RenderImages images = renderViews(library, options, views);
-  // The nearest wall alone, with the same colours.
+  // The nearest wall alone, with the same colors.
   options.culling = true;
   EXPECT_EQ(renderViews(library, options, views), images);
   for (std::size_t n = 0; n < images.depth.size(); ++n) {
@@ -386,7 +386,7 @@ TEST(SoftRenderer, RefusesOptionsOutOfRange) {
   options = batchOptions(128, 128);
   options.color = ColorFormat::kNone;
   options.depth = options.semantics = false;
-  EXPECT_EQ(message(options), "found no image to make; wanted colour, depth or semantics");
+  EXPECT_EQ(message(options), "found no image to make; wanted color, depth or semantics");
 }
 
 }  // namespace

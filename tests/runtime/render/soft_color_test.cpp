@@ -1,4 +1,4 @@
-// Colours and semantic ids of the rasteriser.
+// Colors and semantic ids of the rasterizer.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -122,7 +122,7 @@ TEST(SoftColor, OfACheckerboardIsExactAwayFromEdgesAtEveryDistance) {
 }
 
 TEST(SoftColor, TakesTheLevelWhoseTexelsAreNearestToPixels) {
-  // Each level of this texture has one colour of its own.
+  // Each level of this texture has one color of its own.
   RenderModelBuilder builder;
   const std::int32_t texture = builder.texture(64, std::vector<std::uint32_t>(64 * 64, kRed));
   const std::uint16_t surface = builder.material(0, texture);
@@ -144,7 +144,7 @@ TEST(SoftColor, TakesTheLevelWhoseTexelsAreNearestToPixels) {
     const std::vector<RenderInstance> instances = {{0, {.origin = {distance, 0, 0}}}};
     RenderView view{{}, instances};
     const RenderImages images = renderViews(library, colorOptions(127, 127), {&view, 1});
-    // 32 texels per metre, 63.5 / distance pixels.
+    // 32 texels per meter, 63.5 / distance pixels.
     const double level = std::log2(32 * static_cast<double>(distance) / 63.5);
     const double rounded = std::clamp(std::round(level), 0.0, 6.0);
     if (std::abs(level - std::floor(level) - 0.5) < 0.01) continue;
@@ -173,7 +173,7 @@ TEST(SoftColor, RepeatsTexturesBeyondTheirEdges) {
       const std::uint32_t texel = texels[y % 16 * 16 + x % 16];
       const std::uint32_t drawn = pixel(images, y * 128 + x);
       for (std::uint32_t shift = 0; shift < 32; shift += 8) {
-        // Texture coordinates are stored in 16 bits: a blend of neighbours of up to 1/256.
+        // Texture coordinates are stored in 16 bits: a blend of neighbors of up to 1/256.
         ASSERT_NEAR((drawn >> shift) & 0xFFU, (texel >> shift) & 0xFFU, 2) << x << ", " << y;
       }
     }
@@ -213,8 +213,8 @@ TEST(SoftColor, CornersColorsMultiplyAndFollowPerspective) {
 }
 
 /// Random triangles in front of the camera, near, far and across its near plane: textured, plain
-/// and with holes, in shades of grey. `colored`: a red corner that nobody sees in each cluster.
-RenderModelBuilder greyTriangles(bool colored) {
+/// and with holes, in shades of gray. `colored`: a red corner that nobody sees in each cluster.
+RenderModelBuilder grayTriangles(bool colored) {
   std::mt19937 random(11);
   RenderModelBuilder builder(1.0F / 4096);
   std::vector<std::uint32_t> texels = randomTexels(random, 16);
@@ -229,11 +229,11 @@ RenderModelBuilder greyTriangles(bool colored) {
   builder.model();
   const auto corner = [&](const Vec3& middle, float reach) {
     const auto off = [&] { return uniform(random, -reach, reach); };
-    const auto grey = static_cast<std::uint32_t>(random() % 256);
+    const auto gray = static_cast<std::uint32_t>(random() % 256);
     return RenderVertex{{middle.x + off(), middle.y + off(), middle.z + off()},
                         uniform(random, 0, 3),
                         uniform(random, 0, 3),
-                        0xFF000000U | grey * 0x010101U};
+                        0xFF000000U | gray * 0x010101U};
   };
   for (int cluster = 0; cluster < 24; ++cluster) {
     const RenderSurface surface{.material = materials[static_cast<std::size_t>(cluster) % 3],
@@ -255,15 +255,15 @@ RenderModelBuilder greyTriangles(bool colored) {
   return builder;
 }
 
-TEST(SoftColor, GreyCornersGiveTheBitsThatColoredOnesGive) {
-  // Light that is baked in is grey and goes a shorter way.
-  const RenderImages grey = draw(greyTriangles(false), colorOptions(200, 150));
-  const RenderImages colored = draw(greyTriangles(true), colorOptions(200, 150));
-  EXPECT_EQ(grey.color, colored.color);
-  EXPECT_EQ(grey.depth, colored.depth);
-  EXPECT_EQ(grey.semantics, colored.semantics);
+TEST(SoftColor, GrayCornersGiveTheBitsThatColoredOnesGive) {
+  // Light that is baked in is gray and goes a shorter way.
+  const RenderImages gray = draw(grayTriangles(false), colorOptions(200, 150));
+  const RenderImages colored = draw(grayTriangles(true), colorOptions(200, 150));
+  EXPECT_EQ(gray.color, colored.color);
+  EXPECT_EQ(gray.depth, colored.depth);
+  EXPECT_EQ(gray.semantics, colored.semantics);
   std::set<std::uint32_t> seen;
-  for (std::size_t n = 0; n < std::size_t{200} * 150; ++n) seen.insert(pixel(grey, n));
+  for (std::size_t n = 0; n < std::size_t{200} * 150; ++n) seen.insert(pixel(gray, n));
   EXPECT_GT(seen.size(), 5000U);
 }
 

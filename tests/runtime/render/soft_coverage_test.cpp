@@ -94,13 +94,13 @@ TEST(SoftCoverage, AClosedRoomCoversEveryPixelFromAllCamerasInside) {
   }
 }
 
-TEST(SoftCoverage, TrianglesOfAKilometreAroundTheEyeCoverEveryPixel) {
+TEST(SoftCoverage, TrianglesOfAKilometerAroundTheEyeCoverEveryPixel) {
   constexpr std::uint32_t kSeed = 7002;
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed);
   RenderModelBuilder builder(1.0F / 32);
   builder.model();
-  // A tetrahedron seen from inside, its corners about a kilometre away.
+  // A tetrahedron seen from inside, its corners about a kilometer away.
   const Vec3 a{700, 700, 700};
   const Vec3 b{-700, -700, 700};
   const Vec3 c{-700, 700, -700};
@@ -118,7 +118,7 @@ TEST(SoftCoverage, TrianglesOfAKilometreAroundTheEyeCoverEveryPixel) {
   const std::vector<RenderInstance> instances = {{0, {}}};
   for (int n = 0; n < 60; ++n) {
     RenderView view;
-    // Next to a wall too: the point is at most a tenth of a metre inside of face a b c.
+    // Next to a wall too: the point is at most a tenth of a meter inside of face a b c.
     const float s = uniform(random, 0.1F, 0.5F);
     const float t = uniform(random, 0.1F, 0.4F);
     const Vec3 on_face = a * (1 - s - t) + b * s + c * t;
@@ -143,7 +143,7 @@ TEST(SoftCoverage, PixelsAlongASharedEdgeBelongToOneOfTwoTriangles) {
   std::size_t none = 0;
   for (int n = 0; n < 400; ++n) {
     // A quad in the plane x = 2, cut along its diagonal: three models, the whole and both halves.
-    // On every second one all corners lie on pixel centres, so that edges run through others.
+    // On every second one all corners lie on pixel centers, so that edges run through others.
     const bool regular = n % 2 == 0;
     const float size = std::exp(uniform(random, -2, 1.2F));
     std::array<Vec3, 4> corners;

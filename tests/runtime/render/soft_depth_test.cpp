@@ -1,4 +1,4 @@
-// Depth images of the rasteriser against closed forms and against rays in double precision.
+// Depth images of the rasterizer against closed forms and against rays in double precision.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace galactic::test::soft_depth_test {
 namespace {
 
-/// Metres: what the issue of rendering asks for.
+/// Meters: what the issue of rendering asks for.
 constexpr float kDepthTolerance = 1e-3F;
 
 RenderOptions depthOptions(std::uint32_t width, std::uint32_t height) {
@@ -115,7 +115,7 @@ TEST(SoftDepth, OfAGlobeIsThatOfTheSphereWithinItsFacets) {
     for (std::uint32_t x = 0; x < 128; ++x) {
       const double right = (x + 0.5 - 64) / focal;
       const double down = (y + 0.5 - 64) / focal;
-      // |t (1, up, right) - centre| = 1
+      // |t (1, up, right) - center| = 1
       const double a = 1 + right * right + down * down;
       const double square = 9 - a * 8;
       const float depth = images.depth[y * 128 + x];
@@ -138,11 +138,11 @@ RenderModelBuilder clutter(std::mt19937& random, int count) {
   RenderModelBuilder builder(1.0F / 1024);
   builder.model();
   for (int n = 0; n < count; ++n) {
-    const Vec3 centre{uniform(random, -6, 6), uniform(random, -6, 6), uniform(random, -6, 6)};
+    const Vec3 center{uniform(random, -6, 6), uniform(random, -6, 6), uniform(random, -6, 6)};
     const float size = std::exp(uniform(random, -3, 1.5F));
     std::array<RenderVertex, 3> corners;
     for (RenderVertex& corner : corners) {
-      corner.position = centre + Vec3{uniform(random, -size, size), uniform(random, -size, size),
+      corner.position = center + Vec3{uniform(random, -size, size), uniform(random, -size, size),
                                       uniform(random, -size, size)};
     }
     builder.triangle(corners, {.two_sided = true});

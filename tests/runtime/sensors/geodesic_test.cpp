@@ -21,7 +21,7 @@ using testing::HasSubstr;
 /// A wall in the middle, with a gap at large z.
 std::vector<Block> walls() { return {plainFloor(), {{1.4375F, 0, 0}, {1.5625F, 2, 2.25F}}}; }
 
-/// Left of the wall; the target stands on the floor a metre ahead of it, the goal (see
+/// Left of the wall; the target stands on the floor a meter ahead of it, the goal (see
 /// episodesFrom) is at (1.5, 1.5), in the wall.
 EpisodePackFields episode(const Vec3& target, const Vec3& goal, float turn = 0) {
   EpisodePackFields fields = episodesFrom({{{0.75F, 0, 0.75F}, turn, {target}}});

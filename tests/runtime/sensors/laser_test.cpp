@@ -20,7 +20,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The side of a cell, and the radius of the sphere that blocks it, metres: a beam may end as much
+/// The side of a cell, and the radius of the sphere that blocks it, meters: a beam may end as much
 /// before a wall, and half a cell behind.
 constexpr float kEarly = BoxRoom::kSpacing + 0.015F;
 constexpr float kLate = BoxRoom::kSpacing / 2;

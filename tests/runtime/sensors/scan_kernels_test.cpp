@@ -129,13 +129,13 @@ RestingBox randomBox(std::mt19937& random, const Vec3& around) {
   return simulation::restingBox(box, pose);
 }
 
-/// How deep a point is in a box, metres; negative outside.
+/// How deep a point is in a box, meters; negative outside.
 double depthIn(const RestingBox& box, const Point3& point) {
-  const Point3 centre = toPoint3(box.centre);
+  const Point3 center = toPoint3(box.center);
   const auto depth = [&](const Vec3& axis, float half) {
     const Point3 a = toPoint3(axis);
     double along = 0;
-    for (std::size_t n = 0; n < 3; ++n) along += a[n] * (point[n] - centre[n]);
+    for (std::size_t n = 0; n < 3; ++n) along += a[n] * (point[n] - center[n]);
     return static_cast<double>(half) - std::abs(along);
   };
   return std::min({depth(box.axis_x, box.half_extents.x), depth(box.axis_y, box.half_extents.y),
@@ -146,7 +146,7 @@ TEST(ScanKernels, EndBeamsWhereMarchingEntersABox) {
   std::mt19937 random(kSeed);
   const ScanKernels kernels = sensors::portableScan();
   constexpr float kRange = 1;
-  /// Metres: floats through a rotation.
+  /// Meters: floats through a rotation.
   constexpr double kTolerance = 1e-4;
   int met = 0;
   int inside = 0;

@@ -9,7 +9,7 @@
 
 namespace galactic::test {
 
-/// The height at which ScatteredGrid's blocks differ from its free cells, metres.
+/// The height at which ScatteredGrid's blocks differ from its free cells, meters.
 inline constexpr float kCutHeight = 1;
 
 /// A grid whose columns are free below 2 m but for scattered cells and blocks.

@@ -66,7 +66,7 @@ bool isOpen(const FloorPlan& plan, const Vec3& a, const Vec3& b) {
   return true;
 }
 
-/// What the scene's columns know of a wall reaches this far beyond it, metres: the radius of their
+/// What the scene's columns know of a wall reaches this far beyond it, meters: the radius of their
 /// sphere, and half the diagonal of a cell.
 constexpr float kGrown = 0.04F;
 

@@ -268,7 +268,7 @@ TEST(Episodes, MayLookInAnyDirectionHoweverOftenTheyTurned) {
   const Vec3 wanted = start(0.5F);
   for (const float turns : {-1.0F, 1.0F, 100.0F, -1000.0F}) {
     const Vec3 found = start(0.5F + turns * kTurn);
-    // Floats of thousands of radians are a millimetre apart.
+    // Floats of thousands of radians are a millimeter apart.
     EXPECT_NEAR(found.x, wanted.x, 1e-4F) << turns;
     EXPECT_NEAR(found.z, wanted.z, 1e-4F) << turns;
   }

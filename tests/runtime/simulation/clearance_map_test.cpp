@@ -34,7 +34,7 @@ BoxRoom furnishedRoom(std::mt19937& random) {
   return BoxRoom(std::move(blocks));
 }
 
-/// Eight centres near each other, as one of eight groups whose bounds are alike.
+/// Eight centers near each other, as one of eight groups whose bounds are alike.
 struct Eight {
   explicit Eight(std::mt19937& random) {
     const float size = uniformIn(random, 0, 0.3F);

@@ -139,18 +139,18 @@ TEST(PushOutOfScene, LeadsBackIntoTheGrid) {
 }
 
 /// The length of the shortest way out, cell by cell; none within `reach`.
-std::optional<double> shortestWay(const ColumnGrid& grid, const Vec3& centre, double reach) {
+std::optional<double> shortestWay(const ColumnGrid& grid, const Vec3& center, double reach) {
   double shortest = std::numeric_limits<double>::infinity();
   const double spacing = static_cast<double>(grid.spacing());
   for (const int direction : {-1, 1}) {
     for (const bool along_x : {false, true}) {
-      const double from = static_cast<double>(along_x ? centre.x : centre.z);
+      const double from = static_cast<double>(along_x ? center.x : center.z);
       const double cell = std::floor(from / spacing);
       for (int n = 1; n * spacing < reach + 2 * spacing; ++n) {
         // Into the n-th cell further: its near border, and a little.
         const double border = (direction > 0 ? cell + n : cell - n + 1) * spacing;
         const double way = std::abs(border - from) + static_cast<double>(kMargin);
-        Vec3 at = centre;
+        Vec3 at = center;
         (along_x ? at.x : at.z) = static_cast<float>(from + direction * way);
         if (grid.clearance(at) != Clearance::kFree) continue;
         shortest = std::min(shortest, way);
@@ -174,17 +174,17 @@ TEST(PushOutOfScene, FindsWhatASearchOfAllCellsFinds) {
     const TestGrid grid = randomGrid(spec, random);
     for (int n = 0; n < 1000; ++n) {
       // At and beyond the floor and ceiling most columns are blocked.
-      const Vec3 centre{uniformIn(random, 0, 1.25F), uniformIn(random, 0, 0.2F),
+      const Vec3 center{uniformIn(random, 0, 1.25F), uniformIn(random, 0, 0.2F),
                         uniformIn(random, 0, 1.25F)};
       constexpr float kReach = 0.1F;
-      if (grid.view().clearance(centre) == Clearance::kFree) continue;
-      const Push push = pushOutOfScene(grid.view(), centre, kReach);
-      const auto way = shortestWay(grid.view(), centre, static_cast<double>(kReach));
+      if (grid.view().clearance(center) == Clearance::kFree) continue;
+      const Push push = pushOutOfScene(grid.view(), center, kReach);
+      const auto way = shortestWay(grid.view(), center, static_cast<double>(kReach));
       found.add(way.has_value());
       ASSERT_NEAR(static_cast<double>(std::abs(push.x) + std::abs(push.z)), way.value_or(0), 1e-6);
       ASSERT_TRUE(push.x == 0 || push.z == 0);
       if (!way) continue;
-      ASSERT_EQ(grid.view().clearance({centre.x + push.x, centre.y, centre.z + push.z}),
+      ASSERT_EQ(grid.view().clearance({center.x + push.x, center.y, center.z + push.z}),
                 Clearance::kFree);
     }
   }
@@ -205,11 +205,11 @@ TEST(PushOutOfScene, IsTheSameBitForBitWithBothKernels) {
     const ColumnGrid view = grid.view();
     const ColumnGridLayout& layout = view.layout();
     for (int n = 0; n < 1000; ++n) {
-      const Vec3 centre{uniformIn(random, -0.1F, 1.35F), uniformIn(random, -0.1F, 0.2F),
+      const Vec3 center{uniformIn(random, -0.1F, 1.35F), uniformIn(random, -0.1F, 0.2F),
                         uniformIn(random, -0.1F, 1.35F)};
       const float reach = uniformIn(random, 0, 0.2F);
-      const Push portable = pushOutPortable(layout, centre, reach);
-      const Push fast = pushOutAvx2(layout, centre, reach);
+      const Push portable = pushOutPortable(layout, center, reach);
+      const Push fast = pushOutAvx2(layout, center, reach);
       ASSERT_EQ(portable.x, fast.x);
       ASSERT_EQ(portable.z, fast.z);
       found.add(portable.x != 0 || portable.z != 0);
@@ -218,7 +218,7 @@ TEST(PushOutOfScene, IsTheSameBitForBitWithBothKernels) {
   found.expectBothSides();
 }
 
-/// One metre long in x, two in z.
+/// One meter long in x, two in z.
 RestingBox block() { return restingBox({{}, {0.5F, 0.5F, 1}}, {{2, 1, 3}, {}}); }
 
 TEST(PushOutOfBox, PushesASphereOutOfTheNearestSide) {
@@ -236,7 +236,7 @@ TEST(PushOutOfBox, PushesASphereOverAnEdgeAsFarAsTheEdgeReaches) {
   expectPush(pushOutOfBox(block(), {2.5F + aside, 1, 4 + aside}, 0.05F), out, out);
 }
 
-TEST(PushOutOfBox, PushesACentreInsideOrAboveAwayFromTheMiddle) {
+TEST(PushOutOfBox, PushesACenterInsideOrAboveAwayFromTheMiddle) {
   expectPush(pushOutOfBox(block(), {2.25F, 1, 3}, 0.12F), 0.12F, 0);
   expectPush(pushOutOfBox(block(), {2, 1.55F, 2.5F}, 0.12F), 0, -0.12F);
   // Exactly in the middle any direction will do.
@@ -244,7 +244,7 @@ TEST(PushOutOfBox, PushesACentreInsideOrAboveAwayFromTheMiddle) {
   EXPECT_FLOAT_EQ(std::hypot(push.x, push.z), 0.12F);
 }
 
-TEST(PushOutOfBox, FreesEverySphereWhoseCentreIsAsideOfAnUprightBox) {
+TEST(PushOutOfBox, FreesEverySphereWhoseCenterIsAsideOfAnUprightBox) {
   std::mt19937 random(603);
   int freed = 0;
   for (int round = 0; round < 20000; ++round) {
@@ -253,13 +253,13 @@ TEST(PushOutOfBox, FreesEverySphereWhoseCentreIsAsideOfAnUprightBox) {
     body.pose.rotation = yaw(6.28 * uniform(random));
     const Point3 near = body.solid().at(
         {uniform(random) * 2.4 - 1.2, uniform(random) * 2.4 - 1.2, uniform(random) * 2.4 - 1.2});
-    const Vec3 centre{static_cast<float>(near[0]), static_cast<float>(near[1]),
+    const Vec3 center{static_cast<float>(near[0]), static_cast<float>(near[1]),
                       static_cast<float>(near[2])};
     const RestingBox box = body.resting();
-    const Vec3 normal = centre - nearestPoint(box, centre);
-    if (!overlaps(box, centre, 0.05F) || std::hypot(normal.x, normal.z) < 1e-4F) continue;
-    const Push push = pushOutOfBox(box, centre, 0.05F);
-    ASSERT_FALSE(overlaps(box, {centre.x + push.x, centre.y, centre.z + push.z}, 0.05F));
+    const Vec3 normal = center - nearestPoint(box, center);
+    if (!overlaps(box, center, 0.05F) || std::hypot(normal.x, normal.z) < 1e-4F) continue;
+    const Push push = pushOutOfBox(box, center, 0.05F);
+    ASSERT_FALSE(overlaps(box, {center.x + push.x, center.y, center.z + push.z}, 0.05F));
     ASSERT_LE(std::hypot(push.x, push.z), 0.05F + 2 * kMargin);
     ++freed;
   }
@@ -290,17 +290,17 @@ struct Flat {
     return blocks;
   }
 
-  [[nodiscard]] bool isTaken(const Point3& centre, double radius) const {
-    return room.isBlocked(centre, radius) ||
+  [[nodiscard]] bool isTaken(const Point3& center, double radius) const {
+    return room.isBlocked(center, radius) ||
            std::any_of(bodies.begin(), bodies.end(),
-                       [&](const Body& body) { return body.solid().distance(centre) < radius; });
+                       [&](const Body& body) { return body.solid().distance(center) < radius; });
   }
 
   /// Whether a sphere penetrates anything, by brute force; none when rounding decides.
-  [[nodiscard]] std::optional<bool> isTaken(const Vec3& centre, float radius) const {
+  [[nodiscard]] std::optional<bool> isTaken(const Vec3& center, float radius) const {
     // Grids round heights inwards to 0.06 mm.
     constexpr double kTie = 1e-4;
-    const Point3 at = toPoint3(centre);
+    const Point3 at = toPoint3(center);
     const bool taken = isTaken(at, static_cast<double>(radius));
     for (const std::size_t axis : {0U, 1U, 2U}) {
       for (const double by : {-kTie, kTie}) {
@@ -326,18 +326,18 @@ Spheres randomSpheres(const Flat& flat, std::mt19937& random) {
   Spheres spheres;
   for (std::uint32_t r = 0; r < BoxRoom::kRadii.size(); ++r) {
     if (random() % 3 == 0) continue;
-    std::vector<Vec3> centres(1 + random() % 10);
-    for (Vec3& centre : centres) {
+    std::vector<Vec3> centers(1 + random() % 10);
+    for (Vec3& center : centers) {
       const bool outside = random() % 50 == 0;
-      centre = {outside ? 3.25F : uniformIn(random, 0.05F, 2.95F), uniformIn(random, 0.13F, 2),
+      center = {outside ? 3.25F : uniformIn(random, 0.05F, 2.95F), uniformIn(random, 0.13F, 2),
                 uniformIn(random, 0.05F, 2.95F)};
-      const auto taken = flat.isTaken(centre, BoxRoom::kRadii[r]);
+      const auto taken = flat.isTaken(center, BoxRoom::kRadii[r]);
       spheres.has_ties = spheres.has_ties || !taken;
       spheres.taken_count += taken.value_or(false) ? 1U : 0U;
       spheres.taken.push_back(taken);
     }
-    spheres.count += centres.size();
-    spheres.batch.add(r, BoxRoom::kRadii[r], centres);
+    spheres.count += centers.size();
+    spheres.batch.add(r, BoxRoom::kRadii[r], centers);
     spheres.taken.resize(paddedToLanes(spheres.taken.size()), false);
   }
   return spheres;
@@ -387,9 +387,9 @@ TEST(Penetration, OfAPlaceThatTheGridDoesNotKnowIsAssumed) {
   const BoxRoom room({});
   const RestingObjects none(1, 0.12F);
   const Obstacles obstacles{room.scene(), none};
-  const auto taken = [&](const Vec3& centre) {
+  const auto taken = [&](const Vec3& center) {
     OwnedBatch batch;
-    batch.add(1, 0.05F, {centre});
+    batch.add(1, 0.05F, {center});
     return penetrates(obstacles, batch.view());
   };
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -411,21 +411,21 @@ TEST(Penetration, PushesAddUpTheSameForSpheresInAnyOrder) {
     const Flat flat(random);
     const Obstacles obstacles{flat.room.scene(), flat.objects};
     for (int n = 0; n < 100; ++n) {
-      std::vector<Vec3> centres(12);
-      for (Vec3& centre : centres) {
-        centre = {uniformIn(random, 0.5F, 2.5F), uniformIn(random, 0.13F, 1.5F),
+      std::vector<Vec3> centers(12);
+      for (Vec3& center : centers) {
+        center = {uniformIn(random, 0.5F, 2.5F), uniformIn(random, 0.13F, 1.5F),
                   uniformIn(random, 0.5F, 2.5F)};
       }
       const auto total = [&] {
         OwnedBatch batch;
-        batch.add(1, 0.05F, centres);
+        batch.add(1, 0.05F, centers);
         PushSum sum;
         pushOut(obstacles, batch.view(), {}, 0.1F, scratch, sum);
         return sum.total(0.1F);
       };
       const Push first = total();
-      std::reverse(centres.begin(), centres.end());
-      std::swap(centres[2], centres[7]);
+      std::reverse(centers.begin(), centers.end());
+      std::swap(centers[2], centers[7]);
       ASSERT_EQ(total().x, first.x);
       ASSERT_EQ(total().z, first.z);
       pushed += first.x != 0 || first.z != 0 ? 1 : 0;

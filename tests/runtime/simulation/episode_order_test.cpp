@@ -76,7 +76,7 @@ TEST(Permuted, BringsEachNumberToEachPlaceAboutEquallyOften) {
   for (std::uint64_t key = 0; key < kKeys; ++key) {
     for (std::uint32_t n = 0; n < kCount; ++n) ++seen[n * kCount + permuted(n, kCount, key)];
   }
-  // No cipher: walking the cycles of so small a network favours some places by a fifth.
+  // No cipher: walking the cycles of so small a network favors some places by a fifth.
   for (const std::uint32_t times : seen) EXPECT_NEAR(times, 2000, 500);
 }
 

@@ -41,7 +41,7 @@ TEST(HeldSpheres, StandInLanesRadiusByRadius) {
   for (const RadiusRange& range : batch.ranges) {
     for (std::uint32_t n = 0; n < paddedToLanes(range.count); ++n) {
       const std::size_t from = sphere + std::min(n, range.count - 1);
-      const Vec3 expected = pose * spheres[from].centre;
+      const Vec3 expected = pose * spheres[from].center;
       EXPECT_NEAR(batch.x[range.first + n], expected.x, 1e-6F);
       EXPECT_NEAR(batch.y[range.first + n], expected.y, 1e-6F);
       EXPECT_NEAR(batch.z[range.first + n], expected.z, 1e-6F);

@@ -47,7 +47,7 @@ class MotionBatch {
         actions_(kEnvs * actionCount()),
         variables_(kStride * robot.model.variables.size()),
         moved_variables_(variables_.size()),
-        centres_(kEnvs * 3 * robot.model.spheres.size()),
+        centers_(kEnvs * 3 * robot.model.spheres.size()),
         grips_(kEnvs * simulation::kGripStride),
         bodies_(kEnvs * bodyCount()),
         bounds_(kEnvs * simulation::kBounds * groupStride() / kEnvs),
@@ -97,7 +97,7 @@ class MotionBatch {
 
   void place(const simulation::MotionKernels& kernels) {
     kernels.place(robot_.tables, {.pose = poses(),
-                                  .body = {.centres = centres_.data(),
+                                  .body = {.centers = centers_.data(),
                                            .grips = grips_.data(),
                                            .bodies = &bodies_.front().x_axis.x,
                                            .bounds = bounds_.data()->data(),
@@ -114,9 +114,9 @@ class MotionBatch {
   [[nodiscard]] float movedVariable(std::size_t v, std::size_t env) const {
     return moved_variables_[v * kStride + env];
   }
-  [[nodiscard]] Vec3 centre(std::size_t env, std::size_t sphere) const {
+  [[nodiscard]] Vec3 center(std::size_t env, std::size_t sphere) const {
     const std::size_t count = robot_.model.spheres.size();
-    const float* row = centres_.data() + 3 * env * count;
+    const float* row = centers_.data() + 3 * env * count;
     return {row[sphere], row[count + sphere], row[2 * count + sphere]};
   }
   [[nodiscard]] const float* grip(std::size_t env) const {
@@ -135,7 +135,7 @@ class MotionBatch {
   }
   [[nodiscard]] std::vector<std::uint32_t> placed() const {
     std::vector<std::uint32_t> bits;
-    append(centres_, bits);
+    append(centers_, bits);
     append(grips_, bits);
     for (const RigidTransform& body : bodies_) {
       append(std::bit_cast<std::array<float, 12>>(body), bits);
@@ -181,7 +181,7 @@ class MotionBatch {
   std::vector<float> actions_;
   std::vector<float> variables_;
   std::vector<float> moved_variables_;
-  std::vector<float> centres_;
+  std::vector<float> centers_;
   std::vector<float> grips_;
   std::vector<RigidTransform> bodies_;
   std::vector<AlignedLanes> bounds_;

@@ -20,7 +20,7 @@ namespace {
 
 using namespace galactic::simulation;
 
-/// Both sides are floats along chains of up to twenty links, some metres from the origin.
+/// Both sides are floats along chains of up to twenty links, some meters from the origin.
 constexpr float kLengthTolerance = 1e-5F;
 /// Of the elements of rotation matrices: at each joint angles of up to 7 radians are rounded.
 constexpr float kAxisTolerance = 3e-5F;
@@ -84,12 +84,12 @@ class SingleRobot {
       for (const galactic::SphereGroup& group : robot_.robot->groups()) {
         for (const SetSphere& sphere : group.spheres) {
           if (sphere.radius_index != range.radius_index) continue;
-          worst.addPoint(batch_.centre(env_, next++), links_[group.link] * sphere.centre);
+          worst.addPoint(batch_.center(env_, next++), links_[group.link] * sphere.center);
         }
       }
       ASSERT_EQ(next, range.first + range.count);
       for (; next < range.first + paddedToLanes(range.count); ++next) {
-        EXPECT_EQ(batch_.centre(env_, next), batch_.centre(env_, range.first + range.count - 1));
+        EXPECT_EQ(batch_.center(env_, next), batch_.center(env_, range.first + range.count - 1));
       }
     }
   }
@@ -194,11 +194,11 @@ TEST(MotionKernels, AgreeBitForBitWithAndWithoutAvx2) {
 /// Least and most of each coordinate of the spheres from `first` on.
 std::array<float, kBounds> boundsOf(const MotionBatch& batch, std::size_t env, std::size_t first,
                                     std::size_t end) {
-  const Vec3 at = batch.centre(env, first);
+  const Vec3 at = batch.center(env, first);
   std::array<float, kBounds> bounds{at.x, at.x, at.y, at.y, at.z, at.z};
   for (std::size_t n = first; n < end; ++n) {
-    const Vec3 centre = batch.centre(env, n);
-    const std::array<float, 3> axes{centre.x, centre.y, centre.z};
+    const Vec3 center = batch.center(env, n);
+    const std::array<float, 3> axes{center.x, center.y, center.z};
     for (std::size_t axis = 0; axis < axes.size(); ++axis) {
       bounds[2 * axis] = std::min(bounds[2 * axis], axes[axis]);
       bounds[2 * axis + 1] = std::max(bounds[2 * axis + 1], axes[axis]);

@@ -14,7 +14,7 @@ namespace {
 
 using namespace galactic::simulation;
 
-/// Some operations on floats of a few metres or radians.
+/// Some operations on floats of a few meters or radians.
 constexpr double kRounding = 4e-6;
 /// What the kernels promise for sine and cosine.
 constexpr double kSineTolerance = 1.2e-7;

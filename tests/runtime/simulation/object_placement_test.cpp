@@ -1,5 +1,5 @@
 // Released objects: small cases by hand, and a brute-force settle in double precision that lowers
-// the object in steps of a tenth of a millimetre.
+// the object in steps of a tenth of a millimeter.
 #include "simulation/phases/object_placement.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ using simulation::restingBox;
 using simulation::RestingObjects;
 using simulation::SphereBatch;
 
-/// Grids round heights to 0.06 mm; floats of a few metres are a micrometre apart.
+/// Grids round heights to 0.06 mm; floats of a few meters are a micrometer apart.
 constexpr float kHeightTolerance = 1e-4F;
 constexpr float kClearance = 0.001F;
 
@@ -166,7 +166,7 @@ TEST(ObjectPlacement, PutsABoxOnABoxWhoseSpheresDoNotReachItsFaces) {
 
 TEST(ObjectPlacement, HangsOverTheEdgeOfATable) {
   Home home(furniture());
-  // Column centres lie at odd multiples of half a spacing: 2.015625, 1.5625 cm beyond the edge.
+  // Column centers lie at odd multiples of half a spacing: 2.015625, 1.5625 cm beyond the edge.
   const float beyond = 0.015625F;
   const float height = 0.7F + std::sqrt(0.0025F - beyond * beyond) + kClearance;
   expectLanded(home.placeAt(ball(), {2 + beyond, 1, 1.5F}), {2 + beyond, height, 1.5F});
@@ -254,7 +254,7 @@ TEST(ObjectPlacement, GivesUpWhereEverythingIsBlocked) {
   }
 }
 
-TEST(ObjectPlacement, TouchingNeighboursDoNotBlockEachOther) {
+TEST(ObjectPlacement, TouchingNeighborsDoNotBlockEachOther) {
   Home home(furniture());
   home.options.attempts = 1;
   const TestObject object{{{}, {0.06F, 0.06F, 0.06F}}, {{{0, 0, 0}, 1}}};
@@ -294,11 +294,11 @@ class BruteForce {
   [[nodiscard]] bool isFree(const Pose& released, double height, double margin) const {
     for (const SetSphere& sphere : object_.spheres) {
       const auto radius = static_cast<double>(BoxRoom::kRadii[sphere.radius_index]);
-      Point3 centre = toPoint3(released * sphere.centre);
-      centre[1] += height;
-      if (home_.room().isBlocked(centre, radius + margin)) return false;
+      Point3 center = toPoint3(released * sphere.center);
+      center[1] += height;
+      if (home_.room().isBlocked(center, radius + margin)) return false;
       for (const BoxSolid& solid : solids_) {
-        if (solid.distance(centre) < radius + margin) return false;
+        if (solid.distance(center) < radius + margin) return false;
       }
     }
     OrientedBox shrunk = object_.box;

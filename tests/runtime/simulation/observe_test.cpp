@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kSeed = 7;
 constexpr std::uint32_t kEnvs = 20;
-/// Floats of a few metres, through a handful of rotations.
+/// Floats of a few meters, through a handful of rotations.
 constexpr double kTolerance = 1e-4;
 
 SimulationOptions optionsOf(const TaskOptions& task) {

@@ -17,7 +17,7 @@ using simulation::RestingBox;
 using simulation::restingBox;
 using simulation::squaredDistance;
 
-/// Floats of a few metres are a micrometre apart.
+/// Floats of a few meters are a micrometer apart.
 constexpr double kRounding = 1e-5;
 
 TEST(RestingBox, NearestPointLiesOnTheBoxAsFarAsTheDistance) {

@@ -16,13 +16,13 @@ using simulation::RestingObjects;
 
 /// How far a sphere sinks, by halving the interval between the last free and the first overlapping
 /// of many small steps.
-double fallByBisection(const std::vector<Body>& bodies, const Vec3& centre, double radius) {
+double fallByBisection(const std::vector<Body>& bodies, const Vec3& center, double radius) {
   constexpr double kDeepest = 2;
   double best = std::numeric_limits<double>::infinity();
   for (const Body& body : bodies) {
     const BoxSolid solid = body.solid();
     const auto overlaps_at = [&](double depth) {
-      Point3 point = toPoint3(centre);
+      Point3 point = toPoint3(center);
       point[1] -= depth;
       return solid.distance(point) < radius;
     };
@@ -32,7 +32,7 @@ double fallByBisection(const std::vector<Body>& bodies, const Vec3& centre, doub
     for (int n = 0; n < 200; ++n) {
       const double a = lo + (hi - lo) / 3;
       const double b = hi - (hi - lo) / 3;
-      Point3 at_a = toPoint3(centre);
+      Point3 at_a = toPoint3(center);
       Point3 at_b = at_a;
       at_a[1] -= a;
       at_b[1] -= b;
@@ -63,16 +63,16 @@ TEST(RestingObjects, FallIsThatOfBisection) {
     const std::vector<Body> bodies = randomBodies(room, 25, random);
     const RestingObjects objects = restingAt(bodies);
     for (int n = 0; n < 50; ++n) {
-      Vec3 centre = randomCentre(bodies, room, random);
-      centre.y += 0.3F;
+      Vec3 center = randomCenter(bodies, room, random);
+      center.y += 0.3F;
       const float radius = kRadii[random() % 3];
       const auto r = static_cast<double>(radius);
-      const double smaller = fallByBisection(bodies, centre, r - kGraze);
-      const double larger = fallByBisection(bodies, centre, r + kGraze);
+      const double smaller = fallByBisection(bodies, center, r - kGraze);
+      const double larger = fallByBisection(bodies, center, r + kGraze);
       const bool grazes = !(smaller - larger < 0.01) && smaller != larger;
       if (grazes) continue;
-      const double expected = fallByBisection(bodies, centre, r);
-      const auto found = static_cast<double>(objects.fall(centre, radius));
+      const double expected = fallByBisection(bodies, center, r);
+      const auto found = static_cast<double>(objects.fall(center, radius));
       tally.add(std::isfinite(found));
       if (std::isinf(expected)) {
         ASSERT_TRUE(std::isinf(found));

@@ -37,9 +37,9 @@ using testing::ElementsAre;
 OwnedBatch randomBatch(const std::vector<Body>& bodies, const Room& room, std::mt19937& random) {
   OwnedBatch batch;
   for (std::uint32_t r = 0; r < std::size(kRadii); ++r) {
-    std::vector<Vec3> centres(1 + random() % 20);
-    for (Vec3& centre : centres) centre = randomCentre(bodies, room, random);
-    batch.add(r, kRadii[r], centres);
+    std::vector<Vec3> centers(1 + random() % 20);
+    for (Vec3& center : centers) center = randomCenter(bodies, room, random);
+    batch.add(r, kRadii[r], centers);
   }
   return batch;
 }
@@ -66,7 +66,7 @@ void compareWithAllPairs(const RestingObjects& objects, const std::vector<Body>&
         next += found ? 1 : 0;
         any = any || found;
         const double gap =
-            solids[object].distance(toPoint3(batch.centre(n))) - static_cast<double>(range.radius);
+            solids[object].distance(toPoint3(batch.center(n))) - static_cast<double>(range.radius);
         if (std::abs(gap) < kTies) continue;
         ASSERT_EQ(found, gap < 0) << "sphere " << n << " object " << object << " gap " << gap;
       }
@@ -140,8 +140,8 @@ TEST(RestingObjects, FindsBoxesLongerThanAllStrips) {
   const Body plank{{{}, {20, 0.01F, 0.1F}}, {{0, 1, 0}, yaw(0.3)}};
   const Body pole{{{}, {0.05F, 30, 0.05F}}, {{5, 0, 5}, {}}};
   const RestingObjects objects = restingAt({plank, pole});
-  const auto hits = [&](Vec3 centre) {
-    return hitsOf(objects, OwnedBatch().add(2, 0.12F, {centre}).view());
+  const auto hits = [&](Vec3 center) {
+    return hitsOf(objects, OwnedBatch().add(2, 0.12F, {center}).view());
   };
   const double turn = 0.3;
   for (int n = -66; n <= 66; ++n) {
@@ -172,8 +172,8 @@ TEST(RestingObjects, WithoutObjectsTouchNothing) {
 TEST(RestingObjects, TouchingIsNoOverlap) {
   const Body cube{{{}, {0.25F, 0.25F, 0.25F}}, {{1, 1, 1}, {}}};
   const RestingObjects objects = restingAt({cube});
-  const auto touches = [&](Vec3 centre) {
-    return objects.touches(OwnedBatch().add(0, 0.0625F, {centre}).view());
+  const auto touches = [&](Vec3 center) {
+    return objects.touches(OwnedBatch().add(0, 0.0625F, {center}).view());
   };
   EXPECT_FALSE(touches({1.3125F, 1, 1}));
   EXPECT_TRUE(touches({std::nextafter(1.3125F, 0.0F), 1, 1}));
@@ -188,13 +188,13 @@ TEST(RestingObjects, NumbersThatAreNoneTouchNothing) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   for (const float odd : {nan, -nan, infinity, -infinity, 3e38F, -3e38F}) {
-    for (const Vec3 centre : {Vec3{odd, 0, 0}, Vec3{0, odd, 0}, Vec3{0, 0, odd}}) {
-      const OwnedBatch batch = OwnedBatch().add(0, 0.1F, {centre});
+    for (const Vec3 center : {Vec3{odd, 0, 0}, Vec3{0, odd, 0}, Vec3{0, 0, odd}}) {
+      const OwnedBatch batch = OwnedBatch().add(0, 0.1F, {center});
       EXPECT_FALSE(objects.touches(batch.view()));
       EXPECT_TRUE(hitsOf(objects, batch.view()).empty());
-      EXPECT_EQ(objects.nearest(centre, 0.1F), std::nullopt);
+      EXPECT_EQ(objects.nearest(center, 0.1F), std::nullopt);
       // One such sphere hides no other.
-      EXPECT_TRUE(objects.touches(OwnedBatch().add(0, 0.1F, {centre, {0, 0, 0}}).view()));
+      EXPECT_TRUE(objects.touches(OwnedBatch().add(0, 0.1F, {center, {0, 0, 0}}).view()));
     }
   }
 }
@@ -239,13 +239,13 @@ TEST(RestingObjects, FollowAnySequenceOfGraspsAndDrops) {
     }
     resting[index] = !resting[index];
     if (change % 10 != 0) continue;
-    const Vec3 centre = randomCentre(bodies, room, random);
+    const Vec3 center = randomCenter(bodies, room, random);
     const std::vector<SphereHit> hits =
-        hitsOf(objects, OwnedBatch().add(0, kLargestRadius, {centre}).view());
+        hitsOf(objects, OwnedBatch().add(0, kLargestRadius, {center}).view());
     std::set<std::uint32_t> expected;
     for (std::uint32_t n = 0; n < kObjects; ++n) {
       ASSERT_EQ(objects.isResting(n), resting[n]);
-      if (resting[n] && overlaps(bodies[n].resting(), centre, kLargestRadius)) expected.insert(n);
+      if (resting[n] && overlaps(bodies[n].resting(), center, kLargestRadius)) expected.insert(n);
     }
     std::set<std::uint32_t> found;
     for (const SphereHit& hit : hits) found.insert(hit.object);
@@ -268,7 +268,7 @@ TEST(RestingObjects, FollowAnySequenceOfGraspsAndDrops) {
   }
 }
 
-/// Both kernels on the same groups, some of whose centres are no sensible numbers.
+/// Both kernels on the same groups, some of whose centers are no sensible numbers.
 TEST(RestingObjects, AnswerAlikeBitForBitWithBothKernels) {
   if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2: nothing to compare";
   std::mt19937 random(408);
@@ -277,17 +277,17 @@ TEST(RestingObjects, AnswerAlikeBitForBitWithBothKernels) {
   for (int round = 0; round < 300; ++round) {
     const std::vector<Body> bodies = randomBodies(room, 1 + random() % 90, random);
     const RestingObjects objects = restingAt(bodies);
-    std::vector<Vec3> centres(8 * (1 + random() % 20));
-    for (Vec3& centre : centres) {
-      centre = randomCentre(bodies, room, random);
-      if (random() % 16 == 0) centre.x = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
-      if (random() % 16 == 0) centre.y = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
-      if (random() % 16 == 0) centre.z = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+    std::vector<Vec3> centers(8 * (1 + random() % 20));
+    for (Vec3& center : centers) {
+      center = randomCenter(bodies, room, random);
+      if (random() % 16 == 0) center.x = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+      if (random() % 16 == 0) center.y = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+      if (random() % 16 == 0) center.z = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
     }
-    const OwnedBatch batch = OwnedBatch().add(0, kRadii[random() % 3], centres);
+    const OwnedBatch batch = OwnedBatch().add(0, kRadii[random() % 3], centers);
     const SphereBatch spheres = batch.view();
     const SphereArrays arrays{spheres.x, spheres.y, spheres.z, spheres.ranges.data(), 1};
-    for (std::size_t first = 0; first < centres.size() / 8; ++first) {
+    for (std::size_t first = 0; first < centers.size() / 8; ++first) {
       LaneGroup portable{.group = first};
       LaneGroup vectorised{.group = first};
       const bool found = findTouchingPortable(objects.view(), arrays, portable);
@@ -310,13 +310,13 @@ TEST(RestingObjects, NearestIsTheOneOfBruteForce) {
     const std::vector<Body> bodies = randomBodies(room, 40, random);
     const RestingObjects objects = restingAt(bodies);
     for (int n = 0; n < 100; ++n) {
-      const Vec3 centre = randomCentre(bodies, room, random);
+      const Vec3 center = randomCenter(bodies, room, random);
       const float radius = kRadii[random() % 3];
       std::optional<std::uint32_t> expected;
       double least = static_cast<double>(radius);
       double second = least;
       for (std::uint32_t object = 0; object < bodies.size(); ++object) {
-        const double distance = bodies[object].solid().distance(toPoint3(centre));
+        const double distance = bodies[object].solid().distance(toPoint3(center));
         if (distance < least) {
           second = least;
           least = distance;
@@ -325,7 +325,7 @@ TEST(RestingObjects, NearestIsTheOneOfBruteForce) {
           second = std::min(second, distance);
         }
       }
-      const std::optional<std::uint32_t> found = objects.nearest(centre, radius);
+      const std::optional<std::uint32_t> found = objects.nearest(center, radius);
       tally.add(found.has_value());
       const bool is_tie = second - least < kTies && least > 0;
       if (is_tie) continue;
@@ -335,7 +335,7 @@ TEST(RestingObjects, NearestIsTheOneOfBruteForce) {
   tally.expectBothSides();
 }
 
-TEST(RestingObjects, NearestPrefersTheLowerIndexOfTwoThatHoldTheCentre) {
+TEST(RestingObjects, NearestPrefersTheLowerIndexOfTwoThatHoldTheCenter) {
   const Body cube{{{}, {0.25F, 0.25F, 0.25F}}, {{1, 1, 1}, {}}};
   const RestingObjects objects = restingAt({cube, cube, cube});
   EXPECT_EQ(objects.nearest({1, 1, 1}, 0.015F), 0U);

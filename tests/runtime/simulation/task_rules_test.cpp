@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t kSeed = 20240611;
 constexpr std::uint32_t kEnvs = 24;
 constexpr int kSteps = 400;
-/// Distances of a few metres in floats, times weights up to 3.
+/// Distances of a few meters in floats, times weights up to 3.
 constexpr double kRewardTolerance = 1e-4;
 
 /// How the steps of a run ended.

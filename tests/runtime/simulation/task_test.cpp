@@ -14,7 +14,7 @@ namespace {
 
 /// Sums of some hundred rewards in floats.
 constexpr double kReturnTolerance = 1e-4;
-/// A pose through a quaternion and back, metres and components.
+/// A pose through a quaternion and back, meters and components.
 constexpr float kPoseTolerance = 1e-5F;
 /// Far more than any part of the task takes.
 constexpr int kPatience = 150;

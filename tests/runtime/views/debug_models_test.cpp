@@ -88,7 +88,7 @@ TEST(DebugShapes, ASphereHasItsCornersOnTheBallAndNearlyItsVolume) {
 
 TEST(DebugShapes, ABoxEnclosesItsVolumeWhereItStands) {
   const OrientedBox box{{{1, 2, 3}, {0, std::sin(0.3F), 0, std::cos(0.3F)}}, {0.1F, 0.2F, 0.4F}};
-  // The float sum of tetrahedra from an origin metres away.
+  // The float sum of tetrahedra from an origin meters away.
   EXPECT_NEAR(volumeOf(boxSurface(box, 0xFF0000FF)), 8 * 0.1 * 0.2 * 0.4, 1e-5);
 }
 

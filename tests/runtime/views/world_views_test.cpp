@@ -21,7 +21,7 @@ namespace {
 
 using test::SmallHomeRow;
 
-/// Floats along chains of five links, metres from the origin.
+/// Floats along chains of five links, meters from the origin.
 constexpr float kPlaceTolerance = 1e-5F;
 
 float farApart(const Vec3& a, const Vec3& b) {

@@ -35,7 +35,7 @@ export function swatch(color, round = false) {
   return element;
 }
 
-/// What a colour means.
+/// What a color means.
 export function legendRow(color, text, round = false) {
   return el("div", { className: "row" }, swatch(color, round), el("span", { className: "text" }, text));
 }
@@ -84,5 +84,5 @@ export function tree(value, name = "") {
   return details;
 }
 
-export const metres = (value) => `${value.toFixed(3)} m`;
+export const meters = (value) => `${value.toFixed(3)} m`;
 export const megabytes = (bytes) => `${(bytes / 1e6).toFixed(2)} MB`;

@@ -5,7 +5,7 @@ import {
 } from "three";
 import { linkPoses, Pose } from "./kinematics.js";
 
-/// By the rank of the radius, least first; people with colour-blindness tell them apart.
+/// By the rank of the radius, least first; people with color-blindness tell them apart.
 const kSphereColors = ["#56b4e9", "#0072b2", "#009e73", "#cc79a7", "#f0e442", "#999999", "#e69f00", "#222222"];
 const kTouchColor = new Color("#d55e00");
 
@@ -216,26 +216,26 @@ export class RobotFigure {
     const box = new Box3();
     this.robot.groups.forEach((group, n) => {
       for (let at = 0; at < group.spheres.length; at += 4) {
-        const centre = this.poses[group.link].apply(new Vector3(...group.spheres.slice(at, at + 3)));
-        box.union(new Box3().setFromCenterAndSize(centre, new Vector3().setScalar(2 * group.spheres[at + 3])));
+        const center = this.poses[group.link].apply(new Vector3(...group.spheres.slice(at, at + 3)));
+        box.union(new Box3().setFromCenterAndSize(center, new Vector3().setScalar(2 * group.spheres[at + 3])));
       }
     });
     for (const body of this.bodies) box.expandByObject(body);
     return box;
   }
 
-  centresOf(number) {
+  centersOf(number) {
     const { link, spheres } = this.robot.groups[number];
-    const centres = [];
+    const centers = [];
     for (let at = 0; at < spheres.length; at += 4) {
-      centres.push({ centre: this.poses[link].apply(new Vector3(...spheres.slice(at, at + 3))), radius: spheres[at + 3] });
+      centers.push({ center: this.poses[link].apply(new Vector3(...spheres.slice(at, at + 3))), radius: spheres[at + 3] });
     }
-    return centres;
+    return centers;
   }
 
   /// The tested pairs of groups that touch, as numbers of groups; their spheres light up.
   findTouching() {
-    const all = this.clouds.map((_, n) => this.centresOf(n));
+    const all = this.clouds.map((_, n) => this.centersOf(n));
     const touching = this.clouds.map(() => new Set());
     const pairs = [];
     for (let at = 0; at < this.robot.tested_pairs.length; at += 2) {
@@ -243,7 +243,7 @@ export class RobotFigure {
       let any = false;
       all[first].forEach((a, n) => all[second].forEach((b, m) => {
         const reach = a.radius + b.radius;
-        if (a.centre.distanceToSquared(b.centre) >= reach * reach) return;
+        if (a.center.distanceToSquared(b.center) >= reach * reach) return;
         any = true;
         touching[first].add(n);
         touching[second].add(m);

@@ -33,7 +33,7 @@ export class Grid {
     return i >= 0 && k >= 0 && i < this.columns_x && k < this.columns_z ? { i, k } : null;
   }
 
-  centreOf({ i, k }) {
+  centerOf({ i, k }) {
     return { x: this.min_x + (i + 0.5) * this.spacing, z: this.min_z + (k + 0.5) * this.spacing };
   }
 
@@ -54,7 +54,7 @@ export class Grid {
     return -1;
   }
 
-  /// Where a sphere gets from a span by way of neighbouring columns whose spans overlap: 1 for each
+  /// Where a sphere gets from a span by way of neighboring columns whose spans overlap: 1 for each
   /// span that it reaches.
   reachFrom(start) {
     const reached = new Uint8Array(this.codes.length / 2);
@@ -70,9 +70,9 @@ export class Grid {
       const i = column % this.columns_x;
       const low = this.codes[2 * span];
       const high = this.codes[2 * span + 1];
-      const neighbours = [i > 0 ? column - 1 : -1, i + 1 < this.columns_x ? column + 1 : -1,
+      const neighbors = [i > 0 ? column - 1 : -1, i + 1 < this.columns_x ? column + 1 : -1,
         column - this.columns_x, column + this.columns_x];
-      for (const next of neighbours) {
+      for (const next of neighbors) {
         if (next < 0 || next >= this.columns) continue;
         for (let n = this.first[next]; n < this.first[next + 1]; ++n) {
           if (reached[n] || this.codes[2 * n] > high || this.codes[2 * n + 1] < low) continue;
@@ -84,7 +84,7 @@ export class Grid {
     return reached;
   }
 
-  /// Square metres of columns, and cubic metres of heights, with a span that counts.
+  /// Square meters of columns, and cubic meters of heights, with a span that counts.
   extentOf(counts) {
     const cell = this.spacing * this.spacing;
     let columns = 0;

@@ -4,11 +4,11 @@ import {
   NearestFilter, PlaneGeometry, SRGBColorSpace,
 } from "three";
 
-// Colours that people with colour-blindness tell apart (Okabe and Ito), with their opacity.
+// Colors that people with color-blindness tell apart (Okabe and Ito), with their opacity.
 export const kSliceColors = { free: [0, 114, 178, 100], reached: [0, 158, 115, 150], blocked: [20, 20, 24, 120], outside: [20, 20, 24, 30] };
 export const cssColor = ([r, g, b]) => `rgb(${r} ${g} ${b})`;
 
-/// From low to high: readable without colours, too (cividis).
+/// From low to high: readable without colors, too (cividis).
 const kHeightColors = [[0, 34, 78], [53, 69, 108], [102, 105, 112], [148, 142, 119], [200, 184, 102], [254, 232, 56]];
 
 function heightColor(share) {
@@ -46,7 +46,7 @@ export class GridLayer {
     this.group.add(this.slice);
   }
 
-  /// Moves the slice to a height of sphere centres and colours it.
+  /// Moves the slice to a height of sphere centers and colors it.
   setHeight(height) {
     const { grid, pixels } = this;
     this.height = height;
@@ -79,7 +79,7 @@ export class GridLayer {
   showColumn(cell) {
     this.column.clear();
     if (cell) {
-      const { x, z } = this.grid.centreOf(cell);
+      const { x, z } = this.grid.centerOf(cell);
       for (const span of this.grid.spansOf(cell)) {
         const bar = new Mesh(this.box, this.barMaterial);
         bar.scale.set(this.grid.spacing, Math.max(0.004, span.to - span.from), this.grid.spacing);
@@ -91,7 +91,7 @@ export class GridLayer {
     this.stage.draw();
   }
 
-  /// The lower ends of all spans, coloured by height: what a sphere rests on, seen at its centre.
+  /// The lower ends of all spans, colored by height: what a sphere rests on, seen at its center.
   setFloors(isShown) {
     if (isShown && !this.floors) this.floors = this.makeFloors();
     if (!this.floors) return;

@@ -28,7 +28,7 @@ const kLinear = Uint16Array.from({ length: 256 }, (_, n) => {
   return Math.round(65535 * (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
 });
 
-/// Whether vertices of these clusters have colours of their own: light that was baked, or scanned. White
+/// Whether vertices of these clusters have colors of their own: light that was baked, or scanned. White
 /// is what the others of a pack have.
 function haveColors(clusters, { colors }) {
   const isColored = (color) => (color & 0xffffff) !== 0xffffff;
@@ -160,7 +160,7 @@ export class MeshLibrary {
     return texture;
   }
 
-  /// A mesh that is lit or shown as it is, as the page's switch says. What has its light in the colours of
+  /// A mesh that is lit or shown as it is, as the page's switch says. What has its light in the colors of
   /// its vertices needs no other.
   mesh(geometry, options, hasLight) {
     const vertexColors = geometry.hasAttribute("color");

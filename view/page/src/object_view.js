@@ -1,7 +1,7 @@
 // An object: mesh, oriented box, spheres by radius, stable poses.
 import { Box3, Quaternion, Vector3 } from "three";
 import { addressNumber, setAddress } from "./address.js";
-import { button, checkbox, el, heading, metres, note, swatch, table } from "./dom.js";
+import { button, checkbox, el, heading, meters, note, swatch, table } from "./dom.js";
 import { ObjectFigure } from "./figures.js";
 import { Pose } from "./kinematics.js";
 
@@ -55,7 +55,7 @@ export class ObjectView {
       checkbox("Oriented box: resting", true, (on) => this.toggle("boxes", on), swatch("#d55e00")),
       checkbox("Spheres: held", true, (on) => this.toggle("spheres", on)),
       heading("Spheres by radius"),
-      ...[...counts].sort((a, b) => a[0] - b[0]).map(([radius, count]) => checkbox(`${metres(radius)}: ${count}`, true, (on) => {
+      ...[...counts].sort((a, b) => a[0] - b[0]).map(([radius, count]) => checkbox(`${meters(radius)}: ${count}`, true, (on) => {
         if (on) this.hidden.delete(radius); else this.hidden.add(radius);
         this.figure.cloud.showRadii((one) => !this.hidden.has(one));
         this.page.stage.draw();

@@ -1,5 +1,5 @@
 // A robot: a slider for each joint, spheres, marks, and which parts touch each other.
-import { checkbox, button, el, heading, legendRow, metres, note, slider, table } from "./dom.js";
+import { checkbox, button, el, heading, legendRow, meters, note, slider, table } from "./dom.js";
 import { RobotFigure } from "./figures.js";
 import { positionNames } from "./kinematics.js";
 import { address, setAddress } from "./address.js";
@@ -61,7 +61,7 @@ export class RobotView {
     const least = Math.max(-Math.PI, Math.abs(lower) > kUnlimited ? -Math.PI : lower);
     const most = Math.abs(upper) > kUnlimited ? Math.PI : upper;
     const isAngle = this.robot.links.some((one) => one.position === number && (one.type === 1 || one.type === 2));
-    const format = (value) => isAngle ? `${value.toFixed(2)} rad, ${((value * 180) / Math.PI).toFixed(0)}°` : metres(value);
+    const format = (value) => isAngle ? `${value.toFixed(2)} rad, ${((value * 180) / Math.PI).toFixed(0)}°` : meters(value);
     const row = slider(name, { least: lower < -Math.PI && Math.abs(lower) < kUnlimited ? lower : least, most, step: (most - least) / 500 || 0.001, value: this.positions[number], format }, (value) => this.set(number, value));
     if (controlled) row.input.title = `An action moves it up to ${controlled.step.toFixed(3)}`;
     this.rows[number] = row;
@@ -86,7 +86,7 @@ export class RobotView {
       this.page.shadeBox(),
       checkbox("Spheres", this.shown.spheres, (on) => this.toggle("spheres", on)),
       checkbox("Grasp point, camera, footprint", this.shown.marks, (on) => this.toggle("marks", on)),
-      ...this.figure.palette.radii.map((radius) => legendRow(this.figure.palette.color(radius), metres(radius), true)),
+      ...this.figure.palette.radii.map((radius) => legendRow(this.figure.palette.color(radius), meters(radius), true)),
       heading("Self-collision"),
       this.touchPart,
       heading("Joints that actions move"),
@@ -96,9 +96,9 @@ export class RobotView {
       heading("Numbers"),
       table([["Links", this.robot.links.length], ["Spheres", this.robot.groups.reduce((sum, one) => sum + one.spheres.length / 4, 0)],
         ["Tested pairs", this.robot.tested_pairs.length / 2],
-        ...(grasp ? [["Grasp radius", metres(grasp.radius)]] : []),
+        ...(grasp ? [["Grasp radius", meters(grasp.radius)]] : []),
         ...(camera ? [["Camera", `${((camera.vertical_fov * 180) / Math.PI).toFixed(0)}° high`]] : []),
-        ...(base ? [["Step of the base", `${metres(base.forward_step)}, ${((base.turn_step * 180) / Math.PI).toFixed(1)}°`]] : [])]),
+        ...(base ? [["Step of the base", `${meters(base.forward_step)}, ${((base.turn_step * 180) / Math.PI).toFixed(1)}°`]] : [])]),
     ]);
   }
 }

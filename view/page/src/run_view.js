@@ -1,7 +1,7 @@
 // A run: the home of an env, and a timeline that plays it.
 import { Box3, Vector3 } from "three";
 import { address, addressNumber, setAddress } from "./address.js";
-import { button, checkbox, el, heading, legendRow, metres, note, table, tree } from "./dom.js";
+import { button, checkbox, el, heading, legendRow, meters, note, table, tree } from "./dom.js";
 import { Home } from "./home.js";
 import { Pose } from "./kinematics.js";
 import { Timeline } from "./timeline.js";
@@ -145,7 +145,7 @@ export class RunView {
       ["Target", placements[target].object], ["In the hand", held < 0 ? "nothing" : placements[held]?.object ?? ""]];
     if (frame > 0) {
       rows.push(["Reward", track.rewards[frame - 1].toFixed(4)]);
-      this.run.distances.forEach((name, n) => rows.push([name.replace("_", " to "), metres(track.distances[(frame - 1) * this.run.distances.length + n])]));
+      this.run.distances.forEach((name, n) => rows.push([name.replace("_", " to "), meters(track.distances[(frame - 1) * this.run.distances.length + n])]));
     }
     this.facts.replaceChildren(table(rows), ended ? note(`The step before ended an episode: ${ended}.`) : "");
   }

@@ -1,7 +1,7 @@
 // A scene: its mesh, and its column grids.
 import { Box3, Plane, Vector3 } from "three";
 import { address, addressNumber, setAddress } from "./address.js";
-import { button, checkbox, el, heading, legendRow, metres, note, radios, slider, table } from "./dom.js";
+import { button, checkbox, el, heading, legendRow, meters, note, radios, slider, table } from "./dom.js";
 import { Grid } from "./grid.js";
 import { cssColor, GridLayer, kSliceColors } from "./grid_layer.js";
 
@@ -67,7 +67,7 @@ export class SceneView {
   fillPanel() {
     const { grid } = this.layer;
     const step = Math.max(0.005, grid.quantum);
-    this.heightSlider = slider("Height of the slice", { least: grid.low, most: grid.high, step, value: this.layer.height, format: metres }, (value) => this.setHeight(value));
+    this.heightSlider = slider("Height of the slice", { least: grid.low, most: grid.high, step, value: this.layer.height, format: meters }, (value) => this.setHeight(value));
     this.columnPart = el("div");
     this.reachPart = el("div");
     this.panel = [
@@ -76,12 +76,12 @@ export class SceneView {
       this.page.shadeBox(),
       checkbox("Slice", this.isSliced, (on) => this.showSlice(on)),
       checkbox("Cut off what is above the slice", this.isCut, (on) => this.setCut(on)),
-      checkbox("Floors of all spans, coloured by height", this.hasFloors, (on) => { this.hasFloors = on; this.layer.setFloors(on); }),
+      checkbox("Floors of all spans, colored by height", this.hasFloors, (on) => { this.hasFloors = on; this.layer.setFloors(on); }),
       heading("Sphere radius"),
-      ...radios("radius", this.stored.grids.map((one) => [metres(one.radius), one]), this.stored.grids.find((one) => one.radius === grid.radius),
+      ...radios("radius", this.stored.grids.map((one) => [meters(one.radius), one]), this.stored.grids.find((one) => one.radius === grid.radius),
         (stored) => { setAddress({ radius: stored.radius }); this.chooseGrid(stored); }),
       this.heightSlider,
-      ...[["free", "Free for the sphere's centre"], ["reached", "Reached from the marked place"], ["blocked", "Blocked"]]
+      ...[["free", "Free for the sphere's center"], ["reached", "Reached from the marked place"], ["blocked", "Blocked"]]
         .map(([key, text]) => legendRow(cssColor(kSliceColors[key]), text)),
       heading("Column"),
       this.columnPart,
@@ -95,7 +95,7 @@ export class SceneView {
   }
 
   gridTable(grid) {
-    return table([["Columns", `${grid.columns_x} × ${grid.columns_z}`], ["Spacing", metres(grid.spacing)], ["Spans", grid.spans],
+    return table([["Columns", `${grid.columns_x} × ${grid.columns_z}`], ["Spacing", meters(grid.spacing)], ["Spans", grid.spans],
       ["Heights", `${grid.low.toFixed(3)} to ${grid.high.toFixed(3)} m`], ["Mesh triangles", this.pack.meshes?.models[0]?.triangles ?? 0]]);
   }
 
@@ -114,7 +114,7 @@ export class SceneView {
       return;
     }
     const { grid } = this.layer;
-    const { x, z } = grid.centreOf(cell);
+    const { x, z } = grid.centerOf(cell);
     const spans = grid.spansOf(cell);
     this.columnPart.replaceChildren(
       note(`Cell (${cell.i}, ${cell.k}), x ${x.toFixed(3)} m, z ${z.toFixed(3)} m`),

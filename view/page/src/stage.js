@@ -39,7 +39,7 @@ export class Stage {
   }
 
   addLights() {
-    // Level faces keep their colour, walls are a little darker.
+    // Level faces keep their color, walls are a little darker.
     this.scene.add(new AmbientLight(0xffffff, 0.56 * Math.PI));
     const sun = new DirectionalLight(0xffffff, 0.38 * Math.PI);
     sun.position.set(0.25, 1, 0.4);
@@ -85,7 +85,7 @@ export class Stage {
     this.beforeDraw = () => {};
   }
 
-  /// A floor of squares of a tenth of a metre or a metre, for what has no room around it.
+  /// A floor of squares of a tenth of a meter or a meter, for what has no room around it.
   addFloor(size) {
     const step = size > 3 ? 1 : 0.1;
     const squares = Math.max(4, 2 * Math.ceil(size / step));
@@ -98,12 +98,12 @@ export class Stage {
   /// Turns the camera to see a box, from a direction.
   frame(box, direction = new Vector3(0.9, 0.75, 1.1)) {
     if (box.isEmpty()) box = new Box3(new Vector3(-1, 0, -1), new Vector3(1, 1, 1));
-    const centre = box.getCenter(new Vector3());
+    const center = box.getCenter(new Vector3());
     const radius = Math.max(0.05, box.getSize(new Vector3()).length() / 2);
     const narrow = Math.min(1, this.camera.aspect);
     const distance = radius / Math.tan((kFov * Math.PI) / 360) / narrow;
-    this.controls.target.copy(centre);
-    this.camera.position.copy(centre).addScaledVector(direction.clone().normalize(), distance);
+    this.controls.target.copy(center);
+    this.camera.position.copy(center).addScaledVector(direction.clone().normalize(), distance);
     this.camera.near = Math.max(0.005, radius / 200);
     this.camera.far = Math.max(50, radius * 12);
     this.camera.updateProjectionMatrix();

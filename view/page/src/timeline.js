@@ -6,7 +6,7 @@ import { kEndings, kEvents } from "./track.js";
 
 const kSpeeds = [0.25, 0.5, 1, 2, 4, 8];
 const kCurves = ["Reward", "Distance", "Contact", "Actions"];
-// Told apart by shape; colours only help.
+// Told apart by shape; colors only help.
 const kMarks = { grasp: ["▲", "--green", "grasped"], drop: ["▼", "--blue", "let go"], restore: ["↺", "--purple", "found no place to let go, the object went back"] };
 
 export class Timeline {

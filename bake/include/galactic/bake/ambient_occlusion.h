@@ -33,9 +33,9 @@ struct AmbientOcclusionOptions {
   /// Backs are measured where the front's factor is smaller, 0 to 1.
   float dim = 0.25F;
   /// What is nearer keeps no light away: surfaces that were simplified may pass through each other.
-  /// Metres, 0 or more, less than `largest_distance`.
+  /// Meters, 0 or more, less than `largest_distance`.
   float least_distance = 0;
-  /// What is farther away keeps no light away. Metres, > 0.
+  /// What is farther away keeps no light away. Meters, > 0.
   float largest_distance = 1;
   /// Threads. The result does not depend on them.
   unsigned jobs = 1;
@@ -55,7 +55,7 @@ struct Openness {
 ///
 /// The factor is a mean over the triangles around the vertex, weighted with its share (barycentric
 /// coordinate) in them, of the part of cosine-weighted rays that meet nothing. So in a coarse mesh
-/// the colours are right on average, where values at the vertices themselves would paint the
+/// the colors are right on average, where values at the vertices themselves would paint the
 /// corners' darkness over whole walls (after Kavan, Bargteil and Sloan, "Least Squares Vertex
 /// Baking", 2011, with lumped weights). Vertices at one place whose normals differ by less than 30
 /// degrees share their triangles: no seams. Details smaller than the triangles blur.

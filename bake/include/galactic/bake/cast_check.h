@@ -10,11 +10,11 @@ namespace galactic::bake {
 struct CastCheckOptions {
   /// Columns to replay, spread evenly over those that hold spans.
   std::uint32_t columns = 128;
-  /// A surface whose distance differs from the radius by no more than this is a tie, metres.
+  /// A surface whose distance differs from the radius by no more than this is a tie, meters.
   double tie_tolerance = 1e-5;
 };
 
-/// How replayed sphere casts compare with a grid; lengths in metres, summed over the sample.
+/// How replayed sphere casts compare with a grid; lengths in meters, summed over the sample.
 struct CastCheck {
   std::uint32_t columns = 0;
   std::uint32_t columns_differing = 0;

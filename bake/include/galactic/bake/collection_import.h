@@ -16,7 +16,7 @@ namespace galactic::bake {
 /// How the published simulator makes an object's spheres.
 enum class SphereTechnique { kListed, kBox, kUprightCylinder };
 
-/// A movable object of a collection, in the frame of its mesh file; metres.
+/// A movable object of a collection, in the frame of its mesh file; meters.
 struct CollectionObject {
   std::string name;
   std::array<double, 3> box_min{};

@@ -11,7 +11,7 @@ namespace galactic::bake {
 /// What a published collection says of an object, in the frame of the object's pack: `up` is the up
 /// axis with which its mesh is read. Spheres that are listed are taken as they are; others are made
 /// by publishedSpheres; there may be none. Fails with kInvalidInput when the box is without volume
-/// or a listed radius is not in `radii` (metres, ascending).
+/// or a listed radius is not in `radii` (meters, ascending).
 [[nodiscard]] Result<AuthoredShape> shapeFromCollection(const CollectionObject& object, UpAxis up,
                                                         const std::vector<float>& radii);
 
@@ -21,7 +21,7 @@ namespace galactic::bake {
 /// - kBox: a grid through the box for the first, the eight corners for each further one,
 /// - kUprightCylinder: rings around the vertical axis, between bottom and top for the first, at
 ///   both ends for each further one.
-/// Centres are moved into the box and repeated ones dropped. Its rings are counted along x where
+/// Centers are moved into the box and repeated ones dropped. Its rings are counted along x where
 /// the height is meant: for a cylinder higher than wide the top rings are missing, for a lower one
 /// there are rings beyond the top, which then fall together. This is kept, since it is what the
 /// published results were made with.

@@ -41,9 +41,9 @@ struct ColumnIndex {
 /// The published method (paper, appendix G), as an independent check: overlap tests of a sphere
 /// every step, padded, and sphere casts up and down.
 struct BulletCastOptions {
-  /// Vertical step while searching inside an obstacle, metres.
+  /// Vertical step while searching inside an obstacle, meters.
   float step = 0.01F;
-  /// Added to the radius in overlap tests only, metres.
+  /// Added to the radius in overlap tests only, meters.
   float contact_pad = 0.002F;
 };
 

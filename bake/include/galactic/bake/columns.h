@@ -23,10 +23,10 @@ struct GridFrame {
   std::uint32_t columns_x = 0;
   std::uint32_t columns_z = 0;
 
-  [[nodiscard]] double centreX(std::uint32_t i) const {
+  [[nodiscard]] double centerX(std::uint32_t i) const {
     return static_cast<double>(min_x) + (i + 0.5) * static_cast<double>(spacing);
   }
-  [[nodiscard]] double centreZ(std::uint32_t k) const {
+  [[nodiscard]] double centerZ(std::uint32_t k) const {
     return static_cast<double>(min_z) + (k + 0.5) * static_cast<double>(spacing);
   }
   [[nodiscard]] std::size_t columnCount() const { return std::size_t{columns_x} * columns_z; }

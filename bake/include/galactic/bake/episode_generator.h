@@ -59,7 +59,7 @@ struct CountRange {
   std::uint32_t most = 0;
 };
 
-/// Metres, both ends included.
+/// Meters, both ends included.
 struct DistanceRange {
   float least = 0;
   float most = std::numeric_limits<float>::infinity();
@@ -74,7 +74,7 @@ struct EpisodeGeneratorOptions {
   std::uint64_t seed = 1;
   /// Heights above the floor between which objects and goals are placed.
   DistanceRange heights{0.3F, 1.2F};
-  /// Heights of the surface under an object may differ by this much either way, metres, up to
+  /// Heights of the surface under an object may differ by this much either way, meters, up to
   /// kMostFlatness. Scans are bumpy: they need more, and geometry to settle objects on.
   float flatness = 0.002F;
   /// Distance of the target's origin at its start and at its goal.

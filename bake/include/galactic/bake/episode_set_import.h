@@ -30,10 +30,10 @@ struct EpisodeImportOptions {
   /// --up), and Y in Habitat's, which turns the meshes.
   std::optional<UpAxis> object_up;
   /// Habitat: where the origin of an object's frame in the file lies in the frame of its pack,
-  /// metres, by the object's name; others have it in the pack's origin. See objectCentres.
-  std::map<std::string, Vec3> object_centres;
-  /// Habitat: an object that object_centres lacks is an error.
-  bool centres_needed = false;
+  /// meters, by the object's name; others have it in the pack's origin. See objectCenters.
+  std::map<std::string, Vec3> object_centers;
+  /// Habitat: an object that object_centers lacks is an error.
+  bool centers_needed = false;
   HabitatTargets targets = HabitatTargets::kFirst;
   /// Episode sets: the joints of robotStartJointPositions, which the file counts in the order of
   /// the collection's actionMap. Default: the published collection's Fetch. Exported sets name
@@ -49,7 +49,7 @@ struct EpisodeImportOptions {
 };
 
 /// Reads a published `*.episode_set.json`. An object is named by its render asset, a scene by its
-/// static scene. Quaternions stand as w, x, y, z in the file and are normalised. Objects turn from
+/// static scene. Quaternions stand as w, x, y, z in the file and are normalized. Objects turn from
 /// their published frame to that of their packs: a point of the object stays where it is in the
 /// world. The robot stands at height 0 unless the set, an exported one, says otherwise. Scenes,
 /// objects and placements that no kept episode uses are left out. Names ascend and placements stand
@@ -64,8 +64,8 @@ struct EpisodeImportOptions {
 /// Reads a rearrangement dataset of Habitat 2.0 (`*.json`, `*.json.gz`): the fields of
 /// RearrangeEpisode in habitat-lab, habitat/datasets/rearrange/rearrange_dataset.py. Scenes and
 /// object templates are named by their files without folders and extensions. Objects stand where
-/// rigid_objs puts them (row-major world_from_object, whose origin is the object's centre of mass,
-/// see object_centres); the goal is the target's transform. The robot starts at start_position,
+/// rigid_objs puts them (row-major world_from_object, whose origin is the object's center of mass,
+/// see object_centers); the goal is the target's transform. The robot starts at start_position,
 /// turned by the heading of start_rotation (x, y, z, w). There are no start joints. A warning says
 /// what is lost: other targets, opened furniture, starts that the file does not give.
 /// Fails like readEpisodeSet, and on transforms that are not rigid within 1e-3, and targets that
@@ -80,10 +80,10 @@ struct EpisodeImportOptions {
 /// The name of the episodes in a file: "tidy" of "tidy.episode_set.json" and "tidy.json.gz".
 [[nodiscard]] std::string episodeSetName(const std::filesystem::path& path);
 
-/// The centres of the bounds of all objects in an object pack, in their own frames, by name.
-/// Habitat puts the origins of objects there that have no centre of mass of their own. Fails with
+/// The centers of the bounds of all objects in an object pack, in their own frames, by name.
+/// Habitat puts the origins of objects there that have no center of mass of their own. Fails with
 /// kInvalidInput on another kind of pack.
-[[nodiscard]] Result<std::map<std::string, Vec3>> objectCentres(const PackFile& objects);
+[[nodiscard]] Result<std::map<std::string, Vec3>> objectCenters(const PackFile& objects);
 
 /// The indices in a text file, one or more in a line, separated by blanks; '#' begins a comment.
 /// Fails with kIo, and with kInvalidInput, naming the line, on what is no index.

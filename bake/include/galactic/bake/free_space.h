@@ -32,7 +32,7 @@ struct Component {
   Vec3 first_at_edge;
   std::uint64_t columns_at_edge = 0;
   std::uint64_t spans = 0;
-  /// Cubic metres of sphere centres.
+  /// Cubic meters of sphere centers.
   double volume = 0;
   /// The part of it within the scene's bounds: what makes a component the room. The padding around
   /// a small scene can hold more than the scene.
@@ -56,7 +56,7 @@ struct FreeSpace {
   std::array<RegionTotals, kRegionCount> totals{};
 };
 
-/// Flood fill: spans that overlap in height in neighbouring columns are connected. The room is what
+/// Flood fill: spans that overlap in height in neighboring columns are connected. The room is what
 /// the seeds reach, else the largest components by volume inside the scene's bounds; other
 /// components that reach the border are outside, the rest enclosed. Fails with kInvalidInput when a
 /// seed is not in free space.

@@ -28,7 +28,7 @@ struct EncodedGrid {
 [[nodiscard]] std::uint64_t storedBytes(const EncodedGrid& grid);
 
 /// Largest height of a code: with rounding to the blocked side, no stored end is further than this
-/// from the exact one. Metres.
+/// from the exact one. Meters.
 inline constexpr float kMaxQuantum = 9.5e-5F;
 
 /// Lays out the columns' spans; every end is rounded to the blocked side, so the stored grid is

@@ -8,9 +8,9 @@
 
 namespace galactic::bake {
 
-/// A sphere placed by hand or by another tool, of any radius. Metres.
+/// A sphere placed by hand or by another tool, of any radius. Meters.
 struct HandSphere {
-  std::array<double, 3> centre{};
+  std::array<double, 3> center{};
   double radius = 0;
 
   friend bool operator==(const HandSphere&, const HandSphere&) = default;

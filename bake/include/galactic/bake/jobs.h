@@ -37,7 +37,7 @@ struct DrawOptions {
   std::filesystem::path shared_textures{};
 };
 
-/// How far a surface of what is handled may move, metres: it is seen from nearer than scenes are.
+/// How far a surface of what is handled may move, meters: it is seen from nearer than scenes are.
 inline constexpr double kHandledRenderError = 0.002;
 
 /// A scene instance of a dataset.
@@ -95,7 +95,7 @@ struct EpisodeImportJob {
   std::filesystem::path input{};
   /// List of the episodes to keep; empty: all.
   std::filesystem::path only{};
-  /// Pack of the objects, for where their centres are; empty: none.
+  /// Pack of the objects, for where their centers are; empty: none.
   std::filesystem::path object_pack{};
   EpisodeImportOptions import{};
 };

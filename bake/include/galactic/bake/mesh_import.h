@@ -15,11 +15,11 @@ enum class UpAxis { kX, kY, kZ, kMinusX, kMinusY, kMinusZ };
 struct MeshImportOptions {
   /// Overrides the up axis of the file (glTF, DAE, FBX) or of the format (OBJ: Y; PLY, STL: Z).
   std::optional<UpAxis> up{};
-  /// Metres per unit of the file; overrides the file's own unit.
+  /// Meters per unit of the file; overrides the file's own unit.
   std::optional<double> scale{};
-  /// Applied last, to points that are already Y up and in metres.
+  /// Applied last, to points that are already Y up and in meters.
   std::optional<Affine> transform{};
-  /// Smaller files draw a question about their unit (a warning). Metres; the default is for scenes,
+  /// Smaller files draw a question about their unit (a warning). Meters; the default is for scenes,
   /// 0 asks never.
   double smallest_size = 0.5;
   /// Whether what a file names is read wherever it points: without it, files below its folder, and
@@ -32,7 +32,7 @@ struct MeshImportOptions {
 };
 
 /// Reads anything assimp reads (GLB, glTF, OBJ, PLY, STL, DAE and more): axes and unit converted to
-/// Y up and metres, node transforms and instances kept, materials and textures named.
+/// Y up and meters, node transforms and instances kept, materials and textures named.
 /// Fails with kIo (missing or unreadable file), kUnsupported (no reader for it) or kInvalidInput
 /// (broken, no triangles, NaN or infinite vertex that a triangle uses, index out of range, reader
 /// crashed or ran too long).

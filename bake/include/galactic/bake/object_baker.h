@@ -16,7 +16,7 @@
 
 namespace galactic::bake {
 
-/// A shape that is given instead of fitted, in the frame of the pack; metres.
+/// A shape that is given instead of fitted, in the frame of the pack; meters.
 struct AuthoredShape {
   /// Taken as it is, along the axes of the frame.
   Bounds box;

@@ -12,7 +12,7 @@ namespace galactic::bake {
 
 /// The objects of one pack, as they were baked.
 struct BakedObjectSet {
-  /// Working set, metres, ascending.
+  /// Working set, meters, ascending.
   std::vector<float> radii;
   std::vector<BakedObject> objects;
 };

@@ -85,7 +85,7 @@ using FieldPointer = std::unique_ptr<OptionField>;
 struct OptionInfo {
   /// Long name without dashes.
   std::string_view name;
-  /// What a value looks like: "METRES", "column|cell"; empty for switches.
+  /// What a value looks like: "METERS", "column|cell"; empty for switches.
   std::string_view form;
   std::string_view help;
 };

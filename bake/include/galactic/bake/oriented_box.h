@@ -15,7 +15,7 @@ enum class BoxFit {
 
 /// kYaw gives the box of least volume instead when that is smaller by more than this share.
 inline constexpr double kMinimumBoxSaving = 0.05;
-/// Flat and thin input is given this half extent, so that no box is without volume. Metres.
+/// Flat and thin input is given this half extent, so that no box is without volume. Meters.
 inline constexpr float kMinHalfExtent = 5e-5F;
 
 /// What was fitted, and what the simpler ways would have given.
@@ -23,15 +23,15 @@ struct BoxFitResult {
   OrientedBox box;
   /// The way that was used in the end: kYaw becomes kMinimum where that saves enough.
   BoxFit used = BoxFit::kYaw;
-  /// Cubic metres.
+  /// Cubic meters.
   double volume = 0;
   double axis_aligned_volume = 0;
   double pca_volume = 0;
 };
 
-/// The oriented box of `points` (object frame, Y up, metres, finite, at least one). Every point
+/// The oriented box of `points` (object frame, Y up, meters, finite, at least one). Every point
 /// lies inside it, also in float arithmetic and with the rounded pose: the extents are taken from
-/// the points themselves and grown by a micrometre and 5e-7 of the greatest coordinate. Of the 24
+/// the points themselves and grown by a micrometer and 5e-7 of the greatest coordinate. Of the 24
 /// rotations that describe a box the nearest to the identity is given. Never larger than the
 /// axis-aligned box; kMinimum never larger than the box of the principal axes either, and kYaw not
 /// by more than kMinimumBoxSaving of its own volume. Flat points get the smallest rectangle,

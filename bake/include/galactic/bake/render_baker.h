@@ -44,21 +44,21 @@ struct RenderSource {
   std::vector<std::string> semantics;
   /// Meshes that no asset owns: primitive shapes.
   std::vector<std::unique_ptr<SourceMesh>> own_meshes;
-  /// Whether textures and vertex colours may hold the light of the place, as those of scans do.
+  /// Whether textures and vertex colors may hold the light of the place, as those of scans do.
   bool may_hold_light = false;
 };
 
-/// Which surfaces get light, baked into their vertex colours: a sky and a key light by normal, kept
+/// Which surfaces get light, baked into their vertex colors: a sky and a key light by normal, kept
 /// away by what is near.
 enum class Lighting : std::uint8_t {
-  kNone,  ///< Colours as the source gives them.
+  kNone,  ///< Colors as the source gives them.
   kAuto,  ///< Those without light of their own: robots and objects, and in scenes what has neither
-          ///< texture nor vertex colours.
+          ///< texture nor vertex colors.
   kAll
 };
 
 struct RenderBakeOptions {
-  /// How far simplification may move a surface, metres; 0 leaves all but the needless triangles of
+  /// How far simplification may move a surface, meters; 0 leaves all but the needless triangles of
   /// flat faces alone. Small and thin pieces move less: at most kLargestShare of their extent, and
   /// kLargestThinness of their area per extent.
   double error = 0.005;
@@ -82,15 +82,15 @@ struct RenderBakeStatistics {
   std::uint64_t vertices = 0;
   std::uint64_t clusters = 0;
   std::uint64_t two_sided_triangles = 0;
-  /// Of the placed meshes as floats: positions, texture coordinates, colours and 32-bit indices.
+  /// Of the placed meshes as floats: positions, texture coordinates, colors and 32-bit indices.
   std::uint64_t source_bytes = 0;
-  /// Clusters, bounds, vertices, colours and triangles.
+  /// Clusters, bounds, vertices, colors and triangles.
   std::uint64_t bytes = 0;
   /// Images as they came, decoded; and as they are stored.
   std::uint64_t source_texture_bytes = 0;
   std::uint64_t texture_bytes = 0;
   /// Farthest that simplification moved a surface, as measured at its corners and the middles of
-  /// its triangles; metres.
+  /// its triangles; meters.
   float largest_error = 0;
 
   /// Of several assets together.

@@ -80,17 +80,17 @@ struct TextureBakeOptions {
   std::shared_ptr<TextureLibrary> library = nullptr;
 };
 
-/// Makes flat colours and small square mip-mapped textures of the materials of an asset.
+/// Makes flat colors and small square mip-mapped textures of the materials of an asset.
 ///
 /// `embedded`: the images that a texture "*N" means; other textures are files, named relative to
 /// `folder`. PNG and JPEG are decoded, each in a process of its own, because they may be hostile.
 /// Whatever cannot be used (missing, broken, another format, over 16384 texels wide or high or over
-/// 64 million in all) leaves its materials with their plain colour and gives one warning.
+/// 64 million in all) leaves its materials with their plain color and gives one warning.
 ///
 /// A texture's edge is the smallest power of two that holds the longer edge of its image, at most
-/// `options.largest`. Filtered by area (linearly where enlarged), in linear light, colours weighted
-/// with alpha; each mip level is the mean of the one above. The base colour is multiplied in. Equal
-/// results are stored once; an image of one colour becomes a flat colour. Cut-out textures keep the
+/// `options.largest`. Filtered by area (linearly where enlarged), in linear light, colors weighted
+/// with alpha; each mip level is the mean of the one above. The base color is multiplied in. Equal
+/// results are stored once; an image of one color becomes a flat color. Cut-out textures keep the
 /// image's share of visible texels in all levels (Castano, "Computing Alpha Mipmaps", 2010).
 /// Translucency is not drawn: from half alpha upwards a surface is there.
 ///

@@ -17,9 +17,9 @@
 namespace galactic::bake {
 
 struct RobotBakeOptions {
-  /// Working set, metres, ascending.
+  /// Working set, meters, ascending.
   std::vector<float> radii{0.015F, 0.05F, 0.12F};
-  /// Metres. Override the recipe's; without either, 20 and 40 mm.
+  /// Meters. Override the recipe's; without either, 20 and 40 mm.
   std::optional<float> eps;
   std::optional<float> tau;
   /// Of the whole robot; 0: as many as the tolerances need. Overrides the recipe's; without either,
@@ -40,7 +40,7 @@ struct BakedGroup {
   std::vector<std::uint32_t> links;
   /// Empty where the group has no geometry or was skipped.
   SphereSet spheres;
-  /// What was asked for, metres.
+  /// What was asked for, meters.
   float eps = 0;
   float tau = 0;
   /// Whether the spheres were given by hand.

@@ -24,9 +24,9 @@ struct RecipeName {
 /// What grasps: a sphere at a point of a link.
 struct RecipeEndEffector {
   RecipeName link;
-  /// In the link's frame (Y up, X forward), metres.
+  /// In the link's frame (Y up, X forward), meters.
   std::array<double, 3> grasp_point{};
-  /// Metres.
+  /// Meters.
   double grasp_radius = 0.015;
 };
 
@@ -45,14 +45,14 @@ struct RecipeLaser {
   Affine link_from_laser{};
   /// Radians.
   double field_of_view = 0;
-  /// Metres.
+  /// Meters.
   double least_range = 0;
   double range = 0;
-  /// Standard deviation of a distance, metres.
+  /// Standard deviation of a distance, meters.
   double noise = 0;
 };
 
-/// The ground that the base covers, in the root link's frame; metres.
+/// The ground that the base covers, in the root link's frame; meters.
 struct FootprintCircle {
   double radius = 0;
 };
@@ -65,24 +65,24 @@ struct FootprintRectangle {
 
 struct RecipeBase {
   std::variant<FootprintCircle, FootprintRectangle> footprint;
-  /// Farthest drive of one action, metres, and farthest turn, radians.
+  /// Farthest drive of one action, meters, and farthest turn, radians.
   double forward_step = 0.1;
   double turn_step = 0.0873;
-  /// Height of the root link's origin above the ground, metres.
+  /// Height of the root link's origin above the ground, meters.
   double root_height = 0;
 };
 
 /// A joint that an action moves.
 struct RecipeJoint {
   RecipeName joint;
-  /// Farthest move of one action, radians or metres.
+  /// Farthest move of one action, radians or meters.
   double step = 0;
   /// Narrower limits than the URDF's.
   std::optional<double> min;
   std::optional<double> max;
 };
 
-/// What stands in for the limits of the URDF, or for their absence: radians or metres.
+/// What stands in for the limits of the URDF, or for their absence: radians or meters.
 struct RecipeLimits {
   RecipeName joint;
   JointLimits limits;
@@ -90,14 +90,14 @@ struct RecipeLimits {
 
 struct RecipeStart {
   RecipeName joint;
-  /// Radians or metres.
+  /// Radians or meters.
   double position = 0;
 };
 
 /// How one link's spheres differ from the rest.
 struct RecipeLinkSpheres {
   RecipeName link;
-  /// Metres.
+  /// Meters.
   std::optional<double> eps;
   std::optional<double> tau;
   std::optional<double> clip_height;
@@ -111,16 +111,16 @@ struct RecipeLinkSpheres {
 };
 
 struct RecipeSpheres {
-  /// Metres.
+  /// Meters.
   double eps = 0.020;
   double tau = 0.040;
   /// Of the whole robot; none: as many as `max_gap` takes.
   std::optional<std::uint32_t> max_spheres;
   /// Without max_spheres, no gap between surface and spheres is wider than this where the
-  /// tolerances allow; metres.
+  /// tolerances allow; meters.
   double max_gap = 0.050;
   /// At the start pose, surfaces lower than this above the ground need no cover, and no sphere
-  /// reaches below; metres.
+  /// reaches below; meters.
   double clip_height = 0.020;
   /// By link name.
   std::vector<RecipeLinkSpheres> links;

@@ -22,7 +22,7 @@ namespace galactic::bake {
 enum class Engine { kExact, kBullet, kEmbree };
 
 struct SceneBakeOptions {
-  /// Metres, ascending, 1 to 8 of them.
+  /// Meters, ascending, 1 to 8 of them.
   std::vector<float> radii{0.015F, 0.05F, 0.12F};
   float spacing = 0.03F;
   Engine engine = Engine::kExact;

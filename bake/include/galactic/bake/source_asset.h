@@ -11,7 +11,7 @@ namespace galactic::bake {
 /// Corner indices of one triangle, counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// A row-major affine transform: three rows of (linear part | translation); metres.
+/// A row-major affine transform: three rows of (linear part | translation); meters.
 using Affine = std::array<double, 12>;
 
 /// What a material's alpha means (glTF's alphaMode).
@@ -72,11 +72,11 @@ struct SourceFile {
   std::uint64_t hash_high = 0;
 };
 
-/// What an importer hands to the bakers: neutral, in the world frame (Y up, metres).
+/// What an importer hands to the bakers: neutral, in the world frame (Y up, meters).
 struct SourceAsset {
   /// Main input's file name without its extension.
   std::string name;
-  /// Format as recognised, for example "glTF 2.0".
+  /// Format as recognized, for example "glTF 2.0".
   std::string format;
   /// How axes and unit were read, for the closing table: for example "Z up (file), unit 0.01 m".
   std::string convention;

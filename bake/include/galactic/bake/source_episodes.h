@@ -7,7 +7,7 @@
 namespace galactic::bake {
 
 /// Episodes as importers and the generator give them, ready for encodeEpisodePack. World frame: Y
-/// up, metres, radians; object frames are those of the object packs.
+/// up, meters, radians; object frames are those of the object packs.
 struct SourceEpisodes {
   std::string name;
   /// Ascending, no two the same; Episode::scene counts in it.

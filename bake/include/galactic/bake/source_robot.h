@@ -11,7 +11,7 @@
 
 namespace galactic::bake {
 
-/// Primitive shapes, in their own frame; metres. A cylinder's axis is Y.
+/// Primitive shapes, in their own frame; meters. A cylinder's axis is Y.
 struct BoxShape {
   std::array<double, 3> size;
 };
@@ -32,11 +32,11 @@ struct LinkShape {
   std::variant<BoxShape, CylinderShape, SphereShape, MeshShape> geometry;
   /// Includes the mesh's scale.
   Affine link_from_shape{};
-  /// Linear RGBA where the URDF names a colour.
+  /// Linear RGBA where the URDF names a color.
   std::optional<std::array<float, 4>> color;
 };
 
-/// Radians or metres, lower <= upper.
+/// Radians or meters, lower <= upper.
 struct JointLimits {
   double lower = 0;
   double upper = 0;
@@ -70,7 +70,7 @@ struct SourceLink {
   std::vector<LinkShape> visuals;
 };
 
-/// What the robot importer hands to the baker: neutral, every frame Y up and X forward, metres.
+/// What the robot importer hands to the baker: neutral, every frame Y up and X forward, meters.
 struct SourceRobot {
   std::string name;
   /// Root first, parents before children; children in the order of the URDF's joints.

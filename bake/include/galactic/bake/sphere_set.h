@@ -15,11 +15,11 @@ namespace galactic::bake {
 struct HalfSpace {
   /// Unit vector.
   Vec3 normal{0, 1, 0};
-  /// Metres.
+  /// Meters.
   float offset = 0;
 };
 
-/// What the spheres must do. Lengths in metres.
+/// What the spheres must do. Lengths in meters.
 struct SphereSetOptions {
   /// The working set, ascending, 1 to 8 radii of 0.0001 to 10 m.
   std::vector<float> radii{0.015F, 0.05F, 0.12F};
@@ -28,7 +28,7 @@ struct SphereSetOptions {
   /// No sphere sticks out of the surface further than this, but for thin parts: they get the least
   /// protrusion that covers them. 0 to 10.
   float tau = 0.020F;
-  /// No sphere reaches beyond this plane (up to a micrometre): the face on which the object rests,
+  /// No sphere reaches beyond this plane (up to a micrometer): the face on which the object rests,
   /// or the ground. Surface points beyond it need no cover.
   std::optional<HalfSpace> support;
   /// Most spheres allowed; 0: as many as the tolerances need. With a limit the gap may exceed eps.
@@ -37,7 +37,7 @@ struct SphereSetOptions {
   unsigned jobs = 1;
 };
 
-/// Mean, 95th percentile and maximum of a length over samples, metres.
+/// Mean, 95th percentile and maximum of a length over samples, meters.
 struct LengthStatistics {
   double mean = 0;
   double p95 = 0;
@@ -56,7 +56,7 @@ struct SphereSetQuality {
   std::uint64_t thin_points = 0;
   /// Number of reachable samples measured.
   std::uint64_t samples = 0;
-  /// Area of the reachable surface, square metres.
+  /// Area of the reachable surface, square meters.
   double area = 0;
 };
 
@@ -78,7 +78,7 @@ struct SphereSet {
 
 /// The fewest spheres of the working set found that cover `mesh` under two tolerances. The solid is
 /// what a ball of half the smallest radius cannot reach from outside: holes, inner faces, nested
-/// shells and the winding of triangles do not matter. For objects of metres the ball is larger, so
+/// shells and the winding of triangles do not matter. For objects of meters the ball is larger, so
 /// that memory stays bounded. Bounded by operation counts, so the bytes depend on the input only.
 ///
 /// Set cover over spheres on lattices through the solid: lazy greedy, then the row weighting local
@@ -96,7 +96,7 @@ struct CurvePoint {
   /// surface, and the square of protrusions integrated over the spheres; m^4. Errors of several
   /// meshes with the same eps may be compared and added.
   double error = 0;
-  /// Metres: no gap is wider before the set is settled.
+  /// Meters: no gap is wider before the set is settled.
   double widest_gap = 0;
 };
 
@@ -137,7 +137,7 @@ class SphereCurve {
 };
 
 /// Measures any sphere set, hand-made ones too, with the yardstick of `fitSphereSet`. Fails as that
-/// does, and with kInvalidInput where there are no spheres, a centre is not finite or a radius is
+/// does, and with kInvalidInput where there are no spheres, a center is not finite or a radius is
 /// not in the working set.
 [[nodiscard]] Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
                                                         const std::vector<SetSphere>& spheres,

@@ -15,11 +15,11 @@ inline constexpr std::size_t kMaxStablePoses = 16;
 inline constexpr double kSamePoseAngle = 0.05;
 
 /// The stable poses of the solid of even density inside the convex hull of `mesh` (object frame,
-/// metres, finite), likeliest first; of equally likely ones, the more upright first. Heights are
+/// meters, finite), likeliest first; of equally likely ones, the more upright first. Heights are
 /// such that no vertex is below the plane. Never empty: a flat mesh rests on either side, one that
 /// is a line on four of its sides, a point as it is.
 /// Likelihoods by the quasi-static estimate of Goldberg et al., "Part pose statistics: estimators
-/// and experiments" (1999): the share of directions in which a face lies below the centre of mass,
+/// and experiments" (1999): the share of directions in which a face lies below the center of mass,
 /// its own and those of the faces from which the body rolls onto it. Deterministic.
 [[nodiscard]] std::vector<StablePose> findStablePoses(const TriangleMesh& mesh);
 

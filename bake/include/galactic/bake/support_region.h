@@ -10,7 +10,7 @@ namespace galactic::bake {
 struct SupportRegion {
   std::string name;
   Pose world_from_region;
-  /// Metres, along the region's axes.
+  /// Meters, along the region's axes.
   Vec3 half_extents;
 };
 

@@ -12,15 +12,15 @@ struct HeightInterval {
   double hi = 0;
 };
 
-/// The heights at which the centre of a ball of `radius` on the vertical line through (x, z) is
+/// The heights at which the center of a ball of `radius` on the vertical line through (x, z) is
 /// strictly closer than `radius` to the triangle; none if there are none. It is one open interval
 /// because triangle and ball are convex: the hull of what its corners (spheres), edges (cylinders)
 /// and face (two offset planes) give. Scalar double-precision reference of the vectorised engine.
 [[nodiscard]] std::optional<HeightInterval> touchingHeights(const std::array<Point, 3>& triangle,
                                                             double x, double z, double radius);
 
-/// The same for a centre anywhere over the square of half edge `half` around (x, z): the heights at
-/// which some centre in the square touches.
+/// The same for a center anywhere over the square of half edge `half` around (x, z): the heights at
+/// which some center in the square touches.
 [[nodiscard]] std::optional<HeightInterval> touchingHeightsOverCell(
     const std::array<Point, 3>& triangle, double x, double z, double half, double radius);
 

@@ -8,7 +8,7 @@
 
 namespace galactic::bake {
 
-/// An axis-aligned box, metres.
+/// An axis-aligned box, meters.
 struct Bounds {
   Vec3 min;
   Vec3 max;
@@ -23,9 +23,9 @@ struct CleaningCounts {
   std::uint64_t duplicate = 0;
 };
 
-/// A triangle lower than this is dropped: its neighbours cover it to within this distance. Metres.
+/// A triangle lower than this is dropped: its neighbors cover it to within this distance. Meters.
 inline constexpr double kDegenerateHeight = 1e-7;
-/// A coordinate beyond this is refused: float positions would be coarser than 0.1 mm. Metres.
+/// A coordinate beyond this is refused: float positions would be coarser than 0.1 mm. Meters.
 inline constexpr double kMaxCoordinate = 800.0;
 
 /// The collision geometry of a scene: world frame, finite, no degenerate and no duplicate triangle,

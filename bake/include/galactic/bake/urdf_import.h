@@ -50,7 +50,7 @@ struct UrdfImportOptions {
 /// keeps other geometry, and an error when the link lost all (see allow_missing). For links with
 /// visuals but without collision elements a warning says that the visuals stand in for them.
 ///
-/// Colours are taken as sRGB and converted to linear; material textures are not used (warning).
+/// Colors are taken as sRGB and converted to linear; material textures are not used (warning).
 /// Joints: continuous joints have no limits. Of revolute and prismatic ones lower or upper is 0
 /// when it alone is absent (URDF); without both, -pi to pi and -1 to 1 m are assumed
 /// (SourceLink::limits_are_assumed). Planar axes are the plane's normal. Chains of mimics are

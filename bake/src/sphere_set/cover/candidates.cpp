@@ -13,7 +13,7 @@ namespace {
 /// fits saves many of the smallest, so it is worth more tries.
 constexpr double kStepsPerDisc = 12;
 constexpr double kStepsPerSmallestDisc = 6;
-/// Centres are pushed to this much below the highest level, metres: rounding must not lift them.
+/// Centers are pushed to this much below the highest level, meters: rounding must not lift them.
 constexpr double kBelowHighest = 1e-6;
 /// Of thin parts' spheres those are kept whose protrusion is this share of the radius above the
 /// least.
@@ -22,16 +22,16 @@ constexpr double kThinSlack = 0.13;
 constexpr double kThinStep = 0.1;
 constexpr int kThinSteps = 12;
 
-/// A sphere of this radius with its centre at `centre`.
-Candidate candidateAt(const FitTask& task, std::uint32_t radius_index, const Vec3d& centre,
+/// A sphere of this radius with its center at `center`.
+Candidate candidateAt(const FitTask& task, std::uint32_t radius_index, const Vec3d& center,
                       double signed_distance) {
-  return {centre, radius_index, std::max(0.0, signed_distance + task.radii[radius_index])};
+  return {center, radius_index, std::max(0.0, signed_distance + task.radii[radius_index])};
 }
 
 /// The lattice point pushed outwards onto the highest level, or where it is when that fails.
 Candidate pushedOutwards(const FitTask& task, std::uint32_t radius_index,
                          const LatticePoint& from) {
-  const double highest = highestCentre(task, radius_index);
+  const double highest = highestCenter(task, radius_index);
   const double here = from.surface.distance;
   const double away = std::fabs(here);
   if (away > 0) {
@@ -48,7 +48,7 @@ Candidate pushedOutwards(const FitTask& task, std::uint32_t radius_index,
 std::vector<Candidate> candidatesOfRadius(const FitTask& task, std::uint32_t radius_index,
                                           const PointGrid& wanted) {
   const double radius = task.radii[radius_index];
-  const double highest = highestCentre(task, radius_index);
+  const double highest = highestCenter(task, radius_index);
   const LatticeBand band{latticeSpacing(task, radius_index), -(radius + task.eps), highest, &wanted,
                          radius + task.eps};
   const auto lattice = latticeInBand(*task.solid, band, task.jobs);
@@ -59,7 +59,7 @@ std::vector<Candidate> candidatesOfRadius(const FitTask& task, std::uint32_t rad
     const Candidate candidate =
         high ? pushedOutwards(task, radius_index, point)
              : candidateAt(task, radius_index, point.position, point.surface.distance);
-    if (staysAbove(task, candidate.centre, radius)) made[at] = candidate;
+    if (staysAbove(task, candidate.center, radius)) made[at] = candidate;
   });
   std::vector<Candidate> candidates;
   for (const auto& candidate : made) {
@@ -80,12 +80,12 @@ std::vector<Vec3d> openPoints(std::span<const Vec3d> points, std::span<const cha
 /// A sphere of the smallest radius at `p`, lifted onto the near side of the support.
 Candidate lifted(const FitTask& task, const Vec3d& p) {
   const double radius = task.radii.front();
-  Vec3d centre = p;
+  Vec3d center = p;
   if (!staysAbove(task, p, radius)) {
     const double missing = radius - heightAbove(task.support, p);
-    centre = asStored(p + widen(task.support->normal) * missing);
+    center = asStored(p + widen(task.support->normal) * missing);
   }
-  return candidateAt(task, 0, centre, task.solid->distance(centre).distance);
+  return candidateAt(task, 0, center, task.solid->distance(center).distance);
 }
 
 /// A point near the middle of the part under `p`, a point of the surface.
@@ -112,10 +112,10 @@ Vec3d middleOfPart(const FitTask& task, const Vec3d& p) {
 
 }  // namespace
 
-bool staysAbove(const FitTask& task, const Vec3d& centre, double radius) {
-  // A centre that was lifted may be rounded back by as much.
+bool staysAbove(const FitTask& task, const Vec3d& center, double radius) {
+  // A center that was lifted may be rounded back by as much.
   constexpr double kRounding = 1e-6;
-  return heightAbove(task.support, centre) >= radius - kRounding;
+  return heightAbove(task.support, center) >= radius - kRounding;
 }
 
 double latticeSpacing(const FitTask& task, std::uint32_t radius_index) {
@@ -123,7 +123,7 @@ double latticeSpacing(const FitTask& task, std::uint32_t radius_index) {
   const double reach = radius + task.eps;
   const double below = std::max(0.0, radius - task.tau);
   const double disc = std::sqrt(reach * reach - below * below);
-  const double band = task.solid->area() * (reach + highestCentre(task, radius_index));
+  const double band = task.solid->area() * (reach + highestCenter(task, radius_index));
   const double steps = radius_index == 0 ? kStepsPerSmallestDisc : kStepsPerDisc;
   return std::max(disc / steps, std::cbrt(std::max(band, 0.0) / task.most_places));
 }

@@ -14,11 +14,11 @@ struct Candidates {
   std::vector<char> coverable;
 };
 
-/// Spacing of the lattice on which spheres of one radius are tried, metres.
+/// Spacing of the lattice on which spheres of one radius are tried, meters.
 [[nodiscard]] double latticeSpacing(const FitTask& task, std::uint32_t radius_index);
 
 /// Spheres within tau on lattices through the solid, the largest radius first; a smaller radius is
-/// tried only where it reaches points that no larger one covers. The centres just below the
+/// tried only where it reaches points that no larger one covers. The centers just below the
 /// highest level that tau allows are pushed onto it, where they cover most.
 [[nodiscard]] Candidates findCandidates(const FitTask& task, std::span<const Vec3d> points);
 
@@ -28,7 +28,7 @@ struct Candidates {
 void addThinCandidates(const FitTask& task, std::span<const Vec3d> points,
                        std::span<const char> coverable, CandidatePool& pool);
 
-/// Whether a sphere with this centre stays on the near side of the task's support.
-[[nodiscard]] bool staysAbove(const FitTask& task, const Vec3d& centre, double radius);
+/// Whether a sphere with this center stays on the near side of the task's support.
+[[nodiscard]] bool staysAbove(const FitTask& task, const Vec3d& center, double radius);
 
 }  // namespace galactic::bake::sphere_fit

@@ -32,7 +32,7 @@ void appendCovering(const FitTask& task, const PointGrid& grid, std::span<const 
     std::vector<std::uint32_t> rows;
     for (std::size_t at = chunk * kChunk; at < std::min(found.size(), (chunk + 1) * kChunk); ++at) {
       rows.clear();
-      grid.visitWithin(found[at].centre, task.radii[found[at].radius_index] + task.eps,
+      grid.visitWithin(found[at].center, task.radii[found[at].radius_index] + task.eps,
                        [&](std::uint32_t row, double) {
                          rows.push_back(row);
                          return true;
@@ -50,9 +50,9 @@ void appendCovering(const FitTask& task, const PointGrid& grid, std::span<const 
 
 CandidatePool withoutDominated(const FitTask& task, std::span<const Vec3d> points,
                                const CandidatePool& pool, double distance) {
-  std::vector<Vec3d> centres;
-  for (const Candidate& candidate : pool.candidates) centres.push_back(candidate.centre);
-  const PointGrid grid(centres, distance);
+  std::vector<Vec3d> centers;
+  for (const Candidate& candidate : pool.candidates) centers.push_back(candidate.center);
+  const PointGrid grid(centers, distance);
   const auto comes_first = [&](std::uint32_t a, std::uint32_t b) {
     const std::size_t size_a = pool.cover.column(a).size();
     const std::size_t size_b = pool.cover.column(b).size();
@@ -66,22 +66,22 @@ CandidatePool withoutDominated(const FitTask& task, std::span<const Vec3d> point
     const double reach = task.radii[sphere.radius_index] + task.eps;
     const auto rows = pool.cover.column(at);
     return std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) {
-      return squaredLength(points[row] - sphere.centre) <= reach * reach;
+      return squaredLength(points[row] - sphere.center) <= reach * reach;
     });
   };
-  std::vector<char> dominated(centres.size(), 0);
-  parallelFor(task.jobs, (centres.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    const std::size_t end = std::min(centres.size(), (chunk + 1) * kChunk);
+  std::vector<char> dominated(centers.size(), 0);
+  parallelFor(task.jobs, (centers.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+    const std::size_t end = std::min(centers.size(), (chunk + 1) * kChunk);
     for (std::size_t i = chunk * kChunk; i < end; ++i) {
       const auto at = static_cast<std::uint32_t>(i);
-      grid.visitWithin(centres[at], distance, [&](std::uint32_t other, double) {
+      grid.visitWithin(centers[at], distance, [&](std::uint32_t other, double) {
         dominated[at] = other != at && comes_first(other, at) && covers_all(other, at) ? 1 : 0;
         return dominated[at] == 0;
       });
     }
   });
   CandidatePool kept;
-  for (std::size_t at = 0; at < centres.size(); ++at) {
+  for (std::size_t at = 0; at < centers.size(); ++at) {
     if (dominated[at] != 0) continue;
     kept.candidates.push_back(pool.candidates[at]);
     kept.cover.append(pool.cover.column(at));

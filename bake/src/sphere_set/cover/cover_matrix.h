@@ -40,7 +40,7 @@ struct CandidatePool {
 void appendCovering(const FitTask& task, const PointGrid& grid, std::span<const Candidate> found,
                     CandidatePool& pool);
 
-/// Drops candidates that a neighbour, within `distance` of them, makes needless: it covers all they
+/// Drops candidates that a neighbor, within `distance` of them, makes needless: it covers all they
 /// cover and more, or the same with less protrusion.
 [[nodiscard]] CandidatePool withoutDominated(const FitTask& task, std::span<const Vec3d> points,
                                              const CandidatePool& pool, double distance);

@@ -163,13 +163,13 @@ class CoverSolver {
           if (squared == 0 || squared > kFineSteps * kFineSteps) continue;
           const Vec3d offset{static_cast<double>(x), static_cast<double>(y),
                              static_cast<double>(z)};
-          const Vec3d centre = asStored(around.centre + offset * step);
-          if (!staysAbove(task_, centre, radius)) continue;
-          const SurfaceDistance surface = task_.solid->distance(centre, hint);
+          const Vec3d center = asStored(around.center + offset * step);
+          if (!staysAbove(task_, center, radius)) continue;
+          const SurfaceDistance surface = task_.solid->distance(center, hint);
           hint = surface.facet;
           const double protrusion = std::max(0.0, surface.distance + radius);
           if (protrusion > most || surface.distance < -(radius + task_.eps)) continue;
-          found.push_back({centre, around.radius_index, protrusion});
+          found.push_back({center, around.radius_index, protrusion});
         }
       }
     }

@@ -21,7 +21,7 @@ struct Effort {
 /// The points of a surface that covers are made and checked on. They depend on their spacing only,
 /// so covers of one solid for several tolerances may share them.
 struct SurfacePoints {
-  /// Of the points to cover, metres; 0: none yet.
+  /// Of the points to cover, meters; 0: none yet.
   double spacing = 0;
   std::vector<Vec3d> points;
   /// Denser ones, which the cover is checked on.

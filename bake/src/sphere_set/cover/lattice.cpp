@@ -72,14 +72,14 @@ class BandSearch {
 
   [[nodiscard]] bool mayHold(const Cube& cube) const {
     const double half = static_cast<double>(cube.edge - 1) / 2;
-    const Vec3d centre =
+    const Vec3d center =
         position({static_cast<double>(cube.at[0]) + half, static_cast<double>(cube.at[1]) + half,
                   static_cast<double>(cube.at[2]) + half});
     const double to_corner = half * band_.spacing * std::sqrt(3.0);
-    if (band_.wanted != nullptr && !band_.wanted->anyWithin(centre, band_.reach + to_corner)) {
+    if (band_.wanted != nullptr && !band_.wanted->anyWithin(center, band_.reach + to_corner)) {
       return false;
     }
-    const double distance = solid_.distance(centre).distance;
+    const double distance = solid_.distance(center).distance;
     return distance - to_corner <= band_.highest && distance + to_corner >= band_.lowest;
   }
 

@@ -8,7 +8,7 @@ namespace galactic::bake::sphere_fit {
 
 /// Which points of a lattice are wanted.
 struct LatticeBand {
-  /// Metres between neighbours along each axis.
+  /// Meters between neighbors along each axis.
   double spacing = 0;
   /// Signed distance to the surface from `lowest` to `highest`.
   double lowest = 0;

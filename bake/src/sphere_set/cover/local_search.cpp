@@ -30,9 +30,9 @@ LocalSearch::LocalSearch(const FitTask& task, std::span<const Vec3d> points,
   }
   balls_.reserve(pool.candidates.size());
   for (const Candidate& c : pool.candidates) {
-    const Vec3 centre = narrow(c.centre);
+    const Vec3 center = narrow(c.center);
     const auto reach = static_cast<float>(task.radii[c.radius_index] + task.eps);
-    balls_.push_back({centre.x, centre.y, centre.z, reach * reach});
+    balls_.push_back({center.x, center.y, center.z, reach * reach});
     // A little more, for the rounding of the distances.
     squared_width_ = std::max(squared_width_, 4.001F * reach * reach);
   }

@@ -39,7 +39,7 @@ class Polisher {
   void sweep(double step) {
     // No sphere moves further in a sweep.
     const double furthest = kTries * (kLeastOfStep + 1) * step * std::sqrt(3.0);
-    neighbours_ = neighboursWithin(2 * furthest);
+    neighbors_ = neighborsWithin(2 * furthest);
     for (std::size_t at = 0; at < spheres_.size(); ++at) improve(at, step);
   }
 
@@ -52,7 +52,7 @@ class Polisher {
       const Vec3d direction{random_.unit() * 2 - 1, random_.unit() * 2 - 1, random_.unit() * 2 - 1};
       const double length = step * (kLeastOfStep + random_.unit());
       Candidate moved = sphere;
-      moved.centre = asStored(sphere.centre + direction * length);
+      moved.center = asStored(sphere.center + direction * length);
       if (!allowed(sphere, moved)) continue;
       const double moved_cost = costOf(moved, near);
       if (moved_cost < cost) {
@@ -65,8 +65,8 @@ class Polisher {
   /// Also measures how far the moved sphere protrudes.
   [[nodiscard]] bool allowed(const Candidate& sphere, Candidate& moved) const {
     const double radius = task_.radii[moved.radius_index];
-    if (!staysAbove(task_, moved.centre, radius)) return false;
-    moved.protrusion = std::max(0.0, task_.solid->distance(moved.centre).distance + radius);
+    if (!staysAbove(task_, moved.center, radius)) return false;
+    moved.protrusion = std::max(0.0, task_.solid->distance(moved.center).distance + radius);
     return moved.protrusion <= std::max(task_.tau, sphere.protrusion);
   }
 
@@ -75,16 +75,16 @@ class Polisher {
     // leave it out.
     constexpr double kRounding = 1e-6;
     const double reach = task_.radii[spheres_[at].radius_index] + most_ + kRounding;
-    std::vector<const Candidate*> neighbours;
-    for (const std::uint32_t other : neighbours_[at]) {
+    std::vector<const Candidate*> neighbors;
+    for (const std::uint32_t other : neighbors_[at]) {
       const double reaches = reach + most_ + task_.radii[spheres_[other].radius_index];
-      const double squared = squaredLength(spheres_[other].centre - spheres_[at].centre);
-      if (squared < reaches * reaches) neighbours.push_back(&spheres_[other]);
+      const double squared = squaredLength(spheres_[other].center - spheres_[at].center);
+      if (squared < reaches * reaches) neighbors.push_back(&spheres_[other]);
     }
     std::vector<NearPoint> near;
-    grid_.visitWithin(spheres_[at].centre, reach, [&](std::uint32_t index, double) {
+    grid_.visitWithin(spheres_[at].center, reach, [&](std::uint32_t index, double) {
       NearPoint point{points_[index], HUGE_VAL};
-      for (const Candidate* other : neighbours) {
+      for (const Candidate* other : neighbors) {
         point.others = std::min(point.others, outside(task_, *other, point.position));
       }
       // What others hold inside costs nothing wherever this sphere goes.
@@ -95,21 +95,21 @@ class Polisher {
   }
 
   /// By sphere: the others that may cover what it may, when each is up to `margin` nearer.
-  [[nodiscard]] std::vector<std::vector<std::uint32_t>> neighboursWithin(double margin) const {
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> neighborsWithin(double margin) const {
     constexpr double kRounding = 1e-6;
     const double largest = task_.radii.back() + most_;
-    std::vector<Vec3d> centres;
-    for (const Candidate& sphere : spheres_) centres.push_back(sphere.centre);
-    const PointGrid grid(centres, largest);
-    std::vector<std::vector<std::uint32_t>> neighbours(centres.size());
-    for (std::size_t at = 0; at < centres.size(); ++at) {
+    std::vector<Vec3d> centers;
+    for (const Candidate& sphere : spheres_) centers.push_back(sphere.center);
+    const PointGrid grid(centers, largest);
+    std::vector<std::vector<std::uint32_t>> neighbors(centers.size());
+    for (std::size_t at = 0; at < centers.size(); ++at) {
       const double reach = task_.radii[spheres_[at].radius_index] + most_ + largest;
-      grid.visitWithin(centres[at], reach + margin + kRounding, [&](std::uint32_t other, double) {
-        if (other != at) neighbours[at].push_back(other);
+      grid.visitWithin(centers[at], reach + margin + kRounding, [&](std::uint32_t other, double) {
+        if (other != at) neighbors[at].push_back(other);
         return true;
       });
     }
-    return neighbours;
+    return neighbors;
   }
 
   /// Infinite where a gap would be too large.
@@ -135,7 +135,7 @@ class Polisher {
   double most_;
   Random random_;
   /// By sphere, during a sweep.
-  std::vector<std::vector<std::uint32_t>> neighbours_;
+  std::vector<std::vector<std::uint32_t>> neighbors_;
 };
 
 }  // namespace

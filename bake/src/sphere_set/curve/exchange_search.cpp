@@ -15,9 +15,9 @@ constexpr std::uint64_t kSeed = 23;
 constexpr std::size_t kDirections = 48;
 /// About so many candidates of each radius are looked through.
 constexpr double kMostCandidates = 1500;
-/// A sphere whose centre is further outside than this share of its radius mostly sticks out.
+/// A sphere whose center is further outside than this share of its radius mostly sticks out.
 constexpr double kFurthestOutside = 0.25;
-/// Centres are pulled this much deeper than they need be, metres: rounding must not lift them.
+/// Centers are pulled this much deeper than they need be, meters: rounding must not lift them.
 constexpr double kBelowHighest = 1e-6;
 /// A sphere may protrude more where gaps are wide: by this power of what the widest is above eps.
 constexpr double kProtrusionGrowth = 0.4;
@@ -45,8 +45,8 @@ std::array<Vec3d, kDirections> evenDirections() {
   return directions;
 }
 
-Sphere narrowed(const Vec3d& centre, double radius) {
-  const Vec3 c = narrow(centre);
+Sphere narrowed(const Vec3d& center, double radius) {
+  const Vec3 c = narrow(center);
   return {c.x, c.y, c.z, static_cast<float>(radius)};
 }
 
@@ -59,11 +59,11 @@ double costOfGap(const GapCost& cost, double gap) {
          squared * (1 + static_cast<double>(cost.fourth) * squared);
 }
 
-double protrusionIntegral(const DistanceGrid& grid, const Vec3d& centre, double radius) {
+double protrusionIntegral(const DistanceGrid& grid, const Vec3d& center, double radius) {
   static const std::array<Vec3d, kDirections> directions = evenDirections();
   double sum = 0;
   for (const Vec3d& direction : directions) {
-    const double outside = std::max(0.0, grid.at(centre + direction * radius));
+    const double outside = std::max(0.0, grid.at(center + direction * radius));
     sum += outside * outside;
   }
   return sum * 4 * std::numbers::pi * radius * radius / static_cast<double>(kDirections);
@@ -80,7 +80,7 @@ ExchangeSearch::ExchangeSearch(const FitTask& task, const DistanceGrid& grid,
                                std::span<const Candidate> spheres)
     : task_(task), grid_(grid), points_(points), weights_(weights), random_(kSeed) {
   for (const Candidate& sphere : spheres) {
-    chosen_.push_back({sphere, protrusionCost(sphere.centre, sphere.radius_index)});
+    chosen_.push_back({sphere, protrusionCost(sphere.center, sphere.radius_index)});
   }
   assign();
 }
@@ -89,17 +89,17 @@ double ExchangeSearch::error() const {
   return sum_ * task_.solid->area() / static_cast<double>(points_.size());
 }
 
-double ExchangeSearch::protrusionCost(const Vec3d& centre, std::uint32_t radius_index) const {
+double ExchangeSearch::protrusionCost(const Vec3d& center, std::uint32_t radius_index) const {
   // In the unit of the points' sum, each of which stands for its share of the area.
   const double per_area = static_cast<double>(points_.size()) / task_.solid->area();
   return weights_.protrusion * per_area *
-         protrusionIntegral(grid_, centre, task_.radii[radius_index]);
+         protrusionIntegral(grid_, center, task_.radii[radius_index]);
 }
 
 void ExchangeSearch::findCandidates() {
   for (std::uint32_t radius_index = 0; radius_index < task_.radii.size(); ++radius_index) {
     for (const Candidate& found : candidatesOf(radius_index)) {
-      candidates_.push_back({found, protrusionCost(found.centre, radius_index)});
+      candidates_.push_back({found, protrusionCost(found.center, radius_index)});
     }
   }
 }
@@ -119,15 +119,15 @@ std::vector<Candidate> ExchangeSearch::candidatesOf(std::uint32_t radius_index) 
       1 + static_cast<std::size_t>(static_cast<double>(nodes.size()) / kMostCandidates);
   std::vector<Candidate> candidates;
   for (std::size_t at = 0; at < nodes.size(); at += stride) {
-    const Vec3d centre = asStored(grid_.position(nodes[at]));
+    const Vec3d center = asStored(grid_.position(nodes[at]));
     std::optional<Candidate> candidate;
     if (grid_.distance(nodes[at]) > highest) {
-      candidate = pulledInwards(centre, radius_index, highest);
+      candidate = pulledInwards(center, radius_index, highest);
     } else {
       candidate =
-          Candidate{centre, radius_index, std::max(0.0, grid_.distance(nodes[at]) + radius)};
+          Candidate{center, radius_index, std::max(0.0, grid_.distance(nodes[at]) + radius)};
     }
-    if (candidate && staysAbove(task_, candidate->centre, radius)) {
+    if (candidate && staysAbove(task_, candidate->center, radius)) {
       candidates.push_back(*candidate);
     }
   }
@@ -140,10 +140,10 @@ std::optional<Candidate> ExchangeSearch::pulledInwards(const Vec3d& from,
   const SurfaceDistance here = task_.solid->distance(from);
   if (here.distance == 0) return std::nullopt;
   const Vec3d outwards = (from - here.nearest) * (1 / here.distance);
-  const Vec3d centre = asStored(from - outwards * (here.distance - highest + kBelowHighest));
-  const double there = task_.solid->distance(centre, here.facet).distance;
+  const Vec3d center = asStored(from - outwards * (here.distance - highest + kBelowHighest));
+  const double there = task_.solid->distance(center, here.facet).distance;
   if (there > highest) return std::nullopt;
-  return Candidate{centre, radius_index, std::max(0.0, there + task_.radii[radius_index])};
+  return Candidate{center, radius_index, std::max(0.0, there + task_.radii[radius_index])};
 }
 
 ExchangeSearch::Place ExchangeSearch::placeOf(const Vec3d& point) const {
@@ -152,7 +152,7 @@ ExchangeSearch::Place ExchangeSearch::placeOf(const Vec3d& point) const {
   Place place{0, furthest, furthest};
   for (std::uint32_t rank = 0; rank < chosen_.size(); ++rank) {
     const Candidate& sphere = chosen_[rank].sphere;
-    const double gap = length(point - sphere.centre) - task_.radii[sphere.radius_index];
+    const double gap = length(point - sphere.center) - task_.radii[sphere.radius_index];
     if (gap < place.gap) {
       place = {rank, gap, place.gap};
     } else {
@@ -226,14 +226,14 @@ ExchangeSearch::Offers ExchangeSearch::offersOf(std::uint32_t candidate) const {
     return {{-HUGE_VAL, candidate, 0}, {-HUGE_VAL, candidate, 0}};
   }
   const double radius = task_.radii[offered.sphere.radius_index];
-  const Sphere ball = narrowed(offered.sphere.centre, radius);
+  const Sphere ball = narrowed(offered.sphere.center, radius);
   double added = -offered.cost;
   double instead = -HUGE_VAL;
   std::uint32_t leaves = 0;
   for (std::uint32_t rank = 0; rank < cells_.size(); ++rank) {
     const Cell& cell = cells_[rank];
     GapGain gain;
-    const double least = length(offered.sphere.centre - cell.middle) - cell.radius - radius;
+    const double least = length(offered.sphere.center - cell.middle) - cell.radius - radius;
     if (cell.count > 0 && costOfGap(weights_.gap, least) < cell.highest_next) {
       gain = gain_of_(pointsOf(cell), weights_.gap, ball);
     }
@@ -304,7 +304,7 @@ void ExchangeSearch::cheapenProtrusion(double factor) {
 
 double ExchangeSearch::costIn(const Cell& cell, const Chosen& chosen) const {
   if (cell.count == 0) return chosen.cost;
-  const Sphere ball = narrowed(chosen.sphere.centre, task_.radii[chosen.sphere.radius_index]);
+  const Sphere ball = narrowed(chosen.sphere.center, task_.radii[chosen.sphere.radius_index]);
   return chosen.cost - static_cast<double>(gain_of_(pointsOf(cell), weights_.gap, ball).gone);
 }
 
@@ -315,12 +315,12 @@ void ExchangeSearch::settleOne(std::size_t rank, double step) {
   for (int attempt = 0; attempt < kTries; ++attempt) {
     const Vec3d direction{random_.unit() * 2 - 1, random_.unit() * 2 - 1, random_.unit() * 2 - 1};
     Chosen moved = chosen;
-    moved.sphere.centre = asStored(chosen.sphere.centre + direction * step);
-    if (!staysAbove(task_, moved.sphere.centre, radius)) continue;
-    moved.cost = protrusionCost(moved.sphere.centre, moved.sphere.radius_index);
+    moved.sphere.center = asStored(chosen.sphere.center + direction * step);
+    if (!staysAbove(task_, moved.sphere.center, radius)) continue;
+    moved.cost = protrusionCost(moved.sphere.center, moved.sphere.radius_index);
     const double cost = costIn(cells_[rank], moved);
     if (cost >= least) continue;
-    const double outside = task_.solid->distance(moved.sphere.centre).distance + radius;
+    const double outside = task_.solid->distance(moved.sphere.center).distance + radius;
     if (outside > std::max(most_protrusion_, chosen.sphere.protrusion)) continue;
     moved.sphere.protrusion = std::max(0.0, outside);
     least = cost;

@@ -49,9 +49,9 @@ class ExchangeSearch {
   void settle(int sweeps);
 
   [[nodiscard]] std::vector<Candidate> spheres() const;
-  /// Of the set so far; square metres times what a gap costs.
+  /// Of the set so far; square meters times what a gap costs.
   [[nodiscard]] double error() const;
-  /// The largest gap at any of the points, metres, at least 0.
+  /// The largest gap at any of the points, meters, at least 0.
   [[nodiscard]] double widestGap() const { return std::max(0.0, widest_); }
 
  private:
@@ -114,7 +114,7 @@ class ExchangeSearch {
   /// Of one sphere where it would stand, up to what does not depend on that.
   [[nodiscard]] double costIn(const Cell& cell, const Chosen& chosen) const;
   [[nodiscard]] CostedPoints pointsOf(const Cell& cell) const;
-  [[nodiscard]] double protrusionCost(const Vec3d& centre, std::uint32_t radius_index) const;
+  [[nodiscard]] double protrusionCost(const Vec3d& center, std::uint32_t radius_index) const;
 
   const FitTask& task_;
   const DistanceGrid& grid_;
@@ -145,7 +145,7 @@ class ExchangeSearch {
 [[nodiscard]] double costOfGap(const GapCost& cost, double gap);
 
 /// The integral of the squared protrusion over the surface of a sphere, by samples; m^4.
-[[nodiscard]] double protrusionIntegral(const DistanceGrid& grid, const Vec3d& centre,
+[[nodiscard]] double protrusionIntegral(const DistanceGrid& grid, const Vec3d& center,
                                         double radius);
 
 }  // namespace galactic::bake::sphere_fit

@@ -30,7 +30,7 @@ constexpr double kWideGap = 1.75;
 constexpr double kProtrusionWeight = 1.5;
 constexpr double kCheaper = 0.5;
 constexpr double kCheapest = 0.05;
-/// Points of the surface that the search sees: this far apart, metres, but no more nor fewer.
+/// Points of the surface that the search sees: this far apart, meters, but no more nor fewer.
 constexpr double kFewestPoints = 400;
 constexpr double kMostPoints = 1500;
 constexpr double kPointSpacing = 0.025;
@@ -161,7 +161,7 @@ class SphereCurve::Fitter {
         sphere_fit::largestOf(sphere_fit::gapsOf(task, cover.spheres, dense)) + spacing;
     for (Candidate& sphere : cover.spheres) {
       const double radius = task.radii[sphere.radius_index];
-      sphere.protrusion = std::max(0.0, task.solid->distance(sphere.centre).distance + radius);
+      sphere.protrusion = std::max(0.0, task.solid->distance(sphere.center).distance + radius);
       cover.guaranteed_protrusion = std::max(cover.guaranteed_protrusion, sphere.protrusion);
     }
     return cover;

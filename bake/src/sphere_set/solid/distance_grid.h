@@ -11,7 +11,7 @@ namespace galactic::bake::sphere_fit {
 /// in place of a search. Immutable.
 class DistanceGrid {
  public:
-  /// Over the solid's bounds and `margin` metres around them, about `most_nodes` nodes.
+  /// Over the solid's bounds and `margin` meters around them, about `most_nodes` nodes.
   DistanceGrid(const ExteriorSolid& solid, double margin, double most_nodes, unsigned jobs);
 
   [[nodiscard]] double step() const { return step_; }

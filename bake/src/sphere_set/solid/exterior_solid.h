@@ -10,7 +10,7 @@ namespace galactic::bake::sphere_fit {
 
 /// Signed distance to the reachable surface, and the point of the surface that is nearest.
 struct SurfaceDistance {
-  /// Negative inside the solid, metres.
+  /// Negative inside the solid, meters.
   double distance = 0;
   Vec3d nearest;
   /// The facet that `nearest` lies on.
@@ -29,7 +29,7 @@ class ExteriorSolid {
   [[nodiscard]] std::span<const Facet> facets() const { return surface_.facets(); }
   /// Of the facets.
   [[nodiscard]] const Box& bounds() const { return bounds_; }
-  /// Of the facets, square metres.
+  /// Of the facets, square meters.
   [[nodiscard]] double area() const { return area_; }
 
   /// Up to a quarter of a voxel at the surface.

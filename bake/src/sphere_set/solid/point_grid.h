@@ -12,34 +12,34 @@ namespace galactic::bake::sphere_fit {
 /// Points sorted into the cells of a regular grid, for range queries. Immutable.
 class PointGrid {
  public:
-  /// The cells' edge is `cell` metres, or more where there would be too many.
+  /// The cells' edge is `cell` meters, or more where there would be too many.
   PointGrid(std::span<const Vec3d> points, double cell);
 
-  /// Calls visit(index, squared distance) for the points within `radius` of `centre`, always in
+  /// Calls visit(index, squared distance) for the points within `radius` of `center`, always in
   /// the same order, until it returns false.
   template <class Visit>
-  void visitWithin(const Vec3d& centre, double radius, const Visit& visit) const {
+  void visitWithin(const Vec3d& center, double radius, const Visit& visit) const {
     if (sorted_.empty()) return;
     const double limit = radius * radius;
-    const Range z = cellsAlong(2, centre.z, radius);
-    const Range y = cellsAlong(1, centre.y, radius);
-    const Range x = cellsAlong(0, centre.x, radius);
+    const Range z = cellsAlong(2, center.z, radius);
+    const Range y = cellsAlong(1, center.y, radius);
+    const Range x = cellsAlong(0, center.x, radius);
     for (std::size_t k = z.first; k < z.end; ++k) {
       for (std::size_t j = y.first; j < y.end; ++j) {
         // The cells of one row follow each other.
         const std::size_t row = (k * size_[1] + j) * size_[0];
         for (std::uint32_t at = first_[row + x.first]; at < first_[row + x.end]; ++at) {
-          const double squared = squaredLength(sorted_[at].point - centre);
+          const double squared = squaredLength(sorted_[at].point - center);
           if (squared <= limit && !visit(sorted_[at].index, squared)) return;
         }
       }
     }
   }
 
-  /// Whether any point is within `radius` of `centre`.
-  [[nodiscard]] bool anyWithin(const Vec3d& centre, double radius) const {
+  /// Whether any point is within `radius` of `center`.
+  [[nodiscard]] bool anyWithin(const Vec3d& center, double radius) const {
     bool found = false;
-    visitWithin(centre, radius, [&](std::uint32_t, double) {
+    visitWithin(center, radius, [&](std::uint32_t, double) {
       found = true;
       return false;
     });

@@ -12,7 +12,7 @@ namespace galactic::bake::sphere_fit {
 /// Where a ball, the probe, can go around a mesh when it comes from outside.
 ///
 /// The ball is tried at the corners of a voxel grid and spreads from the grid's border. Every place
-/// that it reaches is the centre of an empty ball, whose radius is the distance to the mesh. What
+/// that it reaches is the center of an empty ball, whose radius is the distance to the mesh. What
 /// no empty ball holds is the solid. Nothing depends on closed surfaces or on the winding of
 /// triangles.
 class ProbeField {
@@ -21,9 +21,9 @@ class ProbeField {
   /// `smallest_radius`, or more where the grid would have too many voxels otherwise.
   ProbeField(const TriangleTree& tree, const Box& bounds, double smallest_radius, unsigned jobs);
 
-  /// Edge of a voxel, metres.
+  /// Edge of a voxel, meters.
   [[nodiscard]] double voxel() const { return voxel_; }
-  /// Radius of the probe, metres.
+  /// Radius of the probe, meters.
   [[nodiscard]] double probe() const { return probe_; }
 
   /// Distance of `p` to the empty balls near it: negative inside one, so outside the solid.

@@ -21,7 +21,7 @@ class SparseGrid {
   /// Whether some point is nearer to `p` than the edge of a cube.
   [[nodiscard]] bool hasNear(const Vec3d& p, const std::vector<Vec3d>& points) const {
     const Cube at = cubeOf(p);
-    // Most points have a neighbour in their own cube.
+    // Most points have a neighbor in their own cube.
     if (holdsNear(at, p, points)) return true;
     for (std::int64_t z = at[2] - 1; z <= at[2] + 1; ++z) {
       for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y) {

@@ -10,7 +10,7 @@ namespace galactic::bake::sphere_fit {
 
 /// How to spread points over a surface.
 struct SampleOptions {
-  /// No two points are nearer to each other, metres.
+  /// No two points are nearer to each other, meters.
   double spacing = 0;
   std::uint64_t seed = 0;
   /// Points tried per square of the spacing: the more, the fewer places stay bare.

@@ -16,7 +16,7 @@ inline constexpr std::uint32_t kNoFacet = std::numeric_limits<std::uint32_t>::ma
 
 /// The point of a mesh that is nearest to some other point.
 struct NearestPoint {
-  /// Square of the distance, square metres.
+  /// Square of the distance, square meters.
   double squared = 0;
   Vec3d point{};
   /// kNoFacet: nothing within the limit that was asked for.

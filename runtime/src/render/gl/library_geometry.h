@@ -13,9 +13,9 @@ enum class DrawClass : std::uint8_t { kOneSided, kTwoSided, kMaskedOneSided, kMa
 inline constexpr std::size_t kDrawClasses = 4;
 
 /// A vertex as it lies in the vertex buffer: all that the vertex shader needs, whatever cluster it
-/// is of, so that neighbouring clusters can be drawn as one.
+/// is of, so that neighboring clusters can be drawn as one.
 struct GpuVertex {
-  /// Metres in the frame of the model: float(origin + stored) * step, so the same for all clusters
+  /// Meters in the frame of the model: float(origin + stored) * step, so the same for all clusters
   /// that share the point.
   float x = 0;
   float y = 0;
@@ -49,10 +49,10 @@ struct ModelClusters {
 
 /// The geometry of a whole library in the layout of the graphics processor. Clusters stand in the
 /// order of their models, within a model by class, within a class as in the pack; their triangles
-/// likewise, so that the indices of neighbouring clusters of a class follow each other.
+/// likewise, so that the indices of neighboring clusters of a class follow each other.
 struct LibraryGeometry {
   std::vector<ModelClusters> models;
-  /// Whether any vertices have colours of their own.
+  /// Whether any vertices have colors of their own.
   bool vertex_colors = false;
   std::vector<GpuBounds> bounds;
   std::vector<GpuVertex> vertices;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* kVersion = "#version 450 core\n";
 
-/// What the stages hand on. Without colours of vertices, a colour is the same all over a triangle.
+/// What the stages hand on. Without colors of vertices, a color is the same all over a triangle.
 std::string corner(const ShaderVariant& variant) {
   return fmt::format(
       "{{ vec2 texture_place; {} color; flat uint slot; flat float cutoff; flat uint semantic; }}",
@@ -27,7 +27,7 @@ std::string definitions(const ShaderVariant& variant) {
   return text + fmt::format("#define COLOR_BYTES {}\n", variant.color ? variant.color_bytes : 0);
 }
 
-/// A function that reads one of the arrays: which one must not vary between neighbouring threads,
+/// A function that reads one of the arrays: which one must not vary between neighboring threads,
 /// so it is a switch and not an index.
 std::string texelFunction(std::size_t arrays) {
   if (arrays == 0) return {};

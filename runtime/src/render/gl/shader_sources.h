@@ -13,10 +13,10 @@ inline constexpr unsigned kChunkClusters = 32;
 struct ShaderVariant {
   /// Whether the vertex shader chooses the layer; else a geometry shader does.
   bool layer_in_vertex = true;
-  /// Whether vertices have colours of their own.
+  /// Whether vertices have colors of their own.
   bool vertex_colors = false;
   bool color = true;
-  /// Bytes per pixel of colour: 3 or 4.
+  /// Bytes per pixel of color: 3 or 4.
   unsigned color_bytes = 4;
   bool depth = true;
   bool semantics = false;

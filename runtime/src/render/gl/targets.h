@@ -11,7 +11,7 @@ namespace galactic::render::gl {
 /// What is drawn into: a layer for each view of a round.
 class Targets {
  public:
-  /// Texture units of colour, depth and semantics for the resolving shader.
+  /// Texture units of color, depth and semantics for the resolving shader.
   static constexpr GLuint kFirstUnit = 16;
 
   explicit Targets(const RenderOptions& options) : options_(options) {}

@@ -21,7 +21,7 @@ struct GpuInstance {
 };
 static_assert(sizeof(GpuInstance) == 64);
 
-/// Up to kChunkClusters neighbouring clusters of one class of an instance (std430).
+/// Up to kChunkClusters neighboring clusters of one class of an instance (std430).
 struct GpuChunk {
   std::uint32_t instance = 0;
   std::uint32_t first_cluster = 0;

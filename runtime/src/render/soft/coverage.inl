@@ -22,7 +22,7 @@ struct Pane {
 inline IntLanes laneRight() { return IntLanes{0, 1, 2, 3, 0, 1, 2, 3}; }
 inline IntLanes laneDown() { return IntLanes{0, 0, 0, 0, 1, 1, 1, 1}; }
 
-/// Eight triangles ready to be drawn. Starts are at the centre of the first pixel of the first
+/// Eight triangles ready to be drawn. Starts are at the center of the first pixel of the first
 /// block; edge functions are not negative inside; "right" and "down": changes per pixel.
 struct alignas(64) GroupSetup {
   std::int32_t edge[3][kWidth], edge_right[3][kWidth], edge_down[3][kWidth];

@@ -11,10 +11,10 @@ constexpr float kRounding = 2e-6F;
 constexpr float kMoved = 4;
 constexpr float kUnknownNearness = __builtin_inff();
 /// Of cluster_bounds, as schema/render.fbs has them.
-constexpr std::uint32_t kCentreX = 0;
+constexpr std::uint32_t kCenterX = 0;
 constexpr std::uint32_t kHalfX = 3;
 
-/// A pane's edges, in 1/256 pixel from the image's centre.
+/// A pane's edges, in 1/256 pixel from the image's center.
 struct PaneEdges {
   float left, right, top, bottom;
 };
@@ -36,7 +36,7 @@ struct Row {
 inline Row makeRow(const float* row, const ModelTables& model) {
   float size = magnitude(row[3]);
   for (int n = 0; n < 3; ++n) {
-    size += magnitude(row[n]) * (magnitude(model.centre[n]) + model.half_extents[n]);
+    size += magnitude(row[n]) * (magnitude(model.center[n]) + model.half_extents[n]);
   }
   return {{row[0], row[1], row[2]}, row[3], size * kRounding};
 }
@@ -85,27 +85,27 @@ inline CullFrame makeFrame(const PaneTask& task, const PlacedModel& placed) {
 }
 
 inline bool mayShow(const CullFrame& frame, const ModelTables& model) {
-  const float* c = model.centre;
+  const float* c = model.center;
   const float* h = model.half_extents;
   for (const Row& plane : frame.planes) {
-    const float centre =
+    const float center =
         plane.axis[0] * c[0] + plane.axis[1] * c[1] + plane.axis[2] * c[2] + plane.start;
     const float reach = magnitude(plane.axis[0]) * h[0] + magnitude(plane.axis[1]) * h[1] +
                         magnitude(plane.axis[2]) * h[2];
-    if (centre + reach < 0) return false;
+    if (center + reach < 0) return false;
   }
   return true;
 }
 
 /// The boxes of eight clusters.
 struct BoxLanes {
-  Lanes centre[3];
+  Lanes center[3];
   Lanes half[3];
 };
 
-inline Lanes atCentre(const Row& row, const BoxLanes& box) {
-  return spread(row.axis[0]) * box.centre[0] + spread(row.axis[1]) * box.centre[1] +
-         spread(row.axis[2]) * box.centre[2] + spread(row.start);
+inline Lanes atCenter(const Row& row, const BoxLanes& box) {
+  return spread(row.axis[0]) * box.center[0] + spread(row.axis[1]) * box.center[1] +
+         spread(row.axis[2]) * box.center[2] + spread(row.start);
 }
 
 inline Lanes reachOf(const Row& row, const BoxLanes& box) {
@@ -118,7 +118,7 @@ inline Lanes reachOf(const Row& row, const BoxLanes& box) {
 inline unsigned withinPlanes(const CullFrame& frame, const BoxLanes& box) {
   IntLanes outside = spread(0);
   for (const Row& plane : frame.planes) {
-    outside |= (atCentre(plane, box) + reachOf(plane, box)) < spread(0.0F);
+    outside |= (atCenter(plane, box) + reachOf(plane, box)) < spread(0.0F);
   }
   return ~signBits(outside) & kAllLanes;
 }
@@ -142,13 +142,13 @@ Footprint footprint(const CullFrame& frame, const BoxLanes& box) {
     x_steps[n] = spread(frame.x.axis[n]) * box.half[n];
     y_steps[n] = spread(frame.y.axis[n]) * box.half[n];
   }
-  const Lanes w = atCentre(frame.w, box);
-  const Lanes x = atCentre(frame.x, box);
-  const Lanes y = atCentre(frame.y, box);
+  const Lanes w = atCenter(frame.w, box);
+  const Lanes x = atCenter(frame.x, box);
+  const Lanes y = atCenter(frame.y, box);
   const Lanes far = spread(1e30F);
   Footprint result{{far, -far}, {far, -far}};
-  const auto corner_value = [](Lanes centre, const Lanes* steps, unsigned corner) {
-    const Lanes a = (corner & 1U) != 0 ? centre + steps[0] : centre - steps[0];
+  const auto corner_value = [](Lanes center, const Lanes* steps, unsigned corner) {
+    const Lanes a = (corner & 1U) != 0 ? center + steps[0] : center - steps[0];
     const Lanes b = (corner & 2U) != 0 ? a + steps[1] : a - steps[1];
     return (corner & 4U) != 0 ? b + steps[2] : b - steps[2];
   };
@@ -163,7 +163,7 @@ Footprint footprint(const CullFrame& frame, const BoxLanes& box) {
   return result;
 }
 
-/// First and last pixel whose centre lies in the interval; none where first > last.
+/// First and last pixel whose center lies in the interval; none where first > last.
 struct PixelRange {
   IntLanes first, last;
 };
@@ -194,13 +194,13 @@ struct EightSeen {
 EightSeen lookAtEight(const PaneTask& task, const CullFrame& frame, const float* bounds) {
   BoxLanes box;
   for (std::uint32_t n = 0; n < 3; ++n) {
-    box.centre[n] = load<Lanes>(bounds + kWidth * (kCentreX + n));
+    box.center[n] = load<Lanes>(bounds + kWidth * (kCenterX + n));
     box.half[n] = load<Lanes>(bounds + kWidth * (kHalfX + n));
   }
   EightSeen eight;
   eight.seen = task.culling ? withinPlanes(frame, box) : kAllLanes;
   if (eight.seen == 0) return eight;
-  eight.distance = atCentre(frame.w, box) - reachOf(frame.w, box) - spread(frame.w.error);
+  eight.distance = atCenter(frame.w, box) - reachOf(frame.w, box) - spread(frame.w.error);
   eight.nearest = spread(kUnknownNearness);
   const auto last_x = static_cast<std::int32_t>(task.width) - 1;
   const auto last_y = static_cast<std::int32_t>(task.height) - 1;

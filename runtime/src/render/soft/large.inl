@@ -13,7 +13,7 @@ struct Corner {
   float color[4];
 };
 
-/// An edge function over a pane, from the centre of its first pixel, divided by 256: that leaves
+/// An edge function over a pane, from the center of its first pixel, divided by 256: that leaves
 /// its sign, as all pixels have the same remainder.
 struct LongEdge {
   std::int64_t start;
@@ -29,8 +29,8 @@ inline LongEdge longEdge(const Corner& from, const Corner& to) {
   const std::int64_t dx = to.x - from.x;
   const std::int64_t dy = to.y - from.y;
   const bool keeps = dy < 0 || (dy == 0 && dx > 0);
-  const std::int64_t centre = kSubpixels / 2;
-  const std::int64_t value = dx * (centre - from.y) - dy * (centre - from.x) - (keeps ? 0 : 1);
+  const std::int64_t center = kSubpixels / 2;
+  const std::int64_t value = dx * (center - from.y) - dy * (center - from.x) - (keeps ? 0 : 1);
   LongEdge edge;
   edge.start = value >> 8;
   edge.right = static_cast<std::int32_t>(-dy);
@@ -41,7 +41,7 @@ inline LongEdge longEdge(const Corner& from, const Corner& to) {
   return edge;
 }
 
-/// A value over a pane, from the centre of its first pixel.
+/// A value over a pane, from the center of its first pixel.
 struct Plane {
   double start, right, down;
 };
@@ -109,7 +109,7 @@ inline std::int32_t greaterOf(std::int32_t a, std::int32_t b) { return a > b ? a
 inline float lesserOf(float a, float b) { return a < b ? a : b; }
 inline float greaterOf(float a, float b) { return a > b ? a : b; }
 
-/// Tiles with pixels whose centres lie between the positions; right < left when there are none.
+/// Tiles with pixels whose centers lie between the positions; right < left when there are none.
 inline TileBox tilesOf(const Pane& pane, const LargeTriangle& triangle) {
   const Corner& a = *triangle.corners[0];
   const Corner& b = *triangle.corners[1];

@@ -4,7 +4,7 @@
 
 #include "galactic/render_meshes.h"
 
-// What the kernels of the rasteriser read and write, as bare pointers and plain numbers: the code
+// What the kernels of the rasterizer read and write, as bare pointers and plain numbers: the code
 // built for AVX2 must not instantiate library templates, which the linker could then share with
 // code for any processor.
 namespace galactic::render {
@@ -24,7 +24,7 @@ inline constexpr std::int32_t kHalfPixel = kSubpixels / 2;
 
 /// How a material looks to the shader.
 struct SurfaceTexels {
-  /// Flat: the colour, RGBA, R lowest. Else the number of the first texel, from the base.
+  /// Flat: the color, RGBA, R lowest. Else the number of the first texel, from the base.
   std::uint32_t texels = 0;
   /// kFlatSurface, or log2 of the edge of the texture and, in bits 8 to 29, the number of the base.
   std::uint32_t kind = 0;
@@ -32,7 +32,7 @@ struct SurfaceTexels {
   std::uint32_t least_alpha = 0;
 };
 inline constexpr std::uint32_t kFlatSurface = 0xFF;
-/// Bits of a triangle's kind: its corners have colours; or shades of grey, as light has that is
+/// Bits of a triangle's kind: its corners have colors; or shades of gray, as light has that is
 /// baked into them, which take a quarter of the work.
 inline constexpr std::uint32_t kHasColors = 1U << 31U;
 inline constexpr std::uint32_t kHasLight = 1U << 30U;
@@ -58,13 +58,13 @@ struct ModelTables {
   std::uint32_t first_cluster = 0;
   std::uint32_t cluster_count = 0;
   std::uint32_t first_block = 0;
-  /// Metres, in the frame of the part.
-  float centre[3] = {};
+  /// Meters, in the frame of the part.
+  float center[3] = {};
   float half_extents[3] = {};
 };
 
-/// A model in front of the camera. The rows take a point of the model to w, metres along the
-/// camera's axis, and to X and Y: X / w and Y / w count in 1/256 pixels from the image's centre, to
+/// A model in front of the camera. The rows take a point of the model to w, meters along the
+/// camera's axis, and to X and Y: X / w and Y / w count in 1/256 pixels from the image's center, to
 /// the right and down.
 struct PlacedModel {
   const ModelTables* model = nullptr;
@@ -117,7 +117,7 @@ inline constexpr std::uint32_t kBuckets = 512;
 enum RecordField : std::uint32_t {
   kURight,  ///< Change of u / w with each pixel to the right.
   kUDown,   ///< With each pixel down.
-  kUStart,  ///< At the centre of the pane's first pixel.
+  kUStart,  ///< At the center of the pane's first pixel.
   kVRight,
   kVDown,
   kVStart,
@@ -132,7 +132,7 @@ enum RecordField : std::uint32_t {
   kLightDown,
   kLightStart
 };
-/// Fields of the colours' planes: red, green, blue, alpha, each as right, down, start.
+/// Fields of the colors' planes: red, green, blue, alpha, each as right, down, start.
 inline constexpr std::uint32_t kColorFields = 12;
 /// From one record to the next: a cache line.
 inline constexpr std::uint32_t kRecordStride = 16;
@@ -143,7 +143,7 @@ inline constexpr std::uint32_t kMostRecords = 16384;
 struct PaneScratch {
   /// 1/w by pixel: 0 where nothing is, infinite outside of the image.
   float* depth = nullptr;
-  /// Record by pixel: 0 for background, kShaded where the image has the colour.
+  /// Record by pixel: 0 for background, kShaded where the image has the color.
   std::int32_t* ids = nullptr;
   /// Least 1/w of each tile, where it is not marked as changed since.
   float* tile_depth = nullptr;

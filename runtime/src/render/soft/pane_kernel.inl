@@ -47,7 +47,7 @@ void clearPane(Pane& pane) {
   }
 }
 
-/// Record 0: the background, a flat surface of its colour.
+/// Record 0: the background, a flat surface of its color.
 void recordBackground(const Pane& pane) {
   float* record = recordAt(pane, 0);
   __builtin_memset(record, 0, sizeof(float) * kRecordStride);
@@ -124,8 +124,7 @@ void drawCluster(Pane& pane, const SeenCluster& seen) {
   state.cluster = model.pack->clusters + model.first_cluster + seen.cluster;
   state.frame = &frame;
   const std::uint32_t* color_kinds = model.pack->color_kinds;
-  state.color_kind =
-      color_kinds == nullptr ? 0 : color_kinds[model.first_cluster + seen.cluster];
+  state.color_kind = color_kinds == nullptr ? 0 : color_kinds[model.first_cluster + seen.cluster];
   state.surface = model.pack->surfaces[state.cluster->material];
   state.semantic = model.pack->first_semantic + state.cluster->semantic;
   placeVertices(state);

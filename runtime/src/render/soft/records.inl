@@ -75,7 +75,7 @@ void makeColors(const ClusterState& state, const SmallGroup& group, GroupRecords
   storeTransposed(fields + kWidth, records.colors[0] + kWidth);
 }
 
-/// The plane of the light, from the red of the colours.
+/// The plane of the light, from the red of the colors.
 inline void makeLight(const ClusterState& state, const SmallGroup& group, Lanes* fields) {
   const std::int32_t* colors =
       reinterpret_cast<const std::int32_t*>(state.pack->colors) + state.cluster->first_vertex;

@@ -9,7 +9,7 @@ inline IntLanes shade(const Pane& pane, const std::int32_t* ids, const PixelLane
   IntLanes colors = sampleTexels(*pane.task, places);
   const IntLanes kind = places.kind;
   if (signBits(kind) != 0) {
-    // Lanes without colours look at record 0.
+    // Lanes without colors look at record 0.
     alignas(32) std::int32_t colored[kWidth];
     store(colored, id & (kind >> 31));
     const EachRecord planes = loadRecords(pane.scratch->colors, colored);
@@ -59,7 +59,7 @@ inline void writeWords(const PaneTask& task, const BlockTarget& target, void* im
   }
 }
 
-/// Writes eight colours without their alpha.
+/// Writes eight colors without their alpha.
 inline void writeTriples(const PaneTask& task, const BlockTarget& target, IntLanes words) {
   alignas(32) std::uint8_t bytes[4 * kWidth];
   store(bytes, words);
@@ -133,8 +133,8 @@ void resolve(const Pane& pane) {
       const Lanes z = load<Lanes>(depth + at);
       const BlockTarget target = blockTarget(task, column, row);
       if (task.depth != nullptr) {
-        const Lanes metres = spread(1.0F) / z;
-        writeWords(task, target, task.depth, as<IntLanes>(metres) & (z > spread(0.0F)));
+        const Lanes meters = spread(1.0F) / z;
+        writeWords(task, target, task.depth, as<IntLanes>(meters) & (z > spread(0.0F)));
       }
       if (pane.shades) {
         resolveColors(pane, target, ids + at, pixelsOf(column, row, z));

@@ -1,6 +1,6 @@
-// Colours of eight pixels from the records of their triangles: texture coordinates by perspective,
+// Colors of eight pixels from the records of their triangles: texture coordinates by perspective,
 // the mip level whose texels come closest to one per pixel, bilinear between four texels of it, as
-// GL_LINEAR_MIPMAP_NEAREST does; colours are weighed as they are stored (sRGB), in eighths of bits.
+// GL_LINEAR_MIPMAP_NEAREST does; colors are weighed as they are stored (sRGB), in eighths of bits.
 namespace galactic::render {
 namespace {
 
@@ -93,7 +93,7 @@ inline const std::int32_t* texelBase(const PaneTask& task, std::int32_t number) 
   return reinterpret_cast<const std::int32_t*>(task.texel_bases[number]);
 }
 
-/// Texels, or the colours of flat surfaces. Lanes without a triangle have a flat one.
+/// Texels, or the colors of flat surfaces. Lanes without a triangle have a flat one.
 inline IntLanes sampleTexels(const PaneTask& task, const TexturePlaces& places) {
   const IntLanes flat = (places.kind & 0xFF) == spread(static_cast<std::int32_t>(kFlatSurface));
   unsigned left = ~signBits(flat) & kAllLanes;
@@ -157,7 +157,7 @@ struct OneRecord {
   IntLanes intField(std::uint32_t number) const { return as<IntLanes>(field(number)); }
 };
 
-/// Eight pixels: their places in the pane, from the centre of its first pixel, and 1/w.
+/// Eight pixels: their places in the pane, from the center of its first pixel, and 1/w.
 struct PixelLanes {
   Lanes x, y, z;
 };
@@ -187,7 +187,7 @@ inline IntLanes byteProduct(IntLanes a, IntLanes b) {
   return (product + (product >> 8)) >> 8;
 }
 
-/// Texels times the colours of the corners, interpolated by perspective.
+/// Texels times the colors of the corners, interpolated by perspective.
 template <class Records>
 inline IntLanes timesColors(IntLanes texels, const Records& colors, const PixelLanes& pixels) {
   const Lanes w = spread(1.0F) / pixels.z;

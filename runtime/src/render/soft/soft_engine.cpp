@@ -23,7 +23,7 @@ std::uint32_t paneEdge(std::uint32_t pixels) {
   return (edge + kTileEdge - 1) / kTileEdge * kTileEdge;
 }
 
-/// 1/256 pixels at a distance of 1 m for each metre beside the camera's axis.
+/// 1/256 pixels at a distance of 1 m for each meter beside the camera's axis.
 float focalLength(const RenderOptions& options, const RenderCamera& camera) {
   const double half_height = 0.5 * static_cast<double>(options.height);
   const double slope = std::tan(0.5 * static_cast<double>(camera.vertical_fov));

@@ -43,7 +43,7 @@ std::uint32_t colorKind(std::span<const std::uint32_t> colors) {
   return kind;
 }
 
-/// Of each cluster of a pack; none where it has no colours.
+/// Of each cluster of a pack; none where it has no colors.
 std::vector<std::uint32_t> colorKinds(const RenderMeshes& meshes) {
   std::vector<std::uint32_t> kinds;
   if (meshes.colors.empty()) return kinds;
@@ -117,9 +117,9 @@ SurfaceTexels SoftScene::inPlace(const RenderTexture& texture) {
 
 void SoftScene::addModel(const RenderLibrary& library, std::uint32_t number) {
   const RenderModel& model = library.model(number);
-  const Vec3 centre = (model.bounds_min + model.bounds_max) * 0.5F;
+  const Vec3 center = (model.bounds_min + model.bounds_max) * 0.5F;
   const Vec3 half = (model.bounds_max - model.bounds_min) * 0.5F;
-  // A part in a million more: the centre is rounded.
+  // A part in a million more: the center is rounded.
   const auto wider = [](float half_extent, float at) {
     return half_extent + 1e-6F * (half_extent + std::abs(at));
   };
@@ -128,9 +128,9 @@ void SoftScene::addModel(const RenderLibrary& library, std::uint32_t number) {
                      .first_cluster = model.first_cluster,
                      .cluster_count = model.cluster_count,
                      .first_block = model.first_block,
-                     .centre = {centre.x, centre.y, centre.z},
-                     .half_extents = {wider(half.x, centre.x), wider(half.y, centre.y),
-                                      wider(half.z, centre.z)}});
+                     .center = {center.x, center.y, center.z},
+                     .half_extents = {wider(half.x, center.x), wider(half.y, center.y),
+                                      wider(half.z, center.z)}});
 }
 
 }  // namespace galactic::render

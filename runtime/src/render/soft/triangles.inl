@@ -41,7 +41,7 @@ inline IntLanes mostOf(IntLanes a, IntLanes b, IntLanes c) { return greater(grea
 inline Lanes leastOf(Lanes a, Lanes b, Lanes c) { return lesser(lesser(a, b), c); }
 inline Lanes mostOf(Lanes a, Lanes b, Lanes c) { return greater(greater(a, b), c); }
 
-/// First and last pixel whose centre lies between two positions.
+/// First and last pixel whose center lies between two positions.
 inline IntLanes firstPixel(IntLanes lowest) { return (lowest + spread(kSubpixels / 2 - 1)) >> 8; }
 inline IntLanes lastPixel(IntLanes highest) { return (highest - spread(kSubpixels / 2)) >> 8; }
 

@@ -17,12 +17,12 @@ inline constexpr float kBeyondHalf = 1.01F;
 /// which the kernels load.
 struct alignas(32) ClearanceLanes {
   float min_x[kLanes], min_z[kLanes];
-  /// Cells for each metre.
+  /// Cells for each meter.
   float inverse_cell[kLanes];
   float cells_x[kLanes], cells_z[kLanes];
-  /// Heights between which centres have to be, metres.
+  /// Heights between which centers have to be, meters.
   float lowest[kLanes], highest[kLanes];
-  /// The height of the lowest band, and bands for each metre.
+  /// The height of the lowest band, and bands for each meter.
   float band_from[kLanes], inverse_band[kLanes];
   /// Bytes: of the lowest band, and from band to band.
   std::int32_t first[kLanes], band_bytes[kLanes];

@@ -15,10 +15,10 @@ namespace {
 constexpr std::uint32_t kColumnsPerCell = 2;
 /// Cells along the edge of a tile: 64 bytes.
 constexpr std::uint32_t kTileEdge = 8;
-/// What a band's height and the spheres that it clears differ by at least, metres: more than any
+/// What a band's height and the spheres that it clears differ by at least, meters: more than any
 /// rounding.
 constexpr float kSlack = 1e-3F;
-/// How far above the lowest height that it can have a sphere is looked for, metres.
+/// How far above the lowest height that it can have a sphere is looked for, meters.
 constexpr float kOverContact = 5e-3F;
 
 struct Heights {
@@ -27,7 +27,7 @@ struct Heights {
   float band_from = 0;
   float band_height = 0;
 
-  /// The least height of a centre that a band clears.
+  /// The least height of a center that a band clears.
   [[nodiscard]] float lowOf(std::uint32_t band) const {
     const float low = band_from + static_cast<float>(band) * band_height;
     return band == 0 ? lowest : low;
@@ -85,7 +85,7 @@ std::vector<float> lowestFree(const ColumnGrid& grid, const Cells& cells, float 
 /// To each cell the distance, in moves of a chess king, to the nearest that is not clear or
 /// outside; 255 where it is farther. One sweep down and one up (Rosenfeld and Pfaltz 1968).
 void spreadDistances(const Cells& cells, std::vector<std::uint8_t>& distance) {
-  // A border of zeros around the cells spares all questions about neighbours.
+  // A border of zeros around the cells spares all questions about neighbors.
   const std::size_t row = std::size_t{cells.x} + 2;
   const auto sweep = [&](std::size_t n, std::ptrdiff_t sign) {
     const auto step = static_cast<std::ptrdiff_t>(row);

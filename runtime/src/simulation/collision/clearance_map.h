@@ -19,7 +19,7 @@ namespace galactic::simulation {
 // the map's highest one, are free: one look-up answers for eight columns. A map only ever says
 // "surely free"; wherever it does not, the columns are asked, so no answer depends on it.
 
-/// Where a robot's sphere centres are over a floor, metres above it.
+/// Where a robot's sphere centers are over a floor, meters above it.
 struct HeightsOverFloor {
   float lowest = 0;
   float highest = 0;
@@ -42,8 +42,8 @@ class ClearanceMaps {
   /// `radius_of_lane`: index into the working set, of each group that will be asked about.
   explicit ClearanceMaps(std::vector<std::uint32_t> radius_of_lane);
 
-  /// Adds the maps of a floor of a scene. `floor`: the least height of that floor, metres; the
-  /// robot's centres are `heights` above it, or above floors up to `unevenness` higher. Returns the
+  /// Adds the maps of a floor of a scene. `floor`: the least height of that floor, meters; the
+  /// robot's centers are `heights` above it, or above floors up to `unevenness` higher. Returns the
   /// number by which surelyFree() knows it.
   std::uint32_t add(const Scene& scene, float floor, float unevenness,
                     const HeightsOverFloor& heights);

@@ -17,7 +17,7 @@ bool isIgnored(IgnoredSpheres ignored, std::size_t sphere) {
 }
 
 /// The spheres of one radius with their padding.
-SphereCentres centresOf(const SphereBatch& spheres, const RadiusRange& range) {
+SphereCenters centersOf(const SphereBatch& spheres, const RadiusRange& range) {
   const std::size_t count = paddedToLanes(range.count);
   return {std::span(spheres.x + range.first, count), std::span(spheres.y + range.first, count),
           std::span(spheres.z + range.first, count)};
@@ -27,7 +27,7 @@ SphereCentres centresOf(const SphereBatch& spheres, const RadiusRange& range) {
 std::span<const Clearance> askScene(const Scene& scene, const SphereBatch& spheres,
                                     const RadiusRange& range, CollisionScratch& scratch) {
   const std::span<Clearance> answers = scratch.clearance(paddedToLanes(range.count));
-  scene.grids()[range.radius_index].contact(centresOf(spheres, range), {answers, {}, {}});
+  scene.grids()[range.radius_index].contact(centersOf(spheres, range), {answers, {}, {}});
   return answers;
 }
 
@@ -50,7 +50,7 @@ float radiusOf(const SphereBatch& spheres, std::uint32_t sphere) {
   return 0;
 }
 
-Vec3 centreOf(const SphereBatch& spheres, std::uint32_t sphere) {
+Vec3 centerOf(const SphereBatch& spheres, std::uint32_t sphere) {
   return {spheres.x[sphere], spheres.y[sphere], spheres.z[sphere]};
 }
 
@@ -64,7 +64,7 @@ bool addTouching(const RestingObjects& objects, const SphereBatch& spheres,
   bool any = false;
   for (const RadiusRange& range : spheres.ranges) {
     for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
-      if (!objects.nearest(centreOf(spheres, n), range.radius)) continue;
+      if (!objects.nearest(centerOf(spheres, n), range.radius)) continue;
       setBit(bits, n);
       any = true;
     }
@@ -109,10 +109,10 @@ std::uint64_t blockedSpheres(const Scene& scene, const SphereBatch& spheres,
       real |= std::uint64_t{groups[first + n].spheres} << (kLanes * n);
     }
     const std::size_t n = first * kLanes;
-    const detail::EightsOfCentres centres{spheres.x + n, spheres.y + n, spheres.z + n, same};
+    const detail::EightsOfCenters centers{spheres.x + n, spheres.y + n, spheres.z + n, same};
     const ColumnGridLayout& grid = scene.grids()[radius].layout();
-    blocked |= real & (detail::hasAvx2() ? detail::notFreeAvx2(grid, centres)
-                                         : detail::notFreePortable(grid, centres));
+    blocked |= real & (detail::hasAvx2() ? detail::notFreeAvx2(grid, centers)
+                                         : detail::notFreePortable(grid, centers));
     asked &= ~same;
   }
   return blocked;
@@ -122,9 +122,9 @@ bool penetrates(const Obstacles& obstacles, const SphereBatch& spheres) noexcept
   // Whole lanes at a time: the padding repeats a sphere.
   for (std::size_t n = spheres.ranges.size(); n-- > 0;) {
     const RadiusRange& range = spheres.ranges[n];
-    const SphereCentres centres = centresOf(spheres, range);
+    const SphereCenters centers = centersOf(spheres, range);
     const ColumnGrid& grid = obstacles.scene.grids()[range.radius_index];
-    if (grid.firstNotFree(centres) != centres.x.size()) return true;
+    if (grid.firstNotFree(centers) != centers.x.size()) return true;
   }
   return obstacles.objects.touches(spheres);
 }
@@ -143,14 +143,14 @@ Push PushSum::total(float longest) const noexcept {
   return {sum.x * (longest / length), sum.z * (longest / length)};
 }
 
-Push pushOutPortable(const ColumnGridLayout& layout, const Vec3& centre, float reach) noexcept {
+Push pushOutPortable(const ColumnGridLayout& layout, const Vec3& center, float reach) noexcept {
   // The nearest column decides, so a sphere gets free where it enters the cell of a free column.
   // Eight candidates at a time: the next cell in four directions, and the one behind it.
   using Eight = std::array<float, kLanes>;
   constexpr Eight kX{1, -1, 0, 0, 1, -1, 0, 0};
   constexpr Eight kZ{0, 0, 1, -1, 0, 0, 1, -1};
-  const float cell_x = (centre.x - layout.min_x) * layout.inverse_spacing;
-  const float cell_z = (centre.z - layout.min_z) * layout.inverse_spacing;
+  const float cell_x = (center.x - layout.min_x) * layout.inverse_spacing;
+  const float cell_z = (center.z - layout.min_z) * layout.inverse_spacing;
   const float part_x = cell_x - std::floor(cell_x);
   const float part_z = cell_z - std::floor(cell_z);
   const Eight to_border{1 - part_x, part_x,     1 - part_z, part_z,
@@ -159,13 +159,13 @@ Push pushOutPortable(const ColumnGridLayout& layout, const Vec3& centre, float r
   Eight y{};
   Eight z{};
   Eight way{};
-  y.fill(centre.y);
+  y.fill(center.y);
   for (int cells = 0; static_cast<float>(cells) * layout.spacing <= reach; cells += kCellsAtATime) {
     const float further = static_cast<float>(cells) * layout.spacing + kIntoCell;
     for (std::size_t n = 0; n < kLanes; ++n) {
       way[n] = to_border[n] * layout.spacing + further;
-      x[n] = centre.x + way[n] * kX[n];
-      z[n] = centre.z + way[n] * kZ[n];
+      x[n] = center.x + way[n] * kX[n];
+      z[n] = center.z + way[n] * kZ[n];
     }
     const std::uint64_t not_free = detail::notFreePortable(layout, {x.data(), y.data(), z.data()});
     std::size_t best = kLanes;
@@ -180,13 +180,13 @@ Push pushOutPortable(const ColumnGridLayout& layout, const Vec3& centre, float r
   return {};
 }
 
-Push pushOutOfScene(const ColumnGrid& grid, const Vec3& centre, float reach) noexcept {
-  return detail::hasAvx2() ? pushOutAvx2(grid.layout(), centre, reach)
-                           : pushOutPortable(grid.layout(), centre, reach);
+Push pushOutOfScene(const ColumnGrid& grid, const Vec3& center, float reach) noexcept {
+  return detail::hasAvx2() ? pushOutAvx2(grid.layout(), center, reach)
+                           : pushOutPortable(grid.layout(), center, reach);
 }
 
-Push pushOutOfBox(const RestingBox& box, const Vec3& centre, float radius) noexcept {
-  const Vec3 normal = centre - nearestPoint(box, centre);
+Push pushOutOfBox(const RestingBox& box, const Vec3& center, float radius) noexcept {
+  const Vec3 normal = center - nearestPoint(box, center);
   const float across = std::sqrt(normal.x * normal.x + normal.z * normal.z);
   constexpr float kNoDirection = 1e-6F;
   constexpr float kMargin = 1e-4F;
@@ -196,7 +196,7 @@ Push pushOutOfBox(const RestingBox& box, const Vec3& centre, float radius) noexc
     const float t = std::max(0.0F, needed - across) + kMargin;
     return {normal.x / across * t, normal.z / across * t};
   }
-  const Vec3 away = centre - box.centre;
+  const Vec3 away = center - box.center;
   const float length = std::sqrt(away.x * away.x + away.z * away.z);
   if (!(length > kNoDirection)) return {radius, 0};
   return {away.x / length * radius, away.z / length * radius};
@@ -209,7 +209,7 @@ std::size_t pushOutOfObjects(const RestingObjects& objects, const SphereBatch& s
   const std::size_t hits = objects.hits(spheres, scratch.hits());
   for (const SphereHit& hit : scratch.hits().first(hits)) {
     if (isIgnored(ignored, hit.sphere)) continue;
-    sum.add(pushOutOfBox(objects.box(hit.object), centreOf(spheres, hit.sphere),
+    sum.add(pushOutOfBox(objects.box(hit.object), centerOf(spheres, hit.sphere),
                          radiusOf(spheres, hit.sphere)));
     ++count;
   }
@@ -223,7 +223,7 @@ std::size_t pushOut(const Obstacles& obstacles, const SphereBatch& spheres, Igno
                [&](std::uint32_t sphere, const RadiusRange& range) {
                  if (isIgnored(ignored, sphere)) return;
                  sum.add(pushOutOfScene(obstacles.scene.grids()[range.radius_index],
-                                        centreOf(spheres, sphere), reach));
+                                        centerOf(spheres, sphere), reach));
                  ++count;
                });
   return count + pushOutOfObjects(obstacles.objects, spheres, ignored, scratch, sum);
@@ -235,7 +235,7 @@ bool overlapping(const RestingBox& box, const SphereBatch& spheres,
   bool any = false;
   for (const RadiusRange& range : spheres.ranges) {
     for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
-      if (!overlaps(box, centreOf(spheres, n), range.radius)) continue;
+      if (!overlaps(box, centerOf(spheres, n), range.radius)) continue;
       setBit(bits, n);
       any = true;
     }

@@ -33,7 +33,7 @@ class CollisionScratch {
 struct EightSpheres {
   /// Index into the working set.
   std::uint32_t radius_index = 0;
-  /// Metres.
+  /// Meters.
   float radius = 0;
   /// Which of the eight are spheres, as bits; the others repeat the last one.
   unsigned spheres = 0;
@@ -63,7 +63,7 @@ struct Obstacles {
 class PushSum {
  public:
   void add(const Push& push) noexcept;
-  /// At most `longest` metres long; (0, 0) when nothing was added or pushes cancel out.
+  /// At most `longest` meters long; (0, 0) when nothing was added or pushes cancel out.
   [[nodiscard]] Push total(float longest) const noexcept;
 
  private:
@@ -73,13 +73,13 @@ class PushSum {
   float most_z_ = 0;
 };
 
-/// The way out of the static scene for a sphere that is blocked at `centre`: the shortest way along
-/// an axis of the ground plane into a column in which it is free, up to `reach` metres.
-[[nodiscard]] Push pushOutOfScene(const ColumnGrid& grid, const Vec3& centre, float reach) noexcept;
+/// The way out of the static scene for a sphere that is blocked at `center`: the shortest way along
+/// an axis of the ground plane into a column in which it is free, up to `reach` meters.
+[[nodiscard]] Push pushOutOfScene(const ColumnGrid& grid, const Vec3& center, float reach) noexcept;
 
 /// The way out of a box for a sphere that overlaps it: the shortest horizontal one along the normal
 /// of contact.
-[[nodiscard]] Push pushOutOfBox(const RestingBox& box, const Vec3& centre, float radius) noexcept;
+[[nodiscard]] Push pushOutOfBox(const RestingBox& box, const Vec3& center, float radius) noexcept;
 
 /// Spheres that do not count, as one bit each: those of a held object that penetrated something
 /// already when it was grasped (its spheres reach further than the box as which it rested), until

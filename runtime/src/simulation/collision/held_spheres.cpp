@@ -22,7 +22,7 @@ struct Target {
   float* z;
 };
 
-/// Writes the centres and fills the last group. A plain counted loop over arrays that do not
+/// Writes the centers and fills the last group. A plain counted loop over arrays that do not
 /// overlap, so that compilers make vectors of it.
 void place(std::span<const SetSphere> spheres, const Columns& columns, const Target& target) {
   const SetSphere* from = spheres.data();
@@ -32,7 +32,7 @@ void place(std::span<const SetSphere> spheres, const Columns& columns, const Tar
   float* __restrict z = target.z;
   const Columns m = columns;
   for (std::size_t n = 0; n < count; ++n) {
-    const Vec3 p = from[n].centre;
+    const Vec3 p = from[n].center;
     x[n] = m.x.x * p.x + m.y.x * p.y + m.z.x * p.z + m.origin.x;
     y[n] = m.x.y * p.x + m.y.y * p.y + m.z.y * p.z + m.origin.y;
     z[n] = m.x.z * p.x + m.y.z * p.y + m.z.z * p.z + m.origin.z;

@@ -12,7 +12,7 @@ namespace galactic::simulation {
 /// Room for the spheres of one held object in the world; after construction nothing allocates.
 class HeldSpheres {
  public:
-  /// `most_spheres` that any object has; `radii` of the working set, metres.
+  /// `most_spheres` that any object has; `radii` of the working set, meters.
   HeldSpheres(std::size_t most_spheres, std::span<const float> radii);
 
  private:

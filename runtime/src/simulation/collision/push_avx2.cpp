@@ -36,23 +36,23 @@ int shortestOf(__m256 way, unsigned free, float reach) {
 
 }  // namespace
 
-Push pushOutAvx2(const ColumnGridLayout& grid, const Vec3& centre, float reach) noexcept {
-  if (!detail::readsWholePairs(grid)) return pushOutPortable(grid, centre, reach);
-  const float part_x = partOf((centre.x - grid.min_x) * grid.inverse_spacing);
-  const float part_z = partOf((centre.z - grid.min_z) * grid.inverse_spacing);
+Push pushOutAvx2(const ColumnGridLayout& grid, const Vec3& center, float reach) noexcept {
+  if (!detail::readsWholePairs(grid)) return pushOutPortable(grid, center, reach);
+  const float part_x = partOf((center.x - grid.min_x) * grid.inverse_spacing);
+  const float part_z = partOf((center.z - grid.min_z) * grid.inverse_spacing);
   const __m256 sign_x = _mm256_setr_ps(1, -1, 0, 0, 1, -1, 0, 0);
   const __m256 sign_z = _mm256_setr_ps(0, 0, 1, -1, 0, 0, 1, -1);
   const __m256 part =
       _mm256_setr_ps(-part_x, part_x, -part_z, part_z, -part_x, part_x, -part_z, part_z);
   const __m256 to_border = _mm256_add_ps(_mm256_setr_ps(1, 0, 1, 0, 2, 1, 2, 1), part);
   const detail::Lanes lanes = detail::broadcast(grid);
-  const __m256 y = _mm256_set1_ps(centre.y);
+  const __m256 y = _mm256_set1_ps(center.y);
   const __m256 to = _mm256_mul_ps(to_border, _mm256_set1_ps(grid.spacing));
   for (int cells = 0; static_cast<float>(cells) * grid.spacing <= reach; cells += kCellsAtATime) {
     const float further = static_cast<float>(cells) * grid.spacing + kIntoCell;
     const __m256 way = _mm256_add_ps(to, _mm256_set1_ps(further));
-    const __m256 x = _mm256_add_ps(_mm256_set1_ps(centre.x), _mm256_mul_ps(way, sign_x));
-    const __m256 z = _mm256_add_ps(_mm256_set1_ps(centre.z), _mm256_mul_ps(way, sign_z));
+    const __m256 x = _mm256_add_ps(_mm256_set1_ps(center.x), _mm256_mul_ps(way, sign_x));
+    const __m256 z = _mm256_add_ps(_mm256_set1_ps(center.z), _mm256_mul_ps(way, sign_z));
     const int best = shortestOf(way, ~detail::notFreeLanes(grid, lanes, x, y, z), reach);
     if (best == kNoLane) continue;
     alignas(32) float ways[kEight];
@@ -71,8 +71,8 @@ Push pushOutAvx2(const ColumnGridLayout& grid, const Vec3& centre, float reach) 
 namespace galactic::simulation {
 
 // hasAvx2() is false on this architecture; the symbol exists so that callers need no condition.
-Push pushOutAvx2(const ColumnGridLayout& grid, const Vec3& centre, float reach) noexcept {
-  return pushOutPortable(grid, centre, reach);
+Push pushOutAvx2(const ColumnGridLayout& grid, const Vec3& center, float reach) noexcept {
+  return pushOutPortable(grid, center, reach);
 }
 
 }  // namespace galactic::simulation

@@ -15,7 +15,7 @@ constexpr float kHeightSlack = 1e-5F;
 /// 0 for negative numbers; NaN stays NaN, as with the second operand of maxps.
 float positivePart(float value) { return 0 > value ? 0 : value; }
 
-Quat normalised(const Quat& q) {
+Quat normalized(const Quat& q) {
   const float length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   return {q.x / length, q.y / length, q.z / length, q.w / length};
 }
@@ -87,7 +87,7 @@ struct Clip {
   }
 };
 
-/// A vertical line in a box's frame: the points at + t * slope, t in metres above the box's centre.
+/// A vertical line in a box's frame: the points at + t * slope, t in meters above the box's center.
 struct Line {
   Triple at;
   Triple slope;
@@ -157,10 +157,10 @@ class RoundedBox {
 }  // namespace
 
 RestingBox restingBox(const OrientedBox& box, const Pose& world_from_object) noexcept {
-  const Pose object{world_from_object.translation, normalised(world_from_object.rotation)};
-  const Quat rotation = normalised(object.rotation * box.pose.rotation);
+  const Pose object{world_from_object.translation, normalized(world_from_object.rotation)};
+  const Quat rotation = normalized(object.rotation * box.pose.rotation);
   RestingBox resting;
-  resting.centre = object * box.pose.translation;
+  resting.center = object * box.pose.translation;
   resting.axis_x = rotate(rotation, {1, 0, 0});
   resting.axis_y = rotate(rotation, {0, 1, 0});
   resting.axis_z = rotate(rotation, {0, 0, 1});
@@ -181,30 +181,30 @@ Vec3 halfBounds(const RestingBox& box) noexcept {
 }
 
 Vec3 nearestPoint(const RestingBox& box, const Vec3& point) noexcept {
-  const Vec3 offset = point - box.centre;
+  const Vec3 offset = point - box.center;
   const Vec3& half = box.half_extents;
   const Vec3 local{dot(box.axis_x, offset), dot(box.axis_y, offset), dot(box.axis_z, offset)};
   const Vec3 inside{clampTo(local.x, half.x), clampTo(local.y, half.y), clampTo(local.z, half.z)};
   if (inside == local) return point;
-  return box.centre + box.axis_x * inside.x + box.axis_y * inside.y + box.axis_z * inside.z;
+  return box.center + box.axis_x * inside.x + box.axis_y * inside.y + box.axis_z * inside.z;
 }
 
 float squaredDistance(const RestingBox& box, const Vec3& point) noexcept {
-  const Vec3 offset = point - box.centre;
+  const Vec3 offset = point - box.center;
   const float x = positivePart(std::fabs(dot(box.axis_x, offset)) - box.half_extents.x);
   const float y = positivePart(std::fabs(dot(box.axis_y, offset)) - box.half_extents.y);
   const float z = positivePart(std::fabs(dot(box.axis_z, offset)) - box.half_extents.z);
   return x * x + y * y + z * z;
 }
 
-bool overlaps(const RestingBox& box, const Vec3& centre, float radius) noexcept {
-  return squaredDistance(box, centre) < radius * radius;
+bool overlaps(const RestingBox& box, const Vec3& center, float radius) noexcept {
+  return squaredDistance(box, center) < radius * radius;
 }
 
 std::optional<Span> overlapHeights(const RestingBox& box, float x, float z, float radius) noexcept {
   const Frame frame(box);
-  const Triple offset{static_cast<double>(x) - static_cast<double>(box.centre.x), 0,
-                      static_cast<double>(z) - static_cast<double>(box.centre.z)};
+  const Triple offset{static_cast<double>(x) - static_cast<double>(box.center.x), 0,
+                      static_cast<double>(z) - static_cast<double>(box.center.z)};
   Line line{};
   for (std::size_t n = 0; n < 3; ++n) {
     line.at[n] = dotOf(frame.axes[n], offset);
@@ -212,7 +212,7 @@ std::optional<Span> overlapHeights(const RestingBox& box, float x, float z, floa
   }
   const Clip met = RoundedBox(frame.half, static_cast<double>(radius)).meet(line);
   if (met.isEmpty()) return std::nullopt;
-  const auto height = static_cast<double>(box.centre.y);
+  const auto height = static_cast<double>(box.center.y);
   return Span{static_cast<float>(height + met.lo), static_cast<float>(height + met.hi)};
 }
 
@@ -221,8 +221,8 @@ std::optional<Span> overlapShifts(const RestingBox& moving, const RestingBox& fi
   constexpr double kNearlyParallel = 1e-10;
   const Frame a(moving);
   const Frame b(fixed);
-  const Triple from = triple(fixed.centre);
-  Triple offset = triple(moving.centre);
+  const Triple from = triple(fixed.center);
+  Triple offset = triple(moving.center);
   for (std::size_t n = 0; n < 3; ++n) offset[n] -= from[n];
   Clip shifts;
   const auto keep_overlapping = [&](const Triple& axis) {

@@ -9,41 +9,41 @@ namespace galactic::simulation {
 
 /// A resting object as the narrow phase reads it: one cache line.
 struct alignas(64) RestingBox {
-  /// World frame, metres.
-  Vec3 centre;
-  /// No point of the box lies further than this above or below the centre, metres: rounded up, so
+  /// World frame, meters.
+  Vec3 center;
+  /// No point of the box lies further than this above or below the center, meters: rounded up, so
   /// that a test of heights refuses no sphere that the test of distances accepts.
   float half_height = 0;
   /// The box's axes as unit vectors of the world frame.
   Vec3 axis_x{1, 0, 0};
   Vec3 axis_y{0, 1, 0};
   Vec3 axis_z{0, 0, 1};
-  /// Metres, along the axes.
+  /// Meters, along the axes.
   Vec3 half_extents;
 };
 static_assert(sizeof(RestingBox) == 64);
 
 /// The oriented box of an object at `world_from_object`. Rotations that are not quite of unit
-/// length are normalised.
+/// length are normalized.
 [[nodiscard]] RestingBox restingBox(const OrientedBox& box, const Pose& world_from_object) noexcept;
 
-/// How far the box reaches from its centre along the world's axes: half the size of its
-/// axis-aligned bounds, metres, rounded to nearest.
+/// How far the box reaches from its center along the world's axes: half the size of its
+/// axis-aligned bounds, meters, rounded to nearest.
 [[nodiscard]] Vec3 halfBounds(const RestingBox& box) noexcept;
 
 /// The point of the box nearest to `point`, both in the world frame; `point` itself when inside.
 [[nodiscard]] Vec3 nearestPoint(const RestingBox& box, const Vec3& point) noexcept;
 
-/// Squared distance from `point` (world frame) to the box, square metres: 0 inside, NaN when a
+/// Squared distance from `point` (world frame) to the box, square meters: 0 inside, NaN when a
 /// coordinate is.
 [[nodiscard]] float squaredDistance(const RestingBox& box, const Vec3& point) noexcept;
 
-/// Whether sphere and box overlap: distance from centre to box < radius (touching is no overlap).
+/// Whether sphere and box overlap: distance from center to box < radius (touching is no overlap).
 /// False when a coordinate is NaN.
-[[nodiscard]] bool overlaps(const RestingBox& box, const Vec3& centre, float radius) noexcept;
+[[nodiscard]] bool overlaps(const RestingBox& box, const Vec3& center, float radius) noexcept;
 
-/// The heights (world Y of its centre) at which a ball of `radius` above or below (x, z) overlaps
-/// the box; none when it passes by. The ball overlaps where its centre lies in the box grown by the
+/// The heights (world Y of its center) at which a ball of `radius` above or below (x, z) overlaps
+/// the box; none when it passes by. The ball overlaps where its center lies in the box grown by the
 /// radius: three boxes, each longer by the radius at the ends of one axis, twelve cylinders around
 /// the edges and eight balls around the corners. Their union is convex, so a vertical line meets it
 /// in one interval: the hull of what it meets of each part.
@@ -51,7 +51,7 @@ static_assert(sizeof(RestingBox) == 64);
                                                  float radius) noexcept;
 
 /// How far `moving` has to be shifted up (negative: down) to overlap `fixed`: an interval of
-/// shifts, metres; none when it passes by. The shifts are those at which none of the fifteen axes
+/// shifts, meters; none when it passes by. The shifts are those at which none of the fifteen axes
 /// of the separating-axis test (Gottschalk, Lin, Manocha 1996) separates the boxes; each axis rules
 /// out all but one interval.
 [[nodiscard]] std::optional<Span> overlapShifts(const RestingBox& moving,

@@ -12,7 +12,7 @@ namespace galactic::simulation {
 namespace {
 
 /// Objects are entered in sets that they miss by this much, so that no rounding of a query can find
-/// an overlap that the sets do not know: metres, and parts of a coordinate.
+/// an overlap that the sets do not know: meters, and parts of a coordinate.
 constexpr float kSlack = 1e-4F;
 constexpr float kRelativeSlack = 1e-6F;
 
@@ -41,14 +41,14 @@ std::uint32_t setOf(float coordinate, std::uint32_t count) {
   return setOf(squareOf(coordinate).value_or(0), count);
 }
 
-/// Calls `change` with the sets of all squares that some query from `centre - reach` to
-/// `centre + reach` may fall in.
+/// Calls `change` with the sets of all squares that some query from `center - reach` to
+/// `center + reach` may fall in.
 template <class Change>
-void forEachSet(std::span<std::uint32_t> sets, float centre, float reach, const Change& change) {
+void forEachSet(std::span<std::uint32_t> sets, float center, float reach, const Change& change) {
   const auto count = static_cast<std::uint32_t>(sets.size());
-  const float around = reach + kSlack + kRelativeSlack * (std::fabs(centre) + reach);
-  const std::optional<std::int32_t> first = squareOf(centre - around);
-  const std::optional<std::int32_t> last = squareOf(centre + around);
+  const float around = reach + kSlack + kRelativeSlack * (std::fabs(center) + reach);
+  const std::optional<std::int32_t> first = squareOf(center - around);
+  const std::optional<std::int32_t> last = squareOf(center + around);
   if (!first || !last || *last - *first >= static_cast<std::int32_t>(count)) {
     for (std::uint32_t& set : sets) change(set);
     return;
@@ -56,7 +56,7 @@ void forEachSet(std::span<std::uint32_t> sets, float centre, float reach, const 
   for (std::int32_t n = *first; n <= *last; ++n) change(sets[setOf(n, count)]);
 }
 
-/// The objects in the sets of any centre from `least` to `most`.
+/// The objects in the sets of any center from `least` to `most`.
 std::uint32_t inAnySet(std::span<const std::uint32_t> sets, float least, float most) {
   const std::optional<std::int32_t> first = squareOf(least);
   const std::optional<std::int32_t> last = squareOf(most);
@@ -75,11 +75,11 @@ constexpr std::uint32_t kAnyHeight = ~std::uint32_t{0};
 /// Calls `visit` with the index of each object in the sets of a sphere, ascending, until it returns
 /// true; whether it did. `every_height`: also those above and below it.
 template <class Visit>
-bool anyNear(const RestingView& objects, const Vec3& centre, bool every_height,
+bool anyNear(const RestingView& objects, const Vec3& center, bool every_height,
              const Visit& visit) {
-  const std::uint32_t strip_x = setOf(centre.x, kStrips);
-  const std::uint32_t strip_z = setOf(centre.z, kStrips);
-  const std::uint32_t band = setOf(centre.y, kBands);
+  const std::uint32_t strip_x = setOf(center.x, kStrips);
+  const std::uint32_t strip_z = setOf(center.z, kStrips);
+  const std::uint32_t band = setOf(center.y, kBands);
   for (std::size_t p = 0; p < objects.plane_count; ++p) {
     const SetPlane& plane = objects.planes[p];
     std::uint32_t near = plane.along_x[strip_x] & plane.along_z[strip_z] &
@@ -94,8 +94,8 @@ bool anyNear(const RestingView& objects, const Vec3& centre, bool every_height,
 
 /// The objects at any height over, under or around a sphere.
 template <class Visit>
-void forEachInColumn(const RestingView& objects, const Vec3& centre, const Visit& visit) {
-  anyNear(objects, centre, true, [&visit](std::uint32_t index) {
+void forEachInColumn(const RestingView& objects, const Vec3& center, const Visit& visit) {
+  anyNear(objects, center, true, [&visit](std::uint32_t index) {
     visit(index);
     return false;
   });
@@ -103,13 +103,13 @@ void forEachInColumn(const RestingView& objects, const Vec3& centre, const Visit
 
 /// The objects that overlap a sphere, ascending, to `visit` as in anyNear.
 template <class Visit>
-bool anyOverlapping(const RestingView& objects, const Vec3& centre, float radius,
+bool anyOverlapping(const RestingView& objects, const Vec3& center, float radius,
                     const Visit& visit) {
-  return anyNear(objects, centre, false, [&](std::uint32_t index) {
+  return anyNear(objects, center, false, [&](std::uint32_t index) {
     const RestingBox& box = objects.boxes[index];
     // The kernel for AVX2 asks for the heights first, too: no answer depends on it.
-    return std::fabs(centre.y - box.centre.y) < box.half_height + radius &&
-           overlaps(box, centre, radius) && visit(index);
+    return std::fabs(center.y - box.center.y) < box.half_height + radius &&
+           overlaps(box, center, radius) && visit(index);
   });
 }
 
@@ -119,8 +119,8 @@ unsigned touchingLanes(const RestingView& objects, const SphereArrays& spheres, 
   unsigned lanes = 0;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::size_t n = first + lane;
-    const Vec3 centre{spheres.x[n], spheres.y[n], spheres.z[n]};
-    const bool touches = anyOverlapping(objects, centre, radius, found);
+    const Vec3 center{spheres.x[n], spheres.y[n], spheres.z[n]};
+    const bool touches = anyOverlapping(objects, center, radius, found);
     lanes |= static_cast<unsigned>(touches) << lane;
   }
   return lanes;
@@ -175,9 +175,9 @@ void RestingObjects::changeSets(std::uint32_t index, const Change& change) noexc
   const Vec3 half = halfBounds(box);
   const float radius = largest_radius_;
   SetPlane& plane = planes_[index / kPlaneObjects];
-  forEachSet(plane.along_x, box.centre.x, half.x + radius, change);
-  forEachSet(plane.along_z, box.centre.z, half.z + radius, change);
-  forEachSet(plane.at_height, box.centre.y, half.y + radius, change);
+  forEachSet(plane.along_x, box.center.x, half.x + radius, change);
+  forEachSet(plane.along_z, box.center.z, half.z + radius, change);
+  forEachSet(plane.at_height, box.center.y, half.y + radius, change);
 }
 
 void RestingObjects::insert(std::uint32_t index, const RestingBox& box) noexcept {
@@ -231,8 +231,8 @@ std::size_t RestingObjects::hits(const SphereBatch& spheres,
           at.group * kLanes + static_cast<std::size_t>(std::countr_zero(at.lanes));
       if (n >= range.count) break;
       const auto sphere = static_cast<std::uint32_t>(range.first + n);
-      const Vec3 centre{spheres.x[sphere], spheres.y[sphere], spheres.z[sphere]};
-      anyOverlapping(objects, centre, range.radius, [&](std::uint32_t object) {
+      const Vec3 center{spheres.x[sphere], spheres.y[sphere], spheres.z[sphere]};
+      anyOverlapping(objects, center, range.radius, [&](std::uint32_t object) {
         if (written < out.size()) out[written++] = {sphere, object};
         return written == out.size();
       });
@@ -242,13 +242,13 @@ std::size_t RestingObjects::hits(const SphereBatch& spheres,
   return written;
 }
 
-std::optional<std::uint32_t> RestingObjects::nearest(const Vec3& centre,
+std::optional<std::uint32_t> RestingObjects::nearest(const Vec3& center,
                                                      float radius) const noexcept {
   assert(radius <= largest_radius_);
   std::optional<std::uint32_t> best;
   float least = radius * radius;
-  forEachInColumn(view(), centre, [&](std::uint32_t index) {
-    const float squared = squaredDistance(boxes_[index], centre);
+  forEachInColumn(view(), center, [&](std::uint32_t index) {
+    const float squared = squaredDistance(boxes_[index], center);
     if (!(squared < least)) return;
     least = squared;
     best = index;
@@ -256,20 +256,20 @@ std::optional<std::uint32_t> RestingObjects::nearest(const Vec3& centre,
   return best;
 }
 
-float RestingObjects::fall(const Vec3& centre, float radius) const noexcept {
+float RestingObjects::fall(const Vec3& center, float radius) const noexcept {
   assert(radius <= largest_radius_);
   float least = std::numeric_limits<float>::infinity();
-  forEachInColumn(view(), centre, [&](std::uint32_t index) {
+  forEachInColumn(view(), center, [&](std::uint32_t index) {
     const RestingBox& box = boxes_[index];
     // Whoever lies lower than the sphere is known to sink, or aside of it, needs no closer look.
-    if (centre.y - radius - box.centre.y - box.half_height > least) return;
+    if (center.y - radius - box.center.y - box.half_height > least) return;
     const Vec3 half = halfBounds(box);
     const float around = radius + kSlack;
-    if (std::fabs(centre.x - box.centre.x) > half.x + around) return;
-    if (std::fabs(centre.z - box.centre.z) > half.z + around) return;
-    const std::optional<Span> heights = overlapHeights(box, centre.x, centre.z, radius);
-    if (!heights || !(heights->lo < centre.y)) return;
-    least = std::min(least, std::max(centre.y - heights->hi, 0.0F));
+    if (std::fabs(center.x - box.center.x) > half.x + around) return;
+    if (std::fabs(center.z - box.center.z) > half.z + around) return;
+    const std::optional<Span> heights = overlapHeights(box, center.x, center.z, radius);
+    if (!heights || !(heights->lo < center.y)) return;
+    least = std::min(least, std::max(center.y - heights->hi, 0.0F));
   });
   return least;
 }

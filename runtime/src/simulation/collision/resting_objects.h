@@ -32,7 +32,7 @@ struct SphereHit {
 class RestingObjects {
  public:
   /// Room for `most_objects` objects, in `memory`. Queries are for spheres of up to
-  /// `largest_radius`, metres.
+  /// `largest_radius`, meters.
   RestingObjects(std::size_t most_objects, float largest_radius,
                  std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
@@ -56,11 +56,11 @@ class RestingObjects {
   [[nodiscard]] float largestRadius() const noexcept { return largest_radius_; }
 
   /// Whether any sphere overlaps any object. No radius may exceed the frame's. A sphere with a
-  /// centre that is not a number overlaps nothing; one outside the frame is looked up in the
+  /// center that is not a number overlaps nothing; one outside the frame is looked up in the
   /// windows at the border, where everything outside is.
   [[nodiscard]] bool touches(const SphereBatch& spheres) const noexcept;
 
-  /// Whether a sphere (radius at most the largest) whose centre is between `least` and `most` along
+  /// Whether a sphere (radius at most the largest) whose center is between `least` and `most` along
   /// X and along Z could overlap an object. No means no.
   [[nodiscard]] bool mayTouch(const Vec3& least, const Vec3& most) const noexcept;
 
@@ -68,15 +68,15 @@ class RestingObjects {
   [[nodiscard]] std::size_t hits(const SphereBatch& spheres,
                                  std::span<SphereHit> out) const noexcept;
 
-  /// The object whose box is nearest to `centre` among those that a sphere of `radius` (at most the
+  /// The object whose box is nearest to `center` among those that a sphere of `radius` (at most the
   /// largest) overlaps; the lower index when equally near.
-  [[nodiscard]] std::optional<std::uint32_t> nearest(const Vec3& centre,
+  [[nodiscard]] std::optional<std::uint32_t> nearest(const Vec3& center,
                                                      float radius) const noexcept;
 
-  /// How far a sphere (radius at most the largest) can sink from `centre` before it touches an
+  /// How far a sphere (radius at most the largest) can sink from `center` before it touches an
   /// object: 0 when it overlaps one already, infinity when nothing is under it. Exact but for
-  /// rounding: the sphere sinks to where its centre enters the box grown by the radius.
-  [[nodiscard]] float fall(const Vec3& centre, float radius) const noexcept;
+  /// rounding: the sphere sinks to where its center enters the box grown by the radius.
+  [[nodiscard]] float fall(const Vec3& center, float radius) const noexcept;
 
   /// Calls `visit(box)` for each resting object, ascending, whose box comes to the height `y`.
   template <class Visit>
@@ -86,7 +86,7 @@ class RestingObjects {
       for (std::uint32_t bits = planes_[p].at_height[band]; bits != 0; bits &= bits - 1) {
         const RestingBox& box =
             boxes_[p * kPlaneObjects + static_cast<std::size_t>(std::countr_zero(bits))];
-        if (std::fabs(y - box.centre.y) < box.half_height) visit(box);
+        if (std::fabs(y - box.center.y) < box.half_height) visit(box);
       }
     }
   }

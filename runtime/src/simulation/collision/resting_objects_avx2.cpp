@@ -9,7 +9,7 @@
 namespace galactic::simulation {
 namespace {
 
-struct Centres {
+struct Centers {
   __m256 x, y, z;
 };
 
@@ -23,10 +23,10 @@ __m256i squaresOf(__m256 coordinates) {
   return _mm256_cvtps_epi32(_mm256_mul_ps(coordinates, _mm256_set1_ps(kInverseSquareEdge)));
 }
 
-Places placesOf(const Centres& centres) {
+Places placesOf(const Centers& centers) {
   const __m256i wrap = _mm256_set1_epi32(kStrips - 1);
-  return {_mm256_and_si256(squaresOf(centres.x), wrap), squaresOf(centres.y),
-          _mm256_and_si256(squaresOf(centres.z), wrap)};
+  return {_mm256_and_si256(squaresOf(centers.x), wrap), squaresOf(centers.y),
+          _mm256_and_si256(squaresOf(centers.z), wrap)};
 }
 
 /// Eight words of `sets`. The plain gather leaves its result's old value open, so that each waits
@@ -49,7 +49,7 @@ __m256i objectsNear(const SetPlane& plane, const Places& places) {
 __m256 absolute(__m256 value) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0F), value); }
 
 /// How far beyond the faces across one axis: 0 between them; maxps passes NaN on.
-__m256 beyond(const Vec3& axis, float half, const Centres& offset) {
+__m256 beyond(const Vec3& axis, float half, const Centers& offset) {
   __m256 along = _mm256_mul_ps(_mm256_set1_ps(axis.x), offset.x);
   along = _mm256_add_ps(along, _mm256_mul_ps(_mm256_set1_ps(axis.y), offset.y));
   along = _mm256_add_ps(along, _mm256_mul_ps(_mm256_set1_ps(axis.z), offset.z));
@@ -57,13 +57,13 @@ __m256 beyond(const Vec3& axis, float half, const Centres& offset) {
 }
 
 /// The lanes that overlap a box, as bits.
-unsigned overlapping(const RestingBox& box, const Centres& centres, float radius) {
-  const __m256 up = _mm256_sub_ps(centres.y, _mm256_set1_ps(box.centre.y));
+unsigned overlapping(const RestingBox& box, const Centers& centers, float radius) {
+  const __m256 up = _mm256_sub_ps(centers.y, _mm256_set1_ps(box.center.y));
   const __m256 reach = _mm256_set1_ps(box.half_height + radius);
   const __m256 at_height = _mm256_cmp_ps(absolute(up), reach, _CMP_LT_OQ);
   if (_mm256_testz_ps(at_height, at_height) != 0) return 0;
-  const Centres offset{_mm256_sub_ps(centres.x, _mm256_set1_ps(box.centre.x)), up,
-                       _mm256_sub_ps(centres.z, _mm256_set1_ps(box.centre.z))};
+  const Centers offset{_mm256_sub_ps(centers.x, _mm256_set1_ps(box.center.x)), up,
+                       _mm256_sub_ps(centers.z, _mm256_set1_ps(box.center.z))};
   const __m256 x = beyond(box.axis_x, box.half_extents.x, offset);
   const __m256 y = beyond(box.axis_y, box.half_extents.y, offset);
   const __m256 z = beyond(box.axis_z, box.half_extents.z, offset);
@@ -81,7 +81,7 @@ std::uint32_t anyLane(__m256i words) {
   return static_cast<std::uint32_t>(_mm_cvtsi128_si32(any));
 }
 
-Centres centresAt(const SphereArrays& spheres, std::size_t n) {
+Centers centersAt(const SphereArrays& spheres, std::size_t n) {
   return {_mm256_loadu_ps(spheres.x + n), _mm256_loadu_ps(spheres.y + n),
           _mm256_loadu_ps(spheres.z + n)};
 }
@@ -92,14 +92,14 @@ Centres centresAt(const SphereArrays& spheres, std::size_t n) {
 /// numbers in registers: it is called for few groups.
 [[gnu::noinline]] unsigned touchingLanes(const RestingView& objects, const SphereArrays& spheres,
                                          std::size_t n, float radius) {
-  const Centres centres = centresAt(spheres, n);
-  const Places places = placesOf(centres);
+  const Centers centers = centersAt(spheres, n);
+  const Places places = placesOf(centers);
   unsigned lanes = 0;
   for (std::size_t plane = 0; plane < objects.plane_count; ++plane) {
     const RestingBox* boxes = objects.boxes + plane * kPlaneObjects;
     std::uint32_t near = anyLane(objectsNear(objects.planes[plane], places));
     for (; near != 0; near &= near - 1) {
-      lanes |= overlapping(boxes[__builtin_ctz(near)], centres, radius);
+      lanes |= overlapping(boxes[__builtin_ctz(near)], centers, radius);
     }
   }
   return lanes;
@@ -127,7 +127,7 @@ bool findTouchingAvx2(const RestingView& given_objects, const SphereArrays& give
     const RadiusRange range = spheres.ranges[r];
     const std::size_t end = std::size_t{range.first} + range.count;
     for (std::size_t n = range.first + group * kLanes; n < end; n += kLanes) {
-      if (nothingNear(objects, placesOf(centresAt(spheres, n)))) continue;
+      if (nothingNear(objects, placesOf(centersAt(spheres, n)))) continue;
       const unsigned lanes = touchingLanes(given_objects, given_spheres, n, range.radius);
       if (lanes == 0) continue;
       at = {r, (n - range.first) / kLanes, lanes};

@@ -14,7 +14,7 @@ namespace galactic::simulation {
 // inside one cell of one of them, and only that cell's list is read. The cells of all four begin at
 // the points of one lattice and each point begins exactly one cell, so the four grids are one array
 // of overlapping windows, and which of them holds a sphere follows from the lattice square around
-// its centre: a window answers for the centres in one square and knows the objects whose bounds
+// its center: a window answers for the centers in one square and knows the objects whose bounds
 // come within the largest radius of it. Three more steps make it small and fast:
 //
 // - Bounds are boxes, so a window knows an object exactly when the window's strip along x and its
@@ -22,17 +22,17 @@ namespace galactic::simulation {
 //   intersection of two words. That is 576 bytes per env for a room for which the windows take
 //   8,000, so that thousands of envs stay in the cache, and it makes grasping and dropping cheap.
 // - A third set, by height, leaves out what stands on the shelf above or the floor below.
-// - The strips wrap around: strip n stands for every 64th square, 16 metres apart. No scene is too
+// - The strips wrap around: strip n stands for every 64th square, 16 meters apart. No scene is too
 //   large, nothing has to be clamped, and a coordinate becomes a strip in three instructions. What
 //   stands in another room at the same place on the torus is found and refused by the next test.
 
-/// Edge of a square and height of a band, metres: a power of two, so that no rounding is involved.
+/// Edge of a square and height of a band, meters: a power of two, so that no rounding is involved.
 /// Smaller squares leave out few more objects and take more memory; see benchmarks/resting_objects.
 inline constexpr float kSquareEdge = 0.25F;
 inline constexpr float kInverseSquareEdge = 1 / kSquareEdge;
-/// Sets of each horizontal axis, a power of two; 16 metres.
+/// Sets of each horizontal axis, a power of two; 16 meters.
 inline constexpr std::uint32_t kStrips = 64;
-/// Sets of the vertical axis: as many words as a register holds; 2 metres.
+/// Sets of the vertical axis: as many words as a register holds; 2 meters.
 inline constexpr std::uint32_t kBands = 8;
 
 /// 32 objects as bits in sets: of strip i, those that come within the largest radius of a square

@@ -8,7 +8,7 @@ namespace galactic::simulation {
 /// Spheres are handled eight at a time.
 inline constexpr std::size_t kLanes = 8;
 
-/// Numbers that bound centres: least and most x, then y, then z, metres.
+/// Numbers that bound centers: least and most x, then y, then z, meters.
 inline constexpr std::size_t kBounds = 6;
 
 /// The next multiple of kLanes.
@@ -20,7 +20,7 @@ inline constexpr std::size_t kBounds = 6;
 struct RadiusRange {
   /// Index into the working set.
   std::uint32_t radius_index = 0;
-  /// Metres.
+  /// Meters.
   float radius = 0;
   /// A multiple of kLanes.
   std::uint32_t first = 0;
@@ -29,7 +29,7 @@ struct RadiusRange {
   std::uint32_t count = 0;
 };
 
-/// The spheres of one env's robot, or of the object that it holds: centres in the world frame as
+/// The spheres of one env's robot, or of the object that it holds: centers in the world frame as
 /// three arrays, radius by radius.
 struct SphereBatch {
   const float* x = nullptr;

@@ -174,19 +174,19 @@ inline LaneBounds boundsOf(const Lanes values[kLanes]) {
   return bounds;
 }
 
-/// The centres of eight spheres in eight envs, to the rows of the envs. `bounds`: of these spheres,
+/// The centers of eight spheres in eight envs, to the rows of the envs. `bounds`: of these spheres,
 /// kBounds vectors; null when nobody wants them.
 inline void placeEightSpheres(const MotionTables& tables, const LaneFrame* frames,
-                              std::uint32_t first, float* centres, Lanes* bounds) {
+                              std::uint32_t first, float* centers, Lanes* bounds) {
   Lanes x[kLanes];
   Lanes y[kLanes];
   Lanes z[kLanes];
   for (std::uint32_t n = 0; n < kLanes; ++n) {
     const BodySphere& sphere = tables.spheres[first + n];
-    const LaneVector centre = moved(frames[sphere.node + 1], sphere.centre);
-    x[n] = centre.x;
-    y[n] = centre.y;
-    z[n] = centre.z;
+    const LaneVector center = moved(frames[sphere.node + 1], sphere.center);
+    x[n] = center.x;
+    y[n] = center.y;
+    z[n] = center.z;
   }
   if (bounds != nullptr) {
     const LaneBounds all[3] = {boundsOf(x), boundsOf(y), boundsOf(z)};
@@ -197,7 +197,7 @@ inline void placeEightSpheres(const MotionTables& tables, const LaneFrame* frame
   transpose(z);
   const std::size_t count = tables.sphere_count;
   for (std::size_t env = 0; env < kLanes; ++env) {
-    float* row = centres + 3 * env * count + first;
+    float* row = centers + 3 * env * count + first;
     store(row, x[env]);
     store(row + count, y[env]);
     store(row + 2 * count, z[env]);
@@ -313,7 +313,7 @@ inline void placeSpheres(const MotionTables& tables, const LaneFrame* frames,
   for (std::uint32_t first = 0; first < groups; first += kLanes) {
     const std::uint32_t here = groups - first < kLanes ? groups - first : kLanes;
     for (std::uint32_t n = 0; n < here; ++n) {
-      placeEightSpheres(tables, frames, (first + n) * kLanes, body.centres,
+      placeEightSpheres(tables, frames, (first + n) * kLanes, body.centers,
                         body.bounds == nullptr ? nullptr : bounds[n]);
     }
     if (body.bounds == nullptr) continue;

@@ -19,7 +19,7 @@ struct MotionTables {
   FixedFrame grip;
   float forward_step = 0;
   float turn_step = 0;
-  /// Of the root link above the floor, metres.
+  /// Of the root link above the floor, meters.
   float root_height = 0;
 };
 
@@ -38,8 +38,8 @@ struct PoseArrays {
 
 /// Where a robot's frames go: for each env its own row.
 struct BodyArrays {
-  /// Env e, coordinate c (x, y, z), sphere n: centres[(3 * e + c) * sphere_count + n].
-  float* centres = nullptr;
+  /// Env e, coordinate c (x, y, z), sphere n: centers[(3 * e + c) * sphere_count + n].
+  float* centers = nullptr;
   /// From grips[kGripStride * e] on: world_from_grip of env e as axes x, y, z and origin, then
   /// cosine and sine of the base's yaw.
   float* grips = nullptr;
@@ -77,7 +77,7 @@ struct MoveBatch {
   PoseArrays to;
 };
 
-/// Forward kinematics of eight envs, down to sphere centres and the grip.
+/// Forward kinematics of eight envs, down to sphere centers and the grip.
 struct BodyBatch {
   PoseArrays pose;
   BodyArrays body;

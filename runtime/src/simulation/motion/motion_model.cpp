@@ -158,7 +158,7 @@ void addSpheres(const Robot& robot, const std::vector<Attached>& links, MotionMo
         ++place;
         if (sphere.radius_index != r) continue;
         places.emplace_back(place, static_cast<std::uint32_t>(model.spheres.size()));
-        model.spheres.push_back({link.node, link.node_from_link * sphere.centre});
+        model.spheres.push_back({link.node, link.node_from_link * sphere.center});
       }
     }
     const auto count = static_cast<std::uint32_t>(model.spheres.size()) - first;

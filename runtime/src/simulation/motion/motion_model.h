@@ -16,7 +16,7 @@ namespace galactic::simulation {
 struct MotionVariable {
   /// Index into the robot's joint positions.
   std::uint32_t position = 0;
-  /// Limits of the motion, radians or metres.
+  /// Limits of the motion, radians or meters.
   float lower = 0;
   float upper = 0;
   /// Farthest move of one action; 0 for a position that only episodes set.
@@ -39,14 +39,14 @@ struct MotionNode {
   /// joint value = multiplier * variable + offset.
   float multiplier = 1;
   float offset = 0;
-  /// parent_from_node at joint value 0: the node's axes and origin in the parent's frame, metres.
+  /// parent_from_node at joint value 0: the node's axes and origin in the parent's frame, meters.
   Vec3 x_axis{1, 0, 0};
   Vec3 y_axis{0, 1, 0};
   Vec3 z_axis{0, 0, 1};
   Vec3 origin;
 };
 
-/// A frame that is fixed to a node: its axes and origin in the node's frame, metres.
+/// A frame that is fixed to a node: its axes and origin in the node's frame, meters.
 struct FixedFrame {
   /// -1 for the robot's root.
   std::int32_t node = -1;
@@ -60,8 +60,8 @@ struct FixedFrame {
 struct BodySphere {
   /// -1 for the robot's root.
   std::int32_t node = -1;
-  /// In the node's frame, metres.
-  Vec3 centre;
+  /// In the node's frame, meters.
+  Vec3 center;
 };
 
 /// A robot as the batch simulation moves it: the part of its kinematic tree that changes, its

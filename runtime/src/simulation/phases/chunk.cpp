@@ -12,7 +12,7 @@ Chunk::Chunk(const Model& model)
       ranges_(model.motion.ranges),
       actions_(kChunk * model.actionCount()),
       variables_(kChunk * model.variableCount()),
-      centres_(kChunk * 3 * model.sphereCount()),
+      centers_(kChunk * 3 * model.sphereCount()),
       bounds_(kChunk * kBounds * group_stride_ / kLanes),
       bodies_(kChunk * body_count_),
       frames_(frameScratchSize(model.motion.nodes.size()) / kLanes),
@@ -33,7 +33,7 @@ PoseArrays Chunk::candidates(std::size_t first) {
 
 BodyArrays Chunk::bodies(std::size_t first) {
   static_assert(sizeof(RigidTransform) == 12 * sizeof(float));
-  return {.centres = centres_.data() + first * 3 * sphere_count_,
+  return {.centers = centers_.data() + first * 3 * sphere_count_,
           .grips = grips_[first].data(),
           .bodies = body_count_ == 0
                         ? nullptr
@@ -46,7 +46,7 @@ void Chunk::shift(std::size_t env, const Vec3& by) {
   x_[env] += by.x;
   y_[env] += by.y;
   z_[env] += by.z;
-  float* row = centres_.data() + env * 3 * sphere_count_;
+  float* row = centers_.data() + env * 3 * sphere_count_;
   for (std::size_t n = 0; n < sphere_count_; ++n) {
     row[n] += by.x;
     row[sphere_count_ + n] += by.y;
@@ -81,7 +81,7 @@ Vec3 Chunk::most(std::size_t env) const {
 }
 
 SphereBatch Chunk::spheres(std::size_t env) const {
-  const float* row = centres_.data() + env * 3 * sphere_count_;
+  const float* row = centers_.data() + env * 3 * sphere_count_;
   return {row, row + sphere_count_, row + 2 * sphere_count_, ranges_};
 }
 

@@ -41,7 +41,7 @@ class Chunk {
   /// Moves a candidate with all its spheres and its grip.
   void shift(std::size_t env, const Vec3& by);
   [[nodiscard]] SphereBatch spheres(std::size_t env) const;
-  /// Bounds of the candidate's sphere centres, eight by eight, from group 8 * `eight` on.
+  /// Bounds of the candidate's sphere centers, eight by eight, from group 8 * `eight` on.
   [[nodiscard]] GroupBounds bounds(std::size_t env, std::size_t eight) const {
     return {bounds_.data()->values.data() + env * kBounds * group_stride_ + eight * kLanes,
             group_stride_};
@@ -83,7 +83,7 @@ class Chunk {
   std::vector<float> actions_;
   std::array<float, kChunk> x_{}, y_{}, z_{}, yaw_{};
   std::vector<float> variables_;
-  std::vector<float> centres_;
+  std::vector<float> centers_;
   std::vector<AlignedLanes> bounds_;
   std::array<AlignedLanes, kChunk> extents_{};
   std::array<GripFrame, kChunk> grips_{};

@@ -100,12 +100,12 @@ bool bodyTouchesObjects(const ChunkStep& step, std::size_t e) {
 /// Whether a look at the ball around the held object's spheres says that all are free.
 bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) {
   const Env& env = step.state.env(step.first + e);
-  // More than the spheres can leave the ball by through rounding, metres.
+  // More than the spheres can leave the ball by through rounding, meters.
   constexpr float kSlack = 1e-3F;
-  const Vec3 centre = gripToWorld(step.chunk.grip(e), env.held.ball_centre);
+  const Vec3 center = gripToWorld(step.chunk.grip(e), env.held.ball_center);
   const float reach = env.held.ball_radius + kSlack;
-  const Vec3 least{centre.x - reach, centre.y - reach, centre.z - reach};
-  const Vec3 most{centre.x + reach, centre.y + reach, centre.z + reach};
+  const Vec3 least{center.x - reach, center.y - reach, center.z - reach};
+  const Vec3 most{center.x + reach, center.y + reach, center.z + reach};
   if (step.state.resting(step.first + e).mayTouch(least, most)) return false;
   alignas(32) std::array<float, kBounds * kLanes> bounds;
   const std::array<float, kBounds> each{least.x, most.x, least.y, most.y, least.z, most.z};

@@ -11,12 +11,12 @@ namespace galactic::simulation {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Above the rounding of a grid's heights, its quantum included, metres.
+/// Above the rounding of a grid's heights, its quantum included, meters.
 constexpr float kLeastClearance = 2e-4F;
-/// Added to a lift so that rounding does not ask for the same one again, metres; the fall that
+/// Added to a lift so that rounding does not ask for the same one again, meters; the fall that
 /// follows takes it back.
 constexpr float kNudge = 1e-4F;
-/// Boxes and spheres may overlap by rounding, metres.
+/// Boxes and spheres may overlap by rounding, meters.
 constexpr float kRounding = 1e-5F;
 /// A lift out of one thing may lead into another; in a scene of shelves a few times.
 constexpr int kMostLifts = 16;
@@ -24,7 +24,7 @@ constexpr int kMostLifts = 16;
 constexpr int kDraws = 4;
 /// Spans of a column that are looked at: far more than a building has floors and shelves.
 constexpr std::size_t kMostSpans = 64;
-/// A direction is none when it is shorter than this, metres.
+/// A direction is none when it is shorter than this, meters.
 constexpr float kLeastDirection = 1e-3F;
 
 Pose raised(const Pose& pose, float height) {
@@ -62,12 +62,12 @@ class PushSum {
   std::int64_t z_ = 0;
 };
 
-/// How far up a centre that is not free has to go to be free of the static scene; infinity when
+/// How far up a center that is not free has to go to be free of the static scene; infinity when
 /// there is no free height above it.
-float liftOutOf(const ColumnGrid& grid, const Vec3& centre) {
+float liftOutOf(const ColumnGrid& grid, const Vec3& center) {
   const ColumnGridLayout& layout = grid.layout();
-  const float cell_x = (centre.x - layout.min_x) * layout.inverse_spacing;
-  const float cell_z = (centre.z - layout.min_z) * layout.inverse_spacing;
+  const float cell_x = (center.x - layout.min_x) * layout.inverse_spacing;
+  const float cell_z = (center.z - layout.min_z) * layout.inverse_spacing;
   const bool inside = cell_x >= 0 && cell_x < static_cast<float>(grid.columnsX()) && cell_z >= 0 &&
                       cell_z < static_cast<float>(grid.columnsZ());
   if (!inside) return kInfinity;
@@ -75,7 +75,7 @@ float liftOutOf(const ColumnGrid& grid, const Vec3& centre) {
   const std::size_t count =
       grid.spans(static_cast<std::uint32_t>(cell_x), static_cast<std::uint32_t>(cell_z), spans);
   for (const Span& span : std::span(spans).first(std::min(count, kMostSpans))) {
-    if (span.hi > centre.y) return std::max(span.lo - centre.y, 0.0F);
+    if (span.hi > center.y) return std::max(span.lo - center.y, 0.0F);
   }
   return kInfinity;
 }
@@ -114,7 +114,7 @@ class Candidate {
   void moveTo(const Pose& pose) {
     batch_ = holdSpheres(object_, pose, scratch_.spheres);
     box_ = restingBox(object_.box, pose);
-    // Boxes may overlap by the clearance, so that neighbours that touch do not block each other.
+    // Boxes may overlap by the clearance, so that neighbors that touch do not block each other.
     Vec3& half = box_.half_extents;
     half = {std::max(half.x - clearance_, 0.0F), std::max(half.y - clearance_, 0.0F),
             std::max(half.z - clearance_, 0.0F)};
@@ -135,7 +135,7 @@ class Candidate {
     }
   }
 
-  /// Calls `visit` with each sphere's index, centre and range.
+  /// Calls `visit` with each sphere's index, center and range.
   template <class Visit>
   void forEachSphere(const Visit& visit) const {
     for (const RadiusRange& range : batch_.ranges) {
@@ -155,8 +155,8 @@ class Candidate {
       if (!objects_.isResting(index)) continue;
       const RestingBox& other = objects_.box(index);
       const Vec3 half = halfBounds(other);
-      if (std::fabs(other.centre.x - box_.centre.x) > half.x + own.x + around) continue;
-      if (std::fabs(other.centre.z - box_.centre.z) > half.z + own.z + around) continue;
+      if (std::fabs(other.center.x - box_.center.x) > half.x + own.x + around) continue;
+      if (std::fabs(other.center.z - box_.center.z) > half.z + own.z + around) continue;
       visit(other);
     }
   }
@@ -182,12 +182,12 @@ class Candidate {
   /// push.
   [[nodiscard]] float liftOutOfScene(float limit) {
     float most = 0;
-    forEachSphere([&](std::size_t n, const Vec3& centre, const RadiusRange& range) {
+    forEachSphere([&](std::size_t n, const Vec3& center, const RadiusRange& range) {
       if (scratch_.clearance[n] == Clearance::kFree) return;
-      const float lift = liftOutOf(scene_.grids()[range.radius_index], centre);
+      const float lift = liftOutOf(scene_.grids()[range.radius_index], center);
       // A column may call a height free that the batched query, which counts in quanta, does not.
       most = std::max(most, std::max(lift, kNudge));
-      if (lift > limit) from_scene_.add(box_.centre.x - centre.x, box_.centre.z - centre.z);
+      if (lift > limit) from_scene_.add(box_.center.x - center.x, box_.center.z - center.z);
     });
     return most;
   }
@@ -197,10 +197,10 @@ class Candidate {
     float most = 0;
     forEachObjectNear([&](const RestingBox& other) {
       float lift = 0;
-      forEachSphere([&](std::size_t, const Vec3& centre, const RadiusRange& range) {
-        if (!overlaps(other, centre, range.radius)) return;
-        const auto heights = overlapHeights(other, centre.x, centre.z, range.radius);
-        if (heights) lift = std::max(lift, heights->hi - centre.y);
+      forEachSphere([&](std::size_t, const Vec3& center, const RadiusRange& range) {
+        if (!overlaps(other, center, range.radius)) return;
+        const auto heights = overlapHeights(other, center.x, center.z, range.radius);
+        if (heights) lift = std::max(lift, heights->hi - center.y);
       });
       const std::optional<Span> shifts = overlapShifts(box_, other);
       if (shifts && shifts->lo < -kRounding && shifts->hi > kRounding) {
@@ -213,7 +213,7 @@ class Candidate {
   }
 
   void pushFrom(const RestingBox& other) {
-    const Vec3 away{box_.centre.x - other.centre.x, 0, box_.centre.z - other.centre.z};
+    const Vec3 away{box_.center.x - other.center.x, 0, box_.center.z - other.center.z};
     const float length = std::sqrt(dot(away, away));
     if (length > kLeastDirection) from_objects_.add(away.x / length, away.z / length);
   }
@@ -221,12 +221,12 @@ class Candidate {
   /// How far the object, which is free, can sink; infinity when there is nothing under it.
   [[nodiscard]] float findFall() const {
     float least = kInfinity;
-    forEachSphere([&](std::size_t n, const Vec3& centre, const RadiusRange& range) {
+    forEachSphere([&](std::size_t n, const Vec3& center, const RadiusRange& range) {
       const ColumnGridLayout& layout = scene_.grids()[range.radius_index].layout();
       const float down = scratch_.down[n];
       // A span that begins where the grid does has no floor.
-      if (centre.y - down > layout.heights.lo + 2 * layout.quantum) least = std::min(least, down);
-      least = std::min(least, objects_.fall(centre, range.radius));
+      if (center.y - down > layout.heights.lo + 2 * layout.quantum) least = std::min(least, down);
+      least = std::min(least, objects_.fall(center, range.radius));
     });
     forEachObjectNear([&](const RestingBox& other) {
       const std::optional<Span> shifts = overlapShifts(box_, other);
@@ -311,12 +311,12 @@ Landing placeObject(const Obstacles& obstacles, const ObjectModel& object, const
     }
     if (attempt == options.attempts) break;
     is_new = false;
-    const Vec3 centre = pose * object.box.pose.translation;
+    const Vec3 center = pose * object.box.pose.translation;
     for (int draw = 0; draw < kDraws && !is_new; ++draw) {
       const auto way = draw < kDraws / 2 ? candidate.wayOut() : std::nullopt;
       const Vec3 direction = drawDirection(way, options.direction_spread, random);
       const Vec3 step = direction * (longest * (0.5F + 0.5F * random.unit()));
-      if (!isPathFree(obstacles.scene, centre, step)) continue;
+      if (!isPathFree(obstacles.scene, center, step)) continue;
       pose.translation = pose.translation + step;
       is_new = true;
     }

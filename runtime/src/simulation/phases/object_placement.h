@@ -28,7 +28,7 @@ struct Landing {
 /// Room for the queries of a placement; after construction nothing allocates.
 class PlacementScratch {
  public:
-  /// `most_spheres` that any object has; `radii` of the working set, metres.
+  /// `most_spheres` that any object has; `radii` of the working set, meters.
   PlacementScratch(std::size_t most_spheres, std::span<const float> radii);
 
   HeldSpheres spheres;

@@ -6,7 +6,7 @@
 
 namespace galactic::simulation {
 
-/// Where the target is, and how far from grip and goal, metres.
+/// Where the target is, and how far from grip and goal, meters.
 struct TargetDistances {
   Vec3 target;
   float reach = 0;
@@ -15,7 +15,7 @@ struct TargetDistances {
 [[nodiscard]] TargetDistances measureTarget(const BatchState& state, std::size_t env) noexcept;
 
 /// The length of the way along the floor to what matters now, the target or once it is held the
-/// goal, metres; below 0 without a way, and where TaskOptions::geodesic_weight is 0.
+/// goal, meters; below 0 without a way, and where TaskOptions::geodesic_weight is 0.
 struct WayLeft {
   float length = -1;
   bool is_to_goal = false;
@@ -24,7 +24,7 @@ struct WayLeft {
                                  std::size_t env) noexcept;
 
 /// How the rules of the task end the episode (paper, appendix A). `transport` is the distance of
-/// target and goal after the step, in metres.
+/// target and goal after the step, in meters.
 [[nodiscard]] EpisodeEnd endOf(const TaskOptions& task, const Env& env, float transport) noexcept;
 
 /// Counts the step; rewards (paper, equation 1), dones, successes and endings of it. Envs of the

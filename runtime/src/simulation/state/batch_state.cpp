@@ -31,22 +31,22 @@ std::size_t paddedToChunks(std::size_t count) { return (count + kChunk - 1) / kC
 
 void measureHeld(const ObjectModel& object, Held& held) noexcept {
   if (object.spheres.empty()) return;
-  Vec3 least = object.spheres.front().centre;
+  Vec3 least = object.spheres.front().center;
   Vec3 most = least;
   for (const SetSphere& sphere : object.spheres) {
-    const Vec3& at = sphere.centre;
+    const Vec3& at = sphere.center;
     least = {std::min(least.x, at.x), std::min(least.y, at.y), std::min(least.z, at.z)};
     most = {std::max(most.x, at.x), std::max(most.y, at.y), std::max(most.z, at.z)};
   }
-  const Vec3 centre = (least + most) * 0.5F;
+  const Vec3 center = (least + most) * 0.5F;
   float squared = 0;
   held.radii = 0;
   for (const SetSphere& sphere : object.spheres) {
-    const Vec3 away = sphere.centre - centre;
+    const Vec3 away = sphere.center - center;
     squared = std::max(squared, dot(away, away));
     held.radii |= 1U << sphere.radius_index;
   }
-  held.ball_centre = held.grip_from_object * centre;
+  held.ball_center = held.grip_from_object * center;
   held.ball_radius = std::sqrt(squared);
 }
 

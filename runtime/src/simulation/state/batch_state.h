@@ -38,8 +38,8 @@ struct Held {
   /// Counted in the episode; -1 for none.
   std::int32_t object = -1;
   Pose grip_from_object;
-  /// A ball around the centres of its spheres: centre in the grip's frame, metres.
-  Vec3 ball_centre;
+  /// A ball around the centers of its spheres: center in the grip's frame, meters.
+  Vec3 ball_center;
   float ball_radius = 0;
   /// Which radii of the working set its spheres have, as bits.
   std::uint32_t radii = 0;
@@ -81,10 +81,10 @@ struct Env {
   StepEvents events;
   Vec3 goal;
   Vec3 target_start;
-  /// Of the step before: grip to target, target to goal, metres.
+  /// Of the step before: grip to target, target to goal, meters.
   float reach = 0;
   float transport = 0;
-  /// Of the step before, metres: along the floor to what mattered then, which was the goal or the
+  /// Of the step before, meters: along the floor to what mattered then, which was the goal or the
   /// target; below 0 where none is known.
   float way = -1;
   bool is_way_to_goal = false;

@@ -5,7 +5,7 @@
 
 namespace galactic::simulation {
 
-/// Origin of the grip in the world, metres.
+/// Origin of the grip in the world, meters.
 [[nodiscard]] inline Vec3 gripOrigin(const GripFrame& grip) {
   return {grip[9], grip[10], grip[11]};
 }

@@ -52,7 +52,7 @@ class StartFinder {
     }
   }
 
-  /// Of the robot's sphere centres at the starts.
+  /// Of the robot's sphere centers at the starts.
   [[nodiscard]] const HeightsOverFloor& heights() const { return heights_; }
 
  private:

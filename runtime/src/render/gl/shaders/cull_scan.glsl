@@ -9,7 +9,7 @@ shared uint shared_draws[256];
 shared uint shared_clusters[256];
 shared uint shared_triangles[256];
 
-// Neighbouring clusters that are seen make one draw.
+// Neighboring clusters that are seen make one draw.
 uint drawsOf(uint seen) { return uint(bitCount(seen & ~(seen << 1))); }
 
 // One work group for each class; each thread has a run of its chunks.

@@ -28,17 +28,17 @@ Sight sightOf(Instance instance) {
 }
 
 bool isSeen(Sight sight, Bounds box) {
-  vec3 centre = vec3(box.centre_x, box.centre_y, box.centre_z);
+  vec3 center = vec3(box.center_x, box.center_y, box.center_z);
   vec3 halves = vec3(box.half_x, box.half_y, box.half_z);
   for (int i = 0; i < 5; ++i) {
     vec4 plane = sight.planes[i];
     float reach = dot(abs(plane.xyz), halves);
-    float from_plane = dot(plane.xyz, centre) + plane.w;
+    float from_plane = dot(plane.xyz, center) + plane.w;
     // Room for rounding, here and where the corners are transformed.
-    float slack = 1e-5 * (dot(abs(plane.xyz), abs(centre)) + abs(plane.w) + reach);
+    float slack = 1e-5 * (dot(abs(plane.xyz), abs(center)) + abs(plane.w) + reach);
     if (from_plane + reach < -slack) return false;
   }
-  vec3 way = centre - sight.eye;
+  vec3 way = center - sight.eye;
   float far = length(way);
   vec3 axis = vec3(box.axis_x, box.axis_y, box.axis_z);
   return dot(way, axis) < box.cutoff * far + box.radius + 1e-5 * (far + length(sight.eye));

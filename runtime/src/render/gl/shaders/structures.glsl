@@ -4,7 +4,7 @@ struct Instance {
   float scale_x; float scale_y; uint layer; uint unused;
 };
 struct Bounds {
-  float centre_x; float centre_y; float centre_z; float half_x; float half_y; float half_z;
+  float center_x; float center_y; float center_z; float half_x; float half_y; float half_z;
   float radius; float axis_x; float axis_y; float axis_z; float cutoff;
   uint first_index; uint index_count;
 };

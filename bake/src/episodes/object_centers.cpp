@@ -4,19 +4,19 @@
 
 namespace galactic::bake {
 
-Result<std::map<std::string, Vec3>> objectCentres(const PackFile& objects) {
+Result<std::map<std::string, Vec3>> objectCenters(const PackFile& objects) {
   const auto set = ObjectSet::from(objects);
   if (!set) return tl::unexpected(set.error());
-  std::map<std::string, Vec3> centres;
+  std::map<std::string, Vec3> centers;
   for (const schema::Object* object : *objects.root().asset_as_ObjectSet()->objects()) {
     const schema::Bounds* bounds = object->bounds();
     if (bounds == nullptr) continue;  // Only where nothing was verified.
     const schema::Vec3& low = bounds->min();
     const schema::Vec3& high = bounds->max();
-    centres[object->name()->str()] =
+    centers[object->name()->str()] =
         Vec3{low.x() + high.x(), low.y() + high.y(), low.z() + high.z()} * 0.5F;
   }
-  return centres;
+  return centers;
 }
 
 }  // namespace galactic::bake
