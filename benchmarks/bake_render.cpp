@@ -16,6 +16,7 @@
 #include "galactic/bake/render_baker.h"
 #include "galactic/bake/render_source.h"
 #include "galactic/bake/urdf_import.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -69,11 +70,10 @@ Result<Row> bakeRow(const MakeSource& make_source, const Options& options) {
   Row row;
   row.texture_seconds = secondsSince(start);
   start = std::chrono::steady_clock::now();
-  const auto meshes = bakeRenderMeshes(*source, options.meshes);
-  if (!meshes) return tl::unexpected(meshes.error());
+  ASSIGN_OR_RETURN(const auto meshes, bakeRenderMeshes(*source, options.meshes));
   row.seconds = secondsSince(start);
-  row.figures = meshes->statistics();
-  row.textures = meshes->materials.textures.size();
+  row.figures = meshes.statistics();
+  row.textures = meshes.materials.textures.size();
   return row;
 }
 
@@ -81,14 +81,12 @@ Result<Row> bakeFile(const std::filesystem::path& file, const Options& options) 
   if (file.extension() == ".urdf") {
     UrdfImportOptions import;
     import.allow_missing = true;
-    const auto robot = importUrdf(file, import);
-    if (!robot) return tl::unexpected(robot.error());
-    return bakeRow([&] { return robotRenderSource(*robot, file.parent_path(), options.textures); },
+    ASSIGN_OR_RETURN(const auto robot, importUrdf(file, import));
+    return bakeRow([&] { return robotRenderSource(robot, file.parent_path(), options.textures); },
                    options);
   }
-  const auto asset = importMesh(file);
-  if (!asset) return tl::unexpected(asset.error());
-  return bakeRow([&] { return sceneRenderSource(*asset, file.parent_path(), options.textures); },
+  ASSIGN_OR_RETURN(const auto asset, importMesh(file));
+  return bakeRow([&] { return sceneRenderSource(asset, file.parent_path(), options.textures); },
                  options);
 }
 

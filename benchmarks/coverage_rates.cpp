@@ -25,6 +25,7 @@
 #include "galactic/bake/grid_encoder.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/triangle_mesh.h"
+#include "galactic/try.h"
 #include "support/column_oracle.h"
 #include "support/distance_oracle.h"
 #include "support/encoded_grid_view.h"
@@ -51,12 +52,10 @@ struct Mode {
 };
 
 Result<Mode> makeMode(const TriangleMesh& mesh, float radius, float spacing, Coverage coverage) {
-  const auto frame = makeGridFrame(mesh.bounds, radius, spacing);
-  if (!frame) return tl::unexpected(frame.error());
-  const ExactColumns raw = exactColumns(mesh, *frame, {.jobs = 2, .coverage = coverage});
-  const auto free = chooseFreeSpace(raw.columns);
-  if (!free) return tl::unexpected(free.error());
-  return Mode{coverage, spacing, encodeGrid(free->columns)};
+  ASSIGN_OR_RETURN(const auto frame, makeGridFrame(mesh.bounds, radius, spacing));
+  const ExactColumns raw = exactColumns(mesh, frame, {.jobs = 2, .coverage = coverage});
+  ASSIGN_OR_RETURN(const auto free, chooseFreeSpace(raw.columns));
+  return Mode{coverage, spacing, encodeGrid(free.columns)};
 }
 
 /// Whether a position that is free in truth belongs to the room: its own column's free span, found
@@ -184,13 +183,10 @@ void printRow(const Mode& mode, const Positions& positions) {
 }
 
 Result<void> measure(const std::filesystem::path& scene, std::uint64_t wanted) {
-  const auto asset = importMesh(scene);
-  if (!asset) return tl::unexpected(asset.error());
-  const auto clean = placeAndClean(*asset);
-  if (!clean) return tl::unexpected(clean.error());
-  const Truth truth(clean->mesh);
-  fmt::print("\n**{}** ({} triangles)\n\n", scene.filename().string(),
-             clean->mesh.triangles.size());
+  ASSIGN_OR_RETURN(const auto asset, importMesh(scene));
+  ASSIGN_OR_RETURN(const auto clean, placeAndClean(asset));
+  const Truth truth(clean.mesh);
+  fmt::print("\n**{}** ({} triangles)\n\n", scene.filename().string(), clean.mesh.triangles.size());
   fmt::print(
       "| radius, m | spacing, cm | coverage | falsely free, % (count) | depth of those, mm: mean / "
       "p99 / max | falsely blocked, % | MB |\n|---|---|---|---|---|---|---|\n");
@@ -199,9 +195,8 @@ Result<void> measure(const std::filesystem::path& scene, std::uint64_t wanted) {
     std::vector<Mode> modes;
     for (const float spacing : {0.03F, 0.015F}) {
       for (const Coverage coverage : {Coverage::kColumn, Coverage::kCell}) {
-        auto mode = makeMode(clean->mesh, radius, spacing, coverage);
-        if (!mode) return tl::unexpected(mode.error());
-        modes.push_back(std::move(*mode));
+        ASSIGN_OR_RETURN(auto mode, makeMode(clean.mesh, radius, spacing, coverage));
+        modes.push_back(std::move(mode));
       }
     }
     const Positions positions = ask(truth, wanted, modes);

@@ -23,6 +23,7 @@
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/sphere_set.h"
 #include "galactic/bake/triangle_mesh.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -88,12 +89,10 @@ Result<std::vector<SphereSet>> makeSets(const TriangleMesh& mesh, const Request&
                                         const SphereSetOptions& options) {
   if (!request.rule.empty()) {
     SphereSet set;
-    auto shape = publishedShape(mesh.bounds, request.rule, options.radii);
-    if (!shape) return tl::unexpected(shape.error());
-    set.spheres = std::move(shape->spheres);
-    const auto quality = measureSphereSet(mesh, set.spheres, options);
-    if (!quality) return tl::unexpected(quality.error());
-    set.quality = *quality;
+    ASSIGN_OR_RETURN(auto shape, publishedShape(mesh.bounds, request.rule, options.radii));
+    set.spheres = std::move(shape.spheres);
+    ASSIGN_OR_RETURN(const auto quality, measureSphereSet(mesh, set.spheres, options));
+    set.quality = quality;
     return std::vector{set};
   }
   if (request.curve) {
@@ -107,25 +106,21 @@ Result<std::vector<SphereSet>> makeSets(const TriangleMesh& mesh, const Request&
     for (std::size_t n = 0; n < curve->points().size(); ++n) sets.push_back(curve->take(n));
     return sets;
   }
-  auto set = fitSphereSet(mesh, options);
-  if (!set) return tl::unexpected(set.error());
-  return std::vector{*set};
+  ASSIGN_OR_RETURN(auto set, fitSphereSet(mesh, options));
+  return std::vector{set};
 }
 
 Result<void> fit(const std::filesystem::path& path, const Request& request) {
   MeshImportOptions import_options;
   if (request.z_up) import_options.up = UpAxis::kZ;
-  const auto asset = importMesh(path, import_options);
-  if (!asset) return tl::unexpected(asset.error());
-  const auto clean = placeAndClean(*asset);
-  if (!clean) return tl::unexpected(clean.error());
+  ASSIGN_OR_RETURN(const auto asset, importMesh(path, import_options));
+  ASSIGN_OR_RETURN(const auto clean, placeAndClean(asset));
   SphereSetOptions options = request.options;
-  if (request.support) options.support = HalfSpace{{0, 1, 0}, clean->mesh.bounds.min.y};
+  if (request.support) options.support = HalfSpace{{0, 1, 0}, clean.mesh.bounds.min.y};
   const double before = userSeconds();
-  const auto sets = makeSets(clean->mesh, request, options);
-  if (!sets) return tl::unexpected(sets.error());
+  ASSIGN_OR_RETURN(const auto sets, makeSets(clean.mesh, request, options));
   const double seconds = userSeconds() - before;
-  for (const SphereSet& set : *sets) {
+  for (const SphereSet& set : sets) {
     printRow(path.parent_path().filename().string(), set, options.radii.size(), seconds);
   }
   return {};

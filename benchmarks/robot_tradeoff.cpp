@@ -22,6 +22,7 @@
 #include "galactic/bake/robot_baker.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/urdf_import.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -93,21 +94,19 @@ std::string inMillimeters(const LengthStatistics& lengths) {
 
 Result<void> printRow(const std::string& label, const SourceRobot& source,
                       const RobotRecipe* recipe, const RobotBakeOptions& options) {
-  const auto robot = bakeRobot(source, recipe, options);
-  if (!robot) return tl::unexpected(robot.error());
-  const auto quality = Yardstick(*robot).measure();
-  if (!quality) return tl::unexpected(quality.error());
-  std::vector<std::size_t> counts(robot->radii.size());
+  ASSIGN_OR_RETURN(const auto robot, bakeRobot(source, recipe, options));
+  ASSIGN_OR_RETURN(const auto quality, Yardstick(robot).measure());
+  std::vector<std::size_t> counts(robot.radii.size());
   std::size_t all = 0;
-  for (const BakedGroup& group : robot->groups) {
+  for (const BakedGroup& group : robot.groups) {
     for (const SetSphere& sphere : group.spheres.spheres) {
       ++counts[counts.size() - 1 - sphere.radius_index];
       ++all;
     }
   }
   fmt::print("| {} | {} ({}) | {} | {} | {:.2f} | {:.1f} |\n", label, all, fmt::join(counts, "/"),
-             inMillimeters(quality->gap), inMillimeters(quality->protrusion), quality->volume_ratio,
-             robot->times.spheres);
+             inMillimeters(quality.gap), inMillimeters(quality.protrusion), quality.volume_ratio,
+             robot.times.spheres);
   std::fflush(stdout);
   return {};
 }
@@ -115,30 +114,26 @@ Result<void> printRow(const std::string& label, const SourceRobot& source,
 Result<void> printTable(const Request& request) {
   UrdfImportOptions import;
   import.allow_missing = true;
-  const auto source = importUrdf(request.urdf, import);
-  if (!source) return tl::unexpected(source.error());
+  ASSIGN_OR_RETURN(const auto source, importUrdf(request.urdf, import));
   RobotBakeOptions options;
   options.jobs = std::max(1U, std::thread::hardware_concurrency());
   fmt::print(
       "| set | spheres | gap | protrusion | volume | seconds |\n|---|---|---|---|---|---|\n");
   if (!request.by_hand.empty()) {
-    const auto collection = readCollection(request.by_hand);
-    if (!collection) return tl::unexpected(collection.error());
-    const auto converted = recipeFromCollection(*collection, *source);
-    if (!converted) return tl::unexpected(converted.error());
-    const auto printed = printRow("by hand", *source, &converted->recipe, options);
+    ASSIGN_OR_RETURN(const auto collection, readCollection(request.by_hand));
+    ASSIGN_OR_RETURN(const auto converted, recipeFromCollection(collection, source));
+    const auto printed = printRow("by hand", source, &converted.recipe, options);
     if (!printed) return printed;
   }
   std::optional<RobotRecipe> recipe;
   if (!request.recipe.empty()) {
-    auto read = readRobotRecipe(request.recipe);
-    if (!read) return tl::unexpected(read.error());
-    recipe = std::move(*read);
+    ASSIGN_OR_RETURN(auto read, readRobotRecipe(request.recipe));
+    recipe = std::move(read);
   }
   for (const std::uint32_t budget : request.budgets) {
     options.max_spheres = budget;
     const auto printed = printRow(budget == 0 ? "no limit" : fmt::format("at most {}", budget),
-                                  *source, recipe ? &*recipe : nullptr, options);
+                                  source, recipe ? &*recipe : nullptr, options);
     if (!printed) return printed;
   }
   return {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "galactic/try.h"
 #include "pack_tool/asset_diff.h"
 #include "pack_tool/diff_text.h"
 #include "pack_tool/episode_diff.h"
@@ -50,9 +51,8 @@ struct Side {
 };
 
 Result<Side> sideOf(const PackFile& pack) {
-  auto scene = sceneOf(pack);
-  if (!scene) return tl::unexpected(scene.error());
-  return Side{std::move(*scene), describePack(pack)};
+  ASSIGN_OR_RETURN(auto scene, sceneOf(pack));
+  return Side{std::move(scene), describePack(pack)};
 }
 
 /// Pairs the grids by radius and compares each pair.
@@ -75,18 +75,16 @@ void compareAllGrids(const Side& a, const Side& b, double tolerance, PackDiffere
 
 Result<void> compareScenes(const PackFile& a, const PackFile& b, const DiffOptions& options,
                            PackDifference& difference) {
-  const auto side_a = sideOf(a);
-  if (!side_a) return tl::unexpected(side_a.error());
-  const auto side_b = sideOf(b);
-  if (!side_b) return tl::unexpected(side_b.error());
+  ASSIGN_OR_RETURN(const auto side_a, sideOf(a));
+  ASSIGN_OR_RETURN(const auto side_b, sideOf(b));
   if (options.scope == DiffScope::kEverything) {
     difference.provenance =
-        compareFields(provenanceOf(side_a->description), provenanceOf(side_b->description), 0);
+        compareFields(provenanceOf(side_a.description), provenanceOf(side_b.description), 0);
   }
-  difference.content = compareFields(contentOf(side_a->description), contentOf(side_b->description),
+  difference.content = compareFields(contentOf(side_a.description), contentOf(side_b.description),
                                      options.tolerance);
-  compareAllGrids(*side_a, *side_b, options.tolerance, difference);
-  compareRenderMeshes({a, b}, {side_a->description, side_b->description}, options, difference);
+  compareAllGrids(side_a, side_b, options.tolerance, difference);
+  compareRenderMeshes({a, b}, {side_a.description, side_b.description}, options, difference);
   return {};
 }
 
@@ -112,9 +110,8 @@ Result<PackDifference> comparePacks(const PackFile& a, const PackFile& b,
     compareLists(a, b, options, difference);
     return difference;
   }
-  const auto done = a.kind() == PackKind::kEpisodes ? compareEpisodes(a, b, options, difference)
-                                                    : compareScenes(a, b, options, difference);
-  if (!done) return tl::unexpected(done.error());
+  RETURN_IF_ERROR(a.kind() == PackKind::kEpisodes ? compareEpisodes(a, b, options, difference)
+                                                  : compareScenes(a, b, options, difference));
   return difference;
 }
 

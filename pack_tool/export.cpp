@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "galactic/episode_set.h"
+#include "galactic/try.h"
 #include "pack_tool/mesh/figure_glb.h"
 #include "pack_tool/mesh/grid_mesh.h"
 #include "pack_tool/open_scene.h"
@@ -71,19 +72,17 @@ Result<std::string> gridMesh(const PackFile& pack, const ExportOptions& options,
                     "show; export it --to glb",
                     packKindName(pack.kind())));
   }
-  const auto scene = sceneOf(pack);
-  if (!scene) return tl::unexpected(scene.error());
-  const auto grids = gridsOf(*scene, pack.where(), options.radius);
-  if (!grids) return tl::unexpected(grids.error());
-  if (grids->size() > 1) {
+  ASSIGN_OR_RETURN(const auto scene, sceneOf(pack));
+  ASSIGN_OR_RETURN(const auto grids, gridsOf(scene, pack.where(), options.radius));
+  if (grids.size() > 1) {
     std::string radii;
-    for (const ColumnGrid& grid : *grids) radii += fmt::format(" {}", grid.radius());
+    for (const ColumnGrid& grid : grids) radii += fmt::format(" {}", grid.radius());
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 fmt::format("has {} grids and a mesh shows one; choose with --radius one of{}",
-                            grids->size(), radii));
+                            grids.size(), radii));
   }
   const auto patches =
-      gridPatches(grids->front(), {.height = options.patch_height, .parts = options.parts});
+      gridPatches(grids.front(), {.height = options.patch_height, .parts = options.parts});
   if (patches.size() > kMaxPatches) {
     return fail(
         ErrorCode::kUnsupported, pack.where(),
@@ -95,25 +94,22 @@ Result<std::string> gridMesh(const PackFile& pack, const ExportOptions& options,
 }
 
 Result<std::string> figureScene(const PackFile& pack, const ExportOptions& options) {
-  auto figures = figuresOf(pack, options.figures.value_or(FigureOptions{}));
-  if (!figures) return tl::unexpected(figures.error());
+  ASSIGN_OR_RETURN(auto figures, figuresOf(pack, options.figures.value_or(FigureOptions{})));
   // A single object stays in its own frame.
-  if (figures->size() > 1) layOutInARow(*figures);
-  auto bytes = encodeGlb(*figures);
+  if (figures.size() > 1) layOutInARow(figures);
+  auto bytes = encodeGlb(figures);
   if (!bytes) bytes.error().where = pack.where();
   return bytes;
 }
 
 Result<std::string> robotDescription(const PackFile& pack, ExportFormat format) {
-  const auto robot = Robot::from(pack);
-  if (!robot) return tl::unexpected(robot.error());
-  return format == ExportFormat::kSrdf ? srdfText(*robot) : spherizedUrdfText(*robot);
+  ASSIGN_OR_RETURN(const auto robot, Robot::from(pack));
+  return format == ExportFormat::kSrdf ? srdfText(robot) : spherizedUrdfText(robot);
 }
 
 Result<std::string> publishedEpisodes(const PackFile& pack, const ExportOptions& options) {
-  const auto set = EpisodeSet::from(pack);
-  if (!set) return tl::unexpected(set.error());
-  return episodeSetText(*set, options.object_up.value_or(FileUp::kZ));
+  ASSIGN_OR_RETURN(const auto set, EpisodeSet::from(pack));
+  return episodeSetText(set, options.object_up.value_or(FileUp::kZ));
 }
 
 Result<std::string> encode(const PackFile& pack, const ExportOptions& options,
@@ -140,16 +136,13 @@ std::filesystem::path outputOf(const ExportOptions& options) {
 }
 
 Result<void> exportPack(const ExportOptions& options) {
-  const auto format = formatOf(options);
-  if (!format) return tl::unexpected(format.error());
-  if (auto checked = checkOptions(options, *format); !checked) return checked;
-  const auto pack = PackFile::open(options.pack, options.trust);
-  if (!pack) return tl::unexpected(pack.error());
-  const auto bytes = encode(*pack, options, *format);
-  if (!bytes) return tl::unexpected(bytes.error());
+  ASSIGN_OR_RETURN(const auto format, formatOf(options));
+  if (auto checked = checkOptions(options, format); !checked) return checked;
+  ASSIGN_OR_RETURN(const auto pack, PackFile::open(options.pack, options.trust));
+  ASSIGN_OR_RETURN(const auto bytes, encode(pack, options, format));
   const std::filesystem::path output = outputOf(options);
-  if (auto checked = checkOutput(*pack, output); !checked) return checked;
-  return writeOutput(output, *bytes);
+  if (auto checked = checkOutput(pack, output); !checked) return checked;
+  return writeOutput(output, bytes);
 }
 
 }  // namespace

@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "galactic/try.h"
+
 namespace galactic::pack_tool {
 
 Result<OpenScene> OpenScene::open(const std::filesystem::path& path, Trust trust) {
-  auto pack = PackFile::open(path, trust);
-  if (!pack) return tl::unexpected(pack.error());
-  auto scene = sceneOf(*pack);
-  if (!scene) return tl::unexpected(scene.error());
-  return OpenScene{std::move(*pack), std::move(*scene)};
+  ASSIGN_OR_RETURN(auto pack, PackFile::open(path, trust));
+  ASSIGN_OR_RETURN(auto scene, sceneOf(pack));
+  return OpenScene{std::move(pack), std::move(scene)};
 }
 
 Result<Scene> sceneOf(const PackFile& pack) {

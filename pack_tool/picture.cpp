@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "galactic/try.h"
 #include "pack_tool/open_scene.h"
 #include "pack_tool/output_file.h"
 #include "pack_tool/pictures/figure_picture.h"
@@ -16,40 +17,35 @@ namespace {
 using pictures::Image;
 
 Result<Image> drawGrids(const PackFile& pack, const GridPictureOptions& options) {
-  const auto scene = sceneOf(pack);
-  if (!scene) return tl::unexpected(scene.error());
-  const auto grids = gridsOf(*scene, pack.where(), options.radius);
-  if (!grids) return tl::unexpected(grids.error());
-  const std::string title = printable(scene->name());
+  ASSIGN_OR_RETURN(const auto scene, sceneOf(pack));
+  ASSIGN_OR_RETURN(const auto grids, gridsOf(scene, pack.where(), options.radius));
+  const std::string title = printable(scene.name());
   if (!options.slice) {
     const auto value = options.value.value_or(pictures::PlanValue::kTotalHeight);
-    return pictures::drawPlan(*grids, {.value = value, .title = title}).image;
+    return pictures::drawPlan(grids, {.value = value, .title = title}).image;
   }
   auto slice = pictures::drawSlice(
-      *grids, {.from = options.slice->from, .to = options.slice->to, .title = title});
+      grids, {.from = options.slice->from, .to = options.slice->to, .title = title});
   if (!slice) return fail(slice.error().code, pack.where(), slice.error().message);
   return std::move(slice->image);
 }
 
 Result<Image> drawFigures(const PackFile& pack, const PictureOptions& options) {
-  const auto figures = figuresOf(pack, options.figures.value_or(FigureOptions{}));
-  if (!figures) return tl::unexpected(figures.error());
-  if (figures->size() == 1) {
-    return pictures::drawFigure(figures->front(),
-                                options.size.value_or(pictures::kDefaultViewSize));
+  ASSIGN_OR_RETURN(const auto figures, figuresOf(pack, options.figures.value_or(FigureOptions{})));
+  if (figures.size() == 1) {
+    return pictures::drawFigure(figures.front(), options.size.value_or(pictures::kDefaultViewSize));
   }
   auto sheet =
-      pictures::drawContactSheet(*figures, options.size.value_or(pictures::kDefaultTileSize));
+      pictures::drawContactSheet(figures, options.size.value_or(pictures::kDefaultTileSize));
   if (!sheet) sheet.error().where = pack.where();
   return sheet;
 }
 
 /// Of a scene.
 Result<Image> drawMeshes(const PackFile& pack, const PictureOptions& options) {
-  const auto figures = figuresOf(pack, *options.figures);
-  if (!figures) return tl::unexpected(figures.error());
+  ASSIGN_OR_RETURN(const auto figures, figuresOf(pack, *options.figures));
   auto image =
-      pictures::drawScene(figures->front(), options.size.value_or(pictures::kDefaultViewSize));
+      pictures::drawScene(figures.front(), options.size.value_or(pictures::kDefaultViewSize));
   if (!image) image.error().where = pack.where();
   return image;
 }
@@ -74,12 +70,10 @@ Result<void> makePicture(const PictureOptions& options) {
     return fail(ErrorCode::kUnsupported, options.output.string(),
                 "pictures are PNG files; end the name with .png");
   }
-  const auto pack = PackFile::open(options.pack, options.trust);
-  if (!pack) return tl::unexpected(pack.error());
-  const auto image = draw(*pack, options);
-  if (!image) return tl::unexpected(image.error());
-  if (auto checked = checkOutput(*pack, options.output); !checked) return checked;
-  return pictures::writePng(options.output, *image);
+  ASSIGN_OR_RETURN(const auto pack, PackFile::open(options.pack, options.trust));
+  ASSIGN_OR_RETURN(const auto image, draw(pack, options));
+  if (auto checked = checkOutput(pack, options.output); !checked) return checked;
+  return pictures::writePng(options.output, image);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <thread>
 #include <utility>
 
+#include "galactic/try.h"
 #include "pack_tool/open_listed.h"
 #include "pack_tool/output_file.h"
 #include "pack_tool/report/html_page.h"
@@ -25,9 +26,8 @@ std::string nameFrom(const std::filesystem::path& folder, const std::filesystem:
 Result<PackEntry> entryOf(const PackFile& pack, const std::filesystem::path& folder) {
   PackEntry entry{.description = describePack(pack, Detail::kSummary), .thumbnails = {}};
   entry.description["file"] = nameFrom(folder, entry.description.at("file").get<std::string>());
-  auto thumbnails = thumbnailsOf(pack);
-  if (!thumbnails) return tl::unexpected(thumbnails.error());
-  entry.thumbnails = std::move(*thumbnails);
+  ASSIGN_OR_RETURN(auto thumbnails, thumbnailsOf(pack));
+  entry.thumbnails = std::move(thumbnails);
   return entry;
 }
 
@@ -52,15 +52,15 @@ std::vector<Result<PackEntry>> entriesOf(const std::vector<PackFile>& packs,
 }
 
 Result<void> makeReport(const ReportOptions& options) {
-  const auto packs =
-      openListed({.packs = options.packs, .output = options.output, .trust = options.trust});
-  if (!packs) return tl::unexpected(packs.error());
+  ASSIGN_OR_RETURN(
+      const auto packs,
+      openListed({.packs = options.packs, .output = options.output, .trust = options.trust}));
   std::vector<PackEntry> entries;
-  entries.reserve(packs->size());
+  entries.reserve(packs.size());
   std::error_code ignored;
   const std::filesystem::path folder =
       std::filesystem::absolute(options.packs.front(), ignored).lexically_normal().parent_path();
-  for (Result<PackEntry>& entry : entriesOf(*packs, folder)) {
+  for (Result<PackEntry>& entry : entriesOf(packs, folder)) {
     if (!entry) return tl::unexpected(entry.error());
     entries.push_back(std::move(*entry));
   }

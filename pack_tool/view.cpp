@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "galactic/try.h"
 #include "pack_tool/figure/shared_textures_of.h"
 #include "pack_tool/open_listed.h"
 #include "pack_tool/output_file.h"
@@ -18,11 +19,11 @@ bool hasMeshes(const PackFile& pack) {
 }
 
 Result<void> viewPack(const ViewOptions& options) {
-  const auto packs =
-      openListed({.packs = {options.pack}, .output = options.output, .trust = options.trust});
-  if (!packs) return tl::unexpected(packs.error());
+  ASSIGN_OR_RETURN(
+      const auto packs,
+      openListed({.packs = {options.pack}, .output = options.output, .trust = options.trust}));
   std::vector<PageAsset> assets;
-  for (const PackFile& pack : *packs) {
+  for (const PackFile& pack : packs) {
     Json facts = describePack(pack, Detail::kSummary);
     // Where the pack lay is nobody's business who is sent the page.
     facts["file"] = std::filesystem::path(pack.where()).filename().string();
@@ -30,12 +31,11 @@ Result<void> viewPack(const ViewOptions& options) {
                       .meshes = hasMeshes(pack) ? renderMeshesWithTextures(pack) : nullptr,
                       .facts = jsonText(facts)});
   }
-  const auto page = viewPage(assets, {},
-                             {.title = options.pack.filename().string(),
-                              .generator = "galactic-pack",
-                              .texture_size = options.texture_size});
-  if (!page) return tl::unexpected(page.error());
-  return writeOutput(options.output, *page);
+  ASSIGN_OR_RETURN(const auto page, viewPage(assets, {},
+                                             {.title = options.pack.filename().string(),
+                                              .generator = "galactic-pack",
+                                              .texture_size = options.texture_size}));
+  return writeOutput(options.output, page);
 }
 
 }  // namespace

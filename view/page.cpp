@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "galactic/try.h"
 #include "view/page_run.h"
 
 namespace galactic {
@@ -37,7 +38,7 @@ Result<std::string> viewPage(std::span<const PageAsset> assets, const PageRun& r
   AssetWriter writer(json, data, options.texture_size);
   json.begin("packs", '[');
   for (const PageAsset& asset : assets) {
-    if (auto written = writer.write(asset); !written) return tl::unexpected(written.error());
+    RETURN_IF_ERROR(writer.write(asset));
   }
   json.end(']');
   writer.writeTextures("textures");

@@ -12,6 +12,7 @@
 #include "galactic/robot.h"
 #include "galactic/scene.h"
 #include "galactic/schema/pack_generated.h"
+#include "galactic/try.h"
 #include "view/page_grid.h"
 
 namespace galactic {
@@ -248,32 +249,30 @@ std::size_t AssetWriter::textureNumber(const RenderTexture& texture) {
 }
 
 Result<void> AssetWriter::writeScene(const PackFile& pack) {
-  const auto scene = Scene::from(pack);
-  if (!scene) return tl::unexpected(scene.error());
+  ASSIGN_OR_RETURN(const auto scene, Scene::from(pack));
   const schema::Bounds& bounds = *pack.root().asset_as_Scene()->bounds();
   json_.begin("scene", '{');
-  json_.text("name", scene->name());
+  json_.text("name", scene.name());
   json_.numbers("min", std::span(reinterpret_cast<const float*>(&bounds.min()), 3));
   json_.numbers("max", std::span(reinterpret_cast<const float*>(&bounds.max()), 3));
   json_.begin("grids", '[');
-  for (const ColumnGrid& grid : scene->grids()) writeGrid(grid, json_, data_);
+  for (const ColumnGrid& grid : scene.grids()) writeGrid(grid, json_, data_);
   json_.end(']');
   json_.end('}');
   return {};
 }
 
 Result<void> AssetWriter::writeObjects(const PackFile& pack) {
-  const auto set = ObjectSet::from(pack);
-  if (!set) return tl::unexpected(set.error());
+  ASSIGN_OR_RETURN(const auto set, ObjectSet::from(pack));
   const auto& stored = *pack.root().asset_as_ObjectSet()->objects();
   json_.begin("objects", '[');
-  for (std::size_t n = 0; n < set->objects().size(); ++n) {
-    const ObjectModel& object = set->objects()[n];
+  for (std::size_t n = 0; n < set.objects().size(); ++n) {
+    const ObjectModel& object = set.objects()[n];
     json_.begin("", '{');
     json_.text("name", object.name);
     json_.numbers("box", floatsOf(object.box.pose));
     json_.numbers("half_extents", floatsOf(object.box.half_extents));
-    writeSpheres(json_, object.spheres, set->radii());
+    writeSpheres(json_, object.spheres, set.radii());
     json_.begin("stable_poses", '[');
     for (const StablePose& pose : object.stable_poses) {
       json_.begin("", '{');
@@ -292,36 +291,34 @@ Result<void> AssetWriter::writeObjects(const PackFile& pack) {
 }
 
 Result<void> AssetWriter::writeRobot(const PackFile& pack) {
-  const auto robot = Robot::from(pack);
-  if (!robot) return tl::unexpected(robot.error());
+  ASSIGN_OR_RETURN(const auto robot, Robot::from(pack));
   json_.begin("robot", '{');
-  json_.text("name", robot->name());
-  writeLinks(json_, data_, *robot, *pack.root().asset_as_Robot());
-  writeJoints(json_, *robot);
+  json_.text("name", robot.name());
+  writeLinks(json_, data_, robot, *pack.root().asset_as_Robot());
+  writeJoints(json_, robot);
   json_.begin("groups", '[');
-  for (const SphereGroup& group : robot->groups()) {
+  for (const SphereGroup& group : robot.groups()) {
     json_.begin("", '{');
     json_.number("link", group.link);
-    writeSpheres(json_, group.spheres, robot->radii());
+    writeSpheres(json_, group.spheres, robot.radii());
     json_.end('}');
   }
   json_.end(']');
   std::vector<std::uint32_t> pairs;
-  for (const GroupPair& pair : robot->testedPairs()) {
+  for (const GroupPair& pair : robot.testedPairs()) {
     pairs.insert(pairs.end(), {pair.first, pair.second});
   }
   json_.numbers("tested_pairs", std::span<const std::uint32_t>(pairs));
-  writeMarks(json_, *robot);
+  writeMarks(json_, robot);
   json_.end('}');
   return {};
 }
 
 Result<void> AssetWriter::writeEpisodes(const PageAsset& asset) {
-  const auto set = EpisodeSet::from(*asset.pack);
-  if (!set) return tl::unexpected(set.error());
+  ASSIGN_OR_RETURN(const auto set, EpisodeSet::from(*asset.pack));
   std::vector<std::uint32_t> which = asset.episodes;
   if (which.empty()) {
-    which.resize(set->episodes().size());
+    which.resize(set.episodes().size());
     std::iota(which.begin(), which.end(), 0U);
   }
   std::vector<std::uint32_t> numbers;
@@ -330,27 +327,27 @@ Result<void> AssetWriter::writeEpisodes(const PageAsset& asset) {
   std::vector<std::uint32_t> placed;
   std::vector<float> poses;
   for (const std::uint32_t n : which) {
-    const Episode& episode = set->episodes()[n];
+    const Episode& episode = set.episodes()[n];
     numbers.insert(numbers.end(), {episode.scene, static_cast<std::uint32_t>(placed.size()),
                                    episode.placement_count, episode.target});
     const Vec3& base = episode.base_position;
     starts.insert(starts.end(), {base.x, base.y, base.z, episode.base_yaw});
     const auto goal = floatsOf(episode.goal);
     starts.insert(starts.end(), goal.begin(), goal.end());
-    const auto given = set->startPositions(n);
+    const auto given = set.startPositions(n);
     joints.insert(joints.end(), given.begin(), given.end());
-    for (const Placement& placement : set->placements(episode)) {
+    for (const Placement& placement : set.placements(episode)) {
       placed.push_back(placement.object);
       const auto pose = floatsOf(placement.pose);
       poses.insert(poses.end(), pose.begin(), pose.end());
     }
   }
   json_.begin("episodes", '{');
-  json_.text("name", set->name());
-  writeNames(json_, "scenes", set->sceneNames());
-  writeNames(json_, "objects", set->objectNames());
-  json_.text("robot", set->robotName());
-  writeNames(json_, "start_joints", set->startJoints());
+  json_.text("name", set.name());
+  writeNames(json_, "scenes", set.sceneNames());
+  writeNames(json_, "objects", set.objectNames());
+  json_.text("robot", set.robotName());
+  writeNames(json_, "start_joints", set.startJoints());
   json_.number("count", which.size());
   Chunk chunk;
   chunk.add("which", std::span<const std::uint32_t>(which));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "galactic/render_texels.h"
+#include "galactic/try.h"
 #include "pictures/png_file.h"
 #include "view/render_surfaces.h"
 
@@ -40,9 +41,9 @@ Result<std::size_t> RenderGlbWriter::texture(std::size_t number) {
   std::vector<std::uint32_t> texels = decodedTexels(texture);
   texels.resize(std::size_t{texture.size} * texture.size);
   const auto edge = static_cast<int>(texture.size);
-  const auto png = pictures::encodePng({.width = edge, .height = edge, .pixels = texels});
-  if (!png) return tl::unexpected(png.error());
-  found->second = file_.addTexture(texture.name, *png);
+  ASSIGN_OR_RETURN(const auto png,
+                   pictures::encodePng({.width = edge, .height = edge, .pixels = texels}));
+  found->second = file_.addTexture(texture.name, png);
   return found->second;
 }
 
@@ -84,15 +85,14 @@ Result<void> RenderGlbWriter::write(const RenderModel& model, const std::string&
     lists.reserve(static_cast<std::size_t>(to - from));
     primitives.reserve(lists.capacity());
     for (; from != to; ++from) {
-      const auto number = material({from->material, from->two_sided});
-      if (!number) return tl::unexpected(number.error());
+      ASSIGN_OR_RETURN(const auto number, material({from->material, from->two_sided}));
       const bool textured = meshes_.materials[from->material].texture >= 0;
       const VertexLists& list = lists.emplace_back(*from, textured, !meshes_.colors.empty());
       primitives.push_back({.positions = list.positions,
                             .uvs = list.uvs,
                             .colors = list.colors,
                             .corners = from->corners,
-                            .material = *number});
+                            .material = number});
     }
     const std::size_t mesh = file_.addMesh(node, primitives);
     file_.addNode({.name = node, .mesh = mesh, .parent = parent});

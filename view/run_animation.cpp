@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "galactic/kinematics.h"
+#include "galactic/try.h"
 #include "view/glb_file.h"
 #include "view/render_glb.h"
 
@@ -34,9 +35,9 @@ class AnimationWriter {
         frames_(frameCount(env_)) {}
 
   Result<std::string> run() {
-    if (auto written = writeScene(); !written) return tl::unexpected(written.error());
-    if (auto written = writeRobot(); !written) return tl::unexpected(written.error());
-    if (auto written = writeObjects(); !written) return tl::unexpected(written.error());
+    RETURN_IF_ERROR(writeScene());
+    RETURN_IF_ERROR(writeRobot());
+    RETURN_IF_ERROR(writeObjects());
     std::vector<float> times;
     for (std::size_t frame = 0; frame < frames_; ++frame) {
       times.push_back(static_cast<float>(frame) / kStepsPerSecond);

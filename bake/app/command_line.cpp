@@ -15,6 +15,7 @@
 #include "galactic/error.h"
 #include "galactic/nearest_name.h"
 #include "galactic/printable.h"
+#include "galactic/try.h"
 #include "terminal.h"
 
 namespace galactic::bake {
@@ -167,7 +168,7 @@ class CommandLine {
 
   Result<BakeCommand> understand() {
     collectTyped();
-    if (auto read = readConfig(); !read) return tl::unexpected(read.error());
+    RETURN_IF_ERROR(readConfig());
     if (inputs_.empty()) {
       return fail(ErrorCode::kInvalidInput, "command line", "input is required; see --help");
     }
@@ -176,10 +177,9 @@ class CommandLine {
     command.config = config_;
     command.prints_recipe = prints_recipe_;
     command.run.jobs = std::max(1U, std::thread::hardware_concurrency());
-    auto target = chooseTarget(command.inputs);
-    if (!target) return tl::unexpected(target.error());
-    command.what = std::move(*target);
-    if (auto read = readOptions(command); !read) return tl::unexpected(read.error());
+    ASSIGN_OR_RETURN(auto target, chooseTarget(command.inputs));
+    command.what = std::move(target);
+    RETURN_IF_ERROR(readOptions(command));
     return command;
   }
 
@@ -214,11 +214,9 @@ class CommandLine {
       return fail(ErrorCode::kInvalidInput, "--config",
                   "has an empty value; give one, or leave the option out");
     }
-    auto table = readToml(config_);
-    if (!table) return tl::unexpected(table.error());
-    auto options = givenIn(*table, config_);
-    if (!options) return tl::unexpected(options.error());
-    for (GivenOption& option : *options) {
+    ASSIGN_OR_RETURN(auto table, readToml(config_));
+    ASSIGN_OR_RETURN(auto options, givenIn(table, config_));
+    for (GivenOption& option : options) {
       if (std::ranges::find(kNotInFiles, option.name) != kNotInFiles.end()) {
         return fail(ErrorCode::kInvalidInput, option.place,
                     "belongs on the command line; leave it out");
@@ -260,9 +258,8 @@ class CommandLine {
   }
 
   Result<Target> chooseTarget(const std::vector<std::filesystem::path>& inputs) {
-    const auto kind = chooseKind(inputs);
-    if (!kind) return tl::unexpected(kind.error());
-    switch (*kind) {
+    ASSIGN_OR_RETURN(const auto kind, chooseKind(inputs));
+    switch (kind) {
       case AssetKind::kScene:
         return Job(SceneJob{});
       case AssetKind::kObject:

@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "command.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -99,18 +100,17 @@ Result<fs::path> worldPack(const BakeCommand& command) {
 
 Result<JobList> jobsOf(const BakeCommand& command) {
   if (const auto* job = std::get_if<Job>(&command.what)) return jobsOfFiles(command, *job);
-  auto world = worldPack(command);
-  if (!world) return tl::unexpected(world.error());
+  ASSIGN_OR_RETURN(auto world, worldPack(command));
   if (const auto* recipe = std::get_if<RecipeCommand>(&command.what)) {
     return jobsOfRecipe({.recipe = command.inputs.front(),
                          .data = recipe->data,
                          .is_of_command_line = isOfCommandLine},
-                        *world);
+                        world);
   }
   std::vector<DatasetJobs> datasets(command.inputs.size(),
                                     std::get<DatasetCommand>(command.what).jobs);
   for (std::size_t n = 0; n < datasets.size(); ++n) datasets[n].input = command.inputs[n];
-  return jobsOfDatasets(datasets, *world);
+  return jobsOfDatasets(datasets, world);
 }
 
 }  // namespace galactic::bake

@@ -9,6 +9,7 @@
 
 #include "galactic/mapped_file.h"
 #include "galactic/printable.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -179,10 +180,9 @@ Result<void> checkTolerances(const fs::path& path, const Json& report) {
 }  // namespace
 
 Result<GoldenReport> readGoldenReport(const fs::path& path) {
-  const auto file = MappedFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  const std::string_view text(reinterpret_cast<const char*>(file->bytes().data()),
-                              file->bytes().size());
+  ASSIGN_OR_RETURN(const auto file, MappedFile::open(path));
+  const std::string_view text(reinterpret_cast<const char*>(file.bytes().data()),
+                              file.bytes().size());
   Json report = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   const bool is_report = report.is_object() && report.contains("tool") &&
                          report.at("tool") == "galactic-bake" && report.contains("baked") &&
@@ -191,9 +191,7 @@ Result<GoldenReport> readGoldenReport(const fs::path& path) {
     return fail(ErrorCode::kInvalidInput, path.string(),
                 "is no report of galactic-bake; make one with --report");
   }
-  if (auto checked = checkTolerances(path, report); !checked) {
-    return tl::unexpected(checked.error());
-  }
+  RETURN_IF_ERROR(checkTolerances(path, report));
   return GoldenReport{path, std::move(report)};
 }
 

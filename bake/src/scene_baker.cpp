@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "galactic/try.h"
 #include "stage_timer.h"
 
 namespace galactic::bake {
@@ -54,22 +55,19 @@ class SceneBaker {
       : mesh_(mesh), options_(options), times_(times) {}
 
   Result<BakedGrid> bakeGrid(float radius) {
-    const auto frame = makeGridFrame(mesh_.bounds, radius, options_.spacing);
-    if (!frame) return tl::unexpected(frame.error());
-    const auto raw = findColumns(*frame);
-    if (!raw) return tl::unexpected(raw.error());
-    auto free = chooseRegions(raw->columns);
-    if (!free) return tl::unexpected(free.error());
+    ASSIGN_OR_RETURN(const auto frame, makeGridFrame(mesh_.bounds, radius, options_.spacing));
+    ASSIGN_OR_RETURN(const auto raw, findColumns(frame));
+    ASSIGN_OR_RETURN(auto free, chooseRegions(raw.columns));
     BakedGrid baked;
     {
       const StageTimer timer(times_.encode);
-      baked.grid = encodeGrid(free->columns);
+      baked.grid = encodeGrid(free.columns);
     }
-    baked.components = std::move(free->components);
-    baked.totals = free->totals;
-    baked.raw_spans = raw->columns.spans.size();
-    baked.merged_gaps = raw->merged_gaps;
-    if (wantsCheck()) baked.cast_check = check(*frame, raw->columns);
+    baked.components = std::move(free.components);
+    baked.totals = free.totals;
+    baked.raw_spans = raw.columns.spans.size();
+    baked.merged_gaps = raw.merged_gaps;
+    if (wantsCheck()) baked.cast_check = check(frame, raw.columns);
     return baked;
   }
 
@@ -163,7 +161,7 @@ void warnOfRegions(const BakedGrid& baked, const SceneBakeOptions& options,
 
 Result<BakedScene> bakeScene(const SourceAsset& asset, const SceneBakeOptions& options,
                              StageTimes& times, const Progress& progress) {
-  if (const auto radii = checkRadii(options.radii); !radii) return tl::unexpected(radii.error());
+  RETURN_IF_ERROR(checkRadii(options.radii));
   if (options.coverage == Coverage::kCell && options.engine != Engine::kExact) {
     return fail(ErrorCode::kInvalidInput, "--coverage",
                 "cell works with --engine exact only: sphere casts know single lines");
@@ -186,10 +184,9 @@ Result<BakedScene> bakeScene(const SourceAsset& asset, const SceneBakeOptions& o
   for (std::size_t i = 0; i < options.radii.size(); ++i) {
     progress(fmt::format("grid r={} m", options.radii[i]),
              static_cast<double>(i) / static_cast<double>(options.radii.size()));
-    auto grid = baker.bakeGrid(options.radii[i]);
-    if (!grid) return tl::unexpected(grid.error());
-    warnOfRegions(*grid, options, scene.warnings);
-    scene.grids.push_back(std::move(*grid));
+    ASSIGN_OR_RETURN(auto grid, baker.bakeGrid(options.radii[i]));
+    warnOfRegions(grid, options, scene.warnings);
+    scene.grids.push_back(std::move(grid));
   }
   return scene;
 }

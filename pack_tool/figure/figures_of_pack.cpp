@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "galactic/schema/pack_generated.h"
+#include "galactic/try.h"
 #include "pack_tool/figure/shared_textures_of.h"
 
 namespace galactic::pack_tool {
@@ -68,15 +69,14 @@ Result<std::vector<Figure>> objectFigures(const PackFile& pack, const FigureOpti
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 "holds objects, which have no joints; leave out --joints and --all-zero");
   }
-  const auto set = ObjectSet::from(pack);
-  if (!set) return tl::unexpected(set.error());
+  ASSIGN_OR_RETURN(const auto set, ObjectSet::from(pack));
   const auto& stored = *pack.root().asset_as_ObjectSet()->objects();
   const auto render_meshes = renderMeshesFor(pack, options.layers);
   std::vector<Figure> figures;
   for (flatbuffers::uoffset_t n = 0; n < stored.size(); ++n) {
-    const ObjectModel& object = set->objects()[n];
+    const ObjectModel& object = set.objects()[n];
     if (!options.object.empty() && object.name != options.object) continue;
-    figures.push_back(objectFigure(*set, object, *stored.Get(n), options.layers));
+    figures.push_back(objectFigure(set, object, *stored.Get(n), options.layers));
     figures.back().render_meshes = render_meshes;
     addRenderModel(figures.back(), 0, n);
   }
@@ -151,24 +151,22 @@ Result<std::vector<Figure>> robotFigures(const PackFile& pack, const FigureOptio
   if (!options.object.empty()) {
     return fail(ErrorCode::kInvalidInput, pack.where(), "holds a robot; leave out --object");
   }
-  const auto robot = Robot::from(pack);
-  if (!robot) return tl::unexpected(robot.error());
-  const auto positions = jointPositions(*robot, options.joints, pack.where());
-  if (!positions) return tl::unexpected(positions.error());
-  const float height = robot->base() ? robot->base()->root_height : 0.0F;
-  std::vector<Pose> world_from_link(robot->links().size());
-  forwardKinematics(robot->links(), {{0, height, 0}, {}}, *positions, world_from_link);
+  ASSIGN_OR_RETURN(const auto robot, Robot::from(pack));
+  ASSIGN_OR_RETURN(const auto positions, jointPositions(robot, options.joints, pack.where()));
+  const float height = robot.base() ? robot.base()->root_height : 0.0F;
+  std::vector<Pose> world_from_link(robot.links().size());
+  forwardKinematics(robot.links(), {{0, height, 0}, {}}, positions, world_from_link);
 
   std::vector<Figure> figures(1);
   Figure& figure = figures.front();
   figure.kind = FigureKind::kRobot;
-  figure.name = robot->name();
-  figure.radii = robot->radii();
+  figure.name = robot.name();
+  figure.radii = robot.radii();
   figure.caption =
-      fmt::format("{} spheres ({}) in {} groups{}", robot->spheres().size(),
-                  sphereCounts(robot->spheres(), robot->radii().size()), robot->groups().size(),
+      fmt::format("{} spheres ({}) in {} groups{}", robot.spheres().size(),
+                  sphereCounts(robot.spheres(), robot.radii().size()), robot.groups().size(),
                   worstText(*pack.root().asset_as_Robot()->groups()));
-  figure.parts = robotParts(*robot, world_from_link);
+  figure.parts = robotParts(robot, world_from_link);
   if (options.layers.has(FigureLayer::kMesh)) {
     for (const schema::LinkSurface* surface : *pack.root().asset_as_Robot()->surfaces()) {
       const SurfaceView visual = viewOf(surface->visual());
@@ -181,11 +179,11 @@ Result<std::vector<Figure>> robotFigures(const PackFile& pack, const FigureOptio
     addRenderModel(figure, link, link);
   }
   if (options.layers.has(FigureLayer::kSpheres)) {
-    for (const SphereGroup& group : robot->groups()) {
+    for (const SphereGroup& group : robot.groups()) {
       figure.parts[group.link].spheres = group.spheres;
     }
   }
-  addMarks(*robot, world_from_link, figure);
+  addMarks(robot, world_from_link, figure);
   return figures;
 }
 

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "galactic/try.h"
 #include "pack_tool/mesh/sphere_mesh.h"
 #include "view/glb_file.h"
 #include "view/render_glb.h"
@@ -158,7 +159,7 @@ class FigureWriter {
 Result<std::string> encodeGlb(std::span<const Figure> figures) {
   FigureWriter writer;
   for (const Figure& figure : figures) {
-    if (auto written = writer.write(figure); !written) return tl::unexpected(written.error());
+    RETURN_IF_ERROR(writer.write(figure));
   }
   return writer.bytes();
 }

@@ -15,6 +15,7 @@
 #include "galactic/batch_renderer.h"
 #include "galactic/printable.h"
 #include "galactic/render_library.h"
+#include "galactic/try.h"
 #include "pack_tool/pictures/axes.h"
 #include "pack_tool/pictures/figure_view.h"
 #include "pictures/palette.h"
@@ -79,15 +80,14 @@ Result<std::array<RenderCamera, kInsideViews>> insideCameras(const RenderLibrary
   options.width = options.height = 24;
   options.color = ColorFormat::kNone;
   options.backend = RenderBackend::kSoft;
-  auto renderer = BatchRenderer::create(library, options);
-  if (!renderer) return tl::unexpected(renderer.error());
+  ASSIGN_OR_RETURN(auto renderer, BatchRenderer::create(library, options));
   const std::vector<RenderCamera> cameras = candidates(library.model(scene.model));
   std::vector<RenderView> views;
   views.reserve(cameras.size());
   for (const RenderCamera& camera : cameras) views.push_back({camera, {&scene, 1}});
   const std::size_t pixels = std::size_t{options.width} * options.height;
   std::vector<float> depths(views.size() * pixels);
-  renderer->render(views, {.color = {}, .depth = depths, .semantics = {}});
+  renderer.render(views, {.color = {}, .depth = depths, .semantics = {}});
   // Of each direction; the first one where they are equal.
   std::array<std::pair<double, std::size_t>, 4> best{{{0, 0}, {0, 1}, {0, 2}, {0, 3}}};
   for (std::size_t n = 0; n < views.size(); ++n) {
@@ -134,16 +134,14 @@ Result<void> drawInside(Image& image, const std::array<ViewPlace, kInsideViews>&
   options.depth = false;
   options.background = 0xFFFFFFFF;
   options.backend = RenderBackend::kSoft;
-  auto renderer = BatchRenderer::create(library, options);
-  if (!renderer) return tl::unexpected(renderer.error());
+  ASSIGN_OR_RETURN(auto renderer, BatchRenderer::create(library, options));
   const std::uint32_t model = *scene.parts.front().render_model;
   const std::array instance{RenderInstance{.model = model, .world_from_model = {}}};
-  const auto cameras = insideCameras(library, instance.front());
-  if (!cameras) return tl::unexpected(cameras.error());
-  const std::array views{RenderView{(*cameras)[0], instance}, RenderView{(*cameras)[1], instance}};
+  ASSIGN_OR_RETURN(const auto cameras, insideCameras(library, instance.front()));
+  const std::array views{RenderView{cameras[0], instance}, RenderView{cameras[1], instance}};
   const std::size_t bytes = std::size_t{3} * options.width * options.height;
   std::vector<std::uint8_t> samples(kInsideViews * bytes);
-  renderer->render(views, {.color = samples, .depth = {}, .semantics = {}});
+  renderer.render(views, {.color = samples, .depth = {}, .semantics = {}});
   for (std::size_t n = 0; n < kInsideViews; ++n) {
     place(image, places[n], std::span(samples).subspan(n * bytes, bytes));
   }
@@ -171,9 +169,7 @@ Result<Image> drawScene(const Figure& scene, int view_size) {
              kInk);
     if (n < axes.size()) drawFigureView(image, places[n], scene, axes[n], scale);
   }
-  if (auto drawn = drawInside(image, {places[2], places[3]}, scene); !drawn) {
-    return tl::unexpected(drawn.error());
-  }
+  RETURN_IF_ERROR(drawInside(image, {places[2], places[3]}, scene));
   for (const ViewPlace& view : places) {
     drawFrame(image, {view.left, view.top, view.size, view.size}, kFaintInk);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "galactic/try.h"
 #include "pack_tool/pictures/axes.h"
 #include "pack_tool/pictures/pictures.h"
 #include "pictures/palette.h"
@@ -131,7 +132,7 @@ void drawMeanings(Image& image, int x, int y) {
 }  // namespace
 
 Result<Picture> drawSlice(std::span<const ColumnGrid> grids, const SliceOptions& options) {
-  if (const auto line = checkLine(grids, options); !line) return tl::unexpected(line.error());
+  RETURN_IF_ERROR(checkLine(grids, options));
   std::vector<PixelRect> plots;
   int y = kMargin + kTextHeight + 14;
   int plot_width = 0;

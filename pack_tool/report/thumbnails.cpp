@@ -8,6 +8,7 @@
 
 #include "galactic/scene.h"
 #include "galactic/schema/pack_generated.h"
+#include "galactic/try.h"
 #include "pack_tool/figure/figures_of_pack.h"
 #include "pack_tool/open_scene.h"
 #include "pack_tool/pictures/figure_picture.h"
@@ -47,18 +48,17 @@ Image shrunk(const Image& image, const pictures::PixelRect& part, int width) {
 }
 
 Result<Thumbnail> encoded(std::string caption, const Image& image) {
-  auto png = pictures::encodePng(image);
-  if (!png) return tl::unexpected(png.error());
-  return Thumbnail{std::move(caption), image.width(), image.height(), std::move(*png)};
+  ASSIGN_OR_RETURN(auto png, pictures::encodePng(image));
+  return Thumbnail{std::move(caption), image.width(), image.height(), std::move(png)};
 }
 
 Result<void> addPlans(const Scene& scene, std::vector<Thumbnail>& thumbnails) {
   for (const ColumnGrid& grid : scene.grids()) {
     const auto plan = pictures::drawPlan(std::span(&grid, 1), {});
-    auto thumbnail = encoded(fmt::format("free height, radius {:g} m", grid.radius()),
-                             shrunk(plan.image, plan.plots.front(), kPlanWidth));
-    if (!thumbnail) return tl::unexpected(thumbnail.error());
-    thumbnails.push_back(std::move(*thumbnail));
+    ASSIGN_OR_RETURN(auto thumbnail,
+                     encoded(fmt::format("free height, radius {:g} m", grid.radius()),
+                             shrunk(plan.image, plan.plots.front(), kPlanWidth)));
+    thumbnails.push_back(std::move(thumbnail));
   }
   return {};
 }
@@ -83,13 +83,10 @@ Result<void> addFigures(const PackFile& pack, std::vector<Thumbnail>& thumbnails
     options.layers = LayerSet::none();
     options.layers.add(FigureLayer::kMesh);
   }
-  const auto figures = figuresOf(pack, options);
-  if (!figures) return tl::unexpected(figures.error());
-  const auto image = drawn(*figures);
-  if (!image) return tl::unexpected(image.error());
-  auto thumbnail = encoded("as it is drawn", *image);
-  if (!thumbnail) return tl::unexpected(thumbnail.error());
-  thumbnails.push_back(std::move(*thumbnail));
+  ASSIGN_OR_RETURN(const auto figures, figuresOf(pack, options));
+  ASSIGN_OR_RETURN(const auto image, drawn(figures));
+  ASSIGN_OR_RETURN(auto thumbnail, encoded("as it is drawn", image));
+  thumbnails.push_back(std::move(thumbnail));
   return {};
 }
 
@@ -98,12 +95,11 @@ Result<void> addFigures(const PackFile& pack, std::vector<Thumbnail>& thumbnails
 Result<std::vector<Thumbnail>> thumbnailsOf(const PackFile& pack) {
   std::vector<Thumbnail> thumbnails;
   if (hasFigures(pack)) {
-    if (auto added = addFigures(pack, thumbnails); !added) return tl::unexpected(added.error());
+    RETURN_IF_ERROR(addFigures(pack, thumbnails));
   }
   if (pack.kind() == PackKind::kScene) {
-    const auto scene = sceneOf(pack);
-    if (!scene) return tl::unexpected(scene.error());
-    if (auto added = addPlans(*scene, thumbnails); !added) return tl::unexpected(added.error());
+    ASSIGN_OR_RETURN(const auto scene, sceneOf(pack));
+    RETURN_IF_ERROR(addPlans(scene, thumbnails));
   }
   return thumbnails;
 }

@@ -12,6 +12,7 @@
 #include "galactic/atomic_file.h"
 #include "galactic/option_text.h"
 #include "galactic/shared_textures.h"
+#include "galactic/try.h"
 #include "view/page.h"
 #include "view/run_animation.h"
 
@@ -62,7 +63,7 @@ Result<std::vector<PageAsset>> assetsOf(const RunTrack& track) {
   SharedTextures textures;
   for (const PackFile& pack : track.world().packs()) {
     if (pack.kind() != PackKind::kTexture) continue;
-    if (auto added = textures.add(pack); !added) return tl::unexpected(added.error());
+    RETURN_IF_ERROR(textures.add(pack));
   }
   std::vector<PageAsset> assets;
   for (const PackFile& pack : track.world().packs()) {
@@ -109,7 +110,7 @@ Result<void> tryFile(const std::string& file, const World& world, const RunOptio
     return fail(ErrorCode::kInvalidInput, file,
                 "is a file that the run reads; choose another name to write to");
   }
-  if (auto tried = AtomicFile::create(file); !tried) return tl::unexpected(tried.error());
+  RETURN_IF_ERROR(AtomicFile::create(file));
   return {};
 }
 
@@ -119,7 +120,7 @@ Result<TrackedRun> TrackedRun::create(const World& world, const BatchSimulator& 
                                       const RunOptions& options) {
   for (const std::string& file : {options.view, options.animation}) {
     if (file.empty()) continue;
-    if (auto tried = tryFile(file, world, options); !tried) return tl::unexpected(tried.error());
+    RETURN_IF_ERROR(tryFile(file, world, options));
   }
   // An animation shows the first env.
   return TrackedRun(RunTrack(world, simulator, options.view.empty() ? 1 : options.view_envs),
@@ -127,20 +128,19 @@ Result<TrackedRun> TrackedRun::create(const World& world, const BatchSimulator& 
 }
 
 Result<void> TrackedRun::finish() const {
-  const auto assets = assetsOf(track_);
-  if (!assets) return tl::unexpected(assets.error());
+  ASSIGN_OR_RETURN(const auto assets, assetsOf(track_));
   if (!options_.view.empty()) {
-    if (auto written = writePage(*assets); !written) return written;
+    if (auto written = writePage(assets); !written) return written;
   }
-  return options_.animation.empty() ? Result<void>() : writeAnimation(*assets);
+  return options_.animation.empty() ? Result<void>() : writeAnimation(assets);
 }
 
 Result<void> TrackedRun::writePage(std::span<const PageAsset> assets) const {
-  const auto page = viewPage(
-      assets, {.track = &track_, .facts = factsOf(options_)},
-      {.title = std::filesystem::path(options_.view).stem().string(), .generator = "galactic-run"});
-  if (!page) return tl::unexpected(page.error());
-  return writeText(options_.view, *page);
+  ASSIGN_OR_RETURN(const auto page,
+                   viewPage(assets, {.track = &track_, .facts = factsOf(options_)},
+                            {.title = std::filesystem::path(options_.view).stem().string(),
+                             .generator = "galactic-run"}));
+  return writeText(options_.view, page);
 }
 
 Result<void> TrackedRun::writeAnimation(std::span<const PageAsset> assets) const {

@@ -4,6 +4,7 @@
 
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/triangle_mesh.h"
+#include "galactic/try.h"
 #include "support/assets.h"
 
 namespace galactic::test {
@@ -21,11 +22,9 @@ inline bool hasAsset(const std::string& relative) {
 
 /// The collision geometry of an asset.
 inline Result<bake::TriangleMesh> loadAsset(const std::string& relative) {
-  auto asset = bake::importMesh(assetsFolder() / relative);
-  if (!asset) return tl::unexpected(asset.error());
-  auto clean = bake::placeAndClean(*asset);
-  if (!clean) return tl::unexpected(clean.error());
-  return std::move(clean->mesh);
+  ASSIGN_OR_RETURN(auto asset, bake::importMesh(assetsFolder() / relative));
+  ASSIGN_OR_RETURN(auto clean, bake::placeAndClean(asset));
+  return std::move(clean.mesh);
 }
 
 }  // namespace galactic::test

@@ -10,6 +10,7 @@
 #include "ambient/vertex_fans.h"
 #include "engines/triangle_rays.h"
 #include "galactic/bake/parallel_for.h"
+#include "galactic/try.h"
 #include "import/affine.h"
 
 namespace galactic::bake {
@@ -174,11 +175,10 @@ float openPart(const TriangleRays& occluders, std::span<const Ray> rays) {
 
 Result<std::vector<std::vector<Openness>>> ambientOcclusion(
     std::span<const OccludingMesh> meshes, const AmbientOcclusionOptions& options) {
-  if (auto checked = checkOptions(options); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(checkOptions(options));
   std::vector<PlacedMesh> world(meshes.size());
   parallelFor(options.jobs, meshes.size(), [&](std::size_t m) { world[m] = placed(meshes[m]); });
-  const auto occluders = allOccluders(world, options.jobs);
-  if (!occluders) return tl::unexpected(occluders.error());
+  ASSIGN_OR_RETURN(const auto occluders, allOccluders(world, options.jobs));
   const std::vector<PatternRay> pattern = rayPattern(options.rays);
 
   std::vector<std::vector<Openness>> openness(meshes.size());
@@ -194,10 +194,10 @@ Result<std::vector<std::vector<Openness>>> ambientOcclusion(
       for (std::size_t v = chunk * kChunk; v < end; ++v) {
         Openness& of_vertex = openness[m][v];
         maker.make(v, 1, rays);
-        of_vertex.front = openPart(*occluders, rays);
+        of_vertex.front = openPart(occluders, rays);
         if (meshes[m].lit != LitSides::kBoth || of_vertex.front >= options.dim) continue;
         maker.make(v, -1, rays);
-        of_vertex.back = openPart(*occluders, rays);
+        of_vertex.back = openPart(occluders, rays);
       }
     });
   }

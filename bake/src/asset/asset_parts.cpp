@@ -6,6 +6,7 @@
 #include "galactic/bake/source_file.h"
 #include "galactic/bake/texture_pack.h"
 #include "galactic/pack.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -41,9 +42,8 @@ std::string inFile(const fs::path& file, const std::string& where) {
 Result<void> addSources(const std::vector<fs::path>& files, std::vector<SourceFile>& sources) {
   for (const fs::path& path : files) {
     if (path.empty()) continue;
-    auto file = describeFile(path);
-    if (!file) return tl::unexpected(file.error());
-    sources.push_back(std::move(*file));
+    ASSIGN_OR_RETURN(auto file, describeFile(path));
+    sources.push_back(std::move(file));
   }
   return {};
 }
@@ -89,8 +89,7 @@ Result<void> shareTextures(BakedMaterials& materials, const DrawOptions& options
     // Its source is the first asset that shows it, which may differ: a name of its own.
     BakedTexture named = texture;
     named.name = textureHash(texture);
-    const auto written = writeTexturePack(pack, materials, named, provenance);
-    if (!written) return tl::unexpected(written.error());
+    RETURN_IF_ERROR(writeTexturePack(pack, materials, named, provenance));
   }
   return {};
 }

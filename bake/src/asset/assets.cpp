@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "galactic/bake/texture_pack.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -61,25 +62,22 @@ std::vector<std::string> sharedTexturesOf(const Made& made) {
 Result<Made> linkWorld(const WorldJob& job, BakeContext& context) {
   const auto start = std::chrono::steady_clock::now();
   context.show(context.output.filename().string(), "verify", 0);
-  auto packs = linkPacks(job.packs, context.output.parent_path());
-  if (!packs) return tl::unexpected(packs.error());
-  if (auto checked = context.log.checkNotRead(context.output); !checked) {
-    return tl::unexpected(checked.error());
-  }
+  ASSIGN_OR_RETURN(auto packs, linkPacks(job.packs, context.output.parent_path()));
+  RETURN_IF_ERROR(context.log.checkNotRead(context.output));
   Made made{.outcome = {}, .output = context.output};
   if (!context.dry_run) {
     std::vector<SourceFile> sources;
-    sources.reserve(packs->size());
-    for (const LinkedPack& pack : *packs) {
+    sources.reserve(packs.size());
+    for (const LinkedPack& pack : packs) {
       sources.push_back({pack.path, pack.bytes, pack.hash_low, pack.hash_high});
     }
-    const auto bytes =
-        writeWorldPack(context.output, *packs, provenanceOf(job, std::move(sources), {}), job.task);
-    if (!bytes) return tl::unexpected(bytes.error());
-    made.pack_bytes = *bytes;
+    ASSIGN_OR_RETURN(
+        const auto bytes,
+        writeWorldPack(context.output, packs, provenanceOf(job, std::move(sources), {}), job.task));
+    made.pack_bytes = bytes;
   }
   made.outcome =
-      WorldOutcome{std::move(*packs),
+      WorldOutcome{std::move(packs),
                    std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
   return made;
 }

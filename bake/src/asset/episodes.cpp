@@ -14,6 +14,7 @@
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/pack.h"
 #include "galactic/scene.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -23,9 +24,7 @@ using Clock = std::chrono::steady_clock;
 /// Writes what the outcome holds.
 Result<Made> finish(EpisodeOutcome outcome, const Job& job, std::vector<SourceFile> sources,
                     const BakeContext& context) {
-  if (auto checked = context.log.checkNotRead(context.output); !checked) {
-    return tl::unexpected(checked.error());
-  }
+  RETURN_IF_ERROR(context.log.checkNotRead(context.output));
   Made made{.outcome = {}, .output = context.output};
   if (!context.dry_run) {
     const auto bytes =
@@ -52,10 +51,9 @@ Result<OpenPacks> openPacks(const std::vector<std::filesystem::path>& inputs) {
   opened.packs.reserve(inputs.size());
   opened.files.reserve(inputs.size());
   for (const std::filesystem::path& input : inputs) {
-    auto pack = PackFile::open(input);
-    if (!pack) return tl::unexpected(pack.error());
-    opened.files.push_back(describeBytes(input.filename().string(), pack->bytes()));
-    opened.packs.push_back(std::move(*pack));
+    ASSIGN_OR_RETURN(auto pack, PackFile::open(input));
+    opened.files.push_back(describeBytes(input.filename().string(), pack.bytes()));
+    opened.packs.push_back(std::move(pack));
   }
   return opened;
 }
@@ -65,9 +63,8 @@ Result<void> addGeometry(const EpisodeGenerationJob& job, ReadLog& log, OpenPack
   std::set<std::string, std::less<>> names;
   for (const PackFile& pack : opened.packs) {
     if (pack.kind() != PackKind::kScene) continue;
-    const auto scene = Scene::from(pack);
-    if (!scene) return tl::unexpected(scene.error());
-    names.emplace(scene->name());
+    ASSIGN_OR_RETURN(const auto scene, Scene::from(pack));
+    names.emplace(scene.name());
   }
   for (const auto& [scene, file] : job.geometry) {
     if (!names.contains(scene)) {
@@ -87,9 +84,8 @@ Result<SceneDetails> readDetails(const EpisodeGenerationJob& job, std::string_vi
   SceneDetails details;
   const auto file = job.geometry.find(std::string(scene));
   if (file == job.geometry.end()) return details;
-  const auto asset = importMesh(file->second);
-  if (!asset) return tl::unexpected(asset.error());
-  auto clean = placeAndClean(*asset);
+  ASSIGN_OR_RETURN(const auto asset, importMesh(file->second));
+  auto clean = placeAndClean(asset);
   if (!clean) {
     const Error& error = clean.error();
     return fail(error.code, inFile(file->second, error.where), error.message);
@@ -112,16 +108,13 @@ Result<GeneratedEpisodes> generate(const EpisodeGenerationJob& job, const Episod
 Result<EpisodeImportOptions> importOptions(const EpisodeImportJob& job) {
   EpisodeImportOptions options = job.import;
   if (!job.only.empty()) {
-    auto only = readEpisodeList(job.only);
-    if (!only) return tl::unexpected(only.error());
-    options.only = std::move(*only);
+    ASSIGN_OR_RETURN(auto only, readEpisodeList(job.only));
+    options.only = std::move(only);
   }
   if (!job.object_pack.empty()) {
-    const auto pack = PackFile::open(job.object_pack);
-    if (!pack) return tl::unexpected(pack.error());
-    auto centers = objectCenters(*pack);
-    if (!centers) return tl::unexpected(centers.error());
-    options.object_centers = std::move(*centers);
+    ASSIGN_OR_RETURN(const auto pack, PackFile::open(job.object_pack));
+    ASSIGN_OR_RETURN(auto centers, objectCenters(pack));
+    options.object_centers = std::move(centers);
     options.centers_needed = true;
   }
   return options;
@@ -136,49 +129,40 @@ double secondsSince(Clock::time_point start) {
 Result<Made> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context) {
   const auto start = Clock::now();
   context.show(job.input.filename().string(), "import", 0);
-  const auto options = importOptions(job);
-  if (!options) return tl::unexpected(options.error());
-  auto episodes = readEpisodeFile(job.input, *options);
-  if (!episodes) return tl::unexpected(episodes.error());
+  ASSIGN_OR_RETURN(const auto options, importOptions(job));
+  ASSIGN_OR_RETURN(auto episodes, readEpisodeFile(job.input, options));
   std::vector<SourceFile> sources;
-  if (auto added = addSources({job.input, job.only, job.object_pack}, sources); !added) {
-    return tl::unexpected(added.error());
-  }
+  RETURN_IF_ERROR(addSources({job.input, job.only, job.object_pack}, sources));
   return finish({.input = job.input.string(),
-                 .episodes = std::move(*episodes),
+                 .episodes = std::move(episodes),
                  .seconds = secondsSince(start)},
                 job, std::move(sources), context);
 }
 
 Result<Made> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context) {
   const auto start = Clock::now();
-  auto opened = openPacks(job.packs);
-  if (!opened) return tl::unexpected(opened.error());
-  if (auto added = addGeometry(job, context.log, *opened); !added) {
-    return tl::unexpected(added.error());
-  }
+  ASSIGN_OR_RETURN(auto opened, openPacks(job.packs));
+  RETURN_IF_ERROR(addGeometry(job, context.log, opened));
   // The bytes of the pack do not depend on the order of the inputs.
-  std::ranges::sort(opened->files, {}, &SourceFile::name);
+  std::ranges::sort(opened.files, {}, &SourceFile::name);
   EpisodeInputs inputs;
-  inputs.packs.reserve(opened->packs.size());
-  for (const PackFile& pack : opened->packs) inputs.packs.push_back(&pack);
+  inputs.packs.reserve(opened.packs.size());
+  for (const PackFile& pack : opened.packs) inputs.packs.push_back(&pack);
   if (job.details || !job.geometry.empty()) {
     inputs.details = [&job](std::string_view scene) { return readDetails(job, scene); };
   }
-  auto generated = generate(job, inputs, context);
-  if (!generated) return tl::unexpected(generated.error());
+  ASSIGN_OR_RETURN(auto generated, generate(job, inputs, context));
   context.show("episodes", "solve", 1);
-  auto sample = solveSample(inputs.packs, generated->episodes,
-                            {.most_episodes = job.solve, .jobs = job.generate.jobs});
-  if (!sample) return tl::unexpected(sample.error());
-  return finish(
-      {.input = fmt::format("{} packs", job.packs.size()),
-       .episodes = std::move(generated->episodes),
-       .generation = EpisodeGeneration{generated->rejections, std::move(generated->scenes),
-                                       std::move(generated->left_out), *std::move(sample),
-                                       generated->skipped, generated->with_fewer_objects},
-       .seconds = secondsSince(start)},
-      job, std::move(opened->files), context);
+  ASSIGN_OR_RETURN(auto sample,
+                   solveSample(inputs.packs, generated.episodes,
+                               {.most_episodes = job.solve, .jobs = job.generate.jobs}));
+  return finish({.input = fmt::format("{} packs", job.packs.size()),
+                 .episodes = std::move(generated.episodes),
+                 .generation = EpisodeGeneration{generated.rejections, std::move(generated.scenes),
+                                                 std::move(generated.left_out), std::move(sample),
+                                                 generated.skipped, generated.with_fewer_objects},
+                 .seconds = secondsSince(start)},
+                job, std::move(opened.files), context);
 }
 
 }  // namespace galactic::bake

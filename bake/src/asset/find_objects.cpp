@@ -6,6 +6,7 @@
 #include <set>
 
 #include "galactic/bake/assets.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -81,16 +82,15 @@ Result<std::map<fs::path, std::vector<fs::path>>> meshesByFolder(const fs::path&
 }
 
 Result<void> addFolder(const fs::path& root, std::vector<ObjectInput>& objects) {
-  const auto folders = meshesByFolder(root);
-  if (!folders) return tl::unexpected(folders.error());
-  if (folders->empty()) {
+  ASSIGN_OR_RETURN(const auto folders, meshesByFolder(root));
+  if (folders.empty()) {
     return fail(ErrorCode::kInvalidInput, root.string(),
                 "holds no mesh file; .glb, .gltf, .obj, .dae, .fbx, .ply, .stl and .off are looked "
                 "for");
   }
   // By the folder that the object is named after: one model of each object.
   std::map<fs::path, FolderModel> models;
-  for (const auto& [folder, files] : *folders) {
+  for (const auto& [folder, files] : folders) {
     const auto whole = std::find_if(files.begin(), files.end(), standsForFolder);
     if (whole != files.end()) {
       FolderModel model = modelOf(*whole);
@@ -124,7 +124,7 @@ Result<std::vector<ObjectInput>> findObjects(const std::vector<fs::path>& inputs
                                     : input.stem().string()});
       continue;
     }
-    if (auto added = addFolder(input, objects); !added) return tl::unexpected(added.error());
+    RETURN_IF_ERROR(addFolder(input, objects));
   }
   std::sort(objects.begin(), objects.end(), [](const ObjectInput& a, const ObjectInput& b) {
     return std::tie(a.name, a.path) < std::tie(b.name, b.path);

@@ -10,6 +10,7 @@
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/object_pack.h"
 #include "galactic/bake/parallel_for.h"
+#include "galactic/try.h"
 #include "stage_timer.h"
 
 namespace galactic::bake {
@@ -61,17 +62,15 @@ Result<BakedObject> bakeOne(const ObjectInput& input, const ObjectTask& task, Ob
   if (!asset) return tl::unexpected(asset.error());
   work.files = asset->files;
   asset->name = input.name;
-  const auto options = optionsOf(input.name, task, asset->warnings);
-  if (!options) return tl::unexpected(options.error());
-  auto object = bakeObject(*asset, *options);
+  ASSIGN_OR_RETURN(const auto options, optionsOf(input.name, task, asset->warnings));
+  auto object = bakeObject(*asset, options);
   if (!object) {
     object.error().where = inFile(input.path, object.error().where);
     return object;
   }
   const StageTimer timer(object->times.render);
-  auto meshes = drawObject(*asset, task.job.draw, input.path, object->warnings);
-  if (!meshes) return tl::unexpected(meshes.error());
-  object->render_meshes = std::move(*meshes);
+  ASSIGN_OR_RETURN(auto meshes, drawObject(*asset, task.job.draw, input.path, object->warnings));
+  object->render_meshes = std::move(meshes);
   return object;
 }
 
@@ -103,10 +102,9 @@ std::vector<ObjectWork> bakeAll(const std::vector<ObjectInput>& inputs, const Ob
 Result<std::optional<Collection>> readShapes(const std::filesystem::path& path,
                                              std::vector<SourceFile>& sources) {
   if (path.empty()) return std::nullopt;
-  auto collection = readCollection(path);
-  if (!collection) return tl::unexpected(collection.error());
-  if (auto added = addSources({path}, sources); !added) return tl::unexpected(added.error());
-  return std::move(*collection);
+  ASSIGN_OR_RETURN(auto collection, readCollection(path));
+  RETURN_IF_ERROR(addSources({path}, sources));
+  return collection;
 }
 
 /// Moves what was baked into the outcome; the sources of the objects follow those that are there.
@@ -131,9 +129,7 @@ void collect(const std::vector<ObjectInput>& inputs, std::vector<ObjectWork> wor
 
 Result<std::uint64_t> writePack(ObjectSetOutcome& outcome, std::vector<SourceFile> sources,
                                 const ObjectJob& job, const BakeContext& context) {
-  if (auto checked = context.log.checkNotRead(context.output); !checked) {
-    return tl::unexpected(checked.error());
-  }
+  RETURN_IF_ERROR(context.log.checkNotRead(context.output));
   if (context.dry_run) return 0;
   std::vector<std::string> warnings = outcome.warnings;
   for (const BakedObject& object : outcome.objects) {
@@ -154,20 +150,17 @@ Result<Made> bakeObjectFiles(const ObjectJob& job, BakeContext& context) {
   ObjectSetOutcome outcome;
   const auto start = std::chrono::steady_clock::now();
   outcome.radii = job.shape.spheres.radii;
-  auto inputs = findObjects(job.inputs);
-  if (!inputs) return tl::unexpected(inputs.error());
-  if (!job.name.empty() && inputs->size() == 1) inputs->front().name = job.name;
+  ASSIGN_OR_RETURN(auto inputs, findObjects(job.inputs));
+  if (!job.name.empty() && inputs.size() == 1) inputs.front().name = job.name;
   std::vector<SourceFile> sources;
-  const auto collection = readShapes(job.collection, sources);
-  if (!collection) return tl::unexpected(collection.error());
-  if (*collection) outcome.warnings = (*collection)->warnings;
-  collect(*inputs, bakeAll(*inputs, job, *collection, context), context.log, outcome, sources);
+  ASSIGN_OR_RETURN(const auto collection, readShapes(job.collection, sources));
+  if (collection) outcome.warnings = collection->warnings;
+  collect(inputs, bakeAll(inputs, job, collection, context), context.log, outcome, sources);
   const bool goes_on = outcome.failures.empty() || context.keep_going;
   Made made{.outcome = {}, .output = context.output};
   if (goes_on && !outcome.objects.empty()) {
-    const auto bytes = writePack(outcome, std::move(sources), job, context);
-    if (!bytes) return tl::unexpected(bytes.error());
-    made.pack_bytes = *bytes;
+    ASSIGN_OR_RETURN(const auto bytes, writePack(outcome, std::move(sources), job, context));
+    made.pack_bytes = bytes;
   }
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   made.outcome = std::move(outcome);

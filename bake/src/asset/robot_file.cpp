@@ -9,6 +9,7 @@
 #include "galactic/bake/robot_pack.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/urdf_import.h"
+#include "galactic/try.h"
 #include "stage_timer.h"
 
 namespace galactic::bake {
@@ -36,31 +37,28 @@ Result<std::optional<RobotRecipe>> readRecipe(const std::filesystem::path& path,
                                               SourceRobot& robot) {
   if (path.empty()) return std::nullopt;
   if (path.extension() != ".json") return readRobotRecipe(path);
-  const auto collection = readCollection(path);
-  if (!collection) return tl::unexpected(collection.error());
-  auto converted = recipeFromCollection(*collection, robot);
-  if (!converted) return tl::unexpected(converted.error());
-  append(collection->warnings, robot.warnings);
-  append(converted->warnings, robot.warnings);
-  return std::move(converted->recipe);
+  ASSIGN_OR_RETURN(const auto collection, readCollection(path));
+  ASSIGN_OR_RETURN(auto converted, recipeFromCollection(collection, robot));
+  append(collection.warnings, robot.warnings);
+  append(converted.warnings, robot.warnings);
+  return std::move(converted.recipe);
 }
 
 Result<std::optional<HandSpheres>> readSpheres(const std::filesystem::path& path,
                                                SourceRobot& robot) {
   if (path.empty()) return std::nullopt;
-  auto spheres = path.extension() == ".srdf" ? readSrdfSpheres(path) : readSpherizedUrdf(path);
-  if (!spheres) return tl::unexpected(spheres.error());
-  append(spheres->warnings, robot.warnings);
-  return std::move(*spheres);
+  ASSIGN_OR_RETURN(auto spheres,
+                   path.extension() == ".srdf" ? readSrdfSpheres(path) : readSpherizedUrdf(path));
+  append(spheres.warnings, robot.warnings);
+  return spheres;
 }
 
 Result<BakedRobot> bakeWithRecipe(const RobotJob& job, SourceRobot& robot) {
   auto recipe = readRecipe(job.recipe, robot);
   if (!recipe) return tl::unexpected(recipe.error());
-  auto spheres = readSpheres(job.spheres, robot);
-  if (!spheres) return tl::unexpected(spheres.error());
+  ASSIGN_OR_RETURN(auto spheres, readSpheres(job.spheres, robot));
   RobotBakeOptions options = job.shape;
-  options.hand_spheres = std::move(*spheres);
+  options.hand_spheres = std::move(spheres);
   auto baked = bakeRobot(robot, *recipe ? &**recipe : nullptr, options);
   if (!baked && !(*recipe && baked.error().where.starts_with((*recipe)->source))) {
     baked.error().where = inFile(job.input, baked.error().where);
@@ -75,9 +73,8 @@ Result<BakedRobot> bakeParts(const RobotJob& job, SourceRobot& robot, const Bake
   if (!baked) return baked;
   context.show(item, "render meshes", 0.9);
   const StageTimer timer(baked->times.render);
-  auto meshes = drawRobot(robot, job.draw, job.input, *baked);
-  if (!meshes) return tl::unexpected(meshes.error());
-  baked->render_meshes = std::move(*meshes);
+  ASSIGN_OR_RETURN(auto meshes, drawRobot(robot, job.draw, job.input, *baked));
+  baked->render_meshes = std::move(meshes);
   return baked;
 }
 
@@ -105,23 +102,17 @@ Result<Made> bakeRobotFile(const RobotJob& job, BakeContext& context) {
   outcome.input = job.input;
   outcome.resolutions = robot->resolutions;
   context.log.noteRead(job.input.parent_path(), robot->files);
-  if (auto checked = context.log.checkNotRead(context.output); !checked) {
-    return tl::unexpected(checked.error());
-  }
-  auto baked = bakeParts(job, *robot, context);
-  if (!baked) return tl::unexpected(baked.error());
-  outcome.robot = std::move(*baked);
-  if (auto added = addSources({job.recipe, job.spheres}, robot->files); !added) {
-    return tl::unexpected(added.error());
-  }
+  RETURN_IF_ERROR(context.log.checkNotRead(context.output));
+  ASSIGN_OR_RETURN(auto baked, bakeParts(job, *robot, context));
+  outcome.robot = std::move(baked);
+  RETURN_IF_ERROR(addSources({job.recipe, job.spheres}, robot->files));
   Made made{.outcome = {}, .output = context.output};
   if (!context.dry_run) {
     context.show(item, "write", 1);
-    const auto bytes =
-        writeRobotPack(context.output, outcome.robot,
-                       provenanceOf(job, std::move(robot->files), outcome.robot.warnings));
-    if (!bytes) return tl::unexpected(bytes.error());
-    made.pack_bytes = *bytes;
+    ASSIGN_OR_RETURN(const auto bytes, writeRobotPack(context.output, outcome.robot,
+                                                      provenanceOf(job, std::move(robot->files),
+                                                                   outcome.robot.warnings)));
+    made.pack_bytes = bytes;
   }
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   made.outcome = std::move(outcome);

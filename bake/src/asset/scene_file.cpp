@@ -3,6 +3,7 @@
 #include "asset/asset_parts.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/scene_pack.h"
+#include "galactic/try.h"
 #include "stage_timer.h"
 
 namespace galactic::bake {
@@ -17,19 +18,17 @@ struct ReadScene {
 
 Result<ReadScene> readInstance(const InstancedScene& scene, ReadLog& log) {
   const std::filesystem::path& folder = scene.dataset->folder();
-  auto composed = scene.dataset->compose(scene.name, *scene.meshes);
-  if (!composed) return tl::unexpected(composed.error());
-  for (const std::string& file : composed->absent_files) log.noteAbsent(folder / file);
-  std::vector<std::string>& warnings = composed->scene.warnings;
-  warnings.insert(warnings.end(), composed->missing.begin(), composed->missing.end());
-  return ReadScene{folder / scene.name, std::move(composed->scene)};
+  ASSIGN_OR_RETURN(auto composed, scene.dataset->compose(scene.name, *scene.meshes));
+  for (const std::string& file : composed.absent_files) log.noteAbsent(folder / file);
+  std::vector<std::string>& warnings = composed.scene.warnings;
+  warnings.insert(warnings.end(), composed.missing.begin(), composed.missing.end());
+  return ReadScene{folder / scene.name, std::move(composed.scene)};
 }
 
 Result<ReadScene> readScene(const SceneJob& job, ReadLog& log) {
   if (job.instance) return readInstance(*job.instance, log);
-  auto asset = importMesh(job.input, job.import);
-  if (!asset) return tl::unexpected(asset.error());
-  return ReadScene{job.input, std::move(*asset)};
+  ASSIGN_OR_RETURN(auto asset, importMesh(job.input, job.import));
+  return ReadScene{job.input, std::move(asset)};
 }
 
 Result<BakedScene> bakeParts(const ReadScene& read, const SceneJob& job, const Progress& progress,
@@ -42,9 +41,8 @@ Result<BakedScene> bakeParts(const ReadScene& read, const SceneJob& job, const P
   }
   progress("render meshes", 0.9);
   const StageTimer timer(times.render);
-  auto meshes = drawScene(read.asset, job.draw, read.input, scene->warnings);
-  if (!meshes) return tl::unexpected(meshes.error());
-  scene->render_meshes = std::move(*meshes);
+  ASSIGN_OR_RETURN(auto meshes, drawScene(read.asset, job.draw, read.input, scene->warnings));
+  scene->render_meshes = std::move(meshes);
   return scene;
 }
 
@@ -66,25 +64,22 @@ Result<Made> bakeSceneFile(const SceneJob& job, BakeContext& context) {
   outcome.convention = read->asset.convention;
   if (!job.name.empty()) read->asset.name = job.name;
   context.log.noteRead(read->input.parent_path(), read->asset.files);
-  if (auto checked = context.log.checkNotRead(context.output); !checked) {
-    return tl::unexpected(checked.error());
-  }
-  auto scene = bakeParts(*read, job, progress, outcome.times);
-  if (!scene) return tl::unexpected(scene.error());
-  outcome.scene = std::move(*scene);
+  RETURN_IF_ERROR(context.log.checkNotRead(context.output));
+  ASSIGN_OR_RETURN(auto scene, bakeParts(*read, job, progress, outcome.times));
+  outcome.scene = std::move(scene);
   if (outcome.scene.render_meshes) {
-    auto shared = shareTextures(outcome.scene.render_meshes->materials, job.draw, context.dry_run);
-    if (!shared) return tl::unexpected(shared.error());
+    RETURN_IF_ERROR(
+        shareTextures(outcome.scene.render_meshes->materials, job.draw, context.dry_run));
   }
   Made made{.outcome = {}, .output = context.output};
   if (!context.dry_run) {
     progress("write", 1);
     const StageTimer timer(outcome.times.write);
-    const auto bytes =
+    ASSIGN_OR_RETURN(
+        const auto bytes,
         writeScenePack(context.output, outcome.scene,
-                       provenanceOf(job, std::move(read->asset.files), outcome.scene.warnings));
-    if (!bytes) return tl::unexpected(bytes.error());
-    made.pack_bytes = *bytes;
+                       provenanceOf(job, std::move(read->asset.files), outcome.scene.warnings)));
+    made.pack_bytes = bytes;
   }
   made.outcome = std::move(outcome);
   return made;

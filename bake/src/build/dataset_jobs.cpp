@@ -9,6 +9,7 @@
 #include "build/pack_list.h"
 #include "galactic/bake/scene_files.h"
 #include "galactic/bake/world_recipe.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -70,12 +71,10 @@ void addObjects(const SceneSurvey& survey, const DatasetJobs& dataset, PackList&
 }
 
 Result<void> addScans(const DatasetJobs& dataset, PackList& packs) {
-  const auto files = findSceneFiles(dataset.input);
-  if (!files) return tl::unexpected(files.error());
-  const auto names = wantedScenes(namesOf(*files), dataset.scenes);
-  if (!names) return tl::unexpected(names.error());
-  for (const SceneFile& file : *files) {
-    if (!std::ranges::binary_search(*names, file.name)) continue;
+  ASSIGN_OR_RETURN(const auto files, findSceneFiles(dataset.input));
+  ASSIGN_OR_RETURN(const auto names, wantedScenes(namesOf(files), dataset.scenes));
+  for (const SceneFile& file : files) {
+    if (!std::ranges::binary_search(names, file.name)) continue;
     SceneJob job = dataset.scene;
     job.input = file.path;
     job.name = file.name;
@@ -136,14 +135,13 @@ void visitOptions(DatasetJobs& dataset, OptionVisitor& v) {
 
 Result<std::vector<std::string>> sceneNames(const DatasetJobs& dataset) {
   if (isFolder(dataset.input)) {
-    const auto files = findSceneFiles(dataset.input);
-    if (!files) return tl::unexpected(files.error());
-    return wantedScenes(namesOf(*files), dataset.scenes);
+    ASSIGN_OR_RETURN(const auto files, findSceneFiles(dataset.input));
+    return wantedScenes(namesOf(files), dataset.scenes);
   }
-  const auto read =
-      SceneDataset::read(dataset.input, {.allow_outside = dataset.scene.import.allow_outside});
-  if (!read) return tl::unexpected(read.error());
-  return wantedScenes(read->scenes(), dataset.scenes);
+  ASSIGN_OR_RETURN(
+      const auto read,
+      SceneDataset::read(dataset.input, {.allow_outside = dataset.scene.import.allow_outside}));
+  return wantedScenes(read.scenes(), dataset.scenes);
 }
 
 Result<void> addDataset(const DatasetJobs& dataset, PackList& packs) {
@@ -153,15 +151,14 @@ Result<void> addDataset(const DatasetJobs& dataset, PackList& packs) {
     return fail(ErrorCode::kInvalidInput, dataset.input.string(),
                 "says itself how its meshes stand; leave out `up`, `scale` and `transform`");
   }
-  auto read = SceneDataset::read(dataset.input, {.allow_outside = import.allow_outside});
-  if (!read) return tl::unexpected(read.error());
-  const SharedParts shared{std::make_shared<const SceneDataset>(std::move(*read)),
+  ASSIGN_OR_RETURN(auto read,
+                   SceneDataset::read(dataset.input, {.allow_outside = import.allow_outside}));
+  const SharedParts shared{std::make_shared<const SceneDataset>(std::move(read)),
                            std::make_shared<MeshLibrary>(meshOptionsOf(dataset)),
                            std::make_shared<TextureLibrary>()};
-  const auto names = wantedScenes(shared.dataset->scenes(), dataset.scenes);
-  if (!names) return tl::unexpected(names.error());
+  ASSIGN_OR_RETURN(const auto names, wantedScenes(shared.dataset->scenes(), dataset.scenes));
   for (const std::string& warning : shared.dataset->warnings()) packs.warn(warning);
-  for (const std::string& name : *names) {
+  for (const std::string& name : names) {
     if (auto added = addInstance(name, dataset, shared, packs); !added) return added;
   }
   return {};
@@ -171,7 +168,7 @@ Result<JobList> jobsOfDatasets(const std::vector<DatasetJobs>& datasets,
                                const std::filesystem::path& world) {
   PackList packs(world);
   for (const DatasetJobs& dataset : datasets) {
-    if (auto added = addDataset(dataset, packs); !added) return tl::unexpected(added.error());
+    RETURN_IF_ERROR(addDataset(dataset, packs));
   }
   return packs.finish();
 }

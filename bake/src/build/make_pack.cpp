@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "galactic/bake/source_file.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -16,9 +17,8 @@ namespace fs = std::filesystem;
 
 /// This program's own content: another build may bake other bytes.
 Result<std::string> programDigest(FileDigests& digests) {
-  const auto program = digests.of("/proc/self/exe");
-  if (!program) return tl::unexpected(program.error());
-  return fmt::format("{:016x}{:016x}", program->hash_high, program->hash_low);
+  ASSIGN_OR_RETURN(const auto program, digests.of("/proc/self/exe"));
+  return fmt::format("{:016x}{:016x}", program.hash_high, program.hash_low);
 }
 
 std::string relativeName(const fs::path& file, const fs::path& folder) {
@@ -31,10 +31,10 @@ Result<BakeInputs> inputsOf(const ReadLog& log, const PackJob& pack, FileDigests
   BakeInputs inputs;
   inputs.folder = pack.folder;
   for (const ReadFile& file : log.files()) {
-    auto digest = file.content ? Result<SourceFile>(*file.content) : digests.of(file.path);
-    if (!digest) return tl::unexpected(digest.error());
-    digest->name = relativeName(file.path, pack.folder);
-    inputs.files.push_back(std::move(*digest));
+    ASSIGN_OR_RETURN(auto digest,
+                     file.content ? Result<SourceFile>(*file.content) : digests.of(file.path));
+    digest.name = relativeName(file.path, pack.folder);
+    inputs.files.push_back(std::move(digest));
   }
   std::ranges::sort(inputs.files, {}, &SourceFile::name);
   const auto same_name = [](const SourceFile& a, const SourceFile& b) { return a.name == b.name; };
@@ -107,13 +107,11 @@ class Making {
       }
     }
     if (tools_.cache == nullptr) return bakeAnew(jobs);
-    const auto program = programDigest(tools_.digests);
-    if (!program) return tl::unexpected(program.error());
-    key_ = fmt::format("{}program {}\npack {}\n", keyOf(pack_.job, pack_.folder), *program,
-                       pack_.name);
-    auto cached = takeFromCache();
-    if (!cached) return tl::unexpected(cached.error());
-    return *cached ? Result<void>{} : bakeAnew(jobs);
+    ASSIGN_OR_RETURN(const auto program, programDigest(tools_.digests));
+    key_ =
+        fmt::format("{}program {}\npack {}\n", keyOf(pack_.job, pack_.folder), program, pack_.name);
+    ASSIGN_OR_RETURN(auto cached, takeFromCache());
+    return cached ? Result<void>{} : bakeAnew(jobs);
   }
 
   [[nodiscard]] PackOutcome& outcome() { return outcome_; }
@@ -124,9 +122,7 @@ class Making {
   Result<bool> takeFromCache() {
     auto found = tools_.cache->find(key_, pack_.folder, tools_.digests);
     if (!found || !hasTextures(pack_, found->record, tools_)) return false;
-    if (auto linked = linkOrCopy(found->pack, pack_.output); !linked) {
-      return tl::unexpected(linked.error());
-    }
+    RETURN_IF_ERROR(linkOrCopy(found->pack, pack_.output));
     outcome_.state = PackState::kUnchanged;
     outcome_.record = std::move(found->record);
     return true;
@@ -147,9 +143,8 @@ class Making {
                        double fraction) { tools_.observer.show(item, stage, fraction); },
         .dry_run = tools_.options.mode != BuildMode::kBake,
         .keep_going = tools_.options.keep_going};
-    auto made = bake(job, context);
-    if (!made) return tl::unexpected(made.error());
-    if (const auto* objects = std::get_if<ObjectSetOutcome>(&made->outcome)) {
+    ASSIGN_OR_RETURN(auto made, bake(job, context));
+    if (const auto* objects = std::get_if<ObjectSetOutcome>(&made.outcome)) {
       outcome_.failures = objects->failures;
       const bool is_made = tools_.options.keep_going && !objects->objects.empty();
       if (!objects->failures.empty() && !is_made) {
@@ -158,20 +153,19 @@ class Making {
       }
     }
     outcome_.state = PackState::kBaked;
-    outcome_.record = BakeRecord{.textures = sharedTexturesOf(*made),
-                                 .warnings = warningsOf(*made),
-                                 .report = tools_.observer.describe(*made)};
-    made_ = std::move(*made);
+    outcome_.record = BakeRecord{.textures = sharedTexturesOf(made),
+                                 .warnings = warningsOf(made),
+                                 .report = tools_.observer.describe(made)};
+    made_ = std::move(made);
     return keep();
   }
 
   Result<void> keep() {
     if (tools_.cache == nullptr || !outcome_.failures.empty()) return {};
-    auto inputs = inputsOf(outcome_.log, pack_, tools_.digests);
-    if (!inputs) return tl::unexpected(inputs.error());
-    inputs->key = key_;
+    ASSIGN_OR_RETURN(auto inputs, inputsOf(outcome_.log, pack_, tools_.digests));
+    inputs.key = key_;
     if (auto kept = keepTextures(pack_, *outcome_.record, tools_); !kept) return kept;
-    return tools_.cache->store(*inputs, pack_.output, *outcome_.record);
+    return tools_.cache->store(inputs, pack_.output, *outcome_.record);
   }
 
   const PackJob& pack_;

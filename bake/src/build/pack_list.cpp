@@ -6,6 +6,8 @@
 #include <system_error>
 #include <utility>
 
+#include "galactic/try.h"
+
 namespace galactic::bake {
 namespace {
 
@@ -89,7 +91,7 @@ void PackList::completeEpisodes() {
 }
 
 Result<JobList> PackList::finish() {
-  if (auto checked = checkScenes(); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(checkScenes());
   std::ranges::sort(list_.assets, {}, &PackJob::name);
   const auto twice = std::ranges::adjacent_find(list_.assets, {}, &PackJob::name);
   if (twice != list_.assets.end()) {

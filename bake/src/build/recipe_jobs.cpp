@@ -6,6 +6,7 @@
 
 #include "build/pack_list.h"
 #include "galactic/bake/world_recipe.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -46,14 +47,13 @@ class RecipeJobs {
 
  private:
   Result<void> addScenes(const RecipeAssets& assets) {
-    const auto inputs = inputsOf(assets);
-    if (!inputs) return tl::unexpected(inputs.error());
+    ASSIGN_OR_RETURN(const auto inputs, inputsOf(assets));
     DatasetJobs dataset;
     SceneJob scene;
     auto read = assets.is_dataset ? readOptions(assets, "a dataset", dataset)
                                   : readOptions(assets, "--as scene", scene);
     if (!read) return read;
-    for (const fs::path& input : *inputs) {
+    for (const fs::path& input : inputs) {
       if (!assets.is_dataset) {
         scene.input = input;
         packs_.add("scenes/" + input.stem().string(), scene, input);
@@ -68,13 +68,11 @@ class RecipeJobs {
   }
 
   Result<void> addObjects(const RecipeAssets& assets) {
-    const auto inputs = inputsOf(assets);
-    if (!inputs) return tl::unexpected(inputs.error());
+    ASSIGN_OR_RETURN(const auto inputs, inputsOf(assets));
     ObjectJob job;
     if (auto read = readOptions(assets, "--as object", job); !read) return read;
-    const auto objects = findObjects(*inputs);
-    if (!objects) return tl::unexpected(objects.error());
-    for (const ObjectInput& object : *objects) {
+    ASSIGN_OR_RETURN(const auto objects, findObjects(inputs));
+    for (const ObjectInput& object : objects) {
       job.inputs = {object.path};
       job.name = object.name;
       packs_.add("objects/" + object.name, job, object.path);
@@ -83,15 +81,14 @@ class RecipeJobs {
   }
 
   Result<void> addRobot(const RecipeAssets& assets) {
-    const auto inputs = inputsOf(assets);
-    if (!inputs) return tl::unexpected(inputs.error());
+    ASSIGN_OR_RETURN(const auto inputs, inputsOf(assets));
     RobotJob job;
     if (auto read = readOptions(assets, "--as robot", job); !read) return read;
-    if (inputs->size() != 1) {
+    if (inputs.size() != 1) {
       return fail(ErrorCode::kInvalidInput, assets.place,
-                  fmt::format("[robot] names {} files, one URDF is wanted", inputs->size()));
+                  fmt::format("[robot] names {} files, one URDF is wanted", inputs.size()));
     }
-    job.input = inputs->front();
+    job.input = inputs.front();
     packs_.add("robot", job, job.input);
     return {};
   }
@@ -104,15 +101,14 @@ class RecipeJobs {
       packs_.setEpisodes(std::move(job));
       return {};
     }
-    const auto inputs = inputsOf(assets);
-    if (!inputs) return tl::unexpected(inputs.error());
+    ASSIGN_OR_RETURN(const auto inputs, inputsOf(assets));
     EpisodeImportJob job;
     if (auto read = readOptions(assets, "imported episodes", job); !read) return read;
-    if (inputs->size() != 1) {
+    if (inputs.size() != 1) {
       return fail(ErrorCode::kInvalidInput, assets.place,
-                  fmt::format("[episodes] names {} files, one is wanted", inputs->size()));
+                  fmt::format("[episodes] names {} files, one is wanted", inputs.size()));
     }
-    job.input = inputs->front();
+    job.input = inputs.front();
     packs_.setEpisodes(std::move(job));
     return {};
   }
@@ -137,9 +133,8 @@ class RecipeJobs {
                   "belongs on the command line, not into a recipe; leave it out");
     }
     OptionReader reader(given, [this](const fs::path& path) -> Result<fs::path> {
-      const auto found = findInputs({path.string()}, roots_);
-      if (!found) return tl::unexpected(found.error());
-      return found->front();
+      ASSIGN_OR_RETURN(const auto found, findInputs({path.string()}, roots_));
+      return found.front();
     });
     visitOptions(target, reader);
     std::vector<std::string> known = optionNames();
@@ -157,13 +152,10 @@ class RecipeJobs {
 }  // namespace
 
 Result<JobList> jobsOfRecipe(const RecipeSource& source, const fs::path& world) {
-  const auto recipe = readWorldRecipe(source.recipe);
-  if (!recipe) return tl::unexpected(recipe.error());
+  ASSIGN_OR_RETURN(const auto recipe, readWorldRecipe(source.recipe));
   PackList packs(world);
-  packs.setTask(recipe->task);
-  if (auto added = RecipeJobs(source, *recipe, packs).add(); !added) {
-    return tl::unexpected(added.error());
-  }
+  packs.setTask(recipe.task);
+  RETURN_IF_ERROR(RecipeJobs(source, recipe, packs).add());
   return packs.finish();
 }
 

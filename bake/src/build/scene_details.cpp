@@ -6,23 +6,23 @@
 #include "build/pack_list.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/triangle_mesh.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
 
 Result<SourceAsset> readScene(const SceneJob& job, SceneDetails& details) {
   if (!job.instance) return importMesh(job.input, job.import);
-  auto composed = job.instance->dataset->compose(job.instance->name, *job.instance->meshes);
-  if (!composed) return tl::unexpected(composed.error());
-  details.receptacles = std::move(composed->receptacles);
-  return std::move(composed->scene);
+  ASSIGN_OR_RETURN(auto composed,
+                   job.instance->dataset->compose(job.instance->name, *job.instance->meshes));
+  details.receptacles = std::move(composed.receptacles);
+  return std::move(composed.scene);
 }
 
 Result<SceneDetails> readDetails(const SceneJob& job) {
   SceneDetails details;
-  const auto asset = readScene(job, details);
-  if (!asset) return tl::unexpected(asset.error());
-  auto clean = placeAndClean(*asset);
+  ASSIGN_OR_RETURN(const auto asset, readScene(job, details));
+  auto clean = placeAndClean(asset);
   if (!clean) {
     return fail(clean.error().code, inFile(job.input, clean.error().where), clean.error().message);
   }

@@ -10,6 +10,7 @@
 #include "cache/cache_entry.h"
 #include "galactic/atomic_file.h"
 #include "galactic/bake/source_file.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -96,9 +97,8 @@ std::optional<CachedBake> BakeCache::find(const std::string& key, const fs::path
 
 Result<void> BakeCache::store(const BakeInputs& inputs, const fs::path& pack,
                               const BakeRecord& record) const {
-  auto digest = describeFile(pack);
-  if (!digest) return tl::unexpected(digest.error());
-  const std::string text = encodeCacheEntry({inputs, *digest, record});
+  ASSIGN_OR_RETURN(auto digest, describeFile(pack));
+  const std::string text = encodeCacheEntry({inputs, digest, record});
   // One name for one set of inputs, whatever the report says of times and places.
   const std::string name = hexOf(encodeCacheEntry({inputs, {}, {}}));
   const fs::path folder = folder_ / hexOf(inputs.key);

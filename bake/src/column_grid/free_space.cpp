@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "galactic/try.h"
+
 namespace galactic::bake {
 namespace {
 
@@ -173,9 +175,8 @@ Result<std::vector<bool>> chooseRooms(const Columns& columns, const Labels& labe
   std::vector<bool> is_room(components.size(), false);
   if (!options.seeds.empty()) {
     for (const Vec3& seed : options.seeds) {
-      const auto span = spanAt(columns, seed);
-      if (!span) return tl::unexpected(span.error());
-      is_room[labels.of_span[*span]] = true;
+      ASSIGN_OR_RETURN(const auto span, spanAt(columns, seed));
+      is_room[labels.of_span[span]] = true;
     }
     return is_room;
   }
@@ -217,12 +218,11 @@ Columns filterSpans(const Columns& columns, const Labels& labels,
 Result<FreeSpace> chooseFreeSpace(const Columns& columns, const FreeSpaceOptions& options) {
   const Labels labels = labelComponents(columns);
   std::vector<Component> components = measure(columns, labels);
-  const auto is_room = chooseRooms(columns, labels, components, options);
-  if (!is_room) return tl::unexpected(is_room.error());
+  ASSIGN_OR_RETURN(const auto is_room, chooseRooms(columns, labels, components, options));
   FreeSpace result;
   for (std::size_t index = 0; index < components.size(); ++index) {
     Component& component = components[index];
-    component.region = (*is_room)[index]          ? Region::kRoom
+    component.region = is_room[index]             ? Region::kRoom
                        : component.touches_border ? Region::kOutside
                                                   : Region::kEnclosed;
     RegionTotals& totals = result.totals[static_cast<std::size_t>(component.region)];

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "galactic/bake/source_file.h"
+#include "galactic/try.h"
 #include "import/affine.h"
 #include "import/source_files.h"
 #include "render/material_list.h"
@@ -91,9 +92,8 @@ void AssetMerger::noteFile(const fs::path& path, SourceFile file) {
 
 Result<void> AssetMerger::noteFile(const fs::path& path) {
   if (files_.contains(nameRelativeTo(main_input_, path))) return {};
-  auto file = describeFile(path);
-  if (!file) return tl::unexpected(file.error());
-  noteFile(path, std::move(*file));
+  ASSIGN_OR_RETURN(auto file, describeFile(path));
+  noteFile(path, std::move(file));
   return {};
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dataset/dataset_paths.h"
+#include "galactic/try.h"
 #include "import/source_files.h"
 
 namespace galactic::bake {
@@ -197,16 +198,13 @@ Result<void> DatasetIndex::checkReach(const fs::path& file, const std::string& w
 }
 
 Result<DatasetIndex> readDatasetIndex(const fs::path& config, bool allow_outside) {
-  const auto root = readJsonFile(config, kDatasetFile);
-  if (!root) return tl::unexpected(root.error());
+  ASSIGN_OR_RETURN(const auto root, readJsonFile(config, kDatasetFile));
   DatasetIndex index;
   index.allow_outside = allow_outside;
   std::error_code ignored;
   index.config = fs::absolute(config, ignored).lexically_normal();
   index.folder = index.config.parent_path();
-  if (auto read = IndexReader(config, index).read(*root); !read) {
-    return tl::unexpected(read.error());
-  }
+  RETURN_IF_ERROR(IndexReader(config, index).read(root));
   return index;
 }
 

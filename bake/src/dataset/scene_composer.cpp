@@ -9,6 +9,7 @@
 
 #include "dataset/placement.h"
 #include "dataset/rest_pose.h"
+#include "galactic/try.h"
 #include "import/affine.h"
 #include "import/source_files.h"
 #include "robot/link_geometry.h"
@@ -95,12 +96,11 @@ Result<SceneComposer::Attributes> SceneComposer::attributesOf(const DatasetTempl
   const std::string key = fmt::format("{}:{}", static_cast<unsigned>(kind), entry.handle);
   const auto known = attributes_.find(key);
   if (known != attributes_.end()) return known->second;
-  auto read = readAttributes(entry, index_.block(kind), kind);
-  if (!read) return tl::unexpected(read.error());
+  ASSIGN_OR_RETURN(auto read, readAttributes(entry, index_.block(kind), kind));
   if (!entry.config.empty()) {
-    if (auto noted = merger_.noteFile(entry.config); !noted) return tl::unexpected(noted.error());
+    RETURN_IF_ERROR(merger_.noteFile(entry.config));
   }
-  auto attributes = std::make_shared<const TemplateAttributes>(std::move(*read));
+  auto attributes = std::make_shared<const TemplateAttributes>(std::move(read));
   attributes_.emplace(key, attributes);
   return attributes;
 }
@@ -116,9 +116,7 @@ Result<fs::path> SceneComposer::meshOf(const DatasetTemplate& entry,
                 "it is missing; name the mesh to place");
   }
   fs::path mesh = stated.empty() ? entry.asset : fileOf(entry, stated);
-  if (auto near = index_.checkReach(mesh, placeOf(entry)); !near) {
-    return tl::unexpected(near.error());
-  }
+  RETURN_IF_ERROR(index_.checkReach(mesh, placeOf(entry)));
   if (isFile(mesh)) return mesh;
   noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kind).noun, entry.name,
                           relative(mesh)));
@@ -169,17 +167,16 @@ Result<void> SceneComposer::placeStage(const SceneItem& item) {
   if (entry == nullptr) return {};
   const auto attributes = attributesOf(*entry, TemplateKind::kStage);
   if (!attributes) return tl::unexpected(attributes.error());
-  const auto mesh = meshOf(*entry, **attributes, TemplateKind::kStage);
-  if (!mesh) return tl::unexpected(mesh.error());
-  if (mesh->empty()) return {};
-  const auto asset = load(*mesh);
+  ASSIGN_OR_RETURN(const auto mesh, meshOf(*entry, **attributes, TemplateKind::kStage));
+  if (mesh.empty()) return {};
+  const auto asset = load(mesh);
   if (!asset) return tl::unexpected(asset.error());
   const SceneItem unmoved;
   if (item.translation != unmoved.translation || item.rotation != unmoved.rotation ||
       item.scale != unmoved.scale) {
     warnOnce("the scene moves, turns or scales its stage; as in Habitat, it stays as it is");
   }
-  addMesh(*mesh, **asset, objectFromAsset(**attributes, unmoved.scale), entry->name);
+  addMesh(mesh, **asset, objectFromAsset(**attributes, unmoved.scale), entry->name);
   result_.has_stage = true;
   // As in Habitat, a stage's boxes are turned with it and not scaled.
   TemplateAttributes unscaled = **attributes;
@@ -194,30 +191,28 @@ Result<void> SceneComposer::placeObject(const SceneItem& item) {
   if (entry == nullptr) return {};
   const auto attributes = attributesOf(*entry, TemplateKind::kObject);
   if (!attributes) return tl::unexpected(attributes.error());
-  const auto mesh = meshOf(*entry, **attributes, TemplateKind::kObject);
-  if (!mesh) return tl::unexpected(mesh.error());
-  if (mesh->empty()) return {};
-  const auto world_from_mesh = placement(item, **attributes, *mesh);
-  if (!world_from_mesh) return tl::unexpected(world_from_mesh.error());
+  ASSIGN_OR_RETURN(const auto mesh, meshOf(*entry, **attributes, TemplateKind::kObject));
+  if (mesh.empty()) return {};
+  ASSIGN_OR_RETURN(const auto world_from_mesh, placement(item, **attributes, mesh));
   if (item.motion == MotionType::kDynamic) {
     result_.movable.push_back({.name = entry->name,
-                               .mesh = *mesh,
+                               .mesh = mesh,
                                .object_from_mesh = objectFromAsset(**attributes, item.scale),
-                               .world_from_mesh = *world_from_mesh});
+                               .world_from_mesh = world_from_mesh});
     return {};
   }
   if (!(*attributes)->collidable) {
     warnOnce(
         fmt::format("object '{}' collides with nothing in Habitat; here it does", entry->name));
   }
-  const auto asset = load(*mesh);
+  const auto asset = load(mesh);
   if (!asset) return tl::unexpected(asset.error());
   const std::string name = nextName(entry->name);
-  addMesh(*mesh, **asset, *world_from_mesh, name);
+  addMesh(mesh, **asset, world_from_mesh, name);
   addReceptacles((*attributes)->receptacles, item.receptacles,
                  {.kind = ReceptacleParent::Kind::kObject,
                   .name = name,
-                  .world_from_parent = *world_from_mesh});
+                  .world_from_parent = world_from_mesh});
   return {};
 }
 
@@ -305,20 +300,20 @@ Result<ComposedScene> SceneComposer::run(const std::string& name, const SceneIns
   scene.format = "Habitat scene dataset";
   scene.convention = "Y up, meters (Habitat)";
   for (const fs::path& file : read) {
-    if (auto noted = merger_.noteFile(file); !noted) return tl::unexpected(noted.error());
+    RETURN_IF_ERROR(merger_.noteFile(file));
   }
   default_origin_ = instance.origin;
   if (instance.stage) {
-    if (auto placed = placeStage(*instance.stage); !placed) return tl::unexpected(placed.error());
+    RETURN_IF_ERROR(placeStage(*instance.stage));
   } else {
     result_.has_stage = false;
     warnOnce("the scene says that it has no stage");
   }
   for (const SceneItem& item : instance.objects) {
-    if (auto placed = placeObject(item); !placed) return tl::unexpected(placed.error());
+    RETURN_IF_ERROR(placeObject(item));
   }
   for (const SceneItem& item : instance.articulated) {
-    if (auto placed = placeArticulated(item); !placed) return tl::unexpected(placed.error());
+    RETURN_IF_ERROR(placeArticulated(item));
   }
   addReceptacles(instance.receptacles, {}, {.world_from_parent = kIdentityAffine});
   merger_.finish();

@@ -13,6 +13,7 @@
 #include "dataset/template_attributes.h"
 #include "galactic/bake/source_file.h"
 #include "galactic/nearest_name.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 
@@ -69,10 +70,9 @@ SceneDataset::SceneDataset(SceneDataset&&) noexcept = default;
 SceneDataset& SceneDataset::operator=(SceneDataset&&) noexcept = default;
 
 Result<SceneDataset> SceneDataset::read(const fs::path& config, const DatasetReadOptions& options) {
-  auto index = readDatasetIndex(config, options.allow_outside);
-  if (!index) return tl::unexpected(index.error());
+  ASSIGN_OR_RETURN(auto index, readDatasetIndex(config, options.allow_outside));
   auto state = std::make_unique<State>();
-  state->index = std::move(*index);
+  state->index = std::move(index);
   if (state->index.block(TemplateKind::kScene).templates.all().empty()) {
     state->kind = TemplateKind::kStage;
   }
@@ -109,29 +109,26 @@ Result<const DatasetTemplate*> SceneDataset::State::find(std::string_view scene)
 
 Result<SceneInstance> SceneDataset::State::instanceOf(const DatasetTemplate& entry) const {
   if (kind == TemplateKind::kStage) return sceneOfStage(entry);
-  const auto layers = layersOf(entry, index.block(kind), kind);
-  if (!layers) return tl::unexpected(layers.error());
-  return readSceneInstance(*layers);
+  ASSIGN_OR_RETURN(const auto layers, layersOf(entry, index.block(kind), kind));
+  return readSceneInstance(layers);
 }
 
 Result<SceneSurvey> SceneDataset::survey(std::string_view scene) const {
   const auto entry = state_->find(scene);
   if (!entry) return tl::unexpected(entry.error());
-  const auto instance = state_->instanceOf(**entry);
-  if (!instance) return tl::unexpected(instance.error());
-  return SceneSurveyor(state_->index).run(*instance);
+  ASSIGN_OR_RETURN(const auto instance, state_->instanceOf(**entry));
+  return SceneSurveyor(state_->index).run(instance);
 }
 
 Result<ComposedScene> SceneDataset::compose(std::string_view scene, MeshLibrary& meshes) const {
   const auto entry = state_->find(scene);
   if (!entry) return tl::unexpected(entry.error());
-  const auto instance = state_->instanceOf(**entry);
-  if (!instance) return tl::unexpected(instance.error());
+  ASSIGN_OR_RETURN(const auto instance, state_->instanceOf(**entry));
   std::vector<fs::path> read{state_->index.config};
   if (state_->kind == TemplateKind::kScene && !(*entry)->config.empty()) {
     read.push_back((*entry)->config);
   }
-  return SceneComposer(state_->index, meshes).run(std::string(scene), *instance, read);
+  return SceneComposer(state_->index, meshes).run(std::string(scene), instance, read);
 }
 
 }  // namespace galactic::bake

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dataset/dataset_paths.h"
+#include "galactic/try.h"
 #include "json/json_reader.h"
 
 namespace galactic::bake {
@@ -176,9 +177,7 @@ Result<SceneInstance> readSceneInstance(std::span<const AttributeLayer> layers) 
   bool has_stage = false;
   std::string file;
   for (const AttributeLayer& layer : layers) {
-    if (auto read = SceneReader(layer, scene).read(has_stage); !read) {
-      return tl::unexpected(read.error());
-    }
+    RETURN_IF_ERROR(SceneReader(layer, scene).read(has_stage));
     file = layer.file;
   }
   if (!has_stage) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "dataset/placement.h"
+#include "galactic/try.h"
 #include "import/source_files.h"
 
 namespace galactic::bake {
@@ -33,31 +34,27 @@ Result<SceneSurveyor::Known> SceneSurveyor::lookUp(TemplateKind kind, const Scen
                             item.template_name));
     return known;
   }
-  auto attributes = readAttributes(*known.entry, block, kind);
-  if (!attributes) return tl::unexpected(attributes.error());
-  known.attributes = std::move(*attributes);
+  ASSIGN_OR_RETURN(auto attributes, readAttributes(*known.entry, block, kind));
+  known.attributes = std::move(attributes);
   return known;
 }
 
 Result<bool> SceneSurveyor::surveyMesh(TemplateKind kind, const SceneItem& item) {
-  const auto known = lookUp(kind, item);
-  if (!known) return tl::unexpected(known.error());
-  if (known->entry == nullptr) return false;
-  const TemplateAttributes& attributes = known->attributes;
+  ASSIGN_OR_RETURN(const auto known, lookUp(kind, item));
+  if (known.entry == nullptr) return false;
+  const TemplateAttributes& attributes = known.attributes;
   const std::string& stated =
       attributes.render_asset.empty() ? attributes.collision_asset : attributes.render_asset;
-  const fs::path mesh = stated.empty() ? known->entry->asset : fileOf(*known->entry, stated);
-  if (auto near = index_.checkReach(mesh, placeOf(*known->entry)); !near) {
-    return tl::unexpected(near.error());
-  }
+  const fs::path mesh = stated.empty() ? known.entry->asset : fileOf(*known.entry, stated);
+  RETURN_IF_ERROR(index_.checkReach(mesh, placeOf(*known.entry)));
   if (!hasFile(mesh)) {
     noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kind).noun,
-                            known->entry->name, nameRelativeTo(index_.config, mesh)));
+                            known.entry->name, nameRelativeTo(index_.config, mesh)));
     return false;
   }
   if (kind == TemplateKind::kObject && item.motion == MotionType::kDynamic) {
     const Affine object_from_mesh = objectFromAsset(attributes, item.scale);
-    survey_.movable.push_back({.name = known->entry->name,
+    survey_.movable.push_back({.name = known.entry->name,
                                .mesh = mesh,
                                .object_from_mesh = object_from_mesh,
                                .world_from_mesh = {}});
@@ -66,14 +63,13 @@ Result<bool> SceneSurveyor::surveyMesh(TemplateKind kind, const SceneItem& item)
 }
 
 Result<void> SceneSurveyor::surveyFurniture(const SceneItem& item) {
-  const auto known = lookUp(TemplateKind::kArticulated, item);
-  if (!known) return tl::unexpected(known.error());
-  if (known->entry == nullptr) return {};
-  const fs::path urdf = urdfOf(*known->entry, known->attributes);
-  if (auto near = index_.checkReach(urdf, placeOf(*known->entry)); !near) return near;
+  ASSIGN_OR_RETURN(const auto known, lookUp(TemplateKind::kArticulated, item));
+  if (known.entry == nullptr) return {};
+  const fs::path urdf = urdfOf(*known.entry, known.attributes);
+  if (auto near = index_.checkReach(urdf, placeOf(*known.entry)); !near) return near;
   if (hasFile(urdf)) return {};
   noteMissing(fmt::format("{} '{}': its URDF '{}' is missing",
-                          namesOf(TemplateKind::kArticulated).noun, known->entry->name,
+                          namesOf(TemplateKind::kArticulated).noun, known.entry->name,
                           nameRelativeTo(index_.config, urdf)));
   return {};
 }
@@ -81,17 +77,14 @@ Result<void> SceneSurveyor::surveyFurniture(const SceneItem& item) {
 Result<SceneSurvey> SceneSurveyor::run(const SceneInstance& instance) {
   survey_.has_stage = false;
   if (instance.stage) {
-    const auto found = surveyMesh(TemplateKind::kStage, *instance.stage);
-    if (!found) return tl::unexpected(found.error());
-    survey_.has_stage = *found;
+    ASSIGN_OR_RETURN(const auto found, surveyMesh(TemplateKind::kStage, *instance.stage));
+    survey_.has_stage = found;
   }
   for (const SceneItem& item : instance.objects) {
-    if (auto found = surveyMesh(TemplateKind::kObject, item); !found) {
-      return tl::unexpected(found.error());
-    }
+    RETURN_IF_ERROR(surveyMesh(TemplateKind::kObject, item));
   }
   for (const SceneItem& item : instance.articulated) {
-    if (auto done = surveyFurniture(item); !done) return tl::unexpected(done.error());
+    RETURN_IF_ERROR(surveyFurniture(item));
   }
   return std::move(survey_);
 }

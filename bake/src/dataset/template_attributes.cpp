@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "galactic/try.h"
 #include "json/json_reader.h"
 
 namespace galactic::bake {
@@ -129,9 +130,8 @@ Result<std::vector<AttributeLayer>> layersOf(const DatasetTemplate& entry,
   layers.reserve(2 + entry.layers.size());
   if (block.defaults) layers.push_back(*block.defaults);
   if (!entry.config.empty()) {
-    auto json = readTemplateFile(entry, kind);
-    if (!json) return tl::unexpected(json.error());
-    layers.push_back({entry.config.string(), "", std::move(*json)});
+    ASSIGN_OR_RETURN(auto json, readTemplateFile(entry, kind));
+    layers.push_back({entry.config.string(), "", std::move(json)});
   }
   layers.insert(layers.end(), entry.layers.begin(), entry.layers.end());
   return layers;
@@ -144,18 +144,13 @@ Result<TemplateAttributes> readAttributes(const DatasetTemplate& entry, const Da
     attributes.up = {0, 0, 1};
     attributes.front = {0, 1, 0};
   }
-  const auto layers = layersOf(entry, block, kind);
-  if (!layers) return tl::unexpected(layers.error());
-  for (const AttributeLayer& layer : *layers) {
-    if (auto read = LayerReader(layer, attributes).read(kind); !read) {
-      return tl::unexpected(read.error());
-    }
+  ASSIGN_OR_RETURN(const auto layers, layersOf(entry, block, kind));
+  for (const AttributeLayer& layer : layers) {
+    RETURN_IF_ERROR(LayerReader(layer, attributes).read(kind));
   }
   insertName(attributes.render_asset, entry.name);
   insertName(attributes.collision_asset, entry.name);
-  if (auto checked = checkFrame(attributes, placeOf(entry)); !checked) {
-    return tl::unexpected(checked.error());
-  }
+  RETURN_IF_ERROR(checkFrame(attributes, placeOf(entry)));
   return attributes;
 }
 

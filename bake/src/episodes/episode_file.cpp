@@ -6,6 +6,8 @@
 #include <set>
 #include <span>
 
+#include "galactic/try.h"
+
 namespace galactic::bake {
 namespace {
 
@@ -85,17 +87,16 @@ std::optional<SceneNameFault> renameScenes(std::vector<std::string>& scenes,
 
 Result<SourceEpisodes> chooseEpisodes(const EpisodeFile& file,
                                       const std::optional<std::vector<std::uint32_t>>& only) {
-  const auto kept = chosen(file, only);
-  if (!kept) return tl::unexpected(kept.error());
+  ASSIGN_OR_RETURN(const auto kept, chosen(file, only));
   UsedNames scenes(file.scenes);
   UsedNames objects(file.objects);
   SourceEpisodes source;
   source.robot = file.robot;
   source.start_joints = file.start_joints;
   source.warnings = file.warnings;
-  source.episodes.reserve(kept->size());
-  source.start_positions.reserve(kept->size() * file.start_joints.size());
-  for (const std::uint32_t n : *kept) {
+  source.episodes.reserve(kept.size());
+  source.start_positions.reserve(kept.size() * file.start_joints.size());
+  for (const std::uint32_t n : kept) {
     const FileEpisode& from = file.episodes[n];
     Episode& episode = source.episodes.emplace_back(from.episode);
     scenes.use(episode.scene);

@@ -13,6 +13,7 @@
 #include "episodes/generation_options.h"
 #include "episodes/prepared_scene.h"
 #include "galactic/bake/parallel_for.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -119,15 +120,14 @@ class Batch {
     SourceEpisodes set = emptySet(context_.world, {&scene, 1});
     set.episodes.reserve(slots.size());
     for (const Slot* slot : slots) append(slot->episode, 0, set);
-    const auto ends = replayEpisodes(packs_, set);
-    if (!ends) return tl::unexpected(ends.error());
+    ASSIGN_OR_RETURN(const auto ends, replayEpisodes(packs_, set));
     for (std::size_t n = 0; n < slots.size(); ++n) {
       Slot& slot = *slots[n];
-      slot.is_done = (*ends)[n] == ReplayEnd::kStands;
+      slot.is_done = ends[n] == ReplayEnd::kStands;
       if (slot.is_done) continue;
       ++slot.replays_failed;
-      slot.rejections.add((*ends)[n] == ReplayEnd::kBlocked ? EpisodeRejection::kReplayBlocked
-                                                            : EpisodeRejection::kReplayMoved);
+      slot.rejections.add(ends[n] == ReplayEnd::kBlocked ? EpisodeRejection::kReplayBlocked
+                                                         : EpisodeRejection::kReplayMoved);
     }
     return {};
   }
@@ -352,9 +352,7 @@ Result<std::vector<SceneTask>> drawInUsable(const EpisodeInputs& inputs,
     for (const SceneTask& task : tasks) {
       if (!task.drawn) return tl::unexpected(task.drawn.error());
     }
-    if (auto enough = checkSkipped(tasks, context.options); !enough) {
-      return tl::unexpected(enough.error());
-    }
+    RETURN_IF_ERROR(checkSkipped(tasks, context.options));
     return tasks;
   }
   std::ranges::sort(left_out, {}, &UnusableScene::name);
@@ -410,20 +408,16 @@ void warn(const EpisodeGeneratorOptions& options, GeneratedEpisodes& generated) 
 Result<GeneratedEpisodes> generateEpisodes(const EpisodeInputs& inputs,
                                            const EpisodeGeneratorOptions& options,
                                            const EpisodeProgress& progress) {
-  if (auto checked = checkOptions(options); !checked) return tl::unexpected(checked.error());
-  const auto world = GenerationWorld::open(inputs.packs);
-  if (!world) return tl::unexpected(world.error());
-  auto scenes = scenesOf(*world, options.split);
-  if (!scenes) return tl::unexpected(scenes.error());
-  const auto bodies =
-      inputs.details ? world->settlingBodies() : Result<std::vector<SettlingBody>>{};
-  if (!bodies) return tl::unexpected(bodies.error());
-  const ArmReach reach(world->robot());
-  const GenerationContext context{*world, reach, *bodies, options};
+  RETURN_IF_ERROR(checkOptions(options));
+  ASSIGN_OR_RETURN(const auto world, GenerationWorld::open(inputs.packs));
+  ASSIGN_OR_RETURN(auto scenes, scenesOf(world, options.split));
+  ASSIGN_OR_RETURN(const auto bodies,
+                   inputs.details ? world.settlingBodies() : Result<std::vector<SettlingBody>>{});
+  const ArmReach reach(world.robot());
+  const GenerationContext context{world, reach, bodies, options};
   std::vector<UnusableScene> left_out;
-  const auto tasks = drawInUsable(inputs, context, progress, *scenes, left_out);
-  if (!tasks) return tl::unexpected(tasks.error());
-  GeneratedEpisodes generated = gather(*world, *scenes, *tasks, options.objects.least);
+  ASSIGN_OR_RETURN(const auto tasks, drawInUsable(inputs, context, progress, scenes, left_out));
+  GeneratedEpisodes generated = gather(world, scenes, tasks, options.objects.least);
   std::ranges::sort(left_out, {}, &UnusableScene::name);
   generated.left_out = std::move(left_out);
   warn(options, generated);

@@ -5,6 +5,7 @@
 
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/mapped_file.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -30,9 +31,8 @@ std::string_view addIndices(std::string_view line, std::vector<std::uint32_t>& i
 }  // namespace
 
 Result<std::vector<std::uint32_t>> readEpisodeList(const std::filesystem::path& path) {
-  const auto file = MappedFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  std::string_view text(reinterpret_cast<const char*>(file->bytes().data()), file->bytes().size());
+  ASSIGN_OR_RETURN(const auto file, MappedFile::open(path));
+  std::string_view text(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size());
   std::vector<std::uint32_t> indices;
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');

@@ -12,6 +12,7 @@
 #include "episodes/episode_file.h"
 #include "episodes/episode_readers.h"
 #include "episodes/object_frame.h"
+#include "galactic/try.h"
 #include "json/json_reader.h"
 
 namespace galactic::bake {
@@ -244,17 +245,15 @@ Result<EpisodeFile> EpisodeSetReader::read(const Json& root) {
 
 Result<SourceEpisodes> readEpisodeSetJson(const fs::path& path, const Json& json,
                                           const EpisodeImportOptions& options) {
-  const auto file = EpisodeSetReader(path, options).read(json);
-  if (!file) return tl::unexpected(file.error());
-  auto source = chooseEpisodes(*file, options.only);
+  ASSIGN_OR_RETURN(const auto file, EpisodeSetReader(path, options).read(json));
+  auto source = chooseEpisodes(file, options.only);
   if (source) source->name = episodeSetName(path);
   return source;
 }
 
 Result<SourceEpisodes> readEpisodeSet(const fs::path& path, const EpisodeImportOptions& options) {
-  const auto json = readEpisodeJson(path);
-  if (!json) return tl::unexpected(json.error());
-  return readEpisodeSetJson(path, *json, options);
+  ASSIGN_OR_RETURN(const auto json, readEpisodeJson(path));
+  return readEpisodeSetJson(path, json, options);
 }
 
 }  // namespace galactic::bake

@@ -9,6 +9,7 @@
 #include "galactic/bake/parallel_for.h"
 #include "galactic/batch_simulator.h"
 #include "galactic/scripted_policy.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -46,15 +47,14 @@ Result<EpisodeEnd> play(const World& world, std::uint32_t most_steps) {
     if (simulator.error().code == ErrorCode::kInvalidInput) return EpisodeEnd("does not start");
     return tl::unexpected(simulator.error());
   }
-  auto policy = ScriptedPolicy::create(world, options);
-  if (!policy) return tl::unexpected(policy.error());
+  ASSIGN_OR_RETURN(auto policy, ScriptedPolicy::create(world, options));
   std::vector<float> actions(simulator->actionCount());
   do {
-    policy->act(*simulator, actions);
+    policy.act(*simulator, actions);
     simulator->step(actions);
   } while (simulator->dones()[0] == 0);
   if (simulator->successes()[0] != 0) return EpisodeEnd();
-  const ScriptedTrouble trouble = policy->trouble(0);
+  const ScriptedTrouble trouble = policy.trouble(0);
   return trouble == ScriptedTrouble::kNone ? EpisodeEnd("out of time")
                                            : EpisodeEnd(nameOf(trouble));
 }

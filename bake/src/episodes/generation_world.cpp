@@ -9,6 +9,7 @@
 
 #include "galactic/render_layout.h"
 #include "galactic/render_meshes.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -87,26 +88,21 @@ std::vector<Vec3> drawnPoints(const RenderMeshes& meshes, std::uint32_t model_nu
 Result<GenerationWorld> GenerationWorld::open(std::span<const PackFile* const> packs) {
   GenerationWorld world;
   for (const PackFile* pack : packs) {
-    if (auto added = world.add(*pack); !added) return tl::unexpected(added.error());
+    RETURN_IF_ERROR(world.add(*pack));
   }
-  if (auto checked = world.check(); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(world.check());
   const auto scene_name = [](const SceneOfPack& one) { return one.scene.name(); };
-  if (auto sorted = sortByName(world.scenes_, "scenes", scene_name); !sorted) {
-    return tl::unexpected(sorted.error());
-  }
+  RETURN_IF_ERROR(sortByName(world.scenes_, "scenes", scene_name));
   const auto object_name = [](const ObjectModel& model) { return model.name; };
-  if (auto sorted = sortByName(world.objects_, "objects", object_name); !sorted) {
-    return tl::unexpected(sorted.error());
-  }
+  RETURN_IF_ERROR(sortByName(world.objects_, "objects", object_name));
   return world;
 }
 
 Result<void> GenerationWorld::add(const PackFile& pack) {
   switch (pack.kind()) {
     case PackKind::kScene: {
-      auto scene = Scene::from(pack);
-      if (!scene) return tl::unexpected(scene.error());
-      scenes_.push_back({&pack, std::move(*scene)});
+      ASSIGN_OR_RETURN(auto scene, Scene::from(pack));
+      scenes_.push_back({&pack, std::move(scene)});
       return {};
     }
     case PackKind::kObjects:
@@ -117,9 +113,8 @@ Result<void> GenerationWorld::add(const PackFile& pack) {
                     fmt::format("is a second robot, the first is {}; give one of them",
                                 robot_.front().name()));
       }
-      auto robot = Robot::from(pack);
-      if (!robot) return tl::unexpected(robot.error());
-      robot_.push_back(std::move(*robot));
+      ASSIGN_OR_RETURN(auto robot, Robot::from(pack));
+      robot_.push_back(std::move(robot));
       common_packs_.push_back(&pack);
       return {};
     }
@@ -138,10 +133,9 @@ Result<void> GenerationWorld::add(const PackFile& pack) {
 }
 
 Result<void> GenerationWorld::addObjects(const PackFile& pack) {
-  auto set = ObjectSet::from(pack);
-  if (!set) return tl::unexpected(set.error());
-  objects_.insert(objects_.end(), set->objects().begin(), set->objects().end());
-  sets_.push_back(std::move(*set));
+  ASSIGN_OR_RETURN(auto set, ObjectSet::from(pack));
+  objects_.insert(objects_.end(), set.objects().begin(), set.objects().end());
+  sets_.push_back(std::move(set));
   common_packs_.push_back(&pack);
   return {};
 }
@@ -164,12 +158,11 @@ Result<std::vector<SettlingBody>> GenerationWorld::settlingBodies() const {
   std::vector<SettlingBody> bodies(objects_.size());
   for (const PackFile* pack : common_packs_) {
     if (pack->kind() != PackKind::kObjects) continue;
-    const auto set = ObjectSet::from(*pack);
-    if (!set) return tl::unexpected(set.error());
+    ASSIGN_OR_RETURN(const auto set, ObjectSet::from(*pack));
     const auto meshes = renderMeshesOf(*pack);
     if (!meshes) return tl::unexpected(meshes.error());
-    for (std::uint32_t part = 0; part < set->objects().size(); ++part) {
-      const ObjectModel& model = set->objects()[part];
+    for (std::uint32_t part = 0; part < set.objects().size(); ++part) {
+      const ObjectModel& model = set.objects()[part];
       const auto at = std::ranges::lower_bound(objects_, model.name, {}, &ObjectModel::name);
       const auto drawn = *meshes ? (*meshes)->modelOf(part) : std::nullopt;
       bodies[static_cast<std::size_t>(at - objects_.begin())] =

@@ -11,6 +11,7 @@
 #include "episodes/habitat_names.h"
 #include "episodes/object_frame.h"
 #include "fit/rotation.h"
+#include "galactic/try.h"
 #include "json/json_reader.h"
 
 namespace galactic::bake {
@@ -351,18 +352,16 @@ Result<EpisodeFile> HabitatReader::read(const Json& root) {
 
 Result<SourceEpisodes> readHabitatJson(const fs::path& path, const Json& json,
                                        const EpisodeImportOptions& options) {
-  const auto file = HabitatReader(path, options).read(json);
-  if (!file) return tl::unexpected(file.error());
-  auto source = chooseEpisodes(*file, options.only);
+  ASSIGN_OR_RETURN(const auto file, HabitatReader(path, options).read(json));
+  auto source = chooseEpisodes(file, options.only);
   if (source) source->name = episodeSetName(path);
   return source;
 }
 
 Result<SourceEpisodes> readHabitatEpisodes(const fs::path& path,
                                            const EpisodeImportOptions& options) {
-  const auto json = readEpisodeJson(path);
-  if (!json) return tl::unexpected(json.error());
-  return readHabitatJson(path, *json, options);
+  ASSIGN_OR_RETURN(const auto json, readEpisodeJson(path));
+  return readHabitatJson(path, json, options);
 }
 
 }  // namespace galactic::bake

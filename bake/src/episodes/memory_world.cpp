@@ -6,6 +6,7 @@
 
 #include "galactic/bake/episode_pack.h"
 #include "galactic/pack_header.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 
@@ -39,23 +40,19 @@ MemoryWorld::MemoryWorld(std::shared_ptr<const FileBytes> episodes, World world)
 
 Result<MemoryWorld> MemoryWorld::open(std::span<const PackFile* const> packs,
                                       const SourceEpisodes& episodes) {
-  const auto payload = encodeEpisodePack(episodes, {});
-  if (!payload) return tl::unexpected(payload.error());
-  auto bytes = std::make_shared<const FileBytes>(makePackHeader(PackKind::kEpisodes, *payload),
-                                                 std::span(*payload));
+  ASSIGN_OR_RETURN(const auto payload, encodeEpisodePack(episodes, {}));
+  auto bytes = std::make_shared<const FileBytes>(makePackHeader(PackKind::kEpisodes, payload),
+                                                 std::span(payload));
   std::vector<PackFile> files;
   files.reserve(packs.size() + 1);
   for (const PackFile* pack : packs) {
-    auto file = PackFile::view(pack->bytes(), pack->where(), Trust::kTrusted);
-    if (!file) return tl::unexpected(file.error());
-    files.push_back(std::move(*file));
+    ASSIGN_OR_RETURN(auto file, PackFile::view(pack->bytes(), pack->where(), Trust::kTrusted));
+    files.push_back(std::move(file));
   }
-  auto file = PackFile::view(bytes->bytes(), "episodes", Trust::kTrusted);
-  if (!file) return tl::unexpected(file.error());
-  files.push_back(std::move(*file));
-  auto world = World::from(std::move(files));
-  if (!world) return tl::unexpected(world.error());
-  return MemoryWorld(std::move(bytes), *std::move(world));
+  ASSIGN_OR_RETURN(auto file, PackFile::view(bytes->bytes(), "episodes", Trust::kTrusted));
+  files.push_back(std::move(file));
+  ASSIGN_OR_RETURN(auto world, World::from(std::move(files)));
+  return MemoryWorld(std::move(bytes), std::move(world));
 }
 
 }  // namespace galactic::bake

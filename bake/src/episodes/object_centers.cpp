@@ -1,12 +1,12 @@
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/object_set.h"
 #include "galactic/schema/pack_generated.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 
 Result<std::map<std::string, Vec3>> objectCenters(const PackFile& objects) {
-  const auto set = ObjectSet::from(objects);
-  if (!set) return tl::unexpected(set.error());
+  RETURN_IF_ERROR(ObjectSet::from(objects));
   std::map<std::string, Vec3> centers;
   for (const schema::Object* object : *objects.root().asset_as_ObjectSet()->objects()) {
     const schema::Bounds* bounds = object->bounds();

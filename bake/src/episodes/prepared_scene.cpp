@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "galactic/try.h"
+
 namespace galactic::bake {
 namespace {
 
@@ -47,7 +49,7 @@ Result<std::unique_ptr<const PreparedScene>> PreparedScene::prepare(
   prepared->chooseWay();
   prepared->unusable_ = prepared->whyUnusable();
   if (!prepared->unusable_.empty()) return prepared;
-  if (auto used = prepared->useMesh(); !used) return tl::unexpected(used.error());
+  RETURN_IF_ERROR(prepared->useMesh());
   prepared->survey();
   return prepared;
 }
@@ -145,9 +147,8 @@ Result<void> PreparedScene::useMesh() {
                             mesh.min.x, mesh.min.z, mesh.max.x, mesh.max.z, grid.min.x, grid.min.z,
                             grid.max.x, grid.max.z));
   }
-  auto rays = SurfaceRays::build(details_.mesh);
-  if (!rays) return tl::unexpected(rays.error());
-  rays_ = std::make_unique<const SurfaceRays>(std::move(*rays));
+  ASSIGN_OR_RETURN(auto rays, SurfaceRays::build(details_.mesh));
+  rays_ = std::make_unique<const SurfaceRays>(std::move(rays));
   settling_ = std::make_unique<const SettlingScene>(details_.mesh);
   // Both have copies.
   details_.mesh = {};

@@ -17,6 +17,7 @@
 #include <system_error>
 #include <utility>
 
+#include "galactic/try.h"
 #include "import/affine.h"
 #include "import/axis_convention.h"
 #include "import/content_check.h"
@@ -385,9 +386,8 @@ Result<SourceMesh> SceneReader::convertMesh(const aiMesh& mesh, unsigned index) 
 
 Result<void> SceneReader::convertMeshes() {
   for (unsigned i = 0; i < scene_->mNumMeshes; ++i) {
-    auto mesh = convertMesh(*scene_->mMeshes[i], i);
-    if (!mesh) return tl::unexpected(mesh.error());
-    callbacks_.on_mesh(std::move(*mesh));
+    ASSIGN_OR_RETURN(auto mesh, convertMesh(*scene_->mMeshes[i], i));
+    callbacks_.on_mesh(std::move(mesh));
     delete std::exchange(scene_->mMeshes[i], nullptr);  // peak memory: one mesh twice, not all
   }
   return {};
@@ -505,10 +505,9 @@ void SceneReader::nameFiles() {
 }
 
 Result<SourceAsset> SceneReader::read() {
-  if (auto loaded = load(); !loaded) return tl::unexpected(std::move(loaded.error()));
-  auto world_from_root = worldFromRoot();
-  if (!world_from_root) return tl::unexpected(std::move(world_from_root.error()));
-  if (auto placed = placeNodes(*world_from_root); !placed) {
+  RETURN_IF_ERROR(load());
+  ASSIGN_OR_RETURN(auto world_from_root, worldFromRoot());
+  if (auto placed = placeNodes(world_from_root); !placed) {
     return tl::unexpected(std::move(placed.error()));
   }
   if (auto converted = convertMeshes(); !converted) {
@@ -540,10 +539,9 @@ std::string readableExtensions() {
 Result<SourceAsset> readWithAssimp(const std::filesystem::path& path,
                                    const MeshImportOptions& options,
                                    const ReaderCallbacks& callbacks) {
-  const auto warnings = checkContent(path);
-  if (!warnings) return tl::unexpected(warnings.error());
+  ASSIGN_OR_RETURN(const auto warnings, checkContent(path));
   auto asset = SceneReader(path, options, callbacks).read();
-  if (asset) asset->warnings.insert(asset->warnings.end(), warnings->begin(), warnings->end());
+  if (asset) asset->warnings.insert(asset->warnings.end(), warnings.begin(), warnings.end());
   return asset;
 }
 

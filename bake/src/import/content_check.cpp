@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "galactic/mapped_file.h"
+#include "galactic/try.h"
 #include "import/gltf_extensions.h"
 #include "import/gltf_ranges.h"
 #include "import/ply_counts.h"
@@ -68,11 +69,10 @@ Result<Warnings> checkContent(const std::filesystem::path& path) {
         "nothing tells whether a {} file is whole: should geometry lack, convert it to GLB",
         extension)};
   }
-  const auto file = MappedFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  if (is_gltf) return checkGltf(path, file->bytes());
-  const std::string_view text(reinterpret_cast<const char*>(file->bytes().data()),
-                              file->bytes().size());
+  ASSIGN_OR_RETURN(const auto file, MappedFile::open(path));
+  if (is_gltf) return checkGltf(path, file.bytes());
+  const std::string_view text(reinterpret_cast<const char*>(file.bytes().data()),
+                              file.bytes().size());
   if (auto checked = counted->check(text, path.string()); !checked) {
     return tl::unexpected(std::move(checked.error()));
   }

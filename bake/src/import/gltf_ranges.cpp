@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "galactic/try.h"
 #include "import/gltf_extensions.h"
 #include "import/source_files.h"
 
@@ -291,13 +292,12 @@ Result<std::uint64_t> binaryBytes(const fs::path& path, std::span<const std::byt
 }  // namespace
 
 Result<void> checkGltfRanges(const fs::path& path, std::span<const std::byte> bytes) {
-  const auto binary = binaryBytes(path, bytes);
-  if (!binary) return tl::unexpected(binary.error());
+  ASSIGN_OR_RETURN(const auto binary, binaryBytes(path, bytes));
   const std::span<const std::byte> json = gltfJson(bytes);
   const auto* text = reinterpret_cast<const char*>(json.data());
   const Json document = Json::parse(text, text + json.size(), nullptr, /*allow_exceptions=*/false);
   if (!document.is_object()) return {};
-  return GltfRanges(path, document, *binary).check();
+  return GltfRanges(path, document, binary).check();
 }
 
 }  // namespace galactic::bake

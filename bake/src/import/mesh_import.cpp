@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "galactic/out_of_memory.h"
+#include "galactic/try.h"
 #include "import/affine.h"
 #include "import/asset_check.h"
 #include "import/asset_transfer.h"
@@ -141,15 +142,13 @@ Result<SourceAsset> readIsolated(const fs::path& path, const MeshImportOptions& 
 }  // namespace
 
 Result<SourceAsset> importMesh(const fs::path& path, const MeshImportOptions& options) {
-  if (auto checked = checkOptions(options); !checked) return tl::unexpected(checked.error());
-  if (auto checked = checkMainFile(path); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(checkOptions(options));
+  RETURN_IF_ERROR(checkMainFile(path));
   auto asset = readIsolated(path, options);
   if (!asset) return asset;
-  if (auto checked = checkAsset(*asset, path.string()); !checked) {
-    return tl::unexpected(checked.error());
-  }
+  RETURN_IF_ERROR(checkAsset(*asset, path.string()));
   findTextures(*asset, path, options.allow_outside ? Reach::kAnywhere : Reach::kNear);
-  if (auto hashed = hashFiles(*asset, path); !hashed) return tl::unexpected(hashed.error());
+  RETURN_IF_ERROR(hashFiles(*asset, path));
   warnAboutSize(*asset, options.smallest_size);
   return asset;
 }

@@ -15,6 +15,7 @@
 
 #include "galactic/bake/source_file.h"
 #include "galactic/mapped_file.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -125,9 +126,8 @@ void paintWithNamesake(SourceAsset& asset, const fs::path& main_input) {
 }
 
 Result<void> hashFile(SourceFile& file, const fs::path& path) {
-  const auto content = MappedFile::open(path);
-  if (!content) return tl::unexpected(content.error());
-  file = describeBytes(std::move(file.name), content->bytes());
+  ASSIGN_OR_RETURN(const auto content, MappedFile::open(path));
+  file = describeBytes(std::move(file.name), content.bytes());
   return {};
 }
 
@@ -160,7 +160,7 @@ SourceFile describeBytes(std::string name, std::span<const std::byte> bytes) {
 
 Result<SourceFile> describeFile(const fs::path& path) {
   SourceFile file{.name = path.filename().generic_string()};
-  if (auto hashed = hashFile(file, path); !hashed) return tl::unexpected(hashed.error());
+  RETURN_IF_ERROR(hashFile(file, path));
   return file;
 }
 

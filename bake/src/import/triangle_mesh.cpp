@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "galactic/try.h"
 #include "import/affine.h"
 
 namespace galactic::bake {
@@ -84,9 +85,8 @@ Result<void> Placement::place(const SourceInstance& instance) {
     for (std::uint32_t& corner : triangle) {
       std::uint32_t& placed = placed_[corner];
       if (placed == kNone) {
-        const auto fresh = placeVertex(instance, corner);
-        if (!fresh) return tl::unexpected(fresh.error());
-        placed = *fresh;
+        ASSIGN_OR_RETURN(const auto fresh, placeVertex(instance, corner));
+        placed = fresh;
       }
       corner = placed;
     }
@@ -132,7 +132,7 @@ Result<void> Placement::checkExtents() const {
 }
 
 Result<TriangleMesh> Placement::run() {
-  if (auto checked = checkReferences(); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(checkReferences());
   std::uint64_t triangles = 0;
   std::uint64_t vertices = 0;
   for (const SourceInstance& instance : asset_.instances) {
@@ -150,10 +150,10 @@ Result<TriangleMesh> Placement::run() {
   mesh_.triangles.reserve(triangles);
   mesh_.vertices.reserve(std::min(vertices, 3 * triangles));
   for (const SourceInstance& instance : asset_.instances) {
-    if (auto placed = place(instance); !placed) return tl::unexpected(placed.error());
+    RETURN_IF_ERROR(place(instance));
   }
   mesh_.bounds = boundsOf(mesh_.vertices);
-  if (auto checked = checkExtents(); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(checkExtents());
   return std::move(mesh_);
 }
 
@@ -297,9 +297,8 @@ void dropUnusedVertices(TriangleMesh& mesh) {
 }  // namespace
 
 Result<CleanMesh> placeAndClean(const SourceAsset& asset) {
-  auto placed = Placement(asset).run();
-  if (!placed) return tl::unexpected(placed.error());
-  CleanMesh clean{.mesh = std::move(*placed), .counts = {}};
+  ASSIGN_OR_RETURN(auto placed, Placement(asset).run());
+  CleanMesh clean{.mesh = std::move(placed), .counts = {}};
   clean.counts = dropTriangles(clean.mesh);
   if (clean.mesh.triangles.empty()) {
     return fail(ErrorCode::kInvalidInput, asset.name,

@@ -7,6 +7,8 @@
 #include <limits>
 #include <string_view>
 
+#include "galactic/try.h"
+
 namespace galactic::bake {
 namespace {
 
@@ -49,7 +51,7 @@ class Gunzip {
       return fail(ErrorCode::kInternal, where_, "zlib cannot begin to decompress");
     }
     while (!in_.empty()) {
-      if (auto done = member(take); !done) return tl::unexpected(done.error());
+      RETURN_IF_ERROR(member(take));
     }
     return length_;
   }
@@ -117,10 +119,9 @@ bool isGzip(std::span<const std::byte> bytes) {
 Result<std::string> gunzip(std::span<const std::byte> bytes, const std::string& where,
                            std::size_t max_bytes) {
   // A text that is too long, and damage, are found before any memory is taken for it.
-  const auto length = Gunzip(bytes, where, max_bytes).run([](std::string_view) {});
-  if (!length) return tl::unexpected(length.error());
+  ASSIGN_OR_RETURN(const auto length, Gunzip(bytes, where, max_bytes).run([](std::string_view) {}));
   std::string text;
-  text.reserve(*length);
+  text.reserve(length);
   const auto again =
       Gunzip(bytes, where, max_bytes).run([&](std::string_view piece) { text += piece; });
   if (!again) return tl::unexpected(again.error());

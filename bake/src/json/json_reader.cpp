@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "galactic/mapped_file.h"
+#include "galactic/try.h"
 #include "json/gzip.h"
 
 namespace galactic::bake {
@@ -33,14 +34,12 @@ Result<Json> readJsonFile(const std::filesystem::path& path, const JsonFileKind&
     return fail(ErrorCode::kIo, path.string(),
                 fmt::format("it is a folder; give the path of a {} file", kind.suffix));
   }
-  const auto file = MappedFile::open(path);
-  if (!file) return tl::unexpected(file.error());
+  ASSIGN_OR_RETURN(const auto file, MappedFile::open(path));
   std::string unpacked;
-  std::string_view text(reinterpret_cast<const char*>(file->bytes().data()), file->bytes().size());
-  if (isGzip(file->bytes())) {
-    auto inside = gunzip(file->bytes(), path.string(), kind.max_bytes);
-    if (!inside) return tl::unexpected(inside.error());
-    unpacked = std::move(*inside);
+  std::string_view text(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size());
+  if (isGzip(file.bytes())) {
+    ASSIGN_OR_RETURN(auto inside, gunzip(file.bytes(), path.string(), kind.max_bytes));
+    unpacked = std::move(inside);
     text = unpacked;
   }
   if (text.size() > kind.max_bytes) {

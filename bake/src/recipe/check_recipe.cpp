@@ -6,6 +6,7 @@
 
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/nearest_name.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -96,9 +97,8 @@ Result<void> RecipeCheck::checkJoint(const RecipeJoint& joint) const {
 }
 
 Result<void> RecipeCheck::checkLimits(const RecipeLimits& given) const {
-  const auto found = findJoint(given.joint);
-  if (!found) return tl::unexpected(found.error());
-  if ((*found)->joint_type != JointType::kContinuous) return {};
+  ASSIGN_OR_RETURN(const auto found, findJoint(given.joint));
+  if (found->joint_type != JointType::kContinuous) return {};
   return invalid(given.joint.where,
                  fmt::format("joint '{}' is continuous and has no limits; narrow what actions do "
                              "with min and max of its [[joints]]",

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "galactic/try.h"
 #include "json/json_reader.h"
 
 namespace galactic::bake {
@@ -266,11 +267,10 @@ void addSpheres(const CollectionRobot& from, const SourceRobot& robot, const std
 }  // namespace
 
 Result<Collection> readCollection(const fs::path& path) {
-  const auto json = readJsonFile(
-      path,
-      {.what = "a collection", .suffix = ".collection.json", .max_bytes = kMaxCollectionBytes});
-  if (!json) return tl::unexpected(json.error());
-  return CollectionReader(path).read(*json);
+  ASSIGN_OR_RETURN(const auto json, readJsonFile(path, {.what = "a collection",
+                                                        .suffix = ".collection.json",
+                                                        .max_bytes = kMaxCollectionBytes}));
+  return CollectionReader(path).read(json);
 }
 
 Result<CollectionRecipe> recipeFromCollection(const Collection& collection,
@@ -309,13 +309,9 @@ Result<CollectionRecipe> recipeFromCollection(const Collection& collection,
                     "for the published one",
                     kCameraLink));
   }
-  if (auto added = addJoints(from, robot, collection.source, recipe); !added) {
-    return tl::unexpected(added.error());
-  }
+  RETURN_IF_ERROR(addJoints(from, robot, collection.source, recipe));
   addSpheres(from, robot, collection.source, recipe);
-  if (auto checked = checkRecipe(recipe, robot); !checked) {
-    return tl::unexpected(checked.error());
-  }
+  RETURN_IF_ERROR(checkRecipe(recipe, robot));
   return result;
 }
 

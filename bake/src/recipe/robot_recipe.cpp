@@ -4,6 +4,7 @@
 #include <numbers>
 #include <set>
 
+#include "galactic/try.h"
 #include "import/affine.h"
 #include "recipe/recipe_table.h"
 #include "urdf/urdf_frames.h"
@@ -321,10 +322,9 @@ RobotRecipe RecipeReader::read() {
 }  // namespace
 
 Result<RobotRecipe> readRobotRecipe(const std::filesystem::path& path) {
-  const auto table = readToml(path);
-  if (!table) return tl::unexpected(table.error());
+  ASSIGN_OR_RETURN(const auto table, readToml(path));
   FirstError errors(path.string());
-  RobotRecipe recipe = RecipeReader(*table, errors).read();
+  RobotRecipe recipe = RecipeReader(table, errors).read();
   if (errors.error()) return tl::unexpected(*errors.error());
   recipe.source = path.string();
   return recipe;

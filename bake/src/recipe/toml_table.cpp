@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "galactic/mapped_file.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -138,9 +139,8 @@ Result<TomlTable> readToml(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path, ignored)) {
     return fail(ErrorCode::kIo, path.string(), "it is a folder; give the path of a TOML file");
   }
-  const auto file = MappedFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  return parseToml({reinterpret_cast<const char*>(file->bytes().data()), file->bytes().size()},
+  ASSIGN_OR_RETURN(const auto file, MappedFile::open(path));
+  return parseToml({reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()},
                    path.string());
 }
 

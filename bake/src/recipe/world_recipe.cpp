@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "galactic/bake/toml_table.h"
+#include "galactic/try.h"
 #include "recipe/recipe_table.h"
 #include "recipe/recipe_task.h"
 
@@ -107,10 +108,9 @@ class WorldRecipeReader {
 }  // namespace
 
 Result<WorldRecipe> readWorldRecipe(const std::filesystem::path& path) {
-  const auto table = readToml(path);
-  if (!table) return tl::unexpected(table.error());
+  ASSIGN_OR_RETURN(const auto table, readToml(path));
   FirstError errors(path.string());
-  WorldRecipe recipe = WorldRecipeReader(errors).read(*table);
+  WorldRecipe recipe = WorldRecipeReader(errors).read(table);
   if (errors.error()) return tl::unexpected(*errors.error());
   return recipe;
 }

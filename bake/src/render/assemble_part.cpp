@@ -6,6 +6,7 @@
 
 #include "galactic/bake/surface.h"
 #include "galactic/bake/triangle_mesh.h"
+#include "galactic/try.h"
 #include "import/affine.h"
 #include "render/mesh_optimizer.h"
 #include "render/part_mesh.h"
@@ -162,9 +163,7 @@ Result<PartMesh> assemblePart(const RenderPart& part, const RenderSource& source
                               placed.material, source.materials.size(), placed.semantic,
                               source.semantics.size()));
     }
-    if (auto appended = appendPlaced(placed, source, mesh); !appended) {
-      return tl::unexpected(appended.error());
-    }
+    RETURN_IF_ERROR(appendPlaced(placed, source, mesh));
   }
   weld(mesh);
   return mesh;

@@ -9,6 +9,7 @@
 
 #include "galactic/bake/ambient_occlusion.h"
 #include "galactic/bake/surface.h"
+#include "galactic/try.h"
 #include "render/mesh_optimizer.h"
 #include "vec3d.h"
 
@@ -178,12 +179,10 @@ Result<std::vector<Openness>> measure(const Scene& scene, const LightPoints& poi
   rays.dim = kDim;
   rays.least_distance = static_cast<float>(2 * options.error);
   rays.jobs = options.jobs;
-  auto measured = ambientOcclusion(meshes, rays);
-  if (!measured) return tl::unexpected(measured.error());
+  ASSIGN_OR_RETURN(auto measured, ambientOcclusion(meshes, rays));
   // A point belongs to one kind, but where kinds meet without an edge.
-  std::vector<Openness> openness =
-      std::move((*measured)[static_cast<std::size_t>(LitSides::kBoth)]);
-  const auto& front = (*measured)[static_cast<std::size_t>(LitSides::kFront)];
+  std::vector<Openness> openness = std::move(measured[static_cast<std::size_t>(LitSides::kBoth)]);
+  const auto& front = measured[static_cast<std::size_t>(LitSides::kFront)];
   for (const Triangle& triangle : triangles[static_cast<std::size_t>(LitSides::kFront)]) {
     for (const std::uint32_t point : triangle) openness[point] = front[point];
   }
@@ -276,13 +275,12 @@ Result<void> lightPieces(std::vector<FinishedPiece>& pieces, const RenderPart& p
   const std::vector<bool> lit = litMaterials(source, options.lighting);
   const Scene scene{pieces, source, lit, joined(pieces)};
   const LightPoints points(scene.all.mesh);
-  const auto openness = measure(scene, points, options);
-  if (!openness) return tl::unexpected(openness.error());
+  ASSIGN_OR_RETURN(const auto openness, measure(scene, points, options));
   std::vector<std::uint32_t> light;
-  light.reserve(openness->size());
-  for (std::size_t n = 0; n < openness->size(); ++n) {
+  light.reserve(openness.size());
+  for (std::size_t n = 0; n < openness.size(); ++n) {
     const Vec3d normal = normalized(turned(part.light_from_part, points.normals()[n]), {0, 1, 0});
-    const auto level = static_cast<float>(lightAt(normal, (*openness)[n]));
+    const auto level = static_cast<float>(lightAt(normal, openness[n]));
     light.push_back(surfaceColor({level, level, level, 1}));
   }
   for (std::size_t n = 0; n < pieces.size(); ++n) {

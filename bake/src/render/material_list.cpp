@@ -2,6 +2,8 @@
 
 #include <span>
 
+#include "galactic/try.h"
+
 namespace galactic::bake {
 namespace {
 
@@ -54,10 +56,9 @@ Result<void> MaterialList::bake(const std::vector<EmbeddedTexture>& embedded,
                                 const TextureBakeOptions& options) {
   of_asset_.clear();
   const std::size_t first = source_.baked.materials.size();
-  auto baked =
-      bakeMaterials(std::span(source_.materials).subspan(first), embedded, folder, options);
-  if (!baked) return tl::unexpected(baked.error());
-  galactic::bake::append(source_.baked, *baked);
+  ASSIGN_OR_RETURN(auto baked, bakeMaterials(std::span(source_.materials).subspan(first), embedded,
+                                             folder, options));
+  galactic::bake::append(source_.baked, baked);
   return {};
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "galactic/bake/parallel_for.h"
+#include "galactic/try.h"
 #include "render/lattice.h"
 #include "render/light.h"
 #include "render/part_mesh.h"
@@ -45,18 +46,16 @@ Result<void> checkSource(const RenderSource& source) {
 
 Result<PartWork> bakePart(const RenderPart& part, const RenderSource& source,
                           const RenderBakeOptions& options) {
-  auto mesh = assemblePart(part, source);
-  if (!mesh) return tl::unexpected(mesh.error());
-  std::vector<PartMesh> pieces = connectedPieces(*mesh);
-  *mesh = {};
+  ASSIGN_OR_RETURN(auto mesh, assemblePart(part, source));
+  std::vector<PartMesh> pieces = connectedPieces(mesh);
+  mesh = {};
   std::vector<FinishedPiece> finished(pieces.size());
   parallelFor(options.jobs, pieces.size(), [&](std::size_t n) {
     finished[n] = finishPiece(std::move(pieces[n]), source, options.error);
   });
   const std::vector<bool> lit = litMaterials(source, options.lighting);
   if (std::find(lit.begin(), lit.end(), true) != lit.end()) {
-    auto lighted = lightPieces(finished, part, source, options);
-    if (!lighted) return tl::unexpected(lighted.error());
+    RETURN_IF_ERROR(lightPieces(finished, part, source, options));
   }
   PartWork work;
   work.model = cutModel(finished, source, options.jobs);
@@ -89,7 +88,7 @@ void countSource(const SourceMesh& mesh, BakedRenderMeshes& meshes) {
 
 Result<BakedRenderMeshes> bakeRenderMeshes(const RenderSource& source,
                                            const RenderBakeOptions& options) {
-  if (auto checked = checkSource(source); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(checkSource(source));
   // Many parts at once, or the pieces of one.
   const bool alone = source.parts.size() < options.jobs;
   RenderBakeOptions part_options = options;

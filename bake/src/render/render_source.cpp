@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "galactic/kinematics.h"
+#include "galactic/try.h"
 #include "import/affine.h"
 #include "render/material_list.h"
 #include "robot/link_geometry.h"
@@ -142,9 +143,7 @@ Result<RenderSource> sceneRenderSource(const SourceAsset& scene, const fs::path&
                            .semantic = semantics.numberOf(nameOf(scene, instance))});
   }
   if (source.semantics.empty()) source.semantics.push_back(scene.name);
-  if (auto baked = materials.bake(scene.textures, folder, options); !baked) {
-    return tl::unexpected(baked.error());
-  }
+  RETURN_IF_ERROR(materials.bake(scene.textures, folder, options));
   return source;
 }
 
@@ -161,9 +160,7 @@ Result<RenderSource> objectRenderSource(const SourceAsset& object, const fs::pat
 Result<RenderSource> robotRenderSource(const SourceRobot& robot, const fs::path& folder,
                                        const TextureBakeOptions& options) {
   RenderSource source;
-  if (auto placed = RobotPlacer(robot, source).place(folder, options); !placed) {
-    return tl::unexpected(placed.error());
-  }
+  RETURN_IF_ERROR(RobotPlacer(robot, source).place(folder, options));
   return source;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "galactic/bake/parallel_for.h"
+#include "galactic/try.h"
 #include "import/affine.h"
 #include "sphere_budget.h"
 #include "sphere_set/authored_spheres.h"
@@ -283,9 +284,8 @@ class BudgetedCurves {
 
   Result<void> refineGroup(std::size_t group, bool unlimited, unsigned jobs) {
     if (!curves_[group]) {
-      auto curve = SphereCurve::begin(plans_[group].mesh, plans_[group].fit);
-      if (!curve) return tl::unexpected(curve.error());
-      curves_[group] = std::move(*curve);
+      ASSIGN_OR_RETURN(auto curve, SphereCurve::begin(plans_[group].mesh, plans_[group].fit));
+      curves_[group] = std::move(curve);
     }
     return unlimited ? curves_[group]->finish(jobs) : curves_[group]->refine(jobs);
   }
@@ -320,14 +320,13 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
   }
   const SphereBudget budget = budgetOf(task, by_hand);
   BudgetedCurves curves(plans, groups, task);
-  if (auto spent = curves.spend(budget); !spent) return tl::unexpected(spent.error());
+  RETURN_IF_ERROR(curves.spend(budget));
   std::size_t fitted = 0;
   std::vector<std::optional<SphereSet>> sets = curves.take();
   for (std::size_t n = 0; n < plans.size(); ++n) {
     if (plans[n].authored) {
-      const auto taken =
-          takeByHand(plans[n], task.robot.links[baked[n].link].name, baked[n], warnings);
-      if (!taken) return tl::unexpected(taken.error());
+      RETURN_IF_ERROR(
+          takeByHand(plans[n], task.robot.links[baked[n].link].name, baked[n], warnings));
     } else if (plans[n].clipped) {
       warnings.push_back(fmt::format(
           "link '{}': all of it is lower than the clip height at the start pose, so it gets no "

@@ -8,6 +8,7 @@
 
 #include "flat_kinematics.h"
 #include "galactic/nearest_name.h"
+#include "galactic/try.h"
 #include "group_spheres.h"
 #include "import/affine.h"
 #include "link_geometry.h"
@@ -123,7 +124,7 @@ class RobotBaker {
     baked_.kinematics = flattenKinematics(robot_, recipe_);
     warnOfAssumedLimits();
     makeSurfaces();
-    if (auto made = makeSpheres(); !made) return tl::unexpected(made.error());
+    RETURN_IF_ERROR(makeSpheres());
     {
       const StageTimer timer(baked_.times.self_collision);
       baked_.pairs = classifyPairs(baked_, ignoredPairs());
@@ -167,9 +168,8 @@ class RobotBaker {
     const std::vector<Pose> world_from_link = startPoses(fitted);
     const auto groups = findRigidGroups(robot_, recipe_, startTransforms(baked_.kinematics));
     const SphereTask task{robot_, recipe_, options_, fitted, world_from_link};
-    auto made = makeGroupSpheres(groups, task, baked_.warnings);
-    if (!made) return tl::unexpected(made.error());
-    baked_.groups = std::move(*made);
+    ASSIGN_OR_RETURN(auto made, makeGroupSpheres(groups, task, baked_.warnings));
+    baked_.groups = std::move(made);
     const bool any =
         std::any_of(baked_.groups.begin(), baked_.groups.end(),
                     [](const BakedGroup& group) { return !group.spheres.spheres.empty(); });
@@ -278,7 +278,7 @@ class RobotBaker {
 Result<BakedRobot> bakeRobot(const SourceRobot& robot, const RobotRecipe* recipe,
                              const RobotBakeOptions& options) {
   if (recipe != nullptr) {
-    if (auto fits = checkRecipe(*recipe, robot); !fits) return tl::unexpected(fits.error());
+    RETURN_IF_ERROR(checkRecipe(*recipe, robot));
   }
   for (const auto& checked :
        {checkNames(robot, recipe), checkShapeOptions(options), checkHandSpheres(robot, options)}) {

@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include "galactic/try.h"
+
 namespace galactic::bake {
 
 SnappedSpheres snapRadii(const std::vector<HandSphere>& by_hand, const std::vector<float>& radii) {
@@ -33,13 +35,12 @@ SnappedSpheres snapRadii(const std::vector<HandSphere>& by_hand, const std::vect
 
 Result<SphereSet> authoredSphereSet(const TriangleMesh& mesh, std::vector<SetSphere> spheres,
                                     const SphereSetOptions& options) {
-  auto quality = measureSphereSet(mesh, spheres, options);
-  if (!quality) return tl::unexpected(quality.error());
+  ASSIGN_OR_RETURN(auto quality, measureSphereSet(mesh, spheres, options));
   SphereSet set;
   set.spheres = std::move(spheres);
-  set.quality = *quality;
-  set.guaranteed_gap = quality->gap.max;
-  set.guaranteed_protrusion = quality->protrusion.max;
+  set.quality = quality;
+  set.guaranteed_gap = quality.gap.max;
+  set.guaranteed_protrusion = quality.protrusion.max;
   set.meets_tolerances = set.guaranteed_gap <= static_cast<double>(options.eps) &&
                          set.guaranteed_protrusion <= static_cast<double>(options.tau);
   return set;

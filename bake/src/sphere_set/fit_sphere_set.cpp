@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "galactic/bake/sphere_set.h"
+#include "galactic/try.h"
 #include "sphere_set/prepared_fit.h"
 
 namespace galactic::bake {
@@ -19,9 +20,7 @@ Result<SphereSet> fitWithin(const TriangleMesh& mesh, const SphereSetOptions& op
   auto curve = SphereCurve::begin(mesh, options);
   if (!curve) return tl::unexpected(curve.error());
   while (!curve->complete()) {
-    if (auto refined = curve->refine(options.jobs); !refined) {
-      return tl::unexpected(refined.error());
-    }
+    RETURN_IF_ERROR(curve->refine(options.jobs));
   }
   return curve->take(curve->points().size() - 1);
 }
@@ -29,16 +28,15 @@ Result<SphereSet> fitWithin(const TriangleMesh& mesh, const SphereSetOptions& op
 }  // namespace
 
 Result<SphereSet> fitSphereSet(const TriangleMesh& mesh, const SphereSetOptions& options) {
-  const auto prepared = sphere_fit::prepareFit(mesh, options);
-  if (!prepared) return tl::unexpected(prepared.error());
+  ASSIGN_OR_RETURN(const auto prepared, sphere_fit::prepareFit(mesh, options));
   sphere_fit::SurfacePoints surface;
-  const Cover cover = sphere_fit::solveCover(prepared->task, {}, surface);
+  const Cover cover = sphere_fit::solveCover(prepared.task, {}, surface);
   if (cover.spheres.empty()) return sphere_fit::nothingToCover();
   if (options.max_spheres > 0 && cover.spheres.size() > options.max_spheres) {
     return fitWithin(mesh, options);
   }
-  const Yardstick yardstick(prepared->task);
-  SphereSet set = finishedSet(prepared->task, yardstick, cover);
+  const Yardstick yardstick(prepared.task);
+  SphereSet set = finishedSet(prepared.task, yardstick, cover);
   yardstick.complete(cover.spheres, set.quality);
   return set;
 }
@@ -46,8 +44,7 @@ Result<SphereSet> fitSphereSet(const TriangleMesh& mesh, const SphereSetOptions&
 Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
                                           const std::vector<SetSphere>& spheres,
                                           const SphereSetOptions& options) {
-  const auto prepared = sphere_fit::prepareFit(mesh, options);
-  if (!prepared) return tl::unexpected(prepared.error());
+  ASSIGN_OR_RETURN(const auto prepared, sphere_fit::prepareFit(mesh, options));
   if (spheres.empty()) {
     return fail(ErrorCode::kInvalidInput, "spheres",
                 "there are none to measure; give at least one sphere");
@@ -67,7 +64,7 @@ Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
     }
     placed.push_back({center, sphere.radius_index, 0});
   }
-  const Yardstick yardstick(prepared->task);
+  const Yardstick yardstick(prepared.task);
   SphereSetQuality quality = yardstick.measureLengths(placed);
   yardstick.complete(placed, quality);
   return quality;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "galactic/try.h"
 #include "sphere_set/check_options.h"
 
 namespace galactic::bake::sphere_fit {
@@ -17,8 +18,8 @@ bool comesFirst(const SetSphere& a, const SetSphere& b) {
 }  // namespace
 
 Result<PreparedFit> prepareFit(const TriangleMesh& mesh, const SphereSetOptions& options) {
-  if (auto checked = checkOptions(options); !checked) return tl::unexpected(checked.error());
-  if (auto checked = checkMesh(mesh); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(checkOptions(options));
+  RETURN_IF_ERROR(checkMesh(mesh));
   PreparedFit prepared;
   prepared.solid = std::make_unique<const ExteriorSolid>(
       mesh, static_cast<double>(options.radii.front()), options.jobs);

@@ -11,6 +11,7 @@
 #include "galactic/bake/parallel_for.h"
 #include "galactic/bake/render_textures.h"
 #include "galactic/bake/source_file.h"
+#include "galactic/try.h"
 #include "textures/appearance.h"
 #include "textures/texture_library.h"
 #include "textures/texture_source.h"
@@ -124,7 +125,7 @@ Result<BakedMaterials> bakeMaterials(std::span<const SourceMaterial> materials,
                                      std::span<const EmbeddedTexture> embedded,
                                      const std::filesystem::path& folder,
                                      const TextureBakeOptions& options) {
-  if (auto checked = checkOptions(options); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(checkOptions(options));
   const TextureSources textures = openTextures(materials, embedded, folder);
   std::vector<SourceResult> results(textures.sources.size());
   for (std::size_t m = 0; m < materials.size(); ++m) {

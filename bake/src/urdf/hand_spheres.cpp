@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "galactic/bake/triangle_mesh.h"
+#include "galactic/try.h"
 #include "urdf/urdf_frames.h"
 #include "urdf/urdf_process.h"
 
@@ -35,8 +36,7 @@ Result<HandSpheres> finish(HandSpheres spheres, const fs::path& path, std::strin
   std::erase_if(spheres.links, [](const LinkSpheres& link) { return link.spheres.empty(); });
   for (LinkSpheres& link : spheres.links) {
     for (HandSphere& sphere : link.spheres) {
-      auto checked = checkSphere(sphere, fmt::format("{}: link '{}'", path.string(), link.link));
-      if (!checked) return tl::unexpected(checked.error());
+      RETURN_IF_ERROR(checkSphere(sphere, fmt::format("{}: link '{}'", path.string(), link.link)));
       sphere.center = transformed(kYUpFromZUp, sphere.center);
     }
   }
@@ -50,10 +50,9 @@ Result<HandSpheres> finish(HandSpheres spheres, const fs::path& path, std::strin
 }  // namespace
 
 Result<HandSpheres> readSpherizedUrdf(const fs::path& path) {
-  const auto model = readUrdf(path, kTimeLimit);
-  if (!model) return tl::unexpected(model.error());
+  ASSIGN_OR_RETURN(const auto model, readUrdf(path, kTimeLimit));
   HandSpheres spheres;
-  for (const UrdfLink& link : model->links) {
+  for (const UrdfLink& link : model.links) {
     LinkSpheres& set = spheres.links.emplace_back();
     set.link = link.name;
     std::size_t others = 0;
@@ -75,12 +74,11 @@ Result<HandSpheres> readSpherizedUrdf(const fs::path& path) {
 }
 
 Result<HandSpheres> readSrdfSpheres(const fs::path& path) {
-  auto links = readSrdf(path, kTimeLimit);
-  if (!links) return tl::unexpected(links.error());
-  for (LinkSpheres& link : *links) {
+  ASSIGN_OR_RETURN(auto links, readSrdf(path, kTimeLimit));
+  for (LinkSpheres& link : links) {
     if (link.spheres.size() == 1 && link.spheres.front().radius == 0) link.spheres.clear();
   }
-  return finish({.links = std::move(*links), .warnings = {}}, path,
+  return finish({.links = std::move(links), .warnings = {}}, path,
                 "<sphere> in a <link_sphere_approximation>");
 }
 

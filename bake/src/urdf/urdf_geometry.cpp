@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "galactic/bake/triangle_mesh.h"
+#include "galactic/try.h"
 #include "import/source_files.h"
 #include "urdf/urdf_frames.h"
 
@@ -200,9 +201,8 @@ Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const UrdfShape& 
   }
   auto loaded = loaded_.find(resolution.file);
   if (loaded == loaded_.end()) {
-    auto mesh = loadFile(resolution.file);
-    if (!mesh) return tl::unexpected(mesh.error());
-    loaded = loaded_.emplace(resolution.file, std::move(*mesh)).first;
+    ASSIGN_OR_RETURN(auto mesh, loadFile(resolution.file));
+    loaded = loaded_.emplace(resolution.file, std::move(mesh)).first;
   }
   const LoadedMesh& mesh = loaded->second;
   if (!mesh.index) {
@@ -224,7 +224,7 @@ Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const UrdfShape& 
 Result<std::optional<LinkShape>> GeometryBuilder::convert(const UrdfShape& shape,
                                                           const std::string& place,
                                                           std::size_t& lost) {
-  if (auto checked = checkShape(shape, place); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(checkShape(shape, place));
   if (!hasSize(shape)) {
     warn(place, fmt::format("a {} with a size of 0 is left out", sizeName(shape.geometry)));
     return std::nullopt;
@@ -277,12 +277,11 @@ Result<std::size_t> GeometryBuilder::addList(const UrdfLink& link, const ShapeLi
 
 Result<void> GeometryBuilder::addShapes(const UrdfLink& from, SourceLink& to) {
   const std::size_t warnings_before = robot_.warnings.size();
-  const auto lost_collisions = addList(from, {from.collisions, to.collisions, "collision"});
-  if (!lost_collisions) return tl::unexpected(lost_collisions.error());
-  const auto lost_visuals = addList(from, {from.visuals, to.visuals, "visual"});
-  if (!lost_visuals) return tl::unexpected(lost_visuals.error());
-  const bool lost_all = from.collisions.empty() ? *lost_visuals != 0 && to.visuals.empty()
-                                                : *lost_collisions != 0 && to.collisions.empty();
+  ASSIGN_OR_RETURN(const auto lost_collisions,
+                   addList(from, {from.collisions, to.collisions, "collision"}));
+  ASSIGN_OR_RETURN(const auto lost_visuals, addList(from, {from.visuals, to.visuals, "visual"}));
+  const bool lost_all = from.collisions.empty() ? lost_visuals != 0 && to.visuals.empty()
+                                                : lost_collisions != 0 && to.collisions.empty();
   const std::string place = fmt::format("{}: link '{}'", urdf_.string(), from.name);
   if (lost_all && !options_.allow_missing) {
     const bool collision = !from.collisions.empty();

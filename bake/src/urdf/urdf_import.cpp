@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "galactic/try.h"
 #include "import/source_files.h"
 #include "urdf/urdf_frames.h"
 #include "urdf/urdf_geometry.h"
@@ -77,30 +78,21 @@ Result<SourceRobot> importUrdf(const fs::path& path, const UrdfImportOptions& op
     return fail(ErrorCode::kUnsupported, path.string(),
                 "the up axis of a URDF can only be Z or Y; turn the robot's root otherwise");
   }
-  auto model = readUrdf(path, options.time_limit);
-  if (!model) return tl::unexpected(model.error());
+  ASSIGN_OR_RETURN(auto model, readUrdf(path, options.time_limit));
   SourceRobot robot;
-  robot.name = model->name;
-  robot.warnings = std::move(model->warnings);
+  robot.name = model.name;
+  robot.warnings = std::move(model.warnings);
   const std::string where = path.string();
-  const auto tree = orderTree(*model, where);
-  if (!tree) return tl::unexpected(tree.error());
-  if (auto checked = checkJoints(*model, where, robot.warnings); !checked) {
-    return tl::unexpected(checked.error());
-  }
-  const auto mimics = resolveMimics(*model, where);
-  if (!mimics) return tl::unexpected(mimics.error());
-  robot.links.resize(tree->size());
-  addJoints(*model, *tree, *mimics, options.up, robot);
+  ASSIGN_OR_RETURN(const auto tree, orderTree(model, where));
+  RETURN_IF_ERROR(checkJoints(model, where, robot.warnings));
+  ASSIGN_OR_RETURN(const auto mimics, resolveMimics(model, where));
+  robot.links.resize(tree.size());
+  addJoints(model, tree, mimics, options.up, robot);
   GeometryBuilder geometry(path, options, robot);
-  for (std::size_t i = 0; i < tree->size(); ++i) {
-    if (auto added = geometry.addShapes(model->links[(*tree)[i].link], robot.links[i]); !added) {
-      return tl::unexpected(added.error());
-    }
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    RETURN_IF_ERROR(geometry.addShapes(model.links[tree[i].link], robot.links[i]));
   }
-  if (auto finished = finishFiles(robot, path); !finished) {
-    return tl::unexpected(finished.error());
-  }
+  RETURN_IF_ERROR(finishFiles(robot, path));
   return robot;
 }
 

@@ -8,6 +8,7 @@
 
 #include "galactic/bake/urdf_import.h"
 #include "galactic/mapped_file.h"
+#include "galactic/try.h"
 #include "import/isolated_process.h"
 #include "import/transfer_archive.h"
 #include "urdf/urdf_reader.h"
@@ -105,13 +106,10 @@ Result<std::string> readText(const fs::path& path) {
         ErrorCode::kInvalidInput, path.string(),
         fmt::format("it has {} bytes, at most {} are read; is it a URDF?", size, kMaxUrdfBytes));
   }
-  const auto file = MappedFile::open(path);
-  if (!file) return tl::unexpected(file.error());
-  const auto bytes = file->bytes();
+  ASSIGN_OR_RETURN(const auto file, MappedFile::open(path));
+  const auto bytes = file.bytes();
   std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (const auto fits = checkUrdfText(text, path.string()); !fits) {
-    return tl::unexpected(fits.error());
-  }
+  RETURN_IF_ERROR(checkUrdfText(text, path.string()));
   return text;
 }
 
@@ -142,12 +140,11 @@ Error processFailure(const fs::path& path, const ProcessFailure& failure) {
 /// Parses a file in a child: `parse` gives a Result<T>.
 template <class T, class Parse>
 Result<T> parseIsolated(const fs::path& path, std::chrono::seconds time_limit, Parse parse) {
-  const auto text = readText(path);
-  if (!text) return tl::unexpected(text.error());
+  ASSIGN_OR_RETURN(const auto text, readText(path));
   const auto work = [&](ProcessChannel& channel) {
     const TransferSink sink = [&](std::span<const std::byte> bytes) { channel.write(bytes); };
     TransferWriter writer(sink);
-    const Result<T> parsed = parse(*text, path.string());
+    const Result<T> parsed = parse(text, path.string());
     writer(parsed.has_value());
     if (parsed) {
       writer(*parsed);

@@ -14,6 +14,7 @@
 #include <string_view>
 #include <utility>
 
+#include "galactic/try.h"
 #include "import/affine.h"
 #include "urdf/urdf_reader_text.h"
 
@@ -256,11 +257,10 @@ Result<UrdfModel> parseUrdf(const std::string& text, const std::string& where) {
 
 Result<std::vector<LinkSpheres>> parseSrdf(const std::string& text, const std::string& where) {
   TiXmlDocument document;
-  const auto robot = robotElement(document, text, where);
-  if (!robot) return tl::unexpected(robot.error());
+  ASSIGN_OR_RETURN(const auto robot, robotElement(document, text, where));
   std::vector<LinkSpheres> links;
   constexpr const char* kTag = "link_sphere_approximation";
-  for (const auto* e = (*robot)->FirstChildElement(kTag); e != nullptr;
+  for (const auto* e = robot->FirstChildElement(kTag); e != nullptr;
        e = e->NextSiblingElement(kTag)) {
     const char* name = e->Attribute("link");
     if (name == nullptr) {

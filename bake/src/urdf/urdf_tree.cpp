@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "galactic/bake/triangle_mesh.h"
+#include "galactic/try.h"
 #include "import/affine.h"
 
 namespace galactic::bake {
@@ -139,10 +140,9 @@ std::vector<TreeLink> Tree::walk(std::size_t root) const {
 }
 
 Result<std::vector<TreeLink>> Tree::order() {
-  if (auto connected = connect(); !connected) return tl::unexpected(connected.error());
-  const auto root = findRoot();
-  if (!root) return tl::unexpected(root.error());
-  std::vector<TreeLink> ordered = walk(*root);
+  RETURN_IF_ERROR(connect());
+  ASSIGN_OR_RETURN(const auto root, findRoot());
+  std::vector<TreeLink> ordered = walk(root);
   if (ordered.size() == model_.links.size()) return ordered;
   std::vector<bool> reached(model_.links.size(), false);
   for (const TreeLink& link : ordered) reached[link.link] = true;
@@ -152,7 +152,7 @@ Result<std::vector<TreeLink>> Tree::order() {
   }
   return invalid(where_, fmt::format("links {} hang in a loop of joints, apart from the root '{}'; "
                                      "a robot is one tree",
-                                     namesOf(left), model_.links[*root].name));
+                                     namesOf(left), model_.links[root].name));
 }
 
 Result<void> checkAxis(UrdfJoint& joint, const std::string& place,

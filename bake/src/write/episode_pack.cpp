@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "galactic/bake/triangle_mesh.h"
+#include "galactic/try.h"
 #include "pack_payload.h"
 
 namespace galactic::bake {
@@ -137,7 +138,7 @@ Result<std::vector<std::byte>> encodeEpisodePack(const SourceEpisodes& source,
                             "into several packs",
                             bytes >> 20U));
   }
-  if (auto checked = EpisodeCheck(source).run(); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(EpisodeCheck(source).run());
   FlatBufferBuilder builder(static_cast<std::size_t>(bytes) + 65536);
   const auto provenance_table = provenanceTable(builder, provenance);
   const auto name = builder.CreateString(source.name);
@@ -155,9 +156,8 @@ Result<std::vector<std::byte>> encodeEpisodePack(const SourceEpisodes& source,
 
 Result<std::uint64_t> writeEpisodePack(const std::filesystem::path& path,
                                        const SourceEpisodes& source, const Provenance& provenance) {
-  const auto payload = encodeEpisodePack(source, provenance);
-  if (!payload) return tl::unexpected(payload.error());
-  return writePackFile(path, PackKind::kEpisodes, *payload);
+  ASSIGN_OR_RETURN(const auto payload, encodeEpisodePack(source, provenance));
+  return writePackFile(path, PackKind::kEpisodes, payload);
 }
 
 }  // namespace galactic::bake

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "galactic/try.h"
 #include "pack_payload.h"
 #include "write/render_meshes.h"
 
@@ -111,9 +112,8 @@ Result<std::vector<std::byte>> encodeObjectPack(const BakedObjectSet& set,
 
 Result<std::uint64_t> writeObjectPack(const std::filesystem::path& path, const BakedObjectSet& set,
                                       const Provenance& provenance) {
-  const auto payload = encodeObjectPack(set, provenance);
-  if (!payload) return tl::unexpected(payload.error());
-  return writePackFile(path, PackKind::kObjects, *payload);
+  ASSIGN_OR_RETURN(const auto payload, encodeObjectPack(set, provenance));
+  return writePackFile(path, PackKind::kObjects, payload);
 }
 
 }  // namespace galactic::bake

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "galactic/atomic_file.h"
+#include "galactic/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -75,8 +76,7 @@ std::vector<std::byte> finishPack(FlatBufferBuilder& builder, Offset<schema::Pro
 Result<std::uint64_t> writePackFile(const std::filesystem::path& path, PackKind kind,
                                     std::span<const std::byte> payload) {
   const PackHeader header = makePackHeader(kind, payload);
-  const auto written = writeFileAtomically(path, {std::as_bytes(std::span(&header, 1)), payload});
-  if (!written) return tl::unexpected(written.error());
+  RETURN_IF_ERROR(writeFileAtomically(path, {std::as_bytes(std::span(&header, 1)), payload}));
   return sizeof(header) + payload.size();
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "galactic/try.h"
 #include "pack_payload.h"
 #include "write/render_meshes.h"
 
@@ -153,9 +154,8 @@ Result<std::vector<std::byte>> encodeRobotPack(const BakedRobot& robot,
 
 Result<std::uint64_t> writeRobotPack(const std::filesystem::path& path, const BakedRobot& robot,
                                      const Provenance& provenance) {
-  const auto payload = encodeRobotPack(robot, provenance);
-  if (!payload) return tl::unexpected(payload.error());
-  return writePackFile(path, PackKind::kRobot, *payload);
+  ASSIGN_OR_RETURN(const auto payload, encodeRobotPack(robot, provenance));
+  return writePackFile(path, PackKind::kRobot, payload);
 }
 
 }  // namespace galactic::bake

@@ -8,6 +8,7 @@
 #include "galactic/column_cell.h"
 #include "galactic/pack_header.h"
 #include "galactic/schema/pack_generated.h"
+#include "galactic/try.h"
 #include "pack_payload.h"
 #include "write/render_meshes.h"
 
@@ -131,9 +132,8 @@ Result<std::vector<std::byte>> encodeScenePack(const BakedScene& scene,
 
 Result<std::uint64_t> writeScenePack(const std::filesystem::path& path, const BakedScene& scene,
                                      const Provenance& provenance) {
-  const auto payload = encodeScenePack(scene, provenance);
-  if (!payload) return tl::unexpected(payload.error());
-  return writePackFile(path, PackKind::kScene, *payload);
+  ASSIGN_OR_RETURN(const auto payload, encodeScenePack(scene, provenance));
+  return writePackFile(path, PackKind::kScene, payload);
 }
 
 }  // namespace galactic::bake

@@ -9,6 +9,7 @@
 
 #include "galactic/bake/source_file.h"
 #include "galactic/pack.h"
+#include "galactic/try.h"
 #include "galactic/world.h"
 #include "pack_payload.h"
 
@@ -110,8 +111,7 @@ Result<std::vector<LinkedPack>> linkPacks(std::span<const fs::path> paths,
   linked.reserve(paths.size());
   opened.reserve(paths.size());
   for (const fs::path& path : paths) {
-    auto pack = PackFile::open(path);
-    if (!pack) return tl::unexpected(pack.error());
+    ASSIGN_OR_RETURN(auto pack, PackFile::open(path));
     const fs::path relative = relativeTo(path, folder);
     if (leadsUpwards(relative)) {
       return fail(ErrorCode::kInvalidInput, path.string(),
@@ -119,15 +119,13 @@ Result<std::vector<LinkedPack>> linkPacks(std::span<const fs::path> paths,
                               "the world pack above all its packs",
                               folder.string()));
     }
-    const SourceFile file = describeBytes(relative.generic_string(), pack->bytes());
-    linked.push_back({file.name, pack->kind(), file.bytes, file.hash_low, file.hash_high});
-    opened.push_back(std::move(*pack));
+    const SourceFile file = describeBytes(relative.generic_string(), pack.bytes());
+    linked.push_back({file.name, pack.kind(), file.bytes, file.hash_low, file.hash_high});
+    opened.push_back(std::move(pack));
   }
   std::sort(linked.begin(), linked.end(), comesBefore);
-  if (auto checked = checkList(linked); !checked) return tl::unexpected(checked.error());
-  if (const auto fit = checkTogether(std::move(opened)); !fit) {
-    return tl::unexpected(fit.error());
-  }
+  RETURN_IF_ERROR(checkList(linked));
+  RETURN_IF_ERROR(checkTogether(std::move(opened)));
   return linked;
 }
 
@@ -135,7 +133,7 @@ Result<std::vector<std::byte>> encodeWorldPack(std::vector<LinkedPack> packs,
                                                const Provenance& provenance,
                                                std::span<const OptionText> task) {
   std::sort(packs.begin(), packs.end(), comesBefore);
-  if (auto checked = checkList(packs); !checked) return tl::unexpected(checked.error());
+  RETURN_IF_ERROR(checkList(packs));
   FlatBufferBuilder builder;
   const auto provenance_table = provenanceTable(builder, provenance);
   std::vector<Offset<schema::PackReference>> references;
@@ -155,9 +153,8 @@ Result<std::vector<std::byte>> encodeWorldPack(std::vector<LinkedPack> packs,
 Result<std::uint64_t> writeWorldPack(const fs::path& path, std::vector<LinkedPack> packs,
                                      const Provenance& provenance,
                                      std::span<const OptionText> task) {
-  const auto payload = encodeWorldPack(std::move(packs), provenance, task);
-  if (!payload) return tl::unexpected(payload.error());
-  return writePackFile(path, PackKind::kWorld, *payload);
+  ASSIGN_OR_RETURN(const auto payload, encodeWorldPack(std::move(packs), provenance, task));
+  return writePackFile(path, PackKind::kWorld, payload);
 }
 
 }  // namespace galactic::bake

@@ -9,6 +9,7 @@
 
 #include "bake/dataset/small_dataset.h"
 #include "galactic/bake/scene_dataset.h"
+#include "galactic/try.h"
 
 namespace galactic::test::dataset_faults_test {
 namespace {
@@ -201,11 +202,11 @@ TEST(DatasetsThatNameFilesElsewhere, NeedLeaveToReadThem) {
                 R"({"render_asset": ")" + file + R"(", "up": [0, 1, 0], "front": [0, 0, -1]})");
   };
   const auto composed = [&](bool allow_outside) -> Result<bake::ComposedScene> {
-    const auto dataset = bake::SceneDataset::read(small.config(), {.allow_outside = allow_outside});
-    if (!dataset) return tl::unexpected(dataset.error());
-    const auto survey = dataset->survey("a_home");
+    ASSIGN_OR_RETURN(const auto dataset,
+                     bake::SceneDataset::read(small.config(), {.allow_outside = allow_outside}));
+    const auto survey = dataset.survey("a_home");
     bake::MeshLibrary meshes(bake::datasetMeshOptions());
-    auto scene = dataset->compose("a_home", meshes);
+    auto scene = dataset.compose("a_home", meshes);
     EXPECT_EQ(survey.has_value(), scene.has_value());
     return scene;
   };

@@ -11,6 +11,7 @@
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/triangle_mesh.h"
+#include "galactic/try.h"
 #include "support/asset_mesh.h"
 
 namespace galactic::test::published_episodes_test {
@@ -52,11 +53,10 @@ double distance(const Point& a, const Vec3& b) {
 Result<bake::TriangleMesh> meshOf(const std::string& name, bake::UpAxis up) {
   bake::MeshImportOptions options;
   options.up = up;
-  auto asset = bake::importMesh(assetsFolder() / "ycb" / name / "textured.obj", options);
-  if (!asset) return tl::unexpected(asset.error());
-  auto clean = bake::placeAndClean(*asset);
-  if (!clean) return tl::unexpected(clean.error());
-  return std::move(clean->mesh);
+  ASSIGN_OR_RETURN(auto asset,
+                   bake::importMesh(assetsFolder() / "ycb" / name / "textured.obj", options));
+  ASSIGN_OR_RETURN(auto clean, bake::placeAndClean(asset));
+  return std::move(clean.mesh);
 }
 
 TEST(PublishedEpisodes, AreReadWhole) {

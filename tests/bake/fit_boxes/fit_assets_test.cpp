@@ -9,6 +9,7 @@
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/oriented_box.h"
 #include "galactic/bake/stable_poses.h"
+#include "galactic/try.h"
 #include "support/asset_mesh.h"
 
 namespace galactic::bake::fit_assets_test {
@@ -26,11 +27,9 @@ class ScannedObject : public testing::TestWithParam<const char*> {};
 Result<TriangleMesh> loadObject(const std::string& relative) {
   MeshImportOptions options;
   options.up = UpAxis::kZ;
-  auto asset = importMesh(test::assetsFolder() / relative, options);
-  if (!asset) return tl::unexpected(asset.error());
-  auto clean = placeAndClean(*asset);
-  if (!clean) return tl::unexpected(clean.error());
-  return std::move(clean->mesh);
+  ASSIGN_OR_RETURN(auto asset, importMesh(test::assetsFolder() / relative, options));
+  ASSIGN_OR_RETURN(auto clean, placeAndClean(asset));
+  return std::move(clean.mesh);
 }
 
 TEST_P(ScannedObject, LiesInItsBoxAndStandsInItsPoses) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "galactic/bake/sphere_set.h"
+#include "galactic/try.h"
 #include "sphere_set/shapes.h"
 #include "support/asset_mesh.h"
 
@@ -32,11 +33,9 @@ std::vector<Scan> scans() {
 Result<TriangleMesh> loadScan(const std::string& file) {
   MeshImportOptions options;
   options.up = UpAxis::kZ;
-  const auto asset = importMesh(test::assetsFolder() / file, options);
-  if (!asset) return tl::unexpected(asset.error());
-  auto clean = placeAndClean(*asset);
-  if (!clean) return tl::unexpected(clean.error());
-  return std::move(clean->mesh);
+  ASSIGN_OR_RETURN(const auto asset, importMesh(test::assetsFolder() / file, options));
+  ASSIGN_OR_RETURN(auto clean, placeAndClean(asset));
+  return std::move(clean.mesh);
 }
 
 TEST(SphereSetsOfScans, AreLessThanHalfOfThePublishedRules) {

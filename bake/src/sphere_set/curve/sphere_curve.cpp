@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "galactic/bake/sphere_set.h"
+#include "galactic/try.h"
 #include "sphere_set/curve/exchange_search.h"
 #include "sphere_set/gaps.h"
 #include "sphere_set/prepared_fit.h"
@@ -188,9 +189,8 @@ SphereCurve::SphereCurve(SphereCurve&&) noexcept = default;
 SphereCurve& SphereCurve::operator=(SphereCurve&&) noexcept = default;
 
 Result<SphereCurve> SphereCurve::begin(const TriangleMesh& mesh, const SphereSetOptions& options) {
-  auto prepared = sphere_fit::prepareFit(mesh, options);
-  if (!prepared) return tl::unexpected(prepared.error());
-  return SphereCurve(std::make_unique<Fitter>(std::move(*prepared), options.max_spheres));
+  ASSIGN_OR_RETURN(auto prepared, sphere_fit::prepareFit(mesh, options));
+  return SphereCurve(std::make_unique<Fitter>(std::move(prepared), options.max_spheres));
 }
 
 Result<void> SphereCurve::refine(unsigned jobs) { return fitter_->refine(jobs); }
