@@ -16,7 +16,7 @@
 #include "galactic/bake/render_baker.h"
 #include "galactic/bake/render_source.h"
 #include "galactic/bake/urdf_import.h"
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -15,7 +15,7 @@
 #include "column_query_arena.h"
 #include "column_query_dense.h"
 #include "column_query_scenes.h"
-#include "query_workload.h"
+#include "inspect/query_workload.h"
 
 namespace galactic::bench {
 namespace {

@@ -6,8 +6,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "galactic/column_cell.h"
 #include "galactic/scene.h"
+#include "layout/column_cell.h"
 
 namespace galactic::bench {
 namespace {

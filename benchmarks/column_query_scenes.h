@@ -6,8 +6,8 @@
 #include "column_query_arena.h"
 #include "galactic/column_grid.h"
 #include "galactic/pack.h"
-#include "query_workload.h"
-#include "support/grid_builder.h"
+#include "inspect/query_workload.h"
+#include "support/packs/grid_builder.h"
 
 namespace galactic::bench {
 

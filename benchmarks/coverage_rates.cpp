@@ -25,10 +25,10 @@
 #include "galactic/bake/grid_encoder.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/triangle_mesh.h"
-#include "galactic/try.h"
-#include "support/column_oracle.h"
-#include "support/distance_oracle.h"
-#include "support/encoded_grid_view.h"
+#include "support/oracles/column_oracle.h"
+#include "support/oracles/distance_oracle.h"
+#include "support/oracles/encoded_grid_view.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

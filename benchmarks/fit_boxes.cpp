@@ -24,7 +24,7 @@
 #include "galactic/bake/oriented_box.h"
 #include "galactic/bake/stable_poses.h"
 #include "galactic/bake/triangle_mesh.h"
-#include "support/box_oracle.h"
+#include "support/oracles/box_oracle.h"
 
 namespace galactic::bake {
 namespace {

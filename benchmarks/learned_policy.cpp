@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "support/aligned_bytes.h"
-#include "support/policy_networks.h"
+#include "support/homes/policy_networks.h"
 
 namespace {
 

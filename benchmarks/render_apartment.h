@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "galactic/batch_renderer.h"
-#include "support/render_model_builder.h"
+#include "support/packs/render_model_builder.h"
 
 namespace galactic {
 

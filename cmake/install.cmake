@@ -21,8 +21,7 @@ endif()
 set(GALACTIC_PACKAGE_FOLDER ${CMAKE_INSTALL_LIBDIR}/cmake/galactic)
 set_target_properties(galactic PROPERTIES EXPORT_NAME runtime)
 install(TARGETS galactic EXPORT galacticTargets COMPONENT dev)
-install(DIRECTORY runtime/include/galactic DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev
-        PATTERN try.h EXCLUDE)
+install(DIRECTORY runtime/include/galactic DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 install(EXPORT galacticTargets NAMESPACE galactic:: DESTINATION ${GALACTIC_PACKAGE_FOLDER} COMPONENT dev)
 configure_package_config_file(cmake/galacticConfig.cmake.in ${PROJECT_BINARY_DIR}/galacticConfig.cmake
   INSTALL_DESTINATION ${GALACTIC_PACKAGE_FOLDER} NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)

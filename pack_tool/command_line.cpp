@@ -13,9 +13,9 @@
 #include <string_view>
 
 #include "galactic/error.h"
-#include "galactic/nearest_name.h"
-#include "galactic/number_text.h"
 #include "pack_tool/pictures/figure_picture.h"
+#include "support/nearest_name.h"
+#include "support/number_text.h"
 
 namespace galactic::pack_tool {
 

@@ -2,7 +2,7 @@
 #include <tl/expected.hpp>
 #include <variant>
 
-#include "pack_tool/verbs.h"
+#include "pack_tool/verbs/verbs.h"
 
 namespace galactic::pack_tool {
 

@@ -3,8 +3,8 @@
 #include <new>
 #include <stdexcept>
 
-#include "galactic/out_of_memory.h"
 #include "pack_tool/command_line.h"
+#include "support/out_of_memory.h"
 
 namespace galactic::pack_tool {
 

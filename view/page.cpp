@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "galactic/try.h"
+#include "support/try.h"
 #include "view/page_run.h"
 
 namespace galactic {

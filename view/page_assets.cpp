@@ -12,7 +12,7 @@
 #include "galactic/robot.h"
 #include "galactic/scene.h"
 #include "galactic/schema/pack_generated.h"
-#include "galactic/try.h"
+#include "support/try.h"
 #include "view/page_grid.h"
 
 namespace galactic {

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "galactic/render_texels.h"
-#include "galactic/try.h"
+#include "layout/render_texels.h"
 #include "pictures/png_file.h"
+#include "support/try.h"
 #include "view/render_surfaces.h"
 
 namespace galactic {

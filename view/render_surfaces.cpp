@@ -6,8 +6,8 @@
 #include <tuple>
 #include <utility>
 
-#include "galactic/render_layout.h"
 #include "galactic/schema/pack_generated.h"
+#include "layout/render_layout.h"
 
 namespace galactic {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "galactic/pack.h"
-#include "galactic/render_mesh_builder.h"
 #include "galactic/render_meshes.h"
+#include "layout/render_mesh_builder.h"
 
 namespace galactic {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "galactic/kinematics.h"
-#include "galactic/try.h"
+#include "support/try.h"
 #include "view/glb_file.h"
 #include "view/render_glb.h"
 

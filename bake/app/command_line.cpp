@@ -13,9 +13,9 @@
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/toml_table.h"
 #include "galactic/error.h"
-#include "galactic/nearest_name.h"
-#include "galactic/printable.h"
-#include "galactic/try.h"
+#include "support/nearest_name.h"
+#include "support/printable.h"
+#include "support/try.h"
 #include "terminal.h"
 
 namespace galactic::bake {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "galactic/printable.h"
+#include "support/printable.h"
 #include "terminal.h"
 #include "views.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "galactic/printable.h"
 #include "report.h"
+#include "support/printable.h"
 #include "views.h"
 
 namespace galactic::bake {

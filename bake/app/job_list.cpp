@@ -4,7 +4,7 @@
 #include <system_error>
 
 #include "command.h"
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -16,9 +16,9 @@
 #include "command.h"
 #include "followers.h"
 #include "galactic/bake/robot_recipe.h"
-#include "galactic/out_of_memory.h"
 #include "report.h"
 #include "report_check.h"
+#include "support/out_of_memory.h"
 #include "terminal.h"
 
 namespace galactic::bake {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "galactic/printable.h"
+#include "support/printable.h"
 #include "terminal.h"
 #include "views.h"
 

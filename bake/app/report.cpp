@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
-#include "galactic/atomic_file.h"
-#include "galactic/printable.h"
+#include "support/atomic_file.h"
+#include "support/printable.h"
 #include "terminal.h"
 
 namespace galactic::bake {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <string_view>
 
-#include "galactic/mapped_file.h"
-#include "galactic/printable.h"
-#include "galactic/try.h"
+#include "support/mapped_file.h"
+#include "support/printable.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "galactic/printable.h"
+#include "support/printable.h"
 #include "terminal.h"
 #include "views.h"
 

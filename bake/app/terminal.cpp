@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <map>
 
-#include "galactic/printable.h"
+#include "support/printable.h"
 
 namespace galactic::bake {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "galactic/bake/texture_pack.h"
 #include "galactic/pack_header.h"
-#include "galactic/printable.h"
+#include "support/printable.h"
 
 namespace galactic::bake {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
 
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 
 namespace galactic::bake {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pack_tool/output_file.h"
+#include "pack_tool/support/output_file.h"
 
 namespace galactic::pack_tool {
 

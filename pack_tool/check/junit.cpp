@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "pack_tool/xml_text.h"
+#include "pack_tool/support/xml_text.h"
 
 namespace galactic::pack_tool {
 

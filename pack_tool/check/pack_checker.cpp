@@ -5,7 +5,7 @@
 #include "galactic/pack_reference.h"
 #include "galactic/world.h"
 #include "pack_tool/check/finding.h"
-#include "pack_tool/console.h"
+#include "pack_tool/support/console.h"
 
 namespace galactic::pack_tool {
 

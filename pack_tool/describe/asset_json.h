@@ -1,6 +1,6 @@
 #pragma once
 #include "galactic/pack.h"
-#include "pack_tool/pack_description.h"
+#include "pack_tool/describe/pack_description.h"
 
 namespace galactic::pack_tool {
 

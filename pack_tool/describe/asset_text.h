@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "pack_tool/pack_description.h"
+#include "pack_tool/describe/pack_description.h"
 
 namespace galactic::pack_tool {
 

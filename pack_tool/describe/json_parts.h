@@ -4,8 +4,8 @@
 #include <string>
 
 #include "galactic/schema/pack_generated.h"
-#include "galactic/sphere_set.h"
-#include "pack_tool/pack_description.h"
+#include "galactic/shapes.h"
+#include "pack_tool/describe/pack_description.h"
 
 namespace galactic::pack_tool {
 

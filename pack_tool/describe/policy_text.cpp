@@ -7,7 +7,7 @@
 
 #include "pack_tool/describe/asset_text.h"
 #include "pack_tool/describe/text_parts.h"
-#include "pack_tool/text_table.h"
+#include "pack_tool/support/text_table.h"
 
 namespace galactic::pack_tool {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "galactic/column_cell.h"
 #include "galactic/scene.h"
+#include "layout/column_cell.h"
 #include "pack_tool/describe/asset_json.h"
 #include "pack_tool/describe/json_parts.h"
 

@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "galactic/printable.h"
-#include "pack_tool/text_table.h"
+#include "pack_tool/support/text_table.h"
+#include "support/printable.h"
 
 namespace galactic::pack_tool {
 

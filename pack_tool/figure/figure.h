@@ -8,10 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "galactic/oriented_box.h"
 #include "galactic/pose.h"
 #include "galactic/render_meshes.h"
-#include "galactic/sphere_set.h"
+#include "galactic/shapes.h"
 
 namespace galactic::pack_tool {
 

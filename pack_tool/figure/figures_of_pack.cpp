@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "galactic/schema/pack_generated.h"
-#include "galactic/try.h"
 #include "pack_tool/figure/shared_textures_of.h"
+#include "support/try.h"
 
 namespace galactic::pack_tool {
 

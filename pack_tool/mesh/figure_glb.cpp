@@ -4,8 +4,8 @@
 
 #include <map>
 
-#include "galactic/try.h"
 #include "pack_tool/mesh/sphere_mesh.h"
+#include "support/try.h"
 #include "view/glb_file.h"
 #include "view/render_glb.h"
 

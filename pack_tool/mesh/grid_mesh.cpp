@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "pack_tool/grid_view.h"
+#include "pack_tool/mesh/grid_view.h"
 
 namespace galactic::pack_tool {
 

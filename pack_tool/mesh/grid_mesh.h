@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "galactic/column_grid.h"
-#include "pack_tool/verbs.h"
+#include "pack_tool/verbs/verbs.h"
 
 namespace galactic::pack_tool {
 

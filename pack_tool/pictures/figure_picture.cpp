@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "galactic/printable.h"
 #include "pack_tool/pictures/axes.h"
 #include "pack_tool/pictures/figure_view.h"
 #include "pictures/palette.h"
+#include "support/printable.h"
 
 namespace galactic::pictures {
 

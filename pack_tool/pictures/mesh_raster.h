@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "galactic/pose.h"
-#include "galactic/render_mesh_builder.h"
+#include "layout/render_mesh_builder.h"
 #include "pictures/image.h"
 
 namespace galactic::pictures {

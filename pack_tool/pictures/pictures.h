@@ -5,7 +5,7 @@
 
 #include "galactic/column_grid.h"
 #include "galactic/error.h"
-#include "pack_tool/grid_view.h"
+#include "pack_tool/mesh/grid_view.h"
 #include "pictures/drawing.h"
 #include "pictures/image.h"
 

@@ -13,12 +13,12 @@
 #include <vector>
 
 #include "galactic/batch_renderer.h"
-#include "galactic/printable.h"
 #include "galactic/render_library.h"
-#include "galactic/try.h"
 #include "pack_tool/pictures/axes.h"
 #include "pack_tool/pictures/figure_view.h"
 #include "pictures/palette.h"
+#include "support/printable.h"
+#include "support/try.h"
 
 namespace galactic::pictures {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "galactic/try.h"
 #include "pack_tool/pictures/axes.h"
 #include "pack_tool/pictures/pictures.h"
 #include "pictures/palette.h"
+#include "support/try.h"
 
 namespace galactic::pictures {
 

@@ -4,8 +4,8 @@
 
 #include <string_view>
 
-#include "pack_tool/info_text.h"
-#include "pack_tool/xml_text.h"
+#include "pack_tool/describe/info_text.h"
+#include "pack_tool/support/xml_text.h"
 #include "view/page_data.h"
 
 namespace galactic::pack_tool {

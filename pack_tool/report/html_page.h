@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "pack_tool/pack_description.h"
+#include "pack_tool/describe/pack_description.h"
 #include "pack_tool/report/thumbnails.h"
 
 namespace galactic::pack_tool {

@@ -8,13 +8,13 @@
 
 #include "galactic/scene.h"
 #include "galactic/schema/pack_generated.h"
-#include "galactic/try.h"
 #include "pack_tool/figure/figures_of_pack.h"
-#include "pack_tool/open_scene.h"
 #include "pack_tool/pictures/figure_picture.h"
 #include "pack_tool/pictures/pictures.h"
 #include "pack_tool/pictures/scene_picture.h"
+#include "pack_tool/support/open_scene.h"
 #include "pictures/png_file.h"
+#include "support/try.h"
 
 namespace galactic::pack_tool {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "confinement.h"
 #include "galactic/batch_renderer.h"
-#include "galactic/camera_choice.h"
 #include "galactic/world_models.h"
 #include "galactic/world_views.h"
 #include "simulator.h"

@@ -14,19 +14,19 @@
 #include <utility>
 #include <vector>
 
-#include "galactic/atomic_file.h"
+#include "command_line/options.h"
 #include "galactic/error.h"
-#include "galactic/out_of_memory.h"
 #include "galactic/pack.h"
-#include "galactic/printable.h"
 #include "galactic/scene.h"
-#include "learned_run.h"
-#include "options.h"
-#include "query_benchmark.h"
-#include "recording.h"
-#include "run_report.h"
-#include "simulate.h"
-#include "summary.h"
+#include "inspect/query_benchmark.h"
+#include "inspect/summary.h"
+#include "run/learned_run.h"
+#include "run/recording.h"
+#include "run/run_report.h"
+#include "run/simulate.h"
+#include "support/atomic_file.h"
+#include "support/out_of_memory.h"
+#include "support/printable.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <bit>
 #include <cstring>
 
-#include "galactic/atomic_file.h"
+#include "support/atomic_file.h"
 
 namespace galactic::pictures {
 namespace {

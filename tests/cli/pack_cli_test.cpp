@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "pack_tool/asset_packs.h"
-#include "support/episode_pack_builder.h"
 #include "support/pack_tool_fixture.h"
+#include "support/packs/episode_pack_builder.h"
 #include "support/program_run.h"
 
 namespace galactic::pack_cli_test {

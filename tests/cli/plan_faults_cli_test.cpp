@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "cli/plan_folder.h"
-#include "galactic/part_files.h"
+#include "support/part_files.h"
 
 namespace galactic::test::plan_faults_cli_test {
 namespace {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "support/policy_networks.h"
+#include "support/homes/policy_networks.h"
+#include "support/homes/small_home_models.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
-#include "support/small_home_models.h"
 
 namespace galactic {
 namespace {

@@ -10,9 +10,9 @@
 #include <tuple>
 #include <vector>
 
+#include "support/homes/small_home_models.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
-#include "support/small_home_models.h"
 
 namespace galactic::render_cli_test {
 namespace {

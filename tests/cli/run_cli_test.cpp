@@ -1,10 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/packs/scene_pack_builder.h"
+#include "support/packs/world_pack_builder.h"
 #include "support/program_run.h"
-#include "support/scene_pack_builder.h"
 #include "support/scratch_folder.h"
-#include "support/world_pack_builder.h"
 
 namespace galactic::run_cli_test {
 namespace {

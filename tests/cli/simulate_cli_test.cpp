@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "recording.h"
+#include "run/recording.h"
+#include "support/homes/small_home.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
-#include "support/small_home.h"
 
 namespace galactic::simulate_cli_test {
 namespace {

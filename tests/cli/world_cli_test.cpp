@@ -6,7 +6,7 @@
 
 #include "cli/bake_folder.h"
 #include "galactic/world.h"
-#include "support/world_pack_builder.h"
+#include "support/packs/world_pack_builder.h"
 
 namespace galactic::world_cli_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "galactic/bake/grid_encoder.h"
-#include "galactic/column_cell.h"
+#include "layout/column_cell.h"
 #include "support/source_folder.h"
 
 namespace galactic::bake::packs_example_test {

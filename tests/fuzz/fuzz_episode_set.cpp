@@ -9,7 +9,7 @@
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/episode_set.h"
 #include "galactic/pack.h"
-#include "support/pack_parts.h"
+#include "support/packs/pack_parts.h"
 #include "support/scratch_folder.h"
 
 namespace {

@@ -26,7 +26,7 @@
 #include "galactic/schema/pack_generated.h"
 #include "galactic/shared_textures.h"
 #include "support/aligned_bytes.h"
-#include "support/render_mesh_reader.h"
+#include "support/oracles/render_mesh_reader.h"
 
 namespace {
 

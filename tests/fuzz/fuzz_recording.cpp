@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/option_lines.h"
 #include "finding.h"
 #include "input.h"
-#include "option_lines.h"
-#include "recording.h"
-#include "simulate.h"
-#include "support/small_home.h"
+#include "run/recording.h"
+#include "run/simulate.h"
+#include "support/homes/small_home.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "finding.h"
-#include "support/changed_world.h"
+#include "support/homes/changed_world.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static galactic::test::ChangedWorld world;

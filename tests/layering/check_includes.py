@@ -82,23 +82,27 @@ class Rule:
     third_party: frozenset[str] = frozenset()
     # Whether headers generated from the schema may be included.
     schema: bool = True
+    # Whether the folders of runtime/src that the programs share (SHARED) may be included.
+    shared: bool = False
 
 
 LEAN = frozenset({"fmt", "tl"})
+# What the tools and the bake share with libgalactic, below its interface; never installed.
+SHARED = ("runtime/src/support", "runtime/src/layout")
 # The first rule whose folder holds the file applies.
 RULES = (
     Rule("runtime/include", ("runtime/include",), frozenset({"tl"}), schema=False),
     Rule("runtime/src", ("runtime/include", "runtime/src"), LEAN | {"flatbuffers", "xxhash.h"}),
-    Rule("runtime/pictures", ("runtime/include", "runtime"), LEAN, schema=False),
+    Rule("runtime/pictures", ("runtime/include", "runtime"), LEAN, schema=False, shared=True),
     # xxHash as headers: digests of recordings.
-    Rule("runtime/app", ("runtime/include", "runtime/app", "runtime", "."), LEAN | {"CLI", "xxhash.h"}),
-    Rule("view", ("runtime/include", "runtime", "."), LEAN),
+    Rule("runtime/app", ("runtime/include", "runtime/app", "runtime", "."), LEAN | {"CLI", "xxhash.h"}, shared=True),
+    Rule("view", ("runtime/include", "runtime", "."), LEAN, shared=True),
     Rule("python", ("runtime/include", "python/src"), LEAN, schema=False),
-    Rule("pack_tool", ("runtime/include", "runtime", "."), LEAN | {"CLI", "nlohmann"}),
-    Rule("bake/include", ("runtime/include", "bake/include"), frozenset({"tl"}), schema=False),
+    Rule("pack_tool", ("runtime/include", "runtime", "."), LEAN | {"CLI", "nlohmann"}, shared=True),
+    Rule("bake/include", ("runtime/include", "bake/include"), frozenset({"tl"}), schema=False, shared=True),
     Rule("bake/src", ("runtime/include", "bake/include", "bake/src"),
-         LEAN | {"Eigen", "flatbuffers", "nlohmann", "xxhash.h"}),
-    Rule("bake/app", ("runtime/include", "bake/include", "bake/app"), LEAN | {"CLI", "nlohmann"}),
+         LEAN | {"Eigen", "flatbuffers", "nlohmann", "xxhash.h"}, shared=True),
+    Rule("bake/app", ("runtime/include", "bake/include", "bake/app"), LEAN | {"CLI", "nlohmann"}, shared=True),
 )
 # Whose files a folder must not reach, even by a relative path.
 FORBIDDEN_TARGETS = {"runtime": ("bake", "pack_tool", "tests", "benchmarks"),
@@ -122,7 +126,7 @@ def rule_of(path: pathlib.Path) -> Rule | None:
 
 def resolve(root: pathlib.Path, path: pathlib.Path, header: str, rule: Rule) -> pathlib.Path | None:
     """The project's file that a quoted include means, relative to the root."""
-    for folder in (path.parent, *map(pathlib.Path, rule.roots)):
+    for folder in (path.parent, *map(pathlib.Path, rule.roots), *(["runtime/src"] if rule.shared else [])):
         candidate = (root / folder / header).resolve()
         if candidate.is_file() and candidate.is_relative_to(root):
             return candidate.relative_to(root)
@@ -141,7 +145,8 @@ def check_quoted(root: pathlib.Path, path: pathlib.Path, header: str, rule: Rule
         return f'"{header}": not found in {", ".join(rule.roots)}, where {rule.folder} may look'
     for folder, targets in FORBIDDEN_TARGETS.items():
         forbidden = next((one for one in targets if target.is_relative_to(one)), None)
-        if path.is_relative_to(folder) and forbidden is not None:
+        if path.is_relative_to(folder) and forbidden is not None and not (
+                rule.shared and any(target.is_relative_to(one) for one in SHARED)):
             return f'"{header}": {folder} may not know {forbidden}'
     return None
 

@@ -54,6 +54,10 @@ class IncludesTest(PlantedTree):
             "runtime/app/b.cpp": '#include "pictures/image.h"\n',
             "python/src/a.cpp": '#include <pybind11/numpy.h>\n#include "galactic/pack.h"\n',
             "pack_tool/a.cpp": '#include <nlohmann/json.hpp>\n#include "pictures/image.h"\n',
+            "runtime/src/support/text.h": "",
+            "runtime/src/layout/cell.h": "",
+            "pack_tool/b.cpp": '#include "support/text.h"\n#include "layout/cell.h"\n',
+            "bake/src/c.cpp": '#include "support/text.h"\n#include "layout/cell.h"\n',
             "bake/src/import/assimp_reader.cpp": "#include <assimp/scene.h>\nconst aiScene* s;\n",
             "bake/src/engines/bullet_columns.cpp":
                 "#include <BulletCollision/CollisionShapes/btSphereShape.h>\n",
@@ -88,6 +92,16 @@ class IncludesTest(PlantedTree):
     def test_refuses_the_runtime_s_internals_elsewhere(self):
         self.assert_refused("pack_tool/a.cpp", '#include "runtime/src/inner.h"\n',
                             "may not know runtime/src")
+
+    def test_refuses_what_the_tools_share_in_the_interface_and_in_python(self):
+        self.plant("runtime/src/support/text.h", "")
+        self.assert_refused("runtime/include/galactic/scene.h", '#include "support/text.h"\n', "not found in")
+        (self.root / "runtime/include/galactic/scene.h").unlink()
+        self.assert_refused("python/src/a.cpp", '#include "support/text.h"\n', "not found in")
+
+    def test_refuses_the_parts_of_the_library_that_the_tools_do_not_share(self):
+        self.plant("runtime/src/simulation/step.h", "")
+        self.assert_refused("pack_tool/a.cpp", '#include "simulation/step.h"\n', "may not know runtime/src")
 
     def test_refuses_a_json_parser_in_the_runtime(self):
         self.assert_refused("runtime/src/a.cpp", "#include <nlohmann/json.hpp>\n", "may include")

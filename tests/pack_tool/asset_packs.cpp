@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "support/schema_parts.h"
+#include "support/packs/schema_parts.h"
 
 namespace galactic::test {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "galactic/pack.h"
 #include "galactic/pose.h"
-#include "galactic/sphere_set.h"
+#include "galactic/shapes.h"
 #include "support/aligned_bytes.h"
-#include "support/render_pack_builder.h"
+#include "support/packs/render_pack_builder.h"
 
 namespace galactic::test {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "galactic/render_mesh_builder.h"
-#include "support/render_pack_parts.h"
+#include "layout/render_mesh_builder.h"
+#include "support/packs/render_pack_parts.h"
 
 namespace galactic::test {
 

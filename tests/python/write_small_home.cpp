@@ -3,8 +3,8 @@
 #include <exception>
 #include <filesystem>
 
+#include "support/homes/small_home_models.h"
 #include "support/scratch_folder.h"
-#include "support/small_home_models.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

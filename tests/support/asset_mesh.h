@@ -4,8 +4,8 @@
 
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/triangle_mesh.h"
-#include "galactic/try.h"
 #include "support/assets.h"
+#include "support/try.h"
 
 namespace galactic::test {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "support/scene_pack_builder.h"
+#include "support/packs/scene_pack_builder.h"
 #include "support/scratch_folder.h"
 
 namespace galactic::test {

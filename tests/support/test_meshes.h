@@ -8,7 +8,7 @@
 #include <random>
 
 #include "galactic/bake/triangle_mesh.h"
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 
 namespace galactic::test {
 

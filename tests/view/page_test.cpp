@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "support/small_home_models.h"
+#include "support/homes/small_home_models.h"
 
 namespace galactic::test::page_test {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "galactic/batch_simulator.h"
 #include "galactic/kinematics.h"
-#include "support/small_home_models.h"
+#include "support/homes/small_home_models.h"
 
 namespace galactic::test::run_animation_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "galactic/batch_simulator.h"
-#include "support/small_home.h"
+#include "support/homes/small_home.h"
 
 namespace galactic::test::run_track_test {
 namespace {

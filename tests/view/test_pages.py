@@ -19,7 +19,7 @@ from browser import Browser, Page, decode_png, find_chromium
 
 SKIPPED = 77
 OPTIONS = argparse.Namespace()
-# Of tests/support/small_home_models.h.
+# Of tests/support/homes/small_home_models.h.
 ROOM, TABLE = (0xE0, 0xD8, 0xD0), (0x80, 0x50, 0x30)
 # Poses on pages are whole numbers of 0.1 mm and 1/32767, joints of 0.0001; the hand is 1 m away.
 POSE_TOLERANCE = 6e-4

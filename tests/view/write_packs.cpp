@@ -10,9 +10,9 @@
 #include "galactic/batch_simulator.h"
 #include "galactic/kinematics.h"
 #include "pack_tool/painted_meshes.h"
-#include "recording.h"
+#include "run/recording.h"
+#include "support/homes/small_home_models.h"
 #include "support/scratch_folder.h"
-#include "support/small_home_models.h"
 #include "view/json_writer.h"
 
 namespace galactic::test {

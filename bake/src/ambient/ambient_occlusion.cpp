@@ -10,8 +10,8 @@
 #include "ambient/vertex_fans.h"
 #include "engines/triangle_rays.h"
 #include "galactic/bake/parallel_for.h"
-#include "galactic/try.h"
 #include "import/affine.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

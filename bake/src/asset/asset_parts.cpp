@@ -6,7 +6,7 @@
 #include "galactic/bake/source_file.h"
 #include "galactic/bake/texture_pack.h"
 #include "galactic/pack.h"
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "galactic/bake/texture_pack.h"
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "galactic/bake/assets.h"
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

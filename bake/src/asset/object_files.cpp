@@ -10,8 +10,8 @@
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/object_pack.h"
 #include "galactic/bake/parallel_for.h"
-#include "galactic/try.h"
 #include "stage_timer.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

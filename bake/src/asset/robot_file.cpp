@@ -9,8 +9,8 @@
 #include "galactic/bake/robot_pack.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/urdf_import.h"
-#include "galactic/try.h"
 #include "stage_timer.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -3,8 +3,8 @@
 #include "asset/asset_parts.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/scene_pack.h"
-#include "galactic/try.h"
 #include "stage_timer.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -10,7 +10,7 @@
 #include "build/make_pack.h"
 #include "build/memory_budget.h"
 #include "galactic/bake/parallel_for.h"
-#include "galactic/part_files.h"
+#include "support/part_files.h"
 
 namespace galactic::bake {
 namespace {

@@ -9,7 +9,7 @@
 #include "build/pack_list.h"
 #include "galactic/bake/scene_files.h"
 #include "galactic/bake/world_recipe.h"
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

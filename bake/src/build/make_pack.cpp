@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "galactic/bake/source_file.h"
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

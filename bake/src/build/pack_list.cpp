@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

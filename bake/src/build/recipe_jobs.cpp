@@ -6,7 +6,7 @@
 
 #include "build/pack_list.h"
 #include "galactic/bake/world_recipe.h"
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "cache/cache_entry.h"
-#include "galactic/atomic_file.h"
 #include "galactic/bake/source_file.h"
-#include "galactic/try.h"
+#include "support/atomic_file.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

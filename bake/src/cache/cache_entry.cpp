@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "galactic/mapped_file.h"
+#include "support/mapped_file.h"
 
 namespace galactic::bake {
 namespace {

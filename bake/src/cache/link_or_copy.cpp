@@ -4,10 +4,10 @@
 
 #include <system_error>
 
-#include "galactic/atomic_file.h"
 #include "galactic/bake/bake_cache.h"
-#include "galactic/mapped_file.h"
-#include "galactic/part_files.h"
+#include "support/atomic_file.h"
+#include "support/mapped_file.h"
+#include "support/part_files.h"
 
 namespace galactic::bake {
 namespace {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 
 namespace galactic::bake {
 

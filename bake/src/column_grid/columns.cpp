@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "galactic/column_cell.h"
+#include "layout/column_cell.h"
 
 namespace galactic::bake {
 namespace {

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

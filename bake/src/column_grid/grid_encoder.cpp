@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-#include "galactic/column_cell.h"
+#include "layout/column_cell.h"
 
 namespace galactic::bake {
 namespace {

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "galactic/bake/source_file.h"
-#include "galactic/try.h"
 #include "import/affine.h"
 #include "import/source_files.h"
 #include "render/material_list.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

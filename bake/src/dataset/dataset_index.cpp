@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "dataset/dataset_paths.h"
-#include "galactic/try.h"
 #include "import/source_files.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "dataset/placement.h"
 #include "dataset/rest_pose.h"
-#include "galactic/try.h"
 #include "import/affine.h"
 #include "import/source_files.h"
 #include "robot/link_geometry.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

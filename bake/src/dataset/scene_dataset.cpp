@@ -12,8 +12,8 @@
 #include "dataset/scene_surveyor.h"
 #include "dataset/template_attributes.h"
 #include "galactic/bake/source_file.h"
-#include "galactic/nearest_name.h"
-#include "galactic/try.h"
+#include "support/nearest_name.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 

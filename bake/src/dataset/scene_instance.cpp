@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "dataset/dataset_paths.h"
-#include "galactic/try.h"
 #include "json/json_reader.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "dataset/placement.h"
-#include "galactic/try.h"
 #include "import/source_files.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "galactic/try.h"
 #include "json/json_reader.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 #include <span>
 
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

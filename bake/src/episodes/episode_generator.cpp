@@ -13,7 +13,7 @@
 #include "episodes/generation_options.h"
 #include "episodes/prepared_scene.h"
 #include "galactic/bake/parallel_for.h"
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

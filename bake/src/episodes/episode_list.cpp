@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "galactic/bake/episode_set_import.h"
-#include "galactic/mapped_file.h"
-#include "galactic/try.h"
+#include "support/mapped_file.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

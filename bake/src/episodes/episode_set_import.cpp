@@ -12,8 +12,8 @@
 #include "episodes/episode_file.h"
 #include "episodes/episode_readers.h"
 #include "episodes/object_frame.h"
-#include "galactic/try.h"
 #include "json/json_reader.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

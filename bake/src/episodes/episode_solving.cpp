@@ -9,7 +9,7 @@
 #include "galactic/bake/parallel_for.h"
 #include "galactic/batch_simulator.h"
 #include "galactic/scripted_policy.h"
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

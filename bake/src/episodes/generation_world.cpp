@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
-#include "galactic/render_layout.h"
 #include "galactic/render_meshes.h"
-#include "galactic/try.h"
+#include "layout/render_layout.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

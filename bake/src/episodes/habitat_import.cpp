@@ -11,8 +11,8 @@
 #include "episodes/habitat_names.h"
 #include "episodes/object_frame.h"
 #include "fit/rotation.h"
-#include "galactic/try.h"
 #include "json/json_reader.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

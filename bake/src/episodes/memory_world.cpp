@@ -6,7 +6,7 @@
 
 #include "galactic/bake/episode_pack.h"
 #include "galactic/pack_header.h"
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 

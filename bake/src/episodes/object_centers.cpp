@@ -1,7 +1,7 @@
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/object_set.h"
 #include "galactic/schema/pack_generated.h"
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 

@@ -4,7 +4,7 @@
 
 #include "episodes/robot_body.h"
 #include "galactic/object_set.h"
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 
 namespace galactic::bake {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

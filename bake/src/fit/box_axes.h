@@ -5,7 +5,7 @@
 
 #include "fit/rectangle_calipers.h"
 #include "fit/vec3d.h"
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 
 namespace galactic::bake::fit {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "fit/vec3d.h"
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 
 namespace galactic::bake::fit {
 

@@ -3,7 +3,7 @@
 
 #include "fit/box_axes.h"
 #include "fit/vec3d.h"
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 
 namespace galactic::bake::fit {
 

@@ -17,12 +17,12 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/try.h"
 #include "import/affine.h"
 #include "import/axis_convention.h"
 #include "import/content_check.h"
 #include "import/polygon_triangulation.h"
 #include "import/source_files.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -9,12 +9,12 @@
 #include <string_view>
 #include <utility>
 
-#include "galactic/mapped_file.h"
-#include "galactic/try.h"
 #include "import/gltf_extensions.h"
 #include "import/gltf_ranges.h"
 #include "import/ply_counts.h"
 #include "import/text_counts.h"
+#include "support/mapped_file.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -13,9 +13,9 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/try.h"
 #include "import/gltf_extensions.h"
 #include "import/source_files.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

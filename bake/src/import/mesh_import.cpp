@@ -10,14 +10,14 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/out_of_memory.h"
-#include "galactic/try.h"
 #include "import/affine.h"
 #include "import/asset_check.h"
 #include "import/asset_transfer.h"
 #include "import/assimp_reader.h"
 #include "import/isolated_process.h"
 #include "import/source_files.h"
+#include "support/out_of_memory.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "galactic/bake/source_file.h"
-#include "galactic/mapped_file.h"
-#include "galactic/try.h"
+#include "support/mapped_file.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -9,8 +9,8 @@
 #include <span>
 #include <utility>
 
-#include "galactic/try.h"
 #include "import/affine.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string_view>
 
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <system_error>
 
-#include "galactic/mapped_file.h"
-#include "galactic/try.h"
 #include "json/gzip.h"
+#include "support/mapped_file.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

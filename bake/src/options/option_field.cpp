@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "galactic/number_text.h"
+#include "support/number_text.h"
 
 namespace galactic::bake {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <variant>
 
-#include "galactic/nearest_name.h"
+#include "support/nearest_name.h"
 
 namespace galactic::bake {
 namespace {

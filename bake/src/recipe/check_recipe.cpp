@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "galactic/bake/robot_recipe.h"
-#include "galactic/nearest_name.h"
-#include "galactic/try.h"
+#include "support/nearest_name.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

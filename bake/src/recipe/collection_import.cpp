@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
-#include "galactic/try.h"
 #include "json/json_reader.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -12,9 +12,9 @@
 
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/surface.h"
-#include "galactic/printable.h"
 #include "robot/flat_kinematics.h"
 #include "robot/link_geometry.h"
+#include "support/printable.h"
 
 namespace galactic::bake {
 namespace {

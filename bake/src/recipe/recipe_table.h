@@ -14,7 +14,7 @@
 
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/toml_table.h"
-#include "galactic/nearest_name.h"
+#include "support/nearest_name.h"
 
 namespace galactic::bake {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "galactic/option_table.h"
+#include "support/option_table.h"
 
 namespace galactic::bake {
 namespace {

@@ -4,9 +4,9 @@
 #include <numbers>
 #include <set>
 
-#include "galactic/try.h"
 #include "import/affine.h"
 #include "recipe/recipe_table.h"
+#include "support/try.h"
 #include "urdf/urdf_frames.h"
 
 namespace galactic::bake {

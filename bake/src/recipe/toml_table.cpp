@@ -11,8 +11,8 @@
 #include <string_view>
 #include <system_error>
 
-#include "galactic/mapped_file.h"
-#include "galactic/try.h"
+#include "support/mapped_file.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

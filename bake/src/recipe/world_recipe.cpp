@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "galactic/bake/toml_table.h"
-#include "galactic/try.h"
 #include "recipe/recipe_table.h"
 #include "recipe/recipe_task.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "galactic/bake/surface.h"
 #include "galactic/bake/triangle_mesh.h"
-#include "galactic/try.h"
 #include "import/affine.h"
 #include "render/mesh_optimizer.h"
 #include "render/part_mesh.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

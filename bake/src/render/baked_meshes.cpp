@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "galactic/bake/render_baker.h"
-#include "galactic/render_layout.h"
+#include "layout/render_layout.h"
 
 namespace galactic::bake {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "galactic/render_pools.h"
+#include "layout/render_pools.h"
 #include "render/part_mesh.h"
 #include "render/piece.h"
 

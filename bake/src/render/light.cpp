@@ -9,8 +9,8 @@
 
 #include "galactic/bake/ambient_occlusion.h"
 #include "galactic/bake/surface.h"
-#include "galactic/try.h"
 #include "render/mesh_optimizer.h"
+#include "support/try.h"
 #include "vec3d.h"
 
 namespace galactic::bake {

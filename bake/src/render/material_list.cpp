@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

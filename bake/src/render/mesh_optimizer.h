@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 #include "render/part_mesh.h"
 
 namespace galactic::bake {

@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "galactic/bake/parallel_for.h"
-#include "galactic/try.h"
 #include "render/lattice.h"
 #include "render/light.h"
 #include "render/part_mesh.h"
 #include "render/piece.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

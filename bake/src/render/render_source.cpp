@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "galactic/kinematics.h"
-#include "galactic/try.h"
 #include "import/affine.h"
 #include "render/material_list.h"
 #include "robot/link_geometry.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

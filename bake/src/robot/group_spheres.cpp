@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "galactic/bake/parallel_for.h"
-#include "galactic/try.h"
 #include "import/affine.h"
 #include "sphere_budget.h"
 #include "sphere_set/authored_spheres.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -7,8 +7,6 @@
 #include <limits>
 
 #include "flat_kinematics.h"
-#include "galactic/nearest_name.h"
-#include "galactic/try.h"
 #include "group_spheres.h"
 #include "import/affine.h"
 #include "link_geometry.h"
@@ -16,6 +14,8 @@
 #include "self_collision.h"
 #include "sphere_set/check_options.h"
 #include "stage_timer.h"
+#include "support/nearest_name.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

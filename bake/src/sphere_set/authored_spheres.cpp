@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 

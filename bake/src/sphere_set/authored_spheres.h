@@ -5,7 +5,7 @@
 #include "galactic/bake/sphere_set.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"
-#include "galactic/sphere_set.h"
+#include "galactic/shapes.h"
 
 namespace galactic::bake {
 

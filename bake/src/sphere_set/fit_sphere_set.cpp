@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "galactic/bake/sphere_set.h"
-#include "galactic/try.h"
 #include "sphere_set/prepared_fit.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "galactic/try.h"
 #include "sphere_set/check_options.h"
+#include "support/try.h"
 
 namespace galactic::bake::sphere_fit {
 namespace {

@@ -11,7 +11,7 @@
 #include "galactic/bake/parallel_for.h"
 #include "galactic/bake/render_textures.h"
 #include "galactic/bake/source_file.h"
-#include "galactic/try.h"
+#include "support/try.h"
 #include "textures/appearance.h"
 #include "textures/texture_library.h"
 #include "textures/texture_source.h"

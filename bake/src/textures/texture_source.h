@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "galactic/bake/source_asset.h"
-#include "galactic/mapped_file.h"
+#include "support/mapped_file.h"
 
 namespace galactic::bake {
 

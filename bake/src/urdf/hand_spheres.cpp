@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "galactic/bake/triangle_mesh.h"
-#include "galactic/try.h"
+#include "support/try.h"
 #include "urdf/urdf_frames.h"
 #include "urdf/urdf_process.h"
 

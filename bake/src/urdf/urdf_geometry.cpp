@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "galactic/bake/triangle_mesh.h"
-#include "galactic/try.h"
 #include "import/source_files.h"
+#include "support/try.h"
 #include "urdf/urdf_frames.h"
 
 namespace galactic::bake {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "galactic/try.h"
 #include "import/source_files.h"
+#include "support/try.h"
 #include "urdf/urdf_frames.h"
 #include "urdf/urdf_geometry.h"
 #include "urdf/urdf_process.h"

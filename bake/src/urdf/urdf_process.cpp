@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "galactic/bake/urdf_import.h"
-#include "galactic/mapped_file.h"
-#include "galactic/try.h"
 #include "import/isolated_process.h"
 #include "import/transfer_archive.h"
+#include "support/mapped_file.h"
+#include "support/try.h"
 #include "urdf/urdf_reader.h"
 
 namespace galactic::bake {

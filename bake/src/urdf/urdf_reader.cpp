@@ -14,8 +14,8 @@
 #include <string_view>
 #include <utility>
 
-#include "galactic/try.h"
 #include "import/affine.h"
+#include "support/try.h"
 #include "urdf/urdf_reader_text.h"
 
 namespace galactic::bake {

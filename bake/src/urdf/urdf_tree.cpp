@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "galactic/bake/triangle_mesh.h"
-#include "galactic/try.h"
 #include "import/affine.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

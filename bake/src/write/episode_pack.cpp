@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "galactic/bake/triangle_mesh.h"
-#include "galactic/try.h"
 #include "pack_payload.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "galactic/try.h"
 #include "pack_payload.h"
+#include "support/try.h"
 #include "write/render_meshes.h"
 
 namespace galactic::bake {

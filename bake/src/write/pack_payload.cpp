@@ -2,8 +2,8 @@
 
 #include <cstring>
 
-#include "galactic/atomic_file.h"
-#include "galactic/try.h"
+#include "support/atomic_file.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

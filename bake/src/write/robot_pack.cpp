@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "galactic/try.h"
 #include "pack_payload.h"
+#include "support/try.h"
 #include "write/render_meshes.h"
 
 namespace galactic::bake {

@@ -5,11 +5,11 @@
 #include <cstring>
 #include <span>
 
-#include "galactic/column_cell.h"
 #include "galactic/pack_header.h"
 #include "galactic/schema/pack_generated.h"
-#include "galactic/try.h"
+#include "layout/column_cell.h"
 #include "pack_payload.h"
+#include "support/try.h"
 #include "write/render_meshes.h"
 
 namespace galactic::bake {

@@ -9,9 +9,9 @@
 
 #include "galactic/bake/source_file.h"
 #include "galactic/pack.h"
-#include "galactic/try.h"
 #include "galactic/world.h"
 #include "pack_payload.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {

@@ -6,11 +6,19 @@
 #include <string>
 
 #include "galactic/error.h"
-#include "galactic/render_device_images.h"
+#include "galactic/pose.h"
 #include "galactic/render_library.h"
-#include "galactic/rigid_transform.h"
 
 namespace galactic {
+
+/// Images of a batch in the memory of a CUDA device: addresses there, in the layout of
+/// RenderTargets; 0 for images that the options do not ask for. color has 3 or 4 bytes a pixel,
+/// depth a float, semantics a 32-bit number.
+struct DeviceImages {
+  std::uint64_t color = 0;
+  std::uint64_t depth = 0;
+  std::uint64_t semantics = 0;
+};
 
 /// What draws.
 enum class RenderBackend : std::uint8_t {

@@ -9,7 +9,6 @@
 
 #include "galactic/error.h"
 #include "galactic/pose.h"
-#include "galactic/rigid_transform.h"
 #include "galactic/simulation_options.h"
 #include "galactic/world.h"
 

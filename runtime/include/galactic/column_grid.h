@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 
 namespace galactic {
 

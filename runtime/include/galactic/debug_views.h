@@ -1,14 +1,67 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "galactic/batch_renderer.h"
 #include "galactic/batch_simulator.h"
-#include "galactic/debug_models.h"
+#include "galactic/error.h"
+#include "galactic/render_library.h"
+#include "galactic/world.h"
 #include "galactic/world_views.h"
 
 namespace galactic {
+
+struct DebugOptions {
+  /// Whose column grid is shown, meters, one of the world's radii; 0: the smallest.
+  float radius = 0;
+};
+
+/// Whose spheres are shown.
+enum class DebugSpheres : std::uint8_t {
+  kRobot,  ///< Green.
+  kHeld,   ///< Blue: of the object in the hand.
+};
+
+/// What the simulation knows of a world, as models to draw (paper, figures 3 and 13): the free
+/// space of the column grid as gray floors, walls and ceilings, seen from inside; spheres of each
+/// radius; the oriented box of each object in orange; its edges alone, for a goal. Movable;
+/// immutable, so safe to share between threads.
+class DebugModels {
+ public:
+  /// Reads all grids of that radius. Fails with kInvalidInput when `options.radius` is none of the
+  /// world's.
+  [[nodiscard]] static Result<DebugModels> from(const World& world, const DebugOptions& options);
+
+  [[nodiscard]] const RenderLibrary& library() const { return library_; }
+  /// The free space of a scene (index into World::scenes()), in the world's frame; none when
+  /// nothing is free.
+  [[nodiscard]] std::optional<std::uint32_t> sceneModel(std::uint32_t scene) const;
+  /// The box of an object (index into EpisodeSet::objectNames()), in the object's frame.
+  [[nodiscard]] std::uint32_t boxModel(std::uint32_t object) const { return first_box_ + object; }
+  /// The same box as a frame of thin beams, magenta.
+  [[nodiscard]] std::uint32_t goalModel(std::uint32_t object) const { return first_goal_ + object; }
+  /// A sphere about the origin; `radius_index` counts in World::radii().
+  [[nodiscard]] std::uint32_t sphereModel(DebugSpheres whose, std::uint32_t radius_index) const {
+    const std::uint32_t first =
+        whose == DebugSpheres::kRobot ? first_robot_sphere_ : first_held_sphere_;
+    return first + radius_index;
+  }
+
+ private:
+  DebugModels() = default;
+
+  /// What the library looks at; it stays where it is when this moves.
+  std::shared_ptr<const void> memory_;
+  RenderLibrary library_;
+  std::uint32_t first_box_ = 0;
+  std::uint32_t first_goal_ = 0;
+  std::uint32_t first_robot_sphere_ = 0;
+  std::uint32_t first_held_sphere_ = 0;
+};
 
 /// The debug view of the first envs of a batch: WorldViews of what the simulation knows.
 class DebugViews {

@@ -6,10 +6,8 @@
 #include <vector>
 
 #include "galactic/error.h"
-#include "galactic/oriented_box.h"
 #include "galactic/pack.h"
-#include "galactic/sphere_set.h"
-#include "galactic/stable_pose.h"
+#include "galactic/shapes.h"
 
 namespace galactic {
 

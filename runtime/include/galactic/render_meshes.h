@@ -8,7 +8,7 @@
 
 #include "galactic/error.h"
 #include "galactic/pack.h"
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 
 namespace galactic {
 

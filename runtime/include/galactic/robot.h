@@ -9,7 +9,7 @@
 #include "galactic/error.h"
 #include "galactic/kinematics.h"
 #include "galactic/pack.h"
-#include "galactic/sphere_set.h"
+#include "galactic/shapes.h"
 
 namespace galactic {
 

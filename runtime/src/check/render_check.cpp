@@ -7,7 +7,7 @@
 #include "check/offence.h"
 #include "check/render_cluster_check.h"
 #include "check/texture_check.h"
-#include "galactic/render_layout.h"
+#include "layout/render_layout.h"
 #include "pack/schema_values.h"
 
 namespace galactic::detail {

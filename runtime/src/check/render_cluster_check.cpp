@@ -6,7 +6,7 @@
 
 #include "check/common_check.h"
 #include "check/offence.h"
-#include "galactic/render_layout.h"
+#include "layout/render_layout.h"
 
 namespace galactic::detail {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "check/offence.h"
 #include "column_grid/column_grid_kernels.h"
-#include "galactic/column_cell.h"
+#include "layout/column_cell.h"
 
 namespace galactic::detail {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "column_grid/column_grid_kernels.h"
-#include "galactic/column_cell.h"
+#include "layout/column_cell.h"
 
 namespace galactic {
 namespace {

@@ -6,8 +6,8 @@
 #include "check/offence.h"
 #include "column_grid/cell_check.h"
 #include "column_grid/grid_layout.h"
-#include "galactic/column_cell.h"
 #include "galactic/schema/pack_generated.h"
+#include "layout/column_cell.h"
 
 namespace galactic::detail {
 namespace {

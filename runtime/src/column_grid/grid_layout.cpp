@@ -1,7 +1,7 @@
 #include "column_grid/grid_layout.h"
 
-#include "galactic/column_cell.h"
 #include "galactic/schema/pack_generated.h"
+#include "layout/column_cell.h"
 
 namespace galactic::detail {
 

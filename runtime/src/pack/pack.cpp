@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "check/pack_check.h"
-#include "galactic/mapped_file.h"
 #include "galactic/schema/pack_generated.h"
+#include "support/mapped_file.h"
 
 namespace galactic {
 namespace {

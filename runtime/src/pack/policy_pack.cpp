@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "check/pack_check.h"
-#include "galactic/atomic_file.h"
 #include "galactic/schema/pack_generated.h"
 #include "pack/schema_values.h"
+#include "support/atomic_file.h"
 #include "support/content_hash.h"
 
 namespace galactic {

@@ -6,7 +6,7 @@
 
 #include "galactic/pose.h"
 #include "galactic/schema/pack_generated.h"
-#include "galactic/sphere_set.h"
+#include "galactic/shapes.h"
 
 namespace galactic::detail {
 

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "galactic/batch_renderer.h"
-#include "galactic/render_device_images.h"
 
 namespace galactic::render {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "galactic/pose.h"
-#include "galactic/sphere_set.h"
+#include "galactic/shapes.h"
 #include "simulation/collision/sphere_batch.h"
 
 namespace galactic::scripted {

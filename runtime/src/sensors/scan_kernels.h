@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 #include "simulation/collision/resting_box.h"
 #include "simulation/collision/sphere_batch.h"
 

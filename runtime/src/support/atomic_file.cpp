@@ -1,4 +1,4 @@
-#include "galactic/atomic_file.h"
+#include "support/atomic_file.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/part_files.h"
+#include "support/part_files.h"
 
 namespace galactic {
 

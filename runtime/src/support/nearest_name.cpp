@@ -1,4 +1,4 @@
-#include "galactic/nearest_name.h"
+#include "support/nearest_name.h"
 
 #include <fmt/format.h>
 

@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/option_table.h"
+#include "support/option_table.h"
 
 namespace galactic {
 namespace {

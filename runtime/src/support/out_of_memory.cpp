@@ -1,4 +1,4 @@
-#include "galactic/out_of_memory.h"
+#include "support/out_of_memory.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>

@@ -1,4 +1,4 @@
-#include "galactic/part_files.h"
+#include "support/part_files.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "galactic/printable.h"
+#include "support/printable.h"
 
 #include <algorithm>
 

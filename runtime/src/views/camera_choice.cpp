@@ -1,11 +1,11 @@
-#include "galactic/camera_choice.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <string_view>
+
+#include "galactic/world_views.h"
 
 namespace galactic {
 namespace {

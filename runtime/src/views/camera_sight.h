@@ -1,5 +1,5 @@
 #pragma once
-#include "galactic/rigid_transform.h"
+#include "galactic/pose.h"
 #include "galactic/scene.h"
 
 namespace galactic {

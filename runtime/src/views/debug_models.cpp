@@ -1,11 +1,10 @@
-#include "galactic/debug_models.h"
-
 #include <fmt/format.h>
 
 #include <string>
 #include <utility>
 
-#include "galactic/render_mesh_builder.h"
+#include "galactic/debug_views.h"
+#include "layout/render_mesh_builder.h"
 #include "views/grid_surface.h"
 #include "views/shapes.h"
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "galactic/column_grid.h"
-#include "galactic/render_mesh_builder.h"
+#include "layout/render_mesh_builder.h"
 
 namespace galactic::debug {
 

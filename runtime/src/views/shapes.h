@@ -1,6 +1,6 @@
 #pragma once
-#include "galactic/oriented_box.h"
-#include "galactic/render_mesh_builder.h"
+#include "galactic/shapes.h"
+#include "layout/render_mesh_builder.h"
 
 namespace galactic::debug {
 

@@ -10,8 +10,8 @@
 #include "galactic/bake/free_space.h"
 #include "galactic/bake/grid_encoder.h"
 #include "support/asset_mesh.h"
-#include "support/distance_oracle.h"
-#include "support/encoded_grid_view.h"
+#include "support/oracles/distance_oracle.h"
+#include "support/oracles/encoded_grid_view.h"
 #include "support/scene_meshes.h"
 
 namespace galactic::bake::cell_coverage_test {

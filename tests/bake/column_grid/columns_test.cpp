@@ -10,7 +10,7 @@
 #include <set>
 
 #include "column_grid/triangle_bins.h"
-#include "galactic/column_cell.h"
+#include "layout/column_cell.h"
 #include "support/test_meshes.h"
 
 namespace galactic::bake::columns_test {

@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "galactic/column_cell.h"
-#include "support/encoded_grid_view.h"
+#include "layout/column_cell.h"
+#include "support/oracles/encoded_grid_view.h"
 
 namespace galactic::bake::grid_encoder_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "galactic/bake/columns.h"
-#include "support/column_oracle.h"
+#include "support/oracles/column_oracle.h"
 
 namespace galactic::test {
 

@@ -11,8 +11,8 @@
 #include "column_grid/column_strip.h"
 #include "column_grid/prepare_triangle.h"
 #include "column_grid/scatter.h"
+#include "support/oracles/triangle_corners.h"
 #include "support/scene_meshes.h"
-#include "support/triangle_corners.h"
 
 namespace galactic::bake::scatter_kernels_test {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "bake/dataset/small_dataset.h"
 #include "galactic/bake/scene_dataset.h"
-#include "galactic/try.h"
+#include "support/try.h"
 
 namespace galactic::test::dataset_faults_test {
 namespace {

@@ -12,7 +12,7 @@
 #include "bake/dataset/small_dataset.h"
 #include "galactic/bake/scene_dataset.h"
 #include "support/assets.h"
-#include "support/box_oracle.h"
+#include "support/oracles/box_oracle.h"
 
 namespace galactic::test::receptacles_test {
 namespace {

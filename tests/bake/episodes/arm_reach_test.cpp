@@ -5,7 +5,7 @@
 #include <random>
 
 #include "made_world.h"
-#include "support/box_oracle.h"
+#include "support/oracles/box_oracle.h"
 
 namespace galactic::test::arm_reach_test {
 namespace {

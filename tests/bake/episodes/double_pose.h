@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "galactic/oriented_box.h"
 #include "galactic/pose.h"
+#include "galactic/shapes.h"
 
 namespace galactic::test {
 

@@ -11,7 +11,7 @@
 #include "episodes/support_places.h"
 #include "galactic/bake/episode_pack.h"
 #include "made_world.h"
-#include "support/box_oracle.h"
+#include "support/oracles/box_oracle.h"
 
 namespace galactic::test::episode_choices_test {
 namespace {

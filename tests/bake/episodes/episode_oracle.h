@@ -15,7 +15,7 @@
 #include "galactic/object_set.h"
 #include "galactic/robot.h"
 #include "galactic/scene.h"
-#include "support/box_oracle.h"
+#include "support/oracles/box_oracle.h"
 
 namespace galactic::test {
 

@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
-#include "support/object_pack_builder.h"
-#include "support/robot_pack_builder.h"
-#include "support/sample_world.h"
+#include "support/homes/sample_world.h"
+#include "support/packs/object_pack_builder.h"
+#include "support/packs/robot_pack_builder.h"
 #include "support/source_asset.h"
 #include "support/test_meshes.h"
 

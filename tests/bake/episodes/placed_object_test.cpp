@@ -6,7 +6,7 @@
 #include <random>
 
 #include "double_pose.h"
-#include "support/box_oracle.h"
+#include "support/oracles/box_oracle.h"
 
 namespace galactic::bake::placed_object_test {
 namespace {

@@ -9,7 +9,7 @@
 #include "made_world.h"
 #include "simulation/collision/resting_objects.h"
 #include "simulation/phases/object_placement.h"
-#include "support/box_oracle.h"
+#include "support/oracles/box_oracle.h"
 
 namespace galactic::test::placement_check_test {
 namespace {

@@ -11,8 +11,8 @@
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/triangle_mesh.h"
-#include "galactic/try.h"
 #include "support/asset_mesh.h"
+#include "support/try.h"
 
 namespace galactic::test::published_episodes_test {
 namespace {

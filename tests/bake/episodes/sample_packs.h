@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "galactic/bake/episode_generator.h"
-#include "support/sample_world.h"
+#include "support/homes/sample_world.h"
 
 namespace galactic::test {
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "made_world.h"
-#include "support/box_oracle.h"
+#include "support/oracles/box_oracle.h"
 
 namespace galactic::test::support_places_test {
 namespace {

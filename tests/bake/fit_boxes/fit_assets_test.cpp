@@ -9,8 +9,8 @@
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/oriented_box.h"
 #include "galactic/bake/stable_poses.h"
-#include "galactic/try.h"
 #include "support/asset_mesh.h"
+#include "support/try.h"
 
 namespace galactic::bake::fit_assets_test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/pose.h"
-#include "support/box_oracle.h"
+#include "support/oracles/box_oracle.h"
 #include "support/test_meshes.h"
 
 namespace galactic::test {

@@ -9,7 +9,7 @@
 #include "fit_boxes/box_checks.h"
 #include "fit_boxes/fit_shapes.h"
 #include "galactic/bake/oriented_box.h"
-#include "support/box_oracle.h"
+#include "support/oracles/box_oracle.h"
 
 namespace galactic::bake::oriented_box_search_test {
 namespace {

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "galactic/vec3.h"
-#include "support/box_oracle.h"
+#include "galactic/pose.h"
+#include "support/oracles/box_oracle.h"
 
 namespace galactic::test {
 

@@ -7,7 +7,7 @@
 
 #include "galactic/object_set.h"
 #include "galactic/pack.h"
-#include "support/pack_parts.h"
+#include "support/packs/pack_parts.h"
 #include "support/scratch_folder.h"
 #include "support/source_asset.h"
 #include "support/test_meshes.h"

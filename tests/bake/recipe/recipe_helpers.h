@@ -2,7 +2,7 @@
 #include <string>
 
 #include "galactic/bake/robot_recipe.h"
-#include "galactic/nearest_name.h"
+#include "support/nearest_name.h"
 #include "support/scratch_folder.h"
 
 namespace galactic::test {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "galactic/bake/world_recipe.h"
-#include "galactic/option_table.h"
+#include "support/option_table.h"
 #include "support/scratch_folder.h"
 
 namespace galactic::test::recipe_task_test {

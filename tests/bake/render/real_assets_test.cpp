@@ -12,7 +12,7 @@
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/render_source.h"
 #include "support/asset_mesh.h"
-#include "support/distance_oracle.h"
+#include "support/oracles/distance_oracle.h"
 
 namespace galactic::test::real_assets_test {
 namespace {

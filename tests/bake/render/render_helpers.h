@@ -10,7 +10,7 @@
 #include "galactic/bake/render_baker.h"
 #include "galactic/bake/surface.h"
 #include "galactic/bake/triangle_mesh.h"
-#include "support/render_mesh_reader.h"
+#include "support/oracles/render_mesh_reader.h"
 
 namespace galactic::test {
 

@@ -8,8 +8,8 @@
 #include "galactic/bake/scene_pack.h"
 #include "galactic/pack.h"
 #include "support/aligned_bytes.h"
-#include "support/pack_parts.h"
-#include "support/scene_pack_builder.h"
+#include "support/packs/pack_parts.h"
+#include "support/packs/scene_pack_builder.h"
 #include "support/source_asset.h"
 #include "support/test_meshes.h"
 

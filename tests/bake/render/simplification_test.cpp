@@ -8,7 +8,7 @@
 #include "bake/render/render_helpers.h"
 #include "render/simplify_within.h"
 #include "sphere_set/solid/triangle_tree.h"
-#include "support/distance_oracle.h"
+#include "support/oracles/distance_oracle.h"
 #include "support/test_meshes.h"
 
 namespace galactic::test::simplification_test {

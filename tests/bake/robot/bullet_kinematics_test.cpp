@@ -13,7 +13,7 @@
 #include "galactic/bake/urdf_import.h"
 #include "robot/flat_kinematics.h"
 #include "support/asset_mesh.h"
-#include "support/chain_oracle.h"
+#include "support/oracles/chain_oracle.h"
 
 namespace galactic::test::bullet_kinematics_test {
 namespace {

@@ -10,7 +10,7 @@
 #include "bake/robot/tiny_robots.h"
 #include "galactic/bake/robot_pack.h"
 #include "galactic/robot.h"
-#include "support/pack_parts.h"
+#include "support/packs/pack_parts.h"
 
 namespace galactic::test::robot_baker_test {
 namespace {

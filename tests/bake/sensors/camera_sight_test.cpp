@@ -11,7 +11,7 @@
 #include "engines/triangle_rays.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/triangle_mesh.h"
-#include "support/sample_world.h"
+#include "support/homes/sample_world.h"
 #include "support/source_folder.h"
 
 namespace galactic::test::camera_sight_test {

@@ -12,7 +12,7 @@
 #include "galactic/bake/triangle_mesh.h"
 #include "sensors/scan_kernels.h"
 #include "sensors/scan_plane.h"
-#include "support/sample_world.h"
+#include "support/homes/sample_world.h"
 #include "support/source_folder.h"
 
 namespace galactic::test::scan_rays_test {

@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "galactic/bake/triangle_mesh.h"
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 
 namespace galactic::test {
 

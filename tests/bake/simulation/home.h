@@ -9,7 +9,7 @@
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/batch_simulator.h"
-#include "support/sample_world.h"
+#include "support/homes/sample_world.h"
 
 namespace galactic::test {
 

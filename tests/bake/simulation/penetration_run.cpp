@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "home.h"
-#include "support/distance_oracle.h"
+#include "support/oracles/distance_oracle.h"
 
 namespace galactic::test {
 namespace {

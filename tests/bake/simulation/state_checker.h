@@ -12,7 +12,7 @@
 
 #include "bullet_scene.h"
 #include "galactic/batch_simulator.h"
-#include "support/resting_oracle.h"
+#include "support/oracles/resting_oracle.h"
 
 namespace galactic::test {
 

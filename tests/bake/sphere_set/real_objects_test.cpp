@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "galactic/bake/sphere_set.h"
-#include "galactic/try.h"
 #include "sphere_set/shapes.h"
 #include "support/asset_mesh.h"
+#include "support/try.h"
 
 namespace galactic::bake::real_objects_test {
 namespace {

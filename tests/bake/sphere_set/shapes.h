@@ -13,8 +13,8 @@
 
 #include "galactic/bake/sphere_set.h"
 #include "galactic/bake/triangle_mesh.h"
+#include "support/oracles/triangle_corners.h"
 #include "support/test_meshes.h"
-#include "support/triangle_corners.h"
 
 namespace galactic::test {
 

@@ -10,7 +10,7 @@
 
 #include "galactic/episode_set.h"
 #include "galactic/pack.h"
-#include "support/episode_pack_builder.h"
+#include "support/packs/episode_pack_builder.h"
 #include "support/scratch_folder.h"
 
 namespace galactic::test::episode_pack_test {

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "galactic/column_cell.h"
 #include "galactic/pack.h"
 #include "galactic/scene.h"
 #include "galactic/schema/pack_generated.h"
-#include "support/encoded_grid_view.h"
+#include "layout/column_cell.h"
+#include "support/oracles/encoded_grid_view.h"
 #include "support/scene_meshes.h"
 #include "support/scratch_folder.h"
 #include "support/source_asset.h"

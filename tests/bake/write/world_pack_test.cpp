@@ -8,7 +8,7 @@
 #include "galactic/pack_reference.h"
 #include "galactic/schema/pack_generated.h"
 #include "galactic/world.h"
-#include "support/world_pack_builder.h"
+#include "support/packs/world_pack_builder.h"
 
 namespace galactic::test::world_pack_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "support/changed_world.h"
+#include "support/homes/changed_world.h"
 
 namespace galactic::test::absurd_numbers_test {
 namespace {

@@ -10,7 +10,7 @@
 #include "galactic/pack.h"
 #include "runtime/check/pack_damage.h"
 #include "runtime/check/pack_offence.h"
-#include "support/episode_pack_builder.h"
+#include "support/packs/episode_pack_builder.h"
 
 namespace galactic::test::episode_check_test {
 namespace {

@@ -10,7 +10,7 @@
 #include "galactic/pack.h"
 #include "runtime/check/pack_damage.h"
 #include "runtime/check/pack_offence.h"
-#include "support/object_pack_builder.h"
+#include "support/packs/object_pack_builder.h"
 
 namespace galactic::test::object_check_test {
 namespace {

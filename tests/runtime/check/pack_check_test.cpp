@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "galactic/column_cell.h"
 #include "galactic/pack.h"
 #include "galactic/schema/pack_generated.h"
-#include "support/scene_pack_builder.h"
+#include "layout/column_cell.h"
+#include "support/packs/scene_pack_builder.h"
 
 namespace galactic::test::pack_check_test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "galactic/pack.h"
 #include "galactic/scene.h"
-#include "support/scene_pack_builder.h"
+#include "support/packs/scene_pack_builder.h"
 
 namespace galactic::test::pack_damage_test {
 namespace {

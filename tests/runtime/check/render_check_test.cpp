@@ -10,10 +10,10 @@
 #include "galactic/render_meshes.h"
 #include "runtime/check/pack_damage.h"
 #include "runtime/check/pack_offence.h"
-#include "support/object_pack_builder.h"
-#include "support/render_mesh_reader.h"
-#include "support/robot_pack_builder.h"
-#include "support/scene_pack_builder.h"
+#include "support/oracles/render_mesh_reader.h"
+#include "support/packs/object_pack_builder.h"
+#include "support/packs/robot_pack_builder.h"
+#include "support/packs/scene_pack_builder.h"
 
 namespace galactic::test::render_check_test {
 namespace {

@@ -11,7 +11,7 @@
 #include "galactic/robot.h"
 #include "runtime/check/pack_damage.h"
 #include "runtime/check/pack_offence.h"
-#include "support/robot_pack_builder.h"
+#include "support/packs/robot_pack_builder.h"
 
 namespace galactic::test::robot_check_test {
 namespace {

@@ -10,7 +10,7 @@
 #include "galactic/pack_reference.h"
 #include "runtime/check/pack_damage.h"
 #include "runtime/check/pack_offence.h"
-#include "support/world_pack_builder.h"
+#include "support/packs/world_pack_builder.h"
 
 namespace galactic::test::world_check_test {
 namespace {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
-#include "support/grid_builder.h"
 #include "support/kept_word.h"
+#include "support/packs/grid_builder.h"
 
 namespace galactic::test::column_grid_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "column_grid/column_grid_kernels.h"
-#include "support/grid_builder.h"
+#include "support/packs/grid_builder.h"
 
 namespace galactic::test::column_kernels_test {
 namespace {

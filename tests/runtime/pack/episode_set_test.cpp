@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "support/episode_pack_builder.h"
-#include "support/robot_pack_builder.h"
+#include "support/packs/episode_pack_builder.h"
+#include "support/packs/robot_pack_builder.h"
 
 namespace galactic::test::episode_set_test {
 namespace {

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "support/chain_oracle.h"
+#include "support/oracles/chain_oracle.h"
 
 namespace galactic::test::kinematics_test {
 namespace {

@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "galactic/column_cell.h"
 #include "galactic/scene.h"
 #include "galactic/schema/pack_generated.h"
-#include "support/pack_parts.h"
-#include "support/scene_pack_builder.h"
+#include "layout/column_cell.h"
+#include "support/packs/pack_parts.h"
+#include "support/packs/scene_pack_builder.h"
 
 namespace galactic::test::pack_test {
 namespace {

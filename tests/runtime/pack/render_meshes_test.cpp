@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "galactic/pack.h"
-#include "support/object_pack_builder.h"
-#include "support/scene_pack_builder.h"
+#include "support/packs/object_pack_builder.h"
+#include "support/packs/scene_pack_builder.h"
 
 namespace galactic::test::render_meshes_test {
 namespace {

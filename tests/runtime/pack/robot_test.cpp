@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "support/object_pack_builder.h"
-#include "support/robot_pack_builder.h"
+#include "support/packs/object_pack_builder.h"
+#include "support/packs/robot_pack_builder.h"
 
 namespace galactic::test::robot_test {
 namespace {

@@ -7,8 +7,8 @@
 #include "galactic/world_models.h"
 #include "runtime/check/pack_damage.h"
 #include "runtime/check/pack_offence.h"
-#include "support/small_home_models.h"
-#include "support/texture_pack_builder.h"
+#include "support/homes/small_home_models.h"
+#include "support/packs/texture_pack_builder.h"
 
 namespace galactic::test::shared_textures_test {
 namespace {

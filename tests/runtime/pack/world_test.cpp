@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "galactic/pack_reference.h"
-#include "support/world_pack_builder.h"
+#include "support/packs/world_pack_builder.h"
 
 namespace galactic::test::world_test {
 namespace {

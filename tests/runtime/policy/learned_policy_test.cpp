@@ -12,8 +12,8 @@
 
 #include "runtime/policy/policy_run.h"
 #include "runtime/simulation/counted_new.h"
-#include "support/policy_oracle.h"
-#include "support/policy_pack_builder.h"
+#include "support/oracles/policy_oracle.h"
+#include "support/packs/policy_pack_builder.h"
 
 namespace galactic::test::learned_policy_test {
 namespace {

@@ -11,7 +11,7 @@
 #include "runtime/check/pack_damage.h"
 #include "runtime/check/pack_offence.h"
 #include "runtime/policy/policy_run.h"
-#include "support/policy_pack_builder.h"
+#include "support/packs/policy_pack_builder.h"
 
 namespace galactic::test {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "galactic/learned_policy.h"
 #include "runtime/policy/policy_run.h"
-#include "support/policy_pack_builder.h"
-#include "support/scene_pack_builder.h"
+#include "support/packs/policy_pack_builder.h"
+#include "support/packs/scene_pack_builder.h"
 
 namespace galactic::test::policy_fit_test {
 namespace {

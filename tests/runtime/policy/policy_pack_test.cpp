@@ -8,7 +8,7 @@
 
 #include "galactic/schema/pack_generated.h"
 #include "galactic/world.h"
-#include "support/policy_pack_builder.h"
+#include "support/packs/policy_pack_builder.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 #include "support/source_folder.h"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "galactic/batch_renderer.h"
+#include "support/packs/render_model_builder.h"
 #include "support/render_images.h"
-#include "support/render_model_builder.h"
 
 namespace galactic::test {
 

@@ -10,8 +10,8 @@
 
 #include "column_grid/column_grid_kernels.h"
 #include "render/soft/soft_engine.h"
+#include "support/packs/render_model_builder.h"
 #include "support/render_images.h"
-#include "support/render_model_builder.h"
 
 namespace galactic::test::soft_batch_test {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "render/soft/bc1.h"
+#include "support/packs/render_model_builder.h"
 #include "support/render_images.h"
-#include "support/render_model_builder.h"
 
 namespace galactic::test::soft_color_test {
 namespace {

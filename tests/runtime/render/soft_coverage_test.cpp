@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "support/packs/render_model_builder.h"
 #include "support/render_images.h"
-#include "support/render_model_builder.h"
 
 namespace galactic::test::soft_coverage_test {
 namespace {

@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
+#include "support/oracles/render_ray_caster.h"
+#include "support/packs/render_model_builder.h"
 #include "support/render_images.h"
-#include "support/render_model_builder.h"
-#include "support/render_ray_caster.h"
 
 namespace galactic::test::soft_depth_test {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "galactic/batch_simulator.h"
-#include "support/box_world.h"
+#include "support/homes/box_world.h"
 
 namespace galactic::test::geodesic_test {
 namespace {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "galactic/batch_simulator.h"
-#include "support/box_world.h"
+#include "support/homes/box_world.h"
 
 namespace galactic::test::laser_test {
 namespace {

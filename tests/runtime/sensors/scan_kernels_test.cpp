@@ -15,7 +15,7 @@
 #include "column_grid/column_grid_kernels.h"
 #include "scattered_grid.h"
 #include "sensors/scan_plane.h"
-#include "support/resting_oracle.h"
+#include "support/oracles/resting_oracle.h"
 
 namespace galactic::test::scan_kernels_test {
 namespace {

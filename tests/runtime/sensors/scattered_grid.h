@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "support/grid_builder.h"
+#include "support/packs/grid_builder.h"
 
 namespace galactic::test {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "sensors/floor_plan.h"
-#include "support/box_world.h"
+#include "support/homes/box_world.h"
 
 namespace galactic::test::way_field_test {
 namespace {

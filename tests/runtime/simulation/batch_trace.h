@@ -6,7 +6,7 @@
 
 #include "galactic/batch_simulator.h"
 #include "simulation/state/random_stream.h"
-#include "support/box_world.h"
+#include "support/homes/box_world.h"
 
 namespace galactic::test {
 

@@ -12,8 +12,8 @@
 
 #include "column_grid/column_grid_kernels.h"
 #include "simulation/collision/collision.h"
-#include "support/box_room.h"
-#include "support/grid_builder.h"
+#include "support/homes/box_room.h"
+#include "support/packs/grid_builder.h"
 
 namespace galactic::test::clearance_map_test {
 namespace {

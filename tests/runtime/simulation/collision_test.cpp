@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "column_grid/column_grid_kernels.h"
-#include "support/box_room.h"
-#include "support/grid_builder.h"
+#include "support/homes/box_room.h"
+#include "support/packs/grid_builder.h"
 
 namespace galactic::test::collision_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "support/resting_oracle.h"
+#include "support/oracles/resting_oracle.h"
 
 namespace galactic::test::held_spheres_test {
 namespace {

@@ -13,8 +13,8 @@
 #include "simulation/phases/hand.h"
 #include "simulation/phases/move.h"
 #include "simulation/state/grip_frame.h"
-#include "support/resting_oracle.h"
-#include "support/small_home.h"
+#include "support/homes/small_home.h"
+#include "support/oracles/resting_oracle.h"
 
 namespace galactic::test::leaving_test {
 namespace {

@@ -13,8 +13,8 @@
 #include "galactic/robot.h"
 #include "simulation/motion/motion_kernels.h"
 #include "support/assets.h"
-#include "support/resting_oracle.h"
-#include "support/robot_pack_builder.h"
+#include "support/oracles/resting_oracle.h"
+#include "support/packs/robot_pack_builder.h"
 
 namespace galactic::test {
 

@@ -12,7 +12,7 @@
 
 #include "column_grid/column_grid_kernels.h"
 #include "motion_batch.h"
-#include "support/random_robot.h"
+#include "support/homes/random_robot.h"
 #include "support/source_folder.h"
 
 namespace galactic::test::motion_bodies_test {

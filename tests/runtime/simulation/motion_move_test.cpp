@@ -7,7 +7,7 @@
 #include <random>
 
 #include "motion_batch.h"
-#include "support/random_robot.h"
+#include "support/homes/random_robot.h"
 
 namespace galactic::test::motion_move_test {
 namespace {

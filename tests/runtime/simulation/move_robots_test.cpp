@@ -9,7 +9,7 @@
 
 #include "galactic/batch_simulator.h"
 #include "simulation/phases/move.h"
-#include "support/box_world.h"
+#include "support/homes/box_world.h"
 
 namespace galactic::test::move_robots_test {
 namespace {

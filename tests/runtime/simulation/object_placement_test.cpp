@@ -7,8 +7,8 @@
 #include <cmath>
 #include <optional>
 
-#include "support/box_room.h"
-#include "support/resting_oracle.h"
+#include "support/homes/box_room.h"
+#include "support/oracles/resting_oracle.h"
 
 namespace galactic::test::object_placement_test {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "support/small_home_actor.h"
-#include "support/task_oracle.h"
-#include "support/task_twins.h"
+#include "support/homes/small_home_actor.h"
+#include "support/homes/task_twins.h"
+#include "support/oracles/task_oracle.h"
 
 namespace galactic::test::observe_test {
 namespace {

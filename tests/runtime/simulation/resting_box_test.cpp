@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "support/resting_oracle.h"
+#include "support/oracles/resting_oracle.h"
 
 namespace galactic::test::resting_box_test {
 namespace {

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "simulation/collision/resting_objects.h"
-#include "support/resting_bodies.h"
-#include "support/resting_oracle.h"
+#include "support/homes/resting_bodies.h"
+#include "support/oracles/resting_oracle.h"
 
 namespace galactic::test::resting_fall_test {
 namespace {

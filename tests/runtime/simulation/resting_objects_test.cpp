@@ -12,8 +12,8 @@
 #include <set>
 
 #include "column_grid/column_grid_kernels.h"
-#include "support/resting_bodies.h"
-#include "support/resting_oracle.h"
+#include "support/homes/resting_bodies.h"
+#include "support/oracles/resting_oracle.h"
 
 namespace galactic::test::resting_objects_test {
 namespace {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "batch_trace.h"
-#include "support/small_home_actor.h"
-#include "support/task_twins.h"
+#include "support/homes/small_home_actor.h"
+#include "support/homes/task_twins.h"
 
 namespace galactic::test {
 namespace {

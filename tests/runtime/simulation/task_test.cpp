@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "support/small_home_actor.h"
-#include "support/task_oracle.h"
-#include "support/task_twins.h"
+#include "support/homes/small_home_actor.h"
+#include "support/homes/task_twins.h"
+#include "support/oracles/task_oracle.h"
 
 namespace galactic::test::task_test {
 namespace {

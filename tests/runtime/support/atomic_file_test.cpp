@@ -1,5 +1,5 @@
 // A written file is there whole, or the old one is.
-#include "galactic/atomic_file.h"
+#include "support/atomic_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

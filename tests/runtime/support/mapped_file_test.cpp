@@ -1,4 +1,4 @@
-#include "galactic/mapped_file.h"
+#include "support/mapped_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "galactic/number_text.h"
+#include "support/number_text.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "galactic/nearest_name.h"
-#include "galactic/out_of_memory.h"
+#include "support/nearest_name.h"
+#include "support/out_of_memory.h"
 
 namespace galactic::number_text_test {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "galactic/option_table.h"
+#include "support/option_table.h"
 
 namespace galactic::option_text_test {
 namespace {

@@ -1,5 +1,5 @@
 // What killed programs leave behind is removed, and nothing else is.
-#include "galactic/part_files.h"
+#include "support/part_files.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "galactic/atomic_file.h"
+#include "support/atomic_file.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 

@@ -1,5 +1,3 @@
-#include "galactic/debug_models.h"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,8 +11,9 @@
 #include <set>
 #include <vector>
 
-#include "support/box_room.h"
-#include "support/small_home.h"
+#include "galactic/debug_views.h"
+#include "support/homes/box_room.h"
+#include "support/homes/small_home.h"
 #include "views/grid_surface.h"
 #include "views/merge_squares.h"
 #include "views/shapes.h"

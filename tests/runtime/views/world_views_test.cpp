@@ -9,12 +9,10 @@
 #include <vector>
 
 #include "galactic/batch_simulator.h"
-#include "galactic/camera_choice.h"
-#include "galactic/debug_models.h"
 #include "galactic/debug_views.h"
 #include "galactic/kinematics.h"
-#include "support/small_home_actor.h"
-#include "support/small_home_models.h"
+#include "support/homes/small_home_actor.h"
+#include "support/homes/small_home_models.h"
 
 namespace galactic::world_views_test {
 namespace {

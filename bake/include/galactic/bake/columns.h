@@ -6,7 +6,7 @@
 
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 
 namespace galactic::bake {
 

@@ -16,8 +16,8 @@
 
 #include "galactic/bake/episode_generator.h"
 #include "galactic/bake/source_asset.h"
-#include "galactic/option_table.h"
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
+#include "support/option_table.h"
 
 namespace galactic::bake {
 

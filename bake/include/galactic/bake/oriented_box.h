@@ -1,8 +1,8 @@
 #pragma once
 #include <span>
 
-#include "galactic/oriented_box.h"
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
+#include "galactic/shapes.h"
 
 namespace galactic::bake {
 

@@ -9,7 +9,7 @@
 #include "galactic/bake/source_asset.h"
 #include "galactic/error.h"
 #include "galactic/render_meshes.h"
-#include "galactic/render_pools.h"
+#include "layout/render_pools.h"
 
 namespace galactic::bake {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 
 namespace galactic::bake {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "galactic/bake/triangle_mesh.h"
-#include "galactic/stable_pose.h"
+#include "galactic/shapes.h"
 
 namespace galactic::bake {
 

@@ -4,7 +4,7 @@
 
 #include "galactic/bake/source_asset.h"
 #include "galactic/error.h"
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 
 namespace galactic::bake {
 

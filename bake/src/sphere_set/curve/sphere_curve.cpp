@@ -4,11 +4,11 @@
 #include <utility>
 
 #include "galactic/bake/sphere_set.h"
-#include "galactic/try.h"
 #include "sphere_set/curve/exchange_search.h"
 #include "sphere_set/gaps.h"
 #include "sphere_set/prepared_fit.h"
 #include "sphere_set/solid/surface_samples.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "galactic/column_grid.h"
+#include "galactic/pose.h"
 #include "galactic/scene.h"
-#include "galactic/vec3.h"
 #include "simulation/collision/push_kernels.h"
 #include "simulation/collision/resting_objects.h"
 #include "simulation/collision/sphere_batch.h"

@@ -1,9 +1,8 @@
 #pragma once
 #include <optional>
 
-#include "galactic/oriented_box.h"
 #include "galactic/pose.h"
-#include "galactic/vec3.h"
+#include "galactic/shapes.h"
 
 namespace galactic::simulation {
 

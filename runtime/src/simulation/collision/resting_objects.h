@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "galactic/pose.h"
-#include "galactic/vec3.h"
 #include "simulation/collision/resting_box.h"
 #include "simulation/collision/resting_objects_kernels.h"
 #include "simulation/collision/sphere_batch.h"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "galactic/vec3.h"
+#include "galactic/pose.h"
 #include "simulation/collision/clearance_map.h"
 #include "simulation/collision/collision.h"
 #include "simulation/phases/object_placement.h"

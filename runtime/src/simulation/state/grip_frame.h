@@ -1,6 +1,5 @@
 #pragma once
 #include "galactic/pose.h"
-#include "galactic/vec3.h"
 #include "simulation/state/model.h"
 
 namespace galactic::simulation {

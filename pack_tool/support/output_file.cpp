@@ -1,0 +1,29 @@
+#include "pack_tool/support/output_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <span>
+
+#include "support/atomic_file.h"
+
+namespace galactic::pack_tool {
+
+Result<void> checkOutput(const PackFile& pack, const std::filesystem::path& output) {
+  std::error_code missing;
+  if (!std::filesystem::equivalent(pack.where(), output, missing)) return {};
+  return fail(ErrorCode::kInvalidInput, output.string(),
+              "is the pack itself; write to another file");
+}
+
+std::string extensionOf(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+Result<void> writeOutput(const std::filesystem::path& output, const std::string& bytes) {
+  return writeFileAtomically(output, {std::as_bytes(std::span(bytes))});
+}
+
+}  // namespace galactic::pack_tool

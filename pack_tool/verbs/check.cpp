@@ -1,0 +1,137 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "pack_tool/check/find_packs.h"
+#include "pack_tool/check/junit.h"
+#include "pack_tool/check/pack_checker.h"
+#include "pack_tool/describe/pack_description.h"
+#include "pack_tool/support/output_file.h"
+#include "pack_tool/verbs/verbs.h"
+
+namespace galactic::pack_tool {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Something to check: a pack, or the reason why there is none.
+struct Task {
+  fs::path pack;
+  std::optional<CheckedPack> done;
+};
+
+std::vector<Task> tasksOf(const std::vector<fs::path>& arguments) {
+  std::vector<Task> tasks;
+  tasks.reserve(arguments.size());
+  for (const fs::path& argument : arguments) {
+    std::error_code unknown;
+    if (!fs::is_directory(argument, unknown)) {
+      tasks.push_back({argument, std::nullopt});
+      continue;
+    }
+    const auto found = findPacks(argument);
+    if (!found) {
+      tasks.push_back({argument, badPack(argument.string(), found.error())});
+      continue;
+    }
+    for (const fs::path& pack : *found) tasks.push_back({pack, std::nullopt});
+  }
+  return tasks;
+}
+
+/// Checks all packs on `jobs` threads. Each takes the next pack that nobody has begun; what becomes
+/// of a pack does not depend on who does it.
+std::vector<CheckedPack> checkAll(const std::vector<Task>& tasks, unsigned jobs) {
+  std::vector<CheckedPack> checked(tasks.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t n = next++; n < tasks.size(); n = next++) {
+      try {
+        checked[n] = tasks[n].done ? *tasks[n].done : checkPack(tasks[n].pack);
+      } catch (const std::exception& error) {
+        checked[n] =
+            badPack(tasks[n].pack.string(), {ErrorCode::kInternal, tasks[n].pack.string(),
+                                             std::string(error.what()) + "; please report it"});
+      }
+    }
+  };
+  std::vector<std::thread> helpers;
+  const std::size_t threads = std::min<std::size_t>(std::max(1U, jobs), tasks.size());
+  helpers.reserve(threads);
+  for (std::size_t n = 1; n < threads; ++n) helpers.emplace_back(work);
+  work();
+  for (std::thread& helper : helpers) helper.join();
+  return checked;
+}
+
+/// A line for each pack, those of a world before it.
+void printText(const CheckedPack& pack, OutputForm form, const Console& console) {
+  for (const CheckedPack& listed : pack.listed) printText(listed, form, console);
+  if (pack.finding) {
+    const auto& [code, error] = *pack.finding;
+    reportError(console, {error.code, error.where, fmt::format("{} [{}]", error.message, code)});
+  } else if (form == OutputForm::kText) {
+    console.out << fmt::format("{}: ok\n", printable(pack.file));
+  }
+}
+
+/// File and whether it is ok, then kind and size, or exit code, code, place and message.
+Json entryOf(const CheckedPack& pack) {
+  Json entry{{"file", pack.file}, {"ok", !pack.finding}};
+  if (pack.finding) {
+    const auto& [code, error] = *pack.finding;
+    entry["exit_code"] = static_cast<int>(error.code);
+    entry["code"] = code;
+    entry["where"] = error.where;
+    entry["message"] = error.message;
+  } else {
+    entry["kind"] = packKindName(pack.kind);
+    entry["bytes"] = pack.bytes;
+  }
+  if (!pack.is_world) return entry;
+  entry["packs"] = Json::array();
+  for (const CheckedPack& listed : pack.listed) entry["packs"].push_back(entryOf(listed));
+  return entry;
+}
+
+/// Refuses to write the report over a pack that was checked.
+Result<void> checkReport(const std::vector<CheckedPack>& packs, const fs::path& report) {
+  for (const CheckedPack& pack : packs) {
+    std::error_code missing;
+    if (fs::equivalent(pack.file, report, missing)) {
+      return fail(ErrorCode::kInvalidInput, report.string(),
+                  "is one of the packs; write to another file");
+    }
+    if (auto checked = checkReport(pack.listed, report); !checked) return checked;
+  }
+  return {};
+}
+
+Result<void> writeJunit(const std::vector<CheckedPack>& packs, const fs::path& report) {
+  if (report.empty()) return {};
+  if (auto checked = checkReport(packs, report); !checked) return checked;
+  return writeOutput(report, junitText(packs));
+}
+
+}  // namespace
+
+int runCheck(const CheckOptions& options, const Console& console) {
+  const unsigned jobs = options.jobs > 0 ? options.jobs : std::thread::hardware_concurrency();
+  const std::vector<CheckedPack> packs = checkAll(tasksOf(options.packs), jobs);
+  int exit_code = kExitOk;
+  Json report = Json::array();
+  for (const CheckedPack& pack : packs) {
+    printText(pack, options.form, console);
+    exit_code = worseExit(exit_code, pack.exitCode());
+    if (options.form == OutputForm::kJson) report.push_back(entryOf(pack));
+  }
+  if (options.form == OutputForm::kJson) console.out << jsonText(report);
+  const auto written = writeJunit(packs, options.junit);
+  return written ? exit_code : worseExit(exit_code, reportError(console, written.error()));
+}
+
+}  // namespace galactic::pack_tool

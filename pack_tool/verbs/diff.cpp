@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pack_tool/diff/asset_diff.h"
+#include "pack_tool/diff/diff_text.h"
+#include "pack_tool/diff/episode_diff.h"
+#include "pack_tool/diff/render_diff.h"
+#include "pack_tool/support/open_scene.h"
+#include "pack_tool/verbs/verbs.h"
+#include "support/try.h"
+
+namespace galactic::pack_tool {
+
+namespace {
+
+/// Names a grid by its radius.
+std::string gridField(const Json& grid) { return "grid(" + grid.at("radius").dump() + ')'; }
+
+/// The part of a description that tells how the pack was made, not what the runtime reads.
+Json provenanceOf(const Json& description) {
+  Json json = description.at("provenance");
+  json["import"] = description.at("scene").at("import");
+  for (const Json& grid : description.at("scene").at("column_grids")) {
+    json[gridField(grid)] = grid.at("statistics");
+  }
+  return json;
+}
+
+/// The part of a description that the runtime reads, without the grids' frames and spans.
+Json contentOf(const Json& description) {
+  const Json& scene = description.at("scene");
+  return {{"name", scene.at("name")}, {"bounds", scene.at("bounds")}};
+}
+
+Json coverageOf(const Json& description, std::size_t grid) {
+  const Json& described = description.at("scene").at("column_grids").at(grid);
+  return {{gridField(described), {{"coverage", described.at("coverage")}}}};
+}
+
+void append(std::vector<FieldDifference>& to, const std::vector<FieldDifference>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+/// One side of the comparison of scenes.
+struct Side {
+  Scene scene;
+  Json description;
+
+  [[nodiscard]] const std::vector<ColumnGrid>& grids() const { return scene.grids(); }
+};
+
+Result<Side> sideOf(const PackFile& pack) {
+  ASSIGN_OR_RETURN(auto scene, sceneOf(pack));
+  return Side{std::move(scene), describePack(pack)};
+}
+
+/// Pairs the grids by radius and compares each pair.
+void compareAllGrids(const Side& a, const Side& b, double tolerance, PackDifference& difference) {
+  for (std::size_t g = 0; g < a.grids().size(); ++g) {
+    const ColumnGrid& grid = a.grids()[g];
+    const auto other = b.scene.gridIndex(grid.radius());
+    if (!other) {
+      difference.radii_only_in_a.push_back(grid.radius());
+      continue;
+    }
+    append(difference.content,
+           compareFields(coverageOf(a.description, g), coverageOf(b.description, *other), 0));
+    difference.grids.push_back(compareGrids(grid, b.grids()[*other], tolerance));
+  }
+  for (const ColumnGrid& grid : b.grids()) {
+    if (!a.scene.gridIndex(grid.radius())) difference.radii_only_in_b.push_back(grid.radius());
+  }
+}
+
+Result<void> compareScenes(const PackFile& a, const PackFile& b, const DiffOptions& options,
+                           PackDifference& difference) {
+  ASSIGN_OR_RETURN(const auto side_a, sideOf(a));
+  ASSIGN_OR_RETURN(const auto side_b, sideOf(b));
+  if (options.scope == DiffScope::kEverything) {
+    difference.provenance =
+        compareFields(provenanceOf(side_a.description), provenanceOf(side_b.description), 0);
+  }
+  difference.content = compareFields(contentOf(side_a.description), contentOf(side_b.description),
+                                     options.tolerance);
+  compareAllGrids(side_a, side_b, options.tolerance, difference);
+  compareRenderMeshes({a, b}, {side_a.description, side_b.description}, options, difference);
+  return {};
+}
+
+Result<PackDifference> comparePacks(const PackFile& a, const PackFile& b,
+                                    const DiffOptions& options) {
+  if (a.kind() != b.kind()) {
+    return fail(ErrorCode::kInvalidInput, b.where(),
+                fmt::format("is a pack of kind {} and {} one of kind {}; give two of one kind",
+                            packKindName(b.kind()), a.where(), packKindName(a.kind())));
+  }
+  PackDifference difference;
+  difference.a = a.where();
+  difference.b = b.where();
+  difference.identical = std::ranges::equal(a.bytes(), b.bytes());
+  if (difference.identical) return difference;
+  if (a.kind() == PackKind::kObjects || a.kind() == PackKind::kRobot) {
+    const DescribedPair descriptions{describePack(a), describePack(b)};
+    compareAssets(descriptions, options, difference);
+    compareRenderMeshes({a, b}, descriptions, options, difference);
+    return difference;
+  }
+  if (a.kind() == PackKind::kWorld || a.kind() == PackKind::kPolicy) {
+    compareLists(a, b, options, difference);
+    return difference;
+  }
+  RETURN_IF_ERROR(a.kind() == PackKind::kEpisodes ? compareEpisodes(a, b, options, difference)
+                                                  : compareScenes(a, b, options, difference));
+  return difference;
+}
+
+}  // namespace
+
+int runDiff(const DiffOptions& options, const Console& console) {
+  const auto a = PackFile::open(options.a, options.trust);
+  if (!a) return reportError(console, a.error());
+  const auto b = PackFile::open(options.b, options.trust);
+  if (!b) return reportError(console, b.error());
+  const auto difference = comparePacks(*a, *b, options);
+  if (!difference) return reportError(console, difference.error());
+  console.out << (options.form == OutputForm::kJson ? jsonText(diffJson(*difference))
+                                                    : diffText(*difference));
+  return difference->differs() ? kExitDiffers : kExitOk;
+}
+
+}  // namespace galactic::pack_tool

@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <utility>
+
+#include "pack_tool/report/html_page.h"
+#include "pack_tool/support/open_listed.h"
+#include "pack_tool/support/output_file.h"
+#include "pack_tool/verbs/verbs.h"
+#include "support/try.h"
+
+namespace galactic::pack_tool {
+
+namespace {
+
+/// A pack as seen from `folder`, or its file's name where that would lead upwards: what pages say
+/// does not depend on where packs lie.
+std::string nameFrom(const std::filesystem::path& folder, const std::filesystem::path& pack) {
+  std::error_code ignored;
+  const std::filesystem::path relative =
+      std::filesystem::absolute(pack, ignored).lexically_normal().lexically_relative(folder);
+  const bool is_below = !relative.empty() && *relative.begin() != "..";
+  return (is_below ? relative : pack.filename()).generic_string();
+}
+
+Result<PackEntry> entryOf(const PackFile& pack, const std::filesystem::path& folder) {
+  PackEntry entry{.description = describePack(pack, Detail::kSummary), .thumbnails = {}};
+  entry.description["file"] = nameFrom(folder, entry.description.at("file").get<std::string>());
+  ASSIGN_OR_RETURN(auto thumbnails, thumbnailsOf(pack));
+  entry.thumbnails = std::move(thumbnails);
+  return entry;
+}
+
+/// On all cores; what becomes of a pack does not depend on who draws it.
+std::vector<Result<PackEntry>> entriesOf(const std::vector<PackFile>& packs,
+                                         const std::filesystem::path& folder) {
+  std::vector<Result<PackEntry>> entries(packs.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t n = next++; n < packs.size(); n = next++) {
+      entries[n] = entryOf(packs[n], folder);
+    }
+  };
+  std::vector<std::jthread> helpers;
+  const std::size_t threads =
+      std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), packs.size());
+  helpers.reserve(threads);
+  for (std::size_t n = 1; n < threads; ++n) helpers.emplace_back(work);
+  work();
+  helpers.clear();
+  return entries;
+}
+
+Result<void> makeReport(const ReportOptions& options) {
+  ASSIGN_OR_RETURN(
+      const auto packs,
+      openListed({.packs = options.packs, .output = options.output, .trust = options.trust}));
+  std::vector<PackEntry> entries;
+  entries.reserve(packs.size());
+  std::error_code ignored;
+  const std::filesystem::path folder =
+      std::filesystem::absolute(options.packs.front(), ignored).lexically_normal().parent_path();
+  for (Result<PackEntry>& entry : entriesOf(packs, folder)) {
+    if (!entry) return tl::unexpected(entry.error());
+    entries.push_back(std::move(*entry));
+  }
+  return writeOutput(options.output, htmlPage(options.packs.front().filename().string(), entries));
+}
+
+}  // namespace
+
+int runReport(const ReportOptions& options, const Console& console) {
+  const auto done = makeReport(options);
+  return done ? kExitOk : reportError(console, done.error());
+}
+
+}  // namespace galactic::pack_tool

@@ -1,0 +1,263 @@
+#include "command_line/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "command_line/render_command_line.h"
+#include "galactic/error.h"
+#include "run/policy.h"
+#include "run/tracked_run.h"
+#include "support/nearest_name.h"
+#include "support/number_text.h"
+#include "support/option_table.h"
+#include "support/printable.h"
+
+namespace galactic {
+namespace {
+
+constexpr const char* kFooter =
+    "Any option of the groups below \"Options\" starts a simulation; without one, packs are\n"
+    "described.\n"
+    "Examples:\n"
+    "  galactic-run --pack world.pack\n"
+    "  galactic-run --pack world.pack --envs 1024 --steps 1000 --policy random\n"
+    "  galactic-run --pack world.pack --steps 100 --record run.rec\n"
+    "  galactic-run --pack world.pack --steps 100 --envs 4 --render rgbd --contact-sheet run.png\n"
+    "  galactic-run --pack world.pack --policy picker.pack --contact-sheet run.png --render rgb\n"
+    "  galactic-run --pack world.pack --policy scripted --steps 500 --envs 4 --view run.html\n"
+    "  galactic-run --pack world.pack --policy replay:run.rec";
+constexpr const char* kReplayPrefix = "replay:";
+constexpr const char* kPolicySuffix = ".pack";
+constexpr const char* kPlainGroup = "Options";
+constexpr const char* kRunGroup = "Simulation";
+
+CLI::Validator knownPolicy() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        if (isGeneratedPolicy(text) || text == kScriptedPolicy) return std::string();
+        const std::string_view prefix = kReplayPrefix;
+        if (text.starts_with(prefix) && text.size() > prefix.size()) return std::string();
+        if (text.ends_with(kPolicySuffix)) return std::string();
+        return fmt::format(
+            "unknown policy {}, wanted random, forward, zero, scripted, FILE.pack or replay:FILE",
+            text);
+      },
+      "", "policy");
+}
+
+/// Makes an option of the command line of each option of the table. They write to the fields only
+/// when they are typed.
+class CommandLineVisitor {
+ public:
+  explicit CommandLineVisitor(CLI::App& app) : app_(app) {}
+
+  void group(std::string_view heading) { heading_ = heading; }
+  void whole(std::string_view name, std::uint32_t& field, Within<std::uint32_t> within,
+             std::string_view help) {
+    add(name, field, help)
+        ->check(wholeCheck(within.least, within.most))
+        ->option_text(fmt::format("N [{}]", field));
+  }
+  void seed(std::string_view name, std::uint64_t& field, std::string_view help) {
+    add(name, field, help)
+        ->check(wholeCheck(0, std::numeric_limits<std::uint64_t>::max()))
+        ->option_text(fmt::format("N [{}]", field))
+        ->group(kPlainGroup);
+  }
+  void real(std::string_view name, float& field, Within<float> within, std::string_view help) {
+    add(name, field, help)
+        ->check(numberCheck(static_cast<double>(within.least), static_cast<double>(within.most)))
+        ->option_text(fmt::format("NUMBER [{}]", field));
+  }
+  void flag(std::string_view name, const Switch& value, std::string_view help) {
+    // --NAME=false, too: a world may have switched it on.
+    const auto set = [value](std::int64_t times) { value.field = (times > 0) == value.when_typed; };
+    app_.add_flag_function(dashed(name), set, std::string(help))
+        ->check(switchCheck())
+        ->group(heading_)
+        ->option_text(" ");
+  }
+  template <class T, std::size_t N>
+  void choice(std::string_view name, T& field, const std::array<Named<T>, N>& names,
+              std::string_view help) {
+    std::map<std::string, T> values;
+    std::string listed;
+    std::string now;
+    for (const Named<T>& one : names) {
+      values.emplace(one.name, one.value);
+      listed += (listed.empty() ? "" : "|") + std::string(one.name);
+      if (one.value == field) now = one.name;
+    }
+    const auto set = [&field, values](const std::string& text) { field = values.at(text); };
+    app_.add_option_function<std::string>(dashed(name), set, std::string(help))
+        ->check(CLI::IsMember(values))
+        ->group(heading_)
+        ->option_text(fmt::format("{} [{}]", listed, now));
+  }
+
+  /// Options are read in the order in which they are added, so that its parts refine it.
+  template <class T>
+  void preset(std::string_view name, T& field, const Preset<T>& preset, std::string_view help) {
+    std::map<std::string, T> values;
+    std::string listed;
+    for (const Named<T>& one : preset.names) {
+      values.emplace(one.name, one.value);
+      listed += (listed.empty() ? "" : "|") + std::string(one.name);
+    }
+    const auto set = [&field, values](const std::string& text) { field = values.at(text); };
+    app_.add_option_function<std::string>(dashed(name), set, std::string(help))
+        ->check(CLI::IsMember(values))
+        ->group(heading_)
+        ->option_text(fmt::format("{} [{}]", listed, preset.names.front().name));
+  }
+
+ private:
+  static std::string dashed(std::string_view name) { return "--" + std::string(name); }
+
+  template <class T>
+  CLI::Option* add(std::string_view name, T& field, std::string_view help) {
+    return app_.add_option(dashed(name), field, std::string(help))->group(heading_);
+  }
+
+  CLI::App& app_;
+  std::string heading_;
+};
+
+void addPlainOptions(CLI::App& app, RunOptions& options) {
+  app.set_version_flag("--version", "galactic-run " GALACTIC_VERSION);
+  app.add_option("--pack", options.packs, "Pack to open; repeat it for several")
+      ->required()
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  app.add_flag("--trusted", options.trusted,
+               "Skip the verification of packs that this machine has verified before")
+      ->check(switchCheck());
+  app.add_flag("--bench", options.bench, "Measure queries on all grids of all packs")
+      ->check(switchCheck());
+}
+
+void addRunOptions(CLI::App& app, RunOptions& options) {
+  app.option_defaults()->group(kRunGroup);
+  app.add_option("--steps", options.steps, "Steps of the whole batch")
+      ->check(wholeCheck(1, std::uint64_t{1} << 40U))
+      ->option_text(fmt::format("N [{}]", options.steps));
+  app.add_option("--policy", options.policy, "Where the actions come from")
+      ->check(knownPolicy())
+      ->option_text(
+          fmt::format("random|forward|zero|scripted|FILE.pack|replay:FILE [{}]", options.policy));
+  app.add_flag("--deterministic,!--policy-sample", options.is_deterministic,
+               "Let a policy pack take its likeliest actions, or sample them (the default)")
+      ->check(switchCheck());
+  app.add_option("--threads", options.simulation.threads,
+                 "Threads; the results do not depend on it; 0: one per processor")
+      ->check(wholeCheck(0, 4096))
+      ->option_text(fmt::format("N [{}]", options.simulation.threads));
+  app.add_flag("--body-transforms", options.simulation.body_transforms,
+               "Keep the pose of every body of the robot; rendering implies it")
+      ->check(switchCheck());
+  app.add_option("--record", options.record, "Write actions and digests, for replay:FILE")
+      ->type_name("FILE");
+  app.add_option("--report", options.report, "Write the closing table as JSON")
+      ->type_name("FILE.json");
+  app.add_option("--view", options.view, "Write a page that plays the run in a browser")
+      ->type_name("FILE.html");
+  app.add_option("--view-envs", options.view_envs, "How many envs the page shows")
+      ->check(wholeCheck(1, 1024))
+      ->option_text(fmt::format("N [{}]", options.view_envs));
+  app.add_option("--animation", options.animation,
+                 "Write the first episode of the first env as an animated scene (glTF)")
+      ->type_name("FILE.glb");
+  app.option_defaults()->group(kPlainGroup);
+}
+
+/// What no single option can see to be wrong; empty when nothing is.
+std::string faultOf(const RunOptions& options) {
+  if (options.bench && options.simulates) {
+    return "--bench measures queries and simulates nothing; leave it out, or the other options";
+  }
+  if (options.bench && options.simulation.seed > std::numeric_limits<std::uint32_t>::max()) {
+    return "--bench takes a --seed up to 4294967295";
+  }
+  if (options.is_deterministic && options.policyFile().empty()) {
+    return "--deterministic applies to learned policies only; add --policy FILE.pack";
+  }
+  const bool is_tracked = !options.view.empty() || !options.animation.empty();
+  const std::uint64_t kept =
+      options.view.empty() ? 1 : std::min(options.view_envs, options.simulation.envs);
+  if (is_tracked && options.steps > TrackedRun::kMostSteps / kept) {
+    return fmt::format(
+        "--view and --animation keep what envs do: {} steps of {} envs were asked for, at most {} "
+        "together fit; ask for fewer --steps or --view-envs",
+        options.steps, kept, TrackedRun::kMostSteps);
+  }
+  if (options.simulation.rank >= options.simulation.ranks) {
+    return fmt::format("--rank is {}, wanted a number below --ranks, which is {}",
+                       options.simulation.rank, options.simulation.ranks);
+  }
+  return {};
+}
+
+std::vector<std::string> longNamesOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name());
+  return names;
+}
+
+int refuse(std::string_view message) {
+  fmt::print(stderr, "galactic-run: command line: {}; see --help\n", printable(message));
+  return kExitUsage;
+}
+
+}  // namespace
+
+std::string RunOptions::replayFile() const {
+  const std::string_view prefix = kReplayPrefix;
+  return policy.starts_with(prefix) ? policy.substr(prefix.size()) : std::string();
+}
+
+std::string RunOptions::policyFile() const {
+  return replayFile().empty() && policy.ends_with(kPolicySuffix) ? policy : std::string();
+}
+
+std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOptions& options) {
+  CLI::App app{"Opens packs and says what is inside, or steps a world of them.", "galactic-run"};
+  app.footer(std::string(kFooter) + "\n\n" + kExitCodesHelp);
+  constexpr std::size_t kHelpColumn = 34;
+  app.get_formatter()->column_width(kHelpColumn);
+  addPlainOptions(app, options);
+  addRunOptions(app, options);
+  addDrawingOptions(app, options.drawing);
+  CommandLineVisitor visitor(app);
+  visitBatchOptions(options.simulation, visitor);
+  visitWorldTask(options.simulation, visitor);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool asked = error.get_exit_code() == 0;  // --help, --version
+    return asked ? app.exit(error) : refuse(withSuggestions(error.what(), longNamesOf(app)));
+  }
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& value : option->results()) {
+      if (value.empty()) return refuse(option->get_name() + " has an empty value");
+    }
+    options.simulates |= option->count() > 0 && option->get_group() != kPlainGroup;
+  }
+  std::string fault = faultOf(options);
+  if (fault.empty() && options.view.empty() && app.count("--view-envs") > 0) {
+    fault = "--view-envs applies to the page of a run only; add --view FILE.html";
+  }
+  options.drawing.policy_may_draw = !options.policyFile().empty();
+  if (fault.empty()) fault = drawingFault(options.drawing, app);
+  options.simulation.body_transforms |= options.drawing.draws();
+  return fault.empty() ? std::nullopt : std::optional<int>(refuse(fault));
+}
+
+}  // namespace galactic

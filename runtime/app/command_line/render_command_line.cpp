@@ -1,0 +1,140 @@
+#include "command_line/render_command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include "support/number_text.h"
+
+namespace galactic {
+namespace {
+
+constexpr const char* kGroup = "Rendering";
+constexpr std::uint32_t kLargestImage = 4096;
+
+/// A whole number of 1 to kLargestImage.
+std::optional<std::uint32_t> edgeOf(std::string_view text) {
+  std::uint32_t edge = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data(), end, edge);
+  if (problem != std::errc() || stop != end || edge < 1 || edge > kLargestImage) return {};
+  return edge;
+}
+
+/// "128" or "160x120".
+std::optional<std::pair<std::uint32_t, std::uint32_t>> sizeOf(std::string_view text) {
+  const std::size_t cross = text.find('x');
+  const auto width = edgeOf(text.substr(0, cross));
+  const auto height = cross == std::string_view::npos ? width : edgeOf(text.substr(cross + 1));
+  if (!width || !height) return {};
+  return std::pair(*width, *height);
+}
+
+void addSize(CLI::App& app, DrawingOptions& drawing) {
+  const CLI::Validator is_size(
+      [](const std::string& text) {
+        if (sizeOf(text)) return std::string();
+        return fmt::format("found {}, wanted N or WIDTHxHEIGHT, each 1 to {}", text, kLargestImage);
+      },
+      "", "size");
+  const auto set = [&drawing](const std::string& text) {
+    if (const auto size = sizeOf(text)) std::tie(drawing.width, drawing.height) = *size;
+  };
+  app.add_option_function<std::string>("--size", set, "Pixels of an image")
+      ->check(is_size)
+      ->option_text("N|WxH [128]");
+}
+
+void addBackend(CLI::App& app, DrawingOptions& drawing) {
+  const std::map<std::string, RenderBackend> backends{
+      {"auto", RenderBackend::kAuto}, {"gl", RenderBackend::kGl}, {"soft", RenderBackend::kSoft}};
+  const auto set = [&drawing, backends](const std::string& text) {
+    drawing.backend = backends.at(text);
+  };
+  app.add_option_function<std::string>("--backend", set, "Renderer: OpenGL, or the processor alone")
+      ->check(CLI::IsMember({"auto", "gl", "soft"}))
+      ->option_text("auto|gl|soft [auto]");
+  app.add_option("--device", drawing.device, "For gl: an index, cuda:N, a UUID, or software")
+      ->type_name("TEXT");
+}
+
+void addPictures(CLI::App& app, DrawingOptions& drawing) {
+  app.add_option("--frames", drawing.frames, "Write PNG files of the first envs")
+      ->type_name("FOLDER");
+  app.add_option("--contact-sheet", drawing.contact_sheet,
+                 "Write a sheet of envs (columns) at several moments (rows)")
+      ->type_name("FILE.png");
+  app.add_option("--video", drawing.video, "Write a video with ffmpeg")->type_name("FILE");
+  app.add_option("--frame-every", drawing.frame_every, "Steps from picture to picture")
+      ->check(wholeCheck(1, 1U << 30U))
+      ->option_text(fmt::format("N [{}]", drawing.frame_every));
+  app.add_option("--frame-envs", drawing.frame_envs, "How many envs the pictures show")
+      ->check(wholeCheck(1, 1024))
+      ->option_text(fmt::format("N [{}]", drawing.frame_envs));
+}
+
+void addDebug(CLI::App& app, DrawingOptions& drawing) {
+  app.add_flag("--debug-view", drawing.debug_view,
+               "Show column grid, spheres and boxes beside the camera's image")
+      ->check(switchCheck());
+  app.add_option("--debug-camera", drawing.debug_camera,
+                 "Camera of the debug view, chosen as with --camera")
+      ->option_text(fmt::format("head|follow|top|LINK [{}]", drawing.debug_camera));
+  app.add_option("--debug-radius", drawing.debug_radius,
+                 "Radius whose column grid is shown, meters; 0: the smallest")
+      ->check(numberCheck(0, 10))
+      ->option_text("NUMBER [0]");
+}
+
+}  // namespace
+
+void addDrawingOptions(CLI::App& app, DrawingOptions& drawing) {
+  app.option_defaults()->group(kGroup);
+  app.add_option("--render", drawing.images,
+                 "Draw each step: color, depth, both, or both and semantic ids")
+      ->check(CLI::IsMember({"rgb", "depth", "rgbd", "rgbds"}))
+      ->option_text("rgb|depth|rgbd|rgbds");
+  addSize(app, drawing);
+  addBackend(app, drawing);
+  app.add_option("--camera", drawing.camera,
+                 "The recipe's camera, one behind the robot, one above it, or a link")
+      ->option_text(fmt::format("head|follow|top|LINK [{}]", drawing.camera));
+  constexpr double kLeastFov = 1;
+  constexpr double kMostFov = 175;
+  app.add_option("--fov", drawing.fov_degrees,
+                 "Vertical field of view, from the image's lower to its upper edge")
+      ->check(numberCheck(kLeastFov, kMostFov))
+      ->option_text("DEGREES");
+  addPictures(app, drawing);
+  addDebug(app, drawing);
+  app.option_defaults()->group("Options");
+}
+
+std::string drawingFault(const DrawingOptions& drawing, const CLI::App& app) {
+  if (!drawing.draws()) {
+    for (const CLI::Option* option : app.get_options()) {
+      if (option->count() == 0 || option->get_group() != kGroup) continue;
+      const std::string name = option->get_name();
+      if (drawing.policy_may_draw && (name == "--backend" || name == "--device")) continue;
+      return fmt::format("{} applies to rendering only; add --render", name);
+    }
+  }
+  if (drawing.backend == RenderBackend::kSoft && !drawing.device.empty()) {
+    return "--device applies to --backend gl only; leave it out";
+  }
+  const bool shapes_pictures = app.count("--frame-every") + app.count("--frame-envs") > 0;
+  if (!drawing.makesPictures() && (drawing.debug_view || shapes_pictures)) {
+    return fmt::format("{} applies to pictures only; add --frames, --contact-sheet or --video",
+                       drawing.debug_view ? "--debug-view" : "--frame-every or --frame-envs");
+  }
+  if (!drawing.debug_view && app.count("--debug-camera") + app.count("--debug-radius") > 0) {
+    return "--debug-camera and --debug-radius apply to the debug view only; add --debug-view";
+  }
+  return {};
+}
+
+}  // namespace galactic

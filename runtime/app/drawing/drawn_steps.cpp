@@ -1,0 +1,73 @@
+#include "drawing/drawn_steps.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace galactic {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+DrawnSteps::DrawnSteps(Rendering rendering, PictureOutput output)
+    : rendering_(std::move(rendering)), output_(std::move(output)) {}
+
+Result<DrawnSteps> DrawnSteps::create(const World& world, const BatchSimulator& simulator,
+                                      const RunOptions& options) {
+  const RunLength length{options.steps, simulator.envCount()};
+  const std::size_t shown = std::min<std::size_t>(options.drawing.frame_envs, length.envs);
+  Result<Rendering> rendering =
+      Rendering::create(world, simulator, options, options.drawing.makesPictures() ? shown : 0);
+  if (!rendering) return tl::unexpected<Error>(rendering.error());
+  Result<PictureOutput> output = PictureOutput::open(options.drawing, length);
+  if (!output) return tl::unexpected<Error>(output.error());
+  if (options.drawing.hasSemantics()) {
+    const std::string legend = semanticLegend(rendering->semanticNames());
+    if (auto written = output->writeLegend(legend); !written) {
+      return tl::unexpected<Error>(written.error());
+    }
+  }
+  return DrawnSteps(std::move(*rendering), std::move(*output));
+}
+
+Result<void> DrawnSteps::step(BatchSimulator& simulator, std::span<const float> actions,
+                              RunReport& report) {
+  RenderReport& drawn = *report.rendering;
+  const Clock::time_point start = Clock::now();
+  rendering_.update(simulator);
+  rendering_.begin();
+  if (report.steps % kMeasureEvery == 1) {
+    rendering_.end();
+    drawn.rendering.add(secondsSince(start));
+    const Clock::time_point rendered = Clock::now();
+    simulator.step(actions);
+    drawn.physics.add(secondsSince(rendered));
+  } else {
+    simulator.beginStep(actions);
+    simulator.endStep();
+    rendering_.end();
+    if (report.steps > 0) drawn.overlapped.add(secondsSince(start));
+  }
+  report.step_seconds += secondsSince(start);
+  drawn.images += simulator.envCount();
+  if (!output_.wants(report.steps)) return {};
+  return output_.add(report.steps, rendering_.frames());
+}
+
+Result<void> DrawnSteps::finish(const BatchSimulator& simulator, const RunReport& report) {
+  if (output_.wants(report.steps)) {
+    rendering_.update(simulator);
+    rendering_.begin();
+    rendering_.end();
+    if (Result<void> added = output_.add(report.steps, rendering_.frames()); !added) return added;
+  }
+  return output_.finish();
+}
+
+}  // namespace galactic

@@ -1,0 +1,190 @@
+#include "drawing/picture_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "pictures/png_file.h"
+#include "support/atomic_file.h"
+
+namespace galactic {
+namespace {
+
+using pictures::Image;
+
+/// Between the images of a tile, and between the tiles of a video; pixels.
+constexpr int kTileGap = 2;
+
+std::string frameName(std::size_t env, std::uint64_t step, const char* what) {
+  return fmt::format("env_{:04}_step_{:06}_{}.png", env, step, what);
+}
+
+/// Whether a file can be written here; leaves nothing behind.
+Result<void> tryFile(const std::filesystem::path& path) {
+  std::error_code unknown;
+  if (!path.has_filename() || std::filesystem::is_directory(path, unknown)) {
+    return fail(ErrorCode::kIo, path.string(), "is a folder; wanted the name of a file");
+  }
+  const Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return tl::unexpected<Error>(file.error());
+  return {};
+}
+
+Result<void> tryFolder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + error.message());
+  }
+  return tryFile(folder / frameName(0, 0, "rgb"));
+}
+
+/// The moments that a sheet shows of `frames` frames, evenly spread, first and last among them.
+std::vector<std::uint64_t> spreadMoments(std::uint64_t frames) {
+  const std::uint64_t rows = std::min<std::uint64_t>(frames, PictureOutput::kSheetRows);
+  std::vector<std::uint64_t> moments;
+  moments.reserve(rows);
+  for (std::uint64_t row = 0; row < rows; ++row) {
+    const std::uint64_t last = std::max<std::uint64_t>(rows - 1, 1);
+    moments.push_back((row * (frames - 1) + last / 2) / last);
+  }
+  return moments;
+}
+
+/// How `count` tiles are laid out in a video: about as many rows as columns.
+std::size_t tileColumns(std::size_t count) {
+  return static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+}
+
+/// A tile as it will be, of nothing.
+Image emptyTile(const DrawingOptions& options) {
+  const int images = (options.hasColor() ? 1 : 0) + (options.hasDepth() ? 1 : 0) +
+                     (options.hasSemantics() ? 1 : 0) + (options.debug_view ? 1 : 0);
+  return {images * (static_cast<int>(options.width) + kTileGap) - kTileGap,
+          static_cast<int>(options.height),
+          {}};
+}
+
+}  // namespace
+
+Image tileOf(const EnvFrame& frame) {
+  std::vector<Image> images;
+  const auto add = [&images](const DrawnImage& drawn) {
+    if (!drawn.color.empty()) images.push_back(colorPicture(drawn));
+    if (!drawn.depth.empty()) images.push_back(depthPicture(drawn));
+    if (!drawn.semantics.empty()) images.push_back(semanticPicture(drawn));
+  };
+  add(frame.camera);
+  if (frame.debug) add(*frame.debug);
+  const int step = images.front().width() + kTileGap;
+  Image tile(static_cast<int>(images.size()) * step - kTileGap, images.front().height(), {});
+  for (std::size_t n = 0; n < images.size(); ++n) {
+    paste(tile, images[n], static_cast<int>(n) * step, 0);
+  }
+  return tile;
+}
+
+PictureOutput::PictureOutput(const DrawingOptions& options, const RunLength& length)
+    : options_(options), envs_(std::min<std::size_t>(options.frame_envs, length.envs)) {
+  sheet_steps_ = spreadMoments(length.steps / options.frame_every + 1);
+  for (std::uint64_t& step : sheet_steps_) step *= options.frame_every;
+}
+
+Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const RunLength& length) {
+  PictureOutput output(options, length);
+  Result<void> good;
+  if (!options.frames.empty()) good = tryFolder(options.frames);
+  if (good && !options.contact_sheet.empty()) good = tryFile(options.contact_sheet);
+  if (good && !options.video.empty()) good = tryFile(options.video);
+  if (!good) return tl::unexpected<Error>(good.error());
+  if (!options.video.empty()) {
+    const std::vector<Image> tiles(output.envs_, emptyTile(options));
+    Result<VideoPipe> video = VideoPipe::start(options.video, output.videoFrame(tiles));
+    if (!video) return tl::unexpected<Error>(video.error());
+    output.video_.emplace(std::move(*video));
+  }
+  return output;
+}
+
+Result<void> PictureOutput::writeLegend(std::string_view json) const {
+  if (options_.frames.empty()) return {};
+  const std::filesystem::path file = std::filesystem::path(options_.frames) / "semantics.json";
+  return writeFileAtomically(file, {std::as_bytes(std::span(json))});
+}
+
+bool PictureOutput::wants(std::uint64_t step) const {
+  const bool takes_all = !options_.frames.empty() || !options_.video.empty();
+  return isOnSheet(step) || (takes_all && step % options_.frame_every == 0);
+}
+
+Result<void> PictureOutput::add(std::uint64_t step, std::span<const EnvFrame> frames) {
+  if (!options_.frames.empty()) {
+    for (std::size_t env = 0; env < frames.size(); ++env) {
+      if (Result<void> written = writeFrame(step, env, frames[env]); !written) return written;
+    }
+  }
+  if (!video_ && !isOnSheet(step)) return {};
+  std::vector<Image> tiles;
+  tiles.reserve(frames.size());
+  for (const EnvFrame& frame : frames) tiles.push_back(tileOf(frame));
+  if (video_) {
+    if (Result<void> sent = video_->append(videoFrame(tiles)); !sent) return sent;
+  }
+  if (!isOnSheet(step)) return {};
+  for (std::size_t env = 0; env < tiles.size(); ++env) {
+    sheet_.push_back({std::move(tiles[env]), fmt::format("env {} step {}", env, step)});
+  }
+  return {};
+}
+
+Result<void> PictureOutput::finish() {
+  if (video_) {
+    if (Result<void> ended = video_->finish(); !ended) return ended;
+  }
+  if (options_.contact_sheet.empty() || sheet_.empty()) return {};
+  return pictures::writePng(options_.contact_sheet, contactSheet(sheet_, envs_));
+}
+
+bool PictureOutput::isOnSheet(std::uint64_t step) const {
+  return !options_.contact_sheet.empty() && std::ranges::binary_search(sheet_steps_, step);
+}
+
+Result<void> PictureOutput::writeFrame(std::uint64_t step, std::size_t env,
+                                       const EnvFrame& frame) const {
+  const std::filesystem::path folder = options_.frames;
+  const auto write = [&](const char* what, const auto& picture) {
+    return pictures::writePng(folder / frameName(env, step, what), picture);
+  };
+  Result<void> written;
+  const DrawnImage& camera = frame.camera;
+  if (!camera.color.empty()) written = write("rgb", colorPicture(camera));
+  if (written && !camera.depth.empty()) written = write("depth", depthNumbers(camera));
+  if (written && !camera.semantics.empty()) written = write("semantic", semanticNumbers(camera));
+  if (written && frame.debug) written = write("debug", colorPicture(*frame.debug));
+  return written;
+}
+
+Image PictureOutput::videoFrame(std::span<const Image> tiles) const {
+  const std::size_t columns = tileColumns(tiles.size());
+  const std::size_t rows = (tiles.size() + columns - 1) / columns;
+  const int step_x = tiles[0].width() + kTileGap;
+  const int step_y = tiles[0].height() + kTileGap;
+  // The usual codecs take even sizes only.
+  const auto even = [](std::size_t count, int step) {
+    const int length = static_cast<int>(count) * step - kTileGap;
+    return length + length % 2;
+  };
+  Image frame(even(columns, step_x), even(rows, step_y), {});
+  for (std::size_t n = 0; n < tiles.size(); ++n) {
+    paste(frame, tiles[n], static_cast<int>(n % columns) * step_x,
+          static_cast<int>(n / columns) * step_y);
+  }
+  return frame;
+}
+
+}  // namespace galactic

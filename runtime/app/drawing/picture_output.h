@@ -1,0 +1,74 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "command_line/render_options.h"
+#include "drawing/contact_sheet.h"
+#include "drawing/frame_images.h"
+#include "drawing/video_pipe.h"
+#include "galactic/error.h"
+
+namespace galactic {
+
+/// What is shown of one env at one moment: what its camera sees, and the debug view where there is
+/// one.
+struct EnvFrame {
+  DrawnImage camera;
+  std::optional<DrawnImage> debug;
+};
+
+/// How long the run is that pictures are made of.
+struct RunLength {
+  std::uint64_t steps = 0;
+  std::size_t envs = 0;
+};
+
+/// What `frame` looks like in sheets and videos: color, depth, semantics and debug view side by
+/// side, as far as they are there.
+[[nodiscard]] pictures::Image tileOf(const EnvFrame& frame);
+
+/// Writes frames, contact sheet and video of a run, as the options say.
+class PictureOutput {
+ public:
+  /// Most moments that a contact sheet shows.
+  static constexpr std::size_t kSheetRows = 6;
+
+  /// Tries all files and folders. Fails with kIo when one cannot be written, and with the errors of
+  /// VideoPipe.
+  [[nodiscard]] static Result<PictureOutput> open(const DrawingOptions& options,
+                                                  const RunLength& length);
+
+  /// Writes what the ids of semantic images mean beside the frames; nothing where there are none.
+  [[nodiscard]] Result<void> writeLegend(std::string_view json) const;
+
+  /// Whether the state after `step` steps is shown.
+  [[nodiscard]] bool wants(std::uint64_t step) const;
+  /// How many envs are shown, from the first one on.
+  [[nodiscard]] std::size_t envCount() const { return envs_; }
+
+  /// The state after `step` steps, which is wanted; `frames`: of envCount() envs.
+  [[nodiscard]] Result<void> add(std::uint64_t step, std::span<const EnvFrame> frames);
+  /// After the last step, also of a run that ended early: writes the sheet and ends the video.
+  [[nodiscard]] Result<void> finish();
+
+ private:
+  PictureOutput(const DrawingOptions& options, const RunLength& length);
+
+  [[nodiscard]] Result<void> writeFrame(std::uint64_t step, std::size_t env,
+                                        const EnvFrame& frame) const;
+  [[nodiscard]] bool isOnSheet(std::uint64_t step) const;
+  [[nodiscard]] pictures::Image videoFrame(std::span<const pictures::Image> tiles) const;
+
+  DrawingOptions options_;
+  std::size_t envs_;
+  /// Ascending steps.
+  std::vector<std::uint64_t> sheet_steps_;
+  std::vector<SheetCell> sheet_;
+  std::optional<VideoPipe> video_;
+};
+
+}  // namespace galactic

@@ -1,0 +1,163 @@
+#include "drawing/rendering.h"
+
+#include <utility>
+
+#include "galactic/debug_views.h"
+#include "galactic/world_models.h"
+#include "galactic/world_views.h"
+
+namespace galactic {
+
+ImageBatch::ImageBatch(BatchRenderer renderer, std::size_t images)
+    : renderer_(std::move(renderer)) {
+  const RenderOptions& options = renderer_.options();
+  color_.resize(images * pixels() * static_cast<std::size_t>(options.color));
+  if (options.depth) depth_.resize(images * pixels());
+  if (options.semantics) semantics_.resize(images * pixels());
+}
+
+void ImageBatch::begin(std::span<const RenderView> views) {
+  renderer_.beginRender(views, {color_, depth_, semantics_});
+}
+
+DrawnImage ImageBatch::image(std::size_t n) const {
+  const RenderOptions& options = renderer_.options();
+  DrawnImage image{.width = options.width,
+                   .height = options.height,
+                   .format = options.color,
+                   .color = {},
+                   .depth = {},
+                   .semantics = {}};
+  const std::size_t color_bytes = pixels() * static_cast<std::size_t>(options.color);
+  image.color = std::span(color_).subspan(n * color_bytes, color_bytes);
+  if (options.depth) image.depth = std::span(depth_).subspan(n * pixels(), pixels());
+  if (options.semantics) image.semantics = std::span(semantics_).subspan(n * pixels(), pixels());
+  return image;
+}
+
+std::size_t ImageBatch::pixels() const {
+  return std::size_t{renderer_.options().width} * renderer_.options().height;
+}
+
+namespace {
+
+RenderOptions rendererOptions(const RunOptions& run, float near) {
+  const DrawingOptions& drawing = run.drawing;
+  RenderOptions options;
+  options.width = drawing.width;
+  options.height = drawing.height;
+  options.color = drawing.hasColor() ? ColorFormat::kRgba8 : ColorFormat::kNone;
+  options.depth = drawing.hasDepth();
+  options.semantics = drawing.hasSemantics();
+  options.near = near;
+  options.backend = drawing.backend;
+  options.device = drawing.device;
+  options.threads = run.simulation.threads;
+  return options;
+}
+
+/// The debug view of some envs.
+class DebugBatch {
+ public:
+  static Result<std::unique_ptr<DebugBatch>> create(const World& world,
+                                                    const BatchSimulator& simulator,
+                                                    const RunOptions& run, std::size_t shown) {
+    const Result<ChosenCamera> camera =
+        chooseCamera(world.robot(), {.name = run.drawing.debug_camera, .option = "--debug-camera"});
+    if (!camera) return tl::unexpected<Error>(camera.error());
+    Result<DebugModels> models = DebugModels::from(world, {.radius = run.drawing.debug_radius});
+    if (!models) return tl::unexpected<Error>(models.error());
+    auto batch = std::unique_ptr<DebugBatch>(new DebugBatch(std::move(*models)));
+    RenderOptions options = rendererOptions(run, camera->near);
+    options.color = ColorFormat::kRgba8;
+    options.depth = false;
+    options.semantics = false;
+    constexpr std::uint32_t kSky = 0xFFF4ECE4;
+    options.background = kSky;
+    Result<BatchRenderer> renderer = BatchRenderer::create(batch->models_.library(), options);
+    if (!renderer) return tl::unexpected<Error>(renderer.error());
+    batch->images_.emplace(std::move(*renderer), shown);
+    batch->views_.emplace(world, batch->models_, simulator, camera->mount, shown);
+    return batch;
+  }
+
+  void update(const BatchSimulator& simulator) { views_->update(simulator); }
+  void draw() {
+    images_->begin(views_->views());
+    images_->end();
+  }
+  [[nodiscard]] DrawnImage image(std::size_t n) const { return images_->image(n); }
+
+ private:
+  explicit DebugBatch(DebugModels models) : models_(std::move(models)) {}
+
+  DebugModels models_;
+  std::optional<DebugViews> views_;
+  std::optional<ImageBatch> images_;
+};
+
+}  // namespace
+
+/// Stays in one place: its parts look at each other.
+struct Rendering::Parts {
+  explicit Parts(WorldModels world_models) : models(std::move(world_models)) {}
+
+  WorldModels models;
+  std::optional<WorldViews> views;
+  std::optional<ImageBatch> images;
+  std::unique_ptr<DebugBatch> debug;
+  std::vector<EnvFrame> frames;
+};
+
+Rendering::Rendering(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Rendering::~Rendering() = default;
+Rendering::Rendering(Rendering&&) noexcept = default;
+Rendering& Rendering::operator=(Rendering&&) noexcept = default;
+
+Result<Rendering> Rendering::create(const World& world, const BatchSimulator& simulator,
+                                    const RunOptions& options, std::size_t shown) {
+  const DrawingOptions& drawing = options.drawing;
+  const Result<ChosenCamera> camera =
+      chooseCamera(world.robot(), {.name = drawing.camera, .fov_degrees = drawing.fov_degrees});
+  if (!camera) return tl::unexpected<Error>(camera.error());
+  Result<WorldModels> models = WorldModels::from(world);
+  if (!models) return tl::unexpected<Error>(models.error());
+  auto parts = std::make_unique<Parts>(std::move(*models));
+  Result<BatchRenderer> renderer =
+      BatchRenderer::create(parts->models.library(), rendererOptions(options, camera->near));
+  if (!renderer) return tl::unexpected<Error>(renderer.error());
+  parts->images.emplace(std::move(*renderer), simulator.envCount());
+  parts->views.emplace(world, parts->models, simulator, camera->mount);
+  if (drawing.debug_view) {
+    auto debug = DebugBatch::create(world, simulator, options, shown);
+    if (!debug) return tl::unexpected<Error>(debug.error());
+    parts->debug = std::move(*debug);
+  }
+  parts->frames.resize(shown);
+  return Rendering(std::move(parts));
+}
+
+void Rendering::update(const BatchSimulator& simulator) {
+  parts_->views->update(simulator);
+  if (parts_->debug) parts_->debug->update(simulator);
+}
+void Rendering::begin() { parts_->images->begin(parts_->views->views()); }
+void Rendering::end() { parts_->images->end(); }
+
+std::span<const EnvFrame> Rendering::frames() {
+  if (parts_->debug) parts_->debug->draw();
+  for (std::size_t env = 0; env < parts_->frames.size(); ++env) {
+    EnvFrame& frame = parts_->frames[env];
+    frame.camera = parts_->images->image(env);
+    if (parts_->debug) frame.debug = parts_->debug->image(env);
+  }
+  return parts_->frames;
+}
+
+const BatchRenderer& Rendering::renderer() const { return parts_->images->renderer(); }
+
+const std::vector<std::string>& Rendering::semanticNames() const {
+  return parts_->models.library().semanticNames();
+}
+
+}  // namespace galactic

@@ -1,0 +1,74 @@
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command_line/options.h"
+#include "drawing/frame_images.h"
+#include "drawing/picture_output.h"
+#include "galactic/batch_renderer.h"
+#include "galactic/batch_simulator.h"
+#include "galactic/error.h"
+#include "galactic/world.h"
+
+namespace galactic {
+
+/// A renderer and the memory that its images go to.
+class ImageBatch {
+ public:
+  ImageBatch(BatchRenderer renderer, std::size_t images);
+
+  /// `views`: as many as there are images.
+  void begin(std::span<const RenderView> views);
+  void end() { renderer_.endRender(); }
+
+  /// Of the last end().
+  [[nodiscard]] DrawnImage image(std::size_t n) const;
+  /// All images, one behind the other.
+  [[nodiscard]] std::span<const std::uint8_t> color() const { return color_; }
+  [[nodiscard]] std::span<const float> depth() const { return depth_; }
+  [[nodiscard]] const BatchRenderer& renderer() const { return renderer_; }
+
+ private:
+  [[nodiscard]] std::size_t pixels() const;
+
+  BatchRenderer renderer_;
+  std::vector<std::uint8_t> color_;
+  std::vector<float> depth_;
+  std::vector<std::uint32_t> semantics_;
+};
+
+/// Draws the envs of a run: what their cameras see, and the debug view of those that are shown.
+class Rendering {
+ public:
+  /// `world` must outlive the result. `shown`: how many envs have a debug view, when the options
+  /// ask for one. Fails with kInvalidInput on a world without render meshes and an unknown camera,
+  /// and with the errors of BatchRenderer::create.
+  [[nodiscard]] static Result<Rendering> create(const World& world, const BatchSimulator& simulator,
+                                                const RunOptions& options, std::size_t shown);
+  ~Rendering();
+  Rendering(Rendering&&) noexcept;
+  Rendering& operator=(Rendering&&) noexcept;
+
+  /// Copies the simulator's state, which the next images show; the simulator may step meanwhile.
+  void update(const BatchSimulator& simulator);
+  void begin();
+  void end();
+
+  /// Draws the debug view of the state of the last update() and returns what is shown of it; valid
+  /// until the next begin(). After end().
+  [[nodiscard]] std::span<const EnvFrame> frames();
+
+  [[nodiscard]] const BatchRenderer& renderer() const;
+  /// By the ids in the images; 0 is the background.
+  [[nodiscard]] const std::vector<std::string>& semanticNames() const;
+
+ private:
+  struct Parts;
+  explicit Rendering(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace galactic

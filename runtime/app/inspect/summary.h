@@ -1,0 +1,20 @@
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "galactic/pack.h"
+#include "support/printable.h"
+
+namespace galactic {
+
+/// How long opening took, seconds of wall clock.
+struct OpenTimes {
+  double map = 0;
+  /// 0 when the pack was trusted.
+  double verify = 0;
+};
+
+/// What a pack of any kind holds, several lines of text, each ended.
+[[nodiscard]] std::string summarize(const PackFile& pack, const OpenTimes& times);
+
+}  // namespace galactic

@@ -1,0 +1,133 @@
+#include "run/learned_run.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "drawing/rendering.h"
+#include "galactic/learned_policy.h"
+#include "galactic/option_text.h"
+#include "galactic/world_models.h"
+#include "galactic/world_views.h"
+
+namespace galactic {
+namespace {
+
+/// Draws what a policy wants to see. Stays in one place: its parts look at each other.
+class PolicyEyes {
+ public:
+  static Result<std::unique_ptr<PolicyEyes>> create(const PolicyImage& image, const World& world,
+                                                    const BatchSimulator& simulator,
+                                                    const RunOptions& run) {
+    constexpr float kDegreesPerRadian = 180 / std::numbers::pi_v<float>;
+    const Result<ChosenCamera> camera =
+        chooseCamera(world.robot(), {.name = image.camera,
+                                     .fov_degrees = image.vertical_fov * kDegreesPerRadian,
+                                     .option = run.policy});
+    if (!camera) return tl::unexpected<Error>(camera.error());
+    Result<WorldModels> models = WorldModels::from(world);
+    if (!models) return tl::unexpected<Error>(models.error());
+    auto eyes = std::unique_ptr<PolicyEyes>(new PolicyEyes(std::move(*models)));
+    RenderOptions options;
+    options.width = image.width;
+    options.height = image.height;
+    options.color = image.color ? ColorFormat::kRgba8 : ColorFormat::kNone;
+    options.depth = image.depth;
+    options.near = camera->near;
+    options.backend = run.drawing.backend;
+    options.device = run.drawing.device;
+    options.threads = run.simulation.threads;
+    Result<BatchRenderer> renderer = BatchRenderer::create(eyes->models_.library(), options);
+    if (!renderer) return tl::unexpected<Error>(renderer.error());
+    eyes->images_.emplace(std::move(*renderer), simulator.envCount());
+    eyes->views_.emplace(world, eyes->models_, simulator, camera->mount);
+    return eyes;
+  }
+
+  void look(const BatchSimulator& simulator) {
+    views_->update(simulator);
+    images_->begin(views_->views());
+    images_->end();
+  }
+  [[nodiscard]] std::span<const std::uint8_t> color() const { return images_->color(); }
+  [[nodiscard]] std::span<const float> depth() const { return images_->depth(); }
+
+ private:
+  explicit PolicyEyes(WorldModels models) : models_(std::move(models)) {}
+
+  WorldModels models_;
+  std::optional<WorldViews> views_;
+  std::optional<ImageBatch> images_;
+};
+
+/// The actions of a network, which sees what the simulator observes, and images of it.
+class NetworkPolicy final : public Policy {
+ public:
+  NetworkPolicy(LearnedPolicy policy, const BatchSimulator& simulator,
+                std::unique_ptr<PolicyEyes> eyes)
+      : policy_(std::move(policy)), simulator_(simulator), eyes_(std::move(eyes)) {}
+
+  Result<void> act(std::uint64_t, std::span<float> actions) override {
+    PolicyInputs inputs{.observations = simulator_.observations(),
+                        .dones = simulator_.dones(),
+                        .color = {},
+                        .depth = {}};
+    if (eyes_) {
+      eyes_->look(simulator_);
+      inputs.color = eyes_->color();
+      inputs.depth = eyes_->depth();
+    }
+    policy_.act(inputs, actions);
+    return {};
+  }
+
+ private:
+  LearnedPolicy policy_;
+  const BatchSimulator& simulator_;
+  std::unique_ptr<PolicyEyes> eyes_;
+};
+
+}  // namespace
+
+Result<OpenedPolicy> openPolicy(const RunOptions& options) {
+  Result<PackFile> pack =
+      PackFile::open(options.policyFile(), options.trusted ? Trust::kTrusted : Trust::kVerify);
+  if (!pack) return tl::unexpected<Error>(std::move(pack.error()));
+  Result<PolicyInterface> needs = policyInterface(*pack);
+  if (!needs) return tl::unexpected<Error>(std::move(needs.error()));
+  return OpenedPolicy{std::move(*pack), std::move(*needs)};
+}
+
+Result<void> applyNeeds(const OpenedPolicy& policy, SimulationOptions& simulation) {
+  const auto fault = setOptions(policy.needs.options, OptionScope::kTask, simulation);
+  if (!fault) return {};
+  return fail(ErrorCode::kInvalidInput, policy.pack.where(),
+              fmt::format("needs the option {}, which is none or has no such value; verify the "
+                          "pack without --trusted",
+                          policy.needs.options[fault->index].name));
+}
+
+Result<std::unique_ptr<Policy>> makeLearnedPolicy(const OpenedPolicy& policy, const World& world,
+                                                  const BatchSimulator& simulator,
+                                                  const RunOptions& options) {
+  const SimulationOptions& simulation = options.simulation;
+  Result<LearnedPolicy> network =
+      LearnedPolicy::create(policy.pack, policyBatchOf(simulator, world),
+                            {.samples = !options.is_deterministic,
+                             .seed = simulation.seed,
+                             .first_env = simulation.rank * simulation.envs,
+                             .threads = simulation.threads});
+  if (!network) return tl::unexpected<Error>(network.error());
+  std::unique_ptr<PolicyEyes> eyes;
+  if (policy.needs.image) {
+    auto made = PolicyEyes::create(*policy.needs.image, world, simulator, options);
+    if (!made) return tl::unexpected<Error>(made.error());
+    eyes = std::move(*made);
+  }
+  return std::make_unique<NetworkPolicy>(std::move(*network), simulator, std::move(eyes));
+}
+
+}  // namespace galactic

@@ -1,0 +1,328 @@
+#include "run/simulate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "command_line/option_lines.h"
+#include "drawing/drawn_steps.h"
+#include "galactic/batch_simulator.h"
+#include "galactic/scripted_policy.h"
+#include "galactic/world.h"
+#include "run/interrupt.h"
+#include "run/live_line.h"
+#include "run/policy.h"
+#include "run/tracked_run.h"
+
+namespace galactic {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsBetween(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+/// The actions of a recording.
+class ReplayPolicy final : public Policy {
+ public:
+  explicit ReplayPolicy(RecordingReader& recording) : recording_(recording) {}
+
+  Result<void> act(std::uint64_t, std::span<float> actions) override {
+    const Result<std::uint64_t> digest = recording_.next(actions);
+    if (!digest) return tl::unexpected<Error>(digest.error());
+    digest_ = *digest;
+    return {};
+  }
+
+  /// What the step returned when it was recorded.
+  [[nodiscard]] std::uint64_t digest() const { return digest_; }
+
+ private:
+  RecordingReader& recording_;
+  std::uint64_t digest_ = 0;
+};
+
+/// The actions of a plan, which looks at the simulator.
+class PlannedPolicy final : public Policy {
+ public:
+  PlannedPolicy(ScriptedPolicy policy, const BatchSimulator& simulator)
+      : policy_(std::move(policy)), simulator_(simulator) {}
+
+  Result<void> act(std::uint64_t, std::span<float> actions) override {
+    policy_.act(simulator_, actions);
+    return {};
+  }
+
+ private:
+  ScriptedPolicy policy_;
+  const BatchSimulator& simulator_;
+};
+
+/// Adds up the rewards of each env's episode until it ends.
+class ReturnTally {
+ public:
+  explicit ReturnTally(std::size_t envs) : returns_(envs), steps_(envs) {}
+
+  void add(const BatchSimulator& simulator, EpisodeSums& sums) {
+    const std::span<const float> rewards = simulator.rewards();
+    const std::span<const std::uint8_t> dones = simulator.dones();
+    for (std::size_t env = 0; env < returns_.size(); ++env) {
+      returns_[env] += static_cast<double>(rewards[env]);
+      ++steps_[env];
+      if (dones[env] == 0) continue;
+      ++sums.ended;
+      sums.returns += std::exchange(returns_[env], 0.0);
+      sums.steps += std::exchange(steps_[env], 0U);
+    }
+  }
+
+ private:
+  std::vector<double> returns_;
+  std::vector<std::uint32_t> steps_;
+};
+
+/// One run: where actions come from and where they go.
+class Run {
+ public:
+  Run(const RunOptions& options, BatchSimulator& simulator, RunReport& report)
+      : options_(options),
+        simulator_(simulator),
+        report_(report),
+        tally_(simulator.envCount()),
+        actions_(simulator.envCount() * simulator.actionCount()) {}
+
+  /// Before go().
+  void replay(RecordingReader& recording) {
+    auto policy = std::make_unique<ReplayPolicy>(recording);
+    replay_ = policy.get();
+    policy_ = std::move(policy);
+  }
+
+  /// Before go().
+  Result<void> plan(const World& world) {
+    Result<ScriptedPolicy> policy = ScriptedPolicy::create(world, options_.simulation);
+    if (!policy) return tl::unexpected<Error>(policy.error());
+    policy_ = std::make_unique<PlannedPolicy>(std::move(*policy), simulator_);
+    return {};
+  }
+
+  /// Before go().
+  Result<void> play(const OpenedPolicy& policy, const World& world) {
+    Result<std::unique_ptr<Policy>> made = makeLearnedPolicy(policy, world, simulator_, options_);
+    if (!made) return tl::unexpected<Error>(made.error());
+    policy_ = std::move(*made);
+    report_.learned.emplace(
+        LearnedReport{.name = policy.needs.name, .samples = !options_.is_deterministic});
+    return {};
+  }
+
+  /// Before go().
+  Result<void> draw(const World& world) {
+    Result<DrawnSteps> drawn = DrawnSteps::create(world, simulator_, options_);
+    if (!drawn) return tl::unexpected<Error>(drawn.error());
+    drawn_.emplace(std::move(*drawn));
+    const BatchRenderer& renderer = drawn_->renderer();
+    report_.rendering.emplace();
+    report_.rendering->description = renderer.description();
+    report_.rendering->backend = renderer.backend() == RenderBackend::kGl ? "gl" : "soft";
+    if (options_.drawing.hasSemantics())
+      report_.rendering->semantic_names = drawn_->semanticNames();
+    return {};
+  }
+
+  /// Before go().
+  Result<void> track(const World& world) {
+    Result<TrackedRun> tracked = TrackedRun::create(world, simulator_, options_);
+    if (!tracked) return tl::unexpected<Error>(tracked.error());
+    tracked_.emplace(std::move(*tracked));
+    return {};
+  }
+
+  Result<void> record(const World& world) {
+    const RecordingSubject subject{
+        options_.simulation, static_cast<std::uint32_t>(simulator_.actionCount()), stampsOf(world)};
+    Result<RecordingWriter> writer = RecordingWriter::create(options_.record, subject);
+    if (!writer) return tl::unexpected<Error>(writer.error());
+    writer_.emplace(std::move(*writer));
+    return {};
+  }
+
+  Result<void> go(const Interrupt& interrupt) {
+    if (!policy_) {
+      const SimulationOptions& simulation = options_.simulation;
+      policy_ = makeGeneratedPolicy(
+          options_.policy, {.actions = simulator_.actionCount(),
+                            .seed = simulation.seed,
+                            .first_env = std::uint64_t{simulation.rank} * simulation.envs});
+    }
+    LiveLine line(options_.steps, simulator_.envCount());
+    constexpr auto kLookEvery = std::chrono::milliseconds(250);
+    const Clock::time_point start = Clock::now();
+    Clock::time_point next_look = start + kLookEvery;
+    while (report_.steps < options_.steps && !report_.first_difference && !hasPlayedAll()) {
+      if (Result<void> stepped = step(); !stepped) return stepped;
+      if (Clock::now() < next_look) continue;
+      next_look = Clock::now() + kLookEvery;
+      if (line.isEnabled()) line.show(report_.steps, simulator_.statistics());
+      report_.is_interrupted =
+          report_.steps < options_.steps && !hasPlayedAll() && interrupt.came();
+      if (report_.is_interrupted) break;
+    }
+    report_.loop_seconds = secondsBetween(start, Clock::now());
+    if (drawn_) {
+      if (Result<void> finished = drawn_->finish(simulator_, report_); !finished) return finished;
+    }
+    if (tracked_) {
+      if (Result<void> written = tracked_->finish(); !written) return written;
+    }
+    return writer_ ? writer_->finish() : Result<void>();
+  }
+
+ private:
+  /// Whether every env has had its share of the episodes.
+  [[nodiscard]] bool hasPlayedAll() const {
+    return std::ranges::all_of(simulator_.idle(), [](std::uint8_t idle) { return idle != 0; });
+  }
+
+  Result<void> act() {
+    const Clock::time_point before = Clock::now();
+    Result<void> acted = policy_->act(report_.steps, actions_);
+    if (report_.learned) report_.learned->seconds += secondsBetween(before, Clock::now());
+    return acted;
+  }
+
+  Result<void> step() {
+    if (Result<void> acted = act(); !acted) return acted;
+    if (drawn_) {
+      if (Result<void> drawn = drawn_->step(simulator_, actions_, report_); !drawn) return drawn;
+    } else {
+      const Clock::time_point before = Clock::now();
+      simulator_.step(actions_);
+      report_.step_seconds += secondsBetween(before, Clock::now());
+    }
+    tally_.add(simulator_, report_.episodes);
+    if (tracked_) tracked_->add(simulator_, actions_);
+    if (writer_ || replay_ != nullptr) {
+      const std::uint64_t digest = digestOf(simulator_);
+      if (writer_) {
+        if (Result<void> written = writer_->append(actions_, digest); !written) return written;
+      }
+      if (replay_ != nullptr && replay_->digest() != digest) {
+        report_.first_difference = report_.steps;
+      }
+    }
+    ++report_.steps;
+    return {};
+  }
+
+  const RunOptions& options_;
+  BatchSimulator& simulator_;
+  RunReport& report_;
+  ReturnTally tally_;
+  std::vector<float> actions_;
+  std::unique_ptr<Policy> policy_;
+  /// The policy, when it replays.
+  const ReplayPolicy* replay_ = nullptr;
+  std::optional<RecordingWriter> writer_;
+  std::optional<DrawnSteps> drawn_;
+  std::optional<TrackedRun> tracked_;
+};
+
+/// Whether the recording is of this world and robot.
+Result<void> checkSubject(const RecordingReader* replay, const World& world,
+                          const BatchSimulator& simulator) {
+  if (replay == nullptr) return {};
+  if (Result<void> same = checkWorld(*replay, world); !same) return same;
+  if (replay->subject().actions == simulator.actionCount()) return {};
+  return fail(ErrorCode::kInvalidInput, replay->where(),
+              fmt::format("has {} actions per env, wanted the robot's {}; record it again",
+                          replay->subject().actions, simulator.actionCount()));
+}
+
+}  // namespace
+
+Result<OpenedWorld> openWorld(const RunOptions& options) {
+  const Clock::time_point start = Clock::now();
+  const std::vector<std::filesystem::path> paths(options.packs.begin(), options.packs.end());
+  Result<World> world = World::open(paths, options.trusted ? Trust::kTrusted : Trust::kVerify);
+  if (!world) return tl::unexpected<Error>(std::move(world.error()));
+  return OpenedWorld{std::move(*world), secondsBetween(start, Clock::now())};
+}
+
+Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
+                           const RunSource& source) {
+  const Interrupt interrupt;
+  const World& world = opened.world;
+  RunReport report;
+  report.options = options;
+  report.world_task = world.taskOptions();
+  report.open_seconds = opened.seconds;
+  const Clock::time_point start = Clock::now();
+  Result<BatchSimulator> simulator = BatchSimulator::create(world, options.simulation);
+  if (!simulator) return tl::unexpected<Error>(simulator.error());
+  report.create_seconds = secondsBetween(start, Clock::now());
+  if (auto same = checkSubject(source.replay, world, *simulator); !same) {
+    return tl::unexpected<Error>(same.error());
+  }
+  constexpr std::uint32_t kSampleEvery = 16;
+  simulator->samplePhases(kSampleEvery);
+  Run run(options, *simulator, report);
+  if (source.replay != nullptr) run.replay(*source.replay);
+  if (source.policy != nullptr) {
+    if (auto played = run.play(*source.policy, world); !played) {
+      return tl::unexpected<Error>(played.error());
+    }
+  }
+  if (source.replay == nullptr && options.policy == kScriptedPolicy) {
+    if (auto planned = run.plan(world); !planned) {
+      return tl::unexpected<Error>(planned.error());
+    }
+  }
+  if (options.drawing.draws()) {
+    if (auto drawn = run.draw(world); !drawn) return tl::unexpected<Error>(drawn.error());
+  }
+  if (!options.view.empty() || !options.animation.empty()) {
+    if (auto tracked = run.track(world); !tracked) return tl::unexpected<Error>(tracked.error());
+  }
+  if (!options.record.empty()) {
+    if (auto opened_file = run.record(world); !opened_file) {
+      return tl::unexpected<Error>(opened_file.error());
+    }
+  }
+  if (Result<void> done = run.go(interrupt); !done) return tl::unexpected<Error>(done.error());
+  report.threads = simulator->threadCount();
+  report.phases = simulator->phaseTimes();
+  report.sampled_steps = (report.steps + kSampleEvery - 1) / kSampleEvery;
+  report.sum = simulator->statistics();
+  report.world_episodes = world.episodes().episodes().size();
+  report.skipped.assign(simulator->skippedEpisodes().begin(), simulator->skippedEpisodes().end());
+  report.memory_bytes = simulator->memoryBytes();
+  return report;
+}
+
+Result<void> checkReplay(const RecordingReader& recording, const RunOptions& options) {
+  if (recording.steps() == 0) {
+    return fail(ErrorCode::kInvalidInput, recording.where(),
+                "holds no steps, so there is nothing to replay; record it again");
+  }
+  if (options.steps > recording.steps()) {
+    return fail(ErrorCode::kInvalidInput, recording.where(),
+                fmt::format("holds {} steps, and --steps asks for {}; ask for fewer",
+                            recording.steps(), options.steps));
+  }
+  const auto other = firstDifference(recording.subject().options, options.simulation);
+  if (!other) return {};
+  return fail(ErrorCode::kInvalidInput, recording.where(),
+              fmt::format("was recorded with {} {}, and the command line asks for another; leave "
+                          "the option out",
+                          other->name, other->value));
+}
+
+}  // namespace galactic

@@ -1,0 +1,155 @@
+#include "run/tracked_run.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "galactic/option_text.h"
+#include "galactic/shared_textures.h"
+#include "support/atomic_file.h"
+#include "support/try.h"
+#include "view/page.h"
+#include "view/run_animation.h"
+
+namespace galactic {
+namespace {
+
+/// What a page needs of a world: the episodes that were played, and what is in them.
+struct PlayedParts {
+  std::set<std::uint32_t> episodes;
+  std::set<std::string_view> scenes;
+  std::set<std::string_view> objects;
+};
+
+PlayedParts partsOf(const RunTrack& track) {
+  PlayedParts parts;
+  for (const EnvTrack& env : track.envs()) {
+    parts.episodes.insert(env.episodes.begin(), env.episodes.end());
+  }
+  const World& world = track.world();
+  const EpisodeSet& set = world.episodes();
+  for (const std::uint32_t number : parts.episodes) {
+    const Episode& episode = set.episodes()[number];
+    parts.scenes.insert(world.sceneOf(episode).name());
+    for (const Placement& placement : set.placements(episode)) {
+      parts.objects.insert(world.objectOf(placement).name);
+    }
+  }
+  return parts;
+}
+
+bool isPlayed(const PackFile& pack, const PlayedParts& parts) {
+  if (pack.kind() == PackKind::kScene) {
+    const auto scene = Scene::from(pack);
+    return scene && parts.scenes.contains(scene->name());
+  }
+  if (pack.kind() == PackKind::kObjects) {
+    const auto set = ObjectSet::from(pack);
+    return set && std::any_of(set->objects().begin(), set->objects().end(),
+                              [&](const ObjectModel& object) {
+                                return parts.objects.contains(object.name);
+                              });
+  }
+  return pack.kind() == PackKind::kRobot || pack.kind() == PackKind::kEpisodes;
+}
+
+Result<std::vector<PageAsset>> assetsOf(const RunTrack& track) {
+  const PlayedParts parts = partsOf(track);
+  SharedTextures textures;
+  for (const PackFile& pack : track.world().packs()) {
+    if (pack.kind() != PackKind::kTexture) continue;
+    RETURN_IF_ERROR(textures.add(pack));
+  }
+  std::vector<PageAsset> assets;
+  for (const PackFile& pack : track.world().packs()) {
+    if (!isPlayed(pack, parts)) continue;
+    PageAsset& asset = assets.emplace_back(PageAsset{.pack = &pack});
+    if (pack.kind() == PackKind::kEpisodes) {
+      asset.episodes.assign(parts.episodes.begin(), parts.episodes.end());
+      continue;
+    }
+    auto meshes = renderMeshesOf(pack, textures);
+    if (!meshes) return tl::unexpected(meshes.error());
+    if (*meshes) asset.meshes = std::make_shared<const RenderMeshes>(std::move(**meshes));
+  }
+  return assets;
+}
+
+/// What the run was: nothing that differs from one time to the next.
+std::string factsOf(const RunOptions& options) {
+  JsonWriter json;
+  json.begin('{');
+  json.text("policy", options.replayFile().empty() ? options.policy : "replay");
+  json.begin("options", '{');
+  for (const OptionText& option : listOptions(options.simulation)) {
+    json.raw(option.name, option.is_word ? jsonString(option.value) : option.value);
+  }
+  json.end('}');
+  json.end('}');
+  return json.take();
+}
+
+Result<void> writeText(const std::string& path, std::string_view text) {
+  return writeFileAtomically(path, {std::as_bytes(std::span(text))});
+}
+
+/// A run may take hours: a file that cannot be written is found out before it.
+Result<void> tryFile(const std::string& file, const World& world, const RunOptions& options) {
+  std::vector<std::string> read = options.packs;
+  read.push_back(options.replayFile());
+  read.push_back(options.policyFile());
+  for (const PackFile& pack : world.packs()) read.push_back(pack.where());
+  for (const std::string& one : read) {
+    std::error_code missing;
+    if (!std::filesystem::equivalent(one, file, missing)) continue;
+    return fail(ErrorCode::kInvalidInput, file,
+                "is a file that the run reads; choose another name to write to");
+  }
+  RETURN_IF_ERROR(AtomicFile::create(file));
+  return {};
+}
+
+}  // namespace
+
+Result<TrackedRun> TrackedRun::create(const World& world, const BatchSimulator& simulator,
+                                      const RunOptions& options) {
+  for (const std::string& file : {options.view, options.animation}) {
+    if (file.empty()) continue;
+    RETURN_IF_ERROR(tryFile(file, world, options));
+  }
+  // An animation shows the first env.
+  return TrackedRun(RunTrack(world, simulator, options.view.empty() ? 1 : options.view_envs),
+                    options);
+}
+
+Result<void> TrackedRun::finish() const {
+  ASSIGN_OR_RETURN(const auto assets, assetsOf(track_));
+  if (!options_.view.empty()) {
+    if (auto written = writePage(assets); !written) return written;
+  }
+  return options_.animation.empty() ? Result<void>() : writeAnimation(assets);
+}
+
+Result<void> TrackedRun::writePage(std::span<const PageAsset> assets) const {
+  ASSIGN_OR_RETURN(const auto page,
+                   viewPage(assets, {.track = &track_, .facts = factsOf(options_)},
+                            {.title = std::filesystem::path(options_.view).stem().string(),
+                             .generator = "galactic-run"}));
+  return writeText(options_.view, page);
+}
+
+Result<void> TrackedRun::writeAnimation(std::span<const PageAsset> assets) const {
+  auto glb = animationGlb(track_, 0, assets);
+  if (!glb) {
+    glb.error().where = options_.animation;
+    return tl::unexpected(glb.error());
+  }
+  return writeText(options_.animation, *glb);
+}
+
+}  // namespace galactic

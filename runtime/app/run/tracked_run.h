@@ -1,0 +1,46 @@
+#pragma once
+#include <span>
+#include <string>
+#include <utility>
+
+#include "command_line/options.h"
+#include "galactic/batch_simulator.h"
+#include "galactic/error.h"
+#include "galactic/world.h"
+#include "view/page_assets.h"
+#include "view/run_track.h"
+
+namespace galactic {
+
+/// Keeps what the first envs of a run do, and writes it as a page and as an animation.
+class TrackedRun {
+ public:
+  /// Most steps of all kept envs together: what is kept of them takes some 200 bytes a step.
+  static constexpr std::uint64_t kMostSteps = 1'000'000;
+
+  /// Of the run of `options`. Tries the files. Fails with kIo, and with kInvalidInput where one of
+  /// them is read.
+  [[nodiscard]] static Result<TrackedRun> create(const World& world,
+                                                 const BatchSimulator& simulator,
+                                                 const RunOptions& options);
+
+  /// After a step with `actions`.
+  void add(const BatchSimulator& simulator, std::span<const float> actions) {
+    track_.add(simulator, actions);
+  }
+  /// After the last step, also of a run that ended early. Fails with kIo and the errors of
+  /// viewPage and animationGlb.
+  [[nodiscard]] Result<void> finish() const;
+
+ private:
+  TrackedRun(RunTrack track, const RunOptions& options)
+      : track_(std::move(track)), options_(options) {}
+
+  [[nodiscard]] Result<void> writePage(std::span<const PageAsset> assets) const;
+  [[nodiscard]] Result<void> writeAnimation(std::span<const PageAsset> assets) const;
+
+  RunTrack track_;
+  RunOptions options_;
+};
+
+}  // namespace galactic

@@ -1,0 +1,41 @@
+#pragma once
+#include <cstdint>
+
+#include "galactic/pose.h"
+
+namespace galactic {
+
+/// A box in the frame of its object.
+struct OrientedBox {
+  /// object_from_box: center and rotation.
+  Pose pose;
+  /// Meters, > 0.
+  Vec3 half_extents;
+
+  friend bool operator==(const OrientedBox&, const OrientedBox&) = default;
+};
+
+/// A sphere of an object or link, in its frame. The memory layout is that of a pack.
+struct SetSphere {
+  /// Meters.
+  Vec3 center;
+  /// Index into the working set of radii.
+  std::uint32_t radius_index = 0;
+
+  friend bool operator==(const SetSphere&, const SetSphere&) = default;
+};
+
+/// A way in which an object rests on a horizontal plane. The memory layout is that of a pack.
+struct StablePose {
+  /// plane_from_object: turns the object so that its support face lies down (-Y).
+  Quat rotation;
+  /// Height of the object's origin above the plane, meters.
+  float height = 0;
+  /// Share of random drops that end in this pose, 0 to 1. All poses of an object add up to 1; where
+  /// there are more than are kept, the kept ones do not, and their shares stay as they are.
+  float likelihood = 0;
+
+  friend bool operator==(const StablePose&, const StablePose&) = default;
+};
+
+}  // namespace galactic

@@ -1,0 +1,118 @@
+// The HTML page about packs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+
+#include "pack_tool/verbs/verbs.h"
+#include "support/pack_tool_fixture.h"
+#include "support/source_folder.h"
+
+namespace galactic::test::report_test {
+namespace {
+
+namespace fs = std::filesystem;
+using pack_tool::ReportOptions;
+
+const fs::path kGolden = test::sourceFolder() / "packs" / "golden";
+
+struct Ran {
+  int exit_code = 0;
+  std::string err;
+};
+
+Ran run(const ReportOptions& options) {
+  std::ostringstream out;
+  std::ostringstream err;
+  const int exit_code = pack_tool::runReport(options, {out, err});
+  return {exit_code, err.str()};
+}
+
+std::string contentOf(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::size_t countOf(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+TEST(Report, ShowsEveryGridAndEverythingThatIsDrawn) {
+  const ScratchFolder folder;
+  const fs::path page = folder.path() / "page.html";
+  const Ran ran =
+      run({.packs = {kGolden / "room-column.pack", kGolden / "crate.pack", kGolden / "arm.pack"},
+           .output = page});
+  ASSERT_EQ(ran.exit_code, kExitOk) << ran.err;
+  const std::string html = contentOf(page);
+  EXPECT_EQ(countOf(html, "<section "), 3U);
+  EXPECT_EQ(countOf(html, "free height, radius 0.12 m</figcaption>"), 1U);
+  EXPECT_EQ(countOf(html, "as it is drawn</figcaption>"), 3U);
+  // PNG files, as base64 begins with them.
+  EXPECT_EQ(countOf(html, "base64,iVBORw0KGgo"), countOf(html, "<img "));
+  EXPECT_EQ(countOf(html, "http"), 0U) << "the page must not need the network";
+}
+
+TEST(Report, NamesPacksWithoutTheFoldersOfThisMachine) {
+  const ScratchFolder folder;
+  const fs::path pack = writePack(folder, "home/kitchen.pack", kitchenScene());
+  const fs::path page = folder.path() / "page.html";
+  const Ran ran = run({.packs = {pack, kGolden / "arm.pack"}, .output = page});
+  ASSERT_EQ(ran.exit_code, kExitOk) << ran.err;
+  const std::string html = contentOf(page);
+  EXPECT_EQ(countOf(html, "<h2>kitchen.pack</h2>"), 1U);
+  EXPECT_EQ(countOf(html, "<h2>arm.pack</h2>"), 1U);
+  EXPECT_EQ(countOf(html, folder.path().string()), 0U);
+  EXPECT_EQ(countOf(html, kGolden.string()), 0U);
+}
+
+TEST(Report, IsTheSameEachTime) {
+  const ScratchFolder folder;
+  for (const char* name : {"a.html", "b.html"}) {
+    const Ran ran = run({.packs = {kGolden / "room-column.pack"}, .output = folder.path() / name});
+    ASSERT_EQ(ran.exit_code, kExitOk) << ran.err;
+  }
+  EXPECT_EQ(contentOf(folder.path() / "a.html"), contentOf(folder.path() / "b.html"));
+}
+
+TEST(Report, EscapesWhatPacksSay) {
+  const ScratchFolder folder;
+  ScenePackFields fields = kitchenScene();
+  fields.name = "<script>kitchen</script>";
+  const fs::path pack = writePack(folder, "kitchen.pack", fields);
+  const fs::path page = folder.path() / "page.html";
+  const Ran ran = run({.packs = {pack}, .output = page});
+  ASSERT_EQ(ran.exit_code, kExitOk) << ran.err;
+  const std::string html = contentOf(page);
+  EXPECT_EQ(countOf(html, "<script>"), 0U);
+  EXPECT_GE(countOf(html, "&lt;script&gt;kitchen"), 1U);
+}
+
+TEST(Report, IsNotWrittenOverAPack) {
+  const ScratchFolder folder;
+  const fs::path pack = writePack(folder, "kitchen.pack", kitchenScene());
+  const std::string before = contentOf(pack);
+  const Ran ran = run({.packs = {pack}, .output = pack});
+  EXPECT_EQ(ran.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
+  EXPECT_EQ(contentOf(pack), before);
+}
+
+TEST(Report, OfAFileThatIsNoPackFailsAndLeavesNothing) {
+  const ScratchFolder folder;
+  const fs::path text = folder.write("text.pack", "no pack at all");
+  const Ran ran = run({.packs = {text}, .output = folder.path() / "page.html"});
+  EXPECT_EQ(ran.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
+  EXPECT_NE(ran.err.find("text.pack"), std::string::npos);
+  EXPECT_EQ(countEntries(folder.path()), 1U);
+}
+
+}  // namespace
+}  // namespace galactic::test::report_test

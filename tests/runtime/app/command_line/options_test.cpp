@@ -1,0 +1,216 @@
+// The command line of galactic-run, as far as it needs no program.
+#include "command_line/options.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "galactic/error.h"
+
+namespace galactic::options_test {
+namespace {
+
+std::optional<int> parse(std::vector<std::string> arguments, RunOptions& options) {
+  arguments.insert(arguments.begin(), {"galactic-run", "--pack", "world.pack"});
+  std::vector<const char*> argv;
+  argv.reserve(arguments.size());
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  return parseCommandLine(static_cast<int>(argv.size()), argv.data(), options);
+}
+
+RunOptions parsed(const std::vector<std::string>& arguments) {
+  RunOptions options;
+  EXPECT_EQ(parse(arguments, options), std::nullopt);
+  return options;
+}
+
+TEST(RunCommandLine, SimulatesWhenAnOptionOfTheSimulationIsTyped) {
+  EXPECT_FALSE(parsed({}).simulates);
+  EXPECT_FALSE(parsed({"--seed", "5", "--trusted"}).simulates);
+  EXPECT_FALSE(parsed({"--bench"}).simulates);
+  for (const char* option : {"--no-distractors", "--safe-drop", "--body-transforms"}) {
+    EXPECT_TRUE(parsed({option}).simulates) << option;
+  }
+  EXPECT_TRUE(parsed({"--steps", "5"}).simulates);
+  EXPECT_TRUE(parsed({"--slide", "off"}).simulates);
+  EXPECT_TRUE(parsed({"--reach-weight", "2"}).simulates);
+}
+
+/// The options of --help whose values are numbers.
+std::vector<std::string> numberOptions() {
+  testing::internal::CaptureStdout();
+  RunOptions options;
+  EXPECT_EQ(parse({"--help"}, options), 0);
+  std::fflush(stdout);
+  const std::string help = testing::internal::GetCapturedStdout();
+  std::vector<std::string> names;
+  const std::regex option(R"((--[a-z-]+) (?:N|NUMBER|DEGREES|N\|WxH)[ \n])");
+  for (std::sregex_iterator at(help.begin(), help.end(), option), end; at != end; ++at) {
+    names.push_back((*at)[1]);
+  }
+  return names;
+}
+
+TEST(RunCommandLine, RefusesWhatIsNoNumber) {
+  const std::vector<std::string> names = numberOptions();
+  EXPECT_GT(names.size(), 30U);
+  for (const std::string& name : names) {
+    for (const char* value : {"nan", "-nan", "inf", "-inf", "1e999", "abc", "", " ", "1,2", "1 ",
+                              "0x10", "99999999999999999999999", "--1", "+1"}) {
+      RunOptions options;
+      testing::internal::CaptureStderr();
+      EXPECT_EQ(parse({"--render", "rgb", "--frames", "dir", "--debug-view", name + "=" + value},
+                      options),
+                kExitUsage)
+          << name << "=" << value;
+      EXPECT_EQ(testing::internal::GetCapturedStderr().find("galactic-run: command line: "), 0U);
+    }
+  }
+}
+
+TEST(RunCommandLine, RefusesNegativeAndOctalWholeNumbers) {
+  for (const char* name : {"--seed", "--steps", "--threads", "--envs", "--rank", "--ranks",
+                           "--frame-every", "--frame-envs", "--episode-steps"}) {
+    for (const char* value : {"-1", "010", "1.5", "1e2"}) {
+      RunOptions options;
+      testing::internal::CaptureStderr();
+      EXPECT_EQ(
+          parse({"--render", "rgb", "--frames", "dir", std::string(name) + "=" + value}, options),
+          kExitUsage)
+          << name << "=" << value;
+      (void)testing::internal::GetCapturedStderr();
+    }
+  }
+}
+
+TEST(RunCommandLine, RefusesADeviceThatNothingUsesAndSuggestsNames) {
+  RunOptions options;
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(parse({"--render", "rgb", "--backend", "soft", "--device", "0"}, options), kExitUsage);
+  EXPECT_EQ(parse({"--env", "3"}, options), kExitUsage);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("--device applies to --backend gl"), std::string::npos) << said;
+  EXPECT_NE(said.find("did you mean '--envs'"), std::string::npos) << said;
+}
+
+TEST(RunCommandLine, HasUsefulDefaults) {
+  const RunOptions options = parsed({"--steps", "5"});
+  EXPECT_EQ(options.simulation.envs, 1024U);
+  EXPECT_EQ(options.policy, "random");
+  EXPECT_EQ(options.simulation.task.kind, TaskKind::kRearrange);
+  EXPECT_EQ(options.replayFile(), "");
+}
+
+TEST(RunCommandLine, SlidesByNameAndInDetail) {
+  const SlideOptions published = parsed({"--slide", "published"}).simulation.slide;
+  EXPECT_EQ(published.direction, SlideDirection::kTowardsBase);
+  EXPECT_EQ(published.attempts, 5U);
+  EXPECT_EQ(published.step, 0.05F);
+  EXPECT_EQ(parsed({"--slide", "off"}).simulation.slide.attempts, 0U);
+  // In any order, the details refine the name.
+  const SlideOptions mixed =
+      parsed({"--slide-attempts", "2", "--slide", "published"}).simulation.slide;
+  EXPECT_EQ(mixed.direction, SlideDirection::kTowardsBase);
+  EXPECT_EQ(mixed.attempts, 2U);
+}
+
+TEST(RunCommandLine, KeepsWhatIsNotTyped) {
+  RunOptions options;
+  options.simulation.task.needs_terminate = false;
+  options.simulation.task.kind = TaskKind::kMobilePick;
+  options.simulation.slide.attempts = 1;
+  EXPECT_EQ(parse({"--policy", "replay:a:b", "--threads", "3"}, options), std::nullopt);
+  EXPECT_FALSE(options.simulation.task.needs_terminate);
+  EXPECT_EQ(options.simulation.task.kind, TaskKind::kMobilePick);
+  EXPECT_EQ(options.simulation.slide.attempts, 1U);
+  EXPECT_EQ(options.simulation.threads, 3U);
+  EXPECT_EQ(options.replayFile(), "a:b");
+}
+
+TEST(RunCommandLine, SwitchesOffWhatAWorldHasSwitchedOn) {
+  RunOptions options;
+  options.simulation.task.drop_fails = false;
+  options.simulation.task.observes_current_target = true;
+  EXPECT_EQ(
+      parse({"--safe-drop=false", "--observe-current=false", "--no-distractors=true"}, options),
+      std::nullopt);
+  EXPECT_TRUE(options.simulation.task.drop_fails);
+  EXPECT_FALSE(options.simulation.task.observes_current_target);
+  EXPECT_FALSE(options.simulation.task.distractors);
+}
+
+TEST(RunCommandLine, DrawsWhenTold) {
+  EXPECT_FALSE(parsed({"--steps", "5"}).drawing.draws());
+  const RunOptions plain = parsed({"--render", "rgbd"});
+  EXPECT_TRUE(plain.simulates);
+  EXPECT_TRUE(plain.simulation.body_transforms);
+  EXPECT_TRUE(plain.drawing.hasColor() && plain.drawing.hasDepth());
+  EXPECT_FALSE(plain.drawing.hasSemantics() || plain.drawing.makesPictures());
+  EXPECT_EQ(plain.drawing.width, 128U);
+  const DrawingOptions all = parsed({"--render", "depth", "--size", "160x96", "--backend", "soft",
+                                     "--camera", "top", "--fov", "75.5", "--contact-sheet", "a.png",
+                                     "--debug-view", "--debug-radius", "0.05"})
+                                 .drawing;
+  EXPECT_FALSE(all.hasColor());
+  EXPECT_TRUE(all.hasDepth() && all.makesPictures());
+  EXPECT_EQ(all.width, 160U);
+  EXPECT_EQ(all.height, 96U);
+  EXPECT_EQ(all.backend, RenderBackend::kSoft);
+  EXPECT_EQ(all.fov_degrees, 75.5F);
+  EXPECT_EQ(all.debug_radius, 0.05F);
+  EXPECT_EQ(parsed({"--render", "rgb", "--size", "64"}).drawing.height, 64U);
+}
+
+TEST(RunCommandLine, RefusesWhatMakesNoSense) {
+  const std::vector<std::vector<std::string>> mistakes{
+      {"--render", "color"},
+      {"--render", "rgb", "--size", "0"},
+      {"--render", "rgb", "--size", "128x"},
+      {"--render", "rgb", "--size", "12x5000"},
+      {"--render", "rgb", "--size", "12x12x12"},
+      {"--render", "rgb", "--fov", "180"},
+      {"--render", "rgb", "--backend", "vulkan"},
+      {"--render", "rgb", "--debug-view"},
+      {"--render", "rgb", "--frame-every", "5"},
+      {"--render", "rgb", "--frames", "f", "--debug-camera", "top"},
+      {"--size", "64"},
+      {"--frames", "f"},
+      {"--debug-view"},
+      {"--policy", "dance"},
+      {"--policy", "replay:"},
+      {"--policy", ""},
+      {"--envs", "0"},
+      {"--envs", "-1"},
+      {"--envs", "1.5"},
+      {"--envs", "9999999999"},
+      {"--steps", "0"},
+      {"--steps", "many"},
+      {"--task", "fly"},
+      {"--task", ""},
+      {"--order", "random"},
+      {"--slide", "up"},
+      {"--slide-step", "nan"},
+      {"--slide-step", "-1"},
+      {"--slide-step", "inf"},
+      {"--success-distance", "1e9"},
+      {"--success-distance", "0x1"},
+      {"--threads", "-1"},
+      {"--safe-drop=maybe"},
+      {"--safe-drop=2"},
+      {"--rank", "1"},
+      {"--rank", "2", "--ranks", "2"},
+      {"--bench", "--steps", "5"},
+      {"--bench", "--seed", "4294967296"},
+      {"world.pack"},
+  };
+  for (const std::vector<std::string>& arguments : mistakes) {
+    RunOptions options;
+    EXPECT_EQ(parse(arguments, options), kExitUsage) << testing::PrintToString(arguments);
+  }
+}
+
+}  // namespace
+}  // namespace galactic::options_test

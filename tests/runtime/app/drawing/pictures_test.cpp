@@ -1,0 +1,350 @@
+// What galactic-run makes of the images of a run: pictures, sheets, frames and videos.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "drawing/contact_sheet.h"
+#include "drawing/frame_images.h"
+#include "drawing/picture_output.h"
+#include "drawing/video_pipe.h"
+#include "galactic/world_views.h"
+#include "pictures/drawing.h"
+#include "pictures/palette.h"
+#include "support/homes/small_home.h"
+#include "support/program_run.h"
+#include "support/scratch_folder.h"
+
+namespace galactic::pictures_test {
+namespace {
+
+using pictures::Image;
+using pictures::Rgb;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Memory for a small image of all kinds.
+struct SmallImage {
+  std::vector<std::uint8_t> color{10, 20, 30, 255, 40, 50, 60, 255};
+  std::vector<float> depth{2, 0};
+  std::vector<std::uint32_t> semantics{7, 0};
+
+  /// 2 x 1 pixels.
+  [[nodiscard]] DrawnImage image() const {
+    return {2, 1, ColorFormat::kRgba8, color, depth, semantics};
+  }
+  [[nodiscard]] EnvFrame frame() const { return {image(), std::nullopt}; }
+};
+
+TEST(FrameImages, ColorsAreTakenAsTheyAre) {
+  const SmallImage small;
+  const Image rgba = colorPicture(small.image());
+  EXPECT_EQ(rgba.width(), 2);
+  EXPECT_EQ(rgba.height(), 1);
+  EXPECT_EQ(rgba.at(0, 0), (Rgb{10, 20, 30}));
+  EXPECT_EQ(rgba.at(1, 0), (Rgb{40, 50, 60}));
+  const std::vector<std::uint8_t> packed{1, 2, 3, 4, 5, 6};
+  const Image rgb = colorPicture({2, 1, ColorFormat::kRgb8, packed, {}, {}});
+  EXPECT_EQ(rgb.at(1, 0), (Rgb{4, 5, 6}));
+}
+
+TEST(FrameImages, DepthIsBrightWhereItIsNearAndBlackWhereNothingIs) {
+  std::vector<float> depth{1e-6F, kHalfBright, 6, 0};
+  const Image picture = depthPicture({4, 1, ColorFormat::kNone, {}, depth, {}});
+  EXPECT_EQ(picture.at(0, 0), (Rgb{255, 255, 255}));
+  EXPECT_EQ(picture.at(1, 0), (Rgb{128, 128, 128}));
+  EXPECT_EQ(picture.at(2, 0), (Rgb{64, 64, 64}));
+  EXPECT_EQ(picture.at(3, 0), (Rgb{}));
+}
+
+TEST(FrameImages, DepthNumbersAreMillimeters) {
+  const std::vector<float> depth{0, 0.0004F, 0.0006F, 1.2345F, 65.534F, 65.5351F, 1e9F};
+  const auto numbers = depthNumbers({7, 1, ColorFormat::kNone, {}, depth, {}});
+  EXPECT_THAT(numbers.pixels, ElementsAre(0, 0, 1, 1235, 65534, 65535, 65535));
+}
+
+TEST(FrameImages, IdsHaveNumbersAndColorsOfTheirOwn) {
+  const std::vector<std::uint32_t> ids{0, 1, 2, 70000};
+  const DrawnImage image{4, 1, ColorFormat::kNone, {}, {}, ids};
+  EXPECT_THAT(semanticNumbers(image).pixels, ElementsAre(0, 1, 2, 65535));
+  const Image picture = semanticPicture(image);
+  EXPECT_EQ(picture.at(0, 0), (Rgb{}));
+  EXPECT_FALSE(picture.at(1, 0) == picture.at(2, 0));
+  EXPECT_GE(picture.at(1, 0).r, 64);
+}
+
+TEST(ContactSheet, PutsCellsInRowsWithTheirCaptionsBelow) {
+  const Image red(3, 2, {255, 0, 0});
+  const Image blue(3, 2, {0, 0, 255});
+  const Image sheet = contactSheet({{red, "I"}, {blue, ""}, {red, ""}}, 2);
+  // A letter is wider than the pictures: 5 x 7 font pixels.
+  const int width = pictures::textWidth("I");
+  const int height = 2 + kSheetGap + pictures::kTextHeight;
+  EXPECT_EQ(sheet.width(), 3 * kSheetGap + 2 * width);
+  EXPECT_EQ(sheet.height(), 3 * kSheetGap + 2 * height);
+  const int left = 2 * kSheetGap + width;
+  const int top = 2 * kSheetGap + height;
+  EXPECT_EQ(sheet.at(kSheetGap, kSheetGap), red.at(0, 0));
+  EXPECT_EQ(sheet.at(kSheetGap + 2, kSheetGap + 1), red.at(0, 0));
+  EXPECT_EQ(sheet.at(kSheetGap + 3, kSheetGap), pictures::kPaper);
+  EXPECT_EQ(sheet.at(kSheetGap, kSheetGap + 2), pictures::kPaper);
+  EXPECT_EQ(sheet.at(left, kSheetGap), blue.at(0, 0));
+  EXPECT_EQ(sheet.at(kSheetGap, top), red.at(0, 0));
+  EXPECT_EQ(sheet.at(left, top), pictures::kPaper);
+  // The top bar of the letter.
+  EXPECT_EQ(sheet.at(kSheetGap + pictures::kTextScale, kSheetGap + 2 + kSheetGap / 2),
+            pictures::kInk);
+}
+
+TEST(PictureOutput, ATileHasColorDepthIdsAndDebugSideBySide) {
+  const SmallImage small;
+  EnvFrame frame = small.frame();
+  const Image tile = tileOf(frame);
+  EXPECT_EQ(tile.width(), 3 * 2 + 2 * 2);
+  EXPECT_EQ(tile.height(), 1);
+  EXPECT_EQ(tile.at(1, 0), (Rgb{40, 50, 60}));
+  EXPECT_EQ(tile.at(4, 0), (Rgb{128, 128, 128}));
+  EXPECT_EQ(tile.at(9, 0), (Rgb{}));
+  frame.debug = DrawnImage{2, 1, ColorFormat::kRgba8, small.color, {}, {}};
+  EXPECT_EQ(tileOf(frame).width(), 4 * 2 + 3 * 2);
+  EXPECT_EQ(tileOf(frame).at(12, 0), (Rgb{10, 20, 30}));
+}
+
+/// A folder for pictures, and a PATH on which this test decides what there is.
+class Pictures : public testing::Test {
+ protected:
+  void SetUp() override {
+    path_before_ = std::getenv("PATH");
+    usePath(folder_.path().string() + "/bin:/usr/bin:/bin");
+  }
+  void TearDown() override { usePath(path_before_); }
+
+  static void usePath(const std::string& path) { ::setenv("PATH", path.c_str(), 1); }
+
+  /// A program "ffmpeg" of these shell commands.
+  void fakeFfmpeg(const std::string& commands) const {
+    const auto file = folder_.write("bin/ffmpeg", "#!/bin/sh\n" + commands);
+    std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+  }
+  /// One that keeps its arguments and what it is sent.
+  void keepingFfmpeg() const {
+    fakeFfmpeg("for last; do :; done\necho \"$@\" > '" + file("arguments") +
+               "'\ncat > \"$last\"\n");
+  }
+
+  [[nodiscard]] std::string file(const std::string& name) const {
+    return (folder_.path() / name).string();
+  }
+  [[nodiscard]] std::vector<std::string> files(const std::string& folder) const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / folder)) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  [[nodiscard]] static DrawingOptions smallOptions() {
+    DrawingOptions options;
+    options.images = "rgbds";
+    options.width = 2;
+    options.height = 1;
+    options.frame_envs = 2;
+    return options;
+  }
+
+  test::ScratchFolder folder_;
+  std::string path_before_;
+};
+
+TEST_F(Pictures, FramesAreNamedByEnvAndStep) {
+  DrawingOptions options = smallOptions();
+  options.frames = file("deep/frames");
+  options.frame_every = 60;
+  auto output = PictureOutput::open(options, {120, 5});
+  ASSERT_TRUE(output) << output.error().message;
+  EXPECT_EQ(output->envCount(), 2U);
+  EXPECT_TRUE(output->wants(0));
+  EXPECT_FALSE(output->wants(59));
+  EXPECT_TRUE(output->wants(120));
+  const SmallImage small;
+  EnvFrame with_debug = small.frame();
+  with_debug.debug = DrawnImage{2, 1, ColorFormat::kRgba8, small.color, {}, {}};
+  ASSERT_TRUE(output->add(120, std::vector{small.frame(), with_debug}));
+  ASSERT_TRUE(output->finish());
+  EXPECT_THAT(files("deep/frames"),
+              ElementsAre("env_0000_step_000120_depth.png", "env_0000_step_000120_rgb.png",
+                          "env_0000_step_000120_semantic.png", "env_0001_step_000120_debug.png",
+                          "env_0001_step_000120_depth.png", "env_0001_step_000120_rgb.png",
+                          "env_0001_step_000120_semantic.png"));
+}
+
+TEST_F(Pictures, ASheetShowsSixMomentsFromTheFirstToTheLast) {
+  DrawingOptions options = smallOptions();
+  options.contact_sheet = file("sheet.png");
+  {
+    // Nothing is drawn for other moments.
+    const auto output = PictureOutput::open(options, {100, 2});
+    ASSERT_TRUE(output);
+    std::size_t wanted = 0;
+    for (std::uint64_t step = 0; step <= 100; ++step) wanted += output->wants(step) ? 1U : 0U;
+    EXPECT_EQ(wanted, 6U);
+    EXPECT_TRUE(output->wants(0) && output->wants(20) && output->wants(100));
+  }
+  const SmallImage small;
+  const auto height_of = [&](std::uint64_t steps, std::uint64_t done) {
+    auto output = PictureOutput::open(options, {steps, 2});
+    EXPECT_TRUE(output);
+    for (std::uint64_t step = 0; step <= done; ++step) {
+      EXPECT_TRUE(output->add(step, std::vector{small.frame(), small.frame()}));
+    }
+    EXPECT_TRUE(output->finish());
+    const std::string png = test::fileContent(options.contact_sheet);
+    return static_cast<unsigned char>(png[22]) * 256 + static_cast<unsigned char>(png[23]);
+  };
+  const int row = 1 + kSheetGap + pictures::kTextHeight + kSheetGap;
+  EXPECT_EQ(height_of(100, 100), kSheetGap + 6 * row);
+  EXPECT_EQ(height_of(3, 3), kSheetGap + 4 * row);
+  // A run that was stopped: what there is.
+  EXPECT_EQ(height_of(100, 41), kSheetGap + 3 * row);
+}
+
+TEST_F(Pictures, WhatCannotBeWrittenIsRefusedBeforeTheRun) {
+  const std::string in_the_way = folder_.write("occupied", "a file").string();
+  DrawingOptions options = smallOptions();
+  options.frames = in_the_way;
+  auto output = PictureOutput::open(options, {10, 2});
+  ASSERT_FALSE(output);
+  EXPECT_EQ(output.error().code, ErrorCode::kIo);
+  EXPECT_EQ(output.error().where, in_the_way);
+  EXPECT_THAT(output.error().message, HasSubstr("cannot be made a folder"));
+  options.frames.clear();
+  options.contact_sheet = file("no/such/folder/sheet.png");
+  output = PictureOutput::open(options, {10, 2});
+  ASSERT_FALSE(output);
+  EXPECT_EQ(output.error().code, ErrorCode::kIo);
+  for (const char* folder : {"", "folder"}) {
+    std::filesystem::create_directories(folder_.path() / "folder");
+    options.contact_sheet = file(folder);
+    EXPECT_FALSE(PictureOutput::open(options, {10, 2})) << folder;
+  }
+}
+
+TEST_F(Pictures, AVideoIsTheTilesOfAllFrames) {
+  keepingFfmpeg();
+  DrawingOptions options = smallOptions();
+  options.video = file("run.mp4");
+  auto output = PictureOutput::open(options, {10, 2});
+  ASSERT_TRUE(output) << output.error().message;
+  const SmallImage small;
+  for (std::uint64_t step = 0; step < 3; ++step) {
+    ASSERT_TRUE(output->add(step, std::vector{small.frame(), small.frame()}));
+  }
+  EXPECT_FALSE(std::filesystem::exists(options.video));
+  const auto finished = output->finish();
+  ASSERT_TRUE(finished) << finished.error().message;
+  // Two tiles of 10 x 1 pixels with a gap between them: 22 x 1, made even.
+  const std::string raw = test::fileContent(options.video);
+  ASSERT_EQ(raw.size(), 3U * 22 * 2 * 3);
+  EXPECT_EQ(raw.substr(0, 6), "\x0a\x14\x1e\x28\x32\x3c");
+  EXPECT_EQ(raw.substr(12 * 3, 6), "\x0a\x14\x1e\x28\x32\x3c");
+  EXPECT_EQ(test::fileContent(file("arguments")),
+            "-y -loglevel error -f rawvideo -pix_fmt rgb24 -s 22x2 -r 30 -i - -an -pix_fmt "
+            "yuv420p " +
+                file("run.partial.mp4") + "\n");
+  EXPECT_THAT(files("."), ElementsAre("arguments", "bin", "run.mp4"));
+}
+
+TEST_F(Pictures, AVideoNeedsFfmpegAndSaysSo) {
+  usePath(file("nothing"));
+  const auto video = VideoPipe::start(file("run.mp4"), Image(2, 2, {}));
+  ASSERT_FALSE(video);
+  EXPECT_EQ(video.error().code, ErrorCode::kUnsupported);
+  EXPECT_EQ(video.error().message,
+            "needs ffmpeg, which is not on PATH; install it, or take --frames instead");
+}
+
+TEST_F(Pictures, AnFfmpegThatEndsEarlyIsAnErrorAndLeavesNothing) {
+  fakeFfmpeg("for last; do :; done\nhead -c 1000 > \"$last\"\nexit 3\n");
+  auto video = VideoPipe::start(file("run.mp4"), Image(256, 256, {}));
+  ASSERT_TRUE(video);
+  Result<void> sent;
+  for (int frame = 0; frame < 1000 && sent; ++frame) sent = video->append(Image(256, 256, {}));
+  ASSERT_FALSE(sent);
+  EXPECT_EQ(sent.error().code, ErrorCode::kIo);
+  EXPECT_EQ(sent.error().message,
+            "ffmpeg ended with code 3 before the video was whole; what it says stands above");
+  EXPECT_THAT(files("."), ElementsAre("bin"));
+}
+
+TEST_F(Pictures, AnFfmpegThatFailsAtTheEndIsAnErrorToo) {
+  fakeFfmpeg("cat > /dev/null\nexit 1\n");
+  auto video = VideoPipe::start(file("run.mp4"), Image(2, 2, {}));
+  ASSERT_TRUE(video);
+  ASSERT_TRUE(video->append(Image(2, 2, {})));
+  const auto finished = video->finish();
+  ASSERT_FALSE(finished);
+  EXPECT_THAT(finished.error().message, HasSubstr("ffmpeg ended with code 1"));
+}
+
+TEST_F(Pictures, AVideoThatIsGivenUpLeavesTheOldOne) {
+  keepingFfmpeg();
+  static_cast<void>(folder_.write("run.mp4", "old"));
+  {
+    auto video = VideoPipe::start(file("run.mp4"), Image(2, 2, {}));
+    ASSERT_TRUE(video);
+    ASSERT_TRUE(video->append(Image(2, 2, {})));
+  }
+  EXPECT_EQ(test::fileContent(file("run.mp4")), "old");
+  EXPECT_THAT(files("."), ElementsAre("arguments", "bin", "run.mp4"));
+}
+
+TEST(CameraChoice, KnowsTheCamerasByName) {
+  const test::SmallHome home;
+  const Robot& robot = home.world().robot();
+  const auto head = chooseCamera(robot, {.name = "head"});
+  ASSERT_TRUE(head);
+  EXPECT_EQ(head->mount.frame, CameraFrame::kLink);
+  EXPECT_EQ(head->mount.link, robot.camera()->link);
+  EXPECT_EQ(head->mount.vertical_fov, robot.camera()->vertical_fov);
+  const auto hand = chooseCamera(robot, {.name = "hand", .fov_degrees = 90});
+  ASSERT_TRUE(hand);
+  EXPECT_EQ(hand->mount.link, 4U);
+  EXPECT_NEAR(hand->mount.vertical_fov, 1.5707963F, 1e-6F);
+  EXPECT_EQ(chooseCamera(robot, {.name = "link:hand"})->mount.link, 4U);
+  const auto follow = chooseCamera(robot, {.name = "follow"});
+  ASSERT_TRUE(follow);
+  EXPECT_EQ(follow->mount.frame, CameraFrame::kBase);
+  const Pose& pose = follow->mount.frame_from_camera;
+  EXPECT_LT(pose.translation.x, 0);
+  EXPECT_LT(rotate(pose.rotation, {1, 0, 0}).y, -0.5F);
+}
+
+TEST(CameraChoice, FromAboveAheadIsUpInTheImageAndCeilingsAreCutOff) {
+  const test::SmallHome home;
+  const auto top = chooseCamera(home.world().robot(), {.name = "top"});
+  ASSERT_TRUE(top);
+  const Pose& pose = top->mount.frame_from_camera;
+  EXPECT_NEAR(rotate(pose.rotation, {1, 0, 0}).y, -1, 1e-6F);
+  EXPECT_NEAR(rotate(pose.rotation, {0, 1, 0}).x, 1, 1e-6F);
+  EXPECT_NEAR(pose.translation.y - top->near, 2.1F, 1e-5F);
+}
+
+TEST(CameraChoice, AnUnknownLinkIsRefusedWithThoseThereAre) {
+  const test::SmallHome home;
+  const auto none =
+      chooseCamera(home.world().robot(), {.name = "nose", .option = "--debug-camera"});
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(none.error().where, "--debug-camera");
+  EXPECT_THAT(none.error().message,
+              AllOf(HasSubstr("found no link nose"),
+                    HasSubstr("head, follow, top or one of base, mast, turret, arm, hand")));
+}
+
+}  // namespace
+}  // namespace galactic::pictures_test
