@@ -122,6 +122,8 @@ struct LaserOptions {
 struct SensorOptions {
   /// Whether the last step left the robot where it was, for something was in the way.
   bool bump = false;
+  /// The way from the target, where it is now, to the goal.
+  bool target_goal = false;
   LaserOptions laser;
   /// Whether the ways along the floor to target and goal are observed.
   bool geodesic = false;

@@ -153,6 +153,8 @@ void visitSensorOptions(SensorOptions& s, Visitor& v) {
   LaserOptions& laser = s.laser;
   v.group("Sensors (below 0: as the robot's recipe says)");
   v.flag("bump", Switch{s.bump, true}, "Observe whether something blocked the last step");
+  v.flag("target-goal", Switch{s.target_goal, true},
+         "Observe the way from the target, where it is now, to the goal");
   v.whole("laser-beams", laser.beams, Within<std::uint32_t>{0, 1024},
           "Beams of a planar laser scan; 0: none");
   v.real("laser-fov", laser.fov_degrees, Within<float>{kOfRobot, 360},

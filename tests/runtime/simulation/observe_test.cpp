@@ -167,6 +167,37 @@ TEST(Observation, CountsTheTimeDown) {
   EXPECT_EQ(time()[2], 1);
 }
 
+TEST(Observation, TellsTheWayFromTheTargetWhereItIsToTheGoal) {
+  const SmallHome home;
+  SimulationOptions options = optionsOf({.most_steps = 50});
+  options.sensors.target_goal = true;
+  BatchSimulator simulator = simulatorOf(home.world(), options);
+  const ObservationPart part = simulator.observationParts().back();
+  ASSERT_EQ(part.name, "target_goal");
+  std::vector<WildActor> actors;
+  for (std::uint32_t env = 0; env < kEnvs; ++env) actors.emplace_back(kSeed + env);
+  std::vector<float> actions(kEnvs * kSmallHomeActions);
+  int moved = 0;
+  for (int step = 0; step < 200; ++step) {
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      const EnvState state = simulator.envState(env);
+      const Double3 left = turnedInto(state.world_from_root.rotation,
+                                      difference(double3(state.goal.translation),
+                                                 double3(state.objects[state.target].translation)));
+      const auto row = rowOf(simulator, simulator.observations(), env).subspan(part.first, 3);
+      expectObserved(row, {left.begin(), left.end()});
+      const Episode& episode = home.world().episodes().episodes()[state.episode];
+      const Pose& start = home.world().episodes().placements(episode)[episode.target].pose;
+      moved += state.objects[state.target] == start ? 0 : 1;
+      if (simulator.dones()[env] != 0) actors[env].begin();
+      std::ranges::copy(actors[env].act(state),
+                        actions.begin() + static_cast<std::ptrdiff_t>(env * kSmallHomeActions));
+    }
+    simulator.step(actions);
+  }
+  expectBothSides(moved, static_cast<int>(kEnvs) * 200);
+}
+
 TEST(Observation, FeelsWhatWasInTheWayAndPaysForIt) {
   const SmallHome home;
   SimulationOptions options = optionsOf({.most_steps = 50});

@@ -75,6 +75,7 @@ std::vector<ObservationPart> observationParts(std::size_t joints, const SensorSi
   add("joints", joints);
   add("time", 3);
   if (sensors.bump != 0) add("bump", sensors.bump);
+  if (sensors.target_goal != 0) add("target_goal", sensors.target_goal);
   if (sensors.laser != 0) add("laser", sensors.laser);
   if (sensors.geodesic != 0) add("geodesic", sensors.geodesic);
   return parts;
@@ -103,6 +104,10 @@ void observe(const Model& model, const BatchState& state, std::size_t env_number
                                                        static_cast<float>(task.most_steps);
   for (const float scale : {1.0F, 5.0F, 50.0F}) row.add(std::min(1.0F, scale * left));
   if (model.options.sensors.bump) row.add(env.refused ? 1.0F : 0.0F);
+  if (model.options.sensors.target_goal) {
+    const RobotFrame turned{{}, robot.sine, robot.cosine};
+    row.add(turned.fromWorld(env.goal - measureTarget(state, env_number).target));
+  }
 }
 
 void observeAll(const ChunkStep& step) noexcept {

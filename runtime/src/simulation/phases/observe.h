@@ -9,6 +9,7 @@ namespace galactic::simulation {
 /// Elements of the optional parts of an observation; 0 for none.
 struct SensorSizes {
   std::size_t bump = 0;
+  std::size_t target_goal = 0;
   std::size_t laser = 0;
   std::size_t geodesic = 0;
 };

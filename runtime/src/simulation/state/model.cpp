@@ -227,6 +227,7 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
       sensors::laserSettings(options.sensors.laser, world.robot(), model.motion);
   if (!laser) return tl::unexpected<Error>(laser.error());
   const SensorSizes sensors{.bump = options.sensors.bump ? 1U : 0U,
+                            .target_goal = options.sensors.target_goal ? 3U : 0U,
                             .laser = laser->size(),
                             .geodesic = options.sensors.geodesic ? sensors::kGeodesicSize : 0};
   model.observation = observationParts(model.motion.controlled.size(), sensors);

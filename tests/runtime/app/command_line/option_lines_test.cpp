@@ -30,6 +30,7 @@ SimulationOptions unusualOptions() {
                        .jitter = 1e-8F};
   options.ground = {.most_rise = 0.2F, .most_drop = 0.4F};
   options.sensors = {.bump = true,
+                     .target_goal = true,
                      .laser = {.beams = 24,
                                .fov_degrees = 220,
                                .height = 0.1F / 3,
