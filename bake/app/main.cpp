@@ -128,6 +128,22 @@ int exitCodeOf(const BuildOutcome& outcome) {
   return error == nullptr ? kExitOk : static_cast<int>(error->code);
 }
 
+/// Of the packs that would be baked and of the scenes that would be left out.
+std::vector<LeftOut> whatIsMissing(const JobList& list, unsigned threads) {
+  std::vector<LeftOut> missing = findMissing(list, threads);
+  missing.insert(missing.begin(), list.left_out.begin(), list.left_out.end());
+  return missing;
+}
+
+/// What a dry run ends with, so that a script knows before it bakes.
+Error incomplete(const JobList& list, const std::vector<LeftOut>& missing) {
+  const LeftOut& first = missing.front();
+  return {ErrorCode::kInvalidInput, list.world->output.string(),
+          fmt::format("something is missing in {} of {}: {}: {}; add it, or bake without it",
+                      missing.size(), list.assets.size() + list.left_out.size(), first.name,
+                      first.reasons.front())};
+}
+
 int bakeList(const BakeCommand& command, const JobList& list) {
   if (auto checked = checkOutputs(command, list); !checked) return refuse(checked.error());
   // Before anything is baked for a golden report that is not there.
@@ -135,14 +151,15 @@ int bakeList(const BakeCommand& command, const JobList& list) {
   if (!golden) return refuse(golden.error());
   if (auto made = makeOutputFolder(command, list); !made) return refuse(made.error());
   const BuildOutcome outcome = buildAll(command, list);
-  const int exit_code = exitCodeOf(outcome);
+  int exit_code = exitCodeOf(outcome);
   if (outcome.world && !outcome.world->isThere()) return exit_code;
   if (list.world && command.saysMore()) printWorldTable(list, outcome);
   Json report = reportOf(list, outcome);
   if (list.world && command.run.dry_run) {
-    const std::vector<LeftOut> missing = findMissing(list, command.run.jobs);
+    const std::vector<LeftOut> missing = whatIsMissing(list, command.run.jobs);
     if (command.saysMore()) printMissing(missing);
     report["missing"] = missingReport(missing);
+    if (!missing.empty()) exit_code = refuse(incomplete(list, missing));
   }
   if (const auto written = saveReport(command, outcome, report); !written) {
     const int code = refuse(written.error());

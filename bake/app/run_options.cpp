@@ -113,7 +113,8 @@ void visitOptions(RunOptions& options, OptionVisitor& v) {
   v.option({"tolerance", "SHARE",
             "Share by which numbers may differ for --check (default: whole ones not at all)"},
            number(tolerance, {.least = 0, .most = 1e6}));
-  v.option({"dry-run", "", "Read and check the inputs, say what is missing, write no pack"},
+  v.option({"dry-run", "",
+            "Read and check the inputs, write no pack; exit code 3 when something is missing"},
            flag(dry_run));
   v.option({"keep-going", "", "Go on with the next input after an error"}, flag(keep_going));
   v.option({"verbose", "", "Say more"},

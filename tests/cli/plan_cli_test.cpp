@@ -169,16 +169,31 @@ TEST_F(PlanCli, TreatsScenesThatLackSomethingAsTheUserWants) {
                                    "--missing without"));
   EXPECT_FALSE(has("out"));
   const ProgramRun skips = bake("out", {"--missing", "skip", "--dry-run"});
-  EXPECT_EQ(skips.exit_code, 0) << skips.err;
+  EXPECT_EQ(skips.exit_code, 3) << "a dry run tells scripts that something is missing";
   EXPECT_THAT(skips.out, HasSubstr("2 scenes are left out:\n"));
   EXPECT_THAT(packsThatAre("planned"), Not(Contains("scenes/d.pack")));
-  ASSERT_EQ(bake("out", {"--missing", "without", "--dry-run"}).exit_code, 0);
+  ASSERT_EQ(bake("out", {"--missing", "without", "--dry-run"}).exit_code, 3);
   EXPECT_THAT(packsThatAre("planned"), Contains("scenes/d.pack"));
   const ProgramRun nothing = bake("out", {"--scenes", "e"});
   EXPECT_EQ(nothing.exit_code, 3);
   EXPECT_THAT(nothing.err, HasSubstr("out/home.pack: would have no scene, 1 are left out: e: stage "
                                      "'hall' is in none of the dataset's paths; a world has"));
   EXPECT_FALSE(has("out/home.pack"));
+}
+
+TEST_F(PlanCli, EndsADryRunWithAnErrorWhenSomethingIsMissing) {
+  const ProgramRun scene = bake("out", {"--dry-run", "-q"});
+  EXPECT_EQ(scene.exit_code, 3);
+  EXPECT_EQ(scene.out, "");
+  EXPECT_EQ(
+      scene.err,
+      "galactic-bake: out/home.pack: something is missing in 2 of 6: e: stage 'hall' is in none "
+      "of the dataset's paths; add it, or bake without it\n");
+  EXPECT_THAT(report().at("missing").dump(), HasSubstr("scenes/d.pack"));
+  EXPECT_FALSE(has("out"));
+  const ProgramRun whole = bake("out", {"--dry-run", "--scenes", "a", "--scenes", "b"});
+  EXPECT_EQ(whole.exit_code, 0) << whole.err;
+  EXPECT_THAT(whole.out, HasSubstr("nothing is missing\n"));
 }
 
 /// A world of the dataset's first scenes, an object and the sample robot.
