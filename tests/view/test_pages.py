@@ -252,6 +252,45 @@ class Pages(unittest.TestCase):
                 self.expect_poses(shown["links"], frames[number][env]["links"], number)
                 self.expect_poses(shown["objects"], frames[number][env]["objects"], number)
 
+    def test_nothing_stands_before_a_robot_that_is_followed(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        # From all around, low and high, inside the room and outside: what the mesh itself hides before and after.
+        hidden = page.evaluate(
+            """(() => {
+              const { stage, view } = galactic;
+              const { camera, controls, raycaster } = stage;
+              const cut = view.cutHeight();
+              const base = view.home.robot.poses[0].position;
+              const aim = [0.6, 0.4, 0.2, 0.1].map((h) => base.clone().setY(base.y + h)).find((p) => view.sight.isFree(p));
+              const isHidden = (from) => [[from, aim], [aim, from]].some(([a, b]) => {
+                const way = b.clone().sub(a);
+                raycaster.set(a, way.clone().normalize());
+                raycaster.far = way.length() - 0.01;
+                return raycaster.intersectObject(view.home.scene.mesh, true).some((hit) => hit.point.y < cut);
+              });
+              const counts = { places: 0, wanted: 0, shown: 0, moved: 0 };
+              for (const distance of [2, 4, 8]) for (const rise of [0.1, 0.4, 0.8]) for (let n = 0; n < 12; ++n) {
+                const turn = (n * Math.PI) / 6;
+                camera.position.set(Math.cos(turn) * Math.cos(rise), Math.sin(rise), Math.sin(turn) * Math.cos(rise))
+                  .multiplyScalar(distance).add(controls.target);
+                const wanted = camera.position.clone();
+                stage.drawNow();
+                ++counts.places;
+                counts.wanted += isHidden(wanted);
+                counts.shown += isHidden(stage.seenFrom);
+                counts.moved += stage.seenFrom.distanceTo(wanted) > 1e-6;
+                if (camera.position.distanceTo(wanted) > 1e-9) throw new Error("the user's camera moved");
+              }
+              raycaster.far = Infinity;
+              return counts;
+            })()"""
+        )
+        self.assertEqual(hidden["places"], 108)
+        self.assertGreater(hidden["wanted"], 11)
+        self.assertLess(hidden["wanted"], 97)
+        self.assertEqual(hidden["shown"], 0)
+        self.assertGreater(hidden["places"] - hidden["moved"], 11, "what is seen is not moved")
+
     def expect_poses(self, shown: list, wanted: list, frame: int):
         self.assertEqual(len(shown), len(wanted))
         for a, b in zip(shown, wanted):

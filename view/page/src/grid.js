@@ -54,6 +54,12 @@ export class Grid {
     return -1;
   }
 
+  /// Whether a sphere at a point is free; outside the grid it is not.
+  isFree({ x, y, z }) {
+    const cell = this.cellAt(x, z);
+    return cell !== null && this.spanAt(cell.k * this.columns_x + cell.i, this.codeOf(y)) >= 0;
+  }
+
   /// Where a sphere gets from a span by way of neighboring columns whose spans overlap: 1 for each
   /// span that it reaches.
   reachFrom(start) {

@@ -167,6 +167,16 @@ export class Home {
     return box.expandByScalar(0.7);
   }
 
+  /// The grid that tells what stands before a camera: of the smallest radius of 5 cm or more, else
+  /// of the largest. null without the scene.
+  async sightGrid() {
+    const { scene } = this;
+    const grids = scene.pack?.scene.grids;
+    if (!grids) return null;
+    scene.sight ??= Grid.load(this.page.data, grids.find((one) => one.radius >= 0.0499) ?? grids[grids.length - 1]);
+    return scene.sight;
+  }
+
   /// Where a sphere of the largest radius rolls from the robot's start: the floor that it can drive to.
   async setReach(isShown) {
     this.reach?.group.removeFromParent();

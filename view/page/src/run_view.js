@@ -4,6 +4,7 @@ import { address, addressNumber, setAddress } from "./address.js";
 import { button, checkbox, el, heading, legendRow, meters, note, table, tree } from "./dom.js";
 import { Home } from "./home.js";
 import { Pose } from "./kinematics.js";
+import { inSight } from "./sight.js";
 import { Timeline } from "./timeline.js";
 import { kEndings, Track } from "./track.js";
 
@@ -55,6 +56,7 @@ export class RunView {
     if (this.shownEpisode !== key) {
       this.shownEpisode = key;
       await this.home.setEpisode(this.page.episodes.withNumber(this.track.episode(frame)));
+      this.sight = await this.home.sightGrid();
       if (this.hasReach) await this.home.setReach(true);
       this.cut();
       // Somebody may have gone on meanwhile.
@@ -95,7 +97,9 @@ export class RunView {
   moveCamera() {
     const { robot } = this.home;
     if (!robot?.poses) return;
-    const { camera, controls } = this.page.stage;
+    const { stage } = this.page;
+    const { camera, controls } = stage;
+    stage.seenFrom = null;
     if (this.camera === "own" && robot.robot.camera) {
       const own = robot.ownCamera();
       camera.position.copy(own.position);
@@ -115,13 +119,19 @@ export class RunView {
         camera.lookAt(controls.target);
       }
       this.lastRoot = root.clone();
+      if (this.sight && this.home.shown.scene) {
+        stage.seenFrom = inSight(this.sight, root, controls.target, camera.position, this.cutHeight() ?? Infinity);
+      }
     }
   }
 
   /// So that one sees into the room from above; the robot sees its ceiling.
-  cut() {
+  cut() { this.page.stage.setCut(this.cutHeight()); }
+
+  /// null: nothing is cut off.
+  cutHeight() {
     const isCut = this.isCut !== false && this.camera !== "own";
-    this.page.stage.setCut(isCut ? this.home.episode.base.y + 1.6 : null);
+    return isCut ? this.home.episode.base.y + 1.6 : null;
   }
 
   setCamera(key) {

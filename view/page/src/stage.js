@@ -30,6 +30,7 @@ export class Stage {
     this.raycaster = new Raycaster();
     this.cut = new Plane(new Vector3(0, -1, 0), 0);
     this.beforeDraw = () => {};
+    this.seenFrom = null;
     this.frames = 0;
     this.addLights();
     this.content = new Group();
@@ -72,8 +73,20 @@ export class Stage {
     cancelAnimationFrame(this.pending);
     this.pending = 0;
     this.beforeDraw();
-    this.renderer.render(this.scene, this.camera);
+    if (this.seenFrom) this.renderFrom(this.seenFrom);
+    else this.renderer.render(this.scene, this.camera);
     ++this.frames;
+  }
+
+  /// A picture from another place than the controls', which stay where they are.
+  renderFrom(place) {
+    const { position, quaternion } = this.camera;
+    const [wanted, turned] = [position.clone(), quaternion.clone()];
+    position.copy(place);
+    this.camera.lookAt(this.controls.target);
+    this.renderer.render(this.scene, this.camera);
+    position.copy(wanted);
+    quaternion.copy(turned);
   }
 
   clear() {
@@ -83,6 +96,7 @@ export class Stage {
     this.setCut(null);
     this.setOwnCamera(null);
     this.beforeDraw = () => {};
+    this.seenFrom = null;
   }
 
   /// A floor of squares of a tenth of a meter or a meter, for what has no room around it.
