@@ -138,7 +138,8 @@ def check_quoted(root: pathlib.Path, path: pathlib.Path, header: str, rule: Rule
         return None if rule.schema else f'"{header}": public headers show no FlatBuffers type'
     # Strings made of files (cmake/embed_texts.cmake): beside their sources, in the build folder.
     texts = root / rule.folder / header
-    if texts.name == "shader_texts.h" and texts.with_name("shaders").is_dir():
+    made_of = {"shader_texts.h": "shaders", "ptx_texts.h": "kernels"}.get(texts.name)
+    if made_of is not None and texts.with_name(made_of).is_dir():
         return None
     target = resolve(root, path, header, rule)
     if target is None:

@@ -25,6 +25,7 @@ enum class RenderBackend : std::uint8_t {
   kAuto,  ///< `gl` where there is a graphics processor, else `soft`.
   kSoft,  ///< The rasterizer of this library, on all cores of the processor.
   kGl,    ///< OpenGL 4.5 through EGL, without a display.
+  kCuda,  ///< The rasterizer of this library, on a CUDA device.
 };
 
 /// Bytes per pixel of color images.

@@ -37,6 +37,7 @@ using Made = Result<std::unique_ptr<render::RenderEngine>>;
 /// Without a wish, OpenGL only where a graphics processor stands behind it.
 Made makeEngine(const RenderLibrary& library, const RenderOptions& options) {
   if (options.backend == RenderBackend::kSoft) return render::makeSoftEngine(library, options);
+  if (options.backend == RenderBackend::kCuda) return render::makeCudaEngine(library, options);
   Made gl = render::makeGlEngine(library, options);
   if (gl || options.backend == RenderBackend::kGl) return gl;
   return render::makeSoftEngine(library, options);

@@ -23,10 +23,10 @@ class RenderEngine {
   /// Draws, and leaves the images on a CUDA device. Fails with kUnsupported where it cannot.
   [[nodiscard]] virtual Result<DeviceImages> renderToDevice(std::span<const RenderView> /*views*/) {
     return fail(ErrorCode::kUnsupported, "device images",
-                "the soft backend draws into memory of the processor; use the gl backend");
+                "the soft backend draws into memory of the processor; use the cuda or the gl backend");
   }
 
-  /// kSoft or kGl.
+  /// kSoft, kGl or kCuda.
   [[nodiscard]] virtual RenderBackend backend() const = 0;
   [[nodiscard]] virtual std::string description() const = 0;
   [[nodiscard]] virtual RenderStatistics statistics() const = 0;
@@ -37,6 +37,11 @@ class RenderEngine {
                                                                    const RenderOptions& options);
 [[nodiscard]] Result<std::unique_ptr<RenderEngine>> makeGlEngine(const RenderLibrary& library,
                                                                  const RenderOptions& options);
+[[nodiscard]] Result<std::unique_ptr<RenderEngine>> makeCudaEngine(const RenderLibrary& library,
+                                                                   const RenderOptions& options);
+
+/// 1/256 pixels at a distance of 1 m for each meter beside the camera's axis.
+[[nodiscard]] float focalLength(const RenderOptions& options, const RenderCamera& camera) noexcept;
 
 /// Whether a camera sees anything: its numbers are finite and its field of view within range.
 [[nodiscard]] bool canSee(const RenderCamera& camera) noexcept;

@@ -18,35 +18,20 @@ struct Pane {
   bool shades;
 };
 
-/// Offsets of the pixels of a block.
-inline IntLanes laneRight() { return IntLanes{0, 1, 2, 3, 0, 1, 2, 3}; }
-inline IntLanes laneDown() { return IntLanes{0, 0, 0, 0, 1, 1, 1, 1}; }
-
-/// Eight triangles ready to be drawn. Starts are at the center of the first pixel of the first
-/// block; edge functions are not negative inside; "right" and "down": changes per pixel.
-struct alignas(64) GroupSetup {
-  std::int32_t edge[3][kWidth], edge_right[3][kWidth], edge_down[3][kWidth];
-  float z[kWidth], z_right[kWidth], z_down[kWidth];
-  /// Of 1/w at the corners: no pixel leaves this range, however thin the triangle.
-  float z_low[kWidth], z_high[kWidth];
-  /// First and last, in blocks.
-  std::int32_t first_column[kWidth], last_column[kWidth], first_row[kWidth], last_row[kWidth];
-};
-
 /// A test of eight pixels besides coverage and depth: passes all.
 struct Opaque {
   static constexpr bool kTests = false;
 };
 
+/// The pixels of a block.
+inline PixelOffsets blockPixels() {
+  return {IntLanes{0, 1, 2, 3, 0, 1, 2, 3}, IntLanes{0, 0, 0, 0, 1, 1, 1, 1}};
+}
+
 /// Where a block of a triangle's pixels comes to lie.
 struct BlockPlace {
   float* depth;
   std::int32_t* ids;
-};
-
-/// Eight values that change linearly over the pane.
-struct EdgeLanes {
-  IntLanes a, b, c;
 };
 
 /// Draws eight pixels; the sign bits of the result tell which.
@@ -64,6 +49,39 @@ inline IntLanes coverBlock(const BlockPlace& place, const EdgeLanes& edges, Lane
   return shown;
 }
 
+/// A pane as triangles are drawn on it, block by block.
+template <class Test>
+struct PaneTarget {
+  const PaneScratch* scratch;
+  std::size_t stride;
+  IntLanes id;
+  const Test* test;
+  BlockPlace place{};
+  std::size_t row_start = 0;
+
+  PaneTarget(const Pane& pane, const Test& also)
+      : scratch(pane.scratch),
+        stride(static_cast<std::size_t>(pane.columns) * kWidth),
+        id(spread(static_cast<std::int32_t>(pane.records))),
+        test(&also) {}
+
+  void start(std::uint32_t column, std::uint32_t row) {
+    row_start = row * stride + static_cast<std::size_t>(column) * kWidth;
+    place = {scratch->depth + row_start, scratch->ids + row_start};
+  }
+  IntLanes cover(const EdgeLanes& edges, Lanes z) const {
+    return coverBlock(place, edges, z, id, *test);
+  }
+  void right() {
+    place.depth += kWidth;
+    place.ids += kWidth;
+  }
+  void nextRow() {
+    row_start += stride;
+    place = {scratch->depth + row_start, scratch->ids + row_start};
+  }
+};
+
 inline void markChanged(const Pane& pane, const GroupSetup& group, unsigned n) {
   const std::int32_t first_column = group.first_column[n] / 2;
   const std::int32_t last_column = group.last_column[n] / 2;
@@ -72,53 +90,6 @@ inline void markChanged(const Pane& pane, const GroupSetup& group, unsigned n) {
         pane.scratch->tile_changed + static_cast<std::size_t>(y) * pane.tile_columns;
     for (std::int32_t x = first_column; x <= last_column; ++x) row[x] = 1;
   }
-}
-
-/// Draws triangle `n` of a group; says whether it is seen.
-template <class Test>
-bool coverTriangle(const Pane& pane, const GroupSetup& group, unsigned n, std::int32_t id_value,
-                   const Test& test) {
-  const IntLanes right = laneRight();
-  const IntLanes lower = -laneDown();
-  const auto edge_lanes = [&](int e) {
-    return spread(group.edge[e][n]) + right * spread(group.edge_right[e][n]) +
-           (lower & spread(group.edge_down[e][n]));
-  };
-  EdgeLanes row_edges{edge_lanes(0), edge_lanes(1), edge_lanes(2)};
-  const auto four_right = [&](int e) { return spread(group.edge_right[e][n] * 4); };
-  const auto two_down = [&](int e) { return spread(group.edge_down[e][n] * 2); };
-  const EdgeLanes next{four_right(0), four_right(1), four_right(2)};
-  const EdgeLanes below{two_down(0), two_down(1), two_down(2)};
-  Lanes row_z = spread(group.z[n]) + toFloat(right) * spread(group.z_right[n]) +
-                toFloat(laneDown()) * spread(group.z_down[n]);
-  const Lanes z_next = spread(group.z_right[n] * 4);
-  const Lanes z_below = spread(group.z_down[n] * 2);
-  const Lanes z_low = spread(group.z_low[n]);
-  const Lanes z_high = spread(group.z_high[n]);
-  const IntLanes id = spread(id_value);
-  IntLanes hit = spread(0);
-  const std::size_t stride = static_cast<std::size_t>(pane.columns) * kWidth;
-  std::size_t at = static_cast<std::size_t>(group.first_row[n]) * stride +
-                   static_cast<std::size_t>(group.first_column[n]) * kWidth;
-  const auto columns = static_cast<std::uint32_t>(group.last_column[n] - group.first_column[n]);
-  for (std::int32_t row = group.first_row[n]; row <= group.last_row[n]; ++row, at += stride) {
-    EdgeLanes edges = row_edges;
-    Lanes z = row_z;
-    BlockPlace place{pane.scratch->depth + at, pane.scratch->ids + at};
-    for (std::uint32_t column = 0;; ++column) {
-      hit |= coverBlock(place, edges, lesser(greater(z, z_low), z_high), id, test);
-      if (column == columns) break;
-      edges = {edges.a + next.a, edges.b + next.b, edges.c + next.c};
-      z = z + z_next;
-      place.depth += kWidth;
-      place.ids += kWidth;
-    }
-    row_edges = {row_edges.a + below.a, row_edges.b + below.b, row_edges.c + below.c};
-    row_z = row_z + z_below;
-  }
-  if (signBits(hit) == 0) return false;
-  markChanged(pane, group, n);
-  return true;
 }
 
 /// Least 1/w of a tile.

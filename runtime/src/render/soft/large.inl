@@ -1,205 +1,20 @@
-// Triangles that are set up one by one: large ones, and what clipping leaves of others.
+// Triangles that are drawn one by one: large ones, and what clipping leaves of others.
 namespace galactic::render {
 namespace {
 
-/// A corner of a triangle in the pane.
-struct Corner {
-  /// 1/256 pixel.
-  std::int32_t x, y;
-  /// 1 / w.
-  float z;
-  /// Texels; 0 to 255.
-  float u, v;
-  float color[4];
-};
-
-/// An edge function over a pane, from the center of its first pixel, divided by 256: that leaves
-/// its sign, as all pixels have the same remainder.
-struct LongEdge {
-  std::int64_t start;
-  /// Changes per pixel.
-  std::int32_t right, down;
-  /// From the first pixel of a tile to the one with the largest value.
-  std::int64_t reach;
-  /// Of the pixels of a block.
-  IntLanes offsets;
-};
-
-inline LongEdge longEdge(const Corner& from, const Corner& to) {
-  const std::int64_t dx = to.x - from.x;
-  const std::int64_t dy = to.y - from.y;
-  const bool keeps = dy < 0 || (dy == 0 && dx > 0);
-  const std::int64_t center = kSubpixels / 2;
-  const std::int64_t value = dx * (center - from.y) - dy * (center - from.x) - (keeps ? 0 : 1);
-  LongEdge edge;
-  edge.start = value >> 8;
-  edge.right = static_cast<std::int32_t>(-dy);
-  edge.down = static_cast<std::int32_t>(dx);
-  const std::int64_t last = kTileEdge - 1;
-  edge.reach = (dy < 0 ? -dy * last : 0) + (dx > 0 ? dx * last : 0);
-  edge.offsets = laneRight() * spread(edge.right) + laneDown() * spread(edge.down);
-  return edge;
-}
-
-/// A value over a pane, from the center of its first pixel.
-struct Plane {
-  double start, right, down;
-};
-
-struct LargeTriangle {
-  const Corner* corners[3];
-  double double_area;
-};
-
-inline Plane planeOf(const LargeTriangle& triangle, double a, double b, double c) {
-  const Corner& first = *triangle.corners[0];
-  const double ab_x = triangle.corners[1]->x - first.x;
-  const double ab_y = triangle.corners[1]->y - first.y;
-  const double ac_x = triangle.corners[2]->x - first.x;
-  const double ac_y = triangle.corners[2]->y - first.y;
-  const double scale = kSubpixels / triangle.double_area;
-  const double right = (ac_y * (b - a) - ab_y * (c - a)) * scale;
-  const double down = (ab_x * (c - a) - ac_x * (b - a)) * scale;
-  const double dx = (kHalfPixel - first.x) * (1.0 / kSubpixels);
-  const double dy = (kHalfPixel - first.y) * (1.0 / kSubpixels);
-  return {a + (right * dx + down * dy), right, down};
-}
-
-inline void recordPlane(float* fields, const Plane& plane) {
-  fields[0] = static_cast<float>(plane.right);
-  fields[1] = static_cast<float>(plane.down);
-  fields[2] = static_cast<float>(plane.start);
-}
-
-/// Writes the record at the next free number.
-void recordLarge(const Pane& pane, const ClusterState& state, const LargeTriangle& triangle,
-                 const Plane& depth) {
-  float* record = recordAt(pane, pane.records);
-  const Corner& a = *triangle.corners[0];
-  const Corner& b = *triangle.corners[1];
-  const Corner& c = *triangle.corners[2];
-  const auto over_w = [](float value, const Corner& corner) {
-    return static_cast<double>(value) * static_cast<double>(corner.z);
-  };
-  recordPlane(record + kURight, planeOf(triangle, over_w(a.u, a), over_w(b.u, b), over_w(c.u, c)));
-  recordPlane(record + kVRight, planeOf(triangle, over_w(a.v, a), over_w(b.v, b), over_w(c.v, c)));
-  record[kWRight] = static_cast<float>(depth.right);
-  record[kWDown] = static_cast<float>(depth.down);
-  store(record + kTexels, surfaceFields(state));
-  store(record + kLightRight, Quad{});
-  if (state.color_kind == kHasLight) {
-    recordPlane(record + kLightRight, planeOf(triangle, over_w(a.color[0], a),
-                                              over_w(b.color[0], b), over_w(c.color[0], c)));
-  }
-  if (state.color_kind != kHasColors) return;
-  float* fields = colorsAt(pane, pane.records);
-  for (int n = 0; n < 4; ++n, fields += 3) {
-    recordPlane(fields, planeOf(triangle, over_w(a.color[n], a), over_w(b.color[n], b),
-                                over_w(c.color[n], c)));
-  }
-}
-
-/// Tiles, first and last.
-struct TileBox {
-  std::int32_t left, right, top, bottom;
-};
-
-inline std::int32_t lesserOf(std::int32_t a, std::int32_t b) { return a < b ? a : b; }
-inline std::int32_t greaterOf(std::int32_t a, std::int32_t b) { return a > b ? a : b; }
-inline float lesserOf(float a, float b) { return a < b ? a : b; }
-inline float greaterOf(float a, float b) { return a > b ? a : b; }
-
-/// Tiles with pixels whose centers lie between the positions; right < left when there are none.
-inline TileBox tilesOf(const Pane& pane, const LargeTriangle& triangle) {
-  const Corner& a = *triangle.corners[0];
-  const Corner& b = *triangle.corners[1];
-  const Corner& c = *triangle.corners[2];
-  const auto first = [](std::int32_t p, std::int32_t q, std::int32_t r) {
-    return greaterOf((lesserOf(lesserOf(p, q), r) + kSubpixels / 2 - 1) >> 8, 0);
-  };
-  const auto last = [](std::int32_t p, std::int32_t q, std::int32_t r, std::uint32_t count) {
-    return lesserOf((greaterOf(greaterOf(p, q), r) - kSubpixels / 2) >> 8,
-                    static_cast<std::int32_t>(count) - 1);
-  };
-  const std::int32_t left = first(a.x, b.x, c.x);
-  const std::int32_t right = last(a.x, b.x, c.x, pane.task->width);
-  const std::int32_t top = first(a.y, b.y, c.y);
-  const std::int32_t bottom = last(a.y, b.y, c.y, pane.task->height);
-  if (left > right || top > bottom) return {0, -1, 0, -1};
-  return {left >> 3, right >> 3, top >> 3, bottom >> 3};
-}
-
-/// What drawing a tile of a large triangle needs.
-struct LargeSetup {
-  LongEdge edges[3];
-  Plane depth;
-  Lanes z_offsets, z_low, z_high;
-  float z_most;
-  IntLanes id;
-};
-
-/// Edge functions at the first block of a tile; says whether the triangle can touch the tile.
-inline bool tileEdges(const LargeSetup& setup, std::int32_t tile_x, std::int32_t tile_y,
-                      EdgeLanes& lanes) {
-  constexpr std::int64_t kMost = 1 << 30;
-  std::int32_t starts[3];
-  for (int n = 0; n < 3; ++n) {
-    const LongEdge& edge = setup.edges[n];
-    constexpr std::int64_t kEdge = kTileEdge;
-    const std::int64_t value =
-        edge.start + edge.right * (kEdge * tile_x) + edge.down * (kEdge * tile_y);
-    if (value + edge.reach < 0) return false;
-    // Further out the sign is the same in the whole tile: changes per pixel are under 2^24.
-    starts[n] = static_cast<std::int32_t>(value > kMost ? kMost : value < -kMost ? -kMost : value);
-  }
-  lanes = {setup.edges[0].offsets + spread(starts[0]), setup.edges[1].offsets + spread(starts[1]),
-           setup.edges[2].offsets + spread(starts[2])};
-  return true;
-}
-
-template <class Test>
-bool coverTile(const Pane& pane, const LargeSetup& setup, std::int32_t tile_x, std::int32_t tile_y,
-               const Test& test) {
-  const PaneScratch& scratch = *pane.scratch;
-  const std::size_t tile =
-      static_cast<std::size_t>(tile_y) * pane.tile_columns + static_cast<std::size_t>(tile_x);
-  if (scratch.tile_changed[tile] == 0 && scratch.tile_depth[tile] >= setup.z_most) return false;
-  EdgeLanes edges;
-  if (!tileEdges(setup, tile_x, tile_y, edges)) return false;
-  const Plane& depth = setup.depth;
-  const double x = tile_x * static_cast<double>(kTileEdge);
-  const double y = tile_y * static_cast<double>(kTileEdge);
-  const Lanes z_start =
-      spread(static_cast<float>(depth.start + (depth.right * x + depth.down * y))) +
-      setup.z_offsets;
-  IntLanes hit = spread(0);
-  const auto right = [&](int n) { return spread(setup.edges[n].right * 4); };
-  const auto down = [&](int n) { return spread(setup.edges[n].down * 2); };
-  const Lanes z_right = spread(static_cast<float>(depth.right * 4));
-  const std::size_t stride = static_cast<std::size_t>(pane.columns) * kWidth;
-  const std::size_t at =
-      static_cast<std::size_t>(tile_y) * 4 * stride + static_cast<std::size_t>(tile_x) * 2 * kWidth;
-  for (std::uint32_t row = 0; row < 4; ++row) {
-    const Lanes z = z_start + spread(static_cast<float>(depth.down * (2 * row)));
-    const BlockPlace place{scratch.depth + at + row * stride, scratch.ids + at + row * stride};
-    hit |= coverBlock(place, edges, lesser(greater(z, setup.z_low), setup.z_high), setup.id, test);
-    const EdgeLanes beside{edges.a + right(0), edges.b + right(1), edges.c + right(2)};
-    const BlockPlace next{place.depth + kWidth, place.ids + kWidth};
-    hit |= coverBlock(next, beside, lesser(greater(z + z_right, setup.z_low), setup.z_high),
-                      setup.id, test);
-    edges = {edges.a + down(0), edges.b + down(1), edges.c + down(2)};
-  }
-  if (signBits(hit) == 0) return false;
-  scratch.tile_changed[tile] = 1;
-  return true;
-}
-
 template <class Test>
 bool coverTiles(const Pane& pane, const LargeSetup& setup, const TileBox& tiles, const Test& test) {
+  PaneTarget target(pane, test);
+  const PaneScratch& scratch = *pane.scratch;
   bool seen = false;
   for (std::int32_t y = tiles.top; y <= tiles.bottom; ++y) {
     for (std::int32_t x = tiles.left; x <= tiles.right; ++x) {
-      seen |= coverTile(pane, setup, x, y, test);
+      const std::size_t tile =
+          static_cast<std::size_t>(y) * pane.tile_columns + static_cast<std::size_t>(x);
+      if (scratch.tile_changed[tile] == 0 && scratch.tile_depth[tile] >= setup.z_most) continue;
+      if (signBits(coverTile(setup, x, y, target)) == 0) continue;
+      scratch.tile_changed[tile] = 1;
+      seen = true;
     }
   }
   return seen;
@@ -209,40 +24,34 @@ bool coverTiles(const Pane& pane, const LargeSetup& setup, const TileBox& tiles,
 /// face.
 void drawLarge(Pane& pane, const ClusterState& state, const Corner& a, const Corner& b,
                const Corner& c) {
-  const std::int64_t area = static_cast<std::int64_t>(b.x - a.x) * (c.y - a.y) -
-                            static_cast<std::int64_t>(c.x - a.x) * (b.y - a.y);
-  if (area == 0 || (area < 0 && state.cluster->two_sided == 0)) return;
-  LargeTriangle triangle{{&a, area < 0 ? &c : &b, area < 0 ? &b : &c},
-                         static_cast<double>(area < 0 ? -area : area)};
-  const TileBox tiles = tilesOf(pane, triangle);
+  LargeTriangle triangle;
+  if (!faces(a, b, c, state.facts.cluster->two_sided != 0, triangle)) return;
+  const TileBox tiles = tilesOf(*pane.task, triangle);
   if (tiles.right < tiles.left) return;
   ++pane.counts.triangles_drawn;
-  const Corner& second = *triangle.corners[1];
-  const Corner& third = *triangle.corners[2];
-  LargeSetup setup;
-  setup.edges[0] = longEdge(a, second);
-  setup.edges[1] = longEdge(second, third);
-  setup.edges[2] = longEdge(third, a);
-  setup.depth = planeOf(triangle, static_cast<double>(a.z), static_cast<double>(second.z),
-                        static_cast<double>(third.z));
-  setup.z_offsets = toFloat(laneRight()) * spread(static_cast<float>(setup.depth.right)) +
-                    toFloat(laneDown()) * spread(static_cast<float>(setup.depth.down));
-  setup.z_most = greaterOf(greaterOf(a.z, b.z), c.z);
-  setup.z_low = spread(lesserOf(lesserOf(a.z, b.z), c.z));
-  setup.z_high = spread(setup.z_most);
+  const LargeSetup setup = setUpLarge(triangle, blockPixels());
   if (pane.records == kMostRecords) makeRoom(pane);
-  setup.id = spread(static_cast<std::int32_t>(pane.records));
+  float* record = recordAt(pane, pane.records);
+  float* colors = colorsAt(pane, pane.records);
   bool seen = false;
-  if (state.surface.least_alpha != 0) {
-    recordLarge(pane, state, triangle, setup.depth);
-    seen = coverTiles(
-        pane, setup, tiles,
-        alphaTest(pane, state, recordAt(pane, pane.records), colorsAt(pane, pane.records)));
+  if (state.facts.surface.least_alpha != 0) {
+    recordLarge(state, triangle, setup.depth, record, colors);
+    seen = coverTiles(pane, setup, tiles, alphaTest(pane, state, record, colors));
   } else {
     seen = coverTiles(pane, setup, tiles, Opaque{});
-    if (seen && pane.shades) recordLarge(pane, state, triangle, setup.depth);
+    if (seen && pane.shades) recordLarge(state, triangle, setup.depth, record, colors);
   }
   if (seen && pane.shades) ++pane.records;
+}
+
+/// Draws what is left of a triangle, given by the numbers of its vertices.
+void drawClipped(Pane& pane, ClusterState& state, std::int32_t packed_corners) {
+  if (state.facts.isTextured()) readCoordinates(state);
+  const auto corners = static_cast<std::uint32_t>(packed_corners);
+  Corner ready[kMostCorners];
+  const int count = clipTriangle(state, corners & 0xFFU, (corners >> 8U) & 0xFFU,
+                                 (corners >> 16U) & 0xFFU, ready);
+  for (int n = 1; n + 1 < count; ++n) drawLarge(pane, state, ready[0], ready[n], ready[n + 1]);
 }
 
 }  // namespace

@@ -3,16 +3,20 @@
 // of: see column_grid_avx2.cpp.
 // Each builds on those before it.
 // clang-format off
-#include "render/soft/lanes.inl"
-#include "render/soft/cull.inl"
-#include "render/soft/vertices.inl"
-#include "render/soft/coverage.inl"
+#include "render/raster/lanes_eight.inl"
+#include "render/raster/cull.inl"
+#include "render/raster/vertices.inl"
+#include "render/raster/triangles.inl"
+#include "render/raster/sample.inl"
+#include "render/raster/records.inl"
+#include "render/raster/large.inl"
+#include "render/raster/clip.inl"
+#include "render/soft/clusters.inl"
 #include "render/soft/triangles.inl"
-#include "render/soft/sample.inl"
+#include "render/soft/coverage.inl"
 #include "render/soft/records.inl"
 #include "render/soft/resolve.inl"
 #include "render/soft/large.inl"
-#include "render/soft/clip.inl"
 // clang-format on
 
 namespace galactic::render {
@@ -37,8 +41,9 @@ void clearPane(Pane& pane) {
   if (task.width % kTileEdge == 0 && task.height % kTileEdge == 0) return;
   for (std::uint32_t row = 0; row < pane.rows; ++row) {
     for (std::uint32_t column = 0; column < pane.columns; ++column) {
-      const IntLanes x = spread(static_cast<std::int32_t>(column * kBlockWidth)) + laneRight();
-      const IntLanes y = spread(static_cast<std::int32_t>(row * kBlockHeight)) + laneDown();
+      const IntLanes x =
+          spread(static_cast<std::int32_t>(column * kBlockWidth)) + blockPixels().right;
+      const IntLanes y = spread(static_cast<std::int32_t>(row * kBlockHeight)) + blockPixels().down;
       const IntLanes outside = (x >= spread(static_cast<std::int32_t>(task.width))) |
                                (y >= spread(static_cast<std::int32_t>(task.height)));
       store(scratch.depth + (std::size_t{row} * pane.columns + column) * kWidth,
@@ -63,17 +68,18 @@ void drawGroup(Pane& pane, ClusterState& state, const std::int32_t* corners, std
   for (std::uint32_t n = 0; n < kWidth; ++n) eight[n] = corners[n < count ? n : 0];
   SmallGroup group;
   GroupSetup setup;
-  setUpGroup(pane, state, load<IntLanes>(eight), group, setup);
+  setUpGroup(*pane.task, state, load<IntLanes>(eight), group, setup);
   const std::uint32_t first = pane.records;
-  std::uint32_t next = first;
   unsigned seen = 0;
   const auto cover = [&](std::uint32_t n, const auto& test) {
-    if (!coverTriangle(pane, setup, n, static_cast<std::int32_t>(next), test)) return;
+    PaneTarget target(pane, test);
+    if (signBits(coverTriangle(setup, n, blockPixels(), target)) == 0) return;
+    markChanged(pane, setup, n);
     seen |= 1U << n;
-    ++next;
+    ++pane.records;
   };
   GroupRecords records;
-  if (state.surface.least_alpha != 0) {
+  if (state.facts.surface.least_alpha != 0) {
     makeRecords(state, group, records);
     for (std::uint32_t n = 0; n < count; ++n) {
       cover(n, alphaTest(pane, state, records.records[n], records.colors[n]));
@@ -82,17 +88,11 @@ void drawGroup(Pane& pane, ClusterState& state, const std::int32_t* corners, std
     for (std::uint32_t n = 0; n < count; ++n) cover(n, Opaque{});
     if (seen != 0 && pane.shades) makeRecords(state, group, records);
   }
-  if (seen == 0 || !pane.shades) return;
-  keepRecords(pane, state, records, seen, first);
-  pane.records = next;
-}
-
-inline Corner cornerOf(const ClusterState& state, std::uint32_t number) {
-  const ClipVertex vertex = clipVertex(state, number);
-  Corner corner{
-      state.xy[2 * number], state.xy[2 * number + 1], state.z[number], vertex.u, vertex.v, {}};
-  __builtin_memcpy(corner.color, vertex.color, sizeof(corner.color));
-  return corner;
+  if (seen != 0 && pane.shades) {
+    keepRecords(pane, state, records, seen, first);
+  } else {
+    pane.records = first;
+  }
 }
 
 void drawTriangles(Pane& pane, ClusterState& state, const Survivors& survivors) {
@@ -101,7 +101,7 @@ void drawTriangles(Pane& pane, ClusterState& state, const Survivors& survivors) 
     drawGroup(pane, state, survivors.small + n, left < kWidth ? left : kWidth);
   }
   pane.counts.triangles_drawn += survivors.small_count;
-  if (survivors.large_count != 0 && (state.surface.kind & 0xFFU) != kFlatSurface) {
+  if (survivors.large_count != 0 && state.facts.isTextured()) {
     readCoordinates(state);
   }
   for (std::uint32_t n = 0; n < survivors.large_count; ++n) {
@@ -120,16 +120,12 @@ void drawCluster(Pane& pane, const SeenCluster& seen) {
   const VertexFrame frame = vertexFrame(*pane.task, placed);
   ClusterState state;
   state.has_coordinates = false;
-  state.pack = model.pack;
-  state.cluster = model.pack->clusters + model.first_cluster + seen.cluster;
+  state.facts = clusterFacts(model, seen.cluster);
   state.frame = &frame;
-  const std::uint32_t* color_kinds = model.pack->color_kinds;
-  state.color_kind = color_kinds == nullptr ? 0 : color_kinds[model.first_cluster + seen.cluster];
-  state.surface = model.pack->surfaces[state.cluster->material];
-  state.semantic = model.pack->first_semantic + state.cluster->semantic;
+  state.colors = clusterColors(state.facts);
   placeVertices(state);
   Survivors survivors;
-  sortTriangles(pane, state, survivors);
+  sortTriangles(*pane.task, state, survivors);
   drawTriangles(pane, state, survivors);
   ++pane.counts.clusters_drawn;
 }

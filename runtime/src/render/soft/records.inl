@@ -1,4 +1,4 @@
-// Records: what shading has to know of a triangle that is seen.
+// Where records are kept; the alpha test.
 namespace galactic::render {
 namespace {
 
@@ -37,75 +37,21 @@ inline void storeTransposed(const Lanes* fields, float* to) {
   }
 }
 
-/// The plane of eight values, to three vectors.
-inline void planeFields(const SmallGroup& group, Lanes a, Lanes b, Lanes c, Lanes* fields) {
-  const GradientLanes change = gradient(group, a, b, c);
-  const Lanes per_subpixel = spread(1.0F / kSubpixels);
-  const Lanes dx = toFloat(spread(kSubpixels / 2) - group.a.x) * per_subpixel;
-  const Lanes dy = toFloat(spread(kSubpixels / 2) - group.a.y) * per_subpixel;
-  fields[0] = change.right;
-  fields[1] = change.down;
-  fields[2] = a + (change.right * dx + change.down * dy);
-}
-
-inline std::uint32_t kindOf(const ClusterState& state) {
-  return state.surface.kind | state.color_kind;
-}
-
-/// The fields from kTexels on.
-inline Quad surfaceFields(const ClusterState& state) {
-  return Quad{as<float>(state.surface.texels), as<float>(kindOf(state)), as<float>(state.semantic),
-              0};
-}
-
-void makeColors(const ClusterState& state, const SmallGroup& group, GroupRecords& records) {
-  const std::int32_t* colors =
-      reinterpret_cast<const std::int32_t*>(state.pack->colors) + state.cluster->first_vertex;
-  const IntLanes a = gather(colors, group.corners.a);
-  const IntLanes b = gather(colors, group.corners.b);
-  const IntLanes c = gather(colors, group.corners.c);
-  // Sixteen, of which the last four stay 0.
-  Lanes fields[2 * kWidth] = {};
-  for (int channel = 0; channel < 4; ++channel) {
-    const auto value = [&](IntLanes color) { return toFloat((color >> (8 * channel)) & 0xFF); };
-    planeFields(group, value(a) * group.z_a, value(b) * group.z_b, value(c) * group.z_c,
-                fields + std::size_t{3} * static_cast<std::uint32_t>(channel));
-  }
-  storeTransposed(fields, records.colors[0]);
-  storeTransposed(fields + kWidth, records.colors[0] + kWidth);
-}
-
-/// The plane of the light, from the red of the colors.
-inline void makeLight(const ClusterState& state, const SmallGroup& group, Lanes* fields) {
-  const std::int32_t* colors =
-      reinterpret_cast<const std::int32_t*>(state.pack->colors) + state.cluster->first_vertex;
-  const auto light = [&](IntLanes corner) { return toFloat(gather(colors, corner) & 0xFF); };
-  planeFields(group, light(group.corners.a) * group.z_a, light(group.corners.b) * group.z_b,
-              light(group.corners.c) * group.z_c, fields);
-}
-
 /// The records of a group of small triangles.
 void makeRecords(ClusterState& state, const SmallGroup& group, GroupRecords& records) {
   Lanes fields[kWidth] = {};
-  if ((state.surface.kind & 0xFFU) != kFlatSurface) {
-    readCoordinates(state);
-    const Pair<Lanes> a = gatherPairs(state.uv, group.corners.a);
-    const Pair<Lanes> b = gatherPairs(state.uv, group.corners.b);
-    const Pair<Lanes> c = gatherPairs(state.uv, group.corners.c);
-    planeFields(group, a.first * group.z_a, b.first * group.z_b, c.first * group.z_c,
-                fields + kURight);
-    planeFields(group, a.second * group.z_a, b.second * group.z_b, c.second * group.z_c,
-                fields + kVRight);
-  }
-  fields[kWRight] = group.z.right;
-  fields[kWDown] = group.z.down;
+  if (state.facts.isTextured()) readCoordinates(state);
+  texturePlanes(state, group, fields);
   storeTransposed(fields, records.records[0]);
-  Lanes more[kWidth] = {};
-  const Quad surface = surfaceFields(state);
-  for (int n = 0; n < 4; ++n) more[n] = spread(surface[n]);
-  if (state.color_kind == kHasLight) makeLight(state, group, more + (kLightRight - kTexels));
+  Lanes more[kWidth];
+  surfacePlanes(state, group, more);
   storeTransposed(more, records.records[0] + kTexels);
-  if (state.color_kind == kHasColors) makeColors(state, group, records);
+  if (state.facts.color_kind != kHasColors) return;
+  // Sixteen, of which the last four stay 0.
+  Lanes colors[2 * kWidth] = {};
+  colorPlanes(state, group, colors);
+  storeTransposed(colors, records.colors[0]);
+  storeTransposed(colors + kWidth, records.colors[0] + kWidth);
 }
 
 /// Moves the records of triangles that are seen to the next free numbers.
@@ -115,7 +61,7 @@ void keepRecords(const Pane& pane, const ClusterState& state, const GroupRecords
   for (; seen != 0; seen &= seen - 1, ++number) {
     const int n = __builtin_ctz(seen);
     __builtin_memcpy(recordAt(pane, number), records.records[n], kBytes);
-    if (state.color_kind != kHasColors) continue;
+    if (state.facts.color_kind != kHasColors) continue;
     __builtin_memcpy(colorsAt(pane, number), records.colors[n], kBytes);
   }
 }
@@ -124,7 +70,8 @@ void keepRecords(const Pane& pane, const ClusterState& state, const GroupRecords
 inline PixelLanes pixelsOf(std::uint32_t column, std::uint32_t row, Lanes z) {
   const auto x = static_cast<float>(column * kBlockWidth);
   const auto y = static_cast<float>(row * kBlockHeight);
-  return {spread(x) + toFloat(laneRight()), spread(y) + toFloat(laneDown()), z};
+  const PixelOffsets pixels = blockPixels();
+  return {spread(x) + toFloat(pixels.right), spread(y) + toFloat(pixels.down), z};
 }
 
 /// Passes pixels whose surface is there, of the triangle with this record.
@@ -137,16 +84,13 @@ struct AlphaTest {
   IntLanes operator()(const BlockPlace& place, Lanes z) const {
     const auto block = static_cast<std::uint32_t>((place.depth - pane->scratch->depth) / kWidth);
     const PixelLanes pixels = pixelsOf(block % pane->columns, block / pane->columns, z);
-    const TexturePlaces places = texturePlaces(record, pixels);
-    IntLanes texels = sampleTexels(*pane->task, places);
-    if (places.kind[0] < 0) texels = timesColors(texels, colors, pixels);
-    return ((texels >> 24) & 0xFF) >= spread(least_alpha);
+    return alphaPasses(*pane->task, record, colors, least_alpha, pixels);
   }
 };
 
 inline AlphaTest alphaTest(const Pane& pane, const ClusterState& state, const float* record,
                            const float* colors) {
-  return {&pane, {record}, {colors}, static_cast<std::int32_t>(state.surface.least_alpha)};
+  return {&pane, {record}, {colors}, static_cast<std::int32_t>(state.facts.surface.least_alpha)};
 }
 
 }  // namespace

@@ -2,6 +2,42 @@
 namespace galactic::render {
 namespace {
 
+using Quad = float __attribute__((vector_size(16)));
+
+/// Four numbers of eight records become a vector each.
+inline void loadFour(const float* records, const std::int32_t* ids, Lanes* fields) {
+  Lanes pairs[4];
+  for (int n = 0; n < 4; ++n) {
+    const auto near =
+        load<Quad>(records + std::size_t{kRecordStride} * static_cast<std::uint32_t>(ids[n]));
+    const auto far =
+        load<Quad>(records + std::size_t{kRecordStride} * static_cast<std::uint32_t>(ids[n + 4]));
+    pairs[n] = __builtin_shufflevector(near, far, 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+  const Lanes a = __builtin_shufflevector(pairs[0], pairs[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Lanes b = __builtin_shufflevector(pairs[0], pairs[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const Lanes c = __builtin_shufflevector(pairs[2], pairs[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Lanes d = __builtin_shufflevector(pairs[2], pairs[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  fields[0] = __builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13);
+  fields[1] = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);
+  fields[2] = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);
+  fields[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+/// The records of eight pixels, field by field.
+struct EachRecord {
+  Lanes fields[kRecordFields];
+  Lanes field(std::uint32_t number) const { return fields[number]; }
+  IntLanes intField(std::uint32_t number) const { return as<IntLanes>(fields[number]); }
+};
+
+inline EachRecord loadRecords(const float* records, const std::int32_t* ids) {
+  static_assert(kRecordFields == kColorFields);
+  EachRecord each;
+  for (std::uint32_t n = 0; n < kRecordFields; n += 4) loadFour(records + n, ids, each.fields + n);
+  return each;
+}
+
 /// `ids`: 0 or more.
 inline IntLanes shade(const Pane& pane, const std::int32_t* ids, const PixelLanes& pixels) {
   const auto id = load<IntLanes>(ids);

@@ -1,36 +1,11 @@
 #include "render/soft/soft_engine.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "column_grid/column_grid_kernels.h"
+#include "render/raster/placed_model.h"
 
 namespace galactic::render {
-namespace {
-
-bool isFinite(const Vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-bool isFinite(const RigidTransform& t) {
-  return isFinite(t.x_axis) && isFinite(t.y_axis) && isFinite(t.z_axis) && isFinite(t.origin);
-}
-
-/// Edge of the panes that an image is cut in: as few as possible, of like size, of whole tiles.
-std::uint32_t paneEdge(std::uint32_t pixels) {
-  const std::uint32_t count = (pixels + kPaneEdge - 1) / kPaneEdge;
-  const std::uint32_t edge = (pixels + count - 1) / count;
-  return (edge + kTileEdge - 1) / kTileEdge * kTileEdge;
-}
-
-/// 1/256 pixels at a distance of 1 m for each meter beside the camera's axis.
-float focalLength(const RenderOptions& options, const RenderCamera& camera) {
-  const double half_height = 0.5 * static_cast<double>(options.height);
-  const double slope = std::tan(0.5 * static_cast<double>(camera.vertical_fov));
-  return static_cast<float>(half_height * kSubpixels / slope);
-}
-
-}  // namespace
 
 SoftEngine::SoftEngine(const RenderLibrary& library, const RenderOptions& options, DrawPane draw)
     : options_(options), draw_(draw), scene_(library) {
@@ -134,16 +109,9 @@ std::uint32_t SoftEngine::placeModels(const RenderView& view, PlacedModel* place
   for (const RenderInstance& instance : view.instances) {
     const ModelTables& model = scene_.models()[instance.model];
     if (model.cluster_count == 0) continue;
-    const RigidTransform t = camera_from_world * instance.world_from_model;
-    const RigidTransform scaled{t.x_axis * focal, t.y_axis * focal, t.z_axis * focal,
-                                t.origin * focal};
-    if (!isFinite(t) || !isFinite(scaled)) continue;
-    // The camera looks along its x; y is up, z to the right.
-    placed[count++] = {
-        .model = &model,
-        .w = {t.x_axis.x, t.y_axis.x, t.z_axis.x, t.origin.x},
-        .x = {scaled.x_axis.z, scaled.y_axis.z, scaled.z_axis.z, scaled.origin.z},
-        .y = {-scaled.x_axis.y, -scaled.y_axis.y, -scaled.z_axis.y, -scaled.origin.y}};
+    PlacedModel& next = placed[count];
+    next.model = &model;
+    if (placeModel(camera_from_world, focal, instance.world_from_model, next)) ++count;
   }
   return count;
 }

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "galactic/render_library.h"
-#include "render/soft/pane.h"
+#include "render/raster/pane_task.h"
 
 namespace galactic::render {
 

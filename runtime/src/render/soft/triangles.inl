@@ -1,21 +1,29 @@
-// Triangles of a cluster: which can cover a pixel, and the set-up of eight at a time.
+// Triangles of a cluster: which of them are drawn, and by which way.
 namespace galactic::render {
 namespace {
 
-/// Triangles of at most this extent, in 1/256 pixel, are set up in 32 bits, by eight.
-constexpr std::int32_t kSmall = 64 * kSubpixels;
-
-/// Corners of eight triangles, each of them as the numbers of vertices in its cluster.
-struct CornerLanes {
-  IntLanes a, b, c;
-};
-
-/// Corners in one integer, the first in the lowest byte.
-inline std::int32_t packed(std::int32_t a, std::int32_t b, std::int32_t c) {
-  return a | b << 8 | c << 16;
+void placeVertices(ClusterState& state) {
+  const RenderCluster& cluster = *state.facts.cluster;
+  const std::uint16_t* block = vertexBlock(state.facts, 0);
+  unsigned bad = 0;
+  for (std::uint32_t v = 0; v < cluster.vertex_count; v += kWidth, block += kVertexRows * kWidth) {
+    unsigned good = placeEight(*state.frame, cluster, block, v, state);
+    // What follows the last vertex is not looked at.
+    if (cluster.vertex_count - v < kWidth) good |= kAllLanes << (cluster.vertex_count - v);
+    bad |= ~good & kAllLanes;
+  }
+  state.any_bad = bad != 0;
 }
-inline CornerLanes unpacked(IntLanes corners) {
-  return {corners & 0xFF, (corners >> 8) & 0xFF, (corners >> 16) & 0xFF};
+
+/// Texture coordinates of all vertices, in texels of the largest level.
+void readCoordinates(ClusterState& state) {
+  if (state.has_coordinates) return;
+  state.has_coordinates = true;
+  const std::uint16_t* block = vertexBlock(state.facts, 0);
+  const std::uint32_t count = state.facts.cluster->vertex_count;
+  for (std::uint32_t n = 0; n < count; n += kWidth, block += kVertexRows * kWidth) {
+    readEight(block, n, state);
+  }
 }
 
 /// Triangles of a cluster that are worth drawing, by the way they take; corners go around
@@ -27,186 +35,34 @@ struct Survivors {
   std::uint32_t small_count, large_count, clipped_count;
 };
 
-struct PointLanes {
-  IntLanes x, y;
-};
-
-inline PointLanes pointsOf(const ClusterState& state, IntLanes corner) {
-  const Pair<IntLanes> xy = gatherPairs(state.xy, corner);
-  return {xy.first, xy.second};
-}
-
-inline IntLanes leastOf(IntLanes a, IntLanes b, IntLanes c) { return lesser(lesser(a, b), c); }
-inline IntLanes mostOf(IntLanes a, IntLanes b, IntLanes c) { return greater(greater(a, b), c); }
-inline Lanes leastOf(Lanes a, Lanes b, Lanes c) { return lesser(lesser(a, b), c); }
-inline Lanes mostOf(Lanes a, Lanes b, Lanes c) { return greater(greater(a, b), c); }
-
-/// First and last pixel whose center lies between two positions.
-inline IntLanes firstPixel(IntLanes lowest) { return (lowest + spread(kSubpixels / 2 - 1)) >> 8; }
-inline IntLanes lastPixel(IntLanes highest) { return (highest - spread(kSubpixels / 2)) >> 8; }
-
-/// Twice the area, positive when the corners go clockwise on the screen. Exact for small triangles.
-inline IntLanes doubleArea(const PointLanes& a, const PointLanes& b, const PointLanes& c) {
-  return wrapSubtract(wrapMultiply(b.x - a.x, c.y - a.y), wrapMultiply(c.x - a.x, b.y - a.y));
-}
-
-/// What becomes of eight triangles: bit n for triangle n.
-struct Sorting {
-  unsigned small, large;
-};
-
-/// Bounds of a pane, and whether both sides of triangles show: by value, so that no store can
-/// change them.
-struct SortLimits {
-  IntLanes last_x, last_y, two_sided;
-};
-
-inline Sorting sortEight(const SortLimits limits, const ClusterState& state,
-                         const CornerLanes& corners) {
-  const PointLanes a = pointsOf(state, corners.a);
-  const PointLanes b = pointsOf(state, corners.b);
-  const PointLanes c = pointsOf(state, corners.c);
-  const IntLanes x_low = leastOf(a.x, b.x, c.x);
-  const IntLanes x_high = mostOf(a.x, b.x, c.x);
-  const IntLanes y_low = leastOf(a.y, b.y, c.y);
-  const IntLanes y_high = mostOf(a.y, b.y, c.y);
-  const IntLanes first_x = greater(firstPixel(x_low), spread(0));
-  const IntLanes first_y = greater(firstPixel(y_low), spread(0));
-  const IntLanes last_x = lesser(lastPixel(x_high), limits.last_x);
-  const IntLanes last_y = lesser(lastPixel(y_high), limits.last_y);
-  const IntLanes missed = (first_x > last_x) | (first_y > last_y);
-  const IntLanes large = ((x_high - x_low) > spread(kSmall)) | ((y_high - y_low) > spread(kSmall));
-  const IntLanes area = doubleArea(a, b, c);
-  const IntLanes turned_away = (area == spread(0)) | ((area < spread(0)) & ~limits.two_sided);
-  return {signBits(~missed & ~large & ~turned_away), signBits(~missed & large)};
-}
-
 inline void append(std::int32_t* list, std::uint32_t& count, IntLanes corners, unsigned which) {
   alignas(32) std::int32_t values[kWidth];
   store(values, corners);
   for (; which != 0; which &= which - 1) list[count++] = values[__builtin_ctz(which)];
 }
 
-void sortTriangles(const Pane& pane, const ClusterState& state, Survivors& survivors) {
+void sortTriangles(const PaneTask& task, const ClusterState& state, Survivors& survivors) {
   survivors.small_count = survivors.large_count = survivors.clipped_count = 0;
-  const RenderCluster& cluster = *state.cluster;
-  const SortLimits limits{spread(static_cast<std::int32_t>(pane.task->width) - 1),
-                          spread(static_cast<std::int32_t>(pane.task->height) - 1),
-                          spread(cluster.two_sided != 0 ? -1 : 0)};
+  const RenderCluster& cluster = *state.facts.cluster;
+  const SortLimits limits = sortLimits(task, cluster);
   const std::uint32_t triangle_count = cluster.triangle_count;
-  const std::uint8_t* block =
-      state.pack->triangles + static_cast<std::size_t>(cluster.first_triangle) * kTriangleRows;
+  const std::uint8_t* block = state.facts.pack->triangles +
+                              static_cast<std::size_t>(cluster.first_triangle) * kTriangleRows;
   for (std::uint32_t t = 0; t < triangle_count; t += kWidth) {
-    // Counter-clockwise from outside is clockwise where rows run down: two corners change places.
-    const CornerLanes corners{widen(load<EightBytes>(block)),
-                              widen(load<EightBytes>(block + 2 * kWidth)),
-                              widen(load<EightBytes>(block + kWidth))};
+    const CornerLanes corners = cornersAt(block);
     block += kTriangleRows * kWidth;
     unsigned valid = kAllLanes;
     if (triangle_count - t < kWidth) valid = (1U << (triangle_count - t)) - 1;
-    const IntLanes both = corners.a | corners.b << 8 | corners.c << 16;
+    const IntLanes both = packed(corners);
     if (state.any_bad) {
-      const IntLanes a = gather(state.bad, corners.a);
-      const IntLanes b = gather(state.bad, corners.b);
-      const IntLanes c = gather(state.bad, corners.c);
-      const unsigned good = signBits((a | b | c) == spread(0));
-      // Beyond one plane with all corners: nothing is left.
-      const unsigned outside = signBits((a & b & c) != spread(0));
-      append(survivors.clipped, survivors.clipped_count, both, ~(good | outside) & valid);
-      valid &= good;
+      const ClipSorting clip = sortForClipping(state, corners);
+      append(survivors.clipped, survivors.clipped_count, both, clip.cut & valid);
+      valid &= clip.whole;
     }
     const Sorting sorting = sortEight(limits, state, corners);
     append(survivors.small, survivors.small_count, both, sorting.small & valid);
     append(survivors.large, survivors.large_count, both, sorting.large & valid);
   }
-}
-
-/// Two numbers per triangle that say how a value at its corners changes over the pane.
-struct GradientLanes {
-  Lanes right, down;
-};
-
-/// Corners of eight small triangles.
-struct SmallGroup {
-  CornerLanes corners;
-  PointLanes a, b, c;
-  /// Of the edges from a, and 256 / double area.
-  Lanes ab_x, ab_y, ac_x, ac_y, per_area;
-  /// 1/w at the corners, and how it changes.
-  Lanes z_a, z_b, z_c;
-  GradientLanes z;
-};
-
-inline GradientLanes gradient(const SmallGroup& group, Lanes a, Lanes b, Lanes c) {
-  const Lanes ab = b - a;
-  const Lanes ac = c - a;
-  return {(group.ac_y * ab - group.ab_y * ac) * group.per_area,
-          (group.ab_x * ac - group.ac_x * ab) * group.per_area};
-}
-
-inline void setUpEdge(GroupSetup& setup, int number, const PointLanes& from, const PointLanes& to,
-                      const PointLanes& start) {
-  const IntLanes dx = to.x - from.x;
-  const IntLanes dy = to.y - from.y;
-  const IntLanes value = dx * (start.y - from.y) - dy * (start.x - from.x);
-  // An edge keeps the pixels on it when it is a left one, or a top one that lies level.
-  const IntLanes keeps = (dy < spread(0)) | ((dy == spread(0)) & (dx > spread(0)));
-  store(setup.edge[number], value + ~keeps);
-  store(setup.edge_right[number], dy * spread(-kSubpixels));
-  store(setup.edge_down[number], dx * spread(kSubpixels));
-}
-
-/// Sets up eight small triangles; turns those around that show their back.
-void setUpGroup(const Pane& pane, const ClusterState& state, IntLanes packed_corners,
-                SmallGroup& group, GroupSetup& setup) {
-  group.corners = unpacked(packed_corners);
-  group.a = pointsOf(state, group.corners.a);
-  group.b = pointsOf(state, group.corners.b);
-  group.c = pointsOf(state, group.corners.c);
-  IntLanes area = doubleArea(group.a, group.b, group.c);
-  if (state.cluster->two_sided != 0) {
-    const IntLanes back = area < spread(0);
-    const CornerLanes k = group.corners;
-    const PointLanes b = group.b;
-    const PointLanes c = group.c;
-    group.corners = {k.a, pick(back, k.c, k.b), pick(back, k.b, k.c)};
-    group.b = {pick(back, c.x, b.x), pick(back, c.y, b.y)};
-    group.c = {pick(back, b.x, c.x), pick(back, b.y, c.y)};
-    area = pick(back, -area, area);
-  }
-  const PointLanes& a = group.a;
-  const PointLanes& b = group.b;
-  const PointLanes& c = group.c;
-  const auto width = static_cast<std::int32_t>(pane.task->width);
-  const auto height = static_cast<std::int32_t>(pane.task->height);
-  const IntLanes first_column = greater(firstPixel(leastOf(a.x, b.x, c.x)), spread(0)) >> 2;
-  const IntLanes first_row = greater(firstPixel(leastOf(a.y, b.y, c.y)), spread(0)) >> 1;
-  store(setup.first_column, first_column);
-  store(setup.first_row, first_row);
-  store(setup.last_column, lesser(lastPixel(mostOf(a.x, b.x, c.x)), spread(width - 1)) >> 2);
-  store(setup.last_row, lesser(lastPixel(mostOf(a.y, b.y, c.y)), spread(height - 1)) >> 1);
-  const PointLanes start{(first_column << 10) + spread(kSubpixels / 2),
-                         (first_row << 9) + spread(kSubpixels / 2)};
-  setUpEdge(setup, 0, a, b, start);
-  setUpEdge(setup, 1, b, c, start);
-  setUpEdge(setup, 2, c, a, start);
-  group.ab_x = toFloat(b.x - a.x);
-  group.ab_y = toFloat(b.y - a.y);
-  group.ac_x = toFloat(c.x - a.x);
-  group.ac_y = toFloat(c.y - a.y);
-  group.per_area = spread(static_cast<float>(kSubpixels)) / toFloat(area);
-  group.z_a = gather(state.z, group.corners.a);
-  group.z_b = gather(state.z, group.corners.b);
-  group.z_c = gather(state.z, group.corners.c);
-  group.z = gradient(group, group.z_a, group.z_b, group.z_c);
-  const Lanes per_subpixel = spread(1.0F / kSubpixels);
-  const Lanes dx = toFloat(start.x - a.x) * per_subpixel;
-  const Lanes dy = toFloat(start.y - a.y) * per_subpixel;
-  store(setup.z, group.z_a + (group.z.right * dx + group.z.down * dy));
-  store(setup.z_right, group.z.right);
-  store(setup.z_down, group.z.down);
-  store(setup.z_low, leastOf(group.z_a, group.z_b, group.z_c));
-  store(setup.z_high, mostOf(group.z_a, group.z_b, group.z_c));
 }
 
 }  // namespace

@@ -15,8 +15,12 @@ using ShortLanes = std::uint16_t __attribute__((vector_size(32)));
 using EightBytes = std::uint8_t __attribute__((vector_size(8)));
 using EightShorts = std::uint16_t __attribute__((vector_size(16)));
 
+/// Of the rows in pools, and of what is stored in blocks.
 constexpr std::uint32_t kWidth = 8;
+/// Of vectors.
+constexpr std::uint32_t kLanes = 8;
 constexpr unsigned kAllLanes = 0xFF;
+constexpr std::size_t kGroupAlignment = 64;
 
 /// The same bits as another type.
 template <class To, class From>

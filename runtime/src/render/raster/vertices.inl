@@ -37,6 +37,41 @@ VertexFrame vertexFrame(const PaneTask& task, const PlacedModel& placed) {
   return frame;
 }
 
+/// What is the same for all triangles of a cluster.
+struct ClusterFacts {
+  const PackTables* pack;
+  const RenderCluster* cluster;
+  SurfaceTexels surface;
+  /// kHasColors, kHasLight or 0.
+  std::uint32_t color_kind;
+  /// In images.
+  std::uint32_t semantic;
+
+  bool isTextured() const { return (surface.kind & 0xFFU) != kFlatSurface; }
+};
+
+inline ClusterFacts clusterFacts(const ModelTables& model, std::uint32_t number) {
+  const PackTables& pack = *model.pack;
+  const RenderCluster* cluster = pack.clusters + model.first_cluster + number;
+  const std::uint32_t kind =
+      pack.color_kinds == nullptr ? 0 : pack.color_kinds[model.first_cluster + number];
+  return {&pack, cluster, pack.surfaces[cluster->material], kind,
+          pack.first_semantic + cluster->semantic};
+}
+
+/// Of its vertices; not to be read where color_kind is 0.
+inline const std::int32_t* clusterColors(const ClusterFacts& facts) {
+  if (facts.color_kind == 0) return nullptr;
+  return reinterpret_cast<const std::int32_t*>(facts.pack->colors) + facts.cluster->first_vertex;
+}
+
+/// The rows of the eight vertices that vertex `number` is one of.
+inline const std::uint16_t* vertexBlock(const ClusterFacts& facts, std::uint32_t number) {
+  return facts.pack->vertices +
+         static_cast<std::size_t>(facts.cluster->first_vertex + number / kWidth * kWidth) *
+             kVertexRows;
+}
+
 /// A cluster in work.
 struct ClusterState {
   /// In the pane, 1/256 pixel from its upper left corner: x, y, x, y. Not set where `bad`.
@@ -50,14 +85,13 @@ struct ClusterState {
   bool any_bad;
   bool has_coordinates;
 
-  const PackTables* pack;
-  const RenderCluster* cluster;
+  ClusterFacts facts;
   const VertexFrame* frame;
-  SurfaceTexels surface;
-  /// kHasColors, kHasLight or 0.
-  std::uint32_t color_kind;
-  /// In images.
-  std::uint32_t semantic;
+  /// Of the vertices, where color_kind is not 0.
+  const std::int32_t* colors;
+
+  /// The number in the cluster of a vertex in these arrays.
+  std::uint32_t vertex(std::uint32_t number) const { return number; }
 };
 
 inline Lanes along(const float* row, Lanes x, Lanes y, Lanes z) {
@@ -74,8 +108,9 @@ inline Lanes onLattice(const std::uint16_t* row, std::int32_t origin) {
 }
 
 /// Eight vertices: returns which are good.
+template <class State>
 inline unsigned placeEight(const VertexFrame& frame, const RenderCluster& cluster,
-                           const std::uint16_t* block, std::uint32_t first, ClusterState& state) {
+                           const std::uint16_t* block, std::uint32_t first, State& state) {
   const Lanes x = onLattice(block, cluster.origin_x);
   const Lanes y = onLattice(block + kWidth, cluster.origin_y);
   const Lanes z = onLattice(block + std::size_t{2} * kWidth, cluster.origin_z);
@@ -103,37 +138,16 @@ inline unsigned placeEight(const VertexFrame& frame, const RenderCluster& cluste
   return good_bits;
 }
 
-void placeVertices(ClusterState& state) {
-  const RenderCluster& cluster = *state.cluster;
-  const std::uint16_t* block =
-      state.pack->vertices + static_cast<std::size_t>(cluster.first_vertex) * kVertexRows;
-  unsigned bad = 0;
-  for (std::uint32_t v = 0; v < cluster.vertex_count; v += kWidth, block += kVertexRows * kWidth) {
-    unsigned good = placeEight(*state.frame, cluster, block, v, state);
-    // What follows the last vertex is not looked at.
-    if (cluster.vertex_count - v < kWidth) good |= kAllLanes << (cluster.vertex_count - v);
-    bad |= ~good & kAllLanes;
-  }
-  state.any_bad = bad != 0;
-}
-
-/// Texture coordinates of all vertices, in texels of the largest level.
-void readCoordinates(ClusterState& state) {
-  if (state.has_coordinates) return;
-  state.has_coordinates = true;
-  const RenderCluster& cluster = *state.cluster;
-  const std::uint16_t* block =
-      state.pack->vertices + static_cast<std::size_t>(cluster.first_vertex) * kVertexRows;
-  const auto edge = static_cast<float>(1U << (state.surface.kind & 0xFFU));
-  const Lanes u_start = spread(cluster.u_minimum * edge);
-  const Lanes v_start = spread(cluster.v_minimum * edge);
-  const Lanes u_step = spread(cluster.u_step * edge);
-  const Lanes v_step = spread(cluster.v_step * edge);
-  for (std::uint32_t n = 0; n < cluster.vertex_count; n += kWidth, block += kVertexRows * kWidth) {
-    const Lanes u = toFloat(widen(load<EightShorts>(block + 3 * kWidth)));
-    const Lanes v = toFloat(widen(load<EightShorts>(block + std::size_t{4} * kWidth)));
-    storePairs(state.uv + std::size_t{2} * n, u_start + u_step * u, v_start + v_step * v);
-  }
+/// Texture coordinates of eight vertices from `first` on, in texels of the largest level.
+template <class State>
+inline void readEight(const std::uint16_t* block, std::uint32_t first, State& state) {
+  const RenderCluster& cluster = *state.facts.cluster;
+  const auto edge = static_cast<float>(1U << (state.facts.surface.kind & 0xFFU));
+  const Lanes u = toFloat(widen(load<EightShorts>(block + 3 * kWidth)));
+  const Lanes v = toFloat(widen(load<EightShorts>(block + std::size_t{4} * kWidth)));
+  storePairs(state.uv + std::size_t{2} * first,
+             spread(cluster.u_minimum * edge) + spread(cluster.u_step * edge) * u,
+             spread(cluster.v_minimum * edge) + spread(cluster.v_step * edge) * v);
 }
 
 }  // namespace

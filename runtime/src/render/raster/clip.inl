@@ -75,13 +75,13 @@ inline void cutPolygon(const Polygon& from, int plane, float near, Polygon& to) 
   }
 }
 
-inline ClipVertex clipVertex(const ClusterState& state, std::uint32_t number) {
-  const RenderCluster& cluster = *state.cluster;
+/// Vertex `number` of the state, whose texture coordinates are there where there is a texture.
+template <class State>
+inline ClipVertex clipVertex(const State& state, std::uint32_t number) {
+  const RenderCluster& cluster = *state.facts.cluster;
   const VertexFrame& frame = *state.frame;
-  const std::uint16_t* block =
-      state.pack->vertices +
-      static_cast<std::size_t>(cluster.first_vertex + number / kWidth * kWidth) * kVertexRows +
-      number % kWidth;
+  const std::uint32_t lane = state.vertex(number) % kWidth;
+  const std::uint16_t* block = vertexBlock(state.facts, state.vertex(number)) + lane;
   const auto on_lattice = [](std::uint16_t q, std::int32_t origin) {
     return static_cast<float>(static_cast<std::int32_t>(q) + origin);
   };
@@ -92,17 +92,27 @@ inline ClipVertex clipVertex(const ClusterState& state, std::uint32_t number) {
     return ((row[0] * x + row[1] * y) + row[2] * z) + row[3];
   };
   ClipVertex vertex{at(frame.w), at(frame.x), at(frame.y), 0, 0, {}};
-  if ((state.surface.kind & 0xFFU) != kFlatSurface) {
+  if (state.facts.isTextured()) {
     vertex.u = state.uv[2 * number];
     vertex.v = state.uv[2 * number + 1];
   }
-  if (state.color_kind != 0) {
-    const std::uint32_t color = state.pack->colors[cluster.first_vertex + number];
+  if (state.facts.color_kind != 0) {
+    const auto color = static_cast<std::uint32_t>(state.colors[number]);
     for (int n = 0; n < 4; ++n) {
       vertex.color[n] = static_cast<float>((color >> (8 * n)) & 0xFFU);
     }
   }
   return vertex;
+}
+
+/// A vertex that needs no clipping.
+template <class State>
+inline Corner cornerOf(const State& state, std::uint32_t number) {
+  const ClipVertex vertex = clipVertex(state, number);
+  Corner corner{
+      state.xy[2 * number], state.xy[2 * number + 1], state.z[number], vertex.u, vertex.v, {}};
+  __builtin_memcpy(corner.color, vertex.color, sizeof(corner.color));
+  return corner;
 }
 
 /// 1/256 pixel in the pane; false when the number is none.
@@ -128,30 +138,28 @@ inline bool toCorner(const VertexFrame& frame, const ClipVertex& vertex, Corner&
   return true;
 }
 
-/// Draws what is left of a triangle, given by the numbers of its vertices.
-void drawClipped(Pane& pane, ClusterState& state, std::int32_t packed_corners) {
+/// The corners of what is left of a triangle of three vertices of the state: 3 or more, a fan
+/// around the first, or 0.
+template <class State>
+inline int clipTriangle(const State& state, std::uint32_t a, std::uint32_t b, std::uint32_t c,
+                        Corner* ready) {
   const VertexFrame& frame = *state.frame;
-  if ((state.surface.kind & 0xFFU) != kFlatSurface) readCoordinates(state);
   Polygon polygons[2];
-  const auto corners = static_cast<std::uint32_t>(packed_corners);
-  for (std::uint32_t n = 0; n < 3; ++n) {
-    polygons[0].corners[n] = clipVertex(state, (corners >> (8 * n)) & 0xFFU);
-  }
+  polygons[0].corners[0] = clipVertex(state, a);
+  polygons[0].corners[1] = clipVertex(state, b);
+  polygons[0].corners[2] = clipVertex(state, c);
   polygons[0].count = 3;
   int current = 0;
   for (int plane = 0; plane < kClipPlanes; ++plane) {
     cutPolygon(polygons[current], plane, frame.near, polygons[1 - current]);
     current = 1 - current;
-    if (polygons[current].count < 3) return;
+    if (polygons[current].count < 3) return 0;
   }
   const Polygon& rest = polygons[current];
-  Corner ready[kMostCorners];
   for (int n = 0; n < rest.count; ++n) {
-    if (!toCorner(frame, rest.corners[n], ready[n])) return;
+    if (!toCorner(frame, rest.corners[n], ready[n])) return 0;
   }
-  for (int n = 1; n + 1 < rest.count; ++n) {
-    drawLarge(pane, state, ready[0], ready[n], ready[n + 1]);
-  }
+  return rest.count;
 }
 
 }  // namespace

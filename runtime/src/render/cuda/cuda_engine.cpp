@@ -1,0 +1,421 @@
+#include "render/cuda/cuda_engine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include "render/cuda/kernel_image.h"
+#include "support/try.h"
+
+namespace galactic::render::cuda {
+namespace {
+
+static_assert(sizeof(DeviceInstance) == sizeof(RenderInstance) &&
+                  offsetof(DeviceInstance, world_from_model) ==
+                      offsetof(RenderInstance, world_from_model),
+              "instances are copied as they are");
+
+/// Blocks for each multiprocessor, of kernels whose blocks take work until none is left.
+constexpr std::uint32_t kBlocksPerMultiprocessor = 16;
+/// Pixels that a thread of the last kernel writes.
+constexpr std::uint32_t kPixelsPerThread = 4;
+/// What a pixel can tell apart.
+constexpr std::size_t kMostClusters = std::size_t{1} << kRankBits;
+/// Of arrays that are copied together.
+constexpr std::size_t kAlignment = 256;
+
+constexpr std::size_t aligned(std::size_t bytes) {
+  return (bytes + kAlignment - 1) / kAlignment * kAlignment;
+}
+
+template <class T>
+T* at(DeviceAddress address) {
+  return std::bit_cast<T*>(address);
+}
+
+template <class T>
+T* at(const Memory& memory, std::size_t offset = 0) {
+  return at<T>(memory.address() + offset);
+}
+
+[[noreturn]] void giveUp(const Error& error) {
+  std::fprintf(stderr, "%s: %s\n", error.where.c_str(), error.message.c_str());
+  std::abort();
+}
+
+}  // namespace
+
+Result<Kernels> Kernels::load(const Driver& driver) {
+  const char* image = kernelImage();
+  if (image == nullptr) {
+    return fail(ErrorCode::kUnsupported, "render backend cuda",
+                "this program was built without clang, which compiles the cuda backend's kernels; "
+                "install clang-14 and build it again, or use another backend");
+  }
+  constexpr std::size_t kLogBytes = 4096;
+  // As cuda.h numbers options of the compiler in the driver.
+  constexpr int kErrorLog = 5;
+  constexpr int kErrorLogBytes = 6;
+  std::string log(kLogBytes, '\0');
+  std::array<int, 2> options{kErrorLog, kErrorLogBytes};
+  std::array<void*, 2> values{log.data(), std::bit_cast<void*>(kLogBytes)};
+  Kernels kernels(driver);
+  const DriverFunctions& functions = driver.functions();
+  const int error =
+      functions.load_module(&kernels.module_, image, options.size(), options.data(), values.data());
+  if (error != 0) {
+    return tl::unexpected<Error>(
+        driver.failure(error, fmt::format("compile the kernels: {}", log.c_str())));
+  }
+  for (std::size_t n = 0; n < kKernels; ++n) {
+    RETURN_IF_ERROR(
+        driver.check(functions.function(&kernels.functions_[n], kernels.module_, kKernelNames[n]),
+                     "find a kernel"));
+  }
+  return kernels;
+}
+
+Kernels::Kernels(Kernels&& other) noexcept
+    : driver_(other.driver_),
+      module_(std::exchange(other.module_, nullptr)),
+      functions_(other.functions_) {}
+
+Kernels::~Kernels() {
+  if (module_ != nullptr) driver_->functions().unload_module(module_);
+}
+
+Result<void> Kernels::launch(Kernel kernel, std::uint32_t blocks,
+                             const PassParameters& parameters) const {
+  PassParameters copy = parameters;
+  std::array<void*, 1> pointers{&copy};
+  return driver_->check(
+      driver_->functions().launch(functions_[static_cast<std::size_t>(kernel)], blocks, 1, 1,
+                                  kBlockThreads, 1, 1, 0, nullptr, pointers.data(), nullptr),
+      "launch a kernel");
+}
+
+CudaEngine::RoundMemory::RoundMemory(const Driver& driver)
+    : seen(driver, Memory::Kind::kDevice),
+      order(driver, Memory::Kind::kDevice),
+      by_bucket(driver, Memory::Kind::kDevice),
+      near_items(driver, Memory::Kind::kDevice),
+      far_items(driver, Memory::Kind::kDevice),
+      pixels(driver, Memory::Kind::kDevice),
+      tile_depth(driver, Memory::Kind::kDevice) {}
+
+CudaEngine::CudaEngine(const RenderOptions& options, std::unique_ptr<Driver> driver, Device device)
+    : options_(options),
+      driver_(std::move(driver)),
+      device_(std::move(device)),
+      staged_(*driver_, Memory::Kind::kHost),
+      uploaded_(*driver_, Memory::Kind::kDevice),
+      placed_(*driver_, Memory::Kind::kDevice),
+      counts_(*driver_, Memory::Kind::kDevice),
+      color_(*driver_, Memory::Kind::kDevice),
+      depth_(*driver_, Memory::Kind::kDevice),
+      semantics_(*driver_, Memory::Kind::kDevice),
+      round_memory_(std::make_unique<RoundMemory>(*driver_)) {
+  const std::uint32_t wide = paneEdge(options.width);
+  const std::uint32_t high = paneEdge(options.height);
+  for (std::uint32_t y = 0; y < options.height; y += high) {
+    for (std::uint32_t x = 0; x < options.width; x += wide) {
+      panes_.push_back(
+          {x, y, std::min(wide, options.width - x), std::min(high, options.height - y)});
+    }
+  }
+  pixels_of_pane_ = wide * high;
+  tiles_of_pane_ = pixels_of_pane_ / (kTileEdge * kTileEdge);
+}
+
+Result<std::unique_ptr<CudaEngine>> CudaEngine::make(const RenderLibrary& library,
+                                                     const RenderOptions& options,
+                                                     const CudaTuning& tuning) {
+  ASSIGN_OR_RETURN(std::unique_ptr<Driver> driver, Driver::open(tuning.library));
+  ASSIGN_OR_RETURN(Device device, Device::choose(*driver, options.device));
+  std::unique_ptr<CudaEngine> engine(new CudaEngine(options, std::move(driver), std::move(device)));
+  engine->tuning_ = tuning;
+  const CurrentDevice current(*engine->driver_, engine->device_);
+  ASSIGN_OR_RETURN(Kernels kernels, Kernels::load(*engine->driver_));
+  engine->kernels_ = std::make_unique<Kernels>(std::move(kernels));
+  ASSIGN_OR_RETURN(DeviceScene scene, DeviceScene::upload(library, *engine->driver_));
+  engine->scene_ = std::make_unique<DeviceScene>(std::move(scene));
+  return engine;
+}
+
+CudaEngine::~CudaEngine() {
+  const CurrentDevice current(*driver_, device_);
+  driver_->functions().synchronize(nullptr);
+  kernels_.reset();
+  scene_.reset();
+  round_memory_.reset();
+  for (Memory* memory : {&staged_, &uploaded_, &placed_, &counts_, &color_, &depth_, &semantics_}) {
+    memory->free();
+  }
+}
+
+std::string CudaEngine::description() const {
+  return fmt::format("cuda, {}, compute capability {}.{}", device_.name(), device_.major(),
+                     device_.minor());
+}
+
+std::size_t CudaEngine::bytesOf(std::size_t views, std::size_t clusters) const {
+  constexpr std::size_t kOfCluster =
+      sizeof(SeenCluster) + 2 * sizeof(std::uint32_t) + kPasses * sizeof(WorkItem);
+  const std::size_t of_pane =
+      pixels_of_pane_ * sizeof(std::uint64_t) + tiles_of_pane_ * sizeof(float);
+  return panes_.size() * (views * of_pane + clusters * kOfCluster);
+}
+
+Result<void> CudaEngine::cutRounds(std::span<const RenderView> views) {
+  rounds_.clear();
+  statistics_ = {};
+  ViewRange range{};
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    std::size_t clusters = 0;
+    for (const RenderInstance& instance : views[v].instances) {
+      clusters += scene_->clusterCounts()[instance.model];
+    }
+    if (clusters > kMostClusters) {
+      return fail(ErrorCode::kUnsupported, "render backend cuda",
+                  fmt::format("found a view of {} clusters, wanted at most {}; use the soft backend",
+                              clusters, kMostClusters));
+    }
+    statistics_.instances += views[v].instances.size();
+    statistics_.clusters += clusters;
+    const bool fits =
+        bytesOf(v + 1 - range.first, range.clusters + clusters) <= tuning_.round_bytes;
+    if (!fits && v > range.first) {
+      rounds_.push_back(range);
+      range = {v, v, 0};
+    }
+    range.clusters += clusters;
+    range.end = v + 1;
+  }
+  if (range.end > range.first) rounds_.push_back(range);
+  return {};
+}
+
+Result<void> CudaEngine::reserve(std::span<const RenderView> views) {
+  std::size_t most_clusters = 0;
+  std::size_t most_views = 0;
+  for (const ViewRange& range : rounds_) {
+    most_clusters = std::max(most_clusters, range.clusters);
+    most_views = std::max(most_views, range.end - range.first);
+  }
+  const std::size_t clusters = most_clusters * panes_.size();
+  const std::size_t panes = most_views * panes_.size();
+  RoundMemory& round = *round_memory_;
+  RETURN_IF_ERROR(round.seen.reserve(clusters * sizeof(SeenCluster)));
+  RETURN_IF_ERROR(round.order.reserve(clusters * sizeof(std::uint32_t)));
+  RETURN_IF_ERROR(round.by_bucket.reserve(clusters * sizeof(std::uint32_t)));
+  RETURN_IF_ERROR(round.near_items.reserve(clusters * sizeof(WorkItem)));
+  RETURN_IF_ERROR(round.far_items.reserve(clusters * sizeof(WorkItem)));
+  RETURN_IF_ERROR(round.pixels.reserve(panes * pixels_of_pane_ * sizeof(std::uint64_t)));
+  RETURN_IF_ERROR(round.tile_depth.reserve(panes * tiles_of_pane_ * sizeof(float)));
+  RETURN_IF_ERROR(counts_.reserve(rounds_.size() * sizeof(RoundCounts)));
+  const std::size_t pixels = views.size() * options_.width * options_.height;
+  RETURN_IF_ERROR(color_.reserve(pixels * static_cast<std::size_t>(options_.color)));
+  if (options_.depth) RETURN_IF_ERROR(depth_.reserve(pixels * sizeof(float)));
+  if (options_.semantics) RETURN_IF_ERROR(semantics_.reserve(pixels * sizeof(std::uint32_t)));
+  return {};
+}
+
+void CudaEngine::stageTasks(std::size_t view, std::uint32_t first_instance,
+                            std::uint32_t instance_count, PaneTask* tasks) const {
+  const std::size_t first_pixel = view * options_.width * options_.height;
+  PaneTask task;
+  task.models = at<PlacedModel>(placed_) + first_instance;
+  task.model_count = instance_count;
+  task.texel_bases = at<const std::uint32_t* const>(scene_->texelBases());
+  task.image_width = options_.width;
+  task.image_height = options_.height;
+  task.near = options_.near;
+  task.background = options_.background;
+  task.culling = options_.culling;
+  task.channels = static_cast<std::uint32_t>(options_.color);
+  if (task.channels != 0) task.color = at<std::uint8_t>(color_) + first_pixel * task.channels;
+  if (options_.depth) task.depth = at<float>(depth_) + first_pixel;
+  if (options_.semantics) task.semantics = at<std::uint32_t>(semantics_) + first_pixel;
+  for (const auto& [left, top, width, height] : panes_) {
+    task.left = left;
+    task.top = top;
+    task.width = width;
+    task.height = height;
+    *tasks++ = task;
+  }
+}
+
+void CudaEngine::stage(std::span<const RenderView> views, const Upload& at_bytes) {
+  std::byte* bytes = staged_.bytes();
+  auto* device_views = reinterpret_cast<DeviceView*>(bytes + at_bytes.views);
+  auto* instances = reinterpret_cast<DeviceInstance*>(bytes + at_bytes.instances);
+  auto* tasks = reinterpret_cast<PaneTask*>(bytes + at_bytes.tasks);
+  auto* first_clusters = reinterpret_cast<std::uint32_t*>(bytes + at_bytes.first_clusters);
+  std::uint32_t next = 0;
+  for (const ViewRange& range : rounds_) {
+    std::uint32_t first_cluster = 0;
+    for (std::size_t v = range.first; v < range.end; ++v) {
+      const RenderView& view = views[v];
+      const auto count =
+          canSee(view.camera) ? static_cast<std::uint32_t>(view.instances.size()) : 0U;
+      device_views[v] = {inverse(view.camera.world_from_camera), focalLength(options_, view.camera),
+                         next, count};
+      if (count != 0) {
+        std::memcpy(static_cast<void*>(instances + next), view.instances.data(), count * sizeof(DeviceInstance));
+      }
+      stageTasks(v, next, count, tasks + v * panes_.size());
+      std::uint32_t clusters = 0;
+      for (std::uint32_t n = 0; n < count; ++n) {
+        clusters += scene_->clusterCounts()[view.instances[n].model];
+      }
+      for (std::size_t pane = 0; pane < panes_.size(); ++pane) {
+        first_clusters[v * panes_.size() + pane] = first_cluster;
+        first_cluster += clusters;
+      }
+      next += count;
+    }
+  }
+}
+
+Result<void> CudaEngine::draw(std::span<const RenderView> views) {
+  const DriverFunctions& functions = driver_->functions();
+  RETURN_IF_ERROR(cutRounds(views));
+  if (views.empty()) return {};
+  RETURN_IF_ERROR(reserve(views));
+  const std::size_t panes = views.size() * panes_.size();
+  Upload at_bytes{};
+  at_bytes.instances = aligned(views.size() * sizeof(DeviceView));
+  at_bytes.tasks = aligned(at_bytes.instances + statistics_.instances * sizeof(DeviceInstance));
+  at_bytes.first_clusters = aligned(at_bytes.tasks + panes * sizeof(PaneTask));
+  at_bytes.bytes = at_bytes.first_clusters + panes * sizeof(std::uint32_t);
+  RETURN_IF_ERROR(staged_.reserve(at_bytes.bytes));
+  RETURN_IF_ERROR(uploaded_.reserve(at_bytes.bytes));
+  RETURN_IF_ERROR(placed_.reserve(statistics_.instances * sizeof(PlacedModel)));
+  stage(views, at_bytes);
+  RETURN_IF_ERROR(driver_->check(
+      functions.copy_to_device(uploaded_.address(), staged_.bytes(), at_bytes.bytes, nullptr),
+      "copy poses"));
+  RETURN_IF_ERROR(driver_->check(
+      functions.set_words(counts_.address(), 0,
+                          rounds_.size() * sizeof(RoundCounts) / sizeof(std::uint32_t), nullptr),
+      "clear counts"));
+  for (std::size_t n = 0; n < rounds_.size(); ++n) {
+    RETURN_IF_ERROR(drawRound(rounds_[n], n, at_bytes));
+  }
+  return {};
+}
+
+Round CudaEngine::roundOf(const ViewRange& range, std::size_t number,
+                          const Upload& at_bytes) const {
+  const RoundMemory& memory = *round_memory_;
+  const std::size_t first_pane = range.first * panes_.size();
+  Round round{};
+  round.models = at<ModelTables>(scene_->models());
+  round.views = at<DeviceView>(uploaded_, at_bytes.views) + range.first;
+  round.instances = at<DeviceInstance>(uploaded_, at_bytes.instances);
+  round.placed = at<PlacedModel>(placed_);
+  round.tasks = at<PaneTask>(uploaded_, at_bytes.tasks) + first_pane;
+  round.first_cluster = at<std::uint32_t>(uploaded_, at_bytes.first_clusters) + first_pane;
+  round.seen = at<SeenCluster>(memory.seen);
+  round.order = at<std::uint32_t>(memory.order);
+  round.by_bucket = at<std::uint32_t>(memory.by_bucket);
+  round.items[0] = at<WorkItem>(memory.near_items);
+  round.items[1] = at<WorkItem>(memory.far_items);
+  round.pixels = at<std::uint64_t>(memory.pixels);
+  round.tile_depth = at<float>(memory.tile_depth);
+  round.counts = at<RoundCounts>(counts_) + number;
+  round.view_count = static_cast<std::uint32_t>(range.end - range.first);
+  round.panes_of_view = static_cast<std::uint32_t>(panes_.size());
+  round.pixels_of_pane = pixels_of_pane_;
+  round.tiles_of_pane = tiles_of_pane_;
+  return round;
+}
+
+Result<void> CudaEngine::drawRound(const ViewRange& range, std::size_t number,
+                                   const Upload& at_bytes) {
+  PassParameters parameters{roundOf(range, number, at_bytes), 0};
+  const std::uint32_t panes = parameters.round.view_count * parameters.round.panes_of_view;
+  const std::uint32_t workers =
+      static_cast<std::uint32_t>(device_.multiprocessors()) * kBlocksPerMultiprocessor;
+  const std::size_t words = std::size_t{panes} * pixels_of_pane_ * 2;
+  RETURN_IF_ERROR(driver_->check(
+      driver_->functions().set_words(round_memory_->pixels.address(), 0, words, nullptr),
+      "clear pixels"));
+  RETURN_IF_ERROR(kernels_->launch(Kernel::kPlace, parameters.round.view_count, parameters));
+  RETURN_IF_ERROR(kernels_->launch(Kernel::kCull, panes, parameters));
+  RETURN_IF_ERROR(kernels_->launch(Kernel::kDraw, workers, parameters));
+  RETURN_IF_ERROR(kernels_->launch(Kernel::kTiles, panes, parameters));
+  parameters.pass = 1;
+  RETURN_IF_ERROR(kernels_->launch(Kernel::kDraw, workers, parameters));
+  constexpr std::uint32_t kPixelsOfBlock = kBlockThreads * kPixelsPerThread;
+  const std::uint32_t blocks_of_pane = (pixels_of_pane_ + kPixelsOfBlock - 1) / kPixelsOfBlock;
+  return kernels_->launch(Kernel::kResolve, panes * blocks_of_pane, parameters);
+}
+
+Result<void> CudaEngine::readCounts() {
+  read_counts_.resize(rounds_.size());
+  const DriverFunctions& functions = driver_->functions();
+  if (!rounds_.empty()) {
+    RETURN_IF_ERROR(
+        driver_->check(functions.copy_to_host(read_counts_.data(), counts_.address(),
+                                              rounds_.size() * sizeof(RoundCounts), nullptr),
+                       "read counts"));
+  }
+  RETURN_IF_ERROR(driver_->check(functions.synchronize(nullptr), "draw"));
+  for (const RoundCounts& counts : read_counts_) {
+    statistics_.clusters_drawn += counts.clusters_drawn;
+    statistics_.triangles_drawn += counts.triangles_drawn;
+  }
+  return {};
+}
+
+Result<void> CudaEngine::readImages() {
+  const auto read = [this](auto target, const Memory& memory) {
+    if (target.empty()) return 0;
+    return driver_->functions().copy_to_host(target.data(), memory.address(), target.size_bytes(),
+                                             nullptr);
+  };
+  RETURN_IF_ERROR(driver_->check(read(targets_.color, color_), "read colors"));
+  RETURN_IF_ERROR(driver_->check(read(targets_.depth, depth_), "read depth"));
+  return driver_->check(read(targets_.semantics, semantics_), "read semantic ids");
+}
+
+void CudaEngine::begin(std::span<const RenderView> views, const RenderTargets& targets) {
+  targets_ = targets;
+  const CurrentDevice current(*driver_, device_);
+  if (const Result<void> drawn = draw(views); !drawn) giveUp(drawn.error());
+}
+
+void CudaEngine::end() {
+  const CurrentDevice current(*driver_, device_);
+  if (const Result<void> read = readImages(); !read) giveUp(read.error());
+  if (const Result<void> read = readCounts(); !read) giveUp(read.error());
+}
+
+Result<DeviceImages> CudaEngine::renderToDevice(std::span<const RenderView> views) {
+  const CurrentDevice current(*driver_, device_);
+  RETURN_IF_ERROR(draw(views));
+  RETURN_IF_ERROR(readCounts());
+  DeviceImages images;
+  if (options_.color != ColorFormat::kNone) images.color = color_.address();
+  if (options_.depth) images.depth = depth_.address();
+  if (options_.semantics) images.semantics = semantics_.address();
+  return images;
+}
+
+}  // namespace galactic::render::cuda
+
+namespace galactic::render {
+
+Result<std::unique_ptr<RenderEngine>> makeCudaEngine(const RenderLibrary& library,
+                                                     const RenderOptions& options) {
+  ASSIGN_OR_RETURN(auto engine, cuda::CudaEngine::make(library, options, {}));
+  return std::unique_ptr<RenderEngine>(std::move(engine));
+}
+
+}  // namespace galactic::render

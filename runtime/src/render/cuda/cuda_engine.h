@@ -1,0 +1,121 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/cuda/device_scene.h"
+#include "render/cuda/driver.h"
+#include "render/cuda/kernels/round.h"
+#include "render/render_engine.h"
+
+namespace galactic::render::cuda {
+
+/// What tests choose.
+struct CudaTuning {
+  /// The library that has the driver.
+  std::string library = "libcuda.so.1";
+  /// Views are drawn together while their lists and pixels need no more memory than this; a view
+  /// that needs more is drawn by itself.
+  std::size_t round_bytes = std::size_t{1} << 30U;
+};
+
+/// The compiled kernels on a device, whose context must be current for all calls.
+class Kernels {
+ public:
+  [[nodiscard]] static Result<Kernels> load(const Driver& driver);
+  Kernels(Kernels&& other) noexcept;
+  Kernels& operator=(Kernels&&) = delete;
+  ~Kernels();
+
+  [[nodiscard]] Result<void> launch(Kernel kernel, std::uint32_t blocks,
+                                    const PassParameters& parameters) const;
+
+ private:
+  explicit Kernels(const Driver& driver) : driver_(&driver) {}
+
+  const Driver* driver_;
+  void* module_ = nullptr;
+  std::array<void*, kKernels> functions_{};
+};
+
+/// Draws on a CUDA device: kernels that give the images of the `soft` renderer, bit for bit.
+class CudaEngine final : public RenderEngine {
+ public:
+  /// As makeCudaEngine(), with what tests choose.
+  [[nodiscard]] static Result<std::unique_ptr<CudaEngine>> make(const RenderLibrary& library,
+                                                                const RenderOptions& options,
+                                                                const CudaTuning& tuning);
+  ~CudaEngine() override;
+  CudaEngine(const CudaEngine&) = delete;
+  CudaEngine& operator=(const CudaEngine&) = delete;
+
+  /// Where the driver fails, a message goes to stderr and the program ends: what follows would be
+  /// wrong images.
+  void begin(std::span<const RenderView> views, const RenderTargets& targets) override;
+  void end() override;
+  [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views) override;
+  [[nodiscard]] RenderBackend backend() const override { return RenderBackend::kCuda; }
+  [[nodiscard]] std::string description() const override;
+  [[nodiscard]] RenderStatistics statistics() const override { return statistics_; }
+  [[nodiscard]] const Device& device() const { return device_; }
+  /// How many times the last batch was cut.
+  [[nodiscard]] std::size_t roundCount() const { return rounds_.size(); }
+
+ private:
+  /// Views [first, end) of the batch, and what their lists have room for.
+  struct ViewRange {
+    std::size_t first, end;
+    std::size_t clusters;
+  };
+  /// Where arrays lie in `staged_` and in its copy on the device.
+  struct Upload {
+    std::size_t views, instances, tasks, first_clusters, bytes;
+  };
+  /// Room for one round on the device.
+  struct RoundMemory {
+    explicit RoundMemory(const Driver& driver);
+    Memory seen, order, by_bucket, near_items, far_items, pixels, tile_depth;
+  };
+
+  CudaEngine(const RenderOptions& options, std::unique_ptr<Driver> driver, Device device);
+
+  Result<void> draw(std::span<const RenderView> views);
+  /// Cuts the batch into rounds.
+  Result<void> cutRounds(std::span<const RenderView> views);
+  [[nodiscard]] std::size_t bytesOf(std::size_t views, std::size_t clusters) const;
+  Result<void> reserve(std::span<const RenderView> views);
+  /// Writes poses and what follows from the options where they are copied from.
+  void stage(std::span<const RenderView> views, const Upload& at);
+  void stageTasks(std::size_t view, std::uint32_t first_instance, std::uint32_t instance_count,
+                  PaneTask* tasks) const;
+  Result<void> drawRound(const ViewRange& range, std::size_t number, const Upload& at);
+  [[nodiscard]] Round roundOf(const ViewRange& range, std::size_t number, const Upload& at) const;
+  Result<void> readCounts();
+  Result<void> readImages();
+
+  RenderOptions options_;
+  CudaTuning tuning_;
+  std::unique_ptr<Driver> driver_;
+  Device device_;
+  std::unique_ptr<Kernels> kernels_;
+  std::unique_ptr<DeviceScene> scene_;
+
+  /// Panes of an image: left, top, width, height.
+  std::vector<std::array<std::uint32_t, 4>> panes_;
+  std::uint32_t pixels_of_pane_ = 0;
+  std::uint32_t tiles_of_pane_ = 0;
+
+  Memory staged_, uploaded_, placed_, counts_;
+  Memory color_, depth_, semantics_;
+  std::unique_ptr<RoundMemory> round_memory_;
+  std::vector<ViewRange> rounds_;
+  std::vector<RoundCounts> read_counts_;
+  RenderTargets targets_;
+  RenderStatistics statistics_;
+};
+
+}  // namespace galactic::render::cuda

@@ -1,0 +1,189 @@
+// Instances in front of their cameras; the clusters of each pane that may be seen, nearest first.
+namespace galactic::render::cuda {
+namespace {
+
+/// Places the instances of the view that the block stands for.
+inline void placeInstances(const Block& block, const Round& round) {
+  const DeviceView& view = round.views[block.index];
+  block.each([&](std::uint32_t thread) {
+    for (std::uint32_t n = thread; n < view.instance_count; n += block.threads) {
+      const DeviceInstance& instance = round.instances[view.first_instance + n];
+      PlacedModel& placed = round.placed[view.first_instance + n];
+      const ModelTables& model = round.models[instance.model];
+      placed.model = nullptr;
+      if (model.cluster_count != 0 &&
+          placeModel(view.camera_from_world, view.focal, instance.world_from_model, placed)) {
+        placed.model = &model;
+      }
+    }
+  });
+}
+
+/// Models that are looked at together.
+constexpr std::uint32_t kModelsAtOnce = 32;
+
+struct CullShared {
+  CullFrame frames[kModelsAtOnce];
+  /// Clusters of the models that may show, and of those before them.
+  std::uint32_t clusters[kModelsAtOnce];
+  std::uint32_t starts[kModelsAtOnce + 1];
+  std::uint32_t in_bucket[kBuckets];
+  std::uint32_t bucket_starts[kBuckets + 1];
+  std::uint32_t placed[kBuckets];
+  std::uint32_t seen;
+  std::uint32_t first_item[kPasses];
+};
+
+/// Where a pane's lists are.
+struct PaneLists {
+  const PaneTask* task;
+  SeenCluster* seen;
+  std::uint32_t* order;
+  std::uint32_t* by_bucket;
+};
+
+inline PaneLists paneLists(const Round& round, std::uint32_t pane) {
+  const std::size_t first = round.first_cluster[pane];
+  return {round.tasks + pane, round.seen + first, round.order + first, round.by_bucket + first};
+}
+
+/// Prepares the models from `first` on: what culling needs of them, and how many clusters they
+/// have.
+inline void frameModels(const Block& block, const PaneTask& task, std::uint32_t first,
+                        CullShared& shared) {
+  block.each([&](std::uint32_t thread) {
+    for (std::uint32_t n = thread; n < kModelsAtOnce; n += block.threads) {
+      shared.clusters[n] = 0;
+      if (first + n >= task.model_count) continue;
+      const PlacedModel& placed = task.models[first + n];
+      if (placed.model == nullptr) continue;
+      shared.frames[n] = makeFrame(task, placed);
+      if (task.culling && !mayShow(shared.frames[n], *placed.model)) continue;
+      shared.clusters[n] = placed.model->cluster_count;
+    }
+  });
+  block.each([&](std::uint32_t thread) {
+    for (std::uint32_t n = thread; n <= kModelsAtOnce; n += block.threads) {
+      std::uint32_t before = 0;
+      for (std::uint32_t m = 0; m < n; ++m) before += shared.clusters[m];
+      shared.starts[n] = before;
+    }
+  });
+}
+
+/// The last of the models that start at or before `at`: the one that has this cluster.
+inline std::uint32_t modelAt(const std::uint32_t* starts, std::uint32_t at) {
+  std::uint32_t low = 0;
+  std::uint32_t high = kModelsAtOnce;
+  while (high - low > 1) {
+    const std::uint32_t middle = (low + high) / 2;
+    (starts[middle] <= at ? low : high) = middle;
+  }
+  return low;
+}
+
+inline void noteCluster(const EightSeen& one, const PaneTask& task, SeenCluster entry,
+                        const PaneLists& lists, CullShared& shared) {
+  constexpr auto kEdge = static_cast<std::int32_t>(kTileEdge);
+  entry.nearest = one.nearest[0];
+  entry.bucket = static_cast<std::uint32_t>(bucketsOf(one.distance, task.near)[0]);
+  entry.tiles[0] = static_cast<std::uint8_t>(one.x.first[0] / kEdge);
+  entry.tiles[1] = static_cast<std::uint8_t>(one.x.last[0] / kEdge);
+  entry.tiles[2] = static_cast<std::uint8_t>(one.y.first[0] / kEdge);
+  entry.tiles[3] = static_cast<std::uint8_t>(one.y.last[0] / kEdge);
+  addAtomically(shared.in_bucket + entry.bucket, 1U);
+  lists.seen[addAtomically(&shared.seen, 1U)] = entry;
+}
+
+/// Notes which clusters of the prepared models may be seen, in no order.
+inline void lookAtClusters(const Block& block, const PaneLists& lists, std::uint32_t first,
+                           CullShared& shared) {
+  const PaneTask& task = *lists.task;
+  block.each([&](std::uint32_t thread) {
+    const std::uint32_t count = shared.starts[kModelsAtOnce];
+    for (std::uint32_t at = thread; at < count; at += block.threads) {
+      const std::uint32_t n = modelAt(shared.starts, at);
+      const std::uint32_t cluster = at - shared.starts[n];
+      const ModelTables& model = *task.models[first + n].model;
+      const float* bounds =
+          model.pack->cluster_bounds +
+          (static_cast<std::size_t>(model.first_block) + cluster / kWidth) * kBoundsRows * kWidth +
+          cluster % kWidth;
+      const EightSeen one = lookAtEight(task, shared.frames[n], bounds);
+      if (one.seen == 0) continue;
+      SeenCluster entry;
+      entry.model = first + n;
+      entry.cluster = cluster;
+      noteCluster(one, task, entry, lists, shared);
+    }
+  });
+}
+
+inline bool comesBefore(const SeenCluster& a, const SeenCluster& b) {
+  return a.model != b.model ? a.model < b.model : a.cluster < b.cluster;
+}
+
+/// The order in which the `soft` renderer draws: by bucket, then by model and cluster.
+inline void sortSeen(const Block& block, const PaneLists& lists, CullShared& shared) {
+  block.each([&](std::uint32_t thread) {
+    for (std::uint32_t b = thread; b <= kBuckets; b += block.threads) {
+      std::uint32_t before = 0;
+      for (std::uint32_t n = 0; n < b; ++n) before += shared.in_bucket[n];
+      shared.bucket_starts[b] = before;
+      if (b < kBuckets) shared.placed[b] = before;
+    }
+  });
+  block.each([&](std::uint32_t thread) {
+    for (std::uint32_t n = thread; n < shared.seen; n += block.threads) {
+      lists.by_bucket[addAtomically(shared.placed + lists.seen[n].bucket, 1U)] = n;
+    }
+  });
+  block.each([&](std::uint32_t thread) {
+    for (std::uint32_t n = thread; n < shared.seen; n += block.threads) {
+      const SeenCluster own = lists.seen[n];
+      std::uint32_t rank = shared.bucket_starts[own.bucket];
+      for (std::uint32_t m = rank; m < shared.bucket_starts[own.bucket + 1]; ++m) {
+        if (comesBefore(lists.seen[lists.by_bucket[m]], own)) ++rank;
+      }
+      lists.order[rank] = n;
+    }
+  });
+}
+
+/// How many of a pane's clusters are drawn in the first pass: what is near hides much of the rest.
+inline std::uint32_t inFirstPass(std::uint32_t seen) { return (seen + 3) / 4; }
+
+/// Adds the pane's clusters to those of all panes.
+inline void addItems(const Block& block, const Round& round, CullShared& shared) {
+  block.each([&](std::uint32_t thread) {
+    if (thread != 0) return;
+    const std::uint32_t near = inFirstPass(shared.seen);
+    shared.first_item[0] = addAtomically(round.counts->items, near);
+    shared.first_item[1] = addAtomically(round.counts->items + 1, shared.seen - near);
+  });
+  block.each([&](std::uint32_t thread) {
+    const std::uint32_t near = inFirstPass(shared.seen);
+    for (std::uint32_t n = thread; n < shared.seen; n += block.threads) {
+      const std::uint32_t pass = n < near ? 0 : 1;
+      round.items[pass][shared.first_item[pass] + n - pass * near] = {block.index, n};
+    }
+  });
+}
+
+/// Lists what may be seen on the pane that the block stands for.
+inline void cullPane(const Block& block, CullShared& shared, const Round& round) {
+  const PaneLists lists = paneLists(round, block.index);
+  block.each([&](std::uint32_t thread) {
+    for (std::uint32_t b = thread; b < kBuckets; b += block.threads) shared.in_bucket[b] = 0;
+    if (thread == 0) shared.seen = 0;
+  });
+  for (std::uint32_t first = 0; first < lists.task->model_count; first += kModelsAtOnce) {
+    frameModels(block, *lists.task, first, shared);
+    lookAtClusters(block, lists, first, shared);
+  }
+  sortSeen(block, lists, shared);
+  addItems(block, round, shared);
+}
+
+}  // namespace
+}  // namespace galactic::render::cuda

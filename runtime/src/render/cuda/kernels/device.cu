@@ -1,0 +1,48 @@
+// The kernels for a device: clang makes PTX of this file, without a CUDA toolkit.
+#include "galactic/render_meshes.h"
+// What follows is for both sides, without a word at each function.
+#pragma clang force_cuda_host_device begin
+#include "render/cuda/kernels/kernels.inl"
+#pragma clang force_cuda_host_device end
+
+#define GALACTIC_KERNEL              \
+  extern "C" __attribute__((global)) \
+  __attribute__((launch_bounds(galactic::render::cuda::kBlockThreads)))
+// Constructors do not run in shared memory.
+#define GALACTIC_SHARED(Type, name)                                        \
+  __attribute__((shared)) static unsigned char name##_memory[sizeof(Type)] \
+      __attribute__((aligned(64)));                                        \
+  auto& name = *reinterpret_cast<Type*>(name##_memory)
+
+namespace galactic::render::cuda {
+
+__attribute__((device)) inline Block thisBlock() {
+  return {static_cast<std::uint32_t>(__nvvm_read_ptx_sreg_ctaid_x()),
+          static_cast<std::uint32_t>(__nvvm_read_ptx_sreg_nctaid_x())};
+}
+
+GALACTIC_KERNEL void galactic_place(PassParameters parameters) {
+  placeInstances(thisBlock(), parameters.round);
+}
+
+GALACTIC_KERNEL void galactic_cull(PassParameters parameters) {
+  GALACTIC_SHARED(CullShared, shared);
+  cullPane(thisBlock(), shared, parameters.round);
+}
+
+GALACTIC_KERNEL void galactic_draw(PassParameters parameters) {
+  GALACTIC_SHARED(DrawShared, shared);
+  drawClusters(thisBlock(), shared, parameters.round, parameters.pass);
+}
+
+GALACTIC_KERNEL void galactic_tiles(PassParameters parameters) {
+  measureTiles(thisBlock(), parameters.round);
+}
+
+GALACTIC_KERNEL void galactic_resolve(PassParameters parameters) {
+  const Block block = thisBlock();
+  resolvePane(block, parameters.round,
+              block.count / (parameters.round.view_count * parameters.round.panes_of_view));
+}
+
+}  // namespace galactic::render::cuda

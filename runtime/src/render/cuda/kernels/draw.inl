@@ -1,0 +1,356 @@
+// Clusters onto the pixels of their panes: a block draws one cluster after the other.
+namespace galactic::render::cuda {
+namespace {
+
+/// What a pixel shows: 1/w in the upper half, so that nearer is more; below it the complement of
+/// the cluster's rank and the piece, so that of equally near ones the first in the order of drawing
+/// is more. 0 where nothing is.
+inline std::uint64_t seenAt(float z, std::uint32_t rank, std::uint32_t piece) {
+  const std::uint32_t order = rank << kPieceBits | piece;
+  return static_cast<std::uint64_t>(as<std::uint32_t>(z)) << 32U | ~order;
+}
+inline float depthOfSeen(std::uint64_t seen) {
+  return as<float>(static_cast<std::uint32_t>(seen >> 32U));
+}
+
+/// Pieces of a cluster are numbered in the order in which the `soft` renderer draws them.
+constexpr std::uint32_t kFirstLarge = kMostInCluster;
+constexpr std::uint32_t kFirstCut = 2 * kMostInCluster;
+/// Triangles of the largest fan.
+constexpr std::uint32_t kMostInFan = kMostCorners - 2;
+
+struct DrawShared {
+  ClusterState state;
+  VertexFrame frame;
+  /// Of all clusters that the block drew.
+  std::uint64_t clusters_drawn, triangles_drawn;
+  std::uint32_t shown;
+  std::uint32_t small_count, large_count, cut_count;
+  std::uint8_t small[kMostInCluster];
+  std::uint8_t large[kMostInCluster];
+  std::uint8_t cut[kMostInCluster];
+  GroupSetup setups[kMostInCluster];
+};
+
+/// A pane, and the cluster that is drawn on it.
+struct DrawPlace {
+  const PaneTask* task;
+  const SeenCluster* seen;
+  std::uint64_t* pixels;
+  const float* tile_depth;
+  std::uint32_t tile_columns;
+  std::uint32_t rank;
+};
+
+inline DrawPlace drawPlace(const Round& round, const WorkItem& item) {
+  const PaneLists lists = paneLists(round, item.pane);
+  return {lists.task,
+          lists.seen + lists.order[item.rank],
+          round.pixels + static_cast<std::size_t>(item.pane) * round.pixels_of_pane,
+          round.tile_depth + static_cast<std::size_t>(item.pane) * round.tiles_of_pane,
+          (lists.task->width + kTileEdge - 1) / kTileEdge,
+          item.rank};
+}
+
+/// Eight threads share a triangle: each draws one pixel of every block.
+constexpr std::uint32_t kTeam = 8;
+
+inline PixelOffsets pixelOf(std::uint32_t lane) {
+  return {static_cast<std::int32_t>(lane % kBlockWidth),
+          static_cast<std::int32_t>(lane / kBlockWidth)};
+}
+
+struct AllPass {
+  bool operator()(std::uint32_t /*x*/, std::uint32_t /*y*/, Lanes /*z*/) const { return true; }
+};
+
+/// Passes pixels where the surface of the triangle with these records is there.
+struct SurfacePass {
+  const PaneTask* task;
+  std::int32_t least_alpha;
+  float record[kRecordStride];
+  float colors[kRecordStride];
+
+  bool operator()(std::uint32_t x, std::uint32_t y, Lanes z) const {
+    const PixelLanes pixels{Lanes(static_cast<float>(x)), Lanes(static_cast<float>(y)), z};
+    return alphaPasses(*task, OneRecord{record}, OneRecord{colors}, least_alpha, pixels).v != 0;
+  }
+};
+
+/// One pixel of every block: see coverTriangle().
+template <class Test>
+struct PixelTarget {
+  const DrawPlace* place;
+  const Test* test;
+  std::uint32_t lane, piece;
+  std::uint32_t column = 0;
+  std::uint32_t row = 0;
+  std::uint32_t first_column = 0;
+
+  void start(std::uint32_t at_column, std::uint32_t at_row) {
+    column = first_column = at_column;
+    row = at_row;
+  }
+  void right() { ++column; }
+  void nextRow() {
+    column = first_column;
+    ++row;
+  }
+  IntLanes cover(const EdgeLanes& edges, Lanes z) const {
+    if (signBits(edges.a | edges.b | edges.c) != 0) return 0;
+    const std::uint32_t x = column * kBlockWidth + lane % kBlockWidth;
+    const std::uint32_t y = row * kBlockHeight + lane / kBlockWidth;
+    if (x >= place->task->width || y >= place->task->height) return 0;
+    const std::size_t columns = place->tile_columns * (kTileEdge / kBlockWidth);
+    std::uint64_t* pixel = place->pixels + (row * columns + column) * kWidth + lane;
+    const std::uint64_t seen = seenAt(z[0], place->rank, piece);
+    if (__atomic_load_n(pixel, __ATOMIC_RELAXED) >= seen || !(*test)(x, y, z)) return 0;
+    raiseAtomically(pixel, seen);
+    return -1;
+  }
+};
+
+/// Whether the first pass left something to be seen where the cluster is.
+inline void lookBehind(const Block& block, const DrawPlace& place, DrawShared& shared) {
+  block.each([&](std::uint32_t thread) {
+    if (thread == 0) shared.shown = 0;
+  });
+  block.each([&](std::uint32_t thread) {
+    const SeenCluster& seen = *place.seen;
+    const std::uint32_t wide = seen.tiles[1] - seen.tiles[0] + 1U;
+    const std::uint32_t count = wide * (seen.tiles[3] - seen.tiles[2] + 1U);
+    for (std::uint32_t n = thread; n < count; n += block.threads) {
+      const std::uint32_t x = seen.tiles[0] + n % wide;
+      const std::uint32_t y = seen.tiles[2] + n / wide;
+      if (place.tile_depth[y * place.tile_columns + x] < seen.nearest) {
+        __atomic_store_n(&shared.shown, 1U, __ATOMIC_RELAXED);
+      }
+    }
+  });
+}
+
+inline void beginCluster(const Block& block, const DrawPlace& place, DrawShared& shared) {
+  block.each([&](std::uint32_t thread) {
+    if (thread != 0) return;
+    const PlacedModel& placed = place.task->models[place.seen->model];
+    shared.frame = vertexFrame(*place.task, placed);
+    ClusterState& state = shared.state;
+    state.facts = clusterFacts(*placed.model, place.seen->cluster);
+    state.frame = &shared.frame;
+    state.colors = clusterColors(state.facts);
+    shared.state.any_bad = false;
+    shared.small_count = shared.large_count = shared.cut_count = 0;
+  });
+  block.each([&](std::uint32_t thread) {
+    ClusterState& state = shared.state;
+    const ClusterFacts& facts = state.facts;
+    const bool reads = facts.surface.least_alpha != 0 && facts.isTextured();
+    for (std::uint32_t v = thread; v < facts.cluster->vertex_count; v += block.threads) {
+      const std::uint16_t* vertex = vertexBlock(facts, v) + v % kWidth;
+      if (placeEight(shared.frame, *facts.cluster, vertex, v, state) == 0) {
+        __atomic_store_n(&state.any_bad, true, __ATOMIC_RELAXED);
+      }
+      if (reads) readEight(vertex, v, state);
+    }
+  });
+}
+
+/// The corners of triangle `number` of a cluster.
+inline CornerLanes triangleCorners(const ClusterFacts& facts, std::uint32_t number) {
+  const std::size_t first = facts.cluster->first_triangle + number / kWidth * kWidth;
+  return cornersAt(facts.pack->triangles + first * kTriangleRows + number % kWidth);
+}
+
+inline void noteTriangle(std::uint8_t* list, std::uint32_t* count, std::uint32_t number) {
+  list[addAtomically(count, 1U)] = static_cast<std::uint8_t>(number);
+}
+
+/// Lists the triangles that can cover a pixel, and sets up the small ones.
+inline void sortTriangles(const Block& block, const DrawPlace& place, DrawShared& shared) {
+  block.each([&](std::uint32_t thread) {
+    const ClusterState& state = shared.state;
+    const RenderCluster& cluster = *state.facts.cluster;
+    const SortLimits limits = sortLimits(*place.task, cluster);
+    for (std::uint32_t t = thread; t < cluster.triangle_count; t += block.threads) {
+      const CornerLanes corners = triangleCorners(state.facts, t);
+      if (state.any_bad) {
+        const ClipSorting clip = sortForClipping(state, corners);
+        if ((clip.cut & 1U) != 0) noteTriangle(shared.cut, &shared.cut_count, t);
+        if (clip.whole == 0) continue;
+      }
+      const Sorting sorting = sortEight(limits, state, corners);
+      if (sorting.large != 0) noteTriangle(shared.large, &shared.large_count, t);
+      if (sorting.small == 0) continue;
+      const std::uint32_t at = addAtomically(&shared.small_count, 1U);
+      shared.small[at] = static_cast<std::uint8_t>(t);
+      SmallGroup group;
+      setUpGroup(*place.task, state, packed(corners), group, shared.setups[at]);
+    }
+  });
+}
+
+/// The records of a small triangle.
+template <class State>
+inline void recordSmall(const State& state, const SmallGroup& group, float* record, float* colors) {
+  Lanes fields[kRecordStride];
+  for (Lanes& field : fields) field = Lanes(0);
+  texturePlanes(state, group, fields);
+  surfacePlanes(state, group, fields + kTexels);
+  for (std::uint32_t n = 0; n < kRecordStride; ++n) record[n] = fields[n].v;
+  if (state.facts.color_kind != kHasColors) return;
+  colorPlanes(state, group, fields);
+  for (std::uint32_t n = 0; n < kColorFields; ++n) colors[n] = fields[n].v;
+}
+
+inline SurfacePass surfacePass(const DrawPlace& place, const ClusterState& state) {
+  SurfacePass pass;
+  pass.task = place.task;
+  pass.least_alpha = static_cast<std::int32_t>(state.facts.surface.least_alpha);
+  return pass;
+}
+
+inline void drawSmall(const Block& block, const DrawPlace& place, const DrawShared& shared,
+                      std::uint32_t thread) {
+  const ClusterState& state = shared.state;
+  const std::uint32_t lane = thread % kTeam;
+  for (std::uint32_t n = thread / kTeam; n < shared.small_count; n += block.threads / kTeam) {
+    const std::uint32_t number = shared.small[n];
+    if (state.facts.surface.least_alpha == 0) {
+      const AllPass all;
+      PixelTarget<AllPass> target{&place, &all, lane, number};
+      coverTriangle(shared.setups[n], 0, pixelOf(lane), target);
+      continue;
+    }
+    SurfacePass pass = surfacePass(place, state);
+    SmallGroup group;
+    GroupSetup setup;
+    setUpGroup(*place.task, state, packed(triangleCorners(state.facts, number)), group, setup);
+    recordSmall(state, group, pass.record, pass.colors);
+    PixelTarget<SurfacePass> target{&place, &pass, lane, number};
+    coverTriangle(setup, 0, pixelOf(lane), target);
+  }
+}
+
+/// Draws the tiles of a large triangle that are the thread's.
+template <class Test>
+inline void coverTiles(const Block& block, const LargeSetup& setup, const TileBox& tiles,
+                       std::uint32_t thread, PixelTarget<Test> target) {
+  const auto wide = static_cast<std::uint32_t>(tiles.right - tiles.left + 1);
+  const std::uint32_t count = wide * static_cast<std::uint32_t>(tiles.bottom - tiles.top + 1);
+  for (std::uint32_t n = thread / kTeam; n < count; n += block.threads / kTeam) {
+    coverTile(setup, tiles.left + static_cast<std::int32_t>(n % wide),
+              tiles.top + static_cast<std::int32_t>(n / wide), target);
+  }
+}
+
+/// All threads draw one large triangle.
+inline void drawLarge(const Block& block, const DrawPlace& place, const ClusterState& state,
+                      const Corner* corners, std::uint32_t piece, std::uint32_t thread) {
+  LargeTriangle triangle;
+  const bool two_sided = state.facts.cluster->two_sided != 0;
+  if (!faces(corners[0], corners[1], corners[2], two_sided, triangle)) return;
+  const TileBox tiles = tilesOf(*place.task, triangle);
+  if (tiles.right < tiles.left) return;
+  const std::uint32_t lane = thread % kTeam;
+  const LargeSetup setup = setUpLarge(triangle, pixelOf(lane));
+  if (state.facts.surface.least_alpha == 0) {
+    const AllPass all;
+    coverTiles(block, setup, tiles, thread, PixelTarget<AllPass>{&place, &all, lane, piece});
+    return;
+  }
+  SurfacePass pass = surfacePass(place, state);
+  recordLarge(state, triangle, setup.depth, pass.record, pass.colors);
+  coverTiles(block, setup, tiles, thread,
+             PixelTarget<SurfacePass>{&place, &pass, lane, piece});
+}
+
+inline void drawAllLarge(const Block& block, const DrawPlace& place, const DrawShared& shared,
+                         std::uint32_t thread) {
+  const ClusterState& state = shared.state;
+  for (std::uint32_t n = 0; n < shared.large_count; ++n) {
+    const std::uint32_t number = shared.large[n];
+    const CornerLanes at = triangleCorners(state.facts, number);
+    const Corner corners[3] = {cornerOf(state, static_cast<std::uint32_t>(at.a.v)),
+                               cornerOf(state, static_cast<std::uint32_t>(at.b.v)),
+                               cornerOf(state, static_cast<std::uint32_t>(at.c.v))};
+    drawLarge(block, place, state, corners, kFirstLarge + number, thread);
+  }
+}
+
+inline void drawAllCut(const Block& block, const DrawPlace& place, const DrawShared& shared,
+                       std::uint32_t thread) {
+  const ClusterState& state = shared.state;
+  for (std::uint32_t n = 0; n < shared.cut_count; ++n) {
+    const std::uint32_t number = shared.cut[n];
+    const CornerLanes at = triangleCorners(state.facts, number);
+    Corner ready[kMostCorners];
+    const int count =
+        clipTriangle(state, static_cast<std::uint32_t>(at.a.v), static_cast<std::uint32_t>(at.b.v),
+                     static_cast<std::uint32_t>(at.c.v), ready);
+    for (int m = 1; m + 1 < count; ++m) {
+      const Corner corners[3] = {ready[0], ready[m], ready[m + 1]};
+      drawLarge(block, place, state, corners,
+                kFirstCut + number * kMostInFan + static_cast<std::uint32_t>(m - 1), thread);
+    }
+  }
+}
+
+/// Draws the clusters of a pass that are the block's.
+inline void drawClusters(const Block& block, DrawShared& shared, const Round& round,
+                         std::uint32_t pass) {
+  const std::uint32_t count = round.counts->items[pass];
+  block.each([&](std::uint32_t thread) {
+    if (thread == 0) shared.clusters_drawn = shared.triangles_drawn = 0;
+  });
+  for (std::uint32_t n = block.index; n < count; n += block.count) {
+    const DrawPlace place = drawPlace(round, round.items[pass][n]);
+    if (pass != 0 && place.task->culling) {
+      lookBehind(block, place, shared);
+      if (shared.shown == 0) continue;
+    }
+    beginCluster(block, place, shared);
+    sortTriangles(block, place, shared);
+    block.each([&](std::uint32_t thread) {
+      drawSmall(block, place, shared, thread);
+      drawAllLarge(block, place, shared, thread);
+      drawAllCut(block, place, shared, thread);
+      if (thread != 0) return;
+      ++shared.clusters_drawn;
+      shared.triangles_drawn += shared.small_count + shared.large_count + shared.cut_count;
+    });
+  }
+  block.each([&](std::uint32_t thread) {
+    if (thread != 0) return;
+    addAtomically(&round.counts->clusters_drawn, shared.clusters_drawn);
+    addAtomically(&round.counts->triangles_drawn, shared.triangles_drawn);
+  });
+}
+
+/// The least 1/w of the tiles of a pane; blocks share its tiles.
+inline void measureTiles(const Block& block, const Round& round) {
+  const std::uint32_t pane = block.index;
+  const PaneTask& task = round.tasks[pane];
+  const std::uint64_t* pixels =
+      round.pixels + static_cast<std::size_t>(pane) * round.pixels_of_pane;
+  float* depths = round.tile_depth + static_cast<std::size_t>(pane) * round.tiles_of_pane;
+  const std::uint32_t wide = (task.width + kTileEdge - 1) / kTileEdge;
+  const std::uint32_t high = (task.height + kTileEdge - 1) / kTileEdge;
+  block.each([&](std::uint32_t thread) {
+    for (std::uint32_t tile = thread; tile < wide * high; tile += block.threads) {
+      float least = __builtin_inff();
+      for (std::uint32_t n = 0; n < kTileEdge * kTileEdge; ++n) {
+        const std::uint32_t x = tile % wide * kTileEdge + n % kTileEdge;
+        const std::uint32_t y = tile / wide * kTileEdge + n / kTileEdge;
+        if (x >= task.width || y >= task.height) continue;
+        const std::size_t at =
+            (static_cast<std::size_t>(y / kBlockHeight) * (2 * wide) + x / kBlockWidth) * kWidth +
+            y % kBlockHeight * kBlockWidth + x % kBlockWidth;
+        least = lesserOf(depthOfSeen(pixels[at]), least);
+      }
+      depths[tile] = least;
+    }
+  });
+}
+
+}  // namespace
+}  // namespace galactic::render::cuda

@@ -1,0 +1,93 @@
+#pragma once
+#include <cstdint>
+
+#include "render/raster/placed_model.h"
+
+// What the kernels of the `cuda` renderer share with the processor that launches them: addresses on
+// the device and plain numbers.
+namespace galactic::render::cuda {
+
+/// Of a block as it is launched on a device. The kernels give the same images for any multiple
+/// of 8.
+inline constexpr std::uint32_t kBlockThreads = 128;
+
+/// As RenderInstance.
+struct DeviceInstance {
+  std::uint32_t model;
+  RigidTransform world_from_model;
+};
+
+/// A camera, and the instances that it sees: those from `first_instance` on.
+struct DeviceView {
+  RigidTransform camera_from_world;
+  /// 1/256 pixels at a distance of 1 m for each meter beside the camera's axis.
+  float focal;
+  std::uint32_t first_instance;
+  std::uint32_t instance_count;
+};
+
+/// A cluster that is to be drawn on a pane.
+struct WorkItem {
+  std::uint32_t pane;
+  /// Place in the order of the pane's clusters, nearest first.
+  std::uint32_t rank;
+};
+
+/// Clusters of a pane are drawn in two passes; what the first drew hides clusters of the second.
+inline constexpr std::uint32_t kPasses = 2;
+
+/// Counted on the device.
+struct RoundCounts {
+  std::uint32_t items[kPasses];
+  std::uint32_t unused[2];
+  std::uint64_t clusters_drawn;
+  std::uint64_t triangles_drawn;
+};
+
+/// Views that are drawn together. Arrays "by pane": first the panes of the first view.
+struct Round {
+  const ModelTables* models;
+  const DeviceView* views;
+  const DeviceInstance* instances;
+  /// By instance; no model where it is not drawn.
+  PlacedModel* placed;
+  /// By pane.
+  const PaneTask* tasks;
+  /// By pane, and one more: where its clusters begin in the four arrays below.
+  const std::uint32_t* first_cluster;
+  SeenCluster* seen;
+  /// Numbers in `seen`, from the pane's first, in the order of drawing.
+  std::uint32_t* order;
+  std::uint32_t* by_bucket;
+  /// Those of all panes, by pass, in no order.
+  WorkItem* items[kPasses];
+  /// By pane: what is seen at each pixel, see seenAt(). In blocks as the `soft` renderer has them.
+  std::uint64_t* pixels;
+  /// By pane: the least 1/w of each tile after the first pass.
+  float* tile_depth;
+  RoundCounts* counts;
+  std::uint32_t view_count;
+  std::uint32_t panes_of_view;
+  /// Room for each pane in `pixels` and in `tile_depth`.
+  std::uint32_t pixels_of_pane;
+  std::uint32_t tiles_of_pane;
+};
+
+/// What launches pass by value.
+struct PassParameters {
+  Round round;
+  std::uint32_t pass;
+};
+
+/// The kernels, by the names they have in the module.
+enum class Kernel : std::uint8_t { kPlace, kCull, kDraw, kTiles, kResolve };
+inline constexpr std::uint32_t kKernels = 5;
+inline constexpr const char* kKernelNames[kKernels] = {
+    "galactic_place", "galactic_cull", "galactic_draw", "galactic_tiles", "galactic_resolve"};
+
+/// Clusters that a pane can tell apart, and pieces of one cluster: 128 small triangles, 128 large
+/// ones, and 6 of each of 128 that are cut.
+inline constexpr std::uint32_t kRankBits = 22;
+inline constexpr std::uint32_t kPieceBits = 10;
+
+}  // namespace galactic::render::cuda

@@ -1,0 +1,222 @@
+// Triangles that are set up one by one: large ones, and what clipping leaves of others.
+namespace galactic::render {
+namespace {
+
+/// A corner of a triangle in the pane.
+struct Corner {
+  /// 1/256 pixel.
+  std::int32_t x, y;
+  /// 1 / w.
+  float z;
+  /// Texels; 0 to 255.
+  float u, v;
+  float color[4];
+};
+
+/// An edge function over a pane, from the center of its first pixel, divided by 256: that leaves
+/// its sign, as all pixels have the same remainder.
+struct LongEdge {
+  std::int64_t start;
+  /// Changes per pixel.
+  std::int32_t right, down;
+  /// From the first pixel of a tile to the one with the largest value.
+  std::int64_t reach;
+  /// Of the pixels of a block.
+  IntLanes offsets;
+};
+
+inline LongEdge longEdge(const Corner& from, const Corner& to, const PixelOffsets& pixels) {
+  const std::int64_t dx = to.x - from.x;
+  const std::int64_t dy = to.y - from.y;
+  const bool keeps = dy < 0 || (dy == 0 && dx > 0);
+  const std::int64_t center = kSubpixels / 2;
+  const std::int64_t value = dx * (center - from.y) - dy * (center - from.x) - (keeps ? 0 : 1);
+  LongEdge edge;
+  edge.start = value >> 8;
+  edge.right = static_cast<std::int32_t>(-dy);
+  edge.down = static_cast<std::int32_t>(dx);
+  const std::int64_t last = kTileEdge - 1;
+  edge.reach = (dy < 0 ? -dy * last : 0) + (dx > 0 ? dx * last : 0);
+  edge.offsets = pixels.right * spread(edge.right) + pixels.down * spread(edge.down);
+  return edge;
+}
+
+/// A value over a pane, from the center of its first pixel.
+struct Plane {
+  double start, right, down;
+};
+
+struct LargeTriangle {
+  const Corner* corners[3];
+  double double_area;
+};
+
+inline Plane planeOf(const LargeTriangle& triangle, double a, double b, double c) {
+  const Corner& first = *triangle.corners[0];
+  const double ab_x = triangle.corners[1]->x - first.x;
+  const double ab_y = triangle.corners[1]->y - first.y;
+  const double ac_x = triangle.corners[2]->x - first.x;
+  const double ac_y = triangle.corners[2]->y - first.y;
+  const double scale = kSubpixels / triangle.double_area;
+  const double right = (ac_y * (b - a) - ab_y * (c - a)) * scale;
+  const double down = (ab_x * (c - a) - ac_x * (b - a)) * scale;
+  const double dx = (kHalfPixel - first.x) * (1.0 / kSubpixels);
+  const double dy = (kHalfPixel - first.y) * (1.0 / kSubpixels);
+  return {a + (right * dx + down * dy), right, down};
+}
+
+inline void recordPlane(float* fields, const Plane& plane) {
+  fields[0] = static_cast<float>(plane.right);
+  fields[1] = static_cast<float>(plane.down);
+  fields[2] = static_cast<float>(plane.start);
+}
+
+/// The record of a triangle, and that of its colors where it has them.
+template <class State>
+inline void recordLarge(const State& state, const LargeTriangle& triangle, const Plane& depth,
+                        float* record, float* colors) {
+  const Corner& a = *triangle.corners[0];
+  const Corner& b = *triangle.corners[1];
+  const Corner& c = *triangle.corners[2];
+  const auto over_w = [](float value, const Corner& corner) {
+    return static_cast<double>(value) * static_cast<double>(corner.z);
+  };
+  recordPlane(record + kURight, planeOf(triangle, over_w(a.u, a), over_w(b.u, b), over_w(c.u, c)));
+  recordPlane(record + kVRight, planeOf(triangle, over_w(a.v, a), over_w(b.v, b), over_w(c.v, c)));
+  record[kWRight] = static_cast<float>(depth.right);
+  record[kWDown] = static_cast<float>(depth.down);
+  for (std::uint32_t n = kTexels; n < kRecordStride; ++n) record[n] = surfaceField(state.facts, n);
+  if (state.facts.color_kind == kHasLight) {
+    recordPlane(record + kLightRight, planeOf(triangle, over_w(a.color[0], a),
+                                              over_w(b.color[0], b), over_w(c.color[0], c)));
+  }
+  if (state.facts.color_kind != kHasColors) return;
+  for (int n = 0; n < 4; ++n, colors += 3) {
+    recordPlane(colors, planeOf(triangle, over_w(a.color[n], a), over_w(b.color[n], b),
+                                over_w(c.color[n], c)));
+  }
+}
+
+/// Tiles, first and last.
+struct TileBox {
+  std::int32_t left, right, top, bottom;
+};
+
+inline std::int32_t lesserOf(std::int32_t a, std::int32_t b) { return a < b ? a : b; }
+inline std::int32_t greaterOf(std::int32_t a, std::int32_t b) { return a > b ? a : b; }
+inline float lesserOf(float a, float b) { return a < b ? a : b; }
+inline float greaterOf(float a, float b) { return a > b ? a : b; }
+
+/// Tiles with pixels whose centers lie between the positions; right < left when there are none.
+inline TileBox tilesOf(const PaneTask& task, const LargeTriangle& triangle) {
+  const Corner& a = *triangle.corners[0];
+  const Corner& b = *triangle.corners[1];
+  const Corner& c = *triangle.corners[2];
+  const auto first = [](std::int32_t p, std::int32_t q, std::int32_t r) {
+    return greaterOf((lesserOf(lesserOf(p, q), r) + kSubpixels / 2 - 1) >> 8, 0);
+  };
+  const auto last = [](std::int32_t p, std::int32_t q, std::int32_t r, std::uint32_t count) {
+    return lesserOf((greaterOf(greaterOf(p, q), r) - kSubpixels / 2) >> 8,
+                    static_cast<std::int32_t>(count) - 1);
+  };
+  const std::int32_t left = first(a.x, b.x, c.x);
+  const std::int32_t right = last(a.x, b.x, c.x, task.width);
+  const std::int32_t top = first(a.y, b.y, c.y);
+  const std::int32_t bottom = last(a.y, b.y, c.y, task.height);
+  if (left > right || top > bottom) return {0, -1, 0, -1};
+  return {left >> 3, right >> 3, top >> 3, bottom >> 3};
+}
+
+/// What drawing a tile of a large triangle needs.
+struct LargeSetup {
+  LongEdge edges[3];
+  Plane depth;
+  Lanes z_offsets, z_low, z_high;
+  float z_most;
+};
+
+/// The triangle of three corners that go clockwise on the screen where it shows its face; false
+/// where there is nothing to see. The corners must outlive it.
+inline bool faces(const Corner& a, const Corner& b, const Corner& c, bool two_sided,
+                  LargeTriangle& triangle) {
+  const std::int64_t area = static_cast<std::int64_t>(b.x - a.x) * (c.y - a.y) -
+                            static_cast<std::int64_t>(c.x - a.x) * (b.y - a.y);
+  if (area == 0 || (area < 0 && !two_sided)) return false;
+  triangle = {{&a, area < 0 ? &c : &b, area < 0 ? &b : &c},
+              static_cast<double>(area < 0 ? -area : area)};
+  return true;
+}
+
+inline Plane depthOf(const LargeTriangle& triangle) {
+  return planeOf(triangle, static_cast<double>(triangle.corners[0]->z),
+                 static_cast<double>(triangle.corners[1]->z),
+                 static_cast<double>(triangle.corners[2]->z));
+}
+
+inline LargeSetup setUpLarge(const LargeTriangle& triangle, const PixelOffsets& pixels) {
+  const Corner& a = *triangle.corners[0];
+  const Corner& b = *triangle.corners[1];
+  const Corner& c = *triangle.corners[2];
+  LargeSetup setup;
+  setup.edges[0] = longEdge(a, b, pixels);
+  setup.edges[1] = longEdge(b, c, pixels);
+  setup.edges[2] = longEdge(c, a, pixels);
+  setup.depth = depthOf(triangle);
+  setup.z_offsets = toFloat(pixels.right) * spread(static_cast<float>(setup.depth.right)) +
+                    toFloat(pixels.down) * spread(static_cast<float>(setup.depth.down));
+  setup.z_most = greaterOf(greaterOf(a.z, b.z), c.z);
+  setup.z_low = spread(lesserOf(lesserOf(a.z, b.z), c.z));
+  setup.z_high = spread(setup.z_most);
+  return setup;
+}
+
+/// Edge functions at the first block of a tile; says whether the triangle can touch the tile.
+inline bool tileEdges(const LargeSetup& setup, std::int32_t tile_x, std::int32_t tile_y,
+                      EdgeLanes& lanes) {
+  constexpr std::int64_t kMost = 1 << 30;
+  std::int32_t starts[3];
+  for (int n = 0; n < 3; ++n) {
+    const LongEdge& edge = setup.edges[n];
+    constexpr std::int64_t kEdge = kTileEdge;
+    const std::int64_t value =
+        edge.start + edge.right * (kEdge * tile_x) + edge.down * (kEdge * tile_y);
+    if (value + edge.reach < 0) return false;
+    // Further out the sign is the same in the whole tile: changes per pixel are under 2^24.
+    starts[n] = static_cast<std::int32_t>(value > kMost ? kMost : value < -kMost ? -kMost : value);
+  }
+  lanes = {setup.edges[0].offsets + spread(starts[0]), setup.edges[1].offsets + spread(starts[1]),
+           setup.edges[2].offsets + spread(starts[2])};
+  return true;
+}
+
+/// Draws the pixels of one tile, on a target as in coverTriangle().
+template <class Target>
+inline IntLanes coverTile(const LargeSetup& setup, std::int32_t tile_x, std::int32_t tile_y,
+                          Target& target) {
+  EdgeLanes edges;
+  if (!tileEdges(setup, tile_x, tile_y, edges)) return spread(0);
+  const Plane& depth = setup.depth;
+  const double x = tile_x * static_cast<double>(kTileEdge);
+  const double y = tile_y * static_cast<double>(kTileEdge);
+  const Lanes z_start =
+      spread(static_cast<float>(depth.start + (depth.right * x + depth.down * y))) +
+      setup.z_offsets;
+  IntLanes hit = spread(0);
+  const auto right = [&](int n) { return spread(setup.edges[n].right * 4); };
+  const auto down = [&](int n) { return spread(setup.edges[n].down * 2); };
+  const Lanes z_right = spread(static_cast<float>(depth.right * 4));
+  target.start(static_cast<std::uint32_t>(tile_x) * 2, static_cast<std::uint32_t>(tile_y) * 4);
+  for (std::uint32_t row = 0; row < 4; ++row) {
+    const Lanes z = z_start + spread(static_cast<float>(depth.down * (2 * row)));
+    hit |= target.cover(edges, lesser(greater(z, setup.z_low), setup.z_high));
+    const EdgeLanes beside{edges.a + right(0), edges.b + right(1), edges.c + right(2)};
+    target.right();
+    hit |= target.cover(beside, lesser(greater(z + z_right, setup.z_low), setup.z_high));
+    edges = {edges.a + down(0), edges.b + down(1), edges.c + down(2)};
+    target.nextRow();
+  }
+  return hit;
+}
+
+}  // namespace
+}  // namespace galactic::render

@@ -1,0 +1,46 @@
+#pragma once
+#include "galactic/pose.h"
+#include "render/raster/pane_task.h"
+
+// From poses to what rasterizers read, and how images are cut into panes; for processors and for
+// graphics processors, so without the library.
+namespace galactic::render {
+
+inline bool isFinite(const Vec3& v) { return v.x - v.x == 0 && v.y - v.y == 0 && v.z - v.z == 0; }
+
+inline bool isFinite(const RigidTransform& t) {
+  return isFinite(t.x_axis) && isFinite(t.y_axis) && isFinite(t.z_axis) && isFinite(t.origin);
+}
+
+/// The rows of a placed model; false where its numbers are too large. `focal`: 1/256 pixels at a
+/// distance of 1 m for each meter beside the camera's axis. The camera looks along its x; y is up,
+/// z to the right.
+inline bool placeModel(const RigidTransform& camera_from_world, float focal,
+                       const RigidTransform& world_from_model, PlacedModel& placed) {
+  const RigidTransform t = camera_from_world * world_from_model;
+  const RigidTransform scaled{t.x_axis * focal, t.y_axis * focal, t.z_axis * focal,
+                              t.origin * focal};
+  if (!isFinite(t) || !isFinite(scaled)) return false;
+  placed.w[0] = t.x_axis.x;
+  placed.w[1] = t.y_axis.x;
+  placed.w[2] = t.z_axis.x;
+  placed.w[3] = t.origin.x;
+  placed.x[0] = scaled.x_axis.z;
+  placed.x[1] = scaled.y_axis.z;
+  placed.x[2] = scaled.z_axis.z;
+  placed.x[3] = scaled.origin.z;
+  placed.y[0] = -scaled.x_axis.y;
+  placed.y[1] = -scaled.y_axis.y;
+  placed.y[2] = -scaled.z_axis.y;
+  placed.y[3] = -scaled.origin.y;
+  return true;
+}
+
+/// Edge of the panes that an image is cut in: as few as possible, of like size, of whole tiles.
+inline std::uint32_t paneEdge(std::uint32_t pixels) {
+  const std::uint32_t count = (pixels + kPaneEdge - 1) / kPaneEdge;
+  const std::uint32_t edge = (pixels + count - 1) / count;
+  return (edge + kTileEdge - 1) / kTileEdge * kTileEdge;
+}
+
+}  // namespace galactic::render

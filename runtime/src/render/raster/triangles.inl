@@ -1,0 +1,257 @@
+// Triangles of a cluster: which can cover a pixel, and the set-up of eight at a time.
+namespace galactic::render {
+namespace {
+
+/// Triangles of at most this extent, in 1/256 pixel, are set up in 32 bits, by eight.
+constexpr std::int32_t kSmall = 64 * kSubpixels;
+
+/// Corners of eight triangles, each of them as the numbers of vertices in its cluster.
+struct CornerLanes {
+  IntLanes a, b, c;
+};
+
+/// Corners in one integer, the first in the lowest byte.
+inline IntLanes packed(const CornerLanes& corners) {
+  return corners.a | corners.b << 8 | corners.c << 16;
+}
+inline CornerLanes unpacked(IntLanes corners) {
+  return {corners & 0xFF, (corners >> 8) & 0xFF, (corners >> 16) & 0xFF};
+}
+
+/// The corners of eight triangles. Counter-clockwise from outside is clockwise where rows run down:
+/// two corners change places.
+inline CornerLanes cornersAt(const std::uint8_t* block) {
+  return {widen(load<EightBytes>(block)), widen(load<EightBytes>(block + 2 * kWidth)),
+          widen(load<EightBytes>(block + kWidth))};
+}
+
+struct PointLanes {
+  IntLanes x, y;
+};
+
+template <class State>
+inline PointLanes pointsOf(const State& state, IntLanes corner) {
+  const Pair<IntLanes> xy = gatherPairs(state.xy, corner);
+  return {xy.first, xy.second};
+}
+
+inline IntLanes leastOf(IntLanes a, IntLanes b, IntLanes c) { return lesser(lesser(a, b), c); }
+inline IntLanes mostOf(IntLanes a, IntLanes b, IntLanes c) { return greater(greater(a, b), c); }
+inline Lanes leastOf(Lanes a, Lanes b, Lanes c) { return lesser(lesser(a, b), c); }
+inline Lanes mostOf(Lanes a, Lanes b, Lanes c) { return greater(greater(a, b), c); }
+
+/// First and last pixel whose center lies between two positions.
+inline IntLanes firstPixel(IntLanes lowest) { return (lowest + spread(kSubpixels / 2 - 1)) >> 8; }
+inline IntLanes lastPixel(IntLanes highest) { return (highest - spread(kSubpixels / 2)) >> 8; }
+
+/// Twice the area, positive when the corners go clockwise on the screen. Exact for small triangles.
+inline IntLanes doubleArea(const PointLanes& a, const PointLanes& b, const PointLanes& c) {
+  return wrapSubtract(wrapMultiply(b.x - a.x, c.y - a.y), wrapMultiply(c.x - a.x, b.y - a.y));
+}
+
+/// What becomes of eight triangles: bit n for triangle n.
+struct Sorting {
+  unsigned small, large;
+};
+
+/// Bounds of a pane, and whether both sides of triangles show: by value, so that no store can
+/// change them.
+struct SortLimits {
+  IntLanes last_x, last_y, two_sided;
+};
+
+inline SortLimits sortLimits(const PaneTask& task, const RenderCluster& cluster) {
+  return {spread(static_cast<std::int32_t>(task.width) - 1),
+          spread(static_cast<std::int32_t>(task.height) - 1),
+          spread(cluster.two_sided != 0 ? -1 : 0)};
+}
+
+/// Which of eight triangles have no bad corner, and which have to be cut: bit n for triangle n. The
+/// rest lies beyond one plane with all corners.
+struct ClipSorting {
+  unsigned whole, cut;
+};
+
+inline ClipSorting sortForClipping(const ClusterState& state, const CornerLanes& corners) {
+  const IntLanes a = gather(state.bad, corners.a);
+  const IntLanes b = gather(state.bad, corners.b);
+  const IntLanes c = gather(state.bad, corners.c);
+  const unsigned whole = signBits((a | b | c) == spread(0));
+  return {whole, ~(whole | signBits((a & b & c) != spread(0)))};
+}
+
+inline Sorting sortEight(const SortLimits limits, const ClusterState& state,
+                         const CornerLanes& corners) {
+  const PointLanes a = pointsOf(state, corners.a);
+  const PointLanes b = pointsOf(state, corners.b);
+  const PointLanes c = pointsOf(state, corners.c);
+  const IntLanes x_low = leastOf(a.x, b.x, c.x);
+  const IntLanes x_high = mostOf(a.x, b.x, c.x);
+  const IntLanes y_low = leastOf(a.y, b.y, c.y);
+  const IntLanes y_high = mostOf(a.y, b.y, c.y);
+  const IntLanes first_x = greater(firstPixel(x_low), spread(0));
+  const IntLanes first_y = greater(firstPixel(y_low), spread(0));
+  const IntLanes last_x = lesser(lastPixel(x_high), limits.last_x);
+  const IntLanes last_y = lesser(lastPixel(y_high), limits.last_y);
+  const IntLanes missed = (first_x > last_x) | (first_y > last_y);
+  const IntLanes large = ((x_high - x_low) > spread(kSmall)) | ((y_high - y_low) > spread(kSmall));
+  const IntLanes area = doubleArea(a, b, c);
+  const IntLanes turned_away = (area == spread(0)) | ((area < spread(0)) & ~limits.two_sided);
+  return {signBits(~missed & ~large & ~turned_away), signBits(~missed & large)};
+}
+
+/// Two numbers per triangle that say how a value at its corners changes over the pane.
+struct GradientLanes {
+  Lanes right, down;
+};
+
+/// Corners of eight small triangles.
+struct SmallGroup {
+  CornerLanes corners;
+  PointLanes a, b, c;
+  /// Of the edges from a, and 256 / double area.
+  Lanes ab_x, ab_y, ac_x, ac_y, per_area;
+  /// 1/w at the corners, and how it changes.
+  Lanes z_a, z_b, z_c;
+  GradientLanes z;
+};
+
+inline GradientLanes gradient(const SmallGroup& group, Lanes a, Lanes b, Lanes c) {
+  const Lanes ab = b - a;
+  const Lanes ac = c - a;
+  return {(group.ac_y * ab - group.ab_y * ac) * group.per_area,
+          (group.ab_x * ac - group.ac_x * ab) * group.per_area};
+}
+
+/// Eight triangles ready to be drawn. Starts are at the center of the first pixel of the first
+/// block; edge functions are not negative inside; "right" and "down": changes per pixel.
+struct alignas(kGroupAlignment) GroupSetup {
+  std::int32_t edge[3][kLanes], edge_right[3][kLanes], edge_down[3][kLanes];
+  float z[kLanes], z_right[kLanes], z_down[kLanes];
+  /// Of 1/w at the corners: no pixel leaves this range, however thin the triangle.
+  float z_low[kLanes], z_high[kLanes];
+  /// First and last, in blocks.
+  std::int32_t first_column[kLanes], last_column[kLanes], first_row[kLanes], last_row[kLanes];
+};
+
+inline void setUpEdge(GroupSetup& setup, int number, const PointLanes& from, const PointLanes& to,
+                      const PointLanes& start) {
+  const IntLanes dx = to.x - from.x;
+  const IntLanes dy = to.y - from.y;
+  const IntLanes value = dx * (start.y - from.y) - dy * (start.x - from.x);
+  // An edge keeps the pixels on it when it is a left one, or a top one that lies level.
+  const IntLanes keeps = (dy < spread(0)) | ((dy == spread(0)) & (dx > spread(0)));
+  store(setup.edge[number], value + ~keeps);
+  store(setup.edge_right[number], dy * spread(-kSubpixels));
+  store(setup.edge_down[number], dx * spread(kSubpixels));
+}
+
+/// Sets up eight small triangles; turns those around that show their back.
+template <class State>
+inline void setUpGroup(const PaneTask& task, const State& state, IntLanes packed_corners,
+                       SmallGroup& group, GroupSetup& setup) {
+  group.corners = unpacked(packed_corners);
+  group.a = pointsOf(state, group.corners.a);
+  group.b = pointsOf(state, group.corners.b);
+  group.c = pointsOf(state, group.corners.c);
+  IntLanes area = doubleArea(group.a, group.b, group.c);
+  if (state.facts.cluster->two_sided != 0) {
+    const IntLanes back = area < spread(0);
+    const CornerLanes k = group.corners;
+    const PointLanes b = group.b;
+    const PointLanes c = group.c;
+    group.corners = {k.a, pick(back, k.c, k.b), pick(back, k.b, k.c)};
+    group.b = {pick(back, c.x, b.x), pick(back, c.y, b.y)};
+    group.c = {pick(back, b.x, c.x), pick(back, b.y, c.y)};
+    area = pick(back, -area, area);
+  }
+  const PointLanes& a = group.a;
+  const PointLanes& b = group.b;
+  const PointLanes& c = group.c;
+  const auto width = static_cast<std::int32_t>(task.width);
+  const auto height = static_cast<std::int32_t>(task.height);
+  const IntLanes first_column = greater(firstPixel(leastOf(a.x, b.x, c.x)), spread(0)) >> 2;
+  const IntLanes first_row = greater(firstPixel(leastOf(a.y, b.y, c.y)), spread(0)) >> 1;
+  store(setup.first_column, first_column);
+  store(setup.first_row, first_row);
+  store(setup.last_column, lesser(lastPixel(mostOf(a.x, b.x, c.x)), spread(width - 1)) >> 2);
+  store(setup.last_row, lesser(lastPixel(mostOf(a.y, b.y, c.y)), spread(height - 1)) >> 1);
+  const PointLanes start{(first_column << 10) + spread(kSubpixels / 2),
+                         (first_row << 9) + spread(kSubpixels / 2)};
+  setUpEdge(setup, 0, a, b, start);
+  setUpEdge(setup, 1, b, c, start);
+  setUpEdge(setup, 2, c, a, start);
+  group.ab_x = toFloat(b.x - a.x);
+  group.ab_y = toFloat(b.y - a.y);
+  group.ac_x = toFloat(c.x - a.x);
+  group.ac_y = toFloat(c.y - a.y);
+  group.per_area = spread(static_cast<float>(kSubpixels)) / toFloat(area);
+  group.z_a = gather(state.z, group.corners.a);
+  group.z_b = gather(state.z, group.corners.b);
+  group.z_c = gather(state.z, group.corners.c);
+  group.z = gradient(group, group.z_a, group.z_b, group.z_c);
+  const Lanes per_subpixel = spread(1.0F / kSubpixels);
+  const Lanes dx = toFloat(start.x - a.x) * per_subpixel;
+  const Lanes dy = toFloat(start.y - a.y) * per_subpixel;
+  store(setup.z, group.z_a + (group.z.right * dx + group.z.down * dy));
+  store(setup.z_right, group.z.right);
+  store(setup.z_down, group.z.down);
+  store(setup.z_low, leastOf(group.z_a, group.z_b, group.z_c));
+  store(setup.z_high, mostOf(group.z_a, group.z_b, group.z_c));
+}
+
+/// Eight values that change linearly over the pane.
+struct EdgeLanes {
+  IntLanes a, b, c;
+};
+
+/// Offsets of pixels from the first one of their block.
+struct PixelOffsets {
+  IntLanes right, down;
+};
+
+/// Draws triangle `n` of a group, block by block, on a target that knows start(column, row),
+/// cover(edges, z), right() and nextRow(); the sign bits of the result tell which pixels it shows.
+template <class Target>
+inline IntLanes coverTriangle(const GroupSetup& group, unsigned n, const PixelOffsets& pixels,
+                              Target& target) {
+  const IntLanes right = pixels.right;
+  const IntLanes lower = -pixels.down;
+  const auto edge_lanes = [&](int e) {
+    return spread(group.edge[e][n]) + right * spread(group.edge_right[e][n]) +
+           (lower & spread(group.edge_down[e][n]));
+  };
+  EdgeLanes row_edges{edge_lanes(0), edge_lanes(1), edge_lanes(2)};
+  const auto four_right = [&](int e) { return spread(group.edge_right[e][n] * 4); };
+  const auto two_down = [&](int e) { return spread(group.edge_down[e][n] * 2); };
+  const EdgeLanes next{four_right(0), four_right(1), four_right(2)};
+  const EdgeLanes below{two_down(0), two_down(1), two_down(2)};
+  Lanes row_z = spread(group.z[n]) + toFloat(right) * spread(group.z_right[n]) +
+                toFloat(pixels.down) * spread(group.z_down[n]);
+  const Lanes z_next = spread(group.z_right[n] * 4);
+  const Lanes z_below = spread(group.z_down[n] * 2);
+  const Lanes z_low = spread(group.z_low[n]);
+  const Lanes z_high = spread(group.z_high[n]);
+  IntLanes hit = spread(0);
+  target.start(static_cast<std::uint32_t>(group.first_column[n]),
+               static_cast<std::uint32_t>(group.first_row[n]));
+  const auto columns = static_cast<std::uint32_t>(group.last_column[n] - group.first_column[n]);
+  for (std::int32_t row = group.first_row[n]; row <= group.last_row[n]; ++row) {
+    EdgeLanes edges = row_edges;
+    Lanes z = row_z;
+    for (std::uint32_t column = 0;; ++column) {
+      hit |= target.cover(edges, lesser(greater(z, z_low), z_high));
+      if (column == columns) break;
+      edges = {edges.a + next.a, edges.b + next.b, edges.c + next.c};
+      z = z + z_next;
+      target.right();
+    }
+    row_edges = {row_edges.a + below.a, row_edges.b + below.b, row_edges.c + below.c};
+    row_z = row_z + z_below;
+    target.nextRow();
+  }
+  return hit;
+}
+
+}  // namespace
+}  // namespace galactic::render

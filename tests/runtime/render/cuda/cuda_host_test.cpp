@@ -1,0 +1,175 @@
+// The processor's side of the cuda backend, against a library that stands in for CUDA's driver.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "drawn_by_kernels.h"
+#include "support/packs/render_model_builder.h"
+
+namespace galactic::test::cuda_host_test {
+namespace {
+
+using testing::HasSubstr;
+
+class CudaHost : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!GALACTIC_HAS_PTX) GTEST_SKIP() << "built without clang";
+    standin_ = &resetStandin();
+    builder_.model();
+    builder_.quad({{{2, -1, -1}, {2, -1, 1}, {2, 1, 1}, {2, 1, -1}}});
+    builder_.finish();
+    library_.add(builder_.meshes());
+    options_.width = options_.height = 32;
+    view_.instances = {&instance_, 1};
+  }
+
+  std::string errorOf(const RenderOptions& options) {
+    const auto engine = makeEngine(library_, options);
+    return engine ? "made" : engine.error().message;
+  }
+
+  Standin* standin_ = nullptr;
+  RenderModelBuilder builder_;
+  RenderLibrary library_;
+  RenderInstance instance_;
+  RenderView view_;
+  RenderOptions options_;
+};
+
+TEST_F(CudaHost, SaysWhatItIs) {
+  const auto engine = makeEngine(library_, options_);
+  ASSERT_TRUE(engine) << engine.error().message;
+  EXPECT_EQ((*engine)->description(), "cuda, Stand-in A, compute capability 9.0");
+  EXPECT_EQ((*engine)->backend(), RenderBackend::kCuda);
+}
+
+TEST_F(CudaHost, ChoosesTheDeviceThatIsAskedFor) {
+  for (const char* wish : {"1", "cuda:1", "GPU-10111213-1415-1617-1819-1a1b1c1d1e1f"}) {
+    options_.device = wish;
+    const auto engine = makeEngine(library_, options_);
+    ASSERT_TRUE(engine) << engine.error().message;
+    EXPECT_EQ((*engine)->device().name(), "Stand-in B") << wish;
+  }
+}
+
+TEST_F(CudaHost, NamesADeviceThatIsNotThere) {
+  options_.device = "2";
+  EXPECT_EQ(
+      errorOf(options_),
+      "found device 2 asked for, but CUDA has 2 (0 to 1); CUDA_VISIBLE_DEVICES may hide some");
+  options_.device = "00000000-0000-0000-0000-000000000000";
+  EXPECT_THAT(errorOf(options_), HasSubstr("none of CUDA's 2 devices has the UUID"));
+  options_.device = "software";
+  EXPECT_THAT(errorOf(options_), HasSubstr("ask for the soft backend"));
+  options_.device = "the red one";
+  const auto engine = makeEngine(library_, options_);
+  ASSERT_FALSE(engine);
+  EXPECT_EQ(engine.error().code, ErrorCode::kInvalidInput);
+}
+
+TEST_F(CudaHost, SaysWhatIsMissing) {
+  const auto absent = render::cuda::CudaEngine::make(library_, options_, {.library = "/no/lib.so"});
+  ASSERT_FALSE(absent);
+  EXPECT_EQ(absent.error().code, ErrorCode::kUnsupported);
+  EXPECT_EQ(absent.error().message,
+            "found no /no/lib.so; install NVIDIA's driver, or use the soft backend");
+  const auto strange = render::cuda::CudaEngine::make(library_, options_, {.library = "libm.so.6"});
+  ASSERT_FALSE(strange);
+  EXPECT_EQ(strange.error().message, "libm.so.6 is too old: it has no cuInit");
+  standin_->devices = 0;
+  EXPECT_THAT(errorOf(options_), HasSubstr("finds no device"));
+  standin_->devices = 1;
+  standin_->major = 6;
+  standin_->minor = 1;
+  EXPECT_EQ(errorOf(options_), "Stand-in A has compute capability 6.1; wanted 7.0 or more");
+}
+
+TEST_F(CudaHost, PassesOnWhatTheDriverRefuses) {
+  standin_->failing = "cuInit";
+  EXPECT_EQ(errorOf(options_), "CUDA's driver could not start: error 2 (CUDA_ERROR_OUT_OF_MEMORY)");
+  standin_->failing = "cuModuleLoadDataEx";
+  EXPECT_THAT(errorOf(options_), HasSubstr("compile the kernels: ptxas says no"));
+  standin_->failing = "cuMemAlloc";
+  EXPECT_THAT(errorOf(options_), HasSubstr("on the device: error 2"));
+  standin_->failing = nullptr;
+  auto engine = makeEngine(library_, options_);
+  ASSERT_TRUE(engine);
+  for (const char* function : {"cuMemAlloc", "cuLaunchKernel", "cuStreamSynchronize"}) {
+    standin_->failing = function;
+    const auto images = (*engine)->renderToDevice({&view_, 1});
+    ASSERT_FALSE(images) << function;
+    EXPECT_EQ(images.error().code, ErrorCode::kUnsupported);
+    standin_->failing = nullptr;
+    ASSERT_TRUE((*engine)->renderToDevice({&view_, 1}));
+  }
+}
+
+TEST_F(CudaHost, EndsTheProgramWhereImagesWouldBeWrong) {
+  auto engine = makeEngine(library_, options_);
+  ASSERT_TRUE(engine);
+  RenderImages images = emptyImages(options_, 1);
+  standin_->failing = "cuLaunchKernel";
+  EXPECT_DEATH((*engine)->begin({&view_, 1}, targetsOf(images)), "could not launch a kernel");
+}
+
+TEST_F(CudaHost, GivesEverythingBack) {
+  const std::uint64_t before = standin_->allocations;
+  {
+    auto engine = makeEngine(library_, options_);
+    ASSERT_TRUE(engine);
+    ASSERT_TRUE((*engine)->renderToDevice({&view_, 1}));
+    EXPECT_GT(standin_->allocations, before);
+    EXPECT_EQ(standin_->contexts, 1);
+    EXPECT_EQ(standin_->modules, 1);
+  }
+  EXPECT_EQ(standin_->allocations, before);
+  EXPECT_EQ(standin_->contexts, 0);
+  EXPECT_EQ(standin_->modules, 0);
+}
+
+TEST_F(CudaHost, ReservesNothingMoreForTheSameBatch) {
+  auto engine = makeEngine(library_, options_);
+  ASSERT_TRUE(engine);
+  const std::vector<RenderView> views(5, view_);
+  ASSERT_TRUE((*engine)->renderToDevice(views));
+  const std::uint64_t bytes = standin_->allocated_bytes;
+  standin_->failing = "cuMemAlloc";
+  ASSERT_TRUE((*engine)->renderToDevice(views));
+  ASSERT_TRUE((*engine)->renderToDevice({views.data(), 2}));
+  EXPECT_EQ(standin_->allocated_bytes, bytes);
+}
+
+TEST_F(CudaHost, LeavesOnTheDeviceWhatItWouldRead) {
+  options_.semantics = true;
+  auto engine = makeEngine(library_, options_);
+  ASSERT_TRUE(engine);
+  const std::vector<RenderView> views(3, view_);
+  const RenderImages expected = drawWithSoft(library_, options_, views);
+  const auto images = (*engine)->renderToDevice(views);
+  ASSERT_TRUE(images);
+  // The stand-in's device has the memory of the processor.
+  RenderImages found = emptyImages(options_, views.size());
+  std::memcpy(found.color.data(), std::bit_cast<const void*>(images->color), found.color.size());
+  std::memcpy(found.depth.data(), std::bit_cast<const void*>(images->depth),
+              4 * found.depth.size());
+  std::memcpy(found.semantics.data(), std::bit_cast<const void*>(images->semantics),
+              4 * found.semantics.size());
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ((*engine)->statistics().instances, 3U);
+  EXPECT_EQ((*engine)->statistics().triangles_drawn, 6U);
+}
+
+TEST_F(CudaHost, DrawsABatchOfNoViews) {
+  auto engine = makeEngine(library_, options_);
+  ASSERT_TRUE(engine);
+  ASSERT_TRUE((*engine)->renderToDevice({}));
+  EXPECT_EQ((*engine)->statistics().clusters_drawn, 0U);
+}
+
+}  // namespace
+}  // namespace galactic::test::cuda_host_test

@@ -1,0 +1,57 @@
+#pragma once
+#include <dlfcn.h>
+
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "render/cuda/cuda_engine.h"
+#include "standin.h"
+#include "support/render_images.h"
+
+namespace galactic::test {
+
+/// The stand-in's state, reset.
+inline Standin& resetStandin() {
+  using Get = Standin* (*)();
+  static void* library = dlopen(GALACTIC_CUDA_STANDIN, RTLD_NOW);
+  if (library == nullptr) throw std::runtime_error(dlerror());
+  const auto get = reinterpret_cast<Get>(dlsym(library, "galactic_standin"));
+  Standin& standin = *get();
+  Standin fresh;
+  fresh.allocations = standin.allocations;
+  fresh.allocated_bytes = standin.allocated_bytes;
+  fresh.contexts = standin.contexts;
+  fresh.modules = standin.modules;
+  standin = fresh;
+  return standin;
+}
+
+inline Result<std::unique_ptr<render::cuda::CudaEngine>> makeEngine(
+    const RenderLibrary& library, const RenderOptions& options,
+    std::size_t round_bytes = 1U << 30U) {
+  return render::cuda::CudaEngine::make(
+      library, options, {.library = GALACTIC_CUDA_STANDIN, .round_bytes = round_bytes});
+}
+
+/// What the kernels draw, run on the processor.
+inline RenderImages drawWithKernels(const RenderLibrary& library, const RenderOptions& options,
+                                    std::span<const RenderView> views,
+                                    std::size_t round_bytes = 1U << 30U) {
+  auto engine = makeEngine(library, options, round_bytes);
+  if (!engine) throw std::runtime_error(engine.error().message);
+  RenderImages images = emptyImages(options, views.size());
+  (*engine)->begin(views, targetsOf(images));
+  (*engine)->end();
+  return images;
+}
+
+inline RenderImages drawWithSoft(const RenderLibrary& library, RenderOptions options,
+                                 std::span<const RenderView> views) {
+  options.backend = RenderBackend::kSoft;
+  options.threads = 1;
+  return renderViews(library, options, views);
+}
+
+}  // namespace galactic::test

@@ -1,0 +1,195 @@
+// A library that stands in for libcuda.so.1 where there is no device: memory of the device is
+// memory of the processor, and launches run the very kernels, compiled for the processor. It has
+// the functions that the renderer calls, nothing else.
+#include "standin.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <string_view>
+
+#include "render/cuda/kernels/kernels.inl"
+
+#define STANDIN extern "C" __attribute__((visibility("default")))
+
+namespace galactic::test {
+namespace {
+
+using render::cuda::Block;
+using render::cuda::Kernel;
+using render::cuda::PassParameters;
+
+Standin standin;
+std::map<void*, std::size_t> memories;
+int device_context = 0;
+int loaded_module = 0;
+
+/// 0, or the error that was asked for.
+int outcome(const char* function) {
+  return standin.failing != nullptr && std::string_view(standin.failing) == function ? standin.error
+                                                                                     : 0;
+}
+
+void* allocate(std::size_t bytes) {
+  // As on a device, nothing is promised about what is there.
+  void* memory = std::aligned_alloc(256, (bytes + 255) / 256 * 256);
+  std::memset(memory, 0xCD, bytes);
+  memories[memory] = bytes;
+  ++standin.allocations;
+  standin.allocated_bytes += bytes;
+  return memory;
+}
+
+void release(void* memory) {
+  standin.allocated_bytes -= memories.at(memory);
+  --standin.allocations;
+  memories.erase(memory);
+  std::free(memory);
+}
+
+void runBlock(Kernel kernel, const Block& block, const PassParameters& parameters) {
+  using namespace render::cuda;
+  const Round& round = parameters.round;
+  switch (kernel) {
+    case Kernel::kPlace:
+      return placeInstances(block, round);
+    case Kernel::kCull: {
+      static CullShared shared;
+      std::memset(static_cast<void*>(&shared), 0xCD, sizeof(shared));
+      return cullPane(block, shared, round);
+    }
+    case Kernel::kDraw: {
+      static DrawShared shared;
+      std::memset(static_cast<void*>(&shared), 0xCD, sizeof(shared));
+      return drawClusters(block, shared, round, parameters.pass);
+    }
+    case Kernel::kTiles:
+      return measureTiles(block, round);
+    case Kernel::kResolve:
+      return resolvePane(block, round, block.count / (round.view_count * round.panes_of_view));
+  }
+}
+
+}  // namespace
+
+STANDIN Standin* galactic_standin() { return &standin; }
+
+STANDIN int cuInit(unsigned) { return outcome("cuInit"); }
+STANDIN int cuGetErrorName(int error, const char** name) {
+  *name = error == 2 ? "CUDA_ERROR_OUT_OF_MEMORY" : "CUDA_ERROR_UNKNOWN";
+  return 0;
+}
+STANDIN int cuDeviceGetCount(int* count) {
+  *count = standin.devices;
+  return outcome("cuDeviceGetCount");
+}
+STANDIN int cuDeviceGet(int* device, int number) {
+  *device = number;
+  return 0;
+}
+STANDIN int cuDeviceGetName(char* name, int length, int device) {
+  std::strncpy(name, device == 0 ? "Stand-in A" : "Stand-in B", static_cast<std::size_t>(length));
+  return 0;
+}
+STANDIN int cuDeviceGetUuid(unsigned char* uuid, int device) {
+  for (int n = 0; n < 16; ++n) uuid[n] = static_cast<unsigned char>(16 * device + n);
+  return 0;
+}
+STANDIN int cuDeviceGetAttribute(int* value, int attribute, int) {
+  constexpr int kMultiprocessors = 16;
+  constexpr int kMajor = 75;
+  if (attribute == kMultiprocessors) {
+    *value = 1;
+  } else {
+    *value = attribute == kMajor ? standin.major : standin.minor;
+  }
+  return 0;
+}
+STANDIN int cuDevicePrimaryCtxRetain(void** context, int) {
+  *context = &device_context;
+  ++standin.contexts;
+  return outcome("cuDevicePrimaryCtxRetain");
+}
+STANDIN int cuDevicePrimaryCtxRelease_v2(int) {
+  --standin.contexts;
+  return 0;
+}
+STANDIN int cuCtxPushCurrent_v2(void* context) { return context == &device_context ? 0 : 1; }
+STANDIN int cuCtxPopCurrent_v2(void** context) {
+  *context = &device_context;
+  return 0;
+}
+STANDIN int cuModuleLoadDataEx(void** module, const void* image, unsigned, int*, void** values) {
+  const int error = outcome("cuModuleLoadDataEx");
+  if (error != 0) {
+    std::strncpy(static_cast<char*>(values[0]), "ptxas says no", 64);
+    return error;
+  }
+  const std::string_view text(static_cast<const char*>(image));
+  for (const char* name : render::cuda::kKernelNames) {
+    if (text.find(name) == std::string_view::npos) return 1;
+  }
+  *module = &loaded_module;
+  ++standin.modules;
+  return 0;
+}
+STANDIN int cuModuleUnload(void*) {
+  --standin.modules;
+  return 0;
+}
+STANDIN int cuModuleGetFunction(void** function, void*, const char* name) {
+  for (std::size_t n = 0; n < render::cuda::kKernels; ++n) {
+    if (std::string_view(render::cuda::kKernelNames[n]) != name) continue;
+    *function = standin.launches + n;
+    return 0;
+  }
+  return 1;
+}
+STANDIN int cuMemAlloc_v2(std::uint64_t* address, std::size_t bytes) {
+  const int error = outcome("cuMemAlloc");
+  if (error == 0) *address = reinterpret_cast<std::uint64_t>(allocate(bytes));
+  return error;
+}
+STANDIN int cuMemFree_v2(std::uint64_t address) {
+  release(reinterpret_cast<void*>(address));
+  return 0;
+}
+STANDIN int cuMemHostAlloc(void** address, std::size_t bytes, unsigned) {
+  *address = allocate(bytes);
+  return 0;
+}
+STANDIN int cuMemFreeHost(void* address) {
+  release(address);
+  return 0;
+}
+STANDIN int cuMemcpyHtoDAsync_v2(std::uint64_t to, const void* from, std::size_t bytes, void*) {
+  std::memcpy(reinterpret_cast<void*>(to), from, bytes);
+  return 0;
+}
+STANDIN int cuMemcpyDtoHAsync_v2(void* to, std::uint64_t from, std::size_t bytes, void*) {
+  std::memcpy(to, reinterpret_cast<const void*>(from), bytes);
+  return 0;
+}
+STANDIN int cuMemsetD32Async(std::uint64_t to, unsigned value, std::size_t words, void*) {
+  auto* first = reinterpret_cast<unsigned*>(to);
+  for (std::size_t n = 0; n < words; ++n) first[n] = value;
+  return 0;
+}
+STANDIN int cuLaunchKernel(void* function, unsigned grid, unsigned, unsigned, unsigned, unsigned,
+                           unsigned, unsigned, void*, void** parameters, void**) {
+  const int error = outcome("cuLaunchKernel");
+  if (error != 0) return error;
+  auto* launches = static_cast<std::uint64_t*>(function);
+  ++*launches;
+  PassParameters copy;
+  std::memcpy(&copy, parameters[0], sizeof(copy));
+  for (unsigned n = 0; n < grid; ++n) {
+    const Block block{standin.backwards ? grid - 1 - n : n, grid, standin.threads, standin.stride,
+                      standin.first};
+    runBlock(static_cast<Kernel>(launches - standin.launches), block, copy);
+  }
+  return 0;
+}
+STANDIN int cuStreamSynchronize(void*) { return outcome("cuStreamSynchronize"); }
+
+}  // namespace galactic::test

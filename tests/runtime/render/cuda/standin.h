@@ -1,0 +1,30 @@
+#pragma once
+#include <cstdint>
+
+namespace galactic::test {
+
+/// How the stand-in for CUDA's driver behaves, and what it saw: one for the process, which the
+/// library gives out as galactic_standin(). Read and written between calls.
+struct Standin {
+  /// Of a block: a multiple of 8. Threads run in the order (n * stride + first) % threads.
+  std::uint32_t threads = 128;
+  std::uint32_t stride = 1;
+  std::uint32_t first = 0;
+  /// Blocks run from the last to the first.
+  bool backwards = false;
+  int devices = 2;
+  int major = 9;
+  int minor = 0;
+  /// What each function that can fail returns, by its name; null: none fails.
+  const char* failing = nullptr;
+  int error = 2;
+
+  /// Launches by kernel, since the last reset.
+  std::uint64_t launches[5] = {};
+  std::uint64_t allocations = 0;
+  std::uint64_t allocated_bytes = 0;
+  int contexts = 0;
+  int modules = 0;
+};
+
+}  // namespace galactic::test
