@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "galactic/batch_simulator.h"
-#include "galactic/scripted_policy.h"
 #include "galactic/world.h"
+#include "scripted/scripted_policy.h"
 
 namespace {
 

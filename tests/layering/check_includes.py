@@ -96,11 +96,13 @@ RULES = (
     Rule("runtime/pictures", ("runtime/include", "runtime"), LEAN, schema=False, shared=True),
     # xxHash as headers: digests of recordings.
     Rule("runtime/app", ("runtime/include", "runtime/app", "runtime", "."), LEAN | {"CLI", "xxhash.h"}, shared=True),
+    # The policy is a user of the library: its interface alone, beside threads and random numbers.
+    Rule("scripted", ("runtime/include", "."), frozenset(), schema=False, shared=True),
     Rule("view", ("runtime/include", "runtime", "."), LEAN, shared=True),
     Rule("python", ("runtime/include", "python/src"), LEAN, schema=False),
     Rule("pack_tool", ("runtime/include", "runtime", "."), LEAN | {"CLI", "nlohmann"}, shared=True),
     Rule("bake/include", ("runtime/include", "bake/include"), frozenset({"tl"}), schema=False, shared=True),
-    Rule("bake/src", ("runtime/include", "bake/include", "bake/src"),
+    Rule("bake/src", ("runtime/include", "bake/include", "bake/src", "."),
          LEAN | {"Eigen", "flatbuffers", "nlohmann", "xxhash.h"}, shared=True),
     Rule("bake/app", ("runtime/include", "bake/include", "bake/app"), LEAN | {"CLI", "nlohmann"}, shared=True),
 )
@@ -108,6 +110,7 @@ RULES = (
 FORBIDDEN_TARGETS = {"runtime": ("bake", "pack_tool", "tests", "benchmarks"),
                      "runtime/pictures": ("runtime/src", "runtime/app"),
                      "runtime/app": ("runtime/src",),
+                     "scripted": ("bake", "pack_tool", "tests", "benchmarks", "runtime/src", "runtime/app"),
                      "view": ("bake", "pack_tool", "tests", "benchmarks", "runtime/src", "runtime/app"),
                      "python": ("bake", "pack_tool", "tests", "benchmarks", "runtime/src", "runtime/app"),
                      "pack_tool": ("bake", "tests", "benchmarks", "runtime/src", "runtime/app"),

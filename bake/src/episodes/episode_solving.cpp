@@ -8,7 +8,7 @@
 #include "episodes/memory_world.h"
 #include "galactic/bake/parallel_for.h"
 #include "galactic/batch_simulator.h"
-#include "galactic/scripted_policy.h"
+#include "scripted/scripted_policy.h"
 #include "support/try.h"
 
 namespace galactic::bake {

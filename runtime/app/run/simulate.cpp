@@ -13,12 +13,12 @@
 #include "command_line/option_lines.h"
 #include "drawing/drawn_steps.h"
 #include "galactic/batch_simulator.h"
-#include "galactic/scripted_policy.h"
 #include "galactic/world.h"
 #include "run/interrupt.h"
 #include "run/live_line.h"
 #include "run/policy.h"
 #include "run/tracked_run.h"
+#include "scripted/scripted_policy.h"
 
 namespace galactic {
 namespace {

@@ -36,8 +36,8 @@ void ActionSampler::takeLikeliest(const ActionValues& said,
   }
 }
 
-void ActionSampler::sample(const Kernels& kernels, const ActionValues& said,
-                           simulation::RandomStream random, std::span<float> actions) noexcept {
+void ActionSampler::sample(const Kernels& kernels, const ActionValues& said, RandomStream random,
+                           std::span<float> actions) noexcept {
   for (std::size_t first = 0; first < continuous_; first += kNoise) {
     for (std::size_t n = 0; n < kNoise; n += 2) {
       const std::uint64_t bits = random.next();

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "policy/kernels.h"
-#include "simulation/state/random_stream.h"
+#include "support/random_stream.h"
 
 namespace galactic::policy {
 
@@ -27,7 +27,7 @@ class ActionSampler {
   void takeLikeliest(const ActionValues& said, std::span<float> actions) const noexcept;
 
   /// Normally distributed numbers, and values with the probabilities that the logits give.
-  void sample(const Kernels& kernels, const ActionValues& said, simulation::RandomStream random,
+  void sample(const Kernels& kernels, const ActionValues& said, RandomStream random,
               std::span<float> actions) noexcept;
 
  private:

@@ -227,8 +227,8 @@ class LearnedPolicy::Impl {
     const std::size_t env = tile.first_env + n;
     const std::span<float> actions = actions_.subspan(env * action_count_, action_count_);
     if (options_.samples) {
-      const simulation::RandomStream random(
-          options_.seed, options_.first_env + static_cast<std::uint32_t>(env), kStream, step_);
+      const RandomStream random(options_.seed, options_.first_env + static_cast<std::uint32_t>(env),
+                                kStream, step_);
       part.sampler.sample(kernels_, said, random, actions);
     } else {
       part.sampler.takeLikeliest(said, actions);

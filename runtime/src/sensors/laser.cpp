@@ -78,7 +78,7 @@ std::vector<std::vector<float>> floorsOf(std::span<const StoodOn> stood_on, std:
 
 /// The sum of four uniform numbers: within 1 % of the normal distribution's, and never further out
 /// than 3.5 deviations. Mean 0, deviation 1.
-float nearlyNormal(simulation::RandomStream& random) {
+float nearlyNormal(RandomStream& random) {
   constexpr std::uint64_t kPart = 0xffff;
   // 65536 / sqrt(3).
   constexpr float kInverseDeviation = 1.0F / 37837.228F;
@@ -192,7 +192,7 @@ void Laser::scan(const LaserView& view, std::span<float> out) const noexcept {
   if (settings_.beams == 0) return;
   const Floor& floor = floorAt(view.scene, view.base.y);
   std::array<float, kMostBeams> room;
-  simulation::RandomStream random = view.random;
+  RandomStream random = view.random;
   for (std::size_t n = 0; n < settings_.heights.size(); ++n) {
     const Vec3 origin{view.base.x + view.cosine * settings_.ahead + view.sine * settings_.right,
                       view.base.y + settings_.heights[n],
@@ -222,7 +222,7 @@ void Laser::scanPlane(const LaserView& view, const ScanPlaneView& plane, const V
   });
 }
 
-void Laser::finish(std::span<const float> distances, simulation::RandomStream& random,
+void Laser::finish(std::span<const float> distances, RandomStream& random,
                    std::span<float> out) const noexcept {
   const float range = settings_.range;
   for (std::size_t n = 0; n < out.size(); ++n) {

@@ -12,7 +12,7 @@
 #include "sensors/scan_plane.h"
 #include "simulation/collision/resting_objects.h"
 #include "simulation/motion/motion_model.h"
-#include "simulation/state/random_stream.h"
+#include "support/random_stream.h"
 
 namespace galactic::sensors {
 
@@ -59,7 +59,7 @@ struct LaserView {
   float sine = 0;
   const simulation::RestingObjects& objects;
   /// Of this env and step.
-  simulation::RandomStream random;
+  RandomStream random;
 };
 
 /// The laser of all envs. After construction immutable: any thread may scan.
@@ -97,7 +97,7 @@ class Laser {
   [[nodiscard]] const Floor& floorAt(std::uint32_t scene, float height) const noexcept;
   void scanPlane(const LaserView& view, const ScanPlaneView& plane, const Vec3& origin,
                  std::span<float> distances) const noexcept;
-  void finish(std::span<const float> distances, simulation::RandomStream& random,
+  void finish(std::span<const float> distances, RandomStream& random,
               std::span<float> out) const noexcept;
 
   LaserSettings settings_;

@@ -35,7 +35,7 @@ TEST(PlacementCheck, AgreesWithTheRunsPlacement) {
     const float yaw = number(0, 2 * std::numbers::pi);
     const Pose pose{{number(0.8, 2), number(0.6, 1.0), number(0.8, 1.8)},
                     {0, std::sin(yaw / 2), 0, std::cos(yaw / 2)}};
-    simulation::RandomStream stream(1, 0, 0, static_cast<std::uint32_t>(n));
+    RandomStream stream(1, 0, 0, static_cast<std::uint32_t>(n));
     const simulation::Landing landing =
         simulation::placeObject({world.scene(), nothing}, cube, pose, stream, options, scratch);
     const float moved = landing.pose.translation.y - pose.translation.y;

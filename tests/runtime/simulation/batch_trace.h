@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "galactic/batch_simulator.h"
-#include "simulation/state/random_stream.h"
 #include "support/homes/box_world.h"
+#include "support/random_stream.h"
 
 namespace galactic::test {
 
@@ -52,9 +52,9 @@ inline SimulationOptions optionsFor(std::uint32_t envs, std::uint32_t threads = 
 /// Actions that only (env of all ranks, step, action) decide; the hand keeps what it has for some
 /// steps, and the robot seldom says that it is done.
 inline void fillActions(std::uint32_t env, std::uint32_t step, std::span<float> row) {
-  simulation::RandomStream random(99, env, 0, step);
+  RandomStream random(99, env, 0, step);
   for (float& action : row) action = 2 * random.unit() - 1;
-  simulation::RandomStream slow(98, env, 0, step / 16);
+  RandomStream slow(98, env, 0, step / 16);
   row[row.size() - 2] = 2 * slow.unit() - 1;
   row[row.size() - 1] = random.unit() < 0.01F ? 1.0F : 0.0F;
 }
@@ -123,7 +123,7 @@ class BatchTrace {
     for (const float value : values) mixIn(hash, std::bit_cast<std::uint32_t>(value));
   }
   static void mixIn(std::uint64_t& hash, std::uint32_t value) {
-    hash = simulation::mix(hash ^ value) + 0x9E3779B97F4A7C15ULL;
+    hash = mix(hash ^ value) + 0x9E3779B97F4A7C15ULL;
   }
 
   std::vector<std::uint64_t> hashes_;

@@ -19,7 +19,6 @@ using simulation::Landing;
 using simulation::PlacementScratch;
 using simulation::placeObject;
 using simulation::RadiusRange;
-using simulation::RandomStream;
 using simulation::restingBox;
 using simulation::RestingObjects;
 using simulation::SphereBatch;

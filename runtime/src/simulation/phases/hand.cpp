@@ -6,7 +6,7 @@
 
 #include "simulation/phases/object_placement.h"
 #include "simulation/state/grip_frame.h"
-#include "simulation/state/random_stream.h"
+#include "support/random_stream.h"
 
 namespace galactic::simulation {
 namespace {

@@ -10,7 +10,7 @@
 #include "galactic/simulation_options.h"
 #include "simulation/collision/collision.h"
 #include "simulation/collision/held_spheres.h"
-#include "simulation/state/random_stream.h"
+#include "support/random_stream.h"
 
 namespace galactic::simulation {
 

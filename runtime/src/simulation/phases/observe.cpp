@@ -4,7 +4,7 @@
 
 #include "simulation/phases/task.h"
 #include "simulation/state/grip_frame.h"
-#include "simulation/state/random_stream.h"
+#include "support/random_stream.h"
 
 namespace galactic::simulation {
 namespace {

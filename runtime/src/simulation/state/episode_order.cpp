@@ -2,7 +2,7 @@
 
 #include <bit>
 
-#include "simulation/state/random_stream.h"
+#include "support/random_stream.h"
 
 namespace galactic::simulation {
 

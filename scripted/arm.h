@@ -6,7 +6,7 @@
 
 #include "galactic/pose.h"
 #include "galactic/robot.h"
-#include "simulation/state/random_stream.h"
+#include "support/random_stream.h"
 
 namespace galactic::scripted {
 
@@ -67,7 +67,7 @@ class Arm {
   /// Draws the controlled joints evenly within their limits; the others stay. The segments of a
   /// telescope all get the same share of their way: drawn one by one, their sum would nearly
   /// always be about half of the arm, and they would move in more actions.
-  void draw(simulation::RandomStream& random, Joints& positions) const;
+  void draw(RandomStream& random, Joints& positions) const;
   /// Adds `by` to a joint, within its limits.
   void move(std::size_t joint, float by, Joints& positions) const;
 

@@ -1,4 +1,4 @@
-#include "galactic/scripted_policy.h"
+#include "scripted/scripted_policy.h"
 
 #include <algorithm>
 #include <array>

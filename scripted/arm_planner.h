@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
+#include "galactic/planning_scene.h"
 #include "scripted/inverse_kinematics.h"
-#include "scripted/probe.h"
-#include "simulation/state/random_stream.h"
+#include "support/random_stream.h"
 
 namespace galactic::scripted {
 
@@ -16,8 +16,8 @@ using ArmPath = std::vector<Joints>;
 /// Moves of the arm that penetrate nothing, while the base stands still.
 class ArmPlanner {
  public:
-  /// `probe` must outlive the planner.
-  explicit ArmPlanner(Probe& probe) : probe_(probe) {}
+  /// `scene` and `arm` must outlive the planner.
+  ArmPlanner(PlanningScene& scene, Arm& arm) : scene_(scene), arm_(arm) {}
 
   /// Whether the straight line in joint space is free; its beginning is not looked at.
   [[nodiscard]] bool isFree(const BasePlace& base, const Joints& from, const Joints& to);
@@ -55,7 +55,10 @@ class ArmPlanner {
                                                const Joints& to, std::uint64_t seed);
   void shorten(const BasePlace& base, const Joints& from, ArmPath& path);
 
-  Probe& probe_;
+  [[nodiscard]] bool isFreeAt(const BasePlace& base, const Joints& joints);
+
+  PlanningScene& scene_;
+  Arm& arm_;
   Joints between_;
 };
 

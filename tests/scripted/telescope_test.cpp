@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "galactic/batch_simulator.h"
-#include "galactic/scripted_policy.h"
 #include "scripted/inverse_kinematics.h"
 #include "scripted/reach_table.h"
+#include "scripted/scripted_policy.h"
 #include "scripted_world.h"
 #include "telescope_robot.h"
 
@@ -100,7 +100,7 @@ TEST(Telescope, IsOneMoveOfItsSegmentsAndTheLiftAnother) {
   const std::array<std::uint32_t, 6> leaders{0, 1, 1, 1, 1, 5};
   for (std::size_t n = 0; n < joints.size(); ++n) EXPECT_EQ(joints[n].leader, leaders[n]) << n;
 
-  simulation::RandomStream random(5, 0, 0, 0);
+  RandomStream random(5, 0, 0, 0);
   Joints drawn = made.start();
   int long_or_short = 0;
   constexpr int kDraws = 400;

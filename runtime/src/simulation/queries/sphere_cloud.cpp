@@ -1,14 +1,12 @@
-#include "scripted/sphere_cloud.h"
+#include "simulation/queries/sphere_cloud.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace galactic::scripted {
-
-Vec3 headingOf(float yaw) { return {std::cos(yaw), 0, -std::sin(yaw)}; }
+namespace galactic::simulation {
 
 SphereCloud::SphereCloud(std::span<const Sphere> spheres, std::span<const float> radii) {
-  entries_.reserve(spheres.size() + simulation::kLanes * radii.size());
+  entries_.reserve(spheres.size() + kLanes * radii.size());
   ranges_.reserve(radii.size());
   for (std::uint32_t radius = 0; radius < radii.size(); ++radius) {
     const auto first = static_cast<std::uint32_t>(entries_.size());
@@ -18,7 +16,7 @@ SphereCloud::SphereCloud(std::span<const Sphere> spheres, std::span<const float>
     const auto count = static_cast<std::uint32_t>(entries_.size()) - first;
     if (count == 0) continue;
     ranges_.push_back({radius, radii[radius], first, count});
-    while (entries_.size() % simulation::kLanes != 0) {
+    while (entries_.size() % kLanes != 0) {
       const Sphere last = entries_.back();
       entries_.push_back(last);
     }
@@ -37,7 +35,7 @@ void SphereCloud::assemble(std::span<const Pose> parts) {
 
 float SphereCloud::reach() const {
   float most = 0;
-  for (const simulation::RadiusRange& range : ranges_) {
+  for (const RadiusRange& range : ranges_) {
     for (std::size_t n = range.first; n < range.first + range.count; ++n) {
       const Vec3& p = in_root_[n];
       most = std::max(most, std::sqrt(p.x * p.x + p.z * p.z) + range.radius);
@@ -46,7 +44,7 @@ float SphereCloud::reach() const {
   return most;
 }
 
-simulation::SphereBatch SphereCloud::at(const BasePlace& base, float root_height) {
+SphereBatch SphereCloud::at(const BasePlace& base, float root_height) {
   const float cosine = std::cos(base.yaw);
   const float sine = std::sin(base.yaw);
   const float up = base.position.y + root_height;
@@ -59,4 +57,4 @@ simulation::SphereBatch SphereCloud::at(const BasePlace& base, float root_height
   return {x_.data(), y_.data(), z_.data(), ranges_};
 }
 
-}  // namespace galactic::scripted
+}  // namespace galactic::simulation

@@ -11,11 +11,9 @@
 namespace galactic::test::floor_search_test {
 namespace {
 
-using scripted::BasePlace;
 using scripted::BaseRoute;
 using scripted::FloorSearch;
 using scripted::Joints;
-using scripted::Probe;
 
 /// A room of 4 m by 3 m, cut at x = 2 m by a wall with a door of `door` meters at z = 1.5 m.
 MeshBuilder twoRooms(float door) {
@@ -39,13 +37,13 @@ MeshBuilder deadEnd() {
 class Floor {
  public:
   Floor(const MeshBuilder& room, const Vec3& from, const Vec3& to)
-      : made_(stickWorld(room.build(), from, to, to)), probe_(made_.world(), {}) {
+      : made_(stickWorld(room.build(), from, to, to)), scene_(made_.world(), {}) {
     EnvState state;
     state.objects = {{to, {}}};
     state.world_from_root.translation = from;
     const auto start = made_.world().robot().startPositions();
     joints_.assign(start.begin(), start.end());
-    probe_.look(state);
+    scene_.update(state);
     start_ = {from, 0.3F};
     target_ = to;
   }
@@ -54,7 +52,7 @@ class Floor {
     return search([](const BasePlace&) { return true; });
   }
   FloorSearch::Answer search(const FloorSearch::Accept& accept) {
-    FloorSearch search(probe_, made_.world().robot());
+    FloorSearch search(scene_, made_.world().robot());
     return search.search(start_, joints_, {.point = target_}, accept);
   }
 
@@ -66,20 +64,20 @@ class Floor {
     constexpr float kBetween = 0.02F;
     float driven = 0;
     BasePlace at = start_;
-    probe_.setArm(joints_);
+    scene_.setJoints(joints_);
     for (const BasePlace& next : route) {
       const Vec3 way = next.position - at.position;
       const float length = std::sqrt(way.x * way.x + way.z * way.z);
       const float turn = std::fabs(std::remainder(next.yaw - at.yaw, 6.2831853F));
       EXPECT_TRUE(length < 1e-3F || turn < 1e-3F) << "a leg turns and drives at once";
       if (length > 1e-3F) {
-        const Vec3 heading = scripted::headingOf(at.yaw);
+        const Vec3 heading = headingOf(at.yaw);
         EXPECT_NEAR(std::fabs(dot(way, heading)), length, 1e-3F) << "a drive sideways";
       }
       const int pieces = 1 + static_cast<int>(length / kBetween);
       for (int n = 1; n <= pieces; ++n) {
         const float share = static_cast<float>(n) / static_cast<float>(pieces);
-        EXPECT_TRUE(probe_.isFreeAt({at.position + way * share, next.yaw}));
+        EXPECT_TRUE(scene_.isFree({at.position + way * share, next.yaw}));
       }
       driven += length;
       at = next;
@@ -89,7 +87,7 @@ class Floor {
 
  private:
   ScriptedWorld made_;
-  Probe probe_;
+  PlanningScene scene_;
   Joints joints_;
   BasePlace start_;
   Vec3 target_;
@@ -139,11 +137,11 @@ TEST(FloorSearch, GetsOutOfADeadEnd) {
 
 TEST(FloorSearch, TellsPlacesThatAreNotWantedFromNoWay) {
   const ScriptedWorld made = stickWorld(madeRoom(3, 3).build(), kWest, {2, 0.5F, 2}, {});
-  Probe probe(made.world(), {});
+  PlanningScene scene(made.world(), {});
   EnvState state;
   state.objects = {{{2, 0.5F, 2}, {}}};
-  probe.look(state);
-  FloorSearch search(probe, made.world().robot());
+  scene.update(state);
+  FloorSearch search(scene, made.world().robot());
   const auto start = made.world().robot().startPositions();
   int offers = 0;
   const auto answer = search.search({kWest, 0}, {start.begin(), start.end()},
@@ -165,11 +163,11 @@ TEST(FloorSearch, OffersPlacesWithTheTargetOnTheWantedSide) {
   const Vec3 to{2, 0.5F, 2};
   for (const float bearing : {0.0F, -1.5707963F, 2.0F}) {
     const ScriptedWorld made = stickWorld(madeRoom(4, 4).build(), kWest, to, {});
-    Probe probe(made.world(), {});
+    PlanningScene scene(made.world(), {});
     EnvState state;
     state.objects = {{to, {}}};
-    probe.look(state);
-    FloorSearch search(probe, made.world().robot());
+    scene.update(state);
+    FloorSearch search(scene, made.world().robot());
     const auto start = made.world().robot().startPositions();
     int offers = 0;
     const auto answer = search.search(

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "galactic/planning_scene.h"
 #include "scripted/arm_planner.h"
 #include "scripted/floor_search.h"
 #include "scripted/plan.h"
-#include "scripted/probe.h"
 #include "scripted/reach_table.h"
 
 namespace galactic::scripted {
@@ -23,8 +23,6 @@ class Planner {
   [[nodiscard]] Plan planPick(const EnvState& state, std::uint32_t attempt);
   /// From anywhere with the target in the hand, to its release at the goal.
   [[nodiscard]] Plan planPlace(const EnvState& state, std::uint32_t attempt);
-
-  [[nodiscard]] BasePlace baseOf(const EnvState& state) const;
 
  private:
   /// What the arm has to do at a place where the robot may stand: as HandGoal has it, but with
@@ -66,11 +64,13 @@ class Planner {
                                             const Joints& carried);
   [[nodiscard]] std::optional<ArmPath> liftAndFold(const BasePlace& base, const Joints& from,
                                                    const Joints& carried);
+  [[nodiscard]] Pose gripAt(const Joints& joints) { return arm_.gripOf(arm_.placeLinks(joints)); }
   [[nodiscard]] std::uint64_t nextSeed();
 
   const World& world_;
   SimulationOptions options_;
-  Probe probe_;
+  PlanningScene scene_;
+  Arm arm_;
   ArmPlanner arm_planner_;
   FloorSearch floor_search_;
   ReachTable reach_table_;

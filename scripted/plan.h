@@ -2,9 +2,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "galactic/scripted_policy.h"
+#include "galactic/planning_scene.h"
 #include "scripted/arm.h"
-#include "scripted/sphere_cloud.h"
+#include "scripted/scripted_policy.h"
 
 namespace galactic::scripted {
 

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "simulation/collision/resting_box.h"
-
 namespace galactic::scripted {
 namespace {
 
@@ -31,16 +29,17 @@ constexpr Vec3 kUp{0, 1, 0};
 
 Vec3 unit(const Vec3& v) { return v * (1 / std::sqrt(dot(v, v))); }
 
-/// The point on the line from `inside` the box against `way` that is `distance` off the box.
-Vec3 pointBefore(const simulation::RestingBox& box, const Vec3& inside, const Vec3& way,
-                 float distance) {
-  const Vec3& half = box.half_extents;
+/// The point on the line from `inside` the box of an object against `way` that is `distance` off
+/// it.
+Vec3 pointBefore(const PlanningScene& scene, std::uint32_t object, const Vec3& inside,
+                 const Vec3& way, float distance) {
+  const Vec3 half = scene.objectBox(object).half_extents;
   float near = 0;
   float far = 2 * std::sqrt(dot(half, half)) + distance;
   for (int n = 0; n < 20; ++n) {
     const float middle = 0.5F * (near + far);
     const bool is_outside =
-        simulation::squaredDistance(box, inside - way * middle) >= distance * distance;
+        scene.squaredDistance(object, inside - way * middle) >= distance * distance;
     (is_outside ? far : near) = middle;
   }
   return inside - way * far;
@@ -99,26 +98,21 @@ ScriptedTrouble troubleOf(FloorSearch::Outcome outcome, ScriptedTrouble no_way,
 Planner::Planner(const World& world, const SimulationOptions& options)
     : world_(world),
       options_(options),
-      probe_(world, options),
-      arm_planner_(probe_),
-      floor_search_(probe_, world.robot()),
-      reach_table_(probe_.arm(),
+      scene_(world, options),
+      arm_(world.robot()),
+      arm_planner_(scene_, arm_),
+      floor_search_(scene_, world.robot()),
+      reach_table_(arm_,
                    {world.robot().startPositions().begin(), world.robot().startPositions().end()},
                    kReachSamples),
       pick_view_(reach_table_, {}, {1, 0, 0}) {
   const Joints start{world.robot().startPositions().begin(), world.robot().startPositions().end()};
   const auto is_stiff_with = [&](Movers movers) {
-    return mostFreedoms(probe_.arm(), reach_table_, start, movers) < kAllFreedoms;
+    return mostFreedoms(arm_, reach_table_, start, movers) < kAllFreedoms;
   };
   if (is_stiff_with(Movers::kArm)) most_turn_ = kMostTurn;
   is_stiff_ = is_stiff_with(Movers::kArmAndTurnOfBase);
   chooseCarries();
-}
-
-BasePlace Planner::baseOf(const EnvState& state) const {
-  const Quat& q = state.world_from_root.rotation;
-  const float root_height = world_.robot().base()->root_height;
-  return {state.world_from_root.translation - Vec3{0, root_height, 0}, 2 * std::atan2(q.y, q.w)};
 }
 
 std::uint64_t Planner::nextSeed() { return seed_++; }
@@ -146,13 +140,13 @@ void Planner::chooseCarries() {
   constexpr std::size_t kMostCarries = 3;
   constexpr float kApart = 0.3F;
   Joints start{world_.robot().startPositions().begin(), world_.robot().startPositions().end()};
-  for (const ArmJoint& joint : probe_.arm().joints()) {
+  for (const ArmJoint& joint : arm_.joints()) {
     start[joint.position] = std::clamp(start[joint.position], joint.lower, joint.upper);
   }
   const auto reach_of = [&](const Joints& joints, const Pose& grip) {
-    probe_.setArm(joints);
+    scene_.setJoints(joints);
     const Vec3& p = grip.translation;
-    return std::max(probe_.robotReach(), std::sqrt(p.x * p.x + p.z * p.z) + kHeldRoom);
+    return std::max(scene_.reach(), std::sqrt(p.x * p.x + p.z * p.z) + kHeldRoom);
   };
   struct Candidate {
     float reach = 0;
@@ -168,10 +162,10 @@ void Planner::chooseCarries() {
     const float out = dot(p, side);
     const bool is_beside = out >= std::fabs(p.x * side.z - p.z * side.x);
     if (p.y < kLowest || p.y > kHighest || (p.x < std::fabs(p.z) && !is_beside)) continue;
-    candidates.push_back({reach_of(reach_table_.joints(probe_.arm(), n, start), grip), n});
+    candidates.push_back({reach_of(reach_table_.joints(arm_, n, start), grip), n});
   }
   std::ranges::stable_sort(candidates, {}, &Candidate::reach);
-  const Pose start_grip = probe_.arm().gripOf(probe_.arm().placeLinks(start));
+  const Pose start_grip = gripAt(start);
   const bool start_is_good =
       candidates.empty() || reach_of(start, start_grip) <= kStartBonus * candidates.front().reach;
   if (start_is_good) carries_.push_back(start);
@@ -184,20 +178,20 @@ void Planner::chooseCarries() {
     });
     if (!is_new) continue;
     grips.push_back(grip);
-    carries_.push_back(reach_table_.joints(probe_.arm(), candidate.sample, start));
+    carries_.push_back(reach_table_.joints(arm_, candidate.sample, start));
   }
   if (!start_is_good) carries_.push_back(start);
 }
 
 ArmPath Planner::retreatFrom(const BasePlace& base, const Joints& there, const Reach& reach) {
-  const Pose root_from_world = inverse(probe_.worldFromRoot(base));
+  const Pose root_from_world = inverse(scene_.worldFromRoot(base));
   const HandGoal goal = seenFrom(root_from_world, reach.goal);
   ArmPlanner::Slide slide{.length = reach.retreat_length,
                           .way = rotate(root_from_world.rotation, reach.retreat),
                           .direction_tolerance = hand_options_.direction_tolerance};
   if (!reach.any_direction) return arm_planner_.slide(base, there, goal, slide);
   slide.direction_tolerance = -1;
-  const Pose root_from_grip = probe_.arm().gripOf(probe_.arm().placeLinks(there));
+  const Pose root_from_grip = gripAt(there);
   slide.way = rotate(root_from_grip.rotation, goal.direction) * -1.0F;
   ArmPath path = arm_planner_.slide(base, there, goal, slide);
   if (!path.empty()) return path;
@@ -209,19 +203,19 @@ template <class IsRight>
 std::optional<ArmPath> Planner::reach(BasePlace& base, const Joints& carried, const Reach& reach,
                                       const IsRight& is_right) {
   std::array<std::uint32_t, kSeeds> seeds{};
-  const Pose root_from_world = inverse(probe_.worldFromRoot(base));
+  const Pose root_from_world = inverse(scene_.worldFromRoot(base));
   const HandGoal goal = seenFrom(root_from_world, reach.goal);
   const std::size_t count = view_->nearest(goal, kSeedReach, seeds);
   InverseKinematicsOptions options = hand_options_;
   if (reach.any_direction) options.direction_tolerance = -1;
-  Arm& arm = probe_.arm();
   for (const std::uint32_t sample : std::span(seeds).first(count)) {
-    const Joints seed = reach_table_.joints(arm, sample, carried);
-    const std::optional<TurnedHand> hand = solveHandAndTurn(arm, goal, seed, most_turn_, options);
+    const Joints seed = reach_table_.joints(arm_, sample, carried);
+    const std::optional<TurnedHand> hand = solveHandAndTurn(arm_, goal, seed, most_turn_, options);
     if (!hand) continue;
     const Joints& there = hand->joints;
     const BasePlace turned{base.position, base.yaw + hand->turn};
-    if (!probe_.isFree(turned, there) || !is_right(turned, there)) continue;
+    scene_.setJoints(there);
+    if (!scene_.isFree(turned) || !is_right(turned)) continue;
     ArmPath path = retreatFrom(turned, there, reach);
     if (path.empty()) continue;
     std::ranges::reverse(path);
@@ -240,35 +234,32 @@ std::optional<ArmPath> Planner::reach(BasePlace& base, const Joints& carried, co
 
 std::optional<ArmPath> Planner::reachTarget(BasePlace& base, const Joints& carried) {
   if (failed_motions_ >= kMostFailedMotions) return std::nullopt;
-  const simulation::RestingBox& box = probe_.objects().box(state_->target);
+  const std::uint32_t target = state_->target;
+  const Vec3 center = scene_.objectBox(target).pose.translation;
   const float radius = world_.robot().endEffector()->grasp_radius;
-  const Vec3 to_target = box.center - base.position;
+  const Vec3 to_target = center - base.position;
   const Vec3 ahead = unit({to_target.x, 0, to_target.z});
   // Somewhat under the top: a thick hand that comes from the side does not get lower.
   constexpr float kHigh = 0.9F;
   constexpr float kAlmostNone = 1e-3F;
-  const Vec3 top = pointBefore(box, box.center, kUp * -1.0F, kAlmostNone);
-  const Vec3 high = box.center + (top - box.center) * kHigh;
+  const Vec3 top = pointBefore(scene_, target, center, kUp * -1.0F, kAlmostNone);
+  const Vec3 high = center + (top - center) * kHigh;
   struct Way {
     Vec3 way;
     Vec3 inside;
     bool any_direction = false;
   };
-  const std::array<Way, 5> ways{{{kUp * -1.0F, box.center},
-                                 {unit(ahead - kUp), box.center},
-                                 {ahead, box.center},
+  const std::array<Way, 5> ways{{{kUp * -1.0F, center},
+                                 {unit(ahead - kUp), center},
+                                 {ahead, center},
                                  {ahead, high, true},
-                                 {ahead, box.center, true}}};
+                                 {ahead, center, true}}};
   for (const auto& [way, inside, any_direction] : std::span(ways).first(is_thorough_ ? 5 : 3)) {
-    const Vec3 grip = pointBefore(box, inside, way, kGraspShare * radius);
+    const Vec3 grip = pointBefore(scene_, target, inside, way, kGraspShare * radius);
     const Reach goal{.goal = {.point = {}, .direction = {1, 0, 0}, .place = grip, .toward = way},
                      .retreat = way * -1.0F,
                      .any_direction = any_direction};
-    const auto is_right = [&](const BasePlace& place, const Joints& positions) {
-      const Pose world_from_grip =
-          probe_.worldFromRoot(place) * probe_.arm().gripOf(probe_.arm().placeLinks(positions));
-      return probe_.objects().nearest(world_from_grip.translation, radius) == state_->target;
-    };
+    const auto is_right = [&](const BasePlace& place) { return scene_.graspedAt(place) == target; };
     BasePlace turned = base;
     std::optional<ArmPath> path = reach(turned, carried, goal, is_right);
     if (!path || !comesAway(turned, path->back(), carried)) continue;
@@ -279,9 +270,10 @@ std::optional<ArmPath> Planner::reachTarget(BasePlace& base, const Joints& carri
 }
 
 bool Planner::comesAway(const BasePlace& base, const Joints& positions, const Joints& carried) {
-  probe_.pretendToHold(state_->target, base, positions);
+  scene_.setJoints(positions);
+  scene_.hold(state_->target, base);
   const bool result = liftAndFold(base, positions, carried).has_value();
-  probe_.pretendNoMore();
+  scene_.putBack();
   if (!result) ++failed_motions_;
   return result;
 }
@@ -291,13 +283,13 @@ std::optional<ArmPath> Planner::reachGoal(BasePlace& base, const Joints& carried
   const Pose& goal_pose = state_->goal;
   const Vec3 up_of_object = rotate(conjugate(goal_pose.rotation), kUp);
   for (const float lift : {0.04F, 0.015F}) {
-    const Reach goal{{.point = probe_.gripFromObject().translation,
-                      .direction = rotate(probe_.gripFromObject().rotation, up_of_object),
+    const Reach goal{{.point = scene_.gripFromObject().translation,
+                      .direction = rotate(scene_.gripFromObject().rotation, up_of_object),
                       .place = goal_pose.translation + kUp * lift,
                       .toward = kUp},
                      kUp};
-    const auto is_right = [&](const BasePlace& place, const Joints& positions) {
-      const std::optional<Pose> landing = probe_.landing(place, positions);
+    const auto is_right = [&](const BasePlace& place) {
+      const std::optional<Pose> landing = scene_.landing(place);
       if (!landing) return false;
       const Vec3 away = landing->translation - goal_pose.translation;
       return std::sqrt(dot(away, away)) < kLandingShare * options_.task.success_distance;
@@ -311,19 +303,22 @@ std::optional<ArmPath> Planner::reachGoal(BasePlace& base, const Joints& carried
 std::optional<ArmPath> Planner::fold(const BasePlace& base, const Joints& from,
                                      const Joints& carried) {
   constexpr float kThere = 1e-3F;
-  if (probe_.arm().distance(from, carried) < kThere) return ArmPath{};
+  if (arm_.distance(from, carried) < kThere) return ArmPath{};
   return arm_planner_.plan(base, from, carried, nextSeed());
 }
 
 std::optional<ArmPath> Planner::liftAndFold(const BasePlace& base, const Joints& from,
                                             const Joints& carried) {
   constexpr float kLift = 0.1F;
-  const Pose root_from_grip = probe_.arm().gripOf(probe_.arm().placeLinks(from));
+  const Pose root_from_grip = gripAt(from);
   const Vec3 ahead = rotate(root_from_grip.rotation, {1, 0, 0});
   const HandGoal here{
       .point = {}, .direction = {1, 0, 0}, .place = root_from_grip.translation, .toward = ahead};
   for (const Vec3& way : {kUp, unit(kUp - ahead * 0.9F), ahead * -1.0F}) {
-    probe_.ignoreTouching(base, from);
+    if (scene_.isHolding()) {
+      scene_.setJoints(from);
+      scene_.ignorePenetrating(base);
+    }
     ArmPath path = arm_planner_.slide(base, from, here, {.length = kLift, .way = way});
     const std::optional<ArmPath> rest = fold(base, path.empty() ? from : path.back(), carried);
     if (!rest) continue;
@@ -338,8 +333,8 @@ Plan Planner::planPick(const EnvState& state, std::uint32_t attempt) {
   view_ = &pick_view_;
   hand_options_ = {};
   seed_ = (std::uint64_t{state.episode} << 32U) + std::uint64_t{attempt} * 1000;
-  probe_.look(state);
-  const BasePlace start = baseOf(state);
+  scene_.update(state);
+  const BasePlace start = scene_.baseOf(state);
   std::vector<Joints> carries = carriesOf(state);
   // Where there is no room to fold the arm it may still be driven as it is.
   carries.push_back(state.joint_positions);
@@ -377,7 +372,7 @@ FloorSearch::Target Planner::standsFor(const Vec3& point) const {
 
 Plan Planner::pickWith(const BasePlace& start, const Joints& carried) {
   std::optional<ArmPath> reaching;
-  const FloorSearch::Target target = standsFor(probe_.objects().box(state_->target).center);
+  const FloorSearch::Target target = standsFor(scene_.objectBox(state_->target).pose.translation);
   const FloorSearch::Answer answer =
       floor_search_.search(start, carried, target, [&](BasePlace& stance) {
         reaching = reachTarget(stance, carried);
@@ -393,12 +388,12 @@ Plan Planner::pickWith(const BasePlace& start, const Joints& carried) {
 Plan Planner::planPlace(const EnvState& state, std::uint32_t attempt) {
   state_ = &state;
   seed_ = (std::uint64_t{state.episode} << 32U) + std::uint64_t{attempt} * 1000 + 500;
-  probe_.look(state);
+  scene_.update(state);
   const Vec3 up_of_object = rotate(conjugate(state.goal.rotation), kUp);
-  const ReachView view(reach_table_, probe_.gripFromObject().translation,
-                       rotate(probe_.gripFromObject().rotation, up_of_object));
+  const ReachView view(reach_table_, scene_.gripFromObject().translation,
+                       rotate(scene_.gripFromObject().rotation, up_of_object));
   view_ = &view;
-  const BasePlace start = baseOf(state);
+  const BasePlace start = scene_.baseOf(state);
   Plan plan{{}, ScriptedTrouble::kNoFold};
   for (const Joints& carried : carriesOf(state)) {
     failed_motions_ = 0;

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-namespace galactic::simulation {
+namespace galactic {
 
 /// The finaliser of SplitMix64 (Steele, Lea, Flood 2014): every bit of the input decides every bit
 /// of the output.
@@ -33,4 +33,4 @@ class RandomStream {
   std::uint64_t state_;
 };
 
-}  // namespace galactic::simulation
+}  // namespace galactic

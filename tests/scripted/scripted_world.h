@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "../episodes/made_world.h"
+#include "bake/episodes/made_world.h"
 #include "galactic/bake/episode_generator.h"
 #include "galactic/bake/episode_pack.h"
 #include "galactic/world.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "../episodes/made_world.h"
+#include "bake/episodes/made_world.h"
 
 namespace galactic::test {
 

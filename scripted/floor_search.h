@@ -6,7 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "scripted/probe.h"
+#include "galactic/planning_scene.h"
+#include "scripted/arm.h"
 
 namespace galactic::scripted {
 
@@ -19,8 +20,8 @@ using BaseRoute = std::vector<BasePlace>;
 /// headings. Costs are actions. Every pose that the actions lead through is looked at.
 class FloorSearch {
  public:
-  /// `probe` must outlive the search.
-  FloorSearch(Probe& probe, const Robot& robot);
+  /// `scene` must outlive the search.
+  FloorSearch(PlanningScene& scene, const Robot& robot);
 
   struct Target {
     /// What the robot has to get near to; y is not looked at.
@@ -102,7 +103,7 @@ class FloorSearch {
   /// With drives along one axis put together.
   [[nodiscard]] BaseRoute merged(const BaseRoute& route) const;
 
-  Probe& probe_;
+  PlanningScene& scene_;
   float forward_step_;
   float turn_step_;
   /// Actions of an eighth of a turn, and of a whole one.

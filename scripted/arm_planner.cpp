@@ -23,21 +23,25 @@ constexpr float kJump = 0.6F;
 
 }  // namespace
 
+bool ArmPlanner::isFreeAt(const BasePlace& base, const Joints& joints) {
+  scene_.setJoints(joints);
+  return scene_.isFree(base);
+}
+
 bool ArmPlanner::isFree(const BasePlace& base, const Joints& from, const Joints& to) {
-  const float length = probe_.arm().distance(from, to);
+  const float length = arm_.distance(from, to);
   const auto pieces = std::max(1, static_cast<int>(std::ceil(length / kResolution)));
   // The end first: it is the likeliest to be blocked.
   for (int n = pieces; n > 0; --n) {
-    probe_.arm().interpolate(from, to, static_cast<float>(n) / static_cast<float>(pieces),
-                             between_);
-    if (!probe_.isFree(base, between_)) return false;
+    arm_.interpolate(from, to, static_cast<float>(n) / static_cast<float>(pieces), between_);
+    if (!isFreeAt(base, between_)) return false;
   }
   return true;
 }
 
 std::optional<ArmPath> ArmPlanner::plan(const BasePlace& base, const Joints& from, const Joints& to,
                                         std::uint64_t seed) {
-  if (!probe_.isFree(base, to)) return std::nullopt;
+  if (!isFreeAt(base, to)) return std::nullopt;
   if (isFree(base, from, to)) return ArmPath{to};
   std::optional<ArmPath> path = connect(base, from, to, seed);
   if (path) shorten(base, from, *path);
@@ -56,12 +60,15 @@ ArmPath ArmPlanner::slide(const BasePlace& base, const Joints& from, HandGoal ha
   for (int n = 1; n <= pieces; ++n) {
     const float share = static_cast<float>(n) / static_cast<float>(pieces);
     hand.place = start + slide.way * (slide.length * share);
-    const std::optional<Joints> next = solveHand(probe_.arm(), hand, last, options);
-    if (!next || probe_.arm().distance(last, *next) > kJump) break;
+    const std::optional<Joints> next = solveHand(arm_, hand, last, options);
+    if (!next || arm_.distance(last, *next) > kJump) break;
     if (!isFree(base, last, *next)) break;
     last = *next;
     path.push_back(last);
-    probe_.keepTouching(base, last);
+    if (scene_.isHolding()) {
+      scene_.setJoints(last);
+      scene_.countFree(base);
+    }
   }
   return path;
 }
@@ -71,8 +78,8 @@ std::uint32_t ArmPlanner::nearest(const Tree& tree, const Joints& to) {
   std::uint32_t found = 0;
   for (std::uint32_t n = 0; n < tree.nodes.size(); ++n) {
     float sum = 0;
-    for (std::size_t joint = 0; joint < probe_.arm().joints().size(); ++joint) {
-      const float way = probe_.arm().difference(joint, tree.nodes[n], to);
+    for (std::size_t joint = 0; joint < arm_.joints().size(); ++joint) {
+      const float way = arm_.difference(joint, tree.nodes[n], to);
       sum += way * way;
     }
     if (sum < best) {
@@ -85,10 +92,10 @@ std::uint32_t ArmPlanner::nearest(const Tree& tree, const Joints& to) {
 
 ArmPlanner::Growth ArmPlanner::extend(const BasePlace& base, Tree& tree, const Joints& to) {
   const std::uint32_t parent = nearest(tree, to);
-  const float length = probe_.arm().distance(tree.nodes[parent], to);
+  const float length = arm_.distance(tree.nodes[parent], to);
   const bool arrives = length <= kEdge;
   Joints next = to;
-  if (!arrives) probe_.arm().interpolate(tree.nodes[parent], to, kEdge / length, next);
+  if (!arrives) arm_.interpolate(tree.nodes[parent], to, kEdge / length, next);
   if (!isFree(base, tree.nodes[parent], next)) return Growth::kBlocked;
   tree.nodes.push_back(std::move(next));
   tree.parents.push_back(parent);
@@ -98,13 +105,13 @@ ArmPlanner::Growth ArmPlanner::extend(const BasePlace& base, Tree& tree, const J
 std::optional<ArmPath> ArmPlanner::connect(const BasePlace& base, const Joints& from,
                                            const Joints& to, std::uint64_t seed) {
   Tree trees[2] = {{{from}, {0}}, {{to}, {0}}};
-  simulation::RandomStream random(seed, 0, 0, 0);
+  RandomStream random(seed, 0, 0, 0);
   Joints drawn = from;
   for (int n = 0; n < kMostDraws; ++n) {
     Tree& growing = trees[n % 2];
     Tree& other = trees[1 - n % 2];
     if (growing.nodes.size() + other.nodes.size() > kMostNodes) break;
-    probe_.arm().draw(random, drawn);
+    arm_.draw(random, drawn);
     if (extend(base, growing, drawn) == Growth::kBlocked) continue;
     const Joints reached = growing.nodes.back();
     Growth growth = Growth::kGrown;

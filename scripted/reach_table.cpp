@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "simulation/state/random_stream.h"
+#include "support/random_stream.h"
 
 namespace galactic::scripted {
 namespace {
@@ -37,7 +37,7 @@ float meanBearing(std::span<const Pose> grips) {
 
 ReachTable::ReachTable(Arm& arm, const Joints& positions, std::uint32_t samples)
     : joints_(arm.joints().size()) {
-  simulation::RandomStream random(kSeed, 0, 0, 0);
+  RandomStream random(kSeed, 0, 0, 0);
   Joints drawn = positions;
   rows_.reserve(samples * joints_);
   grips_.reserve(samples);

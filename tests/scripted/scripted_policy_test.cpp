@@ -1,5 +1,5 @@
 // The scripted policy on the project's own world, from the first step to the reward.
-#include "galactic/scripted_policy.h"
+#include "scripted/scripted_policy.h"
 
 #include <gtest/gtest.h>
 

@@ -4,21 +4,12 @@
 #include <span>
 #include <vector>
 
+#include "galactic/planning_scene.h"
 #include "galactic/pose.h"
 #include "galactic/shapes.h"
 #include "simulation/collision/sphere_batch.h"
 
-namespace galactic::scripted {
-
-/// A place of the robot's base: the point on the floor under its root, and its heading about +Y,
-/// radians.
-struct BasePlace {
-  Vec3 position;
-  float yaw = 0;
-};
-
-/// The direction in which a base of this yaw drives forward.
-[[nodiscard]] Vec3 headingOf(float yaw);
+namespace galactic::simulation {
 
 /// Spheres of rigid parts, first put together in the frame of the robot's root, then taken to many
 /// places of its base.
@@ -40,14 +31,14 @@ class SphereCloud {
   [[nodiscard]] float reach() const;
   /// The assembled spheres in the world, for a root that lies `root_height` above the base's place;
   /// valid until the next call.
-  [[nodiscard]] simulation::SphereBatch at(const BasePlace& base, float root_height);
+  [[nodiscard]] SphereBatch at(const BasePlace& base, float root_height);
 
  private:
   /// Radius by radius, each padded to whole lanes.
   std::vector<Sphere> entries_;
-  std::vector<simulation::RadiusRange> ranges_;
+  std::vector<RadiusRange> ranges_;
   std::vector<Vec3> in_root_;
   std::vector<float> x_, y_, z_;
 };
 
-}  // namespace galactic::scripted
+}  // namespace galactic::simulation

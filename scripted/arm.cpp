@@ -82,7 +82,7 @@ void Arm::joinTelescopes() {
   }
 }
 
-void Arm::draw(simulation::RandomStream& random, Joints& positions) const {
+void Arm::draw(RandomStream& random, Joints& positions) const {
   for (std::size_t n = 0; n < joints_.size(); ++n) {
     const ArmJoint& joint = joints_[n];
     const ArmJoint& leader = joints_[joint.leader];

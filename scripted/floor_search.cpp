@@ -40,15 +40,15 @@ float wrapped(float angle) { return std::remainder(angle, kTurn); }
 
 }  // namespace
 
-FloorSearch::FloorSearch(Probe& probe, const Robot& robot)
-    : probe_(probe),
+FloorSearch::FloorSearch(PlanningScene& scene, const Robot& robot)
+    : scene_(scene),
       forward_step_(robot.base()->forward_step),
       turn_step_(robot.base()->turn_step),
       eighth_(static_cast<std::uint32_t>(std::max(actionsFor(kTurn / 8, turn_step_), 1.0F))),
       fines_(kHeadings * eighth_) {}
 
 void FloorSearch::layOut() {
-  const ColumnGrid& grid = probe_.scene().grids().front();
+  const ColumnGrid& grid = scene_.scene().grids().front();
   const auto last_i = static_cast<std::int32_t>(std::ceil(
       (grid.layout().min_x + static_cast<float>(grid.columnsX()) * grid.spacing()) / edge_));
   const auto last_k = static_cast<std::int32_t>(std::ceil(
@@ -93,7 +93,7 @@ std::uint32_t FloorSearch::fineOf(float yaw) const {
 void FloorSearch::recall() {
   for (memory_ = 0; memory_ < memories_.size(); ++memory_) {
     const Memory& memory = memories_[memory_];
-    const bool fits = memory.scene == &probe_.scene() && memory.edge == edge_ &&
+    const bool fits = memory.scene == &scene_.scene() && memory.edge == edge_ &&
                       memory.floor == floor_ && memory.carried == *carried_;
     if (fits) return;
   }
@@ -105,7 +105,7 @@ void FloorSearch::recall() {
     oldest_ = (oldest_ + 1) % kMostMemories;
   }
   const std::size_t cells = static_cast<std::size_t>(count_i_) * count_k_;
-  memories_[memory_] = {&probe_.scene(),
+  memories_[memory_] = {&scene_.scene(),
                         edge_,
                         floor_,
                         *carried_,
@@ -121,9 +121,9 @@ bool FloorSearch::isFreeOfScene(std::uint32_t cell, std::uint32_t fine) {
   float& height = memory.floors[cell];
   if (height == kInfinity) {
     const Vec3 at = placeOf(cell, fine).position;
-    height = probe_.floorAt(at.x, at.z, floor_).value_or(std::numeric_limits<float>::quiet_NaN());
+    height = scene_.floorAt(at.x, at.z, floor_).value_or(std::numeric_limits<float>::quiet_NaN());
   }
-  const bool is_free = !std::isnan(height) && probe_.isFreeOfScene(placeOf(cell, fine));
+  const bool is_free = !std::isnan(height) && scene_.isRobotFreeOfScene(placeOf(cell, fine));
   known = is_free ? kFree : kBlocked;
   return is_free;
 }
@@ -173,7 +173,7 @@ void FloorSearch::measureWays() {
 bool FloorSearch::isFree(std::uint32_t cell, std::uint32_t fine) {
   std::uint8_t& known = known_[static_cast<std::size_t>(cell) * fines_ + fine];
   if (known == 0) {
-    const bool is_free = isFreeOfScene(cell, fine) && probe_.isFreeOfRest(placeOf(cell, fine));
+    const bool is_free = isFreeOfScene(cell, fine) && scene_.isFreeOfAllElse(placeOf(cell, fine));
     known = is_free ? kFree : kBlocked;
   }
   return known == kFree;
@@ -195,7 +195,7 @@ bool FloorSearch::canTurnFreely(const BasePlace& at, float to) {
   const int actions = static_cast<int>(actionsFor(way, turn_step_));
   for (int n = 1; n <= actions; ++n) {
     const float turned = way * (static_cast<float>(n) / static_cast<float>(actions));
-    if (!probe_.isFreeAt({at.position, at.yaw + turned})) return false;
+    if (!scene_.isFree({at.position, at.yaw + turned})) return false;
   }
   return true;
 }
@@ -208,10 +208,10 @@ bool FloorSearch::canDrive(const BasePlace& from, const BasePlace& to) {
     const float share = n == actions ? 1.0F : static_cast<float>(n) * forward_step_ / length;
     BasePlace at{from.position + way * share, from.yaw};
     const std::optional<float> floor =
-        probe_.floorAt(at.position.x, at.position.z, from.position.y);
+        scene_.floorAt(at.position.x, at.position.z, from.position.y);
     if (!floor) return false;
     at.position.y = *floor;
-    if (!probe_.isFreeAt(at)) return false;
+    if (!scene_.isFree(at)) return false;
   }
   return true;
 }
@@ -314,7 +314,7 @@ std::optional<BasePlace> FloorSearch::offer(std::uint32_t node, const Accept& ac
     const float yaw = stance.yaw;
     const bool accepted = accept(stance);
     // The answer may have moved the arm.
-    probe_.setArm(*carried_);
+    scene_.setJoints(*carried_);
     if (accepted && (stance.yaw == yaw || canTurnFreely(place, stance.yaw))) return stance;
   }
   return std::nullopt;
@@ -374,7 +374,7 @@ FloorSearch::Answer FloorSearch::searchLattice(const BasePlace& start, const Joi
   floor_ = start.position.y;
   layOut();
   recall();
-  probe_.setArm(carried);
+  scene_.setJoints(carried);
   measureWays();
   findEntries(start);
   while (!waiting_.empty() && offers_ < target_.most_offers) {

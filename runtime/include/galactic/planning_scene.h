@@ -1,0 +1,117 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "galactic/batch_simulator.h"
+#include "galactic/pose.h"
+#include "galactic/scene.h"
+#include "galactic/shapes.h"
+#include "galactic/simulation_options.h"
+#include "galactic/world.h"
+
+namespace galactic {
+
+/// Where the base of a robot stands.
+struct BasePlace {
+  /// The point on the floor under the root, world frame, meters.
+  Vec3 position;
+  /// Angle about +Y, radians: 0 looks along +X, a positive one is a turn counter-clockwise, seen
+  /// from above.
+  float yaw = 0;
+};
+
+/// The direction in which a base of this yaw drives forward: a unit vector of the world frame.
+[[nodiscard]] Vec3 headingOf(float yaw);
+
+/// Answers what a planner asks about one env: does a pose of the robot penetrate anything, where is
+/// the hand then, what would it grasp, and where would a released object come to rest? The rules
+/// are those of BatchSimulator: column grids of the static scene, boxes of the objects at rest,
+/// spheres of the robot and of what it holds. The simulator itself is neither asked nor changed.
+///
+/// Take over an env with update(), choose joint positions with setJoints(), then ask about places
+/// of the base. Every answer depends on these and on the arguments only. Memory is allocated by
+/// the constructor, update() and hold(). Not safe to share between threads; use one for each.
+class PlanningScene {
+ public:
+  /// `world` must outlive the scene. Of `options` it takes TaskOptions::distractors, the ground and
+  /// the placement of released objects. Call update() and setJoints() before anything else.
+  PlanningScene(const World& world, const SimulationOptions& options);
+  ~PlanningScene();
+  PlanningScene(PlanningScene&&) noexcept;
+  PlanningScene& operator=(PlanningScene&&) noexcept;
+
+  /// Takes over an env's scene, its objects and what its robot holds, all of whose spheres count
+  /// again. `state`: of the same world.
+  void update(const EnvState& state);
+  /// The static scene of that env.
+  [[nodiscard]] const Scene& scene() const;
+
+  /// The joint positions of the questions that follow: one per position of the robot
+  /// (Robot::positionCount()), radians or meters. Limits are not enforced.
+  void setJoints(std::span<const float> positions);
+  /// root_from_link of all links for these joints (forward kinematics); valid until the next call
+  /// of setJoints().
+  [[nodiscard]] std::span<const Pose> rootFromLinks() const;
+  /// Origin at the grasp point, axes of the end effector's link, as in EnvState::world_from_grip.
+  [[nodiscard]] Pose rootFromGrip() const;
+  /// How far spheres of the robot reach from its root's vertical axis, meters.
+  [[nodiscard]] float reach() const;
+
+  /// Where the base of the robot of `state` stands.
+  [[nodiscard]] BasePlace baseOf(const EnvState& state) const;
+  [[nodiscard]] Pose worldFromRoot(const BasePlace& base) const;
+  /// Height of the floor under (x, z), meters, for a base that comes from the height `from`; none
+  /// where the floor rises or drops too far (GroundOptions) or there is none.
+  [[nodiscard]] std::optional<float> floorAt(float x, float z, float from) const;
+
+  /// Whether neither the robot nor what it holds penetrates the static scene or an object at rest.
+  /// A place that the column grids do not know counts as penetrated. Whether the robot touches
+  /// itself is not asked: BatchSimulator does not ask either.
+  [[nodiscard]] bool isFree(const BasePlace& base);
+  /// The two parts of isFree(), for planners that remember what they know of the static scene: the
+  /// robot against the scene, and everything else.
+  [[nodiscard]] bool isRobotFreeOfScene(const BasePlace& base);
+  [[nodiscard]] bool isFreeOfAllElse(const BasePlace& base);
+
+  /// Objects of the episode, in the order of EnvState::objects; without distractors the target
+  /// alone.
+  [[nodiscard]] std::size_t objectCount() const;
+  /// The box of an object where it rests, or rested before it was held: world_from_box and half
+  /// extents.
+  [[nodiscard]] OrientedBox objectBox(std::size_t object) const;
+  /// Squared distance from a point of the world to the box of an object, square meters; 0 inside.
+  [[nodiscard]] float squaredDistance(std::size_t object, const Vec3& point) const;
+  /// Which object a hand that closes here grasps: of those whose boxes are nearer to the grasp
+  /// point than EndEffector::grasp_radius, the nearest. None when there is no such object.
+  [[nodiscard]] std::optional<std::uint32_t> graspedAt(const BasePlace& base) const;
+
+  /// Holds an object that rests, as if it were grasped here; all its spheres count. The hand must be
+  /// empty.
+  void hold(std::uint32_t object, const BasePlace& base);
+  /// Puts what hold() holds back to where it rested.
+  void putBack();
+  [[nodiscard]] bool isHolding() const;
+  /// Of the held object.
+  [[nodiscard]] const Pose& gripFromObject() const;
+
+  /// Spheres of the held object that penetrate something here do not count from now on. The
+  /// simulation does the same when an object is grasped: its spheres reach further than the box as
+  /// which it rested. Without a held object nothing happens.
+  void ignorePenetrating(const BasePlace& base);
+  /// Spheres that are ignored and free here count again.
+  void countFree(const BasePlace& base);
+
+  /// world_from_object of the held object after a release here: where it comes to rest, placed as
+  /// the simulation does but without random jitters. None when it finds no place; an object must be
+  /// held.
+  [[nodiscard]] std::optional<Pose> landing(const BasePlace& base);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace galactic

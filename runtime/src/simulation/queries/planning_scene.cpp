@@ -1,0 +1,322 @@
+#include "galactic/planning_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "galactic/kinematics.h"
+#include "galactic/robot.h"
+#include "simulation/collision/collision.h"
+#include "simulation/collision/resting_objects.h"
+#include "simulation/phases/move.h"
+#include "simulation/phases/object_placement.h"
+#include "simulation/queries/sphere_cloud.h"
+#include "support/random_stream.h"
+
+namespace galactic {
+namespace {
+
+constexpr std::size_t kBitsPerWord = 64;
+
+using simulation::SphereCloud;
+
+SphereCloud cloudOf(const Robot& robot) {
+  std::vector<SphereCloud::Sphere> spheres;
+  spheres.reserve(robot.spheres().size());
+  for (const SphereGroup& group : robot.groups()) {
+    for (const SetSphere& sphere : group.spheres) spheres.push_back({group.link, sphere});
+  }
+  return {spheres, robot.radii()};
+}
+
+std::size_t mostSpheres(const World& world) {
+  std::size_t most = world.robot().spheres().size();
+  for (const Episode& episode : world.episodes().episodes()) {
+    for (const Placement& placement : world.episodes().placements(episode)) {
+      most = std::max(most, world.objectOf(placement).spheres.size());
+    }
+  }
+  return simulation::paddedToLanes(most) + simulation::kLanes * world.radii().size();
+}
+
+}  // namespace
+
+Vec3 headingOf(float yaw) { return {std::cos(yaw), 0, -std::sin(yaw)}; }
+
+class PlanningScene::Impl {
+ public:
+  Impl(const World& world, const SimulationOptions& options)
+      : world_(&world),
+        options_(options),
+        root_height_(world.robot().base()->root_height),
+        links_(world.robot().links().size()),
+        robot_(cloudOf(world.robot())),
+        resting_(world.mostObjects(), world.radii().back()),
+        collision_(mostSpheres(world)),
+        placement_(mostSpheres(world), world.radii()) {
+    // A jitter is random; what is planned shall not be.
+    options_.placement.attempts = 1;
+  }
+
+  void update(const EnvState& state);
+  void setJoints(std::span<const float> positions);
+  void hold(std::uint32_t object, const BasePlace& base);
+  void putBack();
+
+  [[nodiscard]] Pose rootFromGrip() const {
+    const EndEffector& hand = *world_->robot().endEffector();
+    return links_[hand.link] * Pose{hand.grasp_point, {}};
+  }
+  [[nodiscard]] Pose worldFromRoot(const BasePlace& base) const {
+    const float half = 0.5F * base.yaw;
+    return {base.position + Vec3{0, root_height_, 0}, {0, std::sin(half), 0, std::cos(half)}};
+  }
+
+  [[nodiscard]] bool isFree(const BasePlace& base);
+  [[nodiscard]] bool isRobotFreeOfScene(const BasePlace& base);
+  [[nodiscard]] bool isFreeOfAllElse(const BasePlace& base);
+
+  /// Finds the held object's spheres that penetrate something.
+  [[nodiscard]] std::span<const std::uint64_t> findPenetrating(const BasePlace& base);
+  void ignorePenetrating(const BasePlace& base);
+  void countFree(const BasePlace& base);
+
+  [[nodiscard]] std::optional<Pose> landing(const BasePlace& base);
+
+  [[nodiscard]] const World& world() const { return *world_; }
+  [[nodiscard]] const SimulationOptions& options() const { return options_; }
+  [[nodiscard]] float rootHeight() const { return root_height_; }
+  [[nodiscard]] const Scene& scene() const { return *scene_; }
+  [[nodiscard]] std::span<const Pose> links() const { return links_; }
+  [[nodiscard]] float reach() const { return reach_; }
+  [[nodiscard]] const simulation::RestingObjects& resting() const { return resting_; }
+  [[nodiscard]] const std::vector<const ObjectModel*>& models() const { return models_; }
+  [[nodiscard]] const Pose& poseOf(std::size_t object) const { return poses_[object]; }
+  [[nodiscard]] bool isHolding() const { return held_ != nullptr; }
+  [[nodiscard]] const Pose& gripFromObject() const { return grip_from_object_; }
+
+ private:
+  [[nodiscard]] simulation::Obstacles obstacles() const { return {*scene_, resting_}; }
+  /// Whether an object's bounds lie within the robot's, over a base at `position`.
+  [[nodiscard]] bool isAnyNear(const Vec3& position) const;
+  void take(std::uint32_t object, const Pose& grip_from_object);
+  void assembleHeld();
+  [[nodiscard]] bool isHeldFree(const BasePlace& base);
+
+  const World* world_;
+  SimulationOptions options_;
+  float root_height_ = 0;
+  /// root_from_link for the current joints.
+  std::vector<Pose> links_;
+  SphereCloud robot_;
+  float reach_ = 0;
+
+  const Scene* scene_ = nullptr;
+  simulation::RestingObjects resting_;
+  std::vector<const ObjectModel*> models_;
+  std::vector<Pose> poses_;
+
+  const ObjectModel* held_ = nullptr;
+  std::uint32_t held_number_ = 0;
+  Pose grip_from_object_;
+  SphereCloud held_spheres_;
+  /// One bit per sphere of the held object.
+  std::vector<std::uint64_t> penetrating_;
+  std::vector<std::uint64_t> ignored_;
+
+  simulation::CollisionScratch collision_;
+  simulation::PlacementScratch placement_;
+};
+
+void PlanningScene::Impl::update(const EnvState& state) {
+  const Episode& episode = world_->episodes().episodes()[state.episode];
+  std::span<const Placement> placements = world_->episodes().placements(episode);
+  if (!options_.task.distractors) placements = placements.subspan(episode.target, 1);
+  scene_ = &world_->scenes()[state.scene];
+  models_.clear();
+  resting_.clear();
+  held_ = nullptr;
+  for (std::uint32_t n = 0; n < placements.size(); ++n) {
+    models_.push_back(&world_->objectOf(placements[n]));
+    if (static_cast<std::int32_t>(n) == state.held) continue;
+    resting_.insert(n, simulation::restingBox(models_[n]->box, state.objects[n]));
+  }
+  poses_ = state.objects;
+  if (state.held < 0) return;
+  const auto held = static_cast<std::uint32_t>(state.held);
+  take(held, inverse(state.world_from_grip) * state.objects[held]);
+}
+
+void PlanningScene::Impl::setJoints(std::span<const float> positions) {
+  forwardKinematics(world_->robot().links(), {}, positions, links_);
+  robot_.assemble(links_);
+  reach_ = robot_.reach();
+  if (held_ != nullptr) assembleHeld();
+}
+
+void PlanningScene::Impl::take(std::uint32_t object, const Pose& grip_from_object) {
+  held_number_ = object;
+  held_ = models_[object];
+  grip_from_object_ = grip_from_object;
+  std::vector<SphereCloud::Sphere> spheres;
+  spheres.reserve(held_->spheres.size());
+  for (const SetSphere& sphere : held_->spheres) spheres.push_back({0, sphere});
+  held_spheres_ = SphereCloud(spheres, world_->radii());
+  const std::size_t words = (held_spheres_.paddedCount() + kBitsPerWord - 1) / kBitsPerWord;
+  penetrating_.assign(words, 0);
+  ignored_.assign(words, 0);
+  assembleHeld();
+}
+
+void PlanningScene::Impl::assembleHeld() {
+  const Pose root_from_object = rootFromGrip() * grip_from_object_;
+  held_spheres_.assemble(std::span(&root_from_object, 1));
+}
+
+void PlanningScene::Impl::hold(std::uint32_t object, const BasePlace& base) {
+  const Pose world_from_grip = worldFromRoot(base) * rootFromGrip();
+  resting_.remove(object);
+  take(object, inverse(world_from_grip) * poses_[object]);
+}
+
+void PlanningScene::Impl::putBack() {
+  held_ = nullptr;
+  resting_.insert(held_number_,
+                  simulation::restingBox(models_[held_number_]->box, poses_[held_number_]));
+}
+
+bool PlanningScene::Impl::isFree(const BasePlace& base) {
+  if (simulation::penetrates(obstacles(), robot_.at(base, root_height_))) return false;
+  return isHeldFree(base);
+}
+
+bool PlanningScene::Impl::isRobotFreeOfScene(const BasePlace& base) {
+  const simulation::SphereBatch spheres = robot_.at(base, root_height_);
+  return std::ranges::all_of(spheres.ranges, [&](const simulation::RadiusRange& range) {
+    const std::size_t count = simulation::paddedToLanes(range.count);
+    const SphereCenters centers{{spheres.x + range.first, count},
+                                {spheres.y + range.first, count},
+                                {spheres.z + range.first, count}};
+    return scene_->grids()[range.radius_index].firstNotFree(centers) == count;
+  });
+}
+
+bool PlanningScene::Impl::isFreeOfAllElse(const BasePlace& base) {
+  if (isAnyNear(base.position) && resting_.touches(robot_.at(base, root_height_))) return false;
+  return isHeldFree(base);
+}
+
+bool PlanningScene::Impl::isAnyNear(const Vec3& position) const {
+  for (std::uint32_t n = 0; n < resting_.capacity(); ++n) {
+    if (!resting_.isResting(n)) continue;
+    const simulation::RestingBox& box = resting_.box(n);
+    const Vec3 half = box.half_extents;
+    const float x = box.center.x - position.x;
+    const float z = box.center.z - position.z;
+    const float far = reach_ + std::sqrt(dot(half, half));
+    if (x * x + z * z < far * far) return true;
+  }
+  return false;
+}
+
+bool PlanningScene::Impl::isHeldFree(const BasePlace& base) {
+  if (held_ == nullptr) return true;
+  if (!simulation::penetrates(obstacles(), held_spheres_.at(base, root_height_))) return true;
+  const std::span<const std::uint64_t> penetrating = findPenetrating(base);
+  for (std::size_t w = 0; w < penetrating.size(); ++w) {
+    if ((penetrating[w] & ~ignored_[w]) != 0) return false;
+  }
+  return true;
+}
+
+std::span<const std::uint64_t> PlanningScene::Impl::findPenetrating(const BasePlace& base) {
+  simulation::penetrating(obstacles(), held_spheres_.at(base, root_height_), collision_,
+                          penetrating_);
+  return penetrating_;
+}
+
+void PlanningScene::Impl::ignorePenetrating(const BasePlace& base) {
+  if (held_ == nullptr) return;
+  std::ranges::copy(findPenetrating(base), ignored_.begin());
+}
+
+void PlanningScene::Impl::countFree(const BasePlace& base) {
+  if (held_ == nullptr) return;
+  const std::span<const std::uint64_t> penetrating = findPenetrating(base);
+  for (std::size_t w = 0; w < ignored_.size(); ++w) ignored_[w] &= penetrating[w];
+}
+
+std::optional<Pose> PlanningScene::Impl::landing(const BasePlace& base) {
+  const Pose released = worldFromRoot(base) * (rootFromGrip() * grip_from_object_);
+  RandomStream random(0, 0, 0, 0);
+  const simulation::Landing landing = simulation::placeObject(
+      obstacles(), *held_, released, random, options_.placement, placement_);
+  if (!landing.placed) return std::nullopt;
+  return landing.pose;
+}
+
+PlanningScene::PlanningScene(const World& world, const SimulationOptions& options)
+    : impl_(std::make_unique<Impl>(world, options)) {}
+PlanningScene::~PlanningScene() = default;
+PlanningScene::PlanningScene(PlanningScene&&) noexcept = default;
+PlanningScene& PlanningScene::operator=(PlanningScene&&) noexcept = default;
+
+void PlanningScene::update(const EnvState& state) { impl_->update(state); }
+const Scene& PlanningScene::scene() const { return impl_->scene(); }
+void PlanningScene::setJoints(std::span<const float> positions) { impl_->setJoints(positions); }
+std::span<const Pose> PlanningScene::rootFromLinks() const { return impl_->links(); }
+Pose PlanningScene::rootFromGrip() const { return impl_->rootFromGrip(); }
+float PlanningScene::reach() const { return impl_->reach(); }
+
+BasePlace PlanningScene::baseOf(const EnvState& state) const {
+  const Quat& q = state.world_from_root.rotation;
+  return {state.world_from_root.translation - Vec3{0, impl_->rootHeight(), 0},
+          2 * std::atan2(q.y, q.w)};
+}
+
+Pose PlanningScene::worldFromRoot(const BasePlace& base) const {
+  return impl_->worldFromRoot(base);
+}
+
+std::optional<float> PlanningScene::floorAt(float x, float z, float from) const {
+  const simulation::FloorUnder under =
+      simulation::floorUnder(impl_->scene(), {x, from, z}, impl_->options().ground);
+  if (under.floor != simulation::Floor::kCarries) return std::nullopt;
+  return under.height;
+}
+
+bool PlanningScene::isFree(const BasePlace& base) { return impl_->isFree(base); }
+bool PlanningScene::isRobotFreeOfScene(const BasePlace& base) {
+  return impl_->isRobotFreeOfScene(base);
+}
+bool PlanningScene::isFreeOfAllElse(const BasePlace& base) { return impl_->isFreeOfAllElse(base); }
+
+std::size_t PlanningScene::objectCount() const { return impl_->models().size(); }
+
+OrientedBox PlanningScene::objectBox(std::size_t object) const {
+  const OrientedBox& own = impl_->models()[object]->box;
+  const Pose& pose = impl_->poseOf(object);
+  const simulation::RestingBox box = simulation::restingBox(own, pose);
+  return {{box.center, pose.rotation * own.pose.rotation}, box.half_extents};
+}
+
+float PlanningScene::squaredDistance(std::size_t object, const Vec3& point) const {
+  return simulation::squaredDistance(
+      simulation::restingBox(impl_->models()[object]->box, impl_->poseOf(object)), point);
+}
+
+std::optional<std::uint32_t> PlanningScene::graspedAt(const BasePlace& base) const {
+  const Pose world_from_grip = impl_->worldFromRoot(base) * impl_->rootFromGrip();
+  return impl_->resting().nearest(world_from_grip.translation,
+                                  impl_->world().robot().endEffector()->grasp_radius);
+}
+
+void PlanningScene::hold(std::uint32_t object, const BasePlace& base) { impl_->hold(object, base); }
+void PlanningScene::putBack() { impl_->putBack(); }
+bool PlanningScene::isHolding() const { return impl_->isHolding(); }
+const Pose& PlanningScene::gripFromObject() const { return impl_->gripFromObject(); }
+void PlanningScene::ignorePenetrating(const BasePlace& base) { impl_->ignorePenetrating(base); }
+void PlanningScene::countFree(const BasePlace& base) { impl_->countFree(base); }
+std::optional<Pose> PlanningScene::landing(const BasePlace& base) { return impl_->landing(base); }
+
+}  // namespace galactic

@@ -1,0 +1,238 @@
+// What a PlanningScene answers, against what the simulation then does in the small home.
+#include "galactic/planning_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "support/homes/small_home_actor.h"
+#include "support/homes/task_twins.h"
+#include "support/oracles/task_oracle.h"
+
+namespace galactic::test::planning_scene_test {
+namespace {
+
+/// Poses go through quaternions and back, meters and components.
+constexpr float kTolerance = 1e-5F;
+/// Far more steps than any part of the task takes.
+constexpr int kPatience = 150;
+/// Both answers of a question come up at least this often.
+constexpr double kLeastShare = 0.1;
+
+SimulationOptions oneEnv() {
+  SimulationOptions options;
+  options.envs = 1;
+  options.threads = 1;
+  options.order = EpisodeOrder::kLinear;
+  options.task.most_steps = 0;
+  // What is refused stays where it was.
+  options.slide.attempts = 0;
+  options.placement.attempts = 1;
+  return options;
+}
+
+/// A simulator of one env, and the scene that is asked about it.
+class PlanningSceneInTheSmallHome : public testing::Test {
+ protected:
+  PlanningSceneInTheSmallHome()
+      : simulator_(simulatorOf(home_.world(), oneEnv())), scene_(home_.world(), oneEnv()) {
+    look();
+  }
+
+  [[nodiscard]] EnvState state() const { return simulator_.envState(0); }
+  void look() {
+    const EnvState now = state();
+    scene_.update(now);
+    scene_.setJoints(now.joint_positions);
+  }
+  void step(const SmallHomeRow& row) {
+    simulator_.step(row);
+    look();
+  }
+  void fetchTarget() {
+    for (int n = 0; n < kPatience && state().held < 0; ++n) step(fetch(state(), state().target));
+    ASSERT_EQ(state().held, static_cast<std::int32_t>(state().target));
+  }
+
+  SmallHome home_;
+  BatchSimulator simulator_;
+  PlanningScene scene_;
+};
+
+void expectNear(const Pose& a, const Pose& b) {
+  EXPECT_LT(distance(a.translation, b.translation), kTolerance);
+  const Quat& p = a.rotation;
+  const Quat& q = b.rotation;
+  EXPECT_NEAR(std::fabs(p.x * q.x + p.y * q.y + p.z * q.z + p.w * q.w), 1, kTolerance);
+}
+
+TEST_F(PlanningSceneInTheSmallHome, PutsTheHandWhereTheSimulationHasIt) {
+  std::minstd_rand random(1);
+  std::uniform_real_distribution<float> number(-1, 1);
+  for (int n = 0; n < 100; ++n) {
+    SmallHomeRow row{};
+    for (const SmallHomeAction action : {kLift, kShoulder, kArm, kWrist, kForward, kTurn}) {
+      row[action] = number(random);
+    }
+    step(row);
+    const BasePlace base = scene_.baseOf(state());
+    expectNear(scene_.worldFromRoot(base), state().world_from_root);
+    expectNear(scene_.worldFromRoot(base) * scene_.rootFromGrip(), state().world_from_grip);
+    EXPECT_TRUE(scene_.isFree(base)) << "the simulation accepts free poses only";
+  }
+}
+
+TEST_F(PlanningSceneInTheSmallHome, FindsFreeWhatTheSimulationAccepts) {
+  std::minstd_rand random(2);
+  std::uniform_real_distribution<float> number(-1, 1);
+  constexpr int kMoves = 600;
+  int accepted = 0;
+  for (int n = 0; n < kMoves; ++n) {
+    const EnvState before = state();
+    // Long drives and reaches, so that the robot meets walls, table and objects.
+    const bool drives = (n / 12) % 2 == 0;
+    SmallHomeRow row{};
+    if (drives) {
+      row[n % 12 == 0 ? kTurn : kForward] = n % 12 == 0 ? number(random) * 100 : 1;
+    } else {
+      row[std::array{kLift, kShoulder, kArm}[static_cast<std::size_t>(n / 4 % 3)]] =
+          number(random) * 100;
+    }
+    // The candidate: joints within their limits, the base on the floor that it gets to.
+    std::vector<float> joints = before.joint_positions;
+    for (const ControlledJoint& joint : home_.world().robot().controlledJoints()) {
+      const auto index =
+          static_cast<std::size_t>(&joint - home_.world().robot().controlledJoints().data());
+      joints[joint.position] =
+          std::clamp(joints[joint.position] + joint.step * std::clamp(row[index], -1.0F, 1.0F),
+                     joint.lower, joint.upper);
+    }
+    const RobotBase& robot_base = *home_.world().robot().base();
+    BasePlace base = scene_.baseOf(before);
+    base.yaw -= robot_base.turn_step * std::clamp(row[kTurn], -1.0F, 1.0F);
+    base.position = base.position + headingOf(base.yaw) * (robot_base.forward_step * row[kForward]);
+    scene_.setJoints(joints);
+    const std::optional<float> floor =
+        scene_.floorAt(base.position.x, base.position.z, base.position.y);
+    base.position.y = floor.value_or(0);
+    const bool is_free = floor && scene_.isFree(base);
+    EXPECT_EQ(is_free, floor && scene_.isRobotFreeOfScene(base) && scene_.isFreeOfAllElse(base));
+    const std::uint64_t refused = simulator_.statistics().refused;
+    step(row);
+    EXPECT_EQ(simulator_.statistics().refused == refused, is_free) << "move " << n;
+    accepted += is_free ? 1 : 0;
+  }
+  EXPECT_GE(accepted, kLeastShare * kMoves);
+  EXPECT_LE(accepted, (1 - kLeastShare) * kMoves);
+}
+
+TEST_F(PlanningSceneInTheSmallHome, SaysWhatTheHandGrasps) {
+  int nothing = 0;
+  for (int n = 0; n < kPatience && state().held < 0; ++n) {
+    const std::optional<std::uint32_t> grasped = scene_.graspedAt(scene_.baseOf(state()));
+    SmallHomeRow row{};
+    row[kHand] = 1;
+    const std::vector<std::byte> before = simulator_.saveState();
+    simulator_.step(row);
+    EXPECT_EQ(state().held, grasped ? static_cast<std::int32_t>(*grasped) : -1);
+    nothing += grasped ? 0 : 1;
+    if (grasped) return;
+    ASSERT_TRUE(simulator_.restoreState(before));
+    SmallHomeRow towards = fetch(state(), state().target);
+    towards[kHand] = -1;
+    step(towards);
+  }
+  FAIL() << "after " << nothing << " steps there is still nothing to grasp";
+}
+
+TEST_F(PlanningSceneInTheSmallHome, HoldsAnObjectAsTheSimulationDoes) {
+  for (int n = 0; n < kPatience && !scene_.graspedAt(scene_.baseOf(state())); ++n) {
+    SmallHomeRow towards = fetch(state(), state().target);
+    towards[kHand] = -1;
+    step(towards);
+  }
+  const std::uint32_t target = state().target;
+  const BasePlace base = scene_.baseOf(state());
+  ASSERT_EQ(scene_.graspedAt(base), target);
+  const OrientedBox rested = scene_.objectBox(target);
+  EXPECT_FALSE(scene_.isHolding());
+  scene_.hold(target, base);
+  EXPECT_TRUE(scene_.isHolding());
+  EXPECT_FALSE(scene_.graspedAt(base)) << "it rests no more";
+  const Pose pretended = scene_.gripFromObject();
+  scene_.putBack();
+  EXPECT_FALSE(scene_.isHolding());
+  EXPECT_EQ(scene_.graspedAt(base), target);
+  EXPECT_EQ(scene_.objectBox(target), rested);
+
+  SmallHomeRow row{};
+  row[kHand] = 1;
+  step(row);
+  ASSERT_TRUE(scene_.isHolding());
+  expectNear(scene_.gripFromObject(), pretended);
+}
+
+TEST_F(PlanningSceneInTheSmallHome, SaysWhereAReleasedObjectLands) {
+  fetchTarget();
+  const Vec3 place = state().goal.translation;
+  for (int n = 0; n < kPatience; ++n) {
+    if (distance(state().objects[state().target].translation, place) < 0.05) break;
+    step(carry(state(), place));
+  }
+  const std::uint32_t target = state().target;
+  const std::optional<Pose> landing = scene_.landing(scene_.baseOf(state()));
+  ASSERT_TRUE(landing);
+  simulator_.step(SmallHomeRow{});
+  EXPECT_EQ(state().held, -1);
+  expectNear(state().objects[target], *landing);
+}
+
+TEST_F(PlanningSceneInTheSmallHome, FindsNoPlaceForAnObjectAboveNothing) {
+  fetchTarget();
+  // A base far outside of the room, where no grid knows anything.
+  EXPECT_FALSE(scene_.landing({{50, 0, 50}, 0}));
+  EXPECT_FALSE(scene_.isFree({{50, 0, 50}, 0}));
+  EXPECT_FALSE(scene_.floorAt(50, 50, 0));
+}
+
+TEST_F(PlanningSceneInTheSmallHome, IgnoresSpheresThatPenetrateUntilTheyAreFree) {
+  fetchTarget();
+  // Lowered into the table, held object and all: the arm's own spheres are higher.
+  std::vector<float> low = state().joint_positions;
+  std::vector<float> high = low;
+  high[kLift] += 0.2F;
+  const BasePlace base = scene_.baseOf(state());
+  low[kLift] -= 0.03F;
+  scene_.setJoints(low);
+  ASSERT_TRUE(scene_.isRobotFreeOfScene(base));
+  ASSERT_FALSE(scene_.isFree(base)) << "the object is in the table";
+  scene_.ignorePenetrating(base);
+  EXPECT_TRUE(scene_.isFree(base));
+  scene_.setJoints(high);
+  EXPECT_TRUE(scene_.isFree(base));
+  scene_.countFree(base);
+  scene_.setJoints(low);
+  EXPECT_FALSE(scene_.isFree(base)) << "it has been free";
+}
+
+TEST_F(PlanningSceneInTheSmallHome, MeasuresDistancesToBoxes) {
+  const std::uint32_t target = state().target;
+  ASSERT_LT(target, scene_.objectCount());
+  const OrientedBox box = scene_.objectBox(target);
+  EXPECT_EQ(scene_.squaredDistance(target, box.pose.translation), 0);
+  const float above = 0.3F;
+  const Vec3 point = box.pose.translation + Vec3{0, box.half_extents.y + above, 0};
+  EXPECT_NEAR(scene_.squaredDistance(target, point), above * above, kTolerance);
+}
+
+TEST(BasePlace, DrivesAlongItsHeading) {
+  EXPECT_NEAR(headingOf(0).x, 1, kTolerance);
+  // Counter-clockwise, seen from above.
+  EXPECT_NEAR(headingOf(1.57079633F).z, -1, kTolerance);
+}
+
+}  // namespace
+}  // namespace galactic::test::planning_scene_test
