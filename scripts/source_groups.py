@@ -20,7 +20,7 @@ import sys
 
 MOST_SOURCES = 16
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-FOLDERS = ("bake", "benchmarks", "pack_tool", "python", "runtime", "scripted", "tests", "view")
+FOLDERS = ("bake", "benchmarks", "dynamics", "pack_tool", "python", "runtime", "scripted", "tests", "view")
 
 COMMENT_OR_LITERAL = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"', re.DOTALL)
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*["<]([^">\n]+)[">]', re.MULTILINE)

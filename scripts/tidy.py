@@ -29,7 +29,7 @@ import source_groups
 
 CLANG_TIDY = "clang-tidy-14"
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-FOLDERS = ("bake", "pack_tool", "runtime", "scripted", "view")
+FOLDERS = ("bake", "dynamics", "pack_tool", "runtime", "scripted", "view")
 INCLUDE = re.compile(rb'^[ \t]*#[ \t]*include[ \t]*["<]([^">\n]+)[">]', re.MULTILINE)
 FINDING = re.compile(r"^(/[^:]*):\d+:\d+: (warning|error): .*$", re.MULTILINE)
 MATTERS_OF_STYLE = 10

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "galactic/bake/urdf_import.h"
+#include "galactic/bake/urdf_inertials.h"
 #include "import/isolated_process.h"
 #include "import/transfer_archive.h"
 #include "support/mapped_file.h"
@@ -35,6 +36,11 @@ void transferFields(Archive& archive, Is<UrdfJoint> auto& joint) {
 template <class Archive>
 void transferFields(Archive& archive, Is<UrdfModel> auto& model) {
   archive(model.name, model.links, model.joints, model.warnings);
+}
+
+template <class Archive>
+void transferFields(Archive& archive, Is<LinkInertial> auto& inertial) {
+  archive(inertial.link, inertial.mass, inertial.center, inertial.moments);
 }
 
 template <class Archive>
@@ -192,6 +198,11 @@ Result<void> checkUrdfText(std::string_view text, const std::string& where) {
 
 Result<UrdfModel> readUrdf(const fs::path& path, std::chrono::seconds time_limit) {
   return parseIsolated<UrdfModel>(path, time_limit, parseUrdf);
+}
+
+Result<std::vector<LinkInertial>> readInertials(const fs::path& path,
+                                                std::chrono::seconds time_limit) {
+  return parseIsolated<std::vector<LinkInertial>>(path, time_limit, parseInertials);
 }
 
 Result<std::vector<LinkSpheres>> readSrdf(const fs::path& path, std::chrono::seconds time_limit) {

@@ -204,6 +204,40 @@ UrdfJoint toJoint(const urdf::Joint& joint) {
   return converted;
 }
 
+/// The moments of an inertial along the axes of its link: R M R^T.
+LinkInertial toInertial(const std::string& link, const urdf::Inertial& inertial) {
+  const Affine turn = toAffine(inertial.origin);
+  const std::array<std::array<double, 3>, 3> moments{{{inertial.ixx, inertial.ixy, inertial.ixz},
+                                                      {inertial.ixy, inertial.iyy, inertial.iyz},
+                                                      {inertial.ixz, inertial.iyz, inertial.izz}}};
+  const auto along = [&](std::size_t i, std::size_t j) {
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t l = 0; l < 3; ++l) sum += turn[4 * i + k] * moments[k][l] * turn[4 * j + l];
+    }
+    return sum;
+  };
+  return {
+      .link = link,
+      .mass = inertial.mass,
+      .center = toArray(inertial.origin.position),
+      .moments = {along(0, 0), along(1, 1), along(2, 2), along(0, 1), along(0, 2), along(1, 2)}};
+}
+
+/// What the parser's library makes of the prepared text.
+Result<urdf::ModelInterfaceSharedPtr> parsedModel(const std::string& text, const std::string& where,
+                                                  const LogCapture& log) {
+  urdf::ModelInterfaceSharedPtr parsed;
+  try {
+    parsed = urdf::parseURDF(text);
+  } catch (const std::exception& e) {
+    return fail(ErrorCode::kInvalidInput, where, fmt::format("it cannot be read: {}", e.what()));
+  }
+  // It goes on after some errors, with half of a link.
+  if (!parsed || log.hasErrors()) return fail(ErrorCode::kInvalidInput, where, log.errors());
+  return parsed;
+}
+
 /// `count` numbers, or none when there are not so many.
 std::optional<std::vector<double>> numbersOf(const char* text, std::size_t count) {
   if (text == nullptr) return std::nullopt;
@@ -233,14 +267,7 @@ Result<UrdfModel> parseUrdf(const std::string& text, const std::string& where) {
   UrdfModel model;
   const ParserText prepared = textForParser(document, text, model.warnings);
   LogCapture log;
-  urdf::ModelInterfaceSharedPtr parsed;
-  try {
-    parsed = urdf::parseURDF(prepared.text);
-  } catch (const std::exception& e) {
-    return fail(ErrorCode::kInvalidInput, where, fmt::format("it cannot be read: {}", e.what()));
-  }
-  // It goes on after some errors, with half of a link.
-  if (!parsed || log.hasErrors()) return fail(ErrorCode::kInvalidInput, where, log.errors());
+  ASSIGN_OR_RETURN(const auto parsed, parsedModel(prepared.text, where, log));
   model.name = parsed->name_;
   for (const std::string& name : namesInOrder(**robot, "link")) {
     if (const auto link = parsed->getLink(name)) model.links.push_back(toLink(*link));
@@ -253,6 +280,22 @@ Result<UrdfModel> parseUrdf(const std::string& text, const std::string& where) {
   }
   for (std::string& warning : log.takeWarnings()) model.warnings.push_back(std::move(warning));
   return model;
+}
+
+Result<std::vector<LinkInertial>> parseInertials(const std::string& text,
+                                                 const std::string& where) {
+  TiXmlDocument document;
+  ASSIGN_OR_RETURN(const auto robot, robotElement(document, text, where));
+  std::vector<std::string> warnings;
+  const ParserText prepared = textForParser(document, text, warnings);
+  const LogCapture log;
+  ASSIGN_OR_RETURN(const auto parsed, parsedModel(prepared.text, where, log));
+  std::vector<LinkInertial> inertials;
+  for (const std::string& name : namesInOrder(*robot, "link")) {
+    const auto link = parsed->getLink(name);
+    if (link && link->inertial) inertials.push_back(toInertial(name, *link->inertial));
+  }
+  return inertials;
 }
 
 Result<std::vector<LinkSpheres>> parseSrdf(const std::string& text, const std::string& where) {

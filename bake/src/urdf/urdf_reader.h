@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "galactic/bake/urdf_inertials.h"
 #include "galactic/error.h"
 #include "urdf/urdf_model.h"
 
@@ -11,6 +12,10 @@ namespace galactic::bake {
 /// Parses URDF text. For a process of its own: deep or endless XML may crash or hang the parser,
 /// and its messages go through a global of the parser's library. `where` is put in front of errors.
 [[nodiscard]] Result<UrdfModel> parseUrdf(const std::string& text, const std::string& where);
+
+/// The same for its <inertial> elements alone.
+[[nodiscard]] Result<std::vector<LinkInertial>> parseInertials(const std::string& text,
+                                                               const std::string& where);
 
 /// Parses the <link_sphere_approximation> elements of SRDF text, spheres still in the URDF's frame.
 /// For a process of its own, as parseUrdf.

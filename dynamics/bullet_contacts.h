@@ -1,0 +1,52 @@
+#pragma once
+// For the files that name Bullet alone.
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
+
+#include <functional>
+
+namespace galactic::dynamics {
+
+/// One point in which a queried object meets another.
+struct QueryContact {
+  const btCollisionObject* other = nullptr;
+  /// Of the queried object's compound.
+  int child = 0;
+  /// Metres, > 0 where they overlap.
+  btScalar depth = 0;
+  btVector3 point;
+  /// Out of the other.
+  btVector3 away;
+};
+
+/// Calls `visit` for each contact of `object`.
+class ContactQuery final : public btCollisionWorld::ContactResultCallback {
+ public:
+  ContactQuery(const btCollisionObject& object, int meets,
+               std::function<void(const QueryContact&)> visit)
+      : object_(object), visit_(std::move(visit)) {
+    m_collisionFilterGroup = -1;
+    m_collisionFilterMask = meets;
+  }
+
+  bool needsCollision(btBroadphaseProxy* proxy) const override {
+    return (proxy->m_collisionFilterGroup & m_collisionFilterMask) != 0;
+  }
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* first, int,
+                           int first_index, const btCollisionObjectWrapper* second, int,
+                           int second_index) override {
+    const bool is_first = first->getCollisionObject() == &object_;
+    visit_({.other = (is_first ? second : first)->getCollisionObject(),
+            .child = is_first ? first_index : second_index,
+            .depth = -point.getDistance(),
+            .point = point.getPositionWorldOnB(),
+            .away = is_first ? point.m_normalWorldOnB : -point.m_normalWorldOnB});
+    return 0;
+  }
+
+ private:
+  const btCollisionObject& object_;
+  std::function<void(const QueryContact&)> visit_;
+};
+
+}  // namespace galactic::dynamics

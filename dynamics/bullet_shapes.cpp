@@ -1,0 +1,213 @@
+#include "bullet_shapes.h"
+
+#include <LinearMath/btConvexHullComputer.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace galactic::dynamics {
+namespace {
+
+/// Bullet's quantized tree keeps a triangle's index in 21 bits: bigger meshes go in as several
+/// parts.
+constexpr std::size_t kTrianglesPerPart = std::size_t{1} << 20U;
+static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(bake::Triangle) == 3 * sizeof(int));
+
+/// Volume, center and second moments of the tetrahedra between the origin and the triangles of a
+/// hull (Eberly, Polyhedral Mass Properties, 2002).
+class SolidSum {
+ public:
+  using Point = std::array<double, 3>;
+
+  void add(const Point& a, const Point& b, const Point& c) {
+    const double volume = (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                           a[2] * (b[0] * c[1] - b[1] * c[0])) /
+                          6;
+    volume_ += volume;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double sum = a[i] + b[i] + c[i];
+      first_[i] += volume * sum / 4;
+      for (std::size_t k = i; k < 3; ++k) {
+        const double products = a[i] * a[k] + b[i] * b[k] + c[i] * c[k];
+        second_[i][k] += volume / 20 * (sum * (a[k] + b[k] + c[k]) + products);
+      }
+    }
+  }
+
+  /// Of this mass, spread evenly.
+  [[nodiscard]] Inertia inertia(double mass) const {
+    Inertia result{.mass = mass, .center = {}, .moments = {}};
+    const double density = mass / volume_;
+    std::array<std::array<double, 3>, 3> about{};
+    for (std::size_t i = 0; i < 3; ++i) result.center[i] = first_[i] / volume_;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = i; k < 3; ++k) {
+        about[i][k] = density * second_[i][k] - mass * result.center[i] * result.center[k];
+      }
+    }
+    result.moments = {about[1][1] + about[2][2],
+                      about[0][0] + about[2][2],
+                      about[0][0] + about[1][1],
+                      -about[0][1],
+                      -about[0][2],
+                      -about[1][2]};
+    return result;
+  }
+  [[nodiscard]] double volume() const { return volume_; }
+
+ private:
+  double volume_ = 0;
+  std::array<double, 3> first_{};
+  std::array<std::array<double, 3>, 3> second_{};
+};
+
+btConvexHullComputer hullOf(const HullPoints& points) {
+  btConvexHullComputer hull;
+  hull.compute(&points.front().x, sizeof(Vec3), static_cast<int>(points.size()), 0, 0);
+  return hull;
+}
+
+void addSolid(const HullPoints& points, SolidSum& sum) {
+  const btConvexHullComputer hull = hullOf(points);
+  const auto corner = [&](int n) {
+    const Vec3 at = fromBullet(hull.vertices[n]);
+    return SolidSum::Point{at.x, at.y, at.z};
+  };
+  for (int f = 0; f < hull.faces.size(); ++f) {
+    const btConvexHullComputer::Edge* first = &hull.edges[hull.faces[f]];
+    for (const auto* edge = first->getNextEdgeOfFace(); edge != first;
+         edge = edge->getNextEdgeOfFace()) {
+      sum.add(corner(first->getSourceVertex()), corner(edge->getSourceVertex()),
+              corner(edge->getTargetVertex()));
+    }
+  }
+}
+
+/// Of the box around the points: they fill no volume.
+Inertia inertiaOfBox(const ObjectSource& source) {
+  Vec3 least = source.hulls.front().front();
+  Vec3 most = least;
+  for (const HullPoints& points : source.hulls) {
+    for (const Vec3& p : points) {
+      least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
+      most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
+    }
+  }
+  constexpr float kThinnest = 1e-3F;
+  const double x{std::max(most.x - least.x, kThinnest)};
+  const double y{std::max(most.y - least.y, kThinnest)};
+  const double z{std::max(most.z - least.z, kThinnest)};
+  const Vec3 center = (least + most) * 0.5F;
+  const double twelfth = source.mass / 12;
+  return {.mass = source.mass,
+          .center = {center.x, center.y, center.z},
+          .moments = {twelfth * (y * y + z * z), twelfth * (x * x + z * z),
+                      twelfth * (x * x + y * y), 0, 0, 0}};
+}
+
+Inertia inertiaOf(const ObjectSource& source) {
+  constexpr double kNoVolume = 1e-9;
+  SolidSum sum;
+  for (const HullPoints& points : source.hulls) addSolid(points, sum);
+  return sum.volume() > kNoVolume ? sum.inertia(source.mass) : inertiaOfBox(source);
+}
+
+}  // namespace
+
+SceneShape::SceneShape(const bake::TriangleMesh& mesh)
+    : vertices_(mesh.vertices), triangles_(mesh.triangles) {
+  for (std::size_t first = 0; first < triangles_.size(); first += kTrianglesPerPart) {
+    btIndexedMesh part;
+    part.m_numTriangles = static_cast<int>(std::min(kTrianglesPerPart, triangles_.size() - first));
+    part.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(triangles_.data() + first);
+    part.m_triangleIndexStride = sizeof(bake::Triangle);
+    part.m_numVertices = static_cast<int>(vertices_.size());
+    part.m_vertexBase = reinterpret_cast<const unsigned char*>(vertices_.data());
+    part.m_vertexStride = sizeof(Vec3);
+    part.m_vertexType = PHY_FLOAT;
+    arrays_.addIndexedMesh(part, PHY_INTEGER);
+  }
+  constexpr bool kQuantized = true;
+  shape_ = std::make_unique<btBvhTriangleMeshShape>(&arrays_, kQuantized);
+  // Bullet's default of 4 cm would grow every surface.
+  shape_->setMargin(0);
+}
+
+std::unique_ptr<btConvexHullShape> makeHull(const HullPoints& points) {
+  const btConvexHullComputer corners = hullOf(points);
+  auto hull = std::make_unique<btConvexHullShape>();
+  for (int n = 0; n < corners.vertices.size(); ++n) hull->addPoint(corners.vertices[n], false);
+  hull->recalcLocalAabb();
+  hull->setMargin(0);
+  // Contacts of whole faces at once, not one corner per step.
+  hull->initializePolyhedralFeatures();
+  return hull;
+}
+
+PrincipalInertia principalInertia(const Inertia& inertia) {
+  const auto value = [&](std::size_t n) { return static_cast<btScalar>(inertia.moments[n]); };
+  btMatrix3x3 moments(value(0), value(3), value(4), value(3), value(1), value(5), value(4),
+                      value(5), value(2));
+  btMatrix3x3 axes;
+  constexpr btScalar kShareOfLargest = 1e-6F;
+  constexpr int kMostSweeps = 30;
+  moments.diagonalize(axes, kShareOfLargest, kMostSweeps);
+  const auto& center = inertia.center;
+  return {.mass = static_cast<btScalar>(inertia.mass),
+          .moments = {moments[0][0], moments[1][1], moments[2][2]},
+          .body_from_inertia = btTransform(
+              axes, btVector3(static_cast<btScalar>(center[0]), static_cast<btScalar>(center[1]),
+                              static_cast<btScalar>(center[2])))};
+}
+
+ObjectShape::ObjectShape(const ObjectSource& source)
+    : compound_(std::make_unique<btCompoundShape>()),
+      inertia_(principalInertia(inertiaOf(source))) {
+  const btTransform inertia_from_object = inertia_.body_from_inertia.inverse();
+  for (const HullPoints& points : source.hulls) {
+    hulls_.push_back(makeHull(points));
+    compound_->addChildShape(inertia_from_object, hulls_.back().get());
+  }
+  compound_->setMargin(0);
+}
+
+RobotShape::RobotShape(const RobotParts& parts) {
+  for (const LinkPart& link : parts.links) {
+    auto& hulls = hulls_of_link_.emplace_back();
+    for (const HullPoints& points : link.hulls) hulls.push_back(makeHull(points));
+  }
+}
+
+std::unique_ptr<btCompoundShape> RobotShape::compound(const RobotBody& body,
+                                                      const btTransform& body_from_frame) const {
+  auto compound = std::make_unique<btCompoundShape>();
+  const btTransform frame_from_body = body_from_frame.inverse();
+  for (const BodyLink& link : body.links) {
+    for (const auto& hull : hulls_of_link_[link.link]) {
+      compound->addChildShape(frame_from_body * toBullet(link.body_from_link), hull.get());
+    }
+  }
+  compound->setMargin(0);
+  return compound;
+}
+
+std::vector<std::uint32_t> RobotShape::linksOfChildren(const RobotBody& body) const {
+  std::vector<std::uint32_t> links;
+  for (const BodyLink& link : body.links) {
+    links.insert(links.end(), hulls_of_link_[link.link].size(), link.link);
+  }
+  return links;
+}
+
+std::shared_ptr<const SceneShape> makeSceneShape(const bake::TriangleMesh& mesh) {
+  return std::make_shared<const SceneShape>(mesh);
+}
+std::shared_ptr<const ObjectShape> makeObjectShape(const ObjectSource& source) {
+  return std::make_shared<const ObjectShape>(source);
+}
+std::shared_ptr<const RobotShape> makeRobotShape(const RobotParts& parts) {
+  return std::make_shared<const RobotShape>(parts);
+}
+
+}  // namespace galactic::dynamics

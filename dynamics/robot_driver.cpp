@@ -1,0 +1,92 @@
+#include "robot_driver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace galactic::dynamics {
+namespace {
+
+float clamped(float action) { return std::isnan(action) ? 0.0F : std::clamp(action, -1.0F, 1.0F); }
+
+Quat yawOf(float angle) { return {0, std::sin(angle / 2), 0, std::cos(angle / 2)}; }
+
+/// Out of what was met along the ground, as far as it is deep; zero where that leads nowhere.
+Vec3 pushOut(const DynamicsWorld::BaseContact& contact) {
+  const float length = std::hypot(contact.away.x, contact.away.z);
+  constexpr float kNoDirection = 1e-6F;
+  return length > kNoDirection ? contact.away * (contact.depth / length) : Vec3{};
+}
+
+}  // namespace
+
+Pose gripOf(const Robot& robot, const Pose& world_from_root, std::span<const float> positions) {
+  std::vector<Pose> world_from_link(robot.links().size());
+  forwardKinematics(robot.links(), world_from_root, positions, world_from_link);
+  const EndEffector& hand = *robot.endEffector();
+  return world_from_link[hand.link] * Pose{hand.grasp_point, {}};
+}
+
+RobotDriver::RobotDriver(const Robot& robot, DynamicsWorld& world, const SimulationOptions& options)
+    : robot_(robot), world_(world), options_(options), targets_(world.positions()) {}
+
+DrivenStep RobotDriver::step(std::span<const float> actions) {
+  const std::span<const ControlledJoint> joints = robot_.controlledJoints();
+  for (std::size_t n = 0; n < joints.size(); ++n) {
+    float& target = targets_[joints[n].position];
+    target =
+        std::clamp(target + joints[n].step * clamped(actions[n]), joints[n].lower, joints[n].upper);
+  }
+  const std::optional<Pose> root =
+      driven(clamped(actions[joints.size()]), clamped(actions[joints.size() + 1]));
+  world_.drive(root.value_or(world_.worldFromRoot()), targets_);
+  world_.step();
+  DrivenStep step{.base_refused = !root, .grasped = {}, .released = {}};
+  useHand(clamped(actions[joints.size() + 2]), step);
+  return step;
+}
+
+Pose RobotDriver::worldFromGrip() const {
+  return gripOf(robot_, world_.worldFromRoot(), world_.positions());
+}
+
+std::optional<Pose> RobotDriver::driven(float forward, float turn) const {
+  const RobotBase& base = *robot_.base();
+  Pose root = world_.worldFromRoot();
+  root.rotation = yawOf(-base.turn_step * turn) * root.rotation;
+  root.translation = root.translation + rotate(root.rotation, {base.forward_step * forward, 0, 0});
+  for (std::uint32_t attempt = 0; attempt <= options_.slide.attempts; ++attempt) {
+    const std::optional<Pose> standing = onFloor(root);
+    if (!standing) return std::nullopt;
+    const DynamicsWorld::BaseContact contact = world_.baseContact(*standing);
+    if (contact.depth <= kTolerance) return standing;
+    const Vec3 push = pushOut(contact);
+    if (push == Vec3{}) return std::nullopt;
+    root.translation = root.translation + push;
+  }
+  return std::nullopt;
+}
+
+std::optional<Pose> RobotDriver::onFloor(const Pose& world_from_root) const {
+  const GroundOptions& ground = options_.ground;
+  const float height = robot_.base()->root_height;
+  Pose standing = world_from_root;
+  const float now = world_.worldFromRoot().translation.y - height;
+  const Vec3 above{standing.translation.x, now + ground.most_rise, standing.translation.z};
+  const std::optional<float> floor = world_.floorBelow(above, ground.most_rise + ground.most_drop);
+  if (!floor) return std::nullopt;
+  standing.translation.y = *floor + height;
+  return standing;
+}
+
+void RobotDriver::useHand(float value, DrivenStep& step) {
+  const EndEffector& hand = *robot_.endEffector();
+  if (!world_.held() && value >= options_.action.grasp) {
+    step.grasped = world_.objectWithin(worldFromGrip().translation, hand.grasp_radius);
+    if (step.grasped) world_.grasp(*step.grasped, hand.link);
+  } else if (world_.held() && value < options_.action.release) {
+    step.released = world_.held();
+    world_.release();
+  }
+}
+
+}  // namespace galactic::dynamics

@@ -1,0 +1,61 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "galactic/robot.h"
+#include "galactic/simulation_options.h"
+#include "world.h"
+
+namespace galactic::dynamics {
+
+/// An overlap that is not counted as one: models of surfaces differ by this, meters.
+inline constexpr float kTolerance = 0.01F;
+
+/// What a step did in the dynamics world.
+struct DrivenStep {
+  /// The base stayed where it was: there was no floor, or no way out of what it met.
+  bool base_refused = false;
+  std::optional<std::size_t> grasped;
+  std::optional<std::size_t> released;
+};
+
+/// Carries out the simulation's actions in a dynamics world.
+///
+/// The base drives and turns as in the simulation, kinematically: it follows the floor under it,
+/// and where its hulls would be deeper than kTolerance in the scene it is pushed out along the
+/// ground, up to SlideOptions::attempts times, or stays. Each joint action moves the target of its
+/// joint by its step, from the target before (as Habitat 2.0's arm action does), within its limits.
+/// After the step the hand grasps the object that is nearest within the grasp sphere, or lets go.
+class RobotDriver {
+ public:
+  /// All but `options` must outlive it. The robot stands in the world.
+  RobotDriver(const Robot& robot, DynamicsWorld& world, const SimulationOptions& options);
+
+  /// `actions`: one per controlled joint, forward, turn, hand, terminate; clamped to [-1, 1], NaN
+  /// counts as 0.
+  DrivenStep step(std::span<const float> actions);
+
+  /// Origin at the grasp point, axes of the end effector's link.
+  [[nodiscard]] Pose worldFromGrip() const;
+  /// What the joints are asked to be: one per position.
+  [[nodiscard]] std::span<const float> targets() const { return targets_; }
+
+ private:
+  [[nodiscard]] std::optional<Pose> driven(float forward, float turn) const;
+  [[nodiscard]] std::optional<Pose> onFloor(const Pose& world_from_root) const;
+  void useHand(float value, DrivenStep& step);
+
+  const Robot& robot_;
+  DynamicsWorld& world_;
+  SimulationOptions options_;
+  std::vector<float> targets_;
+};
+
+/// The pose of the grip for a pose of the root and joint positions.
+[[nodiscard]] Pose gripOf(const Robot& robot, const Pose& world_from_root,
+                          std::span<const float> positions);
+
+}  // namespace galactic::dynamics

@@ -1,0 +1,96 @@
+#include <cmath>
+#include <numbers>
+#include <variant>
+
+#include "robot_model.h"
+
+namespace galactic::dynamics {
+namespace {
+
+using bake::Affine;
+
+/// Corners of the polygons that stand for circles: the hull is thinner than the circle by 0.5 %.
+constexpr int kRing = 32;
+constexpr int kRingsOfSphere = 16;
+
+Vec3 transformed(const Affine& m, double x, double y, double z) {
+  const auto row = [&](std::size_t r) {
+    return static_cast<float>(m[4 * r] * x + m[4 * r + 1] * y + m[4 * r + 2] * z + m[4 * r + 3]);
+  };
+  return {row(0), row(1), row(2)};
+}
+
+/// Appends the points of one shape, as one hull or several.
+class HullMaker {
+ public:
+  HullMaker(const bake::SourceRobot& source, const Affine& link_from_shape,
+            std::vector<HullPoints>& hulls)
+      : source_(source), link_from_shape_(link_from_shape), hulls_(hulls) {}
+
+  void operator()(const bake::BoxShape& box) {
+    HullPoints& hull = hulls_.emplace_back();
+    for (int corner = 0; corner < 8; ++corner) {
+      const auto side = [&](int axis) {
+        const double half = box.size[static_cast<std::size_t>(axis)] / 2;
+        return (corner >> axis & 1) != 0 ? half : -half;
+      };
+      add(hull, side(0), side(1), side(2));
+    }
+  }
+  void operator()(const bake::CylinderShape& cylinder) {
+    HullPoints& hull = hulls_.emplace_back();
+    for (const double y : {-cylinder.length / 2, cylinder.length / 2}) {
+      addRing(hull, cylinder.radius, y);
+    }
+  }
+  void operator()(const bake::SphereShape& sphere) {
+    HullPoints& hull = hulls_.emplace_back();
+    for (int ring = 0; ring <= kRingsOfSphere; ++ring) {
+      const double angle = std::numbers::pi * ring / kRingsOfSphere;
+      addRing(hull, sphere.radius * std::sin(angle), sphere.radius * std::cos(angle));
+    }
+  }
+  void operator()(const bake::MeshShape& mesh) {
+    const bake::SourceAsset& asset = source_.meshes[mesh.mesh];
+    for (const bake::SourceInstance& instance : asset.instances) {
+      const bake::SourceMesh& part = asset.meshes[instance.mesh];
+      if (part.triangles.empty()) continue;
+      HullPoints& hull = hulls_.emplace_back();
+      for (const bake::Triangle& triangle : part.triangles) {
+        for (const std::uint32_t corner : triangle) {
+          const Vec3& p = part.positions[corner];
+          const Vec3 q = transformed(instance.world_from_mesh, p.x, p.y, p.z);
+          add(hull, q.x, q.y, q.z);
+        }
+      }
+    }
+  }
+
+ private:
+  void add(HullPoints& hull, double x, double y, double z) {
+    hull.push_back(transformed(link_from_shape_, x, y, z));
+  }
+  void addRing(HullPoints& hull, double radius, double y) {
+    for (int n = 0; n < kRing; ++n) {
+      const double angle = 2 * std::numbers::pi * n / kRing;
+      add(hull, radius * std::cos(angle), y, radius * std::sin(angle));
+    }
+  }
+
+  const bake::SourceRobot& source_;
+  const Affine& link_from_shape_;
+  std::vector<HullPoints>& hulls_;
+};
+
+}  // namespace
+
+std::vector<HullPoints> hullPointsOf(const bake::SourceRobot& source,
+                                     const bake::SourceLink& link) {
+  std::vector<HullPoints> hulls;
+  for (const bake::LinkShape& shape : link.collisions.empty() ? link.visuals : link.collisions) {
+    std::visit(HullMaker(source, shape.link_from_shape, hulls), shape.geometry);
+  }
+  return hulls;
+}
+
+}  // namespace galactic::dynamics

@@ -1,0 +1,223 @@
+// The dynamics world against what mechanics says of simple cases.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "dynamics/made_robot.h"
+#include "support/test_meshes.h"
+
+namespace galactic::test::mechanics_test {
+namespace {
+
+using dynamics::ArmDrive;
+using dynamics::DynamicsWorld;
+using dynamics::ObjectSource;
+using dynamics::PlacedObject;
+using dynamics::WorldOptions;
+
+constexpr double kGravity = 9.81;
+constexpr double kControlStep = 4.0 / 120;
+
+std::shared_ptr<const dynamics::SceneShape> flatFloor() {
+  return dynamics::makeSceneShape(MeshBuilder().floor({-5, 0, -5}, {5, 0, 5}, 0).build());
+}
+
+PlacedObject boxAt(const Pose& pose, const Vec3& half = {0.05F, 0.05F, 0.05F}) {
+  return {dynamics::makeObjectShape({.hulls = {boxPoints({}, half)}, .mass = 0.5}), pose};
+}
+
+TEST(AFallingObject, FollowsGravity) {
+  const std::vector<PlacedObject> objects{boxAt({{0, 3, 0}, {}})};
+  DynamicsWorld world(flatFloor(), objects, {});
+  constexpr int kSteps = 15;
+  for (int n = 0; n < kSteps; ++n) world.step();
+  const double t = kSteps * kControlStep;
+  // Semi-implicit Euler is ahead by g t h / 2.
+  const double expected = 3 - kGravity * t * t / 2 - kGravity * t / 240;
+  EXPECT_NEAR(world.objectPose(0).translation.y, expected, 1e-3);
+  EXPECT_NEAR(world.objectVelocity(0).y, -kGravity * t, 1e-3);
+}
+
+TEST(AFallingObject, ComesToRestOnTheFloor) {
+  const std::vector<PlacedObject> objects{boxAt({{0, 0.5F, 0}, {}})};
+  DynamicsWorld world(flatFloor(), objects, {});
+  for (int n = 0; n < 60; ++n) world.step();
+  // Bullet lets contacts overlap by some tenths of a millimeter.
+  EXPECT_NEAR(world.objectPose(0).translation.y, 0.05, 1e-3);
+  EXPECT_NEAR(world.objectVelocity(0).y, 0, 1e-2);
+}
+
+/// A box on a plane that falls towards +X by `slope`; how far it slides in a second.
+double slideOn(double slope, double friction) {
+  const auto tangent = static_cast<float>(std::tan(slope));
+  MeshBuilder plane;
+  plane.quad({Vec3{-5, 5 * tangent, -5},
+              {-5, 5 * tangent, 5},
+              {5, -5 * tangent, 5},
+              {5, -5 * tangent, -5}});
+  const auto half_angle = static_cast<float>(-slope / 2);
+  const Quat tilt{0, 0, std::sin(half_angle), std::cos(half_angle)};
+  const Vec3 above = rotate(tilt, {0, 0.05F, 0});
+  const std::vector<PlacedObject> objects{boxAt({above, tilt}, {0.1F, 0.05F, 0.1F})};
+  // The product of both surfaces counts.
+  DynamicsWorld world(dynamics::makeSceneShape(plane.build()), objects,
+                      {.friction = std::sqrt(friction)});
+  for (int n = 0; n < 30; ++n) world.step();
+  const Vec3 way = world.objectPose(0).translation - above;
+  return std::sqrt(static_cast<double>(dot(way, way)));
+}
+
+TEST(ABoxOnASlope, StaysWhereFrictionHoldsIt) {
+  // tan 20 degrees is 0.364.
+  EXPECT_LT(slideOn(0.349, 0.5), 5e-3);
+}
+
+TEST(ABoxOnASlope, SlidesAsFarAsMechanicsSays) {
+  const double slope = 0.524;
+  const double friction = 0.3;
+  const double acceleration = kGravity * (std::sin(slope) - friction * std::cos(slope));
+  const double expected = acceleration / 2;
+  EXPECT_NEAR(slideOn(slope, friction), expected, 0.05 * expected);
+}
+
+/// A base and an arm of 0.4 m that hangs from it and swings about Z; far above the floor.
+RobotPackFields pendulumFields() {
+  RobotPackFields fields = smallHomeRobot();
+  fields.links.resize(2);
+  fields.links[1].type = JointType::kRevolute;
+  fields.links[1].parent_from_joint = {{0, 0, 0.5F}, {}};
+  fields.links[1].axis = {0, 0, 1};
+  fields.link_names = {"base", "arm"};
+  fields.joint_names = {"", "swing"};
+  fields.limits = {{-3, 3}};
+  fields.start_positions = {0.1F};
+  fields.spheres.resize(2);
+  fields.groups = {{0, {0}, 0, 1, SphereStatisticsFields{}},
+                   {1, {1}, 1, 1, SphereStatisticsFields{}}};
+  fields.controlled_joints = {{0, 0.1F, -3, 3}};
+  fields.end_effector->link = 1;
+  return fields;
+}
+
+constexpr double kArmMass = 2;
+/// Of the pendulum's center of mass from its axis, meters.
+constexpr double kArmLength = 0.2;
+
+dynamics::RobotParts pendulumParts() {
+  dynamics::RobotParts parts;
+  parts.body_of_link = {0, 1};
+  parts.links = {boxPart(20, {}, {0.1F, 0.1F, 0.1F}),
+                 boxPart(kArmMass, {0, -static_cast<float>(kArmLength), 0}, {0.03F, 0.2F, 0.05F})};
+  return parts;
+}
+
+constexpr Pose kAbove{{0, 2, 0}, {}};
+
+TEST(APendulum, SwingsWithThePeriodOfItsInertia) {
+  const MadeRobot robot(pendulumFields());
+  const RobotKit kit(*robot, pendulumParts());
+  DynamicsWorld world(flatFloor(), {}, {.most_impulse = 0});
+  world.addRobot(kit.setup(kAbove));
+  // When it passes the middle for the second time in the same direction, by interpolation.
+  std::vector<double> crossings;
+  double before = static_cast<double>(world.positions()[0]);
+  for (int n = 1; crossings.size() < 5 && n < 600; ++n) {
+    world.step();
+    const double now = static_cast<double>(world.positions()[0]);
+    if (before > 0 && now <= 0) crossings.push_back((n - now / (now - before)) * kControlStep);
+    before = now;
+  }
+  ASSERT_EQ(crossings.size(), 5U);
+  const double about_center = kArmMass / 12 * (0.06 * 0.06 + 0.4 * 0.4);
+  const double about_axis = about_center + kArmMass * kArmLength * kArmLength;
+  const double amplitude = 0.1;
+  const double period = 2 * std::numbers::pi *
+                        std::sqrt(about_axis / (kArmMass * kGravity * kArmLength)) *
+                        (1 + amplitude * amplitude / 16);
+  EXPECT_NEAR((crossings[4] - crossings[0]) / 4, period, 0.01 * period);
+}
+
+TEST(APendulum, KeepsItsEnergy) {
+  RobotPackFields fields = pendulumFields();
+  fields.start_positions = {1.0F};
+  const MadeRobot robot(fields);
+  const RobotKit kit(*robot, pendulumParts());
+  DynamicsWorld world(flatFloor(), {}, {.most_impulse = 0});
+  world.addRobot(kit.setup(kAbove));
+  const double lowest = kArmMass * kGravity * (2 - kArmLength);
+  const double at_start = world.robotEnergy() - lowest;
+  EXPECT_NEAR(at_start, kArmMass * kGravity * kArmLength * (1 - std::cos(1.0)), 1e-3);
+  double least = at_start;
+  double most = at_start;
+  for (int n = 0; n < 150; ++n) {
+    world.step();
+    least = std::min(least, world.robotEnergy() - lowest);
+    most = std::max(most, world.robotEnergy() - lowest);
+  }
+  // Semi-implicit Euler wobbles about the true energy and does not drift.
+  EXPECT_GT(least, 0.9 * at_start);
+  EXPECT_LT(most, 1.1 * at_start);
+}
+
+TEST(AMotor, BringsItsJointToTheTargetAndHoldsIt) {
+  const MadeRobot robot(pendulumFields());
+  const RobotKit kit(*robot, pendulumParts());
+  DynamicsWorld world(flatFloor(), {}, {});
+  world.addRobot(kit.setup(kAbove));
+  const std::vector<float> target{0.4F};
+  world.drive(kAbove, target);
+  std::vector<double> errors{0.3};
+  for (int n = 0; n < 30; ++n) {
+    world.step();
+    errors.push_back(std::abs(0.4 - static_cast<double>(world.positions()[0])));
+  }
+  // Each substep takes away 30 % of the error: after the eight of two steps 6 % are left. The
+  // second term of the motor slows it down at first.
+  EXPECT_LT(errors[1], 0.6 * errors[0]);
+  EXPECT_LT(errors[4], 0.1 * errors[0]);
+  // In a substep of h gravity adds 14 rad/s^2 h, and the motor takes away 30 % of the error / h.
+  EXPECT_NEAR(errors.back(), 14.3 / (120 * 120) / 0.3, 2e-3);
+}
+
+TEST(AMotor, ThatIsTooWeakDoesNotHoldTheArm) {
+  const MadeRobot robot(pendulumFields());
+  const RobotKit kit(*robot, pendulumParts());
+  // Of the 1.53 N m that gravity pulls with at 0.4 rad it gives 0.12.
+  DynamicsWorld world(flatFloor(), {}, {.most_impulse = 0.001});
+  world.addRobot(kit.setup(kAbove));
+  world.drive(kAbove, std::vector<float>{1.5F});
+  for (int n = 0; n < 60; ++n) world.step();
+  EXPECT_LT(world.positions()[0], 0.5F);
+}
+
+TEST(AKinematicArm, IsWhereItIsAskedToBe) {
+  const MadeRobot robot(pendulumFields());
+  const RobotKit kit(*robot, pendulumParts());
+  DynamicsWorld world(flatFloor(), {}, {.arm = ArmDrive::kKinematic});
+  world.addRobot(kit.setup(kAbove));
+  world.drive({{0.5F, 2, 0}, {}}, std::vector<float>{1.5F});
+  world.step();
+  EXPECT_EQ(world.positions()[0], 1.5F);
+  EXPECT_EQ(world.worldFromRoot().translation.x, 0.5F);
+}
+
+TEST(AnArm, PushesAnObjectAside) {
+  for (const ArmDrive drive : {ArmDrive::kMotors, ArmDrive::kKinematic}) {
+    const MadeRobot robot(pendulumFields());
+    const RobotKit kit(*robot, pendulumParts());
+    // The arm hangs down to 0.1 m, beside it stands a box.
+    const Pose low{{0, 0.5F, 0}, {}};
+    const std::vector<PlacedObject> objects{
+        boxAt({{0.2F, 0.15F, 0.5F}, {}}, {0.05F, 0.15F, 0.05F})};
+    DynamicsWorld world(flatFloor(), objects, {.arm = drive});
+    world.addRobot(kit.setup(low));
+    for (float target = 0.1F; target < 1.2F; target += 0.1F) {
+      world.drive(low, std::vector<float>{target});
+      world.step();
+    }
+    EXPECT_GT(world.objectPose(0).translation.x, 0.3F) << static_cast<int>(drive);
+  }
+}
+
+}  // namespace
+}  // namespace galactic::test::mechanics_test
