@@ -180,7 +180,7 @@ class Renderer:
         semantics: bool = False,
         camera: str = "head",
         fov_degrees: float = 0,
-        backend: Literal["auto", "soft", "gl"] = "auto",
+        backend: Literal["auto", "soft", "gl", "cuda"] = "auto",
         device: str = "",
         threads: int = 0,
     ) -> None: ...
@@ -195,7 +195,7 @@ class Renderer:
     @property
     def shapes(self) -> dict[str, tuple[tuple[int, ...], np.dtype[Any]]]: ...
     @property
-    def backend(self) -> Literal["soft", "gl"]: ...
+    def backend(self) -> Literal["soft", "gl", "cuda"]: ...
     @property
     def description(self) -> str: ...
     @property

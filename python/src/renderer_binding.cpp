@@ -24,7 +24,9 @@ RenderBackend backendOf(const std::string& name) {
   if (name == "auto") return RenderBackend::kAuto;
   if (name == "soft") return RenderBackend::kSoft;
   if (name == "gl") return RenderBackend::kGl;
-  throw Refusal{{ErrorCode::kInvalidInput, "backend", "is " + name + ", wanted auto, soft or gl"}};
+  if (name == "cuda") return RenderBackend::kCuda;
+  throw Refusal{
+      {ErrorCode::kInvalidInput, "backend", "is " + name + ", wanted auto, soft, gl or cuda"}};
 }
 
 /// The keywords of Renderer, with their defaults.
@@ -103,7 +105,7 @@ void bindRenderer(py::module_& module) {
       "The simulator must have been made with body_transforms=True. Keywords: width=128,\n"
       "height=128, pixels; color='rgb', 'rgba' or None; depth=True; semantics=False;\n"
       "camera='head', 'follow', 'top' or a link; fov_degrees, vertical, 0 for the camera's own;\n"
-      "backend='auto', 'soft' or 'gl'; device=''; threads=0.\n\n"
+      "backend='auto', 'soft', 'gl' or 'cuda'; device=''; threads=0.\n\n"
       "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
       "(N, height, width), meters along the camera's axis, 0 where nothing is drawn;\n"
       "'semantics' uint32 (N, height, width), indices into semantic_names.");
@@ -122,9 +124,8 @@ void bindRenderer(py::module_& module) {
            "Error (UNSUPPORTED) with the soft backend and without CUDA.");
   type.def_property_readonly("shapes", &Renderer::shapes,
                              "Of one env's images, by name: shape and dtype.");
-  type.def_property_readonly("backend", [](const Renderer& one) {
-    return one.batch().backend() == RenderBackend::kGl ? "gl" : "soft";
-  });
+  type.def_property_readonly(
+      "backend", [](const Renderer& one) { return backendName(one.batch().backend()); });
   type.def_property_readonly("description",
                              [](const Renderer& one) { return one.batch().description(); });
   type.def_property_readonly("semantic_names", &Renderer::semanticNames);

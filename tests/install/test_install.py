@@ -105,7 +105,7 @@ class Install(unittest.TestCase):
             sorted([*self.verbs(), "--help", "--version"]),
         )
         self.assertEqual(self.complete("galactic-pack", "check", "--ju"), ["--junit"])
-        self.assertEqual(self.complete("galactic-run", "--backend", ""), ["auto", "gl", "soft"])
+        self.assertEqual(self.complete("galactic-run", "--backend", ""), ["auto", "cuda", "gl", "soft"])
         for tool in self.tools():
             long_names = set(
                 re.findall(r"^ +(?:-\w,)?(--[a-z0-9-]+)", run(self.tool(tool), "--help"), re.M)

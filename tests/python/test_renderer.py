@@ -117,7 +117,7 @@ def test_two_threads_cannot_use_one_renderer_at_once(world):
         ({"widht": 3}, TypeError, "there is no option widht; the options are width"),
         ({"width": 0}, Error, "found images of 0 x 20 pixels"),
         ({"color": "bgr"}, Error, "color: is bgr, wanted rgb, rgba or None"),
-        ({"backend": "cuda"}, Error, "backend: is cuda, wanted auto, soft or gl"),
+        ({"backend": "vulkan"}, Error, "backend: is vulkan, wanted auto, soft, gl or cuda"),
         ({"color": None, "depth": False}, Error, "found no image to make"),
         ({"camera": "tail"}, Error, "camera: found no link tail in helper"),
     ],

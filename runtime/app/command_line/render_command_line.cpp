@@ -50,15 +50,19 @@ void addSize(CLI::App& app, DrawingOptions& drawing) {
 }
 
 void addBackend(CLI::App& app, DrawingOptions& drawing) {
-  const std::map<std::string, RenderBackend> backends{
-      {"auto", RenderBackend::kAuto}, {"gl", RenderBackend::kGl}, {"soft", RenderBackend::kSoft}};
+  const std::map<std::string, RenderBackend> backends{{"auto", RenderBackend::kAuto},
+                                                      {"cuda", RenderBackend::kCuda},
+                                                      {"gl", RenderBackend::kGl},
+                                                      {"soft", RenderBackend::kSoft}};
   const auto set = [&drawing, backends](const std::string& text) {
     drawing.backend = backends.at(text);
   };
-  app.add_option_function<std::string>("--backend", set, "Renderer: OpenGL, or the processor alone")
-      ->check(CLI::IsMember({"auto", "gl", "soft"}))
-      ->option_text("auto|gl|soft [auto]");
-  app.add_option("--device", drawing.device, "For gl: an index, cuda:N, a UUID, or software")
+  app.add_option_function<std::string>("--backend", set,
+                                       "Renderer: CUDA, OpenGL, or the processor alone")
+      ->check(CLI::IsMember({"auto", "cuda", "gl", "soft"}))
+      ->option_text("auto|cuda|gl|soft [auto]");
+  app.add_option("--device", drawing.device,
+                 "For cuda and gl: an index, cuda:N, a UUID; for gl, software")
       ->type_name("TEXT");
 }
 
@@ -124,7 +128,7 @@ std::string drawingFault(const DrawingOptions& drawing, const CLI::App& app) {
     }
   }
   if (drawing.backend == RenderBackend::kSoft && !drawing.device.empty()) {
-    return "--device applies to --backend gl only; leave it out";
+    return "--device applies to --backend cuda and gl only; leave it out";
   }
   const bool shapes_pictures = app.count("--frame-every") + app.count("--frame-envs") > 0;
   if (!drawing.makesPictures() && (drawing.debug_view || shapes_pictures)) {

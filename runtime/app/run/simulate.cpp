@@ -131,7 +131,7 @@ class Run {
     const BatchRenderer& renderer = drawn_->renderer();
     report_.rendering.emplace();
     report_.rendering->description = renderer.description();
-    report_.rendering->backend = renderer.backend() == RenderBackend::kGl ? "gl" : "soft";
+    report_.rendering->backend = backendName(renderer.backend());
     if (options_.drawing.hasSemantics())
       report_.rendering->semantic_names = drawn_->semanticNames();
     return {};

@@ -22,11 +22,15 @@ struct DeviceImages {
 
 /// What draws.
 enum class RenderBackend : std::uint8_t {
-  kAuto,  ///< `gl` where there is a graphics processor, else `soft`.
+  kAuto,  ///< `cuda` on chips for data centers, else `gl`, else `cuda`, else `soft`: the first
+          ///< there is.
   kSoft,  ///< The rasterizer of this library, on all cores of the processor.
   kGl,    ///< OpenGL 4.5 through EGL, without a display.
   kCuda,  ///< The rasterizer of this library, on a CUDA device.
 };
+
+/// "auto", "soft", "gl" or "cuda".
+[[nodiscard]] const char* backendName(RenderBackend backend) noexcept;
 
 /// Bytes per pixel of color images.
 enum class ColorFormat : std::uint8_t { kNone = 0, kRgb8 = 3, kRgba8 = 4 };
@@ -44,8 +48,8 @@ struct RenderOptions {
   /// RGBA, sRGB, R lowest, where nothing is drawn.
   std::uint32_t background = 0;
   RenderBackend backend = RenderBackend::kAuto;
-  /// For `gl`: index of the device, "cuda:N", a UUID, "software" for a driver without a graphics
-  /// processor (an error otherwise), or empty for the first graphics processor.
+  /// For `gl` and `cuda`: index of the device, "cuda:N", a UUID, or empty for the first one. For
+  /// `gl`, too: "software" for a driver without a graphics processor (an error otherwise).
   std::string device;
   /// For `soft`: 0 takes all cores. The images do not depend on it.
   std::uint32_t threads = 0;
@@ -117,12 +121,13 @@ class BatchRenderer {
 
   /// Draws `views` and leaves the images where CUDA can use them without a copy. They stay as they
   /// are until the next rendering, and whatever CUDA does with them before that on its default
-  /// stream is waited for. A CUDA context must be current on this thread. Fails with kUnsupported
-  /// with the soft backend, without CUDA, and when CUDA's device is not the renderer's.
+  /// stream is waited for. Fails with kUnsupported with the soft backend and without CUDA; with the
+  /// gl backend, which needs a CUDA context that is current on this thread, also when its device is
+  /// not the renderer's.
   [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views);
 
   [[nodiscard]] const RenderOptions& options() const;
-  /// kSoft or kGl.
+  /// kSoft, kGl or kCuda.
   [[nodiscard]] RenderBackend backend() const;
   /// One line for reports: "soft, AVX2, 2 threads", or the OpenGL driver's renderer string.
   [[nodiscard]] const std::string& description() const;

@@ -34,16 +34,48 @@ Result<void> checkOptions(const RenderOptions& options) {
 
 using Made = Result<std::unique_ptr<render::RenderEngine>>;
 
-/// Without a wish, OpenGL only where a graphics processor stands behind it.
-Made makeEngine(const RenderLibrary& library, const RenderOptions& options) {
-  if (options.backend == RenderBackend::kSoft) return render::makeSoftEngine(library, options);
-  if (options.backend == RenderBackend::kCuda) return render::makeCudaEngine(library, options);
+/// Without a wish: what is fastest here. Chips for data centers have few units that draw triangles;
+/// OpenGL counts only where a graphics processor stands behind it.
+Made makeFastestEngine(const RenderLibrary& library, const RenderOptions& options) {
+  if (render::isForDataCenters(options)) {
+    Made cuda = render::makeCudaEngine(library, options);
+    if (cuda) return cuda;
+  }
   Made gl = render::makeGlEngine(library, options);
-  if (gl || options.backend == RenderBackend::kGl) return gl;
-  return render::makeSoftEngine(library, options);
+  if (gl) return gl;
+  Made cuda = render::makeCudaEngine(library, options);
+  return cuda ? std::move(cuda) : render::makeSoftEngine(library, options);
+}
+
+Made makeEngine(const RenderLibrary& library, const RenderOptions& options) {
+  switch (options.backend) {
+    case RenderBackend::kSoft:
+      return render::makeSoftEngine(library, options);
+    case RenderBackend::kGl:
+      return render::makeGlEngine(library, options);
+    case RenderBackend::kCuda:
+      return render::makeCudaEngine(library, options);
+    case RenderBackend::kAuto:
+      break;
+  }
+  return makeFastestEngine(library, options);
 }
 
 }  // namespace
+
+const char* backendName(RenderBackend backend) noexcept {
+  switch (backend) {
+    case RenderBackend::kSoft:
+      return "soft";
+    case RenderBackend::kGl:
+      return "gl";
+    case RenderBackend::kCuda:
+      return "cuda";
+    case RenderBackend::kAuto:
+      break;
+  }
+  return "auto";
+}
 
 class BatchRenderer::Impl {
  public:

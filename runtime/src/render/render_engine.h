@@ -22,8 +22,9 @@ class RenderEngine {
 
   /// Draws, and leaves the images on a CUDA device. Fails with kUnsupported where it cannot.
   [[nodiscard]] virtual Result<DeviceImages> renderToDevice(std::span<const RenderView> /*views*/) {
-    return fail(ErrorCode::kUnsupported, "device images",
-                "the soft backend draws into memory of the processor; use the cuda or the gl backend");
+    return fail(
+        ErrorCode::kUnsupported, "device images",
+        "the soft backend draws into memory of the processor; use the cuda or the gl backend");
   }
 
   /// kSoft, kGl or kCuda.
@@ -39,6 +40,9 @@ class RenderEngine {
                                                                  const RenderOptions& options);
 [[nodiscard]] Result<std::unique_ptr<RenderEngine>> makeCudaEngine(const RenderLibrary& library,
                                                                    const RenderOptions& options);
+/// Whether the device that the `cuda` backend would take is one whose chip has few units that draw
+/// triangles; false where there is none.
+[[nodiscard]] bool isForDataCenters(const RenderOptions& options);
 
 /// 1/256 pixels at a distance of 1 m for each meter beside the camera's axis.
 [[nodiscard]] float focalLength(const RenderOptions& options, const RenderCamera& camera) noexcept;

@@ -137,6 +137,7 @@ Result<std::unique_ptr<CudaEngine>> CudaEngine::make(const RenderLibrary& librar
                                                      const CudaTuning& tuning) {
   ASSIGN_OR_RETURN(std::unique_ptr<Driver> driver, Driver::open(tuning.library));
   ASSIGN_OR_RETURN(Device device, Device::choose(*driver, options.device));
+  RETURN_IF_ERROR(device.open());
   std::unique_ptr<CudaEngine> engine(new CudaEngine(options, std::move(driver), std::move(device)));
   engine->tuning_ = tuning;
   const CurrentDevice current(*engine->driver_, engine->device_);
@@ -181,9 +182,10 @@ Result<void> CudaEngine::cutRounds(std::span<const RenderView> views) {
       clusters += scene_->clusterCounts()[instance.model];
     }
     if (clusters > kMostClusters) {
-      return fail(ErrorCode::kUnsupported, "render backend cuda",
-                  fmt::format("found a view of {} clusters, wanted at most {}; use the soft backend",
-                              clusters, kMostClusters));
+      return fail(
+          ErrorCode::kUnsupported, "render backend cuda",
+          fmt::format("found a view of {} clusters, wanted at most {}; use the soft backend",
+                      clusters, kMostClusters));
     }
     statistics_.instances += views[v].instances.size();
     statistics_.clusters += clusters;
@@ -266,7 +268,8 @@ void CudaEngine::stage(std::span<const RenderView> views, const Upload& at_bytes
       device_views[v] = {inverse(view.camera.world_from_camera), focalLength(options_, view.camera),
                          next, count};
       if (count != 0) {
-        std::memcpy(static_cast<void*>(instances + next), view.instances.data(), count * sizeof(DeviceInstance));
+        std::memcpy(static_cast<void*>(instances + next), view.instances.data(),
+                    count * sizeof(DeviceInstance));
       }
       stageTasks(v, next, count, tasks + v * panes_.size());
       std::uint32_t clusters = 0;
@@ -411,6 +414,13 @@ Result<DeviceImages> CudaEngine::renderToDevice(std::span<const RenderView> view
 }  // namespace galactic::render::cuda
 
 namespace galactic::render {
+
+bool isForDataCenters(const RenderOptions& options) {
+  const Result<std::unique_ptr<cuda::Driver>> driver = cuda::Driver::open();
+  if (!driver) return false;
+  const Result<cuda::Device> device = cuda::Device::choose(**driver, options.device);
+  return device && device->isForDataCenters();
+}
 
 Result<std::unique_ptr<RenderEngine>> makeCudaEngine(const RenderLibrary& library,
                                                      const RenderOptions& options) {

@@ -164,9 +164,11 @@ Result<Device> Device::choose(const Driver& driver, const std::string& wish) {
                               chosen.major_, chosen.minor_, kLeastMajor));
   }
   chosen.device_ = device;
-  RETURN_IF_ERROR(
-      driver.check(functions.retain_context(&chosen.context_, device), "make a context"));
   return chosen;
+}
+
+Result<void> Device::open() {
+  return driver_->check(driver_->functions().retain_context(&context_, device_), "make a context");
 }
 
 Device::Device(Device&& other) noexcept

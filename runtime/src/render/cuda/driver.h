@@ -64,8 +64,8 @@ class Driver {
   int device_count_ = 0;
 };
 
-/// A device whose context is there while this lives: the one that CUDA's runtime and the learning
-/// libraries use.
+/// A device. Once it is opened, its context is there while this lives: the one that CUDA's runtime
+/// and the learning libraries use.
 class Device {
  public:
   /// `wish` as in RenderOptions::device: nothing, a number, "cuda:N" or a UUID. Numbers are CUDA's
@@ -76,6 +76,11 @@ class Device {
   Device& operator=(Device&&) = delete;
   ~Device();
 
+  /// Fails with kUnsupported where the driver refuses.
+  [[nodiscard]] Result<void> open();
+  /// Whether its chip is made for data centers: those have few units that draw triangles, and all
+  /// of them have a compute capability that ends with 0 (V100, A100, H100, B200).
+  [[nodiscard]] bool isForDataCenters() const { return minor_ == 0; }
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] int major() const { return major_; }
   [[nodiscard]] int minor() const { return minor_; }

@@ -92,7 +92,7 @@ TEST(RunCommandLine, RefusesADeviceThatNothingUsesAndSuggestsNames) {
   EXPECT_EQ(parse({"--render", "rgb", "--backend", "soft", "--device", "0"}, options), kExitUsage);
   EXPECT_EQ(parse({"--env", "3"}, options), kExitUsage);
   const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_NE(said.find("--device applies to --backend gl"), std::string::npos) << said;
+  EXPECT_NE(said.find("--device applies to --backend cuda and gl"), std::string::npos) << said;
   EXPECT_NE(said.find("did you mean '--envs'"), std::string::npos) << said;
 }
 

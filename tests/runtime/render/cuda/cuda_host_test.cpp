@@ -164,6 +164,26 @@ TEST_F(CudaHost, LeavesOnTheDeviceWhatItWouldRead) {
   EXPECT_EQ((*engine)->statistics().triangles_drawn, 6U);
 }
 
+/// The stand-in is loaded under the name of CUDA's driver, so this program finds it by that.
+TEST_F(CudaHost, IsTakenFirstOnChipsForDataCenters) {
+  options_.backend = RenderBackend::kAuto;
+  const BatchRenderer taken = makeRenderer(library_, options_);
+  EXPECT_EQ(taken.backend(), RenderBackend::kCuda);
+  EXPECT_STREQ(backendName(taken.backend()), "cuda");
+  standin_->failing = "cuModuleLoadDataEx";
+  EXPECT_NE(makeRenderer(library_, options_).backend(), RenderBackend::kCuda);
+  standin_->failing = nullptr;
+  standin_->minor = 6;
+  options_.device = "software";
+  EXPECT_NE(makeRenderer(library_, options_).backend(), RenderBackend::kCuda);
+}
+
+TEST_F(CudaHost, DrawsThroughTheInterfaceWhatSoftDraws) {
+  options_.backend = RenderBackend::kCuda;
+  const std::vector<RenderView> views(2, view_);
+  EXPECT_EQ(renderViews(library_, options_, views), drawWithSoft(library_, options_, views));
+}
+
 TEST_F(CudaHost, DrawsABatchOfNoViews) {
   auto engine = makeEngine(library_, options_);
   ASSERT_TRUE(engine);
