@@ -1,5 +1,5 @@
 // Images of 128 x 128 pixels, color and depth, by the OpenGL backend, by the rasterizer, and by
-// OpenGL one env after the other with nothing culled:
+// OpenGL one env after the other with nothing culled; images of several sizes by the CUDA backend:
 //
 //   render_gl                                        on a home made in code
 //   GALACTIC_RENDER_WORLD=world.pack render_gl       on a world that was baked
@@ -20,6 +20,7 @@
 #include <memory>
 #include <random>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -27,6 +28,7 @@
 #include "galactic/world.h"
 #include "galactic/world_models.h"
 #include "galactic/world_views.h"
+#include "render/cuda/cuda_engine.h"
 #include "render/gl/gl_engine.h"
 #include "render_apartment.h"
 #include "support/render_images.h"
@@ -43,6 +45,7 @@ using galactic::World;
 using galactic::WorldModels;
 using galactic::WorldViews;
 using galactic::render::RenderEngine;
+using galactic::render::cuda::CudaEngine;
 using galactic::render::gl::GlEngine;
 using galactic::render::gl::GlTimings;
 
@@ -166,6 +169,71 @@ void drawWithGl(benchmark::State& state, Scene& scene, bool plain) {
   state.counters["share_copy"] = timings.copy / wall.count();
 }
 
+/// The second argument of benchmarks that have one: pixels along the image's edge.
+RenderOptions optionsOf(RenderBackend backend, const benchmark::State& state) {
+  RenderOptions options = optionsFor(backend);
+  options.width = options.height = static_cast<std::uint32_t>(state.range(1));
+  if (options.device == "software" && backend == RenderBackend::kCuda) options.device = "";
+  return options;
+}
+
+/// Draws batches that stay on the device.
+void leaveOnDevice(benchmark::State& state, RenderEngine& engine,
+                   std::span<const RenderView> views) {
+  if (const auto first = engine.renderToDevice(views); !first) {
+    return state.SkipWithError(first.error().message.c_str());
+  }
+  const auto start = std::chrono::steady_clock::now();
+  for ([[maybe_unused]] const auto iteration : state) {
+    benchmark::DoNotOptimize(engine.renderToDevice(views));
+  }
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  const auto count = static_cast<double>(state.iterations()) * static_cast<double>(views.size());
+  state.SetItemsProcessed(static_cast<std::int64_t>(count));
+  state.counters["images_per_second"] = count / wall.count();
+  state.SetLabel(engine.description());
+}
+
+void drawWithCuda(benchmark::State& state, Scene& scene, bool on_device, bool measure) {
+  const RenderOptions options = optionsOf(RenderBackend::kCuda, state);
+  const auto views = scene.views(static_cast<std::size_t>(state.range(0)));
+  auto engine = CudaEngine::make(scene.library(), options, {.measure = measure});
+  if (!engine) return state.SkipWithError(engine.error().message.c_str());
+  const auto start = std::chrono::steady_clock::now();
+  if (on_device) {
+    leaveOnDevice(state, **engine, views);
+  } else {
+    drawBatches(state, **engine, views, options);
+  }
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  const galactic::render::cuda::CudaTimings& timings = (*engine)->timings();
+  state.counters["share_setup"] = timings.setup / wall.count();
+  if (!on_device) state.counters["share_readback"] = timings.readback / wall.count();
+  if (!measure) return;
+  for (std::size_t n = 0; n < timings.kernels.size(); ++n) {
+    const std::string name = galactic::render::cuda::kKernelNames[n];
+    state.counters["share" + name.substr(name.find('_'))] = timings.kernels[n] / wall.count();
+  }
+}
+
+/// OpenGL's images in CUDA's memory: in the context that this thread has then.
+void leaveWithGl(benchmark::State& state, Scene& scene) {
+  const RenderOptions options = optionsOf(RenderBackend::kGl, state);
+  const auto driver = galactic::render::cuda::Driver::open();
+  if (!driver) return state.SkipWithError(driver.error().message.c_str());
+  const std::string device_name = options.device == "software" ? "" : options.device;
+  auto device = galactic::render::cuda::Device::choose(**driver, device_name);
+  if (!device) return state.SkipWithError(device.error().message.c_str());
+  if (const auto opened = device->open(); !opened) {
+    return state.SkipWithError(opened.error().message.c_str());
+  }
+  const galactic::render::cuda::CurrentDevice current(**driver, *device);
+  const auto views = scene.views(static_cast<std::size_t>(state.range(0)));
+  auto engine = galactic::render::makeGlEngine(scene.library(), options);
+  if (!engine) return state.SkipWithError(engine.error().message.c_str());
+  leaveOnDevice(state, **engine, views);
+}
+
 void drawWithSoft(benchmark::State& state, Scene& scene) {
   const RenderOptions options = optionsFor(RenderBackend::kSoft);
   const auto views = scene.views(static_cast<std::size_t>(state.range(0)));
@@ -188,6 +256,19 @@ int run(int argc, char** argv) {
   add("gl", [&](benchmark::State& state) { drawWithGl(state, scene, false); });
   add("gl_one_by_one", [&](benchmark::State& state) { drawWithGl(state, scene, true); });
   add("soft", [&](benchmark::State& state) { drawWithSoft(state, scene); });
+  // On a graphics processor, by views and pixels along an edge.
+  const auto add_sizes = [&](const char* name, auto run) {
+    benchmark::RegisterBenchmark(name, run)
+        ->ArgsProduct({{128, 512, 2048, 8192}, {64, 128}})
+        ->UseRealTime()
+        ->Unit(benchmark::kMillisecond);
+  };
+  add_sizes("cuda_read",
+            [&](benchmark::State& state) { drawWithCuda(state, scene, false, false); });
+  add_sizes("cuda_stay", [&](benchmark::State& state) { drawWithCuda(state, scene, true, false); });
+  add_sizes("cuda_shares",
+            [&](benchmark::State& state) { drawWithCuda(state, scene, true, true); });
+  add_sizes("gl_stay", [&](benchmark::State& state) { leaveWithGl(state, scene); });
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   return 0;

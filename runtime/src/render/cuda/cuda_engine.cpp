@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -42,6 +43,21 @@ template <class T>
 T* at(const Memory& memory, std::size_t offset = 0) {
   return at<T>(memory.address() + offset);
 }
+
+/// Adds the time from its beginning to its end to a sum, in seconds.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& sum) : sum_(sum) {}
+  ~Stopwatch() {
+    sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& sum_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 [[noreturn]] void giveUp(const Error& error) {
   std::fprintf(stderr, "%s: %s\n", error.where.c_str(), error.message.c_str());
@@ -287,7 +303,10 @@ void CudaEngine::stage(std::span<const RenderView> views, const Upload& at_bytes
 
 Result<void> CudaEngine::draw(std::span<const RenderView> views) {
   const DriverFunctions& functions = driver_->functions();
-  RETURN_IF_ERROR(cutRounds(views));
+  {
+    const Stopwatch watch(timings_.setup);
+    RETURN_IF_ERROR(cutRounds(views));
+  }
   if (views.empty()) return {};
   RETURN_IF_ERROR(reserve(views));
   const std::size_t panes = views.size() * panes_.size();
@@ -299,7 +318,10 @@ Result<void> CudaEngine::draw(std::span<const RenderView> views) {
   RETURN_IF_ERROR(staged_.reserve(at_bytes.bytes));
   RETURN_IF_ERROR(uploaded_.reserve(at_bytes.bytes));
   RETURN_IF_ERROR(placed_.reserve(statistics_.instances * sizeof(PlacedModel)));
-  stage(views, at_bytes);
+  {
+    const Stopwatch watch(timings_.setup);
+    stage(views, at_bytes);
+  }
   RETURN_IF_ERROR(driver_->check(
       functions.copy_to_device(uploaded_.address(), staged_.bytes(), at_bytes.bytes, nullptr),
       "copy poses"));
@@ -339,6 +361,14 @@ Round CudaEngine::roundOf(const ViewRange& range, std::size_t number,
   return round;
 }
 
+Result<void> CudaEngine::launch(Kernel kernel, std::uint32_t blocks,
+                                const PassParameters& parameters) {
+  if (!tuning_.measure) return kernels_->launch(kernel, blocks, parameters);
+  const Stopwatch watch(timings_.kernels[static_cast<std::size_t>(kernel)]);
+  RETURN_IF_ERROR(kernels_->launch(kernel, blocks, parameters));
+  return driver_->check(driver_->functions().synchronize(nullptr), "draw");
+}
+
 Result<void> CudaEngine::drawRound(const ViewRange& range, std::size_t number,
                                    const Upload& at_bytes) {
   PassParameters parameters{roundOf(range, number, at_bytes), 0};
@@ -349,15 +379,15 @@ Result<void> CudaEngine::drawRound(const ViewRange& range, std::size_t number,
   RETURN_IF_ERROR(driver_->check(
       driver_->functions().set_words(round_memory_->pixels.address(), 0, words, nullptr),
       "clear pixels"));
-  RETURN_IF_ERROR(kernels_->launch(Kernel::kPlace, parameters.round.view_count, parameters));
-  RETURN_IF_ERROR(kernels_->launch(Kernel::kCull, panes, parameters));
-  RETURN_IF_ERROR(kernels_->launch(Kernel::kDraw, workers, parameters));
-  RETURN_IF_ERROR(kernels_->launch(Kernel::kTiles, panes, parameters));
+  RETURN_IF_ERROR(launch(Kernel::kPlace, parameters.round.view_count, parameters));
+  RETURN_IF_ERROR(launch(Kernel::kCull, panes, parameters));
+  RETURN_IF_ERROR(launch(Kernel::kDraw, workers, parameters));
+  RETURN_IF_ERROR(launch(Kernel::kTiles, panes, parameters));
   parameters.pass = 1;
-  RETURN_IF_ERROR(kernels_->launch(Kernel::kDraw, workers, parameters));
+  RETURN_IF_ERROR(launch(Kernel::kDraw, workers, parameters));
   constexpr std::uint32_t kPixelsOfBlock = kBlockThreads * kPixelsPerThread;
   const std::uint32_t blocks_of_pane = (pixels_of_pane_ + kPixelsOfBlock - 1) / kPixelsOfBlock;
-  return kernels_->launch(Kernel::kResolve, panes * blocks_of_pane, parameters);
+  return launch(Kernel::kResolve, panes * blocks_of_pane, parameters);
 }
 
 Result<void> CudaEngine::readCounts() {
@@ -378,6 +408,7 @@ Result<void> CudaEngine::readCounts() {
 }
 
 Result<void> CudaEngine::readImages() {
+  const Stopwatch watch(timings_.readback);
   const auto read = [this](auto target, const Memory& memory) {
     if (target.empty()) return 0;
     return driver_->functions().copy_to_host(target.data(), memory.address(), target.size_bytes(),

@@ -21,6 +21,18 @@ struct CudaTuning {
   /// Views are drawn together while their lists and pixels need no more memory than this; a view
   /// that needs more is drawn by itself.
   std::size_t round_bytes = std::size_t{1} << 30U;
+  /// Waits for each kernel, so that CudaTimings says what it took.
+  bool measure = false;
+};
+
+/// Where time went since the engine was made, seconds; all but setup only where that is measured.
+struct CudaTimings {
+  /// Of the processor: lists and poses.
+  double setup = 0;
+  /// By kernel; those that clear pixels count as part of the first.
+  std::array<double, kKernels> kernels{};
+  /// Images to the processor.
+  double readback = 0;
 };
 
 /// The compiled kernels on a device, whose context must be current for all calls.
@@ -64,6 +76,7 @@ class CudaEngine final : public RenderEngine {
   [[nodiscard]] const Device& device() const { return device_; }
   /// How many times the last batch was cut.
   [[nodiscard]] std::size_t roundCount() const { return rounds_.size(); }
+  [[nodiscard]] const CudaTimings& timings() const { return timings_; }
 
  private:
   /// Views [first, end) of the batch, and what their lists have room for.
@@ -92,6 +105,8 @@ class CudaEngine final : public RenderEngine {
   void stage(std::span<const RenderView> views, const Upload& at);
   void stageTasks(std::size_t view, std::uint32_t first_instance, std::uint32_t instance_count,
                   PaneTask* tasks) const;
+  /// Launches, and waits where that is measured.
+  Result<void> launch(Kernel kernel, std::uint32_t blocks, const PassParameters& parameters);
   Result<void> drawRound(const ViewRange& range, std::size_t number, const Upload& at);
   [[nodiscard]] Round roundOf(const ViewRange& range, std::size_t number, const Upload& at) const;
   Result<void> readCounts();
@@ -116,6 +131,7 @@ class CudaEngine final : public RenderEngine {
   std::vector<RoundCounts> read_counts_;
   RenderTargets targets_;
   RenderStatistics statistics_;
+  CudaTimings timings_;
 };
 
 }  // namespace galactic::render::cuda
