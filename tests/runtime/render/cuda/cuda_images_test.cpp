@@ -50,7 +50,7 @@ class CudaImages : public testing::Test {
     RenderModelBuilder builder(1.0F / 1024);
     std::vector<std::uint16_t> materials = {builder.material(0xFF30A0F0)};
     for (const float cutoff : {0.0F, 0.4F}) {
-      std::vector<std::uint32_t> texels(64 * 64);
+      std::vector<std::uint32_t> texels(std::size_t{64} * 64);
       for (std::uint32_t& texel : texels) texel = static_cast<std::uint32_t>(random_());
       materials.push_back(builder.material(0, builder.texture(64, texels), cutoff));
     }
@@ -195,7 +195,8 @@ TEST_F(CudaImages, OfThousandsOfTinyTrianglesAndOfHugeOnesEqualThoseOfSoft) {
     const float cell = 2 * half / static_cast<float>(cells);
     for (int n = 0; n < cells * cells; ++n) {
       const float x = static_cast<float>(n % cells) * cell - half;
-      const float z = static_cast<float>(n / cells) * cell - half;
+      const int row = n / cells;
+      const float z = static_cast<float>(row) * cell - half;
       builder.quad({{{x, height, z},
                      {x, height, z + cell},
                      {x + cell, height, z + cell},

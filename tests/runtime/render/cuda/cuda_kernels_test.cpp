@@ -52,7 +52,7 @@ TEST_F(CudaKernels, RoundAsTheProcessorDoes) {
 
 TEST_F(CudaKernels, NeedNoMoreSharedMemoryThanBlocksOfAllDevicesHave) {
   // 48 KB without asking; at 16 KB, four blocks fit on every multiprocessor from sm_70 on.
-  constexpr std::uint64_t kMost = 16 * 1024;
+  constexpr std::uint64_t kMost = std::uint64_t{16} * 1024;
   const std::regex shared(R"(\.shared [^\n]*\[(\d+)\];)");
   std::size_t found = 0;
   for (const char* name : render::cuda::kKernelNames) {
