@@ -1,7 +1,7 @@
 # What `cmake --install` and `cpack` put where: a component for each Debian package.
 #
 #   run     galactic           galactic-run, galactic-pack, their man pages and completions
-#   bake    galactic-bake      galactic-bake and the recipes of robots and worlds
+#   bake    galactic-bake      galactic-bake, galactic-dynamics, and the recipes of robots and worlds
 #   dev     libgalactic-dev    libgalactic, its headers, a CMake package
 #   python  python3-galactic   the Python package (python/CMakeLists.txt)
 include(GNUInstallDirs)
@@ -10,11 +10,11 @@ include(CMakePackageConfigHelpers)
 install(TARGETS galactic-run galactic-pack COMPONENT run)
 set(GALACTIC_TOOLS galactic-run galactic-pack)
 if(TARGET galactic-bake)
-  install(TARGETS galactic-bake COMPONENT bake)
+  install(TARGETS galactic-bake galactic-dynamics COMPONENT bake)
   # The sample world's sources stay in the source tree.
   install(DIRECTORY packs/robots packs/worlds DESTINATION ${CMAKE_INSTALL_DATADIR}/galactic COMPONENT bake
           PATTERN sample.toml EXCLUDE)
-  list(APPEND GALACTIC_TOOLS galactic-bake)
+  list(APPEND GALACTIC_TOOLS galactic-bake galactic-dynamics)
 endif()
 
 # The library. Targets that link it find what it needs through the CMake package.
@@ -46,7 +46,7 @@ function(galactic_man_page page tool)
     DEPENDS ${tool} ${PROJECT_SOURCE_DIR}/scripts/man_page.py
     COMMENT "Man page of ${command}" VERBATIM)
   set(component run)
-  if(tool STREQUAL "galactic-bake")
+  if(tool MATCHES "^galactic-(bake|dynamics)$")
     set(component bake)
   endif()
   install(FILES ${file} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component})
@@ -69,7 +69,7 @@ endif()
 # bash-completion loads the file that is named like the command.
 foreach(tool IN LISTS GALACTIC_TOOLS)
   set(component run)
-  if(tool STREQUAL "galactic-bake")
+  if(tool MATCHES "^galactic-(bake|dynamics)$")
     set(component bake)
   endif()
   install(FILES scripts/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions

@@ -26,22 +26,33 @@ Pose gripOf(const Robot& robot, const Pose& world_from_root, std::span<const flo
   return world_from_link[hand.link] * Pose{hand.grasp_point, {}};
 }
 
+void applyActions(const Robot& robot, std::span<const float> actions, Pose& world_from_root,
+                  std::span<float> positions) {
+  const std::span<const ControlledJoint> joints = robot.controlledJoints();
+  for (std::size_t n = 0; n < joints.size(); ++n) {
+    float& position = positions[joints[n].position];
+    position = std::clamp(position + joints[n].step * clamped(actions[n]), joints[n].lower,
+                          joints[n].upper);
+  }
+  const RobotBase& base = *robot.base();
+  Quat& heading = world_from_root.rotation;
+  heading = yawOf(-base.turn_step * clamped(actions[joints.size() + 1])) * heading;
+  world_from_root.translation =
+      world_from_root.translation +
+      rotate(heading, {base.forward_step * clamped(actions[joints.size()]), 0, 0});
+}
+
 RobotDriver::RobotDriver(const Robot& robot, DynamicsWorld& world, const SimulationOptions& options)
     : robot_(robot), world_(world), options_(options), targets_(world.positions()) {}
 
 DrivenStep RobotDriver::step(std::span<const float> actions) {
-  const std::span<const ControlledJoint> joints = robot_.controlledJoints();
-  for (std::size_t n = 0; n < joints.size(); ++n) {
-    float& target = targets_[joints[n].position];
-    target =
-        std::clamp(target + joints[n].step * clamped(actions[n]), joints[n].lower, joints[n].upper);
-  }
-  const std::optional<Pose> root =
-      driven(clamped(actions[joints.size()]), clamped(actions[joints.size() + 1]));
+  Pose wanted = world_.worldFromRoot();
+  applyActions(robot_, actions, wanted, targets_);
+  const std::optional<Pose> root = clearOf(wanted);
   world_.drive(root.value_or(world_.worldFromRoot()), targets_);
   world_.step();
   DrivenStep step{.base_refused = !root, .grasped = {}, .released = {}};
-  useHand(clamped(actions[joints.size() + 2]), step);
+  useHand(clamped(actions[robot_.controlledJoints().size() + 2]), step);
   return step;
 }
 
@@ -49,11 +60,7 @@ Pose RobotDriver::worldFromGrip() const {
   return gripOf(robot_, world_.worldFromRoot(), world_.positions());
 }
 
-std::optional<Pose> RobotDriver::driven(float forward, float turn) const {
-  const RobotBase& base = *robot_.base();
-  Pose root = world_.worldFromRoot();
-  root.rotation = yawOf(-base.turn_step * turn) * root.rotation;
-  root.translation = root.translation + rotate(root.rotation, {base.forward_step * forward, 0, 0});
+std::optional<Pose> RobotDriver::clearOf(Pose root) const {
   for (std::uint32_t attempt = 0; attempt <= options_.slide.attempts; ++attempt) {
     const std::optional<Pose> standing = onFloor(root);
     if (!standing) return std::nullopt;

@@ -44,7 +44,7 @@ class RobotDriver {
   [[nodiscard]] std::span<const float> targets() const { return targets_; }
 
  private:
-  [[nodiscard]] std::optional<Pose> driven(float forward, float turn) const;
+  [[nodiscard]] std::optional<Pose> clearOf(Pose world_from_root) const;
   [[nodiscard]] std::optional<Pose> onFloor(const Pose& world_from_root) const;
   void useHand(float value, DrivenStep& step);
 
@@ -57,5 +57,11 @@ class RobotDriver {
 /// The pose of the grip for a pose of the root and joint positions.
 [[nodiscard]] Pose gripOf(const Robot& robot, const Pose& world_from_root,
                           std::span<const float> positions);
+
+/// Moves joints and root as the simulation does before it looks at what is in the way: clamped
+/// actions, joints within their limits, then the turn, then the drive. `positions`: one per
+/// position of the robot.
+void applyActions(const Robot& robot, std::span<const float> actions, Pose& world_from_root,
+                  std::span<float> positions);
 
 }  // namespace galactic::dynamics

@@ -1,4 +1,4 @@
-# bash completion for galactic-run, galactic-pack and galactic-bake: options, verbs and choices are read from
+# bash completion for galactic-run, galactic-pack, galactic-bake and galactic-dynamics: options, verbs and choices are read from
 # --help, so that they are those of the tool that is installed.
 
 # The lines of --help that tell of options: "  -o,--out FILE [default]   text".
@@ -39,4 +39,4 @@ _galactic() {
   _filedir
 }
 
-complete -F _galactic galactic-run galactic-pack galactic-bake
+complete -F _galactic galactic-run galactic-pack galactic-bake galactic-dynamics

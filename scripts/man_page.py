@@ -56,7 +56,7 @@ def main() -> int:
         capture_output=True, text=True, check=True,
     ).stdout  # fmt: skip
     summary, body, examples, exits = parts_of(help_text)
-    tools = ["galactic-bake", "galactic-pack", "galactic-run"]
+    tools = ["galactic-bake", "galactic-dynamics", "galactic-pack", "galactic-run"]
     others = [tool for tool in tools if options.verb or tool != options.tool.name]
     see_also = ",\n".join(f".BR {tool} (1)" for tool in others)
     options.output.parent.mkdir(parents=True, exist_ok=True)

@@ -1,0 +1,140 @@
+#include "sources.h"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "galactic/bake/assets.h"
+#include "galactic/bake/job_lists.h"
+#include "galactic/bake/triangle_mesh.h"
+#include "galactic/bake/urdf_inertials.h"
+#include "support/try.h"
+
+namespace galactic::dynamics {
+namespace {
+
+using Names = std::set<std::string, std::less<>>;
+
+std::string nameOr(const std::string& name, const std::filesystem::path& input) {
+  return name.empty() ? input.stem().string() : name;
+}
+
+Result<bake::SourceAsset> sceneAsset(const bake::SceneJob& job) {
+  if (!job.instance) return bake::importMesh(job.input, job.import);
+  ASSIGN_OR_RETURN(auto composed,
+                   job.instance->dataset->compose(job.instance->name, *job.instance->meshes));
+  return std::move(composed.scene);
+}
+
+HullPoints pointsOf(const bake::SourceAsset& asset) {
+  HullPoints points;
+  for (const bake::SourceInstance& instance : asset.instances) {
+    const bake::Affine& m = instance.world_from_mesh;
+    for (const Vec3& p : asset.meshes[instance.mesh].positions) {
+      const auto row = [&](std::size_t r) {
+        const bake::Affine& a = m;
+        return static_cast<float>(a[4 * r] * double{p.x} + a[4 * r + 1] * double{p.y} +
+                                  a[4 * r + 2] * double{p.z} + a[4 * r + 3]);
+      };
+      points.push_back({row(0), row(1), row(2)});
+    }
+  }
+  return points;
+}
+
+/// Reads the jobs of a recipe as far as a world needs them.
+class SourceReader {
+ public:
+  SourceReader(const World& world, Sources& sources) : world_(world), sources_(sources) {
+    const EpisodeSet& set = world.episodes();
+    for (const Episode& episode : set.episodes()) {
+      scenes_.emplace(world.sceneOf(episode).name());
+      for (const Placement& placement : set.placements(episode)) {
+        objects_.emplace(world.objectOf(placement).name);
+      }
+    }
+  }
+
+  Result<void> operator()(const bake::SceneJob& job) {
+    const std::string name = nameOr(job.name, job.input);
+    if (!scenes_.contains(name)) return {};
+    ASSIGN_OR_RETURN(const auto asset, sceneAsset(job));
+    ASSIGN_OR_RETURN(const auto clean, bake::placeAndClean(asset));
+    sources_.scenes.emplace(name, makeSceneShape(clean.mesh));
+    return {};
+  }
+  Result<void> operator()(const bake::ObjectJob& job) {
+    ASSIGN_OR_RETURN(const auto inputs, bake::findObjects(job.inputs));
+    for (const bake::ObjectInput& input : inputs) {
+      const std::string& name = job.name.empty() ? input.name : job.name;
+      if (!objects_.contains(name)) continue;
+      ASSIGN_OR_RETURN(const auto asset, bake::importMesh(input.path, job.import));
+      sources_.objects.emplace(name,
+                               makeObjectShape({.hulls = {pointsOf(asset)}, .mass = kObjectMass}));
+    }
+    return {};
+  }
+  Result<void> operator()(const bake::RobotJob& job) {
+    ASSIGN_OR_RETURN(auto robot, bake::readRobotFile(job));
+    ASSIGN_OR_RETURN(auto inertials, bake::readInertials(job.input));
+    ASSIGN_OR_RETURN(sources_.robot,
+                     robotParts({std::move(robot), std::move(inertials)}, world_.robot()));
+    sources_.robot_shape = makeRobotShape(sources_.robot);
+    for (const std::string& warning : sources_.robot.warnings) {
+      sources_.warnings.push_back(warning);
+    }
+    return {};
+  }
+  /// Episodes and worlds are packs, not sources.
+  Result<void> operator()(const auto& /*job*/) { return {}; }
+
+  /// Whether all is there.
+  [[nodiscard]] Result<void> finish(const std::filesystem::path& recipe) const {
+    for (const std::string& name : scenes_) {
+      if (!sources_.scenes.contains(name)) return absent(recipe, "scene", name);
+    }
+    for (const std::string& name : objects_) {
+      if (!sources_.objects.contains(name)) return absent(recipe, "object", name);
+    }
+    if (!sources_.robot_shape) return absent(recipe, "robot", world_.robot().name());
+    return {};
+  }
+
+ private:
+  static tl::unexpected<Error> absent(const std::filesystem::path& recipe, std::string_view kind,
+                                      std::string_view name) {
+    return fail(ErrorCode::kInvalidInput, recipe.string(),
+                fmt::format("makes no {} '{}', which the world has; give the recipe that the world "
+                            "was baked from",
+                            kind, name));
+  }
+
+  const World& world_;
+  Sources& sources_;
+  Names scenes_;
+  Names objects_;
+};
+
+}  // namespace
+
+Result<Sources> readSources(const SourceFiles& files, const World& world) {
+  // Nothing is written there: the list wants a name for the world.
+  ASSIGN_OR_RETURN(const auto list,
+                   bake::jobsOfRecipe({.recipe = files.recipe, .data = files.data}, "world.pack"));
+  Sources sources;
+  SourceReader reader(world, sources);
+  for (const bake::PackJob& pack : list.assets) {
+    RETURN_IF_ERROR(std::visit(reader, pack.job));
+  }
+  RETURN_IF_ERROR(reader.finish(files.recipe));
+  if (!sources.objects.empty()) {
+    sources.warnings.push_back(
+        fmt::format("meshes hold no masses: each object weighs {} kg", kObjectMass));
+  }
+  return sources;
+}
+
+}  // namespace galactic::dynamics

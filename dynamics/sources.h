@@ -1,0 +1,42 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "galactic/error.h"
+#include "galactic/world.h"
+#include "robot_model.h"
+#include "world.h"
+
+namespace galactic::dynamics {
+
+/// Where the sources of a world are told.
+struct SourceFiles {
+  /// The recipe that the world was baked from.
+  std::filesystem::path recipe;
+  /// Where its files are looked for that are not beside it; empty: nowhere else.
+  std::filesystem::path data{};
+};
+
+/// What a world's packs lack: triangles, hulls and masses, by the names in the packs. Shapes are
+/// immutable; worlds on several threads share them.
+struct Sources {
+  std::map<std::string, std::shared_ptr<const SceneShape>, std::less<>> scenes;
+  std::map<std::string, std::shared_ptr<const ObjectShape>, std::less<>> objects;
+  RobotParts robot;
+  std::shared_ptr<const RobotShape> robot_shape;
+  /// What was missing and what is taken instead, one sentence each.
+  std::vector<std::string> warnings;
+};
+
+/// Kilograms of every object: neither meshes nor packs hold masses. Also the episode generator's.
+inline constexpr double kObjectMass = 0.5;
+
+/// Reads what the scenes, objects and the robot of `world` were baked from; of scenes and objects
+/// only those that episodes use. Fails with the errors of the recipe and the importers, and with
+/// kInvalidInput where the recipe makes no pack of something that the world has.
+[[nodiscard]] Result<Sources> readSources(const SourceFiles& files, const World& world);
+
+}  // namespace galactic::dynamics
