@@ -1,7 +1,8 @@
 """Thousands of simulated homes at once, for learning.
 
 World opens packs, Simulator steps a batch of environments, Renderer draws them, VectorEnv is
-Gymnasium's vector environment over them, LearnedPolicy plays policy packs. docs/python.md has the
+Gymnasium's vector environment over them, LearnedPolicy plays policy packs, PlanningScene answers
+planners. docs/python.md has the
 tour.
 """
 
@@ -10,6 +11,7 @@ from galactic._core import (
     EpisodeEnd,
     ErrorCode,
     LearnedPolicy,
+    PlanningScene,
     Pose,
     Renderer,
     Simulator,
@@ -25,6 +27,7 @@ __all__ = [
     "Error",
     "ErrorCode",
     "LearnedPolicy",
+    "PlanningScene",
     "Pose",
     "Renderer",
     "Simulator",

@@ -12,6 +12,7 @@ namespace py = pybind11;
 void bindErrors(py::module_& module);
 void bindWorld(py::module_& module);
 void bindSimulator(py::module_& module);
+void bindPlanningScene(py::module_& module);
 void bindEpisodeTally(py::module_& module);
 void bindPolicy(py::module_& module);
 void bindRenderer(py::module_& module);

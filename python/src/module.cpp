@@ -35,6 +35,7 @@ PYBIND11_MODULE(_core, module) {
   galactic::python::bindErrors(module);
   galactic::python::bindWorld(module);
   galactic::python::bindSimulator(module);
+  galactic::python::bindPlanningScene(module);
   galactic::python::bindEpisodeTally(module);
   galactic::python::bindPolicy(module);
   galactic::python::bindRenderer(module);

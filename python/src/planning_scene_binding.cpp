@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "galactic/planning_scene.h"
+#include "simulator.h"
+
+namespace galactic::python {
+namespace {
+
+/// `given` as `count` finite numbers; ValueError when it is anything else.
+std::vector<float> finiteNumbers(const py::handle& given, const char* name, std::size_t count) {
+  const auto array = inputOf<float>(given, name, {static_cast<py::ssize_t>(count)});
+  std::vector<float> numbers(array.data(), array.data() + count);
+  if (!std::ranges::all_of(numbers, [](float number) { return std::isfinite(number); })) {
+    throw py::value_error(fmt::format("{} holds a number that is not finite", name));
+  }
+  return numbers;
+}
+
+/// galactic.PlanningScene: a PlanningScene of one env of a simulator, which it keeps. Nothing here
+/// gives the interpreter's lock away, so calls of several threads come one after the other.
+class EnvScene {
+ public:
+  EnvScene(Simulator& simulator, std::size_t env)
+      : simulator_(&simulator), scene_(simulator.world(), simulator.batch().options()) {
+    update(env);
+  }
+
+  void update(std::size_t env) {
+    if (env >= simulator_->batch().envCount()) {
+      throw py::index_error(fmt::format("there is no env {}, the last is {}", env,
+                                        simulator_->batch().envCount() - 1));
+    }
+    const Confinement::Use use = simulator_->readState();
+    const EnvState state = simulator_->batch().envState(env);
+    scene_.update(state);
+    scene_.setJoints(state.joint_positions);
+    base_ = scene_.baseOf(state);
+    is_pretended_ = false;
+  }
+
+  void setJoints(const py::object& positions) {
+    scene_.setJoints(
+        finiteNumbers(positions, "joint_positions", simulator_->world().robot().positionCount()));
+  }
+
+  [[nodiscard]] py::array_t<float> base() const {
+    const Vec3& p = base_.position;
+    return arrayOf(std::array{p.x, p.y, p.z, base_.yaw});
+  }
+  [[nodiscard]] std::vector<Pose> rootFromLinks() const {
+    const std::span<const Pose> links = scene_.rootFromLinks();
+    return {links.begin(), links.end()};
+  }
+  [[nodiscard]] Pose worldFromRoot(const py::object& base) const {
+    return scene_.worldFromRoot(placeOf(base));
+  }
+  [[nodiscard]] Pose worldFromGrip(const py::object& base) const {
+    return worldFromRoot(base) * scene_.rootFromGrip();
+  }
+  [[nodiscard]] float reach() const { return scene_.reach(); }
+
+  [[nodiscard]] bool isFree(const py::object& base) { return scene_.isFree(placeOf(base)); }
+  [[nodiscard]] std::optional<float> floorAt(float x, float z, float from) const {
+    if (!std::isfinite(x) || !std::isfinite(z) || !std::isfinite(from)) {
+      throw py::value_error("floor_at takes finite numbers");
+    }
+    return scene_.floorAt(x, z, from);
+  }
+
+  [[nodiscard]] std::optional<std::uint32_t> graspedAt(const py::object& base) const {
+    return scene_.graspedAt(placeOf(base));
+  }
+  void hold(std::size_t object, const py::object& base) {
+    if (scene_.isHolding()) throw py::value_error("the hand holds an object already");
+    if (object >= scene_.objectCount()) {
+      throw py::index_error(
+          fmt::format("there is no object {}, the last is {}", object, scene_.objectCount() - 1));
+    }
+    scene_.hold(static_cast<std::uint32_t>(object), placeOf(base));
+    is_pretended_ = true;
+  }
+  void putBack() {
+    if (!is_pretended_) {
+      throw py::value_error("only what hold() took can be put back");
+    }
+    scene_.putBack();
+    is_pretended_ = false;
+  }
+  [[nodiscard]] bool isHolding() const { return scene_.isHolding(); }
+  [[nodiscard]] std::optional<Pose> landing(const py::object& base) {
+    if (!scene_.isHolding()) throw py::value_error("the hand is empty");
+    return scene_.landing(placeOf(base));
+  }
+
+ private:
+  /// Of x, y, z and yaw.
+  static BasePlace placeOf(const py::object& base) {
+    const std::vector<float> numbers = finiteNumbers(base, "base", 4);
+    return {{numbers[0], numbers[1], numbers[2]}, numbers[3]};
+  }
+
+  Simulator* simulator_;
+  PlanningScene scene_;
+  BasePlace base_;
+  /// Whether what is held was taken by hold(), not by the robot of the env.
+  bool is_pretended_ = false;
+};
+
+}  // namespace
+
+void bindPlanningScene(py::module_& module) {
+  py::class_<EnvScene> type(module, "PlanningScene");
+  type.def(py::init<Simulator&, std::size_t>(), py::arg("simulator"), py::arg("env") = 0,
+           py::keep_alive<1, 2>(),
+           "What a planner asks about one env: is a pose of the robot free, where is the hand,\n"
+           "what would it grasp, where would an object land? By the rules of the simulation,\n"
+           "which is neither changed nor stepped.\n\n"
+           "Bases are four numbers: x, y, z of the point on the floor under the robot's root,\n"
+           "meters, and the yaw, radians. Answers are about the env and the joints that update()\n"
+           "and set_joints() took over last.");
+  type.def("update", &EnvScene::update, py::arg("env"),
+           "Takes over the state of an env: its objects, what it holds, its joints.")
+      .def("set_joints", &EnvScene::setJoints, py::arg("joint_positions"),
+           "Joint positions for what is asked next: (positions,), as in EnvState, radians or\n"
+           "meters. Limits are not enforced.")
+      .def_property_readonly("base", &EnvScene::base,
+                             "Where the base of the env was at the last update: float32 (4,).")
+      .def_property_readonly("root_from_links", &EnvScene::rootFromLinks,
+                             "The poses of all links for these joints (forward kinematics).")
+      .def_property_readonly("reach", &EnvScene::reach,
+                             "How far the robot reaches from its root's vertical axis, meters.")
+      .def("world_from_root", &EnvScene::worldFromRoot, py::arg("base"))
+      .def("world_from_grip", &EnvScene::worldFromGrip, py::arg("base"),
+           "Origin at the grasp point, axes of the end effector's link.")
+      .def("is_free", &EnvScene::isFree, py::arg("base"),
+           "Whether neither the robot nor what it holds penetrates anything.")
+      .def("floor_at", &EnvScene::floorAt, py::arg("x"), py::arg("z"), py::arg("from_height"),
+           "Height of the floor for a base that comes from a height, meters; None where it\n"
+           "cannot stand.")
+      .def("grasped_at", &EnvScene::graspedAt, py::arg("base"),
+           "Index of the object that a hand grasps that closes here, or None.")
+      .def("hold", &EnvScene::hold, py::arg("object"), py::arg("base"),
+           "Holds an object as if it were grasped here.")
+      .def("put_back", &EnvScene::putBack, "Puts what hold() took back to where it rested.")
+      .def_property_readonly("is_holding", &EnvScene::isHolding)
+      .def("landing", &EnvScene::landing, py::arg("base"),
+           "Pose in which the held object comes to rest if it is released here, without random\n"
+           "jitters, or None when it finds no place.");
+  type.attr("__module__") = "galactic";
+  refusePickling(type, "make one from its simulator");
+}
+
+}  // namespace galactic::python

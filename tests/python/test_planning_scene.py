@@ -1,0 +1,111 @@
+"""PlanningScene: what it answers is what the simulator then does."""
+
+import copy
+
+import numpy as np
+import pytest
+
+from galactic import PlanningScene, Simulator
+
+LIFT, FORWARD, ACTIONS = 0, 4, 8
+
+
+@pytest.fixture
+def simulator(world):
+    return Simulator(world, envs=2, threads=1, order="linear", slide="off", episode_steps=0)
+
+
+def test_hand_and_root_are_where_the_simulator_has_them(simulator, draw_actions):
+    scene = PlanningScene(simulator)
+    for _ in range(20):
+        simulator.step(draw_actions(2, ACTIONS))
+        for env in range(2):
+            scene.update(env)
+            state = simulator.env_state(env)
+            for found, wanted in (
+                (scene.world_from_grip(scene.base), state.world_from_grip),
+                (scene.world_from_root(scene.base), state.world_from_root),
+            ):
+                assert found.translation == pytest.approx(wanted.translation, abs=1e-5)
+            assert scene.is_holding or scene.is_free(scene.base)
+
+
+def test_a_drive_is_refused_where_the_pose_is_not_free(simulator):
+    scene = PlanningScene(simulator)
+    actions = np.zeros((2, ACTIONS), np.float32)
+    free = blocked = 0
+    # Back to the wall, then ahead to the table.
+    for way in [-1] * 15 + [1] * 15:
+        actions[0, FORWARD] = way
+        scene.update(0)
+        x, y, z, yaw = scene.base
+        before = scene.base
+        simulator.step(actions)
+        scene.update(0)
+        if np.array_equal(scene.base, before):
+            ahead = 0.1 * way * np.array([np.cos(yaw), 0, -np.sin(yaw), 0])
+            assert not scene.is_free(before + ahead)
+            blocked += 1
+        else:
+            assert scene.is_free(scene.base)
+            assert scene.floor_at(x, z, y) == pytest.approx(y, abs=1e-3)
+            free += 1
+    assert free > 2 and blocked > 2
+
+
+def test_joints_move_links_and_change_what_is_free(simulator):
+    scene = PlanningScene(simulator)
+    joints = simulator.env_state(0).joint_positions
+    links = scene.root_from_links
+    joints[LIFT] += 0.1
+    scene.set_joints(joints)
+    for before, after in list(zip(links, scene.root_from_links))[1:]:
+        assert after.translation[1] - before.translation[1] == pytest.approx(0.1, abs=1e-5)
+    assert scene.reach > 0
+
+
+def test_objects_are_held_put_back_and_land(simulator):
+    scene = PlanningScene(simulator)
+    state = simulator.env_state(0)
+    assert scene.grasped_at(scene.base) is None
+    # The hand is over the target, wherever the base of such a hand would have to stand.
+    grip = scene.world_from_grip([0, 0, 0, 0]).translation
+    over = state.objects[state.target].translation - grip + [0, 0.05, 0]
+    base = [*over, 0]
+    assert scene.grasped_at(base) == state.target
+    scene.hold(state.target, base)
+    assert scene.is_holding
+    assert scene.grasped_at(base) is None
+    rest = scene.landing(base)
+    assert rest.translation == pytest.approx(state.objects[state.target].translation, abs=5e-3)
+    with pytest.raises(ValueError, match="already"):
+        scene.hold(0, base)
+    scene.put_back()
+    assert scene.grasped_at(base) == state.target
+
+
+def test_what_makes_no_sense_is_refused(simulator):
+    scene = PlanningScene(simulator, env=1)
+    for base in ([0, 0, 0], [0, 0, float("nan"), 0], "here", [0, 0, 0, float("inf")]):
+        with pytest.raises((ValueError, TypeError)):
+            scene.is_free(base)
+    with pytest.raises(ValueError):
+        scene.set_joints([0])
+    with pytest.raises(ValueError):
+        scene.floor_at(float("nan"), 0, 0)
+    with pytest.raises(ValueError, match="empty"):
+        scene.landing(scene.base)
+    with pytest.raises(ValueError, match="hold"):
+        scene.put_back()
+    with pytest.raises(IndexError):
+        scene.hold(100, scene.base)
+    with pytest.raises(IndexError):
+        scene.update(2)
+    with pytest.raises(TypeError):
+        copy.copy(scene)
+
+
+def test_the_scene_keeps_its_simulator(world):
+    scene = PlanningScene(Simulator(world, envs=1, threads=1))
+    assert scene.is_free(scene.base)
+    scene.update(0)
