@@ -249,8 +249,8 @@ void PlanningScene::Impl::countFree(const BasePlace& base) {
 std::optional<Pose> PlanningScene::Impl::landing(const BasePlace& base) {
   const Pose released = worldFromRoot(base) * (rootFromGrip() * grip_from_object_);
   RandomStream random(0, 0, 0, 0);
-  const simulation::Landing landing = simulation::placeObject(
-      obstacles(), *held_, released, random, options_.placement, placement_);
+  const simulation::Landing landing = simulation::placeObject(obstacles(), *held_, released, random,
+                                                              options_.placement, placement_);
   if (!landing.placed) return std::nullopt;
   return landing.pose;
 }
