@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "stage_timer.h"
+#include "support/out_of_memory.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -13,6 +14,9 @@ namespace {
 
 /// A part of the free space left out is worth a warning from this share of the room's volume on.
 constexpr double kWorthMentioning = 0.1;
+
+/// What one column takes while its grid is made: as measured on the sample apartment.
+constexpr double kBytesPerColumn = 100;
 
 Result<void> checkRadii(const std::vector<float>& radii) {
   constexpr std::size_t kMaxRadii = 8;
@@ -56,6 +60,9 @@ class SceneBaker {
 
   Result<BakedGrid> bakeGrid(float radius) {
     ASSIGN_OR_RETURN(const auto frame, makeGridFrame(mesh_.bounds, radius, options_.spacing));
+    RETURN_IF_ERROR(checkMemory(kBytesPerColumn * static_cast<double>(frame.columnCount()),
+                                fmt::format("{} columns", frame.columnCount()),
+                                "use a wider spacing (--spacing)"));
     ASSIGN_OR_RETURN(const auto raw, findColumns(frame));
     ASSIGN_OR_RETURN(auto free, chooseRegions(raw.columns));
     BakedGrid baked;

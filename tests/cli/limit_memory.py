@@ -6,7 +6,7 @@
 WORLD is a world pack, PACKS the folder of the golden packs. Each program does something that needs memory, under
 limits of its address space from what --version gets along with up to what is enough. Where it does not succeed, it
 says so in one line PROGRAM: WHERE: MESSAGE, and that memory is what it lacks; it never ends by a signal or in an
-internal error.
+internal error. Where it knows beforehand what it needs, at least one of the refusals says how much.
 """
 
 import pathlib
@@ -31,24 +31,27 @@ def run(command: list[str], limit: int) -> "subprocess.CompletedProcess[str]":
         return subprocess.run(command, capture_output=True, text=True, preexec_fn=set_limit, cwd=folder, timeout=120)
 
 
-def faults_of(command: list[str]) -> list[str]:
-    """What a program says wrong, and nothing but its name where it never lacks memory."""
+def faults_of(command: list[str], knows: str) -> list[str]:
+    """What a program says wrong. `knows`: what it can tell the need of, if anything."""
     limit = 8 * MEGABYTE
     # The loader's own errors are none of ours.
     while run([command[0], "--version"], limit).returncode != 0:
         limit = int(limit * STEP)
     name = pathlib.Path(command[0]).name
-    faults, refused = [], 0
+    faults, refused, foretold = [], 0, False
     while limit < MOST:
         done = run(command, limit)
         if done.returncode == 0:
             print(f"{name}: enough with {limit / MEGABYTE:.0f} MB, refused {refused} times")
+            if knows and not foretold:
+                faults.append(f"{name} never said how much {knows} need")
             return faults if refused else [f"{name} never lacked memory"]
         refused += 1
         line = done.stderr.strip()
         told = re.fullmatch(rf"{name}: [^\n]+: [^\n]+", line) and re.search("memory| GB ", line) and "internal" not in line
         if done.returncode not in CODES or not told:
             faults.append(f"{name} with {limit / MEGABYTE:.0f} MB ended with {done.returncode}: {line!r}")
+        foretold = foretold or re.search(rf": available memory: \d+ {knows} need \d+\.\d GB", line) is not None
         limit = int(limit * STEP)
     return [*faults, f"{name} never had enough memory"]
 
@@ -56,14 +59,14 @@ def faults_of(command: list[str]) -> list[str]:
 def main() -> int:
     programs, world, packs = (pathlib.Path(text).resolve() for text in sys.argv[1:4])
     commands = [
-        ["galactic-run", "--pack", world, "--envs", 65536, "--steps", 1, "--threads", 1],
-        ["galactic-pack", "picture", packs / "crate.pack", "--size", 2048, "-o", "crate.png"],
-        ["galactic-bake", packs / "room.obj", "--spacing", 0.004, "--check-columns", 0, "-q", "-o", "room.pack"],
+        ["envs", "galactic-run", "--pack", world, "--envs", 65536, "--steps", 1, "--threads", 1],
+        ["", "galactic-pack", "picture", packs / "crate.pack", "--size", 2048, "-o", "crate.png"],
+        ["columns", "galactic-bake", packs / "room.obj", "--spacing", 0.002, "--check-columns", 0, "-q", "-o", "room.pack"],
     ]
     faults = []
-    for program, *words in commands:
+    for knows, program, *words in commands:
         if (programs / program).exists():
-            faults += faults_of([str(programs / program), *map(str, words)])
+            faults += faults_of([str(programs / program), *map(str, words)], knows)
     print("\n".join(faults))
     return 1 if faults else 0
 

@@ -15,6 +15,8 @@
 #include "simulation/state/grip_frame.h"
 #include "simulation/state/model.h"
 #include "simulation/state/saved_state.h"
+#include "support/out_of_memory.h"
+#include "support/try.h"
 #include "support/workers.h"
 
 namespace galactic {
@@ -207,6 +209,9 @@ Result<BatchSimulator> BatchSimulator::create(const World& world,
   }
   Result<Model> model = simulation::makeModel(world, options);
   if (!model) return tl::unexpected<Error>(model.error());
+  const auto bytes = static_cast<double>(simulation::stateBytes(*model, options.envs));
+  RETURN_IF_ERROR(
+      checkMemory(bytes, fmt::format("{} envs", options.envs), "simulate fewer at once (--envs)"));
   return BatchSimulator(
       std::make_unique<Impl>(std::move(*model), detail::threadCount(options.threads)));
 }

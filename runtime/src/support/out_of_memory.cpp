@@ -24,22 +24,38 @@ double mappedBytes() {
   return read == 1 ? static_cast<double>(pages) * static_cast<double>(::sysconf(_SC_PAGESIZE)) : 0;
 }
 
-/// Bytes that the process may have: those of the machine, or fewer where a limit says so.
-double allowedBytes() {
-  const double machine =
-      static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+double machineBytes() {
+  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) *
+         static_cast<double>(::sysconf(_SC_PAGESIZE));
+}
+
+/// Bytes of address space that a limit allows the process; infinity without one.
+double limitBytes() {
   rlimit limit{};
-  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return machine;
-  return std::min(machine, static_cast<double>(limit.rlim_cur));
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return static_cast<double>(limit.rlim_cur);
 }
 
 }  // namespace
 
 Error outOfMemory() {
-  return {ErrorCode::kUnsupported, "memory",
-          fmt::format("this needs more than the {:.1f} GB that there are ({:.1f} GB are in use); "
-                      "do less at once, or raise the limit (ulimit -v)",
-                      allowedBytes() / kGigabyte, mappedBytes() / kGigabyte)};
+  return {
+      ErrorCode::kUnsupported, "available memory",
+      fmt::format("this needs more than the {:.1f} GB that there are ({:.1f} GB are in use); "
+                  "do less at once, or raise the limit (ulimit -v)",
+                  std::min(machineBytes(), limitBytes()) / kGigabyte, mappedBytes() / kGigabyte)};
+}
+
+Result<void> checkMemory(double bytes, std::string_view what, std::string_view advice) {
+  // What is mapped counts against a limit, but says nothing of the memory in use: files are mapped,
+  // and sanitizers map terabytes.
+  const double left = std::min(machineBytes(), limitBytes() - mappedBytes());
+  if (bytes <= left) return {};
+  return fail(ErrorCode::kUnsupported, "available memory",
+              fmt::format("{} need {:.1f} GB, and there are {:.1f} GB; {}", what, bytes / kGigabyte,
+                          std::max(0.0, left) / kGigabyte, advice));
 }
 
 bool isOutOfMemory(const std::system_error& failure) {

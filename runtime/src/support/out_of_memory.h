@@ -1,4 +1,5 @@
 #pragma once
+#include <string_view>
 #include <system_error>
 
 #include "galactic/error.h"
@@ -6,8 +7,15 @@
 namespace galactic {
 
 /// What a program says that caught std::bad_alloc: how much memory it has in use, how much there
-/// is, and what to do. kUnsupported; where: "memory".
+/// is, and what to do. kUnsupported; where: "available memory".
 [[nodiscard]] Error outOfMemory();
+
+/// An error where something known beforehand cannot fit: `bytes` are more than the machine has, or
+/// than a limit (ulimit -v) leaves. Asked before they are allocated, because a system that promises
+/// more than it has would kill the program instead. kUnsupported; where: "available memory". `what`
+/// needs them, as the plural that begins the sentence; `advice` says what to do.
+[[nodiscard]] Result<void> checkMemory(double bytes, std::string_view what,
+                                       std::string_view advice);
 
 /// Whether it is memory that was lacking: a thread that cannot start lacks room for its stack.
 [[nodiscard]] bool isOutOfMemory(const std::system_error& failure);

@@ -50,8 +50,19 @@ TEST(NearestName, IsAddedToComplaintsAboutOptions) {
 TEST(OutOfMemory, SaysHowMuchThereIs) {
   const Error error = outOfMemory();
   EXPECT_EQ(error.code, ErrorCode::kUnsupported);
-  EXPECT_EQ(error.where, "memory");
+  EXPECT_EQ(error.where, "available memory");
   EXPECT_EQ(error.message.find("this needs more than the "), 0U) << error.message;
+}
+
+TEST(OutOfMemory, IsToldBeforehandWhereItIsKnown) {
+  EXPECT_TRUE(checkMemory(1e3, "3 things", "make fewer").has_value());
+  const Result<void> huge = checkMemory(1e18, "3 things", "make fewer");
+  ASSERT_FALSE(huge.has_value());
+  EXPECT_EQ(huge.error().code, ErrorCode::kUnsupported);
+  EXPECT_EQ(huge.error().where, "available memory");
+  EXPECT_EQ(huge.error().message.find("3 things need 1000000000.0 GB, and there are "), 0U)
+      << huge.error().message;
+  EXPECT_NE(huge.error().message.find("; make fewer"), std::string::npos) << huge.error().message;
 }
 
 }  // namespace

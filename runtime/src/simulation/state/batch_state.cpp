@@ -50,8 +50,12 @@ void measureHeld(const ObjectModel& object, Held& held) noexcept {
   held.ball_radius = std::sqrt(squared);
 }
 
+std::size_t stateBytes(const Model& model, std::size_t envs) {
+  return paddedToChunks(envs) * envBytes(model);
+}
+
 BatchState::BatchState(const Model& model, std::size_t envs)
-    : memory_(paddedToChunks(envs) * envBytes(model), &huge_pages_),
+    : memory_(stateBytes(model, envs), &huge_pages_),
       env_count_(envs),
       most_objects_(model.most_objects),
       held_words_(model.heldWords()),

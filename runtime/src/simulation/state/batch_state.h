@@ -99,6 +99,9 @@ struct Env {
 /// Sets what is kept about the spheres of the object in the hand.
 void measureHeld(const ObjectModel& object, Held& held) noexcept;
 
+/// What a BatchState of so many envs allocates, about.
+[[nodiscard]] std::size_t stateBytes(const Model& model, std::size_t envs);
+
 /// Everything that changes in a run: N envs, padded to whole chunks with envs that nobody sees.
 class BatchState {
  public:
