@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "render/render_engine.h"
+#include "support/try.h"
 
 namespace galactic {
 namespace {
@@ -34,16 +35,22 @@ Result<void> checkOptions(const RenderOptions& options) {
 
 using Made = Result<std::unique_ptr<render::RenderEngine>>;
 
+/// What is taken without being asked for shows first that it draws what it should.
+Made makeProvenCudaEngine(const RenderLibrary& library, const RenderOptions& options) {
+  RETURN_IF_ERROR(render::proveCuda(options));
+  return render::makeCudaEngine(library, options);
+}
+
 /// Without a wish: what is fastest here. Chips for data centers have few units that draw triangles;
 /// OpenGL counts only where a graphics processor stands behind it.
 Made makeFastestEngine(const RenderLibrary& library, const RenderOptions& options) {
   if (render::isForDataCenters(options)) {
-    Made cuda = render::makeCudaEngine(library, options);
+    Made cuda = makeProvenCudaEngine(library, options);
     if (cuda) return cuda;
   }
   Made gl = render::makeGlEngine(library, options);
   if (gl) return gl;
-  Made cuda = render::makeCudaEngine(library, options);
+  Made cuda = makeProvenCudaEngine(library, options);
   return cuda ? std::move(cuda) : render::makeSoftEngine(library, options);
 }
 

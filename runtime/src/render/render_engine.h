@@ -43,6 +43,9 @@ class RenderEngine {
 /// Whether the device that the `cuda` backend would take is one whose chip has few units that draw
 /// triangles; false where there is none.
 [[nodiscard]] bool isForDataCenters(const RenderOptions& options);
+/// Draws a small scene with triangles of every kind on that device: fails with kInternal when the
+/// images are not those of the `soft` backend, and as makeCudaEngine().
+[[nodiscard]] Result<void> proveCuda(const RenderOptions& options);
 
 /// 1/256 pixels at a distance of 1 m for each meter beside the camera's axis.
 [[nodiscard]] float focalLength(const RenderOptions& options, const RenderCamera& camera) noexcept;

@@ -178,6 +178,19 @@ TEST_F(CudaHost, IsTakenFirstOnChipsForDataCenters) {
   EXPECT_NE(makeRenderer(library_, options_).backend(), RenderBackend::kCuda);
 }
 
+TEST_F(CudaHost, IsNotTakenUnaskedWhereItsImagesAreNotThoseOfSoft) {
+  EXPECT_TRUE(render::proveCuda(options_));
+  standin_->spoils = true;
+  const Result<void> proven = render::proveCuda(options_);
+  ASSERT_FALSE(proven);
+  EXPECT_EQ(proven.error().message,
+            "cuda, Stand-in A, compute capability 9.0 gives other images than the processor");
+  options_.backend = RenderBackend::kAuto;
+  EXPECT_NE(makeRenderer(library_, options_).backend(), RenderBackend::kCuda);
+  options_.backend = RenderBackend::kCuda;
+  EXPECT_EQ(makeRenderer(library_, options_).backend(), RenderBackend::kCuda);
+}
+
 TEST_F(CudaHost, DrawsThroughTheInterfaceWhatSoftDraws) {
   options_.backend = RenderBackend::kCuda;
   const std::vector<RenderView> views(2, view_);

@@ -15,7 +15,7 @@ namespace galactic::test {
 /// The stand-in's state, reset.
 inline Standin& resetStandin() {
   using Get = Standin* (*)();
-  static void* const library = dlopen(GALACTIC_CUDA_STANDIN, RTLD_NOW);
+  void* const library = dlopen(GALACTIC_CUDA_STANDIN, RTLD_NOW);
   if (library == nullptr) throw std::runtime_error(dlerror());
   const auto get = reinterpret_cast<Get>(dlsym(library, "galactic_standin"));
   Standin& standin = *get();

@@ -171,6 +171,7 @@ STANDIN int cuMemcpyHtoDAsync_v2(std::uint64_t to, const void* from, std::size_t
 }
 STANDIN int cuMemcpyDtoHAsync_v2(void* to, std::uint64_t from, std::size_t bytes, void*) {
   std::memcpy(to, reinterpret_cast<const void*>(from), bytes);
+  if (standin.spoils) static_cast<unsigned char*>(to)[bytes / 2] ^= 1U;
   return 0;
 }
 STANDIN int cuMemsetD32Async(std::uint64_t to, unsigned value, std::size_t words, void*) {

@@ -18,6 +18,8 @@ struct Standin {
   /// What each function that can fail returns, by its name; null: none fails.
   const char* failing = nullptr;
   int error = 2;
+  /// Whether one bit of the last image is turned around when images are read.
+  bool spoils = false;
 
   /// Launches by kernel, since the last reset.
   std::uint64_t launches[5] = {};
