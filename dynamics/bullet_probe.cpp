@@ -65,7 +65,7 @@ class ContactProbe::Impl {
         const std::uint32_t link = ghost.link_of_child[static_cast<std::size_t>(contact.child)];
         RobotContact& kept = deepest[{link, other}];
         if (contact.depth > kept.depth) {
-          kept = {link, other, contact.depth, fromBullet(contact.point)};
+          kept = {link, other, contact.depth, fromBullet(contact.point), fromBullet(contact.away)};
         }
       });
       world_.contactTest(ghost.object.get(), query);

@@ -165,10 +165,11 @@ class DynamicsWorld::Impl {
 
   [[nodiscard]] std::optional<std::size_t> held() const { return held_; }
 
-  [[nodiscard]] BaseContact baseContact(const Pose& world_from_root) {
+  [[nodiscard]] BaseContact baseContact(const Pose& world_from_root, float ground_height) {
     base_.setWorldTransform(toBullet(world_from_root));
     BaseContact result;
     ContactQuery query(base_, kSceneBit, [&](const QueryContact& contact) {
+      if (isGround(fromBullet(contact.point), fromBullet(contact.away), ground_height)) return;
       result.depth = std::max(result.depth, contact.depth);
       if (contact.depth > 0) result.away = result.away + fromBullet(contact.away * contact.depth);
     });
@@ -281,8 +282,9 @@ std::optional<std::size_t> DynamicsWorld::objectWithin(const Vec3& center, float
 void DynamicsWorld::grasp(std::size_t object, std::uint32_t link) { impl_->grasp(object, link); }
 void DynamicsWorld::release() { impl_->release(); }
 std::optional<std::size_t> DynamicsWorld::held() const { return impl_->held(); }
-DynamicsWorld::BaseContact DynamicsWorld::baseContact(const Pose& world_from_root) const {
-  return impl_->baseContact(world_from_root);
+DynamicsWorld::BaseContact DynamicsWorld::baseContact(const Pose& world_from_root,
+                                                      float ground_height) const {
+  return impl_->baseContact(world_from_root, ground_height);
 }
 std::optional<float> DynamicsWorld::floorBelow(const Vec3& from, float depth) const {
   return impl_->floorBelow(from, depth);

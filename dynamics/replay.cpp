@@ -11,7 +11,7 @@ namespace {
 
 /// Control steps of two seconds.
 constexpr int kRestSteps = 60;
-/// A contact of less says nothing about what hindered a motion, meters: the floor under the base.
+/// A contact of less says nothing about what hindered a motion, meters.
 constexpr float kTouch = 0.001F;
 
 float lengthOf(const Vec3& v) { return std::sqrt(dot(v, v)); }
@@ -101,7 +101,8 @@ class Replay {
     if ((step.was_refused || step.has_slid) && !heldBefore(n)) {
       ++result_.hindered;
       const auto touched = wanted(n);
-      const auto touches = [this](const RobotContact& c) { return counts(c, kTouch); };
+      const float ground = groundUnder(step.world_from_root);
+      const auto touches = [&](const RobotContact& c) { return counts(c, kTouch, ground); };
       result_.invented += std::ranges::none_of(touched, touches) ? 1U : 0U;
     }
     takeReleases(n);
@@ -110,7 +111,7 @@ class Replay {
     for (const RobotContact& contact :
          probe_.contacts(step.world_from_root, step.positions, step.held)) {
       leaves = leaves || (leaving_ && contact.object == static_cast<int>(*leaving_));
-      if (!counts(contact, kTolerance)) continue;
+      if (!counts(contact, kTolerance, groundUnder(step.world_from_root))) continue;
       misses = true;
       ++result_.missed[{contact.link, contact.object < 0 ? Thing::kScene : Thing::kObject}];
     }
@@ -121,8 +122,14 @@ class Replay {
   [[nodiscard]] bool heldBefore(std::size_t n) const {
     return n > 0 && trace_.steps[n - 1].held.has_value();
   }
-  [[nodiscard]] bool counts(const RobotContact& contact, float depth) const {
+  /// Up to which height the scene is ground for a base that stands there.
+  [[nodiscard]] float groundUnder(const Pose& world_from_root) const {
+    return world_from_root.translation.y - world_.robot().base()->root_height +
+           simulation_.ground.most_rise;
+  }
+  [[nodiscard]] bool counts(const RobotContact& contact, float depth, float ground) const {
     const bool is_left = leaving_ && contact.object == static_cast<int>(*leaving_);
+    if (contact.object < 0 && isGround(contact.point, contact.away, ground)) return false;
     return contact.depth > depth && !is_left;
   }
 

@@ -64,7 +64,9 @@ std::optional<Pose> RobotDriver::clearOf(Pose root) const {
   for (std::uint32_t attempt = 0; attempt <= options_.slide.attempts; ++attempt) {
     const std::optional<Pose> standing = onFloor(root);
     if (!standing) return std::nullopt;
-    const DynamicsWorld::BaseContact contact = world_.baseContact(*standing);
+    const DynamicsWorld::BaseContact contact =
+        world_.baseContact(*standing, standing->translation.y - robot_.base()->root_height +
+                                          options_.ground.most_rise);
     if (contact.depth <= kTolerance) return standing;
     const Vec3 push = pushOut(contact);
     if (push == Vec3{}) return std::nullopt;

@@ -112,12 +112,12 @@ class DynamicsWorld {
   [[nodiscard]] std::optional<std::size_t> held() const;
 
   /// How deep the base's hulls would be in the scene with the root there, metres, and the way out
-  /// along the ground.
+  /// along the ground. The ground under `ground_height` does not count.
   struct BaseContact {
     float depth = 0;
     Vec3 away;
   };
-  [[nodiscard]] BaseContact baseContact(const Pose& world_from_root) const;
+  [[nodiscard]] BaseContact baseContact(const Pose& world_from_root, float ground_height) const;
   /// Height of the scene under `from`, at most `depth` metres below it.
   [[nodiscard]] std::optional<float> floorBelow(const Vec3& from, float depth) const;
 
@@ -135,7 +135,16 @@ struct RobotContact {
   float depth = 0;
   /// World frame.
   Vec3 point;
+  /// Unit vector out of the thing, world frame.
+  Vec3 away;
 };
+
+/// Whether a contact is with the ground, which carries the base and does not stop it: low (`point`
+/// is under `height`) and from below.
+[[nodiscard]] constexpr bool isGround(const Vec3& point, const Vec3& away, float height) {
+  constexpr float kSteepest = 0.7F;
+  return point.y < height && away.y > kSteepest;
+}
 
 /// Says what a robot would touch in a pose that may be anything: geometry, without motion.
 class ContactProbe {

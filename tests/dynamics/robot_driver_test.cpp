@@ -89,6 +89,24 @@ TEST(ADrivenBase, StopsAtAWall) {
   EXPECT_LE(front, kWall + dynamics::kTolerance + 1e-3F);
 }
 
+TEST(ADrivenBase, DrivesOverARugAndNotThroughAStep) {
+  const auto drivesTo = [](float height) {
+    const MadeRobot robot(smallHomeRobot());
+    const RobotKit kit(*robot, smallHomeParts());
+    MeshBuilder mesh;
+    mesh.floor({-3, 0, -3}, {3, 0, 3}, 0).box({0.5F, 0, -2}, {2.5F, height, 2});
+    DynamicsWorld world(dynamics::makeSceneShape(mesh.build()), {}, {});
+    world.addRobot(kit.setup({{0, 0.1F, 0}, {}}));
+    RobotDriver driver(*robot, world, SimulationOptions{});
+    for (int n = 0; n < 20; ++n) driver.step(with(kForward, 0.5F));
+    return world.worldFromRoot().translation;
+  };
+  const Vec3 on_rug = drivesTo(0.02F);
+  EXPECT_NEAR(on_rug.x, 1, 1e-3);
+  EXPECT_NEAR(on_rug.y, 0.12, 1e-3);
+  EXPECT_LT(drivesTo(0.15F).x, 0.35F);
+}
+
 TEST(ADrivenBase, DoesNotLeaveTheFloor) {
   Room room(ArmDrive::kMotors, {}, {{-2.5F, 0.1F, 0}, {}});
   bool was_refused = false;
