@@ -18,6 +18,7 @@
 
 #include "galactic/batch_simulator.h"
 #include "galactic/world.h"
+#include "hardware_counters.h"
 
 namespace {
 
@@ -30,6 +31,8 @@ enum class Load : std::int64_t { kRandom = 0, kForward = 1, kHeld = 2 };
 
 constexpr std::uint32_t kEpisodeSteps = 500;
 constexpr std::size_t kBatches = 512;
+/// Steps before those that are measured.
+constexpr std::size_t kWarmUp = 1000;
 /// One step in so many is measured phase by phase.
 constexpr std::uint32_t kSampled = 16;
 
@@ -62,6 +65,7 @@ class Actions {
 
  private:
   static std::uint64_t mix(std::uint64_t z) {
+    z += 0x9E3779B97F4A7C15ULL;
     z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
     z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
     return z ^ (z >> 31U);
@@ -162,10 +166,12 @@ const World* worldFrom(const char* variable) {
   return &opened.back().second;
 }
 
-void report(benchmark::State& state, const BatchSimulator& simulator) {
+void report(benchmark::State& state, const BatchSimulator& simulator,
+            const galactic::SimulationStatistics& before) {
   const galactic::SimulationStatistics sum = simulator.statistics();
+  const auto taken = static_cast<double>(sum.steps - before.steps);
   const auto per_step = [&](std::uint64_t count) {
-    return benchmark::Counter(static_cast<double>(count) / static_cast<double>(sum.steps));
+    return benchmark::Counter(static_cast<double>(count) / taken);
   };
   // Of one env in one step, nanoseconds of the sampled steps' threads.
   const double sampled = static_cast<double>(sum.steps) / kSampled;
@@ -173,10 +179,10 @@ void report(benchmark::State& state, const BatchSimulator& simulator) {
     state.counters["ns_" + std::string(phase.name)] =
         benchmark::Counter(phase.seconds * 1e9 / sampled);
   }
-  state.SetItemsProcessed(static_cast<std::int64_t>(sum.steps));
-  state.counters["refused"] = per_step(sum.refused);
-  state.counters["slid"] = per_step(sum.slid);
-  state.counters["grasps"] = per_step(sum.grasps);
+  state.SetItemsProcessed(static_cast<std::int64_t>(sum.steps - before.steps));
+  state.counters["refused"] = per_step(sum.refused - before.refused);
+  state.counters["slid"] = per_step(sum.slid - before.slid);
+  state.counters["grasps"] = per_step(sum.grasps - before.grasps);
   state.counters["bytes_per_env"] = benchmark::Counter(
       static_cast<double>(simulator.memoryBytes()) / static_cast<double>(simulator.envCount()));
 }
@@ -200,12 +206,27 @@ void stepBatch(benchmark::State& state) {
   Actions actions(envs, simulator->actionCount(), load);
   Resets resets(envs, world->episodes().episodes().size());
   std::size_t step = 0;
-  for (auto _ : state) {
+  const auto take = [&] {
     const std::span<const float> batch = actions.batch(step, resets.last());
     simulator->step(batch, resets.at(step));
     ++step;
-  }
-  report(state, *simulator);
+  };
+  // Robots that drive ahead reach the walls first.
+  while (step < kWarmUp) take();
+  const galactic::SimulationStatistics before = simulator->statistics();
+  const HardwareCounter instructions(PERF_COUNT_HW_INSTRUCTIONS);
+  const HardwareCounter cycles(PERF_COUNT_HW_CPU_CYCLES);
+  instructions.start();
+  cycles.start();
+  for (auto _ : state) take();
+  instructions.stop();
+  cycles.stop();
+  report(state, *simulator, before);
+  // Of the calling thread only.
+  const auto taken = static_cast<double>(simulator->statistics().steps - before.steps);
+  if (state.range(1) != 1) return;
+  if (const auto count = instructions.count()) state.counters["instructions"] = *count / taken;
+  if (const auto count = cycles.count()) state.counters["cycles"] = *count / taken;
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ using galactic::test::reportFinding;
 galactic::SimulationOptions optionsOf(Input& input) {
   const auto bits = input.take<std::uint8_t>();
   galactic::SimulationOptions options = galactic::test::optionsFor(3);
-  options.slide.direction = (bits & 1U) != 0 ? galactic::SlideDirection::kTowardsBase
-                                             : galactic::SlideDirection::kPushOut;
+  options.slide.direction =
+      (bits & 1U) != 0 ? galactic::SlideDirection::kTowardsBase : galactic::SlideDirection::kGlide;
   options.task.kind = static_cast<galactic::TaskKind>((bits >> 1U & 3U) % 3);
   options.task.drop_fails = (bits & 8U) != 0;
   options.task.needs_terminate = (bits & 16U) != 0;

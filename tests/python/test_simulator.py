@@ -210,7 +210,7 @@ def test_options_are_those_of_the_option_table(world):
         ({"slide_step": [1]}, TypeError, "the option slide_step is a list"),
         ({"threads": -1}, Error, "threads: is -1, wanted 0 to 4096"),
         ({"rank": 2, "ranks": 2}, Error, "rank 2 of 2"),
-        ({"slide": "of"}, Error, "slide: is of, wanted pushout, published or off"),
+        ({"slide": "of"}, Error, "slide: is of, wanted glide, published or off"),
     ],
 )
 def test_wrong_options_are_refused(world, options, error, message):

@@ -3,20 +3,20 @@
 
 namespace galactic {
 
-/// How a robot that would penetrate something is pushed clear (paper, appendix I.1).
+/// How a robot that would penetrate something is moved clear (paper, appendix I.1).
 enum class SlideDirection : std::uint8_t {
-  /// Out of what the spheres penetrate: along the directions in which they get free.
-  kPushOut = 0,
+  /// Along what blocks it: the shortest move of the base that frees all spheres.
+  kGlide = 0,
   /// Published code: from the first sphere found in contact towards the base.
   kTowardsBase = 1,
 };
 
 struct SlideOptions {
-  /// Jitters of the base per step; 0 switches sliding off.
+  /// Moves of the base per step; 0 switches sliding off.
   std::uint32_t attempts = 3;
-  SlideDirection direction = SlideDirection::kPushOut;
-  /// Length of one jitter in meters: the longest with kPushOut, the only one with kTowardsBase.
-  float step = 0.1F;
+  SlideDirection direction = SlideDirection::kGlide;
+  /// Length of one move in meters: the longest with kGlide, the only one with kTowardsBase.
+  float step = 0.15F;
 };
 
 /// How a released object finds its place (paper, appendix I.2).

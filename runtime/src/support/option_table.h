@@ -32,7 +32,7 @@ inline constexpr std::array<Named<EpisodeOrder>, 3> kOrderNames{
      {"linear", EpisodeOrder::kLinear},
      {"partition", EpisodeOrder::kPartition}}};
 inline constexpr std::array<Named<SlideDirection>, 2> kSlideNames{
-    {{"pushout", SlideDirection::kPushOut}, {"towards-base", SlideDirection::kTowardsBase}}};
+    {{"glide", SlideDirection::kGlide}, {"towards-base", SlideDirection::kTowardsBase}}};
 
 /// The names, as errors list them: "a, b or c".
 template <class T>
@@ -55,7 +55,7 @@ struct Preset {
 };
 
 inline constexpr std::array<Named<SlideOptions>, 3> kSlidePresets{
-    {{"pushout", {}},
+    {{"glide", {}},
      {"published", {.attempts = 5, .direction = SlideDirection::kTowardsBase, .step = 0.05F}},
      {"off", {.attempts = 0}}}};
 inline constexpr std::array<std::string_view, 3> kSlideParts{"slide-direction", "slide-attempts",
@@ -134,8 +134,9 @@ void visitMotionOptions(SimulationOptions& o, Visitor& v) {
            "How a robot that would hit something is pushed clear");
   v.choice("slide-direction", o.slide.direction, kSlideNames,
            "Direction in which the base is pushed");
-  v.whole("slide-attempts", o.slide.attempts, kAttempts, "Pushes per step; 0: no sliding");
-  v.real("slide-step", o.slide.step, kMeters, "Length of a push, meters");
+  v.whole("slide-attempts", o.slide.attempts, kAttempts, "Moves per step; 0: no sliding");
+  v.real("slide-step", o.slide.step, kMeters,
+         "Longest move of glide, length of each of towards-base, meters");
   v.real("floor-rise", o.ground.most_rise, kMeters, "Highest step up, meters");
   v.real("floor-drop", o.ground.most_drop, kMeters, "Deepest step down, meters");
   v.group("Placing released objects");

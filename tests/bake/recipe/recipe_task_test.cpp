@@ -61,7 +61,7 @@ TEST_F(RecipeTask, GivesThePartsOfAPresetWhichRefineIt) {
   EXPECT_THAT(taskOf("slide-attempts = 2\nslide = \"published\"\n"),
               ElementsAre("slide-direction=towards-base", "slide-attempts=2", "slide-step=0.05"));
   EXPECT_THAT(taskOf("slide = \"off\"\n"),
-              ElementsAre("slide-direction=pushout", "slide-attempts=0", "slide-step=0.1"));
+              ElementsAre("slide-direction=glide", "slide-attempts=0", "slide-step=0.15"));
 }
 
 TEST_F(RecipeTask, KnowsEveryOptionOfTheTask) {
@@ -97,10 +97,9 @@ TEST_F(RecipeTask, RefusesEachMistakeWithItsLine) {
       {"safe-drop = \"true\"", "task.safe-drop = \"true\": wanted true or false"},
       {"task = \"fly\"", "task.task = \"fly\": wanted rearrange, pick or none"},
       {"task = 1", "task.task = 1: wanted rearrange, pick or none"},
-      {"slide = \"up\"", "task.slide = \"up\": wanted pushout, published or off"},
-      {"slide = false", "task.slide = false: wanted pushout, published or off"},
-      {"slide-direction = \"off\"",
-       "task.slide-direction = \"off\": wanted pushout or towards-base"},
+      {"slide = \"up\"", "task.slide = \"up\": wanted glide, published or off"},
+      {"slide = false", "task.slide = false: wanted glide, published or off"},
+      {"slide-direction = \"off\"", "task.slide-direction = \"off\": wanted glide or towards-base"},
       {"grasp-from = 3", "task.grasp-from = 3: wanted a number from -2 to 2"},
       {"episode-step = 3",
        "the key task.episode-step is unknown; did you mean 'episode-steps' or 'slide-step'?"},

@@ -200,8 +200,8 @@ TEST(WorldCheck, RefusesWrongValuesOfTaskOptions) {
       value("slide-attempts", "99999999999999999999", "0 to 1000"),
       value("safe-drop", "yes", "true or false"),
       value("safe-drop", "1", "true or false"),
-      value("slide-direction", "up", "pushout or towards-base"),
-      value("slide-direction", "", "pushout or towards-base"),
+      value("slide-direction", "up", "glide or towards-base"),
+      value("slide-direction", "", "glide or towards-base"),
       value("grasp-from", "2.5", "-2 to 2"),
       value("pick-reward", "1e7", "-1000000 to 1000000"),
   });

@@ -195,12 +195,16 @@ TEST(MoveRobots, StaysWhereItIsWhenItMayNotSlide) {
   EXPECT_EQ(drive.slid(), 0U);
 }
 
-TEST(MoveRobots, StaysWhereItIsInACorner) {
+TEST(MoveRobots, GoesIntoACornerAndStaysThere) {
   const Block other{{0, 0, 2}, {3, 2, 2.1F}};
   Drive drive({plainFloor(), kWall, other}, {.base = {1.86F, 0, 1.86F}, .yaw = -kEighth});
-  drive.expectRefused({.wrist = 1, .forward = 1});
+  for (int step = 0; step < 3; ++step) {
+    drive.step({.wrist = 1, .forward = 1});
+    expectAt(drive, {kFreeBefore - kMargin, 0, kFreeBefore - kMargin});
+  }
+  EXPECT_EQ(drive.slid(), 3U);
   drive.step({.forward = -1});
-  EXPECT_LT(drive.at().x, 1.8F);
+  EXPECT_LT(drive.at().x, 1.81F);
 }
 
 TEST(MoveRobots, IsPushedByAllThatItPenetratesAtOnce) {

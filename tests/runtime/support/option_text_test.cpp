@@ -60,7 +60,7 @@ TEST(OptionTexts, TellWhichOfThemIsAtFault) {
   EXPECT_EQ(faultOf({{"envs", "5"}}, kTask), "0: ");
   EXPECT_EQ(faultOf({{"envs", "5"}}, OptionScope::kAll), "none");
   EXPECT_EQ(faultOf({{"slide", "off"}}, OptionScope::kAll), "0: ");
-  EXPECT_EQ(faultOf({{"slide", "of"}}, OptionScope::kTyped), "0: pushout, published or off");
+  EXPECT_EQ(faultOf({{"slide", "of"}}, OptionScope::kTyped), "0: glide, published or off");
 }
 
 TEST(OptionTexts, ThatSomebodyTypesMayBePresetsWhichTheirPartsRefine) {

@@ -129,62 +129,6 @@ bool penetrates(const Obstacles& obstacles, const SphereBatch& spheres) noexcept
   return obstacles.objects.touches(spheres);
 }
 
-void PushSum::add(const Push& push) noexcept {
-  least_x_ = std::min(least_x_, push.x);
-  most_x_ = std::max(most_x_, push.x);
-  least_z_ = std::min(least_z_, push.z);
-  most_z_ = std::max(most_z_, push.z);
-}
-
-Push PushSum::total(float longest) const noexcept {
-  const Push sum{least_x_ + most_x_, least_z_ + most_z_};
-  const float length = std::sqrt(sum.x * sum.x + sum.z * sum.z);
-  if (!(length > longest)) return sum;
-  return {sum.x * (longest / length), sum.z * (longest / length)};
-}
-
-Push pushOutPortable(const ColumnGridLayout& layout, const Vec3& center, float reach) noexcept {
-  // The nearest column decides, so a sphere gets free where it enters the cell of a free column.
-  // Eight candidates at a time: the next cell in four directions, and the one behind it.
-  using Eight = std::array<float, kLanes>;
-  constexpr Eight kX{1, -1, 0, 0, 1, -1, 0, 0};
-  constexpr Eight kZ{0, 0, 1, -1, 0, 0, 1, -1};
-  const float cell_x = (center.x - layout.min_x) * layout.inverse_spacing;
-  const float cell_z = (center.z - layout.min_z) * layout.inverse_spacing;
-  const float part_x = cell_x - std::floor(cell_x);
-  const float part_z = cell_z - std::floor(cell_z);
-  const Eight to_border{1 - part_x, part_x,     1 - part_z, part_z,
-                        2 - part_x, 1 + part_x, 2 - part_z, 1 + part_z};
-  Eight x{};
-  Eight y{};
-  Eight z{};
-  Eight way{};
-  y.fill(center.y);
-  for (int cells = 0; static_cast<float>(cells) * layout.spacing <= reach; cells += kCellsAtATime) {
-    const float further = static_cast<float>(cells) * layout.spacing + kIntoCell;
-    for (std::size_t n = 0; n < kLanes; ++n) {
-      way[n] = to_border[n] * layout.spacing + further;
-      x[n] = center.x + way[n] * kX[n];
-      z[n] = center.z + way[n] * kZ[n];
-    }
-    const std::uint64_t not_free = detail::notFreePortable(layout, {x.data(), y.data(), z.data()});
-    std::size_t best = kLanes;
-    float shortest = reach;
-    for (std::size_t n = 0; n < kLanes; ++n) {
-      const bool is_better = (not_free >> n & 1U) == 0 && way[n] <= shortest;
-      shortest = is_better ? way[n] : shortest;
-      best = is_better ? n : best;
-    }
-    if (best != kLanes) return {way[best] * kX[best], way[best] * kZ[best]};
-  }
-  return {};
-}
-
-Push pushOutOfScene(const ColumnGrid& grid, const Vec3& center, float reach) noexcept {
-  return detail::hasAvx2() ? pushOutAvx2(grid.layout(), center, reach)
-                           : pushOutPortable(grid.layout(), center, reach);
-}
-
 Push pushOutOfBox(const RestingBox& box, const Vec3& center, float radius) noexcept {
   const Vec3 normal = center - nearestPoint(box, center);
   const float across = std::sqrt(normal.x * normal.x + normal.z * normal.z);
@@ -214,19 +158,6 @@ std::size_t pushOutOfObjects(const RestingObjects& objects, const SphereBatch& s
     ++count;
   }
   return count;
-}
-
-std::size_t pushOut(const Obstacles& obstacles, const SphereBatch& spheres, IgnoredSpheres ignored,
-                    float reach, CollisionScratch& scratch, PushSum& sum) noexcept {
-  std::size_t count = 0;
-  visitBlocked(obstacles.scene, spheres, scratch,
-               [&](std::uint32_t sphere, const RadiusRange& range) {
-                 if (isIgnored(ignored, sphere)) return;
-                 sum.add(pushOutOfScene(obstacles.scene.grids()[range.radius_index],
-                                        centerOf(spheres, sphere), reach));
-                 ++count;
-               });
-  return count + pushOutOfObjects(obstacles.objects, spheres, ignored, scratch, sum);
 }
 
 bool overlapping(const RestingBox& box, const SphereBatch& spheres,

@@ -7,7 +7,7 @@
 #include "galactic/column_grid.h"
 #include "galactic/pose.h"
 #include "galactic/scene.h"
-#include "simulation/collision/push_kernels.h"
+#include "simulation/collision/push.h"
 #include "simulation/collision/resting_objects.h"
 #include "simulation/collision/sphere_batch.h"
 
@@ -58,25 +58,6 @@ struct Obstacles {
                                            std::span<const EightSpheres> groups, std::size_t first,
                                            unsigned asked) noexcept;
 
-/// Adds up pushes so that their order changes nothing: the largest in each of the four directions
-/// of the axes, opposite ones against each other.
-class PushSum {
- public:
-  void add(const Push& push) noexcept;
-  /// At most `longest` meters long; (0, 0) when nothing was added or pushes cancel out.
-  [[nodiscard]] Push total(float longest) const noexcept;
-
- private:
-  float least_x_ = 0;
-  float most_x_ = 0;
-  float least_z_ = 0;
-  float most_z_ = 0;
-};
-
-/// The way out of the static scene for a sphere that is blocked at `center`: the shortest way along
-/// an axis of the ground plane into a column in which it is free, up to `reach` meters.
-[[nodiscard]] Push pushOutOfScene(const ColumnGrid& grid, const Vec3& center, float reach) noexcept;
-
 /// The way out of a box for a sphere that overlaps it: the shortest horizontal one along the normal
 /// of contact.
 [[nodiscard]] Push pushOutOfBox(const RestingBox& box, const Vec3& center, float radius) noexcept;
@@ -86,11 +67,8 @@ class PushSum {
 /// they are free. Empty: all count.
 using IgnoredSpheres = std::span<const std::uint64_t>;
 
-/// The way out for all spheres that penetrate something and are not ignored. Returns their number.
-std::size_t pushOut(const Obstacles& obstacles, const SphereBatch& spheres, IgnoredSpheres ignored,
-                    float reach, CollisionScratch& scratch, PushSum& sum) noexcept;
-
-/// The same for the resting objects alone.
+/// The way out of resting objects for all spheres that penetrate some and are not ignored. Returns
+/// their number.
 std::size_t pushOutOfObjects(const RestingObjects& objects, const SphereBatch& spheres,
                              IgnoredSpheres ignored, CollisionScratch& scratch,
                              PushSum& sum) noexcept;

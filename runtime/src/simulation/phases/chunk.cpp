@@ -3,6 +3,12 @@
 #include <algorithm>
 
 namespace galactic::simulation {
+namespace {
+
+/// How often each sphere may be added to a way out: once with each attempt of the default rule.
+constexpr std::size_t kWaysOut = 3;
+
+}  // namespace
 
 Chunk::Chunk(const Model& model)
     : action_count_(model.actionCount()),
@@ -18,6 +24,9 @@ Chunk::Chunk(const Model& model)
       frames_(frameScratchSize(model.motion.nodes.size()) / kLanes),
       collision_(std::max(model.sphereCount(), model.most_held_spheres)),
       placement_(model.most_held_spheres, model.world->radii()),
+      group_bits_(group_stride_ / kLanes),
+      places_(model.groups.size()),
+      way_out_(kWaysOut * (model.sphereCount() + model.most_held_spheres + 1)),
       blocked_bits_(model.bodyWords()),
       held_bits_(model.heldWords()),
       body_bits_(model.bodyWords()) {}
@@ -47,11 +56,14 @@ void Chunk::shift(std::size_t env, const Vec3& by) {
   y_[env] += by.y;
   z_[env] += by.z;
   float* row = centers_.data() + env * 3 * sphere_count_;
-  for (std::size_t n = 0; n < sphere_count_; ++n) {
-    row[n] += by.x;
-    row[sphere_count_ + n] += by.y;
-    row[2 * sphere_count_ + n] += by.z;
-  }
+  const auto add = [this](float* to, float by_this) {
+    // Most floors are flat.
+    if (by_this == 0) return;
+    for (std::size_t n = 0; n < sphere_count_; ++n) to[n] += by_this;
+  };
+  add(row, by.x);
+  add(row + sphere_count_, by.y);
+  add(row + 2 * sphere_count_, by.z);
   shiftBounds(env, by);
   GripFrame& grip = grips_[env];
   grip[9] += by.x;

@@ -8,6 +8,8 @@
 #include "galactic/pose.h"
 #include "simulation/collision/clearance_map.h"
 #include "simulation/collision/collision.h"
+#include "simulation/collision/free_slices.h"
+#include "simulation/collision/way_out.h"
 #include "simulation/phases/object_placement.h"
 #include "simulation/state/batch_state.h"
 #include "simulation/state/model.h"
@@ -21,6 +23,14 @@ enum class Floor : std::uint8_t {
   kBlocks = 1,
   /// Deeper than the base may drop, or unknown.
   kDrops = 2,
+};
+
+/// What is known of eight groups of eight spheres of one candidate, as bits.
+struct GroupBits {
+  /// Not free as a whole, as far as the maps know.
+  unsigned unsure = 0;
+  /// The last way out suits all of their spheres.
+  unsigned suited = 0;
 };
 
 /// Room for kChunk envs on their way through a step, allocated once for each thread.
@@ -60,6 +70,14 @@ class Chunk {
   /// One bit for each sphere of the robot that the scene blocks: what isFree() found last on a
   /// floor that carries the base.
   [[nodiscard]] std::span<std::uint64_t> blockedBits() { return blocked_bits_; }
+  /// Of the groups from 8 * `eight` on: what isFree() found last on a floor that carries the base.
+  [[nodiscard]] GroupBits& groupBits(std::size_t eight) { return group_bits_[eight]; }
+  void forgetSuited() {
+    for (GroupBits& bits : group_bits_) bits.suited = 0;
+  }
+  /// Of a group that is not free as a whole: the same.
+  [[nodiscard]] EightPlaces& places(std::size_t group) { return places_[group]; }
+  [[nodiscard]] WayOut& wayOut() { return way_out_; }
   /// One bit for each sphere of the held object that penetrates something: what isFree() found
   /// last.
   [[nodiscard]] std::span<std::uint64_t> heldBits() { return held_bits_; }
@@ -92,6 +110,9 @@ class Chunk {
   std::array<Floor, kChunk> floor_{};
   CollisionScratch collision_;
   PlacementScratch placement_;
+  std::vector<GroupBits> group_bits_;
+  std::vector<EightPlaces> places_;
+  WayOut way_out_;
   std::vector<std::uint64_t> blocked_bits_;
   std::vector<std::uint64_t> held_bits_;
   std::vector<std::uint64_t> body_bits_;

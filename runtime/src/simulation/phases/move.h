@@ -20,6 +20,10 @@ void placeBodies(const ChunkStep& step) noexcept;
 /// appendix I.1); where that fails the robot stays where it was.
 void moveRobots(const ChunkStep& step) noexcept;
 
+/// The smallest sphere of the working set, standing on a rise as high as the base may climb.
+[[nodiscard]] Vec3 floorProbe(const Scene& scene, const Vec3& base,
+                              const GroundOptions& options) noexcept;
+
 /// How far a base at `base` (its y: the floor it comes from) is from the floor under it.
 struct FloorUnder {
   Floor floor = Floor::kDrops;
@@ -27,11 +31,5 @@ struct FloorUnder {
 };
 [[nodiscard]] FloorUnder floorUnder(const Scene& scene, const Vec3& base,
                                     const GroundOptions& options) noexcept;
-
-/// Whether the candidate of the chunk's env `e` stands on a floor and penetrates nothing.
-[[nodiscard]] bool isFree(const ChunkStep& step, std::size_t e) noexcept;
-
-/// Pushes the candidate of the chunk's env `e` clear; whether it succeeded.
-bool pushClear(const ChunkStep& step, std::size_t e) noexcept;
 
 }  // namespace galactic::simulation

@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "simulation/phases/chunk.h"
+#include "simulation/phases/contacts.h"
 #include "simulation/phases/move.h"
 #include "simulation/phases/observe.h"
+#include "simulation/phases/slide.h"
 #include "simulation/state/batch_state.h"
 #include "support/workers.h"
 
@@ -89,7 +91,10 @@ class StartFinder {
     // Episodes may have turned any number of times; the motion kernels want one turn.
     constexpr double kTurn = 6.283185307179586;
     *pose.yaw = static_cast<float>(std::remainder(static_cast<double>(episode.base_yaw), kTurn));
+    // Nobody has driven there.
+    *state_.poses(0).x = episode.base_position.x;
     *state_.poses(0).y = under.height;
+    *state_.poses(0).z = episode.base_position.z;
     chunk_.floor(0) = under.floor;
     return under.floor != Floor::kDrops;
   }
@@ -112,7 +117,7 @@ class StartFinder {
     setObjects(episode);
     const ChunkStep step{model_, state_, chunk_, 0};
     placeBodies(step);
-    if (!isFree(step, 0) && !pushClear(step, 0)) return false;
+    if (!isFree(step, 0) && !slideClear(step, 0)) return false;
     const PoseArrays pose = chunk_.candidates(0);
     const float floor = chunk_.base(0).y;
     heights_.lowest = std::min(heights_.lowest, chunk_.least(0).y - floor);
@@ -161,6 +166,7 @@ void mapClearance(const HeightsOverFloor& heights, Model& model) {
     const float floor = model.starts[order[n]].base.y;
     const std::uint32_t map =
         model.clearance.add(model.world->scenes()[scene], floor, kUnevenness, raised);
+    model.slices.add(model.world->scenes()[scene], floor, raised);
     for (; n < order.size() && scene_of(order[n]) == scene &&
            model.starts[order[n]].base.y <= floor + kUnevenness;
          ++n) {

@@ -13,6 +13,7 @@
 #include "sensors/laser.h"
 #include "simulation/collision/clearance_map.h"
 #include "simulation/collision/collision.h"
+#include "simulation/collision/free_slices.h"
 #include "simulation/motion/motion_kernels.h"
 #include "simulation/motion/motion_model.h"
 
@@ -52,6 +53,8 @@ struct Model {
   /// A lane for each group, padded to whole eights; then one for each radius of the working set,
   /// for what the robot holds.
   ClearanceMaps clearance;
+  /// Of the same floors, by the same numbers.
+  FreeSlices slices;
   std::size_t most_objects = 0;
   /// Spheres of the largest object, padded to lanes.
   std::size_t most_held_spheres = 0;

@@ -1,0 +1,116 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "galactic/pose.h"
+#include "galactic/scene.h"
+#include "simulation/collision/clearance_map.h"
+#include "simulation/collision/free_slices_kernels.h"
+
+namespace galactic::simulation {
+
+// In which cells around a sphere it would be free, found with three loads.
+//
+// The heights over a floor are cut into slices. For each slice and each radius there is one bit for
+// each column: whether a center is free at all heights of the slice. The bits lie in strips of
+// sixteen columns along X that overlap by eight, row after row along Z: the 9 x 9 cells around any
+// cell are nine words of sixteen bits, one after the other. A bit only ever says "surely free";
+// where it does not, the column may be asked.
+
+/// Bits of the 9 x 9 cells around a sphere's own, rows along Z of sixteen bits, of which nine
+/// count: set where the sphere would be free at its height.
+struct Surroundings {
+  static constexpr std::size_t kWords = 3;
+  std::array<std::uint64_t, kWords> rows{};
+
+  /// `x`, `z`: cells from the sphere's own, from -kCellsAround to kCellsAround.
+  [[nodiscard]] bool isFree(int x, int z) const {
+    const unsigned bit = bitOf(x, z);
+    return (rows[bit / 64] >> (bit % 64) & 1U) != 0;
+  }
+  constexpr void setFree(int x, int z) {
+    const unsigned bit = bitOf(x, z);
+    rows[bit / 64] |= std::uint64_t{1} << (bit % 64);
+  }
+  /// Whether all cells are free.
+  [[nodiscard]] bool isAllFree() const {
+    return (rows[0] & kNine) == kNine && (rows[1] & kNine) == kNine && (rows[2] & 0x1ff) == 0x1ff;
+  }
+  Surroundings& operator&=(const Surroundings& other) {
+    for (std::size_t n = 0; n < kWords; ++n) rows[n] &= other.rows[n];
+    return *this;
+  }
+  /// The rows one by one.
+  [[nodiscard]] const std::uint16_t* words() const {
+    return reinterpret_cast<const std::uint16_t*>(rows.data());
+  }
+
+ private:
+  static constexpr std::uint64_t kNine = 0x01ff'01ff'01ff'01ff;
+
+  static constexpr unsigned bitOf(int x, int z) {
+    return static_cast<unsigned>(16 * (z + kCellsAround) + x + kCellsAround);
+  }
+};
+
+/// The same as it lies in memory: rows whose first bits do not count.
+struct SurroundingRows {
+  const std::uint16_t* first = nullptr;
+  unsigned column = 0;
+
+  [[nodiscard]] Surroundings cells() const {
+    Surroundings found;
+    __builtin_memcpy(found.rows.data(), first, sizeof(found.rows));
+    for (std::uint64_t& rows : found.rows) rows >>= column;
+    return found;
+  }
+  /// As that of Surroundings.
+  [[nodiscard]] bool isFree(int x, int z) const {
+    return (static_cast<unsigned>(first[z + kCellsAround]) >>
+                (column + static_cast<unsigned>(x + kCellsAround)) &
+            1U) != 0;
+  }
+};
+
+/// The slices of the floors of all scenes. Any thread may ask.
+class FreeSlices {
+ public:
+  /// Adds the slices of a floor of a scene. `floor`: its height, meters; the robot's centers are
+  /// `heights` above it. Returns the number by which the others know it: 0, 1, ...
+  std::uint32_t add(const Scene& scene, float floor, const HeightsOverFloor& heights);
+
+  /// Finds where eight centers are, spheres with the radius of that index. `map`: as add() returned
+  /// it; nothing is known for kNoClearanceMap.
+  void findPlaces(std::uint32_t map, std::uint32_t radius, const float* x, const float* y,
+                  const float* z, EightPlaces& places) const noexcept;
+
+  /// The cells around one of eight centers, which is inside of slices.
+  [[nodiscard]] SurroundingRows around(std::uint32_t map, std::uint32_t radius,
+                                       const EightPlaces& places, std::size_t lane) const noexcept {
+    const SliceLayout& layout = layouts_[map * radii_ + radius];
+    return {rows_.data() + layout.first + places.row[lane],
+            static_cast<unsigned>(places.column[lane])};
+  }
+
+  /// The cells around any center; none where it is outside of slices.
+  [[nodiscard]] std::optional<SurroundingRows> around(std::uint32_t map, std::uint32_t radius,
+                                                      const Vec3& center) const noexcept;
+
+  [[nodiscard]] std::size_t bytes() const { return rows_.size() * sizeof(rows_[0]); }
+
+ private:
+  void fill(const ColumnGrid& grid, float thickness, const SliceLayout& layout);
+
+  std::size_t radii_ = 0;
+  /// Shape: maps x radii.
+  std::vector<SliceLayout> layouts_;
+  std::vector<std::uint16_t> rows_;
+};
+
+/// The same at any height, from the columns themselves: exact, and slow.
+[[nodiscard]] Surroundings surroundingsOf(const ColumnGrid& grid, const Vec3& center) noexcept;
+
+}  // namespace galactic::simulation

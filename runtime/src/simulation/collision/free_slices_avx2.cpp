@@ -1,0 +1,77 @@
+// Compiled for AVX2: instantiates no library templates, see column_grid_avx2.cpp.
+#include "simulation/collision/free_slices_kernels.h"
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+
+namespace galactic::simulation {
+namespace {
+
+/// From 0 up to `end`, not NaN.
+__m256 isWithin(__m256 value, float end) {
+  return _mm256_and_ps(_mm256_cmp_ps(value, _mm256_setzero_ps(), _CMP_GE_OQ),
+                       _mm256_cmp_ps(value, _mm256_set1_ps(end), _CMP_LT_OQ));
+}
+
+__m256 scaled(const float* from, float origin, float scale) {
+  return _mm256_mul_ps(_mm256_sub_ps(_mm256_loadu_ps(from), _mm256_set1_ps(origin)),
+                       _mm256_set1_ps(scale));
+}
+
+unsigned bitsOf(__m256 mask) { return static_cast<unsigned>(_mm256_movemask_ps(mask)); }
+
+void store(std::int32_t* to, __m256i value) {
+  _mm256_store_si256(reinterpret_cast<__m256i*>(to), value);
+}
+
+}  // namespace
+
+void findPlacesAvx2(const SliceLayout& layout, const std::uint16_t* rows, const float* x,
+                    const float* y, const float* z, EightPlaces& places) noexcept {
+  const __m256 cell_x = scaled(x, layout.min_x, layout.inverse_spacing);
+  const __m256 cell_z = scaled(z, layout.min_z, layout.inverse_spacing);
+  const __m256 height = scaled(y, layout.lowest, layout.inverse_slice);
+  const __m256 inside = _mm256_and_ps(
+      _mm256_and_ps(isWithin(cell_x, layout.columns_x), isWithin(cell_z, layout.columns_z)),
+      isWithin(height, layout.slices));
+  const __m256i mask = _mm256_castps_si256(inside);
+  const __m256i i = _mm256_and_si256(_mm256_cvttps_epi32(cell_x), mask);
+  const __m256i k = _mm256_and_si256(_mm256_cvttps_epi32(cell_z), mask);
+  const __m256i slice = _mm256_and_si256(_mm256_cvttps_epi32(height), mask);
+  const __m256 part_x = _mm256_sub_ps(cell_x, _mm256_cvtepi32_ps(i));
+  const __m256 part_z = _mm256_sub_ps(cell_z, _mm256_cvtepi32_ps(k));
+  const __m256i strip = _mm256_srli_epi32(i, 3);
+  const __m256i column = _mm256_and_si256(i, _mm256_set1_epi32(kStripColumns - 1));
+  const __m256i of_slice =
+      _mm256_add_epi32(_mm256_mullo_epi32(strip, _mm256_set1_epi32(layout.slice_count)), slice);
+  const __m256i row =
+      _mm256_add_epi32(_mm256_mullo_epi32(of_slice, _mm256_set1_epi32(layout.row_count)), k);
+  // See resting_objects_avx2.cpp for why the gather is given a zero.
+  const __m256i words = _mm256_mask_i32gather_epi32(
+      _mm256_setzero_si256(), reinterpret_cast<const int*>(rows + kCellsAround), row, mask, 2);
+  const __m256i own = _mm256_add_epi32(column, _mm256_set1_epi32(kCellsAround));
+  const __m256i bit = _mm256_and_si256(_mm256_srlv_epi32(words, own), _mm256_set1_epi32(1));
+  const __m256i is_free = _mm256_cmpeq_epi32(bit, _mm256_set1_epi32(1));
+  store(places.row, row);
+  store(places.column, column);
+  _mm256_store_ps(places.part_x, part_x);
+  _mm256_store_ps(places.part_z, part_z);
+  places.inside = bitsOf(inside);
+  places.free = bitsOf(_mm256_and_ps(inside, _mm256_castsi256_ps(is_free)));
+}
+
+}  // namespace galactic::simulation
+
+#else
+
+namespace galactic::simulation {
+
+// hasAvx2() is false on this architecture; the symbol exists so that callers need no condition.
+void findPlacesAvx2(const SliceLayout& layout, const std::uint16_t* rows, const float* x,
+                    const float* y, const float* z, EightPlaces& places) noexcept {
+  findPlacesPortable(layout, rows, x, y, z, places);
+}
+
+}  // namespace galactic::simulation
+
+#endif

@@ -1,0 +1,126 @@
+#include "simulation/phases/contacts.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "simulation/phases/object_placement.h"
+#include "simulation/state/grip_frame.h"
+
+namespace galactic::simulation {
+namespace {
+
+/// Whether a bit is set that is not ignored.
+bool anyCounts(std::span<const std::uint64_t> bits, IgnoredSpheres ignored) {
+  std::uint64_t any = 0;
+  for (std::size_t w = 0; w < bits.size(); ++w) any |= bits[w] & ~ignored[w];
+  return any != 0;
+}
+
+bool bodyTouchesObjects(const ChunkStep& step, std::size_t e) {
+  const std::size_t n = step.first + e;
+  const RestingObjects& objects = step.state.resting(n);
+  if (!objects.mayTouch(step.chunk.least(e), step.chunk.most(e))) return false;
+  const SphereBatch spheres = step.chunk.spheres(e);
+  bool touches = withoutLeft(step, e, [&] { return objects.touches(spheres); });
+  forEachLeft(step, e, [&](std::uint32_t object) {
+    overlapping(objects.box(object), spheres, step.chunk.bodyBits());
+    touches = touches || anyCounts(step.chunk.bodyBits(), step.state.leaving(n, object));
+  });
+  return touches;
+}
+
+}  // namespace
+
+Obstacles obstaclesOf(const ChunkStep& step, std::size_t e) noexcept {
+  const Env& env = step.state.env(step.first + e);
+  return {step.model.world->scenes()[env.scene], step.state.resting(step.first + e)};
+}
+
+SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) noexcept {
+  const Env& env = step.state.env(step.first + e);
+  const Pose world_from_object = gripPose(step.chunk.grip(e)) * env.held.grip_from_object;
+  return holdSpheres(heldModel(step.model, env), world_from_object, step.chunk.placement().spheres);
+}
+
+bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
+  const Env& env = step.state.env(step.first + e);
+  const Scene& scene = step.model.world->scenes()[env.scene];
+  const SphereBatch spheres = step.chunk.spheres(e);
+  const std::span<const EightSpheres> groups = step.model.groups;
+  std::uint64_t any = 0;
+  for (std::size_t eight = 0; eight * kLanes < groups.size(); ++eight) {
+    const std::size_t here = std::min(groups.size() - eight * kLanes, kLanes);
+    GroupBits& known = step.chunk.groupBits(eight);
+    const unsigned free = known.suited | step.model.clearance.surelyFree(
+                                             env.clearance_map, eight, step.chunk.bounds(e, eight));
+    known.unsure = ((1U << here) - 1) & ~free;
+    unsigned asked = known.unsure;
+    for (unsigned left = asked; left != 0; left &= left - 1) {
+      const std::size_t n = eight * kLanes + static_cast<std::size_t>(std::countr_zero(left));
+      EightPlaces& places = step.chunk.places(n);
+      step.model.slices.findPlaces(env.clearance_map, groups[n].radius_index,
+                                   spheres.x + n * kLanes, spheres.y + n * kLanes,
+                                   spheres.z + n * kLanes, places);
+      if ((groups[n].spheres & ~places.free) == 0) asked ^= left & -left;
+    }
+    const std::uint64_t blocked =
+        asked == 0 ? 0 : blockedSpheres(scene, spheres, groups, eight * kLanes, asked);
+    step.chunk.blockedBits()[eight] = blocked;
+    any |= blocked;
+  }
+  return any != 0;
+}
+
+bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept {
+  const Env& env = step.state.env(step.first + e);
+  // More than the spheres can leave the ball by through rounding, meters.
+  constexpr float kSlack = 1e-3F;
+  const Vec3 center = gripToWorld(step.chunk.grip(e), env.held.ball_center);
+  const float reach = env.held.ball_radius + kSlack;
+  const Vec3 least{center.x - reach, center.y - reach, center.z - reach};
+  const Vec3 most{center.x + reach, center.y + reach, center.z + reach};
+  if (step.state.resting(step.first + e).mayTouch(least, most)) return false;
+  alignas(32) std::array<float, kBounds * kLanes> bounds;
+  const std::array<float, kBounds> each{least.x, most.x, least.y, most.y, least.z, most.z};
+  for (std::size_t b = 0; b < kBounds; ++b) {
+    std::fill_n(bounds.data() + b * kLanes, kLanes, each[b]);
+  }
+  const ClearanceMaps& maps = step.model.clearance;
+  const unsigned free =
+      maps.surelyFree(env.clearance_map, maps.eights() - 1, {bounds.data(), kLanes});
+  return (env.held.radii & ~free) == 0;
+}
+
+namespace {
+
+bool heldPenetrates(const ChunkStep& step, std::size_t e) {
+  if (step.state.env(step.first + e).held.object < 0) return false;
+  const std::span<std::uint64_t> bits = step.chunk.heldBits();
+  if (heldIsSurelyFree(step, e)) {
+    std::ranges::fill(bits, 0U);
+    return false;
+  }
+  const Obstacles obstacles = obstaclesOf(step, e);
+  const SphereBatch spheres = heldSpheres(step, e);
+  if (!penetrates(obstacles, spheres)) {
+    std::ranges::fill(bits, 0U);
+    return false;
+  }
+  penetrating(obstacles, spheres, step.chunk.collision(), bits);
+  return anyCounts(bits, step.state.ignored(step.first + e));
+}
+
+}  // namespace
+
+bool isStillFree(const ChunkStep& step, std::size_t e) noexcept {
+  if (step.chunk.floor(e) != Floor::kCarries) return false;
+  return !findBlocked(step, e) && !bodyTouchesObjects(step, e) && !heldPenetrates(step, e);
+}
+
+bool isFree(const ChunkStep& step, std::size_t e) noexcept {
+  step.chunk.forgetSuited();
+  return isStillFree(step, e);
+}
+
+}  // namespace galactic::simulation

@@ -1,0 +1,343 @@
+// Free slices against the columns themselves, and ways out against a search of all of them.
+#include "simulation/collision/way_out.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "column_grid/column_grid_kernels.h"
+#include "support/homes/box_room.h"
+#include "support/packs/grid_builder.h"
+
+namespace galactic::test::way_out_test {
+namespace {
+
+using namespace galactic::simulation;
+
+constexpr HeightsOverFloor kHeights{.lowest = 0.2F, .highest = 1.25F};
+
+/// Furniture of random places and heights on a floor at height 0.
+BoxRoom furnishedRoom(std::mt19937& random) {
+  std::vector<Block> blocks{{{-1, -0.4F, -1}, {4, 0, 4}}};
+  for (int n = 0; n < 6; ++n) {
+    const float x = uniformIn(random, 0, 2.5F);
+    const float z = uniformIn(random, 0, 2.5F);
+    blocks.push_back({{x, 0, z}, {x + 0.4F, uniformIn(random, 0.1F, 1.2F), z + 0.3F}});
+  }
+  return BoxRoom(std::move(blocks));
+}
+
+struct Eight {
+  explicit Eight(std::mt19937& random) {
+    for (std::size_t n = 0; n < kLanes; ++n) {
+      x[n] = uniformIn(random, -0.2F, 3.2F);
+      y[n] = uniformIn(random, 0.1F, 1.4F);
+      z[n] = uniformIn(random, -0.2F, 3.2F);
+    }
+  }
+
+  alignas(32) std::array<float, kLanes> x{}, y{}, z{};
+};
+
+TEST(FreeSlices, CallFreeOnlyWhatTheColumnsCallFree) {
+  constexpr std::uint32_t kSeed = 1601;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  Tally said;
+  std::size_t free_cells = 0;
+  std::size_t missed = 0;
+  for (int round = 0; round < 10; ++round) {
+    const BoxRoom room = furnishedRoom(random);
+    FreeSlices slices;
+    const std::uint32_t map = slices.add(room.scene(), 0, kHeights);
+    for (int n = 0; n < 300; ++n) {
+      const auto radius = static_cast<std::uint32_t>(n % 3);
+      const ColumnGrid& grid = room.scene().grids()[radius];
+      const Eight eight(random);
+      EightPlaces places;
+      slices.findPlaces(map, radius, eight.x.data(), eight.y.data(), eight.z.data(), places);
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const Vec3 center{eight.x[lane], eight.y[lane], eight.z[lane]};
+        const bool is_free = (places.free >> lane & 1U) != 0;
+        ASSERT_TRUE(!is_free || grid.clearance(center) == Clearance::kFree);
+        const auto around = slices.around(map, radius, center);
+        ASSERT_EQ(around.has_value(), (places.inside >> lane & 1U) != 0);
+        if (!around) continue;
+        ASSERT_EQ(around->isFree(0, 0), is_free);
+        const Surroundings exact = surroundingsOf(grid, center);
+        const Surroundings cells = around->cells();
+        for (int z = -kCellsAround; z <= kCellsAround; ++z) {
+          for (int x = -kCellsAround; x <= kCellsAround; ++x) {
+            ASSERT_EQ(cells.isFree(x, z), around->isFree(x, z));
+            ASSERT_TRUE(!cells.isFree(x, z) || exact.isFree(x, z));
+            said.add(cells.isFree(x, z));
+            free_cells += exact.isFree(x, z) ? 1U : 0U;
+            missed += exact.isFree(x, z) && !cells.isFree(x, z) ? 1U : 0U;
+          }
+        }
+      }
+    }
+  }
+  said.expectBothSides();
+  // Slices are as thick as they are: what lies closely above a table is lost.
+  EXPECT_LT(missed, free_cells / 10);
+}
+
+TEST(FreeSlices, AreTheSameBitForBitWithBothKernels) {
+  if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2";
+  std::mt19937 random(1602);
+  std::vector<std::uint16_t> rows(100'000);
+  for (std::uint16_t& row : rows) row = static_cast<std::uint16_t>(random());
+  const SliceLayout layout{.min_x = 0.1F,
+                           .min_z = 0.2F,
+                           .inverse_spacing = 32,
+                           .columns_x = 80,
+                           .columns_z = 60,
+                           .lowest = 0.15F,
+                           .inverse_slice = 24,
+                           .slices = 20,
+                           .slice_count = 20,
+                           .row_count = 76,
+                           .first = 0};
+  Tally inside;
+  for (int n = 0; n < 2000; ++n) {
+    Eight eight(random);
+    if (n == 0) eight.x[3] = std::numeric_limits<float>::quiet_NaN();
+    EightPlaces portable;
+    EightPlaces fast;
+    findPlacesPortable(layout, rows.data(), eight.x.data(), eight.y.data(), eight.z.data(),
+                       portable);
+    findPlacesAvx2(layout, rows.data(), eight.x.data(), eight.y.data(), eight.z.data(), fast);
+    ASSERT_EQ(portable.inside, fast.inside);
+    ASSERT_EQ(portable.free, fast.free);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      inside.add((fast.inside >> lane & 1U) != 0);
+      if ((fast.inside >> lane & 1U) == 0) continue;
+      ASSERT_EQ(portable.row[lane], fast.row[lane]);
+      ASSERT_EQ(portable.column[lane], fast.column[lane]);
+      ASSERT_EQ(portable.part_x[lane], fast.part_x[lane]);
+      ASSERT_EQ(portable.part_z[lane], fast.part_z[lane]);
+    }
+  }
+  inside.expectBothSides();
+}
+
+TEST(SurroundingsOf, AreThoseOfTheColumns) {
+  std::mt19937 random(1603);
+  const BoxRoom room = furnishedRoom(random);
+  const ColumnGrid& grid = room.scene().grids()[1];
+  Tally free;
+  for (int n = 0; n < 500; ++n) {
+    const Vec3 center{uniformIn(random, 0, 3), uniformIn(random, 0, 1.5F), uniformIn(random, 0, 3)};
+    const Surroundings around = surroundingsOf(grid, center);
+    for (int z = -kCellsAround; z <= kCellsAround; ++z) {
+      for (int x = -kCellsAround; x <= kCellsAround; ++x) {
+        const auto at = [&](float from, int cells) {
+          return (std::floor(from / BoxRoom::kSpacing) + static_cast<float>(cells) + 0.5F) *
+                 BoxRoom::kSpacing;
+        };
+        const Clearance clearance = grid.clearance({at(center.x, x), center.y, at(center.z, z)});
+        ASSERT_EQ(around.isFree(x, z), clearance == Clearance::kFree);
+        free.add(around.isFree(x, z));
+      }
+    }
+  }
+  free.expectBothSides();
+}
+
+/// Cells of 1 m.
+struct Sphere {
+  Surroundings around;
+  float part_x = 0;
+  float part_z = 0;
+
+  /// In double precision.
+  [[nodiscard]] bool isFreeAfter(double by_x, double by_z) const {
+    const double x = std::floor(static_cast<double>(part_x) + by_x);
+    const double z = std::floor(static_cast<double>(part_z) + by_z);
+    return std::abs(x) <= kCellsAround && std::abs(z) <= kCellsAround &&
+           around.isFree(static_cast<int>(x), static_cast<int>(z));
+  }
+};
+
+/// Spheres of a robot at furniture: half of the cells around each are blocked on one side, or a
+/// block of them is.
+std::vector<Sphere> randomSpheres(std::mt19937& random) {
+  std::vector<Sphere> spheres(1 + random() % 8);
+  for (Sphere& sphere : spheres) {
+    sphere.part_x = uniformIn(random, 0.01F, 0.99F);
+    sphere.part_z = uniformIn(random, 0.01F, 0.99F);
+    const float angle = uniformIn(random, 0, 6.28F);
+    const float from = uniformIn(random, -1.5F, 3);
+    const bool is_pole = random() % 2 == 0;
+    for (int z = -kCellsAround; z <= kCellsAround; ++z) {
+      for (int x = -kCellsAround; x <= kCellsAround; ++x) {
+        const float along =
+            static_cast<float>(x) * std::cos(angle) + static_cast<float>(z) * std::sin(angle);
+        const float across =
+            static_cast<float>(z) * std::cos(angle) - static_cast<float>(x) * std::sin(angle);
+        const bool is_blocked = along > from && (!is_pole || std::fabs(across) < 1.5F);
+        if (!is_blocked) sphere.around.setFree(x, z);
+      }
+    }
+  }
+  return spheres;
+}
+
+std::optional<Push> wayOut(std::span<const Sphere> spheres, const Push& drive, float longest) {
+  WayOut way(spheres.size());
+  way.clear(1);
+  for (const Sphere& sphere : spheres) way.add(sphere.around, sphere.part_x, sphere.part_z);
+  return way.shortest(drive, longest);
+}
+
+bool areFreeAfter(std::span<const Sphere> spheres, double by_x, double by_z) {
+  return std::ranges::all_of(spheres,
+                             [&](const Sphere& sphere) { return sphere.isFreeAfter(by_x, by_z); });
+}
+
+/// The places along one axis where some sphere enters a cell, and 0.
+std::vector<double> borders(std::span<const Sphere> spheres, bool along_x) {
+  constexpr auto kMargin = static_cast<double>(kIntoCell);
+  std::vector<double> all{0};
+  for (const Sphere& sphere : spheres) {
+    const auto part = static_cast<double>(along_x ? sphere.part_x : sphere.part_z);
+    for (int cell = -kCellsAround; cell <= kCellsAround; ++cell) {
+      all.push_back(cell - part + (cell > 0 ? kMargin : 1 - kMargin));
+    }
+  }
+  return all;
+}
+
+/// The length of the shortest way out; infinity for none.
+double shortestOfAll(std::span<const Sphere> spheres) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const double x : borders(spheres, true)) {
+    for (const double z : borders(spheres, false)) {
+      if (std::hypot(x, z) < shortest && areFreeAfter(spheres, x, z)) shortest = std::hypot(x, z);
+    }
+  }
+  return shortest;
+}
+
+constexpr float kAny = 5;
+constexpr float kRounding = 1e-5F;
+
+TEST(WayOut, LeadsToWhereAllSpheresAreFreeAndIsLittleLongerThanTheShortest) {
+  constexpr std::uint32_t kSeed = 1604;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  Tally found;
+  int longer = 0;
+  double excess = 0;
+  int compared = 0;
+  for (int round = 0; round < 4000; ++round) {
+    const std::vector<Sphere> spheres = randomSpheres(random);
+    if (areFreeAfter(spheres, 0, 0)) continue;
+    const std::optional<Push> push = wayOut(spheres, {}, kAny);
+    found.add(push.has_value());
+    if (!push) continue;
+    const auto x = static_cast<double>(push->x);
+    const auto z = static_cast<double>(push->z);
+    ASSERT_TRUE(areFreeAfter(spheres, x, z)) << "round " << round;
+    const double shortest = shortestOfAll(spheres);
+    ASSERT_LE(shortest, std::hypot(x, z) + static_cast<double>(kRounding));
+    longer += std::hypot(x, z) > shortest + 1e-3 ? 1 : 0;
+    excess += std::hypot(x, z) - shortest;
+    ++compared;
+  }
+  found.expectBothSides();
+  // It shortens along one axis before it does along the other, and misses ways between whole cells.
+  std::printf("%d of %d are longer than the shortest, all by %.3f cells on average\n", longer,
+              compared, excess / compared);
+  EXPECT_LT(longer, compared / 3);
+  EXPECT_LT(excess, 0.2 * compared);
+}
+
+TEST(WayOut, IsTheSameForSpheresInAnyOrder) {
+  std::mt19937 random(1605);
+  int found = 0;
+  for (int round = 0; round < 1000; ++round) {
+    std::vector<Sphere> spheres = randomSpheres(random);
+    const std::optional<Push> first = wayOut(spheres, {1, 0}, kAny);
+    std::ranges::shuffle(spheres, random);
+    const std::optional<Push> second = wayOut(spheres, {1, 0}, kAny);
+    ASSERT_EQ(first.has_value(), second.has_value());
+    if (!first) continue;
+    ASSERT_EQ(first->x, second->x);
+    ASSERT_EQ(first->z, second->z);
+    ++found;
+  }
+  EXPECT_GT(found, 300);
+}
+
+Surroundings mirrored(const Surroundings& around) {
+  Surroundings other;
+  for (int z = -kCellsAround; z <= kCellsAround; ++z) {
+    for (int x = -kCellsAround; x <= kCellsAround; ++x) {
+      if (around.isFree(x, z)) other.setFree(x, -z);
+    }
+  }
+  return other;
+}
+
+TEST(WayOut, OfAMirrorImageIsTheMirrorImage) {
+  std::mt19937 random(1606);
+  int found = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const std::vector<Sphere> spheres = randomSpheres(random);
+    if (areFreeAfter(spheres, 0, 0)) continue;
+    std::vector<Sphere> image = spheres;
+    for (Sphere& sphere : image) {
+      sphere = {mirrored(sphere.around), sphere.part_x, 1 - sphere.part_z};
+    }
+    const Push drive{uniformIn(random, -1, 1), uniformIn(random, -1, 1)};
+    const std::optional<Push> push = wayOut(spheres, drive, kAny);
+    const std::optional<Push> other = wayOut(image, {drive.x, -drive.z}, kAny);
+    ASSERT_EQ(push.has_value(), other.has_value()) << "round " << round;
+    if (!push) continue;
+    ASSERT_NEAR(push->x, other->x, kRounding) << "round " << round;
+    ASSERT_NEAR(push->z, -other->z, kRounding) << "round " << round;
+    ++found;
+  }
+  EXPECT_GT(found, 300);
+}
+
+TEST(WayOut, IsNoLongerThanAllowedAndDoesNotGoOnAlongTheDrive) {
+  std::mt19937 random(1607);
+  Tally found;
+  for (int round = 0; round < 2000; ++round) {
+    const std::vector<Sphere> spheres = randomSpheres(random);
+    if (areFreeAfter(spheres, 0, 0)) continue;
+    const Push drive{uniformIn(random, -1, 1), uniformIn(random, -1, 1)};
+    constexpr float kLongest = 1.2F;
+    const std::optional<Push> push = wayOut(spheres, drive, kLongest);
+    found.add(push.has_value());
+    if (!push) continue;
+    const float length = std::hypot(push->x, push->z);
+    ASSERT_LT(length, kLongest);
+    ASSERT_LE(push->x * drive.x + push->z * drive.z,
+              0.5F * length * std::hypot(drive.x, drive.z) + kRounding);
+  }
+  found.expectBothSides();
+}
+
+TEST(WayOut, IsNoneForMoreSpheresThanThereIsRoomFor) {
+  Sphere sphere;
+  sphere.around.setFree(1, 0);
+  WayOut way(1);
+  way.clear(1);
+  way.add(sphere.around, 0.5F, 0.5F);
+  ASSERT_TRUE(way.shortest({}, kAny).has_value());
+  way.add(sphere.around, 0.5F, 0.5F);
+  EXPECT_FALSE(way.shortest({}, kAny).has_value());
+}
+
+}  // namespace
+}  // namespace galactic::test::way_out_test
