@@ -62,8 +62,10 @@ std::uint32_t FreeSlices::add(const Scene& scene, float floor, const HeightsOver
         .slice_count = static_cast<std::int32_t>(slices),
         .row_count = static_cast<std::int32_t>(from.columns_z) + kCellsAround + kRowsBehind,
         .first = rows_.size()};
-    rows_.resize(rows_.size() + static_cast<std::size_t>(stripCount(grid) * layout.slice_count *
-                                                         layout.row_count));
+    const std::size_t rows_of_slices = static_cast<std::size_t>(stripCount(grid)) *
+                                       static_cast<std::size_t>(layout.slice_count) *
+                                       static_cast<std::size_t>(layout.row_count);
+    rows_.resize(rows_.size() + rows_of_slices);
     fill(grid, thickness, layout);
     layouts_.push_back(layout);
   }
@@ -169,7 +171,7 @@ Surroundings surroundingsOf(const ColumnGrid& grid, const Vec3& center) noexcept
   const ColumnGridLayout& layout = grid.layout();
   const float own_x = std::floor((center.x - layout.min_x) * layout.inverse_spacing) + 0.5F;
   const float own_z = std::floor((center.z - layout.min_z) * layout.inverse_spacing) + 0.5F;
-  constexpr auto kEdge = static_cast<std::size_t>(2 * kCellsAround + 1);
+  constexpr std::size_t kEdge = 2 * kCellsAround + 1;
   constexpr std::size_t kCount = paddedToLanes(kEdge);
   std::array<float, kCount> x;
   std::array<float, kCount> y;
