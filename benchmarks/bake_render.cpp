@@ -14,8 +14,8 @@
 
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/render_baker.h"
-#include "galactic/bake/render_source.h"
 #include "galactic/bake/urdf_import.h"
+#include "render/render_source.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -18,7 +18,7 @@
 
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/scene_baker.h"
-#include "galactic/bake/scene_pack.h"
+#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

@@ -21,8 +21,7 @@
 #include <vector>
 
 #include "galactic/bake/column_engines.h"
-#include "galactic/bake/free_space.h"
-#include "galactic/bake/grid_encoder.h"
+#include "galactic/bake/columns.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "support/oracles/column_oracle.h"

@@ -20,9 +20,9 @@
 #include <tuple>
 #include <vector>
 
+#include "fit/stable_poses.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/oriented_box.h"
-#include "galactic/bake/stable_poses.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "support/oracles/box_oracle.h"
 

@@ -19,10 +19,10 @@
 #include <utility>
 #include <vector>
 
-#include "galactic/bake/collection_shape.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/sphere_set.h"
 #include "galactic/bake/triangle_mesh.h"
+#include "recipe/collection_shape.h"
 #include "support/try.h"
 
 namespace galactic::bake {

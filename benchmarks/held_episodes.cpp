@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "galactic/bake/episode_pack.h"
 #include "galactic/bake/source_episodes.h"
 #include "galactic/batch_simulator.h"
 #include "galactic/world.h"
+#include "write/packs.h"
 
 namespace {
 

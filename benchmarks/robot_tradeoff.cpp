@@ -18,10 +18,10 @@
 #include <thread>
 #include <vector>
 
-#include "galactic/bake/collection_import.h"
 #include "galactic/bake/robot_baker.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/urdf_import.h"
+#include "recipe/collection_import.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "galactic/bake/source_robot.h"
-#include "galactic/bake/urdf_inertials.h"
+#include "galactic/bake/urdf_import.h"
 #include "galactic/error.h"
 #include "galactic/kinematics.h"
 #include "galactic/pose.h"

@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "command.h"
+#include "galactic/bake/option_field.h"
 #include "galactic/bake/robot_recipe.h"
-#include "galactic/bake/toml_table.h"
 #include "galactic/error.h"
 #include "support/nearest_name.h"
 #include "support/printable.h"
@@ -214,8 +214,7 @@ class CommandLine {
       return fail(ErrorCode::kInvalidInput, "--config",
                   "has an empty value; give one, or leave the option out");
     }
-    ASSIGN_OR_RETURN(auto table, readToml(config_));
-    ASSIGN_OR_RETURN(auto options, givenIn(table, config_));
+    ASSIGN_OR_RETURN(auto options, readOptionFile(config_));
     for (GivenOption& option : options) {
       if (std::ranges::find(kNotInFiles, option.name) != kNotInFiles.end()) {
         return fail(ErrorCode::kInvalidInput, option.place,

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "galactic/bake/texture_pack.h"
+#include "galactic/bake/render_textures.h"
 #include "galactic/pack_header.h"
 #include "support/printable.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "galactic/bake/grid_encoder.h"
+#include "galactic/bake/columns.h"
 #include "layout/column_cell.h"
 #include "support/source_folder.h"
 

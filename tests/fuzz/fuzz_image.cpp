@@ -8,7 +8,7 @@
 
 #include "finding.h"
 #include "textures/appearance.h"
-#include "textures/image_decoder.h"
+#include "textures/images/image.h"
 
 namespace {
 

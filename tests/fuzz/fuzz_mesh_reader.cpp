@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "finding.h"
-#include "import/asset_check.h"
 #include "import/assimp_reader.h"
+#include "import/checks/asset_check.h"
 #include "support/scratch_folder.h"
 
 // What the readers leak ends with the process in which they run.

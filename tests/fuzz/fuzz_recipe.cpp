@@ -11,7 +11,7 @@
 #include "command.h"
 #include "finding.h"
 #include "galactic/bake/robot_recipe.h"
-#include "galactic/bake/world_recipe.h"
+#include "recipe/world_recipe.h"
 #include "support/scratch_folder.h"
 
 namespace {

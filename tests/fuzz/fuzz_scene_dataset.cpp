@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "dataset/scene_dataset.h"
 #include "finding.h"
-#include "galactic/bake/scene_dataset.h"
 #include "support/scratch_folder.h"
 
 namespace {

@@ -41,7 +41,7 @@ HEAVY_LIBRARIES = (
                  re.compile(r"bake/src/import/assimp_reader[^/]*$")),
     HeavyLibrary("Bullet", re.compile(r"(bullet/|Bullet|LinearMath/|bt[A-Z])"),
                  re.compile(r"\bbt[A-Z][a-z]\w+"),
-                 re.compile(r"bake/src/((engines|episodes)/bullet[^/]*|fit/convex_hull\.cpp)$|"
+                 re.compile(r"bake/src/((engines|episodes/trial)/bullet[^/]*|fit/convex_hull\.cpp)$|"
                             r"dynamics/bullet[^/]*$|"
                             r"tests/bake/(robot|simulation)/bullet[^/]*$|"
                             r"benchmarks/batch_kinematics\.cpp$")),
@@ -60,16 +60,16 @@ HEAVY_LIBRARIES = (
     HeavyLibrary("pybind11", re.compile(r"(pybind11/|Python\.h|numpy/)"), re.compile(r"\b(pybind11::|PyObject)"),
                  re.compile(r"^python/src/")),
     HeavyLibrary("toml++", re.compile(r"toml\+\+/"), re.compile(r"\btoml::"),
-                 re.compile(r"bake/src/recipe/toml_table[^/]*$")),
+                 re.compile(r"bake/src/toml/toml_table[^/]*$")),
     HeavyLibrary("libpng", re.compile(r"png\.h"), re.compile(r"\bpng_(struct|info|byte)p+\b"),
-                 re.compile(r"bake/src/textures/png_image\.cpp$|^runtime/pictures/png_file\.cpp$|"
+                 re.compile(r"bake/src/textures/images/png_image\.cpp$|^runtime/pictures/png_file\.cpp$|"
                             r"^tests/")),
     HeavyLibrary("libjpeg", re.compile(r"(jpeglib|jerror)\.h"), re.compile(r"\bjpeg_\w+_struct\b"),
-                 re.compile(r"bake/src/textures/jpeg_image\.cpp$|^tests/")),
+                 re.compile(r"bake/src/textures/images/jpeg_image\.cpp$|^tests/")),
     HeavyLibrary("zlib", re.compile(r"zlib\.h"), re.compile(r"\bz_streamp?\b"),
                  re.compile(r"bake/src/json/gzip\.cpp$|^view/page_data\.cpp$|^tests/")),
     HeavyLibrary("stb", re.compile(r"stb/"), re.compile(r"\bstb_\w+\("),
-                 re.compile(r"bake/src/textures/bc1_blocks\.cpp$")),
+                 re.compile(r"bake/src/textures/images/bc1_blocks\.cpp$")),
 )
 
 

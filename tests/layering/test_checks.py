@@ -122,7 +122,7 @@ class IncludesTest(PlantedTree):
 
     def test_refuses_embree_outside_its_files(self):
         self.assertTrue(any("Embree" in offence for offence in self.offences(
-            "bake/src/scene_baker.cpp", "#include <embree3/rtcore.h>\n")))
+            "bake/src/asset/scene_baker.cpp", "#include <embree3/rtcore.h>\n")))
 
     def test_refuses_a_heavy_type_that_a_header_only_declares(self):
         self.assert_refused("bake/include/galactic/bake/caster.h", "class btCollisionWorld;\n",

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <random>
 
-#include "galactic/bake/triangle_interval.h"
+#include "column_grid/triangle_interval.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "support/oracles/triangle_corners.h"
 #include "support/test_meshes.h"

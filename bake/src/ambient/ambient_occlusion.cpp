@@ -1,4 +1,4 @@
-#include "galactic/bake/ambient_occlusion.h"
+#include "ambient/ambient_occlusion.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 
 #include "ambient/ray_pattern.h"
 #include "ambient/vertex_fans.h"
+#include "common/parallel_for.h"
 #include "engines/triangle_rays.h"
-#include "galactic/bake/parallel_for.h"
 #include "import/affine.h"
 #include "support/try.h"
 

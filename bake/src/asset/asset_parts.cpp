@@ -3,10 +3,10 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/bake/source_file.h"
-#include "galactic/bake/texture_pack.h"
+#include "galactic/bake/provenance.h"
 #include "galactic/pack.h"
 #include "support/try.h"
+#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

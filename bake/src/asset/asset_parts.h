@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "galactic/bake/assets.h"
-#include "galactic/bake/render_source.h"
+#include "render/render_source.h"
 
 namespace galactic::bake {
 

@@ -4,8 +4,8 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/bake/texture_pack.h"
 #include "support/try.h"
+#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "asset/asset_parts.h"
-#include "galactic/bake/episode_pack.h"
 #include "galactic/bake/mesh_import.h"
-#include "galactic/bake/source_file.h"
+#include "galactic/bake/provenance.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/pack.h"
 #include "galactic/scene.h"
 #include "support/try.h"
+#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

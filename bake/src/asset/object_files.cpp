@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "asset/asset_parts.h"
-#include "galactic/bake/collection_shape.h"
+#include "common/parallel_for.h"
+#include "common/stage_timer.h"
 #include "galactic/bake/mesh_import.h"
-#include "galactic/bake/object_pack.h"
-#include "galactic/bake/parallel_for.h"
-#include "stage_timer.h"
+#include "recipe/collection_shape.h"
 #include "support/try.h"
+#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

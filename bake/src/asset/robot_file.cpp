@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "asset/asset_parts.h"
-#include "galactic/bake/collection_import.h"
-#include "galactic/bake/robot_pack.h"
+#include "common/stage_timer.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/urdf_import.h"
-#include "stage_timer.h"
+#include "recipe/collection_import.h"
 #include "support/try.h"
+#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

@@ -1,10 +1,11 @@
 #include <utility>
 
 #include "asset/asset_parts.h"
+#include "common/stage_timer.h"
+#include "dataset/scene_dataset.h"
 #include "galactic/bake/mesh_import.h"
-#include "galactic/bake/scene_pack.h"
-#include "stage_timer.h"
 #include "support/try.h"
+#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "build/pack_list.h"
-#include "galactic/bake/scene_files.h"
-#include "galactic/bake/world_recipe.h"
+#include "dataset/mesh_library.h"
+#include "dataset/scene_dataset.h"
+#include "dataset/scene_files.h"
+#include "recipe/world_recipe.h"
 #include "support/try.h"
 
 namespace galactic::bake {

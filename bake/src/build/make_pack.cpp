@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/bake/source_file.h"
+#include "galactic/bake/provenance.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -1,8 +1,8 @@
 #pragma once
 #include "build/texture_checks.h"
-#include "galactic/bake/bake_cache.h"
+#include "cache/bake_cache.h"
+#include "cache/file_digests.h"
 #include "galactic/bake/build.h"
-#include "galactic/bake/file_digests.h"
 
 namespace galactic::bake {
 

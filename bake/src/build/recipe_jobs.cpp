@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "build/pack_list.h"
-#include "galactic/bake/world_recipe.h"
+#include "recipe/world_recipe.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -4,6 +4,7 @@
 
 #include "asset/asset_parts.h"
 #include "build/pack_list.h"
+#include "dataset/scene_dataset.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "support/try.h"

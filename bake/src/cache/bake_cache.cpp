@@ -1,4 +1,4 @@
-#include "galactic/bake/bake_cache.h"
+#include "cache/bake_cache.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "cache/cache_entry.h"
-#include "galactic/bake/source_file.h"
+#include "galactic/bake/provenance.h"
 #include "support/atomic_file.h"
 #include "support/try.h"
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "galactic/bake/bake_cache.h"
+#include "cache/bake_cache.h"
 
 namespace galactic::bake {
 

@@ -1,9 +1,9 @@
-#include "galactic/bake/file_digests.h"
+#include "cache/file_digests.h"
 
 #include <system_error>
 #include <utility>
 
-#include "galactic/bake/source_file.h"
+#include "galactic/bake/provenance.h"
 
 namespace galactic::bake {
 namespace {

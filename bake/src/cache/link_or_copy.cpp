@@ -4,7 +4,7 @@
 
 #include <system_error>
 
-#include "galactic/bake/bake_cache.h"
+#include "cache/bake_cache.h"
 #include "support/atomic_file.h"
 #include "support/mapped_file.h"
 #include "support/part_files.h"

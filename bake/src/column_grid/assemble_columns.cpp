@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "galactic/bake/parallel_for.h"
+#include "common/parallel_for.h"
 
 namespace galactic::bake {
 

@@ -1,13 +1,11 @@
-#include "column_grid/cell_columns.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "column_grid/assemble_columns.h"
-#include "column_grid/triangle_bins.h"
-#include "galactic/bake/triangle_interval.h"
+#include "column_grid/scatter/triangle_bins.h"
+#include "column_grid/triangle_interval.h"
 
 namespace galactic::bake {
 namespace {

@@ -4,11 +4,10 @@
 #include <vector>
 
 #include "column_grid/assemble_columns.h"
-#include "column_grid/cell_columns.h"
-#include "column_grid/prepare_triangle.h"
-#include "column_grid/triangle_bins.h"
+#include "column_grid/scatter/scatter.h"
+#include "column_grid/scatter/triangle_bins.h"
+#include "column_grid/triangle_interval.h"
 #include "galactic/bake/column_engines.h"
-#include "galactic/bake/triangle_interval.h"
 
 namespace galactic::bake {
 namespace {

@@ -1,5 +1,3 @@
-#include "galactic/bake/free_space.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "galactic/bake/columns.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -1,11 +1,10 @@
-#include "galactic/bake/grid_encoder.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <span>
 
+#include "galactic/bake/columns.h"
 #include "layout/column_cell.h"
 
 namespace galactic::bake {

@@ -1,4 +1,4 @@
-#include "galactic/bake/triangle_interval.h"
+#include "column_grid/triangle_interval.h"
 
 #include <algorithm>
 #include <cmath>

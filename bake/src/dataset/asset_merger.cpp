@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "galactic/bake/source_file.h"
+#include "galactic/bake/provenance.h"
 #include "import/affine.h"
 #include "import/source_files.h"
 #include "render/material_list.h"

@@ -1,4 +1,4 @@
-#include "galactic/bake/mesh_library.h"
+#include "dataset/mesh_library.h"
 
 #include <condition_variable>
 #include <functional>

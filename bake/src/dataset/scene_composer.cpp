@@ -7,11 +7,10 @@
 #include <system_error>
 #include <utility>
 
-#include "dataset/placement.h"
-#include "dataset/rest_pose.h"
+#include "dataset/config/placement.h"
 #include "import/affine.h"
 #include "import/source_files.h"
-#include "robot/link_geometry.h"
+#include "robot/robot_parts.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -5,12 +5,12 @@
 #include <string>
 
 #include "dataset/asset_merger.h"
-#include "dataset/dataset_index.h"
-#include "dataset/receptacles.h"
-#include "dataset/scene_instance.h"
-#include "dataset/template_attributes.h"
-#include "galactic/bake/mesh_library.h"
-#include "galactic/bake/scene_dataset.h"
+#include "dataset/config/dataset_index.h"
+#include "dataset/config/receptacles.h"
+#include "dataset/config/scene_instance.h"
+#include "dataset/config/template_attributes.h"
+#include "dataset/mesh_library.h"
+#include "dataset/scene_dataset.h"
 
 namespace galactic::bake {
 

@@ -1,4 +1,4 @@
-#include "galactic/bake/scene_dataset.h"
+#include "dataset/scene_dataset.h"
 
 #include <fmt/format.h>
 
@@ -6,12 +6,12 @@
 #include <span>
 #include <utility>
 
-#include "dataset/dataset_index.h"
+#include "dataset/config/dataset_index.h"
+#include "dataset/config/scene_instance.h"
+#include "dataset/config/template_attributes.h"
 #include "dataset/scene_composer.h"
-#include "dataset/scene_instance.h"
 #include "dataset/scene_surveyor.h"
-#include "dataset/template_attributes.h"
-#include "galactic/bake/source_file.h"
+#include "galactic/bake/provenance.h"
 #include "support/nearest_name.h"
 #include "support/try.h"
 

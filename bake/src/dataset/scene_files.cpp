@@ -1,4 +1,4 @@
-#include "galactic/bake/scene_files.h"
+#include "dataset/scene_files.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include <system_error>
 #include <utility>
 
-#include "dataset/dataset_paths.h"
+#include "dataset/config/dataset_paths.h"
 
 namespace galactic::bake {
 namespace {

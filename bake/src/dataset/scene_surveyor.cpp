@@ -5,7 +5,7 @@
 #include <system_error>
 #include <utility>
 
-#include "dataset/placement.h"
+#include "dataset/config/placement.h"
 #include "import/source_files.h"
 #include "support/try.h"
 

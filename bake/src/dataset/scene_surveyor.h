@@ -3,10 +3,10 @@
 #include <set>
 #include <string>
 
-#include "dataset/dataset_index.h"
-#include "dataset/scene_instance.h"
-#include "dataset/template_attributes.h"
-#include "galactic/bake/scene_dataset.h"
+#include "dataset/config/dataset_index.h"
+#include "dataset/config/scene_instance.h"
+#include "dataset/config/template_attributes.h"
+#include "dataset/scene_dataset.h"
 
 namespace galactic::bake {
 

@@ -1,5 +1,3 @@
-#include "galactic/bake/cast_check.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "galactic/bake/triangle_interval.h"
+#include "column_grid/triangle_interval.h"
+#include "galactic/bake/column_engines.h"
 
 namespace galactic::bake {
 namespace {

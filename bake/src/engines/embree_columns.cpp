@@ -4,10 +4,10 @@
 #include <type_traits>
 
 #include "column_grid/blocked_intervals.h"
+#include "column_grid/triangle_interval.h"
 #include "engines/columns_by_rows.h"
 #include "engines/embree.h"
 #include "galactic/bake/column_engines.h"
-#include "galactic/bake/triangle_interval.h"
 
 namespace galactic::bake {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "episodes/placement_check.h"
 #include "episodes/reach_witness.h"
+#include "episodes/trial/placement_check.h"
 
 namespace galactic::bake {
 namespace {

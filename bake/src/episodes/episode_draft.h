@@ -3,14 +3,14 @@
 #include <span>
 #include <vector>
 
-#include "episodes/arm_reach.h"
-#include "episodes/floor_map.h"
-#include "episodes/placed_object.h"
-#include "episodes/settling.h"
-#include "episodes/support_places.h"
-#include "episodes/surface_rays.h"
+#include "common/random.h"
+#include "episodes/home/arm_reach.h"
+#include "episodes/home/floor_map.h"
+#include "episodes/home/placed_object.h"
+#include "episodes/home/support_places.h"
+#include "episodes/home/surface_rays.h"
+#include "episodes/trial/settling.h"
 #include "galactic/bake/episode_generator.h"
-#include "random.h"
 
 namespace galactic::bake {
 

@@ -1,4 +1,4 @@
-#include "galactic/bake/episode_rejection.h"
+#include "galactic/bake/episode_generator.h"
 
 namespace galactic::bake {
 

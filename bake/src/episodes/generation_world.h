@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "episodes/settling.h"
+#include "episodes/trial/settling.h"
 #include "galactic/error.h"
 #include "galactic/object_set.h"
 #include "galactic/pack.h"

@@ -8,6 +8,10 @@
 
 namespace galactic::bake::fit {
 
+/// `points` (finite) without repetitions, in ascending order of x, y, z: what is fitted to them
+/// depends neither on their order nor on how often a mesh repeats its vertices.
+[[nodiscard]] std::vector<Vec3> uniquePoints(std::span<const Vec3> points);
+
 /// How many dimensions a set of points fills.
 enum class HullShape { kPoint, kLine, kPlane, kSolid };
 
@@ -45,5 +49,18 @@ inline constexpr double kFloatNoise = 2.5e-7;
 /// (Preparata and Hong) of the points rounded to a grid. What fills no volume is a point, a line or
 /// a plane, found without Bullet. Deterministic: a function of the points in their order.
 [[nodiscard]] ConvexHull convexHull(std::span<const Vec3> points);
+
+/// Faces of a hull that lie in one plane, but for the hull's rounding: indices of faces.
+using Facet = std::vector<std::uint32_t>;
+
+/// The planar facets of `hull` (kSolid), in the order of their largest faces, largest first. Every
+/// face belongs to one.
+[[nodiscard]] std::vector<Facet> planarFacets(const ConvexHull& hull);
+
+/// The outward unit normal of a facet of the hull of `points`: of the corners' sources, which carry
+/// the rounding of floats alone; of the rounded corners where the hull's rounding decided which
+/// corners there are, so that the plane of their sources cuts through the body.
+[[nodiscard]] Vec3d facetNormal(const ConvexHull& hull, std::span<const Vec3> points,
+                                const Facet& facet);
 
 }  // namespace galactic::bake::fit

@@ -1,11 +1,11 @@
-#include "fit/facets.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <utility>
+
+#include "fit/convex_hull.h"
 
 namespace galactic::bake::fit {
 namespace {

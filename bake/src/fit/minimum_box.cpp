@@ -1,5 +1,3 @@
-#include "fit/minimum_box.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "fit/box_axes.h"
 #include "fit/convex_hull.h"
 #include "fit/simplex_search.h"
 

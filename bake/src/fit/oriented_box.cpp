@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "fit/box_axes.h"
-#include "fit/minimum_box.h"
+#include "fit/convex_hull.h"
 #include "fit/rotation.h"
-#include "fit/unique_points.h"
 #include "fit/vec3d.h"
 
 namespace galactic::bake {

@@ -1,4 +1,4 @@
-#include "galactic/bake/stable_poses.h"
+#include "fit/stable_poses.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,8 @@
 #include <span>
 
 #include "fit/convex_hull.h"
-#include "fit/facets.h"
 #include "fit/rolling.h"
 #include "fit/rotation.h"
-#include "fit/unique_points.h"
 #include "fit/vec3d.h"
 
 namespace galactic::bake {

@@ -1,11 +1,11 @@
-#include "fit/unique_points.h"
-
 #include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
 #include <utility>
+
+#include "fit/convex_hull.h"
 
 namespace galactic::bake::fit {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "../vec3d.h"
+#include "common/vec3d.h"
 
 namespace galactic::bake::fit {
 

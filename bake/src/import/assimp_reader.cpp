@@ -19,7 +19,7 @@
 
 #include "import/affine.h"
 #include "import/axis_convention.h"
-#include "import/content_check.h"
+#include "import/checks/content_check.h"
 #include "import/polygon_triangulation.h"
 #include "import/source_files.h"
 #include "support/try.h"

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "import/affine.h"
-#include "import/asset_check.h"
 #include "import/asset_transfer.h"
 #include "import/assimp_reader.h"
+#include "import/checks/asset_check.h"
 #include "import/isolated_process.h"
 #include "import/source_files.h"
 #include "support/out_of_memory.h"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "galactic/bake/source_file.h"
+#include "galactic/bake/provenance.h"
 #include "support/mapped_file.h"
 #include "support/try.h"
 

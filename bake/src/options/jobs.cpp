@@ -6,6 +6,8 @@
 #include <system_error>
 #include <utility>
 
+#include "dataset/scene_dataset.h"
+
 namespace galactic::bake {
 namespace {
 

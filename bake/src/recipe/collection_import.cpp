@@ -1,4 +1,4 @@
-#include "galactic/bake/collection_import.h"
+#include "recipe/collection_import.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "galactic/bake/collection_shape.h"
+#include "recipe/collection_shape.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "galactic/bake/world_recipe.h"
+#include "recipe/world_recipe.h"
 
 namespace galactic::bake {
 namespace {

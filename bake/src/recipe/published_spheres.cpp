@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "galactic/bake/collection_shape.h"
+#include "recipe/collection_shape.h"
 
 namespace galactic::bake {
 namespace {

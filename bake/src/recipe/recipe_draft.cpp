@@ -11,9 +11,8 @@
 #include <string_view>
 
 #include "galactic/bake/robot_recipe.h"
-#include "galactic/bake/surface.h"
-#include "robot/flat_kinematics.h"
-#include "robot/link_geometry.h"
+#include "galactic/bake/triangle_mesh.h"
+#include "robot/robot_parts.h"
 #include "support/printable.h"
 
 namespace galactic::bake {

@@ -2,9 +2,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "galactic/bake/toml_table.h"
 #include "galactic/option_text.h"
-#include "recipe/recipe_table.h"
+#include "toml/recipe_table.h"
+#include "toml/toml_table.h"
 
 namespace galactic::bake {
 

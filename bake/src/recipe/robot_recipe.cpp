@@ -5,8 +5,8 @@
 #include <set>
 
 #include "import/affine.h"
-#include "recipe/recipe_table.h"
 #include "support/try.h"
+#include "toml/recipe_table.h"
 #include "urdf/urdf_frames.h"
 
 namespace galactic::bake {

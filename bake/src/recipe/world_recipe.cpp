@@ -1,4 +1,4 @@
-#include "galactic/bake/world_recipe.h"
+#include "recipe/world_recipe.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,11 @@
 #include <string_view>
 #include <utility>
 
-#include "galactic/bake/toml_table.h"
-#include "recipe/recipe_table.h"
 #include "recipe/recipe_task.h"
 #include "support/try.h"
+#include "toml/given_options.h"
+#include "toml/recipe_table.h"
+#include "toml/toml_table.h"
 
 namespace galactic::bake {
 namespace {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "galactic/bake/surface.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "import/affine.h"
 #include "render/mesh_optimizer.h"

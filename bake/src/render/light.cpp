@@ -7,11 +7,11 @@
 #include <span>
 #include <utility>
 
-#include "galactic/bake/ambient_occlusion.h"
-#include "galactic/bake/surface.h"
+#include "ambient/ambient_occlusion.h"
+#include "common/vec3d.h"
+#include "galactic/bake/triangle_mesh.h"
 #include "render/mesh_optimizer.h"
 #include "support/try.h"
-#include "vec3d.h"
 
 namespace galactic::bake {
 namespace {
@@ -111,11 +111,11 @@ class LightPoints {
 
   /// One point for corners that are joined through bends.
   void number(const std::vector<Corner>& meeting) {
-    constexpr std::uint32_t kNone = 0xFFFFFFFF;
+    constexpr std::uint32_t kUnset = 0xFFFFFFFF;
     const bool all = meeting.size() > kMostMeeting;
-    for (const Corner& corner : meeting) pointOf(corner) = kNone;
+    for (const Corner& corner : meeting) pointOf(corner) = kUnset;
     for (const Corner& first : meeting) {
-      if (pointOf(first) != kNone) continue;
+      if (pointOf(first) != kUnset) continue;
       const auto point = static_cast<std::uint32_t>(normals_.size());
       normals_.emplace_back();
       std::vector<Corner> reached{first};
@@ -126,7 +126,7 @@ class LightPoints {
         normals_.back() = normals_.back() + facing.normal * facing.area;
         if (all && n > 0) continue;
         for (const Corner& to : meeting) {
-          if (pointOf(to) != kNone || !(all || bends(from, to))) continue;
+          if (pointOf(to) != kUnset || !(all || bends(from, to))) continue;
           pointOf(to) = point;
           reached.push_back(to);
         }

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "common/vec3d.h"
 #include "render/mesh_optimizer.h"
 #include "render/simplify_within.h"
-#include "vec3d.h"
 
 namespace galactic::bake {
 namespace {

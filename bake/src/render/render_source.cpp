@@ -1,4 +1,4 @@
-#include "galactic/bake/render_source.h"
+#include "render/render_source.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include "galactic/kinematics.h"
 #include "import/affine.h"
 #include "render/material_list.h"
-#include "robot/link_geometry.h"
+#include "robot/robot_parts.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -1,11 +1,10 @@
-#include "flat_kinematics.h"
-
 #include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
 
 #include "fit/rotation.h"
+#include "robot/robot_parts.h"
 
 namespace galactic::bake {
 namespace {

@@ -1,4 +1,4 @@
-#include "group_spheres.h"
+#include "robot/group_spheres.h"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "galactic/bake/parallel_for.h"
+#include "common/parallel_for.h"
 #include "import/affine.h"
-#include "sphere_budget.h"
 #include "sphere_set/authored_spheres.h"
 #include "support/try.h"
 

@@ -1,10 +1,9 @@
-#include "link_geometry.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "import/affine.h"
+#include "robot/robot_parts.h"
 
 namespace galactic::bake {
 namespace {

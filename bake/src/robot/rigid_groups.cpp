@@ -1,8 +1,7 @@
-#include "rigid_groups.h"
-
 #include <algorithm>
 
 #include "import/affine.h"
+#include "robot/robot_parts.h"
 
 namespace galactic::bake {
 namespace {

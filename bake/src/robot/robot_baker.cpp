@@ -6,14 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#include "flat_kinematics.h"
-#include "group_spheres.h"
+#include "common/stage_timer.h"
 #include "import/affine.h"
-#include "link_geometry.h"
-#include "rigid_groups.h"
-#include "self_collision.h"
-#include "sphere_set/check_options.h"
-#include "stage_timer.h"
+#include "robot/group_spheres.h"
+#include "robot/robot_parts.h"
+#include "sphere_set/prepared_fit.h"
 #include "support/nearest_name.h"
 #include "support/try.h"
 
@@ -89,7 +86,7 @@ Result<void> checkShapeOptions(const RobotBakeOptions& options) {
   asked.radii = options.radii;
   if (options.eps) asked.eps = *options.eps;
   if (options.tau) asked.tau = *options.tau;
-  return sphere_fit::checkOptions(asked);
+  return sphere_set::checkOptions(asked);
 }
 
 /// Spheres for a link that is not there would be lost without a word.

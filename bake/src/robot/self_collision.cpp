@@ -1,11 +1,10 @@
-#include "self_collision.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "random.h"
+#include "common/random.h"
+#include "robot/robot_parts.h"
 
 namespace galactic::bake {
 namespace {

@@ -1,9 +1,9 @@
-#include "sphere_budget.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "robot/group_spheres.h"
 
 namespace galactic::bake {
 namespace {

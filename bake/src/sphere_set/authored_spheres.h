@@ -1,11 +1,11 @@
 #pragma once
 #include <vector>
 
-#include "galactic/bake/hand_spheres.h"
 #include "galactic/bake/sphere_set.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"
 #include "galactic/shapes.h"
+#include "urdf/hand_spheres.h"
 
 namespace galactic::bake {
 

@@ -1,11 +1,11 @@
-#include "sphere_set/check_options.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace galactic::bake::sphere_fit {
+#include "sphere_set/prepared_fit.h"
+
+namespace galactic::bake::sphere_set {
 namespace {
 
 constexpr std::size_t kMostRadii = 8;
@@ -98,4 +98,4 @@ Result<void> checkMesh(const TriangleMesh& mesh) {
   return {};
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

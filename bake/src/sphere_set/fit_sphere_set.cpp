@@ -8,10 +8,10 @@
 
 namespace galactic::bake {
 
-using sphere_fit::Candidate;
-using sphere_fit::Cover;
-using sphere_fit::PreparedFit;
-using sphere_fit::Yardstick;
+using sphere_set::Candidate;
+using sphere_set::Cover;
+using sphere_set::PreparedFit;
+using sphere_set::Yardstick;
 
 namespace {
 
@@ -28,10 +28,10 @@ Result<SphereSet> fitWithin(const TriangleMesh& mesh, const SphereSetOptions& op
 }  // namespace
 
 Result<SphereSet> fitSphereSet(const TriangleMesh& mesh, const SphereSetOptions& options) {
-  ASSIGN_OR_RETURN(const auto prepared, sphere_fit::prepareFit(mesh, options));
-  sphere_fit::SurfacePoints surface;
-  const Cover cover = sphere_fit::solveCover(prepared.task, {}, surface);
-  if (cover.spheres.empty()) return sphere_fit::nothingToCover();
+  ASSIGN_OR_RETURN(const auto prepared, sphere_set::prepareFit(mesh, options));
+  sphere_set::SurfacePoints surface;
+  const Cover cover = sphere_set::solveCover(prepared.task, {}, surface);
+  if (cover.spheres.empty()) return sphere_set::nothingToCover();
   if (options.max_spheres > 0 && cover.spheres.size() > options.max_spheres) {
     return fitWithin(mesh, options);
   }
@@ -44,7 +44,7 @@ Result<SphereSet> fitSphereSet(const TriangleMesh& mesh, const SphereSetOptions&
 Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
                                           const std::vector<SetSphere>& spheres,
                                           const SphereSetOptions& options) {
-  ASSIGN_OR_RETURN(const auto prepared, sphere_fit::prepareFit(mesh, options));
+  ASSIGN_OR_RETURN(const auto prepared, sphere_set::prepareFit(mesh, options));
   if (spheres.empty()) {
     return fail(ErrorCode::kInvalidInput, "spheres",
                 "there are none to measure; give at least one sphere");
@@ -57,7 +57,7 @@ Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
                   fmt::format("{} is not in the working set of {} radii; give its index",
                               sphere.radius_index, options.radii.size()));
     }
-    const sphere_fit::Vec3d center = widen(sphere.center);
+    const sphere_set::Vec3d center = widen(sphere.center);
     if (!std::isfinite(center.x + center.y + center.z)) {
       return fail(ErrorCode::kInvalidInput, fmt::format("spheres[{}].center", at),
                   "it is not finite; give meters in the object's frame");

@@ -6,7 +6,7 @@
 #include "galactic/bake/sphere_set.h"
 #include "sphere_set/solid/exterior_solid.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// What one cover has to do, and on which solid. Lengths in meters.
 struct FitTask {
@@ -35,4 +35,4 @@ struct Candidate {
   return task.tau - task.radii[radius_index];
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

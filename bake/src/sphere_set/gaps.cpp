@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "galactic/bake/parallel_for.h"
+#include "common/parallel_for.h"
 #include "sphere_set/cover/cover_matrix.h"
 #include "sphere_set/solid/point_grid.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 /// Up to so many spheres are compared with each point.
@@ -59,4 +59,4 @@ double largestOf(std::span<const double> gaps) {
   return largest;
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -4,7 +4,7 @@
 
 #include "sphere_set/fit_task.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// Distance of `p` to the sphere's inside: negative in it, meters.
 [[nodiscard]] double outside(const FitTask& task, const Candidate& sphere, const Vec3d& p);
@@ -16,4 +16,4 @@ namespace galactic::bake::sphere_fit {
 /// The greatest of the gaps, at least 0.
 [[nodiscard]] double largestOf(std::span<const double> gaps);
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

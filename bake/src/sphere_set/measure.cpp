@@ -3,12 +3,12 @@
 #include <numbers>
 #include <numeric>
 
-#include "galactic/bake/parallel_for.h"
+#include "common/parallel_for.h"
 #include "sphere_set/cover/candidates.h"
 #include "sphere_set/gaps.h"
 #include "sphere_set/solid/surface_samples.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 /// Apart from the seeds that the solver uses.
@@ -195,4 +195,4 @@ std::uint64_t Yardstick::countThin(std::span<const Candidate> spheres) const {
   return static_cast<std::uint64_t>(std::count(coverable.begin(), coverable.end(), 0));
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

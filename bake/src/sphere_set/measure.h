@@ -6,7 +6,7 @@
 #include "galactic/bake/sphere_set.h"
 #include "sphere_set/fit_task.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// Measures sphere sets of one mesh on samples that no solver has seen.
 class Yardstick {
@@ -30,4 +30,4 @@ class Yardstick {
   std::vector<Vec3d> samples_;
 };
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include "sphere_set/check_options.h"
 #include "support/try.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 bool comesFirst(const SetSphere& a, const SetSphere& b) {
@@ -59,4 +58,4 @@ SphereSet finishedSet(const FitTask& task, const Yardstick& yardstick, const Cov
   return set;
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

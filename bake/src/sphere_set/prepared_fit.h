@@ -2,11 +2,13 @@
 #include <memory>
 
 #include "galactic/bake/sphere_set.h"
+#include "galactic/bake/triangle_mesh.h"
+#include "galactic/error.h"
 #include "sphere_set/cover/cover_solver.h"
 #include "sphere_set/fit_task.h"
 #include "sphere_set/measure.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// A mesh made ready, and the task on it.
 struct PreparedFit {
@@ -26,4 +28,11 @@ struct PreparedFit {
 [[nodiscard]] SphereSet finishedSet(const FitTask& task, const Yardstick& yardstick,
                                     const Cover& cover);
 
-}  // namespace galactic::bake::sphere_fit
+/// Fails with kInvalidInput where an option is out of range, naming the option.
+[[nodiscard]] Result<void> checkOptions(const SphereSetOptions& options);
+
+/// Fails with kInvalidInput where the mesh has no triangles or vertices that are no numbers, and
+/// with kUnsupported where it is too large.
+[[nodiscard]] Result<void> checkMesh(const TriangleMesh& mesh);
+
+}  // namespace galactic::bake::sphere_set

@@ -4,9 +4,9 @@
 #include <bit>
 #include <cmath>
 
-#include "galactic/bake/surface.h"
-#include "textures/linear_image.h"
-#include "textures/mip_chain.h"
+#include "galactic/bake/triangle_mesh.h"
+#include "textures/images/linear_image.h"
+#include "textures/images/mip_chain.h"
 
 namespace galactic::bake {
 namespace {

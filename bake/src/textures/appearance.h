@@ -6,8 +6,8 @@
 
 #include "galactic/bake/render_textures.h"
 #include "galactic/bake/source_asset.h"
-#include "textures/image.h"
-#include "textures/transfer_function.h"
+#include "textures/images/image.h"
+#include "textures/images/transfer_function.h"
 
 namespace galactic::bake {
 

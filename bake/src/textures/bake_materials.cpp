@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "galactic/bake/parallel_for.h"
+#include "common/parallel_for.h"
+#include "galactic/bake/provenance.h"
 #include "galactic/bake/render_textures.h"
-#include "galactic/bake/source_file.h"
 #include "support/try.h"
 #include "textures/appearance.h"
 #include "textures/texture_library.h"

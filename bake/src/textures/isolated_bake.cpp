@@ -6,7 +6,7 @@
 
 #include "import/isolated_process.h"
 #include "import/transfer_archive.h"
-#include "textures/image_decoder.h"
+#include "textures/images/image.h"
 
 namespace galactic::bake {
 

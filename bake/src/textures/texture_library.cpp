@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "galactic/bake/source_file.h"
+#include "galactic/bake/provenance.h"
 
 namespace galactic::bake {
 namespace {

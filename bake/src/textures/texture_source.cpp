@@ -7,7 +7,7 @@
 #include <system_error>
 #include <tuple>
 
-#include "galactic/bake/source_file.h"
+#include "galactic/bake/provenance.h"
 
 namespace galactic::bake {
 namespace {

@@ -1,4 +1,4 @@
-#include "galactic/bake/hand_spheres.h"
+#include "urdf/hand_spheres.h"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "galactic/bake/hand_spheres.h"
 #include "galactic/bake/source_robot.h"
+#include "urdf/hand_spheres.h"
 
 namespace galactic::bake {
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "galactic/bake/urdf_import.h"
-#include "galactic/bake/urdf_inertials.h"
 #include "import/isolated_process.h"
 #include "import/transfer_archive.h"
 #include "support/mapped_file.h"

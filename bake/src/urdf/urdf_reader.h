@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "galactic/bake/urdf_inertials.h"
+#include "galactic/bake/urdf_import.h"
 #include "galactic/error.h"
 #include "urdf/urdf_model.h"
 

@@ -1,5 +1,3 @@
-#include "galactic/bake/episode_pack.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,8 +7,9 @@
 #include <string_view>
 
 #include "galactic/bake/triangle_mesh.h"
-#include "pack_payload.h"
 #include "support/try.h"
+#include "write/pack_payload.h"
+#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

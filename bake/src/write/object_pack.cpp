@@ -1,11 +1,10 @@
-#include "galactic/bake/object_pack.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "pack_payload.h"
 #include "support/try.h"
+#include "write/pack_payload.h"
+#include "write/packs.h"
 #include "write/render_meshes.h"
 
 namespace galactic::bake {

@@ -1,4 +1,4 @@
-#include "pack_payload.h"
+#include "write/pack_payload.h"
 
 #include <cstring>
 

@@ -5,11 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "galactic/bake/import_statistics.h"
 #include "galactic/bake/oriented_box.h"
 #include "galactic/bake/provenance.h"
 #include "galactic/bake/sphere_set.h"
-#include "galactic/bake/surface.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"
 #include "galactic/pack_header.h"

@@ -1,9 +1,8 @@
-#include "galactic/bake/robot_pack.h"
-
 #include <fmt/format.h>
 
-#include "pack_payload.h"
 #include "support/try.h"
+#include "write/pack_payload.h"
+#include "write/packs.h"
 #include "write/render_meshes.h"
 
 namespace galactic::bake {

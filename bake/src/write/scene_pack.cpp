@@ -1,5 +1,3 @@
-#include "galactic/bake/scene_pack.h"
-
 #include <fmt/format.h>
 
 #include <cstring>
@@ -8,8 +6,9 @@
 #include "galactic/pack_header.h"
 #include "galactic/schema/pack_generated.h"
 #include "layout/column_cell.h"
-#include "pack_payload.h"
 #include "support/try.h"
+#include "write/pack_payload.h"
+#include "write/packs.h"
 #include "write/render_meshes.h"
 
 namespace galactic::bake {

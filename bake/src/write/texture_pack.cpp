@@ -1,10 +1,9 @@
-#include "galactic/bake/texture_pack.h"
-
 #include <fmt/format.h>
 
 #include <span>
 
-#include "pack_payload.h"
+#include "write/pack_payload.h"
+#include "write/packs.h"
 
 namespace galactic::bake {
 

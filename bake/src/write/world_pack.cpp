@@ -7,11 +7,11 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/bake/source_file.h"
+#include "galactic/bake/provenance.h"
 #include "galactic/pack.h"
 #include "galactic/world.h"
-#include "pack_payload.h"
 #include "support/try.h"
+#include "write/pack_payload.h"
 
 namespace galactic::bake {
 namespace {

@@ -1,5 +1,5 @@
 // Ambient occlusion where it is known.
-#include "galactic/bake/ambient_occlusion.h"
+#include "ambient/ambient_occlusion.h"
 
 #include <gmock/gmock.h>
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "galactic/bake/ambient_occlusion.h"
+#include "ambient/ambient_occlusion.h"
 #include "galactic/pose.h"
 
 namespace galactic::test {

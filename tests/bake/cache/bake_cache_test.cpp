@@ -1,5 +1,5 @@
 // Bakes that were done before: found when all is as it was, and only then.
-#include "galactic/bake/bake_cache.h"
+#include "cache/bake_cache.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,12 +1,12 @@
 // Digests of files, each read once.
-#include "galactic/bake/file_digests.h"
+#include "cache/file_digests.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <thread>
 
-#include "galactic/bake/source_file.h"
+#include "galactic/bake/provenance.h"
 #include "support/scratch_folder.h"
 
 namespace galactic::test::file_digests_test {

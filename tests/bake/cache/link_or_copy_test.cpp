@@ -4,7 +4,7 @@
 
 #include <thread>
 
-#include "galactic/bake/bake_cache.h"
+#include "cache/bake_cache.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 

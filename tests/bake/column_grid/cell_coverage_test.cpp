@@ -7,8 +7,7 @@
 #include <string>
 
 #include "galactic/bake/column_engines.h"
-#include "galactic/bake/free_space.h"
-#include "galactic/bake/grid_encoder.h"
+#include "galactic/bake/columns.h"
 #include "support/asset_mesh.h"
 #include "support/oracles/distance_oracle.h"
 #include "support/oracles/encoded_grid_view.h"

@@ -9,7 +9,7 @@
 #include <random>
 #include <set>
 
-#include "column_grid/triangle_bins.h"
+#include "column_grid/scatter/triangle_bins.h"
 #include "layout/column_cell.h"
 #include "support/test_meshes.h"
 

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "column_grid/triangle_interval.h"
 #include "galactic/bake/column_engines.h"
-#include "galactic/bake/triangle_interval.h"
 #include "support/test_meshes.h"
 
 namespace galactic::bake::exact_columns_analytic_test {

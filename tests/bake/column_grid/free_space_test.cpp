@@ -1,6 +1,4 @@
 // Which spans are free space: rooms, outside and closed parts.
-#include "galactic/bake/free_space.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,6 +12,7 @@
 #include <vector>
 
 #include "galactic/bake/column_engines.h"
+#include "galactic/bake/columns.h"
 #include "support/test_meshes.h"
 
 namespace galactic::bake::free_space_test {

@@ -1,6 +1,4 @@
 // Encoding a grid: what is stored is never freer than what was found, and hardly less free.
-#include "galactic/bake/grid_encoder.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "galactic/bake/columns.h"
 #include "layout/column_cell.h"
 #include "support/oracles/encoded_grid_view.h"
 

@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "column_grid/column_strip.h"
-#include "column_grid/prepare_triangle.h"
-#include "column_grid/scatter.h"
+#include "column_grid/scatter/scatter.h"
 #include "support/oracles/triangle_corners.h"
 #include "support/scene_meshes.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bake/dataset/small_dataset.h"
-#include "galactic/bake/scene_dataset.h"
+#include "dataset/scene_dataset.h"
 #include "support/try.h"
 
 namespace galactic::test::dataset_faults_test {

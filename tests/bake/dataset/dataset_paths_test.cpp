@@ -1,5 +1,5 @@
 // The patterns of a dataset's paths.
-#include "dataset/dataset_paths.h"
+#include "dataset/config/dataset_paths.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

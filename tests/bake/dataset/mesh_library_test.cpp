@@ -1,4 +1,4 @@
-#include "galactic/bake/mesh_library.h"
+#include "dataset/mesh_library.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bake/dataset/small_dataset.h"
-#include "galactic/bake/scene_dataset.h"
+#include "dataset/scene_dataset.h"
 
 namespace galactic::test::mesh_library_test {
 namespace {

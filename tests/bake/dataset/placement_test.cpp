@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bake/dataset/small_dataset.h"
-#include "galactic/bake/scene_dataset.h"
+#include "dataset/scene_dataset.h"
 
 namespace galactic::test::placement_test {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bake/dataset/small_dataset.h"
-#include "galactic/bake/scene_dataset.h"
+#include "dataset/scene_dataset.h"
 #include "support/assets.h"
 #include "support/oracles/box_oracle.h"
 

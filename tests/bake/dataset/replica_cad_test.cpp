@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "bake/dataset/small_dataset.h"
+#include "dataset/scene_dataset.h"
 #include "galactic/bake/scene_baker.h"
-#include "galactic/bake/scene_dataset.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "support/assets.h"
 

@@ -1,5 +1,5 @@
 // What a dataset offers, and what becomes of it in a scene.
-#include "galactic/bake/scene_dataset.h"
+#include "dataset/scene_dataset.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "bake/dataset/small_dataset.h"
-#include "galactic/bake/render_source.h"
 #include "galactic/bake/triangle_mesh.h"
+#include "render/render_source.h"
 #include "support/assets.h"
 
 namespace galactic::test::scene_dataset_test {

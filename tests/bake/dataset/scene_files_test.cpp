@@ -1,4 +1,4 @@
-#include "galactic/bake/scene_files.h"
+#include "dataset/scene_files.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

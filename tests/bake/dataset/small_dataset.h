@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "galactic/bake/scene_dataset.h"
+#include "dataset/scene_dataset.h"
 #include "support/mesh_files.h"
 #include "support/scratch_folder.h"
 

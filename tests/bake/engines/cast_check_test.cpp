@@ -1,11 +1,10 @@
-#include "galactic/bake/cast_check.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
 #include "bake/engines/engine_scenes.h"
+#include "galactic/bake/column_engines.h"
 
 namespace galactic::bake::cast_check_test {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "column_grid/blocked_intervals.h"
+#include "column_grid/triangle_interval.h"
 #include "galactic/bake/columns.h"
-#include "galactic/bake/triangle_interval.h"
 #include "support/test_meshes.h"
 
 namespace galactic::test {

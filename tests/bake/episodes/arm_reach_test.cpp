@@ -1,4 +1,4 @@
-#include "episodes/arm_reach.h"
+#include "episodes/home/arm_reach.h"
 
 #include <gtest/gtest.h>
 

@@ -7,11 +7,11 @@
 #include <random>
 #include <set>
 
-#include "episodes/episode_replay.h"
-#include "episodes/support_places.h"
-#include "galactic/bake/episode_pack.h"
+#include "episodes/home/support_places.h"
+#include "episodes/trial/episode_replay.h"
 #include "made_world.h"
 #include "support/oracles/box_oracle.h"
+#include "write/packs.h"
 
 namespace galactic::test::episode_choices_test {
 namespace {

@@ -5,9 +5,9 @@
 #include "episode_oracle.h"
 #include "episodes/episode_draft.h"
 #include "episodes/generation_world.h"
-#include "episodes/prepared_scene.h"
-#include "galactic/bake/episode_pack.h"
+#include "episodes/home/prepared_scene.h"
 #include "made_world.h"
+#include "write/packs.h"
 
 namespace galactic::test::episode_degrading_test {
 namespace {

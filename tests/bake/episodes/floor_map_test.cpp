@@ -1,4 +1,4 @@
-#include "episodes/floor_map.h"
+#include "episodes/home/floor_map.h"
 
 #include <gtest/gtest.h>
 

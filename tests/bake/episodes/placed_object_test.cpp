@@ -1,4 +1,4 @@
-#include "episodes/placed_object.h"
+#include "episodes/home/placed_object.h"
 
 #include <gtest/gtest.h>
 

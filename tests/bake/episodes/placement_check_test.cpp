@@ -1,5 +1,5 @@
 // Whether an object can be released somewhere, against what a run does.
-#include "episodes/placement_check.h"
+#include "episodes/trial/placement_check.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "episode_oracle.h"
-#include "galactic/bake/episode_solving.h"
+#include "galactic/bake/episode_generator.h"
 #include "sample_packs.h"
 
 namespace galactic::test::sample_world_test {

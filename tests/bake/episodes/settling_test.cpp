@@ -1,5 +1,5 @@
 // Settling against what mechanics says of boxes.
-#include "episodes/settling.h"
+#include "episodes/trial/settling.h"
 
 #include <gtest/gtest.h>
 

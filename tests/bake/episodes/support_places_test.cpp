@@ -1,4 +1,4 @@
-#include "episodes/support_places.h"
+#include "episodes/home/support_places.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "episodes/surface_rays.h"
+#include "episodes/home/surface_rays.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "galactic/bake/jobs.h"
-#include "galactic/bake/option_reader.h"
+#include "galactic/bake/option_field.h"
 
 namespace galactic::test {
 

@@ -1,5 +1,5 @@
 // Shapes of published objects: the frame, the published rule, and what cannot be taken.
-#include "galactic/bake/collection_shape.h"
+#include "recipe/collection_shape.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

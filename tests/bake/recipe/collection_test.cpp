@@ -5,8 +5,8 @@
 #include <ostream>
 
 #include "bake/recipe/recipe_helpers.h"
-#include "galactic/bake/collection_import.h"
 #include "galactic/bake/urdf_import.h"
+#include "recipe/collection_import.h"
 #include "support/asset_mesh.h"
 
 namespace galactic::test::collection_test {

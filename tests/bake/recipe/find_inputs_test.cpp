@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "galactic/bake/world_recipe.h"
+#include "recipe/world_recipe.h"
 #include "support/scratch_folder.h"
 
 namespace galactic::test::find_inputs_test {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "galactic/bake/world_recipe.h"
+#include "recipe/world_recipe.h"
 #include "support/option_table.h"
 #include "support/scratch_folder.h"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <ostream>
 
-#include "galactic/bake/collection_import.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/urdf_import.h"
+#include "recipe/collection_import.h"
 #include "support/asset_mesh.h"
 #include "support/source_folder.h"
 

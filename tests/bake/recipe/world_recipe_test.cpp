@@ -1,5 +1,5 @@
 // Recipes of worlds: what every table may say, and every mistake with its line.
-#include "galactic/bake/world_recipe.h"
+#include "recipe/world_recipe.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

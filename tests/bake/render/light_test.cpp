@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "galactic/bake/render_source.h"
+#include "render/render_source.h"
 #include "render_helpers.h"
 #include "support/test_meshes.h"
 

@@ -10,7 +10,7 @@
 
 #include "bake/render/render_helpers.h"
 #include "galactic/bake/mesh_import.h"
-#include "galactic/bake/render_source.h"
+#include "render/render_source.h"
 #include "support/asset_mesh.h"
 #include "support/oracles/distance_oracle.h"
 

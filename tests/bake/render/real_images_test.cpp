@@ -11,7 +11,7 @@
 #include "bake/render/ray_depth.h"
 #include "bake/render/render_helpers.h"
 #include "galactic/bake/mesh_import.h"
-#include "galactic/bake/render_source.h"
+#include "render/render_source.h"
 #include "runtime/render/gl_scene.h"
 #include "support/asset_mesh.h"
 #include "support/render_images.h"

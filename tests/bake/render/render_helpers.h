@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "galactic/bake/render_baker.h"
-#include "galactic/bake/surface.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "support/oracles/render_mesh_reader.h"
 

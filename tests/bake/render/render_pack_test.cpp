@@ -3,15 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "bake/render/render_helpers.h"
-#include "galactic/bake/object_pack.h"
-#include "galactic/bake/render_source.h"
-#include "galactic/bake/scene_pack.h"
 #include "galactic/pack.h"
+#include "render/render_source.h"
 #include "support/aligned_bytes.h"
 #include "support/packs/pack_parts.h"
 #include "support/packs/scene_pack_builder.h"
 #include "support/source_asset.h"
 #include "support/test_meshes.h"
+#include "write/packs.h"
 
 namespace galactic::test::render_pack_test {
 namespace {

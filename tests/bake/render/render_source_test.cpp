@@ -1,5 +1,5 @@
 // What the render bake makes of scenes, objects and robots, from importer's output to pack.
-#include "galactic/bake/render_source.h"
+#include "render/render_source.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "galactic/bake/urdf_import.h"
-#include "robot/flat_kinematics.h"
+#include "robot/robot_parts.h"
 #include "support/asset_mesh.h"
 #include "support/oracles/chain_oracle.h"
 

@@ -1,6 +1,4 @@
 // The tree of a robot as the runtime reads it: positions, mimics, limits and the start pose.
-#include "robot/flat_kinematics.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <limits>
 
 #include "bake/robot/tiny_robots.h"
+#include "robot/robot_parts.h"
 
 namespace galactic::test::flat_kinematics_test {
 namespace {

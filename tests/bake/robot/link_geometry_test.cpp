@@ -1,6 +1,4 @@
 // Primitives of a URDF as surfaces: closed, facing outwards, of the right size.
-#include "robot/link_geometry.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "bake/urdf/link_points.h"
+#include "robot/robot_parts.h"
 
 namespace galactic::test::link_geometry_test {
 namespace {

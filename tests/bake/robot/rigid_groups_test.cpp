@@ -1,11 +1,10 @@
 // Which links count as one rigid body.
-#include "robot/rigid_groups.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "bake/robot/tiny_robots.h"
 #include "bake/urdf/link_points.h"
+#include "robot/robot_parts.h"
 
 namespace galactic::test::rigid_groups_test {
 namespace {

@@ -1,6 +1,4 @@
 // Which pairs of groups can touch, on robots made by hand and by chance.
-#include "robot/self_collision.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,8 @@
 #include <map>
 #include <numbers>
 #include <random>
+
+#include "robot/robot_parts.h"
 
 namespace galactic::test::self_collision_test {
 namespace {

@@ -1,6 +1,4 @@
 // How a budget of spheres is spent over links, against all possible ways.
-#include "robot/sphere_budget.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,8 @@
 #include <cstdio>
 #include <random>
 #include <vector>
+
+#include "robot/group_spheres.h"
 
 namespace galactic::test::sphere_budget_test {
 namespace {

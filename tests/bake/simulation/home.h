@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "galactic/bake/episode_generator.h"
-#include "galactic/bake/episode_pack.h"
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/batch_simulator.h"
 #include "support/homes/sample_world.h"
+#include "write/packs.h"
 
 namespace galactic::test {
 

@@ -12,7 +12,7 @@
 #include "sphere_set/solid/distance_grid.h"
 #include "sphere_set/solid/surface_samples.h"
 
-namespace galactic::bake::sphere_fit::exchange_search_test {
+namespace galactic::bake::sphere_set::exchange_search_test {
 namespace {
 
 /// A box, with everything that a search needs.
@@ -165,4 +165,4 @@ TEST(DistanceGrid, IsNearTheDistanceItself) {
 }
 
 }  // namespace
-}  // namespace galactic::bake::sphere_fit::exchange_search_test
+}  // namespace galactic::bake::sphere_set::exchange_search_test

@@ -6,10 +6,10 @@
 #include <random>
 #include <vector>
 
-#include "galactic/bake/triangle_interval.h"
+#include "column_grid/triangle_interval.h"
 #include "sphere_set/shapes.h"
 
-namespace galactic::bake::sphere_fit::exterior_solid_test {
+namespace galactic::bake::sphere_set::exterior_solid_test {
 namespace {
 
 using test::KnownSolid;
@@ -182,4 +182,4 @@ TEST(ExteriorSolid, KeepsItsMemoryForAnythingUpToTenMeters) {
 }
 
 }  // namespace
-}  // namespace galactic::bake::sphere_fit::exterior_solid_test
+}  // namespace galactic::bake::sphere_set::exterior_solid_test

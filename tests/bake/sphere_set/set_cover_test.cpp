@@ -15,7 +15,7 @@
 #include "sphere_set/gaps.h"
 #include "sphere_set/solid/point_grid.h"
 
-namespace galactic::bake::sphere_fit::set_cover_test {
+namespace galactic::bake::sphere_set::set_cover_test {
 namespace {
 
 constexpr std::uint32_t kSeed = 20250403;
@@ -245,4 +245,4 @@ TEST(BallWeight, IsTheSameOnEveryMachine) {
 }
 
 }  // namespace
-}  // namespace galactic::bake::sphere_fit::set_cover_test
+}  // namespace galactic::bake::sphere_set::set_cover_test

@@ -1,12 +1,11 @@
 // Decoding of PNG and JPEG, and baking in a process of its own.
-#include "textures/image_decoder.h"
-
 #include <gmock/gmock.h>
 
 #include <random>
 
 #include "support/image_files.h"
 #include "texture_helpers.h"
+#include "textures/images/image.h"
 #include "textures/isolated_bake.h"
 
 namespace galactic::test::image_decoder_test {

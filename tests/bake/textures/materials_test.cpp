@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "galactic/bake/surface.h"
+#include "galactic/bake/triangle_mesh.h"
 #include "support/scratch_folder.h"
 #include "texture_helpers.h"
 

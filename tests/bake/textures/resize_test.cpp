@@ -5,8 +5,8 @@
 #include <random>
 
 #include "texture_helpers.h"
-#include "textures/linear_image.h"
-#include "textures/transfer_function.h"
+#include "textures/images/linear_image.h"
+#include "textures/images/transfer_function.h"
 
 namespace galactic::test::resize_test {
 namespace {

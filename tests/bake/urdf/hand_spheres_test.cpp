@@ -1,5 +1,5 @@
 // Spheres made by hand or by other tools.
-#include "galactic/bake/hand_spheres.h"
+#include "urdf/hand_spheres.h"
 
 #include <gmock/gmock.h>
 

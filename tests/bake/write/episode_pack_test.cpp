@@ -1,5 +1,3 @@
-#include "galactic/bake/episode_pack.h"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +10,7 @@
 #include "galactic/pack.h"
 #include "support/packs/episode_pack_builder.h"
 #include "support/scratch_folder.h"
+#include "write/packs.h"
 
 namespace galactic::test::episode_pack_test {
 namespace {

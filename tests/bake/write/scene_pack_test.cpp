@@ -1,6 +1,4 @@
 // From a baked scene to a pack and back through the runtime.
-#include "galactic/bake/scene_pack.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -19,6 +17,7 @@
 #include "support/scene_meshes.h"
 #include "support/scratch_folder.h"
 #include "support/source_asset.h"
+#include "write/packs.h"
 
 namespace galactic::bake::scene_pack_test {
 namespace {

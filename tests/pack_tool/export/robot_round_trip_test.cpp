@@ -7,12 +7,12 @@
 #include <map>
 #include <random>
 
-#include "galactic/bake/hand_spheres.h"
 #include "galactic/bake/robot_baker.h"
 #include "galactic/bake/urdf_import.h"
 #include "pack_tool/asset_packs.h"
 #include "pack_tool/export/robot_text.h"
 #include "support/scratch_folder.h"
+#include "urdf/hand_spheres.h"
 
 namespace galactic::pack_tool::robot_round_trip_test {
 namespace {

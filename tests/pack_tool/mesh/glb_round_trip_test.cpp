@@ -10,7 +10,7 @@
 
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/render_textures.h"
-#include "galactic/bake/surface.h"
+#include "galactic/bake/triangle_mesh.h"
 #include "pack_tool/asset_packs.h"
 #include "pack_tool/figure/figures_of_pack.h"
 #include "pack_tool/mesh/figure_glb.h"

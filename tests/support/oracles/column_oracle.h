@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "column_grid/triangle_interval.h"
 #include "galactic/bake/columns.h"
-#include "galactic/bake/triangle_interval.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "support/oracles/triangle_corners.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "galactic/bake/grid_encoder.h"
+#include "galactic/bake/columns.h"
 #include "galactic/column_grid.h"
 #include "layout/column_cell.h"
 

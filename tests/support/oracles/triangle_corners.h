@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "galactic/bake/triangle_interval.h"
+#include "column_grid/triangle_interval.h"
 #include "galactic/bake/triangle_mesh.h"
 
 namespace galactic::test {

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "galactic/bake/episode_solving.h"
+#include "galactic/bake/episode_generator.h"
 #include "galactic/bake/jobs.h"
 #include "galactic/bake/world_pack.h"
 #include "galactic/error.h"

@@ -1,21 +1,62 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "galactic/bake/episode_rejection.h"
 #include "galactic/bake/source_episodes.h"
-#include "galactic/bake/support_region.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"
 #include "galactic/pack.h"
 
 namespace galactic::bake {
+
+/// Why something that was drawn for an episode was not taken. In the order of the tests.
+enum class EpisodeRejection : std::uint8_t {
+  kDistance,           ///< The goal is nearer to the target or farther from it than asked.
+  kSameSupport,        ///< The goal is on the target's surface, another was asked for.
+  kNoRoom,             ///< The columns are not flat and free under and over the object.
+  kUneven,             ///< Rays at the triangles found a gap, a slope or an edge under the object.
+  kOutsideReceptacle,  ///< The object's middle is in no receptacle.
+  kOverlap,            ///< Too near to another object or in the way of the robot's reach.
+  kMoved,              ///< Settling moved the object, or it did not come to rest.
+  kTipped,             ///< Settling tipped the object.
+  kPlacement,          ///< A run would find no place for the object there if it were released.
+  kNotReached,         ///< No position of base and arm reaches the object.
+  kStartDistance,      ///< The start is nearer to the target or farther from it than asked.
+  kStartBlocked,       ///< The robot would touch something at the start.
+  kReplayBlocked,      ///< The runtime does not start the episode: the robot penetrates something.
+  kReplayMoved,        ///< In the first step of a run something moved that should not.
+};
+inline constexpr std::size_t kRejectionCount = 14;
+
+/// A short name, as in reports: "no_room".
+[[nodiscard]] std::string_view rejectionName(EpisodeRejection reason);
+
+/// How often each reason was met.
+class RejectionCounts {
+ public:
+  void add(EpisodeRejection reason) { ++counts_[static_cast<std::size_t>(reason)]; }
+  void add(const RejectionCounts& other) {
+    for (std::size_t n = 0; n < kRejectionCount; ++n) counts_[n] += other.counts_[n];
+  }
+  [[nodiscard]] std::uint64_t operator[](EpisodeRejection reason) const {
+    return counts_[static_cast<std::size_t>(reason)];
+  }
+
+ private:
+  std::array<std::uint64_t, kRejectionCount> counts_{};
+};
+
+/// For people: "no_room 812, not_reached 14"; "nothing" where all are 0.
+[[nodiscard]] std::string textOf(const RejectionCounts& counts);
 
 /// What is known of a scene besides its pack.
 struct SceneDetails {
@@ -158,5 +199,30 @@ struct GeneratedEpisodes {
 [[nodiscard]] Result<GeneratedEpisodes> generateEpisodes(const EpisodeInputs& inputs,
                                                          const EpisodeGeneratorOptions& options,
                                                          const EpisodeProgress& progress = {});
+
+/// How a sample of episodes went.
+struct SolvedSample {
+  std::uint32_t episodes = 0;
+  std::uint32_t solved = 0;
+  /// How many of the others ended how: ScriptedTrouble's names, "out of time", "does not start".
+  std::map<std::string, std::uint32_t> unsolved;
+};
+
+struct EpisodeSolvingOptions {
+  /// How many episodes at most; they are evenly chosen.
+  std::uint32_t most_episodes = 16;
+  /// After this many steps an episode counts as unsolved.
+  std::uint32_t most_steps = 1000;
+  /// Threads; the result does not depend on it.
+  unsigned jobs = 1;
+};
+
+/// Lets the ScriptedPolicy of the runtime play Rearrange in a sample of the episodes: what it does
+/// not solve may be solvable nevertheless, but a low share says that something is wrong. `packs`:
+/// scenes, objects and the robot of the episodes. Fails with the errors of World::from and
+/// BatchSimulator::create.
+[[nodiscard]] Result<SolvedSample> solveSample(std::span<const PackFile* const> packs,
+                                               const SourceEpisodes& episodes,
+                                               const EpisodeSolvingOptions& options);
 
 }  // namespace galactic::bake

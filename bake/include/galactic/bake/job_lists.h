@@ -7,7 +7,7 @@
 
 #include "galactic/bake/build.h"
 #include "galactic/bake/jobs.h"
-#include "galactic/bake/option_reader.h"
+#include "galactic/bake/option_field.h"
 #include "galactic/error.h"
 
 namespace galactic::bake {

@@ -12,17 +12,18 @@
 #include "galactic/bake/episode_generator.h"
 #include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/mesh_import.h"
-#include "galactic/bake/mesh_library.h"
 #include "galactic/bake/object_baker.h"
 #include "galactic/bake/option_field.h"
 #include "galactic/bake/provenance.h"
 #include "galactic/bake/render_baker.h"
 #include "galactic/bake/robot_baker.h"
 #include "galactic/bake/scene_baker.h"
-#include "galactic/bake/scene_dataset.h"
 #include "galactic/option_text.h"
 
 namespace galactic::bake {
+
+class MeshLibrary;
+class SceneDataset;
 
 // What is asked of one pack: its inputs and its options. Whatever is not an input, a name or an
 // internal is in the kind's visitor below, and from there in the command line, in recipes, in the

@@ -4,15 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "galactic/bake/import_statistics.h"
 #include "galactic/bake/oriented_box.h"
 #include "galactic/bake/render_baker.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/bake/sphere_set.h"
-#include "galactic/bake/stable_poses.h"
-#include "galactic/bake/surface.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"
+#include "galactic/shapes.h"
 
 namespace galactic::bake {
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,6 +17,7 @@
 
 #include "galactic/bake/episode_generator.h"
 #include "galactic/bake/source_asset.h"
+#include "galactic/error.h"
 #include "galactic/pose.h"
 #include "support/option_table.h"
 
@@ -177,5 +179,50 @@ template <class T, class V, std::size_t N>
 /// has no value itself.
 [[nodiscard]] FieldPointer preset(std::vector<std::string_view> names,
                                   std::function<void(std::size_t)> set);
+
+/// An option as a command line or a file gives it.
+struct GivenOption {
+  /// Long name without dashes.
+  std::string name;
+  /// At least one.
+  std::vector<GivenValue> values;
+  /// For messages: "--eps", or "world.toml:7: eps".
+  std::string place;
+};
+
+/// The options that a TOML file gives. A list of numbers is one value, a list of texts or of lists
+/// are several, a table gives NAME=VALUE each. Fails with kIo where the file cannot be read, and
+/// with kInvalidInput on broken TOML and on values that are none of these.
+[[nodiscard]] Result<std::vector<GivenOption>> readOptionFile(const std::filesystem::path& file);
+
+/// Gives the options of structs the values that were given, as a visitor of these structs.
+class OptionReader final : public OptionVisitor {
+ public:
+  /// What becomes of a path that is given; empty: it stays as it is.
+  using FindPath = std::function<Result<std::filesystem::path>(const std::filesystem::path&)>;
+
+  /// `given` outlives the reader. Of two with one name the last counts.
+  explicit OptionReader(std::span<const GivenOption> given, FindPath find = {})
+      : given_(given), find_(std::move(find)) {}
+
+  using OptionVisitor::option;
+  void option(const OptionInfo& info, OptionField& field) override;
+
+  [[nodiscard]] bool isGiven(std::string_view name) const;
+  /// A fault of a given option; nothing where it is not given.
+  [[nodiscard]] Result<void> refuse(std::string_view name, std::string message) const;
+  /// Fails with the first fault, or where an option was given that none of the structs has: it is
+  /// for other structs than those of `what` ("--as scene"), or not among the `known`.
+  [[nodiscard]] Result<void> finish(std::string_view what,
+                                    const std::vector<std::string>& known) const;
+
+ private:
+  [[nodiscard]] const GivenOption* find(std::string_view name) const;
+
+  std::span<const GivenOption> given_;
+  FindPath find_;
+  std::set<std::string, std::less<>> taken_;
+  std::optional<Error> error_;
+};
 
 }  // namespace galactic::bake

@@ -101,4 +101,7 @@ struct TextureBakeOptions {
                                                    const std::filesystem::path& folder,
                                                    const TextureBakeOptions& options);
 
+/// 32 hexadecimal digits of the texture's hash: the name of its pack.
+[[nodiscard]] std::string textureHash(const BakedTexture& texture);
+
 }  // namespace galactic::bake

@@ -4,12 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "galactic/bake/hand_spheres.h"
 #include "galactic/bake/render_baker.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/source_robot.h"
 #include "galactic/bake/sphere_set.h"
-#include "galactic/bake/surface.h"
+#include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"
 #include "galactic/kinematics.h"
 #include "galactic/robot.h"

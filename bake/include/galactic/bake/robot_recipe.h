@@ -8,7 +8,6 @@
 #include <variant>
 #include <vector>
 
-#include "galactic/bake/hand_spheres.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/bake/source_robot.h"
 #include "galactic/error.h"

@@ -6,11 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "galactic/bake/cast_check.h"
 #include "galactic/bake/column_engines.h"
-#include "galactic/bake/free_space.h"
-#include "galactic/bake/grid_encoder.h"
-#include "galactic/bake/import_statistics.h"
+#include "galactic/bake/columns.h"
 #include "galactic/bake/render_baker.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/bake/triangle_mesh.h"

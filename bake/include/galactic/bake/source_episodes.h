@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "galactic/episode_set.h"
+#include "galactic/pose.h"
 
 namespace galactic::bake {
 
@@ -25,6 +26,15 @@ struct SourceEpisodes {
   std::vector<Episode> episodes;
   /// One sentence each.
   std::vector<std::string> warnings;
+};
+
+/// A place for objects that a dataset names: a box over a surface, as Habitat's receptacles
+/// (user_defined.receptacle_aabb_*), placed in the world.
+struct SupportRegion {
+  std::string name;
+  Pose world_from_region;
+  /// Meters, along the region's axes.
+  Vec3 half_extents;
 };
 
 }  // namespace galactic::bake

@@ -87,4 +87,27 @@ struct SourceRobot {
   std::vector<std::string> resolutions;
 };
 
+/// A sphere placed by hand or by another tool, of any radius. Meters.
+struct HandSphere {
+  std::array<double, 3> center{};
+  double radius = 0;
+
+  friend bool operator==(const HandSphere&, const HandSphere&) = default;
+};
+
+/// The spheres of one link, in the link's frame: Y up, X forward.
+struct LinkSpheres {
+  std::string link;
+  std::vector<HandSphere> spheres;
+
+  friend bool operator==(const LinkSpheres&, const LinkSpheres&) = default;
+};
+
+struct HandSpheres {
+  /// In the order of the file; links without spheres are left out.
+  std::vector<LinkSpheres> links;
+  /// One sentence each: collision elements that are no spheres.
+  std::vector<std::string> warnings;
+};
+
 }  // namespace galactic::bake

@@ -1,5 +1,7 @@
 #pragma once
+#include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "galactic/bake/source_asset.h"
@@ -46,5 +48,46 @@ struct CleanMesh {
 /// cleans the triangles. Fails with kInvalidInput when nothing remains, or when a coordinate is not
 /// finite or beyond kMaxCoordinate (with a question about units).
 [[nodiscard]] Result<CleanMesh> placeAndClean(const SourceAsset& asset);
+
+/// What the importer read of a mesh and what cleaning left, for the pack.
+struct ImportStatistics {
+  /// Format of the main input, for example "glTF 2.0".
+  std::string format;
+  std::uint32_t meshes = 0;
+  std::uint32_t instances = 0;
+  CleaningCounts counts;
+  /// Triangles that remain.
+  std::uint64_t triangles = 0;
+};
+
+[[nodiscard]] inline ImportStatistics importStatisticsOf(const SourceAsset& asset,
+                                                         const CleanMesh& cleaned) {
+  return {.format = asset.format,
+          .meshes = static_cast<std::uint32_t>(asset.meshes.size()),
+          .instances = static_cast<std::uint32_t>(asset.instances.size()),
+          .counts = cleaned.counts,
+          .triangles = cleaned.mesh.triangles.size()};
+}
+
+/// A colored triangle mesh for pictures, exports and checks.
+struct Surface {
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+  /// RGBA, sRGB, 8 bits each, R lowest: one per position, or none for a neutral gray.
+  std::vector<std::uint32_t> colors;
+
+  [[nodiscard]] bool empty() const { return triangles.empty(); }
+};
+
+/// The color of a linear RGBA (0 to 1) as a Surface stores it.
+[[nodiscard]] std::uint32_t surfaceColor(const std::array<float, 4>& linear);
+
+/// Every instance of `asset`, placed by `frame_from_asset`, as one surface: colored by its
+/// materials and vertex colors, or by `color` (linear RGBA) where given. Textures are not read.
+[[nodiscard]] Surface surfaceOf(const SourceAsset& asset, const Affine& frame_from_asset,
+                                const std::array<float, 4>* color = nullptr);
+
+/// Appends `part` to `surface`; one of them may be without colors.
+void append(Surface& surface, const Surface& part);
 
 }  // namespace galactic::bake

@@ -2,7 +2,7 @@
 
 #include "sphere_set/cover/ball_weight_kernel.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 std::int32_t ballWeightPortable(const WeightedPoints& points, const Ball& ball) {
   return weightIn(points, ball);
@@ -15,4 +15,4 @@ BallWeight fastestBallWeight() {
   return ballWeightPortable;
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -5,7 +5,7 @@
 // Included by sources compiled for wider instruction sets: plain data only, nothing of the standard
 // library, so that no inline function compiled there can end up in the rest of the program.
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// Points side by side, and what each weighs.
 struct WeightedPoints {
@@ -34,4 +34,4 @@ using BallWeight = std::int32_t (*)(const WeightedPoints& points, const Ball& ba
 /// The fastest that this machine runs.
 [[nodiscard]] BallWeight fastestBallWeight();
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -1,7 +1,7 @@
 #pragma once
 #include "sphere_set/cover/ball_weight.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 /// A loop that compilers vectorise for whatever the including file is compiled for.
@@ -23,4 +23,4 @@ inline std::int32_t weightIn(const WeightedPoints& points, const Ball& ball) {
 }
 
 }  // namespace
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

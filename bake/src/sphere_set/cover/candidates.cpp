@@ -2,11 +2,11 @@
 
 #include <optional>
 
-#include "galactic/bake/parallel_for.h"
+#include "common/parallel_for.h"
 #include "sphere_set/cover/lattice.h"
 #include "sphere_set/solid/surface_samples.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 /// Steps of a lattice across the disc that a sphere covers of a flat face: a large sphere that just
@@ -187,4 +187,4 @@ void addThinCandidates(const FitTask& task, std::span<const Vec3d> points,
   }
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -6,7 +6,7 @@
 #include "sphere_set/fit_task.h"
 #include "sphere_set/solid/point_grid.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// The pool, and for each point whether a sphere within tau covers it.
 struct Candidates {
@@ -31,4 +31,4 @@ void addThinCandidates(const FitTask& task, std::span<const Vec3d> points,
 /// Whether a sphere with this center stays on the near side of the task's support.
 [[nodiscard]] bool staysAbove(const FitTask& task, const Vec3d& center, double radius);
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -1,8 +1,8 @@
 #include "sphere_set/cover/cover_matrix.h"
 
-#include "galactic/bake/parallel_for.h"
+#include "common/parallel_for.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 constexpr std::size_t kChunk = 256;
@@ -100,4 +100,4 @@ double gridCell(const FitTask& task) {
   return (task.radii.front() + task.eps) / 2;
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

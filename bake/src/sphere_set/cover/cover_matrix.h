@@ -7,7 +7,7 @@
 #include "sphere_set/fit_task.h"
 #include "sphere_set/solid/point_grid.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// Lists of row numbers, one per column, in one piece of memory.
 class CoverMatrix {
@@ -52,4 +52,4 @@ void markCovered(const CandidatePool& pool, std::size_t from, std::vector<char>&
 /// A cell size for point grids that suits spheres of the working set.
 [[nodiscard]] double gridCell(const FitTask& task);
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -2,15 +2,14 @@
 
 #include <numeric>
 
-#include "galactic/bake/parallel_for.h"
+#include "common/parallel_for.h"
 #include "sphere_set/cover/candidates.h"
 #include "sphere_set/cover/local_search.h"
-#include "sphere_set/cover/polish.h"
 #include "sphere_set/cover/set_cover.h"
 #include "sphere_set/gaps.h"
 #include "sphere_set/solid/surface_samples.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 /// Spacing of the points to cover: this share of eps, but never more nor fewer points than these.
@@ -219,4 +218,4 @@ Cover solveCover(const FitTask& task, const Effort& effort, SurfacePoints& surfa
   return CoverSolver(task, effort, surface).solve();
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

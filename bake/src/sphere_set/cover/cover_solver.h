@@ -4,7 +4,7 @@
 
 #include "sphere_set/fit_task.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// How much work a cover is worth: operations, never time, so that results are reproducible.
 struct Effort {
@@ -43,4 +43,4 @@ struct Cover {
 /// needs cover. `surface`: of the same solid and support; replaced where other spacings are needed.
 [[nodiscard]] Cover solveCover(const FitTask& task, const Effort& effort, SurfacePoints& surface);
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

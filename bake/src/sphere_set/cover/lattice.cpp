@@ -3,9 +3,9 @@
 #include <array>
 #include <cstdint>
 
-#include "galactic/bake/parallel_for.h"
+#include "common/parallel_for.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 /// Lattice points along an edge of the smallest cubes.
@@ -101,4 +101,4 @@ std::vector<LatticePoint> latticeInBand(const ExteriorSolid& solid, const Lattic
   return points;
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -4,7 +4,7 @@
 #include "sphere_set/solid/exterior_solid.h"
 #include "sphere_set/solid/point_grid.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// Which points of a lattice are wanted.
 struct LatticeBand {
@@ -30,4 +30,4 @@ struct LatticePoint {
 [[nodiscard]] std::vector<LatticePoint> latticeInBand(const ExteriorSolid& solid,
                                                       const LatticeBand& band, unsigned jobs);
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

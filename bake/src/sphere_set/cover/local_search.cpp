@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 constexpr std::uint64_t kSeed = 7;
@@ -192,4 +192,4 @@ Selection LocalSearch::improve(const Selection& cover, std::uint64_t budget) {
   return smallest;
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

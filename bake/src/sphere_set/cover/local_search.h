@@ -3,11 +3,12 @@
 #include <span>
 #include <vector>
 
-#include "random.h"
+#include "common/random.h"
 #include "sphere_set/cover/ball_weight.h"
 #include "sphere_set/cover/set_cover.h"
+#include "sphere_set/fit_task.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// Row weighting local search for the smallest cover (Gao, Weise and Li, "An Efficient Local Search
 /// Heuristic with Row Weighting for the Unicost Set Covering Problem", EJOR 2015).
@@ -79,4 +80,10 @@ class LocalSearch {
   std::vector<Ball> balls_;
 };
 
-}  // namespace galactic::bake::sphere_fit
+/// Moves the spheres a little, each in turn, so that the mean square of the gaps at `points` and of
+/// the protrusions falls. No gap grows beyond eps, or beyond the largest that there was; no sphere
+/// protrudes beyond tau, or beyond what it did; none leaves the near side of the support.
+void polish(const FitTask& task, std::span<const Vec3d> points, int sweeps,
+            std::vector<Candidate>& spheres);
+
+}  // namespace galactic::bake::sphere_set

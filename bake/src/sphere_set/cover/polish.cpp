@@ -1,13 +1,12 @@
-#include "sphere_set/cover/polish.h"
-
 #include <numbers>
 
-#include "random.h"
+#include "common/random.h"
 #include "sphere_set/cover/candidates.h"
 #include "sphere_set/cover/cover_matrix.h"
+#include "sphere_set/cover/local_search.h"
 #include "sphere_set/gaps.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 constexpr std::uint64_t kSeed = 17;
@@ -150,4 +149,4 @@ void polish(const FitTask& task, std::span<const Vec3d> points, int sweeps,
   }
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

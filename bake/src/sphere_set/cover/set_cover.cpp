@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <queue>
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 /// How good it would be to choose a candidate.
@@ -83,4 +83,4 @@ void removeRedundant(const CandidatePool& pool, std::size_t rows, Selection& sel
   }
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

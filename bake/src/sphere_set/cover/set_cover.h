@@ -5,7 +5,7 @@
 
 #include "sphere_set/cover/cover_matrix.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// Chosen candidates, as indices into a pool.
 using Selection = std::vector<std::uint32_t>;
@@ -19,4 +19,4 @@ void completeGreedily(const CandidatePool& pool, std::size_t rows, Selection& se
 /// cover best first.
 void removeRedundant(const CandidatePool& pool, std::size_t rows, Selection& selection);
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

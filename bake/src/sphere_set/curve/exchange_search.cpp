@@ -4,10 +4,10 @@
 #include <limits>
 #include <numbers>
 
-#include "galactic/bake/parallel_for.h"
+#include "common/parallel_for.h"
 #include "sphere_set/cover/candidates.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 constexpr std::uint64_t kSeed = 23;
@@ -343,4 +343,4 @@ std::vector<Candidate> ExchangeSearch::spheres() const {
   return spheres;
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

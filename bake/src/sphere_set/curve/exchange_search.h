@@ -4,12 +4,12 @@
 #include <span>
 #include <vector>
 
-#include "random.h"
+#include "common/random.h"
 #include "sphere_set/curve/gap_gain.h"
 #include "sphere_set/fit_task.h"
 #include "sphere_set/solid/distance_grid.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// What a set gets wrong: what gaps cost, integrated over the surface, and the square of the
 /// protrusions, integrated over the spheres.
@@ -148,4 +148,4 @@ class ExchangeSearch {
 [[nodiscard]] double protrusionIntegral(const DistanceGrid& grid, const Vec3d& center,
                                         double radius);
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

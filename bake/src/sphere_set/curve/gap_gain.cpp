@@ -2,7 +2,7 @@
 
 #include "sphere_set/curve/gap_gain_kernel.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 GapGain gapGainPortable(const CostedPoints& points, const GapCost& cost, const Sphere& sphere) {
   return gainOf(points, cost, sphere);
@@ -15,4 +15,4 @@ GapGainOf fastestGapGain() {
   return gapGainPortable;
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

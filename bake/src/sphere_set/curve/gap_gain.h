@@ -3,7 +3,7 @@
 
 // Included by sources compiled for wider instruction sets: plain data only, as ball_weight.h.
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// Points side by side whose nearest sphere is the same one, and what the gap of each costs with
 /// that sphere and with the next nearest. The count is a multiple of kGainLanes: points whose
@@ -51,4 +51,4 @@ using GapGainOf = GapGain (*)(const CostedPoints& points, const GapCost& cost,
 /// The fastest that this machine runs.
 [[nodiscard]] GapGainOf fastestGapGain();
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -1,7 +1,7 @@
 #pragma once
 #include "sphere_set/curve/gap_gain.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 /// A loop that compilers vectorise for whatever the including file is compiled for.
@@ -33,4 +33,4 @@ inline GapGain gainOf(const CostedPoints& points, const GapCost& cost, const Sph
 }
 
 }  // namespace
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

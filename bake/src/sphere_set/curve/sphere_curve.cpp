@@ -12,15 +12,15 @@
 
 namespace galactic::bake {
 
-using sphere_fit::Candidate;
-using sphere_fit::Cover;
-using sphere_fit::DistanceGrid;
-using sphere_fit::ErrorWeights;
-using sphere_fit::ExchangeSearch;
-using sphere_fit::FitTask;
-using sphere_fit::PreparedFit;
-using sphere_fit::Vec3d;
-using sphere_fit::Yardstick;
+using sphere_set::Candidate;
+using sphere_set::Cover;
+using sphere_set::DistanceGrid;
+using sphere_set::ErrorWeights;
+using sphere_set::ExchangeSearch;
+using sphere_set::FitTask;
+using sphere_set::PreparedFit;
+using sphere_set::Vec3d;
+using sphere_set::Yardstick;
 
 namespace {
 
@@ -44,7 +44,7 @@ constexpr std::uint64_t kPointSeed = 1;
 constexpr std::uint64_t kFinalSeed = 2;
 constexpr double kGridNodes = 15'000;
 /// For one of many covers.
-constexpr sphere_fit::Effort kCurveEffort{400'000, 200'000, 8'000'000, 2, 12};
+constexpr sphere_set::Effort kCurveEffort{400'000, 200'000, 8'000'000, 2, 12};
 constexpr double kCurvePlaces = 15'000;
 
 double spacingFor(const FitTask& task, double points) {
@@ -75,17 +75,17 @@ class SphereCurve::Fitter {
       : prepared_(std::move(prepared)),
         most_(most),
         spacing_(searchSpacing(prepared_.task)),
-        points_(sphere_fit::sampleSurface(*prepared_.task.solid, prepared_.task.support,
+        points_(sphere_set::sampleSurface(*prepared_.task.solid, prepared_.task.support,
                                           {spacing_, kPointSeed, 10})),
         weights_(weightsFor(prepared_.task.eps)) {}
 
   Result<void> refine(unsigned jobs) {
-    if (points_.empty()) return sphere_fit::nothingToCover();
+    if (points_.empty()) return sphere_set::nothingToCover();
     if (complete_) return {};
     FitTask& task = prepared_.task;
     task.jobs = jobs;
     if (!search_) {
-      grid_.emplace(*task.solid, sphere_fit::kLooserTau * task.tau, kGridNodes, jobs);
+      grid_.emplace(*task.solid, sphere_set::kLooserTau * task.tau, kGridNodes, jobs);
       search_.emplace(task, *grid_, points_, weights_);
     }
     if (!grow()) {
@@ -102,9 +102,9 @@ class SphereCurve::Fitter {
     FitTask task = prepared_.task;
     task.jobs = jobs;
     task.most_places = kCurvePlaces;
-    sphere_fit::SurfacePoints surface;
-    Cover cover = sphere_fit::solveCover(task, kCurveEffort, surface);
-    if (cover.spheres.empty()) return sphere_fit::nothingToCover();
+    sphere_set::SurfacePoints surface;
+    Cover cover = sphere_set::solveCover(task, kCurveEffort, surface);
+    if (cover.spheres.empty()) return sphere_set::nothingToCover();
     steps_.clear();
     sets_.clear();
     add(cover.spheres, 0, cover.guaranteed_gap);
@@ -119,7 +119,7 @@ class SphereCurve::Fitter {
   [[nodiscard]] SphereSet take(std::size_t n) const {
     const Yardstick yardstick(prepared_.task);
     const Cover cover = cover_ ? *cover_ : settled(sets_[n]);
-    SphereSet set = sphere_fit::finishedSet(prepared_.task, yardstick, cover);
+    SphereSet set = sphere_set::finishedSet(prepared_.task, yardstick, cover);
     yardstick.complete(cover.spheres, set.quality);
     return set;
   }
@@ -151,7 +151,7 @@ class SphereCurve::Fitter {
     const FitTask& task = prepared_.task;
     const double spacing = spacingFor(task, kFinalPoints);
     const std::vector<Vec3d> dense =
-        sphere_fit::sampleSurface(*task.solid, task.support, {spacing, kFinalSeed, 10});
+        sphere_set::sampleSurface(*task.solid, task.support, {spacing, kFinalSeed, 10});
     ExchangeSearch search(task, *grid_, dense, weights_, spheres);
     search.settle(kFinalSweeps);
     Cover cover;
@@ -159,7 +159,7 @@ class SphereCurve::Fitter {
     // Between the points a gap can only be larger by their spacing.
     cover.slack = spacing;
     cover.guaranteed_gap =
-        sphere_fit::largestOf(sphere_fit::gapsOf(task, cover.spheres, dense)) + spacing;
+        sphere_set::largestOf(sphere_set::gapsOf(task, cover.spheres, dense)) + spacing;
     for (Candidate& sphere : cover.spheres) {
       const double radius = task.radii[sphere.radius_index];
       sphere.protrusion = std::max(0.0, task.solid->distance(sphere.center).distance + radius);
@@ -189,7 +189,7 @@ SphereCurve::SphereCurve(SphereCurve&&) noexcept = default;
 SphereCurve& SphereCurve::operator=(SphereCurve&&) noexcept = default;
 
 Result<SphereCurve> SphereCurve::begin(const TriangleMesh& mesh, const SphereSetOptions& options) {
-  ASSIGN_OR_RETURN(auto prepared, sphere_fit::prepareFit(mesh, options));
+  ASSIGN_OR_RETURN(auto prepared, sphere_set::prepareFit(mesh, options));
   return SphereCurve(std::make_unique<Fitter>(std::move(prepared), options.max_spheres));
 }
 

@@ -1,8 +1,8 @@
 #include "sphere_set/solid/distance_grid.h"
 
-#include "galactic/bake/parallel_for.h"
+#include "common/parallel_for.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 DistanceGrid::DistanceGrid(const ExteriorSolid& solid, double margin, double most_nodes,
                            unsigned jobs) {
@@ -60,4 +60,4 @@ double DistanceGrid::at(const Vec3d& p) const {
   return from + z.share * (plane(size_[0] * size_[1]) - from);
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -5,7 +5,7 @@
 
 #include "sphere_set/solid/exterior_solid.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// Signed distances to a solid at the nodes of a regular grid around it: where an estimate will do
 /// in place of a search. Immutable.
@@ -31,4 +31,4 @@ class DistanceGrid {
   std::vector<float> distance_;
 };
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 /// At most this many rows of points are tried on a facet.
@@ -128,4 +128,4 @@ SurfaceDistance ExteriorSolid::distance(const Vec3d& p, std::uint32_t hint) cons
   return inside ? SurfaceDistance{-distance, found.point, found.facet} : outside;
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

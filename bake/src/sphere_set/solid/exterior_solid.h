@@ -6,7 +6,7 @@
 #include "sphere_set/solid/probe_field.h"
 #include "sphere_set/solid/triangle_tree.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// Signed distance to the reachable surface, and the point of the surface that is nearest.
 struct SurfaceDistance {
@@ -57,4 +57,4 @@ class ExteriorSolid {
 /// Twice the area is the length of this normal.
 [[nodiscard]] Vec3d facetNormal(const Facet& facet);
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -1,6 +1,6 @@
 #include "sphere_set/solid/point_grid.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 constexpr double kMostCells = 1e6;
@@ -50,4 +50,4 @@ std::size_t PointGrid::cellOf(const Vec3d& p) const {
   return (along(p.z, 2) * size_[1] + along(p.y, 1)) * size_[0] + along(p.x, 0);
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -7,7 +7,7 @@
 
 #include "sphere_set/solid/vec3d.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// Points sorted into the cells of a regular grid, for range queries. Immutable.
 class PointGrid {
@@ -68,4 +68,4 @@ class PointGrid {
   std::vector<Entry> sorted_;
 };
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -2,9 +2,9 @@
 
 #include <limits>
 
-#include "galactic/bake/parallel_for.h"
+#include "common/parallel_for.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 /// More would cost memory and time out of proportion; the probe grows instead.
@@ -250,4 +250,4 @@ double ProbeField::excess(const Vec3d& p) const {
   return least;
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

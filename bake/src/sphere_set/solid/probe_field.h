@@ -7,7 +7,7 @@
 #include "sphere_set/solid/triangle_tree.h"
 #include "sphere_set/solid/vec3d.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// Where a ball, the probe, can go around a mesh when it comes from outside.
 ///
@@ -59,4 +59,4 @@ class ProbeField {
   std::vector<std::uint32_t> nearest_;
 };
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -4,9 +4,9 @@
 #include <array>
 #include <bit>
 
-#include "random.h"
+#include "common/random.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 /// Every facet set gets at least this many tries.
@@ -134,4 +134,4 @@ std::vector<Vec3d> sampleSurface(const ExteriorSolid& solid,
   return points;
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

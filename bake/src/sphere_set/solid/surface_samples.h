@@ -6,7 +6,7 @@
 #include "galactic/bake/sphere_set.h"
 #include "sphere_set/solid/exterior_solid.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 /// How to spread points over a surface.
 struct SampleOptions {
@@ -30,4 +30,4 @@ struct SampleOptions {
 /// Distance of `p` to the plane of `support`, negative beyond it; infinite without one.
 [[nodiscard]] double heightAbove(const std::optional<HalfSpace>& support, const Vec3d& p);
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

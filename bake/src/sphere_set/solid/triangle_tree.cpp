@@ -3,7 +3,7 @@
 #include <numeric>
 #include <utility>
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 namespace {
 
 constexpr std::uint32_t kFacetsPerLeaf = 4;
@@ -136,4 +136,4 @@ NearestPoint TriangleTree::nearest(const Vec3d& p, const SearchLimits& limits) c
   return best;
 }
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../vec3d.h"
+#include "common/vec3d.h"
 
-namespace galactic::bake::sphere_fit {
+namespace galactic::bake::sphere_set {
 
 using bake::Vec3d;
 
@@ -50,4 +50,4 @@ struct Box {
   [[nodiscard]] Vec3d size() const { return max - min; }
 };
 
-}  // namespace galactic::bake::sphere_fit
+}  // namespace galactic::bake::sphere_set

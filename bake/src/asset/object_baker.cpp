@@ -1,0 +1,128 @@
+#include "galactic/bake/object_baker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/stage_timer.h"
+#include "fit/stable_poses.h"
+#include "sphere_set/authored_spheres.h"
+
+namespace galactic::bake {
+namespace {
+
+/// A movable object smaller than this probably has another unit, meters; too large ones are refused
+/// by the sphere fitter with the same question.
+constexpr float kDoubtfulSmallness = 0.002F;
+
+float largestExtent(const Bounds& bounds) {
+  return std::max(
+      {bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y, bounds.max.z - bounds.min.z});
+}
+
+void warnOfSize(const Bounds& bounds, std::vector<std::string>& warnings) {
+  const float size = largestExtent(bounds);
+  if (size < kDoubtfulSmallness) {
+    warnings.push_back(
+        fmt::format("is only {:.4g} mm large; is the unit right? --scale sets meters "
+                    "per unit",
+                    1000 * size));
+  }
+}
+
+void warnOfSpheres(const SphereSet& set, const SphereSetOptions& options,
+                   std::vector<std::string>& warnings) {
+  if (set.meets_tolerances) return;
+  // The surface is known at samples: a gap beyond eps by their distance is no miss.
+  constexpr double kSlack = 1.2;
+  const bool covered = set.guaranteed_gap <= kSlack * static_cast<double>(options.eps);
+  if (covered && set.quality.thin_points > 0) {
+    warnings.push_back(
+        fmt::format("has thin parts: spheres that cover them stick out up to {:.1f} mm, {:.1f} mm "
+                    "are wanted; a "
+                    "smaller radius in --radii does better",
+                    1000 * set.guaranteed_protrusion, 1000 * options.tau));
+    return;
+  }
+  warnings.push_back(fmt::format(
+      "{} spheres leave a gap of up to {:.1f} mm and stick out up to {:.1f} mm, wanted {:.1f} and "
+      "{:.1f} mm; allow more with --max-spheres or wider tolerances",
+      set.spheres.size(), 1000 * set.guaranteed_gap, 1000 * set.guaranteed_protrusion,
+      1000 * options.eps, 1000 * options.tau));
+}
+
+/// A published box that differs more from the mesh's stands in another frame, or is another
+/// object's. Meters.
+constexpr float kDoubtfulBoxDifference = 0.005F;
+
+float farthestApart(const Vec3& a, const Vec3& b) {
+  return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+}
+
+/// The box as it is given, which need not contain every vertex.
+void takeBox(const AuthoredShape& shape, BakedObject& object) {
+  const Bounds& given = shape.box;
+  BoxFitResult& fit = object.box;
+  const Vec3 half = (given.max - given.min) * 0.5F;
+  fit.used = BoxFit::kAxisAligned;
+  fit.box.pose = {given.min + half, {}};
+  fit.box.half_extents = {std::max(half.x, kMinHalfExtent), std::max(half.y, kMinHalfExtent),
+                          std::max(half.z, kMinHalfExtent)};
+  const Vec3& extents = fit.box.half_extents;
+  fit.volume = 8 * static_cast<double>(extents.x) * static_cast<double>(extents.y) *
+               static_cast<double>(extents.z);
+  const float difference = std::max(farthestApart(given.min, object.bounds.min),
+                                    farthestApart(given.max, object.bounds.max));
+  if (difference > kDoubtfulBoxDifference) {
+    object.warnings.push_back(
+        fmt::format("the box given for it is up to {:.0f} mm off the mesh's; is it of this mesh, "
+                    "and are --up and --scale right?",
+                    1000 * difference));
+  }
+}
+
+}  // namespace
+
+Result<BakedObject> bakeObject(const SourceAsset& asset, const ObjectBakeOptions& options) {
+  Result<CleanMesh> cleaned = placeAndClean(asset);
+  if (!cleaned) return tl::unexpected(cleaned.error());
+  const TriangleMesh& mesh = cleaned->mesh;
+
+  BakedObject object;
+  object.name = asset.name;
+  object.imported = importStatisticsOf(asset, *cleaned);
+  object.bounds = mesh.bounds;
+  object.warnings = asset.warnings;
+  warnOfSize(mesh.bounds, object.warnings);
+  {
+    const StageTimer timer(object.times.box);
+    object.box = fitOrientedBox(mesh.vertices, options.box);
+    if (options.authored) takeBox(*options.authored, object);
+  }
+  {
+    const StageTimer timer(object.times.stable_poses);
+    object.stable_poses = findStablePoses(mesh);
+  }
+  SphereSetOptions sphere_options = options.spheres;
+  if (options.keep_above_support) {
+    sphere_options.support = HalfSpace{{0, 1, 0}, mesh.bounds.min.y};
+  }
+  object.authored_spheres = options.authored && !options.authored->spheres.empty();
+  {
+    const StageTimer timer(object.times.spheres);
+    Result<SphereSet> spheres =
+        object.authored_spheres ? authoredSphereSet(mesh, options.authored->spheres, sphere_options)
+                                : fitSphereSet(mesh, sphere_options);
+    if (!spheres) return tl::unexpected(spheres.error());
+    object.spheres = std::move(*spheres);
+  }
+  object.eps = options.spheres.eps;
+  object.tau = options.spheres.tau;
+  if (!object.authored_spheres) warnOfSpheres(object.spheres, options.spheres, object.warnings);
+  object.surface.positions = std::move(cleaned->mesh.vertices);
+  object.surface.triangles = std::move(cleaned->mesh.triangles);
+  return object;
+}
+
+}  // namespace galactic::bake

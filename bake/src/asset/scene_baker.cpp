@@ -1,0 +1,201 @@
+#include "galactic/bake/scene_baker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/stage_timer.h"
+#include "support/out_of_memory.h"
+#include "support/try.h"
+
+namespace galactic::bake {
+namespace {
+
+/// A part of the free space left out is worth a warning from this share of the room's volume on.
+constexpr double kWorthMentioning = 0.1;
+
+/// What one column takes while its grid is made: as measured on the sample apartment.
+constexpr double kBytesPerColumn = 100;
+
+Result<void> checkRadii(const std::vector<float>& radii) {
+  constexpr std::size_t kMaxRadii = 8;
+  const auto invalid = [](std::string message) {
+    return fail(ErrorCode::kInvalidInput, "--radii", std::move(message));
+  };
+  if (radii.empty() || radii.size() > kMaxRadii) {
+    return invalid(fmt::format("has {} radii, 1 to {} are wanted", radii.size(), kMaxRadii));
+  }
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    if (!std::isfinite(radii[i]) || radii[i] <= 0) {
+      return invalid(fmt::format("has the radius {} m, a positive length is wanted", radii[i]));
+    }
+    if (i > 0 && !(radii[i] > radii[i - 1])) {
+      return invalid(fmt::format("has {} m after {} m; list each radius once, in ascending order",
+                                 radii[i], radii[i - 1]));
+    }
+  }
+  return {};
+}
+
+/// Length of the spans of `cells` that do not lie within one span of `lines`, to float rounding.
+double freeBeyond(const Columns& cells, const Columns& lines) {
+  double length = 0;
+  for (std::size_t at = 0; at < cells.frame.columnCount(); ++at) {
+    const std::span<const Span> allowed = lines.column(at);
+    for (const Span& span : cells.column(at)) {
+      const bool inside = std::any_of(allowed.begin(), allowed.end(), [&](const Span& line) {
+        return line.lo - kMergeTolerance <= span.lo && span.hi <= line.hi + kMergeTolerance;
+      });
+      if (!inside) length += static_cast<double>(span.hi) - static_cast<double>(span.lo);
+    }
+  }
+  return length;
+}
+
+class SceneBaker {
+ public:
+  SceneBaker(const TriangleMesh& mesh, const SceneBakeOptions& options, StageTimes& times)
+      : mesh_(mesh), options_(options), times_(times) {}
+
+  Result<BakedGrid> bakeGrid(float radius) {
+    ASSIGN_OR_RETURN(const auto frame, makeGridFrame(mesh_.bounds, radius, options_.spacing));
+    RETURN_IF_ERROR(checkMemory(kBytesPerColumn * static_cast<double>(frame.columnCount()),
+                                fmt::format("{} columns", frame.columnCount()),
+                                "use a wider spacing (--spacing)"));
+    ASSIGN_OR_RETURN(const auto raw, findColumns(frame));
+    ASSIGN_OR_RETURN(auto free, chooseRegions(raw.columns));
+    BakedGrid baked;
+    {
+      const StageTimer timer(times_.encode);
+      baked.grid = encodeGrid(free.columns);
+    }
+    baked.components = std::move(free.components);
+    baked.totals = free.totals;
+    baked.raw_spans = raw.columns.spans.size();
+    baked.merged_gaps = raw.merged_gaps;
+    if (wantsCheck()) baked.cast_check = check(frame, raw.columns);
+    return baked;
+  }
+
+ private:
+  Result<ExactColumns> findColumns(const GridFrame& frame) {
+    const StageTimer timer(times_.columns);
+    switch (options_.engine) {
+      case Engine::kBullet:
+        return ExactColumns{.columns = bulletColumns(mesh_, frame, options_.jobs)};
+      case Engine::kEmbree:
+        return embreeColumns(mesh_, frame, options_.jobs).map([](Columns&& columns) {
+          return ExactColumns{.columns = std::move(columns)};
+        });
+      case Engine::kExact:
+        break;
+    }
+    return exactColumns(mesh_, frame, {.jobs = options_.jobs, .coverage = options_.coverage});
+  }
+
+  Result<FreeSpace> chooseRegions(const Columns& columns) {
+    const StageTimer timer(times_.regions);
+    return chooseFreeSpace(columns, options_.free_space);
+  }
+
+  /// The casts of the check are the Bullet engine's own.
+  [[nodiscard]] bool wantsCheck() const {
+    return options_.check_columns > 0 && options_.engine != Engine::kBullet;
+  }
+
+  CastCheck check(const GridFrame& frame, const Columns& columns) {
+    const StageTimer timer(times_.check);
+    if (!caster_) caster_.emplace(mesh_);
+    CastCheckOptions check_options;
+    check_options.columns = options_.check_columns;
+    if (options_.coverage == Coverage::kColumn) {
+      return checkWithCasts(mesh_, columns, *caster_, check_options);
+    }
+    // Casts know single lines only: they check the center lines, and what is free over a cell has
+    // to be free on its center line.
+    const ExactColumns lines = exactColumns(mesh_, frame, {.jobs = options_.jobs});
+    CastCheck check = checkWithCasts(mesh_, lines.columns, *caster_, check_options);
+    check.errors += freeBeyond(columns, lines.columns);
+    return check;
+  }
+
+  const TriangleMesh& mesh_;
+  const SceneBakeOptions& options_;
+  StageTimes& times_;
+  std::optional<BulletColumnCaster> caster_;
+};
+
+/// Where a room that reaches the grid's border leaves the scene.
+std::string wayOut(const Component& room) {
+  if (room.columns_at_edge == 0) return "it leads over the walls, there is no ceiling";
+  return fmt::format(
+      "it reaches the edge of the scene in {} columns, first at ({:.2f}, {:.2f}, {:.2f})",
+      room.columns_at_edge, room.first_at_edge.x, room.first_at_edge.y, room.first_at_edge.z);
+}
+
+/// Warns of a grid in which a sphere has no room, of rooms that have no bounds, and of parts left
+/// out that may be rooms too.
+void warnOfRegions(const BakedGrid& baked, const SceneBakeOptions& options,
+                   std::vector<std::string>& warnings) {
+  const float radius = baked.grid.frame.radius;
+  const double room = baked.totals[static_cast<std::size_t>(Region::kRoom)].volume;
+  if (!(room > 0)) {
+    warnings.push_back(fmt::format("radius {} m: no free space at all", radius));
+    return;
+  }
+  if (options.free_space.keep == Keep::kAll) return;
+  for (const Component& part : baked.components) {
+    if (part.region != Region::kRoom || !part.touches_border) continue;
+    warnings.push_back(
+        fmt::format("radius {} m: the room is one with the outside, and all of it is "
+                    "stored: {}; close it in the mesh, unless the scene is meant to "
+                    "be open",
+                    radius, wayOut(part)));
+  }
+  for (const Component& part : baked.components) {
+    if (part.region != Region::kEnclosed || part.volume < kWorthMentioning * room) continue;
+    warnings.push_back(fmt::format(
+        "radius {} m: a closed part of {:.1f} m3 (room: {:.1f} m3) from ({:.2f}, {:.2f}, {:.2f}) "
+        "to "
+        "({:.2f}, {:.2f}, {:.2f}) is left out; keep it with --seed or --keep-components",
+        radius, part.volume, room, part.bounds.min.x, part.bounds.min.y, part.bounds.min.z,
+        part.bounds.max.x, part.bounds.max.y, part.bounds.max.z));
+  }
+}
+
+}  // namespace
+
+Result<BakedScene> bakeScene(const SourceAsset& asset, const SceneBakeOptions& options,
+                             StageTimes& times, const Progress& progress) {
+  RETURN_IF_ERROR(checkRadii(options.radii));
+  if (options.coverage == Coverage::kCell && options.engine != Engine::kExact) {
+    return fail(ErrorCode::kInvalidInput, "--coverage",
+                "cell works with --engine exact only: sphere casts know single lines");
+  }
+  progress("clean", 0);
+  Result<CleanMesh> cleaned = [&] {
+    const StageTimer timer(times.clean);
+    return placeAndClean(asset);
+  }();
+  if (!cleaned) return tl::unexpected(cleaned.error());
+
+  BakedScene scene;
+  scene.name = asset.name;
+  scene.imported = importStatisticsOf(asset, *cleaned);
+  scene.bounds = cleaned->mesh.bounds;
+  scene.coverage = options.coverage;
+  scene.warnings = asset.warnings;
+
+  SceneBaker baker(cleaned->mesh, options, times);
+  for (std::size_t i = 0; i < options.radii.size(); ++i) {
+    progress(fmt::format("grid r={} m", options.radii[i]),
+             static_cast<double>(i) / static_cast<double>(options.radii.size()));
+    ASSIGN_OR_RETURN(auto grid, baker.bakeGrid(options.radii[i]));
+    warnOfRegions(grid, options, scene.warnings);
+    scene.grids.push_back(std::move(grid));
+  }
+  return scene;
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,185 @@
+#include "episodes/home/prepared_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "support/try.h"
+
+namespace galactic::bake {
+namespace {
+
+/// Grids may reach this far beyond the triangles that they were made of, meters.
+constexpr float kGridMargin = 1;
+
+/// The rectangle of a grid; heights are 0.
+Bounds groundOf(const ColumnGrid& grid) {
+  const ColumnGridLayout& layout = grid.layout();
+  const float length = static_cast<float>(layout.columns_x) * layout.spacing;
+  const float width = static_cast<float>(layout.columns_z) * layout.spacing;
+  return {{layout.min_x, 0, layout.min_z}, {layout.min_x + length, 0, layout.min_z + width}};
+}
+
+/// Whether the mesh is about where the grid is: another up axis or unit is not.
+bool covers(const Bounds& mesh, const Bounds& grid) {
+  return mesh.min.x <= grid.min.x + kGridMargin && mesh.min.z <= grid.min.z + kGridMargin &&
+         mesh.max.x >= grid.max.x - kGridMargin && mesh.max.z >= grid.max.z - kGridMargin;
+}
+
+}  // namespace
+
+PreparedScene::PreparedScene(const GenerationContext& context, const Scene& scene,
+                             SceneDetails details)
+    : context_(context),
+      scene_(scene),
+      details_(std::move(details)),
+      floor_(scene, context.world.robot()),
+      supports_(scene, {floor_, context.reach}, details_.receptacles, context.options),
+      target_to_goal_(context.options.target_to_goal) {}
+
+Result<std::unique_ptr<const PreparedScene>> PreparedScene::prepare(
+    const GenerationContext& context, const Scene& scene, SceneDetails details) {
+  std::unique_ptr<PreparedScene> prepared(
+      new PreparedScene(context, scene, std::move(details)));  // the constructor is private
+  prepared->chooseWay();
+  prepared->unusable_ = prepared->whyUnusable();
+  if (!prepared->unusable_.empty()) return prepared;
+  RETURN_IF_ERROR(prepared->useMesh());
+  prepared->survey();
+  return prepared;
+}
+
+std::string PreparedScene::whyUnusable() const {
+  const Robot& robot = context_.world.robot();
+  if (floor_.places().empty()) {
+    return fmt::format(
+        "the robot {} stands nowhere: {} places on the floor were tried in {} headings each, and "
+        "in its start pose one of its {} spheres was blocked at each; give a larger scene or a "
+        "smaller start pose",
+        robot.name(), floor_.tried(), kHeadings, robot.spheres().size());
+  }
+  if (!supports_.places().empty()) {
+    if (target_to_goal_.least <= widestWay()) return {};
+    return fmt::format(
+        "its surfaces within reach are {:.2f} m apart at most, and goals are wanted {} m away; ask "
+        "for a shorter way from target to goal",
+        widestWay(), target_to_goal_.least);
+  }
+  const bool in_receptacles = context_.options.supports == SupportChoice::kReceptacles;
+  if (in_receptacles && details_.receptacles.empty()) {
+    return "no receptacles of the scene are known: packs hold none, a recipe that names the "
+           "scene's "
+           "dataset brings them; or let objects stand on any surface";
+  }
+  const DistanceRange& heights = context_.options.heights;
+  return fmt::format(
+      "no flat surface {}between {} and {} m over the floor is within reach of the {} places to "
+      "which the robot {} can drive; change the heights or the robot's start pose",
+      in_receptacles ? "in its receptacles " : "", heights.least, heights.most,
+      floor_.places().size(), robot.name());
+}
+
+float PreparedScene::widestWay() const {
+  // The extents in so many directions of the ground tell the longest way within a hundredth.
+  constexpr int kDirections = 16;
+  constexpr float kHundredth = 1.01F;
+  const auto extent = [this](const Vec3& direction) {
+    float least = std::numeric_limits<float>::max();
+    float most = std::numeric_limits<float>::lowest();
+    for (const SupportPlace& place : supports_.places()) {
+      const float at = dot(direction, {place.x, place.surface, place.z});
+      least = std::min(least, at);
+      most = std::max(most, at);
+    }
+    return most - least;
+  };
+  float across = 0;
+  for (int n = 0; n < kDirections; ++n) {
+    const float angle = std::numbers::pi_v<float> * static_cast<float>(n) / kDirections;
+    across = std::max(across, extent({std::cos(angle), 0, std::sin(angle)}));
+  }
+  // Origins of objects may be off their places, and settle aside.
+  const float off = 2 * (scene_.grids().front().spacing() + kSettlingWay);
+  return std::hypot(across * kHundredth, extent({0, 1, 0})) + off;
+}
+
+void PreparedScene::chooseWay() {
+  // Where only the farthest corners are that far apart, hardly an episode finds two of them.
+  constexpr float kAmple = 0.75F;
+  if (!context_.options.shorten_way || supports_.places().empty()) return;
+  const float widest = widestWay();
+  if (target_to_goal_.least > kAmple * widest) target_to_goal_.least = widest / 2;
+}
+
+void PreparedScene::survey() {
+  // Goals nearer than that to their targets are hardly a task.
+  constexpr float kLeastWay = 0.2F;
+  proven_ = findProvenPairs(stage());
+  while (proven_.empty() && context_.options.shorten_way &&
+         target_to_goal_.least / 2 >= kLeastWay) {
+    target_to_goal_.least /= 2;
+    proven_ = findProvenPairs(stage());
+  }
+  if (!proven_.empty()) return;
+  unusable_ = fmt::format(
+      "no places were found for a target and its goal {} to {} m away{} in {} tries on its {} "
+      "support places, which are at most {:.2f} m apart; ask for other distances, other heights or "
+      "smaller objects",
+      target_to_goal_.least, target_to_goal_.most,
+      context_.options.goal_on_other_support ? " on another surface" : "", kSurveyTries,
+      supports_.places().size(), widestWay());
+}
+
+Result<void> PreparedScene::useMesh() {
+  if (details_.mesh.triangles.empty()) return {};
+  const Bounds& mesh = details_.mesh.bounds;
+  const Bounds grid = groundOf(scene_.grids().front());
+  if (!covers(mesh, grid)) {
+    return fail(ErrorCode::kInvalidInput, std::string(scene_.name()),
+                fmt::format("the scene's mesh reaches from x {}, z {} to x {}, z {} m, its column "
+                            "grids from x {}, z {} to x {}, z {} m; give the mesh it was baked "
+                            "from, in the world's frame",
+                            mesh.min.x, mesh.min.z, mesh.max.x, mesh.max.z, grid.min.x, grid.min.z,
+                            grid.max.x, grid.max.z));
+  }
+  ASSIGN_OR_RETURN(auto rays, SurfaceRays::build(details_.mesh));
+  rays_ = std::make_unique<const SurfaceRays>(std::move(rays));
+  settling_ = std::make_unique<const SettlingScene>(details_.mesh);
+  // Both have copies.
+  details_.mesh = {};
+  return {};
+}
+
+Stage PreparedScene::stage() const {
+  return {.scene = scene_,
+          .objects = context_.world.objects(),
+          .robot = context_.world.robot(),
+          .floor = floor_,
+          .reach = context_.reach,
+          .supports = supports_,
+          .rays = rays_.get(),
+          .settling = settling_.get(),
+          .bodies = context_.bodies,
+          .options = context_.options,
+          .target_to_goal = target_to_goal_};
+}
+
+GeneratedScene PreparedScene::summary() const {
+  const bool is_shortened = target_to_goal_.least < context_.options.target_to_goal.least;
+  return {.name = std::string(scene_.name()),
+          .episodes = 0,
+          .skipped = 0,
+          .floor_places = floor_.places().size(),
+          .support_places = supports_.places().size(),
+          .surfaces = supports_.surfaceCount(),
+          .receptacles = details_.receptacles.size(),
+          .has_mesh = settling_ != nullptr,
+          .shortened_way = is_shortened ? std::optional(target_to_goal_.least) : std::nullopt};
+}
+
+}  // namespace galactic::bake

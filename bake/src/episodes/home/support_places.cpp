@@ -1,0 +1,265 @@
+#include "episodes/home/support_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace galactic::bake {
+namespace {
+
+/// How far apart the floor places are looked at when a surface is tested for reach, meters: less
+/// than what the arm reaches without the base being anywhere special.
+constexpr float kFloorStride = 0.09F;
+
+/// The free height over a surface of about this height in a column of the smallest radius: from the
+/// surface to what is over it. None where there is no such surface.
+std::optional<Span> freeOver(const ColumnGrid& grid, const Column& column, float surface,
+                             float flatness) {
+  for (const Span& span : spansOf(grid, column.i, column.k)) {
+    const float height = span.lo - grid.radius();
+    if (std::abs(height - surface) <= flatness) return Span{height, span.hi + grid.radius()};
+  }
+  return std::nullopt;
+}
+
+/// How far around a footprint the columns have to be flat, meters, so that nothing under it is not:
+/// a column beside an edge still looks flat where the sphere on it sinks by no more than
+/// `flatness`, and the next one is a cell further.
+float rimOf(const ColumnGrid& grid, float flatness) {
+  return grid.spacing() + std::sqrt(2 * grid.radius() * flatness);
+}
+
+/// Finds floors from which the arm reaches a point.
+class ReachTest {
+ public:
+  ReachTest(const Scene& scene, const Reachable& from) : floor_(from.floor), reach_(from.reach) {
+    const float spacing = scene.grids().back().spacing();
+    stride_ = std::max(1.0F, std::floor(kFloorStride / spacing)) * spacing;
+  }
+
+  /// The height of a floor from which the arm reaches `point`, and over which `point` is between
+  /// `heights`; the first one in a fixed order.
+  [[nodiscard]] std::optional<float> floorFor(const Vec3& point,
+                                              const DistanceRange& heights) const {
+    const auto steps = static_cast<std::int32_t>(reach_.farthest() / stride_);
+    for (std::int32_t step_z = -steps; step_z <= steps; ++step_z) {
+      for (std::int32_t step_x = -steps; step_x <= steps; ++step_x) {
+        const float dx = static_cast<float>(step_x) * stride_;
+        const float dz = static_cast<float>(step_z) * stride_;
+        for (const FloorPlace& place : floor_.placesAt(point.x + dx, point.z + dz)) {
+          const float height = point.y - place.height;
+          if (height < heights.least || height > heights.most) continue;
+          if (reach_.covers(std::hypot(dx, dz), height)) return place.height;
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const FloorMap& floor_;
+  const ArmReach& reach_;
+  float stride_ = 0;
+};
+
+/// Which flat places are one surface: neighbors in a row or a column of the grid that are about
+/// equally high, joined as the places are found, row by row.
+class SurfaceLabels {
+ public:
+  SurfaceLabels(std::uint32_t columns, float flatness)
+      : flatness_(flatness), above_(columns + std::size_t{1}, 0), row_(above_) {}
+
+  void beginColumn(std::uint32_t i, std::size_t count) { row_[i] = count; }
+
+  /// The last of `places` is a new one in column `i`.
+  void add(std::uint32_t i, const std::vector<SupportPlace>& places) {
+    const auto index = static_cast<std::uint32_t>(places.size() - 1);
+    parents_.push_back(index);
+    if (i > 0) joinAny(places, row_[i - 1], row_[i]);
+    if (has_above_) joinAny(places, above_[i], above_[i + 1]);
+  }
+
+  void endRow(std::size_t count) {
+    row_.back() = count;
+    above_ = row_;
+    has_above_ = true;
+  }
+
+  [[nodiscard]] std::uint32_t labelOf(std::uint32_t place) const {
+    while (parents_[place] != place) place = parents_[place];
+    return place;
+  }
+
+ private:
+  /// Joins the newest place with those of its height among `first` to `last`.
+  void joinAny(const std::vector<SupportPlace>& places, std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) {
+      if (std::abs(places[n].surface - places.back().surface) > flatness_) continue;
+      const std::uint32_t a = shortened(static_cast<std::uint32_t>(n));
+      const std::uint32_t b = shortened(static_cast<std::uint32_t>(places.size() - 1));
+      parents_[std::max(a, b)] = std::min(a, b);
+    }
+  }
+
+  /// The label, for which later searches need fewer steps.
+  std::uint32_t shortened(std::uint32_t place) {
+    const std::uint32_t label = labelOf(place);
+    while (parents_[place] != label) place = std::exchange(parents_[place], label);
+    return label;
+  }
+
+  float flatness_;
+  std::vector<std::uint32_t> parents_;
+  /// Index of the first place of each column, and the number of places at the end.
+  std::vector<std::size_t> above_;
+  std::vector<std::size_t> row_;
+  bool has_above_ = false;
+};
+
+/// How far below the surface and above it a receptacle's box may be, meters: datasets draw them by
+/// hand, and a run drops objects from inside them.
+constexpr float kUnderRegion = 0.05F;
+constexpr float kOverRegion = 0.02F;
+
+}  // namespace
+
+bool contains(const SupportRegion& region, const Vec3& point) {
+  // Most points are far off: nothing of the box is further from its center than its corners.
+  const Vec3 aside = point - region.world_from_region.translation;
+  constexpr float kRounding = 1e-3F;
+  const float reach = std::sqrt(dot(region.half_extents, region.half_extents)) + kRounding;
+  if (std::max(std::abs(aside.x), std::abs(aside.z)) > reach) return false;
+  const Pose region_from_world = inverse(region.world_from_region);
+  const Vec3 from = region_from_world * Vec3{point.x, point.y - kOverRegion, point.z};
+  const Vec3 way = rotate(region_from_world.rotation, {0, kOverRegion + kUnderRegion, 0});
+  // The part of the segment, as shares of its length, that lies between each pair of faces.
+  float first = 0;
+  float last = 1;
+  const auto clip = [&](float at, float along, float half) {
+    if (along == 0) {
+      if (std::abs(at) > half) last = -1;
+      return;
+    }
+    const float a = (-half - at) / along;
+    const float b = (half - at) / along;
+    first = std::max(first, std::min(a, b));
+    last = std::min(last, std::max(a, b));
+  };
+  clip(from.x, way.x, region.half_extents.x);
+  clip(from.y, way.y, region.half_extents.y);
+  clip(from.z, way.z, region.half_extents.z);
+  return first <= last;
+}
+
+SupportPlaces::SupportPlaces(const Scene& scene, const Reachable& from,
+                             std::span<const SupportRegion> receptacles,
+                             const EpisodeGeneratorOptions& options)
+    : scene_(&scene),
+      receptacles_(receptacles),
+      choice_(options.supports),
+      flatness_(options.flatness) {
+  const ReachTest test(scene, from);
+  for (SupportPlace& place : flatPlaces()) {
+    const Vec3 point{place.x, place.surface, place.z};
+    if (!isAllowed(point)) continue;
+    const std::optional<float> floor = test.floorFor(point, options.heights);
+    if (!floor) continue;
+    place.floor = *floor;
+    if (choice_ == SupportChoice::kBoth && isInReceptacle(point)) {
+      in_receptacles_.push_back(static_cast<std::uint32_t>(places_.size()));
+    }
+    places_.push_back(place);
+  }
+}
+
+/// Before anything is left out, so that a table whose middle no arm reaches is still one surface.
+std::vector<SupportPlace> SupportPlaces::flatPlaces() const {
+  const ColumnGrid& grid = scene_->grids().front();
+  std::vector<SupportPlace> flat;
+  SurfaceLabels labels(grid.columnsX(), flatness_);
+  for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
+    for (std::uint32_t i = 0; i < grid.columnsX(); ++i) {
+      labels.beginColumn(i, flat.size());
+      for (const Span& span : spansOf(grid, i, k)) {
+        Vec3 point = columnCenter(grid, i, k);
+        point.y = span.lo - grid.radius();
+        if (!isFlatAround({i, k}, point.y)) continue;
+        flat.push_back({.x = point.x, .z = point.z, .surface = point.y, .floor = 0});
+        labels.add(i, flat);
+      }
+    }
+    labels.endRow(flat.size());
+  }
+  for (std::uint32_t n = 0; n < flat.size(); ++n) flat[n].surface_id = labels.labelOf(n);
+  return flat;
+}
+
+const SupportPlace& SupportPlaces::draw(Random& random) const {
+  const auto any_of = [&random](std::size_t count) {
+    return random.below(static_cast<std::uint32_t>(count));
+  };
+  if (!in_receptacles_.empty() && random.below(2) == 0) {
+    return places_[in_receptacles_[any_of(in_receptacles_.size())]];
+  }
+  return places_[any_of(places_.size())];
+}
+
+std::size_t SupportPlaces::surfaceCount() const {
+  std::vector<std::uint32_t> ids;
+  ids.reserve(places_.size());
+  for (const SupportPlace& place : places_) ids.push_back(place.surface_id);
+  std::sort(ids.begin(), ids.end());
+  return static_cast<std::size_t>(std::unique(ids.begin(), ids.end()) - ids.begin());
+}
+
+bool SupportPlaces::isAllowed(const Vec3& point) const {
+  return choice_ != SupportChoice::kReceptacles || isInReceptacle(point);
+}
+
+bool SupportPlaces::isInReceptacle(const Vec3& point) const {
+  return std::any_of(receptacles_.begin(), receptacles_.end(),
+                     [&](const SupportRegion& region) { return contains(region, point); });
+}
+
+bool SupportPlaces::isFlatAround(const Column& column, float surface) const {
+  const ColumnGrid& grid = scene_->grids().front();
+  if (column.i == 0 || column.k == 0) return false;
+  if (column.i + 1 >= grid.columnsX() || column.k + 1 >= grid.columnsZ()) return false;
+  for (std::uint32_t k = column.k - 1; k <= column.k + 1; ++k) {
+    for (std::uint32_t i = column.i - 1; i <= column.i + 1; ++i) {
+      if (!freeOver(grid, {i, k}, surface, flatness_)) return false;
+    }
+  }
+  return true;
+}
+
+std::optional<float> SupportPlaces::surfaceUnder(const Footprint& footprint, float surface) const {
+  const ColumnGrid& grid = scene_->grids().front();
+  const float length = footprint.half_length + rimOf(grid, flatness_);
+  const float width = footprint.half_width + rimOf(grid, flatness_);
+  const float reach = std::hypot(length, width);
+  const auto first = columnAt(grid, footprint.x - reach, footprint.z - reach);
+  const auto last = columnAt(grid, footprint.x + reach, footprint.z + reach);
+  if (!first || !last) return std::nullopt;
+  float highest = surface;
+  for (std::uint32_t k = first->k; k <= last->k; ++k) {
+    for (std::uint32_t i = first->i; i <= last->i; ++i) {
+      const Vec3 center = columnCenter(grid, i, k);
+      const float dx = center.x - footprint.x;
+      const float dz = center.z - footprint.z;
+      if (std::abs(dx * footprint.along_x + dz * footprint.along_z) > length) continue;
+      if (std::abs(dz * footprint.along_x - dx * footprint.along_z) > width) continue;
+      const std::optional<Span> free = freeOver(grid, {i, k}, surface, flatness_);
+      // The object may be lifted by the unevenness of the surface.
+      if (!free || free->hi < footprint.heights.hi + flatness_ + kHeadroom) return std::nullopt;
+      highest = std::max(highest, free->lo);
+    }
+  }
+  const ColumnGrid& shaft = scene_->grids().back();
+  const float over = footprint.heights.hi + flatness_ + shaft.radius();
+  const Contact contact = shaft.contact({footprint.x, over, footprint.z});
+  if (contact.clearance != Clearance::kFree || contact.up < kApproachHeight) return std::nullopt;
+  return highest;
+}
+
+}  // namespace galactic::bake

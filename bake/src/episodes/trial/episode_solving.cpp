@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "common/parallel_for.h"
+#include "episodes/trial/memory_world.h"
+#include "galactic/bake/episode_generator.h"
+#include "galactic/batch_simulator.h"
+#include "scripted/scripted_policy.h"
+#include "support/try.h"
+
+namespace galactic::bake {
+namespace {
+
+/// The set with one of its episodes.
+SourceEpisodes alone(const SourceEpisodes& all, std::size_t number) {
+  SourceEpisodes set;
+  set.name = all.name;
+  set.robot = all.robot;
+  set.scenes = all.scenes;
+  set.objects = all.objects;
+  set.start_joints = all.start_joints;
+  Episode episode = all.episodes[number];
+  const auto first = all.placements.begin() + episode.first_placement;
+  set.placements.assign(first, first + episode.placement_count);
+  episode.first_placement = 0;
+  const std::size_t joints = all.start_joints.size();
+  const auto start = all.start_positions.begin() + static_cast<std::ptrdiff_t>(number * joints);
+  set.start_positions.assign(start, start + static_cast<std::ptrdiff_t>(joints));
+  set.episodes.push_back(episode);
+  return set;
+}
+
+/// How an episode ended; empty: solved.
+using EpisodeEnd = std::string;
+
+Result<EpisodeEnd> play(const World& world, std::uint32_t most_steps) {
+  SimulationOptions options;
+  options.envs = 1;
+  options.threads = 1;
+  options.task.most_steps = most_steps;
+  auto simulator = BatchSimulator::create(world, options);
+  if (!simulator) {
+    // The only episode is one that the robot cannot start in.
+    if (simulator.error().code == ErrorCode::kInvalidInput) return EpisodeEnd("does not start");
+    return tl::unexpected(simulator.error());
+  }
+  ASSIGN_OR_RETURN(auto policy, ScriptedPolicy::create(world, options));
+  std::vector<float> actions(simulator->actionCount());
+  do {
+    policy.act(*simulator, actions);
+    simulator->step(actions);
+  } while (simulator->dones()[0] == 0);
+  if (simulator->successes()[0] != 0) return EpisodeEnd();
+  const ScriptedTrouble trouble = policy.trouble(0);
+  return trouble == ScriptedTrouble::kNone ? EpisodeEnd("out of time")
+                                           : EpisodeEnd(nameOf(trouble));
+}
+
+}  // namespace
+
+Result<SolvedSample> solveSample(std::span<const PackFile* const> packs,
+                                 const SourceEpisodes& episodes,
+                                 const EpisodeSolvingOptions& options) {
+  const std::size_t all = episodes.episodes.size();
+  const std::size_t count = std::min<std::size_t>(options.most_episodes, all);
+  std::vector<Result<EpisodeEnd>> ends(count);
+  parallelFor(options.jobs, count, [&](std::size_t n) {
+    const auto world = MemoryWorld::open(packs, alone(episodes, n * all / count));
+    ends[n] = world ? play(**world, options.most_steps) : tl::unexpected(world.error());
+  });
+  SolvedSample sample;
+  sample.episodes = static_cast<std::uint32_t>(count);
+  for (const Result<EpisodeEnd>& end : ends) {
+    if (!end) return tl::unexpected(end.error());
+    if (end->empty()) {
+      ++sample.solved;
+    } else {
+      ++sample.unsolved[*end];
+    }
+  }
+  return sample;
+}
+
+}  // namespace galactic::bake

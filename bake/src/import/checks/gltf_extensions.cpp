@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "import/checks/content_check.h"
+
+namespace galactic::bake {
+namespace {
+
+using Json = nlohmann::json;
+
+// Extensions that a reader may require only to draw surfaces as intended.
+constexpr std::array<std::string_view, 5> kHarmlessPrefixes{
+    "KHR_materials_", "KHR_texture_transform", "KHR_lights_", "KHR_xmp", "KHR_animation_"};
+
+/// Extensions that put images of other formats in the place of PNG and JPEG.
+struct ImageExtension {
+  std::string_view name;
+  std::string_view format;
+};
+constexpr std::array kImageExtensions{ImageExtension{"KHR_texture_basisu", "KTX2"},
+                                      ImageExtension{"EXT_texture_webp", "WebP"},
+                                      ImageExtension{"MSFT_texture_dds", "DDS"}};
+
+bool isHarmless(std::string_view extension) {
+  return std::any_of(kHarmlessPrefixes.begin(), kHarmlessPrefixes.end(),
+                     [&](std::string_view prefix) { return extension.starts_with(prefix); });
+}
+
+/// Streams through the JSON and keeps nothing but what matters; a document tree of a file with
+/// embedded buffers would take several times its size.
+class RequiredExtensions final : public Json::json_sax_t {
+ public:
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return enter(); }
+  bool end_object() override { return leave(); }
+  bool start_array(std::size_t) override { return enter(); }
+  bool end_array() override { return leave(); }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
+    return false;
+  }
+
+  bool key(string_t& name) override {
+    if (depth_ == 1) in_list_ = name == "extensionsRequired";
+    return true;
+  }
+
+  bool string(string_t& value) override {
+    if (depth_ != 2 || !in_list_ || isHarmless(value)) return true;
+    const auto* image = std::find_if(kImageExtensions.begin(), kImageExtensions.end(),
+                                     [&](const auto& known) { return known.name == value; });
+    if (image == kImageExtensions.end()) {
+      found_.unsupported = value;
+      return false;
+    }
+    found_.warnings.push_back(
+        fmt::format("textures in {} ({}) cannot be read: their surfaces keep their plain color; "
+                    "export them as PNG or JPEG",
+                    image->format, image->name));
+    return true;
+  }
+
+  [[nodiscard]] GltfRequirements take() { return std::move(found_); }
+
+ private:
+  bool enter() {
+    ++depth_;
+    return true;
+  }
+  bool leave() {
+    --depth_;
+    return true;
+  }
+
+  std::size_t depth_ = 0;
+  bool in_list_ = false;
+  GltfRequirements found_;
+};
+
+std::uint32_t wordAt(std::span<const std::byte> bytes, std::size_t offset) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, bytes.data() + offset, sizeof(word));
+  return word;
+}
+
+constexpr std::size_t kChunkStart = 20;
+
+}  // namespace
+
+bool isGlb(std::span<const std::byte> file) {
+  constexpr std::uint32_t kGlbMagic = 0x46546C67;
+  return file.size() >= kChunkStart && wordAt(file, 0) == kGlbMagic;
+}
+
+std::span<const std::byte> gltfJson(std::span<const std::byte> file) {
+  if (!isGlb(file)) return file;
+  const std::size_t length = wordAt(file, 12);
+  return file.subspan(kChunkStart, std::min(length, file.size() - kChunkStart));
+}
+
+GltfRequirements gltfRequirements(std::span<const std::byte> file) {
+  const std::span<const std::byte> json = gltfJson(file);
+  const auto* text = reinterpret_cast<const char*>(json.data());
+  RequiredExtensions found;
+  // The result only tells whether the parse was stopped; broken JSON is the mesh reader's to
+  // report.
+  static_cast<void>(Json::sax_parse(text, text + json.size(), &found));
+  return found.take();
+}
+
+}  // namespace galactic::bake

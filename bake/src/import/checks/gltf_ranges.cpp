@@ -1,0 +1,301 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "import/checks/content_check.h"
+#include "import/source_files.h"
+#include "support/try.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr std::size_t kGlbHeader = 12;
+constexpr std::size_t kChunkHeader = 8;
+constexpr std::int64_t kTriangles = 4;
+
+std::uint32_t wordAt(std::span<const std::byte> bytes, std::size_t offset) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, bytes.data() + offset, sizeof(word));
+  return word;
+}
+
+/// Bytes of one component of an accessor; 0 of an unknown type.
+std::uint64_t componentBytes(std::uint64_t type) {
+  switch (type) {
+    case 5120:
+    case 5121:
+      return 1;
+    case 5122:
+    case 5123:
+      return 2;
+    case 5125:
+    case 5126:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+/// Components of one element of an accessor; 0 of an unknown type.
+std::uint64_t componentsOf(std::string_view type) {
+  constexpr std::array<std::pair<std::string_view, std::uint64_t>, 7> kTypes{{{"SCALAR", 1},
+                                                                              {"VEC2", 2},
+                                                                              {"VEC3", 3},
+                                                                              {"VEC4", 4},
+                                                                              {"MAT2", 4},
+                                                                              {"MAT3", 9},
+                                                                              {"MAT4", 16}}};
+  const auto* found = std::find_if(kTypes.begin(), kTypes.end(),
+                                   [&](const auto& one) { return one.first == type; });
+  return found == kTypes.end() ? 0 : found->second;
+}
+
+/// The member as a whole number; none where it is absent or none.
+std::optional<std::uint64_t> wholeOf(const Json& object, const char* key) {
+  const auto member = object.find(key);
+  if (member == object.end() || !member->is_number_unsigned()) return std::nullopt;
+  return member->get<std::uint64_t>();
+}
+
+std::string textOf(const Json& object, const char* key) {
+  const auto member = object.find(key);
+  return member == object.end() || !member->is_string() ? std::string()
+                                                        : member->get<std::string>();
+}
+
+/// Bytes that the data URI holds: three of four characters.
+std::uint64_t decodedBytes(std::string_view uri) {
+  const std::size_t comma = uri.find(',');
+  if (comma == uri.npos) return 0;
+  std::string_view data = uri.substr(comma + 1);
+  if (!uri.substr(0, comma).ends_with(";base64")) return data.size();
+  while (data.ends_with('=')) data.remove_suffix(1);
+  return data.size() / 4 * 3 + data.size() % 4 * 3 / 4;
+}
+
+class GltfRanges {
+ public:
+  GltfRanges(const fs::path& path, const Json& document, std::uint64_t binary_bytes)
+      : path_(path), document_(document), binary_bytes_(binary_bytes) {}
+
+  Result<void> check() const {
+    const auto each = [this](const char* list, auto&& judge) -> Result<void> {
+      const Json& items = listOf(list);
+      for (std::size_t n = 0; n < items.size(); ++n) {
+        if (!items[n].is_object()) continue;
+        if (auto checked = judge(items[n], n); !checked) return checked;
+      }
+      return {};
+    };
+    if (auto checked = each("buffers", [&](auto& item, auto n) { return checkBuffer(item, n); });
+        !checked) {
+      return checked;
+    }
+    if (auto checked = each("bufferViews", [&](auto& item, auto n) { return checkView(item, n); });
+        !checked) {
+      return checked;
+    }
+    if (auto checked =
+            each("accessors", [&](auto& item, auto n) { return checkAccessor(item, n); });
+        !checked) {
+      return checked;
+    }
+    return each("meshes", [&](auto& item, auto n) { return checkMesh(item, n); });
+  }
+
+ private:
+  [[nodiscard]] tl::unexpected<Error> broken(const std::string& message) const {
+    return fail(ErrorCode::kInvalidInput, path_.string(),
+                message + "; the file is cut off or damaged: export or download it again");
+  }
+
+  /// An empty list where there is none: files of glTF 1.0 have objects instead.
+  [[nodiscard]] const Json& listOf(const char* key) const {
+    static const Json none = Json::array();
+    const auto list = document_.find(key);
+    return list == document_.end() || !list->is_array() ? none : *list;
+  }
+
+  [[nodiscard]] Result<void> checkBuffer(const Json& buffer, std::size_t n) const {
+    const auto stated = wholeOf(buffer, "byteLength");
+    if (!stated) return broken(fmt::format("buffer {} has no byteLength", n));
+    const std::string uri = textOf(buffer, "uri");
+    std::optional<std::uint64_t> found = binary_bytes_;
+    if (uri.starts_with("data:")) {
+      found = decodedBytes(uri);
+    } else if (!uri.empty()) {
+      found = bytesOfFile(uri);
+    } else if (n > 0) {
+      // Only the first one is the GLB's own; others without a URI belong to extensions.
+      return {};
+    }
+    // The reader says that there is no such file.
+    if (!found || *found >= *stated) return {};
+    return broken(fmt::format("buffer {} states {} bytes and has {}", n, *stated, *found));
+  }
+
+  [[nodiscard]] std::optional<std::uint64_t> bytesOfFile(const std::string& uri) const {
+    for (const std::string& name : {uri, withoutUriEscapes(uri)}) {
+      std::error_code problem;
+      const auto bytes = fs::file_size(path_.parent_path() / name, problem);
+      if (!problem) return bytes;
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] Result<void> checkView(const Json& view, std::size_t n) const {
+    const Json& buffers = listOf("buffers");
+    const auto buffer = wholeOf(view, "buffer");
+    const auto length = wholeOf(view, "byteLength");
+    if (!buffer || *buffer >= buffers.size() || !length) {
+      return broken(fmt::format("buffer view {} has no buffer or no byteLength", n));
+    }
+    const std::uint64_t all = wholeOf(buffers[*buffer], "byteLength").value_or(0);
+    const std::uint64_t begin = wholeOf(view, "byteOffset").value_or(0);
+    if (begin <= all && *length <= all - begin) return {};
+    return broken(fmt::format("buffer view {} is {} bytes from {} on, and its buffer has {}", n,
+                              *length, begin, all));
+  }
+
+  /// Whether `count` elements of `bytes` each fit into the view that `owner` names.
+  [[nodiscard]] Result<void> checkFits(const Json& owner, std::uint64_t count, std::uint64_t bytes,
+                                       const std::string& what) const {
+    const Json& views = listOf("bufferViews");
+    const auto index = wholeOf(owner, "bufferView");
+    if (!index) return {};
+    if (*index >= views.size() || !views[*index].is_object()) {
+      return broken(
+          fmt::format("{} uses buffer view {}, and there are {}", what, *index, views.size()));
+    }
+    const std::uint64_t all = wholeOf(views[*index], "byteLength").value_or(0);
+    const std::uint64_t begin = wholeOf(owner, "byteOffset").value_or(0);
+    const std::uint64_t stride =
+        std::max(bytes, wholeOf(views[*index], "byteStride").value_or(bytes));
+    const std::uint64_t room = all < begin ? 0 : all - begin;
+    const std::uint64_t held = room < bytes ? 0 : (room - bytes) / stride + 1;
+    if (held >= count) return {};
+    return broken(
+        fmt::format("{} states {} elements, and its buffer view holds {}", what, count, held));
+  }
+
+  [[nodiscard]] Result<void> checkAccessor(const Json& accessor, std::size_t n) const {
+    const std::string what = fmt::format("accessor {}", n);
+    const auto count = wholeOf(accessor, "count");
+    const std::uint64_t component = componentBytes(wholeOf(accessor, "componentType").value_or(0));
+    const std::uint64_t bytes = component * componentsOf(textOf(accessor, "type"));
+    if (!count || bytes == 0) return broken(what + " has no count, componentType or type");
+    if (auto checked = checkFits(accessor, *count, bytes, what); !checked) return checked;
+    const auto sparse = accessor.find("sparse");
+    if (sparse == accessor.end() || !sparse->is_object()) return {};
+    const std::uint64_t some = wholeOf(*sparse, "count").value_or(0);
+    const auto part = [&](const char* key, auto&& bytes_of) -> Result<void> {
+      const auto found = sparse->find(key);
+      if (found == sparse->end() || !found->is_object())
+        return broken(what + " is sparse without " + key);
+      return checkFits(*found, some, bytes_of(*found), fmt::format("{} sparse {}", what, key));
+    };
+    if (auto checked = part("indices",
+                            [](const Json& indices) {
+                              return std::max<std::uint64_t>(
+                                  1, componentBytes(wholeOf(indices, "componentType").value_or(0)));
+                            });
+        !checked) {
+      return checked;
+    }
+    return part("values", [bytes](const Json&) { return bytes; });
+  }
+
+  [[nodiscard]] Result<void> checkMesh(const Json& mesh, std::size_t n) const {
+    const auto primitives = mesh.find("primitives");
+    if (primitives == mesh.end() || !primitives->is_array()) return {};
+    for (std::size_t p = 0; p < primitives->size(); ++p) {
+      if (!(*primitives)[p].is_object()) continue;
+      const std::string what = fmt::format("primitive {} of mesh {}", p, n);
+      if (auto checked = checkPrimitive((*primitives)[p], what); !checked) return checked;
+    }
+    return {};
+  }
+
+  /// The count of an accessor; none where there is no such.
+  [[nodiscard]] std::optional<std::uint64_t> countOf(const Json& index) const {
+    const Json& accessors = listOf("accessors");
+    if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= accessors.size()) {
+      return std::nullopt;
+    }
+    const Json& accessor = accessors[index.get<std::size_t>()];
+    return accessor.is_object() ? wholeOf(accessor, "count") : std::nullopt;
+  }
+
+  [[nodiscard]] Result<void> checkPrimitive(const Json& primitive, const std::string& what) const {
+    const auto attributes = primitive.find("attributes");
+    if (attributes == primitive.end() || !attributes->is_object()) return {};
+    const auto position = attributes->find("POSITION");
+    if (position == attributes->end()) return {};
+    const auto vertices = countOf(*position);
+    if (!vertices) return broken(what + " uses an accessor that is not there");
+    for (const auto& attribute : attributes->items()) {
+      const auto count = countOf(attribute.value());
+      if (count == vertices) continue;
+      return broken(fmt::format("{} has {} positions and {} of {}", what, *vertices,
+                                count.value_or(0), attribute.key()));
+    }
+    const auto indices = primitive.find("indices");
+    const auto corners = indices == primitive.end() ? vertices : countOf(*indices);
+    if (!corners) return broken(what + " uses an accessor that is not there");
+    const auto mode = wholeOf(primitive, "mode").value_or(kTriangles);
+    if (mode != kTriangles || *corners % 3 == 0) return {};
+    return broken(
+        fmt::format("{} has {} corners of triangles, three of each were wanted", what, *corners));
+  }
+
+  const fs::path& path_;
+  const Json& document_;
+  std::uint64_t binary_bytes_;
+};
+
+/// Length of the GLB's own buffer, which is the chunk behind the JSON; 0 of other files.
+Result<std::uint64_t> binaryBytes(const fs::path& path, std::span<const std::byte> file) {
+  if (!isGlb(file)) return 0;
+  const auto cut_off = [&](std::uint64_t stated, const char* what) {
+    return fail(ErrorCode::kInvalidInput, path.string(),
+                fmt::format("{} states {} bytes and {} are there; the file is cut off: export or "
+                            "download it again",
+                            what, stated, file.size()));
+  };
+  const std::uint64_t all = wordAt(file, 8);
+  if (all > file.size()) return cut_off(all, "its GLB header");
+  const std::uint64_t json_end =
+      kGlbHeader + kChunkHeader + std::uint64_t{wordAt(file, kGlbHeader)};
+  if (json_end > all) return cut_off(json_end, "its JSON chunk");
+  if (json_end + kChunkHeader > all) return 0;
+  const std::uint64_t binary = wordAt(file, static_cast<std::size_t>(json_end));
+  if (json_end + kChunkHeader + binary > all) {
+    return cut_off(json_end + kChunkHeader + binary, "its binary chunk");
+  }
+  return binary;
+}
+
+}  // namespace
+
+Result<void> checkGltfRanges(const fs::path& path, std::span<const std::byte> bytes) {
+  ASSIGN_OR_RETURN(const auto binary, binaryBytes(path, bytes));
+  const std::span<const std::byte> json = gltfJson(bytes);
+  const auto* text = reinterpret_cast<const char*>(json.data());
+  const Json document = Json::parse(text, text + json.size(), nullptr, /*allow_exceptions=*/false);
+  if (!document.is_object()) return {};
+  return GltfRanges(path, document, binary).check();
+}
+
+}  // namespace galactic::bake

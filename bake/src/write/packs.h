@@ -1,0 +1,82 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "galactic/bake/object_baker.h"
+#include "galactic/bake/provenance.h"
+#include "galactic/bake/render_textures.h"
+#include "galactic/bake/robot_baker.h"
+#include "galactic/bake/scene_baker.h"
+#include "galactic/bake/source_episodes.h"
+#include "galactic/error.h"
+
+namespace galactic::bake {
+
+/// The bytes of a scene pack's FlatBuffer, without the file header. The same scene and provenance
+/// give the same bytes. Fails with kUnsupported when it would reach 2 GiB, the limit of one pack.
+[[nodiscard]] Result<std::vector<std::byte>> encodeScenePack(const BakedScene& scene,
+                                                             const Provenance& provenance);
+
+/// Writes header and payload atomically; returns the file's size in bytes.
+[[nodiscard]] Result<std::uint64_t> writeScenePack(const std::filesystem::path& path,
+                                                   const BakedScene& scene,
+                                                   const Provenance& provenance);
+
+/// The objects of one pack, as they were baked.
+struct BakedObjectSet {
+  /// Working set, meters, ascending.
+  std::vector<float> radii;
+  std::vector<BakedObject> objects;
+};
+
+/// The bytes of an object pack's FlatBuffer, without the file header; objects by ascending name.
+/// The same objects and provenance give the same bytes. Fails with kInvalidInput when there is
+/// no object, one has no name or two have the same, and with kUnsupported when it would reach 2
+/// GiB, the limit of one pack.
+[[nodiscard]] Result<std::vector<std::byte>> encodeObjectPack(const BakedObjectSet& set,
+                                                              const Provenance& provenance);
+
+/// Writes header and payload atomically; returns the file's size in bytes.
+[[nodiscard]] Result<std::uint64_t> writeObjectPack(const std::filesystem::path& path,
+                                                    const BakedObjectSet& set,
+                                                    const Provenance& provenance);
+
+/// The bytes of a robot pack's FlatBuffer, without the file header. The same robot and provenance
+/// give the same bytes. Fails with kUnsupported when it would reach 2 GiB, the limit of one pack.
+[[nodiscard]] Result<std::vector<std::byte>> encodeRobotPack(const BakedRobot& robot,
+                                                             const Provenance& provenance);
+
+/// Writes header and payload atomically; returns the file's size in bytes.
+[[nodiscard]] Result<std::uint64_t> writeRobotPack(const std::filesystem::path& path,
+                                                   const BakedRobot& robot,
+                                                   const Provenance& provenance);
+
+/// The bytes of a texture pack's FlatBuffer, without the file header: `texture` of `materials`.
+[[nodiscard]] std::vector<std::byte> encodeTexturePack(const BakedMaterials& materials,
+                                                       const BakedTexture& texture,
+                                                       const Provenance& provenance);
+
+/// Writes header and payload atomically; returns the file's size in bytes.
+[[nodiscard]] Result<std::uint64_t> writeTexturePack(const std::filesystem::path& path,
+                                                     const BakedMaterials& materials,
+                                                     const BakedTexture& texture,
+                                                     const Provenance& provenance);
+
+/// The bytes of an episode pack's FlatBuffer, without the file header. The same episodes and
+/// provenance give the same bytes. Fails with kInvalidInput when the episodes are not as
+/// schema/episodes.fbs wants them (names empty or out of order, indices or ranges out of bounds,
+/// placements in another order than the episodes or of none of them, counts that do not agree,
+/// numbers that are not finite, rotations not of length 1); `where` names the element. Fails with
+/// kUnsupported when the pack would reach 2 GiB, the limit of one pack.
+[[nodiscard]] Result<std::vector<std::byte>> encodeEpisodePack(const SourceEpisodes& episodes,
+                                                               const Provenance& provenance);
+
+/// Writes header and payload atomically; returns the file's size in bytes.
+[[nodiscard]] Result<std::uint64_t> writeEpisodePack(const std::filesystem::path& path,
+                                                     const SourceEpisodes& episodes,
+                                                     const Provenance& provenance);
+
+}  // namespace galactic::bake
