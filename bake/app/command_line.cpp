@@ -85,7 +85,7 @@ class Registrar final : public OptionVisitor {
   void option(const OptionInfo& info, OptionField& field) override {
     if (!names_.emplace(info.name).second) return;
     const bool is_switch = field.kind() == OptionKind::kSwitch;
-    const std::string help(info.help);
+    const std::string help = withFlags(info.help);
     CLI::Option* option =
         is_switch ? app_.add_flag(typed(info.name), help) : app_.add_option(typed(info.name), help);
     option->group(heading_);

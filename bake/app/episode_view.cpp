@@ -145,7 +145,7 @@ Json reportEntries(const EpisodeOutcome& outcome, const Made& made) {
              {"target_to_goal",
               {{"min", distances.min}, {"mean", distances.mean}, {"max", distances.max}}},
              {"seconds", outcome.seconds},
-             {"warnings", set.warnings}};
+             {"warnings", withFlags(set.warnings)}};
   if (outcome.generation) entry["generation"] = generationReport(*outcome.generation);
   return Json::array({std::move(entry)});
 }

@@ -94,7 +94,7 @@ Json objectEntry(const BakedObject& object, const ObjectSetOutcome::Origin& orig
                      {"spheres", object.times.spheres},
                      {"render", object.times.render}};
   if (object.render_meshes) json["render_meshes"] = renderReport(*object.render_meshes);
-  json["warnings"] = object.warnings;
+  json["warnings"] = withFlags(object.warnings);
   return json;
 }
 

@@ -50,14 +50,14 @@ Json progressOf(const PackOutcome& pack) {
 Json scenesOf(const std::vector<LeftOut>& scenes) {
   Json json = Json::array();
   for (const LeftOut& scene : scenes) {
-    json.push_back({{"scene", scene.name}, {"reasons", scene.reasons}});
+    json.push_back({{"scene", scene.name}, {"reasons", withFlags(scene.reasons)}});
   }
   return json;
 }
 
 void addWorld(const JobList& list, const BuildOutcome& outcome, Json& json) {
   json["left_out"] = scenesOf(list.left_out);
-  json["warnings"] = list.warnings;
+  json["warnings"] = withFlags(list.warnings);
   // Not where there are none: reports of before stay as they were.
   for (const OptionText& option : std::get<WorldJob>(list.world->job).task) {
     json["task"][option.name] = option.value;
@@ -175,7 +175,7 @@ void printMissing(const std::vector<LeftOut>& missing) {
 Json missingReport(const std::vector<LeftOut>& missing) {
   Json json = Json::array();
   for (const LeftOut& pack : missing) {
-    json.push_back({{"pack", pack.name}, {"reasons", pack.reasons}});
+    json.push_back({{"pack", pack.name}, {"reasons", withFlags(pack.reasons)}});
   }
   return json;
 }

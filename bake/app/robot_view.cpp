@@ -69,7 +69,8 @@ void printTable(const RobotOutcome& outcome, const Made& made, Verbosity verbosi
   printPairs(robot);
   printRenderMeshes(robot.render_meshes);
   if (verbosity == Verbosity::kVerbose) {
-    for (const std::string& found : outcome.resolutions) fmt::print("  {}\n", printable(found));
+    for (const std::string& found : outcome.resolutions)
+      fmt::print("  {}\n", printable(withFlags(found)));
   }
   printWarnings(robot.warnings, verbosity);
   fmt::print(
@@ -97,14 +98,14 @@ Json reportEntries(const RobotOutcome& outcome, const Made& made) {
                              {"second", robot.link_names[robot.groups[pair.second].link]},
                              {"kind", kKinds[static_cast<std::size_t>(pair.kind)]}});
   }
-  json["meshes"] = outcome.resolutions;
+  json["meshes"] = withFlags(outcome.resolutions);
   json["seconds"] = {{"import", outcome.import_seconds},
                      {"spheres", robot.times.spheres},
                      {"self_collision", robot.times.self_collision},
                      {"render", robot.times.render},
                      {"all", outcome.seconds}};
   if (robot.render_meshes) json["render_meshes"] = renderReport(*robot.render_meshes);
-  json["warnings"] = robot.warnings;
+  json["warnings"] = withFlags(robot.warnings);
   return Json::array({std::move(json)});
 }
 

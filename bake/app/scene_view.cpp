@@ -95,8 +95,8 @@ void printTable(const SceneOutcome& outcome, const Made& made, Verbosity verbosi
   const Bounds& bounds = scene.bounds;
   fmt::print("{} -> {}\n", outcome.input.string(),
              made.pack_bytes > 0 ? made.output.string() : "(dry run)");
-  fmt::print("  {}, {}; {} meshes, {} instances\n", scene.imported.format, outcome.convention,
-             scene.imported.meshes, scene.imported.instances);
+  fmt::print("  {}, {}; {} meshes, {} instances\n", scene.imported.format,
+             withFlags(outcome.convention), scene.imported.meshes, scene.imported.instances);
   fmt::print(
       "  {} triangles ({} degenerate, {} duplicate dropped), {:.2f} x {:.2f} x {:.2f} m, "
       "y from {:.3f} to {:.3f} m\n",
@@ -124,7 +124,7 @@ Json reportEntries(const SceneOutcome& outcome, const Made& made) {
             {"output", made.output.string()},
             {"pack_bytes", made.pack_bytes},
             {"format", scene.imported.format},
-            {"convention", outcome.convention},
+            {"convention", withFlags(outcome.convention)},
             {"bounds", toJson(scene.bounds)},
             {"triangles",
              {{"read", scene.imported.counts.read},
@@ -140,7 +140,7 @@ Json reportEntries(const SceneOutcome& outcome, const Made& made) {
               {"check", times.check},
               {"render", times.render},
               {"write", times.write}}},
-            {"warnings", scene.warnings}};
+            {"warnings", withFlags(scene.warnings)}};
   if (scene.render_meshes) json["render_meshes"] = renderReport(*scene.render_meshes);
   json["grids"] = Json::array();
   for (const BakedGrid& grid : scene.grids) json["grids"].push_back(toJson(grid));

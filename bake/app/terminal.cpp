@@ -59,6 +59,11 @@ std::string withFlags(std::string_view message) {
   }
 }
 
+std::vector<std::string> withFlags(std::vector<std::string> messages) {
+  for (std::string& message : messages) message = withFlags(message);
+  return messages;
+}
+
 void printError(const Error& error) {
   const std::string where = isOption(error.where) ? "--" + error.where : error.where;
   fmt::print(stderr, "galactic-bake: {}: {}\n", printable(where),

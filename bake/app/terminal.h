@@ -11,6 +11,7 @@ namespace galactic::bake {
 /// A message of the library, whose `option` in backquotes becomes --option; other words in
 /// backquotes stay as they are.
 [[nodiscard]] std::string withFlags(std::string_view message);
+[[nodiscard]] std::vector<std::string> withFlags(std::vector<std::string> messages);
 
 /// One line on stderr: program, place, message. A place that is an option's name gets its dashes.
 void printError(const Error& error);

@@ -25,7 +25,7 @@ void warnOfSize(const Bounds& bounds, std::vector<std::string>& warnings) {
   const float size = largestExtent(bounds);
   if (size < kDoubtfulSmallness) {
     warnings.push_back(
-        fmt::format("is only {:.4g} mm large; is the unit right? --scale sets meters "
+        fmt::format("is only {:.4g} mm large; is the unit right? `scale` sets meters "
                     "per unit",
                     1000 * size));
   }
@@ -41,13 +41,13 @@ void warnOfSpheres(const SphereSet& set, const SphereSetOptions& options,
     warnings.push_back(
         fmt::format("has thin parts: spheres that cover them stick out up to {:.1f} mm, {:.1f} mm "
                     "are wanted; a "
-                    "smaller radius in --radii does better",
+                    "smaller radius in `radii` does better",
                     1000 * set.guaranteed_protrusion, 1000 * options.tau));
     return;
   }
   warnings.push_back(fmt::format(
       "{} spheres leave a gap of up to {:.1f} mm and stick out up to {:.1f} mm, wanted {:.1f} and "
-      "{:.1f} mm; allow more with --max-spheres or wider tolerances",
+      "{:.1f} mm; allow more with `max-spheres` or wider tolerances",
       set.spheres.size(), 1000 * set.guaranteed_gap, 1000 * set.guaranteed_protrusion,
       1000 * options.eps, 1000 * options.tau));
 }
@@ -77,7 +77,7 @@ void takeBox(const AuthoredShape& shape, BakedObject& object) {
   if (difference > kDoubtfulBoxDifference) {
     object.warnings.push_back(
         fmt::format("the box given for it is up to {:.0f} mm off the mesh's; is it of this mesh, "
-                    "and are --up and --scale right?",
+                    "and are `up` and `scale` right?",
                     1000 * difference));
   }
 }

@@ -21,7 +21,7 @@ constexpr double kBytesPerColumn = 100;
 Result<void> checkRadii(const std::vector<float>& radii) {
   constexpr std::size_t kMaxRadii = 8;
   const auto invalid = [](std::string message) {
-    return fail(ErrorCode::kInvalidInput, "--radii", std::move(message));
+    return fail(ErrorCode::kInvalidInput, "radii", std::move(message));
   };
   if (radii.empty() || radii.size() > kMaxRadii) {
     return invalid(fmt::format("has {} radii, 1 to {} are wanted", radii.size(), kMaxRadii));
@@ -158,7 +158,7 @@ void warnOfRegions(const BakedGrid& baked, const SceneBakeOptions& options,
     warnings.push_back(fmt::format(
         "radius {} m: a closed part of {:.1f} m3 (room: {:.1f} m3) from ({:.2f}, {:.2f}, {:.2f}) "
         "to "
-        "({:.2f}, {:.2f}, {:.2f}) is left out; keep it with --seed or --keep-components",
+        "({:.2f}, {:.2f}, {:.2f}) is left out; keep it with `seed` or `keep-components`",
         radius, part.volume, room, part.bounds.min.x, part.bounds.min.y, part.bounds.min.z,
         part.bounds.max.x, part.bounds.max.y, part.bounds.max.z));
   }
@@ -170,8 +170,8 @@ Result<BakedScene> bakeScene(const SourceAsset& asset, const SceneBakeOptions& o
                              StageTimes& times, const Progress& progress) {
   RETURN_IF_ERROR(checkRadii(options.radii));
   if (options.coverage == Coverage::kCell && options.engine != Engine::kExact) {
-    return fail(ErrorCode::kInvalidInput, "--coverage",
-                "cell works with --engine exact only: sphere casts know single lines");
+    return fail(ErrorCode::kInvalidInput, "coverage",
+                "cell works with `engine` exact only: sphere casts know single lines");
   }
   progress("clean", 0);
   Result<CleanMesh> cleaned = [&] {

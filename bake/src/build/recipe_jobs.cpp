@@ -51,7 +51,7 @@ class RecipeJobs {
     DatasetJobs dataset;
     SceneJob scene;
     auto read = assets.is_dataset ? readOptions(assets, "a dataset", dataset)
-                                  : readOptions(assets, "--as scene", scene);
+                                  : readOptions(assets, "`as` scene", scene);
     if (!read) return read;
     for (const fs::path& input : inputs) {
       if (!assets.is_dataset) {
@@ -70,7 +70,7 @@ class RecipeJobs {
   Result<void> addObjects(const RecipeAssets& assets) {
     ASSIGN_OR_RETURN(const auto inputs, inputsOf(assets));
     ObjectJob job;
-    if (auto read = readOptions(assets, "--as object", job); !read) return read;
+    if (auto read = readOptions(assets, "`as` object", job); !read) return read;
     ASSIGN_OR_RETURN(const auto objects, findObjects(inputs));
     for (const ObjectInput& object : objects) {
       job.inputs = {object.path};
@@ -83,7 +83,7 @@ class RecipeJobs {
   Result<void> addRobot(const RecipeAssets& assets) {
     ASSIGN_OR_RETURN(const auto inputs, inputsOf(assets));
     RobotJob job;
-    if (auto read = readOptions(assets, "--as robot", job); !read) return read;
+    if (auto read = readOptions(assets, "`as` robot", job); !read) return read;
     if (inputs.size() != 1) {
       return fail(ErrorCode::kInvalidInput, assets.place,
                   fmt::format("[robot] names {} files, one URDF is wanted", inputs.size()));

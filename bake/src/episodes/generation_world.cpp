@@ -40,7 +40,7 @@ Result<void> checkRadii(const Scene& scene, std::span<const ObjectSet> sets, con
   const auto refuse = [&](std::string_view other, std::span<const float> found) {
     return fail(ErrorCode::kInvalidInput, std::string(scene.name()),
                 fmt::format("the scene is baked for spheres of {} m, the {} for {} m; bake all "
-                            "with the same --radii",
+                            "with the same `radii`",
                             listOf(radii), other, listOf(found)));
   };
   if (radii.empty()) {

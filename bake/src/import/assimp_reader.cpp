@@ -217,7 +217,7 @@ Result<void> SceneReader::load() {
     if (!asked_.outside.empty()) {
       return invalid(
           fmt::format("it names '{}', which lies outside its folder; put the file there, "
-                      "or give --allow-outside",
+                      "or give `allow-outside`",
                       nameRelativeTo(path_, asked_.outside.front())));
     }
     return invalid(
@@ -281,7 +281,7 @@ Result<Affine> SceneReader::worldFromRoot() {
     if (!stated && !(options_.up && options_.scale)) {
       return invalid(
           "the meters of its <unit> are not a positive number; correct them, or give "
-          "--scale and --up");
+          "`scale` and `up`");
     }
     convention = stated.value_or(convention);
     file_from_root = kIdentityAffine;
@@ -290,7 +290,7 @@ Result<Affine> SceneReader::worldFromRoot() {
   }
   convention = withOverrides(convention, options_);
   if (!std::isfinite(convention.meters.value) || convention.meters.value <= 0) {
-    return invalid("its unit is not a positive number of meters; give --scale");
+    return invalid("its unit is not a positive number of meters; give `scale`");
   }
   asset_.convention = describe(convention);
   return compose(compose(options_.transform.value_or(kIdentityAffine), worldFromFile(convention)),
@@ -493,7 +493,7 @@ void SceneReader::nameFiles() {
   for (const std::string& file : asked_.outside) {
     asset_.warnings.push_back(fmt::format(
         "'{}' lies outside the folder of the mesh and is not read; put it there, or give "
-        "--allow-outside",
+        "`allow-outside`",
         nameRelativeTo(path_, file)));
   }
   for (const std::string& file : missing) {

@@ -34,8 +34,8 @@ Affine rotationFor(UpAxis up) {
 }  // namespace
 
 AxisConvention withOverrides(AxisConvention stated, const MeshImportOptions& options) {
-  if (options.up) stated.up = {*options.up, "--up"};
-  if (options.scale) stated.meters = {*options.scale, "--scale"};
+  if (options.up) stated.up = {*options.up, "`up`"};
+  if (options.scale) stated.meters = {*options.scale, "`scale`"};
   return stated;
 }
 

@@ -27,12 +27,12 @@ namespace fs = std::filesystem;
 Result<void> checkOptions(const MeshImportOptions& options) {
   if (options.scale && !(std::isfinite(*options.scale) && *options.scale > 0)) {
     return fail(
-        ErrorCode::kInvalidInput, "--scale",
+        ErrorCode::kInvalidInput, "scale",
         fmt::format("the scale {} is out of range; give a positive number of meters per unit",
                     *options.scale));
   }
   if (options.transform && !(isFinite(*options.transform) && isInvertible(*options.transform))) {
-    return fail(ErrorCode::kInvalidInput, "--transform",
+    return fail(ErrorCode::kInvalidInput, "transform",
                 "it is not finite or flattens space; give an invertible affine transform");
   }
   return {};

@@ -124,10 +124,10 @@ Result<void> Placement::checkExtents() const {
       size, farthest, kMaxCoordinate);
   const bool fits = size <= kMaxCoordinate;
   return fail(ErrorCode::kInvalidInput, asset_.name,
-              found + (fits ? "move it to the origin with --transform, or, if its unit is not the "
-                              "meter, give --scale 0.01 (centimeters) or --scale 0.001 "
+              found + (fits ? "move it to the origin with `transform`, or, if its unit is not the "
+                              "meter, give `scale` 0.01 (centimeters) or `scale` 0.001 "
                               "(millimeters)"
-                            : "is its unit the meter? Give --scale 0.01 for centimeters or --scale "
+                            : "is its unit the meter? Give `scale` 0.01 for centimeters or `scale` "
                               "0.001 for millimeters"));
 }
 
@@ -303,7 +303,7 @@ Result<CleanMesh> placeAndClean(const SourceAsset& asset) {
   if (clean.mesh.triangles.empty()) {
     return fail(ErrorCode::kInvalidInput, asset.name,
                 fmt::format("all of its {} triangles are degenerate (lower than {} m); if its unit "
-                            "is not the meter, give --scale",
+                            "is not the meter, give `scale`",
                             clean.counts.read, kDegenerateHeight));
   }
   if (clean.counts.degenerate + clean.counts.duplicate != 0) {

@@ -268,7 +268,7 @@ void visitOptions(RobotJob& job, OptionVisitor& v) {
   visitShape(shape, v);
   v.group("Robots");
   v.option(
-      {"recipe", "FILE", "Robot recipe (TOML, see --print-recipe) or published *.collection.json"},
+      {"recipe", "FILE", "Robot recipe (TOML, see `print-recipe`) or published *.collection.json"},
       path(recipe));
   v.option({"spheres", "FILE",
             "Hand-made spheres: a spherized URDF or an SRDF; they replace the fitted ones"},

@@ -52,7 +52,7 @@ Result<AuthoredShape> shapeFromCollection(const CollectionObject& object, UpAxis
   if (snapped.largest_change > kRadiusChangeWorthMentioning) {
     return fail(ErrorCode::kInvalidInput, fmt::format("object '{}'", object.name),
                 fmt::format("lists spheres whose radii are up to {:.4g} m off the working set {}; "
-                            "give its radii with --radii",
+                            "give its radii with `radii`",
                             snapped.largest_change, fmt::join(radii, ",")));
   }
   shape.spheres = std::move(snapped.spheres);

@@ -83,7 +83,7 @@ Result<std::vector<fs::path>> findInputs(const std::vector<std::string>& pattern
       std::string looked;
       for (const fs::path& root : roots) looked += (looked.empty() ? "" : " or ") + root.string();
       return fail(ErrorCode::kIo, pattern,
-                  fmt::format("fits no file in {}; correct it, or tell with --data where the files "
+                  fmt::format("fits no file in {}; correct it, or tell with `data` where the files "
                               "are",
                               looked));
     }

@@ -181,7 +181,7 @@ Result<void> takeByHand(const GroupPlan& plan, const std::string& link, BakedGro
   if (change > kRadiusChangeWorthMentioning) {
     warnings.push_back(fmt::format(
         "link '{}': radii of hand-made spheres change by up to {:.1f} mm to those of the working "
-        "set; choose --radii that hold them",
+        "set; choose `radii` that hold them",
         link, 1e3 * change));
   }
   if (!plan.hasSurface() || group.spheres.spheres.empty()) return {};
@@ -340,7 +340,7 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
   if (!budget.widest_gap && budget.most != 0 && fitted > budget.most) {
     warnings.push_back(fmt::format(
         "{} spheres are the fewest that cover every group of links, {} are allowed; merge links in "
-        "the recipe or allow more with --max-spheres",
+        "the recipe or allow more with `max-spheres`",
         fitted, budget.most));
   }
   return baked;

@@ -173,7 +173,7 @@ class RobotBaker {
     if (any) return {};
     return fail(ErrorCode::kInvalidInput, "",
                 "no link has geometry, so the robot would be without spheres; give its meshes with "
-                "--package, or spheres in a recipe");
+                "`package`, or spheres in a recipe");
   }
 
   /// Poses at the start, the robot standing on the ground: at the recipe's height, else with its

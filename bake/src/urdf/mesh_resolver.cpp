@@ -168,7 +168,7 @@ MeshResolution MeshResolver::resolvePackage(const std::string& package, const st
   };
   const auto named = options_.packages.find(package);
   if (named != options_.packages.end()) {
-    if (auto found = in(named->second, fmt::format("--package {}", package))) return *found;
+    if (auto found = in(named->second, fmt::format("`package` {}", package))) return *found;
   }
   for (const fs::path& folder : foldersOf(package)) {
     if (auto found = in(folder, "package search path")) return *found;
@@ -204,8 +204,8 @@ MeshResolution MeshResolver::resolveRelative(const std::string& reference) const
   const auto out_of_reach = [this](const fs::path& file) {
     MeshResolution resolution = notFound({file});
     resolution.how +=
-        ", which is there, but outside the URDF's folders and packages; give --package "
-        "NAME=DIR or --allow-outside";
+        ", which is there, but outside the URDF's folders and packages; give `package` "
+        "NAME=DIR or `allow-outside`";
     return resolution;
   };
   if (path.is_absolute()) {

@@ -286,7 +286,7 @@ Result<void> GeometryBuilder::addShapes(const UrdfLink& from, SourceLink& to) {
   if (lost_all && !options_.allow_missing) {
     const bool collision = !from.collisions.empty();
     return fail(ErrorCode::kInvalidInput, place,
-                fmt::format("it lost all its {} geometry: {}; name the package's folder (--package "
+                fmt::format("it lost all its {} geometry: {}; name the package's folder (`package` "
                             "NAME=DIR), put the file there, or allow missing geometry",
                             collision ? "collision" : "visual", robot_.warnings[warnings_before]));
   }

@@ -116,7 +116,7 @@ Result<std::vector<std::byte>> encodeScenePack(const BakedScene& scene,
   if (bytes > kMaxGridBytes) {
     return fail(ErrorCode::kUnsupported, scene.name,
                 fmt::format("grids and render meshes need {} MB, one pack holds less than 2048 MB; "
-                            "use a wider --spacing, fewer --radii, smaller textures, or split the "
+                            "use a wider `spacing`, fewer `radii`, smaller textures, or split the "
                             "scene",
                             bytes >> 20U));
   }

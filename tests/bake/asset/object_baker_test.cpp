@@ -100,7 +100,7 @@ TEST(ObjectBaker, SaysWhenTheTolerancesCannotBeMet) {
   ASSERT_EQ(object.warnings.size(), 1U);
   EXPECT_THAT(object.warnings[0], testing::StartsWith("1 spheres leave a gap of up to "));
   EXPECT_THAT(object.warnings[0],
-              HasSubstr("wanted 20.0 and 30.0 mm; allow more with --max-spheres"));
+              HasSubstr("wanted 20.0 and 30.0 mm; allow more with `max-spheres`"));
 }
 
 TEST(ObjectBaker, AsksAboutTheUnitOfTinyObjectsAndRefusesHugeOnes) {
@@ -109,7 +109,7 @@ TEST(ObjectBaker, AsksAboutTheUnitOfTinyObjectsAndRefusesHugeOnes) {
   ObjectBakeOptions options = coarse();
   options.spheres.radii = {0.0005F};
   EXPECT_THAT(bakeWell(tiny, options).warnings,
-              testing::Contains("is only 1 mm large; is the unit right? --scale sets meters per "
+              testing::Contains("is only 1 mm large; is the unit right? `scale` sets meters per "
                                 "unit"));
   bake::SourceAsset huge = brick();
   for (Vec3& p : huge.meshes[0].positions) p = p * 1000;
@@ -186,7 +186,7 @@ TEST(ObjectBaker, FitsSpheresWhereOnlyABoxIsGivenAndDoubtsABoxOfAnotherMesh) {
   EXPECT_TRUE(object.spheres.meets_tolerances);
   EXPECT_THAT(object.warnings,
               ElementsAre("the box given for it is up to 10 mm off the mesh's; is it of this mesh, "
-                          "and are --up and --scale right?"));
+                          "and are `up` and `scale` right?"));
 }
 
 }  // namespace

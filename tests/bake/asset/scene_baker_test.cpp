@@ -52,7 +52,7 @@ TEST(SceneBaker, RefusesRadiiThatMakeNoWorkingSet) {
   for (const auto& [radii, message] : cases) {
     const Error error = errorOf({.radii = radii});
     EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
-    EXPECT_EQ(error.where, "--radii");
+    EXPECT_EQ(error.where, "radii");
     EXPECT_EQ(error.message, message);
   }
 }
@@ -60,7 +60,7 @@ TEST(SceneBaker, RefusesRadiiThatMakeNoWorkingSet) {
 TEST(SceneBaker, RefusesARadiusUnderHalfTheSpacing) {
   const Error error = errorOf({.radii = {0.02F, 0.05F}, .spacing = 0.05F});
   EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(error.where, "--radii");
+  EXPECT_EQ(error.where, "radii");
   EXPECT_THAT(error.message, testing::StartsWith("radius 0.02 m is under half the spacing"));
 }
 
@@ -68,8 +68,8 @@ TEST(SceneBaker, RefusesCellCoverageFromSphereCasts) {
   for (const Engine engine : {Engine::kBullet, Engine::kEmbree}) {
     const Error error = errorOf({.engine = engine, .coverage = Coverage::kCell});
     EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
-    EXPECT_EQ(error.where, "--coverage");
-    EXPECT_EQ(error.message, "cell works with --engine exact only: sphere casts know single lines");
+    EXPECT_EQ(error.where, "coverage");
+    EXPECT_EQ(error.message, "cell works with `engine` exact only: sphere casts know single lines");
   }
 }
 
@@ -77,7 +77,7 @@ TEST(SceneBaker, RefusesASeedThatIsNotFree) {
   SceneBakeOptions options;
   options.free_space.seeds = {{-50, 1, 1}};
   const Error error = errorOf(options);
-  EXPECT_EQ(error.where, "--seed");
+  EXPECT_EQ(error.where, "seed");
   EXPECT_THAT(error.message,
               testing::StartsWith("(-50, 1, 1) is outside the scene for radius 0.015"));
 }
@@ -183,7 +183,7 @@ TEST(SceneBaker, WarnsOfAClosedRoomThatItLeavesOut) {
               testing::MatchesRegex("radius 0\\.05 m: a closed part of 16\\.[0-9] m3 \\(room: "
                                     "20\\.[0-9] m3\\) from \\(3\\.5[0-9], 0\\.05, 0\\.0[0-9]\\) to "
                                     "\\(5\\.9[0-9], 2\\.45, 2\\.9[0-9]\\) is left out; keep it "
-                                    "with --seed or --keep-components"));
+                                    "with `seed` or `keep-components`"));
 }
 
 TEST(SceneBaker, DoesNotWarnOfWhatItKeepsOrWhatIsSmall) {

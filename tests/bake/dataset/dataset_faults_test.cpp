@@ -219,7 +219,7 @@ TEST(DatasetsThatNameFilesElsewhere, NeedLeaveToReadThem) {
     EXPECT_THAT(refused.error().where, testing::EndsWith("room.stage_config.json"));
     EXPECT_THAT(refused.error().message,
                 testing::HasSubstr("lies outside of the folder above the dataset's; put it there, "
-                                   "or bake with --allow-outside"));
+                                   "or bake with `allow-outside`"));
     EXPECT_TRUE(composed(true).has_value()) << file;
   }
   // Datasets share their objects with the ones beside them.

@@ -120,7 +120,7 @@ TEST(MeshErrors, AskForTheUnitOfAnAbsurdlyLargeScene) {
   EXPECT_EQ(
       clean.error().message,
       "it is 9000 m large and reaches 9000 m from the origin, but only 800 m are possible; is "
-      "its unit the meter? Give --scale 0.01 for centimeters or --scale 0.001 for "
+      "its unit the meter? Give `scale` 0.01 for centimeters or `scale` 0.001 for "
       "millimeters");
 }
 
@@ -129,7 +129,7 @@ TEST(MeshErrors, SuggestMovingASceneThatIsFarFromTheOrigin) {
   ASSERT_TRUE(asset.has_value());
   const auto clean = placeAndClean(*asset);
   ASSERT_FALSE(clean.has_value());
-  EXPECT_THAT(clean.error().message, HasSubstr("move it to the origin with --transform"));
+  EXPECT_THAT(clean.error().message, HasSubstr("move it to the origin with `transform`"));
 }
 
 TEST(MeshErrors, NameTheNodeWhoseTransformFlattensOrIsNotFinite) {
@@ -210,13 +210,13 @@ TEST(MeshErrors, RefuseScalesAndTransformsThatAreNone) {
   for (const double scale : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
                              std::numeric_limits<double>::infinity()}) {
     const Error error = importError("box.obj", box, {.up = {}, .scale = scale, .transform = {}});
-    EXPECT_EQ(error.where, "--scale");
+    EXPECT_EQ(error.where, "scale");
     EXPECT_THAT(error.message,
                 EndsWith("is out of range; give a positive number of meters per unit"));
   }
   const Error error =
       importError("box.obj", box, {.up = {}, .scale = {}, .transform = bake::Affine{}});
-  EXPECT_EQ(error.where, "--transform");
+  EXPECT_EQ(error.where, "transform");
 }
 
 }  // namespace

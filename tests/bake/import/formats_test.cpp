@@ -81,7 +81,7 @@ TEST(MeshFormats, ReadTheSameBoxFromEveryFormatByItsOwnConvention) {
 TEST(MeshFormats, GiveTheSameTrianglesWhenAllAreReadAsZUp) {
   const MeshContent box = unevenBox();
   const MeshImportOptions z{.up = UpAxis::kZ, .scale = 1.0, .transform = {}};
-  const std::string forced = "Z up (--up), 1 m per unit (--scale)";
+  const std::string forced = "Z up (`up`), 1 m per unit (`scale`)";
   expectBox({"box.obj", objFile(box), zUp, 1, forced, z});
   expectBox({"box.glb", glbFile(box), zUp, 1, forced, z});
   expectBox({"ascii.ply", plyAsciiFile(box), zUp, 1, forced, z});
@@ -119,13 +119,13 @@ TEST(MeshFormats, ReplaceTheColladaAxisOrUnitByAnOverrideAndKeepTheOther) {
              file,
              yUp,
              0.01,
-             "Y up (--up), 0.01 m per unit (file)",
+             "Y up (`up`), 0.01 m per unit (file)",
              {.up = UpAxis::kY, .scale = {}, .transform = {}}});
   expectBox({"box.dae",
              file,
              zUp,
              0.5,
-             "Z up (file), 0.5 m per unit (--scale)",
+             "Z up (file), 0.5 m per unit (`scale`)",
              {.up = {}, .scale = 0.5, .transform = {}}});
 }
 
@@ -165,7 +165,7 @@ TEST(MeshFormats, TurnEveryUpAxisUpWithoutMirroring) {
                objFile(unevenBox()),
                axis.expected,
                1,
-               axis.name + " up (--up), 1 m per unit (OBJ convention)",
+               axis.name + " up (`up`), 1 m per unit (OBJ convention)",
                {.up = axis.up, .scale = {}, .transform = {}}});
   }
 }

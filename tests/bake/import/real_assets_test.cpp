@@ -63,7 +63,7 @@ std::vector<RealScene> realScenes() {
        84,
        {-5.25, -0.0614, -5.45},
        {5.28, 2.15, 5.4},
-       "Z up (--up), 1 m per unit (glTF convention)",
+       "Z up (`up`), 1 m per unit (glTF convention)",
        UpAxis::kZ},
       {"scenes/habitat_simple_room/simple_room.glb",
        84,

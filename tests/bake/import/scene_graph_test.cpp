@@ -248,7 +248,7 @@ TEST(SceneGraph, AsksForTheUnitOfASceneSmallerThanAnyRoom) {
   ASSERT_TRUE(asset.has_value());
   EXPECT_THAT(asset->warnings,
               ElementsAre("the whole scene is only 0.1 x 0 x 0.2 m large: is its unit the meter? "
-                          "Give meters per unit with --scale"));
+                          "Give meters per unit with `scale`"));
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST(TriangleMesh, FailsWhenEveryTriangleIsDegenerate) {
   EXPECT_EQ(clean.error().code, ErrorCode::kInvalidInput);
   EXPECT_EQ(clean.error().message,
             "all of its 2 triangles are degenerate (lower than 1e-07 m); if its unit is not the "
-            "meter, give --scale");
+            "meter, give `scale`");
 }
 
 TEST(TriangleMesh, RefusesBrokenReferencesInsteadOfReadingThem) {

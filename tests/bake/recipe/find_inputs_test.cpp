@@ -109,7 +109,7 @@ TEST_F(FindInputs, NamesThePatternThatFitsNothingAndWhereItLooked) {
   EXPECT_EQ(inputs.error().code, ErrorCode::kIo);
   EXPECT_EQ(inputs.error().where, "z*.glb");
   EXPECT_EQ(inputs.error().message,
-            fmt::format("fits no file in {} or {}; correct it, or tell with --data where the files "
+            fmt::format("fits no file in {} or {}; correct it, or tell with `data` where the files "
                         "are",
                         at("own").string(), at("data").string()));
 }

@@ -321,7 +321,7 @@ TEST(HandSpheresOfARobot, TakeTheNearestRadiusWithAWarning) {
   EXPECT_THAT(robot.groups[2].spheres.spheres, ElementsAre(SetSphere{{0, 0, 0}, 1}));
   EXPECT_THAT(robot.warnings,
               ElementsAre("link 'hand': radii of hand-made spheres change by up to 7.5 mm to those "
-                          "of the working set; choose --radii that hold them"));
+                          "of the working set; choose `radii` that hold them"));
 }
 
 TEST(HandSpheresOfARobot, MayStandInTheRecipeForOneLink) {
@@ -434,7 +434,7 @@ TEST(RobotBaker, ExplainsWhatItCannotBake) {
        },
        "",
        "no link has geometry, so the robot would be without spheres; give its meshes with "
-       "--package, or spheres in a recipe"},
+       "`package`, or spheres in a recipe"},
       {[](SourceRobot& r, RobotBakeOptions&) { r.links[1].collisions[0].link_from_shape[0] = 100; },
        "link 'arm': mesh", "its extents are 20 x 0.06 x 0.06 m"},
       {[](SourceRobot&, RobotBakeOptions& o) {

@@ -39,7 +39,7 @@ TEST_F(MeshReferences, ToPackagesTryNamedOnesThenTheSearchPathThenFoldersAbove) 
   EXPECT_EQ(resolve(reference).how, "package search path");
   options_.packages["pkg"] = folder_.path() / "elsewhere";
   EXPECT_EQ(resolve(reference).file, named);
-  EXPECT_EQ(resolve(reference).how, "--package pkg");
+  EXPECT_EQ(resolve(reference).how, "`package` pkg");
   EXPECT_FALSE(resolve(reference).guessed);
 }
 
@@ -113,7 +113,7 @@ TEST_F(MeshReferences, LeadIntoPackagesAndTheUrdfsFoldersOnly) {
     EXPECT_TRUE(refused.file.empty());
     EXPECT_FALSE(refused.how.empty());
   }
-  EXPECT_THAT(resolve(secret.string()).how, HasSubstr("--package NAME=DIR or --allow-outside"));
+  EXPECT_THAT(resolve(secret.string()).how, HasSubstr("`package` NAME=DIR or `allow-outside`"));
   options_.packages["secrets"] = secret.parent_path();
   EXPECT_EQ(resolve(secret.string()).file, secret);
   options_.packages.clear();

@@ -193,7 +193,7 @@ Result<void> DatasetIndex::checkReach(const fs::path& file, const std::string& w
   if (allow_outside || isBelow(file, folder / "..")) return {};
   return fail(ErrorCode::kInvalidInput, where,
               fmt::format("'{}' lies outside of the folder above the dataset's; put it there, or "
-                          "bake with --allow-outside",
+                          "bake with `allow-outside`",
                           nameRelativeTo(config, file)));
 }
 

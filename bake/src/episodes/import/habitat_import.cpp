@@ -315,14 +315,14 @@ void HabitatReader::warnOfLosses() {
     file_.warnings.push_back(fmt::format("{} of {} episodes {}", count, losses_.episodes, message));
   };
   warn(losses_.more_targets,
-       "have several targets; the first is kept, --targets each makes an episode of each");
+       "have several targets; the first is kept, `targets` each makes an episode of each");
   warn(losses_.open_furniture,
        "open furniture (ao_states), which stands in the scenes' packs as they were baked");
   warn(losses_.no_start, "give no start: the robot stands at the origin");
   if (uncentered_.empty()) return;
   file_.warnings.push_back(
       fmt::format("{} objects, first '{}', stand with their origins where their centers belong; "
-                  "give --object-pack, unless these are the same",
+                  "give `object-pack`, unless these are the same",
                   uncentered_.size(), *uncentered_.begin()));
 }
 

@@ -137,7 +137,7 @@ void warnAboutSize(SourceAsset& asset, double smallest_size) {
   }
   asset.warnings.push_back(fmt::format(
       "the whole scene is only {:.3g} x {:.3g} x {:.3g} m large: is its unit the meter? "
-      "Give meters per unit with --scale",
+      "Give meters per unit with `scale`",
       high[0] - low[0], high[1] - low[1], high[2] - low[2]));
 }
 

@@ -81,13 +81,13 @@ TEST(HabitatEpisodes, WarnOfWhatAPackCannotHold) {
   EXPECT_THAT(
       set->warnings,
       ElementsAre(
-          "1 of 2 episodes have several targets; the first is kept, --targets each makes an "
+          "1 of 2 episodes have several targets; the first is kept, `targets` each makes an "
           "episode of each",
           "1 of 2 episodes open furniture (ao_states), which stands in the scenes' packs as they "
           "were baked",
           "1 of 2 episodes give no start: the robot stands at the origin",
           "2 objects, first '003_cracker_box', stand with their origins where their centers "
-          "belong; give --object-pack, unless these are the same"));
+          "belong; give `object-pack`, unless these are the same"));
 }
 
 TEST(HabitatEpisodes, MakeAnEpisodeOfEachTargetWhereThatIsAskedFor) {
