@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <map>
 #include <span>
 #include <string>
@@ -40,6 +41,56 @@ Json failureOf(const PackOutcome& pack, const BakeFailure& failure, const JobLis
   json["where"] = failure.error.where;
   json["message"] = withFlags(failure.error.message);
   return json;
+}
+
+/// The options of a job that have a value, by name: numbers and switches as such, files without
+/// their folders, and a list where there are several values.
+class OptionValues final : public OptionVisitor {
+ public:
+  using OptionVisitor::option;
+  void option(const OptionInfo& info, OptionField& field) override {
+    for (std::filesystem::path* path : field.paths()) {
+      *path = path->has_filename() ? path->filename() : path->parent_path().filename();
+    }
+    Json values = Json::array();
+    for (const std::string& text : field.texts()) values.push_back(valueOf(field.kind(), text));
+    if (values.empty()) return;
+    json[std::string(info.name)] = values.size() == 1 ? Json(values.front()) : std::move(values);
+  }
+
+  Json json = Json::object();
+
+ private:
+  static Json valueOf(OptionKind kind, const std::string& text) {
+    if (kind == OptionKind::kSwitch) return true;
+    const bool is_number = kind == OptionKind::kNumber || kind == OptionKind::kWhole;
+    if (!is_number && kind != OptionKind::kNumbers) return text;
+    Json numbers = Json::parse("[" + text + "]", nullptr, /*allow_exceptions=*/false);
+    if (numbers.is_discarded()) return text;
+    return is_number ? Json(numbers.front()) : numbers;
+  }
+};
+
+/// What was asked for, one for each pack.
+Json jobsOf(const JobList& list) {
+  Json jobs = Json::array();
+  const auto add = [&](const PackJob& pack) {
+    Job job = pack.job;
+    OptionValues values;
+    visitOptions(job, values);
+    Json one;
+    if (list.world) {
+      one["pack"] = pack.name;
+    } else {
+      one["output"] = pack.output.string();
+    }
+    one["as"] = kindOf(job);
+    one["options"] = std::move(values.json);
+    jobs.push_back(std::move(one));
+  };
+  for (const PackJob& pack : list.assets) add(pack);
+  if (list.episodes) add(*list.episodes);
+  return jobs;
 }
 
 /// How this run came to it.
@@ -126,6 +177,7 @@ const char* nameOf(PackState state) {
 Json reportOf(const JobList& list, const BuildOutcome& outcome) {
   Json json{{"tool", "galactic-bake"}, {"version", GALACTIC_VERSION}};
   if (list.world) json["output"] = list.world->output.string();
+  json["jobs"] = jobsOf(list);
   json["baked"] = Json::array();
   json["failed"] = Json::array();
   for (const PackOutcome& pack : outcome.packs) {

@@ -91,7 +91,15 @@ TEST_F(BakeCli, ReadsOptionsFromAConfigFile) {
   write("bake.toml", "radii = [0.05, 0.12]\nspacing = 0.04\ncoverage = \"cell\"\n");
   const ProgramRun bake = run({"room.obj", "--config", "bake.toml", "--report", "report.json"});
   ASSERT_EQ(bake.exit_code, 0) << bake.err;
-  const json grids = json::parse(content("report.json"))["baked"][0]["grids"];
+  const json report = json::parse(content("report.json"));
+  const json& asked = report["jobs"][0];
+  EXPECT_EQ(asked["as"], "scene");
+  EXPECT_EQ(asked["options"]["radii"], json::parse("[0.05, 0.12]"));
+  EXPECT_EQ(asked["options"]["spacing"], 0.04);
+  EXPECT_EQ(asked["options"]["coverage"], "cell");
+  EXPECT_EQ(asked["options"]["keep"], "room") << "defaults are options, too";
+  EXPECT_FALSE(asked["options"].contains("no-render-meshes")) << "a switch that is off";
+  const json& grids = report["baked"][0]["grids"];
   ASSERT_EQ(grids.size(), 2U);
   EXPECT_FLOAT_EQ(grids[0]["radius"], 0.05F);
   EXPECT_FLOAT_EQ(grids[1]["radius"], 0.12F);

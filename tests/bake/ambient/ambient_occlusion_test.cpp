@@ -94,6 +94,7 @@ TEST(AmbientOcclusion, EndsAtTheLargestDistance) {
 TEST(AmbientOcclusion, PaintsNoDarknessOfCornersOverCoarseWalls) {
   // A room of 12 triangles: the value at its corners would be a quarter.
   const auto openness = opennessOf({box({2, 1.3F, 2.5F}, true).placed()}, kManyRays);
+  ASSERT_FALSE(openness[0].empty());
   for (const Openness& value : openness[0]) {
     EXPECT_GT(value.front, 0.6F);
     EXPECT_LT(value.front, 0.95F);

@@ -218,7 +218,9 @@ TEST(Light, MultipliesColorsAndKeepsAlpha) {
   SourceMesh mesh = box({0.1F, 0.2F, 0.15F});
   mesh.colors.assign(mesh.positions.size(), {1, 0.2F, 0, 0.5F});
   builder.place(mesh, builder.material(false));
-  for (const DrawnTriangle& triangle : drawnOf(bakeLit(builder.source()))) {
+  const auto triangles = drawnOf(bakeLit(builder.source()));
+  ASSERT_EQ(triangles.size(), 12U);
+  for (const DrawnTriangle& triangle : triangles) {
     for (const DrawnCorner& corner : triangle.corners) {
       const unsigned red = corner.color & 0xFFU;
       EXPECT_LT(red, 255U);
@@ -305,7 +307,9 @@ TEST(Light, PutsUpWithTrianglesOfNoArea) {
   needle.positions.insert(needle.positions.end(), {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
   needle.triangles.push_back({first, first + 1, first + 2});
   builder.place(needle, builder.material(true));
-  for (const DrawnTriangle& triangle : drawnOf(bakeLit(builder.source()))) {
+  const auto triangles = drawnOf(bakeLit(builder.source()));
+  ASSERT_EQ(triangles.size(), 12U);
+  for (const DrawnTriangle& triangle : triangles) {
     for (const DrawnCorner& corner : triangle.corners) EXPECT_EQ(corner.color >> 24U, 255U);
   }
 }

@@ -189,8 +189,11 @@ TEST(RenderBaker, KeepsTextureCoordinatesUpToWholeImages) {
   const std::uint32_t material = builder.material(true, true);
   const bake::SourceMesh mesh = sheet(20, 1);
   const auto meshes = bakedMeshes(builder.place(mesh, material));
+  const auto triangles = drawnTriangles(meshes.view(), 0);
+  ASSERT_FALSE(triangles.empty());
+  ASSERT_FALSE(meshes.clusters.empty());
   // Source coordinates by position; the sheet is flat seen from above.
-  for (const DrawnTriangle& triangle : drawnTriangles(meshes.view(), 0)) {
+  for (const DrawnTriangle& triangle : triangles) {
     double u_shift = 0;
     double v_shift = 0;
     for (std::size_t n = 0; n < 3; ++n) {
@@ -217,6 +220,7 @@ TEST(RenderBaker, ForgetsTextureCoordinatesWhereThereIsNoTexture) {
   SourceBuilder builder;
   const std::uint32_t material = builder.material(true);
   const auto meshes = bakedMeshes(builder.place(sheet(4, 1), material));
+  ASSERT_FALSE(meshes.clusters.empty());
   for (const RenderCluster& cluster : meshes.clusters) {
     EXPECT_EQ(cluster.u_step, 0);
     EXPECT_EQ(cluster.v_step, 0);

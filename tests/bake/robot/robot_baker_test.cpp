@@ -396,6 +396,7 @@ TEST(RobotBaker, KeepsSpheresAboveTheClipHeight) {
   recipe.spheres.clip_height = 0.03;
   recipe.base.root_height = 0.01;
   const BakedRobot robot = bakeWell(smallArm(), &recipe, coarse());
+  ASSERT_FALSE(robot.groups[0].spheres.spheres.empty());
   for (const SetSphere& sphere : robot.groups[0].spheres.spheres) {
     constexpr float kRounding = 1e-5F;
     EXPECT_GE(sphere.center.y - 0.04F, 0.02F - kRounding);
