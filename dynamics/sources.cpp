@@ -10,7 +10,7 @@
 #include "galactic/bake/assets.h"
 #include "galactic/bake/job_lists.h"
 #include "galactic/bake/triangle_mesh.h"
-#include "galactic/bake/urdf_inertials.h"
+#include "galactic/bake/urdf_import.h"
 #include "support/try.h"
 
 namespace galactic::dynamics {

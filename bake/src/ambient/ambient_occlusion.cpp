@@ -8,8 +8,8 @@
 
 #include "ambient/ray_pattern.h"
 #include "ambient/vertex_fans.h"
-#include "common/parallel_for.h"
 #include "engines/triangle_rays.h"
+#include "galactic/bake/parallel_for.h"
 #include "import/affine.h"
 #include "support/try.h"
 

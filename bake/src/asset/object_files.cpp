@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "asset/asset_parts.h"
-#include "common/parallel_for.h"
 #include "common/stage_timer.h"
 #include "galactic/bake/mesh_import.h"
+#include "galactic/bake/parallel_for.h"
 #include "recipe/collection_shape.h"
 #include "support/try.h"
 #include "write/packs.h"

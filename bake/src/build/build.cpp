@@ -9,7 +9,7 @@
 
 #include "build/make_pack.h"
 #include "build/memory_budget.h"
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 #include "support/part_files.h"
 
 namespace galactic::bake {

@@ -4,10 +4,10 @@
 #include <system_error>
 #include <utility>
 
-#include "common/parallel_for.h"
 #include "dataset/scene_dataset.h"
 #include "galactic/bake/build.h"
 #include "galactic/bake/mesh_import.h"
+#include "galactic/bake/parallel_for.h"
 
 namespace galactic::bake {
 namespace {

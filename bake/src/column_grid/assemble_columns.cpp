@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 
 namespace galactic::bake {
 

@@ -1,4 +1,4 @@
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,6 +1,6 @@
 #include "engines/columns_by_rows.h"
 
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 
 namespace galactic::bake {
 

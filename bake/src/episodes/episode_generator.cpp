@@ -9,10 +9,10 @@
 #include <optional>
 #include <utility>
 
-#include "common/parallel_for.h"
 #include "episodes/generation_options.h"
 #include "episodes/home/prepared_scene.h"
 #include "episodes/trial/episode_replay.h"
+#include "galactic/bake/parallel_for.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 #include "render/mesh_optimizer.h"
 
 namespace galactic::bake {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 #include "render/lattice.h"
 #include "render/light.h"
 #include "render/part_mesh.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 #include "import/affine.h"
 #include "sphere_set/authored_spheres.h"
 #include "support/try.h"

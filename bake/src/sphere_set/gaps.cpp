@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 #include "sphere_set/cover/cover_matrix.h"
 #include "sphere_set/solid/point_grid.h"
 

@@ -3,7 +3,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 #include "sphere_set/cover/candidates.h"
 #include "sphere_set/gaps.h"
 #include "sphere_set/solid/surface_samples.h"

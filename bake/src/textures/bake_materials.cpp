@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 #include "galactic/bake/provenance.h"
 #include "galactic/bake/render_textures.h"
 #include "support/try.h"

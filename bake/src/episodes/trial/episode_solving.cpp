@@ -3,9 +3,9 @@
 #include <utility>
 #include <vector>
 
-#include "common/parallel_for.h"
 #include "episodes/trial/memory_world.h"
 #include "galactic/bake/episode_generator.h"
+#include "galactic/bake/parallel_for.h"
 #include "galactic/batch_simulator.h"
 #include "scripted/scripted_policy.h"
 #include "support/try.h"

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 #include "sphere_set/cover/lattice.h"
 #include "sphere_set/solid/surface_samples.h"
 

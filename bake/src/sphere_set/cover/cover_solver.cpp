@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 #include "sphere_set/cover/candidates.h"
 #include "sphere_set/cover/local_search.h"
 #include "sphere_set/cover/set_cover.h"

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 
 namespace galactic::bake::sphere_set {
 namespace {

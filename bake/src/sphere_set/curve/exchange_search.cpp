@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 #include "sphere_set/cover/candidates.h"
 
 namespace galactic::bake::sphere_set {

@@ -1,6 +1,6 @@
 #include "sphere_set/solid/distance_grid.h"
 
-#include "common/parallel_for.h"
+#include "galactic/bake/parallel_for.h"
 
 namespace galactic::bake::sphere_set {
 
