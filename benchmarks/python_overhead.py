@@ -53,7 +53,7 @@ def command_of(name: str, options: argparse.Namespace, steps: int) -> list[str]:
     numbers = [str(options.envs), str(steps), str(options.threads)]
     if name in LOOPS:
         return [sys.executable, "-c", LOOPS[name], options.world, *numbers]
-    return [options.galactic_run, "--pack", options.world, "--envs", numbers[0], "--steps",
+    return [options.galactic_run, options.world, "--envs", numbers[0], "--steps",
             numbers[1], "--threads", numbers[2], "--policy", "random"]  # fmt: skip
 
 

@@ -72,17 +72,17 @@ void checkSwitches(CLI::App& app) {
 
 void addJson(CLI::App& verb, OutputForm& form) {
   verb.add_flag_callback(
-      "--json", [&form] { form = OutputForm::kJson; }, "print JSON instead of text");
+      "--json", [&form] { form = OutputForm::kJson; }, "Print JSON instead of text");
 }
 
 void addTrusted(CLI::App& verb, Trust& trust) {
   verb.add_flag_callback(
       "--trusted", [&trust] { trust = Trust::kTrusted; },
-      "skip verification: use it only for packs verified before");
+      "Skip verification: use it only for packs verified before");
 }
 
 void addRadius(CLI::App& verb, std::optional<float>& radius) {
-  verb.add_option("--radius", radius, "scenes: only the grid of this sphere radius")
+  verb.add_option("--radius", radius, "Scenes: only the grid of this sphere radius")
       ->check(numberCheck(0, kMostMeters))
       ->type_name("METERS");
 }
@@ -98,13 +98,13 @@ void addPack(CLI::App& verb, const PackOption& option, std::filesystem::path& pa
 }
 
 void addOutput(CLI::App& verb, std::filesystem::path& output) {
-  verb.add_option("-o,--output", output, "the file to write; replaced if it exists")
+  verb.add_option("-o,--out", output, "The file to write; replaced if it exists")
       ->required()
       ->type_name("FILE");
 }
 
 void addPacks(CLI::App& verb, std::vector<std::filesystem::path>& packs) {
-  verb.add_option("packs", packs, "packs of any kind")->required()->type_name("PACK");
+  verb.add_option("packs", packs, "Packs of any kind")->required()->type_name("PACK");
 }
 
 /// The options of all verbs, filled while parsing.
@@ -129,29 +129,32 @@ void addInfo(CLI::App& app, InfoOptions& options) {
 void addCheck(CLI::App& app, CheckOptions& options) {
   CLI::App& verb = *app.add_subcommand(
       "check", "Verify packs completely; the exit code is that of the worst one");
-  verb.add_option("packs", options.packs, "packs of any kind, and folders with packs in them")
+  verb.add_option("packs", options.packs, "Packs of any kind, and folders with packs in them")
       ->required()
       ->type_name("PACK");
   addJson(verb, options.form);
   verb.add_option("--junit", options.junit,
-                  "also write a JUnit report, for CI; replaced if it exists")
+                  "Also write a JUnit report, for CI; replaced if it exists")
       ->type_name("FILE");
-  verb.add_option("-j,--jobs", options.jobs, "threads (default: one per core)")
-      ->check(wholeCheck(1, 4096))
-      ->type_name("N");
+  verb.add_option("-j,--threads", options.threads,
+                  "Threads; what is printed does not depend on it; 0: one per processor")
+      ->check(wholeCheck(0, 4096))
+      ->option_text(fmt::format("N [{}]", options.threads));
+  verb.add_flag_callback(
+      "-q,--quiet", [&options] { options.is_quiet = true; }, "Only errors");
 }
 
 void addColumn(CLI::App& app, ColumnOptions& options) {
   CLI::App& verb =
       *app.add_subcommand("column", "Print the free spans of the column nearest to a point");
-  addPack(verb, {"pack", "a scene pack"}, options.pack);
+  addPack(verb, {"pack", "A scene pack"}, options.pack);
   verb.add_option_function<std::string>(
           "--at",
           [&options](const std::string& text) {
             const auto [x, z] = parseNumbers<2>("--at", text);
             options.at = {x, z};
           },
-          "the point, meters")
+          "The point, meters")
       ->required()
       ->type_name("X,Z");
   addRadius(verb, options.radius);
@@ -162,15 +165,14 @@ void addColumn(CLI::App& app, ColumnOptions& options) {
 void addDiff(CLI::App& app, DiffOptions& options) {
   CLI::App& verb = *app.add_subcommand(
       "diff", "Compare two packs of one kind by their meaning; exit code 7 if they differ");
-  addPack(verb, {"a", "a pack of a scene, of objects or of a robot"}, options.a);
-  addPack(verb, {"b", "another pack of the same kind"}, options.b);
-  verb.add_option("--tolerance", options.tolerance,
-                  "lengths that differ by no more are equal (default 0)")
+  addPack(verb, {"a", "A pack of a scene, of objects or of a robot"}, options.a);
+  addPack(verb, {"b", "Another pack of the same kind"}, options.b);
+  verb.add_option("--tolerance", options.tolerance, "Lengths that differ by no more are equal")
       ->check(numberCheck(0, kMostMeters))
-      ->type_name("METERS");
+      ->option_text(fmt::format("METERS [{}]", options.tolerance));
   verb.add_flag_callback(
       "--content-only", [&options] { options.scope = DiffScope::kContent; },
-      "ignore provenance, options and statistics: compare what is simulated");
+      "Ignore provenance, options and statistics: compare what is simulated");
   addJson(verb, options.form);
   addTrusted(verb, options.trust);
 }
@@ -223,19 +225,19 @@ void addFigureOptions(CLI::App& verb, std::optional<FigureOptions>& figures) {
   };
   verb.add_option_function<std::string>(
           "--object", [given](const std::string& name) { given().object = name; },
-          "objects: only the object of this name")
+          "Objects: only the object of this name")
       ->type_name("NAME");
   verb.add_option_function<std::string>(
           "--joints",
           [given](const std::string& text) { given().joints.values = parseJoints(text); },
-          "robots: joint values, radians or meters; the other joints are in the start pose")
+          "Robots: joint values, radians or meters; the other joints are in the start pose")
       ->type_name("NAME=VALUE,...");
   verb.add_flag_callback(
       "--all-zero", [given] { given().joints.others = OtherJoints::kZero; },
-      "robots: put joints that --joints does not name at 0");
+      "Robots: put joints that --joints does not name at 0");
   verb.add_option_function<std::string>(
           "--what", [given](const std::string& text) { given().layers = parseLayers(text); },
-          "what to show (objects and robots: by default all of mesh,spheres,boxes; picture of a "
+          "What to show (objects and robots: by default all of mesh,spheres,boxes; picture of a "
           "scene: mesh, instead of its grids)")
       ->type_name("LAYER,...");
 }
@@ -249,10 +251,10 @@ void addGridPictureOptions(CLI::App& verb, GridPictureOptions& options) {
             const auto [x0, z0, x1, z1] = parseNumbers<4>("--slice", text);
             options.slice = SliceLine{{x0, z0}, {x1, z1}};
           },
-          "scenes: a vertical slice along this line instead of a plan, meters")
+          "Scenes: a vertical slice along this line instead of a plan, meters")
       ->type_name("X0,Z0,X1,Z1");
   verb.add_option("--value", options.value,
-                  "scenes: color a plan by total free height, by the height of the lowest span, "
+                  "Scenes: color a plan by total free height, by the height of the lowest span, "
                   "or by the number of spans (default total)")
       ->transform(choice(std::map<std::string, PlanValue>{{"total", PlanValue::kTotalHeight},
                                                           {"lowest", PlanValue::kLowestHeight},
@@ -263,14 +265,14 @@ void addGridPictureOptions(CLI::App& verb, GridPictureOptions& options) {
 void addPicture(CLI::App& app, PictureOptions& options) {
   CLI::App& verb =
       *app.add_subcommand("picture", "Draw a scene's grids, objects or a robot into a PNG file");
-  addPack(verb, {"pack", "a pack of a scene, of objects or of a robot"}, options.pack);
+  addPack(verb, {"pack", "A pack of a scene, of objects or of a robot"}, options.pack);
   addOutput(verb, options.output);
   addGridPictureOptions(verb, options.grids);
   addFigureOptions(verb, options.figures);
   verb.add_option(
           "--size", options.size,
           fmt::format(
-              "meshes, objects and robots: edge of a view (default {}, on a contact sheet {})",
+              "Meshes, objects and robots: edge of a view (default {}, on a contact sheet {})",
               pictures::kDefaultViewSize, pictures::kDefaultTileSize))
       ->check(wholeCheck(pictures::kSmallestView, pictures::kLargestView))
       ->type_name("PIXELS");
@@ -288,7 +290,7 @@ void addReport(CLI::App& app, ReportOptions& options) {
 void addView(CLI::App& app, ViewOptions& options) {
   CLI::App& verb = *app.add_subcommand(
       "view", "Write an HTML page that shows a pack or a world in three dimensions");
-  addPack(verb, {"pack", "a pack of any kind"}, options.pack);
+  addPack(verb, {"pack", "A pack of any kind"}, options.pack);
   addOutput(verb, options.output);
   const CLI::Validator is_power_of_two(
       [](const std::string& text) {
@@ -298,18 +300,17 @@ void addView(CLI::App& app, ViewOptions& options) {
                                          : fmt::format("found {}, wanted a power of two", text);
       },
       "", "texture_size");
-  verb.add_option(
-          "--texture-size", options.texture_size,
-          fmt::format("longest edge of a texture, texels (default {})", options.texture_size))
+  verb.add_option("--texture-size", options.texture_size,
+                  "Longest edge of a texture, texels: a power of two")
       ->check(wholeCheck(1, 4096))
       ->check(is_power_of_two)
-      ->type_name("N");
+      ->option_text(fmt::format("N [{}]", options.texture_size));
   addTrusted(verb, options.trust);
 }
 
 void addEpisodeSetOptions(CLI::App& verb, ExportOptions& options) {
   verb.add_option("--object-up", options.object_up,
-                  "episode sets: up axis of the objects' mesh files (default z)")
+                  "Episode sets: up axis of the objects' mesh files (default z)")
       ->transform(choice(std::map<std::string, FileUp>{{"x", FileUp::kX},
                                                        {"y", FileUp::kY},
                                                        {"z", FileUp::kZ},
@@ -319,7 +320,7 @@ void addEpisodeSetOptions(CLI::App& verb, ExportOptions& options) {
       ->type_name("AXIS");
   verb.final_callback([&options] {
     if (options.output.empty() && options.format != ExportFormat::kEpisodeSet) {
-      throw CLI::RequiredError("--output");
+      throw CLI::RequiredError("--out");
     }
   });
 }
@@ -327,9 +328,9 @@ void addEpisodeSetOptions(CLI::App& verb, ExportOptions& options) {
 void addExport(CLI::App& app, ExportOptions& options) {
   CLI::App& verb = *app.add_subcommand(
       "export", "Write a scene's grid, objects, a robot or episodes for other programs");
-  addPack(verb, {"pack", "a pack of a scene, of objects, of a robot or of episodes"}, options.pack);
-  verb.add_option("-o,--output", options.output,
-                  "the file to write; replaced if it exists (default for episode_set: "
+  addPack(verb, {"pack", "A pack of a scene, of objects, of a robot or of episodes"}, options.pack);
+  verb.add_option("-o,--out", options.output,
+                  "The file to write; replaced if it exists (default for episode_set: "
                   "NAME.episode_set.json)")
       ->type_name("FILE");
   addEpisodeSetOptions(verb, options);

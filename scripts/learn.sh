@@ -55,9 +55,9 @@ heading "Playing each unseen episode once: sampled actions, then the likeliest"
 
 heading "The same policy without Python: the likeliest actions in each unseen episode once"
 /usr/bin/python3 -m galactic.export "$run/best.pt" -o "$run/picker.pack"
-"$bin/galactic-run" --pack "$sample/unseen.pack" --policy "$run/picker.pack" --deterministic \
+"$bin/galactic-run" "$sample/unseen.pack" --policy "$run/picker.pack" --deterministic \
   --order partition --envs 64 --steps 100000
-"$bin/galactic-run" --pack "$sample/unseen.pack" --policy "$run/picker.pack" --envs 8 --steps 300 \
+"$bin/galactic-run" "$sample/unseen.pack" --policy "$run/picker.pack" --envs 8 --steps 300 \
   --view "$run/run.html" --view-envs 8 >"$run/run.txt"
 
 cat <<END

@@ -47,7 +47,7 @@ def main() -> int:
     parser.add_argument("--help2man", required=True)
     parser.add_argument("--tool", type=pathlib.Path, required=True)
     parser.add_argument("--version", required=True)
-    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+    parser.add_argument("-o", "--out", type=pathlib.Path, required=True)
     parser.add_argument("verb", nargs="?")
     options = parser.parse_args()
     name = " ".join([options.tool.name, *([options.verb] if options.verb else [])])
@@ -59,7 +59,7 @@ def main() -> int:
     tools = ["galactic-bake", "galactic-dynamics", "galactic-pack", "galactic-run"]
     others = [tool for tool in tools if options.verb or tool != options.tool.name]
     see_also = ",\n".join(f".BR {tool} (1)" for tool in others)
-    options.output.parent.mkdir(parents=True, exist_ok=True)
+    options.out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         include = pathlib.Path(folder, "sections")
         include.write_text(sections(examples, exits, see_also), encoding="utf-8")
@@ -71,7 +71,7 @@ def main() -> int:
         subprocess.run(
             [options.help2man, "--no-info", "--name", summary[0].lower() + summary[1:],
              "--version-string", options.version, "--source", f"galactic {options.version}",
-             "--manual", "galactic", "--include", include, "--output", options.output, program],
+             "--manual", "galactic", "--include", include, "--out", options.out, program],
             check=True,
             env={**os.environ, "LC_ALL": "C"},
         )  # fmt: skip

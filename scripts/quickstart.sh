@@ -30,7 +30,7 @@ draw() {
   "$bin/galactic-pack" picture "$objects" -o "$out/objects.png"
   "$bin/galactic-pack" picture "$robot" -o "$out/robot.png"
   "$bin/galactic-pack" view "$world" -o "$out/world.html"
-  "$bin/galactic-run" --pack "$world" --envs 4 --steps 500 --policy scripted --view "$out/run.html"
+  "$bin/galactic-run" "$world" --envs 4 --steps 500 --policy scripted --view "$out/run.html"
 }
 
 phase setup "Installing packages" scripts/setup.sh
@@ -51,11 +51,11 @@ heading "Drawing episodes, and linking all packs to a world"
 "$bin/galactic-bake" "$apartment" "$objects" "$robot" "$episodes" --as world -o "$world"
 
 heading "Opening it in the runtime, and stepping 1024 homes with random actions"
-"$bin/galactic-run" --pack "$world"
-"$bin/galactic-run" --pack "$world" --envs 1024 --steps 500 --policy random
+"$bin/galactic-run" "$world"
+"$bin/galactic-run" "$world" --envs 1024 --steps 500 --policy random
 
 heading "Solving 32 episodes with a plan"
-"$bin/galactic-run" --pack "$world" --envs 32 --steps 500 --policy scripted
+"$bin/galactic-run" "$world" --envs 32 --steps 500 --policy scripted
 
 phase quickstart-draw "Drawing it" draw
 
@@ -76,7 +76,7 @@ Look at these, in $out/:
                     beside it. Try:
     $bin/galactic-pack column $apartment --at 0.3,1.5
     $bin/galactic-pack info $episodes
-    $bin/galactic-run --pack $apartment --bench
-    $bin/galactic-run --pack $world --steps 1000 --policy forward --record $out/run.rec
-    $bin/galactic-run --pack $world --policy replay:$out/run.rec
+    $bin/galactic-run $apartment --bench
+    $bin/galactic-run $world --steps 1000 --policy forward --record $out/run.rec
+    $bin/galactic-run $world --policy replay:$out/run.rec
 END

@@ -21,7 +21,8 @@ struct RunOptions {
   Verbosity verbosity = Verbosity::kNormal;
   /// A file for one pack, a folder for several; empty: NAME.pack in the current folder.
   std::filesystem::path out{};
-  std::uint32_t jobs = 1;
+  /// Threads; 0 until the command line is read: one per processor.
+  std::uint32_t jobs = 0;
   std::filesystem::path report{};
   /// Golden report to compare with; empty: none. See compareReports.
   std::filesystem::path golden_report{};

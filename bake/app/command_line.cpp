@@ -66,7 +66,6 @@ void visitTarget(Target& target, OptionVisitor& visitor) {
 /// All options of the tool, each of which is told to `visitor` once or more.
 void visitAll(OptionVisitor& visitor) {
   RunOptions run;
-  run.jobs = std::max(1U, std::thread::hardware_concurrency());
   visitOptions(run, visitor);
   for (Target& target : allTargets()) visitTarget(target, visitor);
   PlanOptions plan;
@@ -103,7 +102,8 @@ class Registrar final : public OptionVisitor {
   static constexpr std::size_t kLongDefault = 24;
 
   static std::string typed(std::string_view name) {
-    for (const std::string_view with_letter : {"out", "jobs", "verbose", "quiet"}) {
+    if (name == "threads") return "-j,--threads";
+    for (const std::string_view with_letter : {"out", "verbose", "quiet"}) {
       if (name == with_letter) return fmt::format("-{},{}", name.front(), dashed(name));
     }
     return dashed(name);
@@ -176,10 +176,12 @@ class CommandLine {
     command.inputs = std::move(inputs_);
     command.config = config_;
     command.prints_recipe = prints_recipe_;
-    command.run.jobs = std::max(1U, std::thread::hardware_concurrency());
     ASSIGN_OR_RETURN(auto target, chooseTarget(command.inputs));
     command.what = std::move(target);
     RETURN_IF_ERROR(readOptions(command));
+    if (command.run.jobs == 0) {
+      command.run.jobs = std::max(1U, std::thread::hardware_concurrency());
+    }
     return command;
   }
 
@@ -296,8 +298,8 @@ class CommandLine {
   }
 
   static Result<void> checkRun(const BakeCommand& command, const OptionReader& given) {
-    if (given.isGiven("tolerance") && !given.isGiven("check")) {
-      return given.refuse("tolerance", "is about `check`; add it, or leave this out");
+    if (given.isGiven("check-tolerance") && !given.isGiven("check")) {
+      return given.refuse("check-tolerance", "is about `check`; add it, or leave this out");
     }
     if (command.plan.no_cache && given.isGiven("cache")) {
       return given.refuse("no-cache", "does not go with `cache`; give one");

@@ -105,12 +105,13 @@ void visitOptions(RunOptions& options, OptionVisitor& v) {
   v.group("Options");
   v.option({"out", "OUT", "Pack to write, or a folder for several packs (default: NAME.pack)"},
            path(out));
-  v.option({"jobs", "N", "Threads; the result does not depend on it"}, whole(jobs, {1, 4096}));
+  v.option({"threads", "N", "Threads; the packs do not depend on it; 0: one per processor"},
+           whole(jobs, {0, 4096}));
   v.option({"report", "FILE.json", "Write what was done as JSON"}, path(report));
   v.option({"check", "FILE.json",
             "Compare what was done with a report of an earlier bake; exit code 7 when it differs"},
            path(golden_report));
-  v.option({"tolerance", "SHARE",
+  v.option({"check-tolerance", "SHARE",
             "Share by which numbers may differ for --check (default: whole ones not at all)"},
            number(tolerance, {.least = 0, .most = 1e6}));
   v.option({"dry-run", "",

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kFooter =
     "Examples:\n"
-    "  galactic-run --pack world.pack --policy scripted --order partition --record run.rec\n"
+    "  galactic-run world.pack --policy scripted --order partition --record run.rec\n"
     "  galactic-dynamics world.toml --pack world.pack --recording run.rec --report report.json";
 
 std::vector<std::string> longNamesOf(const CLI::App& app) {

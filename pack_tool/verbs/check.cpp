@@ -69,12 +69,12 @@ std::vector<CheckedPack> checkAll(const std::vector<Task>& tasks, unsigned jobs)
 }
 
 /// A line for each pack, those of a world before it.
-void printText(const CheckedPack& pack, OutputForm form, const Console& console) {
-  for (const CheckedPack& listed : pack.listed) printText(listed, form, console);
+void printText(const CheckedPack& pack, const CheckOptions& options, const Console& console) {
+  for (const CheckedPack& listed : pack.listed) printText(listed, options, console);
   if (pack.finding) {
     const auto& [code, error] = *pack.finding;
     reportError(console, {error.code, error.where, fmt::format("{} [{}]", error.message, code)});
-  } else if (form == OutputForm::kText) {
+  } else if (options.form == OutputForm::kText && !options.is_quiet) {
     console.out << fmt::format("{}: ok\n", printable(pack.file));
   }
 }
@@ -120,12 +120,13 @@ Result<void> writeJunit(const std::vector<CheckedPack>& packs, const fs::path& r
 }  // namespace
 
 int runCheck(const CheckOptions& options, const Console& console) {
-  const unsigned jobs = options.jobs > 0 ? options.jobs : std::thread::hardware_concurrency();
-  const std::vector<CheckedPack> packs = checkAll(tasksOf(options.packs), jobs);
+  const unsigned threads =
+      options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
+  const std::vector<CheckedPack> packs = checkAll(tasksOf(options.packs), threads);
   int exit_code = kExitOk;
   Json report = Json::array();
   for (const CheckedPack& pack : packs) {
-    printText(pack, options.form, console);
+    printText(pack, options, console);
     exit_code = worseExit(exit_code, pack.exitCode());
     if (options.form == OutputForm::kJson) report.push_back(entryOf(pack));
   }

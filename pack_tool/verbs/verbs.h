@@ -33,8 +33,10 @@ struct CheckOptions {
   OutputForm form = OutputForm::kText;
   /// Report for CI systems; empty: none.
   std::filesystem::path junit = {};
-  /// Threads; 0: as many as there are cores. What is printed does not depend on it.
-  unsigned jobs = 0;
+  /// 0: one per processor. What is printed does not depend on it.
+  unsigned threads = 0;
+  /// Whether errors alone are printed; JSON says everything all the same.
+  bool is_quiet = false;
 };
 
 /// Verifies each pack completely: one line "ok" to console.out or one error with its code (see

@@ -253,7 +253,7 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument("policy", type=named_path, help="best.pt or policy.pt of a run")
     parser.add_argument(
         "-o",
-        "--output",
+        "--out",
         type=named_path,
         required=True,
         metavar="FILE.pack",
@@ -273,7 +273,7 @@ def make_parser() -> argparse.ArgumentParser:
 def main(arguments: Optional[Sequence[str]] = None) -> int:
     options = make_parser().parse_args(arguments)
     try:
-        write(options.policy, options.output, options.name, options.robot)
+        write(options.policy, options.out, options.name, options.robot)
     except galactic.Error as error:
         return _refuse(error, int(error.code))
     except (checkpoint.CheckpointError, ExportError, SettingsError) as error:

@@ -53,7 +53,7 @@ def make_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument(
         "-o",
-        "--output",
+        "--out",
         type=named_path,
         required=True,
         metavar="FOLDER",
@@ -102,7 +102,7 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
 
 
 def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
-    folder: pathlib.Path = options.output
+    folder: pathlib.Path = options.out
     settings = run.settings
     local_ranks = int(os.environ.get("LOCAL_WORLD_SIZE", "1"))
     threads = threads_of(settings.simulation_threads, local_ranks)
@@ -144,9 +144,9 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
 def _new_run(options: argparse.Namespace) -> Run:
     if options.world is None:
         raise SettingsError("which world? Name a world pack, or --resume a run")
-    if (options.output / "settings.json").exists():
+    if (options.out / "settings.json").exists():
         raise SettingsError(
-            f"{options.output} already holds a run; continue it with --resume, or choose another folder"
+            f"{options.out} already holds a run; continue it with --resume, or choose another folder"
         )
     settings = preset(
         "paper" if options.preset is None else options.preset, **given_options(options)
@@ -164,9 +164,9 @@ def _resumed_run(options: argparse.Namespace) -> Run:
         raise SettingsError(
             "a resumed run keeps its world, its preset and its weights; leave them out"
         )
-    file = options.output / "settings.json"
+    file = options.out / "settings.json"
     if not file.is_file():
-        raise checkpoint.CheckpointError(f"{file} does not exist: {options.output} holds no run")
+        raise checkpoint.CheckpointError(f"{file} does not exist: {options.out} holds no run")
     run = json.loads(file.read_text(encoding="utf-8"))
     settings = resumed(Settings.from_dict(run["settings"]), given_options(options))
     validation = run["validation"]

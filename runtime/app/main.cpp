@@ -51,7 +51,7 @@ int flushOutput() {
 }
 
 /// Opens one pack and prints its summary. Mapping and verifying are timed apart.
-Result<galactic::PackFile> openAndDescribe(const std::string& path, bool trusted) {
+Result<galactic::PackFile> openAndDescribe(const std::string& path, const RunOptions& options) {
   using Clock = std::chrono::steady_clock;
   using Seconds = std::chrono::duration<double>;
   galactic::OpenTimes times;
@@ -59,13 +59,13 @@ Result<galactic::PackFile> openAndDescribe(const std::string& path, bool trusted
   Result<galactic::PackFile> pack = galactic::PackFile::open(path, galactic::Trust::kTrusted);
   times.map = Seconds(Clock::now() - start).count();
   if (!pack) return pack;
-  if (!trusted) {
+  if (!options.trusted) {
     const auto mapped = Clock::now();
     const auto verified = galactic::PackFile::view(pack->bytes(), path);
     times.verify = Seconds(Clock::now() - mapped).count();
     if (!verified) return tl::unexpected<Error>(verified.error());
   }
-  fmt::print("{}", galactic::summarize(*pack, times));
+  if (!options.is_quiet) fmt::print("{}", galactic::summarize(*pack, times));
   return pack;
 }
 
@@ -73,14 +73,14 @@ int describePacks(const RunOptions& options) {
   std::vector<galactic::PackFile> packs;
   std::vector<galactic::SceneGrids> scenes;
   for (const std::string& path : options.packs) {
-    Result<galactic::PackFile> pack = openAndDescribe(path, options.trusted);
+    Result<galactic::PackFile> pack = openAndDescribe(path, options);
     if (!pack) return report(pack.error());
     if (const auto scene = galactic::Scene::from(*pack)) scenes.push_back(scene->grids());
     packs.push_back(std::move(*pack));
   }
   if (options.bench && scenes.empty()) {
-    return report({ErrorCode::kInvalidInput, "--bench",
-                   "needs a pack of a scene to query; give one with --pack"});
+    return report(
+        {ErrorCode::kInvalidInput, "--bench", "needs a pack of a scene to query; name one"});
   }
   if (options.bench) {
     const auto seed = static_cast<std::uint32_t>(options.simulation.seed);
@@ -92,7 +92,7 @@ int describePacks(const RunOptions& options) {
 int simulateWorld(const RunOptions& options, const OpenedWorld& world, const RunSource& source) {
   const Result<galactic::RunReport> run = galactic::simulate(options, world, source);
   if (!run) return report(run.error());
-  fmt::print("{}", galactic::tableOf(*run));
+  if (!options.is_quiet) fmt::print("{}", galactic::tableOf(*run));
   if (const int written = flushOutput(); written != galactic::kExitOk) return written;
   if (!options.report.empty()) {
     const std::string json = galactic::jsonOf(*run);

@@ -159,7 +159,7 @@ TEST_F(BakeCli, TellsThatARoomIsOpen) {
 
 TEST_F(BakeCli, LeavesAnOldPackIntactWhenABakeFails) {
   write("room.pack", "the old pack");
-  EXPECT_EQ(run({"room.obj", "--seed", "100,0,0"}).exit_code, 3);
+  EXPECT_EQ(run({"room.obj", "--inside", "100,0,0"}).exit_code, 3);
   EXPECT_EQ(content("room.pack"), "the old pack");
 }
 
@@ -207,12 +207,12 @@ TEST_F(BakeCli, ExplainsEveryRefusal) {
       {{"room.obj", "--radi", "0.1"}, 1, "--radi; did you mean '--radii'?; see --help"},
       {{"room.obj", "--radii", "0.1,,0.2"}, 1, "--radii: has \"\" in \"0.1,,0.2\""},
       {{"room.obj", "--radii", "0.05,x"}, 1, "--radii: has \"x\" in \"0.05,x\""},
-      {{"room.obj", "--seed", "1,2"}, 1, "--seed: has 2 numbers in \"1,2\", 3 are wanted"},
+      {{"room.obj", "--inside", "1,2"}, 1, "--inside: has 2 numbers in \"1,2\", 3 are wanted"},
       {{"room.obj", "--up", "w"}, 1, "--up: is \"w\""},
       {{"room.obj", "--scale", "-1"}, 1, "--scale: found -1, wanted a number above 0"},
       {{"room.obj", "--transform", "1,2,3"}, 1, "--transform: has 3 numbers, 12"},
       {{"room.obj", "--engine", "magic"}, 1, "--engine"},
-      {{"room.obj", "--jobs", "0"}, 1, "--jobs"},
+      {{"room.obj", "--threads", "4097"}, 1, "--threads"},
       {{"missing.obj"}, 2, "missing.obj"},
       {{"room.obj", "--config", "missing.toml"}, 2, "missing.toml"},
       {{"room.obj", "-o", "/dev/null"}, 2, "a device or pipe of this name is there"},
@@ -220,7 +220,7 @@ TEST_F(BakeCli, ExplainsEveryRefusal) {
       {{"room.obj", "--radii", "0.12,0.05"}, 3, "in ascending order"},
       {{"room.obj", "--spacing", "0"}, 1, "--spacing: found 0, wanted a number above 0"},
       {{"room.obj", "--coverage", "cell", "--engine", "embree"}, 3, "--coverage: cell works with"},
-      {{"room.obj", "--seed", "9,9,9"}, 3, "is outside the scene"},
+      {{"room.obj", "--inside", "9,9,9"}, 3, "is outside the scene"},
       {{"room.obj", "-o", "no/such/folder/room.pack"}, 2, "cannot write the file"},
   };
   for (const Refusal& refusal : refusals) {

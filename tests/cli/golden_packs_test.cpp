@@ -47,7 +47,7 @@ std::string bakeRoom(std::vector<std::string> more_options) {
 TEST(GoldenPacks, AreMadeAgainByteForByte) {
   EXPECT_TRUE(bakeRoom({}) == test::fileContent(goldenFolder() / "room-column.pack"))
       << "the bytes of a bake changed: if on purpose, see packs/golden/README.md";
-  EXPECT_TRUE(bakeRoom({"--coverage", "cell", "--jobs", "3"}) ==
+  EXPECT_TRUE(bakeRoom({"--coverage", "cell", "--threads", "3"}) ==
               test::fileContent(goldenFolder() / "room-cell.pack"))
       << "the bytes of a conservative bake changed: if on purpose, see packs/golden/README.md";
 }

@@ -59,7 +59,7 @@ def faults_of(command: list[str], knows: str) -> list[str]:
 def main() -> int:
     programs, world, packs = (pathlib.Path(text).resolve() for text in sys.argv[1:4])
     commands = [
-        ["envs", "galactic-run", "--pack", world, "--envs", 65536, "--steps", 1, "--threads", 1],
+        ["envs", "galactic-run", world, "--envs", 65536, "--steps", 1, "--threads", 1],
         ["", "galactic-pack", "picture", packs / "crate.pack", "--size", 2048, "-o", "crate.png"],
         ["columns", "galactic-bake", packs / "room.obj", "--spacing", 0.002, "--check-columns", 0, "-q", "-o", "room.pack"],
     ]

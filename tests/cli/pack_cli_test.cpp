@@ -85,7 +85,7 @@ TEST_F(PackCli, ExplainsAWrongCommandLineWithExitCodeOne) {
       {{"picture", "good.pack", "-o", "a.png", "--radius", "1e99"}, "--radius: found 1e99"},
       {{"picture", "arm.pack", "-o", "a.png", "--size", "0100"}, "--size: found 0100"},
       {{"picture", "arm.pack", "-o", "a.png", "--size", "99999999999999999999"}, "--size"},
-      {{"check", "good.pack", "--jobs", "-1"}, "--jobs: found -1, wanted a whole number"},
+      {{"check", "good.pack", "--threads", "-1"}, "--threads: found -1, wanted a whole number"},
       {{"info"}, "packs is required"},
       {{"info", "good.pack", "--frob"}, "--frob"},
       {{"column", "good.pack"}, "--at is required"},
@@ -94,18 +94,18 @@ TEST_F(PackCli, ExplainsAWrongCommandLineWithExitCodeOne) {
       {{"column", "good.pack", "--at", "1,2,3"}, "\"1,2,3\" is not 2 numbers"},
       {{"diff", "good.pack"}, "b is required"},
       {{"diff", "good.pack", "good.pack", "--tolerance", "-1"}, "--tolerance"},
-      {{"export", "good.pack"}, "--output is required"},
+      {{"export", "good.pack"}, "--out is required"},
       {{"picture", "good.pack", "-o", "a.png", "--slice", "1,2,3"}, "is not 4 numbers"},
-      {{"picture", "good.pack"}, "--output is required"},
+      {{"picture", "good.pack"}, "--out is required"},
       {{"picture", "arm.pack", "-o", "a.png", "--joints", "lift"}, "is not joint=value"},
       {{"picture", "arm.pack", "-o", "a.png", "--joints", "lift=1,"}, "is not joint=value"},
       {{"picture", "arm.pack", "-o", "a.png", "--what", "mesh,bones"},
        "\"bones\" is not mesh, spheres or boxes"},
       {{"picture", "arm.pack", "-o", "a.png", "--size", "10"}, "--size"},
       {{"export", "good.pack", "-o", "a.png", "--to", "gif"}, "--to"},
-      {{"export", "good.pack", "--to", "ply"}, "--output is required"},
+      {{"export", "good.pack", "--to", "ply"}, "--out is required"},
       {{"export", "good.pack", "-o", "x.json", "--object-up", "w"}, "--object-up"},
-      {{"view", "good.pack"}, "--output is required"},
+      {{"view", "good.pack"}, "--out is required"},
       {{"view", "good.pack", "-o", "a.html", "--texture-size", "100"}, "found 100, wanted a power"},
       {{"view", "good.pack", "-o", "a.html", "--texture-size", "0"}, "--texture-size: found 0"},
       {{"view", "good.pack", "-o", "a.html", "--texture-size", "8192"}, "--texture-size"},
@@ -175,7 +175,7 @@ TEST_F(PackCli, CheckReportsAsJson) {
 }
 
 TEST_F(PackCli, CheckSearchesFoldersAndWritesAJUnitReport) {
-  const ProgramRun result = run({"check", ".", "--junit", "report.xml", "--jobs", "3"});
+  const ProgramRun result = run({"check", ".", "--junit", "report.xml", "--threads", "3"});
   EXPECT_EQ(result.exit_code, kInvalidInput);
   EXPECT_EQ(result.out, "./arm.pack: ok\n./good.pack: ok\n./toys.pack: ok\n");
   for (const char* line : {"galactic-pack: ./cut.pack: announces ", " [pack/size]\n",
@@ -185,7 +185,10 @@ TEST_F(PackCli, CheckSearchesFoldersAndWritesAJUnitReport) {
   const std::string report = test::fileContent(folder_.path() / "report.xml");
   EXPECT_THAT(report, HasSubstr("tests=\"6\" failures=\"3\""));
   EXPECT_THAT(report, HasSubstr("<testcase classname=\"packs\" name=\"./arm.pack\"/>"));
-  EXPECT_EQ(run({"check", ".", "--jobs", "0"}).exit_code, 1);
+  const ProgramRun quiet = run({"check", ".", "-j", "0", "-q"});
+  EXPECT_EQ(quiet.exit_code, kInvalidInput);
+  EXPECT_EQ(quiet.out, "");
+  EXPECT_EQ(quiet.err, result.err);
 }
 
 TEST_F(PackCli, EveryVerbRefusesADamagedPack) {

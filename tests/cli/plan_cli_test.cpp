@@ -291,8 +291,7 @@ TEST_F(PlanCli, BakesTheWorldOfARecipe) {
   EXPECT_EQ(with_task->withTask().task.most_steps, 300U);
   EXPECT_FALSE(with_task->withTask().task.drop_fails);
   const auto stepped = [this](std::vector<std::string> more) {
-    more.insert(more.begin(),
-                {"--pack", "flat.pack", "--envs", "2", "--steps", "3", "--report", "run.json"});
+    more.insert(more.begin(), {"flat.pack", "--envs", "2", "--steps", "3", "--report", "run.json"});
     const ProgramRun stepping = runProgram(GALACTIC_RUN, path(""), more);
     EXPECT_EQ(stepping.exit_code, 0) << stepping.err;
     return nlohmann::json::parse(content("run.json"), nullptr, false);

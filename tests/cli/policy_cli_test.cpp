@@ -66,7 +66,7 @@ class PolicyCli : public testing::Test {
     return test::runProgram(GALACTIC_RUN, folder_.path(), std::move(arguments));
   }
   [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
-    const std::vector<std::string> first{"--pack", "world.pack", "--envs", "5", "--steps", "20"};
+    const std::vector<std::string> first{"world.pack", "--envs", "5", "--steps", "20"};
     arguments.insert(arguments.begin(), first.begin(), first.end());
     return runBare(std::move(arguments));
   }
@@ -118,13 +118,13 @@ TEST_F(PolicyCli, DrawsWhatThePolicyWantsToSee) {
   EXPECT_TRUE(recordingOf({"--policy", "seeing.pack", "--backend", "soft", "--threads", "1"}) ==
               once)
       << "the same on any number of threads";
-  EXPECT_THAT(runBare({"--pack", "seeing.pack"}).out,
+  EXPECT_THAT(runBare({"seeing.pack"}).out,
               AllOf(HasSubstr("policy \"wanderer\""), HasSubstr("image: 16 x 12, camera head")));
 }
 
 TEST_F(PolicyCli, DrawsActionsOrTakesTheLikeliest) {
   const std::string sampled = recordingOf({"--policy", "blind.pack"});
-  EXPECT_TRUE(recordingOf({"--policy", "blind.pack", "--policy-sample"}) == sampled);
+  EXPECT_TRUE(recordingOf({"--policy", "blind.pack", "--sampled"}) == sampled);
   const std::string likeliest = recordingOf({"--policy", "blind.pack", "--deterministic"});
   EXPECT_FALSE(likeliest == sampled);
   const ProgramRun result = run({"--policy", "blind.pack", "--deterministic"});
@@ -137,7 +137,7 @@ TEST_F(PolicyCli, IsRecordedAndReplayedBitForBit) {
         run({"--policy", pack, "--backend", "soft", "--record", "run.rec", "--threads", "2"});
     ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
     const ProgramRun replayed =
-        runBare({"--pack", "world.pack", "--policy", "replay:run.rec", "--threads", "1"});
+        runBare({"world.pack", "--policy", "replay:run.rec", "--threads", "1"});
     EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
     EXPECT_THAT(replayed.out, HasSubstr("20 steps, bit for bit the same"));
   }
@@ -155,7 +155,7 @@ TEST_F(PolicyCli, IsShownInPicturesOfAnotherCamera) {
 }
 
 TEST_F(PolicyCli, DescribesAPolicyPack) {
-  const ProgramRun result = runBare({"--pack", "blind.pack"});
+  const ProgramRun result = runBare({"blind.pack"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out,
               AllOf(StartsWith("blind.pack: policy \"wanderer\", format 1, by galactic.export"),

@@ -38,8 +38,8 @@ class RenderCli : public testing::Test {
     return test::runProgram(GALACTIC_RUN, folder_.path(), std::move(arguments));
   }
   [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
-    const std::vector<std::string> first{"--pack", "world.pack", "--backend", "soft",
-                                         "--envs", "3",          "--steps",   "20"};
+    const std::vector<std::string> first{"world.pack", "--backend", "soft", "--envs",
+                                         "3",          "--steps",   "20"};
     arguments.insert(arguments.begin(), first.begin(), first.end());
     return runBare(std::move(arguments));
   }
@@ -89,8 +89,7 @@ TEST_F(RenderCli, ReportsAsJson) {
     EXPECT_GT(rendering["seconds_per_step"][part].get<double>(), 0) << part;
   }
   ASSERT_EQ(run({"--report", "plain.json"}).exit_code, 1);
-  ASSERT_EQ(runBare({"--pack", "world.pack", "--steps", "3", "--report", "plain.json"}).exit_code,
-            0);
+  ASSERT_EQ(runBare({"world.pack", "--steps", "3", "--report", "plain.json"}).exit_code, 0);
   EXPECT_FALSE(json::parse(content("plain.json")).contains("rendering"));
 }
 
@@ -135,8 +134,8 @@ TEST_F(RenderCli, WritesFramesAndASheetThatDependOnNothingElse) {
 }
 
 TEST_F(RenderCli, DrawingDoesNotChangeTheRun) {
-  const std::vector<std::string> plain{"--pack", "world.pack", "--envs", "3",       "--steps",
-                                       "40",     "--seed",     "9",      "--record"};
+  const std::vector<std::string> plain{"world.pack", "--envs", "3", "--steps",
+                                       "40",         "--seed", "9", "--record"};
   std::vector<std::string> without = plain;
   without.insert(without.end(), {"plain.rec"});
   std::vector<std::string> drawn = plain;
@@ -146,8 +145,8 @@ TEST_F(RenderCli, DrawingDoesNotChangeTheRun) {
   EXPECT_EQ(content("plain.rec"), content("drawn.rec"));
   // And a recording can be drawn.
   const ProgramRun replayed =
-      runBare({"--pack", "world.pack", "--policy", "replay:plain.rec", "--render", "rgb", "--size",
-               "16", "--backend", "soft", "--contact-sheet", "replay.png"});
+      runBare({"world.pack", "--policy", "replay:plain.rec", "--render", "rgb", "--size", "16",
+               "--backend", "soft", "--contact-sheet", "replay.png"});
   EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
   EXPECT_THAT(content("replay.png"), StartsWith("\x89PNG"));
 }
@@ -209,7 +208,6 @@ TEST_F(RenderCli, ARunThatIsStoppedFinishesItsPictures) {
                                               "INT",
                                               "2",
                                               GALACTIC_RUN,
-                                              "--pack",
                                               "world.pack",
                                               "--backend",
                                               "soft",

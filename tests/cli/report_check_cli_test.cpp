@@ -104,8 +104,8 @@ TEST_F(ReportCheck, TakesNumbersWithAFractionForTheSameWhenTheyNearlyAre) {
   };
   EXPECT_EQ(after(scaled(1 + 1e-7)).exit_code, 0);
   EXPECT_EQ(after(scaled(1 + 1e-5)).exit_code, kExitDiffers);
-  EXPECT_EQ(after(scaled(1.04), {"--tolerance", "0.05"}).exit_code, 0);
-  EXPECT_EQ(after(scaled(1.06), {"--tolerance", "0.05"}).exit_code, kExitDiffers);
+  EXPECT_EQ(after(scaled(1.04), {"--check-tolerance", "0.05"}).exit_code, 0);
+  EXPECT_EQ(after(scaled(1.06), {"--check-tolerance", "0.05"}).exit_code, kExitDiffers);
 }
 
 TEST_F(ReportCheck, HeedsTheTolerancesOfTheGoldenReport) {
@@ -184,7 +184,7 @@ TEST_F(ReportCheck, ExplainsEveryRefusal) {
        "negative.json: tolerances.episodes: is neither a share of 0 or more"},
       {{"--check", "number.json"}, 3, "number.json: tolerances: is no object"},
       {{"--check", "golden.json", "--report", "golden.json"}, 3, "is also an input"},
-      {{"--check", "golden.json", "--tolerance", "-1"}, 1, "--tolerance"},
+      {{"--check", "golden.json", "--check-tolerance", "-1"}, 1, "--check-tolerance"},
   };
   std::filesystem::remove(path("tidy.pack"));
   for (const test::Refusal& refusal : refusals) {

@@ -43,7 +43,7 @@ class RunCli : public testing::Test {
 };
 
 TEST_F(RunCli, SaysWhatIsInAPack) {
-  const ProgramRun result = run({"--pack", "good.pack"});
+  const ProgramRun result = run({"good.pack"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(StartsWith("good.pack: scene "), HasSubstr("verified in"),
                                 HasSubstr("radius m"), HasSubstr("sphere casts")));
@@ -53,7 +53,7 @@ TEST_F(RunCli, SaysWhatIsInAPack) {
 TEST_F(RunCli, SaysWhatIsInEpisodesAndListsThePacksOfAWorld) {
   write("tidy.pack", test::textOf(test::buildPack(test::smallEpisodes())));
   write("world.pack", test::textOf(test::buildPack(test::smallWorldPack())));
-  const ProgramRun result = run({"--pack", "tidy.pack", "--pack", "world.pack"});
+  const ProgramRun result = run({"tidy.pack", "world.pack"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(StartsWith("tidy.pack: 2 episodes \"tidy\", format 1"),
                                 HasSubstr("\n  1 scenes, 2 objects, 1 to 3 of them at a time\n"
@@ -64,13 +64,22 @@ TEST_F(RunCli, SaysWhatIsInEpisodesAndListsThePacksOfAWorld) {
 }
 
 TEST_F(RunCli, SkipsVerificationOnlyWhenTold) {
-  const ProgramRun result = run({"--pack", "good.pack", "--trusted"});
+  const ProgramRun result = run({"good.pack", "--trusted"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, testing::Not(HasSubstr("verified in")));
 }
 
+TEST_F(RunCli, PrintsErrorsOnlyWhenToldToBeQuiet) {
+  const ProgramRun good = run({"good.pack", "--quiet"});
+  EXPECT_EQ(good.exit_code, 0);
+  EXPECT_THAT(good.out, IsEmpty());
+  const ProgramRun bad = run({"cut.pack", "-q"});
+  EXPECT_EQ(bad.exit_code, 3);
+  EXPECT_THAT(bad.err, StartsWith("galactic-run: cut.pack: "));
+}
+
 TEST_F(RunCli, MeasuresQueries) {
-  const ProgramRun result = run({"--pack", "good.pack", "--bench"});
+  const ProgramRun result = run({"good.pack", "--bench"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(HasSubstr("coherent, 128 robots"), HasSubstr("random")));
 }
@@ -78,12 +87,12 @@ TEST_F(RunCli, MeasuresQueries) {
 TEST_F(RunCli, EndsWithACodeForEachKindOfMistake) {
   const std::vector<std::pair<std::vector<std::string>, int>> mistakes{
       {{}, 1},
-      {{"--pack"}, 1},
+      {{"--pack=good.pack"}, 1},
       {{"--no-such-option"}, 1},
-      {{"--pack", "missing.pack"}, 2},
-      {{"--pack", "cut.pack"}, 3},
-      {{"--pack", "text.pack"}, 3},
-      {{"--pack", "later.pack"}, 5},
+      {{"missing.pack"}, 2},
+      {{"cut.pack"}, 3},
+      {{"text.pack"}, 3},
+      {{"later.pack"}, 5},
   };
   for (const auto& [arguments, code] : mistakes) {
     SCOPED_TRACE(testing::PrintToString(arguments));
@@ -99,8 +108,8 @@ TEST_F(RunCli, EndsWithACodeForEachKindOfMistake) {
 TEST_F(RunCli, ListsItsExitCodesInHelp) {
   const ProgramRun help = run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  EXPECT_THAT(help.out, AllOf(HasSubstr("--pack"), HasSubstr("--bench"), HasSubstr("0    success"),
-                              HasSubstr("3    invalid input")));
+  EXPECT_THAT(help.out, AllOf(HasSubstr("PACK ..."), HasSubstr("--bench"),
+                              HasSubstr("0    success"), HasSubstr("3    invalid input")));
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ class SimulateCli : public testing::Test {
   }
   /// With the world.
   [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), {"--pack", "world.pack"});
+    arguments.insert(arguments.begin(), {"world.pack"});
     return runBare(std::move(arguments));
   }
   /// Simulates with a report and returns it.
@@ -65,7 +65,7 @@ class SimulateCli : public testing::Test {
 };
 
 TEST_F(SimulateCli, EndsWithATable) {
-  const ProgramRun result = run({"--envs", "20", "--steps", "50", "--seed", "3", "--threads", "2"});
+  const ProgramRun result = run({"--envs", "20", "--steps", "50", "--seed", "3", "-j", "2"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out,
               AllOf(StartsWith("20 envs, 50 steps each, 2 threads, policy random, seed 3\n"),
@@ -80,8 +80,8 @@ TEST_F(SimulateCli, EndsWithATable) {
 
 TEST_F(SimulateCli, TakesThePacksThemselvesToo) {
   const ProgramRun result =
-      runBare({"--pack", "episodes.pack", "--pack", "objects.pack", "--pack", "robots/helper.pack",
-               "--pack", "scenes/kitchen.pack", "--trusted", "--envs", "1", "--steps", "1"});
+      runBare({"episodes.pack", "objects.pack", "robots/helper.pack", "scenes/kitchen.pack",
+               "--trusted", "--envs", "1", "--steps", "1"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, StartsWith("1 envs, 1 steps each, 1 threads"));
 }
@@ -147,9 +147,8 @@ TEST_F(SimulateCli, TakesTheTaskOfTheWorldWhichTheCommandLineOverrides) {
   EXPECT_THAT(run(with({"--episode-steps", "30", "--task", "none"})).out,
               HasSubstr("\n  world's task  safe-drop true; not task pick, episode-steps 20\n"));
   // Its packs one by one say nothing of a task.
-  const ProgramRun loose =
-      runBare({"--pack", "episodes.pack", "--pack", "objects.pack", "--pack", "robots/helper.pack",
-               "--pack", "scenes/kitchen.pack", "--envs", "1", "--steps", "1"});
+  const ProgramRun loose = runBare({"episodes.pack", "objects.pack", "robots/helper.pack",
+                                    "scenes/kitchen.pack", "--envs", "1", "--steps", "1"});
   EXPECT_EQ(loose.exit_code, 0) << loose.err;
   EXPECT_THAT(loose.out, Not(HasSubstr("world's task")));
   // The same steps as with the options typed.
@@ -162,7 +161,7 @@ TEST_F(SimulateCli, TakesTheTaskOfTheWorldWhichTheCommandLineOverrides) {
   EXPECT_TRUE(content("a.rec") == content("b.rec"));
   // A recording has the options that it was made with, whatever the world says.
   EXPECT_EQ(run({"--policy", "replay:a.rec"}).exit_code, 0);
-  EXPECT_THAT(runBare({"--pack", "world.pack"}).out, Not(HasSubstr("task:")));
+  EXPECT_THAT(runBare({"world.pack"}).out, Not(HasSubstr("task:")));
 }
 
 TEST_F(SimulateCli, RefusesAWorldWhoseTaskIsNone) {
@@ -181,7 +180,7 @@ TEST_F(SimulateCli, EscapesNamesInTheReport) {
   const std::string name = "a \"strange\"\n\\name\xff.pack";
   std::filesystem::rename(folder_.path() / "world.pack", folder_.path() / name);
   const ProgramRun result =
-      runBare({"--pack", name, "--envs", "1", "--steps", "1", "--report", "report.json"});
+      runBare({name, "--envs", "1", "--steps", "1", "--report", "report.json"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   const json report = json::parse(content("report.json"), nullptr, false);
   ASSERT_TRUE(report.is_object()) << content("report.json");
@@ -321,7 +320,7 @@ TEST_F(SimulateCli, EndsWithACodeForEachKindOfMistake) {
     EXPECT_EQ(result.exit_code, code);
     EXPECT_THAT(result.err, StartsWith("galactic-run: "));
   }
-  const ProgramRun alone = runBare({"--pack", "scenes/kitchen.pack", "--steps", "1"});
+  const ProgramRun alone = runBare({"scenes/kitchen.pack", "--steps", "1"});
   EXPECT_EQ(alone.exit_code, 3);
   std::filesystem::remove(folder_.path() / "objects.pack");
   EXPECT_EQ(run({"--steps", "1"}).exit_code, 3);
@@ -346,8 +345,8 @@ TEST_F(SimulateCli, EndsCleanlyWhenItIsInterrupted) {
   // timeout sends what Ctrl-C does; the run itself would take days.
   const ProgramRun result = test::runProgram(
       "/usr/bin/timeout", folder_.path(),
-      {"--preserve-status", "--signal=INT", "2", GALACTIC_RUN, "--pack", "world.pack", "--envs",
-       "8", "--steps", "100000000000", "--threads", "2", "--record", "run.rec"});
+      {"--preserve-status", "--signal=INT", "2", GALACTIC_RUN, "world.pack", "--envs", "8",
+       "--steps", "100000000000", "--threads", "2", "--record", "run.rec"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(StartsWith("8 envs, "), HasSubstr("(stopped; 100000000000 steps"),
                                 HasSubstr("\n  stepping ")));

@@ -153,18 +153,18 @@ class Walk:
 def walks(program: str, world: pathlib.Path, packs: pathlib.Path) -> "list[Walk]":
     """What is walked, with arguments that each verb needs."""
     if pathlib.Path(program).name == "galactic-run":
-        base = {"--pack": str(world), "--envs": "2", "--steps": "2", "--threads": "1", "--render": "rgb"}
-        return [Walk(program, [], {**base, "--size": "16", "--contact-sheet": "sheet.png"}, [])]
+        base = {"--envs": "2", "--steps": "2", "--threads": "1", "--render": "rgb"}
+        return [Walk(program, [], {**base, "--size": "16", "--contact-sheet": "sheet.png"}, [str(world)])]
     room, arm, crate = (str(packs / f"{name}.pack") for name in ("room-column", "arm", "crate"))
     needed: dict[str, list[tuple[dict[str, str], list[str]]]] = {
         "info": [({}, [room])],
         "check": [({}, [room])],
         "column": [({"--at": "0,0"}, [room])],
         "diff": [({}, [room, room])],
-        "export": [({"--output": "out.obj"}, [room]), ({"--output": "out.glb"}, [arm])],
-        "picture": [({"--output": "out.png"}, [pack]) for pack in (room, arm, crate)],
-        "report": [({"--output": "out.html"}, [room])],
-        "view": [({"--output": "out.html"}, [crate])],
+        "export": [({"--out": "out.obj"}, [room]), ({"--out": "out.glb"}, [arm])],
+        "picture": [({"--out": "out.png"}, [pack]) for pack in (room, arm, crate)],
+        "report": [({"--out": "out.html"}, [room])],
+        "view": [({"--out": "out.html"}, [crate])],
     }
     verbs = re.findall(r"^ {2}([a-z]+) {2}", help_of(program, []).partition("Subcommands:")[2], re.MULTILINE)
     assert verbs and set(verbs) == set(needed), f"the verbs {verbs} are not those that this test has arguments for"

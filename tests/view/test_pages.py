@@ -57,7 +57,6 @@ class Pages(unittest.TestCase):
             )
         tool(
             OPTIONS.run,
-            "--pack",
             cls.folder / "world.pack",
             "--policy",
             f"replay:{cls.folder}/run.rec",
@@ -68,7 +67,7 @@ class Pages(unittest.TestCase):
         )
         tool(
             OPTIONS.run,
-            *("--pack", cls.folder / "bare/world.pack", "--envs", 1, "--steps", 5),
+            *(cls.folder / "bare/world.pack", "--envs", 1, "--steps", 5),
             *("--view", cls.folder / "bare.html"),
         )
         cls.browser = Browser()

@@ -158,7 +158,7 @@ void warnOfRegions(const BakedGrid& baked, const SceneBakeOptions& options,
     warnings.push_back(fmt::format(
         "radius {} m: a closed part of {:.1f} m3 (room: {:.1f} m3) from ({:.2f}, {:.2f}, {:.2f}) "
         "to "
-        "({:.2f}, {:.2f}, {:.2f}) is left out; keep it with `seed` or `keep-components`",
+        "({:.2f}, {:.2f}, {:.2f}) is left out; keep it with `inside` or `keep-components`",
         radius, part.volume, room, part.bounds.min.x, part.bounds.min.y, part.bounds.min.z,
         part.bounds.max.x, part.bounds.max.y, part.bounds.max.z));
   }

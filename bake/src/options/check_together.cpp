@@ -29,13 +29,13 @@ Result<void> checkDrawing(const DrawOptions& draw, const OptionReader& given) {
 
 Result<void> checkOne(const SceneJob& job, const OptionReader& given) {
   const bool has_components = given.isGiven("keep-components");
-  if (has_components && given.isGiven("seed")) {
+  if (has_components && given.isGiven("inside")) {
     return given.refuse("keep-components",
-                        "does not go with `seed`, whose free parts are the room; leave one of "
+                        "does not go with `inside`, whose free parts are the room; leave one of "
                         "them out");
   }
-  if (job.grids.free_space.keep == Keep::kAll && (has_components || given.isGiven("seed"))) {
-    return given.refuse(has_components ? "keep-components" : "seed",
+  if (job.grids.free_space.keep == Keep::kAll && (has_components || given.isGiven("inside"))) {
+    return given.refuse(has_components ? "keep-components" : "inside",
                         "says what the room is, and `keep` all stores everything; leave one of "
                         "them out");
   }
@@ -73,8 +73,8 @@ Result<void> checkTogether(const Job& job, const OptionReader& given) {
 }
 
 Result<void> checkTogether(const DatasetJobs& dataset, const OptionReader& given) {
-  if (given.isGiven("seed")) {
-    return given.refuse("seed", "is a point of one scene, and a dataset has many; leave it out");
+  if (given.isGiven("inside")) {
+    return given.refuse("inside", "is a point of one scene, and a dataset has many; leave it out");
   }
   return checkOne(dataset.scene, given);
 }

@@ -47,10 +47,6 @@ constexpr std::array<Named<Tolerances>, 4> kProfiles{{{"object", {0.015F, 0.020F
                                                       {"tight", {0.010F, 0.020F}},
                                                       {"coarse", {0.020F, 0.030F}}}};
 
-constexpr OptionInfo kSeedInfo{"seed", "X,Y,Z|N",
-                               "Scenes: a point of the room (may be repeated), x,y,z in meters, y "
-                               "up; episodes: the number from which the random ones are drawn"};
-
 void visitRadii(std::vector<float>& radii, OptionVisitor& v) {
   v.group("Spheres (scenes, objects, robots)");
   v.option({"radii", "R,R,...", "Sphere radii, meters, ascending"},
@@ -80,11 +76,10 @@ void visitGrids(SceneBakeOptions& options, OptionVisitor& v) {
   v.option({"keep", "room|all", "What to store: the room, or all free spans"},
            choice(keep, kKeepNames));
   v.option(
-      {"keep-components", "N", "Without seeds: how many of the largest free parts are the room"},
+      {"keep-components", "N", "Without --inside: how many of the largest free parts are the room"},
       whole(components, {1, 1'000'000}));
-  v.group("Scenes, generated episodes");
-  v.option(kSeedInfo, points(seeds));
-  v.group("Scenes");
+  v.option({"inside", "X,Y,Z", "A point of the room, meters, y up (may be repeated)"},
+           points(seeds));
   v.option({"check-columns", "N", "Columns per grid to replay with sphere casts; 0: none"},
            whole(check_columns, {0, 1'000'000}));
   v.internals(radii, jobs);
@@ -204,9 +199,9 @@ void visitSplit(SceneSplit& split, OptionVisitor& v) {
 void visitGeneration(EpisodeGeneratorOptions& options, OptionVisitor& v) {
   auto& [episodes, objects, seed, heights, flatness, target_to_goal, shorten_way, start_to_target,
          goal_on_other_support, most_skipped, supports, split, jobs] = options;
-  v.group("Scenes, generated episodes");
-  v.option(kSeedInfo, whole(seed, {0, kMostSeed}));
   v.group("Episodes");
+  v.option({"seed", "N", "Generate: the number from which the random ones are drawn"},
+           whole(seed, {0, kMostSeed}));
   v.option({"count", "N", "Generate: how many episodes"}, whole(episodes, {1, 1'000'000}));
   v.option({"objects", "N|LEAST,MOST", "Generate: objects of each episode, the target among them"},
            counts(objects, {1, 1024}));

@@ -27,13 +27,13 @@ constexpr const char* kFooter =
     "Any option of the groups below \"Options\" starts a simulation; without one, packs are\n"
     "described.\n"
     "Examples:\n"
-    "  galactic-run --pack world.pack\n"
-    "  galactic-run --pack world.pack --envs 1024 --steps 1000 --policy random\n"
-    "  galactic-run --pack world.pack --steps 100 --record run.rec\n"
-    "  galactic-run --pack world.pack --steps 100 --envs 4 --render rgbd --contact-sheet run.png\n"
-    "  galactic-run --pack world.pack --policy picker.pack --contact-sheet run.png --render rgb\n"
-    "  galactic-run --pack world.pack --policy scripted --steps 500 --envs 4 --view run.html\n"
-    "  galactic-run --pack world.pack --policy replay:run.rec";
+    "  galactic-run world.pack\n"
+    "  galactic-run world.pack --envs 1024 --steps 1000 --policy random\n"
+    "  galactic-run world.pack --steps 100 --record run.rec\n"
+    "  galactic-run world.pack --steps 100 --envs 4 --render rgbd --contact-sheet run.png\n"
+    "  galactic-run world.pack --policy picker.pack --contact-sheet run.png --render rgb\n"
+    "  galactic-run world.pack --policy scripted --steps 500 --envs 4 --view run.html\n"
+    "  galactic-run world.pack --policy replay:run.rec";
 constexpr const char* kReplayPrefix = "replay:";
 constexpr const char* kPolicySuffix = ".pack";
 constexpr const char* kPlainGroup = "Options";
@@ -133,15 +133,15 @@ class CommandLineVisitor {
 
 void addPlainOptions(CLI::App& app, RunOptions& options) {
   app.set_version_flag("--version", "galactic-run " GALACTIC_VERSION);
-  app.add_option("--pack", options.packs, "Pack to open; repeat it for several")
+  app.add_option("packs", options.packs, "Packs to open: one world, or packs of any kind")
       ->required()
-      ->allow_extra_args(false)
-      ->type_name("FILE");
+      ->type_name("PACK");
   app.add_flag("--trusted", options.trusted,
                "Skip the verification of packs that this machine has verified before")
       ->check(switchCheck());
   app.add_flag("--bench", options.bench, "Measure queries on all grids of all packs")
       ->check(switchCheck());
+  app.add_flag("-q,--quiet", options.is_quiet, "Only errors")->check(switchCheck());
 }
 
 void addRunOptions(CLI::App& app, RunOptions& options) {
@@ -153,10 +153,10 @@ void addRunOptions(CLI::App& app, RunOptions& options) {
       ->check(knownPolicy())
       ->option_text(
           fmt::format("random|forward|zero|scripted|FILE.pack|replay:FILE [{}]", options.policy));
-  app.add_flag("--deterministic,!--policy-sample", options.is_deterministic,
+  app.add_flag("--deterministic,!--sampled", options.is_deterministic,
                "Let a policy pack take its likeliest actions, or sample them (the default)")
       ->check(switchCheck());
-  app.add_option("--threads", options.simulation.threads,
+  app.add_option("-j,--threads", options.simulation.threads,
                  "Threads; the results do not depend on it; 0: one per processor")
       ->check(wholeCheck(0, 4096))
       ->option_text(fmt::format("N [{}]", options.simulation.threads));

@@ -16,6 +16,8 @@ struct RunOptions {
   std::vector<std::string> packs;
   bool trusted = false;
   bool bench = false;
+  /// Whether errors alone are printed.
+  bool is_quiet = false;
   /// Whether any option of a simulation was typed: then the packs are a world and step, else they
   /// are summarized.
   bool simulates = false;

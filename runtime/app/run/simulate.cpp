@@ -170,7 +170,7 @@ class Run {
       if (Result<void> stepped = step(); !stepped) return stepped;
       if (Clock::now() < next_look) continue;
       next_look = Clock::now() + kLookEvery;
-      if (line.isEnabled()) line.show(report_.steps, simulator_.statistics());
+      if (line.isEnabled() && !options_.is_quiet) line.show(report_.steps, simulator_.statistics());
       report_.is_interrupted =
           report_.steps < options_.steps && !hasPlayedAll() && interrupt.came();
       if (report_.is_interrupted) break;

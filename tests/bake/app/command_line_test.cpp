@@ -142,7 +142,7 @@ TEST(CommandLine, RefusesOptionsThatAreGivenTwice) {
 }
 
 TEST(CommandLine, TakesAValueOfEveryOption) {
-  const std::set<std::string> needs_another{"held-out", "split-seed", "tolerance", "seed",
+  const std::set<std::string> needs_another{"held-out", "split-seed", "check-tolerance", "inside",
                                             "collection"};
   for (const auto& [base, options] : allOptions()) {
     for (const WalkedOption& option : options) {
@@ -185,13 +185,13 @@ TEST(CommandLine, RefusesWhatWouldBeIgnored) {
     std::string said;
   };
   for (const Pair& pair : std::vector<Pair>{
-           {{"room.glb", "--seed", "0,1,0", "--keep-components", "2"},
-            "--keep-components: does not go with --seed"},
-           {{"room.glb", "--keep", "all", "--seed", "0,1,0"},
-            "--seed: says what the room is, and --keep all stores"},
+           {{"room.glb", "--inside", "0,1,0", "--keep-components", "2"},
+            "--keep-components: does not go with --inside"},
+           {{"room.glb", "--keep", "all", "--inside", "0,1,0"},
+            "--inside: says what the room is, and --keep all stores"},
            {{"room.glb", "--keep", "all", "--keep-components", "2"},
             "--keep-components: says what the room is, and --keep all"},
-           {{"room.glb", "--tolerance", "0.1"}, "--tolerance: is about --check"},
+           {{"room.glb", "--check-tolerance", "0.1"}, "--check-tolerance: is about --check"},
            {{"room.glb", "--no-render-meshes", "--texture-size", "64"},
             "--texture-size: does not go with --no-render-meshes"},
            {{"robot.urdf", "--obb", "min"}, "--obb: does not go with --as robot"},
@@ -204,7 +204,7 @@ TEST(CommandLine, RefusesWhatWouldBeIgnored) {
            {{"home.toml", "--eps", "0.1"}, "--eps: does not go with a world's recipe"},
            {{"--as", "episodes", "a.pack", "--held-out", "0.1"}, "--held-out: is about --split"},
            {{"--as", "episodes", "a.pack", "--split-seed", "3"}, "--split-seed: is about --split"},
-           {{"home.scene_dataset_config.json", "--seed", "0,1,0"}, "--seed: is a point of one"},
+           {{"home.scene_dataset_config.json", "--inside", "0,1,0"}, "--inside: is a point of one"},
            {{"room.glb", "--quiet", "--verbose"}, "--verbose: does not go with --quiet"},
            {{"room.glb", "--as", "scene", "--as", "scene"}, "command line: --as: "},
            {{"room.glb", "--as", "house"}, "--as: is \"house\", one of scene, object"},
@@ -263,7 +263,7 @@ TEST(CommandLine, KeepsTheKeysOfJobsWhateverTheRunIsLike) {
        {test::walk(RunOptions{}), test::walk(PlanOptions{}), test::walk(RecipeCommand{})}) {
     for (const WalkedOption& option : options) {
       // Where the packs go, and what needs another option.
-      if (option.name == "tolerance") continue;
+      if (option.name == "check-tolerance") continue;
       SCOPED_TRACE(option.name);
       const auto before = keysOf(parse({recipe}));
       ASSERT_EQ(before.size(), 1U);

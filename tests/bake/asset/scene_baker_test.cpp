@@ -77,7 +77,7 @@ TEST(SceneBaker, RefusesASeedThatIsNotFree) {
   SceneBakeOptions options;
   options.free_space.seeds = {{-50, 1, 1}};
   const Error error = errorOf(options);
-  EXPECT_EQ(error.where, "seed");
+  EXPECT_EQ(error.where, "inside");
   EXPECT_THAT(error.message,
               testing::StartsWith("(-50, 1, 1) is outside the scene for radius 0.015"));
 }
@@ -183,7 +183,7 @@ TEST(SceneBaker, WarnsOfAClosedRoomThatItLeavesOut) {
               testing::MatchesRegex("radius 0\\.05 m: a closed part of 16\\.[0-9] m3 \\(room: "
                                     "20\\.[0-9] m3\\) from \\(3\\.5[0-9], 0\\.05, 0\\.0[0-9]\\) to "
                                     "\\(5\\.9[0-9], 2\\.45, 2\\.9[0-9]\\) is left out; keep it "
-                                    "with `seed` or `keep-components`"));
+                                    "with `inside` or `keep-components`"));
 }
 
 TEST(SceneBaker, DoesNotWarnOfWhatItKeepsOrWhatIsSmall) {

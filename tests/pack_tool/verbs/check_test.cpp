@@ -218,7 +218,7 @@ class CheckMany : public testing::Test {
 
 TEST_F(CheckMany, SaysTheSameInTheGivenOrderOnAnyNumberOfThreads) {
   std::reverse(packs_.begin(), packs_.end());
-  const Outcome one = check({.packs = packs_, .form = OutputForm::kJson, .jobs = 1});
+  const Outcome one = check({.packs = packs_, .form = OutputForm::kJson, .threads = 1});
   const Json report = Json::parse(one.out);
   ASSERT_EQ(report.size(), packs_.size());
   std::size_t good = 0;
@@ -229,7 +229,7 @@ TEST_F(CheckMany, SaysTheSameInTheGivenOrderOnAnyNumberOfThreads) {
   EXPECT_GT(good, packs_.size() / 10);
   EXPECT_LT(good, packs_.size() * 9 / 10);
   for (const unsigned jobs : {0U, 2U, 7U, 100U}) {
-    const Outcome many = check({.packs = packs_, .form = OutputForm::kJson, .jobs = jobs});
+    const Outcome many = check({.packs = packs_, .form = OutputForm::kJson, .threads = jobs});
     EXPECT_EQ(many.out, one.out);
     EXPECT_EQ(many.err, one.err);
     EXPECT_EQ(many.exit_code, one.exit_code);

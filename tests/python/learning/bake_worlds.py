@@ -14,9 +14,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--bake", required=True)
     parser.add_argument("--sources", type=pathlib.Path, required=True)
-    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+    parser.add_argument("-o", "--out", type=pathlib.Path, required=True)
     options = parser.parse_args()
-    folder, sources = options.output, options.sources
+    folder, sources = options.out, options.sources
     folder.mkdir(parents=True, exist_ok=True)
 
     def bake(output: str, *arguments: "str | pathlib.Path") -> pathlib.Path:

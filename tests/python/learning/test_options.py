@@ -17,9 +17,9 @@ NO_CHOICE = ("", "nan", "-1", "0", "nonsense")
 # Numbers that may be below 0: logarithms, and where it says "no change".
 BELOW_ZERO = ("--initial-log-std", "--final-log-std", "--entropy-end")
 PROGRAMS: dict[str, tuple[Any, list[str]]] = {
-    "train": (train, ["none.pack", "--output", "run"]),
+    "train": (train, ["none.pack", "--out", "run"]),
     "evaluate": (evaluate, ["none.pt", "none.pack"]),
-    "export": (export, ["none.pt", "--output", "out.pack"]),
+    "export": (export, ["none.pt", "--out", "out.pack"]),
 }
 Run = Callable[[list[str]], tuple[int, str]]
 
@@ -77,9 +77,9 @@ def run(monkeypatch: Any, capsys: Any, tmp_path: pathlib.Path) -> Callable[[str,
 def needed(name: str, action: argparse.Action) -> list[str]:
     """What the program cannot do without, but for the option itself."""
     words = PROGRAMS[name][1]
-    if action.dest != "output":
+    if action.dest != "out":
         return words
-    return words[: words.index("--output")]
+    return words[: words.index("--out")]
 
 
 @pytest.mark.parametrize("name,action", CASES)

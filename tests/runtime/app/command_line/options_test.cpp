@@ -14,7 +14,7 @@ namespace galactic::options_test {
 namespace {
 
 std::optional<int> parse(std::vector<std::string> arguments, RunOptions& options) {
-  arguments.insert(arguments.begin(), {"galactic-run", "--pack", "world.pack"});
+  arguments.insert(arguments.begin(), {"galactic-run", "world.pack"});
   std::vector<const char*> argv;
   argv.reserve(arguments.size());
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());
@@ -204,7 +204,7 @@ TEST(RunCommandLine, RefusesWhatMakesNoSense) {
       {"--rank", "2", "--ranks", "2"},
       {"--bench", "--steps", "5"},
       {"--bench", "--seed", "4294967296"},
-      {"world.pack"},
+      {"--pack", "world.pack"},
   };
   for (const std::vector<std::string>& arguments : mistakes) {
     RunOptions options;
