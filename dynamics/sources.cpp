@@ -22,13 +22,6 @@ std::string nameOr(const std::string& name, const std::filesystem::path& input) 
   return name.empty() ? input.stem().string() : name;
 }
 
-Result<bake::SourceAsset> sceneAsset(const bake::SceneJob& job) {
-  if (!job.instance) return bake::importMesh(job.input, job.import);
-  ASSIGN_OR_RETURN(auto composed,
-                   job.instance->dataset->compose(job.instance->name, *job.instance->meshes));
-  return std::move(composed.scene);
-}
-
 HullPoints pointsOf(const bake::SourceAsset& asset) {
   HullPoints points;
   for (const bake::SourceInstance& instance : asset.instances) {
@@ -61,7 +54,7 @@ class SourceReader {
   Result<void> operator()(const bake::SceneJob& job) {
     const std::string name = nameOr(job.name, job.input);
     if (!scenes_.contains(name)) return {};
-    ASSIGN_OR_RETURN(const auto asset, sceneAsset(job));
+    ASSIGN_OR_RETURN(const auto asset, bake::readSceneFile(job));
     ASSIGN_OR_RETURN(const auto clean, bake::placeAndClean(asset));
     sources_.scenes.emplace(name, makeSceneShape(clean.mesh));
     return {};

@@ -49,6 +49,12 @@ Result<BakedScene> bakeParts(const ReadScene& read, const SceneJob& job, const P
 
 }  // namespace
 
+Result<SourceAsset> readSceneFile(const SceneJob& job) {
+  ReadLog log;
+  ASSIGN_OR_RETURN(auto scene, readScene(job, log));
+  return std::move(scene.asset);
+}
+
 Result<Made> bakeSceneFile(const SceneJob& job, BakeContext& context) {
   const std::string item = job.instance ? job.instance->name : job.input.filename().string();
   const auto progress = [&](std::string_view stage, double fraction) {

@@ -10,6 +10,7 @@
 
 #include "galactic/bake/episode_generator.h"
 #include "galactic/bake/jobs.h"
+#include "galactic/bake/source_asset.h"
 #include "galactic/bake/world_pack.h"
 #include "galactic/error.h"
 
@@ -148,6 +149,9 @@ struct Made {
 /// lacks is left out, with a warning. Fails with the errors of importer, bakers and writer, and
 /// with kInvalidInput where the output is a file that was read; `where` names the file.
 [[nodiscard]] Result<Made> bakeSceneFile(const SceneJob& job, BakeContext& context);
+
+/// Reads the meshes of a scene as bakeSceneFile does.
+[[nodiscard]] Result<SourceAsset> readSceneFile(const SceneJob& job);
 
 /// Bakes all objects of a job into one pack. An object that fails is in the outcome's failures; it
 /// is the result's error where no object is left, or where there is no pack for another reason.
