@@ -308,7 +308,7 @@ TEST(Light, PutsUpWithTrianglesOfNoArea) {
   needle.triangles.push_back({first, first + 1, first + 2});
   builder.place(needle, builder.material(true));
   const auto triangles = drawnOf(bakeLit(builder.source()));
-  ASSERT_EQ(triangles.size(), 12U);
+  ASSERT_EQ(triangles.size(), 13U);
   for (const DrawnTriangle& triangle : triangles) {
     for (const DrawnCorner& corner : triangle.corners) EXPECT_EQ(corner.color >> 24U, 255U);
   }

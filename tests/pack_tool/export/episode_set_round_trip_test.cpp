@@ -212,7 +212,7 @@ TEST(EpisodeSetExport, NamesItsJointsAgainstTheCommandLine) {
   const auto refused = bake::readEpisodeSet(file, options);
   ASSERT_FALSE(refused.has_value());
   EXPECT_THAT(refused.error().message,
-              testing::HasSubstr("names the start joints lift, and --start-joints is elbow"));
+              testing::HasSubstr("names the start joints lift, and `start-joints` is elbow"));
 }
 
 TEST(EpisodeSetExport, HasTheKeysOfThePublishedFiles) {

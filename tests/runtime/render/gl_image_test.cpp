@@ -460,7 +460,7 @@ TEST_F(GlImage, WithoutCudaDeviceImagesAreRefusedInWords) {
   options.backend = RenderBackend::kSoft;
   BatchRenderer soft = makeRenderer(library, options);
   EXPECT_EQ(soft.renderToDevice(std::vector<RenderView>(1)).error().message,
-            "the soft backend draws into memory of the processor; use the gl backend");
+            "the soft backend draws into memory of the processor; use the cuda or the gl backend");
 }
 
 }  // namespace
