@@ -78,7 +78,7 @@ class MotorRig final : public Rig {
       energy += body_->getLinkMass(n) * (speed.length2() / 2 - gravity.dot(at)) +
                 turn.dot(body_->getLinkInertia(n) * turn) / 2;
     }
-    return energy;
+    return static_cast<double>(energy);
   }
 
   void hold(btRigidBody& object, std::size_t body) override {

@@ -72,7 +72,8 @@ void addSolid(const HullPoints& points, SolidSum& sum) {
   const btConvexHullComputer hull = hullOf(points);
   const auto corner = [&](int n) {
     const Vec3 at = fromBullet(hull.vertices[n]);
-    return SolidSum::Point{at.x, at.y, at.z};
+    return SolidSum::Point{static_cast<double>(at.x), static_cast<double>(at.y),
+                           static_cast<double>(at.z)};
   };
   for (int f = 0; f < hull.faces.size(); ++f) {
     const btConvexHullComputer::Edge* first = &hull.edges[hull.faces[f]];
@@ -95,13 +96,14 @@ Inertia inertiaOfBox(const ObjectSource& source) {
     }
   }
   constexpr float kThinnest = 1e-3F;
-  const double x{std::max(most.x - least.x, kThinnest)};
-  const double y{std::max(most.y - least.y, kThinnest)};
-  const double z{std::max(most.z - least.z, kThinnest)};
+  const auto x = static_cast<double>(std::max(most.x - least.x, kThinnest));
+  const auto y = static_cast<double>(std::max(most.y - least.y, kThinnest));
+  const auto z = static_cast<double>(std::max(most.z - least.z, kThinnest));
   const Vec3 center = (least + most) * 0.5F;
   const double twelfth = source.mass / 12;
   return {.mass = source.mass,
-          .center = {center.x, center.y, center.z},
+          .center = {static_cast<double>(center.x), static_cast<double>(center.y),
+                     static_cast<double>(center.z)},
           .moments = {twelfth * (y * y + z * z), twelfth * (x * x + z * z),
                       twelfth * (x * x + y * y), 0, 0, 0}};
 }

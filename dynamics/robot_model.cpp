@@ -21,7 +21,9 @@ struct Box {
   [[nodiscard]] double size(std::size_t axis) const { return most[axis] - least[axis]; }
 };
 
-std::array<double, 3> toArray(const Vec3& v) { return {v.x, v.y, v.z}; }
+std::array<double, 3> toArray(const Vec3& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
 
 std::optional<Box> boxAround(const std::vector<HullPoints>& hulls) {
   std::optional<Box> box;

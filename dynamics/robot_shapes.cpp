@@ -59,8 +59,9 @@ class HullMaker {
       for (const bake::Triangle& triangle : part.triangles) {
         for (const std::uint32_t corner : triangle) {
           const Vec3& p = part.positions[corner];
-          const Vec3 q = transformed(instance.world_from_mesh, p.x, p.y, p.z);
-          add(hull, q.x, q.y, q.z);
+          const Vec3 q = transformed(instance.world_from_mesh, static_cast<double>(p.x),
+                                     static_cast<double>(p.y), static_cast<double>(p.z));
+          add(hull, static_cast<double>(q.x), static_cast<double>(q.y), static_cast<double>(q.z));
         }
       }
     }

@@ -29,8 +29,9 @@ HullPoints pointsOf(const bake::SourceAsset& asset) {
     for (const Vec3& p : asset.meshes[instance.mesh].positions) {
       const auto row = [&](std::size_t r) {
         const bake::Affine& a = m;
-        return static_cast<float>(a[4 * r] * double{p.x} + a[4 * r + 1] * double{p.y} +
-                                  a[4 * r + 2] * double{p.z} + a[4 * r + 3]);
+        return static_cast<float>(a[4 * r] * static_cast<double>(p.x) +
+                                  a[4 * r + 1] * static_cast<double>(p.y) +
+                                  a[4 * r + 2] * static_cast<double>(p.z) + a[4 * r + 3]);
       };
       points.push_back({row(0), row(1), row(2)});
     }

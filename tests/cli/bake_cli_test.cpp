@@ -122,7 +122,8 @@ TEST_F(BakeCli, RefusesAConfigFileThatIsNone) {
            {"version = true\n", "bake.toml:1: version: belongs on the command line"},
            {"spacing = nan\n",
             "galactic-bake: bake.toml:1: spacing: found nan, wanted a number above 0"},
-           {"threads = -1\n", "galactic-bake: bake.toml:1: threads: found -1, wanted a whole number"},
+           {"threads = -1\n",
+            "galactic-bake: bake.toml:1: threads: found -1, wanted a whole number"},
            {"keep-components = 1.5\n", "keep-components: found 1.5, wanted a whole number"}}) {
     write("bake.toml", fault.text);
     const ProgramRun bake = run({"room.obj", "--config", "bake.toml"});

@@ -88,8 +88,8 @@ class PlanningScene {
   /// point than EndEffector::grasp_radius, the nearest. None when there is no such object.
   [[nodiscard]] std::optional<std::uint32_t> graspedAt(const BasePlace& base) const;
 
-  /// Holds an object that rests, as if it were grasped here; all its spheres count. The hand must be
-  /// empty.
+  /// Holds an object that rests, as if it were grasped here; all its spheres count. The hand must
+  /// be empty.
   void hold(std::uint32_t object, const BasePlace& base);
   /// Puts what hold() holds back to where it rested.
   void putBack();
