@@ -44,7 +44,7 @@ HEAVY_LIBRARIES = (
                  re.compile(r"bake/src/((engines|episodes/trial)/bullet[^/]*|fit/convex_hull\.cpp)$|"
                             r"dynamics/bullet[^/]*$|"
                             r"tests/bake/(robot|simulation)/bullet[^/]*$|"
-                            r"benchmarks/batch_kinematics\.cpp$")),
+                            r"benchmarks/simulation/batch_kinematics\.cpp$")),
     HeavyLibrary("Embree", re.compile(r"embree\d/"), re.compile(r"\b(RTC[A-Z]\w+|rtc[A-Z]\w+)"),
                  re.compile(r"bake/src/engines/embree[^/]*$")),
     HeavyLibrary("urdfdom", re.compile(r"(urdf_|tinyxml|console_bridge/)"),

@@ -2,14 +2,14 @@
 # The world of the published physics' measurements, for batch_steps: Fetch with its 29 hand-placed
 # spheres, a ReplicaCAD scene, 99 episodes of 30 objects with the published boxes and sphere rules.
 #
-#   benchmarks/make_published_world.sh ASSETS OUT_FOLDER [BIN_FOLDER]
+#   benchmarks/simulation/make_published_world.sh ASSETS OUT_FOLDER [BIN_FOLDER]
 #
 # Leaves OUT_FOLDER/world.pack, and held_world.pack with the target of each episode in the hand.
 set -euo pipefail
 assets=$(cd "$1" && pwd)
 mkdir -p "$2"
 out=$(cd "$2" && pwd)
-bin=$(cd "${3:-$(dirname "${BASH_SOURCE[0]}")/../build/release/bin}" && pwd)
+bin=$(cd "${3:-$(dirname "${BASH_SOURCE[0]}")/../../build/release/bin}" && pwd)
 published=$assets/published_physics
 collection=$assets/galactic/data/replicacad_composite.collection.json
 

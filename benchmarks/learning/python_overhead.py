@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What Python costs: its loop against that of galactic-run, with random actions and without images.
 
-    PYTHONPATH=build/release/python benchmarks/python_overhead.py build/release/bin/galactic-run WORLD.pack
+    PYTHONPATH=build/release/python benchmarks/learning/python_overhead.py build/release/bin/galactic-run WORLD.pack
 
 Each is a whole process that opens the world and steps it, once for long and once for short: the processor
 time of a step is that of the longer run less that of the shorter one, user and system. They take turns, so

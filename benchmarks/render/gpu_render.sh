@@ -2,7 +2,7 @@
 # Images per second of the CUDA and the OpenGL backend on a graphics processor: color and depth, read back to the
 # processor and left on the device, for batches of 128, 512, 2048 and 8192 envs. Takes some five minutes.
 #
-#   benchmarks/gpu_render.sh [BUILD_FOLDER] [DEVICE] [SECONDS]
+#   benchmarks/render/gpu_render.sh [BUILD_FOLDER] [DEVICE] [SECONDS]
 #
 # DEVICE as in RenderOptions::device: cuda:0, a UUID; the first graphics processor without it. SECONDS for each
 # measurement (1). GALACTIC_RENDER_WORLD=world.pack draws a world that was baked instead of the home made in code.

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """How fast policies with a camera train, beside tables 5 and 6 of the paper; on a GPU where there is one.
 
-    PYTHONPATH=build/release/python benchmarks/training_speed.py WORLD.pack
-    PYTHONPATH=build/release/python benchmarks/training_speed.py WORLD.pack --also -- --cuda-graphs
+    PYTHONPATH=build/release/python benchmarks/learning/training_speed.py WORLD.pack
+    PYTHONPATH=build/release/python benchmarks/learning/training_speed.py WORLD.pack --also -- --cuda-graphs
 
 Each configuration is trained twice with the preset `paper`, for a few updates and for some more: what counts is
 the difference, so that starting and the choice of kernels do not. Options behind `--` are passed on to
