@@ -43,14 +43,14 @@ class BatchSimulator::Impl {
   Impl(Model model, std::size_t threads)
       : model_(std::move(model)), state_(model_, model_.options.envs) {
     const std::size_t chunks = state_.paddedCount() / kChunk;
-    threads = std::min(threads, chunks);
-    parts_.reserve(threads);
-    for (std::size_t n = 0; n < threads; ++n) {
-      parts_.push_back(
-          {Chunk(model_), n * chunks / threads * kChunk, (n + 1) * chunks / threads * kChunk, {}});
+    threads_ = std::min(threads, chunks);
+    desks_.reserve(detail::Workers::countFor(threads_));
+    for (std::size_t n = 0; n < detail::Workers::countFor(threads_); ++n) {
+      desks_.push_back({Chunk(model_), {}});
     }
     beginFirstEpisodes();
-    workers_ = std::make_unique<detail::Workers>(threads, [this](std::size_t n) { run(n); });
+    workers_ = std::make_unique<detail::Workers>(
+        threads_, chunks, [this](std::size_t thread, std::size_t n) { run(thread, n); });
   }
 
   void begin(std::span<const float> actions, std::span<const std::int32_t> resets) {
@@ -67,14 +67,14 @@ class BatchSimulator::Impl {
   }
 
   void step(std::span<const float> actions, std::span<const std::int32_t> resets) {
-    if (parts_.size() > 1) {
+    if (threads_ > 1) {
       begin(actions, resets);
       end();
       return;
     }
     input_ = {actions, resets};
     measures_ = sample_every_ != 0 && steps_ % sample_every_ == 0;
-    run(0);
+    for (std::size_t n = 0; n < state_.paddedCount() / kChunk; ++n) run(0, n);
     ++steps_;
   }
 
@@ -134,7 +134,7 @@ class BatchSimulator::Impl {
   const Model& model() const { return model_; }
   BatchState& state() { return state_; }
   const BatchState& state() const { return state_; }
-  std::size_t threads() const { return parts_.size(); }
+  std::size_t threads() const { return threads_; }
   std::uint64_t steps() const { return steps_; }
   void sample(std::uint32_t every) { sample_every_ = every; }
 
@@ -143,18 +143,16 @@ class BatchSimulator::Impl {
     times.reserve(simulation::kPhaseNames.size());
     for (std::size_t n = 0; n < simulation::kPhaseNames.size(); ++n) {
       double seconds = 0;
-      for (const Part& part : parts_) seconds += part.seconds[n];
+      for (const Desk& desk : desks_) seconds += desk.seconds[n];
       times.push_back({simulation::kPhaseNames[n], seconds});
     }
     return times;
   }
 
  private:
-  /// The envs of one thread.
-  struct Part {
+  /// What a thread works with.
+  struct Desk {
     Chunk chunk;
-    std::size_t first = 0;
-    std::size_t last = 0;
     simulation::PhaseSeconds seconds{};
   };
 
@@ -177,21 +175,21 @@ class BatchSimulator::Impl {
     }
   }
 
-  void run(std::size_t n) noexcept {
-    Part& part = parts_[n];
-    for (std::size_t first = part.first; first < part.last; first += kChunk) {
-      const simulation::ChunkStep step{model_, state_, part.chunk, first};
-      if (measures_) {
-        simulation::stepChunkMeasured(step, input_, part.seconds);
-      } else {
-        simulation::stepChunk(step, input_);
-      }
+  /// A step of the n-th chunk.
+  void run(std::size_t thread, std::size_t n) noexcept {
+    Desk& desk = desks_[thread];
+    const simulation::ChunkStep step{model_, state_, desk.chunk, n * kChunk};
+    if (measures_) {
+      simulation::stepChunkMeasured(step, input_, desk.seconds);
+    } else {
+      simulation::stepChunk(step, input_);
     }
   }
 
   Model model_;
   BatchState state_;
-  std::vector<Part> parts_;
+  std::size_t threads_ = 1;
+  std::vector<Desk> desks_;
   simulation::StepInput input_;
   std::uint64_t steps_ = 0;
   std::uint32_t sample_every_ = 0;

@@ -7,8 +7,11 @@ namespace galactic::detail {
 namespace {
 
 /// Waits until `value` is no longer `old`.
-void awaitChange(const std::atomic<std::uint32_t>& value, std::uint32_t old) noexcept {
-  constexpr int kLooks = 30000;  // about a millisecond
+template <class Value>
+void awaitChange(const std::atomic<Value>& value, Value old) noexcept {
+  // Some 20 microseconds, what it takes to wake a thread. Whoever looks for longer takes the
+  // processor from a neighbor, or from the thread that it waits for.
+  constexpr int kLooks = 600;
   for (int n = 0; n < kLooks; ++n) {
     if (value.load(std::memory_order_acquire) != old) return;
 #if defined(__x86_64__)
@@ -37,15 +40,23 @@ void forEachPart(std::uint32_t threads, std::size_t count,
   help();
 }
 
-Workers::Workers(std::size_t parts, std::function<void(std::size_t)> work)
-    : work_(std::move(work)), begun_(parts) {
-  const std::size_t threads = std::max<std::size_t>(1, parts - 1);
-  threads_.reserve(threads);
-  for (std::size_t n = 0; n < threads; ++n) {
-    // The caller begins with part 0.
-    threads_.emplace_back([this, own = (n + 1) % parts] { run(own); });
+Workers::Workers(std::size_t threads, std::size_t parts, Work work)
+    : work_(std::move(work)), parts_(parts), ranges_(countFor(threads)) {
+  const std::size_t count = ranges_.size();
+  for (std::size_t n = 0; n < count; ++n) {
+    ranges_[n].first = n * parts / count;
+    ranges_[n].last = (n + 1) * parts / count;
+    ranges_[n].next = ranges_[n].last;
+  }
+  threads_.reserve(count - 1);
+  for (std::size_t n = 1; n < count; ++n) {
+    threads_.emplace_back([this, n] { run(n); });
   }
 }
+
+Workers::Workers(std::size_t parts, std::function<void(std::size_t)> work)
+    : Workers(parts, parts,
+              [work = std::move(work)](std::size_t, std::size_t part) { work(part); }) {}
 
 Workers::~Workers() {
   stops_.store(true, std::memory_order_relaxed);
@@ -54,38 +65,44 @@ Workers::~Workers() {
 }
 
 void Workers::begin() noexcept {
-  left_.store(static_cast<std::uint32_t>(begun_.size()), std::memory_order_relaxed);
+  left_.store(parts_, std::memory_order_relaxed);
+  // A thread that is still looking for parts of the last round may take one at once: the release
+  // shows it what belongs to this one.
+  for (Range& range : ranges_) range.next.store(range.first, std::memory_order_release);
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
 }
 
 void Workers::end() noexcept {
-  doParts(round_.load(std::memory_order_relaxed), 0);
-  for (std::uint32_t left = left_.load(std::memory_order_acquire); left != 0;
+  doParts(0);
+  for (std::size_t left = left_.load(std::memory_order_acquire); left != 0;
        left = left_.load(std::memory_order_acquire)) {
     awaitChange(left_, left);
   }
 }
 
-void Workers::run(std::size_t own) noexcept {
+void Workers::run(std::size_t thread) noexcept {
   std::uint32_t seen = 0;
   while (true) {
     awaitChange(round_, seen);
     // A thread that slept through a round goes on with the one that is in work.
     seen = round_.load(std::memory_order_acquire);
     if (stops_.load(std::memory_order_relaxed)) return;
-    doParts(seen, own);
+    doParts(thread);
   }
 }
 
-void Workers::doParts(std::uint32_t round, std::size_t own) noexcept {
-  const std::size_t parts = begun_.size();
-  for (std::size_t n = 0; n < parts; ++n) {
-    const std::size_t part = (own + n) % parts;
-    std::uint32_t before = round - 1;
-    if (!begun_[part].compare_exchange_strong(before, round, std::memory_order_acq_rel)) continue;
-    work_(part);
-    if (left_.fetch_sub(1, std::memory_order_acq_rel) == 1) left_.notify_all();
+void Workers::doParts(std::size_t thread) noexcept {
+  for (std::size_t n = 0; n < ranges_.size(); ++n) {
+    Range& range = ranges_[(thread + n) % ranges_.size()];
+    std::size_t done = 0;
+    for (std::size_t part = range.next.fetch_add(1, std::memory_order_acq_rel); part < range.last;
+         part = range.next.fetch_add(1, std::memory_order_acq_rel)) {
+      work_(thread, part);
+      ++done;
+    }
+    if (done == 0) continue;
+    if (left_.fetch_sub(done, std::memory_order_acq_rel) == done) left_.notify_all();
   }
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -17,18 +18,28 @@ void forEachPart(std::uint32_t threads, std::size_t count,
                  const std::function<void(std::size_t)>& work);
 
 /// Threads that share a piece of work in parts, again and again. Each part of a round is done once,
-/// by whichever thread takes it first: a thread begins with the part that it also did last time,
-/// and then helps with what nobody has begun. The caller helps too while it waits, so there is one
-/// thread fewer than parts, but at least one, so that the caller may do something else in between.
-/// Nothing locks. Threads wait awake for a short time, so that rounds that follow each other
-/// closely start at once, then asleep.
+/// by whichever thread takes it: each begins with its own range of parts, so that it meets the same
+/// data in every round, and then helps with what others have not begun. More parts than threads
+/// even out what neighbors on the machine take away. The caller helps too while it waits for the
+/// end, so there is one thread fewer than asked for, but at least one, so that the caller may do
+/// something else in between. Nothing locks. Threads wait awake only for as long as it takes to
+/// wake one up, so that rounds that follow each other closely start at once, then asleep.
 class Workers {
  public:
-  /// `work(n)` does part n of `parts`; it must not throw.
-  Workers(std::size_t parts, std::function<void(std::size_t)> work);
+  /// Does a part; it must not throw. `thread`, below count(), is not at work on another part.
+  using Work = std::function<void(std::size_t thread, std::size_t part)>;
+
+  Workers(std::size_t threads, std::size_t parts, Work work);
+  /// One part for each thread.
+  Workers(std::size_t parts, std::function<void(std::size_t part)> work);
   ~Workers();
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
+
+  /// How many may be at work at a time for so many threads: the caller, as number 0, included.
+  [[nodiscard]] static std::size_t countFor(std::size_t threads) {
+    return std::max<std::size_t>(2, threads);
+  }
 
   /// Starts a round. What was written before is seen by whoever does a part.
   void begin() noexcept;
@@ -36,17 +47,24 @@ class Workers {
   void end() noexcept;
 
  private:
-  void run(std::size_t own) noexcept;
-  /// Does the parts that nobody has begun in this round, from `own` on and around.
-  void doParts(std::uint32_t round, std::size_t own) noexcept;
+  /// The parts with which one thread begins.
+  struct alignas(64) Range {
+    std::atomic<std::size_t> next{0};
+    std::size_t first = 0;
+    std::size_t last = 0;
+  };
 
-  std::function<void(std::size_t)> work_;
+  void run(std::size_t thread) noexcept;
+  /// Does the parts that nobody has taken, those of `thread` first.
+  void doParts(std::size_t thread) noexcept;
+
+  Work work_;
+  std::size_t parts_;
   std::atomic<std::uint32_t> round_{0};
   /// Parts that are not done yet.
-  std::atomic<std::uint32_t> left_{0};
+  std::atomic<std::size_t> left_{0};
   std::atomic<bool> stops_{false};
-  /// The round in which each part was begun last.
-  std::vector<std::atomic<std::uint32_t>> begun_;
+  std::vector<Range> ranges_;
   std::vector<std::jthread> threads_;
 };
 

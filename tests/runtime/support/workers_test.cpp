@@ -46,6 +46,27 @@ TEST(Workers, RunEveryThreadOnceInEachOfManyRounds) {
   }
 }
 
+TEST(Workers, DoManyMorePartsThanThreadsEachOnceAndNeverTwoOnOneDesk) {
+  for (const std::size_t threads : kThreadCounts) {
+    constexpr std::size_t kParts = 53;
+    std::vector<Slot> parts(kParts);
+    // Not atomic either: no two parts may be at work on one desk.
+    std::vector<Slot> desks(Workers::countFor(threads));
+    Workers workers(threads, kParts, [&](std::size_t thread, std::size_t part) {
+      ++parts[part].rounds;
+      ++desks[thread].rounds;
+    });
+    for (std::uint64_t round = 1; round <= 500; ++round) {
+      workers.begin();
+      workers.end();
+      std::uint64_t done = 0;
+      for (const Slot& desk : desks) done += desk.rounds;
+      ASSERT_EQ(done, round * kParts);
+      for (const Slot& part : parts) ASSERT_EQ(part.rounds, round);
+    }
+  }
+}
+
 TEST(Workers, LeaveTheCallerFreeBetweenBeginAndEnd) {
   for (const std::size_t threads : kThreadCounts) {
     std::atomic<bool> may_go{false};

@@ -26,7 +26,7 @@ using PhaseSeconds = std::array<double, kPhaseNames.size()>;
 /// One step of the chunk's envs.
 void stepChunk(const ChunkStep& step, const StepInput& input) noexcept;
 
-/// The same, adding to `seconds` what each phase took.
+/// The same, adding to `seconds` how long the processor worked on each phase.
 void stepChunkMeasured(const ChunkStep& step, const StepInput& input,
                        PhaseSeconds& seconds) noexcept;
 
