@@ -1,0 +1,75 @@
+// Plays the workload of batch_steps a fixed number of steps, for programs that watch it:
+// count_instructions.sh.
+//
+//   play_workload WORLD random|forward|held ENVS STEPS
+//
+// A third of the steps more go before, so that robots that drive ahead have reached the walls.
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "galactic/batch_simulator.h"
+#include "galactic/world.h"
+#include "published_workload.h"
+
+namespace galactic::published_workload {
+
+struct Player {
+  BatchSimulator& simulator;
+  Actions actions;
+  Resets resets;
+  std::size_t step = 0;
+
+  void take() {
+    const std::span<const float> batch = actions.batch(step, resets.last());
+    simulator.step(batch, resets.at(step));
+    ++step;
+  }
+};
+
+/// What is watched: callgrind finds it by its name.
+[[gnu::noinline]] void playMeasured(Player& player, std::size_t steps) {
+  for (std::size_t n = 0; n < steps; ++n) player.take();
+}
+
+}  // namespace galactic::published_workload
+
+int main(int count, char** arguments) {
+  using namespace galactic;
+  using namespace galactic::published_workload;
+  if (count != 5) {
+    std::fprintf(stderr, "play_workload WORLD random|forward|held ENVS STEPS\n");
+    return 1;
+  }
+  const std::filesystem::path file(arguments[1]);
+  const std::string name(arguments[2]);
+  const Load load = name == "forward" ? Load::kForward
+                    : name == "held"  ? Load::kHeld
+                                      : Load::kRandom;
+  const auto envs = static_cast<std::uint32_t>(std::strtoul(arguments[3], nullptr, 10));
+  const std::size_t steps = std::strtoul(arguments[4], nullptr, 10);
+  const std::size_t before = (steps + 2) / 3;
+  const Result<World> world = World::open(std::span(&file, 1));
+  if (!world) {
+    std::fprintf(stderr, "%s: %s\n", world.error().where.c_str(), world.error().message.c_str());
+    return 2;
+  }
+  Result<BatchSimulator> simulator = BatchSimulator::create(*world, optionsOf(envs, false));
+  if (!simulator) {
+    std::fprintf(stderr, "%s\n", simulator.error().message.c_str());
+    return 2;
+  }
+  Player player{*simulator, Actions(envs, simulator->actionCount(), load, before + steps),
+                Resets(envs, world->episodes().episodes().size())};
+  for (std::size_t n = 0; n < before; ++n) player.take();
+  const SimulationStatistics from = simulator->statistics();
+  playMeasured(player, steps);
+  const SimulationStatistics to = simulator->statistics();
+  const auto taken = static_cast<double>(to.steps - from.steps);
+  std::printf("%.0f env-steps, %.3f %% refused, %.2f %% slid\n", taken,
+              100 * static_cast<double>(to.refused - from.refused) / taken,
+              100 * static_cast<double>(to.slid - from.slid) / taken);
+  return 0;
+}
