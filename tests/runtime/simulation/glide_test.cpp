@@ -174,6 +174,44 @@ TEST(Glide, NeverMovesAgainstTheDriveNorFurtherThanDriven) {
   EXPECT_LT(refused, steps / 20);
 }
 
+TEST(Glide, LeavesTheDriveAsItIsWhereNothingBlocks) {
+  constexpr std::uint32_t kSeed = 1703;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  Tally blocked;
+  for (int round = 0; round < 4; ++round) {
+    const Room room = furnishedRoom(random, kCarts);
+    const BoxWorld world(room.blocks, room.starts);
+    BatchSimulator simulator = simulatorOf(world, kCarts);
+    for (int step = 0; step < 20; ++step) {
+      std::vector<EnvState> before;
+      std::vector<std::uint64_t> moved_aside;
+      const auto aside = [&](std::size_t n) {
+        const SimulationStatistics seen = simulator.statistics(n);
+        return seen.slid + seen.refused;
+      };
+      for (std::size_t n = 0; n < kCarts; ++n) {
+        before.push_back(simulator.envState(n));
+        moved_aside.push_back(aside(n));
+      }
+      const Moves moves(random, kCarts, true);
+      simulator.step(moves.actions);
+      for (std::size_t n = 0; n < kCarts; ++n) {
+        blocked.add(aside(n) != moved_aside[n]);
+        if (aside(n) != moved_aside[n]) continue;
+        const Pose now = simulator.envState(n).world_from_root;
+        const Vec3 ahead = rotate(now.rotation, {1, 0, 0});
+        const Vec3 by = now.translation - before[n].world_from_root.translation;
+        const float driven = 0.1F * moves.actions[n * kCartActions + kCartJoints];
+        // No drift, neither ahead nor to a side.
+        ASSERT_NEAR(by.x * ahead.x + by.z * ahead.z, driven, 1e-5F);
+        ASSERT_NEAR(by.x * ahead.z - by.z * ahead.x, 0, 1e-5F);
+      }
+    }
+  }
+  blocked.expectBothSides();
+}
+
 TEST(Glide, GoesAlongAWallAsFarAsTheDriveGoesAlongIt) {
   // Columns from 1.88 m on are blocked for the cart's ball.
   const Block wall{{2, 0, 0}, {2.1F, 2, 3}};

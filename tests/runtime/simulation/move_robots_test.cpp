@@ -289,5 +289,17 @@ TEST(MoveRobots, IsNotPushedTowardsItsBaseByTheBaseItself) {
   drive.expectRefused({.forward = 1});
 }
 
+TEST(MoveRobots, PushesAnArmOutAlongTheDriveWhereTheDriveIsNotToBlame) {
+  // The arm's ball is blocked from 1.95 m on, and would come to 2.03.
+  Drive drive({plainFloor(), {{2, 0, 0}, {2.1F, 2, 3}}}, {.base = {1.6F, 0, 1.5F}});
+  drive.step({.arm = 1});
+  const float before = drive.at().x;
+  drive.step({.arm = 0.5F, .forward = -0.2F});
+  EXPECT_EQ(drive.refused(), 0U);
+  EXPECT_EQ(drive.slid(), 1U);
+  EXPECT_LT(drive.at().x, before - 0.06F);
+  EXPECT_NEAR(drive.at().z, 1.5F, kRounding);
+}
+
 }  // namespace
 }  // namespace galactic::test::move_robots_test

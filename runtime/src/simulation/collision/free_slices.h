@@ -35,22 +35,13 @@ struct Surroundings {
     const unsigned bit = bitOf(x, z);
     rows[bit / 64] |= std::uint64_t{1} << (bit % 64);
   }
-  /// Whether all cells are free.
-  [[nodiscard]] bool isAllFree() const {
-    return (rows[0] & kNine) == kNine && (rows[1] & kNine) == kNine && (rows[2] & 0x1ff) == 0x1ff;
-  }
-  Surroundings& operator&=(const Surroundings& other) {
-    for (std::size_t n = 0; n < kWords; ++n) rows[n] &= other.rows[n];
-    return *this;
-  }
-  /// The rows one by one.
-  [[nodiscard]] const std::uint16_t* words() const {
-    return reinterpret_cast<const std::uint16_t*>(rows.data());
+  /// The nine cells of row `n` along Z, from 0 on.
+  [[nodiscard]] std::uint32_t row(std::size_t n) const {
+    constexpr std::uint64_t kNine = 0x1ff;
+    return static_cast<std::uint32_t>(rows[n / 4] >> (n % 4 * 16) & kNine);
   }
 
  private:
-  static constexpr std::uint64_t kNine = 0x01ff'01ff'01ff'01ff;
-
   static constexpr unsigned bitOf(int x, int z) {
     return static_cast<unsigned>(16 * (z + kCellsAround) + x + kCellsAround);
   }
@@ -87,12 +78,9 @@ class FreeSlices {
   void findPlaces(std::uint32_t map, std::uint32_t radius, const float* x, const float* y,
                   const float* z, EightPlaces& places) const noexcept;
 
-  /// The cells around one of eight centers, which is inside of slices.
-  [[nodiscard]] SurroundingRows around(std::uint32_t map, std::uint32_t radius,
-                                       const EightPlaces& places, std::size_t lane) const noexcept {
-    const SliceLayout& layout = layouts_[map * radii_ + radius];
-    return {rows_.data() + layout.first + places.row[lane],
-            static_cast<unsigned>(places.column[lane])};
+  /// All rows of a radius: what the places of its spheres count from.
+  [[nodiscard]] const std::uint16_t* rows(std::uint32_t map, std::uint32_t radius) const noexcept {
+    return rows_.data() + layouts_[map * radii_ + radius].first;
   }
 
   /// The cells around any center; none where it is outside of slices.

@@ -27,7 +27,8 @@ namespace galactic::simulation {
 //   stands in another room at the same place on the torus is found and refused by the next test.
 
 /// Edge of a square and height of a band, meters: a power of two, so that no rounding is involved.
-/// Smaller squares leave out few more objects and take more memory; see benchmarks/simulation/resting_objects.
+/// Smaller squares leave out few more objects and take more memory; see
+/// benchmarks/simulation/resting_objects.
 inline constexpr float kSquareEdge = 0.25F;
 inline constexpr float kInverseSquareEdge = 1 / kSquareEdge;
 /// Sets of each horizontal axis, a power of two; 16 meters.

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <span>
+
+#include "column_grid/column_grid_kernels.h"
 
 namespace galactic::simulation {
 namespace {
@@ -68,10 +69,146 @@ CellRange cellsAfter(float part, float by, float rounding) {
   return {static_cast<int>(cell - rounding) - kAbove, static_cast<int>(cell + rounding) - kAbove};
 }
 
+bool isFree(const EightWays& ways, std::size_t lane, int x, int z) {
+  const auto row = static_cast<unsigned>(z + kCellsAround);
+  const unsigned bit = 16 * (row % 2) + static_cast<unsigned>(x + kCellsAround);
+  return (ways.rows[row / 2][lane] >> bit & 1U) != 0;
+}
+
+/// Both of the nine bits that count of each half.
+constexpr std::uint32_t kEverywhere = 0x01ff'01ff;
+/// The upper half of the last pair: there is no tenth row.
+constexpr std::uint32_t kNoRow = 0x01ff'0000;
+
 /// What a move may have along the drive, as a part of its length: the cosine of 60 degrees.
 constexpr float kAlongDrive = 0.5F;
 
 }  // namespace
+
+bool addWaysPortable(const std::uint16_t* rows, const EightPlaces& places, unsigned lanes,
+                     EightWays& ways, AllWays& all) noexcept {
+  bool any = false;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const bool is_added = (lanes >> lane & 1U) != 0;
+    std::uint32_t is_free = kEverywhere;
+    for (std::size_t pair = 0; pair < kRowPairs; ++pair) {
+      std::uint32_t cells = kEverywhere;
+      if (is_added) {
+        const std::uint16_t* at = rows + places.row[lane] + 2 * pair;
+        const std::uint32_t lower = unsigned{at[0]} >> places.column[lane] & 0x1ffU;
+        const std::uint32_t upper = unsigned{at[1]} >> places.column[lane] & 0x1ffU;
+        cells = lower | upper << 16U;
+      }
+      if (pair + 1 == kRowPairs) cells |= kNoRow;
+      ways.rows[pair][lane] = cells;
+      all.rows[pair][lane] &= cells;
+      is_free &= cells;
+    }
+    ways.part_x[lane] = places.part_x[lane];
+    ways.part_z[lane] = places.part_z[lane];
+    ways.counts[lane] = is_free == kEverywhere ? 0 : ~std::uint32_t{0};
+    any = any || is_free != kEverywhere;
+  }
+  return any;
+}
+
+float takenBackPortable(const EightWays* ways, std::size_t count, const TakeBack& back) noexcept {
+  float least = 1;
+  for (std::size_t n = 0; n < count * kLanes; ++n) {
+    const EightWays& eight = ways[n / kLanes];
+    const std::size_t lane = n % kLanes;
+    const float part_x = eight.part_x[lane];
+    const float part_z = eight.part_z[lane];
+    bool is_behind = false;
+    if (back.other_sign != 0) {
+      const float other = fromBorder(back.along_x ? part_z : part_x, back.other_sign);
+      is_behind = other - back.other_back + back.margin < 0;
+    }
+    const WayCell& cell = is_behind ? back.before_behind : back.before;
+    if (isFree(eight, lane, cell.x, cell.z)) continue;
+    least = std::min(least, fromBorder(back.along_x ? part_x : part_z, back.sign));
+  }
+  return least;
+}
+
+bool allFreePortable(const EightWays* ways, std::size_t count, float by_x, float by_z,
+                     float rounding) noexcept {
+  for (std::size_t n = 0; n < count * kLanes; ++n) {
+    const EightWays& eight = ways[n / kLanes];
+    const std::size_t lane = n % kLanes;
+    if (eight.counts[lane] == 0) continue;
+    const CellRange x = cellsAfter(eight.part_x[lane], by_x, rounding);
+    const CellRange z = cellsAfter(eight.part_z[lane], by_z, rounding);
+    const bool is_known =
+        std::min(x.first, z.first) >= -kCellsAround && std::max(x.last, z.last) <= kCellsAround;
+    const bool is_free =
+        is_known && isFree(eight, lane, x.first, z.first) && isFree(eight, lane, x.first, z.last) &&
+        isFree(eight, lane, x.last, z.first) && isFree(eight, lane, x.last, z.last);
+    if (!is_free) return false;
+  }
+  return true;
+}
+
+void WayOut::clear(float spacing) noexcept {
+  count_ = 0;
+  single_count_ = kLanes;
+  spacing_ = spacing;
+  for (std::uint32_t* pair : all_.rows) std::fill_n(pair, kLanes, kEverywhere);
+}
+
+EightWays* WayOut::next() noexcept {
+  if (count_ < ways_.size()) return &ways_[count_];
+  for (std::uint32_t* pair : all_.rows) std::fill_n(pair, kLanes, 0U);
+  return nullptr;
+}
+
+void WayOut::add(const std::uint16_t* rows, const EightPlaces& places, unsigned lanes) noexcept {
+  if (lanes == 0) return;
+  EightWays* ways = next();
+  if (ways == nullptr) return;
+  const bool counts = detail::hasAvx2() ? addWaysAvx2(rows, places, lanes, *ways, all_)
+                                        : addWaysPortable(rows, places, lanes, *ways, all_);
+  if (counts) ++count_;
+}
+
+void WayOut::add(const Surroundings& around, float part_x, float part_z) noexcept {
+  if (single_count_ == kLanes) {
+    EightWays* ways = next();
+    if (ways == nullptr) return;
+    // No sphere yet: nothing is added to all.
+    addWaysPortable(nullptr, {}, 0, *ways, all_);
+    singles_ = count_++;
+    single_count_ = 0;
+  }
+  EightWays& ways = ways_[singles_];
+  const std::size_t lane = single_count_++;
+  for (std::size_t pair = 0; pair < kRowPairs; ++pair) {
+    const std::uint32_t lower = around.row(2 * pair);
+    const std::uint32_t upper = pair + 1 == kRowPairs ? kNoRow : around.row(2 * pair + 1) << 16U;
+    ways.rows[pair][lane] = lower | upper;
+    all_.rows[pair][lane] &= lower | upper;
+  }
+  ways.part_x[lane] = part_x;
+  ways.part_z[lane] = part_z;
+  ways.counts[lane] = ~std::uint32_t{0};
+}
+
+Surroundings WayOut::inAll() const noexcept {
+  Surroundings cells;
+  for (std::size_t pair = 0; pair < kRowPairs; ++pair) {
+    std::uint32_t in_all = kEverywhere;
+    for (const std::uint32_t lane : all_.rows[pair]) in_all &= lane;
+    cells.rows[pair / 2] |= std::uint64_t{in_all} << (pair % 2 * 32);
+  }
+  constexpr std::uint64_t kLastRow = 0x1ff;
+  cells.rows.back() &= kLastRow;
+  return cells;
+}
+
+float WayOut::takenBack(const TakeBack& back) const noexcept {
+  return detail::hasAvx2() ? takenBackAvx2(ways_.data(), count_, back)
+                           : takenBackPortable(ways_.data(), count_, back);
+}
 
 Push WayOut::shortened(int x, int z, bool along_x_first) const noexcept {
   // Along the first axis as if the whole way along the second were gone; then along the second,
@@ -80,34 +217,23 @@ Push WayOut::shortened(int x, int z, bool along_x_first) const noexcept {
   const int second = along_x_first ? z : x;
   const int sign_first = signOf(first);
   const int sign_second = signOf(second);
-  const auto is_free = [&](const Sphere& sphere, int to_first, int to_second) {
-    return along_x_first ? sphere.around.isFree(to_first, to_second)
-                         : sphere.around.isFree(to_second, to_first);
+  const auto cell = [&](int to_first, int to_second) {
+    return along_x_first ? WayCell{to_first, to_second} : WayCell{to_second, to_first};
   };
-  const auto part_first = [&](const Sphere& sphere) {
-    return fromBorder(along_x_first ? sphere.part_x : sphere.part_z, sign_first);
-  };
-  const std::span<const Sphere> spheres = std::span(spheres_).first(count_);
   const float margin = kIntoCell / spacing_;
-  float back_first = 1;
-  float back_second = 1;
-  if (sign_first != 0) {
-    for (const Sphere& sphere : spheres) {
-      const bool blocks = !is_free(sphere, first - sign_first, second);
-      back_first = std::min(back_first, blocks ? part_first(sphere) : 1.0F);
-    }
-  }
-  if (sign_second != 0) {
-    for (const Sphere& sphere : spheres) {
-      const bool is_before = sign_first != 0 && part_first(sphere) - back_first + margin < 0;
-      const int there = is_before ? first - sign_first : first;
-      const bool blocks = !is_free(sphere, there, second - sign_second);
-      const float part = along_x_first ? sphere.part_z : sphere.part_x;
-      back_second = std::min(back_second, blocks ? fromBorder(part, sign_second) : 1.0F);
-    }
-  }
-  const auto length = [&](int cells, int sign, float back) {
-    const float taken = static_cast<float>(sign) * (back - margin);
+  TakeBack back{
+      .along_x = along_x_first, .sign = sign_first, .before = cell(first - sign_first, second)};
+  const float back_first = sign_first == 0 ? 1.0F : takenBack(back);
+  back = {.along_x = !along_x_first,
+          .sign = sign_second,
+          .before = cell(first, second - sign_second),
+          .other_sign = sign_first,
+          .other_back = back_first,
+          .margin = margin,
+          .before_behind = cell(first - sign_first, second - sign_second)};
+  const float back_second = sign_second == 0 ? 1.0F : takenBack(back);
+  const auto length = [&](int cells, int sign, float taken_back) {
+    const float taken = static_cast<float>(sign) * (taken_back - margin);
     return sign == 0 ? 0.0F : (static_cast<float>(cells) - taken) * spacing_;
   };
   const float to_first = length(first, sign_first, back_first);
@@ -128,26 +254,15 @@ bool WayOut::suits(const Push& push) const noexcept {
   const float by_z = push.z / spacing_;
   // Less than what spheres go into cells by.
   const float rounding = 0.5F * kIntoCell / spacing_;
-  for (std::size_t n = 0; n < count_; ++n) {
-    const CellRange x = cellsAfter(spheres_[n].part_x, by_x, rounding);
-    const CellRange z = cellsAfter(spheres_[n].part_z, by_z, rounding);
-    const bool is_known =
-        std::min(x.first, z.first) >= -kCellsAround && std::max(x.last, z.last) <= kCellsAround;
-    const SurroundingRows& around = spheres_[n].around;
-    if (!is_known || !around.isFree(x.first, z.first)) return false;
-    if (x.first == x.last && z.first == z.last) continue;
-    const bool is_free = around.isFree(x.first, z.last) && around.isFree(x.last, z.first) &&
-                         around.isFree(x.last, z.last);
-    if (!is_free) return false;
-  }
-  return true;
+  return detail::hasAvx2() ? allFreeAvx2(ways_.data(), count_, by_x, by_z, rounding)
+                           : allFreePortable(ways_.data(), count_, by_x, by_z, rounding);
 }
 
 template <class MayBe>
 std::optional<Push> WayOut::shortestOf(float longest, const MayBe& may_be) const noexcept {
   std::optional<Push> best;
   float least = longest * longest;
-  const Surroundings moves = nearest(all_);
+  const Surroundings moves = nearest(inAll());
   for (std::size_t n = 0; n < Surroundings::kWords; ++n) {
     for (std::uint64_t left = moves.rows[n]; left != 0; left &= left - 1) {
       const int bit = 64 * static_cast<int>(n) + std::countr_zero(left);

@@ -1,10 +1,12 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "simulation/collision/free_slices.h"
 #include "simulation/collision/push.h"
+#include "simulation/collision/way_out_kernels.h"
 
 namespace galactic::simulation {
 
@@ -21,51 +23,27 @@ inline constexpr float kIntoCell = 1e-4F;
 /// a sphere.
 class WayOut {
  public:
-  /// Room for that many spheres.
-  explicit WayOut(std::size_t most_spheres) : spheres_(most_spheres), exact_(most_spheres) {}
+  /// Room for that many times eight spheres.
+  explicit WayOut(std::size_t most_eights) : ways_(most_eights) {}
 
   /// Forgets all spheres. `spacing`: edge of a cell, meters.
-  void clear(float spacing) noexcept {
-    count_ = 0;
-    exact_count_ = 0;
-    spacing_ = spacing;
-    all_.rows.fill(~std::uint64_t{0});
-  }
+  void clear(float spacing) noexcept;
 
-  /// Adds a sphere: in which cells around its own it is free, and where in that it is, 0 to 1. The
-  /// rows must stay where they are.
-  void add(const SurroundingRows& around, float part_x, float part_z) noexcept {
-    const Surroundings cells = around.cells();
-    if (cells.isAllFree()) return;
-    all_ &= cells;
-    // Too many to remember: no move is known to be free.
-    if (count_ == spheres_.size()) {
-      all_ = {};
-    } else {
-      spheres_[count_++] = {around, part_x, part_z};
-    }
-  }
-  /// The same, copying.
-  void add(const Surroundings& around, float part_x, float part_z) noexcept {
-    if (exact_count_ == exact_.size()) {
-      all_ = {};
-      return;
-    }
-    exact_[exact_count_] = around;
-    add(SurroundingRows{exact_[exact_count_++].words(), 0}, part_x, part_z);
-  }
+  /// Adds the spheres of `lanes` at `places`. `rows`: of the slices for their radius.
+  void add(const std::uint16_t* rows, const EightPlaces& places, unsigned lanes) noexcept;
+
+  /// Adds a sphere: in which cells around its own it is free, and where in that it is, 0 to 1.
+  void add(const Surroundings& around, float part_x, float part_z) noexcept;
 
   /// At most `longest` meters, and not on along `drive`, the way that the robot came: nothing
   /// pushes it through an obstacle. None where there is no such move.
   [[nodiscard]] std::optional<Push> shortest(const Push& drive, float longest) const noexcept;
 
  private:
-  struct Sphere {
-    SurroundingRows around;
-    float part_x = 0;
-    float part_z = 0;
-  };
-
+  /// Room for eight spheres more; null where there is none, and no move is known to be free.
+  [[nodiscard]] EightWays* next() noexcept;
+  [[nodiscard]] Surroundings inAll() const noexcept;
+  [[nodiscard]] float takenBack(const TakeBack& back) const noexcept;
   [[nodiscard]] Push shortened(int x, int z, bool along_x_first) const noexcept;
   [[nodiscard]] Push shortened(int x, int z) const noexcept;
   [[nodiscard]] bool suits(const Push& push) const noexcept;
@@ -73,11 +51,12 @@ class WayOut {
   [[nodiscard]] std::optional<Push> shortestOf(float longest, const MayBe& may_be) const noexcept;
 
   float spacing_ = 0;
-  Surroundings all_;
+  AllWays all_;
+  std::vector<EightWays> ways_;
   std::size_t count_ = 0;
-  std::size_t exact_count_ = 0;
-  std::vector<Sphere> spheres_;
-  std::vector<Surroundings> exact_;
+  /// The eight that spheres added one by one go into, and how many it has.
+  std::size_t singles_ = 0;
+  std::size_t single_count_ = kLanes;
 };
 
 }  // namespace galactic::simulation

@@ -8,6 +8,12 @@ namespace {
 /// How often each sphere may be added to a way out: once with each attempt of the default rule.
 constexpr std::size_t kWaysOut = 3;
 
+/// Eights of spheres that a way out may have at most. Groups come whole, and spheres that no slice
+/// knows one by one.
+std::size_t mostWays(const Model& model) {
+  return kWaysOut * (2 * model.groups.size() + model.most_held_spheres / kLanes + 1);
+}
+
 }  // namespace
 
 Chunk::Chunk(const Model& model)
@@ -26,7 +32,8 @@ Chunk::Chunk(const Model& model)
       placement_(model.most_held_spheres, model.world->radii()),
       group_bits_(group_stride_ / kLanes),
       places_(model.groups.size()),
-      way_out_(kWaysOut * (model.sphereCount() + model.most_held_spheres + 1)),
+      way_out_(mostWays(model)),
+      column_ways_(kLanes * mostWays(model)),
       blocked_bits_(model.bodyWords()),
       held_bits_(model.heldWords()),
       body_bits_(model.bodyWords()) {}

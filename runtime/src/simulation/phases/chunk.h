@@ -8,6 +8,7 @@
 #include "galactic/pose.h"
 #include "simulation/collision/clearance_map.h"
 #include "simulation/collision/collision.h"
+#include "simulation/collision/column_ways.h"
 #include "simulation/collision/free_slices.h"
 #include "simulation/collision/way_out.h"
 #include "simulation/phases/object_placement.h"
@@ -31,6 +32,8 @@ struct GroupBits {
   unsigned unsure = 0;
   /// The last way out suits all of their spheres.
   unsigned suited = 0;
+  /// The way out is asked of the columns around their spheres.
+  unsigned in_columns = 0;
 };
 
 /// Room for kChunk envs on their way through a step, allocated once for each thread.
@@ -75,9 +78,16 @@ class Chunk {
   void forgetSuited() {
     for (GroupBits& bits : group_bits_) bits.suited = 0;
   }
+  void forgetColumns() {
+    for (GroupBits& bits : group_bits_) bits.in_columns = 0;
+  }
+  void suitColumns() {
+    for (GroupBits& bits : group_bits_) bits.suited |= bits.in_columns;
+  }
   /// Of a group that is not free as a whole: the same.
   [[nodiscard]] EightPlaces& places(std::size_t group) { return places_[group]; }
   [[nodiscard]] WayOut& wayOut() { return way_out_; }
+  [[nodiscard]] ColumnWays& columnWays() { return column_ways_; }
   /// One bit for each sphere of the held object that penetrates something: what isFree() found
   /// last.
   [[nodiscard]] std::span<std::uint64_t> heldBits() { return held_bits_; }
@@ -113,6 +123,7 @@ class Chunk {
   std::vector<GroupBits> group_bits_;
   std::vector<EightPlaces> places_;
   WayOut way_out_;
+  ColumnWays column_ways_;
   std::vector<std::uint64_t> blocked_bits_;
   std::vector<std::uint64_t> held_bits_;
   std::vector<std::uint64_t> body_bits_;

@@ -1,6 +1,7 @@
 #include "simulation/phases/move.h"
 
 #include <algorithm>
+#include <array>
 
 #include "simulation/collision/collision.h"
 #include "simulation/phases/contacts.h"
@@ -43,6 +44,41 @@ void accept(const ChunkStep& step, std::size_t e) {
   });
 }
 
+/// What the floor's probe found at the height `probe`; `down`: how far the floor is under it.
+FloorUnder floorFound(const ColumnGrid& grid, const Vec3& base, float probe, Clearance clearance,
+                      float down, const GroundOptions& options) {
+  if (clearance == Clearance::kBlocked) return {Floor::kBlocks, base.y};
+  if (clearance == Clearance::kOutside) return {Floor::kDrops, base.y};
+  const float height = probe - down - grid.radius();
+  if (height < base.y - options.most_drop) return {Floor::kDrops, base.y};
+  return {Floor::kCarries, height};
+}
+
+/// The floors under eight candidates in one scene: one batched query.
+void followFloor(const ChunkStep& step, const Scene& scene, std::size_t first) {
+  const GroundOptions& options = step.model.options.ground;
+  const ColumnGrid& grid = scene.grids().front();
+  std::array<float, kLanes> x;
+  std::array<float, kLanes> y;
+  std::array<float, kLanes> z;
+  for (std::size_t n = 0; n < kLanes; ++n) {
+    const Vec3 probe = floorProbe(scene, step.chunk.base(first + n), options);
+    x[n] = probe.x;
+    y[n] = probe.y;
+    z[n] = probe.z;
+  }
+  std::array<Clearance, kLanes> clearance;
+  std::array<float, kLanes> down;
+  std::array<float, kLanes> up;
+  grid.contact({x, y, z}, {clearance, down, up});
+  for (std::size_t n = 0; n < kLanes; ++n) {
+    const FloorUnder under =
+        floorFound(grid, step.chunk.base(first + n), y[n], clearance[n], down[n], options);
+    step.chunk.floor(first + n) = under.floor;
+    *step.chunk.candidates(first + n).y = under.height;
+  }
+}
+
 }  // namespace
 
 Vec3 floorProbe(const Scene& scene, const Vec3& base, const GroundOptions& options) noexcept {
@@ -53,11 +89,7 @@ FloorUnder floorUnder(const Scene& scene, const Vec3& base, const GroundOptions&
   const ColumnGrid& grid = scene.grids().front();
   const Vec3 probe = floorProbe(scene, base, options);
   const Contact contact = grid.contact(probe);
-  if (contact.clearance == Clearance::kBlocked) return {Floor::kBlocks, base.y};
-  if (contact.clearance == Clearance::kOutside) return {Floor::kDrops, base.y};
-  const float height = probe.y - contact.down - grid.radius();
-  if (height < base.y - options.most_drop) return {Floor::kDrops, base.y};
-  return {Floor::kCarries, height};
+  return floorFound(grid, base, probe.y, contact.clearance, contact.down, options);
 }
 
 void proposePoses(const ChunkStep& step) noexcept {
@@ -72,11 +104,20 @@ void proposePoses(const ChunkStep& step) noexcept {
 }
 
 void followFloor(const ChunkStep& step) noexcept {
-  for (std::size_t e = 0; e < kChunk; ++e) {
-    const Scene& scene = step.model.world->scenes()[step.state.env(step.first + e).scene];
-    const FloorUnder under = floorUnder(scene, step.chunk.base(e), step.model.options.ground);
-    step.chunk.floor(e) = under.floor;
-    *step.chunk.candidates(e).y = under.height;
+  const auto scene_of = [&](std::size_t e) { return step.state.env(step.first + e).scene; };
+  for (std::size_t first = 0; first < kChunk; first += kLanes) {
+    std::uint32_t others = 0;
+    for (std::size_t n = 1; n < kLanes; ++n) others |= scene_of(first + n) ^ scene_of(first);
+    if (others == 0) {
+      followFloor(step, step.model.world->scenes()[scene_of(first)], first);
+      continue;
+    }
+    for (std::size_t e = first; e < first + kLanes; ++e) {
+      const FloorUnder under = floorUnder(step.model.world->scenes()[scene_of(e)],
+                                          step.chunk.base(e), step.model.options.ground);
+      step.chunk.floor(e) = under.floor;
+      *step.chunk.candidates(e).y = under.height;
+    }
   }
 }
 

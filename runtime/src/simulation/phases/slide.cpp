@@ -56,30 +56,43 @@ class Glide {
   /// The way out is sought from where the candidate is now.
   void begin() {
     way_.clear(obstacles_.scene.grids().front().spacing());
-    moved_ = {};
+    step_.chunk.columnWays().clear();
+    step_.chunk.forgetColumns();
     step_.chunk.forgetSuited();
+    moved_ = {};
+    has_way_ = true;
+    holds_columns_ = false;
   }
 
   /// Adds the spheres that decide where the way out of the scene leads. Whether the scene blocks
   /// any.
   bool addBlocked() {
     const bool floor_blocks = step_.chunk.floor(e_) == Floor::kBlocks;
-    if (floor_blocks) {
-      findBlocked(step_, e_);
-      const Vec3 probe =
-          floorProbe(obstacles_.scene, step_.chunk.base(e_), step_.model.options.ground);
-      addSphere(0, probe);
-    }
-    const bool body = !isEmpty(step_.chunk.blockedBits());
-    if (body || floor_blocks) addBody();
+    if (floor_blocks) findBlocked(step_, e_);
+    const bool body = floor_blocks || !isEmpty(step_.chunk.blockedBits());
     // isFree() asks about what the robot holds when the robot itself is free.
-    return body || floor_blocks || addHeld();
+    const bool held = !body && !isEmpty(step_.chunk.heldBits()) && heldIsBlocked();
+    if (!body && !held) return false;
+    if (asks_columns_) {
+      addColumns();
+      return true;
+    }
+    if (floor_blocks) addSphere(0, floorProbeHere());
+    if (body) {
+      addBody();
+    } else {
+      addHeld();
+    }
+    return true;
+  }
+
+  [[nodiscard]] Vec3 floorProbeHere() const {
+    return floorProbe(obstacles_.scene, step_.chunk.base(e_), step_.model.options.ground);
   }
 
   /// Adds the robot's spheres in all groups that are not free as a whole: those that are blocked,
   /// and those of which it is known where they are free.
   void addBody() {
-    const SphereBatch spheres = step_.chunk.spheres(e_);
     for (std::size_t n = 0; n < step_.model.groups.size(); ++n) {
       GroupBits& known = step_.chunk.groupBits(n / kLanes);
       const unsigned bit = 1U << (n % kLanes);
@@ -90,37 +103,77 @@ class Glide {
       const auto blocked = static_cast<unsigned>(word >> (n % kLanes * kLanes) & 0xffU);
       const unsigned added = group.spheres & (places.free | blocked);
       if (added == group.spheres) known.suited |= bit;
-      const bool at_places = moved_.x == 0 && moved_.z == 0;
-      for (unsigned left = added; left != 0; left &= left - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-        const std::size_t sphere = n * kLanes + lane;
-        if (at_places && (places.inside >> lane & 1U) != 0) {
-          way_.add(step_.model.slices.around(env_.clearance_map, group.radius_index, places, lane),
-                   places.part_x[lane], places.part_z[lane]);
-        } else {
-          addSphere(group.radius_index, {spheres.x[sphere], spheres.y[sphere], spheres.z[sphere]});
-        }
+      if (moved_.x == 0 && moved_.z == 0) {
+        addEight(n, added, places);
+      } else {
+        addEight(n, added, placesBefore(n));
       }
     }
   }
 
-  /// The same for what the robot holds. Whether the scene blocks any of it.
-  bool addHeld() {
-    const bool penetrates = env_.held.object >= 0 && !isEmpty(step_.chunk.heldBits());
-    if (!penetrates) return false;
+  /// Adds spheres of a group. `places`: where they were when the way out was begun.
+  void addEight(std::size_t group, unsigned spheres, const EightPlaces& places) {
+    const std::uint32_t radius = step_.model.groups[group].radius_index;
+    const unsigned known = spheres & places.inside;
+    if (known != 0) way_.add(step_.model.slices.rows(env_.clearance_map, radius), places, known);
+    const SphereBatch all = step_.chunk.spheres(e_);
+    for (unsigned left = spheres & ~known; left != 0; left &= left - 1) {
+      const std::size_t n = group * kLanes + static_cast<std::size_t>(std::countr_zero(left));
+      addSphere(radius, {all.x[n], all.y[n], all.z[n]});
+    }
+  }
+
+  [[nodiscard]] EightPlaces placesBefore(std::size_t group) const {
+    const SphereBatch spheres = step_.chunk.spheres(e_);
+    std::array<float, kLanes> x;
+    std::array<float, kLanes> z;
+    for (std::size_t n = 0; n < kLanes; ++n) {
+      x[n] = spheres.x[group * kLanes + n] - moved_.x;
+      z[n] = spheres.z[group * kLanes + n] - moved_.z;
+    }
+    EightPlaces places;
+    step_.model.slices.findPlaces(env_.clearance_map, step_.model.groups[group].radius_index,
+                                  x.data(), spheres.y + group * kLanes, z.data(), places);
+    return places;
+  }
+
+  /// Calls visit(radius index, center) for each sphere of what the robot holds that counts.
+  template <class Visit>
+  void forEachHeld(const Visit& visit) const {
+    if (env_.held.object < 0) return;
     const SphereBatch held = heldSpheres(step_, e_);
     const IgnoredSpheres ignored = step_.state.ignored(step_.first + e_);
-    bool any = false;
     for (const RadiusRange& range : held.ranges) {
-      const ColumnGrid& grid = obstacles_.scene.grids()[range.radius_index];
       for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
         if ((ignored[n / 64] >> (n % 64) & 1U) != 0) continue;
-        const Vec3 center{held.x[n], held.y[n], held.z[n]};
-        any = any || grid.clearance(center) != Clearance::kFree;
-        addSphere(range.radius_index, center);
+        visit(range.radius_index, Vec3{held.x[n], held.y[n], held.z[n]});
       }
     }
+  }
+
+  [[nodiscard]] bool isBlocked(std::uint32_t radius, const Vec3& center) const {
+    return obstacles_.scene.grids()[radius].clearance(center) != Clearance::kFree;
+  }
+
+  [[nodiscard]] bool heldIsBlocked() const {
+    bool any = false;
+    forEachHeld(
+        [&](std::uint32_t radius, const Vec3& center) { any = any || isBlocked(radius, center); });
     return any;
+  }
+
+  /// As addBody() for what the robot holds.
+  void addHeld() {
+    forEachHeld([&](std::uint32_t radius, const Vec3& center) {
+      if (isBlocked(radius, center) || isKnown(radius, center)) addSphere(radius, center);
+    });
+  }
+
+  /// Whether slices say rightly that a sphere is free where it is. Close above a table they do not,
+  /// and would have it leave the table.
+  [[nodiscard]] bool isKnown(std::uint32_t radius, const Vec3& center) const {
+    const auto around = step_.model.slices.around(env_.clearance_map, radius, center);
+    return !around || around->isFree(0, 0);
   }
 
   /// `center`: where the sphere is now.
@@ -131,20 +184,73 @@ class Glide {
     const ColumnGridLayout& layout = grid.layout();
     const float part_x = partOf((before.x - layout.min_x) * layout.inverse_spacing);
     const float part_z = partOf((before.z - layout.min_z) * layout.inverse_spacing);
-    if (around) {
-      way_.add(*around, part_x, part_z);
-    } else {
-      way_.add(surroundingsOf(grid, before), part_x, part_z);
+    way_.add(around ? around->cells() : surroundingsOf(grid, before), part_x, part_z);
+  }
+
+  /// Adds all spheres that are not free as a whole, and what the robot holds, and asks the columns
+  /// where the slices do not know better.
+  void addColumns() {
+    ColumnWays& columns = step_.chunk.columnWays();
+    if (step_.chunk.floor(e_) == Floor::kBlocks) addColumn(0, floorProbeHere());
+    const SphereBatch spheres = step_.chunk.spheres(e_);
+    for (std::size_t n = 0; n < step_.model.groups.size(); ++n) {
+      GroupBits& known = step_.chunk.groupBits(n / kLanes);
+      const unsigned bit = 1U << (n % kLanes);
+      const EightSpheres& group = step_.model.groups[n];
+      if ((known.unsure & ~known.in_columns & bit) == 0) continue;
+      known.in_columns |= bit;
+      for (unsigned left = group.spheres; left != 0; left &= left - 1) {
+        const std::size_t at = n * kLanes + static_cast<std::size_t>(std::countr_zero(left));
+        addColumn(group.radius_index, {spheres.x[at], spheres.y[at], spheres.z[at]});
+      }
     }
+    if (!holds_columns_) {
+      forEachHeld([&](std::uint32_t radius, const Vec3& center) { addColumn(radius, center); });
+    }
+    holds_columns_ = true;
+    way_.clear(obstacles_.scene.grids().front().spacing());
+    has_way_ = columns.addTo(way_);
+    // No group needs another look where they lead.
+    step_.chunk.suitColumns();
+  }
+
+  /// `center`: where the sphere is now.
+  void addColumn(std::uint32_t radius, const Vec3& center) {
+    const Vec3 before{center.x - moved_.x, center.y, center.z - moved_.z};
+    step_.chunk.columnWays().add(obstacles_.scene.grids()[radius], before,
+                                 step_.model.slices.around(env_.clearance_map, radius, before));
+  }
+
+  [[nodiscard]] std::optional<Push> findWay(const Push& drive) const {
+    if (!has_way_) return std::nullopt;
+    return way_.shortest(drive, step_.model.options.slide.step);
   }
 
   bool leaveScene() {
-    const std::optional<Push> push = way_.shortest(drive_, step_.model.options.slide.step);
+    std::optional<Push> push = findWay(drive_);
+    if (!push && !asks_columns_) {
+      asks_columns_ = true;
+      addColumns();
+      push = findWay(drive_);
+    }
+    // Where the arm or a turn led into something, the drive is not to blame.
+    if (!push && has_way_ && isBlockedWithoutDrive()) push = findWay({});
     if (!push) return false;
     const bool is_level = moveBase(step_, e_, {push->x - moved_.x, push->z - moved_.z});
     if (!is_level) step_.chunk.forgetSuited();
     moved_ = *push;
     return true;
+  }
+
+  /// Whether the scene would block the robot, or what it holds, if it had not driven.
+  [[nodiscard]] bool isBlockedWithoutDrive() {
+    if (drive_.x == 0 && drive_.z == 0) return false;
+    const Push back{-drive_.x - moved_.x, -drive_.z - moved_.z};
+    step_.chunk.shift(e_, {back.x, 0, back.z});
+    step_.chunk.forgetSuited();
+    const bool is_blocked = findBlocked(step_, e_) || heldIsBlocked();
+    step_.chunk.shift(e_, {-back.x, 0, -back.z});
+    return is_blocked;
   }
 
   bool leaveObjects() {
@@ -174,6 +280,11 @@ class Glide {
   Push drive_;
   /// From where the way out was begun.
   Push moved_;
+  bool has_way_ = true;
+  /// Slices know no way out, so columns are asked from now on.
+  bool asks_columns_ = false;
+  /// What the robot holds has been asked about.
+  bool holds_columns_ = false;
 };
 
 /// The jitter of the published rule away from a sphere: towards the base.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "column_grid/column_grid_kernels.h"
+#include "simulation/collision/column_ways.h"
 #include "support/homes/box_room.h"
 #include "support/packs/grid_builder.h"
 
@@ -333,10 +335,180 @@ TEST(WayOut, IsNoneForMoreSpheresThanThereIsRoomFor) {
   sphere.around.setFree(1, 0);
   WayOut way(1);
   way.clear(1);
-  way.add(sphere.around, 0.5F, 0.5F);
-  ASSERT_TRUE(way.shortest({}, kAny).has_value());
+  for (std::size_t n = 0; n < kLanes; ++n) {
+    way.add(sphere.around, 0.5F, 0.5F);
+    ASSERT_TRUE(way.shortest({}, kAny).has_value());
+  }
   way.add(sphere.around, 0.5F, 0.5F);
   EXPECT_FALSE(way.shortest({}, kAny).has_value());
+}
+
+/// Spheres of a robot among furniture.
+struct Body {
+  explicit Body(std::mt19937& random) {
+    const float x = uniformIn(random, 0.5F, 2.5F);
+    const float z = uniformIn(random, 0.5F, 2.5F);
+    for (std::size_t n = 1 + random() % 10; n-- > 0;) {
+      centers.push_back({x + uniformIn(random, -0.3F, 0.3F), uniformIn(random, 0.15F, 1.3F),
+                         z + uniformIn(random, -0.3F, 0.3F)});
+      radii.push_back(static_cast<std::uint32_t>(random() % 3));
+    }
+  }
+
+  std::vector<Vec3> centers;
+  std::vector<std::uint32_t> radii;
+};
+
+TEST(ColumnWays, AreTheWaysOutThatAllColumnsAllow) {
+  constexpr std::uint32_t kSeed = 1609;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  constexpr float kLongest = 0.15F;
+  Tally found;
+  int lost = 0;
+  for (int round = 0; round < 20; ++round) {
+    const BoxRoom room = furnishedRoom(random);
+    FreeSlices slices;
+    const std::uint32_t map = slices.add(room.scene(), 0, kHeights);
+    for (int n = 0; n < 150; ++n) {
+      const Body body(random);
+      WayOut all(body.centers.size());
+      WayOut sliced(body.centers.size());
+      WayOut asked(body.centers.size());
+      for (WayOut* way : {&all, &sliced, &asked}) way->clear(BoxRoom::kSpacing);
+      ColumnWays columns(body.centers.size());
+      columns.clear();
+      bool is_free = true;
+      for (std::size_t s = 0; s < body.centers.size(); ++s) {
+        const ColumnGrid& grid = room.scene().grids()[body.radii[s]];
+        const Vec3& center = body.centers[s];
+        const auto around = slices.around(map, body.radii[s], center);
+        const Surroundings exact = surroundingsOf(grid, center);
+        is_free = is_free && exact.isFree(0, 0);
+        const auto part = [&](float at) {
+          const float cell = at * grid.layout().inverse_spacing;
+          return cell - std::floor(cell);
+        };
+        all.add(exact, part(center.x), part(center.z));
+        sliced.add(around ? around->cells() : exact, part(center.x), part(center.z));
+        columns.add(grid, center, around);
+      }
+      if (is_free) continue;
+      const Push drive{uniformIn(random, -1, 1), uniformIn(random, -1, 1)};
+      const std::optional<Push> wanted = all.shortest(drive, kLongest);
+      const std::optional<Push> push =
+          columns.addTo(asked) ? asked.shortest(drive, kLongest) : std::nullopt;
+      found.add(push.has_value());
+      ASSERT_EQ(push.has_value(), wanted.has_value()) << "round " << round << ", body " << n;
+      if (!push) continue;
+      ASSERT_EQ(push->x, wanted->x);
+      ASSERT_EQ(push->z, wanted->z);
+      lost += sliced.shortest(drive, kLongest) ? 0 : 1;
+    }
+  }
+  found.expectBothSides();
+  // What they are for.
+  EXPECT_GT(lost, 0);
+}
+
+TEST(ColumnWays, KnowNoWayForMoreSpheresThanThereIsRoomFor) {
+  std::mt19937 random(1610);
+  const BoxRoom room = furnishedRoom(random);
+  const ColumnGrid& grid = room.scene().grids()[0];
+  ColumnWays columns(1);
+  WayOut way(1);
+  way.clear(BoxRoom::kSpacing);
+  columns.add(grid, {1.5F, 1.4F, 1.5F}, std::nullopt);
+  EXPECT_TRUE(columns.addTo(way));
+  columns.add(grid, {1.5F, 1.4F, 1.5F}, std::nullopt);
+  EXPECT_FALSE(columns.addTo(way));
+}
+
+/// Rows of which most cells are free, and places among them.
+struct RandomRows {
+  explicit RandomRows(std::mt19937& random) {
+    for (std::uint16_t& row : rows) {
+      row = static_cast<std::uint16_t>(random() | random() | random() | random());
+    }
+  }
+
+  [[nodiscard]] static EightPlaces places(std::mt19937& random) {
+    EightPlaces places;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      places.row[lane] = static_cast<std::int32_t>(random() % 1000);
+      places.column[lane] = static_cast<std::int32_t>(random() % kStripColumns);
+      places.part_x[lane] = uniformIn(random, 0, 1);
+      places.part_z[lane] = uniformIn(random, 0, 1);
+    }
+    return places;
+  }
+
+  std::vector<std::uint16_t> rows = std::vector<std::uint16_t>(1100);
+};
+
+WayCell anyCell(std::mt19937& random) {
+  constexpr int kCells = 2 * kCellsAround + 1;
+  return {static_cast<int>(random() % kCells) - kCellsAround,
+          static_cast<int>(random() % kCells) - kCellsAround};
+}
+
+TakeBack anyTakeBack(std::mt19937& random) {
+  return {.along_x = random() % 2 == 0,
+          .sign = random() % 2 == 0 ? 1 : -1,
+          .before = anyCell(random),
+          .other_sign = static_cast<int>(random() % 3) - 1,
+          .other_back = uniformIn(random, 0, 1),
+          .margin = kIntoCell,
+          .before_behind = anyCell(random)};
+}
+
+bool areSame(const AllWays& one, const AllWays& other) {
+  return std::equal(&one.rows[0][0], &one.rows[0][0] + kRowPairs * kLanes, &other.rows[0][0]);
+}
+
+bool areSame(const EightWays& one, const EightWays& other) {
+  return std::equal(&one.rows[0][0], &one.rows[0][0] + kRowPairs * kLanes, &other.rows[0][0]) &&
+         std::ranges::equal(one.part_x, other.part_x) &&
+         std::ranges::equal(one.part_z, other.part_z) &&
+         std::ranges::equal(one.counts, other.counts);
+}
+
+TEST(WayOut, IsTheSameBitForBitWithBothKernels) {
+  if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2";
+  constexpr std::uint32_t kSeed = 1608;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  Tally whole;
+  Tally free;
+  const RandomRows slices(random);
+  for (int round = 0; round < 4000; ++round) {
+    std::array<EightWays, 2> portable;
+    std::array<EightWays, 2> fast;
+    AllWays all;
+    std::ranges::fill(std::span(&all.rows[0][0], kRowPairs * kLanes), ~std::uint32_t{0});
+    AllWays all_fast = all;
+    for (std::size_t n = 0; n < portable.size(); ++n) {
+      const EightPlaces places = RandomRows::places(random);
+      // Few spheres: of many, some one is always blocked.
+      const auto lanes = static_cast<unsigned>(random() & random() & 0xffU);
+      const bool counts = addWaysPortable(slices.rows.data(), places, lanes, portable[n], all);
+      ASSERT_EQ(counts, addWaysAvx2(slices.rows.data(), places, lanes, fast[n], all_fast));
+      ASSERT_TRUE(areSame(portable[n], fast[n]));
+    }
+    ASSERT_TRUE(areSame(all, all_fast));
+    const TakeBack back = anyTakeBack(random);
+    const float taken = takenBackPortable(portable.data(), portable.size(), back);
+    ASSERT_EQ(taken, takenBackAvx2(fast.data(), fast.size(), back));
+    whole.add(taken == 1);
+    const float by_x = round % 4 == 0 ? 0 : uniformIn(random, -4.2F, 4.2F);
+    const float by_z = round % 5 == 0 ? 0 : uniformIn(random, -4.2F, 4.2F);
+    const bool is_free =
+        allFreePortable(portable.data(), portable.size(), by_x, by_z, 0.5F * kIntoCell);
+    ASSERT_EQ(is_free, allFreeAvx2(fast.data(), fast.size(), by_x, by_z, 0.5F * kIntoCell));
+    free.add(is_free);
+  }
+  whole.expectBothSides();
+  free.expectBothSides();
 }
 
 }  // namespace

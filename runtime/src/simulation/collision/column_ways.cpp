@@ -1,0 +1,130 @@
+#include "simulation/collision/column_ways.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "column_grid/column_grid_kernels.h"
+
+namespace galactic::simulation {
+namespace {
+
+constexpr int kRowBits = 16;
+/// The bits that count.
+constexpr std::array<std::uint64_t, Surroundings::kWords> kCells{0x01ff'01ff'01ff'01ff,
+                                                                 0x01ff'01ff'01ff'01ff, 0x01ff};
+
+/// What one query takes.
+constexpr std::size_t kMostAsked = 64;
+
+/// Cells of one radius, waiting for an answer.
+struct Question {
+  alignas(32) std::array<float, kMostAsked> x;
+  alignas(32) std::array<float, kMostAsked> y;
+  alignas(32) std::array<float, kMostAsked> z;
+  std::array<int, kMostAsked> bits;
+  std::size_t count = 0;
+};
+
+/// Sets the bits of the cells that are free.
+void answer(const ColumnGrid& grid, Question& question, Surroundings& free) {
+  if (question.count == 0) return;
+  const std::size_t padded = paddedToLanes(question.count);
+  for (std::size_t n = question.count; n < padded; ++n) {
+    question.x[n] = question.x[question.count - 1];
+    question.z[n] = question.z[question.count - 1];
+  }
+  const auto eights = static_cast<unsigned>((std::uint64_t{1} << (padded / kLanes)) - 1);
+  const detail::EightsOfCenters centers{question.x.data(), question.y.data(), question.z.data(),
+                                        eights};
+  const std::uint64_t not_free = detail::hasAvx2()
+                                     ? detail::notFreeAvx2(grid.layout(), centers)
+                                     : detail::notFreePortable(grid.layout(), centers);
+  for (std::size_t n = 0; n < question.count; ++n) {
+    const auto bit = static_cast<unsigned>(question.bits[n]);
+    const std::uint64_t is_free = ~not_free >> n & 1U;
+    free.rows[bit / 64] |= is_free << (bit % 64);
+  }
+  question.count = 0;
+}
+
+/// The cells of a set and all that touch one, be it with a corner.
+Surroundings grown(const Surroundings& cells) {
+  std::array<std::uint64_t, Surroundings::kWords> wide{};
+  for (std::size_t n = 0; n < wide.size(); ++n) {
+    const std::uint64_t row = cells.rows[n] & kCells[n];
+    wide[n] = (row | row << 1U | row >> 1U) & kCells[n];
+  }
+  Surroundings found;
+  for (std::size_t n = 0; n < wide.size(); ++n) {
+    const std::uint64_t before = n > 0 ? wide[n - 1] >> (64 - kRowBits) : 0;
+    const std::uint64_t behind = n + 1 < wide.size() ? wide[n + 1] << (64 - kRowBits) : 0;
+    found.rows[n] =
+        (wide[n] | wide[n] << kRowBits | wide[n] >> kRowBits | before | behind) & kCells[n];
+  }
+  return found;
+}
+
+float partOf(float cell) { return cell - std::floor(cell); }
+
+}  // namespace
+
+void ColumnWays::add(const ColumnGrid& grid, const Vec3& center,
+                     const std::optional<SurroundingRows>& around) noexcept {
+  if (spheres_.size() == spheres_.capacity()) {
+    is_full_ = true;
+    return;
+  }
+  Sphere sphere{&grid, center, {}, {}};
+  if (around) sphere.free = around->cells();
+  for (std::size_t n = 0; n < kCells.size(); ++n) sphere.free.rows[n] &= kCells[n];
+  sphere.asked = sphere.free;
+  spheres_.push_back(sphere);
+}
+
+void ColumnWays::ask(const Surroundings& cells, Sphere& sphere) noexcept {
+  const ColumnGridLayout& layout = sphere.grid->layout();
+  const float own_x = std::floor((sphere.center.x - layout.min_x) * layout.inverse_spacing) + 0.5F;
+  const float own_z = std::floor((sphere.center.z - layout.min_z) * layout.inverse_spacing) + 0.5F;
+  Question question;
+  question.y.fill(sphere.center.y);
+  for (std::size_t n = 0; n < kCells.size(); ++n) {
+    std::uint64_t left = cells.rows[n] & ~sphere.asked.rows[n];
+    sphere.asked.rows[n] |= left;
+    for (; left != 0; left &= left - 1) {
+      const int bit = 64 * static_cast<int>(n) + std::countr_zero(left);
+      const auto x = static_cast<float>(bit % kRowBits - kCellsAround);
+      const auto z = static_cast<float>(bit / kRowBits - kCellsAround);
+      question.x[question.count] = layout.min_x + (own_x + x) * layout.spacing;
+      question.z[question.count] = layout.min_z + (own_z + z) * layout.spacing;
+      question.bits[question.count++] = bit;
+      if (question.count == kMostAsked) answer(*sphere.grid, question, sphere.free);
+    }
+  }
+  answer(*sphere.grid, question, sphere.free);
+}
+
+bool ColumnWays::addTo(WayOut& way) noexcept {
+  if (is_full_) return false;
+  Surroundings in_all{kCells};
+  for (Sphere& sphere : spheres_) {
+    ask(in_all, sphere);
+    std::uint64_t any = 0;
+    for (std::size_t n = 0; n < kCells.size(); ++n) {
+      in_all.rows[n] &= sphere.free.rows[n];
+      any |= in_all.rows[n];
+    }
+    if (any == 0) return false;
+  }
+  const Surroundings near = grown(in_all);
+  for (Sphere& sphere : spheres_) {
+    ask(near, sphere);
+    const ColumnGridLayout& layout = sphere.grid->layout();
+    way.add(sphere.free, partOf((sphere.center.x - layout.min_x) * layout.inverse_spacing),
+            partOf((sphere.center.z - layout.min_z) * layout.inverse_spacing));
+  }
+  return true;
+}
+
+}  // namespace galactic::simulation
