@@ -9,7 +9,6 @@
 namespace galactic::simulation {
 namespace {
 
-constexpr int kEdge = 2 * kCellsAround + 1;
 constexpr int kRowBits = 16;
 
 constexpr int signOf(int value) { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); }
