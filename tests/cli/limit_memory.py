@@ -58,8 +58,10 @@ def faults_of(command: list[str], knows: str) -> list[str]:
 
 def main() -> int:
     programs, world, packs = (pathlib.Path(text).resolve() for text in sys.argv[1:4])
+    images = ["--envs", 32, "--steps", 1, "--threads", 1, "--render", "depth", "--size", 2048, "--backend", "soft"]
     commands = [
         ["envs", "galactic-run", world, "--envs", 65536, "--steps", 1, "--threads", 1],
+        ["images of 2048 x 2048 pixels", "galactic-run", world, *images],
         ["", "galactic-pack", "picture", packs / "crate.pack", "--size", 2048, "-o", "crate.png"],
         ["columns", "galactic-bake", packs / "room.obj", "--spacing", 0.002, "--check-columns", 0, "-q", "-o", "room.pack"],
     ]

@@ -1,12 +1,37 @@
 #include "drawing/rendering.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "galactic/debug_views.h"
 #include "galactic/world_models.h"
 #include "galactic/world_views.h"
+#include "support/out_of_memory.h"
+#include "support/try.h"
 
 namespace galactic {
+namespace {
+
+/// Of one image, on this side; a backend has its own memory besides.
+double bytesPerImage(const RenderOptions& options) {
+  const std::size_t per_pixel = static_cast<std::size_t>(options.color) +
+                                (options.depth ? sizeof(float) : 0) +
+                                (options.semantics ? sizeof(std::uint32_t) : 0);
+  return static_cast<double>(per_pixel) * options.width * options.height;
+}
+
+}  // namespace
+
+Result<ImageBatch> ImageBatch::create(const RenderLibrary& library, const RenderOptions& options,
+                                      std::size_t images) {
+  RETURN_IF_ERROR(
+      checkMemory(static_cast<double>(images) * bytesPerImage(options),
+                  fmt::format("{} images of {} x {} pixels", images, options.width, options.height),
+                  "draw fewer envs at once (--envs), or smaller images (--size)"));
+  ASSIGN_OR_RETURN(BatchRenderer renderer, BatchRenderer::create(library, options));
+  return ImageBatch(std::move(renderer), images);
+}
 
 ImageBatch::ImageBatch(BatchRenderer renderer, std::size_t images)
     : renderer_(std::move(renderer)) {
@@ -74,9 +99,7 @@ class DebugBatch {
     options.semantics = false;
     constexpr std::uint32_t kSky = 0xFFF4ECE4;
     options.background = kSky;
-    Result<BatchRenderer> renderer = BatchRenderer::create(batch->models_.library(), options);
-    if (!renderer) return tl::unexpected<Error>(renderer.error());
-    batch->images_.emplace(std::move(*renderer), shown);
+    ASSIGN_OR_RETURN(batch->images_, ImageBatch::create(batch->models_.library(), options, shown));
     batch->views_.emplace(world, batch->models_, simulator, camera->mount, shown);
     return batch;
   }
@@ -123,10 +146,9 @@ Result<Rendering> Rendering::create(const World& world, const BatchSimulator& si
   Result<WorldModels> models = WorldModels::from(world);
   if (!models) return tl::unexpected<Error>(models.error());
   auto parts = std::make_unique<Parts>(std::move(*models));
-  Result<BatchRenderer> renderer =
-      BatchRenderer::create(parts->models.library(), rendererOptions(options, camera->near));
-  if (!renderer) return tl::unexpected<Error>(renderer.error());
-  parts->images.emplace(std::move(*renderer), simulator.envCount());
+  ASSIGN_OR_RETURN(parts->images, ImageBatch::create(parts->models.library(),
+                                                     rendererOptions(options, camera->near),
+                                                     simulator.envCount()));
   parts->views.emplace(world, parts->models, simulator, camera->mount);
   if (drawing.debug_view) {
     auto debug = DebugBatch::create(world, simulator, options, shown);

@@ -18,7 +18,10 @@ namespace galactic {
 /// A renderer and the memory that its images go to.
 class ImageBatch {
  public:
-  ImageBatch(BatchRenderer renderer, std::size_t images);
+  /// Fails with the errors of BatchRenderer::create, and with kUnsupported when there is too little
+  /// memory for so many images.
+  [[nodiscard]] static Result<ImageBatch> create(const RenderLibrary& library,
+                                                 const RenderOptions& options, std::size_t images);
 
   /// `views`: as many as there are images.
   void begin(std::span<const RenderView> views);
@@ -32,6 +35,7 @@ class ImageBatch {
   [[nodiscard]] const BatchRenderer& renderer() const { return renderer_; }
 
  private:
+  ImageBatch(BatchRenderer renderer, std::size_t images);
   [[nodiscard]] std::size_t pixels() const;
 
   BatchRenderer renderer_;

@@ -12,6 +12,7 @@
 #include "galactic/option_text.h"
 #include "galactic/world_models.h"
 #include "galactic/world_views.h"
+#include "support/try.h"
 
 namespace galactic {
 namespace {
@@ -40,9 +41,8 @@ class PolicyEyes {
     options.backend = run.drawing.backend;
     options.device = run.drawing.device;
     options.threads = run.simulation.threads;
-    Result<BatchRenderer> renderer = BatchRenderer::create(eyes->models_.library(), options);
-    if (!renderer) return tl::unexpected<Error>(renderer.error());
-    eyes->images_.emplace(std::move(*renderer), simulator.envCount());
+    ASSIGN_OR_RETURN(eyes->images_,
+                     ImageBatch::create(eyes->models_.library(), options, simulator.envCount()));
     eyes->views_.emplace(world, eyes->models_, simulator, camera->mount);
     return eyes;
   }
