@@ -174,6 +174,52 @@ TEST(Glide, NeverMovesAgainstTheDriveNorFurtherThanDriven) {
   EXPECT_LT(refused, steps / 20);
 }
 
+/// Blocked, and not only by rounding.
+bool isIn(const BoxRoom& room, const Vec3& center, float radius) {
+  constexpr double kDeeper = 1e-4;
+  constexpr double kAside = 1e-5;
+  for (const double x : {-kAside, kAside}) {
+    for (const double z : {-kAside, kAside}) {
+      const Point3 at{static_cast<double>(center.x) + x, static_cast<double>(center.y),
+                      static_cast<double>(center.z) + z};
+      if (!room.isBlocked(at, static_cast<double>(radius) - kDeeper)) return false;
+    }
+  }
+  return true;
+}
+
+TEST(Glide, NeverEndsInFurniture) {
+  constexpr std::uint32_t kSeed = 1704;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  std::uint64_t slid = 0;
+  std::uint64_t steps = 0;
+  for (int round = 0; round < 12; ++round) {
+    Room room = furnishedRoom(random, kCarts);
+    // Plates, over which and under which an arm reaches closely.
+    for (int n = 0; n < 8; ++n) {
+      const Vec3 at{uniformIn(random, 0, 2.5F), uniformIn(random, 0.2F, 0.4F),
+                    uniformIn(random, 0, 2.5F)};
+      room.blocks.push_back({at, at + Vec3{0.5F, 0.03F, 0.4F}});
+    }
+    const BoxWorld world(room.blocks, room.starts);
+    BatchSimulator simulator = simulatorOf(world, kCarts);
+    for (int step = 0; step < 40; ++step) {
+      simulator.step(Moves(random, kCarts, true).actions);
+      for (std::size_t n = 0; n < kCarts; ++n) {
+        const EnvState state = simulator.envState(n);
+        const Vec3 cart = state.world_from_root.translation + Vec3{0, 0.3F, 0};
+        ASSERT_FALSE(isIn(world.room(), cart, 0.12F)) << "round " << round << ", cart " << n;
+        ASSERT_FALSE(isIn(world.room(), state.world_from_grip.translation, 0.05F))
+            << "round " << round << ", cart " << n;
+      }
+    }
+    slid += simulator.statistics().slid;
+    steps += simulator.statistics().steps;
+  }
+  EXPECT_GT(slid, steps / 5);
+}
+
 TEST(Glide, LeavesTheDriveAsItIsWhereNothingBlocks) {
   constexpr std::uint32_t kSeed = 1703;
   std::printf("seed %u\n", kSeed);

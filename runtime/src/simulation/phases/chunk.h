@@ -78,11 +78,11 @@ class Chunk {
   void forgetSuited() {
     for (GroupBits& bits : group_bits_) bits.suited = 0;
   }
-  void forgetColumns() {
-    for (GroupBits& bits : group_bits_) bits.in_columns = 0;
+  void forgetWays() {
+    for (GroupBits& bits : group_bits_) bits.suited = bits.in_columns = 0;
   }
-  void suitColumns() {
-    for (GroupBits& bits : group_bits_) bits.suited |= bits.in_columns;
+  void suitColumnsOnly() {
+    for (GroupBits& bits : group_bits_) bits.suited = bits.in_columns;
   }
   /// Of a group that is not free as a whole: the same.
   [[nodiscard]] EightPlaces& places(std::size_t group) { return places_[group]; }

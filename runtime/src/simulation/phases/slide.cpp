@@ -56,11 +56,15 @@ class Glide {
   /// The way out is sought from where the candidate is now.
   void begin() {
     way_.clear(obstacles_.scene.grids().front().spacing());
-    step_.chunk.columnWays().clear();
-    step_.chunk.forgetColumns();
-    step_.chunk.forgetSuited();
+    forgetWays();
     moved_ = {};
     has_way_ = true;
+  }
+
+  /// No group is known to suit a way, nor to be in columns.
+  void forgetWays() {
+    step_.chunk.columnWays().clear();
+    step_.chunk.forgetWays();
     holds_columns_ = false;
   }
 
@@ -197,7 +201,8 @@ class Glide {
       GroupBits& known = step_.chunk.groupBits(n / kLanes);
       const unsigned bit = 1U << (n % kLanes);
       const EightSpheres& group = step_.model.groups[n];
-      if ((known.unsure & ~known.in_columns & bit) == 0) continue;
+      // Those that suited a way through slices have to suit this one, too.
+      if (((known.unsure | known.suited) & ~known.in_columns & bit) == 0) continue;
       known.in_columns |= bit;
       for (unsigned left = group.spheres; left != 0; left &= left - 1) {
         const std::size_t at = n * kLanes + static_cast<std::size_t>(std::countr_zero(left));
@@ -211,7 +216,7 @@ class Glide {
     way_.clear(obstacles_.scene.grids().front().spacing());
     has_way_ = columns.addTo(way_);
     // No group needs another look where they lead.
-    step_.chunk.suitColumns();
+    step_.chunk.suitColumnsOnly();
   }
 
   /// `center`: where the sphere is now.
@@ -237,7 +242,8 @@ class Glide {
     if (!push && has_way_ && isBlockedWithoutDrive()) push = findWay({});
     if (!push) return false;
     const bool is_level = moveBase(step_, e_, {push->x - moved_.x, push->z - moved_.z});
-    if (!is_level) step_.chunk.forgetSuited();
+    // At another height all is different.
+    if (!is_level) forgetWays();
     moved_ = *push;
     return true;
   }
