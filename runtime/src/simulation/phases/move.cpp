@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "simulation/collision/collision.h"
 #include "simulation/phases/contacts.h"
@@ -20,18 +21,9 @@ bool keepPenetrating(std::span<std::uint64_t> ignored, std::span<const std::uint
   return any != 0;
 }
 
-/// The candidate is the robot's pose from now on.
+/// The candidate is the robot's from now on, apart from its pose.
 void accept(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
-  const PoseArrays to = step.state.poses(n);
-  const PoseArrays from = step.chunk.candidates(e);
-  *to.x = *from.x;
-  *to.y = *from.y;
-  *to.z = *from.z;
-  *to.yaw = *from.yaw;
-  for (std::size_t v = 0; v < step.model.variableCount(); ++v) {
-    to.variables[v * to.stride] = from.variables[v * from.stride];
-  }
   step.state.grip(n) = step.chunk.grip(e);
   std::ranges::copy(step.chunk.bodyTransforms(e), step.state.bodyTransforms(n).begin());
   // The bits are those of the accepted candidate.
@@ -42,6 +34,30 @@ void accept(const ChunkStep& step, std::size_t e) {
     const bool any = keepPenetrating(step.state.leaving(n, object), step.chunk.bodyBits());
     env.left -= any ? 0U : 1U;
   });
+}
+
+/// All bits of the envs whose candidate is accepted.
+using AcceptedLanes = std::array<std::uint32_t, kChunk>;
+
+/// Takes over the poses of accepted candidates: all envs of a number at once, without a branch.
+void acceptPoses(const ChunkStep& step, const AcceptedLanes& accepted) {
+  const PoseArrays to = step.state.poses(step.first);
+  const PoseArrays from = step.chunk.candidates(0);
+  const auto take = [&](float* old, const float* candidate) {
+    std::array<float, kChunk> kept;
+    for (std::size_t e = 0; e < kChunk; ++e) {
+      const auto mine = std::bit_cast<std::uint32_t>(candidate[e]) & accepted[e];
+      kept[e] = std::bit_cast<float>(mine | (std::bit_cast<std::uint32_t>(old[e]) & ~accepted[e]));
+    }
+    std::ranges::copy(kept, old);
+  };
+  take(to.x, from.x);
+  take(to.y, from.y);
+  take(to.z, from.z);
+  take(to.yaw, from.yaw);
+  for (std::size_t v = 0; v < step.model.variableCount(); ++v) {
+    take(to.variables + v * to.stride, from.variables + v * from.stride);
+  }
 }
 
 /// What the floor's probe found at the height `probe`; `down`: how far the floor is under it.
@@ -132,20 +148,23 @@ void placeBodies(const ChunkStep& step) noexcept {
 }
 
 void moveRobots(const ChunkStep& step) noexcept {
+  AcceptedLanes accepted{};
   for (std::size_t e = 0; e < kChunk; ++e) {
     Env& env = step.state.env(step.first + e);
     if (step.state.idle()[step.first + e] != 0) continue;
     env.refused = false;
-    if (isFree(step, e)) {
-      accept(step, e);
-    } else if (slideClear(step, e)) {
+    if (!isFree(step, e)) {
+      if (!slideClear(step, e)) {
+        ++env.counters.refused;
+        env.refused = true;
+        continue;
+      }
       ++env.counters.slid;
-      accept(step, e);
-    } else {
-      ++env.counters.refused;
-      env.refused = true;
     }
+    accept(step, e);
+    accepted[e] = ~std::uint32_t{0};
   }
+  acceptPoses(step, accepted);
 }
 
 }  // namespace galactic::simulation
