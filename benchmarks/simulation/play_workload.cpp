@@ -3,9 +3,11 @@
 //
 //   play_workload WORLD random|forward|held ENVS STEPS
 //
-// A third of the steps more go before, so that robots that drive ahead have reached the walls.
+// It prints what became of the steps and the processor time of one, for runs in turns. A third of
+// the steps more go before, so that robots that drive ahead have reached the walls.
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -15,6 +17,13 @@
 #include "published_workload.h"
 
 namespace galactic::published_workload {
+
+/// Of this thread.
+double processorSeconds() {
+  std::timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 struct Player {
   BatchSimulator& simulator;
@@ -65,11 +74,13 @@ int main(int count, char** arguments) {
                 Resets(envs, world->episodes().episodes().size())};
   for (std::size_t n = 0; n < before; ++n) player.take();
   const SimulationStatistics from = simulator->statistics();
+  const double started = processorSeconds();
   playMeasured(player, steps);
+  const double seconds = processorSeconds() - started;
   const SimulationStatistics to = simulator->statistics();
   const auto taken = static_cast<double>(to.steps - from.steps);
-  std::printf("%.0f env-steps, %.3f %% refused, %.2f %% slid\n", taken,
+  std::printf("%.0f env-steps, %.3f %% refused, %.2f %% slid, %.1f ns each\n", taken,
               100 * static_cast<double>(to.refused - from.refused) / taken,
-              100 * static_cast<double>(to.slid - from.slid) / taken);
+              100 * static_cast<double>(to.slid - from.slid) / taken, 1e9 * seconds / taken);
   return 0;
 }
