@@ -61,6 +61,14 @@ inline ClipVertex cutEdge(const ClipVertex& a, const ClipVertex& b, int plane, f
   return cut;
 }
 
+/// Whether a plane cuts nothing off.
+inline bool liesWithin(const Polygon& polygon, int plane, float near) {
+  for (int n = 0; n < polygon.count; ++n) {
+    if (!(clipDistance(polygon.corners[n], plane, near) >= 0)) return false;
+  }
+  return true;
+}
+
 inline void cutPolygon(const Polygon& from, int plane, float near, Polygon& to) {
   to.count = 0;
   for (int n = 0; n < from.count; ++n) {
@@ -151,6 +159,7 @@ inline int clipTriangle(const State& state, std::uint32_t a, std::uint32_t b, st
   polygons[0].count = 3;
   int current = 0;
   for (int plane = 0; plane < kClipPlanes; ++plane) {
+    if (liesWithin(polygons[current], plane, frame.near)) continue;
     cutPolygon(polygons[current], plane, frame.near, polygons[1 - current]);
     current = 1 - current;
     if (polygons[current].count < 3) return 0;

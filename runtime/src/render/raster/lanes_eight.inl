@@ -173,14 +173,15 @@ struct Pair {
   Vector first, second;
 };
 
-/// Elements 2 * at and 2 * at + 1.
-inline Pair<IntLanes> gatherPairs(const std::int32_t* from, IntLanes at) {
+/// Elements kStride * at and the ones behind them.
+template <int kStride>
+inline Pair<IntLanes> gatherTwo(const std::int32_t* from, IntLanes at) {
 #if defined(__AVX2__)
   // Lanes 0, 1, 4, 5 and 2, 3, 6, 7, so that the shuffles below put them in order.
   const __m256i mixed = _mm256_permute4x64_epi64(as<__m256i>(at), 0xD8);
   const auto* pairs = reinterpret_cast<const long long*>(from);
-  const __m256i a = _mm256_i32gather_epi64(pairs, _mm256_castsi256_si128(mixed), 8);
-  const __m256i b = _mm256_i32gather_epi64(pairs, _mm256_extracti128_si256(mixed, 1), 8);
+  const __m256i a = _mm256_i32gather_epi64(pairs, _mm256_castsi256_si128(mixed), 4 * kStride);
+  const __m256i b = _mm256_i32gather_epi64(pairs, _mm256_extracti128_si256(mixed, 1), 4 * kStride);
   const __m256 low = as<__m256>(a);
   const __m256 high = as<__m256>(b);
   return {as<IntLanes>(_mm256_shuffle_ps(low, high, 0x88)),
@@ -188,25 +189,25 @@ inline Pair<IntLanes> gatherPairs(const std::int32_t* from, IntLanes at) {
 #else
   Pair<IntLanes> result;
   for (unsigned n = 0; n < kWidth; ++n) {
-    result.first[n] = from[2 * at[n]];
-    result.second[n] = from[2 * at[n] + 1];
+    result.first[n] = from[kStride * at[n]];
+    result.second[n] = from[kStride * at[n] + 1];
   }
   return result;
 #endif
 }
 
+/// Elements 2 * at and 2 * at + 1.
+inline Pair<IntLanes> gatherPairs(const std::int32_t* from, IntLanes at) {
+  return gatherTwo<2>(from, at);
+}
+/// Elements at and at + 1.
+inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from, IntLanes at) {
+  return gatherTwo<1>(from, at);
+}
+
 inline Pair<Lanes> gatherPairs(const float* from, IntLanes at) {
-#if defined(__AVX2__)
   const Pair<IntLanes> bits = gatherPairs(reinterpret_cast<const std::int32_t*>(from), at);
   return {as<Lanes>(bits.first), as<Lanes>(bits.second)};
-#else
-  Pair<Lanes> result;
-  for (unsigned n = 0; n < kWidth; ++n) {
-    result.first[n] = from[2 * at[n]];
-    result.second[n] = from[2 * at[n] + 1];
-  }
-  return result;
-#endif
 }
 
 /// Writes the lanes of both in turn: what gatherPairs reads.

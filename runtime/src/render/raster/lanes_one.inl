@@ -166,6 +166,11 @@ inline Pair<Lanes> gatherPairs(const float* from, IntLanes at) {
   return {Lanes(from[2 * at.v]), Lanes(from[2 * at.v + 1])};
 }
 
+/// Elements at and at + 1.
+inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from, IntLanes at) {
+  return {from[at.v], from[at.v + 1]};
+}
+
 /// Writes both: what gatherPairs reads.
 template <class Vector, class Element>
 inline void storePairs(Element* to, Vector first, Vector second) {

@@ -170,6 +170,24 @@ inline LargeSetup setUpLarge(const LargeTriangle& triangle, const PixelOffsets& 
   return setup;
 }
 
+/// At least the largest 1/w that coverTile() finds in a tile: that of the corner of its plane, with
+/// room for what rounding adds to a sum of a few numbers.
+inline float nearestInTile(const LargeSetup& setup, std::int32_t tile_x, std::int32_t tile_y) {
+  constexpr double kLast = kTileEdge - 1;
+  constexpr double kSumRounding = 2e-6;
+  const Plane& depth = setup.depth;
+  const double right = depth.right * (tile_x * static_cast<double>(kTileEdge));
+  const double down = depth.down * (tile_y * static_cast<double>(kTileEdge));
+  const double start = depth.start + (right + down);
+  const double nearest = start + (depth.right > 0 ? depth.right * kLast : 0) +
+                         (depth.down > 0 ? depth.down * kLast : 0);
+  const double size =
+      __builtin_fabs(start) + kLast * (__builtin_fabs(depth.right) + __builtin_fabs(depth.down));
+  const double most = nearest + size * kSumRounding;
+  return most < static_cast<double>(setup.z_most) ? static_cast<float>(most) * 1.0000002F
+                                                  : setup.z_most;
+}
+
 /// Edge functions at the first block of a tile; says whether the triangle can touch the tile.
 inline bool tileEdges(const LargeSetup& setup, std::int32_t tile_x, std::int32_t tile_y,
                       EdgeLanes& lanes) {
@@ -189,12 +207,10 @@ inline bool tileEdges(const LargeSetup& setup, std::int32_t tile_x, std::int32_t
   return true;
 }
 
-/// Draws the pixels of one tile, on a target as in coverTriangle().
+/// Draws the pixels of one tile, on a target as in coverTriangle(). `edges`: see tileEdges().
 template <class Target>
-inline IntLanes coverTile(const LargeSetup& setup, std::int32_t tile_x, std::int32_t tile_y,
-                          Target& target) {
-  EdgeLanes edges;
-  if (!tileEdges(setup, tile_x, tile_y, edges)) return spread(0);
+inline IntLanes coverTile(const LargeSetup& setup, EdgeLanes edges, std::int32_t tile_x,
+                          std::int32_t tile_y, Target& target) {
   const Plane& depth = setup.depth;
   const double x = tile_x * static_cast<double>(kTileEdge);
   const double y = tile_y * static_cast<double>(kTileEdge);

@@ -64,6 +64,8 @@ inline IntLanes floorOf(Lanes v) {
 struct LevelPlace {
   FourTexels at;
   Lanes share_right, share_down;
+  /// Where the right texels do not follow the left ones in memory.
+  IntLanes wraps;
 };
 
 inline LevelPlace levelPlace(const TexturePlaces& places, IntLanes flat) {
@@ -86,11 +88,25 @@ inline LevelPlace levelPlace(const TexturePlaces& places, IntLanes flat) {
   const IntLanes column1 = (left + spread(1)) & wrap;
   return {{row0 + column0, row0 + column1, row1 + column0, row1 + column1},
           u - toFloat(left),
-          v - toFloat(upper)};
+          v - toFloat(upper),
+          column0 == wrap};
 }
 
 inline const std::int32_t* texelBase(const PaneTask& task, std::int32_t number) {
   return reinterpret_cast<const std::int32_t*>(task.texel_bases[number]);
+}
+
+/// The texels of the lanes `here`, 0 in the others. Most left texels have their right ones behind
+/// them: both are read at once, which halves the work where lanes are many.
+inline FourTexels readTexels(const std::int32_t* from, const LevelPlace& place, IntLanes here) {
+  const FourTexels& at = place.at;
+  if (kLanes > 1 && signBits(place.wraps & here) == 0) {
+    const Pair<IntLanes> upper = gatherNeighbors(from, at.upper_left & here);
+    const Pair<IntLanes> lower = gatherNeighbors(from, at.lower_left & here);
+    return {upper.first & here, upper.second & here, lower.first & here, lower.second & here};
+  }
+  return {gather(from, at.upper_left & here) & here, gather(from, at.upper_right & here) & here,
+          gather(from, at.lower_left & here) & here, gather(from, at.lower_right & here) & here};
 }
 
 /// Texels, or the colors of flat surfaces. Lanes without a triangle have a flat one.
@@ -103,13 +119,13 @@ inline IntLanes sampleTexels(const PaneTask& task, const TexturePlaces& places) 
   FourTexels texels{};
   while (left != 0) {
     const IntLanes number = laneOf(base, __builtin_ctz(left));
-    const std::int32_t* from = texelBase(task, number[0]);
     const IntLanes here = (base == number) & ~flat;
     left &= ~signBits(here);
-    texels.upper_left |= gather(from, place.at.upper_left & here) & here;
-    texels.upper_right |= gather(from, place.at.upper_right & here) & here;
-    texels.lower_left |= gather(from, place.at.lower_left & here) & here;
-    texels.lower_right |= gather(from, place.at.lower_right & here) & here;
+    const FourTexels read = readTexels(texelBase(task, number[0]), place, here);
+    texels.upper_left |= read.upper_left;
+    texels.upper_right |= read.upper_right;
+    texels.lower_left |= read.lower_left;
+    texels.lower_right |= read.lower_right;
   }
   return pick(flat, places.texels, bilinear(texels, place.share_right, place.share_down));
 }
@@ -121,26 +137,25 @@ struct OneRecord {
   IntLanes intField(std::uint32_t number) const { return as<IntLanes>(field(number)); }
 };
 
-/// Eight pixels: their places in the pane, from the center of its first pixel, and 1/w.
+/// Eight pixels: their places in the pane, from the center of its first pixel, and w.
 struct PixelLanes {
-  Lanes x, y, z;
+  Lanes x, y, w;
 };
 
 template <class Records>
 inline TexturePlaces texturePlaces(const Records& records, const PixelLanes& pixels) {
-  const Lanes w = spread(1.0F) / pixels.z;
   const Lanes u_right = records.field(kURight);
   const Lanes u_down = records.field(kUDown);
   const Lanes v_right = records.field(kVRight);
   const Lanes v_down = records.field(kVDown);
   const Lanes w_right = records.field(kWRight);
   const Lanes w_down = records.field(kWDown);
-  const Lanes u = (u_right * pixels.x + u_down * pixels.y + records.field(kUStart)) * w;
-  const Lanes v = (v_right * pixels.x + v_down * pixels.y + records.field(kVStart)) * w;
-  const Lanes u_x = (u_right - u * w_right) * w;
-  const Lanes u_y = (u_down - u * w_down) * w;
-  const Lanes v_x = (v_right - v * w_right) * w;
-  const Lanes v_y = (v_down - v * w_down) * w;
+  const Lanes u = (u_right * pixels.x + u_down * pixels.y + records.field(kUStart)) * pixels.w;
+  const Lanes v = (v_right * pixels.x + v_down * pixels.y + records.field(kVStart)) * pixels.w;
+  const Lanes u_x = (u_right - u * w_right) * pixels.w;
+  const Lanes u_y = (u_down - u * w_down) * pixels.w;
+  const Lanes v_x = (v_right - v * w_right) * pixels.w;
+  const Lanes v_y = (v_down - v * w_down) * pixels.w;
   return {u, v, greater(u_x * u_x + v_x * v_x, u_y * u_y + v_y * v_y), records.intField(kTexels),
           records.intField(kKind)};
 }
@@ -154,12 +169,11 @@ inline IntLanes byteProduct(IntLanes a, IntLanes b) {
 /// Texels times the colors of the corners, interpolated by perspective.
 template <class Records>
 inline IntLanes timesColors(IntLanes texels, const Records& colors, const PixelLanes& pixels) {
-  const Lanes w = spread(1.0F) / pixels.z;
   IntLanes result = spread(0);
   for (std::uint32_t channel = 0; channel < 4; ++channel) {
     const Lanes value = (colors.field(3 * channel) * pixels.x +
                          colors.field(3 * channel + 1) * pixels.y + colors.field(3 * channel + 2)) *
-                        w;
+                        pixels.w;
     const IntLanes factor = toInt(clampTo(value + spread(0.5F), 0, 255));
     const auto shift = static_cast<std::int32_t>(8 * channel);
     result |= byteProduct((texels >> shift) & 0xFF, factor) << shift;
@@ -179,8 +193,7 @@ inline IntLanes alphaPasses(const PaneTask& task, const OneRecord& record, const
 /// timesColors() where red, green and blue are one, and alpha is whole: the same bits. `light`:
 /// the record's fields from kLightRight on.
 inline IntLanes timesLight(IntLanes texels, const Lanes* light, const PixelLanes& pixels) {
-  const Lanes w = spread(1.0F) / pixels.z;
-  const Lanes value = (light[0] * pixels.x + light[1] * pixels.y + light[2]) * w;
+  const Lanes value = (light[0] * pixels.x + light[1] * pixels.y + light[2]) * pixels.w;
   const IntLanes factor = toInt(clampTo(value + spread(0.5F), 0, 255));
   // Red and blue in one product.
   const WordLanes both = as<WordLanes>(texels & 0x00FF00FF) * as<WordLanes>(factor) + 0x00800080U;

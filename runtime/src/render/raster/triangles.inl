@@ -52,6 +52,8 @@ inline IntLanes doubleArea(const PointLanes& a, const PointLanes& b, const Point
 /// What becomes of eight triangles: bit n for triangle n.
 struct Sorting {
   unsigned small, large;
+  /// Of the small ones: pixels that they can cover, first and last.
+  IntLanes first_x, last_x, first_y, last_y;
 };
 
 /// Bounds of a pane, and whether both sides of triangles show: by value, so that no store can
@@ -97,7 +99,12 @@ inline Sorting sortEight(const SortLimits limits, const ClusterState& state,
   const IntLanes large = ((x_high - x_low) > spread(kSmall)) | ((y_high - y_low) > spread(kSmall));
   const IntLanes area = doubleArea(a, b, c);
   const IntLanes turned_away = (area == spread(0)) | ((area < spread(0)) & ~limits.two_sided);
-  return {signBits(~missed & ~large & ~turned_away), signBits(~missed & large)};
+  return {signBits(~missed & ~large & ~turned_away),
+          signBits(~missed & large),
+          first_x,
+          last_x,
+          first_y,
+          last_y};
 }
 
 /// Two numbers per triangle that say how a value at its corners changes over the pane.

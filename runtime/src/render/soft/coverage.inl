@@ -109,14 +109,21 @@ inline float tileDepth(const Pane& pane, std::uint32_t tile_x, std::uint32_t til
   return scratch.tile_depth[tile];
 }
 
-/// Whether what was drawn hides all that lies in the cluster's tiles.
+/// Whether what was drawn hides all that lies in the cluster's tiles. Measures all of them where
+/// they are few: triangles are compared with them, too.
 inline bool isHidden(const Pane& pane, const SeenCluster& seen) {
+  constexpr std::uint32_t kFew = 32;
+  const std::uint32_t wide = seen.tiles[1] - seen.tiles[0] + 1U;
+  const bool few = wide * (seen.tiles[3] - seen.tiles[2] + 1U) <= kFew;
+  bool hidden = true;
   for (std::uint32_t y = seen.tiles[2]; y <= seen.tiles[3]; ++y) {
     for (std::uint32_t x = seen.tiles[0]; x <= seen.tiles[1]; ++x) {
-      if (tileDepth(pane, x, y) < seen.nearest) return false;
+      if (tileDepth(pane, x, y) >= seen.nearest) continue;
+      if (!few) return false;
+      hidden = false;
     }
   }
-  return true;
+  return hidden;
 }
 
 }  // namespace

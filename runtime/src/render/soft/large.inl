@@ -9,10 +9,18 @@ bool coverTiles(const Pane& pane, const LargeSetup& setup, const TileBox& tiles,
   bool seen = false;
   for (std::int32_t y = tiles.top; y <= tiles.bottom; ++y) {
     for (std::int32_t x = tiles.left; x <= tiles.right; ++x) {
+      EdgeLanes edges;
+      if (!tileEdges(setup, x, y, edges)) continue;
       const std::size_t tile =
           static_cast<std::size_t>(y) * pane.tile_columns + static_cast<std::size_t>(x);
-      if (scratch.tile_changed[tile] == 0 && scratch.tile_depth[tile] >= setup.z_most) continue;
-      if (signBits(coverTile(setup, x, y, target)) == 0) continue;
+      const float nearest = nearestInTile(setup, x, y);
+      // What is known of a tile is never too near, even where the tile has changed since.
+      if (scratch.tile_depth[tile] >= nearest) continue;
+      if (tileDepth(pane, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)) >=
+          nearest) {
+        continue;
+      }
+      if (signBits(coverTile(setup, edges, x, y, target)) == 0) continue;
       scratch.tile_changed[tile] = 1;
       seen = true;
     }

@@ -12,8 +12,8 @@
 #include "render/raster/large.inl"
 #include "render/raster/clip.inl"
 #include "render/soft/clusters.inl"
-#include "render/soft/triangles.inl"
 #include "render/soft/coverage.inl"
+#include "render/soft/triangles.inl"
 #include "render/soft/records.inl"
 #include "render/soft/resolve.inl"
 #include "render/soft/large.inl"
@@ -125,7 +125,7 @@ void drawCluster(Pane& pane, const SeenCluster& seen) {
   state.colors = clusterColors(state.facts);
   placeVertices(state);
   Survivors survivors;
-  sortTriangles(*pane.task, state, survivors);
+  sortTriangles(pane, state, survivors);
   drawTriangles(pane, state, survivors);
   ++pane.counts.clusters_drawn;
 }

@@ -67,11 +67,11 @@ void keepRecords(const Pane& pane, const ClusterState& state, const GroupRecords
 }
 
 /// The pixels of a block.
-inline PixelLanes pixelsOf(std::uint32_t column, std::uint32_t row, Lanes z) {
+inline PixelLanes pixelsOf(std::uint32_t column, std::uint32_t row, Lanes w) {
   const auto x = static_cast<float>(column * kBlockWidth);
   const auto y = static_cast<float>(row * kBlockHeight);
   const PixelOffsets pixels = blockPixels();
-  return {spread(x) + toFloat(pixels.right), spread(y) + toFloat(pixels.down), z};
+  return {spread(x) + toFloat(pixels.right), spread(y) + toFloat(pixels.down), w};
 }
 
 /// Passes pixels whose surface is there, of the triangle with this record.
@@ -83,7 +83,8 @@ struct AlphaTest {
 
   IntLanes operator()(const BlockPlace& place, Lanes z) const {
     const auto block = static_cast<std::uint32_t>((place.depth - pane->scratch->depth) / kWidth);
-    const PixelLanes pixels = pixelsOf(block % pane->columns, block / pane->columns, z);
+    const PixelLanes pixels =
+        pixelsOf(block % pane->columns, block / pane->columns, spread(1.0F) / z);
     return alphaPasses(*pane->task, record, colors, least_alpha, pixels);
   }
 };

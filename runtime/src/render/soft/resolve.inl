@@ -38,8 +38,28 @@ inline EachRecord loadRecords(const float* records, const std::int32_t* ids) {
   return each;
 }
 
-/// `ids`: 0 or more.
-inline IntLanes shade(const Pane& pane, const std::int32_t* ids, const PixelLanes& pixels) {
+/// Eight pixels of one triangle.
+inline IntLanes shadeAlike(const Pane& pane, std::uint32_t id, const PixelLanes& pixels) {
+  const OneRecord record{recordAt(pane, id)};
+  const std::int32_t kind = record.intField(kKind)[0];
+  IntLanes colors = record.intField(kTexels);
+  if ((kind & 0xFF) != static_cast<std::int32_t>(kFlatSurface)) {
+    colors = sampleTexels(*pane.task, texturePlaces(record, pixels));
+  }
+  const auto bits = static_cast<std::uint32_t>(kind);
+  if ((bits & kHasColors) != 0) {
+    colors = timesColors(colors, OneRecord{colorsAt(pane, id)}, pixels);
+  }
+  if ((bits & kHasLight) != 0) {
+    const Lanes light[3] = {record.field(kLightRight), record.field(kLightDown),
+                            record.field(kLightStart)};
+    colors = timesLight(colors, light, pixels);
+  }
+  return colors | static_cast<std::int32_t>(0xFF000000U);
+}
+
+/// Eight pixels of several triangles.
+inline IntLanes shadeMixed(const Pane& pane, const std::int32_t* ids, const PixelLanes& pixels) {
   const auto id = load<IntLanes>(ids);
   const TexturePlaces places = texturePlaces(loadRecords(pane.scratch->records, ids), pixels);
   IntLanes colors = sampleTexels(*pane.task, places);
@@ -59,6 +79,13 @@ inline IntLanes shade(const Pane& pane, const std::int32_t* ids, const PixelLane
   }
   // What is drawn hides all behind it.
   return pick(id == spread(0), colors, colors | static_cast<std::int32_t>(0xFF000000U));
+}
+
+/// `ids`: 0 or more, not all of them 0.
+inline IntLanes shade(const Pane& pane, const std::int32_t* ids, const PixelLanes& pixels) {
+  const bool alike = signBits(load<IntLanes>(ids) == spread(ids[0])) == kAllLanes;
+  return alike ? shadeAlike(pane, static_cast<std::uint32_t>(ids[0]), pixels)
+               : shadeMixed(pane, ids, pixels);
 }
 
 /// Where a block of pixels lies in the whole image, and how much of it is within.
@@ -168,12 +195,12 @@ void resolve(const Pane& pane) {
       const std::size_t at = (std::size_t{row} * pane.columns + column) * kWidth;
       const Lanes z = load<Lanes>(depth + at);
       const BlockTarget target = blockTarget(task, column, row);
+      const Lanes w = spread(1.0F) / z;
       if (task.depth != nullptr) {
-        const Lanes meters = spread(1.0F) / z;
-        writeWords(task, target, task.depth, as<IntLanes>(meters) & (z > spread(0.0F)));
+        writeWords(task, target, task.depth, as<IntLanes>(w) & (z > spread(0.0F)));
       }
       if (pane.shades) {
-        resolveColors(pane, target, ids + at, pixelsOf(column, row, z));
+        resolveColors(pane, target, ids + at, pixelsOf(column, row, w));
       }
     }
   }
@@ -189,7 +216,7 @@ void makeRoom(Pane& pane) {
       if (signBits(spread(0) - ids) == 0) continue;  // none above 0
       const Lanes z = load<Lanes>(pane.scratch->depth + at);
       resolveColors(pane, blockTarget(task, column, row), pane.scratch->ids + at,
-                    pixelsOf(column, row, z));
+                    pixelsOf(column, row, spread(1.0F) / z));
       store(pane.scratch->ids + at, pick(ids > spread(0), spread(kShaded), ids));
     }
   }

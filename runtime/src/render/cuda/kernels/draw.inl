@@ -72,7 +72,8 @@ struct SurfacePass {
   float colors[kRecordStride];
 
   bool operator()(std::uint32_t x, std::uint32_t y, Lanes z) const {
-    const PixelLanes pixels{Lanes(static_cast<float>(x)), Lanes(static_cast<float>(y)), z};
+    const PixelLanes pixels{Lanes(static_cast<float>(x)), Lanes(static_cast<float>(y)),
+                            Lanes(1.0F) / z};
     return alphaPasses(*task, OneRecord{record}, OneRecord{colors}, least_alpha, pixels).v != 0;
   }
 };
@@ -238,8 +239,10 @@ inline void coverTiles(const Block& block, const LargeSetup& setup, const TileBo
   const auto wide = static_cast<std::uint32_t>(tiles.right - tiles.left + 1);
   const std::uint32_t count = wide * static_cast<std::uint32_t>(tiles.bottom - tiles.top + 1);
   for (std::uint32_t n = thread / kTeam; n < count; n += block.threads / kTeam) {
-    coverTile(setup, tiles.left + static_cast<std::int32_t>(n % wide),
-              tiles.top + static_cast<std::int32_t>(n / wide), target);
+    const std::int32_t x = tiles.left + static_cast<std::int32_t>(n % wide);
+    const std::int32_t y = tiles.top + static_cast<std::int32_t>(n / wide);
+    EdgeLanes edges;
+    if (tileEdges(setup, x, y, edges)) coverTile(setup, edges, x, y, target);
   }
 }
 
@@ -260,8 +263,7 @@ inline void drawLarge(const Block& block, const DrawPlace& place, const ClusterS
   }
   SurfacePass pass = surfacePass(place, state);
   recordLarge(state, triangle, setup.depth, pass.record, pass.colors);
-  coverTiles(block, setup, tiles, thread,
-             PixelTarget<SurfacePass>{&place, &pass, lane, piece});
+  coverTiles(block, setup, tiles, thread, PixelTarget<SurfacePass>{&place, &pass, lane, piece});
 }
 
 inline void drawAllLarge(const Block& block, const DrawPlace& place, const DrawShared& shared,

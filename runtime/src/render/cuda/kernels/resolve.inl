@@ -100,7 +100,7 @@ inline PixelImage lookAtPixel(const PaneLists& lists, std::uint64_t seen, std::u
   PixelRecord record{};
   recordPiece(task, state, piece, record);
   const PixelLanes pixel{Lanes(static_cast<float>(x)), Lanes(static_cast<float>(y)),
-                         Lanes(depthOfSeen(seen))};
+                         Lanes(1.0F / depthOfSeen(seen))};
   image.color = static_cast<std::uint32_t>(shadePixel(task, record, pixel).v);
   return image;
 }
