@@ -151,9 +151,8 @@ void drawBatches(benchmark::State& state, RenderEngine& engine, std::span<const 
   state.SetLabel(engine.description());
 }
 
-void drawWithGl(benchmark::State& state, Scene& scene, bool plain) {
-  RenderOptions options = optionsFor(RenderBackend::kGl);
-  options.culling = !plain;
+void drawWithGl(benchmark::State& state, Scene& scene, const RenderOptions& options) {
+  const bool plain = !options.culling;
   const auto views = scene.views(static_cast<std::size_t>(state.range(0)));
   auto engine =
       GlEngine::make(scene.library(), options, {.most_views = plain ? 1U : 0U, .measure = true},
@@ -180,12 +179,12 @@ RenderOptions optionsOf(RenderBackend backend, const benchmark::State& state) {
 /// Draws batches that stay on the device.
 void leaveOnDevice(benchmark::State& state, RenderEngine& engine,
                    std::span<const RenderView> views) {
-  if (const auto first = engine.renderToDevice(views); !first) {
+  if (const auto first = engine.renderToDevice(views, 0); !first) {
     return state.SkipWithError(first.error().message.c_str());
   }
   const auto start = std::chrono::steady_clock::now();
   for ([[maybe_unused]] const auto iteration : state) {
-    benchmark::DoNotOptimize(engine.renderToDevice(views));
+    benchmark::DoNotOptimize(engine.renderToDevice(views, 0));
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   const auto count = static_cast<double>(state.iterations()) * static_cast<double>(views.size());
@@ -214,6 +213,29 @@ void drawWithCuda(benchmark::State& state, Scene& scene, bool on_device, bool me
     const std::string name = galactic::render::cuda::kKernelNames[n];
     state.counters["share" + name.substr(name.find('_'))] = timings.kernels[n] / wall.count();
   }
+}
+
+/// Draws the same batch with the cuda backend and on the processor: an error where a byte differs.
+void compareWithSoft(benchmark::State& state, Scene& scene) {
+  RenderOptions options = optionsOf(RenderBackend::kCuda, state);
+  options.semantics = true;
+  const auto views = scene.views(static_cast<std::size_t>(state.range(0)));
+  const auto draw = [&](RenderEngine& engine) {
+    galactic::test::RenderImages images = galactic::test::emptyImages(options, views.size());
+    engine.begin(views, galactic::test::targetsOf(images));
+    engine.end();
+    return images;
+  };
+  auto cuda = CudaEngine::make(scene.library(), options, {});
+  if (!cuda) return state.SkipWithError(cuda.error().message.c_str());
+  options.backend = RenderBackend::kSoft;
+  auto soft = galactic::render::makeSoftEngine(scene.library(), options);
+  if (!soft) return state.SkipWithError(soft.error().message.c_str());
+  for ([[maybe_unused]] const auto iteration : state) {
+    if (draw(**cuda) != draw(**soft)) return state.SkipWithError("the images differ");
+  }
+  state.SetItemsProcessed(state.range(0));
+  state.SetLabel((*cuda)->description());
 }
 
 /// OpenGL's images in CUDA's memory: in the context that this thread has then.
@@ -253,8 +275,13 @@ int run(int argc, char** argv) {
         ->MeasureProcessCPUTime()
         ->Unit(benchmark::kMillisecond);
   };
-  add("gl", [&](benchmark::State& state) { drawWithGl(state, scene, false); });
-  add("gl_one_by_one", [&](benchmark::State& state) { drawWithGl(state, scene, true); });
+  add("gl",
+      [&](benchmark::State& state) { drawWithGl(state, scene, optionsFor(RenderBackend::kGl)); });
+  add("gl_one_by_one", [&](benchmark::State& state) {
+    RenderOptions options = optionsFor(RenderBackend::kGl);
+    options.culling = false;
+    drawWithGl(state, scene, options);
+  });
   add("soft", [&](benchmark::State& state) { drawWithSoft(state, scene); });
   // On a graphics processor, by views and pixels along an edge.
   const auto add_sizes = [&](const char* name, auto run) {
@@ -268,7 +295,15 @@ int run(int argc, char** argv) {
   add_sizes("cuda_stay", [&](benchmark::State& state) { drawWithCuda(state, scene, true, false); });
   add_sizes("cuda_shares",
             [&](benchmark::State& state) { drawWithCuda(state, scene, true, true); });
+  add_sizes("gl_read", [&](benchmark::State& state) {
+    drawWithGl(state, scene, optionsOf(RenderBackend::kGl, state));
+  });
   add_sizes("gl_stay", [&](benchmark::State& state) { leaveWithGl(state, scene); });
+  benchmark::RegisterBenchmark("same_as_soft",
+                               [&](benchmark::State& state) { compareWithSoft(state, scene); })
+      ->ArgsProduct({{8, 128}, {64, 128, 300}})
+      ->Iterations(1)
+      ->Unit(benchmark::kMillisecond);
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   return 0;

@@ -141,13 +141,13 @@ py::dict Renderer::endRender() {
   return std::exchange(images_, py::dict());
 }
 
-py::dict Renderer::renderToDevice() {
+py::dict Renderer::renderToDevice(std::uintptr_t stream) {
   const Confinement::Use use = confinement_.enter();
   requireIdle();
   const std::span<const RenderView> views = viewsOf(py::none());
   const DeviceImages images = [&] {
     const py::gil_scoped_release unlocked;
-    return valueOf(renderer_->renderToDevice(views));
+    return valueOf(renderer_->renderToDevice(views, stream));
   }();
   const RenderOptions& options = renderer_->options();
   const py::object self = py::cast(this);

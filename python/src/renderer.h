@@ -45,7 +45,7 @@ class Renderer {
   void beginRender(const py::object& out, const py::object& envs);
   py::dict endRender();
   /// Draws all envs into the memory of a CUDA device: arrays for DLPack, by name.
-  py::dict renderToDevice();
+  py::dict renderToDevice(std::uintptr_t stream);
 
   [[nodiscard]] const BatchRenderer& batch() const { return *renderer_; }
   /// What the numbers of semantic images mean.

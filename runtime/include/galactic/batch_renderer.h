@@ -119,12 +119,15 @@ class BatchRenderer {
   void beginRender(std::span<const RenderView> views, const RenderTargets& targets);
   void endRender();
 
-  /// Draws `views` and leaves the images where CUDA can use them without a copy. They stay as they
-  /// are until the next rendering, and whatever CUDA does with them before that on its default
-  /// stream is waited for. Fails with kUnsupported with the soft backend and without CUDA; with the
-  /// gl backend, which needs a CUDA context that is current on this thread, also when its device is
-  /// not the renderer's.
-  [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views);
+  /// Draws `views` and leaves the images where CUDA can use them without a copy; they are there
+  /// when this returns. `stream`: the one that uses them, as CUDA's cudaStream_t or CUstream; 0:
+  /// CUDA's default stream. What it had to do before is done before the images change, so they stay
+  /// as they are until a rendering on the same stream. The stream belongs to the renderer's device
+  /// and lives until the next rendering. Fails with kUnsupported with the soft backend and without
+  /// CUDA; with the gl backend, which needs a CUDA context that is current on this thread, also
+  /// when its device is not the renderer's.
+  [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views,
+                                                    std::uintptr_t stream = 0);
 
   [[nodiscard]] const RenderOptions& options() const;
   /// kSoft, kGl or kCuda.

@@ -97,8 +97,8 @@ class BatchRenderer::Impl {
     engine_->begin(views, targets);
   }
   void end() { engine_->end(); }
-  Result<DeviceImages> renderToDevice(std::span<const RenderView> views) {
-    return engine_->renderToDevice(views);
+  Result<DeviceImages> renderToDevice(std::span<const RenderView> views, std::uintptr_t stream) {
+    return engine_->renderToDevice(views, stream);
   }
 
   const RenderOptions& options() const { return options_; }
@@ -136,8 +136,9 @@ void BatchRenderer::beginRender(std::span<const RenderView> views, const RenderT
   impl_->begin(views, targets);
 }
 void BatchRenderer::endRender() { impl_->end(); }
-Result<DeviceImages> BatchRenderer::renderToDevice(std::span<const RenderView> views) {
-  return impl_->renderToDevice(views);
+Result<DeviceImages> BatchRenderer::renderToDevice(std::span<const RenderView> views,
+                                                   std::uintptr_t stream) {
+  return impl_->renderToDevice(views, stream);
 }
 
 const RenderOptions& BatchRenderer::options() const { return impl_->options(); }

@@ -20,8 +20,10 @@ class RenderEngine {
   /// Returns when the images are there.
   virtual void end() = 0;
 
-  /// Draws, and leaves the images on a CUDA device. Fails with kUnsupported where it cannot.
-  [[nodiscard]] virtual Result<DeviceImages> renderToDevice(std::span<const RenderView> /*views*/) {
+  /// Draws, and leaves the images on a CUDA device: see BatchRenderer::renderToDevice(). Fails with
+  /// kUnsupported where it cannot.
+  [[nodiscard]] virtual Result<DeviceImages> renderToDevice(std::span<const RenderView> /*views*/,
+                                                            std::uintptr_t /*stream*/) {
     return fail(
         ErrorCode::kUnsupported, "device images",
         "the soft backend draws into memory of the processor; use the cuda or the gl backend");

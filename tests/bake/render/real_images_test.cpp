@@ -11,7 +11,9 @@
 #include "bake/render/ray_depth.h"
 #include "bake/render/render_helpers.h"
 #include "galactic/bake/mesh_import.h"
+#include "render/cuda/kernel_image.h"
 #include "render/render_source.h"
+#include "runtime/render/cuda/drawn_by_kernels.h"
 #include "runtime/render/gl_scene.h"
 #include "support/asset_mesh.h"
 #include "support/render_images.h"
@@ -104,12 +106,9 @@ bool isAtSilhouette(const std::vector<float>& rays, float drawn, std::size_t at,
   return false;
 }
 
-DepthCounts compare(const RealScene& scene) {
-  const RayDepth rays(scene.triangles);
-  const std::vector<RenderView> views = viewsIn(scene, rays);
-  RenderOptions options;
-  options.backend = RenderBackend::kSoft;
-  const RenderImages images = renderViews(scene.library, options, views);
+/// `images`: of viewsIn() with these options.
+DepthCounts compare(const RayDepth& rays, const std::vector<RenderView>& views,
+                    const RenderOptions& options, const RenderImages& images) {
   const std::size_t size = std::size_t{options.width} * options.height;
   DepthCounts counts;
   for (std::size_t view = 0; view < views.size(); ++view) {
@@ -140,18 +139,44 @@ void expectLikeRays(const DepthCounts& counts) {
   EXPECT_LT(counts.empty * 2, counts.pixels) << "the cameras look into nothing";
 }
 
+DepthCounts compareSoft(const RealScene& scene) {
+  const RayDepth rays(scene.triangles);
+  const std::vector<RenderView> views = viewsIn(scene, rays);
+  const RenderOptions options;
+  return compare(rays, views, options, drawWithSoft(scene.library, options, views));
+}
+
 TEST(RealImages, OfTheApartmentStageHaveTheDepthsThatRaysMeet) {
   if (!hasAsset(kApartmentStage)) GTEST_SKIP() << "the sc1 stage is not on this machine";
   RealScene scene;
   ASSERT_NO_FATAL_FAILURE(read(kApartmentStage, 0, scene));
-  expectLikeRays(compare(scene));
+  expectLikeRays(compareSoft(scene));
 }
 
 TEST(RealImages, OfAScanHaveTheDepthsThatRaysMeet) {
   if (!hasAsset(kScannedRoom)) GTEST_SKIP() << "the scanned room is not on this machine";
   RealScene scene;
   ASSERT_NO_FATAL_FAILURE(read(kScannedRoom, 0, scene));
-  expectLikeRays(compare(scene));
+  expectLikeRays(compareSoft(scene));
+}
+
+TEST(RealImages, OfTheCudaKernelsAreThoseOfSoftAndHaveTheDepthsThatRaysMeet) {
+  if (render::cuda::kernelImage() == nullptr) GTEST_SKIP() << "built without clang";
+  if (!hasAsset(kApartmentStage) || !hasAsset(kScannedRoom)) {
+    GTEST_SKIP() << "the sc1 stage and the scanned room are not on this machine";
+  }
+  resetStandin();
+  for (const char* relative : {kApartmentStage, kScannedRoom}) {
+    RealScene scene;
+    ASSERT_NO_FATAL_FAILURE(read(relative, 0, scene));
+    const RayDepth rays(scene.triangles);
+    const std::vector<RenderView> views = viewsIn(scene, rays);
+    RenderOptions options;
+    options.semantics = true;
+    const RenderImages images = drawWithKernels(scene.library, options, views);
+    EXPECT_EQ(images, drawWithSoft(scene.library, options, views)) << relative;
+    expectLikeRays(compare(rays, views, options, images));
+  }
 }
 
 /// Pixels at the edge of two surfaces may fall to either: drivers round positions differently.

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "render/gl/device_wish.h"
-#include "render/gl/egl_library.h"
+#include "render/device_wish.h"
+#include "render/gl/egl_context.h"
 #include "render/gl/gl_engine.h"
 #include "runtime/render/gl_scene.h"
 

@@ -421,7 +421,7 @@ TEST_F(GlImage, CompressedTexturesLookAlikeDecodedOrNot) {
   EXPECT_GT(colors.size(), 4U);
 }
 
-TEST_F(GlImage, ImagesThatStayOnTheDeviceAreTheSameWhateverTheRounds) {
+TEST_F(GlImage, ImagesThatStayOnTheDeviceAreTheSameWhateverTheSlices) {
   GlHome home;
   const std::vector<RenderView> views = home.views(11);
   for (const ColorFormat color : {ColorFormat::kRgb8, ColorFormat::kRgba8}) {

@@ -133,11 +133,11 @@ TEST(ViewLists, WriteWhatTheyCounted) {
   const std::vector<std::vector<std::uint32_t>> slots{{7, 8, 9}};
   const LibraryGeometry geometry = gatherGeometry(home.library(), slots);
   const std::vector<RenderView> views = home.views(5);
-  const RoundCounts counts = countRound(views, geometry.models);
+  const SliceCounts counts = countSlice(views, geometry.models);
   EXPECT_EQ(counts.instances, 5U * 21U);
   std::vector<GpuInstance> instances(counts.instances);
   std::vector<GpuChunk> chunks(counts.allChunks());
-  listRound(views, geometry.models, 1, {counts, instances, chunks});
+  listSlice(views, geometry.models, 1, {counts, instances, chunks});
   std::uint64_t clusters = 0;
   std::size_t chunk = 0;
   for (std::size_t kind = 0; kind < kDrawClasses; ++kind) {

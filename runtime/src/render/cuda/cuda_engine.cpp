@@ -59,6 +59,18 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Makes a stream the used one for a while.
+class UsedStream {
+ public:
+  UsedStream(void*& used, void* stream) : used_(used) { used_ = stream; }
+  ~UsedStream() { used_ = nullptr; }
+  UsedStream(const UsedStream&) = delete;
+  UsedStream& operator=(const UsedStream&) = delete;
+
+ private:
+  void*& used_;
+};
+
 [[noreturn]] void giveUp(const Error& error) {
   std::fprintf(stderr, "%s: %s\n", error.where.c_str(), error.message.c_str());
   std::abort();
@@ -105,17 +117,17 @@ Kernels::~Kernels() {
   if (module_ != nullptr) driver_->functions().unload_module(module_);
 }
 
-Result<void> Kernels::launch(Kernel kernel, std::uint32_t blocks,
-                             const PassParameters& parameters) const {
+Result<void> Kernels::launch(Kernel kernel, std::uint32_t blocks, const PassParameters& parameters,
+                             void* stream) const {
   PassParameters copy = parameters;
   std::array<void*, 1> pointers{&copy};
   return driver_->check(
       driver_->functions().launch(functions_[static_cast<std::size_t>(kernel)], blocks, 1, 1,
-                                  kBlockThreads, 1, 1, 0, nullptr, pointers.data(), nullptr),
+                                  kBlockThreads, 1, 1, 0, stream, pointers.data(), nullptr),
       "launch a kernel");
 }
 
-CudaEngine::RoundMemory::RoundMemory(const Driver& driver)
+CudaEngine::SliceMemory::SliceMemory(const Driver& driver)
     : seen(driver, Memory::Kind::kDevice),
       order(driver, Memory::Kind::kDevice),
       by_bucket(driver, Memory::Kind::kDevice),
@@ -135,7 +147,7 @@ CudaEngine::CudaEngine(const RenderOptions& options, std::unique_ptr<Driver> dri
       color_(*driver_, Memory::Kind::kDevice),
       depth_(*driver_, Memory::Kind::kDevice),
       semantics_(*driver_, Memory::Kind::kDevice),
-      round_memory_(std::make_unique<RoundMemory>(*driver_)) {
+      slice_memory_(std::make_unique<SliceMemory>(*driver_)) {
   const std::uint32_t wide = paneEdge(options.width);
   const std::uint32_t high = paneEdge(options.height);
   for (std::uint32_t y = 0; y < options.height; y += high) {
@@ -169,7 +181,7 @@ CudaEngine::~CudaEngine() {
   driver_->functions().synchronize(nullptr);
   kernels_.reset();
   scene_.reset();
-  round_memory_.reset();
+  slice_memory_.reset();
   for (Memory* memory : {&staged_, &uploaded_, &placed_, &counts_, &color_, &depth_, &semantics_}) {
     memory->free();
   }
@@ -188,9 +200,10 @@ std::size_t CudaEngine::bytesOf(std::size_t views, std::size_t clusters) const {
   return panes_.size() * (views * of_pane + clusters * kOfCluster);
 }
 
-Result<void> CudaEngine::cutRounds(std::span<const RenderView> views) {
-  rounds_.clear();
+Result<void> CudaEngine::cutSlices(std::span<const RenderView> views) {
+  slices_.clear();
   statistics_ = {};
+  clusters_of_views_.resize(views.size());
   ViewRange range{};
   for (std::size_t v = 0; v < views.size(); ++v) {
     std::size_t clusters = 0;
@@ -205,37 +218,38 @@ Result<void> CudaEngine::cutRounds(std::span<const RenderView> views) {
     }
     statistics_.instances += views[v].instances.size();
     statistics_.clusters += clusters;
+    clusters_of_views_[v] = static_cast<std::uint32_t>(clusters);
     const bool fits =
-        bytesOf(v + 1 - range.first, range.clusters + clusters) <= tuning_.round_bytes;
+        bytesOf(v + 1 - range.first, range.clusters + clusters) <= tuning_.slice_bytes;
     if (!fits && v > range.first) {
-      rounds_.push_back(range);
+      slices_.push_back(range);
       range = {v, v, 0};
     }
     range.clusters += clusters;
     range.end = v + 1;
   }
-  if (range.end > range.first) rounds_.push_back(range);
+  if (range.end > range.first) slices_.push_back(range);
   return {};
 }
 
 Result<void> CudaEngine::reserve(std::span<const RenderView> views) {
   std::size_t most_clusters = 0;
   std::size_t most_views = 0;
-  for (const ViewRange& range : rounds_) {
+  for (const ViewRange& range : slices_) {
     most_clusters = std::max(most_clusters, range.clusters);
     most_views = std::max(most_views, range.end - range.first);
   }
   const std::size_t clusters = most_clusters * panes_.size();
   const std::size_t panes = most_views * panes_.size();
-  RoundMemory& round = *round_memory_;
-  RETURN_IF_ERROR(round.seen.reserve(clusters * sizeof(SeenCluster)));
-  RETURN_IF_ERROR(round.order.reserve(clusters * sizeof(std::uint32_t)));
-  RETURN_IF_ERROR(round.by_bucket.reserve(clusters * sizeof(std::uint32_t)));
-  RETURN_IF_ERROR(round.near_items.reserve(clusters * sizeof(WorkItem)));
-  RETURN_IF_ERROR(round.far_items.reserve(clusters * sizeof(WorkItem)));
-  RETURN_IF_ERROR(round.pixels.reserve(panes * pixels_of_pane_ * sizeof(std::uint64_t)));
-  RETURN_IF_ERROR(round.tile_depth.reserve(panes * tiles_of_pane_ * sizeof(float)));
-  RETURN_IF_ERROR(counts_.reserve(rounds_.size() * sizeof(RoundCounts)));
+  SliceMemory& slice = *slice_memory_;
+  RETURN_IF_ERROR(slice.seen.reserve(clusters * sizeof(SeenCluster)));
+  RETURN_IF_ERROR(slice.order.reserve(clusters * sizeof(std::uint32_t)));
+  RETURN_IF_ERROR(slice.by_bucket.reserve(clusters * sizeof(std::uint32_t)));
+  RETURN_IF_ERROR(slice.near_items.reserve(clusters * sizeof(WorkItem)));
+  RETURN_IF_ERROR(slice.far_items.reserve(clusters * sizeof(WorkItem)));
+  RETURN_IF_ERROR(slice.pixels.reserve(panes * pixels_of_pane_ * sizeof(std::uint64_t)));
+  RETURN_IF_ERROR(slice.tile_depth.reserve(panes * tiles_of_pane_ * sizeof(float)));
+  RETURN_IF_ERROR(counts_.reserve(slices_.size() * sizeof(SliceCounts)));
   const std::size_t pixels = views.size() * options_.width * options_.height;
   RETURN_IF_ERROR(color_.reserve(pixels * static_cast<std::size_t>(options_.color)));
   if (options_.depth) RETURN_IF_ERROR(depth_.reserve(pixels * sizeof(float)));
@@ -275,7 +289,7 @@ void CudaEngine::stage(std::span<const RenderView> views, const Upload& at_bytes
   auto* tasks = reinterpret_cast<PaneTask*>(bytes + at_bytes.tasks);
   auto* first_clusters = reinterpret_cast<std::uint32_t*>(bytes + at_bytes.first_clusters);
   std::uint32_t next = 0;
-  for (const ViewRange& range : rounds_) {
+  for (const ViewRange& range : slices_) {
     std::uint32_t first_cluster = 0;
     for (std::size_t v = range.first; v < range.end; ++v) {
       const RenderView& view = views[v];
@@ -288,10 +302,7 @@ void CudaEngine::stage(std::span<const RenderView> views, const Upload& at_bytes
                     count * sizeof(DeviceInstance));
       }
       stageTasks(v, next, count, tasks + v * panes_.size());
-      std::uint32_t clusters = 0;
-      for (std::uint32_t n = 0; n < count; ++n) {
-        clusters += scene_->clusterCounts()[view.instances[n].model];
-      }
+      const std::uint32_t clusters = count == 0 ? 0 : clusters_of_views_[v];
       for (std::size_t pane = 0; pane < panes_.size(); ++pane) {
         first_clusters[v * panes_.size() + pane] = first_cluster;
         first_cluster += clusters;
@@ -305,7 +316,7 @@ Result<void> CudaEngine::draw(std::span<const RenderView> views) {
   const DriverFunctions& functions = driver_->functions();
   {
     const Stopwatch watch(timings_.setup);
-    RETURN_IF_ERROR(cutRounds(views));
+    RETURN_IF_ERROR(cutSlices(views));
   }
   if (views.empty()) return {};
   RETURN_IF_ERROR(reserve(views));
@@ -323,63 +334,63 @@ Result<void> CudaEngine::draw(std::span<const RenderView> views) {
     stage(views, at_bytes);
   }
   RETURN_IF_ERROR(driver_->check(
-      functions.copy_to_device(uploaded_.address(), staged_.bytes(), at_bytes.bytes, nullptr),
+      functions.copy_to_device(uploaded_.address(), staged_.bytes(), at_bytes.bytes, stream_),
       "copy poses"));
   RETURN_IF_ERROR(driver_->check(
       functions.set_words(counts_.address(), 0,
-                          rounds_.size() * sizeof(RoundCounts) / sizeof(std::uint32_t), nullptr),
+                          slices_.size() * sizeof(SliceCounts) / sizeof(std::uint32_t), stream_),
       "clear counts"));
-  for (std::size_t n = 0; n < rounds_.size(); ++n) {
-    RETURN_IF_ERROR(drawRound(rounds_[n], n, at_bytes));
+  for (std::size_t n = 0; n < slices_.size(); ++n) {
+    RETURN_IF_ERROR(drawSlice(slices_[n], n, at_bytes));
   }
   return {};
 }
 
-Round CudaEngine::roundOf(const ViewRange& range, std::size_t number,
-                          const Upload& at_bytes) const {
-  const RoundMemory& memory = *round_memory_;
+ViewSlice CudaEngine::sliceOf(const ViewRange& range, std::size_t number,
+                              const Upload& at_bytes) const {
+  const SliceMemory& memory = *slice_memory_;
   const std::size_t first_pane = range.first * panes_.size();
-  Round round{};
-  round.models = at<ModelTables>(scene_->models());
-  round.views = at<DeviceView>(uploaded_, at_bytes.views) + range.first;
-  round.instances = at<DeviceInstance>(uploaded_, at_bytes.instances);
-  round.placed = at<PlacedModel>(placed_);
-  round.tasks = at<PaneTask>(uploaded_, at_bytes.tasks) + first_pane;
-  round.first_cluster = at<std::uint32_t>(uploaded_, at_bytes.first_clusters) + first_pane;
-  round.seen = at<SeenCluster>(memory.seen);
-  round.order = at<std::uint32_t>(memory.order);
-  round.by_bucket = at<std::uint32_t>(memory.by_bucket);
-  round.items[0] = at<WorkItem>(memory.near_items);
-  round.items[1] = at<WorkItem>(memory.far_items);
-  round.pixels = at<std::uint64_t>(memory.pixels);
-  round.tile_depth = at<float>(memory.tile_depth);
-  round.counts = at<RoundCounts>(counts_) + number;
-  round.view_count = static_cast<std::uint32_t>(range.end - range.first);
-  round.panes_of_view = static_cast<std::uint32_t>(panes_.size());
-  round.pixels_of_pane = pixels_of_pane_;
-  round.tiles_of_pane = tiles_of_pane_;
-  return round;
+  ViewSlice slice{};
+  slice.models = at<ModelTables>(scene_->models());
+  slice.views = at<DeviceView>(uploaded_, at_bytes.views) + range.first;
+  slice.instances = at<DeviceInstance>(uploaded_, at_bytes.instances);
+  slice.placed = at<PlacedModel>(placed_);
+  slice.tasks = at<PaneTask>(uploaded_, at_bytes.tasks) + first_pane;
+  slice.first_cluster = at<std::uint32_t>(uploaded_, at_bytes.first_clusters) + first_pane;
+  slice.seen = at<SeenCluster>(memory.seen);
+  slice.order = at<std::uint32_t>(memory.order);
+  slice.by_bucket = at<std::uint32_t>(memory.by_bucket);
+  slice.items[0] = at<WorkItem>(memory.near_items);
+  slice.items[1] = at<WorkItem>(memory.far_items);
+  slice.pixels = at<std::uint64_t>(memory.pixels);
+  slice.tile_depth = at<float>(memory.tile_depth);
+  slice.counts = at<SliceCounts>(counts_) + number;
+  slice.view_count = static_cast<std::uint32_t>(range.end - range.first);
+  slice.panes_of_view = static_cast<std::uint32_t>(panes_.size());
+  slice.pixels_of_pane = pixels_of_pane_;
+  slice.tiles_of_pane = tiles_of_pane_;
+  return slice;
 }
 
 Result<void> CudaEngine::launch(Kernel kernel, std::uint32_t blocks,
                                 const PassParameters& parameters) {
-  if (!tuning_.measure) return kernels_->launch(kernel, blocks, parameters);
+  if (!tuning_.measure) return kernels_->launch(kernel, blocks, parameters, stream_);
   const Stopwatch watch(timings_.kernels[static_cast<std::size_t>(kernel)]);
-  RETURN_IF_ERROR(kernels_->launch(kernel, blocks, parameters));
-  return driver_->check(driver_->functions().synchronize(nullptr), "draw");
+  RETURN_IF_ERROR(kernels_->launch(kernel, blocks, parameters, stream_));
+  return driver_->check(driver_->functions().synchronize(stream_), "draw");
 }
 
-Result<void> CudaEngine::drawRound(const ViewRange& range, std::size_t number,
+Result<void> CudaEngine::drawSlice(const ViewRange& range, std::size_t number,
                                    const Upload& at_bytes) {
-  PassParameters parameters{roundOf(range, number, at_bytes), 0};
-  const std::uint32_t panes = parameters.round.view_count * parameters.round.panes_of_view;
+  PassParameters parameters{sliceOf(range, number, at_bytes), 0};
+  const std::uint32_t panes = parameters.slice.view_count * parameters.slice.panes_of_view;
   const std::uint32_t workers =
       static_cast<std::uint32_t>(device_.multiprocessors()) * kBlocksPerMultiprocessor;
   const std::size_t words = std::size_t{panes} * pixels_of_pane_ * 2;
   RETURN_IF_ERROR(driver_->check(
-      driver_->functions().set_words(round_memory_->pixels.address(), 0, words, nullptr),
+      driver_->functions().set_words(slice_memory_->pixels.address(), 0, words, stream_),
       "clear pixels"));
-  RETURN_IF_ERROR(launch(Kernel::kPlace, parameters.round.view_count, parameters));
+  RETURN_IF_ERROR(launch(Kernel::kPlace, parameters.slice.view_count, parameters));
   RETURN_IF_ERROR(launch(Kernel::kCull, panes, parameters));
   RETURN_IF_ERROR(launch(Kernel::kDraw, workers, parameters));
   RETURN_IF_ERROR(launch(Kernel::kTiles, panes, parameters));
@@ -391,16 +402,16 @@ Result<void> CudaEngine::drawRound(const ViewRange& range, std::size_t number,
 }
 
 Result<void> CudaEngine::readCounts() {
-  read_counts_.resize(rounds_.size());
+  read_counts_.resize(slices_.size());
   const DriverFunctions& functions = driver_->functions();
-  if (!rounds_.empty()) {
+  if (!slices_.empty()) {
     RETURN_IF_ERROR(
         driver_->check(functions.copy_to_host(read_counts_.data(), counts_.address(),
-                                              rounds_.size() * sizeof(RoundCounts), nullptr),
+                                              slices_.size() * sizeof(SliceCounts), stream_),
                        "read counts"));
   }
-  RETURN_IF_ERROR(driver_->check(functions.synchronize(nullptr), "draw"));
-  for (const RoundCounts& counts : read_counts_) {
+  RETURN_IF_ERROR(driver_->check(functions.synchronize(stream_), "draw"));
+  for (const SliceCounts& counts : read_counts_) {
     statistics_.clusters_drawn += counts.clusters_drawn;
     statistics_.triangles_drawn += counts.triangles_drawn;
   }
@@ -412,7 +423,7 @@ Result<void> CudaEngine::readImages() {
   const auto read = [this](auto target, const Memory& memory) {
     if (target.empty()) return 0;
     return driver_->functions().copy_to_host(target.data(), memory.address(), target.size_bytes(),
-                                             nullptr);
+                                             stream_);
   };
   RETURN_IF_ERROR(driver_->check(read(targets_.color, color_), "read colors"));
   RETURN_IF_ERROR(driver_->check(read(targets_.depth, depth_), "read depth"));
@@ -431,8 +442,10 @@ void CudaEngine::end() {
   if (const Result<void> read = readCounts(); !read) giveUp(read.error());
 }
 
-Result<DeviceImages> CudaEngine::renderToDevice(std::span<const RenderView> views) {
+Result<DeviceImages> CudaEngine::renderToDevice(std::span<const RenderView> views,
+                                                std::uintptr_t stream) {
   const CurrentDevice current(*driver_, device_);
+  const UsedStream used(stream_, std::bit_cast<void*>(stream));
   RETURN_IF_ERROR(draw(views));
   RETURN_IF_ERROR(readCounts());
   DeviceImages images;

@@ -9,7 +9,7 @@
 
 #include "render/cuda/device_scene.h"
 #include "render/cuda/driver.h"
-#include "render/cuda/kernels/round.h"
+#include "render/cuda/kernels/view_slice.h"
 #include "render/render_engine.h"
 
 namespace galactic::render::cuda {
@@ -20,7 +20,7 @@ struct CudaTuning {
   std::string library = "libcuda.so.1";
   /// Views are drawn together while their lists and pixels need no more memory than this; a view
   /// that needs more is drawn by itself.
-  std::size_t round_bytes = std::size_t{1} << 30U;
+  std::size_t slice_bytes = std::size_t{1} << 30U;
   /// Waits for each kernel, so that CudaTimings says what it took.
   bool measure = false;
 };
@@ -44,7 +44,7 @@ class Kernels {
   ~Kernels();
 
   [[nodiscard]] Result<void> launch(Kernel kernel, std::uint32_t blocks,
-                                    const PassParameters& parameters) const;
+                                    const PassParameters& parameters, void* stream) const;
 
  private:
   explicit Kernels(const Driver& driver) : driver_(&driver) {}
@@ -69,13 +69,14 @@ class CudaEngine final : public RenderEngine {
   /// wrong images.
   void begin(std::span<const RenderView> views, const RenderTargets& targets) override;
   void end() override;
-  [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views) override;
+  [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views,
+                                                    std::uintptr_t stream) override;
   [[nodiscard]] RenderBackend backend() const override { return RenderBackend::kCuda; }
   [[nodiscard]] std::string description() const override;
   [[nodiscard]] RenderStatistics statistics() const override { return statistics_; }
   [[nodiscard]] const Device& device() const { return device_; }
   /// How many times the last batch was cut.
-  [[nodiscard]] std::size_t roundCount() const { return rounds_.size(); }
+  [[nodiscard]] std::size_t sliceCount() const { return slices_.size(); }
   [[nodiscard]] const CudaTimings& timings() const { return timings_; }
 
  private:
@@ -88,17 +89,17 @@ class CudaEngine final : public RenderEngine {
   struct Upload {
     std::size_t views, instances, tasks, first_clusters, bytes;
   };
-  /// Room for one round on the device.
-  struct RoundMemory {
-    explicit RoundMemory(const Driver& driver);
+  /// Room for one slice on the device.
+  struct SliceMemory {
+    explicit SliceMemory(const Driver& driver);
     Memory seen, order, by_bucket, near_items, far_items, pixels, tile_depth;
   };
 
   CudaEngine(const RenderOptions& options, std::unique_ptr<Driver> driver, Device device);
 
   Result<void> draw(std::span<const RenderView> views);
-  /// Cuts the batch into rounds.
-  Result<void> cutRounds(std::span<const RenderView> views);
+  /// Cuts the batch into slices.
+  Result<void> cutSlices(std::span<const RenderView> views);
   [[nodiscard]] std::size_t bytesOf(std::size_t views, std::size_t clusters) const;
   Result<void> reserve(std::span<const RenderView> views);
   /// Writes poses and what follows from the options where they are copied from.
@@ -107,8 +108,9 @@ class CudaEngine final : public RenderEngine {
                   PaneTask* tasks) const;
   /// Launches, and waits where that is measured.
   Result<void> launch(Kernel kernel, std::uint32_t blocks, const PassParameters& parameters);
-  Result<void> drawRound(const ViewRange& range, std::size_t number, const Upload& at);
-  [[nodiscard]] Round roundOf(const ViewRange& range, std::size_t number, const Upload& at) const;
+  Result<void> drawSlice(const ViewRange& range, std::size_t number, const Upload& at);
+  [[nodiscard]] ViewSlice sliceOf(const ViewRange& range, std::size_t number,
+                                  const Upload& at) const;
   Result<void> readCounts();
   Result<void> readImages();
 
@@ -126,10 +128,13 @@ class CudaEngine final : public RenderEngine {
 
   Memory staged_, uploaded_, placed_, counts_;
   Memory color_, depth_, semantics_;
-  std::unique_ptr<RoundMemory> round_memory_;
-  std::vector<ViewRange> rounds_;
-  std::vector<RoundCounts> read_counts_;
+  std::unique_ptr<SliceMemory> slice_memory_;
+  std::vector<ViewRange> slices_;
+  std::vector<std::uint32_t> clusters_of_views_;
+  std::vector<SliceCounts> read_counts_;
   RenderTargets targets_;
+  /// What everything is launched on; null: the default stream.
+  void* stream_ = nullptr;
   RenderStatistics statistics_;
   CudaTimings timings_;
 };

@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "render/gl/device_wish.h"
+#include "render/device_wish.h"
 #include "support/try.h"
 
 namespace galactic::render::cuda {
@@ -71,11 +71,11 @@ const char* findAll(void* library, DriverFunctions& functions) {
 }
 
 /// The number of the device with this UUID.
-Result<int> deviceWithUuid(const Driver& driver, const gl::DeviceUuid& wanted) {
+Result<int> deviceWithUuid(const Driver& driver, const DeviceUuid& wanted) {
   const DriverFunctions& functions = driver.functions();
   for (int number = 0; number < driver.deviceCount(); ++number) {
     int device = 0;
-    gl::DeviceUuid uuid{};
+    DeviceUuid uuid{};
     if (functions.device(&device, number) == 0 && functions.device_uuid(uuid.data(), device) == 0 &&
         uuid == wanted) {
       return number;
@@ -88,16 +88,16 @@ Result<int> deviceWithUuid(const Driver& driver, const gl::DeviceUuid& wanted) {
 }
 
 Result<int> wishedDevice(const Driver& driver, const std::string& text) {
-  ASSIGN_OR_RETURN(const gl::DeviceWish wish, gl::parseDeviceWish(text));
+  ASSIGN_OR_RETURN(const DeviceWish wish, parseDeviceWish(text));
   switch (wish.kind) {
-    case gl::DeviceWish::Kind::kFirstGpu:
+    case DeviceWish::Kind::kFirstGpu:
       return 0;
-    case gl::DeviceWish::Kind::kUuid:
+    case DeviceWish::Kind::kUuid:
       return deviceWithUuid(driver, wish.uuid);
-    case gl::DeviceWish::Kind::kSoftware:
+    case DeviceWish::Kind::kSoftware:
       return refuse("the cuda backend has no software driver; ask for the soft backend");
-    case gl::DeviceWish::Kind::kIndex:
-    case gl::DeviceWish::Kind::kCuda:
+    case DeviceWish::Kind::kIndex:
+    case DeviceWish::Kind::kCuda:
       break;
   }
   if (wish.number < static_cast<std::uint32_t>(driver.deviceCount())) {

@@ -5,6 +5,8 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <bit>
+
 namespace galactic::render::gl {
 
 /// The functions of CUDA's driver that are used, by their names in libcuda.so.1.
@@ -18,6 +20,8 @@ struct CudaMapping::Driver {
 
   std::uint32_t buffer = 0;
   CUgraphicsResource resource = nullptr;
+  /// That the buffer is mapped for.
+  CUstream stream = nullptr;
   bool mapped = false;
 };
 
@@ -38,7 +42,7 @@ bool find(void* library, const char* name, Function& function) {
 CudaMapping::CudaMapping() = default;
 CudaMapping::~CudaMapping() { forget(); }
 
-Result<std::uint64_t> CudaMapping::map(std::uint32_t buffer) {
+Result<std::uint64_t> CudaMapping::map(std::uint32_t buffer, std::uintptr_t stream) {
   if (driver_ == nullptr) {
     void* library = dlopen("libcuda.so.1", RTLD_LAZY | RTLD_LOCAL);
     if (library == nullptr) return refused("found no libcuda.so.1; install NVIDIA's driver");
@@ -72,7 +76,8 @@ Result<std::uint64_t> CudaMapping::map(std::uint32_t buffer) {
   }
   CUdeviceptr address = 0;
   std::size_t size = 0;
-  CUresult result = driver_->map(1, &driver_->resource, nullptr);
+  driver_->stream = std::bit_cast<CUstream>(stream);
+  CUresult result = driver_->map(1, &driver_->resource, driver_->stream);
   if (result == CUDA_SUCCESS) {
     driver_->mapped = true;
     result = driver_->address(&address, &size, driver_->resource);
@@ -86,7 +91,7 @@ Result<std::uint64_t> CudaMapping::map(std::uint32_t buffer) {
 
 void CudaMapping::unmap() {
   if (driver_ == nullptr || !driver_->mapped) return;
-  driver_->unmap(1, &driver_->resource, nullptr);
+  driver_->unmap(1, &driver_->resource, driver_->stream);
   driver_->mapped = false;
 }
 

@@ -15,11 +15,12 @@ class CudaMapping {
   CudaMapping(const CudaMapping&) = delete;
   CudaMapping& operator=(const CudaMapping&) = delete;
 
-  /// The address of `buffer` in CUDA's memory, after all that OpenGL has been told to do with it.
+  /// The address of `buffer` in CUDA's memory, after all that OpenGL has been told to do with it;
+  /// for what `stream` does from then on.
   /// CUDA's context must be current on this thread. OpenGL must not touch the buffer until
   /// unmap(). Fails with kUnsupported where CUDA is absent or is on another device.
-  [[nodiscard]] Result<std::uint64_t> map(std::uint32_t buffer);
-  /// OpenGL may use the buffer again, after all that CUDA has been told to do with it.
+  [[nodiscard]] Result<std::uint64_t> map(std::uint32_t buffer, std::uintptr_t stream);
+  /// OpenGL may use the buffer again, after all that the stream has been told to do with it.
   void unmap();
   /// To be called before a buffer is deleted.
   void forget();

@@ -1,5 +1,6 @@
 #include "render/gl/egl_context.h"
 
+#include <dlfcn.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
@@ -12,6 +13,10 @@ namespace galactic::render::gl {
 namespace {
 
 constexpr std::size_t kMostDevices = 64;
+
+tl::unexpected<Error> missing(const char* message) {
+  return fail(ErrorCode::kUnsupported, "render backend gl", message);
+}
 
 std::vector<EGLDeviceEXT> deviceHandles() {
   // NVIDIA's driver names only the older extension, which has both functions too.
@@ -152,6 +157,25 @@ bool isNamed(const DeviceWish& wish) {
 }
 
 }  // namespace
+
+bool loadsLibrary(const char* name) {
+  // Never closed: drivers do not like to be unloaded.
+  return dlopen(name, RTLD_LAZY | RTLD_LOCAL) != nullptr;
+}
+
+Result<void> checkLibraries(const LibraryLoads& loads) {
+  if (!loads("libEGL.so.1")) {
+    return missing(
+        "found no libEGL.so.1; install libegl1 (and libgl1-mesa-dri for the software driver), or "
+        "use the soft backend");
+  }
+  if (!loads("libOpenGL.so.0") && !loads("libGL.so.1")) {
+    return missing(
+        "found neither libOpenGL.so.0 nor libGL.so.1; install libopengl0, or use the soft "
+        "backend");
+  }
+  return {};
+}
 
 EglContext::~EglContext() {
   if (context_ != EGL_NO_CONTEXT) eglDestroyContext(display_, context_);

@@ -1,13 +1,24 @@
 #pragma once
 #include <epoxy/egl.h>
 
+#include <functional>
 #include <utility>
 #include <vector>
 
 #include "galactic/error.h"
-#include "render/gl/device_wish.h"
+#include "render/device_wish.h"
 
 namespace galactic::render::gl {
+
+/// Whether the dynamic linker can load a library, and keeps it loaded.
+using LibraryLoads = std::function<bool(const char* name)>;
+
+/// Loads with dlopen.
+[[nodiscard]] bool loadsLibrary(const char* name);
+
+/// Whether EGL and OpenGL are installed. To be asked before the first call into libepoxy, which
+/// ends the program where they are not. Fails with kUnsupported and names the Debian package.
+[[nodiscard]] Result<void> checkLibraries(const LibraryLoads& loads);
 
 /// An OpenGL context that needs no display and no surface. Movable. Its EGL display is never
 /// closed, because other contexts of the program may share it.

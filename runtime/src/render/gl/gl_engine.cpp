@@ -46,9 +46,9 @@ Result<std::unique_ptr<GlEngine>> GlEngine::make(const RenderLibrary& library,
 
 GlEngine::~GlEngine() {
   const CurrentContext current(context_);
-  for (Round& round : rounds_) {
-    if (round.fence != nullptr) glDeleteSync(round.fence);
-    round = Round();
+  for (ViewSlice& slice : slices_) {
+    if (slice.fence != nullptr) glDeleteSync(slice.fence);
+    slice = ViewSlice();
   }
   cuda_.reset();
   renderer_.reset();
@@ -58,7 +58,7 @@ void GlEngine::begin(std::span<const RenderView> views, const RenderTargets& tar
   views_ = views;
   targets_ = targets;
   submitted_views_ = 0;
-  submitted_rounds_ = 0;
+  submitted_slices_ = 0;
   collected_rounds_ = 0;
   const CurrentContext current(context_);
   renderer_->resetStatistics();
@@ -67,8 +67,8 @@ void GlEngine::begin(std::span<const RenderView> views, const RenderTargets& tar
 
 void GlEngine::end() {
   const CurrentContext current(context_);
-  while (collected_rounds_ < submitted_rounds_) {
-    renderer_->collect(rounds_[collected_rounds_ % rounds_.size()], targets_);
+  while (collected_rounds_ < submitted_slices_) {
+    renderer_->collect(slices_[collected_rounds_ % slices_.size()], targets_);
     ++collected_rounds_;
     submitNext();
   }
@@ -76,13 +76,13 @@ void GlEngine::end() {
 
 void GlEngine::submitNext() {
   while (submitted_views_ < views_.size() &&
-         submitted_rounds_ - collected_rounds_ < rounds_.size()) {
-    Round& round = rounds_[submitted_rounds_ % rounds_.size()];
+         submitted_slices_ - collected_rounds_ < slices_.size()) {
+    ViewSlice& slice = slices_[submitted_slices_ % slices_.size()];
     const std::size_t count = std::min(renderer_->mostViews(), views_.size() - submitted_views_);
-    round.first_view = submitted_views_;
-    renderer_->submit(views_.subspan(submitted_views_, count), round);
+    slice.first_view = submitted_views_;
+    renderer_->submit(views_.subspan(submitted_views_, count), slice);
     submitted_views_ += count;
-    ++submitted_rounds_;
+    ++submitted_slices_;
   }
 }
 
@@ -94,28 +94,29 @@ Result<ImageLayout> GlEngine::drawToDevice(std::span<const RenderView> views) {
   if (!renderer_->hasRoomOnDevice(views.size())) cuda_->forget();
   Result<ImageLayout> layout = renderer_->reserveDeviceImages(views.size());
   if (!layout) return layout;
-  // Four pixels of three bytes are written together, so that rounds share none.
+  // Four pixels of three bytes are written together, so that slices share none.
   constexpr std::size_t kTogether = 4;
   const std::size_t most = std::max(renderer_->mostViews() / kTogether, std::size_t{1}) * kTogether;
   std::size_t next = 0;
   for (std::size_t first = 0; first < views.size(); first += most, ++next) {
-    Round& round = rounds_[next % rounds_.size()];
-    if (round.fence != nullptr) renderer_->finish(round);
-    round.first_view = first;
+    ViewSlice& slice = slices_[next % slices_.size()];
+    if (slice.fence != nullptr) renderer_->finish(slice);
+    slice.first_view = first;
     renderer_->submitToDevice(views.subspan(first, std::min(most, views.size() - first)), *layout,
-                              round);
+                              slice);
   }
-  for (Round& round : rounds_) {
-    if (round.fence != nullptr) renderer_->finish(round);
+  for (ViewSlice& slice : slices_) {
+    if (slice.fence != nullptr) renderer_->finish(slice);
   }
   return layout;
 }
 
-Result<DeviceImages> GlEngine::renderToDevice(std::span<const RenderView> views) {
+Result<DeviceImages> GlEngine::renderToDevice(std::span<const RenderView> views,
+                                              std::uintptr_t stream) {
   const Result<ImageLayout> layout = drawToDevice(views);
   if (!layout) return tl::unexpected<Error>(layout.error());
   const CurrentContext current(context_);
-  const Result<std::uint64_t> address = cuda_->map(renderer_->deviceImages().get());
+  const Result<std::uint64_t> address = cuda_->map(renderer_->deviceImages().get(), stream);
   if (!address) return tl::unexpected<Error>(address.error());
   DeviceImages images;
   if (layout->color_of_view > 0) images.color = *address + layout->color;

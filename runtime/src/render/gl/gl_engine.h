@@ -6,13 +6,12 @@
 
 #include "render/gl/cuda_mapping.h"
 #include "render/gl/egl_context.h"
-#include "render/gl/egl_library.h"
 #include "render/gl/gl_renderer.h"
 #include "render/render_engine.h"
 
 namespace galactic::render::gl {
 
-/// The backend: a context, what is loaded on it, and the rounds under way.
+/// The backend: a context, what is loaded on it, and the slices under way.
 class GlEngine final : public RenderEngine {
  public:
   /// As makeGlEngine(), with what tests and benchmarks choose.
@@ -28,7 +27,8 @@ class GlEngine final : public RenderEngine {
 
   void begin(std::span<const RenderView> views, const RenderTargets& targets) override;
   void end() override;
-  [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views) override;
+  [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views,
+                                                    std::uintptr_t stream) override;
   /// The first part of it: draws into renderer().deviceImages(), and waits.
   [[nodiscard]] Result<ImageLayout> drawToDevice(std::span<const RenderView> views);
   [[nodiscard]] const EglContext& context() const { return context_; }
@@ -39,18 +39,18 @@ class GlEngine final : public RenderEngine {
   [[nodiscard]] const GlTimings& timings() const { return renderer_->timings(); }
 
  private:
-  /// Starts rounds while views wait and a round is idle.
+  /// Starts slices while views wait and a slice is idle.
   void submitNext();
 
   EglContext context_;
   std::unique_ptr<GlRenderer> renderer_;
   std::unique_ptr<CudaMapping> cuda_ = std::make_unique<CudaMapping>();
   /// Two: one is drawn while the other is read.
-  std::array<Round, 2> rounds_;
+  std::array<ViewSlice, 2> slices_;
   std::span<const RenderView> views_;
   RenderTargets targets_;
   std::size_t submitted_views_ = 0;
-  std::size_t submitted_rounds_ = 0;
+  std::size_t submitted_slices_ = 0;
   std::size_t collected_rounds_ = 0;
 };
 

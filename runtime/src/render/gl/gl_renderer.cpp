@@ -8,7 +8,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "render/gl/device_wish.h"
+#include "render/device_wish.h"
 #include "render/gl/library_textures.h"
 
 namespace galactic::render::gl {
@@ -170,7 +170,7 @@ Result<void> GlRenderer::load(const RenderLibrary& library, const GlTuning& tuni
   totals_.reserve(kTotalsBytes);
   models_ = std::move(geometry.models);
   makeVertexArray(geometry.vertex_colors);
-  chooseRounds(tuning);
+  chooseSlices(tuning);
   if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
     return fail(ErrorCode::kUnsupported, "render backend gl",
                 fmt::format("the driver cannot load the library (OpenGL error 0x{:04x}{}): use a "
@@ -199,9 +199,9 @@ void GlRenderer::makeVertexArray(bool vertex_colors) {
   }
 }
 
-void GlRenderer::chooseRounds(const GlTuning& tuning) {
-  // More views than this gain nothing, and while one round is copied the next is drawn. On a
-  // processor the targets of a round should stay in its cache.
+void GlRenderer::chooseSlices(const GlTuning& tuning) {
+  // More views than this gain nothing, and while one slice is copied the next is drawn. On a
+  // processor the targets of a slice should stay in its cache.
   constexpr std::size_t kGoodViews = 256;
   constexpr std::size_t kGoodSoftwareViews = 8;
   constexpr std::size_t kTargetBytes = std::size_t{1} << 30U;
@@ -221,12 +221,12 @@ void GlRenderer::chooseRounds(const GlTuning& tuning) {
   most_views_ = std::max<std::size_t>(most_views_, 1);
 }
 
-void GlRenderer::submit(std::span<const RenderView> views, Round& round) {
+void GlRenderer::submit(std::span<const RenderView> views, ViewSlice& slice) {
   const Stopwatch watch(timings_.setup);
-  round.layout = imageLayout(options_, views.size());
-  round.stays = false;
-  images_.reserve(round.layout.bytes);
-  start(views, round);
+  slice.layout = imageLayout(options_, views.size());
+  slice.stays = false;
+  images_.reserve(slice.layout.bytes);
+  start(views, slice);
 }
 
 Result<ImageLayout> GlRenderer::reserveDeviceImages(std::size_t views) {
@@ -244,50 +244,50 @@ Result<ImageLayout> GlRenderer::reserveDeviceImages(std::size_t views) {
 }
 
 void GlRenderer::submitToDevice(std::span<const RenderView> views, const ImageLayout& layout,
-                                Round& round) {
+                                ViewSlice& slice) {
   const Stopwatch watch(timings_.setup);
-  round.layout = layout;
-  round.stays = true;
-  start(views, round);
+  slice.layout = layout;
+  slice.stays = true;
+  start(views, slice);
 }
 
-void GlRenderer::start(std::span<const RenderView> views, Round& round) {
-  round.views = views.size();
-  round.counts = countRound(views, models_);
+void GlRenderer::start(std::span<const RenderView> views, ViewSlice& slice) {
+  slice.views = views.size();
+  slice.counts = countSlice(views, models_);
   targets_.reserve(views.size());
-  if (measures_) stamp(round.times[0]);
-  upload(views, round);
-  cull(round.counts);
-  draw(round.counts);
-  if (measures_) stamp(round.times[1]);
-  resolve(round);
-  readBack(round);
-  if (measures_) stamp(round.times[2]);
-  round.fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  if (measures_) stamp(slice.times[0]);
+  upload(views, slice);
+  cull(slice.counts);
+  draw(slice.counts);
+  if (measures_) stamp(slice.times[1]);
+  resolve(slice);
+  readBack(slice);
+  if (measures_) stamp(slice.times[2]);
+  slice.fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   glFlush();
 }
 
-void GlRenderer::upload(std::span<const RenderView> views, Round& round) {
-  const std::size_t instances = round.counts.instances;
-  const std::size_t chunks = round.counts.allChunks();
-  const std::size_t draws = round.counts.allDraws();
+void GlRenderer::upload(std::span<const RenderView> views, ViewSlice& slice) {
+  const std::size_t instances = slice.counts.instances;
+  const std::size_t chunks = slice.counts.allChunks();
+  const std::size_t draws = slice.counts.allDraws();
   const std::size_t instance_bytes = instances * sizeof(GpuInstance);
   const std::size_t chunk_bytes = chunks * sizeof(GpuChunk);
-  round.upload.reserve(instance_bytes + chunk_bytes);
+  slice.upload.reserve(instance_bytes + chunk_bytes);
   instances_.reserve(instance_bytes);
   chunks_.reserve(chunk_bytes);
   results_.reserve(chunks * sizeof(ChunkResult));
   draws_.reserve(draws * sizeof(DrawCommand));
-  auto* first_instance = reinterpret_cast<GpuInstance*>(round.upload.data());
-  auto* first_chunk = reinterpret_cast<GpuChunk*>(round.upload.data() + instance_bytes);
+  auto* first_instance = reinterpret_cast<GpuInstance*>(slice.upload.data());
+  auto* first_chunk = reinterpret_cast<GpuChunk*>(slice.upload.data() + instance_bytes);
   const float aspect = static_cast<float>(options_.width) / static_cast<float>(options_.height);
-  listRound(views, models_, aspect,
-            {round.counts, {first_instance, instances}, {first_chunk, chunks}});
-  copyBuffer(round.upload, 0, instances_, 0, instance_bytes);
-  copyBuffer(round.upload, instance_bytes, chunks_, 0, chunk_bytes);
+  listSlice(views, models_, aspect,
+            {slice.counts, {first_instance, instances}, {first_chunk, chunks}});
+  copyBuffer(slice.upload, 0, instances_, 0, instance_bytes);
+  copyBuffer(slice.upload, instance_bytes, chunks_, 0, chunk_bytes);
 }
 
-void GlRenderer::cull(const RoundCounts& counts) {
+void GlRenderer::cull(const SliceCounts& counts) {
   const std::uint32_t chunks = counts.allChunks();
   const auto first_draw = firstOf(counts.draws);
   std::array<std::uint32_t, kDrawClasses + 1> first_chunk{};
@@ -320,7 +320,7 @@ void GlRenderer::cull(const RoundCounts& counts) {
                   GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-void GlRenderer::draw(const RoundCounts& counts) {
+void GlRenderer::draw(const SliceCounts& counts) {
   targets_.beginDrawing();
   // Row 0 is the top one, and depth is 1 at the near plane and 0 far away.
   glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
@@ -357,10 +357,10 @@ void GlRenderer::draw(const RoundCounts& counts) {
   }
 }
 
-void GlRenderer::resolve(const Round& round) {
-  const Buffer& images = round.stays ? device_images_ : images_;
-  const ImageLayout& layout = round.layout;
-  const std::size_t pixels = round.views * options_.width * options_.height;
+void GlRenderer::resolve(const ViewSlice& slice) {
+  const Buffer& images = slice.stays ? device_images_ : images_;
+  const ImageLayout& layout = slice.layout;
+  const std::size_t pixels = slice.views * options_.width * options_.height;
   const auto bind_part = [&](GLuint binding, std::size_t begin, std::size_t end) {
     glBindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, images.get(), static_cast<GLintptr>(begin),
                       static_cast<GLsizeiptr>(end - begin));
@@ -377,49 +377,49 @@ void GlRenderer::resolve(const Round& round) {
   glUniform1ui(1, options_.width);
   glUniform1ui(2, options_.height);
   glUniform1ui(3, static_cast<GLuint>(pixels));
-  const std::size_t first_view = round.stays ? round.first_view : 0;
+  const std::size_t first_view = slice.stays ? slice.first_view : 0;
   glUniform1ui(4, static_cast<GLuint>(first_view * options_.width * options_.height));
   if (pixels > 0) glDispatchCompute(groups((pixels + 3) / 4), 1, 1);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-void GlRenderer::readBack(Round& round) {
-  const std::size_t bytes = round.stays ? 0 : round.layout.bytes;
-  round.readback.reserve(bytes + kTotalsBytes);
-  copyBuffer(images_, 0, round.readback, 0, bytes);
-  copyBuffer(totals_, 0, round.readback, bytes, kTotalsBytes);
+void GlRenderer::readBack(ViewSlice& slice) {
+  const std::size_t bytes = slice.stays ? 0 : slice.layout.bytes;
+  slice.readback.reserve(bytes + kTotalsBytes);
+  copyBuffer(images_, 0, slice.readback, 0, bytes);
+  copyBuffer(totals_, 0, slice.readback, bytes, kTotalsBytes);
 }
 
-void GlRenderer::finish(Round& round) {
+void GlRenderer::finish(ViewSlice& slice) {
   constexpr GLuint64 kNanoseconds = 1'000'000'000;
-  while (glClientWaitSync(round.fence, GL_SYNC_FLUSH_COMMANDS_BIT, kNanoseconds) ==
+  while (glClientWaitSync(slice.fence, GL_SYNC_FLUSH_COMMANDS_BIT, kNanoseconds) ==
          GL_TIMEOUT_EXPIRED) {
   }
-  glDeleteSync(round.fence);
-  round.fence = nullptr;
+  glDeleteSync(slice.fence);
+  slice.fence = nullptr;
   std::array<DrawTotals, kDrawClasses> totals{};
-  const std::size_t bytes = round.stays ? 0 : round.layout.bytes;
-  std::memcpy(totals.data(), round.readback.data() + bytes, kTotalsBytes);
-  statistics_.instances += round.counts.instances;
-  statistics_.clusters += round.counts.clusters;
+  const std::size_t bytes = slice.stays ? 0 : slice.layout.bytes;
+  std::memcpy(totals.data(), slice.readback.data() + bytes, kTotalsBytes);
+  statistics_.instances += slice.counts.instances;
+  statistics_.clusters += slice.counts.clusters;
   for (const DrawTotals& total : totals) {
     statistics_.clusters_drawn += total.clusters;
     statistics_.triangles_drawn += total.triangles;
   }
   if (measures_) {
-    timings_.draw += secondsBetween(round.times[0], round.times[1]);
-    timings_.readback += secondsBetween(round.times[1], round.times[2]);
+    timings_.draw += secondsBetween(slice.times[0], slice.times[1]);
+    timings_.readback += secondsBetween(slice.times[1], slice.times[2]);
   }
 }
 
-void GlRenderer::collect(Round& round, const RenderTargets& targets) {
-  finish(round);
+void GlRenderer::collect(ViewSlice& slice, const RenderTargets& targets) {
+  finish(slice);
   const Stopwatch watch(timings_.copy);
-  const ImageLayout& layout = round.layout;
+  const ImageLayout& layout = slice.layout;
   const auto copy_to = [&](auto* target, std::size_t begin, std::size_t bytes_of_view) {
     if (bytes_of_view == 0) return;
-    std::memcpy(reinterpret_cast<std::byte*>(target) + round.first_view * bytes_of_view,
-                round.readback.data() + begin, round.views * bytes_of_view);
+    std::memcpy(reinterpret_cast<std::byte*>(target) + slice.first_view * bytes_of_view,
+                slice.readback.data() + begin, slice.views * bytes_of_view);
   };
   copy_to(targets.color.data(), layout.color, layout.color_of_view);
   copy_to(targets.depth.data(), layout.depth, layout.depth_of_view);

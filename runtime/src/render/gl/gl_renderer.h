@@ -18,7 +18,7 @@ namespace galactic::render::gl {
 
 /// What tests and benchmarks choose and users need not.
 struct GlTuning {
-  /// Most views of a round; 0 for what suits the device.
+  /// Most views of a slice; 0 for what suits the device.
   std::size_t most_views = 0;
   /// Whether to do without extensions that are not part of OpenGL 4.5.
   bool core_only = false;
@@ -42,22 +42,22 @@ struct DrawTotals {
   std::uint32_t unused = 0;
 };
 
-/// A round on its way: views that share one set of draw commands. Its buffers are its own, so that
-/// the next round can be prepared and drawn while this one is read.
-struct Round {
+/// A slice on its way: views that share one set of draw commands. Its buffers are its own, so that
+/// the next slice can be prepared and drawn while this one is read.
+struct ViewSlice {
   Buffer upload{Access::kWrite};
   Buffer readback{Access::kRead};
   std::array<Query, 3> times;
   GLsync fence = nullptr;
   std::size_t first_view = 0;
   std::size_t views = 0;
-  /// Of the images of this round, or of the whole batch when they stay on the device.
+  /// Of the images of this slice, or of the whole batch when they stay on the device.
   ImageLayout layout;
   bool stays = false;
-  RoundCounts counts;
+  SliceCounts counts;
 };
 
-/// Draws rounds of views on the current context, which must be the same for all calls, also for the
+/// Draws slices of views on the current context, which must be the same for all calls, also for the
 /// destructor.
 class GlRenderer {
  public:
@@ -67,10 +67,10 @@ class GlRenderer {
                                                                 const GlTuning& tuning);
 
   [[nodiscard]] std::size_t mostViews() const { return most_views_; }
-  /// Starts to draw `views` and to read the images back. `round` is idle.
-  void submit(std::span<const RenderView> views, Round& round);
-  /// Waits for a round and copies its images to their place in `targets`.
-  void collect(Round& round, const RenderTargets& targets);
+  /// Starts to draw `views` and to read the images back. `slice` is idle.
+  void submit(std::span<const RenderView> views, ViewSlice& slice);
+  /// Waits for a slice and copies its images to their place in `targets`.
+  void collect(ViewSlice& slice, const RenderTargets& targets);
 
   /// The same with images that stay on the device, in deviceImages(): makes room for so many views.
   /// Fails with kUnsupported when they are too many for the driver.
@@ -79,10 +79,11 @@ class GlRenderer {
   [[nodiscard]] bool hasRoomOnDevice(std::size_t views) const {
     return imageLayout(options_, views).bytes <= device_images_.size();
   }
-  /// `round.first_view` is a multiple of 4.
-  void submitToDevice(std::span<const RenderView> views, const ImageLayout& layout, Round& round);
-  /// Waits for a round.
-  void finish(Round& round);
+  /// `slice.first_view` is a multiple of 4.
+  void submitToDevice(std::span<const RenderView> views, const ImageLayout& layout,
+                      ViewSlice& slice);
+  /// Waits for a slice.
+  void finish(ViewSlice& slice);
   [[nodiscard]] const Buffer& deviceImages() const { return device_images_; }
 
   [[nodiscard]] const RenderStatistics& statistics() const { return statistics_; }
@@ -93,16 +94,16 @@ class GlRenderer {
   explicit GlRenderer(const RenderOptions& options) : options_(options), targets_(options) {}
   [[nodiscard]] Result<void> load(const RenderLibrary& library, const GlTuning& tuning);
   void makeVertexArray(bool vertex_colors);
-  void chooseRounds(const GlTuning& tuning);
+  void chooseSlices(const GlTuning& tuning);
   /// Lists what the views hold, and sends the lists on their way.
-  void upload(std::span<const RenderView> views, Round& round);
+  void upload(std::span<const RenderView> views, ViewSlice& slice);
   /// Which clusters are seen, as draw commands.
-  void cull(const RoundCounts& counts);
-  void draw(const RoundCounts& counts);
-  /// Prepares and draws a round whose layout is known.
-  void start(std::span<const RenderView> views, Round& round);
-  void resolve(const Round& round);
-  void readBack(Round& round);
+  void cull(const SliceCounts& counts);
+  void draw(const SliceCounts& counts);
+  /// Prepares and draws a slice whose layout is known.
+  void start(std::span<const RenderView> views, ViewSlice& slice);
+  void resolve(const ViewSlice& slice);
+  void readBack(ViewSlice& slice);
 
   RenderOptions options_;
   bool indirect_count_ = false;

@@ -8,7 +8,7 @@
 
 namespace galactic::render::gl {
 
-/// What is drawn into: a layer for each view of a round.
+/// What is drawn into: a layer for each view of a slice.
 class Targets {
  public:
   /// Texture units of color, depth and semantics for the resolving shader.

@@ -41,15 +41,15 @@ std::array<std::array<float, 4>, 3> rowsOf(const RigidTransform& t) {
 
 }  // namespace
 
-std::uint32_t RoundCounts::allChunks() const {
+std::uint32_t SliceCounts::allChunks() const {
   return std::accumulate(chunks.begin(), chunks.end(), 0U);
 }
-std::uint32_t RoundCounts::allDraws() const {
+std::uint32_t SliceCounts::allDraws() const {
   return std::accumulate(draws.begin(), draws.end(), 0U);
 }
 
-RoundCounts countRound(std::span<const RenderView> views, std::span<const ModelClusters> models) {
-  RoundCounts counts;
+SliceCounts countSlice(std::span<const RenderView> views, std::span<const ModelClusters> models) {
+  SliceCounts counts;
   for (const RenderView& view : views) {
     forInstances(view, models, [&](const RenderInstance&, const ModelClusters& model) {
       ++counts.instances;
@@ -65,8 +65,8 @@ RoundCounts countRound(std::span<const RenderView> views, std::span<const ModelC
   return counts;
 }
 
-void listRound(std::span<const RenderView> views, std::span<const ModelClusters> models,
-               float aspect, const RoundLists& lists) {
+void listSlice(std::span<const RenderView> views, std::span<const ModelClusters> models,
+               float aspect, const SliceLists& lists) {
   std::array<std::uint32_t, kDrawClasses> next_chunk{};
   std::exclusive_scan(lists.counts.chunks.begin(), lists.counts.chunks.end(), next_chunk.begin(),
                       0U);

@@ -29,8 +29,8 @@ struct GpuChunk {
 };
 static_assert(sizeof(GpuChunk) == 12);
 
-/// How much the views of a round hold.
-struct RoundCounts {
+/// How much the views of a slice hold.
+struct SliceCounts {
   /// Only those that something can be seen of.
   std::uint32_t instances = 0;
   std::uint64_t clusters = 0;
@@ -42,19 +42,19 @@ struct RoundCounts {
   [[nodiscard]] std::uint32_t allDraws() const;
 };
 
-[[nodiscard]] RoundCounts countRound(std::span<const RenderView> views,
+[[nodiscard]] SliceCounts countSlice(std::span<const RenderView> views,
                                      std::span<const ModelClusters> models);
 
-/// Where the lists of a round go, and what countRound() counted for it.
-struct RoundLists {
-  RoundCounts counts;
+/// Where the lists of a slice go, and what countSlice() counted for it.
+struct SliceLists {
+  SliceCounts counts;
   std::span<GpuInstance> instances;
   std::span<GpuChunk> chunks;
 };
 
 /// Writes the lists: chunks by class, in a class by view, instance and cluster. `aspect`: width
 /// over height of the images.
-void listRound(std::span<const RenderView> views, std::span<const ModelClusters> models,
-               float aspect, const RoundLists& lists);
+void listSlice(std::span<const RenderView> views, std::span<const ModelClusters> models,
+               float aspect, const SliceLists& lists);
 
 }  // namespace galactic::render::gl

@@ -24,7 +24,7 @@ class PaneMemory {
   [[nodiscard]] const PaneScratch& scratch() const { return scratch_; }
   [[nodiscard]] PlacedModel* models() { return models_.data(); }
 
-  /// What the thread did in this round.
+  /// What the thread did in this batch.
   PaneCounts counts;
 
  private:

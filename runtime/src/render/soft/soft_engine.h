@@ -44,7 +44,7 @@ class SoftEngine final : public RenderEngine {
   std::vector<std::unique_ptr<PaneMemory>> memories_;
   RenderStatistics statistics_;
 
-  /// Of the round in work.
+  /// Of the batch in work.
   std::span<const RenderView> views_;
   RenderTargets targets_;
   std::atomic<std::size_t> next_{0};

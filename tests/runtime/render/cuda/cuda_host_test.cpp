@@ -101,11 +101,11 @@ TEST_F(CudaHost, PassesOnWhatTheDriverRefuses) {
   ASSERT_TRUE(engine);
   for (const char* function : {"cuMemAlloc", "cuLaunchKernel", "cuStreamSynchronize"}) {
     standin_->failing = function;
-    const auto images = (*engine)->renderToDevice({&view_, 1});
+    const auto images = (*engine)->renderToDevice({&view_, 1}, 0);
     ASSERT_FALSE(images) << function;
     EXPECT_EQ(images.error().code, ErrorCode::kUnsupported);
     standin_->failing = nullptr;
-    ASSERT_TRUE((*engine)->renderToDevice({&view_, 1}));
+    ASSERT_TRUE((*engine)->renderToDevice({&view_, 1}, 0));
   }
 }
 
@@ -122,7 +122,7 @@ TEST_F(CudaHost, GivesEverythingBack) {
   {
     auto engine = makeEngine(library_, options_);
     ASSERT_TRUE(engine);
-    ASSERT_TRUE((*engine)->renderToDevice({&view_, 1}));
+    ASSERT_TRUE((*engine)->renderToDevice({&view_, 1}, 0));
     EXPECT_GT(standin_->allocations, before);
     EXPECT_EQ(standin_->contexts, 1);
     EXPECT_EQ(standin_->modules, 1);
@@ -136,11 +136,11 @@ TEST_F(CudaHost, ReservesNothingMoreForTheSameBatch) {
   auto engine = makeEngine(library_, options_);
   ASSERT_TRUE(engine);
   const std::vector<RenderView> views(5, view_);
-  ASSERT_TRUE((*engine)->renderToDevice(views));
+  ASSERT_TRUE((*engine)->renderToDevice(views, 0));
   const std::uint64_t bytes = standin_->allocated_bytes;
   standin_->failing = "cuMemAlloc";
-  ASSERT_TRUE((*engine)->renderToDevice(views));
-  ASSERT_TRUE((*engine)->renderToDevice({views.data(), 2}));
+  ASSERT_TRUE((*engine)->renderToDevice(views, 0));
+  ASSERT_TRUE((*engine)->renderToDevice({views.data(), 2}, 0));
   EXPECT_EQ(standin_->allocated_bytes, bytes);
 }
 
@@ -150,7 +150,7 @@ TEST_F(CudaHost, LeavesOnTheDeviceWhatItWouldRead) {
   ASSERT_TRUE(engine);
   const std::vector<RenderView> views(3, view_);
   const RenderImages expected = drawWithSoft(library_, options_, views);
-  const auto images = (*engine)->renderToDevice(views);
+  const auto images = (*engine)->renderToDevice(views, 0);
   ASSERT_TRUE(images);
   // The stand-in's device has the memory of the processor.
   RenderImages found = emptyImages(options_, views.size());
@@ -165,6 +165,29 @@ TEST_F(CudaHost, LeavesOnTheDeviceWhatItWouldRead) {
 }
 
 /// The stand-in is loaded under the name of CUDA's driver, so this program finds it by that.
+TEST_F(CudaHost, DrawsOnTheStreamThatUsesTheImages) {
+  auto engine = makeEngine(library_, options_);
+  ASSERT_TRUE(engine);
+  const auto drawOn = [&](std::uintptr_t stream) {
+    standin_->stream = stream;
+    standin_->on_stream = standin_->on_others = 0;
+    ASSERT_TRUE((*engine)->renderToDevice({&view_, 1}, stream));
+    EXPECT_GT(standin_->on_stream, 0U) << stream;
+    EXPECT_EQ(standin_->on_others, 0U) << stream;
+  };
+  drawOn(0x5A);
+  drawOn(0);
+  drawOn(0x6B);
+  // Images that are read back use the default stream again.
+  standin_->stream = 0;
+  standin_->on_stream = standin_->on_others = 0;
+  RenderImages images = emptyImages(options_, 1);
+  (*engine)->begin({&view_, 1}, targetsOf(images));
+  (*engine)->end();
+  EXPECT_GT(standin_->on_stream, 0U);
+  EXPECT_EQ(standin_->on_others, 0U);
+}
+
 TEST_F(CudaHost, IsTakenFirstOnChipsForDataCenters) {
   options_.backend = RenderBackend::kAuto;
   const BatchRenderer taken = makeRenderer(library_, options_);
@@ -200,7 +223,7 @@ TEST_F(CudaHost, DrawsThroughTheInterfaceWhatSoftDraws) {
 TEST_F(CudaHost, DrawsABatchOfNoViews) {
   auto engine = makeEngine(library_, options_);
   ASSERT_TRUE(engine);
-  ASSERT_TRUE((*engine)->renderToDevice({}));
+  ASSERT_TRUE((*engine)->renderToDevice({}, 0));
   EXPECT_EQ((*engine)->statistics().clusters_drawn, 0U);
 }
 

@@ -175,7 +175,7 @@ TEST_F(CudaImages, DoNotDependOnHowTheBatchIsCut) {
     RenderImages cut = emptyImages(options, views_.size());
     (*engine)->begin(views_, targetsOf(cut));
     (*engine)->end();
-    EXPECT_GT((*engine)->roundCount(), 1U);
+    EXPECT_GT((*engine)->sliceCount(), 1U);
     EXPECT_EQ(images, cut);
   }
 }

@@ -30,16 +30,16 @@ inline Standin& resetStandin() {
 
 inline Result<std::unique_ptr<render::cuda::CudaEngine>> makeEngine(
     const RenderLibrary& library, const RenderOptions& options,
-    std::size_t round_bytes = 1U << 30U) {
+    std::size_t slice_bytes = 1U << 30U) {
   return render::cuda::CudaEngine::make(
-      library, options, {.library = GALACTIC_CUDA_STANDIN, .round_bytes = round_bytes});
+      library, options, {.library = GALACTIC_CUDA_STANDIN, .slice_bytes = slice_bytes});
 }
 
 /// What the kernels draw, run on the processor.
 inline RenderImages drawWithKernels(const RenderLibrary& library, const RenderOptions& options,
                                     std::span<const RenderView> views,
-                                    std::size_t round_bytes = 1U << 30U) {
-  auto engine = makeEngine(library, options, round_bytes);
+                                    std::size_t slice_bytes = 1U << 30U) {
+  auto engine = makeEngine(library, options, slice_bytes);
   if (!engine) throw std::runtime_error(engine.error().message);
   RenderImages images = emptyImages(options, views.size());
   (*engine)->begin(views, targetsOf(images));

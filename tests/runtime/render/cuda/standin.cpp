@@ -33,6 +33,11 @@ int outcome(const char* function) {
                                                                                      : 0;
 }
 
+void note(void* stream) {
+  ++(reinterpret_cast<std::uintptr_t>(stream) == standin.stream ? standin.on_stream
+                                                                : standin.on_others);
+}
+
 void* allocate(std::size_t bytes) {
   // As on a device, nothing is promised about what is there.
   void* memory = std::aligned_alloc(256, (bytes + 255) / 256 * 256);
@@ -52,24 +57,24 @@ void release(void* memory) {
 
 void runBlock(Kernel kernel, const Block& block, const PassParameters& parameters) {
   using namespace render::cuda;
-  const Round& round = parameters.round;
+  const ViewSlice& slice = parameters.slice;
   switch (kernel) {
     case Kernel::kPlace:
-      return placeInstances(block, round);
+      return placeInstances(block, slice);
     case Kernel::kCull: {
       static CullShared shared;
       std::memset(static_cast<void*>(&shared), 0xCD, sizeof(shared));
-      return cullPane(block, shared, round);
+      return cullPane(block, shared, slice);
     }
     case Kernel::kDraw: {
       static DrawShared shared;
       std::memset(static_cast<void*>(&shared), 0xCD, sizeof(shared));
-      return drawClusters(block, shared, round, parameters.pass);
+      return drawClusters(block, shared, slice, parameters.pass);
     }
     case Kernel::kTiles:
-      return measureTiles(block, round);
+      return measureTiles(block, slice);
     case Kernel::kResolve:
-      return resolvePane(block, round, block.count / (round.view_count * round.panes_of_view));
+      return resolvePane(block, slice, block.count / (slice.view_count * slice.panes_of_view));
   }
 }
 
@@ -165,22 +170,27 @@ STANDIN int cuMemFreeHost(void* address) {
   release(address);
   return 0;
 }
-STANDIN int cuMemcpyHtoDAsync_v2(std::uint64_t to, const void* from, std::size_t bytes, void*) {
+STANDIN int cuMemcpyHtoDAsync_v2(std::uint64_t to, const void* from, std::size_t bytes,
+                                 void* stream) {
+  note(stream);
   std::memcpy(reinterpret_cast<void*>(to), from, bytes);
   return 0;
 }
-STANDIN int cuMemcpyDtoHAsync_v2(void* to, std::uint64_t from, std::size_t bytes, void*) {
+STANDIN int cuMemcpyDtoHAsync_v2(void* to, std::uint64_t from, std::size_t bytes, void* stream) {
+  note(stream);
   std::memcpy(to, reinterpret_cast<const void*>(from), bytes);
   if (standin.spoils) static_cast<unsigned char*>(to)[bytes / 2] ^= 1U;
   return 0;
 }
-STANDIN int cuMemsetD32Async(std::uint64_t to, unsigned value, std::size_t words, void*) {
+STANDIN int cuMemsetD32Async(std::uint64_t to, unsigned value, std::size_t words, void* stream) {
+  note(stream);
   auto* first = reinterpret_cast<unsigned*>(to);
   for (std::size_t n = 0; n < words; ++n) first[n] = value;
   return 0;
 }
 STANDIN int cuLaunchKernel(void* function, unsigned grid, unsigned, unsigned, unsigned, unsigned,
-                           unsigned, unsigned, void*, void** parameters, void**) {
+                           unsigned, unsigned, void* stream, void** parameters, void**) {
+  note(stream);
   const int error = outcome("cuLaunchKernel");
   if (error != 0) return error;
   auto* launches = static_cast<std::uint64_t*>(function);
@@ -194,7 +204,10 @@ STANDIN int cuLaunchKernel(void* function, unsigned grid, unsigned, unsigned, un
   }
   return 0;
 }
-STANDIN int cuStreamSynchronize(void*) { return outcome("cuStreamSynchronize"); }
+STANDIN int cuStreamSynchronize(void* stream) {
+  note(stream);
+  return outcome("cuStreamSynchronize");
+}
 
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables,google-build-using-namespace)
 // NOLINTEND(readability-identifier-naming,performance-no-int-to-ptr,readability-function-size)

@@ -23,6 +23,10 @@ struct Standin {
 
   /// Launches by kernel, since the last reset.
   std::uint64_t launches[5] = {};
+  /// Copies, launches and waits, since the last reset: those on `stream`, and others.
+  std::uintptr_t stream = 0;
+  std::uint64_t on_stream = 0;
+  std::uint64_t on_others = 0;
   std::uint64_t allocations = 0;
   std::uint64_t allocated_bytes = 0;
   int contexts = 0;

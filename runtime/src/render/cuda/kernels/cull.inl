@@ -3,13 +3,13 @@ namespace galactic::render::cuda {
 namespace {
 
 /// Places the instances of the view that the block stands for.
-inline void placeInstances(const Block& block, const Round& round) {
-  const DeviceView& view = round.views[block.index];
+inline void placeInstances(const Block& block, const ViewSlice& slice) {
+  const DeviceView& view = slice.views[block.index];
   block.each([&](std::uint32_t thread) {
     for (std::uint32_t n = thread; n < view.instance_count; n += block.threads) {
-      const DeviceInstance& instance = round.instances[view.first_instance + n];
-      PlacedModel& placed = round.placed[view.first_instance + n];
-      const ModelTables& model = round.models[instance.model];
+      const DeviceInstance& instance = slice.instances[view.first_instance + n];
+      PlacedModel& placed = slice.placed[view.first_instance + n];
+      const ModelTables& model = slice.models[instance.model];
       placed.model = nullptr;
       if (model.cluster_count != 0 &&
           placeModel(view.camera_from_world, view.focal, instance.world_from_model, placed)) {
@@ -42,9 +42,9 @@ struct PaneLists {
   std::uint32_t* by_bucket;
 };
 
-inline PaneLists paneLists(const Round& round, std::uint32_t pane) {
-  const std::size_t first = round.first_cluster[pane];
-  return {round.tasks + pane, round.seen + first, round.order + first, round.by_bucket + first};
+inline PaneLists paneLists(const ViewSlice& slice, std::uint32_t pane) {
+  const std::size_t first = slice.first_cluster[pane];
+  return {slice.tasks + pane, slice.seen + first, slice.order + first, slice.by_bucket + first};
 }
 
 /// Prepares the models from `first` on: what culling needs of them, and how many clusters they
@@ -154,25 +154,25 @@ inline void sortSeen(const Block& block, const PaneLists& lists, CullShared& sha
 inline std::uint32_t inFirstPass(std::uint32_t seen) { return (seen + 3) / 4; }
 
 /// Adds the pane's clusters to those of all panes.
-inline void addItems(const Block& block, const Round& round, CullShared& shared) {
+inline void addItems(const Block& block, const ViewSlice& slice, CullShared& shared) {
   block.each([&](std::uint32_t thread) {
     if (thread != 0) return;
     const std::uint32_t near = inFirstPass(shared.seen);
-    shared.first_item[0] = addAtomically(round.counts->items, near);
-    shared.first_item[1] = addAtomically(round.counts->items + 1, shared.seen - near);
+    shared.first_item[0] = addAtomically(slice.counts->items, near);
+    shared.first_item[1] = addAtomically(slice.counts->items + 1, shared.seen - near);
   });
   block.each([&](std::uint32_t thread) {
     const std::uint32_t near = inFirstPass(shared.seen);
     for (std::uint32_t n = thread; n < shared.seen; n += block.threads) {
       const std::uint32_t pass = n < near ? 0 : 1;
-      round.items[pass][shared.first_item[pass] + n - pass * near] = {block.index, n};
+      slice.items[pass][shared.first_item[pass] + n - pass * near] = {block.index, n};
     }
   });
 }
 
 /// Lists what may be seen on the pane that the block stands for.
-inline void cullPane(const Block& block, CullShared& shared, const Round& round) {
-  const PaneLists lists = paneLists(round, block.index);
+inline void cullPane(const Block& block, CullShared& shared, const ViewSlice& slice) {
+  const PaneLists lists = paneLists(slice, block.index);
   block.each([&](std::uint32_t thread) {
     for (std::uint32_t b = thread; b < kBuckets; b += block.threads) shared.in_bucket[b] = 0;
     if (thread == 0) shared.seen = 0;
@@ -182,7 +182,7 @@ inline void cullPane(const Block& block, CullShared& shared, const Round& round)
     lookAtClusters(block, lists, first, shared);
   }
   sortSeen(block, lists, shared);
-  addItems(block, round, shared);
+  addItems(block, slice, shared);
 }
 
 }  // namespace

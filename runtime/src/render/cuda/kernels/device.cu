@@ -22,27 +22,27 @@ __attribute__((device)) inline Block thisBlock() {
 }
 
 GALACTIC_KERNEL void galactic_place(PassParameters parameters) {
-  placeInstances(thisBlock(), parameters.round);
+  placeInstances(thisBlock(), parameters.slice);
 }
 
 GALACTIC_KERNEL void galactic_cull(PassParameters parameters) {
   GALACTIC_SHARED(CullShared, shared);
-  cullPane(thisBlock(), shared, parameters.round);
+  cullPane(thisBlock(), shared, parameters.slice);
 }
 
 GALACTIC_KERNEL void galactic_draw(PassParameters parameters) {
   GALACTIC_SHARED(DrawShared, shared);
-  drawClusters(thisBlock(), shared, parameters.round, parameters.pass);
+  drawClusters(thisBlock(), shared, parameters.slice, parameters.pass);
 }
 
 GALACTIC_KERNEL void galactic_tiles(PassParameters parameters) {
-  measureTiles(thisBlock(), parameters.round);
+  measureTiles(thisBlock(), parameters.slice);
 }
 
 GALACTIC_KERNEL void galactic_resolve(PassParameters parameters) {
   const Block block = thisBlock();
-  resolvePane(block, parameters.round,
-              block.count / (parameters.round.view_count * parameters.round.panes_of_view));
+  resolvePane(block, parameters.slice,
+              block.count / (parameters.slice.view_count * parameters.slice.panes_of_view));
 }
 
 }  // namespace galactic::render::cuda

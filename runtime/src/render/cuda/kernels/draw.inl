@@ -42,12 +42,12 @@ struct DrawPlace {
   std::uint32_t rank;
 };
 
-inline DrawPlace drawPlace(const Round& round, const WorkItem& item) {
-  const PaneLists lists = paneLists(round, item.pane);
+inline DrawPlace drawPlace(const ViewSlice& slice, const WorkItem& item) {
+  const PaneLists lists = paneLists(slice, item.pane);
   return {lists.task,
           lists.seen + lists.order[item.rank],
-          round.pixels + static_cast<std::size_t>(item.pane) * round.pixels_of_pane,
-          round.tile_depth + static_cast<std::size_t>(item.pane) * round.tiles_of_pane,
+          slice.pixels + static_cast<std::size_t>(item.pane) * slice.pixels_of_pane,
+          slice.tile_depth + static_cast<std::size_t>(item.pane) * slice.tiles_of_pane,
           (lists.task->width + kTileEdge - 1) / kTileEdge,
           item.rank};
 }
@@ -298,14 +298,14 @@ inline void drawAllCut(const Block& block, const DrawPlace& place, const DrawSha
 }
 
 /// Draws the clusters of a pass that are the block's.
-inline void drawClusters(const Block& block, DrawShared& shared, const Round& round,
+inline void drawClusters(const Block& block, DrawShared& shared, const ViewSlice& slice,
                          std::uint32_t pass) {
-  const std::uint32_t count = round.counts->items[pass];
+  const std::uint32_t count = slice.counts->items[pass];
   block.each([&](std::uint32_t thread) {
     if (thread == 0) shared.clusters_drawn = shared.triangles_drawn = 0;
   });
   for (std::uint32_t n = block.index; n < count; n += block.count) {
-    const DrawPlace place = drawPlace(round, round.items[pass][n]);
+    const DrawPlace place = drawPlace(slice, slice.items[pass][n]);
     if (pass != 0 && place.task->culling) {
       lookBehind(block, place, shared);
       if (shared.shown == 0) continue;
@@ -323,18 +323,18 @@ inline void drawClusters(const Block& block, DrawShared& shared, const Round& ro
   }
   block.each([&](std::uint32_t thread) {
     if (thread != 0) return;
-    addAtomically(&round.counts->clusters_drawn, shared.clusters_drawn);
-    addAtomically(&round.counts->triangles_drawn, shared.triangles_drawn);
+    addAtomically(&slice.counts->clusters_drawn, shared.clusters_drawn);
+    addAtomically(&slice.counts->triangles_drawn, shared.triangles_drawn);
   });
 }
 
 /// The least 1/w of the tiles of a pane; blocks share its tiles.
-inline void measureTiles(const Block& block, const Round& round) {
+inline void measureTiles(const Block& block, const ViewSlice& slice) {
   const std::uint32_t pane = block.index;
-  const PaneTask& task = round.tasks[pane];
+  const PaneTask& task = slice.tasks[pane];
   const std::uint64_t* pixels =
-      round.pixels + static_cast<std::size_t>(pane) * round.pixels_of_pane;
-  float* depths = round.tile_depth + static_cast<std::size_t>(pane) * round.tiles_of_pane;
+      slice.pixels + static_cast<std::size_t>(pane) * slice.pixels_of_pane;
+  float* depths = slice.tile_depth + static_cast<std::size_t>(pane) * slice.tiles_of_pane;
   const std::uint32_t wide = (task.width + kTileEdge - 1) / kTileEdge;
   const std::uint32_t high = (task.height + kTileEdge - 1) / kTileEdge;
   block.each([&](std::uint32_t thread) {

@@ -1,7 +1,7 @@
 // All kernels. Included once for the device and once for the processor; each file builds on those
 // before it.
 // clang-format off
-#include "render/cuda/kernels/round.h"
+#include "render/cuda/kernels/view_slice.h"
 #include "render/raster/lanes_one.inl"
 #include "render/raster/cull.inl"
 #include "render/raster/vertices.inl"

@@ -117,16 +117,16 @@ inline void writePixel(const PaneTask& task, std::size_t pixel, const PixelImage
 }
 
 /// Writes the pixels of a pane that are the block's: `blocks_of_pane` share it.
-inline void resolvePane(const Block& block, const Round& round, std::uint32_t blocks_of_pane) {
+inline void resolvePane(const Block& block, const ViewSlice& slice, std::uint32_t blocks_of_pane) {
   const std::uint32_t pane = block.index / blocks_of_pane;
-  const PaneLists lists = paneLists(round, pane);
+  const PaneLists lists = paneLists(slice, pane);
   const PaneTask& task = *lists.task;
   const std::uint64_t* pixels =
-      round.pixels + static_cast<std::size_t>(pane) * round.pixels_of_pane;
+      slice.pixels + static_cast<std::size_t>(pane) * slice.pixels_of_pane;
   const std::uint32_t columns = (task.width + kTileEdge - 1) / kTileEdge * 2;
   block.each([&](std::uint32_t thread) {
     const std::uint32_t first = block.index % blocks_of_pane * block.threads + thread;
-    for (std::uint32_t n = first; n < round.pixels_of_pane; n += blocks_of_pane * block.threads) {
+    for (std::uint32_t n = first; n < slice.pixels_of_pane; n += blocks_of_pane * block.threads) {
       const std::uint32_t lane = n % kWidth;
       const std::uint32_t x = n / kWidth % columns * kBlockWidth + lane % kBlockWidth;
       const std::uint32_t y = n / kWidth / columns * kBlockHeight + lane / kBlockWidth;

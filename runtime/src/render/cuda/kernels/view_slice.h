@@ -37,7 +37,7 @@ struct WorkItem {
 inline constexpr std::uint32_t kPasses = 2;
 
 /// Counted on the device.
-struct RoundCounts {
+struct SliceCounts {
   std::uint32_t items[kPasses];
   std::uint32_t unused[2];
   std::uint64_t clusters_drawn;
@@ -45,7 +45,7 @@ struct RoundCounts {
 };
 
 /// Views that are drawn together. Arrays "by pane": first the panes of the first view.
-struct Round {
+struct ViewSlice {
   const ModelTables* models;
   const DeviceView* views;
   const DeviceInstance* instances;
@@ -65,7 +65,7 @@ struct Round {
   std::uint64_t* pixels;
   /// By pane: the least 1/w of each tile after the first pass.
   float* tile_depth;
-  RoundCounts* counts;
+  SliceCounts* counts;
   std::uint32_t view_count;
   std::uint32_t panes_of_view;
   /// Room for each pane in `pixels` and in `tile_depth`.
@@ -75,7 +75,7 @@ struct Round {
 
 /// What launches pass by value.
 struct PassParameters {
-  Round round;
+  ViewSlice slice;
   std::uint32_t pass;
 };
 

@@ -10,7 +10,7 @@
 
 #include "galactic/error.h"
 
-namespace galactic::render::gl {
+namespace galactic::render {
 
 /// Identifies a graphics processor across programs and drivers.
 using DeviceUuid = std::array<std::uint8_t, 16>;
@@ -63,4 +63,4 @@ struct ContextFacts {
 /// The error for a machine with nothing but a software driver, whose renderer string is `name`.
 [[nodiscard]] Error onlySoftware(std::string_view name);
 
-}  // namespace galactic::render::gl
+}  // namespace galactic::render

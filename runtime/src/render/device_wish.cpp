@@ -1,11 +1,11 @@
-#include "render/gl/device_wish.h"
+#include "render/device_wish.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 
-namespace galactic::render::gl {
+namespace galactic::render {
 namespace {
 
 constexpr const char* kWhere = "render device";
@@ -189,4 +189,4 @@ Error onlySoftware(std::string_view name) {
                       name)};
 }
 
-}  // namespace galactic::render::gl
+}  // namespace galactic::render
