@@ -34,6 +34,25 @@ void expectNothingPenetrates(const PenetrationRun& run) {
   EXPECT_GT(found.exact, 100000U);
   EXPECT_GT(found.shallow, 100U);
   EXPECT_GT(found.deepest, 0.0F);
+  // What docs/simulation.md says: about one move in a hundred.
+  EXPECT_GT(found.swept, 1000U);
+  EXPECT_LT(30 * found.tunneled, found.swept);
+}
+
+TEST(BulletScene, SeesWhatIsOnTheWayOfABallAndOfAPoint) {
+  // A square of 1 m, upright.
+  bake::TriangleMesh plate;
+  plate.vertices = {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}};
+  plate.triangles = {{0, 1, 2}, {0, 2, 3}};
+  BulletScene scene(plate);
+  for (const float radius : {0.0F, 0.05F}) {
+    EXPECT_TRUE(scene.crosses({-0.1F, 0.5F, 0.3F}, {0.1F, 0.5F, 0.3F}, radius));
+    EXPECT_FALSE(scene.crosses({-0.3F, 0.5F, 0.3F}, {-0.1F, 0.5F, 0.3F}, radius));
+    EXPECT_FALSE(scene.crosses({-0.1F, 1.2F, 0.3F}, {0.1F, 1.2F, 0.3F}, radius));
+  }
+  // Beside the plate's edge, closer than the ball is wide.
+  EXPECT_TRUE(scene.crosses({-0.1F, 1.03F, 0.3F}, {0.1F, 1.03F, 0.3F}, 0.05F));
+  EXPECT_FALSE(scene.crosses({-0.1F, 1.03F, 0.3F}, {0.1F, 1.03F, 0.3F}, 0));
 }
 
 TEST(Penetration, NeverHappensInTheSampleApartment) {

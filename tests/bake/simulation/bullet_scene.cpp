@@ -53,6 +53,22 @@ class BulletScene::Impl {
     object_.setCollisionShape(shape_.get());
   }
 
+  bool crosses(const Vec3& from, const Vec3& to, float radius) {
+    const btTransform start(btQuaternion::getIdentity(), toBullet(from));
+    const btTransform end(btQuaternion::getIdentity(), toBullet(to));
+    if (radius <= 0) {
+      btCollisionWorld::ClosestRayResultCallback hit(start.getOrigin(), end.getOrigin());
+      btCollisionWorld::rayTestSingle(start, end, &object_, shape_.get(),
+                                      object_.getWorldTransform(), hit);
+      return hit.hasHit();
+    }
+    const btSphereShape sphere(radius);
+    btCollisionWorld::ClosestConvexResultCallback hit(start.getOrigin(), end.getOrigin());
+    btCollisionWorld::objectQuerySingle(&sphere, start, end, &object_, shape_.get(),
+                                        object_.getWorldTransform(), hit, 0);
+    return hit.hasHit();
+  }
+
   bool touches(const Vec3& center, float radius) {
     btSphereShape sphere(radius);
     btCollisionObject ball;
@@ -78,6 +94,10 @@ BulletScene::~BulletScene() = default;
 
 bool BulletScene::touches(const Vec3& center, float radius) {
   return impl_->touches(center, radius);
+}
+
+bool BulletScene::crosses(const Vec3& from, const Vec3& to, float radius) {
+  return impl_->crosses(from, to, radius);
 }
 
 }  // namespace galactic::test

@@ -22,6 +22,10 @@ class BulletScene {
   /// Whether a ball touches the mesh, or comes within kReach radii of it.
   [[nodiscard]] bool touches(const Vec3& center, float radius);
 
+  /// Whether a ball that moves along a line, or a point for a radius of 0, meets the mesh between
+  /// the line's ends, at neither of which it may touch the mesh.
+  [[nodiscard]] bool crosses(const Vec3& from, const Vec3& to, float radius);
+
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;

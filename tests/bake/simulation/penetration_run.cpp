@@ -1,5 +1,6 @@
 #include "penetration_run.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <random>
 #include <span>
@@ -76,6 +77,10 @@ void print(const PenetrationReport& report) {
       "(%llu touch)\n",
       number(found.robot_spheres), number(found.held_spheres), number(found.excepted),
       number(found.near_objects), number(found.exact), number(found.shallow));
+  std::printf("moves shown to Bullet %llu, through something thin %llu: %.2f of 100,000\n",
+              number(found.swept), number(found.tunneled),
+              1e5 * static_cast<double>(found.tunneled) /
+                  static_cast<double>(std::max<std::uint64_t>(1, found.swept)));
   const Vec3& deepest = found.deepest_center;
   std::printf(
       "deepest in the scene: %.2f mm, exactly %.2f (allowed %.2f), a sphere of %g m at (%g, %g, "

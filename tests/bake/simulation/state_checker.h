@@ -35,6 +35,10 @@ struct Findings {
   float deepest = 0;
   Vec3 deepest_center{};
   float deepest_radius = 0;
+  /// Moves of robots that were shown to Bullet, and those on which some sphere passed through what
+  /// is thinner than the move is long.
+  std::uint64_t swept = 0;
+  std::uint64_t tunneled = 0;
   /// Of the robot, then of held objects: blocked by the column grid, overlapping an object, deeper
   /// in the exact scene than the column method allows.
   std::array<std::uint64_t, 2> in_grid{};
@@ -74,10 +78,13 @@ class StateChecker {
     const auto transforms = simulator_.bodyTransforms().subspan(env * bodies, bodies);
     HeldBefore& before = held_[env];
     noteRelease(state, before);
+    before.from = before.to;
+    before.to.resize(spheres_.size());
     for (std::size_t n = 0; n < spheres_.size(); ++n) {
       const RobotSphere& sphere = spheres_[n];
       const Ball ball{at(transforms[sphere.body], sphere.center), sphere.radius_index};
       found.in_grid[0] += isInGrid(around, ball) ? 1U : 0U;
+      before.to[n] = ball.center;
       const InObjects objects = inObjects(around, ball, found);
       for (auto& [object, spheres] : before.leaving) {
         spheres[n] = spheres[n] && std::ranges::count(objects.touches, object) != 0;
@@ -95,6 +102,7 @@ class StateChecker {
     }
     found.robot_spheres += spheres_.size();
     ++found.states;
+    checkMove(state, before, exactly, found);
     checkHeld(env, state, around, found);
   }
 
@@ -125,6 +133,9 @@ class StateChecker {
     std::vector<bool> excepted;
     /// Objects that were released, and the robot's spheres that have been in each since.
     std::map<std::int32_t, std::vector<bool>> leaving;
+    /// Where the robot's spheres were in the state before, and are in this one.
+    std::vector<Vec3> from;
+    std::vector<Vec3> to;
   };
   /// The objects that a sphere is in.
   struct InObjects {
@@ -139,6 +150,31 @@ class StateChecker {
     before.leaving.erase(state.held);
     if (!goes_on || before.object < 0 || before.object == state.held) return;
     before.leaving[before.object].assign(spheres_.size(), true);
+  }
+
+  /// Each sphere along a straight line: where it turns, by five degrees at a meter at most, its
+  /// path leaves the line by a millimeter.
+  void checkMove(const EnvState& state, const HeldBefore& before, bool exactly,
+                 Findings& found) const {
+    if (!exactly || before.from.empty() || state.step != before.step + 1) return;
+    ++found.swept;
+    for (std::size_t n = 0; n < spheres_.size(); ++n) {
+      if (!tunnels(before.from[n], before.to[n], world_.radii()[spheres_[n].radius_index]))
+        continue;
+      ++found.tunneled;
+      return;
+    }
+  }
+
+  [[nodiscard]] bool tunnels(const Vec3& from, const Vec3& to, float radius) const {
+    const Vec3 way = to - from;
+    if (!(dot(way, way) > kDeepest * kDeepest)) return false;
+    // Spheres may be as deep in the scene as the column method allows; what remains of them may
+    // touch nothing.
+    if (radius > kDeepest) return scene_.crosses(from, to, radius - kDeepest);
+    // Nothing remains: their centers may be on the other side of a surface that they only touch.
+    const float near = kDeepest - radius;
+    return !scene_.touches(from, near) && !scene_.touches(to, near) && scene_.crosses(from, to, 0);
   }
 
   static void note(std::size_t env, const EnvState& state, std::size_t sphere, std::int32_t object,
