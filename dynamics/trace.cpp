@@ -119,7 +119,7 @@ Result<std::vector<EpisodeTrace>> tracesOf(RecordingReader& recording, const Wor
   ASSIGN_OR_RETURN(auto simulator, BatchSimulator::create(world, options));
   if (recording.subject().actions != simulator.actionCount()) {
     return fail(ErrorCode::kInvalidInput, recording.where(),
-                fmt::format("has {} actions per env, wanted the robot's {}; record it again",
+                fmt::format("has {} actions per env, expected the robot's {}; record it again",
                             recording.subject().actions, simulator.actionCount()));
   }
   Retracing retracing(recording, simulator);

@@ -57,7 +57,7 @@ CLI::Validator choice(std::map<std::string, T> names) {
         }
         std::string wanted;
         for (const auto& [name, value] : names) wanted += (wanted.empty() ? "" : ", ") + name;
-        return fmt::format("found \"{}\", wanted one of {}", text, wanted);
+        return fmt::format("found \"{}\", expected one of {}", text, wanted);
       },
       "", "choice");
 }
@@ -297,7 +297,7 @@ void addView(CLI::App& app, ViewOptions& options) {
         std::uint32_t edge = 0;
         std::from_chars(text.data(), text.data() + text.size(), edge);
         return std::has_single_bit(edge) ? std::string()
-                                         : fmt::format("found {}, wanted a power of two", text);
+                                         : fmt::format("found {}, expected a power of two", text);
       },
       "", "texture_size");
   verb.add_option("--texture-size", options.texture_size,

@@ -91,9 +91,8 @@ Result<fs::path> worldPack(const BakeCommand& command) {
   if (!out.has_filename() || isFolder(out)) return out / (name + ".pack");
   if (out.has_extension()) return out;
   // The other packs go into a folder of this name.
-  return fail(
-      ErrorCode::kInvalidInput, "out",
-      fmt::format("is \"{}\", NAME.pack or a folder that is there is wanted", out.string()));
+  return fail(ErrorCode::kInvalidInput, "out",
+              fmt::format("is \"{}\", expected NAME.pack or an existing folder", out.string()));
 }
 
 }  // namespace

@@ -153,7 +153,7 @@ class Comparison {
   }
 
   void differ(const Place& place, std::string_view found, std::string_view wanted) {
-    result_.differences.push_back(fmt::format("{}: {}, wanted {}", place.shown, found, wanted));
+    result_.differences.push_back(fmt::format("{}: {}, expected {}", place.shown, found, wanted));
   }
 
   std::optional<double> tolerance_;
@@ -166,7 +166,7 @@ Result<void> checkTolerances(const fs::path& path, const Json& report) {
   const Json& tolerances = report.at(kTolerances);
   const std::string where = fmt::format("{}: {}", path.string(), kTolerances);
   if (!tolerances.is_object()) {
-    return fail(ErrorCode::kInvalidInput, where, "is no object, wanted keys and their tolerances");
+    return fail(ErrorCode::kInvalidInput, where, "expected an object of keys and their tolerances");
   }
   for (auto one = tolerances.begin(); one != tolerances.end(); ++one) {
     const bool good = one->is_null() || (one->is_number() && one->get<double>() >= 0);
@@ -189,7 +189,7 @@ Result<GoldenReport> readGoldenReport(const fs::path& path) {
                          report.at("baked").is_array();
   if (!is_report) {
     return fail(ErrorCode::kInvalidInput, path.string(),
-                "is no report of galactic-bake; make one with --report");
+                "is not a report of galactic-bake; make one with --report");
   }
   RETURN_IF_ERROR(checkTolerances(path, report));
   return GoldenReport{path, std::move(report)};
@@ -212,7 +212,7 @@ int checkReport(const GoldenReport& golden, const Json& report, const BakeComman
     fmt::print("{}: {} differences in {} values\n", printable(golden.path.string()),
                result.differences.size(), result.compared);
   } else if (command.run.verbosity != Verbosity::kQuiet) {
-    fmt::print("{}: as wanted in {} values\n", printable(golden.path.string()), result.compared);
+    fmt::print("{}: as expected in {} values\n", printable(golden.path.string()), result.compared);
   }
   return same ? kExitOk : kExitDiffers;
 }

@@ -16,7 +16,7 @@ struct GoldenReport {
   Json report;
 };
 
-/// Fails with kIo where it cannot be read, and with kInvalidInput where it is no report of
+/// Fails with kIo where it cannot be read, and with kInvalidInput where it is not a report of
 /// galactic-bake or its tolerances are none.
 [[nodiscard]] Result<GoldenReport> readGoldenReport(const std::filesystem::path& path);
 
@@ -27,7 +27,7 @@ struct GoldenReport {
 struct ReportComparison {
   /// How many values were compared.
   std::size_t compared = 0;
-  /// One sentence each: "baked[0].spans: 120, wanted 118", in the order of the golden report.
+  /// One sentence each: "baked[0].spans: 120, expected 118", in the order of the golden report.
   std::vector<std::string> differences;
 };
 

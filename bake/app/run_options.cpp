@@ -38,7 +38,7 @@ class ShardField final : public OptionField {
                          parseWhole(std::string_view(text).substr(0, slash), field_.index) &&
                          parseWhole(std::string_view(text).substr(slash + 1), field_.count);
     if (!is_pair || field_.index < 1 || field_.index > field_.count) {
-      return fmt::format("is \"{}\", I/N is wanted with I from 1 to N, for example 2/8", text);
+      return fmt::format("is \"{}\", expected I/N with I from 1 to N, for example 2/8", text);
     }
     --field_.index;
     return {};

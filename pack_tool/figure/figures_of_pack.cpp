@@ -215,10 +215,11 @@ Result<std::vector<Figure>> figuresOf(const PackFile& pack, const FigureOptions&
   if (pack.kind() == PackKind::kObjects) return objectFigures(pack, options);
   if (pack.kind() == PackKind::kRobot) return robotFigures(pack, options);
   if (pack.kind() == PackKind::kScene) return sceneFigures(pack, options);
-  return fail(ErrorCode::kInvalidInput, pack.where(),
-              fmt::format("is a pack of kind {}, wanted a scene (SCEN), objects (OBJS) or a robot "
-                          "(RBOT)",
-                          packKindName(pack.kind())));
+  return fail(
+      ErrorCode::kInvalidInput, pack.where(),
+      fmt::format("is a pack of kind {}, expected a scene (SCEN), objects (OBJS) or a robot "
+                  "(RBOT)",
+                  packKindName(pack.kind())));
 }
 
 std::string sphereCounts(std::span<const SetSphere> spheres, std::size_t radii) {

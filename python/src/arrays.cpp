@@ -13,7 +13,7 @@ std::span<const py::ssize_t> shapeOf(const py::array& array) {
 
 void requireShape(const py::array& array, const char* name, const Shape& wanted) {
   if (std::ranges::equal(shapeOf(array), wanted)) return;
-  throw py::value_error(fmt::format("{} has the shape {}, wanted {}", name,
+  throw py::value_error(fmt::format("{} has the shape {}, expected {}", name,
                                     shapeText(shapeOf(array)), shapeText(wanted)));
 }
 
@@ -37,7 +37,7 @@ py::array_t<T, py::array::c_style | py::array::forcecast> inputOf(const py::hand
   Input array = Input::ensure(given);
   if (!array) {
     PyErr_Clear();
-    throw py::type_error(fmt::format("{} is a {}, wanted an array of numbers", name,
+    throw py::type_error(fmt::format("{} is a {}, expected an array of numbers", name,
                                      typeText(py::type::of(given).attr("__name__"))));
   }
   requireShape(array, name, shape);
@@ -47,13 +47,13 @@ py::array_t<T, py::array::c_style | py::array::forcecast> inputOf(const py::hand
 template <class T>
 std::span<T> outputOf(const py::handle& given, const char* name, const Shape& shape) {
   if (!py::isinstance<py::array>(given)) {
-    throw py::type_error(fmt::format("{} is a {}, wanted a numpy array to write to", name,
+    throw py::type_error(fmt::format("{} is a {}, expected a numpy array to write to", name,
                                      typeText(py::type::of(given).attr("__name__"))));
   }
   auto array = py::reinterpret_borrow<py::array>(given);
   if (!py::isinstance<py::array_t<T>>(given)) {
-    throw py::type_error(fmt::format("{} has the type {}, wanted {}", name, typeText(array.dtype()),
-                                     typeText(py::dtype::of<T>())));
+    throw py::type_error(fmt::format("{} has the type {}, expected {}", name,
+                                     typeText(array.dtype()), typeText(py::dtype::of<T>())));
   }
   requireShape(array, name, shape);
   const bool has_gaps = (array.flags() & py::array::c_style) == 0;

@@ -32,7 +32,7 @@ std::string textOf(const std::string& keyword, const py::handle& value) {
   }
   if (PyNumber_Check(value.ptr()) != 0) return py::repr(py::float_(value.cast<double>()));
   throw py::type_error(
-      fmt::format("the option {} is a {}, wanted a number, a truth value or a word", keyword,
+      fmt::format("the option {} is a {}, expected a number, a truth value or a word", keyword,
                   py::str(py::type::of(value).attr("__name__")).cast<std::string>()));
 }
 
@@ -64,7 +64,7 @@ std::uint32_t threadsOf(const py::handle& value) {
   const std::int64_t threads = PyIndex_Check(value.ptr()) != 0 ? value.cast<std::int64_t>() : -1;
   if (threads >= 0 && threads <= kMost) return static_cast<std::uint32_t>(threads);
   throw Refusal{{ErrorCode::kInvalidInput, "threads",
-                 fmt::format("is {}, wanted 0 to {}; 0 takes one per processor",
+                 fmt::format("is {}, expected 0 to {}; 0 takes one per processor",
                              py::repr(value).cast<std::string>(), kMost)}};
 }
 
@@ -87,7 +87,7 @@ std::vector<OptionText> setKeywords(const py::dict& keywords, SimulationOptions&
   const OptionText& text = texts[fault->index];
   if (fault->wanted.empty()) refuseKeyword(underscored(text.name));
   throw Refusal{{ErrorCode::kInvalidInput, underscored(text.name),
-                 fmt::format("is {}, wanted {}", text.value, fault->wanted)}};
+                 fmt::format("is {}, expected {}", text.value, fault->wanted)}};
 }
 
 }  // namespace

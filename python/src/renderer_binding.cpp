@@ -17,7 +17,8 @@ ColorFormat colorOf(const std::optional<std::string>& name) {
   if (!name) return ColorFormat::kNone;
   if (*name == "rgb") return ColorFormat::kRgb8;
   if (*name == "rgba") return ColorFormat::kRgba8;
-  throw Refusal{{ErrorCode::kInvalidInput, "color", "is " + *name + ", wanted rgb, rgba or None"}};
+  throw Refusal{
+      {ErrorCode::kInvalidInput, "color", "is " + *name + ", expected rgb, rgba or None"}};
 }
 
 RenderBackend backendOf(const std::string& name) {
@@ -26,7 +27,7 @@ RenderBackend backendOf(const std::string& name) {
   if (name == "gl") return RenderBackend::kGl;
   if (name == "cuda") return RenderBackend::kCuda;
   throw Refusal{
-      {ErrorCode::kInvalidInput, "backend", "is " + name + ", wanted auto, soft, gl or cuda"}};
+      {ErrorCode::kInvalidInput, "backend", "is " + name + ", expected auto, soft, gl or cuda"}};
 }
 
 /// The keywords of Renderer, with their defaults.
@@ -84,7 +85,7 @@ void bindDeviceArray(py::module_& module) {
   type.attr("__module__") = "galactic";
   type.doc() =
       "Images in the memory of a CUDA device, for from_dlpack() of an array library: no copy.\n\n"
-      "They stay as they are until the renderer draws again; what uses them has to be enqueued\n"
+      "They stay as they are until the renderer draws again; what uses them must be enqueued\n"
       "before that, on the stream that was named to it or one that this stream waits for.";
 }
 

@@ -116,15 +116,15 @@ TEST_F(BakeCli, RefusesAConfigFileThatIsNone) {
            {"radii = [0.05]\n[a]\nradii = [0.1]\n",
             "bake.toml:2: a: is a table or a list of lists"},
            {"\nspacin = 0.04\n",
-            "galactic-bake: bake.toml:2: spacin: is no option; did you mean 'spacing'?\n"},
+            "galactic-bake: bake.toml:2: spacin: is not an option; did you mean 'spacing'?\n"},
            {"radii = [[[0.05]]]\n", "bake.toml:1: radii: is a table or a list of lists"},
            {"radii = [0.05]\nradii = [0.1]\n", "bake.toml:2: it is not TOML: "},
            {"version = true\n", "bake.toml:1: version: belongs on the command line"},
            {"spacing = nan\n",
-            "galactic-bake: bake.toml:1: spacing: found nan, wanted a number above 0"},
+            "galactic-bake: bake.toml:1: spacing: found nan, expected a number above 0"},
            {"threads = -1\n",
-            "galactic-bake: bake.toml:1: threads: found -1, wanted a whole number"},
-           {"keep-components = 1.5\n", "keep-components: found 1.5, wanted a whole number"}}) {
+            "galactic-bake: bake.toml:1: threads: found -1, expected a whole number"},
+           {"keep-components = 1.5\n", "keep-components: found 1.5, expected a whole number"}}) {
     write("bake.toml", fault.text);
     const ProgramRun bake = run({"room.obj", "--config", "bake.toml"});
     EXPECT_EQ(bake.exit_code, 1) << fault.text;
@@ -208,9 +208,9 @@ TEST_F(BakeCli, ExplainsEveryRefusal) {
       {{"room.obj", "--radi", "0.1"}, 1, "--radi; did you mean '--radii'?; see --help"},
       {{"room.obj", "--radii", "0.1,,0.2"}, 1, "--radii: has \"\" in \"0.1,,0.2\""},
       {{"room.obj", "--radii", "0.05,x"}, 1, "--radii: has \"x\" in \"0.05,x\""},
-      {{"room.obj", "--inside", "1,2"}, 1, "--inside: has 2 numbers in \"1,2\", 3 are wanted"},
+      {{"room.obj", "--inside", "1,2"}, 1, "--inside: has 2 numbers in \"1,2\", expected 3"},
       {{"room.obj", "--up", "w"}, 1, "--up: is \"w\""},
-      {{"room.obj", "--scale", "-1"}, 1, "--scale: found -1, wanted a number above 0"},
+      {{"room.obj", "--scale", "-1"}, 1, "--scale: found -1, expected a number above 0"},
       {{"room.obj", "--transform", "1,2,3"}, 1, "--transform: has 3 numbers, 12"},
       {{"room.obj", "--engine", "magic"}, 1, "--engine"},
       {{"room.obj", "--threads", "4097"}, 1, "--threads"},
@@ -219,7 +219,7 @@ TEST_F(BakeCli, ExplainsEveryRefusal) {
       {{"room.obj", "-o", "/dev/null"}, 2, "a device or pipe of this name is there"},
       {{"room.obj", "--radii", "0.01"}, 3, "--radii: radius 0.01 m is under half the spacing"},
       {{"room.obj", "--radii", "0.12,0.05"}, 3, "in ascending order"},
-      {{"room.obj", "--spacing", "0"}, 1, "--spacing: found 0, wanted a number above 0"},
+      {{"room.obj", "--spacing", "0"}, 1, "--spacing: found 0, expected a number above 0"},
       {{"room.obj", "--coverage", "cell", "--engine", "embree"}, 3, "--coverage: cell works with"},
       {{"room.obj", "--inside", "9,9,9"}, 3, "is outside the scene"},
       {{"room.obj", "-o", "no/such/folder/room.pack"}, 2, "cannot write the file"},

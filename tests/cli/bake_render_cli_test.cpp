@@ -90,7 +90,7 @@ TEST_F(BakeRenderCli, RefusesLightingThatIsNone) {
 TEST_F(BakeRenderCli, RefusesErrorsAndSizesThatAreNone) {
   write("brick.obj", test::objFile(test::unevenBox()));
   const std::vector<std::pair<std::vector<std::string>, std::string>> refused{
-      {{"--render-error", "-1"}, "--render-error: found -1, wanted a number from 0 to 10000"},
+      {{"--render-error", "-1"}, "--render-error: found -1, expected a number from 0 to 10000"},
       {{"--render-error", "big"}, "--render-error"},
       {{"--texture-size", "300"}, "--texture-size"},
       {{"--texture-format", "png"}, "--texture-format"}};

@@ -194,11 +194,11 @@ TEST_F(EpisodeCli, ExplainsEveryRefusal) {
   const std::string set = "tidy.episode_set.json";
   const std::vector<Refusal> refusals{
       {{set}, 3, "has 2 positions for 7 start joints; name the joint of each"},
-      {{set, "--only", "bad.txt"}, 3, "bad.txt:2: has \"one\", indices of episodes are wanted"},
+      {{set, "--only", "bad.txt"}, 3, "bad.txt:2: has \"one\", expected indices of episodes"},
       {{set, "--only", "none.txt"}, 2, "none.txt"},
       {{set, "--only", "bad.txt", "-o", "bad.txt"}, 3, "is also an input"},
       {{set, "-o", set}, 3, "is also an input"},
-      {{set, "--scene-name", "a_room"}, 1, "--scene-name: is \"a_room\", OLD=NEW is wanted"},
+      {{set, "--scene-name", "a_room"}, 1, "--scene-name: is \"a_room\", expected OLD=NEW"},
       {{set, "--scene-name", "a=b", "--scene-name", "a=c"}, 1, "names a twice"},
       {{set, "--object-up", "w"}, 1, "--object-up: is \"w\", one of x, y, z"},
       {{set, "--count", "5"}, 1, "--count: does not go with --as episodes of published episodes"},

@@ -255,13 +255,13 @@ TEST_F(PlanFaults, RefusesRecipesThatDoNotFit) {
       {{"twice.toml"}, 3, "would be scenes/apartment.pack, as "},
       {{"far.toml"}, 2, "far.toml:1: none/*.glb: fits no file in "},
       {{"option.toml"}, 3, "option.toml:5: spacing: does not go with --as object"},
-      {{"value.toml"}, 3, "value.toml:3: spacing: found wide, wanted a number above 0"},
+      {{"value.toml"}, 3, "value.toml:3: spacing: found wide, expected a number above 0"},
       {{"robots.toml"}, 3, "robots.toml:3: [robot] names "},
       {{"lost.toml"}, 2, "lost.toml:5: recipe: none.toml fits no file in "},
       {{"none.toml"}, 2, "none.toml"},
       {{"task.toml"},
        3,
-       "task.toml:5: task.episode-steps = -1: wanted a whole number from 0 to 1073741824"},
+       "task.toml:5: task.episode-steps: found -1, expected a whole number from 0 to 1073741824"},
       {{"mesh.toml"}, 2, "mesh.toml:4: geometry: none.glb fits no file in "},
       {{"pack.toml"}, 2, "pack.toml:5: object-pack: none.pack fits no file in "},
   };
@@ -275,7 +275,7 @@ TEST_F(PlanFaults, RefusesRecipesThatDoNotFit) {
 
 TEST_F(PlanFaults, RefusesWrongOptions) {
   const std::vector<Refusal> refusals{
-      {{"--shard", "0/2"}, 1, "--shard: is \"0/2\", I/N is wanted with I from 1 to N"},
+      {{"--shard", "0/2"}, 1, "--shard: is \"0/2\", expected I/N with I from 1 to N"},
       {{"--shard", "3/2"}, 1, "--shard: is \"3/2\""},
       {{"--shard", "1"}, 1, "--shard: is \"1\""},
       {{"--shard", "1/2x"}, 1, "--shard: is \"1/2x\""},

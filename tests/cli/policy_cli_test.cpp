@@ -191,14 +191,16 @@ TEST_F(PolicyCli, SaysWhatDoesNotFit) {
        3,
        "reads 3 numbers of the observation \"joints\", and the simulation has 4"},
       {{"--policy", "nose.pack", "--backend", "soft"}, 3, "found no link nose in helper"},
-      {{"--policy", "world.pack"}, 3, "is a pack of kind WRLD, wanted a policy (PLCY)"},
+      {{"--policy", "world.pack"}, 3, "is a pack of kind WRLD, expected a policy (PLCY)"},
       {{"--policy", "text.pack"}, 3, "has 14 bytes, a pack has at least 64"},
       {{"--policy", "none.pack"}, 2, "none.pack"},
       {{"--deterministic"},
        1,
        "--deterministic applies to learned policies only; add --policy FILE.pack"},
       {{"--policy", "random", "--backend", "soft"}, 1, "applies to rendering only; add --render"},
-      {{"--policy", "learned"}, 1, "wanted random, forward, zero, scripted, FILE.pack or replay"}};
+      {{"--policy", "learned"},
+       1,
+       "expected random, forward, zero, scripted, FILE.pack or replay"}};
   for (const Refusal& refusal : refusals) {
     const ProgramRun result = run(refusal.arguments);
     EXPECT_EQ(result.exit_code, refusal.exit_code) << refusal.message << "\n" << result.err;

@@ -55,7 +55,7 @@ class ReportCheck : public test::BakeFolder {
 TEST_F(ReportCheck, AgreesWithTheReportOfTheSameBake) {
   const ProgramRun same = bake({"--check", "golden.json"});
   EXPECT_EQ(same.exit_code, 0) << same.out;
-  EXPECT_THAT(same.out, HasSubstr("golden.json: as wanted in "));
+  EXPECT_THAT(same.out, HasSubstr("golden.json: as expected in "));
   const ProgramRun quiet = bake({"--check", "golden.json", "-q"});
   EXPECT_EQ(quiet.exit_code, 0);
   EXPECT_THAT(quiet.out, IsEmpty());
@@ -63,26 +63,26 @@ TEST_F(ReportCheck, AgreesWithTheReportOfTheSameBake) {
 
 TEST_F(ReportCheck, TellsEachDifference) {
   expectDifference([](json& g) { g["baked"][0]["episodes"] = 3; },
-                   "baked[0].episodes: 2, wanted 3");
+                   "baked[0].episodes: 2, expected 3");
   expectDifference([](json& g) { g["baked"][0]["name"] = "other"; },
-                   "baked[0].name: \"tidy\", wanted \"other\"");
+                   "baked[0].name: \"tidy\", expected \"other\"");
   expectDifference([](json& g) { g["baked"][0]["scenes"][1] = "attic"; },
-                   "baked[0].scenes[1]: \"b_room\", wanted \"attic\"");
+                   "baked[0].scenes[1]: \"b_room\", expected \"attic\"");
   expectDifference([](json& g) { g["baked"][0]["scenes"].push_back("attic"); },
-                   "baked[0].scenes: 2 elements, wanted 3");
+                   "baked[0].scenes: 2 elements, expected 3");
   expectDifference([](json& g) { g["baked"][0].erase("robot"); },
-                   "baked[0].robot: \"\", wanted nothing");
+                   "baked[0].robot: \"\", expected nothing");
   expectDifference([](json& g) { g["baked"][0]["color"] = 1; },
-                   "baked[0].color: nothing, wanted 1");
+                   "baked[0].color: nothing, expected 1");
   expectDifference([](json& g) { g["baked"][0]["pack_bytes"] = "many"; },
                    "baked[0].pack_bytes: " +
                        json::parse(content("golden.json"))["baked"][0]["pack_bytes"].dump() +
-                       ", wanted \"many\"");
+                       ", expected \"many\"");
   expectDifference(
       [](json& g) {
         g["failed"].push_back({{"code", 3}});
       },
-      "failed: 0 elements, wanted 1");
+      "failed: 0 elements, expected 1");
 }
 
 TEST_F(ReportCheck, IgnoresTimesPathsAndVersion) {
@@ -156,7 +156,7 @@ TEST_F(ReportCheck, TakesErrorsForUpperBounds) {
   const ProgramRun worse = run_with("--check", "fewer.json");
   EXPECT_EQ(worse.exit_code, kExitDiffers);
   EXPECT_THAT(worse.out, HasSubstr("cast_check.errors: "));
-  EXPECT_THAT(worse.out, HasSubstr("wanted at most "));
+  EXPECT_THAT(worse.out, HasSubstr("expected at most "));
 }
 
 TEST_F(ReportCheck, KeepsTheExitCodeOfABakeThatFails) {
@@ -164,7 +164,7 @@ TEST_F(ReportCheck, KeepsTheExitCodeOfABakeThatFails) {
   const ProgramRun run = bake(
       {"broken.episode_set.json", "--keep-going", "-o", "packs", "--check", "golden.json", "-q"});
   EXPECT_EQ(run.exit_code, 3);
-  EXPECT_THAT(run.out, HasSubstr("failed: 1 elements, wanted 0"));
+  EXPECT_THAT(run.out, HasSubstr("failed: 1 elements, expected 0"));
 }
 
 TEST_F(ReportCheck, ExplainsEveryRefusal) {
@@ -177,8 +177,8 @@ TEST_F(ReportCheck, ExplainsEveryRefusal) {
   write("number.json", golden.dump());
   const std::vector<test::Refusal> refusals{
       {{"--check", "none.json"}, 2, "none.json: cannot "},
-      {{"--check", "text.json"}, 3, "text.json: is no report of galactic-bake"},
-      {{"--check", "other.json"}, 3, "other.json: is no report of galactic-bake"},
+      {{"--check", "text.json"}, 3, "text.json: is not a report of galactic-bake"},
+      {{"--check", "other.json"}, 3, "other.json: is not a report of galactic-bake"},
       {{"--check", "negative.json"},
        3,
        "negative.json: tolerances.episodes: is neither a share of 0 or more"},

@@ -263,7 +263,7 @@ TEST_F(RobotCli, ExplainsEveryRefusal) {
        1,
        "--spacing: does not go with --as robot; leave it out"},
       {{"arm.urdf", "--scale", "0.001"}, 1, "--scale: does not go with --as robot; leave it out"},
-      {{"arm.urdf", "--package", "parts"}, 1, "--package: is \"parts\", NAME=DIR is wanted"},
+      {{"arm.urdf", "--package", "parts"}, 1, "--package: is \"parts\", expected NAME=DIR"},
       {{"arm.urdf", "--package", "p=a", "--package", "p=b"}, 1, "--package: names p twice"},
       {{"arm.urdf", "--as", "scene", "--recipe", "arm.toml"},
        1,

@@ -172,7 +172,7 @@ TEST_F(SimulateCli, RefusesAWorldWhoseTaskIsNone) {
     const ProgramRun refused = run({"--envs", "1", "--steps", "1", trust});
     EXPECT_EQ(refused.exit_code, 3);
     EXPECT_THAT(refused.err,
-                HasSubstr("world.pack: world.task[0].value: is \"many\", wanted 0 to"));
+                HasSubstr("world.pack: world.task[0].value: is \"many\", expected 0 to"));
   }
 }
 

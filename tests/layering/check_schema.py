@@ -48,7 +48,7 @@ def losses(released: dict, today: dict) -> list[str]:
             wanted = member_name(member)
             actual = member_name(present[place]) if place < len(present) else "nothing"
             if actual != wanted:
-                offences.append(f"{kind} {name} has {actual} where {wanted} was; new members go to "
+                offences.append(f"{kind} {name} has {actual} where {wanted} was expected; new members go to "
                                 "the end, unused ones are marked deprecated")
                 break
     return offences

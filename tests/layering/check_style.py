@@ -54,7 +54,7 @@ def check_file(root: pathlib.Path, path: pathlib.Path, words: re.Pattern) -> lis
     lines = (root / path).read_text(encoding="utf-8", errors="replace").splitlines()
     offences = check_lines(pathlib.PurePosixPath(path), lines, words)
     if path.suffix in CODE and len(lines) > MAX_LINES:
-        offences.append(f"{path}: {len(lines)} lines, at most {MAX_LINES} are wanted (450 is good); "
+        offences.append(f"{path}: {len(lines)} lines, expected at most {MAX_LINES} (450 is good); "
                         "split it by concern")
     return offences
 

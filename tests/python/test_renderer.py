@@ -116,8 +116,8 @@ def test_two_threads_cannot_use_one_renderer_at_once(world):
     [
         ({"widht": 3}, TypeError, "there is no option widht; the options are width"),
         ({"width": 0}, Error, "found images of 0 x 20 pixels"),
-        ({"color": "bgr"}, Error, "color: is bgr, wanted rgb, rgba or None"),
-        ({"backend": "vulkan"}, Error, "backend: is vulkan, wanted auto, soft, gl or cuda"),
+        ({"color": "bgr"}, Error, "color: is bgr, expected rgb, rgba or None"),
+        ({"backend": "vulkan"}, Error, "backend: is vulkan, expected auto, soft, gl or cuda"),
         ({"color": None, "depth": False}, Error, "found no image to make"),
         ({"camera": "tail"}, Error, "camera: found no link tail in helper"),
     ],
@@ -141,7 +141,7 @@ def test_wrong_simulators_and_uses_are_refused(world, simulator):
         renderer.render(envs=[ENVS])
     with pytest.raises(ValueError, match="out has 'semantics', which this renderer does not draw"):
         renderer.render(out={"semantics": np.zeros((ENVS, 20, 32), np.uint32)})
-    with pytest.raises(TypeError, match="depth is a list, wanted a numpy array"):
+    with pytest.raises(TypeError, match="depth is a list, expected a numpy array"):
         renderer.render(out={"depth": [0]})
     frozen = np.zeros((ENVS, 20, 32), np.float32)
     frozen.flags.writeable = False

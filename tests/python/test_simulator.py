@@ -138,12 +138,12 @@ def test_actions_are_converted_unless_they_fit_already(world, draw_actions):
 @pytest.mark.parametrize(
     "actions, error, message",
     [
-        (np.zeros((ENVS, 7), np.float32), ValueError, "has the shape (20, 7), wanted (20, 8)"),
-        (np.zeros(ENVS * 8, np.float32), ValueError, "has the shape (160,), wanted (20, 8)"),
+        (np.zeros((ENVS, 7), np.float32), ValueError, "has the shape (20, 7), expected (20, 8)"),
+        (np.zeros(ENVS * 8, np.float32), ValueError, "has the shape (160,), expected (20, 8)"),
         (np.zeros((ENVS, 8, 1), np.float32), ValueError, "has the shape (20, 8, 1)"),
         ("drive", (TypeError, ValueError), "actions"),
         (None, (TypeError, ValueError), "actions"),
-        (object(), TypeError, "actions is a object, wanted an array of numbers"),
+        (object(), TypeError, "actions is a object, expected an array of numbers"),
     ],
 )
 def test_wrong_actions_are_refused(simulator, actions, error, message):
@@ -200,17 +200,17 @@ def test_options_are_those_of_the_option_table(world):
         ({"tusk": "pick"}, TypeError, "there is no option tusk; did you mean task?"),
         ({"no_distractor": True}, TypeError, "did you mean no_distractors?"),
         ({"xyzzy": 1}, TypeError, "there is no option xyzzy; the options are envs"),
-        ({"task": "fly"}, Error, "task: is fly, wanted rearrange, pick or none"),
-        ({"envs": 0}, Error, "envs: is 0, wanted 1 to 1048576"),
-        ({"envs": -1}, Error, "envs: is -1, wanted 1 to 1048576"),
-        ({"envs": 2.5}, Error, "envs: is 2.5, wanted 1 to 1048576"),
-        ({"safe_drop": 1}, Error, "safe_drop: is 1, wanted true or false"),
-        ({"slide_step": float("nan")}, Error, "slide_step: is nan, wanted 0 to 1000"),
-        ({"slide_step": float("inf")}, Error, "slide_step: is inf, wanted 0 to 1000"),
+        ({"task": "fly"}, Error, "task: is fly, expected rearrange, pick or none"),
+        ({"envs": 0}, Error, "envs: is 0, expected 1 to 1048576"),
+        ({"envs": -1}, Error, "envs: is -1, expected 1 to 1048576"),
+        ({"envs": 2.5}, Error, "envs: is 2.5, expected 1 to 1048576"),
+        ({"safe_drop": 1}, Error, "safe_drop: is 1, expected true or false"),
+        ({"slide_step": float("nan")}, Error, "slide_step: is nan, expected 0 to 1000"),
+        ({"slide_step": float("inf")}, Error, "slide_step: is inf, expected 0 to 1000"),
         ({"slide_step": [1]}, TypeError, "the option slide_step is a list"),
-        ({"threads": -1}, Error, "threads: is -1, wanted 0 to 4096"),
+        ({"threads": -1}, Error, "threads: is -1, expected 0 to 4096"),
         ({"rank": 2, "ranks": 2}, Error, "rank 2 of 2"),
-        ({"slide": "of"}, Error, "slide: is of, wanted glide, published or off"),
+        ({"slide": "of"}, Error, "slide: is of, expected glide, published or off"),
     ],
 )
 def test_wrong_options_are_refused(world, options, error, message):

@@ -49,9 +49,9 @@ def test_bytes_that_are_no_state_are_refused_and_change_nothing(world, draw_acti
         assert caught.value.where == "saved state"
         assert caught.value.code in (ErrorCode.INVALID_INPUT, ErrorCode.UNSUPPORTED)
         assert simulator.save_state() == saved
-    with pytest.raises(Error, match="has 4 envs, wanted 5"):
+    with pytest.raises(Error, match="has 4 envs, expected 5"):
         Simulator(world, envs=5, threads=1).restore_state(saved)
-    with pytest.raises(Error, match="wanted success-distance=0.2"):
+    with pytest.raises(Error, match="expected success-distance=0.2"):
         Simulator(world, envs=4, threads=1, success_distance=0.2).restore_state(saved)
     simulator.restore_state(bytearray(saved))
     simulator.restore_state(np.frombuffer(saved, np.uint8))

@@ -39,17 +39,17 @@ void warnOfSpheres(const SphereSet& set, const SphereSetOptions& options,
   const bool covered = set.guaranteed_gap <= kSlack * static_cast<double>(options.eps);
   if (covered && set.quality.thin_points > 0) {
     warnings.push_back(
-        fmt::format("has thin parts: spheres that cover them stick out up to {:.1f} mm, {:.1f} mm "
-                    "are wanted; a "
-                    "smaller radius in `radii` does better",
+        fmt::format("has thin parts: spheres that cover them stick out up to {:.1f} mm, expected "
+                    "{:.1f} mm; a smaller radius in `radii` does better",
                     1000 * set.guaranteed_protrusion, 1000 * options.tau));
     return;
   }
-  warnings.push_back(fmt::format(
-      "{} spheres leave a gap of up to {:.1f} mm and stick out up to {:.1f} mm, wanted {:.1f} and "
-      "{:.1f} mm; allow more with `max-spheres` or wider tolerances",
-      set.spheres.size(), 1000 * set.guaranteed_gap, 1000 * set.guaranteed_protrusion,
-      1000 * options.eps, 1000 * options.tau));
+  warnings.push_back(
+      fmt::format("{} spheres leave a gap of up to {:.1f} mm and stick out up to {:.1f} mm, "
+                  "expected {:.1f} and "
+                  "{:.1f} mm; allow more with `max-spheres` or wider tolerances",
+                  set.spheres.size(), 1000 * set.guaranteed_gap, 1000 * set.guaranteed_protrusion,
+                  1000 * options.eps, 1000 * options.tau));
 }
 
 /// A published box that differs more from the mesh's stands in another frame, or is another

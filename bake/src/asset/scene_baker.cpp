@@ -24,11 +24,11 @@ Result<void> checkRadii(const std::vector<float>& radii) {
     return fail(ErrorCode::kInvalidInput, "radii", std::move(message));
   };
   if (radii.empty() || radii.size() > kMaxRadii) {
-    return invalid(fmt::format("has {} radii, 1 to {} are wanted", radii.size(), kMaxRadii));
+    return invalid(fmt::format("has {} radii, expected 1 to {}", radii.size(), kMaxRadii));
   }
   for (std::size_t i = 0; i < radii.size(); ++i) {
     if (!std::isfinite(radii[i]) || radii[i] <= 0) {
-      return invalid(fmt::format("has the radius {} m, a positive length is wanted", radii[i]));
+      return invalid(fmt::format("has the radius {} m, expected a positive length", radii[i]));
     }
     if (i > 0 && !(radii[i] > radii[i - 1])) {
       return invalid(fmt::format("has {} m after {} m; list each radius once, in ascending order",

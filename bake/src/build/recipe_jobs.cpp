@@ -86,7 +86,7 @@ class RecipeJobs {
     if (auto read = readOptions(assets, "`as` robot", job); !read) return read;
     if (inputs.size() != 1) {
       return fail(ErrorCode::kInvalidInput, assets.place,
-                  fmt::format("[robot] names {} files, one URDF is wanted", inputs.size()));
+                  fmt::format("[robot] names {} files, expected one URDF", inputs.size()));
     }
     job.input = inputs.front();
     packs_.add("robot", job, job.input);
@@ -106,7 +106,7 @@ class RecipeJobs {
     if (auto read = readOptions(assets, "imported episodes", job); !read) return read;
     if (inputs.size() != 1) {
       return fail(ErrorCode::kInvalidInput, assets.place,
-                  fmt::format("[episodes] names {} files, one is wanted", inputs.size()));
+                  fmt::format("[episodes] names {} files, expected one", inputs.size()));
     }
     job.input = inputs.front();
     packs_.setEpisodes(std::move(job));

@@ -39,7 +39,7 @@ Bounds sceneBounds(const GridFrame& frame) {
 Result<GridFrame> makeGridFrame(const Bounds& bounds, float radius, float spacing) {
   if (!(spacing >= kLeastSpacing) || !std::isfinite(spacing)) {
     return fail(ErrorCode::kInvalidInput, "spacing",
-                fmt::format("is {} m, it has to be at least {} m", spacing, kLeastSpacing));
+                fmt::format("is {} m, expected at least {} m", spacing, kLeastSpacing));
   }
   if (!std::isfinite(radius) || !(radius >= spacing / 2)) {
     return fail(ErrorCode::kInvalidInput, "radii",

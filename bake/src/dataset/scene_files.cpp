@@ -126,8 +126,9 @@ Result<std::vector<SceneFile>> findSceneFiles(const fs::path& folder) {
                 fmt::format("the folder cannot be read: {}", error.message()));
   }
   if (found.empty()) {
-    return fail(ErrorCode::kInvalidInput, folder.string(),
-                "there is no scene in it; wanted SCENE/SCENE.glb, or *.glb, *.ply or *.obj files");
+    return fail(
+        ErrorCode::kInvalidInput, folder.string(),
+        "there is no scene in it; expected SCENE/SCENE.glb, or *.glb, *.ply or *.obj files");
   }
   std::vector<Candidate> candidates;
   candidates.reserve(found.size());

@@ -60,7 +60,7 @@ Result<void> checkMainFile(const fs::path& path) {
   }
   if (!hasReader(path)) {
     return fail(ErrorCode::kUnsupported, path.string(),
-                fmt::format("no reader knows the extension '{}'; wanted one of {}",
+                fmt::format("no reader knows the extension '{}'; expected one of {}",
                             path.extension().string(), readableExtensions()));
   }
   if (fs::file_size(path, error) == 0) {

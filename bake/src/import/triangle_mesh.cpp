@@ -145,7 +145,7 @@ Result<TriangleMesh> Placement::run() {
     }
   }
   if (triangles == 0) {
-    return fail(ErrorCode::kInvalidInput, asset_.name, "it has no triangles; wanted a surface");
+    return fail(ErrorCode::kInvalidInput, asset_.name, "it has no triangles; expected a surface");
   }
   mesh_.triangles.reserve(triangles);
   mesh_.vertices.reserve(std::min(vertices, 3 * triangles));

@@ -65,8 +65,8 @@ class Gunzip {
   template <class Take>
   Result<void> member(const Take& take) {
     if (!isGzip(in_)) {
-      return invalid(
-          fmt::format("has {} bytes behind its gzip data that are none; is it whole?", in_.size()));
+      return invalid(fmt::format("has {} bytes after its gzip data that are not gzip; is it whole?",
+                                 in_.size()));
     }
     inflateReset(&inflater_.stream());
     while (true) {

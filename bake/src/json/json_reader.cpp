@@ -77,7 +77,7 @@ JsonNode JsonReader::require(const JsonNode& object, const char* key) {
 std::vector<JsonNode> JsonReader::elements(const JsonNode& list) {
   std::vector<JsonNode> nodes;
   if (list.json == nullptr) return nodes;
-  if (!list.json->is_array()) error(list.place, "it has to be a list");
+  if (!list.json->is_array()) error(list.place, "expected a list");
   if (error_) return nodes;
   nodes.reserve(list.json->size());
   for (std::size_t i = 0; i < list.json->size(); ++i) {
@@ -88,32 +88,32 @@ std::vector<JsonNode> JsonReader::elements(const JsonNode& list) {
 
 std::string JsonReader::text(const JsonNode& node) {
   if (node.json != nullptr && node.json->is_string()) return node.json->get<std::string>();
-  if (node.json != nullptr) error(node.place, "it has to be a string");
+  if (node.json != nullptr) error(node.place, "expected a string");
   return {};
 }
 
 bool JsonReader::flag(const JsonNode& node) {
   if (node.json != nullptr && node.json->is_boolean()) return node.json->get<bool>();
-  if (node.json != nullptr) error(node.place, "it has to be true or false");
+  if (node.json != nullptr) error(node.place, "expected true or false");
   return false;
 }
 
 double JsonReader::number(const JsonNode& node, double min, double max) {
   if (node.json == nullptr) return 0;
   if (!node.json->is_number()) {
-    error(node.place, "it has to be a number");
+    error(node.place, "expected a number");
     return 0;
   }
   const double value = node.json->get<double>();
   if (value >= min && value <= max) return value;
-  error(node.place, fmt::format("{}: wanted {} to {}", value, min, max));
+  error(node.place, fmt::format("found {}, expected {} to {}", value, min, max));
   return 0;
 }
 
 std::int64_t JsonReader::whole(const JsonNode& node, std::int64_t min, std::int64_t max) {
   if (node.json == nullptr) return 0;
   if (!node.json->is_number_integer()) {
-    error(node.place, "it has to be a whole number");
+    error(node.place, "expected a whole number");
     return 0;
   }
   // Above the range of signed numbers the value would wrap around.
@@ -121,16 +121,16 @@ std::int64_t JsonReader::whole(const JsonNode& node, std::int64_t min, std::int6
                     node.json->get<std::uint64_t>() > static_cast<std::uint64_t>(INT64_MAX);
   const std::int64_t value = huge ? INT64_MAX : node.json->get<std::int64_t>();
   if (value >= min && value <= max) return value;
-  error(node.place, fmt::format("{}: wanted {} to {}", node.json->dump(), min, max));
+  error(node.place, fmt::format("found {}, expected {} to {}", node.json->dump(), min, max));
   return 0;
 }
 
 void JsonReader::numbers(const JsonNode& node, double farthest, std::span<double> values) {
   if (node.json == nullptr || error_) return;
-  if (!node.json->is_array()) return error(node.place, "it has to be a list");
+  if (!node.json->is_array()) return error(node.place, "expected a list");
   if (node.json->size() != values.size()) {
     return error(node.place,
-                 fmt::format("it has {} numbers, wanted {}", node.json->size(), values.size()));
+                 fmt::format("it has {} numbers, expected {}", node.json->size(), values.size()));
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
     const Json& element = (*node.json)[i];

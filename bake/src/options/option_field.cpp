@@ -40,7 +40,7 @@ std::string textOf(const GivenValue& value) {
 }
 
 std::string found(std::string_view shown, std::string_view wanted) {
-  return fmt::format("found {}, wanted {}", shown, wanted);
+  return fmt::format("found {}, expected {}", shown, wanted);
 }
 
 /// Numbers, or why they are none.
@@ -63,10 +63,10 @@ void readText(std::string_view text, ReadNumbers& numbers) {
     const std::optional<double> number = numberOf(part);
     if (!number || !std::isfinite(*number)) {
       numbers.fault =
-          fmt::format("has \"{}\" in \"{}\", numbers separated by commas are wanted", part, text);
+          fmt::format("has \"{}\" in \"{}\", expected numbers separated by commas", part, text);
     } else if (std::fabs(*number) > kMostNumber) {
-      numbers.fault = fmt::format("has \"{}\" in \"{}\", numbers up to {:g} are wanted", part, text,
-                                  kMostNumber);
+      numbers.fault =
+          fmt::format("has \"{}\" in \"{}\", expected numbers up to {:g}", part, text, kMostNumber);
     } else {
       numbers.values.push_back(*number);
     }
@@ -196,7 +196,7 @@ class TransformField final : public OptionField {
                               values[14] == 0 && values[15] == 1;
     if (values.size() != 12 && !has_last_row) {
       return fmt::format(
-          "has {} numbers, 12 (three rows of four) are wanted, or 16 whose last row is 0,0,0,1",
+          "has {} numbers, expected 12 (three rows of four), or 16 whose last row is 0,0,0,1",
           values.size());
     }
     field_.emplace();
@@ -224,7 +224,7 @@ class PointsField final : public OptionField {
       const auto [values, fault] = readNumbers(value);
       if (!fault.empty()) return fault;
       if (values.size() != 3) {
-        return fmt::format("has {} numbers in \"{}\", 3 are wanted", values.size(), textOf(value));
+        return fmt::format("has {} numbers in \"{}\", expected 3", values.size(), textOf(value));
       }
       field_.push_back({static_cast<float>(values[0]), static_cast<float>(values[1]),
                         static_cast<float>(values[2])});
@@ -254,7 +254,7 @@ class CountsField final : public OptionField {
              number <= static_cast<double>(range_.most);
     };
     if (values.size() > 2 || !std::all_of(values.begin(), values.end(), is_count)) {
-      return fmt::format("is \"{}\", a whole number from {} to {} or two of them are wanted",
+      return fmt::format("is \"{}\", expected a whole number from {} to {} or two of them",
                          textOf(given.front()), range_.least, range_.most);
     }
     field_ = {static_cast<std::uint32_t>(values.front()),
@@ -281,7 +281,7 @@ class DistancesField final : public OptionField {
     const auto [values, fault] = readNumbers(given.front());
     if (!fault.empty()) return fault;
     if (values.size() < fewest_ || values.size() > 2) {
-      return fmt::format("has {} numbers in \"{}\", {} are wanted", values.size(),
+      return fmt::format("has {} numbers in \"{}\", expected {}", values.size(),
                          textOf(given.front()), fewest_ == 2 ? "2" : "one or two");
     }
     field_ = {.least = static_cast<float>(values.front())};
@@ -331,7 +331,7 @@ class ChoiceField final : public OptionField {
     const std::string shown = textOf(given.front());
     const auto one = std::find(access_.names.begin(), access_.names.end(), shown);
     if (one == access_.names.end()) {
-      return fmt::format("is \"{}\", one of {} is wanted", shown, fmt::join(access_.names, ", "));
+      return fmt::format("is \"{}\", expected one of {}", shown, fmt::join(access_.names, ", "));
     }
     access_.set(static_cast<std::size_t>(one - access_.names.begin()));
     return {};
@@ -405,7 +405,7 @@ class TextsField final : public OptionField {
       for (std::size_t begin = 0; begin <= text.size();) {
         const std::size_t end = std::min(text.find(',', begin), text.size());
         if (end == begin) {
-          return fmt::format("has an empty name in \"{}\", names separated by commas are wanted",
+          return fmt::format("has an empty name in \"{}\", expected names separated by commas",
                              text);
         }
         field_.push_back(text.substr(begin, end - begin));
@@ -440,7 +440,7 @@ class NamedField final : public OptionField {
       const std::string pair = textOf(value);
       const std::size_t equals = value.name.empty() ? pair.find('=') : value.name.size();
       if (equals == std::string::npos || equals == 0 || equals + 1 >= pair.size()) {
-        return fmt::format("is \"{}\", {} is wanted", pair, form_);
+        return fmt::format("is \"{}\", expected {}", pair, form_);
       }
       const std::string name = pair.substr(0, equals);
       if (!field_.emplace(name, pair.substr(equals + 1)).second) {

@@ -27,7 +27,7 @@ std::string faultOf(const GivenOption& given, const OptionField& field) {
       field.kind() == OptionKind::kNamedText || field.kind() == OptionKind::kNamedPath;
   const auto has_name = [](const GivenValue& value) { return !value.name.empty(); };
   if (takes_names || std::none_of(given.values.begin(), given.values.end(), has_name)) return {};
-  return "is a table, a value or a list of values is wanted";
+  return "is a table, expected a value or a list of values";
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ Result<void> OptionReader::finish(std::string_view what,
     if (taken_.contains(one.name)) continue;
     if (std::ranges::find(known, one.name) == known.end()) {
       return fail(ErrorCode::kInvalidInput, one.place,
-                  "is no option; " + suggestNames(one.name, known));
+                  "is not an option; " + suggestNames(one.name, known));
     }
     return fail(ErrorCode::kInvalidInput, one.place,
                 fmt::format("does not go with {}; leave it out", what));

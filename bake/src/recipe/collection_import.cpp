@@ -94,9 +94,9 @@ double CollectionReader::readStep(const JsonNode& action) {
   const double max =
       max_node.json == nullptr ? 1 : json_.number(max_node, -kLargestStep, kLargestStep);
   if (max <= 0 || min != -max) {
-    json_.error(action.place,
-                fmt::format("its steps are {} to {}, but have to be -x to x, the same both ways",
-                            min, max));
+    json_.error(
+        action.place,
+        fmt::format("its steps are {} to {}, expected -x to x: the same both ways", min, max));
   }
   return max;
 }
@@ -110,7 +110,7 @@ void CollectionReader::readActions(const JsonNode& actions, CollectionRobot& rob
   if (rotate.json != nullptr) robot.turn_step = readStep(rotate);
   for (const JsonNode& joint : json_.elements(json_.member(actions, "joints"))) {
     const double dof = json_.number(json_.require(joint, "first"), 0, kMostDofs);
-    if (dof != std::floor(dof)) json_.error(joint.place, "its number is wanted whole");
+    if (dof != std::floor(dof)) json_.error(joint.place, "expected a whole number");
     robot.joints.push_back(
         {.dof = static_cast<std::uint32_t>(dof), .step = readStep(json_.require(joint, "second"))});
   }

@@ -110,7 +110,7 @@ class TaskReader {
   }
 
   void refuse(std::string_view name, const TomlValue& value, std::string_view wanted) {
-    errors_.at(value.line, fmt::format("{} = {}: wanted {}", table_.full(name),
+    errors_.at(value.line, fmt::format("{}: found {}, expected {}", table_.full(name),
                                        std::visit(ValueName{}, value.value), wanted));
   }
 

@@ -120,7 +120,7 @@ void RecipeReader::readLaser() {
   laser.least_range = table->number("min_range", {0, 1000, "m"}).value_or(laser.least_range);
   laser.noise = table->number("noise", {0, 10, "m"}).value_or(laser.noise);
   if (laser.range > 0 && laser.least_range >= laser.range) {
-    errors_.at(table->line(), "laser.min_range is wanted below laser.range");
+    errors_.at(table->line(), "laser.min_range must be below laser.range");
   }
   table->finish();
   recipe_.laser = std::move(laser);
@@ -138,7 +138,7 @@ void RecipeReader::readFootprint(RecipeTable& base) {
     const auto& [min_x, min_y, max_x, max_y] = *rectangle;
     if (min_x >= max_x || min_y >= max_y) {
       errors_.at(base.line(),
-                 "base.footprint_rectangle has to be [min x, min y, max x, max y] with each "
+                 "base.footprint_rectangle: expected [min x, min y, max x, max y] with each "
                  "min below its max");
     }
     recipe_.base.footprint =
@@ -165,7 +165,7 @@ void RecipeReader::readJoint(const TomlValue& entry, std::size_t index) {
   const std::string name = fmt::format("joints[{}]", index);
   const auto* content = std::get_if<TomlTable>(&entry.value);
   if (content == nullptr) {
-    errors_.at(entry.line, fmt::format("{} has to be a table, [[joints]]", name));
+    errors_.at(entry.line, fmt::format("{}: expected a table, [[joints]]", name));
     return;
   }
   RecipeTable table(*content, name, entry.line, errors_);
@@ -222,7 +222,7 @@ void RecipeReader::readVerbatim(RecipeTable& table, RecipeLinkSpheres& link) {
     const std::string what = fmt::format("{}[{}]", table.full("spheres"), i);
     const auto numbers = table.numbersOf<4>((*spheres)[i], what, kCoordinate);
     if (numbers[3] < kRadius.min || numbers[3] > kRadius.max) {
-      errors_.at((*spheres)[i].line, fmt::format("{} has the radius {}: wanted {} to {} m", what,
+      errors_.at((*spheres)[i].line, fmt::format("{} has the radius {}, expected {} to {} m", what,
                                                  numbers[3], kRadius.min, kRadius.max));
     }
     const auto center = transformed(kYUpFromZUp, std::array{numbers[0], numbers[1], numbers[2]});
@@ -238,7 +238,7 @@ void RecipeReader::readLinkSpheres(const std::string& link, const TomlValue& ent
   const std::string name = fmt::format("spheres.links.{}", link);
   const auto* content = std::get_if<TomlTable>(&entry.value);
   if (content == nullptr) {
-    errors_.at(entry.line, fmt::format("{} has to be a table, [{}]", name, name));
+    errors_.at(entry.line, fmt::format("{}: expected a table, [{}]", name, name));
     return;
   }
   RecipeTable table(*content, name, entry.line, errors_);
@@ -294,7 +294,7 @@ void RecipeReader::readIgnoredPairs() {
       const auto* pair = std::get_if<TomlArray>(&entry.value);
       const std::string what = "each entry of self_collision.ignore";
       if (pair == nullptr || pair->size() != 2) {
-        errors_.at(entry.line, what + " has to be a pair of links, [\"a\", \"b\"]");
+        errors_.at(entry.line, what + ": expected a pair of links, [\"a\", \"b\"]");
         continue;
       }
       recipe_.ignored_pairs.emplace_back(table->nameOf((*pair)[0], what),

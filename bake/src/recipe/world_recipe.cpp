@@ -48,7 +48,7 @@ class WorldRecipeReader {
       const auto* table = std::get_if<TomlTable>(&entry.value);
       if (table == nullptr) {
         return errors_.at(entry.line,
-                          fmt::format("{0} has to be an array of tables, [[{0}]]", name));
+                          fmt::format("{0}: expected an array of tables, [[{0}]]", name));
       }
       assets.push_back(readAssets(*table, entry.line));
       if (assets.back().inputs.empty()) {
@@ -89,7 +89,7 @@ class WorldRecipeReader {
       for (const TomlValue& value : *list) found.push_back(std::get<std::string>(value.value));
     } else {
       errors_.at(entry.value.line,
-                 fmt::format("{} has to be a string or a list of strings", entry.key));
+                 fmt::format("{}: expected a string or a list of strings", entry.key));
     }
     return found;
   }

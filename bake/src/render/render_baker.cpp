@@ -33,7 +33,7 @@ Result<void> checkSource(const RenderSource& source) {
                             source.materials.size()));
   }
   if (source.semantics.empty()) {
-    return fail(ErrorCode::kInvalidInput, "semantics", "there is no name; give at least one");
+    return fail(ErrorCode::kInvalidInput, "semantics", "is empty; give at least one name");
   }
   if (source.semantics.size() > kMostNumbers || source.materials.size() > kMostNumbers) {
     return fail(ErrorCode::kUnsupported, "materials",

@@ -46,8 +46,7 @@ Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
                                           const SphereSetOptions& options) {
   ASSIGN_OR_RETURN(const auto prepared, sphere_set::prepareFit(mesh, options));
   if (spheres.empty()) {
-    return fail(ErrorCode::kInvalidInput, "spheres",
-                "there are none to measure; give at least one sphere");
+    return fail(ErrorCode::kInvalidInput, "spheres", "is empty; give at least one sphere");
   }
   std::vector<Candidate> placed;
   for (std::size_t at = 0; at < spheres.size(); ++at) {

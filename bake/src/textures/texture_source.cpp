@@ -46,7 +46,7 @@ void openFile(TextureSource& source, const fs::path& path) {
     return;
   }
   if (!fs::is_regular_file(status)) {
-    source.fault = "is no file";
+    source.fault = "is not a file";
     return;
   }
   auto file = MappedFile::open(path);

@@ -80,7 +80,7 @@ Result<std::vector<GivenOption>> givenIn(const TomlTable& table, const std::stri
     auto values = valuesOf(entry.value);
     if (!values) {
       return fail(ErrorCode::kInvalidInput, one.place,
-                  "is a table or a list of lists, a value or a list of values is wanted");
+                  "is a table or a list of lists, expected a value or a list of values");
     }
     if (values->empty()) {
       return fail(ErrorCode::kInvalidInput, one.place,

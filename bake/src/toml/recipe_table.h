@@ -75,7 +75,7 @@ class RecipeTable {
     const TomlValue* value = find(key);
     if (value == nullptr) return std::nullopt;
     if (!std::holds_alternative<std::int64_t>(value->value)) {
-      errors_.at(value->line, fmt::format("{} has to be a whole number", full(key)));
+      errors_.at(value->line, fmt::format("{}: expected a whole number", full(key)));
       return std::nullopt;
     }
     const auto checked = numberOf(*value, key, range);
@@ -87,7 +87,7 @@ class RecipeTable {
     const TomlValue* value = find(key);
     if (value == nullptr) return false;
     if (const bool* truth = std::get_if<bool>(&value->value)) return *truth;
-    errors_.at(value->line, fmt::format("{} has to be true or false", full(key)));
+    errors_.at(value->line, fmt::format("{}: expected true or false", full(key)));
     return false;
   }
 
@@ -111,7 +111,7 @@ class RecipeTable {
     std::array<double, kCount> numbers{};
     const auto* array = std::get_if<TomlArray>(&value.value);
     if (array == nullptr || array->size() != kCount) {
-      errors_.at(value.line, fmt::format("{} has to be a list of {} numbers", what, kCount));
+      errors_.at(value.line, fmt::format("{}: expected a list of {} numbers", what, kCount));
       return numbers;
     }
     for (std::size_t i = 0; i < kCount; ++i) {
@@ -125,7 +125,7 @@ class RecipeTable {
     const TomlValue* value = find(key);
     if (value == nullptr) return nullptr;
     if (const auto* inner = std::get_if<TomlTable>(&value->value)) return inner;
-    errors_.at(value->line, fmt::format("{} has to be a table, [{}]", full(key), full(key)));
+    errors_.at(value->line, fmt::format("{}: expected a table, [{}]", full(key), full(key)));
     return nullptr;
   }
 
@@ -141,14 +141,14 @@ class RecipeTable {
     const TomlValue* value = find(key);
     if (value == nullptr) return nullptr;
     if (const auto* array = std::get_if<TomlArray>(&value->value)) return array;
-    errors_.at(value->line, fmt::format("{} has to be a list", full(key)));
+    errors_.at(value->line, fmt::format("{}: expected a list", full(key)));
     return nullptr;
   }
 
   RecipeName nameOf(const TomlValue& value, const std::string& what) {
     const auto* text = std::get_if<std::string>(&value.value);
     if (text == nullptr || text->empty()) {
-      errors_.at(value.line, fmt::format("{} has to be a name in quotes", what));
+      errors_.at(value.line, fmt::format("{}: expected a name in quotes", what));
       return {};
     }
     return {*text, errors_.place(value.line)};
@@ -199,16 +199,17 @@ class RecipeTable {
     } else if (const auto* integer = std::get_if<std::int64_t>(&value.value)) {
       number = static_cast<double>(*integer);
     } else {
-      errors_.at(value.line, fmt::format("{} has to be a number", what));
+      errors_.at(value.line, fmt::format("{}: expected a number", what));
       return std::nullopt;
     }
     const bool within = number >= range.min && number <= range.max;  // false for NaN
     if (within) return number;
     if (!std::isfinite(number)) {
-      errors_.at(value.line, fmt::format("{} = {}: a finite number is wanted", what, number));
+      errors_.at(value.line, fmt::format("{}: found {}, expected a finite number", what, number));
     } else {
-      errors_.at(value.line, fmt::format("{} = {}: wanted {} to {}{}{}", what, number, range.min,
-                                         range.max, range.unit.empty() ? "" : " ", range.unit));
+      errors_.at(value.line,
+                 fmt::format("{}: found {}, expected {} to {}{}{}", what, number, range.min,
+                             range.max, range.unit.empty() ? "" : " ", range.unit));
     }
     return std::nullopt;
   }

@@ -27,7 +27,7 @@ Result<void> checkSphere(const HandSphere& sphere, const std::string& place) {
     return {};
   }
   return fail(ErrorCode::kInvalidInput, place,
-              fmt::format("a sphere at ({} {} {}) of radius {}: wanted a finite center and a "
+              fmt::format("a sphere at ({} {} {}) of radius {}: expected a finite center and a "
                           "positive radius, in meters",
                           c[0], c[1], c[2], sphere.radius));
 }

@@ -77,7 +77,7 @@ Result<const TiXmlElement*> robotElement(TiXmlDocument& document, const std::str
   if (robot == nullptr) {
     const TiXmlElement* root = document.RootElement();
     return fail(ErrorCode::kInvalidInput, where,
-                fmt::format("its outermost element is {}, wanted <robot>",
+                fmt::format("its outermost element is {}, expected <robot>",
                             root == nullptr ? "missing" : fmt::format("<{}>", root->Value())));
   }
   for (const auto* e = robot->FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
@@ -318,7 +318,7 @@ Result<std::vector<LinkSpheres>> parseSrdf(const std::string& text, const std::s
       const auto radius = numbersOf(s->Attribute("radius"), 1);
       if (!center || !radius) {
         return fail(ErrorCode::kInvalidInput, fmt::format("{}:{}", where, s->Row()),
-                    fmt::format("a <sphere> of link '{}' is wanted with center=\"x y z\" and "
+                    fmt::format("a <sphere> of link '{}' needs center=\"x y z\" and "
                                 "radius=\"r\"",
                                 name));
       }

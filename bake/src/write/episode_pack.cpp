@@ -42,11 +42,11 @@ class EpisodeCheck {
   explicit EpisodeCheck(const SourceEpisodes& source) : source_(source) {}
 
   Result<void> run() {
-    require(!source_.name.empty(), "name", "is empty, wanted the episodes' name");
+    require(!source_.name.empty(), "name", "is empty, expected the episodes' name");
     checkAscending(source_.scenes, "scenes");
     checkAscending(source_.objects, "objects");
     checkJoints();
-    require(!source_.episodes.empty(), "episodes", "is empty, wanted at least one episode");
+    require(!source_.episodes.empty(), "episodes", "is empty, expected at least one episode");
     for (std::size_t n = 0; n < source_.placements.size() && result_; ++n) checkPlacement(n);
     std::size_t next = 0;
     for (std::size_t n = 0; n < source_.episodes.size() && result_; ++n) {
@@ -65,12 +65,12 @@ class EpisodeCheck {
   }
 
   void checkAscending(const std::vector<std::string>& names, const char* field) {
-    require(!names.empty(), field, "is empty, wanted at least one name");
+    require(!names.empty(), field, "is empty, expected at least one name");
     if (!result_) return;
-    require(!names.front().empty(), fmt::format("{}[0]", field), "is empty, wanted a name");
+    require(!names.front().empty(), fmt::format("{}[0]", field), "is empty, expected a name");
     for (std::size_t n = 1; n < names.size(); ++n) {
       require(names[n - 1] < names[n], fmt::format("{}[{}]", field, n),
-              "does not come after its predecessor, wanted ascending names");
+              "does not come after its predecessor, expected ascending names");
     }
   }
 
@@ -78,11 +78,11 @@ class EpisodeCheck {
     std::set<std::string_view> seen;
     for (const std::string& joint : source_.start_joints) {
       require(!joint.empty() && seen.insert(joint).second, "start_joints",
-              fmt::format("has '{}', wanted each joint's name once", joint));
+              fmt::format("has '{}', expected each joint's name once", joint));
     }
     const std::size_t wanted = source_.episodes.size() * source_.start_joints.size();
     require(source_.start_positions.size() == wanted, "start_positions",
-            fmt::format("has {} elements, wanted {}, one for each episode and joint",
+            fmt::format("has {} elements, expected {}, one for each episode and joint",
                         source_.start_positions.size(), wanted));
     const bool finite =
         std::all_of(source_.start_positions.begin(), source_.start_positions.end(), isAngle);
@@ -94,27 +94,27 @@ class EpisodeCheck {
     const Placement& placement = source_.placements[n];
     if (placement.object < source_.objects.size() && isRigid(placement.pose)) return;
     require(false, fmt::format("placements[{}]", n),
-            "wanted one of the objects within 800 m with a rotation of length 1");
+            "expected one of the objects within 800 m with a rotation of length 1");
   }
 
   void checkEpisode(std::size_t n, std::size_t next) {
     const Episode& episode = source_.episodes[n];
     const std::string where = fmt::format("episodes[{}]", n);
     require(episode.scene < source_.scenes.size(), where + ".scene",
-            fmt::format("is {}, wanted one of {} scenes", episode.scene, source_.scenes.size()));
+            fmt::format("is {}, expected one of {} scenes", episode.scene, source_.scenes.size()));
     require(episode.first_placement == next && episode.placement_count >= 1 &&
                 episode.placement_count <= source_.placements.size() - next,
             where + ".first_placement",
-            fmt::format("and count are {} and {}, wanted {} and 1 to {}", episode.first_placement,
+            fmt::format("and count are {} and {}, expected {} and 1 to {}", episode.first_placement,
                         episode.placement_count, next, source_.placements.size() - next));
-    require(
-        episode.target < episode.placement_count, where + ".target",
-        fmt::format("is {}, wanted one of {} placements", episode.target, episode.placement_count));
+    require(episode.target < episode.placement_count, where + ".target",
+            fmt::format("is {}, expected one of {} placements", episode.target,
+                        episode.placement_count));
     require(isPlace(episode.base_position) && isAngle(episode.base_yaw), where + ".base_position",
             fmt::format("is not within {} m, or the yaw not within {} rad", kMaxCoordinate,
                         kMostAngle));
     require(isRigid(episode.goal), where + ".goal",
-            "wanted a place within 800 m and a rotation of length 1");
+            "expected a place within 800 m and a rotation of length 1");
   }
 
   const SourceEpisodes& source_;

@@ -52,7 +52,7 @@ def whole(least: int, most: int) -> Callable[[str], int]:
     def parse(text: str) -> int:
         if not re.fullmatch(r"-?[0-9]{1,20}", text) or not least <= int(text) <= most:
             raise argparse.ArgumentTypeError(
-                f'found "{text}", wanted a whole number from {least} to {most}'
+                f'found "{text}", expected a whole number from {least} to {most}'
             )
         return int(text)
 

@@ -280,7 +280,7 @@ def _check(field: "dataclasses.Field[Any]", value: Any) -> None:
     if low is not None and high is not None and not low <= value <= high:
         is_whole = isinstance(field.default, int)
         wanted = f"from {low} to {high}" if is_whole else f"from {low:g} to {high:g}"
-        raise SettingsError(f"{field.name} is {value}; it has to be {wanted}")
+        raise SettingsError(f"{field.name}: found {value}, expected a number {wanted}")
 
 
 def _between(start: float, end: float, progress: float) -> float:
@@ -325,7 +325,7 @@ def _integer(text: str) -> int:
         return int(text)
     value = _real(text, "a whole number")
     if value != int(value):
-        raise argparse.ArgumentTypeError(f'found "{text}", wanted a whole number')
+        raise argparse.ArgumentTypeError(f'found "{text}", expected a whole number')
     return int(value)
 
 
@@ -338,7 +338,7 @@ def _real(text: str, wanted: str = "a number") -> float:
             value = math.nan
         if math.isfinite(value):
             return value
-    raise argparse.ArgumentTypeError(f'found "{text}", wanted {wanted}')
+    raise argparse.ArgumentTypeError(f'found "{text}", expected {wanted}')
 
 
 def resumed(before: Settings, given: Mapping[str, Any]) -> Settings:

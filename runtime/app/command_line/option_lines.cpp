@@ -43,7 +43,7 @@ Result<SimulationOptions> parseOptionLines(std::string_view lines, const std::st
                     ", which this version does not know; use the version that wrote it");
   }
   return fail(ErrorCode::kInvalidInput, where + ": options",
-              fmt::format("{} is \"{}\", wanted {}; the file is damaged", text.name, text.value,
+              fmt::format("{} is \"{}\", expected {}; the file is damaged", text.name, text.value,
                           fault->wanted));
 }
 

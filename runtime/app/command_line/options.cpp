@@ -47,7 +47,7 @@ CLI::Validator knownPolicy() {
         if (text.starts_with(prefix) && text.size() > prefix.size()) return std::string();
         if (text.ends_with(kPolicySuffix)) return std::string();
         return fmt::format(
-            "unknown policy {}, wanted random, forward, zero, scripted, FILE.pack or replay:FILE",
+            "unknown policy {}, expected random, forward, zero, scripted, FILE.pack or replay:FILE",
             text);
       },
       "", "policy");
@@ -199,7 +199,7 @@ std::string faultOf(const RunOptions& options) {
         options.steps, kept, TrackedRun::kMostSteps);
   }
   if (options.simulation.rank >= options.simulation.ranks) {
-    return fmt::format("--rank is {}, wanted a number below --ranks, which is {}",
+    return fmt::format("--rank is {}, expected a number below --ranks, which is {}",
                        options.simulation.rank, options.simulation.ranks);
   }
   return {};

@@ -38,7 +38,8 @@ void addSize(CLI::App& app, DrawingOptions& drawing) {
   const CLI::Validator is_size(
       [](const std::string& text) {
         if (sizeOf(text)) return std::string();
-        return fmt::format("found {}, wanted N or WIDTHxHEIGHT, each 1 to {}", text, kLargestImage);
+        return fmt::format("found {}, expected N or WIDTHxHEIGHT, each 1 to {}", text,
+                           kLargestImage);
       },
       "", "size");
   const auto set = [&drawing](const std::string& text) {

@@ -28,7 +28,7 @@ std::string frameName(std::size_t env, std::uint64_t step, const char* what) {
 Result<void> tryFile(const std::filesystem::path& path) {
   std::error_code unknown;
   if (!path.has_filename() || std::filesystem::is_directory(path, unknown)) {
-    return fail(ErrorCode::kIo, path.string(), "is a folder; wanted the name of a file");
+    return fail(ErrorCode::kIo, path.string(), "is a folder; expected the name of a file");
   }
   const Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected<Error>(file.error());

@@ -92,7 +92,7 @@ Result<Header> readHeader(std::ifstream& file, const std::string& where, std::ui
   }
   if (header.version != kVersion) {
     return fail(ErrorCode::kUnsupported, where,
-                fmt::format("is a recording of format version {}, wanted {}; use the version of "
+                fmt::format("is a recording of format version {}, expected {}; use the version of "
                             "galactic-run that wrote it",
                             header.version, kVersion));
   }

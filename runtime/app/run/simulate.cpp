@@ -242,7 +242,7 @@ Result<void> checkSubject(const RecordingReader* replay, const World& world,
   if (Result<void> same = checkWorld(*replay, world); !same) return same;
   if (replay->subject().actions == simulator.actionCount()) return {};
   return fail(ErrorCode::kInvalidInput, replay->where(),
-              fmt::format("has {} actions per env, wanted the robot's {}; record it again",
+              fmt::format("has {} actions per env, expected the robot's {}; record it again",
                           replay->subject().actions, simulator.actionCount()));
 }
 

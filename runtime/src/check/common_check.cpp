@@ -18,14 +18,14 @@ auto sphereKey(const schema::SetSphere& sphere) {
 
 Result<void> checkLengths(const schema::LengthStatistics* lengths, const std::string& where) {
   Offence offence(where);
-  offence.require(lengths != nullptr, "mean", "is missing, wanted the lengths measured");
+  offence.require(lengths != nullptr, "mean", "is missing, expected the lengths measured");
   if (offence.found()) return offence.result();
-  offence.require(isAmount(lengths->mean()), "mean", "is {} m, wanted a finite length of 0 or more",
-                  lengths->mean());
-  offence.require(isAmount(lengths->max()), "max", "is {} m, wanted a finite length of 0 or more",
+  offence.require(isAmount(lengths->mean()), "mean",
+                  "is {} m, expected a finite length of 0 or more", lengths->mean());
+  offence.require(isAmount(lengths->max()), "max", "is {} m, expected a finite length of 0 or more",
                   lengths->max());
   offence.require(lengths->p95() >= 0 && lengths->p95() <= lengths->max(), "p95",
-                  "is {} m, wanted 0 to the maximum of {} m", lengths->p95(), lengths->max());
+                  "is {} m, expected 0 to the maximum of {} m", lengths->p95(), lengths->max());
   return offence.result();
 }
 
@@ -33,12 +33,12 @@ Result<void> checkLengths(const schema::LengthStatistics* lengths, const std::st
 
 Result<void> checkBounds(const schema::Bounds* bounds, const std::string& where) {
   Offence offence(where);
-  offence.require(bounds != nullptr, "bounds", "are missing, wanted the mesh's bounds");
+  offence.require(bounds != nullptr, "bounds", "are missing, expected the mesh's bounds");
   if (offence.found()) return offence.result();
   const schema::Vec3& min = bounds->min();
   const schema::Vec3& max = bounds->max();
   offence.require(isPlace(min) && isPlace(max), "bounds",
-                  "reach farther than {} m or are not finite, wanted coordinates", kFarthest);
+                  "reach farther than {} m or are not finite, expected coordinates", kFarthest);
   offence.require(min.x() <= max.x() && min.y() <= max.y() && min.z() <= max.z(), "bounds",
                   "have a minimum ({}, {}, {}) above the maximum ({}, {}, {})", min.x(), min.y(),
                   min.z(), max.x(), max.y(), max.z());
@@ -47,31 +47,32 @@ Result<void> checkBounds(const schema::Bounds* bounds, const std::string& where)
 
 Result<void> checkImport(const schema::ImportStatistics& counts, const std::string& where) {
   Offence offence(where + ".import_statistics");
-  offence.require(!isEmpty(counts.format()), "format", "is empty, wanted a format's name");
+  offence.require(!isEmpty(counts.format()), "format", "is empty, expected a format's name");
   // Subtracted one by one: a sum of hostile counts could wrap around.
   const bool plausible =
       counts.triangles_degenerate() <= counts.triangles_read() &&
       counts.triangles_duplicate() <= counts.triangles_read() - counts.triangles_degenerate();
   offence.require(plausible, "triangles_read",
-                  "is {}, wanted at least the {} degenerate and {} duplicate triangles dropped",
+                  "is {}, expected at least the {} degenerate and {} duplicate triangles dropped",
                   counts.triangles_read(), counts.triangles_degenerate(),
                   counts.triangles_duplicate());
   const std::uint64_t remaining =
       counts.triangles_read() - counts.triangles_degenerate() - counts.triangles_duplicate();
   offence.require(counts.triangles() == remaining, "triangles",
-                  "is {}, wanted the {} that remain of those read", counts.triangles(), remaining);
+                  "is {}, expected the {} that remain of those read", counts.triangles(),
+                  remaining);
   return offence.result();
 }
 
 Result<void> checkRadii(const flatbuffers::Vector<float>& radii, const std::string& where) {
   Offence offence(where);
   offence.require(radii.size() >= 1 && radii.size() <= kMaxRadii, "radii",
-                  "has {} elements, wanted 1 to {}", radii.size(), kMaxRadii);
+                  "has {} elements, expected 1 to {}", radii.size(), kMaxRadii);
   float previous = 0;
   for (flatbuffers::uoffset_t n = 0; n < radii.size() && !offence.found(); ++n) {
     const float radius = radii.Get(n);
     offence.require(isLength(radius) && radius > previous, fmt::format("radii[{}]", n),
-                    "is {} m after {} m, wanted ascending radii of up to {} m", radius, previous,
+                    "is {} m after {} m, expected ascending radii of up to {} m", radius, previous,
                     kFarthest);
     previous = radius;
   }
@@ -85,21 +86,22 @@ Result<void> checkSpheres(const flatbuffers::Vector<const schema::SetSphere*>& s
     const schema::SetSphere& sphere = *spheres.Get(static_cast<flatbuffers::uoffset_t>(n));
     const std::string field = fmt::format("spheres[{}]", n);
     offence.require(isPlace(sphere.center()), field + ".center",
-                    "is farther than {} m or not finite, wanted coordinates", kFarthest);
+                    "is farther than {} m or not finite, expected coordinates", kFarthest);
     offence.require(sphere.radius_index() < radii, field + ".radius_index",
-                    "is {}, wanted less than the number of radii {}", sphere.radius_index(), radii);
+                    "is {}, expected less than the number of radii {}", sphere.radius_index(),
+                    radii);
     if (n == range.begin || offence.found()) continue;
     const schema::SetSphere& before = *spheres.Get(static_cast<flatbuffers::uoffset_t>(n - 1));
     offence.require(
         sphereKey(before) <= sphereKey(sphere), field,
-        "comes before its predecessor, wanted descending radii, then ascending centers");
+        "comes before its predecessor, expected descending radii, then ascending centers");
   }
   return offence.result();
 }
 
 Result<void> checkSphereStatistics(const schema::SphereSetStatistics& statistics,
                                    const std::string& where) {
-  constexpr const char* kWanted = "is {}, wanted a finite number of 0 or more";
+  constexpr const char* kWanted = "is {}, expected a finite number of 0 or more";
   Offence offence(where);
   offence.require(isAmount(static_cast<double>(statistics.eps())), "eps", kWanted,
                   statistics.eps());
@@ -125,16 +127,16 @@ Result<void> checkSurface(const schema::Surface& surface, const std::string& whe
                                    [](const schema::Vec3* p) { return !isPlace(*p); });
   offence.require(broken == positions.end(),
                   fmt::format("positions[{}]", std::distance(positions.begin(), broken)),
-                  "is farther than {} m or not finite, wanted coordinates", kFarthest);
+                  "is farther than {} m or not finite, expected coordinates", kFarthest);
   offence.require(corners.size() % 3 == 0, "triangles",
-                  "has {} elements, wanted three per triangle", corners.size());
+                  "has {} elements, expected three per triangle", corners.size());
   const auto beyond = std::find_if(corners.begin(), corners.end(),
                                    [&](std::uint32_t n) { return n >= positions.size(); });
   offence.require(beyond == corners.end(),
                   fmt::format("triangles[{}]", std::distance(corners.begin(), beyond)),
                   "is not the index of one of the {} positions", positions.size());
   offence.require(surface.colors()->size() == 0 || surface.colors()->size() == positions.size(),
-                  "colors", "has {} elements, wanted none or {}, one per position",
+                  "colors", "has {} elements, expected none or {}, one per position",
                   surface.colors()->size(), positions.size());
   return offence.result();
 }

@@ -21,11 +21,11 @@ class EpisodeChecker {
       : set_(set), offence_(where + ": episode_set") {}
 
   Result<void> run() {
-    offence_.require(!isEmpty(set_.name()), "name", "is empty, wanted the episodes' name");
+    offence_.require(!isEmpty(set_.name()), "name", "is empty, expected the episodes' name");
     checkAscending(*set_.scenes(), "scenes", "scene");
     checkAscending(*set_.objects(), "objects", "object");
     checkJoints();
-    offence_.require(episodes() >= 1, "episodes", "is empty, wanted at least one episode");
+    offence_.require(episodes() >= 1, "episodes", "is empty, expected at least one episode");
     checkStartPositions();
     checkPlacements();
     checkEpisodes();
@@ -37,13 +37,13 @@ class EpisodeChecker {
   [[nodiscard]] std::size_t placements() const { return set_.placements()->size(); }
 
   void checkAscending(const Names& names, const char* field, const char* owner) {
-    offence_.require(names.size() >= 1, field, "is empty, wanted at least one {}", owner);
+    offence_.require(names.size() >= 1, field, "is empty, expected at least one {}", owner);
     for (flatbuffers::uoffset_t n = 0; n < names.size() && !offence_.found(); ++n) {
       const std::string element = fmt::format("{}[{}]", field, n);
-      offence_.require(!isEmpty(names.Get(n)), element, "is empty, wanted the {}'s name", owner);
+      offence_.require(!isEmpty(names.Get(n)), element, "is empty, expected the {}'s name", owner);
       if (n == 0) continue;
       offence_.require(names.Get(n - 1)->string_view() < names.Get(n)->string_view(), element,
-                       "does not come after its predecessor, wanted ascending names");
+                       "does not come after its predecessor, expected ascending names");
     }
   }
 
@@ -54,7 +54,7 @@ class EpisodeChecker {
       const std::string_view name = names.Get(n)->string_view();
       offence_.require(!name.empty() && seen.insert(name).second,
                        fmt::format("start_joints[{}]", n),
-                       "is empty or a repeated name, wanted each joint's own");
+                       "is empty or a repeated name, expected each joint's own");
     }
   }
 
@@ -62,13 +62,13 @@ class EpisodeChecker {
     const auto& positions = *set_.start_positions();
     const std::uint64_t wanted = std::uint64_t{episodes()} * set_.start_joints()->size();
     offence_.require(positions.size() == wanted, "start_positions",
-                     "has {} elements, wanted {}, one per episode and start joint",
+                     "has {} elements, expected {}, one per episode and start joint",
                      positions.size(), wanted);
     const auto broken = std::find_if(positions.begin(), positions.end(),
                                      [](float position) { return !isAngle(position); });
     if (broken == positions.end()) return;
     offence_.require(false, fmt::format("start_positions[{}]", broken - positions.begin()),
-                     "is {}, wanted a position of up to {}", *broken, kMostAngle);
+                     "is {}, expected a position of up to {}", *broken, kMostAngle);
   }
 
   void checkPlacements() {
@@ -81,9 +81,9 @@ class EpisodeChecker {
     if (broken == stored.end()) return;
     const std::string field = fmt::format("placements[{}]", broken - stored.begin());
     offence_.require((*broken)->object() < objects, field + ".object",
-                     "is {}, wanted one of {} objects", (*broken)->object(), objects);
+                     "is {}, expected one of {} objects", (*broken)->object(), objects);
     offence_.require(isRigid((*broken)->pose()), field + ".pose",
-                     "is not a rigid transform, wanted up to {} m and a unit quaternion",
+                     "is not a rigid transform, expected up to {} m and a unit quaternion",
                      kFarthest);
   }
 
@@ -97,7 +97,7 @@ class EpisodeChecker {
       next_placement += episode.placement_count();
     }
     offence_.require(next_placement == placements(), "placements",
-                     "has {} elements, wanted the {} that the episodes name", placements(),
+                     "has {} elements, expected the {} that the episodes name", placements(),
                      next_placement);
   }
 
@@ -115,19 +115,20 @@ class EpisodeChecker {
   void requireSound(const schema::Episode& episode, std::size_t next_placement,
                     const std::string& field) {
     offence_.require(episode.scene() < set_.scenes()->size(), field + ".scene",
-                     "is {}, wanted one of {} scenes", episode.scene(), set_.scenes()->size());
+                     "is {}, expected one of {} scenes", episode.scene(), set_.scenes()->size());
     offence_.require(ownsRange(episode, next_placement), field + ".first_placement",
-                     "and count are {} and {}, wanted {} and 1 to {}", episode.first_placement(),
+                     "and count are {} and {}, expected {} and 1 to {}", episode.first_placement(),
                      episode.placement_count(), next_placement, placements() - next_placement);
     offence_.require(episode.target() < episode.placement_count(), field + ".target",
-                     "is {}, wanted one of the episode's {} placements", episode.target(),
+                     "is {}, expected one of the episode's {} placements", episode.target(),
                      episode.placement_count());
     offence_.require(isPlace(episode.base_position()), field + ".base_position",
-                     "is farther than {} m or not finite, wanted coordinates", kFarthest);
+                     "is farther than {} m or not finite, expected coordinates", kFarthest);
     offence_.require(isAngle(episode.base_yaw()), field + ".base_yaw",
-                     "is {} rad, wanted an angle of up to {} rad", episode.base_yaw(), kMostAngle);
+                     "is {} rad, expected an angle of up to {} rad", episode.base_yaw(),
+                     kMostAngle);
     offence_.require(isRigid(episode.goal()), field + ".goal",
-                     "is not a rigid transform, wanted up to {} m and a unit quaternion",
+                     "is not a rigid transform, expected up to {} m and a unit quaternion",
                      kFarthest);
   }
 

@@ -24,19 +24,19 @@ bool isRelative(const flatbuffers::String* path) {
 
 Result<void> checkProvenance(const schema::Provenance& provenance, const std::string& where) {
   Offence offence(where + ": provenance");
-  offence.require(!isEmpty(provenance.tool()), "tool", "is empty, wanted a program's name");
+  offence.require(!isEmpty(provenance.tool()), "tool", "is empty, expected a program's name");
   offence.require(!isEmpty(provenance.tool_version()), "tool_version",
-                  "is empty, wanted a version");
+                  "is empty, expected a version");
   for (flatbuffers::uoffset_t n = 0; n < provenance.options()->size() && !offence.found(); ++n) {
     offence.require(!isEmpty(provenance.options()->Get(n)->name()),
-                    fmt::format("options[{}].name", n), "is empty, wanted an option's name");
+                    fmt::format("options[{}].name", n), "is empty, expected an option's name");
   }
   for (flatbuffers::uoffset_t n = 0; n < provenance.sources()->size() && !offence.found(); ++n) {
     const schema::SourceFile& source = *provenance.sources()->Get(n);
     offence.require(isRelative(source.name()), fmt::format("sources[{}].name", n),
-                    "is empty or an absolute path, wanted a relative path");
+                    "is empty or an absolute path, expected a relative path");
     offence.require(source.hash() != nullptr, fmt::format("sources[{}].hash", n),
-                    "is missing, wanted the file's hash");
+                    "is missing, expected the file's hash");
   }
   return offence.result();
 }

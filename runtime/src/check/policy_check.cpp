@@ -25,7 +25,7 @@ class PolicyChecker {
       : policy_(policy), offence_(where + ": policy") {}
 
   Result<void> run() {
-    offence_.require(!isEmpty(policy_.name()), "name", "is empty, wanted the policy's name");
+    offence_.require(!isEmpty(policy_.name()), "name", "is empty, expected the policy's name");
     offence_.require(checkOptions(*policy_.options(), "options", offence_.where()));
     checkObservation();
     if (policy_.image() != nullptr) checkImage(*policy_.image());
@@ -44,38 +44,39 @@ class PolicyChecker {
       const std::string field = fmt::format("observation[{}]", n);
       const std::string_view name = parts.Get(n)->name()->string_view();
       offence_.require(!name.empty() && seen.insert(name).second, field + ".name",
-                       "is empty or a repeated name, wanted each part's own");
-      offence_.require(parts.Get(n)->size() >= 1, field + ".size", "is 0, wanted at least 1");
+                       "is empty or a repeated name, expected each part's own");
+      offence_.require(parts.Get(n)->size() >= 1, field + ".size", "is 0, expected at least 1");
     }
   }
 
   void checkImage(const schema::PolicyImage& image) {
     const auto is_edge = [](std::uint32_t edge) { return edge >= 1 && edge <= kLargestImage; };
-    offence_.require(is_edge(image.width()), "image.width", "is {}, wanted 1 to {}", image.width(),
-                     kLargestImage);
-    offence_.require(is_edge(image.height()), "image.height", "is {}, wanted 1 to {}",
+    offence_.require(is_edge(image.width()), "image.width", "is {}, expected 1 to {}",
+                     image.width(), kLargestImage);
+    offence_.require(is_edge(image.height()), "image.height", "is {}, expected 1 to {}",
                      image.height(), kLargestImage);
     offence_.require(image.color() || image.depth(), "image.color",
-                     "and depth are false, wanted one of them at least");
+                     "and depth are false, expected one of them at least");
     offence_.require(std::isfinite(image.color_scale()), "image.color_scale",
-                     "is {}, wanted a finite number", image.color_scale());
+                     "is {}, expected a finite number", image.color_scale());
     offence_.require(std::isfinite(image.depth_limit()) && image.depth_limit() > 0,
-                     "image.depth_limit", "is {} m, wanted a finite length above 0",
+                     "image.depth_limit", "is {} m, expected a finite length above 0",
                      image.depth_limit());
     offence_.require(std::isfinite(image.depth_scale()), "image.depth_scale",
-                     "is {}, wanted a finite number", image.depth_scale());
-    offence_.require(!isEmpty(image.camera()), "image.camera", "is empty, wanted a camera's name");
+                     "is {}, expected a finite number", image.depth_scale());
+    offence_.require(!isEmpty(image.camera()), "image.camera",
+                     "is empty, expected a camera's name");
     offence_.require(image.vertical_fov() >= 0 && image.vertical_fov() < std::numbers::pi_v<float>,
-                     "image.vertical_fov", "is {} rad, wanted 0 or more, less than pi",
+                     "image.vertical_fov", "is {} rad, expected 0 or more, less than pi",
                      image.vertical_fov());
   }
 
   void checkActions(const std::vector<LayerShape>& shapes) {
     const auto& discrete = *policy_.discrete();
     offence_.require(policy_.continuous() != nullptr || discrete.size() >= 1, "discrete",
-                     "is empty, and there is no continuous action, wanted an action at least");
+                     "is empty, and there is no continuous action, expected an action at least");
     if (const schema::ContinuousActions* continuous = policy_.continuous()) {
-      offence_.require(continuous->count() >= 1, "continuous.count", "is 0, wanted at least 1");
+      offence_.require(continuous->count() >= 1, "continuous.count", "is 0, expected at least 1");
       requireVector(shapes, continuous->mean(), continuous->count(), "continuous.mean");
       requireVector(shapes, continuous->log_deviation(), continuous->count(),
                     "continuous.log_deviation");
@@ -84,11 +85,11 @@ class PolicyChecker {
       const schema::DiscreteAction& action = *discrete.Get(n);
       const std::string field = fmt::format("discrete[{}]", n);
       const auto& values = *action.values();
-      offence_.require(values.size() >= 2, field + ".values", "has {} elements, wanted 2 or more",
+      offence_.require(values.size() >= 2, field + ".values", "has {} elements, expected 2 or more",
                        values.size());
       for (const float value : values) {
-        offence_.require(std::isfinite(value), field + ".values", "holds {}, wanted finite numbers",
-                         value);
+        offence_.require(std::isfinite(value), field + ".values",
+                         "holds {}, expected finite numbers", value);
       }
       requireVector(shapes, action.logits(), values.size(), field + ".logits");
     }
@@ -96,12 +97,12 @@ class PolicyChecker {
 
   void requireVector(const std::vector<LayerShape>& shapes, std::uint32_t layer, std::size_t size,
                      const std::string& field) {
-    offence_.require(layer < shapes.size(), field, "is {}, wanted one of {} layers", layer,
+    offence_.require(layer < shapes.size(), field, "is {}, expected one of {} layers", layer,
                      shapes.size());
     if (offence_.found()) return;
     const LayerShape& shape = shapes[layer];
     offence_.require(shape.isVector() && shape.channels == size, field,
-                     "leads to {} x {} x {} elements, wanted a vector of {}", shape.channels,
+                     "leads to {} x {} x {} elements, expected a vector of {}", shape.channels,
                      shape.height, shape.width, size);
   }
 

@@ -52,21 +52,21 @@ class RenderChecker {
  private:
   void checkSizes() {
     offence_.require(pools_.semantics >= 1 && pools_.semantics <= kMostNumbers, "semantics",
-                     "has {} names, wanted 1 to {}", pools_.semantics, kMostNumbers);
+                     "has {} names, expected 1 to {}", pools_.semantics, kMostNumbers);
     offence_.require(pools_.materials <= kMostNumbers, "materials",
-                     "has {} materials, wanted at most {}", pools_.materials, kMostNumbers);
+                     "has {} materials, expected at most {}", pools_.materials, kMostNumbers);
     offence_.require(pools_.bounds.size() % (kBoundsRows * kRenderLanes) == 0, "cluster_bounds",
-                     "has {} elements, wanted blocks of {}", pools_.bounds.size(),
+                     "has {} elements, expected blocks of {}", pools_.bounds.size(),
                      kBoundsRows * kRenderLanes);
     offence_.require(pools_.vertices.size() % (kVertexRows * kRenderLanes) == 0, "vertices",
-                     "has {} elements, wanted blocks of {}", pools_.vertices.size(),
+                     "has {} elements, expected blocks of {}", pools_.vertices.size(),
                      kVertexRows * kRenderLanes);
     offence_.require(pools_.triangles.size() % (kTriangleRows * kRenderLanes) == 0, "triangles",
-                     "has {} elements, wanted blocks of {}", pools_.triangles.size(),
+                     "has {} elements, expected blocks of {}", pools_.triangles.size(),
                      kTriangleRows * kRenderLanes);
     const std::size_t vertices = pools_.vertices.size() / kVertexRows;
     offence_.require(pools_.colors.empty() || pools_.colors.size() == vertices, "colors",
-                     "has {} elements, wanted {}, one per vertex, or none", pools_.colors.size(),
+                     "has {} elements, expected {}, one per vertex, or none", pools_.colors.size(),
                      vertices);
   }
 
@@ -78,16 +78,16 @@ class RenderChecker {
       requireTextureForm(texture, field + ".", offence_);
       if (texture.shared() != nullptr) {
         offence_.require(texture.first_byte() == 0, field + ".first_byte",
-                         "is {} of a shared texture, wanted 0", texture.first_byte());
+                         "is {} of a shared texture, expected 0", texture.first_byte());
         continue;
       }
       offence_.require(texture.first_byte() % kTexelAlignment == 0, field + ".first_byte",
-                       "is {}, wanted a multiple of {}", texture.first_byte(), kTexelAlignment);
+                       "is {}, expected a multiple of {}", texture.first_byte(), kTexelAlignment);
       if (offence_.found()) return;
       const std::size_t needed =
           textureBytes(texture.size(), static_cast<TexelFormat>(texture.format()));
       offence_.require(texture.first_byte() + needed <= bytes, field + ".first_byte",
-                       "is {} with {} bytes from there on, wanted within the {} of texels",
+                       "is {} with {} bytes from there on, expected within the {} of texels",
                        texture.first_byte(), needed, bytes);
     }
   }
@@ -98,10 +98,10 @@ class RenderChecker {
       const schema::RenderMaterial& material = *meshes_.materials()->Get(n);
       const std::string field = fmt::format("materials[{}]", n);
       offence_.require(material.texture() >= -1 && material.texture() < textures,
-                       field + ".texture", "is {}, wanted one of the {} textures, or -1",
+                       field + ".texture", "is {}, expected one of the {} textures, or -1",
                        material.texture(), textures);
       offence_.require(material.alpha_cutoff() >= 0 && material.alpha_cutoff() <= 1,
-                       field + ".alpha_cutoff", "is {}, wanted 0 to 1", material.alpha_cutoff());
+                       field + ".alpha_cutoff", "is {}, expected 0 to 1", material.alpha_cutoff());
     }
   }
 
@@ -110,31 +110,31 @@ class RenderChecker {
     const std::string field = fmt::format("models[{}]", n);
     const std::int64_t previous = n == 0 ? -1 : std::int64_t{meshes_.models()->Get(n - 1)->part()};
     offence_.require(stored.part() > previous && stored.part() < parts_, field + ".part",
-                     "is {} after {}, wanted ascending numbers under {}", stored.part(), previous,
+                     "is {} after {}, expected ascending numbers under {}", stored.part(), previous,
                      parts_);
     offence_.require(
         stored.step() > kLeastStep && stored.step() <= kMostStep && isPowerOfTwo(stored.step()),
-        field + ".step", "is {} m, wanted a power of two over {} and at most {} m", stored.step(),
+        field + ".step", "is {} m, expected a power of two over {} and at most {} m", stored.step(),
         kLeastStep, kMostStep);
     offence_.require(stored.first_cluster() == next_cluster_, field + ".first_cluster",
-                     "is {}, wanted {}, behind the model before", stored.first_cluster(),
+                     "is {}, expected {}, behind the model before", stored.first_cluster(),
                      next_cluster_);
     offence_.require(stored.cluster_count() <= clusters_.size() - next_cluster_,
-                     field + ".cluster_count", "is {}, wanted at most the {} that are left",
+                     field + ".cluster_count", "is {}, expected at most the {} that are left",
                      stored.cluster_count(), clusters_.size() - next_cluster_);
     offence_.require(stored.first_block() == next_block_, field + ".first_block",
-                     "is {}, wanted {}, behind the model before", stored.first_block(),
+                     "is {}, expected {}, behind the model before", stored.first_block(),
                      next_block_);
     if (offence_.found()) return;
     const std::size_t lanes = wholeLanes(stored.cluster_count());
     const std::size_t blocks = pools_.bounds.size() / (kBoundsRows * kRenderLanes);
     offence_.require(lanes / kRenderLanes <= blocks - next_block_, field + ".cluster_count",
-                     "is {}, wanted no more than the {} blocks of bounds that are left hold",
+                     "is {}, expected no more than the {} blocks of bounds that are left hold",
                      stored.cluster_count(), blocks - next_block_);
     offence_.require(checkBounds(stored.bounds(), fmt::format("{}.{}", offence_.where(), field)));
     offence_.require(stored.largest_error() >= 0 && isCoordinate(stored.largest_error()),
-                     field + ".largest_error", "is {} m, wanted 0 to {} m", stored.largest_error(),
-                     kFarthest);
+                     field + ".largest_error", "is {} m, expected 0 to {} m",
+                     stored.largest_error(), kFarthest);
     if (offence_.found()) return;
     checkClusters(stored, field);
   }
@@ -160,7 +160,7 @@ class RenderChecker {
       triangles += cluster.triangle_count;
     }
     offence_.require(stored.triangles() == triangles, field + ".triangles",
-                     "is {}, wanted the {} of its clusters", stored.triangles(), triangles);
+                     "is {}, expected the {} of its clusters", stored.triangles(), triangles);
     checkEmptyLanes();
     next_cluster_ += stored.cluster_count();
     next_block_ += wholeLanes(stored.cluster_count()) / kRenderLanes;
@@ -174,7 +174,7 @@ class RenderChecker {
         const float wanted = row >= kHalfExtentRow && row <= kRadiusRow ? kNoCluster : 0;
         offence_.require(
             value == wanted, fmt::format("cluster_bounds[{}]", place_.lane / kRenderLanes),
-            "has {} in row {} of a lane without a cluster, wanted {}", value, row, wanted);
+            "has {} in row {} of a lane without a cluster, expected {}", value, row, wanted);
       }
     }
   }
@@ -182,16 +182,16 @@ class RenderChecker {
   /// Nothing is left over.
   void checkEnds() {
     offence_.require(next_cluster_ == clusters_.size(), "clusters",
-                     "has {} elements, wanted the {} of the models", clusters_.size(),
+                     "has {} elements, expected the {} of the models", clusters_.size(),
                      next_cluster_);
     const std::size_t blocks = pools_.bounds.size() / (kBoundsRows * kRenderLanes);
     offence_.require(next_block_ == blocks, "cluster_bounds",
-                     "has {} blocks, wanted the {} of the models", blocks, next_block_);
+                     "has {} blocks, expected the {} of the models", blocks, next_block_);
     offence_.require(place_.first_vertex * kVertexRows == pools_.vertices.size(), "vertices",
-                     "has {} elements, wanted the {} of the clusters", pools_.vertices.size(),
+                     "has {} elements, expected the {} of the clusters", pools_.vertices.size(),
                      place_.first_vertex * kVertexRows);
     offence_.require(place_.first_triangle * kTriangleRows == pools_.triangles.size(), "triangles",
-                     "has {} elements, wanted the {} of the clusters", pools_.triangles.size(),
+                     "has {} elements, expected the {} of the clusters", pools_.triangles.size(),
                      place_.first_triangle * kTriangleRows);
   }
 

@@ -62,44 +62,48 @@ class ClusterChecker {
   void checkNumbers() {
     for (const std::int32_t origin : {cluster_.origin_x, cluster_.origin_y, cluster_.origin_z}) {
       offence_.require(origin >= -kMostLattice && origin <= kMostLattice - 65536, "origin",
-                       "is {} steps, wanted {} to {}", origin, -kMostLattice, kMostLattice - 65536);
+                       "is {} steps, expected {} to {}", origin, -kMostLattice,
+                       kMostLattice - 65536);
     }
     for (const float minimum : {cluster_.u_minimum, cluster_.v_minimum}) {
-      offence_.require(minimum >= 0 && minimum <= 1, "uv_minimum", "is {}, wanted 0 to 1", minimum);
+      offence_.require(minimum >= 0 && minimum <= 1, "uv_minimum", "is {}, expected 0 to 1",
+                       minimum);
     }
     for (const float step : {cluster_.u_step, cluster_.v_step}) {
-      offence_.require(step >= 0 && step <= kMostUvStep, "uv_step", "is {}, wanted 0 to {}", step,
+      offence_.require(step >= 0 && step <= kMostUvStep, "uv_step", "is {}, expected 0 to {}", step,
                        kMostUvStep);
     }
     offence_.require(cluster_.material < pools_.materials, "material",
-                     "is {}, wanted one of the {} materials", cluster_.material, pools_.materials);
+                     "is {}, expected one of the {} materials", cluster_.material,
+                     pools_.materials);
     offence_.require(cluster_.semantic < pools_.semantics, "semantic",
-                     "is {}, wanted one of the {} semantics", cluster_.semantic, pools_.semantics);
-    offence_.require(cluster_.two_sided <= 1, "two_sided", "is {}, wanted 0 or 1",
+                     "is {}, expected one of the {} semantics", cluster_.semantic,
+                     pools_.semantics);
+    offence_.require(cluster_.two_sided <= 1, "two_sided", "is {}, expected 0 or 1",
                      cluster_.two_sided);
-    offence_.require(cluster_.reserved == 0, "reserved", "is {}, wanted 0", cluster_.reserved);
+    offence_.require(cluster_.reserved == 0, "reserved", "is {}, expected 0", cluster_.reserved);
   }
 
   void checkRanges() {
     offence_.require(cluster_.vertex_count >= 1 && cluster_.vertex_count <= kMostInCluster,
-                     "vertex_count", "is {}, wanted 1 to {}", cluster_.vertex_count,
+                     "vertex_count", "is {}, expected 1 to {}", cluster_.vertex_count,
                      kMostInCluster);
     offence_.require(cluster_.triangle_count >= 1 && cluster_.triangle_count <= kMostInCluster,
-                     "triangle_count", "is {}, wanted 1 to {}", cluster_.triangle_count,
+                     "triangle_count", "is {}, expected 1 to {}", cluster_.triangle_count,
                      kMostInCluster);
     offence_.require(cluster_.first_vertex == place_.first_vertex, "first_vertex",
-                     "is {}, wanted {}, behind the cluster before", cluster_.first_vertex,
+                     "is {}, expected {}, behind the cluster before", cluster_.first_vertex,
                      place_.first_vertex);
     offence_.require(cluster_.first_triangle == place_.first_triangle, "first_triangle",
-                     "is {}, wanted {}, behind the cluster before", cluster_.first_triangle,
+                     "is {}, expected {}, behind the cluster before", cluster_.first_triangle,
                      place_.first_triangle);
     const std::size_t vertices = pools_.vertices.size() / kVertexRows;
     offence_.require(place_.first_vertex + wholeLanes(cluster_.vertex_count) <= vertices,
-                     "vertex_count", "is {} from {} on, wanted no more than the {} in the pool",
+                     "vertex_count", "is {} from {} on, expected no more than the {} in the pool",
                      cluster_.vertex_count, place_.first_vertex, vertices);
     const std::size_t triangles = pools_.triangles.size() / kTriangleRows;
     offence_.require(place_.first_triangle + wholeLanes(cluster_.triangle_count) <= triangles,
-                     "triangle_count", "is {} from {} on, wanted no more than the {} in the pool",
+                     "triangle_count", "is {} from {} on, expected no more than the {} in the pool",
                      cluster_.triangle_count, place_.first_triangle, triangles);
   }
 
@@ -108,7 +112,7 @@ class ClusterChecker {
     constexpr double kFarthestBound = 4 * static_cast<double>(kFarthest);
     for (std::size_t row = 0; row < kBoundsRows; ++row) {
       offence_.require(std::abs(bound(row)) <= kFarthestBound, "bounds",
-                       "are {} in row {}, wanted up to {}", bound(row), row, kFarthestBound);
+                       "are {} in row {}, expected up to {}", bound(row), row, kFarthestBound);
     }
     const double cutoff = bound(kConeCutoffRow);
     double squared = 0;
@@ -117,16 +121,16 @@ class ClusterChecker {
     }
     if (cutoff == static_cast<double>(kNoCone)) {
       offence_.require(squared == 0, "bounds",
-                       "have a cone's axis of length {}, wanted 0 without a cone",
+                       "have a cone's axis of length {}, expected 0 without a cone",
                        std::sqrt(squared));
       return;
     }
     offence_.require(cutoff >= 0 && cutoff <= 1, "bounds",
-                     "have a cone's cutoff of {}, wanted 0 to 1, or 2 for none", cutoff);
+                     "have a cone's cutoff of {}, expected 0 to 1, or 2 for none", cutoff);
     offence_.require(cluster_.two_sided == 0, "bounds",
-                     "have a cone although the cluster is seen from both sides, wanted none");
+                     "have a cone although the cluster is seen from both sides, expected none");
     offence_.require(std::abs(squared - 1) <= kAxisTolerance, "bounds",
-                     "have a cone's axis of length {}, wanted 1", std::sqrt(squared));
+                     "have a cone's axis of length {}, expected 1", std::sqrt(squared));
   }
 
   /// Finds the ranges of coordinates; padding is 0.
@@ -154,7 +158,8 @@ class ClusterChecker {
         pools_.triangles.subspan(cluster_.first_triangle * kTriangleRows, lanes * kTriangleRows);
     const std::uint8_t most = *std::max_element(corners.begin(), corners.end());
     offence_.require(most < cluster_.vertex_count, "triangles",
-                     "have corner {}, wanted one of the {} vertices", most, cluster_.vertex_count);
+                     "have corner {}, expected one of the {} vertices", most,
+                     cluster_.vertex_count);
     std::uint32_t padding = 0;
     for (std::size_t n = cluster_.triangle_count; n < lanes; ++n) {
       for (std::size_t number = 0; number < kTriangleRows; ++number) padding |= corner(n, number);
@@ -177,11 +182,11 @@ class ClusterChecker {
       const double center = bound(kCenterRow + axis);
       const double half = bound(kHalfExtentRow + axis);
       offence_.require(low >= center - half && high <= center + half, "bounds",
-                       "reach from {} to {} m, wanted around all vertices: {} to {} m",
+                       "reach from {} to {} m, expected around all vertices: {} to {} m",
                        center - half, center + half, low, high);
       offence_.require(low >= static_cast<double>(model_low[axis]) &&
                            high <= static_cast<double>(model_high[axis]),
-                       "vertices", "reach from {} to {} m, wanted within the model's {} to {} m",
+                       "vertices", "reach from {} to {} m, expected within the model's {} to {} m",
                        low, high, model_low[axis], model_high[axis]);
     }
   }
@@ -200,7 +205,7 @@ class ClusterChecker {
     }
     const double radius = bound(kRadiusRow);
     offence_.require(radius >= 0 && farthest <= radius * radius, "bounds",
-                     "have a radius of {} m, wanted {} m, to the farthest vertex", radius,
+                     "have a radius of {} m, expected {} m, to the farthest vertex", radius,
                      std::sqrt(farthest));
   }
 

@@ -15,10 +15,10 @@ inline constexpr std::uint32_t kLargestTexture = 4096;
 template <class Texture>
 void requireTextureForm(const Texture& texture, const std::string& prefix, Offence& offence) {
   offence.require(texture.size() <= kLargestTexture && std::has_single_bit(texture.size()),
-                  prefix + "size", "is {}, wanted a power of two up to {}", texture.size(),
+                  prefix + "size", "is {}, expected a power of two up to {}", texture.size(),
                   kLargestTexture);
   offence.require(texture.format() <= schema::TexelFormat::MAX, prefix + "format",
-                  "is {}, wanted a value up to {}", static_cast<unsigned>(texture.format()),
+                  "is {}, expected a value up to {}", static_cast<unsigned>(texture.format()),
                   static_cast<unsigned>(schema::TexelFormat::MAX));
 }
 

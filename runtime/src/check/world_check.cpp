@@ -17,17 +17,19 @@ namespace {
 
 /// Why a path of a world's list is none, or nothing: "" for a good one.
 const char* faultOf(std::string_view path) {
-  if (path.empty()) return "is empty, wanted the path of a pack";
+  if (path.empty()) return "is empty, expected the path of a pack";
   if (path.find('\0') != std::string_view::npos) {
-    return "holds a zero byte, wanted the path of a pack";
+    return "holds a zero byte, expected the path of a pack";
   }
-  if (path.front() == '/') return "is absolute, wanted a path relative to the world pack's folder";
+  if (path.front() == '/')
+    return "is absolute, expected a path relative to the world pack's folder";
   for (std::size_t begin = 0; begin <= path.size();) {
     const std::size_t end = std::min(path.find('/', begin), path.size());
     const std::string_view part = path.substr(begin, end - begin);
     if (part == "..")
-      return "leads upwards with \"..\", wanted a path below the world pack's folder";
-    if (part.empty() || part == ".") return "has an empty part or \".\", wanted names between '/'";
+      return "leads upwards with \"..\", expected a path below the world pack's folder";
+    if (part.empty() || part == ".")
+      return "has an empty part or \".\", expected names between '/'";
     begin = end + 1;
   }
   return "";
@@ -40,13 +42,13 @@ Result<void> checkReference(const schema::PackReference& reference, const std::s
   std::optional<PackKind> kind = packKindOf(reference.kind()->string_view());
   // A policy goes from world to world.
   if (kind == PackKind::kPolicy) kind.reset();
-  offence.require(kind.has_value(), "kind", "is \"{}\", wanted SCEN, OBJS, RBOT, EPIS or TXTR",
+  offence.require(kind.has_value(), "kind", "is \"{}\", expected SCEN, OBJS, RBOT, EPIS or TXTR",
                   reference.kind()->string_view());
-  offence.require(kind != PackKind::kWorld, "kind", "is \"WRLD\", wanted no world in a world");
+  offence.require(kind != PackKind::kWorld, "kind", "is \"WRLD\", expected no world in a world");
   offence.require(reference.bytes() > sizeof(PackHeader), "bytes",
-                  "is {}, wanted more than the {} of a pack's header", reference.bytes(),
+                  "is {}, expected more than the {} of a pack's header", reference.bytes(),
                   sizeof(PackHeader));
-  offence.require(reference.hash() != nullptr, "hash", "is missing, wanted the file's hash");
+  offence.require(reference.hash() != nullptr, "hash", "is missing, expected the file's hash");
   return offence.result();
 }
 
@@ -58,17 +60,17 @@ Result<void> checkOption(const OptionText& option, std::span<const OptionText> k
   const auto found =
       std::ranges::find(known, option.name, [](const OptionText& one) { return one.name; });
   offence.require(found != known.end(), "name",
-                  "is \"{}\", wanted an option of the task, reward or robot of galactic-run",
+                  "is \"{}\", expected an option of the task, reward or robot of galactic-run",
                   option.name);
   if (offence.found()) return offence.result();
   const auto place = static_cast<std::size_t>(found - known.begin());
   offence.require(place >= next, "name",
-                  "is \"{}\", wanted each option once, in the order of galactic-run's table",
+                  "is \"{}\", expected each option once, in the order of galactic-run's table",
                   option.name);
   next = place + 1;
   SimulationOptions ignored;
   const auto fault = setOptions(std::span(&option, 1), OptionScope::kTask, ignored);
-  offence.require(!fault, "value", "is \"{}\", wanted {} for {}", option.value,
+  offence.require(!fault, "value", "is \"{}\", expected {} for {}", option.value,
                   fault ? fault->wanted : "", option.name);
   return offence.result();
 }
@@ -99,13 +101,14 @@ Result<void> checkWorld(const schema::World& world, const std::string& where) {
     ++counts[packs.Get(n)->kind()->string_view()];
     if (n == 0) continue;
     offence.require(packs.Get(n - 1)->path()->string_view() < packs.Get(n)->path()->string_view(),
-                    field + ".path", "does not come after its predecessor, wanted ascending paths");
+                    field + ".path",
+                    "does not come after its predecessor, expected ascending paths");
   }
-  offence.require(counts["RBOT"] <= 1, "packs", "has {} robots (RBOT), wanted at most one",
+  offence.require(counts["RBOT"] <= 1, "packs", "has {} robots (RBOT), expected at most one",
                   counts["RBOT"]);
-  offence.require(counts["EPIS"] <= 1, "packs", "has {} episode sets (EPIS), wanted at most one",
+  offence.require(counts["EPIS"] <= 1, "packs", "has {} episode sets (EPIS), expected at most one",
                   counts["EPIS"]);
-  offence.require(counts["SCEN"] >= 1, "packs", "has no scene (SCEN), wanted at least one");
+  offence.require(counts["SCEN"] >= 1, "packs", "has no scene (SCEN), expected at least one");
   if (world.task() != nullptr)
     offence.require(checkOptions(*world.task(), "task", offence.where()));
   return offence.result();

@@ -98,7 +98,7 @@ class CellChecker {
       if (n == before) n += tiles() * kCellsPerTile;
       if (n == block_.stored_cells.size()) break;
       offence_.require(block_.stored_cells[n] == 0, fmt::format("cells[{}]", n),
-                       "is an unused element of value {:#x}, wanted 0", block_.stored_cells[n]);
+                       "is an unused element of value {:#x}, expected 0", block_.stored_cells[n]);
     }
   }
 
@@ -117,7 +117,7 @@ class CellChecker {
       second_spans += scan.second_spans;
     }
     offence_.require(next_overflow_ == block_.overflow_elements, overflowField(next_overflow_),
-                     "belongs to no overflow cell, wanted {} elements as the cells name them",
+                     "belongs to no overflow cell, expected {} elements as the cells name them",
                      next_overflow_);
     totals_.spans += first_spans + second_spans;
     const std::uint32_t inline_spans = second_spans != 0 ? 2 : (first_spans != 0 ? 1 : 0);
@@ -130,7 +130,7 @@ class CellChecker {
       const std::uint64_t cell = layout_.cells[n];
       if (!isOverflow(cell)) continue;
       offence_.require(overflowStart(cell) == next_overflow_, fmt::format("cells[{}]", element(n)),
-                       "is an overflow cell whose spans begin at element {}, wanted {}",
+                       "is an overflow cell whose spans begin at element {}, expected {}",
                        overflowStart(cell), next_overflow_);
       if (!offence_.found()) checkOverflowSpans();
     }
@@ -153,21 +153,23 @@ class CellChecker {
     if (half1 == kEmptySpanCode) return;
     offence_.require(half0 != kEmptySpanCode, field, "has a second span but no first one");
     explainSpan(half1, highest, field, "second");
-    offence_.require((half0 >> 16U) < (half1 & 0xffffU), field,
-                     "has a second span from code {} and a first one to code {}, wanted ascending "
-                     "disjoint spans",
-                     half1 & 0xffffU, half0 >> 16U);
+    offence_.require(
+        (half0 >> 16U) < (half1 & 0xffffU), field,
+        "has a second span from code {} and a first one to code {}, expected ascending "
+        "disjoint spans",
+        half1 & 0xffffU, half0 >> 16U);
   }
 
   void explainSpan(std::uint32_t half, std::int32_t highest, const std::string& field,
                    const char* which) {
     const std::uint32_t lo = half & 0xffffU;
     const std::uint32_t hi = half >> 16U;
-    offence_.require(lo <= hi, field,
-                     "has a {} span of codes {} to {}, wanted ascending codes or ({}, 0) for none",
-                     which, lo, hi, kEmptySpanCode);
+    offence_.require(
+        lo <= hi, field,
+        "has a {} span of codes {} to {}, expected ascending codes or ({}, 0) for none", which, lo,
+        hi, kEmptySpanCode);
     offence_.require(static_cast<std::int64_t>(hi) <= highest, field,
-                     "has a {} span up to code {}, wanted at most {}, the top of the grid", which,
+                     "has a {} span up to code {}, expected at most {}, the top of the grid", which,
                      hi, highest);
   }
 
@@ -181,7 +183,7 @@ class CellChecker {
         const std::size_t index = cellIndex(i, k, layout_.tiles_x);
         if (layout_.cells[index] == kBlockedCell) continue;
         return offence_.require(false, fmt::format("cells[{}]", element(index)),
-                                "lies beyond the last column and is {:#x}, wanted blocked {:#x}",
+                                "lies beyond the last column and is {:#x}, expected blocked {:#x}",
                                 layout_.cells[index], kBlockedCell);
       }
     }
@@ -203,9 +205,9 @@ class CellChecker {
       if (!inside || !above) return explainOverflowSpan(n, inside);
     }
     offence_.require(n < block_.overflow_elements, overflowField(first),
-                     "begins the spans of an overflow cell, wanted an end mark behind them");
+                     "begins the spans of an overflow cell, expected an end mark behind them");
     offence_.require(n > first, overflowField(first),
-                     "is an end mark, wanted the first span of an overflow cell");
+                     "is an end mark, expected the first span of an overflow cell");
     totals_.spans += n - first;
     totals_.max_spans_per_column =
         std::max(totals_.max_spans_per_column, static_cast<std::uint32_t>(n - first));
@@ -219,11 +221,12 @@ class CellChecker {
 
   void explainOverflowSpan(std::size_t n, bool inside) {
     const Span span = overflowSpan(layout_, static_cast<std::uint32_t>(n));
-    offence_.require(inside, overflowField(n),
-                     "is {} to {} m, wanted ascending finite heights inside the grid's {} to {} m",
-                     span.lo, span.hi, layout_.heights.lo, layout_.heights.hi);
+    offence_.require(
+        inside, overflowField(n),
+        "is {} to {} m, expected ascending finite heights inside the grid's {} to {} m", span.lo,
+        span.hi, layout_.heights.lo, layout_.heights.hi);
     offence_.require(false, overflowField(n),
-                     "begins at {} m, wanted above the end of the span before it in its column",
+                     "begins at {} m, expected above the end of the span before it in its column",
                      span.lo);
   }
 

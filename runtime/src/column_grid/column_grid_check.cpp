@@ -26,32 +26,33 @@ float endOf(float min, std::uint32_t columns, float spacing) {
 
 Result<void> checkFrame(const schema::ColumnGrid& grid, const std::string& where) {
   Offence offence(where);
-  offence.require(isLength(grid.radius()), "radius", "is {} m, wanted a number above 0",
+  offence.require(isLength(grid.radius()), "radius", "is {} m, expected a number above 0",
                   grid.radius());
   offence.require(isLength(grid.spacing()) && grid.spacing() >= kLeastSpacing, "spacing",
-                  "is {} m, wanted a length of at least {} m", grid.spacing(), kLeastSpacing);
+                  "is {} m, expected a length of at least {} m", grid.spacing(), kLeastSpacing);
   offence.require(grid.radius() >= 0.5F * grid.spacing(), "radius",
-                  "is {} m, wanted at least half the spacing of {} m", grid.radius(),
+                  "is {} m, expected at least half the spacing of {} m", grid.radius(),
                   grid.spacing());
-  offence.require(isLength(grid.quantum()), "quantum", "is {} m, wanted a number above 0",
+  offence.require(isLength(grid.quantum()), "quantum", "is {} m, expected a number above 0",
                   grid.quantum());
-  offence.require(isInGrid(grid.min_x()), "min_x", "is {} m, wanted up to {} m", grid.min_x(),
+  offence.require(isInGrid(grid.min_x()), "min_x", "is {} m, expected up to {} m", grid.min_x(),
                   kFarthestGrid);
-  offence.require(isInGrid(grid.min_z()), "min_z", "is {} m, wanted up to {} m", grid.min_z(),
+  offence.require(isInGrid(grid.min_z()), "min_z", "is {} m, expected up to {} m", grid.min_z(),
                   kFarthestGrid);
   offence.require(grid.columns_x() >= 1 && grid.columns_x() <= kMaxCells, "columns_x",
-                  "is {}, wanted 1 to {}", grid.columns_x(), kMaxCells);
+                  "is {}, expected 1 to {}", grid.columns_x(), kMaxCells);
   offence.require(grid.columns_z() >= 1 && grid.columns_z() <= kMaxCells, "columns_z",
-                  "is {}, wanted 1 to {}", grid.columns_z(), kMaxCells);
+                  "is {}, expected 1 to {}", grid.columns_z(), kMaxCells);
   offence.require(grid.coverage() <= schema::Coverage::MAX, "coverage",
-                  "is {}, wanted a value up to {}", static_cast<unsigned>(grid.coverage()),
+                  "is {}, expected a value up to {}", static_cast<unsigned>(grid.coverage()),
                   static_cast<unsigned>(schema::Coverage::MAX));
   const schema::Span* heights = grid.heights();
-  offence.require(heights != nullptr, "heights", "are missing, wanted the grid's range of heights");
+  offence.require(heights != nullptr, "heights",
+                  "are missing, expected the grid's range of heights");
   if (offence.found()) return offence.result();
   offence.require(
       isInGrid(heights->lo()) && isInGrid(heights->hi()) && heights->lo() <= heights->hi(),
-      "heights", "are {} to {} m, wanted ascending heights of up to {} m", heights->lo(),
+      "heights", "are {} to {} m, expected ascending heights of up to {} m", heights->lo(),
       heights->hi(), kFarthestGrid);
   return offence.result();
 }
@@ -62,7 +63,7 @@ void requireAligned(Offence& offence, const Vector& vector, const std::byte* fil
   const auto offset =
       static_cast<std::size_t>(vector.Data() - reinterpret_cast<const std::uint8_t*>(file));
   offence.require(vector.size() == 0 || offset % kVectorAlignment == 0, field,
-                  "starts at byte {} of the file, wanted a multiple of {}", offset,
+                  "starts at byte {} of the file, expected a multiple of {}", offset,
                   kVectorAlignment);
 }
 
@@ -72,17 +73,17 @@ Result<void> checkVectors(const schema::ColumnGrid& grid, const std::byte* file,
   Offence offence(where);
   const std::uint64_t cells = cellCount(grid.columns_x(), grid.columns_z());
   offence.require(cells <= kMaxCells, "columns_x",
-                  "times columns_z needs {} cells, wanted up to {}", cells, kMaxCells);
+                  "times columns_z needs {} cells, expected up to {}", cells, kMaxCells);
   offence.require(grid.cells()->size() == cells + kTilePaddingCells, "cells",
-                  "has {} elements, wanted {} for {} x {} columns", grid.cells()->size(),
+                  "has {} elements, expected {} for {} x {} columns", grid.cells()->size(),
                   cells + kTilePaddingCells, grid.columns_x(), grid.columns_z());
   const std::uint64_t tiles = cells / kCellsPerTile;
   offence.require(grid.tile_base()->size() == 0 || grid.tile_base()->size() == tiles, "tile_base",
-                  "has {} elements, wanted none or {}, one per tile", grid.tile_base()->size(),
+                  "has {} elements, expected none or {}, one per tile", grid.tile_base()->size(),
                   tiles);
   offence.require(isInGrid(endOf(grid.min_x(), grid.columns_x(), grid.spacing())) &&
                       isInGrid(endOf(grid.min_z(), grid.columns_z(), grid.spacing())),
-                  "columns_x", "and columns_z are {} and {}, wanted an end within {} m",
+                  "columns_x", "and columns_z are {} and {}, expected an end within {} m",
                   grid.columns_x(), grid.columns_z(), kFarthestGrid);
   requireAligned(offence, *grid.cells(), file, "cells");
   requireAligned(offence, *grid.tile_base(), file, "tile_base");
@@ -90,11 +91,11 @@ Result<void> checkVectors(const schema::ColumnGrid& grid, const std::byte* file,
   requireAligned(offence, *grid.overflow_spans(), file, "overflow_spans");
   const bool tall = grid.tile_base()->size() != 0;
   offence.require(tall || grid.overflow_spans()->size() == 0, "overflow_spans",
-                  "has {} elements in a grid without tile bases, wanted none: overflow_codes has "
+                  "has {} elements in a grid without tile bases, expected none: overflow_codes has "
                   "its spans",
                   grid.overflow_spans()->size());
   offence.require(!tall || grid.overflow_codes()->size() == 0, "overflow_codes",
-                  "has {} elements in a grid with tile bases, wanted none: overflow_spans has "
+                  "has {} elements in a grid with tile bases, expected none: overflow_spans has "
                   "its spans",
                   grid.overflow_codes()->size());
   return offence.result();
@@ -103,9 +104,9 @@ Result<void> checkVectors(const schema::ColumnGrid& grid, const std::byte* file,
 Result<void> checkCastCheck(const schema::CastCheck& check, const std::string& where) {
   Offence offence(where + ".statistics.cast_check");
   offence.require(check.columns_differing() <= check.columns(), "columns_differing",
-                  "is {}, wanted at most the {} columns replayed", check.columns_differing(),
+                  "is {}, expected at most the {} columns replayed", check.columns_differing(),
                   check.columns());
-  constexpr const char* kWanted = "is {} m, wanted a finite length of 0 or more";
+  constexpr const char* kWanted = "is {} m, expected a finite length of 0 or more";
   offence.require(isAmount(check.compared()), "compared", kWanted, check.compared());
   offence.require(isAmount(check.method()), "method", kWanted, check.method());
   offence.require(isAmount(check.ties()), "ties", kWanted, check.ties());
@@ -117,20 +118,20 @@ Result<void> checkStatistics(const schema::GridStatistics& statistics, const Cel
                              const std::string& where) {
   Offence offence(where);
   offence.require(statistics.spans() == totals.spans, "statistics.spans",
-                  "is {}, wanted the {} spans that the cells hold", statistics.spans(),
+                  "is {}, expected the {} spans that the cells hold", statistics.spans(),
                   totals.spans);
   offence.require(statistics.max_spans_per_column() == totals.max_spans_per_column,
-                  "statistics.max_spans_per_column", "is {}, wanted the {} that the cells hold",
+                  "statistics.max_spans_per_column", "is {}, expected the {} that the cells hold",
                   statistics.max_spans_per_column(), totals.max_spans_per_column);
   if (statistics.regions() != nullptr) {
     for (flatbuffers::uoffset_t n = 0; n < statistics.regions()->size() && !offence.found(); ++n) {
       const schema::RegionStatistics& region = *statistics.regions()->Get(n);
       offence.require(region.region() <= schema::Region::MAX,
                       fmt::format("statistics.regions[{}].region", n),
-                      "is {}, wanted a value up to {}", static_cast<unsigned>(region.region()),
+                      "is {}, expected a value up to {}", static_cast<unsigned>(region.region()),
                       static_cast<unsigned>(schema::Region::MAX));
       offence.require(isAmount(region.volume()), fmt::format("statistics.regions[{}].volume", n),
-                      "is {} m3, wanted a finite volume of 0 or more", region.volume());
+                      "is {} m3, expected a finite volume of 0 or more", region.volume());
     }
   }
   if (statistics.cast_check() != nullptr) {

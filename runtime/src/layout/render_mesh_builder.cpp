@@ -40,7 +40,7 @@ std::optional<std::string> faultOf(const RenderSurface& surface, const RenderMes
   // A cluster then repeats its image 32,000 times at most, which a pack can hold.
   constexpr float kLargestTexture = 16000;
   if (surface.corners.size() % 3 != 0) {
-    return fmt::format("found {} corners, wanted three per triangle", surface.corners.size());
+    return fmt::format("found {} corners, expected three per triangle", surface.corners.size());
   }
   if (surface.material >= source.materials.size()) {
     return fmt::format("found material {} of {}", surface.material, source.materials.size());
@@ -60,7 +60,7 @@ std::optional<std::string> faultOf(const RenderSurface& surface, const RenderMes
                          n, kFarthest);
     }
     if (std::abs(vertex.u) > kLargestTexture || std::abs(vertex.v) > kLargestTexture) {
-      return fmt::format("found texture coordinates ({}, {}) at vertex {}, wanted at most {}",
+      return fmt::format("found texture coordinates ({}, {}) at vertex {}, expected at most {}",
                          vertex.u, vertex.v, n, kLargestTexture);
     }
   }
@@ -76,7 +76,7 @@ Result<void> checkParts(const RenderMeshSource& source) {
     const RenderPart& part = source.parts[p];
     if (p > 0 && part.part <= source.parts[p - 1].part) {
       return refuse(fmt::format("parts[{}]", p),
-                    fmt::format("found part {} after part {}, wanted them to ascend", part.part,
+                    fmt::format("found part {} after part {}, expected them to ascend", part.part,
                                 source.parts[p - 1].part));
     }
     for (std::size_t s = 0; s < part.surfaces.size(); ++s) {
@@ -93,12 +93,13 @@ Result<void> checkAppearance(const RenderMeshSource& source) {
     const RenderTexture& texture = source.textures[n];
     const std::string where = fmt::format("textures[{}]", n);
     if (!std::has_single_bit(texture.size)) {
-      return refuse(where, fmt::format("found a size of {}, wanted a power of two", texture.size));
+      return refuse(where,
+                    fmt::format("found a size of {}, expected a power of two", texture.size));
     }
     const std::size_t wanted = textureBytes(texture.size, texture.format);
     if (texture.texels.size() != wanted) {
-      return refuse(
-          where, fmt::format("found {} bytes of texels, wanted {}", texture.texels.size(), wanted));
+      return refuse(where, fmt::format("found {} bytes of texels, expected {}",
+                                       texture.texels.size(), wanted));
     }
   }
   for (std::size_t n = 0; n < source.materials.size(); ++n) {
@@ -259,7 +260,7 @@ Result<RenderMeshStorage> buildRenderMeshes(const RenderMeshSource& source) {
     if (!step) {
       return refuse(
           fmt::format("parts[{}]", p),
-          fmt::format("found a cluster longer than {} m, wanted a smaller one", kMostSteps));
+          fmt::format("found a cluster longer than {} m, expected a smaller one", kMostSteps));
     }
     appendModel(onLattice(clusters, *step),
                 {.part = source.parts[p].part,

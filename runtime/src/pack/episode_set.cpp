@@ -17,7 +17,7 @@ Result<EpisodeSet> EpisodeSet::from(const PackFile& pack) {
   if (stored == nullptr) {
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 "is a pack of kind " + packKindName(pack.kind()) +
-                    ", wanted episodes (EPIS); give the pack of an episode set");
+                    ", expected episodes (EPIS); give the pack of an episode set");
   }
   EpisodeSet set;
   set.name_ = detail::fromSchema(stored->name());

@@ -15,7 +15,7 @@ Result<ObjectSet> ObjectSet::from(const PackFile& pack) {
   if (stored == nullptr) {
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 "is a pack of kind " + packKindName(pack.kind()) +
-                    ", wanted objects (OBJS); give the pack of an object set");
+                    ", expected objects (OBJS); give the pack of an object set");
   }
   ObjectSet set;
   set.radii_ = detail::inPlace<float>(stored->radii());

@@ -21,7 +21,7 @@ Result<const schema::World*> contentOf(const PackFile& world) {
   }
   return fail(ErrorCode::kInvalidInput, world.where(),
               "is a pack of kind " + packKindName(world.kind()) +
-                  ", wanted a world (WRLD); give a world pack");
+                  ", expected a world (WRLD); give a world pack");
 }
 
 /// Whether the open file is the one that was linked.
@@ -34,18 +34,18 @@ Result<void> checkLinked(const PackFile& pack, const PackReference& reference,
                 "world/other-pack");
   };
   if (pack.kind() != reference.kind) {
-    return other(fmt::format("lists {}, which is of kind {}, wanted {}", pack.where(),
+    return other(fmt::format("lists {}, which is of kind {}, expected {}", pack.where(),
                              packKindName(pack.kind()), packKindName(reference.kind)));
   }
   if (pack.bytes().size() != reference.bytes) {
-    return other(fmt::format("lists {}, which has {} bytes, wanted {}", pack.where(),
+    return other(fmt::format("lists {}, which has {} bytes, expected {}", pack.where(),
                              pack.bytes().size(), reference.bytes));
   }
   if (trust == Trust::kTrusted) return {};
   const detail::ContentHash wanted{reference.hash_low, reference.hash_high};
   const detail::ContentHash found = detail::contentHash(pack.bytes());
   if (found == wanted) return {};
-  return other(fmt::format("lists {}, whose hash is {:016x}{:016x}, wanted {:016x}{:016x}",
+  return other(fmt::format("lists {}, whose hash is {:016x}{:016x}, expected {:016x}{:016x}",
                            pack.where(), found.high, found.low, wanted.high, wanted.low));
 }
 

@@ -284,7 +284,7 @@ Result<PolicyInterface> policyInterface(const PackFile& pack) {
   if (stored == nullptr) {
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 "is a pack of kind " + packKindName(pack.kind()) +
-                    ", wanted a policy (PLCY); make one with python -m galactic.export");
+                    ", expected a policy (PLCY); make one with python -m galactic.export");
   }
   PolicyInterface needs;
   needs.name = stored->name()->str();

@@ -104,7 +104,7 @@ Result<std::optional<RenderMeshes>> renderMeshesOf(const PackFile& pack,
   if (!hasKindWithMeshes(pack)) {
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 "is a pack of kind " + packKindName(pack.kind()) +
-                    ", wanted a scene, objects or a robot: only they have something to draw");
+                    ", expected a scene, objects or a robot: only they have something to draw");
   }
   const schema::RenderMeshes* stored = storedMeshes(pack);
   if (stored == nullptr) return std::optional<RenderMeshes>();

@@ -53,7 +53,7 @@ Result<Robot> Robot::from(const PackFile& pack) {
   if (stored == nullptr) {
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 "is a pack of kind " + packKindName(pack.kind()) +
-                    ", wanted a robot (RBOT); give the pack of a robot");
+                    ", expected a robot (RBOT); give the pack of a robot");
   }
   Robot robot;
   robot.name_ = detail::fromSchema(stored->name());

@@ -14,7 +14,7 @@ Result<Scene> Scene::from(const PackFile& pack) {
   if (stored == nullptr) {
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 "is a pack of kind " + packKindName(pack.kind()) +
-                    ", wanted a scene (SCEN); give the pack of a scene");
+                    ", expected a scene (SCEN); give the pack of a scene");
   }
   Scene scene;
   scene.name_ = {stored->name()->c_str(), stored->name()->size()};

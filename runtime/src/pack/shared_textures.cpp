@@ -9,7 +9,7 @@ Result<void> SharedTextures::add(const PackFile& pack) {
       pack.kind() == PackKind::kTexture ? pack.root().asset_as_SharedTexture() : nullptr;
   if (stored == nullptr) {
     return fail(ErrorCode::kInvalidInput, pack.where(),
-                "is a pack of kind " + packKindName(pack.kind()) + ", wanted a texture (TXTR)");
+                "is a pack of kind " + packKindName(pack.kind()) + ", expected a texture (TXTR)");
   }
   by_hash_.try_emplace({stored->hash()->low(), stored->hash()->high()},
                        RenderTexture{.name = detail::fromSchema(stored->name()),

@@ -38,7 +38,7 @@ struct Parts {
 tl::unexpected<Error> repeated(const PackFile& pack, std::string_view what, std::string_view name,
                                const PackFile& first) {
   return fail(kInvalid, pack.where(),
-              fmt::format("has a second {} named \"{}\", the first is in {}; names have to be "
+              fmt::format("has a second {} named \"{}\", the first is in {}; names must be "
                           "unique in a world, leave one pack out",
                           what, name, first.where()),
               "world/repeated-name");
@@ -179,17 +179,18 @@ Result<void> checkAllRadii(const std::vector<PackFile>& packs, const Parts& part
 /// Whether the robot can be simulated at all.
 Result<void> checkAbilities(const Packed<Robot>& robot) {
   const auto lacks = [&](std::string_view what) {
-    return fail(kInvalid, robot.pack->where(),
-                fmt::format("has no {}, wanted a robot to simulate; bake it with a recipe that has "
-                            "one",
-                            what),
-                "world/incomplete-robot");
+    return fail(
+        kInvalid, robot.pack->where(),
+        fmt::format("has no {}, expected a robot to simulate; bake it with a recipe that has "
+                    "one",
+                    what),
+        "world/incomplete-robot");
   };
   if (!robot.content.endEffector()) return lacks("end effector");
   if (!robot.content.base()) return lacks("base");
   if (robot.content.spheres().empty()) {
     return fail(kInvalid, robot.pack->where(),
-                "has no spheres, wanted a robot to simulate; bake it with collision geometry",
+                "has no spheres, expected a robot to simulate; bake it with collision geometry",
                 "world/incomplete-robot");
   }
   return {};
@@ -266,9 +267,9 @@ Result<std::vector<std::uint32_t>> findStartPositions(const Parts& parts) {
                                  names[n], fault, robot.name()));
     };
     const std::optional<std::size_t> joint = findJoint(robot, names[n]);
-    if (!joint) return refuse("is no joint");
+    if (!joint) return refuse("is not a joint");
     const LinkFrame& link = robot.links()[*joint];
-    if (positionCount(link.type) != 1) return refuse("is no joint with one position");
+    if (positionCount(link.type) != 1) return refuse("is not a joint with one position");
     if (link.multiplier != 1 || link.offset != 0) return refuse("follows another joint");
     const auto position = static_cast<std::uint32_t>(link.position);
     if (std::find(indices.begin(), indices.end(), position) != indices.end()) {

@@ -36,7 +36,7 @@ class ShapeWalk {
   Result<std::vector<LayerShape>> run() {
     const auto& layers = *policy_.layers();
     offence_.require(layers.size() >= 1 && layers.size() <= kMostLayers, "layers",
-                     "has {} elements, wanted 1 to {}", layers.size(), kMostLayers);
+                     "has {} elements, expected 1 to {}", layers.size(), kMostLayers);
     for (flatbuffers::uoffset_t n = 0; n < layers.size() && !offence_.found(); ++n) {
       walk(*layers.Get(n), n);
     }
@@ -51,22 +51,23 @@ class ShapeWalk {
     for (flatbuffers::uoffset_t n = 0; n < layer.inputs()->size(); ++n) {
       const std::uint32_t input = layer.inputs()->Get(n);
       offence_.require(input < number, fmt::format("{}.inputs[{}]", field_, n),
-                       "is {}, wanted the number of a layer before this one", input);
+                       "is {}, expected the number of a layer before this one", input);
       if (offence_.found()) return;
       inputs_.push_back(shapes_[input]);
     }
     const LayerShape shape = shapeOf(layer);
     if (offence_.found()) return;
     values_ += shape.size();
-    offence_.require(values_ <= kMostValues, field_,
-                     "has a value of {} elements, and all layers up to it have {}, wanted at most "
-                     "{}",
-                     shape.size(), values_, kMostValues);
+    offence_.require(
+        values_ <= kMostValues, field_,
+        "has a value of {} elements, and all layers up to it have {}, expected at most "
+        "{}",
+        shape.size(), values_, kMostValues);
     offence_.require(weights_ <= kMostWeights, field_,
-                     "brings the weights, padded, to {}, wanted at most {}", weights_,
+                     "brings the weights, padded, to {}, expected at most {}", weights_,
                      kMostWeights);
     offence_.require(products_ <= static_cast<double>(kMostProducts), field_,
-                     "brings the multiplications to {}, wanted at most {}", products_,
+                     "brings the multiplications to {}, expected at most {}", products_,
                      kMostProducts);
     shapes_.push_back(shape);
   }
@@ -121,7 +122,7 @@ class ShapeWalk {
   bool requireInputs(schema::LayerKind kind) {
     using schema::LayerKind;
     offence_.require(kind > LayerKind::NONE && kind <= LayerKind::MAX, field_ + ".kind",
-                     "is {}, wanted 1 to {}; it may come from a later version",
+                     "is {}, expected 1 to {}; it may come from a later version",
                      static_cast<unsigned>(kind), static_cast<unsigned>(LayerKind::MAX));
     if (offence_.found()) return false;
     std::size_t least = 1;
@@ -130,7 +131,7 @@ class ShapeWalk {
     if (kind == LayerKind::SumLayer) least = most = 2;
     if (kind == LayerKind::ConcatenateLayer) most = kMostLayers;
     offence_.require(inputs_.size() >= least && inputs_.size() <= most, field_ + ".inputs",
-                     "has {} elements, wanted {}{} for {}", inputs_.size(), least,
+                     "has {} elements, expected {}{} for {}", inputs_.size(), least,
                      most > least ? " or more" : "", schema::EnumNameLayerKind(kind));
     return !offence_.found();
   }
@@ -139,7 +140,7 @@ class ShapeWalk {
     std::uint64_t size = 0;
     for (const schema::PolicyObservation* part : *policy_.observation()) size += part->size();
     offence_.require(size >= 1 && size <= kMostValues, field_,
-                     "reads an observation of {} elements, wanted 1 to {}", size, kMostValues);
+                     "reads an observation of {} elements, expected 1 to {}", size, kMostValues);
     return {.channels = static_cast<std::uint32_t>(size)};
   }
 
@@ -147,13 +148,14 @@ class ShapeWalk {
     std::uint64_t size = policy_.discrete()->size();
     if (policy_.continuous() != nullptr) size += policy_.continuous()->count();
     offence_.require(size >= 1 && size <= kMostValues, field_,
-                     "reads {} previous actions, wanted 1 to {}", size, kMostValues);
+                     "reads {} previous actions, expected 1 to {}", size, kMostValues);
     return {.channels = static_cast<std::uint32_t>(size)};
   }
 
   LayerShape image() {
     const schema::PolicyImage* image = policy_.image();
-    offence_.require(image != nullptr, field_, "reads an image, wanted Policy.image to say which");
+    offence_.require(image != nullptr, field_,
+                     "reads an image, expected Policy.image to say which");
     if (image == nullptr) return {};
     return {.channels = (image->color() ? 3U : 0U) + (image->depth() ? 1U : 0U),
             .height = image->height(),
@@ -162,7 +164,7 @@ class ShapeWalk {
 
   LayerShape constant(const schema::ConstantLayer& layer) {
     offence_.require(layer.values()->size() >= 1, field_ + ".values",
-                     "is empty, wanted at least one number");
+                     "is empty, expected at least one number");
     requireWeights(layer.values(), "values", layer.values()->size());
     return {.channels = layer.values()->size()};
   }
@@ -172,7 +174,7 @@ class ShapeWalk {
     requireWeights(layer.mean(), "mean", input.channels);
     requireWeights(layer.inverse_deviation(), "inverse_deviation", input.channels);
     offence_.require(std::isfinite(layer.limit()) && layer.limit() > 0, field_ + ".limit",
-                     "is {}, wanted a finite number above 0", layer.limit());
+                     "is {}, expected a finite number above 0", layer.limit());
     return input;
   }
 
@@ -190,10 +192,11 @@ class ShapeWalk {
     if (offence_.found()) return {};
     const std::uint64_t terms =
         std::uint64_t{layer.kernel()} * layer.kernel() * inputs_[0].channels;
-    offence_.require(terms <= kMostWeights, field_ + ".kernel",
-                     "is {}, and {} numbers of the input decide one of the result, wanted at most "
-                     "{}",
-                     layer.kernel(), terms, kMostWeights);
+    offence_.require(
+        terms <= kMostWeights, field_ + ".kernel",
+        "is {}, and {} numbers of the input decide one of the result, expected at most "
+        "{}",
+        layer.kernel(), terms, kMostWeights);
     requireWeights(layer.weight(), "weight", layer.outputs() * terms);
     if (layer.bias() != nullptr) requireWeights(layer.bias(), "bias", layer.outputs());
     count(layer.outputs(), terms, shape.pixels());
@@ -212,10 +215,10 @@ class ShapeWalk {
     const LayerShape& input = inputs_[0];
     const std::uint32_t kernel = layer.kernel();
     offence_.require(kernel >= 1 && kernel <= kLargestEdge, field_ + ".kernel",
-                     "is {}, wanted 1 to {}", kernel, kLargestEdge);
-    offence_.require(layer.stride() >= 1, field_ + ".stride", "is 0, wanted at least 1");
+                     "is {}, expected 1 to {}", kernel, kLargestEdge);
+    offence_.require(layer.stride() >= 1, field_ + ".stride", "is 0, expected at least 1");
     offence_.require(layer.padding() < kernel, field_ + ".padding",
-                     "is {}, wanted less than the kernel of {}", layer.padding(), kernel);
+                     "is {}, expected less than the kernel of {}", layer.padding(), kernel);
     if (offence_.found()) return {};
     const LayerShape shape{channels, places(input.height, kernel, layer.stride(), layer.padding()),
                            places(input.width, kernel, layer.stride(), layer.padding())};
@@ -231,7 +234,7 @@ class ShapeWalk {
   LayerShape groupNorm(const schema::GroupNormLayer& layer) {
     const LayerShape& input = inputs_[0];
     const bool divides = layer.groups() >= 1 && input.channels % layer.groups() == 0;
-    offence_.require(divides, field_ + ".groups", "is {}, wanted a divisor of the {} channels",
+    offence_.require(divides, field_ + ".groups", "is {}, expected a divisor of the {} channels",
                      layer.groups(), input.channels);
     requireNorm(layer, input.channels);
     return input;
@@ -246,7 +249,7 @@ class ShapeWalk {
   template <class Layer>
   void requireNorm(const Layer& layer, std::uint32_t channels) {
     offence_.require(std::isfinite(layer.epsilon()) && layer.epsilon() > 0, field_ + ".epsilon",
-                     "is {}, wanted a finite number above 0", layer.epsilon());
+                     "is {}, expected a finite number above 0", layer.epsilon());
     requireWeights(layer.weight(), "weight", channels);
     requireWeights(layer.bias(), "bias", channels);
   }
@@ -255,7 +258,7 @@ class ShapeWalk {
     const bool is_range = std::isfinite(layer.lower()) && std::isfinite(layer.upper()) &&
                           layer.lower() <= layer.upper();
     offence_.require(is_range, field_ + ".upper",
-                     "and lower are {} and {}, wanted finite numbers, lower the smaller",
+                     "and lower are {} and {}, expected finite numbers, lower the smaller",
                      layer.upper(), layer.lower());
     return inputs_[0];
   }
@@ -264,8 +267,8 @@ class ShapeWalk {
     const LayerShape& input = inputs_[0];
     const std::uint32_t block = layer.block();
     const bool divides = block >= 1 && input.height % block == 0 && input.width % block == 0;
-    offence_.require(divides, field_ + ".block", "is {}, wanted a divisor of {} x {} pixels", block,
-                     input.width, input.height);
+    offence_.require(divides, field_ + ".block", "is {}, expected a divisor of {} x {} pixels",
+                     block, input.width, input.height);
     if (!divides) return {};
     // At most kMostValues: the value has as many elements as its input.
     return {input.channels * block * block, input.height / block, input.width / block};
@@ -273,7 +276,7 @@ class ShapeWalk {
 
   LayerShape sum() {
     offence_.require(inputs_[0] == inputs_[1], field_ + ".inputs",
-                     "have {} x {} x {} and {} x {} x {} elements, wanted the same shape",
+                     "have {} x {} x {} and {} x {} x {} elements, expected the same shape",
                      inputs_[0].channels, inputs_[0].height, inputs_[0].width, inputs_[1].channels,
                      inputs_[1].height, inputs_[1].width);
     return inputs_[0];
@@ -285,7 +288,7 @@ class ShapeWalk {
       requireVector(n);
       size += inputs_[n].size();
     }
-    offence_.require(size <= kMostValues, field_, "has {} elements, wanted at most {}", size,
+    offence_.require(size <= kMostValues, field_, "has {} elements, expected at most {}", size,
                      kMostValues);
     return {.channels = static_cast<std::uint32_t>(size)};
   }
@@ -294,16 +297,16 @@ class ShapeWalk {
     requireVector(0);
     const std::uint64_t end = std::uint64_t{layer.first()} + layer.size();
     offence_.require(layer.size() >= 1 && end <= inputs_[0].channels, field_ + ".size",
-                     "is {} from element {} on, wanted 1 or more of the {} elements", layer.size(),
-                     layer.first(), inputs_[0].channels);
+                     "is {} from element {} on, expected 1 or more of the {} elements",
+                     layer.size(), layer.first(), inputs_[0].channels);
     return {.channels = layer.size()};
   }
 
   LayerShape gru(const schema::GruLayer& layer) {
     requireVector(0);
     const std::uint64_t size = layer.size();
-    offence_.require(size >= 1 && size <= kLargestState, field_ + ".size", "is {}, wanted 1 to {}",
-                     size, kLargestState);
+    offence_.require(size >= 1 && size <= kLargestState, field_ + ".size",
+                     "is {}, expected 1 to {}", size, kLargestState);
     requireWeights(layer.input_weight(), "input_weight", 3 * size * inputs_[0].size());
     requireWeights(layer.state_weight(), "state_weight", 3 * size * size);
     requireWeights(layer.input_bias(), "input_bias", 3 * size);
@@ -317,24 +320,24 @@ class ShapeWalk {
 
   void requireVector(std::size_t input) {
     offence_.require(inputs_[input].isVector(), fmt::format("{}.inputs[{}]", field_, input),
-                     "has {} x {} pixels, wanted a vector", inputs_[input].width,
+                     "has {} x {} pixels, expected a vector", inputs_[input].width,
                      inputs_[input].height);
   }
 
   void requireOutputs(std::uint32_t outputs) {
     offence_.require(outputs >= 1 && outputs <= kMostValues, field_ + ".outputs",
-                     "is {}, wanted 1 to {}", outputs, kMostValues);
+                     "is {}, expected 1 to {}", outputs, kMostValues);
   }
 
   void requireWeights(const Floats* weights, const char* name, std::uint64_t wanted) {
     offence_.require(weights->size() == wanted, fmt::format("{}.{}", field_, name),
-                     "has {} elements, wanted {}", weights->size(), wanted);
+                     "has {} elements, expected {}", weights->size(), wanted);
     if (offence_.found()) return;
     const auto broken =
         std::find_if(weights->begin(), weights->end(), [](float w) { return !std::isfinite(w); });
     offence_.require(broken == weights->end(),
                      fmt::format("{}.{}[{}]", field_, name, broken - weights->begin()),
-                     "is not finite, wanted a number");
+                     "is not finite, expected a number");
   }
 
   void count(std::uint64_t outputs, std::uint64_t terms, std::uint64_t pixels) {

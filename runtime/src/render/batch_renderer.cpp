@@ -20,15 +20,15 @@ Result<void> checkOptions(const RenderOptions& options) {
   if (options.width < 1 || options.width > kLargestImage || options.height < 1 ||
       options.height > kLargestImage) {
     return refuse("found images of " + std::to_string(options.width) + " x " +
-                  std::to_string(options.height) + " pixels; wanted 1 to " +
+                  std::to_string(options.height) + " pixels; expected 1 to " +
                   std::to_string(kLargestImage) + " each");
   }
   if (!(options.near > 0) || !std::isfinite(options.near)) {
     return refuse("found a near plane at " + std::to_string(options.near) +
-                  " m; wanted a distance above 0");
+                  " m; expected a distance above 0");
   }
   if (options.color == ColorFormat::kNone && !options.depth && !options.semantics) {
-    return refuse("found no image to make; wanted color, depth or semantics");
+    return refuse("found no image to make; expected color, depth or semantics");
   }
   return {};
 }

@@ -90,7 +90,7 @@ Result<std::vector<std::size_t>> withIndex(const DeviceWish& wish,
   if (devices[wish.number].software) {
     return fail(ErrorCode::kUnsupported, kWhere,
                 fmt::format("device {} is a software driver, not a graphics processor; ask for "
-                            "\"software\" or the soft backend if that is wanted. EGL lists {}",
+                            "\"software\" or the soft backend for software. EGL lists {}",
                             wish.number, listOf(devices)));
   }
   return std::vector<std::size_t>{wish.number};
@@ -128,7 +128,7 @@ Result<DeviceWish> parseDeviceWish(std::string_view text) {
     return DeviceWish{.kind = DeviceWish::Kind::kUuid, .uuid = *uuid};
   }
   return fail(ErrorCode::kInvalidInput, kWhere,
-              fmt::format("found \"{}\"; wanted an index such as 0, cuda:0, a UUID of 32 "
+              fmt::format("found \"{}\"; expected an index such as 0, cuda:0, a UUID of 32 "
                           "hexadecimal digits, software, or nothing for the first graphics "
                           "processor",
                           text));
@@ -159,7 +159,7 @@ bool isSoftwareRenderer(std::string_view renderer) {
 Result<void> judgeContext(const DeviceWish& wish, const ContextFacts& context) {
   if (context.major < 4 || (context.major == 4 && context.minor < 5)) {
     return fail(ErrorCode::kUnsupported, kWhere,
-                fmt::format("the driver \"{}\" has OpenGL {}.{}; wanted 4.5 or newer: update the "
+                fmt::format("the driver \"{}\" has OpenGL {}.{}; expected 4.5 or newer: update the "
                             "driver, or use the soft backend",
                             context.renderer, context.major, context.minor));
   }
@@ -167,7 +167,7 @@ Result<void> judgeContext(const DeviceWish& wish, const ContextFacts& context) {
   if (wish.kind == DeviceWish::Kind::kSoftware) {
     if (software) return {};
     return fail(ErrorCode::kUnsupported, kWhere,
-                fmt::format("found the graphics processor \"{}\"; wanted a software driver: "
+                fmt::format("found the graphics processor \"{}\"; expected a software driver: "
                             "install libgl1-mesa-dri, or use the soft backend",
                             context.renderer));
   }
@@ -175,18 +175,19 @@ Result<void> judgeContext(const DeviceWish& wish, const ContextFacts& context) {
   if (wish.kind == DeviceWish::Kind::kUuid && context.uuid != wish.uuid) {
     return fail(
         ErrorCode::kUnsupported, kWhere,
-        fmt::format("the graphics processor \"{}\" has the UUID {}; wanted {}", context.renderer,
+        fmt::format("the graphics processor \"{}\" has the UUID {}; expected {}", context.renderer,
                     context.uuid ? textOf(*context.uuid) : "unknown", textOf(wish.uuid)));
   }
   return {};
 }
 
 Error onlySoftware(std::string_view name) {
-  return {ErrorCode::kUnsupported, kWhere,
-          fmt::format("found only the software driver \"{}\"; wanted a graphics processor: ask for "
-                      "the device \"software\" or use the soft backend, or install the graphics "
-                      "processor's driver (in a container, with the capability \"graphics\")",
-                      name)};
+  return {
+      ErrorCode::kUnsupported, kWhere,
+      fmt::format("found only the software driver \"{}\"; expected a graphics processor: ask for "
+                  "the device \"software\" or use the soft backend, or install the graphics "
+                  "processor's driver (in a container, with the capability \"graphics\")",
+                  name)};
 }
 
 }  // namespace galactic::render

@@ -39,7 +39,7 @@ Result<void> mount(const Robot& robot, const simulation::MotionModel& motion,
     return fail(
         ErrorCode::kUnsupported,
         "robot " + std::string(robot.name()) + ", link " + std::string(robot.linkName(laser.link)),
-        "carries the laser, and an action or an episode moves it; a planar laser has to be "
+        "carries the laser, and an action or an episode moves it; a planar laser must be "
         "fixed to the base");
   }
   const auto to_base = [&link](const Vec3& v) {
@@ -109,11 +109,11 @@ Result<LaserSettings> laserSettings(const LaserOptions& options, const Robot& ro
   settings.least_range = orRobots(options.least_range, settings.least_range);
   settings.noise = orRobots(options.noise, settings.noise);
   if (options.beams > kMostBeams) {
-    return refuse(fmt::format("laser-beams is {}, wanted at most {}", options.beams, kMostBeams));
+    return refuse(fmt::format("laser-beams is {}, expected at most {}", options.beams, kMostBeams));
   }
   if (!(settings.range > settings.least_range)) {
     return refuse(
-        fmt::format("laser-range is {} m and laser-min-range {} m, wanted a range above "
+        fmt::format("laser-range is {} m and laser-min-range {} m, expected a range above "
                     "the least one",
                     settings.range, settings.least_range));
   }

@@ -159,7 +159,7 @@ class BatchSimulator::Impl {
   static Result<void> checkCount(const SavedState& saved, std::span<const std::uint32_t> envs) {
     if (saved.envs.size() == envs.size()) return {};
     return fail(ErrorCode::kInvalidInput, "saved state",
-                fmt::format("has {} envs, wanted {}", saved.envs.size(), envs.size()));
+                fmt::format("has {} envs, expected {}", saved.envs.size(), envs.size()));
   }
 
   void put(const SavedState& saved, std::span<const std::uint32_t> envs) {
@@ -203,7 +203,7 @@ Result<BatchSimulator> BatchSimulator::create(const World& world,
     return fail(ErrorCode::kInvalidInput, "simulation options",
                 "found " + std::to_string(options.envs) + " envs, rank " +
                     std::to_string(options.rank) + " of " + std::to_string(options.ranks) +
-                    "; wanted at least one env and a rank below the number of ranks");
+                    "; expected at least one env and a rank below the number of ranks");
   }
   Result<Model> model = simulation::makeModel(world, options);
   if (!model) return tl::unexpected<Error>(model.error());

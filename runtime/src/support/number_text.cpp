@@ -23,13 +23,13 @@ bool isWithin(std::string_view text, Number least, Number most) {
 
 std::string numberFault(std::string_view text, double least, double most) {
   if (isWithin(text, least, most)) return {};
-  return fmt::format("found {}, wanted a number from {} to {}", shown(text), least, most);
+  return fmt::format("found {}, expected a number from {} to {}", shown(text), least, most);
 }
 
 std::string wholeFault(std::string_view text, std::uint64_t least, std::uint64_t most) {
   const bool has_leading_zero = text.size() > 1 && text.front() == '0';
   if (!has_leading_zero && isWithin(text, least, most)) return {};
-  return fmt::format("found {}, wanted a whole number from {} to {}", shown(text), least, most);
+  return fmt::format("found {}, expected a whole number from {} to {}", shown(text), least, most);
 }
 
 TextCheck numberCheck(double least, double most) {
@@ -43,7 +43,7 @@ TextCheck wholeCheck(std::uint64_t least, std::uint64_t most) {
 TextCheck switchCheck() {
   return [](const std::string& text) {
     if (text == "true" || text == "false") return std::string();
-    return fmt::format("found \"{}\", wanted nothing, =true or =false", text);
+    return fmt::format("found \"{}\", expected nothing, =true or =false", text);
   };
 }
 

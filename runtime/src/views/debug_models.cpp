@@ -26,8 +26,9 @@ Result<std::size_t> gridIndexOf(const World& world, float radius) {
   std::string known;
   for (const float one : world.radii())
     known += fmt::format("{}{}", known.empty() ? "" : ", ", one);
-  return fail(ErrorCode::kInvalidInput, "debug view",
-              fmt::format("found a radius of {} m; wanted one of the world's: {}", radius, known));
+  return fail(
+      ErrorCode::kInvalidInput, "debug view",
+      fmt::format("found a radius of {} m; expected one of the world's: {}", radius, known));
 }
 
 /// Collects parts, numbered as they come.

@@ -100,7 +100,7 @@ TEST(ObjectBaker, SaysWhenTheTolerancesCannotBeMet) {
   ASSERT_EQ(object.warnings.size(), 1U);
   EXPECT_THAT(object.warnings[0], testing::StartsWith("1 spheres leave a gap of up to "));
   EXPECT_THAT(object.warnings[0],
-              HasSubstr("wanted 20.0 and 30.0 mm; allow more with `max-spheres`"));
+              HasSubstr("expected 20.0 and 30.0 mm; allow more with `max-spheres`"));
 }
 
 TEST(ObjectBaker, AsksAboutTheUnitOfTinyObjectsAndRefusesHugeOnes) {

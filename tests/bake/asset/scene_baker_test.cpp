@@ -41,11 +41,11 @@ TEST(SceneBaker, RefusesRadiiThatMakeNoWorkingSet) {
     std::vector<float> radii;
     const char* message;
   } cases[] = {
-      {{}, "has 0 radii, 1 to 8 are wanted"},
-      {{1, 2, 3, 4, 5, 6, 7, 8, 9}, "has 9 radii, 1 to 8 are wanted"},
-      {{0.05F, -0.1F}, "has the radius -0.1 m, a positive length is wanted"},
-      {{0}, "has the radius 0 m, a positive length is wanted"},
-      {{kNan}, "has the radius nan m, a positive length is wanted"},
+      {{}, "has 0 radii, expected 1 to 8"},
+      {{1, 2, 3, 4, 5, 6, 7, 8, 9}, "has 9 radii, expected 1 to 8"},
+      {{0.05F, -0.1F}, "has the radius -0.1 m, expected a positive length"},
+      {{0}, "has the radius 0 m, expected a positive length"},
+      {{kNan}, "has the radius nan m, expected a positive length"},
       {{0.05F, 0.05F}, "has 0.05 m after 0.05 m; list each radius once, in ascending order"},
       {{0.12F, 0.05F}, "has 0.05 m after 0.12 m; list each radius once, in ascending order"},
   };

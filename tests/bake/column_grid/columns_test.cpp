@@ -86,8 +86,8 @@ TEST(GridFrame, RefusesASpacingThatIsNoLength) {
     EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
     EXPECT_EQ(error.where, "spacing");
   }
-  EXPECT_EQ(errorOf(kRoom, 0.05F, -0.5F).message, "is -0.5 m, it has to be at least 1e-05 m");
-  EXPECT_EQ(errorOf(kRoom, 0.05F, 9e-6F).message, "is 9e-06 m, it has to be at least 1e-05 m");
+  EXPECT_EQ(errorOf(kRoom, 0.05F, -0.5F).message, "is -0.5 m, expected at least 1e-05 m");
+  EXPECT_EQ(errorOf(kRoom, 0.05F, 9e-6F).message, "is 9e-06 m, expected at least 1e-05 m");
 }
 
 TEST(GridFrame, RefusesARadiusThatIsNoLength) {

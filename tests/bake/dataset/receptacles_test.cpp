@@ -238,15 +238,16 @@ struct Fault {
 std::vector<Fault> faultsOfAll() {
   const std::string key = "receptacle_aabb_x";
   return {
-      {key, "7", "user_defined.receptacle_aabb_x: it has to be an object"},
+      {key, "7", "user_defined.receptacle_aabb_x: expected an object"},
       {key, R"({"scale": [1, 1, 1]})", "receptacle_aabb_x.position: it is missing"},
       {key, R"({"position": [1, 1, 1]})", "receptacle_aabb_x.scale: it is missing"},
-      {key, R"({"position": [1, 1], "scale": [1, 1, 1]})", ".position: it has 2 numbers, wanted 3"},
+      {key, R"({"position": [1, 1], "scale": [1, 1, 1]})",
+       ".position: it has 2 numbers, expected 3"},
       {key, R"({"position": [1, 1, 1], "scale": [1, "a", 1]})", ".scale[1]: "},
       {key, R"({"position": [1, 1e9, 1], "scale": [1, 1, 1]})", ".position[1]: "},
       {key, R"({"position": [1, 1, 1], "scale": [1, 0, 0]})", ".scale: it has several half ext"},
       {key, R"({"position": [1, 1, 1], "scale": [1, 1, 1], "up": [0, 1, 1]})",
-       ".up: it is [0, 1, 1]; one of the box's axes is wanted"},
+       ".up: it is [0, 1, 1]; expected one of the box's axes"},
       {key, R"({"position": [1, 1, 1], "scale": [1, 1, 1], "rotation": [0, 0, 0, 0]})",
        ".rotation: it is a quaternion (w, x, y, z) of length 0"},
       {key, R"({"position": [1, 1, 1], "scale": [1, 1, 1], "rotation": [1, 0, 1, 0]})",
@@ -271,9 +272,9 @@ std::vector<Fault> faultsOfObjects() {
 std::vector<Fault> faultsOfFurniture() {
   return {
       {"receptacle_aabb_x", R"({"position": [1, 1, 1], "scale": [1, 1, 1]})",
-       ".parent_link: it is '', one of the URDF's links is wanted: root, base, door"},
+       ".parent_link: it is '', expected one of the URDF's links: root, base, door"},
       {"receptacle_aabb_x", R"({"position": [1, 1, 1], "scale": [1, 1, 1], "parent_link": "body"})",
-       ".parent_link: it is 'body', one of the URDF's links is wanted: root, base, door"}};
+       ".parent_link: it is 'body', expected one of the URDF's links: root, base, door"}};
 }
 
 /// Of all warnings, those about receptacles.

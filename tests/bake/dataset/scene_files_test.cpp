@@ -70,7 +70,7 @@ TEST(SceneFiles, OfNothingAreAnError) {
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, ErrorCode::kInvalidInput);
   EXPECT_EQ(none.error().message,
-            "there is no scene in it; wanted SCENE/SCENE.glb, or *.glb, *.ply or *.obj files");
+            "there is no scene in it; expected SCENE/SCENE.glb, or *.glb, *.ply or *.obj files");
   const auto absent = bake::findSceneFiles(folder.path() / "absent");
   ASSERT_FALSE(absent);
   EXPECT_EQ(absent.error().code, ErrorCode::kIo);

@@ -155,7 +155,7 @@ TEST(SmallScenes, HaveTheirGoalsNearerWhereThatIsAllowed) {
   EpisodeGeneratorOptions options = optionsFor(8, 2);
   EXPECT_THAT(refusal(generated(world, options)),
               AllOf(HasSubstr("room: its surfaces within reach are 0."),
-                    HasSubstr("m apart at most, and goals are wanted 1 m away")));
+                    HasSubstr("m apart at most, but goals must be 1 m away")));
   options.shorten_way = true;
   const auto made = generated(world, options);
   ASSERT_TRUE(made.has_value()) << made.error().message;

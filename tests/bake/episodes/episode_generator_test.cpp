@@ -131,8 +131,8 @@ TEST(EpisodeGenerator, SaysWhatIsMissingWhereNothingFits) {
   const MadeWorld world(tablesRoom(), stickRobot());
   EpisodeGeneratorOptions options;
   options.target_to_goal.least = 20;
-  EXPECT_THAT(refusal(world, options), AllOf(HasSubstr("surfaces within reach are"),
-                                             HasSubstr("goals are wanted 20 m away")));
+  EXPECT_THAT(refusal(world, options),
+              AllOf(HasSubstr("surfaces within reach are"), HasSubstr("goals must be 20 m away")));
   options = optionsFor(1, 1);
   options.supports = bake::SupportChoice::kReceptacles;
   EXPECT_THAT(refusal(world, options), HasSubstr("no receptacles of the scene are known"));

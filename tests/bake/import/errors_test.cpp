@@ -49,7 +49,7 @@ TEST(MeshErrors, SayThatAFileIsEmpty) {
 TEST(MeshErrors, ListTheFormatsWhenNoneFits) {
   const Error error = importError("letter.odt", "text");
   EXPECT_EQ(error.code, ErrorCode::kUnsupported);
-  EXPECT_THAT(error.message, StartsWith("no reader knows the extension '.odt'; wanted one of"));
+  EXPECT_THAT(error.message, StartsWith("no reader knows the extension '.odt'; expected one of"));
   for (const char* format : {".glb", ".gltf", ".obj", ".ply", ".stl", ".dae", ".fbx"}) {
     EXPECT_THAT(error.message, HasSubstr(format));
   }
@@ -70,7 +70,7 @@ TEST(MeshErrors, SayThatThereAreNoTriangles) {
   EXPECT_THAT(points.message, HasSubstr("no triangles"));
   const Error unplaced = importError("unplaced.glb", glbWithNodes(R"([{"name":"nothing"}])"));
   EXPECT_EQ(unplaced.message,
-            "it has no triangles (0 meshes, 0 placed); wanted a surface, not points, lines or an "
+            "it has no triangles (0 meshes, 0 placed); expected a surface, not points, lines or an "
             "empty scene");
 }
 

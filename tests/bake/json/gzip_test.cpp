@@ -93,7 +93,7 @@ TEST(Gzip, RefusesDamageThatItsChecksumShows) {
 
 TEST(Gzip, RefusesWhatStandsBehindIt) {
   expectRefused(unpack(gzipped("{}") + "junk"),
-                "has 4 bytes behind its gzip data that are none; is it whole?");
+                "has 4 bytes after its gzip data that are not gzip; is it whole?");
 }
 
 TEST(Gzip, StopsABombAtTheLimit) {

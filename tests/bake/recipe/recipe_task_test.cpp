@@ -80,27 +80,37 @@ TEST_F(RecipeTask, KnowsEveryOptionOfTheTask) {
 
 TEST_F(RecipeTask, RefusesEachMistakeWithItsLine) {
   const std::vector<std::pair<std::string, std::string>> mistakes{
-      {"episode-steps = -1", "task.episode-steps = -1: wanted a whole number from 0 to 1073741824"},
+      {"episode-steps = -1",
+       "task.episode-steps: found -1, expected a whole number from 0 to 1073741824"},
       {"episode-steps = 1073741825",
-       "task.episode-steps = 1073741825: wanted a whole number from 0 to 1073741824"},
-      {"episode-steps = 300.0", "task.episode-steps = 300: wanted a whole number from 0 to"},
-      {"episode-steps = \"300\"", "task.episode-steps = \"300\": wanted a whole number from 0 to"},
-      {"episode-steps = true", "task.episode-steps = true: wanted a whole number from 0 to"},
-      {"episode-steps = [300]", "task.episode-steps = a list: wanted a whole number from 0 to"},
-      {"episode-steps = { a = 1 }", "task.episode-steps = a table: wanted a whole number from 0"},
-      {"success-distance = -0.5", "task.success-distance = -0.5: wanted a number from 0 to 1000"},
-      {"success-distance = 1e4", "task.success-distance = 10000: wanted a number from 0 to 1000"},
-      {"success-distance = nan", "task.success-distance = nan: wanted a number from 0 to 1000"},
-      {"success-distance = inf", "task.success-distance = inf: wanted a number from 0 to 1000"},
-      {"success-distance = \"0.1\"", "task.success-distance = \"0.1\": wanted a number from 0 to"},
-      {"safe-drop = 1", "task.safe-drop = 1: wanted true or false"},
-      {"safe-drop = \"true\"", "task.safe-drop = \"true\": wanted true or false"},
-      {"task = \"fly\"", "task.task = \"fly\": wanted rearrange, pick or none"},
-      {"task = 1", "task.task = 1: wanted rearrange, pick or none"},
-      {"slide = \"up\"", "task.slide = \"up\": wanted glide, published or off"},
-      {"slide = false", "task.slide = false: wanted glide, published or off"},
-      {"slide-direction = \"off\"", "task.slide-direction = \"off\": wanted glide or towards-base"},
-      {"grasp-from = 3", "task.grasp-from = 3: wanted a number from -2 to 2"},
+       "task.episode-steps: found 1073741825, expected a whole number from 0 to 1073741824"},
+      {"episode-steps = 300.0", "task.episode-steps: found 300, expected a whole number from 0 to"},
+      {"episode-steps = \"300\"",
+       "task.episode-steps: found \"300\", expected a whole number from 0 to"},
+      {"episode-steps = true", "task.episode-steps: found true, expected a whole number from 0 to"},
+      {"episode-steps = [300]",
+       "task.episode-steps: found a list, expected a whole number from 0 to"},
+      {"episode-steps = { a = 1 }",
+       "task.episode-steps: found a table, expected a whole number from 0"},
+      {"success-distance = -0.5",
+       "task.success-distance: found -0.5, expected a number from 0 to 1000"},
+      {"success-distance = 1e4",
+       "task.success-distance: found 10000, expected a number from 0 to 1000"},
+      {"success-distance = nan",
+       "task.success-distance: found nan, expected a number from 0 to 1000"},
+      {"success-distance = inf",
+       "task.success-distance: found inf, expected a number from 0 to 1000"},
+      {"success-distance = \"0.1\"",
+       "task.success-distance: found \"0.1\", expected a number from 0 to"},
+      {"safe-drop = 1", "task.safe-drop: found 1, expected true or false"},
+      {"safe-drop = \"true\"", "task.safe-drop: found \"true\", expected true or false"},
+      {"task = \"fly\"", "task.task: found \"fly\", expected rearrange, pick or none"},
+      {"task = 1", "task.task: found 1, expected rearrange, pick or none"},
+      {"slide = \"up\"", "task.slide: found \"up\", expected glide, published or off"},
+      {"slide = false", "task.slide: found false, expected glide, published or off"},
+      {"slide-direction = \"off\"",
+       "task.slide-direction: found \"off\", expected glide or towards-base"},
+      {"grasp-from = 3", "task.grasp-from: found 3, expected a number from -2 to 2"},
       {"episode-step = 3",
        "the key task.episode-step is unknown; did you mean 'episode-steps' or 'slide-step'?"},
       {"safe_drop = true", "the key task.safe_drop is unknown; did you mean 'safe-drop'?"},
@@ -125,11 +135,11 @@ TEST_F(RecipeTask, IsATable) {
       bake::readWorldRecipe(folder_.write("w.toml", "task = \"pick\"\n" + std::string(kScene)));
   ASSERT_FALSE(word.has_value());
   EXPECT_EQ(word.error().where, place(1));
-  EXPECT_EQ(word.error().message, "task has to be a table, [task]");
+  EXPECT_EQ(word.error().message, "task: expected a table, [task]");
   const auto list =
       bake::readWorldRecipe(folder_.write("w.toml", std::string(kScene) + "[[task]]\n"));
   ASSERT_FALSE(list.has_value());
-  EXPECT_EQ(list.error().message, "task has to be a table, [task]");
+  EXPECT_EQ(list.error().message, "task: expected a table, [task]");
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ TEST(SphereSetOptions, MeshesThatCannotBeCoveredAreRefused) {
 TEST(MeasureSphereSet, RefusesSpheresThatAreNoneOfTheWorkingSet) {
   const auto none = measureSphereSet(someBox(), {}, {});
   ASSERT_FALSE(none);
-  EXPECT_EQ(none.error().message, "there are none to measure; give at least one sphere");
+  EXPECT_EQ(none.error().message, "is empty; give at least one sphere");
   const auto unknown = measureSphereSet(someBox(), {{{0, 0, 0}, 3}}, {});
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().where, "spheres[0].radius_index");

@@ -115,19 +115,19 @@ TEST(ImageDecoder, ReadsJpegBaselineProgressiveAndGray) {
 TEST(ImageDecoder, RefusesJpegForPrint) {
   const std::string file =
       jpegFile({8, 8, std::vector<std::uint8_t>(256, 9)}, {.color_space = JCS_CMYK});
-  EXPECT_EQ(faultOf(file), "is a JPEG for print (CMYK); wanted RGB or gray");
+  EXPECT_EQ(faultOf(file), "is a JPEG for print (CMYK); expected RGB or gray");
 }
 
 TEST(ImageDecoder, NamesOtherFormats) {
   using namespace std::string_view_literals;
   EXPECT_EQ(faultOf(""), "is empty");
-  EXPECT_EQ(faultOf("\xABKTX 20\xBB\r\n\x1A\n...."sv), "is KTX2 (Basis); wanted PNG or JPEG");
-  EXPECT_EQ(faultOf("RIFF....WEBPVP8 "sv), "is WebP; wanted PNG or JPEG");
-  EXPECT_EQ(faultOf("DDS |..."sv), "is DDS; wanted PNG or JPEG");
-  EXPECT_EQ(faultOf("..TRUEVISION-XFILE.\0"sv), "is TGA; wanted PNG or JPEG");
+  EXPECT_EQ(faultOf("\xABKTX 20\xBB\r\n\x1A\n...."sv), "is KTX2 (Basis); expected PNG or JPEG");
+  EXPECT_EQ(faultOf("RIFF....WEBPVP8 "sv), "is WebP; expected PNG or JPEG");
+  EXPECT_EQ(faultOf("DDS |..."sv), "is DDS; expected PNG or JPEG");
+  EXPECT_EQ(faultOf("..TRUEVISION-XFILE.\0"sv), "is TGA; expected PNG or JPEG");
   EXPECT_EQ(faultOf("version https://git-lfs.github.com/spec/v1\n"sv),
-            "is a pointer of Git LFS (fetch it with git lfs pull); wanted PNG or JPEG");
-  EXPECT_EQ(faultOf("picture"sv), "is of an unknown format; wanted PNG or JPEG");
+            "is a pointer of Git LFS (fetch it with git lfs pull); expected PNG or JPEG");
+  EXPECT_EQ(faultOf("picture"sv), "is of an unknown format; expected PNG or JPEG");
 }
 
 void putBigEndian(std::string& file, std::size_t at, std::uint32_t value) {
@@ -158,9 +158,9 @@ std::string pngOfDeclaredSize(std::uint32_t width, std::uint32_t height) {
 TEST(ImageDecoder, RefusesHugeDeclaredSizesBeforeItAllocates) {
   EXPECT_EQ(
       faultOf(pngOfDeclaredSize(2'000'000'000, 2'000'000'000)),
-      "has 2000000000 x 2000000000 texels; wanted at most 16384 a side and 64 million in all");
+      "has 2000000000 x 2000000000 texels; expected at most 16384 a side and 64 million in all");
   EXPECT_EQ(faultOf(pngOfDeclaredSize(16384, 16384)),
-            "has 16384 x 16384 texels; wanted at most 16384 a side and 64 million in all");
+            "has 16384 x 16384 texels; expected at most 16384 a side and 64 million in all");
   EXPECT_THAT(faultOf(pngOfDeclaredSize(0, 5)), StartsWith("is a broken PNG (Invalid IHDR"));
   // Allowed, but the data is not there.
   EXPECT_THAT(faultOf(pngOfDeclaredSize(1024, 1024)), StartsWith("is a broken PNG ("));
@@ -173,7 +173,7 @@ TEST(ImageDecoder, RefusesHugeDeclaredSizesBeforeItAllocates) {
     jpeg[at + 1] = '\xDC';
   }
   EXPECT_EQ(faultOf(jpeg),
-            "has 65500 x 65500 texels; wanted at most 16384 a side and 64 million in all");
+            "has 65500 x 65500 texels; expected at most 16384 a side and 64 million in all");
 }
 
 TEST(ImageDecoder, FindsEveryTruncationOfAPngThatMatters) {
@@ -264,7 +264,7 @@ TEST(IsolatedBake, PassesTheDecodersMessageOn) {
   const std::string other = "GIF89a";
   const auto refused = bake::bakeIsolated(std::as_bytes(std::span(other)), {}, {}, {});
   ASSERT_FALSE(refused.has_value());
-  EXPECT_EQ(refused.error(), "is GIF; wanted PNG or JPEG");
+  EXPECT_EQ(refused.error(), "is GIF; expected PNG or JPEG");
 }
 
 }  // namespace

@@ -129,12 +129,12 @@ TEST(UnusableImages, LeaveTheColorAndGiveOneWarningEach) {
       ElementsAre(
           "texture 'cut.png' of material 'paint' is a broken PNG (it ends too early): its surfaces "
           "keep their plain color",
-          "texture 'basis.ktx2' of material 'paint' is KTX2 (Basis); wanted PNG or JPEG: its "
+          "texture 'basis.ktx2' of material 'paint' is KTX2 (Basis); expected PNG or JPEG: its "
           "surfaces keep their plain color",
-          "texture 'webp.png' of material 'paint' is WebP; wanted PNG or JPEG: its surfaces keep "
+          "texture 'webp.png' of material 'paint' is WebP; expected PNG or JPEG: its surfaces keep "
           "their plain color",
           "texture 'empty.png' of material 'paint' is empty: its surfaces keep their plain color",
-          "texture 'folder.png' of material 'paint' is no file: its surfaces keep their plain "
+          "texture 'folder.png' of material 'paint' is not a file: its surfaces keep their plain "
           "color",
           "texture 'absent.png' of material 'paint' is missing: its surfaces keep their plain "
           "color",

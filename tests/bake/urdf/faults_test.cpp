@@ -38,7 +38,7 @@ std::vector<Fault> syntaxFaults() {
       {"UnclosedElement", "<robot name=\"r\">\n<link name=\"a\"/>", "r.urdf",
        "it is not well-formed XML: Error reading Element value; repair or generate it again"},
       {"OtherRoot", "<sdf version=\"1.7\"/>", "r.urdf",
-       "its outermost element is <sdf>, wanted <robot>"},
+       "its outermost element is <sdf>, expected <robot>"},
       {"ZeroBytes", std::string("<robot\0", 7), "r.urdf",
        "it has zero bytes, so it is no XML text; is it a URDF?"},
       {"NoRobotName", "<robot><link name=\"a\"/></robot>", "r.urdf",
@@ -295,7 +295,7 @@ TEST(UrdfFiles, WithEntityBombsAreRefused) {
   text += "]><robot name=\"r\"><link name=\"&z;\"/></robot>";
   const auto robot = importText(folder, text);
   ASSERT_FALSE(robot.has_value());
-  EXPECT_EQ(robot.error().message, "its outermost element is missing, wanted <robot>");
+  EXPECT_EQ(robot.error().message, "its outermost element is missing, expected <robot>");
 }
 
 TEST(UrdfOptions, RefuseUpAxesThatAreNeitherYNorZ) {

@@ -46,7 +46,7 @@ TEST(SpherizedUrdfs, WithoutSpheresOrWithBrokenOnesAreErrors) {
   ASSERT_FALSE(flat.has_value());
   EXPECT_THAT(flat.error().where, testing::EndsWith("f.urdf: link 'a'"));
   EXPECT_EQ(flat.error().message,
-            "a sphere at (0 0 0) of radius 0: wanted a finite center and a positive radius, in "
+            "a sphere at (0 0 0) of radius 0: expected a finite center and a positive radius, in "
             "meters");
 }
 
@@ -81,8 +81,7 @@ TEST(SrdfSpheres, ThatAreBrokenNameTheirLine) {
     SCOPED_TRACE(sphere);
     const Error broken = error(fmt::format(
         "<link_sphere_approximation link=\"a\">{}</link_sphere_approximation>", sphere));
-    EXPECT_EQ(broken.message,
-              "a <sphere> of link 'a' is wanted with center=\"x y z\" and radius=\"r\"");
+    EXPECT_EQ(broken.message, "a <sphere> of link 'a' needs center=\"x y z\" and radius=\"r\"");
   }
   for (const char* sphere :
        {"<sphere center=\"0 0 nan\" radius=\"1\"/>", "<sphere center=\"0 0 0\" radius=\"-1\"/>",
@@ -90,7 +89,8 @@ TEST(SrdfSpheres, ThatAreBrokenNameTheirLine) {
     SCOPED_TRACE(sphere);
     const Error broken = error(fmt::format(
         "<link_sphere_approximation link=\"a\">{}</link_sphere_approximation>", sphere));
-    EXPECT_THAT(broken.message, testing::HasSubstr("wanted a finite center and a positive radius"));
+    EXPECT_THAT(broken.message,
+                testing::HasSubstr("expected a finite center and a positive radius"));
   }
 }
 

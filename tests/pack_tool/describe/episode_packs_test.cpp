@@ -250,7 +250,7 @@ TEST(CheckWorld, NamesTheTaskOptionThatIsWrong) {
   const Outcome outcome = checked(folder.write("world.pack", test::textOf(buildPack(list))));
   EXPECT_EQ(outcome.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
   EXPECT_THAT(outcome.err,
-              HasSubstr("world.task[0].value: is \"maybe\", wanted true or false for safe-drop"));
+              HasSubstr("world.task[0].value: is \"maybe\", expected true or false for safe-drop"));
 }
 
 TEST(PackVerbs, RefuseEpisodesAndWorldsThatTheyCannotShow) {

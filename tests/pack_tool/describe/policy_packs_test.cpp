@@ -112,7 +112,7 @@ TEST(CheckOfPolicies, SaysOkAndWhatIsWrong) {
   const auto refused = check(bad);
   EXPECT_EQ(refused.second, static_cast<int>(ErrorCode::kInvalidInput));
   EXPECT_THAT(refused.first,
-              HasSubstr("policy.discrete[0].logits: is 99, wanted one of 20 layers"));
+              HasSubstr("policy.discrete[0].logits: is 99, expected one of 20 layers"));
 }
 
 }  // namespace

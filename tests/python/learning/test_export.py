@@ -204,7 +204,7 @@ def test_errors_say_what_to_do(tmp_path: pathlib.Path, capsys: Any) -> None:
     infinite.policy.action.linear.weight.data[0, 0] = float("inf")
     checkpoint.save_policy(infinite, tmp_path / "bad.pt")
     assert export.main([str(tmp_path / "bad.pt"), "-o", str(tmp_path / "p.pack")]) == 3
-    assert "is not finite, wanted a number" in capsys.readouterr().err
+    assert "is not finite, expected a number" in capsys.readouterr().err
     assert not (tmp_path / "p.pack").exists()
 
 

@@ -48,18 +48,19 @@ TEST(EpisodeCheck, AcceptsEpisodesForAnyRobotWithoutStartPositions) {
 }
 
 TEST(EpisodeCheck, RefusesWrongNames) {
-  const std::string order = "does not come after its predecessor, wanted ascending names";
-  const std::string joint = "is empty or a repeated name, wanted each joint's own";
+  const std::string order = "does not come after its predecessor, expected ascending names";
+  const std::string joint = "is empty or a repeated name, expected each joint's own";
   refuse({
-      in("name", "is empty, wanted the episodes' name", [](Fields& f) { f.name.clear(); }),
-      in("scenes", "is empty, wanted at least one scene", [](Fields& f) { f.scenes.clear(); }),
-      in("scenes[0]", "is empty, wanted the scene's name", [](Fields& f) { f.scenes[0].clear(); }),
+      in("name", "is empty, expected the episodes' name", [](Fields& f) { f.name.clear(); }),
+      in("scenes", "is empty, expected at least one scene", [](Fields& f) { f.scenes.clear(); }),
+      in("scenes[0]", "is empty, expected the scene's name",
+         [](Fields& f) { f.scenes[0].clear(); }),
       in("scenes[1]", order,
          [](Fields& f) {
            f.scenes = {"kitchen", "kitchen"};
          }),
-      in("objects", "is empty, wanted at least one object", [](Fields& f) { f.objects.clear(); }),
-      in("objects[0]", "is empty, wanted the object's name",
+      in("objects", "is empty, expected at least one object", [](Fields& f) { f.objects.clear(); }),
+      in("objects[0]", "is empty, expected the object's name",
          [](Fields& f) { f.objects[0].clear(); }),
       in("objects[1]", order, [](Fields& f) { f.objects[0] = "nut"; }),
       in("objects[1]", order, [](Fields& f) { f.objects[1] = "bowl"; }),
@@ -70,56 +71,56 @@ TEST(EpisodeCheck, RefusesWrongNames) {
 
 TEST(EpisodeCheck, RefusesWrongStartPositions) {
   refuse({
-      in("start_positions", "has 3 elements, wanted 4, one per episode and start joint",
+      in("start_positions", "has 3 elements, expected 4, one per episode and start joint",
          [](Fields& f) { f.start_positions.pop_back(); }),
-      in("start_positions", "has 4 elements, wanted 2, one per episode and start joint",
+      in("start_positions", "has 4 elements, expected 2, one per episode and start joint",
          [](Fields& f) { f.start_joints.pop_back(); }),
-      in("start_positions[2]", "is nan, wanted a position of up to 1000000000",
+      in("start_positions[2]", "is nan, expected a position of up to 1000000000",
          [](Fields& f) { f.start_positions[2] = kNan; }),
-      in("start_positions[3]", "is -inf, wanted a position of up to 1000000000",
+      in("start_positions[3]", "is -inf, expected a position of up to 1000000000",
          [](Fields& f) { f.start_positions[3] = -kInfinity; }),
   });
 }
 
 TEST(EpisodeCheck, RefusesWrongPlacements) {
-  const std::string rigid = "is not a rigid transform, wanted up to 800 m and a unit quaternion";
+  const std::string rigid = "is not a rigid transform, expected up to 800 m and a unit quaternion";
   refuse({
-      in("placements[1].object", "is 2, wanted one of 2 objects",
+      in("placements[1].object", "is 2, expected one of 2 objects",
          [](Fields& f) { f.placements[1].object = 2; }),
-      in("placements[3].object", "is 4294967295, wanted one of 2 objects",
+      in("placements[3].object", "is 4294967295, expected one of 2 objects",
          [](Fields& f) { f.placements[3].object = 0xffffffff; }),
       in("placements[0].pose", rigid, [](Fields& f) { f.placements[0].pose.translation.x = kNan; }),
       in("placements[2].pose", rigid,
          [](Fields& f) { f.placements[2].pose.translation.z = kInfinity; }),
       in("placements[2].pose", rigid, [](Fields& f) { f.placements[2].pose.rotation.w = 0.9F; }),
       in("placements[2].pose", rigid, [](Fields& f) { f.placements[2].pose.rotation.y = kNan; }),
-      in("placements", "has 5 elements, wanted the 4 that the episodes name",
+      in("placements", "has 5 elements, expected the 4 that the episodes name",
          [](Fields& f) { f.placements.push_back(f.placements[0]); }),
   });
 }
 
 TEST(EpisodeCheck, RefusesWrongEpisodes) {
-  const std::string rigid = "is not a rigid transform, wanted up to 800 m and a unit quaternion";
+  const std::string rigid = "is not a rigid transform, expected up to 800 m and a unit quaternion";
   refuse({
-      in("episodes", "is empty, wanted at least one episode",
+      in("episodes", "is empty, expected at least one episode",
          [](Fields& f) { f.episodes.clear(); }),
-      in("episodes[0].scene", "is 1, wanted one of 1 scenes",
+      in("episodes[0].scene", "is 1, expected one of 1 scenes",
          [](Fields& f) { f.episodes[0].scene = 1; }),
-      in("episodes[0].first_placement", "and count are 1 and 3, wanted 0 and 1 to 4",
+      in("episodes[0].first_placement", "and count are 1 and 3, expected 0 and 1 to 4",
          [](Fields& f) { f.episodes[0].first_placement = 1; }),
-      in("episodes[1].first_placement", "and count are 2 and 1, wanted 3 and 1 to 1",
+      in("episodes[1].first_placement", "and count are 2 and 1, expected 3 and 1 to 1",
          [](Fields& f) { f.episodes[1].first_placement = 2; }),
-      in("episodes[1].first_placement", "and count are 3 and 0, wanted 3 and 1 to 1",
+      in("episodes[1].first_placement", "and count are 3 and 0, expected 3 and 1 to 1",
          [](Fields& f) { f.episodes[1].placement_count = 0; }),
-      in("episodes[1].first_placement", "and count are 3 and 2, wanted 3 and 1 to 1",
+      in("episodes[1].first_placement", "and count are 3 and 2, expected 3 and 1 to 1",
          [](Fields& f) { f.episodes[1].placement_count = 2; }),
-      in("episodes[0].first_placement", "and count are 0 and 4294967295, wanted 0 and 1 to 4",
+      in("episodes[0].first_placement", "and count are 0 and 4294967295, expected 0 and 1 to 4",
          [](Fields& f) { f.episodes[0].placement_count = 0xffffffff; }),
-      in("episodes[0].target", "is 3, wanted one of the episode's 3 placements",
+      in("episodes[0].target", "is 3, expected one of the episode's 3 placements",
          [](Fields& f) { f.episodes[0].target = 3; }),
-      in("episodes[1].base_position", "is farther than 800 m or not finite, wanted coordinates",
+      in("episodes[1].base_position", "is farther than 800 m or not finite, expected coordinates",
          [](Fields& f) { f.episodes[1].base_position.y = kNan; }),
-      in("episodes[1].base_yaw", "is inf rad, wanted an angle of up to 1000000000 rad",
+      in("episodes[1].base_yaw", "is inf rad, expected an angle of up to 1000000000 rad",
          [](Fields& f) { f.episodes[1].base_yaw = kInfinity; }),
       in("episodes[0].goal", rigid,
          [](Fields& f) { f.episodes[0].goal.translation.y = -kInfinity; }),

@@ -38,34 +38,34 @@ TEST(ObjectCheck, AcceptsTheObjectsThatTheOffencesBelowStartFrom) {
 
 TEST(ObjectCheck, RefusesWrongValuesOfTheSet) {
   refuse({
-      {"objects.radii", "has 0 elements, wanted 1 to 8",
+      {"objects.radii", "has 0 elements, expected 1 to 8",
        [](ObjectPackFields& f) { f.radii.clear(); }},
-      {"objects.radii", "has 9 elements, wanted 1 to 8",
+      {"objects.radii", "has 9 elements, expected 1 to 8",
        [](ObjectPackFields& f) { f.radii.assign(9, 1); }},
-      {"objects.radii[0]", "is nan m after 0 m, wanted ascending radii of up to 800 m",
+      {"objects.radii[0]", "is nan m after 0 m, expected ascending radii of up to 800 m",
        [](ObjectPackFields& f) { f.radii[0] = kNan; }},
-      {"objects.radii[0]", "is 0 m after 0 m, wanted ascending radii of up to 800 m",
+      {"objects.radii[0]", "is 0 m after 0 m, expected ascending radii of up to 800 m",
        [](ObjectPackFields& f) { f.radii[0] = 0; }},
-      {"objects.radii[1]", "is 0.015 m after 0.015 m, wanted ascending radii of up to 800 m",
+      {"objects.radii[1]", "is 0.015 m after 0.015 m, expected ascending radii of up to 800 m",
        [](ObjectPackFields& f) { f.radii[1] = f.radii[0]; }},
-      {"objects.radii[1]", "is inf m after 0.015 m, wanted ascending radii of up to 800 m",
+      {"objects.radii[1]", "is inf m after 0.015 m, expected ascending radii of up to 800 m",
        [](ObjectPackFields& f) { f.radii[1] = kInfinity; }},
-      {"objects.objects", "is empty, wanted at least one object",
+      {"objects.objects", "is empty, expected at least one object",
        [](ObjectPackFields& f) { f.objects.clear(); }},
-      {"objects.objects[1].name", "does not come after its predecessor's, wanted ascending names",
+      {"objects.objects[1].name", "does not come after its predecessor's, expected ascending names",
        [](ObjectPackFields& f) { f.objects[1].name = "bowl"; }},
-      {"objects.objects[1].name", "does not come after its predecessor's, wanted ascending names",
+      {"objects.objects[1].name", "does not come after its predecessor's, expected ascending names",
        [](ObjectPackFields& f) { f.objects[0].name = "nut"; }},
   });
 }
 
 TEST(ObjectCheck, RefusesWrongBoxes) {
   const std::string rigid =
-      "is missing or no rigid transform, wanted up to 800 m and a unit quaternion";
-  const std::string lengths = "are missing or no lengths, wanted more than 0 and up to 800 m";
-  const std::string volumes = "are missing or not finite, wanted volumes of 0 or more";
+      "is missing or not a rigid transform, expected up to 800 m and a unit quaternion";
+  const std::string lengths = "are missing or not lengths, expected more than 0 and up to 800 m";
+  const std::string volumes = "are missing or not finite, expected volumes of 0 or more";
   refuse({
-      inObject("name", "is empty, wanted the object's name",
+      inObject("name", "is empty, expected the object's name",
                [](ObjectFields& o) { o.name.clear(); }),
       inObject("box_pose", rigid, [](ObjectFields& o) { o.box_pose.reset(); }),
       inObject("box_pose", rigid, [](ObjectFields& o) { o.box_pose->translation.y = kNan; }),
@@ -76,7 +76,7 @@ TEST(ObjectCheck, RefusesWrongBoxes) {
       inObject("box_half_extents", lengths, [](ObjectFields& o) { o.box_half_extents->z = -1; }),
       inObject("box_half_extents", lengths,
                [](ObjectFields& o) { o.box_half_extents->x = kInfinity; }),
-      inObject("box_fit", "is 3, wanted a value up to 2", [](ObjectFields& o) { o.box_fit = 3; }),
+      inObject("box_fit", "is 3, expected a value up to 2", [](ObjectFields& o) { o.box_fit = 3; }),
       inObject("box_statistics", volumes, [](ObjectFields& o) { o.box_statistics.reset(); }),
       inObject("box_statistics", volumes, [](ObjectFields& o) { o.box_statistics->volume = -1; }),
       inObject("box_statistics", volumes,
@@ -88,15 +88,15 @@ TEST(ObjectCheck, RefusesWrongBoxes) {
 
 TEST(ObjectCheck, RefusesWrongSpheres) {
   const std::string order =
-      "comes before its predecessor, wanted descending radii, then ascending centers";
+      "comes before its predecessor, expected descending radii, then ascending centers";
   refuse({
-      inObject("spheres", "is empty, wanted at least one sphere",
+      inObject("spheres", "is empty, expected at least one sphere",
                [](ObjectFields& o) { o.spheres.clear(); }),
-      inObject("spheres[1].center", "is farther than 800 m or not finite, wanted coordinates",
+      inObject("spheres[1].center", "is farther than 800 m or not finite, expected coordinates",
                [](ObjectFields& o) { o.spheres[1].center.z = kNan; }),
-      inObject("spheres[0].radius_index", "is 2, wanted less than the number of radii 2",
+      inObject("spheres[0].radius_index", "is 2, expected less than the number of radii 2",
                [](ObjectFields& o) { o.spheres[0].radius_index = 2; }),
-      inObject("spheres[3].radius_index", "is 4294967295, wanted less than the number of radii 2",
+      inObject("spheres[3].radius_index", "is 4294967295, expected less than the number of radii 2",
                [](ObjectFields& o) { o.spheres[3].radius_index = 0xffffffff; }),
       inObject("spheres[1]", order, [](ObjectFields& o) { o.spheres[0].radius_index = 0; }),
       inObject("spheres[2]", order, [](ObjectFields& o) { o.spheres[2].center.x = -0.06F; }),
@@ -111,19 +111,19 @@ TEST(ObjectCheck, RefusesWrongSphereStatistics) {
                     [=](ObjectFields& o) { change(o.statistics); });
   };
   using Fields = SphereStatisticsFields;
-  const std::string number = ", wanted a finite number of 0 or more";
-  const std::string length = " m, wanted a finite length of 0 or more";
+  const std::string number = ", expected a finite number of 0 or more";
+  const std::string length = " m, expected a finite length of 0 or more";
   refuse({
       in("eps", "is nan" + number, [](Fields& s) { s.eps = kNan; }),
       in("tau", "is -1" + number, [](Fields& s) { s.tau = -1; }),
-      in("gap.mean", "is missing, wanted the lengths measured", [](Fields& s) { s.gap.reset(); }),
+      in("gap.mean", "is missing, expected the lengths measured", [](Fields& s) { s.gap.reset(); }),
       in("gap.mean", "is -1" + length, [](Fields& s) { s.gap->mean = -1; }),
       in("gap.max", "is nan" + length, [](Fields& s) { s.gap->max = kNanDouble; }),
-      in("gap.p95", "is 0.005 m, wanted 0 to the maximum of 0.004 m",
+      in("gap.p95", "is 0.005 m, expected 0 to the maximum of 0.004 m",
          [](Fields& s) { s.gap->p95 = 0.005; }),
-      in("protrusion.mean", "is missing, wanted the lengths measured",
+      in("protrusion.mean", "is missing, expected the lengths measured",
          [](Fields& s) { s.protrusion.reset(); }),
-      in("protrusion.p95", "is nan m, wanted 0 to the maximum of 0.004 m",
+      in("protrusion.p95", "is nan m, expected 0 to the maximum of 0.004 m",
          [](Fields& s) { s.protrusion->p95 = kNanDouble; }),
       in("volume_ratio", "is -1" + number, [](Fields& s) { s.volume_ratio = -1; }),
       in("guaranteed_gap", "is nan" + number, [](Fields& s) { s.guaranteed_gap = kNanDouble; }),
@@ -134,52 +134,52 @@ TEST(ObjectCheck, RefusesWrongSphereStatistics) {
 
 TEST(ObjectCheck, RefusesWrongStablePoses) {
   refuse({
-      inObject("stable_poses", "is empty, wanted at least one pose",
+      inObject("stable_poses", "is empty, expected at least one pose",
                [](ObjectFields& o) { o.stable_poses.clear(); }),
-      inObject("stable_poses[1].rotation", "is no unit quaternion, wanted a rotation",
+      inObject("stable_poses[1].rotation", "is not a unit quaternion, expected a rotation",
                [](ObjectFields& o) { o.stable_poses[1].rotation.x = 0.5F; }),
-      inObject("stable_poses[0].height", "is nan m, wanted up to 800 m",
+      inObject("stable_poses[0].height", "is nan m, expected up to 800 m",
                [](ObjectFields& o) { o.stable_poses[0].height = kNan; }),
-      inObject("stable_poses[0].likelihood", "is 1.5, wanted 0 to 1: the likeliest first",
+      inObject("stable_poses[0].likelihood", "is 1.5, expected 0 to 1: the likeliest first",
                [](ObjectFields& o) { o.stable_poses[0].likelihood = 1.5F; }),
-      inObject("stable_poses[0].likelihood", "is nan, wanted 0 to 1: the likeliest first",
+      inObject("stable_poses[0].likelihood", "is nan, expected 0 to 1: the likeliest first",
                [](ObjectFields& o) { o.stable_poses[0].likelihood = kNan; }),
-      inObject("stable_poses[1].likelihood", "is 0.8, wanted 0 to 0.75: the likeliest first",
+      inObject("stable_poses[1].likelihood", "is 0.8, expected 0 to 0.75: the likeliest first",
                [](ObjectFields& o) { o.stable_poses[1].likelihood = 0.8F; }),
-      inObject("stable_poses[1].likelihood", "is -1, wanted 0 to 0.75: the likeliest first",
+      inObject("stable_poses[1].likelihood", "is -1, expected 0 to 0.75: the likeliest first",
                [](ObjectFields& o) { o.stable_poses[1].likelihood = -1; }),
   });
 }
 
 TEST(ObjectCheck, RefusesWrongBoundsAndCounts) {
   refuse({
-      inObject("bounds", "are missing, wanted the mesh's bounds",
+      inObject("bounds", "are missing, expected the mesh's bounds",
                [](ObjectFields& o) { o.bounds.reset(); }),
-      inObject("bounds", "reach farther than 800 m or are not finite, wanted coordinates",
+      inObject("bounds", "reach farther than 800 m or are not finite, expected coordinates",
                [](ObjectFields& o) { o.bounds->max.y = kInfinity; }),
       inObject("bounds", "have a minimum (-0.1, 1, -0.1) above the maximum (0.1, 0.2, 0.1)",
                [](ObjectFields& o) { o.bounds->min.y = 1; }),
-      inObject("import_statistics.format", "is empty, wanted a format's name",
+      inObject("import_statistics.format", "is empty, expected a format's name",
                [](ObjectFields& o) { o.format.clear(); }),
       inObject("import_statistics.triangles_read",
-               "is 0, wanted at least the 1 degenerate and 0 duplicate triangles dropped",
+               "is 0, expected at least the 1 degenerate and 0 duplicate triangles dropped",
                [](ObjectFields& o) { o.triangles_read = 0; }),
-      inObject("import_statistics.triangles", "is 6, wanted the 5 that remain of those read",
+      inObject("import_statistics.triangles", "is 6, expected the 5 that remain of those read",
                [](ObjectFields& o) { o.triangles = 6; }),
   });
 }
 
 TEST(ObjectCheck, RefusesWrongSurfaces) {
   refuse({
-      inObject("surface.positions[2]", "is farther than 800 m or not finite, wanted coordinates",
+      inObject("surface.positions[2]", "is farther than 800 m or not finite, expected coordinates",
                [](ObjectFields& o) { o.surface.positions[2].x = kNan; }),
-      inObject("surface.triangles", "has 11 elements, wanted three per triangle",
+      inObject("surface.triangles", "has 11 elements, expected three per triangle",
                [](ObjectFields& o) { o.surface.triangles.pop_back(); }),
       inObject("surface.triangles[4]", "is not the index of one of the 4 positions",
                [](ObjectFields& o) { o.surface.triangles[4] = 4; }),
       inObject("surface.triangles[11]", "is not the index of one of the 4 positions",
                [](ObjectFields& o) { o.surface.triangles[11] = 0xffffffff; }),
-      inObject("surface.colors", "has 3 elements, wanted none or 4, one per position",
+      inObject("surface.colors", "has 3 elements, expected none or 4, one per position",
                [](ObjectFields& o) { o.surface.colors.pop_back(); }),
   });
 }

@@ -61,17 +61,17 @@ TEST(PackCheck, AcceptsASceneWithoutTheOptionalStatistics) {
 
 TEST(PackCheck, RefusesWrongProvenance) {
   expectRefused({
-      {"provenance.tool", "is empty, wanted a program's name",
+      {"provenance.tool", "is empty, expected a program's name",
        [](ScenePackFields& f) { f.tool.clear(); }},
-      {"provenance.tool_version", "is empty, wanted a version",
+      {"provenance.tool_version", "is empty, expected a version",
        [](ScenePackFields& f) { f.tool_version.clear(); }},
-      {"provenance.options[0].name", "is empty, wanted an option's name",
+      {"provenance.options[0].name", "is empty, expected an option's name",
        [](ScenePackFields& f) { f.option_name.clear(); }},
-      {"provenance.sources[0].name", "is empty or an absolute path, wanted a relative path",
+      {"provenance.sources[0].name", "is empty or an absolute path, expected a relative path",
        [](ScenePackFields& f) { f.source_name.clear(); }},
-      {"provenance.sources[0].name", "is empty or an absolute path, wanted a relative path",
+      {"provenance.sources[0].name", "is empty or an absolute path, expected a relative path",
        [](ScenePackFields& f) { f.source_name = "/home/me/kitchen.glb"; }},
-      {"provenance.sources[0].hash", "is missing, wanted the file's hash",
+      {"provenance.sources[0].hash", "is missing, expected the file's hash",
        [](ScenePackFields& f) { f.source_has_hash = false; }},
   });
 }
@@ -83,26 +83,26 @@ TEST(PackCheck, RefusesAnAssetThatIsNotOfTheKindInTheHeader) {
 
 TEST(PackCheck, RefusesWrongValuesOfTheScene) {
   expectRefused({
-      {"scene.name", "is empty, wanted the scene's name",
+      {"scene.name", "is empty, expected the scene's name",
        [](ScenePackFields& f) { f.name.clear(); }},
-      {"scene.bounds", "reach farther than 800 m or are not finite, wanted coordinates",
+      {"scene.bounds", "reach farther than 800 m or are not finite, expected coordinates",
        [](ScenePackFields& f) { f.bounds_min.y = kNan; }},
-      {"scene.bounds", "reach farther than 800 m or are not finite, wanted coordinates",
+      {"scene.bounds", "reach farther than 800 m or are not finite, expected coordinates",
        [](ScenePackFields& f) { f.bounds_max.x = kInfinity; }},
       {"scene.bounds", "have a minimum (6, 0, 0) above the maximum (5, 8, 3)",
        [](ScenePackFields& f) { f.bounds_min.x = 6; }},
-      {"scene.import_statistics.format", "is empty, wanted a format's name",
+      {"scene.import_statistics.format", "is empty, expected a format's name",
        [](ScenePackFields& f) { f.format.clear(); }},
       {"scene.import_statistics.triangles_read",
-       "is 9, wanted at least the 3 degenerate and 7 duplicate triangles dropped",
+       "is 9, expected at least the 3 degenerate and 7 duplicate triangles dropped",
        [](ScenePackFields& f) { f.triangles_read = 9; }},
-      {"scene.import_statistics.triangles", "is 91, wanted the 90 that remain of those read",
+      {"scene.import_statistics.triangles", "is 91, expected the 90 that remain of those read",
        [](ScenePackFields& f) { f.triangles = 91; }},
-      {"scene.column_grids", "has 0 grids, wanted 1 to 8",
+      {"scene.column_grids", "has 0 grids, expected 1 to 8",
        [](ScenePackFields& f) { f.grids.clear(); }},
-      {"scene.column_grids", "has 9 grids, wanted 1 to 8",
+      {"scene.column_grids", "has 9 grids, expected 1 to 8",
        [](ScenePackFields& f) { f.grids.resize(9, f.grids[0]); }},
-      {"scene.column_grids[1].radius", "is 0.5 m after 0.5 m, wanted ascending radii",
+      {"scene.column_grids[1].radius", "is 0.5 m after 0.5 m, expected ascending radii",
        [](ScenePackFields& f) { f.grids[1].grid.spec.radius = 0.5F; }},
   });
 }
@@ -126,31 +126,31 @@ TEST(PackCheck, RefusesWrongLengthsOfAGrid) {
     return [=](GridFields& g) { g.grid.spec.*member = value; };
   };
   expectRefused({
-      inGrid("radius", "is 0 m, wanted a number above 0", spec(&GridSpec::radius, 0.0F)),
-      inGrid("radius", "is nan m, wanted a number above 0", spec(&GridSpec::radius, kNan)),
-      inGrid("radius", "is 0.49 m, wanted at least half the spacing of 1 m",
+      inGrid("radius", "is 0 m, expected a number above 0", spec(&GridSpec::radius, 0.0F)),
+      inGrid("radius", "is nan m, expected a number above 0", spec(&GridSpec::radius, kNan)),
+      inGrid("radius", "is 0.49 m, expected at least half the spacing of 1 m",
              spec(&GridSpec::radius, 0.49F)),
-      inGrid("spacing", "is 0 m, wanted a length of at least 1e-05 m",
+      inGrid("spacing", "is 0 m, expected a length of at least 1e-05 m",
              spec(&GridSpec::spacing, 0.0F)),
-      inGrid("spacing", "is -1 m, wanted a length of at least 1e-05 m",
+      inGrid("spacing", "is -1 m, expected a length of at least 1e-05 m",
              spec(&GridSpec::spacing, -1.0F)),
-      inGrid("spacing", "is inf m, wanted a length of at least 1e-05 m",
+      inGrid("spacing", "is inf m, expected a length of at least 1e-05 m",
              spec(&GridSpec::spacing, kInfinity)),
-      inGrid("spacing", "is 1e-40 m, wanted a length of at least 1e-05 m",
+      inGrid("spacing", "is 1e-40 m, expected a length of at least 1e-05 m",
              spec(&GridSpec::spacing, 1e-40F)),
-      inGrid("spacing", "is 9e-06 m, wanted a length of at least 1e-05 m",
+      inGrid("spacing", "is 9e-06 m, expected a length of at least 1e-05 m",
              spec(&GridSpec::spacing, 9e-6F)),
-      inGrid("quantum", "is 0 m, wanted a number above 0", spec(&GridSpec::quantum, 0.0F)),
-      inGrid("quantum", "is nan m, wanted a number above 0", spec(&GridSpec::quantum, kNan)),
-      inGrid("min_x", "is nan m, wanted up to 1000 m", spec(&GridSpec::min_x, kNan)),
-      inGrid("min_z", "is -inf m, wanted up to 1000 m", spec(&GridSpec::min_z, -kInfinity)),
-      inGrid("heights", "are nan to 8 m, wanted ascending heights of up to 1000 m",
+      inGrid("quantum", "is 0 m, expected a number above 0", spec(&GridSpec::quantum, 0.0F)),
+      inGrid("quantum", "is nan m, expected a number above 0", spec(&GridSpec::quantum, kNan)),
+      inGrid("min_x", "is nan m, expected up to 1000 m", spec(&GridSpec::min_x, kNan)),
+      inGrid("min_z", "is -inf m, expected up to 1000 m", spec(&GridSpec::min_z, -kInfinity)),
+      inGrid("heights", "are nan to 8 m, expected ascending heights of up to 1000 m",
              spec(&GridSpec::heights, Span{kNan, 8})),
-      inGrid("heights", "are 0 to inf m, wanted ascending heights of up to 1000 m",
+      inGrid("heights", "are 0 to inf m, expected ascending heights of up to 1000 m",
              spec(&GridSpec::heights, Span{0, kInfinity})),
-      inGrid("heights", "are 9 to 8 m, wanted ascending heights of up to 1000 m",
+      inGrid("heights", "are 9 to 8 m, expected ascending heights of up to 1000 m",
              spec(&GridSpec::heights, Span{9, 8})),
-      inGrid("heights", "are missing, wanted the grid's range of heights",
+      inGrid("heights", "are missing, expected the grid's range of heights",
              [](GridFields& g) { g.has_heights = false; }),
   });
 }
@@ -160,27 +160,27 @@ TEST(PackCheck, RefusesWrongSizesOfAGrid) {
     return [=](GridFields& g) { g.grid.spec.*member = value; };
   };
   expectRefused({
-      inGrid("columns_x", "is 0, wanted 1 to 134217728", spec(&GridSpec::columns_x, 0U)),
-      inGrid("columns_x", "is 4294967295, wanted 1 to 134217728",
+      inGrid("columns_x", "is 0, expected 1 to 134217728", spec(&GridSpec::columns_x, 0U)),
+      inGrid("columns_x", "is 4294967295, expected 1 to 134217728",
              spec(&GridSpec::columns_x, 0xffffffffU)),
-      inGrid("columns_z", "is 0, wanted 1 to 134217728", spec(&GridSpec::columns_z, 0U)),
-      inGrid("columns_z", "is 4294967295, wanted 1 to 134217728",
+      inGrid("columns_z", "is 0, expected 1 to 134217728", spec(&GridSpec::columns_z, 0U)),
+      inGrid("columns_z", "is 4294967295, expected 1 to 134217728",
              spec(&GridSpec::columns_z, 0xffffffffU)),
-      inGrid("columns_x", "times columns_z needs 268435456 cells, wanted up to 134217728",
+      inGrid("columns_x", "times columns_z needs 268435456 cells, expected up to 134217728",
              [](GridFields& g) {
                g.grid.spec.columns_x = 1U << 14U;
                g.grid.spec.columns_z = 1U << 14U;
              }),
-      inGrid("columns_x", "and columns_z are 5 and 3, wanted an end within 1000 m",
+      inGrid("columns_x", "and columns_z are 5 and 3, expected an end within 1000 m",
              [](GridFields& g) { g.grid.spec.min_x = 999.9F; }),
-      inGrid("min_x", "is 1e+20 m, wanted up to 1000 m", spec(&GridSpec::min_x, 1e20F)),
-      inGrid("cells", "has 36 elements, wanted 52 for 9 x 3 columns",
+      inGrid("min_x", "is 1e+20 m, expected up to 1000 m", spec(&GridSpec::min_x, 1e20F)),
+      inGrid("cells", "has 36 elements, expected 52 for 9 x 3 columns",
              spec(&GridSpec::columns_x, 9U)),
-      inGrid("cells", "has 37 elements, wanted 36 for 5 x 3 columns",
+      inGrid("cells", "has 37 elements, expected 36 for 5 x 3 columns",
              [](GridFields& g) { g.extra_cells = 1; }),
-      inGrid("tile_base", "has 3 elements, wanted none or 4, one per tile",
+      inGrid("tile_base", "has 3 elements, expected none or 4, one per tile",
              [](GridFields& g) { g.grid.tile_base.assign(3, 0); }),
-      inGrid("coverage", "is 2, wanted a value up to 1", [](GridFields& g) { g.coverage = 2; }),
+      inGrid("coverage", "is 2, expected a value up to 1", [](GridFields& g) { g.coverage = 2; }),
   });
 }
 
@@ -189,19 +189,19 @@ TEST(PackCheck, RefusesWrongStatistics) {
     return [=](GridFields& g) { (*g.cast_check).*member = value; };
   };
   const std::string check = "statistics.cast_check.";
-  const std::string length = " m, wanted a finite length of 0 or more";
+  const std::string length = " m, expected a finite length of 0 or more";
   expectRefused({
-      inGrid("statistics.spans", "is 12, wanted the 11 spans that the cells hold",
+      inGrid("statistics.spans", "is 12, expected the 11 spans that the cells hold",
              [](GridFields& g) { ++g.spans; }),
-      inGrid("statistics.max_spans_per_column", "is 3, wanted the 4 that the cells hold",
+      inGrid("statistics.max_spans_per_column", "is 3, expected the 4 that the cells hold",
              [](GridFields& g) { --g.max_spans_per_column; }),
-      inGrid("statistics.regions[1].region", "is 3, wanted a value up to 2",
+      inGrid("statistics.regions[1].region", "is 3, expected a value up to 2",
              [](GridFields& g) { g.regions[1].region = 3; }),
-      inGrid("statistics.regions[2].volume", "is nan m3, wanted a finite volume of 0 or more",
+      inGrid("statistics.regions[2].volume", "is nan m3, expected a finite volume of 0 or more",
              [](GridFields& g) { g.regions[2].volume = kNanDouble; }),
-      inGrid("statistics.regions[0].volume", "is -1 m3, wanted a finite volume of 0 or more",
+      inGrid("statistics.regions[0].volume", "is -1 m3, expected a finite volume of 0 or more",
              [](GridFields& g) { g.regions[0].volume = -1; }),
-      inGrid(check + "columns_differing", "is 9, wanted at most the 8 columns replayed",
+      inGrid(check + "columns_differing", "is 9, expected at most the 8 columns replayed",
              cast(&CastCheckFields::columns_differing, 9U)),
       inGrid(check + "compared", "is nan" + length, cast(&CastCheckFields::compared, kNanDouble)),
       inGrid(check + "method", "is -1" + length, cast(&CastCheckFields::method, -1.0)),
@@ -231,8 +231,8 @@ std::uint64_t cellOf(std::uint64_t first, std::uint64_t second = kEmptySpanCode)
 }
 
 TEST(PackCheck, RefusesWrongCells) {
-  const std::string none = ", wanted ascending codes or (65535, 0) for none";
-  const std::string top = ", wanted at most 32769, the top of the grid";
+  const std::string none = ", expected ascending codes or (65535, 0) for none";
+  const std::string top = ", expected at most 32769, the top of the grid";
   expectRefused({
       inCell(0, cellOf(spanCode(5, 4)), "has a first span of codes 5 to 4" + none),
       inCell(0, cellOf(spanCode(0xffff, 1)), "has a first span of codes 65535 to 1" + none),
@@ -243,19 +243,19 @@ TEST(PackCheck, RefusesWrongCells) {
              "has a second span up to code 65535" + top),
       inCell(0, cellOf(spanCode(1, 2), 0xffffffff), "has a second span up to code 65535" + top),
       inCell(0, cellOf(spanCode(1, 2), 0),
-             "has a second span from code 0 and a first one to code 2, wanted ascending disjoint "
+             "has a second span from code 0 and a first one to code 2, expected ascending disjoint "
              "spans"),
       inCell(0, cellOf(spanCode(1, 2), spanCode(2, 3)),
-             "has a second span from code 2 and a first one to code 2, wanted ascending disjoint "
+             "has a second span from code 2 and a first one to code 2, expected ascending disjoint "
              "spans"),
       inCell(0, cellOf(kEmptySpanCode, spanCode(1, 2)), "has a second span but no first one"),
       inCell(9, cellOf(spanCode(1, 2)),
-             "lies beyond the last column and is 0xffff00020001, wanted blocked 0xffff0000ffff"),
-      inCell(6, overflowCell(1), "is an overflow cell whose spans begin at element 1, wanted 0"),
-      inCell(19, overflowCell(0), "is an overflow cell whose spans begin at element 0, wanted 4"),
+             "lies beyond the last column and is 0xffff00020001, expected blocked 0xffff0000ffff"),
+      inCell(6, overflowCell(1), "is an overflow cell whose spans begin at element 1, expected 0"),
+      inCell(19, overflowCell(0), "is an overflow cell whose spans begin at element 0, expected 4"),
       inCell(19, overflowCell(0xffffffff),
-             "is an overflow cell whose spans begin at element 4294967295, wanted 4"),
-      inGrid(cellField(6), "is an overflow cell whose spans begin at element 0, wanted 4",
+             "is an overflow cell whose spans begin at element 4294967295, expected 4"),
+      inGrid(cellField(6), "is an overflow cell whose spans begin at element 0, expected 4",
              [](GridFields& g) { g.grid.cells[2] = overflowCell(0); }),
   });
 }
@@ -271,7 +271,7 @@ TEST(PackCheck, RefusesUnusedElementsThatAreNotZero) {
   EXPECT_EQ(pack.error().where,
             std::string("kitchen.pack: scene.column_grids[0].cells[") + (before ? "0]" : "32]"));
   EXPECT_EQ(pack.error().message,
-            "is an unused element of value 0x7, wanted 0; bake the pack again");
+            "is an unused element of value 0x7, expected 0; bake the pack again");
 }
 
 TEST(PackCheck, RefusesVectorsThatAreNotAligned) {
@@ -286,29 +286,31 @@ TEST(PackCheck, RefusesVectorsThatAreNotAligned) {
     if (pack) continue;
     ++refused;
     EXPECT_EQ(pack.error().where, "kitchen.pack: scene.column_grids[1].cells");
-    EXPECT_NE(pack.error().message.find("wanted a multiple of 32"), std::string::npos);
+    EXPECT_NE(pack.error().message.find("expected a multiple of 32"), std::string::npos);
   }
   EXPECT_GT(refused, 0);
 }
 
 TEST(PackCheck, RefusesWrongTileBases) {
-  expectRefused(inTallGrid(
-      cellField(0, 1), "has a first span up to code 20480, wanted at most -1, the top of the grid",
-      [](GridFields& g) { g.grid.tile_base[0] = 0xffff; }));
+  expectRefused(
+      inTallGrid(cellField(0, 1),
+                 "has a first span up to code 20480, expected at most -1, the top of the grid",
+                 [](GridFields& g) { g.grid.tile_base[0] = 0xffff; }));
 }
 
 TEST(PackCheck, RefusesOverflowListsThatDoNotEndWhereTheyShould) {
-  const std::string no_end = "begins the spans of an overflow cell, wanted an end mark behind them";
-  const std::string empty = "is an end mark, wanted the first span of an overflow cell";
+  const std::string no_end =
+      "begins the spans of an overflow cell, expected an end mark behind them";
+  const std::string empty = "is an end mark, expected the first span of an overflow cell";
   expectRefused({
       inGrid("overflow_codes[4]", no_end, [](GridFields& g) { g.grid.overflow_codes.pop_back(); }),
       inGrid("overflow_codes[4]", no_end, [](GridFields& g) { g.grid.overflow_codes.resize(4); }),
       inGrid("overflow_codes[0]", empty,
              [](GridFields& g) { g.grid.overflow_codes[0] = kEndOfCodes; }),
-      inGrid(cellField(19), "is an overflow cell whose spans begin at element 4, wanted 3",
+      inGrid(cellField(19), "is an overflow cell whose spans begin at element 4, expected 3",
              [](GridFields& g) { g.grid.overflow_codes[2] = kEndOfCodes; }),
       inGrid("overflow_codes[9]",
-             "belongs to no overflow cell, wanted 9 elements as the cells name "
+             "belongs to no overflow cell, expected 9 elements as the cells name "
              "them",
              [](GridFields& g) { g.grid.overflow_codes.push_back(kEndOfCodes); }),
       inTallGrid("overflow_spans[4]", no_end,
@@ -316,7 +318,7 @@ TEST(PackCheck, RefusesOverflowListsThatDoNotEndWhereTheyShould) {
       inTallGrid("overflow_spans[4]", empty,
                  [](GridFields& g) { g.grid.overflow_spans[4] = kEndOfSpans; }),
       inTallGrid("overflow_spans[6]",
-                 "belongs to no overflow cell, wanted 6 elements as the cells name them",
+                 "belongs to no overflow cell, expected 6 elements as the cells name them",
                  [](GridFields& g) {
                    g.grid.overflow_spans.push_back({1, 2});
                  }),
@@ -330,15 +332,15 @@ TEST(PackCheck, RefusesWrongOverflowCodes) {
       g.grid.overflow_codes[n] = static_cast<std::uint32_t>(spanCode(lo, hi));
     };
   };
-  const std::string inside = ", wanted ascending finite heights inside the grid's 0 to 8 m";
-  const std::string above = ", wanted above the end of the span before it in its column";
+  const std::string inside = ", expected ascending finite heights inside the grid's 0 to 8 m";
+  const std::string above = ", expected above the end of the span before it in its column";
   expectRefused({
       inGrid("overflow_codes[0]", "is 2 to 1 m" + inside, codes(0, 8192, 4096)),
       inGrid("overflow_codes[2]", "is 5 to 15 m" + inside, codes(2, 20480, 61440)),
       inGrid("overflow_codes[1]", "begins at 2 m" + above, codes(1, 8192, 16384)),
       inGrid("overflow_codes[7]", "begins at 1 m" + above, codes(7, 4096, 16384)),
       inTallGrid("overflow_codes",
-                 "has 1 elements in a grid with tile bases, wanted none: overflow_spans has its "
+                 "has 1 elements in a grid with tile bases, expected none: overflow_spans has its "
                  "spans",
                  [](GridFields& g) { g.grid.overflow_codes.assign(1, 0); }),
   });
@@ -348,8 +350,8 @@ TEST(PackCheck, RefusesWrongOverflowSpans) {
   const auto span = [](std::size_t n, Span value) {
     return [=](GridFields& g) { g.grid.overflow_spans[n] = value; };
   };
-  const std::string inside = ", wanted ascending finite heights inside the grid's -4 to 36 m";
-  const std::string above = ", wanted above the end of the span before it in its column";
+  const std::string inside = ", expected ascending finite heights inside the grid's -4 to 36 m";
+  const std::string above = ", expected above the end of the span before it in its column";
   expectRefused({
       inTallGrid("overflow_spans[0]", "is nan to 1 m" + inside, span(0, {kNan, 1})),
       inTallGrid("overflow_spans[0]", "is 0 to nan m" + inside, span(0, {0, kNan})),
@@ -359,7 +361,7 @@ TEST(PackCheck, RefusesWrongOverflowSpans) {
       inTallGrid("overflow_spans[0]", "is -4.5 to 1 m" + inside, span(0, {-4.5F, 1})),
       inTallGrid("overflow_spans[1]", "begins at 1 m" + above, span(1, {1, 3})),
       inGrid("overflow_spans",
-             "has 1 elements in a grid without tile bases, wanted none: overflow_codes has its "
+             "has 1 elements in a grid without tile bases, expected none: overflow_codes has its "
              "spans",
              [](GridFields& g) {
                g.grid.overflow_spans.assign(1, Span{1, 2});

@@ -40,12 +40,12 @@ TEST(WorldCheck, AcceptsDotsInsideNames) {
 
 TEST(WorldCheck, RefusesWrongPaths) {
   const std::string upwards =
-      "leads upwards with \"..\", wanted a path below the world pack's folder";
-  const std::string part = "has an empty part or \".\", wanted names between '/'";
+      "leads upwards with \"..\", expected a path below the world pack's folder";
+  const std::string part = "has an empty part or \".\", expected names between '/'";
   refuse({
-      path("", "is empty, wanted the path of a pack"),
-      path("/a.pack", "is absolute, wanted a path relative to the world pack's folder"),
-      path(std::string("a\0.pack", 7), "holds a zero byte, wanted the path of a pack"),
+      path("", "is empty, expected the path of a pack"),
+      path("/a.pack", "is absolute, expected a path relative to the world pack's folder"),
+      path(std::string("a\0.pack", 7), "holds a zero byte, expected the path of a pack"),
       path("..", upwards),
       path("../a.pack", upwards),
       path("a/../b.pack", upwards),
@@ -53,24 +53,24 @@ TEST(WorldCheck, RefusesWrongPaths) {
       path("./a.pack", part),
       path("a//b.pack", part),
       path("a/", part),
-      {"world.packs[1].path", "does not come after its predecessor, wanted ascending paths",
+      {"world.packs[1].path", "does not come after its predecessor, expected ascending paths",
        [](Fields& f) { f.packs[1].path = "episodes.pack"; }},
-      {"world.packs[2].path", "does not come after its predecessor, wanted ascending paths",
+      {"world.packs[2].path", "does not come after its predecessor, expected ascending paths",
        [](Fields& f) { f.packs[2].path = "a.pack"; }},
   });
 }
 
 TEST(WorldCheck, RefusesWrongKindsSizesAndHashes) {
   refuse({
-      {"world.packs[1].kind", "is \"OBJ\", wanted SCEN, OBJS, RBOT, EPIS or TXTR",
+      {"world.packs[1].kind", "is \"OBJ\", expected SCEN, OBJS, RBOT, EPIS or TXTR",
        [](Fields& f) { f.packs[1].kind = "OBJ"; }},
-      {"world.packs[1].kind", "is \"objs\", wanted SCEN, OBJS, RBOT, EPIS or TXTR",
+      {"world.packs[1].kind", "is \"objs\", expected SCEN, OBJS, RBOT, EPIS or TXTR",
        [](Fields& f) { f.packs[1].kind = "objs"; }},
-      {"world.packs[1].kind", "is \"WRLD\", wanted no world in a world",
+      {"world.packs[1].kind", "is \"WRLD\", expected no world in a world",
        [](Fields& f) { f.packs[1].kind = "WRLD"; }},
-      {"world.packs[3].bytes", "is 64, wanted more than the 64 of a pack's header",
+      {"world.packs[3].bytes", "is 64, expected more than the 64 of a pack's header",
        [](Fields& f) { f.packs[3].bytes = 64; }},
-      {"world.packs[3].hash", "is missing, wanted the file's hash",
+      {"world.packs[3].hash", "is missing, expected the file's hash",
        [](Fields& f) { f.packs[3].hash.reset(); }},
   });
 }
@@ -96,13 +96,13 @@ TEST(WorldCheck, AcceptsTexturePacks) {
 
 TEST(WorldCheck, RefusesAListThatIsNoWorld) {
   refuse({
-      {"world.packs", "has 2 robots (RBOT), wanted at most one",
+      {"world.packs", "has 2 robots (RBOT), expected at most one",
        [](Fields& f) { f.packs[1].kind = "RBOT"; }},
-      {"world.packs", "has 2 episode sets (EPIS), wanted at most one",
+      {"world.packs", "has 2 episode sets (EPIS), expected at most one",
        [](Fields& f) { f.packs[1].kind = "EPIS"; }},
-      {"world.packs", "has no scene (SCEN), wanted at least one",
+      {"world.packs", "has no scene (SCEN), expected at least one",
        [](Fields& f) { f.packs.pop_back(); }},
-      {"world.packs", "has no scene (SCEN), wanted at least one",
+      {"world.packs", "has no scene (SCEN), expected at least one",
        [](Fields& f) { f.packs.clear(); }},
   });
 }
@@ -154,7 +154,7 @@ TEST(WorldCheck, AcceptsTaskOptionsInTheOrderOfTheTable) {
 }
 
 TEST(WorldCheck, RefusesUnknownTaskOptions) {
-  const std::string wanted = ", wanted an option of the task, reward or robot of galactic-run";
+  const std::string wanted = ", expected an option of the task, reward or robot of galactic-run";
   refuse({
       option("", "1", "name", "is \"\"" + wanted),
       option("wings", "1", "name", "is \"wings\"" + wanted),
@@ -169,7 +169,7 @@ TEST(WorldCheck, RefusesUnknownTaskOptions) {
 }
 
 TEST(WorldCheck, RefusesTaskOptionsTwiceOrInAnotherOrder) {
-  const std::string wanted = ", wanted each option once, in the order of galactic-run's table";
+  const std::string wanted = ", expected each option once, in the order of galactic-run's table";
   refuse({
       option("episode-steps", "300", "name", "is \"episode-steps\"" + wanted),
       option("task", "pick", "name", "is \"task\"" + wanted),
@@ -183,7 +183,8 @@ TEST(WorldCheck, RefusesTaskOptionsTwiceOrInAnotherOrder) {
 TEST(WorldCheck, RefusesWrongValuesOfTaskOptions) {
   const auto value = [](const std::string& name, const std::string& found,
                         const std::string& wanted) {
-    return option(name, found, "value", "is \"" + found + "\", wanted " + wanted + " for " + name);
+    return option(name, found, "value",
+                  "is \"" + found + "\", expected " + wanted + " for " + name);
   };
   refuse({
       value("success-distance", "", "0 to 1000"),

@@ -373,7 +373,7 @@ TEST(RenderMeshBuilder, WhatCannotBeStoredIsRefusedByName) {
   RenderSurface bad = good;
   bad.corners.pop_back();
   EXPECT_EQ(refused(bad),
-            "render meshes: parts[0].surfaces[0]: found 2 corners, wanted three per triangle");
+            "render meshes: parts[0].surfaces[0]: found 2 corners, expected three per triangle");
   bad = good;
   bad.corners[1] = 3;
   EXPECT_THAT(refused(bad), HasSubstr("found corner 3 of 3 vertices"));
@@ -402,12 +402,13 @@ TEST(RenderMeshBuilder, WhatCannotBeStoredIsRefusedByName) {
 TEST(RenderMeshBuilder, PartsTexturesAndMaterialsAreChecked) {
   RenderMeshSource source = sourceOf({{.part = 2}, {.part = 2}});
   EXPECT_EQ(buildRenderMeshes(source).error().message,
-            "found part 2 after part 2, wanted them to ascend");
+            "found part 2 after part 2, expected them to ascend");
   source = sourceOf({});
   source.textures = {{"t", 3, TexelFormat::kRgba8, {}}};
-  EXPECT_EQ(buildRenderMeshes(source).error().message, "found a size of 3, wanted a power of two");
+  EXPECT_EQ(buildRenderMeshes(source).error().message,
+            "found a size of 3, expected a power of two");
   source.textures = {{"t", 2, TexelFormat::kRgba8, {}}};
-  EXPECT_EQ(buildRenderMeshes(source).error().message, "found 0 bytes of texels, wanted 20");
+  EXPECT_EQ(buildRenderMeshes(source).error().message, "found 0 bytes of texels, expected 20");
   source.textures.clear();
   source.materials[0].texture = 0;
   EXPECT_EQ(buildRenderMeshes(source).error().message, "found texture 0 of 0");

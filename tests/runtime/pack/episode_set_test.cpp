@@ -89,7 +89,7 @@ TEST(EpisodeSet, RefusesAPackOfAnotherKind) {
   EXPECT_EQ(set.error().code, ErrorCode::kInvalidInput);
   EXPECT_EQ(set.error().where, "helper.pack");
   EXPECT_EQ(set.error().message,
-            "is a pack of kind RBOT, wanted episodes (EPIS); give the pack of an episode set");
+            "is a pack of kind RBOT, expected episodes (EPIS); give the pack of an episode set");
 }
 
 TEST(EpisodeSet, RefusesATrustedPackWhoseHeaderLies) {

@@ -73,7 +73,7 @@ TEST(ObjectSet, RefusesAPackOfAnotherKind) {
   EXPECT_EQ(set.error().code, ErrorCode::kInvalidInput);
   EXPECT_EQ(set.error().where, "helper.pack");
   EXPECT_EQ(set.error().message,
-            "is a pack of kind RBOT, wanted objects (OBJS); give the pack of an object set");
+            "is a pack of kind RBOT, expected objects (OBJS); give the pack of an object set");
 }
 
 TEST(ObjectSet, RefusesATrustedPackWhoseHeaderLies) {

@@ -195,7 +195,7 @@ TEST(Scene, RefusesATrustedPackOfAnotherKind) {
   EXPECT_EQ(scene.error().code, ErrorCode::kInvalidInput);
   EXPECT_EQ(scene.error().where, "home.pack");
   EXPECT_EQ(scene.error().message,
-            "is a pack of kind WRLD, wanted a scene (SCEN); give the pack of a scene");
+            "is a pack of kind WRLD, expected a scene (SCEN); give the pack of a scene");
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ TEST(Robot, RefusesAPackOfAnotherKind) {
   EXPECT_EQ(robot.error().code, ErrorCode::kInvalidInput);
   EXPECT_EQ(robot.error().where, "objects.pack");
   EXPECT_EQ(robot.error().message,
-            "is a pack of kind OBJS, wanted a robot (RBOT); give the pack of a robot");
+            "is a pack of kind OBJS, expected a robot (RBOT); give the pack of a robot");
 }
 
 }  // namespace

@@ -24,18 +24,19 @@ TEST(TexturePack, IsAcceptedAsItIsMade) {
 
 TEST(TexturePack, IsRefusedWithAnyWrongValue) {
   const auto [low, high] = hashOf(Fields{}.texels);
-  const std::string wanted = fmt::format("wanted {:016x}{:016x}", high, low);
+  const std::string wanted = fmt::format("expected {:016x}{:016x}", high, low);
   expectRefused<Fields>(
       Fields{},
-      {{"shared_texture.size", "is 3, wanted a power of two up to 4096",
+      {{"shared_texture.size", "is 3, expected a power of two up to 4096",
         [](Fields& f) { f.size = 3; }},
-       {"shared_texture.size", "is 0, wanted a power of two up to 4096",
+       {"shared_texture.size", "is 0, expected a power of two up to 4096",
         [](Fields& f) { f.size = 0; }},
-       {"shared_texture.size", "is 8192, wanted a power of two up to 4096",
+       {"shared_texture.size", "is 8192, expected a power of two up to 4096",
         [](Fields& f) { f.size = 8192; }},
-       {"shared_texture.format", "is 2, wanted a value up to 1", [](Fields& f) { f.format = 2; }},
-       {"shared_texture.texels", "has 19 bytes, wanted 20", [](Fields& f) { f.texels.pop_back(); }},
-       {"shared_texture.texels", "has 20 bytes, wanted 84", [](Fields& f) { f.size = 4; }},
+       {"shared_texture.format", "is 2, expected a value up to 1", [](Fields& f) { f.format = 2; }},
+       {"shared_texture.texels", "has 19 bytes, expected 20",
+        [](Fields& f) { f.texels.pop_back(); }},
+       {"shared_texture.texels", "has 20 bytes, expected 84", [](Fields& f) { f.size = 4; }},
        {"shared_texture.hash", "is not that of the texels, " + wanted, [](Fields& f) {
           f.hash = TexelHash{1, 2};
         }}});
@@ -74,7 +75,7 @@ TEST(SharedTextures, ComeFromTexturePacksOnly) {
   const auto added = textures.add(*pack);
   ASSERT_FALSE(added.has_value());
   EXPECT_EQ(added.error().where, "room.pack");
-  EXPECT_EQ(added.error().message, "is a pack of kind SCEN, wanted a texture (TXTR)");
+  EXPECT_EQ(added.error().message, "is a pack of kind SCEN, expected a texture (TXTR)");
 }
 
 /// A home whose room shows the shared texture.
@@ -148,8 +149,9 @@ TEST(SharedTextureOfAPack, HasNoPlaceAmongThePacksOwnTexels) {
   fields.render_meshes = smallRenderMeshes();
   fields.render_meshes->textures[0].shared = TexelHash{1, 2};
   expectRefused<ScenePackFields>(
-      fields, {{"scene.render_meshes.textures[0].first_byte", "is 32 of a shared texture, wanted 0",
-                [](ScenePackFields& f) { f.render_meshes->textures[0].first_byte = 32; }}});
+      fields,
+      {{"scene.render_meshes.textures[0].first_byte", "is 32 of a shared texture, expected 0",
+        [](ScenePackFields& f) { f.render_meshes->textures[0].first_byte = 32; }}});
 }
 
 }  // namespace

@@ -167,7 +167,7 @@ TEST(World, RefusesAPackOfAnotherKindThanLinked) {
   for (const Trust trust : {Trust::kVerify, Trust::kTrusted}) {
     expectError(openWorld(path, trust), path,
                 "lists " + other.string() +
-                    ", which is of kind RBOT, wanted OBJS: it is not the pack that was linked; "
+                    ", which is of kind RBOT, expected OBJS: it is not the pack that was linked; "
                     "link the world again");
   }
 }
@@ -183,7 +183,7 @@ TEST(World, RefusesAPackOfAnotherSizeThanLinked) {
   for (const Trust trust : {Trust::kVerify, Trust::kTrusted}) {
     expectError(openWorld(path, trust), path,
                 "lists " + other.string() + ", which has " + std::to_string(file.size()) +
-                    " bytes, wanted " + std::to_string(buildPack(fields.objects).size()) +
+                    " bytes, expected " + std::to_string(buildPack(fields.objects).size()) +
                     ": it is not the pack that was linked; link the world again");
   }
 }
@@ -212,7 +212,7 @@ TEST(World, RefusesALinkedPackThatIsDamaged) {
   const fs::path path = writeWorld(folder, fields);
   expectError(openWorld(path),
               (folder.path() / "objects.pack").string() + ": objects.objects[0].name",
-              "is empty, wanted the object's name; bake the pack again");
+              "is empty, expected the object's name; bake the pack again");
 }
 
 TEST(World, RefusesATruncatedPack) {
@@ -289,7 +289,7 @@ TEST(World, WithAllItsPartsFitsTogetherAsItOpens) {
 
 TEST(World, RefusesWhatIsThereTwice) {
   const WorldBytes bytes{WorldFields{}};
-  const std::string name = "; names have to be unique in a world, leave one pack out";
+  const std::string name = "; names must be unique in a world, leave one pack out";
   const auto with = [&](const AlignedBytes& more) {
     std::vector<PackFile> packs = packsOf(bytes);
     packs.push_back(viewed(more, "more.pack"));
@@ -324,9 +324,9 @@ TEST(World, RefusesEpisodesOfWhatIsNotThere) {
       [](WorldFields& f) { f.episodes.robot = "fetch"; }, "tidy.pack: episode_set.robot",
       "is \"fetch\", the robot in helper.pack is \"helper\"; give the robot that the "
       "episodes were made for");
-  start_joint("knee", "is no joint");
-  start_joint("hinge", "is no joint with one position");
-  start_joint("free", "is no joint with one position");
+  start_joint("knee", "is not a joint");
+  start_joint("hinge", "is not a joint with one position");
+  start_joint("free", "is not a joint with one position");
   start_joint("grip", "follows another joint");
   // A mimic that copies the joint exactly would still start one position twice.
   expectRefusedWorld(
@@ -348,7 +348,7 @@ TEST(World, RefusesPacksOfOtherRadii) {
 }
 
 TEST(World, RefusesARobotThatCannotBeSimulated) {
-  const std::string recipe = ", wanted a robot to simulate; bake it with a recipe that has one";
+  const std::string recipe = ", expected a robot to simulate; bake it with a recipe that has one";
   expectRefusedWorld([](WorldFields& f) { f.robot.end_effector.reset(); }, "helper.pack",
                      "has no end effector" + recipe);
   expectRefusedWorld([](WorldFields& f) { f.robot.base.reset(); }, "helper.pack",
@@ -361,7 +361,8 @@ TEST(World, RefusesARobotThatCannotBeSimulated) {
           group.sphere_count = 0;
         }
       },
-      "helper.pack", "has no spheres, wanted a robot to simulate; bake it with collision geometry");
+      "helper.pack",
+      "has no spheres, expected a robot to simulate; bake it with collision geometry");
 }
 
 /// Opens a small world whose pack has this task.
@@ -423,7 +424,7 @@ TEST(WorldTask, IsCheckedInTrustedPacksToo) {
     EXPECT_TRUE(world.error().where.ends_with("world.pack: world.task[0].value"))
         << world.error().where;
     EXPECT_EQ(world.error().message,
-              "is \"many\", wanted 0 to 1073741824 for episode-steps; bake the pack again");
+              "is \"many\", expected 0 to 1073741824 for episode-steps; bake the pack again");
   }
 }
 
@@ -444,7 +445,7 @@ TEST(PackReferences, ShowTheListOfAWorldPackOnly) {
   const auto none = packReferences(viewed(robot, "helper.pack"));
   ASSERT_FALSE(none.has_value());
   EXPECT_EQ(none.error().message,
-            "is a pack of kind RBOT, wanted a world (WRLD); give a world pack");
+            "is a pack of kind RBOT, expected a world (WRLD); give a world pack");
 }
 
 TEST(PackReferences, RefuseATrustedListWithoutAKindOrAHash) {

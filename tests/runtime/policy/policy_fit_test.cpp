@@ -91,7 +91,7 @@ TEST(PolicyInterfaceOfAPack, ComesFromPolicyPacksOnly) {
   ASSERT_FALSE(needs.has_value());
   EXPECT_EQ(needs.error().where, "room.pack");
   EXPECT_EQ(needs.error().message,
-            "is a pack of kind SCEN, wanted a policy (PLCY); make one with python -m "
+            "is a pack of kind SCEN, expected a policy (PLCY); make one with python -m "
             "galactic.export");
 }
 

@@ -43,7 +43,7 @@ TEST(DeviceWishText, RefusesAnythingElseAndSaysWhatItWants) {
     EXPECT_EQ(wish.error().code, ErrorCode::kInvalidInput);
     EXPECT_EQ(wish.error().message,
               std::string("found \"") + text +
-                  "\"; wanted an index such as 0, cuda:0, a UUID of 32 hexadecimal digits, "
+                  "\"; expected an index such as 0, cuda:0, a UUID of 32 hexadecimal digits, "
                   "software, or nothing for the first graphics processor");
   }
 }
@@ -88,7 +88,7 @@ TEST(DeviceChoice, NeverTakesASoftwareDriverForAGraphicsProcessor) {
   ASSERT_FALSE(index.has_value());
   EXPECT_EQ(index.error().message,
             "device 0 is a software driver, not a graphics processor; ask for \"software\" or the "
-            "soft backend if that is wanted. EGL lists 0 (Mesa's software driver, software)");
+            "soft backend for software. EGL lists 0 (Mesa's software driver, software)");
 }
 
 TEST(ContextChoice, RefusesAnOldOpenGl) {
@@ -96,7 +96,7 @@ TEST(ContextChoice, RefusesAnOldOpenGl) {
   ASSERT_FALSE(judged.has_value());
   EXPECT_EQ(judged.error().code, ErrorCode::kUnsupported);
   EXPECT_EQ(judged.error().message,
-            "the driver \"Old Card 100\" has OpenGL 4.3; wanted 4.5 or newer: update the driver, "
+            "the driver \"Old Card 100\" has OpenGL 4.3; expected 4.5 or newer: update the driver, "
             "or use the soft backend");
   EXPECT_TRUE(judgeContext({}, {4, 5, "Card", std::nullopt}).has_value());
   EXPECT_TRUE(judgeContext({}, {5, 0, "Card", std::nullopt}).has_value());
@@ -106,7 +106,7 @@ TEST(ContextChoice, RefusesASoftwareDriverWhereAGraphicsProcessorWasAskedFor) {
   const auto judged = judgeContext({}, {4, 5, "llvmpipe (LLVM 15)", std::nullopt});
   ASSERT_FALSE(judged.has_value());
   EXPECT_EQ(judged.error().message,
-            "found only the software driver \"llvmpipe (LLVM 15)\"; wanted a graphics processor: "
+            "found only the software driver \"llvmpipe (LLVM 15)\"; expected a graphics processor: "
             "ask for the device \"software\" or use the soft backend, or install the graphics "
             "processor's driver (in a container, with the capability \"graphics\")");
   const DeviceWish software{.kind = Kind::kSoftware};
@@ -124,7 +124,7 @@ TEST(ContextChoice, ComparesTheUuid) {
   ASSERT_FALSE(other.has_value());
   EXPECT_EQ(other.error().message,
             "the graphics processor \"Card\" has the UUID 00000000-0000-0000-0000-000000000000; "
-            "wanted 00010203-0405-0607-0809-0a0b0c0d0e0f");
+            "expected 00010203-0405-0607-0809-0a0b0c0d0e0f");
   EXPECT_FALSE(judgeContext(*wish, {4, 6, "Card", std::nullopt}).has_value());
 }
 

@@ -377,16 +377,16 @@ TEST(SoftRenderer, RefusesOptionsOutOfRange) {
     return made ? std::string("none") : made.error().message;
   };
   RenderOptions options = batchOptions(0, 128);
-  EXPECT_EQ(message(options), "found images of 0 x 128 pixels; wanted 1 to 4096 each");
+  EXPECT_EQ(message(options), "found images of 0 x 128 pixels; expected 1 to 4096 each");
   options = batchOptions(128, 4097);
-  EXPECT_EQ(message(options), "found images of 128 x 4097 pixels; wanted 1 to 4096 each");
+  EXPECT_EQ(message(options), "found images of 128 x 4097 pixels; expected 1 to 4096 each");
   options = batchOptions(128, 128);
   options.near = 0;
-  EXPECT_EQ(message(options), "found a near plane at 0.000000 m; wanted a distance above 0");
+  EXPECT_EQ(message(options), "found a near plane at 0.000000 m; expected a distance above 0");
   options = batchOptions(128, 128);
   options.color = ColorFormat::kNone;
   options.depth = options.semantics = false;
-  EXPECT_EQ(message(options), "found no image to make; wanted color, depth or semantics");
+  EXPECT_EQ(message(options), "found no image to make; expected color, depth or semantics");
 }
 
 }  // namespace

@@ -178,7 +178,7 @@ TEST(Laser, MustNotBeCarriedByAnArm) {
   EXPECT_EQ(
       faultOf(world, {.beams = 3}),
       "robot cart, link arm: carries the laser, and an action or an episode moves it; a planar "
-      "laser has to be fixed to the base");
+      "laser must be fixed to the base");
   EXPECT_EQ(faultOf(world, {}), "none");
 }
 
@@ -189,7 +189,7 @@ TEST(Laser, IsRefusedWhereItSeesNothing) {
       HasSubstr("scans scene kitchen at the height 5.000 m, where nothing is free (its grids reach "
                 "from -0.5 to 3 m); give another laser-height"));
   EXPECT_THAT(faultOf(world, {.beams = 3, .range = 1, .least_range = 1}),
-              HasSubstr("laser-range is 1 m and laser-min-range 1 m, wanted a range above"));
+              HasSubstr("laser-range is 1 m and laser-min-range 1 m, expected a range above"));
 }
 
 TEST(Laser, LooksFromTheFloorOnWhichTheRobotStands) {

@@ -284,13 +284,13 @@ TEST(Options, ThatMakeNoSenseAreErrors) {
   };
   SimulationOptions options = optionsFor(0);
   EXPECT_EQ(message(options),
-            "found 0 envs, rank 0 of 1; wanted at least one env and a rank below the number of "
+            "found 0 envs, rank 0 of 1; expected at least one env and a rank below the number of "
             "ranks");
   options = optionsFor(3);
   options.rank = 2;
   options.ranks = 2;
   EXPECT_EQ(message(options),
-            "found 3 envs, rank 2 of 2; wanted at least one env and a rank below the number of "
+            "found 3 envs, rank 2 of 2; expected at least one env and a rank below the number of "
             "ranks");
 }
 

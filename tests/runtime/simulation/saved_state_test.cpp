@@ -247,20 +247,20 @@ TEST_F(DamagedState, IsRefusedWithWhatIsWrong) {
   expectRefused(other, "is none");
   other = state_;
   other[8] = std::byte{9};
-  expectRefused(other, "has format version 9, wanted 3");
+  expectRefused(other, "has format version 9, expected 3");
   other = state_;
   other[40] ^= std::byte{1};
   sign(other);
   expectRefused(other, "is of another world");
   const Bytes two = simulator_.saveState(std::vector<std::uint32_t>{0, 1});
-  expectRefused(two, "has 2 envs, wanted 3");
+  expectRefused(two, "has 2 envs, expected 3");
 }
 
 TEST_F(DamagedState, OfOtherOptionsIsRefusedByTheirNames) {
   SimulationOptions options = homeOptions(3);
   options.task.success_distance = 0.25F;
   BatchSimulator far = simulatorOf(home_.world(), options);
-  EXPECT_THAT(refusalOf(far, state_), HasSubstr("wanted success-distance=0.25, found "
+  EXPECT_THAT(refusalOf(far, state_), HasSubstr("expected success-distance=0.25, found "
                                                 "success-distance=0.1"));
   options = homeOptions(3);
   options.body_transforms = true;

@@ -18,8 +18,8 @@ TEST(NumberText, TakesTheWholeTextAsANumberInItsRange) {
                            " 1", "+1", "0x1", "1m", "--1"}) {
     EXPECT_NE(numberFault(text, -2, 2), "") << text;
   }
-  EXPECT_EQ(numberFault("nan", 0, 5), "found nan, wanted a number from 0 to 5");
-  EXPECT_EQ(numberFault("", 0, 5), "found nothing, wanted a number from 0 to 5");
+  EXPECT_EQ(numberFault("nan", 0, 5), "found nan, expected a number from 0 to 5");
+  EXPECT_EQ(numberFault("", 0, 5), "found nothing, expected a number from 0 to 5");
 }
 
 TEST(NumberText, TakesDigitsAloneAsAWholeNumber) {
@@ -32,7 +32,7 @@ TEST(NumberText, TakesDigitsAloneAsAWholeNumber) {
                            "010", "0x10", "+1", " 1", "1 ", "nan", "1_000", "1'000"}) {
     EXPECT_NE(wholeFault(text, 0, kMost), "") << text;
   }
-  EXPECT_EQ(wholeFault("-1", 1, 9), "found -1, wanted a whole number from 1 to 9");
+  EXPECT_EQ(wholeFault("-1", 1, 9), "found -1, expected a whole number from 1 to 9");
 }
 
 TEST(NearestName, IsAddedToComplaintsAboutOptions) {
@@ -42,7 +42,7 @@ TEST(NearestName, IsAddedToComplaintsAboutOptions) {
   EXPECT_EQ(withSuggestions("unknown: --sed=3", options),
             "unknown: --sed=3; did you mean '--seed'?");
   for (const char* other : {"input is required", "unknown: --something-else", "unknown: --",
-                            "--seed: found nan, wanted a number from 0 to 1"}) {
+                            "--seed: found nan, expected a number from 0 to 1"}) {
     EXPECT_EQ(withSuggestions(other, options), other);
   }
 }

@@ -188,8 +188,9 @@ TEST(DebugModels, TheGridIsThatOfTheRadius) {
   EXPECT_NEAR(large->library().model(0).bounds_min.y, -0.25F - 0.12F, kHeightStep);
   const auto none = DebugModels::from(home.world(), {.radius = 0.3F});
   ASSERT_FALSE(none);
-  EXPECT_THAT(none.error().message, HasSubstr("found a radius of 0.3 m; wanted one of the world's: "
-                                              "0.016, 0.05, 0.12"));
+  EXPECT_THAT(none.error().message,
+              HasSubstr("found a radius of 0.3 m; expected one of the world's: "
+                        "0.016, 0.05, 0.12"));
 }
 
 }  // namespace

@@ -69,8 +69,8 @@ class OptionField {
   /// Whether it may be given several times.
   [[nodiscard]] virtual bool repeats() const { return false; }
   /// Gives the field the value of `given`, which has at least one element. Returns what is wrong
-  /// with it ("found 3, wanted a number from 0 to 1"), else nothing. After a fault the field is of
-  /// no use.
+  /// with it ("found 3, expected a number from 0 to 1"), else nothing. After a fault the field is
+  /// of no use.
   [[nodiscard]] virtual std::string read(std::span<const GivenValue> given) = 0;
   /// The field's value as it would be typed, one text for each time that the option would be given.
   /// None where it has no value: a switch that is off, an option that was not given.

@@ -55,7 +55,7 @@ class IndexReader {
 
 bool IndexReader::wantsObject(const JsonNode& node) {
   if (node.json == nullptr) return false;
-  if (!node.json->is_object()) json_.error(node.place, "it has to be an object with members");
+  if (!node.json->is_object()) json_.error(node.place, "expected an object");
   return node.json->is_object();
 }
 
@@ -117,7 +117,7 @@ void IndexReader::readPaths(TemplateKind kind, const JsonNode& paths) {
   for (auto item = paths.json->begin(); item != paths.json->end(); ++item) {
     const JsonNode list{&*item, fmt::format("{}['{}']", paths.place, item.key())};
     if (item.key().size() < 2) {
-      json_.error(list.place, "the name has to be a file extension, for example '.json'");
+      json_.error(list.place, "expected a file extension, for example '.json'");
     }
     for (const JsonNode& pattern : json_.elements(list)) {
       addMatches(kind, item.key(), pattern);
@@ -175,7 +175,7 @@ void IndexReader::readBlock(TemplateKind kind, const JsonNode& node) {
 
 Result<void> IndexReader::read(const Json& root) {
   const JsonNode node{&root, ""};
-  if (!root.is_object()) json_.error("the file", "it has to be an object with members");
+  if (!root.is_object()) json_.error("the file", "expected an object");
   for (std::size_t i = 0; i < kTemplateKinds && !json_.failed(); ++i) {
     readBlock(static_cast<TemplateKind>(i), JsonReader::member(node, kNames[i].block));
   }

@@ -53,7 +53,7 @@ class BoxReader {
 
   std::optional<StatedBox> read(const std::string& key) {
     StatedBox box;
-    if (!node_.json->is_object()) json_.error(node_.place, "it has to be an object");
+    if (!node_.json->is_object()) json_.error(node_.place, "expected an object");
     box.name = json_.text(JsonReader::member(node_, "name"));
     if (box.name.empty()) box.name = key;
     json_.numbers(json_.require(node_, "position"), kFarthest, box.center);
@@ -85,7 +85,7 @@ class BoxReader {
     box.states_up = node.json != nullptr;
     json_.numbers(node, kFarthest, up);
     if (std::ranges::count(up, 0.0) != 2) {
-      return json_.error(node.place, fmt::format("it is [{}]; one of the box's axes is wanted, as "
+      return json_.error(node.place, fmt::format("it is [{}]; expected one of the box's axes, as "
                                                  "[0, 1, 0]",
                                                  fmt::join(up, ", ")));
     }
@@ -135,7 +135,7 @@ std::optional<Affine> frameOf(const StatedBox& box, const ReceptacleParent& pare
   std::vector<std::string_view> names;
   names.reserve(parent.links.size());
   for (const ReceptacleLink& one : parent.links) names.emplace_back(one.name);
-  reader.error("parent_link", fmt::format("it is '{}', one of the URDF's links is wanted: {}",
+  reader.error("parent_link", fmt::format("it is '{}', expected one of the URDF's links: {}",
                                           box.link, fmt::join(names, ", ")));
   return std::nullopt;
 }

@@ -120,12 +120,12 @@ void SceneReader::readJoints(const JsonNode& node, SceneItem& item) {
 SceneItem SceneReader::readItem(const JsonNode& node) {
   SceneItem item;
   if (!node.json->is_object()) {
-    json_.error(node.place, "it has to be an object with members");
+    json_.error(node.place, "expected an object");
     return item;
   }
   const JsonNode name = json_.require(node, "template_name");
   item.template_name = json_.text(name);
-  if (item.template_name.empty()) json_.error(name.place, "the name of a template is wanted");
+  if (item.template_name.empty()) json_.error(name.place, "is empty, expected a template's name");
   readPose(node, item);
   readScale(node, item);
   item.origin = readOrigin(node);
@@ -153,8 +153,7 @@ void SceneReader::readList(const char* key, std::vector<SceneItem>& items, bool 
 
 Result<void> SceneReader::read(bool& has_stage) {
   if (!root_.json->is_object()) {
-    json_.error(root_.place.empty() ? "the file" : root_.place,
-                "it has to be an object with members");
+    json_.error(root_.place.empty() ? "the file" : root_.place, "expected an object");
   }
   const auto origin = readOrigin(root_);
   if (origin) scene_.origin = *origin;

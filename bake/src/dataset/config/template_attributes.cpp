@@ -30,7 +30,7 @@ class LayerReader {
       : json_(layer.file), root_{&layer.json, layer.place}, attributes_(attributes) {}
 
   Result<void> read(TemplateKind kind) {
-    if (!root_.json->is_object()) json_.error(placeOfRoot(), "it has to be an object");
+    if (!root_.json->is_object()) json_.error(placeOfRoot(), "expected an object");
     if (kind == TemplateKind::kArticulated) {
       readArticulated();
     } else {
@@ -109,7 +109,7 @@ Result<void> checkFrame(const TemplateAttributes& attributes, const std::string&
   const double cosine = dotOf(attributes.up, attributes.front) / std::sqrt(up * front);
   if (up > 0 && front > 0 && std::abs(cosine) <= kRightAngle) return {};
   return fail(ErrorCode::kInvalidInput, where,
-              fmt::format("up ({}) and front ({}) are wanted at right angles; give both",
+              fmt::format("up ({}) and front ({}) must be at right angles; give both",
                           fmt::join(attributes.up, ", "), fmt::join(attributes.front, ", ")));
 }
 

@@ -66,7 +66,7 @@ std::string PreparedScene::whyUnusable() const {
   if (!supports_.places().empty()) {
     if (target_to_goal_.least <= widestWay()) return {};
     return fmt::format(
-        "its surfaces within reach are {:.2f} m apart at most, and goals are wanted {} m away; ask "
+        "its surfaces within reach are {:.2f} m apart at most, but goals must be {} m away; ask "
         "for a shorter way from target to goal",
         widestWay(), target_to_goal_.least);
   }

@@ -39,7 +39,7 @@ Result<std::vector<std::uint32_t>> readEpisodeList(const std::filesystem::path& 
     const std::string_view wrong = addIndices(text.substr(0, end), indices);
     if (!wrong.empty()) {
       return fail(ErrorCode::kInvalidInput, fmt::format("{}:{}", path.string(), number),
-                  fmt::format("has \"{}\", indices of episodes are wanted, from 0 on, separated by "
+                  fmt::format("has \"{}\", expected indices of episodes, from 0 on, separated by "
                               "blanks",
                               wrong.substr(0, 40)));
     }

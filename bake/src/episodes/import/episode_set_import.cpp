@@ -67,7 +67,7 @@ std::uint32_t EpisodeSetReader::index(const JsonNode& node, std::size_t count, c
   if (value >= 0 && static_cast<std::size_t>(value) < count) {
     return static_cast<std::uint32_t>(value);
   }
-  json_.error(node.place, fmt::format("is {}, wanted one of {} {}", value, count, of));
+  json_.error(node.place, fmt::format("is {}, expected one of {} {}", value, count, of));
   return 0;
 }
 
@@ -76,8 +76,8 @@ Rotation EpisodeSetReader::rotation(const JsonNode& node) {
   json_.numbers(node, 2, value);
   const double length = lengthOf(value);
   if (std::abs(length - 1) > kUnitTolerance) {
-    json_.error(node.place, fmt::format("has the length {}, a rotation w, x, y, z of length 1 is "
-                                        "wanted",
+    json_.error(node.place, fmt::format("has the length {}, expected a rotation w, x, y, z "
+                                        "of length 1",
                                         length));
     return {1, 0, 0, 0};
   }
@@ -104,9 +104,9 @@ void EpisodeSetReader::readScenes(const JsonNode& list) {
     json_.onlyKnown(scene, {"name", "columnGridSetName", "renderAssetInstances"});
     const JsonNode name = json_.require(scene, "name");
     file_.scenes.push_back(json_.text(name));
-    if (file_.scenes.back().empty()) json_.error(name.place, "is empty, a scene's name is wanted");
+    if (file_.scenes.back().empty()) json_.error(name.place, "is empty, expected a scene's name");
   }
-  if (file_.scenes.empty()) json_.error(list.place, "is empty, at least one scene is wanted");
+  if (file_.scenes.empty()) json_.error(list.place, "is empty, expected at least one scene");
   renameScenes(list);
 }
 
@@ -234,7 +234,7 @@ Result<EpisodeFile> EpisodeSetReader::read(const Json& root) {
     if (json_.failed()) break;
     readEpisode(episode);
   }
-  if (nodes.empty()) json_.error(list.place, "is empty, at least one episode is wanted");
+  if (nodes.empty()) json_.error(list.place, "is empty, expected at least one episode");
   if (json_.failed()) return json_.failure();
   file_.place = json_.file() + ": episodeSet.episodes";
   file_.warnings = json_.warnings();

@@ -102,7 +102,8 @@ RigidMatrix HabitatReader::matrix(const JsonNode& node) {
   const auto lists = json_.elements(node);
   if (json_.failed()) return {};
   if (lists.size() != rows.size()) {
-    json_.error(node.place, fmt::format("it has {} rows, wanted 4 of 4 numbers", lists.size()));
+    json_.error(node.place,
+                fmt::format("it has {} rows, expected 4 rows of 4 numbers", lists.size()));
     return {};
   }
   for (std::size_t n = 0; n < rows.size(); ++n) json_.numbers(lists[n], kFarthest, rows[n]);
@@ -118,10 +119,9 @@ RigidMatrix HabitatReader::matrix(const JsonNode& node) {
                       std::abs(dot(axes[n], axes[(n + 1) % 3]))});
   }
   if (worst > kUnitTolerance || dot(cross(axes[0], axes[1]), axes[2]) < 0) {
-    json_.error(
-        node.place,
-        "it is not a rigid transform: its columns have to be perpendicular, right-handed and "
-        "of length 1, with the translation in the last one, and its last row 0, 0, 0, 1");
+    json_.error(node.place,
+                "it is not a rigid transform: its columns must be perpendicular, right-handed and "
+                "of length 1, with the translation in the last one, and its last row 0, 0, 0, 1");
     return {};
   }
   axes[0] = normalized(axes[0]);
@@ -158,26 +158,27 @@ Pose HabitatReader::pose(const JsonNode& node, const std::string& object) {
 
 std::uint32_t HabitatReader::readScene(const JsonNode& node) {
   const std::string name = habitatName(json_.text(node));
-  if (name.empty()) json_.error(node.place, "is empty, a scene's name or file is wanted");
+  if (name.empty()) json_.error(node.place, "is empty, expected a scene's name or file");
   return scenes_.numberOf(name);
 }
 
 std::vector<std::string> HabitatReader::readObjects(const JsonNode& list) {
   std::vector<std::string> objects;
   const auto nodes = json_.elements(list);
-  if (nodes.empty()) json_.error(list.place, "is empty, at least one object is wanted");
+  if (nodes.empty()) json_.error(list.place, "is empty, expected at least one object");
   objects.reserve(nodes.size());
   for (const JsonNode& node : nodes) {
     const auto pair = json_.elements(node);
     if (json_.failed()) break;
     if (pair.size() != 2) {
-      json_.error(node.place, fmt::format("it has {} elements, wanted an object's template and its "
-                                          "transform",
-                                          pair.size()));
+      json_.error(node.place,
+                  fmt::format("it has {} elements, expected an object's template and its "
+                              "transform",
+                              pair.size()));
       break;
     }
     const std::string name = habitatName(json_.text(pair[0]));
-    if (name.empty()) json_.error(pair[0].place, "is empty, an object's template is wanted");
+    if (name.empty()) json_.error(pair[0].place, "is empty, expected an object's template");
     const Pose placed = pose(pair[1], name);
     if (json_.failed()) break;
     objects.push_back(name);
@@ -194,8 +195,8 @@ void HabitatReader::readStart(const JsonNode& node, Episode& episode) {
   const Rotation rotation = ofUnitLength({xyzw[3], xyzw[0], xyzw[1], xyzw[2]});
   const double length = lengthOf({xyzw[3], xyzw[0], xyzw[1], xyzw[2]});
   if (std::abs(length - 1) > kUnitTolerance) {
-    return json_.error(turned.place, fmt::format("has the length {}, a rotation x, y, z, w of "
-                                                 "length 1 is wanted",
+    return json_.error(turned.place, fmt::format("has the length {}, expected a rotation "
+                                                 "x, y, z, w of length 1",
                                                  length));
   }
   // Where the robot's X axis points; a base that tips over has no heading.
@@ -203,7 +204,7 @@ void HabitatReader::readStart(const JsonNode& node, Episode& episode) {
   const double ahead = 1 - 2 * (y * y + z * z);
   const double right = 2 * (x * z - w * y);
   if (std::hypot(ahead, right) < 0.5) {
-    return json_.error(turned.place, "points the robot up or down, a heading is wanted");
+    return json_.error(turned.place, "points the robot up or down, expected a heading");
   }
   episode.base_position = {static_cast<float>(start[0]), static_cast<float>(start[1]),
                            static_cast<float>(start[2])};
@@ -214,11 +215,11 @@ void HabitatReader::readStart(const JsonNode& node, Episode& episode) {
 
 void HabitatReader::readFurniture(const JsonNode& states) {
   if (states.json == nullptr) return;
-  if (!states.json->is_object()) return json_.error(states.place, "it has to be an object");
+  if (!states.json->is_object()) return json_.error(states.place, "expected an object");
   bool open = false;
   for (auto one = states.json->begin(); one != states.json->end(); ++one) {
     const JsonNode links{&*one, fmt::format("{}.{}", states.place, one.key())};
-    if (!one->is_object()) return json_.error(links.place, "it has to be an object");
+    if (!one->is_object()) return json_.error(links.place, "expected an object");
     for (auto link = one->begin(); link != one->end(); ++link) {
       const double state = json_.number({&*link, fmt::format("{}.{}", links.place, link.key())},
                                         -kLargestState, kLargestState);
@@ -233,9 +234,10 @@ std::optional<std::size_t> HabitatReader::targetOf(const JsonNode& target,
                                                    const Instances& instances) {
   const auto instance = habitatInstance(handle);
   if (!instance) {
-    json_.error(target.place,
-                "is no handle of an instance, wanted a template's name and its number, for example "
-                "mug_:0000");
+    json_.error(
+        target.place,
+        "is not an instance's handle, expected a template's name and its number, for example "
+        "mug_:0000");
     return std::nullopt;
   }
   const auto named = instances.find(instance->object);
@@ -252,7 +254,7 @@ std::map<std::size_t, Pose> HabitatReader::readTargets(const JsonNode& targets,
   std::map<std::size_t, Pose> goals;
   if (targets.json == nullptr || json_.failed()) return goals;
   if (!targets.json->is_object()) {
-    json_.error(targets.place, "it has to be an object");
+    json_.error(targets.place, "expected an object");
     return goals;
   }
   Instances instances;
@@ -262,10 +264,10 @@ std::map<std::size_t, Pose> HabitatReader::readTargets(const JsonNode& targets,
     const auto target = targetOf(node, one.key(), instances);
     if (!target) return goals;
     if (!goals.emplace(*target, pose(node, objects[*target])).second) {
-      json_.error(node.place, "is the second goal of one object, wanted one for each");
+      json_.error(node.place, "is the second goal of one object, expected one for each");
     }
   }
-  if (goals.empty()) json_.error(targets.place, "is empty, at least one target is wanted");
+  if (goals.empty()) json_.error(targets.place, "is empty, expected at least one target");
   return goals;
 }
 
@@ -334,7 +336,7 @@ Result<EpisodeFile> HabitatReader::read(const Json& root) {
     if (json_.failed()) break;
     readEpisode(episode);
   }
-  if (nodes.empty()) json_.error(list.place, "is empty, at least one episode is wanted");
+  if (nodes.empty()) json_.error(list.place, "is empty, expected at least one episode");
   if (json_.failed()) return json_.failure();
   file_.scenes = scenes_.take();
   file_.objects = objects_.take();

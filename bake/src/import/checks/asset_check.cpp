@@ -102,7 +102,7 @@ Result<void> checkAsset(const SourceAsset& asset, const std::string& where) {
   }
   if (triangles == 0) {
     return invalid(where,
-                   fmt::format("it has no triangles ({} meshes, {} placed); wanted a surface, "
+                   fmt::format("it has no triangles ({} meshes, {} placed); expected a surface, "
                                "not points, lines or an empty scene",
                                asset.meshes.size(), asset.instances.size()));
   }

@@ -257,7 +257,7 @@ class GltfRanges {
     const auto mode = wholeOf(primitive, "mode").value_or(kTriangles);
     if (mode != kTriangles || *corners % 3 == 0) return {};
     return broken(
-        fmt::format("{} has {} corners of triangles, three of each were wanted", what, *corners));
+        fmt::format("{} has {} corners of triangles, expected three of each", what, *corners));
   }
 
   const fs::path& path_;

@@ -93,7 +93,7 @@ Result<void> checkStlText(std::string_view file, const std::string& where) {
   if (open_solids > 0) return cutOff(where, "its last solid has no endsolid");
   if (facets == closed_facets && vertices == 3 * facets) return {};
   return cutOff(where, fmt::format("it has {} facets, {} of which are closed, and {} vertices, "
-                                   "three of each were wanted",
+                                   "expected three of each",
                                    facets, closed_facets, vertices));
 }
 

@@ -47,13 +47,13 @@ std::string otherFormat(std::string_view file) {
   if (file.empty()) return "is empty";
   // A TGA has its signature at its end.
   constexpr std::string_view kTgaEnd = "TRUEVISION-XFILE.\0"sv;
-  if (file.ends_with(kTgaEnd)) return "is TGA; wanted PNG or JPEG";
+  if (file.ends_with(kTgaEnd)) return "is TGA; expected PNG or JPEG";
   for (const Signature& format : kOtherFormats) {
     if (hasAt(file, format.offset, format.bytes)) {
-      return fmt::format("is {}; wanted PNG or JPEG", format.name);
+      return fmt::format("is {}; expected PNG or JPEG", format.name);
     }
   }
-  return "is of an unknown format; wanted PNG or JPEG";
+  return "is of an unknown format; expected PNG or JPEG";
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ std::string sizeFault(std::uint64_t width, std::uint64_t height) {
       width * height <= kMostImageTexels) {
     return {};
   }
-  return fmt::format("has {} x {} texels; wanted at most {} a side and {} million in all", width,
+  return fmt::format("has {} x {} texels; expected at most {} a side and {} million in all", width,
                      height, kLargestImageEdge, kMostImageTexels >> 20U);
 }
 

@@ -92,7 +92,7 @@ DecodedImage decodeJpeg(std::span<const std::byte> file) {
   }
   const J_COLOR_SPACE space = reader.decoder.jpeg_color_space;
   if (space == JCS_CMYK || space == JCS_YCCK) {
-    return refused("is a JPEG for print (CMYK); wanted RGB or gray");
+    return refused("is a JPEG for print (CMYK); expected RGB or gray");
   }
   const std::size_t texels = std::size_t{image.width} * image.height;
   std::vector<std::uint8_t> rgb(texels * 3);

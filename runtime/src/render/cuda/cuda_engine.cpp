@@ -213,7 +213,7 @@ Result<void> CudaEngine::cutSlices(std::span<const RenderView> views) {
     if (clusters > kMostClusters) {
       return fail(
           ErrorCode::kUnsupported, "render backend cuda",
-          fmt::format("found a view of {} clusters, wanted at most {}; use the soft backend",
+          fmt::format("found a view of {} clusters, expected at most {}; use the soft backend",
                       clusters, kMostClusters));
     }
     statistics_.instances += views[v].instances.size();

@@ -160,8 +160,8 @@ Result<Device> Device::choose(const Driver& driver, const std::string& wish) {
   RETURN_IF_ERROR(ask(kCapabilityMinor, chosen.minor_));
   chosen.name_ = name.data();
   if (chosen.major_ < kLeastMajor) {
-    return refuse(fmt::format("{} has compute capability {}.{}; wanted {}.0 or more", chosen.name_,
-                              chosen.major_, chosen.minor_, kLeastMajor));
+    return refuse(fmt::format("{} has compute capability {}.{}; expected {}.0 or more",
+                              chosen.name_, chosen.major_, chosen.minor_, kLeastMajor));
   }
   chosen.device_ = device;
   return chosen;

@@ -88,10 +88,11 @@ EGLContext newContext(EGLDisplay display) {
 }
 
 tl::unexpected<Error> refused(const std::string& name, const char* what) {
-  return fail(ErrorCode::kUnsupported, "render device",
-              fmt::format("{}: {} (EGL error 0x{:04x}); wanted OpenGL 4.5 without a display: check "
-                          "the driver, or use the soft backend",
-                          name, what, eglGetError()));
+  return fail(
+      ErrorCode::kUnsupported, "render device",
+      fmt::format("{}: {} (EGL error 0x{:04x}); expected OpenGL 4.5 without a display: check "
+                  "the driver, or use the soft backend",
+                  name, what, eglGetError()));
 }
 
 Result<EglContext> openOn(EGLDisplay display, const std::string& name) {

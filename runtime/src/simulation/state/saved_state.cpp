@@ -333,8 +333,8 @@ Result<void> checkSubject(const Model& model, const Header& header, std::string_
       continue;
     }
     const std::string_view found = lines.substr(0, lines.find('\n'));
-    return refused(fmt::format("was saved with other options: wanted {}={}, found {}", option.name,
-                               option.value, found.empty() ? "nothing" : found));
+    return refused(fmt::format("was saved with other options: expected {}={}, found {}",
+                               option.name, option.value, found.empty() ? "nothing" : found));
   }
   if (!lines.empty()) return refused("was saved with options that this version does not know");
   if (header.bodies != 0 || model.bodyCount() == 0) return {};
@@ -371,7 +371,7 @@ Result<SavedState> readState(const Model& model, std::span<const std::byte> byte
   }
   if (header.version != kVersion) {
     return fail(ErrorCode::kUnsupported, kWhere,
-                fmt::format("has format version {}, wanted {}; use the version that saved it",
+                fmt::format("has format version {}, expected {}; use the version that saved it",
                             header.version, kVersion));
   }
   if (header.hash != hashOf(header, bytes.subspan(sizeof(header)))) {
@@ -382,7 +382,7 @@ Result<SavedState> readState(const Model& model, std::span<const std::byte> byte
   if (!checked) return tl::unexpected<Error>(checked.error());
   const std::size_t bodies = model.motion.nodes.size() + 1;
   if (header.bodies != 0 && header.bodies != bodies) {
-    return refused(fmt::format("has {} bodies, wanted {}; it is damaged", header.bodies, bodies));
+    return refused(fmt::format("has {} bodies, expected {}; it is damaged", header.bodies, bodies));
   }
   SavedState saved{.seed = header.seed, .steps = header.steps, .envs = {}};
   for (std::uint32_t n = 0; n < header.envs; ++n) {

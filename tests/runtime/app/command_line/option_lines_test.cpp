@@ -94,12 +94,12 @@ TEST(OptionText, KeepsDefaultsOfWhatIsNotNamed) {
 
 TEST(OptionText, RefusesWhatMakesNoSense) {
   const std::vector<std::pair<std::string, std::string>> mistakes{
-      {"envs=0\n", "envs is \"0\", wanted 1 to"},
+      {"envs=0\n", "envs is \"0\", expected 1 to"},
       {"envs=-1\n", "envs is \"-1\""},
       {"envs=1x\n", "envs is \"1x\""},
       {"envs=\n", "envs is \"\""},
-      {"task=fly\n", "task is \"fly\", wanted rearrange, pick or none"},
-      {"no-terminate=yes\n", "no-terminate is \"yes\", wanted true or false"},
+      {"task=fly\n", "task is \"fly\", expected rearrange, pick or none"},
+      {"no-terminate=yes\n", "no-terminate is \"yes\", expected true or false"},
       {"slide-step=nan\n", "slide-step is \"nan\""},
       {"slide-step=inf\n", "slide-step is \"inf\""},
       {"envs=1\nenvs=1\n", "each name once"},

@@ -141,7 +141,7 @@ TEST_F(Recording, SaysWhatIsWrong) {
   EXPECT_THAT(with(0, 'X').message, HasSubstr("is not a recording"));
   const Error later = with(8, 2U);
   EXPECT_EQ(later.code, ErrorCode::kUnsupported);
-  EXPECT_THAT(later.message, HasSubstr("format version 2, wanted 1"));
+  EXPECT_THAT(later.message, HasSubstr("format version 2, expected 1"));
   EXPECT_THAT(with(12, 0U).message, HasSubstr("impossible counts"));
   EXPECT_THAT(with(12, UINT32_MAX).message, HasSubstr("impossible counts"));
   EXPECT_THAT(with(32, std::uint64_t{4}).message, HasSubstr("not what 4 steps of 2 envs take"));

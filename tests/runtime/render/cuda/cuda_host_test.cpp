@@ -86,7 +86,7 @@ TEST_F(CudaHost, SaysWhatIsMissing) {
   standin_->devices = 1;
   standin_->major = 6;
   standin_->minor = 1;
-  EXPECT_EQ(errorOf(options_), "Stand-in A has compute capability 6.1; wanted 7.0 or more");
+  EXPECT_EQ(errorOf(options_), "Stand-in A has compute capability 6.1; expected 7.0 or more");
 }
 
 TEST_F(CudaHost, PassesOnWhatTheDriverRefuses) {
