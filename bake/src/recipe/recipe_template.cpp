@@ -1,97 +1,159 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
 #include "galactic/bake/robot_recipe.h"
+#include "recipe/recipe_keys.h"
 
 namespace galactic::bake {
+namespace {
+
+constexpr std::string_view kPreamble =
+    "Robot recipe: what a URDF does not say. Every key is shown; those with a default may be left "
+    "out. Positions and rotations are in frames of the URDF (X forward, Y left, Z up); meters, "
+    "radians unless a key says degrees.";
+
+/// Writes a recipe with every key explained: an example or the default of each, and what it means.
+class RecipeExplainer {
+ public:
+  RecipeExplainer() { addComment(kPreamble); }
+
+  void text(const RecipeKey& key, const std::string& /*field*/) {
+    text_ += '\n';
+    add(key, quoted(key.example), std::nullopt);
+  }
+  void name(const RecipeKey& key, const RecipeName& /*field*/) {
+    add(key, quoted(key.example), std::nullopt);
+  }
+  void number(const RecipeKey& key, const double& field, const NumberRange& /*range*/) {
+    add(key, std::string(key.example), fmt::format("{}", field));
+  }
+  void number(const RecipeKey& key, const std::optional<double>& /*field*/,
+              const NumberRange& /*range*/) {
+    add(key, std::string(key.example), std::nullopt);
+  }
+  void degrees(const RecipeKey& key, const double& field, const NumberRange& /*range*/) {
+    add(key, std::string(key.example),
+        fmt::format("{:.4g} ({} rad)", field * 180 / std::numbers::pi, field));
+  }
+  void count(const RecipeKey& key, const std::optional<std::uint32_t>& /*field*/,
+             const NumberRange& /*range*/) {
+    add(key, std::string(key.example), std::nullopt);
+  }
+  void flag(const RecipeKey& key, const bool& /*field*/) { add(key, "true", std::nullopt); }
+  void point(const RecipeKey& key, const std::array<double, 3>& /*field*/) {
+    add(key, std::string(key.example), "[0, 0, 0]");
+  }
+  void mount(const RecipeKey& position, const RecipeKey& rpy, const Affine& /*field*/) {
+    add(position, std::string(position.example), "[0, 0, 0]");
+    add(rpy, std::string(rpy.example), "[0, 0, 0]");
+  }
+  void footprint(const RecipeKey& circle, const RecipeKey& rectangle,
+                 const std::variant<FootprintCircle, FootprintRectangle>& /*field*/) {
+    add(circle, std::string(circle.example), std::nullopt);
+    add(rectangle, std::string(rectangle.example), std::nullopt);
+  }
+  void spheres(const RecipeKey& key, const std::vector<HandSphere>& /*field*/) {
+    add(key, std::string(key.example), std::nullopt);
+  }
+
+  template <class T>
+  void table(const RecipeSection& section, const T& /*field*/) {
+    explain<T>(section, section.name, "[{}]");
+  }
+  template <class T>
+  void table(const RecipeSection& section, const std::optional<T>& /*field*/) {
+    explain<T>(section, section.name, "[{}]");
+  }
+  void joints(const RecipeSection& section, const std::vector<RecipeJoint>& /*field*/) {
+    explain<RecipeJoint>(section, section.name, "[[{}]]");
+  }
+  void links(const RecipeSection& section, const std::vector<RecipeLinkSpheres>& /*field*/) {
+    explain<RecipeLinkSpheres>(
+        section, fmt::format("{}.{}.{}", outer_, section.name, section.example), "[{}]");
+  }
+  void limits(const RecipeSection& section, const std::vector<RecipeLimits>& /*field*/) {
+    addEntry(section, section.example);
+  }
+  void positions(const RecipeSection& section, const std::vector<RecipeStart>& /*field*/) {
+    addEntry(section, section.example);
+  }
+  void pairs(const RecipeSection& section, std::string_view key,
+             const std::vector<std::pair<RecipeName, RecipeName>>& /*field*/) {
+    addEntry(section, fmt::format("{} = {}", key, section.example));
+  }
+
+  [[nodiscard]] std::string take() { return std::move(text_); }
+
+ private:
+  static constexpr std::size_t kWidth = 100;
+  static constexpr std::size_t kHelpColumn = 34;
+
+  static std::string quoted(std::string_view name) { return fmt::format("\"{}\"", name); }
+
+  /// A comment in lines of kWidth, broken between words.
+  void addComment(std::string_view help) {
+    std::string line = "#";
+    while (!help.empty()) {
+      const std::size_t end = std::min(help.find(' '), help.size());
+      if (line.size() + 1 + end > kWidth) {
+        text_ += line + '\n';
+        line = "#";
+      }
+      line += fmt::format(" {}", help.substr(0, end));
+      help.remove_prefix(std::min(end + 1, help.size()));
+    }
+    text_ += line + '\n';
+  }
+
+  /// `normal` is the default; none where the key has to be given, or the help says what happens
+  /// without it.
+  void add(const RecipeKey& key, std::string value, const std::optional<std::string>& normal) {
+    const bool shows_default = normal && !key.is_required;
+    if (value.empty()) value = normal.value_or("");
+    std::string line =
+        fmt::format("{}{} = {}", key.is_alternative ? "# " : "", key.name, std::move(value));
+    std::string help(key.help);
+    if (shows_default) help += fmt::format("{}default {}", help.empty() ? "" : "; ", *normal);
+    if (!help.empty()) line = fmt::format("{:<{}}# {}", line + "  ", kHelpColumn, help);
+    text_ += line + '\n';
+  }
+
+  void addEntry(const RecipeSection& section, std::string_view entry) {
+    text_ += '\n';
+    addComment(section.help);
+    text_ += fmt::format("[{}]\n{}\n", section.name, entry);
+  }
+
+  /// A table with the keys of a T; `form` holds its name.
+  template <class T>
+  void explain(const RecipeSection& section, std::string_view name, fmt::string_view form) {
+    text_ += '\n';
+    addComment(section.help);
+    text_ += fmt::vformat(form, fmt::make_format_args(name)) + '\n';
+    outer_ = name;
+    T defaults{};
+    visitKeys(defaults, *this);
+  }
+
+  std::string text_;
+  /// Name of the table whose keys are told.
+  std::string outer_;
+};
+
+}  // namespace
 
 std::string describeRobotRecipe() {
-  return R"toml(# Robot recipe: what a URDF does not say. Every key is shown; those with a default may be left out.
-# Positions and rotations are in frames of the URDF (X forward, Y left, Z up); meters, radians unless
-# a key says degrees.
-
-name = "fetch"
-
-# What grasps: a sphere at a point of a link.
-[end_effector]
-link = "gripper_link"
-grasp_point = [0.03, 0.0, 0.0]  # in the link's frame; default [0, 0, 0]
-grasp_radius = 0.015            # default 0.015
-
-# The camera; without this table the robot has none. It looks along its own X axis, its Z axis is up
-# in the image; a camera on an optical frame (Z forward, Y down) has rpy_degrees = [90, -90, 0].
-[camera]
-link = "head_pan_link"
-position = [0.2, 0.0, 0.2]      # in the link's frame; default [0, 0, 0]
-rpy_degrees = [0, 20, 0]        # roll, pitch (down is positive), yaw; default [0, 0, 0]
-vertical_fov_degrees = 60
-
-# The planar laser scanner; without this table the robot has none. It scans the plane of its X and Y
-# axes, and its X axis is the middle of its field of view. No joint that moves may carry it.
-[laser]
-link = "laser_link"
-position = [0.0, 0.0, 0.0]      # in the link's frame; default [0, 0, 0]
-rpy_degrees = [0, 0, 0]         # roll, pitch, yaw; default [0, 0, 0]
-fov_degrees = 220
-range = 25.0                    # farthest distance
-min_range = 0.05                # nearest distance; default 0
-noise = 0.02                    # standard deviation of a distance; default 0
-
-# The base: the root link of the URDF, which drives and turns on the ground.
-[base]
-footprint_radius = 0.3          # circle around the root's origin, or:
-# footprint_rectangle = [-0.3, -0.25, 0.3, 0.25]   # min x, min y, max x, max y
-forward_step = 0.1              # farthest drive of one action; default 0.1
-turn_step_degrees = 5.0         # farthest turn of one action; default 5.002 (0.0873 rad)
-root_height = 0.0               # height of the root's origin above the ground; default 0
-
-# The joints that actions move, in the order of the actions: radians, or meters where prismatic.
-[[joints]]
-name = "shoulder_pan_joint"
-step = 0.196                    # farthest move of one action
-min = -1.5                      # narrower limits than the URDF's; default: the URDF's
-max = 1.5
-
-[[joints]]
-name = "shoulder_lift_joint"
-step = 0.196
-
-# Limits instead of the URDF's, or for want of them: lower, upper; of any revolute or prismatic joint.
-# Without both, a revolute joint has -pi to pi and a prismatic one -1 to 1 m, with a warning.
-[limits]
-torso_lift_joint = [0.0, 0.38]
-
-# Where joints start, controlled or not; default 0, or the limit nearest to 0.
-[start_pose]
-torso_lift_joint = 0.2
-elbow_flex_joint = 1.57
-
-# The collision spheres.
-[spheres]
-eps = 0.020                     # farthest gap between surface and spheres; default 0.020
-tau = 0.040                     # farthest protrusion of a sphere; default 0.040
-max_gap = 0.050                 # without max_spheres: no gap is wider, if eps allows; default 0.050
-# max_spheres = 100             # of the whole robot, instead of max_gap; default: 100, and more
-#                               # where gaps would be wider than max_gap
-clip_height = 0.020             # lowest height above the ground that matters; default 0.020
-
-# A link that differs, by its name. One of: other tolerances, skip, merge_with_parent, spheres.
-[spheres.links.torso_lift_link]
-eps = 0.030
-tau = 0.050
-max_spheres = 20
-clip_height = 0.0
-
-[spheres.links.estop_link]
-skip = true                     # no spheres
-
-[spheres.links.wrist_roll_link]
-merge_with_parent = true        # one set of spheres for it and its parent
-
-[spheres.links.laser_link]
-spheres = [[0.0, 0.0, 0.0, 0.05]]   # taken as they are: x, y, z, radius in the link's frame
-
-# Pairs of links that may touch.
-[self_collision]
-ignore = [["torso_lift_link", "shoulder_pan_link"]]
-)toml";
+  RobotRecipe defaults;
+  RecipeExplainer explainer;
+  visitKeys(defaults, explainer);
+  return explainer.take();
 }
 
 }  // namespace galactic::bake

@@ -2,23 +2,17 @@
 
 #include <cmath>
 #include <numbers>
-#include <set>
+#include <string_view>
 
 #include "import/affine.h"
+#include "recipe/recipe_keys.h"
 #include "support/try.h"
-#include "toml/recipe_table.h"
 #include "urdf/urdf_frames.h"
 
 namespace galactic::bake {
 namespace {
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
-constexpr NumberRange kCoordinate{-10, 10, "m"};
-constexpr NumberRange kRadius{0.001, 2, "m"};
-constexpr NumberRange kTolerance{0.001, 1, "m"};
-constexpr NumberRange kHeight{0, 10, "m"};
-constexpr NumberRange kSphereCount{1, 10'000, ""};
-constexpr NumberRange kJointPosition{-1e6, 1e6, ""};
 
 /// R = Rz(yaw) Ry(pitch) Rx(roll), degrees; then the translation.
 Affine poseOf(const std::array<double, 3>& position, const std::array<double, 3>& rpy_degrees) {
@@ -43,280 +37,241 @@ Affine poseOf(const std::array<double, 3>& position, const std::array<double, 3>
           position[2]};
 }
 
-/// Reads the tables of one recipe.
+void check(const RecipeLaser& laser, RecipeTable& table) {
+  if (laser.range > 0 && laser.least_range >= laser.range) {
+    table.errors().at(table.line(), "laser.min_range must be below laser.range");
+  }
+}
+
+void check(const RecipeJoint& joint, RecipeTable& table) {
+  if (!joint.min || !joint.max || *joint.min < *joint.max) return;
+  table.errors().at(table.line(), fmt::format("{} = {} is not below {} = {}", table.full("min"),
+                                              *joint.min, table.full("max"), *joint.max));
+}
+
+void check(const RecipeLinkSpheres& link, RecipeTable& table) {
+  const bool fits = link.eps || link.tau || link.max_spheres || link.clip_height;
+  const int ways = (link.skip ? 1 : 0) + (link.merge_with_parent ? 1 : 0) +
+                   (link.spheres.empty() ? 0 : 1) + (fits ? 1 : 0);
+  if (ways <= 1) return;
+  table.errors().at(table.line(), table.name() +
+                                      " contradicts itself; keep one of: skip, merge_with_parent, "
+                                      "spheres, or tolerances (eps, tau, max_spheres, "
+                                      "clip_height)");
+}
+
+void check(const RecipeSpheres& spheres, RecipeTable& table) {
+  if (!spheres.max_spheres || table.find("max_gap") == nullptr) return;
+  table.errors().at(table.line(),
+                    "spheres has both max_spheres and max_gap; keep one of them: a number of "
+                    "spheres, or the widest gap");
+}
+
+template <class T>
+void check(const T& /*table has no two keys that go together*/, RecipeTable& /*table*/) {}
+
+/// Reads the keys of one table, and of the tables in it, into the fields that they stand for.
 class RecipeReader {
  public:
-  RecipeReader(const TomlTable& table, FirstError& errors)
-      : root_(table, "", 0, errors), errors_(errors) {}
+  explicit RecipeReader(RecipeTable& table) : table_(table), errors_(table.errors()) {}
 
-  RobotRecipe read();
+  /// Everything that a table says.
+  template <class T>
+  static void read(RecipeTable& table, T& fields) {
+    RecipeReader reader(table);
+    visitKeys(fields, reader);
+    check(fields, table);
+    table.finish();
+  }
+
+  void text(const RecipeKey& key, std::string& field) {
+    field = table_.requiredName(key.name).name;
+  }
+  void name(const RecipeKey& key, RecipeName& field) { field = table_.requiredName(key.name); }
+  void number(const RecipeKey& key, double& field, const NumberRange& range) {
+    field = key.is_required ? table_.requiredNumber(key.name, range)
+                            : table_.number(key.name, range).value_or(field);
+  }
+  void number(const RecipeKey& key, std::optional<double>& field, const NumberRange& range) {
+    field = table_.number(key.name, range);
+  }
+  /// Degrees in the recipe, radians in the field.
+  void degrees(const RecipeKey& key, double& field, const NumberRange& range) {
+    double typed = field / kRadiansPerDegree;
+    number(key, typed, range);
+    if (table_.find(key.name) != nullptr) field = typed * kRadiansPerDegree;
+  }
+  void count(const RecipeKey& key, std::optional<std::uint32_t>& field, const NumberRange& range) {
+    field = table_.count(key.name, range);
+  }
+  void flag(const RecipeKey& key, bool& field) { field = table_.flag(key.name); }
+  void point(const RecipeKey& key, std::array<double, 3>& field) {
+    field = transformed(kYUpFromZUp, vector(key, kCoordinate));
+  }
+  void mount(const RecipeKey& position, const RecipeKey& rpy, Affine& field) {
+    const auto at = vector(position, kCoordinate);
+    const auto turned = vector(rpy, {-360, 360, "degrees"});
+    field = conjugate(kYUpFromZUp, poseOf(at, turned), kZUpFromYUp);
+  }
+  void footprint(const RecipeKey& circle, const RecipeKey& rectangle,
+                 std::variant<FootprintCircle, FootprintRectangle>& field);
+  void spheres(const RecipeKey& key, std::vector<HandSphere>& field);
+
+  template <class T>
+  void table(const RecipeSection& section, T& field) {
+    const TomlTable* inner =
+        section.is_required ? table_.requiredTable(section.name) : table_.table(section.name);
+    if (inner == nullptr) return;
+    RecipeTable one = open(section.name, *inner);
+    read(one, field);
+  }
+  template <class T>
+  void table(const RecipeSection& section, std::optional<T>& field) {
+    if (table_.table(section.name) == nullptr) return;
+    table(section, field.emplace());
+  }
+  void joints(const RecipeSection& section, std::vector<RecipeJoint>& field);
+  void links(const RecipeSection& section, std::vector<RecipeLinkSpheres>& field);
+  void limits(const RecipeSection& section, std::vector<RecipeLimits>& field);
+  void positions(const RecipeSection& section, std::vector<RecipeStart>& field);
+  void pairs(const RecipeSection& section, std::string_view key,
+             std::vector<std::pair<RecipeName, RecipeName>>& field);
 
  private:
-  std::optional<RecipeTable> open(RecipeTable& from, std::string_view key, const TomlTable* table) {
-    if (table == nullptr) return std::nullopt;
-    const TomlValue* value = from.find(key);
-    return RecipeTable(*table, from.full(key), value == nullptr ? 0 : value->line, errors_);
+  std::array<double, 3> vector(const RecipeKey& key, const NumberRange& range) {
+    return table_.numbers<3>(key.name, range).value_or(std::array<double, 3>{});
   }
-  void readEndEffector();
-  void readCamera();
-  void readLaser();
-  Affine readMount(RecipeTable& table);
-  void readBase();
-  void readFootprint(RecipeTable& base);
-  void readJoints();
-  void readJoint(const TomlValue& entry, std::size_t index);
-  void readLimits();
-  void readStartPose();
-  void readSpheres();
-  void readLinkSpheres(const std::string& link, const TomlValue& entry);
-  void readVerbatim(RecipeTable& table, RecipeLinkSpheres& link);
-  void readIgnoredPairs();
+  RecipeTable open(std::string_view name, const TomlTable& inner) {
+    const TomlValue* value = table_.find(name);
+    return {inner, table_.full(name), value == nullptr ? 0 : value->line, errors_};
+  }
+  /// A table of a list or of a table of tables; reports where it is something else.
+  template <class T>
+  void readOne(const TomlValue& entry, const std::string& name, std::string_view form, T& fields) {
+    const auto* content = std::get_if<TomlTable>(&entry.value);
+    if (content == nullptr) {
+      return errors_.at(entry.line, fmt::format("{}: expected a table, {}", name, form));
+    }
+    RecipeTable one(*content, name, entry.line, errors_);
+    read(one, fields);
+  }
 
-  RecipeTable root_;
+  RecipeTable& table_;
   FirstError& errors_;
-  RobotRecipe recipe_;
 };
 
-void RecipeReader::readEndEffector() {
-  auto table = open(root_, "end_effector", root_.requiredTable("end_effector"));
-  if (!table) return;
-  RecipeEndEffector& effector = recipe_.end_effector;
-  effector.link = table->requiredName("link");
-  effector.grasp_point = transformed(
-      kYUpFromZUp, table->numbers<3>("grasp_point", kCoordinate).value_or(std::array<double, 3>{}));
-  effector.grasp_radius = table->number("grasp_radius", kRadius).value_or(effector.grasp_radius);
-  table->finish();
-}
-
-/// Where a sensor sits on its link.
-Affine RecipeReader::readMount(RecipeTable& table) {
-  const std::array<double, 3> zero{};
-  const auto position = table.numbers<3>("position", kCoordinate).value_or(zero);
-  const auto rpy = table.numbers<3>("rpy_degrees", {-360, 360, "degrees"}).value_or(zero);
-  return conjugate(kYUpFromZUp, poseOf(position, rpy), kZUpFromYUp);
-}
-
-void RecipeReader::readCamera() {
-  auto table = open(root_, "camera", root_.table("camera"));
-  if (!table) return;
-  RecipeCamera camera;
-  camera.link = table->requiredName("link");
-  camera.link_from_camera = readMount(*table);
-  camera.vertical_fov =
-      table->requiredNumber("vertical_fov_degrees", {1, 170, "degrees"}) * kRadiansPerDegree;
-  table->finish();
-  recipe_.camera = std::move(camera);
-}
-
-void RecipeReader::readLaser() {
-  auto table = open(root_, "laser", root_.table("laser"));
-  if (!table) return;
-  RecipeLaser laser;
-  laser.link = table->requiredName("link");
-  laser.link_from_laser = readMount(*table);
-  laser.field_of_view =
-      table->requiredNumber("fov_degrees", {0, 360, "degrees"}) * kRadiansPerDegree;
-  laser.range = table->requiredNumber("range", {0.1, 1000, "m"});
-  laser.least_range = table->number("min_range", {0, 1000, "m"}).value_or(laser.least_range);
-  laser.noise = table->number("noise", {0, 10, "m"}).value_or(laser.noise);
-  if (laser.range > 0 && laser.least_range >= laser.range) {
-    errors_.at(table->line(), "laser.min_range must be below laser.range");
-  }
-  table->finish();
-  recipe_.laser = std::move(laser);
-}
-
-void RecipeReader::readFootprint(RecipeTable& base) {
-  const auto radius = base.number("footprint_radius", kRadius);
-  const auto rectangle = base.numbers<4>("footprint_rectangle", kCoordinate);
-  if (radius && rectangle) {
-    errors_.at(base.line(),
-               "base has both footprint_radius and footprint_rectangle; keep one of them");
+void RecipeReader::footprint(const RecipeKey& circle, const RecipeKey& rectangle,
+                             std::variant<FootprintCircle, FootprintRectangle>& field) {
+  const auto radius = table_.number(circle.name, kSphereRadius);
+  const auto sides = table_.numbers<4>(rectangle.name, kCoordinate);
+  if (radius && sides) {
+    errors_.at(table_.line(), fmt::format("{} has both {} and {}; keep one of them", table_.name(),
+                                          circle.name, rectangle.name));
   } else if (radius) {
-    recipe_.base.footprint = FootprintCircle{*radius};
-  } else if (rectangle) {
-    const auto& [min_x, min_y, max_x, max_y] = *rectangle;
+    field = FootprintCircle{*radius};
+  } else if (sides) {
+    const auto& [min_x, min_y, max_x, max_y] = *sides;
     if (min_x >= max_x || min_y >= max_y) {
-      errors_.at(base.line(),
-                 "base.footprint_rectangle: expected [min x, min y, max x, max y] with each "
-                 "min below its max");
+      errors_.at(table_.line(), fmt::format("{}: expected [min x, min y, max x, max y] with each "
+                                            "min below its max",
+                                            table_.full(rectangle.name)));
     }
-    recipe_.base.footprint =
-        FootprintRectangle{.min_x = min_x, .max_x = max_x, .min_z = -max_y, .max_z = -min_y};
+    field = FootprintRectangle{.min_x = min_x, .max_x = max_x, .min_z = -max_y, .max_z = -min_y};
   } else {
-    errors_.at(base.line(), "base has no footprint; give footprint_radius or footprint_rectangle");
+    errors_.at(table_.line(), fmt::format("{} has no footprint; give {} or {}", table_.name(),
+                                          circle.name, rectangle.name));
   }
 }
 
-void RecipeReader::readBase() {
-  auto table = open(root_, "base", root_.requiredTable("base"));
-  if (!table) return;
-  RecipeBase& base = recipe_.base;
-  readFootprint(*table);
-  base.forward_step = table->number("forward_step", {0.001, 1, "m"}).value_or(base.forward_step);
-  if (const auto turn = table->number("turn_step_degrees", {0.1, 180, "degrees"})) {
-    base.turn_step = *turn * kRadiansPerDegree;
-  }
-  base.root_height = table->number("root_height", {-2, 2, "m"}).value_or(base.root_height);
-  table->finish();
-}
-
-void RecipeReader::readJoint(const TomlValue& entry, std::size_t index) {
-  const std::string name = fmt::format("joints[{}]", index);
-  const auto* content = std::get_if<TomlTable>(&entry.value);
-  if (content == nullptr) {
-    errors_.at(entry.line, fmt::format("{}: expected a table, [[joints]]", name));
-    return;
-  }
-  RecipeTable table(*content, name, entry.line, errors_);
-  RecipeJoint joint;
-  joint.joint = table.requiredName("name");
-  joint.step = table.requiredNumber("step", {1e-4, 3.2, "(radians or meters)"});
-  joint.min = table.number("min", kJointPosition);
-  joint.max = table.number("max", kJointPosition);
-  if (joint.min && joint.max && *joint.min >= *joint.max) {
-    errors_.at(entry.line, fmt::format("{}.min = {} is not below {}.max = {}", name, *joint.min,
-                                       name, *joint.max));
-  }
-  table.finish();
-  for (const RecipeJoint& other : recipe_.joints) {
-    if (other.joint.name != joint.joint.name) continue;
-    errors_.at(entry.line, fmt::format("joint '{}' is listed twice, see {}", joint.joint.name,
-                                       other.joint.where));
-  }
-  recipe_.joints.push_back(std::move(joint));
-}
-
-void RecipeReader::readJoints() {
-  const TomlArray* list = root_.list("joints");
+void RecipeReader::spheres(const RecipeKey& key, std::vector<HandSphere>& field) {
+  const TomlArray* list = table_.list(key.name);
   if (list == nullptr) return;
-  for (std::size_t i = 0; i < list->size(); ++i) readJoint((*list)[i], i);
-}
-
-void RecipeReader::readLimits() {
-  auto table = open(root_, "limits", root_.table("limits"));
-  if (!table) return;
-  for (const auto& [joint, value] : *root_.table("limits")) {
-    const auto [lower, upper] = table->numbersOf<2>(value, table->full(joint), kJointPosition);
-    if (lower > upper) {
-      errors_.at(value.line, fmt::format("{} = [{}, {}]: the lower limit comes first",
-                                         table->full(joint), lower, upper));
-    }
-    recipe_.limits.push_back({{joint, errors_.place(value.line)}, {lower, upper}});
-  }
-}
-
-void RecipeReader::readStartPose() {
-  auto table = open(root_, "start_pose", root_.table("start_pose"));
-  if (!table) return;
-  for (const auto& [joint, value] : *root_.table("start_pose")) {
-    const auto position = table->numberOf(value, joint, kJointPosition);
-    recipe_.start_pose.push_back({{joint, errors_.place(value.line)}, position.value_or(0)});
-  }
-}
-
-void RecipeReader::readVerbatim(RecipeTable& table, RecipeLinkSpheres& link) {
-  const TomlArray* spheres = table.list("spheres");
-  if (spheres == nullptr) return;
-  for (std::size_t i = 0; i < spheres->size(); ++i) {
-    const std::string what = fmt::format("{}[{}]", table.full("spheres"), i);
-    const auto numbers = table.numbersOf<4>((*spheres)[i], what, kCoordinate);
-    if (numbers[3] < kRadius.min || numbers[3] > kRadius.max) {
-      errors_.at((*spheres)[i].line, fmt::format("{} has the radius {}, expected {} to {} m", what,
-                                                 numbers[3], kRadius.min, kRadius.max));
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const std::string what = fmt::format("{}[{}]", table_.full(key.name), i);
+    const auto numbers = table_.numbersOf<4>((*list)[i], what, kCoordinate);
+    if (numbers[3] < kSphereRadius.min || numbers[3] > kSphereRadius.max) {
+      errors_.at((*list)[i].line, fmt::format("{} has the radius {}, expected {} to {} m", what,
+                                              numbers[3], kSphereRadius.min, kSphereRadius.max));
     }
     const auto center = transformed(kYUpFromZUp, std::array{numbers[0], numbers[1], numbers[2]});
-    link.spheres.push_back({.center = center, .radius = numbers[3]});
+    field.push_back({.center = center, .radius = numbers[3]});
   }
-  if (spheres->empty()) {
-    errors_.at(table.line(), fmt::format("{} is empty; a link without spheres says skip = true",
-                                         table.full("spheres")));
+  if (list->empty()) {
+    errors_.at(table_.line(), fmt::format("{} is empty; a link without spheres says skip = true",
+                                          table_.full(key.name)));
   }
 }
 
-void RecipeReader::readLinkSpheres(const std::string& link, const TomlValue& entry) {
-  const std::string name = fmt::format("spheres.links.{}", link);
-  const auto* content = std::get_if<TomlTable>(&entry.value);
-  if (content == nullptr) {
-    errors_.at(entry.line, fmt::format("{}: expected a table, [{}]", name, name));
-    return;
-  }
-  RecipeTable table(*content, name, entry.line, errors_);
-  RecipeLinkSpheres spheres;
-  spheres.link = {link, errors_.place(entry.line)};
-  spheres.eps = table.number("eps", kTolerance);
-  spheres.tau = table.number("tau", kTolerance);
-  spheres.clip_height = table.number("clip_height", kHeight);
-  spheres.max_spheres = table.count("max_spheres", kSphereCount);
-  spheres.skip = table.flag("skip");
-  spheres.merge_with_parent = table.flag("merge_with_parent");
-  readVerbatim(table, spheres);
-  table.finish();
-  const bool fits = spheres.eps || spheres.tau || spheres.max_spheres || spheres.clip_height;
-  const int ways = (spheres.skip ? 1 : 0) + (spheres.merge_with_parent ? 1 : 0) +
-                   (spheres.spheres.empty() ? 0 : 1) + (fits ? 1 : 0);
-  if (ways > 1) {
-    errors_.at(entry.line, fmt::format("{} contradicts itself; keep one of: skip, "
-                                       "merge_with_parent, spheres, or tolerances (eps, tau, "
-                                       "max_spheres, clip_height)",
-                                       name));
-  }
-  recipe_.spheres.links.push_back(std::move(spheres));
-}
-
-void RecipeReader::readSpheres() {
-  auto table = open(root_, "spheres", root_.table("spheres"));
-  if (!table) return;
-  RecipeSpheres& spheres = recipe_.spheres;
-  spheres.eps = table->number("eps", kTolerance).value_or(spheres.eps);
-  spheres.tau = table->number("tau", kTolerance).value_or(spheres.tau);
-  spheres.max_spheres = table->count("max_spheres", kSphereCount);
-  const auto max_gap = table->number("max_gap", kTolerance);
-  if (max_gap && spheres.max_spheres) {
-    errors_.at(
-        table->line(),
-        "spheres has both max_spheres and max_gap; keep one of them: a number of spheres, or "
-        "the widest gap");
-  }
-  spheres.max_gap = max_gap.value_or(spheres.max_gap);
-  spheres.clip_height = table->number("clip_height", kHeight).value_or(spheres.clip_height);
-  if (const TomlTable* links = table->table("links")) {
-    for (const auto& [link, entry] : *links) readLinkSpheres(link, entry);
-  }
-  table->finish();
-}
-
-void RecipeReader::readIgnoredPairs() {
-  auto table = open(root_, "self_collision", root_.table("self_collision"));
-  if (!table) return;
-  if (const TomlArray* pairs = table->list("ignore")) {
-    for (const TomlValue& entry : *pairs) {
-      const auto* pair = std::get_if<TomlArray>(&entry.value);
-      const std::string what = "each entry of self_collision.ignore";
-      if (pair == nullptr || pair->size() != 2) {
-        errors_.at(entry.line, what + ": expected a pair of links, [\"a\", \"b\"]");
-        continue;
-      }
-      recipe_.ignored_pairs.emplace_back(table->nameOf((*pair)[0], what),
-                                         table->nameOf((*pair)[1], what));
+void RecipeReader::joints(const RecipeSection& section, std::vector<RecipeJoint>& field) {
+  const TomlArray* list = table_.list(section.name);
+  if (list == nullptr) return;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    RecipeJoint joint;
+    readOne((*list)[i], fmt::format("{}[{}]", section.name, i), fmt::format("[[{}]]", section.name),
+            joint);
+    for (const RecipeJoint& other : field) {
+      if (other.joint.name != joint.joint.name) continue;
+      errors_.at((*list)[i].line, fmt::format("joint '{}' is listed twice, see {}",
+                                              joint.joint.name, other.joint.where));
     }
+    field.push_back(std::move(joint));
   }
-  table->finish();
 }
 
-RobotRecipe RecipeReader::read() {
-  recipe_.name = root_.requiredName("name").name;
-  readEndEffector();
-  readCamera();
-  readLaser();
-  readBase();
-  readJoints();
-  readLimits();
-  readStartPose();
-  readSpheres();
-  readIgnoredPairs();
-  root_.finish();
-  return std::move(recipe_);
+void RecipeReader::links(const RecipeSection& section, std::vector<RecipeLinkSpheres>& field) {
+  const TomlTable* links = table_.table(section.name);
+  if (links == nullptr) return;
+  for (const auto& [link, entry] : *links) {
+    const std::string name = fmt::format("{}.{}", table_.full(section.name), link);
+    RecipeLinkSpheres spheres;
+    spheres.link = {link, errors_.place(entry.line)};
+    readOne(entry, name, fmt::format("[{}]", name), spheres);
+    field.push_back(std::move(spheres));
+  }
+}
+
+void RecipeReader::limits(const RecipeSection& section, std::vector<RecipeLimits>& field) {
+  const TomlTable* limits = table_.table(section.name);
+  if (limits == nullptr) return;
+  RecipeTable table = open(section.name, *limits);
+  for (const auto& [joint, value] : *limits) {
+    const auto [lower, upper] = table.numbersOf<2>(value, table.full(joint), kJointPosition);
+    if (lower > upper) {
+      errors_.at(value.line, fmt::format("{} = [{}, {}]: the lower limit comes first",
+                                         table.full(joint), lower, upper));
+    }
+    field.push_back({{joint, errors_.place(value.line)}, {lower, upper}});
+  }
+}
+
+void RecipeReader::positions(const RecipeSection& section, std::vector<RecipeStart>& field) {
+  const TomlTable* positions = table_.table(section.name);
+  if (positions == nullptr) return;
+  RecipeTable table = open(section.name, *positions);
+  for (const auto& [joint, value] : *positions) {
+    const auto position = table.numberOf(value, joint, kJointPosition);
+    field.push_back({{joint, errors_.place(value.line)}, position.value_or(0)});
+  }
+}
+
+void RecipeReader::pairs(const RecipeSection& section, std::string_view key,
+                         std::vector<std::pair<RecipeName, RecipeName>>& field) {
+  const TomlTable* inner = table_.table(section.name);
+  if (inner == nullptr) return;
+  RecipeTable table = open(section.name, *inner);
+  const TomlArray* pairs = table.list(key);
+  const std::size_t count = pairs == nullptr ? 0 : pairs->size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const TomlValue& entry = (*pairs)[i];
+    const auto* pair = std::get_if<TomlArray>(&entry.value);
+    const std::string what = fmt::format("each entry of {}", table.full(key));
+    if (pair == nullptr || pair->size() != 2) {
+      errors_.at(entry.line, what + ": expected a pair of links, [\"a\", \"b\"]");
+      continue;
+    }
+    field.emplace_back(table.nameOf((*pair)[0], what), table.nameOf((*pair)[1], what));
+  }
+  table.finish();
 }
 
 }  // namespace
@@ -324,7 +279,9 @@ RobotRecipe RecipeReader::read() {
 Result<RobotRecipe> readRobotRecipe(const std::filesystem::path& path) {
   ASSIGN_OR_RETURN(const auto table, readToml(path));
   FirstError errors(path.string());
-  RobotRecipe recipe = RecipeReader(table, errors).read();
+  RobotRecipe recipe;
+  RecipeTable root(table, "", 0, errors);
+  RecipeReader::read(root, recipe);
   if (errors.error()) return tl::unexpected(*errors.error());
   recipe.source = path.string();
   return recipe;

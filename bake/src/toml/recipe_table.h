@@ -173,6 +173,8 @@ class RecipeTable {
   [[nodiscard]] std::string full(std::string_view key) const {
     return name_.empty() ? std::string(key) : fmt::format("{}.{}", name_, key);
   }
+  /// "base", "joints[2]"; empty of the outermost table.
+  [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::uint32_t line() const { return line_; }
   [[nodiscard]] FirstError& errors() { return errors_; }
 

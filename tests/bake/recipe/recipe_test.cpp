@@ -24,10 +24,31 @@ TEST(RecipeTemplate, ReadsAsARecipeWithEveryKey) {
   EXPECT_EQ(recipe->name, "fetch");
   EXPECT_EQ(recipe->end_effector.link.name, "gripper_link");
   ASSERT_TRUE(recipe->camera.has_value());
-  EXPECT_EQ(recipe->joints.size(), 2U);
-  EXPECT_EQ(recipe->start_pose.size(), 2U);
-  EXPECT_EQ(recipe->spheres.links.size(), 4U);
+  EXPECT_TRUE(recipe->laser.has_value());
+  EXPECT_EQ(recipe->joints.size(), 1U);
+  EXPECT_EQ(recipe->limits.size(), 1U);
+  EXPECT_EQ(recipe->start_pose.size(), 1U);
+  EXPECT_EQ(recipe->spheres.links.size(), 1U);
   EXPECT_EQ(recipe->ignored_pairs.size(), 1U);
+}
+
+TEST(RecipeTemplate, ShowsWhatExcludesAnotherKeyAsAComment) {
+  const ScratchFolder folder;
+  const std::string text = bake::describeRobotRecipe();
+  std::size_t alternatives = 0;
+  for (const char* key :
+       {"footprint_rectangle", "max_spheres", "skip", "merge_with_parent", "spheres"}) {
+    SCOPED_TRACE(key);
+    std::string changed = text;
+    const std::size_t comment = changed.find("\n# " + std::string(key) + " = ");
+    ASSERT_NE(comment, std::string::npos);
+    changed.erase(comment + 1, 2);
+    const auto recipe = bake::readRobotRecipe(folder.write("r.toml", changed));
+    ASSERT_FALSE(recipe.has_value());
+    EXPECT_THAT(recipe.error().message, testing::HasSubstr("keep one of")) << changed;
+    ++alternatives;
+  }
+  EXPECT_EQ(alternatives, 5U);
 }
 
 TEST(RecipeTemplate, ShowsTheDefaults) {
