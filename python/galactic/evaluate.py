@@ -11,10 +11,11 @@ from typing import Optional, Sequence
 import torch
 
 import galactic
-from galactic.learning import checkpoint, evaluation, pictures
+from galactic.learning import checkpoint, evaluation
 from galactic.learning.command import EXIT_CODES, Parser, named_path, told, whole
-from galactic.learning.curves import write_json
 from galactic.learning.homes import Homes
+from galactic.learning.reports import pictures
+from galactic.learning.reports.curves import write_json
 from galactic.learning.trainer import threads_of
 
 

@@ -16,12 +16,12 @@ import galactic
 from galactic.learning import checkpoint, evaluation
 from galactic.learning.collector import EpisodeSums
 from galactic.learning.command import EXIT_CODES, INTERRUPTED, OK, Parser, named_path, told
-from galactic.learning.curves import write_json
 from galactic.learning.distributed import Group
 from galactic.learning.homes import Homes
 from galactic.learning.launch import launch
 from galactic.learning.networks import Policy
 from galactic.learning.presets import PRESETS, preset
+from galactic.learning.reports.curves import write_json
 from galactic.learning.settings import (
     Settings,
     SettingsError,

@@ -15,12 +15,12 @@ import torch
 from galactic.learning import checkpoint
 from galactic.learning.checkpoint import CheckpointFolder, SavedPolicy, new_policy
 from galactic.learning.collector import Collector, CollectorOptions, EpisodeSums
-from galactic.learning.curves import Curves, write_json
 from galactic.learning.distributed import Group
 from galactic.learning.environments import Environments
 from galactic.learning.networks import Policy, PolicyShape
 from galactic.learning.ppo import Learner
-from galactic.learning.progress import ProgressLine, amount, duration
+from galactic.learning.reports.curves import Curves, write_json
+from galactic.learning.reports.progress import ProgressLine, amount, duration
 from galactic.learning.settings import Settings
 from galactic.learning.stopwatch import Stopwatch
 

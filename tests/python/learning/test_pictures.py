@@ -12,10 +12,11 @@ import torch
 
 import galactic
 from galactic import evaluate
-from galactic.learning import checkpoint, pictures
+from galactic.learning import checkpoint
 from galactic.learning.evaluation import Actor, EpisodeResult, Evaluator
 from galactic.learning.homes import Homes
 from galactic.learning.networks import PolicyShape
+from galactic.learning.reports import pictures
 from galactic.learning.settings import Settings
 
 WORLD = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none")) / "held_out.pack"

@@ -15,9 +15,9 @@ import torch
 
 from galactic.learning import checkpoint
 from galactic.learning.checkpoint import CheckpointError, CheckpointFolder, load_policy
-from galactic.learning.curves import read_curves
 from galactic.learning.distributed import Group
 from galactic.learning.launch import launch
+from galactic.learning.reports.curves import read_curves
 from galactic.learning.settings import Settings
 from galactic.learning.trainer import Trainer
 from toys import ReachAndGrasp, Remember

@@ -16,7 +16,7 @@ import pytest
 import torch
 
 from galactic.learning import checkpoint
-from galactic.learning.curves import read_curves
+from galactic.learning.reports.curves import read_curves
 
 WORLDS = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none"))
 WORLD, HELD_OUT = WORLDS / "world.pack", WORLDS / "held_out.pack"

@@ -110,7 +110,7 @@ TEST(PartitionIdle, IsSavedRestoredAndRestarted) {
   while (std::ranges::count(simulator.idle(), 1) == 0) {
     simulator.step(actionsFor(simulator, 0, step++));
   }
-  ASSERT_GT(std::ranges::count(simulator.idle(), 0), 0) << "all at once: expected a state of both";
+  ASSERT_GT(std::ranges::count(simulator.idle(), 0), 0) << "all at once: expected both states";
   const auto saved = simulator.saveState();
   const Played rest = playAll(simulator, 4 * kSteps);
   const SimulationStatistics ended = simulator.statistics();

@@ -9,7 +9,7 @@ import pathlib
 from typing import Any, Mapping, Optional, Sequence
 
 from galactic.learning.checkpoint import write_atomically
-from galactic.learning.page import curves_page
+from galactic.learning.reports.page import curves_page
 
 COLUMNS = (
     "steps",
