@@ -44,7 +44,9 @@ struct Vec3d {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-[[nodiscard]] inline double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+[[nodiscard]] constexpr double squaredNorm(const Vec3d& v) { return dot(v, v); }
+
+[[nodiscard]] inline double norm(const Vec3d& v) { return std::sqrt(squaredNorm(v)); }
 
 /// `v` at unit length; `fallback` where it has none.
 [[nodiscard]] inline Vec3d normalized(const Vec3d& v, const Vec3d& fallback = {1, 0, 0}) {

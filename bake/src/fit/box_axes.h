@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "fit/axes.h"
 #include "fit/rectangle_calipers.h"
-#include "fit/vec3d.h"
 #include "galactic/pose.h"
 
 namespace galactic::bake::fit {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "fit/vec3d.h"
+#include "fit/axes.h"
 #include "galactic/pose.h"
 
 namespace galactic::bake::fit {

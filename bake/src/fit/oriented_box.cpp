@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <vector>
 
+#include "fit/axes.h"
 #include "fit/box_axes.h"
 #include "fit/convex_hull.h"
 #include "fit/rotation.h"
-#include "fit/vec3d.h"
 
 namespace galactic::bake {
 namespace {

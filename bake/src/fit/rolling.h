@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "fit/axes.h"
 #include "fit/convex_hull.h"
-#include "fit/vec3d.h"
 
 namespace galactic::bake::fit {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "fit/vec3d.h"
+#include "fit/axes.h"
 #include "galactic/pose.h"
 
 namespace galactic::bake::fit {

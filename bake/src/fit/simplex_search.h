@@ -1,7 +1,7 @@
 #pragma once
 #include <functional>
 
-#include "fit/vec3d.h"
+#include "fit/axes.h"
 
 namespace galactic::bake::fit {
 

@@ -7,10 +7,10 @@
 #include <numeric>
 #include <span>
 
+#include "fit/axes.h"
 #include "fit/convex_hull.h"
 #include "fit/rolling.h"
 #include "fit/rotation.h"
-#include "fit/vec3d.h"
 
 namespace galactic::bake {
 namespace {

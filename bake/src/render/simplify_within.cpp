@@ -134,7 +134,7 @@ class SimplifiedSurface {
       if (candidate == sphere_set::kNoFacet || candidate == tried) return false;
       tried = candidate;
       const Vec3d nearest = sphere_set::nearestOnFacet(point, tree_.facets()[candidate]);
-      if (sphere_set::squaredLength(nearest - point) > squared) return false;
+      if (squaredNorm(nearest - point) > squared) return false;
       facet = candidate;
       return true;
     };

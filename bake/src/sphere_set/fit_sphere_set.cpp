@@ -56,7 +56,7 @@ Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
                   fmt::format("{} is not in the working set of {} radii; give its index",
                               sphere.radius_index, options.radii.size()));
     }
-    const sphere_set::Vec3d center = widen(sphere.center);
+    const Vec3d center = widen(sphere.center);
     if (!std::isfinite(center.x + center.y + center.z)) {
       return fail(ErrorCode::kInvalidInput, fmt::format("spheres[{}].center", at),
                   "it is not finite; give meters in the object's frame");

@@ -32,7 +32,7 @@ void lowerNearSpheres(const FitTask& task, std::span<const Candidate> spheres,
 }  // namespace
 
 double outside(const FitTask& task, const Candidate& sphere, const Vec3d& p) {
-  return length(p - sphere.center) - task.radii[sphere.radius_index];
+  return norm(p - sphere.center) - task.radii[sphere.radius_index];
 }
 
 std::vector<double> gapsOf(const FitTask& task, std::span<const Candidate> spheres,

@@ -80,7 +80,7 @@ std::vector<std::vector<const Candidate*>> neighborsOf(const FitTask& task,
     for (std::size_t b = 0; b < spheres.size(); ++b) {
       const double reach =
           task.radii[spheres[a].radius_index] + task.radii[spheres[b].radius_index];
-      const bool meets = squaredLength(spheres[a].center - spheres[b].center) < reach * reach;
+      const bool meets = squaredNorm(spheres[a].center - spheres[b].center) < reach * reach;
       if (a != b && meets) neighbors[a].push_back(&spheres[b]);
     }
   }

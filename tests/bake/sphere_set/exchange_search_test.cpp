@@ -39,7 +39,7 @@ double errorOf(const Scene& scene, const std::vector<Candidate>& spheres) {
   for (const Vec3d& point : scene.points) {
     double gap = HUGE_VAL;
     for (const Candidate& sphere : spheres) {
-      gap = std::min(gap, length(point - sphere.center) - scene.task.radii[sphere.radius_index]);
+      gap = std::min(gap, norm(point - sphere.center) - scene.task.radii[sphere.radius_index]);
     }
     gap = std::max(gap, 0.0);
     sum += 0.04 * gap + gap * gap + 400 * gap * gap * gap * gap;
@@ -127,7 +127,7 @@ TEST(GapGain, IsTheSameInAllVersionsAndAsDefined) {
     double gone = 0;
     for (std::size_t at = 0; at < count; ++at) {
       const Vec3d p = widen({columns[0][at], columns[1][at], columns[2][at]});
-      const double distance = length(p - widen({sphere.x, sphere.y, sphere.z}));
+      const double distance = norm(p - widen({sphere.x, sphere.y, sphere.z}));
       const double now = costOfGap(cost, distance - static_cast<double>(sphere.radius));
       staying += std::max(0.0, static_cast<double>(columns[3][at]) - now);
       gone += std::max(0.0, static_cast<double>(columns[4][at]) - now);

@@ -89,7 +89,7 @@ TEST(TriangleTree, FindsTheNearestPointOfASoup) {
     const double truth = bruteForce(mesh, p);
     const NearestPoint found = tree.nearest(p);
     EXPECT_NEAR(std::sqrt(found.squared), truth, 1e-7);
-    EXPECT_NEAR(length(found.point - p), truth, 1e-7);
+    EXPECT_NEAR(norm(found.point - p), truth, 1e-7);
     const NearestPoint limited = tree.nearest(p, {.squared_limit = 0.01});
     EXPECT_EQ(limited.facet != kNoFacet, truth < 0.1);
     within += truth < 0.1 ? 1 : 0;

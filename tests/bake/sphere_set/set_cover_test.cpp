@@ -208,7 +208,7 @@ TEST(PointGrid, FindsWhatBruteForceFinds) {
     });
     std::set<std::uint32_t> by_force;
     for (std::uint32_t at = 0; at < points.size(); ++at) {
-      if (squaredLength(points[at] - center) <= radius * radius) by_force.insert(at);
+      if (squaredNorm(points[at] - center) <= radius * radius) by_force.insert(at);
     }
     EXPECT_EQ(by_grid, by_force);
     EXPECT_EQ(grid.anyWithin(center, radius), !by_force.empty());

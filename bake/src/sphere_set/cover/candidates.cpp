@@ -93,7 +93,7 @@ Vec3d middleOfPart(const FitTask& task, const Vec3d& p) {
   const double step = kThinStep * task.radii.front();
   const SurfaceDistance start = task.solid->distance(p);
   const Vec3d normal = facetNormal(task.solid->facets()[start.facet]);
-  Vec3d direction = normal * (1 / length(normal));
+  Vec3d direction = normal * (1 / norm(normal));
   if (task.solid->distance(p - direction * step).distance <
       task.solid->distance(p + direction * step).distance) {
     direction = direction * -1;

@@ -66,7 +66,7 @@ CandidatePool withoutDominated(const FitTask& task, std::span<const Vec3d> point
     const double reach = task.radii[sphere.radius_index] + task.eps;
     const auto rows = pool.cover.column(at);
     return std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) {
-      return squaredLength(points[row] - sphere.center) <= reach * reach;
+      return squaredNorm(points[row] - sphere.center) <= reach * reach;
     });
   };
   std::vector<char> dominated(centers.size(), 0);

@@ -77,7 +77,7 @@ class Polisher {
     std::vector<const Candidate*> neighbors;
     for (const std::uint32_t other : neighbors_[at]) {
       const double reaches = reach + most_ + task_.radii[spheres_[other].radius_index];
-      const double squared = squaredLength(spheres_[other].center - spheres_[at].center);
+      const double squared = squaredNorm(spheres_[other].center - spheres_[at].center);
       if (squared < reaches * reaches) neighbors.push_back(&spheres_[other]);
     }
     std::vector<NearPoint> near;

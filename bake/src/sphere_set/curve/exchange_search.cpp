@@ -148,11 +148,11 @@ std::optional<Candidate> ExchangeSearch::pulledInwards(const Vec3d& from,
 
 ExchangeSearch::Place ExchangeSearch::placeOf(const Vec3d& point) const {
   // Without spheres a point costs as much as with one at the other end.
-  const double furthest = length(task_.solid->bounds().size());
+  const double furthest = norm(task_.solid->bounds().size());
   Place place{0, furthest, furthest};
   for (std::uint32_t rank = 0; rank < chosen_.size(); ++rank) {
     const Candidate& sphere = chosen_[rank].sphere;
-    const double gap = length(point - sphere.center) - task_.radii[sphere.radius_index];
+    const double gap = norm(point - sphere.center) - task_.radii[sphere.radius_index];
     if (gap < place.gap) {
       place = {rank, gap, place.gap};
     } else {
@@ -212,7 +212,7 @@ void ExchangeSearch::fillCell(Cell& cell, const std::vector<std::uint32_t>& memb
   cell.count = x_.size() - cell.first;
   if (members.empty()) return;
   cell.middle = (box.min + box.max) * 0.5;
-  cell.radius = length(box.size()) / 2;
+  cell.radius = norm(box.size()) / 2;
 }
 
 CostedPoints ExchangeSearch::pointsOf(const Cell& cell) const {
@@ -233,7 +233,7 @@ ExchangeSearch::Offers ExchangeSearch::offersOf(std::uint32_t candidate) const {
   for (std::uint32_t rank = 0; rank < cells_.size(); ++rank) {
     const Cell& cell = cells_[rank];
     GapGain gain;
-    const double least = length(offered.sphere.center - cell.middle) - cell.radius - radius;
+    const double least = norm(offered.sphere.center - cell.middle) - cell.radius - radius;
     if (cell.count > 0 && costOfGap(weights_.gap, least) < cell.highest_next) {
       gain = gain_of_(pointsOf(cell), weights_.gap, ball);
     }

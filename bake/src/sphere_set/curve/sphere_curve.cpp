@@ -19,7 +19,6 @@ using sphere_set::ErrorWeights;
 using sphere_set::ExchangeSearch;
 using sphere_set::FitTask;
 using sphere_set::PreparedFit;
-using sphere_set::Vec3d;
 using sphere_set::Yardstick;
 
 namespace {

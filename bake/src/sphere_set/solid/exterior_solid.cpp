@@ -34,7 +34,7 @@ std::pair<std::size_t, double> longestEdge(const Facet& facet) {
   std::size_t start = 0;
   double longest = 0;
   for (std::size_t corner = 0; corner < 3; ++corner) {
-    const double edge = length(widen(facet[(corner + 1) % 3]) - widen(facet[corner]));
+    const double edge = norm(widen(facet[(corner + 1) % 3]) - widen(facet[corner]));
     if (edge > longest) {
       longest = edge;
       start = corner;
@@ -79,7 +79,7 @@ ExteriorSolid::ExteriorSolid(const TriangleMesh& mesh, double smallest_radius, u
   field_ = std::make_unique<const ProbeField>(all, boundsOf(all.facets()), smallest_radius, jobs);
   surface_ = TriangleTree(touchedFacets(mesh));
   bounds_ = boundsOf(surface_.facets());
-  for (const Facet& facet : surface_.facets()) area_ += length(facetNormal(facet)) / 2;
+  for (const Facet& facet : surface_.facets()) area_ += norm(facetNormal(facet)) / 2;
 }
 
 std::vector<Facet> ExteriorSolid::touchedFacets(const TriangleMesh& mesh) const {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "sphere_set/solid/vec3d.h"
+#include "sphere_set/solid/box.h"
 
 namespace galactic::bake::sphere_set {
 
@@ -29,7 +29,7 @@ class PointGrid {
         // The cells of one row follow each other.
         const std::size_t row = (k * size_[1] + j) * size_[0];
         for (std::uint32_t at = first_[row + x.first]; at < first_[row + x.end]; ++at) {
-          const double squared = squaredLength(sorted_[at].point - center);
+          const double squared = squaredNorm(sorted_[at].point - center);
           if (squared <= limit && !visit(sorted_[at].index, squared)) return;
         }
       }

@@ -245,7 +245,7 @@ double ProbeField::excess(const Vec3d& p) const {
     if (reached == previous || reached == kUnreached) continue;
     previous = reached;
     least =
-        std::min(least, length(p - positionOf(reached)) - static_cast<double>(clearance_[reached]));
+        std::min(least, norm(p - positionOf(reached)) - static_cast<double>(clearance_[reached]));
   }
   return least;
 }

@@ -55,7 +55,7 @@ class SparseGrid {
   [[nodiscard]] bool holdsNear(const Cube& cube, const Vec3d& p,
                                const std::vector<Vec3d>& points) const {
     for (std::uint32_t i = heads_[slotOf(cube)]; i != kNone; i = next_[i]) {
-      if (squaredLength(points[i] - p) < edge_ * edge_) return true;
+      if (squaredNorm(points[i] - p) < edge_ * edge_) return true;
     }
     return false;
   }
@@ -120,11 +120,11 @@ std::vector<Vec3d> sampleSurface(const ExteriorSolid& solid,
   std::vector<Vec3d> points;
   SparseGrid grid(options.spacing, static_cast<std::size_t>(per_spacing));
   std::size_t at = 0;
-  double ends = facets.empty() ? 0 : length(facetNormal(facets[0])) / 2;
+  double ends = facets.empty() ? 0 : norm(facetNormal(facets[0])) / 2;
   for (double n = 0; n < tries && !facets.empty(); ++n) {
     const double wanted = (n + random.unit()) / tries * solid.area();
     while (wanted > ends && at + 1 < facets.size()) {
-      ends += length(facetNormal(facets[++at])) / 2;
+      ends += norm(facetNormal(facets[++at])) / 2;
     }
     const Vec3d p = asStored(pointOn(facets[at], random));
     if (heightAbove(support, p) < 0 || grid.hasNear(p, points) || !solid.reachable(p)) continue;

@@ -106,7 +106,7 @@ NearestPoint TriangleTree::nearest(const Vec3d& p, const SearchLimits& limits) c
   NearestPoint best{limits.squared_limit, {}, kNoFacet};
   const auto consider = [&](const Facet& facet, std::uint32_t index) {
     const Vec3d q = nearestOnFacet(p, facet);
-    const double squared = squaredLength(q - p);
+    const double squared = squaredNorm(q - p);
     if (squared < best.squared) best = {squared, q, index};
   };
   if (limits.hint != kNoFacet) consider(facets_[limits.hint], limits.hint);

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "sphere_set/solid/vec3d.h"
+#include "sphere_set/solid/box.h"
 
 namespace galactic::bake::sphere_set {
 

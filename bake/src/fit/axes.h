@@ -7,8 +7,6 @@
 
 namespace galactic::bake::fit {
 
-using bake::Vec3d;
-
 /// Three orthonormal directions, right-handed.
 using Axes = std::array<Vec3d, 3>;
 

@@ -6,12 +6,6 @@
 
 namespace galactic::bake::sphere_set {
 
-using bake::Vec3d;
-
-[[nodiscard]] inline double squaredLength(const Vec3d& v) { return dot(v, v); }
-
-[[nodiscard]] inline double length(const Vec3d& v) { return std::sqrt(squaredLength(v)); }
-
 [[nodiscard]] inline Vec3d least(const Vec3d& a, const Vec3d& b) {
   return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
 }
