@@ -58,8 +58,8 @@ struct Draw {
 /// One draft of an episode: what stands where so far.
 class Draft {
  public:
-  Draft(const Stage& stage, const DraftEase& ease, Random& random, RejectionCounts& rejections)
-      : stage_(stage), ease_(ease), random_(random), rejections_(rejections) {}
+  Draft(const DraftHome& home, const DraftEase& ease, Random& random, RejectionCounts& rejections)
+      : home_(home), ease_(ease), random_(random), rejections_(rejections) {}
 
   /// Puts the target on a surface within reach.
   bool placeTarget() {
@@ -104,7 +104,7 @@ class Draft {
   /// The places at which the goal may be, by distance.
   [[nodiscard]] std::vector<std::uint32_t> goalPlaces() {
     std::vector<std::uint32_t> found;
-    const auto& places = stage_.supports.places();
+    const auto& places = home_.supports.places();
     for (std::uint32_t n = 0; n < places.size(); ++n) {
       if (mayHoldGoal(places[n])) found.push_back(n);
     }
@@ -114,7 +114,7 @@ class Draft {
   /// Places the other objects clear of each other, of target and goal, and of the positions in
   /// which the robot reaches these.
   bool placeOthers() {
-    const CountRange& objects = stage_.options.objects;
+    const CountRange& objects = home_.options.objects;
     const std::uint32_t count = objects.least + random_.below(objects.most - objects.least + 1);
     others_.reserve(count - std::size_t{1});
     while (others_.size() + 1 < count) {
@@ -125,17 +125,17 @@ class Draft {
 
   /// Puts the robot on the floor, clear of all objects.
   bool placeRobot() {
-    const std::vector<FloorPlace>& places = stage_.floor.places();
+    const std::vector<FloorPlace>& places = home_.floor.places();
     std::size_t tries = 0;
     for (std::size_t n = 0; n < kDistanceTries && tries < kStartTries; ++n) {
       const FloorPlace& place = places[random_.below(static_cast<std::uint32_t>(places.size()))];
       const std::uint32_t heading = random_.below(kHeadings);
       base_yaw_ = yawOf(heading) + aside() * kTurn / static_cast<float>(kHeadings);
-      base_position_ = stage_.floor.position(place);
-      base_position_.x += aside() * stage_.floor.spacing();
-      base_position_.z += aside() * stage_.floor.spacing();
+      base_position_ = home_.floor.position(place);
+      base_position_.x += aside() * home_.floor.spacing();
+      base_position_.z += aside() * home_.floor.spacing();
       const Vec3 way = target_.pose.translation - base_position_;
-      if (!isWithin(std::hypot(way.x, way.z), stage_.options.start_to_target)) {
+      if (!isWithin(std::hypot(way.x, way.z), home_.options.start_to_target)) {
         rejections_.add(EpisodeRejection::kStartDistance);
         continue;
       }
@@ -163,19 +163,19 @@ class Draft {
   float aside() { return static_cast<float>(random_.unit()) - 0.5F; }
 
   [[nodiscard]] const ObjectModel& modelOf(const Wanted& wanted) const {
-    return stage_.objects[wanted.object];
+    return home_.objects[wanted.object];
   }
 
   /// Any place, or, half of the time, one that was proven as this end of the way.
   const SupportPlace& drawPlace(std::uint32_t ProvenPair::*end) {
-    if (ease_.proven.empty() || random_.below(2) == 0) return stage_.supports.draw(random_);
+    if (ease_.proven.empty() || random_.below(2) == 0) return home_.supports.draw(random_);
     const std::uint32_t pair = random_.below(static_cast<std::uint32_t>(ease_.proven.size()));
-    return stage_.supports.places()[ease_.proven[pair].*end];
+    return home_.supports.places()[ease_.proven[pair].*end];
   }
 
   Wanted drawObject() {
-    const std::uint32_t object = random_.below(static_cast<std::uint32_t>(stage_.objects.size()));
-    return {object, &drawStablePose(stage_.objects[object], random_)};
+    const std::uint32_t object = random_.below(static_cast<std::uint32_t>(home_.objects.size()));
+    return {object, &drawStablePose(home_.objects[object], random_)};
   }
 
   bool reject(EpisodeRejection reason) {
@@ -185,21 +185,21 @@ class Draft {
 
   /// A spot on the place, turned at random, if the object stands there and stays.
   std::optional<Draw> stand(const Wanted& wanted, const SupportPlace& place) {
-    const float spacing = stage_.scene.grids().front().spacing();
+    const float spacing = home_.scene.grids().front().spacing();
     Spot spot{.x = place.x + spacing * aside(),
               .z = place.z + spacing * aside(),
               .surface = place.surface,
               .yaw = kTurn * static_cast<float>(random_.unit())};
     auto object = put(wanted, spot);
     if (!object) return std::nullopt;
-    if (stage_.settling != nullptr) {
+    if (home_.settling != nullptr) {
       const auto settled = settledSpot(*object, *wanted.stable, spot);
       if (!settled) return std::nullopt;
       spot = *settled;
       object = put(wanted, spot);
       if (!object) return std::nullopt;
     }
-    if (canBeReleased(stage_.scene, modelOf(wanted), object->pose)) return Draw{*object, place};
+    if (canBeReleased(home_.scene, modelOf(wanted), object->pose)) return Draw{*object, place};
     rejections_.add(EpisodeRejection::kPlacement);
     return std::nullopt;
   }
@@ -208,7 +208,7 @@ class Draft {
   std::optional<PlacedObject> put(const Wanted& wanted, Spot& spot) {
     const ObjectModel& model = modelOf(wanted);
     const PlacedObject roughly = placeObject(model, wanted.object, *wanted.stable, spot);
-    const auto surface = stage_.supports.surfaceUnder(roughly.footprint, spot.surface);
+    const auto surface = home_.supports.surfaceUnder(roughly.footprint, spot.surface);
     if (!surface) {
       rejections_.add(EpisodeRejection::kNoRoom);
       return std::nullopt;
@@ -216,7 +216,7 @@ class Draft {
     spot.surface = *surface;
     const PlacedObject object = placeObject(model, wanted.object, *wanted.stable, spot);
     const Footprint& print = object.footprint;
-    if (!stage_.supports.isAllowed({print.x, spot.surface, print.z})) {
+    if (!home_.supports.isAllowed({print.x, spot.surface, print.z})) {
       rejections_.add(EpisodeRejection::kOutsideReceptacle);
       return std::nullopt;
     }
@@ -229,13 +229,13 @@ class Draft {
 
   /// Whether rays, where there are any, see no gap and no bump under the object.
   [[nodiscard]] bool isEven(const Footprint& print, float surface) const {
-    return stage_.rays == nullptr || stage_.rays->isEven(print, surface, stage_.options.flatness);
+    return home_.rays == nullptr || home_.rays->isEven(print, surface, home_.options.flatness);
   }
 
   /// Where the object comes to rest when it is let go: moved and turned a little.
   std::optional<Spot> settledSpot(const PlacedObject& object, const StablePose& stable,
                                   const Spot& spot) {
-    const Settled settled = stage_.settling->settle(stage_.bodies[object.object], object.pose);
+    const Settled settled = home_.settling->settle(home_.bodies[object.object], object.pose);
     if (settled.end != SettlingEnd::kRests) {
       rejections_.add(settled.end == SettlingEnd::kTipped ? EpisodeRejection::kTipped
                                                           : EpisodeRejection::kMoved);
@@ -251,21 +251,21 @@ class Draft {
 
   /// Whether the target could be at the right distance, somewhere in the place's cell.
   bool mayHoldGoal(const SupportPlace& place) {
-    if (stage_.options.goal_on_other_support && place.surface_id == target_surface_) {
+    if (home_.options.goal_on_other_support && place.surface_id == target_surface_) {
       return reject(EpisodeRejection::kSameSupport);
     }
-    const float off = kAside + stage_.scene.grids().front().spacing();
+    const float off = kAside + home_.scene.grids().front().spacing();
     const Vec3 way =
         Vec3{place.x, place.surface + wanted_.stable->height, place.z} - target_.pose.translation;
     const float distance = std::sqrt(dot(way, way));
-    const DistanceRange& range = stage_.target_to_goal;
+    const DistanceRange& range = home_.target_to_goal;
     if (isWithin(distance, {range.least - off, range.most + off})) return true;
     return reject(EpisodeRejection::kDistance);
   }
 
   bool isGoal(const PlacedObject& object) {
     const Vec3 way = object.pose.translation - target_.pose.translation;
-    if (!isWithin(std::sqrt(dot(way, way)), stage_.target_to_goal)) {
+    if (!isWithin(std::sqrt(dot(way, way)), home_.target_to_goal)) {
       return reject(EpisodeRejection::kDistance);
     }
     if (gapBetween(object.footprint, target_.footprint) >= kObjectGap) return true;
@@ -274,7 +274,7 @@ class Draft {
 
   /// Remembers the position of the robot that reaches the object.
   bool isReached(const Draw& draw) {
-    auto spheres = findReach(stage_, draw.object, draw.place.floor, random_);
+    auto spheres = findReach(home_, draw.object, draw.place.floor, random_);
     if (!spheres) return reject(EpisodeRejection::kNotReached);
     reaching_.push_back(std::move(*spheres));
     return true;
@@ -297,12 +297,12 @@ class Draft {
   /// Whether the base, which stands about at `floor`, and the start pose are clear of everything;
   /// corrects the base's height.
   bool standsFree(float floor) {
-    const auto height = stage_.floor.heightAt(base_position_.x, base_position_.z, floor);
+    const auto height = home_.floor.heightAt(base_position_.x, base_position_.z, floor);
     if (!height) return false;
     base_position_.y = *height;
-    const RobotBody body = robotBody(stage_.robot, groundPose(base_position_, base_yaw_),
-                                     stage_.robot.startPositions());
-    return isFree(stage_.scene, body.spheres) && isClearOfObjects(body.spheres);
+    const RobotBody body =
+        robotBody(home_.robot, groundPose(base_position_, base_yaw_), home_.robot.startPositions());
+    return isFree(home_.scene, body.spheres) && isClearOfObjects(body.spheres);
   }
 
   [[nodiscard]] bool isApart(const PlacedObject& object) const {
@@ -320,7 +320,7 @@ class Draft {
     return clear(target_) && std::all_of(others_.begin(), others_.end(), clear);
   }
 
-  const Stage& stage_;
+  const DraftHome& home_;
   const DraftEase& ease_;
   Random& random_;
   RejectionCounts& rejections_;
@@ -338,24 +338,24 @@ class Draft {
 
 }  // namespace
 
-std::vector<ProvenPair> findProvenPairs(const Stage& stage) {
+std::vector<ProvenPair> findProvenPairs(const DraftHome& home) {
   std::vector<ProvenPair> pairs;
-  const auto count = static_cast<std::uint32_t>(stage.supports.places().size());
+  const auto count = static_cast<std::uint32_t>(home.supports.places().size());
   // What is drawn here is told nowhere, and the stream is no episode's.
   RejectionCounts untold;
-  Random random(~stage.options.seed);
+  Random random(~home.options.seed);
   const DraftEase anywhere;
   std::size_t tries = 0;
   while (tries < kSurveyTries && pairs.size() < kEnoughPairs) {
     ++tries;
-    Draft draft(stage, anywhere, random, untold);
+    Draft draft(home, anywhere, random, untold);
     draft.chooseTarget();
     const std::uint32_t target = random.below(count);
-    if (!draft.tryTarget(stage.supports.places()[target])) continue;
+    if (!draft.tryTarget(home.supports.places()[target])) continue;
     const std::vector<std::uint32_t> goals = draft.goalPlaces();
     for (std::size_t n = 0; n < kGoalTries && !goals.empty(); ++n, ++tries) {
       const std::uint32_t goal = goals[random.below(static_cast<std::uint32_t>(goals.size()))];
-      if (!draft.tryGoal(stage.supports.places()[goal])) continue;
+      if (!draft.tryGoal(home.supports.places()[goal])) continue;
       pairs.push_back({target, goal});
       break;
     }
@@ -363,9 +363,9 @@ std::vector<ProvenPair> findProvenPairs(const Stage& stage) {
   return pairs;
 }
 
-DraftEnd draftEpisode(const Stage& stage, const DraftEase& ease, Random& random,
+DraftEnd draftEpisode(const DraftHome& home, const DraftEase& ease, Random& random,
                       DraftedEpisode& episode, RejectionCounts& rejections) {
-  Draft draft(stage, ease, random, rejections);
+  Draft draft(home, ease, random, rejections);
   if (!draft.placeTarget()) return DraftEnd::kTarget;
   if (!draft.placeGoal()) return DraftEnd::kGoal;
   if (!draft.placeOthers()) return DraftEnd::kOthers;

@@ -21,7 +21,7 @@ inline constexpr float kObjectGap = 0.05F;
 inline constexpr float kGraspShare = 0.8F;
 
 /// Everything of a scene that drafts read. The references outlive it.
-struct Stage {
+struct DraftHome {
   const Scene& scene;
   /// Ascending names.
   std::span<const ObjectModel> objects;
@@ -61,9 +61,9 @@ struct ProvenPair {
 };
 
 /// Looks for proven pairs in kSurveyTries tries, by going from places that held an object to all
-/// those at the right distance. None where the scene is all but hopeless. Depends on the stage
+/// those at the right distance. None where the scene is all but hopeless. Depends on the home
 /// only.
-[[nodiscard]] std::vector<ProvenPair> findProvenPairs(const Stage& stage);
+[[nodiscard]] std::vector<ProvenPair> findProvenPairs(const DraftHome& home);
 
 /// What a draft may make use of, and do without, after others have failed.
 struct DraftEase {
@@ -77,7 +77,7 @@ struct DraftEase {
 /// goal are taken only where a position of base and arm was found in which the grasp point is at
 /// the box, and neither the scene nor any object is touched; the other objects keep clear of it.
 /// Adds up in `rejections` what was drawn and not taken. The result depends on the arguments only.
-[[nodiscard]] DraftEnd draftEpisode(const Stage& stage, const DraftEase& ease, Random& random,
+[[nodiscard]] DraftEnd draftEpisode(const DraftHome& home, const DraftEase& ease, Random& random,
                                     DraftedEpisode& episode, RejectionCounts& rejections);
 
 }  // namespace galactic::bake

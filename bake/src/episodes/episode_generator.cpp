@@ -59,7 +59,7 @@ SourceEpisodes emptySet(const GenerationWorld& world, std::span<const SceneOfPac
 }
 
 /// An episode in the making.
-struct Slot {
+struct PendingEpisode {
   /// Which one of all.
   std::size_t number = 0;
   /// Its own stream, so that no episode depends on another.
@@ -75,54 +75,55 @@ struct Slot {
 };
 
 /// Draws the episodes of one batch in a scene and replays them until all stand.
-class Batch {
+class EpisodeBatch {
  public:
-  Batch(const GenerationContext& context, const SceneOfPack& scene, const PreparedScene& prepared)
+  EpisodeBatch(const GenerationContext& context, const SceneOfPack& scene,
+               const PreparedScene& prepared)
       : context_(context),
         scene_(scene),
-        stage_(prepared.stage()),
+        home_(prepared.draftHome()),
         packs_(context.world.commonPacks()),
         proven_(prepared.provenPairs()) {
     packs_.push_back(scene.pack);
   }
 
-  Result<void> fill(std::span<Slot> slots) const {
-    std::vector<Slot*> open;
+  Result<void> fill(std::span<PendingEpisode> slots) const {
+    std::vector<PendingEpisode*> open;
     open.reserve(slots.size());
-    for (Slot& slot : slots) open.push_back(&slot);
+    for (PendingEpisode& slot : slots) open.push_back(&slot);
     while (!open.empty()) {
-      for (Slot* slot : open) draw(*slot);
-      std::erase_if(open, [](const Slot* slot) { return slot->is_skipped; });
+      for (PendingEpisode* slot : open) draw(*slot);
+      std::erase_if(open, [](const PendingEpisode* slot) { return slot->is_skipped; });
       if (open.empty()) break;
       if (auto replayed = replay(open); !replayed) return replayed;
-      std::erase_if(open, [](const Slot* slot) { return slot->is_done; });
+      std::erase_if(open, [](const PendingEpisode* slot) { return slot->is_done; });
     }
     return {};
   }
 
  private:
   /// Drafts until a draft succeeds, or the episode is skipped.
-  void draw(Slot& slot) const {
+  void draw(PendingEpisode& slot) const {
     while (slot.drafts < kDrafts) {
       DraftEase ease;
       if (slot.drafts >= kDraftsAnywhere) ease.proven = proven_;
       ease.may_lack_objects = slot.drafts >= kDraftsWithAll;
       ++slot.drafts;
-      const DraftEnd end = draftEpisode(stage_, ease, slot.random, slot.episode, slot.rejections);
+      const DraftEnd end = draftEpisode(home_, ease, slot.random, slot.episode, slot.rejections);
       ++slot.ends[static_cast<std::size_t>(end)];
       if (end == DraftEnd::kDone) return;
     }
     slot.is_skipped = true;
   }
 
-  Result<void> replay(std::span<Slot* const> slots) const {
+  Result<void> replay(std::span<PendingEpisode* const> slots) const {
     const SceneOfPack* const scene = &scene_;
     SourceEpisodes set = emptySet(context_.world, {&scene, 1});
     set.episodes.reserve(slots.size());
-    for (const Slot* slot : slots) append(slot->episode, 0, set);
+    for (const PendingEpisode* slot : slots) append(slot->episode, 0, set);
     ASSIGN_OR_RETURN(const auto ends, replayEpisodes(packs_, set));
     for (std::size_t n = 0; n < slots.size(); ++n) {
-      Slot& slot = *slots[n];
+      PendingEpisode& slot = *slots[n];
       slot.is_done = ends[n] == ReplayEnd::kStands;
       if (slot.is_done) continue;
       ++slot.replays_failed;
@@ -134,7 +135,7 @@ class Batch {
 
   const GenerationContext& context_;
   const SceneOfPack& scene_;
-  const Stage stage_;
+  const DraftHome home_;
   std::vector<const PackFile*> packs_;
   std::span<const ProvenPair> proven_;
 };
@@ -142,7 +143,7 @@ class Batch {
 /// One scene, its part of the episodes and what became of them.
 struct SceneTask {
   const SceneOfPack* scene = nullptr;
-  std::vector<Slot> slots;
+  std::vector<PendingEpisode> slots;
   GeneratedScene summary;
   /// Why there can be no episodes; empty when there can be.
   std::string unusable;
@@ -152,7 +153,7 @@ struct SceneTask {
 };
 
 /// Why an episode was skipped, and what may help.
-std::string whySkipped(const Slot& slot, const SceneTask& task,
+std::string whySkipped(const PendingEpisode& slot, const SceneTask& task,
                        const EpisodeGeneratorOptions& options) {
   const auto ended = [&slot](DraftEnd end) { return slot.ends[static_cast<std::size_t>(end)]; };
   const GeneratedScene& scene = task.summary;
@@ -196,10 +197,10 @@ Result<void> firstFailure(std::span<const Result<void>> results) {
 }
 
 /// Draws episodes in the scenes that they were dealt to.
-class Round {
+class GenerationRound {
  public:
-  Round(const EpisodeInputs& inputs, const GenerationContext& context,
-        const EpisodeProgress& progress)
+  GenerationRound(const EpisodeInputs& inputs, const GenerationContext& context,
+                  const EpisodeProgress& progress)
       : inputs_(inputs), context_(context), counter_(progress) {}
 
   /// Once a scene turns out to be unusable, the episodes will be dealt anew: then the others are
@@ -229,14 +230,14 @@ class Round {
     task.summary = (*prepared)->summary();
     task.summary.episodes = static_cast<std::uint32_t>(task.slots.size());
     task.drawn = draw(task, **prepared, jobs);
-    for (const Slot& slot : task.slots) {
+    for (const PendingEpisode& slot : task.slots) {
       task.summary.skipped += slot.is_skipped ? 1U : 0U;
     }
     task.summary.episodes -= task.summary.skipped;
   }
 
   Result<void> draw(SceneTask& task, const PreparedScene& prepared, unsigned jobs) {
-    const Batch batch(context_, *task.scene, prepared);
+    const EpisodeBatch batch(context_, *task.scene, prepared);
     std::vector<Result<void>> results((task.slots.size() + kBatch - 1) / kBatch);
     parallelFor(jobs, results.size(), [&](std::size_t n) {
       if (only_look_) return;
@@ -305,7 +306,7 @@ std::vector<SceneTask> dealEpisodes(std::span<const SceneOfPack* const> scenes,
   }
   Random seeds(options.seed);
   for (std::size_t n = 0; n < options.episodes; ++n) {
-    Slot& slot = tasks[n % tasks.size()].slots.emplace_back();
+    PendingEpisode& slot = tasks[n % tasks.size()].slots.emplace_back();
     slot.number = n;
     slot.random = Random(seeds.next());
   }
@@ -323,7 +324,7 @@ Result<void> checkSkipped(std::span<const SceneTask> tasks,
   }
   const auto most = static_cast<double>(options.most_skipped) * options.episodes;
   if (static_cast<double>(skipped) <= most && skipped < options.episodes) return {};
-  const auto first = std::ranges::find_if(worst->slots, &Slot::is_skipped);
+  const auto first = std::ranges::find_if(worst->slots, &PendingEpisode::is_skipped);
   return fail(
       ErrorCode::kInvalidInput, worst->summary.name,
       fmt::format("{} of {} episodes found no place, a share of {} may be skipped; {} of them in "
@@ -341,7 +342,7 @@ Result<std::vector<SceneTask>> drawInUsable(const EpisodeInputs& inputs,
                                             std::vector<UnusableScene>& left_out) {
   while (!scenes.empty()) {
     std::vector<SceneTask> tasks = dealEpisodes(scenes, context.options);
-    Round(inputs, context, progress).run(tasks);
+    GenerationRound(inputs, context, progress).run(tasks);
     for (const SceneTask& task : tasks) {
       if (!task.prepared) return tl::unexpected(task.prepared.error());
     }
@@ -373,7 +374,7 @@ GeneratedEpisodes gather(const GenerationWorld& world, std::span<const SceneOfPa
   generated.episodes.episodes.reserve(count - generated.skipped);
   for (std::size_t n = 0; n < count; ++n) {
     const std::size_t scene = n % tasks.size();
-    const Slot& slot = tasks[scene].slots[n / tasks.size()];
+    const PendingEpisode& slot = tasks[scene].slots[n / tasks.size()];
     generated.rejections.add(slot.rejections);
     if (slot.is_skipped) continue;
     append(slot.episode, static_cast<std::uint32_t>(scene), generated.episodes);

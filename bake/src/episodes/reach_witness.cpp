@@ -38,26 +38,26 @@ const FloorPlace* standingPlace(const FloorMap& map, const Vec3& ground, float y
 
 }  // namespace
 
-std::optional<std::vector<BodySphere>> findReach(const Stage& stage, const PlacedObject& object,
+std::optional<std::vector<BodySphere>> findReach(const DraftHome& home, const PlacedObject& object,
                                                  float floor_height, Random& random) {
-  const float grasp = kGraspShare * stage.robot.endEffector()->grasp_radius;
+  const float grasp = kGraspShare * home.robot.endEffector()->grasp_radius;
   for (std::size_t n = 0; n < kTries; ++n) {
     const Vec3 aim = drawAim(object.footprint, grasp, random);
     const float yaw = between(0, 2 * std::numbers::pi_v<float>, random);
     const float height = aim.y - floor_height;
-    const auto samples = stage.reach.between(height - kHeightRange, height + kHeightRange);
+    const auto samples = home.reach.between(height - kHeightRange, height + kHeightRange);
     if (samples.empty() || distanceToBox(object, aim) >= grasp) continue;
     const ArmSample& sample = samples[random.below(static_cast<std::uint32_t>(samples.size()))];
     const Vec3 offset = rotate(yawRotation(yaw), sample.grasp_point);
     Vec3 ground{aim.x - offset.x, floor_height, aim.z - offset.z};
-    const FloorPlace* place = standingPlace(stage.floor, ground, yaw);
+    const FloorPlace* place = standingPlace(home.floor, ground, yaw);
     if (place == nullptr) continue;
-    const auto base_height = stage.floor.heightAt(ground.x, ground.z, place->height);
+    const auto base_height = home.floor.heightAt(ground.x, ground.z, place->height);
     if (!base_height) continue;
     ground.y = *base_height;
-    RobotBody body = robotBody(stage.robot, groundPose(ground, yaw), stage.reach.positions(sample));
+    RobotBody body = robotBody(home.robot, groundPose(ground, yaw), home.reach.positions(sample));
     if (distanceToBox(object, body.grasp_point) >= grasp) continue;
-    if (!touches(object, body.spheres) && isFree(stage.scene, body.spheres)) return body.spheres;
+    if (!touches(object, body.spheres) && isFree(home.scene, body.spheres)) return body.spheres;
   }
   return std::nullopt;
 }

@@ -10,7 +10,7 @@ namespace galactic::bake {
 /// radius of the object's box: the base at a place of the floor map about `floor_height` high,
 /// every sphere free in the scene, none touching the object. Returns the robot's spheres, or none
 /// after some hundred tries.
-[[nodiscard]] std::optional<std::vector<BodySphere>> findReach(const Stage& stage,
+[[nodiscard]] std::optional<std::vector<BodySphere>> findReach(const DraftHome& home,
                                                                const PlacedObject& object,
                                                                float floor_height, Random& random);
 

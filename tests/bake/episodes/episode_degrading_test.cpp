@@ -202,10 +202,10 @@ TEST(ProvenPlaces, LetMoreDraftsSucceed) {
   const auto prepared =
       bake::PreparedScene::prepare(context, generation->scenes().front().scene, {});
   ASSERT_TRUE(prepared.has_value()) << prepared.error().message;
-  const bake::Stage stage = (*prepared)->stage();
-  const auto pairs = bake::findProvenPairs(stage);
+  const bake::DraftHome home = (*prepared)->draftHome();
+  const auto pairs = bake::findProvenPairs(home);
   EXPECT_FALSE(pairs.empty());
-  const auto& places = stage.supports.places();
+  const auto& places = home.supports.places();
   for (const bake::ProvenPair& pair : pairs) {
     EXPECT_GT(places[pair.target].z, 2);
     EXPECT_GT(places[pair.goal].z, 2) << "a gripper does not fit under the cupboard";
@@ -217,7 +217,7 @@ TEST(ProvenPlaces, LetMoreDraftsSucceed) {
       bake::Random random(seed);
       bake::DraftedEpisode episode;
       bake::RejectionCounts rejections;
-      count += bake::draftEpisode(stage, ease, random, episode, rejections) == bake::DraftEnd::kDone
+      count += bake::draftEpisode(home, ease, random, episode, rejections) == bake::DraftEnd::kDone
                    ? 1
                    : 0;
     }

@@ -119,11 +119,11 @@ void PreparedScene::chooseWay() {
 void PreparedScene::survey() {
   // Goals nearer than that to their targets are hardly a task.
   constexpr float kLeastWay = 0.2F;
-  proven_ = findProvenPairs(stage());
+  proven_ = findProvenPairs(draftHome());
   while (proven_.empty() && context_.options.shorten_way &&
          target_to_goal_.least / 2 >= kLeastWay) {
     target_to_goal_.least /= 2;
-    proven_ = findProvenPairs(stage());
+    proven_ = findProvenPairs(draftHome());
   }
   if (!proven_.empty()) return;
   unusable_ = fmt::format(
@@ -155,7 +155,7 @@ Result<void> PreparedScene::useMesh() {
   return {};
 }
 
-Stage PreparedScene::stage() const {
+DraftHome PreparedScene::draftHome() const {
   return {.scene = scene_,
           .objects = context_.world.objects(),
           .robot = context_.world.robot(),

@@ -32,7 +32,7 @@ class PreparedScene {
   [[nodiscard]] const std::string& unusable() const { return unusable_; }
 
   /// What drafts read; valid as long as this. Only of a scene that is not unusable.
-  [[nodiscard]] Stage stage() const;
+  [[nodiscard]] DraftHome draftHome() const;
   /// Places at which a target and its goal were seen to stand; some, unless it is unusable.
   [[nodiscard]] const std::vector<ProvenPair>& provenPairs() const { return proven_; }
 

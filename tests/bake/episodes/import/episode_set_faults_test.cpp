@@ -60,10 +60,10 @@ const std::vector<Fault>& faults() {
        "episodeSet.freeObjectSpawns[0].startRotation", "it has 3 numbers, expected 4"},
       {"RotationTooLong", "\"startRotation\": [1, 0, 0, 0]", "\"startRotation\": [1.002, 0, 0, 0]",
        "episodeSet.freeObjectSpawns[0].startRotation",
-       "has the length 1.002, a rotation w, x, y, expected z of length 1"},
+       "has the length 1.002, expected a rotation w, x, y, z of length 1"},
       {"RotationOfNothing", "\"startRotation\": [1, 0, 0, 0]", "\"startRotation\": [0, 0, 0, 0]",
        "episodeSet.freeObjectSpawns[0].startRotation",
-       "has the length 0, a rotation w, x, y, expected z of length 1"},
+       "has the length 0, expected a rotation w, x, y, z of length 1"},
       {"PlaceOfTwo", "\"startPos\": [1, 2, 3]", "\"startPos\": [1, 2]",
        "episodeSet.freeObjectSpawns[0].startPos", "it has 2 numbers, expected 3"},
       {"PlaceNotANumber", "\"startPos\": [1, 2, 3]", "\"startPos\": [1, null, 3]",
@@ -102,7 +102,7 @@ const std::vector<Fault>& faults() {
        "found -2000000000, expected -10000 to 10000"},
       {"GoalRotationTooShort", "\"targetObjGoalRotation\": [1, 0, 0, 0]",
        "\"targetObjGoalRotation\": [0.5, 0, 0, 0]", "episodeSet.episodes[1].targetObjGoalRotation",
-       "has the length 0.5, a rotation w, x, y, expected z of length 1"},
+       "has the length 0.5, expected a rotation w, x, y, z of length 1"},
   };
   return all;
 }

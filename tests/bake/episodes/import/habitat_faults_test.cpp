@@ -53,7 +53,7 @@ const std::vector<Fault>& faults() {
        "it is missing"},
       {"HeadingOfNothing", "[0, 0.7071068, 0, 0.7071068]", "[0, 0, 0, 0]",
        "episodes[0].start_rotation",
-       "has the length 0, a rotation x, y, z, expected w of length 1"},
+       "has the length 0, expected a rotation x, y, z, w of length 1"},
       {"HeadingUp", "[0, 0.7071068, 0, 0.7071068]", "[0, 0, 0.7071068, 0.7071068]",
        "episodes[0].start_rotation", "points the robot up or down, expected a heading"},
       {"FurnitureNoObject", "\"ao_states\": {}", "\"ao_states\": []", "episodes[1].ao_states",
