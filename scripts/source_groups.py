@@ -34,7 +34,7 @@ TYPE = re.compile(r"^(?:struct|class|union|enum(?: class)?) (\w+)")
 TEST = re.compile(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", re.MULTILINE)
 # Neither members nor names of the standard library can be mistaken for ours.
 WORD = re.compile(r"(?<![.>\w])(?<!std::)[A-Za-z_]\w*")
-TEMPLATE_ARGUMENTS = re.compile(r"<[^<>]*>")
+TEMPLATE_ARGUMENTS = re.compile(r"<[^<>;]*>")
 
 
 @dataclasses.dataclass(frozen=True)
