@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "galactic/shared_textures.h"
+#include "galactic/render_library.h"
 
 namespace galactic::pack_tool {
 namespace {

@@ -24,7 +24,7 @@ enum class PlanValue {
   kSpanCount,     ///< Number of its free spans.
 };
 
-struct PlanOptions {
+struct FloorPlanOptions {
   PlanValue value = PlanValue::kTotalHeight;
   /// First words of the heading, usually the scene's name.
   std::string title = {};
@@ -34,7 +34,7 @@ struct PlanOptions {
 /// looking down the Y axis. Blocked columns are dark gray. One grid is about 1000 pixels wide, a
 /// whole number of pixels per cell where a cell is at least one pixel. `grids` must not be empty.
 /// Safe to call from many threads.
-[[nodiscard]] Picture drawPlan(std::span<const ColumnGrid> grids, const PlanOptions& options);
+[[nodiscard]] Picture drawPlan(std::span<const ColumnGrid> grids, const FloorPlanOptions& options);
 
 struct SliceOptions {
   /// The line that the vertical slice stands on.

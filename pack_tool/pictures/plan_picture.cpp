@@ -128,7 +128,7 @@ void drawLegend(Image& image, int x, int y, double top_value, PlanValue value) {
 
 }  // namespace
 
-Picture drawPlan(std::span<const ColumnGrid> grids, const PlanOptions& options) {
+Picture drawPlan(std::span<const ColumnGrid> grids, const FloorPlanOptions& options) {
   std::vector<Panel> panels;
   int x = kMargin;
   int bottom = kBarHeight;

@@ -30,7 +30,7 @@ NO_WHOLE_NUMBER = (*NO_NUMBER, "-1", "1.5", HUGE, "-" + HUGE)
 NO_CHOICE = ("", "nan", "-1", "0", "1", "2", "nonsense", HUGE)
 ODD_TEXT = ("nan", "-1", "0", HUGE, "nonsense", "/", "a" * 5000)
 WHOLE = {"N", "PIXELS"}
-NUMBER = {"NUMBER", "METERS", "DEGREES"}
+NUMBER = {"NUMBER", "METERS", "DEGREES", "RADIANS"}
 PATH = {"FILE", "FOLDER", "FILE.json", "FILE.html", "FILE.glb", "FILE.png"}
 # What may be below 0: rewards and penalties, thresholds of actions, and sensors, where it means the recipe's.
 BELOW_ZERO = re.compile(r"--(.*-(reward|weight|penalty)|grasp-from|release-below|terminate-from|laser-.*)$")

@@ -53,6 +53,14 @@ CLI::Validator knownPolicy() {
       "", "policy");
 }
 
+/// What --help shows for a number: the unit with which its explanation ends.
+std::string_view placeholderOf(std::string_view help) {
+  if (help.ends_with(", meters")) return "METERS";
+  if (help.ends_with(", degrees")) return "DEGREES";
+  if (help.ends_with(", radians")) return "RADIANS";
+  return "NUMBER";
+}
+
 /// Makes an option of the command line of each option of the table. They write to the fields only
 /// when they are typed.
 class CommandLineVisitor {
@@ -75,7 +83,7 @@ class CommandLineVisitor {
   void real(std::string_view name, float& field, Within<float> within, std::string_view help) {
     add(name, field, help)
         ->check(numberCheck(static_cast<double>(within.least), static_cast<double>(within.most)))
-        ->option_text(fmt::format("NUMBER [{}]", field));
+        ->option_text(fmt::format("{} [{}]", placeholderOf(help), field));
   }
   void flag(std::string_view name, const Switch& value, std::string_view help) {
     // --NAME=false, too: a world may have switched it on.

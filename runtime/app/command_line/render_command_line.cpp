@@ -92,7 +92,7 @@ void addDebug(CLI::App& app, DrawingOptions& drawing) {
   app.add_option("--debug-radius", drawing.debug_radius,
                  "Radius whose column grid is shown, meters; 0: the smallest")
       ->check(numberCheck(0, 10))
-      ->option_text("NUMBER [0]");
+      ->option_text("METERS [0]");
 }
 
 }  // namespace

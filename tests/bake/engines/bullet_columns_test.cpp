@@ -46,15 +46,18 @@ TEST(BulletColumns, AreAscendingAndInsideTheHeights) {
   const TriangleMesh mesh = test::randomSoup(kSeed + 1, 300);
   const GridFrame frame = test::frameOver(mesh, 0.015F, 0.03F);
   const Columns columns = bulletColumns(mesh, frame, 2);
+  std::size_t spans = 0;
   for (std::size_t c = 0; c < frame.columnCount(); ++c) {
     float reached = frame.heights.lo;
     for (const Span& span : columns.column(c)) {
       ASSERT_GE(span.lo, reached);
       ASSERT_LT(span.lo, span.hi);
       reached = span.hi;
+      ++spans;
     }
     ASSERT_LE(reached, frame.heights.hi);
   }
+  EXPECT_GT(spans, frame.columnCount() / 2);
 }
 
 /// The published method errs to the blocked side: it may miss free heights, not obstacles.

@@ -106,6 +106,7 @@ TEST(LinkGeometry, HasNoFacetFurtherFromTheShapeThanItSays) {
   for (const double radius : {0.005, 0.03, 0.1, 0.25}) {
     const Surface ball = surfaceOf({SphereShape{radius}, kIdentity, {}});
     double deepest = 0;
+    ASSERT_FALSE(ball.triangles.empty());
     for (const bake::Triangle& t : ball.triangles) {
       Point3 middle{};
       for (const std::uint32_t corner : t) {

@@ -138,6 +138,7 @@ TEST(Glb, KeepsTheRulesOfTheFormat) {
   const ToyPack robot{ToyRobot{}};
   for (const Glb& glb : {glbOf(objects), glbOf(robot)}) {
     EXPECT_EQ(glb.json.at("asset").at("version"), "2.0");
+    EXPECT_FALSE(glb.json.at("meshes").empty());
     for (const Json& mesh : glb.json.at("meshes")) {
       ASSERT_EQ(mesh.at("primitives").size(), 1U);
       checkMesh(glb, mesh.at("primitives").at(0));

@@ -213,6 +213,8 @@ TEST(LearnedPolicy, DrawsFromTheDistributionThatTheNetworkGives) {
   const std::size_t count = acting.actions();
   const auto& mean = values[content.continuous->mean];
   const auto& log_deviation = values[content.continuous->log_deviation];
+  ASSERT_FALSE(mean.empty());
+  ASSERT_FALSE(content.discrete.empty());
   for (std::size_t n = 0; n < mean.size(); ++n) {
     double sum = 0;
     double squares = 0;

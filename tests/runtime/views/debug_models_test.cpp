@@ -133,6 +133,7 @@ test::BoxRoom closedRoom() {
 
 TEST(GridSurface, EnclosesTheFreeSpaceSeenFromInside) {
   const test::BoxRoom room = closedRoom();
+  ASSERT_FALSE(room.scene().grids().empty());
   for (const ColumnGrid& grid : room.scene().grids()) {
     const RenderSurface surface = gridSurface(grid);
     const double free = freeVolume(grid);

@@ -26,7 +26,9 @@ TEST(Policy, KnowsItsNames) {
 }
 
 TEST(Policy, ZeroDoesNothing) {
-  for (const float action : actionsOf("zero", {.actions = kActions}, 3, 5)) EXPECT_EQ(action, 0);
+  const auto actions = actionsOf("zero", {.actions = kActions}, 3, 5);
+  ASSERT_FALSE(actions.empty());
+  for (const float action : actions) EXPECT_EQ(action, 0);
 }
 
 TEST(Policy, GivesAnEnvTheSameActionsInEveryBatch) {

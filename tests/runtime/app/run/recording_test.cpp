@@ -123,6 +123,8 @@ TEST_F(Recording, RefusesEveryTruncation) {
 }
 
 TEST_F(Recording, RefusesAFlippedBitInEveryByte) {
+  ASSERT_FALSE(content_.empty());
+  ASSERT_FALSE(errorOf(content_));
   for (std::size_t byte = 0; byte < content_.size(); ++byte) {
     std::string damaged = content_;
     damaged[byte] =
