@@ -17,7 +17,7 @@ namespace galactic::bake {
 enum class Verbosity { kQuiet, kNormal, kVerbose };
 
 /// How the tool runs: what no pack's content depends on.
-struct RunOptions {
+struct ToolOptions {
   Verbosity verbosity = Verbosity::kNormal;
   /// A file for one pack, a folder for several; empty: NAME.pack in the current folder.
   std::filesystem::path out{};
@@ -33,7 +33,7 @@ struct RunOptions {
 };
 
 /// How the many packs of a dataset or recipe are made.
-struct PlanOptions {
+struct ManyPacksOptions {
   /// Empty: beside the packs.
   std::filesystem::path cache{};
   bool no_cache = false;
@@ -42,8 +42,8 @@ struct PlanOptions {
   std::uint64_t memory = 0;
 };
 
-void visitOptions(RunOptions& options, OptionVisitor& visitor);
-void visitOptions(PlanOptions& options, OptionVisitor& visitor);
+void visitOptions(ToolOptions& options, OptionVisitor& visitor);
+void visitOptions(ManyPacksOptions& options, OptionVisitor& visitor);
 
 /// A dataset on the command line.
 struct DatasetCommand {
@@ -68,13 +68,13 @@ struct BakeCommand {
   std::filesystem::path config;
   /// Print a draft of a recipe for the robot, and bake nothing.
   bool prints_recipe = false;
-  RunOptions run;
-  PlanOptions plan;
+  ToolOptions run;
+  ManyPacksOptions many;
   /// The options of what is made of the inputs; its own inputs are empty.
   std::variant<Job, DatasetCommand, RecipeCommand> what;
 
   /// Whether it is a recipe or a dataset, of which many packs are made.
-  [[nodiscard]] bool hasPlan() const { return !std::holds_alternative<Job>(what); }
+  [[nodiscard]] bool makesWorld() const { return !std::holds_alternative<Job>(what); }
   [[nodiscard]] bool saysMore() const { return run.verbosity >= Verbosity::kNormal; }
 };
 

@@ -65,11 +65,11 @@ void visitTarget(Target& target, OptionVisitor& visitor) {
 
 /// All options of the tool, each of which is told to `visitor` once or more.
 void visitAll(OptionVisitor& visitor) {
-  RunOptions run;
+  ToolOptions run;
   visitOptions(run, visitor);
   for (Target& target : allTargets()) visitTarget(target, visitor);
-  PlanOptions plan;
-  visitOptions(plan, visitor);
+  ManyPacksOptions many;
+  visitOptions(many, visitor);
 }
 
 std::string dashed(std::string_view name) { return "--" + std::string(name); }
@@ -283,7 +283,7 @@ class CommandLine {
     OptionReader reader(given_);
     visitOptions(command.run, reader);
     visitTarget(command.what, reader);
-    if (command.hasPlan()) visitOptions(command.plan, reader);
+    if (command.makesWorld()) visitOptions(command.many, reader);
     NameSet known;
     visitAll(known);
     const std::vector<std::string> names(known.names.begin(), known.names.end());
@@ -301,7 +301,7 @@ class CommandLine {
     if (given.isGiven("check-tolerance") && !given.isGiven("check")) {
       return given.refuse("check-tolerance", "is about `check`; add it, or leave this out");
     }
-    if (command.plan.no_cache && given.isGiven("cache")) {
+    if (command.many.no_cache && given.isGiven("cache")) {
       return given.refuse("no-cache", "does not go with `cache`; give one");
     }
     if (given.isGiven("verbose") && given.isGiven("quiet")) {
@@ -341,11 +341,11 @@ class CommandLine {
 bool isOfCommandLine(std::string_view name) {
   static const std::set<std::string, std::less<>> names = [] {
     NameSet set;
-    RunOptions run;
-    PlanOptions plan;
+    ToolOptions run;
+    ManyPacksOptions many;
     RecipeCommand recipe;
     visitOptions(run, set);
-    visitOptions(plan, set);
+    visitOptions(many, set);
     visitOptions(recipe, set);
     set.names.insert({"as", "list"});
     set.names.insert(kNotInFiles.begin(), kNotInFiles.end());

@@ -19,10 +19,6 @@ std::string clockText(double seconds) {
   return fmt::format("{}:{:02}:{:02}", minutes / 60, minutes % 60, whole % 60);
 }
 
-std::string entriesText(const Made& made) {
-  return reportEntries(made).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 }  // namespace
 
 void FileFollower::show(std::string_view item, std::string_view stage, double fraction) {
@@ -30,14 +26,14 @@ void FileFollower::show(std::string_view item, std::string_view stage, double fr
   line_.show(item, stage, fraction);
 }
 
-void FileFollower::end(const PackJob& /*pack*/, const PackOutcome& outcome, const Made* made) {
+void FileFollower::end(const PackJob& /*pack*/, const PackOutcome& outcome) {
   const std::lock_guard lock(mutex_);
   line_.clear();
   for (const BakeFailure& failure : outcome.failures) printError(failure.error);
-  if (made != nullptr && verbosity_ >= Verbosity::kNormal) printTable(*made, verbosity_);
+  if (outcome.isThere() && verbosity_ >= Verbosity::kNormal) {
+    printTable(*outcome.figures, verbosity_);
+  }
 }
-
-std::string FileFollower::describe(const Made& made) { return entriesText(made); }
 
 void WorldFollower::begin(const PackJob& pack) {
   const std::lock_guard lock(mutex_);
@@ -45,7 +41,7 @@ void WorldFollower::begin(const PackJob& pack) {
   redraw();
 }
 
-void WorldFollower::end(const PackJob& pack, const PackOutcome& outcome, const Made* /*made*/) {
+void WorldFollower::end(const PackJob& pack, const PackOutcome& outcome) {
   const std::lock_guard lock(mutex_);
   const bool is_world = std::holds_alternative<WorldJob>(pack.job);
   running_.erase(pack.name);
@@ -62,8 +58,6 @@ void WorldFollower::end(const PackJob& pack, const PackOutcome& outcome, const M
   }
   redraw();
 }
-
-std::string WorldFollower::describe(const Made& made) { return entriesText(made); }
 
 void WorldFollower::redraw() {
   if (running_.empty()) return line_.clear();

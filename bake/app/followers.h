@@ -19,8 +19,7 @@ class FileFollower final : public BuildObserver {
       : verbosity_(command.run.verbosity), line_(command.saysMore()) {}
 
   void show(std::string_view item, std::string_view stage, double fraction) override;
-  void end(const PackJob& pack, const PackOutcome& outcome, const Made* made) override;
-  [[nodiscard]] std::string describe(const Made& made) override;
+  void end(const PackJob& pack, const PackOutcome& outcome) override;
 
  private:
   std::mutex mutex_;
@@ -37,8 +36,7 @@ class WorldFollower final : public BuildObserver {
       : verbosity_(command.run.verbosity), count_(count), line_(command.saysMore()) {}
 
   void begin(const PackJob& pack) override;
-  void end(const PackJob& pack, const PackOutcome& outcome, const Made* made) override;
-  [[nodiscard]] std::string describe(const Made& made) override;
+  void end(const PackJob& pack, const PackOutcome& outcome) override;
   [[nodiscard]] bool stops() override { return stop_.came(); }
 
  private:

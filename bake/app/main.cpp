@@ -84,11 +84,11 @@ BuildOptions buildOptions(const BakeCommand& command, const JobList& list) {
     options.mode = command.run.dry_run ? BuildMode::kTry : BuildMode::kBake;
     return options;
   }
-  const PlanOptions& plan = command.plan;
+  const ManyPacksOptions& many = command.many;
   options.mode = command.run.dry_run ? BuildMode::kList : BuildMode::kBake;
-  options.shard = plan.shard;
-  options.memory = plan.memory > 0 ? plan.memory : mostOfMemory();
-  if (!plan.no_cache) options.cache = plan.cache.empty() ? list.folder / ".cache" : plan.cache;
+  options.shard = many.shard;
+  options.memory = many.memory > 0 ? many.memory : mostOfMemory();
+  if (!many.no_cache) options.cache = many.cache.empty() ? list.folder / ".cache" : many.cache;
   return options;
 }
 

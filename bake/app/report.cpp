@@ -17,8 +17,8 @@ namespace {
 /// The entries of a pack that was made, now or before. What is kept of it may have been made for
 /// another folder.
 Json entriesOf(const PackOutcome& pack, const JobList& list) {
-  Json entries = Json::parse(pack.record->report, nullptr, /*allow_exceptions=*/false);
-  if (!entries.is_array()) return Json::array();
+  const Json entries =
+      reportEntries(*pack.figures, [](const std::string& sentence) { return withFlags(sentence); });
   if (!list.world) return entries;
   Json named = Json::array();
   for (const Json& entry : entries) {
@@ -127,8 +127,10 @@ using Sentences = std::map<std::string, std::vector<std::string>>;
 Sentences warningsOf(const BuildOutcome& outcome) {
   Sentences warnings;
   for (const PackOutcome& pack : outcome.packs) {
-    if (!pack.record) continue;
-    for (const std::string& warning : pack.record->warnings) warnings[warning].push_back(pack.name);
+    if (!pack.figures) continue;
+    for (const std::string& warning : warningsOf(*pack.figures)) {
+      warnings[warning].push_back(pack.name);
+    }
   }
   return warnings;
 }
@@ -181,7 +183,7 @@ Json reportOf(const JobList& list, const BuildOutcome& outcome) {
   json["baked"] = Json::array();
   json["failed"] = Json::array();
   for (const PackOutcome& pack : outcome.packs) {
-    if (pack.record) {
+    if (pack.figures) {
       for (Json& entry : entriesOf(pack, list)) json["baked"].push_back(std::move(entry));
     }
     for (const BakeFailure& failure : pack.failures) {

@@ -2,11 +2,13 @@
 #include <filesystem>
 
 #include "command.h"
+#include "figure_json.h"
 #include "galactic/bake/build.h"
 #include "galactic/error.h"
-#include "views.h"
 
 namespace galactic::bake {
+
+using Json = OrderedJson;
 
 /// The member of a world's report that says how the run went: whatever else is in it does not
 /// depend on what was baked before.

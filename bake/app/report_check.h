@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "galactic/error.h"
-#include "views.h"
+#include "report.h"
 
 namespace galactic::bake {
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "galactic/bake/render_textures.h"
 #include "galactic/pack_header.h"
 #include "support/printable.h"
 
@@ -15,47 +14,30 @@ double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6;
 
 }  // namespace
 
-void printTable(const Made& made, Verbosity verbosity) {
-  std::visit([&](const auto& outcome) { printTable(outcome, made, verbosity); }, made.outcome);
+void printTable(const PackFigures& pack, Verbosity verbosity) {
+  std::visit([&](const auto& figures) { printTable(figures, pack, verbosity); }, pack.of);
 }
 
-Json reportEntries(const Made& made) {
-  return std::visit([&](const auto& outcome) { return reportEntries(outcome, made); },
-                    made.outcome);
+std::string targetOf(const PackFigures& pack) {
+  return pack.pack_bytes > 0 ? pack.output : "(dry run)";
 }
 
-void printTable(const WorldOutcome& outcome, const Made& made, Verbosity /*verbosity*/) {
+void printTable(const WorldFigures& world, const PackFigures& pack, Verbosity /*verbosity*/) {
   std::uint64_t bytes = 0;
   int width = 0;
-  for (const LinkedPack& pack : outcome.packs) {
-    bytes += pack.bytes;
-    width = std::max(width, static_cast<int>(pack.path.size()));
+  for (const LinkedPack& linked : world.packs) {
+    bytes += linked.bytes;
+    width = std::max(width, static_cast<int>(linked.path.size()));
   }
-  fmt::print("{} packs -> {}\n", outcome.packs.size(),
-             made.pack_bytes > 0 ? made.output.string() : "(dry run)");
-  for (const LinkedPack& pack : outcome.packs) {
-    fmt::print("  {} {:<{}} {:>9.2f} MB\n", packKindName(pack.kind), printable(pack.path), width,
-               megabytes(pack.bytes));
+  fmt::print("{} packs -> {}\n", world.packs.size(), targetOf(pack));
+  for (const LinkedPack& linked : world.packs) {
+    fmt::print("  {} {:<{}} {:>9.2f} MB\n", packKindName(linked.kind), printable(linked.path),
+               width, megabytes(linked.bytes));
   }
-  fmt::print("  {:.3f} s; {:.2f} MB listed\n", outcome.seconds, megabytes(bytes));
+  fmt::print("  {:.3f} s; {:.2f} MB listed\n", world.seconds, megabytes(bytes));
 }
 
-Json jsonOf(const LinkedPack& pack) {
-  return {{"path", pack.path},
-          {"kind", packKindName(pack.kind)},
-          {"bytes", pack.bytes},
-          {"xxh3_128", fmt::format("{:016x}{:016x}", pack.hash_high, pack.hash_low)}};
-}
-
-Json reportEntries(const WorldOutcome& outcome, const Made& made) {
-  Json json{{"output", made.output.string()}, {"pack_bytes", made.pack_bytes}};
-  json["packs"] = Json::array();
-  for (const LinkedPack& pack : outcome.packs) json["packs"].push_back(jsonOf(pack));
-  json["seconds"] = outcome.seconds;
-  return Json::array({std::move(json)});
-}
-
-void printRenderMeshes(const RenderBakeStatistics& figures, std::size_t textures) {
+void printRenderMeshes(const RenderBakeStatistics& figures, std::uint64_t textures) {
   fmt::print(
       "  render meshes: {} -> {} triangles ({} two-sided), {} -> {} vertices, {} clusters, "
       "error {:.2f} mm; {:.2f} -> {:.2f} MB\n",
@@ -67,40 +49,8 @@ void printRenderMeshes(const RenderBakeStatistics& figures, std::size_t textures
              megabytes(figures.source_texture_bytes), megabytes(figures.texture_bytes));
 }
 
-void printRenderMeshes(const std::optional<BakedRenderMeshes>& meshes) {
-  if (meshes) printRenderMeshes(meshes->statistics(), meshes->materials.textures.size());
-}
-
-Json renderReport(const BakedRenderMeshes& meshes) {
-  const RenderBakeStatistics figures = meshes.statistics();
-  Json json{{"source_triangles", figures.source_triangles},
-            {"triangles", figures.triangles},
-            {"two_sided_triangles", figures.two_sided_triangles},
-            {"source_vertices", figures.source_vertices},
-            {"vertices", figures.vertices},
-            {"clusters", figures.clusters},
-            {"source_bytes", figures.source_bytes},
-            {"bytes", figures.bytes},
-            {"largest_error", figures.largest_error},
-            {"textures", meshes.materials.textures.size()},
-            {"source_texture_bytes", figures.source_texture_bytes},
-            {"texture_bytes", figures.texture_bytes}};
-  if (meshes.materials.shared) {
-    json["shared_textures"] = Json::array();
-    for (const BakedTexture& texture : meshes.materials.textures) {
-      json["shared_textures"].push_back(textureHash(texture));
-    }
-  }
-  json["models"] = Json::array();
-  for (const RenderModel& model : meshes.models) {
-    json["models"].push_back({{"part", model.part},
-                              {"step", model.step},
-                              {"source_triangles", model.source_triangles},
-                              {"triangles", model.triangles},
-                              {"clusters", model.cluster_count},
-                              {"largest_error", model.largest_error}});
-  }
-  return json;
+void printRenderMeshes(const std::optional<RenderFigures>& meshes) {
+  if (meshes) printRenderMeshes(meshes->all, meshes->textures);
 }
 
 }  // namespace galactic::bake

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "galactic/bake/source_episodes.h"
+#include "galactic/bake/episode_set_import.h"
 #include "galactic/batch_simulator.h"
 #include "galactic/world.h"
 #include "write/packs.h"

@@ -20,11 +20,11 @@
 #include "galactic/object_set.h"
 #include "galactic/pack.h"
 #include "galactic/pack_reference.h"
+#include "galactic/render_library.h"
 #include "galactic/render_meshes.h"
 #include "galactic/robot.h"
 #include "galactic/scene.h"
 #include "galactic/schema/pack_generated.h"
-#include "galactic/shared_textures.h"
 #include "support/aligned_bytes.h"
 #include "support/oracles/render_mesh_reader.h"
 

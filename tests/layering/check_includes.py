@@ -105,7 +105,8 @@ RULES = (
     Rule("bake/include", ("runtime/include", "bake/include"), frozenset({"tl"}), schema=False, shared=True),
     Rule("bake/src", ("runtime/include", "bake/include", "bake/src", "."),
          LEAN | {"Eigen", "flatbuffers", "nlohmann", "xxhash.h"}, shared=True),
-    Rule("bake/app", ("runtime/include", "bake/include", "bake/app"), LEAN | {"CLI", "nlohmann"}, shared=True),
+    # Reports have the same JSON of figures as the cache.
+    Rule("bake/app", ("runtime/include", "bake/include", "bake/app", "bake/src/json"), LEAN | {"CLI", "nlohmann"}, shared=True),
     Rule("dynamics/app", ("runtime/include", "bake/include", "runtime/app", "dynamics", "."),
          LEAN | {"CLI", "nlohmann"}, shared=True),
     # Of galactic-run only what reads recordings: one place knows their form.

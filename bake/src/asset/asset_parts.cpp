@@ -3,7 +3,7 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/bake/provenance.h"
+#include "galactic/bake/source_asset.h"
 #include "galactic/pack.h"
 #include "support/try.h"
 #include "write/packs.h"

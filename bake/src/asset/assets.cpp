@@ -33,32 +33,6 @@ Result<void> ReadLog::checkNotRead(const std::filesystem::path& output) const {
   return {};
 }
 
-std::vector<std::string> warningsOf(const Made& made) {
-  return std::visit(Overload{[](const SceneOutcome& one) { return one.scene.warnings; },
-                             [](const ObjectSetOutcome& one) {
-                               std::vector<std::string> all = one.warnings;
-                               for (const BakedObject& object : one.objects) {
-                                 all.insert(all.end(), object.warnings.begin(),
-                                            object.warnings.end());
-                               }
-                               return all;
-                             },
-                             [](const RobotOutcome& one) { return one.robot.warnings; },
-                             [](const EpisodeOutcome& one) { return one.episodes.warnings; },
-                             [](const WorldOutcome&) { return std::vector<std::string>(); }},
-                    made.outcome);
-}
-
-std::vector<std::string> sharedTexturesOf(const Made& made) {
-  std::vector<std::string> hashes;
-  const auto* scene = std::get_if<SceneOutcome>(&made.outcome);
-  if (scene == nullptr || !scene->scene.render_meshes) return hashes;
-  const BakedMaterials& materials = scene->scene.render_meshes->materials;
-  if (!materials.shared) return hashes;
-  for (const BakedTexture& texture : materials.textures) hashes.push_back(textureHash(texture));
-  return hashes;
-}
-
 Result<Made> linkWorld(const WorldJob& job, BakeContext& context) {
   const auto start = std::chrono::steady_clock::now();
   context.show(context.output.filename().string(), "verify", 0);

@@ -9,7 +9,7 @@
 
 #include "asset/asset_parts.h"
 #include "galactic/bake/mesh_import.h"
-#include "galactic/bake/provenance.h"
+#include "galactic/bake/source_asset.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/pack.h"
 #include "galactic/scene.h"

@@ -122,7 +122,7 @@ class Build {
     for (const PackOutcome& pack : outcome_.packs) {
       if (!pack.isThere()) continue;
       packs.insert(list_.folder / pack.name);
-      for (const std::string& hash : pack.record->textures) {
+      for (const std::string& hash : sharedTexturesOf(*pack.figures)) {
         packs.insert(list_.folder / "textures" / (hash + ".pack"));
       }
     }

@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/bake/provenance.h"
+#include "galactic/bake/source_asset.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -70,10 +70,11 @@ TexturePlaces placesOf(const std::string& hash, const PackJob& pack, const Build
 }
 
 /// Whether the texture packs are there, or put there, that a bake of before shared.
-bool hasTextures(const PackJob& pack, const BakeRecord& record, const BuildTools& tools) {
-  if (record.textures.empty()) return true;
+bool hasTextures(const PackJob& pack, const PackFigures& figures, const BuildTools& tools) {
+  const std::vector<std::string> textures = sharedTexturesOf(figures);
+  if (textures.empty()) return true;
   if (!makeFolder(texturesOf(pack))) return false;
-  return std::ranges::all_of(record.textures, [&](const std::string& hash) {
+  return std::ranges::all_of(textures, [&](const std::string& hash) {
     const auto [used, kept] = placesOf(hash, pack, tools);
     if (tools.textures.isWhole(used)) return true;
     return tools.textures.isWhole(kept) && linkOrCopy(kept, used).has_value();
@@ -81,8 +82,9 @@ bool hasTextures(const PackJob& pack, const BakeRecord& record, const BuildTools
 }
 
 /// Keeps what a bake shared, for worlds in other folders.
-Result<void> keepTextures(const PackJob& pack, const BakeRecord& record, const BuildTools& tools) {
-  for (const std::string& hash : record.textures) {
+Result<void> keepTextures(const PackJob& pack, const PackFigures& figures,
+                          const BuildTools& tools) {
+  for (const std::string& hash : sharedTexturesOf(figures)) {
     const auto [used, kept] = placesOf(hash, pack, tools);
     if (auto made = makeFolder(kept.parent_path()); !made) return made;
     if (tools.textures.isWhole(kept)) continue;
@@ -115,16 +117,15 @@ class Making {
   }
 
   [[nodiscard]] PackOutcome& outcome() { return outcome_; }
-  [[nodiscard]] const Made* made() const { return made_ ? &*made_ : nullptr; }
 
  private:
   /// Whether the pack was made before; it is then put where it belongs.
   Result<bool> takeFromCache() {
     auto found = tools_.cache->find(key_, pack_.folder, tools_.digests);
-    if (!found || !hasTextures(pack_, found->record, tools_)) return false;
+    if (!found || !hasTextures(pack_, found->figures, tools_)) return false;
     RETURN_IF_ERROR(linkOrCopy(found->pack, pack_.output));
     outcome_.state = PackState::kUnchanged;
-    outcome_.record = std::move(found->record);
+    outcome_.figures = std::move(found->figures);
     return true;
   }
 
@@ -153,10 +154,7 @@ class Making {
       }
     }
     outcome_.state = PackState::kBaked;
-    outcome_.record = BakeRecord{.textures = sharedTexturesOf(made),
-                                 .warnings = warningsOf(made),
-                                 .report = tools_.observer.describe(made)};
-    made_ = std::move(made);
+    outcome_.figures = figuresOf(made);
     return keep();
   }
 
@@ -164,15 +162,14 @@ class Making {
     if (tools_.cache == nullptr || !outcome_.failures.empty()) return {};
     ASSIGN_OR_RETURN(auto inputs, inputsOf(outcome_.log, pack_, tools_.digests));
     inputs.key = key_;
-    if (auto kept = keepTextures(pack_, *outcome_.record, tools_); !kept) return kept;
-    return tools_.cache->store(inputs, pack_.output, *outcome_.record);
+    if (auto kept = keepTextures(pack_, *outcome_.figures, tools_); !kept) return kept;
+    return tools_.cache->store(inputs, pack_.output, *outcome_.figures);
   }
 
   const PackJob& pack_;
   const BuildTools& tools_;
   PackOutcome outcome_;
   std::string key_;
-  std::optional<Made> made_;
 };
 
 /// Where an input stands in messages of an error.
@@ -191,11 +188,11 @@ PackOutcome makePack(const PackJob& pack, unsigned jobs, const BuildTools& tools
   PackOutcome& outcome = making.outcome();
   if (!done) {
     outcome.state = PackState::kFailed;
-    outcome.record.reset();
+    outcome.figures.reset();
     outcome.failures.push_back({inputOf(pack), std::move(done.error())});
   }
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  tools.observer.end(pack, outcome, outcome.isThere() ? making.made() : nullptr);
+  tools.observer.end(pack, outcome);
   return std::move(outcome);
 }
 
@@ -207,13 +204,14 @@ PackOutcome makeWorld(const PackJob& world, std::vector<LinkedPack>& linked,
   if (made) {
     outcome.state = PackState::kBaked;
     linked = std::get<WorldOutcome>(made->outcome).packs;
+    outcome.figures = figuresOf(*made);
   } else {
     outcome.state = PackState::kFailed;
     // Of what the packs lack together, no one of them is the place.
     if (made.error().where.empty()) made.error().where = world.output.string();
     outcome.failures.push_back({world.output, std::move(made.error())});
   }
-  tools.observer.end(world, outcome, made ? &*made : nullptr);
+  tools.observer.end(world, outcome);
   return outcome;
 }
 

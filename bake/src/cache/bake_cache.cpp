@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "cache/cache_entry.h"
-#include "galactic/bake/provenance.h"
+#include "galactic/bake/source_asset.h"
 #include "support/atomic_file.h"
 #include "support/try.h"
 
@@ -89,16 +89,16 @@ std::optional<CachedBake> BakeCache::find(const std::string& key, const fs::path
   for (const fs::path& path : entriesIn(folder_ / hexOf(key))) {
     auto entry = readCacheEntry(path);
     if (!entry || entry->inputs.key != key || !holds(entry->inputs, folder, digests)) continue;
-    CachedBake found{packBeside(path), entry->pack, std::move(entry->record)};
+    CachedBake found{packBeside(path), entry->pack, std::move(entry->figures)};
     if (isIntact(found.pack, found.digest)) return found;
   }
   return std::nullopt;
 }
 
 Result<void> BakeCache::store(const BakeInputs& inputs, const fs::path& pack,
-                              const BakeRecord& record) const {
+                              const PackFigures& figures) const {
   ASSIGN_OR_RETURN(auto digest, describeFile(pack));
-  const std::string text = encodeCacheEntry({inputs, digest, record});
+  const std::string text = encodeCacheEntry({inputs, digest, figures});
   // One name for one set of inputs, whatever the report says of times and places.
   const std::string name = hexOf(encodeCacheEntry({inputs, {}, {}}));
   const fs::path folder = folder_ / hexOf(inputs.key);

@@ -28,7 +28,7 @@ struct CachedBake {
   /// The pack, inside the cache.
   std::filesystem::path pack;
   SourceFile digest;
-  BakeRecord record;
+  PackFigures figures;
 };
 
 /// Packs by content: a bake whose key, files and absent files are what they were is not done again,
@@ -54,7 +54,7 @@ class BakeCache {
   /// Keeps the pack at `pack` (linked where the file system allows it, else copied) as the result
   /// of `inputs`. Fails with kIo. Thread-safe.
   [[nodiscard]] Result<void> store(const BakeInputs& inputs, const std::filesystem::path& pack,
-                                   const BakeRecord& record) const;
+                                   const PackFigures& figures) const;
 
  private:
   std::filesystem::path folder_;

@@ -7,15 +7,16 @@
 #include <string_view>
 #include <utility>
 
+#include "json/figure_json.h"
 #include "support/mapped_file.h"
 
 namespace galactic::bake {
 namespace {
 
-using Json = nlohmann::json;
+using Json = OrderedJson;
 
 /// Raised whenever the entries' form changes: older ones are then not found.
-constexpr int kEntryVersion = 2;
+constexpr int kEntryVersion = 3;
 
 Json jsonOf(const SourceFile& file) { return Json::array({file.name, file.bytes, hexOf(file)}); }
 
@@ -47,9 +48,7 @@ std::optional<CacheEntry> decode(const Json& json) {
     if (!read(files[n], entry.inputs.files[n])) return std::nullopt;
   }
   if (!read(json.at("pack"), entry.pack)) return std::nullopt;
-  entry.record.textures = json.at("textures").get<std::vector<std::string>>();
-  entry.record.warnings = json.at("warnings").get<std::vector<std::string>>();
-  entry.record.report = json.at("report").get<std::string>();
+  if (!readFigures(json.at("figures"), entry.figures)) return std::nullopt;
   return entry;
 }
 
@@ -62,10 +61,9 @@ std::string hexOf(const SourceFile& file) {
 std::string encodeCacheEntry(const CacheEntry& entry) {
   Json files = Json::array();
   for (const SourceFile& file : entry.inputs.files) files.push_back(jsonOf(file));
-  const Json json{{"version", kEntryVersion},          {"key", entry.inputs.key},
-                  {"files", std::move(files)},         {"absent", entry.inputs.absent},
-                  {"pack", jsonOf(entry.pack)},        {"textures", entry.record.textures},
-                  {"warnings", entry.record.warnings}, {"report", entry.record.report}};
+  const Json json{{"version", kEntryVersion},   {"key", entry.inputs.key},
+                  {"files", std::move(files)},  {"absent", entry.inputs.absent},
+                  {"pack", jsonOf(entry.pack)}, {"figures", jsonOf(entry.figures)}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -12,7 +12,7 @@ struct CacheEntry {
   BakeInputs inputs;
   /// Content of the pack.
   SourceFile pack;
-  BakeRecord record;
+  PackFigures figures;
 };
 
 /// As JSON. BakeInputs::folder is not part of it.

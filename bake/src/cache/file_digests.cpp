@@ -3,7 +3,7 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/bake/provenance.h"
+#include "galactic/bake/source_asset.h"
 
 namespace galactic::bake {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "galactic/bake/provenance.h"
+#include "galactic/bake/source_asset.h"
 #include "import/affine.h"
 #include "import/source_files.h"
 #include "render/material_list.h"

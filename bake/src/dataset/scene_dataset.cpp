@@ -11,7 +11,7 @@
 #include "dataset/config/template_attributes.h"
 #include "dataset/scene_composer.h"
 #include "dataset/scene_surveyor.h"
-#include "galactic/bake/provenance.h"
+#include "galactic/bake/source_asset.h"
 #include "support/nearest_name.h"
 #include "support/try.h"
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "dataset/mesh_library.h"
+#include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/source_asset.h"
-#include "galactic/bake/source_episodes.h"
 #include "galactic/error.h"
 
 namespace galactic::bake {

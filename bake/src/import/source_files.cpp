@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "galactic/bake/provenance.h"
+#include "galactic/bake/source_asset.h"
 #include "support/mapped_file.h"
 #include "support/try.h"
 

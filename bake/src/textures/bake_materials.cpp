@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "galactic/bake/parallel_for.h"
-#include "galactic/bake/provenance.h"
 #include "galactic/bake/render_textures.h"
+#include "galactic/bake/source_asset.h"
 #include "support/try.h"
 #include "textures/appearance.h"
 #include "textures/texture_library.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "galactic/bake/provenance.h"
+#include "galactic/bake/source_asset.h"
 
 namespace galactic::bake {
 namespace {

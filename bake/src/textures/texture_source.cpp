@@ -7,7 +7,7 @@
 #include <system_error>
 #include <tuple>
 
-#include "galactic/bake/provenance.h"
+#include "galactic/bake/source_asset.h"
 
 namespace galactic::bake {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "galactic/bake/oriented_box.h"
-#include "galactic/bake/provenance.h"
+#include "galactic/bake/source_asset.h"
 #include "galactic/bake/sphere_set.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/object_baker.h"
-#include "galactic/bake/provenance.h"
 #include "galactic/bake/render_textures.h"
 #include "galactic/bake/robot_baker.h"
 #include "galactic/bake/scene_baker.h"
-#include "galactic/bake/source_episodes.h"
+#include "galactic/bake/source_asset.h"
 #include "galactic/error.h"
 
 namespace galactic::bake {

@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/bake/provenance.h"
+#include "galactic/bake/source_asset.h"
 #include "galactic/pack.h"
 #include "galactic/world.h"
 #include "support/try.h"

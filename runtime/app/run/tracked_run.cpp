@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "galactic/option_text.h"
-#include "galactic/shared_textures.h"
+#include "galactic/render_library.h"
 #include "support/atomic_file.h"
 #include "support/try.h"
 #include "view/page.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "galactic/shared_textures.h"
+#include "galactic/render_library.h"
 #include "pack/schema_values.h"
 
 namespace galactic {

@@ -1,5 +1,4 @@
-#include "galactic/shared_textures.h"
-
+#include "galactic/render_library.h"
 #include "pack/schema_values.h"
 
 namespace galactic {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "galactic/object_set.h"
+#include "galactic/render_library.h"
 #include "galactic/scene.h"
-#include "galactic/shared_textures.h"
 
 namespace galactic {
 namespace {

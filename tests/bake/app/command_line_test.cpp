@@ -59,12 +59,16 @@ struct Walked {
 };
 
 const std::vector<Walked>& allOptions() {
-  static const std::vector<Walked> all{
-      {kScene, test::walk(RunOptions{})},        {kScene, test::walk(SceneJob{})},
-      {kObject, test::walk(ObjectJob{})},        {kRobot, test::walk(RobotJob{})},
-      {kImport, test::walk(EpisodeImportJob{})}, {kGenerate, test::walk(EpisodeGenerationJob{})},
-      {kLink, test::walk(WorldJob{})},           {kDataset, test::walk(DatasetCommand{})},
-      {kDataset, test::walk(PlanOptions{})},     {kRecipe, test::walk(RecipeCommand{})}};
+  static const std::vector<Walked> all{{kScene, test::walk(ToolOptions{})},
+                                       {kScene, test::walk(SceneJob{})},
+                                       {kObject, test::walk(ObjectJob{})},
+                                       {kRobot, test::walk(RobotJob{})},
+                                       {kImport, test::walk(EpisodeImportJob{})},
+                                       {kGenerate, test::walk(EpisodeGenerationJob{})},
+                                       {kLink, test::walk(WorldJob{})},
+                                       {kDataset, test::walk(DatasetCommand{})},
+                                       {kDataset, test::walk(ManyPacksOptions{})},
+                                       {kRecipe, test::walk(RecipeCommand{})}};
   return all;
 }
 
@@ -236,7 +240,7 @@ TEST(Recipes, TakeNoOptionsOfTheCommandLine) {
   const auto mesh = folder.write("a.glb", "a mesh");
   ASSERT_FALSE(mesh.empty());
   std::size_t refused = 0;
-  for (const WalkedOption& option : test::walk(RunOptions{})) {
+  for (const WalkedOption& option : test::walk(ToolOptions{})) {
     for (const char* table : {"", "[bake]\n"}) {
       const std::string text =
           fmt::format("[[scenes]]\nfiles = \"a.glb\"\n{}{} = \"1\"\n", table, option.name);
@@ -260,7 +264,7 @@ TEST(CommandLine, KeepsTheKeysOfJobsWhateverTheRunIsLike) {
       folder.write("home.toml", "[[scenes]]\nfiles = \"room.glb\"\n").string();
   std::size_t walked = 0;
   for (const auto& options :
-       {test::walk(RunOptions{}), test::walk(PlanOptions{}), test::walk(RecipeCommand{})}) {
+       {test::walk(ToolOptions{}), test::walk(ManyPacksOptions{}), test::walk(RecipeCommand{})}) {
     for (const WalkedOption& option : options) {
       // Where the packs go, and what needs another option.
       if (option.name == "check-tolerance") continue;

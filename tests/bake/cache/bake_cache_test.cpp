@@ -23,8 +23,14 @@ using bake::FileDigests;
 constexpr const char* kKey = "galactic-bake 1\nradii=0.05\n";
 
 /// A data set of two files, a pack that was made of them, and a cache.
-bake::BakeRecord recordOf(const std::string& report) {
-  return {.textures = {"0123"}, .warnings = {"look"}, .report = report};
+bake::PackFigures figuresNamed(const std::string& name) {
+  return {.output = "room.pack",
+          .pack_bytes = 7,
+          .of = bake::EpisodeFigures{.name = name, .warnings = {"look"}}};
+}
+
+std::string nameIn(const CachedBake& found) {
+  return std::get<bake::EpisodeFigures>(found.figures.of).name;
 }
 
 class Cache : public testing::Test {
@@ -54,9 +60,9 @@ class Cache : public testing::Test {
     inputs.absent = {"room.png"};
     return inputs;
   }
-  void store(const std::string& report = "{}") const { store(inputs(), report); }
-  void store(const BakeInputs& inputs, const std::string& report) const {
-    const auto kept = cache_.store(inputs, at("out/room.pack"), recordOf(report));
+  void store(const std::string& name = "home") const { store(inputs(), name); }
+  void store(const BakeInputs& inputs, const std::string& name) const {
+    const auto kept = cache_.store(inputs, at("out/room.pack"), figuresNamed(name));
     ASSERT_TRUE(kept.has_value()) << kept.error().where << ": " << kept.error().message;
   }
   [[nodiscard]] std::optional<CachedBake> find(const std::string& key = kKey,
@@ -80,13 +86,14 @@ class Cache : public testing::Test {
 
 TEST_F(Cache, FindsNothingBeforeAnythingWasStored) { EXPECT_FALSE(find().has_value()); }
 
-TEST_F(Cache, FindsWhatWasStoredWithPackAndReport) {
-  store(R"({"seconds": 3})");
+TEST_F(Cache, FindsWhatWasStoredWithPackAndFigures) {
+  store("3 s");
   const auto found = find();
   ASSERT_TRUE(found.has_value());
   EXPECT_EQ(fileContent(found->pack), "a pack");
   EXPECT_EQ(found->digest.bytes, 6U);
-  EXPECT_EQ(found->record, recordOf(R"({"seconds": 3})"));
+  EXPECT_EQ(nameIn(*found), "3 s");
+  EXPECT_EQ(warningsOf(found->figures), std::vector<std::string>{"look"});
 }
 
 TEST_F(Cache, DoesNotCareAboutDatesOfFiles) {
@@ -135,11 +142,11 @@ TEST_F(Cache, KeepsResultsOfSeveralVersionsOfAFile) {
   fs::remove(at("out/room.pack"));
   write("out/room.pack", "another pack");
   store("second");
-  EXPECT_EQ(find()->record.report, "second");
+  EXPECT_EQ(nameIn(*find()), "second");
   EXPECT_EQ(fileContent(find()->pack), "another pack");
   write("data/room.obj", "a room");
   ASSERT_TRUE(find().has_value());
-  EXPECT_EQ(find()->record.report, "first");
+  EXPECT_EQ(nameIn(*find()), "first");
 }
 
 TEST_F(Cache, LetsTheOldestResultsMakeWay) {
@@ -151,7 +158,7 @@ TEST_F(Cache, LetsTheOldestResultsMakeWay) {
     // Ages are told apart by the entries' dates; here they are set, not waited for.
     const auto now = fs::file_time_type::clock::now();
     for (const fs::path& entry : kept(".json")) {
-      if (fileContent(entry).find(fmt::format("\"report\": \"{}\"", n)) == std::string::npos)
+      if (fileContent(entry).find(fmt::format("\"name\": \"{}\"", n)) == std::string::npos)
         continue;
       fs::last_write_time(entry, now - std::chrono::hours(all - n));
     }
@@ -169,7 +176,7 @@ TEST_F(Cache, StoringTheSameAgainKeepsOneEntryWithTheLastReport) {
   store("2 s");
   EXPECT_EQ(kept(".json").size(), 1U);
   EXPECT_EQ(kept(".pack").size(), 1U);
-  EXPECT_EQ(find()->record.report, "2 s");
+  EXPECT_EQ(nameIn(*find()), "2 s");
 }
 
 TEST_F(Cache, DoesNotFindAPackThatWasDamaged) {
@@ -244,11 +251,11 @@ TEST_F(Cache, TakesGarbageForNone) {
 TEST_F(Cache, ExplainsThatItCannotStore) {
   write("file", "no folder");
   const BakeCache blocked(at("file"));
-  const auto kept = blocked.store(inputs(), at("out/room.pack"), recordOf("{}"));
+  const auto kept = blocked.store(inputs(), at("out/room.pack"), figuresNamed("home"));
   ASSERT_FALSE(kept.has_value());
   EXPECT_EQ(kept.error().code, ErrorCode::kIo);
   EXPECT_THAT(kept.error().message, testing::HasSubstr("give another `cache`"));
-  const auto no_pack = cache_.store(inputs(), at("out/none.pack"), recordOf("{}"));
+  const auto no_pack = cache_.store(inputs(), at("out/none.pack"), figuresNamed("home"));
   ASSERT_FALSE(no_pack.has_value());
   EXPECT_EQ(no_pack.error().code, ErrorCode::kIo);
 }
@@ -264,7 +271,7 @@ TEST_F(Cache, ServesSeveralThreadsAtOnce) {
     threads.emplace_back([&, t] {
       const BakeInputs of_thread = inputs(fmt::format("key {}", t % 2));
       for (std::size_t n = 0; n < kRounds; ++n) {
-        if (!cache_.store(of_thread, at("out/room.pack"), recordOf("{}"))) continue;
+        if (!cache_.store(of_thread, at("out/room.pack"), figuresNamed("home"))) continue;
         found[t] += cache_.find(of_thread.key, at("data"), digests) ? 1U : 0U;
       }
     });

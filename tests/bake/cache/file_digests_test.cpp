@@ -6,7 +6,7 @@
 
 #include <thread>
 
-#include "galactic/bake/provenance.h"
+#include "galactic/bake/source_asset.h"
 #include "support/scratch_folder.h"
 
 namespace galactic::test::file_digests_test {

@@ -1,9 +1,8 @@
 // Textures that packs share: every wrong value of their packs, and what is drawn with them.
-#include "galactic/shared_textures.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "galactic/render_library.h"
 #include "galactic/world_models.h"
 #include "runtime/check/pack_damage.h"
 #include "runtime/check/pack_offence.h"

@@ -138,13 +138,6 @@ struct Made {
   std::uint64_t pack_bytes = 0;
 };
 
-/// What the user should look at, one sentence each.
-[[nodiscard]] std::vector<std::string> warningsOf(const Made& made);
-
-/// The texture packs that it shares with others, by their hashes: HASH.pack in
-/// DrawOptions::shared_textures.
-[[nodiscard]] std::vector<std::string> sharedTexturesOf(const Made& made);
-
 /// Bakes one scene, its render meshes and textures into its pack. What an instance of a dataset
 /// lacks is left out, with a warning. Fails with the errors of importer, bakers and writer, and
 /// with kInvalidInput where the output is a file that was read; `where` names the file.

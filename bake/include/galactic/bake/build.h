@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "galactic/bake/assets.h"
+#include "galactic/bake/figures.h"
 #include "galactic/bake/jobs.h"
 #include "galactic/error.h"
 
@@ -87,22 +87,11 @@ enum class PackState {
   kFailed,
 };
 
-/// What is kept of a bake beside its pack, and comes back with it from the cache.
-struct BakeRecord {
-  /// Texture packs that it shares with others, by their hashes.
-  std::vector<std::string> textures{};
-  std::vector<std::string> warnings{};
-  /// What the observer said of it.
-  std::string report{};
-
-  friend bool operator==(const BakeRecord&, const BakeRecord&) = default;
-};
-
 struct PackOutcome {
   std::string name;
   PackState state = PackState::kPlanned;
-  /// Of a pack that was made, now or before.
-  std::optional<BakeRecord> record{};
+  /// Of a pack that was made, now or before: the cache keeps them.
+  std::optional<PackFigures> figures{};
   /// With BuildOptions::keep_going a set of objects may be made and have failures.
   std::vector<BakeFailure> failures{};
   /// What was read now.
@@ -139,10 +128,7 @@ class BuildObserver {
 
   virtual void begin(const PackJob& /*pack*/) {}
   virtual void show(std::string_view /*item*/, std::string_view /*stage*/, double /*fraction*/) {}
-  /// `made` is null where the pack failed or was made before.
-  virtual void end(const PackJob& /*pack*/, const PackOutcome& /*outcome*/, const Made* /*made*/) {}
-  /// What to keep of it in BakeRecord::report.
-  [[nodiscard]] virtual std::string describe(const Made& made) = 0;
+  virtual void end(const PackJob& /*pack*/, const PackOutcome& /*outcome*/) {}
   /// Whether to begin nothing more.
   [[nodiscard]] virtual bool stops() { return false; }
 };

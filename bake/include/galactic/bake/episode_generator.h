@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "galactic/bake/source_episodes.h"
+#include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"
 #include "galactic/pack.h"
@@ -46,6 +46,9 @@ class RejectionCounts {
   void add(EpisodeRejection reason) { ++counts_[static_cast<std::size_t>(reason)]; }
   void add(const RejectionCounts& other) {
     for (std::size_t n = 0; n < kRejectionCount; ++n) counts_[n] += other.counts_[n];
+  }
+  [[nodiscard]] std::uint64_t& operator[](EpisodeRejection reason) {
+    return counts_[static_cast<std::size_t>(reason)];
   }
   [[nodiscard]] std::uint64_t operator[](EpisodeRejection reason) const {
     return counts_[static_cast<std::size_t>(reason)];

@@ -14,10 +14,10 @@
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/object_baker.h"
 #include "galactic/bake/option_field.h"
-#include "galactic/bake/provenance.h"
 #include "galactic/bake/render_baker.h"
 #include "galactic/bake/robot_baker.h"
 #include "galactic/bake/scene_baker.h"
+#include "galactic/bake/source_asset.h"
 #include "galactic/option_text.h"
 
 namespace galactic::bake {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "galactic/bake/provenance.h"
+#include "galactic/bake/source_asset.h"
 #include "galactic/error.h"
 #include "galactic/option_text.h"
 #include "galactic/pack_header.h"

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "dataset/config/template_list.h"
+#include "galactic/bake/episode_set_import.h"
 #include "galactic/bake/source_asset.h"
-#include "galactic/bake/source_episodes.h"
 #include "json/json_reader.h"
 
 namespace galactic::bake {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "galactic/bake/source_episodes.h"
+#include "galactic/bake/episode_set_import.h"
 #include "galactic/error.h"
 
 namespace galactic::bake {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <span>
 
-#include "galactic/bake/source_episodes.h"
+#include "galactic/bake/episode_set_import.h"
 #include "galactic/error.h"
 #include "galactic/pack.h"
 #include "galactic/world.h"

@@ -100,7 +100,7 @@ class VerbosityField final : public OptionField {
 
 }  // namespace
 
-void visitOptions(RunOptions& options, OptionVisitor& v) {
+void visitOptions(ToolOptions& options, OptionVisitor& v) {
   auto& [verbosity, out, jobs, report, golden_report, tolerance, dry_run, keep_going] = options;
   v.group("Options");
   v.option({"out", "OUT", "Pack to write, or a folder for several packs (default: NAME.pack)"},
@@ -124,7 +124,7 @@ void visitOptions(RunOptions& options, OptionVisitor& v) {
            std::make_unique<VerbosityField>(verbosity, Verbosity::kQuiet));
 }
 
-void visitOptions(PlanOptions& options, OptionVisitor& v) {
+void visitOptions(ManyPacksOptions& options, OptionVisitor& v) {
   auto& [cache, no_cache, shard, memory] = options;
   v.group("Datasets, worlds from recipes");
   v.option({"cache", "DIR",

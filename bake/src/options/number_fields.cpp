@@ -1,5 +1,3 @@
-#include "galactic/bake/option_field.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "galactic/bake/option_field.h"
+#include "options/given_text.h"
 #include "support/number_text.h"
 
 namespace galactic::bake {
@@ -15,33 +15,6 @@ namespace {
 
 /// Beyond every length, factor and count that is meant.
 constexpr double kMostNumber = 1e12;
-
-template <class T>
-std::span<const std::byte> memoryOf(const T& field) {
-  return std::as_bytes(std::span(&field, 1));
-}
-
-struct WordText {
-  std::string operator()(bool truth) const { return truth ? "true" : "false"; }
-  std::string operator()(std::int64_t whole) const { return fmt::format("{}", whole); }
-  /// The shortest text that reads back as the same number.
-  std::string operator()(double real) const { return fmt::format("{}", real); }
-  std::string operator()(const std::string& text) const { return text; }
-};
-
-std::string textOf(const GivenWord& word) { return std::visit(WordText{}, word); }
-
-/// As it would be typed.
-std::string textOf(const GivenValue& value) {
-  std::vector<std::string> words;
-  words.reserve(value.words.size());
-  for (const GivenWord& word : value.words) words.push_back(textOf(word));
-  return fmt::format("{}{}{}", value.name, value.name.empty() ? "" : "=", fmt::join(words, ","));
-}
-
-std::string found(std::string_view shown, std::string_view wanted) {
-  return fmt::format("found {}, expected {}", shown, wanted);
-}
 
 /// Numbers, or why they are none.
 struct ReadNumbers {
@@ -84,14 +57,14 @@ ReadNumbers readNumbers(const GivenValue& value) {
   return numbers;
 }
 
-std::string wantedOf(const OptionRange& range) {
+std::string expectedOf(const OptionRange& range) {
   const bool has_most = range.most < kMostNumber;
   if (!range.above && has_most) {
     return fmt::format("a number from {} to {}", range.least, range.most);
   }
-  std::string wanted =
+  std::string expected =
       fmt::format("a number {} {}", range.above ? "above" : "of at least", range.least);
-  return has_most ? wanted + fmt::format(" and up to {}", range.most) : wanted;
+  return has_most ? expected + fmt::format(" and up to {}", range.most) : expected;
 }
 
 bool isWithin(double number, const OptionRange& range) {
@@ -100,19 +73,11 @@ bool isWithin(double number, const OptionRange& range) {
   return is_high_enough && number <= std::min(range.most, kMostNumber);
 }
 
-/// A field that takes one number.
-template <class Field, class Value>
-class NumberField final : public OptionField {
+/// A field that holds one value, or none where it is optional.
+template <class Field>
+class SingleField : public OptionField {
  public:
-  NumberField(Field& field, OptionRange range) : field_(field), range_(range) {}
-  [[nodiscard]] OptionKind kind() const override { return OptionKind::kNumber; }
-  std::string read(std::span<const GivenValue> given) override {
-    const std::string shown = textOf(given.front());
-    const std::optional<double> number = numberOf(shown);
-    if (!number || !isWithin(*number, range_)) return found(shown, wantedOf(range_));
-    field_ = static_cast<Value>(*number);
-    return {};
-  }
+  explicit SingleField(Field& field) : field_(field) {}
   [[nodiscard]] std::vector<std::string> texts() const override {
     const std::optional<Value> value = field_;
     if (!value) return {};
@@ -120,17 +85,42 @@ class NumberField final : public OptionField {
   }
   [[nodiscard]] std::span<const std::byte> memory() const override { return memoryOf(field_); }
 
+ protected:
+  using Value = typename decltype(std::optional(std::declval<Field>()))::value_type;
+
+  template <class T>
+  void set(T value) {
+    field_ = static_cast<Value>(value);
+  }
+
  private:
   Field& field_;
+};
+
+/// A field that takes one number.
+template <class Field>
+class NumberField final : public SingleField<Field> {
+ public:
+  NumberField(Field& field, OptionRange range) : SingleField<Field>(field), range_(range) {}
+  [[nodiscard]] OptionKind kind() const override { return OptionKind::kNumber; }
+  std::string read(std::span<const GivenValue> given) override {
+    const std::string shown = textOf(given.front());
+    const std::optional<double> number = numberOf(shown);
+    if (!number || !isWithin(*number, range_)) return found(shown, expectedOf(range_));
+    this->set(*number);
+    return {};
+  }
+
+ private:
   OptionRange range_;
 };
 
 /// A field that takes one whole number.
-template <class Field, class Value>
-class WholeField final : public OptionField {
+template <class Field>
+class WholeField final : public SingleField<Field> {
  public:
   WholeField(Field& field, Within<std::uint64_t> range, bool is_power)
-      : field_(field), range_(range), is_power_(is_power) {}
+      : SingleField<Field>(field), range_(range), is_power_(is_power) {}
   [[nodiscard]] OptionKind kind() const override { return OptionKind::kWhole; }
   std::string read(std::span<const GivenValue> given) override {
     const std::string shown = textOf(given.front());
@@ -141,18 +131,11 @@ class WholeField final : public OptionField {
     if (is_power_ && !std::has_single_bit(value)) {
       return found(shown, fmt::format("a power of two up to {}", range_.most));
     }
-    field_ = static_cast<Value>(value);
+    this->set(value);
     return {};
   }
-  [[nodiscard]] std::vector<std::string> texts() const override {
-    const std::optional<Value> value = field_;
-    if (!value) return {};
-    return {fmt::format("{}", *value)};
-  }
-  [[nodiscard]] std::span<const std::byte> memory() const override { return memoryOf(field_); }
 
  private:
-  Field& field_;
   Within<std::uint64_t> range_;
   bool is_power_;
 };
@@ -168,7 +151,7 @@ class NumbersField final : public OptionField {
       const ReadNumbers read = readNumbers(value);
       if (!read.fault.empty()) return read.fault;
       for (const double number : read.values) {
-        if (!isWithin(number, range_)) return found(fmt::format("{}", number), wantedOf(range_));
+        if (!isWithin(number, range_)) return found(fmt::format("{}", number), expectedOf(range_));
         field_.push_back(static_cast<float>(number));
       }
     }
@@ -302,202 +285,32 @@ class DistancesField final : public OptionField {
   bool* is_default_;
 };
 
-class FlagField final : public OptionField {
- public:
-  FlagField(bool& field, bool when_typed) : field_(field), when_typed_(when_typed) {}
-  [[nodiscard]] OptionKind kind() const override { return OptionKind::kSwitch; }
-  std::string read(std::span<const GivenValue> given) override {
-    const std::string shown = textOf(given.front());
-    if (shown != "true" && shown != "false") return found(shown, "true or false");
-    field_ = (shown == "true") == when_typed_;
-    return {};
-  }
-  [[nodiscard]] std::vector<std::string> texts() const override {
-    if (field_ != when_typed_) return {};
-    return {"true"};
-  }
-  [[nodiscard]] std::span<const std::byte> memory() const override { return memoryOf(field_); }
-
- private:
-  bool& field_;
-  bool when_typed_;
-};
-
-class ChoiceField final : public OptionField {
- public:
-  explicit ChoiceField(ChoiceAccess access) : access_(std::move(access)) {}
-  [[nodiscard]] OptionKind kind() const override { return OptionKind::kChoice; }
-  std::string read(std::span<const GivenValue> given) override {
-    const std::string shown = textOf(given.front());
-    const auto one = std::find(access_.names.begin(), access_.names.end(), shown);
-    if (one == access_.names.end()) {
-      return fmt::format("is \"{}\", expected one of {}", shown, fmt::join(access_.names, ", "));
-    }
-    access_.set(static_cast<std::size_t>(one - access_.names.begin()));
-    return {};
-  }
-  [[nodiscard]] std::vector<std::string> texts() const override {
-    const std::optional<std::size_t> chosen = access_.get ? access_.get() : std::nullopt;
-    if (!chosen) return {};
-    return {std::string(access_.names[*chosen])};
-  }
-  [[nodiscard]] std::span<const std::byte> memory() const override { return access_.memory; }
-
- private:
-  ChoiceAccess access_;
-};
-
-class PathField final : public OptionField {
- public:
-  explicit PathField(std::filesystem::path& field) : field_(field) {}
-  [[nodiscard]] OptionKind kind() const override { return OptionKind::kPath; }
-  std::string read(std::span<const GivenValue> given) override {
-    field_ = textOf(given.front());
-    return {};
-  }
-  [[nodiscard]] std::vector<std::string> texts() const override {
-    if (field_.empty()) return {};
-    return {field_.string()};
-  }
-  [[nodiscard]] std::vector<std::filesystem::path*> paths() override {
-    if (field_.empty()) return {};
-    return {&field_};
-  }
-  [[nodiscard]] std::span<const std::byte> memory() const override { return memoryOf(field_); }
-
- private:
-  std::filesystem::path& field_;
-};
-
-class TextField final : public OptionField {
- public:
-  explicit TextField(std::string& field) : field_(field) {}
-  [[nodiscard]] OptionKind kind() const override { return OptionKind::kText; }
-  std::string read(std::span<const GivenValue> given) override {
-    field_ = textOf(given.front());
-    return {};
-  }
-  [[nodiscard]] std::vector<std::string> texts() const override {
-    if (field_.empty()) return {};
-    return {field_};
-  }
-  [[nodiscard]] std::span<const std::byte> memory() const override { return memoryOf(field_); }
-
- private:
-  std::string& field_;
-};
-
-/// Texts, each given once; or names, which commas separate.
-class TextsField final : public OptionField {
- public:
-  TextsField(std::vector<std::string>& field, bool are_names)
-      : field_(field), are_names_(are_names) {}
-  [[nodiscard]] OptionKind kind() const override { return OptionKind::kText; }
-  [[nodiscard]] bool repeats() const override { return true; }
-  std::string read(std::span<const GivenValue> given) override {
-    field_.clear();
-    for (const GivenValue& value : given) {
-      const std::string text = textOf(value);
-      if (!are_names_) {
-        field_.push_back(text);
-        continue;
-      }
-      for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        if (end == begin) {
-          return fmt::format("has an empty name in \"{}\", expected names separated by commas",
-                             text);
-        }
-        field_.push_back(text.substr(begin, end - begin));
-        begin = end + 1;
-      }
-    }
-    return {};
-  }
-  [[nodiscard]] std::vector<std::string> texts() const override {
-    if (field_.empty() || !are_names_) return field_;
-    return {fmt::format("{}", fmt::join(field_, ","))};
-  }
-  [[nodiscard]] std::span<const std::byte> memory() const override { return memoryOf(field_); }
-
- private:
-  std::vector<std::string>& field_;
-  bool are_names_;
-};
-
-template <class Value>
-class NamedField final : public OptionField {
- public:
-  NamedField(std::map<std::string, Value>& field, std::string_view form)
-      : field_(field), form_(form) {}
-  [[nodiscard]] OptionKind kind() const override {
-    return kHasPaths ? OptionKind::kNamedPath : OptionKind::kNamedText;
-  }
-  [[nodiscard]] bool repeats() const override { return true; }
-  std::string read(std::span<const GivenValue> given) override {
-    field_.clear();
-    for (const GivenValue& value : given) {
-      const std::string pair = textOf(value);
-      const std::size_t equals = value.name.empty() ? pair.find('=') : value.name.size();
-      if (equals == std::string::npos || equals == 0 || equals + 1 >= pair.size()) {
-        return fmt::format("is \"{}\", expected {}", pair, form_);
-      }
-      const std::string name = pair.substr(0, equals);
-      if (!field_.emplace(name, pair.substr(equals + 1)).second) {
-        return fmt::format("names {} twice; give each once", name);
-      }
-    }
-    return {};
-  }
-  [[nodiscard]] std::vector<std::string> texts() const override {
-    std::vector<std::string> all;
-    for (const auto& [name, value] : field_) {
-      all.push_back(name + "=" + std::filesystem::path(value).string());
-    }
-    return all;
-  }
-  [[nodiscard]] std::vector<std::filesystem::path*> paths() override {
-    std::vector<std::filesystem::path*> all;
-    if constexpr (kHasPaths) {
-      for (auto& [name, value] : field_) all.push_back(&value);
-    }
-    return all;
-  }
-  [[nodiscard]] std::span<const std::byte> memory() const override { return memoryOf(field_); }
-
- private:
-  static constexpr bool kHasPaths = std::is_same_v<Value, std::filesystem::path>;
-
-  std::map<std::string, Value>& field_;
-  std::string_view form_;
-};
-
 }  // namespace
 
 FieldPointer number(float& field, OptionRange range) {
-  return std::make_unique<NumberField<float, float>>(field, range);
+  return std::make_unique<NumberField<float>>(field, range);
 }
 FieldPointer number(double& field, OptionRange range) {
-  return std::make_unique<NumberField<double, double>>(field, range);
+  return std::make_unique<NumberField<double>>(field, range);
 }
 FieldPointer number(std::optional<float>& field, OptionRange range) {
-  return std::make_unique<NumberField<std::optional<float>, float>>(field, range);
+  return std::make_unique<NumberField<std::optional<float>>>(field, range);
 }
 FieldPointer number(std::optional<double>& field, OptionRange range) {
-  return std::make_unique<NumberField<std::optional<double>, double>>(field, range);
+  return std::make_unique<NumberField<std::optional<double>>>(field, range);
 }
 FieldPointer whole(std::uint32_t& field, Within<std::uint64_t> range) {
-  return std::make_unique<WholeField<std::uint32_t, std::uint32_t>>(field, range, false);
+  return std::make_unique<WholeField<std::uint32_t>>(field, range, false);
 }
 FieldPointer whole(std::uint64_t& field, Within<std::uint64_t> range) {
-  return std::make_unique<WholeField<std::uint64_t, std::uint64_t>>(field, range, false);
+  return std::make_unique<WholeField<std::uint64_t>>(field, range, false);
 }
 FieldPointer whole(std::optional<std::uint32_t>& field, Within<std::uint64_t> range) {
   using Field = std::optional<std::uint32_t>;
-  return std::make_unique<WholeField<Field, std::uint32_t>>(field, range, false);
+  return std::make_unique<WholeField<Field>>(field, range, false);
 }
 FieldPointer powerOfTwo(std::uint32_t& field, Within<std::uint64_t> range) {
-  return std::make_unique<WholeField<std::uint32_t, std::uint32_t>>(field, range, true);
+  return std::make_unique<WholeField<std::uint32_t>>(field, range, true);
 }
 FieldPointer numbers(std::vector<float>& field, OptionRange range) {
   return std::make_unique<NumbersField>(field, range);
@@ -518,29 +331,4 @@ FieldPointer distances(DistanceRange& field, bool& is_default) {
 FieldPointer bounds(DistanceRange& field) {
   return std::make_unique<DistancesField>(field, 2, nullptr);
 }
-FieldPointer flag(bool& field, bool when_typed) {
-  return std::make_unique<FlagField>(field, when_typed);
-}
-FieldPointer path(std::filesystem::path& field) { return std::make_unique<PathField>(field); }
-FieldPointer text(std::string& field) { return std::make_unique<TextField>(field); }
-FieldPointer texts(std::vector<std::string>& field) {
-  return std::make_unique<TextsField>(field, false);
-}
-FieldPointer names(std::vector<std::string>& field) {
-  return std::make_unique<TextsField>(field, true);
-}
-FieldPointer namedTexts(std::map<std::string, std::string>& field, std::string_view form) {
-  return std::make_unique<NamedField<std::string>>(field, form);
-}
-FieldPointer namedPaths(std::map<std::string, std::filesystem::path>& field,
-                        std::string_view form) {
-  return std::make_unique<NamedField<std::filesystem::path>>(field, form);
-}
-FieldPointer choice(ChoiceAccess access) {
-  return std::make_unique<ChoiceField>(std::move(access));
-}
-FieldPointer preset(std::vector<std::string_view> names, std::function<void(std::size_t)> set) {
-  return choice({.names = std::move(names), .get = {}, .set = std::move(set), .memory = {}});
-}
-
 }  // namespace galactic::bake
