@@ -200,7 +200,7 @@ TEST_F(EpisodeCli, ExplainsEveryRefusal) {
       {{set, "-o", set}, 3, "is also an input"},
       {{set, "--scene-name", "a_room"}, 1, "--scene-name: is \"a_room\", expected OLD=NEW"},
       {{set, "--scene-name", "a=b", "--scene-name", "a=c"}, 1, "names a twice"},
-      {{set, "--object-up", "w"}, 1, "--object-up: is \"w\", one of x, y, z"},
+      {{set, "--object-up", "w"}, 1, "--object-up: is \"w\", expected one of x, y, z"},
       {{set, "--count", "5"}, 1, "--count: does not go with --as episodes of published episodes"},
       {{set, "--seed", "5"}, 1, "--seed: does not go with --as episodes of published episodes"},
       {{set, "--radii", "0.05"},

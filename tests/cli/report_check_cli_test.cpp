@@ -182,7 +182,7 @@ TEST_F(ReportCheck, ExplainsEveryRefusal) {
       {{"--check", "negative.json"},
        3,
        "negative.json: tolerances.episodes: is neither a share of 0 or more"},
-      {{"--check", "number.json"}, 3, "number.json: tolerances: is no object"},
+      {{"--check", "number.json"}, 3, "number.json: tolerances: expected an object"},
       {{"--check", "golden.json", "--report", "golden.json"}, 3, "is also an input"},
       {{"--check", "golden.json", "--check-tolerance", "-1"}, 1, "--check-tolerance"},
   };

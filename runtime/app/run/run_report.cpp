@@ -143,7 +143,8 @@ std::string tableOf(const RunReport& report) {
   std::string text = fmt::format(
       "{} envs, {} steps each, {} threads, policy {}, seed {}{}\n", options.simulation.envs,
       report.steps, report.threads, printable(options.policy), options.simulation.seed,
-      report.is_interrupted ? fmt::format(" (stopped; expected {} steps)", options.steps) : "");
+      report.is_interrupted ? fmt::format(" (stopped; {} steps were asked for)", options.steps)
+                            : "");
   text += taskLine(report);
   text += learnedLine(report);
   text += line("stepping", rate(report, report.step_seconds));

@@ -211,7 +211,7 @@ TEST(CommandLine, RefusesWhatWouldBeIgnored) {
            {{"home.scene_dataset_config.json", "--inside", "0,1,0"}, "--inside: is a point of one"},
            {{"room.glb", "--quiet", "--verbose"}, "--verbose: does not go with --quiet"},
            {{"room.glb", "--as", "scene", "--as", "scene"}, "command line: --as: "},
-           {{"room.glb", "--as", "house"}, "--as: is \"house\", one of scene, object"},
+           {{"room.glb", "--as", "house"}, "--as: is \"house\", expected one of scene, object"},
            {{"home.episode_set.json", "--start-joints", "a,,b"},
             "--start-joints: has an empty name"}}) {
     const Parsed parsed = parse(pair.arguments);

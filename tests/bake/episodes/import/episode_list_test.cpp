@@ -33,7 +33,8 @@ TEST(EpisodeLists, NameTheLineOfWhatIsNoIndex) {
     ASSERT_FALSE(list.has_value());
     EXPECT_EQ(list.error().code, ErrorCode::kInvalidInput);
     EXPECT_THAT(list.error().where, EndsWith("good.txt:2"));
-    EXPECT_THAT(list.error().message, HasSubstr("has \"" + std::string(word) + "\", indices"));
+    EXPECT_THAT(list.error().message,
+                HasSubstr("has \"" + std::string(word) + "\", expected indices"));
   }
 }
 
