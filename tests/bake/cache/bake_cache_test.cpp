@@ -195,7 +195,7 @@ TEST_F(Cache, DoesNotFindAPackThatWasDamaged) {
 }
 
 TEST_F(Cache, TakesEntriesThatAreTruncatedForNone) {
-  store("a report");
+  store("a home");
   const fs::path entry = kept(".json").at(0);
   const std::string whole = fileContent(entry);
   ASSERT_GT(whole.size(), 200U);
@@ -211,7 +211,7 @@ TEST_F(Cache, TakesEntriesThatAreTruncatedForNone) {
 }
 
 TEST_F(Cache, TakesGarbageForNone) {
-  store("a report");
+  store("a home");
   const fs::path entry = kept(".json").at(0);
   const std::string whole = fileContent(entry);
   const auto with = [&](const std::string& part, const std::string& other) {
@@ -234,8 +234,9 @@ TEST_F(Cache, TakesGarbageForNone) {
       with("\"files\": [", "\"files\": [[\"a\", -1, \"0\"],"),
       with("\"files\": [", "\"files\": [[\"a\", 1, \"0123456789abcdef0123456789abcdeg\"],"),
       with("\"absent\": [", "\"absent\": [1,"),
-      with("\"report\": \"a report\"", "\"report\": 7"),
-      with("\"textures\": [", "\"textures\": [1,"),
+      with("\"name\": \"a home\"", "\"name\": 7"),
+      with("\"scenes\": []", "\"scenes\": [1]"),
+      with("\"alternative\": 3", "\"alternative\": 9"),
       with("\"warnings\": ", "\"Warnings\": "),
   };
   for (const std::string& text : garbage) {
