@@ -46,8 +46,17 @@ struct Player {
 }  // namespace galactic::published_workload
 
 int main(int count, char** arguments) {
-  using namespace galactic;
-  using namespace galactic::published_workload;
+  using galactic::BatchSimulator;
+  using galactic::Result;
+  using galactic::SimulationStatistics;
+  using galactic::World;
+  using galactic::published_workload::Actions;
+  using galactic::published_workload::Load;
+  using galactic::published_workload::optionsOf;
+  using galactic::published_workload::Player;
+  using galactic::published_workload::playMeasured;
+  using galactic::published_workload::processorSeconds;
+  using galactic::published_workload::Resets;
   if (count != 5) {
     std::fprintf(stderr, "play_workload WORLD random|forward|held ENVS STEPS\n");
     return 1;

@@ -94,10 +94,10 @@ void ColumnWays::ask(const Surroundings& cells, Sphere& sphere) noexcept {
     sphere.asked.rows[n] |= left;
     for (; left != 0; left &= left - 1) {
       const int bit = 64 * static_cast<int>(n) + std::countr_zero(left);
-      const auto x = static_cast<float>(bit % kRowBits - kCellsAround);
-      const auto z = static_cast<float>(bit / kRowBits - kCellsAround);
-      question.x[question.count] = layout.min_x + (own_x + x) * layout.spacing;
-      question.z[question.count] = layout.min_z + (own_z + z) * layout.spacing;
+      const int x = bit % kRowBits - kCellsAround;
+      const int z = bit / kRowBits - kCellsAround;
+      question.x[question.count] = layout.min_x + (own_x + static_cast<float>(x)) * layout.spacing;
+      question.z[question.count] = layout.min_z + (own_z + static_cast<float>(z)) * layout.spacing;
       question.bits[question.count++] = bit;
       if (question.count == kMostAsked) answer(*sphere.grid, question, sphere.free);
     }
