@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <mutex>
 #include <string_view>
 
 #include "render/cuda/kernels/kernels.inl"
@@ -24,6 +25,8 @@ using render::cuda::PassParameters;
 
 Standin standin;
 std::map<void*, std::size_t> memories;
+/// Programs draw from several threads; the device does one thing after the other.
+std::mutex device_mutex;
 int device_context = 0;
 int loaded_module = 0;
 
@@ -34,6 +37,7 @@ int outcome(const char* function) {
 }
 
 void note(void* stream) {
+  const std::scoped_lock lock(device_mutex);
   ++(reinterpret_cast<std::uintptr_t>(stream) == standin.stream ? standin.on_stream
                                                                 : standin.on_others);
 }
@@ -42,6 +46,7 @@ void* allocate(std::size_t bytes) {
   // As on a device, nothing is promised about what is there.
   void* memory = std::aligned_alloc(256, (bytes + 255) / 256 * 256);
   std::memset(memory, 0xCD, bytes);
+  const std::scoped_lock lock(device_mutex);
   memories[memory] = bytes;
   ++standin.allocations;
   standin.allocated_bytes += bytes;
@@ -49,6 +54,7 @@ void* allocate(std::size_t bytes) {
 }
 
 void release(void* memory) {
+  const std::scoped_lock lock(device_mutex);
   standin.allocated_bytes -= memories.at(memory);
   --standin.allocations;
   memories.erase(memory);
@@ -193,6 +199,7 @@ STANDIN int cuLaunchKernel(void* function, unsigned grid, unsigned, unsigned, un
   note(stream);
   const int error = outcome("cuLaunchKernel");
   if (error != 0) return error;
+  const std::scoped_lock lock(device_mutex);
   auto* launches = static_cast<std::uint64_t*>(function);
   ++*launches;
   PassParameters copy;
