@@ -84,6 +84,8 @@ class NetworkPolicy final : public Policy {
     return {};
   }
 
+  void restart(std::uint32_t first_env) override { policy_.reset(first_env); }
+
  private:
   LearnedPolicy policy_;
   const BatchSimulator& simulator_;

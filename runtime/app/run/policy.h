@@ -21,6 +21,10 @@ class Policy {
   /// Fills the actions of step `step` (from 0, in order), env after env, as BatchSimulator::step
   /// wants them. Fails as its source does.
   [[nodiscard]] virtual Result<void> act(std::uint64_t step, std::span<float> actions) = 0;
+
+  /// Forgets what it did: all envs begin anew, with the random numbers of a batch whose first env
+  /// has this number over all ranks. Policies that look at the state alone have nothing to forget.
+  virtual void restart(std::uint32_t /*first_env*/) {}
 };
 
 /// The name of the policy that solves the task with a plan: see ScriptedPolicy.

@@ -16,9 +16,9 @@
 #include "galactic/world.h"
 #include "run/interrupt.h"
 #include "run/live_line.h"
+#include "run/planned_policy.h"
 #include "run/policy.h"
 #include "run/tracked_run.h"
-#include "scripted/scripted_policy.h"
 
 namespace galactic {
 namespace {
@@ -47,22 +47,6 @@ class ReplayPolicy final : public Policy {
  private:
   RecordingReader& recording_;
   std::uint64_t digest_ = 0;
-};
-
-/// The actions of a plan, which looks at the simulator.
-class PlannedPolicy final : public Policy {
- public:
-  PlannedPolicy(ScriptedPolicy policy, const BatchSimulator& simulator)
-      : policy_(std::move(policy)), simulator_(simulator) {}
-
-  Result<void> act(std::uint64_t, std::span<float> actions) override {
-    policy_.act(simulator_, actions);
-    return {};
-  }
-
- private:
-  ScriptedPolicy policy_;
-  const BatchSimulator& simulator_;
 };
 
 /// Adds up the rewards of each env's episode until it ends.
@@ -107,9 +91,9 @@ class Run {
 
   /// Before go().
   Result<void> plan(const World& world) {
-    Result<ScriptedPolicy> policy = ScriptedPolicy::create(world, options_.simulation);
+    Result<std::unique_ptr<Policy>> policy = makePlannedPolicy(world, simulator_);
     if (!policy) return tl::unexpected<Error>(policy.error());
-    policy_ = std::make_unique<PlannedPolicy>(std::move(*policy), simulator_);
+    policy_ = std::move(*policy);
     return {};
   }
 

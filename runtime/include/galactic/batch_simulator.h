@@ -101,6 +101,20 @@ struct EnvObjects {
   Pose world_from_held;
 };
 
+/// Where an env is after a step that was made elsewhere: by a physics engine, or by a real robot.
+struct FollowedState {
+  /// The root stays upright: of its rotation the yaw counts.
+  Pose world_from_root;
+  /// One per position of the robot; those that neither actions nor episodes move do not count.
+  std::span<const float> joint_positions;
+  /// World poses, one per object of the env (EnvObjects::objects), also of the held one.
+  std::span<const Pose> objects;
+  /// Index into `objects`; -1 when nothing is held.
+  std::int32_t held = -1;
+  /// Whether something was in the way of the robot: what the bump sensor says.
+  bool was_hindered = false;
+};
+
 /// Where a link sits on the body that carries it.
 struct LinkOnBody {
   std::size_t body = 0;
@@ -162,6 +176,11 @@ class BatchSimulator {
   /// stay as they are until endStep() returns; what the simulator returns is valid after it.
   void beginStep(std::span<const float> actions, std::span<const std::int32_t> resets = {});
   void endStep();
+
+  /// A step that was made elsewhere. The envs are in `states` (one per env) now, whatever the
+  /// simulation would have made of `actions`; observations, rewards and ends of episodes follow as
+  /// in step(), from where robot and objects are and from what is held now and was held before.
+  void follow(std::span<const float> actions, std::span<const FollowedState> states);
 
   /// What reset() may be given for an env instead of an episode: it stays as it is, or begins the
   /// episode whose turn it is.

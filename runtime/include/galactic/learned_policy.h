@@ -71,6 +71,8 @@ class LearnedPolicy {
   /// BatchSimulator::step takes them. Call it once before each step.
   void act(const PolicyInputs& inputs, std::span<float> actions) noexcept;
 
+  /// All envs begin anew, with the random numbers of a batch whose first env has this number.
+  void reset(std::uint32_t first_env) noexcept;
   /// All envs begin anew.
   void reset() noexcept;
 

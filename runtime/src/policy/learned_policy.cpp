@@ -165,6 +165,11 @@ class LearnedPolicy::Impl {
     step_ = 0;
   }
 
+  void reset(std::uint32_t first_env) noexcept {
+    options_.first_env = first_env;
+    reset();
+  }
+
   [[nodiscard]] const PolicyInterface& interface() const { return needs_; }
   [[nodiscard]] std::size_t threadCount() const { return parts_.size(); }
   [[nodiscard]] std::size_t memoryBytes() const {
@@ -287,6 +292,8 @@ void LearnedPolicy::act(const PolicyInputs& inputs, std::span<float> actions) no
   impl_->act(inputs, actions);
 }
 void LearnedPolicy::reset() noexcept { impl_->reset(); }
+
+void LearnedPolicy::reset(std::uint32_t first_env) noexcept { impl_->reset(first_env); }
 const PolicyInterface& LearnedPolicy::interface() const { return impl_->interface(); }
 std::size_t LearnedPolicy::threadCount() const { return impl_->threadCount(); }
 std::size_t LearnedPolicy::memoryBytes() const { return impl_->memoryBytes(); }

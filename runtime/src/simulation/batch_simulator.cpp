@@ -9,6 +9,7 @@
 
 #include "simulation/phases/chunk.h"
 #include "simulation/phases/episode_start.h"
+#include "simulation/phases/follow.h"
 #include "simulation/phases/step.h"
 #include "simulation/state/batch_state.h"
 #include "simulation/state/env_state.h"
@@ -76,6 +77,13 @@ class BatchSimulator::Impl {
     measures_ = sample_every_ != 0 && steps_ % sample_every_ == 0;
     for (std::size_t n = 0; n < state_.paddedCount() / kChunk; ++n) run(0, n);
     ++steps_;
+  }
+
+  void follow(std::span<const float> actions, std::span<const FollowedState> states) {
+    assert(states.size() == model_.options.envs);
+    states_ = states;
+    step(actions, {});
+    states_ = {};
   }
 
   void reset(std::span<const std::int32_t> episodes) {
@@ -179,7 +187,9 @@ class BatchSimulator::Impl {
   void run(std::size_t thread, std::size_t n) noexcept {
     Desk& desk = desks_[thread];
     const simulation::ChunkStep step{model_, state_, desk.chunk, n * kChunk};
-    if (measures_) {
+    if (!states_.empty()) {
+      simulation::followChunk(step, input_.actions, states_);
+    } else if (measures_) {
       simulation::stepChunkMeasured(step, input_, desk.seconds);
     } else {
       simulation::stepChunk(step, input_);
@@ -191,6 +201,8 @@ class BatchSimulator::Impl {
   std::size_t threads_ = 1;
   std::vector<Desk> desks_;
   simulation::StepInput input_;
+  /// Of a step that was made elsewhere.
+  std::span<const FollowedState> states_;
   std::uint64_t steps_ = 0;
   std::uint32_t sample_every_ = 0;
   bool measures_ = false;
@@ -236,6 +248,9 @@ void BatchSimulator::beginStep(std::span<const float> actions,
   impl_->begin(actions, resets);
 }
 void BatchSimulator::endStep() { impl_->end(); }
+void BatchSimulator::follow(std::span<const float> actions, std::span<const FollowedState> states) {
+  impl_->follow(actions, states);
+}
 void BatchSimulator::reset(std::span<const std::int32_t> episodes) { impl_->reset(episodes); }
 void BatchSimulator::restart(std::uint64_t seed) { impl_->restart(seed); }
 

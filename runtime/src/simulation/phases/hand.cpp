@@ -13,29 +13,9 @@ namespace {
 
 void grasp(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
-  Env& env = step.state.env(n);
-  RestingObjects& resting = step.state.resting(n);
-  const GripFrame& grip = step.state.grip(n);
   const std::optional<std::uint32_t> object =
-      resting.nearest(gripOrigin(grip), step.model.motion.grasp_radius);
-  if (!object) return;
-  const Pose before = step.state.objects(n)[*object];
-  env.held = {};
-  env.held.object = static_cast<std::int32_t>(*object);
-  env.held.grip_from_object = inverse(gripPose(grip)) * before;
-  env.held.before = before;
-  measureHeld(heldModel(step.model, env), env.held);
-  resting.remove(*object);
-  const std::span<std::uint64_t> leaving = step.state.leaving(n, *object);
-  if (std::ranges::any_of(leaving, [](std::uint64_t word) { return word != 0; })) --env.left;
-  std::ranges::fill(leaving, 0U);
-  const SphereBatch spheres =
-      holdSpheres(heldModel(step.model, env), before, step.chunk.placement().spheres);
-  penetrating({step.model.world->scenes()[env.scene], resting}, spheres, step.chunk.collision(),
-              step.state.ignored(n));
-  ++env.counters.grasps;
-  env.events.picked = *object == env.target && !env.has_picked;
-  env.has_picked = env.has_picked || env.events.picked;
+      step.state.resting(n).nearest(gripOrigin(step.state.grip(n)), step.model.motion.grasp_radius);
+  if (object) takeInHand(step, e, *object);
 }
 
 /// Whether the task lets the held object rest at `pose`.
@@ -73,16 +53,46 @@ void release(const ChunkStep& step, std::size_t e) {
                   step.model.options.placement, step.chunk.placement());
   const Pose rest = landing.placed ? landing.pose : env.held.before;
   if (!mayRestAt(step, env, rest)) return;
-  const auto number = static_cast<std::uint32_t>(env.held.object);
-  step.state.objects(n)[number] = rest;
-  resting.insert(number, restingBox(object.box, rest));
-  beginToLeave(step, e, number);
-  env.events.released_target = number == env.target;
-  env.held.object = -1;
+  layDown(step, e, rest);
   ++(landing.placed ? env.counters.drops : env.counters.restored);
 }
 
 }  // namespace
+
+void takeInHand(const ChunkStep& step, std::size_t e, std::uint32_t object) noexcept {
+  const std::size_t n = step.first + e;
+  Env& env = step.state.env(n);
+  RestingObjects& resting = step.state.resting(n);
+  const Pose before = step.state.objects(n)[object];
+  env.held = {};
+  env.held.object = static_cast<std::int32_t>(object);
+  env.held.grip_from_object = inverse(gripPose(step.state.grip(n))) * before;
+  env.held.before = before;
+  measureHeld(heldModel(step.model, env), env.held);
+  resting.remove(object);
+  const std::span<std::uint64_t> leaving = step.state.leaving(n, object);
+  if (std::ranges::any_of(leaving, [](std::uint64_t word) { return word != 0; })) --env.left;
+  std::ranges::fill(leaving, 0U);
+  const SphereBatch spheres =
+      holdSpheres(heldModel(step.model, env), before, step.chunk.placement().spheres);
+  penetrating({step.model.world->scenes()[env.scene], resting}, spheres, step.chunk.collision(),
+              step.state.ignored(n));
+  ++env.counters.grasps;
+  env.events.picked = object == env.target && !env.has_picked;
+  env.has_picked = env.has_picked || env.events.picked;
+}
+
+void layDown(const ChunkStep& step, std::size_t e, const Pose& world_from_object) noexcept {
+  const std::size_t n = step.first + e;
+  Env& env = step.state.env(n);
+  const auto object = static_cast<std::uint32_t>(env.held.object);
+  step.state.objects(n)[object] = world_from_object;
+  step.state.resting(n).insert(object,
+                               restingBox(heldModel(step.model, env).box, world_from_object));
+  beginToLeave(step, e, object);
+  env.events.released_target = object == env.target;
+  env.held.object = -1;
+}
 
 void useHands(const ChunkStep& step) noexcept {
   const ActionOptions& options = step.model.options.action;

@@ -10,10 +10,7 @@
 #include "simulation/phases/task.h"
 
 namespace galactic::simulation {
-namespace {
 
-/// Copies the actions of the chunk's envs, clamped; what is not a number becomes 0 and is counted.
-/// Envs that are only padding get 0.
 void readActions(const ChunkStep& step, std::span<const float> all) noexcept {
   const std::size_t count = step.model.actionCount();
   const std::span<float> actions = step.chunk.actions();
@@ -34,6 +31,8 @@ void readActions(const ChunkStep& step, std::span<const float> all) noexcept {
     if (value != value) ++step.state.env(step.first + n / count).counters.nan_actions;
   }
 }
+
+namespace {
 
 /// Of the calling thread: what others on the machine do does not count.
 double processorSeconds() noexcept {

@@ -23,6 +23,10 @@ inline constexpr std::array<std::string_view, 10> kPhaseNames{
     "hands",   "task",    "observe", "sense",      "renew"};
 using PhaseSeconds = std::array<double, kPhaseNames.size()>;
 
+/// Copies the actions of the chunk's envs, clamped; what is not a number becomes 0 and is counted.
+/// Envs that are only padding get 0.
+void readActions(const ChunkStep& step, std::span<const float> all) noexcept;
+
 /// One step of the chunk's envs.
 void stepChunk(const ChunkStep& step, const StepInput& input) noexcept;
 

@@ -1,0 +1,34 @@
+#include "run/planned_policy.h"
+
+#include <utility>
+
+#include "scripted/scripted_policy.h"
+
+namespace galactic {
+namespace {
+
+class PlannedPolicy final : public Policy {
+ public:
+  PlannedPolicy(ScriptedPolicy policy, const BatchSimulator& simulator)
+      : policy_(std::move(policy)), simulator_(simulator) {}
+
+  Result<void> act(std::uint64_t, std::span<float> actions) override {
+    policy_.act(simulator_, actions);
+    return {};
+  }
+
+ private:
+  ScriptedPolicy policy_;
+  const BatchSimulator& simulator_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Policy>> makePlannedPolicy(const World& world,
+                                                  const BatchSimulator& simulator) {
+  Result<ScriptedPolicy> policy = ScriptedPolicy::create(world, simulator.options());
+  if (!policy) return tl::unexpected<Error>(policy.error());
+  return std::make_unique<PlannedPolicy>(std::move(*policy), simulator);
+}
+
+}  // namespace galactic

@@ -1,0 +1,120 @@
+#include "simulation/phases/follow.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/phases/episode_start.h"
+#include "simulation/phases/hand.h"
+#include "simulation/phases/move.h"
+#include "simulation/phases/observe.h"
+#include "simulation/phases/step.h"
+#include "simulation/phases/task.h"
+#include "simulation/state/grip_frame.h"
+
+namespace galactic::simulation {
+namespace {
+
+/// The root, upright, and the joints as a candidate.
+void propose(const ChunkStep& step, std::size_t e, const FollowedState& state) {
+  const PoseArrays to = step.chunk.candidates(e);
+  const Pose& root = state.world_from_root;
+  *to.x = root.translation.x;
+  *to.y = root.translation.y - step.model.motion.base.root_height;
+  *to.z = root.translation.z;
+  *to.yaw = 2 * std::atan2(root.rotation.y, root.rotation.w);
+  for (std::size_t v = 0; v < step.model.variableCount(); ++v) {
+    to.variables[v * to.stride] = state.joint_positions[step.model.motion.variables[v].position];
+  }
+}
+
+void copyPose(const PoseArrays& from, const PoseArrays& to, std::size_t variables) {
+  *to.x = *from.x;
+  *to.y = *from.y;
+  *to.z = *from.z;
+  *to.yaw = *from.yaw;
+  for (std::size_t v = 0; v < variables; ++v) {
+    to.variables[v * to.stride] = from.variables[v * from.stride];
+  }
+}
+
+/// What nobody asked for stays where it is: forward kinematics reads all envs of the chunk.
+void proposeCurrent(const ChunkStep& step, std::size_t e) {
+  copyPose(step.state.poses(step.first + e), step.chunk.candidates(e), step.model.variableCount());
+}
+
+void moveObjects(const ChunkStep& step, std::size_t n, std::span<const Pose> poses) {
+  const Env& env = step.state.env(n);
+  const std::span<Pose> objects = step.state.objects(n);
+  RestingObjects& resting = step.state.resting(n);
+  for (std::uint32_t object = 0; object < env.objects; ++object) {
+    const bool is_held = env.held.object == static_cast<std::int32_t>(object);
+    if (is_held || objects[object] == poses[object]) continue;
+    objects[object] = poses[object];
+    resting.remove(object);
+    resting.insert(object, restingBox(step.model.object(env.start, object).box, poses[object]));
+  }
+}
+
+/// Grasps and releases as the hand did, after the objects have moved.
+void followHand(const ChunkStep& step, std::size_t e, const FollowedState& state) {
+  const std::size_t n = step.first + e;
+  Env& env = step.state.env(n);
+  const std::size_t terminate = step.model.actionCount() - 1;
+  env.events = {.terminates =
+                    step.chunk.actions(e)[terminate] >= step.model.options.action.terminate};
+  if (env.held.object >= 0 && env.held.object != state.held) {
+    layDown(step, e, state.objects[static_cast<std::size_t>(env.held.object)]);
+    ++env.counters.drops;
+  }
+  if (state.held < 0) return;
+  const auto held = static_cast<std::uint32_t>(state.held);
+  if (env.held.object < 0) takeInHand(step, e, held);
+  // It may slip.
+  env.held.grip_from_object = inverse(gripPose(step.state.grip(n))) * state.objects[held];
+  measureHeld(heldModel(step.model, env), env.held);
+}
+
+void takePose(const ChunkStep& step, std::size_t e, const FollowedState& state) {
+  const std::size_t n = step.first + e;
+  Env& env = step.state.env(n);
+  env.refused = state.was_hindered;
+  env.counters.refused += state.was_hindered ? 1U : 0U;
+  copyPose(step.chunk.candidates(e), step.state.poses(n), step.model.variableCount());
+  step.state.grip(n) = step.chunk.grip(e);
+  std::ranges::copy(step.chunk.bodyTransforms(e), step.state.bodyTransforms(n).begin());
+}
+
+}  // namespace
+
+void followChunk(const ChunkStep& step, std::span<const float> actions,
+                 std::span<const FollowedState> states) noexcept {
+  readActions(step, actions);
+  const auto isFollowed = [&](std::size_t e) {
+    const std::size_t n = step.first + e;
+    return n < states.size() && step.state.idle()[n] == 0;
+  };
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    if (isFollowed(e)) {
+      propose(step, e, states[step.first + e]);
+    } else {
+      proposeCurrent(step, e);
+    }
+  }
+  placeBodies(step);
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    if (isFollowed(e)) takePose(step, e, states[step.first + e]);
+  }
+  // A release places bodies anew, so all candidates are taken by now.
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    if (!isFollowed(e)) continue;
+    const FollowedState& state = states[step.first + e];
+    moveObjects(step, step.first + e, state.objects);
+    followHand(step, e, state);
+  }
+  judge(step, {});
+  observeAll(step);
+  senseAll(step);
+  renewEpisodes(step);
+}
+
+}  // namespace galactic::simulation
