@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "galactic/error.h"
 #include "view/page_assets.h"
@@ -17,11 +18,25 @@ struct PageOptions {
   std::uint32_t texture_size = 512;
 };
 
+/// A moment of a run that a page points at.
+struct PageMoment {
+  std::size_t env = 0;
+  /// As in EnvTrack.
+  std::uint32_t frame = 0;
+  std::string text = {};
+};
+
 /// A run that a page plays.
 struct PageRun {
   const RunTrack* track = nullptr;
   /// What is told about it: options, counts. JSON; empty for nothing.
   std::string facts = {};
+  /// One for each env; empty: the envs go by their numbers.
+  std::vector<std::string> names = {};
+  /// For each env the one that is shown in it as a ghost, as the same episode played elsewhere;
+  /// empty: there are none.
+  std::vector<std::uint32_t> twins = {};
+  std::vector<PageMoment> moments = {};
 };
 
 /// One self-contained HTML file that shows packs and plays a run, if there is one: a browser opens

@@ -116,6 +116,30 @@ void writeActionNames(JsonWriter& json, const Robot& robot) {
   json.end(']');
 }
 
+/// What is said of single envs and moments.
+void writeRemarks(JsonWriter& json, const PageRun& run) {
+  if (!run.names.empty()) {
+    json.begin("names", '[');
+    for (const std::string& name : run.names) json.text("", name);
+    json.end(']');
+  }
+  if (!run.twins.empty()) {
+    json.begin("twins", '[');
+    for (const std::uint32_t twin : run.twins) json.number("", twin);
+    json.end(']');
+  }
+  if (run.moments.empty()) return;
+  json.begin("moments", '[');
+  for (const PageMoment& moment : run.moments) {
+    json.begin("", '{');
+    json.number("env", moment.env);
+    json.number("frame", moment.frame);
+    json.text("text", moment.text);
+    json.end('}');
+  }
+  json.end(']');
+}
+
 }  // namespace
 
 void writeRun(JsonWriter& json, std::string_view key, PageData& data, const PageRun& run) {
@@ -132,6 +156,7 @@ void writeRun(JsonWriter& json, std::string_view key, PageData& data, const Page
   for (const std::string_view name : kTrackDistances) json.text("", name);
   json.end(']');
   if (!run.facts.empty()) json.raw("facts", run.facts);
+  writeRemarks(json, run);
   json.begin("envs", '[');
   for (const EnvTrack& env : track.envs()) writeEnv(json, data, track, env);
   json.end(']');

@@ -54,6 +54,19 @@ void RunTrack::add(const BatchSimulator& simulator, std::span<const float> actio
   }
 }
 
+void RunTrack::append(const RunTrack& other) {
+  envs_.insert(envs_.end(), other.envs_.begin(), other.envs_.end());
+  objects_.insert(objects_.end(), other.objects_.begin(), other.objects_.end());
+  statistics_.insert(statistics_.end(), other.statistics_.begin(), other.statistics_.end());
+  is_target_only_ = is_target_only_ || other.is_target_only_;
+}
+
+std::size_t RunTrack::steps() const {
+  std::size_t most = 0;
+  for (const EnvTrack& env : envs_) most = std::max(most, env.rewards.size());
+  return most;
+}
+
 void RunTrack::addFrame(const BatchSimulator& simulator, std::size_t env) {
   EnvTrack& track = envs_[env];
   const EnvState state = simulator.envState(env);
@@ -89,9 +102,9 @@ void RunTrack::addMoves(const BatchSimulator& simulator, std::size_t env) {
 }
 
 void RunTrack::addDistances(const BatchSimulator& simulator, std::size_t env) {
-  // Where the step ended an episode, the observation is of the next one.
-  const bool ended = simulator.dones()[env] != 0;
-  const auto all = ended ? simulator.finalObservations() : simulator.observations();
+  // Where the step ended an episode, the observation may be of the next one.
+  const bool is_next = simulator.dones()[env] != 0 && simulator.options().auto_reset;
+  const auto all = is_next ? simulator.finalObservations() : simulator.observations();
   const auto row = all.subspan(env * simulator.observationSize(), simulator.observationSize());
   for (const std::size_t at : distance_at_) {
     envs_[env].distances.push_back(std::hypot(row[at], row[at + 1], row[at + 2]));

@@ -67,9 +67,13 @@ class RunTrack {
   /// After a step with `actions`, those of all envs.
   void add(const BatchSimulator& simulator, std::span<const float> actions);
 
+  /// Puts the envs of another run of the same world and task behind these.
+  void append(const RunTrack& other);
+
   [[nodiscard]] const World& world() const { return *world_; }
   [[nodiscard]] const std::vector<EnvTrack>& envs() const { return envs_; }
-  [[nodiscard]] std::size_t steps() const { return envs_.front().rewards.size(); }
+  /// Of the longest env: those of one run are as long.
+  [[nodiscard]] std::size_t steps() const;
   [[nodiscard]] std::size_t actionCount() const { return actions_; }
   [[nodiscard]] std::size_t positionCount() const { return world_->robot().positionCount(); }
   /// Whether only the targets of episodes are there.

@@ -134,5 +134,37 @@ TEST_F(RunTrackTest, DistancesAreThoseOfTheStepThatEndedAnEpisode) {
   EXPECT_GT(at_end, 0U);
 }
 
+TEST_F(RunTrackTest, AppendsTheEnvsOfAnotherRun) {
+  RunTrack both(home_.world(), *simulator_, kKept);
+  const RunTrack start = both;
+  for (std::size_t step = 0; step < 3; ++step) {
+    const std::vector<float> actions = actionsOf(*simulator_, step);
+    simulator_->step(actions);
+    both.add(*simulator_, actions);
+  }
+  RunTrack longer = start;
+  longer.append(both);
+  ASSERT_EQ(longer.envs().size(), 2 * kKept);
+  EXPECT_EQ(longer.steps(), 3U);
+  EXPECT_EQ(longer.envs()[kKept].actions, both.envs()[0].actions);
+  EXPECT_TRUE(longer.envs()[0].rewards.empty());
+}
+
+TEST_F(RunTrackTest, DistancesAreThoseOfAnEndThatIsNotLeft) {
+  SimulationOptions options = simulator_->options();
+  options.auto_reset = false;
+  BatchSimulator stays = *BatchSimulator::create(home_.world(), options);
+  RunTrack track(home_.world(), stays, 1);
+  for (std::size_t step = 0; step < 25; ++step) {
+    const std::vector<float> actions = actionsOf(stays, step);
+    stays.step(actions);
+    track.add(stays, actions);
+  }
+  ASSERT_EQ(track.envs()[0].endings.back(), EpisodeEnd::kTimeOut);
+  const std::span<const float> row = stays.observations();
+  EXPECT_EQ(track.envs()[0].distances[24 * kTrackDistances.size()],
+            std::hypot(row[0], row[1], row[2]));
+}
+
 }  // namespace
 }  // namespace galactic::test::run_track_test

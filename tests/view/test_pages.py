@@ -251,6 +251,26 @@ class Pages(unittest.TestCase):
                 self.expect_poses(shown["links"], frames[number][env]["links"], number)
                 self.expect_poses(shown["objects"], frames[number][env]["objects"], number)
 
+    def test_the_twin_of_an_env_is_shown_as_a_ghost(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        frames = json.loads((self.folder / "poses.json").read_text())
+        page.evaluate(
+            "(galactic.view.run.twins = [1, 0], galactic.view.run.names = ['here', 'there'],"
+            " galactic.view.chooseEnv(0, 0).then(() => 1))"
+        )
+        for number in range(0, len(frames), 7):
+            shown = page.evaluate(
+                f"galactic.view.timeline.go({number}).then(() => ({{"
+                "own: galactic.view.home.robot.poses.map((one) => [...one.position.toArray(), ...one.rotation.toArray()]),"
+                "twin: galactic.view.ghost.robot.poses.map((one) => [...one.position.toArray(), ...one.rotation.toArray()]) }))"
+            )
+            self.expect_poses(shown["own"], frames[number][0]["links"], number)
+            self.expect_poses(shown["twin"], frames[number][1]["links"], number)
+        visible = "galactic.view.ghost.robot.group.visible"
+        self.assertTrue(page.evaluate(visible))
+        page.evaluate("galactic.view.ghost.setShown(false)")
+        self.assertFalse(page.evaluate(visible))
+
     def test_nothing_stands_before_a_robot_that_is_followed(self):
         page = self.open("run", "env=0&t=0", "run 0")
         # From all around, low and high, inside the room and outside: what the mesh itself hides before and after.

@@ -58,28 +58,6 @@ bool isPlayed(const PackFile& pack, const PlayedParts& parts) {
   return pack.kind() == PackKind::kRobot || pack.kind() == PackKind::kEpisodes;
 }
 
-Result<std::vector<PageAsset>> assetsOf(const RunTrack& track) {
-  const PlayedParts parts = partsOf(track);
-  SharedTextures textures;
-  for (const PackFile& pack : track.world().packs()) {
-    if (pack.kind() != PackKind::kTexture) continue;
-    RETURN_IF_ERROR(textures.add(pack));
-  }
-  std::vector<PageAsset> assets;
-  for (const PackFile& pack : track.world().packs()) {
-    if (!isPlayed(pack, parts)) continue;
-    PageAsset& asset = assets.emplace_back(PageAsset{.pack = &pack});
-    if (pack.kind() == PackKind::kEpisodes) {
-      asset.episodes.assign(parts.episodes.begin(), parts.episodes.end());
-      continue;
-    }
-    auto meshes = renderMeshesOf(pack, textures);
-    if (!meshes) return tl::unexpected(meshes.error());
-    if (*meshes) asset.meshes = std::make_shared<const RenderMeshes>(std::move(**meshes));
-  }
-  return assets;
-}
-
 /// What the run was: nothing that differs from one time to the next.
 std::string factsOf(const RunOptions& options) {
   JsonWriter json;
@@ -116,6 +94,28 @@ Result<void> tryFile(const std::string& file, const World& world, const RunOptio
 
 }  // namespace
 
+Result<std::vector<PageAsset>> pageAssetsOf(const RunTrack& track) {
+  const PlayedParts parts = partsOf(track);
+  SharedTextures textures;
+  for (const PackFile& pack : track.world().packs()) {
+    if (pack.kind() != PackKind::kTexture) continue;
+    RETURN_IF_ERROR(textures.add(pack));
+  }
+  std::vector<PageAsset> assets;
+  for (const PackFile& pack : track.world().packs()) {
+    if (!isPlayed(pack, parts)) continue;
+    PageAsset& asset = assets.emplace_back(PageAsset{.pack = &pack});
+    if (pack.kind() == PackKind::kEpisodes) {
+      asset.episodes.assign(parts.episodes.begin(), parts.episodes.end());
+      continue;
+    }
+    auto meshes = renderMeshesOf(pack, textures);
+    if (!meshes) return tl::unexpected(meshes.error());
+    if (*meshes) asset.meshes = std::make_shared<const RenderMeshes>(std::move(**meshes));
+  }
+  return assets;
+}
+
 Result<TrackedRun> TrackedRun::create(const World& world, const BatchSimulator& simulator,
                                       const RunOptions& options) {
   for (const std::string& file : {options.view, options.animation}) {
@@ -128,7 +128,7 @@ Result<TrackedRun> TrackedRun::create(const World& world, const BatchSimulator& 
 }
 
 Result<void> TrackedRun::finish() const {
-  ASSIGN_OR_RETURN(const auto assets, assetsOf(track_));
+  ASSIGN_OR_RETURN(const auto assets, pageAssetsOf(track_));
   if (!options_.view.empty()) {
     if (auto written = writePage(assets); !written) return written;
   }

@@ -2,6 +2,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "command_line/options.h"
 #include "galactic/batch_simulator.h"
@@ -11,6 +12,10 @@
 #include "view/run_track.h"
 
 namespace galactic {
+
+/// What a page needs of the world of a track: the episodes that were played, and what is in them.
+/// Fails with the errors of SharedTextures and renderMeshesOf.
+[[nodiscard]] Result<std::vector<PageAsset>> pageAssetsOf(const RunTrack& track);
 
 /// Keeps what the first envs of a run do, and writes it as a page and as an animation.
 class TrackedRun {

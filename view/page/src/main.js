@@ -8,6 +8,7 @@ import { MeshLibrary } from "./meshes.js";
 import { ObjectView } from "./object_view.js";
 import { RobotView } from "./robot_view.js";
 import { RunView } from "./run_view.js";
+import { envName } from "./track.js";
 import { SceneView } from "./scene_view.js";
 import { Stage } from "./stage.js";
 
@@ -47,7 +48,7 @@ class Page {
   makeParts() {
     const add = (kind, number, name, hint, make) => this.parts.push({ kind, number, name, hint, make });
     const { run, packs } = this.manifest;
-    (run?.envs ?? []).forEach((_, n) => add("run", n, `Env ${n}`, "", () => new RunView(this, run)));
+    (run?.envs ?? []).forEach((_, n) => add("run", n, envName(run, n), "", () => new RunView(this, run)));
     [...this.scenes.values()].forEach((pack, n) => add("scene", n, pack.scene.name, "", () => new SceneView(this, pack)));
     [...this.objects.values()].forEach(({ pack, number }, n) => add("object", n, pack.objects[number].name, "", () => new ObjectView(this, pack, number)));
     if (this.robotPack) add("robot", 0, this.robotPack.robot.name, "", () => new RobotView(this, this.robotPack));

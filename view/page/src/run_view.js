@@ -2,6 +2,7 @@
 import { Box3, Vector3 } from "three";
 import { address, addressNumber, setAddress } from "./address.js";
 import { button, checkbox, el, heading, legendRow, meters, note, table, tree } from "./dom.js";
+import { Ghost, kGhostColor } from "./ghost.js";
 import { Home } from "./home.js";
 import { Pose } from "./kinematics.js";
 import { inSight } from "./sight.js";
@@ -34,6 +35,11 @@ export class RunView {
   async chooseEnv(number, frame = 0) {
     this.env = number;
     this.track = await Track.load(this.page.data, this.run, number);
+    const twin = this.run.twins?.[number];
+    if (twin !== undefined) {
+      this.ghost ??= await Ghost.load(this.page, this.home);
+      this.ghost.setTrack(await Track.load(this.page.data, this.run, twin));
+    }
     this.shownEpisode = null;
     this.timeline.setTrack(this.track);
     setAddress({ env: number });
@@ -56,6 +62,7 @@ export class RunView {
     if (this.shownEpisode !== key) {
       this.shownEpisode = key;
       await this.home.setEpisode(this.page.episodes.withNumber(this.track.episode(frame)));
+      await this.ghost?.setEpisode(this.home.episode);
       this.sight = await this.home.sightGrid();
       if (this.hasReach) await this.home.setReach(true);
       this.cut();
@@ -72,6 +79,7 @@ export class RunView {
     if (this.run.target_only) this.home.objects.forEach((one, n) => { one.group.visible = n === target; });
     const { robot } = this.home;
     robot.setPose(this.track.root(frame), this.track.joints(frame));
+    this.ghost?.show(frame, moved);
     setAddress({ t: frame });
     this.fillFacts(frame);
     this.page.stage.draw();
@@ -177,11 +185,22 @@ export class RunView {
       checkbox("Oriented boxes", this.home.shown.boxes, toggle("boxes")),
       checkbox("Camera, grasp point, footprint", false, toggle("marks")),
       checkbox("Floor that it can drive to", false, (on) => { this.hasReach = on; this.home.setReach(on); }),
+      ...(this.ghost ? [checkbox("The same step in the other world", true, (on) => this.ghost.setShown(on))] : []),
+      ...(this.ghost ? [legendRow(kGhostColor, "In the other world")] : []),
       legendRow("#e69f00", "Target"),
       legendRow("#009e73", "Goal"),
+      ...this.momentList(),
       ...(this.run.facts ? [heading("About the run"), tree(this.run.facts, "facts")] : []),
     ]);
     if (this.camera === "own") this.setCamera("own");
+  }
+
+  /// What the page points at: a click goes there.
+  momentList() {
+    const { moments } = this.run;
+    if (!moments) return [];
+    return [heading("Moments"), ...moments.map(({ env, frame, text }) =>
+      el("div", { className: "buttons" }, button(text, () => this.chooseEnv(env, frame))))];
   }
 
   key(event) {

@@ -2,7 +2,7 @@
 import { address, addressNumber, setAddress } from "./address.js";
 import { Curves } from "./curves.js";
 import { button, el } from "./dom.js";
-import { kEndings, kEvents } from "./track.js";
+import { envName, kEndings, kEvents } from "./track.js";
 
 const kSpeeds = [0.25, 0.5, 1, 2, 4, 8];
 const kCurves = ["Reward", "Distance", "Contact", "Actions"];
@@ -27,10 +27,10 @@ export class Timeline {
     this.playButton = button("Play", () => this.toggle(), { title: "Play or pause (space)" });
     this.speedChoice = el("select", { "aria-label": "Speed" }, ...kSpeeds.map((one) => el("option", { value: one, selected: one === this.speed }, `${one} ×`)));
     this.speedChoice.addEventListener("change", () => this.setSpeed(Number(this.speedChoice.value)));
-    this.envChoice = el("select", { "aria-label": "Environment" }, ...this.run.envs.map((_, n) => el("option", { value: n }, `Env ${n}`)));
+    this.envChoice = el("select", { "aria-label": "Environment" }, ...this.run.envs.map((_, n) => el("option", { value: n }, envName(this.run, n))));
     this.envChoice.addEventListener("change", () => this.page.view.chooseEnv(Number(this.envChoice.value)));
     this.clock = el("span", { className: "clock" });
-    this.scrub = el("input", { type: "range", min: 0, max: this.run.steps, step: 1, value: 0, "aria-label": "Step" });
+    this.scrub = el("input", { type: "range", min: 0, max: 0, step: 1, value: 0, "aria-label": "Step" });
     this.scrub.addEventListener("input", () => { this.pause(); this.go(Number(this.scrub.value)); });
     this.marks = el("div", { className: "marks" });
     this.curvePart = el("div");
@@ -44,9 +44,13 @@ export class Timeline {
       el("div", { className: "track" }, this.scrub, this.marks), this.curvePart);
   }
 
+  /// Of the shown env.
+  get steps() { return this.track ? this.track.frameCount - 1 : 0; }
+
   setTrack(track) {
     this.pause();
     this.track = track;
+    this.scrub.max = this.steps;
     this.envChoice.value = this.page.view.env;
     this.fillMarks();
     const width = this.run.distances.length;
@@ -81,10 +85,10 @@ export class Timeline {
     const add = (step, symbol, color, text) => {
       const mark = button(symbol, () => { this.pause(); this.go(step + 1); }, { title: `Step ${step + 1}: ${text}`, "aria-label": `Step ${step + 1}: ${text}` });
       // Those of one moment stand one beside the other.
-      const near = Math.ceil(0.006 * this.run.steps);
+      const near = Math.ceil(0.006 * this.steps);
       const before = marks.filter((one) => step - one.step < near).length;
       mark.step = step;
-      mark.style.left = `calc(${(100 * (step + 1)) / this.run.steps}% + ${before * 0.95}rem)`;
+      mark.style.left = `calc(${(100 * (step + 1)) / this.steps}% + ${before * 0.95}rem)`;
       mark.style.color = `var(${color})`;
       marks.push(mark);
     };
@@ -98,9 +102,9 @@ export class Timeline {
   }
 
   async go(frame) {
-    this.frame = Math.max(0, Math.min(this.run.steps, frame));
+    this.frame = Math.max(0, Math.min(this.steps, frame));
     this.scrub.value = this.frame;
-    this.clock.textContent = `Step ${this.frame} of ${this.run.steps}, episode ${this.track.episode(this.frame)}`;
+    this.clock.textContent = `Step ${this.frame} of ${this.steps}, episode ${this.track.episode(this.frame)}`;
     this.scrub.setAttribute("aria-valuetext", this.clock.textContent);
     this.curves.setCursor(this.frame);
     await this.onFrame(this.frame);
@@ -117,17 +121,17 @@ export class Timeline {
   }
 
   play() {
-    if (this.frame >= this.run.steps) this.go(0);
+    if (this.frame >= this.steps) this.go(0);
     this.playButton.textContent = "Pause";
     this.played = this.frame;
     let last = performance.now();
     const tick = async (now) => {
       this.played += ((now - last) / 1000) * this.run.steps_per_second * this.speed;
       last = now;
-      const frame = Math.min(this.run.steps, Math.floor(this.played));
+      const frame = Math.min(this.steps, Math.floor(this.played));
       if (frame !== this.frame) await this.go(frame);
       else this.onBetween(frame, this.played - frame);
-      if (frame >= this.run.steps) this.pause();
+      if (frame >= this.steps) this.pause();
       else if (this.playing) this.playing = requestAnimationFrame(tick);
     };
     this.playing = requestAnimationFrame(tick);
@@ -150,7 +154,7 @@ export class Timeline {
     const by = event.shiftKey ? 10 : 1;
     const actions = {
       " ": () => this.toggle(), ArrowRight: () => this.step(by), ArrowLeft: () => this.step(-by),
-      Home: () => this.go(0), End: () => this.go(this.run.steps),
+      Home: () => this.go(0), End: () => this.go(this.steps),
       "+": () => this.setSpeed(kSpeeds[Math.min(kSpeeds.length - 1, at + 1)]), "-": () => this.setSpeed(kSpeeds[Math.max(0, at - 1)]),
     };
     if (!actions[event.key]) return false;

@@ -10,6 +10,9 @@ function undoDeltas(table, columns) {
   return { rows, at: (row, column) => table[column * rows + row] };
 }
 
+/// What an env of a run is called.
+export const envName = (run, number) => run.names?.[number] ?? `Env ${number}`;
+
 export const kEvents = { grasp: 1, drop: 2, restore: 4, refuse: 8, slide: 16 };
 export const kEndings = ["", "success", "said done too early", "let go away from the goal", "grasped another object", "out of time"];
 

@@ -1,0 +1,71 @@
+// The same episode in another world, in the same picture: a robot, and objects where they are elsewhere.
+import { Color, MeshLambertMaterial } from "three";
+import { ObjectFigure, RobotFigure } from "./figures.js";
+import { disposeOf } from "./stage.js";
+
+export const kGhostColor = "#cc79a7";
+/// An object that is nearer to its twin than this is not shown twice, meters.
+const kApart = 0.005;
+const kBody = { mesh: true, spheres: false, boxes: false, marks: false };
+
+/// Makes a figure a ghost.
+function haunt(figure, { show }) {
+  const material = new MeshLambertMaterial({ color: new Color(kGhostColor), transparent: true, opacity: 0.5, depthWrite: false });
+  figure.show(show);
+  figure.group.traverse((one) => {
+    if (one.isMesh) one.material = material;
+    one.castShadow = false;
+  });
+  return figure;
+}
+
+export class Ghost {
+  static async load(page, home) {
+    const ghost = new Ghost();
+    Object.assign(ghost, { page, home, objects: [], isShown: true });
+    if (page.robotPack) {
+      const bare = { ...kBody, spheres: home.shown.spheres };
+      ghost.robot = haunt(await RobotFigure.load(page.library, page.robotPack), { show: bare });
+      home.group.add(ghost.robot.group);
+    }
+    return ghost;
+  }
+
+  setTrack(track) { this.track = track; }
+
+  async setEpisode({ placements }) {
+    for (const one of this.objects) disposeOf(one.group);
+    this.objects = [];
+    this.poses = placements.map(({ pose }) => pose);
+    for (const { object } of placements) {
+      const found = this.page.objects.get(object);
+      if (!found) continue;
+      const figure = haunt(await ObjectFigure.load(this.page.library, found.pack, found.number), { show: kBody });
+      figure.group.visible = false;
+      this.home.group.add(figure.group);
+      this.objects.push(figure);
+    }
+  }
+
+  /// The same frame, or the last one; `moved`: where the objects of the other track are.
+  show(frame, moved) {
+    const { track, poses } = this;
+    const shown = Math.min(frame, track.frameCount - 1);
+    this.robot?.setPose(track.root(shown), track.joints(shown));
+    const own = track.movedObjects(shown);
+    this.objects.forEach((figure, n) => {
+      const pose = own.get(n) ?? poses[n];
+      const other = moved.get(n) ?? poses[n];
+      figure.setPose(pose);
+      figure.group.visible = this.isShown && pose.position.distanceTo(other.position) > kApart;
+    });
+    if (this.robot) this.robot.group.visible = this.isShown;
+    this.frame = [frame, moved];
+  }
+
+  setShown(isShown) {
+    this.isShown = isShown;
+    if (this.frame) this.show(...this.frame);
+    this.page.stage.draw();
+  }
+}
