@@ -11,7 +11,7 @@ from typing import Optional, Sequence
 import torch
 
 import galactic
-from galactic.learning import checkpoint, evaluation
+from galactic.learning import checkpoint, dynamics, evaluation
 from galactic.learning.command import EXIT_CODES, Parser, named_path, told, whole
 from galactic.learning.homes import Homes
 from galactic.learning.reports import pictures
@@ -76,6 +76,26 @@ def make_parser() -> argparse.ArgumentParser:
         metavar="N",
         help="how many episodes the pictures show (8)",
     )
+    massive = parser.add_argument_group("The same episodes where things have mass")
+    massive.add_argument(
+        "--dynamics",
+        type=named_path,
+        metavar="WORLD.toml",
+        help="play them with galactic-dynamics, too, which has to be installed: the recipe that "
+        "the world was baked from",
+    )
+    massive.add_argument(
+        "--dynamics-data",
+        type=named_path,
+        metavar="DIR",
+        help="where files of the recipe are that are not beside it",
+    )
+    massive.add_argument(
+        "--arm",
+        choices=("motors", "kinematic"),
+        default="motors",
+        help="what moves the arm there (motors)",
+    )
     return parser
 
 
@@ -88,6 +108,8 @@ def _evaluate(options: argparse.Namespace) -> int:
     draws = options.contact_sheet or options.video
     if draws:
         pictures.require_tools(video=bool(options.video))
+    if options.dynamics:
+        dynamics.require_tool()
     saved = checkpoint.load_policy(options.policy)
     threads = threads_of(options.threads, 1)
     torch.set_num_threads(threads)
@@ -110,7 +132,8 @@ def _evaluate(options: argparse.Namespace) -> int:
     results = evaluation.Evaluator(homes, actor).play(episodes)
     homes.close()
     summary = evaluation.summary(results)
-    print(_text(summary))
+    print(_text(summary), flush=True)
+    there = _play_there(options) if options.dynamics else None
     if options.report:
         contents = {
             "policy": str(options.policy),
@@ -119,6 +142,7 @@ def _evaluate(options: argparse.Namespace) -> int:
             "deterministic": options.deterministic,
             "seed": options.seed,
             **summary,
+            **({"dynamics": there} if there else {}),
         }
         write_json(options.report, contents)
     if draws and results:
@@ -129,6 +153,24 @@ def _evaluate(options: argparse.Namespace) -> int:
         if options.video:
             pictures.write_video(films, options.video)
     return 0
+
+
+def _play_there(options: argparse.Namespace) -> dict[str, object]:
+    report = dynamics.play(
+        dynamics.DynamicsRun(
+            policy=options.policy,
+            world=options.world,
+            recipe=options.dynamics,
+            data=options.dynamics_data,
+            arm=options.arm,
+            deterministic=options.deterministic,
+            seed=options.seed,
+            episodes=options.episodes,
+            threads=options.threads,
+        )
+    )
+    print(_text(dict(dynamics.told(report))))
+    return report
 
 
 def _sizes(parts: Sequence[tuple[str, int]]) -> str:

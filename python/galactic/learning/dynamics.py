@@ -1,0 +1,86 @@
+"""The same policy where things have mass: runs the tool galactic-dynamics, which needs the bake side."""
+
+from __future__ import annotations
+
+import json
+import pathlib
+import shutil
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from typing import Any, Optional
+
+import galactic
+from galactic import export
+
+TOOL = "galactic-dynamics"
+
+
+@dataclass(frozen=True)
+class DynamicsRun:
+    """What galactic-dynamics is asked for. `recipe`: what the world was baked from; `data`: where files of
+    the recipe are that are not beside it; `episodes`: the first so many, 0 for all; `threads`: 0 for one
+    per processor."""
+
+    policy: pathlib.Path
+    world: pathlib.Path
+    recipe: pathlib.Path
+    data: Optional[pathlib.Path] = None
+    arm: str = "motors"
+    deterministic: bool = False
+    seed: int = 1
+    episodes: int = 0
+    threads: int = 0
+
+
+def require_tool() -> str:
+    """Where the tool is. Raises galactic.Error, saying what to install, where it is missing."""
+    found = shutil.which(TOOL)
+    if found is None:
+        raise galactic.Error(
+            galactic.ErrorCode.UNSUPPORTED,
+            "--dynamics",
+            f"needs {TOOL} on the PATH, which is not here; install the bake side of galactic",
+        )
+    return found
+
+
+def play(run: DynamicsRun) -> dict[str, Any]:
+    """Plays each episode in both worlds; the report of galactic-dynamics. What the tool says goes to where
+    this process says things. Raises galactic.Error where it fails."""
+    tool = require_tool()
+    with tempfile.TemporaryDirectory(prefix="galactic-dynamics-") as folder:
+        pack = pathlib.Path(folder) / f"{run.policy.stem}.pack"
+        report = pathlib.Path(folder) / "report.json"
+        try:
+            export.write(run.policy, pack)
+        except export.ExportError as error:
+            raise galactic.Error(
+                galactic.ErrorCode.UNSUPPORTED, str(run.policy), str(error)
+            ) from error
+        command = [tool, str(run.recipe), str(run.world), "--policy", str(pack), "--arm", run.arm,
+                   "--seed", str(run.seed), "--episodes", str(run.episodes),
+                   "--threads", str(run.threads), "--report", str(report)]  # fmt: skip
+        command += ["--data", str(run.data)] if run.data else []
+        command += ["--deterministic"] if run.deterministic else []
+        code = subprocess.run(command, check=False).returncode
+        if code != 0:
+            raise galactic.Error(
+                _error_of(code), TOOL, f"ended with exit code {code}; it has said why"
+            )
+        return dict(json.loads(report.read_text(encoding="utf-8")))
+
+
+def _error_of(code: int) -> "galactic.ErrorCode":
+    known = {int(one): one for one in galactic.ErrorCode.__members__.values()}
+    return known.get(code, galactic.ErrorCode.INTERNAL)
+
+
+def told(report: dict[str, Any]) -> dict[str, float]:
+    """What of a report stands beside the summary of an evaluation."""
+    success = report["success"]
+    return {
+        "success_there": success["dynamics"]["share"],
+        "after_2_s": success["dynamics_after_2_s"]["share"],
+        "picked_there": success["picked_in_dynamics"]["share"],
+    }

@@ -1,0 +1,80 @@
+"""galactic.evaluate --dynamics: what it asks of the tool, what it makes of the answer, and how it refuses.
+The tool itself is tested in tests/dynamics and tests/cli; here a program stands in for it."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import sys
+
+import pytest
+
+import galactic
+from galactic import evaluate
+from galactic.learning import dynamics
+
+STAND_IN = f"""#!{sys.executable}
+import json, pathlib, sys
+words = sys.argv[1:]
+value = lambda name: words[words.index(name) + 1]
+assert pathlib.Path(value("--policy")).read_bytes() == b"a pack"
+share = lambda part: {{"share": part}}
+report = {{"words": [one for one in words if "/galactic-dynamics-" not in one], "success": {{
+    "dynamics": share(0.5), "dynamics_after_2_s": share(0.25), "picked_in_dynamics": share(0.75)}}}}
+pathlib.Path(value("--report")).write_text(json.dumps(report), encoding="utf-8")
+sys.exit(int(pathlib.Path(__file__).with_suffix(".code").read_text()))
+"""
+
+
+@pytest.fixture(name="tool")
+def _tool(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Path:
+    """A program named galactic-dynamics, alone on the PATH; beside it stands its exit code."""
+    folder = tmp_path / "bin"
+    folder.mkdir()
+    tool = folder / dynamics.TOOL
+    tool.write_text(STAND_IN, encoding="utf-8")
+    tool.chmod(0o755)
+    (folder / "galactic-dynamics.code").write_text("0", encoding="utf-8")
+    monkeypatch.setenv("PATH", str(folder))
+    monkeypatch.setattr(
+        dynamics.export, "write", lambda _, pack: pathlib.Path(pack).write_bytes(b"a pack")
+    )
+    return tool
+
+
+def run_of(**changes: object) -> dynamics.DynamicsRun:
+    words: dict[str, object] = {"policy": pathlib.Path("best.pt"), "world": pathlib.Path("w.pack"),
+                                "recipe": pathlib.Path("w.toml"), **changes}  # fmt: skip
+    return dynamics.DynamicsRun(**words)  # type: ignore[arg-type]
+
+
+def test_the_tool_is_asked_for_what_was_asked_for(tool: pathlib.Path) -> None:
+    report = dynamics.play(
+        run_of(arm="kinematic", data=pathlib.Path("d"), deterministic=True, seed=7, episodes=20)
+    )
+    assert report["words"][:2] == ["w.toml", "w.pack"]
+    said = " ".join(report["words"])
+    for wanted in ("--arm kinematic", "--data d", "--deterministic", "--seed 7", "--episodes 20"):
+        assert wanted in said, (tool, said)
+    assert dynamics.told(report) == {"success_there": 0.5, "after_2_s": 0.25, "picked_there": 0.75}
+    plain = " ".join(dynamics.play(run_of())["words"])
+    assert "--arm motors" in plain and "--data" not in plain and "--deterministic" not in plain
+
+
+def test_its_exit_codes_are_passed_on(tool: pathlib.Path) -> None:
+    for code, wanted in ((3, galactic.ErrorCode.INVALID_INPUT), (1, galactic.ErrorCode.INTERNAL)):
+        tool.with_name("galactic-dynamics.code").write_text(str(code), encoding="utf-8")
+        with pytest.raises(galactic.Error) as refused:
+            dynamics.play(run_of())
+        assert refused.value.code == wanted and f"exit code {code}" in str(refused.value)
+
+
+def test_where_it_is_not_installed_evaluate_says_so_first(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    words = ["none.pt", "none.pack", "--dynamics", "world.toml"]
+    assert evaluate.main(words) == 5
+    said = capsys.readouterr().err
+    assert "--dynamics: needs galactic-dynamics on the PATH" in said and "install" in said
+    assert not os.listdir(tmp_path)
