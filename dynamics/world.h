@@ -1,19 +1,21 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
+#include "dynamics/sources/robot_model.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/pose.h"
 #include "galactic/robot.h"
-#include "robot_model.h"
 
 namespace galactic::dynamics {
 
-// Bullet's side of things; what is implemented with Bullet lies in bullet_*.cpp.
+// Bullet's side of things; what is implemented with Bullet lies in bullet/.
 
 /// A scene's triangles with the tree over them. Immutable: worlds on several threads share it.
 class SceneShape;
@@ -25,6 +27,8 @@ struct ObjectSource {
   std::vector<HullPoints> hulls;
   /// Kilograms, of even density.
   double mass = 0.5;
+  /// Of the surface; none: that of the world.
+  std::optional<double> friction = {};
 };
 class ObjectShape;
 [[nodiscard]] std::shared_ptr<const ObjectShape> makeObjectShape(const ObjectSource& source);
@@ -39,9 +43,21 @@ enum class ArmDrive : std::uint8_t {
   kKinematic,  ///< The joints are where they are asked to be.
 };
 
+inline constexpr std::array<std::string_view, 2> kArmDriveNames{"motors", "kinematic"};
+
+/// How the base follows what the actions ask for.
+enum class BaseDrive : std::uint8_t {
+  kKinematic,  ///< It drives and turns as far as it is asked to, at once.
+  kVelocity,   ///< Its speeds follow those that it is asked for.
+};
+inline constexpr std::array<std::string_view, 2> kBaseDriveNames{"kinematic", "velocity"};
+
 /// The numbers are those of Habitat 2.0 (Szot et al. 2021, section 4) where it has any.
 struct WorldOptions {
   ArmDrive arm = ArmDrive::kMotors;
+  BaseDrive base = BaseDrive::kKinematic;
+  /// With BaseDrive::kVelocity: the share of the speeds' errors that is gone after each substep.
+  double base_gain = 0.3;
   /// Share of the position's and of the speed's error that a motor takes away in each substep, and
   /// the most impulse that it gives, N s or N m s.
   double position_gain = 0.3;
@@ -50,7 +66,7 @@ struct WorldOptions {
   /// Of one control step, and their length in seconds.
   std::uint32_t substeps = 4;
   double substep = 1.0 / 120;
-  /// Of every surface; that of a pair is the product.
+  /// Of every surface that has none of its own; that of a pair is the product.
   double friction = 0.8;
   /// Down, m/s^2.
   double gravity = 9.81;
@@ -71,6 +87,9 @@ struct PlacedObject {
   std::shared_ptr<const ObjectShape> shape;
   Pose world_from_object;
 };
+
+/// On the way from one pose to the other: `share` of it, 0 to 1.
+[[nodiscard]] Pose between(const Pose& from, const Pose& to, float share);
 
 /// One home with gravity: the scene does not move, objects are rigid bodies, the robot's base goes
 /// where it is told and its arm is driven. Deterministic: what it does depends on the calls only.
@@ -95,6 +114,7 @@ class DynamicsWorld {
   void step();
 
   [[nodiscard]] Pose worldFromRoot() const;
+  [[nodiscard]] const WorldOptions& options() const;
   /// One per position of the robot. Those of unmoved joints stay as they were given.
   [[nodiscard]] std::vector<float> positions() const;
   [[nodiscard]] Pose objectPose(std::size_t object) const;
@@ -137,6 +157,8 @@ struct RobotContact {
   Vec3 point;
   /// Unit vector out of the thing, world frame.
   Vec3 away;
+  /// The point of the robot that is deepest in the thing, world frame.
+  Vec3 on_robot;
 };
 
 /// Whether a contact is with the ground, which carries the base and does not stop it: low (`point`

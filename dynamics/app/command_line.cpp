@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <limits>
 #include <map>
 
 #include "galactic/error.h"
+#include "run/policy.h"
 #include "support/nearest_name.h"
+#include "support/number_text.h"
 #include "support/printable.h"
 
 namespace galactic::dynamics {
@@ -15,7 +18,10 @@ namespace {
 constexpr const char* kFooter =
     "Examples:\n"
     "  galactic-run world.pack --policy scripted --order partition --record run.rec\n"
-    "  galactic-dynamics world.toml --pack world.pack --recording run.rec --report report.json";
+    "  galactic-dynamics world.toml world.pack --recording run.rec --report report.json\n"
+    "  galactic-dynamics world.toml world.pack --policy scripted --view both.html\n"
+    "  galactic-dynamics world.toml world.pack --policy picker.pack --arm kinematic";
+constexpr std::string_view kPolicySuffix = ".pack";
 
 std::vector<std::string> longNamesOf(const CLI::App& app) {
   std::vector<std::string> names;
@@ -23,59 +29,151 @@ std::vector<std::string> longNamesOf(const CLI::App& app) {
   return names;
 }
 
-void addOptions(CLI::App& app, Command& command) {
+/// An option that takes one of some words.
+template <class T, std::size_t N>
+void addChoice(CLI::App& app, const char* name, T& field,
+               const std::array<std::string_view, N>& names, const char* help) {
+  std::map<std::string, T> values;
+  std::string listed;
+  for (std::size_t n = 0; n < N; ++n) {
+    values.emplace(names[n], static_cast<T>(n));
+    listed += (n == 0 ? "" : "|") + std::string(names[n]);
+  }
+  const auto set = [&field, values](const std::string& text) { field = values.at(text); };
+  app.add_option_function<std::string>(name, set, help)
+      ->check(CLI::IsMember(values))
+      ->option_text(fmt::format("{} [{}]", listed, names[static_cast<std::size_t>(field)]));
+}
+
+CLI::Validator knownPolicy() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        if (text == kScriptedPolicy || text.ends_with(kPolicySuffix)) return std::string();
+        return fmt::format("unknown policy {}, wanted scripted or FILE.pack", text);
+      },
+      "", "policy");
+}
+
+void addSources(CLI::App& app, Command& command) {
   app.set_version_flag("--version", "galactic-dynamics " GALACTIC_VERSION);
   app.add_option("recipe", command.recipe, "Recipe that the world was baked from")
       ->required()
       ->option_text("WORLD.toml");
-  app.add_option("--pack", command.packs, "Pack of the world; repeat it for several")
+  app.add_option("packs", command.packs, "The world's pack, or its packs")
       ->required()
-      ->allow_extra_args(false)
-      ->type_name("FILE");
+      ->type_name("PACK");
   app.add_option("--data", command.data, "Where files of the recipe are that are not beside it")
       ->type_name("DIR");
-  app.add_option("--recording", command.recording, "Recording of galactic-run to replay")
-      ->required()
+}
+
+void addActions(CLI::App& app, Command& command) {
+  app.add_option("--recording", command.recording, "Replay this recording of galactic-run")
       ->type_name("FILE");
-  app.add_option("--episodes", command.episodes, "Episodes of the recording; 0: all")
+  app.add_option("--policy", command.policy,
+                 "Close the loop: this policy acts on what it observes in the dynamics")
+      ->check(knownPolicy())
+      ->option_text("scripted|FILE.pack");
+  app.add_flag("--deterministic,!--sampled", command.is_deterministic,
+               "Let a policy pack take its likeliest actions, or sample them (the default)")
+      ->check(switchCheck());
+  app.add_option("--seed", command.seed, "Of what is random in a closed loop")
+      ->check(wholeCheck(0, std::numeric_limits<std::uint64_t>::max()))
+      ->option_text(fmt::format("N [{}]", command.seed));
+  const auto set = [&command](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      const std::size_t equals = text.find('=');
+      command.task.push_back({text.substr(0, equals), text.substr(equals + 1)});
+    }
+  };
+  app.add_option_function<std::vector<std::string>>(
+         "--set", set, "An option of the task in a closed loop, as galactic-run has it; repeat it")
+      ->check([](const std::string& text) {
+        const bool is_pair = text.find('=') != std::string::npos;
+        return is_pair ? std::string() : "expected NAME=VALUE, found " + text;
+      })
+      ->allow_extra_args(false)
+      ->option_text("NAME=VALUE");
+  app.add_option("--episodes", command.episodes, "How many episodes, the first ones; 0: all")
+      ->check(wholeCheck(0, std::numeric_limits<std::uint32_t>::max()))
       ->option_text(fmt::format("N [{}]", command.episodes));
-  const std::map<std::string, ArmDrive> arms{{"motors", ArmDrive::kMotors},
-                                             {"kinematic", ArmDrive::kKinematic}};
-  app.add_option_function<std::string>(
-         "--arm", [&command, arms](const std::string& text) { command.world.arm = arms.at(text); },
-         "What moves the arm")
-      ->check(CLI::IsMember(arms))
-      ->option_text("motors|kinematic [motors]");
+}
+
+void addModel(CLI::App& app, Command& command) {
+  addChoice(app, "--arm", command.world.arm, kArmDriveNames, "What moves the arm");
+  addChoice(app, "--base", command.world.base, kBaseDriveNames,
+            "How the base goes where it is asked to: at once, or as its speeds follow");
   app.add_option("--friction", command.world.friction,
-                 "Of every surface; that of a pair is the product")
-      ->check(CLI::Range(0.0, 10.0))
+                 "Of surfaces that say nothing; that of a pair is the product")
+      ->check(numberCheck(0, 10))
       ->option_text(fmt::format("X [{}]", command.world.friction));
-  app.add_option("--threads", command.threads,
+}
+
+void addOutputs(CLI::App& app, Command& command) {
+  app.add_option("-j,--threads", command.threads,
                  "Threads; the results do not depend on it; 0: one per processor")
-      ->check(CLI::Range(0U, 4096U))
+      ->check(wholeCheck(0, 4096))
       ->option_text("N [0]");
-  app.add_option("--report", command.report, "Write the closing table and each episode as JSON")
+  app.add_option("--report", command.report,
+                 "Write the closing table and each episode as JSON; a run that is interrupted goes "
+                 "on from FILE.json.partial")
       ->type_name("FILE.json");
+  app.add_option("--view", command.shown.view,
+                 "Write a page that plays the worst episodes in both worlds")
+      ->type_name("FILE.html");
+  app.add_option("--pictures", command.shown.pictures,
+                 "Write a sheet of the worst moments, both worlds side by side")
+      ->type_name("FILE.png");
+  app.add_flag("-q,--quiet", command.is_quiet, "Only errors")->check(switchCheck());
+}
+
+/// What no single option can see to be wrong; empty when nothing is.
+std::string faultOf(const CLI::App& app, const Command& command) {
+  if (command.recording.empty() == command.policy.empty()) {
+    return "wants either --recording, to replay it, or --policy, to close the loop";
+  }
+  if (command.is_deterministic && command.policyFile().empty()) {
+    return "--deterministic applies to learned policies only; add --policy FILE.pack";
+  }
+  for (const char* option : {"--seed", "--set"}) {
+    if (!command.isClosedLoop() && app.count(option) > 0) {
+      return fmt::format("{} applies to a closed loop only: a recording has its own", option);
+    }
+  }
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& value : option->results()) {
+      if (value.empty()) return option->get_name() + " has an empty value";
+    }
+  }
+  return {};
 }
 
 }  // namespace
 
+std::filesystem::path Command::policyFile() const {
+  return policy.ends_with(kPolicySuffix) ? std::filesystem::path(policy) : std::filesystem::path();
+}
+
 std::optional<int> parseCommandLine(int argc, const char* const* argv, Command& command) {
-  CLI::App app{"Replays a run where things have mass, and says where the two worlds part.",
+  CLI::App app{"Plays episodes where things have mass, and says where the two worlds part.",
                "galactic-dynamics"};
   app.footer(std::string(kFooter) + "\n\n" + kExitCodesHelp);
   constexpr std::size_t kHelpColumn = 34;
   app.get_formatter()->column_width(kHelpColumn);
-  addOptions(app, command);
+  addSources(app, command);
+  addActions(app, command);
+  addModel(app, command);
+  addOutputs(app, command);
+  std::string fault;
   try {
     app.parse(argc, argv);
+    fault = faultOf(app, command);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    fmt::print(stderr, "galactic-dynamics: command line: {}; see --help\n",
-               printable(withSuggestions(error.what(), longNamesOf(app))));
-    return kExitUsage;
+    fault = withSuggestions(error.what(), longNamesOf(app));
   }
-  return std::nullopt;
+  if (fault.empty()) return std::nullopt;
+  fmt::print(stderr, "galactic-dynamics: command line: {}; see --help\n", printable(fault));
+  return kExitUsage;
 }
 
 }  // namespace galactic::dynamics

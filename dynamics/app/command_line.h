@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/report/side_by_side.h"
 #include "dynamics/world.h"
+#include "galactic/option_text.h"
 
 namespace galactic::dynamics {
 
@@ -14,12 +16,25 @@ struct Command {
   std::filesystem::path recipe;
   std::vector<std::filesystem::path> packs;
   std::filesystem::path data;
+  /// One of the two: what is replayed, or whose actions close the loop ("scripted" or a pack).
   std::filesystem::path recording;
+  std::string policy;
+  /// Whether a policy pack takes its likeliest actions.
+  bool is_deterministic = false;
+  /// Of a closed loop: of what is random, and options of the task.
+  std::uint64_t seed = 1;
+  std::vector<OptionText> task;
   std::filesystem::path report;
+  SideBySideFiles shown;
   /// 0: all.
   std::uint64_t episodes = 0;
   unsigned threads = 0;
+  bool is_quiet = false;
   WorldOptions world;
+
+  [[nodiscard]] bool isClosedLoop() const { return !policy.empty(); }
+  /// The pack of a learned policy; empty for others.
+  [[nodiscard]] std::filesystem::path policyFile() const;
 };
 
 /// Reads the command line into `command`. Returns the exit code where there is nothing to do: help,

@@ -1,26 +1,25 @@
-// galactic-dynamics: replays runs of the simulation where things have mass.
+// galactic-dynamics: plays episodes of the simulation where things have mass.
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <mutex>
+#include <memory>
 #include <new>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <system_error>
-#include <thread>
 
 #include "command_line.h"
-#include "dynamics/replay.h"
-#include "dynamics/report.h"
-#include "dynamics/sources.h"
-#include "dynamics/trace.h"
+#include "comparisons.h"
+#include "dynamics/report/journal.h"
+#include "dynamics/report/moments.h"
+#include "dynamics/report/names.h"
+#include "dynamics/report/report.h"
+#include "dynamics/report/side_by_side.h"
+#include "dynamics/sources/sources.h"
 #include "galactic/bake/assets.h"
-#include "galactic/bake/parallel_for.h"
-#include "run/recording.h"
 #include "support/atomic_file.h"
 #include "support/out_of_memory.h"
 #include "support/printable.h"
@@ -35,79 +34,75 @@ int refuse(const Error& error) {
   return static_cast<int>(error.code);
 }
 
-/// How far it is, on a terminal.
-class Progress {
- public:
-  explicit Progress(std::size_t all) : all_(all), is_shown_(::isatty(STDERR_FILENO) != 0) {}
-  ~Progress() {
-    if (is_shown_) fmt::print(stderr, "\r\x1b[K");
-  }
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  Progress(Progress&&) = delete;
-  Progress& operator=(Progress&&) = delete;
-
-  void add() {
-    if (!is_shown_) return;
-    const std::lock_guard lock(mutex_);
-    fmt::print(stderr, "\rreplayed {} of {} episodes", ++done_, all_);
-  }
-
- private:
-  std::size_t all_;
-  bool is_shown_;
-  std::mutex mutex_;
-  std::size_t done_ = 0;
-};
-
-std::vector<EpisodeReplay> replayAll(const std::vector<EpisodeTrace>& traces, const World& world,
-                                     const SimulationOptions& simulation, const Sources& sources,
-                                     const Command& command) {
-  std::vector<EpisodeReplay> replays(traces.size());
-  const unsigned threads =
-      command.threads != 0 ? command.threads : std::max(1U, std::thread::hardware_concurrency());
-  Progress progress(traces.size());
-  bake::parallelFor(threads, traces.size(), [&](std::size_t n) {
-    replays[n] = replay(traces[n], world, simulation, sources, command.world);
-    progress.add();
-  });
-  return replays;
-}
-
-/// The report must not replace what is read.
-Result<void> checkReport(const Command& command) {
+/// What is written must not replace what is read.
+Result<void> checkOutputs(const Command& command) {
   bake::ReadLog log;
   log.noteRead(command.recipe);
-  log.noteRead(command.recording);
+  if (!command.recording.empty()) log.noteRead(command.recording);
+  if (!command.policyFile().empty()) log.noteRead(command.policyFile());
   for (const std::filesystem::path& pack : command.packs) log.noteRead(pack);
-  return log.checkNotRead(command.report);
+  for (const std::filesystem::path& output :
+       {command.report, command.shown.view, command.shown.pictures}) {
+    RETURN_IF_ERROR(log.checkNotRead(output));
+  }
+  return {};
+}
+
+/// Beside the report. Null where no report is wanted.
+Result<std::unique_ptr<Journal>> openJournal(const Command& command, const EpisodePlan& plan) {
+  if (command.report.empty()) return std::unique_ptr<Journal>();
+  const WorldOptions& world = command.world;
+  const std::string subject =
+      fmt::format("galactic-dynamics " GALACTIC_VERSION " {} {} {} {} {}", command.recipe.string(),
+                  nameOf(world.arm), nameOf(world.base), world.friction, plan.describe());
+  return Journal::open(command.report.string() + ".partial", subject);
+}
+
+Result<void> showBoth(const Command& command, const EpisodePlan& plan,
+                      const Comparisons& comparisons, const ComparisonWorlds& worlds,
+                      const ReportSubject& subject) {
+  if (command.shown.view.empty() && command.shown.pictures.empty()) return {};
+  ASSIGN_OR_RETURN(const auto here, plan.makeLane());
+  ASSIGN_OR_RETURN(const auto there, plan.makeLane());
+  return writeSideBySide({.comparisons = comparisons,
+                          .worlds = worlds,
+                          .here = *here,
+                          .there = *there,
+                          .is_closed = plan.isClosedLoop(),
+                          .trace_of = [&](std::size_t n) { return plan.trace(n, *here); }},
+                         subject, command.shown);
 }
 
 Result<void> run(const Command& command) {
-  RETURN_IF_ERROR(checkReport(command));
-  ASSIGN_OR_RETURN(auto recording, RecordingReader::open(command.recording));
+  RETURN_IF_ERROR(checkOutputs(command));
   ASSIGN_OR_RETURN(const auto world, World::open(command.packs));
-  ASSIGN_OR_RETURN(const auto traces, tracesOf(recording, world, command.episodes));
-  if (traces.empty()) {
-    return fail(ErrorCode::kInvalidInput, command.recording.string(),
-                "finishes no episode, so there is nothing to replay; record more steps");
-  }
+  ASSIGN_OR_RETURN(const auto plan, EpisodePlan::create(command, world));
   ASSIGN_OR_RETURN(const auto sources,
                    readSources({.recipe = command.recipe, .data = command.data}, world));
   for (const std::string& warning : sources.warnings) {
+    if (command.is_quiet) break;
     fmt::print(stderr, "galactic-dynamics: warning: {}\n", printable(warning));
   }
-  const auto replays = replayAll(traces, world, recording.subject().options, sources, command);
-  fmt::print("{}", reportTable(replays, world));
+  ASSIGN_OR_RETURN(const auto journal, openJournal(command, *plan));
+  const ComparisonWorlds worlds{world, plan->options(), sources, command.world};
+  Comparisons comparisons;
+  ASSIGN_OR_RETURN(comparisons.episodes, compareAll(*plan, worlds, command, journal.get()));
+  constexpr std::size_t kWorst = 10;
+  comparisons.worst = worstMoments(comparisons.episodes, kWorst, !plan->isClosedLoop());
+  const ReportSubject subject{.recording = command.recording.filename().string(),
+                              .policy = std::filesystem::path(command.policy).filename().string(),
+                              .options = command.world,
+                              .warnings = sources.warnings};
+  if (!command.is_quiet) fmt::print("{}", reportTable(comparisons, world, subject));
   if (std::fflush(stdout) != 0) {
     return fail(ErrorCode::kIo, "standard output", "cannot be written; free some space");
   }
+  RETURN_IF_ERROR(showBoth(command, *plan, comparisons, worlds, subject));
   if (command.report.empty()) return {};
-  const std::string json = reportJson(replays, world,
-                                      {.recording = command.recording.filename().string(),
-                                       .arm = command.world.arm,
-                                       .warnings = sources.warnings});
-  return writeFileAtomically(command.report, {std::as_bytes(std::span(json))});
+  const std::string json = reportJson(comparisons, world, subject);
+  RETURN_IF_ERROR(writeFileAtomically(command.report, {std::as_bytes(std::span(json))}));
+  journal->remove();
+  return {};
 }
 
 int start(int argc, const char* const* argv) {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "dynamics/robot_model.h"
+#include "dynamics/sources/robot_model.h"
 #include "dynamics/world.h"
 #include "galactic/pack.h"
 #include "support/homes/small_home.h"

@@ -1,5 +1,5 @@
 // Actions in the dynamics world: walls, edges, and what the hand can reach.
-#include "dynamics/robot_driver.h"
+#include "dynamics/episodes/robot_driver.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Masses and shapes from a URDF, and what stands in for them.
-#include "dynamics/robot_model.h"
+#include "dynamics/sources/robot_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

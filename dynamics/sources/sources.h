@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/sources/robot_model.h"
+#include "dynamics/world.h"
 #include "galactic/error.h"
 #include "galactic/world.h"
-#include "robot_model.h"
-#include "world.h"
 
 namespace galactic::dynamics {
 
@@ -31,7 +31,7 @@ struct Sources {
   std::vector<std::string> warnings;
 };
 
-/// Kilograms of every object: neither meshes nor packs hold masses. Also the episode generator's.
+/// Kilograms of objects whose mass nothing tells. Also the episode generator's.
 inline constexpr double kObjectMass = 0.5;
 
 /// Reads what the scenes, objects and the robot of `world` were baked from; of scenes and objects

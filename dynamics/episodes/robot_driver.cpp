@@ -1,4 +1,4 @@
-#include "robot_driver.h"
+#include "dynamics/episodes/robot_driver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,13 @@ namespace {
 float clamped(float action) { return std::isnan(action) ? 0.0F : std::clamp(action, -1.0F, 1.0F); }
 
 Quat yawOf(float angle) { return {0, std::sin(angle / 2), 0, std::cos(angle / 2)}; }
+
+/// Turns clockwise, seen from above, then drives ahead.
+void moveBase(float forward, float turn, Pose& world_from_root) {
+  world_from_root.rotation = yawOf(-turn) * world_from_root.rotation;
+  world_from_root.translation =
+      world_from_root.translation + rotate(world_from_root.rotation, {forward, 0, 0});
+}
 
 /// Out of what was met along the ground, as far as it is deep; zero where that leads nowhere.
 Vec3 pushOut(const DynamicsWorld::BaseContact& contact) {
@@ -26,29 +33,31 @@ Pose gripOf(const Robot& robot, const Pose& world_from_root, std::span<const flo
   return world_from_link[hand.link] * Pose{hand.grasp_point, {}};
 }
 
-void applyActions(const Robot& robot, std::span<const float> actions, Pose& world_from_root,
-                  std::span<float> positions) {
+void moveJoints(const Robot& robot, std::span<const float> actions, std::span<float> positions) {
   const std::span<const ControlledJoint> joints = robot.controlledJoints();
   for (std::size_t n = 0; n < joints.size(); ++n) {
     float& position = positions[joints[n].position];
     position = std::clamp(position + joints[n].step * clamped(actions[n]), joints[n].lower,
                           joints[n].upper);
   }
+}
+
+void applyActions(const Robot& robot, std::span<const float> actions, Pose& world_from_root,
+                  std::span<float> positions) {
+  moveJoints(robot, actions, positions);
+  const std::size_t joints = robot.controlledJoints().size();
   const RobotBase& base = *robot.base();
-  Quat& heading = world_from_root.rotation;
-  heading = yawOf(-base.turn_step * clamped(actions[joints.size() + 1])) * heading;
-  world_from_root.translation =
-      world_from_root.translation +
-      rotate(heading, {base.forward_step * clamped(actions[joints.size()]), 0, 0});
+  moveBase(base.forward_step * clamped(actions[joints]),
+           base.turn_step * clamped(actions[joints + 1]), world_from_root);
 }
 
 RobotDriver::RobotDriver(const Robot& robot, DynamicsWorld& world, const SimulationOptions& options)
     : robot_(robot), world_(world), options_(options), targets_(world.positions()) {}
 
 DrivenStep RobotDriver::step(std::span<const float> actions) {
-  Pose wanted = world_.worldFromRoot();
-  applyActions(robot_, actions, wanted, targets_);
-  const std::optional<Pose> root = clearOf(wanted);
+  moveJoints(robot_, actions, targets_);
+  const std::optional<Pose> root = clearOf(driveBase(actions));
+  if (!root) speed_ = turn_speed_ = 0;
   world_.drive(root.value_or(world_.worldFromRoot()), targets_);
   world_.step();
   DrivenStep step{.base_refused = !root, .grasped = {}, .released = {}};
@@ -58,6 +67,28 @@ DrivenStep RobotDriver::step(std::span<const float> actions) {
 
 Pose RobotDriver::worldFromGrip() const {
   return gripOf(robot_, world_.worldFromRoot(), world_.positions());
+}
+
+Pose RobotDriver::driveBase(std::span<const float> actions) {
+  const RobotBase& base = *robot_.base();
+  const std::size_t joints = robot_.controlledJoints().size();
+  const float forward = base.forward_step * clamped(actions[joints]);
+  const float turn = base.turn_step * clamped(actions[joints + 1]);
+  Pose root = world_.worldFromRoot();
+  const WorldOptions& options = world_.options();
+  if (options.base == BaseDrive::kKinematic) {
+    moveBase(forward, turn, root);
+    return root;
+  }
+  const auto substep = static_cast<float>(options.substep);
+  const auto gain = static_cast<float>(options.base_gain);
+  const float seconds = substep * static_cast<float>(options.substeps);
+  for (std::uint32_t n = 0; n < options.substeps; ++n) {
+    speed_ += gain * (forward / seconds - speed_);
+    turn_speed_ += gain * (turn / seconds - turn_speed_);
+    moveBase(speed_ * substep, turn_speed_ * substep, root);
+  }
+  return root;
 }
 
 std::optional<Pose> RobotDriver::clearOf(Pose root) const {

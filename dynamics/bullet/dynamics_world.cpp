@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "bullet_contacts.h"
-#include "bullet_rig.h"
-#include "bullet_shapes.h"
+#include "dynamics/bullet/contact_query.h"
+#include "dynamics/bullet/rig.h"
+#include "dynamics/bullet/shapes.h"
 
 namespace galactic::dynamics {
 namespace {
@@ -38,7 +38,7 @@ std::unique_ptr<btRigidBody> makeBody(const PlacedObject& object, const WorldOpt
   btRigidBody::btRigidBodyConstructionInfo info(inertia.mass, nullptr, object.shape->get(),
                                                 inertia.moments);
   info.m_startWorldTransform = toBullet(object.world_from_object) * inertia.body_from_inertia;
-  info.m_friction = static_cast<btScalar>(options.friction);
+  info.m_friction = static_cast<btScalar>(object.shape->friction().value_or(options.friction));
   info.m_rollingFriction = kRollingFriction;
   info.m_spinningFriction = kRollingFriction;
   info.m_linearSleepingThreshold = kSleepSpeed;
@@ -46,15 +46,14 @@ std::unique_ptr<btRigidBody> makeBody(const PlacedObject& object, const WorldOpt
   return std::make_unique<btRigidBody>(info);
 }
 
-/// The way from one pose to the other; `share` of it.
+}  // namespace
+
 Pose between(const Pose& from, const Pose& to, float share) {
   const btTransform a = toBullet(from);
   const btTransform b = toBullet(to);
   return fromBullet(btTransform(a.getRotation().slerp(b.getRotation(), share),
                                 a.getOrigin().lerp(b.getOrigin(), share)));
 }
-
-}  // namespace
 
 class DynamicsWorld::Impl {
  public:
@@ -121,6 +120,7 @@ class DynamicsWorld::Impl {
     meetAgain();
   }
 
+  [[nodiscard]] const WorldOptions& options() const { return options_; }
   [[nodiscard]] const Pose& worldFromRoot() const { return world_from_root_; }
   [[nodiscard]] const std::vector<float>& positions() const { return positions_; }
   [[nodiscard]] const btRigidBody& object(std::size_t n) const { return *objects_[n]; }
@@ -269,6 +269,7 @@ void DynamicsWorld::drive(const Pose& world_from_root, std::span<const float> po
   impl_->drive(world_from_root, positions);
 }
 void DynamicsWorld::step() { impl_->step(); }
+const WorldOptions& DynamicsWorld::options() const { return impl_->options(); }
 Pose DynamicsWorld::worldFromRoot() const { return impl_->worldFromRoot(); }
 std::vector<float> DynamicsWorld::positions() const { return impl_->positions(); }
 Pose DynamicsWorld::objectPose(std::size_t object) const { return impl_->objectPose(object); }

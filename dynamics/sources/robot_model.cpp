@@ -1,4 +1,4 @@
-#include "robot_model.h"
+#include "dynamics/sources/robot_model.h"
 
 #include <fmt/format.h>
 

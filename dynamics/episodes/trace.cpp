@@ -1,4 +1,4 @@
-#include "trace.h"
+#include "dynamics/episodes/trace.h"
 
 #include <fmt/format.h>
 
@@ -10,39 +10,9 @@
 namespace galactic::dynamics {
 namespace {
 
-EpisodeTrace begin(std::uint32_t env, const EnvState& state) {
-  return {.env = env,
-          .scene = state.scene,
-          .episode = state.episode,
-          .start_root = state.world_from_root,
-          .start_positions = state.joint_positions,
-          .start_objects = state.objects,
-          .target = state.target,
-          .goal = state.goal,
-          .steps = {},
-          .releases = {}};
-}
-
 std::optional<std::size_t> heldIn(const EnvState& state) {
   if (state.held < 0) return std::nullopt;
   return static_cast<std::size_t>(state.held);
-}
-
-/// Adds a step to the episode.
-void extend(EpisodeTrace& trace, std::span<const float> actions, const EnvState& after,
-            const SimulationStatistics& was, const SimulationStatistics& is) {
-  const std::optional<std::size_t> before =
-      trace.steps.empty() ? std::nullopt : trace.steps.back().held;
-  const std::optional<std::size_t> held = heldIn(after);
-  if (before && !held) {
-    trace.releases.push_back({trace.steps.size(), *before, after.objects[*before]});
-  }
-  trace.steps.push_back({.actions = {actions.begin(), actions.end()},
-                         .world_from_root = after.world_from_root,
-                         .positions = after.joint_positions,
-                         .held = held,
-                         .was_refused = is.refused != was.refused,
-                         .has_slid = is.slid != was.slid});
 }
 
 /// The simulation of a recording, which stays where an episode ends until that has been looked at.
@@ -53,7 +23,7 @@ class Retracing {
         simulator_(simulator),
         actions_(simulator.envCount() * simulator.actionCount()) {
     for (std::uint32_t env = 0; env < simulator_.envCount(); ++env) {
-      current_.push_back(begin(env, simulator_.envState(env)));
+      current_.push_back(beginTrace(env, simulator_.envState(env)));
     }
     done_.resize(simulator_.envCount());
   }
@@ -70,8 +40,8 @@ class Retracing {
     std::vector<std::int32_t> resets(current_.size(), BatchSimulator::kStays);
     for (std::size_t env = 0; env < current_.size(); ++env) {
       if (idle[env] != 0) continue;
-      extend(current_[env], std::span(actions_).subspan(env * count, count),
-             simulator_.envState(env), before[env], simulator_.statistics(env));
+      extendTrace(current_[env], std::span(actions_).subspan(env * count, count),
+                  simulator_.envState(env), before[env], simulator_.statistics(env));
       if (simulator_.dones()[env] == 0) continue;
       current_[env].end = simulator_.endings()[env];
       resets[env] = BatchSimulator::kNextEpisode;
@@ -80,7 +50,7 @@ class Retracing {
     for (std::size_t env = 0; env < current_.size(); ++env) {
       if (resets[env] == BatchSimulator::kStays) continue;
       done_[env].push_back(std::exchange(
-          current_[env], begin(static_cast<std::uint32_t>(env), simulator_.envState(env))));
+          current_[env], beginTrace(static_cast<std::uint32_t>(env), simulator_.envState(env))));
       ++finished_;
     }
     if (digestOf(simulator_) == digest) return {};
@@ -110,6 +80,46 @@ class Retracing {
 };
 
 }  // namespace
+
+EpisodeTrace beginTrace(std::uint32_t env, const EnvState& state) {
+  return {.env = env,
+          .scene = state.scene,
+          .episode = state.episode,
+          .start_root = state.world_from_root,
+          .start_positions = state.joint_positions,
+          .start_objects = state.objects,
+          .target = state.target,
+          .goal = state.goal,
+          .steps = {},
+          .releases = {}};
+}
+
+void extendTrace(EpisodeTrace& trace, std::span<const float> actions, const EnvState& after,
+                 const SimulationStatistics& was, const SimulationStatistics& is) {
+  const std::optional<std::size_t> before =
+      trace.steps.empty() ? std::nullopt : trace.steps.back().held;
+  const std::optional<std::size_t> held = heldIn(after);
+  if (before && !held) {
+    trace.releases.push_back({trace.steps.size(), *before, after.objects[*before]});
+  }
+  trace.steps.push_back({.actions = {actions.begin(), actions.end()},
+                         .world_from_root = after.world_from_root,
+                         .positions = after.joint_positions,
+                         .held = held,
+                         .world_from_held = held ? after.objects[*held] : Pose{},
+                         .was_refused = is.refused != was.refused,
+                         .has_slid = is.slid != was.slid});
+}
+
+std::vector<Pose> objectsAfter(const EpisodeTrace& trace, std::size_t step) {
+  std::vector<Pose> objects = trace.start_objects;
+  for (const TracedRelease& release : trace.releases) {
+    if (release.step <= step) objects[release.object] = release.world_from_object;
+  }
+  const TracedStep& now = trace.steps[step];
+  if (now.held) objects[*now.held] = now.world_from_held;
+  return objects;
+}
 
 Result<std::vector<EpisodeTrace>> tracesOf(RecordingReader& recording, const World& world,
                                            std::size_t most) {

@@ -1,25 +1,28 @@
 // Recorded runs in both worlds: they agree where they must, and what is missed or invented is
 // found.
-#include "dynamics/replay.h"
+#include "dynamics/episodes/comparison.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <random>
 
+#include "dynamics/episodes/robot_driver.h"
+#include "dynamics/episodes/trace.h"
 #include "dynamics/made_robot.h"
-#include "dynamics/report.h"
-#include "dynamics/robot_driver.h"
-#include "dynamics/trace.h"
+#include "dynamics/report/report.h"
 #include "support/scratch_folder.h"
 #include "support/test_meshes.h"
 
-namespace galactic::test::replay_test {
+namespace galactic::test::comparison_test {
 namespace {
 
 using dynamics::ArmDrive;
-using dynamics::EpisodeReplay;
+using dynamics::EpisodeComparison;
+using dynamics::EpisodeLane;
 using testing::Each;
 using testing::Lt;
 
@@ -80,8 +83,15 @@ class RecordedRun {
     return sources;
   }
 
-  [[nodiscard]] EpisodeReplay first(const dynamics::Sources& sources, ArmDrive arm) const {
-    return dynamics::replay(traces().front(), world_, options_, sources, {.arm = arm});
+  /// Replays an episode.
+  [[nodiscard]] EpisodeComparison compare(const dynamics::EpisodeTrace& trace,
+                                          const dynamics::Sources& sources, ArmDrive arm) const {
+    const dynamics::WorldOptions there{.arm = arm};
+    const auto lane = EpisodeLane::create(world_, options_, std::nullopt).value();
+    return compareEpisode(trace, *lane, {world_, options_, sources, there}, false).value();
+  }
+  [[nodiscard]] EpisodeComparison first(const dynamics::Sources& sources, ArmDrive arm) const {
+    return compare(traces().front(), sources, arm);
   }
 
   [[nodiscard]] const World& world() const { return world_; }
@@ -135,8 +145,7 @@ TEST(BothWorlds, AgreeInAnEmptyRoomWithAKinematicArm) {
   // Of two envs two episodes each; the third of each is not finished.
   ASSERT_EQ(traces.size(), 4U);
   for (const dynamics::EpisodeTrace& trace : traces) {
-    const EpisodeReplay replay = dynamics::replay(trace, run.world(), run.options(),
-                                                  run.sources({}), {.arm = ArmDrive::kKinematic});
+    const EpisodeComparison replay = run.compare(trace, run.sources({}), ArmDrive::kKinematic);
     ASSERT_EQ(replay.base_gap.size(), kSteps);
     EXPECT_THAT(replay.base_gap, Each(Lt(1e-4F)));
     EXPECT_THAT(replay.grip_gap, Each(Lt(1e-4F)));
@@ -145,13 +154,15 @@ TEST(BothWorlds, AgreeInAnEmptyRoomWithAKinematicArm) {
     EXPECT_EQ(replay.disturbed, 0U);
     EXPECT_EQ(replay.tracking_worst, 0);
     EXPECT_EQ(replay.end, EpisodeEnd::kTimeOut);
-    EXPECT_FALSE(replay.success_there);
+    EXPECT_EQ(replay.end_there, EpisodeEnd::kTimeOut);
+    EXPECT_EQ(replay.steps_there, kSteps);
+    EXPECT_FALSE(replay.parted);
   }
 }
 
 TEST(AMotorArm, FollowsTheSimulationCloselyInAnEmptyRoom) {
   const RecordedRun run(emptyRoom({}), wander());
-  const EpisodeReplay replay = run.first(run.sources({}), ArmDrive::kMotors);
+  const EpisodeComparison replay = run.first(run.sources({}), ArmDrive::kMotors);
   EXPECT_THAT(replay.base_gap, Each(Lt(1e-4F)));
   EXPECT_THAT(replay.grip_gap, Each(Lt(0.1F)));
   EXPECT_GT(replay.tracking_worst, 1e-4);
@@ -160,9 +171,13 @@ TEST(AMotorArm, FollowsTheSimulationCloselyInAnEmptyRoom) {
 TEST(AWallThatTheSimulationDoesNotKnow, IsMissed) {
   const RecordedRun run(emptyRoom({}), driveAhead());
   const Block wall{{1.7F, 0, 0}, {1.8F, 2, 3}};
-  const EpisodeReplay replay = run.first(run.sources({wall}), ArmDrive::kKinematic);
+  const EpisodeComparison replay = run.first(run.sources({wall}), ArmDrive::kKinematic);
   EXPECT_GT(replay.missed_steps, 5U);
-  EXPECT_TRUE(replay.missed.contains({0, dynamics::Thing::kScene}));
+  // The column grid is of a room without the wall.
+  EXPECT_TRUE(
+      replay.missed.contains({0, dynamics::Thing::kScene, dynamics::MissCause::kColumnCell}));
+  ASSERT_TRUE(replay.deepest);
+  EXPECT_GT(replay.deepest->depth, 0.05F);
   // There the wall stops the base, here it goes on.
   EXPECT_GT(replay.base_gap.back(), 0.1F);
 }
@@ -170,23 +185,71 @@ TEST(AWallThatTheSimulationDoesNotKnow, IsMissed) {
 TEST(AWallThatIsNotThere, IsInvented) {
   const Block wall{{1.9F, 0, 0}, {2.0F, 2, 3}};
   const RecordedRun run(emptyRoom({wall}), driveAhead());
-  const EpisodeReplay alone = run.first(run.sources({}), ArmDrive::kKinematic);
+  const EpisodeComparison alone = run.first(run.sources({}), ArmDrive::kKinematic);
   EXPECT_GT(alone.hindered, 5U);
-  EXPECT_EQ(alone.invented, alone.hindered);
+  EXPECT_EQ(alone.inventedSteps(), alone.hindered);
+  EXPECT_EQ(alone.invented.at(dynamics::InventedCause::kScene), alone.hindered);
   EXPECT_EQ(alone.missed_steps, 0U);
-  const EpisodeReplay same = run.first(run.sources({wall}), ArmDrive::kKinematic);
+  const EpisodeComparison same = run.first(run.sources({wall}), ArmDrive::kKinematic);
   EXPECT_EQ(same.hindered, alone.hindered);
-  EXPECT_LT(same.invented, same.hindered);
+  EXPECT_LT(same.inventedSteps(), same.hindered);
 }
 
 TEST(AReport, IsTheSameEachTime) {
   const RecordedRun run(emptyRoom({}), wander());
   const dynamics::Sources sources = run.sources({});
   const auto report = [&] {
-    const std::vector<EpisodeReplay> replays{run.first(sources, ArmDrive::kMotors)};
-    return dynamics::reportJson(replays, run.world(), {.recording = "run.rec", .warnings = {}});
+    dynamics::Comparisons all;
+    all.episodes.push_back(run.first(sources, ArmDrive::kMotors));
+    all.worst = worstMoments(all.episodes, 10, true);
+    return dynamics::reportJson(
+        all, run.world(), {.recording = "run.rec", .policy = {}, .options = {}, .warnings = {}});
   };
   EXPECT_EQ(report(), report());
+}
+
+TEST(AThinShelf, IsMissedBetweenTwoStepsThatJumpOverIt) {
+  // The arm, 4 cm thick, goes up by 5 cm in a step: from under the shelf to over it.
+  const RecordedRun run(emptyRoom({}), [](std::uint32_t, std::span<float> actions) {
+    std::ranges::fill(actions, 0.0F);
+    actions[kLift] = 1;
+  });
+  const dynamics::EpisodeTrace trace = run.traces().front();
+  const Pose grip = dynamics::gripOf(run.world().robot(), trace.start_root, trace.start_positions);
+  constexpr float kStep = 0.05F;
+  const Vec3 middle = grip.translation + Vec3{0, 4.5F * kStep, 0};
+  const Vec3 half{0.06F, 0.002F, 0.06F};
+  const Block shelf{middle - half, middle + half};
+  const EpisodeComparison replay = run.first(run.sources({shelf}), ArmDrive::kKinematic);
+  ASSERT_FALSE(replay.missed.empty());
+  for (const auto& [key, steps] : replay.missed) {
+    EXPECT_EQ(std::get<dynamics::MissCause>(key), dynamics::MissCause::kTunneled);
+    EXPECT_EQ(steps, 1U);
+  }
+}
+
+TEST(AClosedLoop, SolvesInTheDynamicsWhatItSolvesInTheSimulation) {
+  const RecordedRun run(smallHomeWorld(), driveAhead());
+  SimulationOptions options = run.options();
+  options.task.most_steps = 300;
+  const dynamics::Sources sources = run.sources({{{1, 0, 1}, {2, 0.7F, 2}}});
+  const dynamics::WorldOptions there{.arm = ArmDrive::kKinematic};
+  const auto lane = EpisodeLane::create(run.world(), options, dynamics::ClosedLoop{}).value();
+  const auto play = [&](std::uint32_t episode) {
+    const auto trace = traceOf(episode, *lane).value();
+    return compareEpisode(trace, *lane, {run.world(), options, sources, there}, true).value();
+  };
+  const EpisodeComparison first = play(0);
+  EXPECT_EQ(first.end, EpisodeEnd::kSuccess);
+  EXPECT_EQ(first.end_there, EpisodeEnd::kSuccess);
+  EXPECT_TRUE(first.picked_there);
+  EXPECT_TRUE(first.success_settled);
+  EXPECT_EQ(first.rests.size(), 1U);
+  // What a lane did before changes nothing.
+  static_cast<void>(play(1));
+  const EpisodeComparison again = play(0);
+  EXPECT_EQ(again.grip_gap, first.grip_gap);
+  EXPECT_EQ(again.steps_there, first.steps_there);
 }
 
 TEST(ARecordingOfAnotherWorld, IsRefused) {
@@ -208,4 +271,4 @@ TEST(AShare, HasWilsonsInterval) {
 }
 
 }  // namespace
-}  // namespace galactic::test::replay_test
+}  // namespace galactic::test::comparison_test

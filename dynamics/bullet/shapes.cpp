@@ -1,4 +1,4 @@
-#include "bullet_shapes.h"
+#include "dynamics/bullet/shapes.h"
 
 #include <LinearMath/btConvexHullComputer.h>
 
@@ -164,7 +164,8 @@ PrincipalInertia principalInertia(const Inertia& inertia) {
 }
 
 ObjectShape::ObjectShape(const ObjectSource& source)
-    : compound_(std::make_unique<btCompoundShape>()),
+    : friction_(source.friction),
+      compound_(std::make_unique<btCompoundShape>()),
       inertia_(principalInertia(inertiaOf(source))) {
   const btTransform inertia_from_object = inertia_.body_from_inertia.inverse();
   for (const HullPoints& points : source.hulls) {

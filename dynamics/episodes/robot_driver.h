@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "dynamics/world.h"
 #include "galactic/robot.h"
 #include "galactic/simulation_options.h"
-#include "world.h"
 
 namespace galactic::dynamics {
 
@@ -24,11 +24,12 @@ struct DrivenStep {
 
 /// Carries out the simulation's actions in a dynamics world.
 ///
-/// The base drives and turns as in the simulation, kinematically: it follows the floor under it,
-/// and where its hulls would be deeper than kTolerance in the scene it is pushed out along the
-/// ground, up to SlideOptions::attempts times, or stays. Each joint action moves the target of its
-/// joint by its step, from the target before (as Habitat 2.0's arm action does), within its limits.
-/// After the step the hand grasps the object that is nearest within the grasp sphere, or lets go.
+/// The base drives and turns as in the simulation, kinematically, or its speeds follow those that
+/// the actions ask for (BaseDrive): it follows the floor under it, and where its hulls would be
+/// deeper than kTolerance in the scene it is pushed out along the ground, up to
+/// SlideOptions::attempts times, or stays. Each joint action moves the target of its joint by its
+/// step, from the target before (as Habitat 2.0's arm action does), within its limits. After the
+/// step the hand grasps the object that is nearest within the grasp sphere, or lets go.
 class RobotDriver {
  public:
   /// All but `options` must outlive it. The robot stands in the world.
@@ -44,6 +45,8 @@ class RobotDriver {
   [[nodiscard]] std::span<const float> targets() const { return targets_; }
 
  private:
+  /// Where the base is to be after the step, before it looks what is in the way.
+  [[nodiscard]] Pose driveBase(std::span<const float> actions);
   [[nodiscard]] std::optional<Pose> clearOf(Pose world_from_root) const;
   [[nodiscard]] std::optional<Pose> onFloor(const Pose& world_from_root) const;
   void useHand(float value, DrivenStep& step);
@@ -52,11 +55,17 @@ class RobotDriver {
   DynamicsWorld& world_;
   SimulationOptions options_;
   std::vector<float> targets_;
+  /// Of the base with BaseDrive::kVelocity: m/s along its heading, rad/s clockwise seen from above.
+  float speed_ = 0;
+  float turn_speed_ = 0;
 };
 
 /// The pose of the grip for a pose of the root and joint positions.
 [[nodiscard]] Pose gripOf(const Robot& robot, const Pose& world_from_root,
                           std::span<const float> positions);
+
+/// The joints' part of applyActions().
+void moveJoints(const Robot& robot, std::span<const float> actions, std::span<float> positions);
 
 /// Moves joints and root as the simulation does before it looks at what is in the way: clamped
 /// actions, joints within their limits, then the turn, then the drive. `positions`: one per

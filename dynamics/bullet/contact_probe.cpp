@@ -5,9 +5,9 @@
 #include <map>
 #include <utility>
 
-#include "bullet_contacts.h"
-#include "bullet_rig.h"
-#include "bullet_shapes.h"
+#include "dynamics/bullet/contact_query.h"
+#include "dynamics/bullet/rig.h"
+#include "dynamics/bullet/shapes.h"
 
 namespace galactic::dynamics {
 
@@ -65,7 +65,12 @@ class ContactProbe::Impl {
         const std::uint32_t link = ghost.link_of_child[static_cast<std::size_t>(contact.child)];
         RobotContact& kept = deepest[{link, other}];
         if (contact.depth > kept.depth) {
-          kept = {link, other, contact.depth, fromBullet(contact.point), fromBullet(contact.away)};
+          kept = {link,
+                  other,
+                  contact.depth,
+                  fromBullet(contact.point),
+                  fromBullet(contact.away),
+                  fromBullet(contact.on_object)};
         }
       });
       world_.contactTest(ghost.object.get(), query);

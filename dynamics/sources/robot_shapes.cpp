@@ -2,7 +2,7 @@
 #include <numbers>
 #include <variant>
 
-#include "robot_model.h"
+#include "dynamics/sources/robot_model.h"
 
 namespace galactic::dynamics {
 namespace {

@@ -6,10 +6,11 @@
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "dynamics/world.h"
 #include "galactic/pose.h"
-#include "world.h"
 
 namespace galactic::dynamics {
 
@@ -55,8 +56,10 @@ class ObjectShape {
   explicit ObjectShape(const ObjectSource& source);
   [[nodiscard]] btCompoundShape* get() const { return compound_.get(); }
   [[nodiscard]] const PrincipalInertia& inertia() const { return inertia_; }
+  [[nodiscard]] std::optional<double> friction() const { return friction_; }
 
  private:
+  std::optional<double> friction_;
   std::vector<std::unique_ptr<btConvexHullShape>> hulls_;
   std::unique_ptr<btCompoundShape> compound_;
   PrincipalInertia inertia_;

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "bullet_shapes.h"
-#include "world.h"
+#include "dynamics/bullet/shapes.h"
+#include "dynamics/world.h"
 
 namespace galactic::dynamics {
 

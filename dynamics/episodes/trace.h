@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "galactic/batch_simulator.h"
@@ -18,8 +19,9 @@ struct TracedStep {
   /// After it.
   Pose world_from_root;
   std::vector<float> positions;
-  /// Index of an object of the episode.
+  /// Index of an object of the episode, and where it is.
   std::optional<std::size_t> held;
+  Pose world_from_held;
   /// The robot kept its pose; the robot was pushed clear.
   bool was_refused = false;
   bool has_slid = false;
@@ -49,6 +51,16 @@ struct EpisodeTrace {
   std::vector<TracedRelease> releases;
   EpisodeEnd end = EpisodeEnd::kNone;
 };
+
+/// The start of an episode that env `env` is in.
+[[nodiscard]] EpisodeTrace beginTrace(std::uint32_t env, const EnvState& state);
+
+/// Adds a step to the episode. `was`, `is`: the env's statistics before and after it.
+void extendTrace(EpisodeTrace& trace, std::span<const float> actions, const EnvState& after,
+                 const SimulationStatistics& was, const SimulationStatistics& is);
+
+/// World poses of the episode's objects after step `step`, also of the held one.
+[[nodiscard]] std::vector<Pose> objectsAfter(const EpisodeTrace& trace, std::size_t step);
 
 /// Steps the simulation through the recording and keeps its episodes, by env and then by time.
 /// Episodes that the recording does not finish are left out. At most `most` of them, the first

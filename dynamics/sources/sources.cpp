@@ -1,4 +1,4 @@
-#include "sources.h"
+#include "dynamics/sources/sources.h"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "dynamics/sources/object_config.h"
 #include "galactic/bake/assets.h"
 #include "galactic/bake/job_lists.h"
 #include "galactic/bake/triangle_mesh.h"
@@ -22,21 +23,39 @@ std::string nameOr(const std::string& name, const std::filesystem::path& input) 
   return name.empty() ? input.stem().string() : name;
 }
 
+HullPoints pointsOf(const bake::SourceAsset& asset, const bake::SourceInstance& instance) {
+  const bake::Affine& m = instance.world_from_mesh;
+  HullPoints points;
+  for (const Vec3& p : asset.meshes[instance.mesh].positions) {
+    const auto row = [&](std::size_t r) {
+      return static_cast<float>(m[4 * r] * static_cast<double>(p.x) +
+                                m[4 * r + 1] * static_cast<double>(p.y) +
+                                m[4 * r + 2] * static_cast<double>(p.z) + m[4 * r + 3]);
+    };
+    points.push_back({row(0), row(1), row(2)});
+  }
+  return points;
+}
+
+/// Of all meshes together.
 HullPoints pointsOf(const bake::SourceAsset& asset) {
   HullPoints points;
   for (const bake::SourceInstance& instance : asset.instances) {
-    const bake::Affine& m = instance.world_from_mesh;
-    for (const Vec3& p : asset.meshes[instance.mesh].positions) {
-      const auto row = [&](std::size_t r) {
-        const bake::Affine& a = m;
-        return static_cast<float>(a[4 * r] * static_cast<double>(p.x) +
-                                  a[4 * r + 1] * static_cast<double>(p.y) +
-                                  a[4 * r + 2] * static_cast<double>(p.z) + a[4 * r + 3]);
-      };
-      points.push_back({row(0), row(1), row(2)});
-    }
+    const HullPoints part = pointsOf(asset, instance);
+    points.insert(points.end(), part.begin(), part.end());
   }
   return points;
+}
+
+/// Of each mesh.
+std::vector<HullPoints> piecesOf(const bake::SourceAsset& asset) {
+  constexpr std::size_t kLeastCorners = 4;
+  std::vector<HullPoints> pieces;
+  for (const bake::SourceInstance& instance : asset.instances) {
+    HullPoints piece = pointsOf(asset, instance);
+    if (piece.size() >= kLeastCorners) pieces.push_back(std::move(piece));
+  }
+  return pieces;
 }
 
 /// Reads the jobs of a recipe as far as a world needs them.
@@ -65,9 +84,8 @@ class SourceReader {
     for (const bake::ObjectInput& input : inputs) {
       const std::string& name = job.name.empty() ? input.name : job.name;
       if (!objects_.contains(name)) continue;
-      ASSIGN_OR_RETURN(const auto asset, bake::importMesh(input.path, job.import));
-      sources_.objects.emplace(name,
-                               makeObjectShape({.hulls = {pointsOf(asset)}, .mass = kObjectMass}));
+      ASSIGN_OR_RETURN(const auto object, readObject(input.path, name, job));
+      sources_.objects.emplace(name, makeObjectShape(object));
     }
     return {};
   }
@@ -97,7 +115,38 @@ class SourceReader {
     return {};
   }
 
+  /// Says of how many objects the masses are not known.
+  void warnOfDefaults() {
+    if (without_mass_ == 0) return;
+    sources_.warnings.push_back(fmt::format(
+        "{} of {} objects have no mass in an object configuration: each of them weighs {} kg",
+        without_mass_, objects_.size(), kObjectMass));
+  }
+
  private:
+  Result<ObjectSource> readObject(const std::filesystem::path& mesh, std::string_view name,
+                                  const bake::ObjectJob& job) {
+    ObjectConfig config;
+    if (const auto file = findObjectConfig(mesh, name)) {
+      ASSIGN_OR_RETURN(config, readObjectConfig(*file));
+    }
+    for (const std::string& warning : config.warnings) {
+      sources_.warnings.push_back(fmt::format("object '{}' {}", name, warning));
+    }
+    if (!config.mass) ++without_mass_;
+    ObjectSource object{
+        .hulls = {}, .mass = config.mass.value_or(kObjectMass), .friction = config.friction};
+    const bool has_pieces = !config.collision_asset.empty();
+    ASSIGN_OR_RETURN(const auto asset,
+                     bake::importMesh(has_pieces ? config.collision_asset : mesh, job.import));
+    if (has_pieces && !config.joins_meshes) {
+      object.hulls = piecesOf(asset);
+    } else {
+      object.hulls = {pointsOf(asset)};
+    }
+    return object;
+  }
+
   static tl::unexpected<Error> absent(const std::filesystem::path& recipe, std::string_view kind,
                                       std::string_view name) {
     return fail(ErrorCode::kInvalidInput, recipe.string(),
@@ -110,6 +159,7 @@ class SourceReader {
   Sources& sources_;
   Names scenes_;
   Names objects_;
+  std::size_t without_mass_ = 0;
 };
 
 }  // namespace
@@ -124,10 +174,7 @@ Result<Sources> readSources(const SourceFiles& files, const World& world) {
     RETURN_IF_ERROR(std::visit(reader, pack.job));
   }
   RETURN_IF_ERROR(reader.finish(files.recipe));
-  if (!sources.objects.empty()) {
-    sources.warnings.push_back(
-        fmt::format("meshes hold no masses: each object weighs {} kg", kObjectMass));
-  }
+  reader.warnOfDefaults();
   return sources;
 }
 

@@ -17,6 +17,8 @@ struct QueryContact {
   btVector3 point;
   /// Out of the other.
   btVector3 away;
+  /// The point of the queried object that is deepest in the other.
+  btVector3 on_object;
 };
 
 /// Calls `visit` for each contact of `object`.
@@ -40,7 +42,8 @@ class ContactQuery final : public btCollisionWorld::ContactResultCallback {
             .child = is_first ? first_index : second_index,
             .depth = -point.getDistance(),
             .point = point.getPositionWorldOnB(),
-            .away = is_first ? point.m_normalWorldOnB : -point.m_normalWorldOnB});
+            .away = is_first ? point.m_normalWorldOnB : -point.m_normalWorldOnB,
+            .on_object = is_first ? point.getPositionWorldOnA() : point.getPositionWorldOnB()});
     return 0;
   }
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "bullet_rig.h"
+#include "dynamics/bullet/rig.h"
 
 namespace galactic::dynamics {
 namespace {

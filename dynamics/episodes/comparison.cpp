@@ -1,0 +1,191 @@
+#include "dynamics/episodes/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dynamics/episodes/inspection.h"
+#include "dynamics/episodes/robot_driver.h"
+#include "support/try.h"
+
+namespace galactic::dynamics {
+namespace {
+
+/// Control steps of two seconds.
+constexpr int kRestSteps = 60;
+
+float lengthOf(const Vec3& v) { return std::sqrt(dot(v, v)); }
+
+/// The objects of an episode at these poses.
+std::vector<PlacedObject> placed(const EpisodeTrace& trace, const ComparisonWorlds& worlds,
+                                 const std::vector<Pose>& poses) {
+  const EpisodeSet& set = worlds.world.episodes();
+  const auto placements = set.placements(set.episodes()[trace.episode]);
+  std::vector<PlacedObject> objects;
+  for (std::size_t n = 0; n < poses.size(); ++n) {
+    // Without distractors the target alone is there.
+    const Placement& placement = poses.size() == placements.size()
+                                     ? placements[n]
+                                     : placements[set.episodes()[trace.episode].target];
+    const auto shape = worlds.sources.objects.find(worlds.world.objectOf(placement).name);
+    objects.push_back({shape->second, poses[n]});
+  }
+  return objects;
+}
+
+/// One episode in both worlds.
+class Comparison {
+ public:
+  Comparison(const EpisodeTrace& trace, EpisodeLane& lane, const ComparisonWorlds& worlds)
+      : trace_(trace),
+        lane_(lane),
+        worlds_(worlds),
+        scene_(worlds.sources.scenes.find(worlds.world.scenes()[trace.scene].name())->second),
+        objects_(placed(trace, worlds, trace.start_objects)),
+        bodies_(bodiesOf(worlds.sources.robot, worlds.world.robot(), trace.start_positions)),
+        was_held_(objects_.size()) {
+    result_.env = trace.env;
+    result_.episode = trace.episode;
+    result_.end = trace.end;
+    result_.steps = static_cast<std::uint32_t>(trace.steps.size());
+  }
+
+  Result<EpisodeComparison> run(bool is_closed, const StepWatcher& watch) {
+    Inspection(trace_, worlds_.world, worlds_.simulation, scene_, objects_, setup()).run(result_);
+    RETURN_IF_ERROR(playThere(is_closed, watch));
+    restAll();
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] RobotSetup setup() const {
+    return {.robot = worlds_.world.robot(),
+            .shape = worlds_.sources.robot_shape,
+            .bodies = bodies_,
+            .world_from_root = trace_.start_root,
+            .positions = trace_.start_positions};
+  }
+
+  Result<void> playThere(bool is_closed, const StepWatcher& watch) {
+    DynamicsWorld there(scene_, objects_, worlds_.options);
+    there.addRobot(setup());
+    RobotDriver driver(worlds_.world.robot(), there, worlds_.simulation);
+    WorldReading reading;
+    lane_.begin(trace_.episode);
+    if (watch) watch(lane_.simulator(), {});
+    const std::size_t most = is_closed ? kMostStepsThere : trace_.steps.size();
+    for (std::size_t n = 0; n < most && !lane_.isDone(); ++n) {
+      std::span<const float> actions;
+      if (is_closed) {
+        ASSIGN_OR_RETURN(actions, lane_.act());
+      } else {
+        actions = trace_.steps[n].actions;
+      }
+      const DrivenStep driven = driver.step(actions);
+      if (driven.grasped) was_held_[*driven.grasped] = true;
+      lane_.follow(actions, reading.read(there, driven, objects_.size()));
+      if (watch) watch(lane_.simulator(), actions);
+      compare(n, there, driver);
+    }
+    finish(there);
+    return {};
+  }
+
+  void compare(std::size_t n, const DynamicsWorld& there, const RobotDriver& driver) {
+    ++result_.steps_there;
+    const std::vector<float> positions = there.positions();
+    const Robot& robot = worlds_.world.robot();
+    for (const ControlledJoint& joint : robot.controlledJoints()) {
+      const auto miss = static_cast<double>(
+          std::abs(positions[joint.position] - driver.targets()[joint.position]));
+      result_.tracking_sum += miss;
+      result_.tracking_worst = std::max(result_.tracking_worst, miss);
+    }
+    if (n >= trace_.steps.size()) return;
+    const TracedStep& here = trace_.steps[n];
+    const Vec3 base = there.worldFromRoot().translation - here.world_from_root.translation;
+    result_.base_gap.push_back(std::hypot(base.x, base.z));
+    const Pose grip = gripOf(robot, here.world_from_root, here.positions);
+    result_.grip_gap.push_back(lengthOf(driver.worldFromGrip().translation - grip.translation));
+    if (!result_.parted && here.held != there.held()) {
+      result_.parted = static_cast<std::uint32_t>(n);
+    }
+  }
+
+  /// What is there two seconds after the last step.
+  void finish(DynamicsWorld& there) {
+    result_.end_there = lane_.end();
+    result_.picked_there = was_held_[trace_.target];
+    for (int n = 0; n < kRestSteps; ++n) there.step();
+    result_.success_settled = result_.succeedsThere() && stillSucceeds(there);
+    for (std::size_t n = 0; n < objects_.size(); ++n) {
+      const Vec3 way = there.objectPose(n).translation - objects_[n].world_from_object.translation;
+      if (!was_held_[n] && lengthOf(way) > kDisturbed) ++result_.disturbed;
+    }
+  }
+
+  [[nodiscard]] bool stillSucceeds(const DynamicsWorld& there) const {
+    const TaskOptions& task = worlds_.simulation.task;
+    const bool holds = there.held() == trace_.target;
+    if (task.kind == TaskKind::kMobilePick) return holds;
+    const Vec3 away = there.objectPose(trace_.target).translation - trace_.goal.translation;
+    return !holds && lengthOf(away) < task.success_distance;
+  }
+
+  /// Lets each released object go where the simulation put it, among the others and without the
+  /// robot.
+  void restAll() {
+    std::vector<PlacedObject> objects = objects_;
+    for (const TracedRelease& release : trace_.releases) {
+      objects[release.object].world_from_object = release.world_from_object;
+      DynamicsWorld there(scene_, objects, worlds_.options);
+      for (int n = 0; n < kRestSteps; ++n) there.step();
+      const Pose& put = release.world_from_object;
+      const Pose now = there.objectPose(release.object);
+      const Vec3 up = rotate(now.rotation * conjugate(put.rotation), {0, 1, 0});
+      result_.rests.push_back({.displacement = lengthOf(now.translation - put.translation),
+                               .lean = std::acos(std::clamp(up.y, -1.0F, 1.0F)),
+                               .drop = put.translation.y - now.translation.y,
+                               .step = static_cast<std::uint32_t>(release.step)});
+    }
+  }
+
+  const EpisodeTrace& trace_;
+  EpisodeLane& lane_;
+  const ComparisonWorlds& worlds_;
+  std::shared_ptr<const SceneShape> scene_;
+  std::vector<PlacedObject> objects_;
+  std::vector<RobotBody> bodies_;
+  std::vector<bool> was_held_;
+  EpisodeComparison result_;
+};
+
+}  // namespace
+
+std::uint32_t EpisodeComparison::inventedSteps() const {
+  std::uint32_t sum = 0;
+  for (const auto& [cause, count] : invented) sum += count;
+  return sum;
+}
+
+Result<EpisodeComparison> compareEpisode(const EpisodeTrace& trace, EpisodeLane& lane,
+                                         const ComparisonWorlds& worlds, bool is_closed,
+                                         const StepWatcher& watch) {
+  return Comparison(trace, lane, worlds).run(is_closed, watch);
+}
+
+Result<EpisodeTrace> traceOf(std::uint32_t episode, EpisodeLane& lane) {
+  lane.begin(episode);
+  const BatchSimulator& simulator = lane.simulator();
+  EpisodeTrace trace = beginTrace(0, simulator.envState(0));
+  while (!lane.isDone() && trace.steps.size() < kMostStepsThere) {
+    const SimulationStatistics before = simulator.statistics(0);
+    ASSIGN_OR_RETURN(const auto actions, lane.act());
+    lane.step(actions);
+    extendTrace(trace, actions, simulator.envState(0), before, simulator.statistics(0));
+  }
+  trace.end = lane.end();
+  return trace;
+}
+
+}  // namespace galactic::dynamics

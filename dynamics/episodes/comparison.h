@@ -1,0 +1,143 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "dynamics/episodes/episode_lane.h"
+#include "dynamics/episodes/trace.h"
+#include "dynamics/sources/sources.h"
+#include "dynamics/world.h"
+#include "galactic/simulation_options.h"
+#include "galactic/world.h"
+
+namespace galactic::dynamics {
+
+/// What a link was in.
+enum class Thing : std::uint8_t { kScene, kObject };
+inline constexpr std::array<std::string_view, 2> kThingNames{"scene", "object"};
+
+/// Why the simulation did not see a contact.
+enum class MissCause : std::uint8_t {
+  /// The link sticks out of its spheres there.
+  kSphereGap,
+  /// A sphere is there, and the nearest column says that it is free.
+  kColumnCell,
+  /// The spheres there do not count yet: the hand has let go of the object.
+  kLeaving,
+  /// Neither the pose before nor the one after the step is in it, but the one between them.
+  kTunneled,
+};
+inline constexpr std::array<std::string_view, 4> kMissCauseNames{
+    "sphere gap", "column cell", "object being left", "between steps"};
+
+/// What the simulation had in the way where nothing is.
+enum class InventedCause : std::uint8_t {
+  /// The columns under the base have no floor that carries it.
+  kFloor,
+  /// A sphere that sticks out of its link, or the column next to it.
+  kScene,
+  /// A sphere that sticks out of its link, or a box that is larger than its object.
+  kObject,
+};
+inline constexpr std::array<std::string_view, 3> kInventedCauseNames{"floor", "scene", "object"};
+
+/// Contacts of the same kind: link of the robot, what it is in, why the simulation does not see it.
+using MissKey = std::tuple<std::uint32_t, Thing, MissCause>;
+
+/// What became of an object where the simulation put it, two seconds later.
+struct Rest {
+  /// Of the object's origin, meters.
+  float displacement = 0;
+  /// How far its up axis turned away, radians.
+  float lean = 0;
+  /// How far it went down, meters.
+  float drop = 0;
+  /// Number of the step in which it was let go.
+  std::uint32_t step = 0;
+};
+
+/// A contact that the simulation does not see.
+struct DeepContact {
+  std::uint32_t step = 0;
+  /// Meters.
+  float depth = 0;
+  MissKey key;
+};
+
+/// One episode in both worlds: here, in the simulation, and there, in the dynamics.
+struct EpisodeComparison {
+  std::uint32_t env = 0;
+  std::uint32_t episode = 0;
+  EpisodeEnd end = EpisodeEnd::kNone;
+  std::uint32_t steps = 0;
+  /// Of the dynamics world, by the simulation's rules; kNone where the recorded actions ran out.
+  EpisodeEnd end_there = EpisodeEnd::kNone;
+  std::uint32_t steps_there = 0;
+  /// Success there that is still one two seconds later.
+  bool success_settled = false;
+  /// Whether the hand there held the target at some time.
+  bool picked_there = false;
+  /// The first step after which the hands do not hold the same.
+  std::optional<std::uint32_t> parted;
+  /// After each step that both made: how far the roots are apart on the ground, and the grips;
+  /// meters.
+  std::vector<float> base_gap;
+  std::vector<float> grip_gap;
+  /// Over all steps there and controlled joints: position against its target, radians or meters.
+  double tracking_sum = 0;
+  double tracking_worst = 0;
+  /// Steps in which a link of the robot, where the simulation has it, is deeper than kTolerance in
+  /// the triangles of the scene or in the hull of a resting object.
+  std::map<MissKey, std::uint32_t> missed;
+  /// Steps with any of them, and the deepest.
+  std::uint32_t missed_steps = 0;
+  std::optional<DeepContact> deepest;
+  /// Steps in which the simulation refused the motion or pushed the robot clear, with empty hand;
+  /// and those of them in which the pose that the action asked for touches nothing.
+  std::uint32_t hindered = 0;
+  std::map<InventedCause, std::uint32_t> invented;
+  /// Objects that the hand never held there and that are more than kDisturbed from their place.
+  std::uint32_t disturbed = 0;
+  std::vector<Rest> rests;
+
+  [[nodiscard]] bool succeedsHere() const { return end == EpisodeEnd::kSuccess; }
+  [[nodiscard]] bool succeedsThere() const { return end_there == EpisodeEnd::kSuccess; }
+  [[nodiscard]] std::uint32_t inventedSteps() const;
+};
+
+/// Meters.
+inline constexpr float kDisturbed = 0.02F;
+
+/// Steps of an episode there where neither task nor recording end it.
+inline constexpr std::uint32_t kMostStepsThere = 10'000;
+
+/// What comparisons need besides an episode. All of it must outlive them.
+struct ComparisonWorlds {
+  const World& world;
+  const SimulationOptions& simulation;
+  const Sources& sources;
+  const WorldOptions& options;
+};
+
+/// Told after the start of an episode there, without actions, and after each of its steps.
+using StepWatcher =
+    std::function<void(const BatchSimulator& there, std::span<const float> actions)>;
+
+/// Plays an episode in a dynamics world that starts as the simulation did: the actions of the trace
+/// or, where `is_closed`, those of the lane's policy, which observes the dynamics world. `lane`
+/// follows it. Deterministic. Fails as the policy does.
+[[nodiscard]] Result<EpisodeComparison> compareEpisode(const EpisodeTrace& trace, EpisodeLane& lane,
+                                                       const ComparisonWorlds& worlds,
+                                                       bool is_closed,
+                                                       const StepWatcher& watch = {});
+
+/// Plays an episode with the lane's policy in the simulation alone. Fails as the policy does.
+[[nodiscard]] Result<EpisodeTrace> traceOf(std::uint32_t episode, EpisodeLane& lane);
+
+}  // namespace galactic::dynamics

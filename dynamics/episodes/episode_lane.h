@@ -1,0 +1,76 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dynamics/episodes/robot_driver.h"
+#include "dynamics/world.h"
+#include "galactic/batch_simulator.h"
+#include "galactic/error.h"
+#include "galactic/world.h"
+#include "run/learned_run.h"
+#include "run/policy.h"
+
+namespace galactic::dynamics {
+
+/// Whose actions a closed loop carries out.
+struct ClosedLoop {
+  /// None: the scripted policy's. Must outlive the lanes.
+  const OpenedPolicy* learned = nullptr;
+  /// Whether a learned policy takes its likeliest actions.
+  bool is_deterministic = false;
+};
+
+/// One env of the simulation, which plays one episode after the other, or follows a dynamics world:
+/// then it says what a policy observes there and how the task ends. What happens in an episode
+/// depends on (world, options, episode) only, not on those before. Not safe to use from several
+/// threads at once; stays in one place.
+class EpisodeLane {
+ public:
+  /// `world` must outlive it. Of `options`, the task and the seed count. `loop`: none where actions
+  /// are given. Fails with the errors of BatchSimulator::create and of the policies.
+  [[nodiscard]] static Result<std::unique_ptr<EpisodeLane>> create(
+      const World& world, const SimulationOptions& options, const std::optional<ClosedLoop>& loop);
+
+  /// Stands at the start of an episode (index into the world's episodes), one that can be started.
+  void begin(std::uint32_t episode);
+
+  /// What the policy does next. Fails as the policy does.
+  [[nodiscard]] Result<std::span<const float>> act();
+
+  /// One step of the simulation.
+  void step(std::span<const float> actions);
+
+  /// The step that was made where `state` is from.
+  void follow(std::span<const float> actions, const FollowedState& state);
+
+  [[nodiscard]] const BatchSimulator& simulator() const { return simulator_; }
+  [[nodiscard]] bool isDone() const { return simulator_.dones()[0] != 0; }
+  [[nodiscard]] EpisodeEnd end() const { return simulator_.endings()[0]; }
+
+ private:
+  explicit EpisodeLane(BatchSimulator simulator);
+
+  BatchSimulator simulator_;
+  std::uint64_t seed_;
+  std::unique_ptr<Policy> policy_;
+  std::vector<float> actions_;
+  std::uint64_t steps_ = 0;
+};
+
+/// The dynamics world after a step, in the simulation's terms. Keeps what the result looks at.
+class WorldReading {
+ public:
+  /// `objects`: how many the env has.
+  [[nodiscard]] FollowedState read(const DynamicsWorld& world, const DrivenStep& driven,
+                                   std::size_t objects);
+
+ private:
+  std::vector<float> positions_;
+  std::vector<Pose> objects_;
+};
+
+}  // namespace galactic::dynamics

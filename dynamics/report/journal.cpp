@@ -1,0 +1,179 @@
+#include "dynamics/report/journal.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "support/atomic_file.h"
+#include "support/try.h"
+
+namespace galactic::dynamics {
+namespace {
+
+using Json = nlohmann::json;
+
+template <class T>
+Json jsonOf(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json jsonOf(const MissKey& key) {
+  const auto& [link, thing, cause] = key;
+  return {link, static_cast<int>(thing), static_cast<int>(cause)};
+}
+
+MissKey missKeyOf(const Json& json) {
+  const auto thing = json.at(1).get<std::size_t>();
+  const auto cause = json.at(2).get<std::size_t>();
+  if (thing >= kThingNames.size() || cause >= kMissCauseNames.size()) {
+    throw std::out_of_range("no such contact");
+  }
+  return {json.at(0).get<std::uint32_t>(), static_cast<Thing>(thing),
+          static_cast<MissCause>(cause)};
+}
+
+EpisodeEnd endOf(const Json& json) {
+  const auto end = json.get<std::size_t>();
+  if (end >= kEpisodeEnds) throw std::out_of_range("no such end");
+  return static_cast<EpisodeEnd>(end);
+}
+
+Json contactsOf(const EpisodeComparison& c) {
+  Json missed = Json::array();
+  for (const auto& [key, steps] : c.missed) missed.push_back({jsonOf(key), steps});
+  Json invented = Json::array();
+  for (const auto& [cause, steps] : c.invented) {
+    invented.push_back({static_cast<int>(cause), steps});
+  }
+  Json deepest = nullptr;
+  if (c.deepest) deepest = {c.deepest->step, c.deepest->depth, jsonOf(c.deepest->key)};
+  return {missed, c.missed_steps, deepest, c.hindered, invented};
+}
+
+Json jsonOf(const EpisodeComparison& c) {
+  Json rests = Json::array();
+  for (const Rest& rest : c.rests) {
+    rests.push_back({rest.displacement, rest.lean, rest.drop, rest.step});
+  }
+  return {{"of", {c.env, c.episode}},
+          {"here", {static_cast<int>(c.end), c.steps}},
+          {"there", {static_cast<int>(c.end_there), c.steps_there}},
+          {"settled", c.success_settled},
+          {"picked", c.picked_there},
+          {"parted", jsonOf(c.parted)},
+          {"base", c.base_gap},
+          {"grip", c.grip_gap},
+          {"tracking", {c.tracking_sum, c.tracking_worst}},
+          {"contacts", contactsOf(c)},
+          {"disturbed", c.disturbed},
+          {"rests", rests}};
+}
+
+void takeContacts(const Json& json, EpisodeComparison& c) {
+  for (const Json& one : json.at(0)) {
+    c.missed[missKeyOf(one.at(0))] = one.at(1).get<std::uint32_t>();
+  }
+  c.missed_steps = json.at(1).get<std::uint32_t>();
+  if (const Json& deepest = json.at(2); !deepest.is_null()) {
+    c.deepest = DeepContact{.step = deepest.at(0).get<std::uint32_t>(),
+                            .depth = deepest.at(1).get<float>(),
+                            .key = missKeyOf(deepest.at(2))};
+  }
+  c.hindered = json.at(3).get<std::uint32_t>();
+  for (const Json& one : json.at(4)) {
+    const auto cause = one.at(0).get<std::size_t>();
+    if (cause >= kInventedCauseNames.size()) throw std::out_of_range("no such cause");
+    c.invented[static_cast<InventedCause>(cause)] = one.at(1).get<std::uint32_t>();
+  }
+}
+
+/// Throws where something is missing or of another kind.
+EpisodeComparison comparisonOf(const Json& json) {
+  EpisodeComparison c;
+  c.env = json.at("of").at(0).get<std::uint32_t>();
+  c.episode = json.at("of").at(1).get<std::uint32_t>();
+  c.end = endOf(json.at("here").at(0));
+  c.steps = json.at("here").at(1).get<std::uint32_t>();
+  c.end_there = endOf(json.at("there").at(0));
+  c.steps_there = json.at("there").at(1).get<std::uint32_t>();
+  c.success_settled = json.at("settled").get<bool>();
+  c.picked_there = json.at("picked").get<bool>();
+  if (const Json& parted = json.at("parted"); !parted.is_null()) {
+    c.parted = parted.get<std::uint32_t>();
+  }
+  c.base_gap = json.at("base").get<std::vector<float>>();
+  c.grip_gap = json.at("grip").get<std::vector<float>>();
+  c.tracking_sum = json.at("tracking").at(0).get<double>();
+  c.tracking_worst = json.at("tracking").at(1).get<double>();
+  takeContacts(json.at("contacts"), c);
+  c.disturbed = json.at("disturbed").get<std::uint32_t>();
+  for (const Json& one : json.at("rests")) {
+    c.rests.push_back({.displacement = one.at(0).get<float>(),
+                       .lean = one.at(1).get<float>(),
+                       .drop = one.at(2).get<float>(),
+                       .step = one.at(3).get<std::uint32_t>()});
+  }
+  return c;
+}
+
+/// One line of the file; nothing where it is damaged.
+std::optional<std::pair<std::size_t, EpisodeComparison>> readLine(const std::string& line) {
+  try {
+    const Json json = Json::parse(line);
+    return std::pair(json.at("number").get<std::size_t>(), comparisonOf(json.at("episode")));
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  } catch (const std::out_of_range&) {
+    return std::nullopt;
+  }
+}
+
+std::string lineOf(std::size_t number, const EpisodeComparison& comparison) {
+  return Json{{"number", number}, {"episode", jsonOf(comparison)}}.dump() + "\n";
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Journal>> Journal::open(const std::filesystem::path& path,
+                                               std::string_view subject) {
+  std::unique_ptr<Journal> journal(new Journal(path));
+  const std::string kept = journal->read(subject);
+  // Without what is damaged or of another subject.
+  RETURN_IF_ERROR(writeFileAtomically(path, {std::as_bytes(std::span(kept))}));
+  journal->stream_.open(path, std::ios::binary | std::ios::app);
+  if (journal->stream_) return journal;
+  return fail(ErrorCode::kIo, path.string(), "cannot be written; check folder and rights");
+}
+
+std::string Journal::read(std::string_view subject) {
+  std::string kept = std::string(subject) + "\n";
+  std::ifstream stream(path_, std::ios::binary);
+  std::string line;
+  if (!std::getline(stream, line) || line != subject) return kept;
+  while (std::getline(stream, line)) {
+    auto one = readLine(line);
+    if (!one) continue;
+    kept += line + "\n";
+    done_.insert(std::move(*one));
+  }
+  return kept;
+}
+
+Result<void> Journal::add(std::size_t number, const EpisodeComparison& comparison) {
+  const std::string line = lineOf(number, comparison);
+  const std::lock_guard lock(mutex_);
+  stream_ << line << std::flush;
+  if (stream_) return {};
+  return fail(ErrorCode::kIo, path_.string(), "cannot be written; free some space");
+}
+
+void Journal::remove() {
+  stream_.close();
+  std::error_code none;
+  std::filesystem::remove(path_, none);
+}
+
+}  // namespace galactic::dynamics

@@ -1,0 +1,48 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dynamics/episodes/comparison.h"
+#include "galactic/world.h"
+
+namespace galactic::dynamics {
+
+/// What went wrong at a moment.
+enum class MomentKind : std::uint8_t {
+  /// The episode succeeds here and not there; the hands begin to hold different things, or where
+  /// they never do, the episode ends. Meters: between the grips.
+  kLost,
+  /// The deepest contact that the simulation does not see. Meters: how deep.
+  kMissed,
+  /// Farthest apart while the hands hold the same. Meters: between the grips.
+  kApart,
+  /// An object is let go that does not stay. Meters: how far it is two seconds later.
+  kMoved,
+};
+inline constexpr std::array<std::string_view, 4> kMomentNames{"success lost", "contact missed",
+                                                              "grips apart", "object moved"};
+
+struct Moment {
+  MomentKind kind = MomentKind::kLost;
+  /// Index of the comparison.
+  std::size_t comparison = 0;
+  /// The state after this step.
+  std::uint32_t step = 0;
+  float meters = 0;
+};
+
+/// The worst moments, at most `most`: in turn the worst of each kind that is left, in the order of
+/// the kinds. Of each kind and episode there is one. Without `is_replay` the actions differ, and
+/// that the grips are apart means nothing.
+[[nodiscard]] std::vector<Moment> worstMoments(const std::vector<EpisodeComparison>& episodes,
+                                               std::size_t most, bool is_replay);
+
+/// "episode 17, step 203: grips apart, 0.123 m".
+[[nodiscard]] std::string describe(const Moment& moment, const EpisodeComparison& episode,
+                                   const World& world);
+
+}  // namespace galactic::dynamics

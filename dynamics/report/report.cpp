@@ -1,0 +1,255 @@
+#include "dynamics/report/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "dynamics/episodes/robot_driver.h"
+#include "dynamics/report/names.h"
+#include "dynamics/report/report_sums.h"
+
+namespace galactic::dynamics {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json jsonOf(const Share& share) {
+  return {{"count", share.count},
+          {"of", share.of},
+          {"share", share.share},
+          {"interval", {share.low, share.high}}};
+}
+
+Json successOf(const Sums& sums) {
+  const Outcomes& outcomes = sums.outcomes;
+  const auto share = [&](std::uint32_t count) { return jsonOf(wilson(count, sums.episodes)); };
+  return {{"simulation", share(outcomes.here)},
+          {"dynamics", share(outcomes.there)},
+          {"dynamics_after_2_s", share(outcomes.settled)},
+          {"both", share(outcomes.both)},
+          {"picked_in_dynamics", share(outcomes.picked)},
+          {"lost_before_picking", outcomes.lost_picking},
+          {"lost_after_picking", outcomes.lost_later}};
+}
+
+Json contactsOf(const Sums& sums, const World& world) {
+  Json causes = Json::object();
+  for (const auto& [cause, count] : sums.missedByCause()) {
+    causes[std::string(nameOf(cause))] = sums.perThousand(count);
+  }
+  Json missed = Json::array();
+  for (const auto& [key, count] : sums.missed) {
+    const auto& [link, thing, cause] = key;
+    missed.push_back({{"link", world.robot().linkName(link)},
+                      {"in", nameOf(thing)},
+                      {"cause", nameOf(cause)},
+                      {"per_1000_steps", sums.perThousand(count)}});
+  }
+  Json invented = Json::object();
+  for (const auto& [cause, count] : sums.invented) {
+    invented[std::string(nameOf(cause))] = sums.perThousand(count);
+  }
+  return {{"tolerance", kTolerance},
+          {"missed_per_1000_steps", sums.perThousand(sums.missed_steps)},
+          {"missed_by_cause", causes},
+          {"missed", missed},
+          {"hindered_per_1000_steps", sums.perThousand(sums.hindered)},
+          {"invented_per_1000_steps", sums.perThousand(sums.inventedSteps())},
+          {"invented_by_cause", invented}};
+}
+
+Json releasesOf(const Sums& sums) {
+  const auto count = static_cast<std::uint32_t>(sums.displacements.size());
+  return {{"count", count},
+          {"seconds", 2},
+          {"displacement",
+           {{"median", quantile(sums.displacements, 0.5)},
+            {"p95", quantile(sums.displacements, 0.95)}}},
+          {"over_5_cm", jsonOf(wilson(sums.away(), count))},
+          {"tipped", jsonOf(wilson(sums.tipped, count))},
+          {"fallen", jsonOf(wilson(sums.fallen, count))}};
+}
+
+Json gapsOf(const Sums& sums) {
+  Json gaps = Json::array();
+  for (const Gap& gap : sums.gaps) {
+    const auto line = [](const std::vector<double>& values) {
+      return Json{{"median", quantile(values, 0.5)}, {"p95", quantile(values, 0.95)}};
+    };
+    gaps.push_back({{"step", gap.step},
+                    {"episodes", gap.base.size()},
+                    {"base", line(gap.base)},
+                    {"grip", line(gap.grip)}});
+  }
+  return gaps;
+}
+
+Json jsonOf(const EpisodeComparison& episode) {
+  Json rests = Json::array();
+  for (const Rest& rest : episode.rests) {
+    rests.push_back({{"step", rest.step},
+                     {"displacement", rest.displacement},
+                     {"lean", rest.lean},
+                     {"drop", rest.drop}});
+  }
+  Json parted = nullptr;
+  if (episode.parted) parted = *episode.parted;
+  return {{"env", episode.env},
+          {"episode", episode.episode},
+          {"steps", episode.steps},
+          {"end", nameOf(episode.end)},
+          {"steps_there", episode.steps_there},
+          {"end_there", nameOf(episode.end_there)},
+          {"success_settled", episode.success_settled},
+          {"picked_there", episode.picked_there},
+          {"parted", parted},
+          {"last_base_gap", episode.base_gap.back()},
+          {"last_grip_gap", episode.grip_gap.back()},
+          {"missed_steps", episode.missed_steps},
+          {"disturbed", episode.disturbed},
+          {"rests", rests}};
+}
+
+Json worstOf(const Comparisons& comparisons, const World& world) {
+  Json worst = Json::array();
+  for (const Moment& moment : comparisons.worst) {
+    const EpisodeComparison& episode = comparisons.episodes[moment.comparison];
+    worst.push_back({{"kind", nameOf(moment.kind)},
+                     {"episode", episode.episode},
+                     {"step", moment.step},
+                     {"meters", moment.meters},
+                     {"text", describe(moment, episode, world)}});
+  }
+  return worst;
+}
+
+double meanTracking(const Sums& sums, const World& world) {
+  const double count = static_cast<double>(sums.steps_there) *
+                       static_cast<double>(world.robot().controlledJoints().size());
+  return count == 0 ? 0 : sums.tracking_sum / count;
+}
+
+std::string percent(const Share& share) {
+  return fmt::format("{:5.1f} % ({:.1f} to {:.1f})", 100 * share.share, 100 * share.low,
+                     100 * share.high);
+}
+
+Sums sumsOf(const Comparisons& comparisons, const ReportSubject& subject) {
+  Sums sums = sumOf(comparisons.episodes);
+  if (!subject.isReplay()) sums.gaps.clear();
+  return sums;
+}
+
+/// Lines of a name and a value.
+class Table {
+ public:
+  void line(std::string_view name, const std::string& value) {
+    text_ += fmt::format("{:<34} {}\n", name, value);
+  }
+  void line(std::string_view name, double value) { line(name, fmt::format("{:.2f}", value)); }
+  [[nodiscard]] std::string take() { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+void addSuccess(const Sums& sums, Table& table) {
+  const Outcomes& outcomes = sums.outcomes;
+  const auto share = [&](std::uint32_t count) { return percent(wilson(count, sums.episodes)); };
+  table.line("success in the simulation", share(outcomes.here));
+  table.line("success in the dynamics", share(outcomes.there));
+  table.line("  and still after 2 s", share(outcomes.settled));
+  table.line("target picked in the dynamics", share(outcomes.picked));
+  table.line("successes lost before, after picking",
+             fmt::format("{}, {}", outcomes.lost_picking, outcomes.lost_later));
+}
+
+void addContacts(const Sums& sums, const World& world, Table& table) {
+  table.line("missed contacts, of 1,000 steps", sums.perThousand(sums.missed_steps));
+  for (const auto& [cause, count] : sums.missedByCause()) {
+    table.line(fmt::format("  {}", nameOf(cause)), sums.perThousand(count));
+    for (const auto& [key, steps] : sums.missed) {
+      const auto& [link, thing, of] = key;
+      if (of != cause) continue;
+      table.line(fmt::format("    {} in {}", world.robot().linkName(link), nameOf(thing)),
+                 sums.perThousand(steps));
+    }
+  }
+  table.line("hindered steps, of 1,000", sums.perThousand(sums.hindered));
+  table.line("  by nothing", sums.perThousand(sums.inventedSteps()));
+  for (const auto& [cause, count] : sums.invented) {
+    table.line(fmt::format("    {}", nameOf(cause)), sums.perThousand(count));
+  }
+}
+
+}  // namespace
+
+Share wilson(std::uint32_t count, std::uint32_t of) {
+  if (of == 0) return {};
+  constexpr double kZ = 1.959963984540054;
+  const double n = of;
+  const double share = count / n;
+  const double middle = (share + kZ * kZ / (2 * n)) / (1 + kZ * kZ / n);
+  const double half =
+      kZ / (1 + kZ * kZ / n) * std::sqrt(share * (1 - share) / n + kZ * kZ / (4 * n * n));
+  return {count, of, share, std::max(0.0, middle - half), std::min(1.0, middle + half)};
+}
+
+std::string reportJson(const Comparisons& comparisons, const World& world,
+                       const ReportSubject& subject) {
+  const Sums sums = sumsOf(comparisons, subject);
+  Json each = Json::array();
+  for (const EpisodeComparison& episode : comparisons.episodes) each.push_back(jsonOf(episode));
+  const bool is_closed = !subject.isReplay();
+  const Json report{
+      {"mode", is_closed ? "closed loop" : "replay"},
+      {is_closed ? "policy" : "recording", is_closed ? subject.policy : subject.recording},
+      {"arm", nameOf(subject.options.arm)},
+      {"base", nameOf(subject.options.base)},
+      {"episodes", sums.episodes},
+      {"steps", sums.steps},
+      {"steps_in_dynamics", sums.steps_there},
+      {"success", successOf(sums)},
+      {"tracking_error", {{"mean", meanTracking(sums, world)}, {"worst", sums.tracking_worst}}},
+      {"divergence", gapsOf(sums)},
+      {"contacts", contactsOf(sums, world)},
+      {"disturbed_objects", sums.disturbed},
+      {"releases", releasesOf(sums)},
+      {"worst", worstOf(comparisons, world)},
+      {"warnings", subject.warnings},
+      {"each", each}};
+  return report.dump(2) + "\n";
+}
+
+std::string reportTable(const Comparisons& comparisons, const World& world,
+                        const ReportSubject& subject) {
+  const Sums sums = sumsOf(comparisons, subject);
+  Table table;
+  table.line("episodes, steps, steps there",
+             fmt::format("{}, {}, {}", sums.episodes, sums.steps, sums.steps_there));
+  addSuccess(sums, table);
+  table.line("joint error, mean and worst",
+             fmt::format("{:.4f}, {:.3f}", meanTracking(sums, world), sums.tracking_worst));
+  for (const Gap& gap : sums.gaps) {
+    table.line(fmt::format("apart after {} steps", gap.step),
+               fmt::format("base {:.3f} m, 95 % {:.3f} m; grip {:.3f} m, 95 % {:.3f} m",
+                           quantile(gap.base, 0.5), quantile(gap.base, 0.95),
+                           quantile(gap.grip, 0.5), quantile(gap.grip, 0.95)));
+  }
+  addContacts(sums, world, table);
+  table.line("objects disturbed", fmt::format("{}", sums.disturbed));
+  table.line(
+      "objects let go",
+      fmt::format("{}; 2 s later {:.3f} m away, 95 % {:.3f} m; {} over 5 cm, {} tipped, {} fallen",
+                  sums.displacements.size(), quantile(sums.displacements, 0.5),
+                  quantile(sums.displacements, 0.95), sums.away(), sums.tipped, sums.fallen));
+  for (const Moment& moment : comparisons.worst) {
+    table.line(&moment == comparisons.worst.data() ? "worst moments" : "",
+               describe(moment, comparisons.episodes[moment.comparison], world));
+  }
+  return table.take();
+}
+
+}  // namespace galactic::dynamics

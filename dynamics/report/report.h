@@ -1,0 +1,48 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "dynamics/episodes/comparison.h"
+#include "dynamics/report/moments.h"
+#include "galactic/world.h"
+
+namespace galactic::dynamics {
+
+/// A share with its 95 % interval (Wilson 1927).
+struct Share {
+  std::uint32_t count = 0;
+  std::uint32_t of = 0;
+  double share = 0;
+  double low = 0;
+  double high = 0;
+};
+[[nodiscard]] Share wilson(std::uint32_t count, std::uint32_t of);
+
+/// What a report is of.
+struct ReportSubject {
+  /// Name of the recording that was replayed; empty for a closed loop.
+  std::string recording;
+  /// Name of the policy of a closed loop; empty for a replay.
+  std::string policy;
+  WorldOptions options;
+  std::vector<std::string> warnings;
+
+  [[nodiscard]] bool isReplay() const { return policy.empty(); }
+};
+
+/// All that a report is made of.
+struct Comparisons {
+  std::vector<EpisodeComparison> episodes;
+  std::vector<Moment> worst;
+};
+
+/// The report as JSON, and as a table for people. How far the worlds are apart step by step is told
+/// of replays only: in a closed loop the actions differ. The same for any number of threads: no
+/// times.
+[[nodiscard]] std::string reportJson(const Comparisons& comparisons, const World& world,
+                                     const ReportSubject& subject);
+[[nodiscard]] std::string reportTable(const Comparisons& comparisons, const World& world,
+                                      const ReportSubject& subject);
+
+}  // namespace galactic::dynamics

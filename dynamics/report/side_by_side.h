@@ -1,0 +1,39 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "dynamics/episodes/comparison.h"
+#include "dynamics/report/report.h"
+#include "galactic/error.h"
+
+namespace galactic::dynamics {
+
+/// What is shown of both worlds, and where it is written; empty: nowhere.
+struct SideBySideFiles {
+  /// A page that plays the episodes of the worst moments, each world with the other as a ghost.
+  std::filesystem::path view;
+  /// A sheet (PNG) of the worst moments: the simulation on the left, the dynamics on the right.
+  std::filesystem::path pictures;
+};
+
+/// What the worst moments are shown with. All of it must outlive the call.
+struct SideBySideParts {
+  const Comparisons& comparisons;
+  const ComparisonWorlds& worlds;
+  /// Follow the two worlds; `there` acts where the loop is closed.
+  EpisodeLane& here;
+  EpisodeLane& there;
+  bool is_closed = false;
+  /// The episode of a comparison in the simulation.
+  std::function<Result<EpisodeTrace>(std::size_t comparison)> trace_of;
+};
+
+/// Plays the episodes of the worst moments again and writes what is wanted. Nothing where there is
+/// no such moment. Fails with kIo and the errors of policies, pages and renderers.
+[[nodiscard]] Result<void> writeSideBySide(const SideBySideParts& parts,
+                                           const ReportSubject& subject,
+                                           const SideBySideFiles& files);
+
+}  // namespace galactic::dynamics

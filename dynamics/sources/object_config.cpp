@@ -1,0 +1,89 @@
+#include "dynamics/sources/object_config.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+namespace galactic::dynamics {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::string_view kSuffix = ".object_config.json";
+
+bool isFile(const std::filesystem::path& path) {
+  std::error_code none;
+  return std::filesystem::is_regular_file(path, none);
+}
+
+/// A number of at least `least`; none, with a warning, where it is anything else.
+std::optional<double> numberOf(const Json& json, const char* key, double least,
+                               ObjectConfig& config) {
+  const auto found = json.find(key);
+  if (found == json.end()) return std::nullopt;
+  const double value = found->is_number() ? found->get<double>() : std::nan("");
+  if (std::isfinite(value) && value >= least) return value;
+  config.warnings.push_back(fmt::format("has no usable '{}' in {}: found {}; the default counts",
+                                        key, config.file.filename().string(), found->dump()));
+  return std::nullopt;
+}
+
+void readCollisionAsset(const Json& json, ObjectConfig& config) {
+  const auto found = json.find("collision_asset");
+  if (found == json.end() || !found->is_string()) return;
+  const std::filesystem::path asset = config.file.parent_path() / found->get<std::string>();
+  if (isFile(asset)) {
+    config.collision_asset = asset.lexically_normal();
+    return;
+  }
+  config.warnings.push_back(
+      fmt::format("has the collision asset {}, which is not there; the hull "
+                  "of its mesh counts",
+                  found->dump()));
+}
+
+}  // namespace
+
+std::optional<std::filesystem::path> findObjectConfig(const std::filesystem::path& mesh,
+                                                      std::string_view name) {
+  constexpr int kFolders = 4;
+  const std::string file = std::string(name) + std::string(kSuffix);
+  std::filesystem::path folder = mesh.parent_path();
+  for (int n = 0; n < kFolders; ++n) {
+    for (const std::string_view below :
+         std::to_array<std::string_view>({"", "configs", "configs/objects"})) {
+      const std::filesystem::path candidate = folder / below / file;
+      if (isFile(candidate)) return candidate;
+    }
+    if (folder == folder.parent_path()) break;
+    folder = folder.parent_path();
+  }
+  return std::nullopt;
+}
+
+Result<ObjectConfig> readObjectConfig(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return fail(ErrorCode::kIo, file.string(), "cannot be opened; check its rights");
+  constexpr bool kNoExceptions = false;
+  constexpr bool kWithComments = true;
+  const Json json = Json::parse(stream, nullptr, kNoExceptions, kWithComments);
+  if (!json.is_object()) {
+    return fail(ErrorCode::kInvalidInput, file.string(),
+                "is no JSON object, which an object configuration is; mend or remove it");
+  }
+  ObjectConfig config;
+  config.file = file;
+  constexpr double kLeastMass = 1e-6;
+  config.mass = numberOf(json, "mass", kLeastMass, config);
+  config.friction = numberOf(json, "friction_coefficient", 0, config);
+  const auto joins = json.find("join_collision_meshes");
+  config.joins_meshes = joins != json.end() && joins->is_boolean() && joins->get<bool>();
+  readCollisionAsset(json, config);
+  return config;
+}
+
+}  // namespace galactic::dynamics

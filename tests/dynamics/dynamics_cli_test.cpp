@@ -1,0 +1,197 @@
+// galactic-dynamics as a user meets it: stdout, stderr, exit codes and files.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/program_run.h"
+#include "support/scratch_folder.h"
+#include "support/source_folder.h"
+
+namespace galactic::test::dynamics_cli_test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr int kUsage = 1;
+constexpr int kInvalid = 3;
+
+/// The sample apartment with three objects and a coarse porter: six episodes, baked once.
+constexpr const char* kRecipe = R"([bake]
+radii = [0.05, 0.12]
+[[scenes]]
+files = "apartment.glb"
+check-columns = 0
+[[objects]]
+files = "objects/m*.glb"
+eps = 0.03
+tau = 0.06
+[robot]
+files = "robot/porter.urdf"
+recipe = "robot/robot.toml"
+eps = 0.06
+tau = 0.08
+max-spheres = 30
+[episodes]
+count = 6
+objects = 2
+)";
+
+class DynamicsCli : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<ScratchFolder>();
+    ASSERT_TRUE(std::filesystem::exists(folder_->write("home.toml", kRecipe)));
+    const std::string data = (sourceFolder() / "packs/sample").string();
+    const ProgramRun baked =
+        runProgram(GALACTIC_BAKE, folder_->path(), {"home.toml", "--data", data});
+    ASSERT_EQ(baked.exit_code, 0) << baked.err;
+    const ProgramRun ran = runProgram(GALACTIC_RUN, folder_->path(),
+                                      {"home.pack", "--policy", "scripted", "--order", "partition",
+                                       "--envs", "6", "--steps", "400", "--record", "home.rec"});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  [[nodiscard]] static ProgramRun run(std::vector<std::string> more) {
+    std::vector<std::string> arguments{"home.toml", "home.pack", "--data",
+                                       (sourceFolder() / "packs/sample").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runProgram(GALACTIC_DYNAMICS, folder_->path(), arguments);
+  }
+  [[nodiscard]] static std::filesystem::path path(const std::string& name) {
+    return folder_->path() / name;
+  }
+  [[nodiscard]] static json report(const std::string& name) {
+    return json::parse(fileContent(path(name)));
+  }
+
+ private:
+  static std::unique_ptr<ScratchFolder> folder_;
+};
+std::unique_ptr<ScratchFolder> DynamicsCli::folder_;
+
+TEST_F(DynamicsCli, ReplaysARecording) {
+  const ProgramRun done =
+      run({"--recording", "home.rec", "--arm", "kinematic", "--report", "replay.json"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("success in the dynamics"));
+  EXPECT_THAT(done.out, HasSubstr("apart after 1 steps"));
+  EXPECT_THAT(done.err, HasSubstr("each of them weighs 0.5 kg"));
+  const json found = report("replay.json");
+  EXPECT_EQ(found["mode"], "replay");
+  EXPECT_EQ(found["recording"], "home.rec");
+  EXPECT_EQ(found["arm"], "kinematic");
+  EXPECT_GT(found["episodes"], 2);
+  EXPECT_EQ(found["each"].size(), found["episodes"]);
+  EXPECT_FALSE(std::filesystem::exists(path("replay.json.partial")));
+}
+
+TEST_F(DynamicsCli, ClosesTheLoopAndSaysTheSameForAnyNumberOfThreads) {
+  const auto closed = [](const std::string& name, const std::string& threads) {
+    return run(
+        {"--policy", "scripted", "--set", "episode-steps=400", "-j", threads, "--report", name});
+  };
+  const ProgramRun one = closed("one.json", "1");
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  const ProgramRun three = closed("three.json", "3");
+  EXPECT_EQ(one.out, three.out);
+  EXPECT_EQ(fileContent(path("one.json")), fileContent(path("three.json")));
+  const json found = report("one.json");
+  EXPECT_EQ(found["mode"], "closed loop");
+  EXPECT_EQ(found["policy"], "scripted");
+  EXPECT_EQ(found["episodes"], 6);
+  EXPECT_GE(found["success"]["simulation"]["count"], 4);
+  EXPECT_THAT(one.out, Not(HasSubstr("apart after")));
+}
+
+TEST_F(DynamicsCli, GoesOnWhereItWasInterrupted) {
+  const std::vector<std::string> words{"--policy", "scripted", "--report", "again.json"};
+  ASSERT_EQ(run(words).exit_code, 0);
+  const std::string whole = fileContent(path("again.json"));
+  const auto few = [&](const std::string& more) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), {"--arm", more});
+    return run(all);
+  };
+  // A run that has done all but written the report: pictures that cannot be written stop it there.
+  std::vector<std::string> stopped = words;
+  stopped.insert(stopped.end(), {"--pictures", "no/such/folder.png"});
+  EXPECT_NE(run(stopped).exit_code, 0);
+  const std::string partial = fileContent(path("again.json.partial"));
+  ASSERT_FALSE(partial.empty());
+  // Half of it is lost, and one number is changed to see that the rest is not computed again.
+  std::size_t end = 0;
+  for (int lines = 0; lines < 4; ++lines) end = partial.find('\n', end) + 1;
+  std::string kept = partial.substr(0, end);
+  const std::string disturbed = "\"disturbed\":";
+  kept.insert(kept.find(disturbed) + disturbed.size(), "70");
+  std::ofstream(path("again.json.partial"), std::ios::binary | std::ios::trunc) << kept;
+  ASSERT_EQ(run(words).exit_code, 0);
+  const json before = json::parse(whole);
+  const json after = report("again.json");
+  EXPECT_GE(after["disturbed_objects"], 700 + before["disturbed_objects"].get<int>() % 10);
+  EXPECT_EQ(after["success"], before["success"]);
+  // Another arm has nothing to do with it.
+  EXPECT_EQ(few("kinematic").exit_code, 0);
+  EXPECT_LT(report("again.json")["disturbed_objects"], 70);
+}
+
+TEST_F(DynamicsCli, ShowsTheWorstMoments) {
+  const ProgramRun done =
+      run({"--recording", "home.rec", "--view", "both.html", "--pictures", "both.png", "--quiet"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(done.out.empty());
+  EXPECT_TRUE(done.err.empty()) << done.err;
+  EXPECT_THAT(fileContent(path("both.html")), HasSubstr("<title>both</title>"));
+  EXPECT_EQ(fileContent(path("both.png")).substr(1, 3), "PNG");
+}
+
+TEST_F(DynamicsCli, RefusesWhatItCannotDo) {
+  struct Refusal {
+    std::vector<std::string> words;
+    int code;
+    const char* part;
+  };
+  const std::vector<Refusal> refusals{
+      {{}, kUsage, "either --recording, to replay it, or --policy"},
+      {{"--recording", "home.rec", "--policy", "scripted"}, kUsage, "either --recording"},
+      {{"--policy", "random"}, kUsage, "unknown policy random, wanted scripted or FILE.pack"},
+      {{"--policy", "scripted", "--deterministic"}, kUsage, "applies to learned policies only"},
+      {{"--recording", "home.rec", "--seed", "2"}, kUsage, "--seed applies to a closed loop only"},
+      {{"--policy", "scripted", "--set", "nonsense"}, kUsage, "expected NAME=VALUE"},
+      {{"--policy", "scripted", "--arm", "none"}, kUsage, "--arm"},
+      {{"--policy", "scripted", "--episodes", "-1"}, kUsage, "--episodes"},
+      {{"--policy", "scripted", "--report", ""}, kUsage, "--report has an empty value"},
+      {{"--policy", "scripted", "--set", "gravity=1"}, kInvalid, "gravity=1 is no option"},
+      {{"--policy", "home.pack"}, kInvalid, "home.pack"},
+      {{"--recording", "home.rec", "--report", "home.rec"}, kInvalid, "is also an input"},
+      {{"--recording", "home.pack"}, kInvalid, "home.pack"},
+      {{"--recording", "none.rec"}, 2, "none.rec"},
+  };
+  for (const Refusal& refusal : refusals) {
+    const ProgramRun done = run(refusal.words);
+    EXPECT_EQ(done.exit_code, refusal.code) << refusal.part << "\n" << done.err;
+    EXPECT_THAT(done.err, HasSubstr(refusal.part));
+    EXPECT_THAT(done.err, HasSubstr("galactic-dynamics: "));
+  }
+}
+
+TEST_F(DynamicsCli, PrintsHelpAndVersion) {
+  const ProgramRun help = run({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  for (const char* part : {"--recording", "--policy", "--view", "--pictures", "--base", "Exit"}) {
+    EXPECT_THAT(help.out, HasSubstr(part));
+  }
+  EXPECT_THAT(run({"--version"}).out, HasSubstr("galactic-dynamics "));
+}
+
+}  // namespace
+}  // namespace galactic::test::dynamics_cli_test

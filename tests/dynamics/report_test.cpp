@@ -1,0 +1,163 @@
+// What is kept of comparisons, and what a report tells of them.
+#include "dynamics/report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "dynamics/report/journal.h"
+#include "dynamics/report/moments.h"
+#include "dynamics/report/report_sums.h"
+#include "support/program_run.h"
+#include "support/scratch_folder.h"
+
+namespace galactic::test::report_test {
+namespace {
+
+using dynamics::EpisodeComparison;
+using dynamics::Journal;
+using dynamics::MissCause;
+using dynamics::Moment;
+using dynamics::MomentKind;
+using dynamics::Thing;
+
+/// An episode in which something of each kind happens.
+EpisodeComparison made(std::uint32_t episode) {
+  EpisodeComparison one;
+  one.env = 3;
+  one.episode = episode;
+  one.end = EpisodeEnd::kSuccess;
+  one.end_there = EpisodeEnd::kTimeOut;
+  one.steps = 4;
+  one.steps_there = 3;
+  one.parted = 2;
+  one.base_gap = {0, 0.1F, 0.3F};
+  one.grip_gap = {0.0625F, 1.0F / 3, 0.7F};
+  one.tracking_sum = 1.0 / 3;
+  one.tracking_worst = 0.25;
+  one.missed[{2, Thing::kScene, MissCause::kColumnCell}] = 2;
+  one.missed[{4, Thing::kObject, MissCause::kSphereGap}] = 1;
+  one.missed_steps = 2;
+  one.deepest = {1, 0.04F, {2, Thing::kScene, MissCause::kColumnCell}};
+  one.hindered = 2;
+  one.invented[dynamics::InventedCause::kFloor] = 1;
+  one.disturbed = 1;
+  one.rests = {{.displacement = 0.06F, .lean = 0.6F, .drop = 0.2F, .step = 3}};
+  return one;
+}
+
+void expectSame(const EpisodeComparison& found, const EpisodeComparison& wanted) {
+  EXPECT_EQ(found.env, wanted.env);
+  EXPECT_EQ(found.episode, wanted.episode);
+  EXPECT_EQ(found.end, wanted.end);
+  EXPECT_EQ(found.end_there, wanted.end_there);
+  EXPECT_EQ(found.steps, wanted.steps);
+  EXPECT_EQ(found.steps_there, wanted.steps_there);
+  EXPECT_EQ(found.parted, wanted.parted);
+  EXPECT_EQ(found.base_gap, wanted.base_gap);
+  EXPECT_EQ(found.grip_gap, wanted.grip_gap);
+  EXPECT_EQ(found.tracking_sum, wanted.tracking_sum);
+  EXPECT_EQ(found.tracking_worst, wanted.tracking_worst);
+  EXPECT_EQ(found.missed, wanted.missed);
+  EXPECT_EQ(found.missed_steps, wanted.missed_steps);
+  EXPECT_EQ(found.invented, wanted.invented);
+  ASSERT_EQ(found.deepest.has_value(), wanted.deepest.has_value());
+  EXPECT_EQ(found.deepest->depth, wanted.deepest->depth);
+  EXPECT_EQ(found.deepest->key, wanted.deepest->key);
+  ASSERT_EQ(found.rests.size(), wanted.rests.size());
+  EXPECT_EQ(found.rests[0].displacement, wanted.rests[0].displacement);
+  EXPECT_EQ(found.rests[0].step, wanted.rests[0].step);
+}
+
+TEST(AJournal, GivesBackExactlyWhatWasAdded) {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "r.json.partial";
+  const auto journal = Journal::open(file, "these").value();
+  EXPECT_TRUE(journal->done().empty());
+  ASSERT_TRUE(journal->add(5, made(17)));
+  ASSERT_TRUE(journal->add(2, made(9)));
+  const auto again = Journal::open(file, "these").value();
+  ASSERT_EQ(again->done().size(), 2U);
+  expectSame(again->done().at(5), made(17));
+  expectSame(again->done().at(2), made(9));
+  again->remove();
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+TEST(AJournal, OfAnotherSubjectIsBegunAnew) {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "r.json.partial";
+  ASSERT_TRUE(Journal::open(file, "these").value()->add(0, made(1)));
+  EXPECT_TRUE(Journal::open(file, "others").value()->done().empty());
+  EXPECT_TRUE(Journal::open(file, "these").value()->done().empty());
+}
+
+TEST(AJournal, ForgetsLinesThatAreDamaged) {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "r.json.partial";
+  {
+    const auto journal = Journal::open(file, "these").value();
+    ASSERT_TRUE(journal->add(0, made(1)));
+    ASSERT_TRUE(journal->add(1, made(2)));
+  }
+  const std::string whole = fileContent(file);
+  const std::size_t first = whole.find('\n', whole.find('\n') + 1) + 1;
+  // Killed anywhere in the second line.
+  for (std::size_t length = first; length + 1 < whole.size(); length += 7) {
+    std::ofstream(file, std::ios::binary | std::ios::trunc) << whole.substr(0, length);
+    const auto journal = Journal::open(file, "these").value();
+    ASSERT_EQ(journal->done().size(), 1U) << length;
+    expectSame(journal->done().at(0), made(1));
+  }
+  std::string wrong = whole;
+  wrong.replace(wrong.find("\"there\":[5"), 10, "\"there\":[9");
+  std::ofstream(file, std::ios::binary | std::ios::trunc) << wrong;
+  EXPECT_EQ(Journal::open(file, "these").value()->done().count(0), 0U);
+}
+
+TEST(TheWorstMoments, AreOfEachKindInTurn) {
+  std::vector<EpisodeComparison> episodes{made(0), made(1), made(2)};
+  episodes[1].deepest->depth = 0.5F;
+  episodes[2].rests[0].displacement = 0.5F;
+  episodes[0].grip_gap[2] = 0.9F;
+  const std::vector<Moment> worst = worstMoments(episodes, 6, true);
+  ASSERT_EQ(worst.size(), 6U);
+  EXPECT_EQ(worst[0].kind, MomentKind::kLost);
+  EXPECT_EQ(worst[0].comparison, 0U);
+  EXPECT_EQ(worst[0].step, 2U);
+  EXPECT_EQ(worst[1].kind, MomentKind::kMissed);
+  EXPECT_EQ(worst[1].comparison, 1U);
+  EXPECT_EQ(worst[1].step, 1U);
+  // Before the hands hold different things.
+  EXPECT_EQ(worst[2].kind, MomentKind::kApart);
+  EXPECT_EQ(worst[2].step, 1U);
+  EXPECT_EQ(worst[3].kind, MomentKind::kMoved);
+  EXPECT_EQ(worst[3].comparison, 2U);
+  EXPECT_EQ(worst[3].step, 3U);
+  for (const Moment& moment : worstMoments(episodes, 6, false)) {
+    EXPECT_NE(moment.kind, MomentKind::kApart);
+  }
+  EXPECT_EQ(worst[4].kind, MomentKind::kLost);
+  EXPECT_EQ(worst[4].comparison, 1U);
+}
+
+TEST(Sums, TellWhyContactsAreMissedAndWhereSuccessIsLost) {
+  std::vector<EpisodeComparison> episodes{made(0), made(1)};
+  episodes[1].picked_there = true;
+  const dynamics::Sums sums = dynamics::sumOf(episodes);
+  EXPECT_EQ(sums.outcomes.here, 2U);
+  EXPECT_EQ(sums.outcomes.there, 0U);
+  EXPECT_EQ(sums.outcomes.lost_picking, 1U);
+  EXPECT_EQ(sums.outcomes.lost_later, 1U);
+  EXPECT_EQ(sums.missedByCause().at(MissCause::kColumnCell), 4U);
+  EXPECT_EQ(sums.missedByCause().at(MissCause::kSphereGap), 2U);
+  EXPECT_EQ(sums.inventedSteps(), 2U);
+  EXPECT_EQ(sums.away(), 2U);
+  EXPECT_EQ(sums.tipped, 2U);
+  EXPECT_EQ(sums.fallen, 2U);
+  EXPECT_DOUBLE_EQ(sums.perThousand(4), 500);
+}
+
+}  // namespace
+}  // namespace galactic::test::report_test
