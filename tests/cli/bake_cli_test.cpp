@@ -211,7 +211,7 @@ TEST_F(BakeCli, ExplainsEveryRefusal) {
       {{"room.obj", "--inside", "1,2"}, 1, "--inside: has 2 numbers in \"1,2\", expected 3"},
       {{"room.obj", "--up", "w"}, 1, "--up: is \"w\""},
       {{"room.obj", "--scale", "-1"}, 1, "--scale: found -1, expected a number above 0"},
-      {{"room.obj", "--transform", "1,2,3"}, 1, "--transform: has 3 numbers, 12"},
+      {{"room.obj", "--transform", "1,2,3"}, 1, "--transform: has 3 numbers, expected 12"},
       {{"room.obj", "--engine", "magic"}, 1, "--engine"},
       {{"room.obj", "--threads", "4097"}, 1, "--threads"},
       {{"missing.obj"}, 2, "missing.obj"},
