@@ -130,7 +130,7 @@ class SimplifiedSurface {
     const double squared = distance * distance;
     ++counted_.comparisons;
     std::uint32_t tried = sphere_set::kNoFacet;
-    const auto isNear = [&](std::uint32_t candidate) {
+    const auto is_near = [&](std::uint32_t candidate) {
       if (candidate == sphere_set::kNoFacet || candidate == tried) return false;
       tried = candidate;
       const Vec3d nearest = sphere_set::nearestOnFacet(point, tree_.facets()[candidate]);
@@ -138,9 +138,9 @@ class SimplifiedSurface {
       facet = candidate;
       return true;
     };
-    if (isNear(facet)) return true;
+    if (is_near(facet)) return true;
     for (const std::uint32_t corner : around) {
-      if (isNear(facet_near_[corner])) return true;
+      if (is_near(facet_near_[corner])) return true;
     }
     ++counted_.searches;
     const auto nearest =

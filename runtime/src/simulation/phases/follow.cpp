@@ -89,12 +89,12 @@ void takePose(const ChunkStep& step, std::size_t e, const FollowedState& state) 
 void followChunk(const ChunkStep& step, std::span<const float> actions,
                  std::span<const FollowedState> states) noexcept {
   readActions(step, actions);
-  const auto isFollowed = [&](std::size_t e) {
+  const auto is_followed = [&](std::size_t e) {
     const std::size_t n = step.first + e;
     return n < states.size() && step.state.idle()[n] == 0;
   };
   for (std::size_t e = 0; e < kChunk; ++e) {
-    if (isFollowed(e)) {
+    if (is_followed(e)) {
       propose(step, e, states[step.first + e]);
     } else {
       proposeCurrent(step, e);
@@ -102,11 +102,11 @@ void followChunk(const ChunkStep& step, std::span<const float> actions,
   }
   placeBodies(step);
   for (std::size_t e = 0; e < kChunk; ++e) {
-    if (isFollowed(e)) takePose(step, e, states[step.first + e]);
+    if (is_followed(e)) takePose(step, e, states[step.first + e]);
   }
   // A release places bodies anew, so all candidates are taken by now.
   for (std::size_t e = 0; e < kChunk; ++e) {
-    if (!isFollowed(e)) continue;
+    if (!is_followed(e)) continue;
     const FollowedState& state = states[step.first + e];
     moveObjects(step, step.first + e, state.objects);
     followHand(step, e, state);
