@@ -194,10 +194,10 @@ TEST(Glide, NeverEndsInFurniture) {
   std::mt19937 random(kSeed);
   std::uint64_t slid = 0;
   std::uint64_t steps = 0;
-  for (int round = 0; round < 12; ++round) {
+  for (int round = 0; round < 60; ++round) {
     Room room = furnishedRoom(random, kCarts);
     // Plates, over which and under which an arm reaches closely.
-    for (int n = 0; n < 8; ++n) {
+    for (int n = 0; n < 16; ++n) {
       const Vec3 at{uniformIn(random, 0, 2.5F), uniformIn(random, 0.2F, 0.4F),
                     uniformIn(random, 0, 2.5F)};
       room.blocks.push_back({at, at + Vec3{0.5F, 0.03F, 0.4F}});
