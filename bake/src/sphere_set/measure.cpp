@@ -188,7 +188,11 @@ std::uint64_t Yardstick::countThin(std::span<const Candidate> spheres) const {
   const std::vector<double> gaps = gapsOf(task_, within, samples_);
   std::vector<Vec3d> open;
   for (std::size_t at = 0; at < samples_.size(); ++at) {
-    if (gaps[at] > task_.eps) open.push_back(samples_[at]);
+    if (gaps[at] <= task_.eps) continue;
+    // Most need no search over the solid: a small sphere right there will do.
+    const Candidate around = sphereAround(task_, samples_[at]);
+    const bool covers = outside(task_, around, samples_[at]) <= task_.eps;
+    if (!covers || around.protrusion > task_.tau) open.push_back(samples_[at]);
   }
   if (open.empty()) return 0;
   const std::vector<char> coverable = findCandidates(task_, open).coverable;

@@ -77,17 +77,6 @@ std::vector<Vec3d> openPoints(std::span<const Vec3d> points, std::span<const cha
   return open;
 }
 
-/// A sphere of the smallest radius at `p`, lifted onto the near side of the support.
-Candidate lifted(const FitTask& task, const Vec3d& p) {
-  const double radius = task.radii.front();
-  Vec3d center = p;
-  if (!staysAbove(task, p, radius)) {
-    const double missing = radius - heightAbove(task.support, p);
-    center = asStored(p + widen(task.support->normal) * missing);
-  }
-  return candidateAt(task, 0, center, task.solid->distance(center).distance);
-}
-
 /// A point near the middle of the part under `p`, a point of the surface.
 Vec3d middleOfPart(const FitTask& task, const Vec3d& p) {
   const double step = kThinStep * task.radii.front();
@@ -111,6 +100,16 @@ Vec3d middleOfPart(const FitTask& task, const Vec3d& p) {
 }
 
 }  // namespace
+
+Candidate sphereAround(const FitTask& task, const Vec3d& p) {
+  const double radius = task.radii.front();
+  Vec3d center = p;
+  if (!staysAbove(task, p, radius)) {
+    const double missing = radius - heightAbove(task.support, p);
+    center = asStored(p + widen(task.support->normal) * missing);
+  }
+  return candidateAt(task, 0, center, task.solid->distance(center).distance);
+}
 
 bool staysAbove(const FitTask& task, const Vec3d& center, double radius) {
   // A center that was lifted may be rounded back by as much.
@@ -165,7 +164,7 @@ void addThinCandidates(const FitTask& task, std::span<const Vec3d> points,
   });
   std::vector<Candidate> found(places.size());
   parallelFor(task.jobs, places.size(),
-              [&](std::size_t at) { found[at] = lifted(task, places[at]); });
+              [&](std::size_t at) { found[at] = sphereAround(task, places[at]); });
 
   CandidatePool thin;
   appendCovering(task, PointGrid(points, gridCell(task)), found, thin);

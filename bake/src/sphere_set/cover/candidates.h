@@ -28,6 +28,9 @@ struct Candidates {
 void addThinCandidates(const FitTask& task, std::span<const Vec3d> points,
                        std::span<const char> coverable, CandidatePool& pool);
 
+/// A sphere of the smallest radius around `p`, lifted onto the near side of the support.
+[[nodiscard]] Candidate sphereAround(const FitTask& task, const Vec3d& p);
+
 /// Whether a sphere with this center stays on the near side of the task's support.
 [[nodiscard]] bool staysAbove(const FitTask& task, const Vec3d& center, double radius);
 
