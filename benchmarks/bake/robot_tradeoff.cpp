@@ -1,9 +1,11 @@
 // Sphere sets of a whole robot by budget, with one yardstick, as a markdown table.
 //
 //   robot_tradeoff ROBOT.urdf [--recipe FILE] [--by-hand COLLECTION.json] [--budgets N,N,...]
+//                             [--ground METERS]
 //
 // All joints stand at 0 and the robot on the ground: the surface is that of all links (collision
-// geometry, else what is seen), hidden parts left out; points lower than 20 mm need no cover.
+// geometry, else what is seen), hidden parts left out; points lower than 20 mm need no cover. The
+// ground is at the robot's lowest point, or where --ground says: wheels may reach below it.
 // Lengths are in millimeters, mean / 95th percentile / maximum. Seconds are of wall clock, spheres
 // only.
 #include <fmt/format.h>
@@ -14,6 +16,7 @@
 #include <exception>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -34,12 +37,14 @@ struct Request {
   std::filesystem::path recipe;
   std::filesystem::path by_hand;
   std::vector<std::uint32_t> budgets{29, 48, 64, 100, 0};
+  /// Height in the root's frame.
+  std::optional<float> ground;
 };
 
 /// The whole robot in the world, all joints at 0.
 class Yardstick {
  public:
-  explicit Yardstick(const BakedRobot& robot) : robot_(robot) {
+  Yardstick(const BakedRobot& robot, std::optional<float> ground) : robot_(robot) {
     const std::vector<float> zero(robot.kinematics.limits.size(), 0.0F);
     poses_.resize(robot.kinematics.links.size());
     forwardKinematics(robot.kinematics.links, {}, zero, poses_);
@@ -50,7 +55,7 @@ class Yardstick {
     float lowest = std::numeric_limits<float>::max();
     for (const Vec3& v : mesh_.vertices) lowest = std::min(lowest, v.y);
     options_.radii = robot.radii;
-    options_.support = HalfSpace{{0, 1, 0}, lowest + kClipHeight};
+    options_.support = HalfSpace{{0, 1, 0}, ground.value_or(lowest) + kClipHeight};
   }
 
   [[nodiscard]] Result<SphereSetQuality> measure() const {
@@ -93,9 +98,10 @@ std::string inMillimeters(const LengthStatistics& lengths) {
 }
 
 Result<void> printRow(const std::string& label, const SourceRobot& source,
-                      const RobotRecipe* recipe, const RobotBakeOptions& options) {
+                      const RobotRecipe* recipe, const RobotBakeOptions& options,
+                      std::optional<float> ground) {
   ASSIGN_OR_RETURN(const auto robot, bakeRobot(source, recipe, options));
-  ASSIGN_OR_RETURN(const auto quality, Yardstick(robot).measure());
+  ASSIGN_OR_RETURN(const auto quality, Yardstick(robot, ground).measure());
   std::vector<std::size_t> counts(robot.radii.size());
   std::size_t all = 0;
   for (const BakedGroup& group : robot.groups) {
@@ -122,7 +128,7 @@ Result<void> printTable(const Request& request) {
   if (!request.by_hand.empty()) {
     ASSIGN_OR_RETURN(const auto collection, readCollection(request.by_hand));
     ASSIGN_OR_RETURN(const auto converted, recipeFromCollection(collection, source));
-    const auto printed = printRow("by hand", source, &converted.recipe, options);
+    const auto printed = printRow("by hand", source, &converted.recipe, options, request.ground);
     if (!printed) return printed;
   }
   std::optional<RobotRecipe> recipe;
@@ -133,7 +139,7 @@ Result<void> printTable(const Request& request) {
   for (const std::uint32_t budget : request.budgets) {
     options.max_spheres = budget;
     const auto printed = printRow(budget == 0 ? "no limit" : fmt::format("at most {}", budget),
-                                  source, recipe ? &*recipe : nullptr, options);
+                                  source, recipe ? &*recipe : nullptr, options, request.ground);
     if (!printed) return printed;
   }
   return {};
@@ -148,6 +154,7 @@ int main(int argc, char** argv) {
   app.add_option("urdf", request.urdf, "The robot")->required();
   app.add_option("--recipe", request.recipe, "Robot recipe (TOML)");
   app.add_option("--by-hand", request.by_hand, "Published collection with hand-placed spheres");
+  app.add_option("--ground", request.ground, "Height of the ground in the root's frame, meters");
   app.add_option("--budgets", request.budgets, "Most spheres, 0 for no limit")->delimiter(',');
   CLI11_PARSE(app, argc, argv);
   try {
