@@ -122,6 +122,16 @@ TEST(MeasureSphereSet, RefusesSpheresThatAreNoneOfTheWorkingSet) {
   EXPECT_EQ(not_finite.error().where, "spheres[0].center");
 }
 
+/// Lattices through a solid of meters are too coarse to find a sphere on the plane for each sample.
+TEST(MeasureSphereSet, FindsNothingThinInALargeBox) {
+  SphereSetOptions options;
+  options.support = HalfSpace{{0, 1, 0}, -1};
+  const auto quality = measureSphereSet(test::box(2, 2, 2).mesh, {{{0, 0, 0}, 0}}, options);
+  ASSERT_TRUE(quality);
+  EXPECT_GT(quality->gap.max, 1);
+  EXPECT_EQ(quality->thin_points, 0U);
+}
+
 /// One ball in the middle of a box: all lengths are known.
 TEST(MeasureSphereSet, MeasuresHandMadeSpheres) {
   const auto quality = measureSphereSet(someBox(), {{{0, 0, 0}, 1}}, {});
