@@ -389,6 +389,17 @@ int usageError(const Console& console, std::string_view message) {
   return kExitUsage;
 }
 
+/// The parser misses an option before it minds one that it does not know: most likely that is the
+/// same one, misspelt.
+std::string complaintOf(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_name() == "RequiredError") {
+    for (const std::string& unknown : app.remaining(true)) {
+      if (unknown.starts_with("--")) return "The following argument was not expected: " + unknown;
+    }
+  }
+  return error.what();
+}
+
 }  // namespace
 
 tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
@@ -426,7 +437,8 @@ tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
   } catch (const CLI::Success& help) {
     return tl::unexpected(app.exit(help, console.out, console.err));
   } catch (const CLI::ParseError& error) {
-    return tl::unexpected(usageError(console, withSuggestions(error.what(), longNamesOf(app))));
+    return tl::unexpected(
+        usageError(console, withSuggestions(complaintOf(app, error), longNamesOf(app))));
   }
   return chosenRequest(app, options);
 }
