@@ -14,6 +14,7 @@
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/error.h"
 #include "support/nearest_name.h"
+#include "support/number_text.h"
 #include "support/printable.h"
 #include "support/try.h"
 #include "terminal.h"
@@ -151,7 +152,8 @@ class CommandLine {
     app_.add_option("--config", config_, "Read options from a TOML file")->option_text("FILE");
     app_.add_flag("--print-recipe", prints_recipe_,
                   "Print a robot recipe: with every key explained, or a draft for the URDF that is "
-                  "given");
+                  "given")
+        ->check(switchCheck());
     app_.set_version_flag("--version", "galactic-bake " GALACTIC_VERSION);
     Registrar registrar(app_);
     visitAll(registrar);

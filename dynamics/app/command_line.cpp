@@ -49,7 +49,7 @@ CLI::Validator knownPolicy() {
   return CLI::Validator(
       [](const std::string& text) {
         if (text == kScriptedPolicy || text.ends_with(kPolicySuffix)) return std::string();
-        return fmt::format("unknown policy {}, wanted scripted or FILE.pack", text);
+        return fmt::format("unknown policy {}, expected scripted or FILE.pack", text);
       },
       "", "policy");
 }
@@ -129,7 +129,7 @@ void addOutputs(CLI::App& app, Command& command) {
 /// What no single option can see to be wrong; empty when nothing is.
 std::string faultOf(const CLI::App& app, const Command& command) {
   if (command.recording.empty() == command.policy.empty()) {
-    return "wants either --recording, to replay it, or --policy, to close the loop";
+    return "give either --recording, to replay it, or --policy, to close the loop";
   }
   if (command.is_deterministic && command.policyFile().empty()) {
     return "--deterministic applies to learned policies only; add --policy FILE.pack";

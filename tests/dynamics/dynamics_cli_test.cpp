@@ -163,7 +163,7 @@ TEST_F(DynamicsCli, RefusesWhatItCannotDo) {
   const std::vector<Refusal> refusals{
       {{}, kUsage, "either --recording, to replay it, or --policy"},
       {{"--recording", "home.rec", "--policy", "scripted"}, kUsage, "either --recording"},
-      {{"--policy", "random"}, kUsage, "unknown policy random, wanted scripted or FILE.pack"},
+      {{"--policy", "random"}, kUsage, "unknown policy random, expected scripted or FILE.pack"},
       {{"--policy", "scripted", "--deterministic"}, kUsage, "applies to learned policies only"},
       {{"--recording", "home.rec", "--seed", "2"}, kUsage, "--seed applies to a closed loop only"},
       {{"--policy", "scripted", "--set", "nonsense"}, kUsage, "expected NAME=VALUE"},

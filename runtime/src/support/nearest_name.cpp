@@ -32,6 +32,43 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// "a,b,c" as "a, b or c".
+std::string asSentence(std::string_view list) {
+  std::string sentence;
+  while (true) {
+    const std::size_t comma = list.find(',');
+    sentence += list.substr(0, comma);
+    if (comma == list.npos) return sentence;
+    list.remove_prefix(comma + 1);
+    sentence += list.find(',') == list.npos ? " or " : ", ";
+  }
+}
+
+/// A complaint of CLI11 about the value of an option, "OPTION: ...", in our words; any other as it
+/// is.
+std::string inOurWords(std::string_view complaint) {
+  constexpr std::string_view kSeveral = "At Most 1 required but received ";
+  constexpr std::string_view kMissing = "1 required ";
+  constexpr std::string_view kNotIn = " not in {";
+  const std::size_t colon = complaint.find(": ");
+  if (colon == complaint.npos) return std::string(complaint);
+  const std::string_view option = complaint.substr(0, colon);
+  const std::string_view rest = complaint.substr(colon + 2);
+  if (rest.starts_with(kSeveral)) {
+    return fmt::format("{}: is given {} times; give it once", option, rest.substr(kSeveral.size()));
+  }
+  if (rest.starts_with(kMissing) && rest.ends_with(" missing")) {
+    return fmt::format("{}: found no value, expected one", option);
+  }
+  const std::size_t list = rest.rfind(kNotIn);
+  if (list != rest.npos && rest.ends_with('}')) {
+    const std::string_view names = rest.substr(list + kNotIn.size());
+    return fmt::format("{}: found {}, expected {}", option, rest.substr(0, list),
+                       asSentence(names.substr(0, names.size() - 1)));
+  }
+  return std::string(complaint);
+}
+
 }  // namespace
 
 std::string suggestNames(std::string_view name, const std::vector<std::string>& known) {
@@ -62,12 +99,12 @@ std::string suggestNames(std::string_view name, const std::vector<std::string>& 
 std::string withSuggestions(std::string_view complaint, const std::vector<std::string>& known) {
   constexpr std::string_view kDashes = "--";
   const std::size_t begin = complaint.find(kDashes);
-  if (begin == complaint.npos) return std::string(complaint);
+  if (begin == complaint.npos) return inOurWords(complaint);
   const std::size_t end = complaint.find_first_of(" =:", begin);
   const std::string_view option = complaint.substr(begin, end - begin);
   // Of a known one the complaint is another.
   const bool is_known = std::find(known.begin(), known.end(), option) != known.end();
-  if (option.size() == kDashes.size() || is_known) return std::string(complaint);
+  if (option.size() == kDashes.size() || is_known) return inOurWords(complaint);
   const std::string suggestion = suggestNames(option, known);
   if (!suggestion.starts_with("did you mean")) return std::string(complaint);
   return fmt::format("{}; {}", complaint, suggestion);

@@ -47,6 +47,16 @@ TEST(NearestName, IsAddedToComplaintsAboutOptions) {
   }
 }
 
+TEST(NearestName, PutsTheParsersComplaintsAboutValuesInOurWords) {
+  const std::vector<std::string> options{"--render", "--seed"};
+  EXPECT_EQ(withSuggestions("--seed: At Most 1 required but received 2", options),
+            "--seed: is given 2 times; give it once");
+  EXPECT_EQ(withSuggestions("--seed: 1 required UINT missing", options),
+            "--seed: found no value, expected one");
+  EXPECT_EQ(withSuggestions("--render: a: b not in {rgb,depth,rgbd}", options),
+            "--render: found a: b, expected rgb, depth or rgbd");
+}
+
 TEST(OutOfMemory, SaysHowMuchThereIs) {
   const Error error = outOfMemory();
   EXPECT_EQ(error.code, ErrorCode::kUnsupported);
