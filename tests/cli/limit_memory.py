@@ -9,9 +9,12 @@ says so in one line PROGRAM: WHERE: MESSAGE, and that memory is what it lacks; i
 internal error. Where it knows beforehand what it needs, at least one of the refusals says how much.
 """
 
+import base64
+import json
 import pathlib
 import re
 import resource
+import struct
 import subprocess
 import sys
 import tempfile
@@ -56,6 +59,46 @@ def faults_of(command: list[str], knows: str) -> list[str]:
     return [*faults, f"{name} never had enough memory"]
 
 
+def write_instances(path: pathlib.Path, edge: int, instances: int) -> None:
+    """A small file that places many triangles: a wavy square of edge x edge quads, again and again."""
+    row = edge + 1
+    positions = [(0.1 * x, 0.01 * (x * z % 7), 0.1 * z) for z in range(row) for x in range(row)]
+    quads = [z * row + x for z in range(edge) for x in range(edge)]
+    indices = [corner for at in quads for corner in (at, at + row, at + 1, at + 1, at + row, at + row + 1)]
+    data = b"".join(struct.pack("<3f", *p) for p in positions) + struct.pack(f"<{len(indices)}H", *indices)
+    split = 12 * len(positions)
+    extents = [[side(p[axis] for p in positions) for axis in range(3)] for side in (min, max)]
+    scene = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": list(range(instances))}],
+        "nodes": [{"mesh": 0}] * instances,
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "buffers": [
+            {
+                "byteLength": len(data),
+                "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode(),
+            }
+        ],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": 0, "byteLength": split},
+            {"buffer": 0, "byteOffset": split, "byteLength": len(data) - split},
+        ],
+        "accessors": [
+            {
+                "bufferView": 0,
+                "componentType": 5126,
+                "count": len(positions),
+                "type": "VEC3",
+                "min": extents[0],
+                "max": extents[1],
+            },
+            {"bufferView": 1, "componentType": 5123, "count": len(indices), "type": "SCALAR"},
+        ],
+    }
+    path.write_text(json.dumps(scene))
+
+
 def main() -> int:
     programs, world, packs = (pathlib.Path(text).resolve() for text in sys.argv[1:4])
     images = ["--envs", 32, "--steps", 1, "--threads", 1, "--render", "depth", "--size", 2048, "--backend", "soft"]
@@ -65,6 +108,15 @@ def main() -> int:
         ["", "galactic-pack", "picture", packs / "crate.pack", "--size", 2048, "-o", "crate.png"],
         ["columns", "galactic-bake", packs / "room.obj", "--spacing", 0.002, "--check-columns", 0, "-q", "-o", "room.pack"],
     ]
+    with tempfile.TemporaryDirectory() as folder:
+        placed = pathlib.Path(folder) / "placed.gltf"
+        write_instances(placed, 50, 400)
+        coarse = ["--spacing", 0.24, "--radii", 0.12, "--check-columns", 0, "--no-render-meshes", "-j", 1, "-q"]
+        commands.append(["triangles", "galactic-bake", placed, *coarse, "-o", "placed.pack"])
+        return report(programs, commands)
+
+
+def report(programs: pathlib.Path, commands: list[list]) -> int:
     faults = []
     for knows, program, *words in commands:
         if (programs / program).exists():
