@@ -32,7 +32,7 @@ bake() {
   shift
   (
     "$bin/galactic-bake" "$@" --no-render-meshes -j 1 -o "$pack" | tail -n 1
-    times | tail -n 1
+    times
   )
 }
 bake Fetch "$fetch" --recipe "$root/packs/robots/fetch.toml"
