@@ -130,6 +130,8 @@ class DynamicsWorld {
   /// Lets go. Something must be held.
   void release();
   [[nodiscard]] std::optional<std::size_t> held() const;
+  /// Lets an object that is not held rest as it is until something comes near it.
+  void sleep(std::size_t object);
 
   /// How deep the base's hulls would be in the scene with the root there, metres, and the way out
   /// along the ground. The ground under `ground_height` does not count.

@@ -2,6 +2,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 
@@ -44,6 +45,26 @@ std::unique_ptr<btRigidBody> makeBody(const PlacedObject& object, const WorldOpt
   info.m_linearSleepingThreshold = kSleepSpeed;
   info.m_angularSleepingThreshold = kSleepTurn;
   return std::make_unique<btRigidBody>(info);
+}
+
+/// How far a point is from the hulls of a compound, 0 inside. Bullet's own question, the contacts
+/// of a sphere, is off by up to 10 mm: what it says of shapes that are apart, as a sphere's middle
+/// and a hull are, is a bound.
+btScalar distanceTo(const btCompoundShape& hulls, const btTransform& world_from_hulls,
+                    const btVector3& point) {
+  const btSphereShape sphere(1e-3F);
+  const btTransform at(btQuaternion::getIdentity(), point);
+  btScalar least = BT_LARGE_FLOAT;
+  for (int n = 0; n < hulls.getNumChildShapes(); ++n) {
+    const auto* hull = static_cast<const btConvexShape*>(hulls.getChildShape(n));
+    const btTransform there = world_from_hulls * hulls.getChildTransform(n);
+    btGjkEpaSolver2::sResults result;
+    // Without margins: from the sphere's middle.
+    const bool is_apart =
+        btGjkEpaSolver2::Distance(hull, there, &sphere, at, there.getOrigin() - point, result);
+    least = std::min(least, is_apart ? result.distance : 0);
+  }
+  return least;
 }
 
 }  // namespace
@@ -130,19 +151,16 @@ class DynamicsWorld::Impl {
   }
   [[nodiscard]] double robotEnergy() const { return rig_->energy(world_.getGravity()); }
 
-  [[nodiscard]] std::optional<std::size_t> objectWithin(const Vec3& center, float radius) {
-    btSphereShape shape(radius);
-    btCollisionObject sphere;
-    sphere.setCollisionShape(&shape);
-    sphere.setWorldTransform(toBullet(Pose{center, {}}));
+  [[nodiscard]] std::optional<std::size_t> objectWithin(const Vec3& center, float radius) const {
     std::optional<std::size_t> nearest;
-    btScalar most = 0;
-    ContactQuery query(sphere, kObjectBit, [&](const QueryContact& contact) {
-      if (contact.depth < most || (contact.depth == most && nearest)) return;
-      most = contact.depth;
-      nearest = indexOf(contact.other);
-    });
-    world_.contactTest(&sphere, query);
+    btScalar least = radius;
+    for (std::size_t n = 0; n < objects_.size(); ++n) {
+      const btScalar distance =
+          distanceTo(*shapes_[n]->get(), objects_[n]->getWorldTransform(), toBullet(center));
+      if (!(distance < least)) continue;
+      least = distance;
+      nearest = n;
+    }
     return nearest;
   }
 
@@ -164,6 +182,8 @@ class DynamicsWorld::Impl {
   }
 
   [[nodiscard]] std::optional<std::size_t> held() const { return held_; }
+
+  void sleep(std::size_t object) { objects_[object]->forceActivationState(ISLAND_SLEEPING); }
 
   [[nodiscard]] BaseContact baseContact(const Pose& world_from_root, float ground_height) {
     base_.setWorldTransform(toBullet(world_from_root));
@@ -207,12 +227,6 @@ class DynamicsWorld::Impl {
       targets[k] = before[k] + share * (wanted_[k] - before[k]);
     }
     return targets;
-  }
-
-  [[nodiscard]] std::size_t indexOf(const btCollisionObject* body) const {
-    const auto found =
-        std::ranges::find_if(objects_, [&](const auto& object) { return object.get() == body; });
-    return static_cast<std::size_t>(found - objects_.begin());
   }
 
   void meet(std::size_t object, int is, int meets) {
@@ -283,6 +297,7 @@ std::optional<std::size_t> DynamicsWorld::objectWithin(const Vec3& center, float
 void DynamicsWorld::grasp(std::size_t object, std::uint32_t link) { impl_->grasp(object, link); }
 void DynamicsWorld::release() { impl_->release(); }
 std::optional<std::size_t> DynamicsWorld::held() const { return impl_->held(); }
+void DynamicsWorld::sleep(std::size_t object) { impl_->sleep(object); }
 DynamicsWorld::BaseContact DynamicsWorld::baseContact(const Pose& world_from_root,
                                                       float ground_height) const {
   return impl_->baseContact(world_from_root, ground_height);

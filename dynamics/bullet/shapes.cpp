@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace galactic::dynamics {
 namespace {
@@ -115,6 +117,54 @@ Inertia inertiaOf(const ObjectSource& source) {
   return sum.volume() > kNoVolume ? sum.inertia(source.mass) : inertiaOfBox(source);
 }
 
+/// A hull may lose this much of its extent in any direction, meters; contacts cost time in
+/// proportion to its corners.
+constexpr btScalar kRounding = 5e-4F;
+/// Directions in which that is looked at, spread evenly (on a golden spiral).
+constexpr int kDirections = 1000;
+
+btVector3 directionOf(int n) {
+  constexpr double kGoldenTurn = std::numbers::pi * (1 + 2.23606797749979);
+  const double z = 1 - (2 * n + 1.0) / kDirections;
+  const double around = std::sqrt(1 - z * z);
+  const double angle = kGoldenTurn * (n + 0.5);
+  return {static_cast<btScalar>(around * std::cos(angle)),
+          static_cast<btScalar>(around * std::sin(angle)), static_cast<btScalar>(z)};
+}
+
+/// Corners of `hull` whose own hull is as far as it in all of the directions, but for kRounding:
+/// one by one that which is missed most. In the order of the hull's.
+std::vector<int> cornersThatMatter(const btConvexHullComputer& hull) {
+  struct Direction {
+    btVector3 way;
+    int corner = 0;
+    btScalar far = 0;
+    btScalar reached = -BT_LARGE_FLOAT;
+  };
+  std::vector<Direction> directions(kDirections);
+  for (int n = 0; n < kDirections; ++n) {
+    Direction& direction = directions[static_cast<std::size_t>(n)];
+    direction.way = directionOf(n);
+    direction.corner = static_cast<int>(
+        direction.way.maxDot(&hull.vertices[0], hull.vertices.size(), direction.far));
+  }
+  std::vector<int> kept;
+  const auto missed = [](const Direction& a, const Direction& b) {
+    return a.far - a.reached < b.far - b.reached;
+  };
+  while (true) {
+    const Direction most = *std::ranges::max_element(directions, missed);
+    if (most.far - most.reached <= kRounding) break;
+    kept.push_back(most.corner);
+    for (Direction& direction : directions) {
+      direction.reached =
+          std::max(direction.reached, direction.way.dot(hull.vertices[most.corner]));
+    }
+  }
+  std::ranges::sort(kept);
+  return kept;
+}
+
 }  // namespace
 
 SceneShape::SceneShape(const bake::TriangleMesh& mesh)
@@ -139,7 +189,7 @@ SceneShape::SceneShape(const bake::TriangleMesh& mesh)
 std::unique_ptr<btConvexHullShape> makeHull(const HullPoints& points) {
   const btConvexHullComputer corners = hullOf(points);
   auto hull = std::make_unique<btConvexHullShape>();
-  for (int n = 0; n < corners.vertices.size(); ++n) hull->addPoint(corners.vertices[n], false);
+  for (const int n : cornersThatMatter(corners)) hull->addPoint(corners.vertices[n], false);
   hull->recalcLocalAabb();
   hull->setMargin(0);
   // Contacts of whole faces at once, not one corner per step.

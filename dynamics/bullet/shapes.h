@@ -38,7 +38,7 @@ class SceneShape {
   std::unique_ptr<btBvhTriangleMeshShape> shape_;
 };
 
-/// The corners of the hull of `points`, without margin.
+/// The hull of `points`, without margin and without corners that make half a millimeter or less.
 [[nodiscard]] std::unique_ptr<btConvexHullShape> makeHull(const HullPoints& points);
 
 /// A mass in Bullet's terms: about the center of mass, along the principal axes.

@@ -139,6 +139,9 @@ class Comparison {
     for (const TracedRelease& release : trace_.releases) {
       objects[release.object].world_from_object = release.world_from_object;
       DynamicsWorld there(scene_, objects, worlds_.options);
+      for (std::size_t n = 0; n < objects.size(); ++n) {
+        if (n != release.object) there.sleep(n);
+      }
       for (int n = 0; n < kRestSteps; ++n) there.step();
       const Pose& put = release.world_from_object;
       const Pose now = there.objectPose(release.object);
