@@ -11,6 +11,16 @@ constexpr float kTurn = 6.28318531F;
 constexpr float kStray = 5e-3F;
 /// So much of an action is nothing left to do.
 constexpr float kNothing = 1e-3F;
+/// Joints this far from where they were asked to be, in actions, have arrived; and so far while the
+/// arm moves, they are waited for: it would cut the corners of its plan.
+constexpr float kArrived = 0.02F;
+constexpr float kFarBehind = 4;
+/// Steps that joints are waited for, at most and without getting closer; what a load holds back
+/// then does not come.
+constexpr int kMostWaits = 60;
+constexpr int kMostIdleWaits = 5;
+/// Joints that are further behind then are held by something.
+constexpr float kHeldBack = 1;
 
 float planeDistance(const Vec3& a, const Vec3& b) {
   const float x = a.x - b.x;
@@ -48,10 +58,10 @@ PlanPlayer::Way PlanPlayer::moveBase(const RobotBase& robot_base, const BasePlac
   return result;
 }
 
-PlanPlayer::Way PlanPlayer::moveArm(const Arm& arm, const BasePlace& at, const EnvState& state,
-                                    const ActionRow& row) const {
+PlanPlayer::Way PlanPlayer::moveArm(const Arm& arm, const BasePlace& at,
+                                    std::span<const float> asked, const ActionRow& row) const {
   const PlanStep& step = plan_.steps[next_];
-  const float actions = arm.actionsBetween(state.joint_positions, step.joints);
+  const float actions = arm.actionsBetween(asked, step.joints);
   Way result;
   result.strays = planeDistance(at.position, step.base.position) > kStray;
   if (actions <= kNothing) return result;
@@ -61,18 +71,39 @@ PlanPlayer::Way PlanPlayer::moveArm(const Arm& arm, const BasePlace& at, const E
   for (std::size_t joint = 0; joint < arm.joints().size(); ++joint) {
     const float step_size = arm.joints()[joint].step;
     if (!(step_size > 0)) continue;
-    row.joints[joint] =
-        share * arm.difference(joint, state.joint_positions, step.joints) / step_size;
+    row.joints[joint] = share * arm.difference(joint, asked, step.joints) / step_size;
   }
   return result;
 }
 
+bool PlanPlayer::waitsFor(float lag, bool is_arm_next) {
+  const bool is_near = lag <= (is_arm_next ? kFarBehind : kArrived);
+  if (is_near || waits_ >= kMostWaits || idle_waits_ >= kMostIdleWaits) return false;
+  if (waits_ == 0 || lag < least_lag_ - kNothing) {
+    least_lag_ = lag;
+    idle_waits_ = 0;
+  } else {
+    ++idle_waits_;
+  }
+  ++waits_;
+  return true;
+}
+
 PlanPlayer::Progress PlanPlayer::play(const Arm& arm, const RobotBase& robot_base,
-                                      const EnvState& state, const ActionRow& row) {
+                                      const EnvState& state, std::span<const float> asked,
+                                      const ActionRow& row) {
   const Quat& q = state.world_from_root.rotation;
   const BasePlace at{state.world_from_root.translation, 2 * std::atan2(q.y, q.w)};
+  const float lag = arm.actionsBetween(state.joint_positions, asked);
   for (; next_ < plan_.steps.size(); ++next_, remaining_ = -1) {
     const PlanStep& step = plan_.steps[next_];
+    const bool is_arm_next = step.kind == PlanStep::Kind::kMoveArm;
+    if (is_arm_next || !has_settled_) {
+      if (waitsFor(lag, is_arm_next)) return Progress::kActs;
+      if (waits_ > 0 && lag > (is_arm_next ? kFarBehind : kHeldBack)) return Progress::kStuck;
+      waits_ = idle_waits_ = 0;
+      has_settled_ = !is_arm_next;
+    }
     if (step.kind == PlanStep::Kind::kGrasp || step.kind == PlanStep::Kind::kRelease ||
         step.kind == PlanStep::Kind::kTerminate) {
       if (step.kind == PlanStep::Kind::kTerminate) row.terminate = 1;
@@ -83,8 +114,7 @@ PlanPlayer::Progress PlanPlayer::play(const Arm& arm, const RobotBase& robot_bas
       remaining_ = -1;
       return Progress::kActs;
     }
-    const Way way = step.kind == PlanStep::Kind::kMoveBase ? moveBase(robot_base, at, row)
-                                                           : moveArm(arm, at, state, row);
+    const Way way = is_arm_next ? moveArm(arm, at, asked, row) : moveBase(robot_base, at, row);
     if (way.strays) return Progress::kStuck;
     if (way.remaining == 0) continue;
     const bool moved = remaining_ < 0 || way.remaining < remaining_ - kNothing / 2;

@@ -33,10 +33,12 @@ class PlanPlayer {
   PlanPlayer() = default;
   explicit PlanPlayer(Plan plan) : plan_(std::move(plan)) {}
 
-  /// The next action from where the robot is. Sets `row` but for its grasp action, unless a step
-  /// grasps or releases.
+  /// The next action from where the robot is and where its joints were `asked` to be, which is
+  /// where they are, or where motors bring them: then it waits, with zeros, where they lag far
+  /// behind and before anything but the arm is to move. Sets `row` but for its grasp action, unless
+  /// a step grasps or releases.
   Progress play(const Arm& arm, const RobotBase& robot_base, const EnvState& state,
-                const ActionRow& row);
+                std::span<const float> asked, const ActionRow& row);
 
  private:
   struct Way {
@@ -45,13 +47,21 @@ class PlanPlayer {
   };
   [[nodiscard]] Way moveBase(const RobotBase& robot_base, const BasePlace& at,
                              const ActionRow& row) const;
-  [[nodiscard]] Way moveArm(const Arm& arm, const BasePlace& at, const EnvState& state,
+  [[nodiscard]] Way moveArm(const Arm& arm, const BasePlace& at, std::span<const float> asked,
                             const ActionRow& row) const;
+  /// Whether to wait for joints that are `lag` actions from where they were asked to be.
+  [[nodiscard]] bool waitsFor(float lag, bool is_arm_next);
 
   Plan plan_;
   std::size_t next_ = 0;
   /// Actions left of the current step when it was last played; negative: not played yet.
   float remaining_ = -1;
+  /// Steps that the joints were waited for, the least lag in that time, and the steps since.
+  int waits_ = 0;
+  float least_lag_ = 0;
+  int idle_waits_ = 0;
+  /// Nothing is to be waited for until the arm moves again.
+  bool has_settled_ = false;
 };
 
 }  // namespace galactic::scripted

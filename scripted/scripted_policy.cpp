@@ -21,6 +21,9 @@ namespace {
 constexpr std::uint32_t kMostPlans = 8;
 
 struct EnvPlan {
+  /// Where motors were asked to bring the joints; empty where joints are where they were asked to
+  /// be.
+  scripted::Joints asked;
   scripted::PlanPlayer player;
   ScriptedPhase phase = ScriptedPhase::kPick;
   ScriptedTrouble trouble = ScriptedTrouble::kNone;
@@ -65,6 +68,8 @@ class ScriptedPolicy::Impl {
     }
   }
 
+  void expectLag(bool lags) { lags_ = lags; }
+
   [[nodiscard]] const EnvPlan& env(std::size_t n) const { return envs_[n]; }
 
  private:
@@ -90,6 +95,17 @@ class ScriptedPolicy::Impl {
 
   void act(const EnvState& state, EnvPlan& env, std::span<float> actions, std::size_t thread) {
     if (state.step == 0) begin(state, env, thread);
+    playOn(state, env, actions, thread);
+    if (env.asked.empty()) return;
+    const std::span<const ControlledJoint> joints = world_.robot().controlledJoints();
+    for (std::size_t n = 0; n < joints.size(); ++n) {
+      float& asked = env.asked[joints[n].position];
+      const float action = std::clamp(actions[n], -1.0F, 1.0F);
+      asked = std::clamp(asked + joints[n].step * action, joints[n].lower, joints[n].upper);
+    }
+  }
+
+  void playOn(const EnvState& state, EnvPlan& env, std::span<float> actions, std::size_t thread) {
     while (true) {
       std::ranges::fill(actions, 0.0F);
       const scripted::ActionRow row = scripted::rowOf(actions);
@@ -97,7 +113,8 @@ class ScriptedPolicy::Impl {
       row.grasp = state.held >= 0 ? 1.0F : 0.0F;
       if (env.phase == ScriptedPhase::kGaveUp) return;
       using Progress = scripted::PlanPlayer::Progress;
-      const Progress progress = env.player.play(arm_, *world_.robot().base(), state, row);
+      const std::span<const float> asked = env.asked.empty() ? state.joint_positions : env.asked;
+      const Progress progress = env.player.play(arm_, *world_.robot().base(), state, asked, row);
       if (progress == Progress::kActs) return;
       if (progress == Progress::kStuck) {
         std::ranges::fill(actions, 0.0F);
@@ -110,6 +127,7 @@ class ScriptedPolicy::Impl {
   /// An episode begins.
   void begin(const EnvState& state, EnvPlan& env, std::size_t thread) {
     env = {};
+    if (lags_) env.asked = state.joint_positions;
     if (isAtGoal(state)) {
       finish(env);
     } else {
@@ -141,6 +159,14 @@ class ScriptedPolicy::Impl {
     env.player = scripted::PlanPlayer(std::move(plan));
   }
 
+  /// What the next plan begins with: where joints were asked to be, or where they are where that is
+  /// out of their reach.
+  [[nodiscard]] static EnvState planned(const EnvState& state, const EnvPlan& env, bool is_done) {
+    EnvState result = state;
+    if (is_done && !env.asked.empty()) result.joint_positions = env.asked;
+    return result;
+  }
+
   /// The plan is played to its end, or the robot is stuck in it.
   void planNext(const EnvState& state, EnvPlan& env, bool is_done, std::size_t thread) {
     const bool holds_target = state.held == static_cast<std::int32_t>(state.target);
@@ -156,16 +182,17 @@ class ScriptedPolicy::Impl {
       giveUp(env);
     } else if (holds_target) {
       env.phase = ScriptedPhase::kPlace;
-      use(env, planner(thread).planPlace(state, env.plans));
+      use(env, planner(thread).planPlace(planned(state, env, is_done), env.plans));
     } else {
       env.phase = ScriptedPhase::kPick;
-      use(env, planner(thread).planPick(state, env.plans));
+      use(env, planner(thread).planPick(planned(state, env, is_done), env.plans));
     }
   }
 
   const World& world_;
   SimulationOptions options_;
   scripted::Arm arm_;
+  bool lags_ = false;
   std::vector<EnvPlan> envs_;
   /// One for each thread, made when it plans for the first time.
   std::vector<std::optional<scripted::Planner>> planners_;
@@ -195,6 +222,8 @@ ScriptedPolicy& ScriptedPolicy::operator=(ScriptedPolicy&&) noexcept = default;
 void ScriptedPolicy::act(const BatchSimulator& simulator, std::span<float> actions) {
   impl_->act(simulator, actions);
 }
+
+void ScriptedPolicy::expectLag(bool lags) { impl_->expectLag(lags); }
 
 ScriptedPhase ScriptedPolicy::phase(std::size_t env) const { return impl_->env(env).phase; }
 

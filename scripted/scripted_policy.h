@@ -74,6 +74,12 @@ class ScriptedPolicy {
   /// BatchSimulator::step takes them. Call it once before each step.
   void act(const BatchSimulator& simulator, std::span<float> actions);
 
+  /// Whether motors move the joints, so that they get later to where actions ask them to be, or not
+  /// quite; in episodes that begin from now on. Each joint action moves what its joint is asked to
+  /// be from what it was asked before. The policy then plans from there, waits for joints that lag
+  /// far behind, and until they are there before it drives, grasps or lets go. False at first.
+  void expectLag(bool lags);
+
   /// Of the last call of act.
   [[nodiscard]] ScriptedPhase phase(std::size_t env) const;
   [[nodiscard]] ScriptedTrouble trouble(std::size_t env) const;

@@ -71,7 +71,7 @@ class Comparison {
     there.addRobot(setup());
     RobotDriver driver(worlds_.world.robot(), there, worlds_.simulation);
     WorldReading reading;
-    lane_.begin(trace_.episode);
+    lane_.begin(trace_.episode, worlds_.options.arm);
     if (watch) watch(lane_.simulator(), {});
     const std::size_t most = is_closed ? kMostStepsThere : trace_.steps.size();
     for (std::size_t n = 0; n < most && !lane_.isDone(); ++n) {
@@ -178,7 +178,7 @@ Result<EpisodeComparison> compareEpisode(const EpisodeTrace& trace, EpisodeLane&
 }
 
 Result<EpisodeTrace> traceOf(std::uint32_t episode, EpisodeLane& lane) {
-  lane.begin(episode);
+  lane.begin(episode, ArmDrive::kKinematic);
   const BatchSimulator& simulator = lane.simulator();
   EpisodeTrace trace = beginTrace(0, simulator.envState(0));
   while (!lane.isDone() && trace.steps.size() < kMostStepsThere) {

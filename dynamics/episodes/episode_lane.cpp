@@ -57,10 +57,13 @@ Result<std::unique_ptr<EpisodeLane>> EpisodeLane::create(const World& world,
   return lane;
 }
 
-void EpisodeLane::begin(std::uint32_t episode) {
+void EpisodeLane::begin(std::uint32_t episode, ArmDrive arm) {
   simulator_.restart(mixed(seed_, episode));
   simulator_.reset(std::array{static_cast<std::int32_t>(episode)});
-  if (policy_) policy_->restart(episode);
+  if (policy_) {
+    policy_->restart(episode);
+    policy_->expectLag(arm == ArmDrive::kMotors);
+  }
   steps_ = 0;
 }
 

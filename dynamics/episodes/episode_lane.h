@@ -36,7 +36,8 @@ class EpisodeLane {
       const World& world, const SimulationOptions& options, const std::optional<ClosedLoop>& loop);
 
   /// Stands at the start of an episode (index into the world's episodes), one that can be started.
-  void begin(std::uint32_t episode);
+  /// `arm`: what will move the joints.
+  void begin(std::uint32_t episode, ArmDrive arm);
 
   /// What the policy does next. Fails as the policy does.
   [[nodiscard]] Result<std::span<const float>> act();

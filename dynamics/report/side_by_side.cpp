@@ -71,7 +71,7 @@ class Onlooker {
 
 /// Lets a lane follow what the simulation did.
 void replayHere(const EpisodeTrace& trace, EpisodeLane& lane, Onlooker& onlooker) {
-  lane.begin(trace.episode);
+  lane.begin(trace.episode, ArmDrive::kKinematic);
   onlooker.look(lane.simulator(), {});
   for (std::size_t n = 0; n < trace.steps.size(); ++n) {
     const TracedStep& step = trace.steps[n];

@@ -252,6 +252,26 @@ TEST(AClosedLoop, SolvesInTheDynamicsWhatItSolvesInTheSimulation) {
   EXPECT_EQ(again.steps_there, first.steps_there);
 }
 
+TEST(AClosedLoop, HasPatienceWithMotors) {
+  const RecordedRun run(smallHomeWorld(), driveAhead());
+  SimulationOptions options = run.options();
+  options.task.most_steps = 500;
+  const dynamics::Sources sources = run.sources({{{1, 0, 1}, {2, 0.7F, 2}}});
+  // A third of the usual gain: joints lag behind by several actions.
+  const dynamics::WorldOptions there{.position_gain = 0.1};
+  const auto lane = EpisodeLane::create(run.world(), options, dynamics::ClosedLoop{}).value();
+  for (const std::uint32_t episode : {0U, 1U}) {
+    const auto trace = traceOf(episode, *lane).value();
+    const EpisodeComparison played =
+        compareEpisode(trace, *lane, {run.world(), options, sources, there}, true).value();
+    EXPECT_EQ(played.end, EpisodeEnd::kSuccess) << episode;
+    EXPECT_EQ(played.end_there, EpisodeEnd::kSuccess) << episode;
+    EXPECT_GT(played.steps_there, played.steps) << "it waited";
+    // It looks at its own targets: each joint is asked for once what the plan wants.
+    EXPECT_LT(played.steps_there, 2 * played.steps) << episode;
+  }
+}
+
 TEST(ARecordingOfAnotherWorld, IsRefused) {
   const RecordedRun run(emptyRoom({}), driveAhead());
   const RecordedRun other(emptyRoom({{{2.4F, 0, 0}, {2.5F, 2, 3}}}), driveAhead());

@@ -17,6 +17,8 @@ class PlannedPolicy final : public Policy {
     return {};
   }
 
+  void expectLag(bool lags) override { policy_.expectLag(lags); }
+
  private:
   ScriptedPolicy policy_;
   const BatchSimulator& simulator_;

@@ -25,6 +25,10 @@ class Policy {
   /// Forgets what it did: all envs begin anew, with the random numbers of a batch whose first env
   /// has this number over all ranks. Policies that look at the state alone have nothing to forget.
   virtual void restart(std::uint32_t /*first_env*/) {}
+
+  /// Whether joints get later to where actions ask them to be, as motors do, from the next episode
+  /// on. Most policies look at where the joints are and need not know.
+  virtual void expectLag(bool /*lags*/) {}
 };
 
 /// The name of the policy that solves the task with a plan: see ScriptedPolicy.
