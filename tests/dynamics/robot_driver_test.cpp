@@ -43,10 +43,11 @@ bake::TriangleMesh roomWithTable() {
 class Room {
  public:
   explicit Room(ArmDrive arm, std::vector<PlacedObject> objects = {},
-                const Pose& start = {{0, 0.1F, 0}, {}})
+                const Pose& start = {{0, 0.1F, 0}, {}},
+                dynamics::BaseDrive base = dynamics::BaseDrive::kKinematic)
       : robot_(smallHomeRobot()),
         kit_(*robot_, smallHomeParts()),
-        world_(dynamics::makeSceneShape(roomWithTable()), objects, {.arm = arm}) {
+        world_(dynamics::makeSceneShape(roomWithTable()), objects, {.arm = arm, .base = base}) {
     world_.addRobot(kit_.setup(start));
     driver_.emplace(*robot_, world_, SimulationOptions{});
   }
@@ -114,6 +115,43 @@ TEST(ADrivenBase, DoesNotLeaveTheFloor) {
   EXPECT_TRUE(was_refused);
   EXPECT_GE(room.world().worldFromRoot().translation.x, -3.0F);
   EXPECT_NEAR(room.world().worldFromRoot().translation.y, 0.1, 1e-4);
+}
+
+/// How far a base has gone after `substeps` that asks for one unit of length in each from the first
+/// on, when each takes away 30 % of the difference in speed: the sum of 1 - 0.7^k.
+double responseAfter(int substeps) { return substeps - 0.7 / 0.3 * (1 - std::pow(0.7, substeps)); }
+
+TEST(ABaseWithSpeeds, TakesAwayThirtyPercentOfTheDifferenceInEachSubstep) {
+  Room room(ArmDrive::kMotors, {}, {{-1, 0.1F, -1}, {}}, dynamics::BaseDrive::kVelocity);
+  const auto x = [&] { return static_cast<double>(room.world().worldFromRoot().translation.x); };
+  const auto way = static_cast<double>(room.robot().base()->forward_step) / 4;
+  constexpr double kRounding = 1e-5;
+  for (int n = 1; n <= 5; ++n) {
+    room.step(with(kForward, 1));
+    EXPECT_NEAR(x() + 1, way * responseAfter(4 * n), kRounding) << n;
+  }
+  // What it lagged behind it makes good when nothing is asked for any more.
+  for (int n = 0; n < 20; ++n) room.step(still());
+  EXPECT_NEAR(x() + 1, 5 * 4 * way, kRounding);
+  // Turns respond alike, clockwise seen from above.
+  const auto turn = static_cast<double>(room.robot().base()->turn_step) / 4;
+  room.step(with(kTurn, 1));
+  room.step(with(kTurn, 1));
+  const Vec3 ahead = rotate(room.world().worldFromRoot().rotation, {1, 0, 0});
+  EXPECT_NEAR(std::atan2(ahead.z, ahead.x), turn * responseAfter(8), kRounding);
+}
+
+TEST(ABaseWithSpeeds, HasNoneAfterItWasRefused) {
+  Room room(ArmDrive::kMotors, {}, {{-2.9F, 0.1F, 0}, {}}, dynamics::BaseDrive::kVelocity);
+  const auto x = [&] { return static_cast<double>(room.world().worldFromRoot().translation.x); };
+  // Over the edge of the floor, which is refused.
+  bool was_refused = false;
+  for (int n = 0; n < 5; ++n) was_refused |= room.step(with(kForward, -1)).base_refused;
+  ASSERT_TRUE(was_refused);
+  const double before = x();
+  room.step(with(kForward, 1));
+  const auto way = static_cast<double>(room.robot().base()->forward_step) / 4;
+  EXPECT_NEAR(x() - before, way * responseAfter(4), 1e-5);
 }
 
 TEST(AMotorArm, StopsAtAWallWhereAKinematicOneDoesNot) {
