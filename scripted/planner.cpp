@@ -15,7 +15,7 @@ constexpr std::size_t kSeeds = 3;
 constexpr float kSeedReach = 0.15F;
 /// Motions of the arm that are searched for in vain before a plan is given up.
 constexpr int kMostFailedMotions = 12;
-/// Distance of grip and target's box, as a share of the radius in which the hand grasps.
+/// Distance of grip and target, as a share of the radius in which the hand grasps.
 constexpr float kGraspShare = 0.5F;
 /// The share of the distance of success that a planned release may use up.
 constexpr float kLandingShare = 0.7F;
@@ -29,8 +29,8 @@ constexpr Vec3 kUp{0, 1, 0};
 
 Vec3 unit(const Vec3& v) { return v * (1 / std::sqrt(dot(v, v))); }
 
-/// The point on the line from `inside` the box of an object against `way` that is `distance` off
-/// it.
+/// The point on the line from `inside` an object against `way` that is `distance` off what the hand
+/// touches of it.
 Vec3 pointBefore(const PlanningScene& scene, std::uint32_t object, const Vec3& inside,
                  const Vec3& way, float distance) {
   const Vec3 half = scene.objectBox(object).half_extents;
@@ -39,7 +39,7 @@ Vec3 pointBefore(const PlanningScene& scene, std::uint32_t object, const Vec3& i
   for (int n = 0; n < 20; ++n) {
     const float middle = 0.5F * (near + far);
     const bool is_outside =
-        scene.squaredDistance(object, inside - way * middle) >= distance * distance;
+        scene.squaredGraspDistance(object, inside - way * middle) >= distance * distance;
     (is_outside ? far : near) = middle;
   }
   return inside - way * far;

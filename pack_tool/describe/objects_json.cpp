@@ -44,6 +44,16 @@ Json describePoses(const schema::Object& object) {
   return json;
 }
 
+Json describeHullPlanes(const schema::Object& object) {
+  Json json = Json::array();
+  if (object.hull_planes() == nullptr) return json;
+  for (const schema::HullPlane* plane : *object.hull_planes()) {
+    json.push_back(
+        {{"normal", describePoint(plane->normal())}, {"offset", jsonNumber(plane->offset())}});
+  }
+  return json;
+}
+
 Json describeObject(const schema::Object& object, const flatbuffers::Vector<float>& radii) {
   Json json;
   json["name"] = object.name()->str();
@@ -51,6 +61,7 @@ Json describeObject(const schema::Object& object, const flatbuffers::Vector<floa
                     {"max", describePoint(object.bounds()->max())}};
   json["box"] = describeBox(object);
   json["stable_poses"] = describePoses(object);
+  json["hull_planes"] = describeHullPlanes(object);
   json["spheres"] = describeSpheres(*object.spheres(), {0, object.spheres()->size()}, radii);
   json["box_volumes"] = describeVolumes(*object.box_statistics());
   json["sphere_quality"] = describeQuality(object.sphere_statistics());

@@ -85,6 +85,20 @@ TEST(GoldenPacks, ShowTheCrateAsItIsBuilt) {
   EXPECT_NEAR(crate.stable_poses[0].rotation.w, 1, kGrowth);
 }
 
+TEST(GoldenPacks, OfACrateWithoutHullPlanesStillLoad) {
+  const auto older = PackFile::open(goldenFolder() / "crate-older.pack");
+  ASSERT_TRUE(older) << older.error().where << ": " << older.error().message;
+  const auto now = PackFile::open(goldenFolder() / "crate.pack");
+  ASSERT_TRUE(now);
+  const ObjectModel before = ObjectSet::from(*older).value().objects()[0];
+  const ObjectModel after = ObjectSet::from(*now).value().objects()[0];
+  EXPECT_TRUE(before.hull_planes.empty());
+  // The handle leaves most of the box's top free.
+  EXPECT_FALSE(after.hull_planes.empty());
+  EXPECT_EQ(before.box, after.box);
+  EXPECT_EQ(before.spheres.size(), after.spheres.size());
+}
+
 TEST(GoldenPacks, MoveTheArmAsItIsBuilt) {
   const auto pack = PackFile::open(goldenFolder() / "arm.pack");
   ASSERT_TRUE(pack) << pack.error().where << ": " << pack.error().message;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/stage_timer.h"
+#include "fit/hull_planes.h"
 #include "fit/stable_poses.h"
 #include "sphere_set/authored_spheres.h"
 
@@ -99,6 +100,7 @@ Result<BakedObject> bakeObject(const SourceAsset& asset, const ObjectBakeOptions
     const StageTimer timer(object.times.box);
     object.box = fitOrientedBox(mesh.vertices, options.box);
     if (options.authored) takeBox(*options.authored, object);
+    object.hull_planes = fit::hullPlanes(mesh.vertices, object.box.box);
   }
   {
     const StageTimer timer(object.times.stable_poses);

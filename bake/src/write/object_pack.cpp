@@ -31,6 +31,10 @@ Offset<schema::Object> objectTable(FlatBufferBuilder& builder, const BakedObject
   const auto stable_poses = alignedStructs<schema::StablePose>(builder, object.stable_poses);
   const auto imported = importStatistics(builder, object.imported);
   const auto surface = surfaceTable(builder, object.surface);
+  // Nothing is stored where the hull fills the box.
+  const auto hull_planes = object.hull_planes.empty()
+                               ? Offset<flatbuffers::Vector<const schema::HullPlane*>>{}
+                               : alignedStructs<schema::HullPlane>(builder, object.hull_planes);
   const schema::Pose box_pose = bake::toSchema(object.box.box.pose);
   const schema::Vec3 half_extents = bake::toSchema(object.box.box.half_extents);
   const schema::BoxStatistics volumes(object.box.volume, object.box.axis_aligned_volume,
@@ -38,7 +42,7 @@ Offset<schema::Object> objectTable(FlatBufferBuilder& builder, const BakedObject
   const schema::Bounds bounds = bake::toSchema(object.bounds);
   return schema::CreateObject(builder, name, &box_pose, &half_extents, toSchema(object.box.used),
                               &volumes, spheres, statistics, stable_poses, &bounds, imported,
-                              surface);
+                              surface, hull_planes);
 }
 
 /// Those of all objects in one; none when no object has any.

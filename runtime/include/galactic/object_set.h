@@ -20,6 +20,9 @@ struct ObjectModel {
   std::span<const SetSphere> spheres;
   /// Likeliest first, at least one.
   std::span<const StablePose> stable_poses;
+  /// Planes around its convex hull, which cut off corners and edges of the box. Empty where the
+  /// hull fills the box, and in packs that are older than the field.
+  std::span<const HullPlane> hull_planes{};
 };
 
 /// The objects of an object pack, ready to use.

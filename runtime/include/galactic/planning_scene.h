@@ -82,10 +82,12 @@ class PlanningScene {
   /// The box of an object where it rests, or rested before it was held: world_from_box and half
   /// extents.
   [[nodiscard]] OrientedBox objectBox(std::size_t object) const;
-  /// Squared distance from a point of the world to the box of an object, square meters; 0 inside.
-  [[nodiscard]] float squaredDistance(std::size_t object, const Vec3& point) const;
-  /// Which object a hand that closes here grasps: of those whose boxes are nearer to the grasp
-  /// point than EndEffector::grasp_radius, the nearest. None when there is no such object.
+  /// Squared distance from a point of the world to what the hand touches of an object
+  /// (ActionOptions::grasp_shape), square meters; 0 inside.
+  [[nodiscard]] float squaredGraspDistance(std::size_t object, const Vec3& point) const;
+  /// Which object a hand that closes here grasps: of those that are nearer to the grasp point than
+  /// EndEffector::grasp_radius, as squaredGraspDistance() measures, the nearest. None when there is
+  /// no such object.
   [[nodiscard]] std::optional<std::uint32_t> graspedAt(const BasePlace& base) const;
 
   /// Holds an object that rests, as if it were grasped here; all its spheres count. The hand must

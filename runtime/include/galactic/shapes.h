@@ -25,6 +25,17 @@ struct SetSphere {
   friend bool operator==(const SetSphere&, const SetSphere&) = default;
 };
 
+/// A plane with all of an object on one side: dot(normal, p) <= offset for each of its points. The
+/// memory layout is that of a pack.
+struct HullPlane {
+  /// Unit length, out of the object; in its frame.
+  Vec3 normal;
+  /// Meters from the frame's origin, along the normal.
+  float offset = 0;
+
+  friend bool operator==(const HullPlane&, const HullPlane&) = default;
+};
+
 /// A way in which an object rests on a horizontal plane. The memory layout is that of a pack.
 struct StablePose {
   /// plane_from_object: turns the object so that its support face lies down (-Y).

@@ -42,6 +42,14 @@ struct GroundOptions {
   float most_drop = 0.05F;
 };
 
+/// What of a resting object the hand has to touch in order to grasp it.
+enum class GraspShape : std::uint8_t {
+  /// Its oriented box, and all planes around its convex hull that its pack knows.
+  kHull = 0,
+  /// Published code: its oriented box.
+  kBox = 1,
+};
+
 /// From where on the values of an action mean something.
 struct ActionOptions {
   /// A hand that is empty grasps from this value on.
@@ -50,6 +58,7 @@ struct ActionOptions {
   /// published code releases below -0.5, so that a policy can do neither.
   float release = 0.5F;
   float terminate = 0.5F;
+  GraspShape grasp_shape = GraspShape::kHull;
 };
 
 /// What the robot has to do.

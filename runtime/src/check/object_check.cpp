@@ -45,6 +45,26 @@ Result<void> checkStablePoses(const schema::Object& object, const std::string& w
   return offence.result();
 }
 
+/// What a grasp looks at is bounded: many planes would make it slow.
+constexpr flatbuffers::uoffset_t kMostHullPlanes = 128;
+
+Result<void> checkHullPlanes(const schema::Object& object, const std::string& where) {
+  Offence offence(where);
+  const auto* planes = object.hull_planes();
+  if (planes == nullptr) return offence.result();
+  offence.require(planes->size() <= kMostHullPlanes, "hull_planes",
+                  "has {} planes, expected up to {}", planes->size(), kMostHullPlanes);
+  for (flatbuffers::uoffset_t n = 0; n < planes->size() && !offence.found(); ++n) {
+    const schema::HullPlane& plane = *planes->Get(n);
+    const std::string field = fmt::format("hull_planes[{}]", n);
+    offence.require(isUnit(plane.normal()), field + ".normal",
+                    "is not of unit length, expected a direction");
+    offence.require(isCoordinate(plane.offset()), field + ".offset", "is {} m, expected up to {} m",
+                    plane.offset(), kFarthest);
+  }
+  return offence.result();
+}
+
 Result<void> checkObject(const schema::Object& object, std::size_t radii,
                          const std::string& where) {
   Offence offence(where);
@@ -58,6 +78,7 @@ Result<void> checkObject(const schema::Object& object, std::size_t radii,
   offence.require(checkBounds(object.bounds(), where));
   offence.require(checkImport(*object.import_statistics(), where));
   offence.require(checkSurface(*object.surface(), where + ".surface"));
+  offence.require(checkHullPlanes(object, where));
   return offence.result();
 }
 

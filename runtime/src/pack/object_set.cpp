@@ -8,6 +8,7 @@
 namespace galactic {
 
 static_assert(sizeof(StablePose) == sizeof(schema::StablePose));
+static_assert(sizeof(HullPlane) == sizeof(schema::HullPlane));
 
 Result<ObjectSet> ObjectSet::from(const PackFile& pack) {
   const schema::ObjectSet* stored =
@@ -27,6 +28,9 @@ Result<ObjectSet> ObjectSet::from(const PackFile& pack) {
                  detail::fromSchema(*object->box_half_extents())};
     model.spheres = detail::inPlace<SetSphere>(object->spheres());
     model.stable_poses = detail::inPlace<StablePose>(object->stable_poses());
+    if (object->hull_planes() != nullptr) {
+      model.hull_planes = detail::inPlace<HullPlane>(object->hull_planes());
+    }
   }
   return set;
 }

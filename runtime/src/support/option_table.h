@@ -33,6 +33,8 @@ inline constexpr std::array<Named<EpisodeOrder>, 3> kOrderNames{
      {"partition", EpisodeOrder::kPartition}}};
 inline constexpr std::array<Named<SlideDirection>, 2> kSlideNames{
     {{"glide", SlideDirection::kGlide}, {"towards-base", SlideDirection::kTowardsBase}}};
+inline constexpr std::array<Named<GraspShape>, 2> kGraspShapeNames{
+    {{"hull", GraspShape::kHull}, {"box", GraspShape::kBox}}};
 
 /// The names, as errors list them: "a, b or c".
 template <class T>
@@ -129,6 +131,8 @@ void visitMotionOptions(SimulationOptions& o, Visitor& v) {
          "A full hand lets go if its action is below this");
   v.real("terminate-from", o.action.terminate, kThreshold,
          "The robot terminates if its action is at least this");
+  v.choice("grasp-shape", o.action.grasp_shape, kGraspShapeNames,
+           "What of an object the hand has to touch: its convex hull, or its box");
   v.group("Sliding and floor");
   v.preset("slide", o.slide, Preset<SlideOptions>{kSlidePresets, kSlideParts},
            "How a robot that would hit something is pushed clear");

@@ -132,6 +132,28 @@ TEST(ObjectCheck, RefusesWrongSphereStatistics) {
   });
 }
 
+TEST(ObjectCheck, RefusesWrongHullPlanes) {
+  const auto in = [](const std::string& field, const std::string& message, auto change) {
+    return inObject(field, message, [=](ObjectFields& o) {
+      o.hull_planes.emplace(2, HullPlane{{0, 1, 0}, 0.2F});
+      change(*o.hull_planes);
+    });
+  };
+  using Planes = std::vector<HullPlane>;
+  refuse({
+      in("hull_planes", "has 129 planes, expected up to 128",
+         [](Planes& p) { p.resize(129, p.front()); }),
+      in("hull_planes[1].normal", "is not of unit length, expected a direction",
+         [](Planes& p) { p[1].normal.x = 0.5F; }),
+      in("hull_planes[0].normal", "is not of unit length, expected a direction",
+         [](Planes& p) { p[0].normal.y = kNan; }),
+      in("hull_planes[1].offset", "is nan m, expected up to 800 m",
+         [](Planes& p) { p[1].offset = kNan; }),
+      in("hull_planes[1].offset", "is -801 m, expected up to 800 m",
+         [](Planes& p) { p[1].offset = -801; }),
+  });
+}
+
 TEST(ObjectCheck, RefusesWrongStablePoses) {
   refuse({
       inObject("stable_poses", "is empty, expected at least one pose",

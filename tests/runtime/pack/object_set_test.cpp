@@ -26,7 +26,21 @@ TEST(ObjectSet, ShowsWhatThePackHolds) {
     EXPECT_EQ(std::vector(object.spheres.begin(), object.spheres.end()), made.spheres);
     EXPECT_EQ(std::vector(object.stable_poses.begin(), object.stable_poses.end()),
               made.stable_poses);
+    EXPECT_TRUE(object.hull_planes.empty()) << "an older pack has none";
   }
+}
+
+TEST(ObjectSet, ShowsThePlanesAroundHulls) {
+  ObjectPackFields fields = smallObjects();
+  fields.objects[1].hull_planes = {{{0, 1, 0}, 0.1F}, {{0.6F, 0, -0.8F}, -0.2F}};
+  const AlignedBytes bytes = buildPack(fields);
+  const Result<PackFile> pack = PackFile::view(bytes.bytes(), "objects.pack");
+  ASSERT_TRUE(pack.has_value()) << pack.error().message;
+  const Result<ObjectSet> set = ObjectSet::from(*pack);
+  ASSERT_TRUE(set.has_value()) << set.error().message;
+  const ObjectModel& object = set->objects()[1];
+  EXPECT_EQ(std::vector(object.hull_planes.begin(), object.hull_planes.end()),
+            fields.objects[1].hull_planes);
 }
 
 TEST(ObjectSet, PointsIntoThePackWithoutCopying) {

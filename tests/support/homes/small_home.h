@@ -124,7 +124,8 @@ inline WorldFields smallHomeWorld() {
 /// The small home, opened.
 class SmallHome {
  public:
-  SmallHome() : path_(writeWorld(folder_, smallHomeWorld())) {
+  explicit SmallHome(const WorldFields& fields = smallHomeWorld())
+      : path_(writeWorld(folder_, fields)) {
     Result<World> world = World::open(std::span(&path_, 1));
     if (!world) throw std::runtime_error(world.error().where + ": " + world.error().message);
     world_ = std::make_unique<World>(std::move(*world));

@@ -25,11 +25,19 @@ flatbuffers::Offset<schema::Object> buildObject(flatbuffers::FlatBufferBuilder& 
       builder, builder.CreateString(fields.format), 1, 1, fields.triangles_read,
       fields.triangles_degenerate, 0, fields.triangles);
   const auto surface = buildSurface(builder, fields.surface);
-  return schema::CreateObject(builder, name, fields.box_pose ? &pose : nullptr,
-                              fields.box_half_extents ? &half_extents : nullptr,
-                              static_cast<schema::BoxFit>(fields.box_fit),
-                              fields.box_statistics ? &box : nullptr, spheres, statistics,
-                              pose_vector, fields.bounds ? &bounds : nullptr, import, surface);
+  flatbuffers::Offset<flatbuffers::Vector<const schema::HullPlane*>> hull_planes;
+  if (fields.hull_planes) {
+    std::vector<schema::HullPlane> planes;
+    for (const HullPlane& plane : *fields.hull_planes) {
+      planes.emplace_back(stored(plane.normal), plane.offset);
+    }
+    hull_planes = alignedStructs(builder, planes);
+  }
+  return schema::CreateObject(
+      builder, name, fields.box_pose ? &pose : nullptr,
+      fields.box_half_extents ? &half_extents : nullptr,
+      static_cast<schema::BoxFit>(fields.box_fit), fields.box_statistics ? &box : nullptr, spheres,
+      statistics, pose_vector, fields.bounds ? &bounds : nullptr, import, surface, hull_planes);
 }
 
 }  // namespace

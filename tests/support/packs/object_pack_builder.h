@@ -33,6 +33,8 @@ struct ObjectFields {
   SphereStatisticsFields statistics;
   std::vector<StablePose> stable_poses{{{0, 0, 0, 1}, 0, 0.75F}, {{1, 0, 0, 0}, 0.2F, 0.25F}};
   std::optional<BoundsFields> bounds = BoundsFields{};
+  /// None: the pack of an older program.
+  std::optional<std::vector<HullPlane>> hull_planes;
   std::string format = "Wavefront OBJ";
   std::uint64_t triangles_read = 6;
   std::uint64_t triangles_degenerate = 1;

@@ -47,6 +47,7 @@ struct BakedObject {
   Bounds bounds;
   BoxFitResult box;
   std::vector<StablePose> stable_poses;
+  std::vector<HullPlane> hull_planes;
   /// What was asked for.
   float eps = 0;
   float tau = 0;

@@ -164,6 +164,11 @@ RestingObjects::RestingObjects(std::size_t most_objects, float largest_radius,
 
 std::uint32_t RestingObjects::bandOf(float y) noexcept { return setOf(y, kBands); }
 
+std::uint32_t RestingObjects::inColumnOf(const Vec3& center, std::size_t plane) const noexcept {
+  return planes_[plane].along_x[setOf(center.x, kStrips)] &
+         planes_[plane].along_z[setOf(center.z, kStrips)];
+}
+
 void RestingObjects::clear() noexcept {
   std::fill(planes_.begin(), planes_.end(), SetPlane{});
   std::fill(resting_.begin(), resting_.end(), 0U);

@@ -90,6 +90,18 @@ class RestingObjects {
     }
   }
 
+  /// Calls `visit(index)` for each resting object, ascending, that a sphere (radius at most the
+  /// largest) around `center` could overlap, be it higher or lower: few, and all that it overlaps.
+  template <class Visit>
+  void forEachInColumnOf(const Vec3& center, const Visit& visit) const {
+    for (std::size_t p = 0; p < planes_.size(); ++p) {
+      for (std::uint32_t bits = inColumnOf(center, p); bits != 0; bits &= bits - 1) {
+        visit(static_cast<std::uint32_t>(p * kPlaneObjects) +
+              static_cast<std::uint32_t>(std::countr_zero(bits)));
+      }
+    }
+  }
+
   /// What `touches` reads, for the kernels and the tests that compare them.
   [[nodiscard]] RestingView view() const noexcept;
 
@@ -107,6 +119,8 @@ class RestingObjects {
  private:
   /// Index of the set of a height.
   [[nodiscard]] static std::uint32_t bandOf(float y) noexcept;
+  /// The objects of a plane whose strips hold the center, as bits.
+  [[nodiscard]] std::uint32_t inColumnOf(const Vec3& center, std::size_t plane) const noexcept;
 
   /// Calls `change` with each set that object `index` belongs to.
   template <class Change>

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "simulation/collision/grasp_query.h"
 #include "simulation/phases/object_placement.h"
 #include "simulation/state/grip_frame.h"
 #include "support/random_stream.h"
@@ -13,8 +14,12 @@ namespace {
 
 void grasp(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
-  const std::optional<std::uint32_t> object =
-      step.state.resting(n).nearest(gripOrigin(step.state.grip(n)), step.model.motion.grasp_radius);
+  const std::uint32_t start = step.state.env(n).start;
+  const std::optional<std::uint32_t> object = nearestToGrasp(
+      step.state.resting(n), {gripOrigin(step.state.grip(n)), step.model.motion.grasp_radius},
+      step.model.options.action.grasp_shape,
+      [&](std::uint32_t index) -> const ObjectModel& { return step.model.object(start, index); },
+      [&](std::uint32_t index) -> const Pose& { return step.state.objects(n)[index]; });
   if (object) takeInHand(step, e, *object);
 }
 

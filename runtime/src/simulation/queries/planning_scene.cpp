@@ -7,6 +7,7 @@
 #include "galactic/kinematics.h"
 #include "galactic/robot.h"
 #include "simulation/collision/collision.h"
+#include "simulation/collision/grasp_query.h"
 #include "simulation/collision/resting_objects.h"
 #include "simulation/phases/move.h"
 #include "simulation/phases/object_placement.h"
@@ -300,15 +301,23 @@ OrientedBox PlanningScene::objectBox(std::size_t object) const {
   return {{box.center, pose.rotation * own.pose.rotation}, box.half_extents};
 }
 
-float PlanningScene::squaredDistance(std::size_t object, const Vec3& point) const {
-  return simulation::squaredDistance(
-      simulation::restingBox(impl_->models()[object]->box, impl_->poseOf(object)), point);
+float PlanningScene::squaredGraspDistance(std::size_t object, const Vec3& point) const {
+  const ObjectModel& model = *impl_->models()[object];
+  const Pose& pose = impl_->poseOf(object);
+  return simulation::squaredGraspDistance(model, simulation::restingBox(model.box, pose), pose,
+                                          point, impl_->options().action.grasp_shape);
 }
 
 std::optional<std::uint32_t> PlanningScene::graspedAt(const BasePlace& base) const {
   const Pose world_from_grip = impl_->worldFromRoot(base) * impl_->rootFromGrip();
-  return impl_->resting().nearest(world_from_grip.translation,
-                                  impl_->world().robot().endEffector()->grasp_radius);
+  const auto modelOf = [this](std::uint32_t index) -> const ObjectModel& {
+    return *impl_->models()[index];
+  };
+  const auto poseOf = [this](std::uint32_t index) -> const Pose& { return impl_->poseOf(index); };
+  return simulation::nearestToGrasp(
+      impl_->resting(),
+      {world_from_grip.translation, impl_->world().robot().endEffector()->grasp_radius},
+      impl_->options().action.grasp_shape, modelOf, poseOf);
 }
 
 void PlanningScene::hold(std::uint32_t object, const BasePlace& base) { impl_->hold(object, base); }

@@ -21,7 +21,8 @@ SimulationOptions unusualOptions() {
   options.order = EpisodeOrder::kPartition;
   options.rank = 2;
   options.ranks = 3;
-  options.action = {.grasp = 0.1F, .release = -0.7F, .terminate = 1.0F / 3};
+  options.action = {
+      .grasp = 0.1F, .release = -0.7F, .terminate = 1.0F / 3, .grasp_shape = GraspShape::kBox};
   options.slide = {.attempts = 5, .direction = SlideDirection::kTowardsBase, .step = 0.05F};
   options.placement = {.attempts = 2,
                        .most_lift = 0.3F,

@@ -222,10 +222,73 @@ TEST_F(PlanningSceneInTheSmallHome, MeasuresDistancesToBoxes) {
   const std::uint32_t target = state().target;
   ASSERT_LT(target, scene_.objectCount());
   const OrientedBox box = scene_.objectBox(target);
-  EXPECT_EQ(scene_.squaredDistance(target, box.pose.translation), 0);
+  EXPECT_EQ(scene_.squaredGraspDistance(target, box.pose.translation), 0);
   const float above = 0.3F;
   const Vec3 point = box.pose.translation + Vec3{0, box.half_extents.y + above, 0};
-  EXPECT_NEAR(scene_.squaredDistance(target, point), above * above, kTolerance);
+  EXPECT_NEAR(scene_.squaredGraspDistance(target, point), above * above, kTolerance);
+}
+
+/// The small home with octagonal posts in its boxes: planes that leave out the upright edges.
+WorldFields homeOfPosts() {
+  WorldFields fields = smallHomeWorld();
+  constexpr float kDiagonal = 0.70710678F;
+  for (ObjectFields& object : fields.objects.objects) {
+    object.hull_planes.emplace();
+    for (const float x : {-kDiagonal, kDiagonal}) {
+      for (const float z : {-kDiagonal, kDiagonal}) {
+        object.hull_planes->push_back({{x, 0, z}, 0.05F});
+      }
+    }
+  }
+  return fields;
+}
+
+/// Puts the grip (its sphere has 15 mm) to this place in the frame of the target's box and closes
+/// the hand: what it holds then.
+std::optional<std::uint32_t> graspedIn(const World& world, GraspShape shape, const Vec3& beside) {
+  SimulationOptions options = oneEnv();
+  options.action.grasp_shape = shape;
+  BatchSimulator simulator = simulatorOf(world, options);
+  PlanningScene scene(world, options);
+  const EnvState state = simulator.envState(0);
+  scene.update(state);
+  scene.setJoints(state.joint_positions);
+  const BasePlace base = scene.baseOf(state);
+  const Vec3 grip = (scene.worldFromRoot(base) * scene.rootFromGrip()).translation;
+  const Vec3 way = scene.objectBox(state.target).pose * beside - grip;
+  std::vector<Pose> objects = state.objects;
+  for (Pose& pose : objects) pose.translation = pose.translation + Vec3{0, 20, 0};
+  objects[state.target] = state.objects[state.target];
+  objects[state.target].translation = objects[state.target].translation - way;
+  const FollowedState moved{.world_from_root = state.world_from_root,
+                            .joint_positions = state.joint_positions,
+                            .objects = objects,
+                            .held = -1,
+                            .was_hindered = false};
+  SmallHomeRow row{};
+  simulator.follow(row, std::span(&moved, 1));
+  scene.update(simulator.envState(0));
+  const std::optional<std::uint32_t> expected = scene.graspedAt(base);
+  row[kHand] = 1;
+  simulator.step(row);
+  const std::int32_t held = simulator.envState(0).held;
+  EXPECT_EQ(held, expected ? static_cast<std::int32_t>(*expected) : -1);
+  return expected;
+}
+
+TEST(AGrasp, AsksForTheHullWhereItIsKnownAndForTheBoxWhereThatIsWanted) {
+  const SmallHome posts(homeOfPosts());
+  const SmallHome boxes;
+  // 6 mm off the upright edge of the box, 26 mm off the post.
+  const Vec3 corner{0.054F, 0, 0.054F};
+  const Vec3 face{0.06F, 0, 0};
+  const Vec3 away{0.07F, 0, 0};
+  for (const GraspShape shape : {GraspShape::kHull, GraspShape::kBox}) {
+    EXPECT_EQ(graspedIn(posts.world(), shape, corner).has_value(), shape == GraspShape::kBox);
+    EXPECT_TRUE(graspedIn(boxes.world(), shape, corner)) << "an older pack knows boxes only";
+    EXPECT_TRUE(graspedIn(posts.world(), shape, face));
+    EXPECT_FALSE(graspedIn(posts.world(), shape, away));
+  }
 }
 
 TEST(BasePlace, DrivesAlongItsHeading) {

@@ -1,0 +1,49 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "galactic/object_set.h"
+#include "galactic/pose.h"
+#include "galactic/simulation_options.h"
+#include "simulation/collision/resting_objects.h"
+
+namespace galactic::simulation {
+
+/// How far a point (world frame) is beyond the outermost plane around the object's convex hull,
+/// meters: 0 behind all of them, and where none is known. Not more than the distance to the hull.
+[[nodiscard]] float distanceToHullPlanes(const ObjectModel& object, const Pose& world_from_object,
+                                         const Vec3& point) noexcept;
+
+/// Squared distance from a point (world frame) to what the hand touches of an object that rests as
+/// `box`, square meters: to its box or, with GraspShape::kHull, to the further of its box and the
+/// planes around its hull.
+[[nodiscard]] float squaredGraspDistance(const ObjectModel& object, const RestingBox& box,
+                                         const Pose& world_from_object, const Vec3& point,
+                                         GraspShape shape) noexcept;
+
+/// The resting object nearest to `center` among those that a sphere of `radius` (at most the
+/// objects' largest) touches; the lower index when equally near. `model(index)` and `pose(index)`
+/// are those of an object.
+template <class Model, class ObjectPose>
+[[nodiscard]] std::optional<std::uint32_t> nearestToGrasp(const RestingObjects& resting,
+                                                          const std::pair<Vec3, float>& sphere,
+                                                          GraspShape shape, const Model& model,
+                                                          const ObjectPose& pose) {
+  const auto& [center, radius] = sphere;
+  if (shape == GraspShape::kBox) return resting.nearest(center, radius);
+  std::optional<std::uint32_t> best;
+  float least = radius * radius;
+  resting.forEachInColumnOf(center, [&](std::uint32_t index) {
+    const RestingBox& box = resting.box(index);
+    // Planes are looked at where the box is near enough only.
+    if (!(squaredDistance(box, center) < least)) return;
+    const float squared = squaredGraspDistance(model(index), box, pose(index), center, shape);
+    if (!(squared < least)) return;
+    least = squared;
+    best = index;
+  });
+  return best;
+}
+
+}  // namespace galactic::simulation
