@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "galactic/error.h"
+#include "pack_tool/diff/report_diff.h"
 #include "pack_tool/pictures/figure_picture.h"
 #include "support/nearest_name.h"
 #include "support/number_text.h"
@@ -23,6 +24,9 @@ namespace {
 
 /// More than any length in a pack.
 constexpr double kMostMeters = 1000;
+/// A million times as much.
+constexpr double kMostShare = 1e6;
+constexpr const char* kPackOrReport = "PACK|REPORT.json";
 
 /// Exactly `Count` finite numbers separated by commas.
 template <std::size_t Count>
@@ -91,10 +95,11 @@ void addRadius(CLI::App& verb, std::optional<float>& radius) {
 struct PackOption {
   std::string name;
   std::string meaning;
+  std::string type = "PACK";
 };
 
 void addPack(CLI::App& verb, const PackOption& option, std::filesystem::path& pack) {
-  verb.add_option(option.name, pack, option.meaning)->required()->type_name("PACK");
+  verb.add_option(option.name, pack, option.meaning)->required()->type_name(option.type);
 }
 
 void addOutput(CLI::App& verb, std::filesystem::path& output) {
@@ -162,19 +167,49 @@ void addColumn(CLI::App& app, ColumnOptions& options) {
   addTrusted(verb, options.trust);
 }
 
+/// Packs and reports have options of their own.
+void checkDiff(const CLI::App& verb, const DiffOptions& options) {
+  const bool are_reports = isReport(options.a);
+  if (are_reports != isReport(options.b)) {
+    throw CLI::ValidationError(
+        "diff", fmt::format("found the report {} and the pack {}; give two packs or two reports",
+                            (are_reports ? options.a : options.b).string(),
+                            (are_reports ? options.b : options.a).string()));
+  }
+  const std::vector<const char*> misplaced =
+      are_reports ? std::vector<const char*>{"--tolerance", "--content-only", "--trusted"}
+                  : std::vector<const char*>{"--share"};
+  for (const char* option : misplaced) {
+    if (verb.count(option) == 0) continue;
+    throw CLI::ValidationError(
+        option, fmt::format("is about {}, found two {}; leave it out",
+                            are_reports ? "packs" : "reports", are_reports ? "reports" : "packs"));
+  }
+}
+
 void addDiff(CLI::App& app, DiffOptions& options) {
   CLI::App& verb = *app.add_subcommand(
-      "diff", "Compare two packs of one kind by their meaning; exit code 7 if they differ");
-  addPack(verb, {"a", "A pack of a scene, of objects or of a robot"}, options.a);
-  addPack(verb, {"b", "Another pack of the same kind"}, options.b);
+      "diff",
+      "Compare two packs of one kind by their meaning, or two reports of galactic-bake; exit code "
+      "7 if they differ");
+  addPack(verb, {"a", "A pack of any kind, or the golden report: a .json file", kPackOrReport},
+          options.a);
+  addPack(verb, {"b", "Another pack of the same kind, or the report to compare", kPackOrReport},
+          options.b);
   verb.add_option("--tolerance", options.tolerance, "Lengths that differ by no more are equal")
       ->check(numberCheck(0, kMostMeters))
       ->option_text(fmt::format("METERS [{}]", options.tolerance));
+  verb.add_option(
+          "--share", options.share,
+          "Numbers of reports that differ by no more than this share are equal; 0.01 is 1 %")
+      ->check(numberCheck(0, kMostShare))
+      ->type_name("SHARE");
   verb.add_flag_callback(
       "--content-only", [&options] { options.scope = DiffScope::kContent; },
       "Ignore provenance, options and statistics: compare what is simulated");
   addJson(verb, options.form);
   addTrusted(verb, options.trust);
+  verb.callback([&verb, &options] { checkDiff(verb, options); });
 }
 
 /// "name=value,name=value" as joint values.

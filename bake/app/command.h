@@ -24,10 +24,6 @@ struct ToolOptions {
   /// Threads; 0 until the command line is read: one per processor.
   std::uint32_t jobs = 0;
   std::filesystem::path report{};
-  /// Golden report to compare with; empty: none. See compareReports.
-  std::filesystem::path golden_report{};
-  /// Share by which the numbers of the reports may differ.
-  std::optional<double> tolerance{};
   bool dry_run = false;
   bool keep_going = false;
 };

@@ -300,9 +300,6 @@ class CommandLine {
   }
 
   static Result<void> checkRun(const BakeCommand& command, const OptionReader& given) {
-    if (given.isGiven("check-tolerance") && !given.isGiven("check")) {
-      return given.refuse("check-tolerance", "is about `check`; add it, or leave this out");
-    }
     if (command.many.no_cache && given.isGiven("cache")) {
       return given.refuse("no-cache", "does not go with `cache`; give one");
     }
@@ -320,7 +317,7 @@ class CommandLine {
       return fail(ErrorCode::kInvalidInput, "--print-recipe",
                   "drafts a recipe of one URDF; give one, or no input to see every key");
     }
-    for (const char* ignored : {"out", "recipe", "spheres", "report", "check"}) {
+    for (const char* ignored : {"out", "recipe", "spheres", "report"}) {
       if (!given.isGiven(ignored)) continue;
       return given.refuse(ignored,
                           "does not go with `print-recipe`, which prints a recipe and bakes "

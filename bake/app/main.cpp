@@ -17,7 +17,6 @@
 #include "followers.h"
 #include "galactic/bake/robot_recipe.h"
 #include "report.h"
-#include "report_check.h"
 #include "support/out_of_memory.h"
 #include "terminal.h"
 
@@ -33,7 +32,6 @@ ReadLog namedFiles(const BakeCommand& command, const JobList& list) {
   ReadLog named;
   for (const fs::path& input : command.inputs) named.noteRead(input);
   named.noteRead(command.config);
-  named.noteRead(command.run.golden_report);
   for (const PackJob& pack : list.assets) {
     for (const fs::path& file : filesOf(pack.job)) named.noteRead(file);
   }
@@ -146,9 +144,6 @@ Error incomplete(const JobList& list, const std::vector<LeftOut>& missing) {
 
 int bakeList(const BakeCommand& command, const JobList& list) {
   if (auto checked = checkOutputs(command, list); !checked) return refuse(checked.error());
-  // Before anything is baked for a golden report that is not there.
-  auto golden = goldenOf(command);
-  if (!golden) return refuse(golden.error());
   if (auto made = makeOutputFolder(command, list); !made) return refuse(made.error());
   const BuildOutcome outcome = buildAll(command, list);
   int exit_code = exitCodeOf(outcome);
@@ -165,11 +160,7 @@ int bakeList(const BakeCommand& command, const JobList& list) {
     const int code = refuse(written.error());
     return exit_code == kExitOk ? code : exit_code;
   }
-  if (!*golden) return exit_code;
-  report.erase(kRunKey);
-  (**golden).report.erase(kRunKey);
-  const int differs = checkReport(**golden, report, command);
-  return exit_code == kExitOk ? differs : exit_code;
+  return exit_code;
 }
 
 int printSceneNames(const BakeCommand& command, DatasetJobs dataset) {

@@ -118,7 +118,7 @@ void addWorld(const JobList& list, const BuildOutcome& outcome, Json& json) {
   Json run{{"seconds", outcome.seconds}, {"stopped", outcome.stopped}};
   run["packs"] = Json::array();
   for (const PackOutcome& pack : outcome.packs) run["packs"].push_back(progressOf(pack));
-  json[kRunKey] = std::move(run);
+  json["run"] = std::move(run);
 }
 
 /// Sentences, and of which packs they are said: many scenes lack the same things.

@@ -10,13 +10,10 @@ namespace galactic::bake {
 
 using Json = OrderedJson;
 
-/// The member of a world's report that says how the run went: whatever else is in it does not
-/// depend on what was baked before.
-inline constexpr const char* kRunKey = "run";
-
 [[nodiscard]] const char* nameOf(PackState state);
 
-/// What was baked, what failed, what was left out, and what the world lists.
+/// What was baked, what failed, what was left out, and what the world lists. The member "run" of a
+/// world's report says how the run went; nothing else depends on what was baked before.
 [[nodiscard]] Json reportOf(const JobList& list, const BuildOutcome& outcome);
 
 /// Writes a report, atomically.

@@ -61,20 +61,22 @@ tool() {
   "${GALACTIC_BIN:+$GALACTIC_BIN/}$name" "$@"
 }
 
-# bake NAME ARGUMENT...: makes OUT/NAME.pack and compares its report.
+# bake NAME ARGUMENT...: makes OUT/NAME.pack and compares its report, or keeps it.
 bake() {
   local name=$1
   shift
-  local reports=(--check "$golden/$name.json" --report "$out/$name.json")
-  [ "$update" = false ] || reports=(--report "$golden/$name.json")
-  step "bake $name" tool galactic-bake "$@" -o "$out/$name.pack" --quiet "${reports[@]}"
-  [ "$update" = false ] || forget_folder "$golden/$name.json"
+  step "bake $name" tool galactic-bake "$@" -o "$out/$name.pack" --quiet --report "$out/$name.json"
+  if [ "$update" = true ]; then
+    keep_report "$name"
+  else
+    step "compare the report of $name" tool galactic-pack diff "$golden/$name.json" "$out/$name.json"
+  fi
 }
 
-# forget_folder FILE: a report that is kept says nothing of this machine.
-forget_folder() {
+# keep_report NAME: as the golden one, which says nothing of this machine.
+keep_report() {
   local text
-  text=$(<"$1") && printf '%s\n' "${text//"$out/"/}" >"$1"
+  text=$(<"$out/$1.json") && printf '%s\n' "${text//"$out/"/}" >"$golden/$1.json"
 }
 
 cd "$root" || exit 2

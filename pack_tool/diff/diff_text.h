@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "pack_tool/diff/pack_diff.h"
+#include "pack_tool/diff/grid_diff.h"
 
 namespace galactic::pack_tool {
 

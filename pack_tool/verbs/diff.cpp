@@ -6,6 +6,7 @@
 #include "pack_tool/diff/diff_text.h"
 #include "pack_tool/diff/episode_diff.h"
 #include "pack_tool/diff/render_diff.h"
+#include "pack_tool/diff/report_diff.h"
 #include "pack_tool/support/open_scene.h"
 #include "pack_tool/verbs/verbs.h"
 #include "support/try.h"
@@ -115,14 +116,17 @@ Result<PackDifference> comparePacks(const PackFile& a, const PackFile& b,
   return difference;
 }
 
+Result<PackDifference> compareFiles(const DiffOptions& options) {
+  if (isReport(options.a)) return compareReports(options.a, options.b, options.share);
+  ASSIGN_OR_RETURN(const auto a, PackFile::open(options.a, options.trust));
+  ASSIGN_OR_RETURN(const auto b, PackFile::open(options.b, options.trust));
+  return comparePacks(a, b, options);
+}
+
 }  // namespace
 
 int runDiff(const DiffOptions& options, const Console& console) {
-  const auto a = PackFile::open(options.a, options.trust);
-  if (!a) return reportError(console, a.error());
-  const auto b = PackFile::open(options.b, options.trust);
-  if (!b) return reportError(console, b.error());
-  const auto difference = comparePacks(*a, *b, options);
+  const auto difference = compareFiles(options);
   if (!difference) return reportError(console, difference.error());
   console.out << (options.form == OutputForm::kJson ? jsonText(diffJson(*difference))
                                                     : diffText(*difference));

@@ -67,13 +67,15 @@ struct DiffOptions {
   std::filesystem::path b = {};
   /// Lengths that differ by no more than this are equal, meters.
   double tolerance = 0;
+  /// Of reports: the share by which numbers may differ; see compareReports.
+  std::optional<double> share = std::nullopt;
   DiffScope scope = DiffScope::kEverything;
   OutputForm form = OutputForm::kText;
   Trust trust = Trust::kVerify;
 };
 
-/// Compares two packs of one kind by their meaning; kExitDiffers when
-/// they differ.
+/// Compares two packs of one kind by their meaning, or two reports of galactic-bake; kExitDiffers
+/// when they differ.
 [[nodiscard]] int runDiff(const DiffOptions& options, const Console& console);
 
 /// Two points of the ground plane, the ends of a vertical slice.

@@ -146,8 +146,7 @@ TEST(CommandLine, RefusesOptionsThatAreGivenTwice) {
 }
 
 TEST(CommandLine, TakesAValueOfEveryOption) {
-  const std::set<std::string> needs_another{"held-out", "split-seed", "check-tolerance", "inside",
-                                            "collection"};
+  const std::set<std::string> needs_another{"held-out", "split-seed", "inside", "collection"};
   for (const auto& [base, options] : allOptions()) {
     for (const WalkedOption& option : options) {
       if (needs_another.contains(option.name)) continue;
@@ -195,7 +194,6 @@ TEST(CommandLine, RefusesWhatWouldBeIgnored) {
             "--inside: says what the room is, and --keep all stores"},
            {{"room.glb", "--keep", "all", "--keep-components", "2"},
             "--keep-components: says what the room is, and --keep all"},
-           {{"room.glb", "--check-tolerance", "0.1"}, "--check-tolerance: is about --check"},
            {{"room.glb", "--no-render-meshes", "--texture-size", "64"},
             "--texture-size: does not go with --no-render-meshes"},
            {{"robot.urdf", "--obb", "min"}, "--obb: does not go with --as robot"},
@@ -266,8 +264,6 @@ TEST(CommandLine, KeepsTheKeysOfJobsWhateverTheRunIsLike) {
   for (const auto& options :
        {test::walk(ToolOptions{}), test::walk(ManyPacksOptions{}), test::walk(RecipeCommand{})}) {
     for (const WalkedOption& option : options) {
-      // Where the packs go, and what needs another option.
-      if (option.name == "check-tolerance") continue;
       SCOPED_TRACE(option.name);
       const auto before = keysOf(parse({recipe}));
       ASSERT_EQ(before.size(), 1U);

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "pack_tool/diff/pack_diff.h"
+#include "pack_tool/diff/grid_diff.h"
 #include "pack_tool/verbs/verbs.h"
 #include "support/pack_tool_fixture.h"
 

@@ -1,11 +1,9 @@
-#include "pack_tool/diff/pack_diff.h"
+#include "pack_tool/diff/grid_diff.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
-#include <unordered_map>
 #include <utility>
 
 namespace galactic::pack_tool {
@@ -122,58 +120,6 @@ class GridComparison {
   std::vector<Span> spans_b_;
 };
 
-std::string leafText(const Json& json) {
-  if (json.is_string()) return json.get<std::string>();
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-/// The key that tells the elements of a list apart, none when they go by position.
-const char* keyOfList(const Json& list) {
-  for (const char* key : {"name", "region", "path"}) {
-    const auto has_key = [key](const Json& element) {
-      return element.is_object() && element.contains(key);
-    };
-    if (!list.empty() && std::all_of(list.begin(), list.end(), has_key)) return key;
-  }
-  return nullptr;
-}
-
-/// Values with their paths.
-using Leaves = std::vector<std::pair<std::string, Json>>;
-
-/// All leaves of a JSON value with their paths, in order. Lists are told apart by their keys; a
-/// repeated key gets its number.
-void flatten(const Json& json, const std::string& path, Leaves& leaves) {
-  const auto extended = [&path](const std::string& step) {
-    return path.empty() ? step : path + '.' + step;
-  };
-  if (json.is_object()) {
-    for (const auto& [key, value] : json.items()) flatten(value, extended(key), leaves);
-  } else if (json.is_array()) {
-    const char* key = keyOfList(json);
-    std::unordered_map<std::string, std::size_t> seen;
-    for (std::size_t n = 0; n < json.size(); ++n) {
-      const std::string name = key == nullptr ? std::to_string(n) : leafText(json[n].at(key));
-      const std::size_t number = ++seen[name];
-      const std::string step = extended(number > 1 ? fmt::format("{}#{}", name, number) : name);
-      Json value = json[n];
-      if (key != nullptr) value.erase(key);
-      // {"name": ..., "value": ...} reads best as one leaf.
-      if (value.is_object() && value.size() == 1 && value.contains("value")) value = value["value"];
-      flatten(value, step, leaves);
-    }
-  } else {
-    leaves.emplace_back(path, json);
-  }
-}
-
-bool sameLeaf(const Json& a, const Json& b, double tolerance) {
-  if (a.is_number_float() && b.is_number_float()) {
-    return std::abs(a.get<double>() - b.get<double>()) <= tolerance;
-  }
-  return a == b;
-}
-
 }  // namespace
 
 double commonHeight(const std::vector<Span>& a, const std::vector<Span>& b) {
@@ -192,37 +138,6 @@ double commonHeight(const std::vector<Span>& a, const std::vector<Span>& b) {
 
 GridDifference compareGrids(const ColumnGrid& a, const ColumnGrid& b, double tolerance) {
   return GridComparison(a, b, tolerance).run();
-}
-
-std::vector<FieldDifference> compareFields(const Json& a, const Json& b, double tolerance) {
-  Leaves leaves_a;
-  Leaves leaves_b;
-  flatten(a, "", leaves_a);
-  flatten(b, "", leaves_b);
-  const auto places_of = [](const Leaves& leaves) {
-    std::unordered_map<std::string_view, std::size_t> places;
-    // Of equal paths the first counts.
-    for (std::size_t n = 0; n < leaves.size(); ++n) places.try_emplace(leaves[n].first, n);
-    return places;
-  };
-  const auto places_a = places_of(leaves_a);
-  const auto places_b = places_of(leaves_b);
-  std::vector<FieldDifference> differences;
-  for (const auto& [path, value] : leaves_a) {
-    const auto other = places_b.find(path);
-    if (other == places_b.end()) {
-      differences.push_back({path, leafText(value), "none"});
-      continue;
-    }
-    const Json& value_b = leaves_b[other->second].second;
-    if (!sameLeaf(value, value_b, tolerance)) {
-      differences.push_back({path, leafText(value), leafText(value_b)});
-    }
-  }
-  for (const auto& [path, value] : leaves_b) {
-    if (!places_a.contains(path)) differences.push_back({path, "none", leafText(value)});
-  }
-  return differences;
 }
 
 }  // namespace galactic::pack_tool

@@ -1,22 +1,12 @@
 #pragma once
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "galactic/column_grid.h"
-#include "pack_tool/describe/pack_description.h"
+#include "pack_tool/diff/field_diff.h"
 #include "pack_tool/mesh/grid_view.h"
 
 namespace galactic::pack_tool {
-
-/// A named value that is not the same on both sides; "none" where a side has no such value.
-struct FieldDifference {
-  std::string field;
-  std::string a;
-  std::string b;
-
-  friend bool operator==(const FieldDifference&, const FieldDifference&) = default;
-};
 
 /// A column that is not the same on both sides.
 struct ColumnDifference {
@@ -61,12 +51,6 @@ inline constexpr std::size_t kWorstColumns = 5;
 /// `tolerance` (meters) are equal.
 [[nodiscard]] GridDifference compareGrids(const ColumnGrid& a, const ColumnGrid& b,
                                           double tolerance);
-
-/// Compares two JSON values leaf by leaf. Fractions that differ by no more than `tolerance` are
-/// equal. A list of objects that all have a "name", a "region" or a "path" is compared by it and
-/// not by position.
-[[nodiscard]] std::vector<FieldDifference> compareFields(const Json& a, const Json& b,
-                                                         double tolerance);
 
 /// Height that is free in both of two lists of ascending, disjoint spans, meters.
 [[nodiscard]] double commonHeight(const std::vector<Span>& a, const std::vector<Span>& b);
