@@ -55,7 +55,7 @@ TEST_F(CiJob, FailsWithSevenWhereABakeDiffersAndStillChecksThePacks) {
   const ProgramRun job = run({"out", "crate"});
   EXPECT_EQ(job.exit_code, 7);
   std::ostringstream line;
-  line << "crate.json: baked[0].spheres.count: " << count << ", expected " << count + 1 << "\n";
+  line << "baked.crate.spheres.count: " << count + 1 << " | " << count << "\n";
   EXPECT_THAT(job.out, AllOf(HasSubstr(line.str()), HasSubstr("failed with exit code 7"),
                              HasSubstr("crate.pack: ok"), HasSubstr("== compare crate")));
 }
