@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <random>
 #include <span>
 #include <vector>
 
@@ -123,5 +124,16 @@ class BoxRoom {
   std::unique_ptr<PackFile> pack_;
   std::unique_ptr<Scene> scene_;
 };
+
+/// A room with `pieces` of furniture, of random places and heights, on a floor at height 0.
+inline BoxRoom furnishedRoom(std::mt19937& random, int pieces) {
+  std::vector<Block> blocks{{{-1, -0.4F, -1}, {4, 0, 4}}};
+  for (int n = 0; n < pieces; ++n) {
+    const float x = uniformIn(random, 0, 2.5F);
+    const float z = uniformIn(random, 0, 2.5F);
+    blocks.push_back({{x, 0, z}, {x + 0.4F, uniformIn(random, 0.1F, 1.2F), z + 0.3F}});
+  }
+  return BoxRoom(std::move(blocks));
+}
 
 }  // namespace galactic::test

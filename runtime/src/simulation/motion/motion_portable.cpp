@@ -1,8 +1,7 @@
 #include "column_grid/column_grid_kernels.h"
 #include "simulation/motion/motion_kernels.h"
 
-// Vectors of eight floats are passed between functions of this file only.
-#pragma GCC diagnostic ignored "-Wpsabi"
+// Needs what is above.
 #include "simulation/motion/motion_kernel.inl"
 
 namespace galactic::simulation {

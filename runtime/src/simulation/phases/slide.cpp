@@ -24,8 +24,6 @@ bool moveBase(const ChunkStep& step, std::size_t e, const Push& by) {
   return under.height == base.y;
 }
 
-float partOf(float cell) { return cell - std::floor(cell); }
-
 /// Slides one candidate along what blocks it: the shortest move out of the scene, then out of
 /// objects, and so on until it is free.
 class Glide {
@@ -185,10 +183,7 @@ class Glide {
     const ColumnGrid& grid = obstacles_.scene.grids()[radius];
     const Vec3 before{center.x - moved_.x, center.y, center.z - moved_.z};
     const auto around = step_.model.slices.around(env_.clearance_map, radius, before);
-    const ColumnGridLayout& layout = grid.layout();
-    const float part_x = partOf((before.x - layout.min_x) * layout.inverse_spacing);
-    const float part_z = partOf((before.z - layout.min_z) * layout.inverse_spacing);
-    way_.add(around ? around->cells() : surroundingsOf(grid, before), part_x, part_z);
+    way_.add(around ? around->cells() : surroundingsOf(grid, before), grid.layout(), before);
   }
 
   /// Adds all spheres that are not free as a whole, and what the robot holds, and asks the columns

@@ -13,7 +13,7 @@
 #include "sensors/laser.h"
 #include "simulation/collision/clearance_map.h"
 #include "simulation/collision/collision.h"
-#include "simulation/collision/free_slices.h"
+#include "simulation/ways_out/free_slices.h"
 #include "simulation/motion/motion_kernels.h"
 #include "simulation/motion/motion_model.h"
 

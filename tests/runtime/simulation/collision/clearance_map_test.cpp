@@ -23,17 +23,6 @@ using namespace galactic::simulation;
 constexpr HeightsOverFloor kHeights{.lowest = 0.2F, .highest = 1.25F};
 constexpr float kUnevenness = 0.03F;
 
-/// Furniture of random places and heights on a floor at height 0.
-BoxRoom furnishedRoom(std::mt19937& random) {
-  std::vector<Block> blocks{{{-1, -0.4F, -1}, {4, 0, 4}}};
-  for (int n = 0; n < 5; ++n) {
-    const float x = uniformIn(random, 0, 2.5F);
-    const float z = uniformIn(random, 0, 2.5F);
-    blocks.push_back({{x, 0, z}, {x + 0.4F, uniformIn(random, 0.1F, 1.2F), z + 0.3F}});
-  }
-  return BoxRoom(std::move(blocks));
-}
-
 /// Eight centers near each other, as one of eight groups whose bounds are alike.
 struct Eight {
   explicit Eight(std::mt19937& random) {
@@ -68,7 +57,7 @@ TEST(ClearanceMaps, CallNothingSurelyFreeThatAColumnBlocks) {
   std::size_t all_free = 0;
   std::size_t asked = 0;
   for (int round = 0; round < 20; ++round) {
-    const BoxRoom room = furnishedRoom(random);
+    const BoxRoom room = furnishedRoom(random, 5);
     const auto radii = static_cast<std::uint32_t>(room.scene().grids().size());
     // As a simulator has them: what is asked about is not in the first eight.
     ClearanceMaps maps({2, 2, 2, 2, 2, 2, 2, 2, 0, 1, 2});
@@ -134,7 +123,7 @@ TEST(ClearanceMaps, KnowNothingWithoutAMap) {
 
 TEST(ClearanceMaps, AreNotFooledByWhatIsNoNumber) {
   std::mt19937 random(1504);
-  const BoxRoom room = furnishedRoom(random);
+  const BoxRoom room = furnishedRoom(random, 5);
   ClearanceMaps maps({0});
   const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
   for (const float odd : {std::numeric_limits<float>::quiet_NaN(), 1e30F, -1e30F}) {

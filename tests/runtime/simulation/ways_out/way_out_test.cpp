@@ -1,5 +1,5 @@
 // Free slices against the columns themselves, and ways out against a search of all of them.
-#include "simulation/collision/way_out.h"
+#include "simulation/ways_out/way_out.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "column_grid/column_grid_kernels.h"
-#include "simulation/collision/column_ways.h"
+#include "simulation/ways_out/column_ways.h"
 #include "support/homes/box_room.h"
 #include "support/packs/grid_builder.h"
 
@@ -23,17 +23,6 @@ namespace {
 using namespace galactic::simulation;
 
 constexpr HeightsOverFloor kHeights{.lowest = 0.2F, .highest = 1.25F};
-
-/// Furniture of random places and heights on a floor at height 0.
-BoxRoom furnishedRoom(std::mt19937& random) {
-  std::vector<Block> blocks{{{-1, -0.4F, -1}, {4, 0, 4}}};
-  for (int n = 0; n < 6; ++n) {
-    const float x = uniformIn(random, 0, 2.5F);
-    const float z = uniformIn(random, 0, 2.5F);
-    blocks.push_back({{x, 0, z}, {x + 0.4F, uniformIn(random, 0.1F, 1.2F), z + 0.3F}});
-  }
-  return BoxRoom(std::move(blocks));
-}
 
 struct Eight {
   explicit Eight(std::mt19937& random) {
@@ -55,7 +44,7 @@ TEST(FreeSlices, CallFreeOnlyWhatTheColumnsCallFree) {
   std::size_t free_cells = 0;
   std::size_t missed = 0;
   for (int round = 0; round < 10; ++round) {
-    const BoxRoom room = furnishedRoom(random);
+    const BoxRoom room = furnishedRoom(random, 6);
     FreeSlices slices;
     const std::uint32_t map = slices.add(room.scene(), 0, kHeights);
     for (int n = 0; n < 300; ++n) {
@@ -132,7 +121,7 @@ TEST(FreeSlices, AreTheSameBitForBitWithBothKernels) {
 
 TEST(SurroundingsOf, AreThoseOfTheColumns) {
   std::mt19937 random(1603);
-  const BoxRoom room = furnishedRoom(random);
+  const BoxRoom room = furnishedRoom(random, 6);
   const ColumnGrid& grid = room.scene().grids()[1];
   Tally free;
   for (int n = 0; n < 500; ++n) {
@@ -367,7 +356,7 @@ TEST(ColumnWays, AreTheWaysOutThatAllColumnsAllow) {
   Tally found;
   int lost = 0;
   for (int round = 0; round < 20; ++round) {
-    const BoxRoom room = furnishedRoom(random);
+    const BoxRoom room = furnishedRoom(random, 6);
     FreeSlices slices;
     const std::uint32_t map = slices.add(room.scene(), 0, kHeights);
     for (int n = 0; n < 150; ++n) {
@@ -413,7 +402,7 @@ TEST(ColumnWays, AreTheWaysOutThatAllColumnsAllow) {
 
 TEST(ColumnWays, KnowNoWayForMoreSpheresThanThereIsRoomFor) {
   std::mt19937 random(1610);
-  const BoxRoom room = furnishedRoom(random);
+  const BoxRoom room = furnishedRoom(random, 6);
   const ColumnGrid& grid = room.scene().grids()[0];
   ColumnWays columns(1);
   WayOut way(1);

@@ -1,4 +1,4 @@
-#include "simulation/collision/column_ways.h"
+#include "simulation/ways_out/column_ways.h"
 
 #include <algorithm>
 #include <array>
@@ -66,8 +66,6 @@ Surroundings grown(const Surroundings& cells) {
   return found;
 }
 
-float partOf(float cell) { return cell - std::floor(cell); }
-
 }  // namespace
 
 void ColumnWays::add(const ColumnGrid& grid, const Vec3& center,
@@ -120,9 +118,7 @@ bool ColumnWays::addTo(WayOut& way) noexcept {
   const Surroundings near = grown(in_all);
   for (Sphere& sphere : spheres_) {
     ask(near, sphere);
-    const ColumnGridLayout& layout = sphere.grid->layout();
-    way.add(sphere.free, partOf((sphere.center.x - layout.min_x) * layout.inverse_spacing),
-            partOf((sphere.center.z - layout.min_z) * layout.inverse_spacing));
+    way.add(sphere.free, sphere.grid->layout(), sphere.center);
   }
   return true;
 }

@@ -5,8 +5,8 @@
 
 #include "galactic/column_grid.h"
 #include "galactic/pose.h"
-#include "simulation/collision/free_slices.h"
-#include "simulation/collision/way_out.h"
+#include "simulation/ways_out/free_slices.h"
+#include "simulation/ways_out/way_out.h"
 
 namespace galactic::simulation {
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "simulation/collision/free_slices.h"
 #include "simulation/collision/push.h"
-#include "simulation/collision/way_out_kernels.h"
+#include "simulation/ways_out/free_slices.h"
+#include "simulation/ways_out/way_out_kernels.h"
 
 namespace galactic::simulation {
 
@@ -34,6 +34,8 @@ class WayOut {
 
   /// Adds a sphere: in which cells around its own it is free, and where in that it is, 0 to 1.
   void add(const Surroundings& around, float part_x, float part_z) noexcept;
+  /// The same for a sphere at `center`; of the grid's frame, the cells alone count.
+  void add(const Surroundings& around, const ColumnGridLayout& grid, const Vec3& center) noexcept;
 
   /// At most `longest` meters, and not on along `drive`, the way that the robot came: nothing
   /// pushes it through an obstacle. None where there is no such move.

@@ -1,5 +1,5 @@
 // Compiled for AVX2: instantiates no library templates, see column_grid_avx2.cpp.
-#include "simulation/collision/free_slices_kernels.h"
+#include "simulation/ways_out/free_slices_kernels.h"
 
 #if defined(__x86_64__)
 #include <immintrin.h>

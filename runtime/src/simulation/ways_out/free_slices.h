@@ -8,7 +8,7 @@
 #include "galactic/pose.h"
 #include "galactic/scene.h"
 #include "simulation/collision/clearance_map.h"
-#include "simulation/collision/free_slices_kernels.h"
+#include "simulation/ways_out/free_slices_kernels.h"
 
 namespace galactic::simulation {
 

@@ -1,4 +1,4 @@
-#include "simulation/collision/way_out.h"
+#include "simulation/ways_out/way_out.h"
 
 #include <algorithm>
 #include <bit>
@@ -190,6 +190,13 @@ void WayOut::add(const Surroundings& around, float part_x, float part_z) noexcep
   ways.part_x[lane] = part_x;
   ways.part_z[lane] = part_z;
   ways.counts[lane] = ~std::uint32_t{0};
+}
+
+void WayOut::add(const Surroundings& around, const ColumnGridLayout& grid,
+                 const Vec3& center) noexcept {
+  const auto part_of = [](float cell) { return cell - std::floor(cell); };
+  add(around, part_of((center.x - grid.min_x) * grid.inverse_spacing),
+      part_of((center.z - grid.min_z) * grid.inverse_spacing));
 }
 
 Surroundings WayOut::inAll() const noexcept {

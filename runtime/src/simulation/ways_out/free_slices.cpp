@@ -1,4 +1,4 @@
-#include "simulation/collision/free_slices.h"
+#include "simulation/ways_out/free_slices.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "simulation/collision/free_slices_kernels.h"
 #include "simulation/collision/sphere_batch.h"
+#include "simulation/ways_out/free_slices_kernels.h"
 
 namespace galactic::simulation {
 
