@@ -6,6 +6,7 @@
 #include "galactic/pack_reference.h"
 #include "galactic/world.h"
 #include "support/habitat_text.h"
+#include "support/recipe_text.h"
 
 namespace galactic::test::plan_cli_test {
 namespace {
@@ -197,26 +198,10 @@ TEST_F(PlanCli, EndsADryRunWithAnErrorWhenSomethingIsMissing) {
 }
 
 /// A world of the dataset's first scenes, an object and the sample robot.
-constexpr const char* kRecipe = R"([bake]
-radii = [0.05, 0.12]
-[[scenes]]
-dataset = "data/home.scene_dataset_config.json"
-scenes = ["a", "c"]
-check-columns = 0
-[[objects]]
-files = "objects/m*.glb"
-eps = 0.03
-tau = 0.06
-[robot]
-files = "robot/porter.urdf"
-recipe = "robot/robot.toml"
-eps = 0.06
-tau = 0.08
-max-spheres = 30
-[episodes]
-count = 3
-objects = 2
-)";
+std::string recipe() {
+  return test::quickRecipe(
+      "dataset = \"data/home.scene_dataset_config.json\"\nscenes = [\"a\", \"c\"]", "count = 3");
+}
 
 TEST_F(PlanCli, BakesAFolderOfScans) {
   for (const char* name : {"scans/hall/hall.glb", "scans/loft.glb"}) {
@@ -251,7 +236,7 @@ TEST_F(PlanCli, ReportsTheSameOfPacksThatWereMadeBeforeAndNow) {
 }
 
 TEST_F(PlanCli, BakesTheWorldOfARecipe) {
-  write("flat.toml", kRecipe);
+  write("flat.toml", recipe());
   const std::vector<std::string> arguments{"flat.toml", "--data", sampleFile(""), "--report",
                                            "report.json"};
   const ProgramRun first = run(arguments);
@@ -283,7 +268,7 @@ TEST_F(PlanCli, BakesTheWorldOfARecipe) {
   ASSERT_EQ(run(arguments).exit_code, 0);
   EXPECT_THAT(packsThatAre("baked"), ElementsAre("scenes/c.pack", "episodes.pack"));
   // What the robot has to do stands in the world alone.
-  write("flat.toml", std::string(kRecipe) + "[task]\nepisode-steps = 300\nsafe-drop = true\n");
+  write("flat.toml", recipe() + "[task]\nepisode-steps = 300\nsafe-drop = true\n");
   ASSERT_EQ(run(arguments).exit_code, 0);
   EXPECT_THAT(packsThatAre("unchanged"), SizeIs(6));
   EXPECT_EQ(report()["task"], (nlohmann::json{{"episode-steps", "300"}, {"safe-drop", "true"}}));
@@ -317,11 +302,11 @@ TEST_F(PlanCli, BakesTheWorldOfARecipe) {
 TEST_F(PlanCli, BakesEpisodesAnewForEachOptionThatTheReportOrThePackShows) {
   const std::vector<std::string> arguments{"flat.toml", "--data", sampleFile(""), "--report",
                                            "report.json"};
-  write("flat.toml", kRecipe);
+  write("flat.toml", recipe());
   ASSERT_EQ(run(arguments).exit_code, 0);
   // In the pack, and in the report alone.
   for (const char* option : {"flatness = 0.004", "solve = 0"}) {
-    write("flat.toml", fmt::format("{}{}\n", kRecipe, option));
+    write("flat.toml", fmt::format("{}{}\n", recipe(), option));
     ASSERT_EQ(run(arguments).exit_code, 0) << option;
     EXPECT_THAT(packsThatAre("baked"), ElementsAre("episodes.pack")) << option;
     ASSERT_EQ(run(arguments).exit_code, 0) << option;

@@ -4,6 +4,7 @@
 
 #include "cli/plan_folder.h"
 #include "galactic/world.h"
+#include "support/recipe_text.h"
 
 namespace galactic::test::plan_episodes_cli_test {
 namespace {
@@ -51,28 +52,10 @@ f 2 6 8 4
   }
 
   [[nodiscard]] ProgramRun bakeWorld(const std::string& scenes, const std::string& supports) {
-    write("flat.toml", fmt::format(R"([bake]
-radii = [0.05, 0.12]
-[[scenes]]
-dataset = "data/home.scene_dataset_config.json"
-scenes = [{}]
-check-columns = 0
-[[objects]]
-files = "objects/m*.glb"
-eps = 0.03
-tau = 0.06
-[robot]
-files = "robot/porter.urdf"
-recipe = "robot/robot.toml"
-eps = 0.06
-tau = 0.08
-max-spheres = 30
-[episodes]
-count = 6
-objects = 2
-{}
-)",
-                                   scenes, supports));
+    write("flat.toml",
+          test::quickRecipe(
+              "dataset = \"data/home.scene_dataset_config.json\"\nscenes = [" + scenes + "]",
+              "count = 6\n" + supports));
     return run({"flat.toml", "--data", sampleFile(""), "--report", "report.json"});
   }
 

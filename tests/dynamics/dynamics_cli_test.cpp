@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "support/program_run.h"
+#include "support/recipe_text.h"
 #include "support/scratch_folder.h"
 #include "support/source_folder.h"
 
@@ -23,32 +24,12 @@ using testing::Not;
 constexpr int kUsage = 1;
 constexpr int kInvalid = 3;
 
-/// The sample apartment with three objects and a coarse porter: six episodes, baked once.
-constexpr const char* kRecipe = R"([bake]
-radii = [0.05, 0.12]
-[[scenes]]
-files = "apartment.glb"
-check-columns = 0
-[[objects]]
-files = "objects/m*.glb"
-eps = 0.03
-tau = 0.06
-[robot]
-files = "robot/porter.urdf"
-recipe = "robot/robot.toml"
-eps = 0.06
-tau = 0.08
-max-spheres = 30
-[episodes]
-count = 6
-objects = 2
-)";
-
 class DynamicsCli : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = std::make_unique<ScratchFolder>();
-    ASSERT_TRUE(std::filesystem::exists(folder_->write("home.toml", kRecipe)));
+    const std::string recipe = quickRecipe("files = \"apartment.glb\"", "count = 6");
+    ASSERT_TRUE(std::filesystem::exists(folder_->write("home.toml", recipe)));
     const std::string data = (sourceFolder() / "packs/sample").string();
     const ProgramRun baked =
         runProgram(GALACTIC_BAKE, folder_->path(), {"home.toml", "--data", data});
