@@ -26,7 +26,6 @@ namespace {
 constexpr double kMostMeters = 1000;
 /// A million times as much.
 constexpr double kMostShare = 1e6;
-constexpr const char* kPackOrReport = "PACK|REPORT.json";
 
 /// Exactly `Count` finite numbers separated by commas.
 template <std::size_t Count>
@@ -95,11 +94,10 @@ void addRadius(CLI::App& verb, std::optional<float>& radius) {
 struct PackOption {
   std::string name;
   std::string meaning;
-  std::string type = "PACK";
 };
 
 void addPack(CLI::App& verb, const PackOption& option, std::filesystem::path& pack) {
-  verb.add_option(option.name, pack, option.meaning)->required()->type_name(option.type);
+  verb.add_option(option.name, pack, option.meaning)->required()->type_name("");
 }
 
 void addOutput(CLI::App& verb, std::filesystem::path& output) {
@@ -109,7 +107,7 @@ void addOutput(CLI::App& verb, std::filesystem::path& output) {
 }
 
 void addPacks(CLI::App& verb, std::vector<std::filesystem::path>& packs) {
-  verb.add_option("packs", packs, "Packs of any kind")->required()->type_name("PACK");
+  verb.add_option("PACK", packs, "Packs of any kind")->required()->type_name("");
 }
 
 /// The options of all verbs, filled while parsing.
@@ -134,9 +132,9 @@ void addInfo(CLI::App& app, InfoOptions& options) {
 void addCheck(CLI::App& app, CheckOptions& options) {
   CLI::App& verb = *app.add_subcommand(
       "check", "Verify packs completely; the exit code is that of the worst one");
-  verb.add_option("packs", options.packs, "Packs of any kind, and folders with packs in them")
+  verb.add_option("PACK", options.packs, "Packs of any kind, and folders with packs in them")
       ->required()
-      ->type_name("PACK");
+      ->type_name("");
   addJson(verb, options.form);
   verb.add_option("--junit", options.junit,
                   "Also write a JUnit report, for CI; replaced if it exists")
@@ -152,7 +150,7 @@ void addCheck(CLI::App& app, CheckOptions& options) {
 void addColumn(CLI::App& app, ColumnOptions& options) {
   CLI::App& verb =
       *app.add_subcommand("column", "Print the free spans of the column nearest to a point");
-  addPack(verb, {"pack", "A scene pack"}, options.pack);
+  addPack(verb, {"PACK", "A scene pack"}, options.pack);
   verb.add_option_function<std::string>(
           "--at",
           [&options](const std::string& text) {
@@ -192,10 +190,8 @@ void addDiff(CLI::App& app, DiffOptions& options) {
       "diff",
       "Compare two packs of one kind by their meaning, or two reports of galactic-bake; exit code "
       "7 if they differ");
-  addPack(verb, {"a", "A pack of any kind, or the golden report: a .json file", kPackOrReport},
-          options.a);
-  addPack(verb, {"b", "Another pack of the same kind, or the report to compare", kPackOrReport},
-          options.b);
+  addPack(verb, {"A", "A pack of any kind, or the golden report: a .json file"}, options.a);
+  addPack(verb, {"B", "Another pack of the same kind, or the report to compare"}, options.b);
   verb.add_option("--tolerance", options.tolerance, "Lengths that differ by no more are equal")
       ->check(numberCheck(0, kMostMeters))
       ->option_text(fmt::format("METERS [{}]", options.tolerance));
@@ -300,7 +296,7 @@ void addGridPictureOptions(CLI::App& verb, GridPictureOptions& options) {
 void addPicture(CLI::App& app, PictureOptions& options) {
   CLI::App& verb =
       *app.add_subcommand("picture", "Draw a scene's grids, objects or a robot into a PNG file");
-  addPack(verb, {"pack", "A pack of a scene, of objects or of a robot"}, options.pack);
+  addPack(verb, {"PACK", "A pack of a scene, of objects or of a robot"}, options.pack);
   addOutput(verb, options.output);
   addGridPictureOptions(verb, options.grids);
   addFigureOptions(verb, options.figures);
@@ -325,7 +321,7 @@ void addReport(CLI::App& app, ReportOptions& options) {
 void addView(CLI::App& app, ViewOptions& options) {
   CLI::App& verb = *app.add_subcommand(
       "view", "Write an HTML page that shows a pack or a world in three dimensions");
-  addPack(verb, {"pack", "A pack of any kind"}, options.pack);
+  addPack(verb, {"PACK", "A pack of any kind"}, options.pack);
   addOutput(verb, options.output);
   const CLI::Validator is_power_of_two(
       [](const std::string& text) {
@@ -363,13 +359,13 @@ void addEpisodeSetOptions(CLI::App& verb, ExportOptions& options) {
 void addExport(CLI::App& app, ExportOptions& options) {
   CLI::App& verb = *app.add_subcommand(
       "export", "Write a scene's grid, objects, a robot or episodes for other programs");
-  addPack(verb, {"pack", "A pack of a scene, of objects, of a robot or of episodes"}, options.pack);
+  addPack(verb, {"PACK", "A pack of a scene, of objects, of a robot or of episodes"}, options.pack);
   verb.add_option("-o,--out", options.output,
                   "The file to write; replaced if it exists (default for episode_set: "
                   "NAME.episode_set.json)")
       ->type_name("FILE");
   addEpisodeSetOptions(verb, options);
-  verb.add_option("--to", options.format, "format (default: by the extension of FILE)")
+  verb.add_option("--to", options.format, "Format (default: that of the extension of FILE)")
       ->transform(
           choice(std::map<std::string, ExportFormat>{{"obj", ExportFormat::kObj},
                                                      {"ply", ExportFormat::kPly},
@@ -445,6 +441,7 @@ tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
   // Verbs inherit the footer that is set before them.
   app.footer(kExitCodesHelp);
   app.set_version_flag("--version", "galactic-pack " GALACTIC_VERSION);
+  app.get_formatter()->label("SUBCOMMAND", "VERB");
   app.require_subcommand(1);
   addInfo(app, options.info);
   addCheck(app, options.check);
@@ -454,6 +451,9 @@ tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
   addPicture(app, options.picture);
   addReport(app, options.report);
   addView(app, options.view);
+  for (CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    verb->group("Verbs");
+  }
   checkSwitches(app);
 
   constexpr std::string_view kVerbs = "info, check, column, diff, export, picture, report or view";

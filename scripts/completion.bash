@@ -14,7 +14,7 @@ _galactic() {
     verb=${words[1]}
     if ((cword == 1)); then
       local verbs
-      verbs=$("$tool" --help 2>/dev/null | sed -nE '/^Subcommands:/,/^$/s/^  ([a-z]+) .*/\1/p')
+      verbs=$("$tool" --help 2>/dev/null | sed -nE '/^Verbs:/,/^$/s/^  ([a-z]+) .*/\1/p')
       mapfile -t COMPREPLY < <(compgen -W "$verbs --help --version" -- "$cur")
       return
     fi

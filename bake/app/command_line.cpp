@@ -140,11 +140,11 @@ class CommandLine {
   CommandLine() {
     app_.footer(std::string(kFooter) + "\n\n" + kExitCodesHelp);
     app_.get_formatter()->column_width(34);
-    app_.add_option("input", inputs_,
+    app_.add_option("INPUT", inputs_,
                     "Meshes (GLB, glTF, OBJ, PLY, STL, DAE, ...), folders of objects, URDF robots, "
                     "published episodes (episode sets, Habitat's), a scene dataset, a world's "
                     "recipe, or packs")
-        ->option_text("INPUT...");
+        ->type_name("");
     app_.add_option("--as", as_,
                     "What to make (default: robot of .urdf, episodes of .episode_set.json and "
                     ".json.gz, dataset of .scene_dataset_config.json, world of .toml, else scene)")

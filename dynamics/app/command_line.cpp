@@ -56,12 +56,12 @@ CLI::Validator knownPolicy() {
 
 void addSources(CLI::App& app, Command& command) {
   app.set_version_flag("--version", "galactic-dynamics " GALACTIC_VERSION);
-  app.add_option("recipe", command.recipe, "Recipe that the world was baked from")
+  app.add_option("RECIPE", command.recipe, "Recipe that the world was baked from: WORLD.toml")
       ->required()
-      ->option_text("WORLD.toml");
-  app.add_option("packs", command.packs, "The world's pack, or its packs")
+      ->type_name("");
+  app.add_option("PACK", command.packs, "The world's pack, or its packs")
       ->required()
-      ->type_name("PACK");
+      ->type_name("");
   app.add_option("--data", command.data, "Where files of the recipe are that are not beside it")
       ->type_name("DIR");
 }

@@ -56,13 +56,13 @@ TEST_F(PackCli, ListsItsVerbsAndExitCodesInHelp) {
   EXPECT_EQ(help.err, "");
   for (const char* part : {"info", "check", "column", "diff", "export", "picture", "0    success",
                            "1    wrong command line", "2    a file", "3    invalid input",
-                           "4    internal", "5    not supported", "7    packs or runs differ"}) {
+                           "4    internal", "5    not supported", "7    packs, reports or runs differ"}) {
     EXPECT_THAT(help.out, HasSubstr(part));
   }
   const ProgramRun verb = run({"diff", "--help"});
   EXPECT_EQ(verb.exit_code, 0);
   EXPECT_THAT(verb.out, HasSubstr("--tolerance"));
-  EXPECT_THAT(verb.out, HasSubstr("7    packs or runs differ"));
+  EXPECT_THAT(verb.out, HasSubstr("7    packs, reports or runs differ"));
 }
 
 TEST_F(PackCli, PrintsItsVersion) {
@@ -86,13 +86,13 @@ TEST_F(PackCli, ExplainsAWrongCommandLineWithExitCodeOne) {
       {{"picture", "arm.pack", "-o", "a.png", "--size", "0100"}, "--size: found 0100"},
       {{"picture", "arm.pack", "-o", "a.png", "--size", "99999999999999999999"}, "--size"},
       {{"check", "good.pack", "--threads", "-1"}, "--threads: found -1, expected a whole number"},
-      {{"info"}, "packs is required"},
+      {{"info"}, "PACK is required"},
       {{"info", "good.pack", "--frob"}, "--frob"},
       {{"column", "good.pack"}, "--at is required"},
       {{"column", "good.pack", "--at", "1"}, "\"1\" is not 2 numbers"},
       {{"column", "good.pack", "--at", "1,nan"}, "\"1,nan\" is not 2 numbers"},
       {{"column", "good.pack", "--at", "1,2,3"}, "\"1,2,3\" is not 2 numbers"},
-      {{"diff", "good.pack"}, "b is required"},
+      {{"diff", "good.pack"}, "B is required"},
       {{"diff", "good.pack", "good.pack", "--tolerance", "-1"}, "--tolerance"},
       {{"export", "good.pack"}, "--out is required"},
       {{"picture", "good.pack", "-o", "a.png", "--slice", "1,2,3"}, "is not 4 numbers"},

@@ -226,7 +226,7 @@ def walks(program: str, world: pathlib.Path, packs: pathlib.Path) -> "list[Walk]
         "report": [({"--out": "out.html"}, [room])],
         "view": [({"--out": "out.html"}, [crate])],
     }
-    verbs = re.findall(r"^ {2}([a-z]+) {2}", help_of(program, []).partition("Subcommands:")[2], re.MULTILINE)
+    verbs = re.findall(r"^ {2}([a-z]+) {2}", help_of(program, []).partition("Verbs:")[2], re.MULTILINE)
     assert verbs and set(verbs) == set(needed), f"the verbs {verbs} are not those that this test has arguments for"
     return [Walk(program, [verb], base, given) for verb in verbs for base, given in needed[verb]]
 

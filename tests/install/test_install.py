@@ -53,7 +53,7 @@ class Install(unittest.TestCase):
         return sorted(path.name for path in (self.prefix / "bin").iterdir())
 
     def verbs(self) -> list[str]:
-        text = run(self.tool("galactic-pack"), "--help").split("Subcommands:\n")[1].split("\n\n")[0]
+        text = run(self.tool("galactic-pack"), "--help").split("Verbs:\n")[1].split("\n\n")[0]
         return [line.split()[0] for line in text.splitlines()]
 
     def complete(self, *words: str) -> list[str]:

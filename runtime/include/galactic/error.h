@@ -8,7 +8,7 @@ namespace galactic {
 /// Why something failed. The values are the exit codes of all tools.
 enum class ErrorCode { kIo = 2, kInvalidInput = 3, kInternal = 4, kUnsupported = 5 };
 
-/// Exit codes that are no error of an input: success, a wrong command line, two packs that differ.
+/// The exit codes besides those of ErrorCode: success, a wrong command line, a difference.
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitUsage = 1;
 inline constexpr int kExitDiffers = 7;
@@ -21,7 +21,7 @@ inline constexpr const char* kExitCodesHelp =
     "  3    invalid input\n"
     "  4    internal error\n"
     "  5    not supported\n"
-    "  7    packs or runs differ\n"
+    "  7    packs, reports or runs differ\n"
     "  130  interrupted\n";
 
 /// What went wrong and where, in words a user can act on.
@@ -30,14 +30,14 @@ struct Error {
   /// The file, and inside it the element and field, for example
   /// "kitchen.pack: column_grids[1].cells".
   std::string where;
-  /// One sentence: what was found, what was wanted, what to do.
+  /// One sentence: what was found, what was expected, what to do.
   std::string message;
   /// A name for programs that never changes, for example "pack/hash" (docs/ci.md lists them); empty
   /// for most errors. Points to a literal.
   std::string_view name = {};
 };
 
-/// A value, or the error that stands in its way.
+/// A value, or the error that prevented it.
 template <class T>
 using Result = tl::expected<T, Error>;
 
