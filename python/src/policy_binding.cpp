@@ -4,10 +4,12 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <map>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -54,67 +56,65 @@ class Fields {
 
 using Kind = decltype(PolicyLayer::kind);
 
+using LayerMaker = Kind (*)(const Fields&);
+
 /// What makes each kind of layer, by the name that Python uses.
-const std::map<std::string, Kind (*)(const Fields&)>& layerMakers() {
-  static const std::map<std::string, Kind (*)(const Fields&)> makers{
-      {"observation", [](const Fields&) -> Kind { return layer::Observation{}; }},
-      {"previous_action", [](const Fields&) -> Kind { return layer::PreviousAction{}; }},
-      {"image", [](const Fields&) -> Kind { return layer::Image{}; }},
-      {"constant", [](const Fields& f) -> Kind { return layer::Constant{f.floats("values")}; }},
-      {"normalize",
-       [](const Fields& f) -> Kind {
-         return layer::Normalize{f.floats("mean"), f.floats("inverse_deviation"),
-                                 f.number("limit")};
-       }},
-      {"linear",
-       [](const Fields& f) -> Kind {
-         return layer::Linear{f.count("outputs"), f.floats("weight"), f.optionalFloats("bias")};
-       }},
-      {"convolution",
-       [](const Fields& f) -> Kind {
-         return layer::Convolution{f.count("outputs"), f.count("kernel"),
-                                   f.count("stride"),  f.count("padding"),
-                                   f.floats("weight"), f.optionalFloats("bias")};
-       }},
-      {"group_norm",
-       [](const Fields& f) -> Kind {
-         return layer::GroupNorm{f.count("groups"), f.number("epsilon"), f.floats("weight"),
-                                 f.floats("bias")};
-       }},
-      {"layer_norm",
-       [](const Fields& f) -> Kind {
-         return layer::LayerNorm{f.number("epsilon"), f.floats("weight"), f.floats("bias")};
-       }},
-      {"relu", [](const Fields&) -> Kind { return layer::Relu{}; }},
-      {"tanh", [](const Fields&) -> Kind { return layer::Tanh{}; }},
-      {"clamp",
-       [](const Fields& f) -> Kind {
-         return layer::Clamp{f.number("lower"), f.number("upper")};
-       }},
-      {"space_to_depth",
-       [](const Fields& f) -> Kind { return layer::SpaceToDepth{f.count("block")}; }},
-      {"average_pool",
-       [](const Fields& f) -> Kind {
-         return layer::AveragePool{f.count("kernel"), f.count("stride"), f.count("padding")};
-       }},
-      {"sum", [](const Fields&) -> Kind { return layer::Sum{}; }},
-      {"concatenate", [](const Fields&) -> Kind { return layer::Concatenate{}; }},
-      {"slice",
-       [](const Fields& f) -> Kind {
-         return layer::Slice{f.count("first"), f.count("size")};
-       }},
-      {"gru", [](const Fields& f) -> Kind {
-         return layer::Gru{f.count("size"), f.floats("input_weight"), f.floats("state_weight"),
-                           f.floats("input_bias"), f.floats("state_bias")};
-       }}};
-  return makers;
-}
+constexpr std::pair<std::string_view, LayerMaker> kLayerMakers[] = {
+    {"observation", [](const Fields&) -> Kind { return layer::Observation{}; }},
+    {"previous_action", [](const Fields&) -> Kind { return layer::PreviousAction{}; }},
+    {"image", [](const Fields&) -> Kind { return layer::Image{}; }},
+    {"constant", [](const Fields& f) -> Kind { return layer::Constant{f.floats("values")}; }},
+    {"normalize",
+     [](const Fields& f) -> Kind {
+       return layer::Normalize{f.floats("mean"), f.floats("inverse_deviation"), f.number("limit")};
+     }},
+    {"linear",
+     [](const Fields& f) -> Kind {
+       return layer::Linear{f.count("outputs"), f.floats("weight"), f.optionalFloats("bias")};
+     }},
+    {"convolution",
+     [](const Fields& f) -> Kind {
+       return layer::Convolution{f.count("outputs"), f.count("kernel"),  f.count("stride"),
+                                 f.count("padding"), f.floats("weight"), f.optionalFloats("bias")};
+     }},
+    {"group_norm",
+     [](const Fields& f) -> Kind {
+       return layer::GroupNorm{f.count("groups"), f.number("epsilon"), f.floats("weight"),
+                               f.floats("bias")};
+     }},
+    {"layer_norm",
+     [](const Fields& f) -> Kind {
+       return layer::LayerNorm{f.number("epsilon"), f.floats("weight"), f.floats("bias")};
+     }},
+    {"relu", [](const Fields&) -> Kind { return layer::Relu{}; }},
+    {"tanh", [](const Fields&) -> Kind { return layer::Tanh{}; }},
+    {"clamp",
+     [](const Fields& f) -> Kind {
+       return layer::Clamp{f.number("lower"), f.number("upper")};
+     }},
+    {"space_to_depth",
+     [](const Fields& f) -> Kind { return layer::SpaceToDepth{f.count("block")}; }},
+    {"average_pool",
+     [](const Fields& f) -> Kind {
+       return layer::AveragePool{f.count("kernel"), f.count("stride"), f.count("padding")};
+     }},
+    {"sum", [](const Fields&) -> Kind { return layer::Sum{}; }},
+    {"concatenate", [](const Fields&) -> Kind { return layer::Concatenate{}; }},
+    {"slice",
+     [](const Fields& f) -> Kind {
+       return layer::Slice{f.count("first"), f.count("size")};
+     }},
+    {"gru", [](const Fields& f) -> Kind {
+       return layer::Gru{f.count("size"), f.floats("input_weight"), f.floats("state_weight"),
+                         f.floats("input_bias"), f.floats("state_bias")};
+     }}};
 
 PolicyLayer layerOf(const py::dict& dict) {
   const Fields fields(dict);
   const auto kind = fields.get<std::string>("kind");
-  const auto maker = layerMakers().find(kind);
-  if (maker == layerMakers().end()) throw py::value_error("there is no layer " + kind);
+  const auto* maker = std::ranges::find(kLayerMakers, std::string_view(kind),
+                                        &std::pair<std::string_view, LayerMaker>::first);
+  if (maker == std::end(kLayerMakers)) throw py::value_error("there is no layer " + kind);
   return {fields.get<std::vector<std::uint32_t>>("inputs"), maker->second(fields)};
 }
 
