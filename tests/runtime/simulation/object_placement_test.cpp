@@ -316,6 +316,12 @@ class BruteForce {
   std::vector<BoxSolid> solids_;
 };
 
+#ifdef GALACTIC_SANITIZED
+constexpr bool kIsSanitized = true;
+#else
+constexpr bool kIsSanitized = false;
+#endif
+
 TEST(ObjectPlacement, RestsWhereBruteForceSettles) {
   // With a little more or less room around everything the outcome must be the same, or the case is
   // one of rounding.
@@ -327,7 +333,8 @@ TEST(ObjectPlacement, RestsWhereBruteForceSettles) {
   Tally placed;
   std::size_t on_objects = 0;
   std::size_t rounding = 0;
-  constexpr int kCases = 200;
+  // Sanitizers make brute force thirty times slower, and find what they look for in a few cases.
+  constexpr int kCases = kIsSanitized ? 50 : 200;
   for (int n = 0; n < kCases; ++n) {
     home.objects.clear();
     std::vector<Body> bodies;
@@ -364,7 +371,7 @@ TEST(ObjectPlacement, RestsWhereBruteForceSettles) {
     on_objects += landing.pose.translation.y > 0.85F ? 1U : 0U;
   }
   placed.expectBothSides();
-  EXPECT_GT(on_objects, 20U);
+  EXPECT_GT(on_objects, kCases / 10U);
   EXPECT_LT(rounding, kCases / 10U);
 }
 
