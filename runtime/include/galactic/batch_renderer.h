@@ -20,10 +20,9 @@ struct DeviceImages {
   std::uint64_t semantics = 0;
 };
 
-/// What draws.
+/// Which implementation draws the images.
 enum class RenderBackend : std::uint8_t {
-  kAuto,  ///< `cuda` on chips for data centers, else `gl`, else `cuda`, else `soft`: the first
-          ///< there is.
+  kAuto,  ///< The first available of `cuda` on data center chips, `gl`, `cuda`, `soft`.
   kSoft,  ///< The rasterizer of this library, on all cores of the processor.
   kGl,    ///< OpenGL 4.5 through EGL, without a display.
   kCuda,  ///< The rasterizer of this library, on a CUDA device.
@@ -43,17 +42,17 @@ struct RenderOptions {
   ColorFormat color = ColorFormat::kRgba8;
   bool depth = true;
   bool semantics = false;
-  /// What is nearer to the camera's plane is cut off, meters, > 0.
+  /// Distance of the near clipping plane, meters, > 0.
   float near = 0.05F;
   /// RGBA, sRGB, R lowest, where nothing is drawn.
   std::uint32_t background = 0;
   RenderBackend backend = RenderBackend::kAuto;
-  /// For `gl` and `cuda`: index of the device, "cuda:N", a UUID, or empty for the first one. For
-  /// `gl`, too: "software" for a driver without a graphics processor (an error otherwise).
+  /// For `gl` and `cuda`: index of the device, "cuda:N", a UUID, or empty for the first one. `gl`
+  /// also takes "software", for a driver without a graphics processor (an error otherwise).
   std::string device;
-  /// For `soft`: 0 takes all cores. The images do not depend on it.
+  /// Threads of `soft`; 0: one per core. The images do not depend on it.
   std::uint32_t threads = 0;
-  /// Whether what cannot be seen is left out before it is drawn. The images do not depend on it.
+  /// Whether to cull what cannot be seen. The images do not depend on it.
   bool culling = true;
 };
 
@@ -79,8 +78,8 @@ struct RenderView {
   std::span<const RenderInstance> instances;
 };
 
-/// Where the images go: memory of the caller, view after view, rows from top to bottom. What the
-/// options do not ask for is left empty.
+/// Where the images go: memory of the caller, view after view, rows from top to bottom. Leave a
+/// span empty if the options do not ask for its image.
 struct RenderTargets {
   /// Shape: views x height x width x 3 or 4. sRGB; alpha is 255 where something is drawn.
   std::span<std::uint8_t> color;
@@ -104,7 +103,8 @@ struct RenderStatistics {
 class BatchRenderer {
  public:
   /// `library` must outlive the renderer. Fails with kInvalidInput on options out of range, with
-  /// kUnsupported when the backend or the device is not there: the message names what is missing.
+  /// kUnsupported when the backend or the device is not available; the message names what is
+  /// missing.
   [[nodiscard]] static Result<BatchRenderer> create(const RenderLibrary& library,
                                                     const RenderOptions& options);
   ~BatchRenderer();
@@ -114,18 +114,18 @@ class BatchRenderer {
   /// Draws `views`. The spans of `targets` have the sizes that views and options give.
   void render(std::span<const RenderView> views, const RenderTargets& targets);
 
-  /// The same in two halves, so that the caller can work meanwhile. What `views` and `targets`
-  /// lead to must stay as it is until endRender() returns.
+  /// The same in two halves, so that the caller can work meanwhile. Everything that `views` and
+  /// `targets` point to must stay unchanged until endRender() returns.
   void beginRender(std::span<const RenderView> views, const RenderTargets& targets);
   void endRender();
 
-  /// Draws `views` and leaves the images where CUDA can use them without a copy; they are there
+  /// Draws `views` and leaves the images where CUDA can use them without a copy; they are complete
   /// when this returns. `stream`: the one that uses them, as CUDA's cudaStream_t or CUstream; 0:
-  /// CUDA's default stream. What it had to do before is done before the images change, so they stay
-  /// as they are until a rendering on the same stream. The stream belongs to the renderer's device
-  /// and lives until the next rendering. Fails with kUnsupported with the soft backend and without
-  /// CUDA; with the gl backend, which needs a CUDA context that is current on this thread, also
-  /// when its device is not the renderer's.
+  /// CUDA's default stream. Work queued on it earlier finishes before the images change, so they
+  /// stay valid until the next rendering on the same stream. The stream must belong to the
+  /// renderer's device and live until then. Fails with kUnsupported with the soft backend and
+  /// without CUDA; with the gl backend, which needs a CUDA context that is current on this thread,
+  /// also when its device is not the renderer's.
   [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views,
                                                     std::uintptr_t stream = 0);
 

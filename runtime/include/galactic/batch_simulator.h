@@ -22,19 +22,19 @@ struct ObservationPart {
   std::size_t size = 0;
 };
 
-/// How an episode ended. Where a step gives several reasons, the first of them counts.
+/// How an episode ended. If a step gives several reasons, the first one of this list counts.
 enum class EpisodeEnd : std::uint8_t {
-  kNone = 0,  ///< It goes on.
+  kNone = 0,  ///< It has not ended.
   kSuccess,
-  kWrongTerminate,  ///< The robot said that the task is done, and it was not.
+  kWrongTerminate,  ///< The robot declared the task done when it was not.
   kWrongRelease,    ///< The hand let go of the target away from the goal.
   kWrongObject,     ///< The hand grasped another object.
-  kTimeOut,         ///< TaskOptions::most_steps are over.
+  kTimeOut,         ///< TaskOptions::most_steps steps have passed.
 };
 inline constexpr std::size_t kEpisodeEnds = 6;
 
-/// Whether the rules of the task ended the episode, for better or worse: what learning calls a
-/// termination, with nothing to be earned behind it.
+/// Whether the rules of the task ended the episode, for better or worse: a termination in the sense
+/// of reinforcement learning, with no reward behind it.
 [[nodiscard]] constexpr bool isTermination(EpisodeEnd end) {
   return end != EpisodeEnd::kNone && end != EpisodeEnd::kTimeOut;
 }
@@ -49,7 +49,7 @@ inline constexpr std::size_t kEpisodeEnds = 6;
 
 /// What happened in all envs since the simulator was made.
 struct SimulationStatistics {
-  /// Those of idle envs do not count.
+  /// Steps of idle envs do not count.
   std::uint64_t steps = 0;
   /// Steps in which the robot kept its pose because the candidate penetrated something.
   std::uint64_t refused = 0;
@@ -92,9 +92,9 @@ struct EnvObjects {
   /// Index into World::scenes(), and into the episode set's episodes.
   std::uint32_t scene = 0;
   std::uint32_t episode = 0;
-  /// The placements that are there: without distractors that of the target alone.
+  /// The placements in use; without distractors only that of the target.
   std::span<const Placement> placements;
-  /// World poses, one per placement; that of the held one is where it rested before.
+  /// World poses, one per placement; of the held object, where it rested before it was grasped.
   std::span<const Pose> objects;
   /// Index into `objects`; -1 when nothing is held.
   std::int32_t held = -1;
@@ -103,9 +103,9 @@ struct EnvObjects {
 
 /// Where an env is after a step that was made elsewhere: by a physics engine, or by a real robot.
 struct FollowedState {
-  /// The root stays upright: of its rotation the yaw counts.
+  /// The root stays upright: only the yaw of its rotation counts.
   Pose world_from_root;
-  /// One per position of the robot; those that neither actions nor episodes move do not count.
+  /// One per position of the robot; positions that neither actions nor episodes move are ignored.
   std::span<const float> joint_positions;
   /// World poses, one per object of the env (EnvObjects::objects), also of the held one.
   std::span<const Pose> objects;
@@ -150,7 +150,7 @@ class BatchSimulator {
   BatchSimulator(BatchSimulator&&) noexcept;
   BatchSimulator& operator=(BatchSimulator&&) noexcept;
 
-  /// As the simulator was made, or restarted.
+  /// As the simulator was created, with the seed of the last restart().
   [[nodiscard]] const SimulationOptions& options() const;
   [[nodiscard]] std::size_t envCount() const;
   [[nodiscard]] std::size_t actionCount() const;
@@ -182,8 +182,8 @@ class BatchSimulator {
   /// in step(), from where robot and objects are and from what is held now and was held before.
   void follow(std::span<const float> actions, std::span<const FollowedState> states);
 
-  /// What reset() may be given for an env instead of an episode: it stays as it is, or begins the
-  /// episode whose turn it is.
+  /// What reset() takes for an env instead of an episode: leave it as it is, or begin the episode
+  /// whose turn it is.
   static constexpr std::int32_t kStays = -1;
   static constexpr std::int32_t kNextEpisode = -2;
   /// Begins episodes between two steps. `episodes`: for each env the index of an episode, kStays or
@@ -198,12 +198,12 @@ class BatchSimulator {
   /// what the last step returned, the statistics and the seed.
   [[nodiscard]] std::vector<std::byte> saveState() const;
   [[nodiscard]] std::vector<std::byte> saveState(std::span<const std::uint32_t> envs) const;
-  /// Goes on from a state that a simulator of the same world and the same options saved (other
-  /// numbers of threads do; of envs, rank and ranks too, with `envs`): bit for bit as that one
-  /// would have. The saved envs become all envs, or `envs`, in that order; the random numbers and
-  /// episodes to come are those of the env that a state is restored to. Bytes may be anything:
-  /// fails with kInvalidInput or kUnsupported and changes nothing when they are no such state, have
-  /// another number of envs, or, with `envs`, another seed.
+  /// Goes on from a state that a simulator of the same world and the same options saved (the number
+  /// of threads may differ and, with `envs`, the number of envs, rank and ranks): bit for bit as
+  /// that one would have. The saved envs become all envs, or `envs`, in that order; the random
+  /// numbers and episodes to come are those of the env that a state is restored to. The bytes need
+  /// not be trusted: fails with kInvalidInput or kUnsupported and changes nothing if they are not
+  /// such a state, are of another number of envs or, with `envs`, of another seed.
   [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state);
   [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state,
                                           std::span<const std::uint32_t> envs);
@@ -222,18 +222,18 @@ class BatchSimulator {
   /// How it ended; kNone where it goes on or the caller reset it. Shape: envs.
   [[nodiscard]] std::span<const EpisodeEnd> endings() const;
 
-  /// 1 where an env has had its share of the episodes (EpisodeOrder::kPartition): it stays as it
-  /// is, whatever its actions, and nothing of it counts, until the caller chooses an episode.
-  /// Shape: envs.
+  /// 1 where an env has played its share of the episodes (EpisodeOrder::kPartition): it ignores
+  /// actions and is left out of all statistics until the caller chooses an episode for it. Shape:
+  /// envs.
   [[nodiscard]] std::span<const std::uint8_t> idle() const;
 
   [[nodiscard]] SimulationStatistics statistics() const;
-  /// The same of one env.
+  /// The statistics of one env.
   [[nodiscard]] SimulationStatistics statistics(std::size_t env) const;
   /// Episodes of the world that are skipped because the robot cannot start in them.
   [[nodiscard]] std::span<const std::uint32_t> skippedEpisodes() const;
   [[nodiscard]] EnvState envState(std::size_t env) const;
-  /// The objects of it alone, without copies: for rendering.
+  /// The objects of one env, without copies: for rendering.
   [[nodiscard]] EnvObjects envObjects(std::size_t env) const noexcept;
   /// A body is a group of links that no joint moves against each other in this run (joints that
   /// neither actions nor episodes move count as fixed). The root's is body 0.
@@ -244,10 +244,10 @@ class BatchSimulator {
   /// empty without SimulationOptions::body_transforms.
   [[nodiscard]] std::span<const RigidTransform> bodyTransforms() const;
 
-  /// Measures one step in `every` from now on; 0 switches it off.
+  /// From now on, measures the phases of one step in `every`; 0 switches this off.
   void samplePhases(std::uint32_t every);
   [[nodiscard]] std::vector<PhaseTime> phaseTimes() const;
-  /// Bytes that the envs take, all together.
+  /// Memory of all envs together, bytes.
   [[nodiscard]] std::size_t memoryBytes() const;
 
  private:

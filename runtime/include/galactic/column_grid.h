@@ -89,8 +89,8 @@ class ColumnGrid {
   /// length or are both empty.
   void contact(const SphereCenters& centers, const ContactArrays& out) const noexcept;
 
-  /// Index of the first of these centers that is not free, their number when all are. The same
-  /// answers as those of `contact`, found faster. Neither allocates nor throws.
+  /// Index of the first of these centers that is not free, or their number if all are free. The
+  /// same answers as those of `contact`, found faster. Neither allocates nor throws.
   [[nodiscard]] std::size_t firstNotFree(const SphereCenters& centers) const noexcept;
 
   /// Number of free spans in column (i, k); i < columnsX(), k < columnsZ().

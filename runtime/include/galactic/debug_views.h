@@ -74,7 +74,7 @@ class DebugViews {
   /// Copies the state after the last step. Does not allocate.
   void update(const BatchSimulator& simulator) noexcept;
 
-  /// Of the last update. Shape: envs.
+  /// As of the last update. Shape: envs.
   [[nodiscard]] std::span<const RenderView> views() const { return views_; }
 
  private:

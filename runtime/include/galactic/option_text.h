@@ -27,16 +27,16 @@ enum class OptionScope {
   kAll,
   /// What a world may say of its task (visitWorldTask): not those of a batch.
   kTask,
-  /// kAll, and the presets, which what is named besides refines: as somebody types them.
+  /// kAll, and the presets, which options named beside them refine: what a user may type.
   kTyped,
 };
 
-/// Why a list of texts is none of options.
+/// Why a list of texts cannot be read as options.
 struct OptionFault {
   /// Of the offending text in the list.
   std::size_t index = 0;
-  /// What its value should be, for example "0 to 1000"; empty where the table does not have its
-  /// name, or an earlier text has it.
+  /// What its value should be, for example "0 to 1000"; empty if the table does not have its name,
+  /// or an earlier text has the same name.
   std::string wanted;
 };
 
@@ -44,12 +44,13 @@ struct OptionFault {
 [[nodiscard]] std::vector<std::string> optionNames(OptionScope scope);
 
 /// The options with their values, in the order of the table; numbers read back exactly. Presets are
-/// none of them: their parts have the values.
+/// not listed; the options that they set are.
 [[nodiscard]] std::vector<OptionText> listOptions(const SimulationOptions& options,
                                                   OptionScope scope = OptionScope::kAll);
 
 /// Gives `options` the values of `texts`, in any order; what they do not name keeps its value. On a
-/// fault, the first in the order of the table and unknown names last, `options` are of no use.
+/// fault (the first in the order of the table, unknown names last), the values of `options` are
+/// unspecified.
 [[nodiscard]] std::optional<OptionFault> setOptions(std::span<const OptionText> texts,
                                                     OptionScope scope, SimulationOptions& options);
 

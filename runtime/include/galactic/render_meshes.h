@@ -38,7 +38,7 @@ struct RenderMaterial {
   std::uint32_t color = 0xFFFFFFFF;
   /// Index of a texture, or -1.
   std::int32_t texture = -1;
-  /// 0: opaque. Else what has less alpha than this is not there.
+  /// 0: opaque; otherwise what has less alpha than this is not drawn.
   float alpha_cutoff = 0;
 };
 

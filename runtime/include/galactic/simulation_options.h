@@ -42,7 +42,7 @@ struct GroundOptions {
   float most_drop = 0.05F;
 };
 
-/// What of a resting object the hand has to touch in order to grasp it.
+/// What the hand has to touch of a resting object in order to grasp it.
 enum class GraspShape : std::uint8_t {
   /// Its oriented box, and all planes around its convex hull that its pack knows.
   kHull = 0,
@@ -50,7 +50,7 @@ enum class GraspShape : std::uint8_t {
   kBox = 1,
 };
 
-/// From where on the values of an action mean something.
+/// Thresholds of the actions that switch something, and what a grasp is about.
 struct ActionOptions {
   /// A hand that is empty grasps from this value on.
   float grasp = 0.5F;
@@ -67,7 +67,7 @@ enum class TaskKind : std::uint8_t {
   kRearrange = 0,
   /// Pick up the target.
   kMobilePick = 1,
-  /// Nothing: no reward, no success, no failure; episodes end with their time.
+  /// Nothing: no reward, no success, no failure; episodes end when their time is up.
   kNone = 2,
 };
 
@@ -79,13 +79,13 @@ struct TaskOptions {
   float reach_weight = 1.0F;
   float transport_weight = 1.0F;
   float action_weight = 0.001F;
-  /// For each meter of the way along the floor to what matters now: the target, once it is held the
-  /// goal. The paper has none.
+  /// Per meter of the shortest way along the floor to the target or, once it is held, to the goal.
+  /// The paper has no such term.
   float geodesic_weight = 0;
-  /// Taken away each step, and when an episode fails.
+  /// Subtracted in each step, and when an episode fails.
   float slack_penalty = 0.0F;
   float failure_penalty = 0.0F;
-  /// Taken away each step that leaves the robot where it was, for something was in the way.
+  /// Subtracted in each step in which an obstacle kept the robot where it was.
   float bump_penalty = 0.0F;
   /// Distance of target and goal that counts as success, meters.
   float success_distance = 0.1F;
@@ -99,13 +99,13 @@ struct TaskOptions {
   bool drop_fails = true;
   /// Whether objects other than the target are there.
   bool distractors = true;
-  /// Whether observations give the target where it is; else where it was at the start, as the
-  /// published code does.
+  /// Whether observations follow the target; otherwise they give it where it was at the start, as
+  /// the published code does.
   bool observes_current_target = false;
 };
 
-/// For values that the robot's recipe gives: what it says counts, or where it says nothing the
-/// default of the value.
+/// Stands for the value in the robot's recipe or, if the recipe has none, for the default of the
+/// value.
 inline constexpr float kOfRobot = -1;
 
 /// A planar laser scan as a part of the observation: distances in horizontal planes around the
@@ -129,7 +129,7 @@ struct LaserOptions {
 
 /// What the robot senses beside its own state; all off by default.
 struct SensorOptions {
-  /// Whether the last step left the robot where it was, for something was in the way.
+  /// Whether an obstacle kept the robot where it was in the last step.
   bool bump = false;
   /// The way from the target, where it is now, to the goal.
   bool target_goal = false;
@@ -146,9 +146,9 @@ enum class EpisodeOrder : std::uint8_t {
   kShuffled = 0,
   /// As they are stored: env b begins with episode b.
   kLinear = 1,
-  /// Env b of all N envs (of all ranks) takes episodes b, b + N, ..., then none: together each
-  /// once,
-  /// for evaluations. The only order in which an env's episodes depend on the number of envs.
+  /// Env b of all N envs (of all ranks) takes episodes b, b + N, ..., then none: together, each
+  /// episode once. For evaluations. The only order in which an env's episodes depend on the number
+  /// of envs.
   kPartition = 2,
 };
 
@@ -162,7 +162,7 @@ struct SimulationOptions {
   /// depends on that number only.
   std::uint32_t rank = 0;
   std::uint32_t ranks = 1;
-  /// Whether a step leaves the pose of every body of the robot, for rendering.
+  /// Whether steps give the pose of every body of the robot, for rendering.
   bool body_transforms = false;
   /// Whether a step that ends an episode begins the next. Else the env stays where its episode
   /// ended until BatchSimulator::reset, so that this can be drawn; the episodes are the same.

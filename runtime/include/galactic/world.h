@@ -30,12 +30,12 @@ class World {
   /// textures).
   /// Fails with the errors of PackFile::open, and with kInvalidInput when
   /// - a referenced pack is missing, or is not the one that was linked (kind, size or hash),
-  /// - a kind is missing or is there twice where one is wanted, or two scenes or two objects have
+  /// - a kind is missing, or there are two where only one may be, or two scenes or two objects have
   ///   one name,
   /// - an episode names a scene, an object or a joint (of one position, that follows no other) that
-  ///   is not there, or the robot is another,
+  ///   the packs do not have, or another robot,
   /// - the packs were baked for different radii,
-  /// - the world pack has an option of the task that is none, or has a wrong value,
+  /// - the world pack has an unknown option of the task, or a wrong value of one,
   /// - the robot has no end effector, no base or no spheres.
   [[nodiscard]] static Result<World> open(std::span<const std::filesystem::path> paths,
                                           Trust trust = Trust::kVerify);
@@ -73,7 +73,7 @@ class World {
   /// nothing, and where the packs were opened one by one.
   [[nodiscard]] const std::vector<OptionText>& taskOptions() const { return task_options_; }
   /// `base` with the options of the task that the world pack gives: what it does not say keeps its
-  /// value. For BatchSimulator::create; nothing but galactic-run does this by itself.
+  /// value. For BatchSimulator::create; only galactic-run does this by itself.
   [[nodiscard]] SimulationOptions withTask(SimulationOptions base = {}) const;
 
  private:

@@ -73,7 +73,7 @@ class WorldViews {
   /// Copies the state after the last step. Does not allocate.
   void update(const BatchSimulator& simulator) noexcept;
 
-  /// Of the last update. Shape: envs.
+  /// As of the last update. Shape: envs.
   [[nodiscard]] std::span<const RenderView> views() const { return views_; }
 
  private:
@@ -101,12 +101,12 @@ struct ChosenCamera {
   float near = 0.05F;
 };
 
-/// What a user says of a camera.
+/// A camera as a user asks for it.
 struct CameraWish {
-  /// "head": that of the robot's recipe. "follow": behind and above the base, or
-  /// from where nothing stands between. "top": straight down
-  /// on the base, without what is higher than a robot, ceilings above all. Or a link of the robot
-  /// ("NAME", or "link:NAME" where it has one of these names), looking along its +X.
+  /// "head": that of the robot's recipe. "follow": behind and above the base, moved to where
+  /// nothing stands between. "top": straight down on the base; what is higher than a robot is cut
+  /// off, ceilings above all. Or a link of the robot ("NAME", or "link:NAME" where it has one of
+  /// these names), looking along its +X.
   std::string name;
   /// Between the lower and the upper edge; 0: what belongs to the camera.
   float fov_degrees = 0;

@@ -10,9 +10,8 @@
 
 namespace galactic::bake {
 
-// What is said of a pack that was made: figures, not geometry. Tables, reports and the comparison
-// with a golden report are views of them, and the cache keeps them beside the pack. Lengths are in
-// meters, volumes in cubic meters, times in seconds of wall clock.
+// What tables and reports say about a finished pack: figures, not geometry. The cache keeps them
+// beside the pack. Lengths are in meters, volumes in cubic meters, times in seconds of wall clock.
 
 /// What simplification and clustering made of one asset's meshes.
 struct RenderFigures {

@@ -63,9 +63,8 @@ struct BakedObject {
 };
 
 /// Box, stable poses and spheres of one object. Fails with kInvalidInput or kUnsupported on options
-/// or geometry that cannot give them; `where` names the option or "mesh", or is empty: the baker
-/// knows no file. The result does
-/// not depend on the number of threads.
+/// or geometry that cannot give them; `where` names the option or "mesh", or is empty, since the
+/// baker knows no file. The result does not depend on the number of threads.
 [[nodiscard]] Result<BakedObject> bakeObject(const SourceAsset& asset,
                                              const ObjectBakeOptions& options);
 

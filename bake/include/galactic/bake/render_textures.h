@@ -19,7 +19,7 @@ struct BakedMaterial {
   std::uint32_t color = 0xFFFFFFFF;
   /// Index into BakedMaterials::textures, or -1.
   std::int32_t texture = -1;
-  /// 0: opaque. Else what has less alpha than this is not there; at most 1.
+  /// 0: opaque; otherwise what has less alpha than this is not drawn; at most 1.
   float alpha_cutoff = 0;
 };
 

@@ -97,8 +97,8 @@ struct BakedRobot {
 /// Kinematics, spheres and self-collision pairs of a robot; `recipe` may be null. Links that lie
 /// lower than the clip height get no spheres, with a warning. Fails with kInvalidInput or
 /// kUnsupported on names, options, recipe or geometry that cannot give them; `where` names the line
-/// of the recipe, the link or the option, or is empty: the baker knows no file. The result does not
-/// depend on the number of threads.
+/// of the recipe, the link or the option, or is empty, since the baker knows no file. The result
+/// does not depend on the number of threads.
 [[nodiscard]] Result<BakedRobot> bakeRobot(const SourceRobot& robot, const RobotRecipe* recipe,
                                            const RobotBakeOptions& options);
 

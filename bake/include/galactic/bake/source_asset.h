@@ -21,8 +21,8 @@ using Affine = std::array<double, 12>;
 
 /// What a material's alpha means (glTF's alphaMode).
 enum class AlphaMode : std::uint8_t {
-  kOpaque,  ///< Nothing.
-  kMask,    ///< What has less alpha than a cutoff is not there, the rest is opaque.
+  kOpaque,  ///< Alpha is ignored.
+  kMask,    ///< What has less alpha than a cutoff is not drawn, the rest is opaque.
   kBlend,   ///< Translucency.
 };
 
