@@ -1,7 +1,6 @@
 #pragma once
 #include <cstdint>
 #include <optional>
-#include <utility>
 
 #include "galactic/object_set.h"
 #include "galactic/pose.h"
@@ -22,18 +21,24 @@ namespace galactic::simulation {
                                          const Pose& world_from_object, const Vec3& point,
                                          GraspShape shape) noexcept;
 
-/// The resting object nearest to `center` among those that a sphere of `radius` (at most the
-/// objects' largest) touches; the lower index when equally near. `model(index)` and `pose(index)`
-/// are those of an object.
+/// What a hand grasps with, in the world frame; meters.
+struct GraspSphere {
+  Vec3 center;
+  float radius = 0;
+};
+
+/// The resting object nearest to the center of `sphere` (whose radius is at most the objects'
+/// largest) among those that it touches; the lower index when equally near. `model(index)` and
+/// `pose(index)` are those of an object.
 template <class Model, class ObjectPose>
 [[nodiscard]] std::optional<std::uint32_t> nearestToGrasp(const RestingObjects& resting,
-                                                          const std::pair<Vec3, float>& sphere,
+                                                          const GraspSphere& sphere,
                                                           GraspShape shape, const Model& model,
                                                           const ObjectPose& pose) {
-  const auto& [center, radius] = sphere;
-  if (shape == GraspShape::kBox) return resting.nearest(center, radius);
+  const Vec3& center = sphere.center;
+  if (shape == GraspShape::kBox) return resting.nearest(center, sphere.radius);
   std::optional<std::uint32_t> best;
-  float least = radius * radius;
+  float least = sphere.radius * sphere.radius;
   resting.forEachInColumnOf(center, [&](std::uint32_t index) {
     const RestingBox& box = resting.box(index);
     // Planes are looked at where the box is near enough only.
