@@ -54,9 +54,10 @@ TEST_F(PackCli, ListsItsVerbsAndExitCodesInHelp) {
   const ProgramRun help = run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_EQ(help.err, "");
-  for (const char* part : {"info", "check", "column", "diff", "export", "picture", "0    success",
-                           "1    wrong command line", "2    a file", "3    invalid input",
-                           "4    internal", "5    not supported", "7    packs, reports or runs differ"}) {
+  for (const char* part :
+       {"info", "check", "column", "diff", "export", "picture", "0    success",
+        "1    wrong command line", "2    a file", "3    invalid input", "4    internal",
+        "5    not supported", "7    packs, reports or runs differ"}) {
     EXPECT_THAT(help.out, HasSubstr(part));
   }
   const ProgramRun verb = run({"diff", "--help"});

@@ -8,12 +8,12 @@
 #include "galactic/pose.h"
 #include "simulation/collision/clearance_map.h"
 #include "simulation/collision/collision.h"
-#include "simulation/ways_out/column_ways.h"
-#include "simulation/ways_out/free_slices.h"
-#include "simulation/ways_out/way_out.h"
 #include "simulation/phases/object_placement.h"
 #include "simulation/state/batch_state.h"
 #include "simulation/state/model.h"
+#include "simulation/ways_out/column_ways.h"
+#include "simulation/ways_out/free_slices.h"
+#include "simulation/ways_out/way_out.h"
 
 namespace galactic::simulation {
 

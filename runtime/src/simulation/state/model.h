@@ -13,9 +13,9 @@
 #include "sensors/laser.h"
 #include "simulation/collision/clearance_map.h"
 #include "simulation/collision/collision.h"
-#include "simulation/ways_out/free_slices.h"
 #include "simulation/motion/motion_kernels.h"
 #include "simulation/motion/motion_model.h"
+#include "simulation/ways_out/free_slices.h"
 
 namespace galactic::simulation {
 
