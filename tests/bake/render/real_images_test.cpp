@@ -161,7 +161,7 @@ TEST(RealImages, OfAScanHaveTheDepthsThatRaysMeet) {
 }
 
 TEST(RealImages, OfTheCudaKernelsAreThoseOfSoftAndHaveTheDepthsThatRaysMeet) {
-  if (render::cuda::kernelImage() == nullptr) GTEST_SKIP() << "built without clang";
+  if (render::cuda::kernelImage() == nullptr) GTEST_SKIP() << "built without the kernels";
   if (!hasAsset(kApartmentStage) || !hasAsset(kScannedRoom)) {
     GTEST_SKIP() << "the sc1 stage and the scanned room are not on this machine";
   }

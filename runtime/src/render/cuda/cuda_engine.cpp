@@ -82,8 +82,8 @@ Result<Kernels> Kernels::load(const Driver& driver) {
   const char* image = kernelImage();
   if (image == nullptr) {
     return fail(ErrorCode::kUnsupported, "render backend cuda",
-                "this program was built without clang, which compiles the cuda backend's kernels; "
-                "install clang-14 and build it again, or use another backend");
+                "this program was built without the cuda backend's kernels; install clang-14 or "
+                "nvcc, which compile them, and build it again, or use another backend");
   }
   constexpr std::size_t kLogBytes = 4096;
   // As cuda.h numbers options of the compiler in the driver.

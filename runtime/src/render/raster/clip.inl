@@ -21,7 +21,7 @@ struct Polygon {
 };
 
 /// Not negative where the vertex may stay: the tests of placeEight().
-inline float clipDistance(const ClipVertex& vertex, int plane, float near) {
+GALACTIC_EVERYWHERE inline float clipDistance(const ClipVertex& vertex, int plane, float near) {
   const float guard = kGuard * vertex.w;
   switch (plane) {
     case 0:
@@ -38,13 +38,14 @@ inline float clipDistance(const ClipVertex& vertex, int plane, float near) {
 }
 
 /// An order of places that does not depend on which triangle asks.
-inline bool comesFirst(const ClipVertex& a, const ClipVertex& b) {
+GALACTIC_EVERYWHERE inline bool comesFirst(const ClipVertex& a, const ClipVertex& b) {
   if (a.w != b.w) return a.w < b.w;
   if (a.x != b.x) return a.x < b.x;
   return a.y < b.y;
 }
 
-inline ClipVertex cutEdge(const ClipVertex& a, const ClipVertex& b, int plane, float near) {
+GALACTIC_EVERYWHERE inline ClipVertex cutEdge(const ClipVertex& a, const ClipVertex& b, int plane,
+                                              float near) {
   const bool in_order = comesFirst(a, b);
   const ClipVertex& p = in_order ? a : b;
   const ClipVertex& q = in_order ? b : a;
@@ -62,14 +63,15 @@ inline ClipVertex cutEdge(const ClipVertex& a, const ClipVertex& b, int plane, f
 }
 
 /// Whether a plane cuts nothing off.
-inline bool liesWithin(const Polygon& polygon, int plane, float near) {
+GALACTIC_EVERYWHERE inline bool liesWithin(const Polygon& polygon, int plane, float near) {
   for (int n = 0; n < polygon.count; ++n) {
     if (!(clipDistance(polygon.corners[n], plane, near) >= 0)) return false;
   }
   return true;
 }
 
-inline void cutPolygon(const Polygon& from, int plane, float near, Polygon& to) {
+GALACTIC_EVERYWHERE inline void cutPolygon(const Polygon& from, int plane, float near,
+                                           Polygon& to) {
   to.count = 0;
   for (int n = 0; n < from.count; ++n) {
     const ClipVertex& a = from.corners[n];
@@ -85,7 +87,7 @@ inline void cutPolygon(const Polygon& from, int plane, float near, Polygon& to) 
 
 /// Vertex `number` of the state, whose texture coordinates are there where there is a texture.
 template <class State>
-inline ClipVertex clipVertex(const State& state, std::uint32_t number) {
+GALACTIC_EVERYWHERE inline ClipVertex clipVertex(const State& state, std::uint32_t number) {
   const RenderCluster& cluster = *state.facts.cluster;
   const VertexFrame& frame = *state.frame;
   const std::uint32_t lane = state.vertex(number) % kWidth;
@@ -115,7 +117,7 @@ inline ClipVertex clipVertex(const State& state, std::uint32_t number) {
 
 /// A vertex that needs no clipping.
 template <class State>
-inline Corner cornerOf(const State& state, std::uint32_t number) {
+GALACTIC_EVERYWHERE inline Corner cornerOf(const State& state, std::uint32_t number) {
   const ClipVertex vertex = clipVertex(state, number);
   Corner corner{
       state.xy[2 * number], state.xy[2 * number + 1], state.z[number], vertex.u, vertex.v, {}};
@@ -124,7 +126,8 @@ inline Corner cornerOf(const State& state, std::uint32_t number) {
 }
 
 /// 1/256 pixel in the pane; false when the number is none.
-inline bool projected(float value, float inverse, float middle, std::int32_t& place) {
+GALACTIC_EVERYWHERE inline bool projected(float value, float inverse, float middle,
+                                          std::int32_t& place) {
   constexpr float kMost = 1 << 22;
   const float exact = value * inverse + middle;
   if (!(exact > -kMost && exact < kMost)) return false;
@@ -132,7 +135,8 @@ inline bool projected(float value, float inverse, float middle, std::int32_t& pl
   return true;
 }
 
-inline bool toCorner(const VertexFrame& frame, const ClipVertex& vertex, Corner& corner) {
+GALACTIC_EVERYWHERE inline bool toCorner(const VertexFrame& frame, const ClipVertex& vertex,
+                                         Corner& corner) {
   corner.z = 1.0F / vertex.w;
   if (!projected(vertex.x, corner.z, frame.middle_x, corner.x) ||
       !projected(vertex.y, corner.z, frame.middle_y, corner.y)) {
@@ -149,8 +153,8 @@ inline bool toCorner(const VertexFrame& frame, const ClipVertex& vertex, Corner&
 /// The corners of what is left of a triangle of three vertices of the state: 3 or more, a fan
 /// around the first, or 0.
 template <class State>
-inline int clipTriangle(const State& state, std::uint32_t a, std::uint32_t b, std::uint32_t c,
-                        Corner* ready) {
+GALACTIC_EVERYWHERE inline int clipTriangle(const State& state, std::uint32_t a, std::uint32_t b,
+                                            std::uint32_t c, Corner* ready) {
   const VertexFrame& frame = *state.frame;
   Polygon polygons[2];
   polygons[0].corners[0] = clipVertex(state, a);

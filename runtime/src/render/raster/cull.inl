@@ -19,7 +19,7 @@ struct PaneEdges {
   float left, right, top, bottom;
 };
 
-inline PaneEdges paneEdges(const PaneTask& task) {
+GALACTIC_EVERYWHERE inline PaneEdges paneEdges(const PaneTask& task) {
   const auto units = [](std::uint32_t pixels, std::uint32_t image) {
     return static_cast<float>(pixels) * kSubpixels - static_cast<float>(image) * kHalfPixel;
   };
@@ -33,7 +33,7 @@ struct Row {
   float start, error;
 };
 
-inline Row makeRow(const float* row, const ModelTables& model) {
+GALACTIC_EVERYWHERE inline Row makeRow(const float* row, const ModelTables& model) {
   float size = magnitude(row[3]);
   for (int n = 0; n < 3; ++n) {
     size += magnitude(row[n]) * (magnitude(model.center[n]) + model.half_extents[n]);
@@ -42,14 +42,14 @@ inline Row makeRow(const float* row, const ModelTables& model) {
 }
 
 /// a * factor + b.
-inline Row combine(const Row& a, float factor, const Row& b) {
+GALACTIC_EVERYWHERE inline Row combine(const Row& a, float factor, const Row& b) {
   return {{a.axis[0] * factor + b.axis[0], a.axis[1] * factor + b.axis[1],
            a.axis[2] * factor + b.axis[2]},
           a.start * factor + b.start,
           a.error * magnitude(factor) + b.error};
 }
 
-inline Row negative(const Row& a) {
+GALACTIC_EVERYWHERE inline Row negative(const Row& a) {
   return {{-a.axis[0], -a.axis[1], -a.axis[2]}, -a.start, a.error};
 }
 
@@ -64,7 +64,7 @@ struct CullFrame {
   float projected_error;
 };
 
-inline CullFrame makeFrame(const PaneTask& task, const PlacedModel& placed) {
+GALACTIC_EVERYWHERE inline CullFrame makeFrame(const PaneTask& task, const PlacedModel& placed) {
   const ModelTables& model = *placed.model;
   CullFrame frame;
   frame.w = makeRow(placed.w, model);
@@ -84,7 +84,7 @@ inline CullFrame makeFrame(const PaneTask& task, const PlacedModel& placed) {
   return frame;
 }
 
-inline bool mayShow(const CullFrame& frame, const ModelTables& model) {
+GALACTIC_EVERYWHERE inline bool mayShow(const CullFrame& frame, const ModelTables& model) {
   const float* c = model.center;
   const float* h = model.half_extents;
   for (const Row& plane : frame.planes) {
@@ -103,19 +103,19 @@ struct BoxLanes {
   Lanes half[3];
 };
 
-inline Lanes atCenter(const Row& row, const BoxLanes& box) {
+GALACTIC_EVERYWHERE inline Lanes atCenter(const Row& row, const BoxLanes& box) {
   return spread(row.axis[0]) * box.center[0] + spread(row.axis[1]) * box.center[1] +
          spread(row.axis[2]) * box.center[2] + spread(row.start);
 }
 
-inline Lanes reachOf(const Row& row, const BoxLanes& box) {
+GALACTIC_EVERYWHERE inline Lanes reachOf(const Row& row, const BoxLanes& box) {
   return spread(magnitude(row.axis[0])) * box.half[0] +
          spread(magnitude(row.axis[1])) * box.half[1] +
          spread(magnitude(row.axis[2])) * box.half[2];
 }
 
 /// Bit n: box n is not outside of one of the planes.
-inline unsigned withinPlanes(const CullFrame& frame, const BoxLanes& box) {
+GALACTIC_EVERYWHERE inline unsigned withinPlanes(const CullFrame& frame, const BoxLanes& box) {
   IntLanes outside = spread(0);
   for (const Row& plane : frame.planes) {
     outside |= (atCenter(plane, box) + reachOf(plane, box)) < spread(0.0F);
@@ -133,7 +133,7 @@ struct Footprint {
 };
 
 /// The interval of (row / w) over the corners of the boxes, for boxes in front of the eye.
-Footprint footprint(const CullFrame& frame, const BoxLanes& box) {
+GALACTIC_EVERYWHERE inline Footprint footprint(const CullFrame& frame, const BoxLanes& box) {
   Lanes w_steps[3];
   Lanes x_steps[3];
   Lanes y_steps[3];
@@ -169,8 +169,8 @@ struct PixelRange {
 };
 
 /// `edge`: where the pane begins, in the units of the interval; `count`: its pixels.
-inline PixelRange pixelsWithin(const Interval& interval, Lanes error, float edge,
-                               std::uint32_t count) {
+GALACTIC_EVERYWHERE inline PixelRange pixelsWithin(const Interval& interval, Lanes error,
+                                                   float edge, std::uint32_t count) {
   const Lanes low = (interval.low - error - spread(edge + kHalfPixel)) * spread(1.0F / kSubpixels);
   const Lanes high =
       (interval.high + error - spread(edge + kHalfPixel)) * spread(1.0F / kSubpixels);
@@ -191,7 +191,8 @@ struct EightSeen {
   PixelRange x, y;
 };
 
-EightSeen lookAtEight(const PaneTask& task, const CullFrame& frame, const float* bounds) {
+GALACTIC_EVERYWHERE inline EightSeen lookAtEight(const PaneTask& task, const CullFrame& frame,
+                                                 const float* bounds) {
   BoxLanes box;
   for (std::uint32_t n = 0; n < 3; ++n) {
     box.center[n] = load<Lanes>(bounds + kWidth * (kCenterX + n));
@@ -224,7 +225,7 @@ EightSeen lookAtEight(const PaneTask& task, const CullFrame& frame, const float*
 }
 
 /// Buckets of equal ratio, sixteen for each doubling of the distance from the near plane.
-inline IntLanes bucketsOf(Lanes distance, float near) {
+GALACTIC_EVERYWHERE inline IntLanes bucketsOf(Lanes distance, float near) {
   const IntLanes bits = as<IntLanes>(greater(distance, spread(near)));
   const IntLanes bucket = (bits - spread(as<std::int32_t>(near))) >> 19;
   return lesser(greater(bucket, spread(0)), spread(static_cast<std::int32_t>(kBuckets) - 1));

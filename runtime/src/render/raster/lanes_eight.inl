@@ -140,6 +140,9 @@ inline unsigned signBits(IntLanes v) {
 #endif
 }
 
+/// Of bits that are not all 0: the number of the lowest one.
+inline int lowestBit(unsigned bits) { return __builtin_ctz(bits); }
+
 /// Products and differences that may wrap around: of lanes whose result is not used.
 inline IntLanes wrapMultiply(IntLanes a, IntLanes b) {
   return as<IntLanes>(as<WordLanes>(a) * as<WordLanes>(b));

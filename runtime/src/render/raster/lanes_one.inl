@@ -9,14 +9,14 @@ struct IntLanes {
   IntLanes() = default;
   // NOLINTNEXTLINE(google-explicit-constructor): constants stand beside vectors
   constexpr IntLanes(std::int32_t value) : v(value) {}
-  std::int32_t operator[](int) const { return v; }
+  GALACTIC_EVERYWHERE std::int32_t operator[](int) const { return v; }
 };
 
 struct Lanes {
   float v;
   Lanes() = default;
   constexpr explicit Lanes(float value) : v(value) {}
-  float operator[](int) const { return v; }
+  GALACTIC_EVERYWHERE float operator[](int) const { return v; }
 };
 
 struct WordLanes {
@@ -44,63 +44,79 @@ constexpr std::uint32_t kLanes = 1;
 constexpr unsigned kAllLanes = 1;
 constexpr std::size_t kGroupAlignment = 4;
 
-inline std::uint32_t bitsOf(IntLanes v) { return static_cast<std::uint32_t>(v.v); }
-inline IntLanes ofBits(std::uint32_t bits) { return static_cast<std::int32_t>(bits); }
-inline IntLanes mask(bool yes) { return yes ? -1 : 0; }
+GALACTIC_EVERYWHERE inline std::uint32_t bitsOf(IntLanes v) {
+  return static_cast<std::uint32_t>(v.v);
+}
+GALACTIC_EVERYWHERE inline IntLanes ofBits(std::uint32_t bits) {
+  return static_cast<std::int32_t>(bits);
+}
+GALACTIC_EVERYWHERE inline IntLanes mask(bool yes) { return yes ? -1 : 0; }
 
-inline IntLanes operator+(IntLanes a, IntLanes b) { return ofBits(bitsOf(a) + bitsOf(b)); }
-inline IntLanes operator-(IntLanes a, IntLanes b) { return ofBits(bitsOf(a) - bitsOf(b)); }
-inline IntLanes operator*(IntLanes a, IntLanes b) { return ofBits(bitsOf(a) * bitsOf(b)); }
-inline IntLanes operator-(IntLanes a) { return ofBits(0U - bitsOf(a)); }
-inline IntLanes operator~(IntLanes a) { return ~a.v; }
-inline IntLanes operator&(IntLanes a, IntLanes b) { return a.v & b.v; }
-inline IntLanes operator|(IntLanes a, IntLanes b) { return a.v | b.v; }
-inline IntLanes& operator&=(IntLanes& a, IntLanes b) { return a = a & b; }
-inline IntLanes& operator|=(IntLanes& a, IntLanes b) { return a = a | b; }
-inline IntLanes operator<<(IntLanes a, IntLanes b) { return ofBits(bitsOf(a) << bitsOf(b)); }
-inline IntLanes operator>>(IntLanes a, IntLanes b) { return a.v >> b.v; }
-inline IntLanes operator<(IntLanes a, IntLanes b) { return mask(a.v < b.v); }
-inline IntLanes operator>(IntLanes a, IntLanes b) { return mask(a.v > b.v); }
-inline IntLanes operator>=(IntLanes a, IntLanes b) { return mask(a.v >= b.v); }
-inline IntLanes operator==(IntLanes a, IntLanes b) { return mask(a.v == b.v); }
-inline IntLanes operator!=(IntLanes a, IntLanes b) { return mask(a.v != b.v); }
+GALACTIC_EVERYWHERE inline IntLanes operator+(IntLanes a, IntLanes b) {
+  return ofBits(bitsOf(a) + bitsOf(b));
+}
+GALACTIC_EVERYWHERE inline IntLanes operator-(IntLanes a, IntLanes b) {
+  return ofBits(bitsOf(a) - bitsOf(b));
+}
+GALACTIC_EVERYWHERE inline IntLanes operator*(IntLanes a, IntLanes b) {
+  return ofBits(bitsOf(a) * bitsOf(b));
+}
+GALACTIC_EVERYWHERE inline IntLanes operator-(IntLanes a) { return ofBits(0U - bitsOf(a)); }
+GALACTIC_EVERYWHERE inline IntLanes operator~(IntLanes a) { return ~a.v; }
+GALACTIC_EVERYWHERE inline IntLanes operator&(IntLanes a, IntLanes b) { return a.v & b.v; }
+GALACTIC_EVERYWHERE inline IntLanes operator|(IntLanes a, IntLanes b) { return a.v | b.v; }
+GALACTIC_EVERYWHERE inline IntLanes& operator&=(IntLanes& a, IntLanes b) { return a = a & b; }
+GALACTIC_EVERYWHERE inline IntLanes& operator|=(IntLanes& a, IntLanes b) { return a = a | b; }
+GALACTIC_EVERYWHERE inline IntLanes operator<<(IntLanes a, IntLanes b) {
+  return ofBits(bitsOf(a) << bitsOf(b));
+}
+GALACTIC_EVERYWHERE inline IntLanes operator>>(IntLanes a, IntLanes b) { return a.v >> b.v; }
+GALACTIC_EVERYWHERE inline IntLanes operator<(IntLanes a, IntLanes b) { return mask(a.v < b.v); }
+GALACTIC_EVERYWHERE inline IntLanes operator>(IntLanes a, IntLanes b) { return mask(a.v > b.v); }
+GALACTIC_EVERYWHERE inline IntLanes operator>=(IntLanes a, IntLanes b) { return mask(a.v >= b.v); }
+GALACTIC_EVERYWHERE inline IntLanes operator==(IntLanes a, IntLanes b) { return mask(a.v == b.v); }
+GALACTIC_EVERYWHERE inline IntLanes operator!=(IntLanes a, IntLanes b) { return mask(a.v != b.v); }
 
-inline Lanes operator+(Lanes a, Lanes b) { return Lanes(a.v + b.v); }
-inline Lanes operator-(Lanes a, Lanes b) { return Lanes(a.v - b.v); }
-inline Lanes operator*(Lanes a, Lanes b) { return Lanes(a.v * b.v); }
-inline Lanes operator/(Lanes a, Lanes b) { return Lanes(a.v / b.v); }
-inline Lanes operator-(Lanes a) { return Lanes(-a.v); }
-inline IntLanes operator<(Lanes a, Lanes b) { return mask(a.v < b.v); }
-inline IntLanes operator>(Lanes a, Lanes b) { return mask(a.v > b.v); }
-inline IntLanes operator<=(Lanes a, Lanes b) { return mask(a.v <= b.v); }
-inline IntLanes operator>=(Lanes a, Lanes b) { return mask(a.v >= b.v); }
+GALACTIC_EVERYWHERE inline Lanes operator+(Lanes a, Lanes b) { return Lanes(a.v + b.v); }
+GALACTIC_EVERYWHERE inline Lanes operator-(Lanes a, Lanes b) { return Lanes(a.v - b.v); }
+GALACTIC_EVERYWHERE inline Lanes operator*(Lanes a, Lanes b) { return Lanes(a.v * b.v); }
+GALACTIC_EVERYWHERE inline Lanes operator/(Lanes a, Lanes b) { return Lanes(a.v / b.v); }
+GALACTIC_EVERYWHERE inline Lanes operator-(Lanes a) { return Lanes(-a.v); }
+GALACTIC_EVERYWHERE inline IntLanes operator<(Lanes a, Lanes b) { return mask(a.v < b.v); }
+GALACTIC_EVERYWHERE inline IntLanes operator>(Lanes a, Lanes b) { return mask(a.v > b.v); }
+GALACTIC_EVERYWHERE inline IntLanes operator<=(Lanes a, Lanes b) { return mask(a.v <= b.v); }
+GALACTIC_EVERYWHERE inline IntLanes operator>=(Lanes a, Lanes b) { return mask(a.v >= b.v); }
 
-inline WordLanes operator+(WordLanes a, WordLanes b) { return a.v + b.v; }
-inline WordLanes operator*(WordLanes a, WordLanes b) { return a.v * b.v; }
-inline WordLanes operator&(WordLanes a, WordLanes b) { return a.v & b.v; }
-inline WordLanes operator>>(WordLanes a, int bits) { return a.v >> static_cast<unsigned>(bits); }
+GALACTIC_EVERYWHERE inline WordLanes operator+(WordLanes a, WordLanes b) { return a.v + b.v; }
+GALACTIC_EVERYWHERE inline WordLanes operator*(WordLanes a, WordLanes b) { return a.v * b.v; }
+GALACTIC_EVERYWHERE inline WordLanes operator&(WordLanes a, WordLanes b) { return a.v & b.v; }
+GALACTIC_EVERYWHERE inline WordLanes operator>>(WordLanes a, int bits) {
+  return a.v >> static_cast<unsigned>(bits);
+}
 
-inline ShortLanes halves(std::uint32_t low, std::uint32_t high) {
+GALACTIC_EVERYWHERE inline ShortLanes halves(std::uint32_t low, std::uint32_t high) {
   return {(low & 0xFFFFU) | high << 16U};
 }
-inline ShortLanes operator*(ShortLanes a, ShortLanes b) {
+GALACTIC_EVERYWHERE inline ShortLanes operator*(ShortLanes a, ShortLanes b) {
   return halves((a.v & 0xFFFFU) * (b.v & 0xFFFFU), (a.v >> 16U) * (b.v >> 16U));
 }
-inline ShortLanes operator+(ShortLanes a, ShortLanes b) {
+GALACTIC_EVERYWHERE inline ShortLanes operator+(ShortLanes a, ShortLanes b) {
   return halves(a.v + b.v, (a.v >> 16U) + (b.v >> 16U));
 }
-inline ShortLanes operator+(ShortLanes a, std::uint32_t b) { return a + halves(b, b); }
-inline ShortLanes operator>>(ShortLanes a, unsigned bits) {
+GALACTIC_EVERYWHERE inline ShortLanes operator+(ShortLanes a, std::uint32_t b) {
+  return a + halves(b, b);
+}
+GALACTIC_EVERYWHERE inline ShortLanes operator>>(ShortLanes a, unsigned bits) {
   return halves((a.v & 0xFFFFU) >> bits, a.v >> 16U >> bits);
 }
-inline ShortLanes operator<<(ShortLanes a, unsigned bits) {
+GALACTIC_EVERYWHERE inline ShortLanes operator<<(ShortLanes a, unsigned bits) {
   return halves((a.v & 0xFFFFU) << bits, a.v >> 16U << bits);
 }
-inline ShortLanes operator|(ShortLanes a, ShortLanes b) { return {a.v | b.v}; }
+GALACTIC_EVERYWHERE inline ShortLanes operator|(ShortLanes a, ShortLanes b) { return {a.v | b.v}; }
 
 /// The same bits as another type.
 template <class To, class From>
-inline To as(From from) {
+GALACTIC_EVERYWHERE inline To as(From from) {
   static_assert(sizeof(To) == sizeof(From));
   To to;
   __builtin_memcpy(&to, &from, sizeof(to));
@@ -108,50 +124,63 @@ inline To as(From from) {
 }
 
 template <class Vector>
-inline Vector load(const void* from) {
+GALACTIC_EVERYWHERE inline Vector load(const void* from) {
   Vector lane;
   __builtin_memcpy(&lane, __builtin_assume_aligned(from, sizeof(lane)), sizeof(lane));
   return lane;
 }
 
 template <class Vector>
-inline void store(void* to, Vector lane) {
+GALACTIC_EVERYWHERE inline void store(void* to, Vector lane) {
   __builtin_memcpy(__builtin_assume_aligned(to, sizeof(lane)), &lane, sizeof(lane));
 }
 
-inline Lanes spread(float v) { return Lanes(v); }
-inline IntLanes spread(std::int32_t v) { return v; }
+GALACTIC_EVERYWHERE inline Lanes spread(float v) { return Lanes(v); }
+GALACTIC_EVERYWHERE inline IntLanes spread(std::int32_t v) { return v; }
 
-inline Lanes toFloat(IntLanes v) { return Lanes(static_cast<float>(v.v)); }
+GALACTIC_EVERYWHERE inline Lanes toFloat(IntLanes v) { return Lanes(static_cast<float>(v.v)); }
 /// Towards 0; the values lie within the range of integers.
-inline IntLanes toInt(Lanes v) { return static_cast<std::int32_t>(v.v); }
+GALACTIC_EVERYWHERE inline IntLanes toInt(Lanes v) { return static_cast<std::int32_t>(v.v); }
 
 /// `mask`: all bits, or none.
-inline IntLanes pick(IntLanes mask, IntLanes yes, IntLanes no) { return mask.v != 0 ? yes : no; }
-inline Lanes pick(IntLanes mask, Lanes yes, Lanes no) { return mask.v != 0 ? yes : no; }
-inline IntLanes laneOf(IntLanes v, int /*lane*/) { return v; }
+GALACTIC_EVERYWHERE inline IntLanes pick(IntLanes mask, IntLanes yes, IntLanes no) {
+  return mask.v != 0 ? yes : no;
+}
+GALACTIC_EVERYWHERE inline Lanes pick(IntLanes mask, Lanes yes, Lanes no) {
+  return mask.v != 0 ? yes : no;
+}
+GALACTIC_EVERYWHERE inline IntLanes laneOf(IntLanes v, int /*lane*/) { return v; }
 
 /// The second where the comparison fails, as with numbers that are none.
-inline Lanes lesser(Lanes a, Lanes b) { return a.v < b.v ? a : b; }
-inline Lanes greater(Lanes a, Lanes b) { return a.v > b.v ? a : b; }
-inline IntLanes lesser(IntLanes a, IntLanes b) { return a.v < b.v ? a : b; }
-inline IntLanes greater(IntLanes a, IntLanes b) { return a.v > b.v ? a : b; }
+GALACTIC_EVERYWHERE inline Lanes lesser(Lanes a, Lanes b) { return a.v < b.v ? a : b; }
+GALACTIC_EVERYWHERE inline Lanes greater(Lanes a, Lanes b) { return a.v > b.v ? a : b; }
+GALACTIC_EVERYWHERE inline IntLanes lesser(IntLanes a, IntLanes b) { return a.v < b.v ? a : b; }
+GALACTIC_EVERYWHERE inline IntLanes greater(IntLanes a, IntLanes b) { return a.v > b.v ? a : b; }
 
-inline Lanes clampTo(Lanes v, float low, float high) {
+GALACTIC_EVERYWHERE inline Lanes clampTo(Lanes v, float low, float high) {
   return lesser(greater(v, spread(low)), spread(high));
 }
 
-inline Lanes magnitude(Lanes v) { return as<Lanes>(as<IntLanes>(v) & 0x7FFFFFFF); }
-inline float magnitude(float v) { return v < 0 ? -v : v; }
+GALACTIC_EVERYWHERE inline Lanes magnitude(Lanes v) {
+  return as<Lanes>(as<IntLanes>(v) & 0x7FFFFFFF);
+}
+GALACTIC_EVERYWHERE inline float magnitude(float v) { return v < 0 ? -v : v; }
 
 /// Bit 0: the sign.
-inline unsigned signBits(IntLanes v) { return bitsOf(v) >> 31U; }
+GALACTIC_EVERYWHERE inline unsigned signBits(IntLanes v) { return bitsOf(v) >> 31U; }
 
-inline IntLanes wrapMultiply(IntLanes a, IntLanes b) { return a * b; }
-inline IntLanes wrapSubtract(IntLanes a, IntLanes b) { return a - b; }
+/// Of bits that are not all 0: the number of the lowest one.
+GALACTIC_EVERYWHERE inline int lowestBit(unsigned /*bits*/) { return 0; }
 
-inline IntLanes gather(const std::int32_t* from, IntLanes at) { return from[at.v]; }
-inline Lanes gather(const float* from, IntLanes at) { return Lanes(from[at.v]); }
+GALACTIC_EVERYWHERE inline IntLanes wrapMultiply(IntLanes a, IntLanes b) { return a * b; }
+GALACTIC_EVERYWHERE inline IntLanes wrapSubtract(IntLanes a, IntLanes b) { return a - b; }
+
+GALACTIC_EVERYWHERE inline IntLanes gather(const std::int32_t* from, IntLanes at) {
+  return from[at.v];
+}
+GALACTIC_EVERYWHERE inline Lanes gather(const float* from, IntLanes at) {
+  return Lanes(from[at.v]);
+}
 
 template <class Vector>
 struct Pair {
@@ -159,27 +188,27 @@ struct Pair {
 };
 
 /// Elements 2 * at and 2 * at + 1.
-inline Pair<IntLanes> gatherPairs(const std::int32_t* from, IntLanes at) {
+GALACTIC_EVERYWHERE inline Pair<IntLanes> gatherPairs(const std::int32_t* from, IntLanes at) {
   return {from[2 * at.v], from[2 * at.v + 1]};
 }
-inline Pair<Lanes> gatherPairs(const float* from, IntLanes at) {
+GALACTIC_EVERYWHERE inline Pair<Lanes> gatherPairs(const float* from, IntLanes at) {
   return {Lanes(from[2 * at.v]), Lanes(from[2 * at.v + 1])};
 }
 
 /// Elements at and at + 1.
-inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from, IntLanes at) {
+GALACTIC_EVERYWHERE inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from, IntLanes at) {
   return {from[at.v], from[at.v + 1]};
 }
 
 /// Writes both: what gatherPairs reads.
 template <class Vector, class Element>
-inline void storePairs(Element* to, Vector first, Vector second) {
+GALACTIC_EVERYWHERE inline void storePairs(Element* to, Vector first, Vector second) {
   store(to, first);
   store(to + 1, second);
 }
 
-inline IntLanes widen(EightShorts v) { return static_cast<std::int32_t>(v.v); }
-inline IntLanes widen(EightBytes v) { return static_cast<std::int32_t>(v.v); }
+GALACTIC_EVERYWHERE inline IntLanes widen(EightShorts v) { return static_cast<std::int32_t>(v.v); }
+GALACTIC_EVERYWHERE inline IntLanes widen(EightBytes v) { return static_cast<std::int32_t>(v.v); }
 
 }  // namespace
 }  // namespace galactic::render

@@ -25,7 +25,8 @@ struct LongEdge {
   IntLanes offsets;
 };
 
-inline LongEdge longEdge(const Corner& from, const Corner& to, const PixelOffsets& pixels) {
+GALACTIC_EVERYWHERE inline LongEdge longEdge(const Corner& from, const Corner& to,
+                                             const PixelOffsets& pixels) {
   const std::int64_t dx = to.x - from.x;
   const std::int64_t dy = to.y - from.y;
   const bool keeps = dy < 0 || (dy == 0 && dx > 0);
@@ -51,7 +52,8 @@ struct LargeTriangle {
   double double_area;
 };
 
-inline Plane planeOf(const LargeTriangle& triangle, double a, double b, double c) {
+GALACTIC_EVERYWHERE inline Plane planeOf(const LargeTriangle& triangle, double a, double b,
+                                         double c) {
   const Corner& first = *triangle.corners[0];
   const double ab_x = triangle.corners[1]->x - first.x;
   const double ab_y = triangle.corners[1]->y - first.y;
@@ -65,7 +67,7 @@ inline Plane planeOf(const LargeTriangle& triangle, double a, double b, double c
   return {a + (right * dx + down * dy), right, down};
 }
 
-inline void recordPlane(float* fields, const Plane& plane) {
+GALACTIC_EVERYWHERE inline void recordPlane(float* fields, const Plane& plane) {
   fields[0] = static_cast<float>(plane.right);
   fields[1] = static_cast<float>(plane.down);
   fields[2] = static_cast<float>(plane.start);
@@ -73,8 +75,8 @@ inline void recordPlane(float* fields, const Plane& plane) {
 
 /// The record of a triangle, and that of its colors where it has them.
 template <class State>
-inline void recordLarge(const State& state, const LargeTriangle& triangle, const Plane& depth,
-                        float* record, float* colors) {
+GALACTIC_EVERYWHERE inline void recordLarge(const State& state, const LargeTriangle& triangle,
+                                            const Plane& depth, float* record, float* colors) {
   const Corner& a = *triangle.corners[0];
   const Corner& b = *triangle.corners[1];
   const Corner& c = *triangle.corners[2];
@@ -102,13 +104,17 @@ struct TileBox {
   std::int32_t left, right, top, bottom;
 };
 
-inline std::int32_t lesserOf(std::int32_t a, std::int32_t b) { return a < b ? a : b; }
-inline std::int32_t greaterOf(std::int32_t a, std::int32_t b) { return a > b ? a : b; }
-inline float lesserOf(float a, float b) { return a < b ? a : b; }
-inline float greaterOf(float a, float b) { return a > b ? a : b; }
+GALACTIC_EVERYWHERE inline std::int32_t lesserOf(std::int32_t a, std::int32_t b) {
+  return a < b ? a : b;
+}
+GALACTIC_EVERYWHERE inline std::int32_t greaterOf(std::int32_t a, std::int32_t b) {
+  return a > b ? a : b;
+}
+GALACTIC_EVERYWHERE inline float lesserOf(float a, float b) { return a < b ? a : b; }
+GALACTIC_EVERYWHERE inline float greaterOf(float a, float b) { return a > b ? a : b; }
 
 /// Tiles with pixels whose centers lie between the positions; right < left when there are none.
-inline TileBox tilesOf(const PaneTask& task, const LargeTriangle& triangle) {
+GALACTIC_EVERYWHERE inline TileBox tilesOf(const PaneTask& task, const LargeTriangle& triangle) {
   const Corner& a = *triangle.corners[0];
   const Corner& b = *triangle.corners[1];
   const Corner& c = *triangle.corners[2];
@@ -137,8 +143,8 @@ struct LargeSetup {
 
 /// The triangle of three corners that go clockwise on the screen where it shows its face; false
 /// where there is nothing to see. The corners must outlive it.
-inline bool faces(const Corner& a, const Corner& b, const Corner& c, bool two_sided,
-                  LargeTriangle& triangle) {
+GALACTIC_EVERYWHERE inline bool faces(const Corner& a, const Corner& b, const Corner& c,
+                                      bool two_sided, LargeTriangle& triangle) {
   const std::int64_t area = static_cast<std::int64_t>(b.x - a.x) * (c.y - a.y) -
                             static_cast<std::int64_t>(c.x - a.x) * (b.y - a.y);
   if (area == 0 || (area < 0 && !two_sided)) return false;
@@ -147,13 +153,14 @@ inline bool faces(const Corner& a, const Corner& b, const Corner& c, bool two_si
   return true;
 }
 
-inline Plane depthOf(const LargeTriangle& triangle) {
+GALACTIC_EVERYWHERE inline Plane depthOf(const LargeTriangle& triangle) {
   return planeOf(triangle, static_cast<double>(triangle.corners[0]->z),
                  static_cast<double>(triangle.corners[1]->z),
                  static_cast<double>(triangle.corners[2]->z));
 }
 
-inline LargeSetup setUpLarge(const LargeTriangle& triangle, const PixelOffsets& pixels) {
+GALACTIC_EVERYWHERE inline LargeSetup setUpLarge(const LargeTriangle& triangle,
+                                                 const PixelOffsets& pixels) {
   const Corner& a = *triangle.corners[0];
   const Corner& b = *triangle.corners[1];
   const Corner& c = *triangle.corners[2];
@@ -172,7 +179,8 @@ inline LargeSetup setUpLarge(const LargeTriangle& triangle, const PixelOffsets& 
 
 /// At least the largest 1/w that coverTile() finds in a tile: that of the corner of its plane, with
 /// room for what rounding adds to a sum of a few numbers.
-inline float nearestInTile(const LargeSetup& setup, std::int32_t tile_x, std::int32_t tile_y) {
+GALACTIC_EVERYWHERE inline float nearestInTile(const LargeSetup& setup, std::int32_t tile_x,
+                                               std::int32_t tile_y) {
   constexpr double kLast = kTileEdge - 1;
   constexpr double kSumRounding = 2e-6;
   const Plane& depth = setup.depth;
@@ -189,8 +197,8 @@ inline float nearestInTile(const LargeSetup& setup, std::int32_t tile_x, std::in
 }
 
 /// Edge functions at the first block of a tile; says whether the triangle can touch the tile.
-inline bool tileEdges(const LargeSetup& setup, std::int32_t tile_x, std::int32_t tile_y,
-                      EdgeLanes& lanes) {
+GALACTIC_EVERYWHERE inline bool tileEdges(const LargeSetup& setup, std::int32_t tile_x,
+                                          std::int32_t tile_y, EdgeLanes& lanes) {
   constexpr std::int64_t kMost = 1 << 30;
   std::int32_t starts[3];
   for (int n = 0; n < 3; ++n) {
@@ -209,8 +217,9 @@ inline bool tileEdges(const LargeSetup& setup, std::int32_t tile_x, std::int32_t
 
 /// Draws the pixels of one tile, on a target as in coverTriangle(). `edges`: see tileEdges().
 template <class Target>
-inline IntLanes coverTile(const LargeSetup& setup, EdgeLanes edges, std::int32_t tile_x,
-                          std::int32_t tile_y, Target& target) {
+GALACTIC_EVERYWHERE inline IntLanes coverTile(const LargeSetup& setup, EdgeLanes edges,
+                                              std::int32_t tile_x, std::int32_t tile_y,
+                                              Target& target) {
   const Plane& depth = setup.depth;
   const double x = tile_x * static_cast<double>(kTileEdge);
   const double y = tile_y * static_cast<double>(kTileEdge);

@@ -4,6 +4,13 @@
 
 #include "galactic/render_meshes.h"
 
+/// Of functions that run on the processor and on devices: clang and nvcc have to be told.
+#if defined(__CUDA__) || defined(__CUDACC__)
+#define GALACTIC_EVERYWHERE __attribute__((host)) __attribute__((device))
+#else
+#define GALACTIC_EVERYWHERE
+#endif
+
 // What rasterizers read, as bare pointers and plain numbers: the code
 // built for AVX2 must not instantiate library templates, which the linker could then share with
 // code for any processor.

@@ -6,17 +6,20 @@
 // graphics processors, so without the library.
 namespace galactic::render {
 
-inline bool isFinite(const Vec3& v) { return v.x - v.x == 0 && v.y - v.y == 0 && v.z - v.z == 0; }
+GALACTIC_EVERYWHERE inline bool isFinite(const Vec3& v) {
+  return v.x - v.x == 0 && v.y - v.y == 0 && v.z - v.z == 0;
+}
 
-inline bool isFinite(const RigidTransform& t) {
+GALACTIC_EVERYWHERE inline bool isFinite(const RigidTransform& t) {
   return isFinite(t.x_axis) && isFinite(t.y_axis) && isFinite(t.z_axis) && isFinite(t.origin);
 }
 
 /// The rows of a placed model; false where its numbers are too large. `focal`: 1/256 pixels at a
 /// distance of 1 m for each meter beside the camera's axis. The camera looks along its x; y is up,
 /// z to the right.
-inline bool placeModel(const RigidTransform& camera_from_world, float focal,
-                       const RigidTransform& world_from_model, PlacedModel& placed) {
+GALACTIC_EVERYWHERE inline bool placeModel(const RigidTransform& camera_from_world, float focal,
+                                           const RigidTransform& world_from_model,
+                                           PlacedModel& placed) {
   const RigidTransform t = camera_from_world * world_from_model;
   const RigidTransform scaled{t.x_axis * focal, t.y_axis * focal, t.z_axis * focal,
                               t.origin * focal};
@@ -37,7 +40,7 @@ inline bool placeModel(const RigidTransform& camera_from_world, float focal,
 }
 
 /// Edge of the panes that an image is cut in: as few as possible, of like size, of whole tiles.
-inline std::uint32_t paneEdge(std::uint32_t pixels) {
+GALACTIC_EVERYWHERE inline std::uint32_t paneEdge(std::uint32_t pixels) {
   const std::uint32_t count = (pixels + kPaneEdge - 1) / kPaneEdge;
   const std::uint32_t edge = (pixels + count - 1) / count;
   return (edge + kTileEdge - 1) / kTileEdge * kTileEdge;

@@ -3,7 +3,8 @@ namespace galactic::render {
 namespace {
 
 /// The plane of eight values, to three vectors.
-inline void planeFields(const SmallGroup& group, Lanes a, Lanes b, Lanes c, Lanes* fields) {
+GALACTIC_EVERYWHERE inline void planeFields(const SmallGroup& group, Lanes a, Lanes b, Lanes c,
+                                            Lanes* fields) {
   const GradientLanes change = gradient(group, a, b, c);
   const Lanes per_subpixel = spread(1.0F / kSubpixels);
   const Lanes dx = toFloat(spread(kSubpixels / 2) - group.a.x) * per_subpixel;
@@ -14,7 +15,7 @@ inline void planeFields(const SmallGroup& group, Lanes a, Lanes b, Lanes c, Lane
 }
 
 /// Field `number` of a record, from kTexels on; the planes of light are 0.
-inline float surfaceField(const ClusterFacts& facts, std::uint32_t number) {
+GALACTIC_EVERYWHERE inline float surfaceField(const ClusterFacts& facts, std::uint32_t number) {
   switch (number) {
     case kTexels:
       return as<float>(facts.surface.texels);
@@ -29,7 +30,8 @@ inline float surfaceField(const ClusterFacts& facts, std::uint32_t number) {
 
 /// The fields before kTexels, which must be 0; state.uv is there where there is a texture.
 template <class State>
-inline void texturePlanes(const State& state, const SmallGroup& group, Lanes* fields) {
+GALACTIC_EVERYWHERE inline void texturePlanes(const State& state, const SmallGroup& group,
+                                              Lanes* fields) {
   if (state.facts.isTextured()) {
     const Pair<Lanes> a = gatherPairs(state.uv, group.corners.a);
     const Pair<Lanes> b = gatherPairs(state.uv, group.corners.b);
@@ -45,7 +47,8 @@ inline void texturePlanes(const State& state, const SmallGroup& group, Lanes* fi
 
 /// The fields from kTexels on.
 template <class State>
-inline void surfacePlanes(const State& state, const SmallGroup& group, Lanes* fields) {
+GALACTIC_EVERYWHERE inline void surfacePlanes(const State& state, const SmallGroup& group,
+                                              Lanes* fields) {
   for (std::uint32_t n = 0; n < kRecordStride - kTexels; ++n) {
     fields[n] = spread(surfaceField(state.facts, kTexels + n));
   }
@@ -57,7 +60,8 @@ inline void surfacePlanes(const State& state, const SmallGroup& group, Lanes* fi
 
 /// The planes of the colors: kColorFields.
 template <class State>
-inline void colorPlanes(const State& state, const SmallGroup& group, Lanes* fields) {
+GALACTIC_EVERYWHERE inline void colorPlanes(const State& state, const SmallGroup& group,
+                                            Lanes* fields) {
   const IntLanes a = gather(state.colors, group.corners.a);
   const IntLanes b = gather(state.colors, group.corners.b);
   const IntLanes c = gather(state.colors, group.corners.c);

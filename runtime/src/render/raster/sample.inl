@@ -14,12 +14,13 @@ struct TexturePlaces {
 };
 
 /// p + (q - p) * weight / 256 for the 16-bit halves of all lanes; weights 0 to 256.
-inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight, ShortLanes rest) {
+GALACTIC_EVERYWHERE inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight,
+                                            ShortLanes rest) {
   return (p * rest + q * weight + 128) >> 8;
 }
 
 /// Weights for blend(), from shares within [0, 1].
-inline IntLanes blendWeight(Lanes share) {
+GALACTIC_EVERYWHERE inline IntLanes blendWeight(Lanes share) {
   const IntLanes weight = toInt(share * spread(256.0F) + spread(0.5F));
   return weight | weight << 16;
 }
@@ -28,7 +29,8 @@ struct FourTexels {
   IntLanes upper_left, upper_right, lower_left, lower_right;
 };
 
-inline IntLanes bilinear(const FourTexels& t, Lanes share_right, Lanes share_down) {
+GALACTIC_EVERYWHERE inline IntLanes bilinear(const FourTexels& t, Lanes share_right,
+                                             Lanes share_down) {
   const IntLanes whole = spread(0x01000100);
   const IntLanes right = blendWeight(share_right);
   const IntLanes down = blendWeight(share_down);
@@ -50,12 +52,12 @@ inline IntLanes bilinear(const FourTexels& t, Lanes share_right, Lanes share_dow
 }
 
 /// Texels in the levels from one of edge 2^n down to the last.
-inline IntLanes texelsDownFrom(IntLanes n) {
+GALACTIC_EVERYWHERE inline IntLanes texelsDownFrom(IntLanes n) {
   return spread(0x55555555) & ((spread(4) << (n + n)) - spread(1));
 }
 
 /// Towards minus infinity.
-inline IntLanes floorOf(Lanes v) {
+GALACTIC_EVERYWHERE inline IntLanes floorOf(Lanes v) {
   const IntLanes whole = toInt(v);
   return whole + (toFloat(whole) > v);
 }
@@ -68,7 +70,7 @@ struct LevelPlace {
   IntLanes wraps;
 };
 
-inline LevelPlace levelPlace(const TexturePlaces& places, IntLanes flat) {
+GALACTIC_EVERYWHERE inline LevelPlace levelPlace(const TexturePlaces& places, IntLanes flat) {
   const IntLanes size = pick(flat, spread(0), places.kind & 0xFF);
   // log4 of the doubled square, rounded down: changes half way between two levels.
   const IntLanes exponent = as<IntLanes>(places.squared_rate * spread(2.0F)) >> 23;
@@ -92,13 +94,15 @@ inline LevelPlace levelPlace(const TexturePlaces& places, IntLanes flat) {
           column0 == wrap};
 }
 
-inline const std::int32_t* texelBase(const PaneTask& task, std::int32_t number) {
+GALACTIC_EVERYWHERE inline const std::int32_t* texelBase(const PaneTask& task,
+                                                         std::int32_t number) {
   return reinterpret_cast<const std::int32_t*>(task.texel_bases[number]);
 }
 
 /// The texels of the lanes `here`, 0 in the others. Most left texels have their right ones behind
 /// them: both are read at once, which halves the work where lanes are many.
-inline FourTexels readTexels(const std::int32_t* from, const LevelPlace& place, IntLanes here) {
+GALACTIC_EVERYWHERE inline FourTexels readTexels(const std::int32_t* from, const LevelPlace& place,
+                                                 IntLanes here) {
   const FourTexels& at = place.at;
   if (kLanes > 1 && signBits(place.wraps & here) == 0) {
     const Pair<IntLanes> upper = gatherNeighbors(from, at.upper_left & here);
@@ -110,7 +114,8 @@ inline FourTexels readTexels(const std::int32_t* from, const LevelPlace& place, 
 }
 
 /// Texels, or the colors of flat surfaces. Lanes without a triangle have a flat one.
-inline IntLanes sampleTexels(const PaneTask& task, const TexturePlaces& places) {
+GALACTIC_EVERYWHERE inline IntLanes sampleTexels(const PaneTask& task,
+                                                 const TexturePlaces& places) {
   const IntLanes flat = (places.kind & 0xFF) == spread(static_cast<std::int32_t>(kFlatSurface));
   unsigned left = ~signBits(flat) & kAllLanes;
   if (left == 0) return places.texels;
@@ -118,7 +123,7 @@ inline IntLanes sampleTexels(const PaneTask& task, const TexturePlaces& places) 
   const IntLanes base = (places.kind >> 8) & 0x3FFFFF;
   FourTexels texels{};
   while (left != 0) {
-    const IntLanes number = laneOf(base, __builtin_ctz(left));
+    const IntLanes number = laneOf(base, lowestBit(left));
     const IntLanes here = (base == number) & ~flat;
     left &= ~signBits(here);
     const FourTexels read = readTexels(texelBase(task, number[0]), place, here);
@@ -133,8 +138,10 @@ inline IntLanes sampleTexels(const PaneTask& task, const TexturePlaces& places) 
 /// The same where all have one record.
 struct OneRecord {
   const float* record;
-  Lanes field(std::uint32_t number) const { return spread(record[number]); }
-  IntLanes intField(std::uint32_t number) const { return as<IntLanes>(field(number)); }
+  GALACTIC_EVERYWHERE Lanes field(std::uint32_t number) const { return spread(record[number]); }
+  GALACTIC_EVERYWHERE IntLanes intField(std::uint32_t number) const {
+    return as<IntLanes>(field(number));
+  }
 };
 
 /// Eight pixels: their places in the pane, from the center of its first pixel, and w.
@@ -143,7 +150,8 @@ struct PixelLanes {
 };
 
 template <class Records>
-inline TexturePlaces texturePlaces(const Records& records, const PixelLanes& pixels) {
+GALACTIC_EVERYWHERE inline TexturePlaces texturePlaces(const Records& records,
+                                                       const PixelLanes& pixels) {
   const Lanes u_right = records.field(kURight);
   const Lanes u_down = records.field(kUDown);
   const Lanes v_right = records.field(kVRight);
@@ -161,14 +169,15 @@ inline TexturePlaces texturePlaces(const Records& records, const PixelLanes& pix
 }
 
 /// a * b / 255, rounded, for bytes.
-inline IntLanes byteProduct(IntLanes a, IntLanes b) {
+GALACTIC_EVERYWHERE inline IntLanes byteProduct(IntLanes a, IntLanes b) {
   const IntLanes product = a * b + spread(128);
   return (product + (product >> 8)) >> 8;
 }
 
 /// Texels times the colors of the corners, interpolated by perspective.
 template <class Records>
-inline IntLanes timesColors(IntLanes texels, const Records& colors, const PixelLanes& pixels) {
+GALACTIC_EVERYWHERE inline IntLanes timesColors(IntLanes texels, const Records& colors,
+                                                const PixelLanes& pixels) {
   IntLanes result = spread(0);
   for (std::uint32_t channel = 0; channel < 4; ++channel) {
     const Lanes value = (colors.field(3 * channel) * pixels.x +
@@ -182,8 +191,9 @@ inline IntLanes timesColors(IntLanes texels, const Records& colors, const PixelL
 }
 
 /// Whether the surface of a triangle is there: all bits, or none.
-inline IntLanes alphaPasses(const PaneTask& task, const OneRecord& record, const OneRecord& colors,
-                            std::int32_t least_alpha, const PixelLanes& pixels) {
+GALACTIC_EVERYWHERE inline IntLanes alphaPasses(const PaneTask& task, const OneRecord& record,
+                                                const OneRecord& colors, std::int32_t least_alpha,
+                                                const PixelLanes& pixels) {
   const TexturePlaces places = texturePlaces(record, pixels);
   IntLanes texels = sampleTexels(task, places);
   if (places.kind[0] < 0) texels = timesColors(texels, colors, pixels);
@@ -192,7 +202,8 @@ inline IntLanes alphaPasses(const PaneTask& task, const OneRecord& record, const
 
 /// timesColors() where red, green and blue are one, and alpha is whole: the same bits. `light`:
 /// the record's fields from kLightRight on.
-inline IntLanes timesLight(IntLanes texels, const Lanes* light, const PixelLanes& pixels) {
+GALACTIC_EVERYWHERE inline IntLanes timesLight(IntLanes texels, const Lanes* light,
+                                               const PixelLanes& pixels) {
   const Lanes value = (light[0] * pixels.x + light[1] * pixels.y + light[2]) * pixels.w;
   const IntLanes factor = toInt(clampTo(value + spread(0.5F), 0, 255));
   // Red and blue in one product.

@@ -11,16 +11,16 @@ struct CornerLanes {
 };
 
 /// Corners in one integer, the first in the lowest byte.
-inline IntLanes packed(const CornerLanes& corners) {
+GALACTIC_EVERYWHERE inline IntLanes packed(const CornerLanes& corners) {
   return corners.a | corners.b << 8 | corners.c << 16;
 }
-inline CornerLanes unpacked(IntLanes corners) {
+GALACTIC_EVERYWHERE inline CornerLanes unpacked(IntLanes corners) {
   return {corners & 0xFF, (corners >> 8) & 0xFF, (corners >> 16) & 0xFF};
 }
 
 /// The corners of eight triangles. Counter-clockwise from outside is clockwise where rows run down:
 /// two corners change places.
-inline CornerLanes cornersAt(const std::uint8_t* block) {
+GALACTIC_EVERYWHERE inline CornerLanes cornersAt(const std::uint8_t* block) {
   return {widen(load<EightBytes>(block)), widen(load<EightBytes>(block + 2 * kWidth)),
           widen(load<EightBytes>(block + kWidth))};
 }
@@ -30,22 +30,35 @@ struct PointLanes {
 };
 
 template <class State>
-inline PointLanes pointsOf(const State& state, IntLanes corner) {
+GALACTIC_EVERYWHERE inline PointLanes pointsOf(const State& state, IntLanes corner) {
   const Pair<IntLanes> xy = gatherPairs(state.xy, corner);
   return {xy.first, xy.second};
 }
 
-inline IntLanes leastOf(IntLanes a, IntLanes b, IntLanes c) { return lesser(lesser(a, b), c); }
-inline IntLanes mostOf(IntLanes a, IntLanes b, IntLanes c) { return greater(greater(a, b), c); }
-inline Lanes leastOf(Lanes a, Lanes b, Lanes c) { return lesser(lesser(a, b), c); }
-inline Lanes mostOf(Lanes a, Lanes b, Lanes c) { return greater(greater(a, b), c); }
+GALACTIC_EVERYWHERE inline IntLanes leastOf(IntLanes a, IntLanes b, IntLanes c) {
+  return lesser(lesser(a, b), c);
+}
+GALACTIC_EVERYWHERE inline IntLanes mostOf(IntLanes a, IntLanes b, IntLanes c) {
+  return greater(greater(a, b), c);
+}
+GALACTIC_EVERYWHERE inline Lanes leastOf(Lanes a, Lanes b, Lanes c) {
+  return lesser(lesser(a, b), c);
+}
+GALACTIC_EVERYWHERE inline Lanes mostOf(Lanes a, Lanes b, Lanes c) {
+  return greater(greater(a, b), c);
+}
 
 /// First and last pixel whose center lies between two positions.
-inline IntLanes firstPixel(IntLanes lowest) { return (lowest + spread(kSubpixels / 2 - 1)) >> 8; }
-inline IntLanes lastPixel(IntLanes highest) { return (highest - spread(kSubpixels / 2)) >> 8; }
+GALACTIC_EVERYWHERE inline IntLanes firstPixel(IntLanes lowest) {
+  return (lowest + spread(kSubpixels / 2 - 1)) >> 8;
+}
+GALACTIC_EVERYWHERE inline IntLanes lastPixel(IntLanes highest) {
+  return (highest - spread(kSubpixels / 2)) >> 8;
+}
 
 /// Twice the area, positive when the corners go clockwise on the screen. Exact for small triangles.
-inline IntLanes doubleArea(const PointLanes& a, const PointLanes& b, const PointLanes& c) {
+GALACTIC_EVERYWHERE inline IntLanes doubleArea(const PointLanes& a, const PointLanes& b,
+                                               const PointLanes& c) {
   return wrapSubtract(wrapMultiply(b.x - a.x, c.y - a.y), wrapMultiply(c.x - a.x, b.y - a.y));
 }
 
@@ -62,7 +75,8 @@ struct SortLimits {
   IntLanes last_x, last_y, two_sided;
 };
 
-inline SortLimits sortLimits(const PaneTask& task, const RenderCluster& cluster) {
+GALACTIC_EVERYWHERE inline SortLimits sortLimits(const PaneTask& task,
+                                                 const RenderCluster& cluster) {
   return {spread(static_cast<std::int32_t>(task.width) - 1),
           spread(static_cast<std::int32_t>(task.height) - 1),
           spread(cluster.two_sided != 0 ? -1 : 0)};
@@ -74,7 +88,8 @@ struct ClipSorting {
   unsigned whole, cut;
 };
 
-inline ClipSorting sortForClipping(const ClusterState& state, const CornerLanes& corners) {
+GALACTIC_EVERYWHERE inline ClipSorting sortForClipping(const ClusterState& state,
+                                                       const CornerLanes& corners) {
   const IntLanes a = gather(state.bad, corners.a);
   const IntLanes b = gather(state.bad, corners.b);
   const IntLanes c = gather(state.bad, corners.c);
@@ -82,8 +97,8 @@ inline ClipSorting sortForClipping(const ClusterState& state, const CornerLanes&
   return {whole, ~(whole | signBits((a & b & c) != spread(0)))};
 }
 
-inline Sorting sortEight(const SortLimits limits, const ClusterState& state,
-                         const CornerLanes& corners) {
+GALACTIC_EVERYWHERE inline Sorting sortEight(const SortLimits limits, const ClusterState& state,
+                                             const CornerLanes& corners) {
   const PointLanes a = pointsOf(state, corners.a);
   const PointLanes b = pointsOf(state, corners.b);
   const PointLanes c = pointsOf(state, corners.c);
@@ -123,7 +138,8 @@ struct SmallGroup {
   GradientLanes z;
 };
 
-inline GradientLanes gradient(const SmallGroup& group, Lanes a, Lanes b, Lanes c) {
+GALACTIC_EVERYWHERE inline GradientLanes gradient(const SmallGroup& group, Lanes a, Lanes b,
+                                                  Lanes c) {
   const Lanes ab = b - a;
   const Lanes ac = c - a;
   return {(group.ac_y * ab - group.ab_y * ac) * group.per_area,
@@ -141,8 +157,8 @@ struct alignas(kGroupAlignment) GroupSetup {
   std::int32_t first_column[kLanes], last_column[kLanes], first_row[kLanes], last_row[kLanes];
 };
 
-inline void setUpEdge(GroupSetup& setup, int number, const PointLanes& from, const PointLanes& to,
-                      const PointLanes& start) {
+GALACTIC_EVERYWHERE inline void setUpEdge(GroupSetup& setup, int number, const PointLanes& from,
+                                          const PointLanes& to, const PointLanes& start) {
   const IntLanes dx = to.x - from.x;
   const IntLanes dy = to.y - from.y;
   const IntLanes value = dx * (start.y - from.y) - dy * (start.x - from.x);
@@ -155,8 +171,9 @@ inline void setUpEdge(GroupSetup& setup, int number, const PointLanes& from, con
 
 /// Sets up eight small triangles; turns those around that show their back.
 template <class State>
-inline void setUpGroup(const PaneTask& task, const State& state, IntLanes packed_corners,
-                       SmallGroup& group, GroupSetup& setup) {
+GALACTIC_EVERYWHERE inline void setUpGroup(const PaneTask& task, const State& state,
+                                           IntLanes packed_corners, SmallGroup& group,
+                                           GroupSetup& setup) {
   group.corners = unpacked(packed_corners);
   group.a = pointsOf(state, group.corners.a);
   group.b = pointsOf(state, group.corners.b);
@@ -220,8 +237,8 @@ struct PixelOffsets {
 /// Draws triangle `n` of a group, block by block, on a target that knows start(column, row),
 /// cover(edges, z), right() and nextRow(); the sign bits of the result tell which pixels it shows.
 template <class Target>
-inline IntLanes coverTriangle(const GroupSetup& group, unsigned n, const PixelOffsets& pixels,
-                              Target& target) {
+GALACTIC_EVERYWHERE inline IntLanes coverTriangle(const GroupSetup& group, unsigned n,
+                                                  const PixelOffsets& pixels, Target& target) {
   const IntLanes right = pixels.right;
   const IntLanes lower = -pixels.down;
   const auto edge_lanes = [&](int e) {

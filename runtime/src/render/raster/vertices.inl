@@ -19,7 +19,8 @@ struct VertexFrame {
   float near;
 };
 
-VertexFrame vertexFrame(const PaneTask& task, const PlacedModel& placed) {
+GALACTIC_EVERYWHERE inline VertexFrame vertexFrame(const PaneTask& task,
+                                                   const PlacedModel& placed) {
   VertexFrame frame;
   const float step = placed.model->step;
   for (int n = 0; n < 4; ++n) {
@@ -47,10 +48,11 @@ struct ClusterFacts {
   /// In images.
   std::uint32_t semantic;
 
-  bool isTextured() const { return (surface.kind & 0xFFU) != kFlatSurface; }
+  GALACTIC_EVERYWHERE bool isTextured() const { return (surface.kind & 0xFFU) != kFlatSurface; }
 };
 
-inline ClusterFacts clusterFacts(const ModelTables& model, std::uint32_t number) {
+GALACTIC_EVERYWHERE inline ClusterFacts clusterFacts(const ModelTables& model,
+                                                     std::uint32_t number) {
   const PackTables& pack = *model.pack;
   const RenderCluster* cluster = pack.clusters + model.first_cluster + number;
   const std::uint32_t kind =
@@ -60,13 +62,14 @@ inline ClusterFacts clusterFacts(const ModelTables& model, std::uint32_t number)
 }
 
 /// Of its vertices; not to be read where color_kind is 0.
-inline const std::int32_t* clusterColors(const ClusterFacts& facts) {
+GALACTIC_EVERYWHERE inline const std::int32_t* clusterColors(const ClusterFacts& facts) {
   if (facts.color_kind == 0) return nullptr;
   return reinterpret_cast<const std::int32_t*>(facts.pack->colors) + facts.cluster->first_vertex;
 }
 
 /// The rows of the eight vertices that vertex `number` is one of.
-inline const std::uint16_t* vertexBlock(const ClusterFacts& facts, std::uint32_t number) {
+GALACTIC_EVERYWHERE inline const std::uint16_t* vertexBlock(const ClusterFacts& facts,
+                                                            std::uint32_t number) {
   return facts.pack->vertices +
          static_cast<std::size_t>(facts.cluster->first_vertex + number / kWidth * kWidth) *
              kVertexRows;
@@ -91,26 +94,28 @@ struct ClusterState {
   const std::int32_t* colors;
 
   /// The number in the cluster of a vertex in these arrays.
-  std::uint32_t vertex(std::uint32_t number) const { return number; }
+  GALACTIC_EVERYWHERE std::uint32_t vertex(std::uint32_t number) const { return number; }
 };
 
-inline Lanes along(const float* row, Lanes x, Lanes y, Lanes z) {
+GALACTIC_EVERYWHERE inline Lanes along(const float* row, Lanes x, Lanes y, Lanes z) {
   return ((spread(row[0]) * x + spread(row[1]) * y) + spread(row[2]) * z) + spread(row[3]);
 }
 
 /// The nearest whole number for |value| < 2^22.
-inline IntLanes wholeNumber(Lanes value) {
+GALACTIC_EVERYWHERE inline IntLanes wholeNumber(Lanes value) {
   return as<IntLanes>(value + spread(kToWhole)) - spread(as<std::int32_t>(kToWhole));
 }
 
-inline Lanes onLattice(const std::uint16_t* row, std::int32_t origin) {
+GALACTIC_EVERYWHERE inline Lanes onLattice(const std::uint16_t* row, std::int32_t origin) {
   return toFloat(widen(load<EightShorts>(row)) + spread(origin));
 }
 
 /// Eight vertices: returns which are good.
 template <class State>
-inline unsigned placeEight(const VertexFrame& frame, const RenderCluster& cluster,
-                           const std::uint16_t* block, std::uint32_t first, State& state) {
+GALACTIC_EVERYWHERE inline unsigned placeEight(const VertexFrame& frame,
+                                               const RenderCluster& cluster,
+                                               const std::uint16_t* block, std::uint32_t first,
+                                               State& state) {
   const Lanes x = onLattice(block, cluster.origin_x);
   const Lanes y = onLattice(block + kWidth, cluster.origin_y);
   const Lanes z = onLattice(block + std::size_t{2} * kWidth, cluster.origin_z);
@@ -140,7 +145,8 @@ inline unsigned placeEight(const VertexFrame& frame, const RenderCluster& cluste
 
 /// Texture coordinates of eight vertices from `first` on, in texels of the largest level.
 template <class State>
-inline void readEight(const std::uint16_t* block, std::uint32_t first, State& state) {
+GALACTIC_EVERYWHERE inline void readEight(const std::uint16_t* block, std::uint32_t first,
+                                          State& state) {
   const RenderCluster& cluster = *state.facts.cluster;
   const auto edge = static_cast<float>(1U << (state.facts.surface.kind & 0xFFU));
   const Lanes u = toFloat(widen(load<EightShorts>(block + 3 * kWidth)));

@@ -7,10 +7,14 @@
 #include <utility>
 
 #include "render/cuda/cuda_engine.h"
+#include "render/cuda/kernel_image.h"
 #include "standin.h"
 #include "support/render_images.h"
 
 namespace galactic::test {
+
+/// Whether the library carries the kernels.
+inline bool hasKernels() { return render::cuda::kernelImage() != nullptr; }
 
 /// The stand-in's state, reset.
 inline Standin& resetStandin() {

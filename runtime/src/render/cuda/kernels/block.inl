@@ -4,15 +4,32 @@
 namespace galactic::render::cuda {
 namespace {
 
-#if defined(__CUDA__)
+#if defined(__CUDA__) || defined(__CUDACC__)
+
+// clang has no names for these without a CUDA toolkit, nvcc has no others.
+#if defined(__CUDACC__)
+__attribute__((device)) inline std::uint32_t threadNumber() { return threadIdx.x; }
+__attribute__((device)) inline std::uint32_t blockNumber() { return blockIdx.x; }
+__attribute__((device)) inline std::uint32_t blockCount() { return gridDim.x; }
+#else
+__attribute__((device)) inline std::uint32_t threadNumber() {
+  return static_cast<std::uint32_t>(__nvvm_read_ptx_sreg_tid_x());
+}
+__attribute__((device)) inline std::uint32_t blockNumber() {
+  return static_cast<std::uint32_t>(__nvvm_read_ptx_sreg_ctaid_x());
+}
+__attribute__((device)) inline std::uint32_t blockCount() {
+  return static_cast<std::uint32_t>(__nvvm_read_ptx_sreg_nctaid_x());
+}
+#endif
 
 struct Block {
   std::uint32_t index, count;
   static constexpr std::uint32_t threads = kBlockThreads;
 
   template <class Body>
-  void each(const Body& body) const {
-    body(static_cast<std::uint32_t>(__nvvm_read_ptx_sreg_tid_x()));
+  GALACTIC_EVERYWHERE void each(const Body& body) const {
+    body(threadNumber());
     __syncthreads();
   }
 };
@@ -26,29 +43,66 @@ struct Block {
   std::uint32_t stride, first;
 
   template <class Body>
-  void each(const Body& body) const {
+  GALACTIC_EVERYWHERE void each(const Body& body) const {
     for (std::uint32_t n = 0; n < threads; ++n) body((n * stride + first) % threads);
   }
 };
 
 #endif
 
-/// Returns what was there before.
+// Atomic, in no order with other memory.
+#if defined(__CUDACC__)
+
 template <class Number>
-inline Number addAtomically(Number* to, Number more) {
-  return __atomic_fetch_add(to, more, __ATOMIC_RELAXED);
+GALACTIC_EVERYWHERE inline Number loadAtomically(const Number* from) {
+  return *static_cast<const volatile Number*>(from);
+}
+template <class Number>
+GALACTIC_EVERYWHERE inline void storeAtomically(Number* to, Number value) {
+  *static_cast<volatile Number*>(to) = value;
+}
+/// Returns what was there before.
+__attribute__((device)) inline std::uint32_t addAtomically(std::uint32_t* to, std::uint32_t more) {
+  return atomicAdd(to, more);
+}
+__attribute__((device)) inline std::uint64_t addAtomically(std::uint64_t* to, std::uint64_t more) {
+  return atomicAdd(reinterpret_cast<unsigned long long*>(to), more);
+}
+__attribute__((device)) inline void greaterAtomically(std::uint64_t* to, std::uint64_t value) {
+  atomicMax(reinterpret_cast<unsigned long long*>(to), value);
 }
 
-inline void raiseAtomically(std::uint64_t* to, std::uint64_t value) {
-  // What is read here may be old, but never too high.
-  std::uint64_t old = __atomic_load_n(to, __ATOMIC_RELAXED);
-#if defined(__CUDA__)
-  if (old < value) __atomic_fetch_max(to, value, __ATOMIC_RELAXED);
 #else
+
+template <class Number>
+GALACTIC_EVERYWHERE inline Number loadAtomically(const Number* from) {
+  return __atomic_load_n(from, __ATOMIC_RELAXED);
+}
+template <class Number>
+GALACTIC_EVERYWHERE inline void storeAtomically(Number* to, Number value) {
+  __atomic_store_n(to, value, __ATOMIC_RELAXED);
+}
+/// Returns what was there before.
+template <class Number>
+GALACTIC_EVERYWHERE inline Number addAtomically(Number* to, Number more) {
+  return __atomic_fetch_add(to, more, __ATOMIC_RELAXED);
+}
+GALACTIC_EVERYWHERE inline void greaterAtomically(std::uint64_t* to, std::uint64_t value) {
+#if defined(__CUDA__)
+  __atomic_fetch_max(to, value, __ATOMIC_RELAXED);
+#else
+  std::uint64_t old = loadAtomically(to);
   while (old < value &&
          !__atomic_compare_exchange_n(to, &old, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
   }
 #endif
+}
+
+#endif
+
+GALACTIC_EVERYWHERE inline void raiseAtomically(std::uint64_t* to, std::uint64_t value) {
+  // What is read here may be old, but never too high.
+  if (loadAtomically(to) < value) greaterAtomically(to, value);
 }
 
 }  // namespace

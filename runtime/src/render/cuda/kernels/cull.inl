@@ -3,7 +3,7 @@ namespace galactic::render::cuda {
 namespace {
 
 /// Places the instances of the view that the block stands for.
-inline void placeInstances(const Block& block, const ViewSlice& slice) {
+GALACTIC_EVERYWHERE inline void placeInstances(const Block& block, const ViewSlice& slice) {
   const DeviceView& view = slice.views[block.index];
   block.each([&](std::uint32_t thread) {
     for (std::uint32_t n = thread; n < view.instance_count; n += block.threads) {
@@ -42,15 +42,15 @@ struct PaneLists {
   std::uint32_t* by_bucket;
 };
 
-inline PaneLists paneLists(const ViewSlice& slice, std::uint32_t pane) {
+GALACTIC_EVERYWHERE inline PaneLists paneLists(const ViewSlice& slice, std::uint32_t pane) {
   const std::size_t first = slice.first_cluster[pane];
   return {slice.tasks + pane, slice.seen + first, slice.order + first, slice.by_bucket + first};
 }
 
 /// Prepares the models from `first` on: what culling needs of them, and how many clusters they
 /// have.
-inline void frameModels(const Block& block, const PaneTask& task, std::uint32_t first,
-                        CullShared& shared) {
+GALACTIC_EVERYWHERE inline void frameModels(const Block& block, const PaneTask& task,
+                                            std::uint32_t first, CullShared& shared) {
   block.each([&](std::uint32_t thread) {
     for (std::uint32_t n = thread; n < kModelsAtOnce; n += block.threads) {
       shared.clusters[n] = 0;
@@ -72,7 +72,7 @@ inline void frameModels(const Block& block, const PaneTask& task, std::uint32_t 
 }
 
 /// The last of the models that start at or before `at`: the one that has this cluster.
-inline std::uint32_t modelAt(const std::uint32_t* starts, std::uint32_t at) {
+GALACTIC_EVERYWHERE inline std::uint32_t modelAt(const std::uint32_t* starts, std::uint32_t at) {
   std::uint32_t low = 0;
   std::uint32_t high = kModelsAtOnce;
   while (high - low > 1) {
@@ -82,8 +82,9 @@ inline std::uint32_t modelAt(const std::uint32_t* starts, std::uint32_t at) {
   return low;
 }
 
-inline void noteCluster(const EightSeen& one, const PaneTask& task, SeenCluster entry,
-                        const PaneLists& lists, CullShared& shared) {
+GALACTIC_EVERYWHERE inline void noteCluster(const EightSeen& one, const PaneTask& task,
+                                            SeenCluster entry, const PaneLists& lists,
+                                            CullShared& shared) {
   constexpr auto kEdge = static_cast<std::int32_t>(kTileEdge);
   entry.nearest = one.nearest[0];
   entry.bucket = static_cast<std::uint32_t>(bucketsOf(one.distance, task.near)[0]);
@@ -96,8 +97,8 @@ inline void noteCluster(const EightSeen& one, const PaneTask& task, SeenCluster 
 }
 
 /// Notes which clusters of the prepared models may be seen, in no order.
-inline void lookAtClusters(const Block& block, const PaneLists& lists, std::uint32_t first,
-                           CullShared& shared) {
+GALACTIC_EVERYWHERE inline void lookAtClusters(const Block& block, const PaneLists& lists,
+                                               std::uint32_t first, CullShared& shared) {
   const PaneTask& task = *lists.task;
   block.each([&](std::uint32_t thread) {
     const std::uint32_t count = shared.starts[kModelsAtOnce];
@@ -119,12 +120,13 @@ inline void lookAtClusters(const Block& block, const PaneLists& lists, std::uint
   });
 }
 
-inline bool comesBefore(const SeenCluster& a, const SeenCluster& b) {
+GALACTIC_EVERYWHERE inline bool comesBefore(const SeenCluster& a, const SeenCluster& b) {
   return a.model != b.model ? a.model < b.model : a.cluster < b.cluster;
 }
 
 /// The order in which the `soft` renderer draws: by bucket, then by model and cluster.
-inline void sortSeen(const Block& block, const PaneLists& lists, CullShared& shared) {
+GALACTIC_EVERYWHERE inline void sortSeen(const Block& block, const PaneLists& lists,
+                                         CullShared& shared) {
   block.each([&](std::uint32_t thread) {
     for (std::uint32_t b = thread; b <= kBuckets; b += block.threads) {
       std::uint32_t before = 0;
@@ -151,10 +153,11 @@ inline void sortSeen(const Block& block, const PaneLists& lists, CullShared& sha
 }
 
 /// How many of a pane's clusters are drawn in the first pass: what is near hides much of the rest.
-inline std::uint32_t inFirstPass(std::uint32_t seen) { return (seen + 3) / 4; }
+GALACTIC_EVERYWHERE inline std::uint32_t inFirstPass(std::uint32_t seen) { return (seen + 3) / 4; }
 
 /// Adds the pane's clusters to those of all panes.
-inline void addItems(const Block& block, const ViewSlice& slice, CullShared& shared) {
+GALACTIC_EVERYWHERE inline void addItems(const Block& block, const ViewSlice& slice,
+                                         CullShared& shared) {
   block.each([&](std::uint32_t thread) {
     if (thread != 0) return;
     const std::uint32_t near = inFirstPass(shared.seen);
@@ -171,7 +174,8 @@ inline void addItems(const Block& block, const ViewSlice& slice, CullShared& sha
 }
 
 /// Lists what may be seen on the pane that the block stands for.
-inline void cullPane(const Block& block, CullShared& shared, const ViewSlice& slice) {
+GALACTIC_EVERYWHERE inline void cullPane(const Block& block, CullShared& shared,
+                                         const ViewSlice& slice) {
   const PaneLists lists = paneLists(slice, block.index);
   block.each([&](std::uint32_t thread) {
     for (std::uint32_t b = thread; b < kBuckets; b += block.threads) shared.in_bucket[b] = 0;

@@ -1,13 +1,9 @@
-// The kernels for a device: clang makes PTX of this file, without a CUDA toolkit.
-#include "galactic/render_meshes.h"
-// What follows is for both sides, without a word at each function.
-#pragma clang force_cuda_host_device begin
+// The kernels for a device: clang makes PTX of this file without a CUDA toolkit, nvcc with one.
 #include "render/cuda/kernels/kernels.inl"
-#pragma clang force_cuda_host_device end
 
-#define GALACTIC_KERNEL              \
-  extern "C" __attribute__((global)) \
-  __attribute__((launch_bounds(galactic::render::cuda::kBlockThreads)))
+#define GALACTIC_KERNEL                                            \
+  extern "C" __attribute__((global)) __attribute__((launch_bounds( \
+      galactic::render::cuda::kBlockThreads, galactic::render::cuda::kBlocksAtOnce)))
 // Constructors do not run in shared memory.
 #define GALACTIC_SHARED(Type, name)                                        \
   __attribute__((shared)) static unsigned char name##_memory[sizeof(Type)] \
@@ -16,10 +12,7 @@
 
 namespace galactic::render::cuda {
 
-__attribute__((device)) inline Block thisBlock() {
-  return {static_cast<std::uint32_t>(__nvvm_read_ptx_sreg_ctaid_x()),
-          static_cast<std::uint32_t>(__nvvm_read_ptx_sreg_nctaid_x())};
-}
+__attribute__((device)) inline Block thisBlock() { return {blockNumber(), blockCount()}; }
 
 GALACTIC_KERNEL void galactic_place(PassParameters parameters) {
   placeInstances(thisBlock(), parameters.slice);

@@ -5,11 +5,11 @@ namespace {
 /// What a pixel shows: 1/w in the upper half, so that nearer is more; below it the complement of
 /// the cluster's rank and the piece, so that of equally near ones the first in the order of drawing
 /// is more. 0 where nothing is.
-inline std::uint64_t seenAt(float z, std::uint32_t rank, std::uint32_t piece) {
+GALACTIC_EVERYWHERE inline std::uint64_t seenAt(float z, std::uint32_t rank, std::uint32_t piece) {
   const std::uint32_t order = rank << kPieceBits | piece;
   return static_cast<std::uint64_t>(as<std::uint32_t>(z)) << 32U | ~order;
 }
-inline float depthOfSeen(std::uint64_t seen) {
+GALACTIC_EVERYWHERE inline float depthOfSeen(std::uint64_t seen) {
   return as<float>(static_cast<std::uint32_t>(seen >> 32U));
 }
 
@@ -42,7 +42,7 @@ struct DrawPlace {
   std::uint32_t rank;
 };
 
-inline DrawPlace drawPlace(const ViewSlice& slice, const WorkItem& item) {
+GALACTIC_EVERYWHERE inline DrawPlace drawPlace(const ViewSlice& slice, const WorkItem& item) {
   const PaneLists lists = paneLists(slice, item.pane);
   return {lists.task,
           lists.seen + lists.order[item.rank],
@@ -55,13 +55,15 @@ inline DrawPlace drawPlace(const ViewSlice& slice, const WorkItem& item) {
 /// Eight threads share a triangle: each draws one pixel of every block.
 constexpr std::uint32_t kTeam = 8;
 
-inline PixelOffsets pixelOf(std::uint32_t lane) {
+GALACTIC_EVERYWHERE inline PixelOffsets pixelOf(std::uint32_t lane) {
   return {static_cast<std::int32_t>(lane % kBlockWidth),
           static_cast<std::int32_t>(lane / kBlockWidth)};
 }
 
 struct AllPass {
-  bool operator()(std::uint32_t /*x*/, std::uint32_t /*y*/, Lanes /*z*/) const { return true; }
+  GALACTIC_EVERYWHERE bool operator()(std::uint32_t /*x*/, std::uint32_t /*y*/, Lanes /*z*/) const {
+    return true;
+  }
 };
 
 /// Passes pixels where the surface of the triangle with these records is there.
@@ -71,7 +73,7 @@ struct SurfacePass {
   float record[kRecordStride];
   float colors[kRecordStride];
 
-  bool operator()(std::uint32_t x, std::uint32_t y, Lanes z) const {
+  GALACTIC_EVERYWHERE bool operator()(std::uint32_t x, std::uint32_t y, Lanes z) const {
     const PixelLanes pixels{Lanes(static_cast<float>(x)), Lanes(static_cast<float>(y)),
                             Lanes(1.0F) / z};
     return alphaPasses(*task, OneRecord{record}, OneRecord{colors}, least_alpha, pixels).v != 0;
@@ -88,16 +90,16 @@ struct PixelTarget {
   std::uint32_t row = 0;
   std::uint32_t first_column = 0;
 
-  void start(std::uint32_t at_column, std::uint32_t at_row) {
+  GALACTIC_EVERYWHERE void start(std::uint32_t at_column, std::uint32_t at_row) {
     column = first_column = at_column;
     row = at_row;
   }
-  void right() { ++column; }
-  void nextRow() {
+  GALACTIC_EVERYWHERE void right() { ++column; }
+  GALACTIC_EVERYWHERE void nextRow() {
     column = first_column;
     ++row;
   }
-  IntLanes cover(const EdgeLanes& edges, Lanes z) const {
+  GALACTIC_EVERYWHERE IntLanes cover(const EdgeLanes& edges, Lanes z) const {
     if (signBits(edges.a | edges.b | edges.c) != 0) return 0;
     const std::uint32_t x = column * kBlockWidth + lane % kBlockWidth;
     const std::uint32_t y = row * kBlockHeight + lane / kBlockWidth;
@@ -105,14 +107,15 @@ struct PixelTarget {
     const std::size_t columns = place->tile_columns * (kTileEdge / kBlockWidth);
     std::uint64_t* pixel = place->pixels + (row * columns + column) * kWidth + lane;
     const std::uint64_t seen = seenAt(z[0], place->rank, piece);
-    if (__atomic_load_n(pixel, __ATOMIC_RELAXED) >= seen || !(*test)(x, y, z)) return 0;
+    if (loadAtomically(pixel) >= seen || !(*test)(x, y, z)) return 0;
     raiseAtomically(pixel, seen);
     return -1;
   }
 };
 
 /// Whether the first pass left something to be seen where the cluster is.
-inline void lookBehind(const Block& block, const DrawPlace& place, DrawShared& shared) {
+GALACTIC_EVERYWHERE inline void lookBehind(const Block& block, const DrawPlace& place,
+                                           DrawShared& shared) {
   block.each([&](std::uint32_t thread) {
     if (thread == 0) shared.shown = 0;
   });
@@ -124,13 +127,14 @@ inline void lookBehind(const Block& block, const DrawPlace& place, DrawShared& s
       const std::uint32_t x = seen.tiles[0] + n % wide;
       const std::uint32_t y = seen.tiles[2] + n / wide;
       if (place.tile_depth[y * place.tile_columns + x] < seen.nearest) {
-        __atomic_store_n(&shared.shown, 1U, __ATOMIC_RELAXED);
+        storeAtomically(&shared.shown, 1U);
       }
     }
   });
 }
 
-inline void beginCluster(const Block& block, const DrawPlace& place, DrawShared& shared) {
+GALACTIC_EVERYWHERE inline void beginCluster(const Block& block, const DrawPlace& place,
+                                             DrawShared& shared) {
   block.each([&](std::uint32_t thread) {
     if (thread != 0) return;
     const PlacedModel& placed = place.task->models[place.seen->model];
@@ -149,7 +153,7 @@ inline void beginCluster(const Block& block, const DrawPlace& place, DrawShared&
     for (std::uint32_t v = thread; v < facts.cluster->vertex_count; v += block.threads) {
       const std::uint16_t* vertex = vertexBlock(facts, v) + v % kWidth;
       if (placeEight(shared.frame, *facts.cluster, vertex, v, state) == 0) {
-        __atomic_store_n(&state.any_bad, true, __ATOMIC_RELAXED);
+        storeAtomically(&state.any_bad, true);
       }
       if (reads) readEight(vertex, v, state);
     }
@@ -157,17 +161,20 @@ inline void beginCluster(const Block& block, const DrawPlace& place, DrawShared&
 }
 
 /// The corners of triangle `number` of a cluster.
-inline CornerLanes triangleCorners(const ClusterFacts& facts, std::uint32_t number) {
+GALACTIC_EVERYWHERE inline CornerLanes triangleCorners(const ClusterFacts& facts,
+                                                       std::uint32_t number) {
   const std::size_t first = facts.cluster->first_triangle + number / kWidth * kWidth;
   return cornersAt(facts.pack->triangles + first * kTriangleRows + number % kWidth);
 }
 
-inline void noteTriangle(std::uint8_t* list, std::uint32_t* count, std::uint32_t number) {
+GALACTIC_EVERYWHERE inline void noteTriangle(std::uint8_t* list, std::uint32_t* count,
+                                             std::uint32_t number) {
   list[addAtomically(count, 1U)] = static_cast<std::uint8_t>(number);
 }
 
 /// Lists the triangles that can cover a pixel, and sets up the small ones.
-inline void sortTriangles(const Block& block, const DrawPlace& place, DrawShared& shared) {
+GALACTIC_EVERYWHERE inline void sortTriangles(const Block& block, const DrawPlace& place,
+                                              DrawShared& shared) {
   block.each([&](std::uint32_t thread) {
     const ClusterState& state = shared.state;
     const RenderCluster& cluster = *state.facts.cluster;
@@ -192,7 +199,8 @@ inline void sortTriangles(const Block& block, const DrawPlace& place, DrawShared
 
 /// The records of a small triangle.
 template <class State>
-inline void recordSmall(const State& state, const SmallGroup& group, float* record, float* colors) {
+GALACTIC_EVERYWHERE inline void recordSmall(const State& state, const SmallGroup& group,
+                                            float* record, float* colors) {
   Lanes fields[kRecordStride];
   for (Lanes& field : fields) field = Lanes(0);
   texturePlanes(state, group, fields);
@@ -203,15 +211,31 @@ inline void recordSmall(const State& state, const SmallGroup& group, float* reco
   for (std::uint32_t n = 0; n < kColorFields; ++n) colors[n] = fields[n].v;
 }
 
-inline SurfacePass surfacePass(const DrawPlace& place, const ClusterState& state) {
+GALACTIC_EVERYWHERE inline SurfacePass surfacePass(const DrawPlace& place,
+                                                   const ClusterState& state) {
   SurfacePass pass;
   pass.task = place.task;
   pass.least_alpha = static_cast<std::int32_t>(state.facts.surface.least_alpha);
   return pass;
 }
 
-inline void drawSmall(const Block& block, const DrawPlace& place, const DrawShared& shared,
-                      std::uint32_t thread) {
+/// One pixel of every block of a small triangle whose surface has holes. A function of its own:
+/// what it keeps of the surface does not take registers from those that have none.
+GALACTIC_EVERYWHERE __attribute__((noinline)) void drawSmallSurface(const DrawPlace& place,
+                                                                    const ClusterState& state,
+                                                                    std::uint32_t number,
+                                                                    std::uint32_t lane) {
+  SurfacePass pass = surfacePass(place, state);
+  SmallGroup group;
+  GroupSetup setup;
+  setUpGroup(*place.task, state, packed(triangleCorners(state.facts, number)), group, setup);
+  recordSmall(state, group, pass.record, pass.colors);
+  PixelTarget<SurfacePass> target{&place, &pass, lane, number};
+  coverTriangle(setup, 0, pixelOf(lane), target);
+}
+
+GALACTIC_EVERYWHERE inline void drawSmall(const Block& block, const DrawPlace& place,
+                                          const DrawShared& shared, std::uint32_t thread) {
   const ClusterState& state = shared.state;
   const std::uint32_t lane = thread % kTeam;
   for (std::uint32_t n = thread / kTeam; n < shared.small_count; n += block.threads / kTeam) {
@@ -222,20 +246,15 @@ inline void drawSmall(const Block& block, const DrawPlace& place, const DrawShar
       coverTriangle(shared.setups[n], 0, pixelOf(lane), target);
       continue;
     }
-    SurfacePass pass = surfacePass(place, state);
-    SmallGroup group;
-    GroupSetup setup;
-    setUpGroup(*place.task, state, packed(triangleCorners(state.facts, number)), group, setup);
-    recordSmall(state, group, pass.record, pass.colors);
-    PixelTarget<SurfacePass> target{&place, &pass, lane, number};
-    coverTriangle(setup, 0, pixelOf(lane), target);
+    drawSmallSurface(place, state, number, lane);
   }
 }
 
 /// Draws the tiles of a large triangle that are the thread's.
 template <class Test>
-inline void coverTiles(const Block& block, const LargeSetup& setup, const TileBox& tiles,
-                       std::uint32_t thread, PixelTarget<Test> target) {
+GALACTIC_EVERYWHERE inline void coverTiles(const Block& block, const LargeSetup& setup,
+                                           const TileBox& tiles, std::uint32_t thread,
+                                           PixelTarget<Test> target) {
   const auto wide = static_cast<std::uint32_t>(tiles.right - tiles.left + 1);
   const std::uint32_t count = wide * static_cast<std::uint32_t>(tiles.bottom - tiles.top + 1);
   for (std::uint32_t n = thread / kTeam; n < count; n += block.threads / kTeam) {
@@ -246,9 +265,10 @@ inline void coverTiles(const Block& block, const LargeSetup& setup, const TileBo
   }
 }
 
-/// All threads draw one large triangle.
-inline void drawLarge(const Block& block, const DrawPlace& place, const ClusterState& state,
-                      const Corner* corners, std::uint32_t piece, std::uint32_t thread) {
+/// All threads draw one large triangle. A function of its own, as above.
+GALACTIC_EVERYWHERE __attribute__((noinline)) void drawLarge(
+    const Block& block, const DrawPlace& place, const ClusterState& state, const Corner* corners,
+    std::uint32_t piece, std::uint32_t thread) {
   LargeTriangle triangle;
   const bool two_sided = state.facts.cluster->two_sided != 0;
   if (!faces(corners[0], corners[1], corners[2], two_sided, triangle)) return;
@@ -266,8 +286,8 @@ inline void drawLarge(const Block& block, const DrawPlace& place, const ClusterS
   coverTiles(block, setup, tiles, thread, PixelTarget<SurfacePass>{&place, &pass, lane, piece});
 }
 
-inline void drawAllLarge(const Block& block, const DrawPlace& place, const DrawShared& shared,
-                         std::uint32_t thread) {
+GALACTIC_EVERYWHERE inline void drawAllLarge(const Block& block, const DrawPlace& place,
+                                             const DrawShared& shared, std::uint32_t thread) {
   const ClusterState& state = shared.state;
   for (std::uint32_t n = 0; n < shared.large_count; ++n) {
     const std::uint32_t number = shared.large[n];
@@ -279,8 +299,11 @@ inline void drawAllLarge(const Block& block, const DrawPlace& place, const DrawS
   }
 }
 
-inline void drawAllCut(const Block& block, const DrawPlace& place, const DrawShared& shared,
-                       std::uint32_t thread) {
+/// A function of its own: few clusters have triangles to cut, and cutting takes all registers.
+GALACTIC_EVERYWHERE __attribute__((noinline)) void drawAllCut(const Block& block,
+                                                              const DrawPlace& place,
+                                                              const DrawShared& shared,
+                                                              std::uint32_t thread) {
   const ClusterState& state = shared.state;
   for (std::uint32_t n = 0; n < shared.cut_count; ++n) {
     const std::uint32_t number = shared.cut[n];
@@ -298,8 +321,8 @@ inline void drawAllCut(const Block& block, const DrawPlace& place, const DrawSha
 }
 
 /// Draws the clusters of a pass that are the block's.
-inline void drawClusters(const Block& block, DrawShared& shared, const ViewSlice& slice,
-                         std::uint32_t pass) {
+GALACTIC_EVERYWHERE inline void drawClusters(const Block& block, DrawShared& shared,
+                                             const ViewSlice& slice, std::uint32_t pass) {
   const std::uint32_t count = slice.counts->items[pass];
   block.each([&](std::uint32_t thread) {
     if (thread == 0) shared.clusters_drawn = shared.triangles_drawn = 0;
@@ -329,7 +352,7 @@ inline void drawClusters(const Block& block, DrawShared& shared, const ViewSlice
 }
 
 /// The least 1/w of the tiles of a pane; blocks share its tiles.
-inline void measureTiles(const Block& block, const ViewSlice& slice) {
+GALACTIC_EVERYWHERE inline void measureTiles(const Block& block, const ViewSlice& slice) {
   const std::uint32_t pane = block.index;
   const PaneTask& task = slice.tasks[pane];
   const std::uint64_t* pixels =

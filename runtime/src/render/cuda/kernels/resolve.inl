@@ -14,10 +14,11 @@ struct TriangleState {
   ClusterFacts facts;
   const VertexFrame* frame;
 
-  std::uint32_t vertex(std::uint32_t number) const { return numbers[number]; }
+  GALACTIC_EVERYWHERE std::uint32_t vertex(std::uint32_t number) const { return numbers[number]; }
 };
 
-inline void readTriangle(const VertexFrame& frame, std::uint32_t number, TriangleState& state) {
+GALACTIC_EVERYWHERE inline void readTriangle(const VertexFrame& frame, std::uint32_t number,
+                                             TriangleState& state) {
   const CornerLanes corners = triangleCorners(state.facts, number);
   state.frame = &frame;
   state.numbers[0] = static_cast<std::uint32_t>(corners.a.v);
@@ -39,8 +40,8 @@ struct PixelRecord {
 };
 
 /// The records of the triangle that piece `piece` of a cluster is.
-inline void recordPiece(const PaneTask& task, const TriangleState& state, std::uint32_t piece,
-                        PixelRecord& to) {
+GALACTIC_EVERYWHERE inline void recordPiece(const PaneTask& task, const TriangleState& state,
+                                            std::uint32_t piece, PixelRecord& to) {
   if (piece < kFirstLarge) {
     SmallGroup group;
     GroupSetup setup;
@@ -60,12 +61,13 @@ inline void recordPiece(const PaneTask& task, const TriangleState& state, std::u
   recordLarge(state, triangle, depthOf(triangle), to.record, to.colors);
 }
 
-inline std::uint32_t triangleOf(std::uint32_t piece) {
+GALACTIC_EVERYWHERE inline std::uint32_t triangleOf(std::uint32_t piece) {
   if (piece < kFirstLarge) return piece;
   return piece < kFirstCut ? piece - kFirstLarge : (piece - kFirstCut) / kMostInFan;
 }
 
-inline IntLanes shadePixel(const PaneTask& task, const PixelRecord& from, const PixelLanes& pixel) {
+GALACTIC_EVERYWHERE inline IntLanes shadePixel(const PaneTask& task, const PixelRecord& from,
+                                               const PixelLanes& pixel) {
   const TexturePlaces places = texturePlaces(OneRecord{from.record}, pixel);
   IntLanes color = sampleTexels(task, places);
   if (signBits(places.kind) != 0) color = timesColors(color, OneRecord{from.colors}, pixel);
@@ -84,8 +86,8 @@ struct PixelImage {
   std::uint32_t semantic;
 };
 
-inline PixelImage lookAtPixel(const PaneLists& lists, std::uint64_t seen, std::uint32_t x,
-                              std::uint32_t y) {
+GALACTIC_EVERYWHERE inline PixelImage lookAtPixel(const PaneLists& lists, std::uint64_t seen,
+                                                  std::uint32_t x, std::uint32_t y) {
   const PaneTask& task = *lists.task;
   const std::uint32_t order = ~static_cast<std::uint32_t>(seen);
   const std::uint32_t piece = order & ((1U << kPieceBits) - 1);
@@ -105,7 +107,8 @@ inline PixelImage lookAtPixel(const PaneLists& lists, std::uint64_t seen, std::u
   return image;
 }
 
-inline void writePixel(const PaneTask& task, std::size_t pixel, const PixelImage& image) {
+GALACTIC_EVERYWHERE inline void writePixel(const PaneTask& task, std::size_t pixel,
+                                           const PixelImage& image) {
   if (task.semantics != nullptr) task.semantics[pixel] = image.semantic;
   if (task.color == nullptr) return;
   std::uint8_t* to = task.color + pixel * task.channels;
@@ -117,7 +120,8 @@ inline void writePixel(const PaneTask& task, std::size_t pixel, const PixelImage
 }
 
 /// Writes the pixels of a pane that are the block's: `blocks_of_pane` share it.
-inline void resolvePane(const Block& block, const ViewSlice& slice, std::uint32_t blocks_of_pane) {
+GALACTIC_EVERYWHERE inline void resolvePane(const Block& block, const ViewSlice& slice,
+                                            std::uint32_t blocks_of_pane) {
   const std::uint32_t pane = block.index / blocks_of_pane;
   const PaneLists lists = paneLists(slice, pane);
   const PaneTask& task = *lists.task;

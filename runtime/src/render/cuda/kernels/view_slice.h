@@ -10,6 +10,8 @@ namespace galactic::render::cuda {
 /// Of a block as it is launched on a device. The kernels give the same images for any multiple
 /// of 8.
 inline constexpr std::uint32_t kBlockThreads = 128;
+/// Blocks that a multiprocessor has registers for, at least.
+inline constexpr std::uint32_t kBlocksAtOnce = 4;
 
 /// As RenderInstance.
 struct DeviceInstance {
