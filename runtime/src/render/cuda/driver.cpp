@@ -121,9 +121,14 @@ Result<std::unique_ptr<Driver>> Driver::open(const std::string& library) {
   if (const char* missing = findAll(opened, driver->functions_)) {
     return refuse(fmt::format("{} is too old: it has no {}", library, missing));
   }
-  RETURN_IF_ERROR(driver->check(driver->functions_.init(0), "start"));
-  RETURN_IF_ERROR(
-      driver->check(driver->functions_.device_count(&driver->device_count_), "count devices"));
+  // CUDA_ERROR_NO_DEVICE.
+  constexpr int kNoDevice = 100;
+  const int started = driver->functions_.init(0);
+  if (started != kNoDevice) {
+    RETURN_IF_ERROR(driver->check(started, "start"));
+    RETURN_IF_ERROR(
+        driver->check(driver->functions_.device_count(&driver->device_count_), "count devices"));
+  }
   if (driver->device_count_ == 0) {
     return refuse("CUDA's driver finds no device; CUDA_VISIBLE_DEVICES may hide those there are");
   }

@@ -72,6 +72,49 @@ TEST_F(CudaHost, NamesADeviceThatIsNotThere) {
   EXPECT_EQ(engine.error().code, ErrorCode::kInvalidInput);
 }
 
+/// An environment variable, for a while.
+class Variable {
+ public:
+  Variable(const char* name, const char* value) : name_(name) { setenv(name, value, 1); }
+  ~Variable() { unsetenv(name_); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+};
+
+TEST_F(CudaHost, CountsTheDevicesThatCudaVisibleDevicesLeaves) {
+  const std::string a = "GPU-00010203-0405-0607-0809-0a0b0c0d0e0f";
+  const std::string b = "GPU-10111213-1415-1617-1819-1a1b1c1d1e1f";
+  const auto nameOf = [&](const std::string& wish) {
+    options_.device = wish;
+    const auto engine = makeEngine(library_, options_);
+    return engine ? (*engine)->device().name() : engine.error().message;
+  };
+  for (const std::string& visible : {std::string("1"), b, std::string("GPU-1011"), "1,7," + a}) {
+    SCOPED_TRACE(visible);
+    const Variable variable("CUDA_VISIBLE_DEVICES", visible.c_str());
+    EXPECT_EQ(nameOf(""), "Stand-in B");
+    EXPECT_EQ(nameOf("0"), "Stand-in B");
+    EXPECT_EQ(nameOf("cuda:0"), "Stand-in B");
+    EXPECT_EQ(nameOf(b), "Stand-in B");
+    EXPECT_EQ(
+        nameOf("1"),
+        "found device 1 asked for, but CUDA has 1 (0 to 0); CUDA_VISIBLE_DEVICES may hide some");
+    EXPECT_THAT(nameOf(a), HasSubstr("none of CUDA's 1 devices has the UUID"));
+  }
+  {
+    const Variable turned("CUDA_VISIBLE_DEVICES", "1,0");
+    EXPECT_EQ(nameOf("0"), "Stand-in B");
+    EXPECT_EQ(nameOf("1"), "Stand-in A");
+    EXPECT_EQ(nameOf(a), "Stand-in A");
+  }
+  const Variable none("CUDA_VISIBLE_DEVICES", "");
+  EXPECT_EQ(nameOf(""),
+            "CUDA's driver finds no device; CUDA_VISIBLE_DEVICES may hide those there are");
+}
+
 TEST_F(CudaHost, SaysWhatIsMissing) {
   const auto absent = render::cuda::CudaEngine::make(library_, options_, {.library = "/no/lib.so"});
   ASSERT_FALSE(absent);

@@ -28,6 +28,8 @@ inline Standin& resetStandin() {
   fresh.allocated_bytes = standin.allocated_bytes;
   fresh.contexts = standin.contexts;
   fresh.modules = standin.modules;
+  fresh.shared_buffers = standin.shared_buffers;
+  fresh.mapped_buffers = standin.mapped_buffers;
   standin = fresh;
   return standin;
 }

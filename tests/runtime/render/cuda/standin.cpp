@@ -1,13 +1,19 @@
 // A library that stands in for libcuda.so.1 where there is no device: memory of the device is
-// memory of the processor, and launches run the very kernels, compiled for the processor. It has
-// the functions that the renderer calls, nothing else.
+// memory of the processor, and launches run the very kernels, compiled for the processor. Buffers
+// of OpenGL are copied there while they are mapped. It has the functions that the renderer calls,
+// nothing else.
 #include "standin.h"
+
+#include <dlfcn.h>
 
 #include <cstdlib>
 #include <cstring>
 #include <map>
 #include <mutex>
+#include <sstream>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "render/cuda/kernels/kernels.inl"
 
@@ -29,11 +35,61 @@ std::map<void*, std::size_t> memories;
 std::mutex device_mutex;
 int device_context = 0;
 int loaded_module = 0;
+int contexts_pushed = 0;
+/// The devices by the numbers that programs see.
+std::vector<int> visible;
+
+/// A buffer of OpenGL that is shared.
+struct SharedBuffer {
+  unsigned name = 0;
+  void* copy = nullptr;
+  std::size_t bytes = 0;
+};
 
 /// 0, or the error that was asked for.
 int outcome(const char* function) {
   return standin.failing != nullptr && std::string_view(standin.failing) == function ? standin.error
                                                                                      : 0;
+}
+
+std::string uuidOf(int device) {
+  std::string text = "GPU-";
+  for (int n = 0; n < 16; ++n) {
+    constexpr const char* kDigits = "0123456789abcdef";
+    if (n == 4 || n == 6 || n == 8 || n == 10) text += '-';
+    text += kDigits[device];
+    text += kDigits[n];
+  }
+  return text;
+}
+
+/// What CUDA_VISIBLE_DEVICES leaves: numbers, or beginnings of UUIDs, up to the first that is none.
+std::vector<int> visibleDevices() {
+  std::vector<int> devices;
+  const char* names = std::getenv("CUDA_VISIBLE_DEVICES");
+  std::istringstream list(names == nullptr ? "" : names);
+  if (names == nullptr) {
+    for (int n = 0; n < standin.devices; ++n) devices.push_back(n);
+  }
+  for (std::string name; std::getline(list, name, ',');) {
+    int found = -1;
+    for (int n = 0; n < standin.devices; ++n) {
+      const bool is_uuid = name.starts_with("GPU-") && uuidOf(n).starts_with(name);
+      if (is_uuid || name == std::to_string(n)) found = n;
+    }
+    if (found < 0) break;
+    devices.push_back(found);
+  }
+  return devices;
+}
+
+/// A function of the OpenGL that is current.
+template <class Function>
+Function openGl(const char* name) {
+  using Get = void* (*)(const char*);
+  static void* const library = dlopen("libEGL.so.1", RTLD_NOW);
+  static const auto get = reinterpret_cast<Get>(dlsym(library, "eglGetProcAddress"));
+  return reinterpret_cast<Function>(get(name));
 }
 
 void note(void* stream) {
@@ -88,17 +144,23 @@ void runBlock(Kernel kernel, const Block& block, const PassParameters& parameter
 
 STANDIN Standin* galactic_standin() { return &standin; }
 
-STANDIN int cuInit(unsigned) { return outcome("cuInit"); }
+STANDIN int cuInit(unsigned) {
+  constexpr int kNoDevice = 100;
+  const int error = outcome("cuInit");
+  if (error != 0) return error;
+  visible = visibleDevices();
+  return visible.empty() ? kNoDevice : 0;
+}
 STANDIN int cuGetErrorName(int error, const char** name) {
   *name = error == 2 ? "CUDA_ERROR_OUT_OF_MEMORY" : "CUDA_ERROR_UNKNOWN";
   return 0;
 }
 STANDIN int cuDeviceGetCount(int* count) {
-  *count = standin.devices;
+  *count = static_cast<int>(visible.size());
   return outcome("cuDeviceGetCount");
 }
 STANDIN int cuDeviceGet(int* device, int number) {
-  *device = number;
+  *device = visible.at(static_cast<std::size_t>(number));
   return 0;
 }
 STANDIN int cuDeviceGetName(char* name, int length, int device) {
@@ -128,9 +190,20 @@ STANDIN int cuDevicePrimaryCtxRelease_v2(int) {
   --standin.contexts;
   return 0;
 }
-STANDIN int cuCtxPushCurrent_v2(void* context) { return context == &device_context ? 0 : 1; }
+STANDIN int cuCtxPushCurrent_v2(void* context) {
+  const std::scoped_lock lock(device_mutex);
+  ++contexts_pushed;
+  return context == &device_context ? 0 : 1;
+}
 STANDIN int cuCtxPopCurrent_v2(void** context) {
+  const std::scoped_lock lock(device_mutex);
+  --contexts_pushed;
   *context = &device_context;
+  return 0;
+}
+STANDIN int cuCtxGetCurrent(void** context) {
+  const std::scoped_lock lock(device_mutex);
+  *context = contexts_pushed > 0 ? &device_context : nullptr;
   return 0;
 }
 STANDIN int cuModuleLoadDataEx(void** module, const void* image, unsigned, int*, void** values) {
@@ -214,6 +287,47 @@ STANDIN int cuLaunchKernel(void* function, unsigned grid, unsigned, unsigned, un
 STANDIN int cuStreamSynchronize(void* stream) {
   note(stream);
   return outcome("cuStreamSynchronize");
+}
+STANDIN int cuGraphicsGLRegisterBuffer(SharedBuffer** resource, unsigned name, unsigned) {
+  const int error = outcome("cuGraphicsGLRegisterBuffer");
+  if (error != 0) return error;
+  *resource = new SharedBuffer{.name = name};
+  ++standin.shared_buffers;
+  return 0;
+}
+STANDIN int cuGraphicsUnregisterResource(SharedBuffer* resource) {
+  --standin.shared_buffers;
+  delete resource;
+  return 0;
+}
+STANDIN int cuGraphicsMapResources(unsigned, SharedBuffer** resources, void* stream) {
+  note(stream);
+  const int error = outcome("cuGraphicsMapResources");
+  if (error != 0) return error;
+  SharedBuffer& buffer = *resources[0];
+  constexpr unsigned kBufferSize = 0x8764;
+  std::int64_t bytes = 0;
+  openGl<void (*)(unsigned, unsigned, std::int64_t*)>("glGetNamedBufferParameteri64v")(
+      buffer.name, kBufferSize, &bytes);
+  buffer.bytes = static_cast<std::size_t>(bytes);
+  buffer.copy = allocate(buffer.bytes);
+  openGl<void (*)(unsigned)>("glMemoryBarrier")(~0U);
+  openGl<void (*)(unsigned, std::ptrdiff_t, std::ptrdiff_t, void*)>("glGetNamedBufferSubData")(
+      buffer.name, 0, bytes, buffer.copy);
+  ++standin.mapped_buffers;
+  return 0;
+}
+STANDIN int cuGraphicsUnmapResources(unsigned, SharedBuffer** resources, void* stream) {
+  note(stream);
+  release(resources[0]->copy);
+  --standin.mapped_buffers;
+  return 0;
+}
+STANDIN int cuGraphicsResourceGetMappedPointer_v2(std::uint64_t* address, std::size_t* bytes,
+                                                  SharedBuffer* resource) {
+  *address = reinterpret_cast<std::uint64_t>(resource->copy);
+  *bytes = resource->bytes;
+  return 0;
 }
 
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables,google-build-using-namespace)

@@ -12,6 +12,7 @@ struct Standin {
   std::uint32_t first = 0;
   /// Blocks run from the last to the first.
   bool backwards = false;
+  /// Before CUDA_VISIBLE_DEVICES hides any.
   int devices = 2;
   int major = 9;
   int minor = 0;
@@ -31,6 +32,9 @@ struct Standin {
   std::uint64_t allocated_bytes = 0;
   int contexts = 0;
   int modules = 0;
+  /// Buffers of OpenGL that CUDA knows, and those that are mapped.
+  int shared_buffers = 0;
+  int mapped_buffers = 0;
 };
 
 }  // namespace galactic::test
