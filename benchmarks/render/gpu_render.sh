@@ -7,10 +7,12 @@
 #
 # DEVICE as in RenderOptions::device: cuda:0, a UUID; the first graphics processor without it. SECONDS for each
 # measurement (0.5). Build the targets render_gl and galactic-run first; with the Python package and torch, training is
-# measured, too. Variables:
+# measured, too. With the DEVICE "software", gl draws on the processor; the tests' stand-in for CUDA's driver then lets
+# the whole script be tried without a device (docs/rendering/cuda.md). Variables:
 #
 #   GALACTIC_RENDER_WORLD   draw, simulate and train in this world instead of drawing the home made in code
-#   GALACTIC_RENDER_VIEWS   sizes of the batches, of 128, 512, 2048 and 8192: "128|512"
+#   GALACTIC_RENDER_VIEWS   sizes of the batches, of 8, 128, 512, 2048 and 8192 ("128|512|2048|8192")
+#   GALACTIC_RENDER_STEPS   steps of the simulation (50)
 #   GALACTIC_RENDER_TRAIN   options of benchmarks/learning/training_speed.py ("--updates 4")
 #   PYTHON                  the interpreter that has torch (python3)
 #
@@ -45,8 +47,17 @@ trap 'rm -f "$log"' EXIT
 
 heading() { printf '\n== %s (%d s)\n' "$1" "$SECONDS"; }
 
+# limited SECONDS COMMAND...: what takes longer is cut off, so that all of it takes less than eight minutes.
+limited() {
+  timeout "$@"
+  local status=$?
+  [ "$status" != 124 ] || echo "gpu_render.sh: cut off after $1 s"
+  return "$status"
+}
+
+# measure SECONDS FILTER
 measure() {
-  "$program" --benchmark_filter="$1" --benchmark_min_time="$seconds" --benchmark_counters_tabular=true
+  limited "$1" "$program" --benchmark_filter="$2" --benchmark_min_time="$seconds" --benchmark_counters_tabular=true
 }
 
 # Prints what a check prints, and remembers that it failed.
@@ -56,12 +67,12 @@ check() {
 }
 
 heading "The same images as on the processor"
-check measure '^same_as_soft/'
+check measure 45 '^same_as_soft/'
 
 heading "compute-sanitizer"
 if command -v compute-sanitizer >/dev/null; then
   for tool in memcheck racecheck; do
-    check compute-sanitizer --tool "$tool" --error-exitcode 7 \
+    check limited 30 compute-sanitizer --tool "$tool" --error-exitcode 7 \
       "$program" --benchmark_filter='^same_as_soft/8/' --benchmark_min_time=0.01
   done
 else
@@ -70,15 +81,18 @@ fi
 
 for name in cuda_read cuda_stay cuda_shares gl_read gl_stay; do
   heading "$name"
-  measure "^$name/($views)/(64|128)/"
+  measure 35 "^$name/($views)/(64|128)/"
 done
 
 heading "With the simulation"
 if [ -n "$world" ]; then
   for backend in cuda gl; do
     for envs in ${views//|/ }; do
-      "$runner" "$world" --policy random --steps 50 --envs "$envs" --render rgbd --backend "$backend" \
-        ${device:+--device "$device"} || echo "gpu_render.sh: $backend does not draw $envs envs here"
+      wish=$device
+      # It has no software driver.
+      [ "$backend $device" = "cuda software" ] && wish=""
+      limited 12 "$runner" "$world" --policy random --steps "${GALACTIC_RENDER_STEPS:-50}" --envs "$envs" --render rgbd \
+        --backend "$backend" ${wish:+--device "$wish"} || echo "gpu_render.sh: $backend does not draw $envs envs here"
     done
   done
 else
@@ -92,7 +106,7 @@ elif ! PYTHONPATH=$build/python "${PYTHON:-python3}" -c 'import galactic, torch'
   tail -n 1 "$log"
 else
   # shellcheck disable=SC2086 # several words
-  PYTHONPATH=$build/python "${PYTHON:-python3}" "$(dirname "$0")/../learning/training_speed.py" "$world" \
+  PYTHONPATH=$build/python limited 90 "${PYTHON:-python3}" "$(dirname "$0")/../learning/training_speed.py" "$world" \
     ${GALACTIC_RENDER_TRAIN:---updates 4} || echo "gpu_render.sh: training failed"
 fi
 heading "Done"

@@ -86,7 +86,7 @@ class Scene {
  public:
   Scene() {
     const char* path = std::getenv("GALACTIC_RENDER_WORLD");
-    if (path == nullptr) return;
+    if (path == nullptr || *path == '\0') return;
     world_ = std::make_unique<World>(orExit(World::open(std::vector<std::filesystem::path>{path})));
     models_ = std::make_unique<WorldModels>(orExit(WorldModels::from(*world_)));
   }
@@ -286,7 +286,7 @@ int run(int argc, char** argv) {
   // On a graphics processor, by views and pixels along an edge.
   const auto add_sizes = [&](const char* name, auto run) {
     benchmark::RegisterBenchmark(name, run)
-        ->ArgsProduct({{128, 512, 2048, 8192}, {64, 128}})
+        ->ArgsProduct({{8, 128, 512, 2048, 8192}, {64, 128}})
         ->UseRealTime()
         ->Unit(benchmark::kMillisecond);
   };
