@@ -215,6 +215,19 @@ void drawWithCuda(benchmark::State& state, Scene& scene, bool on_device, bool me
   }
 }
 
+/// What the processor does for a batch before the device draws it; with GALACTIC_STANDIN_IDLE set,
+/// the tests' stand-in draws nothing.
+void setUpCuda(benchmark::State& state, Scene& scene) {
+  RenderOptions options = optionsOf(RenderBackend::kCuda, state);
+  const auto views = scene.views(static_cast<std::size_t>(state.range(0)));
+  auto engine = CudaEngine::make(scene.library(), options, {});
+  if (!engine) return state.SkipWithError(engine.error().message.c_str());
+  leaveOnDevice(state, **engine, views);
+  // The first batch made room.
+  const auto batches = static_cast<double>(state.iterations() + 1);
+  state.counters["setup_ms"] = 1e3 * (*engine)->timings().setup / batches;
+}
+
 /// Draws the same batch with the cuda backend and on the processor: an error where a byte differs.
 void compareWithSoft(benchmark::State& state, Scene& scene) {
   RenderOptions options = optionsOf(RenderBackend::kCuda, state);
@@ -295,6 +308,10 @@ int run(int argc, char** argv) {
   add_sizes("cuda_stay", [&](benchmark::State& state) { drawWithCuda(state, scene, true, false); });
   add_sizes("cuda_shares",
             [&](benchmark::State& state) { drawWithCuda(state, scene, true, true); });
+  benchmark::RegisterBenchmark("cuda_setup",
+                               [&](benchmark::State& state) { setUpCuda(state, scene); })
+      ->Args({4096, 32})
+      ->Unit(benchmark::kMillisecond);
   add_sizes("gl_read", [&](benchmark::State& state) {
     drawWithGl(state, scene, optionsOf(RenderBackend::kGl, state));
   });

@@ -8,7 +8,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <utility>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
 
 #include "render/cuda/kernel_image.h"
 #include "support/try.h"
@@ -44,6 +48,26 @@ T* at(const Memory& memory, std::size_t offset = 0) {
   return at<T>(memory.address() + offset);
 }
 
+/// Copies past the caches: what is written is read by the device alone.
+void copyPast(void* to, const void* from, std::size_t bytes) {
+#if defined(__SSE2__)
+  auto* target = static_cast<std::byte*>(to);
+  const auto* source = static_cast<const std::byte*>(from);
+  constexpr std::size_t kVector = sizeof(__m128i);
+  const std::size_t until_aligned =
+      std::min(bytes, (kVector - std::bit_cast<std::uintptr_t>(target) % kVector) % kVector);
+  std::memcpy(target, source, until_aligned);
+  std::size_t at = until_aligned;
+  for (; at + kVector <= bytes; at += kVector) {
+    _mm_stream_si128(reinterpret_cast<__m128i*>(target + at),
+                     _mm_loadu_si128(reinterpret_cast<const __m128i*>(source + at)));
+  }
+  std::memcpy(target + at, source + at, bytes - at);
+#else
+  std::memcpy(to, from, bytes);
+#endif
+}
+
 /// Adds the time from its beginning to its end to a sum, in seconds.
 class Stopwatch {
  public:
@@ -57,6 +81,25 @@ class Stopwatch {
  private:
   double& sum_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Adds what this thread took of the processor, in seconds.
+class ThreadStopwatch {
+ public:
+  explicit ThreadStopwatch(double& sum) : sum_(sum) {}
+  ~ThreadStopwatch() { sum_ += now() - start_; }
+  ThreadStopwatch(const ThreadStopwatch&) = delete;
+  ThreadStopwatch& operator=(const ThreadStopwatch&) = delete;
+
+ private:
+  static double now() {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+
+  double& sum_;
+  double start_ = now();
 };
 
 /// Makes a stream the used one for a while.
@@ -128,7 +171,8 @@ Result<void> Kernels::launch(Kernel kernel, std::uint32_t blocks, const PassPara
 }
 
 CudaEngine::SliceMemory::SliceMemory(const Driver& driver)
-    : seen(driver, Memory::Kind::kDevice),
+    : tasks(driver, Memory::Kind::kDevice),
+      seen(driver, Memory::Kind::kDevice),
       order(driver, Memory::Kind::kDevice),
       by_bucket(driver, Memory::Kind::kDevice),
       near_items(driver, Memory::Kind::kDevice),
@@ -196,43 +240,72 @@ std::size_t CudaEngine::bytesOf(std::size_t views, std::size_t clusters) const {
   constexpr std::size_t kOfCluster =
       sizeof(SeenCluster) + 2 * sizeof(std::uint32_t) + kPasses * sizeof(WorkItem);
   const std::size_t of_pane =
-      pixels_of_pane_ * sizeof(std::uint64_t) + tiles_of_pane_ * sizeof(float);
+      sizeof(PaneTask) + pixels_of_pane_ * sizeof(std::uint64_t) + tiles_of_pane_ * sizeof(float);
   return panes_.size() * (views * of_pane + clusters * kOfCluster);
 }
 
-Result<void> CudaEngine::cutSlices(std::span<const RenderView> views) {
-  slices_.clear();
-  statistics_ = {};
+Result<void> CudaEngine::stage(std::span<const RenderView> views, const Upload& at_bytes) {
+  std::byte* bytes = staged_.bytes();
+  auto* device_views = reinterpret_cast<DeviceView*>(bytes + at_bytes.views);
+  auto* instances = reinterpret_cast<DeviceInstance*>(bytes + at_bytes.instances);
+  std::memcpy(bytes + at_bytes.panes, panes_.data(), panes_.size() * sizeof(PaneRectangle));
   clusters_of_views_.resize(views.size());
-  ViewRange range{};
+  const std::uint32_t* counts = scene_->clusterCounts().data();
+  std::uint32_t next = 0;
+  float field_of_view = 0;
+  float focal = 0;
   for (std::size_t v = 0; v < views.size(); ++v) {
+    const RenderView& view = views[v];
     std::size_t clusters = 0;
-    for (const RenderInstance& instance : views[v].instances) {
-      clusters += scene_->clusterCounts()[instance.model];
-    }
+    for (const RenderInstance& instance : view.instances) clusters += counts[instance.model];
+    statistics_.clusters += clusters;
     if (clusters > kMostClusters) {
       return fail(
           ErrorCode::kUnsupported, "render backend cuda",
           fmt::format("found a view of {} clusters, expected at most {}; use the soft backend",
                       clusters, kMostClusters));
     }
-    statistics_.instances += views[v].instances.size();
-    statistics_.clusters += clusters;
-    clusters_of_views_[v] = static_cast<std::uint32_t>(clusters);
+    const bool sees = canSee(view.camera);
+    const auto count = sees ? static_cast<std::uint32_t>(view.instances.size()) : 0U;
+    clusters_of_views_[v] = sees ? static_cast<std::uint32_t>(clusters) : 0U;
+    // Cameras of a batch are mostly of one kind.
+    if (sees && view.camera.vertical_fov != field_of_view) {
+      field_of_view = view.camera.vertical_fov;
+      focal = focalLength(options_, view.camera);
+    }
+    device_views[v] = {inverse(view.camera.world_from_camera), focal, next, count};
+    if (count != 0) {
+      copyPast(instances + next, view.instances.data(), count * sizeof(DeviceInstance));
+    }
+    next += count;
+  }
+  return {};
+}
+
+void CudaEngine::cutSlices(const Upload& at_bytes) {
+  auto* first_clusters =
+      reinterpret_cast<std::uint32_t*>(staged_.bytes() + at_bytes.first_clusters);
+  slices_.clear();
+  ViewRange range{};
+  for (std::size_t v = 0; v < clusters_of_views_.size(); ++v) {
+    const std::size_t clusters = clusters_of_views_[v];
     const bool fits =
         bytesOf(v + 1 - range.first, range.clusters + clusters) <= tuning_.slice_bytes;
     if (!fits && v > range.first) {
       slices_.push_back(range);
       range = {v, v, 0};
     }
+    for (std::size_t pane = 0; pane < panes_.size(); ++pane) {
+      *first_clusters++ =
+          static_cast<std::uint32_t>(range.clusters * panes_.size() + pane * clusters);
+    }
     range.clusters += clusters;
     range.end = v + 1;
   }
-  if (range.end > range.first) slices_.push_back(range);
-  return {};
+  slices_.push_back(range);
 }
 
-Result<void> CudaEngine::reserve(std::span<const RenderView> views) {
+Result<void> CudaEngine::reserve(std::size_t views) {
   std::size_t most_clusters = 0;
   std::size_t most_views = 0;
   for (const ViewRange& range : slices_) {
@@ -242,6 +315,7 @@ Result<void> CudaEngine::reserve(std::span<const RenderView> views) {
   const std::size_t clusters = most_clusters * panes_.size();
   const std::size_t panes = most_views * panes_.size();
   SliceMemory& slice = *slice_memory_;
+  RETURN_IF_ERROR(slice.tasks.reserve(panes * sizeof(PaneTask)));
   RETURN_IF_ERROR(slice.seen.reserve(clusters * sizeof(SeenCluster)));
   RETURN_IF_ERROR(slice.order.reserve(clusters * sizeof(std::uint32_t)));
   RETURN_IF_ERROR(slice.by_bucket.reserve(clusters * sizeof(std::uint32_t)));
@@ -250,19 +324,16 @@ Result<void> CudaEngine::reserve(std::span<const RenderView> views) {
   RETURN_IF_ERROR(slice.pixels.reserve(panes * pixels_of_pane_ * sizeof(std::uint64_t)));
   RETURN_IF_ERROR(slice.tile_depth.reserve(panes * tiles_of_pane_ * sizeof(float)));
   RETURN_IF_ERROR(counts_.reserve(slices_.size() * sizeof(SliceCounts)));
-  const std::size_t pixels = views.size() * options_.width * options_.height;
+  const std::size_t pixels = views * options_.width * options_.height;
   RETURN_IF_ERROR(color_.reserve(pixels * static_cast<std::size_t>(options_.color)));
   if (options_.depth) RETURN_IF_ERROR(depth_.reserve(pixels * sizeof(float)));
   if (options_.semantics) RETURN_IF_ERROR(semantics_.reserve(pixels * sizeof(std::uint32_t)));
   return {};
 }
 
-void CudaEngine::stageTasks(std::size_t view, std::uint32_t first_instance,
-                            std::uint32_t instance_count, PaneTask* tasks) const {
-  const std::size_t first_pixel = view * options_.width * options_.height;
+PaneTask CudaEngine::firstTask() const {
   PaneTask task;
-  task.models = at<PlacedModel>(placed_) + first_instance;
-  task.model_count = instance_count;
+  task.models = at<PlacedModel>(placed_);
   task.texel_bases = at<const std::uint32_t* const>(scene_->texelBases());
   task.image_width = options_.width;
   task.image_height = options_.height;
@@ -270,69 +341,36 @@ void CudaEngine::stageTasks(std::size_t view, std::uint32_t first_instance,
   task.background = options_.background;
   task.culling = options_.culling;
   task.channels = static_cast<std::uint32_t>(options_.color);
-  if (task.channels != 0) task.color = at<std::uint8_t>(color_) + first_pixel * task.channels;
-  if (options_.depth) task.depth = at<float>(depth_) + first_pixel;
-  if (options_.semantics) task.semantics = at<std::uint32_t>(semantics_) + first_pixel;
-  for (const auto& [left, top, width, height] : panes_) {
-    task.left = left;
-    task.top = top;
-    task.width = width;
-    task.height = height;
-    *tasks++ = task;
-  }
-}
-
-void CudaEngine::stage(std::span<const RenderView> views, const Upload& at_bytes) {
-  std::byte* bytes = staged_.bytes();
-  auto* device_views = reinterpret_cast<DeviceView*>(bytes + at_bytes.views);
-  auto* instances = reinterpret_cast<DeviceInstance*>(bytes + at_bytes.instances);
-  auto* tasks = reinterpret_cast<PaneTask*>(bytes + at_bytes.tasks);
-  auto* first_clusters = reinterpret_cast<std::uint32_t*>(bytes + at_bytes.first_clusters);
-  std::uint32_t next = 0;
-  for (const ViewRange& range : slices_) {
-    std::uint32_t first_cluster = 0;
-    for (std::size_t v = range.first; v < range.end; ++v) {
-      const RenderView& view = views[v];
-      const auto count =
-          canSee(view.camera) ? static_cast<std::uint32_t>(view.instances.size()) : 0U;
-      device_views[v] = {inverse(view.camera.world_from_camera), focalLength(options_, view.camera),
-                         next, count};
-      if (count != 0) {
-        std::memcpy(static_cast<void*>(instances + next), view.instances.data(),
-                    count * sizeof(DeviceInstance));
-      }
-      stageTasks(v, next, count, tasks + v * panes_.size());
-      const std::uint32_t clusters = count == 0 ? 0 : clusters_of_views_[v];
-      for (std::size_t pane = 0; pane < panes_.size(); ++pane) {
-        first_clusters[v * panes_.size() + pane] = first_cluster;
-        first_cluster += clusters;
-      }
-      next += count;
-    }
-  }
+  if (task.channels != 0) task.color = at<std::uint8_t>(color_);
+  if (options_.depth) task.depth = at<float>(depth_);
+  if (options_.semantics) task.semantics = at<std::uint32_t>(semantics_);
+  return task;
 }
 
 Result<void> CudaEngine::draw(std::span<const RenderView> views) {
   const DriverFunctions& functions = driver_->functions();
-  {
-    const Stopwatch watch(timings_.setup);
-    RETURN_IF_ERROR(cutSlices(views));
-  }
+  statistics_ = {};
+  slices_.clear();
+  for (const RenderView& view : views) statistics_.instances += view.instances.size();
   if (views.empty()) return {};
-  RETURN_IF_ERROR(reserve(views));
   const std::size_t panes = views.size() * panes_.size();
   Upload at_bytes{};
   at_bytes.instances = aligned(views.size() * sizeof(DeviceView));
-  at_bytes.tasks = aligned(at_bytes.instances + statistics_.instances * sizeof(DeviceInstance));
-  at_bytes.first_clusters = aligned(at_bytes.tasks + panes * sizeof(PaneTask));
+  at_bytes.panes = aligned(at_bytes.instances + statistics_.instances * sizeof(DeviceInstance));
+  at_bytes.first_clusters = aligned(at_bytes.panes + panes_.size() * sizeof(PaneRectangle));
   at_bytes.bytes = at_bytes.first_clusters + panes * sizeof(std::uint32_t);
   RETURN_IF_ERROR(staged_.reserve(at_bytes.bytes));
   RETURN_IF_ERROR(uploaded_.reserve(at_bytes.bytes));
   RETURN_IF_ERROR(placed_.reserve(statistics_.instances * sizeof(PlacedModel)));
   {
-    const Stopwatch watch(timings_.setup);
-    stage(views, at_bytes);
+    const ThreadStopwatch watch(timings_.setup);
+    RETURN_IF_ERROR(stage(views, at_bytes));
+#if defined(__SSE2__)
+    _mm_sfence();
+#endif
+    cutSlices(at_bytes);
   }
+  RETURN_IF_ERROR(reserve(views.size()));
   RETURN_IF_ERROR(driver_->check(
       functions.copy_to_device(uploaded_.address(), staged_.bytes(), at_bytes.bytes, stream_),
       "copy poses"));
@@ -355,7 +393,9 @@ ViewSlice CudaEngine::sliceOf(const ViewRange& range, std::size_t number,
   slice.views = at<DeviceView>(uploaded_, at_bytes.views) + range.first;
   slice.instances = at<DeviceInstance>(uploaded_, at_bytes.instances);
   slice.placed = at<PlacedModel>(placed_);
-  slice.tasks = at<PaneTask>(uploaded_, at_bytes.tasks) + first_pane;
+  slice.tasks = at<PaneTask>(memory.tasks);
+  slice.task = firstTask();
+  slice.panes = at<PaneRectangle>(uploaded_, at_bytes.panes);
   slice.first_cluster = at<std::uint32_t>(uploaded_, at_bytes.first_clusters) + first_pane;
   slice.seen = at<SeenCluster>(memory.seen);
   slice.order = at<std::uint32_t>(memory.order);
@@ -365,6 +405,7 @@ ViewSlice CudaEngine::sliceOf(const ViewRange& range, std::size_t number,
   slice.pixels = at<std::uint64_t>(memory.pixels);
   slice.tile_depth = at<float>(memory.tile_depth);
   slice.counts = at<SliceCounts>(counts_) + number;
+  slice.first_view = static_cast<std::uint32_t>(range.first);
   slice.view_count = static_cast<std::uint32_t>(range.end - range.first);
   slice.panes_of_view = static_cast<std::uint32_t>(panes_.size());
   slice.pixels_of_pane = pixels_of_pane_;

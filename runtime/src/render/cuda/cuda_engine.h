@@ -87,25 +87,26 @@ class CudaEngine final : public RenderEngine {
   };
   /// Where arrays lie in `staged_` and in its copy on the device.
   struct Upload {
-    std::size_t views, instances, tasks, first_clusters, bytes;
+    std::size_t views, instances, panes, first_clusters, bytes;
   };
   /// Room for one slice on the device.
   struct SliceMemory {
     explicit SliceMemory(const Driver& driver);
-    Memory seen, order, by_bucket, near_items, far_items, pixels, tile_depth;
+    Memory tasks, seen, order, by_bucket, near_items, far_items, pixels, tile_depth;
   };
 
   CudaEngine(const RenderOptions& options, std::unique_ptr<Driver> driver, Device device);
 
   Result<void> draw(std::span<const RenderView> views);
+  /// Writes poses where they are copied from, and counts clusters.
+  Result<void> stage(std::span<const RenderView> views, const Upload& at);
   /// Cuts the batch into slices.
-  Result<void> cutSlices(std::span<const RenderView> views);
+  void cutSlices(const Upload& at);
   [[nodiscard]] std::size_t bytesOf(std::size_t views, std::size_t clusters) const;
-  Result<void> reserve(std::span<const RenderView> views);
-  /// Writes poses and what follows from the options where they are copied from.
-  void stage(std::span<const RenderView> views, const Upload& at);
-  void stageTasks(std::size_t view, std::uint32_t first_instance, std::uint32_t instance_count,
-                  PaneTask* tasks) const;
+  /// Makes room on the device.
+  Result<void> reserve(std::size_t views);
+  /// What the first pane of the batch shows.
+  [[nodiscard]] PaneTask firstTask() const;
   /// Launches, and waits where that is measured.
   Result<void> launch(Kernel kernel, std::uint32_t blocks, const PassParameters& parameters);
   Result<void> drawSlice(const ViewRange& range, std::size_t number, const Upload& at);
@@ -121,8 +122,8 @@ class CudaEngine final : public RenderEngine {
   std::unique_ptr<Kernels> kernels_;
   std::unique_ptr<DeviceScene> scene_;
 
-  /// Panes of an image: left, top, width, height.
-  std::vector<std::array<std::uint32_t, 4>> panes_;
+  /// Of an image.
+  std::vector<PaneRectangle> panes_;
   std::uint32_t pixels_of_pane_ = 0;
   std::uint32_t tiles_of_pane_ = 0;
 

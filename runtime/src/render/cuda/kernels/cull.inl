@@ -2,10 +2,33 @@
 namespace galactic::render::cuda {
 namespace {
 
-/// Places the instances of the view that the block stands for.
+/// What is drawn on pane `pane` of view `view` of a slice.
+GALACTIC_EVERYWHERE inline PaneTask paneTask(const ViewSlice& slice, std::uint32_t view,
+                                             std::uint32_t pane) {
+  const DeviceView& from = slice.views[view];
+  const PaneRectangle& place = slice.panes[pane];
+  PaneTask task = slice.task;
+  const std::size_t first_pixel =
+      static_cast<std::size_t>(slice.first_view + view) * task.image_width * task.image_height;
+  task.models += from.first_instance;
+  task.model_count = from.instance_count;
+  task.left = place.left;
+  task.top = place.top;
+  task.width = place.width;
+  task.height = place.height;
+  if (task.color != nullptr) task.color += first_pixel * task.channels;
+  if (task.depth != nullptr) task.depth += first_pixel;
+  if (task.semantics != nullptr) task.semantics += first_pixel;
+  return task;
+}
+
+/// Places the instances of the view that the block stands for, and says what its panes show.
 GALACTIC_EVERYWHERE inline void placeInstances(const Block& block, const ViewSlice& slice) {
   const DeviceView& view = slice.views[block.index];
   block.each([&](std::uint32_t thread) {
+    for (std::uint32_t n = thread; n < slice.panes_of_view; n += block.threads) {
+      slice.tasks[block.index * slice.panes_of_view + n] = paneTask(slice, block.index, n);
+    }
     for (std::uint32_t n = thread; n < view.instance_count; n += block.threads) {
       const DeviceInstance& instance = slice.instances[view.first_instance + n];
       PlacedModel& placed = slice.placed[view.first_instance + n];

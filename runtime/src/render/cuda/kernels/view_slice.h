@@ -28,6 +28,11 @@ struct DeviceView {
   std::uint32_t instance_count;
 };
 
+/// A part of an image that is drawn by itself, pixels.
+struct PaneRectangle {
+  std::uint32_t left, top, width, height;
+};
+
 /// A cluster that is to be drawn on a pane.
 struct WorkItem {
   std::uint32_t pane;
@@ -53,8 +58,11 @@ struct ViewSlice {
   const DeviceInstance* instances;
   /// By instance; no model where it is not drawn.
   PlacedModel* placed;
-  /// By pane.
-  const PaneTask* tasks;
+  /// By pane: made on the device of the next two. `task` is for a pane of the batch's first view:
+  /// its models are those of the first instance, its images begin at their first pixel.
+  PaneTask* tasks;
+  PaneTask task;
+  const PaneRectangle* panes;
   /// By pane, and one more: where its clusters begin in the four arrays below.
   const std::uint32_t* first_cluster;
   SeenCluster* seen;
@@ -68,6 +76,8 @@ struct ViewSlice {
   /// By pane: the least 1/w of each tile after the first pass.
   float* tile_depth;
   SliceCounts* counts;
+  /// Of the slice's first view in the batch.
+  std::uint32_t first_view;
   std::uint32_t view_count;
   std::uint32_t panes_of_view;
   /// Room for each pane in `pixels` and in `tile_depth`.
