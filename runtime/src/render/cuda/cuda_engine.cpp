@@ -27,8 +27,6 @@ static_assert(sizeof(DeviceInstance) == sizeof(RenderInstance) &&
 
 /// Blocks for each multiprocessor, of kernels whose blocks take work until none is left.
 constexpr std::uint32_t kBlocksPerMultiprocessor = 16;
-/// Pixels that a thread of the last kernel writes.
-constexpr std::uint32_t kPixelsPerThread = 4;
 /// What a pixel can tell apart.
 constexpr std::size_t kMostClusters = std::size_t{1} << kRankBits;
 /// Of arrays that are copied together.
@@ -437,8 +435,10 @@ Result<void> CudaEngine::drawSlice(const ViewRange& range, std::size_t number,
   RETURN_IF_ERROR(launch(Kernel::kTiles, panes, parameters));
   parameters.pass = 1;
   RETURN_IF_ERROR(launch(Kernel::kDraw, workers, parameters));
-  constexpr std::uint32_t kPixelsOfBlock = kBlockThreads * kPixelsPerThread;
-  const std::uint32_t blocks_of_pane = (pixels_of_pane_ + kPixelsOfBlock - 1) / kPixelsOfBlock;
+  const auto squares = [](std::uint32_t pixels) {
+    return (paneEdge(pixels) + kResolveEdge - 1) / kResolveEdge;
+  };
+  const std::uint32_t blocks_of_pane = squares(options_.width) * squares(options_.height);
   return launch(Kernel::kResolve, panes * blocks_of_pane, parameters);
 }
 

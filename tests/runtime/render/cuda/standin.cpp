@@ -135,8 +135,12 @@ void runBlock(Kernel kernel, const Block& block, const PassParameters& parameter
     }
     case Kernel::kTiles:
       return measureTiles(block, slice);
-    case Kernel::kResolve:
-      return resolvePane(block, slice, block.count / (slice.view_count * slice.panes_of_view));
+    case Kernel::kResolve: {
+      static ResolveShared shared;
+      std::memset(static_cast<void*>(&shared), 0xCD, sizeof(shared));
+      return resolvePane(block, shared, slice,
+                         block.count / (slice.view_count * slice.panes_of_view));
+    }
   }
 }
 

@@ -68,6 +68,11 @@ __attribute__((device)) inline std::uint32_t addAtomically(std::uint32_t* to, st
 __attribute__((device)) inline std::uint64_t addAtomically(std::uint64_t* to, std::uint64_t more) {
   return atomicAdd(reinterpret_cast<unsigned long long*>(to), more);
 }
+/// Puts `value` where `empty` was; returns what was there before.
+__attribute__((device)) inline std::uint32_t claimAtomically(std::uint32_t* at, std::uint32_t empty,
+                                                             std::uint32_t value) {
+  return atomicCAS(at, empty, value);
+}
 __attribute__((device)) inline void greaterAtomically(std::uint64_t* to, std::uint64_t value) {
   atomicMax(reinterpret_cast<unsigned long long*>(to), value);
 }
@@ -86,6 +91,12 @@ GALACTIC_EVERYWHERE inline void storeAtomically(Number* to, Number value) {
 template <class Number>
 GALACTIC_EVERYWHERE inline Number addAtomically(Number* to, Number more) {
   return __atomic_fetch_add(to, more, __ATOMIC_RELAXED);
+}
+/// Puts `value` where `empty` was; returns what was there before.
+GALACTIC_EVERYWHERE inline std::uint32_t claimAtomically(std::uint32_t* at, std::uint32_t empty,
+                                                         std::uint32_t value) {
+  __atomic_compare_exchange_n(at, &empty, value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+  return empty;
 }
 GALACTIC_EVERYWHERE inline void greaterAtomically(std::uint64_t* to, std::uint64_t value) {
 #if defined(__CUDA__)

@@ -33,8 +33,9 @@ GALACTIC_KERNEL void galactic_tiles(PassParameters parameters) {
 }
 
 GALACTIC_KERNEL void galactic_resolve(PassParameters parameters) {
+  GALACTIC_SHARED(ResolveShared, shared);
   const Block block = thisBlock();
-  resolvePane(block, parameters.slice,
+  resolvePane(block, shared, parameters.slice,
               block.count / (parameters.slice.view_count * parameters.slice.panes_of_view));
 }
 

@@ -1,5 +1,6 @@
-// From what is seen at each pixel to the images. What shading has to know of a triangle is computed
-// again for each pixel: that takes less time than to keep it.
+// From what is seen at each pixel to the images. A block writes a square of pixels: it lists the
+// triangles that are seen there, computes once for each of them what shading has to know, and
+// shades.
 namespace galactic::render::cuda {
 namespace {
 
@@ -66,14 +67,14 @@ GALACTIC_EVERYWHERE inline std::uint32_t triangleOf(std::uint32_t piece) {
   return piece < kFirstCut ? piece - kFirstLarge : (piece - kFirstCut) / kMostInFan;
 }
 
-GALACTIC_EVERYWHERE inline IntLanes shadePixel(const PaneTask& task, const PixelRecord& from,
-                                               const PixelLanes& pixel) {
-  const TexturePlaces places = texturePlaces(OneRecord{from.record}, pixel);
+GALACTIC_EVERYWHERE inline IntLanes shadePixel(const PaneTask& task, const float* record,
+                                               const float* colors, const PixelLanes& pixel) {
+  const TexturePlaces places = texturePlaces(OneRecord{record}, pixel);
   IntLanes color = sampleTexels(task, places);
-  if (signBits(places.kind) != 0) color = timesColors(color, OneRecord{from.colors}, pixel);
+  if (signBits(places.kind) != 0) color = timesColors(color, OneRecord{colors}, pixel);
   if (signBits(places.kind << 1) != 0) {
-    const Lanes light[3] = {Lanes(from.record[kLightRight]), Lanes(from.record[kLightDown]),
-                            Lanes(from.record[kLightStart])};
+    const Lanes light[3] = {Lanes(record[kLightRight]), Lanes(record[kLightDown]),
+                            Lanes(record[kLightStart])};
     color = timesLight(color, light, pixel);
   }
   // What is drawn hides all behind it.
@@ -86,25 +87,82 @@ struct PixelImage {
   std::uint32_t semantic;
 };
 
-GALACTIC_EVERYWHERE inline PixelImage lookAtPixel(const PaneLists& lists, std::uint64_t seen,
-                                                  std::uint32_t x, std::uint32_t y) {
+/// The triangle that seenAt() notes: its rank and its piece.
+GALACTIC_EVERYWHERE inline std::uint32_t orderOfSeen(std::uint64_t seen) {
+  return ~static_cast<std::uint32_t>(seen);
+}
+
+/// The record of what is seen as `order` on a pane.
+GALACTIC_EVERYWHERE inline void recordSeen(const PaneLists& lists, std::uint32_t order,
+                                           PixelRecord& to) {
   const PaneTask& task = *lists.task;
-  const std::uint32_t order = ~static_cast<std::uint32_t>(seen);
   const std::uint32_t piece = order & ((1U << kPieceBits) - 1);
   const SeenCluster& cluster = lists.seen[lists.order[order >> kPieceBits]];
   const PlacedModel& placed = task.models[cluster.model];
   TriangleState state;
   state.facts = clusterFacts(*placed.model, cluster.cluster);
-  PixelImage image{0, state.facts.semantic};
-  if (task.color == nullptr) return image;
   const VertexFrame frame = vertexFrame(task, placed);
   readTriangle(frame, triangleOf(piece), state);
-  PixelRecord record{};
-  recordPiece(task, state, piece, record);
-  const PixelLanes pixel{Lanes(static_cast<float>(x)), Lanes(static_cast<float>(y)),
-                         Lanes(1.0F / depthOfSeen(seen))};
-  image.color = static_cast<std::uint32_t>(shadePixel(task, record, pixel).v);
-  return image;
+  recordPiece(task, state, piece, to);
+}
+
+/// The semantic id alone.
+GALACTIC_EVERYWHERE inline std::uint32_t semanticSeen(const PaneLists& lists, std::uint32_t order) {
+  const SeenCluster& cluster = lists.seen[lists.order[order >> kPieceBits]];
+  return clusterFacts(*lists.task->models[cluster.model].model, cluster.cluster).semantic;
+}
+
+constexpr std::uint32_t kSquarePixels = kResolveEdge * kResolveEdge;
+/// Twice as many as there can be triangles, so that searches are short.
+constexpr std::uint32_t kSlots = 2 * kSquarePixels;
+constexpr std::uint32_t kEmptySlot = 0xFFFFFFFF;
+/// Triangles whose records are kept; those of others are computed for each pixel.
+constexpr std::uint32_t kKeptRecords = 128;
+
+struct ResolveShared {
+  /// By slot: the order of a triangle, and its place in the list.
+  std::uint32_t orders[kSlots];
+  std::uint16_t places[kSlots];
+  /// By pixel.
+  std::uint16_t slots[kSquarePixels];
+  std::uint32_t count;
+  std::uint32_t list[kKeptRecords];
+  float records[kKeptRecords][kRecordStride];
+};
+
+/// The slot of a triangle, which is listed where it is new.
+GALACTIC_EVERYWHERE inline std::uint32_t listTriangle(ResolveShared& shared, std::uint32_t order) {
+  std::uint32_t slot = (order * 2654435761U) >> 23U;
+  static_assert(kSlots == 1U << 9U);
+  while (true) {
+    const std::uint32_t before = claimAtomically(shared.orders + slot, kEmptySlot, order);
+    if (before == order) return slot;
+    if (before == kEmptySlot) break;
+    slot = (slot + 1) % kSlots;
+  }
+  const std::uint32_t place = addAtomically(&shared.count, 1U);
+  shared.places[slot] = static_cast<std::uint16_t>(place);
+  if (place < kKeptRecords) shared.list[place] = order;
+  return slot;
+}
+
+/// A pixel of a square: where it lies in the pane, and in the pane's list of pixels.
+struct SquarePixel {
+  std::uint32_t x, y;
+  std::size_t at;
+};
+
+GALACTIC_EVERYWHERE inline SquarePixel squarePixel(const PaneTask& task, std::uint32_t square,
+                                                   std::uint32_t number) {
+  constexpr std::uint32_t kAcross = kResolveEdge / kBlockWidth;
+  const std::uint32_t squares = (task.width + kResolveEdge - 1) / kResolveEdge;
+  const std::uint32_t columns = (task.width + kTileEdge - 1) / kTileEdge * 2;
+  const std::uint32_t lane = number % kWidth;
+  const std::uint32_t block = number / kWidth;
+  const std::uint32_t column = square % squares * kAcross + block % kAcross;
+  const std::uint32_t row = square / squares * (kResolveEdge / kBlockHeight) + block / kAcross;
+  return {column * kBlockWidth + lane % kBlockWidth, row * kBlockHeight + lane / kBlockWidth,
+          (static_cast<std::size_t>(row) * columns + column) * kWidth + lane};
 }
 
 GALACTIC_EVERYWHERE inline void writePixel(const PaneTask& task, std::size_t pixel,
@@ -119,29 +177,79 @@ GALACTIC_EVERYWHERE inline void writePixel(const PaneTask& task, std::size_t pix
   for (std::uint32_t n = 0; n < 3; ++n) to[n] = static_cast<std::uint8_t>(image.color >> (8 * n));
 }
 
-/// Writes the pixels of a pane that are the block's: `blocks_of_pane` share it.
-GALACTIC_EVERYWHERE inline void resolvePane(const Block& block, const ViewSlice& slice,
-                                            std::uint32_t blocks_of_pane) {
+/// What is seen at a pixel; `shared` has the triangles of its square.
+GALACTIC_EVERYWHERE inline PixelImage lookAtPixel(const PaneLists& lists,
+                                                  const ResolveShared& shared, std::uint32_t number,
+                                                  const SquarePixel& place, std::uint64_t seen) {
+  const PaneTask& task = *lists.task;
+  const std::uint32_t order = orderOfSeen(seen);
+  if (task.color == nullptr) return {0, semanticSeen(lists, order)};
+  const std::uint32_t kept =
+      order == kEmptySlot ? kKeptRecords : shared.places[shared.slots[number]];
+  const PixelLanes pixel{Lanes(static_cast<float>(place.x)), Lanes(static_cast<float>(place.y)),
+                         Lanes(1.0F / depthOfSeen(seen))};
+  if (kept < kKeptRecords) {
+    const float* record = shared.records[kept];
+    if ((as<std::uint32_t>(record[kKind]) & kHasColors) == 0) {
+      // No colors are read.
+      return {static_cast<std::uint32_t>(shadePixel(task, record, record, pixel).v),
+              as<std::uint32_t>(record[kSemantic])};
+    }
+  }
+  PixelRecord own{};
+  recordSeen(lists, order, own);
+  return {static_cast<std::uint32_t>(shadePixel(task, own.record, own.colors, pixel).v),
+          as<std::uint32_t>(own.record[kSemantic])};
+}
+
+/// Lists the triangles that are seen in a square, and computes their records.
+GALACTIC_EVERYWHERE inline void recordSquare(const Block& block, const PaneLists& lists,
+                                             const std::uint64_t* pixels, std::uint32_t square,
+                                             ResolveShared& shared) {
+  const PaneTask& task = *lists.task;
+  block.each([&](std::uint32_t thread) {
+    for (std::uint32_t n = thread; n < kSlots; n += block.threads) shared.orders[n] = kEmptySlot;
+    if (thread == 0) shared.count = 0;
+  });
+  block.each([&](std::uint32_t thread) {
+    for (std::uint32_t n = thread; n < kSquarePixels; n += block.threads) {
+      const SquarePixel place = squarePixel(task, square, n);
+      if (place.x >= task.width || place.y >= task.height) continue;
+      const std::uint64_t seen = pixels[place.at];
+      if (!(depthOfSeen(seen) > 0) || orderOfSeen(seen) == kEmptySlot) continue;
+      shared.slots[n] = static_cast<std::uint16_t>(listTriangle(shared, orderOfSeen(seen)));
+    }
+  });
+  block.each([&](std::uint32_t thread) {
+    for (std::uint32_t n = thread; n < kKeptRecords && n < shared.count; n += block.threads) {
+      PixelRecord own{};
+      recordSeen(lists, shared.list[n], own);
+      for (std::uint32_t f = 0; f < kRecordStride; ++f) shared.records[n][f] = own.record[f];
+    }
+  });
+}
+
+/// Writes the square of a pane that is the block's: `blocks_of_pane` share it.
+GALACTIC_EVERYWHERE inline void resolvePane(const Block& block, ResolveShared& shared,
+                                            const ViewSlice& slice, std::uint32_t blocks_of_pane) {
   const std::uint32_t pane = block.index / blocks_of_pane;
+  const std::uint32_t square = block.index % blocks_of_pane;
   const PaneLists lists = paneLists(slice, pane);
   const PaneTask& task = *lists.task;
   const std::uint64_t* pixels =
       slice.pixels + static_cast<std::size_t>(pane) * slice.pixels_of_pane;
-  const std::uint32_t columns = (task.width + kTileEdge - 1) / kTileEdge * 2;
+  if (task.color != nullptr) recordSquare(block, lists, pixels, square, shared);
   block.each([&](std::uint32_t thread) {
-    const std::uint32_t first = block.index % blocks_of_pane * block.threads + thread;
-    for (std::uint32_t n = first; n < slice.pixels_of_pane; n += blocks_of_pane * block.threads) {
-      const std::uint32_t lane = n % kWidth;
-      const std::uint32_t x = n / kWidth % columns * kBlockWidth + lane % kBlockWidth;
-      const std::uint32_t y = n / kWidth / columns * kBlockHeight + lane / kBlockWidth;
-      if (x >= task.width || y >= task.height) continue;
+    for (std::uint32_t n = thread; n < kSquarePixels; n += block.threads) {
+      const SquarePixel place = squarePixel(task, square, n);
+      if (place.x >= task.width || place.y >= task.height) continue;
       const std::size_t at =
-          static_cast<std::size_t>(task.top + y) * task.image_width + task.left + x;
-      const std::uint64_t seen = pixels[n];
+          static_cast<std::size_t>(task.top + place.y) * task.image_width + task.left + place.x;
+      const std::uint64_t seen = pixels[place.at];
       const float z = depthOfSeen(seen);
       if (task.depth != nullptr) task.depth[at] = z > 0 ? 1.0F / z : 0.0F;
       PixelImage image{task.background, 0};
-      if (z > 0) image = lookAtPixel(lists, seen, x, y);
+      if (z > 0) image = lookAtPixel(lists, shared, n, place, seen);
       writePixel(task, at, image);
     }
   });

@@ -13,6 +13,9 @@ inline constexpr std::uint32_t kBlockThreads = 128;
 /// Blocks that a multiprocessor has registers for, at least.
 inline constexpr std::uint32_t kBlocksAtOnce = 4;
 
+/// Edge of the squares of pixels that a block of the last kernel writes.
+inline constexpr std::uint32_t kResolveEdge = 16;
+
 /// As RenderInstance.
 struct DeviceInstance {
   std::uint32_t model;
