@@ -173,14 +173,6 @@ std::uint64_t notFreePortable(const ColumnGridLayout& grid,
   return not_free;
 }
 
-bool hasAvx2() noexcept {
-#if defined(__x86_64__)
-  return __builtin_cpu_supports("avx2") != 0;
-#else
-  return false;
-#endif
-}
-
 }  // namespace detail
 
 Clearance ColumnGrid::clearance(Vec3 center) const noexcept {

@@ -56,8 +56,15 @@ struct EightsOfCenters {
 [[nodiscard]] std::uint64_t notFreeAvx2(const ColumnGridLayout& grid,
                                         const EightsOfCenters& centers) noexcept;
 
-/// Whether the AVX2 versions can run on this processor.
-[[nodiscard]] bool hasAvx2() noexcept;
+/// Whether the AVX2 versions can run on this processor. Inlined everywhere: it is asked before each
+/// small kernel.
+[[nodiscard, gnu::always_inline]] inline bool hasAvx2() noexcept {
+#if defined(__x86_64__)
+  return __builtin_cpu_supports("avx2") != 0;
+#else
+  return false;
+#endif
+}
 
 /// What is taken off the distances to contact, meters: more than all rounding from a height to its
 /// code and back, so that whoever moves by a distance and asks again finds the place free.

@@ -63,10 +63,12 @@ void Chunk::shift(std::size_t env, const Vec3& by) {
   y_[env] += by.y;
   z_[env] += by.z;
   float* row = centers_.data() + env * 3 * sphere_count_;
-  const auto add = [this](float* to, float by_this) {
+  const auto add = [count = sphere_count_](float* to, float by_this) {
     // Most floors are flat.
     if (by_this == 0) return;
-    for (std::size_t n = 0; n < sphere_count_; ++n) to[n] += by_this;
+    for (std::size_t n = 0; n < count; n += kLanes) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) to[n + lane] += by_this;
+    }
   };
   add(row, by.x);
   add(row + sphere_count_, by.y);
@@ -81,11 +83,14 @@ void Chunk::shift(std::size_t env, const Vec3& by) {
 
 void Chunk::shiftBounds(std::size_t env, const Vec3& by) {
   // Rounding keeps order: the bounds of what has moved are the bounds moved.
-  const std::array<float, kBounds> each{by.x, by.x, by.y, by.y, by.z, by.z};
-  float* row = bounds_.data()->values.data() + env * kBounds * group_stride_;
+  const std::array<float, kLanes> each{by.x, by.x, by.y, by.y, by.z, by.z, 0, 0};
+  for (std::size_t b = 0; b < kLanes; ++b) extents_[env].values[b] += each[b];
+  AlignedLanes* lanes = bounds_.data() + env * kBounds * group_stride_ / kLanes;
   for (std::size_t b = 0; b < kBounds; ++b) {
-    extents_[env].values[b] += each[b];
-    for (std::size_t n = 0; n < group_stride_; ++n) row[b * group_stride_ + n] += each[b];
+    const float by_this = each[b];
+    for (std::size_t n = 0; n < group_stride_; n += kLanes, ++lanes) {
+      for (float& value : lanes->values) value += by_this;
+    }
   }
 }
 

@@ -17,6 +17,25 @@ bool anyCounts(std::span<const std::uint64_t> bits, IgnoredSpheres ignored) {
   return any != 0;
 }
 
+/// Finds where the spheres are of those groups of an eight that are not free as a whole. Returns,
+/// as bits, the groups of which slices do not know that all spheres are free.
+unsigned findPlaces(const ChunkStep& step, std::size_t e, const SphereBatch& spheres,
+                    std::size_t eight) {
+  const std::uint32_t map = step.state.env(step.first + e).clearance_map;
+  const EightSpheres* groups = step.model.groups.data() + eight * kLanes;
+  EightPlaces* places = &step.chunk.places(eight * kLanes);
+  const unsigned unsure = step.chunk.groupBits(eight).unsure;
+  unsigned asked = unsure;
+  for (unsigned left = unsure; left != 0; left &= left - 1) {
+    const auto n = static_cast<std::size_t>(std::countr_zero(left));
+    const std::size_t first = (eight * kLanes + n) * kLanes;
+    step.model.slices.findPlaces(map, groups[n].radius_index, spheres.x + first, spheres.y + first,
+                                 spheres.z + first, places[n]);
+    if ((groups[n].spheres & ~places[n].free) == 0) asked ^= left & -left;
+  }
+  return asked;
+}
+
 bool bodyTouchesObjects(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
   const RestingObjects& objects = step.state.resting(n);
@@ -46,7 +65,6 @@ SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) noexcept {
 bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
   const Env& env = step.state.env(step.first + e);
   const Scene& scene = step.model.world->scenes()[env.scene];
-  const SphereBatch spheres = step.chunk.spheres(e);
   const std::span<const EightSpheres> groups = step.model.groups;
   std::uint64_t any = 0;
   for (std::size_t eight = 0; eight * kLanes < groups.size(); ++eight) {
@@ -55,17 +73,12 @@ bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
     const unsigned free = known.suited | step.model.clearance.surelyFree(
                                              env.clearance_map, eight, step.chunk.bounds(e, eight));
     known.unsure = ((1U << here) - 1) & ~free;
-    unsigned asked = known.unsure;
-    for (unsigned left = asked; left != 0; left &= left - 1) {
-      const std::size_t n = eight * kLanes + static_cast<std::size_t>(std::countr_zero(left));
-      EightPlaces& places = step.chunk.places(n);
-      step.model.slices.findPlaces(env.clearance_map, groups[n].radius_index,
-                                   spheres.x + n * kLanes, spheres.y + n * kLanes,
-                                   spheres.z + n * kLanes, places);
-      if ((groups[n].spheres & ~places.free) == 0) asked ^= left & -left;
+    std::uint64_t blocked = 0;
+    if (known.unsure != 0) {
+      const SphereBatch spheres = step.chunk.spheres(e);
+      const unsigned asked = findPlaces(step, e, spheres, eight);
+      if (asked != 0) blocked = blockedSpheres(scene, spheres, groups, eight * kLanes, asked);
     }
-    const std::uint64_t blocked =
-        asked == 0 ? 0 : blockedSpheres(scene, spheres, groups, eight * kLanes, asked);
     step.chunk.blockedBits()[eight] = blocked;
     any |= blocked;
   }

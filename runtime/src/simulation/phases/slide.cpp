@@ -95,20 +95,19 @@ class Glide {
   /// Adds the robot's spheres in all groups that are not free as a whole: those that are blocked,
   /// and those of which it is known where they are free.
   void addBody() {
-    for (std::size_t n = 0; n < step_.model.groups.size(); ++n) {
-      GroupBits& known = step_.chunk.groupBits(n / kLanes);
-      const unsigned bit = 1U << (n % kLanes);
-      if ((known.unsure & bit) == 0) continue;
-      const EightSpheres& group = step_.model.groups[n];
-      const EightPlaces& places = step_.chunk.places(n);
-      const std::uint64_t word = step_.chunk.blockedBits()[n / kLanes];
-      const auto blocked = static_cast<unsigned>(word >> (n % kLanes * kLanes) & 0xffU);
-      const unsigned added = group.spheres & (places.free | blocked);
-      if (added == group.spheres) known.suited |= bit;
-      if (moved_.x == 0 && moved_.z == 0) {
-        addEight(n, added, places);
-      } else {
-        addEight(n, added, placesBefore(n));
+    const bool is_begun = moved_.x != 0 || moved_.z != 0;
+    for (std::size_t eight = 0; eight * kLanes < step_.model.groups.size(); ++eight) {
+      GroupBits& known = step_.chunk.groupBits(eight);
+      const std::uint64_t word = step_.chunk.blockedBits()[eight];
+      for (unsigned left = known.unsure; left != 0; left &= left - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+        const std::size_t n = eight * kLanes + lane;
+        const unsigned spheres = step_.model.groups[n].spheres;
+        const EightPlaces& places = step_.chunk.places(n);
+        const auto blocked = static_cast<unsigned>(word >> (lane * kLanes) & 0xffU);
+        const unsigned added = spheres & (places.free | blocked);
+        if (added == spheres) known.suited |= left & -left;
+        addEight(n, added, is_begun ? placesBefore(n) : places);
       }
     }
   }
@@ -118,6 +117,7 @@ class Glide {
     const std::uint32_t radius = step_.model.groups[group].radius_index;
     const unsigned known = spheres & places.inside;
     if (known != 0) way_.add(step_.model.slices.rows(env_.clearance_map, radius), places, known);
+    if (known == spheres) return;
     const SphereBatch all = step_.chunk.spheres(e_);
     for (unsigned left = spheres & ~known; left != 0; left &= left - 1) {
       const std::size_t n = group * kLanes + static_cast<std::size_t>(std::countr_zero(left));

@@ -15,6 +15,10 @@ constexpr int kRowBits = 16;
 constexpr std::array<std::uint64_t, Surroundings::kWords> kCells{0x01ff'01ff'01ff'01ff,
                                                                  0x01ff'01ff'01ff'01ff, 0x01ff};
 
+bool isEmpty(const Surroundings& cells) {
+  return std::ranges::all_of(cells.rows, [](std::uint64_t rows) { return rows == 0; });
+}
+
 /// What one query takes.
 constexpr std::size_t kMostAsked = 64;
 
@@ -33,6 +37,7 @@ void answer(const ColumnGrid& grid, Question& question, Surroundings& free) {
   const std::size_t padded = paddedToLanes(question.count);
   for (std::size_t n = question.count; n < padded; ++n) {
     question.x[n] = question.x[question.count - 1];
+    question.y[n] = question.y[question.count - 1];
     question.z[n] = question.z[question.count - 1];
   }
   const auto eights = static_cast<unsigned>((std::uint64_t{1} << (padded / kLanes)) - 1);
@@ -68,6 +73,12 @@ Surroundings grown(const Surroundings& cells) {
 
 }  // namespace
 
+void ColumnWays::clear() noexcept {
+  spheres_.clear();
+  may_be_free_ = {kCells};
+  is_full_ = false;
+}
+
 void ColumnWays::add(const ColumnGrid& grid, const Vec3& center,
                      const std::optional<SurroundingRows>& around) noexcept {
   if (spheres_.size() == spheres_.capacity()) {
@@ -75,9 +86,15 @@ void ColumnWays::add(const ColumnGrid& grid, const Vec3& center,
     return;
   }
   Sphere sphere{&grid, center, {}, {}};
-  if (around) sphere.free = around->cells();
-  for (std::size_t n = 0; n < kCells.size(); ++n) sphere.free.rows[n] &= kCells[n];
-  sphere.asked = sphere.free;
+  if (around) {
+    sphere.free = around->cells();
+    sphere.asked = around->blockedCells();
+  }
+  for (std::size_t n = 0; n < kCells.size(); ++n) {
+    sphere.free.rows[n] &= kCells[n];
+    may_be_free_.rows[n] &= ~sphere.asked.rows[n];
+    sphere.asked.rows[n] |= sphere.free.rows[n];
+  }
   spheres_.push_back(sphere);
 }
 
@@ -86,7 +103,6 @@ void ColumnWays::ask(const Surroundings& cells, Sphere& sphere) noexcept {
   const float own_x = std::floor((sphere.center.x - layout.min_x) * layout.inverse_spacing) + 0.5F;
   const float own_z = std::floor((sphere.center.z - layout.min_z) * layout.inverse_spacing) + 0.5F;
   Question question;
-  question.y.fill(sphere.center.y);
   for (std::size_t n = 0; n < kCells.size(); ++n) {
     std::uint64_t left = cells.rows[n] & ~sphere.asked.rows[n];
     sphere.asked.rows[n] |= left;
@@ -96,6 +112,7 @@ void ColumnWays::ask(const Surroundings& cells, Sphere& sphere) noexcept {
       const int z = bit / kRowBits - kCellsAround;
       question.x[question.count] = layout.min_x + (own_x + static_cast<float>(x)) * layout.spacing;
       question.z[question.count] = layout.min_z + (own_z + static_cast<float>(z)) * layout.spacing;
+      question.y[question.count] = sphere.center.y;
       question.bits[question.count++] = bit;
       if (question.count == kMostAsked) answer(*sphere.grid, question, sphere.free);
     }
@@ -105,15 +122,14 @@ void ColumnWays::ask(const Surroundings& cells, Sphere& sphere) noexcept {
 
 bool ColumnWays::addTo(WayOut& way) noexcept {
   if (is_full_) return false;
-  Surroundings in_all{kCells};
+  Surroundings in_all = may_be_free_;
+  if (isEmpty(in_all)) return false;
   for (Sphere& sphere : spheres_) {
     ask(in_all, sphere);
-    std::uint64_t any = 0;
     for (std::size_t n = 0; n < kCells.size(); ++n) {
       in_all.rows[n] &= sphere.free.rows[n];
-      any |= in_all.rows[n];
     }
-    if (any == 0) return false;
+    if (isEmpty(in_all)) return false;
   }
   const Surroundings near = grown(in_all);
   for (Sphere& sphere : spheres_) {

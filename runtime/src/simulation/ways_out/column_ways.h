@@ -13,18 +13,18 @@ namespace galactic::simulation {
 /// Finds in which cells around them spheres are free by asking the columns, where slices do not say
 /// so: slices lose what lies closely above or below something, and with it ways out.
 ///
-/// Few columns are asked. First only those of cells that all spheres so far leave free; where some
-/// cells remain, those next to them too, which decide how much of a move can be taken back. The
-/// order of spheres changes nothing.
+/// Few columns are asked: none of which slices know that they are blocked, and first only those of
+/// cells that all spheres so far leave free; where some cells remain, those next to them too, which
+/// decide how much of a move can be taken back. The order of spheres changes nothing.
 class ColumnWays {
  public:
   /// Room for that many spheres.
-  explicit ColumnWays(std::size_t most_spheres) { spheres_.reserve(most_spheres); }
-
-  void clear() noexcept {
-    spheres_.clear();
-    is_full_ = false;
+  explicit ColumnWays(std::size_t most_spheres) {
+    spheres_.reserve(most_spheres);
+    clear();
   }
+
+  void clear() noexcept;
 
   /// Adds a sphere of a grid. `around`: what slices know.
   void add(const ColumnGrid& grid, const Vec3& center,
@@ -46,6 +46,8 @@ class ColumnWays {
   static void ask(const Surroundings& cells, Sphere& sphere) noexcept;
 
   std::vector<Sphere> spheres_;
+  /// The cells that slices call blocked for no sphere.
+  Surroundings may_be_free_;
   bool is_full_ = false;
 };
 

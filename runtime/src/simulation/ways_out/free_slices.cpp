@@ -17,21 +17,38 @@ constexpr float kSlack = 1e-3F;
 /// Rows of zeros behind those of a slice: what is outside of the grid, and what is read unused.
 constexpr std::int32_t kRowsBehind = 8;
 
-/// The slices in which a column is free, as bits.
-std::uint64_t freeSlicesOf(const ColumnGrid& grid, std::uint32_t i, std::uint32_t k, float lowest,
-                           float thickness, float count) {
+/// Slices of one column, as bits.
+struct ColumnSlices {
+  /// Free at all heights; blocked at all heights.
+  std::uint64_t free = 0;
+  std::uint64_t blocked = 0;
+};
+
+/// The slices from `from` up to `to`, counted from the lowest, of `count`.
+std::uint64_t slicesWithin(float from, float to, float count) {
+  const auto first = static_cast<unsigned>(std::clamp(from, 0.0F, count));
+  const auto end = static_cast<unsigned>(std::clamp(to, 0.0F, count));
+  std::uint64_t bits = 0;
+  for (unsigned slice = first; slice < end; ++slice) bits |= std::uint64_t{1} << slice;
+  return bits;
+}
+
+ColumnSlices slicesOf(const ColumnGrid& grid, std::uint32_t i, std::uint32_t k, float lowest,
+                      float thickness, float count) {
   constexpr std::size_t kMostSpans = 16;
   std::array<Span, kMostSpans> spans;
-  const std::size_t found = std::min(grid.spans(i, k, spans), kMostSpans);
-  std::uint64_t bits = 0;
-  for (std::size_t n = 0; n < found; ++n) {
-    const float from = std::ceil((spans[n].lo + kSlack - lowest) / thickness);
-    const float to = std::floor((spans[n].hi - kSlack - lowest) / thickness);
-    const auto first = static_cast<unsigned>(std::clamp(from, 0.0F, count));
-    const auto end = static_cast<unsigned>(std::clamp(to, 0.0F, count));
-    for (unsigned slice = first; slice < end; ++slice) bits |= std::uint64_t{1} << slice;
+  const std::size_t found = grid.spans(i, k, spans);
+  std::uint64_t free = 0;
+  std::uint64_t touched = 0;
+  for (std::size_t n = 0; n < std::min(found, kMostSpans); ++n) {
+    const auto slice_at = [&](float height) { return (height - lowest) / thickness; };
+    free |= slicesWithin(std::ceil(slice_at(spans[n].lo + kSlack)),
+                         std::floor(slice_at(spans[n].hi - kSlack)), count);
+    touched |= slicesWithin(std::floor(slice_at(spans[n].lo - kSlack)),
+                            std::ceil(slice_at(spans[n].hi + kSlack)), count);
   }
-  return bits;
+  // Of more spans than there is room for, those left out may be free anywhere.
+  return {free, found > kMostSpans ? 0 : ~touched & slicesWithin(0, count, count)};
 }
 
 std::int32_t stripCount(const ColumnGrid& grid) {
@@ -66,6 +83,7 @@ std::uint32_t FreeSlices::add(const Scene& scene, float floor, const HeightsOver
                                        static_cast<std::size_t>(layout.slice_count) *
                                        static_cast<std::size_t>(layout.row_count);
     rows_.resize(rows_.size() + rows_of_slices);
+    blocked_rows_.resize(rows_.size());
     fill(grid, thickness, layout);
     layouts_.push_back(layout);
   }
@@ -77,30 +95,35 @@ void FreeSlices::fill(const ColumnGrid& grid, float thickness, const SliceLayout
   const auto slices = static_cast<std::size_t>(layout.slice_count);
   const std::size_t strip_rows = slices * row_count;
   const auto strips = static_cast<std::size_t>(stripCount(grid));
-  std::array<std::uint64_t, kStripColumns> free;
+  std::array<ColumnSlices, kStripColumns> columns;
+  // Those of the columns whose slice `n` is one of `which`.
+  const auto columns_with = [&](std::uint64_t ColumnSlices::*which, std::size_t n) {
+    unsigned with = 0;
+    for (unsigned c = 0; c < kStripColumns; ++c) {
+      with |= static_cast<unsigned>(columns[c].*which >> n & 1U) << c;
+    }
+    return with;
+  };
   for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
-    std::uint16_t* row = rows_.data() + layout.first + k + kCellsAround;
+    const std::size_t row = layout.first + k + kCellsAround;
     // A strip begins kCellsAround columns before a multiple of kStripColumns; its second half is
     // the first one of the next.
     for (std::size_t strip = 0; strip <= strips; ++strip) {
-      std::uint64_t any = 0;
       for (std::uint32_t n = 0; n < kStripColumns; ++n) {
         const auto i = static_cast<std::uint32_t>(strip * kStripColumns) + n - kCellsAround;
-        free[n] = i < grid.columnsX()
-                      ? freeSlicesOf(grid, i, k, layout.lowest, thickness, layout.slices)
-                      : 0;
-        any |= free[n];
+        columns[n] = i < grid.columnsX()
+                         ? slicesOf(grid, i, k, layout.lowest, thickness, layout.slices)
+                         : ColumnSlices{};
       }
-      for (; any != 0; any &= any - 1) {
-        const auto slice = static_cast<std::size_t>(__builtin_ctzll(any));
-        unsigned columns = 0;
-        for (unsigned n = 0; n < kStripColumns; ++n) {
-          columns |= static_cast<unsigned>(free[n] >> slice & 1U) << n;
-        }
-        std::uint16_t* at = row + slice * row_count;
-        const auto second = static_cast<std::uint16_t>(columns << kStripColumns);
-        if (strip < strips) at[strip * strip_rows] |= static_cast<std::uint16_t>(columns);
-        if (strip > 0) at[(strip - 1) * strip_rows] |= second;
+      for (std::size_t slice = 0; slice < slices; ++slice) {
+        const auto write = [&](std::vector<std::uint16_t>& rows, unsigned bits) {
+          std::uint16_t* at = rows.data() + row + slice * row_count;
+          const auto second = static_cast<std::uint16_t>(bits << kStripColumns);
+          if (strip < strips) at[strip * strip_rows] |= static_cast<std::uint16_t>(bits);
+          if (strip > 0) at[(strip - 1) * strip_rows] |= second;
+        };
+        write(rows_, columns_with(&ColumnSlices::free, slice));
+        write(blocked_rows_, columns_with(&ColumnSlices::blocked, slice));
       }
     }
   }
@@ -164,7 +187,9 @@ std::optional<SurroundingRows> FreeSlices::around(std::uint32_t map, std::uint32
   const std::int32_t of_slice =
       i / kColumns * layout.slice_count + static_cast<std::int32_t>(height);
   const std::int32_t row = of_slice * layout.row_count + static_cast<std::int32_t>(z);
-  return SurroundingRows{rows_.data() + layout.first + row, static_cast<unsigned>(i % kColumns)};
+  const std::size_t first = layout.first + static_cast<std::size_t>(row);
+  return SurroundingRows{rows_.data() + first, blocked_rows_.data() + first,
+                         static_cast<unsigned>(i % kColumns)};
 }
 
 Surroundings surroundingsOf(const ColumnGrid& grid, const Vec3& center) noexcept {

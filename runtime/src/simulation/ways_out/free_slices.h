@@ -17,8 +17,8 @@ namespace galactic::simulation {
 // The heights over a floor are cut into slices. For each slice and each radius there is one bit for
 // each column: whether a center is free at all heights of the slice. The bits lie in strips of
 // sixteen columns along X that overlap by eight, row after row along Z: the 9 x 9 cells around any
-// cell are nine words of sixteen bits, one after the other. A bit only ever says "surely free";
-// where it does not, the column may be asked.
+// cell are nine words of sixteen bits, one after the other. A bit only ever says "surely free", and
+// another one, apart, "surely blocked"; where neither does, the column may be asked.
 
 /// Bits of the 9 x 9 cells around a sphere's own, rows along Z of sixteen bits, of which nine
 /// count: set where the sphere would be free at its height.
@@ -50,19 +50,25 @@ struct Surroundings {
 /// The same as it lies in memory: rows whose first bits do not count.
 struct SurroundingRows {
   const std::uint16_t* first = nullptr;
+  const std::uint16_t* first_blocked = nullptr;
   unsigned column = 0;
 
-  [[nodiscard]] Surroundings cells() const {
-    Surroundings found;
-    __builtin_memcpy(found.rows.data(), first, sizeof(found.rows));
-    for (std::uint64_t& rows : found.rows) rows >>= column;
-    return found;
-  }
+  [[nodiscard]] Surroundings cells() const { return cellsFrom(first); }
+  /// Those that are surely blocked.
+  [[nodiscard]] Surroundings blockedCells() const { return cellsFrom(first_blocked); }
   /// As that of Surroundings.
   [[nodiscard]] bool isFree(int x, int z) const {
     return (static_cast<unsigned>(first[z + kCellsAround]) >>
                 (column + static_cast<unsigned>(x + kCellsAround)) &
             1U) != 0;
+  }
+
+ private:
+  [[nodiscard]] Surroundings cellsFrom(const std::uint16_t* row) const {
+    Surroundings found;
+    __builtin_memcpy(found.rows.data(), row, sizeof(found.rows));
+    for (std::uint64_t& rows : found.rows) rows >>= column;
+    return found;
   }
 };
 
@@ -87,7 +93,7 @@ class FreeSlices {
   [[nodiscard]] std::optional<SurroundingRows> around(std::uint32_t map, std::uint32_t radius,
                                                       const Vec3& center) const noexcept;
 
-  [[nodiscard]] std::size_t bytes() const { return rows_.size() * sizeof(rows_[0]); }
+  [[nodiscard]] std::size_t bytes() const { return 2 * rows_.size() * sizeof(rows_[0]); }
 
  private:
   void fill(const ColumnGrid& grid, float thickness, const SliceLayout& layout);
@@ -96,6 +102,8 @@ class FreeSlices {
   /// Shape: maps x radii.
   std::vector<SliceLayout> layouts_;
   std::vector<std::uint16_t> rows_;
+  /// As many, of what is surely blocked; apart, because few ask.
+  std::vector<std::uint16_t> blocked_rows_;
 };
 
 /// The same at any height, from the columns themselves: exact, and slow.
