@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "galactic/bake/parallel_for.h"
+#include "layout/morton.h"
 #include "render/mesh_optimizer.h"
 
 namespace galactic::bake {
@@ -151,14 +152,6 @@ std::optional<std::vector<LatticeCluster>> cutOnLattice(std::span<const Finished
   return clusters;
 }
 
-/// The bits of `value`, two zeros before each (Morton 1966).
-std::uint64_t spreadBits(std::uint64_t value) {
-  std::uint64_t spread = 0;
-  constexpr unsigned kBits = 21;
-  for (unsigned bit = 0; bit < kBits; ++bit) spread |= (value >> bit & 1U) << (3 * bit);
-  return spread;
-}
-
 /// Neighbors in space become neighbors in the list.
 void sortInSpace(std::vector<LatticeCluster>& clusters) {
   if (clusters.empty()) return;
@@ -186,11 +179,10 @@ void sortInSpace(std::vector<LatticeCluster>& clusters) {
   std::vector<std::pair<std::uint64_t, std::size_t>> order;
   order.reserve(clusters.size());
   for (const auto& center : centers) {
-    std::uint64_t key = 0;
-    for (std::size_t n = 0; n < 3; ++n) {
-      key |= spreadBits(static_cast<std::uint64_t>(center[n] - low[n]) >> shift) << n;
-    }
-    order.emplace_back(key, order.size());
+    const auto cell = [&](std::size_t n) {
+      return static_cast<std::uint64_t>(center[n] - low[n]) >> shift;
+    };
+    order.emplace_back(mortonPlace(cell(0), cell(1), cell(2)), order.size());
   }
   std::sort(order.begin(), order.end());
   std::vector<LatticeCluster> sorted;

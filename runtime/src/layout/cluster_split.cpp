@@ -6,22 +6,13 @@
 #include <numeric>
 #include <utility>
 
+#include "layout/morton.h"
+
 namespace galactic::render {
 namespace {
 
 constexpr std::uint8_t kNotIn = 255;
 static_assert(kMostInCluster < kNotIn);
-
-/// The lowest 21 bits of `value`, two zeros after each.
-std::uint64_t spread(std::uint64_t value) {
-  value &= 0x1FFFFFU;
-  value = (value | value << 32U) & 0x1F00000000FFFFU;
-  value = (value | value << 16U) & 0x1F0000FF0000FFU;
-  value = (value | value << 8U) & 0x100F00F00F00F00FU;
-  value = (value | value << 4U) & 0x10C30C30C30C30C3U;
-  value = (value | value << 2U) & 0x1249249249249249U;
-  return value;
-}
 
 /// Numbers places along a Morton curve through the cube about a surface.
 class MortonCurve {
@@ -48,9 +39,9 @@ class MortonCurve {
       sum[2] += static_cast<double>(p.z) - static_cast<double>(low_.z);
     }
     const auto cell = [&](double of_three) {
-      return spread(static_cast<std::uint64_t>(of_three / 3 * scale_));
+      return static_cast<std::uint64_t>(of_three / 3 * scale_);
     };
-    return cell(sum[0]) | cell(sum[1]) << 1U | cell(sum[2]) << 2U;
+    return mortonPlace(cell(sum[0]), cell(sum[1]), cell(sum[2]));
   }
 
  private:
