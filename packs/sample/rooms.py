@@ -61,7 +61,7 @@ def _dining(room, shared):
     furniture.table(table)
     chair = furniture.chair()
     for i, (dx, dz, turn) in enumerate(((-0.387, -0.557, 3.0), (0.393, -0.563, -4.0),
-                                        (-0.373, 0.573, 180.0), (0.541, 0.753, 207.0))):
+                                        (-0.373, 0.573, 180.0), (0.443, 0.623, 197.0))):
         room.add(f"chair_{i}", chair, at=(x + dx, 0.0, z + dz), rotation=yaw(turn))
     top = L.TABLE_SIZE[1]
     bowl = room.add("fruit_bowl", shared["bowl"], at=(x - 0.237, top, z + 0.043))
@@ -92,7 +92,7 @@ def _room_a(room, shared):
     room.add("coffee_table", shared["coffee_table"],
              at=(L.COFFEE_TABLE_AT[0], L.RUG_THICKNESS, L.COFFEE_TABLE_AT[1]))
     furniture.sofa(room.add("sofa", at=(L.SOFA_AT[0], 0.0, L.SOFA_AT[1]), rotation=yaw(180)))
-    room.add("armchair", shared["armchair"], at=(-0.637, 0.0, 1.223), rotation=yaw(-107.0))
+    room.add("armchair", shared["armchair"], at=(-0.437, 0.0, 1.117), rotation=yaw(-107.0))
     shelf = room.add("bookshelf", at=(L.SHELF_AT[0], 0.0, L.SHELF_AT[1]), rotation=yaw(-90))
     furniture.bookshelf(shelf)
     _books(shelf, shared["books"])
