@@ -104,6 +104,35 @@ TEST(ExchangeSearch, SettlingNeverMakesTheErrorLarger) {
   EXPECT_FALSE(search.grow()) << "there are no candidates";
 }
 
+/// Points in clumps, what their gaps cost, and the blocks that an exchange search makes of them.
+struct RandomPoints {
+  explicit RandomPoints(std::mt19937& random, const GapCost& cost) {
+    const auto uniform = [&] { return static_cast<float>(random()) * 0x1p-32F; };
+    const std::size_t clumps = 1 + random() % 5;
+    for (std::size_t clump = 0; clump < clumps; ++clump) {
+      const Vec3 middle{uniform(), uniform(), uniform()};
+      constexpr float kSpread = 0.1F;
+      constexpr float kWidestNext = 0.3F;
+      for (std::size_t lane = 0; lane < kGainLanes; ++lane) {
+        x.push_back(middle.x + kSpread * (uniform() - 0.5F));
+        y.push_back(middle.y + kSpread * (uniform() - 0.5F));
+        z.push_back(middle.z + kSpread * (uniform() - 0.5F));
+        const double next_gap = static_cast<double>(kWidestNext * uniform());
+        next.push_back(static_cast<float>(costOfGap(cost, next_gap)));
+        nearest.push_back(next.back() * uniform());
+      }
+      blocks.push_back({middle.x, middle.y, middle.z, kSpread + kWidestNext});
+    }
+  }
+
+  [[nodiscard]] CostedPoints view() const {
+    return {x.data(), y.data(), z.data(), nearest.data(), next.data(), blocks.data(), x.size()};
+  }
+
+  std::vector<float> x, y, z, nearest, next;
+  std::vector<PointBlock> blocks;
+};
+
 TEST(GapGain, IsTheSameInAllVersionsAndAsDefined) {
   constexpr std::uint32_t kSeed = 9;
   std::printf("seed %u\n", kSeed);
@@ -112,28 +141,25 @@ TEST(GapGain, IsTheSameInAllVersionsAndAsDefined) {
   const GapCost cost{0.04F, 400.0F};
   const GapGainOf fastest = fastestGapGain();
   int gains = 0;
+  int out_of_reach = 0;
   for (int round = 0; round < 200; ++round) {
-    std::vector<std::vector<float>> columns(5);
-    const std::size_t count = kGainLanes * (1 + random() % 5);
-    for (std::size_t at = 0; at < count; ++at) {
-      for (std::size_t n = 0; n < 3; ++n) columns[n].push_back(uniform());
-      columns[3].push_back(0.3F * uniform());
-      columns[4].push_back(columns[3].back() + 0.3F * uniform());
-    }
-    const CostedPoints points{columns[0].data(), columns[1].data(), columns[2].data(),
-                              columns[3].data(), columns[4].data(), count};
+    const RandomPoints points(random, cost);
     const Sphere sphere{uniform(), uniform(), uniform(), 0.2F * uniform()};
+    const Vec3d center = widen({sphere.x, sphere.y, sphere.z});
     double staying = 0;
     double gone = 0;
-    for (std::size_t at = 0; at < count; ++at) {
-      const Vec3d p = widen({columns[0][at], columns[1][at], columns[2][at]});
-      const double distance = norm(p - widen({sphere.x, sphere.y, sphere.z}));
+    for (std::size_t at = 0; at < points.x.size(); ++at) {
+      const double distance = norm(widen({points.x[at], points.y[at], points.z[at]}) - center);
       const double now = costOfGap(cost, distance - static_cast<double>(sphere.radius));
-      staying += std::max(0.0, static_cast<double>(columns[3][at]) - now);
-      gone += std::max(0.0, static_cast<double>(columns[4][at]) - now);
+      staying += std::max(0.0, static_cast<double>(points.nearest[at]) - now);
+      gone += std::max(0.0, static_cast<double>(points.next[at]) - now);
     }
-    const GapGain portable = gapGainPortable(points, cost, sphere);
-    const GapGain fast = fastest(points, cost, sphere);
+    for (const PointBlock& block : points.blocks) {
+      const double distance = norm(widen({block.x, block.y, block.z}) - center);
+      if (distance > static_cast<double>(block.reach + sphere.radius)) ++out_of_reach;
+    }
+    const GapGain portable = gapGainPortable(points.view(), cost, sphere);
+    const GapGain fast = fastest(points.view(), cost, sphere);
     EXPECT_EQ(portable.staying, fast.staying);
     EXPECT_EQ(portable.gone, fast.gone);
     constexpr double kRounding = 1e-4;
@@ -143,6 +169,7 @@ TEST(GapGain, IsTheSameInAllVersionsAndAsDefined) {
   }
   EXPECT_GT(gains, 20);
   EXPECT_LT(gains, 180);
+  EXPECT_GT(out_of_reach, 50);
 }
 
 TEST(DistanceGrid, IsNearTheDistanceItself) {

@@ -1,10 +1,14 @@
 #include "sphere_set/curve/exchange_search.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 #include "galactic/bake/parallel_for.h"
+#include "layout/morton.h"
 #include "sphere_set/cover/candidates.h"
 
 namespace galactic::bake::sphere_set {
@@ -21,8 +25,12 @@ constexpr double kFurthestOutside = 0.25;
 constexpr double kBelowHighest = 1e-6;
 /// A sphere may protrude more where gaps are wide: by this power of what the widest is above eps.
 constexpr double kProtrusionGrowth = 0.4;
+/// More than rounding takes from what a sphere reaches, meters.
+constexpr double kReachRounding = 1e-5;
 constexpr std::size_t kChunk = 256;
 constexpr std::size_t kMostExchanges = 12;
+/// One candidate of so many is looked at again after an exchange.
+constexpr std::size_t kPromisingShare = 4;
 /// An exchange that makes the error less by a smaller share is not worth a pass.
 constexpr double kWorthwhile = 1e-3;
 /// What it may cost, as a share of the error, to exchange a sphere that protrudes too much by now.
@@ -48,6 +56,25 @@ std::array<Vec3d, kDirections> evenDirections() {
 Sphere narrowed(const Vec3d& center, double radius) {
   const Vec3 c = narrow(center);
   return {c.x, c.y, c.z, static_cast<float>(radius)};
+}
+
+/// The points along a Morton curve.
+std::vector<Vec3d> neighborsTogether(std::span<const Vec3d> points) {
+  Box box;
+  for (const Vec3d& p : points) box.grow(p);
+  const Vec3d size = box.size();
+  constexpr double kCubes = 1U << 10U;
+  const double scale = kCubes / std::max({size.x, size.y, size.z, 1e-6});
+  const auto cube = [&](double from) { return static_cast<std::uint64_t>(from * scale); };
+  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  for (const Vec3d& p : points) {
+    const Vec3d at = p - box.min;
+    order.emplace_back(mortonPlace(cube(at.x), cube(at.y), cube(at.z)), order.size());
+  }
+  std::ranges::sort(order);
+  std::vector<Vec3d> sorted;
+  for (const auto& [place, at] : order) sorted.push_back(points[at]);
+  return sorted;
 }
 
 }  // namespace
@@ -78,7 +105,11 @@ ExchangeSearch::ExchangeSearch(const FitTask& task, const DistanceGrid& grid,
 ExchangeSearch::ExchangeSearch(const FitTask& task, const DistanceGrid& grid,
                                std::span<const Vec3d> points, const ErrorWeights& weights,
                                std::span<const Candidate> spheres)
-    : task_(task), grid_(grid), points_(points), weights_(weights), random_(kSeed) {
+    : task_(task),
+      grid_(grid),
+      points_(neighborsTogether(points)),
+      weights_(weights),
+      random_(kSeed) {
   for (const Candidate& sphere : spheres) {
     chosen_.push_back({sphere, protrusionCost(sphere.center, sphere.radius_index)});
   }
@@ -102,6 +133,12 @@ void ExchangeSearch::findCandidates() {
       candidates_.push_back({found, protrusionCost(found.center, radius_index)});
     }
   }
+}
+
+std::vector<std::uint32_t> ExchangeSearch::everyCandidate() const {
+  std::vector<std::uint32_t> candidates(candidates_.size());
+  std::iota(candidates.begin(), candidates.end(), 0U);
+  return candidates;
 }
 
 std::vector<Candidate> ExchangeSearch::candidatesOf(std::uint32_t radius_index) const {
@@ -167,6 +204,7 @@ void ExchangeSearch::assign() {
   for (auto* column : {&x_, &y_, &z_, &nearest_, &next_}) column->clear();
   std::vector<Place> places;
   std::vector<std::vector<std::uint32_t>> members(cells_.size());
+  blocks_.clear();
   widest_ = 0;
   for (std::uint32_t at = 0; at < points_.size(); ++at) {
     places.push_back(placeOf(points_[at]));
@@ -191,6 +229,10 @@ void ExchangeSearch::assign() {
 void ExchangeSearch::fillCell(Cell& cell, const std::vector<std::uint32_t>& members,
                               const std::vector<Place>& places) {
   cell.first = x_.size();
+  cell.first_block = blocks_.size();
+  for (std::size_t at = 0; at < members.size(); at += kGainLanes) {
+    addBlock(std::span(members).subspan(at, std::min(kGainLanes, members.size() - at)), places);
+  }
   Box box;
   for (const std::uint32_t at : members) {
     const double nearest = costOfGap(weights_.gap, places[at].gap);
@@ -204,7 +246,7 @@ void ExchangeSearch::fillCell(Cell& cell, const std::vector<std::uint32_t>& memb
     next_.push_back(static_cast<float>(next));
     sum_ += nearest;
     cell.loss += next - nearest;
-    cell.highest_next = std::max(cell.highest_next, next);
+    cell.widest_next = std::max(cell.widest_next, places[at].next_gap);
   }
   while (x_.size() % kGainLanes != 0) {
     for (auto* column : {&x_, &y_, &z_, &nearest_, &next_}) column->push_back(0);
@@ -215,9 +257,24 @@ void ExchangeSearch::fillCell(Cell& cell, const std::vector<std::uint32_t>& memb
   cell.radius = norm(box.size()) / 2;
 }
 
+void ExchangeSearch::addBlock(std::span<const std::uint32_t> members,
+                              const std::vector<Place>& places) {
+  Box box;
+  double widest_next = 0;
+  for (const std::uint32_t at : members) {
+    box.grow(points_[at]);
+    widest_next = std::max(widest_next, places[at].next_gap);
+  }
+  const Vec3 middle = narrow((box.min + box.max) * 0.5);
+  const double reach = norm(box.size()) / 2 + widest_next + kReachRounding;
+  blocks_.push_back({middle.x, middle.y, middle.z, static_cast<float>(reach)});
+}
+
 CostedPoints ExchangeSearch::pointsOf(const Cell& cell) const {
-  return {&x_[cell.first],       &y_[cell.first],    &z_[cell.first],
-          &nearest_[cell.first], &next_[cell.first], cell.count};
+  return {&x_[cell.first],    &y_[cell.first],
+          &z_[cell.first],    &nearest_[cell.first],
+          &next_[cell.first], &blocks_[cell.first_block],
+          cell.count};
 }
 
 ExchangeSearch::Offers ExchangeSearch::offersOf(std::uint32_t candidate) const {
@@ -234,7 +291,7 @@ ExchangeSearch::Offers ExchangeSearch::offersOf(std::uint32_t candidate) const {
     const Cell& cell = cells_[rank];
     GapGain gain;
     const double least = norm(offered.sphere.center - cell.middle) - cell.radius - radius;
-    if (cell.count > 0 && costOfGap(weights_.gap, least) < cell.highest_next) {
+    if (cell.count > 0 && least < cell.widest_next) {
       gain = gain_of_(pointsOf(cell), weights_.gap, ball);
     }
     added += static_cast<double>(gain.staying);
@@ -248,44 +305,69 @@ ExchangeSearch::Offers ExchangeSearch::offersOf(std::uint32_t candidate) const {
   return {{added, candidate, leaves}, {added + instead, candidate, leaves}};
 }
 
-void ExchangeSearch::Offers::include(const Offers& other) {
-  if (other.added.gain > added.gain) added = other.added;
-  if (other.exchanged.gain > exchanged.gain) exchanged = other.exchanged;
+std::vector<ExchangeSearch::Offers> ExchangeSearch::offersOf(
+    const std::vector<std::uint32_t>& candidates) const {
+  std::vector<Offers> offers(candidates.size());
+  parallelFor(task_.jobs, (offers.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+    const std::size_t end = std::min(offers.size(), (chunk + 1) * kChunk);
+    for (std::size_t at = chunk * kChunk; at < end; ++at) offers[at] = offersOf(candidates[at]);
+  });
+  return offers;
 }
 
-ExchangeSearch::Offers ExchangeSearch::bestOffers() const {
-  const Offers none{{-HUGE_VAL, 0, 0}, {-HUGE_VAL, 0, 0}};
-  std::vector<Offers> parts((candidates_.size() + kChunk - 1) / kChunk, none);
-  parallelFor(task_.jobs, parts.size(), [&](std::size_t chunk) {
-    const std::size_t end = std::min(candidates_.size(), (chunk + 1) * kChunk);
-    for (std::size_t at = chunk * kChunk; at < end; ++at) {
-      parts[chunk].include(offersOf(static_cast<std::uint32_t>(at)));
-    }
-  });
-  Offers best = none;
-  for (const Offers& part : parts) best.include(part);
+ExchangeSearch::Offers ExchangeSearch::best(const std::vector<Offers>& offers) {
+  Offers best = offers.front();
+  for (const Offers& offer : offers) {
+    if (offer.added.gain > best.added.gain) best.added = offer.added;
+    if (offer.exchanged.gain > best.exchanged.gain) best.exchanged = offer.exchanged;
+  }
   return best;
 }
 
+std::vector<std::uint32_t> ExchangeSearch::promising(std::vector<Offers> offers) {
+  std::vector<std::uint32_t> candidates;
+  const auto keep = [&](Offer Offers::*which) {
+    const std::size_t count = 1 + offers.size() / kPromisingShare;
+    const auto end = offers.begin() + static_cast<std::ptrdiff_t>(std::min(count, offers.size()));
+    std::nth_element(offers.begin(), end - 1, offers.end(), [&](const Offers& a, const Offers& b) {
+      const Offer& one = a.*which;
+      const Offer& other = b.*which;
+      return one.gain != other.gain ? one.gain > other.gain : one.candidate < other.candidate;
+    });
+    for (auto at = offers.begin(); at != end; ++at) candidates.push_back((*at.*which).candidate);
+  };
+  keep(&Offers::added);
+  keep(&Offers::exchanged);
+  std::ranges::sort(candidates);
+  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+  return candidates;
+}
+
 void ExchangeSearch::exchange() {
-  Offers best = bestOffers();
+  std::vector<Offers> offers = offersOf(everyCandidate());
+  next_added_ = best(offers).added.candidate;
   // One sphere stands where it does best already.
-  for (std::size_t n = 0; n < kMostExchanges && chosen_.size() > 1; ++n) {
-    if (!(best.exchanged.gain > kWorthwhile * sum_)) break;
-    chosen_[best.exchanged.leaves] = candidates_[best.exchanged.candidate];
+  if (chosen_.size() < 2) return;
+  // What one exchange makes good was not among the worst before.
+  std::vector<std::uint32_t> candidates;
+  for (std::size_t n = 0; n < kMostExchanges; ++n) {
+    const Offer exchanged = best(offers).exchanged;
+    if (!(exchanged.gain > kWorthwhile * sum_)) return;
+    if (candidates.empty()) candidates = promising(offers);
+    chosen_[exchanged.leaves] = candidates_[exchanged.candidate];
     assign();
-    best = bestOffers();
+    offers = offersOf(candidates);
+    next_added_ = best(offers).added.candidate;
   }
-  next_added_ = best.added.candidate;
 }
 
 bool ExchangeSearch::grow() {
   if (candidates_.empty()) return false;
   // Small moves since the last pass hardly change which candidate is best.
   if (chosen_.empty() || !(offersOf(next_added_).added.gain > 0)) {
-    const Offer best = bestOffers().added;
-    if (!(best.gain > 0)) return false;
-    next_added_ = best.candidate;
+    const Offer added = best(offersOf(everyCandidate())).added;
+    if (!(added.gain > 0)) return false;
+    next_added_ = added.candidate;
   }
   chosen_.push_back(candidates_[next_added_]);
   assign();

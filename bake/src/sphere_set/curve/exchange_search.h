@@ -30,7 +30,7 @@ class ExchangeSearch {
  public:
   /// Candidates are the nodes of `grid` where a sphere protrudes no further than the task's tau, or
   /// kLooserTau of it while gaps are wide. The surface is
-  /// known at `points`, spread evenly. Keeps references to the task, the grid and the points.
+  /// known at `points`, spread evenly. Keeps references to the task and the grid.
   ExchangeSearch(const FitTask& task, const DistanceGrid& grid, std::span<const Vec3d> points,
                  const ErrorWeights& weights);
   /// The same for spheres that are given and only settle: there are no candidates.
@@ -72,19 +72,18 @@ class ExchangeSearch {
   struct Offers {
     Offer added;
     Offer exchanged;
-
-    void include(const Offers& other);
   };
 
   /// The points that are nearest to one chosen sphere.
   struct Cell {
     std::size_t first = 0;
     std::size_t count = 0;
+    std::size_t first_block = 0;
     /// A ball around them.
     Vec3d middle;
     double radius = 0;
-    /// The most that one of them would cost without the sphere.
-    double highest_next = 0;
+    /// The widest gap that one of them would have without the sphere.
+    double widest_next = 0;
     /// What the sum of costs grows by when the sphere goes.
     double loss = 0;
   };
@@ -107,8 +106,14 @@ class ExchangeSearch {
   [[nodiscard]] Place placeOf(const Vec3d& point) const;
   void fillCell(Cell& cell, const std::vector<std::uint32_t>& members,
                 const std::vector<Place>& places);
+  /// Adds the block of some members of a cell.
+  void addBlock(std::span<const std::uint32_t> members, const std::vector<Place>& places);
   [[nodiscard]] Offers offersOf(std::uint32_t candidate) const;
-  [[nodiscard]] Offers bestOffers() const;
+  [[nodiscard]] std::vector<Offers> offersOf(const std::vector<std::uint32_t>& candidates) const;
+  [[nodiscard]] static Offers best(const std::vector<Offers>& offers);
+  /// The candidates that are best to add and to exchange.
+  [[nodiscard]] static std::vector<std::uint32_t> promising(std::vector<Offers> offers);
+  [[nodiscard]] std::vector<std::uint32_t> everyCandidate() const;
   void exchange();
   void settleOne(std::size_t rank, double step);
   /// Of one sphere where it would stand, up to what does not depend on that.
@@ -118,7 +123,8 @@ class ExchangeSearch {
 
   const FitTask& task_;
   const DistanceGrid& grid_;
-  std::span<const Vec3d> points_;
+  /// Neighbors close in the list.
+  std::vector<Vec3d> points_;
   ErrorWeights weights_;
   GapGainOf gain_of_ = fastestGapGain();
   Random random_;
@@ -134,6 +140,7 @@ class ExchangeSearch {
   std::vector<float> z_;
   std::vector<float> nearest_;
   std::vector<float> next_;
+  std::vector<PointBlock> blocks_;
   /// Sum of what points and spheres cost.
   double sum_ = 0;
   double widest_ = 0;

@@ -5,19 +5,31 @@
 
 namespace galactic::bake::sphere_set {
 
+inline constexpr std::size_t kGainLanes = 8;
+
+/// A ball around kGainLanes points, and how near a sphere has to come to lessen what any of them
+/// costs.
+struct PointBlock {
+  float x = 0;
+  float y = 0;
+  float z = 0;
+  /// From the ball's center to the surface of the sphere, meters.
+  float reach = 0;
+};
+
 /// Points side by side whose nearest sphere is the same one, and what the gap of each costs with
 /// that sphere and with the next nearest. The count is a multiple of kGainLanes: points whose
-/// costs are 0 fill it up.
+/// costs are 0 fill it up. Fast where neighbors in space are neighbors in the list.
 struct CostedPoints {
   const float* x = nullptr;
   const float* y = nullptr;
   const float* z = nullptr;
   const float* nearest = nullptr;
   const float* next = nullptr;
+  /// Of each kGainLanes points.
+  const PointBlock* blocks = nullptr;
   std::size_t count = 0;
 };
-
-inline constexpr std::size_t kGainLanes = 8;
 
 /// What a gap costs: linear * gap + gap^2 + fourth * gap^4.
 struct GapCost {

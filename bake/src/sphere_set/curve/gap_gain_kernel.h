@@ -4,11 +4,20 @@
 namespace galactic::bake::sphere_set {
 namespace {
 
-/// A loop that compilers vectorise for whatever the including file is compiled for.
+inline bool isOutOfReach(const PointBlock& block, const Sphere& sphere) {
+  const float dx = block.x - sphere.x;
+  const float dy = block.y - sphere.y;
+  const float dz = block.z - sphere.z;
+  const float reach = block.reach + sphere.radius;
+  return dx * dx + dy * dy + dz * dz > reach * reach;
+}
+
+/// A loop that compilers vectorize for whatever the including file is compiled for.
 inline GapGain gainOf(const CostedPoints& points, const GapCost& cost, const Sphere& sphere) {
   float staying[kGainLanes] = {};
   float gone[kGainLanes] = {};
   for (std::size_t first = 0; first < points.count; first += kGainLanes) {
+    if (isOutOfReach(points.blocks[first / kGainLanes], sphere)) continue;
     for (std::size_t lane = 0; lane < kGainLanes; ++lane) {
       const std::size_t at = first + lane;
       const float dx = points.x[at] - sphere.x;

@@ -23,12 +23,20 @@ class SparseGrid {
     const Cube at = cubeOf(p);
     // Most points have a neighbor in their own cube.
     if (holdsNear(at, p, points)) return true;
-    for (std::int64_t z = at[2] - 1; z <= at[2] + 1; ++z) {
-      for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y) {
-        for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x) {
-          const Cube cube{x, y, z};
-          if (cube == at || squaredDistance(cube, p) >= edge_ * edge_) continue;
-          if (holdsNear(cube, p, points)) return true;
+    const AxisDistances x = squaredDistances(at[0], p.x);
+    const AxisDistances y = squaredDistances(at[1], p.y);
+    const AxisDistances z = squaredDistances(at[2], p.z);
+    // A little more, so that rounding leaves no cube out.
+    const double reach = edge_ * edge_ * (1 + 1e-9);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (z[k] >= reach) continue;
+      for (std::size_t j = 0; j < 3; ++j) {
+        if (z[k] + y[j] >= reach) continue;
+        for (std::size_t i = 0; i < 3; ++i) {
+          if (z[k] + y[j] + x[i] >= reach || (i == 1 && j == 1 && k == 1)) continue;
+          if (holdsNear({besides(at[0], i), besides(at[1], j), besides(at[2], k)}, p, points)) {
+            return true;
+          }
         }
       }
     }
@@ -60,16 +68,17 @@ class SparseGrid {
     return false;
   }
 
-  /// Of `p` to the cube, a little less so that rounding leaves no cube out.
-  [[nodiscard]] double squaredDistance(const Cube& cube, const Vec3d& p) const {
-    const auto along = [&](std::int64_t at, double x) {
-      const double from = static_cast<double>(at) * edge_;
-      return std::max({from - x, x - (from + edge_), 0.0});
-    };
-    const double x = along(cube[0], p.x);
-    const double y = along(cube[1], p.y);
-    const double z = along(cube[2], p.z);
-    return (x * x + y * y + z * z) * (1 - 1e-9);
+  /// To the cube before, the same, and the next one along an axis.
+  using AxisDistances = std::array<double, 3>;
+
+  [[nodiscard]] AxisDistances squaredDistances(std::int64_t at, double x) const {
+    const double before = x - static_cast<double>(at) * edge_;
+    const double behind = static_cast<double>(at + 1) * edge_ - x;
+    return {before * before, 0, behind * behind};
+  }
+
+  static std::int64_t besides(std::int64_t at, std::size_t n) {
+    return at + static_cast<std::int64_t>(n) - 1;
   }
 
   [[nodiscard]] std::size_t slotOf(const Cube& cube) const {
