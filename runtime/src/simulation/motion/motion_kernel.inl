@@ -140,24 +140,33 @@ inline LaneFrame nodeFrame(const LaneFrame& parent, const MotionNode& node, Lane
   return frame;
 }
 
-/// Eight rows of eight become eight columns.
-inline void transpose(Lanes rows[kLanes]) {
-  Lanes a[kLanes];
-  for (std::size_t n = 0; n < kLanes; n += 2) {
-    a[n] = __builtin_shufflevector(rows[n], rows[n + 1], 0, 8, 1, 9, 4, 12, 5, 13);
-    a[n + 1] = __builtin_shufflevector(rows[n], rows[n + 1], 2, 10, 3, 11, 6, 14, 7, 15);
-  }
-  Lanes b[kLanes];
-  for (std::size_t n = 0; n < kLanes; n += 4) {
-    b[n] = __builtin_shufflevector(a[n], a[n + 2], 0, 1, 8, 9, 4, 5, 12, 13);
-    b[n + 1] = __builtin_shufflevector(a[n], a[n + 2], 2, 3, 10, 11, 6, 7, 14, 15);
-    b[n + 2] = __builtin_shufflevector(a[n + 1], a[n + 3], 0, 1, 8, 9, 4, 5, 12, 13);
-    b[n + 3] = __builtin_shufflevector(a[n + 1], a[n + 3], 2, 3, 10, 11, 6, 7, 14, 15);
-  }
+/// Four rows of eight become columns: number n of the lower four lanes, and of the upper four.
+inline void transposeFour(const Lanes rows[4], Lanes columns[4]) {
+  const Lanes a = __builtin_shufflevector(rows[0], rows[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Lanes b = __builtin_shufflevector(rows[0], rows[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const Lanes c = __builtin_shufflevector(rows[2], rows[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Lanes d = __builtin_shufflevector(rows[2], rows[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  columns[0] = __builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13);
+  columns[1] = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);
+  columns[2] = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);
+  columns[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+/// Writes eight rows of eight as columns: number n to `to` + n * stride. Half of the lanes after
+/// the other, so that no register is spilled.
+inline void storeColumns(const Lanes rows[kLanes], float* to, std::size_t stride) {
+  Lanes halves[4];
+  Lanes columns[4];
   for (std::size_t n = 0; n < 4; ++n) {
-    rows[n] = __builtin_shufflevector(b[n], b[n + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-    rows[n + 4] = __builtin_shufflevector(b[n], b[n + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+    halves[n] = __builtin_shufflevector(rows[n], rows[n + 4], 0, 1, 2, 3, 8, 9, 10, 11);
   }
+  transposeFour(halves, columns);
+  for (std::size_t n = 0; n < 4; ++n) store(to + n * stride, columns[n]);
+  for (std::size_t n = 0; n < 4; ++n) {
+    halves[n] = __builtin_shufflevector(rows[n], rows[n + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+  transposeFour(halves, columns);
+  for (std::size_t n = 0; n < 4; ++n) store(to + (n + 4) * stride, columns[n]);
 }
 
 /// Least and most of a coordinate of eight spheres.
@@ -174,33 +183,24 @@ inline LaneBounds boundsOf(const Lanes values[kLanes]) {
   return bounds;
 }
 
-/// The centers of eight spheres in eight envs, to the rows of the envs. `bounds`: of these spheres,
-/// kBounds vectors; null when nobody wants them.
-inline void placeEightSpheres(const MotionTables& tables, const LaneFrame* frames,
-                              std::uint32_t first, float* centers, Lanes* bounds) {
-  Lanes x[kLanes];
-  Lanes y[kLanes];
-  Lanes z[kLanes];
-  for (std::uint32_t n = 0; n < kLanes; ++n) {
-    const BodySphere& sphere = tables.spheres[first + n];
-    const LaneVector center = moved(frames[sphere.node + 1], sphere.center);
-    x[n] = center.x;
-    y[n] = center.y;
-    z[n] = center.z;
+/// The centers of eight spheres in eight envs. `bounds`: of these spheres, kBounds vectors; null
+/// when nobody wants them.
+inline void placeEightSpheres(const BodySphere* spheres, const LaneFrame* frames, float* centers,
+                              std::size_t count, Lanes* bounds) {
+  Lanes values[3][kLanes];
+  for (std::size_t n = 0; n < kLanes; ++n) {
+    const LaneVector center = moved(frames[spheres[n].node + 1], spheres[n].center);
+    values[0][n] = center.x;
+    values[1][n] = center.y;
+    values[2][n] = center.z;
   }
-  if (bounds != nullptr) {
-    const LaneBounds all[3] = {boundsOf(x), boundsOf(y), boundsOf(z)};
-    __builtin_memcpy(bounds, all, sizeof(all));
-  }
-  transpose(x);
-  transpose(y);
-  transpose(z);
-  const std::size_t count = tables.sphere_count;
-  for (std::size_t env = 0; env < kLanes; ++env) {
-    float* row = centers + 3 * env * count + first;
-    store(row, x[env]);
-    store(row + count, y[env]);
-    store(row + 2 * count, z[env]);
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (bounds != nullptr) {
+      const LaneBounds both = boundsOf(values[c]);
+      bounds[2 * c] = both.least;
+      bounds[2 * c + 1] = both.most;
+    }
+    storeColumns(values[c], centers + c * count, 3 * count);
   }
 }
 
@@ -214,29 +214,26 @@ inline void placeGrip(const MotionTables& tables, const LaneFrame* frames, float
   const LaneFrame grip = fixedFrame(frames, tables.grip);
   const LaneFrame& root = frames[0];
   const Lanes none = spread(0);
-  Lanes first[kLanes] = {grip.x_axis.x, grip.x_axis.y, grip.x_axis.z, grip.y_axis.x,
-                         grip.y_axis.y, grip.y_axis.z, grip.z_axis.x, grip.z_axis.y};
-  Lanes second[kLanes] = {grip.z_axis.z, grip.origin.x, grip.origin.y, grip.origin.z,
-                          root.x_axis.x, root.z_axis.x, none,          none};
-  transpose(first);
-  transpose(second);
-  for (std::size_t env = 0; env < kLanes; ++env) {
-    store(grips + kGripStride * env, first[env]);
-    store(grips + kGripStride * env + kLanes, second[env]);
-  }
+  const Lanes first[kLanes] = {grip.x_axis.x, grip.x_axis.y, grip.x_axis.z, grip.y_axis.x,
+                               grip.y_axis.y, grip.y_axis.z, grip.z_axis.x, grip.z_axis.y};
+  const Lanes second[kLanes] = {grip.z_axis.z, grip.origin.x, grip.origin.y, grip.origin.z,
+                                root.x_axis.x, root.z_axis.x, none,          none};
+  storeColumns(first, grips, kGripStride);
+  storeColumns(second, grips + kLanes, kGripStride);
 }
 
 inline void placeBody(const LaneFrame& body, float* bodies, std::size_t stride) {
-  const Lanes none = spread(0);
-  Lanes first[kLanes] = {body.x_axis.x, body.x_axis.y, body.x_axis.z, body.y_axis.x,
-                         body.y_axis.y, body.y_axis.z, body.z_axis.x, body.z_axis.y};
-  Lanes second[kLanes] = {body.z_axis.z, body.origin.x, body.origin.y, body.origin.z,
-                          none,          none,          none,          none};
-  transpose(first);
-  transpose(second);
-  for (std::size_t env = 0; env < kLanes; ++env) {
-    store(bodies + stride * env, first[env]);
-    __builtin_memcpy(bodies + stride * env + kLanes, &second[env], 4 * sizeof(float));
+  const Lanes first[kLanes] = {body.x_axis.x, body.x_axis.y, body.x_axis.z, body.y_axis.x,
+                               body.y_axis.y, body.y_axis.z, body.z_axis.x, body.z_axis.y};
+  const Lanes last[4] = {body.z_axis.z, body.origin.x, body.origin.y, body.origin.z};
+  storeColumns(first, bodies, stride);
+  Lanes columns[4];
+  transposeFour(last, columns);
+  constexpr std::size_t kHalf = 4 * sizeof(float);
+  for (std::size_t n = 0; n < 4; ++n) {
+    const auto* column = reinterpret_cast<const char*>(columns + n);
+    __builtin_memcpy(bodies + stride * n + kLanes, column, kHalf);
+    __builtin_memcpy(bodies + stride * (n + 4) + kLanes, column + kHalf, kHalf);
   }
 }
 
@@ -277,14 +274,14 @@ void moveKernel(const MotionTables& tables, const MoveBatch& batch) noexcept {
   }
 }
 
-/// The bounds of eight groups in eight envs, to the rows of the envs from `to` on.
-inline void storeBounds(const Lanes groups[kLanes][kBounds], float* to, std::size_t stride) {
+/// The bounds of `count` groups in eight envs, to the rows of the envs from `to` on; the first one
+/// again where there are less than eight.
+inline void storeBounds(const Lanes groups[kLanes][kBounds], std::size_t count, float* to,
+                        std::size_t stride) {
   for (std::size_t b = 0; b < kBounds; ++b) {
     Lanes rows[kLanes];
-    for (std::size_t n = 0; n < kLanes; ++n) rows[n] = groups[n][b];
-    transpose(rows);
-    for (std::size_t env = 0; env < kLanes; ++env)
-      store(to + (kBounds * env + b) * stride, rows[env]);
+    for (std::size_t n = 0; n < kLanes; ++n) rows[n] = groups[n < count ? n : 0][b];
+    storeColumns(rows, to + b * stride, kBounds * stride);
   }
 }
 
@@ -298,9 +295,8 @@ inline void extend(Lanes all[kBounds], const Lanes more[kBounds]) {
 
 /// The bounds of all spheres of eight envs, to the rows of the envs.
 inline void storeExtents(const Lanes all[kBounds], float* to) {
-  Lanes rows[kLanes] = {all[0], all[1], all[2], all[3], all[4], all[5], all[4], all[5]};
-  transpose(rows);
-  for (std::size_t env = 0; env < kLanes; ++env) store(to + kExtentStride * env, rows[env]);
+  const Lanes rows[kLanes] = {all[0], all[1], all[2], all[3], all[4], all[5], all[4], all[5]};
+  storeColumns(rows, to, kExtentStride);
 }
 
 /// All spheres, and the bounds of each eight of them.
@@ -313,14 +309,12 @@ inline void placeSpheres(const MotionTables& tables, const LaneFrame* frames,
   for (std::uint32_t first = 0; first < groups; first += kLanes) {
     const std::uint32_t here = groups - first < kLanes ? groups - first : kLanes;
     for (std::uint32_t n = 0; n < here; ++n) {
-      placeEightSpheres(tables, frames, (first + n) * kLanes, body.centers,
+      const std::uint32_t sphere = (first + n) * kLanes;
+      placeEightSpheres(tables.spheres + sphere, frames, body.centers + sphere, tables.sphere_count,
                         body.bounds == nullptr ? nullptr : bounds[n]);
     }
     if (body.bounds == nullptr) continue;
-    for (std::size_t n = here; n < kLanes; ++n) {
-      __builtin_memcpy(bounds[n], bounds[0], sizeof(bounds[0]));
-    }
-    storeBounds(bounds, body.bounds + first, stride);
+    storeBounds(bounds, here, body.bounds + first, stride);
     if (first == 0) __builtin_memcpy(all, bounds[0], sizeof(all));
     for (std::uint32_t n = 0; n < here; ++n) extend(all, bounds[n]);
   }
