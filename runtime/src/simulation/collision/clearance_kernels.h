@@ -8,6 +8,17 @@ namespace galactic::simulation {
 
 /// Heights over which maps know what is free, one above the other.
 inline constexpr std::uint32_t kClearanceBands = 4;
+/// The same, and what is lower.
+inline constexpr std::uint32_t kClearancePlanes = kClearanceBands + 1;
+
+/// Which of eight groups of spheres are surely free, as bits.
+struct SureGroups {
+  unsigned free = 0;
+  /// Free, but so low that a floor not much higher would block them.
+  unsigned low = 0;
+
+  friend bool operator==(const SureGroups&, const SureGroups&) = default;
+};
 
 /// What the distance stored for a cell has to exceed half the edge of the spheres' bounds by, in
 /// cells: the cell itself counts one, and the rest is more than any rounding.
@@ -20,20 +31,21 @@ struct alignas(32) ClearanceLanes {
   /// Cells for each meter.
   float inverse_cell[kLanes];
   float cells_x[kLanes], cells_z[kLanes];
-  /// Heights between which centers have to be, meters.
-  float lowest[kLanes], highest[kLanes];
+  /// Heights between which centers have to be, meters: from `lowest` on they may be called free,
+  /// from `low` on low.
+  float low[kLanes], lowest[kLanes], highest[kLanes];
   /// The height of the lowest band, and bands for each meter.
   float band_from[kLanes], inverse_band[kLanes];
-  /// Bytes: of the lowest band, and from band to band.
+  /// Bytes: of what is lower than all bands, and from there to the lowest band, from band to band.
   std::int32_t first[kLanes], band_bytes[kLanes];
   std::int32_t tiles_x[kLanes];
 };
 
 /// The kernels of surelyFree(): the same answers on any processor and, eight lanes at a time, with
 /// AVX2. `bounds`: of the first of eight groups.
-[[nodiscard]] unsigned surelyFreePortable(const ClearanceLanes& lanes, const std::uint8_t* cells,
-                                          const float* bounds, std::size_t stride) noexcept;
-[[nodiscard]] unsigned surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells,
-                                      const float* bounds, std::size_t stride) noexcept;
+[[nodiscard]] SureGroups surelyFreePortable(const ClearanceLanes& lanes, const std::uint8_t* cells,
+                                            const float* bounds, std::size_t stride) noexcept;
+[[nodiscard]] SureGroups surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells,
+                                        const float* bounds, std::size_t stride) noexcept;
 
 }  // namespace galactic::simulation

@@ -22,15 +22,16 @@ constexpr float kSlack = 1e-3F;
 constexpr float kOverContact = 5e-3F;
 
 struct Heights {
+  float low = 0;
   float lowest = 0;
   float highest = 0;
   float band_from = 0;
   float band_height = 0;
 
-  /// The least height of a center that a band clears.
-  [[nodiscard]] float lowOf(std::uint32_t band) const {
-    const float low = band_from + static_cast<float>(band) * band_height;
-    return band == 0 ? lowest : low;
+  /// The least height of a center that a plane clears: the lower one, then the bands.
+  [[nodiscard]] float lowOf(std::uint32_t plane) const {
+    if (plane == 0) return low;
+    return plane == 1 ? lowest : band_from + static_cast<float>(plane - 1) * band_height;
   }
 };
 
@@ -102,9 +103,9 @@ void spreadDistances(const Cells& cells, std::vector<std::uint8_t>& distance) {
   }
 }
 
-/// The distances of one band, tile by tile, to `out`.
-void fillBand(const Cells& cells, std::span<const float> lowest_free, float low,
-              std::span<std::uint8_t> out) {
+/// The distances of one plane, tile by tile, to `out`.
+void fillPlane(const Cells& cells, std::span<const float> lowest_free, float low,
+               std::span<std::uint8_t> out) {
   const std::size_t row = std::size_t{cells.x} + 2;
   std::vector<std::uint8_t> distance(row * (std::size_t{cells.z} + 2));
   for (std::uint32_t k = 0; k < cells.z; ++k) {
@@ -143,17 +144,20 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
     const ColumnGrid& grid = scene.grids()[radius];
     const float from = floor + heights.lowest - 2 * kSlack;
     const float highest = floor + unevenness + heights.highest + 2 * kSlack;
-    const Heights asked{.lowest = std::max(from, floor + unevenness + grid.radius() + kOverContact),
+    const float over_contact = floor + grid.radius() + kOverContact;
+    const Heights asked{.low = std::max(from, over_contact),
+                        .lowest = std::max(from, over_contact + unevenness),
                         .highest = highest,
                         .band_from = from,
                         .band_height = (highest - from) / static_cast<float>(kClearanceBands)};
     const Cells cells = cellsOf(grid);
     const std::vector<float> lowest_free = lowestFree(grid, cells, highest);
     const std::size_t first = cells_.empty() ? 0 : cells_.size() - kReadBeyond;
-    cells_.resize(first + std::size_t{kClearanceBands} * cells.bytes() + kReadBeyond);
-    for (std::uint32_t band = 0; band < kClearanceBands; ++band) {
-      fillBand(cells, lowest_free, asked.lowOf(band),
-               std::span(cells_).subspan(first + std::size_t{band} * cells.bytes(), cells.bytes()));
+    cells_.resize(first + std::size_t{kClearancePlanes} * cells.bytes() + kReadBeyond);
+    for (std::uint32_t plane = 0; plane < kClearancePlanes; ++plane) {
+      fillPlane(
+          cells, lowest_free, asked.lowOf(plane),
+          std::span(cells_).subspan(first + std::size_t{plane} * cells.bytes(), cells.bytes()));
     }
     for (std::size_t n = 0; n < radius_of_lane_.size(); ++n) {
       if (radius_of_lane_[n] != radius) continue;
@@ -164,6 +168,7 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
       to.inverse_cell[lane] = grid.layout().inverse_spacing / static_cast<float>(kColumnsPerCell);
       to.cells_x[lane] = static_cast<float>(cells.x);
       to.cells_z[lane] = static_cast<float>(cells.z);
+      to.low[lane] = asked.low;
       to.lowest[lane] = asked.lowest;
       to.highest[lane] = asked.highest;
       to.band_from[lane] = asked.band_from;
@@ -176,42 +181,45 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
   return static_cast<std::uint32_t>(map);
 }
 
-unsigned ClearanceMaps::surelyFree(std::uint32_t map, std::size_t eight,
-                                   const GroupBounds& bounds) const noexcept {
-  if (map == kNoClearanceMap) return 0;
+SureGroups ClearanceMaps::surelyFree(std::uint32_t map, std::size_t eight,
+                                     const GroupBounds& bounds) const noexcept {
+  if (map == kNoClearanceMap) return {};
   const ClearanceLanes& lanes = lanes_[map * eights_ + eight];
   return detail::hasAvx2() ? surelyFreeAvx2(lanes, cells_.data(), bounds.values, bounds.stride)
                            : surelyFreePortable(lanes, cells_.data(), bounds.values, bounds.stride);
 }
 
-unsigned surelyFreePortable(const ClearanceLanes& lanes, const std::uint8_t* cells,
-                            const float* bounds, std::size_t stride) noexcept {
-  unsigned free = 0;
+SureGroups surelyFreePortable(const ClearanceLanes& lanes, const std::uint8_t* cells,
+                              const float* bounds, std::size_t stride) noexcept {
+  SureGroups sure;
   for (std::size_t n = 0; n < kLanes; ++n) {
     const float* at = bounds + n;
     const float x = (0.5F * (at[0] + at[stride]) - lanes.min_x[n]) * lanes.inverse_cell[n];
     const float z =
         (0.5F * (at[4 * stride] + at[5 * stride]) - lanes.min_z[n]) * lanes.inverse_cell[n];
     const bool inside = x >= 0 && x < lanes.cells_x[n] && z >= 0 && z < lanes.cells_z[n] &&
-                        at[2 * stride] >= lanes.lowest[n] && at[3 * stride] <= lanes.highest[n];
+                        at[2 * stride] >= lanes.low[n] && at[3 * stride] <= lanes.highest[n];
     if (!inside) continue;
     const auto i = static_cast<std::uint32_t>(x);
     const auto k = static_cast<std::uint32_t>(z);
     const float above = (at[2 * stride] - lanes.band_from[n]) * lanes.inverse_band[n];
-    const auto band =
-        std::min(static_cast<std::int32_t>(above), static_cast<std::int32_t>(kClearanceBands) - 1);
+    const bool is_low = at[2 * stride] < lanes.lowest[n];
+    const std::int32_t plane = is_low ? 0
+                                      : std::min(static_cast<std::int32_t>(above) + 1,
+                                                 static_cast<std::int32_t>(kClearancePlanes) - 1);
     const std::uint32_t tile =
         k / kTileEdge * static_cast<std::uint32_t>(lanes.tiles_x[n]) + i / kTileEdge;
     const std::size_t cell =
         (std::size_t{tile} * kTileEdge + k % kTileEdge) * kTileEdge + i % kTileEdge;
     const std::uint8_t distance =
-        cells[static_cast<std::size_t>(lanes.first[n] + band * lanes.band_bytes[n]) + cell];
+        cells[static_cast<std::size_t>(lanes.first[n] + plane * lanes.band_bytes[n]) + cell];
     const float wide = at[stride] - at[0];
     const float deep = at[5 * stride] - at[4 * stride];
     const float half = 0.5F * (deep > wide ? deep : wide) * lanes.inverse_cell[n];
-    free |= static_cast<unsigned>(half + kBeyondHalf <= static_cast<float>(distance)) << n;
+    const unsigned bit = 1U << n;
+    if (half + kBeyondHalf <= static_cast<float>(distance)) (is_low ? sure.low : sure.free) |= bit;
   }
-  return free;
+  return sure;
 }
 
 }  // namespace galactic::simulation

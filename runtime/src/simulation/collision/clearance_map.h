@@ -18,6 +18,9 @@ namespace galactic::simulation {
 // Pfaltz 1968). Eight spheres whose bounds lie within the square, and between the band's height and
 // the map's highest one, are free: one look-up answers for eight columns. A map only ever says
 // "surely free"; wherever it does not, the columns are asked, so no answer depends on it.
+//
+// Floors differ by what lies on them: a rug. What is so low that a rug would block it gets a band
+// of its own, which is clear where there is none.
 
 /// Where a robot's sphere centers are over a floor, meters above it.
 struct HeightsOverFloor {
@@ -48,10 +51,10 @@ class ClearanceMaps {
   std::uint32_t add(const Scene& scene, float floor, float unevenness,
                     const HeightsOverFloor& heights);
 
-  /// Which of eight groups are surely free, as bits: those of the lanes from 8 * `eight` on, with
-  /// these bounds. `map`: as add() returned it; none are for kNoClearanceMap.
-  [[nodiscard]] unsigned surelyFree(std::uint32_t map, std::size_t eight,
-                                    const GroupBounds& bounds) const noexcept;
+  /// Which of eight groups are surely free: those of the lanes from 8 * `eight` on, with these
+  /// bounds. `map`: as add() returned it; none are for kNoClearanceMap.
+  [[nodiscard]] SureGroups surelyFree(std::uint32_t map, std::size_t eight,
+                                      const GroupBounds& bounds) const noexcept;
 
   /// How many eights of lanes there are.
   [[nodiscard]] std::size_t eights() const { return eights_; }

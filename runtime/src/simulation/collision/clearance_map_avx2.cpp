@@ -29,8 +29,8 @@ __m256i cellIndex(__m256i i, __m256i k, __m256i tiles_x) {
 
 }  // namespace
 
-unsigned surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells, const float* bounds,
-                        std::size_t stride) noexcept {
+SureGroups surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells,
+                          const float* bounds, std::size_t stride) noexcept {
   const __m256 least_x = _mm256_loadu_ps(bounds);
   const __m256 most_x = _mm256_loadu_ps(bounds + stride);
   const __m256 least_y = _mm256_loadu_ps(bounds + 2 * stride);
@@ -46,19 +46,22 @@ unsigned surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells, 
   const __m256 over =
       both(both(atLeast(x, zero), _mm256_cmp_ps(x, _mm256_load_ps(lanes.cells_x), _CMP_LT_OQ)),
            both(atLeast(z, zero), _mm256_cmp_ps(z, _mm256_load_ps(lanes.cells_z), _CMP_LT_OQ)));
-  const __m256 inside = both(over, both(atLeast(least_y, _mm256_load_ps(lanes.lowest)),
+  const __m256 inside = both(over, both(atLeast(least_y, _mm256_load_ps(lanes.low)),
                                         atLeast(_mm256_load_ps(lanes.highest), most_y)));
   const __m256i mask = _mm256_castps_si256(inside);
   // Lanes elsewhere read byte 0; their answer is no.
   const __m256 above = _mm256_mul_ps(_mm256_sub_ps(least_y, _mm256_load_ps(lanes.band_from)),
                                      _mm256_load_ps(lanes.inverse_band));
-  const __m256i band =
-      _mm256_min_epi32(_mm256_cvttps_epi32(above), _mm256_set1_epi32(kClearanceBands - 1));
+  const __m256 is_high = atLeast(least_y, _mm256_load_ps(lanes.lowest));
+  const __m256i one = _mm256_set1_epi32(1);
+  const __m256i number = _mm256_min_epi32(_mm256_add_epi32(_mm256_cvttps_epi32(above), one),
+                                          _mm256_set1_epi32(kClearancePlanes - 1));
+  const __m256i plane = _mm256_and_si256(number, _mm256_castps_si256(is_high));
   const __m256i cell =
       cellIndex(_mm256_cvttps_epi32(x), _mm256_cvttps_epi32(z), integers(lanes.tiles_x));
-  const __m256i plane =
-      _mm256_add_epi32(integers(lanes.first), _mm256_mullo_epi32(band, integers(lanes.band_bytes)));
-  const __m256i index = _mm256_and_si256(_mm256_add_epi32(plane, cell), mask);
+  const __m256i first = _mm256_add_epi32(integers(lanes.first),
+                                         _mm256_mullo_epi32(plane, integers(lanes.band_bytes)));
+  const __m256i index = _mm256_and_si256(_mm256_add_epi32(first, cell), mask);
   // See resting_objects_avx2.cpp for why the gather is given a zero.
   const __m256i words = _mm256_mask_i32gather_epi32(
       _mm256_setzero_si256(), reinterpret_cast<const int*>(cells), index, _mm256_set1_epi32(-1), 1);
@@ -67,7 +70,10 @@ unsigned surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells, 
   const __m256 reach =
       _mm256_add_ps(_mm256_mul_ps(_mm256_mul_ps(_mm256_set1_ps(0.5F), edge), inverse_cell),
                     _mm256_set1_ps(kBeyondHalf));
-  return static_cast<unsigned>(_mm256_movemask_ps(both(inside, atLeast(distance, reach))));
+  const auto sure =
+      static_cast<unsigned>(_mm256_movemask_ps(both(inside, atLeast(distance, reach))));
+  const auto high = static_cast<unsigned>(_mm256_movemask_ps(is_high));
+  return {sure & high, sure & ~high};
 }
 
 }  // namespace galactic::simulation
@@ -77,8 +83,8 @@ unsigned surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells, 
 namespace galactic::simulation {
 
 // hasAvx2() is false on this architecture; the symbol exists so that callers need no condition.
-unsigned surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells, const float* bounds,
-                        std::size_t stride) noexcept {
+SureGroups surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells,
+                          const float* bounds, std::size_t stride) noexcept {
   return surelyFreePortable(lanes, cells, bounds, stride);
 }
 

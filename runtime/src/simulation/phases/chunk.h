@@ -30,6 +30,8 @@ enum class Floor : std::uint8_t {
 struct GroupBits {
   /// Not free as a whole, as far as the maps know.
   unsigned unsure = 0;
+  /// Of these, those that a map calls low: free, and nobody has looked where their spheres are.
+  unsigned low = 0;
   /// The last way out suits all of their spheres.
   unsigned suited = 0;
   /// The way out is asked of the columns around their spheres.
@@ -84,7 +86,7 @@ class Chunk {
   void suitColumnsOnly() {
     for (GroupBits& bits : group_bits_) bits.suited = bits.in_columns;
   }
-  /// Of a group that is not free as a whole: the same.
+  /// Of a group that is not free as a whole, unless it is low: the same.
   [[nodiscard]] EightPlaces& places(std::size_t group) { return places_[group]; }
   [[nodiscard]] WayOut& wayOut() { return way_out_; }
   [[nodiscard]] ColumnWays& columnWays() { return column_ways_; }

@@ -17,21 +17,14 @@ bool anyCounts(std::span<const std::uint64_t> bits, IgnoredSpheres ignored) {
   return any != 0;
 }
 
-/// Finds where the spheres are of those groups of an eight that are not free as a whole. Returns,
-/// as bits, the groups of which slices do not know that all spheres are free.
-unsigned findPlaces(const ChunkStep& step, std::size_t e, const SphereBatch& spheres,
-                    std::size_t eight) {
-  const std::uint32_t map = step.state.env(step.first + e).clearance_map;
-  const EightSpheres* groups = step.model.groups.data() + eight * kLanes;
-  EightPlaces* places = &step.chunk.places(eight * kLanes);
-  const unsigned unsure = step.chunk.groupBits(eight).unsure;
-  unsigned asked = unsure;
-  for (unsigned left = unsure; left != 0; left &= left - 1) {
-    const auto n = static_cast<std::size_t>(std::countr_zero(left));
-    const std::size_t first = (eight * kLanes + n) * kLanes;
-    step.model.slices.findPlaces(map, groups[n].radius_index, spheres.x + first, spheres.y + first,
-                                 spheres.z + first, places[n]);
-    if ((groups[n].spheres & ~places[n].free) == 0) asked ^= left & -left;
+/// Finds where the spheres of some groups of an eight are. Returns, as bits, those of which slices
+/// do not know that all spheres are free.
+unsigned findPlaces(const ChunkStep& step, std::size_t e, std::size_t eight, unsigned groups) {
+  unsigned asked = groups;
+  for (unsigned left = groups; left != 0; left &= left - 1) {
+    const std::size_t n = eight * kLanes + static_cast<std::size_t>(std::countr_zero(left));
+    const EightPlaces& places = findPlaces(step, e, n);
+    if ((step.model.groups[n].spheres & ~places.free) == 0) asked ^= left & -left;
   }
   return asked;
 }
@@ -62,6 +55,16 @@ SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) noexcept {
   return holdSpheres(heldModel(step.model, env), world_from_object, step.chunk.placement().spheres);
 }
 
+const EightPlaces& findPlaces(const ChunkStep& step, std::size_t e, std::size_t group) noexcept {
+  const std::uint32_t map = step.state.env(step.first + e).clearance_map;
+  const SphereBatch spheres = step.chunk.spheres(e);
+  const std::size_t first = group * kLanes;
+  EightPlaces& places = step.chunk.places(group);
+  step.model.slices.findPlaces(map, step.model.groups[group].radius_index, spheres.x + first,
+                               spheres.y + first, spheres.z + first, places);
+  return places;
+}
+
 bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
   const Env& env = step.state.env(step.first + e);
   const Scene& scene = step.model.world->scenes()[env.scene];
@@ -69,15 +72,15 @@ bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
   std::uint64_t any = 0;
   for (std::size_t eight = 0; eight * kLanes < groups.size(); ++eight) {
     const std::size_t here = std::min(groups.size() - eight * kLanes, kLanes);
+    const SureGroups sure =
+        step.model.clearance.surelyFree(env.clearance_map, eight, step.chunk.bounds(e, eight));
     GroupBits& known = step.chunk.groupBits(eight);
-    const unsigned free = known.suited | step.model.clearance.surelyFree(
-                                             env.clearance_map, eight, step.chunk.bounds(e, eight));
-    known.unsure = ((1U << here) - 1) & ~free;
+    known.unsure = ((1U << here) - 1) & ~(known.suited | sure.free);
+    known.low = known.unsure & sure.low;
     std::uint64_t blocked = 0;
-    if (known.unsure != 0) {
-      const SphereBatch spheres = step.chunk.spheres(e);
-      const unsigned asked = findPlaces(step, e, spheres, eight);
-      if (asked != 0) blocked = blockedSpheres(scene, spheres, groups, eight * kLanes, asked);
+    const unsigned asked = findPlaces(step, e, eight, known.unsure & ~known.low);
+    if (asked != 0) {
+      blocked = blockedSpheres(scene, step.chunk.spheres(e), groups, eight * kLanes, asked);
     }
     step.chunk.blockedBits()[eight] = blocked;
     any |= blocked;
@@ -100,9 +103,9 @@ bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept {
     std::fill_n(bounds.data() + b * kLanes, kLanes, each[b]);
   }
   const ClearanceMaps& maps = step.model.clearance;
-  const unsigned free =
+  const SureGroups sure =
       maps.surelyFree(env.clearance_map, maps.eights() - 1, {bounds.data(), kLanes});
-  return (env.held.radii & ~free) == 0;
+  return (env.held.radii & ~(sure.free | sure.low)) == 0;
 }
 
 namespace {

@@ -25,6 +25,9 @@ namespace galactic::simulation {
 /// Finds the robot's spheres that the scene blocks, in the chunk's bits. Whether there is any.
 bool findBlocked(const ChunkStep& step, std::size_t e) noexcept;
 
+/// Finds where the spheres of a group are, in the chunk.
+const EightPlaces& findPlaces(const ChunkStep& step, std::size_t e, std::size_t group) noexcept;
+
 /// Whether a look at the ball around the held object's spheres says that all are free.
 [[nodiscard]] bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept;
 

@@ -103,7 +103,8 @@ class Glide {
         const auto lane = static_cast<std::size_t>(std::countr_zero(left));
         const std::size_t n = eight * kLanes + lane;
         const unsigned spheres = step_.model.groups[n].spheres;
-        const EightPlaces& places = step_.chunk.places(n);
+        const bool is_low = (known.low & left & -left) != 0;
+        const EightPlaces& places = is_low ? findPlaces(step_, e_, n) : step_.chunk.places(n);
         const auto blocked = static_cast<unsigned>(word >> (lane * kLanes) & 0xffU);
         const unsigned added = spheres & (places.free | blocked);
         if (added == spheres) known.suited |= left & -left;

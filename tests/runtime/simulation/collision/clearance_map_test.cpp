@@ -25,10 +25,11 @@ constexpr float kUnevenness = 0.03F;
 
 /// Eight centers near each other, as one of eight groups whose bounds are alike.
 struct Eight {
-  explicit Eight(std::mt19937& random) {
+  explicit Eight(std::mt19937& random) : Eight(random, uniformIn(random, 0.15F, 1.3F)) {}
+  /// `from_y`: the height of the lowest, about.
+  Eight(std::mt19937& random, float from_y) {
     const float size = uniformIn(random, 0, 0.3F);
     const float from_x = uniformIn(random, -0.2F, 3);
-    const float from_y = uniformIn(random, 0.15F, 1.3F);
     const float from_z = uniformIn(random, -0.2F, 3);
     for (std::size_t n = 0; n < kLanes; ++n) {
       x[n] = from_x + uniformIn(random, 0, size);
@@ -64,7 +65,7 @@ TEST(ClearanceMaps, CallNothingSurelyFreeThatAColumnBlocks) {
     const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
     for (int n = 0; n < 2000; ++n) {
       const Eight eight(random);
-      const unsigned free = maps.surelyFree(map, 1, {eight.bounds.data(), kLanes});
+      const unsigned free = maps.surelyFree(map, 1, {eight.bounds.data(), kLanes}).free;
       for (std::uint32_t radius = 0; radius < radii; ++radius) {
         const bool is_free =
             room.scene().grids()[radius].firstNotFree({eight.x, eight.y, eight.z}) == kLanes;
@@ -83,6 +84,38 @@ TEST(ClearanceMaps, CallNothingSurelyFreeThatAColumnBlocks) {
   EXPECT_GT(sure, all_free / 3);
 }
 
+TEST(ClearanceMaps, CallLowWhatIsFreeAndWouldStandInAThickerFloor) {
+  constexpr std::uint32_t kSeed = 1505;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  std::size_t low = 0;
+  std::size_t all_free = 0;
+  for (int round = 0; round < 20; ++round) {
+    const BoxRoom room = furnishedRoom(random, 5);
+    const auto radii = static_cast<std::uint32_t>(room.scene().grids().size());
+    ClearanceMaps maps({0, 1, 2});
+    const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, {0, kHeights.highest});
+    for (std::uint32_t radius = 0; radius < radii; ++radius) {
+      const ColumnGrid& grid = room.scene().grids()[radius];
+      for (int n = 0; n < 1000; ++n) {
+        const Eight eight(random, grid.radius() + uniformIn(random, 0, 2 * kUnevenness));
+        const SureGroups sure = maps.surelyFree(map, 0, {eight.bounds.data(), kLanes});
+        const bool is_free = grid.firstNotFree({eight.x, eight.y, eight.z}) == kLanes;
+        const bool is_low = (sure.low >> radius & 1U) != 0;
+        ASSERT_FALSE((sure.free >> radius & 1U) != 0 && is_low);
+        ASSERT_TRUE(is_free || !is_low) << "radius " << radius << " at " << eight.x[0] << " "
+                                        << eight.y[0] << " " << eight.z[0];
+        const float lowest = *std::ranges::min_element(eight.y);
+        ASSERT_TRUE(!is_low || lowest < grid.radius() + 2 * kUnevenness);
+        all_free += is_free ? 1U : 0U;
+        low += is_low ? 1U : 0U;
+      }
+    }
+  }
+  EXPECT_GT(low, all_free / 10);
+  EXPECT_LT(low, all_free * 9 / 10);
+}
+
 TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
   if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2";
   constexpr std::uint32_t kSeed = 1502;
@@ -90,13 +123,14 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
   std::mt19937 random(kSeed);
   // A map by hand: distances at random.
   ClearanceLanes lanes{};
-  std::vector<std::uint8_t> cells(64 * 8 * 8 * kClearanceBands + 3);
+  std::vector<std::uint8_t> cells(64 * 8 * 8 * kClearancePlanes + 3);
   for (std::uint8_t& cell : cells) cell = static_cast<std::uint8_t>(random() % 8);
   for (std::size_t n = 0; n < kLanes; ++n) {
     lanes.inverse_cell[n] = 16;
     lanes.cells_x[n] = 50;
     lanes.cells_z[n] = 60;
-    lanes.lowest[n] = 0.2F;
+    lanes.low[n] = 0.2F;
+    lanes.lowest[n] = 0.3F;
     lanes.highest[n] = 1.4F;
     lanes.band_from[n] = 0.1F;
     lanes.inverse_band[n] = kClearanceBands / 1.3F;
@@ -104,13 +138,16 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
     lanes.tiles_x[n] = 7;
   }
   std::size_t sure = 0;
+  std::size_t low = 0;
   constexpr int kRounds = 20000;
   for (int n = 0; n < kRounds; ++n) {
     const Eight eight(random);
-    const unsigned free = surelyFreePortable(lanes, cells.data(), eight.bounds.data(), kLanes);
-    ASSERT_EQ(surelyFreeAvx2(lanes, cells.data(), eight.bounds.data(), kLanes), free);
-    sure += free == 0 ? 0U : 1U;
+    const SureGroups found = surelyFreePortable(lanes, cells.data(), eight.bounds.data(), kLanes);
+    ASSERT_EQ(surelyFreeAvx2(lanes, cells.data(), eight.bounds.data(), kLanes), found);
+    sure += found.free == 0 ? 0U : 1U;
+    low += found.low == 0 ? 0U : 1U;
   }
+  EXPECT_GT(low, kRounds / 50);
   EXPECT_GT(sure, kRounds / 10);
   EXPECT_LT(sure, kRounds * 9 / 10);
 }
@@ -118,7 +155,8 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
 TEST(ClearanceMaps, KnowNothingWithoutAMap) {
   std::mt19937 random(1503);
   const Eight eight(random);
-  EXPECT_EQ(ClearanceMaps({0}).surelyFree(kNoClearanceMap, 0, {eight.bounds.data(), kLanes}), 0U);
+  EXPECT_EQ(ClearanceMaps({0}).surelyFree(kNoClearanceMap, 0, {eight.bounds.data(), kLanes}),
+            SureGroups{});
 }
 
 TEST(ClearanceMaps, AreNotFooledByWhatIsNoNumber) {
@@ -129,7 +167,7 @@ TEST(ClearanceMaps, AreNotFooledByWhatIsNoNumber) {
   for (const float odd : {std::numeric_limits<float>::quiet_NaN(), 1e30F, -1e30F}) {
     alignas(32) std::array<float, kBounds * kLanes> bounds;
     bounds.fill(odd);
-    EXPECT_EQ(maps.surelyFree(map, 0, {bounds.data(), kLanes}), 0U) << odd;
+    EXPECT_EQ(maps.surelyFree(map, 0, {bounds.data(), kLanes}), SureGroups{}) << odd;
   }
 }
 
