@@ -18,7 +18,7 @@ constexpr double kVoxelsPerProbe = 1.0 / 0.7;
 /// Distances are exact up to the probe's radius and this many voxels.
 constexpr double kExactVoxels = 1.5;
 /// A search from a free voxel looks this many voxels further, to skip what is free as well.
-constexpr double kSkipVoxels = 14;
+constexpr double kSkipVoxels = 7;
 
 constexpr std::uint32_t kUnreached = std::numeric_limits<std::uint32_t>::max();
 
