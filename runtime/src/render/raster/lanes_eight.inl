@@ -239,12 +239,37 @@ inline void storePairs(Element* to, Vector first, Vector second) {
   store(to + kWidth, __builtin_shufflevector(first, second, 4, 12, 5, 13, 6, 14, 7, 15));
 }
 
+/// For each set of lanes their numbers, lowest first, and then lane 0.
+struct PickOrders {
+  alignas(64) std::uint8_t order[256][kWidth] = {};
+  constexpr PickOrders() {
+    for (unsigned which = 0; which < 256; ++which) {
+      unsigned count = 0;
+      for (unsigned n = 0; n < kWidth; ++n) {
+        if ((which >> n & 1U) != 0) order[which][count++] = static_cast<std::uint8_t>(n);
+      }
+    }
+  }
+};
+constexpr PickOrders kPickOrders;
+
 inline IntLanes widen(EightShorts v) { return __builtin_convertvector(v, IntLanes); }
 inline IntLanes widen(EightBytes v) {
 #if defined(__AVX2__)
   return as<IntLanes>(_mm256_cvtepu8_epi32(_mm_cvtsi64_si128(as<long long>(v))));
 #else
   return __builtin_convertvector(v, IntLanes);
+#endif
+}
+
+/// Writes the lanes whose bits are set, lowest first, and behind them lanes that mean nothing:
+/// eight in all. Takes the same time for any set, as nothing depends on how many there are.
+inline void storePicked(std::int32_t* to, IntLanes v, unsigned which) {
+  const IntLanes order = widen(load<EightBytes>(kPickOrders.order[which]));
+#if defined(__AVX2__)
+  store(to, as<IntLanes>(_mm256_permutevar8x32_epi32(as<__m256i>(v), as<__m256i>(order))));
+#else
+  for (unsigned n = 0; n < kWidth; ++n) to[n] = v[order[n]];
 #endif
 }
 

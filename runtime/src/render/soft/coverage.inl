@@ -82,21 +82,25 @@ struct PaneTarget {
   }
 };
 
-inline void markChanged(const Pane& pane, const GroupSetup& group, unsigned n) {
-  const std::int32_t first_column = group.first_column[n] / 2;
-  const std::int32_t last_column = group.last_column[n] / 2;
-  for (std::int32_t y = group.first_row[n] / 4; y <= group.last_row[n] / 4; ++y) {
-    std::uint8_t* row =
-        pane.scratch->tile_changed + static_cast<std::size_t>(y) * pane.tile_columns;
-    for (std::int32_t x = first_column; x <= last_column; ++x) row[x] = 1;
-  }
+/// Marks the tiles of triangle `n` where it shows.
+inline void markChanged(const Pane& pane, const GroupSetup& group, unsigned n, bool shows) {
+  const auto first_column = static_cast<unsigned>(group.first_column[n]) / 2;
+  const auto last_column = static_cast<unsigned>(group.last_column[n]) / 2;
+  const std::uint32_t columns = (2U << last_column) - (1U << first_column);
+  const std::uint32_t marks = shows ? columns : 0;
+  std::uint32_t* changed = pane.scratch->tile_changed;
+  const std::int32_t first = group.first_row[n] / 4;
+  const std::int32_t last = group.last_row[n] / 4;
+  changed[first] |= marks;
+  changed[last] |= marks;
+  for (std::int32_t y = first + 1; y < last; ++y) changed[y] |= marks;
 }
 
 /// Least 1/w of a tile.
 inline float tileDepth(const Pane& pane, std::uint32_t tile_x, std::uint32_t tile_y) {
   const PaneScratch& scratch = *pane.scratch;
   const std::size_t tile = static_cast<std::size_t>(tile_y) * pane.tile_columns + tile_x;
-  if (scratch.tile_changed[tile] == 0) return scratch.tile_depth[tile];
+  if ((scratch.tile_changed[tile_y] >> tile_x & 1U) == 0) return scratch.tile_depth[tile];
   constexpr std::uint32_t kRows = kTileEdge / kBlockHeight;
   const std::size_t stride = static_cast<std::size_t>(pane.columns) * kWidth;
   const float* from = scratch.depth + tile_y * kRows * stride + std::size_t{2} * tile_x * kWidth;
@@ -104,7 +108,7 @@ inline float tileDepth(const Pane& pane, std::uint32_t tile_x, std::uint32_t til
   for (std::uint32_t row = 0; row < kRows; ++row, from += stride) {
     nearest = lesser(nearest, lesser(load<Lanes>(from), load<Lanes>(from + kWidth)));
   }
-  scratch.tile_changed[tile] = 0;
+  scratch.tile_changed[tile_y] &= ~(1U << tile_x);
   scratch.tile_depth[tile] = least(nearest);
   return scratch.tile_depth[tile];
 }

@@ -21,7 +21,7 @@ bool coverTiles(const Pane& pane, const LargeSetup& setup, const TileBox& tiles,
         continue;
       }
       if (signBits(coverTile(setup, edges, x, y, target)) == 0) continue;
-      scratch.tile_changed[tile] = 1;
+      scratch.tile_changed[y] |= 1U << static_cast<unsigned>(x);
       seen = true;
     }
   }

@@ -6,6 +6,8 @@
 // What the kernels of the `soft` renderer read and write, as bare pointers: see pane_task.h.
 namespace galactic::render {
 
+static_assert(kMostTiles <= 32, "one bit each");
+
 /// What a pane has room for; when it is used up, what is seen so far is shaded.
 inline constexpr std::uint32_t kMostRecords = 16384;
 
@@ -15,9 +17,10 @@ struct PaneScratch {
   float* depth = nullptr;
   /// Record by pixel: 0 for background, kShaded where the image has the color.
   std::int32_t* ids = nullptr;
-  /// Least 1/w of each tile, where it is not marked as changed since.
+  /// Least 1/w of each tile, where it has not changed since.
   float* tile_depth = nullptr;
-  std::uint8_t* tile_changed = nullptr;
+  /// For each row of tiles, bit n: tile n has changed since.
+  std::uint32_t* tile_changed = nullptr;
   /// Room for all clusters of a view.
   SeenCluster* seen = nullptr;
   std::uint32_t* order = nullptr;

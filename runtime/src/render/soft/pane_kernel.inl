@@ -37,7 +37,7 @@ void clearPane(Pane& pane) {
   __builtin_memset(scratch.depth, 0, blocks * kWidth * sizeof(*scratch.depth));
   const std::size_t tiles = std::size_t{pane.tile_columns} * tiles_down;
   __builtin_memset(scratch.tile_depth, 0, tiles * sizeof(*scratch.tile_depth));
-  __builtin_memset(scratch.tile_changed, 0, tiles);
+  __builtin_memset(scratch.tile_changed, 0, sizeof(scratch.tile_changed[0]) * tiles_down);
   if (task.width % kTileEdge == 0 && task.height % kTileEdge == 0) return;
   for (std::uint32_t row = 0; row < pane.rows; ++row) {
     for (std::uint32_t column = 0; column < pane.columns; ++column) {
@@ -61,22 +61,21 @@ void recordBackground(const Pane& pane) {
   record[kKind] = as<float>(kFlatSurface);
 }
 
-/// Draws up to eight small triangles.
+/// Draws up to eight small triangles; `corners` has eight.
 void drawGroup(Pane& pane, ClusterState& state, const std::int32_t* corners, std::uint32_t count) {
   if (pane.records + kWidth > kMostRecords) makeRoom(pane);
-  alignas(32) std::int32_t eight[kWidth];
-  for (std::uint32_t n = 0; n < kWidth; ++n) eight[n] = corners[n < count ? n : 0];
   SmallGroup group;
   GroupSetup setup;
-  setUpGroup(*pane.task, state, load<IntLanes>(eight), group, setup);
+  setUpGroup(*pane.task, state, load<IntLanes>(corners), group, setup);
   const std::uint32_t first = pane.records;
   unsigned seen = 0;
   const auto cover = [&](std::uint32_t n, const auto& test) {
     PaneTarget target(pane, test);
-    if (signBits(coverTriangle(setup, n, blockPixels(), target)) == 0) return;
-    markChanged(pane, setup, n);
-    seen |= 1U << n;
-    ++pane.records;
+    // Whether a triangle shows is hard to foresee: no branch depends on it.
+    const bool shows = signBits(coverTriangle(setup, n, blockPixels(), target)) != 0;
+    markChanged(pane, setup, n, shows);
+    seen |= static_cast<unsigned>(shows) << n;
+    pane.records += static_cast<std::uint32_t>(shows);
   };
   GroupRecords records;
   if (state.facts.surface.least_alpha != 0) {

@@ -36,7 +36,7 @@ std::size_t layOut(std::byte* block, std::size_t tiles, PaneScratch& scratch) {
   pieces.take(scratch.depth, tiles * kTilePixels);
   pieces.take(scratch.ids, tiles * kTilePixels);
   pieces.take(scratch.tile_depth, tiles);
-  pieces.take(scratch.tile_changed, tiles);
+  pieces.take(scratch.tile_changed, kMostTiles);
   pieces.take(scratch.bucket_starts, kBuckets + 1);
   pieces.take(scratch.records, std::size_t{kMostRecords} * kRecordStride);
   pieces.take(scratch.colors, std::size_t{kMostRecords} * kRecordStride);

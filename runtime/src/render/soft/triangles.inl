@@ -29,16 +29,17 @@ void readCoordinates(ClusterState& state) {
 /// Triangles of a cluster that are worth drawing, by the way they take; corners go around
 /// clockwise on the screen where the triangle shows its face.
 struct Survivors {
-  std::int32_t small[kMostInCluster];
-  std::int32_t large[kMostInCluster];
-  std::int32_t clipped[kMostInCluster];
+  /// Behind the last one of each there is room for eight, and behind the last small one eight that
+  /// are all of vertex 0.
+  alignas(32) std::int32_t small[kMostInCluster + kWidth];
+  std::int32_t large[kMostInCluster + kWidth];
+  std::int32_t clipped[kMostInCluster + kWidth];
   std::uint32_t small_count, large_count, clipped_count;
 };
 
 inline void append(std::int32_t* list, std::uint32_t& count, IntLanes corners, unsigned which) {
-  alignas(32) std::int32_t values[kWidth];
-  store(values, corners);
-  for (; which != 0; which &= which - 1) list[count++] = values[__builtin_ctz(which)];
+  storePicked(list + count, corners, which);
+  count += static_cast<std::uint32_t>(__builtin_popcount(which));
 }
 
 /// Which of eight small triangles lie behind all that was drawn in their tiles: bit n for triangle
@@ -89,8 +90,10 @@ void sortTriangles(const Pane& pane, const ClusterState& state, Survivors& survi
     unsigned small = sorting.small & valid;
     if (small != 0 && task.culling) small &= ~behindTiles(pane, state, sorting, corners);
     append(survivors.small, survivors.small_count, both, small);
-    append(survivors.large, survivors.large_count, both, sorting.large & valid);
+    const unsigned large = sorting.large & valid;
+    if (large != 0) append(survivors.large, survivors.large_count, both, large);
   }
+  store(survivors.small + survivors.small_count, spread(0));
 }
 
 }  // namespace
