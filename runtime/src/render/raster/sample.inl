@@ -62,6 +62,38 @@ GALACTIC_EVERYWHERE inline IntLanes floorOf(Lanes v) {
   return whole + (toFloat(whole) > v);
 }
 
+/// Levels of textures.
+struct Levels {
+  /// From texels of the largest level to those of this one.
+  Lanes scale;
+  /// The number of the first texel, log2 of the edge, and the edge less one.
+  IntLanes first, log_edge, wrap;
+};
+
+/// The level with about one texel per pixel, of textures whose edges are 2^size.
+GALACTIC_EVERYWHERE inline IntLanes levelOf(Lanes squared_rate, IntLanes size) {
+  // log4 of the doubled square, rounded down: changes half way between two levels.
+  const IntLanes exponent = as<IntLanes>(squared_rate * spread(2.0F)) >> 23;
+  return lesser(greater((exponent - spread(127)) >> 1, spread(0)), size);
+}
+
+/// The same level for all.
+GALACTIC_EVERYWHERE inline Levels oneLevel(std::int32_t level, std::int32_t size, IntLanes texels) {
+  const auto texels_down_from = [](std::int32_t n) { return 0x55555555U & ((4U << (2 * n)) - 1U); };
+  const std::int32_t log_edge = size - level;
+  const std::uint32_t before = texels_down_from(size) - texels_down_from(log_edge);
+  return {spread(as<float>((127 - level) << 23)),
+          texels + spread(static_cast<std::int32_t>(before)), spread(log_edge),
+          spread((1 << log_edge) - 1)};
+}
+
+GALACTIC_EVERYWHERE inline Levels levelsAt(IntLanes level, IntLanes size, IntLanes texels) {
+  const IntLanes log_edge = size - level;
+  return {as<Lanes>((spread(127) - level) << 23),
+          texels + (texelsDownFrom(size) - texelsDownFrom(log_edge)), log_edge,
+          (spread(1) << log_edge) - spread(1)};
+}
+
 /// A place in one level of a texture: the four texels around it and the shares of the latter ones.
 struct LevelPlace {
   FourTexels at;
@@ -70,28 +102,21 @@ struct LevelPlace {
   IntLanes wraps;
 };
 
-GALACTIC_EVERYWHERE inline LevelPlace levelPlace(const TexturePlaces& places, IntLanes flat) {
-  const IntLanes size = pick(flat, spread(0), places.kind & 0xFF);
-  // log4 of the doubled square, rounded down: changes half way between two levels.
-  const IntLanes exponent = as<IntLanes>(places.squared_rate * spread(2.0F)) >> 23;
-  const IntLanes level = lesser(greater((exponent - spread(127)) >> 1, spread(0)), size);
-  const Lanes scale = as<Lanes>((spread(127) - level) << 23);
+GALACTIC_EVERYWHERE inline LevelPlace placeInLevel(const TexturePlaces& places,
+                                                   const Levels& level) {
   constexpr float kFarthest = 1 << 22;
-  const Lanes u = clampTo(places.u * scale - spread(0.5F), -kFarthest, kFarthest);
-  const Lanes v = clampTo(places.v * scale - spread(0.5F), -kFarthest, kFarthest);
+  const Lanes u = clampTo(places.u * level.scale - spread(0.5F), -kFarthest, kFarthest);
+  const Lanes v = clampTo(places.v * level.scale - spread(0.5F), -kFarthest, kFarthest);
   const IntLanes left = floorOf(u);
   const IntLanes upper = floorOf(v);
-  const IntLanes level_size = size - level;
-  const IntLanes wrap = (spread(1) << level_size) - spread(1);
-  const IntLanes first = places.texels + (texelsDownFrom(size) - texelsDownFrom(level_size));
-  const IntLanes row0 = first + ((upper & wrap) << level_size);
-  const IntLanes row1 = first + (((upper + spread(1)) & wrap) << level_size);
-  const IntLanes column0 = left & wrap;
-  const IntLanes column1 = (left + spread(1)) & wrap;
+  const IntLanes row0 = level.first + ((upper & level.wrap) << level.log_edge);
+  const IntLanes row1 = level.first + (((upper + spread(1)) & level.wrap) << level.log_edge);
+  const IntLanes column0 = left & level.wrap;
+  const IntLanes column1 = (left + spread(1)) & level.wrap;
   return {{row0 + column0, row0 + column1, row1 + column0, row1 + column1},
           u - toFloat(left),
           v - toFloat(upper),
-          column0 == wrap};
+          column0 == level.wrap};
 }
 
 GALACTIC_EVERYWHERE inline const std::int32_t* texelBase(const PaneTask& task,
@@ -119,7 +144,9 @@ GALACTIC_EVERYWHERE inline IntLanes sampleTexels(const PaneTask& task,
   const IntLanes flat = (places.kind & 0xFF) == spread(static_cast<std::int32_t>(kFlatSurface));
   unsigned left = ~signBits(flat) & kAllLanes;
   if (left == 0) return places.texels;
-  const LevelPlace place = levelPlace(places, flat);
+  const IntLanes size = pick(flat, spread(0), places.kind & 0xFF);
+  const LevelPlace place =
+      placeInLevel(places, levelsAt(levelOf(places.squared_rate, size), size, places.texels));
   const IntLanes base = (places.kind >> 8) & 0x3FFFFF;
   FourTexels texels{};
   while (left != 0) {
@@ -135,7 +162,7 @@ GALACTIC_EVERYWHERE inline IntLanes sampleTexels(const PaneTask& task,
   return pick(flat, places.texels, bilinear(texels, place.share_right, place.share_down));
 }
 
-/// The same where all have one record.
+/// One record for all lanes.
 struct OneRecord {
   const float* record;
   GALACTIC_EVERYWHERE Lanes field(std::uint32_t number) const { return spread(record[number]); }
@@ -168,6 +195,25 @@ GALACTIC_EVERYWHERE inline TexturePlaces texturePlaces(const Records& records,
           records.intField(kKind)};
 }
 
+/// sampleTexels() where all lanes have one record.
+GALACTIC_EVERYWHERE inline IntLanes sampleOne(const PaneTask& task, const OneRecord& record,
+                                              const PixelLanes& pixels) {
+  const auto kind = as<std::int32_t>(record.record[kKind]);
+  const std::int32_t log_edge = kind & 0xFF;
+  const IntLanes texels = record.intField(kTexels);
+  if (log_edge == static_cast<std::int32_t>(kFlatSurface)) return texels;
+  const TexturePlaces places = texturePlaces(record, pixels);
+  const IntLanes size = spread(log_edge);
+  IntLanes level = levelOf(places.squared_rate, size);
+  // Mostly they need one level: numbers instead of vectors.
+  const std::int32_t first = level[0];
+  const bool alike = signBits(level == spread(first)) == kAllLanes;
+  const Levels levels = alike ? oneLevel(first, log_edge, texels) : levelsAt(level, size, texels);
+  const LevelPlace place = placeInLevel(places, levels);
+  const FourTexels around = readTexels(texelBase(task, (kind >> 8) & 0x3FFFFF), place, spread(-1));
+  return bilinear(around, place.share_right, place.share_down);
+}
+
 /// a * b / 255, rounded, for bytes.
 GALACTIC_EVERYWHERE inline IntLanes byteProduct(IntLanes a, IntLanes b) {
   const IntLanes product = a * b + spread(128);
@@ -194,9 +240,8 @@ GALACTIC_EVERYWHERE inline IntLanes timesColors(IntLanes texels, const Records& 
 GALACTIC_EVERYWHERE inline IntLanes alphaPasses(const PaneTask& task, const OneRecord& record,
                                                 const OneRecord& colors, std::int32_t least_alpha,
                                                 const PixelLanes& pixels) {
-  const TexturePlaces places = texturePlaces(record, pixels);
-  IntLanes texels = sampleTexels(task, places);
-  if (places.kind[0] < 0) texels = timesColors(texels, colors, pixels);
+  IntLanes texels = sampleOne(task, record, pixels);
+  if (as<std::int32_t>(record.record[kKind]) < 0) texels = timesColors(texels, colors, pixels);
   return ((texels >> 24) & 0xFF) >= spread(least_alpha);
 }
 

@@ -41,12 +41,8 @@ inline EachRecord loadRecords(const float* records, const std::int32_t* ids) {
 /// Eight pixels of one triangle.
 inline IntLanes shadeAlike(const Pane& pane, std::uint32_t id, const PixelLanes& pixels) {
   const OneRecord record{recordAt(pane, id)};
-  const std::int32_t kind = record.intField(kKind)[0];
-  IntLanes colors = record.intField(kTexels);
-  if ((kind & 0xFF) != static_cast<std::int32_t>(kFlatSurface)) {
-    colors = sampleTexels(*pane.task, texturePlaces(record, pixels));
-  }
-  const auto bits = static_cast<std::uint32_t>(kind);
+  IntLanes colors = sampleOne(*pane.task, record, pixels);
+  const auto bits = as<std::uint32_t>(record.record[kKind]);
   if ((bits & kHasColors) != 0) {
     colors = timesColors(colors, OneRecord{colorsAt(pane, id)}, pixels);
   }

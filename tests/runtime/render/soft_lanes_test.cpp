@@ -1,0 +1,103 @@
+// The vectors of eight that the `soft` renderer is made of, as they are for any processor; that
+// those for AVX2 give the same images is tested with the batch (soft_batch_test.cpp).
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "render/raster/pane_task.h"
+#include "support/render_images.h"
+// In this order: each builds on those before it.
+// clang-format off
+#include "render/raster/lanes_eight.inl"
+#include "render/raster/sample.inl"
+// clang-format on
+
+namespace galactic::render {
+namespace {
+
+TEST(SoftLanes, ThoseOfAnySetAreWrittenInTheirOrder) {
+  const IntLanes lanes{10, 11, 12, 13, 14, 15, 16, 17};
+  for (unsigned which = 0; which < 256; ++which) {
+    std::array<std::int32_t, kWidth> written{};
+    storePicked(written.data(), lanes, which);
+    std::size_t count = 0;
+    for (unsigned n = 0; n < kWidth; ++n) {
+      if ((which >> n & 1U) == 0) continue;
+      ASSERT_EQ(written.at(count++), lanes[n]) << "set " << which;
+    }
+  }
+}
+
+/// A texture of random texels with all its levels, and a record that shows it.
+class SoftSampling : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kSeed = 20;
+  static constexpr std::uint32_t kLogEdge = 6;
+
+  SoftSampling() : texels_(kTexelsBefore + 2 * (1U << (2 * kLogEdge))) {
+    for (std::uint32_t& texel : texels_) texel = static_cast<std::uint32_t>(random_());
+    base_ = texels_.data();
+    task_.texel_bases = &base_;
+  }
+
+  /// A surface at random slants, with about 2^-2 to 2^5 texels a pixel.
+  void randomRecord() {
+    const float rate = std::exp2(test::uniform(random_, -2, 3));
+    for (const std::uint32_t field : {kURight, kUDown, kVRight, kVDown}) {
+      record_.at(field) = test::uniform(random_, -rate, rate);
+    }
+    record_[kUStart] = test::uniform(random_, -9, 9);
+    record_[kVStart] = test::uniform(random_, -9, 9);
+    record_[kWRight] = test::uniform(random_, 0, 0.15F);
+    record_[kWDown] = test::uniform(random_, 0, 0.15F);
+    record_[kTexels] = as<float>(kTexelsBefore);
+    record_[kKind] = as<float>(kLogEdge);
+  }
+
+  PixelLanes randomPixels() {
+    const Lanes x = spread(test::uniform(random_, 0, 6)) + Lanes{0, 1, 2, 3, 0, 1, 2, 3};
+    const Lanes y = spread(test::uniform(random_, 0, 6)) + Lanes{0, 0, 0, 0, 1, 1, 1, 1};
+    return {
+        x, y,
+        spread(1.0F) / (spread(0.4F) + spread(record_[kWRight]) * x + spread(record_[kWDown]) * y)};
+  }
+
+  static constexpr std::uint32_t kTexelsBefore = 5;
+  std::mt19937 random_{kSeed};
+  std::vector<std::uint32_t> texels_;
+  const std::uint32_t* base_ = nullptr;
+  PaneTask task_;
+  std::array<float, kRecordStride> record_{};
+};
+
+TEST_F(SoftSampling, OfOneRecordGivesTheBitsThatManyGive) {
+  constexpr int kRounds = 4000;
+  int levels_differ = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    randomRecord();
+    const PixelLanes pixels = randomPixels();
+    const OneRecord record{record_.data()};
+    const TexturePlaces places = texturePlaces(record, pixels);
+    const IntLanes level =
+        levelOf(places.squared_rate, spread(static_cast<std::int32_t>(kLogEdge)));
+    levels_differ += signBits(level == spread(level[0])) != kAllLanes ? 1 : 0;
+    const IntLanes one = sampleOne(task_, record, pixels);
+    ASSERT_EQ(signBits(one == sampleTexels(task_, places)), kAllLanes) << "round " << round;
+  }
+  EXPECT_GT(levels_differ, kRounds / 10);
+  EXPECT_LT(levels_differ, kRounds * 9 / 10);
+}
+
+TEST_F(SoftSampling, OfAFlatSurfaceIsItsColor) {
+  record_[kTexels] = as<float>(0x12345678);
+  record_[kKind] = as<float>(kFlatSurface);
+  const IntLanes colors = sampleOne(task_, OneRecord{record_.data()}, randomPixels());
+  EXPECT_EQ(signBits(colors == spread(0x12345678)), kAllLanes);
+}
+
+}  // namespace
+}  // namespace galactic::render
