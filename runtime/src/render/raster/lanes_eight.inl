@@ -239,6 +239,12 @@ inline void storePairs(Element* to, Vector first, Vector second) {
   store(to + kWidth, __builtin_shufflevector(first, second, 4, 12, 5, 13, 6, 14, 7, 15));
 }
 
+/// p + (q - p) * weight / 256 for the 16-bit halves of all lanes, which are bytes; `rest` is 256
+/// less the weight, and both are alike in the two halves of a lane.
+inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight, ShortLanes rest) {
+  return (p * rest + q * weight + 128) >> 8;
+}
+
 /// For each set of lanes their numbers, lowest first, and then lane 0.
 struct PickOrders {
   alignas(64) std::uint8_t order[256][kWidth] = {};

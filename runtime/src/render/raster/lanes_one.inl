@@ -94,25 +94,25 @@ GALACTIC_EVERYWHERE inline WordLanes operator>>(WordLanes a, int bits) {
   return a.v >> static_cast<unsigned>(bits);
 }
 
-GALACTIC_EVERYWHERE inline ShortLanes halves(std::uint32_t low, std::uint32_t high) {
-  return {(low & 0xFFFFU) | high << 16U};
-}
-GALACTIC_EVERYWHERE inline ShortLanes operator*(ShortLanes a, ShortLanes b) {
-  return halves((a.v & 0xFFFFU) * (b.v & 0xFFFFU), (a.v >> 16U) * (b.v >> 16U));
-}
-GALACTIC_EVERYWHERE inline ShortLanes operator+(ShortLanes a, ShortLanes b) {
-  return halves(a.v + b.v, (a.v >> 16U) + (b.v >> 16U));
-}
-GALACTIC_EVERYWHERE inline ShortLanes operator+(ShortLanes a, std::uint32_t b) {
-  return a + halves(b, b);
+/// The same bits of both halves.
+GALACTIC_EVERYWHERE constexpr std::uint32_t inBothHalves(std::uint32_t bits) {
+  return bits | bits << 16U;
 }
 GALACTIC_EVERYWHERE inline ShortLanes operator>>(ShortLanes a, unsigned bits) {
-  return halves((a.v & 0xFFFFU) >> bits, a.v >> 16U >> bits);
+  return {a.v >> bits & inBothHalves(0xFFFFU >> bits)};
 }
 GALACTIC_EVERYWHERE inline ShortLanes operator<<(ShortLanes a, unsigned bits) {
-  return halves((a.v & 0xFFFFU) << bits, a.v >> 16U << bits);
+  return {a.v << bits & inBothHalves(0xFFFFU << bits & 0xFFFFU)};
 }
 GALACTIC_EVERYWHERE inline ShortLanes operator|(ShortLanes a, ShortLanes b) { return {a.v | b.v}; }
+
+/// p + (q - p) * weight / 256 for both halves, which are bytes; `rest` is 256 less the weight, and
+/// both are alike in the two halves: one product serves both, as none reaches into the other half.
+GALACTIC_EVERYWHERE inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight,
+                                            ShortLanes rest) {
+  const std::uint32_t both = p.v * (rest.v & 0xFFFFU) + q.v * (weight.v & 0xFFFFU);
+  return {(both + inBothHalves(128)) >> 8U & inBothHalves(0xFF)};
+}
 
 /// The same bits as another type.
 template <class To, class From>

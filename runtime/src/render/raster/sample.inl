@@ -13,13 +13,7 @@ struct TexturePlaces {
   IntLanes texels, kind;
 };
 
-/// p + (q - p) * weight / 256 for the 16-bit halves of all lanes; weights 0 to 256.
-GALACTIC_EVERYWHERE inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight,
-                                            ShortLanes rest) {
-  return (p * rest + q * weight + 128) >> 8;
-}
-
-/// Weights for blend(), from shares within [0, 1].
+/// Weights for blend(), alike in both halves, from shares within [0, 1].
 GALACTIC_EVERYWHERE inline IntLanes blendWeight(Lanes share) {
   const IntLanes weight = toInt(share * spread(256.0F) + spread(0.5F));
   return weight | weight << 16;

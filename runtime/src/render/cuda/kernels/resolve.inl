@@ -69,10 +69,10 @@ GALACTIC_EVERYWHERE inline std::uint32_t triangleOf(std::uint32_t piece) {
 
 GALACTIC_EVERYWHERE inline IntLanes shadePixel(const PaneTask& task, const float* record,
                                                const float* colors, const PixelLanes& pixel) {
-  const TexturePlaces places = texturePlaces(OneRecord{record}, pixel);
-  IntLanes color = sampleTexels(task, places);
-  if (signBits(places.kind) != 0) color = timesColors(color, OneRecord{colors}, pixel);
-  if (signBits(places.kind << 1) != 0) {
+  IntLanes color = sampleOne(task, OneRecord{record}, pixel);
+  const auto kind = as<std::uint32_t>(record[kKind]);
+  if ((kind & kHasColors) != 0) color = timesColors(color, OneRecord{colors}, pixel);
+  if ((kind & kHasLight) != 0) {
     const Lanes light[3] = {Lanes(record[kLightRight]), Lanes(record[kLightDown]),
                             Lanes(record[kLightStart])};
     color = timesLight(color, light, pixel);
