@@ -25,8 +25,7 @@ struct LongEdge {
   IntLanes offsets;
 };
 
-GALACTIC_EVERYWHERE inline LongEdge longEdge(const Corner& from, const Corner& to,
-                                             const PixelOffsets& pixels) {
+GALACTIC_EVERYWHERE inline LongEdge longEdge(const Corner& from, const Corner& to) {
   const std::int64_t dx = to.x - from.x;
   const std::int64_t dy = to.y - from.y;
   const bool keeps = dy < 0 || (dy == 0 && dx > 0);
@@ -38,7 +37,7 @@ GALACTIC_EVERYWHERE inline LongEdge longEdge(const Corner& from, const Corner& t
   edge.down = static_cast<std::int32_t>(dx);
   const std::int64_t last = kTileEdge - 1;
   edge.reach = (dy < 0 ? -dy * last : 0) + (dx > 0 ? dx * last : 0);
-  edge.offsets = pixels.right * spread(edge.right) + pixels.down * spread(edge.down);
+  edge.offsets = spread(0);
   return edge;
 }
 
@@ -159,18 +158,26 @@ GALACTIC_EVERYWHERE inline Plane depthOf(const LargeTriangle& triangle) {
                  static_cast<double>(triangle.corners[2]->z));
 }
 
-GALACTIC_EVERYWHERE inline LargeSetup setUpLarge(const LargeTriangle& triangle,
-                                                 const PixelOffsets& pixels) {
+/// Sets what depends on the pixels of a block that are drawn.
+GALACTIC_EVERYWHERE inline void setOffsets(LargeSetup& setup, const PixelOffsets& pixels) {
+  for (LongEdge& edge : setup.edges) {
+    edge.offsets = pixels.right * spread(edge.right) + pixels.down * spread(edge.down);
+  }
+  setup.z_offsets = toFloat(pixels.right) * spread(static_cast<float>(setup.depth.right)) +
+                    toFloat(pixels.down) * spread(static_cast<float>(setup.depth.down));
+}
+
+/// All but the offsets.
+GALACTIC_EVERYWHERE inline LargeSetup setUpLarge(const LargeTriangle& triangle) {
   const Corner& a = *triangle.corners[0];
   const Corner& b = *triangle.corners[1];
   const Corner& c = *triangle.corners[2];
   LargeSetup setup;
-  setup.edges[0] = longEdge(a, b, pixels);
-  setup.edges[1] = longEdge(b, c, pixels);
-  setup.edges[2] = longEdge(c, a, pixels);
+  setup.edges[0] = longEdge(a, b);
+  setup.edges[1] = longEdge(b, c);
+  setup.edges[2] = longEdge(c, a);
   setup.depth = depthOf(triangle);
-  setup.z_offsets = toFloat(pixels.right) * spread(static_cast<float>(setup.depth.right)) +
-                    toFloat(pixels.down) * spread(static_cast<float>(setup.depth.down));
+  setup.z_offsets = spread(0.0F);
   setup.z_most = greaterOf(greaterOf(a.z, b.z), c.z);
   setup.z_low = spread(lesserOf(lesserOf(a.z, b.z), c.z));
   setup.z_high = spread(setup.z_most);

@@ -122,6 +122,37 @@ GALACTIC_EVERYWHERE inline Sorting sortEight(const SortLimits limits, const Clus
           last_y};
 }
 
+/// At most the least 1/w of each tile of a pane, row after row.
+struct TileDepths {
+  const float* depth;
+  std::int32_t columns;
+};
+
+/// Which of eight small triangles lie behind all that was drawn in their tiles: bit n for triangle
+/// n. Those that touch more than two tiles in a row or a column do not count.
+GALACTIC_EVERYWHERE inline unsigned behindTiles(const TileDepths& tiles, const ClusterState& state,
+                                                const Sorting& sorting,
+                                                const CornerLanes& corners) {
+  const Lanes nearest =
+      mostOf(gather(state.z, corners.a), gather(state.z, corners.b), gather(state.z, corners.c));
+  const IntLanes left = sorting.first_x >> 3;
+  const IntLanes right = sorting.last_x >> 3;
+  const IntLanes top = sorting.first_y >> 3;
+  const IntLanes bottom = sorting.last_y >> 3;
+  // Those that cover no pixel may lie outside of the pane.
+  const IntLanes few = (right >= left) & ((right - left) < spread(2)) & (bottom >= top) &
+                       ((bottom - top) < spread(2)) & (sorting.last_x >= sorting.first_x) &
+                       (sorting.last_y >= sorting.first_y);
+  const IntLanes upper = top * spread(tiles.columns);
+  const IntLanes lower = bottom * spread(tiles.columns);
+  const auto depth = [&](IntLanes row, IntLanes column) {
+    return gather(tiles.depth, (row + column) & few);
+  };
+  const Lanes farthest = lesser(lesser(depth(upper, left), depth(upper, right)),
+                                lesser(depth(lower, left), depth(lower, right)));
+  return signBits((farthest >= nearest) & few);
+}
+
 /// Two numbers per triangle that say how a value at its corners changes over the pane.
 struct GradientLanes {
   Lanes right, down;

@@ -37,7 +37,8 @@ void drawLarge(Pane& pane, const ClusterState& state, const Corner& a, const Cor
   const TileBox tiles = tilesOf(*pane.task, triangle);
   if (tiles.right < tiles.left) return;
   ++pane.counts.triangles_drawn;
-  const LargeSetup setup = setUpLarge(triangle, blockPixels());
+  LargeSetup setup = setUpLarge(triangle);
+  setOffsets(setup, blockPixels());
   if (pane.records == kMostRecords) makeRoom(pane);
   float* record = recordAt(pane, pane.records);
   float* colors = colorsAt(pane, pane.records);

@@ -42,36 +42,12 @@ inline void append(std::int32_t* list, std::uint32_t& count, IntLanes corners, u
   count += static_cast<std::uint32_t>(__builtin_popcount(which));
 }
 
-/// Which of eight small triangles lie behind all that was drawn in their tiles: bit n for triangle
-/// n. Those that touch more than two tiles in a row or a column do not count.
-inline unsigned behindTiles(const Pane& pane, const ClusterState& state, const Sorting& sorting,
-                            const CornerLanes& corners) {
-  const Lanes nearest =
-      mostOf(gather(state.z, corners.a), gather(state.z, corners.b), gather(state.z, corners.c));
-  const IntLanes left = sorting.first_x >> 3;
-  const IntLanes right = sorting.last_x >> 3;
-  const IntLanes columns = spread(static_cast<std::int32_t>(pane.tile_columns));
-  const IntLanes top = sorting.first_y >> 3;
-  const IntLanes bottom = sorting.last_y >> 3;
-  // Those that cover no pixel may lie outside of the pane.
-  const IntLanes few = (right >= left) & ((right - left) <= spread(1)) & (bottom >= top) &
-                       ((bottom - top) <= spread(1)) & (sorting.last_x >= sorting.first_x) &
-                       (sorting.last_y >= sorting.first_y);
-  const IntLanes upper = top * columns;
-  const IntLanes lower = bottom * columns;
-  const auto depth = [&](IntLanes row, IntLanes column) {
-    return gather(pane.scratch->tile_depth, (row + column) & few);
-  };
-  const Lanes farthest = lesser(lesser(depth(upper, left), depth(upper, right)),
-                                lesser(depth(lower, left), depth(lower, right)));
-  return signBits((farthest >= nearest) & few);
-}
-
 void sortTriangles(const Pane& pane, const ClusterState& state, Survivors& survivors) {
   const PaneTask& task = *pane.task;
   survivors.small_count = survivors.large_count = survivors.clipped_count = 0;
   const RenderCluster& cluster = *state.facts.cluster;
   const SortLimits limits = sortLimits(task, cluster);
+  const TileDepths tiles{pane.scratch->tile_depth, static_cast<std::int32_t>(pane.tile_columns)};
   const std::uint32_t triangle_count = cluster.triangle_count;
   const std::uint8_t* block = state.facts.pack->triangles +
                               static_cast<std::size_t>(cluster.first_triangle) * kTriangleRows;
@@ -88,7 +64,7 @@ void sortTriangles(const Pane& pane, const ClusterState& state, Survivors& survi
     }
     const Sorting sorting = sortEight(limits, state, corners);
     unsigned small = sorting.small & valid;
-    if (small != 0 && task.culling) small &= ~behindTiles(pane, state, sorting, corners);
+    if (small != 0 && task.culling) small &= ~behindTiles(tiles, state, sorting, corners);
     append(survivors.small, survivors.small_count, both, small);
     const unsigned large = sorting.large & valid;
     if (large != 0) append(survivors.large, survivors.large_count, both, large);

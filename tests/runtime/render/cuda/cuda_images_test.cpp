@@ -2,7 +2,9 @@
 // bit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -217,6 +219,78 @@ TEST_F(CudaImages, OfThousandsOfTinyTrianglesAndOfHugeOnesEqualThoseOfSoft) {
     view.instances = instances;
   }
   const RenderOptions options = imageOptions(128, 128);
+  EXPECT_EQ(drawWithSoft(library, options, views), drawWithKernels(library, options, views));
+}
+
+/// How many triangles need more than one thread: those that reach over 64 pixels, and those that
+/// the near plane cuts.
+struct LargeAndCut {
+  int large = 0;
+  int cut = 0;
+};
+
+LargeAndCut countLarge(const std::vector<std::array<Vec3, 3>>& triangles, const RenderView& view,
+                       const RenderOptions& options) {
+  const RigidTransform camera_from_world = inverse(view.camera.world_from_camera);
+  const float focal =
+      static_cast<float>(options.height) / 2 / std::tan(view.camera.vertical_fov / 2);
+  LargeAndCut counts;
+  for (const auto& triangle : triangles) {
+    int in_front = 0;
+    std::array<float, 2> low{1e9F, 1e9F};
+    std::array<float, 2> high{-1e9F, -1e9F};
+    for (const Vec3& corner : triangle) {
+      const Vec3 at = camera_from_world * corner;
+      if (at.x < options.near) continue;
+      ++in_front;
+      const std::array<float, 2> pixel{focal * at.z / at.x, focal * at.y / at.x};
+      for (std::size_t n = 0; n < 2; ++n) {
+        low[n] = std::min(low[n], pixel[n]);
+        high[n] = std::max(high[n], pixel[n]);
+      }
+    }
+    counts.cut += in_front == 1 || in_front == 2 ? 1 : 0;
+    const bool is_large = high[0] - low[0] > 65 || high[1] - low[1] > 65;
+    counts.large += in_front == 3 && is_large ? 1 : 0;
+  }
+  return counts;
+}
+
+TEST_F(CudaImages, OfMoreLargeAndClippedTrianglesThanAreDrawnTogetherEqualThoseOfSoft) {
+  // Few corners, so that all triangles are in one cluster.
+  std::vector<Vec3> corners(40);
+  for (Vec3& corner : corners) {
+    corner = {uniform(random_, -4, 4), uniform(random_, -4, 4), uniform(random_, -4, 4)};
+  }
+  RenderModelBuilder builder(1.0F / 1024);
+  builder.model();
+  std::vector<std::array<Vec3, 3>> triangles(120);
+  for (auto& triangle : triangles) {
+    std::array<RenderVertex, 3> vertices;
+    for (std::size_t n = 0; n < 3; ++n) {
+      triangle[n] = corners[random_() % corners.size()];
+      vertices[n] = {triangle[n], 0, 0, 0xFFFFFFFF};
+    }
+    builder.triangle(vertices, {.two_sided = true});
+  }
+  builder.finish();
+  RenderLibrary library;
+  library.add(builder.meshes());
+  ASSERT_EQ(builder.meshes().clusters.size(), 1U);
+  const std::array<RenderInstance, 1> instances{RenderInstance{0, {}}};
+  const RenderOptions options = imageOptions(200, 160);
+  std::vector<RenderView> views(8);
+  int many_large = 0;
+  int many_cut = 0;
+  for (RenderView& view : views) {
+    view.camera.world_from_camera = rigidTransform(randomPose(4));
+    view.instances = instances;
+    const LargeAndCut counts = countLarge(triangles, view, options);
+    many_large += counts.large > 48 ? 1 : 0;
+    many_cut += counts.cut > 8 ? 1 : 0;
+  }
+  EXPECT_GT(many_large, 0);
+  EXPECT_GT(many_cut, 0);
   EXPECT_EQ(drawWithSoft(library, options, views), drawWithKernels(library, options, views));
 }
 

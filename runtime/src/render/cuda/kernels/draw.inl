@@ -19,17 +19,40 @@ constexpr std::uint32_t kFirstCut = 2 * kMostInCluster;
 /// Triangles of the largest fan.
 constexpr std::uint32_t kMostInFan = kMostCorners - 2;
 
+/// Pixels that a small triangle can cover, first and last: a pane has at most 256 in a row.
+struct PixelBox {
+  std::uint8_t left, right, top, bottom;
+};
+
+/// A large triangle, or what clipping leaves of one, that all threads draw together.
+struct LargePiece {
+  LargeSetup setup;
+  TileBox tiles;
+  std::uint32_t piece;
+};
+/// Drawn between two barriers.
+constexpr std::uint32_t kMostPieces = 48;
+constexpr std::uint32_t kMostCutTogether = kMostPieces / kMostInFan;
+
 struct DrawShared {
   ClusterState state;
   VertexFrame frame;
   /// Of all clusters that the block drew.
   std::uint64_t clusters_drawn, triangles_drawn;
   std::uint32_t shown;
-  std::uint32_t small_count, large_count, cut_count;
+  std::uint32_t small_count, shared_count, large_count, cut_count, piece_count;
   std::uint8_t small[kMostInCluster];
+  /// Places of small triangles in that list: those that several threads share.
+  std::uint8_t shared_small[kMostInCluster];
   std::uint8_t large[kMostInCluster];
   std::uint8_t cut[kMostInCluster];
-  GroupSetup setups[kMostInCluster];
+  /// By their places in `small`.
+  PixelBox boxes[kMostInCluster];
+  union {
+    GroupSetup setups[kMostInCluster];
+    /// When the small ones are drawn.
+    LargePiece pieces[kMostPieces];
+  };
 };
 
 /// A pane, and the cluster that is drawn on it.
@@ -144,7 +167,7 @@ GALACTIC_EVERYWHERE inline void beginCluster(const Block& block, const DrawPlace
     state.frame = &shared.frame;
     state.colors = clusterColors(state.facts);
     shared.state.any_bad = false;
-    shared.small_count = shared.large_count = shared.cut_count = 0;
+    shared.small_count = shared.shared_count = shared.large_count = shared.cut_count = 0;
   });
   block.each([&](std::uint32_t thread) {
     ClusterState& state = shared.state;
@@ -172,13 +195,15 @@ GALACTIC_EVERYWHERE inline void noteTriangle(std::uint8_t* list, std::uint32_t* 
   list[addAtomically(count, 1U)] = static_cast<std::uint8_t>(number);
 }
 
-/// Lists the triangles that can cover a pixel, and sets up the small ones.
+/// Lists the triangles that can cover a pixel, and sets up the small ones. `compares`: those that
+/// the tiles' depths hide are left out.
 GALACTIC_EVERYWHERE inline void sortTriangles(const Block& block, const DrawPlace& place,
-                                              DrawShared& shared) {
+                                              bool compares, DrawShared& shared) {
   block.each([&](std::uint32_t thread) {
     const ClusterState& state = shared.state;
     const RenderCluster& cluster = *state.facts.cluster;
     const SortLimits limits = sortLimits(*place.task, cluster);
+    const TileDepths tiles{place.tile_depth, static_cast<std::int32_t>(place.tile_columns)};
     for (std::uint32_t t = thread; t < cluster.triangle_count; t += block.threads) {
       const CornerLanes corners = triangleCorners(state.facts, t);
       if (state.any_bad) {
@@ -189,8 +214,13 @@ GALACTIC_EVERYWHERE inline void sortTriangles(const Block& block, const DrawPlac
       const Sorting sorting = sortEight(limits, state, corners);
       if (sorting.large != 0) noteTriangle(shared.large, &shared.large_count, t);
       if (sorting.small == 0) continue;
+      if (compares && behindTiles(tiles, state, sorting, corners) != 0) continue;
       const std::uint32_t at = addAtomically(&shared.small_count, 1U);
       shared.small[at] = static_cast<std::uint8_t>(t);
+      shared.boxes[at] = {static_cast<std::uint8_t>(sorting.first_x.v),
+                          static_cast<std::uint8_t>(sorting.last_x.v),
+                          static_cast<std::uint8_t>(sorting.first_y.v),
+                          static_cast<std::uint8_t>(sorting.last_y.v)};
       SmallGroup group;
       setUpGroup(*place.task, state, packed(corners), group, shared.setups[at]);
     }
@@ -234,16 +264,80 @@ GALACTIC_EVERYWHERE __attribute__((noinline)) void drawSmallSurface(const DrawPl
   coverTriangle(setup, 0, pixelOf(lane), target);
 }
 
+/// Triangles that can cover at most this many pixels are drawn by one thread each: eight would test
+/// blocks of which most pixels lie beside the triangle.
+constexpr std::uint32_t kMostAlone = 64;
+
+/// What coverTriangle() finds for 1/w at a pixel, counted from the first one of the first block: it
+/// goes from block to block, and so must this.
+GALACTIC_EVERYWHERE inline float depthAt(const GroupSetup& setup, std::uint32_t x,
+                                         std::uint32_t y) {
+  const float right = setup.z_right[0];
+  const float down = setup.z_down[0];
+  float z = setup.z[0] + static_cast<float>(x % kBlockWidth) * right +
+            static_cast<float>(y % kBlockHeight) * down;
+  for (std::uint32_t row = y / kBlockHeight; row != 0; --row) z = z + down * 2;
+  for (std::uint32_t column = x / kBlockWidth; column != 0; --column) z = z + right * 4;
+  return lesserOf(greaterOf(z, setup.z_low[0]), setup.z_high[0]);
+}
+
+/// Draws a small triangle pixel by pixel.
+GALACTIC_EVERYWHERE inline void coverAlone(const DrawPlace& place, const GroupSetup& setup,
+                                           const PixelBox& box, std::uint32_t piece) {
+  const std::uint32_t first_x = static_cast<std::uint32_t>(setup.first_column[0]) * kBlockWidth;
+  const std::uint32_t first_y = static_cast<std::uint32_t>(setup.first_row[0]) * kBlockHeight;
+  const IntLanes right[3] = {setup.edge_right[0][0], setup.edge_right[1][0],
+                             setup.edge_right[2][0]};
+  const auto at_start = [&](int n) {
+    return IntLanes(setup.edge[n][0]) +
+           right[n] * IntLanes(static_cast<std::int32_t>(box.left - first_x)) +
+           IntLanes(setup.edge_down[n][0]) * IntLanes(static_cast<std::int32_t>(box.top - first_y));
+  };
+  EdgeLanes row{at_start(0), at_start(1), at_start(2)};
+  const std::size_t columns = place.tile_columns * (kTileEdge / kBlockWidth);
+  for (std::uint32_t y = box.top; y <= box.bottom; ++y) {
+    EdgeLanes edges = row;
+    for (std::uint32_t x = box.left; x <= box.right; ++x) {
+      if (signBits(edges.a | edges.b | edges.c) == 0) {
+        const float z = depthAt(setup, x - first_x, y - first_y);
+        raiseAtomically(place.pixels + (y / kBlockHeight * columns + x / kBlockWidth) * kWidth +
+                            y % kBlockHeight * kBlockWidth + x % kBlockWidth,
+                        seenAt(z, place.rank, piece));
+      }
+      edges = {edges.a + right[0], edges.b + right[1], edges.c + right[2]};
+    }
+    row = {row.a + IntLanes(setup.edge_down[0][0]), row.b + IntLanes(setup.edge_down[1][0]),
+           row.c + IntLanes(setup.edge_down[2][0])};
+  }
+}
+
+/// Draws the small triangles that take one thread, and lists the others.
+GALACTIC_EVERYWHERE inline void drawAlone(const Block& block, const DrawPlace& place,
+                                          DrawShared& shared, std::uint32_t thread) {
+  const bool has_holes = shared.state.facts.surface.least_alpha != 0;
+  for (std::uint32_t n = thread; n < shared.small_count; n += block.threads) {
+    const PixelBox box = shared.boxes[n];
+    const std::uint32_t pixels = (box.right - box.left + 1U) * (box.bottom - box.top + 1U);
+    if (has_holes || pixels > kMostAlone) {
+      noteTriangle(shared.shared_small, &shared.shared_count, n);
+    } else {
+      coverAlone(place, shared.setups[n], box, shared.small[n]);
+    }
+  }
+}
+
+/// Draws the other small triangles.
 GALACTIC_EVERYWHERE inline void drawSmall(const Block& block, const DrawPlace& place,
                                           const DrawShared& shared, std::uint32_t thread) {
   const ClusterState& state = shared.state;
   const std::uint32_t lane = thread % kTeam;
-  for (std::uint32_t n = thread / kTeam; n < shared.small_count; n += block.threads / kTeam) {
-    const std::uint32_t number = shared.small[n];
+  for (std::uint32_t n = thread / kTeam; n < shared.shared_count; n += block.threads / kTeam) {
+    const std::uint32_t at = shared.shared_small[n];
+    const std::uint32_t number = shared.small[at];
     if (state.facts.surface.least_alpha == 0) {
       const AllPass all;
       PixelTarget<AllPass> target{&place, &all, lane, number};
-      coverTriangle(shared.setups[n], 0, pixelOf(lane), target);
+      coverTriangle(shared.setups[at], 0, pixelOf(lane), target);
       continue;
     }
     drawSmallSurface(place, state, number, lane);
@@ -265,8 +359,8 @@ GALACTIC_EVERYWHERE inline void coverTiles(const Block& block, const LargeSetup&
   }
 }
 
-/// All threads draw one large triangle. A function of its own, as above.
-GALACTIC_EVERYWHERE __attribute__((noinline)) void drawLarge(
+/// All threads draw one large triangle whose surface has holes. A function of its own, as above.
+GALACTIC_EVERYWHERE __attribute__((noinline)) void drawLargeSurface(
     const Block& block, const DrawPlace& place, const ClusterState& state, const Corner* corners,
     std::uint32_t piece, std::uint32_t thread) {
   LargeTriangle triangle;
@@ -275,49 +369,133 @@ GALACTIC_EVERYWHERE __attribute__((noinline)) void drawLarge(
   const TileBox tiles = tilesOf(*place.task, triangle);
   if (tiles.right < tiles.left) return;
   const std::uint32_t lane = thread % kTeam;
-  const LargeSetup setup = setUpLarge(triangle, pixelOf(lane));
-  if (state.facts.surface.least_alpha == 0) {
-    const AllPass all;
-    coverTiles(block, setup, tiles, thread, PixelTarget<AllPass>{&place, &all, lane, piece});
-    return;
-  }
+  LargeSetup setup = setUpLarge(triangle);
+  setOffsets(setup, pixelOf(lane));
   SurfacePass pass = surfacePass(place, state);
   recordLarge(state, triangle, setup.depth, pass.record, pass.colors);
   coverTiles(block, setup, tiles, thread, PixelTarget<SurfacePass>{&place, &pass, lane, piece});
 }
 
-GALACTIC_EVERYWHERE inline void drawAllLarge(const Block& block, const DrawPlace& place,
-                                             const DrawShared& shared, std::uint32_t thread) {
-  const ClusterState& state = shared.state;
-  for (std::uint32_t n = 0; n < shared.large_count; ++n) {
-    const std::uint32_t number = shared.large[n];
-    const CornerLanes at = triangleCorners(state.facts, number);
-    const Corner corners[3] = {cornerOf(state, static_cast<std::uint32_t>(at.a.v)),
-                               cornerOf(state, static_cast<std::uint32_t>(at.b.v)),
-                               cornerOf(state, static_cast<std::uint32_t>(at.c.v))};
-    drawLarge(block, place, state, corners, kFirstLarge + number, thread);
+/// The corners of a triangle that needs no clipping.
+GALACTIC_EVERYWHERE inline void largeCorners(const ClusterState& state, std::uint32_t number,
+                                             Corner* corners) {
+  const CornerLanes at = triangleCorners(state.facts, number);
+  corners[0] = cornerOf(state, static_cast<std::uint32_t>(at.a.v));
+  corners[1] = cornerOf(state, static_cast<std::uint32_t>(at.b.v));
+  corners[2] = cornerOf(state, static_cast<std::uint32_t>(at.c.v));
+}
+
+/// Calls `draw` with three corners and the piece for all that clipping leaves of a triangle.
+template <class Draw>
+GALACTIC_EVERYWHERE inline void eachOfFan(const ClusterState& state, std::uint32_t number,
+                                          const Draw& draw) {
+  const CornerLanes at = triangleCorners(state.facts, number);
+  Corner ready[kMostCorners];
+  const int count =
+      clipTriangle(state, static_cast<std::uint32_t>(at.a.v), static_cast<std::uint32_t>(at.b.v),
+                   static_cast<std::uint32_t>(at.c.v), ready);
+  for (int m = 1; m + 1 < count; ++m) {
+    const Corner corners[3] = {ready[0], ready[m], ready[m + 1]};
+    draw(corners, kFirstCut + number * kMostInFan + static_cast<std::uint32_t>(m - 1));
   }
 }
 
-/// A function of its own: few clusters have triangles to cut, and cutting takes all registers.
-GALACTIC_EVERYWHERE __attribute__((noinline)) void drawAllCut(const Block& block,
-                                                              const DrawPlace& place,
-                                                              const DrawShared& shared,
-                                                              std::uint32_t thread) {
+/// Large and clipped triangles of a surface with holes, one by one: each thread sets up all of
+/// them.
+GALACTIC_EVERYWHERE __attribute__((noinline)) void drawLargeSurfaces(const Block& block,
+                                                                     const DrawPlace& place,
+                                                                     const DrawShared& shared,
+                                                                     std::uint32_t thread) {
   const ClusterState& state = shared.state;
+  for (std::uint32_t n = 0; n < shared.large_count; ++n) {
+    Corner corners[3];
+    largeCorners(state, shared.large[n], corners);
+    drawLargeSurface(block, place, state, corners, kFirstLarge + shared.large[n], thread);
+  }
   for (std::uint32_t n = 0; n < shared.cut_count; ++n) {
-    const std::uint32_t number = shared.cut[n];
-    const CornerLanes at = triangleCorners(state.facts, number);
-    Corner ready[kMostCorners];
-    const int count =
-        clipTriangle(state, static_cast<std::uint32_t>(at.a.v), static_cast<std::uint32_t>(at.b.v),
-                     static_cast<std::uint32_t>(at.c.v), ready);
-    for (int m = 1; m + 1 < count; ++m) {
-      const Corner corners[3] = {ready[0], ready[m], ready[m + 1]};
-      drawLarge(block, place, state, corners,
-                kFirstCut + number * kMostInFan + static_cast<std::uint32_t>(m - 1), thread);
+    eachOfFan(state, shared.cut[n], [&](const Corner* corners, std::uint32_t piece) {
+      drawLargeSurface(block, place, state, corners, piece, thread);
+    });
+  }
+}
+
+/// Sets up a triangle that all threads will draw.
+GALACTIC_EVERYWHERE inline void notePiece(const DrawPlace& place, const Corner* corners,
+                                          std::uint32_t piece, DrawShared& shared) {
+  LargeTriangle triangle;
+  const bool two_sided = shared.state.facts.cluster->two_sided != 0;
+  if (!faces(corners[0], corners[1], corners[2], two_sided, triangle)) return;
+  const TileBox tiles = tilesOf(*place.task, triangle);
+  if (tiles.right < tiles.left) return;
+  shared.pieces[addAtomically(&shared.piece_count, 1U)] = {setUpLarge(triangle), tiles, piece};
+}
+
+/// A function of its own: few clusters have triangles to cut, and cutting takes all registers.
+GALACTIC_EVERYWHERE __attribute__((noinline)) void noteCut(const DrawPlace& place,
+                                                           std::uint32_t number,
+                                                           DrawShared& shared) {
+  eachOfFan(shared.state, number, [&](const Corner* corners, std::uint32_t piece) {
+    notePiece(place, corners, piece, shared);
+  });
+}
+
+/// Draws what was set up: the threads' teams take its tiles in turn. `compares`: see
+/// sortTriangles().
+GALACTIC_EVERYWHERE inline void drawPieces(const Block& block, const DrawPlace& place,
+                                           bool compares, const DrawShared& shared,
+                                           std::uint32_t thread) {
+  const std::uint32_t lane = thread % kTeam;
+  const std::uint32_t teams = block.threads / kTeam;
+  const AllPass all;
+  // Of the next tile.
+  std::uint32_t team = 0;
+  for (std::uint32_t p = 0; p < shared.piece_count; ++p) {
+    const TileBox tiles = shared.pieces[p].tiles;
+    const auto wide = static_cast<std::uint32_t>(tiles.right - tiles.left + 1);
+    const std::uint32_t count = wide * static_cast<std::uint32_t>(tiles.bottom - tiles.top + 1);
+    std::uint32_t n = (thread / kTeam + teams - team) % teams;
+    team = (team + count) % teams;
+    if (n >= count) continue;
+    LargeSetup setup = shared.pieces[p].setup;
+    setOffsets(setup, pixelOf(lane));
+    PixelTarget<AllPass> target{&place, &all, lane, shared.pieces[p].piece};
+    for (; n < count; n += teams) {
+      const std::int32_t x = tiles.left + static_cast<std::int32_t>(n % wide);
+      const std::int32_t y = tiles.top + static_cast<std::int32_t>(n / wide);
+      EdgeLanes edges;
+      if (!tileEdges(setup, x, y, edges)) continue;
+      const auto tile =
+          static_cast<std::uint32_t>(y) * place.tile_columns + static_cast<std::uint32_t>(x);
+      if (compares && place.tile_depth[tile] >= nearestInTile(setup, x, y)) continue;
+      coverTile(setup, edges, x, y, target);
     }
   }
+}
+
+/// Draws the triangles that are not small. A thread sets one up, all draw it.
+GALACTIC_EVERYWHERE inline void drawAllLarge(const Block& block, const DrawPlace& place,
+                                             bool compares, DrawShared& shared) {
+  const auto draw_together = [&](const auto& note, std::uint32_t count, std::uint32_t together) {
+    for (std::uint32_t first = 0; first < count; first += together) {
+      block.each([&](std::uint32_t thread) {
+        if (thread == 0) shared.piece_count = 0;
+      });
+      block.each([&](std::uint32_t thread) {
+        for (std::uint32_t n = thread; n < together && first + n < count; n += block.threads) {
+          note(first + n);
+        }
+      });
+      block.each([&](std::uint32_t thread) { drawPieces(block, place, compares, shared, thread); });
+    }
+  };
+  const auto note_large = [&](std::uint32_t n) {
+    Corner corners[3];
+    largeCorners(shared.state, shared.large[n], corners);
+    notePiece(place, corners, kFirstLarge + shared.large[n], shared);
+  };
+  const auto note_cut = [&](std::uint32_t n) { noteCut(place, shared.cut[n], shared); };
+  draw_together(note_large, shared.large_count, kMostPieces);
+  draw_together(note_cut, shared.cut_count, kMostCutTogether);
 }
 
 /// Draws the clusters of a pass that are the block's.
@@ -329,16 +507,21 @@ GALACTIC_EVERYWHERE inline void drawClusters(const Block& block, DrawShared& sha
   });
   for (std::uint32_t n = block.index; n < count; n += block.count) {
     const DrawPlace place = drawPlace(slice, slice.items[pass][n]);
-    if (pass != 0 && place.task->culling) {
+    const bool compares = pass != 0 && place.task->culling;
+    if (compares) {
       lookBehind(block, place, shared);
       if (shared.shown == 0) continue;
     }
     beginCluster(block, place, shared);
-    sortTriangles(block, place, shared);
+    sortTriangles(block, place, compares, shared);
+    block.each([&](std::uint32_t thread) { drawAlone(block, place, shared, thread); });
+    block.each([&](std::uint32_t thread) { drawSmall(block, place, shared, thread); });
+    if (shared.state.facts.surface.least_alpha == 0) {
+      drawAllLarge(block, place, compares, shared);
+    } else {
+      block.each([&](std::uint32_t thread) { drawLargeSurfaces(block, place, shared, thread); });
+    }
     block.each([&](std::uint32_t thread) {
-      drawSmall(block, place, shared, thread);
-      drawAllLarge(block, place, shared, thread);
-      drawAllCut(block, place, shared, thread);
       if (thread != 0) return;
       ++shared.clusters_drawn;
       shared.triangles_drawn += shared.small_count + shared.large_count + shared.cut_count;
