@@ -14,7 +14,7 @@ inline constexpr std::uint32_t kClearancePlanes = kClearanceBands + 1;
 /// Which of eight groups of spheres are surely free, as bits.
 struct SureGroups {
   unsigned free = 0;
-  /// Free, but so low that a floor not much higher would block them.
+  /// Free or not: so low that a floor not much higher would block them.
   unsigned low = 0;
 
   friend bool operator==(const SureGroups&, const SureGroups&) = default;
@@ -31,9 +31,8 @@ struct alignas(32) ClearanceLanes {
   /// Cells for each meter.
   float inverse_cell[kLanes];
   float cells_x[kLanes], cells_z[kLanes];
-  /// Heights between which centers have to be, meters: from `lowest` on they may be called free,
-  /// from `low` on low.
-  float low[kLanes], lowest[kLanes], highest[kLanes];
+  /// Heights between which centers have to be, meters; below `low` they are low.
+  float lowest[kLanes], low[kLanes], highest[kLanes];
   /// The height of the lowest band, and bands for each meter.
   float band_from[kLanes], inverse_band[kLanes];
   /// Bytes: of what is lower than all bands, and from there to the lowest band, from band to band.

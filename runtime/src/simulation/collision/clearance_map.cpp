@@ -22,16 +22,16 @@ constexpr float kSlack = 1e-3F;
 constexpr float kOverContact = 5e-3F;
 
 struct Heights {
-  float low = 0;
   float lowest = 0;
+  float low = 0;
   float highest = 0;
   float band_from = 0;
   float band_height = 0;
 
   /// The least height of a center that a plane clears: the lower one, then the bands.
   [[nodiscard]] float lowOf(std::uint32_t plane) const {
-    if (plane == 0) return low;
-    return plane == 1 ? lowest : band_from + static_cast<float>(plane - 1) * band_height;
+    if (plane == 0) return lowest;
+    return plane == 1 ? low : band_from + static_cast<float>(plane - 1) * band_height;
   }
 };
 
@@ -145,8 +145,8 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
     const float from = floor + heights.lowest - 2 * kSlack;
     const float highest = floor + unevenness + heights.highest + 2 * kSlack;
     const float over_contact = floor + grid.radius() + kOverContact;
-    const Heights asked{.low = std::max(from, over_contact),
-                        .lowest = std::max(from, over_contact + unevenness),
+    const Heights asked{.lowest = std::max(from, over_contact),
+                        .low = std::max(from, over_contact + unevenness),
                         .highest = highest,
                         .band_from = from,
                         .band_height = (highest - from) / static_cast<float>(kClearanceBands)};
@@ -168,8 +168,8 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
       to.inverse_cell[lane] = grid.layout().inverse_spacing / static_cast<float>(kColumnsPerCell);
       to.cells_x[lane] = static_cast<float>(cells.x);
       to.cells_z[lane] = static_cast<float>(cells.z);
-      to.low[lane] = asked.low;
       to.lowest[lane] = asked.lowest;
+      to.low[lane] = asked.low;
       to.highest[lane] = asked.highest;
       to.band_from[lane] = asked.band_from;
       to.inverse_band[lane] = 1 / asked.band_height;
@@ -194,16 +194,17 @@ SureGroups surelyFreePortable(const ClearanceLanes& lanes, const std::uint8_t* c
   SureGroups sure;
   for (std::size_t n = 0; n < kLanes; ++n) {
     const float* at = bounds + n;
+    const bool is_low = !(at[2 * stride] >= lanes.low[n]);
+    if (is_low) sure.low |= 1U << n;
     const float x = (0.5F * (at[0] + at[stride]) - lanes.min_x[n]) * lanes.inverse_cell[n];
     const float z =
         (0.5F * (at[4 * stride] + at[5 * stride]) - lanes.min_z[n]) * lanes.inverse_cell[n];
     const bool inside = x >= 0 && x < lanes.cells_x[n] && z >= 0 && z < lanes.cells_z[n] &&
-                        at[2 * stride] >= lanes.low[n] && at[3 * stride] <= lanes.highest[n];
+                        at[2 * stride] >= lanes.lowest[n] && at[3 * stride] <= lanes.highest[n];
     if (!inside) continue;
     const auto i = static_cast<std::uint32_t>(x);
     const auto k = static_cast<std::uint32_t>(z);
     const float above = (at[2 * stride] - lanes.band_from[n]) * lanes.inverse_band[n];
-    const bool is_low = at[2 * stride] < lanes.lowest[n];
     const std::int32_t plane = is_low ? 0
                                       : std::min(static_cast<std::int32_t>(above) + 1,
                                                  static_cast<std::int32_t>(kClearancePlanes) - 1);
@@ -216,8 +217,7 @@ SureGroups surelyFreePortable(const ClearanceLanes& lanes, const std::uint8_t* c
     const float wide = at[stride] - at[0];
     const float deep = at[5 * stride] - at[4 * stride];
     const float half = 0.5F * (deep > wide ? deep : wide) * lanes.inverse_cell[n];
-    const unsigned bit = 1U << n;
-    if (half + kBeyondHalf <= static_cast<float>(distance)) (is_low ? sure.low : sure.free) |= bit;
+    if (half + kBeyondHalf <= static_cast<float>(distance)) sure.free |= 1U << n;
   }
   return sure;
 }

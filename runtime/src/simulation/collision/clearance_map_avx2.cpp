@@ -46,13 +46,13 @@ SureGroups surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells
   const __m256 over =
       both(both(atLeast(x, zero), _mm256_cmp_ps(x, _mm256_load_ps(lanes.cells_x), _CMP_LT_OQ)),
            both(atLeast(z, zero), _mm256_cmp_ps(z, _mm256_load_ps(lanes.cells_z), _CMP_LT_OQ)));
-  const __m256 inside = both(over, both(atLeast(least_y, _mm256_load_ps(lanes.low)),
+  const __m256 inside = both(over, both(atLeast(least_y, _mm256_load_ps(lanes.lowest)),
                                         atLeast(_mm256_load_ps(lanes.highest), most_y)));
   const __m256i mask = _mm256_castps_si256(inside);
   // Lanes elsewhere read byte 0; their answer is no.
   const __m256 above = _mm256_mul_ps(_mm256_sub_ps(least_y, _mm256_load_ps(lanes.band_from)),
                                      _mm256_load_ps(lanes.inverse_band));
-  const __m256 is_high = atLeast(least_y, _mm256_load_ps(lanes.lowest));
+  const __m256 is_high = atLeast(least_y, _mm256_load_ps(lanes.low));
   const __m256i one = _mm256_set1_epi32(1);
   const __m256i number = _mm256_min_epi32(_mm256_add_epi32(_mm256_cvttps_epi32(above), one),
                                           _mm256_set1_epi32(kClearancePlanes - 1));
@@ -70,10 +70,11 @@ SureGroups surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells
   const __m256 reach =
       _mm256_add_ps(_mm256_mul_ps(_mm256_mul_ps(_mm256_set1_ps(0.5F), edge), inverse_cell),
                     _mm256_set1_ps(kBeyondHalf));
-  const auto sure =
-      static_cast<unsigned>(_mm256_movemask_ps(both(inside, atLeast(distance, reach))));
-  const auto high = static_cast<unsigned>(_mm256_movemask_ps(is_high));
-  return {sure & high, sure & ~high};
+  // Apart, so that only the first has to wait for the gather.
+  const __m256 free = both(inside, atLeast(distance, reach));
+  constexpr unsigned kAll = (1U << kLanes) - 1;
+  return {static_cast<unsigned>(_mm256_movemask_ps(free)),
+          static_cast<unsigned>(_mm256_movemask_ps(is_high)) ^ kAll};
 }
 
 }  // namespace galactic::simulation

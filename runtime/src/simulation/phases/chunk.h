@@ -30,7 +30,7 @@ enum class Floor : std::uint8_t {
 struct GroupBits {
   /// Not free as a whole, as far as the maps know.
   unsigned unsure = 0;
-  /// Of these, those that a map calls low: free, and nobody has looked where their spheres are.
+  /// Of these, those that are free and low: nobody has looked where their spheres are.
   unsigned low = 0;
   /// The last way out suits all of their spheres.
   unsigned suited = 0;

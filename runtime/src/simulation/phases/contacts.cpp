@@ -75,10 +75,11 @@ bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
     const SureGroups sure =
         step.model.clearance.surelyFree(env.clearance_map, eight, step.chunk.bounds(e, eight));
     GroupBits& known = step.chunk.groupBits(eight);
-    known.unsure = ((1U << here) - 1) & ~(known.suited | sure.free);
-    known.low = known.unsure & sure.low;
+    const unsigned others = ((1U << here) - 1) & ~known.suited;
+    known.unsure = others & ~(sure.free & ~sure.low);
+    known.low = others & sure.free & sure.low;
     std::uint64_t blocked = 0;
-    const unsigned asked = findPlaces(step, e, eight, known.unsure & ~known.low);
+    const unsigned asked = findPlaces(step, e, eight, others & ~sure.free);
     if (asked != 0) {
       blocked = blockedSpheres(scene, step.chunk.spheres(e), groups, eight * kLanes, asked);
     }
@@ -105,7 +106,7 @@ bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept {
   const ClearanceMaps& maps = step.model.clearance;
   const SureGroups sure =
       maps.surelyFree(env.clearance_map, maps.eights() - 1, {bounds.data(), kLanes});
-  return (env.held.radii & ~(sure.free | sure.low)) == 0;
+  return (env.held.radii & ~sure.free) == 0;
 }
 
 namespace {
