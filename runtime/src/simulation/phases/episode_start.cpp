@@ -70,17 +70,17 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t n,
   placeObjects(model, state, n, episode);
   const std::uint32_t target = model.targetOf(episode);
   Env& env = state.env(n);
-  env = {.start = start,
-         .scene = model.world->sceneIndexOf(episode),
+  env = {.scene = model.world->sceneIndexOf(episode),
          .clearance_map = model.starts[start].clearance_map,
-         .objects = static_cast<std::uint32_t>(model.placements(episode).size()),
          .target = target,
-         .ordinal = env.ordinal + 1,
-         .held = {},
          .events = {},
          .goal = episode.goal.translation,
          .target_start = state.objects(n)[target].translation,
-         .counters = env.counters};
+         .counters = env.counters,
+         .held = {},
+         .start = start,
+         .objects = static_cast<std::uint32_t>(model.placements(episode).size()),
+         .ordinal = env.ordinal + 1};
   std::ranges::fill(state.leaving(n), 0U);
   state.idle()[n] = 0;
   takeStock(model, state, n);

@@ -121,9 +121,11 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
     env.transport = now.transport;
     env.way = way.length;
     env.is_way_to_goal = way.is_to_goal;
-    env.counters.successes += end == EpisodeEnd::kSuccess ? 1 : 0;
-    env.counters.failures += isFailure(end) ? 1U : 0U;
-    env.counters.episodes += end == EpisodeEnd::kNone ? 0 : 1;
+    if (end != EpisodeEnd::kNone) {
+      ++env.counters.episodes;
+      env.counters.successes += end == EpisodeEnd::kSuccess ? 1 : 0;
+      env.counters.failures += isFailure(end) ? 1U : 0U;
+    }
     env.counters.reward += static_cast<double>(reward);
     step.state.rewards()[n] = reward;
     step.state.dones()[n] = end == EpisodeEnd::kNone ? 0 : 1;

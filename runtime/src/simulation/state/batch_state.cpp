@@ -61,6 +61,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
       held_words_(model.heldWords()),
       body_words_(model.bodyWords()),
       joints_(model.motion.controlled.size()),
+      pose_rows_(kBaseRows + model.variableCount()),
       observation_size_(model.observation_size),
       body_count_(model.bodyCount()) {
   const std::size_t padded = paddedToChunks(env_count_);
@@ -76,11 +77,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   ignored_.resize(padded * held_words_);
   leaving_.resize(padded * most_objects_ * body_words_);
   last_actions_.resize(padded * joints_);
-  x_.resize(padded);
-  y_.resize(padded);
-  z_.resize(padded);
-  yaw_.resize(padded);
-  variables_.resize(padded * model.variableCount());
+  poses_.resize(padded * pose_rows_);
   observations_.resize(padded * observation_size_);
   final_observations_.resize(padded * observation_size_);
   bodies_.resize(padded * body_count_);
@@ -92,19 +89,20 @@ BatchState::BatchState(const Model& model, std::size_t envs)
 }
 
 PoseArrays BatchState::poses(std::size_t first) {
-  return {.x = x_.data() + first,
-          .y = y_.data() + first,
-          .z = z_.data() + first,
-          .yaw = yaw_.data() + first,
-          .variables = variables_.data() + first,
-          .stride = envs_.size()};
+  float* x = poses_.data() + poseIndex(first);
+  return {.x = x,
+          .y = x + kChunk,
+          .z = x + 2 * kChunk,
+          .yaw = x + 3 * kChunk,
+          .variables = x + kBaseRows * kChunk,
+          .stride = kChunk};
 }
 
 std::size_t BatchState::bytes() const {
   std::size_t bytes = bytesOf(envs_) + bytesOf(objects_) + bytesOf(grips_) + bytesOf(ignored_) +
-                      bytesOf(leaving_) + bytesOf(last_actions_) + 4 * bytesOf(x_) +
-                      bytesOf(variables_) + 2 * bytesOf(observations_) + bytesOf(bodies_) +
-                      bytesOf(rewards_) + 4 * bytesOf(dones_);
+                      bytesOf(leaving_) + bytesOf(last_actions_) + bytesOf(poses_) +
+                      2 * bytesOf(observations_) + bytesOf(bodies_) + bytesOf(rewards_) +
+                      4 * bytesOf(dones_);
   for (const RestingObjects& resting : resting_) bytes += resting.bytes();
   return bytes;
 }

@@ -19,6 +19,7 @@ static_assert(kChunk % kLanes == 0);
 
 /// What happened in one env; added up by SimulationStatistics.
 struct EnvCounters {
+  double reward = 0;
   std::uint32_t refused = 0;
   std::uint32_t slid = 0;
   std::uint32_t grasps = 0;
@@ -30,19 +31,18 @@ struct EnvCounters {
   std::uint64_t nan_actions = 0;
   /// Steps in which the env was idle.
   std::uint64_t idle_steps = 0;
-  double reward = 0;
 };
 
 /// The object in the hand.
 struct Held {
   /// Counted in the episode; -1 for none.
   std::int32_t object = -1;
-  Pose grip_from_object;
   /// A ball around the centers of its spheres: center in the grip's frame, meters.
   Vec3 ball_center;
   float ball_radius = 0;
   /// Which radii of the working set its spheres have, as bits.
   std::uint32_t radii = 0;
+  Pose grip_from_object;
   /// world_from_object where it rested before.
   Pose before;
 };
@@ -56,31 +56,18 @@ struct StepEvents {
   bool terminates = false;
 };
 
-/// One environment, apart from what the motion kernels read.
-struct Env {
-  /// Index into Model::starts.
-  std::uint32_t start = 0;
+/// One environment, apart from what the motion kernels read. What every step reads comes first, in
+/// two cache lines.
+struct alignas(64) Env {
   std::uint32_t scene = 0;
   /// In Model::clearance.
   std::uint32_t clearance_map = kNoClearanceMap;
   std::uint32_t step = 0;
-  std::uint32_t objects = 0;
   std::uint32_t target = 0;
-  /// Episodes begun.
-  std::uint64_t ordinal = 0;
-  Held held;
-  /// Whether the target was in the hand before in this episode.
-  bool has_picked = false;
-  /// The last step left the robot where it was: wherever it would have been, it penetrated
-  /// something.
-  bool refused = false;
   /// Objects that the hand let go of and that some of the robot's spheres have penetrated since.
   /// Those spheres do not count against them until each is free of it once; else the hand could not
   /// leave them. BatchState::leaving() says which.
   std::uint32_t left = 0;
-  StepEvents events;
-  Vec3 goal;
-  Vec3 target_start;
   /// Of the step before: grip to target, target to goal, meters.
   float reach = 0;
   float transport = 0;
@@ -88,8 +75,23 @@ struct Env {
   /// target; below 0 where none is known.
   float way = -1;
   bool is_way_to_goal = false;
+  /// Whether the target was in the hand before in this episode.
+  bool has_picked = false;
+  /// The last step left the robot where it was: wherever it would have been, it penetrated
+  /// something.
+  bool refused = false;
+  StepEvents events;
+  Vec3 goal;
+  Vec3 target_start;
   EnvCounters counters;
+  Held held;
+  /// Index into Model::starts.
+  std::uint32_t start = 0;
+  std::uint32_t objects = 0;
+  /// Episodes begun.
+  std::uint64_t ordinal = 0;
 };
+static_assert(offsetof(Env, held.ball_center) <= 128);
 
 /// The object in the env's hand, which must not be empty.
 [[nodiscard]] inline const ObjectModel& heldModel(const Model& model, const Env& env) {
@@ -152,13 +154,16 @@ class BatchState {
   [[nodiscard]] std::span<const float> lastActions(std::size_t n) const {
     return std::span(last_actions_).subspan(n * joints_, joints_);
   }
-  /// Base and variables of the envs from `first` on.
+  /// Base and variables of the envs of a chunk from `first` on.
   [[nodiscard]] PoseArrays poses(std::size_t first);
   [[nodiscard]] float variable(std::size_t v, std::size_t env) const {
-    return variables_[v * envs_.size() + env];
+    return poses_[poseIndex(env) + (kBaseRows + v) * kChunk];
   }
-  [[nodiscard]] Vec3 base(std::size_t n) const { return {x_[n], y_[n], z_[n]}; }
-  [[nodiscard]] float yaw(std::size_t n) const { return yaw_[n]; }
+  [[nodiscard]] Vec3 base(std::size_t n) const {
+    const float* x = poses_.data() + poseIndex(n);
+    return {x[0], x[kChunk], x[2 * kChunk]};
+  }
+  [[nodiscard]] float yaw(std::size_t n) const { return poses_[poseIndex(n) + 3 * kChunk]; }
 
   [[nodiscard]] std::span<float> observation(std::size_t n) {
     return std::span(observations_).subspan(n * observation_size_, observation_size_);
@@ -210,6 +215,14 @@ class BatchState {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  /// X, y, z and yaw.
+  static constexpr std::size_t kBaseRows = 4;
+
+  /// Of the x of an env's base.
+  [[nodiscard]] std::size_t poseIndex(std::size_t n) const {
+    return n / kChunk * kChunk * pose_rows_ + n % kChunk;
+  }
+
   detail::HugePages huge_pages_;
   /// All vectors are made once, one after the other, in here.
   std::pmr::monotonic_buffer_resource memory_;
@@ -218,6 +231,7 @@ class BatchState {
   std::size_t held_words_ = 0;
   std::size_t body_words_ = 0;
   std::size_t joints_ = 0;
+  std::size_t pose_rows_ = 0;
   std::size_t observation_size_ = 0;
   std::size_t body_count_ = 0;
   std::pmr::vector<Env> envs_{&memory_};
@@ -227,9 +241,9 @@ class BatchState {
   std::pmr::vector<std::uint64_t> ignored_{&memory_};
   std::pmr::vector<std::uint64_t> leaving_{&memory_};
   std::pmr::vector<float> last_actions_{&memory_};
-  std::pmr::vector<float> x_{&memory_}, y_{&memory_}, z_{&memory_}, yaw_{&memory_};
-  /// Variable v of env n at v * paddedCount() + n.
-  std::pmr::vector<float> variables_{&memory_};
+  /// Chunk after chunk, so that a step reads them as one stream: x, y, z, yaw and the variables of
+  /// its envs. Shape: chunks x rows x kChunk.
+  std::pmr::vector<float> poses_{&memory_};
   std::pmr::vector<float> observations_{&memory_};
   std::pmr::vector<float> final_observations_{&memory_};
   std::pmr::vector<RigidTransform> bodies_{&memory_};

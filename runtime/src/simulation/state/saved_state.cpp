@@ -255,7 +255,8 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
   saved.env.objects =
       static_cast<std::uint32_t>(model.placements(model.episodeOf(saved.env.start)).size());
   saved.is_idle = record.is_idle != 0;
-  saved.env.counters = {.refused = refused,
+  saved.env.counters = {.reward = record.reward_sum,
+                        .refused = refused,
                         .slid = slid,
                         .grasps = grasps,
                         .drops = drops,
@@ -264,8 +265,7 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
                         .successes = successes,
                         .failures = failures,
                         .nan_actions = record.nan_actions,
-                        .idle_steps = record.idle_steps,
-                        .reward = record.reward_sum};
+                        .idle_steps = record.idle_steps};
   saved.base = record.base;
   saved.yaw = record.yaw;
   saved.grip = record.grip;
