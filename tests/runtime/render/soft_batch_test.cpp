@@ -148,13 +148,16 @@ TEST_F(SoftBatch, DoesNotDependOnTheNumberOfThreads) {
 
 TEST_F(SoftBatch, IsTheSameOnEveryProcessor) {
   if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2";
+  // Widths that end within each of the blocks that are resolved together, and beside them.
   for (const bool culling : {true, false}) {
-    for (const auto& [width, height] : {std::pair{128U, 128U}, {61U, 90U}, {270U, 9U}}) {
+    for (const auto& [width, height] :
+         {std::pair{128U, 128U}, {61U, 90U}, {59U, 7U}, {52U, 8U}, {270U, 9U}, {1U, 1U}}) {
       RenderOptions options = batchOptions(width, height);
       options.culling = culling;
-      EXPECT_EQ(drawWith(options, render::drawPaneAvx2),
-                drawWith(options, render::drawPanePortable))
-          << width << " x " << height;
+      const RenderImages portable = drawWith(options, render::drawPanePortable);
+      EXPECT_EQ(drawWith(options, render::drawPaneAvx2), portable) << width << " x " << height;
+      if (!render::hasAvx512()) continue;
+      EXPECT_EQ(drawWith(options, render::drawPaneAvx512), portable) << width << " x " << height;
     }
   }
 }

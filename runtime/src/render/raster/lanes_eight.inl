@@ -2,7 +2,7 @@
 // vector extensions; where AVX2 has an instruction that they do not find, it is named. Both ways
 // give the same bits.
 #if defined(__AVX2__)
-#include <immintrin.h>
+#include "render/raster/gather_avx2.inl"
 #endif
 
 namespace galactic::render {
@@ -20,6 +20,7 @@ constexpr std::uint32_t kWidth = 8;
 /// Of vectors.
 constexpr std::uint32_t kLanes = 8;
 constexpr unsigned kAllLanes = 0xFF;
+constexpr std::size_t kVectorBytes = 32;
 constexpr std::size_t kGroupAlignment = 64;
 
 /// The same bits as another type.
@@ -151,32 +152,9 @@ inline IntLanes wrapSubtract(IntLanes a, IntLanes b) {
   return as<IntLanes>(as<WordLanes>(a) - as<WordLanes>(b));
 }
 
-#if defined(__AVX2__)
-// Loads one by one take less time than the instructions that gather, on processors that have
-// those in microcode above all.
-
-/// Eight indices, 0 or more, in four registers.
-struct Indices {
-  std::uint64_t pairs[4];
-
-  explicit Indices(IntLanes at) {
-    const __m128i low = _mm256_castsi256_si128(as<__m256i>(at));
-    const __m128i high = _mm256_extracti128_si256(as<__m256i>(at), 1);
-    pairs[0] = static_cast<std::uint64_t>(_mm_cvtsi128_si64(low));
-    pairs[1] = static_cast<std::uint64_t>(_mm_extract_epi64(low, 1));
-    pairs[2] = static_cast<std::uint64_t>(_mm_cvtsi128_si64(high));
-    pairs[3] = static_cast<std::uint64_t>(_mm_extract_epi64(high, 1));
-  }
-  [[nodiscard]] std::size_t even(int pair) const { return static_cast<std::uint32_t>(pairs[pair]); }
-  [[nodiscard]] std::size_t odd(int pair) const { return pairs[pair] >> 32U; }
-};
-#endif
-
 inline Lanes gather(const float* from, IntLanes at) {
 #if defined(__AVX2__)
-  const Indices n(at);
-  return Lanes{from[n.even(0)], from[n.odd(0)], from[n.even(1)], from[n.odd(1)],
-               from[n.even(2)], from[n.odd(2)], from[n.even(3)], from[n.odd(3)]};
+  return as<Lanes>(gatherEight(from, as<__m256i>(at)));
 #else
   Lanes lanes;
   for (unsigned n = 0; n < kWidth; ++n) lanes[n] = from[at[n]];
@@ -197,17 +175,8 @@ struct Pair {
 template <int kStride>
 inline Pair<IntLanes> gatherTwo(const std::int32_t* from, IntLanes at) {
 #if defined(__AVX2__)
-  const Indices n(at);
-  const auto two = [&](int pair) {
-    const std::int32_t* first = from + kStride * n.even(pair);
-    const std::int32_t* second = from + kStride * n.odd(pair);
-    const __m128i low = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(first));
-    return _mm_loadh_pi(as<__m128>(low), reinterpret_cast<const __m64*>(second));
-  };
-  const __m256 low = _mm256_set_m128(two(2), two(0));
-  const __m256 high = _mm256_set_m128(two(3), two(1));
-  return {as<IntLanes>(_mm256_shuffle_ps(low, high, 0x88)),
-          as<IntLanes>(_mm256_shuffle_ps(low, high, 0xDD))};
+  const TwoOfEight two = gatherTwoOfEight<kStride>(from, as<__m256i>(at));
+  return {as<IntLanes>(two.first), as<IntLanes>(two.second)};
 #else
   Pair<IntLanes> result;
   for (unsigned n = 0; n < kWidth; ++n) {
@@ -230,6 +199,28 @@ inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from, IntLanes at) {
 inline Pair<Lanes> gatherPairs(const float* from, IntLanes at) {
   const Pair<IntLanes> bits = gatherPairs(reinterpret_cast<const std::int32_t*>(from), at);
   return {as<Lanes>(bits.first), as<Lanes>(bits.second)};
+}
+
+using Quad = float __attribute__((vector_size(16)));
+
+/// Elements kStride * ids[lane] and the three behind them become a vector each.
+template <std::uint32_t kStride>
+inline void gatherFour(const float* from, const std::int32_t* ids, Lanes* fields) {
+  Lanes pairs[4];
+  for (int n = 0; n < 4; ++n) {
+    const auto near = load<Quad>(from + std::size_t{kStride} * static_cast<std::uint32_t>(ids[n]));
+    const auto far =
+        load<Quad>(from + std::size_t{kStride} * static_cast<std::uint32_t>(ids[n + 4]));
+    pairs[n] = __builtin_shufflevector(near, far, 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+  const Lanes a = __builtin_shufflevector(pairs[0], pairs[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Lanes b = __builtin_shufflevector(pairs[0], pairs[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const Lanes c = __builtin_shufflevector(pairs[2], pairs[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Lanes d = __builtin_shufflevector(pairs[2], pairs[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  fields[0] = __builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13);
+  fields[1] = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);
+  fields[2] = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);
+  fields[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
 /// Writes the lanes of both in turn: what gatherPairs reads.

@@ -6,27 +6,13 @@
 namespace galactic::render {
 namespace {
 
-/// A pane while it is drawn.
-struct Pane {
-  const PaneTask* task;
-  const PaneScratch* scratch;
-  /// In blocks and in tiles, whole.
-  std::uint32_t columns, rows, tile_columns;
-  /// In use.
-  std::uint32_t records;
-  PaneCounts counts;
-  bool shades;
-};
-
 /// A test of eight pixels besides coverage and depth: passes all.
 struct Opaque {
   static constexpr bool kTests = false;
 };
 
 /// The pixels of a block.
-inline PixelOffsets blockPixels() {
-  return {IntLanes{0, 1, 2, 3, 0, 1, 2, 3}, IntLanes{0, 0, 0, 0, 1, 1, 1, 1}};
-}
+inline PixelOffsets blockPixels() { return {pixelsRight(), pixelsDown()}; }
 
 /// Where a block of a triangle's pixels comes to lie.
 struct BlockPlace {

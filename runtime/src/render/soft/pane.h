@@ -38,12 +38,22 @@ struct PaneCounts {
   std::uint64_t triangles_drawn = 0;
 };
 
-/// Draws a pane. Both versions do the same operations in the same order, and none is contracted:
+/// Writes the images of a pane that is drawn.
+using ResolvePane = void (*)(const PaneTask&, const PaneScratch&) noexcept;
+
+/// Draws a pane. All versions do the same operations in the same order, and none is contracted:
 /// the images agree bit for bit.
 using DrawPane = PaneCounts (*)(const PaneTask&, const PaneScratch&) noexcept;
 /// For any processor.
 PaneCounts drawPanePortable(const PaneTask& task, const PaneScratch& scratch) noexcept;
 /// For processors with AVX2.
 PaneCounts drawPaneAvx2(const PaneTask& task, const PaneScratch& scratch) noexcept;
+/// For processors with AVX-512: see hasAvx512().
+PaneCounts drawPaneAvx512(const PaneTask& task, const PaneScratch& scratch) noexcept;
+/// What that one writes its images with, sixteen pixels at a time.
+void resolveAvx512(const PaneTask& task, const PaneScratch& scratch) noexcept;
+
+/// Whether this processor has the parts of AVX-512 (F, BW, DQ, VL) that drawPaneAvx512() needs.
+[[nodiscard]] bool hasAvx512() noexcept;
 
 }  // namespace galactic::render

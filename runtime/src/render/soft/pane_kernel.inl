@@ -11,6 +11,7 @@
 #include "render/raster/records.inl"
 #include "render/raster/large.inl"
 #include "render/raster/clip.inl"
+#include "render/soft/pane_state.inl"
 #include "render/soft/clusters.inl"
 #include "render/soft/coverage.inl"
 #include "render/soft/triangles.inl"
@@ -23,15 +24,10 @@ namespace galactic::render {
 namespace {
 
 /// Empties the pane. What lies beyond the image counts as covered by something very near.
-void clearPane(Pane& pane) {
+void clearPane(const Pane& pane) {
   const PaneTask& task = *pane.task;
   const PaneScratch& scratch = *pane.scratch;
   const std::uint32_t tiles_down = (task.height + kTileEdge - 1) / kTileEdge;
-  pane.tile_columns = (task.width + kTileEdge - 1) / kTileEdge;
-  pane.columns = pane.tile_columns * (kTileEdge / kBlockWidth);
-  pane.rows = tiles_down * (kTileEdge / kBlockHeight);
-  pane.records = 1;
-  pane.shades = task.color != nullptr || task.semantics != nullptr;
   const std::size_t blocks = std::size_t{pane.columns} * pane.rows;
   __builtin_memset(scratch.ids, 0, blocks * kWidth * sizeof(*scratch.ids));
   __builtin_memset(scratch.depth, 0, blocks * kWidth * sizeof(*scratch.depth));
@@ -129,10 +125,10 @@ void drawCluster(Pane& pane, const SeenCluster& seen) {
   ++pane.counts.clusters_drawn;
 }
 
-PaneCounts drawPane(const PaneTask& task, const PaneScratch& scratch) noexcept {
-  Pane pane{};
-  pane.task = &task;
-  pane.scratch = &scratch;
+/// `resolve_pane`: what writes the images instead of resolve(), or null.
+PaneCounts drawPane(const PaneTask& task, const PaneScratch& scratch,
+                    ResolvePane resolve_pane = nullptr) noexcept {
+  Pane pane = newPane(task, scratch);
   clearPane(pane);
   recordBackground(pane);
   const std::uint32_t count = findClusters(task, scratch, pane.counts);
@@ -142,7 +138,11 @@ PaneCounts drawPane(const PaneTask& task, const PaneScratch& scratch) noexcept {
     if (task.culling && isHidden(pane, seen)) continue;
     drawCluster(pane, seen);
   }
-  resolve(pane);
+  if (resolve_pane != nullptr) {
+    resolve_pane(task, scratch);
+  } else {
+    resolve(pane);
+  }
   return pane.counts;
 }
 

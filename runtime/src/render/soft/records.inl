@@ -1,13 +1,6 @@
-// Where records are kept; the alpha test.
+// Records of eight triangles; the alpha test.
 namespace galactic::render {
 namespace {
-
-inline float* recordAt(const Pane& pane, std::uint32_t number) {
-  return pane.scratch->records + std::size_t{number} * kRecordStride;
-}
-inline float* colorsAt(const Pane& pane, std::uint32_t number) {
-  return pane.scratch->colors + std::size_t{number} * kRecordStride;
-}
 
 /// Eight records before it is known which of them are needed.
 struct alignas(64) GroupRecords {
@@ -64,14 +57,6 @@ void keepRecords(const Pane& pane, const ClusterState& state, const GroupRecords
     if (state.facts.color_kind != kHasColors) continue;
     __builtin_memcpy(colorsAt(pane, number), records.colors[n], kBytes);
   }
-}
-
-/// The pixels of a block.
-inline PixelLanes pixelsOf(std::uint32_t column, std::uint32_t row, Lanes w) {
-  const auto x = static_cast<float>(column * kBlockWidth);
-  const auto y = static_cast<float>(row * kBlockHeight);
-  const PixelOffsets pixels = blockPixels();
-  return {spread(x) + toFloat(pixels.right), spread(y) + toFloat(pixels.down), w};
 }
 
 /// Passes pixels whose surface is there, of the triangle with this record.

@@ -7,6 +7,15 @@
 
 namespace galactic::render {
 
+bool hasAvx512() noexcept {
+#if defined(__x86_64__)
+  return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+         __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
+#else
+  return false;
+#endif
+}
+
 SoftEngine::SoftEngine(const RenderLibrary& library, const RenderOptions& options, DrawPane draw)
     : options_(options), draw_(draw), scene_(library) {
   options_.threads = detail::threadCount(options.threads);
@@ -64,7 +73,9 @@ void SoftEngine::end() {
 }
 
 std::string SoftEngine::description() const {
-  const char* instructions = draw_ == drawPaneAvx2 ? "AVX2" : "portable";
+  const char* instructions = draw_ == drawPaneAvx512 ? "AVX-512"
+                             : draw_ == drawPaneAvx2 ? "AVX2"
+                                                     : "portable";
   return std::string("soft, ") + instructions + ", " + std::to_string(options_.threads) +
          (options_.threads == 1 ? " thread" : " threads");
 }
@@ -118,7 +129,9 @@ std::uint32_t SoftEngine::placeModels(const RenderView& view, PlacedModel* place
 
 Result<std::unique_ptr<RenderEngine>> makeSoftEngine(const RenderLibrary& library,
                                                      const RenderOptions& options) {
-  const DrawPane draw = detail::hasAvx2() ? drawPaneAvx2 : drawPanePortable;
+  const DrawPane draw = hasAvx512()         ? drawPaneAvx512
+                        : detail::hasAvx2() ? drawPaneAvx2
+                                            : drawPanePortable;
   return std::make_unique<SoftEngine>(library, options, draw);
 }
 

@@ -1,0 +1,55 @@
+// A pane while it is drawn: what drawing and resolving share.
+namespace galactic::render {
+namespace {
+
+struct Pane {
+  const PaneTask* task;
+  const PaneScratch* scratch;
+  /// In blocks and in tiles, whole.
+  std::uint32_t columns, rows, tile_columns;
+  /// In use.
+  std::uint32_t records;
+  PaneCounts counts;
+  bool shades;
+};
+
+/// Nothing is drawn on it yet; record 0 is the background's.
+inline Pane newPane(const PaneTask& task, const PaneScratch& scratch) {
+  const std::uint32_t tiles_across = (task.width + kTileEdge - 1) / kTileEdge;
+  const std::uint32_t tiles_down = (task.height + kTileEdge - 1) / kTileEdge;
+  return {.task = &task,
+          .scratch = &scratch,
+          .columns = tiles_across * (kTileEdge / kBlockWidth),
+          .rows = tiles_down * (kTileEdge / kBlockHeight),
+          .tile_columns = tiles_across,
+          .records = 1,
+          .counts = {},
+          .shades = task.color != nullptr || task.semantics != nullptr};
+}
+
+inline float* recordAt(const Pane& pane, std::uint32_t number) {
+  return pane.scratch->records + std::size_t{number} * kRecordStride;
+}
+inline float* colorsAt(const Pane& pane, std::uint32_t number) {
+  return pane.scratch->colors + std::size_t{number} * kRecordStride;
+}
+
+/// Of a vector of pixels from the first one on, block after block.
+inline IntLanes pixelsRight() {
+  constexpr std::int32_t kRight[16] = {0, 1, 2, 3, 0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7};
+  return load<IntLanes>(kRight);
+}
+inline IntLanes pixelsDown() {
+  constexpr std::int32_t kDown[16] = {0, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1};
+  return load<IntLanes>(kDown);
+}
+
+/// The pixels from those of a block on.
+inline PixelLanes pixelsOf(std::uint32_t column, std::uint32_t row, Lanes w) {
+  const auto x = static_cast<float>(column * kBlockWidth);
+  const auto y = static_cast<float>(row * kBlockHeight);
+  return {spread(x) + toFloat(pixelsRight()), spread(y) + toFloat(pixelsDown()), w};
+}
+
+}  // namespace
+}  // namespace galactic::render
