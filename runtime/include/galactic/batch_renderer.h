@@ -71,11 +71,33 @@ struct RenderInstance {
   RigidTransform world_from_model;
 };
 
+/// A model, placed by a pose.
+struct PosedModel {
+  /// Number in the RenderLibrary.
+  std::uint32_t model = 0;
+  Pose world_from_model;
+};
+
+/// A model on a body that moves, such as a link of a robot.
+struct AttachedModel {
+  /// Number in the RenderLibrary.
+  std::uint32_t model = 0;
+  /// Index into RenderView::bodies.
+  std::uint32_t body = 0;
+  RigidTransform body_from_model;
+};
+
 /// One image: a camera and what it sees. A camera whose numbers are not finite, or whose field of
-/// view is not within its range, sees nothing.
+/// view is not within its range, sees nothing. Where two surfaces are in one place, the first one
+/// shows: instances come before posed models, and those before attached ones.
 struct RenderView {
   RenderCamera camera;
-  std::span<const RenderInstance> instances;
+  std::span<const RenderInstance> instances = {};
+  std::span<const PosedModel> posed = {};
+  /// Views of the same robot share one list, and only their bodies move.
+  std::span<const AttachedModel> attached = {};
+  /// world_from_body.
+  std::span<const RigidTransform> bodies = {};
 };
 
 /// Where the images go: memory of the caller, view after view, rows from top to bottom. Leave a

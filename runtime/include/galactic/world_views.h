@@ -77,20 +77,19 @@ class WorldViews {
   [[nodiscard]] std::span<const RenderView> views() const { return views_; }
 
  private:
-  /// A link that is shown, and where it sits on its body.
-  struct PlacedLink {
-    std::uint32_t model = 0;
-    LinkOnBody on_body;
-  };
-
   void updateEnv(const BatchSimulator& simulator, std::size_t env) noexcept;
 
   const WorldModels* models_;
   MountedCamera camera_;
-  std::vector<PlacedLink> links_;
-  /// Room for the instances of one env.
+  /// By scene: its model, if it has one.
+  std::vector<std::vector<RenderInstance>> scenes_;
+  /// Of all views.
+  std::vector<AttachedModel> links_;
+  /// Room for the objects of one env.
   std::size_t stride_ = 0;
-  std::vector<RenderInstance> instances_;
+  std::vector<PosedModel> posed_;
+  /// Shape: envs * bodies of the simulator.
+  std::vector<RigidTransform> bodies_;
   std::vector<RenderView> views_;
 };
 

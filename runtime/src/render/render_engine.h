@@ -49,6 +49,24 @@ class RenderEngine {
 /// images are not those of the `soft` backend, and as makeCudaEngine().
 [[nodiscard]] Result<void> proveCuda(const RenderOptions& options);
 
+[[nodiscard]] inline std::size_t modelCount(const RenderView& view) noexcept {
+  return view.instances.size() + view.posed.size() + view.attached.size();
+}
+
+/// Calls use(model, world_from_model) for all that a view shows, in the order of drawing.
+template <class Use>
+void forModels(const RenderView& view, const Use& use) {
+  for (const RenderInstance& instance : view.instances) {
+    use(instance.model, instance.world_from_model);
+  }
+  for (const PosedModel& posed : view.posed) {
+    use(posed.model, rigidTransform(posed.world_from_model));
+  }
+  for (const AttachedModel& attached : view.attached) {
+    use(attached.model, view.bodies[attached.body] * attached.body_from_model);
+  }
+}
+
 /// 1/256 pixels at a distance of 1 m for each meter beside the camera's axis.
 [[nodiscard]] float focalLength(const RenderOptions& options, const RenderCamera& camera) noexcept;
 

@@ -1,5 +1,6 @@
 #include "galactic/world_views.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -55,39 +56,47 @@ WorldViews::WorldViews(const World& world, const WorldModels& models,
                        const BatchSimulator& simulator, const CameraMount& camera)
     : models_(&models),
       camera_(world, simulator, camera),
-      stride_(1 + world.mostObjects() + models.links().size()),
-      instances_(simulator.envCount() * stride_),
+      stride_(world.mostObjects()),
+      posed_(simulator.envCount() * stride_),
+      bodies_(simulator.bodyTransforms().size()),
       views_(simulator.envCount()) {
   assert(!simulator.bodyTransforms().empty());
+  scenes_.resize(world.scenes().size());
+  for (std::uint32_t scene = 0; scene < scenes_.size(); ++scene) {
+    if (const auto model = models.sceneModel(scene)) scenes_[scene].push_back({*model, {}});
+  }
   links_.reserve(models.links().size());
   for (const LinkModel& link : models.links()) {
-    links_.push_back({link.model, simulator.linkOnBody(link.link)});
+    const LinkOnBody on_body = simulator.linkOnBody(link.link);
+    links_.push_back({link.model, static_cast<std::uint32_t>(on_body.body), on_body.place});
+  }
+  const std::size_t body_count = simulator.bodyCount();
+  for (std::size_t env = 0; env < views_.size(); ++env) {
+    views_[env].attached = links_;
+    views_[env].bodies = std::span(bodies_).subspan(env * body_count, body_count);
   }
   update(simulator);
 }
 
 void WorldViews::update(const BatchSimulator& simulator) noexcept {
+  std::ranges::copy(simulator.bodyTransforms(), bodies_.begin());
   for (std::size_t env = 0; env < views_.size(); ++env) updateEnv(simulator, env);
 }
 
 void WorldViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noexcept {
-  const std::span<RenderInstance> room = std::span(instances_).subspan(env * stride_, stride_);
+  const std::span<PosedModel> room = std::span(posed_).subspan(env * stride_, stride_);
   const EnvObjects state = simulator.envObjects(env);
-  const std::span<const RigidTransform> bodies =
-      simulator.bodyTransforms().subspan(env * simulator.bodyCount(), simulator.bodyCount());
   std::size_t count = 0;
-  if (const auto scene = models_->sceneModel(state.scene)) room[count++] = {*scene, {}};
   for (std::size_t n = 0; n < state.objects.size(); ++n) {
     const auto model = models_->objectModel(state.placements[n].object);
     if (!model) continue;
     const bool is_held = static_cast<std::int32_t>(n) == state.held;
-    room[count++] = {*model, rigidTransform(is_held ? state.world_from_held : state.objects[n])};
+    room[count++] = {*model, is_held ? state.world_from_held : state.objects[n]};
   }
-  for (const PlacedLink& link : links_) {
-    room[count++] = {link.model, bodies[link.on_body.body] * link.on_body.place};
-  }
-  views_[env].instances = room.first(count);
-  views_[env].camera = camera_.at(bodies, state.scene);
+  RenderView& view = views_[env];
+  view.instances = scenes_[state.scene];
+  view.posed = room.first(count);
+  view.camera = camera_.at(view.bodies, state.scene);
 }
 
 }  // namespace galactic

@@ -10,6 +10,7 @@
 
 #include "render/gl/gl_engine.h"
 #include "runtime/render/gl_scene.h"
+#include "runtime/render/mixed_models.h"
 
 namespace galactic::test::gl_image_test {
 namespace {
@@ -174,6 +175,14 @@ TEST_F(GlImage, CullingDoesNotChangeAnImage) {
   EXPECT_GT(culled.clusters_drawn, whole.clusters_drawn / 10);
   EXPECT_LT(culled.clusters_drawn, whole.clusters_drawn * 9 / 10);
   EXPECT_LT(culled.triangles_drawn, whole.triangles_drawn);
+}
+
+TEST_F(GlImage, PosedAndAttachedModelsAreDrawnAsInstances) {
+  GlHome home;
+  std::mt19937 random(31);
+  const MixedModels models(random, 5, home.views(10));
+  const RenderImages images = renderViews(home.library(), glOptions(), models.asInstances());
+  EXPECT_EQ(renderViews(home.library(), glOptions(), models.mixed()), images);
 }
 
 TEST_F(GlImage, ABatchIsItsViewsOneByOne) {

@@ -10,6 +10,7 @@
 
 #include "column_grid/column_grid_kernels.h"
 #include "render/soft/soft_engine.h"
+#include "runtime/render/mixed_models.h"
 #include "support/packs/render_model_builder.h"
 #include "support/render_images.h"
 
@@ -160,6 +161,13 @@ TEST_F(SoftBatch, IsTheSameOnEveryProcessor) {
       EXPECT_EQ(drawWith(options, render::drawPaneAvx512), portable) << width << " x " << height;
     }
   }
+}
+
+TEST_F(SoftBatch, DrawsPosedAndAttachedModelsAsInstances) {
+  const MixedModels models(random_, 4, views_);
+  const RenderOptions options = batchOptions(96, 80);
+  const RenderImages images = renderViews(library_, options, models.asInstances());
+  EXPECT_EQ(renderViews(library_, options, models.mixed()), images);
 }
 
 TEST_F(SoftBatch, DrawsWithoutCullingTheSameImages) {

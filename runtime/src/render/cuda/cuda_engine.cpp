@@ -66,6 +66,55 @@ void copyPast(void* to, const void* from, std::size_t bytes) {
 #endif
 }
 
+/// Elements that go to the device, written one list after the other.
+template <class Element>
+class StagedList {
+ public:
+  explicit StagedList(std::byte* to) : to_(reinterpret_cast<Element*>(to)) {}
+
+  template <class Source>
+  ListPart add(std::span<const Source> list) {
+    static_assert(sizeof(Source) == sizeof(Element));
+    const ListPart part{next_, static_cast<std::uint32_t>(list.size())};
+    if (!list.empty()) copyPast(to_ + next_, list.data(), list.size_bytes());
+    next_ += part.count;
+    return part;
+  }
+
+ private:
+  Element* to_;
+  std::uint32_t next_ = 0;
+};
+
+bool isSame(std::span<const AttachedModel> a, std::span<const AttachedModel> b) {
+  return a.data() == b.data() && a.size() == b.size();
+}
+
+/// Elements of the lists of all views: those of an attached list that follows itself count once.
+struct ListSizes {
+  std::size_t instances = 0;
+  std::size_t posed = 0;
+  std::size_t attached = 0;
+  std::size_t bodies = 0;
+  /// What is placed in front of cameras.
+  std::size_t models = 0;
+};
+
+ListSizes listSizes(std::span<const RenderView> views) {
+  ListSizes sizes;
+  std::span<const AttachedModel> last;
+  for (const RenderView& view : views) {
+    sizes.instances += view.instances.size();
+    sizes.posed += view.posed.size();
+    sizes.bodies += view.bodies.size();
+    sizes.models += modelCount(view);
+    if (isSame(view.attached, last)) continue;
+    last = view.attached;
+    sizes.attached += view.attached.size();
+  }
+  return sizes;
+}
+
 /// Adds the time from its beginning to its end to a sum, in seconds.
 class Stopwatch {
  public:
@@ -245,17 +294,33 @@ std::size_t CudaEngine::bytesOf(std::size_t views, std::size_t clusters) const {
 Result<void> CudaEngine::stage(std::span<const RenderView> views, const Upload& at_bytes) {
   std::byte* bytes = staged_.bytes();
   auto* device_views = reinterpret_cast<DeviceView*>(bytes + at_bytes.views);
-  auto* instances = reinterpret_cast<DeviceInstance*>(bytes + at_bytes.instances);
+  StagedList<DeviceInstance> instances(bytes + at_bytes.instances);
+  StagedList<DevicePosed> posed(bytes + at_bytes.posed);
+  StagedList<DeviceAttached> attached(bytes + at_bytes.attached);
+  StagedList<RigidTransform> bodies(bytes + at_bytes.bodies);
   std::memcpy(bytes + at_bytes.panes, panes_.data(), panes_.size() * sizeof(PaneRectangle));
   clusters_of_views_.resize(views.size());
   const std::uint32_t* counts = scene_->clusterCounts().data();
-  std::uint32_t next = 0;
+  const auto clusters_in = [&](const auto& models) {
+    std::size_t clusters = 0;
+    for (const auto& model : models) clusters += counts[model.model];
+    return clusters;
+  };
+  std::uint32_t first_placed = 0;
   float field_of_view = 0;
   float focal = 0;
+  std::span<const AttachedModel> last_attached;
+  ListPart attached_part{};
+  std::size_t attached_clusters = 0;
   for (std::size_t v = 0; v < views.size(); ++v) {
     const RenderView& view = views[v];
-    std::size_t clusters = 0;
-    for (const RenderInstance& instance : view.instances) clusters += counts[instance.model];
+    if (!isSame(view.attached, last_attached)) {
+      last_attached = view.attached;
+      attached_part = attached.add(view.attached);
+      attached_clusters = clusters_in(view.attached);
+    }
+    const std::size_t clusters =
+        clusters_in(view.instances) + clusters_in(view.posed) + attached_clusters;
     statistics_.clusters += clusters;
     if (clusters > kMostClusters) {
       return fail(
@@ -263,19 +328,26 @@ Result<void> CudaEngine::stage(std::span<const RenderView> views, const Upload& 
           fmt::format("found a view of {} clusters, expected at most {}; use the soft backend",
                       clusters, kMostClusters));
     }
-    const bool sees = canSee(view.camera);
-    const auto count = sees ? static_cast<std::uint32_t>(view.instances.size()) : 0U;
-    clusters_of_views_[v] = sees ? static_cast<std::uint32_t>(clusters) : 0U;
+    if (!canSee(view.camera)) {
+      clusters_of_views_[v] = 0;
+      device_views[v] = {};
+      continue;
+    }
+    clusters_of_views_[v] = static_cast<std::uint32_t>(clusters);
     // Cameras of a batch are mostly of one kind.
-    if (sees && view.camera.vertical_fov != field_of_view) {
+    if (view.camera.vertical_fov != field_of_view) {
       field_of_view = view.camera.vertical_fov;
       focal = focalLength(options_, view.camera);
     }
-    device_views[v] = {inverse(view.camera.world_from_camera), focal, next, count};
-    if (count != 0) {
-      copyPast(instances + next, view.instances.data(), count * sizeof(DeviceInstance));
-    }
-    next += count;
+    const ListPart placed{first_placed, static_cast<std::uint32_t>(modelCount(view))};
+    first_placed += placed.count;
+    device_views[v] = {inverse(view.camera.world_from_camera),
+                       focal,
+                       placed,
+                       instances.add(view.instances),
+                       posed.add(view.posed),
+                       attached_part,
+                       bodies.add(view.bodies).first};
   }
   return {};
 }
@@ -349,17 +421,21 @@ Result<void> CudaEngine::draw(std::span<const RenderView> views) {
   const DriverFunctions& functions = driver_->functions();
   statistics_ = {};
   slices_.clear();
-  for (const RenderView& view : views) statistics_.instances += view.instances.size();
   if (views.empty()) return {};
+  const ListSizes sizes = listSizes(views);
+  statistics_.instances = sizes.models;
   const std::size_t panes = views.size() * panes_.size();
   Upload at_bytes{};
   at_bytes.instances = aligned(views.size() * sizeof(DeviceView));
-  at_bytes.panes = aligned(at_bytes.instances + statistics_.instances * sizeof(DeviceInstance));
+  at_bytes.posed = aligned(at_bytes.instances + sizes.instances * sizeof(DeviceInstance));
+  at_bytes.attached = aligned(at_bytes.posed + sizes.posed * sizeof(DevicePosed));
+  at_bytes.bodies = aligned(at_bytes.attached + sizes.attached * sizeof(DeviceAttached));
+  at_bytes.panes = aligned(at_bytes.bodies + sizes.bodies * sizeof(RigidTransform));
   at_bytes.first_clusters = aligned(at_bytes.panes + panes_.size() * sizeof(PaneRectangle));
   at_bytes.bytes = at_bytes.first_clusters + panes * sizeof(std::uint32_t);
   RETURN_IF_ERROR(staged_.reserve(at_bytes.bytes));
   RETURN_IF_ERROR(uploaded_.reserve(at_bytes.bytes));
-  RETURN_IF_ERROR(placed_.reserve(statistics_.instances * sizeof(PlacedModel)));
+  RETURN_IF_ERROR(placed_.reserve(sizes.models * sizeof(PlacedModel)));
   {
     const ThreadStopwatch watch(timings_.setup);
     RETURN_IF_ERROR(stage(views, at_bytes));
@@ -390,6 +466,9 @@ ViewSlice CudaEngine::sliceOf(const ViewRange& range, std::size_t number,
   slice.models = at<ModelTables>(scene_->models());
   slice.views = at<DeviceView>(uploaded_, at_bytes.views) + range.first;
   slice.instances = at<DeviceInstance>(uploaded_, at_bytes.instances);
+  slice.posed = at<DevicePosed>(uploaded_, at_bytes.posed);
+  slice.attached = at<DeviceAttached>(uploaded_, at_bytes.attached);
+  slice.bodies = at<RigidTransform>(uploaded_, at_bytes.bodies);
   slice.placed = at<PlacedModel>(placed_);
   slice.tasks = at<PaneTask>(memory.tasks);
   slice.task = firstTask();

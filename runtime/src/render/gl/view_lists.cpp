@@ -23,10 +23,10 @@ bool isFinite(const RigidTransform& transform) {
 template <class Use>
 void forInstances(const RenderView& view, std::span<const ModelClusters> models, Use use) {
   if (!canSee(view.camera)) return;
-  for (const RenderInstance& instance : view.instances) {
-    if (instance.model >= models.size() || models[instance.model].count() == 0) continue;
-    if (isFinite(instance.world_from_model)) use(instance, models[instance.model]);
-  }
+  forModels(view, [&](std::uint32_t model, const RigidTransform& world_from_model) {
+    if (model >= models.size() || models[model].count() == 0) return;
+    if (isFinite(world_from_model)) use(world_from_model, models[model]);
+  });
 }
 
 std::uint32_t chunksOf(std::uint32_t clusters) {
@@ -51,7 +51,7 @@ std::uint32_t SliceCounts::allDraws() const {
 SliceCounts countSlice(std::span<const RenderView> views, std::span<const ModelClusters> models) {
   SliceCounts counts;
   for (const RenderView& view : views) {
-    forInstances(view, models, [&](const RenderInstance&, const ModelClusters& model) {
+    forInstances(view, models, [&](const RigidTransform&, const ModelClusters& model) {
       ++counts.instances;
       counts.clusters += model.count();
       for (std::size_t kind = 0; kind < kDrawClasses; ++kind) {
@@ -75,21 +75,22 @@ void listSlice(std::span<const RenderView> views, std::span<const ModelClusters>
     const RenderCamera& camera = views[layer].camera;
     const RigidTransform camera_from_world = inverse(camera.world_from_camera);
     const float scale_y = 1.0F / std::tan(camera.vertical_fov / 2);
-    forInstances(
-        views[layer], models, [&](const RenderInstance& instance, const ModelClusters& model) {
-          lists.instances[number] = {.rows = rowsOf(camera_from_world * instance.world_from_model),
-                                     .scale_x = scale_y / aspect,
-                                     .scale_y = scale_y,
-                                     .layer = static_cast<std::uint32_t>(layer)};
-          for (std::size_t kind = 0; kind < kDrawClasses; ++kind) {
-            const std::uint32_t end = model.first[kind + 1];
-            for (std::uint32_t first = model.first[kind]; first < end; first += kChunkClusters) {
-              lists.chunks[next_chunk[kind]++] = {number, first,
-                                                  std::min(kChunkClusters, end - first)};
-            }
-          }
-          ++number;
-        });
+    forInstances(views[layer], models,
+                 [&](const RigidTransform& world_from_model, const ModelClusters& model) {
+                   lists.instances[number] = {.rows = rowsOf(camera_from_world * world_from_model),
+                                              .scale_x = scale_y / aspect,
+                                              .scale_y = scale_y,
+                                              .layer = static_cast<std::uint32_t>(layer)};
+                   for (std::size_t kind = 0; kind < kDrawClasses; ++kind) {
+                     const std::uint32_t end = model.first[kind + 1];
+                     for (std::uint32_t first = model.first[kind]; first < end;
+                          first += kChunkClusters) {
+                       lists.chunks[next_chunk[kind]++] = {number, first,
+                                                           std::min(kChunkClusters, end - first)};
+                     }
+                   }
+                   ++number;
+                 });
   }
 }
 

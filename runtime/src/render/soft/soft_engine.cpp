@@ -46,12 +46,12 @@ void SoftEngine::begin(std::span<const RenderView> views, const RenderTargets& t
   statistics_ = {};
   for (const RenderView& view : views) {
     std::size_t clusters = 0;
-    for (const RenderInstance& instance : view.instances) {
-      clusters += scene_.models()[instance.model].cluster_count;
-    }
-    most_models = std::max(most_models, view.instances.size());
+    forModels(view, [&](std::uint32_t model, const RigidTransform&) {
+      clusters += scene_.models()[model].cluster_count;
+    });
+    most_models = std::max(most_models, modelCount(view));
     most_clusters = std::max(most_clusters, clusters);
-    statistics_.instances += view.instances.size();
+    statistics_.instances += modelCount(view);
     statistics_.clusters += clusters;
   }
   for (const auto& memory : memories_) {
@@ -117,13 +117,13 @@ std::uint32_t SoftEngine::placeModels(const RenderView& view, PlacedModel* place
   const float focal = focalLength(options_, view.camera);
   const RigidTransform camera_from_world = inverse(view.camera.world_from_camera);
   std::uint32_t count = 0;
-  for (const RenderInstance& instance : view.instances) {
-    const ModelTables& model = scene_.models()[instance.model];
-    if (model.cluster_count == 0) continue;
+  forModels(view, [&](std::uint32_t number, const RigidTransform& world_from_model) {
+    const ModelTables& model = scene_.models()[number];
+    if (model.cluster_count == 0) return;
     PlacedModel& next = placed[count];
     next.model = &model;
-    if (placeModel(camera_from_world, focal, instance.world_from_model, next)) ++count;
-  }
+    if (placeModel(camera_from_world, focal, world_from_model, next)) ++count;
+  });
   return count;
 }
 

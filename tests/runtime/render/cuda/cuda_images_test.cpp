@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "drawn_by_kernels.h"
+#include "runtime/render/mixed_models.h"
 #include "support/packs/render_model_builder.h"
 
 namespace galactic::test::cuda_images_test {
@@ -151,6 +152,17 @@ TEST_F(CudaImages, DoNotDependOnCulling) {
   const RenderImages culled = drawWithKernels(library_, options, views_);
   options.culling = false;
   EXPECT_EQ(culled, drawWithKernels(library_, options, views_));
+}
+
+TEST_F(CudaImages, OfPosedAndAttachedModelsEqualThoseOfInstances) {
+  views_[4].camera.vertical_fov = 0;
+  const MixedModels models(random_, 9, views_);
+  const RenderOptions options = imageOptions(96, 80);
+  const RenderImages soft = drawWithSoft(library_, options, models.asInstances());
+  EXPECT_EQ(drawWithKernels(library_, options, models.asInstances()), soft);
+  EXPECT_EQ(drawWithKernels(library_, options, models.mixed()), soft);
+  // Slices of few views.
+  EXPECT_EQ(drawWithKernels(library_, options, models.mixed(), 200'000), soft);
 }
 
 TEST_F(CudaImages, DoNotDependOnBlocksThreadsAndTheirOrder) {

@@ -10,8 +10,8 @@ GALACTIC_EVERYWHERE inline PaneTask paneTask(const ViewSlice& slice, std::uint32
   PaneTask task = slice.task;
   const std::size_t first_pixel =
       static_cast<std::size_t>(slice.first_view + view) * task.image_width * task.image_height;
-  task.models += from.first_instance;
-  task.model_count = from.instance_count;
+  task.models += from.placed.first;
+  task.model_count = from.placed.count;
   task.left = place.left;
   task.top = place.top;
   task.width = place.width;
@@ -22,6 +22,20 @@ GALACTIC_EVERYWHERE inline PaneTask paneTask(const ViewSlice& slice, std::uint32
   return task;
 }
 
+/// What a view shows as `number`, in the order of forModels().
+GALACTIC_EVERYWHERE inline DeviceInstance instanceOf(const ViewSlice& slice, const DeviceView& view,
+                                                     std::uint32_t number) {
+  if (number < view.instances.count) return slice.instances[view.instances.first + number];
+  number -= view.instances.count;
+  if (number < view.posed.count) {
+    const DevicePosed& posed = slice.posed[view.posed.first + number];
+    return {posed.model, rigidTransform(posed.world_from_model)};
+  }
+  number -= view.posed.count;
+  const DeviceAttached& attached = slice.attached[view.attached.first + number];
+  return {attached.model, slice.bodies[view.first_body + attached.body] * attached.body_from_model};
+}
+
 /// Places the instances of the view that the block stands for, and says what its panes show.
 GALACTIC_EVERYWHERE inline void placeInstances(const Block& block, const ViewSlice& slice) {
   const DeviceView& view = slice.views[block.index];
@@ -29,9 +43,9 @@ GALACTIC_EVERYWHERE inline void placeInstances(const Block& block, const ViewSli
     for (std::uint32_t n = thread; n < slice.panes_of_view; n += block.threads) {
       slice.tasks[block.index * slice.panes_of_view + n] = paneTask(slice, block.index, n);
     }
-    for (std::uint32_t n = thread; n < view.instance_count; n += block.threads) {
-      const DeviceInstance& instance = slice.instances[view.first_instance + n];
-      PlacedModel& placed = slice.placed[view.first_instance + n];
+    for (std::uint32_t n = thread; n < view.placed.count; n += block.threads) {
+      const DeviceInstance instance = instanceOf(slice, view, n);
+      PlacedModel& placed = slice.placed[view.placed.first + n];
       const ModelTables& model = slice.models[instance.model];
       placed.model = nullptr;
       if (model.cluster_count != 0 &&

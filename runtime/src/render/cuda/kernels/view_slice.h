@@ -22,13 +22,33 @@ struct DeviceInstance {
   RigidTransform world_from_model;
 };
 
-/// A camera, and the instances that it sees: those from `first_instance` on.
+/// As PosedModel.
+struct DevicePosed {
+  std::uint32_t model;
+  Pose world_from_model;
+};
+
+/// As AttachedModel.
+struct DeviceAttached {
+  std::uint32_t model;
+  std::uint32_t body;
+  RigidTransform body_from_model;
+};
+
+/// A part of a list.
+struct ListPart {
+  std::uint32_t first, count;
+};
+
+/// A camera, and what it sees.
 struct DeviceView {
   RigidTransform camera_from_world;
   /// 1/256 pixels at a distance of 1 m for each meter beside the camera's axis.
   float focal;
-  std::uint32_t first_instance;
-  std::uint32_t instance_count;
+  /// All of the three lists below.
+  ListPart placed;
+  ListPart instances, posed, attached;
+  std::uint32_t first_body;
 };
 
 /// A part of an image that is drawn by itself, pixels.
@@ -59,10 +79,14 @@ struct ViewSlice {
   const ModelTables* models;
   const DeviceView* views;
   const DeviceInstance* instances;
-  /// By instance; no model where it is not drawn.
+  const DevicePosed* posed;
+  const DeviceAttached* attached;
+  /// world_from_body.
+  const RigidTransform* bodies;
+  /// No model where it is not drawn.
   PlacedModel* placed;
   /// By pane: made on the device of the next two. `task` is for a pane of the batch's first view:
-  /// its models are those of the first instance, its images begin at their first pixel.
+  /// its models are the first ones that are placed, its images begin at their first pixel.
   PaneTask* tasks;
   PaneTask task;
   const PaneRectangle* panes;
