@@ -1,4 +1,5 @@
 // Batches, threads, processors, cameras that see nothing, and what a renderer says of itself.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
