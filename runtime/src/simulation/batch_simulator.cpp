@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "simulation/phases/chunk.h"
@@ -47,7 +48,8 @@ class BatchSimulator::Impl {
     threads_ = std::min(threads, chunks);
     desks_.reserve(detail::Workers::countFor(threads_));
     for (std::size_t n = 0; n < detail::Workers::countFor(threads_); ++n) {
-      desks_.push_back({Chunk(model_), {}});
+      desks_.push_back({Chunk(model_), {}, {}});
+      if (model_.options.continuous_collision) desks_.back().between.emplace(model_);
     }
     beginFirstEpisodes();
     workers_ = std::make_unique<detail::Workers>(
@@ -161,6 +163,8 @@ class BatchSimulator::Impl {
   /// What a thread works with.
   struct Desk {
     Chunk chunk;
+    /// Where options.continuous_collision asks for it.
+    std::optional<Chunk> between;
     simulation::PhaseSeconds seconds{};
   };
 
@@ -186,7 +190,8 @@ class BatchSimulator::Impl {
   /// A step of the n-th chunk.
   void run(std::size_t thread, std::size_t n) noexcept {
     Desk& desk = desks_[thread];
-    const simulation::ChunkStep step{model_, state_, desk.chunk, n * kChunk};
+    const simulation::ChunkStep step{model_, state_, desk.chunk, n * kChunk,
+                                     desk.between ? &*desk.between : nullptr};
     if (!states_.empty()) {
       simulation::followChunk(step, input_.actions, states_);
     } else if (measures_) {

@@ -33,6 +33,12 @@ void drawActions(std::uint64_t step, std::size_t count, std::mt19937& random,
 
 unsigned long long number(std::uint64_t value) { return value; }
 
+void printMoves(const char* which, std::uint64_t tunneled, std::uint64_t swept) {
+  const double share = static_cast<double>(tunneled) / std::max(1.0, static_cast<double>(swept));
+  std::printf("%s %llu, through something thin %llu: %.2f of 100,000\n", which, number(swept),
+              number(tunneled), 1e5 * share);
+}
+
 }  // namespace
 
 PenetrationReport searchPenetrations(const PenetrationRun& run) {
@@ -41,6 +47,7 @@ PenetrationReport searchPenetrations(const PenetrationRun& run) {
   options.envs = run.envs;
   options.threads = 2;
   options.body_transforms = true;
+  options.continuous_collision = run.continuous;
   options.task.kind = TaskKind::kNone;
   options.task.most_steps = 200;
   auto simulator = MemoryPack::opened(BatchSimulator::create(home.world(), options));
@@ -77,10 +84,8 @@ void print(const PenetrationReport& report) {
       "(%llu touch)\n",
       number(found.robot_spheres), number(found.held_spheres), number(found.excepted),
       number(found.near_objects), number(found.exact), number(found.shallow));
-  std::printf("moves shown to Bullet %llu, through something thin %llu: %.2f of 100,000\n",
-              number(found.swept), number(found.tunneled),
-              1e5 * static_cast<double>(found.tunneled) /
-                  static_cast<double>(std::max<std::uint64_t>(1, found.swept)));
+  printMoves("moves shown to Bullet", found.tunneled, found.swept);
+  printMoves("of those that did not slide", found.tunneled_straight, found.swept_straight);
   const Vec3& deepest = found.deepest_center;
   std::printf(
       "deepest in the scene: %.2f mm, exactly %.2f (allowed %.2f), a sphere of %g m at (%g, %g, "

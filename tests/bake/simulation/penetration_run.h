@@ -22,6 +22,8 @@ struct PenetrationRun {
   std::uint32_t sampled = 64;
   /// Of the actions.
   std::uint32_t seed = 801;
+  /// SimulationOptions::continuous_collision.
+  bool continuous = false;
 };
 
 struct PenetrationReport {

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1U, 1U << 20U))
       ->capture_default_str();
   app.add_option("--seed", run.seed, "Of the actions")->capture_default_str();
+  app.add_flag("--continuous-collision", run.continuous, "Look at moves on their way, too");
   CLI11_PARSE(app, argc, argv);
   run.steps = (env_steps + run.envs - 1) / run.envs;
   try {

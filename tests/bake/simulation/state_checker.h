@@ -39,6 +39,10 @@ struct Findings {
   /// is thinner than the move is long.
   std::uint64_t swept = 0;
   std::uint64_t tunneled = 0;
+  /// The same of robots that did not slide: others may have gone around what lies on the straight
+  /// line.
+  std::uint64_t swept_straight = 0;
+  std::uint64_t tunneled_straight = 0;
   /// Of the robot, then of held objects: blocked by the column grid, overlapping an object, deeper
   /// in the exact scene than the column method allows.
   std::array<std::uint64_t, 2> in_grid{};
@@ -78,6 +82,8 @@ class StateChecker {
     const auto transforms = simulator_.bodyTransforms().subspan(env * bodies, bodies);
     HeldBefore& before = held_[env];
     noteRelease(state, before);
+    before.slid = slidBetween(before.root, state.world_from_root);
+    before.root = state.world_from_root;
     before.from = before.to;
     before.to.resize(spheres_.size());
     for (std::size_t n = 0; n < spheres_.size(); ++n) {
@@ -136,6 +142,9 @@ class StateChecker {
     /// Where the robot's spheres were in the state before, and are in this one.
     std::vector<Vec3> from;
     std::vector<Vec3> to;
+    /// Where its base is in this one, and whether more than its drive brought it there.
+    Pose root;
+    bool slid = false;
   };
   /// The objects that a sphere is in.
   struct InObjects {
@@ -152,16 +161,26 @@ class StateChecker {
     before.leaving[before.object].assign(spheres_.size(), true);
   }
 
+  /// Robots turn first and then drive.
+  [[nodiscard]] static bool slidBetween(const Pose& before, const Pose& after) {
+    constexpr float kRounding = 1e-4F;
+    const Vec3 way = after.translation - before.translation;
+    const Vec3 ahead = rotate(after.rotation, {1, 0, 0});
+    return std::fabs(way.x * ahead.z - way.z * ahead.x) > kRounding;
+  }
+
   /// Each sphere along a straight line: where it turns, by five degrees at a meter at most, its
   /// path leaves the line by a millimeter.
   void checkMove(const EnvState& state, const HeldBefore& before, bool exactly,
                  Findings& found) const {
     if (!exactly || before.from.empty() || state.step != before.step + 1) return;
     ++found.swept;
+    found.swept_straight += before.slid ? 0U : 1U;
     for (std::size_t n = 0; n < spheres_.size(); ++n) {
       if (!tunnels(before.from[n], before.to[n], world_.radii()[spheres_[n].radius_index]))
         continue;
       ++found.tunneled;
+      found.tunneled_straight += before.slid ? 0U : 1U;
       return;
     }
   }

@@ -81,6 +81,26 @@ void Chunk::shift(std::size_t env, const Vec3& by) {
   for (RigidTransform& body : bodyTransforms(env)) body.origin = body.origin + by;
 }
 
+void Chunk::takeOver(std::size_t env, Chunk& other, std::size_t from) {
+  x_[env] = other.x_[from];
+  y_[env] = other.y_[from];
+  z_[env] = other.z_[from];
+  yaw_[env] = other.yaw_[from];
+  for (std::size_t v = 0; v < variables_.size(); v += kChunk) {
+    variables_[v + env] = other.variables_[v + from];
+  }
+  const auto takeRow = [&](auto& mine, const auto& theirs, std::size_t length) {
+    std::copy_n(theirs.begin() + static_cast<std::ptrdiff_t>(from * length), length,
+                mine.begin() + static_cast<std::ptrdiff_t>(env * length));
+  };
+  takeRow(centers_, other.centers_, 3 * sphere_count_);
+  takeRow(bounds_, other.bounds_, kBounds * group_stride_ / kLanes);
+  takeRow(bodies_, other.bodies_, body_count_);
+  extents_[env] = other.extents_[from];
+  grips_[env] = other.grips_[from];
+  floor_[env] = other.floor_[from];
+}
+
 void Chunk::shiftBounds(std::size_t env, const Vec3& by) {
   // Rounding keeps order: the bounds of what has moved are the bounds moved.
   const std::array<float, kLanes> each{by.x, by.x, by.y, by.y, by.z, by.z, 0, 0};

@@ -55,6 +55,8 @@ class Chunk {
   [[nodiscard]] Vec3 base(std::size_t env) const { return {x_[env], y_[env], z_[env]}; }
   /// Moves a candidate with all its spheres and its grip.
   void shift(std::size_t env, const Vec3& by);
+  /// Takes over the candidate of another chunk's env, with its spheres, grip and bodies.
+  void takeOver(std::size_t env, Chunk& other, std::size_t from);
   [[nodiscard]] SphereBatch spheres(std::size_t env) const;
   /// Bounds of the candidate's sphere centers, eight by eight, from group 8 * `eight` on.
   [[nodiscard]] GroupBounds bounds(std::size_t env, std::size_t eight) const {
@@ -137,6 +139,8 @@ struct ChunkStep {
   BatchState& state;
   Chunk& chunk;
   std::size_t first = 0;
+  /// Room for places on the way of one env; none where only the ends of moves are looked at.
+  Chunk* between = nullptr;
 };
 
 }  // namespace galactic::simulation

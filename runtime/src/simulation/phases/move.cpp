@@ -7,6 +7,7 @@
 #include "simulation/collision/collision.h"
 #include "simulation/phases/contacts.h"
 #include "simulation/phases/slide.h"
+#include "simulation/phases/walk.h"
 
 namespace galactic::simulation {
 namespace {
@@ -34,6 +35,12 @@ void accept(const ChunkStep& step, std::size_t e) {
     const bool any = keepPenetrating(step.state.leaving(n, object), step.chunk.bodyBits());
     env.left -= any ? 0U : 1U;
   });
+}
+
+/// As walkToCandidate(), looking at the end of the way alone.
+Walk jumpToCandidate(const ChunkStep& step, std::size_t e) {
+  if (isFree(step, e)) return Walk::kStraight;
+  return slideClear(step, e) ? Walk::kHindered : Walk::kNone;
 }
 
 /// All bits of the envs whose candidate is accepted.
@@ -153,14 +160,13 @@ void moveRobots(const ChunkStep& step) noexcept {
     Env& env = step.state.env(step.first + e);
     if (step.state.idle()[step.first + e] != 0) continue;
     env.refused = false;
-    if (!isFree(step, e)) {
-      if (!slideClear(step, e)) {
-        ++env.counters.refused;
-        env.refused = true;
-        continue;
-      }
-      ++env.counters.slid;
+    const Walk walk = step.between == nullptr ? jumpToCandidate(step, e) : walkToCandidate(step, e);
+    if (walk == Walk::kNone) {
+      ++env.counters.refused;
+      env.refused = true;
+      continue;
     }
+    env.counters.slid += walk == Walk::kHindered ? 1U : 0U;
     accept(step, e);
     accepted[e] = ~std::uint32_t{0};
   }

@@ -20,6 +20,7 @@ SimulationOptions unusualOptions() {
   options.seed = UINT64_MAX;
   options.order = EpisodeOrder::kPartition;
   options.rank = 2;
+  options.continuous_collision = true;
   options.ranks = 3;
   options.action = {
       .grasp = 0.1F, .release = -0.7F, .terminate = 1.0F / 3, .grasp_shape = GraspShape::kBox};

@@ -1,0 +1,191 @@
+#include "simulation/phases/walk.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "simulation/phases/contacts.h"
+#include "simulation/phases/move.h"
+#include "simulation/phases/slide.h"
+
+namespace galactic::simulation {
+namespace {
+
+constexpr float kTurn = 6.28318531F;
+/// The lane of `step.between` in which slides are looked at on their way.
+constexpr std::size_t kSpareLane = kLanes;
+
+/// How spheres move from one batch to the other.
+struct SphereMoves {
+  /// The farthest way, in radii of the sphere that goes it.
+  float farthest = 0;
+  /// Meters.
+  float smallest_radius = HUGE_VALF;
+
+  void include(const SphereBatch& from, const SphereBatch& to) {
+    for (const RadiusRange& range : from.ranges) {
+      float squared = 0;
+      for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
+        const Vec3 way{to.x[n] - from.x[n], to.y[n] - from.y[n], to.z[n] - from.z[n]};
+        squared = std::max(squared, dot(way, way));
+      }
+      farthest = std::max(farthest, std::sqrt(squared) / range.radius);
+      if (range.count > 0) smallest_radius = std::min(smallest_radius, range.radius);
+    }
+  }
+};
+
+/// One env's robot on its way. The lanes of `step.between` are places one after the other: lane 0
+/// is where the robot is, the others are the next parts.
+class Walker {
+ public:
+  Walker(const ChunkStep& step, std::size_t e)
+      : step_(step),
+        e_(e),
+        scene_(step.model.world->scenes()[step.state.env(step.first + e).scene]),
+        from_(step.state.poses(step.first + e)),
+        to_(step.chunk.candidates(e)),
+        turn_(std::remainder(*to_.yaw - *from_.yaw, kTurn)) {
+    heights_[0] = *from_.y;
+    placeNext();
+    cutInParts();
+  }
+
+  Walk run() {
+    Progress progress = Progress::kFree;
+    while (progress != Progress::kBlocked && reached_ < parts_) {
+      placeNext();
+      progress = goOn();
+    }
+    const bool has_slid = slid_.x != 0 || slid_.z != 0;
+    if (reached_ == parts_ && !has_slid && isFree(step_, e_)) return Walk::kStraight;
+    if (reached_ == 0) return Walk::kNone;
+    step_.chunk.takeOver(e_, *step_.between, lane_);
+    // Of what it slid out of, rounding may tell the place when it is computed again.
+    return isFree(step_, e_) ? Walk::kHindered : Walk::kNone;
+  }
+
+ private:
+  enum class Progress : std::uint8_t { kFree, kSlid, kBlocked };
+
+  /// A step in whose chunk this lane stands for the env: all lanes do.
+  [[nodiscard]] ChunkStep at(std::size_t lane) const {
+    return {step_.model, step_.state, *step_.between, step_.first + e_ - lane};
+  }
+
+  void cutInParts() {
+    SphereMoves moves;
+    moves.include(step_.between->spheres(0), step_.chunk.spheres(e_));
+    if (step_.state.env(step_.first + e_).held.object >= 0) {
+      moves.include(heldSpheres(at(0), 0), heldSpheres(step_, e_));
+    }
+    parts_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(moves.farthest)));
+    smallest_radius_ = moves.smallest_radius;
+  }
+
+  /// Puts the robot to where it is and to the next parts of its way.
+  void placeNext() {
+    const PoseArrays places = step_.between->candidates(0);
+    heights_[0] = heights_[lane_];
+    lane_ = 0;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t part = std::min(reached_ + lane, parts_);
+      const float share = static_cast<float>(part) / static_cast<float>(parts_);
+      const auto between = [share](float from, float to) { return from + share * (to - from); };
+      places.x[lane] = between(*from_.x, *to_.x) + slid_.x;
+      places.z[lane] = between(*from_.z, *to_.z) + slid_.z;
+      places.yaw[lane] = std::remainder(*from_.yaw + share * turn_, kTurn);
+      for (std::size_t v = 0; v < step_.model.variableCount(); ++v) {
+        places.variables[v * places.stride + lane] =
+            between(from_.variables[v * from_.stride], to_.variables[v * to_.stride]);
+      }
+      followFloor(places, lane);
+    }
+    step_.model.kernels.place(
+        step_.model.tables,
+        {.pose = places, .body = step_.between->bodies(0), .scratch = step_.between->frames()});
+  }
+
+  void followFloor(const PoseArrays& places, std::size_t lane) {
+    const float from = heights_[lane == 0 ? 0 : lane - 1];
+    const FloorUnder under =
+        floorUnder(scene_, {places.x[lane], from, places.z[lane]}, step_.model.options.ground);
+    step_.between->floor(lane) = under.floor;
+    heights_[lane] = under.height;
+    places.y[lane] = under.height;
+  }
+
+  /// Goes through the lanes as long as they are free; the first slide changes those after it.
+  Progress goOn() {
+    for (std::size_t lane = 1; lane < kLanes && reached_ < parts_; ++lane) {
+      const bool is_free = isFree(at(lane), lane);
+      if (!is_free && !slide(lane)) return Progress::kBlocked;
+      lane_ = lane;
+      ++reached_;
+      if (!is_free) return Progress::kSlid;
+    }
+    return Progress::kFree;
+  }
+
+  bool slide(std::size_t lane) {
+    const Vec3 before = step_.between->base(lane);
+    if (!slideClear(at(lane), lane)) return false;
+    const Vec3 after = step_.between->base(lane);
+    const Push by{after.x - before.x, after.z - before.z};
+    if (!slidThroughNothing(lane, by)) return false;
+    slid_ = {slid_.x + by.x, slid_.z + by.z};
+    heights_[lane] = after.y;
+    return true;
+  }
+
+  /// Whether no sphere passed through something as a lane slid `by`. A part is shorter than any
+  /// radius; a slide may be longer than some.
+  [[nodiscard]] bool slidThroughNothing(std::size_t lane, const Push& by) const {
+    const float length = std::sqrt(by.x * by.x + by.z * by.z);
+    const float looks = std::ceil(length / smallest_radius_);
+    const Vec3 last = step_.between->base(lane_);
+    const Vec3 here = step_.between->base(lane);
+    const Vec3 back{(last.x - here.x) / looks, 0, (last.z - here.z) / looks};
+    step_.between->takeOver(kSpareLane, *step_.between, lane);
+    for (float n = 1; n < looks; ++n) {
+      step_.between->shift(kSpareLane, back);
+      step_.between->forgetSuited();
+      if (findBlocked(at(kSpareLane), kSpareLane) && blocksSmallerThan(length)) return false;
+    }
+    return true;
+  }
+
+  /// Of the spheres that findBlocked() found.
+  [[nodiscard]] bool blocksSmallerThan(float radius) const {
+    const std::span<const std::uint64_t> words = step_.between->blockedBits();
+    for (std::size_t n = 0; n < step_.model.groups.size(); ++n) {
+      const std::uint64_t blocked = words[n / kLanes] >> (n % kLanes * kLanes) & 0xffU;
+      if (blocked != 0 && step_.model.groups[n].radius < radius) return true;
+    }
+    return false;
+  }
+
+  const ChunkStep& step_;
+  std::size_t e_;
+  const Scene& scene_;
+  PoseArrays from_;
+  PoseArrays to_;
+  float turn_;
+  std::size_t parts_ = kLanes;
+  float smallest_radius_ = 0;
+  /// Parts that are behind, and the lane that is there.
+  std::size_t reached_ = 0;
+  std::size_t lane_ = 0;
+  Push slid_;
+  /// Of the floor under each lane.
+  std::array<float, kLanes> heights_{};
+};
+
+}  // namespace
+
+Walk walkToCandidate(const ChunkStep& step, std::size_t e) noexcept {
+  return Walker(step, e).run();
+}
+
+}  // namespace galactic::simulation
