@@ -167,10 +167,10 @@ struct SimulationOptions {
   /// Whether a step that ends an episode begins the next. Else the env stays where its episode
   /// ended until BatchSimulator::reset, so that this can be drawn; the episodes are the same.
   bool auto_reset = true;
-  /// Whether a move is also looked at on its way, at poses so near to each other that no sphere
-  /// moves further than its radius; the move is refused where the robot, or what it holds,
-  /// penetrates something there. Else only its end is looked at (as in the published code), and the
-  /// robot may pass through what is thinner than its way in one step.
+  /// Whether moves are looked at on their way: in parts so short that no sphere moves further than
+  /// its radius. Each part slides on its own; the first that cannot ends the move where it got to.
+  /// Else only the end of a move is looked at (as in the published code), and the robot may pass
+  /// through what is thinner than its way in one step.
   bool continuous_collision = false;
   ActionOptions action;
   SlideOptions slide;

@@ -144,7 +144,7 @@ void visitMotionOptions(SimulationOptions& o, Visitor& v) {
   v.real("floor-rise", o.ground.most_rise, kMeters, "Highest step up, meters");
   v.real("floor-drop", o.ground.most_drop, kMeters, "Deepest step down, meters");
   v.flag("continuous-collision", Switch{o.continuous_collision, true},
-         "Refuse moves that pass through something on their way");
+         "Look at moves on their way, too, and pass through nothing");
   v.group("Placing released objects");
   v.whole("place-attempts", o.placement.attempts, kAttempts, "Poses to try for a released object");
   v.real("place-lift", o.placement.most_lift, kMeters, "Highest lift out of a collision, meters");
