@@ -98,6 +98,24 @@ TEST(TriangleTree, FindsTheNearestPointOfASoup) {
   EXPECT_LT(within, 360) << "seed " << kSeed;
 }
 
+/// Facets that no plane parts, and facets each of which is half as far as the one before, so that
+/// planes part off one at a time.
+TEST(TriangleTree, FindsTheNearestOfFacetsThatAreHardToPart) {
+  std::vector<Facet> facets(100, Facet{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}});
+  float at = 1e6F;
+  for (int n = 0; n < 120; ++n, at /= 2) {
+    facets.push_back({Vec3{at, 0, 5}, Vec3{at, 0, 6}, Vec3{at, 1, 5}});
+  }
+  const TriangleTree tree(facets);
+  for (const Vec3d p : {Vec3d{0.2, 0.2, 1}, Vec3d{3e5, 0, 5}, Vec3d{-1, 0, 5.2}, Vec3d{9, 9, 9}}) {
+    double nearest = HUGE_VAL;
+    for (const Facet& facet : facets) {
+      nearest = std::min(nearest, squaredNorm(nearestOnFacet(p, facet) - p));
+    }
+    EXPECT_DOUBLE_EQ(tree.nearest(p).squared, nearest);
+  }
+}
+
 TEST(TriangleTree, OfNothingFindsNothing) {
   EXPECT_EQ(TriangleTree({}).nearest({0, 0, 0}).facet, kNoFacet);
 }

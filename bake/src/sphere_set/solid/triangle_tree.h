@@ -62,8 +62,19 @@ class TriangleTree {
     }
   };
 
+  /// Facets of a node, in the order in which they are parted.
+  struct Range {
+    std::uint32_t begin = 0;
+    std::uint32_t end = 0;
+    /// Of the node.
+    std::uint32_t depth = 0;
+  };
+
   void build(std::vector<std::uint32_t>& order, const std::vector<Vec3d>& middles,
-             std::uint32_t begin, std::uint32_t end);
+             const Range& range);
+  /// Parts the facets of a range in two; returns where the second part begins.
+  [[nodiscard]] std::uint32_t part(std::vector<std::uint32_t>& order,
+                                   const std::vector<Vec3d>& middles, const Range& range) const;
 
   std::vector<Facet> facets_;
   std::vector<Node> nodes_;
