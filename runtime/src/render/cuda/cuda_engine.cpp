@@ -8,13 +8,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
 #include <utility>
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
 
 #include "render/cuda/kernel_image.h"
+#include "support/thread_clock.h"
 #include "support/try.h"
 
 namespace galactic::render::cuda {
@@ -134,19 +134,13 @@ class Stopwatch {
 class ThreadStopwatch {
  public:
   explicit ThreadStopwatch(double& sum) : sum_(sum) {}
-  ~ThreadStopwatch() { sum_ += now() - start_; }
+  ~ThreadStopwatch() { sum_ += detail::threadSeconds() - start_; }
   ThreadStopwatch(const ThreadStopwatch&) = delete;
   ThreadStopwatch& operator=(const ThreadStopwatch&) = delete;
 
  private:
-  static double now() {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-  }
-
   double& sum_;
-  double start_ = now();
+  double start_ = detail::threadSeconds();
 };
 
 /// Makes a stream the used one for a while.

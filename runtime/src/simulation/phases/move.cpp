@@ -145,8 +145,8 @@ void followFloor(const ChunkStep& step) noexcept {
 }
 
 void placeBodies(const ChunkStep& step) noexcept {
-  // While the kernels calculate, what the collision tests read comes nearer.
-  for (std::size_t e = 0; e < kChunk; ++e) step.state.resting(step.first + e).prefetch();
+  // While the kernels calculate, what the task reads comes nearer.
+  for (std::size_t e = 0; e < kChunk; ++e) step.state.prefetchTarget(step.first + e);
   for (std::size_t e = 0; e < kChunk; e += kLanes) {
     step.model.kernels.place(step.model.tables, {.pose = step.chunk.candidates(e),
                                                  .body = step.chunk.bodies(e),
@@ -157,6 +157,9 @@ void placeBodies(const ChunkStep& step) noexcept {
 void moveRobots(const ChunkStep& step) noexcept {
   AcceptedLanes accepted{};
   for (std::size_t e = 0; e < kChunk; ++e) {
+    // A thread takes one chunk after the other. Asked for while the longest phase lasts, what the
+    // next one needs is there in time, and none of it waits for much else.
+    step.state.prefetch(step.first + kChunk + e);
     Env& env = step.state.env(step.first + e);
     if (step.state.idle()[step.first + e] != 0) continue;
     env.refused = false;

@@ -1,13 +1,13 @@
 #include "simulation/phases/step.h"
 
 #include <algorithm>
-#include <ctime>
 
 #include "simulation/phases/episode_start.h"
 #include "simulation/phases/hand.h"
 #include "simulation/phases/move.h"
 #include "simulation/phases/observe.h"
 #include "simulation/phases/task.h"
+#include "support/thread_clock.h"
 
 namespace galactic::simulation {
 
@@ -33,13 +33,6 @@ void readActions(const ChunkStep& step, std::span<const float> all) noexcept {
 }
 
 namespace {
-
-/// Of the calling thread: what others on the machine do does not count.
-double processorSeconds() noexcept {
-  std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// Runs the phases, telling `lap` after each of them.
 template <class Lap>
@@ -75,12 +68,12 @@ void stepChunk(const ChunkStep& step, const StepInput& input) noexcept {
 
 void stepChunkMeasured(const ChunkStep& step, const StepInput& input,
                        PhaseSeconds& seconds) noexcept {
-  double before = processorSeconds();
+  double before = detail::threadSeconds();
   // Asking takes as long as a short phase.
-  const double asking = processorSeconds() - before;
+  const double asking = detail::threadSeconds() - before;
   before += asking;
   runPhases(step, input, [&](std::size_t phase) {
-    const double now = processorSeconds();
+    const double now = detail::threadSeconds();
     seconds[phase] += std::max(0.0, now - before - asking);
     before = now;
   });

@@ -27,6 +27,18 @@ std::size_t bytesOf(const std::pmr::vector<T>& values) {
 
 std::size_t paddedToChunks(std::size_t count) { return (count + kChunk - 1) / kChunk * kChunk; }
 
+/// Into the second-level cache: more than a chunk does not stay in the first.
+void prefetchBytes(const void* first, std::size_t bytes) noexcept {
+  constexpr std::size_t kCacheLine = 64;
+  const auto* at = static_cast<const char*>(first);
+  for (std::size_t n = 0; n < bytes; n += kCacheLine) __builtin_prefetch(at + n, 0, 2);
+}
+
+template <class Value>
+void prefetchRow(std::span<const Value> row) noexcept {
+  prefetchBytes(row.data(), row.size_bytes());
+}
+
 }  // namespace
 
 void measureHeld(const ObjectModel& object, Held& held) noexcept {
@@ -96,6 +108,24 @@ PoseArrays BatchState::poses(std::size_t first) {
           .yaw = x + 3 * kChunk,
           .variables = x + kBaseRows * kChunk,
           .stride = kChunk};
+}
+
+void BatchState::prefetch(std::size_t n) const noexcept {
+  if (n >= envs_.size()) return;
+  prefetchBytes(&envs_[n], kEnvHotBytes);
+  prefetchBytes(&grips_[n], sizeof(GripFrame));
+  prefetchRow(observation(n));
+  prefetchRow(lastActions(n));
+  prefetchRow(bodyTransforms(n));
+  // The chunk's rows in equal parts, an env each.
+  prefetchBytes(poses_.data() + n * pose_rows_, pose_rows_ * sizeof(float));
+  resting_[n].prefetch();
+  // Which says where its sets are.
+  if (n + kChunk < envs_.size()) prefetchBytes(&resting_[n + kChunk], sizeof(RestingObjects));
+}
+
+void BatchState::prefetchTarget(std::size_t n) const noexcept {
+  prefetchBytes(objects_.data() + n * most_objects_ + envs_[n].target, sizeof(Pose));
 }
 
 std::size_t BatchState::bytes() const {

@@ -91,7 +91,9 @@ struct alignas(64) Env {
   /// Episodes begun.
   std::uint64_t ordinal = 0;
 };
-static_assert(offsetof(Env, held.ball_center) <= 128);
+/// What every step reads of an Env.
+inline constexpr std::size_t kEnvHotBytes = 128;
+static_assert(offsetof(Env, held.ball_center) <= kEnvHotBytes);
 
 /// The object in the env's hand, which must not be empty.
 [[nodiscard]] inline const ObjectModel& heldModel(const Model& model, const Env& env) {
@@ -168,6 +170,9 @@ class BatchState {
   [[nodiscard]] std::span<float> observation(std::size_t n) {
     return std::span(observations_).subspan(n * observation_size_, observation_size_);
   }
+  [[nodiscard]] std::span<const float> observation(std::size_t n) const {
+    return std::span(observations_).subspan(n * observation_size_, observation_size_);
+  }
   [[nodiscard]] std::span<float> finalObservation(std::size_t n) {
     return std::span(final_observations_).subspan(n * observation_size_, observation_size_);
   }
@@ -213,6 +218,12 @@ class BatchState {
     endings_[n] = EpisodeEnd::kNone;
   }
   [[nodiscard]] std::size_t bytes() const;
+
+  /// Asks the memory for what a step of an env reads and writes: a chunk ahead, it is there in
+  /// time. There may be no such env.
+  void prefetch(std::size_t n) const noexcept;
+  /// The same for the pose of its target, which the env itself has to be there for.
+  void prefetchTarget(std::size_t n) const noexcept;
 
  private:
   /// X, y, z and yaw.
