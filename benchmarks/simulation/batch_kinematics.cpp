@@ -23,7 +23,6 @@
 namespace {
 
 using namespace galactic;
-using simulation::kLanes;
 
 /// As many robots as fit into the nearest caches.
 constexpr std::size_t kRobots = 128;
@@ -86,22 +85,24 @@ void batched(benchmark::State& state) {
           positions[n * robot.positionCount() + model->variables[v].position];
     }
   }
-  struct alignas(32) Lanes {
-    float values[kLanes];
+  constexpr std::size_t kWidth = simulation::kMostWidth;
+  struct alignas(64) Lanes {
+    float values[kWidth];
   };
-  std::vector<Lanes> scratch(simulation::frameScratchSize(model->nodes.size()) / kLanes);
+  std::vector<Lanes> scratch(simulation::frameScratchSize(model->nodes.size()) / kWidth);
   std::vector<float> centers(3 * model->spheres.size() * kRobots);
   std::vector<float> grips(simulation::kGripStride * kRobots);
   const std::size_t body_floats = 12 * (model->nodes.size() + 1);
   std::vector<float> bodies(body_floats * kRobots);
   for (auto _ : state) {
-    for (std::size_t n = 0; n < kRobots; n += kLanes) {
+    for (std::size_t n = 0; n < kRobots; n += kWidth) {
       kernels.place(tables, {.pose = {x.data() + n, y.data() + n, z.data() + n, yaw.data() + n,
                                       variables.data() + n, kRobots},
                              .body = {centers.data() + 3 * model->spheres.size() * n,
                                       grips.data() + simulation::kGripStride * n,
                                       bodies.data() + body_floats * n},
-                             .scratch = scratch.data()->values});
+                             .scratch = scratch.data()->values,
+                             .envs = kWidth});
     }
     benchmark::DoNotOptimize(centers.data());
     benchmark::ClobberMemory();

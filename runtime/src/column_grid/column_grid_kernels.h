@@ -66,6 +66,16 @@ struct EightsOfCenters {
 #endif
 }
 
+/// Whether code built for AVX-512 (F, BW, DQ and VL) can run on this processor.
+[[nodiscard, gnu::always_inline]] inline bool hasAvx512() noexcept {
+#if defined(__x86_64__)
+  return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+         __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
+#else
+  return false;
+#endif
+}
+
 /// What is taken off the distances to contact, meters: more than all rounding from a height to its
 /// code and back, so that whoever moves by a distance and asks again finds the place free.
 // A height's code is off by less than 2^-21 of the height above the grid's lowest one: four

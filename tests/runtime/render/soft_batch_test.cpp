@@ -158,7 +158,7 @@ TEST_F(SoftBatch, IsTheSameOnEveryProcessor) {
       options.culling = culling;
       const RenderImages portable = drawWith(options, render::drawPanePortable);
       EXPECT_EQ(drawWith(options, render::drawPaneAvx2), portable) << width << " x " << height;
-      if (!render::hasAvx512()) continue;
+      if (!detail::hasAvx512()) continue;
       EXPECT_EQ(drawWith(options, render::drawPaneAvx512), portable) << width << " x " << height;
     }
   }

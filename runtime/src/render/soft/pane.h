@@ -48,12 +48,9 @@ using DrawPane = PaneCounts (*)(const PaneTask&, const PaneScratch&) noexcept;
 PaneCounts drawPanePortable(const PaneTask& task, const PaneScratch& scratch) noexcept;
 /// For processors with AVX2.
 PaneCounts drawPaneAvx2(const PaneTask& task, const PaneScratch& scratch) noexcept;
-/// For processors with AVX-512: see hasAvx512().
+/// For processors with AVX-512: see detail::hasAvx512().
 PaneCounts drawPaneAvx512(const PaneTask& task, const PaneScratch& scratch) noexcept;
 /// What that one writes its images with, sixteen pixels at a time.
 void resolveAvx512(const PaneTask& task, const PaneScratch& scratch) noexcept;
-
-/// Whether this processor has the parts of AVX-512 (F, BW, DQ, VL) that drawPaneAvx512() needs.
-[[nodiscard]] bool hasAvx512() noexcept;
 
 }  // namespace galactic::render

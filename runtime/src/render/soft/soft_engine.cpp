@@ -7,15 +7,6 @@
 
 namespace galactic::render {
 
-bool hasAvx512() noexcept {
-#if defined(__x86_64__)
-  return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
-         __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
-#else
-  return false;
-#endif
-}
-
 SoftEngine::SoftEngine(const RenderLibrary& library, const RenderOptions& options, DrawPane draw)
     : options_(options), draw_(draw), scene_(library) {
   options_.threads = detail::threadCount(options.threads);
@@ -129,7 +120,7 @@ std::uint32_t SoftEngine::placeModels(const RenderView& view, PlacedModel* place
 
 Result<std::unique_ptr<RenderEngine>> makeSoftEngine(const RenderLibrary& library,
                                                      const RenderOptions& options) {
-  const DrawPane draw = hasAvx512()         ? drawPaneAvx512
+  const DrawPane draw = detail::hasAvx512() ? drawPaneAvx512
                         : detail::hasAvx2() ? drawPaneAvx2
                                             : drawPanePortable;
   return std::make_unique<SoftEngine>(library, options, draw);

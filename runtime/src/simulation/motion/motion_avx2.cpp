@@ -4,6 +4,8 @@
 #if !defined(__AVX2__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
+// Needed by what follows.
+#include "simulation/motion/lanes_eight.inl"
 #include "simulation/motion/motion_kernel.inl"
 
 namespace galactic::simulation {

@@ -1,40 +1,11 @@
-// The motion kernels, in terms of eight-lane vectors: included by motion_portable.cpp and
-// motion_avx2.cpp, which differ only in the instructions that they may use. No library templates
-// here: see column_grid_avx2.cpp.
+// The motion kernels, in terms of vectors of kWidth envs: included after lanes_eight.inl by
+// motion_portable.cpp and motion_avx2.cpp, after lanes_sixteen.inl by motion_avx512.cpp, which
+// differ in nothing else but the instructions that they may use. No library templates here: see
+// column_grid_avx2.cpp.
 namespace galactic::simulation {
 namespace {
 
-using Lanes = float __attribute__((vector_size(32)));
-using IntLanes = std::int32_t __attribute__((vector_size(32)));
-
-inline Lanes load(const float* from) {
-  Lanes lanes;
-  __builtin_memcpy(&lanes, from, sizeof(lanes));
-  return lanes;
-}
-
-inline void store(float* to, Lanes lanes) { __builtin_memcpy(to, &lanes, sizeof(lanes)); }
-
-inline Lanes spread(float value) {
-  return Lanes{value, value, value, value, value, value, value, value};
-}
-
-/// Element 0 of eight rows.
-inline Lanes loadStrided(const float* p, std::size_t stride) {
-  return Lanes{p[0],          p[stride],     p[2 * stride], p[3 * stride],
-               p[4 * stride], p[5 * stride], p[6 * stride], p[7 * stride]};
-}
-
-inline Lanes pick(IntLanes mask, Lanes yes, Lanes no) {
-  IntLanes a;
-  IntLanes b;
-  __builtin_memcpy(&a, &yes, sizeof(a));
-  __builtin_memcpy(&b, &no, sizeof(b));
-  const IntLanes bits = (a & mask) | (b & ~mask);
-  Lanes result;
-  __builtin_memcpy(&result, &bits, sizeof(result));
-  return result;
-}
+inline Lanes pick(IntLanes mask, Lanes yes, Lanes no) { return mask ? yes : no; }
 
 /// The first one where neither is less: what vminps and vmaxps do with their operands swapped.
 inline Lanes lesser(Lanes a, Lanes b) { return b < a ? b : a; }
@@ -91,7 +62,7 @@ struct LaneVector {
   Lanes x, y, z;
 };
 
-/// World frame: axes and origin of eight frames.
+/// World frame: axes and origin of the frames of kWidth envs.
 struct LaneFrame {
   LaneVector x_axis, y_axis, z_axis, origin;
 };
@@ -140,35 +111,6 @@ inline LaneFrame nodeFrame(const LaneFrame& parent, const MotionNode& node, Lane
   return frame;
 }
 
-/// Four rows of eight become columns: number n of the lower four lanes, and of the upper four.
-inline void transposeFour(const Lanes rows[4], Lanes columns[4]) {
-  const Lanes a = __builtin_shufflevector(rows[0], rows[1], 0, 8, 1, 9, 4, 12, 5, 13);
-  const Lanes b = __builtin_shufflevector(rows[0], rows[1], 2, 10, 3, 11, 6, 14, 7, 15);
-  const Lanes c = __builtin_shufflevector(rows[2], rows[3], 0, 8, 1, 9, 4, 12, 5, 13);
-  const Lanes d = __builtin_shufflevector(rows[2], rows[3], 2, 10, 3, 11, 6, 14, 7, 15);
-  columns[0] = __builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13);
-  columns[1] = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);
-  columns[2] = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);
-  columns[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
-}
-
-/// Writes eight rows of eight as columns: number n to `to` + n * stride. Half of the lanes after
-/// the other, so that no register is spilled.
-inline void storeColumns(const Lanes rows[kLanes], float* to, std::size_t stride) {
-  Lanes halves[4];
-  Lanes columns[4];
-  for (std::size_t n = 0; n < 4; ++n) {
-    halves[n] = __builtin_shufflevector(rows[n], rows[n + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-  }
-  transposeFour(halves, columns);
-  for (std::size_t n = 0; n < 4; ++n) store(to + n * stride, columns[n]);
-  for (std::size_t n = 0; n < 4; ++n) {
-    halves[n] = __builtin_shufflevector(rows[n], rows[n + 4], 4, 5, 6, 7, 12, 13, 14, 15);
-  }
-  transposeFour(halves, columns);
-  for (std::size_t n = 0; n < 4; ++n) store(to + (n + 4) * stride, columns[n]);
-}
-
 /// Least and most of a coordinate of eight spheres.
 struct LaneBounds {
   Lanes least, most;
@@ -183,7 +125,7 @@ inline LaneBounds boundsOf(const Lanes values[kLanes]) {
   return bounds;
 }
 
-/// The centers of eight spheres in eight envs. `bounds`: of these spheres, kBounds vectors; null
+/// The centers of eight spheres. `bounds`: of these spheres, kBounds vectors; null
 /// when nobody wants them.
 inline void placeEightSpheres(const BodySphere* spheres, const LaneFrame* frames, float* centers,
                               std::size_t count, Lanes* bounds) {
@@ -222,19 +164,14 @@ inline void placeGrip(const MotionTables& tables, const LaneFrame* frames, float
   storeColumns(second, grips + kLanes, kGripStride);
 }
 
-inline void placeBody(const LaneFrame& body, float* bodies, std::size_t stride) {
-  const Lanes first[kLanes] = {body.x_axis.x, body.x_axis.y, body.x_axis.z, body.y_axis.x,
-                               body.y_axis.y, body.y_axis.z, body.z_axis.x, body.z_axis.y};
-  const Lanes last[4] = {body.z_axis.z, body.origin.x, body.origin.y, body.origin.z};
-  storeColumns(first, bodies, stride);
-  Lanes columns[4];
-  transposeFour(last, columns);
-  constexpr std::size_t kHalf = 4 * sizeof(float);
-  for (std::size_t n = 0; n < 4; ++n) {
-    const auto* column = reinterpret_cast<const char*>(columns + n);
-    __builtin_memcpy(bodies + stride * n + kLanes, column, kHalf);
-    __builtin_memcpy(bodies + stride * (n + 4) + kLanes, column + kHalf, kHalf);
-  }
+/// Root and nodes: the numbers of an env's frames, as they are in memory, are its row.
+inline void placeFrames(const LaneFrame* frames, std::size_t count, float* bodies) {
+  const auto* rows = reinterpret_cast<const Lanes*>(frames);
+  constexpr std::size_t kNumbers = sizeof(LaneFrame) / sizeof(Lanes);
+  const std::size_t numbers = kNumbers * count;
+  std::size_t n = 0;
+  for (; n + kLanes <= numbers; n += kLanes) storeColumns(rows + n, bodies + n, numbers);
+  if (n < numbers) storeFourColumns(rows + n, bodies + n, numbers);
 }
 
 /// Frame 0 is the root, frame n + 1 node n.
@@ -250,7 +187,7 @@ inline const LaneFrame* nodeFrames(const MotionTables& tables, const PoseArrays&
   return frames;
 }
 
-void moveKernel(const MotionTables& tables, const MoveBatch& batch) noexcept {
+inline void moveLanes(const MotionTables& tables, const MoveBatch& batch) noexcept {
   const std::size_t joints = batch.action_count - 4;
   const Lanes forward = loadStrided(batch.actions + joints, batch.action_count);
   const Lanes clockwise = loadStrided(batch.actions + joints + 1, batch.action_count);
@@ -274,7 +211,7 @@ void moveKernel(const MotionTables& tables, const MoveBatch& batch) noexcept {
   }
 }
 
-/// The bounds of `count` groups in eight envs, to the rows of the envs from `to` on; the first one
+/// The bounds of `count` groups, to the rows of the envs from `to` on; the first one
 /// again where there are less than eight.
 inline void storeBounds(const Lanes groups[kLanes][kBounds], std::size_t count, float* to,
                         std::size_t stride) {
@@ -293,7 +230,7 @@ inline void extend(Lanes all[kBounds], const Lanes more[kBounds]) {
   }
 }
 
-/// The bounds of all spheres of eight envs, to the rows of the envs.
+/// The bounds of all spheres, to the rows of the envs.
 inline void storeExtents(const Lanes all[kBounds], float* to) {
   const Lanes rows[kLanes] = {all[0], all[1], all[2], all[3], all[4], all[5], all[4], all[5]};
   storeColumns(rows, to, kExtentStride);
@@ -321,14 +258,44 @@ inline void placeSpheres(const MotionTables& tables, const LaneFrame* frames,
   if (body.bounds != nullptr) storeExtents(all, body.extents);
 }
 
-void placeKernel(const MotionTables& tables, const BodyBatch& batch) noexcept {
+inline void placeLanes(const MotionTables& tables, const BodyBatch& batch) noexcept {
   const LaneFrame* frames = nodeFrames(tables, batch.pose, batch.scratch);
   placeSpheres(tables, frames, batch.body);
   placeGrip(tables, frames, batch.body.grips);
   if (batch.body.bodies == nullptr) return;
-  const std::size_t stride = std::size_t{12} * (tables.node_count + 1);
-  for (std::uint32_t n = 0; n <= tables.node_count; ++n) {
-    placeBody(frames[n], batch.body.bodies + std::size_t{12} * n, stride);
+  placeFrames(frames, tables.node_count + 1, batch.body.bodies);
+}
+
+inline PoseArrays envsFrom(const PoseArrays& pose, std::size_t first) {
+  return {pose.x + first,   pose.y + first,         pose.z + first,
+          pose.yaw + first, pose.variables + first, pose.stride};
+}
+
+template <class Value>
+Value* rowsFrom(Value* values, std::size_t rows) {
+  return values == nullptr ? nullptr : values + rows;
+}
+
+inline BodyArrays envsFrom(const MotionTables& tables, const BodyArrays& body, std::size_t first) {
+  const std::size_t groups = paddedToLanes(tables.sphere_count / kLanes);
+  return {rowsFrom(body.centers, 3 * tables.sphere_count * first),
+          rowsFrom(body.grips, kGripStride * first),
+          rowsFrom(body.bodies, 12 * (tables.node_count + std::size_t{1}) * first),
+          rowsFrom(body.bounds, kBounds * groups * first),
+          rowsFrom(body.extents, kExtentStride * first)};
+}
+
+void moveKernel(const MotionTables& tables, const MoveBatch& batch) noexcept {
+  for (std::size_t first = 0; first < batch.envs; first += kWidth) {
+    moveLanes(tables, {batch.actions + first * batch.action_count, batch.action_count,
+                       envsFrom(batch.from, first), envsFrom(batch.to, first), kWidth});
+  }
+}
+
+void placeKernel(const MotionTables& tables, const BodyBatch& batch) noexcept {
+  for (std::size_t first = 0; first < batch.envs; first += kWidth) {
+    placeLanes(tables, {envsFrom(batch.pose, first), envsFrom(tables, batch.body, first),
+                        batch.scratch, kWidth});
   }
 }
 

@@ -61,30 +61,38 @@ inline constexpr std::size_t kExtentStride = 8;
 /// Fourteen numbers, padded to whole lanes.
 inline constexpr std::size_t kGripStride = 16;
 
-/// What the kernels need beside their results; 32-byte aligned. Shape: frameScratchSize floats.
+/// Envs that the widest kernels handle at a time.
+inline constexpr std::size_t kMostWidth = 16;
+
+/// What the kernels need beside their results; aligned to 64 bytes, or to 32 for batches that are
+/// no multiple of kMostWidth. Shape: frameScratchSize floats.
 [[nodiscard]] constexpr std::size_t frameScratchSize(std::size_t nodes) {
-  return (nodes + 2) * 12 * kLanes;
+  return (nodes + 2) * 12 * kMostWidth;
 }
 
-/// Eight envs' candidate poses after their actions: turn, then drive along the new heading, then
-/// the joints, each within its limits. `actions`: env after env, `action_count` each, in [-1, 1];
+/// Envs' candidate poses after their actions: turn, then drive along the new heading, then the
+/// joints, each within its limits. `actions`: env after env, `action_count` each, in [-1, 1];
 /// joints first, then forward, then turn (+1: clockwise seen from above). `from` and `to` are
-/// arrays of these eight envs; y is copied.
+/// arrays of these envs; y is copied.
 struct MoveBatch {
   const float* actions = nullptr;
   std::size_t action_count = 0;
   PoseArrays from;
   PoseArrays to;
+  /// A multiple of kLanes; of kMostWidth where the widest vectors are to be used.
+  std::size_t envs = kLanes;
 };
 
-/// Forward kinematics of eight envs, down to sphere centers and the grip.
+/// Forward kinematics of envs, down to sphere centers and the grip.
 struct BodyBatch {
   PoseArrays pose;
   BodyArrays body;
   float* scratch = nullptr;
+  /// As in a MoveBatch.
+  std::size_t envs = kLanes;
 };
 
-/// The kernels of the motion of a robot. Both versions do the same operations in the same
+/// The kernels of the motion of a robot. All versions do the same operations in the same
 /// order, and none is contracted: they agree bit for bit.
 struct MotionKernels {
   void (*move)(const MotionTables&, const MoveBatch&) noexcept = nullptr;
@@ -95,7 +103,9 @@ struct MotionKernels {
 [[nodiscard]] MotionKernels portableMotion() noexcept;
 /// For processors with AVX2.
 [[nodiscard]] MotionKernels avx2Motion() noexcept;
-/// The faster one that this processor can run.
+/// For processors with AVX-512: see detail::hasAvx512().
+[[nodiscard]] MotionKernels avx512Motion() noexcept;
+/// The fastest one that this processor can run.
 [[nodiscard]] MotionKernels motionKernels() noexcept;
 
 /// Views into the model, which must outlive them.

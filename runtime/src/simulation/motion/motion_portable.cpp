@@ -1,7 +1,8 @@
 #include "column_grid/column_grid_kernels.h"
 #include "simulation/motion/motion_kernels.h"
 
-// Needs what is above.
+// Each needs what is above it.
+#include "simulation/motion/lanes_eight.inl"
 #include "simulation/motion/motion_kernel.inl"
 
 namespace galactic::simulation {
@@ -9,6 +10,7 @@ namespace galactic::simulation {
 MotionKernels portableMotion() noexcept { return {moveKernel, placeKernel}; }
 
 MotionKernels motionKernels() noexcept {
+  if (detail::hasAvx512()) return avx512Motion();
   return detail::hasAvx2() ? avx2Motion() : portableMotion();
 }
 

@@ -27,7 +27,7 @@ Chunk::Chunk(const Model& model)
       centers_(kChunk * 3 * model.sphereCount()),
       bounds_(kChunk * kBounds * group_stride_ / kLanes),
       bodies_(kChunk * body_count_),
-      frames_(frameScratchSize(model.motion.nodes.size()) / kLanes),
+      frames_(frameScratchSize(model.motion.nodes.size()) / kMostWidth),
       collision_(std::max(model.sphereCount(), model.most_held_spheres)),
       placement_(model.most_held_spheres, model.world->radii()),
       group_bits_(group_stride_ / kLanes),

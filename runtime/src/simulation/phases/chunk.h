@@ -104,6 +104,9 @@ class Chunk {
   struct alignas(32) AlignedLanes {
     std::array<float, kLanes> values{};
   };
+  struct alignas(64) WidestLanes {
+    std::array<float, kMostWidth> values{};
+  };
 
   std::size_t action_count_ = 0;
   std::size_t sphere_count_ = 0;
@@ -120,7 +123,7 @@ class Chunk {
   std::array<AlignedLanes, kChunk> extents_{};
   std::array<GripFrame, kChunk> grips_{};
   std::vector<RigidTransform> bodies_;
-  std::vector<AlignedLanes> frames_;
+  std::vector<WidestLanes> frames_;
   std::array<Floor, kChunk> floor_{};
   CollisionScratch collision_;
   PlacementScratch placement_;

@@ -116,14 +116,11 @@ FloorUnder floorUnder(const Scene& scene, const Vec3& base, const GroundOptions&
 }
 
 void proposePoses(const ChunkStep& step) noexcept {
-  const std::size_t actions = step.model.actionCount();
-  for (std::size_t e = 0; e < kChunk; e += kLanes) {
-    step.model.kernels.move(step.model.tables,
-                            {.actions = step.chunk.actions().data() + e * actions,
-                             .action_count = actions,
-                             .from = step.state.poses(step.first + e),
-                             .to = step.chunk.candidates(e)});
-  }
+  step.model.kernels.move(step.model.tables, {.actions = step.chunk.actions().data(),
+                                              .action_count = step.model.actionCount(),
+                                              .from = step.state.poses(step.first),
+                                              .to = step.chunk.candidates(0),
+                                              .envs = kChunk});
 }
 
 void followFloor(const ChunkStep& step) noexcept {
@@ -147,11 +144,10 @@ void followFloor(const ChunkStep& step) noexcept {
 void placeBodies(const ChunkStep& step) noexcept {
   // While the kernels calculate, what the task reads comes nearer.
   for (std::size_t e = 0; e < kChunk; ++e) step.state.prefetchTarget(step.first + e);
-  for (std::size_t e = 0; e < kChunk; e += kLanes) {
-    step.model.kernels.place(step.model.tables, {.pose = step.chunk.candidates(e),
-                                                 .body = step.chunk.bodies(e),
-                                                 .scratch = step.chunk.frames()});
-  }
+  step.model.kernels.place(step.model.tables, {.pose = step.chunk.candidates(0),
+                                               .body = step.chunk.bodies(0),
+                                               .scratch = step.chunk.frames(),
+                                               .envs = kChunk});
 }
 
 void moveRobots(const ChunkStep& step) noexcept {

@@ -36,10 +36,10 @@ struct MotionRobot {
   }
 };
 
-/// Eight envs in rows longer than eight, so that a kernel that mixes up strides is found out.
+/// Sixteen envs in rows longer than that, so that a kernel that mixes up strides is found out.
 class MotionBatch {
  public:
-  static constexpr std::size_t kEnvs = simulation::kLanes;
+  static constexpr std::size_t kEnvs = simulation::kMostWidth;
   static constexpr std::size_t kStride = kEnvs + 3;
 
   explicit MotionBatch(const MotionRobot& robot)
@@ -50,7 +50,7 @@ class MotionBatch {
         centers_(kEnvs * 3 * robot.model.spheres.size()),
         grips_(kEnvs * simulation::kGripStride),
         bodies_(kEnvs * bodyCount()),
-        bounds_(kEnvs * simulation::kBounds * groupStride() / kEnvs),
+        bounds_(kEnvs * simulation::kBounds * groupStride() / simulation::kLanes),
         scratch_(simulation::frameScratchSize(robot.model.nodes.size()) / kEnvs) {}
 
   [[nodiscard]] std::size_t actionCount() const { return robot_.model.controlled.size() + 4; }
@@ -83,7 +83,8 @@ class MotionBatch {
     }
   }
 
-  void move(const simulation::MotionKernels& kernels) {
+  /// The first `envs` of them; likewise below.
+  void move(const simulation::MotionKernels& kernels, std::size_t envs = kEnvs) {
     kernels.move(robot_.tables, {.actions = actions_.data(),
                                  .action_count = actionCount(),
                                  .from = poses(),
@@ -92,17 +93,19 @@ class MotionBatch {
                                         .z = moved_z.data(),
                                         .yaw = moved_yaw.data(),
                                         .variables = moved_variables_.data(),
-                                        .stride = kStride}});
+                                        .stride = kStride},
+                                 .envs = envs});
   }
 
-  void place(const simulation::MotionKernels& kernels) {
+  void place(const simulation::MotionKernels& kernels, std::size_t envs = kEnvs) {
     kernels.place(robot_.tables, {.pose = poses(),
                                   .body = {.centers = centers_.data(),
                                            .grips = grips_.data(),
                                            .bodies = &bodies_.front().x_axis.x,
                                            .bounds = bounds_.data()->data(),
                                            .extents = extents_.data()->data()},
-                                  .scratch = scratch_.data()->data()});
+                                  .scratch = scratch_.data()->data(),
+                                  .envs = envs});
   }
 
   [[nodiscard]] float& action(std::size_t env, std::size_t n) {
@@ -137,6 +140,8 @@ class MotionBatch {
     std::vector<std::uint32_t> bits;
     append(centers_, bits);
     append(grips_, bits);
+    for (const AlignedEight& eight : bounds_) append(eight, bits);
+    for (const AlignedEight& eight : extents_) append(eight, bits);
     for (const RigidTransform& body : bodies_) {
       append(std::bit_cast<std::array<float, 12>>(body), bits);
     }
@@ -147,7 +152,8 @@ class MotionBatch {
   std::array<float, kEnvs> moved_x{}, moved_y{}, moved_z{}, moved_yaw{};
 
  private:
-  struct alignas(32) AlignedLanes : std::array<float, kEnvs> {};
+  struct alignas(32) AlignedEight : std::array<float, simulation::kLanes> {};
+  struct alignas(64) AlignedLanes : std::array<float, kEnvs> {};
 
   simulation::PoseArrays poses() {
     return {.x = x.data(),
@@ -184,8 +190,8 @@ class MotionBatch {
   std::vector<float> centers_;
   std::vector<float> grips_;
   std::vector<RigidTransform> bodies_;
-  std::vector<AlignedLanes> bounds_;
-  std::array<AlignedLanes, kEnvs> extents_{};
+  std::vector<AlignedEight> bounds_;
+  std::array<AlignedEight, kEnvs> extents_{};
   std::vector<AlignedLanes> scratch_;
 };
 

@@ -1,0 +1,71 @@
+// Vectors of eight envs, and how they become rows, an env each: motion_kernel.inl is written in
+// terms of these. No library templates here: see column_grid_avx2.cpp.
+namespace galactic::simulation {
+namespace {
+
+constexpr std::size_t kWidth = 8;
+
+using Lanes = float __attribute__((vector_size(32)));
+using IntLanes = std::int32_t __attribute__((vector_size(32)));
+
+inline Lanes load(const float* from) {
+  Lanes lanes;
+  __builtin_memcpy(&lanes, from, sizeof(lanes));
+  return lanes;
+}
+
+inline void store(float* to, Lanes lanes) { __builtin_memcpy(to, &lanes, sizeof(lanes)); }
+
+inline Lanes spread(float value) {
+  return Lanes{value, value, value, value, value, value, value, value};
+}
+
+/// Element 0 of eight rows.
+inline Lanes loadStrided(const float* p, std::size_t stride) {
+  return Lanes{p[0],          p[stride],     p[2 * stride], p[3 * stride],
+               p[4 * stride], p[5 * stride], p[6 * stride], p[7 * stride]};
+}
+
+/// Four rows of eight become columns: number n of the lower four lanes, and of the upper four.
+inline void transposeFour(const Lanes rows[4], Lanes columns[4]) {
+  const Lanes a = __builtin_shufflevector(rows[0], rows[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Lanes b = __builtin_shufflevector(rows[0], rows[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const Lanes c = __builtin_shufflevector(rows[2], rows[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Lanes d = __builtin_shufflevector(rows[2], rows[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  columns[0] = __builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13);
+  columns[1] = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);
+  columns[2] = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);
+  columns[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+/// Writes eight vectors as columns: number n to `to` + n * stride. Half of the lanes after the
+/// other, so that no register is spilled.
+inline void storeColumns(const Lanes rows[8], float* to, std::size_t stride) {
+  Lanes halves[4];
+  Lanes columns[4];
+  for (std::size_t n = 0; n < 4; ++n) {
+    halves[n] = __builtin_shufflevector(rows[n], rows[n + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+  }
+  transposeFour(halves, columns);
+  for (std::size_t n = 0; n < 4; ++n) store(to + n * stride, columns[n]);
+  for (std::size_t n = 0; n < 4; ++n) {
+    halves[n] = __builtin_shufflevector(rows[n], rows[n + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+  transposeFour(halves, columns);
+  for (std::size_t n = 0; n < 4; ++n) store(to + (n + 4) * stride, columns[n]);
+}
+
+/// The same for four vectors.
+inline void storeFourColumns(const Lanes rows[4], float* to, std::size_t stride) {
+  Lanes columns[4];
+  transposeFour(rows, columns);
+  constexpr std::size_t kHalf = 4 * sizeof(float);
+  for (std::size_t n = 0; n < 4; ++n) {
+    const auto* column = reinterpret_cast<const char*>(columns + n);
+    __builtin_memcpy(to + stride * n, column, kHalf);
+    __builtin_memcpy(to + stride * (n + 4), column + kHalf, kHalf);
+  }
+}
+
+}  // namespace
+}  // namespace galactic::simulation

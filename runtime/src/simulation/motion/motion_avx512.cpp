@@ -1,0 +1,35 @@
+// Compiled for AVX-512: instantiates no library templates, see column_grid_avx2.cpp.
+#include "simulation/motion/motion_kernels.h"
+
+#if defined(__AVX512F__)
+// Needed by what follows.
+#include "simulation/motion/lanes_sixteen.inl"
+#include "simulation/motion/motion_kernel.inl"
+
+namespace galactic::simulation {
+namespace {
+
+void moveSixteens(const MotionTables& tables, const MoveBatch& batch) noexcept {
+  batch.envs % kWidth == 0 ? moveKernel(tables, batch) : avx2Motion().move(tables, batch);
+}
+
+void placeSixteens(const MotionTables& tables, const BodyBatch& batch) noexcept {
+  batch.envs % kWidth == 0 ? placeKernel(tables, batch) : avx2Motion().place(tables, batch);
+}
+
+}  // namespace
+
+MotionKernels avx512Motion() noexcept { return {moveSixteens, placeSixteens}; }
+
+}  // namespace galactic::simulation
+
+#else
+
+namespace galactic::simulation {
+
+// hasAvx512() is false on this architecture; the symbol exists so that callers need no condition.
+MotionKernels avx512Motion() noexcept { return avx2Motion(); }
+
+}  // namespace galactic::simulation
+
+#endif
