@@ -91,7 +91,7 @@ void batched(benchmark::State& state) {
   };
   std::vector<Lanes> scratch(simulation::frameScratchSize(model->nodes.size()) / kWidth);
   std::vector<float> centers(3 * model->spheres.size() * kRobots);
-  std::vector<float> grips(simulation::kGripStride * kRobots);
+  std::vector<float> grips(simulation::kGripNumbers * kRobots);
   const std::size_t body_floats = 12 * (model->nodes.size() + 1);
   std::vector<float> bodies(body_floats * kRobots);
   for (auto _ : state) {
@@ -99,7 +99,7 @@ void batched(benchmark::State& state) {
       kernels.place(tables, {.pose = {x.data() + n, y.data() + n, z.data() + n, yaw.data() + n,
                                       variables.data() + n, kRobots},
                              .body = {centers.data() + 3 * model->spheres.size() * n,
-                                      grips.data() + simulation::kGripStride * n,
+                                      grips.data() + simulation::kGripNumbers * n,
                                       bodies.data() + body_floats * n},
                              .scratch = scratch.data()->values,
                              .envs = kWidth});

@@ -57,7 +57,7 @@ StandingRobot::StandingRobot(const Robot& robot, const simulation::MotionModel& 
     variables[v].values.fill(variable.wraps ? std::remainder(start, 2 * std::numbers::pi_v<float>)
                                             : std::clamp(start, variable.lower, variable.upper));
   }
-  std::vector<float> grips(kLanes * simulation::kGripStride);
+  std::vector<float> grips(simulation::kGripNumbers * simulation::kMostWidth);
   std::vector<Lanes> frames(simulation::frameScratchSize(motion.nodes.size()) / kLanes);
   Lanes x;
   Lanes z;

@@ -66,17 +66,17 @@ class Hand {
     env.held.grip_from_object = inverse(gripPose(state_.grip(0))) * there;
     env.held.before = there;
     measureHeld(heldModel(model_, env), env.held);
-    std::ranges::fill(chunk_.actions(), 0.0F);
-    chunk_.actions()[kHand] = -1;
+    std::ranges::fill(chunk_.actions(), EnvRow{});
+    chunk_.action(kHand, 0) = -1;
     useHands(step());
     ASSERT_LT(env.held.object, 0);
   }
 
   /// A step with these actions of the base, apart from the hand.
   void drive(float forward, float turn) {
-    std::ranges::fill(chunk_.actions(), 0.0F);
-    chunk_.actions()[kForward] = forward;
-    chunk_.actions()[kTurn] = turn;
+    std::ranges::fill(chunk_.actions(), EnvRow{});
+    chunk_.action(kForward, 0) = forward;
+    chunk_.action(kTurn, 0) = turn;
     proposePoses(step());
     followFloor(step());
     placeBodies(step());

@@ -26,6 +26,15 @@ inline Lanes loadStrided(const float* p, std::size_t stride) {
                p[4 * stride], p[5 * stride], p[6 * stride], p[7 * stride]};
 }
 
+/// Four floats.
+using Quarter = float __attribute__((vector_size(16)));
+
+inline Quarter loadFour(const float* from) {
+  Quarter four;
+  __builtin_memcpy(&four, from, sizeof(four));
+  return four;
+}
+
 /// Four rows of eight become columns: number n of the lower four lanes, and of the upper four.
 inline void transposeFour(const Lanes rows[4], Lanes columns[4]) {
   const Lanes a = __builtin_shufflevector(rows[0], rows[1], 0, 8, 1, 9, 4, 12, 5, 13);
@@ -36,6 +45,19 @@ inline void transposeFour(const Lanes rows[4], Lanes columns[4]) {
   columns[1] = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);
   columns[2] = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);
   columns[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+/// The opposite of storeColumns().
+inline void loadColumns(const float* from, std::size_t stride, Lanes rows[8]) {
+  for (std::size_t half = 0; half < 8; half += 4) {
+    Lanes columns[4];
+    for (std::size_t n = 0; n < 4; ++n) {
+      const float* column = from + n * stride + half;
+      columns[n] = __builtin_shufflevector(loadFour(column), loadFour(column + 4 * stride), 0, 1, 2,
+                                           3, 4, 5, 6, 7);
+    }
+    transposeFour(columns, rows + half);
+  }
 }
 
 /// Writes eight vectors as columns: number n to `to` + n * stride. Half of the lanes after the

@@ -33,6 +33,21 @@ inline Lanes loadStrided(const float* p, std::size_t stride) {
                q[4 * stride], q[5 * stride], q[6 * stride], q[7 * stride]};
 }
 
+/// Four and eight floats.
+using Quarter = float __attribute__((vector_size(16)));
+using Half = float __attribute__((vector_size(32)));
+
+inline Quarter loadFour(const float* from) {
+  Quarter four;
+  __builtin_memcpy(&four, from, sizeof(four));
+  return four;
+}
+
+/// Of two columns.
+inline Half loadTwoFours(const float* from, std::size_t columns) {
+  return __builtin_shufflevector(loadFour(from), loadFour(from + columns), 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
 /// Four rows of sixteen become columns: number n of each four lanes.
 inline void transposeFour(const Lanes rows[4], Lanes columns[4]) {
   const Lanes a = __builtin_shufflevector(rows[0], rows[1], 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9,
@@ -51,6 +66,20 @@ inline void transposeFour(const Lanes rows[4], Lanes columns[4]) {
       __builtin_shufflevector(b, d, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
   columns[3] =
       __builtin_shufflevector(b, d, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+}
+
+/// The opposite of storeColumns().
+inline void loadColumns(const float* from, std::size_t stride, Lanes rows[8]) {
+  for (std::size_t half = 0; half < 8; half += 4) {
+    Lanes columns[4];
+    for (std::size_t n = 0; n < 4; ++n) {
+      const float* column = from + n * stride + half;
+      columns[n] = __builtin_shufflevector(loadTwoFours(column, 4 * stride),
+                                           loadTwoFours(column + 8 * stride, 4 * stride), 0, 1, 2,
+                                           3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    }
+    transposeFour(columns, rows + half);
+  }
 }
 
 /// Writes eight vectors as columns: number n to `to` + n * stride.

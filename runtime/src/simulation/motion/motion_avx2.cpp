@@ -7,9 +7,12 @@
 // Needed by what follows.
 #include "simulation/motion/lanes_eight.inl"
 #include "simulation/motion/motion_kernel.inl"
+#include "simulation/motion/step_kernel.inl"
 
 namespace galactic::simulation {
 
-MotionKernels avx2Motion() noexcept { return {moveKernel, placeKernel}; }
+MotionKernels avx2Motion() noexcept {
+  return {readKernel, moveKernel, placeKernel, judgeKernel, observeKernel};
+}
 
 }  // namespace galactic::simulation

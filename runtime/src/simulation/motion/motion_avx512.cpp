@@ -5,9 +5,16 @@
 // Needed by what follows.
 #include "simulation/motion/lanes_sixteen.inl"
 #include "simulation/motion/motion_kernel.inl"
+#include "simulation/motion/step_kernel.inl"
 
 namespace galactic::simulation {
 namespace {
+
+// Eights are left to AVX2.
+
+bool readSixteens(const ActionBatch& batch) noexcept {
+  return batch.envs % kWidth == 0 ? readKernel(batch) : avx2Motion().read(batch);
+}
 
 void moveSixteens(const MotionTables& tables, const MoveBatch& batch) noexcept {
   batch.envs % kWidth == 0 ? moveKernel(tables, batch) : avx2Motion().move(tables, batch);
@@ -17,9 +24,19 @@ void placeSixteens(const MotionTables& tables, const BodyBatch& batch) noexcept 
   batch.envs % kWidth == 0 ? placeKernel(tables, batch) : avx2Motion().place(tables, batch);
 }
 
+void judgeSixteens(const JudgeBatch& batch) noexcept {
+  batch.envs % kWidth == 0 ? judgeKernel(batch) : avx2Motion().judge(batch);
+}
+
+void observeSixteens(const ObserveBatch& batch) noexcept {
+  batch.envs % kWidth == 0 ? observeKernel(batch) : avx2Motion().observe(batch);
+}
+
 }  // namespace
 
-MotionKernels avx512Motion() noexcept { return {moveSixteens, placeSixteens}; }
+MotionKernels avx512Motion() noexcept {
+  return {readSixteens, moveSixteens, placeSixteens, judgeSixteens, observeSixteens};
+}
 
 }  // namespace galactic::simulation
 

@@ -152,16 +152,20 @@ inline LaneFrame fixedFrame(const LaneFrame* frames, const FixedFrame& fixed) {
           moved(node, fixed.origin)};
 }
 
+inline void storePoint(float* rows, const LaneVector& point) {
+  store(rows, point.x);
+  store(rows + kMostWidth, point.y);
+  store(rows + 2 * kMostWidth, point.z);
+}
+
 inline void placeGrip(const MotionTables& tables, const LaneFrame* frames, float* grips) {
   const LaneFrame grip = fixedFrame(frames, tables.grip);
-  const LaneFrame& root = frames[0];
-  const Lanes none = spread(0);
-  const Lanes first[kLanes] = {grip.x_axis.x, grip.x_axis.y, grip.x_axis.z, grip.y_axis.x,
-                               grip.y_axis.y, grip.y_axis.z, grip.z_axis.x, grip.z_axis.y};
-  const Lanes second[kLanes] = {grip.z_axis.z, grip.origin.x, grip.origin.y, grip.origin.z,
-                                root.x_axis.x, root.z_axis.x, none,          none};
-  storeColumns(first, grips, kGripStride);
-  storeColumns(second, grips + kLanes, kGripStride);
+  storePoint(grips, grip.x_axis);
+  storePoint(grips + 3 * kMostWidth, grip.y_axis);
+  storePoint(grips + 6 * kMostWidth, grip.z_axis);
+  storePoint(grips + 9 * kMostWidth, grip.origin);
+  store(grips + 12 * kMostWidth, frames[0].x_axis.x);
+  store(grips + 13 * kMostWidth, frames[0].z_axis.x);
 }
 
 /// Root and nodes: the numbers of an env's frames, as they are in memory, are its row.
@@ -188,9 +192,8 @@ inline const LaneFrame* nodeFrames(const MotionTables& tables, const PoseArrays&
 }
 
 inline void moveLanes(const MotionTables& tables, const MoveBatch& batch) noexcept {
-  const std::size_t joints = batch.action_count - 4;
-  const Lanes forward = loadStrided(batch.actions + joints, batch.action_count);
-  const Lanes clockwise = loadStrided(batch.actions + joints + 1, batch.action_count);
+  const Lanes forward = load(batch.actions + batch.joints * kMostWidth);
+  const Lanes clockwise = load(batch.actions + (batch.joints + 1) * kMostWidth);
   const Lanes yaw = wrapped(load(batch.from.yaw) - spread(tables.turn_step) * clockwise);
   const SineCosine heading = sineCosine(yaw);
   const Lanes drive = spread(tables.forward_step) * forward;
@@ -202,8 +205,8 @@ inline void moveLanes(const MotionTables& tables, const MoveBatch& batch) noexce
     const MotionVariable& variable = tables.variables[v];
     Lanes value = load(batch.from.variables + v * batch.from.stride);
     if (variable.action >= 0) {
-      const Lanes action = loadStrided(batch.actions + static_cast<std::size_t>(variable.action),
-                                       batch.action_count);
+      const Lanes action =
+          load(batch.actions + static_cast<std::size_t>(variable.action) * kMostWidth);
       value = value + spread(variable.step) * action;
       value = variable.wraps ? wrapped(value) : clampTo(value, variable.lower, variable.upper);
     }
@@ -278,8 +281,7 @@ Value* rowsFrom(Value* values, std::size_t rows) {
 
 inline BodyArrays envsFrom(const MotionTables& tables, const BodyArrays& body, std::size_t first) {
   const std::size_t groups = paddedToLanes(tables.sphere_count / kLanes);
-  return {rowsFrom(body.centers, 3 * tables.sphere_count * first),
-          rowsFrom(body.grips, kGripStride * first),
+  return {rowsFrom(body.centers, 3 * tables.sphere_count * first), rowsFrom(body.grips, first),
           rowsFrom(body.bodies, 12 * (tables.node_count + std::size_t{1}) * first),
           rowsFrom(body.bounds, kBounds * groups * first),
           rowsFrom(body.extents, kExtentStride * first)};
@@ -287,8 +289,8 @@ inline BodyArrays envsFrom(const MotionTables& tables, const BodyArrays& body, s
 
 void moveKernel(const MotionTables& tables, const MoveBatch& batch) noexcept {
   for (std::size_t first = 0; first < batch.envs; first += kWidth) {
-    moveLanes(tables, {batch.actions + first * batch.action_count, batch.action_count,
-                       envsFrom(batch.from, first), envsFrom(batch.to, first), kWidth});
+    moveLanes(tables, {batch.actions + first, batch.joints, envsFrom(batch.from, first),
+                       envsFrom(batch.to, first), kWidth});
   }
 }
 

@@ -23,6 +23,19 @@ struct MotionTables {
   float root_height = 0;
 };
 
+/// Envs that the widest kernels handle at a time.
+inline constexpr std::size_t kMostWidth = 16;
+
+/// One number of each of so many envs, side by side. Of rows one after the other, number n of env e
+/// stands at [n * kMostWidth + e].
+struct alignas(64) EnvRow {
+  float values[kMostWidth];
+};
+
+/// What is known of a grip, and how many numbers a GripFrame has room for.
+inline constexpr std::size_t kGripNumbers = 14;
+inline constexpr std::size_t kGripStride = 16;
+
 /// Poses of eight or more envs, one array element per env; base in the world frame.
 struct PoseArrays {
   float* x = nullptr;
@@ -40,8 +53,8 @@ struct PoseArrays {
 struct BodyArrays {
   /// Env e, coordinate c (x, y, z), sphere n: centers[(3 * e + c) * sphere_count + n].
   float* centers = nullptr;
-  /// From grips[kGripStride * e] on: world_from_grip of env e as axes x, y, z and origin, then
-  /// cosine and sine of the base's yaw.
+  /// world_from_grip as axes x, y, z and origin, then cosine and sine of the base's yaw:
+  /// kGripNumbers rows, see EnvRow.
   float* grips = nullptr;
   /// From bodies[12 * (nodes + 1) * e] on: axes x, y, z and origin of the root, then of each node,
   /// in the world. Null when nobody wants them.
@@ -58,28 +71,77 @@ struct BodyArrays {
 /// Bounds of one env, padded to whole lanes.
 inline constexpr std::size_t kExtentStride = 8;
 
-/// Fourteen numbers, padded to whole lanes.
-inline constexpr std::size_t kGripStride = 16;
-
-/// Envs that the widest kernels handle at a time.
-inline constexpr std::size_t kMostWidth = 16;
-
 /// What the kernels need beside their results; aligned to 64 bytes, or to 32 for batches that are
 /// no multiple of kMostWidth. Shape: frameScratchSize floats.
 [[nodiscard]] constexpr std::size_t frameScratchSize(std::size_t nodes) {
   return (nodes + 2) * 12 * kMostWidth;
 }
 
+/// Actions as a caller gives them, env after env, `count` each, and the rows that they go to.
+struct ActionBatch {
+  const float* from = nullptr;
+  std::size_t count = 0;
+  float* to = nullptr;
+  /// A multiple of kLanes; of kMostWidth where the widest vectors are to be used.
+  std::size_t envs = kLanes;
+};
+
 /// Envs' candidate poses after their actions: turn, then drive along the new heading, then the
-/// joints, each within its limits. `actions`: env after env, `action_count` each, in [-1, 1];
-/// joints first, then forward, then turn (+1: clockwise seen from above). `from` and `to` are
-/// arrays of these envs; y is copied.
+/// joints, each within its limits. `actions`: rows, each in [-1, 1]; joints first, then forward,
+/// then turn (+1: clockwise seen from above). `from` and `to` are arrays of these envs; y is
+/// copied.
 struct MoveBatch {
   const float* actions = nullptr;
-  std::size_t action_count = 0;
+  std::size_t joints = 0;
   PoseArrays from;
   PoseArrays to;
-  /// A multiple of kLanes; of kMostWidth where the widest vectors are to be used.
+  /// As in an ActionBatch.
+  std::size_t envs = kLanes;
+};
+
+/// How much the joint actions change, and where the target is. All arrays are rows.
+struct JudgeBatch {
+  const float* actions = nullptr;
+  /// Of the step before; become `actions` where `active` has all bits set, and stay where it has
+  /// none.
+  float* last_actions = nullptr;
+  const std::uint32_t* active = nullptr;
+  std::size_t joints = 0;
+  const float* grips = nullptr;
+  /// Points in the world.
+  const float* targets = nullptr;
+  const float* goals = nullptr;
+  /// Results: the sum of the squared changes of the joint actions, and the distances from grip to
+  /// target and from target to goal, meters.
+  float* change = nullptr;
+  float* reach = nullptr;
+  float* transport = nullptr;
+  /// As in an ActionBatch.
+  std::size_t envs = kLanes;
+};
+
+/// Observations but for sensors that look around. All arrays but `out` are rows.
+struct ObserveBatch {
+  PoseArrays pose;
+  /// Variables that actions move.
+  const std::uint32_t* controlled = nullptr;
+  std::size_t controlled_count = 0;
+  const float* grips = nullptr;
+  /// Points in the world: the target as it is observed, and where it is.
+  const float* targets = nullptr;
+  const float* current_targets = nullptr;
+  const float* goals = nullptr;
+  /// 1 where something is in the hand; which part of the episode is left; 1 where the last step was
+  /// refused.
+  const float* holds = nullptr;
+  const float* left = nullptr;
+  const float* bumps = nullptr;
+  bool observes_bump = false;
+  bool observes_target_goal = false;
+  /// Env after env, `out_stride` apart.
+  float* out = nullptr;
+  std::size_t out_stride = 0;
+  /// As in an ActionBatch.
   std::size_t envs = kLanes;
 };
 
@@ -88,15 +150,19 @@ struct BodyBatch {
   PoseArrays pose;
   BodyArrays body;
   float* scratch = nullptr;
-  /// As in a MoveBatch.
+  /// As in an ActionBatch.
   std::size_t envs = kLanes;
 };
 
-/// The kernels of the motion of a robot. All versions do the same operations in the same
+/// What happens to all envs of a chunk alike. All versions do the same operations in the same
 /// order, and none is contracted: they agree bit for bit.
 struct MotionKernels {
+  /// Actions cut to [-1, 1]; what is not a number becomes 0. Whether there was any.
+  bool (*read)(const ActionBatch&) noexcept = nullptr;
   void (*move)(const MotionTables&, const MoveBatch&) noexcept = nullptr;
   void (*place)(const MotionTables&, const BodyBatch&) noexcept = nullptr;
+  void (*judge)(const JudgeBatch&) noexcept = nullptr;
+  void (*observe)(const ObserveBatch&) noexcept = nullptr;
 };
 
 /// For any processor.

@@ -4,10 +4,13 @@
 // Each needs what is above it.
 #include "simulation/motion/lanes_eight.inl"
 #include "simulation/motion/motion_kernel.inl"
+#include "simulation/motion/step_kernel.inl"
 
 namespace galactic::simulation {
 
-MotionKernels portableMotion() noexcept { return {moveKernel, placeKernel}; }
+MotionKernels portableMotion() noexcept {
+  return {readKernel, moveKernel, placeKernel, judgeKernel, observeKernel};
+}
 
 MotionKernels motionKernels() noexcept {
   if (detail::hasAvx512()) return avx512Motion();

@@ -14,17 +14,24 @@ std::size_t mostWays(const Model& model) {
   return kWaysOut * (2 * model.groups.size() + model.most_held_spheres / kLanes + 1);
 }
 
+/// A point, whose coordinates are these rows.
+void moveBy(EnvRow* rows, std::size_t env, const Vec3& by) {
+  rows[0].values[env] += by.x;
+  rows[1].values[env] += by.y;
+  rows[2].values[env] += by.z;
+}
+
 }  // namespace
 
 Chunk::Chunk(const Model& model)
-    : action_count_(model.actionCount()),
-      sphere_count_(model.sphereCount()),
+    : sphere_count_(model.sphereCount()),
       group_stride_(paddedToLanes(model.sphereCount() / kLanes)),
       body_count_(model.bodyCount()),
       ranges_(model.motion.ranges),
-      actions_(kChunk * model.actionCount()),
-      variables_(kChunk * model.variableCount()),
-      centers_(kChunk * 3 * model.sphereCount()),
+      actions_(model.actionCount()),
+      given_actions_(kChunk * model.actionCount()),
+      rows_(kBaseRows + model.variableCount() + kGripNumbers),
+      centers_(kChunk * 3 * model.sphereCount() / kLanes),
       bounds_(kChunk * kBounds * group_stride_ / kLanes),
       bodies_(kChunk * body_count_),
       frames_(frameScratchSize(model.motion.nodes.size()) / kMostWidth),
@@ -38,19 +45,10 @@ Chunk::Chunk(const Model& model)
       held_bits_(model.heldWords()),
       body_bits_(model.bodyWords()) {}
 
-PoseArrays Chunk::candidates(std::size_t first) {
-  return {.x = x_.data() + first,
-          .y = y_.data() + first,
-          .z = z_.data() + first,
-          .yaw = yaw_.data() + first,
-          .variables = variables_.data() + first,
-          .stride = kChunk};
-}
-
 BodyArrays Chunk::bodies(std::size_t first) {
   static_assert(sizeof(RigidTransform) == 12 * sizeof(float));
-  return {.centers = centers_.data() + first * 3 * sphere_count_,
-          .grips = grips_[first].data(),
+  return {.centers = centers_.data()->values.data() + first * 3 * sphere_count_,
+          .grips = (&rows_.back() + 1 - kGripNumbers)->values + first,
           .bodies = body_count_ == 0
                         ? nullptr
                         : reinterpret_cast<float*>(bodies_.data() + first * body_count_),
@@ -59,10 +57,8 @@ BodyArrays Chunk::bodies(std::size_t first) {
 }
 
 void Chunk::shift(std::size_t env, const Vec3& by) {
-  x_[env] += by.x;
-  y_[env] += by.y;
-  z_[env] += by.z;
-  float* row = centers_.data() + env * 3 * sphere_count_;
+  moveBy(rows_.data(), env, by);
+  float* row = centers_.data()->values.data() + env * 3 * sphere_count_;
   const auto add = [count = sphere_count_](float* to, float by_this) {
     // Most floors are flat.
     if (by_this == 0) return;
@@ -74,30 +70,22 @@ void Chunk::shift(std::size_t env, const Vec3& by) {
   add(row + sphere_count_, by.y);
   add(row + 2 * sphere_count_, by.z);
   shiftBounds(env, by);
-  GripFrame& grip = grips_[env];
-  grip[9] += by.x;
-  grip[10] += by.y;
-  grip[11] += by.z;
+  moveBy(&rows_.back() + 1 - kGripNumbers + 9, env, by);
   for (RigidTransform& body : bodyTransforms(env)) body.origin = body.origin + by;
 }
 
 void Chunk::takeOver(std::size_t env, Chunk& other, std::size_t from) {
-  x_[env] = other.x_[from];
-  y_[env] = other.y_[from];
-  z_[env] = other.z_[from];
-  yaw_[env] = other.yaw_[from];
-  for (std::size_t v = 0; v < variables_.size(); v += kChunk) {
-    variables_[v + env] = other.variables_[v + from];
+  for (std::size_t n = 0; n < rows_.size(); ++n) {
+    rows_[n].values[env] = other.rows_[n].values[from];
   }
   const auto takeRow = [&](auto& mine, const auto& theirs, std::size_t length) {
     std::copy_n(theirs.begin() + static_cast<std::ptrdiff_t>(from * length), length,
                 mine.begin() + static_cast<std::ptrdiff_t>(env * length));
   };
-  takeRow(centers_, other.centers_, 3 * sphere_count_);
+  takeRow(centers_, other.centers_, 3 * sphere_count_ / kLanes);
   takeRow(bounds_, other.bounds_, kBounds * group_stride_ / kLanes);
   takeRow(bodies_, other.bodies_, body_count_);
   extents_[env] = other.extents_[from];
-  grips_[env] = other.grips_[from];
   floor_[env] = other.floor_[from];
 }
 
@@ -125,7 +113,7 @@ Vec3 Chunk::most(std::size_t env) const {
 }
 
 SphereBatch Chunk::spheres(std::size_t env) const {
-  const float* row = centers_.data() + env * 3 * sphere_count_;
+  const float* row = centers_.data()->values.data() + env * 3 * sphere_count_;
   return {row, row + sphere_count_, row + 2 * sphere_count_, ranges_};
 }
 

@@ -43,16 +43,22 @@ class Chunk {
  public:
   explicit Chunk(const Model& model);
 
-  /// Actions of the chunk's envs, each in [-1, 1]. Shape: kChunk * actions.
-  [[nodiscard]] std::span<float> actions() { return actions_; }
-  [[nodiscard]] std::span<const float> actions(std::size_t env) const {
-    return std::span(actions_).subspan(env * action_count_, action_count_);
-  }
+  /// Actions of the chunk's envs, each in [-1, 1]. Shape: actions.
+  [[nodiscard]] std::span<EnvRow> actions() { return actions_; }
+  [[nodiscard]] float& action(std::size_t n, std::size_t env) { return actions_[n].values[env]; }
+  /// Room for the actions of the chunk as a caller gives them.
+  [[nodiscard]] std::span<float> givenActions() { return given_actions_; }
   /// Candidates of the envs from `first` of the chunk on.
-  [[nodiscard]] PoseArrays candidates(std::size_t first);
+  [[nodiscard]] PoseArrays candidates(std::size_t first) {
+    return posesAt(rows_.front().values + first);
+  }
+  /// The rows of the candidates: base, variables and grip.
+  [[nodiscard]] std::span<const EnvRow> poseRows() const { return rows_; }
   [[nodiscard]] BodyArrays bodies(std::size_t first);
-  [[nodiscard]] float* frames() { return frames_.data()->values.data(); }
-  [[nodiscard]] Vec3 base(std::size_t env) const { return {x_[env], y_[env], z_[env]}; }
+  [[nodiscard]] float* frames() { return frames_.front().values; }
+  [[nodiscard]] Vec3 base(std::size_t env) const {
+    return {rows_[0].values[env], rows_[1].values[env], rows_[2].values[env]};
+  }
   /// Moves a candidate with all its spheres and its grip.
   void shift(std::size_t env, const Vec3& by);
   /// Takes over the candidate of another chunk's env, with its spheres, grip and bodies.
@@ -66,7 +72,12 @@ class Chunk {
   /// The least and the most of all their coordinates.
   [[nodiscard]] Vec3 least(std::size_t env) const;
   [[nodiscard]] Vec3 most(std::size_t env) const;
-  [[nodiscard]] GripFrame& grip(std::size_t env) { return grips_[env]; }
+  [[nodiscard]] GripFrame grip(std::size_t env) const {
+    GripFrame grip{};
+    const EnvRow* rows = gripRows();
+    for (std::size_t k = 0; k < kGripNumbers; ++k) grip[k] = rows[k].values[env];
+    return grip;
+  }
   /// Root and nodes of a candidate; empty where the run does not want them.
   [[nodiscard]] std::span<RigidTransform> bodyTransforms(std::size_t env) {
     return std::span(bodies_).subspan(env * body_count_, body_count_);
@@ -100,30 +111,27 @@ class Chunk {
 
  private:
   void shiftBounds(std::size_t env, const Vec3& by);
+  [[nodiscard]] const EnvRow* gripRows() const { return &rows_.back() + 1 - kGripNumbers; }
 
   struct alignas(32) AlignedLanes {
     std::array<float, kLanes> values{};
   };
-  struct alignas(64) WidestLanes {
-    std::array<float, kMostWidth> values{};
-  };
 
-  std::size_t action_count_ = 0;
   std::size_t sphere_count_ = 0;
   /// Groups of eight spheres, padded to lanes.
   std::size_t group_stride_ = 0;
   /// 0 where the run does not want them.
   std::size_t body_count_ = 0;
   std::span<const RadiusRange> ranges_;
-  std::vector<float> actions_;
-  std::array<float, kChunk> x_{}, y_{}, z_{}, yaw_{};
-  std::vector<float> variables_;
-  std::vector<float> centers_;
+  std::vector<EnvRow> actions_;
+  std::vector<float> given_actions_;
+  /// As those of a BatchState begin.
+  std::vector<EnvRow> rows_;
+  std::vector<AlignedLanes> centers_;
   std::vector<AlignedLanes> bounds_;
   std::array<AlignedLanes, kChunk> extents_{};
-  std::array<GripFrame, kChunk> grips_{};
   std::vector<RigidTransform> bodies_;
-  std::vector<WidestLanes> frames_;
+  std::vector<EnvRow> frames_;
   std::array<Floor, kChunk> floor_{};
   CollisionScratch collision_;
   PlacementScratch placement_;

@@ -20,11 +20,11 @@ void placeRobot(const Model& model, BatchState& state, std::size_t n, std::uint3
   for (std::size_t v = 0; v < variables; ++v) {
     to.variables[v * to.stride] = model.start_variables[start * variables + v];
   }
-  state.grip(n) = from.grip;
+  state.setGrip(n, from.grip);
   const std::size_t bodies = model.bodyCount();
   std::ranges::copy(std::span(model.start_bodies).subspan(start * bodies, bodies),
                     state.bodyTransforms(n).begin());
-  std::ranges::fill(state.lastActions(n), 0.0F);
+  for (std::size_t j = 0; j < model.motion.controlled.size(); ++j) state.setLastAction(j, n, 0);
 }
 
 void placeObjects(const Model& model, BatchState& state, std::size_t n, const Episode& episode) {
@@ -33,7 +33,7 @@ void placeObjects(const Model& model, BatchState& state, std::size_t n, const Ep
   resting.clear();
   for (std::uint32_t object = 0; object < placements.size(); ++object) {
     const Placement& placement = placements[object];
-    state.objects(n)[object] = placement.pose;
+    state.placeObject(n, object, placement.pose);
     resting.insert(object, restingBox(model.world->objectOf(placement).box, placement.pose));
   }
 }
@@ -59,7 +59,8 @@ void takeStock(const Model& model, BatchState& state, std::size_t n) noexcept {
   const WayLeft way = measureWay(model, state, n);
   env.way = way.length;
   env.is_way_to_goal = way.is_to_goal;
-  observe(model, state, n, state.observation(n));
+  // Those of the other envs of the chunk stay as they are.
+  observe(model, state, n / kChunk * kChunk);
   sense(model, state, n, state.observation(n));
 }
 
@@ -74,13 +75,12 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t n,
          .clearance_map = model.starts[start].clearance_map,
          .target = target,
          .events = {},
-         .goal = episode.goal.translation,
-         .target_start = state.objects(n)[target].translation,
          .counters = env.counters,
          .held = {},
          .start = start,
          .objects = static_cast<std::uint32_t>(model.placements(episode).size()),
          .ordinal = env.ordinal + 1};
+  state.setErrand(n, target, episode.goal.translation);
   std::ranges::fill(state.leaving(n), 0U);
   state.idle()[n] = 0;
   takeStock(model, state, n);

@@ -44,12 +44,12 @@ void proposeCurrent(const ChunkStep& step, std::size_t e) {
 
 void moveObjects(const ChunkStep& step, std::size_t n, std::span<const Pose> poses) {
   const Env& env = step.state.env(n);
-  const std::span<Pose> objects = step.state.objects(n);
+  const std::span<const Pose> objects = step.state.objects(n);
   RestingObjects& resting = step.state.resting(n);
   for (std::uint32_t object = 0; object < env.objects; ++object) {
     const bool is_held = env.held.object == static_cast<std::int32_t>(object);
     if (is_held || objects[object] == poses[object]) continue;
-    objects[object] = poses[object];
+    step.state.placeObject(n, object, poses[object]);
     resting.remove(object);
     resting.insert(object, restingBox(step.model.object(env.start, object).box, poses[object]));
   }
@@ -61,7 +61,7 @@ void followHand(const ChunkStep& step, std::size_t e, const FollowedState& state
   Env& env = step.state.env(n);
   const std::size_t terminate = step.model.actionCount() - 1;
   env.events = {.terminates =
-                    step.chunk.actions(e)[terminate] >= step.model.options.action.terminate};
+                    step.chunk.action(terminate, e) >= step.model.options.action.terminate};
   if (env.held.object >= 0 && env.held.object != state.held) {
     layDown(step, e, state.objects[static_cast<std::size_t>(env.held.object)]);
     ++env.counters.drops;
@@ -80,7 +80,7 @@ void takePose(const ChunkStep& step, std::size_t e, const FollowedState& state) 
   env.refused = state.was_hindered;
   env.counters.refused += state.was_hindered ? 1U : 0U;
   copyPose(step.chunk.candidates(e), step.state.poses(n), step.model.variableCount());
-  step.state.grip(n) = step.chunk.grip(e);
+  step.state.setGrip(n, step.chunk.grip(e));
   std::ranges::copy(step.chunk.bodyTransforms(e), step.state.bodyTransforms(n).begin());
 }
 
@@ -112,7 +112,7 @@ void followChunk(const ChunkStep& step, std::span<const float> actions,
     followHand(step, e, state);
   }
   judge(step, {});
-  observeAll(step);
+  observe(step.model, step.state, step.first);
   senseAll(step);
   renewEpisodes(step);
 }

@@ -24,11 +24,12 @@ void grasp(const ChunkStep& step, std::size_t e) {
 }
 
 /// Whether the task lets the held object rest at `pose`.
-bool mayRestAt(const ChunkStep& step, const Env& env, const Pose& pose) {
+bool mayRestAt(const ChunkStep& step, std::size_t n, const Pose& pose) {
+  const Env& env = step.state.env(n);
   const TaskOptions& task = step.model.options.task;
   const bool is_target = env.held.object == static_cast<std::int32_t>(env.target);
   if (task.drop_fails || task.kind != TaskKind::kRearrange || !is_target) return true;
-  const Vec3 away = pose.translation - env.goal;
+  const Vec3 away = pose.translation - step.state.goal(n);
   return dot(away, away) < task.success_distance * task.success_distance;
 }
 
@@ -57,7 +58,7 @@ void release(const ChunkStep& step, std::size_t e) {
       placeObject({step.model.world->scenes()[env.scene], resting}, object, released, random,
                   step.model.options.placement, step.chunk.placement());
   const Pose rest = landing.placed ? landing.pose : env.held.before;
-  if (!mayRestAt(step, env, rest)) return;
+  if (!mayRestAt(step, n, rest)) return;
   layDown(step, e, rest);
   ++(landing.placed ? env.counters.drops : env.counters.restored);
 }
@@ -91,7 +92,7 @@ void layDown(const ChunkStep& step, std::size_t e, const Pose& world_from_object
   const std::size_t n = step.first + e;
   Env& env = step.state.env(n);
   const auto object = static_cast<std::uint32_t>(env.held.object);
-  step.state.objects(n)[object] = world_from_object;
+  step.state.placeObject(n, object, world_from_object);
   step.state.resting(n).insert(object,
                                restingBox(heldModel(step.model, env).box, world_from_object));
   beginToLeave(step, e, object);
@@ -105,8 +106,8 @@ void useHands(const ChunkStep& step) noexcept {
   for (std::size_t e = 0; e < kChunk; ++e) {
     if (step.state.idle()[step.first + e] != 0) continue;
     Env& env = step.state.env(step.first + e);
-    const float value = step.chunk.actions(e)[hand_action];
-    env.events = {.terminates = step.chunk.actions(e)[hand_action + 1] >= options.terminate};
+    const float value = step.chunk.action(hand_action, e);
+    env.events = {.terminates = step.chunk.action(hand_action + 1, e) >= options.terminate};
     const bool is_empty = env.held.object < 0;
     if (is_empty && value >= options.grasp) grasp(step, e);
     if (!is_empty && value < options.release) release(step, e);

@@ -22,10 +22,9 @@ bool keepPenetrating(std::span<std::uint64_t> ignored, std::span<const std::uint
   return any != 0;
 }
 
-/// The candidate is the robot's from now on, apart from its pose.
+/// The candidate is the robot's from now on, apart from its pose and grip.
 void accept(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
-  step.state.grip(n) = step.chunk.grip(e);
   std::ranges::copy(step.chunk.bodyTransforms(e), step.state.bodyTransforms(n).begin());
   // The bits are those of the accepted candidate.
   Env& env = step.state.env(n);
@@ -46,24 +45,24 @@ Walk jumpToCandidate(const ChunkStep& step, std::size_t e) {
 /// All bits of the envs whose candidate is accepted.
 using AcceptedLanes = std::array<std::uint32_t, kChunk>;
 
-/// Takes over the poses of accepted candidates: all envs of a number at once, without a branch.
+/// Takes over the poses and grips of accepted candidates: all envs of a number at once, without a
+/// branch.
 void acceptPoses(const ChunkStep& step, const AcceptedLanes& accepted) {
-  const PoseArrays to = step.state.poses(step.first);
-  const PoseArrays from = step.chunk.candidates(0);
-  const auto take = [&](float* old, const float* candidate) {
+  const std::span<EnvRow> to = step.state.poseRows(step.first);
+  const std::span<const EnvRow> from = step.chunk.poseRows();
+  if (std::ranges::all_of(accepted, [](std::uint32_t lane) { return lane != 0; })) {
+    std::ranges::copy(from, to.begin());
+    return;
+  }
+  for (std::size_t n = 0; n < to.size(); ++n) {
+    const float* candidate = from[n].values;
+    float* old = to[n].values;
     std::array<float, kChunk> kept;
     for (std::size_t e = 0; e < kChunk; ++e) {
       const auto mine = std::bit_cast<std::uint32_t>(candidate[e]) & accepted[e];
       kept[e] = std::bit_cast<float>(mine | (std::bit_cast<std::uint32_t>(old[e]) & ~accepted[e]));
     }
     std::ranges::copy(kept, old);
-  };
-  take(to.x, from.x);
-  take(to.y, from.y);
-  take(to.z, from.z);
-  take(to.yaw, from.yaw);
-  for (std::size_t v = 0; v < step.model.variableCount(); ++v) {
-    take(to.variables + v * to.stride, from.variables + v * from.stride);
   }
 }
 
@@ -116,8 +115,8 @@ FloorUnder floorUnder(const Scene& scene, const Vec3& base, const GroundOptions&
 }
 
 void proposePoses(const ChunkStep& step) noexcept {
-  step.model.kernels.move(step.model.tables, {.actions = step.chunk.actions().data(),
-                                              .action_count = step.model.actionCount(),
+  step.model.kernels.move(step.model.tables, {.actions = step.chunk.actions().front().values,
+                                              .joints = step.model.motion.controlled.size(),
                                               .from = step.state.poses(step.first),
                                               .to = step.chunk.candidates(0),
                                               .envs = kChunk});
@@ -142,8 +141,6 @@ void followFloor(const ChunkStep& step) noexcept {
 }
 
 void placeBodies(const ChunkStep& step) noexcept {
-  // While the kernels calculate, what the task reads comes nearer.
-  for (std::size_t e = 0; e < kChunk; ++e) step.state.prefetchTarget(step.first + e);
   step.model.kernels.place(step.model.tables, {.pose = step.chunk.candidates(0),
                                                .body = step.chunk.bodies(0),
                                                .scratch = step.chunk.frames(),

@@ -18,15 +18,15 @@ struct SensorSizes {
 [[nodiscard]] std::vector<ObservationPart> observationParts(std::size_t joints,
                                                             const SensorSizes& sensors);
 
-/// Writes the observation of one env but for its sensors, and that of its sensors, each to its
-/// place in the whole row `out`.
-void observe(const Model& model, const BatchState& state, std::size_t env,
-             std::span<float> out) noexcept;
+/// Writes the observations of the envs of a chunk, whose first one is `first`, but for their
+/// sensors.
+void observe(const Model& model, BatchState& state, std::size_t first) noexcept;
+
+/// Writes those of the sensors of one env to their place in the whole row `out`.
 void sense(const Model& model, const BatchState& state, std::size_t env,
            std::span<float> out) noexcept;
 
 /// The same for the chunk's envs.
-void observeAll(const ChunkStep& step) noexcept;
 void senseAll(const ChunkStep& step) noexcept;
 
 }  // namespace galactic::simulation

@@ -13,22 +13,21 @@ namespace galactic::simulation {
 
 void readActions(const ChunkStep& step, std::span<const float> all) noexcept {
   const std::size_t count = step.model.actionCount();
-  const std::span<float> actions = step.chunk.actions();
   const std::size_t first = std::min(step.first * count, all.size());
-  const std::size_t given = std::min(actions.size(), all.size() - first);
-  std::uint32_t nan_count = 0;
-  for (std::size_t n = 0; n < given; ++n) {
-    const float value = all[first + n];
-    const float low = value < -1.0F ? -1.0F : value;
-    const float both = low > 1.0F ? 1.0F : low;
-    nan_count += value == value ? 0U : 1U;
-    actions[n] = value == value ? both : 0.0F;
+  std::span<const float> given = all.subspan(first, std::min(kChunk * count, all.size() - first));
+  if (given.size() < kChunk * count) {
+    const std::span<float> padded = step.chunk.givenActions();
+    const auto rest = std::ranges::copy(given, padded.begin()).out;
+    std::fill(rest, padded.end(), 0.0F);
+    given = padded;
   }
-  std::fill(actions.begin() + static_cast<std::ptrdiff_t>(given), actions.end(), 0.0F);
-  if (nan_count == 0) return;
-  for (std::size_t n = 0; n < given; ++n) {
-    const float value = all[first + n];
-    if (value != value) ++step.state.env(step.first + n / count).counters.nan_actions;
+  const bool has_nan = step.model.kernels.read({.from = given.data(),
+                                                .count = count,
+                                                .to = step.chunk.actions().front().values,
+                                                .envs = kChunk});
+  if (!has_nan) return;
+  for (std::size_t n = 0; n < given.size(); ++n) {
+    if (given[n] != given[n]) ++step.state.env(step.first + n / count).counters.nan_actions;
   }
 }
 
@@ -51,7 +50,7 @@ void runPhases(const ChunkStep& step, const StepInput& input, const Lap& lap) no
   lap(5);
   judge(step, input.resets);
   lap(6);
-  observeAll(step);
+  observe(step.model, step.state, step.first);
   lap(7);
   senseAll(step);
   lap(8);

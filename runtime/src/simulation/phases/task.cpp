@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "simulation/state/grip_frame.h"
 
@@ -25,18 +26,6 @@ EpisodeEnd endOfRearrange(const TaskOptions& task, const Env& env, float transpo
   return EpisodeEnd::kNone;
 }
 
-/// Sum of the squared changes of the joint actions, which become the last ones. None at the first
-/// step of an episode, which has none before it.
-float actionChange(std::span<const float> actions, std::span<float> last, bool is_first) {
-  float sum = 0;
-  for (std::size_t n = 0; n < last.size(); ++n) {
-    const float change = actions[n] - last[n];
-    sum += change * change;
-    last[n] = actions[n];
-  }
-  return is_first ? 0 : sum;
-}
-
 float rewardOf(const TaskOptions& task, const Env& env, const TargetDistances& now,
                float action_change) {
   if (task.kind == TaskKind::kNone) return 0;
@@ -57,12 +46,26 @@ float shapingOf(const TaskOptions& task, const Env& env, const WayLeft& way) {
 
 }  // namespace
 
-TargetDistances measureTarget(const BatchState& state, std::size_t env_number) noexcept {
-  const Env& env = state.env(env_number);
-  const GripFrame& grip = state.grip(env_number);
+TargetRows targetsNow(const BatchState& state, std::size_t first) noexcept {
+  TargetRows targets;
+  std::memcpy(targets.data(), state.targets(first), sizeof(targets));
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    const Env& env = state.env(first + e);
+    if (!isHeld(env)) continue;
+    const Vec3 target = gripToWorld(state.grip(first + e), env.held.grip_from_object.translation);
+    targets[0].values[e] = target.x;
+    targets[1].values[e] = target.y;
+    targets[2].values[e] = target.z;
+  }
+  return targets;
+}
+
+TargetDistances measureTarget(const BatchState& state, std::size_t n) noexcept {
+  const Env& env = state.env(n);
+  const GripFrame grip = state.grip(n);
   const Vec3 target = isHeld(env) ? gripToWorld(grip, env.held.grip_from_object.translation)
-                                  : state.objects(env_number)[env.target].translation;
-  return {target, distance(gripOrigin(grip), target), distance(target, env.goal)};
+                                  : state.objects(n)[env.target].translation;
+  return {distance(gripOrigin(grip), target), distance(target, state.goal(n))};
 }
 
 EpisodeEnd endOf(const TaskOptions& task, const Env& env, float transport) noexcept {
@@ -93,8 +96,41 @@ WayLeft measureWay(const Model& model, const BatchState& state, std::size_t env_
   return {model.geodesic.toTarget(env.start, base, target).distance, false};
 }
 
+namespace {
+
+/// What judge() wants to know of all envs of a chunk.
+struct Measured {
+  EnvRow change;
+  EnvRow reach;
+  EnvRow transport;
+};
+
+Measured measure(const ChunkStep& step) {
+  std::array<std::uint32_t, kChunk> active;
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    active[e] = step.state.idle()[step.first + e] == 0 ? ~std::uint32_t{0} : 0;
+  }
+  const TargetRows targets = targetsNow(step.state, step.first);
+  Measured measured;
+  step.model.kernels.judge({.actions = step.chunk.actions().front().values,
+                            .last_actions = step.state.lastActions(step.first),
+                            .active = active.data(),
+                            .joints = step.model.motion.controlled.size(),
+                            .grips = step.state.grips(step.first),
+                            .targets = targets.front().values,
+                            .goals = step.state.goals(step.first),
+                            .change = measured.change.values,
+                            .reach = measured.reach.values,
+                            .transport = measured.transport.values,
+                            .envs = kChunk});
+  return measured;
+}
+
+}  // namespace
+
 void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept {
   const TaskOptions& task = step.model.options.task;
+  const Measured measured = measure(step);
   for (std::size_t e = 0; e < kChunk; ++e) {
     const std::size_t n = step.first + e;
     if (n < resets.size() && resets[n] >= 0) {
@@ -107,13 +143,13 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
       ++env.counters.idle_steps;
       continue;
     }
-    const bool is_first = env.step == 0;
+    // The first step of an episode has none before it.
+    const float change = env.step == 0 ? 0 : measured.change.values[e];
     ++env.step;
-    const TargetDistances now = measureTarget(step.state, n);
+    const TargetDistances now{measured.reach.values[e], measured.transport.values[e]};
     const WayLeft way = measureWay(step.model, step.state, n);
     const EpisodeEnd end = endOf(task, env, now.transport);
-    float reward = rewardOf(
-        task, env, now, actionChange(step.chunk.actions(e), step.state.lastActions(n), is_first));
+    float reward = rewardOf(task, env, now, change);
     reward += shapingOf(task, env, way);
     if (end == EpisodeEnd::kSuccess) reward += task.success_reward;
     if (isFailure(end)) reward -= task.failure_penalty;

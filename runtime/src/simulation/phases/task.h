@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -6,9 +7,12 @@
 
 namespace galactic::simulation {
 
-/// Where the target is, and how far from grip and goal, meters.
+/// Where the targets of a chunk's envs are: rows of x, y and z.
+using TargetRows = std::array<EnvRow, 3>;
+[[nodiscard]] TargetRows targetsNow(const BatchState& state, std::size_t first) noexcept;
+
+/// How far the target is from grip and goal, meters.
 struct TargetDistances {
-  Vec3 target;
   float reach = 0;
   float transport = 0;
 };

@@ -6,14 +6,18 @@
 namespace galactic::simulation {
 namespace {
 
+/// Rows of a chunk: its robots, three points, and the joint actions of the step before.
+std::size_t rowCount(const Model& model) {
+  return kBaseRows + model.variableCount() + kGripNumbers + 3 * 3 + model.motion.controlled.size();
+}
+
 /// What the vectors of one env take, so that a batch asks for its memory at once.
 std::size_t envBytes(const Model& model) {
   // What the alignment of an env's own vectors may cost.
   constexpr std::size_t kPadding = 96;
   const std::size_t planes = (model.most_objects + kPlaneObjects - 1) / kPlaneObjects;
-  const std::size_t floats =
-      model.motion.controlled.size() + model.variableCount() + 2 * model.observation_size + 5;
-  return kPadding + sizeof(Env) + sizeof(RestingObjects) + sizeof(GripFrame) +
+  const std::size_t floats = rowCount(model) + 2 * model.observation_size + 1;
+  return kPadding + sizeof(Env) + sizeof(RestingObjects) +
          planes * (sizeof(SetPlane) + sizeof(std::uint32_t)) +
          model.most_objects * (sizeof(RestingBox) + sizeof(Pose)) +
          (model.heldWords() + model.most_objects * model.bodyWords()) * sizeof(std::uint64_t) +
@@ -72,8 +76,8 @@ BatchState::BatchState(const Model& model, std::size_t envs)
       most_objects_(model.most_objects),
       held_words_(model.heldWords()),
       body_words_(model.bodyWords()),
-      joints_(model.motion.controlled.size()),
-      pose_rows_(kBaseRows + model.variableCount()),
+      variable_count_(model.variableCount()),
+      row_count_(rowCount(model)),
       observation_size_(model.observation_size),
       body_count_(model.bodyCount()) {
   const std::size_t padded = paddedToChunks(env_count_);
@@ -85,11 +89,9 @@ BatchState::BatchState(const Model& model, std::size_t envs)
     resting_.emplace_back(model.most_objects, reach, &memory_);
   }
   objects_.resize(padded * most_objects_);
-  grips_.resize(padded);
   ignored_.resize(padded * held_words_);
   leaving_.resize(padded * most_objects_ * body_words_);
-  last_actions_.resize(padded * joints_);
-  poses_.resize(padded * pose_rows_);
+  rows_.resize(padded / kChunk * row_count_);
   observations_.resize(padded * observation_size_);
   final_observations_.resize(padded * observation_size_);
   bodies_.resize(padded * body_count_);
@@ -100,39 +102,22 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   idle_.resize(padded);
 }
 
-PoseArrays BatchState::poses(std::size_t first) {
-  float* x = poses_.data() + poseIndex(first);
-  return {.x = x,
-          .y = x + kChunk,
-          .z = x + 2 * kChunk,
-          .yaw = x + 3 * kChunk,
-          .variables = x + kBaseRows * kChunk,
-          .stride = kChunk};
-}
-
 void BatchState::prefetch(std::size_t n) const noexcept {
   if (n >= envs_.size()) return;
   prefetchBytes(&envs_[n], kEnvHotBytes);
-  prefetchBytes(&grips_[n], sizeof(GripFrame));
   prefetchRow(observation(n));
-  prefetchRow(lastActions(n));
   prefetchRow(bodyTransforms(n));
   // The chunk's rows in equal parts, an env each.
-  prefetchBytes(poses_.data() + n * pose_rows_, pose_rows_ * sizeof(float));
+  prefetchBytes(rows_.data()->values + n * row_count_, row_count_ * sizeof(float));
   resting_[n].prefetch();
   // Which says where its sets are.
   if (n + kChunk < envs_.size()) prefetchBytes(&resting_[n + kChunk], sizeof(RestingObjects));
 }
 
-void BatchState::prefetchTarget(std::size_t n) const noexcept {
-  prefetchBytes(objects_.data() + n * most_objects_ + envs_[n].target, sizeof(Pose));
-}
-
 std::size_t BatchState::bytes() const {
-  std::size_t bytes = bytesOf(envs_) + bytesOf(objects_) + bytesOf(grips_) + bytesOf(ignored_) +
-                      bytesOf(leaving_) + bytesOf(last_actions_) + bytesOf(poses_) +
-                      2 * bytesOf(observations_) + bytesOf(bodies_) + bytesOf(rewards_) +
-                      4 * bytesOf(dones_);
+  std::size_t bytes = bytesOf(envs_) + bytesOf(objects_) + bytesOf(ignored_) + bytesOf(leaving_) +
+                      bytesOf(rows_) + 2 * bytesOf(observations_) + bytesOf(bodies_) +
+                      bytesOf(rewards_) + 4 * bytesOf(dones_);
   for (const RestingObjects& resting : resting_) bytes += resting.bytes();
   return bytes;
 }

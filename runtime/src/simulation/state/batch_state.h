@@ -14,8 +14,20 @@
 namespace galactic::simulation {
 
 /// Envs are stepped this many at a time, so that what they need stays in the nearest cache.
-inline constexpr std::size_t kChunk = 16;
-static_assert(kChunk % kLanes == 0);
+inline constexpr std::size_t kChunk = kMostWidth;
+
+/// Rows of a base: x, y, z and yaw.
+inline constexpr std::size_t kBaseRows = 4;
+
+/// Of rows that begin with those of a base, and go on with variables.
+[[nodiscard]] inline PoseArrays posesAt(float* x) {
+  return {.x = x,
+          .y = x + kChunk,
+          .z = x + 2 * kChunk,
+          .yaw = x + 3 * kChunk,
+          .variables = x + kBaseRows * kChunk,
+          .stride = kChunk};
+}
 
 /// What happened in one env; added up by SimulationStatistics.
 struct EnvCounters {
@@ -81,8 +93,6 @@ struct alignas(64) Env {
   /// something.
   bool refused = false;
   StepEvents events;
-  Vec3 goal;
-  Vec3 target_start;
   EnvCounters counters;
   Held held;
   /// Index into Model::starts.
@@ -120,14 +130,33 @@ class BatchState {
   [[nodiscard]] RestingObjects& resting(std::size_t n) { return resting_[n]; }
   [[nodiscard]] const RestingObjects& resting(std::size_t n) const { return resting_[n]; }
   /// World poses of the episode's objects; that of a held one is where it was grasped.
-  [[nodiscard]] std::span<Pose> objects(std::size_t n) {
-    return std::span(objects_).subspan(n * most_objects_, most_objects_);
-  }
   [[nodiscard]] std::span<const Pose> objects(std::size_t n) const {
     return std::span(objects_).subspan(n * most_objects_, most_objects_);
   }
-  [[nodiscard]] GripFrame& grip(std::size_t n) { return grips_[n]; }
-  [[nodiscard]] const GripFrame& grip(std::size_t n) const { return grips_[n]; }
+  /// Every change of an object's pose comes through here.
+  void placeObject(std::size_t n, std::size_t object, const Pose& world_from_object) {
+    objects_[n * most_objects_ + object] = world_from_object;
+    if (object == envs_[n].target) setPoint(targetRow(), n, world_from_object.translation);
+  }
+  /// Which object is the target, and where it is to go. The objects are where the episode begins.
+  void setErrand(std::size_t n, std::uint32_t target, const Vec3& goal) {
+    envs_[n].target = target;
+    setPoint(goalRow(), n, goal);
+    setPoint(targetRow(), n, objects(n)[target].translation);
+    setPoint(targetStartRow(), n, objects(n)[target].translation);
+  }
+  [[nodiscard]] Vec3 goal(std::size_t n) const { return point(goalRow(), n); }
+
+  [[nodiscard]] GripFrame grip(std::size_t n) const {
+    GripFrame grip{};
+    const float* numbers = number(gripRow(), n);
+    for (std::size_t k = 0; k < kGripNumbers; ++k) grip[k] = numbers[k * kChunk];
+    return grip;
+  }
+  void setGrip(std::size_t n, const GripFrame& grip) {
+    float* numbers = number(gripRow(), n);
+    for (std::size_t k = 0; k < kGripNumbers; ++k) numbers[k * kChunk] = grip[k];
+  }
   /// Spheres of the held object that do not count yet.
   [[nodiscard]] std::span<std::uint64_t> ignored(std::size_t n) {
     return std::span(ignored_).subspan(n * held_words_, held_words_);
@@ -149,23 +178,35 @@ class BatchState {
     return std::span(leaving_).subspan(n * most_objects_ * body_words_,
                                        most_objects_ * body_words_);
   }
-  /// The joint actions of the step before.
-  [[nodiscard]] std::span<float> lastActions(std::size_t n) {
-    return std::span(last_actions_).subspan(n * joints_, joints_);
+  /// The action of the step before.
+  [[nodiscard]] float lastAction(std::size_t joint, std::size_t n) const {
+    return *number(lastActionRow() + joint, n);
   }
-  [[nodiscard]] std::span<const float> lastActions(std::size_t n) const {
-    return std::span(last_actions_).subspan(n * joints_, joints_);
+  void setLastAction(std::size_t joint, std::size_t n, float action) {
+    *number(lastActionRow() + joint, n) = action;
   }
   /// Base and variables of the envs of a chunk from `first` on.
-  [[nodiscard]] PoseArrays poses(std::size_t first);
-  [[nodiscard]] float variable(std::size_t v, std::size_t env) const {
-    return poses_[poseIndex(env) + (kBaseRows + v) * kChunk];
+  [[nodiscard]] PoseArrays poses(std::size_t first) { return posesAt(number(0, first)); }
+  [[nodiscard]] float variable(std::size_t v, std::size_t n) const {
+    return *number(kBaseRows + v, n);
   }
-  [[nodiscard]] Vec3 base(std::size_t n) const {
-    const float* x = poses_.data() + poseIndex(n);
-    return {x[0], x[kChunk], x[2 * kChunk]};
+  [[nodiscard]] Vec3 base(std::size_t n) const { return point(0, n); }
+  [[nodiscard]] float yaw(std::size_t n) const { return *number(3, n); }
+
+  /// Rows of the chunk whose first env is `first`: what changes with the pose of the robot, which
+  /// is base, variables and grip; the parts of it; the points that matter; the joint actions of the
+  /// step before.
+  [[nodiscard]] std::span<EnvRow> poseRows(std::size_t first) {
+    return std::span(rows_).subspan(first / kChunk * row_count_, goalRow());
   }
-  [[nodiscard]] float yaw(std::size_t n) const { return poses_[poseIndex(n) + 3 * kChunk]; }
+  [[nodiscard]] const float* grips(std::size_t first) const { return number(gripRow(), first); }
+  [[nodiscard]] const float* goals(std::size_t first) const { return number(goalRow(), first); }
+  /// Where the target rests, or rested before it was grasped.
+  [[nodiscard]] const float* targets(std::size_t first) const { return number(targetRow(), first); }
+  [[nodiscard]] const float* targetStarts(std::size_t first) const {
+    return number(targetStartRow(), first);
+  }
+  [[nodiscard]] float* lastActions(std::size_t first) { return number(lastActionRow(), first); }
 
   [[nodiscard]] std::span<float> observation(std::size_t n) {
     return std::span(observations_).subspan(n * observation_size_, observation_size_);
@@ -222,16 +263,29 @@ class BatchState {
   /// Asks the memory for what a step of an env reads and writes: a chunk ahead, it is there in
   /// time. There may be no such env.
   void prefetch(std::size_t n) const noexcept;
-  /// The same for the pose of its target, which the env itself has to be there for.
-  void prefetchTarget(std::size_t n) const noexcept;
 
  private:
-  /// X, y, z and yaw.
-  static constexpr std::size_t kBaseRows = 4;
+  [[nodiscard]] std::size_t gripRow() const { return kBaseRows + variable_count_; }
+  [[nodiscard]] std::size_t goalRow() const { return gripRow() + kGripNumbers; }
+  [[nodiscard]] std::size_t targetRow() const { return goalRow() + 3; }
+  [[nodiscard]] std::size_t targetStartRow() const { return targetRow() + 3; }
+  [[nodiscard]] std::size_t lastActionRow() const { return targetStartRow() + 3; }
 
-  /// Of the x of an env's base.
-  [[nodiscard]] std::size_t poseIndex(std::size_t n) const {
-    return n / kChunk * kChunk * pose_rows_ + n % kChunk;
+  [[nodiscard]] const float* number(std::size_t row, std::size_t n) const {
+    return rows_[n / kChunk * row_count_ + row].values + n % kChunk;
+  }
+  [[nodiscard]] float* number(std::size_t row, std::size_t n) {
+    return rows_[n / kChunk * row_count_ + row].values + n % kChunk;
+  }
+  [[nodiscard]] Vec3 point(std::size_t row, std::size_t n) const {
+    const float* x = number(row, n);
+    return {x[0], x[kChunk], x[2 * kChunk]};
+  }
+  void setPoint(std::size_t row, std::size_t n, const Vec3& p) {
+    float* x = number(row, n);
+    x[0] = p.x;
+    x[kChunk] = p.y;
+    x[2 * kChunk] = p.z;
   }
 
   detail::HugePages huge_pages_;
@@ -241,20 +295,19 @@ class BatchState {
   std::size_t most_objects_ = 0;
   std::size_t held_words_ = 0;
   std::size_t body_words_ = 0;
-  std::size_t joints_ = 0;
-  std::size_t pose_rows_ = 0;
+  std::size_t variable_count_ = 0;
+  /// Of a chunk.
+  std::size_t row_count_ = 0;
   std::size_t observation_size_ = 0;
   std::size_t body_count_ = 0;
   std::pmr::vector<Env> envs_{&memory_};
   std::pmr::vector<RestingObjects> resting_{&memory_};
   std::pmr::vector<Pose> objects_{&memory_};
-  std::pmr::vector<GripFrame> grips_{&memory_};
   std::pmr::vector<std::uint64_t> ignored_{&memory_};
   std::pmr::vector<std::uint64_t> leaving_{&memory_};
-  std::pmr::vector<float> last_actions_{&memory_};
-  /// Chunk after chunk, so that a step reads them as one stream: x, y, z, yaw and the variables of
-  /// its envs. Shape: chunks x rows x kChunk.
-  std::pmr::vector<float> poses_{&memory_};
+  /// Chunk after chunk, so that a step reads them as one stream: x, y, z, yaw, variables and grip
+  /// of its envs, then goals, targets, where targets were at the start, and last actions.
+  std::pmr::vector<EnvRow> rows_{&memory_};
   std::pmr::vector<float> observations_{&memory_};
   std::pmr::vector<float> final_observations_{&memory_};
   std::pmr::vector<RigidTransform> bodies_{&memory_};

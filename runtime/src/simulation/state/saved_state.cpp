@@ -192,7 +192,7 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
       .was_refused = static_cast<std::uint16_t>(env.refused ? 1 : 0),
       .is_idle = state.idle()[n]});
   for (std::size_t v = 0; v < model.variableCount(); ++v) out.add(state.variable(v, n));
-  out.add(state.lastActions(n));
+  for (std::size_t j = 0; j < model.motion.controlled.size(); ++j) out.add(state.lastAction(j, n));
   out.add(state.ignored(n));
   out.add(state.leaving(n).first(env.objects * model.bodyWords()));
   out.add(state.objects(n).first(env.objects));
@@ -414,8 +414,10 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
   for (std::size_t v = 0; v < saved.variables.size(); ++v) {
     to.variables[v * to.stride] = saved.variables[v];
   }
-  state.grip(n) = saved.grip;
-  std::ranges::copy(saved.last_actions, state.lastActions(n).begin());
+  state.setGrip(n, saved.grip);
+  for (std::size_t j = 0; j < saved.last_actions.size(); ++j) {
+    state.setLastAction(j, n, saved.last_actions[j]);
+  }
   std::ranges::copy(saved.ignored, state.ignored(n).begin());
   std::ranges::copy(saved.leaving, state.leaving(n).begin());
   if (!state.bodyTransforms(n).empty()) {
@@ -425,7 +427,7 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
   resting.clear();
   for (std::uint32_t object = 0; object < env.objects; ++object) {
     const Pose& pose = saved.objects[object];
-    state.objects(n)[object] = pose;
+    state.placeObject(n, object, pose);
     if (static_cast<std::int32_t>(object) == env.held.object) continue;
     resting.insert(object, restingBox(model.object(env.start, object).box, pose));
   }

@@ -44,11 +44,11 @@ class MotionBatch {
 
   explicit MotionBatch(const MotionRobot& robot)
       : robot_(robot),
-        actions_(kEnvs * actionCount()),
+        actions_(actionCount()),
         variables_(kStride * robot.model.variables.size()),
         moved_variables_(variables_.size()),
         centers_(kEnvs * 3 * robot.model.spheres.size()),
-        grips_(kEnvs * simulation::kGripStride),
+        grips_(simulation::kGripNumbers),
         bodies_(kEnvs * bodyCount()),
         bounds_(kEnvs * simulation::kBounds * groupStride() / simulation::kLanes),
         scratch_(simulation::frameScratchSize(robot.model.nodes.size()) / kEnvs) {}
@@ -77,16 +77,19 @@ class MotionBatch {
       }
     }
     constexpr std::array kSpecial{-1.0F, 0.0F, 1.0F};
-    for (float& action : actions_) {
-      const bool is_special = random() % 4 == 0;
-      action = is_special ? kSpecial[random() % kSpecial.size()] : uniformIn(random, -1, 1);
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      for (simulation::EnvRow& row : actions_) {
+        const bool is_special = random() % 4 == 0;
+        row.values[env] =
+            is_special ? kSpecial[random() % kSpecial.size()] : uniformIn(random, -1, 1);
+      }
     }
   }
 
   /// The first `envs` of them; likewise below.
   void move(const simulation::MotionKernels& kernels, std::size_t envs = kEnvs) {
-    kernels.move(robot_.tables, {.actions = actions_.data(),
-                                 .action_count = actionCount(),
+    kernels.move(robot_.tables, {.actions = actions_.front().values,
+                                 .joints = robot_.model.controlled.size(),
                                  .from = poses(),
                                  .to = {.x = moved_x.data(),
                                         .y = moved_y.data(),
@@ -100,7 +103,7 @@ class MotionBatch {
   void place(const simulation::MotionKernels& kernels, std::size_t envs = kEnvs) {
     kernels.place(robot_.tables, {.pose = poses(),
                                   .body = {.centers = centers_.data(),
-                                           .grips = grips_.data(),
+                                           .grips = grips_.front().values,
                                            .bodies = &bodies_.front().x_axis.x,
                                            .bounds = bounds_.data()->data(),
                                            .extents = extents_.data()->data()},
@@ -108,9 +111,7 @@ class MotionBatch {
                                   .envs = envs});
   }
 
-  [[nodiscard]] float& action(std::size_t env, std::size_t n) {
-    return actions_[env * actionCount() + n];
-  }
+  [[nodiscard]] float& action(std::size_t env, std::size_t n) { return actions_[n].values[env]; }
   [[nodiscard]] float& variable(std::size_t v, std::size_t env) {
     return variables_[v * kStride + env];
   }
@@ -122,8 +123,10 @@ class MotionBatch {
     const float* row = centers_.data() + 3 * env * count;
     return {row[sphere], row[count + sphere], row[2 * count + sphere]};
   }
-  [[nodiscard]] const float* grip(std::size_t env) const {
-    return grips_.data() + simulation::kGripStride * env;
+  [[nodiscard]] std::array<float, simulation::kGripNumbers> grip(std::size_t env) const {
+    std::array<float, simulation::kGripNumbers> grip;
+    for (std::size_t n = 0; n < grip.size(); ++n) grip[n] = grips_[n].values[env];
+    return grip;
   }
   [[nodiscard]] const RigidTransform& body(std::size_t env, std::size_t n) const {
     return bodies_[env * bodyCount() + n];
@@ -139,7 +142,7 @@ class MotionBatch {
   [[nodiscard]] std::vector<std::uint32_t> placed() const {
     std::vector<std::uint32_t> bits;
     append(centers_, bits);
-    append(grips_, bits);
+    for (const simulation::EnvRow& row : grips_) append(row.values, bits);
     for (const AlignedEight& eight : bounds_) append(eight, bits);
     for (const AlignedEight& eight : extents_) append(eight, bits);
     for (const RigidTransform& body : bodies_) {
@@ -184,11 +187,11 @@ class MotionBatch {
   }
 
   const MotionRobot& robot_;
-  std::vector<float> actions_;
+  std::vector<simulation::EnvRow> actions_;
   std::vector<float> variables_;
   std::vector<float> moved_variables_;
   std::vector<float> centers_;
-  std::vector<float> grips_;
+  std::vector<simulation::EnvRow> grips_;
   std::vector<RigidTransform> bodies_;
   std::vector<AlignedEight> bounds_;
   std::array<AlignedEight, kEnvs> extents_{};

@@ -96,7 +96,7 @@ class SingleRobot {
   }
 
   void compareGrip(Differences& worst) const {
-    const float* grip = batch_.grip(env_);
+    const auto grip = batch_.grip(env_);
     const EndEffector& tool = *robot_.robot->endEffector();
     worst.addAxes({grip[0], grip[1], grip[2]}, {grip[3], grip[4], grip[5]},
                   {grip[6], grip[7], grip[8]}, links_[tool.link].rotation);
