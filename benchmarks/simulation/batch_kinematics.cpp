@@ -86,23 +86,24 @@ void batched(benchmark::State& state) {
     }
   }
   constexpr std::size_t kWidth = simulation::kMostWidth;
-  struct alignas(64) Lanes {
-    float values[kWidth];
-  };
-  std::vector<Lanes> scratch(simulation::frameScratchSize(model->nodes.size()) / kWidth);
+  std::vector<simulation::EnvRow> frames(simulation::frameRows(model->nodes.size()));
+  const std::vector<std::uint32_t> all(kWidth, ~std::uint32_t{0});
   std::vector<float> centers(3 * model->spheres.size() * kRobots);
-  std::vector<float> grips(simulation::kGripNumbers * kRobots);
-  const std::size_t body_floats = 12 * (model->nodes.size() + 1);
-  std::vector<float> bodies(body_floats * kRobots);
+  std::vector<simulation::EnvRow> grips(simulation::kGripNumbers);
+  std::vector<float> bodies(frames.size() * kRobots);
   for (auto _ : state) {
     for (std::size_t n = 0; n < kRobots; n += kWidth) {
       kernels.place(tables, {.pose = {x.data() + n, y.data() + n, z.data() + n, yaw.data() + n,
                                       variables.data() + n, kRobots},
-                             .body = {centers.data() + 3 * model->spheres.size() * n,
-                                      grips.data() + simulation::kGripNumbers * n,
-                                      bodies.data() + body_floats * n},
-                             .scratch = scratch.data()->values,
+                             .body = {.frames = frames.front().values,
+                                      .centers = centers.data() + 3 * model->spheres.size() * n,
+                                      .grips = grips.front().values},
                              .envs = kWidth});
+      kernels.put_frames({.frames = frames.front().values,
+                          .rows = frames.size(),
+                          .wanted = all.data(),
+                          .to = bodies.data() + frames.size() * n,
+                          .envs = kWidth});
     }
     benchmark::DoNotOptimize(centers.data());
     benchmark::ClobberMemory();

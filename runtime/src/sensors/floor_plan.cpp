@@ -57,8 +57,8 @@ StandingRobot::StandingRobot(const Robot& robot, const simulation::MotionModel& 
     variables[v].values.fill(variable.wraps ? std::remainder(start, 2 * std::numbers::pi_v<float>)
                                             : std::clamp(start, variable.lower, variable.upper));
   }
-  std::vector<float> grips(simulation::kGripNumbers * simulation::kMostWidth);
-  std::vector<Lanes> frames(simulation::frameScratchSize(motion.nodes.size()) / kLanes);
+  std::vector<simulation::EnvRow> grips(simulation::kGripNumbers);
+  std::vector<simulation::EnvRow> frames(simulation::frameRows(motion.nodes.size()));
   Lanes x;
   Lanes z;
   kernels.place(simulation::motionTables(motion),
@@ -68,8 +68,9 @@ StandingRobot::StandingRobot(const Robot& robot, const simulation::MotionModel& 
                           .yaw = yaw.values.data(),
                           .variables = variables.empty() ? nullptr : variables[0].values.data(),
                           .stride = kLanes},
-                 .body = {.centers = centers_.data(), .grips = grips.data(), .bodies = nullptr},
-                 .scratch = frames[0].values.data()});
+                 .body = {.frames = frames.front().values,
+                          .centers = centers_.data(),
+                          .grips = grips.front().values}});
 }
 
 StandingRobot::Scratch StandingRobot::scratch() const {

@@ -12,7 +12,7 @@
 namespace galactic::simulation {
 
 MotionKernels avx2Motion() noexcept {
-  return {readKernel, moveKernel, placeKernel, judgeKernel, observeKernel};
+  return {readKernel, moveKernel, placeKernel, putFramesKernel, judgeKernel, observeKernel};
 }
 
 }  // namespace galactic::simulation

@@ -24,6 +24,10 @@ void placeSixteens(const MotionTables& tables, const BodyBatch& batch) noexcept 
   batch.envs % kWidth == 0 ? placeKernel(tables, batch) : avx2Motion().place(tables, batch);
 }
 
+void putFramesOfSixteens(const FrameBatch& batch) noexcept {
+  batch.envs % kWidth == 0 ? putFramesKernel(batch) : avx2Motion().put_frames(batch);
+}
+
 void judgeSixteens(const JudgeBatch& batch) noexcept {
   batch.envs % kWidth == 0 ? judgeKernel(batch) : avx2Motion().judge(batch);
 }
@@ -35,7 +39,8 @@ void observeSixteens(const ObserveBatch& batch) noexcept {
 }  // namespace
 
 MotionKernels avx512Motion() noexcept {
-  return {readSixteens, moveSixteens, placeSixteens, judgeSixteens, observeSixteens};
+  return {readSixteens,        moveSixteens,  placeSixteens,
+          putFramesOfSixteens, judgeSixteens, observeSixteens};
 }
 
 }  // namespace galactic::simulation

@@ -111,6 +111,30 @@ inline LaneFrame nodeFrame(const LaneFrame& parent, const MotionNode& node, Lane
   return frame;
 }
 
+inline LaneVector loadPoint(const float* rows) {
+  return {load(rows), load(rows + kMostWidth), load(rows + 2 * kMostWidth)};
+}
+
+inline void storePoint(float* rows, const LaneVector& point) {
+  store(rows, point.x);
+  store(rows + kMostWidth, point.y);
+  store(rows + 2 * kMostWidth, point.z);
+}
+
+/// That of a node, or with -1 that of the root.
+inline LaneFrame frameOf(const float* frames, std::int32_t node) {
+  const float* rows = frames + frameRows(0) * kMostWidth * static_cast<std::size_t>(node + 1);
+  return {loadPoint(rows), loadPoint(rows + 3 * kMostWidth), loadPoint(rows + 6 * kMostWidth),
+          loadPoint(rows + 9 * kMostWidth)};
+}
+
+inline void storeFrame(float* rows, const LaneFrame& frame) {
+  storePoint(rows, frame.x_axis);
+  storePoint(rows + 3 * kMostWidth, frame.y_axis);
+  storePoint(rows + 6 * kMostWidth, frame.z_axis);
+  storePoint(rows + 9 * kMostWidth, frame.origin);
+}
+
 /// Least and most of a coordinate of eight spheres.
 struct LaneBounds {
   Lanes least, most;
@@ -127,11 +151,11 @@ inline LaneBounds boundsOf(const Lanes values[kLanes]) {
 
 /// The centers of eight spheres. `bounds`: of these spheres, kBounds vectors; null
 /// when nobody wants them.
-inline void placeEightSpheres(const BodySphere* spheres, const LaneFrame* frames, float* centers,
+inline void placeEightSpheres(const BodySphere* spheres, const float* frames, float* centers,
                               std::size_t count, Lanes* bounds) {
   Lanes values[3][kLanes];
   for (std::size_t n = 0; n < kLanes; ++n) {
-    const LaneVector center = moved(frames[spheres[n].node + 1], spheres[n].center);
+    const LaneVector center = moved(frameOf(frames, spheres[n].node), spheres[n].center);
     values[0][n] = center.x;
     values[1][n] = center.y;
     values[2][n] = center.z;
@@ -146,49 +170,28 @@ inline void placeEightSpheres(const BodySphere* spheres, const LaneFrame* frames
   }
 }
 
-inline LaneFrame fixedFrame(const LaneFrame* frames, const FixedFrame& fixed) {
-  const LaneFrame& node = frames[fixed.node + 1];
+inline LaneFrame fixedFrame(const float* frames, const FixedFrame& fixed) {
+  const LaneFrame node = frameOf(frames, fixed.node);
   return {turned(node, fixed.x_axis), turned(node, fixed.y_axis), turned(node, fixed.z_axis),
           moved(node, fixed.origin)};
 }
 
-inline void storePoint(float* rows, const LaneVector& point) {
-  store(rows, point.x);
-  store(rows + kMostWidth, point.y);
-  store(rows + 2 * kMostWidth, point.z);
+inline void placeGrip(const MotionTables& tables, const float* frames, float* grips) {
+  storeFrame(grips, fixedFrame(frames, tables.grip));
+  const LaneFrame root = frameOf(frames, -1);
+  store(grips + kFrameNumbers * kMostWidth, root.x_axis.x);
+  store(grips + (kFrameNumbers + 1) * kMostWidth, root.z_axis.x);
 }
 
-inline void placeGrip(const MotionTables& tables, const LaneFrame* frames, float* grips) {
-  const LaneFrame grip = fixedFrame(frames, tables.grip);
-  storePoint(grips, grip.x_axis);
-  storePoint(grips + 3 * kMostWidth, grip.y_axis);
-  storePoint(grips + 6 * kMostWidth, grip.z_axis);
-  storePoint(grips + 9 * kMostWidth, grip.origin);
-  store(grips + 12 * kMostWidth, frames[0].x_axis.x);
-  store(grips + 13 * kMostWidth, frames[0].z_axis.x);
-}
-
-/// Root and nodes: the numbers of an env's frames, as they are in memory, are its row.
-inline void placeFrames(const LaneFrame* frames, std::size_t count, float* bodies) {
-  const auto* rows = reinterpret_cast<const Lanes*>(frames);
-  constexpr std::size_t kNumbers = sizeof(LaneFrame) / sizeof(Lanes);
-  const std::size_t numbers = kNumbers * count;
-  std::size_t n = 0;
-  for (; n + kLanes <= numbers; n += kLanes) storeColumns(rows + n, bodies + n, numbers);
-  if (n < numbers) storeFourColumns(rows + n, bodies + n, numbers);
-}
-
-/// Frame 0 is the root, frame n + 1 node n.
-inline const LaneFrame* nodeFrames(const MotionTables& tables, const PoseArrays& pose,
-                                   float* scratch) {
-  auto* frames = reinterpret_cast<LaneFrame*>(scratch);
-  frames[0] = rootFrame(pose, tables.root_height);
+/// Root and nodes.
+inline void placeFrames(const MotionTables& tables, const PoseArrays& pose, float* frames) {
+  storeFrame(frames, rootFrame(pose, tables.root_height));
   for (std::uint32_t n = 0; n < tables.node_count; ++n) {
     const MotionNode& node = tables.nodes[n];
-    frames[n + 1] = nodeFrame(frames[node.parent + 1], node,
-                              load(pose.variables + node.variable * pose.stride));
+    storeFrame(frames + frameRows(n) * kMostWidth,
+               nodeFrame(frameOf(frames, node.parent), node,
+                         load(pose.variables + node.variable * pose.stride)));
   }
-  return frames;
 }
 
 inline void moveLanes(const MotionTables& tables, const MoveBatch& batch) noexcept {
@@ -240,8 +243,7 @@ inline void storeExtents(const Lanes all[kBounds], float* to) {
 }
 
 /// All spheres, and the bounds of each eight of them.
-inline void placeSpheres(const MotionTables& tables, const LaneFrame* frames,
-                         const BodyArrays& body) {
+inline void placeSpheres(const MotionTables& tables, const BodyArrays& body) {
   const std::uint32_t groups = tables.sphere_count / kLanes;
   const std::size_t stride = paddedToLanes(groups);
   Lanes bounds[kLanes][kBounds];
@@ -250,8 +252,8 @@ inline void placeSpheres(const MotionTables& tables, const LaneFrame* frames,
     const std::uint32_t here = groups - first < kLanes ? groups - first : kLanes;
     for (std::uint32_t n = 0; n < here; ++n) {
       const std::uint32_t sphere = (first + n) * kLanes;
-      placeEightSpheres(tables.spheres + sphere, frames, body.centers + sphere, tables.sphere_count,
-                        body.bounds == nullptr ? nullptr : bounds[n]);
+      placeEightSpheres(tables.spheres + sphere, body.frames, body.centers + sphere,
+                        tables.sphere_count, body.bounds == nullptr ? nullptr : bounds[n]);
     }
     if (body.bounds == nullptr) continue;
     storeBounds(bounds, here, body.bounds + first, stride);
@@ -262,11 +264,9 @@ inline void placeSpheres(const MotionTables& tables, const LaneFrame* frames,
 }
 
 inline void placeLanes(const MotionTables& tables, const BodyBatch& batch) noexcept {
-  const LaneFrame* frames = nodeFrames(tables, batch.pose, batch.scratch);
-  placeSpheres(tables, frames, batch.body);
-  placeGrip(tables, frames, batch.body.grips);
-  if (batch.body.bodies == nullptr) return;
-  placeFrames(frames, tables.node_count + 1, batch.body.bodies);
+  placeFrames(tables, batch.pose, batch.body.frames);
+  placeSpheres(tables, batch.body);
+  placeGrip(tables, batch.body.frames, batch.body.grips);
 }
 
 inline PoseArrays envsFrom(const PoseArrays& pose, std::size_t first) {
@@ -281,9 +281,8 @@ Value* rowsFrom(Value* values, std::size_t rows) {
 
 inline BodyArrays envsFrom(const MotionTables& tables, const BodyArrays& body, std::size_t first) {
   const std::size_t groups = paddedToLanes(tables.sphere_count / kLanes);
-  return {rowsFrom(body.centers, 3 * tables.sphere_count * first), rowsFrom(body.grips, first),
-          rowsFrom(body.bodies, 12 * (tables.node_count + std::size_t{1}) * first),
-          rowsFrom(body.bounds, kBounds * groups * first),
+  return {rowsFrom(body.frames, first), rowsFrom(body.centers, 3 * tables.sphere_count * first),
+          rowsFrom(body.grips, first), rowsFrom(body.bounds, kBounds * groups * first),
           rowsFrom(body.extents, kExtentStride * first)};
 }
 
@@ -296,8 +295,7 @@ void moveKernel(const MotionTables& tables, const MoveBatch& batch) noexcept {
 
 void placeKernel(const MotionTables& tables, const BodyBatch& batch) noexcept {
   for (std::size_t first = 0; first < batch.envs; first += kWidth) {
-    placeLanes(tables, {envsFrom(batch.pose, first), envsFrom(tables, batch.body, first),
-                        batch.scratch, kWidth});
+    placeLanes(tables, {envsFrom(batch.pose, first), envsFrom(tables, batch.body, first), kWidth});
   }
 }
 

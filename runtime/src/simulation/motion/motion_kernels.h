@@ -49,16 +49,23 @@ struct PoseArrays {
   std::size_t stride = 0;
 };
 
-/// Where a robot's frames go: for each env its own row.
+/// Axes x, y, z and origin of a frame.
+inline constexpr std::size_t kFrameNumbers = 12;
+
+/// Rows of the frames of root and nodes.
+[[nodiscard]] constexpr std::size_t frameRows(std::size_t nodes) {
+  return kFrameNumbers * (nodes + 1);
+}
+
+/// Where a robot's frames and spheres go.
 struct BodyArrays {
+  /// Those of the root, then of each node, in the world: frameRows() rows.
+  float* frames = nullptr;
   /// Env e, coordinate c (x, y, z), sphere n: centers[(3 * e + c) * sphere_count + n].
   float* centers = nullptr;
   /// world_from_grip as axes x, y, z and origin, then cosine and sine of the base's yaw:
   /// kGripNumbers rows, see EnvRow.
   float* grips = nullptr;
-  /// From bodies[12 * (nodes + 1) * e] on: axes x, y, z and origin of the root, then of each node,
-  /// in the world. Null when nobody wants them.
-  float* bodies = nullptr;
   /// Bounds of each eight spheres: env e, bound b of kBounds, group n:
   /// bounds[(kBounds * e + b) * paddedToLanes(groups) + n]; padded with copies of a group. 32-byte
   /// aligned. Null when nobody wants them.
@@ -71,18 +78,12 @@ struct BodyArrays {
 /// Bounds of one env, padded to whole lanes.
 inline constexpr std::size_t kExtentStride = 8;
 
-/// What the kernels need beside their results; aligned to 64 bytes, or to 32 for batches that are
-/// no multiple of kMostWidth. Shape: frameScratchSize floats.
-[[nodiscard]] constexpr std::size_t frameScratchSize(std::size_t nodes) {
-  return (nodes + 2) * 12 * kMostWidth;
-}
-
 /// Actions as a caller gives them, env after env, `count` each, and the rows that they go to.
 struct ActionBatch {
   const float* from = nullptr;
   std::size_t count = 0;
   float* to = nullptr;
-  /// A multiple of kLanes; of kMostWidth where the widest vectors are to be used.
+  /// kLanes or kMostWidth.
   std::size_t envs = kLanes;
 };
 
@@ -95,6 +96,20 @@ struct MoveBatch {
   std::size_t joints = 0;
   PoseArrays from;
   PoseArrays to;
+  /// As in an ActionBatch.
+  std::size_t envs = kLanes;
+};
+
+/// Frames of envs as numbers side by side, env after env: kFrameNumbers for the root, then for each
+/// node.
+struct FrameBatch {
+  /// Rows; see frameRows().
+  const float* frames = nullptr;
+  std::size_t rows = 0;
+  /// Which envs' frames are wanted: all bits of each.
+  const std::uint32_t* wanted = nullptr;
+  /// From to[rows * e] on.
+  float* to = nullptr;
   /// As in an ActionBatch.
   std::size_t envs = kLanes;
 };
@@ -149,7 +164,6 @@ struct ObserveBatch {
 struct BodyBatch {
   PoseArrays pose;
   BodyArrays body;
-  float* scratch = nullptr;
   /// As in an ActionBatch.
   std::size_t envs = kLanes;
 };
@@ -161,6 +175,7 @@ struct MotionKernels {
   bool (*read)(const ActionBatch&) noexcept = nullptr;
   void (*move)(const MotionTables&, const MoveBatch&) noexcept = nullptr;
   void (*place)(const MotionTables&, const BodyBatch&) noexcept = nullptr;
+  void (*put_frames)(const FrameBatch&) noexcept = nullptr;
   void (*judge)(const JudgeBatch&) noexcept = nullptr;
   void (*observe)(const ObserveBatch&) noexcept = nullptr;
 };

@@ -9,7 +9,7 @@
 namespace galactic::simulation {
 
 MotionKernels portableMotion() noexcept {
-  return {readKernel, moveKernel, placeKernel, judgeKernel, observeKernel};
+  return {readKernel, moveKernel, placeKernel, putFramesKernel, judgeKernel, observeKernel};
 }
 
 MotionKernels motionKernels() noexcept {

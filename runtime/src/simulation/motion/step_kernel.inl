@@ -10,6 +10,12 @@ inline Lanes cut(Lanes action, IntLanes& none) {
   return pick(is_none, spread(0), clampTo(action, -1, 1));
 }
 
+inline bool areAll(IntLanes mask) {
+  std::int32_t all = -1;
+  for (std::size_t n = 0; n < kWidth; ++n) all &= mask[n];
+  return all != 0;
+}
+
 bool readKernel(const ActionBatch& batch) noexcept {
   IntLanes none{};
   for (std::size_t first = 0; first < batch.envs; first += kWidth) {
@@ -33,8 +39,34 @@ bool readKernel(const ActionBatch& batch) noexcept {
   return any != 0;
 }
 
-inline LaneVector loadPoint(const float* rows) {
-  return {load(rows), load(rows + kMostWidth), load(rows + 2 * kMostWidth)};
+/// The next eight rows become eight numbers of each wanted env, `stride` apart.
+inline void putEight(const float* rows, IntLanes wanted, float* to, std::size_t stride) {
+  Lanes eight[kLanes];
+  for (std::size_t n = 0; n < kLanes; ++n) eight[n] = load(rows + n * kMostWidth);
+  if (areAll(wanted)) {
+    storeColumns(eight, to, stride);
+    return;
+  }
+  float columns[kWidth * kLanes];
+  storeColumns(eight, columns, kLanes);
+  for (std::size_t e = 0; e < kWidth; ++e) {
+    if (wanted[e] == 0) continue;
+    __builtin_memcpy(to + e * stride, columns + e * kLanes, kLanes * sizeof(float));
+  }
+}
+
+void putFramesKernel(const FrameBatch& batch) noexcept {
+  static_assert(kFrameNumbers >= kLanes);
+  for (std::size_t first = 0; first < batch.envs; first += kWidth) {
+    IntLanes wanted;
+    __builtin_memcpy(&wanted, batch.wanted + first, sizeof(wanted));
+    for (std::size_t n = 0; n < batch.rows; n += kLanes) {
+      // The last eight again, in part.
+      const std::size_t at = n + kLanes <= batch.rows ? n : batch.rows - kLanes;
+      putEight(batch.frames + at * kMostWidth + first, wanted, batch.to + first * batch.rows + at,
+               batch.rows);
+    }
+  }
 }
 
 inline LaneVector difference(const LaneVector& a, const LaneVector& b) {

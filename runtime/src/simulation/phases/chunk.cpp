@@ -26,15 +26,14 @@ void moveBy(EnvRow* rows, std::size_t env, const Vec3& by) {
 Chunk::Chunk(const Model& model)
     : sphere_count_(model.sphereCount()),
       group_stride_(paddedToLanes(model.sphereCount() / kLanes)),
-      body_count_(model.bodyCount()),
+      wants_bodies_(model.bodyCount() != 0),
       ranges_(model.motion.ranges),
       actions_(model.actionCount()),
       given_actions_(kChunk * model.actionCount()),
       rows_(kBaseRows + model.variableCount() + kGripNumbers),
       centers_(kChunk * 3 * model.sphereCount() / kLanes),
       bounds_(kChunk * kBounds * group_stride_ / kLanes),
-      bodies_(kChunk * body_count_),
-      frames_(frameScratchSize(model.motion.nodes.size()) / kMostWidth),
+      frames_(frameRows(model.motion.nodes.size())),
       collision_(std::max(model.sphereCount(), model.most_held_spheres)),
       placement_(model.most_held_spheres, model.world->radii()),
       group_bits_(group_stride_ / kLanes),
@@ -46,12 +45,9 @@ Chunk::Chunk(const Model& model)
       body_bits_(model.bodyWords()) {}
 
 BodyArrays Chunk::bodies(std::size_t first) {
-  static_assert(sizeof(RigidTransform) == 12 * sizeof(float));
-  return {.centers = centers_.data()->values.data() + first * 3 * sphere_count_,
+  return {.frames = frames_.front().values + first,
+          .centers = centers_.data()->values.data() + first * 3 * sphere_count_,
           .grips = (&rows_.back() + 1 - kGripNumbers)->values + first,
-          .bodies = body_count_ == 0
-                        ? nullptr
-                        : reinterpret_cast<float*>(bodies_.data() + first * body_count_),
           .bounds = bounds_.data()->values.data() + first * kBounds * group_stride_,
           .extents = extents_[first].values.data()};
 }
@@ -71,20 +67,24 @@ void Chunk::shift(std::size_t env, const Vec3& by) {
   add(row + 2 * sphere_count_, by.z);
   shiftBounds(env, by);
   moveBy(&rows_.back() + 1 - kGripNumbers + 9, env, by);
-  for (RigidTransform& body : bodyTransforms(env)) body.origin = body.origin + by;
+  constexpr std::size_t kOrigin = 9;
+  for (std::size_t n = kOrigin; wants_bodies_ && n < frames_.size(); n += kFrameNumbers) {
+    moveBy(frames_.data() + n, env, by);
+  }
 }
 
 void Chunk::takeOver(std::size_t env, Chunk& other, std::size_t from) {
-  for (std::size_t n = 0; n < rows_.size(); ++n) {
-    rows_[n].values[env] = other.rows_[n].values[from];
-  }
+  const auto takeLane = [&](std::vector<EnvRow>& mine, const std::vector<EnvRow>& theirs) {
+    for (std::size_t n = 0; n < mine.size(); ++n) mine[n].values[env] = theirs[n].values[from];
+  };
+  takeLane(rows_, other.rows_);
+  if (wants_bodies_) takeLane(frames_, other.frames_);
   const auto takeRow = [&](auto& mine, const auto& theirs, std::size_t length) {
     std::copy_n(theirs.begin() + static_cast<std::ptrdiff_t>(from * length), length,
                 mine.begin() + static_cast<std::ptrdiff_t>(env * length));
   };
   takeRow(centers_, other.centers_, 3 * sphere_count_ / kLanes);
   takeRow(bounds_, other.bounds_, kBounds * group_stride_ / kLanes);
-  takeRow(bodies_, other.bodies_, body_count_);
   extents_[env] = other.extents_[from];
   floor_[env] = other.floor_[from];
 }

@@ -55,7 +55,6 @@ class Chunk {
   /// The rows of the candidates: base, variables and grip.
   [[nodiscard]] std::span<const EnvRow> poseRows() const { return rows_; }
   [[nodiscard]] BodyArrays bodies(std::size_t first);
-  [[nodiscard]] float* frames() { return frames_.front().values; }
   [[nodiscard]] Vec3 base(std::size_t env) const {
     return {rows_[0].values[env], rows_[1].values[env], rows_[2].values[env]};
   }
@@ -78,10 +77,8 @@ class Chunk {
     for (std::size_t k = 0; k < kGripNumbers; ++k) grip[k] = rows[k].values[env];
     return grip;
   }
-  /// Root and nodes of a candidate; empty where the run does not want them.
-  [[nodiscard]] std::span<RigidTransform> bodyTransforms(std::size_t env) {
-    return std::span(bodies_).subspan(env * body_count_, body_count_);
-  }
+  /// Root and nodes of the candidates. Shape: frameRows of the nodes.
+  [[nodiscard]] std::span<const EnvRow> frames() const { return frames_; }
   [[nodiscard]] Floor& floor(std::size_t env) { return floor_[env]; }
   [[nodiscard]] CollisionScratch& collision() { return collision_; }
   [[nodiscard]] PlacementScratch& placement() { return placement_; }
@@ -120,8 +117,7 @@ class Chunk {
   std::size_t sphere_count_ = 0;
   /// Groups of eight spheres, padded to lanes.
   std::size_t group_stride_ = 0;
-  /// 0 where the run does not want them.
-  std::size_t body_count_ = 0;
+  bool wants_bodies_ = false;
   std::span<const RadiusRange> ranges_;
   std::vector<EnvRow> actions_;
   std::vector<float> given_actions_;
@@ -130,7 +126,6 @@ class Chunk {
   std::vector<AlignedLanes> centers_;
   std::vector<AlignedLanes> bounds_;
   std::array<AlignedLanes, kChunk> extents_{};
-  std::vector<RigidTransform> bodies_;
   std::vector<EnvRow> frames_;
   std::array<Floor, kChunk> floor_{};
   CollisionScratch collision_;

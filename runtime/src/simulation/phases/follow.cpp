@@ -81,7 +81,6 @@ void takePose(const ChunkStep& step, std::size_t e, const FollowedState& state) 
   env.counters.refused += state.was_hindered ? 1U : 0U;
   copyPose(step.chunk.candidates(e), step.state.poses(n), step.model.variableCount());
   step.state.setGrip(n, step.chunk.grip(e));
-  std::ranges::copy(step.chunk.bodyTransforms(e), step.state.bodyTransforms(n).begin());
 }
 
 }  // namespace
@@ -101,9 +100,13 @@ void followChunk(const ChunkStep& step, std::span<const float> actions,
     }
   }
   placeBodies(step);
+  EnvMask followed{};
   for (std::size_t e = 0; e < kChunk; ++e) {
-    if (is_followed(e)) takePose(step, e, states[step.first + e]);
+    if (!is_followed(e)) continue;
+    takePose(step, e, states[step.first + e]);
+    followed[e] = ~std::uint32_t{0};
   }
+  keepBodies(step, followed);
   // A release places bodies anew, so all candidates are taken by now.
   for (std::size_t e = 0; e < kChunk; ++e) {
     if (!is_followed(e)) continue;

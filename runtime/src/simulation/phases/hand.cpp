@@ -39,8 +39,7 @@ void beginToLeave(const ChunkStep& step, std::size_t e, std::uint32_t object) {
   // The chunk's spheres are those of a candidate that may have been refused.
   const std::size_t group = e / kLanes * kLanes;
   step.model.kernels.place(step.model.tables, {.pose = step.state.poses(step.first + group),
-                                               .body = step.chunk.bodies(group),
-                                               .scratch = step.chunk.frames()});
+                                               .body = step.chunk.bodies(group)});
   const std::size_t n = step.first + e;
   const RestingBox& box = step.state.resting(n).box(object);
   const bool any = overlapping(box, step.chunk.spheres(e), step.state.leaving(n, object));

@@ -22,10 +22,9 @@ bool keepPenetrating(std::span<std::uint64_t> ignored, std::span<const std::uint
   return any != 0;
 }
 
-/// The candidate is the robot's from now on, apart from its pose and grip.
+/// The candidate is the robot's from now on, apart from its pose, grip and bodies.
 void accept(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
-  std::ranges::copy(step.chunk.bodyTransforms(e), step.state.bodyTransforms(n).begin());
   // The bits are those of the accepted candidate.
   Env& env = step.state.env(n);
   if (env.held.object >= 0) keepPenetrating(step.state.ignored(n), step.chunk.heldBits());
@@ -42,12 +41,9 @@ Walk jumpToCandidate(const ChunkStep& step, std::size_t e) {
   return slideClear(step, e) ? Walk::kHindered : Walk::kNone;
 }
 
-/// All bits of the envs whose candidate is accepted.
-using AcceptedLanes = std::array<std::uint32_t, kChunk>;
-
 /// Takes over the poses and grips of accepted candidates: all envs of a number at once, without a
 /// branch.
-void acceptPoses(const ChunkStep& step, const AcceptedLanes& accepted) {
+void acceptPoses(const ChunkStep& step, const EnvMask& accepted) {
   const std::span<EnvRow> to = step.state.poseRows(step.first);
   const std::span<const EnvRow> from = step.chunk.poseRows();
   if (std::ranges::all_of(accepted, [](std::uint32_t lane) { return lane != 0; })) {
@@ -114,6 +110,17 @@ FloorUnder floorUnder(const Scene& scene, const Vec3& base, const GroundOptions&
   return floorFound(grid, base, probe.y, contact.clearance, contact.down, options);
 }
 
+void keepBodies(const ChunkStep& step, const EnvMask& wanted) noexcept {
+  static_assert(sizeof(RigidTransform) == kFrameNumbers * sizeof(float));
+  const std::span<RigidTransform> to = step.state.bodyTransforms(step.first);
+  if (to.empty()) return;
+  step.model.kernels.put_frames({.frames = step.chunk.frames().front().values,
+                                 .rows = step.chunk.frames().size(),
+                                 .wanted = wanted.data(),
+                                 .to = &to.front().x_axis.x,
+                                 .envs = kChunk});
+}
+
 void proposePoses(const ChunkStep& step) noexcept {
   step.model.kernels.move(step.model.tables, {.actions = step.chunk.actions().front().values,
                                               .joints = step.model.motion.controlled.size(),
@@ -141,14 +148,13 @@ void followFloor(const ChunkStep& step) noexcept {
 }
 
 void placeBodies(const ChunkStep& step) noexcept {
-  step.model.kernels.place(step.model.tables, {.pose = step.chunk.candidates(0),
-                                               .body = step.chunk.bodies(0),
-                                               .scratch = step.chunk.frames(),
-                                               .envs = kChunk});
+  step.model.kernels.place(
+      step.model.tables,
+      {.pose = step.chunk.candidates(0), .body = step.chunk.bodies(0), .envs = kChunk});
 }
 
 void moveRobots(const ChunkStep& step) noexcept {
-  AcceptedLanes accepted{};
+  EnvMask accepted{};
   for (std::size_t e = 0; e < kChunk; ++e) {
     // A thread takes one chunk after the other. Asked for while the longest phase lasts, what the
     // next one needs is there in time, and none of it waits for much else.
@@ -167,6 +173,7 @@ void moveRobots(const ChunkStep& step) noexcept {
     accepted[e] = ~std::uint32_t{0};
   }
   acceptPoses(step, accepted);
+  keepBodies(step, accepted);
 }
 
 }  // namespace galactic::simulation

@@ -1,11 +1,19 @@
 #pragma once
+#include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "simulation/phases/chunk.h"
 #include "simulation/state/batch_state.h"
 #include "simulation/state/model.h"
 
 namespace galactic::simulation {
+
+/// All bits of the envs of a chunk that something is done for.
+using EnvMask = std::array<std::uint32_t, kChunk>;
+
+/// The frames of some candidates become the bodies of their envs, where the run wants these.
+void keepBodies(const ChunkStep& step, const EnvMask& wanted) noexcept;
 
 /// Where the robots would be after their actions: base, then joints, each within its limits.
 void proposePoses(const ChunkStep& step) noexcept;

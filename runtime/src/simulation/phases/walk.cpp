@@ -102,9 +102,8 @@ class Walker {
       }
       followFloor(places, lane);
     }
-    step_.model.kernels.place(
-        step_.model.tables,
-        {.pose = places, .body = step_.between->bodies(0), .scratch = step_.between->frames()});
+    step_.model.kernels.place(step_.model.tables,
+                              {.pose = places, .body = step_.between->bodies(0)});
   }
 
   void followFloor(const PoseArrays& places, std::size_t lane) {

@@ -123,7 +123,8 @@ class StartFinder {
     heights_.lowest = std::min(heights_.lowest, chunk_.least(0).y - floor);
     heights_.highest = std::max(heights_.highest, chunk_.most(0).y - floor);
     model_.starts.push_back({n, chunk_.base(0), *pose.yaw, chunk_.grip(0)});
-    const std::span<const RigidTransform> bodies = chunk_.bodyTransforms(0);
+    keepBodies(step, {~std::uint32_t{0}});
+    const std::span<const RigidTransform> bodies = state_.bodyTransforms(0);
     model_.start_bodies.insert(model_.start_bodies.end(), bodies.begin(), bodies.end());
     for (std::size_t v = 0; v < model_.variableCount(); ++v) {
       model_.start_variables.push_back(pose.variables[v * pose.stride]);

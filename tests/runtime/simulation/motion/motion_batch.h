@@ -51,7 +51,7 @@ class MotionBatch {
         grips_(simulation::kGripNumbers),
         bodies_(kEnvs * bodyCount()),
         bounds_(kEnvs * simulation::kBounds * groupStride() / simulation::kLanes),
-        scratch_(simulation::frameScratchSize(robot.model.nodes.size()) / kEnvs) {}
+        frames_(simulation::frameRows(robot.model.nodes.size())) {}
 
   [[nodiscard]] std::size_t actionCount() const { return robot_.model.controlled.size() + 4; }
   [[nodiscard]] std::size_t bodyCount() const { return robot_.model.nodes.size() + 1; }
@@ -102,13 +102,17 @@ class MotionBatch {
 
   void place(const simulation::MotionKernels& kernels, std::size_t envs = kEnvs) {
     kernels.place(robot_.tables, {.pose = poses(),
-                                  .body = {.centers = centers_.data(),
+                                  .body = {.frames = frames_.front().values,
+                                           .centers = centers_.data(),
                                            .grips = grips_.front().values,
-                                           .bodies = &bodies_.front().x_axis.x,
                                            .bounds = bounds_.data()->data(),
                                            .extents = extents_.data()->data()},
-                                  .scratch = scratch_.data()->data(),
                                   .envs = envs});
+    kernels.put_frames({.frames = frames_.front().values,
+                        .rows = frames_.size(),
+                        .wanted = wanted.data(),
+                        .to = &bodies_.front().x_axis.x,
+                        .envs = envs});
   }
 
   [[nodiscard]] float& action(std::size_t env, std::size_t n) { return actions_[n].values[env]; }
@@ -152,11 +156,18 @@ class MotionBatch {
   }
 
   std::array<float, kEnvs> x{}, y{}, z{}, yaw{};
+  /// The envs whose bodies are placed.
+  std::array<std::uint32_t, kEnvs> wanted = allEnvs();
   std::array<float, kEnvs> moved_x{}, moved_y{}, moved_z{}, moved_yaw{};
 
  private:
   struct alignas(32) AlignedEight : std::array<float, simulation::kLanes> {};
-  struct alignas(64) AlignedLanes : std::array<float, kEnvs> {};
+
+  static constexpr std::array<std::uint32_t, kEnvs> allEnvs() {
+    std::array<std::uint32_t, kEnvs> all{};
+    for (std::uint32_t& lane : all) lane = ~std::uint32_t{0};
+    return all;
+  }
 
   simulation::PoseArrays poses() {
     return {.x = x.data(),
@@ -195,7 +206,7 @@ class MotionBatch {
   std::vector<RigidTransform> bodies_;
   std::vector<AlignedEight> bounds_;
   std::array<AlignedEight, kEnvs> extents_{};
-  std::vector<AlignedLanes> scratch_;
+  std::vector<simulation::EnvRow> frames_;
 };
 
 }  // namespace galactic::test

@@ -151,6 +151,8 @@ void compareKernels(const MotionRobot& robot, const MotionKernels& kernels, std:
   MotionBatch portable(robot);
   for (int round = 0; round < 20; ++round) {
     portable.draw(random);
+    const std::size_t unwanted = random() % 3;
+    for (std::size_t n = 0; n < unwanted; ++n) portable.wanted[random() % MotionBatch::kEnvs] = 0;
     MotionBatch fast = portable;
     // Eight envs have kernels of their own where sixteen do.
     const std::size_t envs = round % 2 == 0 ? MotionBatch::kEnvs : kLanes;
