@@ -41,31 +41,50 @@ std::uint32_t setOf(float coordinate, std::uint32_t count) {
   return setOf(squareOf(coordinate).value_or(0), count);
 }
 
+/// Where an object is along one axis.
+struct Reach {
+  float center = 0;
+  float half = 0;
+};
+
 /// Calls `change` with the sets of all squares that some query from `center - reach` to
-/// `center + reach` may fall in.
+/// `center + reach` may fall in. The first sets may follow once more after the `count` sets.
 template <class Change>
-void forEachSet(std::span<std::uint32_t> sets, float center, float reach, const Change& change) {
-  const auto count = static_cast<std::uint32_t>(sets.size());
-  const float around = reach + kSlack + kRelativeSlack * (std::fabs(center) + reach);
+void forEachSet(std::span<std::uint32_t> sets, std::uint32_t count, const Reach& reach,
+                const Change& change) {
+  const auto [center, half] = reach;
+  const float around = half + kSlack + kRelativeSlack * (std::fabs(center) + half);
   const std::optional<std::int32_t> first = squareOf(center - around);
   const std::optional<std::int32_t> last = squareOf(center + around);
   if (!first || !last || *last - *first >= static_cast<std::int32_t>(count)) {
     for (std::uint32_t& set : sets) change(set);
     return;
   }
-  for (std::int32_t n = *first; n <= *last; ++n) change(sets[setOf(n, count)]);
+  for (std::int32_t n = *first; n <= *last; ++n) {
+    const std::uint32_t set = setOf(n, count);
+    change(sets[set]);
+    if (set + count < sets.size()) change(sets[set + count]);
+  }
 }
 
-/// The objects in the sets of any center from `least` to `most`.
-std::uint32_t inAnySet(std::span<const std::uint32_t> sets, float least, float most) {
+/// The objects in the strips of any center from `least` to `most`.
+std::uint32_t inAnyStrip(const std::uint32_t* strips, float least, float most) {
   const std::optional<std::int32_t> first = squareOf(least);
   const std::optional<std::int32_t> last = squareOf(most);
-  const auto count = static_cast<std::uint32_t>(sets.size());
-  if (!first || !last || *last - *first >= static_cast<std::int32_t>(count)) {
+  if (!first || !last || *last - *first >= static_cast<std::int32_t>(kStrips)) {
     return ~std::uint32_t{0};
   }
+  const std::int32_t further = *last - *first;
   std::uint32_t any = 0;
-  for (std::int32_t n = *first; n <= *last; ++n) any |= sets[setOf(n, count)];
+  if (further < static_cast<std::int32_t>(kRun)) {
+    // Always as many: no branch depends on the number, and vectors hold them.
+    const std::uint32_t* run = strips + setOf(*first, kStrips);
+    for (std::int32_t n = 0; n < static_cast<std::int32_t>(kRun); ++n) {
+      any |= n <= further ? run[n] : 0;
+    }
+    return any;
+  }
+  for (std::int32_t n = *first; n <= *last; ++n) any |= strips[setOf(n, kStrips)];
   return any;
 }
 
@@ -180,9 +199,9 @@ void RestingObjects::changeSets(std::uint32_t index, const Change& change) noexc
   const Vec3 half = halfBounds(box);
   const float radius = largest_radius_;
   SetPlane& plane = planes_[index / kPlaneObjects];
-  forEachSet(plane.along_x, box.center.x, half.x + radius, change);
-  forEachSet(plane.along_z, box.center.z, half.z + radius, change);
-  forEachSet(plane.at_height, box.center.y, half.y + radius, change);
+  forEachSet(plane.along_x, kStrips, {box.center.x, half.x + radius}, change);
+  forEachSet(plane.along_z, kStrips, {box.center.z, half.z + radius}, change);
+  forEachSet(plane.at_height, kBands, {box.center.y, half.y + radius}, change);
 }
 
 void RestingObjects::insert(std::uint32_t index, const RestingBox& box) noexcept {
@@ -217,8 +236,8 @@ bool RestingObjects::touches(const SphereBatch& spheres) const noexcept {
 
 bool RestingObjects::mayTouch(const Vec3& least, const Vec3& most) const noexcept {
   return std::ranges::any_of(planes_, [&](const SetPlane& plane) {
-    return (inAnySet(plane.along_x, least.x, most.x) & inAnySet(plane.along_z, least.z, most.z)) !=
-           0;
+    return (inAnyStrip(plane.along_x, least.x, most.x) &
+            inAnyStrip(plane.along_z, least.z, most.z)) != 0;
   });
 }
 

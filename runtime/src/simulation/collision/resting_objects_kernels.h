@@ -19,7 +19,7 @@ namespace galactic::simulation {
 //
 // - Bounds are boxes, so a window knows an object exactly when the window's strip along x and its
 //   strip along z both do. Only the strips are stored, as sets of bits: a window is the
-//   intersection of two words. That is 576 bytes per env for a room for which the windows take
+//   intersection of two words. That is 640 bytes per env for a room for which the windows take
 //   8,000, so that thousands of envs stay in the cache, and it makes grasping and dropping cheap.
 // - A third set, by height, leaves out what stands on the shelf above or the floor below.
 // - The strips wrap around: strip n stands for every 64th square, 16 meters apart. No scene is too
@@ -35,13 +35,16 @@ inline constexpr float kInverseSquareEdge = 1 / kSquareEdge;
 inline constexpr std::uint32_t kStrips = 64;
 /// Sets of the vertical axis: as many words as a register holds; 2 meters.
 inline constexpr std::uint32_t kBands = 8;
+/// So many strips one after the other can be read without a look at where they wrap around: the
+/// first ones follow once more after the last.
+inline constexpr std::uint32_t kRun = 8;
 
 /// 32 objects as bits in sets: of strip i, those that come within the largest radius of a square
 /// whose number along that axis is i modulo the number of sets. Square n of an axis reaches from
 /// n - 1/2 to n + 1/2 edges.
 struct alignas(64) SetPlane {
-  std::uint32_t along_x[kStrips];
-  std::uint32_t along_z[kStrips];
+  std::uint32_t along_x[kStrips + kRun];
+  std::uint32_t along_z[kStrips + kRun];
   std::uint32_t at_height[kBands];
 };
 

@@ -26,6 +26,26 @@ EpisodeEnd endOfRearrange(const TaskOptions& task, const Env& env, float transpo
   return EpisodeEnd::kNone;
 }
 
+/// Small, and called from one loop: see endOf().
+inline EpisodeEnd findEnd(const TaskOptions& task, const Env& env, float transport) {
+  const bool holds_another = env.held.object >= 0 && !isHeld(env);
+  EpisodeEnd end = EpisodeEnd::kNone;
+  switch (task.kind) {
+    case TaskKind::kRearrange:
+      end = endOfRearrange(task, env, transport);
+      break;
+    case TaskKind::kMobilePick:
+      if (isHeld(env)) end = EpisodeEnd::kSuccess;
+      break;
+    case TaskKind::kNone:
+      break;
+  }
+  const bool fails = task.kind != TaskKind::kNone && task.drop_fails && holds_another;
+  if (end == EpisodeEnd::kNone && fails) return EpisodeEnd::kWrongObject;
+  const bool is_late = task.most_steps != 0 && env.step >= task.most_steps;
+  return end == EpisodeEnd::kNone && is_late ? EpisodeEnd::kTimeOut : end;
+}
+
 float rewardOf(const TaskOptions& task, const Env& env, const TargetDistances& now,
                float action_change) {
   if (task.kind == TaskKind::kNone) return 0;
@@ -69,22 +89,7 @@ TargetDistances measureTarget(const BatchState& state, std::size_t n) noexcept {
 }
 
 EpisodeEnd endOf(const TaskOptions& task, const Env& env, float transport) noexcept {
-  const bool holds_another = env.held.object >= 0 && !isHeld(env);
-  EpisodeEnd end = EpisodeEnd::kNone;
-  switch (task.kind) {
-    case TaskKind::kRearrange:
-      end = endOfRearrange(task, env, transport);
-      break;
-    case TaskKind::kMobilePick:
-      if (isHeld(env)) end = EpisodeEnd::kSuccess;
-      break;
-    case TaskKind::kNone:
-      break;
-  }
-  const bool fails = task.kind != TaskKind::kNone && task.drop_fails && holds_another;
-  if (end == EpisodeEnd::kNone && fails) return EpisodeEnd::kWrongObject;
-  const bool is_late = task.most_steps != 0 && env.step >= task.most_steps;
-  return end == EpisodeEnd::kNone && is_late ? EpisodeEnd::kTimeOut : end;
+  return findEnd(task, env, transport);
 }
 
 WayLeft measureWay(const Model& model, const BatchState& state, std::size_t env_number) noexcept {
@@ -126,20 +131,52 @@ Measured measure(const ChunkStep& step) {
   return measured;
 }
 
+/// What became of the steps of the envs of a chunk.
+struct Outcomes {
+  std::array<float, kChunk> rewards{};
+  std::array<EpisodeEnd, kChunk> endings{};
+};
+
+void put(const Outcomes& outcomes, BatchState& state, std::size_t first) {
+  std::ranges::copy(outcomes.rewards, state.rewards().data() + first);
+  std::ranges::copy(outcomes.endings, state.endings().data() + first);
+  std::uint8_t* dones = state.dones().data() + first;
+  std::uint8_t* successes = state.successes().data() + first;
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    dones[e] = outcomes.endings[e] == EpisodeEnd::kNone ? 0 : 1;
+    successes[e] = outcomes.endings[e] == EpisodeEnd::kSuccess ? 1 : 0;
+  }
+}
+
+void count(EpisodeEnd end, EnvCounters& counters) {
+  if (end == EpisodeEnd::kNone) return;
+  ++counters.episodes;
+  counters.successes += end == EpisodeEnd::kSuccess ? 1 : 0;
+  counters.failures += isFailure(end) ? 1U : 0U;
+}
+
+/// What the change of the way along the floor earns; the way becomes the last one.
+float earnOfWay(const ChunkStep& step, std::size_t n, Env& env) {
+  const WayLeft way = measureWay(step.model, step.state, n);
+  const float earned = shapingOf(step.model.options.task, env, way);
+  env.way = way.length;
+  env.is_way_to_goal = way.is_to_goal;
+  return earned;
+}
+
 }  // namespace
 
 void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept {
   const TaskOptions& task = step.model.options.task;
+  const bool pays_for_ways = task.geodesic_weight != 0;
+  const std::uint8_t* idle = step.state.idle().data() + step.first;
   const Measured measured = measure(step);
+  Outcomes outcomes;
   for (std::size_t e = 0; e < kChunk; ++e) {
     const std::size_t n = step.first + e;
-    if (n < resets.size() && resets[n] >= 0) {
-      step.state.clearOutcome(n);
-      continue;
-    }
+    if (n < resets.size() && resets[n] >= 0) continue;
     Env& env = step.state.env(n);
-    if (step.state.idle()[n] != 0) {
-      step.state.clearOutcome(n);
+    if (idle[e] != 0) {
       ++env.counters.idle_steps;
       continue;
     }
@@ -147,27 +184,19 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
     const float change = env.step == 0 ? 0 : measured.change.values[e];
     ++env.step;
     const TargetDistances now{measured.reach.values[e], measured.transport.values[e]};
-    const WayLeft way = measureWay(step.model, step.state, n);
-    const EpisodeEnd end = endOf(task, env, now.transport);
+    const EpisodeEnd end = findEnd(task, env, now.transport);
     float reward = rewardOf(task, env, now, change);
-    reward += shapingOf(task, env, way);
+    if (pays_for_ways) reward += earnOfWay(step, n, env);
     if (end == EpisodeEnd::kSuccess) reward += task.success_reward;
     if (isFailure(end)) reward -= task.failure_penalty;
     env.reach = now.reach;
     env.transport = now.transport;
-    env.way = way.length;
-    env.is_way_to_goal = way.is_to_goal;
-    if (end != EpisodeEnd::kNone) {
-      ++env.counters.episodes;
-      env.counters.successes += end == EpisodeEnd::kSuccess ? 1 : 0;
-      env.counters.failures += isFailure(end) ? 1U : 0U;
-    }
+    count(end, env.counters);
     env.counters.reward += static_cast<double>(reward);
-    step.state.rewards()[n] = reward;
-    step.state.dones()[n] = end == EpisodeEnd::kNone ? 0 : 1;
-    step.state.successes()[n] = end == EpisodeEnd::kSuccess ? 1 : 0;
-    step.state.endings()[n] = end;
+    outcomes.rewards[e] = reward;
+    outcomes.endings[e] = end;
   }
+  put(outcomes, step.state, step.first);
 }
 
 }  // namespace galactic::simulation
