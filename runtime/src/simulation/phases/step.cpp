@@ -25,6 +25,12 @@ void readActions(const ChunkStep& step, std::span<const float> all) noexcept {
                                                 .count = count,
                                                 .to = step.chunk.actions().front().values,
                                                 .envs = kChunk});
+  // Those of the next chunk come nearer in the meantime.
+  constexpr std::size_t kFloatsOfLine = 16;
+  const std::span<const float> next = all.subspan(std::min(first + kChunk * count, all.size()));
+  for (std::size_t n = 0; n < std::min(kChunk * count, next.size()); n += kFloatsOfLine) {
+    __builtin_prefetch(next.data() + n);
+  }
   if (!has_nan) return;
   for (std::size_t n = 0; n < given.size(); ++n) {
     if (given[n] != given[n]) ++step.state.env(step.first + n / count).counters.nan_actions;

@@ -100,10 +100,13 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   successes_.resize(padded);
   endings_.resize(padded);
   idle_.resize(padded);
+  // What second-level caches hold with room to spare.
+  constexpr std::size_t kCached = 768 * 1024;
+  is_large_ = bytes() > kCached;
 }
 
 void BatchState::prefetch(std::size_t n) const noexcept {
-  if (n >= envs_.size()) return;
+  if (n >= envs_.size() || !is_large_) return;
   prefetchBytes(&envs_[n], kEnvHotBytes);
   prefetchRow(observation(n));
   prefetchRow(bodyTransforms(n));
