@@ -72,29 +72,40 @@ FloorUnder floorFound(const ColumnGrid& grid, const Vec3& base, float probe, Cle
   return {Floor::kCarries, height};
 }
 
-/// The floors under eight candidates in one scene: one batched query.
-void followFloor(const ChunkStep& step, const Scene& scene, std::size_t first) {
+/// The floors under some candidates in one scene: one batched query, so that none waits for what
+/// another one asks the memory for.
+void followFloor(const ChunkStep& step, const Scene& scene, std::size_t first, std::size_t count) {
   const GroundOptions& options = step.model.options.ground;
   const ColumnGrid& grid = scene.grids().front();
-  std::array<float, kLanes> x;
-  std::array<float, kLanes> y;
-  std::array<float, kLanes> z;
-  for (std::size_t n = 0; n < kLanes; ++n) {
+  std::array<float, kChunk> x;
+  std::array<float, kChunk> y;
+  std::array<float, kChunk> z;
+  for (std::size_t n = 0; n < count; ++n) {
     const Vec3 probe = floorProbe(scene, step.chunk.base(first + n), options);
     x[n] = probe.x;
     y[n] = probe.y;
     z[n] = probe.z;
   }
-  std::array<Clearance, kLanes> clearance;
-  std::array<float, kLanes> down;
-  std::array<float, kLanes> up;
-  grid.contact({x, y, z}, {clearance, down, up});
-  for (std::size_t n = 0; n < kLanes; ++n) {
+  std::array<Clearance, kChunk> clearance;
+  std::array<float, kChunk> down;
+  std::array<float, kChunk> up;
+  grid.contact({std::span(x).first(count), std::span(y).first(count), std::span(z).first(count)},
+               {std::span(clearance).first(count), std::span(down).first(count),
+                std::span(up).first(count)});
+  for (std::size_t n = 0; n < count; ++n) {
     const FloorUnder under =
         floorFound(grid, step.chunk.base(first + n), y[n], clearance[n], down[n], options);
     step.chunk.floor(first + n) = under.floor;
     *step.chunk.candidates(first + n).y = under.height;
   }
+}
+
+/// Whether the envs are in the scene of the first of them.
+bool areInOneScene(const ChunkStep& step, std::size_t first, std::size_t count) {
+  const auto scene_of = [&](std::size_t e) { return step.state.env(step.first + e).scene; };
+  std::uint32_t others = 0;
+  for (std::size_t n = 1; n < count; ++n) others |= scene_of(first + n) ^ scene_of(first);
+  return others == 0;
 }
 
 }  // namespace
@@ -130,17 +141,18 @@ void proposePoses(const ChunkStep& step) noexcept {
 }
 
 void followFloor(const ChunkStep& step) noexcept {
-  const auto scene_of = [&](std::size_t e) { return step.state.env(step.first + e).scene; };
+  const auto scene_of = [&](std::size_t e) -> const Scene& {
+    return step.model.world->scenes()[step.state.env(step.first + e).scene];
+  };
+  if (areInOneScene(step, 0, kChunk)) return followFloor(step, scene_of(0), 0, kChunk);
   for (std::size_t first = 0; first < kChunk; first += kLanes) {
-    std::uint32_t others = 0;
-    for (std::size_t n = 1; n < kLanes; ++n) others |= scene_of(first + n) ^ scene_of(first);
-    if (others == 0) {
-      followFloor(step, step.model.world->scenes()[scene_of(first)], first);
+    if (areInOneScene(step, first, kLanes)) {
+      followFloor(step, scene_of(first), first, kLanes);
       continue;
     }
     for (std::size_t e = first; e < first + kLanes; ++e) {
-      const FloorUnder under = floorUnder(step.model.world->scenes()[scene_of(e)],
-                                          step.chunk.base(e), step.model.options.ground);
+      const FloorUnder under =
+          floorUnder(scene_of(e), step.chunk.base(e), step.model.options.ground);
       step.chunk.floor(e) = under.floor;
       *step.chunk.candidates(e).y = under.height;
     }
