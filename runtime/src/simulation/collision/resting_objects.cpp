@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "column_grid/column_grid_kernels.h"
@@ -67,6 +68,20 @@ void forEachSet(std::span<std::uint32_t> sets, std::uint32_t count, const Reach&
   }
 }
 
+/// The objects in the first of eight sets, and in so many further ones; in none where there are less
+/// than none. Always reads all: no branch depends on the number.
+std::uint32_t inRun(const std::uint32_t* sets, std::int32_t further) {
+  static_assert(kRun == 8);
+  using Four = std::int32_t __attribute__((vector_size(16)));
+  Four first;
+  Four last;
+  std::memcpy(&first, sets, sizeof(first));
+  std::memcpy(&last, sets + 4, sizeof(last));
+  const Four ends{further, further, further, further};
+  const Four all = (first & (Four{0, 1, 2, 3} <= ends)) | (last & (Four{4, 5, 6, 7} <= ends));
+  return static_cast<std::uint32_t>(all[0] | all[1] | all[2] | all[3]);
+}
+
 /// The objects in the strips of any center from `least` to `most`.
 std::uint32_t inAnyStrip(const std::uint32_t* strips, float least, float most) {
   const std::optional<std::int32_t> first = squareOf(least);
@@ -75,15 +90,10 @@ std::uint32_t inAnyStrip(const std::uint32_t* strips, float least, float most) {
     return ~std::uint32_t{0};
   }
   const std::int32_t further = *last - *first;
-  std::uint32_t any = 0;
   if (further < static_cast<std::int32_t>(kRun)) {
-    // Always as many: no branch depends on the number, and vectors hold them.
-    const std::uint32_t* run = strips + setOf(*first, kStrips);
-    for (std::int32_t n = 0; n < static_cast<std::int32_t>(kRun); ++n) {
-      any |= n <= further ? run[n] : 0;
-    }
-    return any;
+    return inRun(strips + setOf(*first, kStrips), further);
   }
+  std::uint32_t any = 0;
   for (std::int32_t n = *first; n <= *last; ++n) any |= strips[setOf(n, kStrips)];
   return any;
 }

@@ -105,9 +105,11 @@ void beginChosenEpisode(const Model& model, BatchState& state, std::size_t env,
 
 void renewEpisodes(const ChunkStep& step) noexcept {
   if (!step.model.options.auto_reset) return;
+  const std::uint8_t* dones = step.state.dones().data() + step.first;
+  if (std::all_of(dones, dones + kChunk, [](std::uint8_t done) { return done == 0; })) return;
   for (std::size_t e = 0; e < kChunk; ++e) {
     const std::size_t n = step.first + e;
-    if (step.state.dones()[n] == 0) continue;
+    if (dones[e] == 0) continue;
     step.state.keepFinalObservation(n);
     beginNextEpisode(step.model, step.state, n);
   }

@@ -116,6 +116,7 @@ void sense(const Model& model, const BatchState& state, std::size_t env_number,
 }
 
 void senseAll(const ChunkStep& step) noexcept {
+  if (step.model.sensors_first == step.model.observation_size) return;
   for (std::size_t e = 0; e < kChunk; ++e) {
     const std::size_t n = step.first + e;
     sense(step.model, step.state, n, step.state.observation(n));
