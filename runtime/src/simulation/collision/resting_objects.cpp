@@ -68,8 +68,8 @@ void forEachSet(std::span<std::uint32_t> sets, std::uint32_t count, const Reach&
   }
 }
 
-/// The objects in the first of eight sets, and in so many further ones; in none where there are less
-/// than none. Always reads all: no branch depends on the number.
+/// The objects in the first of eight sets, and in so many further ones; in none where there are
+/// less than none. Always reads all: no branch depends on the number.
 std::uint32_t inRun(const std::uint32_t* sets, std::int32_t further) {
   static_assert(kRun == 8);
   using Four = std::int32_t __attribute__((vector_size(16)));

@@ -1,6 +1,7 @@
 #include "simulation/phases/hand.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -102,14 +103,26 @@ void layDown(const ChunkStep& step, std::size_t e, const Pose& world_from_object
 void useHands(const ChunkStep& step) noexcept {
   const ActionOptions& options = step.model.options.action;
   const std::size_t hand_action = step.model.motion.controlled.size() + 2;
+  const EnvRow& values = step.chunk.actions()[hand_action];
+  const EnvRow& terminates = step.chunk.actions()[hand_action + 1];
+  const std::uint8_t* idle = step.state.idle().data() + step.first;
+  // Nobody can guess what a hand does next, so no branch depends on it but those of the few that do
+  // something.
+  unsigned grasps = 0;
+  unsigned releases = 0;
   for (std::size_t e = 0; e < kChunk; ++e) {
-    if (step.state.idle()[step.first + e] != 0) continue;
+    if (idle[e] != 0) continue;
     Env& env = step.state.env(step.first + e);
-    const float value = step.chunk.action(hand_action, e);
-    env.events = {.terminates = step.chunk.action(hand_action + 1, e) >= options.terminate};
-    const bool is_empty = env.held.object < 0;
-    if (is_empty && value >= options.grasp) grasp(step, e);
-    if (!is_empty && value < options.release) release(step, e);
+    env.events = {.terminates = terminates.values[e] >= options.terminate};
+    const auto is_empty = static_cast<unsigned>(env.held.object < 0);
+    const auto opens = static_cast<unsigned>(values.values[e] < options.release);
+    const auto closes = static_cast<unsigned>(values.values[e] >= options.grasp);
+    grasps |= (is_empty & closes) << e;
+    releases |= (~is_empty & opens) << e;
+  }
+  for (unsigned left = grasps | releases; left != 0; left &= left - 1) {
+    const auto e = static_cast<std::size_t>(std::countr_zero(left));
+    (grasps >> e & 1U) != 0 ? grasp(step, e) : release(step, e);
   }
 }
 
