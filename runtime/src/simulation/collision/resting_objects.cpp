@@ -245,10 +245,18 @@ bool RestingObjects::touches(const SphereBatch& spheres) const noexcept {
 }
 
 bool RestingObjects::mayTouch(const Vec3& least, const Vec3& most) const noexcept {
-  return std::ranges::any_of(planes_, [&](const SetPlane& plane) {
-    return (inAnyStrip(plane.along_x, least.x, most.x) &
-            inAnyStrip(plane.along_z, least.z, most.z)) != 0;
-  });
+  bool may = false;
+  for (std::size_t p = 0; p < planes_.size(); ++p) {
+    std::uint32_t near = inAnyStrip(planes_[p].along_x, least.x, most.x) &
+                         inAnyStrip(planes_[p].along_z, least.z, most.z);
+    may = may || near != 0;
+    // Whoever asks looks at these next.
+    for (; near != 0; near &= near - 1) {
+      __builtin_prefetch(
+          &boxes_[p * kPlaneObjects + static_cast<std::size_t>(std::countr_zero(near))]);
+    }
+  }
+  return may;
 }
 
 std::size_t RestingObjects::hits(const SphereBatch& spheres,
