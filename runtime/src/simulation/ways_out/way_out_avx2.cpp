@@ -26,13 +26,49 @@ __m256i lanesOf(unsigned bits) {
                             each);
 }
 
-/// A pair of rows from column `column` on, nine bits each.
+/// Pairs of rows from their sphere's column on, nine bits each: what the shift brings from the upper
+/// row into the lower one lies beyond its nine.
 __m256i shifted(__m256i pair, __m256i column) {
-  const __m256i nine = _mm256_set1_epi32(0x1ff);
-  const __m256i lower = _mm256_and_si256(_mm256_srlv_epi32(pair, column), nine);
-  const __m256i upper = _mm256_and_si256(
-      _mm256_srlv_epi32(pair, _mm256_add_epi32(column, _mm256_set1_epi32(16))), nine);
-  return _mm256_or_si256(lower, _mm256_slli_epi32(upper, 16));
+  return _mm256_and_si256(_mm256_srlv_epi32(pair, column), _mm256_set1_epi32(0x01ff'01ff));
+}
+
+__m128i fourPairs(const std::uint16_t* from) {
+  return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
+}
+
+/// The same of two spheres, one in each half.
+__m256i fourPairs(const std::uint16_t* lower, const std::uint16_t* upper) {
+  return _mm256_inserti128_si256(_mm256_castsi128_si256(fourPairs(lower)), fourPairs(upper), 1);
+}
+
+int onePair(const std::uint16_t* from) {
+  int pair;
+  __builtin_memcpy(&pair, from, sizeof(pair));
+  return pair;
+}
+
+/// The five pairs of rows of eight spheres, a lane for each: loaded sphere by sphere and transposed,
+/// which takes less time than the instructions that gather.
+void readPairs(const std::uint16_t* rows, const std::int32_t* row, __m256i pairs[kRowPairs]) {
+  const std::uint16_t* at[kLanes];
+  for (std::size_t n = 0; n < kLanes; ++n) at[n] = rows + row[n];
+  const __m256i a = fourPairs(at[0], at[4]);
+  const __m256i b = fourPairs(at[1], at[5]);
+  const __m256i c = fourPairs(at[2], at[6]);
+  const __m256i d = fourPairs(at[3], at[7]);
+  const __m256i ab_first = _mm256_unpacklo_epi32(a, b);
+  const __m256i ab_last = _mm256_unpackhi_epi32(a, b);
+  const __m256i cd_first = _mm256_unpacklo_epi32(c, d);
+  const __m256i cd_last = _mm256_unpackhi_epi32(c, d);
+  pairs[0] = _mm256_unpacklo_epi64(ab_first, cd_first);
+  pairs[1] = _mm256_unpackhi_epi64(ab_first, cd_first);
+  pairs[2] = _mm256_unpacklo_epi64(ab_last, cd_last);
+  pairs[3] = _mm256_unpackhi_epi64(ab_last, cd_last);
+  constexpr std::size_t kFifth = 2 * (kRowPairs - 1);
+  pairs[4] = _mm256_setr_epi32(onePair(at[0] + kFifth), onePair(at[1] + kFifth),
+                               onePair(at[2] + kFifth), onePair(at[3] + kFifth),
+                               onePair(at[4] + kFifth), onePair(at[5] + kFifth),
+                               onePair(at[6] + kFifth), onePair(at[7] + kFifth));
 }
 
 /// The sign bit of each lane: whether the sphere is free in a cell.
@@ -119,13 +155,12 @@ bool addWaysAvx2(const std::uint16_t* rows, const EightPlaces& places, unsigned 
   const __m256i added = lanesOf(lanes);
   const __m256i everywhere = _mm256_set1_epi32(0x01ff'01ff);
   const __m256i nowhere = _mm256_andnot_si256(added, everywhere);
-  const __m256i row = load(places.row);
   const __m256i column = load(places.column);
+  __m256i pairs[kRowPairs];
+  readPairs(rows, places.row, pairs);
   __m256i is_free = everywhere;
   for (std::size_t pair = 0; pair < kRowPairs; ++pair) {
-    const __m256i read = _mm256_mask_i32gather_epi32(
-        _mm256_setzero_si256(), reinterpret_cast<const int*>(rows + 2 * pair), row, added, 2);
-    __m256i cells = _mm256_or_si256(shifted(read, column), nowhere);
+    __m256i cells = _mm256_or_si256(shifted(pairs[pair], column), nowhere);
     // There is no tenth row.
     if (pair + 1 == kRowPairs) {
       cells = _mm256_or_si256(cells, _mm256_set1_epi32(0x01ff'0000));
