@@ -40,11 +40,17 @@ struct alignas(32) ClearanceLanes {
   std::int32_t tiles_x[kLanes];
 };
 
+/// What is asked about eight groups: in which map, and of the first of them its first bound.
+struct ClearanceQuestion {
+  const ClearanceLanes* lanes = nullptr;
+  const float* bounds = nullptr;
+};
+
 /// The kernels of surelyFree(): the same answers on any processor and, eight lanes at a time, with
-/// AVX2. `bounds`: of the first of eight groups.
-[[nodiscard]] SureGroups surelyFreePortable(const ClearanceLanes& lanes, const std::uint8_t* cells,
-                                            const float* bounds, std::size_t stride) noexcept;
-[[nodiscard]] SureGroups surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells,
-                                        const float* bounds, std::size_t stride) noexcept;
+/// AVX2. `stride`: from one bound to the next.
+void surelyFreePortable(const ClearanceQuestion* questions, std::size_t count,
+                        const std::uint8_t* cells, std::size_t stride, SureGroups* sure) noexcept;
+void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count,
+                    const std::uint8_t* cells, std::size_t stride, SureGroups* sure) noexcept;
 
 }  // namespace galactic::simulation

@@ -1,6 +1,7 @@
 #include "simulation/collision/clearance_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -184,13 +185,36 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
 SureGroups ClearanceMaps::surelyFree(std::uint32_t map, std::size_t eight,
                                      const GroupBounds& bounds) const noexcept {
   if (map == kNoClearanceMap) return {};
-  const ClearanceLanes& lanes = lanes_[map * eights_ + eight];
-  return detail::hasAvx2() ? surelyFreeAvx2(lanes, cells_.data(), bounds.values, bounds.stride)
-                           : surelyFreePortable(lanes, cells_.data(), bounds.values, bounds.stride);
+  SureGroups sure;
+  const ClearanceQuestion question{&lanes_[map * eights_ + eight], bounds.values};
+  answer({&question, 1}, bounds.stride, {&sure, 1});
+  return sure;
 }
 
-SureGroups surelyFreePortable(const ClearanceLanes& lanes, const std::uint8_t* cells,
-                              const float* bounds, std::size_t stride) noexcept {
+void ClearanceMaps::surelyFree(std::span<const std::uint32_t> maps, std::size_t eight,
+                               const GroupBounds& bounds, std::size_t env_stride,
+                               std::span<SureGroups> sure) const noexcept {
+  std::array<ClearanceQuestion, kMostAsked> questions;
+  for (std::size_t n = 0; n < maps.size(); ++n) {
+    const std::size_t map = maps[n] == kNoClearanceMap ? 0 : maps[n];
+    questions[n] = {lanes_.data() + map * eights_ + eight, bounds.values + n * env_stride};
+  }
+  if (!lanes_.empty()) answer(std::span(questions).first(maps.size()), bounds.stride, sure);
+  for (std::size_t n = 0; n < maps.size(); ++n) {
+    if (maps[n] == kNoClearanceMap) sure[n] = {};
+  }
+}
+
+void ClearanceMaps::answer(std::span<const ClearanceQuestion> questions, std::size_t stride,
+                           std::span<SureGroups> sure) const noexcept {
+  const auto ask = detail::hasAvx2() ? surelyFreeAvx2 : surelyFreePortable;
+  ask(questions.data(), questions.size(), cells_.data(), stride, sure.data());
+}
+
+namespace {
+
+SureGroups surelyFree(const ClearanceLanes& lanes, const std::uint8_t* cells, const float* bounds,
+                      std::size_t stride) {
   SureGroups sure;
   for (std::size_t n = 0; n < kLanes; ++n) {
     const float* at = bounds + n;
@@ -220,6 +244,15 @@ SureGroups surelyFreePortable(const ClearanceLanes& lanes, const std::uint8_t* c
     if (half + kBeyondHalf <= static_cast<float>(distance)) sure.free |= 1U << n;
   }
   return sure;
+}
+
+}  // namespace
+
+void surelyFreePortable(const ClearanceQuestion* questions, std::size_t count,
+                        const std::uint8_t* cells, std::size_t stride, SureGroups* sure) noexcept {
+  for (std::size_t n = 0; n < count; ++n) {
+    sure[n] = surelyFree(*questions[n].lanes, cells, questions[n].bounds, stride);
+  }
 }
 
 }  // namespace galactic::simulation

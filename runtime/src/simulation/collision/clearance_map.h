@@ -56,10 +56,19 @@ class ClearanceMaps {
   [[nodiscard]] SureGroups surelyFree(std::uint32_t map, std::size_t eight,
                                       const GroupBounds& bounds) const noexcept;
 
+  /// The same for several envs, kMostAsked at most, each in its own map. `bounds`: of the first
+  /// one; `env_stride`: from the bounds of one env to those of the next.
+  void surelyFree(std::span<const std::uint32_t> maps, std::size_t eight, const GroupBounds& bounds,
+                  std::size_t env_stride, std::span<SureGroups> sure) const noexcept;
+  static constexpr std::size_t kMostAsked = 16;
+
   /// How many eights of lanes there are.
   [[nodiscard]] std::size_t eights() const { return eights_; }
 
  private:
+  void answer(std::span<const ClearanceQuestion> questions, std::size_t stride,
+              std::span<SureGroups> sure) const noexcept;
+
   std::vector<std::uint32_t> radius_of_lane_;
   std::size_t eights_ = 0;
   /// Shape: maps x eights_.

@@ -27,10 +27,8 @@ __m256i cellIndex(__m256i i, __m256i k, __m256i tiles_x) {
                          _mm256_or_si256(row, _mm256_and_si256(i, in_tile)));
 }
 
-}  // namespace
-
-SureGroups surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells,
-                          const float* bounds, std::size_t stride) noexcept {
+SureGroups surelyFree(const ClearanceLanes& lanes, const std::uint8_t* cells, const float* bounds,
+                      std::size_t stride) {
   const __m256 least_x = _mm256_loadu_ps(bounds);
   const __m256 most_x = _mm256_loadu_ps(bounds + stride);
   const __m256 least_y = _mm256_loadu_ps(bounds + 2 * stride);
@@ -77,6 +75,15 @@ SureGroups surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells
           static_cast<unsigned>(_mm256_movemask_ps(is_high)) ^ kAll};
 }
 
+}  // namespace
+
+void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count,
+                    const std::uint8_t* cells, std::size_t stride, SureGroups* sure) noexcept {
+  for (std::size_t n = 0; n < count; ++n) {
+    sure[n] = surelyFree(*questions[n].lanes, cells, questions[n].bounds, stride);
+  }
+}
+
 }  // namespace galactic::simulation
 
 #else
@@ -84,9 +91,9 @@ SureGroups surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells
 namespace galactic::simulation {
 
 // hasAvx2() is false on this architecture; the symbol exists so that callers need no condition.
-SureGroups surelyFreeAvx2(const ClearanceLanes& lanes, const std::uint8_t* cells,
-                          const float* bounds, std::size_t stride) noexcept {
-  return surelyFreePortable(lanes, cells, bounds, stride);
+void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count,
+                    const std::uint8_t* cells, std::size_t stride, SureGroups* sure) noexcept {
+  surelyFreePortable(questions, count, cells, stride, sure);
 }
 
 }  // namespace galactic::simulation

@@ -36,6 +36,7 @@ Chunk::Chunk(const Model& model)
       frames_(frameRows(model.motion.nodes.size())),
       collision_(std::max(model.sphereCount(), model.most_held_spheres)),
       placement_(model.most_held_spheres, model.world->radii()),
+      sure_(group_stride_ / kLanes * kChunk),
       group_bits_(group_stride_ / kLanes),
       places_(model.groups.size()),
       way_out_(mostWays(model)),

@@ -68,6 +68,12 @@ class Chunk {
     return {bounds_.data()->values.data() + env * kBounds * group_stride_ + eight * kLanes,
             group_stride_};
   }
+  /// From the bounds of one env to those of the next.
+  [[nodiscard]] std::size_t boundsStride() const { return kBounds * group_stride_; }
+  /// What the maps said last of the groups from 8 * `eight` on, env by env.
+  [[nodiscard]] std::span<SureGroups> sure(std::size_t eight) {
+    return std::span(sure_).subspan(eight * kChunk, kChunk);
+  }
   /// The least and the most of all their coordinates.
   [[nodiscard]] Vec3 least(std::size_t env) const;
   [[nodiscard]] Vec3 most(std::size_t env) const;
@@ -130,6 +136,8 @@ class Chunk {
   std::array<Floor, kChunk> floor_{};
   CollisionScratch collision_;
   PlacementScratch placement_;
+  /// Shape: eights of groups x kChunk.
+  std::vector<SureGroups> sure_;
   std::vector<GroupBits> group_bits_;
   std::vector<EightPlaces> places_;
   WayOut way_out_;

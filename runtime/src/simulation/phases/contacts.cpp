@@ -17,16 +17,26 @@ bool anyCounts(std::span<const std::uint64_t> bits, IgnoredSpheres ignored) {
   return any != 0;
 }
 
-/// Finds where the spheres of some groups of an eight are. Returns, as bits, those of which slices
-/// do not know that all spheres are free.
-unsigned findPlaces(const ChunkStep& step, std::size_t e, std::size_t eight, unsigned groups) {
-  unsigned asked = groups;
+/// What slices say of some groups.
+struct InSlices {
+  /// One bit for each sphere that is surely blocked.
+  std::uint64_t blocked = 0;
+  /// The groups with spheres of which slices do not know.
+  unsigned unknown = 0;
+};
+
+/// Finds where the spheres of some groups of an eight are.
+InSlices findPlaces(const ChunkStep& step, std::size_t e, std::size_t eight, unsigned groups) {
+  InSlices found;
   for (unsigned left = groups; left != 0; left &= left - 1) {
-    const std::size_t n = eight * kLanes + static_cast<std::size_t>(std::countr_zero(left));
+    const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+    const std::size_t n = eight * kLanes + lane;
     const EightPlaces& places = findPlaces(step, e, n);
-    if ((step.model.groups[n].spheres & ~places.free) == 0) asked ^= left & -left;
+    const unsigned spheres = step.model.groups[n].spheres;
+    found.blocked |= std::uint64_t{spheres & places.blocked} << (lane * kLanes);
+    if ((spheres & ~(places.free | places.blocked)) != 0) found.unknown |= left & -left;
   }
-  return asked;
+  return found;
 }
 
 bool bodyTouchesObjects(const ChunkStep& step, std::size_t e) {
@@ -65,28 +75,50 @@ const EightPlaces& findPlaces(const ChunkStep& step, std::size_t e, std::size_t 
   return places;
 }
 
-bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
+void askMaps(const ChunkStep& step, std::size_t first, std::size_t end) noexcept {
+  std::array<std::uint32_t, kChunk> maps;
+  for (std::size_t e = first; e < end; ++e) {
+    maps[e - first] = step.state.env(step.first + e).clearance_map;
+  }
+  for (std::size_t eight = 0; eight * kLanes < step.model.groups.size(); ++eight) {
+    step.model.clearance.surelyFree(std::span(maps).first(end - first), eight,
+                                    step.chunk.bounds(first, eight), step.chunk.boundsStride(),
+                                    step.chunk.sure(eight).subspan(first, end - first));
+  }
+}
+
+namespace {
+
+/// As findBlocked(), where askMaps() has asked already.
+bool findBlockedAsAsked(const ChunkStep& step, std::size_t e) {
   const Env& env = step.state.env(step.first + e);
   const Scene& scene = step.model.world->scenes()[env.scene];
   const std::span<const EightSpheres> groups = step.model.groups;
   std::uint64_t any = 0;
   for (std::size_t eight = 0; eight * kLanes < groups.size(); ++eight) {
     const std::size_t here = std::min(groups.size() - eight * kLanes, kLanes);
-    const SureGroups sure =
-        step.model.clearance.surelyFree(env.clearance_map, eight, step.chunk.bounds(e, eight));
+    const SureGroups sure = step.chunk.sure(eight)[e];
     GroupBits& known = step.chunk.groupBits(eight);
     const unsigned others = ((1U << here) - 1) & ~known.suited;
     known.unsure = others & ~(sure.free & ~sure.low);
     known.low = others & sure.free & sure.low;
-    std::uint64_t blocked = 0;
-    const unsigned asked = findPlaces(step, e, eight, others & ~sure.free);
-    if (asked != 0) {
-      blocked = blockedSpheres(scene, step.chunk.spheres(e), groups, eight * kLanes, asked);
+    const InSlices found = findPlaces(step, e, eight, others & ~sure.free);
+    std::uint64_t blocked = found.blocked;
+    if (found.unknown != 0) {
+      blocked |=
+          blockedSpheres(scene, step.chunk.spheres(e), groups, eight * kLanes, found.unknown);
     }
     step.chunk.blockedBits()[eight] = blocked;
     any |= blocked;
   }
   return any != 0;
+}
+
+}  // namespace
+
+bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
+  askMaps(step, e, e + 1);
+  return findBlockedAsAsked(step, e);
 }
 
 bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept {
@@ -129,6 +161,12 @@ bool heldPenetrates(const ChunkStep& step, std::size_t e) {
 }
 
 }  // namespace
+
+bool isFreeAsAsked(const ChunkStep& step, std::size_t e) noexcept {
+  step.chunk.forgetSuited();
+  if (step.chunk.floor(e) != Floor::kCarries) return false;
+  return !findBlockedAsAsked(step, e) && !bodyTouchesObjects(step, e) && !heldPenetrates(step, e);
+}
 
 bool isStillFree(const ChunkStep& step, std::size_t e) noexcept {
   if (step.chunk.floor(e) != Floor::kCarries) return false;

@@ -16,6 +16,13 @@ namespace galactic::simulation {
 /// The same after a move for which the chunk knows which groups of spheres it suits.
 [[nodiscard]] bool isStillFree(const ChunkStep& step, std::size_t e) noexcept;
 
+/// Asks the maps what is surely free of the candidates of the envs from `first` up to `end`: all of
+/// a chunk at once, so that none waits for the answer about another.
+void askMaps(const ChunkStep& step, std::size_t first, std::size_t end) noexcept;
+
+/// As isFree(), where askMaps() has asked already.
+[[nodiscard]] bool isFreeAsAsked(const ChunkStep& step, std::size_t e) noexcept;
+
 /// What the env's robot can hit.
 [[nodiscard]] Obstacles obstaclesOf(const ChunkStep& step, std::size_t e) noexcept;
 

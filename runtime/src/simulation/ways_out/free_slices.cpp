@@ -132,12 +132,11 @@ void FreeSlices::fill(const ColumnGrid& grid, float thickness, const SliceLayout
 void FreeSlices::findPlaces(std::uint32_t map, std::uint32_t radius, const float* x, const float* y,
                             const float* z, EightPlaces& places) const noexcept {
   if (map == kNoClearanceMap) {
-    places.inside = 0;
-    places.free = 0;
+    places.inside = places.free = places.blocked = 0;
     return;
   }
   const SliceLayout& layout = layouts_[map * radii_ + radius];
-  const std::uint16_t* rows = rows_.data() + layout.first;
+  const SliceRows rows{rows_.data() + layout.first, blocked_rows_.data() + layout.first};
   if (detail::hasAvx2()) {
     findPlacesAvx2(layout, rows, x, y, z, places);
   } else {
@@ -145,10 +144,9 @@ void FreeSlices::findPlaces(std::uint32_t map, std::uint32_t radius, const float
   }
 }
 
-void findPlacesPortable(const SliceLayout& layout, const std::uint16_t* rows, const float* x,
+void findPlacesPortable(const SliceLayout& layout, const SliceRows& rows, const float* x,
                         const float* y, const float* z, EightPlaces& places) noexcept {
-  places.inside = 0;
-  places.free = 0;
+  places.inside = places.free = places.blocked = 0;
   for (std::size_t n = 0; n < kLanes; ++n) {
     const float cell_x = (x[n] - layout.min_x) * layout.inverse_spacing;
     const float cell_z = (z[n] - layout.min_z) * layout.inverse_spacing;
@@ -168,7 +166,9 @@ void findPlacesPortable(const SliceLayout& layout, const std::uint16_t* rows, co
     const unsigned bit = 1U << n;
     places.inside |= bit;
     const unsigned own = static_cast<unsigned>(places.column[n]) + kCellsAround;
-    if ((rows[places.row[n] + kCellsAround] >> own & 1U) != 0) places.free |= bit;
+    const std::int32_t own_row = places.row[n] + kCellsAround;
+    if ((rows.free[own_row] >> own & 1U) != 0) places.free |= bit;
+    if ((rows.blocked[own_row] >> own & 1U) != 0) places.blocked |= bit;
   }
 }
 

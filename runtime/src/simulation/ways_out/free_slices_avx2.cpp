@@ -24,9 +24,20 @@ void store(std::int32_t* to, __m256i value) {
   _mm256_store_si256(reinterpret_cast<__m256i*>(to), value);
 }
 
+/// The bits of the cells in which eight centers are, zero outside. `row`: the first around each.
+unsigned ownBits(const std::uint16_t* rows, __m256i row, __m256i column, __m256 inside) {
+  // See resting_objects_avx2.cpp for why the gather is given a zero.
+  const __m256i words = _mm256_mask_i32gather_epi32(
+      _mm256_setzero_si256(), reinterpret_cast<const int*>(rows + kCellsAround), row,
+      _mm256_castps_si256(inside), 2);
+  // Into the sign.
+  const __m256i above = _mm256_sub_epi32(_mm256_set1_epi32(31 - kCellsAround), column);
+  return bitsOf(_mm256_castsi256_ps(_mm256_sllv_epi32(words, above)));
+}
+
 }  // namespace
 
-void findPlacesAvx2(const SliceLayout& layout, const std::uint16_t* rows, const float* x,
+void findPlacesAvx2(const SliceLayout& layout, const SliceRows& rows, const float* x,
                     const float* y, const float* z, EightPlaces& places) noexcept {
   const __m256 cell_x = scaled(x, layout.min_x, layout.inverse_spacing);
   const __m256 cell_z = scaled(z, layout.min_z, layout.inverse_spacing);
@@ -46,18 +57,14 @@ void findPlacesAvx2(const SliceLayout& layout, const std::uint16_t* rows, const 
       _mm256_add_epi32(_mm256_mullo_epi32(strip, _mm256_set1_epi32(layout.slice_count)), slice);
   const __m256i row =
       _mm256_add_epi32(_mm256_mullo_epi32(of_slice, _mm256_set1_epi32(layout.row_count)), k);
-  // See resting_objects_avx2.cpp for why the gather is given a zero.
-  const __m256i words = _mm256_mask_i32gather_epi32(
-      _mm256_setzero_si256(), reinterpret_cast<const int*>(rows + kCellsAround), row, mask, 2);
-  const __m256i own = _mm256_add_epi32(column, _mm256_set1_epi32(kCellsAround));
-  const __m256i bit = _mm256_and_si256(_mm256_srlv_epi32(words, own), _mm256_set1_epi32(1));
-  const __m256i is_free = _mm256_cmpeq_epi32(bit, _mm256_set1_epi32(1));
+  const unsigned is_free = ownBits(rows.free, row, column, inside);
   store(places.row, row);
   store(places.column, column);
   _mm256_store_ps(places.part_x, part_x);
   _mm256_store_ps(places.part_z, part_z);
   places.inside = bitsOf(inside);
-  places.free = bitsOf(_mm256_and_ps(inside, _mm256_castsi256_ps(is_free)));
+  places.free = is_free;
+  places.blocked = is_free == places.inside ? 0 : ownBits(rows.blocked, row, column, inside);
 }
 
 }  // namespace galactic::simulation
@@ -67,7 +74,7 @@ void findPlacesAvx2(const SliceLayout& layout, const std::uint16_t* rows, const 
 namespace galactic::simulation {
 
 // hasAvx2() is false on this architecture; the symbol exists so that callers need no condition.
-void findPlacesAvx2(const SliceLayout& layout, const std::uint16_t* rows, const float* x,
+void findPlacesAvx2(const SliceLayout& layout, const SliceRows& rows, const float* x,
                     const float* y, const float* z, EightPlaces& places) noexcept {
   findPlacesPortable(layout, rows, x, y, z, places);
 }

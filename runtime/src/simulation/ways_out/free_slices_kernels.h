@@ -32,16 +32,22 @@ struct alignas(32) EightPlaces {
   /// Where in its cell a center is, from 0 to 1.
   float part_x[kLanes] = {};
   float part_z[kLanes] = {};
-  /// As bits: what is inside of slices, and surely free.
+  /// As bits: what is inside of slices, surely free, and surely blocked.
   unsigned inside = 0;
   unsigned free = 0;
+  unsigned blocked = 0;
 };
 
-/// Finds the places of eight centers. `rows`: those of the layout. Both do the same operations, and
-/// agree bit for bit.
-void findPlacesPortable(const SliceLayout& layout, const std::uint16_t* rows, const float* x,
+/// All slices of a layout: the rows that tell what is free, and as many that tell what is blocked.
+struct SliceRows {
+  const std::uint16_t* free = nullptr;
+  const std::uint16_t* blocked = nullptr;
+};
+
+/// Finds the places of eight centers. Both do the same operations, and agree bit for bit.
+void findPlacesPortable(const SliceLayout& layout, const SliceRows& rows, const float* x,
                         const float* y, const float* z, EightPlaces& places) noexcept;
-void findPlacesAvx2(const SliceLayout& layout, const std::uint16_t* rows, const float* x,
+void findPlacesAvx2(const SliceLayout& layout, const SliceRows& rows, const float* x,
                     const float* y, const float* z, EightPlaces& places) noexcept;
 
 }  // namespace galactic::simulation
