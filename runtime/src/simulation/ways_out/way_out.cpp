@@ -11,8 +11,6 @@ namespace {
 
 constexpr int kRowBits = 16;
 
-constexpr int signOf(int value) { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); }
-
 /// The cells of a set that `is_in` says.
 template <class IsIn>
 constexpr Surroundings cellsThat(const IsIn& is_in) {
@@ -111,23 +109,40 @@ bool addWaysPortable(const std::uint16_t* rows, const EightPlaces& places, unsig
   return any;
 }
 
-float takenBackPortable(const EightWays* ways, std::size_t count, const TakeBack& back) noexcept {
-  float least = 1;
+TakenBackBoth takenBackPortable(const EightWays* ways, std::size_t count,
+                                const CellMove& move) noexcept {
+  const WayCell to = move.to;
+  const WayCell before_x{to.x - signOf(to.x), to.z};
+  const WayCell before_z{to.x, to.z - signOf(to.z)};
+  const WayCell before_both{before_x.x, before_z.z};
+  const auto isFreeIn = [&](std::size_t n, const WayCell& cell) {
+    return isFree(ways[n / kLanes], n % kLanes, cell.x, cell.z);
+  };
+  const auto toBorderX = [&](std::size_t n) {
+    return fromBorder(ways[n / kLanes].part_x[n % kLanes], to.x);
+  };
+  const auto toBorderZ = [&](std::size_t n) {
+    return fromBorder(ways[n / kLanes].part_z[n % kLanes], to.z);
+  };
+  TakenBackBoth back;
   for (std::size_t n = 0; n < count * kLanes; ++n) {
-    const EightWays& eight = ways[n / kLanes];
-    const std::size_t lane = n % kLanes;
-    const float part_x = eight.part_x[lane];
-    const float part_z = eight.part_z[lane];
-    bool is_behind = false;
-    if (back.other_sign != 0) {
-      const float other = fromBorder(back.along_x ? part_z : part_x, back.other_sign);
-      is_behind = other - back.other_back + back.margin < 0;
-    }
-    const WayCell& cell = is_behind ? back.before_behind : back.before;
-    if (isFree(eight, lane, cell.x, cell.z)) continue;
-    least = std::min(least, fromBorder(back.along_x ? part_x : part_z, back.sign));
+    float& x = back.along_x_first.x;
+    float& z = back.along_z_first.z;
+    if (!isFreeIn(n, before_x)) x = std::min(x, toBorderX(n));
+    if (!isFreeIn(n, before_z)) z = std::min(z, toBorderZ(n));
   }
-  return least;
+  const auto isBehind = [&](float to_border, float taken) {
+    return to_border - taken + move.margin < 0;
+  };
+  for (std::size_t n = 0; n < count * kLanes; ++n) {
+    float& x = back.along_z_first.x;
+    float& z = back.along_x_first.z;
+    const bool is_behind_x = isBehind(toBorderX(n), back.along_x_first.x);
+    const bool is_behind_z = isBehind(toBorderZ(n), back.along_z_first.z);
+    if (!isFreeIn(n, is_behind_x ? before_both : before_z)) z = std::min(z, toBorderZ(n));
+    if (!isFreeIn(n, is_behind_z ? before_both : before_x)) x = std::min(x, toBorderX(n));
+  }
+  return back;
 }
 
 bool allFreePortable(const EightWays* ways, std::size_t count, float by_x, float by_z,
@@ -211,46 +226,17 @@ Surroundings WayOut::inAll() const noexcept {
   return cells;
 }
 
-float WayOut::takenBack(const TakeBack& back) const noexcept {
-  return detail::hasAvx2() ? takenBackAvx2(ways_.data(), count_, back)
-                           : takenBackPortable(ways_.data(), count_, back);
-}
-
-Push WayOut::shortened(int x, int z, bool along_x_first) const noexcept {
-  // Along the first axis as if the whole way along the second were gone; then along the second,
-  // each sphere from the cell along the first in which it is then.
-  const int first = along_x_first ? x : z;
-  const int second = along_x_first ? z : x;
-  const int sign_first = signOf(first);
-  const int sign_second = signOf(second);
-  const auto cell = [&](int to_first, int to_second) {
-    return along_x_first ? WayCell{to_first, to_second} : WayCell{to_second, to_first};
-  };
-  const float margin = kIntoCell / spacing_;
-  TakeBack back{
-      .along_x = along_x_first, .sign = sign_first, .before = cell(first - sign_first, second)};
-  const float back_first = sign_first == 0 ? 1.0F : takenBack(back);
-  back = {.along_x = !along_x_first,
-          .sign = sign_second,
-          .before = cell(first, second - sign_second),
-          .other_sign = sign_first,
-          .other_back = back_first,
-          .margin = margin,
-          .before_behind = cell(first - sign_first, second - sign_second)};
-  const float back_second = sign_second == 0 ? 1.0F : takenBack(back);
-  const auto length = [&](int cells, int sign, float taken_back) {
-    const float taken = static_cast<float>(sign) * (taken_back - margin);
+Push WayOut::shortened(const WayCell& to) const noexcept {
+  const CellMove move{to, kIntoCell / spacing_};
+  const TakenBackBoth back = detail::hasAvx2() ? takenBackAvx2(ways_.data(), count_, move)
+                                               : takenBackPortable(ways_.data(), count_, move);
+  const auto length = [&](int cells, float taken_back) {
+    const int sign = signOf(cells);
+    const float taken = static_cast<float>(sign) * (taken_back - move.margin);
     return sign == 0 ? 0.0F : (static_cast<float>(cells) - taken) * spacing_;
   };
-  const float to_first = length(first, sign_first, back_first);
-  const float to_second = length(second, sign_second, back_second);
-  return along_x_first ? Push{to_first, to_second} : Push{to_second, to_first};
-}
-
-Push WayOut::shortened(int x, int z) const noexcept {
-  const Push one = shortened(x, z, true);
-  if (x == 0 || z == 0) return one;
-  const Push other = shortened(x, z, false);
+  const Push one{length(to.x, back.along_x_first.x), length(to.z, back.along_x_first.z)};
+  const Push other{length(to.x, back.along_z_first.x), length(to.z, back.along_z_first.z)};
   const bool is_longer = one.x * one.x + one.z * one.z > other.x * other.x + other.z * other.z;
   return is_longer ? other : one;
 }
@@ -278,7 +264,7 @@ std::optional<Push> WayOut::shortestOf(float longest, const MayBe& may_be) const
       const auto least_x = static_cast<float>(x - signOf(x)) * spacing_;
       const auto least_z = static_cast<float>(z - signOf(z)) * spacing_;
       if (least_x * least_x + least_z * least_z >= least) continue;
-      const Push push = shortened(x, z);
+      const Push push = shortened({x, z});
       const float squared = push.x * push.x + push.z * push.z;
       if (!(squared < least) || !may_be(push, squared)) continue;
       least = squared;

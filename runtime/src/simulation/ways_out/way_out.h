@@ -45,9 +45,7 @@ class WayOut {
   /// Room for eight spheres more; null where there is none, and no move is known to be free.
   [[nodiscard]] EightWays* next() noexcept;
   [[nodiscard]] Surroundings inAll() const noexcept;
-  [[nodiscard]] float takenBack(const TakeBack& back) const noexcept;
-  [[nodiscard]] Push shortened(int x, int z, bool along_x_first) const noexcept;
-  [[nodiscard]] Push shortened(int x, int z) const noexcept;
+  [[nodiscard]] Push shortened(const WayCell& to) const noexcept;
   [[nodiscard]] bool suits(const Push& push) const noexcept;
   template <class MayBe>
   [[nodiscard]] std::optional<Push> shortestOf(float longest, const MayBe& may_be) const noexcept;

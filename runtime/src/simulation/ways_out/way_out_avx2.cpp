@@ -85,10 +85,12 @@ __m256 fromBorder(const float* part, int sign) {
   return sign > 0 ? parts : _mm256_sub_ps(_mm256_set1_ps(1), parts);
 }
 
-float leastOf(__m256 values) {
-  __m128 least = _mm_min_ps(_mm256_castps256_ps128(values), _mm256_extractf128_ps(values, 1));
-  least = _mm_min_ps(least, _mm_shuffle_ps(least, least, 0x4e));
-  return _mm_cvtss_f32(_mm_min_ss(least, _mm_shuffle_ps(least, least, 0xb1)));
+/// The least of eight numbers each.
+TakenBack leastOf(__m256 x, __m256 z) {
+  __m256 least = _mm256_min_ps(_mm256_unpacklo_ps(x, z), _mm256_unpackhi_ps(x, z));
+  __m128 both = _mm_min_ps(_mm256_castps256_ps128(least), _mm256_extractf128_ps(least, 1));
+  both = _mm_min_ps(both, _mm_movehl_ps(both, both));
+  return {_mm_cvtss_f32(both), _mm_cvtss_f32(_mm_movehdup_ps(both))};
 }
 
 /// The cells along one axis that places may be in, from the spheres' own.
@@ -123,29 +125,71 @@ __m256i isFreeIn(const EightWays& ways, __m256i x, __m256i z) {
   return _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_srlv_epi32(words, bit), one), one);
 }
 
-bool areFree(const EightWays& ways, float by_x, float by_z, float rounding) {
-  const __m256i counts = load(ways.counts);
-  const CellRanges x = cellsAfter(ways.part_x, by_x, rounding);
-  const CellRanges z = cellsAfter(ways.part_z, by_z, rounding);
+/// Where eight spheres may be after a move, the same for all: their own cells moved, and one
+/// further.
+struct MovedCells {
+  CellRanges x, z;
+  /// The cells of a sphere that is at the lower border of its own.
+  WayCell low;
+};
+
+/// All bits of the lanes whose sphere is not free in all cells of its ranges, all of which are one
+/// of four.
+__m256i blockedInFour(const EightWays& ways, const MovedCells& cells) {
+  const __m256i low_x = _mm256_set1_epi32(cells.low.x);
+  const __m256i low_z = _mm256_set1_epi32(cells.low.z);
+  const __m256i in_low_x = _mm256_cmpeq_epi32(cells.x.first, low_x);
+  const __m256i in_low_z = _mm256_cmpeq_epi32(cells.z.first, low_z);
+  const __m256i in_high_x = _mm256_cmpgt_epi32(cells.x.last, low_x);
+  const __m256i in_high_z = _mm256_cmpgt_epi32(cells.z.last, low_z);
+  const auto blocked = [&](__m256i in_x, __m256i in_z, int x, int z) {
+    const __m256i free = _mm256_castps_si256(isFree(ways, {cells.low.x + x, cells.low.z + z}));
+    return _mm256_andnot_si256(free, _mm256_and_si256(in_x, in_z));
+  };
+  const __m256i low_row = _mm256_or_si256(blocked(in_low_x, in_low_z, 0, 0),
+                                          blocked(in_high_x, in_low_z, 1, 0));
+  const __m256i high_row = _mm256_or_si256(blocked(in_low_x, in_high_z, 0, 1),
+                                           blocked(in_high_x, in_high_z, 1, 1));
+  return _mm256_srai_epi32(_mm256_or_si256(low_row, high_row), 31);
+}
+
+/// The same for ranges of any cells.
+__m256i blockedAnywhere(const EightWays& ways, const MovedCells& cells, __m256i counts) {
   const __m256i least = _mm256_set1_epi32(-kCellsAround);
   const __m256i most = _mm256_set1_epi32(kCellsAround);
-  const __m256i is_unknown =
-      _mm256_or_si256(_mm256_cmpgt_epi32(least, _mm256_min_epi32(x.first, z.first)),
-                      _mm256_cmpgt_epi32(_mm256_max_epi32(x.last, z.last), most));
-  if (_mm256_testz_si256(is_unknown, counts) == 0) return false;
-  // Lanes that do not count may be anywhere.
-  const __m256i first_x = _mm256_and_si256(x.first, counts);
-  const __m256i first_z = _mm256_and_si256(z.first, counts);
-  if (_mm256_testc_si256(isFreeIn(ways, first_x, first_z), counts) == 0) return false;
-  const __m256i last_x = _mm256_and_si256(x.last, counts);
-  const __m256i last_z = _mm256_and_si256(z.last, counts);
-  const __m256i is_one =
-      _mm256_and_si256(_mm256_cmpeq_epi32(first_x, last_x), _mm256_cmpeq_epi32(first_z, last_z));
-  if (_mm256_testc_si256(is_one, counts) != 0) return true;
-  const __m256i others = _mm256_and_si256(
-      _mm256_and_si256(isFreeIn(ways, first_x, last_z), isFreeIn(ways, last_x, first_z)),
-      isFreeIn(ways, last_x, last_z));
-  return _mm256_testc_si256(others, counts) != 0;
+  const __m256i is_unknown = _mm256_or_si256(
+      _mm256_cmpgt_epi32(least, _mm256_min_epi32(cells.x.first, cells.z.first)),
+      _mm256_cmpgt_epi32(_mm256_max_epi32(cells.x.last, cells.z.last), most));
+  // Lanes that do not count, or whose cells are not known, may be anywhere.
+  const __m256i looked_at = _mm256_andnot_si256(is_unknown, counts);
+  const __m256i first_x = _mm256_and_si256(cells.x.first, looked_at);
+  const __m256i first_z = _mm256_and_si256(cells.z.first, looked_at);
+  const __m256i last_x = _mm256_and_si256(cells.x.last, looked_at);
+  const __m256i last_z = _mm256_and_si256(cells.z.last, looked_at);
+  const __m256i is_free = _mm256_and_si256(
+      _mm256_and_si256(isFreeIn(ways, first_x, first_z), isFreeIn(ways, first_x, last_z)),
+      _mm256_and_si256(isFreeIn(ways, last_x, first_z), isFreeIn(ways, last_x, last_z)));
+  return _mm256_or_si256(is_unknown, _mm256_andnot_si256(is_free, looked_at));
+}
+
+bool areFree(const EightWays& ways, float by_x, float by_z, float rounding) {
+  const __m256i counts = load(ways.counts);
+  constexpr int kAbove = 64;
+  const MovedCells cells{cellsAfter(ways.part_x, by_x, rounding),
+                         cellsAfter(ways.part_z, by_z, rounding),
+                         {static_cast<int>(by_x + kAbove) - kAbove,
+                          static_cast<int>(by_z + kAbove) - kAbove}};
+  // Rounding rarely leads further than to the next cell, and moves to the last one are rare.
+  const auto beyond = [counts](const CellRanges& range, int low) {
+    const __m256i is_beyond =
+        _mm256_or_si256(_mm256_cmpgt_epi32(_mm256_set1_epi32(low), range.first),
+                        _mm256_cmpgt_epi32(range.last, _mm256_set1_epi32(low + 1)));
+    return _mm256_testz_si256(is_beyond, counts) == 0 || low < -kCellsAround || low >= kCellsAround;
+  };
+  const bool is_rare = beyond(cells.x, cells.low.x) || beyond(cells.z, cells.low.z);
+  const __m256i blocked =
+      is_rare ? blockedAnywhere(ways, cells, counts) : blockedInFour(ways, cells);
+  return _mm256_testz_si256(blocked, counts) != 0;
 }
 
 }  // namespace
@@ -177,23 +221,42 @@ bool addWaysAvx2(const std::uint16_t* rows, const EightPlaces& places, unsigned 
   return _mm256_testz_si256(counts, counts) == 0;
 }
 
-float takenBackAvx2(const EightWays* ways, std::size_t count, const TakeBack& back) noexcept {
+TakenBackBoth takenBackAvx2(const EightWays* ways, std::size_t count,
+                            const CellMove& move) noexcept {
+  const WayCell to = move.to;
+  const WayCell before_x{to.x - signOf(to.x), to.z};
+  const WayCell before_z{to.x, to.z - signOf(to.z)};
+  const WayCell before_both{before_x.x, before_z.z};
   const __m256 whole = _mm256_set1_ps(1);
-  __m256 least = whole;
+  __m256 least_x = whole;
+  __m256 least_z = whole;
   for (std::size_t n = 0; n < count; ++n) {
-    __m256 is_free = isFree(ways[n], back.before);
-    if (back.other_sign != 0) {
-      const __m256 other =
-          fromBorder(back.along_x ? ways[n].part_z : ways[n].part_x, back.other_sign);
-      const __m256 beyond = _mm256_add_ps(_mm256_sub_ps(other, _mm256_set1_ps(back.other_back)),
-                                          _mm256_set1_ps(back.margin));
-      const __m256 is_behind = _mm256_cmp_ps(beyond, _mm256_setzero_ps(), _CMP_LT_OQ);
-      is_free = _mm256_blendv_ps(is_free, isFree(ways[n], back.before_behind), is_behind);
-    }
-    const __m256 part = fromBorder(back.along_x ? ways[n].part_x : ways[n].part_z, back.sign);
-    least = _mm256_min_ps(least, _mm256_blendv_ps(part, whole, is_free));
+    const __m256 x = fromBorder(ways[n].part_x, to.x);
+    const __m256 z = fromBorder(ways[n].part_z, to.z);
+    least_x = _mm256_min_ps(least_x, _mm256_blendv_ps(x, whole, isFree(ways[n], before_x)));
+    least_z = _mm256_min_ps(least_z, _mm256_blendv_ps(z, whole, isFree(ways[n], before_z)));
   }
-  return leastOf(least);
+  const TakenBack first = leastOf(least_x, least_z);
+  const __m256 margin = _mm256_set1_ps(move.margin);
+  // The sign is set where a sphere is behind.
+  const auto behind = [margin](__m256 to_border, float taken) {
+    return _mm256_cmp_ps(_mm256_add_ps(_mm256_sub_ps(to_border, _mm256_set1_ps(taken)), margin),
+                         _mm256_setzero_ps(), _CMP_LT_OQ);
+  };
+  least_x = least_z = whole;
+  for (std::size_t n = 0; n < count; ++n) {
+    const __m256 x = fromBorder(ways[n].part_x, to.x);
+    const __m256 z = fromBorder(ways[n].part_z, to.z);
+    const __m256 free_both = isFree(ways[n], before_both);
+    const __m256 free_z =
+        _mm256_blendv_ps(isFree(ways[n], before_z), free_both, behind(x, first.x));
+    const __m256 free_x =
+        _mm256_blendv_ps(isFree(ways[n], before_x), free_both, behind(z, first.z));
+    least_x = _mm256_min_ps(least_x, _mm256_blendv_ps(x, whole, free_x));
+    least_z = _mm256_min_ps(least_z, _mm256_blendv_ps(z, whole, free_z));
+  }
+  const TakenBack second = leastOf(least_x, least_z);
+  return {{first.x, second.z}, {second.x, first.z}};
 }
 
 bool allFreeAvx2(const EightWays* ways, std::size_t count, float by_x, float by_z,
@@ -216,8 +279,9 @@ bool addWaysAvx2(const std::uint16_t* rows, const EightPlaces& places, unsigned 
   return addWaysPortable(rows, places, lanes, ways, all);
 }
 
-float takenBackAvx2(const EightWays* ways, std::size_t count, const TakeBack& back) noexcept {
-  return takenBackPortable(ways, count, back);
+TakenBackBoth takenBackAvx2(const EightWays* ways, std::size_t count,
+                            const CellMove& move) noexcept {
+  return takenBackPortable(ways, count, move);
 }
 
 bool allFreeAvx2(const EightWays* ways, std::size_t count, float by_x, float by_z,

@@ -35,21 +35,29 @@ struct WayCell {
   int z = 0;
 };
 
-/// How much of a move by whole cells can be taken back along one axis.
-struct TakeBack {
-  bool along_x = false;
-  /// Of the move along that axis: 1 or -1.
-  int sign = 1;
-  /// The cell before the one that the move leads to. Spheres that it blocks stop at its border.
-  WayCell before{};
-  /// Of the move along the other axis, where some of it has been taken back already; otherwise 0.
-  int other_sign = 0;
-  /// How much, and how far into a cell spheres go: those that are less than that from the border of
-  /// their cell along the other axis are a cell behind along it, and ask about another cell.
-  float other_back = 0;
-  float margin = 0;
-  WayCell before_behind{};
+/// What parts of a cell, up to 1, a move by whole cells can take back along x and z: as much as
+/// leaves all spheres free, which those that the cell before blocks decide.
+struct TakenBack {
+  float x = 1;
+  float z = 1;
 };
+
+/// The same, first along one axis as if the whole way along the other were gone, then along the
+/// other, each sphere from the cell along the first in which it is then.
+struct TakenBackBoth {
+  TakenBack along_x_first;
+  TakenBack along_z_first;
+};
+
+/// Where a move ends, and how far into a cell spheres go, as a part of it: those that are less than
+/// that from the border of their cell along the first axis are a cell behind along it.
+struct CellMove {
+  WayCell to;
+  float margin = 0;
+};
+
+/// 1, 0 or -1.
+constexpr int signOf(int value) { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); }
 
 /// Adds the spheres of `lanes` at `places` to `all`, and makes `ways` of them. `rows`: of their
 /// radius' slices. Whether any of them counts.
@@ -58,11 +66,11 @@ bool addWaysPortable(const std::uint16_t* rows, const EightPlaces& places, unsig
 bool addWaysAvx2(const std::uint16_t* rows, const EightPlaces& places, unsigned lanes,
                  EightWays& ways, AllWays& all) noexcept;
 
-/// The largest part of a cell, up to 1, that the move can take back.
-[[nodiscard]] float takenBackPortable(const EightWays* ways, std::size_t count,
-                                      const TakeBack& back) noexcept;
-[[nodiscard]] float takenBackAvx2(const EightWays* ways, std::size_t count,
-                                  const TakeBack& back) noexcept;
+/// What a move to where all spheres are free can take back.
+[[nodiscard]] TakenBackBoth takenBackPortable(const EightWays* ways, std::size_t count,
+                                              const CellMove& move) noexcept;
+[[nodiscard]] TakenBackBoth takenBackAvx2(const EightWays* ways, std::size_t count,
+                                          const CellMove& move) noexcept;
 
 /// Whether all spheres are free after a move, in cells. `rounding`: may take a sphere that moves
 /// so much further.

@@ -141,8 +141,12 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
   constexpr int kRounds = 20000;
   for (int n = 0; n < kRounds; ++n) {
     const Eight eight(random);
-    const SureGroups found = surelyFreePortable(lanes, cells.data(), eight.bounds.data(), kLanes);
-    ASSERT_EQ(surelyFreeAvx2(lanes, cells.data(), eight.bounds.data(), kLanes), found);
+    const ClearanceQuestion question{&lanes, eight.bounds.data()};
+    SureGroups found;
+    SureGroups fast;
+    surelyFreePortable(&question, 1, cells.data(), kLanes, &found);
+    surelyFreeAvx2(&question, 1, cells.data(), kLanes, &fast);
+    ASSERT_EQ(fast, found);
     sure += found.free == 0 ? 0U : 1U;
     low += (found.free & found.low) == 0 ? 0U : 1U;
   }
