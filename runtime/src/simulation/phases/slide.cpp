@@ -117,7 +117,7 @@ class Glide {
   void addEight(std::size_t group, unsigned spheres, const EightPlaces& places) {
     const std::uint32_t radius = step_.model.groups[group].radius_index;
     const unsigned known = spheres & places.inside;
-    if (known != 0) way_.add(step_.model.slices.rows(env_.clearance_map, radius), places, known);
+    if (known != 0) way_.add(step_.model.slices.rows(), places, known);
     if (known == spheres) return;
     const SphereBatch all = step_.chunk.spheres(e_);
     for (unsigned left = spheres & ~known; left != 0; left &= left - 1) {

@@ -1,7 +1,12 @@
 #include "simulation/ways_out/free_slices.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstring>
+#include <functional>
+#include <string_view>
 
 #include "column_grid/column_grid_kernels.h"
 
@@ -14,8 +19,8 @@ constexpr float kSlice = 0.04F;
 constexpr float kMostSlices = 64;
 /// What blocks is at least this far from a free slice, meters: more than any rounding.
 constexpr float kSlack = 1e-3F;
-/// Rows of zeros behind those of a slice: what is outside of the grid, and what is read unused.
-constexpr std::int32_t kRowsBehind = 8;
+/// What tileOfRow() can tell: of wider scenes nothing is known.
+constexpr std::uint32_t kMostColumnsZ = 1U << 16U;
 
 /// Slices of one column, as bits.
 struct ColumnSlices {
@@ -51,8 +56,59 @@ ColumnSlices slicesOf(const ColumnGrid& grid, std::uint32_t i, std::uint32_t k, 
   return {free, found > kMostSpans ? 0 : ~touched & slicesWithin(0, count, count)};
 }
 
-std::int32_t stripCount(const ColumnGrid& grid) {
-  return static_cast<std::int32_t>(grid.columnsX() / kStripColumns + 1);
+std::uint32_t tilesX(const ColumnGrid& grid) {
+  return (grid.columnsX() + kTileColumns - 1) / kTileColumns;
+}
+
+std::uint32_t tilesZ(const ColumnGrid& grid) {
+  return (grid.columnsZ() + kTileRows - 1) / kTileRows;
+}
+
+/// Sixteen columns side by side.
+using TileRow = std::array<ColumnSlices, 16>;
+
+/// Calls write(slice, bits) for each slice of which some bit is set: those of a row's columns.
+template <class Write>
+void forEachSlice(const TileRow& row, std::uint64_t ColumnSlices::*which, const Write& write) {
+  std::uint64_t all = ~std::uint64_t{0};
+  std::uint64_t any = 0;
+  for (const ColumnSlices& column : row) {
+    all &= column.*which;
+    any |= column.*which;
+  }
+  for (; any != 0; any &= any - 1) {
+    const auto slice = static_cast<std::size_t>(std::countr_zero(any));
+    unsigned bits = 0xffffU;
+    if ((all >> slice & 1U) == 0) {
+      bits = 0;
+      for (unsigned c = 0; c < row.size(); ++c) {
+        bits |= static_cast<unsigned>(row[c].*which >> slice & 1U) << c;
+      }
+    }
+    write(slice, static_cast<std::uint16_t>(bits));
+  }
+}
+
+/// A column and a slice.
+struct SliceCell {
+  std::uint32_t i = 0;
+  std::uint32_t k = 0;
+  std::uint32_t slice = 0;
+};
+
+/// The tile that answers for a cell, and where in it the cells around it begin.
+struct CellInTile {
+  std::uint32_t tile = 0;
+  std::uint32_t row = 0;
+  std::uint32_t column = 0;
+};
+
+CellInTile inTile(const SliceLayout& layout, const TileSet& tiles, const SliceCell& cell) {
+  const std::uint32_t tile_z = tileOfRow(cell.k);
+  const std::uint32_t tile =
+      cell.i / kTileColumns * static_cast<std::uint32_t>(layout.tiles_z) + tile_z;
+  const std::uint32_t at = tile * static_cast<std::uint32_t>(layout.slice_count) + cell.slice;
+  return {tiles.numbers[at], cell.k - tile_z * kTileRows, cell.i % kTileColumns};
 }
 
 }  // namespace
@@ -72,18 +128,13 @@ std::uint32_t FreeSlices::add(const Scene& scene, float floor, const HeightsOver
         .min_z = from.min_z,
         .inverse_spacing = from.inverse_spacing,
         .columns_x = static_cast<float>(from.columns_x),
-        .columns_z = static_cast<float>(from.columns_z),
+        .columns_z = from.columns_z < kMostColumnsZ ? static_cast<float>(from.columns_z) : 0,
         .lowest = lowest,
         .inverse_slice = 1 / thickness,
         .slices = slices,
         .slice_count = static_cast<std::int32_t>(slices),
-        .row_count = static_cast<std::int32_t>(from.columns_z) + kCellsAround + kRowsBehind,
-        .first = rows_.size()};
-    const std::size_t rows_of_slices = static_cast<std::size_t>(stripCount(grid)) *
-                                       static_cast<std::size_t>(layout.slice_count) *
-                                       static_cast<std::size_t>(layout.row_count);
-    rows_.resize(rows_.size() + rows_of_slices);
-    blocked_rows_.resize(rows_.size());
+        .tiles_z = static_cast<std::int32_t>(tilesZ(grid)),
+        .first = numbers_.size()};
     fill(grid, thickness, layout);
     layouts_.push_back(layout);
   }
@@ -91,42 +142,52 @@ std::uint32_t FreeSlices::add(const Scene& scene, float floor, const HeightsOver
 }
 
 void FreeSlices::fill(const ColumnGrid& grid, float thickness, const SliceLayout& layout) {
-  const auto row_count = static_cast<std::size_t>(layout.row_count);
-  const auto slices = static_cast<std::size_t>(layout.slice_count);
-  const std::size_t strip_rows = slices * row_count;
-  const auto strips = static_cast<std::size_t>(stripCount(grid));
-  std::array<ColumnSlices, kStripColumns> columns;
-  // Those of the columns whose slice `n` is one of `which`.
-  const auto columns_with = [&](std::uint64_t ColumnSlices::*which, std::size_t n) {
-    unsigned with = 0;
-    for (unsigned c = 0; c < kStripColumns; ++c) {
-      with |= static_cast<unsigned>(columns[c].*which >> n & 1U) << c;
-    }
-    return with;
-  };
+  if (layout.columns_z == 0) return;
+  std::vector<ColumnSlices> columns(std::size_t{grid.columnsX()} * grid.columnsZ());
   for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
-    const std::size_t row = layout.first + k + kCellsAround;
-    // A strip begins kCellsAround columns before a multiple of kStripColumns; its second half is
-    // the first one of the next.
-    for (std::size_t strip = 0; strip <= strips; ++strip) {
-      for (std::uint32_t n = 0; n < kStripColumns; ++n) {
-        const auto i = static_cast<std::uint32_t>(strip * kStripColumns) + n - kCellsAround;
-        columns[n] = i < grid.columnsX()
-                         ? slicesOf(grid, i, k, layout.lowest, thickness, layout.slices)
-                         : ColumnSlices{};
-      }
-      for (std::size_t slice = 0; slice < slices; ++slice) {
-        const auto write = [&](std::vector<std::uint16_t>& rows, unsigned bits) {
-          std::uint16_t* at = rows.data() + row + slice * row_count;
-          const auto second = static_cast<std::uint16_t>(bits << kStripColumns);
-          if (strip < strips) at[strip * strip_rows] |= static_cast<std::uint16_t>(bits);
-          if (strip > 0) at[(strip - 1) * strip_rows] |= second;
-        };
-        write(rows_, columns_with(&ColumnSlices::free, slice));
-        write(blocked_rows_, columns_with(&ColumnSlices::blocked, slice));
-      }
+    for (std::uint32_t i = 0; i < grid.columnsX(); ++i) {
+      columns[std::size_t{k} * grid.columnsX() + i] =
+          slicesOf(grid, i, k, layout.lowest, thickness, layout.slices);
     }
   }
+  // A tile begins kCellsAround before the cells around which it answers.
+  const auto rowAt = [&](std::uint32_t tile_x, std::uint32_t k) {
+    TileRow row;
+    for (std::uint32_t n = 0; n < row.size(); ++n) {
+      const std::uint32_t i = tile_x * kTileColumns + n - kCellsAround;
+      const bool is_inside = i < grid.columnsX() && k < grid.columnsZ();
+      row[n] = is_inside ? columns[std::size_t{k} * grid.columnsX() + i] : ColumnSlices{};
+    }
+    return row;
+  };
+  std::vector<SliceTile> tiles(static_cast<std::size_t>(layout.slice_count));
+  for (std::uint32_t tile_x = 0; tile_x < tilesX(grid); ++tile_x) {
+    for (std::uint32_t tile_z = 0; tile_z < tilesZ(grid); ++tile_z) {
+      std::ranges::fill(tiles, SliceTile{});
+      for (std::uint32_t n = 0; n < SliceTile::kRows; ++n) {
+        const TileRow row = rowAt(tile_x, tile_z * kTileRows + n - kCellsAround);
+        forEachSlice(row, &ColumnSlices::free,
+                     [&](std::size_t slice, std::uint16_t bits) { tiles[slice].free[n] = bits; });
+        forEachSlice(row, &ColumnSlices::blocked, [&](std::size_t slice, std::uint16_t bits) {
+          tiles[slice].blocked[n] = bits;
+        });
+      }
+      for (const SliceTile& tile : tiles) numbers_.push_back(numberOf(tile));
+    }
+  }
+}
+
+std::uint32_t FreeSlices::numberOf(const SliceTile& tile) {
+  const std::string_view bytes(reinterpret_cast<const char*>(&tile), sizeof(tile));
+  const std::size_t hash = std::hash<std::string_view>{}(bytes);
+  const auto [first, end] = known_.equal_range(hash);
+  for (auto at = first; at != end; ++at) {
+    if (std::memcmp(&tiles_[at->second], &tile, sizeof(tile)) == 0) return at->second;
+  }
+  const auto number = static_cast<std::uint32_t>(tiles_.size());
+  tiles_.push_back(tile);
+  known_.emplace(hash, number);
+  return number;
 }
 
 void FreeSlices::findPlaces(std::uint32_t map, std::uint32_t radius, const float* x, const float* y,
@@ -136,15 +197,11 @@ void FreeSlices::findPlaces(std::uint32_t map, std::uint32_t radius, const float
     return;
   }
   const SliceLayout& layout = layouts_[map * radii_ + radius];
-  const SliceRows rows{rows_.data() + layout.first, blocked_rows_.data() + layout.first};
-  if (detail::hasAvx2()) {
-    findPlacesAvx2(layout, rows, x, y, z, places);
-  } else {
-    findPlacesPortable(layout, rows, x, y, z, places);
-  }
+  const auto find = detail::hasAvx2() ? findPlacesAvx2 : findPlacesPortable;
+  find(layout, tilesOf(layout), x, y, z, places);
 }
 
-void findPlacesPortable(const SliceLayout& layout, const SliceRows& rows, const float* x,
+void findPlacesPortable(const SliceLayout& layout, const TileSet& tiles, const float* x,
                         const float* y, const float* z, EightPlaces& places) noexcept {
   places.inside = places.free = places.blocked = 0;
   for (std::size_t n = 0; n < kLanes; ++n) {
@@ -154,21 +211,20 @@ void findPlacesPortable(const SliceLayout& layout, const SliceRows& rows, const 
     const bool inside = cell_x >= 0 && cell_x < layout.columns_x && cell_z >= 0 &&
                         cell_z < layout.columns_z && height >= 0 && height < layout.slices;
     if (!inside) continue;
-    const auto i = static_cast<std::int32_t>(cell_x);
-    const auto k = static_cast<std::int32_t>(cell_z);
-    constexpr auto kColumns = static_cast<std::int32_t>(kStripColumns);
-    const std::int32_t of_slice =
-        i / kColumns * layout.slice_count + static_cast<std::int32_t>(height);
-    places.row[n] = of_slice * layout.row_count + k;
-    places.column[n] = i % kColumns;
+    const auto i = static_cast<std::uint32_t>(cell_x);
+    const auto k = static_cast<std::uint32_t>(cell_z);
+    const CellInTile cell = inTile(layout, tiles, {i, k, static_cast<std::uint32_t>(height)});
+    places.row[n] = static_cast<std::int32_t>(cell.tile) * kTileStride +
+                    static_cast<std::int32_t>(cell.row);
+    places.column[n] = static_cast<std::int32_t>(cell.column);
     places.part_x[n] = cell_x - static_cast<float>(i);
     places.part_z[n] = cell_z - static_cast<float>(k);
     const unsigned bit = 1U << n;
     places.inside |= bit;
-    const unsigned own = static_cast<unsigned>(places.column[n]) + kCellsAround;
-    const std::int32_t own_row = places.row[n] + kCellsAround;
-    if ((rows.free[own_row] >> own & 1U) != 0) places.free |= bit;
-    if ((rows.blocked[own_row] >> own & 1U) != 0) places.blocked |= bit;
+    const unsigned own = cell.column + kCellsAround;
+    const SliceTile& tile = tiles.tiles[cell.tile];
+    if ((tile.free[cell.row + kCellsAround] >> own & 1U) != 0) places.free |= bit;
+    if ((tile.blocked[cell.row + kCellsAround] >> own & 1U) != 0) places.blocked |= bit;
   }
 }
 
@@ -182,14 +238,13 @@ std::optional<SurroundingRows> FreeSlices::around(std::uint32_t map, std::uint32
   const bool inside = x >= 0 && x < layout.columns_x && z >= 0 && z < layout.columns_z &&
                       height >= 0 && height < layout.slices;
   if (!inside) return std::nullopt;
-  const auto i = static_cast<std::int32_t>(x);
-  constexpr auto kColumns = static_cast<std::int32_t>(kStripColumns);
-  const std::int32_t of_slice =
-      i / kColumns * layout.slice_count + static_cast<std::int32_t>(height);
-  const std::int32_t row = of_slice * layout.row_count + static_cast<std::int32_t>(z);
-  const std::size_t first = layout.first + static_cast<std::size_t>(row);
-  return SurroundingRows{rows_.data() + first, blocked_rows_.data() + first,
-                         static_cast<unsigned>(i % kColumns)};
+  const TileSet tiles = tilesOf(layout);
+  const CellInTile cell =
+      inTile(layout, tiles,
+             {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(z),
+              static_cast<std::uint32_t>(height)});
+  const SliceTile& tile = tiles.tiles[cell.tile];
+  return SurroundingRows{tile.free + cell.row, tile.blocked + cell.row, cell.column};
 }
 
 Surroundings surroundingsOf(const ColumnGrid& grid, const Vec3& center) noexcept {

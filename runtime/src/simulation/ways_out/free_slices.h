@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "galactic/pose.h"
@@ -15,10 +16,12 @@ namespace galactic::simulation {
 // In which cells around a sphere it would be free, found with three loads.
 //
 // The heights over a floor are cut into slices. For each slice and each radius there is one bit for
-// each column: whether a center is free at all heights of the slice. The bits lie in strips of
-// sixteen columns along X that overlap by eight, row after row along Z: the 9 x 9 cells around any
-// cell are nine words of sixteen bits, one after the other. A bit only ever says "surely free", and
-// another one, apart, "surely blocked"; where neither does, the column may be asked.
+// each column: whether a center is free at all heights of the slice. The bits lie in tiles of
+// sixteen columns along X and 32 rows along Z that overlap by eight: the 9 x 9 cells around any cell
+// are nine words of sixteen bits, one after the other. Most tiles are all free, all blocked, or the
+// same in slice after slice, so each kind is kept once, and what thousands of robots ask about stays
+// in the cache. A bit only ever says "surely free", and another one, apart, "surely blocked"; where
+// neither does, the column may be asked.
 
 /// Bits of the 9 x 9 cells around a sphere's own, rows along Z of sixteen bits, of which nine
 /// count: set where the sphere would be free at its height.
@@ -66,7 +69,7 @@ struct SurroundingRows {
  private:
   [[nodiscard]] Surroundings cellsFrom(const std::uint16_t* row) const {
     Surroundings found;
-    __builtin_memcpy(found.rows.data(), row, sizeof(found.rows));
+    __builtin_memcpy(found.rows.data(), row, (2 * kCellsAround + 1) * sizeof(*row));
     for (std::uint64_t& rows : found.rows) rows >>= column;
     return found;
   }
@@ -84,26 +87,31 @@ class FreeSlices {
   void findPlaces(std::uint32_t map, std::uint32_t radius, const float* x, const float* y,
                   const float* z, EightPlaces& places) const noexcept;
 
-  /// All rows of a radius: what the places of its spheres count from.
-  [[nodiscard]] const std::uint16_t* rows(std::uint32_t map, std::uint32_t radius) const noexcept {
-    return rows_.data() + layouts_[map * radii_ + radius].first;
-  }
+  /// What the places of spheres count from.
+  [[nodiscard]] const std::uint16_t* rows() const noexcept { return tiles_.data()->free; }
 
   /// The cells around any center; none where it is outside of slices.
   [[nodiscard]] std::optional<SurroundingRows> around(std::uint32_t map, std::uint32_t radius,
                                                       const Vec3& center) const noexcept;
 
-  [[nodiscard]] std::size_t bytes() const { return 2 * rows_.size() * sizeof(rows_[0]); }
+  [[nodiscard]] std::size_t bytes() const {
+    return tiles_.size() * sizeof(SliceTile) + numbers_.size() * sizeof(std::uint32_t);
+  }
 
  private:
   void fill(const ColumnGrid& grid, float thickness, const SliceLayout& layout);
+  [[nodiscard]] std::uint32_t numberOf(const SliceTile& tile);
+  [[nodiscard]] TileSet tilesOf(const SliceLayout& layout) const {
+    return {numbers_.data() + layout.first, tiles_.data()};
+  }
 
   std::size_t radii_ = 0;
   /// Shape: maps x radii.
   std::vector<SliceLayout> layouts_;
-  std::vector<std::uint16_t> rows_;
-  /// As many, of what is surely blocked; apart, because few ask.
-  std::vector<std::uint16_t> blocked_rows_;
+  std::vector<std::uint32_t> numbers_;
+  std::vector<SliceTile> tiles_;
+  /// The numbers of tiles, by the hashes of their bytes.
+  std::unordered_multimap<std::size_t, std::uint32_t> known_;
 };
 
 /// The same at any height, from the columns themselves: exact, and slow.

@@ -8,26 +8,49 @@ namespace galactic::simulation {
 /// Cells in each direction around a sphere's own of which slices tell.
 inline constexpr int kCellsAround = 4;
 
-/// Columns after which a strip begins; the strip before it holds the first ones, too.
-inline constexpr std::uint32_t kStripColumns = 8;
+/// Columns and rows of columns after which the next tile begins: it holds the last ones of the tile
+/// before, too, so that all cells around a center lie in one.
+inline constexpr std::uint32_t kTileColumns = 8;
+inline constexpr std::uint32_t kTileRows = 24;
+
+/// Which cells of one slice are surely free, and surely blocked: rows along Z of sixteen columns
+/// along X, a bit each. A line of the cache each.
+struct alignas(64) SliceTile {
+  static constexpr std::uint32_t kRows = 32;
+  std::uint16_t free[kRows];
+  std::uint16_t blocked[kRows];
+};
+/// Rows of 16 bits from one tile to the next.
+inline constexpr std::int32_t kTileStride = sizeof(SliceTile) / sizeof(std::uint16_t);
 
 /// The slices of one floor and radius: plain data for the kernels.
 struct SliceLayout {
   float min_x = 0, min_z = 0, inverse_spacing = 0;
   float columns_x = 0, columns_z = 0;
   float lowest = 0, inverse_slice = 0, slices = 0;
-  /// Slices of a strip.
   std::int32_t slice_count = 0;
-  /// Rows of a slice: kCellsAround zeros, one for each column along Z, and zeros.
-  std::int32_t row_count = 0;
+  /// Tiles along Z.
+  std::int32_t tiles_z = 0;
+  /// The number of the tile of slice s at tile (i, k) stands at first + (i * tiles_z + k) *
+  /// slice_count + s.
   std::uint64_t first = 0;
+};
+
+/// k / kTileRows for k < 2^16, in operations that vectors have, too.
+[[nodiscard]] constexpr std::uint32_t tileOfRow(std::uint32_t k) { return (k * 43691U) >> 20U; }
+static_assert(tileOfRow(65535) == 65535 / kTileRows && tileOfRow(65519) == 65519 / kTileRows);
+
+/// Tiles of which there is one of each kind.
+struct TileSet {
+  const std::uint32_t* numbers = nullptr;
+  const SliceTile* tiles = nullptr;
 };
 
 /// Where eight centers are among cells and slices; of those outside, nothing counts.
 struct alignas(32) EightPlaces {
-  /// The first of the nine rows around a center, of its layout's.
+  /// The first of the nine rows around a center, counted from the first tile.
   std::int32_t row[kLanes] = {};
-  /// Its column in the strip.
+  /// Its column in the tile.
   std::int32_t column[kLanes] = {};
   /// Where in its cell a center is, from 0 to 1.
   float part_x[kLanes] = {};
@@ -38,16 +61,11 @@ struct alignas(32) EightPlaces {
   unsigned blocked = 0;
 };
 
-/// All slices of a layout: the rows that tell what is free, and as many that tell what is blocked.
-struct SliceRows {
-  const std::uint16_t* free = nullptr;
-  const std::uint16_t* blocked = nullptr;
-};
-
-/// Finds the places of eight centers. Both do the same operations, and agree bit for bit.
-void findPlacesPortable(const SliceLayout& layout, const SliceRows& rows, const float* x,
+/// Finds the places of eight centers. `tiles`: the numbers of the layout's tiles, and all tiles.
+/// Both do the same operations, and agree bit for bit.
+void findPlacesPortable(const SliceLayout& layout, const TileSet& tiles, const float* x,
                         const float* y, const float* z, EightPlaces& places) noexcept;
-void findPlacesAvx2(const SliceLayout& layout, const SliceRows& rows, const float* x,
+void findPlacesAvx2(const SliceLayout& layout, const TileSet& tiles, const float* x,
                     const float* y, const float* z, EightPlaces& places) noexcept;
 
 }  // namespace galactic::simulation
