@@ -11,8 +11,11 @@ inline constexpr std::uint32_t kClearanceBands = 4;
 /// The same, and what is lower.
 inline constexpr std::uint32_t kClearancePlanes = kClearanceBands + 1;
 
-/// Which of eight groups of spheres are surely free, as bits.
-struct SureGroups {
+/// Which of eight groups of spheres are surely free.
+struct alignas(32) SureGroups {
+  /// How far each can go along both axes and still be, meters; below 0 where it is not.
+  float slack[kLanes] = {-1, -1, -1, -1, -1, -1, -1, -1};
+  /// The same as bits.
   unsigned free = 0;
   /// Free or not: so low that a floor not much higher would block them.
   unsigned low = 0;
@@ -28,8 +31,8 @@ inline constexpr float kBeyondHalf = 1.01F;
 /// which the kernels load.
 struct alignas(32) ClearanceLanes {
   float min_x[kLanes], min_z[kLanes];
-  /// Cells for each meter.
-  float inverse_cell[kLanes];
+  /// Cells for each meter, and the edge of one, meters.
+  float inverse_cell[kLanes], cell[kLanes];
   float cells_x[kLanes], cells_z[kLanes];
   /// Heights between which centers have to be, meters; below `low` they are low.
   float lowest[kLanes], low[kLanes], highest[kLanes];

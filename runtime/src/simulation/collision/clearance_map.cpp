@@ -167,6 +167,7 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
       to.min_x[lane] = grid.layout().min_x;
       to.min_z[lane] = grid.layout().min_z;
       to.inverse_cell[lane] = grid.layout().inverse_spacing / static_cast<float>(kColumnsPerCell);
+      to.cell[lane] = grid.layout().spacing * static_cast<float>(kColumnsPerCell);
       to.cells_x[lane] = static_cast<float>(cells.x);
       to.cells_z[lane] = static_cast<float>(cells.z);
       to.lowest[lane] = asked.lowest;
@@ -241,7 +242,10 @@ SureGroups surelyFree(const ClearanceLanes& lanes, const std::uint8_t* cells, co
     const float wide = at[stride] - at[0];
     const float deep = at[5 * stride] - at[4 * stride];
     const float half = 0.5F * (deep > wide ? deep : wide) * lanes.inverse_cell[n];
-    if (half + kBeyondHalf <= static_cast<float>(distance)) sure.free |= 1U << n;
+    const float slack = static_cast<float>(distance) - (half + kBeyondHalf);
+    if (!(slack >= 0)) continue;
+    sure.free |= 1U << n;
+    sure.slack[n] = slack * lanes.cell[n];
   }
   return sure;
 }

@@ -27,8 +27,8 @@ __m256i cellIndex(__m256i i, __m256i k, __m256i tiles_x) {
                          _mm256_or_si256(row, _mm256_and_si256(i, in_tile)));
 }
 
-SureGroups surelyFree(const ClearanceLanes& lanes, const std::uint8_t* cells, const float* bounds,
-                      std::size_t stride) {
+void findSure(const ClearanceLanes& lanes, const std::uint8_t* cells, const float* bounds,
+              std::size_t stride, SureGroups& sure) {
   const __m256 least_x = _mm256_loadu_ps(bounds);
   const __m256 most_x = _mm256_loadu_ps(bounds + stride);
   const __m256 least_y = _mm256_loadu_ps(bounds + 2 * stride);
@@ -69,10 +69,14 @@ SureGroups surelyFree(const ClearanceLanes& lanes, const std::uint8_t* cells, co
       _mm256_add_ps(_mm256_mul_ps(_mm256_mul_ps(_mm256_set1_ps(0.5F), edge), inverse_cell),
                     _mm256_set1_ps(kBeyondHalf));
   // Apart, so that only the first has to wait for the gather.
-  const __m256 free = both(inside, atLeast(distance, reach));
+  const __m256 slack = _mm256_sub_ps(distance, reach);
+  const __m256 free = both(inside, atLeast(slack, zero));
   constexpr unsigned kAll = (1U << kLanes) - 1;
-  return {static_cast<unsigned>(_mm256_movemask_ps(free)),
-          static_cast<unsigned>(_mm256_movemask_ps(is_high)) ^ kAll};
+  _mm256_store_ps(sure.slack,
+                  _mm256_blendv_ps(_mm256_set1_ps(-1),
+                                   _mm256_mul_ps(slack, _mm256_load_ps(lanes.cell)), free));
+  sure.free = static_cast<unsigned>(_mm256_movemask_ps(free));
+  sure.low = static_cast<unsigned>(_mm256_movemask_ps(is_high)) ^ kAll;
 }
 
 }  // namespace
@@ -80,7 +84,7 @@ SureGroups surelyFree(const ClearanceLanes& lanes, const std::uint8_t* cells, co
 void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count,
                     const std::uint8_t* cells, std::size_t stride, SureGroups* sure) noexcept {
   for (std::size_t n = 0; n < count; ++n) {
-    sure[n] = surelyFree(*questions[n].lanes, cells, questions[n].bounds, stride);
+    findSure(*questions[n].lanes, cells, questions[n].bounds, stride, sure[n]);
   }
 }
 

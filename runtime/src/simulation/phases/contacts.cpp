@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 
 #include "simulation/phases/object_placement.h"
 #include "simulation/state/grip_frame.h"
@@ -97,7 +98,7 @@ bool findBlockedAsAsked(const ChunkStep& step, std::size_t e) {
   std::uint64_t any = 0;
   for (std::size_t eight = 0; eight * kLanes < groups.size(); ++eight) {
     const std::size_t here = std::min(groups.size() - eight * kLanes, kLanes);
-    const SureGroups sure = step.chunk.sure(eight)[e];
+    const SureGroups& sure = step.chunk.sure(eight)[e];
     GroupBits& known = step.chunk.groupBits(eight);
     const unsigned others = ((1U << here) - 1) & ~known.suited;
     known.unsure = others & ~(sure.free & ~sure.low);
@@ -119,6 +120,22 @@ bool findBlockedAsAsked(const ChunkStep& step, std::size_t e) {
 bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
   askMaps(step, e, e + 1);
   return findBlockedAsAsked(step, e);
+}
+
+bool isSureAfter(const ChunkStep& step, std::size_t e, const Push& moved) noexcept {
+  // More than rounding, meters.
+  constexpr float kSlack = 1e-4F;
+  const float reach = std::max(std::abs(moved.x), std::abs(moved.z)) + kSlack;
+  const std::size_t groups = step.model.groups.size();
+  unsigned unsure = 0;
+  for (std::size_t eight = 0; eight * kLanes < groups; ++eight) {
+    const SureGroups& sure = step.chunk.sure(eight)[e];
+    unsigned known = step.chunk.groupBits(eight).suited;
+    for (std::size_t n = 0; n < kLanes; ++n) known |= (sure.slack[n] >= reach ? 1U : 0U) << n;
+    const std::size_t here = std::min(groups - eight * kLanes, kLanes);
+    unsure |= ((1U << here) - 1) & ~known;
+  }
+  return unsure == 0;
 }
 
 bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept {
@@ -165,17 +182,17 @@ bool heldPenetrates(const ChunkStep& step, std::size_t e) {
 bool isFreeAsAsked(const ChunkStep& step, std::size_t e) noexcept {
   step.chunk.forgetSuited();
   if (step.chunk.floor(e) != Floor::kCarries) return false;
-  return !findBlockedAsAsked(step, e) && !bodyTouchesObjects(step, e) && !heldPenetrates(step, e);
-}
-
-bool isStillFree(const ChunkStep& step, std::size_t e) noexcept {
-  if (step.chunk.floor(e) != Floor::kCarries) return false;
-  return !findBlocked(step, e) && !bodyTouchesObjects(step, e) && !heldPenetrates(step, e);
+  return !findBlockedAsAsked(step, e) && isFreeOfObjects(step, e);
 }
 
 bool isFree(const ChunkStep& step, std::size_t e) noexcept {
   step.chunk.forgetSuited();
-  return isStillFree(step, e);
+  if (step.chunk.floor(e) != Floor::kCarries) return false;
+  return !findBlocked(step, e) && isFreeOfObjects(step, e);
+}
+
+bool isFreeOfObjects(const ChunkStep& step, std::size_t e) noexcept {
+  return !bodyTouchesObjects(step, e) && !heldPenetrates(step, e);
 }
 
 }  // namespace galactic::simulation

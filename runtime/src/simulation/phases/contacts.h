@@ -13,8 +13,8 @@ namespace galactic::simulation {
 /// found on the way stays in the chunk.
 [[nodiscard]] bool isFree(const ChunkStep& step, std::size_t e) noexcept;
 
-/// The same after a move for which the chunk knows which groups of spheres it suits.
-[[nodiscard]] bool isStillFree(const ChunkStep& step, std::size_t e) noexcept;
+/// Whether the candidate penetrates no object, nor what it holds anything.
+[[nodiscard]] bool isFreeOfObjects(const ChunkStep& step, std::size_t e) noexcept;
 
 /// Asks the maps what is surely free of the candidates of the envs from `first` up to `end`: all of
 /// a chunk at once, so that none waits for the answer about another.
@@ -29,7 +29,12 @@ void askMaps(const ChunkStep& step, std::size_t first, std::size_t end) noexcept
 /// The spheres of the held object at the candidate's grip.
 [[nodiscard]] SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) noexcept;
 
-/// Finds the robot's spheres that the scene blocks, in the chunk's bits. Whether there is any.
+/// Whether a move to where groups that suit it are free leaves all others free, too: the scene's
+/// maps have said by how much. `moved`: since they were asked.
+[[nodiscard]] bool isSureAfter(const ChunkStep& step, std::size_t e, const Push& moved) noexcept;
+
+/// Finds the robot's spheres that the scene blocks, in the chunk's bits, except those of groups that
+/// suit a move. Whether there is any.
 bool findBlocked(const ChunkStep& step, std::size_t e) noexcept;
 
 /// Finds where the spheres of a group are, in the chunk.

@@ -45,12 +45,36 @@ class Glide {
     for (std::uint32_t attempt = 0; attempt < step_.model.options.slide.attempts; ++attempt) {
       if (step_.chunk.floor(e_) == Floor::kDrops) return false;
       if (!(addBlocked() ? leaveScene() : leaveObjects())) return false;
-      if (isStillFree(step_, e_)) return true;
+      if (isFreeNow()) return true;
     }
     return false;
   }
 
  private:
+  /// Moves the candidate over the floor. Whether it is as high as before.
+  bool move(const Push& by) {
+    const bool is_level = moveBase(step_, e_, by);
+    since_asked_ = {since_asked_.x + by.x, since_asked_.z + by.z};
+    knows_maps_ = knows_maps_ && is_level;
+    return is_level;
+  }
+
+  bool isFreeNow() {
+    if (step_.chunk.floor(e_) != Floor::kCarries) return false;
+    return !isBlockedNow() && isFreeOfObjects(step_, e_);
+  }
+
+  /// Whether the scene blocks any of the robot's spheres.
+  bool isBlockedNow() {
+    // With something in the hand, another way out may be sought for the groups that are asked here.
+    if (env_.held.object < 0 && knows_maps_ && isSureAfter(step_, e_, since_asked_)) {
+      std::ranges::fill(step_.chunk.blockedBits(), 0U);
+      return false;
+    }
+    knows_maps_ = false;
+    return findBlocked(step_, e_);
+  }
+
   /// The way out is sought from where the candidate is now.
   void begin() {
     way_.clear(obstacles_.scene.grids().front().spacing());
@@ -70,7 +94,10 @@ class Glide {
   /// any.
   bool addBlocked() {
     const bool floor_blocks = step_.chunk.floor(e_) == Floor::kBlocks;
-    if (floor_blocks) findBlocked(step_, e_);
+    if (floor_blocks) {
+      knows_maps_ = false;
+      findBlocked(step_, e_);
+    }
     const bool body = floor_blocks || !isEmpty(step_.chunk.blockedBits());
     // isFree() asks about what the robot holds when the robot itself is free.
     const bool held = !body && !isEmpty(step_.chunk.heldBits()) && heldIsBlocked();
@@ -237,7 +264,7 @@ class Glide {
     // Where the arm or a turn led into something, the drive is not to blame.
     if (!push && has_way_ && isBlockedWithoutDrive()) push = findWay({});
     if (!push) return false;
-    const bool is_level = moveBase(step_, e_, {push->x - moved_.x, push->z - moved_.z});
+    const bool is_level = move({push->x - moved_.x, push->z - moved_.z});
     // At another height all is different.
     if (!is_level) forgetWays();
     moved_ = *push;
@@ -250,6 +277,7 @@ class Glide {
     const Push back{-drive_.x - moved_.x, -drive_.z - moved_.z};
     step_.chunk.shift(e_, {back.x, 0, back.z});
     step_.chunk.forgetSuited();
+    knows_maps_ = false;
     const bool is_blocked = findBlocked(step_, e_) || heldIsBlocked();
     step_.chunk.shift(e_, {-back.x, 0, -back.z});
     return is_blocked;
@@ -269,7 +297,7 @@ class Glide {
     }
     const Push push = sum.total(step_.model.options.slide.step);
     if (push.x == 0 && push.z == 0) return false;
-    moveBase(step_, e_, push);
+    move(push);
     begin();
     return true;
   }
@@ -282,6 +310,10 @@ class Glide {
   Push drive_;
   /// From where the way out was begun.
   Push moved_;
+  /// From where the maps were asked what is sure.
+  Push since_asked_;
+  /// What they said is of where the candidate was, at the same height.
+  bool knows_maps_ = true;
   bool has_way_ = true;
   /// Slices know no way out, so columns are asked from now on.
   bool asks_columns_ = false;

@@ -126,6 +126,7 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
   for (std::uint8_t& cell : cells) cell = static_cast<std::uint8_t>(random() % 8);
   for (std::size_t n = 0; n < kLanes; ++n) {
     lanes.inverse_cell[n] = 16;
+    lanes.cell[n] = 1.0F / 16;
     lanes.cells_x[n] = 50;
     lanes.cells_z[n] = 60;
     lanes.lowest[n] = 0.2F;
