@@ -108,6 +108,17 @@ bool areInOneScene(const ChunkStep& step, std::size_t first, std::size_t count) 
   return others == 0;
 }
 
+/// Whether candidates stand on level floors, at the height at which they are.
+bool areLevel(const ChunkStep& step, std::size_t first, std::size_t count) {
+  bool are_level = true;
+  for (std::size_t e = first; e < first + count; ++e) {
+    const std::uint32_t map = step.state.env(step.first + e).clearance_map;
+    are_level = are_level && step.model.level_floors.isLevel(map, step.chunk.base(e));
+    step.chunk.floor(e) = Floor::kCarries;
+  }
+  return are_level;
+}
+
 }  // namespace
 
 Vec3 floorProbe(const Scene& scene, const Vec3& base, const GroundOptions& options) noexcept {
@@ -132,6 +143,12 @@ void keepBodies(const ChunkStep& step, const EnvMask& wanted) noexcept {
                                  .envs = kChunk});
 }
 
+FloorUnder floorUnder(const ChunkStep& step, std::size_t e, const Vec3& base) noexcept {
+  const Env& env = step.state.env(step.first + e);
+  if (step.model.level_floors.isLevel(env.clearance_map, base)) return {Floor::kCarries, base.y};
+  return floorUnder(step.model.world->scenes()[env.scene], base, step.model.options.ground);
+}
+
 void proposePoses(const ChunkStep& step) noexcept {
   step.model.kernels.move(step.model.tables, {.actions = step.chunk.actions().front().values,
                                               .joints = step.model.motion.controlled.size(),
@@ -144,15 +161,16 @@ void followFloor(const ChunkStep& step) noexcept {
   const auto scene_of = [&](std::size_t e) -> const Scene& {
     return step.model.world->scenes()[step.state.env(step.first + e).scene];
   };
+  if (areLevel(step, 0, kChunk)) return;
   if (areInOneScene(step, 0, kChunk)) return followFloor(step, scene_of(0), 0, kChunk);
   for (std::size_t first = 0; first < kChunk; first += kLanes) {
+    if (areLevel(step, first, kLanes)) continue;
     if (areInOneScene(step, first, kLanes)) {
       followFloor(step, scene_of(first), first, kLanes);
       continue;
     }
     for (std::size_t e = first; e < first + kLanes; ++e) {
-      const FloorUnder under =
-          floorUnder(scene_of(e), step.chunk.base(e), step.model.options.ground);
+      const FloorUnder under = floorUnder(step, e, step.chunk.base(e));
       step.chunk.floor(e) = under.floor;
       *step.chunk.candidates(e).y = under.height;
     }

@@ -39,5 +39,8 @@ struct FloorUnder {
 };
 [[nodiscard]] FloorUnder floorUnder(const Scene& scene, const Vec3& base,
                                     const GroundOptions& options) noexcept;
+/// The same in the scene of the chunk's env `e`, mostly without a query.
+[[nodiscard]] FloorUnder floorUnder(const ChunkStep& step, std::size_t e,
+                                    const Vec3& base) noexcept;
 
 }  // namespace galactic::simulation

@@ -14,11 +14,9 @@ namespace {
 
 /// Moves the candidate over the floor. Whether it is as high as before.
 bool moveBase(const ChunkStep& step, std::size_t e, const Push& by) {
-  const Scene& scene = step.model.world->scenes()[step.state.env(step.first + e).scene];
   const float floor_before = *step.state.poses(step.first + e).y;
   const Vec3 base = step.chunk.base(e);
-  const FloorUnder under =
-      floorUnder(scene, {base.x + by.x, floor_before, base.z + by.z}, step.model.options.ground);
+  const FloorUnder under = floorUnder(step, e, {base.x + by.x, floor_before, base.z + by.z});
   step.chunk.floor(e) = under.floor;
   step.chunk.shift(e, {by.x, under.height - base.y, by.z});
   return under.height == base.y;
@@ -230,6 +228,10 @@ class Glide {
       for (unsigned left = group.spheres; left != 0; left &= left - 1) {
         const std::size_t at = n * kLanes + static_cast<std::size_t>(std::countr_zero(left));
         addColumn(group.radius_index, {spheres.x[at], spheres.y[at], spheres.z[at]});
+      }
+      if (columns.isHopeless()) {
+        has_way_ = false;
+        return;
       }
     }
     if (!holds_columns_) {

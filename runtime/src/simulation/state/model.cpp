@@ -139,6 +139,13 @@ class StartFinder {
                             .highest = -std::numeric_limits<float>::infinity()};
 };
 
+void addLevelFloor(const Scene& scene, const Vec3& start, Model& model) {
+  model.level_floors.add(scene.grids().front(), start, [&](const Vec3& at, float height) {
+    const FloorUnder under = floorUnder(scene, {at.x, height, at.z}, model.options.ground);
+    return under.floor == Floor::kCarries ? under.height : std::numeric_limits<float>::quiet_NaN();
+  });
+}
+
 /// Makes a map for each floor of each scene on which episodes start.
 void mapClearance(const HeightsOverFloor& heights, Model& model) {
   // Starts whose floors differ by no more stand on one floor, with rugs.
@@ -168,6 +175,7 @@ void mapClearance(const HeightsOverFloor& heights, Model& model) {
     const std::uint32_t map =
         model.clearance.add(model.world->scenes()[scene], floor, kUnevenness, raised);
     model.slices.add(model.world->scenes()[scene], floor, raised);
+    addLevelFloor(model.world->scenes()[scene], model.starts[order[n]].base, model);
     for (; n < order.size() && scene_of(order[n]) == scene &&
            model.starts[order[n]].base.y <= floor + kUnevenness;
          ++n) {

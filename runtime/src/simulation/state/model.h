@@ -13,6 +13,7 @@
 #include "sensors/laser.h"
 #include "simulation/collision/clearance_map.h"
 #include "simulation/collision/collision.h"
+#include "simulation/collision/level_floors.h"
 #include "simulation/motion/motion_kernels.h"
 #include "simulation/motion/motion_model.h"
 #include "simulation/ways_out/free_slices.h"
@@ -55,6 +56,7 @@ struct Model {
   ClearanceMaps clearance;
   /// Of the same floors, by the same numbers.
   FreeSlices slices;
+  LevelFloors level_floors;
   std::size_t most_objects = 0;
   /// Spheres of the largest object, padded to lanes.
   std::size_t most_held_spheres = 0;

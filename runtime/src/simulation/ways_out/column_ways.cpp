@@ -79,6 +79,8 @@ void ColumnWays::clear() noexcept {
   is_full_ = false;
 }
 
+bool ColumnWays::isHopeless() const noexcept { return isEmpty(may_be_free_); }
+
 void ColumnWays::add(const ColumnGrid& grid, const Vec3& center,
                      const std::optional<SurroundingRows>& around) noexcept {
   if (spheres_.size() == spheres_.capacity()) {
@@ -123,7 +125,7 @@ void ColumnWays::ask(const Surroundings& cells, Sphere& sphere) noexcept {
 bool ColumnWays::addTo(WayOut& way) noexcept {
   if (is_full_) return false;
   Surroundings in_all = may_be_free_;
-  if (isEmpty(in_all)) return false;
+  if (isHopeless()) return false;
   for (Sphere& sphere : spheres_) {
     ask(in_all, sphere);
     for (std::size_t n = 0; n < kCells.size(); ++n) {

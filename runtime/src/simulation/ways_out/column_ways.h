@@ -30,6 +30,9 @@ class ColumnWays {
   void add(const ColumnGrid& grid, const Vec3& center,
            const std::optional<SurroundingRows>& around) noexcept;
 
+  /// Whether slices call every cell blocked for one of the spheres so far: there is no way out.
+  [[nodiscard]] bool isHopeless() const noexcept;
+
   /// Asks the columns, and adds the spheres to `way`. False where they leave no cell free, or there
   /// were more of them than there is room for: there is no way out.
   bool addTo(WayOut& way) noexcept;

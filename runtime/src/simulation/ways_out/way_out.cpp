@@ -60,9 +60,8 @@ struct CellRange {
 /// moves `rounding` further.
 CellRange cellsAfter(float part, float by, float rounding) {
   if (by == 0) return {};
-  // Truncation rounds down what is positive.
-  constexpr int kAbove = 64;
-  const float cell = part + by + static_cast<float>(kAbove);
+  const float cell = part + by + kAboveCells;
+  constexpr auto kAbove = static_cast<int>(kAboveCells);
   return {static_cast<int>(cell - rounding) - kAbove, static_cast<int>(cell + rounding) - kAbove};
 }
 
@@ -145,14 +144,29 @@ TakenBackBoth takenBackPortable(const EightWays* ways, std::size_t count,
   return back;
 }
 
-bool allFreePortable(const EightWays* ways, std::size_t count, float by_x, float by_z,
+bool noneAtBorderPortable(const EightWays* ways, std::size_t count, const CellPush& by,
+                          float distance) noexcept {
+  const auto isNear = [distance](float part, float by_this) {
+    const float cell = part + by_this + kAboveCells;
+    return by_this != 0 && std::abs(cell - std::nearbyint(cell)) <= distance;
+  };
+  for (std::size_t n = 0; n < count * kLanes; ++n) {
+    const EightWays& eight = ways[n / kLanes];
+    const std::size_t lane = n % kLanes;
+    if (eight.counts[lane] == 0) continue;
+    if (isNear(eight.part_x[lane], by.x) || isNear(eight.part_z[lane], by.z)) return false;
+  }
+  return true;
+}
+
+bool allFreePortable(const EightWays* ways, std::size_t count, const CellPush& by,
                      float rounding) noexcept {
   for (std::size_t n = 0; n < count * kLanes; ++n) {
     const EightWays& eight = ways[n / kLanes];
     const std::size_t lane = n % kLanes;
     if (eight.counts[lane] == 0) continue;
-    const CellRange x = cellsAfter(eight.part_x[lane], by_x, rounding);
-    const CellRange z = cellsAfter(eight.part_z[lane], by_z, rounding);
+    const CellRange x = cellsAfter(eight.part_x[lane], by.x, rounding);
+    const CellRange z = cellsAfter(eight.part_z[lane], by.z, rounding);
     const bool is_known =
         std::min(x.first, z.first) >= -kCellsAround && std::max(x.last, z.last) <= kCellsAround;
     const bool is_free =
@@ -242,12 +256,17 @@ Push WayOut::shortened(const WayCell& to) const noexcept {
 }
 
 bool WayOut::suits(const Push& push) const noexcept {
-  const float by_x = push.x / spacing_;
-  const float by_z = push.z / spacing_;
+  const CellPush by{push.x / spacing_, push.z / spacing_};
   // Less than what spheres go into cells by.
   const float rounding = 0.5F * kIntoCell / spacing_;
-  return detail::hasAvx2() ? allFreeAvx2(ways_.data(), count_, by_x, by_z, rounding)
-                           : allFreePortable(ways_.data(), count_, by_x, by_z, rounding);
+  // What a move is shortened to leaves all spheres free but for those that rounding may take further.
+  const float near = 1.25F * rounding;
+  if (detail::hasAvx2()) {
+    return noneAtBorderAvx2(ways_.data(), count_, by, near) ||
+           allFreeAvx2(ways_.data(), count_, by, rounding);
+  }
+  return noneAtBorderPortable(ways_.data(), count_, by, near) ||
+         allFreePortable(ways_.data(), count_, by, rounding);
 }
 
 template <class MayBe>

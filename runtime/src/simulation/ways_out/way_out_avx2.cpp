@@ -100,8 +100,8 @@ struct CellRanges {
 
 CellRanges cellsAfter(const float* part, float by, float rounding) {
   if (by == 0) return {_mm256_setzero_si256(), _mm256_setzero_si256()};
-  constexpr int kAbove = 64;
-  const __m256 above = _mm256_set1_ps(static_cast<float>(kAbove));
+  constexpr auto kAbove = static_cast<int>(kAboveCells);
+  const __m256 above = _mm256_set1_ps(kAboveCells);
   const __m256 cell = _mm256_add_ps(_mm256_add_ps(_mm256_load_ps(part), _mm256_set1_ps(by)), above);
   const __m256 slack = _mm256_set1_ps(rounding);
   const __m256i down = _mm256_set1_epi32(kAbove);
@@ -172,13 +172,14 @@ __m256i blockedAnywhere(const EightWays& ways, const MovedCells& cells, __m256i 
   return _mm256_or_si256(is_unknown, _mm256_andnot_si256(is_free, looked_at));
 }
 
-bool areFree(const EightWays& ways, float by_x, float by_z, float rounding) {
+bool areFree(const EightWays& ways, const CellPush& by, float rounding) {
   const __m256i counts = load(ways.counts);
-  constexpr int kAbove = 64;
-  const MovedCells cells{cellsAfter(ways.part_x, by_x, rounding),
-                         cellsAfter(ways.part_z, by_z, rounding),
-                         {static_cast<int>(by_x + kAbove) - kAbove,
-                          static_cast<int>(by_z + kAbove) - kAbove}};
+  const auto lowOf = [](float by_this) {
+    return static_cast<int>(by_this + kAboveCells) - static_cast<int>(kAboveCells);
+  };
+  const MovedCells cells{cellsAfter(ways.part_x, by.x, rounding),
+                         cellsAfter(ways.part_z, by.z, rounding),
+                         {lowOf(by.x), lowOf(by.z)}};
   // Rounding rarely leads further than to the next cell, and moves to the last one are rare.
   const auto beyond = [counts](const CellRanges& range, int low) {
     const __m256i is_beyond =
@@ -190,6 +191,14 @@ bool areFree(const EightWays& ways, float by_x, float by_z, float rounding) {
   const __m256i blocked =
       is_rare ? blockedAnywhere(ways, cells, counts) : blockedInFour(ways, cells);
   return _mm256_testz_si256(blocked, counts) != 0;
+}
+
+/// How far places are from the nearest border of a cell after a move.
+__m256 toWholeCell(const float* part, float by) {
+  const __m256 cell = _mm256_add_ps(_mm256_add_ps(_mm256_load_ps(part), _mm256_set1_ps(by)),
+                                    _mm256_set1_ps(kAboveCells));
+  const __m256 whole = _mm256_round_ps(cell, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+  return _mm256_andnot_ps(_mm256_set1_ps(-0.0F), _mm256_sub_ps(cell, whole));
 }
 
 }  // namespace
@@ -259,10 +268,26 @@ TakenBackBoth takenBackAvx2(const EightWays* ways, std::size_t count,
   return {{first.x, second.z}, {second.x, first.z}};
 }
 
-bool allFreeAvx2(const EightWays* ways, std::size_t count, float by_x, float by_z,
+bool noneAtBorderAvx2(const EightWays* ways, std::size_t count, const CellPush& by,
+                      float distance) noexcept {
+  // What does not move along an axis may be at its border.
+  const __m256 near_x = _mm256_set1_ps(by.x == 0 ? -1 : distance);
+  const __m256 near_z = _mm256_set1_ps(by.z == 0 ? -1 : distance);
+  __m256i is_near = _mm256_setzero_si256();
+  for (std::size_t n = 0; n < count; ++n) {
+    const __m256 near = _mm256_or_ps(
+        _mm256_cmp_ps(toWholeCell(ways[n].part_x, by.x), near_x, _CMP_LE_OQ),
+        _mm256_cmp_ps(toWholeCell(ways[n].part_z, by.z), near_z, _CMP_LE_OQ));
+    is_near = _mm256_or_si256(is_near,
+                              _mm256_and_si256(_mm256_castps_si256(near), load(ways[n].counts)));
+  }
+  return _mm256_testz_si256(is_near, is_near) != 0;
+}
+
+bool allFreeAvx2(const EightWays* ways, std::size_t count, const CellPush& by,
                  float rounding) noexcept {
   for (std::size_t n = 0; n < count; ++n) {
-    if (!areFree(ways[n], by_x, by_z, rounding)) return false;
+    if (!areFree(ways[n], by, rounding)) return false;
   }
   return true;
 }
@@ -284,9 +309,14 @@ TakenBackBoth takenBackAvx2(const EightWays* ways, std::size_t count,
   return takenBackPortable(ways, count, move);
 }
 
-bool allFreeAvx2(const EightWays* ways, std::size_t count, float by_x, float by_z,
+bool noneAtBorderAvx2(const EightWays* ways, std::size_t count, const CellPush& by,
+                      float distance) noexcept {
+  return noneAtBorderPortable(ways, count, by, distance);
+}
+
+bool allFreeAvx2(const EightWays* ways, std::size_t count, const CellPush& by,
                  float rounding) noexcept {
-  return allFreePortable(ways, count, by_x, by_z, rounding);
+  return allFreePortable(ways, count, by, rounding);
 }
 
 }  // namespace galactic::simulation

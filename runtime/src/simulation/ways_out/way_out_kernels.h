@@ -49,6 +49,15 @@ struct TakenBackBoth {
   TakenBack along_z_first;
 };
 
+/// Added to cells before they are rounded: truncation rounds down what is positive.
+inline constexpr float kAboveCells = 64;
+
+/// A move, in cells.
+struct CellPush {
+  float x = 0;
+  float z = 0;
+};
+
 /// Where a move ends, and how far into a cell spheres go, as a part of it: those that are less than
 /// that from the border of their cell along the first axis are a cell behind along it.
 struct CellMove {
@@ -72,11 +81,17 @@ bool addWaysAvx2(const std::uint16_t* rows, const EightPlaces& places, unsigned 
 [[nodiscard]] TakenBackBoth takenBackAvx2(const EightWays* ways, std::size_t count,
                                           const CellMove& move) noexcept;
 
+/// Whether no sphere is nearer than `distance` to a border of its cell after a move, in cells.
+[[nodiscard]] bool noneAtBorderPortable(const EightWays* ways, std::size_t count, const CellPush& by,
+                                        float distance) noexcept;
+[[nodiscard]] bool noneAtBorderAvx2(const EightWays* ways, std::size_t count, const CellPush& by,
+                                    float distance) noexcept;
+
 /// Whether all spheres are free after a move, in cells. `rounding`: may take a sphere that moves
 /// so much further.
-[[nodiscard]] bool allFreePortable(const EightWays* ways, std::size_t count, float by_x, float by_z,
+[[nodiscard]] bool allFreePortable(const EightWays* ways, std::size_t count, const CellPush& by,
                                    float rounding) noexcept;
-[[nodiscard]] bool allFreeAvx2(const EightWays* ways, std::size_t count, float by_x, float by_z,
+[[nodiscard]] bool allFreeAvx2(const EightWays* ways, std::size_t count, const CellPush& by,
                                float rounding) noexcept;
 
 }  // namespace galactic::simulation
