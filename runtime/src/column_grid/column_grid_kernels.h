@@ -66,11 +66,13 @@ struct EightsOfCenters {
 #endif
 }
 
-/// Whether code built for AVX-512 (F, BW, DQ and VL) can run on this processor.
+/// Whether code built for AVX-512 (F, BW, DQ, VL) and instructions for bits (BMI, BMI2) can run on
+/// this processor.
 [[nodiscard, gnu::always_inline]] inline bool hasAvx512() noexcept {
 #if defined(__x86_64__)
   return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
-         __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
+         __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
+         __builtin_cpu_supports("bmi") != 0 && __builtin_cpu_supports("bmi2") != 0;
 #else
   return false;
 #endif

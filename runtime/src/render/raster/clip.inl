@@ -103,8 +103,9 @@ GALACTIC_EVERYWHERE inline ClipVertex clipVertex(const State& state, std::uint32
   };
   ClipVertex vertex{at(frame.w), at(frame.x), at(frame.y), 0, 0, {}};
   if (state.facts.isTextured()) {
-    vertex.u = state.uv[2 * number];
-    vertex.v = state.uv[2 * number + 1];
+    const auto uv = pairAt(state.uv, number);
+    vertex.u = uv.first;
+    vertex.v = uv.second;
   }
   if (state.facts.color_kind != 0) {
     const auto color = static_cast<std::uint32_t>(state.colors[number]);
@@ -119,8 +120,8 @@ GALACTIC_EVERYWHERE inline ClipVertex clipVertex(const State& state, std::uint32
 template <class State>
 GALACTIC_EVERYWHERE inline Corner cornerOf(const State& state, std::uint32_t number) {
   const ClipVertex vertex = clipVertex(state, number);
-  Corner corner{
-      state.xy[2 * number], state.xy[2 * number + 1], state.z[number], vertex.u, vertex.v, {}};
+  const auto xy = pairAt(state.xy, number);
+  Corner corner{xy.first, xy.second, state.z[number], vertex.u, vertex.v, {}};
   __builtin_memcpy(corner.color, vertex.color, sizeof(corner.color));
   return corner;
 }

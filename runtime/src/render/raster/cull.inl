@@ -183,45 +183,50 @@ GALACTIC_EVERYWHERE inline PixelRange pixelsWithin(const Interval& interval, Lan
   return {first, last};
 }
 
-/// Nearness, tiles and pixels of eight clusters.
-struct EightSeen {
+/// Nearness, tiles and pixels of a vector of clusters.
+struct BoxesSeen {
   unsigned seen;
   Lanes nearest;
   Lanes distance;
   PixelRange x, y;
 };
 
-GALACTIC_EVERYWHERE inline EightSeen lookAtEight(const PaneTask& task, const CullFrame& frame,
-                                                 const float* bounds) {
+/// The boxes of a block of eight, and of the one `next` numbers further where vectors take two.
+GALACTIC_EVERYWHERE inline BoxLanes loadBoxes(const float* bounds, std::size_t next = 0) {
   BoxLanes box;
   for (std::uint32_t n = 0; n < 3; ++n) {
-    box.center[n] = load<Lanes>(bounds + kWidth * (kCenterX + n));
-    box.half[n] = load<Lanes>(bounds + kWidth * (kHalfX + n));
+    box.center[n] = loadRows(bounds + kWidth * (kCenterX + n), next);
+    box.half[n] = loadRows(bounds + kWidth * (kHalfX + n), next);
   }
-  EightSeen eight;
-  eight.seen = task.culling ? withinPlanes(frame, box) : kAllLanes;
-  if (eight.seen == 0) return eight;
-  eight.distance = atCenter(frame.w, box) - reachOf(frame.w, box) - spread(frame.w.error);
-  eight.nearest = spread(kUnknownNearness);
+  return box;
+}
+
+GALACTIC_EVERYWHERE inline BoxesSeen lookAt(const PaneTask& task, const CullFrame& frame,
+                                            const BoxLanes& box) {
+  BoxesSeen boxes;
+  boxes.seen = task.culling ? withinPlanes(frame, box) : kAllLanes;
+  if (boxes.seen == 0) return boxes;
+  boxes.distance = atCenter(frame.w, box) - reachOf(frame.w, box) - spread(frame.w.error);
+  boxes.nearest = spread(kUnknownNearness);
   const auto last_x = static_cast<std::int32_t>(task.width) - 1;
   const auto last_y = static_cast<std::int32_t>(task.height) - 1;
-  eight.x = {spread(0), spread(last_x)};
-  eight.y = {spread(0), spread(last_y)};
-  if (!task.culling) return eight;
-  const IntLanes in_front = eight.distance > spread(task.near);
-  if ((signBits(in_front) & eight.seen) == 0) return eight;
-  const Lanes inverse = spread(1.0F) / eight.distance;
+  boxes.x = {spread(0), spread(last_x)};
+  boxes.y = {spread(0), spread(last_y)};
+  if (!task.culling) return boxes;
+  const IntLanes in_front = boxes.distance > spread(task.near);
+  if ((signBits(in_front) & boxes.seen) == 0) return boxes;
+  const Lanes inverse = spread(1.0F) / boxes.distance;
   // A part in a million more: the division is rounded.
-  eight.nearest = pick(in_front, inverse * spread(1.000001F), eight.nearest);
+  boxes.nearest = pick(in_front, inverse * spread(1.000001F), boxes.nearest);
   const Lanes error = spread(frame.projected_error) * inverse + spread(kMoved);
   const Footprint covered = footprint(frame, box);
   const PixelRange x = pixelsWithin(covered.x, error, frame.edges.left, task.width);
   const PixelRange y = pixelsWithin(covered.y, error, frame.edges.top, task.height);
   const IntLanes none = in_front & ((x.first > x.last) | (y.first > y.last));
-  eight.seen &= ~signBits(none);
-  eight.x = {pick(in_front, x.first, eight.x.first), pick(in_front, x.last, eight.x.last)};
-  eight.y = {pick(in_front, y.first, eight.y.first), pick(in_front, y.last, eight.y.last)};
-  return eight;
+  boxes.seen &= ~signBits(none);
+  boxes.x = {pick(in_front, x.first, boxes.x.first), pick(in_front, x.last, boxes.x.last)};
+  boxes.y = {pick(in_front, y.first, boxes.y.first), pick(in_front, y.last, boxes.y.last)};
+  return boxes;
 }
 
 /// Buckets of equal ratio, sixteen for each doubling of the distance from the near plane.

@@ -1,6 +1,9 @@
 // Vectors of eight: the few operations that the kernels are made of. Written with the compilers'
 // vector extensions; where AVX2 has an instruction that they do not find, it is named. Both ways
 // give the same bits.
+#include <cstddef>
+#include <cstdint>
+
 #if defined(__AVX2__)
 #include "render/raster/gather_avx2.inl"
 #endif
@@ -14,11 +17,14 @@ using WordLanes = std::uint32_t __attribute__((vector_size(32)));
 using ShortLanes = std::uint16_t __attribute__((vector_size(32)));
 using EightBytes = std::uint8_t __attribute__((vector_size(8)));
 using EightShorts = std::uint16_t __attribute__((vector_size(16)));
+/// Some of the lanes, by their signs.
+using LaneSet = IntLanes;
 
 /// Of the rows in pools, and of what is stored in blocks.
 constexpr std::uint32_t kWidth = 8;
-/// Of vectors.
+/// Of vectors, and the blocks that fill one.
 constexpr std::uint32_t kLanes = 8;
+constexpr std::uint32_t kBlocks = 1;
 constexpr unsigned kAllLanes = 0xFF;
 constexpr std::size_t kVectorBytes = 32;
 constexpr std::size_t kGroupAlignment = 64;
@@ -77,19 +83,6 @@ inline IntLanes laneOf(IntLanes v, int lane) {
 #endif
 }
 
-/// By the sign bits alone.
-inline Lanes pickBySign(IntLanes sign, Lanes yes, Lanes no) {
-#if defined(__AVX2__)
-  return pick(sign, yes, no);
-#else
-  return pick(sign >> 31, yes, no);
-#endif
-}
-
-inline IntLanes pickBySign(IntLanes sign, IntLanes yes, IntLanes no) {
-  return as<IntLanes>(pickBySign(sign, as<Lanes>(yes), as<Lanes>(no)));
-}
-
 /// The second where the comparison fails, as with numbers that are none.
 inline Lanes lesser(Lanes a, Lanes b) {
 #if defined(__AVX2__)
@@ -141,6 +134,24 @@ inline unsigned signBits(IntLanes v) {
 #endif
 }
 
+inline unsigned bitsOf(LaneSet set) { return signBits(set); }
+inline LaneSet noLanes() { return spread(0); }
+inline LaneSet bySign(IntLanes v) { return v; }
+
+/// The lanes whose sign is not set and where `a` is greater.
+inline LaneSet insideAndGreater(IntLanes outside, Lanes a, Lanes b) { return ~outside & (a > b); }
+
+inline Lanes pickFrom(LaneSet set, Lanes yes, Lanes no) {
+#if defined(__AVX2__)
+  return pick(set, yes, no);
+#else
+  return pick(set >> 31, yes, no);
+#endif
+}
+inline IntLanes pickFrom(LaneSet set, IntLanes yes, IntLanes no) {
+  return as<IntLanes>(pickFrom(set, as<Lanes>(yes), as<Lanes>(no)));
+}
+
 /// Of bits that are not all 0: the number of the lowest one.
 inline int lowestBit(unsigned bits) { return __builtin_ctz(bits); }
 
@@ -166,6 +177,12 @@ inline IntLanes gather(const std::int32_t* from, IntLanes at) {
   return as<IntLanes>(gather(reinterpret_cast<const float*>(from), at));
 }
 
+/// Entries of a table, by their numbers.
+template <class Element>
+inline auto lookUp(const Element* table, IntLanes at) {
+  return gather(table, at);
+}
+
 template <class Vector>
 struct Pair {
   Vector first, second;
@@ -187,30 +204,33 @@ inline Pair<IntLanes> gatherTwo(const std::int32_t* from, IntLanes at) {
 #endif
 }
 
-/// Elements 2 * at and 2 * at + 1.
-inline Pair<IntLanes> gatherPairs(const std::int32_t* from, IntLanes at) {
-  return gatherTwo<2>(from, at);
-}
 /// Elements at and at + 1.
 inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from, IntLanes at) {
   return gatherTwo<1>(from, at);
 }
 
-inline Pair<Lanes> gatherPairs(const float* from, IntLanes at) {
-  const Pair<IntLanes> bits = gatherPairs(reinterpret_cast<const std::int32_t*>(from), at);
+/// Entries of a table of pairs, by their numbers.
+inline Pair<IntLanes> lookUpPairs(const std::int32_t* table, IntLanes at) {
+  return gatherTwo<2>(table, at);
+}
+inline Pair<Lanes> lookUpPairs(const float* table, IntLanes at) {
+  const Pair<IntLanes> bits = lookUpPairs(reinterpret_cast<const std::int32_t*>(table), at);
   return {as<Lanes>(bits.first), as<Lanes>(bits.second)};
+}
+template <class Element>
+inline Pair<Element> pairAt(const Element* table, std::uint32_t number) {
+  return {table[std::size_t{2} * number], table[std::size_t{2} * number + 1]};
 }
 
 using Quad = float __attribute__((vector_size(16)));
 
-/// Elements kStride * ids[lane] and the three behind them become a vector each.
-template <std::uint32_t kStride>
-inline void gatherFour(const float* from, const std::int32_t* ids, Lanes* fields) {
+/// Elements stride * ids[lane] and the three behind them become a vector each.
+inline void gatherFour(const float* from, std::size_t stride, const std::int32_t* ids,
+                       Lanes* fields) {
   Lanes pairs[4];
   for (int n = 0; n < 4; ++n) {
-    const auto near = load<Quad>(from + std::size_t{kStride} * static_cast<std::uint32_t>(ids[n]));
-    const auto far =
-        load<Quad>(from + std::size_t{kStride} * static_cast<std::uint32_t>(ids[n + 4]));
+    const auto near = load<Quad>(from + stride * static_cast<std::uint32_t>(ids[n]));
+    const auto far = load<Quad>(from + stride * static_cast<std::uint32_t>(ids[n + 4]));
     pairs[n] = __builtin_shufflevector(near, far, 0, 1, 2, 3, 4, 5, 6, 7);
   }
   const Lanes a = __builtin_shufflevector(pairs[0], pairs[1], 0, 8, 1, 9, 4, 12, 5, 13);
@@ -223,11 +243,30 @@ inline void gatherFour(const float* from, const std::int32_t* ids, Lanes* fields
   fields[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-/// Writes the lanes of both in turn: what gatherPairs reads.
+/// Numbers of rows become vectors: `kCount` of row ids[lane] for each lane. Rows are `kStride`
+/// long, a multiple of four; all lanes often have the same one.
+template <std::uint32_t kCount, std::uint32_t kStride>
+inline void gatherRows(const float* rows, const std::int32_t* ids, Lanes* fields) {
+  if (signBits(load<IntLanes>(ids) == spread(ids[0])) == kAllLanes) {
+    const float* row = rows + std::size_t{kStride} * static_cast<std::uint32_t>(ids[0]);
+    for (std::uint32_t n = 0; n < kCount; ++n) fields[n] = spread(row[n]);
+    return;
+  }
+  for (std::uint32_t n = 0; n < kCount; n += 4) gatherFour(rows + n, kStride, ids, fields + n);
+}
+
+/// Writes entries of a table of pairs.
 template <class Vector, class Element>
 inline void storePairs(Element* to, Vector first, Vector second) {
   store(to, __builtin_shufflevector(first, second, 0, 8, 1, 9, 2, 10, 3, 11));
   store(to + kWidth, __builtin_shufflevector(first, second, 4, 12, 5, 13, 6, 14, 7, 15));
+}
+
+/// Two rows of pixels to an image, whose rows lie `stride` bytes apart.
+inline void storeBlocks(std::uint8_t* to, std::size_t stride, IntLanes v) {
+  using Row = std::int32_t __attribute__((vector_size(16)));
+  store(to, Row{v[0], v[1], v[2], v[3]});
+  store(to + stride, Row{v[4], v[5], v[6], v[7]});
 }
 
 /// p + (q - p) * weight / 256 for the 16-bit halves of all lanes, which are bytes; `rest` is 256
@@ -259,6 +298,15 @@ inline IntLanes widen(EightBytes v) {
 #endif
 }
 
+/// A block of eight: `next`, where there is more, is for wider vectors.
+inline IntLanes loadRows(const std::uint16_t* from, std::size_t /*next*/) {
+  return widen(load<EightShorts>(from));
+}
+inline IntLanes loadRows(const std::uint8_t* from, std::size_t /*next*/) {
+  return widen(load<EightBytes>(from));
+}
+inline Lanes loadRows(const float* from, std::size_t /*next*/) { return load<Lanes>(from); }
+
 /// Writes the lanes whose bits are set, lowest first, and behind them lanes that mean nothing:
 /// eight in all. Takes the same time for any set, as nothing depends on how many there are.
 inline void storePicked(std::int32_t* to, IntLanes v, unsigned which) {
@@ -268,6 +316,32 @@ inline void storePicked(std::int32_t* to, IntLanes v, unsigned which) {
 #else
   for (unsigned n = 0; n < kWidth; ++n) to[n] = v[order[n]];
 #endif
+}
+
+/// Of blocks beside each other, each a step further than the one before: the first one.
+inline Lanes firstBlocks(Lanes begin, Lanes /*step*/, bool /*odd*/) { return begin; }
+/// The one behind it.
+inline Lanes nextBlocks(Lanes blocks, Lanes step) { return blocks + step; }
+
+/// Eight vectors of one number each become eight rows, `stride` apart.
+inline void storeTransposed(const Lanes* fields, float* to, std::size_t stride) {
+  Lanes a[kWidth];
+  for (std::uint32_t n = 0; n < kWidth; n += 2) {
+    a[n] = __builtin_shufflevector(fields[n], fields[n + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+    a[n + 1] = __builtin_shufflevector(fields[n], fields[n + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+  }
+  Lanes b[kWidth];
+  for (std::uint32_t n = 0; n < kWidth; n += 4) {
+    b[n] = __builtin_shufflevector(a[n], a[n + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+    b[n + 1] = __builtin_shufflevector(a[n], a[n + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    b[n + 2] = __builtin_shufflevector(a[n + 1], a[n + 3], 0, 1, 8, 9, 4, 5, 12, 13);
+    b[n + 3] = __builtin_shufflevector(a[n + 1], a[n + 3], 2, 3, 10, 11, 6, 7, 14, 15);
+  }
+  for (std::uint32_t n = 0; n < 4; ++n) {
+    store(to + n * stride, __builtin_shufflevector(b[n], b[n + 4], 0, 1, 2, 3, 8, 9, 10, 11));
+    store(to + (n + 4) * stride,
+          __builtin_shufflevector(b[n], b[n + 4], 4, 5, 6, 7, 12, 13, 14, 15));
+  }
 }
 
 inline float least(Lanes v) {

@@ -30,17 +30,12 @@ struct WordLanes {
 struct ShortLanes {
   std::uint32_t v;
 };
-struct EightBytes {
-  std::uint8_t v;
-};
-struct EightShorts {
-  std::uint16_t v;
-};
 
 /// Of the rows in pools, and of what is stored in blocks.
 constexpr std::uint32_t kWidth = 8;
 /// Of "vectors".
 constexpr std::uint32_t kLanes = 1;
+constexpr std::uint32_t kBlocks = 1;
 constexpr unsigned kAllLanes = 1;
 constexpr std::size_t kGroupAlignment = 4;
 
@@ -187,12 +182,20 @@ struct Pair {
   Vector first, second;
 };
 
-/// Elements 2 * at and 2 * at + 1.
-GALACTIC_EVERYWHERE inline Pair<IntLanes> gatherPairs(const std::int32_t* from, IntLanes at) {
-  return {from[2 * at.v], from[2 * at.v + 1]};
+/// Entries of a table, and of a table of pairs, by their numbers.
+template <class Element>
+GALACTIC_EVERYWHERE inline auto lookUp(const Element* table, IntLanes at) {
+  return gather(table, at);
 }
-GALACTIC_EVERYWHERE inline Pair<Lanes> gatherPairs(const float* from, IntLanes at) {
-  return {Lanes(from[2 * at.v]), Lanes(from[2 * at.v + 1])};
+GALACTIC_EVERYWHERE inline Pair<IntLanes> lookUpPairs(const std::int32_t* table, IntLanes at) {
+  return {table[2 * at.v], table[2 * at.v + 1]};
+}
+GALACTIC_EVERYWHERE inline Pair<Lanes> lookUpPairs(const float* table, IntLanes at) {
+  return {Lanes(table[2 * at.v]), Lanes(table[2 * at.v + 1])};
+}
+template <class Element>
+GALACTIC_EVERYWHERE inline Pair<Element> pairAt(const Element* table, std::uint32_t number) {
+  return {table[2 * number], table[2 * number + 1]};
 }
 
 /// Elements at and at + 1.
@@ -200,15 +203,21 @@ GALACTIC_EVERYWHERE inline Pair<IntLanes> gatherNeighbors(const std::int32_t* fr
   return {from[at.v], from[at.v + 1]};
 }
 
-/// Writes both: what gatherPairs reads.
+/// Writes an entry of a table of pairs.
 template <class Vector, class Element>
 GALACTIC_EVERYWHERE inline void storePairs(Element* to, Vector first, Vector second) {
   store(to, first);
   store(to + 1, second);
 }
 
-GALACTIC_EVERYWHERE inline IntLanes widen(EightShorts v) { return static_cast<std::int32_t>(v.v); }
-GALACTIC_EVERYWHERE inline IntLanes widen(EightBytes v) { return static_cast<std::int32_t>(v.v); }
+/// One number of a row: `next`, where there is more, is for wider vectors.
+template <class Element>
+GALACTIC_EVERYWHERE inline IntLanes loadRows(const Element* from, std::size_t /*next*/) {
+  return static_cast<std::int32_t>(*from);
+}
+GALACTIC_EVERYWHERE inline Lanes loadRows(const float* from, std::size_t /*next*/) {
+  return Lanes(*from);
+}
 
 }  // namespace
 }  // namespace galactic::render

@@ -1,5 +1,8 @@
-// Vectors of sixteen, for AVX-512: of the operations of lanes_eight.inl those that resolving a pane
-// is made of. The same names and, lane by lane, the same bits.
+// Vectors of sixteen, for AVX-512: the operations of lanes_eight.inl. The same names and, lane by
+// lane, the same bits. What pools and panes keep by eight is read two by two.
+#include <cstddef>
+#include <cstdint>
+
 #include "render/raster/gather_avx2.inl"
 
 namespace galactic::render {
@@ -10,12 +13,14 @@ using IntLanes = std::int32_t __attribute__((vector_size(64)));
 using WordLanes = std::uint32_t __attribute__((vector_size(64)));
 using ShortLanes = std::uint16_t __attribute__((vector_size(64)));
 
-/// Of what is stored in blocks.
+/// Of the rows in pools, and of what is stored in blocks.
 constexpr std::uint32_t kWidth = 8;
-/// Of vectors.
+/// Of vectors, and the blocks that fill one.
 constexpr std::uint32_t kLanes = 16;
+constexpr std::uint32_t kBlocks = 2;
 constexpr unsigned kAllLanes = 0xFFFF;
 constexpr std::size_t kVectorBytes = 64;
+constexpr std::size_t kGroupAlignment = 64;
 
 /// The same bits as another type.
 template <class To, class From>
@@ -51,10 +56,32 @@ inline unsigned signBits(IntLanes v) { return _mm512_movepi32_mask(as<__m512i>(v
 /// Of bits that are not all 0: the number of the lowest one.
 inline int lowestBit(unsigned bits) { return __builtin_ctz(bits); }
 
+/// Some of the lanes.
+using LaneSet = __mmask16;
+inline unsigned bitsOf(LaneSet set) { return set; }
+inline LaneSet noLanes() { return 0; }
+inline LaneSet bySign(IntLanes v) { return _mm512_movepi32_mask(as<__m512i>(v)); }
+
+inline IntLanes pickFrom(LaneSet set, IntLanes yes, IntLanes no) {
+  return as<IntLanes>(_mm512_mask_blend_epi32(set, as<__m512i>(no), as<__m512i>(yes)));
+}
+inline Lanes pickFrom(LaneSet set, Lanes yes, Lanes no) {
+  return as<Lanes>(_mm512_mask_blend_ps(set, as<__m512>(no), as<__m512>(yes)));
+}
+
+/// The lanes whose sign is not set and where `a` is greater.
+inline LaneSet insideAndGreater(IntLanes outside, Lanes a, Lanes b) {
+  const LaneSet inside =
+      _mm512_testn_epi32_mask(as<__m512i>(outside), _mm512_set1_epi32(INT32_MIN));
+  return _mm512_mask_cmp_ps_mask(inside, as<__m512>(a), as<__m512>(b), _CMP_GT_OQ);
+}
+
 /// `mask`: all bits of a lane, or none.
 inline IntLanes pick(IntLanes mask, IntLanes yes, IntLanes no) {
-  return as<IntLanes>(_mm512_mask_blend_epi32(static_cast<__mmask16>(signBits(mask)),
-                                              as<__m512i>(no), as<__m512i>(yes)));
+  return pickFrom(static_cast<LaneSet>(signBits(mask)), yes, no);
+}
+inline Lanes pick(IntLanes mask, Lanes yes, Lanes no) {
+  return pickFrom(static_cast<LaneSet>(signBits(mask)), yes, no);
 }
 
 /// One lane, in all.
@@ -80,6 +107,34 @@ inline Lanes clampTo(Lanes v, float low, float high) {
   return lesser(greater(v, spread(low)), spread(high));
 }
 
+inline Lanes magnitude(Lanes v) { return as<Lanes>(as<IntLanes>(v) & 0x7FFFFFFF); }
+inline float magnitude(float v) { return v < 0 ? -v : v; }
+inline float least(Lanes v) { return _mm512_reduce_min_ps(as<__m512>(v)); }
+
+/// Products and differences that may wrap around: of lanes whose result is not used.
+inline IntLanes wrapMultiply(IntLanes a, IntLanes b) {
+  return as<IntLanes>(as<WordLanes>(a) * as<WordLanes>(b));
+}
+inline IntLanes wrapSubtract(IntLanes a, IntLanes b) {
+  return as<IntLanes>(as<WordLanes>(a) - as<WordLanes>(b));
+}
+
+/// The block at `from`, and the one `next` elements further.
+inline IntLanes loadRows(const std::uint16_t* from, std::size_t next) {
+  const auto low = _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
+  const auto high = _mm_loadu_si128(reinterpret_cast<const __m128i*>(from + next));
+  return as<IntLanes>(_mm512_cvtepu16_epi32(_mm256_set_m128i(high, low)));
+}
+inline IntLanes loadRows(const std::uint8_t* from, std::size_t next) {
+  const auto low = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(from));
+  const auto high = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(from + next));
+  return as<IntLanes>(_mm512_cvtepu8_epi32(_mm_unpacklo_epi64(low, high)));
+}
+inline Lanes loadRows(const float* from, std::size_t next) {
+  const __m512 low = _mm512_castps256_ps512(_mm256_loadu_ps(from));
+  return as<Lanes>(_mm512_insertf32x8(low, _mm256_loadu_ps(from + next), 1));
+}
+
 inline __m256i lowHalf(IntLanes v) { return _mm512_castsi512_si256(as<__m512i>(v)); }
 inline __m256i highHalf(IntLanes v) { return _mm512_extracti64x4_epi64(as<__m512i>(v), 1); }
 template <class Vector>
@@ -90,6 +145,28 @@ inline Vector joined(__m256 low, __m256 high) {
 inline IntLanes gather(const std::int32_t* from, IntLanes at) {
   const auto* floats = reinterpret_cast<const float*>(from);
   return joined<IntLanes>(gatherEight(floats, lowHalf(at)), gatherEight(floats, highHalf(at)));
+}
+
+inline Lanes gather(const float* from, IntLanes at) {
+  return joined<Lanes>(gatherEight(from, lowHalf(at)), gatherEight(from, highHalf(at)));
+}
+
+/// Entries of a table of 128, by their numbers. `stride`: from sixteen entries to the next ones.
+/// A table lies in registers while many are looked up, and no element is loaded by itself.
+inline Lanes lookUp(const float* table, IntLanes at, std::size_t stride = kLanes) {
+  const auto index = as<__m512i>(at);
+  const auto of_32 = [&](std::size_t n) {
+    return _mm512_permutex2var_ps(_mm512_load_ps(table + 2 * n * stride), index,
+                                  _mm512_load_ps(table + (2 * n + 1) * stride));
+  };
+  const LaneSet odd = _mm512_test_epi32_mask(index, _mm512_set1_epi32(32));
+  const LaneSet upper = _mm512_test_epi32_mask(index, _mm512_set1_epi32(64));
+  const __m512 low = _mm512_mask_blend_ps(odd, of_32(0), of_32(1));
+  const __m512 high = _mm512_mask_blend_ps(odd, of_32(2), of_32(3));
+  return as<Lanes>(_mm512_mask_blend_ps(upper, low, high));
+}
+inline IntLanes lookUp(const std::int32_t* table, IntLanes at, std::size_t stride = kLanes) {
+  return as<IntLanes>(lookUp(reinterpret_cast<const float*>(table), at, stride));
 }
 
 template <class Vector>
@@ -104,26 +181,93 @@ inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from, IntLanes at) {
   return {joined<IntLanes>(low.first, high.first), joined<IntLanes>(low.second, high.second)};
 }
 
-/// Elements kStride * ids[lane] and the three behind them become a vector each.
-template <std::uint32_t kStride>
-inline void gatherFour(const float* from, const std::int32_t* ids, Lanes* fields) {
-  const auto four = [&](int n) {
-    return _mm_loadu_ps(from + std::size_t{kStride} * static_cast<std::uint32_t>(ids[n]));
-  };
-  __m512 rows[4];
-  for (int n = 0; n < 4; ++n) {
-    const __m256 low = _mm256_set_m128(four(n + 4), four(n));
-    const __m256 high = _mm256_set_m128(four(n + 12), four(n + 8));
-    rows[n] = _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
+/// A table of pairs: sixteen first numbers, then their second ones.
+template <class Element>
+inline auto lookUpPairs(const Element* table, IntLanes at) {
+  constexpr std::size_t kStride = 2 * kLanes;
+  return Pair<decltype(lookUp(table, at))>{lookUp(table, at, kStride),
+                                           lookUp(table + kLanes, at, kStride)};
+}
+template <class Element>
+inline Pair<Element> pairAt(const Element* table, std::uint32_t number) {
+  const Element* first = table + std::size_t{2} * (number / kLanes * kLanes) + number % kLanes;
+  return {first[0], first[kLanes]};
+}
+template <class Vector, class Element>
+inline void storePairs(Element* to, Vector first, Vector second) {
+  store(to, first);
+  store(to + kLanes, second);
+}
+
+/// Numbers of rows become vectors: `kCount` of row ids[lane] for each lane. Rows are `kStride`
+/// long. There are few different ones, and each gives its numbers to all of its lanes at once.
+template <std::uint32_t kCount, std::uint32_t kStride>
+inline void gatherRows(const float* rows, const std::int32_t* ids, Lanes* fields) {
+  const __m512i all = _mm512_loadu_si512(ids);
+  const __m512i before = _mm512_conflict_epi32(all);
+  __m512 vectors[kCount] = {};
+  for (unsigned firsts = _mm512_testn_epi32_mask(before, before); firsts != 0;
+       firsts &= firsts - 1) {
+    const std::int32_t id = ids[lowestBit(firsts)];
+    const LaneSet here = _mm512_cmpeq_epi32_mask(all, _mm512_set1_epi32(id));
+    const float* row = rows + std::size_t{kStride} * static_cast<std::uint32_t>(id);
+    for (std::uint32_t n = 0; n < kCount; ++n) {
+      vectors[n] = _mm512_mask_blend_ps(here, vectors[n], _mm512_set1_ps(row[n]));
+    }
   }
-  const __m512 a = _mm512_unpacklo_ps(rows[0], rows[1]);
-  const __m512 b = _mm512_unpackhi_ps(rows[0], rows[1]);
-  const __m512 c = _mm512_unpacklo_ps(rows[2], rows[3]);
-  const __m512 d = _mm512_unpackhi_ps(rows[2], rows[3]);
-  fields[0] = as<Lanes>(_mm512_shuffle_ps(a, c, 0x44));
-  fields[1] = as<Lanes>(_mm512_shuffle_ps(a, c, 0xEE));
-  fields[2] = as<Lanes>(_mm512_shuffle_ps(b, d, 0x44));
-  fields[3] = as<Lanes>(_mm512_shuffle_ps(b, d, 0xEE));
+  for (std::uint32_t n = 0; n < kCount; ++n) fields[n] = as<Lanes>(vectors[n]);
+}
+
+/// Writes the lanes whose bits are set, lowest first, and behind them lanes that mean nothing:
+/// sixteen in all.
+inline void storePicked(std::int32_t* to, IntLanes v, unsigned which) {
+  store(to, as<IntLanes>(_mm512_maskz_compress_epi32(static_cast<LaneSet>(which), as<__m512i>(v))));
+}
+
+/// Of blocks beside each other, each a step further than the one before: the first ones. `begin`
+/// has the first block in both halves; `odd`: it is the right one of its pair.
+inline Lanes firstBlocks(Lanes begin, Lanes step, bool odd) {
+  const LaneSet right = odd ? 0 : 0xFF00;
+  return as<Lanes>(
+      _mm512_mask_add_ps(as<__m512>(begin), right, as<__m512>(begin), as<__m512>(step)));
+}
+/// The ones behind them.
+inline Lanes nextBlocks(Lanes blocks, Lanes step) {
+  const __m512 last = _mm512_shuffle_f32x4(as<__m512>(blocks), as<__m512>(blocks), 0xEE);
+  return firstBlocks(as<Lanes>(_mm512_add_ps(last, as<__m512>(step))), step, false);
+}
+
+/// Eight vectors of one number each become sixteen rows of eight, `stride` apart.
+inline void storeTransposed(const Lanes* fields, float* to, std::size_t stride) {
+  __m512 quads[2][4];
+  for (int n = 0; n < 2; ++n, fields += 4) {
+    const __m512 a = _mm512_unpacklo_ps(as<__m512>(fields[0]), as<__m512>(fields[1]));
+    const __m512 b = _mm512_unpackhi_ps(as<__m512>(fields[0]), as<__m512>(fields[1]));
+    const __m512 c = _mm512_unpacklo_ps(as<__m512>(fields[2]), as<__m512>(fields[3]));
+    const __m512 d = _mm512_unpackhi_ps(as<__m512>(fields[2]), as<__m512>(fields[3]));
+    quads[n][0] = _mm512_shuffle_ps(a, c, 0x44);
+    quads[n][1] = _mm512_shuffle_ps(a, c, 0xEE);
+    quads[n][2] = _mm512_shuffle_ps(b, d, 0x44);
+    quads[n][3] = _mm512_shuffle_ps(b, d, 0xEE);
+  }
+  const __m512i low_rows =
+      _mm512_setr_epi32(0, 1, 2, 3, 16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23);
+  const __m512i high_rows = _mm512_add_epi32(low_rows, _mm512_set1_epi32(8));
+  for (std::size_t n = 0; n < 4; ++n) {
+    const __m512 low = _mm512_permutex2var_ps(quads[0][n], low_rows, quads[1][n]);
+    const __m512 high = _mm512_permutex2var_ps(quads[0][n], high_rows, quads[1][n]);
+    _mm256_storeu_ps(to + n * stride, _mm512_castps512_ps256(low));
+    _mm256_storeu_ps(to + (n + 4) * stride, _mm512_extractf32x8_ps(low, 1));
+    _mm256_storeu_ps(to + (n + 8) * stride, _mm512_castps512_ps256(high));
+    _mm256_storeu_ps(to + (n + 12) * stride, _mm512_extractf32x8_ps(high, 1));
+  }
+}
+
+/// Two rows of pixels to an image, whose rows lie `stride` bytes apart.
+inline void storeBlocks(std::uint8_t* to, std::size_t stride, IntLanes v) {
+  const __m512i rows = _mm512_shuffle_i64x2(as<__m512i>(v), as<__m512i>(v), 0xD8);
+  store(to, _mm512_castsi512_si256(rows));
+  store(to + stride, _mm512_extracti64x4_epi64(rows, 1));
 }
 
 /// p + (q - p) * weight / 256 for the 16-bit halves of all lanes, which are bytes; `rest` is 256

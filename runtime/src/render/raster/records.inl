@@ -33,9 +33,9 @@ template <class State>
 GALACTIC_EVERYWHERE inline void texturePlanes(const State& state, const SmallGroup& group,
                                               Lanes* fields) {
   if (state.facts.isTextured()) {
-    const Pair<Lanes> a = gatherPairs(state.uv, group.corners.a);
-    const Pair<Lanes> b = gatherPairs(state.uv, group.corners.b);
-    const Pair<Lanes> c = gatherPairs(state.uv, group.corners.c);
+    const Pair<Lanes> a = lookUpPairs(state.uv, group.corners.a);
+    const Pair<Lanes> b = lookUpPairs(state.uv, group.corners.b);
+    const Pair<Lanes> c = lookUpPairs(state.uv, group.corners.c);
     planeFields(group, a.first * group.z_a, b.first * group.z_b, c.first * group.z_c,
                 fields + kURight);
     planeFields(group, a.second * group.z_a, b.second * group.z_b, c.second * group.z_c,

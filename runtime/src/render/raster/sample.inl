@@ -118,42 +118,94 @@ GALACTIC_EVERYWHERE inline const std::int32_t* texelBase(const PaneTask& task,
   return reinterpret_cast<const std::int32_t*>(task.texel_bases[number]);
 }
 
-/// The texels of the lanes `here`, 0 in the others. Most left texels have their right ones behind
-/// them: both are read at once, which halves the work where lanes are many.
-GALACTIC_EVERYWHERE inline FourTexels readTexels(const std::int32_t* from, const LevelPlace& place,
-                                                 IntLanes here) {
-  const FourTexels& at = place.at;
-  if (kLanes > 1 && signBits(place.wraps & here) == 0) {
-    const Pair<IntLanes> upper = gatherNeighbors(from, at.upper_left & here);
-    const Pair<IntLanes> lower = gatherNeighbors(from, at.lower_left & here);
-    return {upper.first & here, upper.second & here, lower.first & here, lower.second & here};
+/// Texels of one base. Most left texels have their right ones behind them: both are read at once,
+/// which halves the work where lanes are many. `wraps`: for one lane or more that is not so.
+GALACTIC_EVERYWHERE inline FourTexels readTexels(const std::int32_t* from, const FourTexels& at,
+                                                 bool wraps) {
+  if (kLanes > 1 && !wraps) {
+    const Pair<IntLanes> upper = gatherNeighbors(from, at.upper_left);
+    const Pair<IntLanes> lower = gatherNeighbors(from, at.lower_left);
+    return {upper.first, upper.second, lower.first, lower.second};
   }
-  return {gather(from, at.upper_left & here) & here, gather(from, at.upper_right & here) & here,
-          gather(from, at.lower_left & here) & here, gather(from, at.lower_right & here) & here};
+  return {gather(from, at.upper_left), gather(from, at.upper_right), gather(from, at.lower_left),
+          gather(from, at.lower_right)};
 }
 
-/// Texels, or the colors of flat surfaces. Lanes without a triangle have a flat one.
-GALACTIC_EVERYWHERE inline IntLanes sampleTexels(const PaneTask& task,
-                                                 const TexturePlaces& places) {
-  const IntLanes flat = (places.kind & 0xFF) == spread(static_cast<std::int32_t>(kFlatSurface));
-  unsigned left = ~signBits(flat) & kAllLanes;
-  if (left == 0) return places.texels;
-  const IntLanes size = pick(flat, spread(0), places.kind & 0xFF);
-  const LevelPlace place =
-      placeInLevel(places, levelsAt(levelOf(places.squared_rate, size), size, places.texels));
-  const IntLanes base = (places.kind >> 8) & 0x3FFFFF;
+GALACTIC_EVERYWHERE inline FourTexels masked(const FourTexels& t, IntLanes mask) {
+  return {t.upper_left & mask, t.upper_right & mask, t.lower_left & mask, t.lower_right & mask};
+}
+
+/// Where the texels of some pixels lie, and what decides how they are read: with these numbers at
+/// hand, reading waits for nothing.
+struct SurfacePlace {
+  /// Not set where no lane has a texture.
+  LevelPlace place;
+  /// Of the records: see kTexels and kKind.
+  IntLanes texels, kind;
+  /// Bit n: lane n has a texture; it has one of another base than the first of them.
+  unsigned textured, others;
+  /// Of the first one.
+  std::int32_t base;
+  bool wraps;
+};
+
+GALACTIC_EVERYWHERE inline IntLanes baseOf(IntLanes kind) { return (kind >> 8) & 0x3FFFFF; }
+
+/// `places`: what gives them where a lane has a texture. Lanes without a triangle are flat.
+template <class Places>
+GALACTIC_EVERYWHERE inline void placeSurface(IntLanes texels, IntLanes kind, const Places& places,
+                                             SurfacePlace& surface) {
+  surface.texels = texels;
+  surface.kind = kind;
+  const IntLanes flat = (kind & 0xFF) == spread(static_cast<std::int32_t>(kFlatSurface));
+  surface.textured = ~signBits(flat) & kAllLanes;
+  if (surface.textured == 0) return;
+  const IntLanes size = pick(flat, spread(0), kind & 0xFF);
+  const TexturePlaces found = places();
+  LevelPlace& place = surface.place;
+  place = placeInLevel(found, levelsAt(levelOf(found.squared_rate, size), size, texels));
+  place.at = masked(place.at, ~flat);
+  surface.wraps = (signBits(place.wraps) & surface.textured) != 0;
+  const IntLanes first = laneOf(baseOf(kind), lowestBit(surface.textured));
+  surface.base = first[0];
+  surface.others = signBits(baseOf(kind) != first) & surface.textured;
+}
+
+/// Texels of several bases.
+GALACTIC_EVERYWHERE inline FourTexels readMixed(const PaneTask& task, const SurfacePlace& surface) {
   FourTexels texels{};
-  while (left != 0) {
-    const IntLanes number = laneOf(base, lowestBit(left));
-    const IntLanes here = (base == number) & ~flat;
+  for (unsigned left = surface.textured; left != 0;) {
+    const IntLanes number = laneOf(baseOf(surface.kind), lowestBit(left));
+    const IntLanes here = baseOf(surface.kind) == number;
     left &= ~signBits(here);
-    const FourTexels read = readTexels(texelBase(task, number[0]), place, here);
+    const FourTexels read = masked(
+        readTexels(texelBase(task, number[0]), masked(surface.place.at, here), surface.wraps),
+        here);
     texels.upper_left |= read.upper_left;
     texels.upper_right |= read.upper_right;
     texels.lower_left |= read.lower_left;
     texels.lower_right |= read.lower_right;
   }
-  return pick(flat, places.texels, bilinear(texels, place.share_right, place.share_down));
+  return texels;
+}
+
+/// Texels, or the colors of flat surfaces.
+GALACTIC_EVERYWHERE inline IntLanes sampleAt(const PaneTask& task, const SurfacePlace& surface) {
+  if (surface.textured == 0) return surface.texels;
+  const LevelPlace& place = surface.place;
+  const FourTexels texels = surface.others == 0
+                                ? readTexels(texelBase(task, surface.base), place.at, surface.wraps)
+                                : readMixed(task, surface);
+  const IntLanes flat = (surface.kind & 0xFF) == spread(static_cast<std::int32_t>(kFlatSurface));
+  return pick(flat, surface.texels, bilinear(texels, place.share_right, place.share_down));
+}
+
+GALACTIC_EVERYWHERE inline IntLanes sampleTexels(const PaneTask& task,
+                                                 const TexturePlaces& places) {
+  SurfacePlace surface;
+  placeSurface(
+      places.texels, places.kind, [&] { return places; }, surface);
+  return sampleAt(task, surface);
 }
 
 /// One record for all lanes.
@@ -204,7 +256,8 @@ GALACTIC_EVERYWHERE inline IntLanes sampleOne(const PaneTask& task, const OneRec
   const bool alike = signBits(level == spread(first)) == kAllLanes;
   const Levels levels = alike ? oneLevel(first, log_edge, texels) : levelsAt(level, size, texels);
   const LevelPlace place = placeInLevel(places, levels);
-  const FourTexels around = readTexels(texelBase(task, (kind >> 8) & 0x3FFFFF), place, spread(-1));
+  const FourTexels around =
+      readTexels(texelBase(task, (kind >> 8) & 0x3FFFFF), place.at, signBits(place.wraps) != 0);
   return bilinear(around, place.share_right, place.share_down);
 }
 
@@ -239,16 +292,19 @@ GALACTIC_EVERYWHERE inline IntLanes alphaPasses(const PaneTask& task, const OneR
   return ((texels >> 24) & 0xFF) >= spread(least_alpha);
 }
 
-/// timesColors() where red, green and blue are one, and alpha is whole: the same bits. `light`:
-/// the record's fields from kLightRight on.
-GALACTIC_EVERYWHERE inline IntLanes timesLight(IntLanes texels, const Lanes* light,
-                                               const PixelLanes& pixels) {
+/// What timesColors() multiplies by where red, green and blue are one. `light`: the record's fields
+/// from kLightRight on.
+GALACTIC_EVERYWHERE inline IntLanes lightAt(const Lanes* light, const PixelLanes& pixels) {
   const Lanes value = (light[0] * pixels.x + light[1] * pixels.y + light[2]) * pixels.w;
-  const IntLanes factor = toInt(clampTo(value + spread(0.5F), 0, 255));
+  return toInt(clampTo(value + spread(0.5F), 0, 255));
+}
+
+/// timesColors() where red, green and blue are one, and alpha is whole: the same bits.
+GALACTIC_EVERYWHERE inline IntLanes timesLight(IntLanes texels, IntLanes light) {
   // Red and blue in one product.
-  const WordLanes both = as<WordLanes>(texels & 0x00FF00FF) * as<WordLanes>(factor) + 0x00800080U;
+  const WordLanes both = as<WordLanes>(texels & 0x00FF00FF) * as<WordLanes>(light) + 0x00800080U;
   const WordLanes red_blue = (both + ((both >> 8) & 0x00FF00FFU)) >> 8;
-  const IntLanes green = byteProduct((texels >> 8) & 0xFF, factor);
+  const IntLanes green = byteProduct((texels >> 8) & 0xFF, light);
   return (as<IntLanes>(red_blue) & 0x00FF00FF) | green << 8 |
          (texels & static_cast<std::int32_t>(0xFF000000U));
 }

@@ -18,11 +18,12 @@ GALACTIC_EVERYWHERE inline CornerLanes unpacked(IntLanes corners) {
   return {corners & 0xFF, (corners >> 8) & 0xFF, (corners >> 16) & 0xFF};
 }
 
-/// The corners of eight triangles. Counter-clockwise from outside is clockwise where rows run down:
+/// The corners of a vector of triangles: of the block of eight, and of the one `next` numbers
+/// further where vectors take two. Counter-clockwise from outside is clockwise where rows run down:
 /// two corners change places.
-GALACTIC_EVERYWHERE inline CornerLanes cornersAt(const std::uint8_t* block) {
-  return {widen(load<EightBytes>(block)), widen(load<EightBytes>(block + 2 * kWidth)),
-          widen(load<EightBytes>(block + kWidth))};
+GALACTIC_EVERYWHERE inline CornerLanes cornersAt(const std::uint8_t* block, std::size_t next = 0) {
+  return {loadRows(block, next), loadRows(block + 2 * kWidth, next),
+          loadRows(block + kWidth, next)};
 }
 
 struct PointLanes {
@@ -31,7 +32,7 @@ struct PointLanes {
 
 template <class State>
 GALACTIC_EVERYWHERE inline PointLanes pointsOf(const State& state, IntLanes corner) {
-  const Pair<IntLanes> xy = gatherPairs(state.xy, corner);
+  const Pair<IntLanes> xy = lookUpPairs(state.xy, corner);
   return {xy.first, xy.second};
 }
 
@@ -90,15 +91,15 @@ struct ClipSorting {
 
 GALACTIC_EVERYWHERE inline ClipSorting sortForClipping(const ClusterState& state,
                                                        const CornerLanes& corners) {
-  const IntLanes a = gather(state.bad, corners.a);
-  const IntLanes b = gather(state.bad, corners.b);
-  const IntLanes c = gather(state.bad, corners.c);
+  const IntLanes a = lookUp(state.bad, corners.a);
+  const IntLanes b = lookUp(state.bad, corners.b);
+  const IntLanes c = lookUp(state.bad, corners.c);
   const unsigned whole = signBits((a | b | c) == spread(0));
   return {whole, ~(whole | signBits((a & b & c) != spread(0)))};
 }
 
-GALACTIC_EVERYWHERE inline Sorting sortEight(const SortLimits limits, const ClusterState& state,
-                                             const CornerLanes& corners) {
+GALACTIC_EVERYWHERE inline Sorting sortVector(const SortLimits limits, const ClusterState& state,
+                                              const CornerLanes& corners) {
   const PointLanes a = pointsOf(state, corners.a);
   const PointLanes b = pointsOf(state, corners.b);
   const PointLanes c = pointsOf(state, corners.c);
@@ -110,11 +111,13 @@ GALACTIC_EVERYWHERE inline Sorting sortEight(const SortLimits limits, const Clus
   const IntLanes first_y = greater(firstPixel(y_low), spread(0));
   const IntLanes last_x = lesser(lastPixel(x_high), limits.last_x);
   const IntLanes last_y = lesser(lastPixel(y_high), limits.last_y);
-  const IntLanes missed = (first_x > last_x) | (first_y > last_y);
-  const IntLanes large = ((x_high - x_low) > spread(kSmall)) | ((y_high - y_low) > spread(kSmall));
+  // By their signs: numbers are far from where their differences wrap around.
+  const IntLanes missed = (last_x - first_x) | (last_y - first_y);
+  const IntLanes large = (spread(kSmall) - (x_high - x_low)) | (spread(kSmall) - (y_high - y_low));
   const IntLanes area = doubleArea(a, b, c);
-  const IntLanes turned_away = (area == spread(0)) | ((area < spread(0)) & ~limits.two_sided);
-  return {signBits(~missed & ~large & ~turned_away),
+  const IntLanes turned_away =
+      (area == spread(0)) | (wrapSubtract(area, spread(1)) & ~limits.two_sided);
+  return {signBits(~(missed | large | turned_away)),
           signBits(~missed & large),
           first_x,
           last_x,
@@ -134,7 +137,7 @@ GALACTIC_EVERYWHERE inline unsigned behindTiles(const TileDepths& tiles, const C
                                                 const Sorting& sorting,
                                                 const CornerLanes& corners) {
   const Lanes nearest =
-      mostOf(gather(state.z, corners.a), gather(state.z, corners.b), gather(state.z, corners.c));
+      mostOf(lookUp(state.z, corners.a), lookUp(state.z, corners.b), lookUp(state.z, corners.c));
   const IntLanes left = sorting.first_x >> 3;
   const IntLanes right = sorting.last_x >> 3;
   const IntLanes top = sorting.first_y >> 3;
@@ -177,8 +180,9 @@ GALACTIC_EVERYWHERE inline GradientLanes gradient(const SmallGroup& group, Lanes
           (group.ab_x * ac - group.ac_x * ab) * group.per_area};
 }
 
-/// Eight triangles ready to be drawn. Starts are at the center of the first pixel of the first
-/// block; edge functions are not negative inside; "right" and "down": changes per pixel.
+/// A vector of triangles ready to be drawn. Starts are at the center of the first pixel of the
+/// first block, those of edge functions of the first vector of blocks; edge functions are not
+/// negative inside; "right" and "down": changes per pixel.
 struct alignas(kGroupAlignment) GroupSetup {
   std::int32_t edge[3][kLanes], edge_right[3][kLanes], edge_down[3][kLanes];
   float z[kLanes], z_right[kLanes], z_down[kLanes];
@@ -233,17 +237,19 @@ GALACTIC_EVERYWHERE inline void setUpGroup(const PaneTask& task, const State& st
   store(setup.last_row, lesser(lastPixel(mostOf(a.y, b.y, c.y)), spread(height - 1)) >> 1);
   const PointLanes start{(first_column << 10) + spread(kSubpixels / 2),
                          (first_row << 9) + spread(kSubpixels / 2)};
-  setUpEdge(setup, 0, a, b, start);
-  setUpEdge(setup, 1, b, c, start);
-  setUpEdge(setup, 2, c, a, start);
+  const IntLanes first_of_vector = first_column & -static_cast<std::int32_t>(kBlocks);
+  const PointLanes edge_start{(first_of_vector << 10) + spread(kSubpixels / 2), start.y};
+  setUpEdge(setup, 0, a, b, edge_start);
+  setUpEdge(setup, 1, b, c, edge_start);
+  setUpEdge(setup, 2, c, a, edge_start);
   group.ab_x = toFloat(b.x - a.x);
   group.ab_y = toFloat(b.y - a.y);
   group.ac_x = toFloat(c.x - a.x);
   group.ac_y = toFloat(c.y - a.y);
   group.per_area = spread(static_cast<float>(kSubpixels)) / toFloat(area);
-  group.z_a = gather(state.z, group.corners.a);
-  group.z_b = gather(state.z, group.corners.b);
-  group.z_c = gather(state.z, group.corners.c);
+  group.z_a = lookUp(state.z, group.corners.a);
+  group.z_b = lookUp(state.z, group.corners.b);
+  group.z_c = lookUp(state.z, group.corners.c);
   group.z = gradient(group, group.z_a, group.z_b, group.z_c);
   const Lanes per_subpixel = spread(1.0F / kSubpixels);
   const Lanes dx = toFloat(start.x - a.x) * per_subpixel;

@@ -77,11 +77,12 @@ GALACTIC_EVERYWHERE inline const std::uint16_t* vertexBlock(const ClusterFacts& 
 
 /// A cluster in work.
 struct ClusterState {
-  /// In the pane, 1/256 pixel from its upper left corner: x, y, x, y. Not set where `bad`.
+  /// A table of pairs: x and y in the pane, 1/256 pixel from its upper left corner. Not set where
+  /// `bad`.
   alignas(64) std::int32_t xy[2 * kMostInCluster];
   /// 1 / w.
   alignas(64) float z[kMostInCluster];
-  /// Texture coordinates, u, v, u, v: see readCoordinates().
+  /// A table of pairs: texture coordinates; see readCoordinates().
   alignas(64) float uv[2 * kMostInCluster];
   /// Bit n: on the wrong side of clip plane n; see clipDistance().
   alignas(64) std::int32_t bad[kMostInCluster];
@@ -106,19 +107,32 @@ GALACTIC_EVERYWHERE inline IntLanes wholeNumber(Lanes value) {
   return as<IntLanes>(value + spread(kToWhole)) - spread(as<std::int32_t>(kToWhole));
 }
 
-GALACTIC_EVERYWHERE inline Lanes onLattice(const std::uint16_t* row, std::int32_t origin) {
-  return toFloat(widen(load<EightShorts>(row)) + spread(origin));
+/// The rows of a vector of vertices: of a block of eight, and of the one `next` numbers further
+/// where vectors take two.
+struct VertexRows {
+  const std::uint16_t* block;
+  std::size_t next = 0;
+
+  GALACTIC_EVERYWHERE IntLanes row(std::uint32_t number) const {
+    return loadRows(block + std::size_t{number} * kWidth, next);
+  }
+};
+
+/// Those from vertex `first` on; `block` has it.
+GALACTIC_EVERYWHERE inline VertexRows vertexRows(const RenderCluster& cluster,
+                                                 const std::uint16_t* block, std::uint32_t first) {
+  return {block, first + kWidth < cluster.vertex_count ? kVertexRows * kWidth : 0};
 }
 
-/// Eight vertices: returns which are good.
+/// A vector of vertices from `first` on: returns which are good.
 template <class State>
-GALACTIC_EVERYWHERE inline unsigned placeEight(const VertexFrame& frame,
-                                               const RenderCluster& cluster,
-                                               const std::uint16_t* block, std::uint32_t first,
-                                               State& state) {
-  const Lanes x = onLattice(block, cluster.origin_x);
-  const Lanes y = onLattice(block + kWidth, cluster.origin_y);
-  const Lanes z = onLattice(block + std::size_t{2} * kWidth, cluster.origin_z);
+GALACTIC_EVERYWHERE inline unsigned placeVector(const VertexFrame& frame,
+                                                const RenderCluster& cluster,
+                                                const VertexRows& rows, std::uint32_t first,
+                                                State& state) {
+  const Lanes x = toFloat(rows.row(0) + spread(cluster.origin_x));
+  const Lanes y = toFloat(rows.row(1) + spread(cluster.origin_y));
+  const Lanes z = toFloat(rows.row(2) + spread(cluster.origin_z));
   const Lanes w = along(frame.w, x, y, z);
   const Lanes right = along(frame.x, x, y, z);
   const Lanes down = along(frame.y, x, y, z);
@@ -143,14 +157,14 @@ GALACTIC_EVERYWHERE inline unsigned placeEight(const VertexFrame& frame,
   return good_bits;
 }
 
-/// Texture coordinates of eight vertices from `first` on, in texels of the largest level.
+/// Texture coordinates of a vector of vertices from `first` on, in texels of the largest level.
 template <class State>
-GALACTIC_EVERYWHERE inline void readEight(const std::uint16_t* block, std::uint32_t first,
-                                          State& state) {
+GALACTIC_EVERYWHERE inline void readVector(const VertexRows& rows, std::uint32_t first,
+                                           State& state) {
   const RenderCluster& cluster = *state.facts.cluster;
   const auto edge = static_cast<float>(1U << (state.facts.surface.kind & 0xFFU));
-  const Lanes u = toFloat(widen(load<EightShorts>(block + 3 * kWidth)));
-  const Lanes v = toFloat(widen(load<EightShorts>(block + std::size_t{4} * kWidth)));
+  const Lanes u = toFloat(rows.row(3));
+  const Lanes v = toFloat(rows.row(4));
   storePairs(state.uv + std::size_t{2} * first,
              spread(cluster.u_minimum * edge) + spread(cluster.u_step * edge) * u,
              spread(cluster.v_minimum * edge) + spread(cluster.v_step * edge) * v);

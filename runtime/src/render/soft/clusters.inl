@@ -2,20 +2,20 @@
 namespace galactic::render {
 namespace {
 
-inline void noteEight(const EightSeen& eight, IntLanes buckets, SeenCluster first,
-                      SeenCluster*& end) {
-  for (unsigned left = eight.seen; left != 0; left &= left - 1) {
+inline void noteClusters(const BoxesSeen& boxes, IntLanes buckets, SeenCluster first,
+                         SeenCluster*& end) {
+  for (unsigned left = boxes.seen; left != 0; left &= left - 1) {
     const int n = __builtin_ctz(left);
     SeenCluster& seen = *end++;
     seen = first;
     seen.cluster += static_cast<std::uint32_t>(n);
-    seen.nearest = eight.nearest[n];
+    seen.nearest = boxes.nearest[n];
     seen.bucket = static_cast<std::uint32_t>(buckets[n]);
     constexpr auto kEdge = static_cast<std::int32_t>(kTileEdge);
-    seen.tiles[0] = static_cast<std::uint8_t>(eight.x.first[n] / kEdge);
-    seen.tiles[1] = static_cast<std::uint8_t>(eight.x.last[n] / kEdge);
-    seen.tiles[2] = static_cast<std::uint8_t>(eight.y.first[n] / kEdge);
-    seen.tiles[3] = static_cast<std::uint8_t>(eight.y.last[n] / kEdge);
+    seen.tiles[0] = static_cast<std::uint8_t>(boxes.x.first[n] / kEdge);
+    seen.tiles[1] = static_cast<std::uint8_t>(boxes.x.last[n] / kEdge);
+    seen.tiles[2] = static_cast<std::uint8_t>(boxes.y.first[n] / kEdge);
+    seen.tiles[3] = static_cast<std::uint8_t>(boxes.y.last[n] / kEdge);
   }
 }
 
@@ -30,12 +30,13 @@ std::uint32_t findClusters(const PaneTask& task, const PaneScratch& scratch, Pan
     if (task.culling && !mayShow(frame, model)) continue;
     const float* bounds = model.pack->cluster_bounds +
                           static_cast<std::size_t>(model.first_block) * kBoundsRows * kWidth;
-    for (std::uint32_t c = 0; c < model.cluster_count; c += kWidth) {
-      EightSeen eight = lookAtEight(task, frame, bounds);
-      bounds += kBoundsRows * kWidth;
-      if (model.cluster_count - c < kWidth) eight.seen &= (1U << (model.cluster_count - c)) - 1;
-      if (eight.seen == 0) continue;
-      noteEight(eight, bucketsOf(eight.distance, task.near), {.model = m, .cluster = c}, end);
+    for (std::uint32_t c = 0; c < model.cluster_count; c += kLanes) {
+      const std::size_t next = c + kWidth < model.cluster_count ? kBoundsRows * kWidth : 0;
+      BoxesSeen boxes = lookAt(task, frame, loadBoxes(bounds, next));
+      bounds += kBoundsRows * kLanes;
+      if (model.cluster_count - c < kLanes) boxes.seen &= (1U << (model.cluster_count - c)) - 1;
+      if (boxes.seen == 0) continue;
+      noteClusters(boxes, bucketsOf(boxes.distance, task.near), {.model = m, .cluster = c}, end);
     }
   }
   return static_cast<std::uint32_t>(end - scratch.seen);

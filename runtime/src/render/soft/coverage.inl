@@ -6,67 +6,81 @@
 namespace galactic::render {
 namespace {
 
-/// A test of eight pixels besides coverage and depth: passes all.
+/// A test of a vector of pixels besides coverage and depth: passes all.
 struct Opaque {
   static constexpr bool kTests = false;
 };
 
-/// The pixels of a block.
-inline PixelOffsets blockPixels() { return {pixelsRight(), pixelsDown()}; }
-
-/// Where a block of a triangle's pixels comes to lie.
-struct BlockPlace {
-  float* depth;
-  std::int32_t* ids;
+/// Which pixels of a vector were drawn, and 1/w of all of them now.
+struct Covered {
+  LaneSet shown;
+  Lanes depth;
 };
 
-/// Draws eight pixels; the sign bits of the result tell which.
+/// Draws a vector of pixels, but for those whose sign in `outside` is set.
 template <class Test>
-inline IntLanes coverBlock(const BlockPlace& place, const EdgeLanes& edges, Lanes z, IntLanes id,
+inline Covered coverBlocks(const BlockPlace& place, IntLanes outside, Lanes z, IntLanes id,
                            const Test& test) {
   const Lanes old = load<Lanes>(place.depth);
-  IntLanes shown = ~(edges.a | edges.b | edges.c) & (z > old);
+  LaneSet shown = insideAndGreater(outside, z, old);
   if constexpr (Test::kTests) {
-    if (signBits(shown) == 0) return shown;
-    shown &= test(place, z);
+    if (bitsOf(shown) == 0) return {shown, old};
+    shown &= bySign(test(place, z));
   }
-  store(place.depth, pickBySign(shown, z, old));
-  store(place.ids, pickBySign(shown, id, load<IntLanes>(place.ids)));
-  return shown;
+  const Lanes depth = pickFrom(shown, z, old);
+  store(place.depth, depth);
+  store(place.ids, pickFrom(shown, id, load<IntLanes>(place.ids)));
+  return {shown, depth};
 }
 
-/// A pane as triangles are drawn on it, block by block.
+/// How an edge function changes from pixel to pixel within a vector: block after block.
+inline IntLanes edgeOffsets(std::int32_t right, std::int32_t down) {
+  return pixelsRight() * spread(right) + (-pixelsDown() & spread(down));
+}
+
+/// Draws triangle `n` of a group, row by row; says whether it shows.
 template <class Test>
-struct PaneTarget {
-  const PaneScratch* scratch;
-  std::size_t stride;
-  IntLanes id;
-  const Test* test;
-  BlockPlace place{};
-  std::size_t row_start = 0;
-
-  PaneTarget(const Pane& pane, const Test& also)
-      : scratch(pane.scratch),
-        stride(static_cast<std::size_t>(pane.columns) * kWidth),
-        id(spread(static_cast<std::int32_t>(pane.records))),
-        test(&also) {}
-
-  void start(std::uint32_t column, std::uint32_t row) {
-    row_start = row * stride + static_cast<std::size_t>(column) * kWidth;
-    place = {scratch->depth + row_start, scratch->ids + row_start};
+inline bool coverSmall(const Pane& pane, const GroupSetup& group, unsigned n, const Test& test) {
+  const auto lanes = [&](int e) {
+    return spread(group.edge[e][n]) + edgeOffsets(group.edge_right[e][n], group.edge_down[e][n]);
+  };
+  const auto right = [&](int e) {
+    return spread(group.edge_right[e][n] * static_cast<std::int32_t>(kBlocks * kBlockWidth));
+  };
+  const auto down = [&](int e) { return spread(group.edge_down[e][n] * 2); };
+  EdgeLanes row_edges{lanes(0), lanes(1), lanes(2)};
+  const EdgeLanes beside{right(0), right(1), right(2)};
+  const EdgeLanes below{down(0), down(1), down(2)};
+  // From block to block, as all processors do: no lane may take a short cut.
+  Lanes row_z = spread(group.z[n]) + toFloat(pixelsRight() & 3) * spread(group.z_right[n]) +
+                toFloat(pixelsDown()) * spread(group.z_down[n]);
+  const Lanes z_beside = spread(group.z_right[n] * 4);
+  const Lanes z_below = spread(group.z_down[n] * 2);
+  const Lanes z_low = spread(group.z_low[n]);
+  const Lanes z_high = spread(group.z_high[n]);
+  const IntLanes id = spread(static_cast<std::int32_t>(pane.records));
+  const auto first_column = static_cast<std::uint32_t>(group.first_column[n]);
+  const std::uint32_t first = first_column / kBlocks;
+  const std::uint32_t more = static_cast<std::uint32_t>(group.last_column[n]) / kBlocks - first;
+  LaneSet hit = noLanes();
+  for (std::int32_t row = group.first_row[n]; row <= group.last_row[n]; ++row) {
+    BlockPlace place = placeOf(pane, first * kBlocks, static_cast<std::uint32_t>(row));
+    EdgeLanes edges = row_edges;
+    Lanes z = firstBlocks(row_z, z_beside, first_column % kBlocks != 0);
+    for (std::uint32_t left = more;; --left) {
+      hit |= coverBlocks(place, edges.a | edges.b | edges.c, lesser(greater(z, z_low), z_high), id,
+                         test)
+                 .shown;
+      if (left == 0) break;
+      edges = {edges.a + beside.a, edges.b + beside.b, edges.c + beside.c};
+      z = nextBlocks(z, z_beside);
+      place = {place.depth + kLanes, place.ids + kLanes};
+    }
+    row_edges = {row_edges.a + below.a, row_edges.b + below.b, row_edges.c + below.c};
+    row_z = row_z + z_below;
   }
-  IntLanes cover(const EdgeLanes& edges, Lanes z) const {
-    return coverBlock(place, edges, z, id, *test);
-  }
-  void right() {
-    place.depth += kWidth;
-    place.ids += kWidth;
-  }
-  void nextRow() {
-    row_start += stride;
-    place = {scratch->depth + row_start, scratch->ids + row_start};
-  }
-};
+  return bitsOf(hit) != 0;
+}
 
 /// Marks the tiles of triangle `n` where it shows.
 inline void markChanged(const Pane& pane, const GroupSetup& group, unsigned n, bool shows) {
@@ -82,6 +96,13 @@ inline void markChanged(const Pane& pane, const GroupSetup& group, unsigned n, b
   for (std::int32_t y = first + 1; y < last; ++y) changed[y] |= marks;
 }
 
+/// Notes the least 1/w of a tile.
+inline void noteDepth(const Pane& pane, std::uint32_t tile_x, std::uint32_t tile_y, float depth) {
+  const PaneScratch& scratch = *pane.scratch;
+  scratch.tile_depth[std::size_t{tile_y} * pane.tile_columns + tile_x] = depth;
+  scratch.tile_changed[tile_y] &= ~(1U << tile_x);
+}
+
 /// Least 1/w of a tile.
 inline float tileDepth(const Pane& pane, std::uint32_t tile_x, std::uint32_t tile_y) {
   const PaneScratch& scratch = *pane.scratch;
@@ -90,13 +111,30 @@ inline float tileDepth(const Pane& pane, std::uint32_t tile_x, std::uint32_t til
   constexpr std::uint32_t kRows = kTileEdge / kBlockHeight;
   const std::size_t stride = static_cast<std::size_t>(pane.columns) * kWidth;
   const float* from = scratch.depth + tile_y * kRows * stride + std::size_t{2} * tile_x * kWidth;
-  Lanes nearest = load<Lanes>(from);
+  Lanes farthest = load<Lanes>(from);
   for (std::uint32_t row = 0; row < kRows; ++row, from += stride) {
-    nearest = lesser(nearest, lesser(load<Lanes>(from), load<Lanes>(from + kWidth)));
+    for (std::uint32_t n = 0; n < 2 * kWidth; n += kLanes) {
+      farthest = lesser(farthest, load<Lanes>(from + n));
+    }
   }
-  scratch.tile_changed[tile_y] &= ~(1U << tile_x);
-  scratch.tile_depth[tile] = least(nearest);
+  noteDepth(pane, tile_x, tile_y, least(farthest));
   return scratch.tile_depth[tile];
+}
+
+/// Of the tiles of a row from `x` on that are set in `bits`: those that do not hide all that is at
+/// most as near as `nearest` tells for each.
+inline unsigned mayShow(const Pane& pane, std::int32_t x, std::int32_t y, unsigned bits,
+                        Lanes nearest) {
+  const PaneScratch& scratch = *pane.scratch;
+  const float* depth = scratch.tile_depth + static_cast<std::size_t>(y) * pane.tile_columns + x;
+  // What is known of a tile is never too near, even where the tile has changed since.
+  bits &= signBits(load<Lanes>(depth) < nearest);
+  const unsigned changed = bits & scratch.tile_changed[y] >> static_cast<unsigned>(x);
+  if (changed == 0) return bits;
+  for (unsigned left = changed; left != 0; left &= left - 1) {
+    tileDepth(pane, static_cast<std::uint32_t>(x + lowestBit(left)), static_cast<std::uint32_t>(y));
+  }
+  return bits & signBits(load<Lanes>(depth) < nearest);
 }
 
 /// Whether what was drawn hides all that lies in the cluster's tiles. Measures all of them where

@@ -2,30 +2,134 @@
 namespace galactic::render {
 namespace {
 
+/// Draws the pixels of one tile and measures it; says whether any shows. `edges`: see tileEdges().
 template <class Test>
-bool coverTiles(const Pane& pane, const LargeSetup& setup, const TileBox& tiles, const Test& test) {
-  PaneTarget target(pane, test);
-  const PaneScratch& scratch = *pane.scratch;
-  bool seen = false;
-  for (std::int32_t y = tiles.top; y <= tiles.bottom; ++y) {
-    for (std::int32_t x = tiles.left; x <= tiles.right; ++x) {
-      EdgeLanes edges;
-      if (!tileEdges(setup, x, y, edges)) continue;
-      const std::size_t tile =
-          static_cast<std::size_t>(y) * pane.tile_columns + static_cast<std::size_t>(x);
-      const float nearest = nearestInTile(setup, x, y);
-      // What is known of a tile is never too near, even where the tile has changed since.
-      if (scratch.tile_depth[tile] >= nearest) continue;
-      if (tileDepth(pane, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)) >=
-          nearest) {
-        continue;
-      }
-      if (signBits(coverTile(setup, edges, x, y, target)) == 0) continue;
-      scratch.tile_changed[y] |= 1U << static_cast<unsigned>(x);
-      seen = true;
+inline bool coverTile(const Pane& pane, const LargeSetup& setup, EdgeLanes edges, std::int32_t x,
+                      std::int32_t y, const Test& test) {
+  const Plane& depth = setup.depth;
+  const double right = x * static_cast<double>(kTileEdge);
+  const double down = y * static_cast<double>(kTileEdge);
+  const Lanes z_start =
+      spread(static_cast<float>(depth.start + (depth.right * right + depth.down * down))) +
+      setup.z_offsets;
+  const Lanes z_beside = spread(static_cast<float>(depth.right * 4));
+  const auto edge_right = [&](int n) { return spread(setup.edges[n].right * 4); };
+  const auto edge_down = [&](int n) { return spread(setup.edges[n].down * 2); };
+  const IntLanes id = spread(static_cast<std::int32_t>(pane.records));
+  LaneSet hit = noLanes();
+  Lanes farthest = spread(__builtin_inff());
+  for (std::uint32_t row = 0; row < kTileEdge / kBlockHeight; ++row) {
+    BlockPlace place =
+        placeOf(pane, static_cast<std::uint32_t>(x) * 2, static_cast<std::uint32_t>(y) * 4 + row);
+    Lanes z =
+        firstBlocks(z_start + spread(static_cast<float>(depth.down * (2 * row))), z_beside, false);
+    EdgeLanes at = edges;
+    for (std::uint32_t n = 0; n < 2; n += kBlocks) {
+      const Covered covered = coverBlocks(place, at.a | at.b | at.c,
+                                          lesser(greater(z, setup.z_low), setup.z_high), id, test);
+      hit |= covered.shown;
+      farthest = lesser(farthest, covered.depth);
+      z = nextBlocks(z, z_beside);
+      at = {at.a + edge_right(0), at.b + edge_right(1), at.c + edge_right(2)};
+      place = {place.depth + kLanes, place.ids + kLanes};
+    }
+    edges = {edges.a + edge_down(0), edges.b + edge_down(1), edges.c + edge_down(2)};
+  }
+  noteDepth(pane, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), least(farthest));
+  return bitsOf(hit) != 0;
+}
+
+/// A linear function over the tiles of a pane, widened by what rounding can do: no lane is less
+/// than the exact value.
+struct TileFunction {
+  double start, right, down;
+  Lanes steps;
+  float margin;
+
+  /// Of tile x, y and those to the right of it.
+  Lanes at(std::int32_t x, std::int32_t y) const {
+    const auto value = static_cast<float>(start + right * x + down * y);
+    return spread(value + magnitude(value) * 1e-6F + margin) + steps;
+  }
+};
+
+inline TileFunction tileFunction(double start, double right, double down) {
+  constexpr double kEdge = kTileEdge;
+  const auto step = static_cast<float>(right * kEdge);
+  return {start, right * kEdge, down * kEdge, toFloat(laneNumbers()) * spread(step),
+          magnitude(step) * (1e-6F * kLanes)};
+}
+
+/// The edge functions of a large triangle at the pixel of a tile where they are largest, and 1/w at
+/// its nearest one.
+struct TileFunctions {
+  TileFunction edges[3], nearest;
+};
+
+inline TileFunctions tileFunctions(const LargeSetup& setup) {
+  const auto edge = [](const LongEdge& e) {
+    return tileFunction(static_cast<double>(e.start + e.reach), e.right, e.down);
+  };
+  // See nearestInTile().
+  constexpr double kLast = kTileEdge - 1;
+  constexpr double kSumRounding = 2e-6;
+  const Plane& depth = setup.depth;
+  const double right = __builtin_fabs(depth.right);
+  const double down = __builtin_fabs(depth.down);
+  const double nearest = depth.start + (depth.right > 0 ? depth.right * kLast : 0) +
+                         (depth.down > 0 ? depth.down * kLast : 0);
+  const double size = __builtin_fabs(depth.start) + kPaneEdge * (right + down);
+  return {{edge(setup.edges[0]), edge(setup.edges[1]), edge(setup.edges[2])},
+          tileFunction(nearest + size * kSumRounding, depth.right, depth.down)};
+}
+
+/// Tiles of a pane, column and row of each: y * kMostTiles + x.
+struct TileList {
+  std::int32_t tiles[kMostTiles * kMostTiles + kLanes];
+  std::uint32_t count = 0;
+};
+
+/// The tiles that a large triangle touches and where it may show. Which of them do is hard to
+/// foresee: no branch depends on it.
+inline void findTiles(const Pane& pane, const LargeSetup& setup, const TileBox& box,
+                      TileList& list) {
+  const TileFunctions functions = tileFunctions(setup);
+  const std::int32_t last = static_cast<std::int32_t>(kLanes) - 1;
+  for (std::int32_t y = box.top; y <= box.bottom; ++y) {
+    for (std::int32_t x = box.left; x <= box.right; x += last + 1) {
+      const IntLanes outside = as<IntLanes>(functions.edges[0].at(x, y)) |
+                               as<IntLanes>(functions.edges[1].at(x, y)) |
+                               as<IntLanes>(functions.edges[2].at(x, y));
+      unsigned bits = ~signBits(outside) & kAllLanes;
+      if (box.right - x < last) bits &= (2U << (box.right - x)) - 1;
+      bits = mayShow(pane, x, y, bits, lesser(functions.nearest.at(x, y), setup.z_high));
+      const std::int32_t first = y * static_cast<std::int32_t>(kMostTiles) + x;
+      storePicked(list.tiles + list.count, spread(first) + laneNumbers(), bits);
+      list.count += static_cast<std::uint32_t>(__builtin_popcount(bits));
     }
   }
+}
+
+template <class Test>
+bool coverTiles(const Pane& pane, const LargeSetup& setup, const TileBox& box, const Test& test) {
+  TileList list;
+  findTiles(pane, setup, box, list);
+  bool seen = false;
+  for (std::uint32_t n = 0; n < list.count; ++n) {
+    const auto at = static_cast<std::uint32_t>(list.tiles[n]);
+    const auto x = static_cast<std::int32_t>(at % kMostTiles);
+    const auto y = static_cast<std::int32_t>(at / kMostTiles);
+    EdgeLanes edges;
+    if (tileEdges(setup, x, y, edges)) seen |= coverTile(pane, setup, edges, x, y, test);
+  }
   return seen;
+}
+
+/// Sets what depends on the pixels of a vector.
+inline void setOffsets(LargeSetup& setup) {
+  for (LongEdge& edge : setup.edges) edge.offsets = edgeOffsets(edge.right, edge.down);
+  setup.z_offsets = toFloat(pixelsRight() & 3) * spread(static_cast<float>(setup.depth.right)) +
+                    toFloat(pixelsDown()) * spread(static_cast<float>(setup.depth.down));
 }
 
 /// Draws one triangle, whatever its size. Corners go clockwise on the screen where it shows its
@@ -38,7 +142,7 @@ void drawLarge(Pane& pane, const ClusterState& state, const Corner& a, const Cor
   if (tiles.right < tiles.left) return;
   ++pane.counts.triangles_drawn;
   LargeSetup setup = setUpLarge(triangle);
-  setOffsets(setup, blockPixels());
+  setOffsets(setup);
   if (pane.records == kMostRecords) makeRoom(pane);
   float* record = recordAt(pane, pane.records);
   float* colors = colorsAt(pane, pane.records);

@@ -38,9 +38,6 @@ struct PaneCounts {
   std::uint64_t triangles_drawn = 0;
 };
 
-/// Writes the images of a pane that is drawn.
-using ResolvePane = void (*)(const PaneTask&, const PaneScratch&) noexcept;
-
 /// Draws a pane. All versions do the same operations in the same order, and none is contracted:
 /// the images agree bit for bit.
 using DrawPane = PaneCounts (*)(const PaneTask&, const PaneScratch&) noexcept;
@@ -50,7 +47,5 @@ PaneCounts drawPanePortable(const PaneTask& task, const PaneScratch& scratch) no
 PaneCounts drawPaneAvx2(const PaneTask& task, const PaneScratch& scratch) noexcept;
 /// For processors with AVX-512: see detail::hasAvx512().
 PaneCounts drawPaneAvx512(const PaneTask& task, const PaneScratch& scratch) noexcept;
-/// What that one writes its images with, sixteen pixels at a time.
-void resolveAvx512(const PaneTask& task, const PaneScratch& scratch) noexcept;
 
 }  // namespace galactic::render

@@ -4,6 +4,7 @@
 #if !defined(__AVX2__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
+#include "render/raster/lanes_eight.inl"
 #include "render/soft/pane_kernel.inl"
 
 namespace galactic::render {

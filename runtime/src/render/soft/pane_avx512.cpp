@@ -1,20 +1,19 @@
-// Compiled for AVX-512: instantiates no library templates, see column_grid_avx2.cpp. Vectors have
-// eight lanes, as elsewhere; those of sixteen are in resolve_avx512.cpp.
+// Compiled for AVX-512: instantiates no library templates, see column_grid_avx2.cpp.
 #include "render/soft/pane.h"
 
-#if !defined(__AVX2__)
-#pragma GCC diagnostic ignored "-Wpsabi"
-#endif
+#if defined(__AVX512F__)
+#include "render/raster/lanes_sixteen.inl"
 #include "render/soft/pane_kernel.inl"
+#endif
 
 namespace galactic::render {
 
 PaneCounts drawPaneAvx512(const PaneTask& task, const PaneScratch& scratch) noexcept {
 #if defined(__AVX512F__)
-  return drawPane(task, scratch, resolveAvx512);
+  return drawPane(task, scratch);
 #else
   // hasAvx512() is false on this architecture; the symbol exists so that callers need no condition.
-  return drawPane(task, scratch);
+  return drawPanePortable(task, scratch);
 #endif
 }
 

@@ -1,9 +1,7 @@
-// Draws a pane: included by pane_portable.cpp and pane_avx2.cpp, which differ only in the
-// instructions that they may use. No library templates here or in the files that this one is made
-// of: see column_grid_avx2.cpp.
-// Each builds on those before it.
+// Draws a pane: included by pane_portable.cpp, pane_avx2.cpp and pane_avx512.cpp, each behind the
+// vectors of the instructions that it may use. No library templates here or in the files that this
+// one is made of: see column_grid_avx2.cpp. Each builds on those before it.
 // clang-format off
-#include "render/raster/lanes_eight.inl"
 #include "render/raster/cull.inl"
 #include "render/raster/vertices.inl"
 #include "render/raster/triangles.inl"
@@ -36,14 +34,12 @@ void clearPane(const Pane& pane) {
   __builtin_memset(scratch.tile_changed, 0, sizeof(scratch.tile_changed[0]) * tiles_down);
   if (task.width % kTileEdge == 0 && task.height % kTileEdge == 0) return;
   for (std::uint32_t row = 0; row < pane.rows; ++row) {
-    for (std::uint32_t column = 0; column < pane.columns; ++column) {
-      const IntLanes x =
-          spread(static_cast<std::int32_t>(column * kBlockWidth)) + blockPixels().right;
-      const IntLanes y = spread(static_cast<std::int32_t>(row * kBlockHeight)) + blockPixels().down;
+    for (std::uint32_t column = 0; column < pane.columns; column += kBlocks) {
+      const IntLanes x = spread(static_cast<std::int32_t>(column * kBlockWidth)) + pixelsRight();
+      const IntLanes y = spread(static_cast<std::int32_t>(row * kBlockHeight)) + pixelsDown();
       const IntLanes outside = (x >= spread(static_cast<std::int32_t>(task.width))) |
                                (y >= spread(static_cast<std::int32_t>(task.height)));
-      store(scratch.depth + (std::size_t{row} * pane.columns + column) * kWidth,
-            as<IntLanes>(spread(__builtin_inff())) & outside);
+      store(placeOf(pane, column, row).depth, as<IntLanes>(spread(__builtin_inff())) & outside);
     }
   }
 }
@@ -57,18 +53,17 @@ void recordBackground(const Pane& pane) {
   record[kKind] = as<float>(kFlatSurface);
 }
 
-/// Draws up to eight small triangles; `corners` has eight.
+/// Draws up to a vector of small triangles; `corners` has that many.
 void drawGroup(Pane& pane, ClusterState& state, const std::int32_t* corners, std::uint32_t count) {
-  if (pane.records + kWidth > kMostRecords) makeRoom(pane);
+  if (pane.records + kLanes > kMostRecords) makeRoom(pane);
   SmallGroup group;
   GroupSetup setup;
   setUpGroup(*pane.task, state, load<IntLanes>(corners), group, setup);
   const std::uint32_t first = pane.records;
   unsigned seen = 0;
   const auto cover = [&](std::uint32_t n, const auto& test) {
-    PaneTarget target(pane, test);
     // Whether a triangle shows is hard to foresee: no branch depends on it.
-    const bool shows = signBits(coverTriangle(setup, n, blockPixels(), target)) != 0;
+    const bool shows = coverSmall(pane, setup, n, test);
     markChanged(pane, setup, n, shows);
     seen |= static_cast<unsigned>(shows) << n;
     pane.records += static_cast<std::uint32_t>(shows);
@@ -91,9 +86,9 @@ void drawGroup(Pane& pane, ClusterState& state, const std::int32_t* corners, std
 }
 
 void drawTriangles(Pane& pane, ClusterState& state, const Survivors& survivors) {
-  for (std::uint32_t n = 0; n < survivors.small_count; n += kWidth) {
+  for (std::uint32_t n = 0; n < survivors.small_count; n += kLanes) {
     const std::uint32_t left = survivors.small_count - n;
-    drawGroup(pane, state, survivors.small + n, left < kWidth ? left : kWidth);
+    drawGroup(pane, state, survivors.small + n, left < kLanes ? left : kLanes);
   }
   pane.counts.triangles_drawn += survivors.small_count;
   if (survivors.large_count != 0 && state.facts.isTextured()) {
@@ -125,9 +120,7 @@ void drawCluster(Pane& pane, const SeenCluster& seen) {
   ++pane.counts.clusters_drawn;
 }
 
-/// `resolve_pane`: what writes the images instead of resolve(), or null.
-PaneCounts drawPane(const PaneTask& task, const PaneScratch& scratch,
-                    ResolvePane resolve_pane = nullptr) noexcept {
+PaneCounts drawPane(const PaneTask& task, const PaneScratch& scratch) noexcept {
   Pane pane = newPane(task, scratch);
   clearPane(pane);
   recordBackground(pane);
@@ -138,11 +131,7 @@ PaneCounts drawPane(const PaneTask& task, const PaneScratch& scratch,
     if (task.culling && isHidden(pane, seen)) continue;
     drawCluster(pane, seen);
   }
-  if (resolve_pane != nullptr) {
-    resolve_pane(task, scratch);
-  } else {
-    resolve(pane);
-  }
+  resolve(pane);
   return pane.counts;
 }
 

@@ -35,7 +35,7 @@ std::size_t layOut(std::byte* block, std::size_t tiles, PaneScratch& scratch) {
   constexpr std::size_t kTilePixels = std::size_t{kTileEdge} * kTileEdge;
   pieces.take(scratch.depth, tiles * kTilePixels);
   pieces.take(scratch.ids, tiles * kTilePixels);
-  pieces.take(scratch.tile_depth, tiles);
+  pieces.take(scratch.tile_depth, tiles + kMostTiles);
   pieces.take(scratch.tile_changed, kMostTiles);
   pieces.take(scratch.bucket_starts, kBuckets + 1);
   pieces.take(scratch.records, std::size_t{kMostRecords} * kRecordStride);

@@ -1,3 +1,4 @@
+#include "render/raster/lanes_eight.inl"
 #include "render/soft/pane.h"
 #include "render/soft/pane_kernel.inl"
 

@@ -34,6 +34,17 @@ inline float* colorsAt(const Pane& pane, std::uint32_t number) {
   return pane.scratch->colors + std::size_t{number} * kRecordStride;
 }
 
+/// Where a vector of pixels lies in the pane.
+struct BlockPlace {
+  float* depth;
+  std::int32_t* ids;
+};
+
+inline BlockPlace placeOf(const Pane& pane, std::uint32_t column, std::uint32_t row) {
+  const std::size_t at = (std::size_t{row} * pane.columns + column) * kWidth;
+  return {pane.scratch->depth + at, pane.scratch->ids + at};
+}
+
 /// Of a vector of pixels from the first one on, block after block.
 inline IntLanes pixelsRight() {
   constexpr std::int32_t kRight[16] = {0, 1, 2, 3, 0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7};
@@ -42,6 +53,12 @@ inline IntLanes pixelsRight() {
 inline IntLanes pixelsDown() {
   constexpr std::int32_t kDown[16] = {0, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1};
   return load<IntLanes>(kDown);
+}
+
+/// 0, 1, 2 and so on.
+inline IntLanes laneNumbers() {
+  constexpr std::int32_t kNumbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  return load<IntLanes>(kNumbers);
 }
 
 /// The pixels from those of a block on.

@@ -5,72 +5,60 @@ namespace {
 
 /// The records of as many pixels as there are lanes, field by field.
 struct EachRecord {
-  Lanes fields[kRecordFields];
+  Lanes fields[kRecordStride];
   Lanes field(std::uint32_t number) const { return fields[number]; }
   IntLanes intField(std::uint32_t number) const { return as<IntLanes>(fields[number]); }
 };
 
-inline EachRecord loadColors(const float* records, const std::int32_t* ids) {
-  static_assert(kRecordFields == kColorFields);
-  EachRecord each;
-  for (std::uint32_t n = 0; n < kRecordFields; n += 4) {
-    gatherFour<kRecordStride>(records + n, ids, each.fields + n);
+/// A vector of pixels before its texels are read.
+struct Shading {
+  SurfacePlace surface;
+  /// See lightAt(); not set where no light is.
+  IntLanes light;
+};
+
+/// Asks the memory for most of the texels: those at the corners of the vector's blocks.
+inline void fetchTexels(const PaneTask& task, const SurfacePlace& surface) {
+  const std::int32_t* base = texelBase(task, surface.base);
+  alignas(kVectorBytes) std::int32_t upper[kLanes];
+  alignas(kVectorBytes) std::int32_t lower[kLanes];
+  store(upper, surface.place.at.upper_left);
+  store(lower, surface.place.at.lower_right);
+  for (const std::uint32_t lane : {0U, kBlockWidth, kLanes - kBlockWidth - 1, kLanes - 1}) {
+    __builtin_prefetch(base + upper[lane]);
+    __builtin_prefetch(base + lower[lane]);
   }
-  return each;
 }
 
-/// Pixels of one triangle.
-inline IntLanes shadeAlike(const Pane& pane, std::uint32_t id, const PixelLanes& pixels) {
-  const OneRecord record{recordAt(pane, id)};
-  IntLanes colors = sampleOne(*pane.task, record, pixels);
-  const auto bits = as<std::uint32_t>(record.record[kKind]);
-  if ((bits & kHasColors) != 0) {
-    colors = timesColors(colors, OneRecord{colorsAt(pane, id)}, pixels);
-  }
-  if ((bits & kHasLight) != 0) {
-    const Lanes light[3] = {record.field(kLightRight), record.field(kLightDown),
-                            record.field(kLightStart)};
-    colors = timesLight(colors, light, pixels);
-  }
-  return colors | static_cast<std::int32_t>(0xFF000000U);
+/// `ids`: 0 or more.
+inline void prepareShading(const Pane& pane, const std::int32_t* ids, const PixelLanes& pixels,
+                           Shading& shading) {
+  EachRecord each;
+  gatherRows<kLightStart + 1, kRecordStride>(pane.scratch->records, ids, each.fields);
+  placeSurface(
+      each.intField(kTexels), each.intField(kKind), [&] { return texturePlaces(each, pixels); },
+      shading.surface);
+  if (shading.surface.textured != 0) fetchTexels(*pane.task, shading.surface);
+  shading.light = lightAt(each.fields + kLightRight, pixels);
 }
 
-/// Pixels of several triangles.
-inline IntLanes shadeMixed(const Pane& pane, const std::int32_t* ids, const PixelLanes& pixels) {
-  const auto id = load<IntLanes>(ids);
-  const float* records = pane.scratch->records;
-  EachRecord each;
-  gatherFour<kRecordStride>(records + kTexels, ids, each.fields + kTexels);
-  const IntLanes kind = each.intField(kKind);
-  IntLanes colors = each.intField(kTexels);
-  const IntLanes flat = (kind & 0xFF) == spread(static_cast<std::int32_t>(kFlatSurface));
-  if (signBits(flat) != kAllLanes) {
-    gatherFour<kRecordStride>(records + kURight, ids, each.fields + kURight);
-    gatherFour<kRecordStride>(records + kURight + 4, ids, each.fields + kURight + 4);
-    colors = sampleTexels(*pane.task, texturePlaces(each, pixels));
-  }
+inline IntLanes finishShading(const Pane& pane, const std::int32_t* ids, const PixelLanes& pixels,
+                              const Shading& shading) {
+  const IntLanes kind = shading.surface.kind;
+  IntLanes colors = sampleAt(*pane.task, shading.surface);
   if (signBits(kind) != 0) {
     // Lanes without colors look at record 0.
     alignas(kVectorBytes) std::int32_t colored[kLanes];
-    store(colored, id & (kind >> 31));
-    const EachRecord planes = loadColors(pane.scratch->colors, colored);
+    store(colored, load<IntLanes>(ids) & (kind >> 31));
+    EachRecord planes;
+    gatherRows<kColorFields, kRecordStride>(pane.scratch->colors, colored, planes.fields);
     colors = pick(kind >> 31, timesColors(colors, planes, pixels), colors);
   }
   const IntLanes lit = kind << 1;
-  if (signBits(lit) != 0) {
-    Lanes light[4];
-    gatherFour<kRecordStride>(records + kLightRight, ids, light);
-    colors = pick(lit >> 31, timesLight(colors, light, pixels), colors);
-  }
+  if (signBits(lit) != 0) colors = pick(lit >> 31, timesLight(colors, shading.light), colors);
   // What is drawn hides all behind it.
-  return pick(id == spread(0), colors, colors | static_cast<std::int32_t>(0xFF000000U));
-}
-
-/// `ids`: 0 or more, not all of them 0.
-inline IntLanes shade(const Pane& pane, const std::int32_t* ids, const PixelLanes& pixels) {
-  const bool alike = signBits(load<IntLanes>(ids) == spread(ids[0])) == kAllLanes;
-  return alike ? shadeAlike(pane, static_cast<std::uint32_t>(ids[0]), pixels)
-               : shadeMixed(pane, ids, pixels);
+  return pick(load<IntLanes>(ids) == spread(0), colors,
+              colors | static_cast<std::int32_t>(0xFF000000U));
 }
 
 /// Where the pixels of one or two blocks lie in the whole image, and how many are within.
@@ -78,7 +66,6 @@ struct BlockTarget {
   std::size_t pixel;
   std::uint32_t width, height;
 };
-constexpr std::uint32_t kBlocks = kLanes / kWidth;
 
 inline BlockTarget blockTarget(const PaneTask& task, std::uint32_t column, std::uint32_t row) {
   const std::uint32_t x = column * kBlockWidth;
@@ -93,6 +80,9 @@ inline BlockTarget blockTarget(const PaneTask& task, std::uint32_t column, std::
 inline void writeWords(const PaneTask& task, const BlockTarget& target, void* image,
                        IntLanes words) {
   auto* to = static_cast<std::uint8_t*>(image) + 4 * target.pixel;
+  if (target.width == kBlocks * kBlockWidth && target.height == kBlockHeight) {
+    return storeBlocks(to, std::size_t{4} * task.image_width, words);
+  }
   alignas(kVectorBytes) std::uint8_t bytes[4 * kLanes];
   store(bytes, words);
   constexpr std::size_t kRowBytes = std::size_t{4} * kBlockWidth;
@@ -143,19 +133,33 @@ inline IntLanes keepShaded(const PaneTask& task, const BlockTarget& target, IntL
   return words;
 }
 
-inline void resolveColors(const Pane& pane, const BlockTarget& target, const std::int32_t* ids,
-                          const PixelLanes& pixels) {
+/// A vector of pixels on its way to the images: what is seen at each, and where it goes.
+struct Resolving {
+  BlockTarget target;
+  PixelLanes pixels;
+  /// As in the pane, and with 0 in place of kShaded.
+  const std::int32_t* ids;
+  alignas(kVectorBytes) std::int32_t shown[kLanes];
+  Shading shading;
+};
+
+inline void beginColors(const Pane& pane, std::uint32_t column, std::uint32_t row, Lanes w,
+                        Resolving& pixels) {
+  pixels.ids = placeOf(pane, column, row).ids;
+  pixels.pixels = pixelsOf(column, row, w);
+  const auto id = load<IntLanes>(pixels.ids);
+  store(pixels.shown, id & ~(id >> 31));
+  if (pane.task->color == nullptr) return;
+  prepareShading(pane, pixels.shown, pixels.pixels, pixels.shading);
+}
+
+inline void endColors(const Pane& pane, const Resolving& pixels) {
   const PaneTask& task = *pane.task;
-  const auto id = load<IntLanes>(ids);
+  const BlockTarget& target = pixels.target;
+  const auto id = load<IntLanes>(pixels.ids);
   const bool any_shaded = signBits(id) != 0;
-  alignas(kVectorBytes) std::int32_t valid[kLanes];
-  if (any_shaded) store(valid, id & ~(id >> 31));
-  const std::int32_t* shown = any_shaded ? valid : ids;
   if (task.color != nullptr) {
-    IntLanes colors = spread(static_cast<std::int32_t>(task.background));
-    if (signBits(load<IntLanes>(shown) == spread(0)) != kAllLanes) {
-      colors = shade(pane, shown, pixels);
-    }
+    IntLanes colors = finishShading(pane, pixels.shown, pixels.pixels, pixels.shading);
     if (any_shaded) colors = keepShaded(task, target, id, colors, task.color, task.channels);
     if (task.channels == 4) {
       writeWords(task, target, task.color, colors);
@@ -166,7 +170,7 @@ inline void resolveColors(const Pane& pane, const BlockTarget& target, const std
   if (task.semantics == nullptr) return;
   IntLanes semantics =
       gather(reinterpret_cast<const std::int32_t*>(pane.scratch->records) + kSemantic,
-             load<IntLanes>(shown) * static_cast<std::int32_t>(kRecordStride));
+             load<IntLanes>(pixels.shown) * static_cast<std::int32_t>(kRecordStride));
   if (any_shaded) {
     semantics = keepShaded(task, target, id, semantics,
                            reinterpret_cast<const std::uint8_t*>(task.semantics), 4);
@@ -174,25 +178,31 @@ inline void resolveColors(const Pane& pane, const BlockTarget& target, const std
   writeWords(task, target, task.semantics, semantics);
 }
 
+/// Vectors whose texels are found before any of them is read: the processor works on several at a
+/// time, as none waits for the one before.
+constexpr std::uint32_t kTogether = 16;
+
 /// Writes the images.
 inline void resolve(const Pane& pane) {
   const PaneTask& task = *pane.task;
-  const float* depth = pane.scratch->depth;
-  const std::int32_t* ids = pane.scratch->ids;
   const std::uint32_t shown_columns = (task.width + kBlockWidth - 1) / kBlockWidth;
   const std::uint32_t shown_rows = (task.height + kBlockHeight - 1) / kBlockHeight;
+  Resolving vectors[kTogether];
   for (std::uint32_t row = 0; row < shown_rows; ++row) {
-    for (std::uint32_t column = 0; column < shown_columns; column += kBlocks) {
-      const std::size_t at = (std::size_t{row} * pane.columns + column) * kWidth;
-      const Lanes z = load<Lanes>(depth + at);
-      const BlockTarget target = blockTarget(task, column, row);
-      const Lanes w = spread(1.0F) / z;
-      if (task.depth != nullptr) {
-        writeWords(task, target, task.depth, as<IntLanes>(w) & (z > spread(0.0F)));
+    for (std::uint32_t column = 0; column < shown_columns;) {
+      std::uint32_t count = 0;
+      for (; count < kTogether && column < shown_columns; ++count, column += kBlocks) {
+        Resolving& pixels = vectors[count];
+        pixels.target = blockTarget(task, column, row);
+        const Lanes z = load<Lanes>(placeOf(pane, column, row).depth);
+        const Lanes w = spread(1.0F) / z;
+        if (task.depth != nullptr) {
+          writeWords(task, pixels.target, task.depth, as<IntLanes>(w) & (z > spread(0.0F)));
+        }
+        if (pane.shades) beginColors(pane, column, row, w, pixels);
       }
-      if (pane.shades) {
-        resolveColors(pane, target, ids + at, pixelsOf(column, row, w));
-      }
+      if (!pane.shades) continue;
+      for (std::uint32_t n = 0; n < count; ++n) endColors(pane, vectors[n]);
     }
   }
 }
@@ -202,13 +212,14 @@ inline void makeRoom(Pane& pane) {
   const PaneTask& task = *pane.task;
   for (std::uint32_t row = 0; row < pane.rows; ++row) {
     for (std::uint32_t column = 0; column < pane.columns; column += kBlocks) {
-      const std::size_t at = (std::size_t{row} * pane.columns + column) * kWidth;
-      const IntLanes ids = load<IntLanes>(pane.scratch->ids + at);
+      const BlockPlace place = placeOf(pane, column, row);
+      const auto ids = load<IntLanes>(place.ids);
       if (signBits(spread(0) - ids) == 0) continue;  // none above 0
-      const Lanes z = load<Lanes>(pane.scratch->depth + at);
-      resolveColors(pane, blockTarget(task, column, row), pane.scratch->ids + at,
-                    pixelsOf(column, row, spread(1.0F) / z));
-      store(pane.scratch->ids + at, pick(ids > spread(0), spread(kShaded), ids));
+      Resolving pixels;
+      pixels.target = blockTarget(task, column, row);
+      beginColors(pane, column, row, spread(1.0F) / load<Lanes>(place.depth), pixels);
+      endColors(pane, pixels);
+      store(place.ids, pick(ids > spread(0), spread(kShaded), ids));
     }
   }
   pane.records = 1;

@@ -6,10 +6,10 @@ void placeVertices(ClusterState& state) {
   const RenderCluster& cluster = *state.facts.cluster;
   const std::uint16_t* block = vertexBlock(state.facts, 0);
   unsigned bad = 0;
-  for (std::uint32_t v = 0; v < cluster.vertex_count; v += kWidth, block += kVertexRows * kWidth) {
-    unsigned good = placeEight(*state.frame, cluster, block, v, state);
+  for (std::uint32_t v = 0; v < cluster.vertex_count; v += kLanes, block += kVertexRows * kLanes) {
+    unsigned good = placeVector(*state.frame, cluster, vertexRows(cluster, block, v), v, state);
     // What follows the last vertex is not looked at.
-    if (cluster.vertex_count - v < kWidth) good |= kAllLanes << (cluster.vertex_count - v);
+    if (cluster.vertex_count - v < kLanes) good |= kAllLanes << (cluster.vertex_count - v);
     bad |= ~good & kAllLanes;
   }
   state.any_bad = bad != 0;
@@ -20,20 +20,20 @@ void readCoordinates(ClusterState& state) {
   if (state.has_coordinates) return;
   state.has_coordinates = true;
   const std::uint16_t* block = vertexBlock(state.facts, 0);
-  const std::uint32_t count = state.facts.cluster->vertex_count;
-  for (std::uint32_t n = 0; n < count; n += kWidth, block += kVertexRows * kWidth) {
-    readEight(block, n, state);
+  const RenderCluster& cluster = *state.facts.cluster;
+  for (std::uint32_t v = 0; v < cluster.vertex_count; v += kLanes, block += kVertexRows * kLanes) {
+    readVector(vertexRows(cluster, block, v), v, state);
   }
 }
 
 /// Triangles of a cluster that are worth drawing, by the way they take; corners go around
 /// clockwise on the screen where the triangle shows its face.
 struct Survivors {
-  /// Behind the last one of each there is room for eight, and behind the last small one eight that
-  /// are all of vertex 0.
-  alignas(32) std::int32_t small[kMostInCluster + kWidth];
-  std::int32_t large[kMostInCluster + kWidth];
-  std::int32_t clipped[kMostInCluster + kWidth];
+  /// Behind the last one of each there is room for a vector, and behind the last small one a vector
+  /// of triangles that are all of vertex 0.
+  alignas(64) std::int32_t small[kMostInCluster + kLanes];
+  std::int32_t large[kMostInCluster + kLanes];
+  std::int32_t clipped[kMostInCluster + kLanes];
   std::uint32_t small_count, large_count, clipped_count;
 };
 
@@ -51,18 +51,19 @@ void sortTriangles(const Pane& pane, const ClusterState& state, Survivors& survi
   const std::uint32_t triangle_count = cluster.triangle_count;
   const std::uint8_t* block = state.facts.pack->triangles +
                               static_cast<std::size_t>(cluster.first_triangle) * kTriangleRows;
-  for (std::uint32_t t = 0; t < triangle_count; t += kWidth) {
-    const CornerLanes corners = cornersAt(block);
-    block += kTriangleRows * kWidth;
+  for (std::uint32_t t = 0; t < triangle_count; t += kLanes) {
+    const CornerLanes corners =
+        cornersAt(block, t + kWidth < triangle_count ? kTriangleRows * kWidth : 0);
+    block += kTriangleRows * kLanes;
     unsigned valid = kAllLanes;
-    if (triangle_count - t < kWidth) valid = (1U << (triangle_count - t)) - 1;
+    if (triangle_count - t < kLanes) valid = (1U << (triangle_count - t)) - 1;
     const IntLanes both = packed(corners);
     if (state.any_bad) {
       const ClipSorting clip = sortForClipping(state, corners);
       append(survivors.clipped, survivors.clipped_count, both, clip.cut & valid);
       valid &= clip.whole;
     }
-    const Sorting sorting = sortEight(limits, state, corners);
+    const Sorting sorting = sortVector(limits, state, corners);
     unsigned small = sorting.small & valid;
     if (small != 0 && task.culling) small &= ~behindTiles(tiles, state, sorting, corners);
     append(survivors.small, survivors.small_count, both, small);

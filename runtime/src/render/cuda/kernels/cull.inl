@@ -119,7 +119,7 @@ GALACTIC_EVERYWHERE inline std::uint32_t modelAt(const std::uint32_t* starts, st
   return low;
 }
 
-GALACTIC_EVERYWHERE inline void noteCluster(const EightSeen& one, const PaneTask& task,
+GALACTIC_EVERYWHERE inline void noteCluster(const BoxesSeen& one, const PaneTask& task,
                                             SeenCluster entry, const PaneLists& lists,
                                             CullShared& shared) {
   constexpr auto kEdge = static_cast<std::int32_t>(kTileEdge);
@@ -147,7 +147,7 @@ GALACTIC_EVERYWHERE inline void lookAtClusters(const Block& block, const PaneLis
           model.pack->cluster_bounds +
           (static_cast<std::size_t>(model.first_block) + cluster / kWidth) * kBoundsRows * kWidth +
           cluster % kWidth;
-      const EightSeen one = lookAtEight(task, shared.frames[n], bounds);
+      const BoxesSeen one = lookAt(task, shared.frames[n], loadBoxes(bounds));
       if (one.seen == 0) continue;
       SeenCluster entry;
       entry.model = first + n;

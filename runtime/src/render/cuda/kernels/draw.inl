@@ -175,10 +175,10 @@ GALACTIC_EVERYWHERE inline void beginCluster(const Block& block, const DrawPlace
     const bool reads = facts.surface.least_alpha != 0 && facts.isTextured();
     for (std::uint32_t v = thread; v < facts.cluster->vertex_count; v += block.threads) {
       const std::uint16_t* vertex = vertexBlock(facts, v) + v % kWidth;
-      if (placeEight(shared.frame, *facts.cluster, vertex, v, state) == 0) {
+      if (placeVector(shared.frame, *facts.cluster, {vertex}, v, state) == 0) {
         storeAtomically(&state.any_bad, true);
       }
-      if (reads) readEight(vertex, v, state);
+      if (reads) readVector({vertex}, v, state);
     }
   });
 }
@@ -211,7 +211,7 @@ GALACTIC_EVERYWHERE inline void sortTriangles(const Block& block, const DrawPlac
         if ((clip.cut & 1U) != 0) noteTriangle(shared.cut, &shared.cut_count, t);
         if (clip.whole == 0) continue;
       }
-      const Sorting sorting = sortEight(limits, state, corners);
+      const Sorting sorting = sortVector(limits, state, corners);
       if (sorting.large != 0) noteTriangle(shared.large, &shared.large_count, t);
       if (sorting.small == 0) continue;
       if (compares && behindTiles(tiles, state, sorting, corners) != 0) continue;

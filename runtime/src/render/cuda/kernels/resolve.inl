@@ -29,8 +29,8 @@ GALACTIC_EVERYWHERE inline void readTriangle(const VertexFrame& frame, std::uint
   for (std::uint32_t n = 0; n < 3; ++n) {
     const std::uint32_t vertex = state.numbers[n];
     const std::uint16_t* rows = vertexBlock(state.facts, vertex) + vertex % kWidth;
-    placeEight(frame, *state.facts.cluster, rows, n, state);
-    if (state.facts.isTextured()) readEight(rows, n, state);
+    placeVector(frame, *state.facts.cluster, {rows}, n, state);
+    if (state.facts.isTextured()) readVector({rows}, n, state);
     state.colors[n] = colors == nullptr ? 0 : colors[vertex];
   }
 }
@@ -75,7 +75,7 @@ GALACTIC_EVERYWHERE inline IntLanes shadePixel(const PaneTask& task, const float
   if ((kind & kHasLight) != 0) {
     const Lanes light[3] = {Lanes(record[kLightRight]), Lanes(record[kLightDown]),
                             Lanes(record[kLightStart])};
-    color = timesLight(color, light, pixel);
+    color = timesLight(color, lightAt(light, pixel));
   }
   // What is drawn hides all behind it.
   return color | static_cast<std::int32_t>(0xFF000000U);
