@@ -20,7 +20,7 @@ struct Polygon {
   int count;
 };
 
-/// Not negative where the vertex may stay: the tests of placeEight().
+/// Not negative where the vertex may stay: the tests of placeVector().
 GALACTIC_EVERYWHERE inline float clipDistance(const ClipVertex& vertex, int plane, float near) {
   const float guard = kGuard * vertex.w;
   switch (plane) {

@@ -97,7 +97,7 @@ GALACTIC_EVERYWHERE inline bool mayShow(const CullFrame& frame, const ModelTable
   return true;
 }
 
-/// The boxes of eight clusters.
+/// The boxes of a vector of clusters.
 struct BoxLanes {
   Lanes center[3];
   Lanes half[3];
@@ -127,7 +127,7 @@ struct Interval {
   Lanes low, high;
 };
 
-/// What eight boxes cover of the pane, pixels from its edges; both may lie outside of it.
+/// What some boxes cover of the pane, pixels from its edges; both may lie outside of it.
 struct Footprint {
   Interval x, y;
 };

@@ -136,6 +136,11 @@ inline unsigned signBits(IntLanes v) {
 
 inline unsigned bitsOf(LaneSet set) { return signBits(set); }
 inline LaneSet noLanes() { return spread(0); }
+/// Those whose bits are set.
+inline LaneSet setOf(unsigned bits) {
+  const IntLanes to_sign{31, 30, 29, 28, 27, 26, 25, 24};
+  return spread(static_cast<std::int32_t>(bits)) << to_sign;
+}
 inline LaneSet bySign(IntLanes v) { return v; }
 
 /// The lanes whose sign is not set and where `a` is greater.
@@ -207,6 +212,14 @@ inline Pair<IntLanes> gatherTwo(const std::int32_t* from, IntLanes at) {
 /// Elements at and at + 1.
 inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from, IntLanes at) {
   return gatherTwo<1>(from, at);
+}
+
+/// Elements at, or the lesser of these and the ones behind them where `both`, a mask, is set. All
+/// of them are read.
+inline Lanes gatherLeast(const float* from, IntLanes at, IntLanes both) {
+  const Pair<IntLanes> two = gatherNeighbors(reinterpret_cast<const std::int32_t*>(from), at);
+  const auto first = as<Lanes>(two.first);
+  return lesser(first, pick(both, as<Lanes>(two.second), first));
 }
 
 /// Entries of a table of pairs, by their numbers.
@@ -344,12 +357,14 @@ inline void storeTransposed(const Lanes* fields, float* to, std::size_t stride) 
   }
 }
 
-inline float least(Lanes v) {
+template <class Vector>
+inline auto least(Vector v) {
   v = lesser(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
   v = lesser(v, __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5));
   v = lesser(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6));
   return v[0];
 }
+inline std::int32_t most(IntLanes v) { return -least(-v); }
 
 }  // namespace
 }  // namespace galactic::render

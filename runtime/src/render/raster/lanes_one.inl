@@ -203,6 +203,12 @@ GALACTIC_EVERYWHERE inline Pair<IntLanes> gatherNeighbors(const std::int32_t* fr
   return {from[at.v], from[at.v + 1]};
 }
 
+/// Element at, or the lesser of this and the one behind it where `both`, a mask, is set.
+GALACTIC_EVERYWHERE inline Lanes gatherLeast(const float* from, IntLanes at, IntLanes both) {
+  const Lanes first(from[at.v]);
+  return both.v != 0 ? lesser(first, Lanes(from[at.v + 1])) : first;
+}
+
 /// Writes an entry of a table of pairs.
 template <class Vector, class Element>
 GALACTIC_EVERYWHERE inline void storePairs(Element* to, Vector first, Vector second) {

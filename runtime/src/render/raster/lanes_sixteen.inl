@@ -60,6 +60,8 @@ inline int lowestBit(unsigned bits) { return __builtin_ctz(bits); }
 using LaneSet = __mmask16;
 inline unsigned bitsOf(LaneSet set) { return set; }
 inline LaneSet noLanes() { return 0; }
+/// Those whose bits are set.
+inline LaneSet setOf(unsigned bits) { return static_cast<LaneSet>(bits); }
 inline LaneSet bySign(IntLanes v) { return _mm512_movepi32_mask(as<__m512i>(v)); }
 
 inline IntLanes pickFrom(LaneSet set, IntLanes yes, IntLanes no) {
@@ -109,6 +111,8 @@ inline Lanes clampTo(Lanes v, float low, float high) {
 
 inline Lanes magnitude(Lanes v) { return as<Lanes>(as<IntLanes>(v) & 0x7FFFFFFF); }
 inline float magnitude(float v) { return v < 0 ? -v : v; }
+inline std::int32_t least(IntLanes v) { return _mm512_reduce_min_epi32(as<__m512i>(v)); }
+inline std::int32_t most(IntLanes v) { return _mm512_reduce_max_epi32(as<__m512i>(v)); }
 inline float least(Lanes v) { return _mm512_reduce_min_ps(as<__m512>(v)); }
 
 /// Products and differences that may wrap around: of lanes whose result is not used.
@@ -181,6 +185,14 @@ inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from, IntLanes at) {
   return {joined<IntLanes>(low.first, high.first), joined<IntLanes>(low.second, high.second)};
 }
 
+/// Elements at, or the lesser of these and the ones behind them where `both`, a mask, is set. All
+/// of them are read.
+inline Lanes gatherLeast(const float* from, IntLanes at, IntLanes both) {
+  const Pair<IntLanes> two = gatherNeighbors(reinterpret_cast<const std::int32_t*>(from), at);
+  const auto first = as<Lanes>(two.first);
+  return lesser(first, pick(both, as<Lanes>(two.second), first));
+}
+
 /// A table of pairs: sixteen first numbers, then their second ones.
 template <class Element>
 inline auto lookUpPairs(const Element* table, IntLanes at) {
@@ -199,23 +211,48 @@ inline void storePairs(Element* to, Vector first, Vector second) {
   store(to + kLanes, second);
 }
 
-/// Numbers of rows become vectors: `kCount` of row ids[lane] for each lane. Rows are `kStride`
-/// long. There are few different ones, and each gives its numbers to all of its lanes at once.
+/// Four vectors become four others: of each quarter, number n of all of them, in their order.
+inline void transposeQuarters(const __m512* from, __m512* to) {
+  const __m512 a = _mm512_unpacklo_ps(from[0], from[1]);
+  const __m512 b = _mm512_unpackhi_ps(from[0], from[1]);
+  const __m512 c = _mm512_unpacklo_ps(from[2], from[3]);
+  const __m512 d = _mm512_unpackhi_ps(from[2], from[3]);
+  to[0] = _mm512_shuffle_ps(a, c, 0x44);
+  to[1] = _mm512_shuffle_ps(a, c, 0xEE);
+  to[2] = _mm512_shuffle_ps(b, d, 0x44);
+  to[3] = _mm512_shuffle_ps(b, d, 0xEE);
+}
+
+/// Numbers of rows become vectors: `kCount` of row ids[lane] for each lane. Rows have sixteen
+/// numbers. How many different ones there are is hard to foresee: no branch depends on it.
 template <std::uint32_t kCount, std::uint32_t kStride>
 inline void gatherRows(const float* rows, const std::int32_t* ids, Lanes* fields) {
-  const __m512i all = _mm512_loadu_si512(ids);
-  const __m512i before = _mm512_conflict_epi32(all);
-  __m512 vectors[kCount] = {};
-  for (unsigned firsts = _mm512_testn_epi32_mask(before, before); firsts != 0;
-       firsts &= firsts - 1) {
-    const std::int32_t id = ids[lowestBit(firsts)];
-    const LaneSet here = _mm512_cmpeq_epi32_mask(all, _mm512_set1_epi32(id));
-    const float* row = rows + std::size_t{kStride} * static_cast<std::uint32_t>(id);
-    for (std::uint32_t n = 0; n < kCount; ++n) {
-      vectors[n] = _mm512_mask_blend_ps(here, vectors[n], _mm512_set1_ps(row[n]));
+  static_assert(kStride == kLanes && kCount <= kLanes);
+  if (_mm512_cmpneq_epi32_mask(_mm512_load_si512(ids), _mm512_set1_epi32(ids[0])) == 0) {
+    const float* row = rows + std::size_t{kStride} * static_cast<std::uint32_t>(ids[0]);
+    for (std::uint32_t n = 0; n < kCount; ++n) fields[n] = spread(row[n]);
+    return;
+  }
+  __m512 quarters[kLanes];
+  for (std::uint32_t n = 0; n < kLanes; n += 4) {
+    __m512 four[4];
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      four[k] =
+          _mm512_load_ps(rows + std::size_t{kStride} * static_cast<std::uint32_t>(ids[n + k]));
+    }
+    transposeQuarters(four, quarters + n);
+  }
+  for (std::uint32_t n = 0; n < 4; ++n) {
+    const __m512 a = _mm512_shuffle_f32x4(quarters[n], quarters[n + 4], 0x44);
+    const __m512 b = _mm512_shuffle_f32x4(quarters[n], quarters[n + 4], 0xEE);
+    const __m512 c = _mm512_shuffle_f32x4(quarters[n + 8], quarters[n + 12], 0x44);
+    const __m512 d = _mm512_shuffle_f32x4(quarters[n + 8], quarters[n + 12], 0xEE);
+    const __m512 found[4] = {_mm512_shuffle_f32x4(a, c, 0x88), _mm512_shuffle_f32x4(a, c, 0xDD),
+                             _mm512_shuffle_f32x4(b, d, 0x88), _mm512_shuffle_f32x4(b, d, 0xDD)};
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      if (4 * k + n < kCount) fields[4 * k + n] = as<Lanes>(found[k]);
     }
   }
-  for (std::uint32_t n = 0; n < kCount; ++n) fields[n] = as<Lanes>(vectors[n]);
 }
 
 /// Writes the lanes whose bits are set, lowest first, and behind them lanes that mean nothing:
@@ -239,17 +276,11 @@ inline Lanes nextBlocks(Lanes blocks, Lanes step) {
 
 /// Eight vectors of one number each become sixteen rows of eight, `stride` apart.
 inline void storeTransposed(const Lanes* fields, float* to, std::size_t stride) {
+  __m512 from[8];
+  for (int n = 0; n < 8; ++n) from[n] = as<__m512>(fields[n]);
   __m512 quads[2][4];
-  for (int n = 0; n < 2; ++n, fields += 4) {
-    const __m512 a = _mm512_unpacklo_ps(as<__m512>(fields[0]), as<__m512>(fields[1]));
-    const __m512 b = _mm512_unpackhi_ps(as<__m512>(fields[0]), as<__m512>(fields[1]));
-    const __m512 c = _mm512_unpacklo_ps(as<__m512>(fields[2]), as<__m512>(fields[3]));
-    const __m512 d = _mm512_unpackhi_ps(as<__m512>(fields[2]), as<__m512>(fields[3]));
-    quads[n][0] = _mm512_shuffle_ps(a, c, 0x44);
-    quads[n][1] = _mm512_shuffle_ps(a, c, 0xEE);
-    quads[n][2] = _mm512_shuffle_ps(b, d, 0x44);
-    quads[n][3] = _mm512_shuffle_ps(b, d, 0xEE);
-  }
+  transposeQuarters(from, quads[0]);
+  transposeQuarters(from + 4, quads[1]);
   const __m512i low_rows =
       _mm512_setr_epi32(0, 1, 2, 3, 16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23);
   const __m512i high_rows = _mm512_add_epi32(low_rows, _mm512_set1_epi32(8));

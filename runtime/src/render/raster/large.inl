@@ -158,16 +158,7 @@ GALACTIC_EVERYWHERE inline Plane depthOf(const LargeTriangle& triangle) {
                  static_cast<double>(triangle.corners[2]->z));
 }
 
-/// Sets what depends on the pixels of a block that are drawn.
-GALACTIC_EVERYWHERE inline void setOffsets(LargeSetup& setup, const PixelOffsets& pixels) {
-  for (LongEdge& edge : setup.edges) {
-    edge.offsets = pixels.right * spread(edge.right) + pixels.down * spread(edge.down);
-  }
-  setup.z_offsets = toFloat(pixels.right) * spread(static_cast<float>(setup.depth.right)) +
-                    toFloat(pixels.down) * spread(static_cast<float>(setup.depth.down));
-}
-
-/// All but the offsets.
+/// All but the offsets, which depend on the pixels of a vector.
 GALACTIC_EVERYWHERE inline LargeSetup setUpLarge(const LargeTriangle& triangle) {
   const Corner& a = *triangle.corners[0];
   const Corner& b = *triangle.corners[1];
@@ -182,25 +173,6 @@ GALACTIC_EVERYWHERE inline LargeSetup setUpLarge(const LargeTriangle& triangle) 
   setup.z_low = spread(lesserOf(lesserOf(a.z, b.z), c.z));
   setup.z_high = spread(setup.z_most);
   return setup;
-}
-
-/// At least the largest 1/w that coverTile() finds in a tile: that of the corner of its plane, with
-/// room for what rounding adds to a sum of a few numbers.
-GALACTIC_EVERYWHERE inline float nearestInTile(const LargeSetup& setup, std::int32_t tile_x,
-                                               std::int32_t tile_y) {
-  constexpr double kLast = kTileEdge - 1;
-  constexpr double kSumRounding = 2e-6;
-  const Plane& depth = setup.depth;
-  const double right = depth.right * (tile_x * static_cast<double>(kTileEdge));
-  const double down = depth.down * (tile_y * static_cast<double>(kTileEdge));
-  const double start = depth.start + (right + down);
-  const double nearest = start + (depth.right > 0 ? depth.right * kLast : 0) +
-                         (depth.down > 0 ? depth.down * kLast : 0);
-  const double size =
-      __builtin_fabs(start) + kLast * (__builtin_fabs(depth.right) + __builtin_fabs(depth.down));
-  const double most = nearest + size * kSumRounding;
-  return most < static_cast<double>(setup.z_most) ? static_cast<float>(most) * 1.0000002F
-                                                  : setup.z_most;
 }
 
 /// Edge functions at the first block of a tile; says whether the triangle can touch the tile.
@@ -220,34 +192,6 @@ GALACTIC_EVERYWHERE inline bool tileEdges(const LargeSetup& setup, std::int32_t 
   lanes = {setup.edges[0].offsets + spread(starts[0]), setup.edges[1].offsets + spread(starts[1]),
            setup.edges[2].offsets + spread(starts[2])};
   return true;
-}
-
-/// Draws the pixels of one tile, on a target as in coverTriangle(). `edges`: see tileEdges().
-template <class Target>
-GALACTIC_EVERYWHERE inline IntLanes coverTile(const LargeSetup& setup, EdgeLanes edges,
-                                              std::int32_t tile_x, std::int32_t tile_y,
-                                              Target& target) {
-  const Plane& depth = setup.depth;
-  const double x = tile_x * static_cast<double>(kTileEdge);
-  const double y = tile_y * static_cast<double>(kTileEdge);
-  const Lanes z_start =
-      spread(static_cast<float>(depth.start + (depth.right * x + depth.down * y))) +
-      setup.z_offsets;
-  IntLanes hit = spread(0);
-  const auto right = [&](int n) { return spread(setup.edges[n].right * 4); };
-  const auto down = [&](int n) { return spread(setup.edges[n].down * 2); };
-  const Lanes z_right = spread(static_cast<float>(depth.right * 4));
-  target.start(static_cast<std::uint32_t>(tile_x) * 2, static_cast<std::uint32_t>(tile_y) * 4);
-  for (std::uint32_t row = 0; row < 4; ++row) {
-    const Lanes z = z_start + spread(static_cast<float>(depth.down * (2 * row)));
-    hit |= target.cover(edges, lesser(greater(z, setup.z_low), setup.z_high));
-    const EdgeLanes beside{edges.a + right(0), edges.b + right(1), edges.c + right(2)};
-    target.right();
-    hit |= target.cover(beside, lesser(greater(z + z_right, setup.z_low), setup.z_high));
-    edges = {edges.a + down(0), edges.b + down(1), edges.c + down(2)};
-    target.nextRow();
-  }
-  return hit;
 }
 
 }  // namespace

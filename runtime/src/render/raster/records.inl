@@ -2,7 +2,7 @@
 namespace galactic::render {
 namespace {
 
-/// The plane of eight values, to three vectors.
+/// The planes of a vector of values, to three vectors.
 GALACTIC_EVERYWHERE inline void planeFields(const SmallGroup& group, Lanes a, Lanes b, Lanes c,
                                             Lanes* fields) {
   const GradientLanes change = gradient(group, a, b, c);

@@ -1,10 +1,11 @@
-// Colors of eight pixels from the records of their triangles: texture coordinates by perspective,
-// the mip level whose texels come closest to one per pixel, bilinear between four texels of it, as
-// GL_LINEAR_MIPMAP_NEAREST does; colors are weighed as they are stored (sRGB), in eighths of bits.
+// Colors of a vector of pixels from the records of their triangles: texture coordinates by
+// perspective, the mip level whose texels come closest to one per pixel, bilinear between four
+// texels of it, as GL_LINEAR_MIPMAP_NEAREST does; colors are weighed as they are stored (sRGB), in
+// eighths of bits.
 namespace galactic::render {
 namespace {
 
-/// Where eight pixels lie on their textures.
+/// Where some pixels lie on their textures.
 struct TexturePlaces {
   /// Texels of the largest level.
   Lanes u, v;
@@ -217,7 +218,7 @@ struct OneRecord {
   }
 };
 
-/// Eight pixels: their places in the pane, from the center of its first pixel, and w.
+/// Some pixels: their places in the pane, from the center of its first pixel, and w.
 struct PixelLanes {
   Lanes x, y, w;
 };

@@ -1,11 +1,11 @@
-// Triangles of a cluster: which can cover a pixel, and the set-up of eight at a time.
+// Triangles of a cluster: which can cover a pixel, and the set-up of a vector at a time.
 namespace galactic::render {
 namespace {
 
-/// Triangles of at most this extent, in 1/256 pixel, are set up in 32 bits, by eight.
+/// Triangles of at most this extent, in 1/256 pixel, are set up in 32 bits, by vectors.
 constexpr std::int32_t kSmall = 64 * kSubpixels;
 
-/// Corners of eight triangles, each of them as the numbers of vertices in its cluster.
+/// Corners of some triangles, each of them as the numbers of vertices in its cluster.
 struct CornerLanes {
   IntLanes a, b, c;
 };
@@ -63,7 +63,7 @@ GALACTIC_EVERYWHERE inline IntLanes doubleArea(const PointLanes& a, const PointL
   return wrapSubtract(wrapMultiply(b.x - a.x, c.y - a.y), wrapMultiply(c.x - a.x, b.y - a.y));
 }
 
-/// What becomes of eight triangles: bit n for triangle n.
+/// What becomes of some triangles: bit n for triangle n.
 struct Sorting {
   unsigned small, large;
   /// Of the small ones: pixels that they can cover, first and last.
@@ -83,7 +83,7 @@ GALACTIC_EVERYWHERE inline SortLimits sortLimits(const PaneTask& task,
           spread(cluster.two_sided != 0 ? -1 : 0)};
 }
 
-/// Which of eight triangles have no bad corner, and which have to be cut: bit n for triangle n. The
+/// Which of some triangles have no bad corner, and which have to be cut: bit n for triangle n. The
 /// rest lies beyond one plane with all corners.
 struct ClipSorting {
   unsigned whole, cut;
@@ -125,13 +125,13 @@ GALACTIC_EVERYWHERE inline Sorting sortVector(const SortLimits limits, const Clu
           last_y};
 }
 
-/// At most the least 1/w of each tile of a pane, row after row.
+/// At most the least 1/w of each tile of a pane, row after row; one more may be read.
 struct TileDepths {
   const float* depth;
   std::int32_t columns;
 };
 
-/// Which of eight small triangles lie behind all that was drawn in their tiles: bit n for triangle
+/// Which of some small triangles lie behind all that was drawn in their tiles: bit n for triangle
 /// n. Those that touch more than two tiles in a row or a column do not count.
 GALACTIC_EVERYWHERE inline unsigned behindTiles(const TileDepths& tiles, const ClusterState& state,
                                                 const Sorting& sorting,
@@ -143,16 +143,16 @@ GALACTIC_EVERYWHERE inline unsigned behindTiles(const TileDepths& tiles, const C
   const IntLanes top = sorting.first_y >> 3;
   const IntLanes bottom = sorting.last_y >> 3;
   // Those that cover no pixel may lie outside of the pane.
-  const IntLanes few = (right >= left) & ((right - left) < spread(2)) & (bottom >= top) &
-                       ((bottom - top) < spread(2)) & (sorting.last_x >= sorting.first_x) &
-                       (sorting.last_y >= sorting.first_y);
+  const IntLanes wide = right - left;
+  const IntLanes high = bottom - top;
+  const IntLanes few = ~(wide | (spread(1) - wide) | high | (spread(1) - high) |
+                         (sorting.last_x - sorting.first_x) | (sorting.last_y - sorting.first_y)) >>
+                       31;
   const IntLanes upper = top * spread(tiles.columns);
   const IntLanes lower = bottom * spread(tiles.columns);
-  const auto depth = [&](IntLanes row, IntLanes column) {
-    return gather(tiles.depth, (row + column) & few);
-  };
-  const Lanes farthest = lesser(lesser(depth(upper, left), depth(upper, right)),
-                                lesser(depth(lower, left), depth(lower, right)));
+  const IntLanes both = -wide >> 31;
+  const Lanes farthest = lesser(gatherLeast(tiles.depth, (upper + left) & few, both & few),
+                                gatherLeast(tiles.depth, (lower + left) & few, both & few));
   return signBits((farthest >= nearest) & few);
 }
 
@@ -161,7 +161,7 @@ struct GradientLanes {
   Lanes right, down;
 };
 
-/// Corners of eight small triangles.
+/// Corners of some small triangles.
 struct SmallGroup {
   CornerLanes corners;
   PointLanes a, b, c;
@@ -204,7 +204,7 @@ GALACTIC_EVERYWHERE inline void setUpEdge(GroupSetup& setup, int number, const P
   store(setup.edge_down[number], dx * spread(kSubpixels));
 }
 
-/// Sets up eight small triangles; turns those around that show their back.
+/// Sets up a vector of small triangles; turns those around that show their back.
 template <class State>
 GALACTIC_EVERYWHERE inline void setUpGroup(const PaneTask& task, const State& state,
                                            IntLanes packed_corners, SmallGroup& group,
@@ -261,58 +261,10 @@ GALACTIC_EVERYWHERE inline void setUpGroup(const PaneTask& task, const State& st
   store(setup.z_high, mostOf(group.z_a, group.z_b, group.z_c));
 }
 
-/// Eight values that change linearly over the pane.
+/// Values that change linearly over the pane.
 struct EdgeLanes {
   IntLanes a, b, c;
 };
-
-/// Offsets of pixels from the first one of their block.
-struct PixelOffsets {
-  IntLanes right, down;
-};
-
-/// Draws triangle `n` of a group, block by block, on a target that knows start(column, row),
-/// cover(edges, z), right() and nextRow(); the sign bits of the result tell which pixels it shows.
-template <class Target>
-GALACTIC_EVERYWHERE inline IntLanes coverTriangle(const GroupSetup& group, unsigned n,
-                                                  const PixelOffsets& pixels, Target& target) {
-  const IntLanes right = pixels.right;
-  const IntLanes lower = -pixels.down;
-  const auto edge_lanes = [&](int e) {
-    return spread(group.edge[e][n]) + right * spread(group.edge_right[e][n]) +
-           (lower & spread(group.edge_down[e][n]));
-  };
-  EdgeLanes row_edges{edge_lanes(0), edge_lanes(1), edge_lanes(2)};
-  const auto four_right = [&](int e) { return spread(group.edge_right[e][n] * 4); };
-  const auto two_down = [&](int e) { return spread(group.edge_down[e][n] * 2); };
-  const EdgeLanes next{four_right(0), four_right(1), four_right(2)};
-  const EdgeLanes below{two_down(0), two_down(1), two_down(2)};
-  Lanes row_z = spread(group.z[n]) + toFloat(right) * spread(group.z_right[n]) +
-                toFloat(pixels.down) * spread(group.z_down[n]);
-  const Lanes z_next = spread(group.z_right[n] * 4);
-  const Lanes z_below = spread(group.z_down[n] * 2);
-  const Lanes z_low = spread(group.z_low[n]);
-  const Lanes z_high = spread(group.z_high[n]);
-  IntLanes hit = spread(0);
-  target.start(static_cast<std::uint32_t>(group.first_column[n]),
-               static_cast<std::uint32_t>(group.first_row[n]));
-  const auto columns = static_cast<std::uint32_t>(group.last_column[n] - group.first_column[n]);
-  for (std::int32_t row = group.first_row[n]; row <= group.last_row[n]; ++row) {
-    EdgeLanes edges = row_edges;
-    Lanes z = row_z;
-    for (std::uint32_t column = 0;; ++column) {
-      hit |= target.cover(edges, lesser(greater(z, z_low), z_high));
-      if (column == columns) break;
-      edges = {edges.a + next.a, edges.b + next.b, edges.c + next.c};
-      z = z + z_next;
-      target.right();
-    }
-    row_edges = {row_edges.a + below.a, row_edges.b + below.b, row_edges.c + below.c};
-    row_z = row_z + z_below;
-    target.nextRow();
-  }
-  return hit;
-}
 
 }  // namespace
 }  // namespace galactic::render

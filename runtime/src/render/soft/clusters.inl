@@ -34,7 +34,7 @@ std::uint32_t findClusters(const PaneTask& task, const PaneScratch& scratch, Pan
       const std::size_t next = c + kWidth < model.cluster_count ? kBoundsRows * kWidth : 0;
       BoxesSeen boxes = lookAt(task, frame, loadBoxes(bounds, next));
       bounds += kBoundsRows * kLanes;
-      if (model.cluster_count - c < kLanes) boxes.seen &= (1U << (model.cluster_count - c)) - 1;
+      boxes.seen &= firstLanes(model.cluster_count - c);
       if (boxes.seen == 0) continue;
       noteClusters(boxes, bucketsOf(boxes.distance, task.near), {.model = m, .cluster = c}, end);
     }

@@ -38,62 +38,102 @@ inline IntLanes edgeOffsets(std::int32_t right, std::int32_t down) {
   return pixelsRight() * spread(right) + (-pixelsDown() & spread(down));
 }
 
-/// Draws triangle `n` of a group, row by row; says whether it shows.
-template <class Test>
-inline bool coverSmall(const Pane& pane, const GroupSetup& group, unsigned n, const Test& test) {
-  const auto lanes = [&](int e) {
-    return spread(group.edge[e][n]) + edgeOffsets(group.edge_right[e][n], group.edge_down[e][n]);
-  };
-  const auto right = [&](int e) {
-    return spread(group.edge_right[e][n] * static_cast<std::int32_t>(kBlocks * kBlockWidth));
-  };
-  const auto down = [&](int e) { return spread(group.edge_down[e][n] * 2); };
-  EdgeLanes row_edges{lanes(0), lanes(1), lanes(2)};
-  const EdgeLanes beside{right(0), right(1), right(2)};
-  const EdgeLanes below{down(0), down(1), down(2)};
-  // From block to block, as all processors do: no lane may take a short cut.
-  Lanes row_z = spread(group.z[n]) + toFloat(pixelsRight() & 3) * spread(group.z_right[n]) +
-                toFloat(pixelsDown()) * spread(group.z_down[n]);
-  const Lanes z_beside = spread(group.z_right[n] * 4);
-  const Lanes z_below = spread(group.z_down[n] * 2);
-  const Lanes z_low = spread(group.z_low[n]);
-  const Lanes z_high = spread(group.z_high[n]);
-  const IntLanes id = spread(static_cast<std::int32_t>(pane.records));
-  const auto first_column = static_cast<std::uint32_t>(group.first_column[n]);
-  const std::uint32_t first = first_column / kBlocks;
-  const std::uint32_t more = static_cast<std::uint32_t>(group.last_column[n]) / kBlocks - first;
-  LaneSet hit = noLanes();
-  for (std::int32_t row = group.first_row[n]; row <= group.last_row[n]; ++row) {
-    BlockPlace place = placeOf(pane, first * kBlocks, static_cast<std::uint32_t>(row));
-    EdgeLanes edges = row_edges;
-    Lanes z = firstBlocks(row_z, z_beside, first_column % kBlocks != 0);
-    for (std::uint32_t left = more;; --left) {
-      hit |= coverBlocks(place, edges.a | edges.b | edges.c, lesser(greater(z, z_low), z_high), id,
-                         test)
-                 .shown;
-      if (left == 0) break;
-      edges = {edges.a + beside.a, edges.b + beside.b, edges.c + beside.c};
-      z = nextBlocks(z, z_beside);
-      place = {place.depth + kLanes, place.ids + kLanes};
-    }
-    row_edges = {row_edges.a + below.a, row_edges.b + below.b, row_edges.c + below.c};
-    row_z = row_z + z_below;
+/// How what a group's set-up gives changes from vector to vector and from row to row.
+struct alignas(kGroupAlignment) GroupSteps {
+  std::int32_t edge_beside[3][kLanes], edge_below[3][kLanes];
+  float z_beside[kLanes], z_below[kLanes];
+};
+
+inline void setSteps(const GroupSetup& group, GroupSteps& steps) {
+  constexpr auto kWide = static_cast<std::int32_t>(kBlocks * kBlockWidth);
+  for (int e = 0; e < 3; ++e) {
+    store(steps.edge_beside[e], load<IntLanes>(group.edge_right[e]) * kWide);
+    store(steps.edge_below[e], load<IntLanes>(group.edge_down[e]) * 2);
   }
-  return bitsOf(hit) != 0;
+  store(steps.z_beside, load<Lanes>(group.z_right) * spread(4.0F));
+  store(steps.z_below, load<Lanes>(group.z_down) * spread(2.0F));
 }
 
-/// Marks the tiles of triangle `n` where it shows.
-inline void markChanged(const Pane& pane, const GroupSetup& group, unsigned n, bool shows) {
-  const auto first_column = static_cast<unsigned>(group.first_column[n]) / 2;
-  const auto last_column = static_cast<unsigned>(group.last_column[n]) / 2;
-  const std::uint32_t columns = (2U << last_column) - (1U << first_column);
-  const std::uint32_t marks = shows ? columns : 0;
-  std::uint32_t* changed = pane.scratch->tile_changed;
-  const std::int32_t first = group.first_row[n] / 4;
-  const std::int32_t last = group.last_row[n] / 4;
-  changed[first] |= marks;
-  changed[last] |= marks;
-  for (std::int32_t y = first + 1; y < last; ++y) changed[y] |= marks;
+/// Triangle `n` of a group on its way over the pane, from row to row.
+template <class Test>
+struct SmallCover {
+  const Pane& pane;
+  const GroupSetup& group;
+  const GroupSteps& steps;
+  unsigned n;
+  const Test& test;
+
+  EdgeLanes edges{lanes(0), lanes(1), lanes(2)};
+  // From block to block, as all processors do: no lane may take a short cut.
+  Lanes z = spread(group.z[n]) + toFloat(pixelsRight() & 3) * spread(group.z_right[n]) +
+            toFloat(pixelsDown()) * spread(group.z_down[n]);
+  LaneSet hit = noLanes();
+
+  IntLanes lanes(int e) const {
+    return spread(group.edge[e][n]) + edgeOffsets(group.edge_right[e][n], group.edge_down[e][n]);
+  }
+  void cover(const BlockPlace& place, const EdgeLanes& at, Lanes z_there) {
+    const Lanes within = lesser(greater(z_there, spread(group.z_low[n])), spread(group.z_high[n]));
+    const IntLanes id = spread(static_cast<std::int32_t>(pane.records));
+    hit |= coverBlocks(place, at.a | at.b | at.c, within, id, test).shown;
+  }
+  void nextRow() {
+    edges = {edges.a + spread(steps.edge_below[0][n]), edges.b + spread(steps.edge_below[1][n]),
+             edges.c + spread(steps.edge_below[2][n])};
+    z = z + spread(steps.z_below[n]);
+  }
+  /// `more`: vectors beside the first one.
+  void coverRow(BlockPlace place, Lanes z_there, std::uint32_t more) {
+    EdgeLanes at = edges;
+    for (;; --more) {
+      cover(place, at, z_there);
+      if (more == 0) return;
+      at = {at.a + spread(steps.edge_beside[0][n]), at.b + spread(steps.edge_beside[1][n]),
+            at.c + spread(steps.edge_beside[2][n])};
+      z_there = nextBlocks(z_there, spread(steps.z_beside[n]));
+      place = {place.depth + kLanes, place.ids + kLanes};
+    }
+  }
+};
+
+/// Draws triangle `n` of a group; says whether it shows.
+template <class Test>
+inline bool coverSmall(const Pane& pane, const GroupSetup& group, const GroupSteps& steps,
+                       unsigned n, const Test& test) {
+  SmallCover<Test> small{pane, group, steps, n, test};
+  const auto column = static_cast<std::uint32_t>(group.first_column[n]);
+  const std::uint32_t first = column / kBlocks;
+  const std::uint32_t more = static_cast<std::uint32_t>(group.last_column[n]) / kBlocks - first;
+  const std::size_t stride = std::size_t{pane.columns} * kWidth;
+  BlockPlace place = placeOf(pane, first * kBlocks, static_cast<std::uint32_t>(group.first_row[n]));
+  for (std::int32_t left = group.last_row[n] - group.first_row[n];; --left) {
+    const Lanes z = firstBlocks(small.z, spread(steps.z_beside[n]), column % kBlocks != 0);
+    if (more == 0) {
+      small.cover(place, small.edges, z);
+    } else {
+      small.coverRow(place, z, more);
+    }
+    if (left == 0) return bitsOf(small.hit) != 0;
+    small.nextRow();
+    place = {place.depth + stride, place.ids + stride};
+  }
+}
+
+/// Marks the tiles of those triangles of a group whose bits are set, as one box.
+inline void markChanged(const Pane& pane, const GroupSetup& group, unsigned seen) {
+  const LaneSet shown = setOf(seen);
+  const auto first = [&](const std::int32_t* of_group) {
+    return least(pickFrom(shown, load<IntLanes>(of_group), spread(INT32_MAX)));
+  };
+  const auto last = [&](const std::int32_t* of_group) {
+    return most(pickFrom(shown, load<IntLanes>(of_group), spread(0)));
+  };
+  const std::uint32_t marks = (2U << (static_cast<unsigned>(last(group.last_column)) / 2)) -
+                              (1U << (static_cast<unsigned>(first(group.first_column)) / 2));
+  const std::int32_t bottom = last(group.last_row) / 4;
+  for (std::int32_t y = first(group.first_row) / 4; y <= bottom; ++y) {
+    pane.scratch->tile_changed[y] |= marks;
+  }
 }
 
 /// Notes the least 1/w of a tile.
@@ -144,9 +184,11 @@ inline bool isHidden(const Pane& pane, const SeenCluster& seen) {
   const std::uint32_t wide = seen.tiles[1] - seen.tiles[0] + 1U;
   const bool few = wide * (seen.tiles[3] - seen.tiles[2] + 1U) <= kFew;
   bool hidden = true;
-  for (std::uint32_t y = seen.tiles[2]; y <= seen.tiles[3]; ++y) {
-    for (std::uint32_t x = seen.tiles[0]; x <= seen.tiles[1]; ++x) {
-      if (tileDepth(pane, x, y) >= seen.nearest) continue;
+  for (std::int32_t y = seen.tiles[2]; y <= seen.tiles[3]; ++y) {
+    for (std::int32_t x = seen.tiles[0]; x <= seen.tiles[1];
+         x += static_cast<std::int32_t>(kLanes)) {
+      const unsigned within = firstLanes(static_cast<std::uint32_t>(seen.tiles[1] - x) + 1);
+      if (mayShow(pane, x, y, within, spread(seen.nearest)) == 0) continue;
       if (!few) return false;
       hidden = false;
     }

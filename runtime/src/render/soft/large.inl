@@ -39,48 +39,54 @@ inline bool coverTile(const Pane& pane, const LargeSetup& setup, EdgeLanes edges
   return bitsOf(hit) != 0;
 }
 
-/// A linear function over the tiles of a pane, widened by what rounding can do: no lane is less
-/// than the exact value.
+/// A linear function over a row of tiles from one on, widened by what rounding can do: no lane is
+/// less than the exact value.
 struct TileFunction {
-  double start, right, down;
-  Lanes steps;
-  float margin;
+  Lanes value, below;
 
-  /// Of tile x, y and those to the right of it.
-  Lanes at(std::int32_t x, std::int32_t y) const {
-    const auto value = static_cast<float>(start + right * x + down * y);
-    return spread(value + magnitude(value) * 1e-6F + margin) + steps;
-  }
+  void nextRow() { value = value + below; }
 };
 
-inline TileFunction tileFunction(double start, double right, double down) {
+/// `start`: at the pane's first pixel; `right`, `down`: changes per pixel. `x`, `y`: the tile.
+inline TileFunction tileFunction(double start, double right, double down, std::int32_t x,
+                                 std::int32_t y) {
+  // Of at most kMostTiles sums, and of those in coverTile(), relative to what is added.
+  constexpr double kSumsRounding = 6e-6;
   constexpr double kEdge = kTileEdge;
-  const auto step = static_cast<float>(right * kEdge);
-  return {start, right * kEdge, down * kEdge, toFloat(laneNumbers()) * spread(step),
-          magnitude(step) * (1e-6F * kLanes)};
+  const double first = start + (right * (kEdge * x) + down * (kEdge * y));
+  const double size =
+      __builtin_fabs(first) + kPaneEdge * (__builtin_fabs(right) + __builtin_fabs(down));
+  return {spread(static_cast<float>(first + size * kSumsRounding)) +
+              toFloat(laneNumbers()) * spread(static_cast<float>(right * kEdge)),
+          spread(static_cast<float>(down * kEdge))};
 }
 
 /// The edge functions of a large triangle at the pixel of a tile where they are largest, and 1/w at
 /// its nearest one.
 struct TileFunctions {
-  TileFunction edges[3], nearest;
+  TileFunction a, b, c, nearest;
+
+  IntLanes outside() const {
+    return as<IntLanes>(a.value) | as<IntLanes>(b.value) | as<IntLanes>(c.value);
+  }
+  void nextRow() {
+    a.nextRow();
+    b.nextRow();
+    c.nextRow();
+    nearest.nextRow();
+  }
 };
 
-inline TileFunctions tileFunctions(const LargeSetup& setup) {
-  const auto edge = [](const LongEdge& e) {
-    return tileFunction(static_cast<double>(e.start + e.reach), e.right, e.down);
+inline TileFunctions tileFunctions(const LargeSetup& setup, std::int32_t x, std::int32_t y) {
+  const auto edge = [&](const LongEdge& e) {
+    return tileFunction(static_cast<double>(e.start + e.reach), e.right, e.down, x, y);
   };
-  // See nearestInTile().
   constexpr double kLast = kTileEdge - 1;
-  constexpr double kSumRounding = 2e-6;
   const Plane& depth = setup.depth;
-  const double right = __builtin_fabs(depth.right);
-  const double down = __builtin_fabs(depth.down);
   const double nearest = depth.start + (depth.right > 0 ? depth.right * kLast : 0) +
                          (depth.down > 0 ? depth.down * kLast : 0);
-  const double size = __builtin_fabs(depth.start) + kPaneEdge * (right + down);
-  return {{edge(setup.edges[0]), edge(setup.edges[1]), edge(setup.edges[2])},
-          tileFunction(nearest + size * kSumRounding, depth.right, depth.down)};
+  return {edge(setup.edges[0]), edge(setup.edges[1]), edge(setup.edges[2]),
+          tileFunction(nearest, depth.right, depth.down, x, y)};
 }
 
 /// Tiles of a pane, column and row of each: y * kMostTiles + x.
@@ -93,16 +99,13 @@ struct TileList {
 /// foresee: no branch depends on it.
 inline void findTiles(const Pane& pane, const LargeSetup& setup, const TileBox& box,
                       TileList& list) {
-  const TileFunctions functions = tileFunctions(setup);
-  const std::int32_t last = static_cast<std::int32_t>(kLanes) - 1;
-  for (std::int32_t y = box.top; y <= box.bottom; ++y) {
-    for (std::int32_t x = box.left; x <= box.right; x += last + 1) {
-      const IntLanes outside = as<IntLanes>(functions.edges[0].at(x, y)) |
-                               as<IntLanes>(functions.edges[1].at(x, y)) |
-                               as<IntLanes>(functions.edges[2].at(x, y));
-      unsigned bits = ~signBits(outside) & kAllLanes;
-      if (box.right - x < last) bits &= (2U << (box.right - x)) - 1;
-      bits = mayShow(pane, x, y, bits, lesser(functions.nearest.at(x, y), setup.z_high));
+  for (std::int32_t x = box.left; x <= box.right; x += static_cast<std::int32_t>(kLanes)) {
+    TileFunctions functions = tileFunctions(setup, x, box.top);
+    const unsigned within = firstLanes(static_cast<std::uint32_t>(box.right - x) + 1);
+    for (std::int32_t y = box.top; y <= box.bottom; ++y, functions.nextRow()) {
+      const unsigned touched = ~signBits(functions.outside()) & within;
+      const unsigned bits =
+          mayShow(pane, x, y, touched, lesser(functions.nearest.value, setup.z_high));
       const std::int32_t first = y * static_cast<std::int32_t>(kMostTiles) + x;
       storePicked(list.tiles + list.count, spread(first) + laneNumbers(), bits);
       list.count += static_cast<std::uint32_t>(__builtin_popcount(bits));

@@ -59,12 +59,13 @@ void drawGroup(Pane& pane, ClusterState& state, const std::int32_t* corners, std
   SmallGroup group;
   GroupSetup setup;
   setUpGroup(*pane.task, state, load<IntLanes>(corners), group, setup);
+  GroupSteps steps;
+  setSteps(setup, steps);
   const std::uint32_t first = pane.records;
   unsigned seen = 0;
   const auto cover = [&](std::uint32_t n, const auto& test) {
     // Whether a triangle shows is hard to foresee: no branch depends on it.
-    const bool shows = coverSmall(pane, setup, n, test);
-    markChanged(pane, setup, n, shows);
+    const bool shows = coverSmall(pane, setup, steps, n, test);
     seen |= static_cast<unsigned>(shows) << n;
     pane.records += static_cast<std::uint32_t>(shows);
   };
@@ -78,6 +79,7 @@ void drawGroup(Pane& pane, ClusterState& state, const std::int32_t* corners, std
     for (std::uint32_t n = 0; n < count; ++n) cover(n, Opaque{});
     if (seen != 0 && pane.shades) makeRecords(state, group, records);
   }
+  if (seen != 0) markChanged(pane, setup, seen);
   if (seen != 0 && pane.shades) {
     keepRecords(pane, state, records, seen, first);
   } else {

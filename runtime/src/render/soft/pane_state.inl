@@ -61,6 +61,11 @@ inline IntLanes laneNumbers() {
   return load<IntLanes>(kNumbers);
 }
 
+/// The first `count` lanes, or all: bit n for lane n.
+inline unsigned firstLanes(std::uint32_t count) {
+  return count < kLanes ? (1U << count) - 1 : kAllLanes;
+}
+
 /// The pixels from those of a block on.
 inline PixelLanes pixelsOf(std::uint32_t column, std::uint32_t row, Lanes w) {
   const auto x = static_cast<float>(column * kBlockWidth);

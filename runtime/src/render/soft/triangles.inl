@@ -55,8 +55,7 @@ void sortTriangles(const Pane& pane, const ClusterState& state, Survivors& survi
     const CornerLanes corners =
         cornersAt(block, t + kWidth < triangle_count ? kTriangleRows * kWidth : 0);
     block += kTriangleRows * kLanes;
-    unsigned valid = kAllLanes;
-    if (triangle_count - t < kLanes) valid = (1U << (triangle_count - t)) - 1;
+    unsigned valid = firstLanes(triangle_count - t);
     const IntLanes both = packed(corners);
     if (state.any_bad) {
       const ClipSorting clip = sortForClipping(state, corners);

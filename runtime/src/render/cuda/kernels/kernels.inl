@@ -12,6 +12,7 @@
 #include "render/raster/clip.inl"
 #include "render/cuda/kernels/block.inl"
 #include "render/cuda/kernels/cull.inl"
+#include "render/cuda/kernels/cover.inl"
 #include "render/cuda/kernels/draw.inl"
 #include "render/cuda/kernels/resolve.inl"
 // clang-format on
