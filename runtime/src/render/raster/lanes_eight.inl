@@ -256,16 +256,17 @@ inline void gatherFour(const float* from, std::size_t stride, const std::int32_t
   fields[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-/// Numbers of rows become vectors: `kCount` of row ids[lane] for each lane. Rows are `kStride`
-/// long, a multiple of four; all lanes often have the same one.
-template <std::uint32_t kCount, std::uint32_t kStride>
+/// Eight numbers of rows become a vector each: the lanes are those of row ids[lane]. Rows are
+/// `kStride` long; all lanes often have the same one.
+template <std::uint32_t kStride>
 inline void gatherRows(const float* rows, const std::int32_t* ids, Lanes* fields) {
   if (signBits(load<IntLanes>(ids) == spread(ids[0])) == kAllLanes) {
     const float* row = rows + std::size_t{kStride} * static_cast<std::uint32_t>(ids[0]);
-    for (std::uint32_t n = 0; n < kCount; ++n) fields[n] = spread(row[n]);
+    for (std::uint32_t n = 0; n < 8; ++n) fields[n] = spread(row[n]);
     return;
   }
-  for (std::uint32_t n = 0; n < kCount; n += 4) gatherFour(rows + n, kStride, ids, fields + n);
+  gatherFour(rows, kStride, ids, fields);
+  gatherFour(rows + 4, kStride, ids, fields + 4);
 }
 
 /// Writes entries of a table of pairs.

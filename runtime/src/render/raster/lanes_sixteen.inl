@@ -223,35 +223,30 @@ inline void transposeQuarters(const __m512* from, __m512* to) {
   to[3] = _mm512_shuffle_ps(b, d, 0xEE);
 }
 
-/// Numbers of rows become vectors: `kCount` of row ids[lane] for each lane. Rows have sixteen
-/// numbers. How many different ones there are is hard to foresee: no branch depends on it.
-template <std::uint32_t kCount, std::uint32_t kStride>
+/// Eight numbers of rows become a vector each: the lanes are those of row ids[lane]. Rows are
+/// `kStride` long. How many different ones there are is hard to foresee: only one is a case of its
+/// own.
+template <std::uint32_t kStride>
 inline void gatherRows(const float* rows, const std::int32_t* ids, Lanes* fields) {
-  static_assert(kStride == kLanes && kCount <= kLanes);
+  const auto row = [&](std::uint32_t lane) {
+    return rows + std::size_t{kStride} * static_cast<std::uint32_t>(ids[lane]);
+  };
   if (_mm512_cmpneq_epi32_mask(_mm512_load_si512(ids), _mm512_set1_epi32(ids[0])) == 0) {
-    const float* row = rows + std::size_t{kStride} * static_cast<std::uint32_t>(ids[0]);
-    for (std::uint32_t n = 0; n < kCount; ++n) fields[n] = spread(row[n]);
+    for (std::uint32_t n = 0; n < 8; ++n) fields[n] = spread(row(0)[n]);
     return;
   }
-  __m512 quarters[kLanes];
-  for (std::uint32_t n = 0; n < kLanes; n += 4) {
-    __m512 four[4];
+  __m512 quarters[8];
+  for (std::uint32_t n = 0; n < 8; n += 4) {
+    __m512 pairs[4];
     for (std::uint32_t k = 0; k < 4; ++k) {
-      four[k] =
-          _mm512_load_ps(rows + std::size_t{kStride} * static_cast<std::uint32_t>(ids[n + k]));
+      const __m512 first = _mm512_castps256_ps512(_mm256_load_ps(row(2 * n + k)));
+      pairs[k] = _mm512_insertf32x8(first, _mm256_load_ps(row(2 * n + k + 4)), 1);
     }
-    transposeQuarters(four, quarters + n);
+    transposeQuarters(pairs, quarters + n);
   }
   for (std::uint32_t n = 0; n < 4; ++n) {
-    const __m512 a = _mm512_shuffle_f32x4(quarters[n], quarters[n + 4], 0x44);
-    const __m512 b = _mm512_shuffle_f32x4(quarters[n], quarters[n + 4], 0xEE);
-    const __m512 c = _mm512_shuffle_f32x4(quarters[n + 8], quarters[n + 12], 0x44);
-    const __m512 d = _mm512_shuffle_f32x4(quarters[n + 8], quarters[n + 12], 0xEE);
-    const __m512 found[4] = {_mm512_shuffle_f32x4(a, c, 0x88), _mm512_shuffle_f32x4(a, c, 0xDD),
-                             _mm512_shuffle_f32x4(b, d, 0x88), _mm512_shuffle_f32x4(b, d, 0xDD)};
-    for (std::uint32_t k = 0; k < 4; ++k) {
-      if (4 * k + n < kCount) fields[4 * k + n] = as<Lanes>(found[k]);
-    }
+    fields[n] = as<Lanes>(_mm512_shuffle_f32x4(quarters[n], quarters[n + 4], 0x88));
+    fields[n + 4] = as<Lanes>(_mm512_shuffle_f32x4(quarters[n], quarters[n + 4], 0xDD));
   }
 }
 

@@ -177,6 +177,19 @@ inline unsigned mayShow(const Pane& pane, std::int32_t x, std::int32_t y, unsign
   return bits & signBits(load<Lanes>(depth) < nearest);
 }
 
+/// Whether one of the cluster's tiles hides what is as far as `farthest`.
+inline bool hidesSome(const Pane& pane, const SeenCluster& seen, float farthest) {
+  unsigned open = kAllLanes;
+  for (std::uint32_t y = seen.tiles[2]; y <= seen.tiles[3]; ++y) {
+    const float* row = pane.scratch->tile_depth + std::size_t{y} * pane.tile_columns;
+    for (std::uint32_t x = seen.tiles[0]; x <= seen.tiles[1]; x += kLanes) {
+      open &=
+          signBits(load<Lanes>(row + x) < spread(farthest)) | ~firstLanes(seen.tiles[1] - x + 1U);
+    }
+  }
+  return open != kAllLanes;
+}
+
 /// Whether what was drawn hides all that lies in the cluster's tiles. Measures all of them where
 /// they are few: triangles are compared with them, too.
 inline bool isHidden(const Pane& pane, const SeenCluster& seen) {

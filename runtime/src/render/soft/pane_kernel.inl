@@ -115,9 +115,10 @@ void drawCluster(Pane& pane, const SeenCluster& seen) {
   state.facts = clusterFacts(model, seen.cluster);
   state.frame = &frame;
   state.colors = clusterColors(state.facts);
-  placeVertices(state);
+  const float farthest = placeVertices(state);
+  const bool compares = pane.task->culling && (state.any_bad || hidesSome(pane, seen, farthest));
   Survivors survivors;
-  sortTriangles(pane, state, survivors);
+  sortTriangles(pane, state, compares, survivors);
   drawTriangles(pane, state, survivors);
   ++pane.counts.clusters_drawn;
 }

@@ -34,10 +34,13 @@ inline void fetchTexels(const PaneTask& task, const SurfacePlace& surface) {
 inline void prepareShading(const Pane& pane, const std::int32_t* ids, const PixelLanes& pixels,
                            Shading& shading) {
   EachRecord each;
-  gatherRows<kLightStart + 1, kRecordStride>(pane.scratch->records, ids, each.fields);
-  placeSurface(
-      each.intField(kTexels), each.intField(kKind), [&] { return texturePlaces(each, pixels); },
-      shading.surface);
+  const float* records = pane.scratch->records;
+  gatherRows<kRecordStride>(records + kTexels, ids, each.fields + kTexels);
+  const auto places = [&] {
+    gatherRows<kRecordStride>(records, ids, each.fields);
+    return texturePlaces(each, pixels);
+  };
+  placeSurface(each.intField(kTexels), each.intField(kKind), places, shading.surface);
   if (shading.surface.textured != 0) fetchTexels(*pane.task, shading.surface);
   shading.light = lightAt(each.fields + kLightRight, pixels);
 }
@@ -51,7 +54,8 @@ inline IntLanes finishShading(const Pane& pane, const std::int32_t* ids, const P
     alignas(kVectorBytes) std::int32_t colored[kLanes];
     store(colored, load<IntLanes>(ids) & (kind >> 31));
     EachRecord planes;
-    gatherRows<kColorFields, kRecordStride>(pane.scratch->colors, colored, planes.fields);
+    gatherRows<kRecordStride>(pane.scratch->colors, colored, planes.fields);
+    gatherRows<kRecordStride>(pane.scratch->colors + 8, colored, planes.fields + 8);
     colors = pick(kind >> 31, timesColors(colors, planes, pixels), colors);
   }
   const IntLanes lit = kind << 1;

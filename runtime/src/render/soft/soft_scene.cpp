@@ -14,6 +14,14 @@ namespace {
 /// From a base to the last texel of a texture: what a 32-bit number of bytes can tell.
 constexpr std::uintptr_t kFarthest = 0x7FFFFFFF;
 
+std::uintptr_t addressOf(const void* pointer) { return reinterpret_cast<std::uintptr_t>(pointer); }
+
+bool reaches(const std::uint32_t* base, std::span<const std::uint8_t> texels) {
+  const std::uintptr_t from = addressOf(base);
+  const std::uintptr_t first = addressOf(texels.data());
+  return from <= first && first + texels.size() - from <= kFarthest && (first - from) % 4 == 0;
+}
+
 }  // namespace
 
 SoftScene::SoftScene(const RenderLibrary& library) {
@@ -22,6 +30,7 @@ SoftScene::SoftScene(const RenderLibrary& library) {
   packs_.reserve(packs.size());
   color_kinds_.reserve(packs.size());
   bases_.push_back(nullptr);  // of what is unpacked
+  findBases(packs);
   for (std::size_t p = 0; p < packs.size(); ++p) {
     std::vector<SurfaceTexels> textures;
     addTextures(packs[p], textures);
@@ -51,22 +60,29 @@ void SoftScene::addTextures(const RenderMeshes& meshes, std::vector<SurfaceTexel
   }
 }
 
-/// Textures of one pack lie close to each other, so they share a base: pixels whose textures do are
-/// read together.
-SurfaceTexels SoftScene::inPlace(const RenderTexture& texture) {
-  const auto address = [](const void* pointer) {
-    return reinterpret_cast<std::uintptr_t>(pointer);
-  };
-  const std::uintptr_t first = address(texture.texels.data());
-  const std::uintptr_t end = first + texture.texels.size();
-  for (std::size_t b = bases_.size(); b-- > 1;) {
-    const std::uintptr_t base = address(bases_[b]);
-    if (base > first || end - base > kFarthest || (first - base) % 4 != 0) continue;
-    return {.texels = static_cast<std::uint32_t>((first - base) / 4),
-            .kind = textureKind(texture.size, b)};
+/// Pixels whose textures share a base are read together: as few bases as possible, from the lowest
+/// address on.
+void SoftScene::findBases(const std::vector<RenderMeshes>& packs) {
+  std::vector<std::span<const std::uint8_t>> all;
+  for (const RenderMeshes& pack : packs) {
+    for (const RenderTexture& texture : pack.textures) {
+      if (texture.format == TexelFormat::kRgba8) all.push_back(texture.texels);
+    }
   }
-  bases_.push_back(reinterpret_cast<const std::uint32_t*>(texture.texels.data()));
-  return {.texels = 0, .kind = textureKind(texture.size, bases_.size() - 1)};
+  std::sort(all.begin(), all.end(),
+            [](const auto& a, const auto& b) { return addressOf(a.data()) < addressOf(b.data()); });
+  for (const std::span<const std::uint8_t> texels : all) {
+    if (bases_.size() > 1 && reaches(bases_.back(), texels)) continue;
+    bases_.push_back(reinterpret_cast<const std::uint32_t*>(texels.data()));
+  }
+}
+
+SurfaceTexels SoftScene::inPlace(const RenderTexture& texture) const {
+  std::size_t b = bases_.size() - 1;
+  while (!reaches(bases_[b], texture.texels)) --b;
+  return {.texels = static_cast<std::uint32_t>(
+              (addressOf(texture.texels.data()) - addressOf(bases_[b])) / 4),
+          .kind = textureKind(texture.size, b)};
 }
 
 void SoftScene::addModel(const RenderLibrary& library, std::uint32_t number) {

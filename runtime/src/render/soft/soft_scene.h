@@ -22,7 +22,8 @@ class SoftScene {
 
  private:
   void addTextures(const RenderMeshes& meshes, std::vector<SurfaceTexels>& textures);
-  SurfaceTexels inPlace(const RenderTexture& texture);
+  void findBases(const std::vector<RenderMeshes>& packs);
+  [[nodiscard]] SurfaceTexels inPlace(const RenderTexture& texture) const;
   void addModel(const RenderLibrary& library, std::uint32_t number);
 
   std::vector<std::vector<SurfaceTexels>> surfaces_;

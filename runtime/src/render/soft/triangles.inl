@@ -2,17 +2,21 @@
 namespace galactic::render {
 namespace {
 
-void placeVertices(ClusterState& state) {
+/// Returns at most the least 1/w of the vertices; where one of them is bad it means nothing.
+float placeVertices(ClusterState& state) {
   const RenderCluster& cluster = *state.facts.cluster;
   const std::uint16_t* block = vertexBlock(state.facts, 0);
   unsigned bad = 0;
+  Lanes farthest = spread(__builtin_inff());
   for (std::uint32_t v = 0; v < cluster.vertex_count; v += kLanes, block += kVertexRows * kLanes) {
     unsigned good = placeVector(*state.frame, cluster, vertexRows(cluster, block, v), v, state);
     // What follows the last vertex is not looked at.
     if (cluster.vertex_count - v < kLanes) good |= kAllLanes << (cluster.vertex_count - v);
     bad |= ~good & kAllLanes;
+    farthest = lesser(farthest, load<Lanes>(state.z + v));
   }
   state.any_bad = bad != 0;
+  return least(farthest);
 }
 
 /// Texture coordinates of all vertices, in texels of the largest level.
@@ -42,7 +46,9 @@ inline void append(std::int32_t* list, std::uint32_t& count, IntLanes corners, u
   count += static_cast<std::uint32_t>(__builtin_popcount(which));
 }
 
-void sortTriangles(const Pane& pane, const ClusterState& state, Survivors& survivors) {
+/// `compares`: whether some of the triangles may lie behind what was drawn in their tiles.
+void sortTriangles(const Pane& pane, const ClusterState& state, bool compares,
+                   Survivors& survivors) {
   const PaneTask& task = *pane.task;
   survivors.small_count = survivors.large_count = survivors.clipped_count = 0;
   const RenderCluster& cluster = *state.facts.cluster;
@@ -64,7 +70,7 @@ void sortTriangles(const Pane& pane, const ClusterState& state, Survivors& survi
     }
     const Sorting sorting = sortVector(limits, state, corners);
     unsigned small = sorting.small & valid;
-    if (small != 0 && task.culling) small &= ~behindTiles(tiles, state, sorting, corners);
+    if (small != 0 && compares) small &= ~behindTiles(tiles, state, sorting, corners);
     append(survivors.small, survivors.small_count, both, small);
     const unsigned large = sorting.large & valid;
     if (large != 0) append(survivors.large, survivors.large_count, both, large);
