@@ -33,6 +33,13 @@ inline void fetchTexels(const PaneTask& task, const SurfacePlace& surface) {
 /// `ids`: 0 or more.
 inline void prepareShading(const Pane& pane, const std::int32_t* ids, const PixelLanes& pixels,
                            Shading& shading) {
+  SurfacePlace& surface = shading.surface;
+  if (signBits(-load<IntLanes>(ids)) == 0) {  // none above 0: background
+    surface.texels = spread(static_cast<std::int32_t>(pane.task->background));
+    surface.kind = spread(static_cast<std::int32_t>(kFlatSurface));
+    surface.textured = 0;
+    return;
+  }
   EachRecord each;
   const float* records = pane.scratch->records;
   gatherRows<kRecordStride>(records + kTexels, ids, each.fields + kTexels);
@@ -40,8 +47,8 @@ inline void prepareShading(const Pane& pane, const std::int32_t* ids, const Pixe
     gatherRows<kRecordStride>(records, ids, each.fields);
     return texturePlaces(each, pixels);
   };
-  placeSurface(each.intField(kTexels), each.intField(kKind), places, shading.surface);
-  if (shading.surface.textured != 0) fetchTexels(*pane.task, shading.surface);
+  placeSurface(each.intField(kTexels), each.intField(kKind), places, surface);
+  if (surface.textured != 0) fetchTexels(*pane.task, surface);
   shading.light = lightAt(each.fields + kLightRight, pixels);
 }
 
