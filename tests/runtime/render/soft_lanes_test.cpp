@@ -32,6 +32,52 @@ TEST(SoftLanes, ThoseOfAnySetAreWrittenInTheirOrder) {
   }
 }
 
+TEST(SoftLanes, NumbersOfRowsBecomeVectors) {
+  constexpr std::uint32_t kRow = 16;
+  std::array<float, 5 * kRow> rows{};
+  for (std::size_t n = 0; n < rows.size(); ++n) rows.at(n) = static_cast<float>(n);
+  for (const std::array<std::int32_t, kLanes>& ids :
+       {std::array<std::int32_t, kLanes>{3, 3, 3, 3, 3, 3, 3, 3}, {4, 0, 1, 1, 2, 0, 4, 3}}) {
+    std::array<Lanes, 8> fields;
+    gatherRows<kRow>(rows.data(), ids.data(), fields.data());
+    for (unsigned n = 0; n < kLanes; ++n) {
+      const auto row = static_cast<std::size_t>(ids.at(n)) * kRow;
+      for (std::size_t field = 0; field < 8; ++field) {
+        EXPECT_EQ(fields.at(field)[n], rows.at(row + field)) << "lane " << n;
+      }
+    }
+  }
+}
+
+TEST(SoftLanes, VectorsBecomeRows) {
+  constexpr std::size_t kRow = 9;
+  std::array<Lanes, 8> fields;
+  for (unsigned n = 0; n < 8; ++n) {
+    fields.at(n) = spread(10.0F * static_cast<float>(n)) + Lanes{0, 1, 2, 3, 4, 5, 6, 7};
+  }
+  std::array<float, kLanes * kRow> rows{};
+  storeTransposed(fields.data(), rows.data(), kRow);
+  for (unsigned lane = 0; lane < kLanes; ++lane) {
+    for (unsigned field = 0; field < 8; ++field) {
+      EXPECT_EQ(rows.at(lane * kRow + field), fields.at(field)[lane]);
+    }
+  }
+}
+
+TEST(SoftLanes, SetsAndExtremesAreThoseOfTheLanes) {
+  const IntLanes lanes{5, -3, 8, 0, 7, -9, 2, 6};
+  EXPECT_EQ(least(lanes), -9);
+  EXPECT_EQ(most(lanes), 8);
+  for (unsigned which = 0; which < 256; ++which) {
+    const LaneSet set = setOf(which);
+    ASSERT_EQ(bitsOf(set), which);
+    const IntLanes picked = pickFrom(set, lanes, spread(100));
+    for (unsigned n = 0; n < kLanes; ++n) {
+      ASSERT_EQ(picked[n], (which >> n & 1U) != 0 ? lanes[n] : 100) << "set " << which;
+    }
+  }
+}
+
 /// A texture of random texels with all its levels, and a record that shows it.
 class SoftSampling : public testing::Test {
  protected:
