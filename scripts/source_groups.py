@@ -28,6 +28,8 @@ MACRO = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)", re.MULTILINE)
 NAMESPACE = re.compile(r"^(?:inline )?namespace ?([\w:]*) \{$|^\}  // namespace.*$", re.MULTILINE)
 # The formatter gives these no comment.
 SHORT_NAMESPACE = re.compile(r"^namespace [\w:]+ \{\n[^\n]*\n\}$", re.MULTILINE)
+# A shorter name for one of the standard library's: whoever gives it again means the same.
+STANDARD_ALIAS = re.compile(r"^namespace \w+ = std::[\w:]+;$", re.MULTILINE)
 # From where a line begins to what follows a name: parameters, a value, a body.
 DECLARATION = re.compile(r"^(?![}#\s]|template\b[^;{(]*$)[^({=;\[]+", re.MULTILINE)
 TYPE = re.compile(r"^(?:struct|class|union|enum(?: class)?) (\w+)")
@@ -55,7 +57,7 @@ def plain(text: str) -> str:
 
 def declared(block: str) -> set[str]:
     """The names that a block of a namespace declares."""
-    block, before = plain(block), None
+    block, before = STANDARD_ALIAS.sub("", plain(block)), None
     names = {"_".join(test) for test in TEST.findall(block)}
     while before != block:
         before, block = block, TEMPLATE_ARGUMENTS.sub("", block)
@@ -96,37 +98,40 @@ def read(path: pathlib.Path) -> Text:
                 private.update((name, one) for one in declared(text[begin:match.start()]))
     headers = {header for name in INCLUDE.findall(text) for header in our_headers().get(name.rpartition("/")[2], ())
                if str(header).endswith("/" + name)}
-    return Text(frozenset(WORD.findall(plain(text))), frozenset(namespaces), frozenset(headers), frozenset(private),
+    return Text(frozenset(WORD.findall(INCLUDE.sub("", plain(text)))), frozenset(namespaces), frozenset(headers), frozenset(private),
                 "\nusing namespace " not in text)
 
 
 @functools.cache
 def read_source(path: str) -> Text:
-    """What a source says, with all headers that it includes, and what those keep to themselves."""
+    """What a source says, with all headers that it includes."""
     source = read(pathlib.Path(path))
     headers: set[pathlib.Path] = set()
     waiting = set(source.headers)
     while waiting:
         headers |= waiting
         waiting = {inner for header in waiting for inner in read(header).headers} - headers
-    private = source.private.union(*(read(header).private for header in headers))
-    return dataclasses.replace(source, headers=frozenset(headers), private=private)
+    return dataclasses.replace(source, headers=frozenset(headers))
 
 
-def disturbs(one: Text, other: Text) -> bool:
-    """Whether `other` would see what `one` keeps to itself."""
+def disturbs(private: frozenset[tuple[str, str]], other: Text) -> bool:
+    """Whether `other` would see what is private elsewhere."""
     return any(name in other.words and (not space or any(f"{inner}::".startswith(f"{space}::")
                                                          for inner in other.namespaces))
-               for space, name in one.private)
+               for space, name in private)
 
 
 def fit(one: Text, other: Text) -> bool:
     """Whether two sources can be compiled as one, in any order."""
-    if not one.joins or not other.joins or disturbs(one, other) or disturbs(other, one):
-        return False
+    return one.joins and other.joins and not (disturbs_any(one, other) or disturbs_any(other, one))
+
+
+def disturbs_any(one: Text, other: Text) -> bool:
+    """Whether a source or its headers keep something to themselves that another one or its headers would see."""
     # What both include means to both the same.
-    return not (any(disturbs(one, read(header)) for header in other.headers - one.headers)
-                or any(disturbs(other, read(header)) for header in one.headers - other.headers))
+    headers = (read(header).private for header in one.headers - other.headers)
+    private = one.private.union(*headers)
+    return disturbs(private, other) or any(disturbs(private, read(header)) for header in other.headers - one.headers)
 
 
 def group_sources(paths: list[str]) -> list[list[str]]:

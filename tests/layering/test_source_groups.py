@@ -74,6 +74,20 @@ class SourceGroupsTest(unittest.TestCase):
     def test_macros_are_seen_everywhere(self):
         self.assertEqual(self.groups("#define WIDTH 3\n", source("", "int WIDTH = 4;", "other")), [1, 1])
 
+    def test_what_both_include_keeps_nobody_apart(self):
+        header = self.folder / "both.h"
+        header.write_text("#define WIDTH 3\n")
+        source_groups.our_headers()[header.name] = [header]
+        self.addCleanup(source_groups.our_headers().pop, header.name)
+        uses = [f'#include "{self.folder.name}/both.h"\nint f{n}() {{\n  return WIDTH;\n}}\n' for n in range(3)]
+        self.assertEqual(self.groups(*uses), [3])
+        self.assertEqual(self.groups(uses[0], "int WIDTH = 4;\n"), [1, 1])
+
+    def test_a_shorter_name_of_the_standard_library_keeps_nobody_apart(self):
+        alias = "namespace fs = std::filesystem;"
+        self.assertEqual(self.groups(source(alias), source(alias, "bool isFile(const fs::path& path);")), [2])
+        self.assertEqual(self.groups(source("namespace fs = galactic::flows;"), source(alias, "fs::path path();")), [1, 1])
+
     def test_a_source_that_opens_a_namespace_to_all_stays_apart(self):
         self.assertEqual(self.groups("int a;\nusing namespace std;\n", "int b;\n"), [1, 1])
 
