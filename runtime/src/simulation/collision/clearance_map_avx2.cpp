@@ -72,9 +72,9 @@ void findSure(const ClearanceLanes& lanes, const std::uint8_t* cells, const floa
   const __m256 slack = _mm256_sub_ps(distance, reach);
   const __m256 free = both(inside, atLeast(slack, zero));
   constexpr unsigned kAll = (1U << kLanes) - 1;
-  _mm256_store_ps(sure.slack,
-                  _mm256_blendv_ps(_mm256_set1_ps(-1),
-                                   _mm256_mul_ps(slack, _mm256_load_ps(lanes.cell)), free));
+  _mm256_store_ps(
+      sure.slack,
+      _mm256_blendv_ps(_mm256_set1_ps(-1), _mm256_mul_ps(slack, _mm256_load_ps(lanes.cell)), free));
   sure.free = static_cast<unsigned>(_mm256_movemask_ps(free));
   sure.low = static_cast<unsigned>(_mm256_movemask_ps(is_high)) ^ kAll;
 }

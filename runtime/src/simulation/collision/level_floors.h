@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "galactic/pose.h"
@@ -10,8 +12,11 @@
 namespace galactic::simulation {
 
 /// Where floors are level: one bit for each column of a scene's first grid, set where a base that
-/// stands at the floor's height finds it at just that height. Most steps need no other look at the
-/// floor. Any thread may ask.
+/// stands on the floor finds it at the floor's height again. Most steps need no other look at it.
+/// Any thread may ask.
+///
+/// Rounding may take a base that stands still to the next float with every step, and back after a
+/// few. So a floor has some heights, each of which leads to the next one.
 class LevelFloors {
  public:
   /// Adds a floor, by the number of its clearance map: 0, 1, ... `heightFound(center, height)`: the
@@ -20,27 +25,36 @@ class LevelFloors {
   template <class HeightFound>
   void add(const ColumnGrid& grid, const Vec3& start, const HeightFound& heightFound);
 
-  /// Whether a base of that height stands on the level floor. `map`: as from ClearanceMaps::add().
-  [[nodiscard]] bool isLevel(std::uint32_t map, const Vec3& base) const noexcept {
-    if (map == kNoClearanceMap) return false;
+  /// The height at which a base finds the floor, its y being where it stood before; none where that
+  /// is not known. `map`: as from ClearanceMaps::add().
+  [[nodiscard]] std::optional<float> heightUnder(std::uint32_t map,
+                                                 const Vec3& base) const noexcept {
+    if (map == kNoClearanceMap) return std::nullopt;
     const Floor& floor = floors_[map];
     const float x = (base.x - floor.min_x) * floor.inverse_spacing;
     const float z = (base.z - floor.min_z) * floor.inverse_spacing;
-    if (!(base.y == floor.height && x >= 0 && x < floor.columns_x && z >= 0 && z < floor.columns_z))
-      return false;
+    const bool is_inside = x >= 0 && x < floor.columns_x && z >= 0 && z < floor.columns_z;
+    if (!is_inside) return std::nullopt;
     const auto i = static_cast<std::uint32_t>(x);
     const auto k = static_cast<std::uint32_t>(z);
     const std::size_t word = floor.first + std::size_t{k} * floor.row_words + i / kBits;
-    return (words_[word] >> (i % kBits) & 1U) != 0;
+    if ((words_[word] >> (i % kBits) & 1U) == 0) return std::nullopt;
+    for (std::uint32_t n = 0; n < floor.height_count; ++n) {
+      if (base.y == floor.heights[n]) return floor.heights[n + 1];
+    }
+    return std::nullopt;
   }
 
  private:
   static constexpr std::uint32_t kBits = 32;
+  static constexpr std::uint32_t kMostHeights = 8;
 
   struct Floor {
     float min_x = 0, min_z = 0, inverse_spacing = 0;
     float columns_x = 0, columns_z = 0;
-    float height = 0;
+    /// The last one is the first again.
+    std::array<float, kMostHeights + 1> heights{};
+    std::uint32_t height_count = 0;
     std::uint32_t row_words = 0;
     std::size_t first = 0;
   };
@@ -57,19 +71,29 @@ void LevelFloors::add(const ColumnGrid& grid, const Vec3& start, const HeightFou
               .inverse_spacing = layout.inverse_spacing,
               .columns_x = static_cast<float>(layout.columns_x),
               .columns_z = static_cast<float>(layout.columns_z),
-              .height = start.y,
               .row_words = (layout.columns_x + kBits - 1) / kBits,
               .first = words_.size()};
-  // Rounding may take the base a few times to the next float before it stays.
-  constexpr int kMostRounds = 8;
-  for (int round = 0; round < kMostRounds; ++round) floor.height = heightFound(start, floor.height);
+  std::array<float, kMostHeights + 1>& heights = floor.heights;
+  heights[0] = start.y;
+  for (std::uint32_t n = 0; n < kMostHeights; ++n) heights[0] = heightFound(start, heights[0]);
+  for (std::uint32_t n = 0; n < kMostHeights && floor.height_count == 0; ++n) {
+    heights[n + 1] = heightFound(start, heights[n]);
+    if (heights[n + 1] == heights[0]) floor.height_count = n + 1;
+  }
+  const auto isLevel = [&](const Vec3& center) {
+    bool is_level = floor.height_count > 0;
+    for (std::uint32_t n = 0; n < floor.height_count; ++n) {
+      is_level = is_level && heightFound(center, heights[n]) == heights[n + 1];
+    }
+    return is_level;
+  };
   words_.resize(words_.size() + std::size_t{floor.row_words} * layout.columns_z);
   for (std::uint32_t k = 0; k < layout.columns_z; ++k) {
     std::uint32_t* row = words_.data() + floor.first + std::size_t{k} * floor.row_words;
     for (std::uint32_t i = 0; i < layout.columns_x; ++i) {
-      const Vec3 center{layout.min_x + (static_cast<float>(i) + 0.5F) * layout.spacing, floor.height,
+      const Vec3 center{layout.min_x + (static_cast<float>(i) + 0.5F) * layout.spacing, 0,
                         layout.min_z + (static_cast<float>(k) + 0.5F) * layout.spacing};
-      if (heightFound(center, floor.height) == floor.height) row[i / kBits] |= 1U << (i % kBits);
+      if (isLevel(center)) row[i / kBits] |= 1U << (i % kBits);
     }
   }
   floors_.push_back(floor);

@@ -33,8 +33,8 @@ void askMaps(const ChunkStep& step, std::size_t first, std::size_t end) noexcept
 /// maps have said by how much. `moved`: since they were asked.
 [[nodiscard]] bool isSureAfter(const ChunkStep& step, std::size_t e, const Push& moved) noexcept;
 
-/// Finds the robot's spheres that the scene blocks, in the chunk's bits, except those of groups that
-/// suit a move. Whether there is any.
+/// Finds the robot's spheres that the scene blocks, in the chunk's bits, except those of groups
+/// that suit a move. Whether there is any.
 bool findBlocked(const ChunkStep& step, std::size_t e) noexcept;
 
 /// Finds where the spheres of a group are, in the chunk.

@@ -108,15 +108,20 @@ bool areInOneScene(const ChunkStep& step, std::size_t first, std::size_t count) 
   return others == 0;
 }
 
-/// Whether candidates stand on level floors, at the height at which they are.
-bool areLevel(const ChunkStep& step, std::size_t first, std::size_t count) {
-  bool are_level = true;
-  for (std::size_t e = first; e < first + count; ++e) {
-    const std::uint32_t map = step.state.env(step.first + e).clearance_map;
-    are_level = are_level && step.model.level_floors.isLevel(map, step.chunk.base(e));
-    step.chunk.floor(e) = Floor::kCarries;
+/// Puts candidates on level floors. Whether all stand on one.
+bool followLevelFloors(const ChunkStep& step, std::size_t first, std::size_t count) {
+  std::array<float, kChunk> heights;
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::uint32_t map = step.state.env(step.first + first + n).clearance_map;
+    const auto height = step.model.level_floors.heightUnder(map, step.chunk.base(first + n));
+    if (!height) return false;
+    heights[n] = *height;
   }
-  return are_level;
+  for (std::size_t n = 0; n < count; ++n) {
+    step.chunk.floor(first + n) = Floor::kCarries;
+    *step.chunk.candidates(first + n).y = heights[n];
+  }
+  return true;
 }
 
 }  // namespace
@@ -145,7 +150,8 @@ void keepBodies(const ChunkStep& step, const EnvMask& wanted) noexcept {
 
 FloorUnder floorUnder(const ChunkStep& step, std::size_t e, const Vec3& base) noexcept {
   const Env& env = step.state.env(step.first + e);
-  if (step.model.level_floors.isLevel(env.clearance_map, base)) return {Floor::kCarries, base.y};
+  const auto height = step.model.level_floors.heightUnder(env.clearance_map, base);
+  if (height) return {Floor::kCarries, *height};
   return floorUnder(step.model.world->scenes()[env.scene], base, step.model.options.ground);
 }
 
@@ -161,10 +167,10 @@ void followFloor(const ChunkStep& step) noexcept {
   const auto scene_of = [&](std::size_t e) -> const Scene& {
     return step.model.world->scenes()[step.state.env(step.first + e).scene];
   };
-  if (areLevel(step, 0, kChunk)) return;
+  if (followLevelFloors(step, 0, kChunk)) return;
   if (areInOneScene(step, 0, kChunk)) return followFloor(step, scene_of(0), 0, kChunk);
   for (std::size_t first = 0; first < kChunk; first += kLanes) {
-    if (areLevel(step, first, kLanes)) continue;
+    if (followLevelFloors(step, first, kLanes)) continue;
     if (areInOneScene(step, first, kLanes)) {
       followFloor(step, scene_of(first), first, kLanes);
       continue;

@@ -214,8 +214,8 @@ void findPlacesPortable(const SliceLayout& layout, const TileSet& tiles, const f
     const auto i = static_cast<std::uint32_t>(cell_x);
     const auto k = static_cast<std::uint32_t>(cell_z);
     const CellInTile cell = inTile(layout, tiles, {i, k, static_cast<std::uint32_t>(height)});
-    places.row[n] = static_cast<std::int32_t>(cell.tile) * kTileStride +
-                    static_cast<std::int32_t>(cell.row);
+    places.row[n] =
+        static_cast<std::int32_t>(cell.tile) * kTileStride + static_cast<std::int32_t>(cell.row);
     places.column[n] = static_cast<std::int32_t>(cell.column);
     places.part_x[n] = cell_x - static_cast<float>(i);
     places.part_z[n] = cell_z - static_cast<float>(k);
@@ -239,10 +239,9 @@ std::optional<SurroundingRows> FreeSlices::around(std::uint32_t map, std::uint32
                       height >= 0 && height < layout.slices;
   if (!inside) return std::nullopt;
   const TileSet tiles = tilesOf(layout);
-  const CellInTile cell =
-      inTile(layout, tiles,
-             {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(z),
-              static_cast<std::uint32_t>(height)});
+  const CellInTile cell = inTile(layout, tiles,
+                                 {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(z),
+                                  static_cast<std::uint32_t>(height)});
   const SliceTile& tile = tiles.tiles[cell.tile];
   return SurroundingRows{tile.free + cell.row, tile.blocked + cell.row, cell.column};
 }

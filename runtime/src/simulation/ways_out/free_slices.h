@@ -17,11 +17,11 @@ namespace galactic::simulation {
 //
 // The heights over a floor are cut into slices. For each slice and each radius there is one bit for
 // each column: whether a center is free at all heights of the slice. The bits lie in tiles of
-// sixteen columns along X and 32 rows along Z that overlap by eight: the 9 x 9 cells around any cell
-// are nine words of sixteen bits, one after the other. Most tiles are all free, all blocked, or the
-// same in slice after slice, so each kind is kept once, and what thousands of robots ask about stays
-// in the cache. A bit only ever says "surely free", and another one, apart, "surely blocked"; where
-// neither does, the column may be asked.
+// sixteen columns along X and 32 rows along Z that overlap by eight: the 9 x 9 cells around any
+// cell are nine words of sixteen bits, one after the other. Most tiles are all free, all blocked,
+// or the same in slice after slice, so each kind is kept once, and what thousands of robots ask
+// about stays in the cache. A bit only ever says "surely free", and another one, apart, "surely
+// blocked"; where neither does, the column may be asked.
 
 /// Bits of the 9 x 9 cells around a sphere's own, rows along Z of sixteen bits, of which nine
 /// count: set where the sphere would be free at its height.

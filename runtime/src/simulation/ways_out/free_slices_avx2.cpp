@@ -58,8 +58,7 @@ void findPlacesAvx2(const SliceLayout& layout, const TileSet& tiles, const float
   const __m256i tile_x = _mm256_srli_epi32(i, 3);
   const __m256i column = _mm256_and_si256(i, _mm256_set1_epi32(kTileColumns - 1));
   // tileOfRow().
-  const __m256i tile_z =
-      _mm256_srli_epi32(_mm256_mullo_epi32(k, _mm256_set1_epi32(43691)), 20);
+  const __m256i tile_z = _mm256_srli_epi32(_mm256_mullo_epi32(k, _mm256_set1_epi32(43691)), 20);
   const __m256i row_in_tile =
       _mm256_sub_epi32(k, _mm256_mullo_epi32(tile_z, _mm256_set1_epi32(kTileRows)));
   const __m256i tile =
@@ -74,9 +73,8 @@ void findPlacesAvx2(const SliceLayout& layout, const TileSet& tiles, const float
   _mm256_store_ps(places.part_z, part_z);
   places.inside = bitsOf(inside);
   places.free = ownBits(tiles.tiles->free, row, column, inside);
-  places.blocked = places.free == places.inside
-                       ? 0
-                       : ownBits(tiles.tiles->blocked, row, column, inside);
+  places.blocked =
+      places.free == places.inside ? 0 : ownBits(tiles.tiles->blocked, row, column, inside);
 }
 
 }  // namespace galactic::simulation

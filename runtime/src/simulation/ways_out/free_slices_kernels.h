@@ -65,7 +65,7 @@ struct alignas(32) EightPlaces {
 /// Both do the same operations, and agree bit for bit.
 void findPlacesPortable(const SliceLayout& layout, const TileSet& tiles, const float* x,
                         const float* y, const float* z, EightPlaces& places) noexcept;
-void findPlacesAvx2(const SliceLayout& layout, const TileSet& tiles, const float* x,
-                    const float* y, const float* z, EightPlaces& places) noexcept;
+void findPlacesAvx2(const SliceLayout& layout, const TileSet& tiles, const float* x, const float* y,
+                    const float* z, EightPlaces& places) noexcept;
 
 }  // namespace galactic::simulation

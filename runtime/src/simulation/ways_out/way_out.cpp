@@ -259,7 +259,8 @@ bool WayOut::suits(const Push& push) const noexcept {
   const CellPush by{push.x / spacing_, push.z / spacing_};
   // Less than what spheres go into cells by.
   const float rounding = 0.5F * kIntoCell / spacing_;
-  // What a move is shortened to leaves all spheres free but for those that rounding may take further.
+  // What a move is shortened to leaves all spheres free but for those that rounding may take
+  // further.
   const float near = 1.25F * rounding;
   if (detail::hasAvx2()) {
     return noneAtBorderAvx2(ways_.data(), count_, by, near) ||

@@ -26,8 +26,8 @@ __m256i lanesOf(unsigned bits) {
                             each);
 }
 
-/// Pairs of rows from their sphere's column on, nine bits each: what the shift brings from the upper
-/// row into the lower one lies beyond its nine.
+/// Pairs of rows from their sphere's column on, nine bits each: what the shift brings from the
+/// upper row into the lower one lies beyond its nine.
 __m256i shifted(__m256i pair, __m256i column) {
   return _mm256_and_si256(_mm256_srlv_epi32(pair, column), _mm256_set1_epi32(0x01ff'01ff));
 }
@@ -47,8 +47,8 @@ int onePair(const std::uint16_t* from) {
   return pair;
 }
 
-/// The five pairs of rows of eight spheres, a lane for each: loaded sphere by sphere and transposed,
-/// which takes less time than the instructions that gather.
+/// The five pairs of rows of eight spheres, a lane for each: loaded sphere by sphere and
+/// transposed, which takes less time than the instructions that gather.
 void readPairs(const std::uint16_t* rows, const std::int32_t* row, __m256i pairs[kRowPairs]) {
   const std::uint16_t* at[kLanes];
   for (std::size_t n = 0; n < kLanes; ++n) at[n] = rows + row[n];
@@ -65,10 +65,10 @@ void readPairs(const std::uint16_t* rows, const std::int32_t* row, __m256i pairs
   pairs[2] = _mm256_unpacklo_epi64(ab_last, cd_last);
   pairs[3] = _mm256_unpackhi_epi64(ab_last, cd_last);
   constexpr std::size_t kFifth = 2 * (kRowPairs - 1);
-  pairs[4] = _mm256_setr_epi32(onePair(at[0] + kFifth), onePair(at[1] + kFifth),
-                               onePair(at[2] + kFifth), onePair(at[3] + kFifth),
-                               onePair(at[4] + kFifth), onePair(at[5] + kFifth),
-                               onePair(at[6] + kFifth), onePair(at[7] + kFifth));
+  pairs[4] =
+      _mm256_setr_epi32(onePair(at[0] + kFifth), onePair(at[1] + kFifth), onePair(at[2] + kFifth),
+                        onePair(at[3] + kFifth), onePair(at[4] + kFifth), onePair(at[5] + kFifth),
+                        onePair(at[6] + kFifth), onePair(at[7] + kFifth));
 }
 
 /// The sign bit of each lane: whether the sphere is free in a cell.
@@ -146,10 +146,10 @@ __m256i blockedInFour(const EightWays& ways, const MovedCells& cells) {
     const __m256i free = _mm256_castps_si256(isFree(ways, {cells.low.x + x, cells.low.z + z}));
     return _mm256_andnot_si256(free, _mm256_and_si256(in_x, in_z));
   };
-  const __m256i low_row = _mm256_or_si256(blocked(in_low_x, in_low_z, 0, 0),
-                                          blocked(in_high_x, in_low_z, 1, 0));
-  const __m256i high_row = _mm256_or_si256(blocked(in_low_x, in_high_z, 0, 1),
-                                           blocked(in_high_x, in_high_z, 1, 1));
+  const __m256i low_row =
+      _mm256_or_si256(blocked(in_low_x, in_low_z, 0, 0), blocked(in_high_x, in_low_z, 1, 0));
+  const __m256i high_row =
+      _mm256_or_si256(blocked(in_low_x, in_high_z, 0, 1), blocked(in_high_x, in_high_z, 1, 1));
   return _mm256_srai_epi32(_mm256_or_si256(low_row, high_row), 31);
 }
 
@@ -157,9 +157,9 @@ __m256i blockedInFour(const EightWays& ways, const MovedCells& cells) {
 __m256i blockedAnywhere(const EightWays& ways, const MovedCells& cells, __m256i counts) {
   const __m256i least = _mm256_set1_epi32(-kCellsAround);
   const __m256i most = _mm256_set1_epi32(kCellsAround);
-  const __m256i is_unknown = _mm256_or_si256(
-      _mm256_cmpgt_epi32(least, _mm256_min_epi32(cells.x.first, cells.z.first)),
-      _mm256_cmpgt_epi32(_mm256_max_epi32(cells.x.last, cells.z.last), most));
+  const __m256i is_unknown =
+      _mm256_or_si256(_mm256_cmpgt_epi32(least, _mm256_min_epi32(cells.x.first, cells.z.first)),
+                      _mm256_cmpgt_epi32(_mm256_max_epi32(cells.x.last, cells.z.last), most));
   // Lanes that do not count, or whose cells are not known, may be anywhere.
   const __m256i looked_at = _mm256_andnot_si256(is_unknown, counts);
   const __m256i first_x = _mm256_and_si256(cells.x.first, looked_at);
@@ -275,11 +275,11 @@ bool noneAtBorderAvx2(const EightWays* ways, std::size_t count, const CellPush& 
   const __m256 near_z = _mm256_set1_ps(by.z == 0 ? -1 : distance);
   __m256i is_near = _mm256_setzero_si256();
   for (std::size_t n = 0; n < count; ++n) {
-    const __m256 near = _mm256_or_ps(
-        _mm256_cmp_ps(toWholeCell(ways[n].part_x, by.x), near_x, _CMP_LE_OQ),
-        _mm256_cmp_ps(toWholeCell(ways[n].part_z, by.z), near_z, _CMP_LE_OQ));
-    is_near = _mm256_or_si256(is_near,
-                              _mm256_and_si256(_mm256_castps_si256(near), load(ways[n].counts)));
+    const __m256 near =
+        _mm256_or_ps(_mm256_cmp_ps(toWholeCell(ways[n].part_x, by.x), near_x, _CMP_LE_OQ),
+                     _mm256_cmp_ps(toWholeCell(ways[n].part_z, by.z), near_z, _CMP_LE_OQ));
+    is_near =
+        _mm256_or_si256(is_near, _mm256_and_si256(_mm256_castps_si256(near), load(ways[n].counts)));
   }
   return _mm256_testz_si256(is_near, is_near) != 0;
 }

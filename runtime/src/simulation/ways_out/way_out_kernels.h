@@ -82,8 +82,8 @@ bool addWaysAvx2(const std::uint16_t* rows, const EightPlaces& places, unsigned 
                                           const CellMove& move) noexcept;
 
 /// Whether no sphere is nearer than `distance` to a border of its cell after a move, in cells.
-[[nodiscard]] bool noneAtBorderPortable(const EightWays* ways, std::size_t count, const CellPush& by,
-                                        float distance) noexcept;
+[[nodiscard]] bool noneAtBorderPortable(const EightWays* ways, std::size_t count,
+                                        const CellPush& by, float distance) noexcept;
 [[nodiscard]] bool noneAtBorderAvx2(const EightWays* ways, std::size_t count, const CellPush& by,
                                     float distance) noexcept;
 

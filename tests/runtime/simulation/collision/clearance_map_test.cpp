@@ -115,6 +115,61 @@ TEST(ClearanceMaps, CallLowWhatIsFreeAndWouldStandInAThickerFloor) {
   EXPECT_LT(low, all_free * 9 / 10);
 }
 
+TEST(ClearanceMaps, SayHowFarWhatIsSurelyFreeMayGo) {
+  constexpr std::uint32_t kSeed = 1506;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  std::size_t moved = 0;
+  std::size_t far = 0;
+  for (int round = 0; round < 20; ++round) {
+    const BoxRoom room = furnishedRoom(random, 5);
+    ClearanceMaps maps({0, 1, 2});
+    const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
+    for (int n = 0; n < 2000; ++n) {
+      const Eight eight(random);
+      const SureGroups sure = maps.surelyFree(map, 0, {eight.bounds.data(), kLanes});
+      for (std::uint32_t radius = 0; radius < room.scene().grids().size(); ++radius) {
+        const float slack = sure.slack[radius];
+        ASSERT_EQ(slack >= 0, (sure.free >> radius & 1U) != 0);
+        if (slack < 0) continue;
+        // To a corner of the square: what is farthest.
+        Eight other = eight;
+        const float by_x = random() % 2 == 0 ? slack : -slack;
+        const float by_z = random() % 2 == 0 ? slack : -slack;
+        for (float& x : other.x) x += by_x;
+        for (float& z : other.z) z += by_z;
+        ASSERT_EQ(room.scene().grids()[radius].firstNotFree({other.x, other.y, other.z}), kLanes)
+            << "radius " << radius << ", by " << by_x << " " << by_z;
+        ++moved;
+        far += slack > 0.06F ? 1U : 0U;
+      }
+    }
+  }
+  EXPECT_GT(far, moved / 10);
+  EXPECT_LT(far, moved * 9 / 10);
+}
+
+TEST(ClearanceMaps, AnswerSeveralEnvsAsTheyAnswerEach) {
+  std::mt19937 random(1507);
+  const BoxRoom room = furnishedRoom(random, 5);
+  ClearanceMaps maps({0, 1, 2});
+  const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
+  constexpr std::size_t kEnvs = 11;
+  constexpr std::size_t kStride = kBounds * kLanes;
+  alignas(32) std::array<float, kEnvs * kStride> bounds;
+  std::array<std::uint32_t, kEnvs> map_of;
+  for (std::size_t env = 0; env < kEnvs; ++env) {
+    const Eight eight(random);
+    std::ranges::copy(eight.bounds, bounds.data() + env * kStride);
+    map_of[env] = env % 4 == 0 ? kNoClearanceMap : map;
+  }
+  std::array<SureGroups, kEnvs> sure;
+  maps.surelyFree(map_of, 0, {bounds.data(), kLanes}, kStride, sure);
+  for (std::size_t env = 0; env < kEnvs; ++env) {
+    EXPECT_EQ(sure[env], maps.surelyFree(map_of[env], 0, {bounds.data() + env * kStride, kLanes}));
+  }
+}
+
 TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
   if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2";
   constexpr std::uint32_t kSeed = 1502;

@@ -93,14 +93,17 @@ TEST(FreeSlices, CallFreeOrBlockedOnlyWhatTheColumnsDo) {
 TEST(FreeSlices, AreTheSameBitForBitWithBothKernels) {
   if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2";
   std::mt19937 random(1602);
-  const auto random_rows = [&random] {
-    std::vector<std::uint16_t> rows(100'000);
-    for (std::uint16_t& row : rows) row = static_cast<std::uint16_t>(random());
-    return rows;
-  };
-  const std::vector<std::uint16_t> free = random_rows();
-  const std::vector<std::uint16_t> blocked = random_rows();
-  const SliceRows rows{free.data(), blocked.data()};
+  std::vector<SliceTile> tiles(100);
+  for (SliceTile& tile : tiles) {
+    for (std::uint16_t& row : tile.free) row = static_cast<std::uint16_t>(random());
+    for (std::uint16_t& row : tile.blocked) row = static_cast<std::uint16_t>(random());
+  }
+  // 80 x 60 columns are 10 x 3 tiles.
+  std::vector<std::uint32_t> numbers(std::size_t{10} * 3 * 20);
+  for (std::uint32_t& number : numbers) {
+    number = static_cast<std::uint32_t>(random() % tiles.size());
+  }
+  const TileSet set{numbers.data(), tiles.data()};
   const SliceLayout layout{.min_x = 0.1F,
                            .min_z = 0.2F,
                            .inverse_spacing = 32,
@@ -110,7 +113,7 @@ TEST(FreeSlices, AreTheSameBitForBitWithBothKernels) {
                            .inverse_slice = 24,
                            .slices = 20,
                            .slice_count = 20,
-                           .row_count = 76,
+                           .tiles_z = 3,
                            .first = 0};
   Tally inside;
   for (int n = 0; n < 2000; ++n) {
@@ -118,12 +121,13 @@ TEST(FreeSlices, AreTheSameBitForBitWithBothKernels) {
     if (n == 0) eight.x[3] = std::numeric_limits<float>::quiet_NaN();
     EightPlaces portable;
     EightPlaces fast;
-    findPlacesPortable(layout, rows, eight.x.data(), eight.y.data(), eight.z.data(), portable);
-    findPlacesAvx2(layout, rows, eight.x.data(), eight.y.data(), eight.z.data(), fast);
+    findPlacesPortable(layout, set, eight.x.data(), eight.y.data(), eight.z.data(), portable);
+    findPlacesAvx2(layout, set, eight.x.data(), eight.y.data(), eight.z.data(), fast);
     ASSERT_EQ(portable.inside, fast.inside);
     ASSERT_EQ(portable.free, fast.free);
     // All that is free: nobody asks what is blocked.
-    if (portable.free != portable.inside) ASSERT_EQ(portable.blocked, fast.blocked);
+    const unsigned asked = portable.free == portable.inside ? 0 : ~0U;
+    ASSERT_EQ(portable.blocked & asked, fast.blocked);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       inside.add((fast.inside >> lane & 1U) != 0);
       if ((fast.inside >> lane & 1U) == 0) continue;
@@ -442,7 +446,7 @@ struct RandomRows {
     EightPlaces places;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       places.row[lane] = static_cast<std::int32_t>(random() % 1000);
-      places.column[lane] = static_cast<std::int32_t>(random() % kStripColumns);
+      places.column[lane] = static_cast<std::int32_t>(random() % kTileColumns);
       places.part_x[lane] = uniformIn(random, 0, 1);
       places.part_z[lane] = uniformIn(random, 0, 1);
     }
@@ -458,14 +462,11 @@ WayCell anyCell(std::mt19937& random) {
           static_cast<int>(random() % kCells) - kCellsAround};
 }
 
-TakeBack anyTakeBack(std::mt19937& random) {
-  return {.along_x = random() % 2 == 0,
-          .sign = random() % 2 == 0 ? 1 : -1,
-          .before = anyCell(random),
-          .other_sign = static_cast<int>(random() % 3) - 1,
-          .other_back = uniformIn(random, 0, 1),
-          .margin = kIntoCell,
-          .before_behind = anyCell(random)};
+/// A tenth of a cell, so that many spheres are behind by it.
+constexpr float kWideMargin = 0.1F;
+
+std::array<float, 4> numbersOf(const TakenBackBoth& back) {
+  return {back.along_x_first.x, back.along_x_first.z, back.along_z_first.x, back.along_z_first.z};
 }
 
 bool areSame(const AllWays& one, const AllWays& other) {
@@ -485,7 +486,9 @@ TEST(WayOut, IsTheSameBitForBitWithBothKernels) {
   std::printf("seed %u\n", kSeed);
   std::mt19937 random(kSeed);
   Tally whole;
+  Tally behind;
   Tally free;
+  Tally far;
   const RandomRows slices(random);
   for (int round = 0; round < 4000; ++round) {
     std::array<EightWays, 2> portable;
@@ -502,17 +505,23 @@ TEST(WayOut, IsTheSameBitForBitWithBothKernels) {
       ASSERT_TRUE(areSame(portable[n], fast[n]));
     }
     ASSERT_TRUE(areSame(all, all_fast));
-    const TakeBack back = anyTakeBack(random);
-    const float taken = takenBackPortable(portable.data(), portable.size(), back);
-    ASSERT_EQ(taken, takenBackAvx2(fast.data(), fast.size(), back));
-    whole.add(taken == 1);
-    const float by_x = round % 4 == 0 ? 0 : uniformIn(random, -4.2F, 4.2F);
-    const float by_z = round % 5 == 0 ? 0 : uniformIn(random, -4.2F, 4.2F);
-    const bool is_free =
-        allFreePortable(portable.data(), portable.size(), by_x, by_z, 0.5F * kIntoCell);
-    ASSERT_EQ(is_free, allFreeAvx2(fast.data(), fast.size(), by_x, by_z, 0.5F * kIntoCell));
+    const CellMove move{anyCell(random), kWideMargin};
+    const auto taken = numbersOf(takenBackPortable(portable.data(), portable.size(), move));
+    ASSERT_EQ(taken, numbersOf(takenBackAvx2(fast.data(), fast.size(), move)));
+    whole.add(taken[0] == 1);
+    behind.add(taken[0] != taken[2]);
+    const CellPush by{round % 4 == 0 ? 0 : uniformIn(random, -4.2F, 4.2F),
+                      round % 5 == 0 ? 0 : uniformIn(random, -4.2F, 4.2F)};
+    const float rounding = round % 2 == 0 ? 0.5F * kIntoCell : kWideMargin;
+    const bool is_free = allFreePortable(portable.data(), portable.size(), by, rounding);
+    ASSERT_EQ(is_free, allFreeAvx2(fast.data(), fast.size(), by, rounding));
     free.add(is_free);
+    const bool none_near = noneAtBorderPortable(portable.data(), portable.size(), by, kWideMargin);
+    ASSERT_EQ(none_near, noneAtBorderAvx2(fast.data(), fast.size(), by, kWideMargin));
+    far.add(none_near);
   }
+  behind.expectBothSides();
+  far.expectBothSides();
   whole.expectBothSides();
   free.expectBothSides();
 }

@@ -1,0 +1,80 @@
+// Where floors are said to be level, against the floor itself.
+#include "simulation/collision/level_floors.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <random>
+
+#include "galactic/simulation_options.h"
+#include "simulation/phases/move.h"
+#include "support/homes/box_room.h"
+#include "support/packs/grid_builder.h"
+
+namespace galactic::test::level_floors_test {
+namespace {
+
+using namespace galactic::simulation;
+
+/// The floor of a room as a simulator asks for it.
+LevelFloors levelFloors(const Scene& scene, const GroundOptions& options) {
+  LevelFloors floors;
+  const Vec3 start{1.5F, 0, 1.5F};
+  floors.add(scene.grids().front(), start, [&](const Vec3& at, float height) {
+    const FloorUnder under = floorUnder(scene, {at.x, height, at.z}, options);
+    return under.floor == Floor::kCarries ? under.height : std::numeric_limits<float>::quiet_NaN();
+  });
+  return floors;
+}
+
+/// The height at which a base stays.
+float heightOf(const Scene& scene, const GroundOptions& options) {
+  float height = 0;
+  for (int step = 0; step < 8; ++step) {
+    height = floorUnder(scene, {1.5F, height, 1.5F}, options).height;
+  }
+  return height;
+}
+
+TEST(LevelFloors, AreWhereABaseFindsTheFloorAtItsHeight) {
+  constexpr std::uint32_t kSeed = 1701;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  const GroundOptions options;
+  Tally level;
+  for (int round = 0; round < 20; ++round) {
+    const BoxRoom room = furnishedRoom(random, 6);
+    const LevelFloors floors = levelFloors(room.scene(), options);
+    const float height = heightOf(room.scene(), options);
+    for (int n = 0; n < 1000; ++n) {
+      const Vec3 base{uniformIn(random, -0.3F, 3.3F), height, uniformIn(random, -0.3F, 3.3F)};
+      const FloorUnder under = floorUnder(room.scene(), base, options);
+      const std::optional<float> known = floors.heightUnder(0, base);
+      level.add(known.has_value());
+      if (!known) continue;
+      ASSERT_EQ(under.floor, Floor::kCarries) << base.x << " " << base.z;
+      ASSERT_EQ(under.height, *known) << base.x << " " << base.z;
+    }
+  }
+  level.expectBothSides();
+}
+
+TEST(LevelFloors, KnowNothingOfOtherHeightsNorWithoutAMap) {
+  std::mt19937 random(1702);
+  const BoxRoom room = furnishedRoom(random, 0);
+  const LevelFloors floors = levelFloors(room.scene(), {});
+  const float height = heightOf(room.scene(), {});
+  ASSERT_TRUE(floors.heightUnder(0, {1.5F, height, 1.5F}));
+  EXPECT_FALSE(floors.heightUnder(0, {1.5F, height + 1e-5F, 1.5F}));
+  EXPECT_FALSE(floors.heightUnder(kNoClearanceMap, {1.5F, height, 1.5F}));
+  for (const float odd : {std::numeric_limits<float>::quiet_NaN(), 1e30F, -1e30F}) {
+    EXPECT_FALSE(floors.heightUnder(0, {odd, height, 1.5F})) << odd;
+    EXPECT_FALSE(floors.heightUnder(0, {1.5F, odd, 1.5F})) << odd;
+    EXPECT_FALSE(floors.heightUnder(0, {1.5F, height, odd})) << odd;
+  }
+}
+
+}  // namespace
+}  // namespace galactic::test::level_floors_test
