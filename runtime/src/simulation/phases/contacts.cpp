@@ -77,6 +77,7 @@ const EightPlaces& findPlaces(const ChunkStep& step, std::size_t e, std::size_t 
 }
 
 void askMaps(const ChunkStep& step, std::size_t first, std::size_t end) noexcept {
+  static_assert(kChunk <= ClearanceMaps::kMostAsked);
   std::array<std::uint32_t, kChunk> maps;
   for (std::size_t e = first; e < end; ++e) {
     maps[e - first] = step.state.env(step.first + e).clearance_map;
