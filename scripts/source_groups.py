@@ -31,11 +31,12 @@ SHORT_NAMESPACE = re.compile(r"^namespace [\w:]+ \{\n[^\n]*\n\}$", re.MULTILINE)
 # A shorter name for one of the standard library's: whoever gives it again means the same.
 STANDARD_ALIAS = re.compile(r"^namespace \w+ = std::[\w:]+;$", re.MULTILINE)
 # From where a line begins to what follows a name: parameters, a value, a body.
-DECLARATION = re.compile(r"^(?![}#\s]|template\b[^;{(]*$)[^({=;\[]+", re.MULTILINE)
+DECLARATION = re.compile(r"^(?![}#\s]|template\b[^;{(]*$)([^({=;\[]+)(\(?)", re.MULTILINE)
 TYPE = re.compile(r"^(?:struct|class|union|enum(?: class)?) (\w+)")
 TEST = re.compile(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", re.MULTILINE)
 # Neither members nor names of the standard library can be mistaken for ours.
 WORD = re.compile(r"(?<![.>\w])(?<!std::)[A-Za-z_]\w*")
+CALLED = re.compile(WORD.pattern + r"(?=\s*[(<])")
 TEMPLATE_ARGUMENTS = re.compile(r"<[^<>;]*>")
 
 
@@ -44,9 +45,10 @@ class Text:
     """What a file says: its words, the namespaces it speaks in, the headers it includes, what it keeps to itself."""
 
     words: frozenset[str]
+    called: frozenset[str]
     namespaces: frozenset[str]
     headers: frozenset[pathlib.Path]
-    private: frozenset[tuple[str, str]]  # namespace and name
+    private: frozenset[tuple[str, str, bool]]  # namespace, name, whether it is a function's
     joins: bool
 
 
@@ -55,18 +57,18 @@ def plain(text: str) -> str:
     return COMMENT_OR_LITERAL.sub(lambda match: " " if match.group()[0] == "/" else '""', text)
 
 
-def declared(block: str) -> set[str]:
-    """The names that a block of a namespace declares."""
+def declared(block: str) -> set[tuple[str, bool]]:
+    """The names that a block of a namespace declares, and which are functions' names."""
     block, before = STANDARD_ALIAS.sub("", plain(block)), None
-    names = {"_".join(test) for test in TEST.findall(block)}
+    names = {("_".join(test), False) for test in TEST.findall(block)}
     while before != block:
         before, block = block, TEMPLATE_ARGUMENTS.sub("", block)
-    for declaration in DECLARATION.findall(block):
+    for declaration, parameters in DECLARATION.findall(block):
         found = TYPE.match(declaration)
         words = re.findall(r"\w+", declaration)
         if words:
-            names.add(found.group(1) if found else words[-1])
-    return {name for name in names if not name.startswith(("TEST", "TYPED_TEST"))}
+            names.add((found.group(1), False) if found else (words[-1], bool(parameters)))
+    return {(name, function) for name, function in names if not name.startswith(("TEST", "TYPED_TEST"))}
 
 
 @functools.cache
@@ -82,7 +84,7 @@ def our_headers() -> dict[str, list[pathlib.Path]]:
 @functools.cache
 def read(path: pathlib.Path) -> Text:
     text = SHORT_NAMESPACE.sub("", path.read_text(encoding="utf-8"))
-    private = {("", name) for name in MACRO.findall(text)}
+    private = {("", name, False) for name in MACRO.findall(text)}
     opened: list[tuple[str, int]] = [("", 0)]
     namespaces = {""}
     for match in NAMESPACE.finditer(text):
@@ -95,11 +97,12 @@ def read(path: pathlib.Path) -> Text:
         elif len(opened) > 1:
             opened.pop()
             if begin:
-                private.update((name, one) for one in declared(text[begin:match.start()]))
+                private.update((name, *one) for one in declared(text[begin:match.start()]))
     headers = {header for name in INCLUDE.findall(text) for header in our_headers().get(name.rpartition("/")[2], ())
                if str(header).endswith("/" + name)}
-    return Text(frozenset(WORD.findall(INCLUDE.sub("", plain(text)))), frozenset(namespaces), frozenset(headers), frozenset(private),
-                "\nusing namespace " not in text)
+    said = INCLUDE.sub("", plain(text))
+    return Text(frozenset(WORD.findall(said)), frozenset(CALLED.findall(said)), frozenset(namespaces),
+                frozenset(headers), frozenset(private), "\nusing namespace " not in text)
 
 
 @functools.cache
@@ -114,11 +117,11 @@ def read_source(path: str) -> Text:
     return dataclasses.replace(source, headers=frozenset(headers))
 
 
-def disturbs(private: frozenset[tuple[str, str]], other: Text) -> bool:
-    """Whether `other` would see what is private elsewhere."""
-    return any(name in other.words and (not space or any(f"{inner}::".startswith(f"{space}::")
-                                                         for inner in other.namespaces))
-               for space, name in private)
+def disturbs(private: frozenset[tuple[str, str, bool]], other: Text) -> bool:
+    """Whether `other` would see what is private elsewhere. A variable may have the name of a function."""
+    return any(name in (other.called if function else other.words)
+               and (not space or any(f"{inner}::".startswith(f"{space}::") for inner in other.namespaces))
+               for space, name, function in private)
 
 
 def fit(one: Text, other: Text) -> bool:
@@ -134,13 +137,13 @@ def disturbs_any(one: Text, other: Text) -> bool:
     return disturbs(private, other) or any(disturbs(private, read(header)) for header in other.headers - one.headers)
 
 
-def group_sources(paths: list[str]) -> list[list[str]]:
-    """The sources in groups that can be compiled as one, MOST_SOURCES in each at most."""
+def group_sources(paths: list[str], most: int = MOST_SOURCES) -> list[list[str]]:
+    """The sources in groups that can be compiled as one, `most` in each at most."""
     groups: list[list[str]] = []
     for path in paths:
         source = read_source(path)
         for members in groups:
-            if len(members) < MOST_SOURCES and all(fit(source, read_source(member)) for member in members):
+            if len(members) < most and all(fit(source, read_source(member)) for member in members):
                 members.append(path)
                 break
         else:

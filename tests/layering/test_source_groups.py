@@ -32,7 +32,7 @@ class SourceGroupsTest(unittest.TestCase):
         path = self.folder / "private.cpp"
         path.write_text(source(body))
         source_groups.read.cache_clear()
-        return {name for _, name in source_groups.read(path).private}
+        return {name for _, name, _ in source_groups.read(path).private}
 
     def test_knows_what_an_unnamed_namespace_declares(self):
         for body, name in (
@@ -70,6 +70,11 @@ class SourceGroupsTest(unittest.TestCase):
     def test_comments_literals_and_members_are_no_uses(self):
         self.assertEqual(self.groups(source("void move(int n) {\n}"), source(
             "", '// move it\nauto text = "move";\nauto b = std::move(text);\nauto c = b.move();')), [2])
+
+    def test_a_variable_may_have_the_name_of_a_function(self):
+        order = source("std::vector<int> order(int n) {\n  return {};\n}")
+        self.assertEqual(self.groups(order, source("", "int first(const Order& order) {\n  return order[0];\n}")), [2])
+        self.assertEqual(self.groups(order, source("", "int first() {\n  return order(1)[0];\n}")), [1, 1])
 
     def test_macros_are_seen_everywhere(self):
         self.assertEqual(self.groups("#define WIDTH 3\n", source("", "int WIDTH = 4;", "other")), [1, 1])
