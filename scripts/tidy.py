@@ -17,6 +17,7 @@ import concurrent.futures
 import dataclasses
 import functools
 import hashlib
+import itertools
 import json
 import os
 import pathlib
@@ -33,6 +34,8 @@ FOLDERS = ("bake", "dynamics", "pack_tool", "runtime", "scripted", "view")
 INCLUDE = re.compile(rb'^[ \t]*#[ \t]*include[ \t]*["<]([^">\n]+)[">]', re.MULTILINE)
 FINDING = re.compile(r"^(/[^:]*):\d+:\d+: (warning|error): .*$", re.MULTILINE)
 MATTERS_OF_STYLE = 10
+# Most of the time goes into headers of other projects, once for each group.
+MOST_SOURCES = 48
 
 
 @functools.cache
@@ -117,15 +120,44 @@ def sources_of(build: pathlib.Path, cache: pathlib.Path) -> list[Source]:
     return result
 
 
+def kind_of(source: Source) -> tuple[str, ...]:
+    """What sources have to have in common to be examined as one: all flags but definitions and include folders."""
+    return tuple(flag for flag, before in zip(source.flags, ("", *source.flags))
+                 if not flag.startswith(("-D", "-I", "-isystem")) and before != "-isystem")
+
+
+def definitions_of(source: Source) -> dict[str, str]:
+    return {flag.partition("=")[0]: flag for flag in source.flags if flag.startswith("-D")}
+
+
+def flags_of(group: list[Source]) -> list[str]:
+    """The flags of all sources of a group, each once."""
+    flags: list[str] = []
+    for source in group:
+        words = iter(source.flags)
+        for word in words:
+            flag = [word, next(words)] if word == "-isystem" else [word]
+            if flag[-1] not in flags:
+                flags += flag
+    return flags
+
+
 def groups_of(sources: list[Source]) -> list[list[Source]]:
     """What can be examined as one, the longest first, so that no core waits at the end."""
-    alike = collections.defaultdict(list)
+    alike: dict[tuple[str, ...], list[list[Source]]] = collections.defaultdict(list)
     for source in sources:
-        alike[source.flags, source.folder].append(source)
+        for members in alike[kind_of(source)]:
+            known = {name: flag for member in members for name, flag in definitions_of(member).items()}
+            if all(known.get(name, flag) == flag for name, flag in definitions_of(source).items()):
+                members.append(source)
+                break
+        else:
+            alike[kind_of(source)].append([source])
     groups = []
-    for members in alike.values():
+    for members in itertools.chain.from_iterable(alike.values()):
         by_path = {source.path: source for source in members}
-        groups += [[by_path[path] for path in paths] for paths in source_groups.group_sources(list(by_path))]
+        groups += [[by_path[path] for path in paths]
+                   for paths in source_groups.group_sources(list(by_path), MOST_SOURCES)]
     return sorted(groups, key=lambda group: -sum(os.path.getsize(source.path) for source in group))
 
 
@@ -145,7 +177,7 @@ def examine(together: pathlib.Path, group: list[Source]) -> dict[Source, list[st
             f'#include "{source.path}"  // NOLINT(bugprone-suspicious-include)\n' for source in group))
     header_filter = f"^{re.escape(str(ROOT))}/({'|'.join(source_groups.FOLDERS)})/"
     run = subprocess.run([CLANG_TIDY, "--quiet", f"--config-file={ROOT / '.clang-tidy'}",
-                          f"--header-filter={header_filter}", main, "--", *group[0].flags],
+                          f"--header-filter={header_filter}", main, "--", *flags_of(group)],
                          cwd=group[0].folder, capture_output=True, text=True, check=False,
                          stdin=subprocess.DEVNULL)
     found = findings_in(run.stdout)
