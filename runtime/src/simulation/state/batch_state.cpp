@@ -111,7 +111,8 @@ void BatchState::prefetch(std::size_t n) const noexcept {
   prefetchRow(observation(n));
   prefetchRow(bodyTransforms(n));
   // The chunk's rows in equal parts, an env each.
-  prefetchBytes(rows_.data()->values + n * row_count_, row_count_ * sizeof(float));
+  const std::size_t part = row_count_ * sizeof(float);
+  prefetchBytes(reinterpret_cast<const std::byte*>(rows_.data()) + n * part, part);
   resting_[n].prefetch();
   // Which says where its sets are.
   if (n + kChunk < envs_.size()) prefetchBytes(&resting_[n + kChunk], sizeof(RestingObjects));

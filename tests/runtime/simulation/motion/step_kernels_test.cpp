@@ -100,8 +100,10 @@ struct Judging {
   }
 
   void judge(const MotionKernels& kernels, std::size_t envs) {
-    kernels.judge({.actions = actions.data()->values,
-                   .last_actions = last.data()->values,
+    // There may be no joints.
+    const bool has_joints = !actions.empty();
+    kernels.judge({.actions = has_joints ? actions.front().values : nullptr,
+                   .last_actions = has_joints ? last.front().values : nullptr,
                    .active = active.data(),
                    .joints = actions.size(),
                    .grips = grips.data()->values,
