@@ -92,15 +92,19 @@ void Chunk::takeOver(std::size_t env, Chunk& other, std::size_t from) {
 
 void Chunk::shiftBounds(std::size_t env, const Vec3& by) {
   // Rounding keeps order: the bounds of what has moved are the bounds moved.
-  const std::array<float, kLanes> each{by.x, by.x, by.y, by.y, by.z, by.z, 0, 0};
-  for (std::size_t b = 0; b < kLanes; ++b) extents_[env].values[b] += each[b];
   AlignedLanes* lanes = bounds_.data() + env * kBounds * group_stride_ / kLanes;
-  for (std::size_t b = 0; b < kBounds; ++b) {
-    const float by_this = each[b];
+  const auto add = [&](std::size_t bound, float by_this) {
+    extents_[env].values[bound] += by_this;
     for (std::size_t n = 0; n < group_stride_; n += kLanes, ++lanes) {
       for (float& value : lanes->values) value += by_this;
     }
-  }
+  };
+  add(0, by.x);
+  add(1, by.x);
+  add(2, by.y);
+  add(3, by.y);
+  add(4, by.z);
+  add(5, by.z);
 }
 
 Vec3 Chunk::least(std::size_t env) const {

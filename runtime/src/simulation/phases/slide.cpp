@@ -212,9 +212,34 @@ class Glide {
     way_.add(around ? around->cells() : surroundingsOf(grid, before), grid.layout(), before);
   }
 
+  /// Whether slices call each cell blocked for one of the robot's spheres that isFree() has just
+  /// looked at: most searches of columns end here.
+  [[nodiscard]] bool isHopelessInSlices() const {
+    const bool is_begun = moved_.x != 0 || moved_.z != 0;
+    // Where nothing blocks the robot nobody may have looked.
+    if (is_begun || isEmpty(step_.chunk.blockedBits())) return false;
+    Surroundings may_be_free = Surroundings::everywhere();
+    for (std::size_t n = 0; n < step_.model.groups.size(); ++n) {
+      const GroupBits& known = step_.chunk.groupBits(n / kLanes);
+      if (((known.unsure & ~known.low) >> (n % kLanes) & 1U) == 0) continue;
+      const EightPlaces& places = step_.chunk.places(n);
+      for (unsigned left = step_.model.groups[n].spheres & places.inside; left != 0;
+           left &= left - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+        may_be_free.remove(step_.model.slices.around(places, lane).blockedCells());
+      }
+      if (may_be_free.isEmpty()) return true;
+    }
+    return false;
+  }
+
   /// Adds all spheres that are not free as a whole, and what the robot holds, and asks the columns
   /// where the slices do not know better.
   void addColumns() {
+    if (isHopelessInSlices()) {
+      has_way_ = false;
+      return;
+    }
     ColumnWays& columns = step_.chunk.columnWays();
     if (step_.chunk.floor(e_) == Floor::kBlocks) addColumn(0, floorProbeHere());
     const SphereBatch spheres = step_.chunk.spheres(e_);

@@ -12,12 +12,7 @@ namespace {
 
 constexpr int kRowBits = 16;
 /// The bits that count.
-constexpr std::array<std::uint64_t, Surroundings::kWords> kCells{0x01ff'01ff'01ff'01ff,
-                                                                 0x01ff'01ff'01ff'01ff, 0x01ff};
-
-bool isEmpty(const Surroundings& cells) {
-  return std::ranges::all_of(cells.rows, [](std::uint64_t rows) { return rows == 0; });
-}
+constexpr std::array<std::uint64_t, Surroundings::kWords> kCells = Surroundings::everywhere().rows;
 
 /// What one query takes.
 constexpr std::size_t kMostAsked = 64;
@@ -75,11 +70,11 @@ Surroundings grown(const Surroundings& cells) {
 
 void ColumnWays::clear() noexcept {
   spheres_.clear();
-  may_be_free_ = {kCells};
+  may_be_free_ = Surroundings::everywhere();
   is_full_ = false;
 }
 
-bool ColumnWays::isHopeless() const noexcept { return isEmpty(may_be_free_); }
+bool ColumnWays::isHopeless() const noexcept { return may_be_free_.isEmpty(); }
 
 void ColumnWays::add(const ColumnGrid& grid, const Vec3& center,
                      const std::optional<SurroundingRows>& around) noexcept {
@@ -131,7 +126,7 @@ bool ColumnWays::addTo(WayOut& way) noexcept {
     for (std::size_t n = 0; n < kCells.size(); ++n) {
       in_all.rows[n] &= sphere.free.rows[n];
     }
-    if (isEmpty(in_all)) return false;
+    if (in_all.isEmpty()) return false;
   }
   const Surroundings near = grown(in_all);
   for (Sphere& sphere : spheres_) {

@@ -38,6 +38,13 @@ struct Surroundings {
     const unsigned bit = bitOf(x, z);
     rows[bit / 64] |= std::uint64_t{1} << (bit % 64);
   }
+  [[nodiscard]] static constexpr Surroundings everywhere() {
+    return {{0x01ff'01ff'01ff'01ff, 0x01ff'01ff'01ff'01ff, 0x01ff}};
+  }
+  void remove(const Surroundings& others) {
+    for (std::size_t n = 0; n < kWords; ++n) rows[n] &= ~others.rows[n];
+  }
+  [[nodiscard]] bool isEmpty() const { return (rows[0] | rows[1] | rows[2]) == 0; }
   /// The nine cells of row `n` along Z, from 0 on.
   [[nodiscard]] std::uint32_t row(std::size_t n) const {
     constexpr std::uint64_t kNine = 0x1ff;
@@ -93,6 +100,11 @@ class FreeSlices {
   /// The cells around any center; none where it is outside of slices.
   [[nodiscard]] std::optional<SurroundingRows> around(std::uint32_t map, std::uint32_t radius,
                                                       const Vec3& center) const noexcept;
+  /// The cells around one of eight centers that is inside of slices.
+  [[nodiscard]] SurroundingRows around(const EightPlaces& places, std::size_t lane) const noexcept {
+    const std::uint16_t* first = rows() + places.row[lane];
+    return {first, first + SliceTile::kRows, static_cast<unsigned>(places.column[lane])};
+  }
 
   [[nodiscard]] std::size_t bytes() const {
     return tiles_.size() * sizeof(SliceTile) + numbers_.size() * sizeof(std::uint32_t);
