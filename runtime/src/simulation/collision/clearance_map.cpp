@@ -135,7 +135,8 @@ ClearanceMaps::ClearanceMaps(std::vector<std::uint32_t> radius_of_lane)
 }
 
 std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenness,
-                                 const HeightsOverFloor& heights) {
+                                 const HeightsOverFloor& heights,
+                                 std::span<const float> lowest_of_radius) {
   const std::size_t map = lanes_.size() / std::max<std::size_t>(eights_, 1);
   lanes_.resize(lanes_.size() + eights_);
   const std::span<ClearanceLanes> lanes = std::span(lanes_).last(eights_);
@@ -146,7 +147,11 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
     const float from = floor + heights.lowest - 2 * kSlack;
     const float highest = floor + unevenness + heights.highest + 2 * kSlack;
     const float over_contact = floor + grid.radius() + kOverContact;
-    const Heights asked{.lowest = std::max(from, over_contact),
+    // Over what lies on the floor and is lower than all spheres of the radius, they are free, too.
+    const float lowest = radius < lowest_of_radius.size()
+                             ? std::max(heights.lowest, lowest_of_radius[radius])
+                             : heights.lowest;
+    const Heights asked{.lowest = std::max(floor + lowest - 2 * kSlack, over_contact),
                         .low = std::max(from, over_contact + unevenness),
                         .highest = highest,
                         .band_from = from,

@@ -46,10 +46,11 @@ class ClearanceMaps {
   explicit ClearanceMaps(std::vector<std::uint32_t> radius_of_lane);
 
   /// Adds the maps of a floor of a scene. `floor`: the least height of that floor, meters; the
-  /// robot's centers are `heights` above it, or above floors up to `unevenness` higher. Returns the
-  /// number by which surelyFree() knows it.
+  /// robot's centers are `heights` above it, or above floors up to `unevenness` higher.
+  /// `lowest_of_radius`: how far above its floor nothing of a radius is, where that is more; empty
+  /// where nobody knows. Returns the number by which surelyFree() knows it.
   std::uint32_t add(const Scene& scene, float floor, float unevenness,
-                    const HeightsOverFloor& heights);
+                    const HeightsOverFloor& heights, std::span<const float> lowest_of_radius = {});
 
   /// Which of eight groups are surely free: those of the lanes from 8 * `eight` on, with these
   /// bounds. `map`: as add() returned it; none are for kNoClearanceMap.

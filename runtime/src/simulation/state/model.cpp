@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <ranges>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -147,6 +148,21 @@ void addLevelFloor(const Scene& scene, const Vec3& start, Model& model) {
 }
 
 /// Makes a map for each floor of each scene on which episodes start.
+/// For each radius how far above the floor its lowest center is where all are fixed to the robot's
+/// root, and so always as high; 0 where some are not.
+std::vector<float> lowestOfRadius(const Model& model) {
+  std::vector<float> lowest(model.world->radii().size());
+  for (const RadiusRange& range : model.motion.ranges) {
+    const auto spheres = std::span(model.motion.spheres).subspan(range.first, range.count);
+    const auto is_fixed = [](const BodySphere& sphere) { return sphere.node < 0; };
+    if (!std::ranges::all_of(spheres, is_fixed)) continue;
+    const auto height = [](const BodySphere& sphere) { return sphere.center.y; };
+    lowest[range.radius_index] =
+        model.motion.base.root_height + std::ranges::min(spheres | std::views::transform(height));
+  }
+  return lowest;
+}
+
 void mapClearance(const HeightsOverFloor& heights, Model& model) {
   // Starts whose floors differ by no more stand on one floor, with rugs.
   constexpr float kUnevenness = 0.03F;
@@ -169,11 +185,13 @@ void mapClearance(const HeightsOverFloor& heights, Model& model) {
     return std::tuple(scene_of(a), model.starts[a].base.y, a) <
            std::tuple(scene_of(b), model.starts[b].base.y, b);
   });
+  const std::vector<float> lowest_of_radius = lowestOfRadius(model);
   for (std::size_t n = 0; n < order.size();) {
     const std::uint32_t scene = scene_of(order[n]);
     const float floor = model.starts[order[n]].base.y;
     const std::uint32_t map =
-        model.clearance.add(model.world->scenes()[scene], floor, kUnevenness, raised);
+        model.clearance.add(model.world->scenes()[scene], floor, kUnevenness, raised,
+                            lowest_of_radius);
     model.slices.add(model.world->scenes()[scene], floor, raised);
     addLevelFloor(model.world->scenes()[scene], model.starts[order[n]].base, model);
     for (; n < order.size() && scene_of(order[n]) == scene &&
