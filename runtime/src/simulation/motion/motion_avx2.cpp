@@ -5,7 +5,7 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 // Needed by what follows.
-#include "simulation/motion/lanes_eight.inl"
+#include "simulation/lanes/lanes_eight.inl"
 #include "simulation/motion/motion_kernel.inl"
 #include "simulation/motion/step_kernel.inl"
 

@@ -3,7 +3,7 @@
 
 #if defined(__AVX512F__)
 // Needed by what follows.
-#include "simulation/motion/lanes_sixteen.inl"
+#include "simulation/lanes/lanes_sixteen.inl"
 #include "simulation/motion/motion_kernel.inl"
 #include "simulation/motion/step_kernel.inl"
 

@@ -2,7 +2,7 @@
 #include "simulation/motion/motion_kernels.h"
 
 // Each needs what is above it.
-#include "simulation/motion/lanes_eight.inl"
+#include "simulation/lanes/lanes_eight.inl"
 #include "simulation/motion/motion_kernel.inl"
 #include "simulation/motion/step_kernel.inl"
 

@@ -276,7 +276,7 @@ class Glide {
                                  step_.model.slices.around(env_.clearance_map, radius, before));
   }
 
-  [[nodiscard]] std::optional<Push> findWay(const Push& drive) const {
+  [[nodiscard]] std::optional<Push> findWay(const Push& drive) {
     if (!has_way_) return std::nullopt;
     return way_.shortest(drive, step_.model.options.slide.step);
   }

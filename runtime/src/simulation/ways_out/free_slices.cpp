@@ -113,6 +113,13 @@ CellInTile inTile(const SliceLayout& layout, const TileSet& tiles, const SliceCe
 
 }  // namespace
 
+FreeSlices::FreeSlices() {
+  // The first one: see TileSet.
+  SliceTile all_free{};
+  std::ranges::fill(all_free.free, std::uint16_t{0xffff});
+  static_cast<void>(numberOf(all_free));
+}
+
 std::uint32_t FreeSlices::add(const Scene& scene, float floor, const HeightsOverFloor& heights) {
   radii_ = scene.grids().size();
   const std::size_t map = layouts_.size() / radii_;

@@ -85,6 +85,8 @@ struct SurroundingRows {
 /// The slices of the floors of all scenes. Any thread may ask.
 class FreeSlices {
  public:
+  FreeSlices();
+
   /// Adds the slices of a floor of a scene. `floor`: its height, meters; the robot's centers are
   /// `heights` above it. Returns the number by which the others know it: 0, 1, ...
   std::uint32_t add(const Scene& scene, float floor, const HeightsOverFloor& heights);

@@ -40,7 +40,7 @@ struct SliceLayout {
 [[nodiscard]] constexpr std::uint32_t tileOfRow(std::uint32_t k) { return (k * 43691U) >> 20U; }
 static_assert(tileOfRow(65535) == 65535 / kTileRows && tileOfRow(65519) == 65519 / kTileRows);
 
-/// Tiles of which there is one of each kind.
+/// Tiles of which there is one of each kind. All cells of the first one are free.
 struct TileSet {
   const std::uint32_t* numbers = nullptr;
   const SliceTile* tiles = nullptr;

@@ -24,7 +24,7 @@ inline constexpr float kIntoCell = 1e-4F;
 class WayOut {
  public:
   /// Room for that many times eight spheres.
-  explicit WayOut(std::size_t most_eights) : ways_(most_eights) {}
+  explicit WayOut(std::size_t most_eights, const WayKernels& kernels = wayKernels());
 
   /// Forgets all spheres. `spacing`: edge of a cell, meters.
   void clear(float spacing) noexcept;
@@ -39,24 +39,28 @@ class WayOut {
 
   /// At most `longest` meters, and not on along `drive`, the way that the robot came: nothing
   /// pushes it through an obstacle. None where there is no such move.
-  [[nodiscard]] std::optional<Push> shortest(const Push& drive, float longest) const noexcept;
+  [[nodiscard]] std::optional<Push> shortest(const Push& drive, float longest) noexcept;
 
  private:
   /// Room for eight spheres more; null where there is none, and no move is known to be free.
   [[nodiscard]] EightWays* next() noexcept;
-  [[nodiscard]] Surroundings inAll() const noexcept;
-  [[nodiscard]] Push shortened(const WayCell& to) const noexcept;
+  [[nodiscard]] Push shortened(const WayCell& to) noexcept;
   [[nodiscard]] bool suits(const Push& push) const noexcept;
   template <class MayBe>
-  [[nodiscard]] std::optional<Push> shortestOf(float longest, const MayBe& may_be) const noexcept;
+  [[nodiscard]] std::optional<Push> shortestOf(float longest, const MayBe& may_be) noexcept;
 
+  WayKernels kernels_;
   float spacing_ = 0;
-  AllWays all_;
+  CommonCells common_;
   std::vector<EightWays> ways_;
+  std::vector<DecidingEight> deciding_;
   std::size_t count_ = 0;
-  /// The eight that spheres added one by one go into, and how many it has.
+  /// The rows of spheres added one by one, sixteen each; first those of one that is free anywhere.
+  std::vector<std::uint16_t> single_rows_;
+  /// The eight that these spheres go into, how many it has, and how many there are.
   std::size_t singles_ = 0;
-  std::size_t single_count_ = kLanes;
+  std::size_t in_eight_ = kLanes;
+  std::size_t single_count_ = 0;
 };
 
 }  // namespace galactic::simulation

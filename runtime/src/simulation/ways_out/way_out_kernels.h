@@ -7,26 +7,36 @@
 
 namespace galactic::simulation {
 
-/// Words of two rows that hold the nine rows around a sphere.
-inline constexpr std::size_t kRowPairs = kCellsAround + 1;
+/// Cells in which several spheres are free: rows along Z, of which nine count, as do nine bits of
+/// each.
+struct alignas(32) CommonCells {
+  static constexpr std::size_t kRows = 16;
+  std::uint16_t rows[kRows];
+};
 
 /// In which cells around their own eight spheres are free, and where in their own they are. Plain
 /// arrays, which the kernels load.
 struct alignas(32) EightWays {
-  /// Of each sphere, rows along Z in pairs, the first in the lower half of a word: bit x +
-  /// kCellsAround of row z + kCellsAround is set where the sphere is free in cell (x, z).
-  std::uint32_t rows[kRowPairs][kLanes];
+  /// Of each sphere its first row, counted from `rows`, and the column of its first bit: bit
+  /// x + kCellsAround of row z + kCellsAround from there is set where the sphere is free in cell
+  /// (x, z). Row 0 and column 0, where all is free, of those that do not count.
+  std::int32_t row[kLanes];
+  std::int32_t column[kLanes];
   /// From 0 to 1.
   float part_x[kLanes];
   float part_z[kLanes];
-  /// All bits where a sphere is free in some cells only; none where it is free in all, as an empty
-  /// lane is.
-  std::uint32_t counts[kLanes];
+  /// In which all are free.
+  CommonCells cells;
+  const std::uint16_t* rows;
+  /// Those that count, as bits.
+  unsigned spheres;
 };
 
-/// The cells in which all of several eights are free, sphere by sphere.
-struct alignas(32) AllWays {
-  std::uint32_t rows[kRowPairs][kLanes];
+/// Eight spheres one of which may decide how much of a move can be taken back.
+struct alignas(32) DecidingEight {
+  const EightWays* ways;
+  /// The row of each in which the move ends, and that before it.
+  std::int32_t rows[kLanes];
 };
 
 /// A cell, counted from the one in which a sphere is.
@@ -52,10 +62,13 @@ struct TakenBackBoth {
 /// Added to cells before they are rounded: truncation rounds down what is positive.
 inline constexpr float kAboveCells = 64;
 
-/// A move, in cells.
+/// A move, in cells, after which rounding may take spheres `rounding` further.
 struct CellPush {
   float x = 0;
   float z = 0;
+  float rounding = 0;
+  /// Spheres that end nearer than this to the border of a cell are looked at: the others are free.
+  float near = 0;
 };
 
 /// Where a move ends, and how far into a cell spheres go, as a part of it: those that are less than
@@ -68,30 +81,26 @@ struct CellMove {
 /// 1, 0 or -1.
 constexpr int signOf(int value) { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); }
 
-/// Adds the spheres of `lanes` at `places` to `all`, and makes `ways` of them. `rows`: of their
-/// radius' slices. Whether any of them counts.
-bool addWaysPortable(const std::uint16_t* rows, const EightPlaces& places, unsigned lanes,
-                     EightWays& ways, AllWays& all) noexcept;
-bool addWaysAvx2(const std::uint16_t* rows, const EightPlaces& places, unsigned lanes,
-                 EightWays& ways, AllWays& all) noexcept;
+/// What is asked of eight spheres at a time. Both versions do the same operations, and agree bit
+/// for bit.
+struct WayKernels {
+  /// Makes ways of the spheres at `places` whose bits are set, and takes the cells in which they
+  /// are not free from `common`. `rows`: what places count from. Whether any of them counts.
+  bool (*add)(const std::uint16_t* rows, const EightPlaces& places, unsigned spheres,
+              EightWays& ways, CommonCells& common) noexcept = nullptr;
+  /// `deciding`: room for as many as there are ways.
+  TakenBackBoth (*taken_back)(const EightWays* ways, std::size_t count, const CellMove& move,
+                              DecidingEight* deciding) noexcept = nullptr;
+  /// Whether all spheres that end near a border are free in all cells in which they may be.
+  bool (*are_free)(const EightWays* ways, std::size_t count,
+                   const CellPush& by) noexcept = nullptr;
+};
 
-/// What a move to where all spheres are free can take back.
-[[nodiscard]] TakenBackBoth takenBackPortable(const EightWays* ways, std::size_t count,
-                                              const CellMove& move) noexcept;
-[[nodiscard]] TakenBackBoth takenBackAvx2(const EightWays* ways, std::size_t count,
-                                          const CellMove& move) noexcept;
-
-/// Whether no sphere is nearer than `distance` to a border of its cell after a move, in cells.
-[[nodiscard]] bool noneAtBorderPortable(const EightWays* ways, std::size_t count,
-                                        const CellPush& by, float distance) noexcept;
-[[nodiscard]] bool noneAtBorderAvx2(const EightWays* ways, std::size_t count, const CellPush& by,
-                                    float distance) noexcept;
-
-/// Whether all spheres are free after a move, in cells. `rounding`: may take a sphere that moves
-/// so much further.
-[[nodiscard]] bool allFreePortable(const EightWays* ways, std::size_t count, const CellPush& by,
-                                   float rounding) noexcept;
-[[nodiscard]] bool allFreeAvx2(const EightWays* ways, std::size_t count, const CellPush& by,
-                               float rounding) noexcept;
+/// For any processor.
+[[nodiscard]] WayKernels portableWays() noexcept;
+/// For processors with AVX2.
+[[nodiscard]] WayKernels avx2Ways() noexcept;
+/// The fastest ones that this processor can run.
+[[nodiscard]] WayKernels wayKernels() noexcept;
 
 }  // namespace galactic::simulation

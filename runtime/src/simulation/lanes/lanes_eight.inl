@@ -1,5 +1,10 @@
-// Vectors of eight envs, and how they become rows, an env each: motion_kernel.inl is written in
-// terms of these. No library templates here: see column_grid_avx2.cpp.
+// Vectors of eight envs or spheres, and how they become rows, one each: motion_kernel.inl and
+// way_out_kernel.inl are written in terms of these. No library templates here: see
+// column_grid_avx2.cpp.
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
 namespace galactic::simulation {
 namespace {
 
@@ -18,6 +23,72 @@ inline void store(float* to, Lanes lanes) { __builtin_memcpy(to, &lanes, sizeof(
 
 inline Lanes spread(float value) {
   return Lanes{value, value, value, value, value, value, value, value};
+}
+
+inline IntLanes loadInts(const std::int32_t* from) {
+  IntLanes lanes;
+  __builtin_memcpy(&lanes, from, sizeof(lanes));
+  return lanes;
+}
+
+inline void storeInts(std::int32_t* to, IntLanes lanes) {
+  __builtin_memcpy(to, &lanes, sizeof(lanes));
+}
+
+/// All bits of the lanes whose bit is set.
+inline IntLanes lanesOf(unsigned bits) {
+  const IntLanes each{1, 2, 4, 8, 16, 32, 64, 128};
+  return (each & static_cast<std::int32_t>(bits)) != 0;
+}
+
+#if defined(__AVX2__)
+
+/// The signs of lanes, as bits.
+inline unsigned signsOf(IntLanes lanes) {
+  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(lanes)));
+}
+
+/// Words that lie `index` times kScale bytes behind `from`; zeros but for the lanes of `wanted`.
+/// See resting_objects_avx2.cpp for why the gather is given a zero.
+template <int kScale>
+inline IntLanes gather(const void* from, IntLanes index, IntLanes wanted) {
+  return reinterpret_cast<IntLanes>(_mm256_mask_i32gather_epi32(
+      _mm256_setzero_si256(), static_cast<const int*>(from), reinterpret_cast<__m256i>(index),
+      reinterpret_cast<__m256i>(wanted), kScale));
+}
+
+#else
+
+inline unsigned signsOf(IntLanes lanes) {
+  unsigned bits = 0;
+  for (unsigned n = 0; n < kWidth; ++n) bits |= (lanes[n] < 0 ? 1U : 0U) << n;
+  return bits;
+}
+
+template <int kScale>
+inline IntLanes gather(const void* from, IntLanes index, IntLanes wanted) {
+  IntLanes words{};
+  for (unsigned n = 0; n < kWidth; ++n) {
+    if (wanted[n] == 0) continue;
+    std::int32_t word;
+    __builtin_memcpy(&word, static_cast<const char*>(from) + std::ptrdiff_t{index[n]} * kScale,
+                     sizeof(word));
+    words[n] = word;
+  }
+  return words;
+}
+
+#endif
+
+/// The least of eight numbers each.
+inline void leastOf(Lanes x, Lanes z, float& least_x, float& least_z) {
+  const auto lesser = [](auto a, auto b) { return b < a ? b : a; };
+  const Lanes pairs = lesser(__builtin_shufflevector(x, z, 0, 8, 1, 9, 4, 12, 5, 13),
+                             __builtin_shufflevector(x, z, 2, 10, 3, 11, 6, 14, 7, 15));
+  const auto both = lesser(__builtin_shufflevector(pairs, pairs, 0, 1, 2, 3),
+                           __builtin_shufflevector(pairs, pairs, 4, 5, 6, 7));
+  least_x = both[2] < both[0] ? both[2] : both[0];
+  least_z = both[3] < both[1] ? both[3] : both[1];
 }
 
 /// Element 0 of eight rows.

@@ -1,0 +1,14 @@
+#include "column_grid/column_grid_kernels.h"
+#include "simulation/ways_out/way_out_kernels.h"
+
+// Each needs what is above it.
+#include "simulation/lanes/lanes_eight.inl"
+#include "simulation/ways_out/way_out_kernel.inl"
+
+namespace galactic::simulation {
+
+WayKernels portableWays() noexcept { return {addKernel, takenBackKernel, areFreeKernel}; }
+
+WayKernels wayKernels() noexcept { return detail::hasAvx2() ? avx2Ways() : portableWays(); }
+
+}  // namespace galactic::simulation
