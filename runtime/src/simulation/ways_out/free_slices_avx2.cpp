@@ -73,8 +73,7 @@ void findPlacesAvx2(const SliceLayout& layout, const TileSet& tiles, const float
   _mm256_store_ps(places.part_z, part_z);
   places.inside = bitsOf(inside);
   places.free = ownBits(tiles.tiles->free, row, column, inside);
-  places.blocked =
-      places.free == places.inside ? 0 : ownBits(tiles.tiles->blocked, row, column, inside);
+  places.blocked = ownBits(tiles.tiles->blocked, row, column, inside);
 }
 
 }  // namespace galactic::simulation
