@@ -188,13 +188,14 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
   return static_cast<std::uint32_t>(map);
 }
 
-SureGroups ClearanceMaps::surelyFree(std::uint32_t map, std::size_t eight,
-                                     const GroupBounds& bounds) const noexcept {
-  if (map == kNoClearanceMap) return {};
-  SureGroups sure;
+void ClearanceMaps::surelyFree(std::uint32_t map, std::size_t eight, const GroupBounds& bounds,
+                               SureGroups& sure) const noexcept {
+  if (map == kNoClearanceMap) {
+    sure = {};
+    return;
+  }
   const ClearanceQuestion question{&lanes_[map * eights_ + eight], bounds.values};
-  answer({&question, 1}, bounds.stride, {&sure, 1});
-  return sure;
+  answer({&question, 1}, bounds.stride, &sure);
 }
 
 void ClearanceMaps::surelyFree(std::span<const std::uint32_t> maps, std::size_t eight,
@@ -205,16 +206,18 @@ void ClearanceMaps::surelyFree(std::span<const std::uint32_t> maps, std::size_t 
     const std::size_t map = maps[n] == kNoClearanceMap ? 0 : maps[n];
     questions[n] = {lanes_.data() + map * eights_ + eight, bounds.values + n * env_stride};
   }
-  if (!lanes_.empty()) answer(std::span(questions).first(maps.size()), bounds.stride, sure);
+  if (!lanes_.empty()) {
+    answer(std::span(questions).first(maps.size()), bounds.stride, sure.data());
+  }
   for (std::size_t n = 0; n < maps.size(); ++n) {
     if (maps[n] == kNoClearanceMap) sure[n] = {};
   }
 }
 
 void ClearanceMaps::answer(std::span<const ClearanceQuestion> questions, std::size_t stride,
-                           std::span<SureGroups> sure) const noexcept {
+                           SureGroups* sure) const noexcept {
   const auto ask = detail::hasAvx2() ? surelyFreeAvx2 : surelyFreePortable;
-  ask(questions.data(), questions.size(), cells_.data(), stride, sure.data());
+  ask(questions.data(), questions.size(), cells_.data(), stride, sure);
 }
 
 namespace {

@@ -54,8 +54,8 @@ class ClearanceMaps {
 
   /// Which of eight groups are surely free: those of the lanes from 8 * `eight` on, with these
   /// bounds. `map`: as add() returned it; none are for kNoClearanceMap.
-  [[nodiscard]] SureGroups surelyFree(std::uint32_t map, std::size_t eight,
-                                      const GroupBounds& bounds) const noexcept;
+  void surelyFree(std::uint32_t map, std::size_t eight, const GroupBounds& bounds,
+                  SureGroups& sure) const noexcept;
 
   /// The same for several envs, kMostAsked at most, each in its own map. `bounds`: of the first
   /// one; `env_stride`: from the bounds of one env to those of the next.
@@ -68,7 +68,7 @@ class ClearanceMaps {
 
  private:
   void answer(std::span<const ClearanceQuestion> questions, std::size_t stride,
-              std::span<SureGroups> sure) const noexcept;
+              SureGroups* sure) const noexcept;
 
   std::vector<std::uint32_t> radius_of_lane_;
   std::size_t eights_ = 0;

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -39,10 +40,13 @@ class LevelFloors {
     const auto k = static_cast<std::uint32_t>(z);
     const std::size_t word = floor.first + std::size_t{k} * floor.row_words + i / kBits;
     if ((words_[word] >> (i % kBits) & 1U) == 0) return std::nullopt;
+    // Which of them it is nobody can guess: no branch.
+    std::uint32_t is_height = 0;
     for (std::uint32_t n = 0; n < floor.height_count; ++n) {
-      if (base.y == floor.heights[n]) return floor.heights[n + 1];
+      is_height |= (base.y == floor.heights[n] ? 1U : 0U) << n;
     }
-    return std::nullopt;
+    if (is_height == 0) return std::nullopt;
+    return floor.heights[static_cast<std::size_t>(std::countr_zero(is_height)) + 1];
   }
 
  private:

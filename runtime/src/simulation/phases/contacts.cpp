@@ -76,16 +76,13 @@ const EightPlaces& findPlaces(const ChunkStep& step, std::size_t e, std::size_t 
   return places;
 }
 
-void askMaps(const ChunkStep& step, std::size_t first, std::size_t end) noexcept {
+void askMaps(const ChunkStep& step) noexcept {
   static_assert(kChunk <= ClearanceMaps::kMostAsked);
   std::array<std::uint32_t, kChunk> maps;
-  for (std::size_t e = first; e < end; ++e) {
-    maps[e - first] = step.state.env(step.first + e).clearance_map;
-  }
+  for (std::size_t e = 0; e < kChunk; ++e) maps[e] = step.state.env(step.first + e).clearance_map;
   for (std::size_t eight = 0; eight * kLanes < step.model.groups.size(); ++eight) {
-    step.model.clearance.surelyFree(std::span(maps).first(end - first), eight,
-                                    step.chunk.bounds(first, eight), step.chunk.boundsStride(),
-                                    step.chunk.sure(eight).subspan(first, end - first));
+    step.model.clearance.surelyFree(maps, eight, step.chunk.bounds(0, eight),
+                                    step.chunk.boundsStride(), step.chunk.sure(eight));
   }
 }
 
@@ -119,7 +116,11 @@ bool findBlockedAsAsked(const ChunkStep& step, std::size_t e) {
 }  // namespace
 
 bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
-  askMaps(step, e, e + 1);
+  const std::uint32_t map = step.state.env(step.first + e).clearance_map;
+  for (std::size_t eight = 0; eight * kLanes < step.model.groups.size(); ++eight) {
+    step.model.clearance.surelyFree(map, eight, step.chunk.bounds(e, eight),
+                                    step.chunk.sure(eight)[e]);
+  }
   return findBlockedAsAsked(step, e);
 }
 
@@ -154,8 +155,8 @@ bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept {
     std::fill_n(bounds.data() + b * kLanes, kLanes, each[b]);
   }
   const ClearanceMaps& maps = step.model.clearance;
-  const SureGroups sure =
-      maps.surelyFree(env.clearance_map, maps.eights() - 1, {bounds.data(), kLanes});
+  SureGroups sure;
+  maps.surelyFree(env.clearance_map, maps.eights() - 1, {bounds.data(), kLanes}, sure);
   return (env.held.radii & ~sure.free) == 0;
 }
 

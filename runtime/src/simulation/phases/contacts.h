@@ -16,9 +16,9 @@ namespace galactic::simulation {
 /// Whether the candidate penetrates no object, nor what it holds anything.
 [[nodiscard]] bool isFreeOfObjects(const ChunkStep& step, std::size_t e) noexcept;
 
-/// Asks the maps what is surely free of the candidates of the envs from `first` up to `end`: all of
-/// a chunk at once, so that none waits for the answer about another.
-void askMaps(const ChunkStep& step, std::size_t first, std::size_t end) noexcept;
+/// Asks the maps what is surely free of all candidates of a chunk at once, so that none waits for
+/// the answer about another.
+void askMaps(const ChunkStep& step) noexcept;
 
 /// As isFree(), where askMaps() has asked already.
 [[nodiscard]] bool isFreeAsAsked(const ChunkStep& step, std::size_t e) noexcept;

@@ -191,7 +191,7 @@ void placeBodies(const ChunkStep& step) noexcept {
 
 void moveRobots(const ChunkStep& step) noexcept {
   EnvMask accepted{};
-  if (step.between == nullptr) askMaps(step, 0, kChunk);
+  if (step.between == nullptr) askMaps(step);
   for (std::size_t e = 0; e < kChunk; ++e) {
     // A thread takes one chunk after the other. Asked for while the longest phase lasts, what the
     // next one needs is there in time, and none of it waits for much else.

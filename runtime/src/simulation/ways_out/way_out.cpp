@@ -126,9 +126,8 @@ Push WayOut::shortened(const WayCell& to) noexcept {
   const CellMove move{to, kIntoCell / spacing_};
   const TakenBackBoth back = kernels_.taken_back(ways_.data(), count_, move, deciding_.data());
   const auto length = [&](int cells, float taken_back) {
-    const int sign = signOf(cells);
-    const float taken = static_cast<float>(sign) * (taken_back - move.margin);
-    return sign == 0 ? 0.0F : (static_cast<float>(cells) - taken) * spacing_;
+    const float taken = static_cast<float>(signOf(cells)) * (taken_back - move.margin);
+    return (static_cast<float>(cells) - taken) * spacing_;
   };
   const Push one{length(to.x, back.along_x_first.x), length(to.z, back.along_x_first.z)};
   const Push other{length(to.x, back.along_z_first.x), length(to.z, back.along_z_first.z)};

@@ -88,10 +88,12 @@ struct WayLanes {
   Lanes to_border_x, to_border_z;
 };
 
-/// How far places in a cell are from the border that a move towards `sign` crosses last.
+/// How far places in a cell are from the border that a move towards `sign` crosses last: as they
+/// are, or 1 less them, with no rounding more than that, and no branch.
 inline Lanes fromBorder(const float* part, int sign) {
-  const Lanes parts = load(part);
-  return sign > 0 ? parts : spread(1) - parts;
+  const int backwards = sign > 0 ? 0 : 1;
+  return spread(static_cast<float>(1 - 2 * backwards)) * load(part) +
+         spread(static_cast<float>(backwards));
 }
 
 /// The row of each sphere in which a move ends, and that before it.
@@ -193,8 +195,8 @@ inline IntLanes isNearBorder(const float* part, float by, float near) {
 
 bool areFreeKernel(const EightWays* ways, std::size_t count, const CellPush& by) noexcept {
   // What does not move along an axis may be at its border.
-  const float near_x = by.x == 0 ? -1 : by.near;
-  const float near_z = by.z == 0 ? -1 : by.near;
+  const float near_x = by.near - static_cast<float>(by.x == 0 ? 1 : 0);
+  const float near_z = by.near - static_cast<float>(by.z == 0 ? 1 : 0);
   for (std::size_t n = 0; n < count; ++n) {
     const IntLanes near =
         isNearBorder(ways[n].part_x, by.x, near_x) | isNearBorder(ways[n].part_z, by.z, near_z);
