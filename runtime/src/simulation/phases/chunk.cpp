@@ -57,14 +57,13 @@ void Chunk::shift(std::size_t env, const Vec3& by) {
   moveBy(rows_.data(), env, by);
   float* row = centers_.data()->values.data() + env * 3 * sphere_count_;
   const auto add = [count = sphere_count_](float* to, float by_this) {
-    // Most floors are flat.
-    if (by_this == 0) return;
     for (std::size_t n = 0; n < count; n += kLanes) {
       for (std::size_t lane = 0; lane < kLanes; ++lane) to[n + lane] += by_this;
     }
   };
   add(row, by.x);
-  add(row + sphere_count_, by.y);
+  // Most floors are flat.
+  if (by.y != 0) add(row + sphere_count_, by.y);
   add(row + 2 * sphere_count_, by.z);
   shiftBounds(env, by);
   moveBy(&rows_.back() + 1 - kGripNumbers + 9, env, by);

@@ -35,7 +35,8 @@ InSlices findPlaces(const ChunkStep& step, std::size_t e, std::size_t eight, uns
     const EightPlaces& places = findPlaces(step, e, n);
     const unsigned spheres = step.model.groups[n].spheres;
     found.blocked |= std::uint64_t{spheres & places.blocked} << (lane * kLanes);
-    if ((spheres & ~(places.free | places.blocked)) != 0) found.unknown |= left & -left;
+    const bool is_unknown = (spheres & ~(places.free | places.blocked)) != 0;
+    found.unknown |= is_unknown ? left & -left : 0U;
   }
   return found;
 }

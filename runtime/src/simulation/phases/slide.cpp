@@ -132,7 +132,7 @@ class Glide {
         const EightPlaces& places = is_low ? findPlaces(step_, e_, n) : step_.chunk.places(n);
         const auto blocked = static_cast<unsigned>(word >> (lane * kLanes) & 0xffU);
         const unsigned added = spheres & (places.free | blocked);
-        if (added == spheres) known.suited |= left & -left;
+        known.suited |= added == spheres ? left & -left : 0U;
         addEight(n, added, is_begun ? placesBefore(n) : places);
       }
     }

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -45,6 +46,13 @@ struct Surroundings {
     for (std::size_t n = 0; n < kWords; ++n) rows[n] &= ~others.rows[n];
   }
   [[nodiscard]] bool isEmpty() const { return (rows[0] | rows[1] | rows[2]) == 0; }
+  /// Takes the first cell out of a set that is not empty. Returns 16 times its row and its column.
+  int takeFirst() {
+    const std::size_t word = rows[0] != 0 ? 0 : (rows[1] != 0 ? 1 : 2);
+    const int bit = 64 * static_cast<int>(word) + std::countr_zero(rows[word]);
+    rows[word] &= rows[word] - 1;
+    return bit;
+  }
   /// The nine cells of row `n` along Z, from 0 on.
   [[nodiscard]] std::uint32_t row(std::size_t n) const {
     constexpr std::uint64_t kNine = 0x1ff;

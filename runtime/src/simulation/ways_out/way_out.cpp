@@ -65,8 +65,9 @@ constexpr float kAlongDrive = 0.5F;
 
 WayOut::WayOut(std::size_t most_eights, const WayKernels& kernels)
     : kernels_(kernels),
-      ways_(most_eights),
-      deciding_(most_eights),
+      most_(most_eights),
+      ways_((most_eights + kWaysAtATime - 1) / kWaysAtATime * kWaysAtATime),
+      deciding_(ways_.size() + 1),
       single_rows_((most_eights * kLanes + 1) * CommonCells::kRows, kAllFree) {}
 
 void WayOut::clear(float spacing) noexcept {
@@ -78,7 +79,7 @@ void WayOut::clear(float spacing) noexcept {
 }
 
 EightWays* WayOut::next() noexcept {
-  if (count_ < ways_.size()) return &ways_[count_];
+  if (count_ < most_) return &ways_[count_];
   std::ranges::fill(common_.rows, std::uint16_t{0});
   return nullptr;
 }
@@ -149,22 +150,20 @@ template <class MayBe>
 std::optional<Push> WayOut::shortestOf(float longest, const MayBe& may_be) noexcept {
   std::optional<Push> best;
   float least = longest * longest;
-  const Surroundings moves = nearest(cellsOf(common_));
-  for (std::size_t n = 0; n < Surroundings::kWords; ++n) {
-    for (std::uint64_t left = moves.rows[n]; left != 0; left &= left - 1) {
-      const int bit = 64 * static_cast<int>(n) + std::countr_zero(left);
-      const int x = bit % kRowBits - kCellsAround;
-      const int z = bit / kRowBits - kCellsAround;
-      // One cell less along each axis for spheres at its border.
-      const auto least_x = static_cast<float>(x - signOf(x)) * spacing_;
-      const auto least_z = static_cast<float>(z - signOf(z)) * spacing_;
-      if (least_x * least_x + least_z * least_z >= least) continue;
-      const Push push = shortened({x, z});
-      const float squared = push.x * push.x + push.z * push.z;
-      if (!(squared < least) || !may_be(push, squared)) continue;
-      least = squared;
-      best = push;
-    }
+  Surroundings moves = nearest(cellsOf(common_));
+  while (!moves.isEmpty()) {
+    const int bit = moves.takeFirst();
+    const int x = bit % kRowBits - kCellsAround;
+    const int z = bit / kRowBits - kCellsAround;
+    // One cell less along each axis for spheres at its border.
+    const auto least_x = static_cast<float>(x - signOf(x)) * spacing_;
+    const auto least_z = static_cast<float>(z - signOf(z)) * spacing_;
+    if (least_x * least_x + least_z * least_z >= least) continue;
+    const Push push = shortened({x, z});
+    const float squared = push.x * push.x + push.z * push.z;
+    if (!(squared < least) || !may_be(push, squared)) continue;
+    least = squared;
+    best = push;
   }
   return best;
 }

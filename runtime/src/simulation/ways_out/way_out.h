@@ -52,6 +52,7 @@ class WayOut {
   WayKernels kernels_;
   float spacing_ = 0;
   CommonCells common_;
+  std::size_t most_ = 0;
   std::vector<EightWays> ways_;
   std::vector<DecidingEight> deciding_;
   std::size_t count_ = 0;

@@ -114,9 +114,12 @@ TakenBackBoth takenBackKernel(const EightWays* ways, std::size_t count, const Ce
   const CellsBefore cells = cellsBefore(move.to);
   // Most eights are free in all of these cells.
   std::size_t deciding_count = 0;
-  for (std::size_t n = 0; n < count; ++n) {
-    deciding[deciding_count].ways = ways + n;
-    deciding_count += decides(ways[n], cells) ? 1U : 0U;
+  for (std::size_t first = 0; first < count; first += kWaysAtATime) {
+    for (std::size_t n = first; n < first + kWaysAtATime; ++n) {
+      deciding[deciding_count].ways = ways + n;
+      deciding_count += static_cast<std::size_t>(decides(ways[n], cells)) &
+                        static_cast<std::size_t>(n < count);
+    }
   }
   const Lanes whole = spread(1);
   Lanes least_x = whole;
@@ -185,21 +188,20 @@ inline bool isFreeAfter(const EightWays& ways, std::size_t sphere, const CellPus
          isFreeIn(ways, sphere, x.last, z.first) && isFreeIn(ways, sphere, x.last, z.last);
 }
 
-/// Whether places end near the border of a cell. `near`: below 0 where none does.
+/// Where places end near the border of a cell. What does not move along an axis may be at its
+/// border.
 inline IntLanes isNearBorder(const float* part, float by, float near) {
-  const Lanes cell = (load(part) + spread(by)) + spread(kAboveCells);
+  const Lanes move = spread(by);
+  const Lanes cell = (load(part) + move) + spread(kAboveCells);
   const Lanes shift = spread(12582912.0F);  // 1.5 * 2^23: leaves no bits for a fraction
   const Lanes from_whole = cell - ((cell + shift) - shift);
-  return (from_whole <= near) & (from_whole >= -near);
+  return (from_whole <= near) & (from_whole >= -near) & (move != 0);
 }
 
 bool areFreeKernel(const EightWays* ways, std::size_t count, const CellPush& by) noexcept {
-  // What does not move along an axis may be at its border.
-  const float near_x = by.near - static_cast<float>(by.x == 0 ? 1 : 0);
-  const float near_z = by.near - static_cast<float>(by.z == 0 ? 1 : 0);
   for (std::size_t n = 0; n < count; ++n) {
     const IntLanes near =
-        isNearBorder(ways[n].part_x, by.x, near_x) | isNearBorder(ways[n].part_z, by.z, near_z);
+        isNearBorder(ways[n].part_x, by.x, by.near) | isNearBorder(ways[n].part_z, by.z, by.near);
     for (unsigned left = signsOf(near) & ways[n].spheres; left != 0; left &= left - 1) {
       if (!isFreeAfter(ways[n], static_cast<std::size_t>(__builtin_ctz(left)), by)) return false;
     }

@@ -81,6 +81,9 @@ struct CellMove {
 /// 1, 0 or -1.
 constexpr int signOf(int value) { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); }
 
+/// Ways come in so many, of which the last may not count: a loop whose end can be guessed.
+inline constexpr std::size_t kWaysAtATime = 4;
+
 /// What is asked of eight spheres at a time. Both versions do the same operations, and agree bit
 /// for bit.
 struct WayKernels {
@@ -88,7 +91,7 @@ struct WayKernels {
   /// are not free from `common`. `rows`: what places count from. Whether any of them counts.
   bool (*add)(const std::uint16_t* rows, const EightPlaces& places, unsigned spheres,
               EightWays& ways, CommonCells& common) noexcept = nullptr;
-  /// `deciding`: room for as many as there are ways.
+  /// `deciding`: room for one more than there are ways.
   TakenBackBoth (*taken_back)(const EightWays* ways, std::size_t count, const CellMove& move,
                               DecidingEight* deciding) noexcept = nullptr;
   /// Whether all spheres that end near a border are free in all cells in which they may be.
