@@ -23,7 +23,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::array<char, 8> kMagic{'G', 'A', 'L', 'S', 'T', 'A', 'T', 'E'};
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 /// Far beyond any world, meters, and any joint; keeps arithmetic on what comes from outside finite.
 constexpr float kLargest = 1e6F;
 constexpr const char* kWhere = "saved state";

@@ -50,6 +50,13 @@ struct Eight {
   alignas(32) std::array<float, kBounds * kLanes> bounds{};
 };
 
+SureGroups sureOf(const ClearanceMaps& maps, std::uint32_t map, std::size_t eight,
+                  const float* bounds) {
+  SureGroups sure;
+  maps.surelyFree(map, eight, {bounds, kLanes}, sure);
+  return sure;
+}
+
 TEST(ClearanceMaps, CallNothingSurelyFreeThatAColumnBlocks) {
   constexpr std::uint32_t kSeed = 1501;
   std::printf("seed %u\n", kSeed);
@@ -65,7 +72,7 @@ TEST(ClearanceMaps, CallNothingSurelyFreeThatAColumnBlocks) {
     const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
     for (int n = 0; n < 2000; ++n) {
       const Eight eight(random);
-      const unsigned free = maps.surelyFree(map, 1, {eight.bounds.data(), kLanes}).free;
+      const unsigned free = sureOf(maps, map, 1, eight.bounds.data()).free;
       for (std::uint32_t radius = 0; radius < radii; ++radius) {
         const bool is_free =
             room.scene().grids()[radius].firstNotFree({eight.x, eight.y, eight.z}) == kLanes;
@@ -99,7 +106,7 @@ TEST(ClearanceMaps, CallLowWhatIsFreeAndWouldStandInAThickerFloor) {
       const ColumnGrid& grid = room.scene().grids()[radius];
       for (int n = 0; n < 1000; ++n) {
         const Eight eight(random, grid.radius() + uniformIn(random, 0, 2 * kUnevenness));
-        const SureGroups sure = maps.surelyFree(map, 0, {eight.bounds.data(), kLanes});
+        const SureGroups sure = sureOf(maps, map, 0, eight.bounds.data());
         const bool is_free = grid.firstNotFree({eight.x, eight.y, eight.z}) == kLanes;
         const bool is_low = (sure.free & sure.low) >> radius & 1U;
         ASSERT_TRUE(is_free || !is_low) << "radius " << radius << " at " << eight.x[0] << " "
@@ -115,6 +122,39 @@ TEST(ClearanceMaps, CallLowWhatIsFreeAndWouldStandInAThickerFloor) {
   EXPECT_LT(low, all_free * 9 / 10);
 }
 
+TEST(ClearanceMaps, KnowThatSpheresThatAreNeverLowAreFreeOverARug) {
+  constexpr std::uint32_t kSeed = 1507;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  constexpr float kRug = 0.01F;
+  constexpr float kOverFloor = 0.02F;
+  const BoxRoom room({{{-1, -0.2F, -1}, {4, 0, 4}}, {{0.2F, 0, 0.2F}, {2.4F, kRug, 2.8F}},
+                      {{2.5F, 0, 0.5F}, {2.8F, 0.5F, 0.8F}}});
+  const ColumnGrid& grid = room.scene().grids()[2];
+  const std::array<float, 3> lowest{0, 0, grid.radius() + kOverFloor};
+  const HeightsOverFloor heights{0.07F, kHeights.highest};
+  ClearanceMaps any({2});
+  any.add(room.scene(), 0, kUnevenness, heights);
+  ClearanceMaps never_low({2});
+  never_low.add(room.scene(), 0, kUnevenness, heights, lowest);
+  std::size_t known = 0;
+  std::size_t known_more = 0;
+  for (int n = 0; n < 5000; ++n) {
+    const Eight eight(random, grid.radius() + uniformIn(random, 0, 2 * kOverFloor));
+    const bool is_free = grid.firstNotFree({eight.x, eight.y, eight.z}) == kLanes;
+    const SureGroups before = sureOf(any, 0, 0, eight.bounds.data());
+    const SureGroups now = sureOf(never_low, 0, 0, eight.bounds.data());
+    ASSERT_TRUE(is_free || (now.free & 1U) == 0);
+    // What is low decides which way robots slide: it stays what it was.
+    ASSERT_EQ(before.low, now.low);
+    const bool may_be_asked = *std::ranges::min_element(eight.y) >= lowest[2];
+    if (!may_be_asked) continue;
+    known += before.free & before.low & 1U;
+    known_more += now.free & now.low & 1U;
+  }
+  EXPECT_GT(known_more, 2 * known);
+}
+
 TEST(ClearanceMaps, SayHowFarWhatIsSurelyFreeMayGo) {
   constexpr std::uint32_t kSeed = 1506;
   std::printf("seed %u\n", kSeed);
@@ -127,7 +167,7 @@ TEST(ClearanceMaps, SayHowFarWhatIsSurelyFreeMayGo) {
     const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
     for (int n = 0; n < 2000; ++n) {
       const Eight eight(random);
-      const SureGroups sure = maps.surelyFree(map, 0, {eight.bounds.data(), kLanes});
+      const SureGroups sure = sureOf(maps, map, 0, eight.bounds.data());
       for (std::uint32_t radius = 0; radius < room.scene().grids().size(); ++radius) {
         const float slack = sure.slack[radius];
         ASSERT_EQ(slack >= 0, (sure.free >> radius & 1U) != 0);
@@ -166,7 +206,7 @@ TEST(ClearanceMaps, AnswerSeveralEnvsAsTheyAnswerEach) {
   std::array<SureGroups, kEnvs> sure;
   maps.surelyFree(map_of, 0, {bounds.data(), kLanes}, kStride, sure);
   for (std::size_t env = 0; env < kEnvs; ++env) {
-    EXPECT_EQ(sure[env], maps.surelyFree(map_of[env], 0, {bounds.data() + env * kStride, kLanes}));
+    EXPECT_EQ(sure[env], sureOf(maps, map_of[env], 0, bounds.data() + env * kStride));
   }
 }
 
@@ -214,7 +254,7 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
 TEST(ClearanceMaps, KnowNothingWithoutAMap) {
   std::mt19937 random(1503);
   const Eight eight(random);
-  EXPECT_EQ(ClearanceMaps({0}).surelyFree(kNoClearanceMap, 0, {eight.bounds.data(), kLanes}),
+  EXPECT_EQ(sureOf(ClearanceMaps({0}), kNoClearanceMap, 0, eight.bounds.data()),
             SureGroups{});
 }
 
@@ -226,7 +266,7 @@ TEST(ClearanceMaps, AreNotFooledByWhatIsNoNumber) {
   for (const float odd : {std::numeric_limits<float>::quiet_NaN(), 1e30F, -1e30F}) {
     alignas(32) std::array<float, kBounds * kLanes> bounds;
     bounds.fill(odd);
-    EXPECT_EQ(maps.surelyFree(map, 0, {bounds.data(), kLanes}).free, 0U) << odd;
+    EXPECT_EQ(sureOf(maps, map, 0, bounds.data()).free, 0U) << odd;
   }
 }
 

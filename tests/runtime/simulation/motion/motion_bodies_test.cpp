@@ -7,7 +7,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <random>
+#include <ranges>
+#include <span>
 #include <string>
 
 #include "column_grid/column_grid_kernels.h"
@@ -80,17 +83,21 @@ class SingleRobot {
   }
 
   void compareSpheres(Differences& worst) const {
-    for (const RadiusRange& range : robot_.model.ranges) {
-      std::uint32_t next = range.first;
-      for (const galactic::SphereGroup& group : robot_.robot->groups()) {
-        for (const SetSphere& sphere : group.spheres) {
-          if (sphere.radius_index != range.radius_index) continue;
-          worst.addPoint(batch_.center(env_, next++), links_[group.link] * sphere.center);
-        }
+    const std::span<const std::uint32_t> order = robot_.model.spheres_by_link;
+    std::size_t next = 0;
+    for (const galactic::SphereGroup& group : robot_.robot->groups()) {
+      for (const SetSphere& sphere : group.spheres) {
+        ASSERT_LT(next, order.size());
+        const std::uint32_t at = order[next++];
+        ASSERT_EQ(radiusOf(at), sphere.radius_index);
+        worst.addPoint(batch_.center(env_, at), links_[group.link] * sphere.center);
       }
-      ASSERT_EQ(next, range.first + range.count);
-      for (; next < range.first + paddedToLanes(range.count); ++next) {
-        EXPECT_EQ(batch_.center(env_, next), batch_.center(env_, range.first + range.count - 1));
+    }
+    ASSERT_EQ(next, order.size());
+    for (const RadiusRange& range : robot_.model.ranges) {
+      const std::uint32_t end = range.first + range.count;
+      for (std::size_t n = end; n < range.first + paddedToLanes(range.count); ++n) {
+        EXPECT_EQ(batch_.center(env_, n), batch_.center(env_, end - 1));
       }
     }
   }
@@ -120,6 +127,13 @@ class SingleRobot {
   }
 
  private:
+  [[nodiscard]] std::optional<std::uint32_t> radiusOf(std::uint32_t sphere) const {
+    for (const RadiusRange& range : robot_.model.ranges) {
+      if (sphere >= range.first && sphere < range.first + range.count) return range.radius_index;
+    }
+    return std::nullopt;
+  }
+
   const MotionRobot& robot_;
   MotionBatch& batch_;
   std::size_t env_;
@@ -244,6 +258,53 @@ TEST(MotionBodies, HaveTheBoundsOfTheirSpheresEightByEight) {
       }
     }
   }
+}
+
+/// The sum of the edges of the bounds of eights of spheres, in the order of `spheres`.
+float edgesOfEights(std::span<const BodySphere> spheres) {
+  float sum = 0;
+  for (std::size_t first = 0; first < spheres.size(); first += kLanes) {
+    const auto eight = spheres.subspan(first, std::min(kLanes, spheres.size() - first));
+    for (const auto coordinate : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+      const auto [least, most] = std::ranges::minmax(
+          eight | std::views::transform([&](const BodySphere& s) { return s.center.*coordinate; }));
+      sum += most - least;
+    }
+  }
+  return sum;
+}
+
+TEST(MotionModel, PutsSpheresThatAreCloseTogetherIntoOneEight) {
+  // Packs have spheres by their X first; these lie in clusters along Z.
+  std::mt19937 random(507);
+  RobotPackFields fields = smallRobotPack();
+  constexpr std::uint32_t kClusters = 6;
+  constexpr std::uint32_t kSpheres = 48;
+  std::vector<SetSphere> clusters(kSpheres, SetSphere{{}, 1});
+  for (std::uint32_t n = 0; n < kSpheres; ++n) {
+    clusters[n].center = {0.5F + 0.001F * static_cast<float>(n), uniformIn(random, 0, 0.1F),
+                          static_cast<float>(n % kClusters) + uniformIn(random, 0, 0.1F)};
+  }
+  // After the base's own sphere of that radius.
+  fields.spheres.insert(fields.spheres.begin() + 1, clusters.begin(), clusters.end());
+  fields.groups[0].sphere_count += kSpheres;
+  for (std::size_t n = 1; n < fields.groups.size(); ++n) fields.groups[n].first_sphere += kSpheres;
+  const MotionRobot robot(buildPack(fields), {});
+  const auto& ranges = robot.model.ranges;
+  const auto range = std::ranges::max_element(ranges, {}, &RadiusRange::count);
+  ASSERT_GE(range->count, kSpheres);
+  const auto spheres = std::span(robot.model.spheres).subspan(range->first, range->count);
+  std::vector<BodySphere> as_given;
+  for (const std::uint32_t n : robot.model.spheres_by_link) {
+    if (n >= range->first && n < range->first + range->count) {
+      as_given.push_back(robot.model.spheres[n]);
+    }
+  }
+  EXPECT_LT(edgesOfEights(spheres), 0.5F * edgesOfEights(as_given));
+  // All are there, each once.
+  std::vector<std::uint32_t> order = robot.model.spheres_by_link;
+  std::ranges::sort(order);
+  EXPECT_EQ(std::ranges::adjacent_find(order), order.end());
 }
 
 TEST(MotionModel, HasOneVariableForEachJointThatMovesAndFoldsTheOthers) {
