@@ -35,8 +35,9 @@ InSlices findPlaces(const ChunkStep& step, std::size_t e, std::size_t eight, uns
     const EightPlaces& places = findPlaces(step, e, n);
     const unsigned spheres = step.model.groups[n].spheres;
     found.blocked |= std::uint64_t{spheres & places.blocked} << (lane * kLanes);
-    const bool is_unknown = (spheres & ~(places.free | places.blocked)) != 0;
-    found.unknown |= is_unknown ? left & -left : 0U;
+    const unsigned unknown = spheres & ~(places.free | places.blocked);
+    // As a number: nobody can guess whether there is any.
+    found.unknown |= static_cast<unsigned>(unknown != 0) << lane;
   }
   return found;
 }

@@ -132,7 +132,7 @@ class Glide {
         const EightPlaces& places = is_low ? findPlaces(step_, e_, n) : step_.chunk.places(n);
         const auto blocked = static_cast<unsigned>(word >> (lane * kLanes) & 0xffU);
         const unsigned added = spheres & (places.free | blocked);
-        known.suited |= added == spheres ? left & -left : 0U;
+        known.suited |= static_cast<unsigned>(added == spheres) << lane;
         addEight(n, added, is_begun ? placesBefore(n) : places);
       }
     }

@@ -48,7 +48,9 @@ struct Surroundings {
   [[nodiscard]] bool isEmpty() const { return (rows[0] | rows[1] | rows[2]) == 0; }
   /// Takes the first cell out of a set that is not empty. Returns 16 times its row and its column.
   int takeFirst() {
-    const std::size_t word = rows[0] != 0 ? 0 : (rows[1] != 0 ? 1 : 2);
+    // Without a branch, which nobody could guess.
+    const std::size_t word = static_cast<std::size_t>(rows[0] == 0) +
+                             static_cast<std::size_t>((rows[0] | rows[1]) == 0);
     const int bit = 64 * static_cast<int>(word) + std::countr_zero(rows[word]);
     rows[word] &= rows[word] - 1;
     return bit;
