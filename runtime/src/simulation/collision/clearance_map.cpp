@@ -148,9 +148,7 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
     const float highest = floor + unevenness + heights.highest + 2 * kSlack;
     const float over_contact = floor + grid.radius() + kOverContact;
     // Over what lies on the floor and is lower than all spheres of the radius, they are free, too.
-    const float lowest = radius < lowest_of_radius.size()
-                             ? std::max(heights.lowest, lowest_of_radius[radius])
-                             : heights.lowest;
+    const float lowest = std::max(heights.lowest, lowestOver(lowest_of_radius, radius));
     const Heights asked{.lowest = std::max(floor + lowest - 2 * kSlack, over_contact),
                         .low = std::max(from, over_contact + unevenness),
                         .highest = highest,

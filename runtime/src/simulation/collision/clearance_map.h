@@ -28,6 +28,12 @@ struct HeightsOverFloor {
   float highest = 0;
 };
 
+/// How far above its floor nothing of a radius is; 0 where nobody knows.
+[[nodiscard]] inline float lowestOver(std::span<const float> lowest_of_radius,
+                                      std::uint32_t radius) {
+  return radius < lowest_of_radius.size() ? lowest_of_radius[radius] : 0;
+}
+
 /// The bounds of eight groups of one env, as BodyArrays::bounds has them.
 struct GroupBounds {
   const float* values = nullptr;

@@ -192,7 +192,7 @@ void mapClearance(const HeightsOverFloor& heights, Model& model) {
     const std::uint32_t map =
         model.clearance.add(model.world->scenes()[scene], floor, kUnevenness, raised,
                             lowest_of_radius);
-    model.slices.add(model.world->scenes()[scene], floor, raised);
+    model.slices.add(model.world->scenes()[scene], floor, raised, lowest_of_radius);
     addLevelFloor(model.world->scenes()[scene], model.starts[order[n]].base, model);
     for (; n < order.size() && scene_of(order[n]) == scene &&
            model.starts[order[n]].base.y <= floor + kUnevenness;

@@ -120,13 +120,18 @@ FreeSlices::FreeSlices() {
   static_cast<void>(numberOf(all_free));
 }
 
-std::uint32_t FreeSlices::add(const Scene& scene, float floor, const HeightsOverFloor& heights) {
+std::uint32_t FreeSlices::add(const Scene& scene, float floor, const HeightsOverFloor& heights,
+                              std::span<const float> lowest_of_radius) {
   radii_ = scene.grids().size();
   const std::size_t map = layouts_.size() / radii_;
-  for (const ColumnGrid& grid : scene.grids()) {
+  for (std::uint32_t radius = 0; radius < radii_; ++radius) {
+    const ColumnGrid& grid = scene.grids()[radius];
     const ColumnGridLayout& from = grid.layout();
-    // Nothing can be lower than at contact with the floor.
-    const float lowest = floor + std::max(heights.lowest - kSlack, grid.radius() + 2 * kSlack);
+    // Nothing can be lower than at contact with the floor, and slices that begin where the lowest
+    // sphere is know that it is free over a rug.
+    const float over_floor =
+        std::max(heights.lowest, lowestOver(lowest_of_radius, radius)) - kSlack;
+    const float lowest = floor + std::max(over_floor, grid.radius() + 2 * kSlack);
     const float range = std::max(floor + heights.highest - lowest, kSlice);
     const float slices = std::min(std::ceil(range / kSlice), kMostSlices);
     const float thickness = range / slices;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -98,8 +99,10 @@ class FreeSlices {
   FreeSlices();
 
   /// Adds the slices of a floor of a scene. `floor`: its height, meters; the robot's centers are
-  /// `heights` above it. Returns the number by which the others know it: 0, 1, ...
-  std::uint32_t add(const Scene& scene, float floor, const HeightsOverFloor& heights);
+  /// `heights` above it. `lowest_of_radius`: see ClearanceMaps::add(). Returns the number by which
+  /// the others know it: 0, 1, ...
+  std::uint32_t add(const Scene& scene, float floor, const HeightsOverFloor& heights,
+                    std::span<const float> lowest_of_radius = {});
 
   /// Finds where eight centers are, spheres with the radius of that index. `map`: as add() returned
   /// it; nothing is known for kNoClearanceMap.
