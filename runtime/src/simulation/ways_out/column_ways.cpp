@@ -87,11 +87,15 @@ void ColumnWays::add(const ColumnGrid& grid, const Vec3& center,
     sphere.free = around->cells();
     sphere.asked = around->blockedCells();
   }
+  bool is_free_everywhere = true;
   for (std::size_t n = 0; n < kCells.size(); ++n) {
     sphere.free.rows[n] &= kCells[n];
+    is_free_everywhere = is_free_everywhere && sphere.free.rows[n] == kCells[n];
     may_be_free_.rows[n] &= ~sphere.asked.rows[n];
     sphere.asked.rows[n] |= sphere.free.rows[n];
   }
+  // Such a sphere decides nothing.
+  if (is_free_everywhere) return;
   spheres_.push_back(sphere);
 }
 
