@@ -103,7 +103,8 @@ class Chunk {
     for (GroupBits& bits : group_bits_) bits.suited = bits.in_columns;
   }
   /// Of a group that is not free as a whole, unless it is low: the same.
-  [[nodiscard]] EightPlaces& places(std::size_t group) { return places_[group]; }
+  /// Of the groups from 8 * `eight` on.
+  [[nodiscard]] EightPlaces* places(std::size_t eight) { return places_.data() + eight * kLanes; }
   [[nodiscard]] WayOut& wayOut() { return way_out_; }
   [[nodiscard]] ColumnWays& columnWays() { return column_ways_; }
   /// One bit for each sphere of the held object that penetrates something: what isFree() found

@@ -18,30 +18,6 @@ bool anyCounts(std::span<const std::uint64_t> bits, IgnoredSpheres ignored) {
   return any != 0;
 }
 
-/// What slices say of some groups.
-struct InSlices {
-  /// One bit for each sphere that is surely blocked.
-  std::uint64_t blocked = 0;
-  /// The groups with spheres of which slices do not know.
-  unsigned unknown = 0;
-};
-
-/// Finds where the spheres of some groups of an eight are.
-InSlices findPlaces(const ChunkStep& step, std::size_t e, std::size_t eight, unsigned groups) {
-  InSlices found;
-  for (unsigned left = groups; left != 0; left &= left - 1) {
-    const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-    const std::size_t n = eight * kLanes + lane;
-    const EightPlaces& places = findPlaces(step, e, n);
-    const unsigned spheres = step.model.groups[n].spheres;
-    found.blocked |= std::uint64_t{spheres & places.blocked} << (lane * kLanes);
-    const unsigned unknown = spheres & ~(places.free | places.blocked);
-    // As a number: nobody can guess whether there is any.
-    found.unknown |= static_cast<unsigned>(unknown != 0) << lane;
-  }
-  return found;
-}
-
 bool bodyTouchesObjects(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
   const RestingObjects& objects = step.state.resting(n);
@@ -68,14 +44,17 @@ SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) noexcept {
   return holdSpheres(heldModel(step.model, env), world_from_object, step.chunk.placement().spheres);
 }
 
-const EightPlaces& findPlaces(const ChunkStep& step, std::size_t e, std::size_t group) noexcept {
-  const std::uint32_t map = step.state.env(step.first + e).clearance_map;
+InSlices findPlaces(const ChunkStep& step, std::size_t e, std::size_t eight,
+                    unsigned groups) noexcept {
+  if (groups == 0) return {};
   const SphereBatch spheres = step.chunk.spheres(e);
-  const std::size_t first = group * kLanes;
-  EightPlaces& places = step.chunk.places(group);
-  step.model.slices.findPlaces(map, step.model.groups[group].radius_index, spheres.x + first,
-                               spheres.y + first, spheres.z + first, places);
-  return places;
+  const std::size_t first = eight * kLanes * kLanes;
+  return step.model.slices.findPlaces(step.state.env(step.first + e).clearance_map, eight * kLanes,
+                                      {.x = spheres.x + first,
+                                       .y = spheres.y + first,
+                                       .z = spheres.z + first,
+                                       .asked = groups,
+                                       .places = step.chunk.places(eight)});
 }
 
 void askMaps(const ChunkStep& step) noexcept {

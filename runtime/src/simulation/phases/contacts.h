@@ -37,8 +37,9 @@ void askMaps(const ChunkStep& step) noexcept;
 /// that suit a move. Whether there is any.
 bool findBlocked(const ChunkStep& step, std::size_t e) noexcept;
 
-/// Finds where the spheres of a group are, in the chunk.
-const EightPlaces& findPlaces(const ChunkStep& step, std::size_t e, std::size_t group) noexcept;
+/// Finds where the spheres of some groups of an eight are, in the chunk. What slices say of them.
+InSlices findPlaces(const ChunkStep& step, std::size_t e, std::size_t eight,
+                    unsigned groups) noexcept;
 
 /// Whether a look at the ball around the held object's spheres says that all are free.
 [[nodiscard]] bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept;

@@ -123,13 +123,14 @@ class Glide {
     const bool is_begun = moved_.x != 0 || moved_.z != 0;
     for (std::size_t eight = 0; eight * kLanes < step_.model.groups.size(); ++eight) {
       GroupBits& known = step_.chunk.groupBits(eight);
+      // Of those that are low, nobody has looked.
+      if ((known.unsure & known.low) != 0) findPlaces(step_, e_, eight, known.unsure & known.low);
       const std::uint64_t word = step_.chunk.blockedBits()[eight];
       for (unsigned left = known.unsure; left != 0; left &= left - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(left));
         const std::size_t n = eight * kLanes + lane;
         const unsigned spheres = step_.model.groups[n].spheres;
-        const bool is_low = (known.low & left & -left) != 0;
-        const EightPlaces& places = is_low ? findPlaces(step_, e_, n) : step_.chunk.places(n);
+        const EightPlaces& places = step_.chunk.places(eight)[lane];
         const auto blocked = static_cast<unsigned>(word >> (lane * kLanes) & 0xffU);
         const unsigned added = spheres & (places.free | blocked);
         known.suited |= static_cast<unsigned>(added == spheres) << lane;
@@ -160,8 +161,12 @@ class Glide {
       z[n] = spheres.z[group * kLanes + n] - moved_.z;
     }
     EightPlaces places;
-    step_.model.slices.findPlaces(env_.clearance_map, step_.model.groups[group].radius_index,
-                                  x.data(), spheres.y + group * kLanes, z.data(), places);
+    step_.model.slices.findPlaces(env_.clearance_map, group,
+                                  {.x = x.data(),
+                                   .y = spheres.y + group * kLanes,
+                                   .z = z.data(),
+                                   .asked = 1,
+                                   .places = &places});
     return places;
   }
 
@@ -222,7 +227,7 @@ class Glide {
     for (std::size_t n = 0; n < step_.model.groups.size(); ++n) {
       const GroupBits& known = step_.chunk.groupBits(n / kLanes);
       if (((known.unsure & ~known.low) >> (n % kLanes) & 1U) == 0) continue;
-      const EightPlaces& places = step_.chunk.places(n);
+      const EightPlaces& places = step_.chunk.places(n / kLanes)[n % kLanes];
       for (unsigned left = step_.model.groups[n].spheres & places.inside; left != 0;
            left &= left - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(left));

@@ -268,6 +268,7 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
   model.sensors_first = model.observation_size - sensors.laser - sensors.geodesic;
   measure(world, model);
   model.groups = spheresByEights(model.motion.ranges);
+  model.slices = FreeSlices(model.groups);
   StartFinder finder(model);
   finder.find();
   if (model.starts.empty()) {

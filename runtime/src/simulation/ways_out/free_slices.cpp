@@ -7,6 +7,7 @@
 #include <cstring>
 #include <functional>
 #include <string_view>
+#include <utility>
 
 #include "column_grid/column_grid_kernels.h"
 
@@ -108,12 +109,12 @@ CellInTile inTile(const SliceLayout& layout, const TileSet& tiles, const SliceCe
   const std::uint32_t tile =
       cell.i / kTileColumns * static_cast<std::uint32_t>(layout.tiles_z) + tile_z;
   const std::uint32_t at = tile * static_cast<std::uint32_t>(layout.slice_count) + cell.slice;
-  return {tiles.numbers[at], cell.k - tile_z * kTileRows, cell.i % kTileColumns};
+  return {tiles.numbers[layout.first + at], cell.k - tile_z * kTileRows, cell.i % kTileColumns};
 }
 
 }  // namespace
 
-FreeSlices::FreeSlices() {
+FreeSlices::FreeSlices(std::vector<EightSpheres> groups) : groups_(std::move(groups)) {
   // The first one: see TileSet.
   SliceTile all_free{};
   std::ranges::fill(all_free.free, std::uint16_t{0xffff});
@@ -149,6 +150,9 @@ std::uint32_t FreeSlices::add(const Scene& scene, float floor, const HeightsOver
         .first = numbers_.size()};
     fill(grid, thickness, layout);
     layouts_.push_back(layout);
+  }
+  for (const EightSpheres& group : groups_) {
+    slice_groups_.push_back({layouts_[map * radii_ + group.radius_index], group.spheres});
   }
   return static_cast<std::uint32_t>(map);
 }
@@ -202,19 +206,28 @@ std::uint32_t FreeSlices::numberOf(const SliceTile& tile) {
   return number;
 }
 
-void FreeSlices::findPlaces(std::uint32_t map, std::uint32_t radius, const float* x, const float* y,
-                            const float* z, EightPlaces& places) const noexcept {
+InSlices FreeSlices::findPlaces(std::uint32_t map, std::size_t first,
+                                const SomeGroups& some) const noexcept {
   if (map == kNoClearanceMap) {
-    places.inside = places.free = places.blocked = 0;
-    return;
+    InSlices found;
+    for (unsigned left = some.asked; left != 0; left &= left - 1) {
+      const auto n = static_cast<std::size_t>(std::countr_zero(left));
+      some.places[n].inside = some.places[n].free = some.places[n].blocked = 0;
+      addGroup(some.places[n], groups_[first + n].spheres, n, found);
+    }
+    return found;
   }
-  const SliceLayout& layout = layouts_[map * radii_ + radius];
-  const auto find = detail::hasAvx2() ? findPlacesAvx2 : findPlacesPortable;
-  find(layout, tilesOf(layout), x, y, z, places);
+  const PlacesQuery query{.groups = slice_groups_.data() + map * groups_.size() + first,
+                          .tiles = tiles(),
+                          .some = some};
+  return detail::hasAvx2() ? findPlacesAvx2(query) : findPlacesPortable(query);
 }
 
-void findPlacesPortable(const SliceLayout& layout, const TileSet& tiles, const float* x,
-                        const float* y, const float* z, EightPlaces& places) noexcept {
+namespace {
+
+/// The places of eight centers.
+void findEight(const SliceLayout& layout, const TileSet& tiles, const float* x, const float* y,
+               const float* z, EightPlaces& places) {
   places.inside = places.free = places.blocked = 0;
   for (std::size_t n = 0; n < kLanes; ++n) {
     const float cell_x = (x[n] - layout.min_x) * layout.inverse_spacing;
@@ -240,6 +253,21 @@ void findPlacesPortable(const SliceLayout& layout, const TileSet& tiles, const f
   }
 }
 
+}  // namespace
+
+InSlices findPlacesPortable(const PlacesQuery& query) noexcept {
+  InSlices found;
+  const SomeGroups& some = query.some;
+  for (unsigned left = some.asked; left != 0; left &= left - 1) {
+    const auto n = static_cast<std::size_t>(std::countr_zero(left));
+    const std::size_t first = n * kLanes;
+    findEight(query.groups[n].layout, query.tiles, some.x + first, some.y + first, some.z + first,
+              some.places[n]);
+    addGroup(some.places[n], query.groups[n].spheres, n, found);
+  }
+  return found;
+}
+
 std::optional<SurroundingRows> FreeSlices::around(std::uint32_t map, std::uint32_t radius,
                                                   const Vec3& center) const noexcept {
   if (map == kNoClearanceMap) return std::nullopt;
@@ -250,11 +278,10 @@ std::optional<SurroundingRows> FreeSlices::around(std::uint32_t map, std::uint32
   const bool inside = x >= 0 && x < layout.columns_x && z >= 0 && z < layout.columns_z &&
                       height >= 0 && height < layout.slices;
   if (!inside) return std::nullopt;
-  const TileSet tiles = tilesOf(layout);
-  const CellInTile cell = inTile(layout, tiles,
+  const CellInTile cell = inTile(layout, tiles(),
                                  {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(z),
                                   static_cast<std::uint32_t>(height)});
-  const SliceTile& tile = tiles.tiles[cell.tile];
+  const SliceTile& tile = tiles_[cell.tile];
   return SurroundingRows{tile.free + cell.row, tile.blocked + cell.row, cell.column};
 }
 

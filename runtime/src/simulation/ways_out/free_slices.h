@@ -11,6 +11,7 @@
 #include "galactic/pose.h"
 #include "galactic/scene.h"
 #include "simulation/collision/clearance_map.h"
+#include "simulation/collision/collision.h"
 #include "simulation/ways_out/free_slices_kernels.h"
 
 namespace galactic::simulation {
@@ -96,7 +97,8 @@ struct SurroundingRows {
 /// The slices of the floors of all scenes. Any thread may ask.
 class FreeSlices {
  public:
-  FreeSlices();
+  /// `groups`: eights of spheres that will be asked about with findPlaces().
+  explicit FreeSlices(std::vector<EightSpheres> groups = {});
 
   /// Adds the slices of a floor of a scene. `floor`: its height, meters; the robot's centers are
   /// `heights` above it. `lowest_of_radius`: see ClearanceMaps::add(). Returns the number by which
@@ -104,10 +106,9 @@ class FreeSlices {
   std::uint32_t add(const Scene& scene, float floor, const HeightsOverFloor& heights,
                     std::span<const float> lowest_of_radius = {});
 
-  /// Finds where eight centers are, spheres with the radius of that index. `map`: as add() returned
+  /// Finds where the spheres of some of the groups from `first` on are. `map`: as add() returned
   /// it; nothing is known for kNoClearanceMap.
-  void findPlaces(std::uint32_t map, std::uint32_t radius, const float* x, const float* y,
-                  const float* z, EightPlaces& places) const noexcept;
+  InSlices findPlaces(std::uint32_t map, std::size_t first, const SomeGroups& some) const noexcept;
 
   /// What the places of spheres count from.
   [[nodiscard]] const std::uint16_t* rows() const noexcept { return tiles_.data()->free; }
@@ -128,13 +129,14 @@ class FreeSlices {
  private:
   void fill(const ColumnGrid& grid, float thickness, const SliceLayout& layout);
   [[nodiscard]] std::uint32_t numberOf(const SliceTile& tile);
-  [[nodiscard]] TileSet tilesOf(const SliceLayout& layout) const {
-    return {numbers_.data() + layout.first, tiles_.data()};
-  }
+  [[nodiscard]] TileSet tiles() const { return {numbers_.data(), tiles_.data()}; }
 
+  std::vector<EightSpheres> groups_;
   std::size_t radii_ = 0;
   /// Shape: maps x radii.
   std::vector<SliceLayout> layouts_;
+  /// Shape: maps x groups.
+  std::vector<SliceGroup> slice_groups_;
   std::vector<std::uint32_t> numbers_;
   std::vector<SliceTile> tiles_;
   /// The numbers of tiles, by the hashes of their bytes.

@@ -39,10 +39,9 @@ unsigned ownBits(const std::uint16_t* rows, __m256i row, __m256i column, __m256 
   return bitsOf(_mm256_castsi256_ps(_mm256_sllv_epi32(words, above)));
 }
 
-}  // namespace
-
-void findPlacesAvx2(const SliceLayout& layout, const TileSet& tiles, const float* x, const float* y,
-                    const float* z, EightPlaces& places) noexcept {
+/// The places of eight centers.
+void findEight(const SliceLayout& layout, const TileSet& tiles, const float* x, const float* y,
+               const float* z, EightPlaces& places) {
   const __m256 cell_x = scaled(x, layout.min_x, layout.inverse_spacing);
   const __m256 cell_z = scaled(z, layout.min_z, layout.inverse_spacing);
   const __m256 height = scaled(y, layout.lowest, layout.inverse_slice);
@@ -65,7 +64,7 @@ void findPlacesAvx2(const SliceLayout& layout, const TileSet& tiles, const float
       _mm256_add_epi32(_mm256_mullo_epi32(tile_x, _mm256_set1_epi32(layout.tiles_z)), tile_z);
   const __m256i at =
       _mm256_add_epi32(_mm256_mullo_epi32(tile, _mm256_set1_epi32(layout.slice_count)), slice);
-  const __m256i number = gather<4>(tiles.numbers, at, inside);
+  const __m256i number = gather<4>(tiles.numbers + layout.first, at, inside);
   const __m256i row = _mm256_add_epi32(_mm256_slli_epi32(number, 6), row_in_tile);
   store(places.row, row);
   store(places.column, column);
@@ -76,6 +75,24 @@ void findPlacesAvx2(const SliceLayout& layout, const TileSet& tiles, const float
   places.blocked = ownBits(tiles.tiles->blocked, row, column, inside);
 }
 
+}  // namespace
+
+InSlices findPlacesAvx2(const PlacesQuery& given) noexcept {
+  // A copy: nothing that is written below can change it.
+  const PlacesQuery query = given;
+  const SomeGroups& some = query.some;
+  InSlices found;
+  for (unsigned left = some.asked; left != 0; left &= left - 1) {
+    const auto n = static_cast<std::size_t>(__builtin_ctz(left));
+    const std::size_t first = n * kLanes;
+    const SliceGroup& group = query.groups[n];
+    EightPlaces& places = some.places[n];
+    findEight(group.layout, query.tiles, some.x + first, some.y + first, some.z + first, places);
+    addGroup(places, group.spheres, n, found);
+  }
+  return found;
+}
+
 }  // namespace galactic::simulation
 
 #else
@@ -83,10 +100,7 @@ void findPlacesAvx2(const SliceLayout& layout, const TileSet& tiles, const float
 namespace galactic::simulation {
 
 // hasAvx2() is false on this architecture; the symbol exists so that callers need no condition.
-void findPlacesAvx2(const SliceLayout& layout, const TileSet& tiles, const float* x, const float* y,
-                    const float* z, EightPlaces& places) noexcept {
-  findPlacesPortable(layout, tiles, x, y, z, places);
-}
+InSlices findPlacesAvx2(const PlacesQuery& query) noexcept { return findPlacesPortable(query); }
 
 }  // namespace galactic::simulation
 

@@ -61,11 +61,49 @@ struct alignas(32) EightPlaces {
   unsigned blocked = 0;
 };
 
-/// Finds the places of eight centers. `tiles`: the numbers of the layout's tiles, and all tiles.
-/// Both do the same operations, and agree bit for bit.
-void findPlacesPortable(const SliceLayout& layout, const TileSet& tiles, const float* x,
-                        const float* y, const float* z, EightPlaces& places) noexcept;
-void findPlacesAvx2(const SliceLayout& layout, const TileSet& tiles, const float* x, const float* y,
-                    const float* z, EightPlaces& places) noexcept;
+/// The slices of one floor that eight spheres ask, and which of the eight are spheres, as bits.
+struct SliceGroup {
+  SliceLayout layout;
+  unsigned spheres = 0;
+};
+
+/// Some of up to eight groups of spheres one after the other. All arrays begin with the first group.
+struct SomeGroups {
+  const float* x = nullptr;
+  const float* y = nullptr;
+  const float* z = nullptr;
+  /// Which of them are asked about, as bits.
+  unsigned asked = 0;
+  /// Results, of those groups.
+  EightPlaces* places = nullptr;
+};
+
+/// Asks where the spheres of some groups are.
+struct PlacesQuery {
+  /// Of the first group.
+  const SliceGroup* groups = nullptr;
+  TileSet tiles;
+  SomeGroups some;
+};
+
+/// What slices say of up to eight groups.
+struct InSlices {
+  /// One bit for each sphere that is surely blocked.
+  std::uint64_t blocked = 0;
+  /// The groups with spheres of which slices do not know.
+  unsigned unknown = 0;
+};
+
+/// Adds what is said of a group, number `n` of those that are asked about. Nobody can guess whether
+/// something is unknown: a number, and no branch.
+inline void addGroup(const EightPlaces& places, unsigned spheres, std::size_t n, InSlices& found) {
+  found.blocked |= std::uint64_t{spheres & places.blocked} << (n * kLanes);
+  const unsigned unknown = spheres & ~(places.free | places.blocked);
+  found.unknown |= static_cast<unsigned>(unknown != 0) << n;
+}
+
+/// Finds the places of eights of centers. Both do the same operations, and agree bit for bit.
+InSlices findPlacesPortable(const PlacesQuery& query) noexcept;
+InSlices findPlacesAvx2(const PlacesQuery& query) noexcept;
 
 }  // namespace galactic::simulation

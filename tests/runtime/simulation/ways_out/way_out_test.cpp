@@ -22,6 +22,7 @@ namespace {
 
 using namespace galactic::simulation;
 
+constexpr unsigned kAllLanes = 0xff;
 constexpr HeightsOverFloor kHeights{.lowest = 0.2F, .highest = 1.25F};
 
 struct Eight {
@@ -36,6 +37,34 @@ struct Eight {
   alignas(32) std::array<float, kLanes> x{}, y{}, z{};
 };
 
+struct TwoEights {
+  explicit TwoEights(std::mt19937& random) {
+    for (std::size_t first = 0; first < x.size(); first += kLanes) {
+      const Eight eight(random);
+      std::ranges::copy(eight.x, x.begin() + static_cast<std::ptrdiff_t>(first));
+      std::ranges::copy(eight.y, y.begin() + static_cast<std::ptrdiff_t>(first));
+      std::ranges::copy(eight.z, z.begin() + static_cast<std::ptrdiff_t>(first));
+    }
+  }
+
+  alignas(32) std::array<float, 2 * kLanes> x{}, y{}, z{};
+};
+
+/// Whether both say the same of the centers that are inside.
+bool areSame(const EightPlaces& one, const EightPlaces& other) {
+  if (one.inside != other.inside || one.free != other.free || one.blocked != other.blocked) {
+    return false;
+  }
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    if ((one.inside >> lane & 1U) == 0) continue;
+    if (one.row[lane] != other.row[lane] || one.column[lane] != other.column[lane] ||
+        one.part_x[lane] != other.part_x[lane] || one.part_z[lane] != other.part_z[lane]) {
+      return false;
+    }
+  }
+  return true;
+}
+
 TEST(FreeSlices, CallFreeOrBlockedOnlyWhatTheColumnsDo) {
   constexpr std::uint32_t kSeed = 1601;
   std::printf("seed %u\n", kSeed);
@@ -47,14 +76,19 @@ TEST(FreeSlices, CallFreeOrBlockedOnlyWhatTheColumnsDo) {
   std::size_t unknown = 0;
   for (int round = 0; round < 10; ++round) {
     const BoxRoom room = furnishedRoom(random, 6);
-    FreeSlices slices;
+    FreeSlices slices({{0, BoxRoom::kRadii[0], kAllLanes},
+                       {1, BoxRoom::kRadii[1], kAllLanes},
+                       {2, BoxRoom::kRadii[2], kAllLanes}});
     const std::uint32_t map = slices.add(room.scene(), 0, kHeights);
     for (int n = 0; n < 300; ++n) {
       const auto radius = static_cast<std::uint32_t>(n % 3);
       const ColumnGrid& grid = room.scene().grids()[radius];
       const Eight eight(random);
       EightPlaces places;
-      slices.findPlaces(map, radius, eight.x.data(), eight.y.data(), eight.z.data(), places);
+      const InSlices found = slices.findPlaces(
+          map, radius, {eight.x.data(), eight.y.data(), eight.z.data(), 1, &places});
+      ASSERT_EQ(found.blocked, places.blocked);
+      ASSERT_EQ(found.unknown != 0, (places.free | places.blocked) != kAllLanes);
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const Vec3 center{eight.x[lane], eight.y[lane], eight.z[lane]};
         const bool is_free = (places.free >> lane & 1U) != 0;
@@ -104,35 +138,44 @@ TEST(FreeSlices, AreTheSameBitForBitWithBothKernels) {
     number = static_cast<std::uint32_t>(random() % tiles.size());
   }
   const TileSet set{numbers.data(), tiles.data()};
-  const SliceLayout layout{.min_x = 0.1F,
-                           .min_z = 0.2F,
-                           .inverse_spacing = 32,
-                           .columns_x = 80,
-                           .columns_z = 60,
-                           .lowest = 0.15F,
-                           .inverse_slice = 24,
-                           .slices = 20,
-                           .slice_count = 20,
-                           .tiles_z = 3,
-                           .first = 0};
+  // Of two groups, the second has spheres in half of its lanes.
+  std::array<SliceGroup, 2> groups;
+  groups[0] = {{.min_x = 0.1F,
+                .min_z = 0.2F,
+                .inverse_spacing = 32,
+                .columns_x = 80,
+                .columns_z = 60,
+                .lowest = 0.15F,
+                .inverse_slice = 24,
+                .slices = 20,
+                .slice_count = 20,
+                .tiles_z = 3,
+                .first = 0},
+               kAllLanes};
+  groups[1] = {groups[0].layout, 0x0fU};
+  groups[1].layout.slices = 10;
   Tally inside;
-  for (int n = 0; n < 2000; ++n) {
-    Eight eight(random);
-    if (n == 0) eight.x[3] = std::numeric_limits<float>::quiet_NaN();
-    EightPlaces portable;
-    EightPlaces fast;
-    findPlacesPortable(layout, set, eight.x.data(), eight.y.data(), eight.z.data(), portable);
-    findPlacesAvx2(layout, set, eight.x.data(), eight.y.data(), eight.z.data(), fast);
-    ASSERT_EQ(portable.inside, fast.inside);
-    ASSERT_EQ(portable.free, fast.free);
-    ASSERT_EQ(portable.blocked, fast.blocked);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      inside.add((fast.inside >> lane & 1U) != 0);
-      if ((fast.inside >> lane & 1U) == 0) continue;
-      ASSERT_EQ(portable.row[lane], fast.row[lane]);
-      ASSERT_EQ(portable.column[lane], fast.column[lane]);
-      ASSERT_EQ(portable.part_x[lane], fast.part_x[lane]);
-      ASSERT_EQ(portable.part_z[lane], fast.part_z[lane]);
+  for (unsigned n = 0; n < 2000; ++n) {
+    TwoEights centers(random);
+    if (n == 0) centers.x[3] = std::numeric_limits<float>::quiet_NaN();
+    std::array<EightPlaces, 2> portable;
+    std::array<EightPlaces, 2> fast;
+    const auto query = [&](std::array<EightPlaces, 2>& places) {
+      const unsigned asked = n % 3 + 1;
+      return PlacesQuery{groups.data(), set,
+                         {centers.x.data(), centers.y.data(), centers.z.data(), asked,
+                          places.data()}};
+    };
+    const InSlices found = findPlacesPortable(query(portable));
+    const InSlices found_fast = findPlacesAvx2(query(fast));
+    ASSERT_EQ(found.blocked, found_fast.blocked);
+    ASSERT_EQ(found.unknown, found_fast.unknown);
+    ASSERT_EQ(found.blocked & ~std::uint64_t{0x0fff}, 0U);
+    for (std::size_t group = 0; group < groups.size(); ++group) {
+      ASSERT_TRUE(areSame(portable[group], fast[group]));
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        inside.add((fast[group].inside >> lane & 1U) != 0);
+      }
     }
   }
   inside.expectBothSides();
