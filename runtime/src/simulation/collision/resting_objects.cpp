@@ -250,7 +250,8 @@ bool RestingObjects::mayTouch(const Vec3& least, const Vec3& most) const noexcep
     const std::uint32_t near = inAnyStrip(planes_[p].along_x, least.x, most.x) &
                                inAnyStrip(planes_[p].along_z, least.z, most.z);
     may = may || near != 0;
-    // Whoever asks looks at these next, mostly at one. How many there are nobody can guess: no loop.
+    // Whoever asks looks at these next, mostly at one. How many there are nobody can guess: no
+    // loop.
     if (near != 0) {
       __builtin_prefetch(
           &boxes_[p * kPlaneObjects + static_cast<std::size_t>(std::countr_zero(near))]);

@@ -102,8 +102,7 @@ class Chunk {
   void suitColumnsOnly() {
     for (GroupBits& bits : group_bits_) bits.suited = bits.in_columns;
   }
-  /// Of a group that is not free as a whole, unless it is low: the same.
-  /// Of the groups from 8 * `eight` on.
+  /// Of the groups from 8 * `eight` on that are not free as a whole, unless they are low: the same.
   [[nodiscard]] EightPlaces* places(std::size_t eight) { return places_.data() + eight * kLanes; }
   [[nodiscard]] WayOut& wayOut() { return way_out_; }
   [[nodiscard]] ColumnWays& columnWays() { return column_ways_; }

@@ -147,7 +147,6 @@ void addLevelFloor(const Scene& scene, const Vec3& start, Model& model) {
   });
 }
 
-/// Makes a map for each floor of each scene on which episodes start.
 /// For each radius how far above the floor its lowest center is where all are fixed to the robot's
 /// root, and so always as high; 0 where some are not.
 std::vector<float> lowestOfRadius(const Model& model) {
@@ -163,6 +162,7 @@ std::vector<float> lowestOfRadius(const Model& model) {
   return lowest;
 }
 
+/// Makes a map for each floor of each scene on which episodes start.
 void mapClearance(const HeightsOverFloor& heights, Model& model) {
   // Starts whose floors differ by no more stand on one floor, with rugs.
   constexpr float kUnevenness = 0.03F;
@@ -189,9 +189,8 @@ void mapClearance(const HeightsOverFloor& heights, Model& model) {
   for (std::size_t n = 0; n < order.size();) {
     const std::uint32_t scene = scene_of(order[n]);
     const float floor = model.starts[order[n]].base.y;
-    const std::uint32_t map =
-        model.clearance.add(model.world->scenes()[scene], floor, kUnevenness, raised,
-                            lowest_of_radius);
+    const std::uint32_t map = model.clearance.add(model.world->scenes()[scene], floor, kUnevenness,
+                                                  raised, lowest_of_radius);
     model.slices.add(model.world->scenes()[scene], floor, raised, lowest_of_radius);
     addLevelFloor(model.world->scenes()[scene], model.starts[order[n]].base, model);
     for (; n < order.size() && scene_of(order[n]) == scene &&

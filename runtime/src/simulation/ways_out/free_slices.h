@@ -51,8 +51,8 @@ struct Surroundings {
   /// Takes the first cell out of a set that is not empty. Returns 16 times its row and its column.
   int takeFirst() {
     // Without a branch, which nobody could guess.
-    const std::size_t word = static_cast<std::size_t>(rows[0] == 0) +
-                             static_cast<std::size_t>((rows[0] | rows[1]) == 0);
+    const std::size_t word =
+        static_cast<std::size_t>(rows[0] == 0) + static_cast<std::size_t>((rows[0] | rows[1]) == 0);
     const int bit = 64 * static_cast<int>(word) + std::countr_zero(rows[word]);
     rows[word] &= rows[word] - 1;
     return bit;

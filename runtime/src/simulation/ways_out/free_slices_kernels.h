@@ -67,7 +67,8 @@ struct SliceGroup {
   unsigned spheres = 0;
 };
 
-/// Some of up to eight groups of spheres one after the other. All arrays begin with the first group.
+/// Some of up to eight groups of spheres one after the other. All arrays begin with the first
+/// group.
 struct SomeGroups {
   const float* x = nullptr;
   const float* y = nullptr;

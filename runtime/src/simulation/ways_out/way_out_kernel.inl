@@ -117,8 +117,8 @@ TakenBackBoth takenBackKernel(const EightWays* ways, std::size_t count, const Ce
   for (std::size_t first = 0; first < count; first += kWaysAtATime) {
     for (std::size_t n = first; n < first + kWaysAtATime; ++n) {
       deciding[deciding_count].ways = ways + n;
-      deciding_count += static_cast<std::size_t>(decides(ways[n], cells)) &
-                        static_cast<std::size_t>(n < count);
+      deciding_count +=
+          static_cast<std::size_t>(decides(ways[n], cells)) & static_cast<std::size_t>(n < count);
     }
   }
   const Lanes whole = spread(1);
@@ -136,8 +136,7 @@ TakenBackBoth takenBackKernel(const EightWays* ways, std::size_t count, const Ce
   const Lanes margin = spread(move.margin);
   least_x = least_z = whole;
   for (std::size_t n = 0; n < deciding_count; ++n) {
-    const WayLanes way =
-        lanesBefore(*deciding[n].ways, loadInts(deciding[n].rows), cells, move.to);
+    const WayLanes way = lanesBefore(*deciding[n].ways, loadInts(deciding[n].rows), cells, move.to);
     const IntLanes behind_x = (way.to_border_x - spread(first.x)) + margin < spread(0);
     const IntLanes behind_z = (way.to_border_z - spread(first.z)) + margin < spread(0);
     const IntLanes free_z = behind_x ? way.free_both : way.free_z;

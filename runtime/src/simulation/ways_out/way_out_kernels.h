@@ -95,8 +95,7 @@ struct WayKernels {
   TakenBackBoth (*taken_back)(const EightWays* ways, std::size_t count, const CellMove& move,
                               DecidingEight* deciding) noexcept = nullptr;
   /// Whether all spheres that end near a border are free in all cells in which they may be.
-  bool (*are_free)(const EightWays* ways, std::size_t count,
-                   const CellPush& by) noexcept = nullptr;
+  bool (*are_free)(const EightWays* ways, std::size_t count, const CellPush& by) noexcept = nullptr;
 };
 
 /// For any processor.

@@ -128,7 +128,8 @@ TEST(ClearanceMaps, KnowThatSpheresThatAreNeverLowAreFreeOverARug) {
   std::mt19937 random(kSeed);
   constexpr float kRug = 0.01F;
   constexpr float kOverFloor = 0.02F;
-  const BoxRoom room({{{-1, -0.2F, -1}, {4, 0, 4}}, {{0.2F, 0, 0.2F}, {2.4F, kRug, 2.8F}},
+  const BoxRoom room({{{-1, -0.2F, -1}, {4, 0, 4}},
+                      {{0.2F, 0, 0.2F}, {2.4F, kRug, 2.8F}},
                       {{2.5F, 0, 0.5F}, {2.8F, 0.5F, 0.8F}}});
   const ColumnGrid& grid = room.scene().grids()[2];
   const std::array<float, 3> lowest{0, 0, grid.radius() + kOverFloor};
@@ -254,8 +255,7 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
 TEST(ClearanceMaps, KnowNothingWithoutAMap) {
   std::mt19937 random(1503);
   const Eight eight(random);
-  EXPECT_EQ(sureOf(ClearanceMaps({0}), kNoClearanceMap, 0, eight.bounds.data()),
-            SureGroups{});
+  EXPECT_EQ(sureOf(ClearanceMaps({0}), kNoClearanceMap, 0, eight.bounds.data()), SureGroups{});
 }
 
 TEST(ClearanceMaps, AreNotFooledByWhatIsNoNumber) {

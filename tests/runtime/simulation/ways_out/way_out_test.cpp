@@ -162,9 +162,10 @@ TEST(FreeSlices, AreTheSameBitForBitWithBothKernels) {
     std::array<EightPlaces, 2> fast;
     const auto query = [&](std::array<EightPlaces, 2>& places) {
       const unsigned asked = n % 3 + 1;
-      return PlacesQuery{groups.data(), set,
-                         {centers.x.data(), centers.y.data(), centers.z.data(), asked,
-                          places.data()}};
+      return PlacesQuery{
+          groups.data(),
+          set,
+          {centers.x.data(), centers.y.data(), centers.z.data(), asked, places.data()}};
     };
     const InSlices found = findPlacesPortable(query(portable));
     const InSlices found_fast = findPlacesAvx2(query(fast));
@@ -553,8 +554,7 @@ TEST(WayOut, IsTheSameBitForBitWithBothKernels) {
     }
     ASSERT_TRUE(std::ranges::equal(common.rows, fast_common.rows));
     const CellMove move{anyCell(random), kWideMargin};
-    const auto taken =
-        numbersOf(portable.taken_back(ways.data(), kCount, move, deciding.data()));
+    const auto taken = numbersOf(portable.taken_back(ways.data(), kCount, move, deciding.data()));
     ASSERT_EQ(taken, numbersOf(fast.taken_back(fast_ways.data(), kCount, move, deciding.data())));
     whole.add(taken[0] == 1);
     behind.add(taken[0] != taken[2]);
