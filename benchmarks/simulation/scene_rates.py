@@ -47,9 +47,26 @@ class Baker:
         )
         names = listed.stdout.split()
         # It remembers itself which scenes are there.
-        self.run("galactic-bake", "-q", dataset, "--scenes", pattern, "--no-render-meshes", "-o", "dataset.pack")
-        self.bake("objects.pack", self.assets / "ycb", "--as", "object", "--up", "z", "--no-render-meshes")
-        self.bake("automatic.pack", urdf, "--recipe", ROOT / "packs/robots/fetch.toml", "--no-render-meshes")
+        self.run(
+            "galactic-bake",
+            "-q",
+            dataset,
+            "--scenes",
+            pattern,
+            "--no-render-meshes",
+            "-o",
+            "dataset.pack",
+        )
+        self.bake(
+            "objects.pack", self.assets / "ycb", "--as", "object", "--up", "z", "--no-render-meshes"
+        )
+        self.bake(
+            "automatic.pack",
+            urdf,
+            "--recipe",
+            ROOT / "packs/robots/fetch.toml",
+            "--no-render-meshes",
+        )
         self.bake("hand.pack", urdf, "--recipe", published, "--no-render-meshes")
         return names
 
@@ -57,7 +74,17 @@ class Baker:
         pack = next(self.out.rglob(f"{scene}.pack"))
         self.bake(
             f"{scene}.episodes.pack",
-            *(pack, "objects.pack", "automatic.pack", "--as", "episodes", "--count", str(EPISODES), "--solve", "0"),
+            *(
+                pack,
+                "objects.pack",
+                "automatic.pack",
+                "--as",
+                "episodes",
+                "--count",
+                str(EPISODES),
+                "--solve",
+                "0",
+            ),
         )
         for robot in ROBOTS:
             parts = (pack, "objects.pack", f"{robot}.pack")
@@ -72,7 +99,10 @@ class Baker:
 def measure(tools: pathlib.Path, world: pathlib.Path, load: str, envs: int, steps: int) -> float:
     """Nanoseconds of processor time for a step of one env."""
     run = subprocess.run(
-        [tools / "play_workload", world, load, str(envs), str(steps)], check=True, capture_output=True, text=True
+        [tools / "play_workload", world, load, str(envs), str(steps)],
+        check=True,
+        capture_output=True,
+        text=True,
     )
     found = re.search(r"([\d.]+) ns", run.stdout)
     if found is None:
@@ -81,7 +111,9 @@ def measure(tools: pathlib.Path, world: pathlib.Path, load: str, envs: int, step
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("assets", type=pathlib.Path)
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--scenes", default="v3_sc1_staging_*", help="pattern with * and ?")
@@ -106,9 +138,13 @@ def main() -> int:
             for _ in range(options.turns):
                 for robot in ROBOTS:
                     world = out / f"{scene}.{robot}.{kind}.pack"
-                    least[robot] = min(least[robot], measure(tools, world, load, options.envs, options.steps))
+                    least[robot] = min(
+                        least[robot], measure(tools, world, load, options.envs, options.steps)
+                    )
             shares[load].append(least["hand"] / least["automatic"])
-            cells.append(f"{least['hand']:.0f}, {least['automatic']:.0f}: {100 * shares[load][-1]:.0f} %")
+            cells.append(
+                f"{least['hand']:.0f}, {least['automatic']:.0f}: {100 * shares[load][-1]:.0f} %"
+            )
         print(f"| {scene} | " + " | ".join(cells) + " |", flush=True)
     means = [f"{100 * sum(shares[load]) / len(shares[load]):.0f} %" for load in LOADS]
     print("| mean | " + " | ".join(means) + " |")
