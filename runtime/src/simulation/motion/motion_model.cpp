@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <ranges>
 #include <string>
 #include <utility>
 #include <vector>
@@ -165,9 +164,10 @@ int longestAxis(std::span<const PlacedSphere> spheres) {
   float most = -1;
   for (int axis = 0; axis < 3; ++axis) {
     const auto along = [axis](const PlacedSphere& placed) { return alongAxis(placed, axis); };
-    const auto [low, high] = std::ranges::minmax(spheres | std::views::transform(along));
-    if (high - low <= most) continue;
-    most = high - low;
+    const auto [low, high] = std::ranges::minmax_element(spheres, {}, along);
+    const float length = along(*high) - along(*low);
+    if (length <= most) continue;
+    most = length;
     longest = axis;
   }
   return longest;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <ranges>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -157,7 +156,7 @@ std::vector<float> lowestOfRadius(const Model& model) {
     if (!std::ranges::all_of(spheres, is_fixed)) continue;
     const auto height = [](const BodySphere& sphere) { return sphere.center.y; };
     lowest[range.radius_index] =
-        model.motion.base.root_height + std::ranges::min(spheres | std::views::transform(height));
+        model.motion.base.root_height + height(*std::ranges::min_element(spheres, {}, height));
   }
   return lowest;
 }

@@ -9,7 +9,6 @@
 #include <iterator>
 #include <optional>
 #include <random>
-#include <ranges>
 #include <span>
 #include <string>
 
@@ -266,9 +265,9 @@ float edgesOfEights(std::span<const BodySphere> spheres) {
   for (std::size_t first = 0; first < spheres.size(); first += kLanes) {
     const auto eight = spheres.subspan(first, std::min(kLanes, spheres.size() - first));
     for (const auto coordinate : {&Vec3::x, &Vec3::y, &Vec3::z}) {
-      const auto [least, most] = std::ranges::minmax(
-          eight | std::views::transform([&](const BodySphere& s) { return s.center.*coordinate; }));
-      sum += most - least;
+      const auto along = [&](const BodySphere& sphere) { return sphere.center.*coordinate; };
+      const auto [least, most] = std::ranges::minmax_element(eight, {}, along);
+      sum += along(*most) - along(*least);
     }
   }
   return sum;
