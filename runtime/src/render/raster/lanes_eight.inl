@@ -29,6 +29,12 @@ constexpr unsigned kAllLanes = 0xFF;
 constexpr std::size_t kVectorBytes = 32;
 constexpr std::size_t kGroupAlignment = 64;
 
+/// Numbers of twice the size: half as many fill a vector.
+constexpr std::uint32_t kHalf = kLanes / 2;
+using Doubles = double __attribute__((vector_size(32)));
+using HalfInts = std::int32_t __attribute__((vector_size(16)));
+using HalfFloats = float __attribute__((vector_size(16)));
+
 /// The same bits as another type.
 template <class To, class From>
 inline To as(From from) {
@@ -118,6 +124,16 @@ inline IntLanes greater(IntLanes a, IntLanes b) {
 
 inline Lanes clampTo(Lanes v, float low, float high) {
   return lesser(greater(v, spread(low)), spread(high));
+}
+
+inline Doubles clampTo(Doubles v, double low, double high) {
+#if defined(__AVX2__)
+  return as<Doubles>(
+      _mm256_min_pd(_mm256_max_pd(as<__m256d>(v), _mm256_set1_pd(low)), _mm256_set1_pd(high)));
+#else
+  for (std::uint32_t n = 0; n < kHalf; ++n) v[n] = v[n] < low ? low : v[n] > high ? high : v[n];
+  return v;
+#endif
 }
 
 inline Lanes magnitude(Lanes v) { return as<Lanes>(as<IntLanes>(v) & 0x7FFFFFFF); }

@@ -22,6 +22,12 @@ constexpr unsigned kAllLanes = 0xFFFF;
 constexpr std::size_t kVectorBytes = 64;
 constexpr std::size_t kGroupAlignment = 64;
 
+/// Numbers of twice the size: half as many fill a vector.
+constexpr std::uint32_t kHalf = kLanes / 2;
+using Doubles = double __attribute__((vector_size(64)));
+using HalfInts = std::int32_t __attribute__((vector_size(32)));
+using HalfFloats = float __attribute__((vector_size(32)));
+
 /// The same bits as another type.
 template <class To, class From>
 inline To as(From from) {
@@ -107,6 +113,11 @@ inline IntLanes greater(IntLanes a, IntLanes b) {
 
 inline Lanes clampTo(Lanes v, float low, float high) {
   return lesser(greater(v, spread(low)), spread(high));
+}
+
+inline Doubles clampTo(Doubles v, double low, double high) {
+  return as<Doubles>(
+      _mm512_min_pd(_mm512_max_pd(as<__m512d>(v), _mm512_set1_pd(low)), _mm512_set1_pd(high)));
 }
 
 inline Lanes magnitude(Lanes v) { return as<Lanes>(as<IntLanes>(v) & 0x7FFFFFFF); }

@@ -2,41 +2,94 @@
 namespace galactic::render {
 namespace {
 
-/// Draws the pixels of one tile and measures it; says whether any shows. `edges`: see tileEdges().
-template <class Test>
-inline bool coverTile(const Pane& pane, const LargeSetup& setup, EdgeLanes edges, std::int32_t x,
-                      std::int32_t y, const Test& test) {
+/// What is the same in all tiles of a large triangle.
+struct TileSteps {
+  /// Of edge functions from one vector to the next ones beside and below.
+  IntLanes edge_beside[3], edge_below[3];
+  Lanes z_beside;
+  /// Of 1/w, of each row of vectors from the first one.
+  float z_down[kTileEdge / kBlockHeight];
+};
+
+inline TileSteps tileSteps(const LargeSetup& setup) {
+  TileSteps steps;
+  for (int n = 0; n < 3; ++n) {
+    steps.edge_beside[n] = spread(setup.edges[n].right * 4);
+    steps.edge_below[n] = spread(setup.edges[n].down * 2);
+  }
+  steps.z_beside = spread(static_cast<float>(setup.depth.right * 4));
+  for (std::uint32_t row = 0; row < kTileEdge / kBlockHeight; ++row) {
+    steps.z_down[row] = static_cast<float>(setup.depth.down * (2 * row));
+  }
+  return steps;
+}
+
+/// Edge functions and 1/w at the first pixels of some tiles.
+struct TileStarts {
+  alignas(kVectorBytes) std::int32_t edges[3][kHalf];
+  alignas(kVectorBytes) float z[kHalf];
+};
+
+constexpr int kLogMostTiles = 5;
+static_assert(1U << kLogMostTiles == kMostTiles);
+
+/// Of tiles by their numbers: see TileList.
+inline void startTiles(const LargeSetup& setup, HalfInts tiles, TileStarts& starts) {
+  // Further out the sign is the same in the whole tile: changes per pixel are under 2^24.
+  constexpr double kMost = 1 << 30;
+  constexpr double kEdge = kTileEdge;
+  const Doubles right = __builtin_convertvector(tiles & (kMostTiles - 1), Doubles) * kEdge;
+  const Doubles down = __builtin_convertvector(tiles >> kLogMostTiles, Doubles) * kEdge;
+  for (int n = 0; n < 3; ++n) {
+    // Exact: all of them are whole numbers under 2^53.
+    const LongEdge& edge = setup.edges[n];
+    const Doubles value =
+        static_cast<double>(edge.start) +
+        (static_cast<double>(edge.right) * right + static_cast<double>(edge.down) * down);
+    store(starts.edges[n], __builtin_convertvector(clampTo(value, -kMost, kMost), HalfInts));
+  }
   const Plane& depth = setup.depth;
-  const double right = x * static_cast<double>(kTileEdge);
-  const double down = y * static_cast<double>(kTileEdge);
-  const Lanes z_start =
-      spread(static_cast<float>(depth.start + (depth.right * right + depth.down * down))) +
-      setup.z_offsets;
-  const Lanes z_beside = spread(static_cast<float>(depth.right * 4));
-  const auto edge_right = [&](int n) { return spread(setup.edges[n].right * 4); };
-  const auto edge_down = [&](int n) { return spread(setup.edges[n].down * 2); };
+  store(starts.z, __builtin_convertvector(depth.start + (depth.right * right + depth.down * down),
+                                          HalfFloats));
+}
+
+/// Draws the pixels of tile `n` of those that start so and measures it; says whether any shows.
+template <class Test>
+inline LaneSet coverTile(const Pane& pane, const LargeSetup& setup, const TileSteps& steps,
+                         const TileStarts& starts, std::uint32_t n, std::uint32_t tile,
+                         const Test& test) {
+  const std::uint32_t x = tile % kMostTiles;
+  const std::uint32_t y = tile / kMostTiles;
+  const Lanes z_start = spread(starts.z[n]) + setup.z_offsets;
+  EdgeLanes edges{setup.edges[0].offsets + spread(starts.edges[0][n]),
+                  setup.edges[1].offsets + spread(starts.edges[1][n]),
+                  setup.edges[2].offsets + spread(starts.edges[2][n])};
   const IntLanes id = spread(static_cast<std::int32_t>(pane.records));
+  const std::size_t stride = std::size_t{pane.columns} * kWidth;
+  BlockPlace first = placeOf(pane, x * 2, y * 4);
   LaneSet hit = noLanes();
   Lanes farthest = spread(__builtin_inff());
+#pragma GCC unroll 4
   for (std::uint32_t row = 0; row < kTileEdge / kBlockHeight; ++row) {
-    BlockPlace place =
-        placeOf(pane, static_cast<std::uint32_t>(x) * 2, static_cast<std::uint32_t>(y) * 4 + row);
-    Lanes z =
-        firstBlocks(z_start + spread(static_cast<float>(depth.down * (2 * row))), z_beside, false);
+    BlockPlace place = first;
+    Lanes z = firstBlocks(z_start + spread(steps.z_down[row]), steps.z_beside, false);
     EdgeLanes at = edges;
-    for (std::uint32_t n = 0; n < 2; n += kBlocks) {
+#pragma GCC unroll 2
+    for (std::uint32_t block = 0; block < 2; block += kBlocks) {
       const Covered covered = coverBlocks(place, at.a | at.b | at.c,
                                           lesser(greater(z, setup.z_low), setup.z_high), id, test);
       hit |= covered.shown;
       farthest = lesser(farthest, covered.depth);
-      z = nextBlocks(z, z_beside);
-      at = {at.a + edge_right(0), at.b + edge_right(1), at.c + edge_right(2)};
+      z = nextBlocks(z, steps.z_beside);
+      at = {at.a + steps.edge_beside[0], at.b + steps.edge_beside[1], at.c + steps.edge_beside[2]};
       place = {place.depth + kLanes, place.ids + kLanes};
     }
-    edges = {edges.a + edge_down(0), edges.b + edge_down(1), edges.c + edge_down(2)};
+    edges = {edges.a + steps.edge_below[0], edges.b + steps.edge_below[1],
+             edges.c + steps.edge_below[2]};
+    first = {first.depth + stride, first.ids + stride};
   }
-  noteDepth(pane, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), least(farthest));
-  return bitsOf(hit) != 0;
+  noteDepth(pane, x, y, least(farthest));
+  return hit;
 }
 
 /// A linear function over a row of tiles from one on, widened by what rounding can do: no lane is
@@ -117,15 +170,19 @@ template <class Test>
 bool coverTiles(const Pane& pane, const LargeSetup& setup, const TileBox& box, const Test& test) {
   TileList list;
   findTiles(pane, setup, box, list);
-  bool seen = false;
-  for (std::uint32_t n = 0; n < list.count; ++n) {
-    const auto at = static_cast<std::uint32_t>(list.tiles[n]);
-    const auto x = static_cast<std::int32_t>(at % kMostTiles);
-    const auto y = static_cast<std::int32_t>(at / kMostTiles);
-    EdgeLanes edges;
-    if (tileEdges(setup, x, y, edges)) seen |= coverTile(pane, setup, edges, x, y, test);
+  if (list.count == 0) return false;
+  const TileSteps steps = tileSteps(setup);
+  LaneSet hit = noLanes();
+  for (std::uint32_t first = 0; first < list.count; first += kHalf) {
+    TileStarts starts;
+    startTiles(setup, load<HalfInts>(list.tiles + first), starts);
+    const std::uint32_t count = list.count - first < kHalf ? list.count - first : kHalf;
+    for (std::uint32_t n = 0; n < count; ++n) {
+      const auto tile = static_cast<std::uint32_t>(list.tiles[first + n]);
+      hit |= coverTile(pane, setup, steps, starts, n, tile, test);
+    }
   }
-  return seen;
+  return bitsOf(hit) != 0;
 }
 
 /// Sets what depends on the pixels of a vector.

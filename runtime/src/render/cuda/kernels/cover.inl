@@ -78,6 +78,25 @@ GALACTIC_EVERYWHERE inline float nearestInTile(const LargeSetup& setup, std::int
                                                   : setup.z_most;
 }
 
+/// Edge functions at the first block of a tile; says whether the triangle can touch the tile.
+GALACTIC_EVERYWHERE inline bool tileEdges(const LargeSetup& setup, std::int32_t tile_x,
+                                          std::int32_t tile_y, EdgeLanes& lanes) {
+  constexpr std::int64_t kMost = 1 << 30;
+  std::int32_t starts[3];
+  for (int n = 0; n < 3; ++n) {
+    const LongEdge& edge = setup.edges[n];
+    constexpr std::int64_t kEdge = kTileEdge;
+    const std::int64_t value =
+        edge.start + edge.right * (kEdge * tile_x) + edge.down * (kEdge * tile_y);
+    if (value + edge.reach < 0) return false;
+    // Further out the sign is the same in the whole tile: changes per pixel are under 2^24.
+    starts[n] = static_cast<std::int32_t>(value > kMost ? kMost : value < -kMost ? -kMost : value);
+  }
+  lanes = {setup.edges[0].offsets + spread(starts[0]), setup.edges[1].offsets + spread(starts[1]),
+           setup.edges[2].offsets + spread(starts[2])};
+  return true;
+}
+
 /// Draws the pixels of one tile, on a target as in coverTriangle(). `edges`: see tileEdges().
 template <class Target>
 GALACTIC_EVERYWHERE inline IntLanes coverTile(const LargeSetup& setup, EdgeLanes edges,
