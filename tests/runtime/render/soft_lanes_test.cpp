@@ -38,8 +38,10 @@ TEST(SoftLanes, NumbersOfRowsBecomeVectors) {
   for (std::size_t n = 0; n < rows.size(); ++n) rows.at(n) = static_cast<float>(n);
   for (const std::array<std::int32_t, kLanes>& ids :
        {std::array<std::int32_t, kLanes>{3, 3, 3, 3, 3, 3, 3, 3}, {4, 0, 1, 1, 2, 0, 4, 3}}) {
+    alignas(kVectorBytes) std::array<std::int32_t, kLanes> starts = ids;
+    for (std::int32_t& start : starts) start *= static_cast<std::int32_t>(kRow);
     std::array<Lanes, 8> fields;
-    gatherRows<kRow>(rows.data(), ids.data(), fields.data());
+    gatherRows(rows.data(), starts.data(), fields.data());
     for (unsigned n = 0; n < kLanes; ++n) {
       const auto row = static_cast<std::size_t>(ids.at(n)) * kRow;
       for (std::size_t field = 0; field < 8; ++field) {

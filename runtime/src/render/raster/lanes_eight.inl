@@ -226,14 +226,27 @@ inline Pair<IntLanes> gatherTwo(const std::int32_t* from, IntLanes at) {
 }
 
 /// Elements at and at + 1.
-inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from, IntLanes at) {
+inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from, const IntLanes& at) {
+#if defined(__AVX2__)
+  const auto two = [&](int lane) {
+    const std::int32_t* first = from + static_cast<std::uint32_t>(at[lane]);
+    const std::int32_t* second = from + static_cast<std::uint32_t>(at[lane + 1]);
+    const __m128i low = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(first));
+    return _mm_loadh_pi(_mm_castsi128_ps(low), reinterpret_cast<const __m64*>(second));
+  };
+  const __m256 even = _mm256_set_m128(two(4), two(0));
+  const __m256 odd = _mm256_set_m128(two(6), two(2));
+  return {as<IntLanes>(_mm256_shuffle_ps(even, odd, 0x88)),
+          as<IntLanes>(_mm256_shuffle_ps(even, odd, 0xDD))};
+#else
   return gatherTwo<1>(from, at);
+#endif
 }
 
 /// Elements at, or the lesser of these and the ones behind them where `both`, a mask, is set. All
 /// of them are read.
 inline Lanes gatherLeast(const float* from, IntLanes at, IntLanes both) {
-  const Pair<IntLanes> two = gatherNeighbors(reinterpret_cast<const std::int32_t*>(from), at);
+  const Pair<IntLanes> two = gatherTwo<1>(reinterpret_cast<const std::int32_t*>(from), at);
   const auto first = as<Lanes>(two.first);
   return lesser(first, pick(both, as<Lanes>(two.second), first));
 }
@@ -253,13 +266,12 @@ inline Pair<Element> pairAt(const Element* table, std::uint32_t number) {
 
 using Quad = float __attribute__((vector_size(16)));
 
-/// Elements stride * ids[lane] and the three behind them become a vector each.
-inline void gatherFour(const float* from, std::size_t stride, const std::int32_t* ids,
-                       Lanes* fields) {
+/// Elements at[lane] and the three behind them become a vector each.
+inline void gatherFour(const float* from, const std::int32_t* at, Lanes* fields) {
   Lanes pairs[4];
   for (int n = 0; n < 4; ++n) {
-    const auto near = load<Quad>(from + stride * static_cast<std::uint32_t>(ids[n]));
-    const auto far = load<Quad>(from + stride * static_cast<std::uint32_t>(ids[n + 4]));
+    const auto near = load<Quad>(from + static_cast<std::uint32_t>(at[n]));
+    const auto far = load<Quad>(from + static_cast<std::uint32_t>(at[n + 4]));
     pairs[n] = __builtin_shufflevector(near, far, 0, 1, 2, 3, 4, 5, 6, 7);
   }
   const Lanes a = __builtin_shufflevector(pairs[0], pairs[1], 0, 8, 1, 9, 4, 12, 5, 13);
@@ -272,17 +284,17 @@ inline void gatherFour(const float* from, std::size_t stride, const std::int32_t
   fields[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-/// Eight numbers of rows become a vector each: the lanes are those of row ids[lane]. Rows are
-/// `kStride` long; all lanes often have the same one.
-template <std::uint32_t kStride>
-inline void gatherRows(const float* rows, const std::int32_t* ids, Lanes* fields) {
-  if (signBits(load<IntLanes>(ids) == spread(ids[0])) == kAllLanes) {
-    const float* row = rows + std::size_t{kStride} * static_cast<std::uint32_t>(ids[0]);
+/// Eight numbers of rows become a vector each: the lanes are those of the row that begins at number
+/// at[lane]; all lanes often have the same one.
+[[gnu::always_inline]] inline void gatherRows(const float* rows, const std::int32_t* at,
+                                              Lanes* fields) {
+  if (signBits(load<IntLanes>(at) == spread(at[0])) == kAllLanes) {
+    const float* row = rows + static_cast<std::uint32_t>(at[0]);
     for (std::uint32_t n = 0; n < 8; ++n) fields[n] = spread(row[n]);
     return;
   }
-  gatherFour(rows, kStride, ids, fields);
-  gatherFour(rows + 4, kStride, ids, fields + 4);
+  gatherFour(rows, at, fields);
+  gatherFour(rows + 4, at, fields + 4);
 }
 
 /// Writes entries of a table of pairs.
@@ -294,9 +306,8 @@ inline void storePairs(Element* to, Vector first, Vector second) {
 
 /// Two rows of pixels to an image, whose rows lie `stride` bytes apart.
 inline void storeBlocks(std::uint8_t* to, std::size_t stride, IntLanes v) {
-  using Row = std::int32_t __attribute__((vector_size(16)));
-  store(to, Row{v[0], v[1], v[2], v[3]});
-  store(to + stride, Row{v[4], v[5], v[6], v[7]});
+  store(to, __builtin_shufflevector(v, v, 0, 1, 2, 3));
+  store(to + stride, __builtin_shufflevector(v, v, 4, 5, 6, 7));
 }
 
 /// p + (q - p) * weight / 256 for the 16-bit halves of all lanes, which are bytes; `rest` is 256

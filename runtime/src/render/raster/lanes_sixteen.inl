@@ -189,19 +189,35 @@ struct Pair {
   Vector first, second;
 };
 
-/// Elements at and at + 1.
-inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from, IntLanes at) {
-  const TwoOfEight low = gatherTwoOfEight<1>(from, lowHalf(at));
-  const TwoOfEight high = gatherTwoOfEight<1>(from, highHalf(at));
-  return {joined<IntLanes>(low.first, high.first), joined<IntLanes>(low.second, high.second)};
+/// Elements at and at + 1. Numbers that lie in memory are read one by one, too.
+[[gnu::always_inline]] inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from,
+                                                             const IntLanes& at) {
+  const auto two = [&](int lane) {
+    const std::int32_t* first = from + static_cast<std::uint32_t>(at[lane]);
+    const std::int32_t* second = from + static_cast<std::uint32_t>(at[lane + 1]);
+    const __m128i low = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(first));
+    return _mm_loadh_pi(_mm_castsi128_ps(low), reinterpret_cast<const __m64*>(second));
+  };
+  const auto eight = [&](int lane) {
+    const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(two(lane)), two(lane + 4), 1);
+    const __m256 high =
+        _mm256_insertf128_ps(_mm256_castps128_ps256(two(lane + 8)), two(lane + 12), 1);
+    return _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
+  };
+  const __m512 even = eight(0);
+  const __m512 odd = eight(2);
+  return {as<IntLanes>(_mm512_shuffle_ps(even, odd, 0x88)),
+          as<IntLanes>(_mm512_shuffle_ps(even, odd, 0xDD))};
 }
 
 /// Elements at, or the lesser of these and the ones behind them where `both`, a mask, is set. All
 /// of them are read.
 inline Lanes gatherLeast(const float* from, IntLanes at, IntLanes both) {
-  const Pair<IntLanes> two = gatherNeighbors(reinterpret_cast<const std::int32_t*>(from), at);
-  const auto first = as<Lanes>(two.first);
-  return lesser(first, pick(both, as<Lanes>(two.second), first));
+  const auto* words = reinterpret_cast<const std::int32_t*>(from);
+  const TwoOfEight low = gatherTwoOfEight<1>(words, lowHalf(at));
+  const TwoOfEight high = gatherTwoOfEight<1>(words, highHalf(at));
+  const auto first = joined<Lanes>(low.first, high.first);
+  return lesser(first, pick(both, joined<Lanes>(low.second, high.second), first));
 }
 
 /// A table of pairs: sixteen first numbers, then their second ones.
@@ -234,15 +250,12 @@ inline void transposeQuarters(const __m512* from, __m512* to) {
   to[3] = _mm512_shuffle_ps(b, d, 0xEE);
 }
 
-/// Eight numbers of rows become a vector each: the lanes are those of row ids[lane]. Rows are
-/// `kStride` long. How many different ones there are is hard to foresee: only one is a case of its
-/// own.
-template <std::uint32_t kStride>
-inline void gatherRows(const float* rows, const std::int32_t* ids, Lanes* fields) {
-  const auto row = [&](std::uint32_t lane) {
-    return rows + std::size_t{kStride} * static_cast<std::uint32_t>(ids[lane]);
-  };
-  if (_mm512_cmpneq_epi32_mask(_mm512_load_si512(ids), _mm512_set1_epi32(ids[0])) == 0) {
+/// Eight numbers of rows become a vector each: the lanes are those of the row that begins at number
+/// at[lane]. How many different ones there are is hard to foresee: only one is a case of its own.
+[[gnu::always_inline]] inline void gatherRows(const float* rows, const std::int32_t* at,
+                                              Lanes* fields) {
+  const auto row = [&](std::uint32_t lane) { return rows + static_cast<std::uint32_t>(at[lane]); };
+  if (_mm512_cmpneq_epi32_mask(_mm512_load_si512(at), _mm512_set1_epi32(at[0])) == 0) {
     for (std::uint32_t n = 0; n < 8; ++n) fields[n] = spread(row(0)[n]);
     return;
   }

@@ -121,8 +121,9 @@ GALACTIC_EVERYWHERE inline const std::int32_t* texelBase(const PaneTask& task,
 
 /// Texels of one base. Most left texels have their right ones behind them: both are read at once,
 /// which halves the work where lanes are many. `wraps`: for one lane or more that is not so.
-GALACTIC_EVERYWHERE inline FourTexels readTexels(const std::int32_t* from, const FourTexels& at,
-                                                 bool wraps) {
+[[gnu::always_inline]] GALACTIC_EVERYWHERE inline FourTexels readTexels(const std::int32_t* from,
+                                                                        const FourTexels& at,
+                                                                        bool wraps) {
   if (kLanes > 1 && !wraps) {
     const Pair<IntLanes> upper = gatherNeighbors(from, at.upper_left);
     const Pair<IntLanes> lower = gatherNeighbors(from, at.lower_left);
@@ -173,7 +174,8 @@ GALACTIC_EVERYWHERE inline void placeSurface(IntLanes texels, IntLanes kind, con
 }
 
 /// Texels of several bases.
-GALACTIC_EVERYWHERE inline FourTexels readMixed(const PaneTask& task, const SurfacePlace& surface) {
+[[gnu::noinline]] GALACTIC_EVERYWHERE inline FourTexels readMixed(const PaneTask& task,
+                                                                  const SurfacePlace& surface) {
   FourTexels texels{};
   for (unsigned left = surface.textured; left != 0;) {
     const IntLanes number = laneOf(baseOf(surface.kind), lowestBit(left));
@@ -191,7 +193,8 @@ GALACTIC_EVERYWHERE inline FourTexels readMixed(const PaneTask& task, const Surf
 }
 
 /// Texels, or the colors of flat surfaces.
-GALACTIC_EVERYWHERE inline IntLanes sampleAt(const PaneTask& task, const SurfacePlace& surface) {
+[[gnu::always_inline]] GALACTIC_EVERYWHERE inline IntLanes sampleAt(const PaneTask& task,
+                                                                    const SurfacePlace& surface) {
   if (surface.textured == 0) return surface.texels;
   const LevelPlace& place = surface.place;
   const FourTexels texels = surface.others == 0

@@ -74,7 +74,7 @@ struct SmallCover {
   }
   void cover(const BlockPlace& place, const EdgeLanes& at, Lanes z_there) {
     const Lanes within = lesser(greater(z_there, spread(group.z_low[n])), spread(group.z_high[n]));
-    const IntLanes id = spread(static_cast<std::int32_t>(pane.records));
+    const IntLanes id = idOf(pane.records);
     hit |= coverBlocks(place, at.a | at.b | at.c, within, id, test).shown;
   }
   void nextRow() {

@@ -64,7 +64,7 @@ inline LaneSet coverTile(const Pane& pane, const LargeSetup& setup, const TileSt
   EdgeLanes edges{setup.edges[0].offsets + spread(starts.edges[0][n]),
                   setup.edges[1].offsets + spread(starts.edges[1][n]),
                   setup.edges[2].offsets + spread(starts.edges[2][n])};
-  const IntLanes id = spread(static_cast<std::int32_t>(pane.records));
+  const IntLanes id = idOf(pane.records);
   const std::size_t stride = std::size_t{pane.columns} * kWidth;
   BlockPlace first = placeOf(pane, x * 2, y * 4);
   LaneSet hit = noLanes();

@@ -15,7 +15,8 @@ inline constexpr std::uint32_t kMostRecords = 16384;
 struct PaneScratch {
   /// 1/w by pixel: 0 where nothing is, infinite outside of the image.
   float* depth = nullptr;
-  /// Record by pixel: 0 for background, kShaded where the image has the color.
+  /// By pixel, the first number of its record: 0 for background, kShaded where the image has the
+  /// color.
   std::int32_t* ids = nullptr;
   /// Least 1/w of each tile, where it has not changed since.
   float* tile_depth = nullptr;

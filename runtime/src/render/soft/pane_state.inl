@@ -11,6 +11,8 @@ struct Pane {
   std::uint32_t records;
   PaneCounts counts;
   bool shades;
+  /// Whether some pixels are shaded already.
+  bool has_shaded;
 };
 
 /// Nothing is drawn on it yet; record 0 is the background's.
@@ -24,7 +26,13 @@ inline Pane newPane(const PaneTask& task, const PaneScratch& scratch) {
           .tile_columns = tiles_across,
           .records = 1,
           .counts = {},
-          .shades = task.color != nullptr || task.semantics != nullptr};
+          .shades = task.color != nullptr || task.semantics != nullptr,
+          .has_shaded = false};
+}
+
+/// What pixels have for a record: where it begins.
+inline IntLanes idOf(std::uint32_t number) {
+  return spread(static_cast<std::int32_t>(number * kRecordStride));
 }
 
 inline float* recordAt(const Pane& pane, std::uint32_t number) {

@@ -45,7 +45,7 @@ struct AlphaTest {
   std::int32_t least_alpha;
 
   /// The sign bits tell which.
-  IntLanes operator()(const BlockPlace& place, Lanes z) const {
+  [[gnu::noinline]] IntLanes operator()(const BlockPlace& place, Lanes z) const {
     const auto block = static_cast<std::uint32_t>((place.depth - pane->scratch->depth) / kWidth);
     const PixelLanes pixels =
         pixelsOf(block % pane->columns, block / pane->columns, spread(1.0F) / z);

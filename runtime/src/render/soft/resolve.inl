@@ -12,6 +12,8 @@ struct EachRecord {
 
 /// A vector of pixels before its texels are read.
 struct Shading {
+  /// Of the records; the rest is not set where no lane has a texture.
+  TexturePlaces places;
   SurfacePlace surface;
   /// See lightAt(); not set where no light is.
   IntLanes light;
@@ -30,30 +32,40 @@ inline void fetchTexels(const PaneTask& task, const SurfacePlace& surface) {
   }
 }
 
-/// `ids`: 0 or more.
-inline void prepareShading(const Pane& pane, const std::int32_t* ids, const PixelLanes& pixels,
-                           Shading& shading) {
-  SurfacePlace& surface = shading.surface;
+/// `ids`: of pixels that are not shaded yet.
+[[gnu::always_inline]] inline void readRecords(const Pane& pane, const std::int32_t* ids,
+                                               const PixelLanes& pixels, Shading& shading) {
+  TexturePlaces& places = shading.places;
+  const IntLanes none = spread(static_cast<std::int32_t>(kFlatSurface));
   if (signBits(-load<IntLanes>(ids)) == 0) {  // none above 0: background
-    surface.texels = spread(static_cast<std::int32_t>(pane.task->background));
-    surface.kind = spread(static_cast<std::int32_t>(kFlatSurface));
-    surface.textured = 0;
+    places.texels = spread(static_cast<std::int32_t>(pane.task->background));
+    places.kind = none;
     return;
   }
   EachRecord each;
   const float* records = pane.scratch->records;
-  gatherRows<kRecordStride>(records + kTexels, ids, each.fields + kTexels);
-  const auto places = [&] {
-    gatherRows<kRecordStride>(records, ids, each.fields);
-    return texturePlaces(each, pixels);
-  };
-  placeSurface(each.intField(kTexels), each.intField(kKind), places, surface);
-  if (surface.textured != 0) fetchTexels(*pane.task, surface);
+  gatherRows(records + kTexels, ids, each.fields + kTexels);
   shading.light = lightAt(each.fields + kLightRight, pixels);
+  if (signBits((each.intField(kKind) & 0xFF) == none) == kAllLanes) {
+    places.texels = each.intField(kTexels);
+    places.kind = each.intField(kKind);
+    return;
+  }
+  gatherRows(records, ids, each.fields);
+  places = texturePlaces(each, pixels);
 }
 
-inline IntLanes finishShading(const Pane& pane, const std::int32_t* ids, const PixelLanes& pixels,
-                              const Shading& shading) {
+inline void placeTexels(const Pane& pane, Shading& shading) {
+  const TexturePlaces& places = shading.places;
+  placeSurface(
+      places.texels, places.kind, [&] { return places; }, shading.surface);
+  if (shading.surface.textured != 0) fetchTexels(*pane.task, shading.surface);
+}
+
+/// `pixels`: what gives them where colors are interpolated.
+template <class Pixels>
+[[gnu::always_inline]] inline IntLanes finishShading(const Pane& pane, const std::int32_t* ids,
+                                                     const Pixels& pixels, const Shading& shading) {
   const IntLanes kind = shading.surface.kind;
   IntLanes colors = sampleAt(*pane.task, shading.surface);
   if (signBits(kind) != 0) {
@@ -61,15 +73,21 @@ inline IntLanes finishShading(const Pane& pane, const std::int32_t* ids, const P
     alignas(kVectorBytes) std::int32_t colored[kLanes];
     store(colored, load<IntLanes>(ids) & (kind >> 31));
     EachRecord planes;
-    gatherRows<kRecordStride>(pane.scratch->colors, colored, planes.fields);
-    gatherRows<kRecordStride>(pane.scratch->colors + 8, colored, planes.fields + 8);
-    colors = pick(kind >> 31, timesColors(colors, planes, pixels), colors);
+    gatherRows(pane.scratch->colors, colored, planes.fields);
+    gatherRows(pane.scratch->colors + 8, colored, planes.fields + 8);
+    colors = pick(kind >> 31, timesColors(colors, planes, pixels()), colors);
   }
   const IntLanes lit = kind << 1;
   if (signBits(lit) != 0) colors = pick(lit >> 31, timesLight(colors, shading.light), colors);
   // What is drawn hides all behind it.
   return pick(load<IntLanes>(ids) == spread(0), colors,
               colors | static_cast<std::int32_t>(0xFF000000U));
+}
+
+/// `ids`: of pixels that are not shaded yet.
+inline IntLanes semanticsOf(const Pane& pane, const std::int32_t* ids) {
+  return gather(reinterpret_cast<const std::int32_t*>(pane.scratch->records) + kSemantic,
+                load<IntLanes>(ids));
 }
 
 /// Where the pixels of one or two blocks lie in the whole image, and how many are within.
@@ -154,23 +172,25 @@ struct Resolving {
   Shading shading;
 };
 
-inline void beginColors(const Pane& pane, std::uint32_t column, std::uint32_t row, Lanes w,
-                        Resolving& pixels) {
+[[gnu::noinline]] void beginColors(const Pane& pane, std::uint32_t column, std::uint32_t row,
+                                   Lanes w, Resolving& pixels) {
   pixels.ids = placeOf(pane, column, row).ids;
   pixels.pixels = pixelsOf(column, row, w);
   const auto id = load<IntLanes>(pixels.ids);
   store(pixels.shown, id & ~(id >> 31));
   if (pane.task->color == nullptr) return;
-  prepareShading(pane, pixels.shown, pixels.pixels, pixels.shading);
+  readRecords(pane, pixels.shown, pixels.pixels, pixels.shading);
+  placeTexels(pane, pixels.shading);
 }
 
-inline void endColors(const Pane& pane, const Resolving& pixels) {
+[[gnu::noinline]] void endColors(const Pane& pane, const Resolving& pixels) {
   const PaneTask& task = *pane.task;
   const BlockTarget& target = pixels.target;
   const auto id = load<IntLanes>(pixels.ids);
   const bool any_shaded = signBits(id) != 0;
   if (task.color != nullptr) {
-    IntLanes colors = finishShading(pane, pixels.shown, pixels.pixels, pixels.shading);
+    IntLanes colors = finishShading(
+        pane, pixels.shown, [&] { return pixels.pixels; }, pixels.shading);
     if (any_shaded) colors = keepShaded(task, target, id, colors, task.color, task.channels);
     if (task.channels == 4) {
       writeWords(task, target, task.color, colors);
@@ -179,9 +199,7 @@ inline void endColors(const Pane& pane, const Resolving& pixels) {
     }
   }
   if (task.semantics == nullptr) return;
-  IntLanes semantics =
-      gather(reinterpret_cast<const std::int32_t*>(pane.scratch->records) + kSemantic,
-             load<IntLanes>(pixels.shown) * static_cast<std::int32_t>(kRecordStride));
+  IntLanes semantics = semanticsOf(pane, pixels.shown);
   if (any_shaded) {
     semantics = keepShaded(task, target, id, semantics,
                            reinterpret_cast<const std::uint8_t*>(task.semantics), 4);
@@ -189,32 +207,94 @@ inline void endColors(const Pane& pane, const Resolving& pixels) {
   writeWords(task, target, task.semantics, semantics);
 }
 
-/// Vectors whose texels are found before any of them is read: the processor works on several at a
-/// time, as none waits for the one before.
+/// Writes a vector of pixels of which some lie outside of the image or are shaded already.
+inline void resolveVector(const Pane& pane, std::uint32_t column, std::uint32_t row) {
+  const PaneTask& task = *pane.task;
+  Resolving pixels;
+  pixels.target = blockTarget(task, column, row);
+  const Lanes z = load<Lanes>(placeOf(pane, column, row).depth);
+  const Lanes w = spread(1.0F) / z;
+  if (task.depth != nullptr) {
+    writeWords(task, pixels.target, task.depth, as<IntLanes>(w) & (z > spread(0.0F)));
+  }
+  if (!pane.shades) return;
+  beginColors(pane, column, row, w, pixels);
+  endColors(pane, pixels);
+}
+
+/// Vectors that take each step together: none of them waits for the one before, so the processor
+/// works on several at a time, and the memory has time to bring the texels.
 constexpr std::uint32_t kTogether = 16;
+
+/// `count` vectors of pixels, at most kTogether, that lie beside each other, whole in the image,
+/// and are not shaded yet.
+struct WholeVectors {
+  const Pane& pane;
+  std::uint32_t column, row, count;
+  BlockPlace place = placeOf(pane, column, row);
+  BlockTarget target = blockTarget(*pane.task, column, row);
+
+  const std::int32_t* ids(std::uint32_t n) const { return place.ids + std::size_t{n} * kLanes; }
+  Lanes depth(std::uint32_t n) const { return load<Lanes>(place.depth + std::size_t{n} * kLanes); }
+  PixelLanes pixels(std::uint32_t n) const {
+    return pixelsOf(column + n * kBlocks, row, spread(1.0F) / depth(n));
+  }
+  /// Writes elements of four bytes.
+  void write(void* image, std::uint32_t n, IntLanes words) const {
+    constexpr std::uint32_t kWide = kBlocks * kBlockWidth;
+    auto* to = static_cast<std::uint8_t*>(image) + 4 * (target.pixel + std::size_t{n} * kWide);
+    storeBlocks(to, std::size_t{4} * pane.task->image_width, words);
+  }
+  void writeColors(std::uint32_t n, IntLanes colors) const {
+    const PaneTask& task = *pane.task;
+    if (task.channels == 4) return write(task.color, n, colors);
+    writeTriples(task, blockTarget(task, column + n * kBlocks, row), colors);
+  }
+};
+
+/// GCC 12 fails where this is part of a loop that it can see.
+[[gnu::noinline]] void writeSemantics(const WholeVectors& vectors, std::uint32_t n) {
+  vectors.write(vectors.pane.task->semantics, n, semanticsOf(vectors.pane, vectors.ids(n)));
+}
+
+inline void resolveVectors(const WholeVectors& vectors) {
+  const Pane& pane = vectors.pane;
+  const PaneTask& task = *pane.task;
+  Shading shadings[kTogether];
+  for (std::uint32_t n = 0; n < vectors.count; ++n) {
+    const PixelLanes pixels = vectors.pixels(n);
+    const IntLanes seen = vectors.depth(n) > spread(0.0F);
+    if (task.depth != nullptr) vectors.write(task.depth, n, as<IntLanes>(pixels.w) & seen);
+    if (task.color != nullptr) readRecords(pane, vectors.ids(n), pixels, shadings[n]);
+  }
+  if (task.color != nullptr) {
+    for (std::uint32_t n = 0; n < vectors.count; ++n) placeTexels(pane, shadings[n]);
+    for (std::uint32_t n = 0; n < vectors.count; ++n) {
+      const auto pixels = [&] { return vectors.pixels(n); };
+      vectors.writeColors(n, finishShading(pane, vectors.ids(n), pixels, shadings[n]));
+    }
+  }
+  if (task.semantics == nullptr) return;
+  for (std::uint32_t n = 0; n < vectors.count; ++n) writeSemantics(vectors, n);
+}
 
 /// Writes the images.
 inline void resolve(const Pane& pane) {
   const PaneTask& task = *pane.task;
+  constexpr std::uint32_t kWide = kBlocks * kBlockWidth;
   const std::uint32_t shown_columns = (task.width + kBlockWidth - 1) / kBlockWidth;
   const std::uint32_t shown_rows = (task.height + kBlockHeight - 1) / kBlockHeight;
-  Resolving vectors[kTogether];
+  const std::uint32_t whole_columns = task.width / kWide * kBlocks;
+  const std::uint32_t whole_rows = pane.has_shaded ? 0 : task.height / kBlockHeight;
   for (std::uint32_t row = 0; row < shown_rows; ++row) {
-    for (std::uint32_t column = 0; column < shown_columns;) {
-      std::uint32_t count = 0;
-      for (; count < kTogether && column < shown_columns; ++count, column += kBlocks) {
-        Resolving& pixels = vectors[count];
-        pixels.target = blockTarget(task, column, row);
-        const Lanes z = load<Lanes>(placeOf(pane, column, row).depth);
-        const Lanes w = spread(1.0F) / z;
-        if (task.depth != nullptr) {
-          writeWords(task, pixels.target, task.depth, as<IntLanes>(w) & (z > spread(0.0F)));
-        }
-        if (pane.shades) beginColors(pane, column, row, w, pixels);
-      }
-      if (!pane.shades) continue;
-      for (std::uint32_t n = 0; n < count; ++n) endColors(pane, vectors[n]);
+    std::uint32_t column = 0;
+    while (row < whole_rows && column < whole_columns) {
+      const std::uint32_t left = (whole_columns - column) / kBlocks;
+      const std::uint32_t count = left < kTogether ? left : kTogether;
+      resolveVectors({pane, column, row, count});
+      column += count * kBlocks;
     }
+    for (; column < shown_columns; column += kBlocks) resolveVector(pane, column, row);
   }
 }
 
@@ -234,6 +314,7 @@ inline void makeRoom(Pane& pane) {
     }
   }
   pane.records = 1;
+  pane.has_shaded = true;
 }
 
 }  // namespace
