@@ -186,6 +186,54 @@ TEST(SoftCoverage, PixelsAlongASharedEdgeBelongToOneOfTwoTriangles) {
   EXPECT_GT(none, (once + none) / 10);
 }
 
+/// Triangles around the eye, from a decimeter to some hundred meters away: most of them have
+/// corners behind it or far beside the image.
+RenderModelBuilder surroundings(std::mt19937& random, int count) {
+  RenderModelBuilder builder(1.0F / 64);
+  builder.model();
+  for (int n = 0; n < count; ++n) {
+    std::array<RenderVertex, 3> corners;
+    for (RenderVertex& corner : corners) {
+      const float away = std::exp(uniform(random, -2, 6));
+      corner.position =
+          Vec3{uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)} * away;
+    }
+    builder.triangle(corners, {.two_sided = n % 2 == 0});
+  }
+  builder.finish();
+  return builder;
+}
+
+TEST(SoftCoverage, WhatLiesBesideTheImageMayReachBehindTheEye) {
+  constexpr std::uint32_t kSeed = 1311;
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  std::size_t covered = 0;
+  std::size_t all = 0;
+  for (const auto& [width, height] : {std::pair{96U, 64U}, {9U, 31U}, {300U, 260U}}) {
+    for (int scene = 0; scene < 12; ++scene) {
+      const RenderModelBuilder builder = surroundings(random, 12);
+      RenderLibrary library;
+      library.add(builder.meshes());
+      const std::vector<RenderInstance> instances = {{0, {}}};
+      std::vector<RenderView> views(4);
+      for (RenderView& view : views) {
+        view.camera.world_from_camera = rigidTransform({{}, randomRotation(random)});
+        view.camera.vertical_fov = radians(uniform(random, 10, 140));
+        view.instances = instances;
+      }
+      RenderOptions options = softOptions(width, height);
+      const RenderImages images = renderViews(library, options, views);
+      options.culling = false;
+      ASSERT_EQ(images, renderViews(library, options, views)) << width << ", scene " << scene;
+      all += images.depth.size();
+      for (const float depth : images.depth) covered += depth > 0 ? 1U : 0U;
+    }
+  }
+  EXPECT_GT(covered, all / 10);
+  EXPECT_LT(covered, all * 9 / 10);
+}
+
 /// Many small boxes of clutter within a room, several models, in instances at random.
 class SoftCulling : public testing::Test {
  protected:

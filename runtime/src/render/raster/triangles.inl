@@ -83,6 +83,9 @@ GALACTIC_EVERYWHERE inline SortLimits sortLimits(const PaneTask& task,
           spread(cluster.two_sided != 0 ? -1 : 0)};
 }
 
+/// Of a vertex's bad bits: those of the clip planes.
+constexpr std::int32_t kClipBits = 31;
+
 /// Which of some triangles have no bad corner, and which have to be cut: bit n for triangle n. The
 /// rest lies beyond one plane with all corners.
 struct ClipSorting {
@@ -94,7 +97,7 @@ GALACTIC_EVERYWHERE inline ClipSorting sortForClipping(const ClusterState& state
   const IntLanes a = lookUp(state.bad, corners.a);
   const IntLanes b = lookUp(state.bad, corners.b);
   const IntLanes c = lookUp(state.bad, corners.c);
-  const unsigned whole = signBits((a | b | c) == spread(0));
+  const unsigned whole = signBits(((a | b | c) & kClipBits) == spread(0));
   return {whole, ~(whole | signBits((a & b & c) != spread(0)))};
 }
 

@@ -84,7 +84,8 @@ struct ClusterState {
   alignas(64) float z[kMostInCluster];
   /// A table of pairs: texture coordinates; see readCoordinates().
   alignas(64) float uv[2 * kMostInCluster];
-  /// Bit n: on the wrong side of clip plane n; see clipDistance().
+  /// Bit n: on the wrong side of clip plane n (see clipDistance()), and of more planes where
+  /// markBeside() looked at them.
   alignas(64) std::int32_t bad[kMostInCluster];
   bool any_bad;
   bool has_coordinates;
@@ -124,18 +125,30 @@ GALACTIC_EVERYWHERE inline VertexRows vertexRows(const RenderCluster& cluster,
   return {block, first + kWidth < cluster.vertex_count ? kVertexRows * kWidth : 0};
 }
 
+/// Vertices before the division by w: numbers as in PlacedModel.
+struct VertexLanes {
+  Lanes w, right, down;
+};
+
+GALACTIC_EVERYWHERE inline VertexLanes vertexLanes(const VertexFrame& frame,
+                                                   const RenderCluster& cluster,
+                                                   const VertexRows& rows) {
+  const Lanes x = toFloat(rows.row(0) + spread(cluster.origin_x));
+  const Lanes y = toFloat(rows.row(1) + spread(cluster.origin_y));
+  const Lanes z = toFloat(rows.row(2) + spread(cluster.origin_z));
+  return {along(frame.w, x, y, z), along(frame.x, x, y, z), along(frame.y, x, y, z)};
+}
+
 /// A vector of vertices from `first` on: returns which are good.
 template <class State>
 GALACTIC_EVERYWHERE inline unsigned placeVector(const VertexFrame& frame,
                                                 const RenderCluster& cluster,
                                                 const VertexRows& rows, std::uint32_t first,
                                                 State& state) {
-  const Lanes x = toFloat(rows.row(0) + spread(cluster.origin_x));
-  const Lanes y = toFloat(rows.row(1) + spread(cluster.origin_y));
-  const Lanes z = toFloat(rows.row(2) + spread(cluster.origin_z));
-  const Lanes w = along(frame.w, x, y, z);
-  const Lanes right = along(frame.x, x, y, z);
-  const Lanes down = along(frame.y, x, y, z);
+  const VertexLanes vertices = vertexLanes(frame, cluster, rows);
+  const Lanes w = vertices.w;
+  const Lanes right = vertices.right;
+  const Lanes down = vertices.down;
   const Lanes guard = spread(kGuard) * w;
   const IntLanes good =
       (w >= spread(frame.near)) & (magnitude(right) <= guard) & (magnitude(down) <= guard);

@@ -116,6 +116,7 @@ void drawCluster(Pane& pane, const SeenCluster& seen) {
   state.frame = &frame;
   state.colors = clusterColors(state.facts);
   const float farthest = placeVertices(state);
+  if (state.any_bad && pane.task->culling) markBeside(*pane.task, state);
   const bool compares = pane.task->culling && (state.any_bad || hidesSome(pane, seen, farthest));
   Survivors survivors;
   sortTriangles(pane, state, compares, survivors);

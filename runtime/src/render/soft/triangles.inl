@@ -19,6 +19,31 @@ float placeVertices(ClusterState& state) {
   return least(farthest);
 }
 
+/// Notes which vertices lie beside the pane. What is left of a triangle whose corners all lie
+/// beyond the same edge lies there, too: clipping makes corners between those that there are.
+void markBeside(const PaneTask& task, ClusterState& state) {
+  // A pixel further out than the pane, as corners move when they are rounded, and what rounding can
+  // do before, relative to the size of what is added.
+  constexpr float kMargin = kSubpixels;
+  constexpr float kClipRounding = 4e-6F;
+  const PaneEdges edges = paneEdges(task);
+  const float widest = 128.0F * static_cast<float>(task.image_width + task.image_height) + kMargin;
+  const RenderCluster& cluster = *state.facts.cluster;
+  const std::uint16_t* block = vertexBlock(state.facts, 0);
+  for (std::uint32_t v = 0; v < cluster.vertex_count; v += kLanes, block += kVertexRows * kLanes) {
+    const VertexLanes at = vertexLanes(*state.frame, cluster, vertexRows(cluster, block, v));
+    const auto beyond = [&](Lanes place, Lanes edge, std::int32_t bit) {
+      const Lanes size = magnitude(place) + spread(widest) * magnitude(at.w);
+      return (place - edge * at.w > size * spread(kClipRounding)) & bit;
+    };
+    const IntLanes beside = beyond(at.right, spread(edges.right + kMargin), 32) |
+                            beyond(-at.right, spread(kMargin - edges.left), 64) |
+                            beyond(at.down, spread(edges.bottom + kMargin), 128) |
+                            beyond(-at.down, spread(kMargin - edges.top), 256);
+    store(state.bad + v, load<IntLanes>(state.bad + v) | beside);
+  }
+}
+
 /// Texture coordinates of all vertices, in texels of the largest level.
 void readCoordinates(ClusterState& state) {
   if (state.has_coordinates) return;
