@@ -173,6 +173,11 @@ inline IntLanes pickFrom(LaneSet set, IntLanes yes, IntLanes no) {
   return as<IntLanes>(pickFrom(set, as<Lanes>(yes), as<Lanes>(no)));
 }
 
+/// Writes lanes of the set.
+inline void storeFrom(LaneSet set, void* to, IntLanes v) {
+  store(to, pickFrom(set, v, load<IntLanes>(to)));
+}
+
 /// Of bits that are not all 0: the number of the lowest one.
 inline int lowestBit(unsigned bits) { return __builtin_ctz(bits); }
 
@@ -348,6 +353,12 @@ inline IntLanes loadRows(const std::uint8_t* from, std::size_t /*next*/) {
 }
 inline Lanes loadRows(const float* from, std::size_t /*next*/) { return load<Lanes>(from); }
 
+/// Four numbers of each of two rows, which lie `stride` numbers apart.
+inline Lanes loadSquare(const float* from, std::size_t stride) {
+  return __builtin_shufflevector(load<Quad>(from), load<Quad>(from + stride), 0, 1, 2, 3, 4, 5, 6,
+                                 7);
+}
+
 /// Writes the lanes whose bits are set, lowest first, and behind them lanes that mean nothing:
 /// eight in all. Takes the same time for any set, as nothing depends on how many there are.
 inline void storePicked(std::int32_t* to, IntLanes v, unsigned which) {
@@ -359,10 +370,12 @@ inline void storePicked(std::int32_t* to, IntLanes v, unsigned which) {
 #endif
 }
 
-/// Of blocks beside each other, each a step further than the one before: the first one.
-inline Lanes firstBlocks(Lanes begin, Lanes /*step*/, bool /*odd*/) { return begin; }
+/// Of blocks below each other, each a step further than the one before: the first one.
+inline Lanes firstBlocks(Lanes begin, Lanes /*step*/, std::int32_t /*row*/ = 0) { return begin; }
 /// The one behind it.
 inline Lanes nextBlocks(Lanes blocks, Lanes step) { return blocks + step; }
+/// A number for each block.
+inline Lanes ofBlocks(float first, float /*second*/) { return spread(first); }
 
 /// Eight vectors of one number each become eight rows, `stride` apart.
 inline void storeTransposed(const Lanes* fields, float* to, std::size_t stride) {

@@ -15,7 +15,7 @@ using ShortLanes = std::uint16_t __attribute__((vector_size(64)));
 
 /// Of the rows in pools, and of what is stored in blocks.
 constexpr std::uint32_t kWidth = 8;
-/// Of vectors, and the blocks that fill one.
+/// Of vectors, and the blocks that fill one, the second below the first.
 constexpr std::uint32_t kLanes = 16;
 constexpr std::uint32_t kBlocks = 2;
 constexpr unsigned kAllLanes = 0xFFFF;
@@ -75,6 +75,11 @@ inline IntLanes pickFrom(LaneSet set, IntLanes yes, IntLanes no) {
 }
 inline Lanes pickFrom(LaneSet set, Lanes yes, Lanes no) {
   return as<Lanes>(_mm512_mask_blend_ps(set, as<__m512>(no), as<__m512>(yes)));
+}
+
+/// Writes lanes of the set. What is read there soon has to wait.
+inline void storeFrom(LaneSet set, void* to, IntLanes v) {
+  _mm512_mask_storeu_epi32(to, set, as<__m512i>(v));
 }
 
 /// The lanes whose sign is not set and where `a` is greater.
@@ -148,6 +153,14 @@ inline IntLanes loadRows(const std::uint8_t* from, std::size_t next) {
 inline Lanes loadRows(const float* from, std::size_t next) {
   const __m512 low = _mm512_castps256_ps512(_mm256_loadu_ps(from));
   return as<Lanes>(_mm512_insertf32x8(low, _mm256_loadu_ps(from + next), 1));
+}
+
+/// Four numbers of each of four rows, which lie `stride` numbers apart.
+inline Lanes loadSquare(const float* from, std::size_t stride) {
+  const __m256 upper = _mm256_set_m128(_mm_loadu_ps(from + stride), _mm_loadu_ps(from));
+  from += 2 * stride;
+  const __m256 lower = _mm256_set_m128(_mm_loadu_ps(from + stride), _mm_loadu_ps(from));
+  return as<Lanes>(_mm512_insertf32x8(_mm512_castps256_ps512(upper), lower, 1));
 }
 
 inline __m256i lowHalf(IntLanes v) { return _mm512_castsi512_si256(as<__m512i>(v)); }
@@ -280,17 +293,22 @@ inline void storePicked(std::int32_t* to, IntLanes v, unsigned which) {
   store(to, as<IntLanes>(_mm512_maskz_compress_epi32(static_cast<LaneSet>(which), as<__m512i>(v))));
 }
 
-/// Of blocks beside each other, each a step further than the one before: the first ones. `begin`
-/// has the first block in both halves; `odd`: it is the right one of its pair.
-inline Lanes firstBlocks(Lanes begin, Lanes step, bool odd) {
-  const LaneSet right = odd ? 0 : 0xFF00;
+/// Of blocks below each other, each a step further than the one before: the first ones. `begin` has
+/// the first block in both halves; where its row is odd, it is the lower one of its pair.
+inline Lanes firstBlocks(Lanes begin, Lanes step, std::int32_t row = 0) {
+  const LaneSet lower = row % 2 != 0 ? 0 : 0xFF00;
   return as<Lanes>(
-      _mm512_mask_add_ps(as<__m512>(begin), right, as<__m512>(begin), as<__m512>(step)));
+      _mm512_mask_add_ps(as<__m512>(begin), lower, as<__m512>(begin), as<__m512>(step)));
 }
 /// The ones behind them.
 inline Lanes nextBlocks(Lanes blocks, Lanes step) {
   const __m512 last = _mm512_shuffle_f32x4(as<__m512>(blocks), as<__m512>(blocks), 0xEE);
-  return firstBlocks(as<Lanes>(_mm512_add_ps(last, as<__m512>(step))), step, false);
+  return firstBlocks(as<Lanes>(_mm512_add_ps(last, as<__m512>(step))), step);
+}
+
+/// A number for each block.
+inline Lanes ofBlocks(float first, float second) {
+  return pickFrom(setOf(0xFF00), spread(second), spread(first));
 }
 
 /// Eight vectors of one number each become sixteen rows of eight, `stride` apart.
@@ -313,11 +331,12 @@ inline void storeTransposed(const Lanes* fields, float* to, std::size_t stride) 
   }
 }
 
-/// Two rows of pixels to an image, whose rows lie `stride` bytes apart.
+/// Four rows of pixels to an image, whose rows lie `stride` bytes apart.
 inline void storeBlocks(std::uint8_t* to, std::size_t stride, IntLanes v) {
-  const __m512i rows = _mm512_shuffle_i64x2(as<__m512i>(v), as<__m512i>(v), 0xD8);
-  store(to, _mm512_castsi512_si256(rows));
-  store(to + stride, _mm512_extracti64x4_epi64(rows, 1));
+  store(to, _mm512_castsi512_si128(as<__m512i>(v)));
+  store(to + stride, _mm512_extracti32x4_epi32(as<__m512i>(v), 1));
+  store(to + 2 * stride, _mm512_extracti32x4_epi32(as<__m512i>(v), 2));
+  store(to + 3 * stride, _mm512_extracti32x4_epi32(as<__m512i>(v), 3));
 }
 
 /// p + (q - p) * weight / 256 for the 16-bit halves of all lanes, which are bytes; `rest` is 256

@@ -240,8 +240,8 @@ GALACTIC_EVERYWHERE inline void setUpGroup(const PaneTask& task, const State& st
   store(setup.last_row, lesser(lastPixel(mostOf(a.y, b.y, c.y)), spread(height - 1)) >> 1);
   const PointLanes start{(first_column << 10) + spread(kSubpixels / 2),
                          (first_row << 9) + spread(kSubpixels / 2)};
-  const IntLanes first_of_vector = first_column & -static_cast<std::int32_t>(kBlocks);
-  const PointLanes edge_start{(first_of_vector << 10) + spread(kSubpixels / 2), start.y};
+  const IntLanes first_of_vector = first_row & -static_cast<std::int32_t>(kBlocks);
+  const PointLanes edge_start{start.x, (first_of_vector << 9) + spread(kSubpixels / 2)};
   setUpEdge(setup, 0, a, b, edge_start);
   setUpEdge(setup, 1, b, c, edge_start);
   setUpEdge(setup, 2, c, a, edge_start);

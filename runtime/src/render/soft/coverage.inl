@@ -29,13 +29,13 @@ inline Covered coverBlocks(const BlockPlace& place, IntLanes outside, Lanes z, I
   }
   const Lanes depth = pickFrom(shown, z, old);
   store(place.depth, depth);
-  store(place.ids, pickFrom(shown, id, load<IntLanes>(place.ids)));
+  storeFrom(shown, place.ids, id);
   return {shown, depth};
 }
 
-/// How an edge function changes from pixel to pixel within a vector: block after block.
+/// How an edge function changes from pixel to pixel within a vector.
 inline IntLanes edgeOffsets(std::int32_t right, std::int32_t down) {
-  return pixelsRight() * spread(right) + (-pixelsDown() & spread(down));
+  return pixelsRight() * spread(right) + pixelsDown() * spread(down);
 }
 
 /// How what a group's set-up gives changes from vector to vector and from row to row.
@@ -45,10 +45,11 @@ struct alignas(kGroupAlignment) GroupSteps {
 };
 
 inline void setSteps(const GroupSetup& group, GroupSteps& steps) {
-  constexpr auto kWide = static_cast<std::int32_t>(kBlocks * kBlockWidth);
+  constexpr auto kWide = static_cast<std::int32_t>(kBlockWidth);
+  constexpr auto kRows = static_cast<std::int32_t>(kHigh);
   for (int e = 0; e < 3; ++e) {
     store(steps.edge_beside[e], load<IntLanes>(group.edge_right[e]) * kWide);
-    store(steps.edge_below[e], load<IntLanes>(group.edge_down[e]) * 2);
+    store(steps.edge_below[e], load<IntLanes>(group.edge_down[e]) * kRows);
   }
   store(steps.z_beside, load<Lanes>(group.z_right) * spread(4.0F));
   store(steps.z_below, load<Lanes>(group.z_down) * spread(2.0F));
@@ -65,8 +66,10 @@ struct SmallCover {
 
   EdgeLanes edges{lanes(0), lanes(1), lanes(2)};
   // From block to block, as all processors do: no lane may take a short cut.
-  Lanes z = spread(group.z[n]) + toFloat(pixelsRight() & 3) * spread(group.z_right[n]) +
-            toFloat(pixelsDown()) * spread(group.z_down[n]);
+  Lanes z = firstBlocks(spread(group.z[n]) + toFloat(pixelsRight()) * spread(group.z_right[n]) +
+                            toFloat(pixelsDown() & 1) * spread(group.z_down[n]),
+                        spread(steps.z_below[n]), group.first_row[n]);
+  IntLanes id = idOf(pane.records);
   LaneSet hit = noLanes();
 
   IntLanes lanes(int e) const {
@@ -74,13 +77,12 @@ struct SmallCover {
   }
   void cover(const BlockPlace& place, const EdgeLanes& at, Lanes z_there) {
     const Lanes within = lesser(greater(z_there, spread(group.z_low[n])), spread(group.z_high[n]));
-    const IntLanes id = idOf(pane.records);
     hit |= coverBlocks(place, at.a | at.b | at.c, within, id, test).shown;
   }
   void nextRow() {
     edges = {edges.a + spread(steps.edge_below[0][n]), edges.b + spread(steps.edge_below[1][n]),
              edges.c + spread(steps.edge_below[2][n])};
-    z = z + spread(steps.z_below[n]);
+    z = nextBlocks(z, spread(steps.z_below[n]));
   }
   /// `more`: vectors beside the first one.
   void coverRow(BlockPlace place, Lanes z_there, std::uint32_t more) {
@@ -90,7 +92,7 @@ struct SmallCover {
       if (more == 0) return;
       at = {at.a + spread(steps.edge_beside[0][n]), at.b + spread(steps.edge_beside[1][n]),
             at.c + spread(steps.edge_beside[2][n])};
-      z_there = nextBlocks(z_there, spread(steps.z_beside[n]));
+      z_there = z_there + spread(steps.z_beside[n]);
       place = {place.depth + kLanes, place.ids + kLanes};
     }
   }
@@ -102,16 +104,16 @@ inline bool coverSmall(const Pane& pane, const GroupSetup& group, const GroupSte
                        unsigned n, const Test& test) {
   SmallCover<Test> small{pane, group, steps, n, test};
   const auto column = static_cast<std::uint32_t>(group.first_column[n]);
-  const std::uint32_t first = column / kBlocks;
-  const std::uint32_t more = static_cast<std::uint32_t>(group.last_column[n]) / kBlocks - first;
-  const std::size_t stride = std::size_t{pane.columns} * kWidth;
-  BlockPlace place = placeOf(pane, first * kBlocks, static_cast<std::uint32_t>(group.first_row[n]));
-  for (std::int32_t left = group.last_row[n] - group.first_row[n];; --left) {
-    const Lanes z = firstBlocks(small.z, spread(steps.z_beside[n]), column % kBlocks != 0);
+  const std::uint32_t more = static_cast<std::uint32_t>(group.last_column[n]) - column;
+  const auto row = static_cast<std::uint32_t>(group.first_row[n]);
+  const std::size_t stride = rowStride(pane);
+  BlockPlace place = placeOf(pane, column, row);
+  std::uint32_t left = static_cast<std::uint32_t>(group.last_row[n]) / kBlocks - row / kBlocks;
+  for (;; --left) {
     if (more == 0) {
-      small.cover(place, small.edges, z);
+      small.cover(place, small.edges, small.z);
     } else {
-      small.coverRow(place, z, more);
+      small.coverRow(place, small.z, more);
     }
     if (left == 0) return bitsOf(small.hit) != 0;
     small.nextRow();
@@ -148,12 +150,12 @@ inline float tileDepth(const Pane& pane, std::uint32_t tile_x, std::uint32_t til
   const PaneScratch& scratch = *pane.scratch;
   const std::size_t tile = static_cast<std::size_t>(tile_y) * pane.tile_columns + tile_x;
   if ((scratch.tile_changed[tile_y] >> tile_x & 1U) == 0) return scratch.tile_depth[tile];
-  constexpr std::uint32_t kRows = kTileEdge / kBlockHeight;
-  const std::size_t stride = static_cast<std::size_t>(pane.columns) * kWidth;
-  const float* from = scratch.depth + tile_y * kRows * stride + std::size_t{2} * tile_x * kWidth;
+  constexpr std::uint32_t kRows = kTileEdge / kHigh;
+  const std::size_t stride = rowStride(pane);
+  const float* from = scratch.depth + tile_y * kRows * stride + std::size_t{2} * tile_x * kLanes;
   Lanes farthest = load<Lanes>(from);
   for (std::uint32_t row = 0; row < kRows; ++row, from += stride) {
-    for (std::uint32_t n = 0; n < 2 * kWidth; n += kLanes) {
+    for (std::uint32_t n = 0; n < 2 * kLanes; n += kLanes) {
       farthest = lesser(farthest, load<Lanes>(from + n));
     }
   }
@@ -175,6 +177,31 @@ inline unsigned mayShow(const Pane& pane, std::int32_t x, std::int32_t y, unsign
     tileDepth(pane, static_cast<std::uint32_t>(x + lowestBit(left)), static_cast<std::uint32_t>(y));
   }
   return bits & signBits(load<Lanes>(depth) < nearest);
+}
+
+/// Tiles that are looked at together: as many as a vector has lanes, row by row of four.
+constexpr std::int32_t kSquareWidth = 4;
+constexpr auto kSquareHeight = static_cast<std::int32_t>(kLanes) / kSquareWidth;
+
+/// mayShow() of such tiles, from one on.
+inline unsigned mayShowInSquare(const Pane& pane, std::int32_t x, std::int32_t y, unsigned bits,
+                                Lanes nearest) {
+  const PaneScratch& scratch = *pane.scratch;
+  const float* depth = scratch.tile_depth + static_cast<std::size_t>(y) * pane.tile_columns + x;
+  bits &= signBits(loadSquare(depth, pane.tile_columns) < nearest);
+  unsigned changed = 0;
+  for (std::int32_t row = 0; row < kSquareHeight; ++row) {
+    const unsigned of_row = scratch.tile_changed[y + row] >> static_cast<unsigned>(x) & 0xFU;
+    changed |= of_row << static_cast<unsigned>(kSquareWidth * row);
+  }
+  changed &= bits;
+  if (changed == 0) return bits;
+  for (; changed != 0; changed &= changed - 1) {
+    const int n = lowestBit(changed);
+    tileDepth(pane, static_cast<std::uint32_t>(x + n % kSquareWidth),
+              static_cast<std::uint32_t>(y + n / kSquareWidth));
+  }
+  return bits & signBits(loadSquare(depth, pane.tile_columns) < nearest);
 }
 
 /// Whether one of the cluster's tiles hides what is as far as `farthest`.

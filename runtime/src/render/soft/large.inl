@@ -7,19 +7,22 @@ struct TileSteps {
   /// Of edge functions from one vector to the next ones beside and below.
   IntLanes edge_beside[3], edge_below[3];
   Lanes z_beside;
-  /// Of 1/w, of each row of vectors from the first one.
-  float z_down[kTileEdge / kBlockHeight];
+  /// Of 1/w, of each row of blocks from the first one, for each row of vectors.
+  Lanes z_down[kTileEdge / kHigh];
 };
 
 inline TileSteps tileSteps(const LargeSetup& setup) {
   TileSteps steps;
   for (int n = 0; n < 3; ++n) {
-    steps.edge_beside[n] = spread(setup.edges[n].right * 4);
-    steps.edge_below[n] = spread(setup.edges[n].down * 2);
+    steps.edge_beside[n] = spread(setup.edges[n].right * static_cast<std::int32_t>(kBlockWidth));
+    steps.edge_below[n] = spread(setup.edges[n].down * static_cast<std::int32_t>(kHigh));
   }
   steps.z_beside = spread(static_cast<float>(setup.depth.right * 4));
-  for (std::uint32_t row = 0; row < kTileEdge / kBlockHeight; ++row) {
-    steps.z_down[row] = static_cast<float>(setup.depth.down * (2 * row));
+  const auto down = [&](std::uint32_t row) {
+    return static_cast<float>(setup.depth.down * (kBlockHeight * row));
+  };
+  for (std::uint32_t row = 0; row < kTileEdge / kHigh; ++row) {
+    steps.z_down[row] = ofBlocks(down(row * kBlocks), down(row * kBlocks + 1));
   }
   return steps;
 }
@@ -65,22 +68,22 @@ inline LaneSet coverTile(const Pane& pane, const LargeSetup& setup, const TileSt
                   setup.edges[1].offsets + spread(starts.edges[1][n]),
                   setup.edges[2].offsets + spread(starts.edges[2][n])};
   const IntLanes id = idOf(pane.records);
-  const std::size_t stride = std::size_t{pane.columns} * kWidth;
+  const std::size_t stride = rowStride(pane);
   BlockPlace first = placeOf(pane, x * 2, y * 4);
   LaneSet hit = noLanes();
   Lanes farthest = spread(__builtin_inff());
 #pragma GCC unroll 4
-  for (std::uint32_t row = 0; row < kTileEdge / kBlockHeight; ++row) {
+  for (std::uint32_t row = 0; row < kTileEdge / kHigh; ++row) {
     BlockPlace place = first;
-    Lanes z = firstBlocks(z_start + spread(steps.z_down[row]), steps.z_beside, false);
+    Lanes z = z_start + steps.z_down[row];
     EdgeLanes at = edges;
 #pragma GCC unroll 2
-    for (std::uint32_t block = 0; block < 2; block += kBlocks) {
+    for (std::uint32_t column = 0; column < kTileEdge / kBlockWidth; ++column) {
       const Covered covered = coverBlocks(place, at.a | at.b | at.c,
                                           lesser(greater(z, setup.z_low), setup.z_high), id, test);
       hit |= covered.shown;
       farthest = lesser(farthest, covered.depth);
-      z = nextBlocks(z, steps.z_beside);
+      z = z + steps.z_beside;
       at = {at.a + steps.edge_beside[0], at.b + steps.edge_beside[1], at.c + steps.edge_beside[2]};
       place = {place.depth + kLanes, place.ids + kLanes};
     }
@@ -92,15 +95,16 @@ inline LaneSet coverTile(const Pane& pane, const LargeSetup& setup, const TileSt
   return hit;
 }
 
-/// A linear function over a row of tiles from one on, widened by what rounding can do: no lane is
-/// less than the exact value.
+/// A linear function over a square of tiles (see mayShowInSquare()), widened by what rounding can
+/// do: no lane is less than the exact value.
 struct TileFunction {
   Lanes value, below;
 
-  void nextRow() { value = value + below; }
+  void nextSquare() { value = value + below; }
 };
 
-/// `start`: at the pane's first pixel; `right`, `down`: changes per pixel. `x`, `y`: the tile.
+/// `start`: at the pane's first pixel; `right`, `down`: changes per pixel. `x`, `y`: the first
+/// tile.
 inline TileFunction tileFunction(double start, double right, double down, std::int32_t x,
                                  std::int32_t y) {
   // Of at most kMostTiles sums, and of those in coverTile(), relative to what is added.
@@ -109,9 +113,11 @@ inline TileFunction tileFunction(double start, double right, double down, std::i
   const double first = start + (right * (kEdge * x) + down * (kEdge * y));
   const double size =
       __builtin_fabs(first) + kPaneEdge * (__builtin_fabs(right) + __builtin_fabs(down));
+  // Four tiles are a row, as four pixels are a row of a vector.
   return {spread(static_cast<float>(first + size * kSumsRounding)) +
-              toFloat(laneNumbers()) * spread(static_cast<float>(right * kEdge)),
-          spread(static_cast<float>(down * kEdge))};
+              toFloat(pixelsRight()) * spread(static_cast<float>(right * kEdge)) +
+              toFloat(pixelsDown()) * spread(static_cast<float>(down * kEdge)),
+          spread(static_cast<float>(down * (kEdge * kSquareHeight)))};
 }
 
 /// The edge functions of a large triangle at the pixel of a tile where they are largest, and 1/w at
@@ -122,11 +128,11 @@ struct TileFunctions {
   IntLanes outside() const {
     return as<IntLanes>(a.value) | as<IntLanes>(b.value) | as<IntLanes>(c.value);
   }
-  void nextRow() {
-    a.nextRow();
-    b.nextRow();
-    c.nextRow();
-    nearest.nextRow();
+  void nextSquare() {
+    a.nextSquare();
+    b.nextSquare();
+    c.nextSquare();
+    nearest.nextSquare();
   }
 };
 
@@ -148,19 +154,28 @@ struct TileList {
   std::uint32_t count = 0;
 };
 
+/// Those of the first `wide` columns and `high` rows of a square of tiles: bit n for lane n.
+inline unsigned firstOfSquare(std::int32_t wide, std::int32_t high) {
+  const unsigned row = (1U << static_cast<unsigned>(lesserOf(wide, kSquareWidth))) - 1;
+  const auto rows = static_cast<unsigned>(kSquareWidth * lesserOf(high, kSquareHeight));
+  return row * 0x1111U & ((1U << rows) - 1);
+}
+
 /// The tiles that a large triangle touches and where it may show. Which of them do is hard to
 /// foresee: no branch depends on it.
 inline void findTiles(const Pane& pane, const LargeSetup& setup, const TileBox& box,
                       TileList& list) {
-  for (std::int32_t x = box.left; x <= box.right; x += static_cast<std::int32_t>(kLanes)) {
+  const IntLanes numbers =
+      pixelsRight() + pixelsDown() * spread(static_cast<std::int32_t>(kMostTiles));
+  for (std::int32_t x = box.left; x <= box.right; x += kSquareWidth) {
     TileFunctions functions = tileFunctions(setup, x, box.top);
-    const unsigned within = firstLanes(static_cast<std::uint32_t>(box.right - x) + 1);
-    for (std::int32_t y = box.top; y <= box.bottom; ++y, functions.nextRow()) {
+    for (std::int32_t y = box.top; y <= box.bottom; y += kSquareHeight, functions.nextSquare()) {
+      const unsigned within = firstOfSquare(box.right - x + 1, box.bottom - y + 1);
       const unsigned touched = ~signBits(functions.outside()) & within;
       const unsigned bits =
-          mayShow(pane, x, y, touched, lesser(functions.nearest.value, setup.z_high));
+          mayShowInSquare(pane, x, y, touched, lesser(functions.nearest.value, setup.z_high));
       const std::int32_t first = y * static_cast<std::int32_t>(kMostTiles) + x;
-      storePicked(list.tiles + list.count, spread(first) + laneNumbers(), bits);
+      storePicked(list.tiles + list.count, spread(first) + numbers, bits);
       list.count += static_cast<std::uint32_t>(__builtin_popcount(bits));
     }
   }
@@ -188,8 +203,8 @@ bool coverTiles(const Pane& pane, const LargeSetup& setup, const TileBox& box, c
 /// Sets what depends on the pixels of a vector.
 inline void setOffsets(LargeSetup& setup) {
   for (LongEdge& edge : setup.edges) edge.offsets = edgeOffsets(edge.right, edge.down);
-  setup.z_offsets = toFloat(pixelsRight() & 3) * spread(static_cast<float>(setup.depth.right)) +
-                    toFloat(pixelsDown()) * spread(static_cast<float>(setup.depth.down));
+  setup.z_offsets = toFloat(pixelsRight()) * spread(static_cast<float>(setup.depth.right)) +
+                    toFloat(pixelsDown() & 1) * spread(static_cast<float>(setup.depth.down));
 }
 
 /// Draws one triangle, whatever its size. Corners go clockwise on the screen where it shows its

@@ -33,8 +33,8 @@ void clearPane(const Pane& pane) {
   __builtin_memset(scratch.tile_depth, 0, tiles * sizeof(*scratch.tile_depth));
   __builtin_memset(scratch.tile_changed, 0, sizeof(scratch.tile_changed[0]) * tiles_down);
   if (task.width % kTileEdge == 0 && task.height % kTileEdge == 0) return;
-  for (std::uint32_t row = 0; row < pane.rows; ++row) {
-    for (std::uint32_t column = 0; column < pane.columns; column += kBlocks) {
+  for (std::uint32_t row = 0; row < pane.rows; row += kBlocks) {
+    for (std::uint32_t column = 0; column < pane.columns; ++column) {
       const IntLanes x = spread(static_cast<std::int32_t>(column * kBlockWidth)) + pixelsRight();
       const IntLanes y = spread(static_cast<std::int32_t>(row * kBlockHeight)) + pixelsDown();
       const IntLanes outside = (x >= spread(static_cast<std::int32_t>(task.width))) |

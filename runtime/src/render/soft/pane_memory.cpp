@@ -35,8 +35,9 @@ std::size_t layOut(std::byte* block, std::size_t tiles, PaneScratch& scratch) {
   constexpr std::size_t kTilePixels = std::size_t{kTileEdge} * kTileEdge;
   pieces.take(scratch.depth, tiles * kTilePixels);
   pieces.take(scratch.ids, tiles * kTilePixels);
-  pieces.take(scratch.tile_depth, tiles + kMostTiles);
-  pieces.take(scratch.tile_changed, kMostTiles);
+  // Tiles are read in squares of four, and in rows of sixteen.
+  pieces.take(scratch.tile_depth, tiles + std::size_t{4} * kMostTiles);
+  pieces.take(scratch.tile_changed, kMostTiles + 4);
   pieces.take(scratch.bucket_starts, kBuckets + 1);
   pieces.take(scratch.records, std::size_t{kMostRecords} * kRecordStride);
   pieces.take(scratch.colors, std::size_t{kMostRecords} * kRecordStride);

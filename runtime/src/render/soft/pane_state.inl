@@ -42,24 +42,31 @@ inline float* colorsAt(const Pane& pane, std::uint32_t number) {
   return pane.scratch->colors + std::size_t{number} * kRecordStride;
 }
 
+/// Rows of pixels in a vector.
+constexpr std::uint32_t kHigh = kBlocks * kBlockHeight;
+
 /// Where a vector of pixels lies in the pane.
 struct BlockPlace {
   float* depth;
   std::int32_t* ids;
 };
 
+/// `row`: of its first block.
 inline BlockPlace placeOf(const Pane& pane, std::uint32_t column, std::uint32_t row) {
-  const std::size_t at = (std::size_t{row} * pane.columns + column) * kWidth;
+  const std::size_t at = (std::size_t{row / kBlocks} * pane.columns + column) * kLanes;
   return {pane.scratch->depth + at, pane.scratch->ids + at};
 }
 
-/// Of a vector of pixels from the first one on, block after block.
+/// From one row of vectors to the next.
+inline std::size_t rowStride(const Pane& pane) { return std::size_t{pane.columns} * kLanes; }
+
+/// Of a vector of pixels from the first one on, row after row.
 inline IntLanes pixelsRight() {
-  constexpr std::int32_t kRight[16] = {0, 1, 2, 3, 0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7};
+  constexpr std::int32_t kRight[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
   return load<IntLanes>(kRight);
 }
 inline IntLanes pixelsDown() {
-  constexpr std::int32_t kDown[16] = {0, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1};
+  constexpr std::int32_t kDown[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
   return load<IntLanes>(kDown);
 }
 

@@ -46,9 +46,9 @@ struct AlphaTest {
 
   /// The sign bits tell which.
   [[gnu::noinline]] IntLanes operator()(const BlockPlace& place, Lanes z) const {
-    const auto block = static_cast<std::uint32_t>((place.depth - pane->scratch->depth) / kWidth);
+    const auto vector = static_cast<std::uint32_t>((place.depth - pane->scratch->depth) / kLanes);
     const PixelLanes pixels =
-        pixelsOf(block % pane->columns, block / pane->columns, spread(1.0F) / z);
+        pixelsOf(vector % pane->columns, vector / pane->columns * kBlocks, spread(1.0F) / z);
     return alphaPasses(*pane->task, record, colors, least_alpha, pixels);
   }
 };

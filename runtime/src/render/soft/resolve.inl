@@ -19,16 +19,16 @@ struct Shading {
   IntLanes light;
 };
 
-/// Asks the memory for most of the texels: those at the corners of the vector's blocks.
+/// Asks the memory for most of the texels: those at both ends of the vector's rows.
 inline void fetchTexels(const PaneTask& task, const SurfacePlace& surface) {
   const std::int32_t* base = texelBase(task, surface.base);
   alignas(kVectorBytes) std::int32_t upper[kLanes];
   alignas(kVectorBytes) std::int32_t lower[kLanes];
   store(upper, surface.place.at.upper_left);
   store(lower, surface.place.at.lower_right);
-  for (const std::uint32_t lane : {0U, kBlockWidth, kLanes - kBlockWidth - 1, kLanes - 1}) {
+  for (std::uint32_t lane = 0; lane < kLanes; lane += kBlockWidth) {
     __builtin_prefetch(base + upper[lane]);
-    __builtin_prefetch(base + lower[lane]);
+    __builtin_prefetch(base + lower[lane + kBlockWidth - 1]);
   }
 }
 
@@ -99,9 +99,8 @@ struct BlockTarget {
 inline BlockTarget blockTarget(const PaneTask& task, std::uint32_t column, std::uint32_t row) {
   const std::uint32_t x = column * kBlockWidth;
   const std::uint32_t y = row * kBlockHeight;
-  constexpr std::uint32_t kWide = kBlocks * kBlockWidth;
-  const std::uint32_t wide = task.width - x < kWide ? task.width - x : kWide;
-  const std::uint32_t high = task.height - y < kBlockHeight ? task.height - y : kBlockHeight;
+  const std::uint32_t wide = task.width - x < kBlockWidth ? task.width - x : kBlockWidth;
+  const std::uint32_t high = task.height - y < kHigh ? task.height - y : kHigh;
   return {static_cast<std::size_t>(task.top + y) * task.image_width + task.left + x, wide, high};
 }
 
@@ -109,30 +108,20 @@ inline BlockTarget blockTarget(const PaneTask& task, std::uint32_t column, std::
 inline void writeWords(const PaneTask& task, const BlockTarget& target, void* image,
                        IntLanes words) {
   auto* to = static_cast<std::uint8_t*>(image) + 4 * target.pixel;
-  if (target.width == kBlocks * kBlockWidth && target.height == kBlockHeight) {
+  if (target.width == kBlockWidth && target.height == kHigh) {
     return storeBlocks(to, std::size_t{4} * task.image_width, words);
   }
   alignas(kVectorBytes) std::uint8_t bytes[4 * kLanes];
   store(bytes, words);
   constexpr std::size_t kRowBytes = std::size_t{4} * kBlockWidth;
   for (std::uint32_t y = 0; y < target.height; ++y, to += std::size_t{4} * task.image_width) {
-    for (std::uint32_t block = 0; block < kBlocks; ++block) {
-      const std::uint32_t x = block * kBlockWidth;
-      const std::uint8_t* from = bytes + kRowBytes * (2 * block + y);
-      if (target.width >= x + kBlockWidth) {
-        __builtin_memcpy(to + std::size_t{4} * x, from, kRowBytes);
-      } else if (target.width > x) {
-        __builtin_memcpy(to + std::size_t{4} * x, from, std::size_t{4} * (target.width - x));
-      }
-    }
+    __builtin_memcpy(to, bytes + kRowBytes * y, std::size_t{4} * target.width);
   }
 }
 
-/// The place of a lane's pixel among those of its blocks.
-constexpr std::uint32_t laneX(std::uint32_t lane) {
-  return lane % kBlockWidth + lane / kWidth * kBlockWidth;
-}
-constexpr std::uint32_t laneY(std::uint32_t lane) { return lane / kBlockWidth % kBlockHeight; }
+/// The place of a lane's pixel among those of its vector.
+constexpr std::uint32_t laneX(std::uint32_t lane) { return lane % kBlockWidth; }
+constexpr std::uint32_t laneY(std::uint32_t lane) { return lane / kBlockWidth; }
 
 /// Writes colors without their alpha.
 inline void writeTriples(const PaneTask& task, const BlockTarget& target, IntLanes words) {
@@ -237,18 +226,18 @@ struct WholeVectors {
   const std::int32_t* ids(std::uint32_t n) const { return place.ids + std::size_t{n} * kLanes; }
   Lanes depth(std::uint32_t n) const { return load<Lanes>(place.depth + std::size_t{n} * kLanes); }
   PixelLanes pixels(std::uint32_t n) const {
-    return pixelsOf(column + n * kBlocks, row, spread(1.0F) / depth(n));
+    return pixelsOf(column + n, row, spread(1.0F) / depth(n));
   }
   /// Writes elements of four bytes.
   void write(void* image, std::uint32_t n, IntLanes words) const {
-    constexpr std::uint32_t kWide = kBlocks * kBlockWidth;
-    auto* to = static_cast<std::uint8_t*>(image) + 4 * (target.pixel + std::size_t{n} * kWide);
+    auto* to =
+        static_cast<std::uint8_t*>(image) + 4 * (target.pixel + std::size_t{n} * kBlockWidth);
     storeBlocks(to, std::size_t{4} * pane.task->image_width, words);
   }
   void writeColors(std::uint32_t n, IntLanes colors) const {
     const PaneTask& task = *pane.task;
     if (task.channels == 4) return write(task.color, n, colors);
-    writeTriples(task, blockTarget(task, column + n * kBlocks, row), colors);
+    writeTriples(task, blockTarget(task, column + n, row), colors);
   }
 };
 
@@ -281,28 +270,27 @@ inline void resolveVectors(const WholeVectors& vectors) {
 /// Writes the images.
 inline void resolve(const Pane& pane) {
   const PaneTask& task = *pane.task;
-  constexpr std::uint32_t kWide = kBlocks * kBlockWidth;
   const std::uint32_t shown_columns = (task.width + kBlockWidth - 1) / kBlockWidth;
   const std::uint32_t shown_rows = (task.height + kBlockHeight - 1) / kBlockHeight;
-  const std::uint32_t whole_columns = task.width / kWide * kBlocks;
-  const std::uint32_t whole_rows = pane.has_shaded ? 0 : task.height / kBlockHeight;
-  for (std::uint32_t row = 0; row < shown_rows; ++row) {
+  const std::uint32_t whole_columns = task.width / kBlockWidth;
+  const std::uint32_t whole_rows = pane.has_shaded ? 0 : task.height / kHigh * kBlocks;
+  for (std::uint32_t row = 0; row < shown_rows; row += kBlocks) {
     std::uint32_t column = 0;
     while (row < whole_rows && column < whole_columns) {
-      const std::uint32_t left = (whole_columns - column) / kBlocks;
+      const std::uint32_t left = whole_columns - column;
       const std::uint32_t count = left < kTogether ? left : kTogether;
       resolveVectors({pane, column, row, count});
-      column += count * kBlocks;
+      column += count;
     }
-    for (; column < shown_columns; column += kBlocks) resolveVector(pane, column, row);
+    for (; column < shown_columns; ++column) resolveVector(pane, column, row);
   }
 }
 
 /// Shades what is seen so far, so that the records can be used again.
 inline void makeRoom(Pane& pane) {
   const PaneTask& task = *pane.task;
-  for (std::uint32_t row = 0; row < pane.rows; ++row) {
-    for (std::uint32_t column = 0; column < pane.columns; column += kBlocks) {
+  for (std::uint32_t row = 0; row < pane.rows; row += kBlocks) {
+    for (std::uint32_t column = 0; column < pane.columns; ++column) {
       const BlockPlace place = placeOf(pane, column, row);
       const auto ids = load<IntLanes>(place.ids);
       if (signBits(spread(0) - ids) == 0) continue;  // none above 0
