@@ -84,6 +84,13 @@ struct SmallCover {
              edges.c + spread(steps.edge_below[2][n])};
     z = nextBlocks(z, spread(steps.z_below[n]));
   }
+  void coverTwo(const BlockPlace& place) {
+    cover(place, edges, z);
+    const EdgeLanes beside{edges.a + spread(steps.edge_beside[0][n]),
+                           edges.b + spread(steps.edge_beside[1][n]),
+                           edges.c + spread(steps.edge_beside[2][n])};
+    cover({place.depth + kLanes, place.ids + kLanes}, beside, z + spread(steps.z_beside[n]));
+  }
   /// `more`: vectors beside the first one.
   void coverRow(BlockPlace place, Lanes z_there, std::uint32_t more) {
     EdgeLanes at = edges;
@@ -109,16 +116,18 @@ inline bool coverSmall(const Pane& pane, const GroupSetup& group, const GroupSte
   const std::size_t stride = rowStride(pane);
   BlockPlace place = placeOf(pane, column, row);
   std::uint32_t left = static_cast<std::uint32_t>(group.last_row[n]) / kBlocks - row / kBlocks;
-  for (;; --left) {
-    if (more == 0) {
-      small.cover(place, small.edges, small.z);
-    } else {
-      small.coverRow(place, small.z, more);
+  const auto rows = [&](const auto& cover_row) {
+    for (;; --left) {
+      cover_row();
+      if (left == 0) return bitsOf(small.hit) != 0;
+      small.nextRow();
+      place = {place.depth + stride, place.ids + stride};
     }
-    if (left == 0) return bitsOf(small.hit) != 0;
-    small.nextRow();
-    place = {place.depth + stride, place.ids + stride};
-  }
+  };
+  // Most triangles are narrow: then their rows have no loops of their own.
+  if (more == 0) return rows([&] { small.cover(place, small.edges, small.z); });
+  if (more == 1) return rows([&] { small.coverTwo(place); });
+  return rows([&] { small.coverRow(place, small.z, more); });
 }
 
 /// Marks the tiles of those triangles of a group whose bits are set, as one box.
