@@ -80,6 +80,35 @@ TEST(SoftLanes, SetsAndExtremesAreThoseOfTheLanes) {
   }
 }
 
+TEST(SoftLanes, OfASetAreWrittenAndOthersStay) {
+  const IntLanes lanes{10, 11, 12, 13, 14, 15, 16, 17};
+  for (unsigned which = 0; which < 256; ++which) {
+    std::array<std::int32_t, kLanes> written{};
+    storeFrom(setOf(which), written.data(), lanes);
+    for (unsigned n = 0; n < kLanes; ++n) {
+      ASSERT_EQ(written.at(n), (which >> n & 1U) != 0 ? lanes[n] : 0) << "set " << which;
+    }
+  }
+}
+
+TEST(SoftLanes, ASquareHasFourNumbersOfEachRow) {
+  constexpr std::size_t kStride = 7;
+  std::array<float, 3 * kStride> rows{};
+  for (std::size_t n = 0; n < rows.size(); ++n) rows.at(n) = static_cast<float>(n);
+  const Lanes square = loadSquare(rows.data() + 2, kStride);
+  for (unsigned n = 0; n < kLanes; ++n) {
+    EXPECT_EQ(square[n], rows.at(2 + n / 4 * kStride + n % 4)) << "lane " << n;
+  }
+}
+
+TEST(SoftLanes, DoublesStayWithinTheirLimits) {
+  const Doubles clamped = clampTo(Doubles{-1e300, -3, 0.5, 7}, -2, 5);
+  EXPECT_EQ(clamped[0], -2);
+  EXPECT_EQ(clamped[1], -2);
+  EXPECT_EQ(clamped[2], 0.5);
+  EXPECT_EQ(clamped[3], 5);
+}
+
 /// A texture of random texels with all its levels, and a record that shows it.
 class SoftSampling : public testing::Test {
  protected:
