@@ -208,8 +208,9 @@ std::vector<PlacedSphere> spheresOfRadius(const Robot& robot, const std::vector<
       spheres.push_back({{link.node, link.node_from_link * sphere.center}, place});
     }
   }
-  std::ranges::stable_sort(spheres, {},
-                           [](const PlacedSphere& placed) { return placed.sphere.node; });
+  std::ranges::sort(spheres, {}, [](const PlacedSphere& placed) {
+    return std::pair(placed.sphere.node, placed.place);
+  });
   for (std::size_t first = 0; first < spheres.size();) {
     const std::int32_t node = spheres[first].sphere.node;
     std::size_t end = first;
