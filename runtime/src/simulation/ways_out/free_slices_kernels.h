@@ -96,8 +96,10 @@ struct InSlices {
 };
 
 /// Adds what is said of a group, number `n` of those that are asked about. Nobody can guess whether
-/// something is unknown: a number, and no branch.
-inline void addGroup(const EightPlaces& places, unsigned spheres, std::size_t n, InSlices& found) {
+/// something is unknown: a number, and no branch. Inlined everywhere: a copy built for AVX2 must
+/// not become that of all.
+[[gnu::always_inline]] inline void addGroup(const EightPlaces& places, unsigned spheres,
+                                            std::size_t n, InSlices& found) {
   found.blocked |= std::uint64_t{spheres & places.blocked} << (n * kLanes);
   const unsigned unknown = spheres & ~(places.free | places.blocked);
   found.unknown |= static_cast<unsigned>(unknown != 0) << n;

@@ -81,7 +81,7 @@ struct CellMove {
 /// 1, 0 or -1.
 constexpr int signOf(int value) { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); }
 
-/// Ways come in so many, of which the last may not count: a loop whose end can be guessed.
+/// Ways can be read in so many, of which the last may not count: a loop whose end can be guessed.
 inline constexpr std::size_t kWaysAtATime = 4;
 
 /// What is asked of eight spheres at a time. Both versions do the same operations, and agree bit
