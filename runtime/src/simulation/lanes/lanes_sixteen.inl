@@ -1,4 +1,4 @@
-// As lanes_eight.inl, for vectors of sixteen envs.
+// As lanes_eight.inl, for vectors of sixteen envs: what motion asks of them.
 namespace galactic::simulation {
 namespace {
 
