@@ -20,11 +20,11 @@ namespace galactic::simulation {
 /// few. So a floor has some heights, each of which leads to the next one.
 class LevelFloors {
  public:
-  /// Adds a floor, by the number of its clearance map: 0, 1, ... `heightFound(center, height)`: the
-  /// height at which a base finds the floor in a column when it stood at `height` before, NaN where
-  /// none carries it. The floor's height is that of the base `start`.
+  /// Adds a floor, by the number of its clearance map: 0, 1, ... `height_found(center, height)`:
+  /// the height at which a base finds the floor in a column when it stood at `height` before, NaN
+  /// where none carries it. The floor's height is that of the base `start`.
   template <class HeightFound>
-  void add(const ColumnGrid& grid, const Vec3& start, const HeightFound& heightFound);
+  void add(const ColumnGrid& grid, const Vec3& start, const HeightFound& height_found);
 
   /// The height at which a base finds the floor, its y being where it stood before; none where that
   /// is not known. `map`: as from ClearanceMaps::add().
@@ -68,7 +68,7 @@ class LevelFloors {
 };
 
 template <class HeightFound>
-void LevelFloors::add(const ColumnGrid& grid, const Vec3& start, const HeightFound& heightFound) {
+void LevelFloors::add(const ColumnGrid& grid, const Vec3& start, const HeightFound& height_found) {
   const ColumnGridLayout& layout = grid.layout();
   Floor floor{.min_x = layout.min_x,
               .min_z = layout.min_z,
@@ -79,15 +79,15 @@ void LevelFloors::add(const ColumnGrid& grid, const Vec3& start, const HeightFou
               .first = words_.size()};
   std::array<float, kMostHeights + 1>& heights = floor.heights;
   heights[0] = start.y;
-  for (std::uint32_t n = 0; n < kMostHeights; ++n) heights[0] = heightFound(start, heights[0]);
+  for (std::uint32_t n = 0; n < kMostHeights; ++n) heights[0] = height_found(start, heights[0]);
   for (std::uint32_t n = 0; n < kMostHeights && floor.height_count == 0; ++n) {
-    heights[n + 1] = heightFound(start, heights[n]);
+    heights[n + 1] = height_found(start, heights[n]);
     if (heights[n + 1] == heights[0]) floor.height_count = n + 1;
   }
   const auto isLevel = [&](const Vec3& center) {
     bool is_level = floor.height_count > 0;
     for (std::uint32_t n = 0; n < floor.height_count; ++n) {
-      is_level = is_level && heightFound(center, heights[n]) == heights[n + 1];
+      is_level = is_level && height_found(center, heights[n]) == heights[n + 1];
     }
     return is_level;
   };

@@ -70,7 +70,7 @@ inline IntLanes gather(const void* from, IntLanes index, IntLanes wanted) {
   IntLanes words{};
   for (unsigned n = 0; n < kWidth; ++n) {
     if (wanted[n] == 0) continue;
-    std::int32_t word;
+    std::int32_t word = 0;
     __builtin_memcpy(&word, static_cast<const char*>(from) + std::ptrdiff_t{index[n]} * kScale,
                      sizeof(word));
     words[n] = word;

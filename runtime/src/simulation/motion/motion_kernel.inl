@@ -281,7 +281,8 @@ Value* rowsFrom(Value* values, std::size_t rows) {
 
 inline BodyArrays envsFrom(const MotionTables& tables, const BodyArrays& body, std::size_t first) {
   const std::size_t groups = paddedToLanes(tables.sphere_count / kLanes);
-  return {rowsFrom(body.frames, first), rowsFrom(body.centers, 3 * tables.sphere_count * first),
+  return {rowsFrom(body.frames, first),
+          rowsFrom(body.centers, std::size_t{3} * tables.sphere_count * first),
           rowsFrom(body.grips, first), rowsFrom(body.bounds, kBounds * groups * first),
           rowsFrom(body.extents, kExtentStride * first)};
 }

@@ -8,7 +8,8 @@ namespace {
 
 /// Rows of a chunk: its robots, three points, and the joint actions of the step before.
 std::size_t rowCount(const Model& model) {
-  return kBaseRows + model.variableCount() + kGripNumbers + 3 * 3 + model.motion.controlled.size();
+  return kBaseRows + model.variableCount() + kGripNumbers + std::size_t{3} * 3 +
+         model.motion.controlled.size();
 }
 
 /// What the vectors of one env take, so that a batch asks for its memory at once.
@@ -101,7 +102,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   endings_.resize(padded);
   idle_.resize(padded);
   // What second-level caches hold with room to spare.
-  constexpr std::size_t kCached = 768 * 1024;
+  constexpr std::size_t kCached = std::size_t{768} * 1024;
   is_large_ = bytes() > kCached;
 }
 

@@ -75,7 +75,7 @@ inline CellsBefore cellsBefore(const WayCell& to) {
 
 /// Whether one of eight spheres is not free in one of the cells.
 inline bool decides(const EightWays& ways, const CellsBefore& cells) {
-  std::uint32_t rows;
+  std::uint32_t rows = 0;
   __builtin_memcpy(&rows, ways.cells.rows + cells.first_row, sizeof(rows));
   return ((rows >> cells.x & rows >> cells.z & rows >> cells.both) & 1U) == 0;
 }
