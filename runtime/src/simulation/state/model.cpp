@@ -168,6 +168,10 @@ void mapClearance(const HeightsOverFloor& heights, Model& model) {
   // What the hand holds may be higher than the robot was at any start.
   constexpr float kOverRobot = 0.25F;
   const HeightsOverFloor raised{heights.lowest, heights.highest + kOverRobot};
+  // So may a raised arm, and more: slices have to know where it is. Maps that reached as high would
+  // know less below.
+  constexpr float kRaisedArm = 0.75F;
+  const HeightsOverFloor sliced{heights.lowest, heights.highest + kRaisedArm};
   const std::size_t radii = model.world->radii().size();
   if (radii > kLanes) return;
   std::vector<std::uint32_t> radius_of_lane;
@@ -190,7 +194,7 @@ void mapClearance(const HeightsOverFloor& heights, Model& model) {
     const float floor = model.starts[order[n]].base.y;
     const std::uint32_t map = model.clearance.add(model.world->scenes()[scene], floor, kUnevenness,
                                                   raised, lowest_of_radius);
-    model.slices.add(model.world->scenes()[scene], floor, raised, lowest_of_radius);
+    model.slices.add(model.world->scenes()[scene], floor, sliced, lowest_of_radius);
     addLevelFloor(model.world->scenes()[scene], model.starts[order[n]].base, model);
     for (; n < order.size() && scene_of(order[n]) == scene &&
            model.starts[order[n]].base.y <= floor + kUnevenness;
