@@ -56,4 +56,8 @@ void surelyFreePortable(const ClearanceQuestion* questions, std::size_t count,
 void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count,
                     const std::uint8_t* cells, std::size_t stride, SureGroups* sure) noexcept;
 
+/// The groups, as bits, that can go so far along both axes, meters, and still be surely free.
+[[nodiscard]] unsigned freeWithinPortable(const SureGroups& sure, float reach) noexcept;
+[[nodiscard]] unsigned freeWithinAvx2(const SureGroups& sure, float reach) noexcept;
+
 }  // namespace galactic::simulation

@@ -212,6 +212,10 @@ void ClearanceMaps::surelyFree(std::span<const std::uint32_t> maps, std::size_t 
   }
 }
 
+unsigned ClearanceMaps::freeWithin(const SureGroups& sure, float reach) noexcept {
+  return detail::hasAvx2() ? freeWithinAvx2(sure, reach) : freeWithinPortable(sure, reach);
+}
+
 void ClearanceMaps::answer(std::span<const ClearanceQuestion> questions, std::size_t stride,
                            SureGroups* sure) const noexcept {
   const auto ask = detail::hasAvx2() ? surelyFreeAvx2 : surelyFreePortable;
@@ -263,6 +267,12 @@ void surelyFreePortable(const ClearanceQuestion* questions, std::size_t count,
   for (std::size_t n = 0; n < count; ++n) {
     sure[n] = surelyFree(*questions[n].lanes, cells, questions[n].bounds, stride);
   }
+}
+
+unsigned freeWithinPortable(const SureGroups& sure, float reach) noexcept {
+  unsigned free = 0;
+  for (std::size_t n = 0; n < kLanes; ++n) free |= (sure.slack[n] >= reach ? 1U : 0U) << n;
+  return free;
 }
 
 }  // namespace galactic::simulation

@@ -69,6 +69,10 @@ class ClearanceMaps {
                   std::size_t env_stride, std::span<SureGroups> sure) const noexcept;
   static constexpr std::size_t kMostAsked = 16;
 
+  /// The groups, as bits, that are surely free wherever they go no further than so far along both
+  /// axes, meters.
+  [[nodiscard]] static unsigned freeWithin(const SureGroups& sure, float reach) noexcept;
+
   /// How many eights of lanes there are.
   [[nodiscard]] std::size_t eights() const { return eights_; }
 

@@ -88,6 +88,11 @@ void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count,
   }
 }
 
+unsigned freeWithinAvx2(const SureGroups& sure, float reach) noexcept {
+  return static_cast<unsigned>(
+      _mm256_movemask_ps(atLeast(_mm256_load_ps(sure.slack), _mm256_set1_ps(reach))));
+}
+
 }  // namespace galactic::simulation
 
 #else
@@ -98,6 +103,10 @@ namespace galactic::simulation {
 void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count,
                     const std::uint8_t* cells, std::size_t stride, SureGroups* sure) noexcept {
   surelyFreePortable(questions, count, cells, stride, sure);
+}
+
+unsigned freeWithinAvx2(const SureGroups& sure, float reach) noexcept {
+  return freeWithinPortable(sure, reach);
 }
 
 }  // namespace galactic::simulation

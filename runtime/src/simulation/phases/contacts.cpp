@@ -112,9 +112,8 @@ bool isSureAfter(const ChunkStep& step, std::size_t e, const Push& moved) noexce
   const std::size_t groups = step.model.groups.size();
   unsigned unsure = 0;
   for (std::size_t eight = 0; eight * kLanes < groups; ++eight) {
-    const SureGroups& sure = step.chunk.sure(eight)[e];
-    unsigned known = step.chunk.groupBits(eight).suited;
-    for (std::size_t n = 0; n < kLanes; ++n) known |= (sure.slack[n] >= reach ? 1U : 0U) << n;
+    const unsigned known = step.chunk.groupBits(eight).suited |
+                           ClearanceMaps::freeWithin(step.chunk.sure(eight)[e], reach);
     const std::size_t here = std::min(groups - eight * kLanes, kLanes);
     unsure |= ((1U << here) - 1) & ~known;
   }

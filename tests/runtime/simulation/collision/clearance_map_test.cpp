@@ -235,6 +235,7 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
   }
   std::size_t sure = 0;
   std::size_t low = 0;
+  std::size_t still = 0;
   constexpr int kRounds = 20000;
   for (int n = 0; n < kRounds; ++n) {
     const Eight eight(random);
@@ -244,10 +245,18 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
     surelyFreePortable(&question, 1, cells.data(), kLanes, &found);
     surelyFreeAvx2(&question, 1, cells.data(), kLanes, &fast);
     ASSERT_EQ(fast, found);
+    const float reach = uniformIn(random, 0, 0.5F);
+    const unsigned within = freeWithinPortable(found, reach);
+    ASSERT_EQ(freeWithinAvx2(found, reach), within);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      ASSERT_EQ((within >> lane & 1U) != 0, found.slack[lane] >= reach);
+    }
+    still += within == 0 ? 0U : 1U;
     sure += found.free == 0 ? 0U : 1U;
     low += (found.free & found.low) == 0 ? 0U : 1U;
   }
   EXPECT_GT(low, kRounds / 50);
+  EXPECT_GT(still, kRounds / 50);
   EXPECT_GT(sure, kRounds / 10);
   EXPECT_LT(sure, kRounds * 9 / 10);
 }
