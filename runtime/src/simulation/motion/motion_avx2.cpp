@@ -7,12 +7,14 @@
 // Needed by what follows.
 #include "simulation/lanes/lanes_eight.inl"
 #include "simulation/motion/motion_kernel.inl"
+#include "simulation/motion/shift_kernel.inl"
 #include "simulation/motion/step_kernel.inl"
 
 namespace galactic::simulation {
 
 MotionKernels avx2Motion() noexcept {
-  return {readKernel, moveKernel, placeKernel, putFramesKernel, judgeKernel, observeKernel};
+  return {readKernel,      moveKernel,  placeKernel, shiftFramesKernel,
+          putFramesKernel, judgeKernel, shiftKernel, observeKernel};
 }
 
 }  // namespace galactic::simulation

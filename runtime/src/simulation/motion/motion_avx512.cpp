@@ -24,6 +24,10 @@ void placeSixteens(const MotionTables& tables, const BodyBatch& batch) noexcept 
   batch.envs % kWidth == 0 ? placeKernel(tables, batch) : avx2Motion().place(tables, batch);
 }
 
+void shiftFramesOfSixteens(const FrameShift& shift) noexcept {
+  shift.envs % kWidth == 0 ? shiftFramesKernel(shift) : avx2Motion().shift_frames(shift);
+}
+
 void putFramesOfSixteens(const FrameBatch& batch) noexcept {
   batch.envs % kWidth == 0 ? putFramesKernel(batch) : avx2Motion().put_frames(batch);
 }
@@ -39,8 +43,8 @@ void observeSixteens(const ObserveBatch& batch) noexcept {
 }  // namespace
 
 MotionKernels avx512Motion() noexcept {
-  return {readSixteens,        moveSixteens,  placeSixteens,
-          putFramesOfSixteens, judgeSixteens, observeSixteens};
+  return {readSixteens,        moveSixteens,  placeSixteens,      shiftFramesOfSixteens,
+          putFramesOfSixteens, judgeSixteens, avx2Motion().shift, observeSixteens};
 }
 
 }  // namespace galactic::simulation

@@ -168,6 +168,31 @@ struct BodyBatch {
   std::size_t envs = kLanes;
 };
 
+/// Moves the frames of envs.
+struct FrameShift {
+  /// Rows; see frameRows().
+  float* frames = nullptr;
+  std::size_t rows = 0;
+  /// Three rows: along X, Y and Z, meters.
+  const float* by = nullptr;
+  /// As in an ActionBatch.
+  std::size_t envs = kLanes;
+};
+
+/// Moves the spheres of one env. Counts are padded to lanes.
+struct SphereShift {
+  /// Meters.
+  float by_x = 0;
+  float by_y = 0;
+  float by_z = 0;
+  /// As those of the env in BodyArrays.
+  float* centers = nullptr;
+  std::size_t sphere_count = 0;
+  float* bounds = nullptr;
+  std::size_t group_count = 0;
+  float* extents = nullptr;
+};
+
 /// What happens to all envs of a chunk alike. All versions do the same operations in the same
 /// order, and none is contracted: they agree bit for bit.
 struct MotionKernels {
@@ -175,8 +200,10 @@ struct MotionKernels {
   bool (*read)(const ActionBatch&) noexcept = nullptr;
   void (*move)(const MotionTables&, const MoveBatch&) noexcept = nullptr;
   void (*place)(const MotionTables&, const BodyBatch&) noexcept = nullptr;
+  void (*shift_frames)(const FrameShift&) noexcept = nullptr;
   void (*put_frames)(const FrameBatch&) noexcept = nullptr;
   void (*judge)(const JudgeBatch&) noexcept = nullptr;
+  void (*shift)(const SphereShift&) noexcept = nullptr;
   void (*observe)(const ObserveBatch&) noexcept = nullptr;
 };
 

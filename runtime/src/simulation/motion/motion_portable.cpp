@@ -4,12 +4,14 @@
 // Each needs what is above it.
 #include "simulation/lanes/lanes_eight.inl"
 #include "simulation/motion/motion_kernel.inl"
+#include "simulation/motion/shift_kernel.inl"
 #include "simulation/motion/step_kernel.inl"
 
 namespace galactic::simulation {
 
 MotionKernels portableMotion() noexcept {
-  return {readKernel, moveKernel, placeKernel, putFramesKernel, judgeKernel, observeKernel};
+  return {readKernel,      moveKernel,  placeKernel, shiftFramesKernel,
+          putFramesKernel, judgeKernel, shiftKernel, observeKernel};
 }
 
 MotionKernels motionKernels() noexcept {

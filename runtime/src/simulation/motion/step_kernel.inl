@@ -55,6 +55,20 @@ inline void putEight(const float* rows, IntLanes wanted, float* to, std::size_t 
   }
 }
 
+void shiftFramesKernel(const FrameShift& shift) noexcept {
+  constexpr std::size_t kOrigin = 9;
+  for (std::size_t first = 0; first < shift.envs; first += kWidth) {
+    const float* by = shift.by + first;
+    const Lanes along[3] = {load(by), load(by + kMostWidth), load(by + 2 * kMostWidth)};
+    for (std::size_t n = kOrigin; n < shift.rows; n += kFrameNumbers) {
+      float* row = shift.frames + n * kMostWidth + first;
+      for (std::size_t axis = 0; axis < 3; ++axis, row += kMostWidth) {
+        store(row, load(row) + along[axis]);
+      }
+    }
+  }
+}
+
 void putFramesKernel(const FrameBatch& batch) noexcept {
   static_assert(kFrameNumbers >= kLanes);
   for (std::size_t first = 0; first < batch.envs; first += kWidth) {

@@ -24,7 +24,8 @@ void moveBy(EnvRow* rows, std::size_t env, const Vec3& by) {
 }  // namespace
 
 Chunk::Chunk(const Model& model)
-    : sphere_count_(model.sphereCount()),
+    : kernels_(model.kernels),
+      sphere_count_(model.sphereCount()),
       group_stride_(paddedToLanes(model.sphereCount() / kLanes)),
       wants_bodies_(model.bodyCount() != 0),
       ranges_(model.motion.ranges),
@@ -46,6 +47,7 @@ Chunk::Chunk(const Model& model)
       body_bits_(model.bodyWords()) {}
 
 BodyArrays Chunk::bodies(std::size_t first) {
+  shiftFrames();
   return {.frames = frames_.front().values + first,
           .centers = centers_.data()->values.data() + first * 3 * sphere_count_,
           .grips = (&rows_.back() + 1 - kGripNumbers)->values + first,
@@ -55,25 +57,39 @@ BodyArrays Chunk::bodies(std::size_t first) {
 
 void Chunk::shift(std::size_t env, const Vec3& by) {
   moveBy(rows_.data(), env, by);
-  float* row = centers_.data()->values.data() + env * 3 * sphere_count_;
-  const auto add = [count = sphere_count_](float* to, float by_this) {
-    for (std::size_t n = 0; n < count; n += kLanes) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) to[n + lane] += by_this;
-    }
-  };
-  add(row, by.x);
-  // Most floors are flat.
-  if (by.y != 0) add(row + sphere_count_, by.y);
-  add(row + 2 * sphere_count_, by.z);
-  shiftBounds(env, by);
+  kernels_.shift({.by_x = by.x,
+                  .by_y = by.y,
+                  .by_z = by.z,
+                  .centers = centers_.data()->values.data() + env * 3 * sphere_count_,
+                  .sphere_count = sphere_count_,
+                  .bounds = bounds_.data()->values.data() + env * kBounds * group_stride_,
+                  .group_count = group_stride_,
+                  .extents = extents_[env].values.data()});
   moveBy(&rows_.back() + 1 - kGripNumbers + 9, env, by);
-  constexpr std::size_t kOrigin = 9;
-  for (std::size_t n = kOrigin; wants_bodies_ && n < frames_.size(); n += kFrameNumbers) {
-    moveBy(frames_.data() + n, env, by);
-  }
+  if (!wants_bodies_) return;
+  // Frames move later, those of all candidates at once, and each by one move at a time.
+  const std::uint32_t bit = std::uint32_t{1} << env;
+  if ((are_behind_ & bit) != 0) shiftFrames();
+  are_behind_ |= bit;
+  frames_behind_[0].values[env] = by.x;
+  frames_behind_[1].values[env] = by.y;
+  frames_behind_[2].values[env] = by.z;
+}
+
+void Chunk::shiftFrames() {
+  static_assert(kChunk <= 32);
+  if (are_behind_ == 0) return;
+  kernels_.shift_frames({.frames = frames_.front().values,
+                         .rows = frames_.size(),
+                         .by = frames_behind_.front().values,
+                         .envs = kChunk});
+  frames_behind_ = {};
+  are_behind_ = 0;
 }
 
 void Chunk::takeOver(std::size_t env, Chunk& other, std::size_t from) {
+  shiftFrames();
+  other.shiftFrames();
   const auto takeLane = [&](std::vector<EnvRow>& mine, const std::vector<EnvRow>& theirs) {
     for (std::size_t n = 0; n < mine.size(); ++n) mine[n].values[env] = theirs[n].values[from];
   };
@@ -87,23 +103,6 @@ void Chunk::takeOver(std::size_t env, Chunk& other, std::size_t from) {
   takeRow(bounds_, other.bounds_, kBounds * group_stride_ / kLanes);
   extents_[env] = other.extents_[from];
   floor_[env] = other.floor_[from];
-}
-
-void Chunk::shiftBounds(std::size_t env, const Vec3& by) {
-  // Rounding keeps order: the bounds of what has moved are the bounds moved.
-  AlignedLanes* lanes = bounds_.data() + env * kBounds * group_stride_ / kLanes;
-  const auto add = [&](std::size_t bound, float by_this) {
-    extents_[env].values[bound] += by_this;
-    for (std::size_t n = 0; n < group_stride_; n += kLanes, ++lanes) {
-      for (float& value : lanes->values) value += by_this;
-    }
-  };
-  add(0, by.x);
-  add(1, by.x);
-  add(2, by.y);
-  add(3, by.y);
-  add(4, by.z);
-  add(5, by.z);
 }
 
 Vec3 Chunk::least(std::size_t env) const {

@@ -84,7 +84,10 @@ class Chunk {
     return grip;
   }
   /// Root and nodes of the candidates. Shape: frameRows of the nodes.
-  [[nodiscard]] std::span<const EnvRow> frames() const { return frames_; }
+  [[nodiscard]] std::span<const EnvRow> frames() {
+    shiftFrames();
+    return frames_;
+  }
   [[nodiscard]] Floor& floor(std::size_t env) { return floor_[env]; }
   [[nodiscard]] CollisionScratch& collision() { return collision_; }
   [[nodiscard]] PlacementScratch& placement() { return placement_; }
@@ -113,13 +116,15 @@ class Chunk {
   [[nodiscard]] std::span<std::uint64_t> bodyBits() { return body_bits_; }
 
  private:
-  void shiftBounds(std::size_t env, const Vec3& by);
+  /// Moves the frames of the candidates that shift() has moved.
+  void shiftFrames();
   [[nodiscard]] const EnvRow* gripRows() const { return &rows_.back() + 1 - kGripNumbers; }
 
   struct alignas(32) AlignedLanes {
     std::array<float, kLanes> values{};
   };
 
+  MotionKernels kernels_;
   std::size_t sphere_count_ = 0;
   /// Groups of eight spheres, padded to lanes.
   std::size_t group_stride_ = 0;
@@ -133,6 +138,9 @@ class Chunk {
   std::vector<AlignedLanes> bounds_;
   std::array<AlignedLanes, kChunk> extents_{};
   std::vector<EnvRow> frames_;
+  /// By how much the frames are behind, along X, Y and Z, and those of which candidates, as bits.
+  std::array<EnvRow, 3> frames_behind_{};
+  std::uint32_t are_behind_ = 0;
   std::array<Floor, kChunk> floor_{};
   CollisionScratch collision_;
   PlacementScratch placement_;

@@ -155,6 +155,60 @@ TEST(JudgeKernel, MeasuresChangesAndDistances) {
   }
 }
 
+TEST(ShiftKernel, MovesSpheresAndBoundsOfOneCandidate) {
+  constexpr std::uint32_t kSeed = 524;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  constexpr std::size_t kSpheres = 5 * kLanes;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<float> numbers(3 * kSpheres + kBounds * kLanes + kLanes);
+    for (float& number : numbers) number = uniformIn(random, -3, 3);
+    const std::array<float, 3> by{uniformIn(random, -1, 1),
+                                  round % 2 == 0 ? 0 : uniformIn(random, -1, 1),
+                                  uniformIn(random, -1, 1)};
+    std::vector<float> wanted = numbers;
+    for (std::size_t n = 0; n < 3 * kSpheres; ++n) wanted[n] += by[n / kSpheres];
+    float* bounds = wanted.data() + 3 * kSpheres;
+    for (std::size_t n = 0; n < kBounds * kLanes; ++n) bounds[n] += by[n / (2 * kLanes)];
+    for (std::size_t n = 0; n < kBounds; ++n) bounds[kBounds * kLanes + n] += by[n / 2];
+    for (const MotionKernels& kernels : builds()) {
+      std::vector<float> moved = numbers;
+      float* moved_bounds = moved.data() + 3 * kSpheres;
+      kernels.shift({.by_x = by[0],
+                     .by_y = by[1],
+                     .by_z = by[2],
+                     .centers = moved.data(),
+                     .sphere_count = kSpheres,
+                     .bounds = moved_bounds,
+                     .group_count = kLanes,
+                     .extents = moved_bounds + kBounds * kLanes});
+      ASSERT_EQ(moved, wanted);
+    }
+  }
+}
+
+TEST(ShiftKernel, MovesTheFramesOfAllEnvs) {
+  constexpr std::uint32_t kSeed = 525;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  for (int round = 0; round < kRounds; ++round) {
+    const std::size_t envs = envsOf(round);
+    const std::vector<EnvRow> before = rowsOf(random, kFrameNumbers * (1 + random() % 14));
+    const std::vector<EnvRow> by = rowsOf(random, 3);
+    for (const MotionKernels& kernels : builds()) {
+      std::vector<EnvRow> moved = before;
+      kernels.shift_frames({moved.front().values, moved.size(), by.front().values, envs});
+      for (std::size_t n = 0; n < before.size(); ++n) {
+        const std::size_t number = n % kFrameNumbers;
+        for (std::size_t env = 0; env < envs; ++env) {
+          const float shift = number < 9 ? 0 : by[number - 9].values[env];
+          ASSERT_EQ(moved[n].values[env], before[n].values[env] + shift);
+        }
+      }
+    }
+  }
+}
+
 TEST(ObserveKernel, WritesTheSameBitsInAllBuilds) {
   constexpr std::uint32_t kSeed = 523;
   std::printf("seed %u\n", kSeed);
