@@ -29,16 +29,6 @@ class CollisionScratch {
   std::vector<SphereHit> hits_;
 };
 
-/// Eight spheres of one radius, side by side in a SphereBatch.
-struct EightSpheres {
-  /// Index into the working set.
-  std::uint32_t radius_index = 0;
-  /// Meters.
-  float radius = 0;
-  /// Which of the eight are spheres, as bits; the others repeat the last one.
-  unsigned spheres = 0;
-};
-
 /// The groups of a batch with these ranges, in order.
 [[nodiscard]] std::vector<EightSpheres> spheresByEights(std::span<const RadiusRange> ranges);
 

@@ -142,7 +142,7 @@ bool anyOverlapping(const RestingView& objects, const Vec3& center, float radius
   });
 }
 
-unsigned touchingLanes(const RestingView& objects, const SphereArrays& spheres, std::size_t first,
+unsigned touchingLanes(const RestingView& objects, const SphereBatch& spheres, std::size_t first,
                        float radius) {
   const auto found = [](std::uint32_t) { return true; };
   unsigned lanes = 0;
@@ -155,13 +155,9 @@ unsigned touchingLanes(const RestingView& objects, const SphereArrays& spheres, 
   return lanes;
 }
 
-bool findTouching(const RestingView& objects, const SphereArrays& spheres, LaneGroup& at) {
+bool findTouching(const RestingView& objects, const SphereBatch& spheres, LaneGroup& at) {
   return detail::hasAvx2() ? findTouchingAvx2(objects, spheres, at)
                            : findTouchingPortable(objects, spheres, at);
-}
-
-SphereArrays arraysOf(const SphereBatch& spheres) {
-  return {spheres.x, spheres.y, spheres.z, spheres.ranges.data(), spheres.ranges.size()};
 }
 
 /// What the caller of a query guarantees.
@@ -172,9 +168,9 @@ SphereArrays arraysOf(const SphereBatch& spheres) {
 
 }  // namespace
 
-bool findTouchingPortable(const RestingView& objects, const SphereArrays& spheres,
+bool findTouchingPortable(const RestingView& objects, const SphereBatch& spheres,
                           LaneGroup& at) noexcept {
-  for (; at.range < spheres.range_count; ++at.range, at.group = 0) {
+  for (; at.range < spheres.ranges.size(); ++at.range, at.group = 0) {
     const RadiusRange& range = spheres.ranges[at.range];
     for (; at.group * kLanes < range.count; ++at.group) {
       at.lanes = touchingLanes(objects, spheres, range.first + at.group * kLanes, range.radius);
@@ -241,7 +237,7 @@ RestingView RestingObjects::view() const noexcept {
 bool RestingObjects::touches(const SphereBatch& spheres) const noexcept {
   assert(radiiFit(spheres, largest_radius_));
   LaneGroup at;
-  return findTouching(view(), arraysOf(spheres), at);
+  return findTouching(view(), spheres, at);
 }
 
 bool RestingObjects::mayTouch(const Vec3& least, const Vec3& most) const noexcept {
@@ -264,10 +260,9 @@ std::size_t RestingObjects::hits(const SphereBatch& spheres,
                                  std::span<SphereHit> out) const noexcept {
   assert(radiiFit(spheres, largest_radius_));
   const RestingView objects = view();
-  const SphereArrays arrays = arraysOf(spheres);
   std::size_t written = 0;
   LaneGroup at;
-  for (; findTouching(objects, arrays, at); ++at.group) {
+  for (; findTouching(objects, spheres, at); ++at.group) {
     const RadiusRange& range = spheres.ranges[at.range];
     for (; at.lanes != 0; at.lanes &= at.lanes - 1) {
       const std::size_t n =

@@ -81,7 +81,7 @@ std::uint32_t anyLane(__m256i words) {
   return static_cast<std::uint32_t>(_mm_cvtsi128_si32(any));
 }
 
-Centers centersAt(const SphereArrays& spheres, std::size_t n) {
+Centers centersAt(const SphereBatch& spheres, std::size_t n) {
   return {_mm256_loadu_ps(spheres.x + n), _mm256_loadu_ps(spheres.y + n),
           _mm256_loadu_ps(spheres.z + n)};
 }
@@ -90,7 +90,7 @@ Centers centersAt(const SphereArrays& spheres, std::size_t n) {
 /// such object is tested against all lanes: what is not in a lane's sets does not overlap its
 /// sphere. Not inlined, and looks its objects up again, so that the loop around it keeps all its
 /// numbers in registers: it is called for few groups.
-[[gnu::noinline]] unsigned touchingLanes(const RestingView& objects, const SphereArrays& spheres,
+[[gnu::noinline]] unsigned touchingLanes(const RestingView& objects, const SphereBatch& spheres,
                                          std::size_t n, float radius) {
   const Centers centers = centersAt(spheres, n);
   const Places places = placesOf(centers);
@@ -116,15 +116,15 @@ bool nothingNear(const RestingView& objects, const Places& places) {
 
 }  // namespace
 
-bool findTouchingAvx2(const RestingView& given_objects, const SphereArrays& given_spheres,
+bool findTouchingAvx2(const RestingView& given_objects, const SphereBatch& given_spheres,
                       LaneGroup& at) noexcept {
   // Copies: nothing that is written below can change them.
   const RestingView objects = given_objects;
-  const SphereArrays spheres = given_spheres;
+  const SphereBatch spheres = given_spheres;
   if (objects.plane_count == 0) return false;
   std::size_t group = at.group;
-  for (std::size_t r = at.range; r < spheres.range_count; ++r, group = 0) {
-    const RadiusRange range = spheres.ranges[r];
+  for (std::size_t r = at.range; r < spheres.ranges.count; ++r, group = 0) {
+    const RadiusRange range = spheres.ranges.first[r];
     const std::size_t end = std::size_t{range.first} + range.count;
     for (std::size_t n = range.first + group * kLanes; n < end; n += kLanes) {
       if (nothingNear(objects, placesOf(centersAt(spheres, n)))) continue;
@@ -144,7 +144,7 @@ bool findTouchingAvx2(const RestingView& given_objects, const SphereArrays& give
 namespace galactic::simulation {
 
 // hasAvx2() is false on this architecture; the symbol exists so that callers need no condition.
-bool findTouchingAvx2(const RestingView& objects, const SphereArrays& spheres,
+bool findTouchingAvx2(const RestingView& objects, const SphereBatch& spheres,
                       LaneGroup& at) noexcept {
   return findTouchingPortable(objects, spheres, at);
 }

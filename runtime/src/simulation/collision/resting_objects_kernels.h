@@ -60,15 +60,6 @@ struct RestingView {
   const RestingBox* boxes = nullptr;
 };
 
-/// A SphereBatch as bare pointers.
-struct SphereArrays {
-  const float* x = nullptr;
-  const float* y = nullptr;
-  const float* z = nullptr;
-  const RadiusRange* ranges = nullptr;
-  std::size_t range_count = 0;
-};
-
 /// Eight spheres of a batch, one in each lane of a register.
 struct LaneGroup {
   /// Index of the range, and the group's index in it.
@@ -80,12 +71,12 @@ struct LaneGroup {
 
 /// Moves `at` on to the first group, `at` itself or later, with a sphere that overlaps an object;
 /// false, with `at` anywhere, when there is none.
-bool findTouchingPortable(const RestingView& objects, const SphereArrays& spheres,
+bool findTouchingPortable(const RestingView& objects, const SphereBatch& spheres,
                           LaneGroup& at) noexcept;
 
 /// The same, eight spheres at a time. Call it only where detail::hasAvx2(). Bit for bit the answers
 /// of the portable one: both do the same operations in the same order, and none is contracted.
-bool findTouchingAvx2(const RestingView& objects, const SphereArrays& spheres,
+bool findTouchingAvx2(const RestingView& objects, const SphereBatch& spheres,
                       LaneGroup& at) noexcept;
 
 }  // namespace galactic::simulation

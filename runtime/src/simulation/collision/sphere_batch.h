@@ -1,7 +1,6 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 namespace galactic::simulation {
 
@@ -29,6 +28,23 @@ struct RadiusRange {
   std::uint32_t count = 0;
 };
 
+/// A span of ranges, but a plain one: kernels read it, which instantiate no library templates.
+struct RadiusRanges {
+  const RadiusRange* first = nullptr;
+  std::size_t count = 0;
+
+  constexpr RadiusRanges() = default;
+  /// Of a vector, a span, or an array of them.
+  template <class Ranges>
+  constexpr RadiusRanges(const Ranges& ranges) : first(ranges.data()), count(ranges.size()) {}
+
+  [[nodiscard]] constexpr const RadiusRange* begin() const { return first; }
+  [[nodiscard]] constexpr const RadiusRange* end() const { return first + count; }
+  [[nodiscard]] constexpr std::size_t size() const { return count; }
+  [[nodiscard]] constexpr bool empty() const { return count == 0; }
+  [[nodiscard]] constexpr const RadiusRange& operator[](std::size_t n) const { return first[n]; }
+};
+
 /// The spheres of one env's robot, or of the object that it holds: centers in the world frame as
 /// three arrays, radius by radius.
 struct SphereBatch {
@@ -36,7 +52,17 @@ struct SphereBatch {
   const float* y = nullptr;
   const float* z = nullptr;
   /// Ascending `first`, no two of one radius.
-  std::span<const RadiusRange> ranges;
+  RadiusRanges ranges;
+};
+
+/// Eight spheres of one radius, side by side in a SphereBatch.
+struct EightSpheres {
+  /// Index into the working set.
+  std::uint32_t radius_index = 0;
+  /// Meters.
+  float radius = 0;
+  /// Which of the eight are spheres, as bits; the others repeat the last one.
+  unsigned spheres = 0;
 };
 
 }  // namespace galactic::simulation

@@ -125,28 +125,54 @@ class Glide {
       GroupBits& known = step_.chunk.groupBits(eight);
       // Of those that are low, nobody has looked.
       if ((known.unsure & known.low) != 0) findPlaces(step_, e_, eight, known.unsure & known.low);
-      const std::uint64_t word = step_.chunk.blockedBits()[eight];
-      for (unsigned left = known.unsure; left != 0; left &= left - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-        const std::size_t n = eight * kLanes + lane;
-        const unsigned spheres = step_.model.groups[n].spheres;
-        const EightPlaces& places = step_.chunk.places(eight)[lane];
-        const auto blocked = static_cast<unsigned>(word >> (lane * kLanes) & 0xffU);
-        const unsigned added = spheres & (places.free | blocked);
-        known.suited |= static_cast<unsigned>(added == spheres) << lane;
-        addEight(n, added, is_begun ? placesBefore(n) : places);
-      }
+      known.suited |= is_begun ? addFromBefore(eight) : addFromHere(eight);
     }
   }
 
-  /// Adds spheres of a group. `places`: where they were when the way out was begun.
-  void addEight(std::size_t group, unsigned spheres, const EightPlaces& places) {
+  /// Adds the groups of an eight; the way out begins where they are. Those whose spheres were all
+  /// added, as bits.
+  unsigned addFromHere(std::size_t eight) {
+    const EightPlaces* places = step_.chunk.places(eight);
+    const AddedGroups added = way_.add({.rows = step_.model.slices.rows(),
+                                        .groups = step_.model.groups.data() + eight * kLanes,
+                                        .places = places,
+                                        .asked = step_.chunk.groupBits(eight).unsure,
+                                        .blocked = step_.chunk.blockedBits()[eight]});
+    for (unsigned left = added.outside; left != 0; left &= left - 1) {
+      const auto n = static_cast<std::size_t>(std::countr_zero(left));
+      addSingles(eight * kLanes + n, freeOrBlocked(eight, n) & ~places[n].inside);
+    }
+    return added.whole;
+  }
+
+  /// The same where the way out was begun before.
+  unsigned addFromBefore(std::size_t eight) {
+    unsigned whole = 0;
+    for (unsigned left = step_.chunk.groupBits(eight).unsure; left != 0; left &= left - 1) {
+      const auto n = static_cast<std::size_t>(std::countr_zero(left));
+      const std::size_t group = eight * kLanes + n;
+      const unsigned added = freeOrBlocked(eight, n);
+      whole |= static_cast<unsigned>(added == step_.model.groups[group].spheres) << n;
+      const EightPlaces before = placesBefore(group);
+      way_.add(step_.model.slices.rows(), before, added & before.inside);
+      addSingles(group, added & ~before.inside);
+    }
+    return whole;
+  }
+
+  /// The spheres of group `n` of an eight, as bits, but for those that only columns call free.
+  [[nodiscard]] unsigned freeOrBlocked(std::size_t eight, std::size_t n) const {
+    const auto blocked = static_cast<unsigned>(step_.chunk.blockedBits()[eight] >> (n * kLanes));
+    return step_.model.groups[eight * kLanes + n].spheres &
+           (step_.chunk.places(eight)[n].free | blocked);
+  }
+
+  /// Adds spheres of a group of which slices know nothing where the way out begins.
+  void addSingles(std::size_t group, unsigned spheres) {
+    if (spheres == 0) return;
     const std::uint32_t radius = step_.model.groups[group].radius_index;
-    const unsigned known = spheres & places.inside;
-    if (known != 0) way_.add(step_.model.slices.rows(), places, known);
-    if (known == spheres) return;
     const SphereBatch all = step_.chunk.spheres(e_);
-    for (unsigned left = spheres & ~known; left != 0; left &= left - 1) {
+    for (unsigned left = spheres; left != 0; left &= left - 1) {
       const std::size_t n = group * kLanes + static_cast<std::size_t>(std::countr_zero(left));
       addSphere(radius, {all.x[n], all.y[n], all.z[n]});
     }

@@ -219,7 +219,7 @@ InSlices FreeSlices::findPlaces(std::uint32_t map, std::size_t first,
   }
   const PlacesQuery query{.groups = slice_groups_.data() + map * groups_.size() + first,
                           .tiles = tiles(),
-                          .some = some};
+                          .some = &some};
   return detail::hasAvx2() ? findPlacesAvx2(query) : findPlacesPortable(query);
 }
 
@@ -257,7 +257,7 @@ void findEight(const SliceLayout& layout, const TileSet& tiles, const float* x, 
 
 InSlices findPlacesPortable(const PlacesQuery& query) noexcept {
   InSlices found;
-  const SomeGroups& some = query.some;
+  const SomeGroups& some = *query.some;
   for (unsigned left = some.asked; left != 0; left &= left - 1) {
     const auto n = static_cast<std::size_t>(std::countr_zero(left));
     const std::size_t first = n * kLanes;

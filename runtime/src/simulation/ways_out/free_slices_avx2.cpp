@@ -78,9 +78,9 @@ void findEight(const SliceLayout& layout, const TileSet& tiles, const float* x, 
 }  // namespace
 
 InSlices findPlacesAvx2(const PlacesQuery& given) noexcept {
-  // A copy: nothing that is written below can change it.
+  // Copies: nothing that is written below can change them.
   const PlacesQuery query = given;
-  const SomeGroups& some = query.some;
+  const SomeGroups some = *query.some;
   InSlices found;
   for (unsigned left = some.asked; left != 0; left &= left - 1) {
     const auto n = static_cast<std::size_t>(__builtin_ctz(left));

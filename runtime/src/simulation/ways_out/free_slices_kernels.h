@@ -84,7 +84,7 @@ struct PlacesQuery {
   /// Of the first group.
   const SliceGroup* groups = nullptr;
   TileSet tiles;
-  SomeGroups some;
+  const SomeGroups* some = nullptr;
 };
 
 /// What slices say of up to eight groups.

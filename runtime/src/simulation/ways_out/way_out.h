@@ -10,9 +10,6 @@
 
 namespace galactic::simulation {
 
-/// A sphere that enters a cell goes this far into it, meters.
-inline constexpr float kIntoCell = 1e-4F;
-
 /// The shortest move in the ground plane after which the spheres that were added are free of the
 /// scene. Their order changes nothing.
 ///
@@ -32,6 +29,9 @@ class WayOut {
   /// Adds the spheres of `lanes` at `places`. `rows`: of the slices for their radius.
   void add(const std::uint16_t* rows, const EightPlaces& places, unsigned lanes) noexcept;
 
+  /// Adds the spheres of several groups that are free or blocked, but for those outside of slices.
+  AddedGroups add(const GroupsToAdd& groups) noexcept;
+
   /// Adds a sphere: in which cells around its own it is free, and where in that it is, 0 to 1.
   void add(const Surroundings& around, float part_x, float part_z) noexcept;
   /// The same for a sphere at `center`; of the grid's frame, the cells alone count.
@@ -44,10 +44,6 @@ class WayOut {
  private:
   /// Room for eight spheres more; null where there is none, and no move is known to be free.
   [[nodiscard]] EightWays* next() noexcept;
-  [[nodiscard]] Push shortened(const WayCell& to) noexcept;
-  [[nodiscard]] bool suits(const Push& push) const noexcept;
-  template <class MayBe>
-  [[nodiscard]] std::optional<Push> shortestOf(float longest, const MayBe& may_be) noexcept;
 
   WayKernels kernels_;
   float spacing_ = 0;

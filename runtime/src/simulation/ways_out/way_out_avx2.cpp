@@ -10,6 +10,6 @@
 
 namespace galactic::simulation {
 
-WayKernels avx2Ways() noexcept { return {addKernel, takenBackKernel, areFreeKernel}; }
+WayKernels avx2Ways() noexcept { return {addKernel, addGroupsKernel, shortestKernel}; }
 
 }  // namespace galactic::simulation

@@ -11,6 +11,17 @@ inline Lanes lesserOf(Lanes a, Lanes b) { return b < a ? b : a; }
 /// Rows of sixteen bits.
 using Rows = std::uint16_t __attribute__((vector_size(32)));
 
+/// The nine columns of all nine rows that count; those behind the middle one, and before it.
+constexpr std::uint16_t kNine = 0x1ff;
+constexpr std::uint16_t kBehind = 0x1e0;
+constexpr std::uint16_t kBefore = 0x00f;
+constexpr Rows kCells{kNine, kNine, kNine, kNine, kNine, kNine, kNine, kNine, kNine};
+constexpr Rows kRowsBefore{kNine, kNine, kNine, kNine};
+constexpr Rows kRowsBehind{0, 0, 0, 0, 0, kNine, kNine, kNine, kNine};
+/// All but the middle one.
+constexpr Rows kElsewhere{kNine, kNine, kNine, kNine, kBefore | kBehind,
+                          kNine, kNine, kNine, kNine};
+
 inline Rows loadRows(const std::uint16_t* from) {
   Rows rows;
   __builtin_memcpy(&rows, from, sizeof(rows));
@@ -29,32 +40,104 @@ inline Rows shiftedRows(Rows rows, std::int32_t column) {
 
 /// Whether all cells that count are among them.
 inline bool areAllCells(Rows rows) {
-  constexpr std::uint16_t kNine = 0x1ff;
-  const Rows all{kNine, kNine, kNine, kNine, kNine, kNine, kNine, kNine, kNine};
-  const Rows missing = ~rows & all;
+  const Rows missing = ~rows & kCells;
   std::uint64_t words[4];
   __builtin_memcpy(words, &missing, sizeof(words));
   return (words[0] | words[1] | words[2]) == 0;
 }
 
-bool addKernel(const std::uint16_t* rows, const EightPlaces& places, unsigned spheres,
-               EightWays& ways, CommonCells& common) noexcept {
+/// Makes ways of spheres, and returns the cells in which all are free.
+inline Rows addEight(const std::uint16_t* rows, const EightPlaces& places, unsigned spheres,
+                     EightWays& ways) {
   const IntLanes added = lanesOf(spheres);
-  storeInts(ways.row, loadInts(places.row) & added);
-  storeInts(ways.column, loadInts(places.column) & added);
+  const IntLanes row = loadInts(places.row) & added;
+  const IntLanes column = loadInts(places.column) & added;
+  storeInts(ways.row, row);
+  storeInts(ways.column, column);
   store(ways.part_x, load(places.part_x));
   store(ways.part_z, load(places.part_z));
   ways.rows = rows;
   ways.spheres = spheres;
-  Rows cells = shiftedRows(loadRows(rows + ways.row[0]), ways.column[0]);
+  Rows cells = shiftedRows(loadRows(rows + row[0]), column[0]);
   for (std::size_t n = 1; n < kLanes; ++n) {
-    cells &= shiftedRows(loadRows(rows + ways.row[n]), ways.column[n]);
+    cells &= shiftedRows(loadRows(rows + row[n]), column[n]);
   }
   __builtin_memcpy(ways.cells.rows, &cells, sizeof(cells));
+  return cells;
+}
+
+bool addKernel(const std::uint16_t* rows, const EightPlaces& places, unsigned spheres,
+               EightWays& ways, CommonCells& common) noexcept {
+  const Rows cells = addEight(rows, places, spheres, ways);
   const Rows both = loadRows(common.rows) & cells;
   __builtin_memcpy(common.rows, &both, sizeof(both));
   return !areAllCells(cells);
 }
+
+AddedGroups addGroupsKernel(const GroupsToAdd& given, EightWays* ways,
+                            CommonCells& common) noexcept {
+  // A copy: nothing that is written below can change it.
+  const GroupsToAdd some = given;
+  AddedGroups found;
+  Rows both = loadRows(common.rows);
+  for (unsigned left = some.asked; left != 0; left &= left - 1) {
+    const auto n = static_cast<std::size_t>(__builtin_ctz(left));
+    const EightPlaces& places = some.places[n];
+    const unsigned spheres = some.groups[n].spheres;
+    const auto blocked = static_cast<unsigned>(some.blocked >> (n * kLanes));
+    const unsigned wanted = spheres & (places.free | blocked);
+    const unsigned added = wanted & places.inside;
+    found.whole |= static_cast<unsigned>(wanted == spheres) << n;
+    found.outside |= static_cast<unsigned>(wanted != added) << n;
+    const Rows cells = addEight(some.rows, places, added, ways[found.count]);
+    both &= cells;
+    found.count += static_cast<std::size_t>(!areAllCells(cells));
+  }
+  __builtin_memcpy(common.rows, &both, sizeof(both));
+  return found;
+}
+
+/// A cell, counted from the one in which a sphere is.
+struct WayCell {
+  int x = 0;
+  int z = 0;
+};
+
+/// 1, 0 or -1.
+constexpr int signOf(int value) { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); }
+
+/// Where a move ends, and how far into a cell spheres go, as a part of it: those that are less than
+/// that from the border of their cell along the first axis are a cell behind along it.
+struct CellMove {
+  WayCell to;
+  float margin = 0;
+};
+
+/// What parts of a cell, up to 1, a move by whole cells can take back along x and z: as much as
+/// leaves all spheres free, which those that the cell before blocks decide.
+struct TakenBack {
+  float x = 1;
+  float z = 1;
+};
+
+/// The same, first along one axis as if the whole way along the other were gone, then along the
+/// other, each sphere from the cell along the first in which it is then.
+struct TakenBackBoth {
+  TakenBack along_x_first;
+  TakenBack along_z_first;
+};
+
+/// Added to cells before they are rounded: truncation rounds down what is positive.
+constexpr float kAboveCells = 64;
+
+/// A move, in cells, after which rounding may take spheres `rounding` further.
+struct CellPush {
+  float x = 0;
+  float z = 0;
+  float rounding = 0;
+  /// Spheres that end nearer than this to the border of a cell are looked at: the others are free.
+  float near = 0;
+};
 
 /// Cells of spheres, the same for all, around one where two rows meet.
 struct CellsBefore {
@@ -109,8 +192,9 @@ inline WayLanes lanesBefore(const EightWays& ways, IntLanes rows, const CellsBef
           fromBorder(ways.part_x, to.x), fromBorder(ways.part_z, to.z)};
 }
 
-TakenBackBoth takenBackKernel(const EightWays* ways, std::size_t count, const CellMove& move,
-                              DecidingEight* deciding) noexcept {
+/// `deciding`: room for one more than there are ways.
+inline TakenBackBoth takenBack(const EightWays* ways, std::size_t count, const CellMove& move,
+                               DecidingEight* deciding) {
   const CellsBefore cells = cellsBefore(move.to);
   // Most eights are free in all of these cells.
   std::size_t deciding_count = 0;
@@ -197,7 +281,8 @@ inline IntLanes isNearBorder(const float* part, float by, float near) {
   return (from_whole <= near) & (from_whole >= -near) & (move != 0);
 }
 
-bool areFreeKernel(const EightWays* ways, std::size_t count, const CellPush& by) noexcept {
+/// Whether all spheres that end near a border are free in all cells in which they may be.
+inline bool areFree(const EightWays* ways, std::size_t count, const CellPush& by) {
   for (std::size_t n = 0; n < count; ++n) {
     const IntLanes near =
         isNearBorder(ways[n].part_x, by.x, by.near) | isNearBorder(ways[n].part_z, by.z, by.near);
@@ -206,6 +291,111 @@ bool areFreeKernel(const EightWays* ways, std::size_t count, const CellPush& by)
     }
   }
   return true;
+}
+
+/// The cells of a set from which no cell of it is nearer to the middle along an axis: nobody needs
+/// to go on from a free cell.
+inline Rows nearestCells(Rows cells) {
+  const Rows here = cells & kCells;
+  const Rows none{};
+  const Rows row_before =
+      __builtin_shufflevector(here, none, 16, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14);
+  const Rows row_behind =
+      __builtin_shufflevector(here, none, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16);
+  const Rows beyond = (here << 1 & kBehind) | (here >> 1 & kBefore) | (row_before & kRowsBehind) |
+                      (row_behind & kRowsBefore);
+  return here & kElsewhere & ~beyond;
+}
+
+/// The search over moves by whole cells.
+class Search {
+ public:
+  explicit Search(const WaysQuery& query)
+      : query_(query),
+        driven_(__builtin_sqrtf(query.drive_x * query.drive_x + query.drive_z * query.drive_z)) {
+    const Rows nearest = nearestCells(loadRows(query.common->rows));
+    std::uint64_t words[4];
+    __builtin_memcpy(words, &nearest, sizeof(words));
+    for (std::size_t n = 0; n < kWords; ++n) moves_[n] = words[n];
+  }
+
+  /// `is_each_asked`: none that some sphere does not suit.
+  FoundWay run(bool is_each_asked) {
+    std::uint64_t moves[kWords] = {moves_[0], moves_[1], moves_[2]};
+    FoundWay best;
+    float least = query_.longest * query_.longest;
+    while ((moves[0] | moves[1] | moves[2]) != 0) {
+      const WayCell to = takeFirst(moves);
+      // One cell less along each axis for spheres at its border.
+      const auto least_x = static_cast<float>(to.x - signOf(to.x)) * query_.spacing;
+      const auto least_z = static_cast<float>(to.z - signOf(to.z)) * query_.spacing;
+      if (least_x * least_x + least_z * least_z >= least) continue;
+      const FoundWay push = shortened(to);
+      const float squared = push.x * push.x + push.z * push.z;
+      if (!(squared < least) || !isBack(push, squared)) continue;
+      if (is_each_asked && !suits(push)) continue;
+      least = squared;
+      best = push;
+    }
+    return best;
+  }
+
+  [[nodiscard]] bool suits(const FoundWay& push) const {
+    // Less than what spheres go into cells by.
+    const float rounding = 0.5F * kIntoCell / query_.spacing;
+    // What a move is shortened to leaves all spheres free but for those that rounding may take
+    // further.
+    const float near = 1.25F * rounding;
+    return areFree(query_.ways, query_.count,
+                   {push.x / query_.spacing, push.z / query_.spacing, rounding, near});
+  }
+
+ private:
+  static constexpr std::size_t kWords = 3;
+
+  /// Without a branch, which nobody could guess.
+  static WayCell takeFirst(std::uint64_t* moves) {
+    const std::size_t word = static_cast<std::size_t>(moves[0] == 0) +
+                             static_cast<std::size_t>((moves[0] | moves[1]) == 0);
+    const int bit = 64 * static_cast<int>(word) + __builtin_ctzll(moves[word]);
+    moves[word] &= moves[word] - 1;
+    return {bit % 16 - kCellsAround, bit / 16 - kCellsAround};
+  }
+
+  [[nodiscard]] FoundWay shortened(const WayCell& to) const {
+    const CellMove move{to, kIntoCell / query_.spacing};
+    const TakenBackBoth back = takenBack(query_.ways, query_.count, move, query_.deciding);
+    const auto length = [&](int cells, float taken_back) {
+      const float taken = static_cast<float>(signOf(cells)) * (taken_back - move.margin);
+      return (static_cast<float>(cells) - taken) * query_.spacing;
+    };
+    const FoundWay one{length(to.x, back.along_x_first.x), length(to.z, back.along_x_first.z),
+                       true};
+    const FoundWay other{length(to.x, back.along_z_first.x), length(to.z, back.along_z_first.z),
+                         true};
+    const bool is_longer = one.x * one.x + one.z * one.z > other.x * other.x + other.z * other.z;
+    return is_longer ? other : one;
+  }
+
+  /// Whether a move leads back, or aside.
+  [[nodiscard]] bool isBack(const FoundWay& push, float squared) const {
+    // What it may have along the drive, as a part of its length: the cosine of 60 degrees.
+    constexpr float kAlongDrive = 0.5F;
+    const float along = push.x * query_.drive_x + push.z * query_.drive_z;
+    return along <= 0 || along <= kAlongDrive * driven_ * __builtin_sqrtf(squared);
+  }
+
+  const WaysQuery& query_;
+  float driven_ = 0;
+  std::uint64_t moves_[kWords];
+};
+
+FoundWay shortestKernel(const WaysQuery& query) noexcept {
+  Search search(query);
+  const FoundWay push = search.run(false);
+  if (!push.is_found || search.suits(push)) return push;
+  // A sphere goes further than into the next cell, which happens to those at a border: ask each.
+  return search.run(true);
 }
 
 }  // namespace

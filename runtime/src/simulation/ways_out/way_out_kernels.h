@@ -7,6 +7,9 @@
 
 namespace galactic::simulation {
 
+/// A sphere that enters a cell goes this far into it, meters.
+inline constexpr float kIntoCell = 1e-4F;
+
 /// Cells in which several spheres are free: rows along Z, of which nine count, as do nine bits of
 /// each.
 struct alignas(32) CommonCells {
@@ -39,50 +42,54 @@ struct alignas(32) DecidingEight {
   std::int32_t rows[kLanes];
 };
 
-/// A cell, counted from the one in which a sphere is.
-struct WayCell {
-  int x = 0;
-  int z = 0;
+/// Asks for the shortest move after which all spheres are free.
+struct WaysQuery {
+  const EightWays* ways = nullptr;
+  std::size_t count = 0;
+  /// Room for one more than there are ways.
+  DecidingEight* deciding = nullptr;
+  const CommonCells* common = nullptr;
+  /// Edge of a cell, meters.
+  float spacing = 0;
+  /// The way that the robot came, meters along X and Z: nothing pushes it on along that.
+  float drive_x = 0;
+  float drive_z = 0;
+  /// Meters.
+  float longest = 0;
 };
 
-/// What parts of a cell, up to 1, a move by whole cells can take back along x and z: as much as
-/// leaves all spheres free, which those that the cell before blocks decide.
-struct TakenBack {
-  float x = 1;
-  float z = 1;
-};
-
-/// The same, first along one axis as if the whole way along the other were gone, then along the
-/// other, each sphere from the cell along the first in which it is then.
-struct TakenBackBoth {
-  TakenBack along_x_first;
-  TakenBack along_z_first;
-};
-
-/// Added to cells before they are rounded: truncation rounds down what is positive.
-inline constexpr float kAboveCells = 64;
-
-/// A move, in cells, after which rounding may take spheres `rounding` further.
-struct CellPush {
+/// A move in the ground plane, meters, if there is one.
+struct FoundWay {
   float x = 0;
   float z = 0;
-  float rounding = 0;
-  /// Spheres that end nearer than this to the border of a cell are looked at: the others are free.
-  float near = 0;
+  bool is_found = false;
 };
-
-/// Where a move ends, and how far into a cell spheres go, as a part of it: those that are less than
-/// that from the border of their cell along the first axis are a cell behind along it.
-struct CellMove {
-  WayCell to;
-  float margin = 0;
-};
-
-/// 1, 0 or -1.
-constexpr int signOf(int value) { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); }
 
 /// Ways can be read in so many, of which the last may not count: a loop whose end can be guessed.
 inline constexpr std::size_t kWaysAtATime = 4;
+
+/// Up to eight groups of spheres: of each, ways are made of the spheres that are free or blocked,
+/// and of no others, as nobody knows what they are.
+struct GroupsToAdd {
+  /// What places count from.
+  const std::uint16_t* rows = nullptr;
+  const EightSpheres* groups = nullptr;
+  const EightPlaces* places = nullptr;
+  /// Which of the groups, as bits.
+  unsigned asked = 0;
+  /// One bit for each sphere that is blocked.
+  std::uint64_t blocked = 0;
+};
+
+/// What became of them; groups as bits.
+struct AddedGroups {
+  /// Ways that count.
+  std::size_t count = 0;
+  /// Groups all of whose spheres are free or blocked.
+  unsigned whole = 0;
+  /// Groups with such spheres outside of slices, of which no ways were made.
+  unsigned outside = 0;
+};
 
 /// What is asked of eight spheres at a time. Both versions do the same operations, and agree bit
 /// for bit.
@@ -91,11 +98,10 @@ struct WayKernels {
   /// are not free from `common`. `rows`: what places count from. Whether any of them counts.
   bool (*add)(const std::uint16_t* rows, const EightPlaces& places, unsigned spheres,
               EightWays& ways, CommonCells& common) noexcept = nullptr;
-  /// `deciding`: room for one more than there are ways.
-  TakenBackBoth (*taken_back)(const EightWays* ways, std::size_t count, const CellMove& move,
-                              DecidingEight* deciding) noexcept = nullptr;
-  /// Whether all spheres that end near a border are free in all cells in which they may be.
-  bool (*are_free)(const EightWays* ways, std::size_t count, const CellPush& by) noexcept = nullptr;
+  /// The same for the spheres of groups that are free or blocked. `ways`: room for each group.
+  AddedGroups (*add_groups)(const GroupsToAdd&, EightWays* ways,
+                            CommonCells& common) noexcept = nullptr;
+  FoundWay (*shortest)(const WaysQuery&) noexcept = nullptr;
 };
 
 /// For any processor.

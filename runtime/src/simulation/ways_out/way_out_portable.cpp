@@ -7,7 +7,7 @@
 
 namespace galactic::simulation {
 
-WayKernels portableWays() noexcept { return {addKernel, takenBackKernel, areFreeKernel}; }
+WayKernels portableWays() noexcept { return {addKernel, addGroupsKernel, shortestKernel}; }
 
 WayKernels wayKernels() noexcept { return detail::hasAvx2() ? avx2Ways() : portableWays(); }
 

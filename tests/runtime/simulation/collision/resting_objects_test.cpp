@@ -28,7 +28,6 @@ using simulation::overlaps;
 using simulation::RadiusRange;
 using simulation::RestingObjects;
 using simulation::RestingView;
-using simulation::SphereArrays;
 using simulation::SphereBatch;
 using simulation::SphereHit;
 using testing::ElementsAre;
@@ -286,12 +285,11 @@ TEST(RestingObjects, AnswerAlikeBitForBitWithBothKernels) {
     }
     const OwnedBatch batch = OwnedBatch().add(0, kRadii[random() % 3], centers);
     const SphereBatch spheres = batch.view();
-    const SphereArrays arrays{spheres.x, spheres.y, spheres.z, spheres.ranges.data(), 1};
     for (std::size_t first = 0; first < centers.size() / 8; ++first) {
       LaneGroup portable{.group = first};
       LaneGroup vectorised{.group = first};
-      const bool found = findTouchingPortable(objects.view(), arrays, portable);
-      ASSERT_EQ(found, findTouchingAvx2(objects.view(), arrays, vectorised));
+      const bool found = findTouchingPortable(objects.view(), spheres, portable);
+      ASSERT_EQ(found, findTouchingAvx2(objects.view(), spheres, vectorised));
       if (!found) break;
       ASSERT_EQ(portable.range, vectorised.range);
       ASSERT_EQ(portable.group, vectorised.group);

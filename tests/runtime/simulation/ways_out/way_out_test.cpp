@@ -160,15 +160,14 @@ TEST(FreeSlices, AreTheSameBitForBitWithBothKernels) {
     if (n == 0) centers.x[3] = std::numeric_limits<float>::quiet_NaN();
     std::array<EightPlaces, 2> portable;
     std::array<EightPlaces, 2> fast;
-    const auto query = [&](std::array<EightPlaces, 2>& places) {
+    const auto find = [&](const auto& kernel, std::array<EightPlaces, 2>& places) {
       const unsigned asked = n % 3 + 1;
-      return PlacesQuery{
-          groups.data(),
-          set,
-          {centers.x.data(), centers.y.data(), centers.z.data(), asked, places.data()}};
+      const SomeGroups some{centers.x.data(), centers.y.data(), centers.z.data(), asked,
+                            places.data()};
+      return kernel({groups.data(), set, &some});
     };
-    const InSlices found = findPlacesPortable(query(portable));
-    const InSlices found_fast = findPlacesAvx2(query(fast));
+    const InSlices found = find(findPlacesPortable, portable);
+    const InSlices found_fast = find(findPlacesAvx2, fast);
     ASSERT_EQ(found.blocked, found_fast.blocked);
     ASSERT_EQ(found.unknown, found_fast.unknown);
     ASSERT_EQ(found.blocked & ~std::uint64_t{0x0fff}, 0U);
@@ -500,19 +499,6 @@ struct RandomRows {
   std::vector<std::uint16_t> rows = std::vector<std::uint16_t>(1100);
 };
 
-WayCell anyCell(std::mt19937& random) {
-  constexpr int kCells = 2 * kCellsAround + 1;
-  return {static_cast<int>(random() % kCells) - kCellsAround,
-          static_cast<int>(random() % kCells) - kCellsAround};
-}
-
-/// A tenth of a cell, so that many spheres are behind by it.
-constexpr float kWideMargin = 0.1F;
-
-std::array<float, 4> numbersOf(const TakenBackBoth& back) {
-  return {back.along_x_first.x, back.along_x_first.z, back.along_z_first.x, back.along_z_first.z};
-}
-
 /// Whether both say the same of eight spheres; what rows count from may differ.
 bool areSame(const EightWays& one, const EightWays& other) {
   return std::ranges::equal(one.row, other.row) && std::ranges::equal(one.column, other.column) &&
@@ -520,6 +506,21 @@ bool areSame(const EightWays& one, const EightWays& other) {
          std::ranges::equal(one.part_z, other.part_z) &&
          std::ranges::equal(one.cells.rows, other.cells.rows) && one.spheres == other.spheres;
 }
+
+/// Ways of some spheres, and the cells that all leave free.
+struct SomeWays {
+  /// Room for kWaysAtATime, of which the last do not count, and for what groups add.
+  std::array<EightWays, kWaysAtATime + kLanes> ways{};
+  std::array<DecidingEight, kWaysAtATime + kLanes + 1> deciding;
+  CommonCells common;
+  std::size_t count = 0;
+
+  SomeWays() { std::ranges::fill(common.rows, std::uint16_t{0xffff}); }
+
+  [[nodiscard]] WaysQuery query() {
+    return {.ways = ways.data(), .count = count, .deciding = deciding.data(), .common = &common};
+  }
+};
 
 TEST(WayOut, IsTheSameBitForBitWithBothKernels) {
   if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2";
@@ -529,47 +530,97 @@ TEST(WayOut, IsTheSameBitForBitWithBothKernels) {
   const WayKernels portable = portableWays();
   const WayKernels fast = avx2Ways();
   Tally counted;
-  Tally whole;
-  Tally behind;
-  Tally free;
+  Tally found;
+  Tally aslant;
   const RandomRows slices(random);
   for (int round = 0; round < 8000; ++round) {
-    // Of four, the last two do not count.
-    constexpr std::size_t kCount = 2;
-    static_assert(kCount <= kWaysAtATime);
-    std::array<EightWays, kWaysAtATime> ways{};
-    std::array<EightWays, kWaysAtATime> fast_ways{};
-    std::array<DecidingEight, kWaysAtATime + 1> deciding;
-    CommonCells common;
-    std::ranges::fill(common.rows, std::uint16_t{0xffff});
-    CommonCells fast_common = common;
-    for (std::size_t n = 0; n < kCount; ++n) {
+    SomeWays ways;
+    SomeWays fast_ways;
+    for (std::size_t n = 0; n < 2; ++n) {
       const EightPlaces places = RandomRows::places(random);
       // Few spheres: of many, some one is always blocked.
       const auto lanes = static_cast<unsigned>(random() & random() & 0xffU);
-      const bool counts = portable.add(slices.rows.data(), places, lanes, ways[n], common);
-      ASSERT_EQ(counts, fast.add(slices.rows.data(), places, lanes, fast_ways[n], fast_common));
-      ASSERT_TRUE(areSame(ways[n], fast_ways[n]));
+      const bool counts =
+          portable.add(slices.rows.data(), places, lanes, ways.ways[n], ways.common);
+      ASSERT_EQ(counts,
+                fast.add(slices.rows.data(), places, lanes, fast_ways.ways[n], fast_ways.common));
+      ASSERT_TRUE(areSame(ways.ways[n], fast_ways.ways[n]));
       counted.add(counts);
     }
-    ASSERT_TRUE(std::ranges::equal(common.rows, fast_common.rows));
-    const CellMove move{anyCell(random), kWideMargin};
-    const auto taken = numbersOf(portable.taken_back(ways.data(), kCount, move, deciding.data()));
-    ASSERT_EQ(taken, numbersOf(fast.taken_back(fast_ways.data(), kCount, move, deciding.data())));
-    whole.add(taken[0] == 1);
-    behind.add(taken[0] != taken[2]);
-    const CellPush by{.x = round % 4 == 0 ? 0 : uniformIn(random, -4.2F, 4.2F),
-                      .z = round % 5 == 0 ? 0 : uniformIn(random, -4.2F, 4.2F),
-                      .rounding = round % 2 == 0 ? 0.5F * kIntoCell : kWideMargin,
-                      .near = round % 3 == 0 ? kWideMargin : 0.5F};
-    const bool is_free = portable.are_free(ways.data(), kCount, by);
-    ASSERT_EQ(is_free, fast.are_free(fast_ways.data(), kCount, by));
-    free.add(is_free);
+    ways.count = fast_ways.count = 2;
+    ASSERT_TRUE(std::ranges::equal(ways.common.rows, fast_ways.common.rows));
+    // Such cells that a sphere goes a tenth of one into them: many are behind, or near a border.
+    constexpr float kWideMargin = 0.1F;
+    WaysQuery query = ways.query();
+    query.spacing = kIntoCell / kWideMargin;
+    query.drive_x = uniformIn(random, -1, 1);
+    query.drive_z = round % 4 == 0 ? 0 : uniformIn(random, -1, 1);
+    query.longest = uniformIn(random, 0, 6 * query.spacing);
+    const FoundWay way = portable.shortest(query);
+    query.ways = fast_ways.ways.data();
+    const FoundWay fast_way = fast.shortest(query);
+    ASSERT_EQ(way.is_found, fast_way.is_found);
+    ASSERT_EQ(way.x, fast_way.x);
+    ASSERT_EQ(way.z, fast_way.z);
+    found.add(way.is_found);
+    aslant.add(way.x != 0 && way.z != 0);
   }
   counted.expectBothSides();
-  behind.expectBothSides();
+  found.expectBothSides();
+  aslant.expectBothSides();
+}
+
+TEST(WayOut, AddsGroupsAsItAddsEachOfThem) {
+  constexpr std::uint32_t kSeed = 1611;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  std::vector<WayKernels> all{portableWays()};
+  if (detail::hasAvx2()) all.push_back(avx2Ways());
+  const RandomRows slices(random);
+  Tally whole;
+  Tally outside;
+  for (int round = 0; round < 2000; ++round) {
+    std::array<EightPlaces, kLanes> places;
+    std::array<EightSpheres, kLanes> eights;
+    for (std::size_t n = 0; n < kLanes; ++n) {
+      places[n] = RandomRows::places(random);
+      places[n].free = static_cast<unsigned>(random() & 0xffU);
+      places[n].inside = static_cast<unsigned>((random() | random() | random()) & 0xffU);
+      eights[n].spheres = static_cast<unsigned>(random() & random() & 0xffU);
+    }
+    const GroupsToAdd groups{.rows = slices.rows.data(),
+                             .groups = eights.data(),
+                             .places = places.data(),
+                             .asked = static_cast<unsigned>(random() & 0xffU),
+                             .blocked = std::uint64_t{random()} << 32U | random()};
+    for (const WayKernels& kernels : all) {
+      SomeWays together;
+      const AddedGroups added = kernels.add_groups(groups, together.ways.data(), together.common);
+      SomeWays one_by_one;
+      for (std::size_t n = 0; n < kLanes; ++n) {
+        const bool is_asked = (groups.asked >> n & 1U) != 0;
+        const auto blocked = static_cast<unsigned>(groups.blocked >> (n * kLanes));
+        const unsigned wanted = eights[n].spheres & (places[n].free | blocked);
+        ASSERT_EQ((added.whole >> n & 1U) != 0, is_asked && wanted == eights[n].spheres);
+        ASSERT_EQ((added.outside >> n & 1U) != 0, is_asked && (wanted & ~places[n].inside) != 0);
+        if (!is_asked) continue;
+        whole.add(wanted == eights[n].spheres);
+        outside.add((wanted & ~places[n].inside) != 0);
+        EightWays& ways = one_by_one.ways[one_by_one.count];
+        one_by_one.count +=
+            kernels.add(groups.rows, places[n], wanted & places[n].inside, ways, one_by_one.common)
+                ? 1U
+                : 0U;
+      }
+      ASSERT_EQ(added.count, one_by_one.count);
+      ASSERT_TRUE(std::ranges::equal(together.common.rows, one_by_one.common.rows));
+      for (std::size_t n = 0; n < added.count; ++n) {
+        ASSERT_TRUE(areSame(together.ways[n], one_by_one.ways[n]));
+      }
+    }
+  }
   whole.expectBothSides();
-  free.expectBothSides();
+  outside.expectBothSides();
 }
 
 }  // namespace
