@@ -217,6 +217,8 @@ inline TakenBackBoth takenBack(const EightWays* ways, std::size_t count, const C
   }
   TakenBack first;
   leastOf(least_x, least_z, first.x, first.z);
+  // Along one axis alone, either comes first.
+  if (move.to.x == 0 || move.to.z == 0) return {first, first};
   const Lanes margin = spread(move.margin);
   least_x = least_z = whole;
   for (std::size_t n = 0; n < deciding_count; ++n) {
