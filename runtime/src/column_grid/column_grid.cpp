@@ -117,30 +117,49 @@ inline Contact contactAt(const ColumnGridLayout& grid, Vec3 center) {
 
 namespace detail {
 
-Span overflowSpan(const ColumnGridLayout& grid, std::uint32_t n) noexcept {
-  if (grid.overflow_codes == nullptr) return grid.overflow_spans[n];
+namespace {
+
+// Number by number: the halves of a span would be written and read back as a whole.
+
+float overflowLow(const ColumnGridLayout& grid, std::uint32_t n) {
+  if (grid.overflow_codes == nullptr) return grid.overflow_spans[n].lo;
   const std::uint32_t codes = grid.overflow_codes[n];
-  if (codes == kEndOfCodes) return kEndOfSpans;
-  return {grid.heights.lo + grid.quantum * static_cast<float>(lowCode(codes)),
-          grid.heights.lo + grid.quantum * static_cast<float>(highCode(codes))};
+  if (codes == kEndOfCodes) return kEndOfSpans.lo;
+  return grid.heights.lo + grid.quantum * static_cast<float>(lowCode(codes));
+}
+
+float overflowHigh(const ColumnGridLayout& grid, std::uint32_t n) {
+  if (grid.overflow_codes == nullptr) return grid.overflow_spans[n].hi;
+  const std::uint32_t codes = grid.overflow_codes[n];
+  if (codes == kEndOfCodes) return kEndOfSpans.hi;
+  return grid.heights.lo + grid.quantum * static_cast<float>(highCode(codes));
+}
+
+/// The number of the span that a height is in, or of the first one above it. The end mark lies
+/// above every height: the walk stops there.
+std::uint32_t overflowAt(const ColumnGridLayout& grid, std::uint32_t start, float y) {
+  std::uint32_t n = start;
+  while (y > overflowHigh(grid, n)) ++n;
+  return n;
+}
+
+}  // namespace
+
+Span overflowSpan(const ColumnGridLayout& grid, std::uint32_t n) noexcept {
+  return {overflowLow(grid, n), overflowHigh(grid, n)};
 }
 
 Contact contactInOverflow(const ColumnGridLayout& grid, std::uint32_t start, float y) noexcept {
-  // The end mark lies above every height: the walk stops there.
-  std::uint32_t n = start;
-  Span span = overflowSpan(grid, n);
-  while (y > span.hi) span = overflowSpan(grid, ++n);
-  if (y < span.lo) return {};
+  const std::uint32_t n = overflowAt(grid, start, y);
+  const float low = overflowLow(grid, n);
+  if (y < low) return {};
   const float margin = contactMargin(grid);
-  const float up = lesser(span.hi, grid.heights.hi) - y;
-  return {Clearance::kFree, clearOf(y - span.lo, margin), clearOf(up, margin)};
+  const float up = lesser(overflowHigh(grid, n), grid.heights.hi) - y;
+  return {Clearance::kFree, clearOf(y - low, margin), clearOf(up, margin)};
 }
 
 bool isFreeInOverflow(const ColumnGridLayout& grid, std::uint32_t start, float y) noexcept {
-  std::uint32_t n = start;
-  Span span = overflowSpan(grid, n);
-  while (y > span.hi) span = overflowSpan(grid, ++n);
-  return !(y < span.lo);
+  return !(y < overflowLow(grid, overflowAt(grid, start, y)));
 }
 
 void contactPortable(const ColumnGridLayout& grid, const ContactBatch& batch) noexcept {

@@ -37,7 +37,8 @@ template <class Model, class ObjectPose>
                                                           const ObjectPose& pose) {
   const Vec3& center = sphere.center;
   if (shape == GraspShape::kBox) return resting.nearest(center, sphere.radius);
-  std::optional<std::uint32_t> best;
+  constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  std::uint32_t best = kNone;
   float least = sphere.radius * sphere.radius;
   resting.forEachInColumnOf(center, [&](std::uint32_t index) {
     const RestingBox& box = resting.box(index);
@@ -48,7 +49,7 @@ template <class Model, class ObjectPose>
     least = squared;
     best = index;
   });
-  return best;
+  return best == kNone ? std::nullopt : std::optional(best);
 }
 
 }  // namespace galactic::simulation

@@ -307,25 +307,25 @@ class Glide {
                                  step_.model.slices.around(env_.clearance_map, radius, before));
   }
 
-  [[nodiscard]] std::optional<Push> findWay(const Push& drive) {
-    if (!has_way_) return std::nullopt;
+  [[nodiscard]] FoundWay findWay(const Push& drive) {
+    if (!has_way_) return {};
     return way_.shortest(drive, step_.model.options.slide.step);
   }
 
   bool leaveScene() {
-    std::optional<Push> push = findWay(drive_);
-    if (!push && !asks_columns_) {
+    FoundWay way = findWay(drive_);
+    if (way.squared == kNoWay && !asks_columns_) {
       asks_columns_ = true;
       addColumns();
-      push = findWay(drive_);
+      way = findWay(drive_);
     }
     // Where the arm or a turn led into something, the drive is not to blame.
-    if (!push && has_way_ && isBlockedWithoutDrive()) push = findWay({});
-    if (!push) return false;
-    const bool is_level = move({push->x - moved_.x, push->z - moved_.z});
+    if (way.squared == kNoWay && has_way_ && isBlockedWithoutDrive()) way = findWay({});
+    if (way.squared == kNoWay) return false;
+    const bool is_level = move({way.x - moved_.x, way.z - moved_.z});
     // At another height all is different.
     if (!is_level) forgetWays();
-    moved_ = *push;
+    moved_ = {way.x, way.z};
     return true;
   }
 

@@ -82,7 +82,7 @@ void ColumnWays::add(const ColumnGrid& grid, const Vec3& center,
     is_full_ = true;
     return;
   }
-  Sphere sphere{&grid, center, {}, {}};
+  Sphere& sphere = spheres_.emplace_back(&grid, center, Surroundings{}, Surroundings{});
   if (around) {
     sphere.free = around->cells();
     sphere.asked = around->blockedCells();
@@ -95,8 +95,7 @@ void ColumnWays::add(const ColumnGrid& grid, const Vec3& center,
     sphere.asked.rows[n] |= sphere.free.rows[n];
   }
   // Such a sphere decides nothing.
-  if (is_free_everywhere) return;
-  spheres_.push_back(sphere);
+  if (is_free_everywhere) spheres_.pop_back();
 }
 
 void ColumnWays::ask(const Surroundings& cells, Sphere& sphere) noexcept {

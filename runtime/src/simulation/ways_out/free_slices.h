@@ -88,7 +88,10 @@ struct SurroundingRows {
  private:
   [[nodiscard]] Surroundings cellsFrom(const std::uint16_t* row) const {
     Surroundings found;
-    __builtin_memcpy(found.rows.data(), row, (2 * kCellsAround + 1) * sizeof(*row));
+    constexpr std::size_t kWhole = Surroundings::kWords - 1;
+    __builtin_memcpy(found.rows.data(), row, kWhole * sizeof(found.rows[0]));
+    // Of the last word one row counts. Written in a part, it would be waited for.
+    found.rows[kWhole] = row[2 * kCellsAround];
     for (std::uint64_t& rows : found.rows) rows >>= column;
     return found;
   }

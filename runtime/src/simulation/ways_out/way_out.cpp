@@ -80,17 +80,15 @@ void WayOut::add(const Surroundings& around, const ColumnGridLayout& grid,
       part_of((center.z - grid.min_z) * grid.inverse_spacing));
 }
 
-std::optional<Push> WayOut::shortest(const Push& drive, float longest) noexcept {
-  const FoundWay way = kernels_.shortest({.ways = ways_.data(),
-                                          .count = count_,
-                                          .deciding = deciding_.data(),
-                                          .common = &common_,
-                                          .spacing = spacing_,
-                                          .drive_x = drive.x,
-                                          .drive_z = drive.z,
-                                          .longest = longest});
-  if (!way.is_found) return std::nullopt;
-  return Push{way.x, way.z};
+FoundWay WayOut::shortest(const Push& drive, float longest) noexcept {
+  return kernels_.shortest({.ways = ways_.data(),
+                            .count = count_,
+                            .deciding = deciding_.data(),
+                            .common = &common_,
+                            .spacing = spacing_,
+                            .drive_x = drive.x,
+                            .drive_z = drive.z,
+                            .longest = longest});
 }
 
 }  // namespace galactic::simulation

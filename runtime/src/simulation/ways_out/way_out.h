@@ -1,7 +1,6 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "simulation/collision/push.h"
@@ -38,8 +37,8 @@ class WayOut {
   void add(const Surroundings& around, const ColumnGridLayout& grid, const Vec3& center) noexcept;
 
   /// At most `longest` meters, and not on along `drive`, the way that the robot came: nothing
-  /// pushes it through an obstacle. None where there is no such move.
-  [[nodiscard]] std::optional<Push> shortest(const Push& drive, float longest) noexcept;
+  /// pushes it through an obstacle.
+  [[nodiscard]] FoundWay shortest(const Push& drive, float longest) noexcept;
 
  private:
   /// Room for eight spheres more; null where there is none, and no move is known to be free.

@@ -28,6 +28,17 @@ inline Rows loadRows(const std::uint16_t* from) {
   return rows;
 }
 
+/// The same of what was written in halves, which a load of both would wait for.
+inline Rows loadHalves(const std::uint16_t* from) {
+  using Half = std::uint16_t __attribute__((vector_size(16)));
+  Half first;
+  Half second;
+  __builtin_memcpy(&first, from, sizeof(first));
+  __builtin_memcpy(&second, from + 8, sizeof(second));
+  return __builtin_shufflevector(first, second, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14,
+                                 15);
+}
+
 /// From bit `column` on.
 inline Rows shiftedRows(Rows rows, std::int32_t column) {
 #if defined(__AVX2__)
@@ -79,7 +90,7 @@ AddedGroups addGroupsKernel(const GroupsToAdd& given, EightWays* ways,
   // A copy: nothing that is written below can change it.
   const GroupsToAdd some = given;
   AddedGroups found;
-  Rows both = loadRows(common.rows);
+  Rows both = loadHalves(common.rows);
   for (unsigned left = some.asked; left != 0; left &= left - 1) {
     const auto n = static_cast<std::size_t>(__builtin_ctz(left));
     const EightPlaces& places = some.places[n];
@@ -332,24 +343,23 @@ class Search {
       const auto least_x = static_cast<float>(to.x - signOf(to.x)) * query_.spacing;
       const auto least_z = static_cast<float>(to.z - signOf(to.z)) * query_.spacing;
       if (least_x * least_x + least_z * least_z >= least) continue;
-      const FoundWay push = shortened(to);
-      const float squared = push.x * push.x + push.z * push.z;
-      if (!(squared < least) || !isBack(push, squared)) continue;
-      if (is_each_asked && !suits(push)) continue;
-      least = squared;
-      best = push;
+      const FoundWay way = shortened(to);
+      if (!(way.squared < least) || !isBack(way)) continue;
+      if (is_each_asked && !suits(way)) continue;
+      least = way.squared;
+      best = way;
     }
     return best;
   }
 
-  [[nodiscard]] bool suits(const FoundWay& push) const {
+  [[nodiscard]] bool suits(const FoundWay& way) const {
     // Less than what spheres go into cells by.
     const float rounding = 0.5F * kIntoCell / query_.spacing;
     // What a move is shortened to leaves all spheres free but for those that rounding may take
     // further.
     const float near = 1.25F * rounding;
     return areFree(query_.ways, query_.count,
-                   {push.x / query_.spacing, push.z / query_.spacing, rounding, near});
+                   {way.x / query_.spacing, way.z / query_.spacing, rounding, near});
   }
 
  private:
@@ -371,20 +381,22 @@ class Search {
       const float taken = static_cast<float>(signOf(cells)) * (taken_back - move.margin);
       return (static_cast<float>(cells) - taken) * query_.spacing;
     };
-    const FoundWay one{length(to.x, back.along_x_first.x), length(to.z, back.along_x_first.z),
-                       true};
-    const FoundWay other{length(to.x, back.along_z_first.x), length(to.z, back.along_z_first.z),
-                         true};
-    const bool is_longer = one.x * one.x + one.z * one.z > other.x * other.x + other.z * other.z;
-    return is_longer ? other : one;
+    const auto wayOf = [&](const TakenBack& taken) {
+      const float x = length(to.x, taken.x);
+      const float z = length(to.z, taken.z);
+      return FoundWay{x, z, x * x + z * z};
+    };
+    const FoundWay one = wayOf(back.along_x_first);
+    const FoundWay other = wayOf(back.along_z_first);
+    return one.squared > other.squared ? other : one;
   }
 
   /// Whether a move leads back, or aside.
-  [[nodiscard]] bool isBack(const FoundWay& push, float squared) const {
+  [[nodiscard]] bool isBack(const FoundWay& way) const {
     // What it may have along the drive, as a part of its length: the cosine of 60 degrees.
     constexpr float kAlongDrive = 0.5F;
-    const float along = push.x * query_.drive_x + push.z * query_.drive_z;
-    return along <= 0 || along <= kAlongDrive * driven_ * __builtin_sqrtf(squared);
+    const float along = way.x * query_.drive_x + way.z * query_.drive_z;
+    return along <= 0 || along <= kAlongDrive * driven_ * __builtin_sqrtf(way.squared);
   }
 
   const WaysQuery& query_;
@@ -394,8 +406,8 @@ class Search {
 
 FoundWay shortestKernel(const WaysQuery& query) noexcept {
   Search search(query);
-  const FoundWay push = search.run(false);
-  if (!push.is_found || search.suits(push)) return push;
+  const FoundWay way = search.run(false);
+  if (way.squared == kNoWay || search.suits(way)) return way;
   // A sphere goes further than into the next cell, which happens to those at a border: ask each.
   return search.run(true);
 }

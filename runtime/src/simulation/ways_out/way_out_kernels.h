@@ -58,11 +58,16 @@ struct WaysQuery {
   float longest = 0;
 };
 
-/// A move in the ground plane, meters, if there is one.
+/// The squared length of a way that there is not.
+inline constexpr float kNoWay = __builtin_inff();
+
+/// A move in the ground plane, meters.
 struct FoundWay {
   float x = 0;
   float z = 0;
-  bool is_found = false;
+  /// Its squared length. Not a flag, which would be read in one piece with what was written beside
+  /// it, and wait for both.
+  float squared = kNoWay;
 };
 
 /// Ways can be read in so many, of which the last may not count: a loop whose end can be guessed.
