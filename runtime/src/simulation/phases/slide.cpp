@@ -59,18 +59,14 @@ class Glide {
 
   bool isFreeNow() {
     if (step_.chunk.floor(e_) != Floor::kCarries) return false;
-    return !isBlockedNow() && isFreeOfObjects(step_, e_);
-  }
-
-  /// Whether the scene blocks any of the robot's spheres.
-  bool isBlockedNow() {
     // With something in the hand, another way out may be sought for the groups that are asked here.
     if (env_.held.object < 0 && knows_maps_ && isSureAfter(step_, e_, since_asked_)) {
+      if (isFreeOfObjects(step_, e_)) return true;
       std::ranges::fill(step_.chunk.blockedBits(), 0U);
       return false;
     }
     knows_maps_ = false;
-    return findBlocked(step_, e_);
+    return !findBlocked(step_, e_) && isFreeOfObjects(step_, e_);
   }
 
   /// The way out is sought from where the candidate is now.

@@ -158,20 +158,25 @@ struct CellsBefore {
   int x = 0;
   int z = 0;
   int both = 0;
+  /// All of them.
+  std::uint32_t bits = 0;
 };
 
 inline CellsBefore cellsBefore(const WayCell& to) {
   const WayCell before{to.x - signOf(to.x), to.z - signOf(to.z)};
   const int first = to.z < before.z ? to.z : before.z;
   const auto bit = [first](int x, int z) { return 16 * (z - first) + x + kCellsAround; };
-  return {first + kCellsAround, bit(before.x, to.z), bit(to.x, before.z), bit(before.x, before.z)};
+  const int x = bit(before.x, to.z);
+  const int z = bit(to.x, before.z);
+  const int both = bit(before.x, before.z);
+  return {first + kCellsAround, x, z, both, 1U << x | 1U << z | 1U << both};
 }
 
 /// Whether one of eight spheres is not free in one of the cells.
 inline bool decides(const EightWays& ways, const CellsBefore& cells) {
   std::uint32_t rows = 0;
   __builtin_memcpy(&rows, ways.cells.rows + cells.first_row, sizeof(rows));
-  return ((rows >> cells.x & rows >> cells.z & rows >> cells.both) & 1U) == 0;
+  return (~rows & cells.bits) != 0;
 }
 
 /// What decides how much of a move spheres can take back.
@@ -325,6 +330,7 @@ class Search {
  public:
   explicit Search(const WaysQuery& query)
       : query_(query),
+        margin_(kIntoCell / query.spacing),
         driven_(__builtin_sqrtf(query.drive_x * query.drive_x + query.drive_z * query.drive_z)) {
     const Rows nearest = nearestCells(loadRows(query.common->rows));
     std::uint64_t words[4];
@@ -375,7 +381,7 @@ class Search {
   }
 
   [[nodiscard]] FoundWay shortened(const WayCell& to) const {
-    const CellMove move{to, kIntoCell / query_.spacing};
+    const CellMove move{to, margin_};
     const TakenBackBoth back = takenBack(query_.ways, query_.count, move, query_.deciding);
     const auto length = [&](int cells, float taken_back) {
       const float taken = static_cast<float>(signOf(cells)) * (taken_back - move.margin);
@@ -400,6 +406,8 @@ class Search {
   }
 
   const WaysQuery& query_;
+  /// How far spheres go into cells, in cells.
+  float margin_ = 0;
   float driven_ = 0;
   std::uint64_t moves_[kWords];
 };
