@@ -6,6 +6,7 @@
 #endif
 // Needed by what follows.
 #include "simulation/lanes/lanes_eight.inl"
+#include "simulation/lanes/operations.inl"
 #include "simulation/motion/motion_kernel.inl"
 #include "simulation/motion/shift_kernel.inl"
 #include "simulation/motion/step_kernel.inl"

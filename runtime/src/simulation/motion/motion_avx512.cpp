@@ -4,6 +4,7 @@
 #if defined(__AVX512F__)
 // Needed by what follows.
 #include "simulation/lanes/lanes_sixteen.inl"
+#include "simulation/lanes/operations.inl"
 #include "simulation/motion/motion_kernel.inl"
 #include "simulation/motion/step_kernel.inl"
 

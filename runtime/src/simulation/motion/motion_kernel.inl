@@ -1,25 +1,13 @@
 // The motion kernels, in terms of vectors of kWidth envs: included after lanes_eight.inl by
-// motion_portable.cpp and motion_avx2.cpp, after lanes_sixteen.inl by motion_avx512.cpp, which
-// differ in nothing else but the instructions that they may use. No library templates here: see
-// column_grid_avx2.cpp.
+// motion_portable.cpp and motion_avx2.cpp, after lanes_sixteen.inl by motion_avx512.cpp, and after
+// operations.inl. These differ in nothing else but the instructions that they may use. No library
+// templates here: see column_grid_avx2.cpp.
 namespace galactic::simulation {
 namespace {
-
-inline Lanes pick(IntLanes mask, Lanes yes, Lanes no) { return mask ? yes : no; }
-
-/// The first one where neither is less: what vminps and vmaxps do with their operands swapped.
-inline Lanes lesser(Lanes a, Lanes b) { return b < a ? b : a; }
-inline Lanes greater(Lanes a, Lanes b) { return b > a ? b : a; }
 
 inline Lanes clampTo(Lanes value, float lower, float upper) {
   value = pick(value < spread(lower), spread(lower), value);
   return pick(value > spread(upper), spread(upper), value);
-}
-
-/// The nearest whole number for |value| < 2^22.
-inline Lanes rounded(Lanes value) {
-  const Lanes shift = spread(12582912.0F);  // 1.5 * 2^23: leaves no bits for a fraction
-  return (value + shift) - shift;
 }
 
 /// An angle in [-pi, pi) as one in the same range: the input lies within a few turns.

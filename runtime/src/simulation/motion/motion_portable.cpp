@@ -3,6 +3,7 @@
 
 // Each needs what is above it.
 #include "simulation/lanes/lanes_eight.inl"
+#include "simulation/lanes/operations.inl"
 #include "simulation/motion/motion_kernel.inl"
 #include "simulation/motion/shift_kernel.inl"
 #include "simulation/motion/step_kernel.inl"

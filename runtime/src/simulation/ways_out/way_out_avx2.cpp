@@ -6,6 +6,7 @@
 #endif
 // Needed by what follows.
 #include "simulation/lanes/lanes_eight.inl"
+#include "simulation/lanes/operations.inl"
 #include "simulation/ways_out/way_out_kernel.inl"
 
 namespace galactic::simulation {

@@ -1,12 +1,8 @@
-// The kernels of ways out, in terms of vectors of eight spheres: included after lanes_eight.inl by
-// way_out_portable.cpp and way_out_avx2.cpp, which differ in nothing else but the instructions that
-// they may use. No library templates here: see column_grid_avx2.cpp.
+// The kernels of ways out, in terms of vectors of eight spheres: included after lanes_eight.inl and
+// operations.inl by way_out_portable.cpp and way_out_avx2.cpp, which differ in nothing else but the
+// instructions that they may use. No library templates here: see column_grid_avx2.cpp.
 namespace galactic::simulation {
 namespace {
-
-inline Lanes choose(IntLanes mask, Lanes yes, Lanes no) { return mask ? yes : no; }
-
-inline Lanes lesserOf(Lanes a, Lanes b) { return b < a ? b : a; }
 
 /// Rows of sixteen bits.
 using Rows = std::uint16_t __attribute__((vector_size(32)));
@@ -228,8 +224,8 @@ inline TakenBackBoth takenBack(const EightWays* ways, std::size_t count, const C
     const IntLanes rows = rowsAt(*deciding[n].ways, cells);
     storeInts(deciding[n].rows, rows);
     const WayLanes way = lanesBefore(*deciding[n].ways, rows, cells, move.to);
-    least_x = lesserOf(least_x, choose(way.free_x < 0, whole, way.to_border_x));
-    least_z = lesserOf(least_z, choose(way.free_z < 0, whole, way.to_border_z));
+    least_x = lesser(least_x, pick(way.free_x < 0, whole, way.to_border_x));
+    least_z = lesser(least_z, pick(way.free_z < 0, whole, way.to_border_z));
   }
   TakenBack first;
   leastOf(least_x, least_z, first.x, first.z);
@@ -243,8 +239,8 @@ inline TakenBackBoth takenBack(const EightWays* ways, std::size_t count, const C
     const IntLanes behind_z = (way.to_border_z - spread(first.z)) + margin < spread(0);
     const IntLanes free_z = behind_x ? way.free_both : way.free_z;
     const IntLanes free_x = behind_z ? way.free_both : way.free_x;
-    least_x = lesserOf(least_x, choose(free_x < 0, whole, way.to_border_x));
-    least_z = lesserOf(least_z, choose(free_z < 0, whole, way.to_border_z));
+    least_x = lesser(least_x, pick(free_x < 0, whole, way.to_border_x));
+    least_z = lesser(least_z, pick(free_z < 0, whole, way.to_border_z));
   }
   TakenBack second;
   leastOf(least_x, least_z, second.x, second.z);
@@ -294,8 +290,7 @@ inline bool isFreeAfter(const EightWays& ways, std::size_t sphere, const CellPus
 inline IntLanes isNearBorder(const float* part, float by, float near) {
   const Lanes move = spread(by);
   const Lanes cell = (load(part) + move) + spread(kAboveCells);
-  const Lanes shift = spread(12582912.0F);  // 1.5 * 2^23: leaves no bits for a fraction
-  const Lanes from_whole = cell - ((cell + shift) - shift);
+  const Lanes from_whole = cell - rounded(cell);
   return (from_whole <= near) & (from_whole >= -near) & (move != 0);
 }
 

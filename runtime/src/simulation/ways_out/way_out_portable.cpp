@@ -3,6 +3,7 @@
 
 // Each needs what is above it.
 #include "simulation/lanes/lanes_eight.inl"
+#include "simulation/lanes/operations.inl"
 #include "simulation/ways_out/way_out_kernel.inl"
 
 namespace galactic::simulation {
