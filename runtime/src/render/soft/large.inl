@@ -91,34 +91,15 @@ inline LaneSet coverTile(const Pane& pane, const LargeSetup& setup, const TileSt
              edges.c + steps.edge_below[2]};
     first = {first.depth + stride, first.ids + stride};
   }
-  noteDepth(pane, x, y, least(farthest));
+  pane.scratch->tile_depth[std::size_t{y} * pane.tile_columns + x] = least(farthest);
   return hit;
 }
 
 /// A linear function over a square of tiles (see mayShowInSquare()), widened by what rounding can
 /// do: no lane is less than the exact value.
 struct TileFunction {
-  Lanes value, below;
-
-  void nextSquare() { value = value + below; }
+  Lanes value, beside, below;
 };
-
-/// `start`: at the pane's first pixel; `right`, `down`: changes per pixel. `x`, `y`: the first
-/// tile.
-inline TileFunction tileFunction(double start, double right, double down, std::int32_t x,
-                                 std::int32_t y) {
-  // Of at most kMostTiles sums, and of those in coverTile(), relative to what is added.
-  constexpr double kSumsRounding = 6e-6;
-  constexpr double kEdge = kTileEdge;
-  const double first = start + (right * (kEdge * x) + down * (kEdge * y));
-  const double size =
-      __builtin_fabs(first) + kPaneEdge * (__builtin_fabs(right) + __builtin_fabs(down));
-  // Four tiles are a row, as four pixels are a row of a vector.
-  return {spread(static_cast<float>(first + size * kSumsRounding)) +
-              toFloat(pixelsRight()) * spread(static_cast<float>(right * kEdge)) +
-              toFloat(pixelsDown()) * spread(static_cast<float>(down * kEdge)),
-          spread(static_cast<float>(down * (kEdge * kSquareHeight)))};
-}
 
 /// The edge functions of a large triangle at the pixel of a tile where they are largest, and 1/w at
 /// its nearest one.
@@ -128,24 +109,58 @@ struct TileFunctions {
   IntLanes outside() const {
     return as<IntLanes>(a.value) | as<IntLanes>(b.value) | as<IntLanes>(c.value);
   }
-  void nextSquare() {
-    a.nextSquare();
-    b.nextSquare();
-    c.nextSquare();
-    nearest.nextSquare();
+  /// One step further.
+  void move(Lanes TileFunction::*step) {
+    a.value = a.value + a.*step;
+    b.value = b.value + b.*step;
+    c.value = c.value + c.*step;
+    nearest.value = nearest.value + nearest.*step;
   }
 };
 
+/// Those of the square whose first tile is `x`, `y`.
 inline TileFunctions tileFunctions(const LargeSetup& setup, std::int32_t x, std::int32_t y) {
-  const auto edge = [&](const LongEdge& e) {
-    return tileFunction(static_cast<double>(e.start + e.reach), e.right, e.down, x, y);
-  };
-  constexpr double kLast = kTileEdge - 1;
+  // Three edges and 1/w at the pane's first pixel, and their changes per pixel.
+  using Four = double __attribute__((vector_size(32)));
+  using FourFloats = float __attribute__((vector_size(16)));
+  using FourInts = std::int64_t __attribute__((vector_size(32)));
+  const LongEdge* edges = setup.edges;
   const Plane& depth = setup.depth;
-  const double nearest = depth.start + (depth.right > 0 ? depth.right * kLast : 0) +
-                         (depth.down > 0 ? depth.down * kLast : 0);
-  return {edge(setup.edges[0]), edge(setup.edges[1]), edge(setup.edges[2]),
-          tileFunction(nearest, depth.right, depth.down, x, y)};
+  Four right{static_cast<double>(edges[0].right), static_cast<double>(edges[1].right),
+             static_cast<double>(edges[2].right), depth.right};
+  Four down{static_cast<double>(edges[0].down), static_cast<double>(edges[1].down),
+            static_cast<double>(edges[2].down), depth.down};
+  const Four start{static_cast<double>(edges[0].start), static_cast<double>(edges[1].start),
+                   static_cast<double>(edges[2].start), depth.start};
+  const auto magnitudes = [](Four v) {
+    Four to;
+    FourInts bits;
+    __builtin_memcpy(&bits, &v, sizeof(bits));
+    bits &= INT64_MAX;
+    __builtin_memcpy(&to, &bits, sizeof(to));
+    return to;
+  };
+  // Of at most kMostTiles sums, and of those in coverTile(), relative to what is added.
+  constexpr double kSumsRounding = 6e-6;
+  constexpr double kEdge = kTileEdge;
+  constexpr double kLast = kTileEdge - 1;
+  const Four right_size = magnitudes(right);
+  const Four down_size = magnitudes(down);
+  // To the pixel of the first tile where each of them is largest.
+  const Four reach = ((right_size + right) + (down_size + down)) * (kLast / 2);
+  const Four first = (start + reach) + (right * (kEdge * x) + down * (kEdge * y));
+  const Four size = magnitudes(first) + (right_size + down_size) * double{kPaneEdge};
+  const auto starts = __builtin_convertvector(first + size * kSumsRounding, FourFloats);
+  const auto rights = __builtin_convertvector(right * kEdge, FourFloats);
+  const auto downs = __builtin_convertvector(down * kEdge, FourFloats);
+  const auto function = [&](int n) -> TileFunction {
+    // Four tiles are a row, as four pixels are a row of a vector.
+    return {spread(starts[n]) + toFloat(pixelsRight()) * spread(rights[n]) +
+                toFloat(pixelsDown()) * spread(downs[n]),
+            spread(rights[n]) * static_cast<float>(kSquareWidth),
+            spread(downs[n]) * static_cast<float>(kSquareHeight)};
+  };
+  return {function(0), function(1), function(2), function(3)};
 }
 
 /// Tiles of a pane, column and row of each: y * kMostTiles + x.
@@ -167,9 +182,12 @@ inline void findTiles(const Pane& pane, const LargeSetup& setup, const TileBox& 
                       TileList& list) {
   const IntLanes numbers =
       pixelsRight() + pixelsDown() * spread(static_cast<std::int32_t>(kMostTiles));
-  for (std::int32_t x = box.left; x <= box.right; x += kSquareWidth) {
-    TileFunctions functions = tileFunctions(setup, x, box.top);
-    for (std::int32_t y = box.top; y <= box.bottom; y += kSquareHeight, functions.nextSquare()) {
+  TileFunctions top = tileFunctions(setup, box.left, box.top);
+  for (std::int32_t x = box.left; x <= box.right;
+       x += kSquareWidth, top.move(&TileFunction::beside)) {
+    TileFunctions functions = top;
+    for (std::int32_t y = box.top; y <= box.bottom;
+         y += kSquareHeight, functions.move(&TileFunction::below)) {
       const unsigned within = firstOfSquare(box.right - x + 1, box.bottom - y + 1);
       const unsigned touched = ~signBits(functions.outside()) & within;
       const unsigned bits =
