@@ -109,6 +109,41 @@ TEST(SoftLanes, DoublesStayWithinTheirLimits) {
   EXPECT_EQ(clamped[3], 5);
 }
 
+TEST(SoftLanes, ProductsOfBytesAreRounded) {
+  for (std::int32_t a = 0; a < 256; ++a) {
+    for (std::int32_t b = 0; b < 256; ++b) {
+      const IntLanes both = as<IntLanes>(byteProducts(as<ShortLanes>(spread(a | (255 - a) << 16)),
+                                                      as<ShortLanes>(spread(b | b << 16))));
+      const auto rounded = [](std::int32_t product) { return (2 * product + 255) / 510; };
+      ASSERT_EQ(both[0], rounded(a * b) | rounded((255 - a) * b) << 16) << a << " * " << b;
+    }
+  }
+}
+
+TEST(SoftLanes, BytesAreBlendedInSharesOf256) {
+  for (std::int32_t weight = 0; weight <= 256; ++weight) {
+    const ShortLanes weights = blendWeight(spread(static_cast<float>(weight) / 256));
+    for (std::int32_t p = 0; p < 256; p += 5) {
+      for (std::int32_t q = 0; q < 256; q += 3) {
+        const IntLanes blended = as<IntLanes>(blend(as<ShortLanes>(spread(p | q << 16)),
+                                                    as<ShortLanes>(spread(q | p << 16)), weights));
+        const auto rounded = [&](std::int32_t from, std::int32_t to) {
+          return (from * (256 - weight) + to * weight + 128) / 256;
+        };
+        ASSERT_EQ(blended[7], rounded(p, q) | rounded(q, p) << 16)
+            << p << " to " << q << ", " << weight;
+      }
+    }
+  }
+}
+
+TEST(SoftLanes, NumbersAreRoundedDown) {
+  const Whole whole = roundedDown(Lanes{-4194304, -2.5F, -2, -0.25F, 0, 0.75F, 7, 4194303.5F});
+  const IntLanes expected{-4194304, -3, -2, -1, 0, 0, 7, 4194303};
+  EXPECT_EQ(signBits(whole.whole == expected), kAllLanes);
+  EXPECT_EQ(signBits(whole.value == toFloat(expected)), kAllLanes);
+}
+
 /// A texture of random texels with all its levels, and a record that shows it.
 class SoftSampling : public testing::Test {
  protected:

@@ -159,6 +159,8 @@ inline LaneSet setOf(unsigned bits) {
 }
 inline LaneSet bySign(IntLanes v) { return v; }
 
+inline LaneSet whereEqual(IntLanes a, IntLanes b) { return a == b; }
+
 /// The lanes whose sign is not set and where `a` is greater.
 inline LaneSet insideAndGreater(IntLanes outside, Lanes a, Lanes b) { return ~outside & (a > b); }
 
@@ -315,10 +317,54 @@ inline void storeBlocks(std::uint8_t* to, std::size_t stride, IntLanes v) {
   store(to + stride, __builtin_shufflevector(v, v, 4, 5, 6, 7));
 }
 
-/// p + (q - p) * weight / 256 for the 16-bit halves of all lanes, which are bytes; `rest` is 256
-/// less the weight, and both are alike in the two halves of a lane.
-inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight, ShortLanes rest) {
-  return (p * rest + q * weight + 128) >> 8;
+/// What blend() takes for shares within [0, 1], alike in both halves of a lane.
+inline ShortLanes blendWeight(Lanes share) {
+#if defined(__AVX2__)
+  // -128 times the weight, of 256.
+  const IntLanes negative = toInt(share * spread(-256.0F) - spread(0.5F));
+  return as<ShortLanes>((negative << 7 & 0xFFFF) | negative << 23);
+#else
+  const IntLanes weight = toInt(share * spread(256.0F) + spread(0.5F));
+  return as<ShortLanes>(weight | weight << 16);
+#endif
+}
+
+/// p + (q - p) * weight / 256 for the 16-bit halves of all lanes, which are bytes.
+inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight) {
+#if defined(__AVX2__)
+  // The instruction divides by 2^15, and rounds.
+  return p + as<ShortLanes>(_mm256_mulhrs_epi16(as<__m256i>(p - q), as<__m256i>(weight)));
+#else
+  return (p * (256 - weight) + q * weight + 128) >> 8;
+#endif
+}
+
+/// a * b / 255, rounded, for 16-bit halves that are bytes.
+inline ShortLanes byteProducts(ShortLanes a, ShortLanes b) {
+  const ShortLanes product = a * b + 128;
+#if defined(__AVX2__)
+  // (p + p / 256) / 256, both rounded down.
+  return as<ShortLanes>(_mm256_mulhi_epu16(as<__m256i>(product), _mm256_set1_epi16(257)));
+#else
+  return (product + (product >> 8)) >> 8;
+#endif
+}
+
+/// Whole numbers as both types.
+struct Whole {
+  Lanes value;
+  IntLanes whole;
+};
+/// Those not above lanes under 2^22.
+inline Whole roundedDown(Lanes v) {
+#if defined(__AVX2__)
+  const auto floats = as<Lanes>(_mm256_floor_ps(as<__m256>(v)));
+  return {floats, toInt(floats)};
+#else
+  const IntLanes towards_0 = toInt(v);
+  const IntLanes whole = towards_0 + (toFloat(towards_0) > v);
+  return {toFloat(whole), whole};
+#endif
 }
 
 /// For each set of lanes their numbers, lowest first, and then lane 0.

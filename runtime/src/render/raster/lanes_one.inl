@@ -19,13 +19,6 @@ struct Lanes {
   GALACTIC_EVERYWHERE float operator[](int) const { return v; }
 };
 
-struct WordLanes {
-  std::uint32_t v;
-  WordLanes() = default;
-  // NOLINTNEXTLINE(google-explicit-constructor): constants stand beside vectors
-  constexpr WordLanes(std::uint32_t value) : v(value) {}
-};
-
 /// Two halves of 16 bits.
 struct ShortLanes {
   std::uint32_t v;
@@ -82,12 +75,9 @@ GALACTIC_EVERYWHERE inline IntLanes operator>(Lanes a, Lanes b) { return mask(a.
 GALACTIC_EVERYWHERE inline IntLanes operator<=(Lanes a, Lanes b) { return mask(a.v <= b.v); }
 GALACTIC_EVERYWHERE inline IntLanes operator>=(Lanes a, Lanes b) { return mask(a.v >= b.v); }
 
-GALACTIC_EVERYWHERE inline WordLanes operator+(WordLanes a, WordLanes b) { return a.v + b.v; }
-GALACTIC_EVERYWHERE inline WordLanes operator*(WordLanes a, WordLanes b) { return a.v * b.v; }
-GALACTIC_EVERYWHERE inline WordLanes operator&(WordLanes a, WordLanes b) { return a.v & b.v; }
-GALACTIC_EVERYWHERE inline WordLanes operator>>(WordLanes a, int bits) {
-  return a.v >> static_cast<unsigned>(bits);
-}
+/// Of the only lane: all bits, or none.
+using LaneSet = IntLanes;
+GALACTIC_EVERYWHERE inline LaneSet whereEqual(IntLanes a, IntLanes b) { return a == b; }
 
 /// The same bits of both halves.
 GALACTIC_EVERYWHERE constexpr std::uint32_t inBothHalves(std::uint32_t bits) {
@@ -100,14 +90,6 @@ GALACTIC_EVERYWHERE inline ShortLanes operator<<(ShortLanes a, unsigned bits) {
   return {a.v << bits & inBothHalves(0xFFFFU << bits & 0xFFFFU)};
 }
 GALACTIC_EVERYWHERE inline ShortLanes operator|(ShortLanes a, ShortLanes b) { return {a.v | b.v}; }
-
-/// p + (q - p) * weight / 256 for both halves, which are bytes; `rest` is 256 less the weight, and
-/// both are alike in the two halves: one product serves both, as none reaches into the other half.
-GALACTIC_EVERYWHERE inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight,
-                                            ShortLanes rest) {
-  const std::uint32_t both = p.v * (rest.v & 0xFFFFU) + q.v * (weight.v & 0xFFFFU);
-  return {(both + inBothHalves(128)) >> 8U & inBothHalves(0xFF)};
-}
 
 /// The same bits as another type.
 template <class To, class From>
@@ -144,6 +126,9 @@ GALACTIC_EVERYWHERE inline IntLanes pick(IntLanes mask, IntLanes yes, IntLanes n
 GALACTIC_EVERYWHERE inline Lanes pick(IntLanes mask, Lanes yes, Lanes no) {
   return mask.v != 0 ? yes : no;
 }
+GALACTIC_EVERYWHERE inline IntLanes pickFrom(LaneSet set, IntLanes yes, IntLanes no) {
+  return pick(set, yes, no);
+}
 GALACTIC_EVERYWHERE inline IntLanes laneOf(IntLanes v, int /*lane*/) { return v; }
 
 /// The second where the comparison fails, as with numbers that are none.
@@ -155,6 +140,38 @@ GALACTIC_EVERYWHERE inline IntLanes greater(IntLanes a, IntLanes b) { return a.v
 GALACTIC_EVERYWHERE inline Lanes clampTo(Lanes v, float low, float high) {
   return lesser(greater(v, spread(low)), spread(high));
 }
+
+/// What blend() takes for a share within [0, 1]: of 256.
+GALACTIC_EVERYWHERE inline ShortLanes blendWeight(Lanes share) {
+  return {bitsOf(toInt(share * spread(256.0F) + spread(0.5F)))};
+}
+
+/// p + (q - p) * weight / 256 for both halves, which are bytes: one product serves both, as none
+/// reaches into the other half.
+GALACTIC_EVERYWHERE inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight) {
+  const std::uint32_t both = p.v * (256 - weight.v) + q.v * weight.v;
+  return {(both + inBothHalves(128)) >> 8U & inBothHalves(0xFF)};
+}
+
+/// a * b / 255, rounded, for both halves, which are bytes; those of `b` are alike.
+GALACTIC_EVERYWHERE inline ShortLanes byteProducts(ShortLanes a, ShortLanes b) {
+  const std::uint32_t both = a.v * (b.v & 0xFFFFU) + inBothHalves(128);
+  return {(both + (both >> 8U & inBothHalves(0xFF))) >> 8U & inBothHalves(0xFF)};
+}
+
+/// A whole number as both types.
+struct Whole {
+  Lanes value;
+  IntLanes whole;
+};
+/// The one not above a lane under 2^22.
+GALACTIC_EVERYWHERE inline Whole roundedDown(Lanes v) {
+  const IntLanes towards_0 = toInt(v);
+  const IntLanes whole = towards_0 + (toFloat(towards_0) > v);
+  return {toFloat(whole), whole};
+}
+
+GALACTIC_EVERYWHERE inline LaneSet setOf(unsigned bits) { return mask(bits != 0); }
 
 GALACTIC_EVERYWHERE inline Lanes magnitude(Lanes v) {
   return as<Lanes>(as<IntLanes>(v) & 0x7FFFFFFF);

@@ -82,6 +82,10 @@ inline void storeFrom(LaneSet set, void* to, IntLanes v) {
   _mm512_mask_storeu_epi32(to, set, as<__m512i>(v));
 }
 
+inline LaneSet whereEqual(IntLanes a, IntLanes b) {
+  return _mm512_cmpeq_epi32_mask(as<__m512i>(a), as<__m512i>(b));
+}
+
 /// The lanes whose sign is not set and where `a` is greater.
 inline LaneSet insideAndGreater(IntLanes outside, Lanes a, Lanes b) {
   const LaneSet inside =
@@ -339,10 +343,34 @@ inline void storeBlocks(std::uint8_t* to, std::size_t stride, IntLanes v) {
   store(to + 3 * stride, _mm512_extracti32x4_epi32(as<__m512i>(v), 3));
 }
 
-/// p + (q - p) * weight / 256 for the 16-bit halves of all lanes, which are bytes; `rest` is 256
-/// less the weight, and both are alike in the two halves of a lane.
-inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight, ShortLanes rest) {
-  return (p * rest + q * weight + 128) >> 8;
+/// What blend() takes for shares within [0, 1], alike in both halves of a lane.
+inline ShortLanes blendWeight(Lanes share) {
+  // -128 times the weight, of 256.
+  const IntLanes negative = toInt(share * spread(-256.0F) - spread(0.5F));
+  return as<ShortLanes>((negative << 7 & 0xFFFF) | negative << 23);
+}
+
+/// p + (q - p) * weight / 256 for the 16-bit halves of all lanes, which are bytes.
+inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight) {
+  // The instruction divides by 2^15, and rounds.
+  return p + as<ShortLanes>(_mm512_mulhrs_epi16(as<__m512i>(p - q), as<__m512i>(weight)));
+}
+
+/// a * b / 255, rounded, for 16-bit halves that are bytes.
+inline ShortLanes byteProducts(ShortLanes a, ShortLanes b) {
+  // (p + p / 256) / 256, both rounded down.
+  return as<ShortLanes>(_mm512_mulhi_epu16(as<__m512i>(a * b + 128), _mm512_set1_epi16(257)));
+}
+
+/// Whole numbers as both types.
+struct Whole {
+  Lanes value;
+  IntLanes whole;
+};
+/// Those not above lanes under 2^22.
+inline Whole roundedDown(Lanes v) {
+  const auto floats = as<Lanes>(_mm512_floor_ps(as<__m512>(v)));
+  return {floats, toInt(floats)};
 }
 
 }  // namespace

@@ -14,47 +14,21 @@ struct TexturePlaces {
   IntLanes texels, kind;
 };
 
-/// Weights for blend(), alike in both halves, from shares within [0, 1].
-GALACTIC_EVERYWHERE inline IntLanes blendWeight(Lanes share) {
-  const IntLanes weight = toInt(share * spread(256.0F) + spread(0.5F));
-  return weight | weight << 16;
-}
-
 struct FourTexels {
   IntLanes upper_left, upper_right, lower_left, lower_right;
 };
 
 GALACTIC_EVERYWHERE inline IntLanes bilinear(const FourTexels& t, Lanes share_right,
                                              Lanes share_down) {
-  const IntLanes whole = spread(0x01000100);
-  const IntLanes right = blendWeight(share_right);
-  const IntLanes down = blendWeight(share_down);
-  const auto right_weight = as<ShortLanes>(right);
-  const auto left_weight = as<ShortLanes>(whole - right);
-  const auto down_weight = as<ShortLanes>(down);
-  const auto up_weight = as<ShortLanes>(whole - down);
+  const ShortLanes right = blendWeight(share_right);
+  const ShortLanes down = blendWeight(share_down);
   const auto even = [](IntLanes v) { return as<ShortLanes>(v & 0x00FF00FF); };
   const auto odd = [](IntLanes v) { return as<ShortLanes>(v) >> 8; };
-  const ShortLanes low =
-      blend(blend(even(t.upper_left), even(t.upper_right), right_weight, left_weight),
-            blend(even(t.lower_left), even(t.lower_right), right_weight, left_weight), down_weight,
-            up_weight);
-  const ShortLanes high =
-      blend(blend(odd(t.upper_left), odd(t.upper_right), right_weight, left_weight),
-            blend(odd(t.lower_left), odd(t.lower_right), right_weight, left_weight), down_weight,
-            up_weight);
+  const ShortLanes low = blend(blend(even(t.upper_left), even(t.upper_right), right),
+                               blend(even(t.lower_left), even(t.lower_right), right), down);
+  const ShortLanes high = blend(blend(odd(t.upper_left), odd(t.upper_right), right),
+                                blend(odd(t.lower_left), odd(t.lower_right), right), down);
   return as<IntLanes>(low | high << 8);
-}
-
-/// Texels in the levels from one of edge 2^n down to the last.
-GALACTIC_EVERYWHERE inline IntLanes texelsDownFrom(IntLanes n) {
-  return spread(0x55555555) & ((spread(4) << (n + n)) - spread(1));
-}
-
-/// Towards minus infinity.
-GALACTIC_EVERYWHERE inline IntLanes floorOf(Lanes v) {
-  const IntLanes whole = toInt(v);
-  return whole + (toFloat(whole) > v);
 }
 
 /// Levels of textures.
@@ -67,16 +41,16 @@ struct Levels {
 
 /// The level with about one texel per pixel, of textures whose edges are 2^size.
 GALACTIC_EVERYWHERE inline IntLanes levelOf(Lanes squared_rate, IntLanes size) {
-  // log4 of the doubled square, rounded down: changes half way between two levels.
-  const IntLanes exponent = as<IntLanes>(squared_rate * spread(2.0F)) >> 23;
-  return lesser(greater((exponent - spread(127)) >> 1, spread(0)), size);
+  // log4 of the doubled square, rounded down: changes half way between two levels. The bits of a
+  // number from bit 23 on are its log2 and 127.
+  const IntLanes level = (as<IntLanes>(squared_rate) - spread(126 << 23)) >> 24;
+  return lesser(greater(level, spread(0)), size);
 }
 
 /// The same level for all.
 GALACTIC_EVERYWHERE inline Levels oneLevel(std::int32_t level, std::int32_t size, IntLanes texels) {
-  const auto texels_down_from = [](std::int32_t n) { return 0x55555555U & ((4U << (2 * n)) - 1U); };
   const std::int32_t log_edge = size - level;
-  const std::uint32_t before = texels_down_from(size) - texels_down_from(log_edge);
+  const std::uint32_t before = 0x55555555U & ((4U << (2 * size)) - (4U << (2 * log_edge)));
   return {spread(as<float>((127 - level) << 23)),
           texels + spread(static_cast<std::int32_t>(before)), spread(log_edge),
           spread((1 << log_edge) - 1)};
@@ -84,17 +58,21 @@ GALACTIC_EVERYWHERE inline Levels oneLevel(std::int32_t level, std::int32_t size
 
 GALACTIC_EVERYWHERE inline Levels levelsAt(IntLanes level, IntLanes size, IntLanes texels) {
   const IntLanes log_edge = size - level;
-  return {as<Lanes>((spread(127) - level) << 23),
-          texels + (texelsDownFrom(size) - texelsDownFrom(log_edge)), log_edge,
+  // The sum of 4^n over the levels before.
+  const IntLanes before =
+      spread(0x55555555) & ((spread(4) << (size + size)) - (spread(4) << (log_edge + log_edge)));
+  return {as<Lanes>((spread(127) - level) << 23), texels + before, log_edge,
           (spread(1) << log_edge) - spread(1)};
 }
 
-/// A place in one level of a texture: the four texels around it and the shares of the latter ones.
+/// A place in one level of a texture: the left ones of the four texels around it and the shares of
+/// the right and the lower ones.
 struct LevelPlace {
-  FourTexels at;
+  IntLanes upper_left, lower_left;
+  /// From the left texels to the right ones: 1, but where the row begins again.
+  IntLanes to_right;
   Lanes share_right, share_down;
-  /// Where the right texels do not follow the left ones in memory.
-  IntLanes wraps;
+  LaneSet begins_again;
 };
 
 GALACTIC_EVERYWHERE inline LevelPlace placeInLevel(const TexturePlaces& places,
@@ -102,16 +80,15 @@ GALACTIC_EVERYWHERE inline LevelPlace placeInLevel(const TexturePlaces& places,
   constexpr float kFarthest = 1 << 22;
   const Lanes u = clampTo(places.u * level.scale - spread(0.5F), -kFarthest, kFarthest);
   const Lanes v = clampTo(places.v * level.scale - spread(0.5F), -kFarthest, kFarthest);
-  const IntLanes left = floorOf(u);
-  const IntLanes upper = floorOf(v);
-  const IntLanes row0 = level.first + ((upper & level.wrap) << level.log_edge);
-  const IntLanes row1 = level.first + (((upper + spread(1)) & level.wrap) << level.log_edge);
-  const IntLanes column0 = left & level.wrap;
-  const IntLanes column1 = (left + spread(1)) & level.wrap;
-  return {{row0 + column0, row0 + column1, row1 + column0, row1 + column1},
-          u - toFloat(left),
-          v - toFloat(upper),
-          column0 == level.wrap};
+  const auto left = roundedDown(u);
+  const auto upper = roundedDown(v);
+  const IntLanes row0 = (upper.whole & level.wrap) << level.log_edge;
+  const IntLanes row1 = ((upper.whole + spread(1)) & level.wrap) << level.log_edge;
+  const IntLanes column = left.whole & level.wrap;
+  const IntLanes first = level.first + column;
+  const LaneSet last = whereEqual(column, level.wrap);
+  return {first + row0,   first + row1,    pickFrom(last, -level.wrap, spread(1)),
+          u - left.value, v - upper.value, last};
 }
 
 GALACTIC_EVERYWHERE inline const std::int32_t* texelBase(const PaneTask& task,
@@ -122,28 +99,28 @@ GALACTIC_EVERYWHERE inline const std::int32_t* texelBase(const PaneTask& task,
 /// Texels of one base. Most left texels have their right ones behind them: both are read at once,
 /// which halves the work where lanes are many. `wraps`: for one lane or more that is not so.
 [[gnu::always_inline]] GALACTIC_EVERYWHERE inline FourTexels readTexels(const std::int32_t* from,
-                                                                        const FourTexels& at,
+                                                                        const LevelPlace& place,
                                                                         bool wraps) {
   if (kLanes > 1 && !wraps) {
-    const Pair<IntLanes> upper = gatherNeighbors(from, at.upper_left);
-    const Pair<IntLanes> lower = gatherNeighbors(from, at.lower_left);
+    const Pair<IntLanes> upper = gatherNeighbors(from, place.upper_left);
+    const Pair<IntLanes> lower = gatherNeighbors(from, place.lower_left);
     return {upper.first, upper.second, lower.first, lower.second};
   }
-  return {gather(from, at.upper_left), gather(from, at.upper_right), gather(from, at.lower_left),
-          gather(from, at.lower_right)};
+  return {gather(from, place.upper_left), gather(from, place.upper_left + place.to_right),
+          gather(from, place.lower_left), gather(from, place.lower_left + place.to_right)};
 }
 
-GALACTIC_EVERYWHERE inline FourTexels masked(const FourTexels& t, IntLanes mask) {
-  return {t.upper_left & mask, t.upper_right & mask, t.lower_left & mask, t.lower_right & mask};
+/// Lanes that are not of the set read texel 0 of the base.
+GALACTIC_EVERYWHERE inline void keepOnly(LaneSet set, LevelPlace& place) {
+  place.upper_left = pickFrom(set, place.upper_left, spread(0));
+  place.lower_left = pickFrom(set, place.lower_left, spread(0));
+  place.to_right = pickFrom(set, place.to_right, spread(0));
 }
 
 /// Where the texels of some pixels lie, and what decides how they are read: with these numbers at
 /// hand, reading waits for nothing.
 struct SurfacePlace {
-  /// Not set where no lane has a texture.
   LevelPlace place;
-  /// Of the records: see kTexels and kKind.
-  IntLanes texels, kind;
   /// Bit n: lane n has a texture; it has one of another base than the first of them.
   unsigned textured, others;
   /// Of the first one.
@@ -153,63 +130,65 @@ struct SurfacePlace {
 
 GALACTIC_EVERYWHERE inline IntLanes baseOf(IntLanes kind) { return (kind >> 8) & 0x3FFFFF; }
 
-/// `places`: what gives them where a lane has a texture. Lanes without a triangle are flat.
-template <class Places>
-GALACTIC_EVERYWHERE inline void placeSurface(IntLanes texels, IntLanes kind, const Places& places,
+/// Lanes whose surface has one color; so are those without a triangle.
+GALACTIC_EVERYWHERE inline LaneSet flatLanes(IntLanes kind) {
+  return whereEqual(kind & 0xFF, spread(static_cast<std::int32_t>(kFlatSurface)));
+}
+
+/// Of places of which one lane or more has a texture; `flat`: see flatLanes().
+GALACTIC_EVERYWHERE inline void placeSurface(const TexturePlaces& places, LaneSet flat,
                                              SurfacePlace& surface) {
-  surface.texels = texels;
-  surface.kind = kind;
-  const IntLanes flat = (kind & 0xFF) == spread(static_cast<std::int32_t>(kFlatSurface));
-  surface.textured = ~signBits(flat) & kAllLanes;
-  if (surface.textured == 0) return;
-  const IntLanes size = pick(flat, spread(0), kind & 0xFF);
-  const TexturePlaces found = places();
+  const IntLanes kind = places.kind;
+  const IntLanes size = pickFrom(flat, spread(0), kind & 0xFF);
   LevelPlace& place = surface.place;
-  place = placeInLevel(found, levelsAt(levelOf(found.squared_rate, size), size, texels));
-  place.at = masked(place.at, ~flat);
-  surface.wraps = (signBits(place.wraps) & surface.textured) != 0;
+  place = placeInLevel(places, levelsAt(levelOf(places.squared_rate, size), size, places.texels));
+  surface.textured = ~bitsOf(flat) & kAllLanes;
+  keepOnly(setOf(surface.textured), place);
+  surface.wraps = (bitsOf(place.begins_again) & surface.textured) != 0;
   const IntLanes first = laneOf(baseOf(kind), lowestBit(surface.textured));
   surface.base = first[0];
-  surface.others = signBits(baseOf(kind) != first) & surface.textured;
+  surface.others = ~bitsOf(whereEqual(baseOf(kind), first)) & surface.textured;
 }
 
 /// Texels of several bases.
 [[gnu::noinline]] GALACTIC_EVERYWHERE inline FourTexels readMixed(const PaneTask& task,
-                                                                  const SurfacePlace& surface) {
+                                                                  const SurfacePlace& surface,
+                                                                  IntLanes kind) {
   FourTexels texels{};
   for (unsigned left = surface.textured; left != 0;) {
-    const IntLanes number = laneOf(baseOf(surface.kind), lowestBit(left));
-    const IntLanes here = baseOf(surface.kind) == number;
-    left &= ~signBits(here);
-    const FourTexels read = masked(
-        readTexels(texelBase(task, number[0]), masked(surface.place.at, here), surface.wraps),
-        here);
-    texels.upper_left |= read.upper_left;
-    texels.upper_right |= read.upper_right;
-    texels.lower_left |= read.lower_left;
-    texels.lower_right |= read.lower_right;
+    const IntLanes number = laneOf(baseOf(kind), lowestBit(left));
+    const LaneSet here = whereEqual(baseOf(kind), number);
+    left &= ~bitsOf(here);
+    LevelPlace place = surface.place;
+    keepOnly(here, place);
+    const FourTexels read = readTexels(texelBase(task, number[0]), place, surface.wraps);
+    texels.upper_left = pickFrom(here, read.upper_left, texels.upper_left);
+    texels.upper_right = pickFrom(here, read.upper_right, texels.upper_right);
+    texels.lower_left = pickFrom(here, read.lower_left, texels.lower_left);
+    texels.lower_right = pickFrom(here, read.lower_right, texels.lower_right);
   }
   return texels;
 }
 
-/// Texels, or the colors of flat surfaces.
+/// Texels, or the colors of flat surfaces: of places of which one lane or more has a texture.
 [[gnu::always_inline]] GALACTIC_EVERYWHERE inline IntLanes sampleAt(const PaneTask& task,
+                                                                    const TexturePlaces& places,
                                                                     const SurfacePlace& surface) {
-  if (surface.textured == 0) return surface.texels;
   const LevelPlace& place = surface.place;
   const FourTexels texels = surface.others == 0
-                                ? readTexels(texelBase(task, surface.base), place.at, surface.wraps)
-                                : readMixed(task, surface);
-  const IntLanes flat = (surface.kind & 0xFF) == spread(static_cast<std::int32_t>(kFlatSurface));
-  return pick(flat, surface.texels, bilinear(texels, place.share_right, place.share_down));
+                                ? readTexels(texelBase(task, surface.base), place, surface.wraps)
+                                : readMixed(task, surface, places.kind);
+  return pickFrom(setOf(surface.textured), bilinear(texels, place.share_right, place.share_down),
+                  places.texels);
 }
 
 GALACTIC_EVERYWHERE inline IntLanes sampleTexels(const PaneTask& task,
                                                  const TexturePlaces& places) {
+  const LaneSet flat = flatLanes(places.kind);
+  if ((bitsOf(flat) & kAllLanes) == kAllLanes) return places.texels;
   SurfacePlace surface;
-  placeSurface(
-      places.texels, places.kind, [&] { return places; }, surface);
-  return sampleAt(task, surface);
+  placeSurface(places, flat, surface);
+  return sampleAt(task, places, surface);
 }
 
 /// One record for all lanes.
@@ -261,7 +240,7 @@ GALACTIC_EVERYWHERE inline IntLanes sampleOne(const PaneTask& task, const OneRec
   const Levels levels = alike ? oneLevel(first, log_edge, texels) : levelsAt(level, size, texels);
   const LevelPlace place = placeInLevel(places, levels);
   const FourTexels around =
-      readTexels(texelBase(task, (kind >> 8) & 0x3FFFFF), place.at, signBits(place.wraps) != 0);
+      readTexels(texelBase(task, (kind >> 8) & 0x3FFFFF), place, bitsOf(place.begins_again) != 0);
   return bilinear(around, place.share_right, place.share_down);
 }
 
@@ -305,11 +284,10 @@ GALACTIC_EVERYWHERE inline IntLanes lightAt(const Lanes* light, const PixelLanes
 
 /// timesColors() where red, green and blue are one, and alpha is whole: the same bits.
 GALACTIC_EVERYWHERE inline IntLanes timesLight(IntLanes texels, IntLanes light) {
-  // Red and blue in one product.
-  const WordLanes both = as<WordLanes>(texels & 0x00FF00FF) * as<WordLanes>(light) + 0x00800080U;
-  const WordLanes red_blue = (both + ((both >> 8) & 0x00FF00FFU)) >> 8;
-  const IntLanes green = byteProduct((texels >> 8) & 0xFF, light);
-  return (as<IntLanes>(red_blue) & 0x00FF00FF) | green << 8 |
+  const auto both = as<ShortLanes>(light | light << 16);
+  const ShortLanes low = byteProducts(as<ShortLanes>(texels & 0x00FF00FF), both);
+  const ShortLanes high = byteProducts(as<ShortLanes>(texels) >> 8, both);
+  return (as<IntLanes>(low | high << 8) & 0x00FFFFFF) |
          (texels & static_cast<std::int32_t>(0xFF000000U));
 }
 

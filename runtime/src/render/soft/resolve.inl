@@ -12,41 +12,33 @@ struct EachRecord {
 
 /// A vector of pixels before its texels are read.
 struct Shading {
-  /// Of the records; the rest is not set where no lane has a texture.
+  /// Of the records; only the last two are set where no lane has a texture.
   TexturePlaces places;
+  /// Not set where no lane has a texture.
   SurfacePlace surface;
+  LaneSet flat;
   /// See lightAt(); not set where no light is.
   IntLanes light;
-};
 
-/// Asks the memory for most of the texels: those at both ends of the vector's rows.
-inline void fetchTexels(const PaneTask& task, const SurfacePlace& surface) {
-  const std::int32_t* base = texelBase(task, surface.base);
-  alignas(kVectorBytes) std::int32_t upper[kLanes];
-  alignas(kVectorBytes) std::int32_t lower[kLanes];
-  store(upper, surface.place.at.upper_left);
-  store(lower, surface.place.at.lower_right);
-  for (std::uint32_t lane = 0; lane < kLanes; lane += kBlockWidth) {
-    __builtin_prefetch(base + upper[lane]);
-    __builtin_prefetch(base + lower[lane + kBlockWidth - 1]);
-  }
-}
+  bool isTextured() const { return (~bitsOf(flat) & kAllLanes) != 0; }
+};
 
 /// `ids`: of pixels that are not shaded yet.
 [[gnu::always_inline]] inline void readRecords(const Pane& pane, const std::int32_t* ids,
                                                const PixelLanes& pixels, Shading& shading) {
   TexturePlaces& places = shading.places;
-  const IntLanes none = spread(static_cast<std::int32_t>(kFlatSurface));
   if (signBits(-load<IntLanes>(ids)) == 0) {  // none above 0: background
     places.texels = spread(static_cast<std::int32_t>(pane.task->background));
-    places.kind = none;
+    places.kind = spread(static_cast<std::int32_t>(kFlatSurface));
+    shading.flat = setOf(kAllLanes);
     return;
   }
   EachRecord each;
   const float* records = pane.scratch->records;
   gatherRows(records + kTexels, ids, each.fields + kTexels);
   shading.light = lightAt(each.fields + kLightRight, pixels);
-  if (signBits((each.intField(kKind) & 0xFF) == none) == kAllLanes) {
+  shading.flat = flatLanes(each.intField(kKind));
+  if (!shading.isTextured()) {
     places.texels = each.intField(kTexels);
     places.kind = each.intField(kKind);
     return;
@@ -55,19 +47,17 @@ inline void fetchTexels(const PaneTask& task, const SurfacePlace& surface) {
   places = texturePlaces(each, pixels);
 }
 
-inline void placeTexels(const Pane& pane, Shading& shading) {
-  const TexturePlaces& places = shading.places;
-  placeSurface(
-      places.texels, places.kind, [&] { return places; }, shading.surface);
-  if (shading.surface.textured != 0) fetchTexels(*pane.task, shading.surface);
+inline void placeTexels(Shading& shading) {
+  if (shading.isTextured()) placeSurface(shading.places, shading.flat, shading.surface);
 }
 
 /// `pixels`: what gives them where colors are interpolated.
 template <class Pixels>
 [[gnu::always_inline]] inline IntLanes finishShading(const Pane& pane, const std::int32_t* ids,
                                                      const Pixels& pixels, const Shading& shading) {
-  const IntLanes kind = shading.surface.kind;
-  IntLanes colors = sampleAt(*pane.task, shading.surface);
+  const IntLanes kind = shading.places.kind;
+  IntLanes colors = shading.places.texels;
+  if (shading.isTextured()) colors = sampleAt(*pane.task, shading.places, shading.surface);
   if (signBits(kind) != 0) {
     // Lanes without colors look at record 0.
     alignas(kVectorBytes) std::int32_t colored[kLanes];
@@ -75,13 +65,13 @@ template <class Pixels>
     EachRecord planes;
     gatherRows(pane.scratch->colors, colored, planes.fields);
     gatherRows(pane.scratch->colors + 8, colored, planes.fields + 8);
-    colors = pick(kind >> 31, timesColors(colors, planes, pixels()), colors);
+    colors = pickFrom(bySign(kind), timesColors(colors, planes, pixels()), colors);
   }
-  const IntLanes lit = kind << 1;
-  if (signBits(lit) != 0) colors = pick(lit >> 31, timesLight(colors, shading.light), colors);
+  const LaneSet lit = bySign(kind << 1);
+  if (bitsOf(lit) != 0) colors = pickFrom(lit, timesLight(colors, shading.light), colors);
   // What is drawn hides all behind it.
-  return pick(load<IntLanes>(ids) == spread(0), colors,
-              colors | static_cast<std::int32_t>(0xFF000000U));
+  return pickFrom(whereEqual(load<IntLanes>(ids), spread(0)), colors,
+                  colors | static_cast<std::int32_t>(0xFF000000U));
 }
 
 /// `ids`: of pixels that are not shaded yet.
@@ -169,7 +159,7 @@ struct Resolving {
   store(pixels.shown, id & ~(id >> 31));
   if (pane.task->color == nullptr) return;
   readRecords(pane, pixels.shown, pixels.pixels, pixels.shading);
-  placeTexels(pane, pixels.shading);
+  placeTexels(pixels.shading);
 }
 
 [[gnu::noinline]] void endColors(const Pane& pane, const Resolving& pixels) {
@@ -257,7 +247,7 @@ inline void resolveVectors(const WholeVectors& vectors) {
     if (task.color != nullptr) readRecords(pane, vectors.ids(n), pixels, shadings[n]);
   }
   if (task.color != nullptr) {
-    for (std::uint32_t n = 0; n < vectors.count; ++n) placeTexels(pane, shadings[n]);
+    for (std::uint32_t n = 0; n < vectors.count; ++n) placeTexels(shadings[n]);
     for (std::uint32_t n = 0; n < vectors.count; ++n) {
       const auto pixels = [&] { return vectors.pixels(n); };
       vectors.writeColors(n, finishShading(pane, vectors.ids(n), pixels, shadings[n]));
