@@ -160,6 +160,7 @@ inline LaneSet setOf(unsigned bits) {
 inline LaneSet bySign(IntLanes v) { return v; }
 
 inline LaneSet whereEqual(IntLanes a, IntLanes b) { return a == b; }
+inline LaneSet whereLess(Lanes a, Lanes b) { return a < b; }
 
 /// The lanes whose sign is not set and where `a` is greater.
 inline LaneSet insideAndGreater(IntLanes outside, Lanes a, Lanes b) { return ~outside & (a > b); }

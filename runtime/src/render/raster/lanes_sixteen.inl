@@ -85,6 +85,9 @@ inline void storeFrom(LaneSet set, void* to, IntLanes v) {
 inline LaneSet whereEqual(IntLanes a, IntLanes b) {
   return _mm512_cmpeq_epi32_mask(as<__m512i>(a), as<__m512i>(b));
 }
+inline LaneSet whereLess(Lanes a, Lanes b) {
+  return _mm512_cmp_ps_mask(as<__m512>(a), as<__m512>(b), _CMP_LT_OQ);
+}
 
 /// The lanes whose sign is not set and where `a` is greater.
 inline LaneSet insideAndGreater(IntLanes outside, Lanes a, Lanes b) {

@@ -179,13 +179,13 @@ inline unsigned mayShow(const Pane& pane, std::int32_t x, std::int32_t y, unsign
   const PaneScratch& scratch = *pane.scratch;
   const float* depth = scratch.tile_depth + static_cast<std::size_t>(y) * pane.tile_columns + x;
   // What is known of a tile is never too near, even where the tile has changed since.
-  bits &= signBits(load<Lanes>(depth) < nearest);
+  bits &= bitsOf(whereLess(load<Lanes>(depth), nearest));
   const unsigned changed = bits & scratch.tile_changed[y] >> static_cast<unsigned>(x);
   if (changed == 0) return bits;
   for (unsigned left = changed; left != 0; left &= left - 1) {
     tileDepth(pane, static_cast<std::uint32_t>(x + lowestBit(left)), static_cast<std::uint32_t>(y));
   }
-  return bits & signBits(load<Lanes>(depth) < nearest);
+  return bits & bitsOf(whereLess(load<Lanes>(depth), nearest));
 }
 
 /// Tiles that are looked at together: as many as a vector has lanes, row by row of four.
@@ -197,7 +197,7 @@ inline unsigned mayShowInSquare(const Pane& pane, std::int32_t x, std::int32_t y
                                 Lanes nearest) {
   const PaneScratch& scratch = *pane.scratch;
   const float* depth = scratch.tile_depth + static_cast<std::size_t>(y) * pane.tile_columns + x;
-  bits &= signBits(loadSquare(depth, pane.tile_columns) < nearest);
+  bits &= bitsOf(whereLess(loadSquare(depth, pane.tile_columns), nearest));
   unsigned changed = 0;
   for (std::int32_t row = 0; row < kSquareHeight; ++row) {
     const unsigned of_row = scratch.tile_changed[y + row] >> static_cast<unsigned>(x) & 0xFU;
@@ -210,7 +210,7 @@ inline unsigned mayShowInSquare(const Pane& pane, std::int32_t x, std::int32_t y
     tileDepth(pane, static_cast<std::uint32_t>(x + n % kSquareWidth),
               static_cast<std::uint32_t>(y + n / kSquareWidth));
   }
-  return bits & signBits(loadSquare(depth, pane.tile_columns) < nearest);
+  return bits & bitsOf(whereLess(loadSquare(depth, pane.tile_columns), nearest));
 }
 
 /// Whether one of the cluster's tiles hides what is as far as `farthest`.
@@ -219,8 +219,8 @@ inline bool hidesSome(const Pane& pane, const SeenCluster& seen, float farthest)
   for (std::uint32_t y = seen.tiles[2]; y <= seen.tiles[3]; ++y) {
     const float* row = pane.scratch->tile_depth + std::size_t{y} * pane.tile_columns;
     for (std::uint32_t x = seen.tiles[0]; x <= seen.tiles[1]; x += kLanes) {
-      open &=
-          signBits(load<Lanes>(row + x) < spread(farthest)) | ~firstLanes(seen.tiles[1] - x + 1U);
+      open &= bitsOf(whereLess(load<Lanes>(row + x), spread(farthest))) |
+              ~firstLanes(seen.tiles[1] - x + 1U);
     }
   }
   return open != kAllLanes;

@@ -27,8 +27,11 @@ inline TileSteps tileSteps(const LargeSetup& setup) {
   return steps;
 }
 
-/// Edge functions and 1/w at the first pixels of some tiles.
+/// Edge functions and 1/w at the first pixels of some tiles, and where these lie: in the pane's
+/// pixels, and among its tiles.
 struct TileStarts {
+  alignas(kVectorBytes) std::int32_t pixels[kHalf];
+  alignas(kVectorBytes) std::int32_t tiles[kHalf];
   alignas(kVectorBytes) std::int32_t edges[3][kHalf];
   alignas(kVectorBytes) float z[kHalf];
 };
@@ -37,12 +40,19 @@ constexpr int kLogMostTiles = 5;
 static_assert(1U << kLogMostTiles == kMostTiles);
 
 /// Of tiles by their numbers: see TileList.
-inline void startTiles(const LargeSetup& setup, HalfInts tiles, TileStarts& starts) {
+inline void startTiles(const Pane& pane, const LargeSetup& setup, HalfInts tiles,
+                       TileStarts& starts) {
   // Further out the sign is the same in the whole tile: changes per pixel are under 2^24.
   constexpr double kMost = 1 << 30;
   constexpr double kEdge = kTileEdge;
-  const Doubles right = __builtin_convertvector(tiles & (kMostTiles - 1), Doubles) * kEdge;
-  const Doubles down = __builtin_convertvector(tiles >> kLogMostTiles, Doubles) * kEdge;
+  const HalfInts x = tiles & (kMostTiles - 1);
+  // What lies behind the last tile of a list is any number.
+  const HalfInts y = tiles >> kLogMostTiles & (kMostTiles - 1);
+  const auto row = static_cast<std::int32_t>(rowStride(pane) * (kTileEdge / kHigh));
+  store(starts.pixels, y * row + x * static_cast<std::int32_t>(kLanes * (kTileEdge / kBlockWidth)));
+  store(starts.tiles, y * static_cast<std::int32_t>(pane.tile_columns) + x);
+  const Doubles right = __builtin_convertvector(x, Doubles) * kEdge;
+  const Doubles down = __builtin_convertvector(y, Doubles) * kEdge;
   for (int n = 0; n < 3; ++n) {
     // Exact: all of them are whole numbers under 2^53.
     const LongEdge& edge = setup.edges[n];
@@ -56,20 +66,28 @@ inline void startTiles(const LargeSetup& setup, HalfInts tiles, TileStarts& star
                                           HalfFloats));
 }
 
-/// Draws the pixels of tile `n` of those that start so and measures it; says whether any shows.
+/// Where the tiles of a pane lie: by value, so that no store can change it.
+struct TilePlaces {
+  BlockPlace first;
+  float* depth;
+  std::size_t stride;
+};
+
+inline TilePlaces tilePlaces(const Pane& pane) {
+  return {placeOf(pane, 0, 0), pane.scratch->tile_depth, rowStride(pane)};
+}
+
+/// Draws the pixels of tile `n` of those that start so and measures it: it has been measured
+/// before, in findTiles(). Says whether any shows.
 template <class Test>
-inline LaneSet coverTile(const Pane& pane, const LargeSetup& setup, const TileSteps& steps,
-                         const TileStarts& starts, std::uint32_t n, std::uint32_t tile,
-                         const Test& test) {
-  const std::uint32_t x = tile % kMostTiles;
-  const std::uint32_t y = tile / kMostTiles;
+inline LaneSet coverTile(const TilePlaces places, const LargeSetup& setup, const TileSteps& steps,
+                         const TileStarts& starts, std::uint32_t n, IntLanes id, const Test& test) {
   const Lanes z_start = spread(starts.z[n]) + setup.z_offsets;
   EdgeLanes edges{setup.edges[0].offsets + spread(starts.edges[0][n]),
                   setup.edges[1].offsets + spread(starts.edges[1][n]),
                   setup.edges[2].offsets + spread(starts.edges[2][n])};
-  const IntLanes id = idOf(pane.records);
-  const std::size_t stride = rowStride(pane);
-  BlockPlace first = placeOf(pane, x * 2, y * 4);
+  const std::int32_t pixel = starts.pixels[n];
+  BlockPlace first{places.first.depth + pixel, places.first.ids + pixel};
   LaneSet hit = noLanes();
   Lanes farthest = spread(__builtin_inff());
 #pragma GCC unroll 4
@@ -89,9 +107,9 @@ inline LaneSet coverTile(const Pane& pane, const LargeSetup& setup, const TileSt
     }
     edges = {edges.a + steps.edge_below[0], edges.b + steps.edge_below[1],
              edges.c + steps.edge_below[2]};
-    first = {first.depth + stride, first.ids + stride};
+    first = {first.depth + places.stride, first.ids + places.stride};
   }
-  pane.scratch->tile_depth[std::size_t{y} * pane.tile_columns + x] = least(farthest);
+  places.depth[starts.tiles[n]] = least(farthest);
   return hit;
 }
 
@@ -205,14 +223,15 @@ bool coverTiles(const Pane& pane, const LargeSetup& setup, const TileBox& box, c
   findTiles(pane, setup, box, list);
   if (list.count == 0) return false;
   const TileSteps steps = tileSteps(setup);
+  const TilePlaces places = tilePlaces(pane);
+  const IntLanes id = idOf(pane.records);
   LaneSet hit = noLanes();
   for (std::uint32_t first = 0; first < list.count; first += kHalf) {
     TileStarts starts;
-    startTiles(setup, load<HalfInts>(list.tiles + first), starts);
+    startTiles(pane, setup, load<HalfInts>(list.tiles + first), starts);
     const std::uint32_t count = list.count - first < kHalf ? list.count - first : kHalf;
     for (std::uint32_t n = 0; n < count; ++n) {
-      const auto tile = static_cast<std::uint32_t>(list.tiles[first + n]);
-      hit |= coverTile(pane, setup, steps, starts, n, tile, test);
+      hit |= coverTile(places, setup, steps, starts, n, id, test);
     }
   }
   return bitsOf(hit) != 0;
