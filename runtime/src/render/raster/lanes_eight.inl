@@ -212,6 +212,10 @@ inline auto lookUp(const Element* table, IntLanes at) {
   return gather(table, at);
 }
 
+/// Those of small tables lie in memory, too.
+constexpr std::uint32_t kFewEntries = 0;
+inline Lanes lookUpFew(const float* table, IntLanes at) { return lookUp(table, at); }
+
 template <class Vector>
 struct Pair {
   Vector first, second;

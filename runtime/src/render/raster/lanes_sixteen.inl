@@ -204,6 +204,13 @@ inline IntLanes lookUp(const std::int32_t* table, IntLanes at, std::size_t strid
   return as<IntLanes>(lookUp(reinterpret_cast<const float*>(table), at, stride));
 }
 
+/// Entries of a table of at most kFewEntries, which begins on a whole vector, by their numbers.
+constexpr std::uint32_t kFewEntries = 32;
+inline Lanes lookUpFew(const float* table, IntLanes at) {
+  return as<Lanes>(_mm512_permutex2var_ps(_mm512_load_ps(table), as<__m512i>(at),
+                                          _mm512_load_ps(table + kLanes)));
+}
+
 template <class Vector>
 struct Pair {
   Vector first, second;

@@ -128,35 +128,44 @@ GALACTIC_EVERYWHERE inline Sorting sortVector(const SortLimits limits, const Clu
           last_y};
 }
 
+/// The tiles that some triangles touch, at most two in a row and in a column; those whose mask is 0
+/// do not count.
+struct TouchedTiles {
+  IntLanes left, right, top, bottom, mask;
+};
+
 /// At most the least 1/w of each tile of a pane, row after row; one more may be read.
 struct TileDepths {
   const float* depth;
   std::int32_t columns;
+
+  /// The least 1/w of tiles.
+  GALACTIC_EVERYWHERE Lanes farthest(const TouchedTiles& tiles) const {
+    const IntLanes upper = tiles.top * spread(columns) + tiles.left;
+    const IntLanes lower = tiles.bottom * spread(columns) + tiles.left;
+    const IntLanes both = tiles.left < tiles.right;
+    return lesser(gatherLeast(depth, upper & tiles.mask, both & tiles.mask),
+                  gatherLeast(depth, lower & tiles.mask, both & tiles.mask));
+  }
 };
 
 /// Which of some small triangles lie behind all that was drawn in their tiles: bit n for triangle
 /// n. Those that touch more than two tiles in a row or a column do not count.
-GALACTIC_EVERYWHERE inline unsigned behindTiles(const TileDepths& tiles, const ClusterState& state,
+template <class Tiles>
+GALACTIC_EVERYWHERE inline unsigned behindTiles(const Tiles& tiles, const ClusterState& state,
                                                 const Sorting& sorting,
                                                 const CornerLanes& corners) {
   const Lanes nearest =
       mostOf(lookUp(state.z, corners.a), lookUp(state.z, corners.b), lookUp(state.z, corners.c));
-  const IntLanes left = sorting.first_x >> 3;
-  const IntLanes right = sorting.last_x >> 3;
-  const IntLanes top = sorting.first_y >> 3;
-  const IntLanes bottom = sorting.last_y >> 3;
+  TouchedTiles touched{sorting.first_x >> 3, sorting.last_x >> 3, sorting.first_y >> 3,
+                       sorting.last_y >> 3, spread(0)};
   // Those that cover no pixel may lie outside of the pane.
-  const IntLanes wide = right - left;
-  const IntLanes high = bottom - top;
-  const IntLanes few = ~(wide | (spread(1) - wide) | high | (spread(1) - high) |
-                         (sorting.last_x - sorting.first_x) | (sorting.last_y - sorting.first_y)) >>
-                       31;
-  const IntLanes upper = top * spread(tiles.columns);
-  const IntLanes lower = bottom * spread(tiles.columns);
-  const IntLanes both = -wide >> 31;
-  const Lanes farthest = lesser(gatherLeast(tiles.depth, (upper + left) & few, both & few),
-                                gatherLeast(tiles.depth, (lower + left) & few, both & few));
-  return signBits((farthest >= nearest) & few);
+  const IntLanes wide = touched.right - touched.left;
+  const IntLanes high = touched.bottom - touched.top;
+  touched.mask = ~(wide | (spread(1) - wide) | high | (spread(1) - high) |
+                   (sorting.last_x - sorting.first_x) | (sorting.last_y - sorting.first_y)) >>
+                 31;
+  return signBits((tiles.farthest(touched) >= nearest) & touched.mask);
 }
 
 /// Two numbers per triangle that say how a value at its corners changes over the pane.

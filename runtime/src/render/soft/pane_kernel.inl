@@ -119,7 +119,7 @@ void drawCluster(Pane& pane, const SeenCluster& seen) {
   if (state.any_bad && pane.task->culling) markBeside(*pane.task, state);
   const bool compares = pane.task->culling && (state.any_bad || hidesSome(pane, seen, farthest));
   Survivors survivors;
-  sortTriangles(pane, state, compares, survivors);
+  sortTriangles(pane, seen, state, compares, survivors);
   drawTriangles(pane, state, survivors);
   ++pane.counts.clusters_drawn;
 }

@@ -71,14 +71,47 @@ inline void append(std::int32_t* list, std::uint32_t& count, IntLanes corners, u
   count += static_cast<std::uint32_t>(__builtin_popcount(which));
 }
 
+/// The depths of a cluster's tiles, where these are few: looked up without loads.
+struct FewTiles {
+  alignas(kVectorBytes) float depth[kFewEntries + kLanes];
+  std::int32_t wide, before;
+
+  Lanes farthest(const TouchedTiles& tiles) const {
+    const IntLanes upper = tiles.top * spread(wide) - spread(before);
+    const IntLanes lower = tiles.bottom * spread(wide) - spread(before);
+    return lesser(
+        lesser(lookUpFew(depth, upper + tiles.left), lookUpFew(depth, upper + tiles.right)),
+        lesser(lookUpFew(depth, lower + tiles.left), lookUpFew(depth, lower + tiles.right)));
+  }
+};
+
+/// False where the tiles are too many.
+inline bool readFewTiles(const Pane& pane, const SeenCluster& seen, FewTiles& few) {
+  few.wide = seen.tiles[1] - seen.tiles[0] + 1;
+  const auto count = static_cast<std::uint32_t>(few.wide * (seen.tiles[3] - seen.tiles[2] + 1));
+  if (count > kFewEntries) return false;
+  few.before = seen.tiles[2] * few.wide + seen.tiles[0];
+  float* to = few.depth;
+  for (std::uint32_t y = seen.tiles[2]; y <= seen.tiles[3]; ++y, to += few.wide) {
+    const float* from =
+        pane.scratch->tile_depth + std::size_t{y} * pane.tile_columns + seen.tiles[0];
+    store(to, load<Lanes>(from));
+    if (few.wide > static_cast<std::int32_t>(kLanes))
+      store(to + kLanes, load<Lanes>(from + kLanes));
+  }
+  return true;
+}
+
 /// `compares`: whether some of the triangles may lie behind what was drawn in their tiles.
-void sortTriangles(const Pane& pane, const ClusterState& state, bool compares,
-                   Survivors& survivors) {
+void sortTriangles(const Pane& pane, const SeenCluster& seen, const ClusterState& state,
+                   bool compares, Survivors& survivors) {
   const PaneTask& task = *pane.task;
   survivors.small_count = survivors.large_count = survivors.clipped_count = 0;
   const RenderCluster& cluster = *state.facts.cluster;
   const SortLimits limits = sortLimits(task, cluster);
   const TileDepths tiles{pane.scratch->tile_depth, static_cast<std::int32_t>(pane.tile_columns)};
+  FewTiles few_tiles;
+  const bool few = compares && readFewTiles(pane, seen, few_tiles);
   const std::uint32_t triangle_count = cluster.triangle_count;
   const std::uint8_t* block = state.facts.pack->triangles +
                               static_cast<std::size_t>(cluster.first_triangle) * kTriangleRows;
@@ -95,7 +128,10 @@ void sortTriangles(const Pane& pane, const ClusterState& state, bool compares,
     }
     const Sorting sorting = sortVector(limits, state, corners);
     unsigned small = sorting.small & valid;
-    if (small != 0 && compares) small &= ~behindTiles(tiles, state, sorting, corners);
+    if (small != 0 && compares) {
+      small &= ~(few ? behindTiles(few_tiles, state, sorting, corners)
+                     : behindTiles(tiles, state, sorting, corners));
+    }
     append(survivors.small, survivors.small_count, both, small);
     const unsigned large = sorting.large & valid;
     if (large != 0) append(survivors.large, survivors.large_count, both, large);
