@@ -244,6 +244,27 @@ inline void setOffsets(LargeSetup& setup) {
                     toFloat(pixelsDown() & 1) * spread(static_cast<float>(setup.depth.down));
 }
 
+/// Draws a triangle that may touch some tiles. `make_record`: writes its record and that of its
+/// colors.
+template <class MakeRecord>
+inline void drawInTiles(Pane& pane, const ClusterState& state, LargeSetup& setup,
+                        const TileBox& tiles, const MakeRecord& make_record) {
+  ++pane.counts.triangles_drawn;
+  setOffsets(setup);
+  if (pane.records == kMostRecords) makeRoom(pane);
+  float* record = recordAt(pane, pane.records);
+  float* colors = colorsAt(pane, pane.records);
+  bool seen = false;
+  if (state.facts.surface.least_alpha != 0) {
+    make_record(record, colors);
+    seen = coverTiles(pane, setup, tiles, alphaTest(pane, state, record, colors));
+  } else {
+    seen = coverTiles(pane, setup, tiles, Opaque{});
+    if (seen && pane.shades) make_record(record, colors);
+  }
+  if (seen && pane.shades) ++pane.records;
+}
+
 /// Draws one triangle, whatever its size. Corners go clockwise on the screen where it shows its
 /// face.
 void drawLarge(Pane& pane, const ClusterState& state, const Corner& a, const Corner& b,
@@ -252,21 +273,29 @@ void drawLarge(Pane& pane, const ClusterState& state, const Corner& a, const Cor
   if (!faces(a, b, c, state.facts.cluster->two_sided != 0, triangle)) return;
   const TileBox tiles = tilesOf(*pane.task, triangle);
   if (tiles.right < tiles.left) return;
-  ++pane.counts.triangles_drawn;
   LargeSetup setup = setUpLarge(triangle);
-  setOffsets(setup);
-  if (pane.records == kMostRecords) makeRoom(pane);
-  float* record = recordAt(pane, pane.records);
-  float* colors = colorsAt(pane, pane.records);
-  bool seen = false;
-  if (state.facts.surface.least_alpha != 0) {
+  drawInTiles(pane, state, setup, tiles, [&](float* record, float* colors) {
     recordLarge(state, triangle, setup.depth, record, colors);
-    seen = coverTiles(pane, setup, tiles, alphaTest(pane, state, record, colors));
-  } else {
-    seen = coverTiles(pane, setup, tiles, Opaque{});
-    if (seen && pane.shades) recordLarge(state, triangle, setup.depth, record, colors);
+  });
+}
+
+/// Draws up to a vector of large triangles; `corners` has that many.
+void drawLargeGroup(Pane& pane, const ClusterState& state, const std::int32_t* corners,
+                    std::uint32_t count) {
+  LargeGroup group;
+  unsigned left = setUpLargeGroup(*pane.task, state, load<IntLanes>(corners), group);
+  for (left &= firstLanes(count); left != 0; left &= left - 1) {
+    const auto n = static_cast<std::uint32_t>(lowestBit(left));
+    LargeSetup setup = setupOf(group, n);
+    drawInTiles(pane, state, setup, tilesOf(group, n), [&](float* record, float* colors) {
+      const auto packed = static_cast<std::uint32_t>(group.corners[n]);
+      const Corner of_triangle[3] = {cornerOf(state, packed & 0xFFU),
+                                     cornerOf(state, (packed >> 8U) & 0xFFU),
+                                     cornerOf(state, (packed >> 16U) & 0xFFU)};
+      const LargeTriangle triangle{{of_triangle, of_triangle + 1, of_triangle + 2}, group.area[n]};
+      recordLarge(state, triangle, setup.depth, record, colors);
+    });
   }
-  if (seen && pane.shades) ++pane.records;
 }
 
 /// Draws what is left of a triangle, given by the numbers of its vertices.

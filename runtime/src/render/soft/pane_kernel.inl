@@ -15,6 +15,7 @@
 #include "render/soft/triangles.inl"
 #include "render/soft/records.inl"
 #include "render/soft/resolve.inl"
+#include "render/soft/large_group.inl"
 #include "render/soft/large.inl"
 // clang-format on
 
@@ -96,10 +97,8 @@ void drawTriangles(Pane& pane, ClusterState& state, const Survivors& survivors) 
   if (survivors.large_count != 0 && state.facts.isTextured()) {
     readCoordinates(state);
   }
-  for (std::uint32_t n = 0; n < survivors.large_count; ++n) {
-    const auto corners = static_cast<std::uint32_t>(survivors.large[n]);
-    drawLarge(pane, state, cornerOf(state, corners & 0xFFU),
-              cornerOf(state, (corners >> 8U) & 0xFFU), cornerOf(state, (corners >> 16U) & 0xFFU));
+  for (std::uint32_t n = 0; n < survivors.large_count; n += kLanes) {
+    drawLargeGroup(pane, state, survivors.large + n, survivors.large_count - n);
   }
   for (std::uint32_t n = 0; n < survivors.clipped_count; ++n) {
     drawClipped(pane, state, survivors.clipped[n]);

@@ -137,6 +137,7 @@ void sortTriangles(const Pane& pane, const SeenCluster& seen, const ClusterState
     if (large != 0) append(survivors.large, survivors.large_count, both, large);
   }
   store(survivors.small + survivors.small_count, spread(0));
+  store(survivors.large + survivors.large_count, spread(0));
 }
 
 }  // namespace
