@@ -151,6 +151,7 @@ inline unsigned signBits(IntLanes v) {
 }
 
 inline unsigned bitsOf(LaneSet set) { return signBits(set); }
+inline LaneSet eitherOf(LaneSet a, LaneSet b) { return a | b; }
 inline LaneSet noLanes() { return spread(0); }
 /// Those whose bits are set.
 inline LaneSet setOf(unsigned bits) {

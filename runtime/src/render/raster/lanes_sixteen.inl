@@ -65,6 +65,7 @@ inline int lowestBit(unsigned bits) { return __builtin_ctz(bits); }
 /// Some of the lanes.
 using LaneSet = __mmask16;
 inline unsigned bitsOf(LaneSet set) { return set; }
+inline LaneSet eitherOf(LaneSet a, LaneSet b) { return _kor_mask16(a, b); }
 inline LaneSet noLanes() { return 0; }
 /// Those whose bits are set.
 inline LaneSet setOf(unsigned bits) { return static_cast<LaneSet>(bits); }

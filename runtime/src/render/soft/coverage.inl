@@ -77,7 +77,7 @@ struct SmallCover {
   }
   void cover(const BlockPlace& place, const EdgeLanes& at, Lanes z_there) {
     const Lanes within = lesser(greater(z_there, spread(group.z_low[n])), spread(group.z_high[n]));
-    hit |= coverBlocks(place, at.a | at.b | at.c, within, id, test).shown;
+    hit = eitherOf(hit, coverBlocks(place, at.a | at.b | at.c, within, id, test).shown);
   }
   void nextRow() {
     edges = {edges.a + spread(steps.edge_below[0][n]), edges.b + spread(steps.edge_below[1][n]),

@@ -99,7 +99,7 @@ inline LaneSet coverTile(const TilePlaces places, const LargeSetup& setup, const
     for (std::uint32_t column = 0; column < kTileEdge / kBlockWidth; ++column) {
       const Covered covered = coverBlocks(place, at.a | at.b | at.c,
                                           lesser(greater(z, setup.z_low), setup.z_high), id, test);
-      hit |= covered.shown;
+      hit = eitherOf(hit, covered.shown);
       farthest = lesser(farthest, covered.depth);
       z = z + steps.z_beside;
       at = {at.a + steps.edge_beside[0], at.b + steps.edge_beside[1], at.c + steps.edge_beside[2]};
@@ -144,20 +144,13 @@ inline TileFunctions tileFunctions(const LargeSetup& setup, std::int32_t x, std:
   using FourInts = std::int64_t __attribute__((vector_size(32)));
   const LongEdge* edges = setup.edges;
   const Plane& depth = setup.depth;
-  Four right{static_cast<double>(edges[0].right), static_cast<double>(edges[1].right),
-             static_cast<double>(edges[2].right), depth.right};
-  Four down{static_cast<double>(edges[0].down), static_cast<double>(edges[1].down),
-            static_cast<double>(edges[2].down), depth.down};
+  const Four right{static_cast<double>(edges[0].right), static_cast<double>(edges[1].right),
+                   static_cast<double>(edges[2].right), depth.right};
+  const Four down{static_cast<double>(edges[0].down), static_cast<double>(edges[1].down),
+                  static_cast<double>(edges[2].down), depth.down};
   const Four start{static_cast<double>(edges[0].start), static_cast<double>(edges[1].start),
                    static_cast<double>(edges[2].start), depth.start};
-  const auto magnitudes = [](Four v) {
-    Four to;
-    FourInts bits;
-    __builtin_memcpy(&bits, &v, sizeof(bits));
-    bits &= INT64_MAX;
-    __builtin_memcpy(&to, &bits, sizeof(to));
-    return to;
-  };
+  const auto magnitudes = [](Four v) { return as<Four>(as<FourInts>(v) & INT64_MAX); };
   // Of at most kMostTiles sums, and of those in coverTile(), relative to what is added.
   constexpr double kSumsRounding = 6e-6;
   constexpr double kEdge = kTileEdge;
@@ -231,7 +224,7 @@ bool coverTiles(const Pane& pane, const LargeSetup& setup, const TileBox& box, c
     startTiles(pane, setup, load<HalfInts>(list.tiles + first), starts);
     const std::uint32_t count = list.count - first < kHalf ? list.count - first : kHalf;
     for (std::uint32_t n = 0; n < count; ++n) {
-      hit |= coverTile(places, setup, steps, starts, n, id, test);
+      hit = eitherOf(hit, coverTile(places, setup, steps, starts, n, id, test));
     }
   }
   return bitsOf(hit) != 0;
