@@ -82,7 +82,9 @@ void ColumnWays::add(const ColumnGrid& grid, const Vec3& center,
     is_full_ = true;
     return;
   }
-  Sphere& sphere = spheres_.emplace_back(&grid, center, Surroundings{}, Surroundings{});
+  Sphere& sphere = spheres_.emplace_back();
+  sphere.grid = &grid;
+  sphere.center = center;
   if (around) {
     sphere.free = around->cells();
     sphere.asked = around->blockedCells();
