@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <ctime>
+#include <chrono>
 #include <fstream>
 #include <string_view>
 #include <system_error>
@@ -79,7 +79,9 @@ bool isAt(const fs::path& path, const struct stat& open) {
 
 /// By the time of its last change, which links and renames count as.
 bool isOlder(const struct stat& file, std::chrono::seconds age) {
-  return std::time(nullptr) - file.st_ctim.tv_sec >= age.count();
+  // Not std::time(), which may be some milliseconds behind the clock of the files.
+  using Clock = std::chrono::system_clock;
+  return Clock::to_time_t(Clock::now()) - file.st_ctim.tv_sec >= age.count();
 }
 
 /// A descriptor that is closed at the end of its scope.

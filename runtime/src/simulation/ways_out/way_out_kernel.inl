@@ -382,13 +382,13 @@ class Search {
       const float taken = static_cast<float>(signOf(cells)) * (taken_back - move.margin);
       return (static_cast<float>(cells) - taken) * query_.spacing;
     };
-    const auto wayOf = [&](const TakenBack& taken) {
+    const auto way_of = [&](const TakenBack& taken) {
       const float x = length(to.x, taken.x);
       const float z = length(to.z, taken.z);
       return FoundWay{x, z, x * x + z * z};
     };
-    const FoundWay one = wayOf(back.along_x_first);
-    const FoundWay other = wayOf(back.along_z_first);
+    const FoundWay one = way_of(back.along_x_first);
+    const FoundWay other = way_of(back.along_z_first);
     return one.squared > other.squared ? other : one;
   }
 
