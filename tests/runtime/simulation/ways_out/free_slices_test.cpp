@@ -1,0 +1,205 @@
+// Free slices against the columns themselves.
+#include "simulation/ways_out/free_slices.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "column_grid/column_grid_kernels.h"
+#include "support/homes/box_room.h"
+
+namespace galactic::test::free_slices_test {
+namespace {
+
+using namespace galactic::simulation;
+
+constexpr unsigned kAllLanes = 0xff;
+constexpr HeightsOverFloor kHeights{.lowest = 0.2F, .highest = 1.25F};
+
+struct Eight {
+  explicit Eight(std::mt19937& random) {
+    for (std::size_t n = 0; n < kLanes; ++n) {
+      x[n] = uniformIn(random, -0.2F, 3.2F);
+      y[n] = uniformIn(random, 0.1F, 1.4F);
+      z[n] = uniformIn(random, -0.2F, 3.2F);
+    }
+  }
+
+  alignas(32) std::array<float, kLanes> x{}, y{}, z{};
+};
+
+struct TwoEights {
+  explicit TwoEights(std::mt19937& random) {
+    for (std::size_t first = 0; first < x.size(); first += kLanes) {
+      const Eight eight(random);
+      std::ranges::copy(eight.x, x.begin() + static_cast<std::ptrdiff_t>(first));
+      std::ranges::copy(eight.y, y.begin() + static_cast<std::ptrdiff_t>(first));
+      std::ranges::copy(eight.z, z.begin() + static_cast<std::ptrdiff_t>(first));
+    }
+  }
+
+  alignas(32) std::array<float, 2 * kLanes> x{}, y{}, z{};
+};
+
+/// Whether both say the same of the centers that are inside.
+bool areSame(const EightPlaces& one, const EightPlaces& other) {
+  if (one.inside != other.inside || one.free != other.free || one.blocked != other.blocked) {
+    return false;
+  }
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    if ((one.inside >> lane & 1U) == 0) continue;
+    if (one.row[lane] != other.row[lane] || one.column[lane] != other.column[lane] ||
+        one.part_x[lane] != other.part_x[lane] || one.part_z[lane] != other.part_z[lane]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+TEST(FreeSlices, CallFreeOrBlockedOnlyWhatTheColumnsDo) {
+  constexpr std::uint32_t kSeed = 1601;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  Tally said;
+  Tally said_blocked;
+  std::size_t free_cells = 0;
+  std::size_t missed = 0;
+  std::size_t unknown = 0;
+  for (int round = 0; round < 10; ++round) {
+    const BoxRoom room = furnishedRoom(random, 6);
+    FreeSlices slices({{0, BoxRoom::kRadii[0], kAllLanes},
+                       {1, BoxRoom::kRadii[1], kAllLanes},
+                       {2, BoxRoom::kRadii[2], kAllLanes}});
+    const std::uint32_t map = slices.add(room.scene(), 0, kHeights);
+    for (int n = 0; n < 300; ++n) {
+      const auto radius = static_cast<std::uint32_t>(n % 3);
+      const ColumnGrid& grid = room.scene().grids()[radius];
+      const Eight eight(random);
+      EightPlaces places;
+      const InSlices found = slices.findPlaces(
+          map, radius, {eight.x.data(), eight.y.data(), eight.z.data(), 1, &places});
+      ASSERT_EQ(found.blocked, places.blocked);
+      ASSERT_EQ(found.unknown != 0, (places.free | places.blocked) != kAllLanes);
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const Vec3 center{eight.x[lane], eight.y[lane], eight.z[lane]};
+        const bool is_free = (places.free >> lane & 1U) != 0;
+        ASSERT_TRUE(!is_free || grid.clearance(center) == Clearance::kFree);
+        const auto around = slices.around(map, radius, center);
+        ASSERT_EQ(around.has_value(), (places.inside >> lane & 1U) != 0);
+        if (!around) continue;
+        ASSERT_EQ(around->isFree(0, 0), is_free);
+        const Surroundings exact = surroundingsOf(grid, center);
+        const Surroundings cells = around->cells();
+        const Surroundings blocked = around->blockedCells();
+        for (int z = -kCellsAround; z <= kCellsAround; ++z) {
+          for (int x = -kCellsAround; x <= kCellsAround; ++x) {
+            ASSERT_EQ(cells.isFree(x, z), around->isFree(x, z));
+            ASSERT_TRUE(!cells.isFree(x, z) || exact.isFree(x, z));
+            // A set of cells: what is in it is blocked.
+            const bool is_blocked = blocked.isFree(x, z);
+            ASSERT_FALSE(is_blocked && exact.isFree(x, z));
+            unknown += is_blocked || cells.isFree(x, z) ? 0U : 1U;
+            said.add(cells.isFree(x, z));
+            if (!cells.isFree(x, z)) said_blocked.add(is_blocked);
+            free_cells += exact.isFree(x, z) ? 1U : 0U;
+            missed += exact.isFree(x, z) && !cells.isFree(x, z) ? 1U : 0U;
+          }
+        }
+      }
+    }
+  }
+  said.expectBothSides();
+  said_blocked.expectBothSides();
+  EXPECT_LT(unknown, free_cells / 10);
+  // Slices are as thick as they are: what lies closely above a table is lost.
+  EXPECT_LT(missed, free_cells / 10);
+}
+
+TEST(FreeSlices, AreTheSameBitForBitWithBothKernels) {
+  if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2";
+  std::mt19937 random(1602);
+  std::vector<SliceTile> tiles(100);
+  for (SliceTile& tile : tiles) {
+    for (std::uint16_t& row : tile.free) row = static_cast<std::uint16_t>(random());
+    for (std::uint16_t& row : tile.blocked) row = static_cast<std::uint16_t>(random());
+  }
+  // 80 x 60 columns are 10 x 3 tiles.
+  std::vector<std::uint32_t> numbers(std::size_t{10} * 3 * 20);
+  for (std::uint32_t& number : numbers) {
+    number = static_cast<std::uint32_t>(random() % tiles.size());
+  }
+  const TileSet set{numbers.data(), tiles.data()};
+  // Of two groups, the second has spheres in half of its lanes.
+  std::array<SliceGroup, 2> groups;
+  groups[0] = {{.min_x = 0.1F,
+                .min_z = 0.2F,
+                .inverse_spacing = 32,
+                .columns_x = 80,
+                .columns_z = 60,
+                .lowest = 0.15F,
+                .inverse_slice = 24,
+                .slices = 20,
+                .slice_count = 20,
+                .tiles_z = 3,
+                .first = 0},
+               kAllLanes};
+  groups[1] = {groups[0].layout, 0x0fU};
+  groups[1].layout.slices = 10;
+  Tally inside;
+  for (unsigned n = 0; n < 2000; ++n) {
+    TwoEights centers(random);
+    if (n == 0) centers.x[3] = std::numeric_limits<float>::quiet_NaN();
+    std::array<EightPlaces, 2> portable;
+    std::array<EightPlaces, 2> fast;
+    const auto find = [&](const auto& kernel, std::array<EightPlaces, 2>& places) {
+      const unsigned asked = n % 3 + 1;
+      const SomeGroups some{centers.x.data(), centers.y.data(), centers.z.data(), asked,
+                            places.data()};
+      return kernel({groups.data(), set, &some});
+    };
+    const InSlices found = find(findPlacesPortable, portable);
+    const InSlices found_fast = find(findPlacesAvx2, fast);
+    ASSERT_EQ(found.blocked, found_fast.blocked);
+    ASSERT_EQ(found.unknown, found_fast.unknown);
+    ASSERT_EQ(found.blocked & ~std::uint64_t{0x0fff}, 0U);
+    for (std::size_t group = 0; group < groups.size(); ++group) {
+      ASSERT_TRUE(areSame(portable[group], fast[group]));
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        inside.add((fast[group].inside >> lane & 1U) != 0);
+      }
+    }
+  }
+  inside.expectBothSides();
+}
+
+TEST(SurroundingsOf, AreThoseOfTheColumns) {
+  std::mt19937 random(1603);
+  const BoxRoom room = furnishedRoom(random, 6);
+  const ColumnGrid& grid = room.scene().grids()[1];
+  Tally free;
+  for (int n = 0; n < 500; ++n) {
+    const Vec3 center{uniformIn(random, 0, 3), uniformIn(random, 0, 1.5F), uniformIn(random, 0, 3)};
+    const Surroundings around = surroundingsOf(grid, center);
+    for (int z = -kCellsAround; z <= kCellsAround; ++z) {
+      for (int x = -kCellsAround; x <= kCellsAround; ++x) {
+        const auto at = [&](float from, int cells) {
+          return (std::floor(from / BoxRoom::kSpacing) + static_cast<float>(cells) + 0.5F) *
+                 BoxRoom::kSpacing;
+        };
+        const Clearance clearance = grid.clearance({at(center.x, x), center.y, at(center.z, z)});
+        ASSERT_EQ(around.isFree(x, z), clearance == Clearance::kFree);
+        free.add(around.isFree(x, z));
+      }
+    }
+  }
+  free.expectBothSides();
+}
+
+}  // namespace
+}  // namespace galactic::test::free_slices_test
