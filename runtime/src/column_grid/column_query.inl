@@ -1,6 +1,8 @@
 // The query of a column grid for eight centers at a time: included by the files that are compiled
 // for AVX2 and need it, after column_grid_kernels.h and immintrin.h. No library templates here: see
 // column_grid_avx2.cpp.
+#include "support/gather_avx2.inl"
+
 namespace galactic::detail {
 namespace {
 
@@ -51,12 +53,12 @@ inline __m256 lowCode(__m256i half) {
 
 inline __m256 highCode(__m256i half) { return _mm256_cvtepi32_ps(_mm256_srli_epi32(half, 16)); }
 
-/// The bases of eight tiles, in codes. A gather reads 32 bits: the pair that ends with the wanted
+/// The bases of eight tiles, in codes. Words have 32 bits: the pair that ends with the wanted
 /// base, or begins with it for tile 0, so that nothing outside the array is read. Needs two tiles.
 inline __m256 baseCodes(const std::uint16_t* tile_base, __m256i tile) {
   const __m256i is_first = _mm256_cmpeq_epi32(tile, _mm256_setzero_si256());
   const __m256i pair = _mm256_sub_epi32(tile, _mm256_andnot_si256(is_first, _mm256_set1_epi32(1)));
-  const __m256i bases = _mm256_i32gather_epi32(reinterpret_cast<const int*>(tile_base), pair, 2);
+  const __m256i bases = gatherEight<sizeof(*tile_base)>(tile_base, pair);
   const __m256i shift = _mm256_andnot_si256(is_first, _mm256_set1_epi32(16));
   const __m256i base = _mm256_and_si256(_mm256_srlv_epi32(bases, shift), _mm256_set1_epi32(0xffff));
   return _mm256_cvtepi32_ps(_mm256_slli_epi32(base, 10));  // kCodesPerTileBase = 1 << 10
@@ -67,18 +69,10 @@ struct CellHalves {
   __m256i lower, upper;
 };
 
-inline CellHalves gatherCells(const std::uint64_t* cells, __m256i index) {
-  const auto* base = reinterpret_cast<const long long*>(cells);
-  const __m256 first = _mm256_castsi256_ps(
-      _mm256_i32gather_epi64(base, _mm256_castsi256_si128(index), sizeof(std::uint64_t)));
-  const __m256 second = _mm256_castsi256_ps(
-      _mm256_i32gather_epi64(base, _mm256_extracti128_si256(index, 1), sizeof(std::uint64_t)));
-  // shuffle_ps works within 128-bit halves: put the four pairs back in order.
-  constexpr int kInOrder = 0xd8;
-  const __m256 lower = _mm256_shuffle_ps(first, second, 0x88);
-  const __m256 upper = _mm256_shuffle_ps(first, second, 0xdd);
-  return {_mm256_permute4x64_epi64(_mm256_castps_si256(lower), kInOrder),
-          _mm256_permute4x64_epi64(_mm256_castps_si256(upper), kInOrder)};
+inline CellHalves cellsAt(const std::uint64_t* cells, __m256i index) {
+  const TwoOfEight halves =
+      gatherTwoOfEight<2>(reinterpret_cast<const std::int32_t*>(cells), index);
+  return {_mm256_castps_si256(halves.first), _mm256_castps_si256(halves.second)};
 }
 
 inline Found find(const ColumnGridLayout& grid, const Lanes& lanes, __m256 x, __m256 y, __m256 z) {
@@ -101,7 +95,7 @@ inline Found find(const ColumnGridLayout& grid, const Lanes& lanes, __m256 x, __
       _mm256_or_si256(_mm256_slli_epi32(_mm256_and_si256(k, _mm256_set1_epi32(1)), 2),
                       _mm256_and_si256(i, _mm256_set1_epi32(3)));
   const CellHalves cells =
-      gatherCells(grid.cells, _mm256_or_si256(_mm256_slli_epi32(tile, 3), in_tile));
+      cellsAt(grid.cells, _mm256_or_si256(_mm256_slli_epi32(tile, 3), in_tile));
   found.upper_half = cells.upper;
   found.overflow = _mm256_and_ps(found.inside, _mm256_castsi256_ps(_mm256_cmpeq_epi32(
                                                    cells.lower, _mm256_set1_epi32(kAllTrue))));

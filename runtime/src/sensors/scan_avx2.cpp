@@ -6,6 +6,8 @@
 #if defined(__x86_64__)
 #include <immintrin.h>
 
+#include "support/gather_avx2.inl"
+
 namespace galactic::sensors {
 namespace {
 
@@ -70,9 +72,7 @@ __m256 cellsOf(__m256 from, __m256 way, __m256 heading, __m256 last) {
   const __m256 k = cellsOf(plane.from_z, beams.way, beams.heading.z, plane.last_k);
   const __m256i index = _mm256_add_epi32(
       _mm256_mullo_epi32(_mm256_cvttps_epi32(k), plane.columns_x), _mm256_cvttps_epi32(i));
-  // A zero as the old value, so that no gather waits for the one before.
-  const __m256i words = _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), plane.cells, index,
-                                                    _mm256_set1_epi32(-1), 1);
+  const __m256i words = detail::gatherEight<1>(plane.cells, index);
   const __m256i cell = _mm256_and_si256(words, _mm256_set1_epi32(0xff));
   const __m256 blocked = _mm256_castsi256_ps(_mm256_cmpeq_epi32(cell, _mm256_setzero_si256()));
   const __m256 leave_x =

@@ -17,13 +17,13 @@ inline constexpr float kJump = 0.5F;
 /// How far a beam goes on beyond a border that it has come to, in cells: more than the rounding of
 /// a coordinate in the largest grid, and a hundredth of a millimeter.
 inline constexpr float kNudge = 1.0F / 1024;
-/// Bytes after the last cell that a gather may read.
-inline constexpr std::size_t kGatherSlack = 3;
+/// Bytes after the last cell that a look-up may read.
+inline constexpr std::size_t kReadBeyond = 3;
 
 /// A ScanPlane as bare pointers: the code built for AVX2 must not instantiate library templates,
 /// which the linker could then share with code for any processor.
 struct ScanPlaneView {
-  /// Cell (i, k) at k * columns_x + i, the blocked ring included; kGatherSlack bytes follow.
+  /// Cell (i, k) at k * columns_x + i, the blocked ring included; kReadBeyond bytes follow.
   const std::uint8_t* cells = nullptr;
   std::int32_t columns_x = 0;
   std::int32_t columns_z = 0;

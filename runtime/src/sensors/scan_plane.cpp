@@ -124,7 +124,7 @@ ScanPlane::ScanPlane(const ColumnGrid& grid, float height) {
   const ColumnGridLayout& layout = grid.layout();
   const std::size_t nx = grid.columnsX() + std::size_t{2} * kRing;
   const std::size_t nz = grid.columnsZ() + std::size_t{2} * kRing;
-  cells_.assign(nx * nz + kGatherSlack, 0);
+  cells_.assign(nx * nz + kReadBeyond, 0);
   const Cells cells{cells_, nx, nz};
   free_cells_ = markFree(grid, height, cells);
   // The distance of two squares is that of their middles when one is grown by its eight neighbors:

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #if defined(__AVX2__)
-#include "render/raster/gather_avx2.inl"
+#include "support/gather_avx2.inl"
 #endif
 
 namespace galactic::render {
@@ -195,7 +195,7 @@ inline IntLanes wrapSubtract(IntLanes a, IntLanes b) {
 
 inline Lanes gather(const float* from, IntLanes at) {
 #if defined(__AVX2__)
-  return as<Lanes>(gatherEight(from, as<__m256i>(at)));
+  return as<Lanes>(detail::gatherEight<sizeof(float)>(from, as<__m256i>(at)));
 #else
   Lanes lanes;
   for (unsigned n = 0; n < kWidth; ++n) lanes[n] = from[at[n]];
@@ -226,7 +226,7 @@ struct Pair {
 template <int kStride>
 inline Pair<IntLanes> gatherTwo(const std::int32_t* from, IntLanes at) {
 #if defined(__AVX2__)
-  const TwoOfEight two = gatherTwoOfEight<kStride>(from, as<__m256i>(at));
+  const detail::TwoOfEight two = detail::gatherTwoOfEight<kStride>(from, as<__m256i>(at));
   return {as<IntLanes>(two.first), as<IntLanes>(two.second)};
 #else
   Pair<IntLanes> result;

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "render/raster/gather_avx2.inl"
+#include "support/gather_avx2.inl"
 
 namespace galactic::render {
 namespace {
@@ -178,13 +178,15 @@ inline Vector joined(__m256 low, __m256 high) {
   return as<Vector>(_mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1));
 }
 
-inline IntLanes gather(const std::int32_t* from, IntLanes at) {
-  const auto* floats = reinterpret_cast<const float*>(from);
-  return joined<IntLanes>(gatherEight(floats, lowHalf(at)), gatherEight(floats, highHalf(at)));
+inline Lanes gather(const float* from, IntLanes at) {
+  const auto eight = [from](__m256i half) {
+    return _mm256_castsi256_ps(detail::gatherEight<sizeof(float)>(from, half));
+  };
+  return joined<Lanes>(eight(lowHalf(at)), eight(highHalf(at)));
 }
 
-inline Lanes gather(const float* from, IntLanes at) {
-  return joined<Lanes>(gatherEight(from, lowHalf(at)), gatherEight(from, highHalf(at)));
+inline IntLanes gather(const std::int32_t* from, IntLanes at) {
+  return as<IntLanes>(gather(reinterpret_cast<const float*>(from), at));
 }
 
 /// Entries of a table of 128, by their numbers. `stride`: from sixteen entries to the next ones.
@@ -242,8 +244,8 @@ struct Pair {
 /// of them are read.
 inline Lanes gatherLeast(const float* from, IntLanes at, IntLanes both) {
   const auto* words = reinterpret_cast<const std::int32_t*>(from);
-  const TwoOfEight low = gatherTwoOfEight<1>(words, lowHalf(at));
-  const TwoOfEight high = gatherTwoOfEight<1>(words, highHalf(at));
+  const detail::TwoOfEight low = detail::gatherTwoOfEight<1>(words, lowHalf(at));
+  const detail::TwoOfEight high = detail::gatherTwoOfEight<1>(words, highHalf(at));
   const auto first = joined<Lanes>(low.first, high.first);
   return lesser(first, pick(both, joined<Lanes>(low.second, high.second), first));
 }

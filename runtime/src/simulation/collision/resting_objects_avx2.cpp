@@ -6,6 +6,8 @@
 #if defined(__x86_64__)
 #include <immintrin.h>
 
+#include "support/gather_avx2.inl"
+
 namespace galactic::simulation {
 namespace {
 
@@ -29,17 +31,11 @@ Places placesOf(const Centers& centers) {
           _mm256_and_si256(squaresOf(centers.z), wrap)};
 }
 
-/// Eight words of `sets`. The plain gather leaves its result's old value open, so that each waits
-/// for what its register last held, in a loop the gather before it; a zero breaks the chain.
-__m256i gather(const std::uint32_t* sets, __m256i index) {
-  return _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), reinterpret_cast<const int*>(sets),
-                                     index, _mm256_set1_epi32(-1), sizeof(int));
-}
-
 /// The objects of one plane that all sets of a sphere know, for eight spheres.
 __m256i objectsNear(const SetPlane& plane, const Places& places) {
   const __m256i in_strips =
-      _mm256_and_si256(gather(plane.along_x, places.x), gather(plane.along_z, places.z));
+      _mm256_and_si256(detail::gatherEight<sizeof(*plane.along_x)>(plane.along_x, places.x),
+                       detail::gatherEight<sizeof(*plane.along_z)>(plane.along_z, places.z));
   // vpermd looks at three bits of an index: the square modulo kBands.
   const __m256i at_height = _mm256_permutevar8x32_epi32(
       _mm256_load_si256(reinterpret_cast<const __m256i*>(plane.at_height)), places.y);

@@ -3,6 +3,8 @@
 // column_grid_avx2.cpp.
 #if defined(__AVX2__)
 #include <immintrin.h>
+
+#include "support/gather_avx2.inl"
 #endif
 
 namespace galactic::simulation {
@@ -48,13 +50,10 @@ inline unsigned signsOf(IntLanes lanes) {
   return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(lanes)));
 }
 
-/// Words that lie `index` times kScale bytes behind `from`; zeros but for the lanes of `wanted`.
-/// See resting_objects_avx2.cpp for why the gather is given a zero.
+/// Words that lie `index` times kScale bytes behind `from`; no index is negative.
 template <int kScale>
-inline IntLanes gather(const void* from, IntLanes index, IntLanes wanted) {
-  return reinterpret_cast<IntLanes>(_mm256_mask_i32gather_epi32(
-      _mm256_setzero_si256(), static_cast<const int*>(from), reinterpret_cast<__m256i>(index),
-      reinterpret_cast<__m256i>(wanted), kScale));
+inline IntLanes gather(const void* from, const std::int32_t* index) {
+  return reinterpret_cast<IntLanes>(detail::gatherEight<kScale>(from, detail::indicesAt(index)));
 }
 
 #else
@@ -66,10 +65,9 @@ inline unsigned signsOf(IntLanes lanes) {
 }
 
 template <int kScale>
-inline IntLanes gather(const void* from, IntLanes index, IntLanes wanted) {
+inline IntLanes gather(const void* from, const std::int32_t* index) {
   IntLanes words{};
   for (unsigned n = 0; n < kWidth; ++n) {
-    if (wanted[n] == 0) continue;
     std::int32_t word = 0;
     __builtin_memcpy(&word, static_cast<const char*>(from) + std::ptrdiff_t{index[n]} * kScale,
                      sizeof(word));

@@ -193,7 +193,7 @@ inline Lanes fromBorder(const float* part, int sign) {
 
 /// The row of each sphere in which a move ends, and that before it.
 inline IntLanes rowsAt(const EightWays& ways, const CellsBefore& cells) {
-  return gather<2>(ways.rows + cells.first_row, loadInts(ways.row), lanesOf(0xff));
+  return gather<sizeof(*ways.rows)>(ways.rows + cells.first_row, ways.row);
 }
 
 inline WayLanes lanesBefore(const EightWays& ways, IntLanes rows, const CellsBefore& cells,
