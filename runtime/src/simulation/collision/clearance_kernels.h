@@ -12,7 +12,7 @@ inline constexpr std::uint32_t kClearanceBands = 4;
 inline constexpr std::uint32_t kClearancePlanes = kClearanceBands + 1;
 
 /// Which of eight groups of spheres are surely free.
-struct alignas(32) SureGroups {
+struct alignas(64) SureGroups {
   /// How far each can go along both axes and still be, meters; below 0 where it is not.
   float slack[kLanes] = {-1, -1, -1, -1, -1, -1, -1, -1};
   /// The same as bits.
@@ -23,16 +23,20 @@ struct alignas(32) SureGroups {
   friend bool operator==(const SureGroups&, const SureGroups&) = default;
 };
 
-/// What the distance stored for a cell has to exceed half the edge of the spheres' bounds by, in
-/// cells: the cell itself counts one, and the rest is more than any rounding.
-inline constexpr float kBeyondHalf = 1.01F;
+/// Columns of a grid along the edge of a cell. A power of two: no rounding tells a sphere's cell
+/// from its column's.
+inline constexpr std::uint32_t kColumnsPerCell = 2;
+
+/// What the distance stored for a cell, in columns, has to exceed by what the spheres' bounds reach
+/// beyond the cell: its own columns count one, and the rest is more than any rounding.
+inline constexpr float kBeyondReach = 1.01F;
 
 /// What eight groups of spheres ask the maps of one floor: one lane for each group. Plain arrays,
 /// which the kernels load.
 struct alignas(32) ClearanceLanes {
   float min_x[kLanes], min_z[kLanes];
-  /// Cells for each meter, and the edge of one, meters.
-  float inverse_cell[kLanes], cell[kLanes];
+  /// Cells for each meter, and the edge of a column, meters.
+  float inverse_cell[kLanes], column[kLanes];
   float cells_x[kLanes], cells_z[kLanes];
   /// Heights between which centers have to be, meters; below `low` they are low.
   float lowest[kLanes], low[kLanes], highest[kLanes];

@@ -11,9 +11,6 @@
 namespace galactic::simulation {
 namespace {
 
-/// Columns of a grid along the edge of a cell. A power of two: no rounding tells a sphere's cell
-/// from its column's.
-constexpr std::uint32_t kColumnsPerCell = 2;
 /// Cells along the edge of a tile: 64 bytes.
 constexpr std::uint32_t kTileEdge = 8;
 /// What a band's height and the spheres that it clears differ by at least, meters: more than any
@@ -41,6 +38,8 @@ struct Cells {
   std::uint32_t x = 0;
   std::uint32_t z = 0;
 
+  [[nodiscard]] std::uint32_t columnsX() const { return x * kColumnsPerCell; }
+  [[nodiscard]] std::uint32_t columnsZ() const { return z * kColumnsPerCell; }
   [[nodiscard]] std::uint32_t tilesX() const { return (x + kTileEdge - 1) / kTileEdge; }
   [[nodiscard]] std::uint32_t tilesZ() const { return (z + kTileEdge - 1) / kTileEdge; }
   [[nodiscard]] std::uint32_t bytes() const { return tilesX() * tilesZ() * kTileEdge * kTileEdge; }
@@ -55,11 +54,11 @@ Cells cellsOf(const ColumnGrid& grid) {
           (grid.columnsZ() + kColumnsPerCell - 1) / kColumnsPerCell};
 }
 
-/// For each cell the height from which on all its columns are free up to `highest`; infinity where
-/// one is not, or is missing.
+/// For each column of the cells the height from which on it is free up to `highest`; infinity where
+/// it is not, or is missing.
 std::vector<float> lowestFree(const ColumnGrid& grid, const Cells& cells, float highest) {
   const ColumnGridLayout& layout = grid.layout();
-  const std::uint32_t columns = cells.x * kColumnsPerCell;
+  const std::uint32_t columns = cells.columnsX();
   std::vector<float> x(columns);
   const std::vector<float> y(columns, highest);
   std::vector<float> z(columns);
@@ -69,26 +68,24 @@ std::vector<float> lowestFree(const ColumnGrid& grid, const Cells& cells, float 
   for (std::uint32_t i = 0; i < columns; ++i) {
     x[i] = layout.min_x + (static_cast<float>(i) + 0.5F) * layout.spacing;
   }
-  std::vector<float> lowest(std::size_t{cells.x} * cells.z,
-                            -std::numeric_limits<float>::infinity());
-  for (std::uint32_t k = 0; k < cells.z * kColumnsPerCell; ++k) {
+  std::vector<float> lowest(std::size_t{columns} * cells.columnsZ());
+  for (std::uint32_t k = 0; k < cells.columnsZ(); ++k) {
     std::ranges::fill(z, layout.min_z + (static_cast<float>(k) + 0.5F) * layout.spacing);
     grid.contact({x, y, z}, {clearance, down, up});
-    float* row = lowest.data() + std::size_t{k / kColumnsPerCell} * cells.x;
+    float* row = lowest.data() + std::size_t{k} * columns;
     for (std::uint32_t i = 0; i < columns; ++i) {
       const bool is_free = clearance[i] == Clearance::kFree;
-      const float from = is_free ? highest - down[i] : std::numeric_limits<float>::infinity();
-      row[i / kColumnsPerCell] = std::max(row[i / kColumnsPerCell], from);
+      row[i] = is_free ? highest - down[i] : std::numeric_limits<float>::infinity();
     }
   }
   return lowest;
 }
 
-/// To each cell the distance, in moves of a chess king, to the nearest that is not clear or
+/// To each column the distance, in moves of a chess king, to the nearest that is not clear or
 /// outside; 255 where it is farther. One sweep down and one up (Rosenfeld and Pfaltz 1968).
 void spreadDistances(const Cells& cells, std::vector<std::uint8_t>& distance) {
-  // A border of zeros around the cells spares all questions about neighbors.
-  const std::size_t row = std::size_t{cells.x} + 2;
+  // A border of zeros around the columns spares all questions about neighbors.
+  const std::size_t row = std::size_t{cells.columnsX()} + 2;
   const auto sweep = [&](std::size_t n, std::ptrdiff_t sign) {
     const auto step = static_cast<std::ptrdiff_t>(row);
     std::uint8_t* at = distance.data() + n;
@@ -96,29 +93,33 @@ void spreadDistances(const Cells& cells, std::vector<std::uint8_t>& distance) {
         std::min({at[-sign], at[-sign * step - 1], at[-sign * step], at[-sign * step + 1]});
     *at = static_cast<std::uint8_t>(std::min(static_cast<int>(*at), std::min(before, 254) + 1));
   };
-  for (std::size_t k = 1; k <= cells.z; ++k) {
-    for (std::size_t i = 1; i <= cells.x; ++i) sweep(k * row + i, 1);
+  for (std::size_t k = 1; k <= cells.columnsZ(); ++k) {
+    for (std::size_t i = 1; i <= cells.columnsX(); ++i) sweep(k * row + i, 1);
   }
-  for (std::size_t k = cells.z; k > 0; --k) {
-    for (std::size_t i = cells.x; i > 0; --i) sweep(k * row + i, -1);
+  for (std::size_t k = cells.columnsZ(); k > 0; --k) {
+    for (std::size_t i = cells.columnsX(); i > 0; --i) sweep(k * row + i, -1);
   }
 }
 
-/// The distances of one plane, tile by tile, to `out`.
+/// The least distance of the columns of each cell in one plane, tile by tile, to `out`.
 void fillPlane(const Cells& cells, std::span<const float> lowest_free, float low,
                std::span<std::uint8_t> out) {
-  const std::size_t row = std::size_t{cells.x} + 2;
-  std::vector<std::uint8_t> distance(row * (std::size_t{cells.z} + 2));
-  for (std::uint32_t k = 0; k < cells.z; ++k) {
-    for (std::uint32_t i = 0; i < cells.x; ++i) {
-      const bool is_clear = lowest_free[std::size_t{k} * cells.x + i] <= low - kSlack;
-      distance[(k + 1) * row + i + 1] = is_clear ? std::uint8_t{255} : std::uint8_t{0};
+  const std::uint32_t columns = cells.columnsX();
+  const std::size_t row = std::size_t{columns} + 2;
+  std::vector<std::uint8_t> distance(row * (std::size_t{cells.columnsZ()} + 2));
+  const auto at = [row](std::uint32_t i, std::uint32_t k) { return (k + 1) * row + i + 1; };
+  for (std::uint32_t k = 0; k < cells.columnsZ(); ++k) {
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const bool is_clear = lowest_free[std::size_t{k} * columns + i] <= low - kSlack;
+      distance[at(i, k)] = is_clear ? std::uint8_t{255} : std::uint8_t{0};
     }
   }
   spreadDistances(cells, distance);
-  for (std::uint32_t k = 0; k < cells.z; ++k) {
-    for (std::uint32_t i = 0; i < cells.x; ++i) {
-      out[cells.tiled(i, k)] = distance[(k + 1) * row + i + 1];
+  std::ranges::fill(out, std::uint8_t{255});
+  for (std::uint32_t k = 0; k < cells.columnsZ(); ++k) {
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      std::uint8_t& least = out[cells.tiled(i / kColumnsPerCell, k / kColumnsPerCell)];
+      least = std::min(least, distance[at(i, k)]);
     }
   }
 }
@@ -170,7 +171,7 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
       to.min_x[lane] = grid.layout().min_x;
       to.min_z[lane] = grid.layout().min_z;
       to.inverse_cell[lane] = grid.layout().inverse_spacing / static_cast<float>(kColumnsPerCell);
-      to.cell[lane] = grid.layout().spacing * static_cast<float>(kColumnsPerCell);
+      to.column[lane] = grid.layout().spacing;
       to.cells_x[lane] = static_cast<float>(cells.x);
       to.cells_z[lane] = static_cast<float>(cells.z);
       to.lowest[lane] = asked.lowest;
@@ -224,6 +225,14 @@ void ClearanceMaps::answer(std::span<const ClearanceQuestion> questions, std::si
 
 namespace {
 
+/// How many columns bounds reach beyond a cell along one axis. `edge`: theirs, in cells. `part`:
+/// where in its cell their middle is, 0 to 1.
+float reachBeyond(float edge, float part) {
+  constexpr auto kColumns = static_cast<float>(kColumnsPerCell);
+  const float to_border = 1 - part < part ? 1 - part : part;
+  return kColumns * (0.5F * edge - to_border);
+}
+
 SureGroups surelyFree(const ClearanceLanes& lanes, const std::uint8_t* cells, const float* bounds,
                       std::size_t stride) {
   SureGroups sure;
@@ -249,13 +258,15 @@ SureGroups surelyFree(const ClearanceLanes& lanes, const std::uint8_t* cells, co
         (std::size_t{tile} * kTileEdge + k % kTileEdge) * kTileEdge + i % kTileEdge;
     const std::uint8_t distance =
         cells[static_cast<std::size_t>(lanes.first[n] + plane * lanes.band_bytes[n]) + cell];
-    const float wide = at[stride] - at[0];
-    const float deep = at[5 * stride] - at[4 * stride];
-    const float half = 0.5F * (deep > wide ? deep : wide) * lanes.inverse_cell[n];
-    const float slack = static_cast<float>(distance) - (half + kBeyondHalf);
+    const float wide = (at[stride] - at[0]) * lanes.inverse_cell[n];
+    const float deep = (at[5 * stride] - at[4 * stride]) * lanes.inverse_cell[n];
+    const float along_x = reachBeyond(wide, x - static_cast<float>(i));
+    const float along_z = reachBeyond(deep, z - static_cast<float>(k));
+    const float reach = along_z > along_x ? along_z : along_x;
+    const float slack = static_cast<float>(distance) - (reach + kBeyondReach);
     if (!(slack >= 0)) continue;
     sure.free |= 1U << n;
-    sure.slack[n] = slack * lanes.cell[n];
+    sure.slack[n] = slack * lanes.column[n];
   }
   return sure;
 }

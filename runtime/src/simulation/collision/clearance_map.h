@@ -13,11 +13,12 @@ namespace galactic::simulation {
 // How most spheres are known to be free without a look at their columns.
 //
 // Around each place of a scene's floor there is a square in which nothing stands higher than some
-// height. A map stores half the edge of that square, in cells, for a few heights (bands) and each
-// radius of the robot: one byte per cell and band, a chessboard distance transform (Rosenfeld and
-// Pfaltz 1968). Eight spheres whose bounds lie within the square, and between the band's height and
-// the map's highest one, are free: one look-up answers for eight columns. A map only ever says
-// "surely free"; wherever it does not, the columns are asked, so no answer depends on it.
+// height. A map stores how many columns that square reaches beyond each cell, for a few heights
+// (bands) and each radius of the robot: one byte per cell and band, from a chessboard distance
+// transform of the columns (Rosenfeld and Pfaltz 1968). Eight spheres whose bounds lie within the
+// square, and between the band's height and the map's highest one, are free: one look-up answers
+// for eight columns. A map only ever says "surely free"; wherever it does not, the columns are
+// asked, so no answer depends on it.
 //
 // Floors differ by what lies on them: a rug. What is so low that a rug would block it gets a band
 // of its own, which is clear where there is none.

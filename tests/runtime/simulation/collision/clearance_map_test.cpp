@@ -190,6 +190,64 @@ TEST(ClearanceMaps, SayHowFarWhatIsSurelyFreeMayGo) {
   EXPECT_LT(far, moved * 9 / 10);
 }
 
+/// How many columns around a cell of a map are free on all sides, among blocks that are higher than
+/// all that is asked; less than none where one of its own is not.
+int freeColumnsAround(const ColumnGrid& grid, const Vec3& center) {
+  const auto cell_of = [](float at) {
+    return static_cast<int>(at / BoxRoom::kSpacing) / static_cast<int>(kColumnsPerCell);
+  };
+  const auto is_free = [&](int i, int k) {
+    const auto middle = [](int n) { return (static_cast<float>(n) + 0.5F) * BoxRoom::kSpacing; };
+    return grid.clearance({middle(i), center.y, middle(k)}) == Clearance::kFree;
+  };
+  const int columns = static_cast<int>(kColumnsPerCell);
+  const int first_i = columns * cell_of(center.x);
+  const int first_k = columns * cell_of(center.z);
+  int around = -1;
+  for (bool all = true; all; around += all ? 1 : 0) {
+    const int n = around + 1;
+    for (int i = first_i - n; all && i < first_i + columns + n; ++i) {
+      for (int k = first_k - n; all && k < first_k + columns + n; ++k) all = is_free(i, k);
+    }
+  }
+  return around;
+}
+
+TEST(ClearanceMaps, KnowOfEachColumn) {
+  constexpr std::uint32_t kSeed = 1508;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  // From the floor to far above the robot.
+  const BoxRoom room(
+      {{{1.2F, -1, 0.7F}, {1.6F, 2.9F, 1.1F}}, {{2.1F, -1, 2.2F}, {2.2F, 2.9F, 2.9F}}});
+  ClearanceMaps maps({0, 1, 2});
+  const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
+  Tally free;
+  int narrow = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const Eight eight(random, 0.5F);
+    const SureGroups sure = sureOf(maps, map, 0, eight.bounds.data());
+    const float wide = eight.bounds[kLanes] - eight.bounds[0];
+    const float deep = eight.bounds[5 * kLanes] - eight.bounds[4 * kLanes];
+    const Vec3 middle{eight.bounds[0] + 0.5F * wide, 0.6F, eight.bounds[4 * kLanes] + 0.5F * deep};
+    if (middle.x < 0 || middle.z < 0) continue;
+    for (std::uint32_t radius = 0; radius < room.scene().grids().size(); ++radius) {
+      const auto around =
+          static_cast<float>(freeColumnsAround(room.scene().grids()[radius], middle));
+      const float half = 0.5F * std::max(wide, deep) / BoxRoom::kSpacing;
+      const bool is_sure = (sure.free >> radius & 1U) != 0;
+      free.add(is_sure);
+      // With nothing lost to rounding to cells, but for the middle's place in its own.
+      ASSERT_TRUE(is_sure || around < half + 0.02F) << "radius " << radius;
+      ASSERT_TRUE(!is_sure || around > half - 1.02F) << "radius " << radius;
+      narrow += is_sure && around < half ? 1 : 0;
+    }
+  }
+  free.expectBothSides();
+  // Where the middle is in its cell counts, too.
+  EXPECT_GT(narrow, 20);
+}
+
 TEST(ClearanceMaps, AnswerSeveralEnvsAsTheyAnswerEach) {
   std::mt19937 random(1507);
   const BoxRoom room = furnishedRoom(random, 5);
@@ -222,7 +280,7 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
   for (std::uint8_t& cell : cells) cell = static_cast<std::uint8_t>(random() % 8);
   for (std::size_t n = 0; n < kLanes; ++n) {
     lanes.inverse_cell[n] = 16;
-    lanes.cell[n] = 1.0F / 16;
+    lanes.column[n] = 1.0F / 32;
     lanes.cells_x[n] = 50;
     lanes.cells_z[n] = 60;
     lanes.lowest[n] = 0.2F;
