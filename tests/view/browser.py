@@ -13,6 +13,7 @@ import os
 import pathlib
 import select
 import shutil
+import signal
 import struct
 import subprocess
 import tempfile
@@ -131,7 +132,10 @@ class Page:
 
 class Browser:
     def __init__(self):
-        self.folder = tempfile.TemporaryDirectory(prefix="galactic-browser-")
+        # Processes that were killed may still be at work on their last write.
+        self.folder = tempfile.TemporaryDirectory(
+            prefix="galactic-browser-", ignore_cleanup_errors=True
+        )
         to_child, self.to = os.pipe()
         self.back, from_child = os.pipe()
         # Chromium reads commands from descriptor 3 and answers on 4.
@@ -148,6 +152,7 @@ class Browser:
             pass_fds=(to_child, from_child),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
+            start_new_session=True,
         )
         os.close(to_child)
         os.close(from_child)
@@ -159,7 +164,8 @@ class Browser:
         return self
 
     def __exit__(self, *_):
-        self.process.kill()
+        # With all its processes: each of them may write to the folder.
+        os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait()
         os.close(self.to)
         os.close(self.back)
