@@ -26,6 +26,7 @@ void moveBy(EnvRow* rows, std::size_t env, const Vec3& by) {
 Chunk::Chunk(const Model& model)
     : kernels_(model.kernels),
       sphere_count_(model.sphereCount()),
+      group_count_(model.groups.size()),
       group_stride_(paddedToLanes(model.sphereCount() / kLanes)),
       wants_bodies_(model.bodyCount() != 0),
       ranges_(model.motion.ranges),
@@ -38,8 +39,9 @@ Chunk::Chunk(const Model& model)
       collision_(std::max(model.sphereCount(), model.most_held_spheres)),
       placement_(model.most_held_spheres, model.world->radii()),
       sure_(group_stride_ / kLanes * kChunk),
+      in_slices_(sure_.size()),
       group_bits_(group_stride_ / kLanes),
-      places_(model.groups.size()),
+      places_(kChunk * model.groups.size()),
       way_out_(mostWays(model)),
       column_ways_(kLanes * mostWays(model)),
       blocked_bits_(model.bodyWords()),
@@ -49,7 +51,7 @@ Chunk::Chunk(const Model& model)
 BodyArrays Chunk::bodies(std::size_t first) {
   shiftFrames();
   return {.frames = frames_.front().values + first,
-          .centers = centers_.data()->values.data() + first * 3 * sphere_count_,
+          .centers = centers_.data()->values.data() + first * spheresStride(),
           .grips = (&rows_.back() + 1 - kGripNumbers)->values + first,
           .bounds = bounds_.data()->values.data() + first * kBounds * group_stride_,
           .extents = extents_[first].values.data()};
@@ -60,7 +62,7 @@ void Chunk::shift(std::size_t env, const Vec3& by) {
   kernels_.shift({.by_x = by.x,
                   .by_y = by.y,
                   .by_z = by.z,
-                  .centers = centers_.data()->values.data() + env * 3 * sphere_count_,
+                  .centers = centers_.data()->values.data() + env * spheresStride(),
                   .sphere_count = sphere_count_,
                   .bounds = bounds_.data()->values.data() + env * kBounds * group_stride_,
                   .group_count = group_stride_,
@@ -99,7 +101,7 @@ void Chunk::takeOver(std::size_t env, Chunk& other, std::size_t from) {
     std::copy_n(theirs.begin() + static_cast<std::ptrdiff_t>(from * length), length,
                 mine.begin() + static_cast<std::ptrdiff_t>(env * length));
   };
-  takeRow(centers_, other.centers_, 3 * sphere_count_ / kLanes);
+  takeRow(centers_, other.centers_, spheresStride() / kLanes);
   takeRow(bounds_, other.bounds_, kBounds * group_stride_ / kLanes);
   extents_[env] = other.extents_[from];
   floor_[env] = other.floor_[from];
@@ -116,7 +118,7 @@ Vec3 Chunk::most(std::size_t env) const {
 }
 
 SphereBatch Chunk::spheres(std::size_t env) const {
-  const float* row = centers_.data()->values.data() + env * 3 * sphere_count_;
+  const float* row = centers_.data()->values.data() + env * spheresStride();
   return {row, row + sphere_count_, row + 2 * sphere_count_, ranges_};
 }
 

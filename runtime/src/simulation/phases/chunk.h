@@ -68,11 +68,17 @@ class Chunk {
     return {bounds_.data()->values.data() + env * kBounds * group_stride_ + eight * kLanes,
             group_stride_};
   }
+  /// Floats from the spheres of one env to those of the next.
+  [[nodiscard]] std::size_t spheresStride() const { return 3 * sphere_count_; }
   /// From the bounds of one env to those of the next.
   [[nodiscard]] std::size_t boundsStride() const { return kBounds * group_stride_; }
   /// What the maps said last of the groups from 8 * `eight` on, env by env.
   [[nodiscard]] std::span<SureGroups> sure(std::size_t eight) {
     return std::span(sure_).subspan(eight * kChunk, kChunk);
+  }
+  /// What slices said of those of them that are not surely free, when all envs were looked at.
+  [[nodiscard]] std::span<InSlices> inSlices(std::size_t eight) {
+    return std::span(in_slices_).subspan(eight * kChunk, kChunk);
   }
   /// The least and the most of all their coordinates.
   [[nodiscard]] Vec3 least(std::size_t env) const;
@@ -105,8 +111,12 @@ class Chunk {
   void suitColumnsOnly() {
     for (GroupBits& bits : group_bits_) bits.suited = bits.in_columns;
   }
-  /// Of the groups from 8 * `eight` on that are not free as a whole, unless they are low: the same.
-  [[nodiscard]] EightPlaces* places(std::size_t eight) { return places_.data() + eight * kLanes; }
+  /// Of the groups from 8 * `eight` on that slices were asked about: where their spheres are.
+  [[nodiscard]] EightPlaces* places(std::size_t env, std::size_t eight) {
+    return places_.data() + env * group_count_ + eight * kLanes;
+  }
+  /// From the places of one env to those of the next.
+  [[nodiscard]] std::size_t placesStride() const { return group_count_; }
   [[nodiscard]] WayOut& wayOut() { return way_out_; }
   [[nodiscard]] ColumnWays& columnWays() { return column_ways_; }
   /// One bit for each sphere of the held object that penetrates something: what isFree() found
@@ -126,6 +136,7 @@ class Chunk {
 
   MotionKernels kernels_;
   std::size_t sphere_count_ = 0;
+  std::size_t group_count_ = 0;
   /// Groups of eight spheres, padded to lanes.
   std::size_t group_stride_ = 0;
   bool wants_bodies_ = false;
@@ -146,6 +157,7 @@ class Chunk {
   PlacementScratch placement_;
   /// Shape: eights of groups x kChunk.
   std::vector<SureGroups> sure_;
+  std::vector<InSlices> in_slices_;
   std::vector<GroupBits> group_bits_;
   std::vector<EightPlaces> places_;
   WayOut way_out_;

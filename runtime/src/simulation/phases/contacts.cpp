@@ -44,45 +44,80 @@ SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) noexcept {
   return holdSpheres(heldModel(step.model, env), world_from_object, step.chunk.placement().spheres);
 }
 
+namespace {
+
+/// The groups of an eight that there are, as bits.
+unsigned groupsOf(const Model& model, std::size_t eight) {
+  return (1U << std::min(model.groups.size() - eight * kLanes, kLanes)) - 1;
+}
+
+std::uint32_t mapOf(const ChunkStep& step, std::size_t e) {
+  return step.state.env(step.first + e).clearance_map;
+}
+
+}  // namespace
+
 InSlices findPlaces(const ChunkStep& step, std::size_t e, std::size_t eight,
                     unsigned groups) noexcept {
   if (groups == 0) return {};
   const SphereBatch spheres = step.chunk.spheres(e);
   const std::size_t first = eight * kLanes * kLanes;
-  return step.model.slices.findPlaces(step.state.env(step.first + e).clearance_map, eight * kLanes,
+  return step.model.slices.findPlaces(mapOf(step, e), eight * kLanes,
                                       {.x = spheres.x + first,
                                        .y = spheres.y + first,
                                        .z = spheres.z + first,
                                        .asked = groups,
-                                       .places = step.chunk.places(eight)});
+                                       .places = step.chunk.places(e, eight)});
 }
 
-void askMaps(const ChunkStep& step) noexcept {
-  static_assert(kChunk <= ClearanceMaps::kMostAsked);
+void lookAtAll(const ChunkStep& step) noexcept {
+  static_assert(kChunk <= ClearanceMaps::kMostAsked && kChunk % kEnvsAsked == 0);
   std::array<std::uint32_t, kChunk> maps;
-  for (std::size_t e = 0; e < kChunk; ++e) maps[e] = step.state.env(step.first + e).clearance_map;
+  for (std::size_t e = 0; e < kChunk; ++e) maps[e] = mapOf(step, e);
   for (std::size_t eight = 0; eight * kLanes < step.model.groups.size(); ++eight) {
+    const std::span<SureGroups> sure = step.chunk.sure(eight);
     step.model.clearance.surelyFree(maps, eight, step.chunk.bounds(0, eight),
-                                    step.chunk.boundsStride(), step.chunk.sure(eight));
+                                    step.chunk.boundsStride(), sure);
+    const std::span<InSlices> found = step.chunk.inSlices(eight);
+    std::ranges::fill(found, InSlices{});
+    const unsigned groups = groupsOf(step.model, eight);
+    for (std::size_t first = 0; first < kChunk; first += kEnvsAsked) {
+      std::uint64_t asked = 0;
+      for (std::size_t n = 0; n < kEnvsAsked; ++n) {
+        asked |= std::uint64_t{groups & ~sure[first + n].free} << (kLanes * n);
+      }
+      const SphereBatch spheres = step.chunk.spheres(first);
+      const std::size_t sphere = eight * kLanes * kLanes;
+      step.model.slices.findPlaces(std::span(maps).subspan(first, kEnvsAsked), eight * kLanes,
+                                   {.x = spheres.x + sphere,
+                                    .y = spheres.y + sphere,
+                                    .z = spheres.z + sphere,
+                                    .stride = step.chunk.spheresStride(),
+                                    .asked = asked,
+                                    .places = step.chunk.places(first, eight),
+                                    .places_stride = step.chunk.placesStride(),
+                                    .found = &found[first]});
+    }
   }
 }
 
 namespace {
 
-/// As findBlocked(), where askMaps() has asked already.
-bool findBlockedAsAsked(const ChunkStep& step, std::size_t e) {
+/// As findBlocked(), where maps have been asked already. `look`: what slices say of some groups of
+/// an eight.
+template <class Look>
+bool findBlockedBy(const Look& look, const ChunkStep& step, std::size_t e) {
   const Env& env = step.state.env(step.first + e);
   const Scene& scene = step.model.world->scenes()[env.scene];
   const std::span<const EightSpheres> groups = step.model.groups;
   std::uint64_t any = 0;
   for (std::size_t eight = 0; eight * kLanes < groups.size(); ++eight) {
-    const std::size_t here = std::min(groups.size() - eight * kLanes, kLanes);
     const SureGroups& sure = step.chunk.sure(eight)[e];
     GroupBits& known = step.chunk.groupBits(eight);
-    const unsigned others = ((1U << here) - 1) & ~known.suited;
+    const unsigned others = groupsOf(step.model, eight) & ~known.suited;
     known.unsure = others & ~(sure.free & ~sure.low);
     known.low = others & sure.free & sure.low;
-    const InSlices found = findPlaces(step, e, eight, others & ~sure.free);
+    const InSlices found = look(eight, others & ~sure.free);
     std::uint64_t blocked = found.blocked;
     if (found.unknown != 0) {
       blocked |=
@@ -97,12 +132,14 @@ bool findBlockedAsAsked(const ChunkStep& step, std::size_t e) {
 }  // namespace
 
 bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
-  const std::uint32_t map = step.state.env(step.first + e).clearance_map;
   for (std::size_t eight = 0; eight * kLanes < step.model.groups.size(); ++eight) {
-    step.model.clearance.surelyFree(map, eight, step.chunk.bounds(e, eight),
+    step.model.clearance.surelyFree(mapOf(step, e), eight, step.chunk.bounds(e, eight),
                                     step.chunk.sure(eight)[e]);
   }
-  return findBlockedAsAsked(step, e);
+  const auto look = [&](std::size_t eight, unsigned groups) {
+    return findPlaces(step, e, eight, groups);
+  };
+  return findBlockedBy(look, step, e);
 }
 
 bool isSureAfter(const ChunkStep& step, std::size_t e, const Push& moved) noexcept {
@@ -161,10 +198,11 @@ bool heldPenetrates(const ChunkStep& step, std::size_t e) {
 
 }  // namespace
 
-bool isFreeAsAsked(const ChunkStep& step, std::size_t e) noexcept {
+bool isFreeAsSeen(const ChunkStep& step, std::size_t e) noexcept {
   step.chunk.forgetSuited();
   if (step.chunk.floor(e) != Floor::kCarries) return false;
-  return !findBlockedAsAsked(step, e) && isFreeOfObjects(step, e);
+  const auto seen = [&](std::size_t eight, unsigned) { return step.chunk.inSlices(eight)[e]; };
+  return !findBlockedBy(seen, step, e) && isFreeOfObjects(step, e);
 }
 
 bool isFree(const ChunkStep& step, std::size_t e) noexcept {

@@ -16,12 +16,12 @@ namespace galactic::simulation {
 /// Whether the candidate penetrates no object, nor what it holds anything.
 [[nodiscard]] bool isFreeOfObjects(const ChunkStep& step, std::size_t e) noexcept;
 
-/// Asks the maps what is surely free of all candidates of a chunk at once, so that none waits for
-/// the answer about another.
-void askMaps(const ChunkStep& step) noexcept;
+/// Asks maps and slices about all candidates of a chunk at once, so that none waits for the answer
+/// about another.
+void lookAtAll(const ChunkStep& step) noexcept;
 
-/// As isFree(), where askMaps() has asked already.
-[[nodiscard]] bool isFreeAsAsked(const ChunkStep& step, std::size_t e) noexcept;
+/// As isFree(), where lookAtAll() has looked already.
+[[nodiscard]] bool isFreeAsSeen(const ChunkStep& step, std::size_t e) noexcept;
 
 /// What the env's robot can hit.
 [[nodiscard]] Obstacles obstaclesOf(const ChunkStep& step, std::size_t e) noexcept;

@@ -35,9 +35,9 @@ void accept(const ChunkStep& step, std::size_t e) {
   });
 }
 
-/// As walkToCandidate(), looking at the end of the way alone, of which the maps have been asked.
+/// As walkToCandidate(), looking at the end of the way alone, which lookAtAll() has seen.
 Walk jumpToCandidate(const ChunkStep& step, std::size_t e) {
-  if (isFreeAsAsked(step, e)) return Walk::kStraight;
+  if (isFreeAsSeen(step, e)) return Walk::kStraight;
   return slideClear(step, e) ? Walk::kHindered : Walk::kNone;
 }
 
@@ -191,7 +191,7 @@ void placeBodies(const ChunkStep& step) noexcept {
 
 void moveRobots(const ChunkStep& step) noexcept {
   EnvMask accepted{};
-  if (step.between == nullptr) askMaps(step);
+  if (step.between == nullptr) lookAtAll(step);
   for (std::size_t e = 0; e < kChunk; ++e) {
     // A thread takes one chunk after the other. Asked for while the longest phase lasts, what the
     // next one needs is there in time, and none of it waits for much else.

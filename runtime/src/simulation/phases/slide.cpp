@@ -128,7 +128,7 @@ class Glide {
   /// Adds the groups of an eight; the way out begins where they are. Those whose spheres were all
   /// added, as bits.
   unsigned addFromHere(std::size_t eight) {
-    const EightPlaces* places = step_.chunk.places(eight);
+    const EightPlaces* places = step_.chunk.places(e_, eight);
     const AddedGroups added = way_.add({.rows = step_.model.slices.rows(),
                                         .groups = step_.model.groups.data() + eight * kLanes,
                                         .places = places,
@@ -160,7 +160,7 @@ class Glide {
   [[nodiscard]] unsigned freeOrBlocked(std::size_t eight, std::size_t n) const {
     const auto blocked = static_cast<unsigned>(step_.chunk.blockedBits()[eight] >> (n * kLanes));
     return step_.model.groups[eight * kLanes + n].spheres &
-           (step_.chunk.places(eight)[n].free | blocked);
+           (step_.chunk.places(e_, eight)[n].free | blocked);
   }
 
   /// Adds spheres of a group of which slices know nothing where the way out begins.
@@ -249,7 +249,7 @@ class Glide {
     for (std::size_t n = 0; n < step_.model.groups.size(); ++n) {
       const GroupBits& known = step_.chunk.groupBits(n / kLanes);
       if (((known.unsure & ~known.low) >> (n % kLanes) & 1U) == 0) continue;
-      const EightPlaces& places = step_.chunk.places(n / kLanes)[n % kLanes];
+      const EightPlaces& places = step_.chunk.places(e_, n / kLanes)[n % kLanes];
       for (unsigned left = step_.model.groups[n].spheres & places.inside; left != 0;
            left &= left - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(left));

@@ -115,10 +115,11 @@ CellInTile inTile(const SliceLayout& layout, const TileSet& tiles, const SliceCe
 }  // namespace
 
 FreeSlices::FreeSlices(std::vector<EightSpheres> groups) : groups_(std::move(groups)) {
-  // The first one: see TileSet.
+  for (const EightSpheres& group : groups_) slice_groups_.push_back({{}, group.spheres});
+  // The first one: see TileSet. What is outside of slices asks for the first number.
   SliceTile all_free{};
   std::ranges::fill(all_free.free, std::uint16_t{0xffff});
-  static_cast<void>(numberOf(all_free));
+  numbers_.push_back(numberOf(all_free));
 }
 
 std::uint32_t FreeSlices::add(const Scene& scene, float floor, const HeightsOverFloor& heights,
@@ -147,7 +148,7 @@ std::uint32_t FreeSlices::add(const Scene& scene, float floor, const HeightsOver
         .slices = slices,
         .slice_count = static_cast<std::int32_t>(slices),
         .tiles_z = static_cast<std::int32_t>(tilesZ(grid)),
-        .first = numbers_.size()};
+        .first = from.columns_z < kMostColumnsZ ? numbers_.size() : 0};
     fill(grid, thickness, layout);
     layouts_.push_back(layout);
   }
@@ -206,21 +207,28 @@ std::uint32_t FreeSlices::numberOf(const SliceTile& tile) {
   return number;
 }
 
+const SliceGroup* FreeSlices::groupsOf(std::uint32_t map) const {
+  // Those of no map come first.
+  static_assert(kNoClearanceMap + 1 == 0);
+  return slice_groups_.data() + std::uint32_t{map + 1} * groups_.size();
+}
+
 InSlices FreeSlices::findPlaces(std::uint32_t map, std::size_t first,
                                 const SomeGroups& some) const noexcept {
-  if (map == kNoClearanceMap) {
-    InSlices found;
-    for (unsigned left = some.asked; left != 0; left &= left - 1) {
-      const auto n = static_cast<std::size_t>(std::countr_zero(left));
-      some.places[n].inside = some.places[n].free = some.places[n].blocked = 0;
-      addGroup(some.places[n], groups_[first + n].spheres, n, found);
-    }
-    return found;
-  }
-  const PlacesQuery query{.groups = slice_groups_.data() + map * groups_.size() + first,
-                          .tiles = tiles(),
-                          .some = &some};
+  const PlacesQuery query{.groups = groupsOf(map) + first, .tiles = tiles(), .some = &some};
   return detail::hasAvx2() ? findPlacesAvx2(query) : findPlacesPortable(query);
+}
+
+void FreeSlices::findPlaces(std::span<const std::uint32_t> maps, std::size_t first,
+                            const GroupsOfEnvs& some) const noexcept {
+  std::array<const SliceGroup*, kEnvsAsked> groups;
+  for (std::size_t n = 0; n < maps.size(); ++n) groups[n] = groupsOf(maps[n]) + first;
+  const EnvPlacesQuery query{.groups = groups.data(), .tiles = tiles(), .some = &some};
+  if (detail::hasAvx2()) {
+    findPlacesOfEnvsAvx2(query);
+  } else {
+    findPlacesOfEnvsPortable(query);
+  }
 }
 
 namespace {
@@ -266,6 +274,23 @@ InSlices findPlacesPortable(const PlacesQuery& query) noexcept {
     addGroup(some.places[n], query.groups[n].spheres, n, found);
   }
   return found;
+}
+
+void findPlacesOfEnvsPortable(const EnvPlacesQuery& query) noexcept {
+  const GroupsOfEnvs& some = *query.some;
+  for (std::size_t e = 0; e < kEnvsAsked; ++e) {
+    const auto asked = static_cast<unsigned>(some.asked >> (kLanes * e)) & 0xffU;
+    if (asked == 0) continue;
+    const SomeGroups groups{.x = some.x + e * some.stride,
+                            .y = some.y + e * some.stride,
+                            .z = some.z + e * some.stride,
+                            .asked = asked,
+                            .places = some.places + e * some.places_stride};
+    const InSlices found =
+        findPlacesPortable({.groups = query.groups[e], .tiles = query.tiles, .some = &groups});
+    some.found[e].blocked |= found.blocked;
+    some.found[e].unknown |= found.unknown;
+  }
 }
 
 std::optional<SurroundingRows> FreeSlices::around(std::uint32_t map, std::uint32_t radius,

@@ -113,6 +113,10 @@ class FreeSlices {
   /// it; nothing is known for kNoClearanceMap.
   InSlices findPlaces(std::uint32_t map, std::size_t first, const SomeGroups& some) const noexcept;
 
+  /// The same for several envs, kEnvsAsked at most, each on its own map.
+  void findPlaces(std::span<const std::uint32_t> maps, std::size_t first,
+                  const GroupsOfEnvs& some) const noexcept;
+
   /// What the places of spheres count from.
   [[nodiscard]] const std::uint16_t* rows() const noexcept { return tiles_.data()->free; }
 
@@ -130,6 +134,8 @@ class FreeSlices {
   }
 
  private:
+  /// The first of a floor's groups.
+  [[nodiscard]] const SliceGroup* groupsOf(std::uint32_t map) const;
   void fill(const ColumnGrid& grid, float thickness, const SliceLayout& layout);
   [[nodiscard]] std::uint32_t numberOf(const SliceTile& tile);
   [[nodiscard]] TileSet tiles() const { return {numbers_.data(), tiles_.data()}; }
@@ -138,7 +144,7 @@ class FreeSlices {
   std::size_t radii_ = 0;
   /// Shape: maps x radii.
   std::vector<SliceLayout> layouts_;
-  /// Shape: maps x groups.
+  /// Shape: maps x groups, after those of no map.
   std::vector<SliceGroup> slice_groups_;
   std::vector<std::uint32_t> numbers_;
   std::vector<SliceTile> tiles_;

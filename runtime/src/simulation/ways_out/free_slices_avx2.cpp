@@ -4,6 +4,8 @@
 #if defined(__x86_64__)
 #include <immintrin.h>
 
+#include "support/gather_avx2.inl"
+
 namespace galactic::simulation {
 namespace {
 
@@ -24,73 +26,144 @@ void store(std::int32_t* to, __m256i value) {
   _mm256_store_si256(reinterpret_cast<__m256i*>(to), value);
 }
 
-/// Eight words from rows of bits. See resting_objects_avx2.cpp for why the gather is given a zero.
-template <int kScale, class Element>
-__m256i gather(const Element* from, __m256i at, __m256 inside) {
-  return _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), reinterpret_cast<const int*>(from), at,
-                                     _mm256_castps_si256(inside), kScale);
+__m256i integers(const std::int32_t* from) {
+  return _mm256_load_si256(reinterpret_cast<const __m256i*>(from));
 }
 
-/// The bits of the cells in which eight centers are, zero outside. `row`: the first around each.
-unsigned ownBits(const std::uint16_t* rows, __m256i row, __m256i column, __m256 inside) {
-  const __m256i words = gather<2>(rows + kCellsAround, row, inside);
-  // Into the sign.
-  const __m256i above = _mm256_sub_epi32(_mm256_set1_epi32(31 - kCellsAround), column);
-  return bitsOf(_mm256_castsi256_ps(_mm256_sllv_epi32(words, above)));
-}
+/// Eight centers on the way to their places.
+struct alignas(32) OnTheWay {
+  /// Where the number of each tile stands, counted from `numbers`.
+  std::int32_t number_at[kLanes];
+  /// The first row around each center, in its tile.
+  std::int32_t row_in_tile[kLanes];
+  /// Bits above that of its own cell.
+  std::int32_t above[kLanes];
+  const std::uint32_t* numbers;
+  EightPlaces* places;
+  /// Those inside of slices, and those that count, as bits.
+  unsigned inside;
+  unsigned spheres;
+  /// Which of those asked about they are.
+  unsigned bit;
+};
 
-/// The places of eight centers.
-void findEight(const SliceLayout& layout, const TileSet& tiles, const float* x, const float* y,
-               const float* z, EightPlaces& places) {
+/// Which tiles eight centers are in, and where in these.
+[[gnu::always_inline]] inline void findTiles(const SliceLayout& layout, const float* x,
+                                             const float* y, const float* z, OnTheWay& eight) {
   const __m256 cell_x = scaled(x, layout.min_x, layout.inverse_spacing);
   const __m256 cell_z = scaled(z, layout.min_z, layout.inverse_spacing);
   const __m256 height = scaled(y, layout.lowest, layout.inverse_slice);
   const __m256 inside = _mm256_and_ps(
       _mm256_and_ps(isWithin(cell_x, layout.columns_x), isWithin(cell_z, layout.columns_z)),
       isWithin(height, layout.slices));
+  // What is outside asks for the first number.
   const __m256i mask = _mm256_castps_si256(inside);
   const __m256i i = _mm256_and_si256(_mm256_cvttps_epi32(cell_x), mask);
   const __m256i k = _mm256_and_si256(_mm256_cvttps_epi32(cell_z), mask);
   const __m256i slice = _mm256_and_si256(_mm256_cvttps_epi32(height), mask);
-  const __m256 part_x = _mm256_sub_ps(cell_x, _mm256_cvtepi32_ps(i));
-  const __m256 part_z = _mm256_sub_ps(cell_z, _mm256_cvtepi32_ps(k));
   const __m256i tile_x = _mm256_srli_epi32(i, 3);
   const __m256i column = _mm256_and_si256(i, _mm256_set1_epi32(kTileColumns - 1));
   // tileOfRow().
   const __m256i tile_z = _mm256_srli_epi32(_mm256_mullo_epi32(k, _mm256_set1_epi32(43691)), 20);
-  const __m256i row_in_tile =
-      _mm256_sub_epi32(k, _mm256_mullo_epi32(tile_z, _mm256_set1_epi32(kTileRows)));
   const __m256i tile =
       _mm256_add_epi32(_mm256_mullo_epi32(tile_x, _mm256_set1_epi32(layout.tiles_z)), tile_z);
-  const __m256i at =
-      _mm256_add_epi32(_mm256_mullo_epi32(tile, _mm256_set1_epi32(layout.slice_count)), slice);
-  const __m256i number = gather<4>(tiles.numbers + layout.first, at, inside);
-  const __m256i row = _mm256_add_epi32(_mm256_slli_epi32(number, 6), row_in_tile);
-  store(places.row, row);
+  store(eight.number_at,
+        _mm256_add_epi32(_mm256_mullo_epi32(tile, _mm256_set1_epi32(layout.slice_count)), slice));
+  store(eight.row_in_tile,
+        _mm256_sub_epi32(k, _mm256_mullo_epi32(tile_z, _mm256_set1_epi32(kTileRows))));
+  store(eight.above, _mm256_sub_epi32(_mm256_set1_epi32(31 - kCellsAround), column));
+  eight.inside = bitsOf(inside);
+  EightPlaces& places = *eight.places;
   store(places.column, column);
-  _mm256_store_ps(places.part_x, part_x);
-  _mm256_store_ps(places.part_z, part_z);
-  places.inside = bitsOf(inside);
-  places.free = ownBits(tiles.tiles->free, row, column, inside);
-  places.blocked = ownBits(tiles.tiles->blocked, row, column, inside);
+  _mm256_store_ps(places.part_x, _mm256_sub_ps(cell_x, _mm256_cvtepi32_ps(i)));
+  _mm256_store_ps(places.part_z, _mm256_sub_ps(cell_z, _mm256_cvtepi32_ps(k)));
+  places.inside = eight.inside;
+}
+
+[[gnu::always_inline]] inline void findRows(const OnTheWay& eight) {
+  const __m256i number = detail::gatherEight<sizeof(*eight.numbers)>(
+      eight.numbers, detail::indicesAt(eight.number_at));
+  static_assert(kTileStride == 1 << 6);
+  store(eight.places->row,
+        _mm256_add_epi32(_mm256_slli_epi32(number, 6), integers(eight.row_in_tile)));
+}
+
+/// The bits of the cells in which eight centers are. `row`: the first around each.
+[[gnu::always_inline]] inline unsigned ownBits(const std::uint16_t* rows,
+                                               const detail::EightIndices& row, __m256i above) {
+  const __m256i words = detail::gatherEight<sizeof(*rows)>(rows + kCellsAround, row);
+  // Into the sign.
+  return bitsOf(_mm256_castsi256_ps(_mm256_sllv_epi32(words, above)));
+}
+
+[[gnu::always_inline]] inline void findBits(const SliceTile* tiles, const OnTheWay& eight) {
+  EightPlaces& places = *eight.places;
+  const detail::EightIndices row = detail::indicesAt(places.row);
+  const __m256i above = integers(eight.above);
+  places.free = eight.inside & ownBits(tiles->free, row, above);
+  places.blocked = eight.inside & ownBits(tiles->blocked, row, above);
+}
+
+/// Begins with the spheres of a group, which start at x, y and z.
+[[gnu::always_inline]] inline void begin(const SliceGroup& group, const TileSet& tiles,
+                                         const float* x, const float* y, const float* z,
+                                         OnTheWay& eight) {
+  eight.numbers = tiles.numbers + group.layout.first;
+  eight.spheres = group.spheres;
+  findTiles(group.layout, x, y, z, eight);
 }
 
 }  // namespace
+
+// Each step for all groups: a core can hold back few loads whose addresses are not known yet, those
+// of one group at most.
 
 InSlices findPlacesAvx2(const PlacesQuery& given) noexcept {
   // Copies: nothing that is written below can change them.
   const PlacesQuery query = given;
   const SomeGroups some = *query.some;
-  InSlices found;
+  OnTheWay eights[kLanes];
+  std::size_t count = 0;
   for (unsigned left = some.asked; left != 0; left &= left - 1) {
-    const auto n = static_cast<std::size_t>(__builtin_ctz(left));
-    const std::size_t first = n * kLanes;
-    const SliceGroup& group = query.groups[n];
-    EightPlaces& places = some.places[n];
-    findEight(group.layout, query.tiles, some.x + first, some.y + first, some.z + first, places);
-    addGroup(places, group.spheres, n, found);
+    const auto n = static_cast<unsigned>(__builtin_ctz(left));
+    const std::size_t first = std::size_t{n} * kLanes;
+    OnTheWay& eight = eights[count++];
+    eight.places = some.places + n;
+    eight.bit = n;
+    begin(query.groups[n], query.tiles, some.x + first, some.y + first, some.z + first, eight);
+  }
+  for (std::size_t n = 0; n < count; ++n) findRows(eights[n]);
+  InSlices found;
+  for (std::size_t n = 0; n < count; ++n) {
+    findBits(query.tiles.tiles, eights[n]);
+    addGroup(*eights[n].places, eights[n].spheres, eights[n].bit, found);
   }
   return found;
+}
+
+void findPlacesOfEnvsAvx2(const EnvPlacesQuery& given) noexcept {
+  const EnvPlacesQuery query = given;
+  const GroupsOfEnvs some = *query.some;
+  OnTheWay eights[kLanes];
+  for (std::uint64_t left = some.asked; left != 0;) {
+    std::size_t count = 0;
+    for (; left != 0 && count < kLanes; left &= left - 1) {
+      const auto bit = static_cast<unsigned>(__builtin_ctzll(left));
+      const std::size_t e = bit / kLanes;
+      const std::size_t n = bit % kLanes;
+      const std::size_t first = e * some.stride + n * kLanes;
+      OnTheWay& eight = eights[count++];
+      eight.places = some.places + e * some.places_stride + n;
+      eight.bit = bit;
+      begin(query.groups[e][n], query.tiles, some.x + first, some.y + first, some.z + first, eight);
+    }
+    for (std::size_t n = 0; n < count; ++n) findRows(eights[n]);
+    for (std::size_t n = 0; n < count; ++n) {
+      const OnTheWay& eight = eights[n];
+      findBits(query.tiles.tiles, eight);
+      addGroup(*eight.places, eight.spheres, eight.bit % kLanes, some.found[eight.bit / kLanes]);
+    }
+  }
 }
 
 }  // namespace galactic::simulation
@@ -99,8 +172,10 @@ InSlices findPlacesAvx2(const PlacesQuery& given) noexcept {
 
 namespace galactic::simulation {
 
-// hasAvx2() is false on this architecture; the symbol exists so that callers need no condition.
+// hasAvx2() is false on this architecture; the symbols exist so that callers need no condition.
 InSlices findPlacesAvx2(const PlacesQuery& query) noexcept { return findPlacesPortable(query); }
+
+void findPlacesOfEnvsAvx2(const EnvPlacesQuery& query) noexcept { findPlacesOfEnvsPortable(query); }
 
 }  // namespace galactic::simulation
 

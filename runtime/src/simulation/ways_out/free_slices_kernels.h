@@ -47,7 +47,7 @@ struct TileSet {
 };
 
 /// Where eight centers are among cells and slices; of those outside, nothing counts.
-struct alignas(32) EightPlaces {
+struct alignas(64) EightPlaces {
   /// The first of the nine rows around a center, counted from the first tile.
   std::int32_t row[kLanes] = {};
   /// Its column in the tile.
@@ -95,6 +95,33 @@ struct InSlices {
   unsigned unknown = 0;
 };
 
+/// Envs that are asked about at a time.
+inline constexpr std::size_t kEnvsAsked = 8;
+
+/// Some of up to eight groups of each of up to kEnvsAsked envs. All arrays begin with the first
+/// group of the first env.
+struct GroupsOfEnvs {
+  const float* x = nullptr;
+  const float* y = nullptr;
+  const float* z = nullptr;
+  /// Floats from one env to the next.
+  std::size_t stride = 0;
+  /// Which of them are asked about: bit kLanes * e + n is group n of env e.
+  std::uint64_t asked = 0;
+  /// Results, of those groups.
+  EightPlaces* places = nullptr;
+  std::size_t places_stride = 0;
+  /// To which is added what slices say of each env.
+  InSlices* found = nullptr;
+};
+
+struct EnvPlacesQuery {
+  /// Of each env, its first group.
+  const SliceGroup* const* groups = nullptr;
+  TileSet tiles;
+  const GroupsOfEnvs* some = nullptr;
+};
+
 /// Adds what is said of a group, number `n` of those that are asked about. Nobody can guess whether
 /// something is unknown: a number, and no branch. Inlined everywhere: a copy built for AVX2 must
 /// not become that of all.
@@ -108,5 +135,7 @@ struct InSlices {
 /// Finds the places of eights of centers. Both do the same operations, and agree bit for bit.
 InSlices findPlacesPortable(const PlacesQuery& query) noexcept;
 InSlices findPlacesAvx2(const PlacesQuery& query) noexcept;
+void findPlacesOfEnvsPortable(const EnvPlacesQuery& query) noexcept;
+void findPlacesOfEnvsAvx2(const EnvPlacesQuery& query) noexcept;
 
 }  // namespace galactic::simulation

@@ -19,7 +19,7 @@ struct alignas(32) CommonCells {
 
 /// In which cells around their own eight spheres are free, and where in their own they are. Plain
 /// arrays, which the kernels load.
-struct alignas(32) EightWays {
+struct alignas(64) EightWays {
   /// Of each sphere its first row, counted from `rows`, and the column of its first bit: bit
   /// x + kCellsAround of row z + kCellsAround from there is set where the sphere is free in cell
   /// (x, z). Row 0 and column 0, where all is free, of those that do not count.

@@ -178,6 +178,131 @@ TEST(FreeSlices, AreTheSameBitForBitWithBothKernels) {
   inside.expectBothSides();
 }
 
+TEST(FreeSlices, AnswerSeveralEnvsAsTheyAnswerEach) {
+  constexpr std::uint32_t kSeed = 1609;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  const BoxRoom room = furnishedRoom(random, 6);
+  constexpr std::size_t kGroups = 3;
+  FreeSlices slices({{0, BoxRoom::kRadii[0], kAllLanes},
+                     {1, BoxRoom::kRadii[1], kAllLanes},
+                     {2, BoxRoom::kRadii[2], 0x1fU}});
+  const std::uint32_t map = slices.add(room.scene(), 0, kHeights);
+  // Of each env, its groups, then something else.
+  constexpr std::size_t kStride = kGroups * kLanes + 5;
+  constexpr std::size_t kPlacesStride = kGroups + 1;
+  Tally blocked;
+  Tally unknown;
+  for (int round = 0; round < 300; ++round) {
+    std::array<float, kEnvsAsked * kStride> x;
+    std::array<float, kEnvsAsked * kStride> y;
+    std::array<float, kEnvsAsked * kStride> z;
+    std::ranges::generate(x, [&] { return uniformIn(random, -0.2F, 3.2F); });
+    std::ranges::generate(y, [&] { return uniformIn(random, 0.1F, 1.4F); });
+    std::ranges::generate(z, [&] { return uniformIn(random, -0.2F, 3.2F); });
+    std::array<std::uint32_t, kEnvsAsked> maps;
+    std::ranges::generate(maps, [&] { return random() % 4 == 0 ? kNoClearanceMap : map; });
+    std::uint64_t asked = 0;
+    for (std::size_t e = 0; e < kEnvsAsked; ++e) {
+      asked |= std::uint64_t{random() & random() & ((1U << kGroups) - 1)} << (kLanes * e);
+    }
+    std::array<EightPlaces, kEnvsAsked * kPlacesStride> places;
+    std::array<InSlices, kEnvsAsked> found;
+    slices.findPlaces(maps, 0,
+                      {.x = x.data(),
+                       .y = y.data(),
+                       .z = z.data(),
+                       .stride = kStride,
+                       .asked = asked,
+                       .places = places.data(),
+                       .places_stride = kPlacesStride,
+                       .found = found.data()});
+    for (std::size_t e = 0; e < kEnvsAsked; ++e) {
+      const auto groups = static_cast<unsigned>(asked >> (kLanes * e)) & 0xffU;
+      std::array<EightPlaces, kGroups> each;
+      const InSlices alone = slices.findPlaces(maps[e], 0,
+                                               {.x = x.data() + e * kStride,
+                                                .y = y.data() + e * kStride,
+                                                .z = z.data() + e * kStride,
+                                                .asked = groups,
+                                                .places = each.data()});
+      ASSERT_EQ(found[e].blocked, alone.blocked);
+      ASSERT_EQ(found[e].unknown, alone.unknown);
+      ASSERT_TRUE(maps[e] != kNoClearanceMap || alone.unknown == groups);
+      blocked.add(alone.blocked != 0);
+      unknown.add(alone.unknown != 0);
+      for (std::size_t n = 0; n < kGroups; ++n) {
+        const bool is_asked = (groups >> n & 1U) != 0;
+        ASSERT_TRUE(!is_asked || areSame(places[e * kPlacesStride + n], each[n]));
+      }
+    }
+  }
+  blocked.expectBothSides();
+  unknown.expectBothSides();
+}
+
+TEST(FreeSlices, OfSeveralEnvsAreTheSameBitForBitWithBothKernels) {
+  if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2";
+  std::mt19937 random(1610);
+  std::vector<SliceTile> tiles(50);
+  for (SliceTile& tile : tiles) {
+    for (std::uint16_t& row : tile.free) row = static_cast<std::uint16_t>(random());
+    for (std::uint16_t& row : tile.blocked) row = static_cast<std::uint16_t>(random());
+  }
+  const SliceGroup somewhere{{.inverse_spacing = 32,
+                              .columns_x = 16,
+                              .columns_z = 24,
+                              .inverse_slice = 4,
+                              .slices = 2,
+                              .slice_count = 2,
+                              .tiles_z = 1},
+                             kAllLanes};
+  const std::array<std::uint32_t, 4> numbers{7, 49, 0, 21};
+  // Of one env in two, nothing is known.
+  std::array<SliceGroup, kLanes> here;
+  std::array<SliceGroup, kLanes> nowhere;
+  here.fill(somewhere);
+  nowhere.fill({{}, kAllLanes});
+  std::array<const SliceGroup*, kEnvsAsked> groups;
+  for (std::size_t e = 0; e < kEnvsAsked; ++e)
+    groups[e] = e % 2 == 0 ? here.data() : nowhere.data();
+  Tally blocked;
+  for (int round = 0; round < 500; ++round) {
+    constexpr std::size_t kStride = kLanes * kLanes;
+    std::vector<float> x(kEnvsAsked * kStride);
+    std::vector<float> y(x.size());
+    std::vector<float> z(x.size());
+    std::ranges::generate(x, [&] { return uniformIn(random, -0.1F, 0.6F); });
+    std::ranges::generate(y, [&] { return uniformIn(random, -0.1F, 0.6F); });
+    std::ranges::generate(z, [&] { return uniformIn(random, -0.1F, 0.9F); });
+    const std::uint64_t asked = std::uint64_t{random()} << 32U | random();
+    std::vector<EightPlaces> portable(kEnvsAsked * kLanes);
+    std::vector<EightPlaces> fast(portable.size());
+    const auto find = [&](const auto& kernel, std::vector<EightPlaces>& places) {
+      std::array<InSlices, kEnvsAsked> found;
+      const GroupsOfEnvs some{.x = x.data(),
+                              .y = y.data(),
+                              .z = z.data(),
+                              .stride = kStride,
+                              .asked = asked,
+                              .places = places.data(),
+                              .places_stride = kLanes,
+                              .found = found.data()};
+      kernel({.groups = groups.data(), .tiles = {numbers.data(), tiles.data()}, .some = &some});
+      return found;
+    };
+    const auto found = find(findPlacesOfEnvsPortable, portable);
+    const auto found_fast = find(findPlacesOfEnvsAvx2, fast);
+    for (std::size_t e = 0; e < kEnvsAsked; ++e) {
+      ASSERT_EQ(found[e].blocked, found_fast[e].blocked);
+      ASSERT_EQ(found[e].unknown, found_fast[e].unknown);
+      blocked.add(found[e].blocked != 0);
+    }
+    for (std::size_t n = 0; n < portable.size(); ++n) ASSERT_TRUE(areSame(portable[n], fast[n]));
+  }
+  blocked.expectBothSides();
+}
+
 TEST(SurroundingsOf, AreThoseOfTheColumns) {
   std::mt19937 random(1603);
   const BoxRoom room = furnishedRoom(random, 6);
