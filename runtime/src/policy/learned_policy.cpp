@@ -152,8 +152,7 @@ class LearnedPolicy::Impl {
     dones_ = inputs.dones;
     actions_ = actions;
     if (workers_) {
-      workers_->begin();
-      workers_->end();
+      workers_->run();
     } else {
       actInPart(0);
     }

@@ -57,10 +57,7 @@ class BatchSimulator::Impl {
   }
 
   void begin(std::span<const float> actions, std::span<const std::int32_t> resets) {
-    assert(actions.size() == model_.options.envs * model_.actionCount());
-    assert(resets.empty() || resets.size() == model_.options.envs);
-    input_ = {actions, resets};
-    measures_ = sample_every_ != 0 && steps_ % sample_every_ == 0;
+    prepare(actions, resets);
     workers_->begin();
   }
 
@@ -70,14 +67,12 @@ class BatchSimulator::Impl {
   }
 
   void step(std::span<const float> actions, std::span<const std::int32_t> resets) {
+    prepare(actions, resets);
     if (threads_ > 1) {
-      begin(actions, resets);
-      end();
-      return;
+      workers_->run();
+    } else {
+      for (std::size_t n = 0; n < state_.paddedCount() / kChunk; ++n) run(0, n);
     }
-    input_ = {actions, resets};
-    measures_ = sample_every_ != 0 && steps_ % sample_every_ == 0;
-    for (std::size_t n = 0; n < state_.paddedCount() / kChunk; ++n) run(0, n);
     ++steps_;
   }
 
@@ -167,6 +162,13 @@ class BatchSimulator::Impl {
     std::optional<Chunk> between;
     simulation::PhaseSeconds seconds{};
   };
+
+  void prepare(std::span<const float> actions, std::span<const std::int32_t> resets) {
+    assert(actions.size() == model_.options.envs * model_.actionCount());
+    assert(resets.empty() || resets.size() == model_.options.envs);
+    input_ = {actions, resets};
+    measures_ = sample_every_ != 0 && steps_ % sample_every_ == 0;
+  }
 
   static Result<void> checkCount(const SavedState& saved, std::span<const std::uint32_t> envs) {
     if (saved.envs.size() == envs.size()) return {};

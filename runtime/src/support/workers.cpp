@@ -50,7 +50,7 @@ Workers::Workers(std::size_t threads, std::size_t parts, Work work)
   }
   threads_.reserve(count - 1);
   for (std::size_t n = 1; n < count; ++n) {
-    threads_.emplace_back([this, n] { run(n); });
+    threads_.emplace_back([this, n] { serve(n); });
   }
 }
 
@@ -62,6 +62,17 @@ Workers::~Workers() {
   stops_.store(true, std::memory_order_relaxed);
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
+}
+
+void Workers::run() noexcept {
+  const auto start = std::chrono::steady_clock::now();
+  if (way_.next() == RoundWay::kTogether) {
+    begin();
+    end();
+  } else {
+    for (std::size_t part = 0; part < parts_; ++part) work_(0, part);
+  }
+  way_.add(std::chrono::steady_clock::now() - start);
 }
 
 void Workers::begin() noexcept {
@@ -81,7 +92,7 @@ void Workers::end() noexcept {
   }
 }
 
-void Workers::run(std::size_t thread) noexcept {
+void Workers::serve(std::size_t thread) noexcept {
   std::uint32_t seen = 0;
   while (true) {
     awaitChange(round_, seen);

@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "support/alone_or_together.h"
+
 namespace galactic::detail {
 
 /// 0: as many threads as there are processors.
@@ -41,7 +43,10 @@ class Workers {
     return std::max<std::size_t>(2, threads);
   }
 
-  /// Starts a round. What was written before is seen by whoever does a part.
+  /// Does a round. Where the others would only be in its way, the caller does all parts.
+  void run() noexcept;
+
+  /// Starts a round of all threads. What was written before is seen by whoever does a part.
   void begin() noexcept;
   /// Helps, then waits for the end of the round. What the parts wrote is seen afterwards.
   void end() noexcept;
@@ -54,7 +59,8 @@ class Workers {
     std::size_t last = 0;
   };
 
-  void run(std::size_t thread) noexcept;
+  /// What a thread does until the end.
+  void serve(std::size_t thread) noexcept;
   /// Does the parts that nobody has taken, those of `thread` first.
   void doParts(std::size_t thread) noexcept;
 
@@ -65,6 +71,7 @@ class Workers {
   std::atomic<std::size_t> left_{0};
   std::atomic<bool> stops_{false};
   std::vector<Range> ranges_;
+  AloneOrTogether way_;
   std::vector<std::jthread> threads_;
 };
 

@@ -67,6 +67,36 @@ TEST(Workers, DoManyMorePartsThanThreadsEachOnceAndNeverTwoOnOneDesk) {
   }
 }
 
+TEST(Workers, DoEachPartOnceAloneAndTogether) {
+  for (const std::size_t threads : kThreadCounts) {
+    constexpr std::size_t kParts = 11;
+    std::vector<Slot> parts(kParts);
+    const auto caller = std::this_thread::get_id();
+    Slot by_caller;
+    Workers workers(threads, kParts, [&](std::size_t thread, std::size_t part) {
+      ++parts[part].rounds;
+      if (std::this_thread::get_id() == caller) {
+        EXPECT_EQ(thread, 0U);
+        ++by_caller.rounds;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    });
+    // Sooner or later it tries what takes less time.
+    std::uint64_t round = 0;
+    for (std::uint64_t alone = 0; alone < 2;) {
+      const std::uint64_t before = by_caller.rounds;
+      workers.run();
+      ++round;
+      for (const Slot& part : parts) ASSERT_EQ(part.rounds, round);
+      alone += by_caller.rounds - before == kParts ? 1 : 0;
+      ASSERT_LT(round, 2000U);
+    }
+    workers.begin();
+    workers.end();
+    for (const Slot& part : parts) EXPECT_EQ(part.rounds, round + 1);
+  }
+}
+
 TEST(Workers, LeaveTheCallerFreeBetweenBeginAndEnd) {
   for (const std::size_t threads : kThreadCounts) {
     std::atomic<bool> may_go{false};
