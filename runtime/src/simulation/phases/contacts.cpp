@@ -146,13 +146,11 @@ bool isSureAfter(const ChunkStep& step, std::size_t e, const Push& moved) noexce
   // More than rounding, meters.
   constexpr float kSlack = 1e-4F;
   const float reach = std::max(std::abs(moved.x), std::abs(moved.z)) + kSlack;
-  const std::size_t groups = step.model.groups.size();
   unsigned unsure = 0;
-  for (std::size_t eight = 0; eight * kLanes < groups; ++eight) {
+  for (std::size_t eight = 0; eight * kLanes < step.model.groups.size(); ++eight) {
     const unsigned known = step.chunk.groupBits(eight).suited |
                            ClearanceMaps::freeWithin(step.chunk.sure(eight)[e], reach);
-    const std::size_t here = std::min(groups - eight * kLanes, kLanes);
-    unsure |= ((1U << here) - 1) & ~known;
+    unsure |= groupsOf(step.model, eight) & ~known;
   }
   return unsure == 0;
 }

@@ -80,6 +80,7 @@ struct alignas(32) OnTheWay {
   places.inside = eight.inside;
 }
 
+/// The first row around each of them, among all tiles.
 [[gnu::always_inline]] inline void findRows(const OnTheWay& eight) {
   const __m256i number = detail::gatherEight<sizeof(*eight.numbers)>(
       eight.numbers, detail::indicesAt(eight.number_at));
@@ -96,6 +97,7 @@ struct alignas(32) OnTheWay {
   return bitsOf(_mm256_castsi256_ps(_mm256_sllv_epi32(words, above)));
 }
 
+/// Which of them are surely free, and surely blocked.
 [[gnu::always_inline]] inline void findBits(const SliceTile* tiles, const OnTheWay& eight) {
   EightPlaces& places = *eight.places;
   const detail::EightIndices row = detail::indicesAt(places.row);
