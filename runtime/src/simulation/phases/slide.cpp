@@ -245,17 +245,14 @@ class Glide {
     const bool is_begun = moved_.x != 0 || moved_.z != 0;
     // Where nothing blocks the robot nobody may have looked.
     if (is_begun || isEmpty(step_.chunk.blockedBits())) return false;
-    Surroundings may_be_free = Surroundings::everywhere();
-    for (std::size_t n = 0; n < step_.model.groups.size(); ++n) {
-      const GroupBits& known = step_.chunk.groupBits(n / kLanes);
-      if (((known.unsure & ~known.low) >> (n % kLanes) & 1U) == 0) continue;
-      const EightPlaces& places = step_.chunk.places(e_, n / kLanes)[n % kLanes];
-      for (unsigned left = step_.model.groups[n].spheres & places.inside; left != 0;
-           left &= left - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-        may_be_free.remove(step_.model.slices.around(places, lane).blockedCells());
-      }
-      if (may_be_free.isEmpty()) return true;
+    CommonCells may_be_free = CommonCells::everywhere();
+    for (std::size_t eight = 0; eight * kLanes < step_.model.groups.size(); ++eight) {
+      const GroupBits& known = step_.chunk.groupBits(eight);
+      const GroupsToAdd groups{.rows = step_.model.slices.rows(),
+                               .groups = step_.model.groups.data() + eight * kLanes,
+                               .places = step_.chunk.places(e_, eight),
+                               .asked = known.unsure & ~known.low};
+      if (!way_.leaveUnblocked(groups, may_be_free)) return true;
     }
     return false;
   }
@@ -270,6 +267,7 @@ class Glide {
     ColumnWays& columns = step_.chunk.columnWays();
     if (step_.chunk.floor(e_) == Floor::kBlocks) addColumn(0, floorProbeHere());
     const SphereBatch spheres = step_.chunk.spheres(e_);
+    const bool is_begun = moved_.x != 0 || moved_.z != 0;
     for (std::size_t n = 0; n < step_.model.groups.size(); ++n) {
       GroupBits& known = step_.chunk.groupBits(n / kLanes);
       const unsigned bit = 1U << (n % kLanes);
@@ -277,9 +275,20 @@ class Glide {
       // Those that suited a way through slices have to suit this one, too.
       if (((known.unsure | known.suited) & ~known.in_columns & bit) == 0) continue;
       known.in_columns |= bit;
+      // Where the way begins here, it is known where they are.
+      const bool has_places = !is_begun && (known.unsure & bit) != 0;
+      const EightPlaces& places = step_.chunk.places(e_, n / kLanes)[n % kLanes];
       for (unsigned left = group.spheres; left != 0; left &= left - 1) {
-        const std::size_t at = n * kLanes + static_cast<std::size_t>(std::countr_zero(left));
-        addColumn(group.radius_index, {spheres.x[at], spheres.y[at], spheres.z[at]});
+        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+        const std::size_t at = n * kLanes + lane;
+        const Vec3 center{spheres.x[at], spheres.y[at], spheres.z[at]};
+        if (!has_places) {
+          addColumn(group.radius_index, center);
+        } else if ((places.inside >> lane & 1U) != 0) {
+          addColumn(group.radius_index, center, step_.model.slices.around(places, lane));
+        } else {
+          addColumn(group.radius_index, center, std::nullopt);
+        }
       }
       if (columns.isHopeless()) {
         has_way_ = false;
@@ -299,8 +308,12 @@ class Glide {
   /// `center`: where the sphere is now.
   void addColumn(std::uint32_t radius, const Vec3& center) {
     const Vec3 before{center.x - moved_.x, center.y, center.z - moved_.z};
-    step_.chunk.columnWays().add(obstacles_.scene.grids()[radius], before,
-                                 step_.model.slices.around(env_.clearance_map, radius, before));
+    addColumn(radius, before, step_.model.slices.around(env_.clearance_map, radius, before));
+  }
+  /// `center`: where the way begins. `around`: what slices know.
+  void addColumn(std::uint32_t radius, const Vec3& center,
+                 const std::optional<SurroundingRows>& around) {
+    step_.chunk.columnWays().add(obstacles_.scene.grids()[radius], center, around);
   }
 
   [[nodiscard]] FoundWay findWay(const Push& drive) {

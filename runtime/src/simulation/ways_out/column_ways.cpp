@@ -101,6 +101,9 @@ void ColumnWays::add(const ColumnGrid& grid, const Vec3& center,
 }
 
 void ColumnWays::ask(const Surroundings& cells, Sphere& sphere) noexcept {
+  std::uint64_t any = 0;
+  for (std::size_t n = 0; n < kCells.size(); ++n) any |= cells.rows[n] & ~sphere.asked.rows[n];
+  if (any == 0) return;
   const ColumnGridLayout& layout = sphere.grid->layout();
   const float own_x = std::floor((sphere.center.x - layout.min_x) * layout.inverse_spacing) + 0.5F;
   const float own_z = std::floor((sphere.center.z - layout.min_z) * layout.inverse_spacing) + 0.5F;

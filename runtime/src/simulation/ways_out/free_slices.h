@@ -44,19 +44,7 @@ struct Surroundings {
   [[nodiscard]] static constexpr Surroundings everywhere() {
     return {{0x01ff'01ff'01ff'01ff, 0x01ff'01ff'01ff'01ff, 0x01ff}};
   }
-  void remove(const Surroundings& others) {
-    for (std::size_t n = 0; n < kWords; ++n) rows[n] &= ~others.rows[n];
-  }
   [[nodiscard]] bool isEmpty() const { return (rows[0] | rows[1] | rows[2]) == 0; }
-  /// Takes the first cell out of a set that is not empty. Returns 16 times its row and its column.
-  int takeFirst() {
-    // Without a branch, which nobody could guess.
-    const std::size_t word =
-        static_cast<std::size_t>(rows[0] == 0) + static_cast<std::size_t>((rows[0] | rows[1]) == 0);
-    const int bit = 64 * static_cast<int>(word) + std::countr_zero(rows[word]);
-    rows[word] &= rows[word] - 1;
-    return bit;
-  }
   /// The nine cells of row `n` along Z, from 0 on.
   [[nodiscard]] std::uint32_t row(std::size_t n) const {
     constexpr std::uint64_t kNine = 0x1ff;

@@ -23,7 +23,7 @@ void WayOut::clear(float spacing) noexcept {
   in_eight_ = kLanes;
   single_count_ = 0;
   spacing_ = spacing;
-  std::ranges::fill(common_.rows, kAllFree);
+  common_ = CommonCells::everywhere();
 }
 
 EightWays* WayOut::next() noexcept {

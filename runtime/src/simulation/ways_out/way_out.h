@@ -40,6 +40,11 @@ class WayOut {
   /// pushes it through an obstacle.
   [[nodiscard]] FoundWay shortest(const Push& drive, float longest) noexcept;
 
+  /// Takes from `cells` those in which slices call a sphere of groups blocked. Whether any is left.
+  [[nodiscard]] bool leaveUnblocked(const GroupsToAdd& groups, CommonCells& cells) const noexcept {
+    return kernels_.leave_unblocked(groups, cells);
+  }
+
  private:
   /// Room for eight spheres more; null where there is none, and no move is known to be free.
   [[nodiscard]] EightWays* next() noexcept;

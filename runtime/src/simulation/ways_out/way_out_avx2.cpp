@@ -11,6 +11,8 @@
 
 namespace galactic::simulation {
 
-WayKernels avx2Ways() noexcept { return {addKernel, addGroupsKernel, shortestKernel}; }
+WayKernels avx2Ways() noexcept {
+  return {addKernel, addGroupsKernel, shortestKernel, leaveUnblockedKernel};
+}
 
 }  // namespace galactic::simulation

@@ -53,6 +53,35 @@ inline bool areAllCells(Rows rows) {
   return (words[0] | words[1] | words[2]) == 0;
 }
 
+/// Whether any cell that counts is among them.
+inline bool isAnyCell(Rows rows) {
+  const Rows counted = rows & kCells;
+  std::uint64_t words[4];
+  __builtin_memcpy(words, &counted, sizeof(words));
+  return (words[0] | words[1] | words[2]) != 0;
+}
+
+bool leaveUnblockedKernel(const GroupsToAdd& given, CommonCells& cells) noexcept {
+  const GroupsToAdd some = given;
+  // Behind what is free of each tile. In the first one, nothing is blocked.
+  const std::uint16_t* rows = some.rows + SliceTile::kRows;
+  Rows left_over = loadRows(cells.rows);
+  for (unsigned left = some.asked; left != 0; left &= left - 1) {
+    const auto n = static_cast<std::size_t>(__builtin_ctz(left));
+    const EightPlaces& places = some.places[n];
+    const IntLanes counted = lanesOf(some.groups[n].spheres & places.inside);
+    const IntLanes row = loadInts(places.row) & counted;
+    const IntLanes column = loadInts(places.column) & counted;
+    Rows blocked = shiftedRows(loadRows(rows + row[0]), column[0]);
+    for (std::size_t lane = 1; lane < kLanes; ++lane) {
+      blocked |= shiftedRows(loadRows(rows + row[lane]), column[lane]);
+    }
+    left_over &= ~blocked;
+  }
+  __builtin_memcpy(cells.rows, &left_over, sizeof(left_over));
+  return isAnyCell(left_over);
+}
+
 /// Makes ways of spheres, and returns the cells in which all are free.
 inline Rows addEight(const std::uint16_t* rows, const EightPlaces& places, unsigned spheres,
                      EightWays& ways) {

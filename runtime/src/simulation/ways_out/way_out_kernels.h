@@ -15,6 +15,12 @@ inline constexpr float kIntoCell = 1e-4F;
 struct alignas(32) CommonCells {
   static constexpr std::size_t kRows = 16;
   std::uint16_t rows[kRows];
+
+  [[nodiscard]] static constexpr CommonCells everywhere() {
+    constexpr std::uint16_t kAll = 0xffff;
+    return {{kAll, kAll, kAll, kAll, kAll, kAll, kAll, kAll, kAll, kAll, kAll, kAll, kAll, kAll,
+             kAll, kAll}};
+  }
 };
 
 /// In which cells around their own eight spheres are free, and where in their own they are. Plain
@@ -107,6 +113,8 @@ struct WayKernels {
   AddedGroups (*add_groups)(const GroupsToAdd&, EightWays* ways,
                             CommonCells& common) noexcept = nullptr;
   FoundWay (*shortest)(const WaysQuery&) noexcept = nullptr;
+  /// Takes from `cells` those in which slices call a sphere of groups blocked. Whether any is left.
+  bool (*leave_unblocked)(const GroupsToAdd&, CommonCells& cells) noexcept = nullptr;
 };
 
 /// For any processor.

@@ -8,7 +8,9 @@
 
 namespace galactic::simulation {
 
-WayKernels portableWays() noexcept { return {addKernel, addGroupsKernel, shortestKernel}; }
+WayKernels portableWays() noexcept {
+  return {addKernel, addGroupsKernel, shortestKernel, leaveUnblockedKernel};
+}
 
 WayKernels wayKernels() noexcept { return detail::hasAvx2() ? avx2Ways() : portableWays(); }
 

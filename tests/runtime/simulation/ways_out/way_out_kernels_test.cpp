@@ -54,10 +54,8 @@ struct SomeWays {
   /// Room for kWaysAtATime, of which the last do not count, and for what groups add.
   std::array<EightWays, kWaysAtATime + kLanes> ways{};
   std::array<DecidingEight, kWaysAtATime + kLanes + 1> deciding;
-  CommonCells common;
+  CommonCells common = CommonCells::everywhere();
   std::size_t count = 0;
-
-  SomeWays() { std::ranges::fill(common.rows, std::uint16_t{0xffff}); }
 
   [[nodiscard]] WaysQuery query() {
     return {.ways = ways.data(), .count = count, .deciding = deciding.data(), .common = &common};
@@ -163,6 +161,68 @@ TEST(WayKernels, AddGroupsAsTheyAddEachOfThem) {
   }
   whole.expectBothSides();
   outside.expectBothSides();
+}
+
+TEST(WayKernels, LeaveCellsThatNoSphereOfGroupsHasBlocked) {
+  constexpr std::uint32_t kSeed = 1612;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  std::vector<WayKernels> all{portableWays()};
+  if (detail::hasAvx2()) all.push_back(avx2Ways());
+  // In the first tile, nothing is blocked; in one of two of the others much, in the rest little.
+  std::vector<SliceTile> tiles(41);
+  for (std::size_t n = 1; n < tiles.size(); ++n) {
+    for (std::uint16_t& row : tiles[n].blocked) {
+      row = static_cast<std::uint16_t>(n % 2 == 0 ? random() & random() & random() & random()
+                                                  : random() | random());
+    }
+  }
+  Tally left;
+  for (int round = 0; round < 2000; ++round) {
+    std::array<EightPlaces, kLanes> places;
+    std::array<EightSpheres, kLanes> eights;
+    for (std::size_t n = 0; n < kLanes; ++n) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const auto tile = static_cast<std::int32_t>(1 + 2 * (random() % 20)) + round % 2;
+        places[n].row[lane] = tile * kTileStride + static_cast<std::int32_t>(random() % kTileRows);
+        places[n].column[lane] = static_cast<std::int32_t>(random() % kTileColumns);
+      }
+      places[n].inside = static_cast<unsigned>((random() | random()) & 0xffU);
+      eights[n].spheres = static_cast<unsigned>(random() & random() & 0xffU);
+    }
+    const GroupsToAdd groups{.rows = tiles.front().free,
+                             .groups = eights.data(),
+                             .places = places.data(),
+                             .asked = static_cast<unsigned>(random() & 0xffU)};
+    const auto is_blocked = [&](int x, int z) {
+      for (std::size_t n = 0; n < kLanes; ++n) {
+        if ((groups.asked >> n & 1U) == 0) continue;
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+          if ((eights[n].spheres & places[n].inside & 1U << lane) == 0) continue;
+          const std::int32_t row = places[n].row[lane] + z;
+          const SliceTile& tile = tiles[static_cast<std::size_t>(row / kTileStride)];
+          const std::uint16_t bits = tile.blocked[row % kTileStride];
+          if ((bits >> (places[n].column[lane] + x) & 1) != 0) return true;
+        }
+      }
+      return false;
+    };
+    for (const WayKernels& kernels : all) {
+      CommonCells cells = CommonCells::everywhere();
+      const bool is_any_left = kernels.leave_unblocked(groups, cells);
+      bool is_any = false;
+      for (int z = 0; z <= 2 * kCellsAround; ++z) {
+        for (int x = 0; x <= 2 * kCellsAround; ++x) {
+          const bool is_left = (cells.rows[z] >> x & 1) != 0;
+          ASSERT_EQ(is_left, !is_blocked(x, z)) << x << ' ' << z;
+          is_any = is_any || is_left;
+        }
+      }
+      ASSERT_EQ(is_any_left, is_any);
+      left.add(is_any_left);
+    }
+  }
+  left.expectBothSides();
 }
 
 }  // namespace
