@@ -2,11 +2,11 @@
 """How fast builds of the library are, side by side: what is left of a change once chance is gone.
 
     benchmarks/simulation/compare_builds.py WORLDS BUILD BUILD... [--envs N,N] [--loads L,L] [--steps N]
-                                            [--orders N] [--turns N]
+                                            [--before N] [--orders N] [--turns N]
 
 WORLDS is what make_published_world.sh left. Where code happens to lie in memory changes the time of a step by 2 % and
 more, so play_workload, as it is here, is linked with the library of each build (libgalactic.a) in several orders of its
-sections, and runs in turns. Prints the processor time of a step of one env in nanoseconds: of the least of each order's
+sections, and runs in turns, after so many steps that robots that drive ahead have reached the walls. Prints the processor time of a step of one env in nanoseconds: of the least of each order's
 turns the mean and the range, and how many times as fast that is as the first build. Needs lld.
 """
 
@@ -48,10 +48,10 @@ def link(build: pathlib.Path, orders: int, out: pathlib.Path) -> list[pathlib.Pa
     return programs
 
 
-def play(program: pathlib.Path, world: pathlib.Path, load: str, envs: int, steps: int) -> float:
-    """Nanoseconds of one env-step."""
+def play(program: pathlib.Path, world: pathlib.Path, load: str, counts: tuple[int, ...]) -> float:
+    """Nanoseconds of one env-step. `counts`: envs, steps, and steps before these."""
     run = subprocess.run(
-        [program, world, load, str(envs), str(steps)], check=True, capture_output=True, text=True
+        [program, world, load, *map(str, counts)], check=True, capture_output=True, text=True
     )
     found = re.search(r"([\d.]+) ns each", run.stdout)
     if found is None:
@@ -67,7 +67,8 @@ def main() -> None:
     parser.add_argument("builds", type=pathlib.Path, nargs="+")
     parser.add_argument("--envs", default="128,512,4096,16384")
     parser.add_argument("--loads", default="random,forward,held")
-    parser.add_argument("--steps", type=int, help="of each env; 76800 of all of them, 20 at least")
+    parser.add_argument("--steps", type=int, help="of each env; 76800 of all of them, 50 at least")
+    parser.add_argument("--before", type=int, default=1000)
     parser.add_argument("--orders", type=int, default=6)
     parser.add_argument("--turns", type=int, default=3)
     options = parser.parse_args()
@@ -78,14 +79,14 @@ def main() -> None:
             out.mkdir()
             programs.append(link(build.resolve(), options.orders, out))
         for envs in map(int, options.envs.split(",")):
-            steps = options.steps or max(20, 76800 // envs)
+            counts = (envs, options.steps or max(50, 76800 // envs), options.before)
             for load in options.loads.split(","):
                 world = options.worlds / ("held_world.pack" if load == "held" else "world.pack")
                 least = [[float("inf")] * options.orders for _ in programs]
                 for _ in range(options.turns):
                     for order in range(options.orders):
                         for n, each in enumerate(programs):
-                            took = play(each[order], world, load, envs, steps)
+                            took = play(each[order], world, load, counts)
                             least[n][order] = min(least[n][order], took)
                 means = [sum(row) / len(row) for row in least]
                 print(f"{envs} envs, {load}")

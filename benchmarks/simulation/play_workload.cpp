@@ -1,10 +1,11 @@
 // Plays the workload of batch_steps a fixed number of steps, for programs that watch it:
 // count_instructions.sh.
 //
-//   play_workload WORLD random|forward|held ENVS STEPS
+//   play_workload WORLD random|forward|held ENVS STEPS [STEPS_BEFORE]
 //
-// It prints what became of the steps and the processor time of one, for runs in turns. A third of
-// the steps more go before, so that robots that drive ahead have reached the walls.
+// It prints what became of the steps and the processor time of one, for runs in turns. So many
+// steps go before, or a third of STEPS, so that robots that drive ahead have reached the walls.
+// After 500, each env has begun anew once: what comes then is as it will always be.
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -57,8 +58,8 @@ int main(int count, char** arguments) {
   using galactic::published_workload::playMeasured;
   using galactic::published_workload::processorSeconds;
   using galactic::published_workload::Resets;
-  if (count != 5) {
-    std::fprintf(stderr, "play_workload WORLD random|forward|held ENVS STEPS\n");
+  if (count != 5 && count != 6) {
+    std::fprintf(stderr, "play_workload WORLD random|forward|held ENVS STEPS [STEPS_BEFORE]\n");
     return 1;
   }
   const std::filesystem::path file(arguments[1]);
@@ -68,7 +69,7 @@ int main(int count, char** arguments) {
                                       : Load::kRandom;
   const auto envs = static_cast<std::uint32_t>(std::strtoul(arguments[3], nullptr, 10));
   const std::size_t steps = std::strtoul(arguments[4], nullptr, 10);
-  const std::size_t before = (steps + 2) / 3;
+  const std::size_t before = count == 6 ? std::strtoul(arguments[5], nullptr, 10) : (steps + 2) / 3;
   const Result<World> world = World::open(std::span(&file, 1));
   if (!world) {
     std::fprintf(stderr, "%s: %s\n", world.error().where.c_str(), world.error().message.c_str());
