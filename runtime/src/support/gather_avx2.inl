@@ -35,7 +35,7 @@ inline EightIndices indicesAt(const std::int32_t* from) {
 template <int kScale>
 inline __m256i gatherEight(const void* from, const EightIndices& at) {
   const auto word = [from](std::size_t n) {
-    std::int32_t value;
+    std::int32_t value = 0;
     __builtin_memcpy(&value, static_cast<const char*>(from) + n * kScale, sizeof(value));
     return value;
   };

@@ -63,8 +63,10 @@ inline bool isAnyCell(Rows rows) {
 
 bool leaveUnblockedKernel(const GroupsToAdd& given, CommonCells& cells) noexcept {
   const GroupsToAdd some = given;
-  // Behind what is free of each tile. In the first one, nothing is blocked.
-  const std::uint16_t* rows = some.rows + SliceTile::kRows;
+  // Behind what is free of each tile; in the first one, nothing is blocked. The nine rows that
+  // count come last of sixteen: what follows may be the end of all tiles.
+  constexpr std::ptrdiff_t kRowsThatDoNot = 7;
+  const std::uint16_t* rows = some.rows + SliceTile::kRows - kRowsThatDoNot;
   Rows left_over = loadRows(cells.rows);
   for (unsigned left = some.asked; left != 0; left &= left - 1) {
     const auto n = static_cast<std::size_t>(__builtin_ctz(left));
@@ -76,7 +78,9 @@ bool leaveUnblockedKernel(const GroupsToAdd& given, CommonCells& cells) noexcept
     for (std::size_t lane = 1; lane < kLanes; ++lane) {
       blocked |= shiftedRows(loadRows(rows + row[lane]), column[lane]);
     }
-    left_over &= ~blocked;
+    const Rows none{};
+    left_over &= ~__builtin_shufflevector(blocked, none, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17,
+                                          18, 19, 20, 21, 22);
   }
   __builtin_memcpy(cells.rows, &left_over, sizeof(left_over));
   return isAnyCell(left_over);
