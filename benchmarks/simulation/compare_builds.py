@@ -17,6 +17,8 @@ import subprocess
 import sys
 import tempfile
 
+from workload import nanoseconds_of_step
+
 HERE = pathlib.Path(__file__).resolve().parent
 LIBRARIES = ("-lfmt", "-lxxhash", "-lepoxy", "-lpthread", "-ldl")
 
@@ -48,17 +50,6 @@ def link(build: pathlib.Path, orders: int, out: pathlib.Path) -> list[pathlib.Pa
     return programs
 
 
-def play(program: pathlib.Path, world: pathlib.Path, load: str, counts: tuple[int, ...]) -> float:
-    """Nanoseconds of one env-step. `counts`: envs, steps, and steps before these."""
-    run = subprocess.run(
-        [program, world, load, *map(str, counts)], check=True, capture_output=True, text=True
-    )
-    found = re.search(r"([\d.]+) ns each", run.stdout)
-    if found is None:
-        raise ValueError(f"play_workload says: {run.stdout}")
-    return float(found[1])
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -86,7 +77,7 @@ def main() -> None:
                 for _ in range(options.turns):
                     for order in range(options.orders):
                         for n, each in enumerate(programs):
-                            took = play(each[order], world, load, counts)
+                            took = nanoseconds_of_step(each[order], world, load, *counts)
                             least[n][order] = min(least[n][order], took)
                 means = [sum(row) / len(row) for row in least]
                 print(f"{envs} envs, {load}")

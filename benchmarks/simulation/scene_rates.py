@@ -11,9 +11,10 @@ the least of the turns, and which part of the rate with hand-placed spheres is l
 
 import argparse
 import pathlib
-import re
 import subprocess
 import sys
+
+from workload import nanoseconds_of_step
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 LOADS = ("random", "forward", "held")
@@ -96,20 +97,6 @@ class Baker:
             self.bake(f"{scene}.{robot}.held_world.pack", *parts, held, "--as", "world")
 
 
-def measure(tools: pathlib.Path, world: pathlib.Path, load: str, envs: int, steps: int) -> float:
-    """Nanoseconds of processor time for a step of one env."""
-    run = subprocess.run(
-        [tools / "play_workload", world, load, str(envs), str(steps)],
-        check=True,
-        capture_output=True,
-        text=True,
-    )
-    found = re.search(r"([\d.]+) ns", run.stdout)
-    if found is None:
-        raise ValueError(f"play_workload says: {run.stdout}")
-    return float(found[1])
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -138,9 +125,9 @@ def main() -> int:
             for _ in range(options.turns):
                 for robot in ROBOTS:
                     world = out / f"{scene}.{robot}.{kind}.pack"
-                    least[robot] = min(
-                        least[robot], measure(tools, world, load, options.envs, options.steps)
-                    )
+                    counts = (options.envs, options.steps)
+                    took = nanoseconds_of_step(tools / "play_workload", world, load, *counts)
+                    least[robot] = min(least[robot], took)
             shares[load].append(least["hand"] / least["automatic"])
             cells.append(
                 f"{least['hand']:.0f}, {least['automatic']:.0f}: {100 * shares[load][-1]:.0f} %"
