@@ -141,7 +141,7 @@ class CommandLineVisitor {
 
 void addPlainOptions(CLI::App& app, RunOptions& options) {
   app.set_version_flag("--version", "galactic-run " GALACTIC_VERSION);
-  app.add_option("PACK", options.packs, "Packs to open: one world, or packs of any kind")
+  app.add_option("PACK,--pack", options.packs, "Packs to open: one world, or packs of any kind")
       ->required()
       ->type_name("");
   app.add_flag("--trusted", options.trusted,

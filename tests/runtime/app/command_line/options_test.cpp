@@ -39,6 +39,14 @@ TEST(RunCommandLine, SimulatesWhenAnOptionOfTheSimulationIsTyped) {
   EXPECT_TRUE(parsed({"--reach-weight", "2"}).simulates);
 }
 
+TEST(RunCommandLine, TakesPacksWithAndWithoutTheOptionsName) {
+  using Packs = std::vector<std::string>;
+  EXPECT_EQ(parsed({}).packs, (Packs{"world.pack"}));
+  EXPECT_EQ(parsed({"robot.pack"}).packs, (Packs{"world.pack", "robot.pack"}));
+  EXPECT_EQ(parsed({"--pack", "robot.pack", "--seed", "5"}).packs,
+            (Packs{"world.pack", "robot.pack"}));
+}
+
 /// The options of --help whose values are numbers.
 std::vector<std::string> numberOptions() {
   testing::internal::CaptureStdout();
@@ -204,7 +212,7 @@ TEST(RunCommandLine, RefusesWhatMakesNoSense) {
       {"--rank", "2", "--ranks", "2"},
       {"--bench", "--steps", "5"},
       {"--bench", "--seed", "4294967296"},
-      {"--pack", "world.pack"},
+      {"--pack"},
   };
   for (const std::vector<std::string>& arguments : mistakes) {
     RunOptions options;
