@@ -1,11 +1,10 @@
-// Nanoseconds per sphere of the query "does the robot overlap a resting object?": the four shifted
-// grids against all boxes one by one and against one regular grid
-// whose lists are merged.
+// Nanoseconds per sphere of the query "does the robot overlap a resting object?": packed bounds
+// against all boxes one by one and against one regular grid whose lists are merged.
 //
 // A room of 8 x 14 m holds 30 objects on tables and shelves. Robots of 29 spheres (a base, a column
 // and an arm) stand anywhere in it; those that overlap an object are left out, as most steps of a
 // simulation find none, and so every competitor has to look at every sphere. `envs` rooms are
-// queried in turn: with 4096 of them the windows come from the last cache level or from memory.
+// queried in turn: with 4096 of them the bounds come from the last cache level or from memory.
 #include "simulation/collision/resting_objects.h"
 
 #include <benchmark/benchmark.h>
@@ -229,7 +228,7 @@ std::vector<RestingObjects> restingObjects(const Workload& workload) {
   return envs;
 }
 
-void fourGrids(benchmark::State& state) {
+void packedBounds(benchmark::State& state) {
   const Workload workload(static_cast<std::size_t>(state.range(0)));
   const std::vector<RestingObjects> envs = restingObjects(workload);
   measure(state, workload,
@@ -237,7 +236,7 @@ void fourGrids(benchmark::State& state) {
 }
 
 /// The same where no object is near any sphere: what most queries cost.
-void fourGridsNothingNear(benchmark::State& state) {
+void packedBoundsNothingNear(benchmark::State& state) {
   const Workload workload(static_cast<std::size_t>(state.range(0)));
   std::vector<RestingObjects> envs = restingObjects(workload);
   for (RestingObjects& objects : envs) objects.clear();
@@ -266,7 +265,7 @@ void mergedLists(benchmark::State& state) {
   });
 }
 
-/// Grasp and drop: one object out of the sets and in again.
+/// Grasp and drop: one object out of the bounds and in again.
 void removeAndInsert(benchmark::State& state) {
   constexpr std::uint32_t kSeed = 502;
   std::mt19937 random(kSeed);
@@ -281,8 +280,8 @@ void removeAndInsert(benchmark::State& state) {
   }
 }
 
-BENCHMARK(fourGrids)->ArgName("envs")->Arg(1)->Arg(128)->Arg(4096);
-BENCHMARK(fourGridsNothingNear)->ArgName("envs")->Arg(1)->Arg(128)->Arg(4096);
+BENCHMARK(packedBounds)->ArgName("envs")->Arg(1)->Arg(128)->Arg(4096);
+BENCHMARK(packedBoundsNothingNear)->ArgName("envs")->Arg(1)->Arg(128)->Arg(4096);
 BENCHMARK(allBoxes)->ArgName("envs")->Arg(1)->Arg(128)->Arg(4096);
 BENCHMARK(mergedLists)->ArgName("envs")->Arg(1)->Arg(128)->Arg(4096);
 BENCHMARK(removeAndInsert);

@@ -23,7 +23,7 @@ inline std::vector<Body> randomBodies(const Room& room, std::size_t count, std::
 }
 
 /// A center near one of the bodies, or anywhere when there is none; often exactly at the border of
-/// a square.
+/// a cell.
 inline Vec3 randomCenter(const std::vector<Body>& bodies, const Room& room, std::mt19937& random) {
   if (bodies.empty()) return randomBody(room, random).pose.translation;
   const Point3 near = bodies[random() % bodies.size()].solid().at({0, 0, 0});
@@ -33,7 +33,7 @@ inline Vec3 randomCenter(const std::vector<Body>& bodies, const Room& room, std:
   };
   Vec3 center{coordinate(0), coordinate(1), coordinate(2)};
   const auto border = [](float at) {
-    return (std::floor(at / simulation::kSquareEdge) + 0.5F) * simulation::kSquareEdge;
+    return (std::floor(at / simulation::kCellEdge) + 0.5F) * simulation::kCellEdge;
   };
   if (random() % 4 == 0) center.x = border(center.x);
   if (random() % 4 == 0) center.y = border(center.y);

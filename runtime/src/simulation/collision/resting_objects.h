@@ -24,10 +24,10 @@ struct SphereHit {
   friend bool operator==(const SphereHit&, const SphereHit&) = default;
 };
 
-/// The objects of one env that rest in the scene. Sets of objects are bits, in as many planes of 32
-/// as the objects need, so no capacity can overflow: up to 32 objects take one plane, 64 take two,
-/// and each plane costs a query the same. How the sets work: resting_objects_kernels.h. After
-/// construction nothing allocates and nothing throws. One thread at a time; const members from any.
+/// The objects of one env that rest in the scene. Their bounds are packed, 32 objects together, as
+/// often as the objects need, so no capacity can overflow, and each 32 cost a query the same. How
+/// that works: resting_objects_kernels.h. After construction nothing allocates and nothing throws.
+/// One thread at a time; const members from any.
 class RestingObjects {
  public:
   /// Room for `most_objects` objects, in `memory`. Queries are for spheres of up to
@@ -54,13 +54,12 @@ class RestingObjects {
   [[nodiscard]] const RestingBox& box(std::uint32_t index) const noexcept { return boxes_[index]; }
   [[nodiscard]] float largestRadius() const noexcept { return largest_radius_; }
 
-  /// Whether any sphere overlaps any object. No radius may exceed the frame's. A sphere with a
-  /// center that is not a number overlaps nothing; one outside the frame is looked up in the
-  /// windows at the border, where everything outside is.
+  /// Whether any sphere overlaps any object. No radius may exceed the largest. A sphere with a
+  /// center that is not a number overlaps nothing.
   [[nodiscard]] bool touches(const SphereBatch& spheres) const noexcept;
 
   /// Whether a sphere (radius at most the largest) whose center is between `least` and `most` along
-  /// X and along Z could overlap an object. No means no.
+  /// each axis could overlap an object. No means no.
   [[nodiscard]] bool mayTouch(const Vec3& least, const Vec3& most) const noexcept;
 
   /// All overlaps, by sphere, then object; as many as `out` takes. Returns how many were written.
@@ -80,26 +79,18 @@ class RestingObjects {
   /// Calls `visit(box)` for each resting object, ascending, whose box comes to the height `y`.
   template <class Visit>
   void forEachAtHeight(float y, const Visit& visit) const {
-    const std::uint32_t band = bandOf(y);
-    for (std::size_t p = 0; p < planes_.size(); ++p) {
-      for (std::uint32_t bits = planes_[p].at_height[band]; bits != 0; bits &= bits - 1) {
-        const RestingBox& box =
-            boxes_[p * kPlaneObjects + static_cast<std::size_t>(std::countr_zero(bits))];
-        if (std::fabs(y - box.center.y) < box.half_height) visit(box);
-      }
-    }
+    forEachOf([&](const PackedBounds& bounds) { return atHeight(bounds, y); },
+              [&](std::uint32_t index) {
+                const RestingBox& box = boxes_[index];
+                if (std::fabs(y - box.center.y) < box.half_height) visit(box);
+              });
   }
 
   /// Calls `visit(index)` for each resting object, ascending, that a sphere (radius at most the
   /// largest) around `center` could overlap, be it higher or lower: few, and all that it overlaps.
   template <class Visit>
   void forEachInColumnOf(const Vec3& center, const Visit& visit) const {
-    for (std::size_t p = 0; p < planes_.size(); ++p) {
-      for (std::uint32_t bits = inColumnOf(center, p); bits != 0; bits &= bits - 1) {
-        visit(static_cast<std::uint32_t>(p * kPlaneObjects) +
-              static_cast<std::uint32_t>(std::countr_zero(bits)));
-      }
-    }
+    forEachOf([&](const PackedBounds& bounds) { return inColumnOf(bounds, center); }, visit);
   }
 
   /// What `touches` reads, for the kernels and the tests that compare them.
@@ -108,28 +99,34 @@ class RestingObjects {
   /// Asks for what `touches` reads, so that it is in the nearest cache when it is needed.
   void prefetch() const noexcept {
     constexpr std::size_t kCacheLine = 64;
-    for (const SetPlane& plane : planes_) {
-      const auto* bytes = reinterpret_cast<const char*>(&plane);
-      for (std::size_t n = 0; n < sizeof(plane); n += kCacheLine) __builtin_prefetch(bytes + n);
+    for (const PackedBounds& bounds : bounds_) {
+      const auto* bytes = reinterpret_cast<const char*>(&bounds);
+      for (std::size_t n = 0; n < sizeof(bounds); n += kCacheLine) __builtin_prefetch(bytes + n);
     }
   }
 
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  /// Index of the set of a height.
-  [[nodiscard]] static std::uint32_t bandOf(float y) noexcept;
-  /// The objects of a plane whose strips hold the center, as bits.
-  [[nodiscard]] std::uint32_t inColumnOf(const Vec3& center, std::size_t plane) const noexcept;
-
-  /// Calls `change` with each set that object `index` belongs to.
-  template <class Change>
-  void changeSets(std::uint32_t index, const Change& change) noexcept;
+  /// Calls `visit` with the index of each object that is among those of `choose(bounds)`, as bits,
+  /// ascending.
+  template <class Choose, class Visit>
+  void forEachOf(const Choose& choose, const Visit& visit) const {
+    for (std::size_t p = 0; p < bounds_.size(); ++p) {
+      for (std::uint32_t bits = choose(bounds_[p]); bits != 0; bits &= bits - 1) {
+        visit(static_cast<std::uint32_t>(p * kPackedObjects) +
+              static_cast<std::uint32_t>(std::countr_zero(bits)));
+      }
+    }
+  }
+  /// Of 32 objects, those that centers at a height, or at a place, may be near.
+  [[nodiscard]] static std::uint32_t atHeight(const PackedBounds& bounds, float y) noexcept;
+  [[nodiscard]] static std::uint32_t inColumnOf(const PackedBounds& bounds,
+                                                const Vec3& center) noexcept;
 
   float largest_radius_;
-  std::pmr::vector<SetPlane> planes_;
+  std::pmr::vector<PackedBounds> bounds_;
   std::pmr::vector<RestingBox> boxes_;
-  std::pmr::vector<std::uint32_t> resting_;
 };
 
 }  // namespace galactic::simulation

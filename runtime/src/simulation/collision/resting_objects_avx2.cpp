@@ -6,7 +6,7 @@
 #if defined(__x86_64__)
 #include <immintrin.h>
 
-#include "support/gather_avx2.inl"
+#include "simulation/collision/packed_bounds.inl"
 
 namespace galactic::simulation {
 namespace {
@@ -15,31 +15,44 @@ struct Centers {
   __m256 x, y, z;
 };
 
-/// Which sets eight spheres read: indices of strips, and squares along the vertical.
-struct Places {
-  __m256i x, y, z;
-};
-
-/// Squares of eight coordinates; the lowest number for NaN and for what 32 bits do not hold.
-__m256i squaresOf(__m256 coordinates) {
-  return _mm256_cvtps_epi32(_mm256_mul_ps(coordinates, _mm256_set1_ps(kInverseSquareEdge)));
+/// Cells of eight coordinates, as cellOf() of resting_objects.cpp.
+__m256i cellsOf(__m256 coordinates, float edge) {
+  const __m256 cell = _mm256_mul_ps(coordinates, _mm256_set1_ps(1 / edge));
+  const __m256 below = _mm256_min_ps(cell, _mm256_set1_ps(kFarthestCell));
+  return _mm256_cvtps_epi32(_mm256_max_ps(below, _mm256_set1_ps(-kFarthestCell)));
 }
 
-Places placesOf(const Centers& centers) {
-  const __m256i wrap = _mm256_set1_epi32(kStrips - 1);
-  return {_mm256_and_si256(squaresOf(centers.x), wrap), squaresOf(centers.y),
-          _mm256_and_si256(squaresOf(centers.z), wrap)};
+__m128i firstHalf(__m256i lanes) { return _mm256_castsi256_si128(lanes); }
+__m128i secondHalf(__m256i lanes) { return _mm256_extracti128_si256(lanes, 1); }
+
+/// The least of the even lanes and of the odd ones, in the first two.
+__m128i leastOfBoth(__m128i a, __m128i b) {
+  const __m128i least = _mm_min_epi32(_mm_unpacklo_epi32(a, b), _mm_unpackhi_epi32(a, b));
+  return _mm_min_epi32(least, _mm_shuffle_epi32(least, 0x4e));
 }
 
-/// The objects of one plane that all sets of a sphere know, for eight spheres.
-__m256i objectsNear(const SetPlane& plane, const Places& places) {
-  const __m256i in_strips =
-      _mm256_and_si256(detail::gatherEight<sizeof(*plane.along_x)>(plane.along_x, places.x),
-                       detail::gatherEight<sizeof(*plane.along_z)>(plane.along_z, places.z));
-  // vpermd looks at three bits of an index: the square modulo kBands.
-  const __m256i at_height = _mm256_permutevar8x32_epi32(
-      _mm256_load_si256(reinterpret_cast<const __m256i*>(plane.at_height)), places.y);
-  return _mm256_and_si256(in_strips, at_height);
+__m128i inverted(__m128i lanes) { return _mm_xor_si128(lanes, _mm_set1_epi32(-1)); }
+
+/// The least and the most of eight cells along each of two axes.
+void spansOf(__m256i a, __m256i b, CellSpan& span_a, CellSpan& span_b) {
+  const __m128i least = leastOfBoth(_mm_min_epi32(firstHalf(a), secondHalf(a)),
+                                    _mm_min_epi32(firstHalf(b), secondHalf(b)));
+  // Inverting turns the order around.
+  const __m128i most = inverted(leastOfBoth(inverted(_mm_max_epi32(firstHalf(a), secondHalf(a))),
+                                            inverted(_mm_max_epi32(firstHalf(b), secondHalf(b)))));
+  span_a = {_mm_cvtsi128_si32(least), _mm_cvtsi128_si32(most)};
+  span_b = {_mm_extract_epi32(least, 1), _mm_extract_epi32(most, 1)};
+}
+
+QueryBounds boundsOf(const Centers& centers) {
+  CellSpan x;
+  CellSpan y;
+  CellSpan z;
+  spansOf(cellsOf(centers.x, kCellEdge), cellsOf(centers.z, kCellEdge), x, z);
+  const __m256i heights = cellsOf(centers.y, kBandHeight);
+  CellSpan same;
+  spansOf(heights, heights, y, same);
+  return queryBounds(x, y, z);
 }
 
 __m256 absolute(__m256 value) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0F), value); }
@@ -69,45 +82,24 @@ unsigned overlapping(const RestingBox& box, const Centers& centers, float radius
   return static_cast<unsigned>(_mm256_movemask_ps(_mm256_and_ps(near, at_height)));
 }
 
-/// All bits that are set in any lane.
-std::uint32_t anyLane(__m256i words) {
-  __m128i any = _mm_or_si128(_mm256_castsi256_si128(words), _mm256_extracti128_si256(words, 1));
-  any = _mm_or_si128(any, _mm_shuffle_epi32(any, 0x4e));
-  any = _mm_or_si128(any, _mm_shuffle_epi32(any, 0xb1));
-  return static_cast<std::uint32_t>(_mm_cvtsi128_si32(any));
-}
-
 Centers centersAt(const SphereBatch& spheres, std::size_t n) {
   return {_mm256_loadu_ps(spheres.x + n), _mm256_loadu_ps(spheres.y + n),
           _mm256_loadu_ps(spheres.z + n)};
 }
 
-/// The lanes that overlap an object of those in the lanes' sets, for the spheres from `n` on. Every
-/// such object is tested against all lanes: what is not in a lane's sets does not overlap its
-/// sphere. Not inlined, and looks its objects up again, so that the loop around it keeps all its
-/// numbers in registers: it is called for few groups.
-[[gnu::noinline]] unsigned touchingLanes(const RestingView& objects, const SphereBatch& spheres,
-                                         std::size_t n, float radius) {
+/// The lanes that overlap an object of those near them all, for the spheres from `n` on.
+unsigned touchingLanes(const RestingView& objects, const SphereBatch& spheres, std::size_t n,
+                       float radius) {
   const Centers centers = centersAt(spheres, n);
-  const Places places = placesOf(centers);
+  const QueryBounds query = boundsOf(centers);
   unsigned lanes = 0;
-  for (std::size_t plane = 0; plane < objects.plane_count; ++plane) {
-    const RestingBox* boxes = objects.boxes + plane * kPlaneObjects;
-    std::uint32_t near = anyLane(objectsNear(objects.planes[plane], places));
-    for (; near != 0; near &= near - 1) {
+  for (std::size_t p = 0; p < objects.bounds_count; ++p) {
+    const RestingBox* boxes = objects.boxes + p * kPackedObjects;
+    for (std::uint32_t near = objectsNear(objects.bounds[p], query); near != 0; near &= near - 1) {
       lanes |= overlapping(boxes[__builtin_ctz(near)], centers, radius);
     }
   }
   return lanes;
-}
-
-/// Whether no plane has an object that all sets of a sphere know, for any of eight spheres.
-bool nothingNear(const RestingView& objects, const Places& places) {
-  __m256i near = objectsNear(objects.planes[0], places);
-  for (std::size_t plane = 1; plane < objects.plane_count; ++plane) {
-    near = _mm256_or_si256(near, objectsNear(objects.planes[plane], places));
-  }
-  return _mm256_testz_si256(near, near) != 0;
 }
 
 }  // namespace
@@ -117,14 +109,12 @@ bool findTouchingAvx2(const RestingView& given_objects, const SphereBatch& given
   // Copies: nothing that is written below can change them.
   const RestingView objects = given_objects;
   const SphereBatch spheres = given_spheres;
-  if (objects.plane_count == 0) return false;
   std::size_t group = at.group;
   for (std::size_t r = at.range; r < spheres.ranges.count; ++r, group = 0) {
     const RadiusRange range = spheres.ranges.first[r];
     const std::size_t end = std::size_t{range.first} + range.count;
     for (std::size_t n = range.first + group * kLanes; n < end; n += kLanes) {
-      if (nothingNear(objects, placesOf(centersAt(spheres, n)))) continue;
-      const unsigned lanes = touchingLanes(given_objects, given_spheres, n, range.radius);
+      const unsigned lanes = touchingLanes(objects, spheres, n, range.radius);
       if (lanes == 0) continue;
       at = {r, (n - range.first) / kLanes, lanes};
       return true;

@@ -7,56 +7,72 @@
 
 namespace galactic::simulation {
 
-// The four shifted regular grids of the paper (appendix G), as they are stored here.
+// Which objects a query has to look at. A grid of lists, such as the paper's four shifted regular
+// grids (appendix G), answers that for one sphere; here all objects of an env are asked at once. Of
+// each, the bounds are kept in bytes, as in the nodes of compressed wide hierarchies (Ylitie,
+// Karras and Laine 2017), axis by axis, so that some ten instructions compare the bounds of a query
+// with those of 32 objects: of one sphere, of eight, or of a whole robot. That takes 192 bytes per
+// env where windows of a grid take 8,000 and their strips 640, and grasping and dropping an object
+// writes five bytes.
 //
-// A cell of the paper is at least four times the largest radius wide; the second grid is shifted by
-// half a cell in x, the third in z, the fourth in both, so any sphere of the working set lies
-// inside one cell of one of them, and only that cell's list is read. The cells of all four begin at
-// the points of one lattice and each point begins exactly one cell, so the four grids are one array
-// of overlapping windows, and which of them holds a sphere follows from the lattice square around
-// its center: a window answers for the centers in one square and knows the objects whose bounds
-// come within the largest radius of it. Three more steps make it small and fast:
-//
-// - Bounds are boxes, so a window knows an object exactly when the window's strip along x and its
-//   strip along z both do. Only the strips are stored, as sets of bits: a window is the
-//   intersection of two words. That is 640 bytes per env for a room for which the windows take
-//   8,000, so that thousands of envs stay in the cache, and it makes grasping and dropping cheap.
-// - A third set, by height, leaves out what stands on the shelf above or the floor below.
-// - The strips wrap around: strip n stands for every 64th square, 16 meters apart. No scene is too
-//   large, nothing has to be clamped, and a coordinate becomes a strip in three instructions. What
-//   stands in another room at the same place on the torus is found and refused by the next test.
+// The bytes wrap around: cell n stands for every 256th one, 32 meters apart. No scene is too large,
+// and nothing has to be clamped. What is in another room at the same place on the torus is found
+// and refused by the test of distances, and so is what shares no more than a cell.
 
-/// Edge of a square and height of a band, meters: a power of two, so that no rounding is involved.
-/// Smaller squares leave out few more objects and take more memory; see
-/// benchmarks/simulation/resting_objects.
-inline constexpr float kSquareEdge = 0.25F;
-inline constexpr float kInverseSquareEdge = 1 / kSquareEdge;
-/// Sets of each horizontal axis, a power of two; 16 meters.
-inline constexpr std::uint32_t kStrips = 64;
-/// Sets of the vertical axis: as many words as a register holds; 2 meters.
-inline constexpr std::uint32_t kBands = 8;
-/// So many strips one after the other can be read without a look at where they wrap around: the
-/// first ones follow once more after the last.
-inline constexpr std::uint32_t kRun = 8;
+/// Edge of a cell and height of a band, meters: powers of two, so that no rounding is involved.
+inline constexpr float kCellEdge = 0.125F;
+inline constexpr float kBandHeight = 0.25F;
+/// Coordinates from here on, in cells, are not told apart.
+inline constexpr float kFarthestCell = 0x1p29F;
+/// Cells along an axis, as many as a byte tells apart.
+inline constexpr std::int32_t kByteCells = 256;
+/// Bits of a byte; 2 meters.
+inline constexpr std::int32_t kBands = 8;
+inline constexpr std::uint8_t kAllBands = 0xff;
+/// Bounds that reach further, in cells, are everywhere. Those of an object and of a query together
+/// stay below half a turn, so that the sign of a difference says which of two cells comes first.
+inline constexpr std::int32_t kMostByteCells = kByteCells / 4 - 1;
 
-/// 32 objects as bits in sets: of strip i, those that come within the largest radius of a square
-/// whose number along that axis is i modulo the number of sets. Square n of an axis reaches from
-/// n - 1/2 to n + 1/2 edges.
-struct alignas(64) SetPlane {
-  std::uint32_t along_x[kStrips + kRun];
-  std::uint32_t along_z[kStrips + kRun];
-  std::uint32_t at_height[kBands];
+/// Objects whose bounds are packed together.
+inline constexpr std::uint32_t kPackedObjects = 32;
+
+/// The bounds of 32 objects, grown by the largest radius: an object is near a center whose cells
+/// and band are among its own.
+struct alignas(64) PackedBounds {
+  /// Of the first and the last cell, modulo kByteCells.
+  std::uint8_t least_x[kPackedObjects];
+  std::uint8_t most_x[kPackedObjects];
+  std::uint8_t least_z[kPackedObjects];
+  std::uint8_t most_z[kPackedObjects];
+  /// Bit b: in a band whose number is b modulo kBands.
+  std::uint8_t bands[kPackedObjects];
+  /// As bits: objects that are there at all, and those of them that are in any cell.
+  std::uint32_t resting;
+  std::uint32_t everywhere;
 };
 
-/// Objects of a plane.
-inline constexpr std::uint32_t kPlaneObjects = 32;
+/// The cells and bands of one axis that bounds reach over.
+struct CellSpan {
+  std::int32_t first = 0;
+  std::int32_t last = 0;
+};
+
+/// Bounds of centers, to compare with those of objects.
+struct QueryBounds {
+  std::uint8_t least_x = 0;
+  std::uint8_t most_x = 0;
+  std::uint8_t least_z = 0;
+  std::uint8_t most_z = 0;
+  std::uint8_t bands = kAllBands;
+  bool is_everywhere = false;
+};
 
 /// The resting objects of one env as bare pointers: the code built for AVX2 must not instantiate
 /// library templates, which the linker could then share with code for any processor.
 struct RestingView {
-  /// Bit b of plane p stands for object 32 p + b.
-  const SetPlane* planes = nullptr;
-  std::size_t plane_count = 0;
+  /// Bit b of element p stands for object 32 p + b.
+  const PackedBounds* bounds = nullptr;
+  std::size_t bounds_count = 0;
   const RestingBox* boxes = nullptr;
 };
 

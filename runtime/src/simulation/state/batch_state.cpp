@@ -16,10 +16,10 @@ std::size_t rowCount(const Model& model) {
 std::size_t envBytes(const Model& model) {
   // What the alignment of an env's own vectors may cost.
   constexpr std::size_t kPadding = 96;
-  const std::size_t planes = (model.most_objects + kPlaneObjects - 1) / kPlaneObjects;
+  const std::size_t packs = (model.most_objects + kPackedObjects - 1) / kPackedObjects;
   const std::size_t floats = rowCount(model) + 2 * model.observation_size + 1;
   return kPadding + sizeof(Env) + sizeof(RestingObjects) +
-         planes * (sizeof(SetPlane) + sizeof(std::uint32_t)) +
+         packs * sizeof(PackedBounds) +
          model.most_objects * (sizeof(RestingBox) + sizeof(Pose)) +
          (model.heldWords() + model.most_objects * model.bodyWords()) * sizeof(std::uint64_t) +
          floats * sizeof(float) + 3 + model.bodyCount() * sizeof(RigidTransform);

@@ -1,0 +1,91 @@
+// Comparing bounds with those of 32 objects: included by resting_objects.cpp and
+// resting_objects_avx2.cpp, which differ in nothing else but the instructions that they may use. No
+// library templates here: see column_grid_avx2.cpp.
+#include "simulation/collision/resting_objects_kernels.h"
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+namespace galactic::simulation {
+namespace {
+
+/// Of as many objects as any processor compares at once.
+constexpr std::uint32_t kHalf = kPackedObjects / 2;
+using Bytes = std::uint8_t __attribute__((vector_size(kHalf)));
+
+inline Bytes loadBytes(const std::uint8_t* from) {
+  Bytes bytes;
+  __builtin_memcpy(&bytes, from, sizeof(bytes));
+  return bytes;
+}
+
+/// The highest bit of each byte.
+inline std::uint32_t signsOf(const Bytes& bytes) {
+#if defined(__SSE2__)
+  return static_cast<std::uint32_t>(_mm_movemask_epi8(reinterpret_cast<__m128i>(bytes)));
+#else
+  std::uint32_t signs = 0;
+  for (std::uint32_t n = 0; n < kHalf; ++n) {
+    signs |= static_cast<std::uint32_t>(bytes[n] >> 7U) << n;
+  }
+  return signs;
+#endif
+}
+
+/// The bands from the first to the last one, as bits.
+constexpr std::uint8_t bandsOf(const CellSpan& span) {
+  const std::int32_t further = span.last - span.first;
+  if (further < 0 || further >= kBands - 1) return kAllBands;
+  const std::uint32_t run = (2U << static_cast<std::uint32_t>(further)) - 1;
+  constexpr std::uint32_t kTurn = kBands;
+  const std::uint32_t by = static_cast<std::uint32_t>(span.first) % kTurn;
+  return static_cast<std::uint8_t>(run << by | run >> (kTurn - by));
+}
+
+constexpr bool isEverywhere(const CellSpan& x, const CellSpan& z) {
+  const auto reaches_far = [](const CellSpan& span) {
+    return static_cast<std::uint32_t>(span.last - span.first) >
+           static_cast<std::uint32_t>(kMostByteCells);
+  };
+  return reaches_far(x) || reaches_far(z);
+}
+
+constexpr QueryBounds queryBounds(const CellSpan& x, const CellSpan& bands, const CellSpan& z) {
+  return {static_cast<std::uint8_t>(x.first),
+          static_cast<std::uint8_t>(x.last),
+          static_cast<std::uint8_t>(z.first),
+          static_cast<std::uint8_t>(z.last),
+          bandsOf(bands),
+          isEverywhere(x, z)};
+}
+
+/// Those of half of the objects, from `first` on, that are apart from the query along a horizontal
+/// axis, as bits from the lowest one on.
+inline std::uint32_t apart(const PackedBounds& objects, const QueryBounds& query,
+                           std::uint32_t first) {
+  const Bytes x = (loadBytes(objects.most_x + first) - query.least_x) |
+                  (query.most_x - loadBytes(objects.least_x + first));
+  const Bytes z = (loadBytes(objects.most_z + first) - query.least_z) |
+                  (query.most_z - loadBytes(objects.least_z + first));
+  return signsOf(x | z);
+}
+
+/// Those that share no band with the query.
+inline std::uint32_t inOtherBands(const PackedBounds& objects, const QueryBounds& query,
+                                  std::uint32_t first) {
+  const Bytes none{};
+  return signsOf(reinterpret_cast<Bytes>((loadBytes(objects.bands + first) & query.bands) == none));
+}
+
+/// The objects whose bounds meet those of a query, as bits.
+inline std::uint32_t objectsNear(const PackedBounds& objects, const QueryBounds& query) {
+  const std::uint32_t everywhere = query.is_everywhere ? ~std::uint32_t{0} : objects.everywhere;
+  const std::uint32_t apart_from = apart(objects, query, 0) | apart(objects, query, kHalf) << kHalf;
+  const std::uint32_t others = inOtherBands(objects, query, 0) | inOtherBands(objects, query, kHalf)
+                                                                     << kHalf;
+  return objects.resting & (everywhere | ~apart_from) & ~others;
+}
+
+}  // namespace
+}  // namespace galactic::simulation
