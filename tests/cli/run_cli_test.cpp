@@ -86,13 +86,8 @@ TEST_F(RunCli, MeasuresQueries) {
 
 TEST_F(RunCli, EndsWithACodeForEachKindOfMistake) {
   const std::vector<std::pair<std::vector<std::string>, int>> mistakes{
-      {{}, 1},
-      {{"--pack=good.pack"}, 1},
-      {{"--no-such-option"}, 1},
-      {{"missing.pack"}, 2},
-      {{"cut.pack"}, 3},
-      {{"text.pack"}, 3},
-      {{"later.pack"}, 5},
+      {{}, 1},           {{"--pack"}, 1},    {{"--no-such-option"}, 1}, {{"missing.pack"}, 2},
+      {{"cut.pack"}, 3}, {{"text.pack"}, 3}, {{"later.pack"}, 5},
   };
   for (const auto& [arguments, code] : mistakes) {
     SCOPED_TRACE(testing::PrintToString(arguments));
@@ -108,7 +103,7 @@ TEST_F(RunCli, EndsWithACodeForEachKindOfMistake) {
 TEST_F(RunCli, ListsItsExitCodesInHelp) {
   const ProgramRun help = run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  EXPECT_THAT(help.out, AllOf(HasSubstr("PACK ..."), HasSubstr("--bench"),
+  EXPECT_THAT(help.out, AllOf(HasSubstr("PACK FILE ..."), HasSubstr("--bench"),
                               HasSubstr("0    success"), HasSubstr("3    invalid input")));
 }
 

@@ -143,7 +143,7 @@ void addPlainOptions(CLI::App& app, RunOptions& options) {
   app.set_version_flag("--version", "galactic-run " GALACTIC_VERSION);
   app.add_option("PACK,--pack", options.packs, "Packs to open: one world, or packs of any kind")
       ->required()
-      ->type_name("");
+      ->type_name("FILE");
   app.add_flag("--trusted", options.trusted,
                "Skip the verification of packs that this machine has verified before")
       ->check(switchCheck());

@@ -18,8 +18,7 @@ std::size_t envBytes(const Model& model) {
   constexpr std::size_t kPadding = 96;
   const std::size_t packs = (model.most_objects + kPackedObjects - 1) / kPackedObjects;
   const std::size_t floats = rowCount(model) + 2 * model.observation_size + 1;
-  return kPadding + sizeof(Env) + sizeof(RestingObjects) +
-         packs * sizeof(PackedBounds) +
+  return kPadding + sizeof(Env) + sizeof(RestingObjects) + packs * sizeof(PackedBounds) +
          model.most_objects * (sizeof(RestingBox) + sizeof(Pose)) +
          (model.heldWords() + model.most_objects * model.bodyWords()) * sizeof(std::uint64_t) +
          floats * sizeof(float) + 3 + model.bodyCount() * sizeof(RigidTransform);
