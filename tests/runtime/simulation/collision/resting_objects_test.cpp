@@ -274,6 +274,16 @@ void addEight(const std::vector<Body>& bodies, const Room& room, bool together,
   }
 }
 
+/// Makes one coordinate of sixteen any float at all.
+void spoil(std::vector<Vec3>& centers, std::mt19937& random) {
+  const auto any = [&] { return std::bit_cast<float>(static_cast<std::uint32_t>(random())); };
+  for (Vec3& center : centers) {
+    if (random() % 16 == 0) center.x = any();
+    if (random() % 16 == 0) center.y = any();
+    if (random() % 16 == 0) center.z = any();
+  }
+}
+
 /// Both kernels on the same groups, in some rounds with centers that are no sensible numbers.
 TEST(RestingObjects, AnswerAlikeBitForBitWithBothKernels) {
   if (!detail::hasAvx2()) GTEST_SKIP() << "this processor has no AVX2: nothing to compare";
@@ -288,12 +298,7 @@ TEST(RestingObjects, AnswerAlikeBitForBitWithBothKernels) {
     for (std::size_t group = 1 + random() % 20; group > 0; --group) {
       addEight(bodies, room, together, random, centers);
     }
-    for (Vec3& center : centers) {
-      if (together) continue;
-      if (random() % 16 == 0) center.x = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
-      if (random() % 16 == 0) center.y = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
-      if (random() % 16 == 0) center.z = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
-    }
+    if (!together) spoil(centers, random);
     const OwnedBatch batch = OwnedBatch().add(0, kRadii[random() % 3], centers);
     const SphereBatch spheres = batch.view();
     for (std::size_t first = 0; first < centers.size() / 8; ++first) {
