@@ -87,7 +87,8 @@ Centers centersAt(const SphereBatch& spheres, std::size_t n) {
           _mm256_loadu_ps(spheres.z + n)};
 }
 
-/// The lanes that overlap an object of those near them all, for the spheres from `n` on.
+/// The lanes that overlap an object, of those that the bounds of all eight meet, for the spheres
+/// from `n` on.
 unsigned touchingLanes(const RestingView& objects, const SphereBatch& spheres, std::size_t n,
                        float radius) {
   const Centers centers = centersAt(spheres, n);

@@ -10,10 +10,10 @@ namespace galactic::simulation {
 // Which objects a query has to look at. A grid of lists, such as the paper's four shifted regular
 // grids (appendix G), answers that for one sphere; here all objects of an env are asked at once. Of
 // each, the bounds are kept in bytes, as in the nodes of compressed wide hierarchies (Ylitie,
-// Karras and Laine 2017), axis by axis, so that some ten instructions compare the bounds of a query
-// with those of 32 objects: of one sphere, of eight, or of a whole robot. That takes 192 bytes per
-// env where windows of a grid take 8,000 and their strips 640, and grasping and dropping an object
-// writes five bytes.
+// Karras and Laine 2017), axis by axis, so that some thirty instructions compare the bounds of a
+// query with those of 32 objects: of one sphere, of eight, or of a whole robot. That takes 192
+// bytes per env where windows of a grid take 8,000 and their strips 640, and grasping and dropping
+// an object writes five bytes.
 //
 // The bytes wrap around: cell n stands for every 256th one, 32 meters apart. No scene is too large,
 // and nothing has to be clamped. What is in another room at the same place on the torus is found
