@@ -114,8 +114,9 @@ def sources_of(build: pathlib.Path, cache: pathlib.Path) -> list[Source]:
         command = shlex.split(entry["command"])
         folder = pathlib.Path(entry["directory"])
         files = made_of(pathlib.Path(path), search_folders(command, folder))
-        # All but the compiler, and -o OBJECT -c SOURCE at the end.
-        result.append(Source(path, tuple(command[1:-4]), str(folder), cache / key_of(entry, files, common),
+        # All but the compiler, how much it optimizes, and -o OBJECT -c SOURCE at the end.
+        flags = tuple(flag for flag in command[1:-4] if not re.fullmatch("-O[0-9]", flag))
+        result.append(Source(path, flags, str(folder), cache / key_of(entry, files, common),
                              frozenset(map(str, files))))
     return result
 

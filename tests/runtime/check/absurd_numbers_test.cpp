@@ -9,11 +9,14 @@
 #include <random>
 
 #include "support/homes/changed_world.h"
+#include "support/sanitized.h"
 
 namespace galactic::test::absurd_numbers_test {
 namespace {
 
 constexpr int kSteps = 6;
+/// The sanitizers get a part of what is tried without them, and the inputs of fuzz_world.
+constexpr int kPart = kIsSanitized ? 4 : 1;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Bits of absurd floats, and of floats just inside of what the checks allow.
@@ -56,7 +59,7 @@ TEST_P(AbsurdNumbersIn, EachWordAreRefusedOrHarmless) {
   ChangedWorld world;
   Count count;
   // The bulk of a scene are cells and texels, all alike.
-  constexpr std::size_t kMostWords = 1500;
+  constexpr std::size_t kMostWords = 1500 / kPart;
   const std::size_t words = world.wordCount(GetParam());
   std::mt19937 random(17);
   for (std::size_t n = 0; n < std::min(words, kMostWords); ++n) {
@@ -75,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(Packs, AbsurdNumbersIn, testing::Range<std::size_t>(0, 
 
 TEST(AbsurdNumbers, AreRefusedOrHarmlessTogether) {
   constexpr unsigned kSeed = 23;
-  constexpr int kTrials = 4000;
+  constexpr int kTrials = 4000 / kPart;
   SCOPED_TRACE(fmt::format("seed {}", kSeed));
   std::mt19937 random(kSeed);
   ChangedWorld world;
