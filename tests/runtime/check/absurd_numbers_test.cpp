@@ -15,8 +15,8 @@ namespace galactic::test::absurd_numbers_test {
 namespace {
 
 constexpr int kSteps = 6;
-/// The sanitizers get a part of what is tried without them, and the inputs of fuzz_world.
-constexpr int kPart = kIsSanitized ? 4 : 1;
+/// The sanitizers get a tenth of what is tried without them, and the inputs of fuzz_world.
+constexpr int kPart = kIsSanitized ? 10 : 1;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Bits of absurd floats, and of floats just inside of what the checks allow.
