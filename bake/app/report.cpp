@@ -17,7 +17,7 @@ namespace {
 /// The entries of a pack that was made, now or before. What is kept of it may have been made for
 /// another folder.
 Json entriesOf(const PackOutcome& pack, const JobList& list) {
-  const Json entries =
+  Json entries =
       reportEntries(*pack.figures, [](const std::string& sentence) { return withFlags(sentence); });
   if (!list.world) return entries;
   Json named = Json::array();

@@ -18,7 +18,7 @@ constexpr std::size_t kFew = 3;
 /// A warning without names in quotes and numbers. An apostrophe inside a word quotes nothing.
 std::string kindOf(std::string_view warning) {
   std::string kind;
-  const auto isWord = [&](std::size_t at) {
+  const auto is_word = [&](std::size_t at) {
     const char c = at < warning.size() ? warning[at] : ' ';
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
   };
@@ -26,7 +26,7 @@ std::string kindOf(std::string_view warning) {
     const char c = warning[at];
     if (c >= '0' && c <= '9') continue;
     kind += c;
-    if (c != '\'' || (at > 0 && isWord(at - 1))) continue;
+    if (c != '\'' || (at > 0 && is_word(at - 1))) continue;
     const std::size_t end = warning.find('\'', at + 1);
     if (end == std::string_view::npos) continue;
     kind += '\'';

@@ -387,7 +387,7 @@ Result<SourceMesh> SceneReader::convertMesh(const aiMesh& mesh, unsigned index) 
 Result<void> SceneReader::convertMeshes() {
   for (unsigned i = 0; i < scene_->mNumMeshes; ++i) {
     ASSIGN_OR_RETURN(auto mesh, convertMesh(*scene_->mMeshes[i], i));
-    callbacks_.on_mesh(std::move(mesh));
+    callbacks_.on_mesh(mesh);
     delete std::exchange(scene_->mMeshes[i], nullptr);  // peak memory: one mesh twice, not all
   }
   return {};

@@ -84,7 +84,7 @@ void LevelFloors::add(const ColumnGrid& grid, const Vec3& start, const HeightFou
     heights[n + 1] = height_found(start, heights[n]);
     if (heights[n + 1] == heights[0]) floor.height_count = n + 1;
   }
-  const auto isLevel = [&](const Vec3& center) {
+  const auto stays_level = [&](const Vec3& center) {
     bool is_level = floor.height_count > 0;
     for (std::uint32_t n = 0; n < floor.height_count; ++n) {
       is_level = is_level && height_found(center, heights[n]) == heights[n + 1];
@@ -97,7 +97,7 @@ void LevelFloors::add(const ColumnGrid& grid, const Vec3& start, const HeightFou
     for (std::uint32_t i = 0; i < layout.columns_x; ++i) {
       const Vec3 center{layout.min_x + (static_cast<float>(i) + 0.5F) * layout.spacing, 0,
                         layout.min_z + (static_cast<float>(k) + 0.5F) * layout.spacing};
-      if (isLevel(center)) row[i / kBits] |= 1U << (i % kBits);
+      if (stays_level(center)) row[i / kBits] |= 1U << (i % kBits);
     }
   }
   floors_.push_back(floor);

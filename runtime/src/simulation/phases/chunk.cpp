@@ -92,17 +92,17 @@ void Chunk::shiftFrames() {
 void Chunk::takeOver(std::size_t env, Chunk& other, std::size_t from) {
   shiftFrames();
   other.shiftFrames();
-  const auto takeLane = [&](std::vector<EnvRow>& mine, const std::vector<EnvRow>& theirs) {
+  const auto take_lane = [&](std::vector<EnvRow>& mine, const std::vector<EnvRow>& theirs) {
     for (std::size_t n = 0; n < mine.size(); ++n) mine[n].values[env] = theirs[n].values[from];
   };
-  takeLane(rows_, other.rows_);
-  if (wants_bodies_) takeLane(frames_, other.frames_);
-  const auto takeRow = [&](auto& mine, const auto& theirs, std::size_t length) {
+  take_lane(rows_, other.rows_);
+  if (wants_bodies_) take_lane(frames_, other.frames_);
+  const auto take_row = [&](auto& mine, const auto& theirs, std::size_t length) {
     std::copy_n(theirs.begin() + static_cast<std::ptrdiff_t>(from * length), length,
                 mine.begin() + static_cast<std::ptrdiff_t>(env * length));
   };
-  takeRow(centers_, other.centers_, spheresStride() / kLanes);
-  takeRow(bounds_, other.bounds_, kBounds * group_stride_ / kLanes);
+  take_row(centers_, other.centers_, spheresStride() / kLanes);
+  take_row(bounds_, other.bounds_, kBounds * group_stride_ / kLanes);
   extents_[env] = other.extents_[from];
   floor_[env] = other.floor_[from];
 }

@@ -310,14 +310,14 @@ float PlanningScene::squaredGraspDistance(std::size_t object, const Vec3& point)
 
 std::optional<std::uint32_t> PlanningScene::graspedAt(const BasePlace& base) const {
   const Pose world_from_grip = impl_->worldFromRoot(base) * impl_->rootFromGrip();
-  const auto modelOf = [this](std::uint32_t index) -> const ObjectModel& {
+  const auto model_of = [this](std::uint32_t index) -> const ObjectModel& {
     return *impl_->models()[index];
   };
-  const auto poseOf = [this](std::uint32_t index) -> const Pose& { return impl_->poseOf(index); };
+  const auto pose_of = [this](std::uint32_t index) -> const Pose& { return impl_->poseOf(index); };
   return simulation::nearestToGrasp(
       impl_->resting(),
       {world_from_grip.translation, impl_->world().robot().endEffector()->grasp_radius},
-      impl_->options().action.grasp_shape, modelOf, poseOf);
+      impl_->options().action.grasp_shape, model_of, pose_of);
 }
 
 void PlanningScene::hold(std::uint32_t object, const BasePlace& base) { impl_->hold(object, base); }

@@ -168,7 +168,7 @@ void FreeSlices::fill(const ColumnGrid& grid, float thickness, const SliceLayout
     }
   }
   // A tile begins kCellsAround before the cells around which it answers.
-  const auto rowAt = [&](std::uint32_t tile_x, std::uint32_t k) {
+  const auto row_at = [&](std::uint32_t tile_x, std::uint32_t k) {
     TileRow row;
     for (std::uint32_t n = 0; n < row.size(); ++n) {
       const std::uint32_t i = tile_x * kTileColumns + n - kCellsAround;
@@ -182,7 +182,7 @@ void FreeSlices::fill(const ColumnGrid& grid, float thickness, const SliceLayout
     for (std::uint32_t tile_z = 0; tile_z < tilesZ(grid); ++tile_z) {
       std::ranges::fill(tiles, SliceTile{});
       for (std::uint32_t n = 0; n < SliceTile::kRows; ++n) {
-        const TileRow row = rowAt(tile_x, tile_z * kTileRows + n - kCellsAround);
+        const TileRow row = row_at(tile_x, tile_z * kTileRows + n - kCellsAround);
         forEachSlice(row, &ColumnSlices::free,
                      [&](std::size_t slice, std::uint16_t bits) { tiles[slice].free[n] = bits; });
         forEachSlice(row, &ColumnSlices::blocked, [&](std::size_t slice, std::uint16_t bits) {
