@@ -17,7 +17,7 @@ add_library(galactic_not_hot INTERFACE)
 target_compile_options(galactic_not_hot INTERFACE $<$<CONFIG:Release>:-O1>)
 
 # So is what reads command lines and writes texts, which -O0 compiles in half the time of -O1 where sanitizers watch.
-# A program has one copy of an inline function, maybe that of what is cold: what is hot does not call, but inlines.
+# A program has one copy of an inline function: those that hot code shares with this make strings, paths and errors.
 add_library(galactic_cold INTERFACE)
 target_link_libraries(galactic_cold INTERFACE galactic_not_hot)
 
