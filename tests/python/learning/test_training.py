@@ -195,10 +195,10 @@ def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
     assert begun_head.weight[-2:].count_nonzero() == 0 and head.weight[-2:].count_nonzero() > 0
     assert begun_head.bias[-1] - begun_head.bias[-2] == checkpoint.NEW_TERMINATE_LOGIT
     blind = call("train", WORLD, "-o", tmp_path / "blind", *small, "--simulation", "task=pick",
-                "--start-from", pick / "best.pt")  # fmt: skip
+                 "--start-from", pick / "best.pt")  # fmt: skip
     assert blind.returncode == 3 and "does not fit this run: parts: found" in blind.stderr
     wide = call("train", WORLD, "-o", tmp_path / "wide", *small, "--width", "64",
-               "--start-from", pick / "best.pt")  # fmt: skip
+                "--start-from", pick / "best.pt")  # fmt: skip
     assert wide.returncode == 3 and "width: found 128, expected 64" in wide.stderr
     assert not (tmp_path / "blind").exists() and not (tmp_path / "wide").exists()
     resumed = call("train", "-o", rearrange, "--resume", "--start-from", pick / "best.pt")
@@ -211,7 +211,7 @@ def test_an_evaluation_repeats_itself(tmp_path: pathlib.Path) -> None:
     for number, mode in enumerate(("--sampled", "--sampled", "--deterministic")):
         file = tmp_path / f"{number}.json"
         done = call("evaluate", tmp_path / "run" / "best.pt", HELD_OUT, mode, "--episodes", "20",
-                   "--report", file)  # fmt: skip
+                    "--report", file)  # fmt: skip
         assert done.returncode == 0, done.stderr
         reports.append(json.loads(file.read_text(encoding="utf-8")))
     assert reports[0] == reports[1] and reports[0]["each"] != reports[2]["each"]
@@ -221,8 +221,8 @@ def test_an_evaluation_repeats_itself(tmp_path: pathlib.Path) -> None:
 def test_a_policy_that_sees_pictures_trains_and_is_evaluated(tmp_path: pathlib.Path) -> None:
     """Two updates of the paper's preset, small."""
     done = call("train", WORLD, "-o", tmp_path / "run", "--network", "simple_cnn", "--envs", 4,
-               "--horizon", 8, "--steps", 2 * 4 * 8, "--log-every", 0, "--validation", HELD_OUT,
-               "--validation-episodes", 3, "--simulation", "task=pick episode-steps=6")  # fmt: skip
+                "--horizon", 8, "--steps", 2 * 4 * 8, "--log-every", 0, "--validation", HELD_OUT,
+                "--validation-episodes", 3, "--simulation", "task=pick episode-steps=6")  # fmt: skip
     assert done.returncode == 0, done.stderr
     rows = read_curves(tmp_path / "run" / "curves.csv")
     updates = [row for row in rows if row["policy_loss"] is not None]
@@ -232,7 +232,7 @@ def test_a_policy_that_sees_pictures_trains_and_is_evaluated(tmp_path: pathlib.P
             assert row[name] is not None and math.isfinite(row[name]), row
     report = tmp_path / "report.json"
     done = call("evaluate", tmp_path / "run" / "best.pt", HELD_OUT, "--episodes", 5, "--report",
-               report)  # fmt: skip
+                report)  # fmt: skip
     assert done.returncode == 0, done.stderr
     each = json.loads(report.read_text(encoding="utf-8"))["each"]
     assert len(each) == 5 and all(1 <= one["length"] <= 6 for one in each)
