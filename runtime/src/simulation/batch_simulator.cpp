@@ -101,6 +101,7 @@ class BatchSimulator::Impl {
     model_.options.seed = seed;
     for (std::size_t env = 0; env < state_.paddedCount(); ++env) {
       state_.env(env) = {};
+      state_.counters(env) = {};
       state_.clearOutcome(env);
     }
     beginFirstEpisodes();
@@ -315,7 +316,7 @@ SimulationStatistics BatchSimulator::statistics() const {
   return sum;
 }
 SimulationStatistics BatchSimulator::statistics(std::size_t env) const {
-  const simulation::EnvCounters& counters = impl_->state().env(env).counters;
+  const simulation::EnvCounters& counters = impl_->state().counters(env);
   // An env that came from a longer run may have idled for longer than this one has run.
   return {.steps = impl_->steps() - std::min(impl_->steps(), counters.idle_steps),
           .refused = counters.refused,
@@ -327,7 +328,7 @@ SimulationStatistics BatchSimulator::statistics(std::size_t env) const {
           .successes = counters.successes,
           .failures = counters.failures,
           .nan_actions = counters.nan_actions,
-          .reward = counters.reward};
+          .reward = impl_->state().env(env).reward_sum};
 }
 
 std::span<const std::uint32_t> BatchSimulator::skippedEpisodes() const {

@@ -55,6 +55,7 @@ class Hand {
   }
 
   [[nodiscard]] const Env& env() const { return state_.env(0); }
+  [[nodiscard]] std::uint32_t slides() const { return state_.counters(0).slid; }
   [[nodiscard]] Vec3 base() const { return state_.base(0); }
 
   /// Lets go of an object that rested, at `place`.
@@ -62,14 +63,14 @@ class Hand {
     Env& env = state_.env(0);
     state_.resting(0).remove(object);
     const Pose there{place, {}};
-    env.held.object = static_cast<std::int32_t>(object);
-    env.held.grip_from_object = inverse(gripPose(state_.grip(0))) * there;
-    env.held.before = there;
-    measureHeld(heldModel(model_, env), env.held);
+    env.held = static_cast<std::int32_t>(object);
+    state_.held(0).grip_from_object = inverse(gripPose(state_.grip(0))) * there;
+    state_.held(0).before = there;
+    measureHeld(heldModel(model_, env), state_.held(0));
     std::ranges::fill(chunk_.actions(), EnvRow{});
     chunk_.action(kHand, 0) = -1;
     useHands(step());
-    ASSERT_LT(env.held.object, 0);
+    ASSERT_LT(env.held, 0);
   }
 
   /// A step with these actions of the base, apart from the hand.
@@ -134,7 +135,7 @@ TEST_F(Leaving, ARobotThatStandsStillIsNeverRefusedWhateverItLetGoOf) {
     const std::uint32_t left = hand.env().left;
     hand.drive(0, 0);
     ASSERT_FALSE(hand.env().refused) << "round " << round << ", leaves " << left;
-    ASSERT_EQ(hand.env().counters.slid, 0U) << "round " << round << ", leaves " << left;
+    ASSERT_EQ(hand.slides(), 0U) << "round " << round << ", leaves " << left;
     ASSERT_EQ(hand.env().left, left);
   }
   several.expectBothSides();

@@ -110,9 +110,10 @@ bool findTouchingPortable(const RestingView& objects, const SphereBatch& spheres
 }
 
 RestingObjects::RestingObjects(std::size_t most_objects, float largest_radius,
-                               std::pmr::memory_resource* memory)
+                               std::pmr::memory_resource* memory,
+                               std::pmr::memory_resource* bounds_memory)
     : largest_radius_(largest_radius),
-      bounds_(packsFor(most_objects), memory),
+      bounds_(packsFor(most_objects), bounds_memory),
       boxes_(most_objects, memory) {}
 
 std::uint32_t RestingObjects::atHeight(const PackedBounds& bounds, float y) noexcept {

@@ -30,10 +30,11 @@ struct SphereHit {
 /// One thread at a time; const members from any.
 class RestingObjects {
  public:
-  /// Room for `most_objects` objects, in `memory`. Queries are for spheres of up to
-  /// `largest_radius`, meters.
+  /// Room for `most_objects` objects, in `memory`, and for their bounds, which each query reads, in
+  /// `bounds_memory`. Queries are for spheres of up to `largest_radius`, meters.
   RestingObjects(std::size_t most_objects, float largest_radius,
-                 std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+                 std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
+                 std::pmr::memory_resource* bounds_memory = std::pmr::get_default_resource());
 
   /// Forgets all objects.
   void clear() noexcept;

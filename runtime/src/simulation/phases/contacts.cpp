@@ -40,7 +40,8 @@ Obstacles obstaclesOf(const ChunkStep& step, std::size_t e) noexcept {
 
 SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) noexcept {
   const Env& env = step.state.env(step.first + e);
-  const Pose world_from_object = gripPose(step.chunk.grip(e)) * env.held.grip_from_object;
+  const Pose world_from_object =
+      gripPose(step.chunk.grip(e)) * step.state.held(step.first + e).grip_from_object;
   return holdSpheres(heldModel(step.model, env), world_from_object, step.chunk.placement().spheres);
 }
 
@@ -156,11 +157,11 @@ bool isSureAfter(const ChunkStep& step, std::size_t e, const Push& moved) noexce
 }
 
 bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept {
-  const Env& env = step.state.env(step.first + e);
+  const Held& held = step.state.held(step.first + e);
   // More than the spheres can leave the ball by through rounding, meters.
   constexpr float kSlack = 1e-3F;
-  const Vec3 center = gripToWorld(step.chunk.grip(e), env.held.ball_center);
-  const float reach = env.held.ball_radius + kSlack;
+  const Vec3 center = gripToWorld(step.chunk.grip(e), held.ball_center);
+  const float reach = held.ball_radius + kSlack;
   const Vec3 least{center.x - reach, center.y - reach, center.z - reach};
   const Vec3 most{center.x + reach, center.y + reach, center.z + reach};
   if (step.state.resting(step.first + e).mayTouch(least, most)) return false;
@@ -171,14 +172,14 @@ bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept {
   }
   const ClearanceMaps& maps = step.model.clearance;
   SureGroups sure;
-  maps.surelyFree(env.clearance_map, maps.eights() - 1, {bounds.data(), kLanes}, sure);
-  return (env.held.radii & ~sure.free) == 0;
+  maps.surelyFree(mapOf(step, e), maps.eights() - 1, {bounds.data(), kLanes}, sure);
+  return (held.radii & ~sure.free) == 0;
 }
 
 namespace {
 
 bool heldPenetrates(const ChunkStep& step, std::size_t e) {
-  if (step.state.env(step.first + e).held.object < 0) return false;
+  if (step.state.env(step.first + e).held < 0) return false;
   const std::span<std::uint64_t> bits = step.chunk.heldBits();
   if (heldIsSurelyFree(step, e)) {
     std::ranges::fill(bits, 0U);

@@ -73,13 +73,13 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t n,
   Env& env = state.env(n);
   env = {.scene = model.world->sceneIndexOf(episode),
          .clearance_map = model.starts[start].clearance_map,
-         .target = target,
-         .events = {},
-         .counters = env.counters,
-         .held = {},
          .start = start,
          .objects = static_cast<std::uint32_t>(model.placements(episode).size()),
-         .ordinal = env.ordinal + 1};
+         .target = target,
+         .events = {},
+         .reward_sum = env.reward_sum};
+  ++state.counters(n).begun;
+  state.held(n) = {};
   state.setErrand(n, target, episode.goal.translation);
   std::ranges::fill(state.leaving(n), 0U);
   state.idle()[n] = 0;
@@ -89,9 +89,9 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t n,
 void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) noexcept {
   const auto count = static_cast<std::uint32_t>(model.starts.size());
   const std::uint64_t number = model.globalEnv(env);
-  const auto next = nthEpisode(model.options, number, state.env(env).ordinal, count);
+  const auto next = nthEpisode(model.options, number, state.counters(env).begun, count);
   // An env that never has one stands somewhere, too.
-  const bool has_begun = state.env(env).ordinal > 0;
+  const bool has_begun = state.counters(env).begun > 0;
   if (next || !has_begun) {
     beginEpisode(model, state, env, next.value_or(static_cast<std::uint32_t>(number % count)));
   }

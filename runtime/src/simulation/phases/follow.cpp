@@ -47,7 +47,7 @@ void moveObjects(const ChunkStep& step, std::size_t n, std::span<const Pose> pos
   const std::span<const Pose> objects = step.state.objects(n);
   RestingObjects& resting = step.state.resting(n);
   for (std::uint32_t object = 0; object < env.objects; ++object) {
-    const bool is_held = env.held.object == static_cast<std::int32_t>(object);
+    const bool is_held = env.held == static_cast<std::int32_t>(object);
     if (is_held || objects[object] == poses[object]) continue;
     step.state.placeObject(n, object, poses[object]);
     resting.remove(object);
@@ -62,23 +62,22 @@ void followHand(const ChunkStep& step, std::size_t e, const FollowedState& state
   const std::size_t terminate = step.model.actionCount() - 1;
   env.events = {.terminates =
                     step.chunk.action(terminate, e) >= step.model.options.action.terminate};
-  if (env.held.object >= 0 && env.held.object != state.held) {
-    layDown(step, e, state.objects[static_cast<std::size_t>(env.held.object)]);
-    ++env.counters.drops;
+  if (env.held >= 0 && env.held != state.held) {
+    layDown(step, e, state.objects[static_cast<std::size_t>(env.held)]);
+    ++step.state.counters(n).drops;
   }
   if (state.held < 0) return;
   const auto held = static_cast<std::uint32_t>(state.held);
-  if (env.held.object < 0) takeInHand(step, e, held);
+  if (env.held < 0) takeInHand(step, e, held);
   // It may slip.
-  env.held.grip_from_object = inverse(gripPose(step.state.grip(n))) * state.objects[held];
-  measureHeld(heldModel(step.model, env), env.held);
+  step.state.held(n).grip_from_object = inverse(gripPose(step.state.grip(n))) * state.objects[held];
+  measureHeld(heldModel(step.model, env), step.state.held(n));
 }
 
 void takePose(const ChunkStep& step, std::size_t e, const FollowedState& state) {
   const std::size_t n = step.first + e;
-  Env& env = step.state.env(n);
-  env.refused = state.was_hindered;
-  env.counters.refused += state.was_hindered ? 1U : 0U;
+  step.state.env(n).refused = state.was_hindered;
+  step.state.counters(n).refused += state.was_hindered ? 1U : 0U;
   copyPose(step.chunk.candidates(e), step.state.poses(n), step.model.variableCount());
   step.state.setGrip(n, step.chunk.grip(e));
 }

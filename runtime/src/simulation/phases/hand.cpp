@@ -28,7 +28,7 @@ void grasp(const ChunkStep& step, std::size_t e) {
 bool mayRestAt(const ChunkStep& step, std::size_t n, const Pose& pose) {
   const Env& env = step.state.env(n);
   const TaskOptions& task = step.model.options.task;
-  const bool is_target = env.held.object == static_cast<std::int32_t>(env.target);
+  const bool is_target = env.held == static_cast<std::int32_t>(env.target);
   if (task.drop_fails || task.kind != TaskKind::kRearrange || !is_target) return true;
   const Vec3 away = pose.translation - step.state.goal(n);
   return dot(away, away) < task.success_distance * task.success_distance;
@@ -50,17 +50,18 @@ void beginToLeave(const ChunkStep& step, std::size_t e, std::uint32_t object) {
 void release(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
   Env& env = step.state.env(n);
+  EnvCounters& counters = step.state.counters(n);
   RestingObjects& resting = step.state.resting(n);
   const ObjectModel& object = heldModel(step.model, env);
-  const Pose released = gripPose(step.state.grip(n)) * env.held.grip_from_object;
-  RandomStream random(step.model.options.seed, step.model.globalEnv(n), env.ordinal, env.step);
+  const Pose released = gripPose(step.state.grip(n)) * step.state.held(n).grip_from_object;
+  RandomStream random(step.model.options.seed, step.model.globalEnv(n), counters.begun, env.step);
   const Landing landing =
       placeObject({step.model.world->scenes()[env.scene], resting}, object, released, random,
                   step.model.options.placement, step.chunk.placement());
-  const Pose rest = landing.placed ? landing.pose : env.held.before;
+  const Pose rest = landing.placed ? landing.pose : step.state.held(n).before;
   if (!mayRestAt(step, n, rest)) return;
   layDown(step, e, rest);
-  ++(landing.placed ? env.counters.drops : env.counters.restored);
+  ++(landing.placed ? counters.drops : counters.restored);
 }
 
 }  // namespace
@@ -70,11 +71,12 @@ void takeInHand(const ChunkStep& step, std::size_t e, std::uint32_t object) noex
   Env& env = step.state.env(n);
   RestingObjects& resting = step.state.resting(n);
   const Pose before = step.state.objects(n)[object];
-  env.held = {};
-  env.held.object = static_cast<std::int32_t>(object);
-  env.held.grip_from_object = inverse(gripPose(step.state.grip(n))) * before;
-  env.held.before = before;
-  measureHeld(heldModel(step.model, env), env.held);
+  env.held = static_cast<std::int32_t>(object);
+  Held& held = step.state.held(n);
+  held = {};
+  held.grip_from_object = inverse(gripPose(step.state.grip(n))) * before;
+  held.before = before;
+  measureHeld(heldModel(step.model, env), held);
   resting.remove(object);
   const std::span<std::uint64_t> leaving = step.state.leaving(n, object);
   if (std::ranges::any_of(leaving, [](std::uint64_t word) { return word != 0; })) --env.left;
@@ -83,7 +85,7 @@ void takeInHand(const ChunkStep& step, std::size_t e, std::uint32_t object) noex
       holdSpheres(heldModel(step.model, env), before, step.chunk.placement().spheres);
   penetrating({step.model.world->scenes()[env.scene], resting}, spheres, step.chunk.collision(),
               step.state.ignored(n));
-  ++env.counters.grasps;
+  ++step.state.counters(n).grasps;
   env.events.picked = object == env.target && !env.has_picked;
   env.has_picked = env.has_picked || env.events.picked;
 }
@@ -91,13 +93,13 @@ void takeInHand(const ChunkStep& step, std::size_t e, std::uint32_t object) noex
 void layDown(const ChunkStep& step, std::size_t e, const Pose& world_from_object) noexcept {
   const std::size_t n = step.first + e;
   Env& env = step.state.env(n);
-  const auto object = static_cast<std::uint32_t>(env.held.object);
+  const auto object = static_cast<std::uint32_t>(env.held);
   step.state.placeObject(n, object, world_from_object);
   step.state.resting(n).insert(object,
                                restingBox(heldModel(step.model, env).box, world_from_object));
   beginToLeave(step, e, object);
   env.events.released_target = object == env.target;
-  env.held.object = -1;
+  env.held = -1;
 }
 
 void useHands(const ChunkStep& step) noexcept {
@@ -114,7 +116,7 @@ void useHands(const ChunkStep& step) noexcept {
     if (idle[e] != 0) continue;
     Env& env = step.state.env(step.first + e);
     env.events = {.terminates = terminates.values[e] >= options.terminate};
-    const auto is_empty = static_cast<unsigned>(env.held.object < 0);
+    const auto is_empty = static_cast<unsigned>(env.held < 0);
     const auto opens = static_cast<unsigned>(values.values[e] < options.release);
     const auto closes = static_cast<unsigned>(values.values[e] >= options.grasp);
     grasps |= (is_empty & closes) << e;

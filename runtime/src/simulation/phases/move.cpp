@@ -27,7 +27,7 @@ void accept(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
   // The bits are those of the accepted candidate.
   Env& env = step.state.env(n);
-  if (env.held.object >= 0) keepPenetrating(step.state.ignored(n), step.chunk.heldBits());
+  if (env.held >= 0) keepPenetrating(step.state.ignored(n), step.chunk.heldBits());
   forEachLeft(step, e, [&](std::uint32_t object) {
     overlapping(step.state.resting(n).box(object), step.chunk.spheres(e), step.chunk.bodyBits());
     const bool any = keepPenetrating(step.state.leaving(n, object), step.chunk.bodyBits());
@@ -201,11 +201,11 @@ void moveRobots(const ChunkStep& step) noexcept {
     env.refused = false;
     const Walk walk = step.between == nullptr ? jumpToCandidate(step, e) : walkToCandidate(step, e);
     if (walk == Walk::kNone) {
-      ++env.counters.refused;
+      ++step.state.counters(step.first + e).refused;
       env.refused = true;
       continue;
     }
-    env.counters.slid += walk == Walk::kHindered ? 1U : 0U;
+    if (walk == Walk::kHindered) ++step.state.counters(step.first + e).slid;
     accept(step, e);
     accepted[e] = ~std::uint32_t{0};
   }

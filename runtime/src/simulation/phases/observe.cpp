@@ -32,7 +32,7 @@ void senseWays(const Model& model, const BatchState& state, std::size_t n, std::
     out.add(-(headingSine(grip) * way.x + headingCosine(grip) * way.z));
   };
   const Vec3 base = state.base(n);
-  const bool is_held = env.held.object == static_cast<std::int32_t>(env.target);
+  const bool is_held = env.held == static_cast<std::int32_t>(env.target);
   const Vec3 target = state.objects(n)[env.target].translation;
   add(is_held ? sensors::Way{.distance = 0} : model.geodesic.toTarget(env.start, base, target));
   add(model.geodesic.toGoal(env.start, base));
@@ -70,7 +70,7 @@ void observe(const Model& model, BatchState& state, std::size_t first) noexcept 
   EnvRow bumps;
   for (std::size_t e = 0; e < kChunk; ++e) {
     const Env& env = state.env(first + e);
-    holds.values[e] = env.held.object >= 0 ? 1.0F : 0.0F;
+    holds.values[e] = env.held >= 0 ? 1.0F : 0.0F;
     bumps.values[e] = env.refused ? 1.0F : 0.0F;
     left.values[e] = task.most_steps == 0 ? 1.0F
                                           : 1.0F - static_cast<float>(env.step) /
@@ -105,14 +105,15 @@ void sense(const Model& model, const BatchState& state, std::size_t env_number,
   const GripFrame grip = state.grip(env_number);
   const std::span<float> row = out.subspan(model.sensors_first);
   if (model.options.sensors.geodesic) senseWays(model, state, env_number, row);
-  model.laser.scan({.scene = env.scene,
-                    .base = state.base(env_number),
-                    .cosine = headingCosine(grip),
-                    .sine = headingSine(grip),
-                    .objects = state.resting(env_number),
-                    .random = RandomStream(model.options.seed ^ kLaserSalt,
-                                           model.globalEnv(env_number), env.ordinal, env.step)},
-                   row.first(model.laser.size()));
+  model.laser.scan(
+      {.scene = env.scene,
+       .base = state.base(env_number),
+       .cosine = headingCosine(grip),
+       .sine = headingSine(grip),
+       .objects = state.resting(env_number),
+       .random = RandomStream(model.options.seed ^ kLaserSalt, model.globalEnv(env_number),
+                              state.counters(env_number).begun, env.step)},
+      row.first(model.laser.size()));
 }
 
 void senseAll(const ChunkStep& step) noexcept {

@@ -60,7 +60,7 @@ class Glide {
   bool isFreeNow() {
     if (step_.chunk.floor(e_) != Floor::kCarries) return false;
     // With something in the hand, another way out may be sought for the groups that are asked here.
-    if (env_.held.object < 0 && knows_maps_ && isSureAfter(step_, e_, since_asked_)) {
+    if (env_.held < 0 && knows_maps_ && isSureAfter(step_, e_, since_asked_)) {
       if (isFreeOfObjects(step_, e_)) return true;
       std::ranges::fill(step_.chunk.blockedBits(), 0U);
       return false;
@@ -195,7 +195,7 @@ class Glide {
   /// Calls visit(radius index, center) for each sphere of what the robot holds that counts.
   template <class Visit>
   void forEachHeld(const Visit& visit) const {
-    if (env_.held.object < 0) return;
+    if (env_.held < 0) return;
     const SphereBatch held = heldSpheres(step_, e_);
     const IgnoredSpheres ignored = step_.state.ignored(step_.first + e_);
     for (const RadiusRange& range : held.ranges) {
@@ -358,7 +358,7 @@ class Glide {
         return pushOutOfObjects(obstacles_.objects, step_.chunk.spheres(e_), {}, scratch, sum);
       });
     }
-    if (env_.held.object >= 0 && !heldIsSurelyFree(step_, e_)) {
+    if (env_.held >= 0 && !heldIsSurelyFree(step_, e_)) {
       pushOutOfObjects(obstacles_.objects, heldSpheres(step_, e_),
                        step_.state.ignored(step_.first + e_), scratch, sum);
     }
@@ -412,7 +412,7 @@ class TowardsBase {
   [[nodiscard]] Push push() const {
     const SphereBatch body = step_.chunk.spheres(e_);
     const std::span<std::uint64_t> body_bits = step_.chunk.bodyBits();
-    const bool holds = step_.state.env(step_.first + e_).held.object >= 0;
+    const bool holds = step_.state.env(step_.first + e_).held >= 0;
     const SphereBatch held = holds ? heldSpheres(step_, e_) : SphereBatch{};
     if (penetratingScene(obstacles_.scene, body, step_.chunk.collision(), body_bits)) {
       return pushFrom(step_, e_, body, firstOfBody(from_last_));

@@ -33,7 +33,7 @@ void readActions(const ChunkStep& step, std::span<const float> all) noexcept {
   }
   if (!has_nan) return;
   for (std::size_t n = 0; n < given.size(); ++n) {
-    if (given[n] != given[n]) ++step.state.env(step.first + n / count).counters.nan_actions;
+    if (given[n] != given[n]) ++step.state.counters(step.first + n / count).nan_actions;
   }
 }
 

@@ -14,7 +14,7 @@ float distance(const Vec3& a, const Vec3& b) {
   return std::sqrt(dot(away, away));
 }
 
-bool isHeld(const Env& env) { return env.held.object == static_cast<std::int32_t>(env.target); }
+bool isHeld(const Env& env) { return env.held == static_cast<std::int32_t>(env.target); }
 
 EpisodeEnd endOfRearrange(const TaskOptions& task, const Env& env, float transport) {
   const bool is_there = transport < task.success_distance && !isHeld(env);
@@ -28,7 +28,7 @@ EpisodeEnd endOfRearrange(const TaskOptions& task, const Env& env, float transpo
 
 /// Small, and called from one loop: see endOf().
 inline EpisodeEnd findEnd(const TaskOptions& task, const Env& env, float transport) {
-  const bool holds_another = env.held.object >= 0 && !isHeld(env);
+  const bool holds_another = env.held >= 0 && !isHeld(env);
   EpisodeEnd end = EpisodeEnd::kNone;
   switch (task.kind) {
     case TaskKind::kRearrange:
@@ -72,7 +72,8 @@ TargetRows targetsNow(const BatchState& state, std::size_t first) noexcept {
   for (std::size_t e = 0; e < kChunk; ++e) {
     const Env& env = state.env(first + e);
     if (!isHeld(env)) continue;
-    const Vec3 target = gripToWorld(state.grip(first + e), env.held.grip_from_object.translation);
+    const Vec3 target =
+        gripToWorld(state.grip(first + e), state.held(first + e).grip_from_object.translation);
     targets[0].values[e] = target.x;
     targets[1].values[e] = target.y;
     targets[2].values[e] = target.z;
@@ -83,7 +84,7 @@ TargetRows targetsNow(const BatchState& state, std::size_t first) noexcept {
 TargetDistances measureTarget(const BatchState& state, std::size_t n) noexcept {
   const Env& env = state.env(n);
   const GripFrame grip = state.grip(n);
-  const Vec3 target = isHeld(env) ? gripToWorld(grip, env.held.grip_from_object.translation)
+  const Vec3 target = isHeld(env) ? gripToWorld(grip, state.held(n).grip_from_object.translation)
                                   : state.objects(n)[env.target].translation;
   return {distance(gripOrigin(grip), target), distance(target, state.goal(n))};
 }
@@ -149,7 +150,6 @@ void put(const Outcomes& outcomes, BatchState& state, std::size_t first) {
 }
 
 void count(EpisodeEnd end, EnvCounters& counters) {
-  if (end == EpisodeEnd::kNone) return;
   ++counters.episodes;
   counters.successes += end == EpisodeEnd::kSuccess ? 1 : 0;
   counters.failures += isFailure(end) ? 1U : 0U;
@@ -177,7 +177,7 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
     if (n < resets.size() && resets[n] >= 0) continue;
     Env& env = step.state.env(n);
     if (idle[e] != 0) {
-      ++env.counters.idle_steps;
+      ++step.state.counters(n).idle_steps;
       continue;
     }
     // The first step of an episode has none before it.
@@ -191,8 +191,8 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
     if (isFailure(end)) reward -= task.failure_penalty;
     env.reach = now.reach;
     env.transport = now.transport;
-    count(end, env.counters);
-    env.counters.reward += static_cast<double>(reward);
+    if (end != EpisodeEnd::kNone) count(end, step.state.counters(n));
+    env.reward_sum += static_cast<double>(reward);
     outcomes.rewards[e] = reward;
     outcomes.endings[e] = end;
   }

@@ -77,7 +77,7 @@ class Walker {
   void cutInParts() {
     SphereMoves moves;
     moves.include(step_.between->spheres(0), step_.chunk.spheres(e_));
-    if (step_.state.env(step_.first + e_).held.object >= 0) {
+    if (step_.state.env(step_.first + e_).held >= 0) {
       moves.include(heldSpheres(at(0), 0), heldSpheres(step_, e_));
     }
     parts_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(moves.farthest)));

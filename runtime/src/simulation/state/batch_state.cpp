@@ -16,12 +16,15 @@ std::size_t rowCount(const Model& model) {
 std::size_t envBytes(const Model& model) {
   // What the alignment of an env's own vectors may cost.
   constexpr std::size_t kPadding = 96;
-  const std::size_t packs = (model.most_objects + kPackedObjects - 1) / kPackedObjects;
   const std::size_t floats = rowCount(model) + 2 * model.observation_size + 1;
-  return kPadding + sizeof(Env) + sizeof(RestingObjects) + packs * sizeof(PackedBounds) +
+  return kPadding + sizeof(Env) + sizeof(EnvCounters) + sizeof(Held) + sizeof(RestingObjects) +
          model.most_objects * (sizeof(RestingBox) + sizeof(Pose)) +
          (model.heldWords() + model.most_objects * model.bodyWords()) * sizeof(std::uint64_t) +
          floats * sizeof(float) + 3 + model.bodyCount() * sizeof(RigidTransform);
+}
+
+std::size_t boundsBytes(const Model& model) {
+  return (model.most_objects + kPackedObjects - 1) / kPackedObjects * sizeof(PackedBounds);
 }
 
 template <class T>
@@ -36,6 +39,9 @@ void prefetchBytes(const void* first, std::size_t bytes) noexcept {
   constexpr std::size_t kCacheLine = 64;
   const auto* at = static_cast<const char*>(first);
   for (std::size_t n = 0; n < bytes; n += kCacheLine) __builtin_prefetch(at + n, 0, 2);
+  // GCC takes a function that does nothing else for one without effect, and leaves out calls of it
+  // that it sees.
+  asm volatile("");
 }
 
 template <class Value>
@@ -67,11 +73,12 @@ void measureHeld(const ObjectModel& object, Held& held) noexcept {
 }
 
 std::size_t stateBytes(const Model& model, std::size_t envs) {
-  return paddedToChunks(envs) * envBytes(model);
+  return paddedToChunks(envs) * (envBytes(model) + boundsBytes(model));
 }
 
 BatchState::BatchState(const Model& model, std::size_t envs)
-    : memory_(stateBytes(model, envs), &huge_pages_),
+    : memory_(paddedToChunks(envs) * envBytes(model), &huge_pages_),
+      bounds_memory_(paddedToChunks(envs) * boundsBytes(model), &huge_pages_),
       env_count_(envs),
       most_objects_(model.most_objects),
       held_words_(model.heldWords()),
@@ -82,11 +89,13 @@ BatchState::BatchState(const Model& model, std::size_t envs)
       body_count_(model.bodyCount()) {
   const std::size_t padded = paddedToChunks(env_count_);
   envs_.resize(padded);
+  counters_.resize(padded);
+  held_.resize(padded);
   resting_.reserve(padded);
   for (std::size_t n = 0; n < padded; ++n) {
     // Whatever asks for objects: spheres, and the hand.
     const float reach = std::max(model.world->radii().back(), model.motion.grasp_radius);
-    resting_.emplace_back(model.most_objects, reach, &memory_);
+    resting_.emplace_back(model.most_objects, reach, &memory_, &bounds_memory_);
   }
   objects_.resize(padded * most_objects_);
   ignored_.resize(padded * held_words_);
@@ -107,7 +116,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
 
 void BatchState::prefetch(std::size_t n) const noexcept {
   if (n >= envs_.size() || !is_large_) return;
-  prefetchBytes(&envs_[n], kEnvHotBytes);
+  prefetchBytes(&envs_[n], sizeof(Env));
   prefetchRow(observation(n));
   prefetchRow(bodyTransforms(n));
   // The chunk's rows in equal parts, an env each.
@@ -119,9 +128,10 @@ void BatchState::prefetch(std::size_t n) const noexcept {
 }
 
 std::size_t BatchState::bytes() const {
-  std::size_t bytes = bytesOf(envs_) + bytesOf(objects_) + bytesOf(ignored_) + bytesOf(leaving_) +
-                      bytesOf(rows_) + 2 * bytesOf(observations_) + bytesOf(bodies_) +
-                      bytesOf(rewards_) + 4 * bytesOf(dones_);
+  std::size_t bytes = bytesOf(envs_) + bytesOf(counters_) + bytesOf(held_) + bytesOf(objects_) +
+                      bytesOf(ignored_) + bytesOf(leaving_) + bytesOf(rows_) +
+                      2 * bytesOf(observations_) + bytesOf(bodies_) + bytesOf(rewards_) +
+                      4 * bytesOf(dones_);
   for (const RestingObjects& resting : resting_) bytes += resting.bytes();
   return bytes;
 }

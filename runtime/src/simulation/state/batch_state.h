@@ -29,9 +29,10 @@ inline constexpr std::size_t kBaseRows = 4;
           .stride = kChunk};
 }
 
-/// What happened in one env; added up by SimulationStatistics.
-struct EnvCounters {
-  double reward = 0;
+/// What happened in one env; added up by SimulationStatistics. Steps seldom change it.
+struct alignas(64) EnvCounters {
+  /// Episodes begun.
+  std::uint64_t begun = 0;
   std::uint32_t refused = 0;
   std::uint32_t slid = 0;
   std::uint32_t grasps = 0;
@@ -45,10 +46,8 @@ struct EnvCounters {
   std::uint64_t idle_steps = 0;
 };
 
-/// The object in the hand.
+/// The object in the hand of an env, if there is one.
 struct Held {
-  /// Counted in the episode; -1 for none.
-  std::int32_t object = -1;
   /// A ball around the centers of its spheres: center in the grip's frame, meters.
   Vec3 ball_center;
   float ball_radius = 0;
@@ -68,14 +67,18 @@ struct StepEvents {
   bool terminates = false;
 };
 
-/// One environment, apart from what the motion kernels read. What every step reads comes first, in
-/// two cache lines.
+/// What every step reads of one environment, apart from what the motion kernels do: one cache line.
 struct alignas(64) Env {
   std::uint32_t scene = 0;
   /// In Model::clearance.
   std::uint32_t clearance_map = kNoClearanceMap;
+  /// Index into Model::starts.
+  std::uint32_t start = 0;
   std::uint32_t step = 0;
+  std::uint32_t objects = 0;
   std::uint32_t target = 0;
+  /// The object in the hand, counted in the episode; -1 for none.
+  std::int32_t held = -1;
   /// Objects that the hand let go of and that some of the robot's spheres have penetrated since.
   /// Those spheres do not count against them until each is free of it once; else the hand could not
   /// leave them. BatchState::leaving() says which.
@@ -93,21 +96,14 @@ struct alignas(64) Env {
   /// something.
   bool refused = false;
   StepEvents events;
-  EnvCounters counters;
-  Held held;
-  /// Index into Model::starts.
-  std::uint32_t start = 0;
-  std::uint32_t objects = 0;
-  /// Episodes begun.
-  std::uint64_t ordinal = 0;
+  /// Of all episodes.
+  double reward_sum = 0;
 };
-/// What every step reads of an Env.
-inline constexpr std::size_t kEnvHotBytes = 128;
-static_assert(offsetof(Env, held.ball_center) <= kEnvHotBytes);
+static_assert(sizeof(Env) == 64);
 
 /// The object in the env's hand, which must not be empty.
 [[nodiscard]] inline const ObjectModel& heldModel(const Model& model, const Env& env) {
-  return model.object(env.start, static_cast<std::uint32_t>(env.held.object));
+  return model.object(env.start, static_cast<std::uint32_t>(env.held));
 }
 
 /// Sets what is kept about the spheres of the object in the hand.
@@ -127,6 +123,11 @@ class BatchState {
 
   [[nodiscard]] Env& env(std::size_t n) { return envs_[n]; }
   [[nodiscard]] const Env& env(std::size_t n) const { return envs_[n]; }
+  [[nodiscard]] EnvCounters& counters(std::size_t n) { return counters_[n]; }
+  [[nodiscard]] const EnvCounters& counters(std::size_t n) const { return counters_[n]; }
+  /// Of the object in the hand of an env, which must hold one.
+  [[nodiscard]] Held& held(std::size_t n) { return held_[n]; }
+  [[nodiscard]] const Held& held(std::size_t n) const { return held_[n]; }
   [[nodiscard]] RestingObjects& resting(std::size_t n) { return resting_[n]; }
   [[nodiscard]] const RestingObjects& resting(std::size_t n) const { return resting_[n]; }
   /// World poses of the episode's objects; that of a held one is where it was grasped.
@@ -291,6 +292,9 @@ class BatchState {
   detail::HugePages huge_pages_;
   /// All vectors are made once, one after the other, in here.
   std::pmr::monotonic_buffer_resource memory_;
+  /// For the bounds of resting objects: those of all envs lie together, apart from what is rarely
+  /// read, so that a step reads them as one stream.
+  std::pmr::monotonic_buffer_resource bounds_memory_;
   std::size_t env_count_ = 0;
   std::size_t most_objects_ = 0;
   std::size_t held_words_ = 0;
@@ -303,6 +307,8 @@ class BatchState {
   std::size_t observation_size_ = 0;
   std::size_t body_count_ = 0;
   std::pmr::vector<Env> envs_{&memory_};
+  std::pmr::vector<EnvCounters> counters_{&memory_};
+  std::pmr::vector<Held> held_{&memory_};
   std::pmr::vector<RestingObjects> resting_{&memory_};
   std::pmr::vector<Pose> objects_{&memory_};
   std::pmr::vector<std::uint64_t> ignored_{&memory_};

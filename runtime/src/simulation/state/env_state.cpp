@@ -12,10 +12,10 @@ EnvObjects envObjectsOf(const Model& model, const BatchState& state, std::size_t
                     .episode = model.starts[env.start].episode,
                     .placements = model.placements(model.episodeOf(env.start)),
                     .objects = state.objects(n).first(env.objects),
-                    .held = env.held.object,
+                    .held = env.held,
                     .world_from_held = {}};
-  if (env.held.object >= 0) {
-    result.world_from_held = gripPose(state.grip(n)) * env.held.grip_from_object;
+  if (env.held >= 0) {
+    result.world_from_held = gripPose(state.grip(n)) * state.held(n).grip_from_object;
   }
   return result;
 }

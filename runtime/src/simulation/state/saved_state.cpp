@@ -169,20 +169,20 @@ class Reader {
 
 void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer& out) {
   const Env& env = state.env(n);
-  const EnvCounters& counters = env.counters;
+  const EnvCounters& counters = state.counters(n);
   out.add(EnvRecord{
-      .ordinal = env.ordinal,
+      .ordinal = counters.begun,
       .nan_actions = counters.nan_actions,
       .idle_steps = counters.idle_steps,
-      .reward_sum = counters.reward,
+      .reward_sum = env.reward_sum,
       .episode = model.starts[env.start].episode,
       .step = env.step,
-      .held = env.held.object,
+      .held = env.held,
       .left = env.left,
       .counts = {counters.refused, counters.slid, counters.grasps, counters.drops,
                  counters.restored, counters.episodes, counters.successes, counters.failures},
-      .grip_from_held = env.held.grip_from_object,
-      .before = env.held.before,
+      .grip_from_held = state.held(n).grip_from_object,
+      .before = state.held(n).before,
       .base = state.base(n),
       .yaw = state.yaw(n),
       .grip = state.grip(n),
@@ -245,27 +245,27 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
   SavedEnv saved;
   saved.env.start = static_cast<std::uint32_t>(start - model.starts.begin());
   saved.env.step = record.step;
-  saved.env.ordinal = record.ordinal;
-  saved.env.held.object = record.held;
-  saved.env.held.grip_from_object = record.grip_from_held;
-  saved.env.held.before = record.before;
+  saved.env.held = record.held;
+  saved.held.grip_from_object = record.grip_from_held;
+  saved.held.before = record.before;
   saved.env.has_picked = record.has_picked != 0;
   saved.env.refused = record.was_refused != 0;
   saved.env.left = record.left;
   saved.env.objects =
       static_cast<std::uint32_t>(model.placements(model.episodeOf(saved.env.start)).size());
   saved.is_idle = record.is_idle != 0;
-  saved.env.counters = {.reward = record.reward_sum,
-                        .refused = refused,
-                        .slid = slid,
-                        .grasps = grasps,
-                        .drops = drops,
-                        .restored = restored,
-                        .episodes = episodes,
-                        .successes = successes,
-                        .failures = failures,
-                        .nan_actions = record.nan_actions,
-                        .idle_steps = record.idle_steps};
+  saved.env.reward_sum = record.reward_sum;
+  saved.counters = {.begun = record.ordinal,
+                    .refused = refused,
+                    .slid = slid,
+                    .grasps = grasps,
+                    .drops = drops,
+                    .restored = restored,
+                    .episodes = episodes,
+                    .successes = successes,
+                    .failures = failures,
+                    .nan_actions = record.nan_actions,
+                    .idle_steps = record.idle_steps};
   saved.base = record.base;
   saved.yaw = record.yaw;
   saved.grip = record.grip;
@@ -281,7 +281,7 @@ bool leavesAsSaid(const Model& model, const SavedEnv& saved) {
   for (std::uint32_t object = 0; object < saved.env.objects; ++object) {
     const auto row = std::span(saved.leaving).subspan(object * words, words);
     if (std::ranges::all_of(row, [](std::uint64_t word) { return word == 0; })) continue;
-    if (static_cast<std::int32_t>(object) == saved.env.held.object) return false;
+    if (static_cast<std::int32_t>(object) == saved.env.held) return false;
     ++left;
   }
   return left == saved.env.left;
@@ -399,13 +399,14 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
   beginEpisode(model, state, n, saved.env.start);
   Env& env = state.env(n);
   env.step = saved.env.step;
-  env.ordinal = saved.env.ordinal;
   env.held = saved.env.held;
-  if (env.held.object >= 0) measureHeld(heldModel(model, env), env.held);
+  state.held(n) = saved.held;
+  if (env.held >= 0) measureHeld(heldModel(model, env), state.held(n));
   env.has_picked = saved.env.has_picked;
   env.refused = saved.env.refused;
   env.left = saved.env.left;
-  env.counters = saved.env.counters;
+  env.reward_sum = saved.env.reward_sum;
+  state.counters(n) = saved.counters;
   const PoseArrays to = state.poses(n);
   *to.x = saved.base.x;
   *to.y = saved.base.y;
@@ -428,7 +429,7 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
   for (std::uint32_t object = 0; object < env.objects; ++object) {
     const Pose& pose = saved.objects[object];
     state.placeObject(n, object, pose);
-    if (static_cast<std::int32_t>(object) == env.held.object) continue;
+    if (static_cast<std::int32_t>(object) == env.held) continue;
     resting.insert(object, restingBox(model.object(env.start, object).box, pose));
   }
   state.idle()[n] = saved.is_idle ? 1 : 0;

@@ -22,8 +22,10 @@ namespace galactic::simulation {
 
 /// One env of a saved state, checked.
 struct SavedEnv {
-  /// Indices, counts and figures; reach, transport and what the episode says are not saved.
+  /// Indices and figures; reach, transport and what the episode says are not saved.
   Env env;
+  EnvCounters counters;
+  Held held;
   Vec3 base;
   float yaw = 0;
   GripFrame grip{};
