@@ -29,7 +29,8 @@ inline constexpr std::size_t kBaseRows = 4;
           .stride = kChunk};
 }
 
-/// What happened in one env; added up by SimulationStatistics. Steps seldom change it.
+/// What happened in one env; added up by SimulationStatistics. Apart from Env, because
+/// many steps change nothing of it.
 struct alignas(64) EnvCounters {
   /// Episodes begun.
   std::uint64_t begun = 0;
