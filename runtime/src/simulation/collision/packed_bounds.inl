@@ -1,6 +1,5 @@
-// Comparing bounds with those of 32 objects: included by resting_objects.cpp and
-// resting_objects_avx2.cpp, which differ in nothing else but the instructions that they may use. No
-// library templates here: see column_grid_avx2.cpp.
+// Comparing bounds with those of 32 objects: included by resting_objects.cpp and by the kernels,
+// which may use other instructions. No library templates here: see column_grid_avx2.cpp.
 #include "simulation/collision/resting_objects_kernels.h"
 
 #if defined(__SSE2__)
@@ -10,9 +9,13 @@
 namespace galactic::simulation {
 namespace {
 
-/// Of as many objects as any processor compares at once.
-constexpr std::uint32_t kHalf = kPackedObjects / 2;
-using Bytes = std::uint8_t __attribute__((vector_size(kHalf)));
+/// Objects that the processor compares at once.
+#if defined(__AVX2__)
+constexpr std::uint32_t kAtOnce = kPackedObjects;
+#else
+constexpr std::uint32_t kAtOnce = kPackedObjects / 2;
+#endif
+using Bytes = std::uint8_t __attribute__((vector_size(kAtOnce)));
 
 inline Bytes loadBytes(const std::uint8_t* from) {
   Bytes bytes;
@@ -22,11 +25,13 @@ inline Bytes loadBytes(const std::uint8_t* from) {
 
 /// The highest bit of each byte.
 inline std::uint32_t signsOf(const Bytes& bytes) {
-#if defined(__SSE2__)
+#if defined(__AVX2__)
+  return static_cast<std::uint32_t>(_mm256_movemask_epi8(reinterpret_cast<__m256i>(bytes)));
+#elif defined(__SSE2__)
   return static_cast<std::uint32_t>(_mm_movemask_epi8(reinterpret_cast<__m128i>(bytes)));
 #else
   std::uint32_t signs = 0;
-  for (std::uint32_t n = 0; n < kHalf; ++n) {
+  for (std::uint32_t n = 0; n < kAtOnce; ++n) {
     signs |= static_cast<std::uint32_t>(bytes[n] >> 7U) << n;
   }
   return signs;
@@ -60,30 +65,34 @@ constexpr QueryBounds queryBounds(const CellSpan& x, const CellSpan& bands, cons
           isEverywhere(x, z)};
 }
 
-/// Those of half of the objects, from `first` on, that are apart from the query along a horizontal
-/// axis, as bits from the lowest one on.
+/// Of the objects from `first` on that are compared at once, those that are apart from the query
+/// along a horizontal axis, as bits.
 inline std::uint32_t apart(const PackedBounds& objects, const QueryBounds& query,
                            std::uint32_t first) {
   const Bytes x = (loadBytes(objects.most_x + first) - query.least_x) |
                   (query.most_x - loadBytes(objects.least_x + first));
   const Bytes z = (loadBytes(objects.most_z + first) - query.least_z) |
                   (query.most_z - loadBytes(objects.least_z + first));
-  return signsOf(x | z);
+  return signsOf(x | z) << first;
 }
 
 /// Those that share no band with the query.
 inline std::uint32_t inOtherBands(const PackedBounds& objects, const QueryBounds& query,
                                   std::uint32_t first) {
   const Bytes none{};
-  return signsOf(reinterpret_cast<Bytes>((loadBytes(objects.bands + first) & query.bands) == none));
+  const auto others = (loadBytes(objects.bands + first) & query.bands) == none;
+  return signsOf(reinterpret_cast<Bytes>(others)) << first;
 }
 
 /// The objects whose bounds meet those of a query, as bits.
 inline std::uint32_t objectsNear(const PackedBounds& objects, const QueryBounds& query) {
+  std::uint32_t apart_from = 0;
+  std::uint32_t others = 0;
+  for (std::uint32_t first = 0; first < kPackedObjects; first += kAtOnce) {
+    apart_from |= apart(objects, query, first);
+    others |= inOtherBands(objects, query, first);
+  }
   const std::uint32_t everywhere = query.is_everywhere ? ~std::uint32_t{0} : objects.everywhere;
-  const std::uint32_t apart_from = apart(objects, query, 0) | apart(objects, query, kHalf) << kHalf;
-  const std::uint32_t others = inOtherBands(objects, query, 0) | inOtherBands(objects, query, kHalf)
-                                                                     << kHalf;
   return objects.resting & (everywhere | ~apart_from) & ~others;
 }
 

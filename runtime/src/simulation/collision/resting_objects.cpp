@@ -6,16 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "column_grid/column_grid_kernels.h"
 #include "simulation/collision/packed_bounds.inl"
 
 namespace galactic::simulation {
 namespace {
-
-/// Bounds of objects are this much larger, so that no rounding of a query can find an overlap that
-/// they do not know: meters, and parts of a coordinate.
-constexpr float kSlack = 1e-4F;
-constexpr float kRelativeSlack = 1e-6F;
 
 std::size_t packsFor(std::size_t objects) {
   return (objects + kPackedObjects - 1) / kPackedObjects;
@@ -24,7 +18,7 @@ std::size_t packsFor(std::size_t objects) {
 std::uint32_t bitOf(std::uint32_t index) { return 1U << (index % kPackedObjects); }
 
 /// Number of the cell that a coordinate is in, which never falls where coordinates rise; the last
-/// one for NaN. The kernel for AVX2 does the same.
+/// one for NaN. The kernels do the same.
 std::int32_t cellOf(float coordinate, float edge) {
   const float cell = coordinate * (1 / edge);
   const float below = cell < kFarthestCell ? cell : kFarthestCell;
@@ -42,7 +36,7 @@ QueryBounds boundsOf(const Vec3& least, const Vec3& most) {
 
 /// The centers that some query within `reach` of `center` may have.
 CellSpan cellsAround(float center, float reach, float edge) {
-  const float around = reach + kSlack + kRelativeSlack * (std::fabs(center) + reach);
+  const float around = reach + kBoundsSlack + kRelativeBoundsSlack * (std::fabs(center) + reach);
   return cellSpan(center - around, center + around, edge);
 }
 
@@ -65,28 +59,10 @@ bool anyOverlapping(const RestingView& objects, const Vec3& center, float radius
                     const Visit& visit) {
   return anyNear(objects, boundsOf(center, center), [&](std::uint32_t index) {
     const RestingBox& box = objects.boxes[index];
-    // The kernel for AVX2 asks for the heights first, too: no answer depends on it.
+    // The kernels ask for the heights first, too: no answer depends on it.
     return std::fabs(center.y - box.center.y) < box.half_height + radius &&
            overlaps(box, center, radius) && visit(index);
   });
-}
-
-unsigned touchingLanes(const RestingView& objects, const SphereBatch& spheres, std::size_t first,
-                       float radius) {
-  const auto found = [](std::uint32_t) { return true; };
-  unsigned lanes = 0;
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    const std::size_t n = first + lane;
-    const Vec3 center{spheres.x[n], spheres.y[n], spheres.z[n]};
-    const bool touches = anyOverlapping(objects, center, radius, found);
-    lanes |= static_cast<unsigned>(touches) << lane;
-  }
-  return lanes;
-}
-
-bool findTouching(const RestingView& objects, const SphereBatch& spheres, LaneGroup& at) {
-  return detail::hasAvx2() ? findTouchingAvx2(objects, spheres, at)
-                           : findTouchingPortable(objects, spheres, at);
 }
 
 /// What the caller of a query guarantees.
@@ -96,18 +72,6 @@ bool findTouching(const RestingView& objects, const SphereBatch& spheres, LaneGr
 }
 
 }  // namespace
-
-bool findTouchingPortable(const RestingView& objects, const SphereBatch& spheres,
-                          LaneGroup& at) noexcept {
-  for (; at.range < spheres.ranges.size(); ++at.range, at.group = 0) {
-    const RadiusRange& range = spheres.ranges[at.range];
-    for (; at.group * kLanes < range.count; ++at.group) {
-      at.lanes = touchingLanes(objects, spheres, range.first + at.group * kLanes, range.radius);
-      if (at.lanes != 0) return true;
-    }
-  }
-  return false;
-}
 
 RestingObjects::RestingObjects(std::size_t most_objects, float largest_radius,
                                std::pmr::memory_resource* memory,
@@ -168,23 +132,15 @@ RestingView RestingObjects::view() const noexcept {
 bool RestingObjects::touches(const SphereBatch& spheres) const noexcept {
   assert(radiiFit(spheres, largest_radius_));
   LaneGroup at;
-  return findTouching(view(), spheres, at);
+  return restingKernels().find_touching(view(), spheres, at);
 }
 
-bool RestingObjects::mayTouch(const Vec3& least, const Vec3& most) const noexcept {
-  const QueryBounds query = boundsOf(least, most);
-  bool may = false;
-  for (std::size_t p = 0; p < bounds_.size(); ++p) {
-    const std::uint32_t near = objectsNear(bounds_[p], query);
-    may = may || near != 0;
-    // Whoever asks looks at these next, mostly at one. How many there are nobody can guess: no
-    // loop.
-    if (near != 0) {
-      __builtin_prefetch(
-          &boxes_[p * kPackedObjects + static_cast<std::size_t>(std::countr_zero(near))]);
-    }
-  }
-  return may;
+bool RestingObjects::touches(const BoundedSpheres& spheres) const noexcept {
+  return restingKernels().touches(view(), spheres);
+}
+
+bool RestingObjects::mayTouch(const CenterBounds& centers) const noexcept {
+  return restingKernels().may_touch(view(), centers);
 }
 
 std::size_t RestingObjects::hits(const SphereBatch& spheres,
@@ -193,7 +149,7 @@ std::size_t RestingObjects::hits(const SphereBatch& spheres,
   const RestingView objects = view();
   std::size_t written = 0;
   LaneGroup at;
-  for (; findTouching(objects, spheres, at); ++at.group) {
+  for (; restingKernels().find_touching(objects, spheres, at); ++at.group) {
     const RadiusRange& range = spheres.ranges[at.range];
     for (; at.lanes != 0; at.lanes &= at.lanes - 1) {
       const std::size_t n =
@@ -233,7 +189,7 @@ float RestingObjects::fall(const Vec3& center, float radius) const noexcept {
     // Whoever lies lower than the sphere is known to sink, or aside of it, needs no closer look.
     if (center.y - radius - box.center.y - box.half_height > least) return;
     const Vec3 half = halfBounds(box);
-    const float around = radius + kSlack;
+    const float around = radius + kBoundsSlack;
     if (std::fabs(center.x - box.center.x) > half.x + around) return;
     if (std::fabs(center.z - box.center.z) > half.z + around) return;
     const std::optional<Span> heights = overlapHeights(box, center.x, center.z, radius);

@@ -58,10 +58,12 @@ class RestingObjects {
   /// Whether any sphere overlaps any object. No radius may exceed the largest. A sphere with a
   /// center that is not a number overlaps nothing.
   [[nodiscard]] bool touches(const SphereBatch& spheres) const noexcept;
+  /// The same for a robot's, which their bounds answer for most of the time.
+  [[nodiscard]] bool touches(const BoundedSpheres& spheres) const noexcept;
 
-  /// Whether a sphere (radius at most the largest) whose center is between `least` and `most` along
-  /// each axis could overlap an object. No means no.
-  [[nodiscard]] bool mayTouch(const Vec3& least, const Vec3& most) const noexcept;
+  /// Whether a sphere (radius at most the largest) whose center is within bounds could overlap an
+  /// object. No means no.
+  [[nodiscard]] bool mayTouch(const CenterBounds& centers) const noexcept;
 
   /// All overlaps, by sphere, then object; as many as `out` takes. Returns how many were written.
   [[nodiscard]] std::size_t hits(const SphereBatch& spheres,

@@ -85,14 +85,29 @@ struct LaneGroup {
   unsigned lanes = 0;
 };
 
-/// Moves `at` on to the first group, `at` itself or later, with a sphere that overlaps an object;
-/// false, with `at` anywhere, when there is none.
-bool findTouchingPortable(const RestingView& objects, const SphereBatch& spheres,
-                          LaneGroup& at) noexcept;
+/// Bounds of objects are this much larger, so that no rounding of a query can find an overlap that
+/// they do not know: meters, and parts of a coordinate.
+inline constexpr float kBoundsSlack = 1e-4F;
+inline constexpr float kRelativeBoundsSlack = 1e-6F;
 
-/// The same, eight spheres at a time. Call it only where detail::hasAvx2(). Bit for bit the answers
-/// of the portable one: both do the same operations in the same order, and none is contracted.
-bool findTouchingAvx2(const RestingView& objects, const SphereBatch& spheres,
-                      LaneGroup& at) noexcept;
+/// What is asked of eight spheres at a time. Both versions do the same operations in the same
+/// order, and agree bit for bit.
+struct RestingKernels {
+  /// Moves `at` on to the first group, `at` itself or later, with a sphere that overlaps an object;
+  /// false, with `at` anywhere, when there is none.
+  bool (*find_touching)(const RestingView&, const SphereBatch&, LaneGroup& at) noexcept = nullptr;
+  /// Whether a sphere, of the largest radius at most, whose center is within bounds could overlap
+  /// an object. No means no.
+  bool (*may_touch)(const RestingView&, const CenterBounds&) noexcept = nullptr;
+  /// Whether any sphere overlaps any object.
+  bool (*touches)(const RestingView&, const BoundedSpheres&) noexcept = nullptr;
+};
+
+/// For any processor.
+[[nodiscard]] RestingKernels portableResting() noexcept;
+/// For processors with AVX2.
+[[nodiscard]] RestingKernels avx2Resting() noexcept;
+/// The fastest ones that this processor can run.
+[[nodiscard]] const RestingKernels& restingKernels() noexcept;
 
 }  // namespace galactic::simulation

@@ -10,6 +10,11 @@ inline constexpr std::size_t kLanes = 8;
 /// Numbers that bound centers: least and most x, then y, then z, meters.
 inline constexpr std::size_t kBounds = 6;
 
+/// These of a set of spheres, and the last two again: one vector.
+struct alignas(32) CenterBounds {
+  float values[kLanes] = {};
+};
+
 /// The next multiple of kLanes.
 [[nodiscard]] constexpr std::size_t paddedToLanes(std::size_t count) {
   return (count + kLanes - 1) / kLanes * kLanes;
@@ -63,6 +68,23 @@ struct EightSpheres {
   float radius = 0;
   /// Which of the eight are spheres, as bits; the others repeat the last one.
   unsigned spheres = 0;
+};
+
+/// The spheres of one env's robot by eights, with bounds, which spare most looks at them.
+struct BoundedSpheres {
+  /// World frame, meters; spheres 8 g to 8 g + 7 are group g.
+  const float* x = nullptr;
+  const float* y = nullptr;
+  const float* z = nullptr;
+  std::size_t group_count = 0;
+  /// Of each group, meters, padded to lanes.
+  const float* radii = nullptr;
+  /// Of their centers, as BodyArrays::bounds.
+  const float* bounds = nullptr;
+  /// From one bound to the next: groups, padded to lanes.
+  std::size_t bounds_stride = 0;
+  /// Of all centers.
+  const CenterBounds* all = nullptr;
 };
 
 }  // namespace galactic::simulation

@@ -1,6 +1,5 @@
-// Vectors of eight envs or spheres, and how they become rows, one each: motion_kernel.inl and
-// way_out_kernel.inl are written in terms of these. No library templates here: see
-// column_grid_avx2.cpp.
+// Vectors of eight envs or spheres, and how they become rows, one each: kernels are written in
+// terms of these. No library templates here: see column_grid_avx2.cpp.
 #if defined(__AVX2__)
 #include <immintrin.h>
 
@@ -50,6 +49,11 @@ inline unsigned signsOf(IntLanes lanes) {
   return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(lanes)));
 }
 
+/// The nearest whole numbers, the even ones of two, for |value| < 2^31.
+inline IntLanes nearestWhole(Lanes value) {
+  return reinterpret_cast<IntLanes>(_mm256_cvtps_epi32(reinterpret_cast<__m256>(value)));
+}
+
 /// Words that lie `index` times kScale bytes behind `from`; no index is negative.
 template <int kScale>
 inline IntLanes gather(const void* from, const std::int32_t* index) {
@@ -62,6 +66,14 @@ inline unsigned signsOf(IntLanes lanes) {
   unsigned bits = 0;
   for (unsigned n = 0; n < kWidth; ++n) bits |= (lanes[n] < 0 ? 1U : 0U) << n;
   return bits;
+}
+
+inline IntLanes nearestWhole(Lanes value) {
+  IntLanes whole{};
+  for (unsigned n = 0; n < kWidth; ++n) {
+    whole[n] = static_cast<std::int32_t>(__builtin_lrintf(value[n]));
+  }
+  return whole;
 }
 
 template <int kScale>
@@ -87,6 +99,20 @@ inline void leastOf(Lanes x, Lanes z, float& least_x, float& least_z) {
                            __builtin_shufflevector(pairs, pairs, 4, 5, 6, 7));
   least_x = both[2] < both[0] ? both[2] : both[0];
   least_z = both[3] < both[1] ? both[3] : both[1];
+}
+
+/// The least and the most of eight numbers.
+inline void spanOf(IntLanes lanes, std::int32_t& least, std::int32_t& most) {
+  const auto lower = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3);
+  const auto upper = __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+  const auto less = upper < lower ? upper : lower;
+  const auto more = upper > lower ? upper : lower;
+  // Inverting turns the order around.
+  const auto one = __builtin_shufflevector(less, ~more, 0, 1, 4, 5);
+  const auto other = __builtin_shufflevector(less, ~more, 2, 3, 6, 7);
+  const auto both = other < one ? other : one;
+  least = both[1] < both[0] ? both[1] : both[0];
+  most = ~(both[3] < both[2] ? both[3] : both[2]);
 }
 
 /// Element 0 of eight rows.

@@ -35,6 +35,7 @@ Chunk::Chunk(const Model& model)
       rows_(kBaseRows + model.variableCount() + kGripNumbers),
       centers_(kChunk * 3 * model.sphereCount() / kLanes),
       bounds_(kChunk * kBounds * group_stride_ / kLanes),
+      group_radii_(group_stride_ / kLanes),
       frames_(frameRows(model.motion.nodes.size())),
       collision_(std::max(model.sphereCount(), model.most_held_spheres)),
       placement_(model.most_held_spheres, model.world->radii()),
@@ -46,7 +47,11 @@ Chunk::Chunk(const Model& model)
       column_ways_(kLanes * mostWays(model)),
       blocked_bits_(model.bodyWords()),
       held_bits_(model.heldWords()),
-      body_bits_(model.bodyWords()) {}
+      body_bits_(model.bodyWords()) {
+  for (std::size_t n = 0; n < group_count_; ++n) {
+    group_radii_[n / kLanes].values[n % kLanes] = model.groups[n].radius;
+  }
+}
 
 BodyArrays Chunk::bodies(std::size_t first) {
   shiftFrames();
@@ -54,7 +59,7 @@ BodyArrays Chunk::bodies(std::size_t first) {
           .centers = centers_.data()->values.data() + first * spheresStride(),
           .grips = (&rows_.back() + 1 - kGripNumbers)->values + first,
           .bounds = bounds_.data()->values.data() + first * kBounds * group_stride_,
-          .extents = extents_[first].values.data()};
+          .extents = extents_[first].values};
 }
 
 void Chunk::shift(std::size_t env, const Vec3& by) {
@@ -66,7 +71,7 @@ void Chunk::shift(std::size_t env, const Vec3& by) {
                   .sphere_count = sphere_count_,
                   .bounds = bounds_.data()->values.data() + env * kBounds * group_stride_,
                   .group_count = group_stride_,
-                  .extents = extents_[env].values.data()});
+                  .extents = extents_[env].values});
   moveBy(&rows_.back() + 1 - kGripNumbers + 9, env, by);
   if (!wants_bodies_) return;
   // Frames move later, those of all candidates at once, and each by one move at a time.
@@ -107,19 +112,21 @@ void Chunk::takeOver(std::size_t env, Chunk& other, std::size_t from) {
   floor_[env] = other.floor_[from];
 }
 
-Vec3 Chunk::least(std::size_t env) const {
-  const std::array<float, kLanes>& bounds = extents_[env].values;
-  return {bounds[0], bounds[2], bounds[4]};
-}
-
-Vec3 Chunk::most(std::size_t env) const {
-  const std::array<float, kLanes>& bounds = extents_[env].values;
-  return {bounds[1], bounds[3], bounds[5]};
-}
-
 SphereBatch Chunk::spheres(std::size_t env) const {
   const float* row = centers_.data()->values.data() + env * spheresStride();
   return {row, row + sphere_count_, row + 2 * sphere_count_, ranges_};
+}
+
+BoundedSpheres Chunk::boundedSpheres(std::size_t env) const {
+  const SphereBatch all = spheres(env);
+  return {.x = all.x,
+          .y = all.y,
+          .z = all.z,
+          .group_count = group_count_,
+          .radii = group_radii_.data()->values.data(),
+          .bounds = bounds(env, 0).values,
+          .bounds_stride = group_stride_,
+          .all = &extents_[env]};
 }
 
 }  // namespace galactic::simulation

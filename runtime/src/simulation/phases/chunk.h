@@ -80,9 +80,12 @@ class Chunk {
   [[nodiscard]] std::span<InSlices> inSlices(std::size_t eight) {
     return std::span(in_slices_).subspan(eight * kChunk, kChunk);
   }
-  /// The least and the most of all their coordinates.
-  [[nodiscard]] Vec3 least(std::size_t env) const;
-  [[nodiscard]] Vec3 most(std::size_t env) const;
+  /// Those of all of them.
+  [[nodiscard]] const CenterBounds& extents(std::size_t env) const { return extents_[env]; }
+  /// The least and the greatest height of a center.
+  [[nodiscard]] float lowest(std::size_t env) const { return extents_[env].values[2]; }
+  [[nodiscard]] float highest(std::size_t env) const { return extents_[env].values[3]; }
+  [[nodiscard]] BoundedSpheres boundedSpheres(std::size_t env) const;
   [[nodiscard]] GripFrame grip(std::size_t env) const {
     GripFrame grip{};
     const EnvRow* rows = gripRows();
@@ -147,7 +150,9 @@ class Chunk {
   std::vector<EnvRow> rows_;
   std::vector<AlignedLanes> centers_;
   std::vector<AlignedLanes> bounds_;
-  std::array<AlignedLanes, kChunk> extents_{};
+  std::array<CenterBounds, kChunk> extents_{};
+  /// Of the groups, meters, padded to lanes.
+  std::vector<AlignedLanes> group_radii_;
   std::vector<EnvRow> frames_;
   /// By how much the frames are behind, along X, Y and Z, and those of which candidates, as bits.
   std::array<EnvRow, 3> frames_behind_{};

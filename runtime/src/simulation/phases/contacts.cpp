@@ -21,11 +21,10 @@ bool anyCounts(std::span<const std::uint64_t> bits, IgnoredSpheres ignored) {
 bool bodyTouchesObjects(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
   const RestingObjects& objects = step.state.resting(n);
-  if (!objects.mayTouch(step.chunk.least(e), step.chunk.most(e))) return false;
-  const SphereBatch spheres = step.chunk.spheres(e);
-  bool touches = withoutLeft(step, e, [&] { return objects.touches(spheres); });
+  const BoundedSpheres robot = step.chunk.boundedSpheres(e);
+  bool touches = withoutLeft(step, e, [&] { return objects.touches(robot); });
   forEachLeft(step, e, [&](std::uint32_t object) {
-    overlapping(objects.box(object), spheres, step.chunk.bodyBits());
+    overlapping(objects.box(object), step.chunk.spheres(e), step.chunk.bodyBits());
     touches = touches || anyCounts(step.chunk.bodyBits(), step.state.leaving(n, object));
   });
   return touches;
@@ -164,11 +163,11 @@ bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept {
   const float reach = held.ball_radius + kSlack;
   const Vec3 least{center.x - reach, center.y - reach, center.z - reach};
   const Vec3 most{center.x + reach, center.y + reach, center.z + reach};
-  if (step.state.resting(step.first + e).mayTouch(least, most)) return false;
+  const CenterBounds each{{least.x, most.x, least.y, most.y, least.z, most.z, least.z, most.z}};
+  if (step.state.resting(step.first + e).mayTouch(each)) return false;
   alignas(32) std::array<float, kBounds * kLanes> bounds;
-  const std::array<float, kBounds> each{least.x, most.x, least.y, most.y, least.z, most.z};
   for (std::size_t b = 0; b < kBounds; ++b) {
-    std::fill_n(bounds.data() + b * kLanes, kLanes, each[b]);
+    std::fill_n(bounds.data() + b * kLanes, kLanes, each.values[b]);
   }
   const ClearanceMaps& maps = step.model.clearance;
   SureGroups sure;

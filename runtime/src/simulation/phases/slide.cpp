@@ -353,7 +353,7 @@ class Glide {
   bool leaveObjects() {
     PushSum sum;
     CollisionScratch& scratch = step_.chunk.collision();
-    if (obstacles_.objects.mayTouch(step_.chunk.least(e_), step_.chunk.most(e_))) {
+    if (obstacles_.objects.mayTouch(step_.chunk.extents(e_))) {
       withoutLeft(step_, e_, [&] {
         return pushOutOfObjects(obstacles_.objects, step_.chunk.spheres(e_), {}, scratch, sum);
       });

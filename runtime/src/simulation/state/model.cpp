@@ -120,8 +120,8 @@ class StartFinder {
     if (!isFree(step, 0) && !slideClear(step, 0)) return false;
     const PoseArrays pose = chunk_.candidates(0);
     const float floor = chunk_.base(0).y;
-    heights_.lowest = std::min(heights_.lowest, chunk_.least(0).y - floor);
-    heights_.highest = std::max(heights_.highest, chunk_.most(0).y - floor);
+    heights_.lowest = std::min(heights_.lowest, chunk_.lowest(0) - floor);
+    heights_.highest = std::max(heights_.highest, chunk_.highest(0) - floor);
     model_.starts.push_back({n, chunk_.base(0), *pose.yaw, chunk_.grip(0)});
     keepBodies(step, {~std::uint32_t{0}});
     const std::span<const RigidTransform> bodies = state_.bodyTransforms(0);

@@ -5,11 +5,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <set>
+#include <span>
+#include <utility>
 
 #include "column_grid/column_grid_kernels.h"
 #include "support/homes/resting_bodies.h"
@@ -18,15 +22,22 @@
 namespace galactic::test::resting_objects_test {
 namespace {
 
-using simulation::findTouchingAvx2;
-using simulation::findTouchingPortable;
+using simulation::avx2Resting;
+using simulation::BoundedSpheres;
+using simulation::CenterBounds;
 using simulation::kBandHeight;
 using simulation::kBands;
+using simulation::kBounds;
 using simulation::kByteCells;
 using simulation::kCellEdge;
+using simulation::kLanes;
 using simulation::LaneGroup;
 using simulation::overlaps;
+using simulation::paddedToLanes;
+using simulation::portableResting;
 using simulation::RadiusRange;
+using simulation::RestingBox;
+using simulation::RestingKernels;
 using simulation::RestingObjects;
 using simulation::RestingView;
 using simulation::SphereBatch;
@@ -304,8 +315,8 @@ TEST(RestingObjects, AnswerAlikeBitForBitWithBothKernels) {
     for (std::size_t first = 0; first < centers.size() / 8; ++first) {
       LaneGroup portable{.group = first};
       LaneGroup vectorised{.group = first};
-      const bool found = findTouchingPortable(objects.view(), spheres, portable);
-      ASSERT_EQ(found, findTouchingAvx2(objects.view(), spheres, vectorised));
+      const bool found = portableResting().find_touching(objects.view(), spheres, portable);
+      ASSERT_EQ(found, avx2Resting().find_touching(objects.view(), spheres, vectorised));
       if (!found) break;
       ASSERT_EQ(portable.range, vectorised.range);
       ASSERT_EQ(portable.group, vectorised.group);
@@ -314,6 +325,125 @@ TEST(RestingObjects, AnswerAlikeBitForBitWithBothKernels) {
     }
   }
   tally.expectBothSides();
+}
+
+/// Spheres by eights as a robot's are, each eight of its own radius, with their bounds.
+class Robot {
+ public:
+  /// `radii`: of each eight.
+  Robot(const std::vector<Vec3>& centers, std::vector<float> radii)
+      : groups_(centers.size() / kLanes),
+        stride_(paddedToLanes(groups_)),
+        radii_(std::move(radii)),
+        bounds_(kBounds * stride_) {
+    for (const Vec3& center : centers) {
+      x_.push_back(center.x);
+      y_.push_back(center.y);
+      z_.push_back(center.z);
+    }
+    for (std::size_t n = 0; n < groups_; ++n) {
+      ranges_.push_back({0, radii_[n], static_cast<std::uint32_t>(n * kLanes), kLanes});
+    }
+    radii_.resize(stride_);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::vector<float>& along = *std::array{&x_, &y_, &z_}[axis];
+      for (std::size_t n = 0; n < stride_; ++n) {
+        // Lanes beyond the last group repeat the first of their eight.
+        const std::size_t group = n < groups_ ? n : n / kLanes * kLanes;
+        const auto [least, most] =
+            std::ranges::minmax(std::span(along).subspan(group * kLanes, kLanes));
+        bounds_[2 * axis * stride_ + n] = least;
+        bounds_[(2 * axis + 1) * stride_ + n] = most;
+      }
+      const auto [least, most] = std::ranges::minmax(along);
+      all_.values[2 * axis] = least;
+      all_.values[2 * axis + 1] = most;
+    }
+  }
+
+  [[nodiscard]] SphereBatch batch() const { return {x_.data(), y_.data(), z_.data(), ranges_}; }
+  [[nodiscard]] BoundedSpheres bounded() const {
+    return {x_.data(),     y_.data(),      z_.data(), groups_,
+            radii_.data(), bounds_.data(), stride_,   &all_};
+  }
+  [[nodiscard]] const CenterBounds& all() const { return all_; }
+
+ private:
+  std::size_t groups_;
+  std::size_t stride_;
+  std::vector<float> radii_;
+  std::vector<float> bounds_;
+  CenterBounds all_;
+  std::vector<float> x_;
+  std::vector<float> y_;
+  std::vector<float> z_;
+  std::vector<RadiusRange> ranges_;
+};
+
+/// As many centers as eights of spheres have, each eight together somewhere within two meters.
+std::vector<Vec3> robotCenters(std::size_t eights, const std::vector<Body>& bodies,
+                               const Room& room, std::mt19937& random) {
+  const Vec3 base = randomCenter(bodies, room, random);
+  const auto aside = [&](float most) { return uniformIn(random, -most, most); };
+  std::vector<Vec3> centers;
+  for (std::size_t eight = 0; eight < eights; ++eight) {
+    const Vec3 link = base + Vec3{aside(1), aside(0.3F), aside(1)};
+    for (std::size_t n = 0; n < kLanes; ++n) {
+      centers.push_back(link + Vec3{aside(0.1F), aside(0.1F), aside(0.1F)});
+    }
+  }
+  return centers;
+}
+
+TEST(RestingObjects, BoundsOfARobotChangeNoAnswer) {
+  std::mt19937 random(410);
+  std::vector<RestingKernels> kernels{portableResting()};
+  if (detail::hasAvx2()) kernels.push_back(avx2Resting());
+  Tally tally;
+  Tally may_touch;
+  for (int round = 0; round < 1000; ++round) {
+    // Far from the origin, coordinates are coarse, and cells have any number.
+    const float far = round % 4 == 0 ? -700.0F : 0.0F;
+    const Room room{.x = {far, far + 8}, .z = {0, 8}};
+    const std::vector<Body> bodies = randomBodies(room, random() % 20, random);
+    const RestingObjects objects = restingAt(bodies);
+    std::vector<float> radii(1 + random() % 20);
+    for (float& radius : radii) radius = kRadii[random() % 3];
+    const Robot robot(robotCenters(radii.size(), bodies, room, random), radii);
+    const bool touches = objects.touches(robot.batch());
+    tally.add(touches);
+    for (const RestingKernels& each : kernels) {
+      ASSERT_EQ(each.touches(objects.view(), robot.bounded()), touches) << round;
+      const bool may = each.may_touch(objects.view(), robot.all());
+      ASSERT_TRUE(may || !touches) << round;
+      may_touch.add(may);
+    }
+  }
+  tally.expectBothSides();
+  may_touch.expectBothSides();
+}
+
+TEST(RestingObjects, BoundsOfARobotHideNoSphereThatJustOverlaps) {
+  std::mt19937 random(411);
+  const Room room{.x = {0, 3}, .z = {0, 3}};
+  for (int round = 0; round < 2000; ++round) {
+    const std::vector<Body> bodies = randomBodies(room, 1, random);
+    const RestingObjects objects = restingAt(bodies);
+    // Just nearer than its radius to the point of the box that is farthest along an axis.
+    const RestingBox box = bodies[0].resting();
+    const bool along_x = random() % 2 == 0;
+    const float side = random() % 2 == 0 ? 1.0F : -1.0F;
+    const auto corner = [&](const Vec3& axis, float half) {
+      return axis * std::copysign(half, side * (along_x ? axis.x : axis.z));
+    };
+    Vec3 center = box.center + corner(box.axis_x, box.half_extents.x) +
+                  corner(box.axis_y, box.half_extents.y) + corner(box.axis_z, box.half_extents.z);
+    const float radius = kRadii[random() % 3];
+    (along_x ? center.x : center.z) += side * 0.999F * radius;
+    const Robot robot(std::vector<Vec3>(kLanes, center), {radius});
+    ASSERT_TRUE(objects.touches(robot.batch())) << round;
+    ASSERT_TRUE(objects.touches(robot.bounded())) << round;
+  }
 }
 
 TEST(RestingObjects, NearestIsTheOneOfBruteForce) {
