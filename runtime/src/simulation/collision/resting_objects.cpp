@@ -11,6 +11,11 @@
 namespace galactic::simulation {
 namespace {
 
+/// Bounds of objects are this much larger, so that no rounding of a query can find an overlap that
+/// they do not know: meters, and parts of a coordinate.
+constexpr float kSlack = 1e-4F;
+constexpr float kRelativeSlack = 1e-6F;
+
 std::size_t packsFor(std::size_t objects) {
   return (objects + kPackedObjects - 1) / kPackedObjects;
 }
@@ -36,7 +41,7 @@ QueryBounds boundsOf(const Vec3& least, const Vec3& most) {
 
 /// The centers that some query within `reach` of `center` may have.
 CellSpan cellsAround(float center, float reach, float edge) {
-  const float around = reach + kBoundsSlack + kRelativeBoundsSlack * (std::fabs(center) + reach);
+  const float around = reach + kSlack + kRelativeSlack * (std::fabs(center) + reach);
   return cellSpan(center - around, center + around, edge);
 }
 
@@ -189,7 +194,7 @@ float RestingObjects::fall(const Vec3& center, float radius) const noexcept {
     // Whoever lies lower than the sphere is known to sink, or aside of it, needs no closer look.
     if (center.y - radius - box.center.y - box.half_height > least) return;
     const Vec3 half = halfBounds(box);
-    const float around = radius + kBoundsSlack;
+    const float around = radius + kSlack;
     if (std::fabs(center.x - box.center.x) > half.x + around) return;
     if (std::fabs(center.z - box.center.z) > half.z + around) return;
     const std::optional<Span> heights = overlapHeights(box, center.x, center.z, radius);

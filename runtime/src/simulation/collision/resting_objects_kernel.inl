@@ -109,42 +109,67 @@ bool mayTouchKernel(const RestingView& objects, const CenterBounds& bounds) noex
   return near != 0;
 }
 
-/// How far a box reaches along one axis of the world, as halfBounds().
-inline float halfAlong(const RestingBox& box, float Vec3::*axis) {
-  return __builtin_fabsf(box.axis_x.*axis) * box.half_extents.x +
-         __builtin_fabsf(box.axis_y.*axis) * box.half_extents.y +
-         __builtin_fabsf(box.axis_z.*axis) * box.half_extents.z;
+/// Bounds of eight groups of spheres, as those of QueryBounds.
+struct EightBounds {
+  IntLanes least_x, most_x, least_z, most_z, bands, is_everywhere;
+};
+
+inline IntLanes bandsOf(IntLanes first, IntLanes last) {
+  const IntLanes further = last - first;
+  const IntLanes run = (2 << (further & (kBands - 1))) - 1;
+  const IntLanes by = first & (kBands - 1);
+  const IntLanes bands = run << by | run >> (kBands - by);
+  return (further < 0) | (further >= kBands - 1) ? IntLanes{} + kAllBands : bands;
 }
 
-/// Which of eight groups of spheres a box is apart from along an axis. `bounds`: least, then most.
-inline IntLanes apartAlong(float center, float half, Lanes radii, const float* bounds,
-                           std::size_t stride) {
-  const float slack = kBoundsSlack + kRelativeBoundsSlack * __builtin_fabsf(center);
-  const Lanes reach = (radii + spread(half)) * spread(1 + kRelativeBoundsSlack) + spread(slack);
-  return (load(bounds) > spread(center) + reach) | (load(bounds + stride) < spread(center) - reach);
+/// `bounds`: of the first group, `stride` apart.
+inline EightBounds boundsOfEight(const float* bounds, std::size_t stride) {
+  const Lanes cells = spread(1 / kCellEdge);
+  const Lanes heights = spread(1 / kBandHeight);
+  EightBounds eight;
+  eight.least_x = cellsOf(load(bounds), cells);
+  eight.most_x = cellsOf(load(bounds + stride), cells);
+  eight.bands = bandsOf(cellsOf(load(bounds + 2 * stride), heights),
+                        cellsOf(load(bounds + 3 * stride), heights));
+  eight.least_z = cellsOf(load(bounds + 4 * stride), cells);
+  eight.most_z = cellsOf(load(bounds + 5 * stride), cells);
+  const IntLanes wide = eight.most_x - eight.least_x;
+  const IntLanes deep = eight.most_z - eight.least_z;
+  eight.is_everywhere = (wide < 0) | (wide > kMostByteCells) | (deep < 0) | (deep > kMostByteCells);
+  return eight;
 }
 
-/// The groups of an eight that may overlap a box, as bits.
-inline unsigned groupsNear(const RestingBox& box, const BoundedSpheres& spheres,
-                           std::size_t first) {
-  const Lanes radii = load(spheres.radii + first);
-  const float* bounds = spheres.bounds + first;
-  const std::size_t stride = spheres.bounds_stride;
-  const IntLanes apart =
-      apartAlong(box.center.x, halfAlong(box, &Vec3::x), radii, bounds, stride) |
-      apartAlong(box.center.y, box.half_height, radii, bounds + 2 * stride, stride) |
-      apartAlong(box.center.z, halfAlong(box, &Vec3::z), radii, bounds + 4 * stride, stride);
-  const std::size_t left = spheres.group_count - first;
-  const unsigned groups = left < kLanes ? (1U << left) - 1 : (1U << kLanes) - 1;
-  return groups & ~signsOf(apart);
+/// The groups of an eight whose bounds meet those of object `n`, as bits: objectsNear() the other
+/// way around.
+inline unsigned groupsNear(const PackedBounds& objects, std::size_t n, const EightBounds& eight) {
+  // The sign of a byte.
+  constexpr int kAbove = 24;
+  const IntLanes apart = ((eight.most_x - std::int32_t{objects.least_x[n]}) |
+                          (std::int32_t{objects.most_x[n]} - eight.least_x) |
+                          (eight.most_z - std::int32_t{objects.least_z[n]}) |
+                          (std::int32_t{objects.most_z[n]} - eight.least_z))
+                         << kAbove;
+  const auto is_object_everywhere = -static_cast<std::int32_t>(objects.everywhere >> n & 1U);
+  const IntLanes in_other_bands = (eight.bands & std::int32_t{objects.bands[n]}) == 0;
+  return signsOf((~apart | eight.is_everywhere | is_object_everywhere) & ~in_other_bands);
 }
 
-inline bool touchesBox(const RestingBox& box, const BoundedSpheres& spheres) {
+/// Whether a sphere of groups overlaps one of some objects, as bits, whose bounds are packed
+/// together.
+inline bool touchesSome(const PackedBounds& bounds, const RestingBox* boxes, std::uint32_t objects,
+                        const BoundedSpheres& spheres) {
   for (std::size_t first = 0; first < spheres.group_count; first += kLanes) {
-    for (unsigned near = groupsNear(box, spheres, first); near != 0; near &= near - 1) {
-      const std::size_t group = first + static_cast<std::size_t>(__builtin_ctz(near));
-      const Centers centers = centersAt(spheres.x, spheres.y, spheres.z, group * kLanes);
-      if (overlapping(box, centers, spheres.radii[group]) != 0) return true;
+    const std::size_t count = spheres.group_count - first;
+    const unsigned groups = count < kLanes ? (1U << count) - 1 : (1U << kLanes) - 1;
+    const EightBounds eight = boundsOfEight(spheres.bounds + first, spheres.bounds_stride);
+    for (std::uint32_t left = objects; left != 0; left &= left - 1) {
+      const auto n = static_cast<std::size_t>(__builtin_ctz(left));
+      unsigned near = groups & groupsNear(bounds, n, eight);
+      for (; near != 0; near &= near - 1) {
+        const std::size_t group = first + static_cast<std::size_t>(__builtin_ctz(near));
+        const Centers centers = centersAt(spheres.x, spheres.y, spheres.z, group * kLanes);
+        if (overlapping(boxes[n], centers, spheres.radii[group]) != 0) return true;
+      }
     }
   }
   return false;
@@ -155,10 +180,12 @@ bool touchesKernel(const RestingView& given_objects, const BoundedSpheres& given
   const BoundedSpheres spheres = given_spheres;
   const QueryBounds query = boundsOf(*spheres.all);
   for (std::size_t p = 0; p < objects.bounds_count; ++p) {
+    const std::uint32_t near = objectsNear(objects.bounds[p], query);
+    if (near == 0) continue;
     const RestingBox* boxes = objects.boxes + p * kPackedObjects;
-    for (std::uint32_t near = objectsNear(objects.bounds[p], query); near != 0; near &= near - 1) {
-      if (touchesBox(boxes[__builtin_ctz(near)], spheres)) return true;
-    }
+    // Mostly there is one.
+    __builtin_prefetch(&boxes[__builtin_ctz(near)]);
+    if (touchesSome(objects.bounds[p], boxes, near, spheres)) return true;
   }
   return false;
 }

@@ -85,11 +85,6 @@ struct LaneGroup {
   unsigned lanes = 0;
 };
 
-/// Bounds of objects are this much larger, so that no rounding of a query can find an overlap that
-/// they do not know: meters, and parts of a coordinate.
-inline constexpr float kBoundsSlack = 1e-4F;
-inline constexpr float kRelativeBoundsSlack = 1e-6F;
-
 /// What is asked of eight spheres at a time. Both versions do the same operations in the same
 /// order, and agree bit for bit.
 struct RestingKernels {

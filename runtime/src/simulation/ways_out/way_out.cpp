@@ -15,7 +15,7 @@ WayOut::WayOut(std::size_t most_eights, const WayKernels& kernels)
     : kernels_(kernels),
       most_(most_eights),
       ways_((most_eights + kLanes + kWaysAtATime) / kWaysAtATime * kWaysAtATime),
-      deciding_(ways_.size() + 1),
+      deciding_(ways_.size()),
       single_rows_((most_eights * kLanes + 1) * CommonCells::kRows, kAllFree) {}
 
 void WayOut::clear(float spacing) noexcept {

@@ -137,21 +137,92 @@ AddedGroups addGroupsKernel(const GroupsToAdd& given, EightWays* ways,
   return found;
 }
 
-/// A cell, counted from the one in which a sphere is.
-struct WayCell {
-  int x = 0;
-  int z = 0;
-};
-
 /// 1, 0 or -1.
 constexpr int signOf(int value) { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); }
 
-/// Where a move ends, and how far into a cell spheres go, as a part of it: those that are less than
-/// that from the border of their cell along the first axis are a cell behind along it.
-struct CellMove {
-  WayCell to;
-  float margin = 0;
+/// The cells that a move by whole cells leaves last, the same for all spheres: those before the one
+/// where it ends along one axis or both.
+struct CellsBefore {
+  /// Rows of 16 bits from a sphere's first to the lower of the two that they are in.
+  std::int32_t first_row = 0;
+  /// Their bits for a sphere in column 0, both rows side by side: before along z, x, and both.
+  std::int32_t x = 0;
+  std::int32_t z = 0;
+  std::int32_t both = 0;
+  /// All of them.
+  std::uint32_t bits = 0;
 };
+
+/// Where a place in a cell is along an axis, from the border that a move crosses last: multiplied
+/// by this and then added, as it is or 1 less it.
+struct FromBorder {
+  float times = 0;
+  float plus = 0;
+};
+
+/// A move by whole cells, and all about it that no sphere changes.
+struct alignas(64) CellMove {
+  /// Cells along each axis, and which way.
+  float x = 0;
+  float z = 0;
+  float sign_x = 0;
+  float sign_z = 0;
+  /// The square of what is left of it at least, in cells: one less along each axis for spheres at
+  /// the border of theirs.
+  float least_squared = 0;
+  bool is_diagonal = false;
+  FromBorder from_border_x, from_border_z;
+  CellsBefore before;
+};
+
+constexpr FromBorder fromBorder(int sign) {
+  return sign > 0 ? FromBorder{1, 0} : FromBorder{-1, 1};
+}
+
+constexpr CellsBefore cellsBefore(int x, int z) {
+  const int before_x = x - signOf(x);
+  const int before_z = z - signOf(z);
+  const int first = z < before_z ? z : before_z;
+  const auto bit = [first](int at_x, int at_z) {
+    return 16 * (at_z - first) + at_x + kCellsAround;
+  };
+  const int in_x = bit(before_x, z);
+  const int in_z = bit(x, before_z);
+  const int both = bit(before_x, before_z);
+  return {first + kCellsAround, in_x, in_z, both, 1U << in_x | 1U << in_z | 1U << both};
+}
+
+constexpr CellMove cellMove(int x, int z) {
+  const int left_x = x - signOf(x);
+  const int left_z = z - signOf(z);
+  return {static_cast<float>(x),
+          static_cast<float>(z),
+          static_cast<float>(signOf(x)),
+          static_cast<float>(signOf(z)),
+          static_cast<float>(left_x * left_x + left_z * left_z),
+          x != 0 && z != 0,
+          fromBorder(x),
+          fromBorder(z),
+          cellsBefore(x, z)};
+}
+
+/// Of each bit of CommonCells that counts, the move to its cell.
+struct CellMoves {
+  static constexpr int kEdge = 2 * kCellsAround + 1;
+  CellMove moves[16 * kEdge];
+};
+
+constexpr CellMoves cellMoves() {
+  CellMoves all{};
+  for (int z = -kCellsAround; z <= kCellsAround; ++z) {
+    for (int x = -kCellsAround; x <= kCellsAround; ++x) {
+      all.moves[16 * (z + kCellsAround) + x + kCellsAround] = cellMove(x, z);
+    }
+  }
+  return all;
+}
+
+constexpr CellMoves kCellMoves = cellMoves();
 
 /// What parts of a cell, up to 1, a move by whole cells can take back along x and z: as much as
 /// leaves all spheres free, which those that the cell before blocks decide.
@@ -179,33 +250,20 @@ struct CellPush {
   float near = 0;
 };
 
-/// Cells of spheres, the same for all, around one where two rows meet.
-struct CellsBefore {
-  /// Rows of 16 bits from a sphere's first to the lower of them.
-  std::ptrdiff_t first_row = 0;
-  /// The bits of cells for a sphere in column 0, both rows side by side.
-  int x = 0;
-  int z = 0;
-  int both = 0;
-  /// All of them.
-  std::uint32_t bits = 0;
-};
-
-inline CellsBefore cellsBefore(const WayCell& to) {
-  const WayCell before{to.x - signOf(to.x), to.z - signOf(to.z)};
-  const int first = to.z < before.z ? to.z : before.z;
-  const auto bit = [first](int x, int z) { return 16 * (z - first) + x + kCellsAround; };
-  const int x = bit(before.x, to.z);
-  const int z = bit(to.x, before.z);
-  const int both = bit(before.x, before.z);
-  return {first + kCellsAround, x, z, both, 1U << x | 1U << z | 1U << both};
-}
-
-/// Whether one of eight spheres is not free in one of the cells.
-inline bool decides(const EightWays& ways, const CellsBefore& cells) {
-  std::uint32_t rows = 0;
-  __builtin_memcpy(&rows, ways.cells.rows + cells.first_row, sizeof(rows));
-  return (~rows & cells.bits) != 0;
+/// Which of up to eight times eight spheres, as bits, have one that is not free in one of the
+/// cells.
+inline unsigned deciding(const EightWays* ways, std::size_t count, const CellsBefore& cells) {
+  const auto rows_of = [&](std::size_t n) {
+    std::int32_t rows = 0;
+    __builtin_memcpy(&rows, ways[n].cells.rows + cells.first_row, sizeof(rows));
+    return rows;
+  };
+  static_assert(kWaysAtATime == 8);
+  const IntLanes rows{rows_of(0), rows_of(1), rows_of(2), rows_of(3),
+                      rows_of(4), rows_of(5), rows_of(6), rows_of(7)};
+  const IntLanes blocked = (~rows & static_cast<std::int32_t>(cells.bits)) != 0;
+  const unsigned counted = count < kWaysAtATime ? (1U << count) - 1 : (1U << kWaysAtATime) - 1;
+  return signsOf(blocked) & counted;
 }
 
 /// What decides how much of a move spheres can take back.
@@ -216,60 +274,52 @@ struct WayLanes {
   Lanes to_border_x, to_border_z;
 };
 
-/// How far places in a cell are from the border that a move towards `sign` crosses last: as they
-/// are, or 1 less them, with no rounding more than that, and no branch.
-inline Lanes fromBorder(const float* part, int sign) {
-  const int backwards = sign > 0 ? 0 : 1;
-  return spread(static_cast<float>(1 - 2 * backwards)) * load(part) +
-         spread(static_cast<float>(backwards));
+inline Lanes placesFrom(const FromBorder& border, const float* part) {
+  return spread(border.times) * load(part) + spread(border.plus);
 }
 
-/// The row of each sphere in which a move ends, and that before it.
-inline IntLanes rowsAt(const EightWays& ways, const CellsBefore& cells) {
-  return gather<sizeof(*ways.rows)>(ways.rows + cells.first_row, ways.row);
-}
-
-inline WayLanes lanesBefore(const EightWays& ways, IntLanes rows, const CellsBefore& cells,
-                            const WayCell& to) {
+inline WayLanes lanesBefore(const EightWays& ways, IntLanes rows, const CellMove& move) {
   // The bit of a cell, as the sign.
   const IntLanes above = 31 - loadInts(ways.column);
+  const CellsBefore& cells = move.before;
   return {rows << (above - cells.x), rows << (above - cells.z), rows << (above - cells.both),
-          fromBorder(ways.part_x, to.x), fromBorder(ways.part_z, to.z)};
+          placesFrom(move.from_border_x, ways.part_x), placesFrom(move.from_border_z, ways.part_z)};
 }
 
-/// `deciding`: room for one more than there are ways.
+/// `margin`: how far into a cell spheres go, as a part of it: those that are less than that from
+/// the border of their cell along the first axis are a cell behind along it. `found`: room for as
+/// many as there are ways.
 inline TakenBackBoth takenBack(const EightWays* ways, std::size_t count, const CellMove& move,
-                               DecidingEight* deciding) {
-  const CellsBefore cells = cellsBefore(move.to);
-  // Most eights are free in all of these cells.
-  std::size_t deciding_count = 0;
-  for (std::size_t first = 0; first < count; first += kWaysAtATime) {
-    for (std::size_t n = first; n < first + kWaysAtATime; ++n) {
-      deciding[deciding_count].ways = ways + n;
-      deciding_count +=
-          static_cast<std::size_t>(decides(ways[n], cells)) & static_cast<std::size_t>(n < count);
-    }
-  }
+                               float margin, DecidingEight* found) {
   const Lanes whole = spread(1);
   Lanes least_x = whole;
   Lanes least_z = whole;
-  for (std::size_t n = 0; n < deciding_count; ++n) {
-    const IntLanes rows = rowsAt(*deciding[n].ways, cells);
-    storeInts(deciding[n].rows, rows);
-    const WayLanes way = lanesBefore(*deciding[n].ways, rows, cells, move.to);
-    least_x = lesser(least_x, pick(way.free_x < 0, whole, way.to_border_x));
-    least_z = lesser(least_z, pick(way.free_z < 0, whole, way.to_border_z));
+  std::size_t found_count = 0;
+  for (std::size_t first = 0; first < count; first += kWaysAtATime) {
+    // Most eights are free in all of these cells.
+    unsigned left = deciding(ways + first, count - first, move.before);
+    for (; left != 0; left &= left - 1) {
+      const EightWays& eight = ways[first + static_cast<std::size_t>(__builtin_ctz(left))];
+      // The row of each sphere in which the move ends, and that before it.
+      const IntLanes rows =
+          gather<sizeof(*eight.rows)>(eight.rows + move.before.first_row, eight.row);
+      found[found_count].ways = &eight;
+      storeInts(found[found_count].rows, rows);
+      ++found_count;
+      const WayLanes way = lanesBefore(eight, rows, move);
+      least_x = lesser(least_x, pick(way.free_x < 0, whole, way.to_border_x));
+      least_z = lesser(least_z, pick(way.free_z < 0, whole, way.to_border_z));
+    }
   }
   TakenBack first;
   leastOf(least_x, least_z, first.x, first.z);
   // Along one axis alone, either comes first.
-  if (move.to.x == 0 || move.to.z == 0) return {first, first};
-  const Lanes margin = spread(move.margin);
+  if (!move.is_diagonal) return {first, first};
   least_x = least_z = whole;
-  for (std::size_t n = 0; n < deciding_count; ++n) {
-    const WayLanes way = lanesBefore(*deciding[n].ways, loadInts(deciding[n].rows), cells, move.to);
-    const IntLanes behind_x = (way.to_border_x - spread(first.x)) + margin < spread(0);
-    const IntLanes behind_z = (way.to_border_z - spread(first.z)) + margin < spread(0);
+  for (std::size_t n = 0; n < found_count; ++n) {
+    const WayLanes way = lanesBefore(*found[n].ways, loadInts(found[n].rows), move);
+    const IntLanes behind_x = (way.to_border_x - spread(first.x)) + spread(margin) < spread(0);
+    const IntLanes behind_z = (way.to_border_z - spread(first.z)) + spread(margin) < spread(0);
     const IntLanes free_z = behind_x ? way.free_both : way.free_z;
     const IntLanes free_x = behind_z ? way.free_both : way.free_x;
     least_x = lesser(least_x, pick(free_x < 0, whole, way.to_border_x));
@@ -359,6 +409,7 @@ class Search {
   explicit Search(const WaysQuery& query)
       : query_(query),
         margin_(kIntoCell / query.spacing),
+        squared_cell_(query.spacing * query.spacing),
         driven_(__builtin_sqrtf(query.drive_x * query.drive_x + query.drive_z * query.drive_z)) {
     const Rows nearest = nearestCells(loadRows(query.common->rows));
     std::uint64_t words[4];
@@ -372,12 +423,9 @@ class Search {
     FoundWay best;
     float least = query_.longest * query_.longest;
     while ((moves[0] | moves[1] | moves[2]) != 0) {
-      const WayCell to = takeFirst(moves);
-      // One cell less along each axis for spheres at its border.
-      const auto least_x = static_cast<float>(to.x - signOf(to.x)) * query_.spacing;
-      const auto least_z = static_cast<float>(to.z - signOf(to.z)) * query_.spacing;
-      if (least_x * least_x + least_z * least_z >= least) continue;
-      const FoundWay way = shortened(to);
+      const CellMove& move = takeFirst(moves);
+      if (move.least_squared * squared_cell_ >= least) continue;
+      const FoundWay way = shortened(move);
       if (!(way.squared < least) || !isBack(way)) continue;
       if (is_each_asked && !suits(way)) continue;
       least = way.squared;
@@ -400,24 +448,19 @@ class Search {
   static constexpr std::size_t kWords = 3;
 
   /// Without a branch, which nobody could guess.
-  static WayCell takeFirst(std::uint64_t* moves) {
+  static const CellMove& takeFirst(std::uint64_t* moves) {
     const std::size_t word = static_cast<std::size_t>(moves[0] == 0) +
                              static_cast<std::size_t>((moves[0] | moves[1]) == 0);
-    const int bit = 64 * static_cast<int>(word) + __builtin_ctzll(moves[word]);
+    const std::size_t bit = 64 * word + static_cast<std::size_t>(__builtin_ctzll(moves[word]));
     moves[word] &= moves[word] - 1;
-    return {bit % 16 - kCellsAround, bit / 16 - kCellsAround};
+    return kCellMoves.moves[bit];
   }
 
-  [[nodiscard]] FoundWay shortened(const WayCell& to) const {
-    const CellMove move{to, margin_};
-    const TakenBackBoth back = takenBack(query_.ways, query_.count, move, query_.deciding);
-    const auto length = [&](int cells, float taken_back) {
-      const float taken = static_cast<float>(signOf(cells)) * (taken_back - move.margin);
-      return (static_cast<float>(cells) - taken) * query_.spacing;
-    };
+  [[nodiscard]] FoundWay shortened(const CellMove& move) const {
+    const TakenBackBoth back = takenBack(query_.ways, query_.count, move, margin_, query_.deciding);
     const auto way_of = [&](const TakenBack& taken) {
-      const float x = length(to.x, taken.x);
-      const float z = length(to.z, taken.z);
+      const float x = (move.x - move.sign_x * (taken.x - margin_)) * query_.spacing;
+      const float z = (move.z - move.sign_z * (taken.z - margin_)) * query_.spacing;
       return FoundWay{x, z, x * x + z * z};
     };
     const FoundWay one = way_of(back.along_x_first);
@@ -436,6 +479,8 @@ class Search {
   const WaysQuery& query_;
   /// How far spheres go into cells, in cells.
   float margin_ = 0;
+  /// Square meters.
+  float squared_cell_ = 0;
   float driven_ = 0;
   std::uint64_t moves_[kWords];
 };

@@ -52,7 +52,7 @@ struct alignas(32) DecidingEight {
 struct WaysQuery {
   const EightWays* ways = nullptr;
   std::size_t count = 0;
-  /// Room for one more than there are ways.
+  /// Room for as many as there are ways.
   DecidingEight* deciding = nullptr;
   const CommonCells* common = nullptr;
   /// Edge of a cell, meters.
@@ -76,8 +76,8 @@ struct FoundWay {
   float squared = kNoWay;
 };
 
-/// Ways can be read in so many, of which the last may not count: a loop whose end can be guessed.
-inline constexpr std::size_t kWaysAtATime = 4;
+/// Ways are looked at in so many, of which the last may not count.
+inline constexpr std::size_t kWaysAtATime = 8;
 
 /// Up to eight groups of spheres: of each, ways are made of the spheres that are free or blocked,
 /// and of no others, as nobody knows what they are.
