@@ -31,6 +31,8 @@ class AloneOrTogether {
     return way == RoundWay::kAlone ? RoundWay::kTogether : RoundWay::kAlone;
   }
   void endStretch();
+  /// Whether times have changed in a way that may make the other way the better one.
+  [[nodiscard]] bool isDoubtful() const;
 
   RoundWay better_ = RoundWay::kTogether;
   bool tries_other_ = false;

@@ -38,8 +38,7 @@ class LevelFloors {
     if (!is_inside) return std::nullopt;
     const auto i = static_cast<std::uint32_t>(x);
     const auto k = static_cast<std::uint32_t>(z);
-    const std::size_t word = floor.first + std::size_t{k} * floor.row_words + i / kBits;
-    if ((words_[word] >> (i % kBits) & 1U) == 0) return std::nullopt;
+    if ((words_[floor.wordOf(i, k)] >> (i % kBits) & 1U) == 0) return std::nullopt;
     // Which of them it is nobody can guess: no branch.
     std::uint32_t is_height = 0;
     for (std::uint32_t n = 0; n < floor.height_count; ++n) {
@@ -49,11 +48,27 @@ class LevelFloors {
     return floor.heights[static_cast<std::size_t>(std::countr_zero(is_height)) + 1];
   }
 
+  /// Bases over one floor, kLanes or a multiple of that. `y` is where they stood before.
+  struct Bases {
+    const float* x = nullptr;
+    const float* y = nullptr;
+    const float* z = nullptr;
+    std::size_t count = 0;
+  };
+
+  /// The same for several. Whether all heights are known, which are written in any case.
+  [[nodiscard]] bool heightsUnder(std::uint32_t map, const Bases& bases,
+                                  float* heights) const noexcept;
+
  private:
   static constexpr std::uint32_t kBits = 32;
   static constexpr std::uint32_t kMostHeights = 8;
 
   struct Floor {
+    [[nodiscard]] std::size_t wordOf(std::uint32_t i, std::uint32_t k) const {
+      return first + std::size_t{k} * row_words + i / kBits;
+    }
+
     float min_x = 0, min_z = 0, inverse_spacing = 0;
     float columns_x = 0, columns_z = 0;
     /// The last one is the first again.
@@ -62,6 +77,10 @@ class LevelFloors {
     std::uint32_t row_words = 0;
     std::size_t first = 0;
   };
+
+  /// 1 where all heights of eight bases from `first` on are known, else 0.
+  std::int32_t heightsOfEight(const Floor& floor, const Bases& bases, std::size_t first,
+                              float* heights) const noexcept;
 
   std::vector<Floor> floors_;
   std::vector<std::uint32_t> words_;
@@ -93,11 +112,10 @@ void LevelFloors::add(const ColumnGrid& grid, const Vec3& start, const HeightFou
   };
   words_.resize(words_.size() + std::size_t{floor.row_words} * layout.columns_z);
   for (std::uint32_t k = 0; k < layout.columns_z; ++k) {
-    std::uint32_t* row = words_.data() + floor.first + std::size_t{k} * floor.row_words;
     for (std::uint32_t i = 0; i < layout.columns_x; ++i) {
       const Vec3 center{layout.min_x + (static_cast<float>(i) + 0.5F) * layout.spacing, 0,
                         layout.min_z + (static_cast<float>(k) + 0.5F) * layout.spacing};
-      if (stays_level(center)) row[i / kBits] |= 1U << (i % kBits);
+      if (stays_level(center)) words_[floor.wordOf(i, k)] |= 1U << (i % kBits);
     }
   }
   floors_.push_back(floor);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "column_grid/column_grid_kernels.h"
 #include "simulation/collision/packed_bounds.inl"
 
 namespace galactic::simulation {
@@ -68,6 +69,12 @@ bool anyOverlapping(const RestingView& objects, const Vec3& center, float radius
     return std::fabs(center.y - box.center.y) < box.half_height + radius &&
            overlaps(box, center, radius) && visit(index);
   });
+}
+
+/// The fastest ones that this processor can run.
+const RestingKernels& restingKernels() {
+  static const RestingKernels kernels = detail::hasAvx2() ? avx2Resting() : portableResting();
+  return kernels;
 }
 
 /// What the caller of a query guarantees.

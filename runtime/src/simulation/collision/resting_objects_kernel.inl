@@ -102,11 +102,18 @@ bool findTouchingKernel(const RestingView& given_objects, const SphereBatch& giv
 
 bool mayTouchKernel(const RestingView& objects, const CenterBounds& bounds) noexcept {
   const QueryBounds query = boundsOf(bounds);
-  std::uint32_t near = 0;
+  std::uint32_t any = 0;
   for (std::size_t p = 0; p < objects.bounds_count; ++p) {
-    near |= objectsNear(objects.bounds[p], query);
+    const std::uint32_t near = objectsNear(objects.bounds[p], query);
+    any |= near;
+    // Whoever asks looks at these next, mostly at one. How many there are nobody can guess: no
+    // loop.
+    if (near != 0) {
+      __builtin_prefetch(objects.boxes + p * kPackedObjects +
+                         static_cast<std::size_t>(__builtin_ctz(near)));
+    }
   }
-  return near != 0;
+  return any != 0;
 }
 
 /// Bounds of eight groups of spheres, as those of QueryBounds.
@@ -183,8 +190,6 @@ bool touchesKernel(const RestingView& given_objects, const BoundedSpheres& given
     const std::uint32_t near = objectsNear(objects.bounds[p], query);
     if (near == 0) continue;
     const RestingBox* boxes = objects.boxes + p * kPackedObjects;
-    // Mostly there is one.
-    __builtin_prefetch(&boxes[__builtin_ctz(near)]);
     if (touchesSome(objects.bounds[p], boxes, near, spheres)) return true;
   }
   return false;

@@ -102,7 +102,5 @@ struct RestingKernels {
 [[nodiscard]] RestingKernels portableResting() noexcept;
 /// For processors with AVX2.
 [[nodiscard]] RestingKernels avx2Resting() noexcept;
-/// The fastest ones that this processor can run.
-[[nodiscard]] const RestingKernels& restingKernels() noexcept;
 
 }  // namespace galactic::simulation

@@ -21,6 +21,7 @@ bool anyCounts(std::span<const std::uint64_t> bits, IgnoredSpheres ignored) {
 bool bodyTouchesObjects(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
   const RestingObjects& objects = step.state.resting(n);
+  if (!objects.mayTouch(step.chunk.extents(e))) return false;
   const BoundedSpheres robot = step.chunk.boundedSpheres(e);
   bool touches = withoutLeft(step, e, [&] { return objects.touches(robot); });
   forEachLeft(step, e, [&](std::uint32_t object) {

@@ -110,17 +110,28 @@ bool areInOneScene(const ChunkStep& step, std::size_t first, std::size_t count) 
 
 /// Puts candidates on level floors. Whether all stand on one.
 bool followLevelFloors(const ChunkStep& step, std::size_t first, std::size_t count) {
-  std::array<float, kChunk> heights;
+  std::array<std::uint32_t, kChunk> maps;
+  std::uint32_t others = 0;
   for (std::size_t n = 0; n < count; ++n) {
-    const std::uint32_t map = step.state.env(step.first + first + n).clearance_map;
-    const auto height = step.model.level_floors.heightUnder(map, step.chunk.base(first + n));
-    if (!height) return false;
-    heights[n] = *height;
+    maps[n] = step.state.env(step.first + first + n).clearance_map;
+    others |= maps[n] ^ maps[0];
   }
-  for (std::size_t n = 0; n < count; ++n) {
-    step.chunk.floor(first + n) = Floor::kCarries;
-    *step.chunk.candidates(first + n).y = heights[n];
+  const LevelFloors& floors = step.model.level_floors;
+  const PoseArrays base = step.chunk.candidates(first);
+  std::array<float, kChunk> heights{};
+  bool are_known = true;
+  if (others == 0) {
+    are_known = floors.heightsUnder(maps[0], {base.x, base.y, base.z, count}, heights.data());
+  } else {
+    for (std::size_t n = 0; n < count && are_known; ++n) {
+      const auto height = floors.heightUnder(maps[n], step.chunk.base(first + n));
+      are_known = height.has_value();
+      heights[n] = height.value_or(0);
+    }
   }
+  if (!are_known) return false;
+  std::copy_n(heights.begin(), count, base.y);
+  for (std::size_t n = 0; n < count; ++n) step.chunk.floor(first + n) = Floor::kCarries;
   return true;
 }
 

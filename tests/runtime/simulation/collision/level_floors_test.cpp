@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdio>
 #include <limits>
 #include <optional>
@@ -59,6 +60,47 @@ TEST(LevelFloors, AreWhereABaseFindsTheFloorAtItsHeight) {
     }
   }
   level.expectBothSides();
+}
+
+TEST(LevelFloors, SayOfSixteenBasesWhatTheySayOfEach) {
+  std::mt19937 random(1703);
+  constexpr std::size_t kCount = 16;
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  const GroundOptions options;
+  Tally all_known;
+  for (int round = 0; round < 200; ++round) {
+    const BoxRoom room = furnishedRoom(random, 1);
+    const LevelFloors floors = levelFloors(room.scene(), options);
+    const float height = heightOf(room.scene(), options);
+    std::array<float, kCount> x;
+    std::array<float, kCount> y;
+    std::array<float, kCount> z;
+    for (std::size_t n = 0; n < kCount; ++n) {
+      x[n] = uniformIn(random, 0.5F, 2.5F);
+      y[n] = height;
+      z[n] = uniformIn(random, 0.5F, 2.5F);
+    }
+    // One of them in some rounds.
+    const std::size_t odd = random() % kCount;
+    constexpr std::array kOdd{kNan, 1e30F, -1e30F, -0.1F, 3.2F};
+    std::array<float*, 3> rows{x.data(), y.data(), z.data()};
+    if (round % 3 == 0) rows[random() % 3][odd] = kOdd[random() % kOdd.size()];
+    bool expected = true;
+    std::array<float, kCount> heights{};
+    const LevelFloors::Bases bases{x.data(), y.data(), z.data(), kCount};
+    const bool found = floors.heightsUnder(0, bases, heights.data());
+    for (std::size_t n = 0; n < kCount; ++n) {
+      const std::optional<float> known = floors.heightUnder(0, {x[n], y[n], z[n]});
+      expected = expected && known.has_value();
+      if (known.has_value()) {
+        ASSERT_EQ(heights[n], *known);
+      }
+    }
+    ASSERT_EQ(found, expected);
+    all_known.add(found);
+    ASSERT_FALSE(floors.heightsUnder(kNoClearanceMap, bases, heights.data()));
+  }
+  all_known.expectBothSides();
 }
 
 TEST(LevelFloors, KnowNothingOfOtherHeightsNorWithoutAMap) {
