@@ -126,7 +126,8 @@ inline IntLanes bandsOf(IntLanes first, IntLanes last) {
   const IntLanes run = (2 << (further & (kBands - 1))) - 1;
   const IntLanes by = first & (kBands - 1);
   const IntLanes bands = run << by | run >> (kBands - by);
-  return (further < 0) | (further >= kBands - 1) ? IntLanes{} + kAllBands : bands;
+  const IntLanes in_all = (further < 0) | (further >= kBands - 1);
+  return in_all ? IntLanes{} + std::int32_t{kAllBands} : bands;
 }
 
 /// `bounds`: of the first group, `stride` apart.
