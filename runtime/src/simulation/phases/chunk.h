@@ -80,7 +80,7 @@ class Chunk {
   [[nodiscard]] std::span<InSlices> inSlices(std::size_t eight) {
     return std::span(in_slices_).subspan(eight * kChunk, kChunk);
   }
-  /// Those of all of them.
+  /// Bounds of all sphere centers of the candidate.
   [[nodiscard]] const CenterBounds& extents(std::size_t env) const { return extents_[env]; }
   /// The least and the greatest height of a center.
   [[nodiscard]] float lowest(std::size_t env) const { return extents_[env].values[2]; }
