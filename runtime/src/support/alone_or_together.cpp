@@ -12,9 +12,9 @@ constexpr std::chrono::milliseconds kStretch{20};
 constexpr std::uint32_t kLongestWait = 160;
 /// What a way has to be better by, so that nothing changes from one to the other and back.
 constexpr double kClearly = 0.97;
-/// How much else times have to be than usual to be worth a doubt, and how much sooner the other way
-/// is tried then.
-constexpr double kElse = 1.15;
+/// How much slower than usual rounds together have to be to be worth a doubt, and how much sooner
+/// the other way is tried then.
+constexpr double kSlower = 1.15;
 constexpr std::uint32_t kSooner = 8;
 /// What a stretch counts for.
 constexpr double kForLong = 1.0 / 64;
@@ -50,9 +50,9 @@ void AloneOrTogether::endStretch() {
 }
 
 bool AloneOrTogether::isDoubtful() const {
-  // Together, rounds get slower when another program begins to keep the processor busy; alone, they
-  // get faster when one ends.
-  return better_ == RoundWay::kTogether ? lately_ > kElse * usual_ : kElse * lately_ < usual_;
+  // Where rounds alone get slower, another program came, and there is less room for two than
+  // before.
+  return better_ == RoundWay::kTogether && lately_ > kSlower * usual_;
 }
 
 }  // namespace galactic::detail

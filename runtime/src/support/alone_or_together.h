@@ -31,7 +31,7 @@ class AloneOrTogether {
     return way == RoundWay::kAlone ? RoundWay::kTogether : RoundWay::kAlone;
   }
   void endStretch();
-  /// Whether times have changed in a way that may make the other way the better one.
+  /// Whether rounds together take so much longer than they did that alone may be better now.
   [[nodiscard]] bool isDoubtful() const;
 
   RoundWay better_ = RoundWay::kTogether;
