@@ -405,7 +405,10 @@ TEST(RestingObjects, BoundsOfARobotChangeNoAnswer) {
     // Far from the origin, coordinates are coarse, and cells have any number.
     const float far = round % 4 == 0 ? -700.0F : 0.0F;
     const Room room{.x = {far, far + 8}, .z = {0, 8}};
-    const std::vector<Body> bodies = randomBodies(room, random() % 20, random);
+    std::vector<Body> bodies = randomBodies(room, random() % 20, random);
+    // On any storey: bands wrap around, too.
+    const float up = uniformIn(random, -3, 3);
+    for (Body& body : bodies) body.pose.translation.y += up;
     const RestingObjects objects = restingAt(bodies);
     std::vector<float> radii(1 + random() % 20);
     for (float& radius : radii) radius = kRadii[random() % 3];
