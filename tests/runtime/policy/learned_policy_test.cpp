@@ -14,6 +14,7 @@
 #include "runtime/simulation/counted_new.h"
 #include "support/oracles/policy_oracle.h"
 #include "support/packs/policy_pack_builder.h"
+#include "support/sanitized.h"
 
 namespace galactic::test::learned_policy_test {
 namespace {
@@ -150,7 +151,8 @@ TEST(LearnedPolicy, ActsLikeThePlainNetworkWithoutCamera) {
 TEST(LearnedPolicy, ActsLikeThePlainNetworkOnImages) {
   expectLikeOracle(policyNetwork("simple_cnn"), 1, 2);
   expectLikeOracle(policyNetwork("resnet9"), 1, 2);
-  expectLikeOracle(policyNetwork("resnet18"), 1, 1);
+  // Under sanitizers the plain network takes half a minute for this one.
+  if (!kIsSanitized) expectLikeOracle(policyNetwork("resnet18"), 1, 1);
 }
 
 TEST(LearnedPolicy, IgnoresTheFourthByteOfColors) {

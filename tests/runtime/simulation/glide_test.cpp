@@ -11,6 +11,7 @@
 #include "galactic/batch_simulator.h"
 #include "support/homes/box_world.h"
 #include "support/packs/grid_builder.h"
+#include "support/sanitized.h"
 
 namespace galactic::test::glide_test {
 namespace {
@@ -105,7 +106,7 @@ TEST(Glide, IsTheSameToTheLeftAndToTheRight) {
   std::uint64_t slid = 0;
   std::size_t same = 0;
   std::size_t all = 0;
-  for (int round = 0; round < 25; ++round) {
+  for (int round = 0; round < (kIsSanitized ? 5 : 25); ++round) {
     const Room room = furnishedRoom(random, kCarts);
     const Room image = mirrored(room);
     const BoxWorld world(room.blocks, room.starts);
@@ -194,7 +195,7 @@ TEST(Glide, NeverEndsInFurniture) {
   std::mt19937 random(kSeed);
   std::uint64_t slid = 0;
   std::uint64_t steps = 0;
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < (kIsSanitized ? 10 : 60); ++round) {
     Room room = furnishedRoom(random, kCarts);
     // Plates, over which and under which an arm reaches closely.
     for (int n = 0; n < 16; ++n) {

@@ -9,6 +9,7 @@
 
 #include "support/homes/box_room.h"
 #include "support/oracles/resting_oracle.h"
+#include "support/sanitized.h"
 
 namespace galactic::test::object_placement_test {
 namespace {
@@ -316,12 +317,6 @@ class BruteForce {
   std::vector<BoxSolid> solids_;
 };
 
-#ifdef GALACTIC_SANITIZED
-constexpr bool kIsSanitized = true;
-#else
-constexpr bool kIsSanitized = false;
-#endif
-
 TEST(ObjectPlacement, RestsWhereBruteForceSettles) {
   // With a little more or less room around everything the outcome must be the same, or the case is
   // one of rounding.
@@ -334,7 +329,7 @@ TEST(ObjectPlacement, RestsWhereBruteForceSettles) {
   std::size_t on_objects = 0;
   std::size_t rounding = 0;
   // Sanitizers make brute force thirty times slower, and find what they look for in a few cases.
-  constexpr int kCases = kIsSanitized ? 50 : 200;
+  constexpr int kCases = kIsSanitized ? 20 : 200;
   for (int n = 0; n < kCases; ++n) {
     home.objects.clear();
     std::vector<Body> bodies;

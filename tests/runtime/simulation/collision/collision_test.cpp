@@ -15,6 +15,7 @@
 #include "column_grid/column_grid_kernels.h"
 #include "support/homes/box_room.h"
 #include "support/packs/grid_builder.h"
+#include "support/sanitized.h"
 
 namespace galactic::test::collision_test {
 namespace {
@@ -211,7 +212,7 @@ TEST(Penetration, IsWhatBruteForceFinds) {
   Tally all;
   Tally each;
   CollisionScratch scratch(48);
-  for (int round = 0; round < 15; ++round) {
+  for (int round = 0; round < (kIsSanitized ? 3 : 15); ++round) {
     const Flat flat(random);
     const Obstacles obstacles{flat.room.scene(), flat.objects};
     for (int n = 0; n < 200; ++n) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "support/oracles/resting_oracle.h"
+#include "support/sanitized.h"
 
 namespace galactic::test::resting_box_test {
 namespace {
@@ -46,7 +47,7 @@ TEST(RestingBox, OverlapsAnotherExactlyOverTheIntervalOfShifts) {
   std::mt19937 random(412);
   const Room room{.x = {0, 0.3F}, .z = {0, 0.3F}, .least = 0.03F, .most = 0.15F};
   Tally meets;
-  for (int n = 0; n < 20000; ++n) {
+  for (int n = 0; n < (kIsSanitized ? 2000 : 20000); ++n) {
     const Body moving = randomBody(room, random);
     const Body fixed = randomBody(room, random);
     const std::optional<Span> shifts = overlapShifts(moving.resting(), fixed.resting());

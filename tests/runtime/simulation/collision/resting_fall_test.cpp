@@ -8,6 +8,7 @@
 #include "simulation/collision/resting_objects.h"
 #include "support/homes/resting_bodies.h"
 #include "support/oracles/resting_oracle.h"
+#include "support/sanitized.h"
 
 namespace galactic::test::resting_fall_test {
 namespace {
@@ -59,7 +60,7 @@ TEST(RestingObjects, FallIsThatOfBisection) {
   std::mt19937 random(410);
   const Room room{.x = {0, 2}, .z = {0, 2}};
   Tally tally;
-  for (int round = 0; round < 40; ++round) {
+  for (int round = 0; round < (kIsSanitized ? 4 : 40); ++round) {
     const std::vector<Body> bodies = randomBodies(room, 25, random);
     const RestingObjects objects = restingAt(bodies);
     for (int n = 0; n < 50; ++n) {

@@ -15,6 +15,7 @@
 #include "column_grid/column_grid_kernels.h"
 #include "motion_batch.h"
 #include "support/homes/random_robot.h"
+#include "support/sanitized.h"
 #include "support/source_folder.h"
 
 namespace galactic::test::motion_bodies_test {
@@ -139,6 +140,9 @@ class SingleRobot {
   std::vector<Pose> links_;
 };
 
+/// Random ones.
+constexpr int kRobots = kIsSanitized ? 20 : 200;
+
 void compareWithSingleRobots(const MotionRobot& robot, std::mt19937& random, Differences& worst) {
   MotionBatch batch(robot);
   for (int round = 0; round < 20; ++round) {
@@ -182,7 +186,7 @@ void compareKernels(const MotionRobot& robot, const MotionKernels& kernels, std:
 void compareKernels(const MotionKernels& kernels, std::uint32_t seed) {
   std::printf("seed %u\n", seed);
   std::mt19937 random(seed);
-  for (int n = 0; n < 200; ++n) compareKernels(randomRobot(random), kernels, random);
+  for (int n = 0; n < kRobots; ++n) compareKernels(randomRobot(random), kernels, random);
   compareKernels(goldenArm(), kernels, random);
 }
 
@@ -192,7 +196,7 @@ TEST(MotionBodies, StandWhereThoseOfSingleRobotsStand) {
   std::mt19937 random(kSeed);
   Differences worst;
   Tally mimics;
-  for (int n = 0; n < 200; ++n) {
+  for (int n = 0; n < kRobots; ++n) {
     const MotionRobot robot = randomRobot(random);
     mimics.add(robot.model.nodes.size() > robot.model.variables.size());
     compareWithSingleRobots(robot, random, worst);
