@@ -79,6 +79,72 @@ TEST(BatchSimulator, DoesNotLetEnvsInfluenceEachOther) {
   }
 }
 
+/// Objects all over the floor, so that robots with something in their hands touch others.
+BoxWorld crowdedWorld() {
+  const std::vector<Block> blocks{plainFloor(),
+                                  {{0, 0, 0}, {3, 2, 0.1F}},
+                                  {{0, 0, 2.9F}, {3, 2, 3}},
+                                  {{0, 0, 0}, {0.1F, 2, 3}},
+                                  {{2.9F, 0, 0}, {3, 2, 3}},
+                                  {{1.2F, 0, 1.2F}, {1.8F, 0.6F, 1.6F}}};
+  std::vector<Start> starts;
+  for (int n = 0; n < 8; ++n) {
+    // The first in reach of the hand.
+    Start start{.base = {0.8F, 0, 0.8F}, .objects = {{1.02F, 0.2F, 0.8F}}};
+    for (int k = 0; k < 5; ++k) {
+      start.objects.push_back({0.35F + 0.42F * static_cast<float>((n + k * 3) % 6), 0.15F,
+                               0.3F + 0.45F * static_cast<float>((2 * n + k) % 6)});
+    }
+    starts.push_back(start);
+  }
+  return {blocks, starts};
+}
+
+/// The hand takes what is there in the first steps, and keeps it.
+void fillHolding(std::uint32_t env, std::uint32_t step, std::span<float> row) {
+  RandomStream slow(97, env, 0, step / 8);
+  RandomStream fast(5, env, 0, step);
+  const auto from_to = [](RandomStream& random, float least, float most) {
+    return least + (most - least) * random.unit();
+  };
+  row[0] = step < 2 ? 1 : from_to(slow, -1, 1);
+  row[1] = from_to(fast, -1, 1);
+  row[2] = from_to(slow, -0.4F, 1.3F);
+  row[3] = from_to(slow, -1, 1);
+  row[4] = 1;
+  row[5] = 0;
+}
+
+TEST(BatchSimulator, LetsNoOtherEnvDecideWhereOneThatHoldsSomethingSlides) {
+  const BoxWorld world = crowdedWorld();
+  constexpr std::uint32_t kEnvs = 96;
+  SimulationOptions options = optionsFor(kEnvs);
+  options.task.most_steps = 300;
+  options.task.drop_fails = false;
+  BatchSimulator many = made(world, options);
+  options.envs = 1;
+  options.ranks = kEnvs;
+  std::vector<BatchSimulator> alone;
+  for (options.rank = 0; options.rank < kEnvs; ++options.rank) {
+    alone.push_back(made(world, options));
+  }
+  std::vector<float> actions(kEnvs * kCartActions);
+  for (std::uint32_t step = 0; step < 300; ++step) {
+    for (std::uint32_t env = 0; env < kEnvs; ++env) {
+      const std::span<float> row = std::span(actions).subspan(env * kCartActions, kCartActions);
+      fillHolding(env, step, row);
+      alone[env].step(row);
+    }
+    many.step(actions);
+    for (std::uint32_t env = 0; env < kEnvs; ++env) {
+      ASSERT_EQ(alone[env].envState(0).world_from_root, many.envState(env).world_from_root)
+          << "env " << env << " in step " << step;
+    }
+  }
+  EXPECT_GT(many.statistics().grasps, kEnvs / 2);
+  EXPECT_GT(many.statistics().slid, 1000U);
+}
+
 TEST(BatchSimulator, CountsWhatHappenedInOneEnvAsIfItWereAlone) {
   const BoxWorld world = furnishedWorld();
   SimulationOptions options = optionsFor(64, 2);

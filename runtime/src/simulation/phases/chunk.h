@@ -122,8 +122,8 @@ class Chunk {
   [[nodiscard]] std::size_t placesStride() const { return group_count_; }
   [[nodiscard]] WayOut& wayOut() { return way_out_; }
   [[nodiscard]] ColumnWays& columnWays() { return column_ways_; }
-  /// One bit for each sphere of the held object that penetrates something: what isFree() found
-  /// last.
+  /// One bit for each sphere of the held object that may penetrate something, whether it counts or
+  /// not: what isFree() found last where the robot itself is free, all where it touches an object.
   [[nodiscard]] std::span<std::uint64_t> heldBits() { return held_bits_; }
   /// Room for a bit for each sphere of the robot.
   [[nodiscard]] std::span<std::uint64_t> bodyBits() { return body_bits_; }

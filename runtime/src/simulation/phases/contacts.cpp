@@ -211,7 +211,12 @@ bool isFree(const ChunkStep& step, std::size_t e) noexcept {
 }
 
 bool isFreeOfObjects(const ChunkStep& step, std::size_t e) noexcept {
-  return !bodyTouchesObjects(step, e) && !heldPenetrates(step, e);
+  if (bodyTouchesObjects(step, e)) {
+    // Of what the hand holds nobody has asked.
+    std::ranges::fill(step.chunk.heldBits(), ~std::uint64_t{0});
+    return false;
+  }
+  return !heldPenetrates(step, e);
 }
 
 }  // namespace galactic::simulation
