@@ -81,8 +81,10 @@ __m256 cellsOf(__m256 from, __m256 way, __m256 heading, __m256 last) {
       _mm256_mul_ps(_mm256_sub_ps(_mm256_add_ps(k, beams.beyond_z), plane.from_z), beams.inverse_z);
   const __m256 promised = _mm256_sub_ps(_mm256_cvtepi32_ps(cell), _mm256_set1_ps(1));
   const __m256 jump = _mm256_add_ps(beams.way, _mm256_mul_ps(promised, _mm256_set1_ps(kJump)));
-  const __m256 next =
-      _mm256_add_ps(_mm256_max_ps(_mm256_min_ps(leave_x, leave_z), jump), _mm256_set1_ps(kNudge));
+  const __m256 ahead = _mm256_max_ps(_mm256_min_ps(leave_x, leave_z), jump);
+  const __m256 nudge =
+      _mm256_max_ps(_mm256_mul_ps(ahead, _mm256_set1_ps(kNudgeOfWay)), _mm256_set1_ps(kNudge));
+  const __m256 next = _mm256_add_ps(ahead, nudge);
   const __m256 moves = _mm256_andnot_ps(blocked, beams.open);
   beams.way = _mm256_blendv_ps(beams.way, next, moves);
   beams.open = _mm256_and_ps(moves, _mm256_cmp_ps(beams.way, plane.range, _CMP_LT_OQ));

@@ -14,9 +14,10 @@ inline constexpr std::size_t kBeamLanes = simulation::kLanes;
 /// A cell's byte c > 0 promises that no blocked cell comes within (c - 1) * kJump of any point in
 /// it, in cells. Finer promises end sooner: a byte reaches 127 cells, 3.8 m of a usual grid.
 inline constexpr float kJump = 0.5F;
-/// How far a beam goes on beyond a border that it has come to, in cells: more than the rounding of
-/// a coordinate in the largest grid, and a hundredth of a millimeter.
+/// How far a beam goes on beyond a border that it has come to, in cells: a hundredth of a
+/// millimeter; far away, as a part of its way, so that rounding never leaves it where it was.
 inline constexpr float kNudge = 1.0F / 1024;
+inline constexpr float kNudgeOfWay = 0x1p-22F;
 /// Bytes after the last cell that a look-up may read.
 inline constexpr std::size_t kReadBeyond = 3;
 

@@ -43,7 +43,8 @@ float castScene(const ScanPlaneView& plane, const BeamBatch& beams, const Headin
     const float leave_x = ((static_cast<float>(i) + beyond_x) - from_x) * inverse_x;
     const float leave_z = ((static_cast<float>(k) + beyond_z) - from_z) * inverse_z;
     const float jump = way + (static_cast<float>(cell) - 1) * kJump;
-    way = most(least(leave_x, leave_z), jump) + kNudge;
+    const float next = most(least(leave_x, leave_z), jump);
+    way = next + most(next * kNudgeOfWay, kNudge);
   }
   return least(way * plane.spacing, beams.range);
 }

@@ -142,6 +142,45 @@ double depthIn(const RestingBox& box, const Point3& point) {
                    depth(box.axis_z, box.half_extents.z)});
 }
 
+TEST(ScanKernels, EndBeamsInTheLargestHalls) {
+  // From 2^14 cells on, a border plus a nudge of 2^-10 is the border again.
+  constexpr std::int32_t kLong = 60'000;
+  constexpr std::int32_t kWide = 26;
+  std::vector<std::uint8_t> cells(std::size_t{kLong} * kWide + sensors::kReadBeyond, 0);
+  for (std::size_t k = 1; k + 1 < kWide; ++k) {
+    std::fill_n(cells.begin() + static_cast<std::ptrdiff_t>(k * kLong + 1), kLong - 2, 1);
+  }
+  const sensors::ScanPlaneView hall{.cells = cells.data(),
+                                    .columns_x = kLong,
+                                    .columns_z = kWide,
+                                    .spacing = 1,
+                                    .inverse_spacing = 1};
+  std::array<float, sensors::kBeamLanes> ahead{};
+  std::array<float, sensors::kBeamLanes> right{};
+  for (std::size_t n = 0; n < ahead.size(); ++n) {
+    const double angle = 1e-4 * static_cast<double>(n);
+    ahead[n] = static_cast<float>(std::cos(angle));
+    right[n] = static_cast<float>(std::sin(angle));
+  }
+  const BeamBatch beams{.origin = {2.3F, 0, 2.6F},
+                        .ahead = ahead.data(),
+                        .right = right.data(),
+                        .count = ahead.size(),
+                        .range = 1e6F};
+  std::vector<ScanKernels> builds{sensors::portableScan()};
+  if (detail::hasAvx2()) builds.push_back(sensors::avx2Scan());
+  for (const ScanKernels& kernels : builds) {
+    std::array<float, sensors::kBeamLanes> found{};
+    kernels.cast_scene(hall, beams, found.data());
+    for (std::size_t n = 0; n < found.size(); ++n) {
+      const double to_end = (kLong - 1 - 2.3) / static_cast<double>(ahead[n]);
+      const double to_side = n == 0 ? to_end : (kWide - 1 - 2.6) / static_cast<double>(right[n]);
+      // Each border on the way adds a nudge.
+      EXPECT_NEAR(static_cast<double>(found[n]), std::min(to_end, to_side), to_end / 200);
+    }
+  }
+}
+
 TEST(ScanKernels, EndBeamsWhereMarchingEntersABox) {
   std::mt19937 random(kSeed);
   const ScanKernels kernels = sensors::portableScan();
