@@ -126,18 +126,29 @@ void fillPlane(const Cells& cells, std::span<const float> lowest_free, float low
 
 }  // namespace
 
-ClearanceMaps::ClearanceMaps(std::vector<std::uint32_t> radius_of_lane)
+ClearanceMaps::ClearanceMaps(std::vector<std::uint32_t> radius_of_lane, std::size_t most_bytes)
     : radius_of_lane_(std::move(radius_of_lane)),
-      eights_(paddedToLanes(radius_of_lane_.size()) / kLanes) {
+      eights_(paddedToLanes(radius_of_lane_.size()) / kLanes),
+      most_bytes_(most_bytes) {
   // Lanes beyond the last group repeat the first of their eight, as bounds do.
   for (std::size_t n = radius_of_lane_.size(); n < eights_ * kLanes; ++n) {
     radius_of_lane_.push_back(radius_of_lane_[n / kLanes * kLanes]);
   }
 }
 
+std::size_t ClearanceMaps::bytesFor(const Scene& scene) const {
+  std::size_t bytes = 0;
+  for (std::uint32_t radius = 0; radius < scene.grids().size(); ++radius) {
+    if (std::ranges::find(radius_of_lane_, radius) == radius_of_lane_.end()) continue;
+    bytes += std::size_t{kClearancePlanes} * cellsOf(scene.grids()[radius]).bytes();
+  }
+  return bytes;
+}
+
 std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenness,
                                  const HeightsOverFloor& heights,
                                  std::span<const float> lowest_of_radius) {
+  if (cells_.size() + bytesFor(scene) > most_bytes_) return kNoClearanceMap;
   const std::size_t map = lanes_.size() / std::max<std::size_t>(eights_, 1);
   lanes_.resize(lanes_.size() + eights_);
   const std::span<ClearanceLanes> lanes = std::span(lanes_).last(eights_);

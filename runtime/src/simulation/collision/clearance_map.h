@@ -50,12 +50,16 @@ class ClearanceMaps {
  public:
   ClearanceMaps() = default;
   /// `radius_of_lane`: index into the working set, of each group that will be asked about.
-  explicit ClearanceMaps(std::vector<std::uint32_t> radius_of_lane);
+  /// `most_bytes`: of all maps, at most what look-ups can count.
+  explicit ClearanceMaps(std::vector<std::uint32_t> radius_of_lane,
+                         std::size_t most_bytes = kMostBytes);
+  static constexpr std::size_t kMostBytes = std::size_t{1} << 31;
 
   /// Adds the maps of a floor of a scene. `floor`: the least height of that floor, meters; the
   /// robot's centers are `heights` above it, or above floors up to `unevenness` higher.
   /// `lowest_of_radius`: how far above its floor nothing of a radius is, where that is more; empty
-  /// where nobody knows. Returns the number by which surelyFree() knows it.
+  /// where nobody knows. Returns the number by which surelyFree() knows it: 0, 1, ...;
+  /// kNoClearanceMap where there is no room for it.
   std::uint32_t add(const Scene& scene, float floor, float unevenness,
                     const HeightsOverFloor& heights, std::span<const float> lowest_of_radius = {});
 
@@ -81,8 +85,12 @@ class ClearanceMaps {
   void answer(std::span<const ClearanceQuestion> questions, std::size_t stride,
               SureGroups* sure) const noexcept;
 
+  /// Of all planes of a floor of a scene.
+  [[nodiscard]] std::size_t bytesFor(const Scene& scene) const;
+
   std::vector<std::uint32_t> radius_of_lane_;
   std::size_t eights_ = 0;
+  std::size_t most_bytes_ = kMostBytes;
   /// Shape: maps x eights_.
   std::vector<ClearanceLanes> lanes_;
   /// Of all maps, and three bytes more than that: look-ups read four at a time.

@@ -194,8 +194,11 @@ void mapClearance(const HeightsOverFloor& heights, Model& model) {
     const float floor = model.starts[order[n]].base.y;
     const std::uint32_t map = model.clearance.add(model.world->scenes()[scene], floor, kUnevenness,
                                                   raised, lowest_of_radius);
-    model.slices.add(model.world->scenes()[scene], floor, sliced, lowest_of_radius);
-    addLevelFloor(model.world->scenes()[scene], model.starts[order[n]].base, model);
+    // Where the maps have no room left, robots ask the columns themselves.
+    if (map != kNoClearanceMap) {
+      model.slices.add(model.world->scenes()[scene], floor, sliced, lowest_of_radius);
+      addLevelFloor(model.world->scenes()[scene], model.starts[order[n]].base, model);
+    }
     for (; n < order.size() && scene_of(order[n]) == scene &&
            model.starts[order[n]].base.y <= floor + kUnevenness;
          ++n) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -120,6 +121,8 @@ FreeSlices::FreeSlices(std::vector<EightSpheres> groups) : groups_(std::move(gro
   SliceTile all_free{};
   std::ranges::fill(all_free.free, std::uint16_t{0xffff});
   numbers_.push_back(numberOf(all_free));
+  [[maybe_unused]] const std::uint32_t nothing_known = numberOf({});
+  assert(nothing_known == kNothingKnown);
 }
 
 std::uint32_t FreeSlices::add(const Scene& scene, float floor, const HeightsOverFloor& heights,
@@ -201,6 +204,9 @@ std::uint32_t FreeSlices::numberOf(const SliceTile& tile) {
   for (auto at = first; at != end; ++at) {
     if (std::memcmp(&tiles_[at->second], &tile, sizeof(tile)) == 0) return at->second;
   }
+  // Rows are counted in 32 bits.
+  constexpr std::size_t kMostTiles = (std::size_t{1} << 31) / kTileStride;
+  if (tiles_.size() == kMostTiles) return kNothingKnown;
   const auto number = static_cast<std::uint32_t>(tiles_.size());
   tiles_.push_back(tile);
   known_.emplace(hash, number);

@@ -125,7 +125,10 @@ class FreeSlices {
   /// The first of a floor's groups.
   [[nodiscard]] const SliceGroup* groupsOf(std::uint32_t map) const;
   void fill(const ColumnGrid& grid, float thickness, const SliceLayout& layout);
+  /// Of a tile, which is kept if it is of a new kind and there is room for it.
   [[nodiscard]] std::uint32_t numberOf(const SliceTile& tile);
+  /// The number of a tile of which no cell is surely free nor surely blocked.
+  static constexpr std::uint32_t kNothingKnown = 1;
   [[nodiscard]] TileSet tiles() const { return {numbers_.data(), tiles_.data()}; }
 
   std::vector<EightSpheres> groups_;

@@ -325,6 +325,24 @@ TEST(ClearanceMaps, KnowNothingWithoutAMap) {
   EXPECT_EQ(sureOf(ClearanceMaps({0}), kNoClearanceMap, 0, eight.bounds.data()), SureGroups{});
 }
 
+TEST(ClearanceMaps, TakeNoMoreThanThereIsRoomFor) {
+  std::mt19937 random(1505);
+  const BoxRoom room = furnishedRoom(random, 5);
+  std::uint32_t added = 0;
+  ClearanceMaps maps({0}, 100'000);
+  while (maps.add(room.scene(), 0, kUnevenness, kHeights) == added) ++added;
+  // The same that fits into more room.
+  EXPECT_GT(added, 0U);
+  EXPECT_EQ(maps.add(room.scene(), 0, kUnevenness, kHeights), kNoClearanceMap);
+  ClearanceMaps more({0}, 200'000);
+  for (std::uint32_t n = 0; n <= added; ++n) {
+    EXPECT_EQ(more.add(room.scene(), 0, kUnevenness, kHeights), n);
+  }
+  const Eight eight(random);
+  EXPECT_EQ(sureOf(maps, added - 1, 0, eight.bounds.data()),
+            sureOf(more, 0, 0, eight.bounds.data()));
+}
+
 TEST(ClearanceMaps, AreNotFooledByWhatIsNoNumber) {
   std::mt19937 random(1504);
   const BoxRoom room = furnishedRoom(random, 5);
