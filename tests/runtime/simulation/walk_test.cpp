@@ -208,6 +208,30 @@ TEST(Walk, IsTheSameToTheBitWhereNothingIsInTheWay) {
   }
 }
 
+TEST(Walk, ClimbsNoFurtherThanAStepMay) {
+  // From x = 1 on, each 4 cm are 4 cm higher.
+  std::vector<Block> blocks{plainFloor()};
+  for (int n = 0; n < 20; ++n) {
+    const float from = 1 + 0.04F * static_cast<float>(n);
+    blocks.push_back({{from, 0, 0}, {3, 0.04F * static_cast<float>(n + 1), 3}});
+  }
+  // High above the base, so that only the floor counts.
+  RobotPackFields robot = cartRobot();
+  for (auto& sphere : robot.spheres) sphere.center.y = 1.1F;
+  const BoxWorld world(blocks, robot,
+                       episodesFrom({{.base = {0.6F, 0, 1.5F}, .objects = {{0.3F, 0.2F, 2.6F}}}}));
+  BatchSimulator simulator = simulatorOf(world, 1, true);
+  const std::array<float, kCartActions> ahead{0, 0, 1, 0, 0, 0};
+  float height = 0;
+  for (int step = 0; step < 20; ++step) {
+    simulator.step(ahead);
+    const float now = simulator.envState(0).world_from_root.translation.y;
+    EXPECT_LE(now - height, GroundOptions{}.most_rise + 1e-4F) << "step " << step;
+    height = now;
+  }
+  EXPECT_GT(height, 0.2F);
+}
+
 TEST(Walk, DoesNotDependOnThreadsNorOnOtherEnvs) {
   std::mt19937 random(1803);
   const PlateRoom room(random, 40);

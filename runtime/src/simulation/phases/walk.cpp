@@ -110,9 +110,16 @@ class Walker {
     const float from = heights_[lane == 0 ? 0 : lane - 1];
     const FloorUnder under =
         floorUnder(scene_, {places.x[lane], from, places.z[lane]}, step_.model.options.ground);
-    step_.between->floor(lane) = under.floor;
+    // A part may not climb on from where others of the step have climbed to.
+    step_.between->floor(lane) = isInReach(under.height) ? under.floor : Floor::kDrops;
     heights_[lane] = under.height;
     places.y[lane] = under.height;
+  }
+
+  /// Whether one step may rise or drop to a height.
+  [[nodiscard]] bool isInReach(float height) const {
+    const GroundOptions& ground = step_.model.options.ground;
+    return height <= *from_.y + ground.most_rise && height >= *from_.y - ground.most_drop;
   }
 
   /// Goes through the lanes as long as they are free; the first slide changes those after it.
@@ -132,7 +139,7 @@ class Walker {
     if (!slideClear(at(lane), lane)) return false;
     const Vec3 after = step_.between->base(lane);
     const Push by{after.x - before.x, after.z - before.z};
-    if (!slidThroughNothing(lane, by)) return false;
+    if (!isInReach(after.y) || !slidThroughNothing(lane, by)) return false;
     slid_ = {slid_.x + by.x, slid_.z + by.z};
     heights_[lane] = after.y;
     return true;
