@@ -52,7 +52,9 @@ class PlanningScene::Impl {
         root_height_(world.robot().base()->root_height),
         links_(world.robot().links().size()),
         robot_(cloudOf(world.robot())),
-        resting_(world.mostObjects(), world.radii().back()),
+        // Whatever asks for objects: spheres, and the hand.
+        resting_(world.mostObjects(),
+                 std::max(world.radii().back(), world.robot().endEffector()->grasp_radius)),
         collision_(mostSpheres(world)),
         placement_(mostSpheres(world), world.radii()) {
     // A jitter is random; what is planned shall not be.

@@ -291,6 +291,17 @@ TEST(AGrasp, AsksForTheHullWhereItIsKnownAndForTheBoxWhereThatIsWanted) {
   }
 }
 
+TEST(AGrasp, ReachesAsFarAsALargeHand) {
+  WorldFields fields = smallHomeWorld();
+  // More than the largest sphere has.
+  fields.robot.end_effector->grasp_radius = 0.3F;
+  const SmallHome home(fields);
+  for (const GraspShape shape : {GraspShape::kHull, GraspShape::kBox}) {
+    EXPECT_TRUE(graspedIn(home.world(), shape, {0.3F, 0, 0}));
+    EXPECT_FALSE(graspedIn(home.world(), shape, {0.4F, 0, 0}));
+  }
+}
+
 TEST(BasePlace, DrivesAlongItsHeading) {
   EXPECT_NEAR(headingOf(0).x, 1, kTolerance);
   // Counter-clockwise, seen from above.
