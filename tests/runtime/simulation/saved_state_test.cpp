@@ -262,6 +262,12 @@ TEST_F(DamagedState, OfOtherOptionsIsRefusedByTheirNames) {
   BatchSimulator far = simulatorOf(home_.world(), options);
   EXPECT_THAT(refusalOf(far, state_), HasSubstr("expected success-distance=0.25, found "
                                                 "success-distance=0.1"));
+  // Where episodes end, their envs wait; in others they would end again.
+  options = homeOptions(3);
+  options.auto_reset = false;
+  BatchSimulator waiting = simulatorOf(home_.world(), options);
+  EXPECT_THAT(refusalOf(simulator_, waiting.saveState()),
+              HasSubstr("expected auto_reset=true, found auto_reset=false"));
   options = homeOptions(3);
   options.body_transforms = true;
   BatchSimulator drawn = simulatorOf(home_.world(), options);

@@ -250,10 +250,10 @@ class BatchState {
   [[nodiscard]] std::span<const std::uint8_t> successes() const { return successes_; }
   [[nodiscard]] std::span<EpisodeEnd> endings() { return endings_; }
   [[nodiscard]] std::span<const EpisodeEnd> endings() const { return endings_; }
-  /// As after a step in which no episode ended and nothing was earned.
   /// 1 where an env has had all its episodes; see BatchSimulator::idle().
   [[nodiscard]] std::span<std::uint8_t> idle() { return idle_; }
   [[nodiscard]] std::span<const std::uint8_t> idle() const { return idle_; }
+  /// As after a step in which no episode ended and nothing was earned.
   void clearOutcome(std::size_t n) {
     rewards_[n] = 0;
     dones_[n] = 0;
@@ -274,10 +274,10 @@ class BatchState {
   [[nodiscard]] std::size_t lastActionRow() const { return targetStartRow() + 3; }
 
   [[nodiscard]] const float* number(std::size_t row, std::size_t n) const {
-    return rows_[n / kChunk * row_count_ + row].values + n % kChunk;
+    return rows_.data()[n / kChunk * row_count_ + row].values + n % kChunk;
   }
   [[nodiscard]] float* number(std::size_t row, std::size_t n) {
-    return rows_[n / kChunk * row_count_ + row].values + n % kChunk;
+    return rows_.data()[n / kChunk * row_count_ + row].values + n % kChunk;
   }
   [[nodiscard]] Vec3 point(std::size_t row, std::size_t n) const {
     const float* x = number(row, n);

@@ -91,6 +91,8 @@ std::vector<OptionText> sharedOptions(const SimulationOptions& options) {
     return option.name == "envs" || option.name == "seed" || option.name == "rank" ||
            option.name == "ranks";
   });
+  // No option of programs, which always want it.
+  shared.push_back({"auto_reset", options.auto_reset ? "true" : "false"});
   return shared;
 }
 
