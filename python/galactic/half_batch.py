@@ -75,7 +75,7 @@ class HalfBatch:
         }
 
     def reset(
-        self, seed: int | None, mask: NDArray[np.bool_], episodes: NDArray[np.int32] | None
+        self, seed: int | None, mask: NDArray[np.bool_], episodes: NDArray[np.int64] | None
     ) -> None:
         """See VectorEnv.reset."""
         if seed is not None:
@@ -84,7 +84,7 @@ class HalfBatch:
         self._is_new = False
         if episodes is not None or not untouched:
             next_one = Simulator.NEXT_EPISODE
-            chosen = np.full(len(mask), next_one, np.int32) if episodes is None else episodes
+            chosen = np.full(len(mask), next_one, np.int64) if episodes is None else episodes
             chosen = np.where(chosen < 0, Simulator.STAYS if untouched else next_one, chosen)
             self.simulator.reset(np.where(mask, chosen, Simulator.STAYS))
         self._tally.restart(mask)

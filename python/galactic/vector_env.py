@@ -191,7 +191,9 @@ class VectorEnv(_Base):
             options: None, or
                 "reset_mask": bool (num_envs,), the envs that begin an episode; the others stay;
                 "episodes": int (num_envs,), the index of the episode that each env begins, negative
-                for the next of its own.
+                for the next of its own. IndexError for one that the world does not have, ValueError
+                for one in which the robot cannot start (Simulator.skipped_episodes); then no env
+                begins any.
 
         Returns:
             The observations of all envs, and an empty dictionary.
@@ -200,11 +202,14 @@ class VectorEnv(_Base):
         mask, episodes = _reset_options(options, self.num_envs)
         if seed is not None and options and options.get("reset_mask") is not None:
             raise ValueError("seed and reset_mask exclude each other: a seed is of all envs")
+        chosen = [None if episodes is None else episodes[self.rows(n)] for n in range(self.halves)]
+        for simulator, of_half in zip(self.simulators, chosen):
+            if of_half is not None:
+                simulator.check_episodes(of_half)
+        for number, half in enumerate(self._halves):
+            half.reset(seed, mask[self.rows(number)], chosen[number])
         if seed is not None and _Base is not object:
             super().reset(seed=seed)
-        for number, half in enumerate(self._halves):
-            rows = self.rows(number)
-            half.reset(seed, mask[rows], None if episodes is None else episodes[rows])
         return self.observe(), {}
 
     def observe(self, out: Row | None = None) -> Observations:
@@ -342,8 +347,8 @@ def _action_space(count: int, kind: str) -> spaces.Space:
 
 def _reset_options(
     options: Mapping[str, Any] | None, envs: int
-) -> tuple[NDArray[np.bool_], NDArray[np.int32] | None]:
-    """Which envs begin an episode, and which, if that is asked for."""
+) -> tuple[NDArray[np.bool_], NDArray[np.int64] | None]:
+    """Which envs begin an episode, and which, if that is asked for: as Simulator.reset takes them."""
     options = options or {}
     unknown = set(options) - {"reset_mask", "episodes"}
     if unknown:
@@ -358,7 +363,11 @@ def _reset_options(
     episodes = np.asarray(episodes)
     if episodes.shape != (envs,) or not np.issubdtype(episodes.dtype, np.integer):
         raise ValueError(f"episodes are {episodes.dtype} {episodes.shape}, expected int ({envs},)")
-    return mask, episodes.astype(np.int32)
+    if episodes.dtype == np.uint64:
+        # What 64 bits with a sign do not hold must not become negative.
+        episodes = np.minimum(episodes, np.uint64(2**63 - 1))
+    chosen = episodes.astype(np.int64)
+    return mask, np.where(mask & (chosen >= 0), chosen, Simulator.NEXT_EPISODE)
 
 
 def _part(out: Row | None, rows: slice) -> Row | None:

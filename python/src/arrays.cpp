@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace galactic::python {
 namespace {
@@ -21,6 +22,10 @@ std::string typeText(const py::handle& type) { return py::str(type).cast<std::st
 
 }  // namespace
 
+std::string typeName(const py::handle& value) {
+  return typeText(py::type::of(value).attr("__name__"));
+}
+
 std::string shapeText(std::span<const py::ssize_t> shape) {
   std::string text = "(";
   for (std::size_t n = 0; n < shape.size(); ++n) {
@@ -37,18 +42,37 @@ py::array_t<T, py::array::c_style | py::array::forcecast> inputOf(const py::hand
   Input array = Input::ensure(given);
   if (!array) {
     PyErr_Clear();
-    throw py::type_error(fmt::format("{} is a {}, expected an array of numbers", name,
-                                     typeText(py::type::of(given).attr("__name__"))));
+    throw py::type_error(
+        fmt::format("{} is a {}, expected an array of numbers", name, typeName(given)));
   }
   requireShape(array, name, shape);
   return array;
 }
 
+py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wholeNumbersOf(
+    const py::handle& given, const char* name, const Shape& shape) {
+  const py::array array = py::array::ensure(given);
+  if (!array) PyErr_Clear();
+  const char kind = array ? array.dtype().kind() : '?';
+  if (kind != 'i' && kind != 'u') {
+    const std::string type = array ? typeText(array.dtype()) + " numbers" : "a " + typeName(given);
+    throw py::type_error(fmt::format("{} is {}, expected an array of whole numbers", name, type));
+  }
+  auto numbers = inputOf<std::int64_t>(array, name, shape);
+  if (kind == 'u' && array.itemsize() == sizeof(std::int64_t)) {
+    // A sign is a bit that was lost. Converted above, so this is memory of its own.
+    std::replace_if(
+        numbers.mutable_data(), numbers.mutable_data() + numbers.size(),
+        [](std::int64_t one) { return one < 0; }, std::numeric_limits<std::int64_t>::max());
+  }
+  return numbers;
+}
+
 template <class T>
 std::span<T> outputOf(const py::handle& given, const char* name, const Shape& shape) {
   if (!py::isinstance<py::array>(given)) {
-    throw py::type_error(fmt::format("{} is a {}, expected a numpy array to write to", name,
-                                     typeText(py::type::of(given).attr("__name__"))));
+    throw py::type_error(
+        fmt::format("{} is a {}, expected a numpy array to write to", name, typeName(given)));
   }
   auto array = py::reinterpret_borrow<py::array>(given);
   if (!py::isinstance<py::array_t<T>>(given)) {

@@ -15,6 +15,9 @@ namespace py = pybind11;
 /// Sizes along the axes.
 using Shape = std::vector<py::ssize_t>;
 
+/// Of a value: "list".
+[[nodiscard]] std::string typeName(const py::handle& value);
+
 /// "(128, 11)", as Python writes it.
 [[nodiscard]] std::string shapeText(std::span<const py::ssize_t> shape);
 
@@ -34,6 +37,11 @@ template <class T>
 /// numbers.
 template <class T>
 [[nodiscard]] py::array_t<T, py::array::c_style | py::array::forcecast> inputOf(
+    const py::handle& given, const char* name, const Shape& shape);
+
+/// The same for whole numbers of any type, which are not rounded: TypeError for others. What 64
+/// bits with a sign do not hold becomes the largest number.
+[[nodiscard]] py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wholeNumbersOf(
     const py::handle& given, const char* name, const Shape& shape);
 
 /// Memory of the caller, as `name`, that results are written to: an array of exactly this type and

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -36,7 +37,9 @@ Simulator::StepInput Simulator::inputOfStep(const py::object& actions,
   StepInput input;
   input.actions =
       inputOf<float>(actions, "actions", {envs(), static_cast<py::ssize_t>(batch_.actionCount())});
-  if (!resets.is_none()) input.resets = inputOf<std::int32_t>(resets, "resets", {envs()});
+  if (!resets.is_none()) {
+    input.resets = episodeNumbers(resets, "resets", BatchSimulator::kStays);
+  }
   return input;
 }
 
@@ -73,12 +76,44 @@ void Simulator::endStep() {
 }
 
 void Simulator::reset(const py::object& episodes) {
-  const auto chosen = inputOf<std::int32_t>(episodes, "episodes", {envs()});
+  const EpisodeNumbers chosen = episodeNumbers(episodes, "episodes", BatchSimulator::kNextEpisode);
   const Confinement::Use use = readState();
   const std::span<const std::int32_t> values{chosen.data(),
                                              static_cast<std::size_t>(chosen.size())};
   const py::gil_scoped_release unlocked;
   batch_.reset(values);
+}
+
+void Simulator::checkEpisodes(const py::object& episodes) const {
+  (void)episodeNumbers(episodes, "episodes", BatchSimulator::kNextEpisode);
+}
+
+Simulator::EpisodeNumbers Simulator::episodeNumbers(const py::object& given, const char* name,
+                                                    std::int32_t least) const {
+  // Of 64 bits first: a number that is too large must not become another one.
+  const auto numbers = wholeNumbersOf(given, name, {envs()});
+  EpisodeNumbers narrow(envs());
+  std::int32_t* to = narrow.mutable_data();
+  for (const std::int64_t number : std::span(numbers.data(), batch_.envCount())) {
+    requireEpisode(number, least);
+    *to++ = static_cast<std::int32_t>(number);
+  }
+  return narrow;
+}
+
+void Simulator::requireEpisode(std::int64_t number, std::int32_t least) const {
+  const std::size_t count = world_->episodes().episodes().size();
+  if (number < least || number >= static_cast<std::int64_t>(count)) {
+    throw py::index_error(
+        fmt::format("there is no episode {}; the world's last is {}", number, count - 1));
+  }
+  const std::span<const std::uint32_t> skipped = batch_.skippedEpisodes();
+  if (number >= 0 && std::ranges::binary_search(skipped, static_cast<std::uint32_t>(number))) {
+    throw py::value_error(
+        fmt::format("the robot cannot start in episode {}; skipped_episodes lists all such, leave "
+                    "them out",
+                    number));
+  }
 }
 
 void Simulator::restart(std::uint64_t seed) {

@@ -27,8 +27,11 @@ class Simulator {
   void step(const py::object& actions, const py::object& resets);
   void beginStep(const py::object& actions, const py::object& resets);
   void endStep();
-  /// `episodes`: see BatchSimulator::reset.
+  /// `episodes`: see BatchSimulator::reset; all are looked at before anything is done. IndexError
+  /// for numbers that are none, ValueError for those of episodes that are skipped.
   void reset(const py::object& episodes);
+  /// Raises what reset() would, and does nothing.
+  void checkEpisodes(const py::object& episodes) const;
   void restart(std::uint64_t seed);
   /// `envs`: None for all, or numbers of envs.
   [[nodiscard]] py::bytes saveState(const py::object& envs);
@@ -57,7 +60,15 @@ class Simulator {
     [[nodiscard]] std::span<const std::int32_t> resetSpan() const;
   };
 
+  using EpisodeNumbers = py::array_t<std::int32_t, py::array::c_style | py::array::forcecast>;
+
   Simulator(std::shared_ptr<const World> world, BatchSimulator batch);
+  /// What `given` says of each env: an episode that can be started, or one of the numbers that mean
+  /// something else, which are `least` to -1.
+  [[nodiscard]] EpisodeNumbers episodeNumbers(const py::object& given, const char* name,
+                                              std::int32_t least) const;
+  /// Throws for what is no such number.
+  void requireEpisode(std::int64_t number, std::int32_t least) const;
   [[nodiscard]] StepInput inputOfStep(const py::object& actions, const py::object& resets) const;
 
   std::shared_ptr<const World> world_;

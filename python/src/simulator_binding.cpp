@@ -153,7 +153,7 @@ void bindStepping(py::class_<Simulator>& type) {
            "One step of all envs.\n\n"
            "actions: (num_envs, action_count), float32 without a copy; clamped to [-1, 1], NaN\n"
            "counts as 0. resets: int32 (num_envs,), for each env the index of an episode that\n"
-           "begins instead of this step's end, -1 for none.");
+           "begins instead of this step's end, STAYS (-1) for none. Indices as in reset().");
   type.def("begin_step", &Simulator::beginStep, py::arg("actions"), py::arg("resets") = py::none(),
            "The first half of step(): the simulator's threads work, the caller goes on.\n\n"
            "Do not write to actions and resets, nor read what the simulator shows, before\n"
@@ -163,7 +163,10 @@ void bindStepping(py::class_<Simulator>& type) {
       "reset", &Simulator::reset, py::arg("episodes"),
       "Begins episodes between two steps.\n\n"
       "episodes: int32 (num_envs,), for each env the index of an episode, NEXT_EPISODE for the\n"
-      "one whose turn it is, or STAYS.");
+      "one whose turn it is, or STAYS. Nothing begins if one is wrong: IndexError for those\n"
+      "that the world does not have, ValueError for skipped_episodes.");
+  type.def("check_episodes", &Simulator::checkEpisodes, py::arg("episodes"),
+           "Raises what reset() would raise for these episodes, and does nothing else.");
   type.def("restart", &Simulator::restart, py::arg("seed"),
            "All envs stand at the start of their first episode, as if just made with this seed.");
   type.def("save_state", &Simulator::saveState, py::arg("envs") = py::none(),

@@ -171,6 +171,50 @@ def test_resets_begin_the_episode_that_they_name(simulator, draw_actions):
     assert [simulator.env_state(n).step for n in (0, 1, 2)] == [0, 0, 1]
 
 
+@pytest.mark.parametrize(
+    "number, error, message",
+    [
+        (4, IndexError, "there is no episode 4; the world's last is 3"),
+        (99, IndexError, "there is no episode 99"),
+        (-3, IndexError, "there is no episode -3"),
+        (2**31, IndexError, "there is no episode 2147483648"),
+        (2**33 + 3, IndexError, "there is no episode 8589934595"),
+        (2**32 - 1, IndexError, "there is no episode 4294967295"),
+        (2**64 - 1, IndexError, "there is no episode 9223372036854775807"),
+        (2, ValueError, "the robot cannot start in episode 2; skipped_episodes lists all such"),
+        (1.0, TypeError, "float64 numbers, expected an array of whole numbers"),
+        (2**70, TypeError, "object numbers, expected an array of whole numbers"),
+    ],
+)
+def test_episodes_that_cannot_begin_are_refused_and_nothing_happens(
+    simulator, draw_actions, number, error, message
+):
+    simulator.step(draw_actions(ENVS, 8))
+    before = simulator.save_state()
+    dtype = np.uint64 if number == 2**64 - 1 else None
+    chosen = np.array([0] * (ENVS - 1) + [number], dtype)
+    actions = draw_actions(ENVS, 8)
+    for call in (
+        lambda: simulator.reset(chosen),
+        lambda: simulator.check_episodes(chosen),
+        lambda: simulator.step(actions, chosen),
+        lambda: simulator.begin_step(actions, chosen),
+    ):
+        with pytest.raises(error) as caught:
+            call()
+        assert message in str(caught.value)
+        assert simulator.save_state() == before
+
+
+def test_the_next_episode_is_none_that_a_step_begins(simulator, draw_actions):
+    nexts = np.full(ENVS, Simulator.NEXT_EPISODE)
+    simulator.check_episodes(nexts)
+    with pytest.raises(IndexError, match="there is no episode -2"):
+        simulator.step(draw_actions(ENVS, 8), nexts)
+    simulator.reset(nexts.astype(np.int8))
+    assert [simulator.env_state(n).step for n in range(ENVS)] == [0] * ENVS
+
+
 def test_options_are_those_of_the_option_table(world):
     simulator = Simulator(
         world,

@@ -148,6 +148,40 @@ def test_a_reset_begins_the_sums_anew(world, draw_actions):
 
 
 @pytest.mark.parametrize(
+    "number, error, message",
+    [
+        (4, IndexError, "there is no episode 4; the world's last is 3"),
+        (2**31, IndexError, "there is no episode 2147483648"),
+        (2**33 + 3, IndexError, "there is no episode 8589934595"),
+        (2**64 - 1, IndexError, "there is no episode"),
+        (2, ValueError, "the robot cannot start in episode 2"),
+    ],
+)
+@pytest.mark.parametrize("halves", [1, 2])
+def test_episodes_that_cannot_begin_are_refused_before_anything_happens(
+    world, draw_actions, halves, number, error, message
+):
+    env = VectorEnv(world, ENVS, halves=halves, **OPTIONS)
+    env.reset()
+    env.step(draw_actions(ENVS, 8))
+    before = env.save_state()
+    dtype = np.uint64 if number == 2**64 - 1 else np.int64
+    episodes = np.array([0] * (ENVS - 1) + [number], dtype)
+    for options in ({"episodes": episodes}, {"episodes": episodes, "reset_mask": episodes != 0}):
+        with pytest.raises(error) as caught:
+            env.reset(options=options)
+        assert message in str(caught.value)
+        assert env.save_state() == before
+    with pytest.raises(error):
+        env.reset(seed=7, options={"episodes": episodes})
+    assert env.save_state() == before
+    # What an env that stays would begin does not matter.
+    env.reset(options={"episodes": episodes, "reset_mask": episodes == 0})
+    begun = np.concatenate([one.episodes() for one in env.simulators])
+    np.testing.assert_array_equal(begun[:-1], 0)
+
+
+@pytest.mark.parametrize(
     "options, message",
     [
         ({"mask": None}, "no option 'mask'"),

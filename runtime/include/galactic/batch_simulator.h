@@ -169,7 +169,8 @@ class BatchSimulator {
 
   /// One step of all envs. `actions`: envCount() * actionCount(), env after env.
   /// `resets`: empty, or for each env the index of an episode that begins instead of this step's
-  /// end, -1 for none; the env's reward and done of this step are 0.
+  /// end, kStays for none; the env's reward and done of this step are 0. Numbers that are no
+  /// episode's, and those of skippedEpisodes(), begin none either: no episode becomes another.
   void step(std::span<const float> actions, std::span<const std::int32_t> resets = {});
 
   /// The same in two halves, so that the caller can work meanwhile. `actions` and `resets` must
@@ -187,8 +188,9 @@ class BatchSimulator {
   static constexpr std::int32_t kStays = -1;
   static constexpr std::int32_t kNextEpisode = -2;
   /// Begins episodes between two steps. `episodes`: for each env the index of an episode, kStays or
-  /// kNextEpisode. What the last step returned stays, but for the observations of these envs; where
-  /// that step ended an episode, the one before is their final observation.
+  /// kNextEpisode; where a number is neither, or of skippedEpisodes(), the env stays, too. What the
+  /// last step returned stays, but for the observations of these envs; where that step ended an
+  /// episode, the one before is their final observation.
   void reset(std::span<const std::int32_t> episodes);
   /// All envs stand at the start of their first episode, as if the simulator had just been made
   /// with this seed; the statistics begin anew, too.

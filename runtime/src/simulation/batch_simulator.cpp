@@ -86,13 +86,15 @@ class BatchSimulator::Impl {
   void reset(std::span<const std::int32_t> episodes) {
     assert(episodes.size() == model_.options.envs);
     for (std::size_t env = 0; env < episodes.size(); ++env) {
-      if (episodes[env] == kStays) continue;
+      const bool is_next = episodes[env] == kNextEpisode;
+      const std::optional<std::uint32_t> start = model_.startOf(episodes[env]);
+      if (!is_next && !start) continue;
       // With auto_reset the step has kept it.
       if (!model_.options.auto_reset) state_.keepFinalObservation(env);
-      if (episodes[env] == kNextEpisode) {
+      if (is_next) {
         simulation::beginNextEpisode(model_, state_, env);
       } else {
-        simulation::beginChosenEpisode(model_, state_, env, episodes[env]);
+        simulation::beginEpisode(model_, state_, env, *start);
       }
     }
   }

@@ -1,6 +1,7 @@
 #include "simulation/phases/episode_start.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "simulation/phases/observe.h"
 #include "simulation/phases/task.h"
@@ -36,17 +37,6 @@ void placeObjects(const Model& model, BatchState& state, std::size_t n, const Ep
     state.placeObject(n, object, placement.pose);
     resting.insert(object, restingBox(model.world->objectOf(placement).box, placement.pose));
   }
-}
-
-/// The start of episode `episode`, or the next that can be started.
-std::uint32_t startOf(const Model& model, std::uint32_t episode) {
-  const auto by_episode = [](const EpisodeStart& start, std::uint32_t wanted) {
-    return start.episode < wanted;
-  };
-  const auto found =
-      std::lower_bound(model.starts.begin(), model.starts.end(), episode, by_episode);
-  return found == model.starts.end() ? 0U
-                                     : static_cast<std::uint32_t>(found - model.starts.begin());
 }
 
 }  // namespace
@@ -98,11 +88,6 @@ void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) no
   state.idle()[env] = next ? 0 : 1;
 }
 
-void beginChosenEpisode(const Model& model, BatchState& state, std::size_t env,
-                        std::int32_t episode) noexcept {
-  beginEpisode(model, state, env, startOf(model, static_cast<std::uint32_t>(episode)));
-}
-
 void renewEpisodes(const ChunkStep& step) noexcept {
   if (!step.model.options.auto_reset) return;
   const std::uint8_t* dones = step.state.dones().data() + step.first;
@@ -117,8 +102,8 @@ void renewEpisodes(const ChunkStep& step) noexcept {
 
 void resetEpisodes(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept {
   for (std::size_t n = step.first; n < std::min(step.first + kChunk, resets.size()); ++n) {
-    if (resets[n] < 0) continue;
-    beginChosenEpisode(step.model, step.state, n, resets[n]);
+    const std::optional<std::uint32_t> start = step.model.startOf(resets[n]);
+    if (start) beginEpisode(step.model, step.state, n, *start);
   }
 }
 

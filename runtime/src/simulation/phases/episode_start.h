@@ -18,16 +18,12 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t env,
 /// The same at the start of the episode that is the env's next. Without one it is idle from now on,
 /// and stays as it is: see BatchSimulator::idle().
 void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) noexcept;
-/// The same at the start of the episode of this index in the world, or of the next one that can be
-/// started.
-void beginChosenEpisode(const Model& model, BatchState& state, std::size_t env,
-                        std::int32_t episode) noexcept;
 
 /// Where the episode ended, with auto_reset: keeps the last observation and begins the next one.
 void renewEpisodes(const ChunkStep& step) noexcept;
 
 /// Begins the episodes that the caller asks for: for each env of the batch an index into the
-/// world's episodes, or -1.
+/// world's episodes. Numbers without a start (Model::startOf) begin none.
 void resetEpisodes(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept;
 
 }  // namespace galactic::simulation

@@ -174,7 +174,7 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
   Outcomes outcomes;
   for (std::size_t e = 0; e < kChunk; ++e) {
     const std::size_t n = step.first + e;
-    if (n < resets.size() && resets[n] >= 0) continue;
+    if (n < resets.size() && step.model.startOf(resets[n])) continue;
     Env& env = step.state.env(n);
     if (idle[e] != 0) {
       ++step.state.counters(n).idle_steps;

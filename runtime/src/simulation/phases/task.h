@@ -32,8 +32,8 @@ struct WayLeft {
 [[nodiscard]] EpisodeEnd endOf(const TaskOptions& task, const Env& env, float transport) noexcept;
 
 /// Counts the step; rewards (paper, equation 1), dones, successes and endings of it. Envs of the
-/// batch that the caller resets (`resets`: empty, or not negative where so) get none: their episode
-/// is neither rewarded nor counted.
+/// batch that the caller resets (`resets`: empty, or a number with a start where so) get none:
+/// their episode is neither rewarded nor counted.
 void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept;
 
 }  // namespace galactic::simulation

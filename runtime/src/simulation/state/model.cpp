@@ -252,6 +252,15 @@ Result<void> makeSensors(const sensors::LaserSettings& laser, Model& model) {
 
 }  // namespace
 
+std::optional<std::uint32_t> Model::startOf(std::int64_t episode) const noexcept {
+  if (episode < 0) return std::nullopt;
+  const auto start = std::ranges::lower_bound(starts, episode, {}, [](const EpisodeStart& one) {
+    return static_cast<std::int64_t>(one.episode);
+  });
+  if (start == starts.end() || start->episode != episode) return std::nullopt;
+  return static_cast<std::uint32_t>(start - starts.begin());
+}
+
 Result<Model> makeModel(const World& world, const SimulationOptions& options) {
   Model model;
   model.world = &world;

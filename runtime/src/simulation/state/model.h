@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -87,6 +88,9 @@ struct Model {
   [[nodiscard]] const Episode& episodeOf(std::uint32_t start) const {
     return world->episodes().episodes()[starts[start].episode];
   }
+  /// The index into `starts` of the episode of this index in the world; none for a number that is
+  /// no episode's, and for an episode that is skipped.
+  [[nodiscard]] std::optional<std::uint32_t> startOf(std::int64_t episode) const noexcept;
   /// The objects of an episode that are there, and which of them is the target.
   [[nodiscard]] std::span<const Placement> placements(const Episode& episode) const {
     const std::span<const Placement> all = world->episodes().placements(episode);

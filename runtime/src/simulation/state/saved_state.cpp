@@ -217,9 +217,7 @@ bool isPlain(const RigidTransform& transform) {
 
 /// What is wrong with an env's record in a world that it may not be of; empty when nothing is.
 std::string faultOf(const Model& model, const EnvRecord& record) {
-  const auto start =
-      std::ranges::lower_bound(model.starts, record.episode, {}, &EpisodeStart::episode);
-  if (start == model.starts.end() || start->episode != record.episode) {
+  if (!model.startOf(record.episode)) {
     return fmt::format("is in episode {}, which cannot be started", record.episode);
   }
   const Episode& episode = model.world->episodes().episodes()[record.episode];
@@ -240,12 +238,11 @@ std::string faultOf(const Model& model, const EnvRecord& record) {
 }
 
 SavedEnv envOf(const Model& model, const EnvRecord& record) {
-  const auto start =
-      std::ranges::lower_bound(model.starts, record.episode, {}, &EpisodeStart::episode);
   const auto& [refused, slid, grasps, drops, restored, episodes, successes, failures] =
       record.counts;
   SavedEnv saved;
-  saved.env.start = static_cast<std::uint32_t>(start - model.starts.begin());
+  // faultOf() has looked whether there is one.
+  saved.env.start = *model.startOf(record.episode);
   saved.env.step = record.step;
   saved.env.held = record.held;
   saved.held.grip_from_object = record.grip_from_held;
