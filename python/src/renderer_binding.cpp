@@ -35,7 +35,7 @@ CameraOptions optionsFrom(const py::kwargs& keywords) {
   CameraOptions options;
   RenderOptions& render = options.render;
   render.color = ColorFormat::kRgb8;
-  options.camera = {.name = "head", .option = "camera"};
+  options.camera = {.name = "head", .option = "camera", .fov_option = "fov_degrees"};
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
     if (name == "width") {
@@ -105,8 +105,8 @@ void bindRenderer(py::module_& module) {
       "Draws what cameras on the robots of a simulator see, all envs together.\n\n"
       "The simulator must have been made with body_transforms=True. Keywords: width=128,\n"
       "height=128, pixels; color='rgb', 'rgba' or None; depth=True; semantics=False;\n"
-      "camera='head', 'follow', 'top' or a link; fov_degrees, vertical, 0 for the camera's own;\n"
-      "backend='auto', 'soft', 'gl' or 'cuda'; device=''; threads=0.\n\n"
+      "camera='head', 'follow', 'top' or a link; fov_degrees, vertical, 1 to 175, or 0 for\n"
+      "the camera's own; backend='auto', 'soft', 'gl' or 'cuda'; device=''; threads=0.\n\n"
       "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
       "(N, height, width), meters along the camera's axis, 0 where nothing is drawn;\n"
       "'semantics' uint32 (N, height, width), indices into semantic_names.");

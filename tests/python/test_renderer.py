@@ -7,7 +7,7 @@ import threading
 import numpy as np
 import pytest
 
-from galactic import Error, ErrorCode, Renderer, Simulator
+from galactic import Error, ErrorCode, Renderer, Simulator, VectorEnv
 
 ENVS = 6
 CAMERA = {"camera": "follow", "backend": "soft", "threads": 1, "width": 32, "height": 20}
@@ -126,6 +126,20 @@ def test_wrong_options_are_refused(simulator, options, error, message):
     with pytest.raises(error) as caught:
         Renderer(simulator, **{**CAMERA, **options})
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize("fov", [-5, 0.5, 175.5, 180, 200, 360, 500, np.nan, np.inf])
+def test_fields_of_view_that_show_nothing_are_refused(world, simulator, fov):
+    message = "fov_degrees: found a vertical field of view of .* degrees, expected 1 to 175, or 0"
+    with pytest.raises(Error, match=message):
+        Renderer(simulator, **CAMERA, fov_degrees=fov)
+    with pytest.raises(Error, match=message):
+        VectorEnv(world, 2, images={**CAMERA, "fov_degrees": fov})
+
+
+def test_the_widest_field_of_view_and_that_of_the_camera_show_something(simulator):
+    for fov in (0, 175, np.float32(90)):
+        assert Renderer(simulator, **CAMERA, fov_degrees=fov).render()["rgb"].any()
 
 
 def test_wrong_simulators_and_uses_are_refused(world, simulator):

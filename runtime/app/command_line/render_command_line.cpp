@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "galactic/world_views.h"
 #include "support/number_text.h"
 
 namespace galactic {
@@ -108,11 +109,9 @@ void addDrawingOptions(CLI::App& app, DrawingOptions& drawing) {
   app.add_option("--camera", drawing.camera,
                  "The recipe's camera, one behind the robot, one above it, or a link")
       ->option_text(fmt::format("head|follow|top|LINK [{}]", drawing.camera));
-  constexpr double kLeastFov = 1;
-  constexpr double kMostFov = 175;
   app.add_option("--fov", drawing.fov_degrees,
                  "Vertical field of view, from the image's lower to its upper edge")
-      ->check(numberCheck(kLeastFov, kMostFov))
+      ->check(numberCheck(kLeastFovDegrees, kMostFovDegrees))
       ->option_text("DEGREES");
   addPictures(app, drawing);
   addDebug(app, drawing);

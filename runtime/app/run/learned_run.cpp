@@ -27,7 +27,8 @@ class PolicyEyes {
     const Result<ChosenCamera> camera =
         chooseCamera(world.robot(), {.name = image.camera,
                                      .fov_degrees = image.vertical_fov * kDegreesPerRadian,
-                                     .option = run.policy});
+                                     .option = run.policy,
+                                     .fov_option = run.policy});
     if (!camera) return tl::unexpected<Error>(camera.error());
     Result<WorldModels> models = WorldModels::from(world);
     if (!models) return tl::unexpected<Error>(models.error());

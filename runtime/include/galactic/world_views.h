@@ -107,13 +107,19 @@ struct CameraWish {
   /// off, ceilings above all. Or a link of the robot ("NAME", or "link:NAME" where it has one of
   /// these names), looking along its +X.
   std::string name;
-  /// Between the lower and the upper edge; 0: what belongs to the camera.
+  /// Between the lower and the upper edge, kLeastFovDegrees to kMostFovDegrees; 0: what belongs to
+  /// the camera.
   float fov_degrees = 0;
-  /// What errors call the option.
+  /// What errors call the options.
   std::string option = "--camera";
+  std::string fov_option = "--fov";
 };
+/// Narrower views than these show next to nothing, wider ones little but their edges.
+inline constexpr float kLeastFovDegrees = 1;
+inline constexpr float kMostFovDegrees = 175;
 
-/// Fails with kInvalidInput when the robot has no such link, or its recipe no camera.
+/// Fails with kInvalidInput when the robot has no such link, or its recipe no camera, and when the
+/// field of view is out of range.
 [[nodiscard]] Result<ChosenCamera> chooseCamera(const Robot& robot, const CameraWish& wish);
 
 }  // namespace galactic

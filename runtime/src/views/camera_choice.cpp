@@ -77,9 +77,15 @@ Result<ChosenCamera> cameraOf(const Robot& robot, const CameraWish& wish) {
 
 Result<ChosenCamera> chooseCamera(const Robot& robot, const CameraWish& wish) {
   Result<ChosenCamera> camera = cameraOf(robot, wish);
-  if (camera && wish.fov_degrees > 0) {
-    camera->mount.vertical_fov = wish.fov_degrees * kRadiansPerDegree;
+  if (!camera || wish.fov_degrees == 0) return camera;
+  // A comparison with NaN is false.
+  if (!(wish.fov_degrees >= kLeastFovDegrees && wish.fov_degrees <= kMostFovDegrees)) {
+    return fail(ErrorCode::kInvalidInput, wish.fov_option,
+                fmt::format("found a vertical field of view of {} degrees, expected {} to {}, or 0 "
+                            "for that of the camera",
+                            wish.fov_degrees, kLeastFovDegrees, kMostFovDegrees));
   }
+  camera->mount.vertical_fov = wish.fov_degrees * kRadiansPerDegree;
   return camera;
 }
 

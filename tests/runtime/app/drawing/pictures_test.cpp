@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -26,6 +27,7 @@ using pictures::Image;
 using pictures::Rgb;
 using testing::AllOf;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 
 /// Memory for a small image of all kinds.
@@ -332,6 +334,22 @@ TEST(CameraChoice, FromAboveAheadIsUpInTheImageAndCeilingsAreCutOff) {
   EXPECT_NEAR(rotate(pose.rotation, {1, 0, 0}).y, -1, 1e-6F);
   EXPECT_NEAR(rotate(pose.rotation, {0, 1, 0}).x, 1, 1e-6F);
   EXPECT_NEAR(pose.translation.y - top->near, 2.1F, 1e-5F);
+}
+
+TEST(CameraChoice, RefusesFieldsOfViewThatShowNothing) {
+  const test::SmallHome home;
+  const Robot& robot = home.world().robot();
+  for (const float fov : {0.0F, 1.0F, 175.0F}) {
+    EXPECT_TRUE(chooseCamera(robot, {.name = "top", .fov_degrees = fov})) << fov;
+  }
+  for (const float fov : {-5.0F, 0.9F, 175.1F, 180.0F, 360.0F, std::nanf("")}) {
+    const auto none = chooseCamera(robot, {.name = "top", .fov_degrees = fov});
+    ASSERT_FALSE(none) << fov;
+    EXPECT_EQ(none.error().code, ErrorCode::kInvalidInput);
+    EXPECT_EQ(none.error().where, "--fov");
+    EXPECT_THAT(none.error().message,
+                EndsWith(" degrees, expected 1 to 175, or 0 for that of the camera"));
+  }
 }
 
 TEST(CameraChoice, AnUnknownLinkIsRefusedWithThoseThereAre) {
