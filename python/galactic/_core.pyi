@@ -90,8 +90,8 @@ class Simulator:
     def __init__(
         self,
         world: World,
-        *,
         envs: int = 128,
+        *,
         threads: int = 0,
         seed: int = 1,
         order: Literal["shuffled", "linear", "partition"] = "shuffled",
@@ -203,7 +203,7 @@ class Renderer:
         camera: str = "head",
         fov_degrees: float = 0,
         backend: Literal["auto", "soft", "gl", "cuda"] = "auto",
-        device: str = "",
+        device: str | int = "",
         threads: int = 0,
     ) -> None: ...
     def render(

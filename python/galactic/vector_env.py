@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import numbers
 import os
 import zipfile
 from collections.abc import Mapping, Sequence
@@ -110,7 +111,15 @@ class VectorEnv(_Base):
         _require(observation in ("flat", "dict"), "observation", observation, '"flat" or "dict"')
         _require(actions in ("box", "paper"), "actions", actions, '"box" or "paper"')
         _require(halves in (1, 2), "halves", halves, "1 or 2")
+        is_count = isinstance(num_envs, numbers.Integral) and num_envs > 0
+        _require(is_count, "num_envs", num_envs, "a whole number above 0")
         _require(num_envs % halves == 0, "num_envs", num_envs, "an even number for two halves")
+        _require(
+            images is None or isinstance(images, Mapping),
+            "images",
+            images,
+            'options of galactic.Renderer, such as {"width": 128}, or None for no images',
+        )
         _require(render_mode in (None, "rgb_array"), "render_mode", render_mode, '"rgb_array"')
         _require("envs" not in options, "envs", options.get("envs"), "num_envs instead")
         self.world = world if isinstance(world, World) else World(world)

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "arrays.h"
 #include "errors.h"
 #include "galactic/option_text.h"
 
@@ -33,7 +35,7 @@ std::string textOf(const std::string& keyword, const py::handle& value) {
   if (PyNumber_Check(value.ptr()) != 0) return py::repr(py::float_(value.cast<double>()));
   throw py::type_error(
       fmt::format("the option {} is a {}, expected a number, a truth value or a word", keyword,
-                  py::str(py::type::of(value).attr("__name__")).cast<std::string>()));
+                  typeName(value)));
 }
 
 /// Of a listed option.
@@ -59,13 +61,21 @@ py::object valueOf(const OptionText& option) {
   throw py::type_error(fmt::format("there is no option {}; {}", keyword, hint));
 }
 
-std::uint32_t threadsOf(const py::handle& value) {
-  constexpr std::int64_t kMost = 4096;
-  const std::int64_t threads = PyIndex_Check(value.ptr()) != 0 ? value.cast<std::int64_t>() : -1;
-  if (threads >= 0 && threads <= kMost) return static_cast<std::uint32_t>(threads);
-  throw Refusal{{ErrorCode::kInvalidInput, "threads",
-                 fmt::format("is {}, expected 0 to {}; 0 takes one per processor",
-                             py::repr(value).cast<std::string>(), kMost)}};
+[[noreturn]] void refuseValue(const char* name, const py::handle& value,
+                              const std::string& wanted) {
+  throw Refusal{{ErrorCode::kInvalidInput, name,
+                 fmt::format("is {}, expected {}", py::repr(value).cast<std::string>(), wanted)}};
+}
+
+/// None for what is not a whole number from 0 to `most`.
+std::optional<std::uint64_t> wholeUpTo(const py::handle& value, std::uint64_t most) {
+  const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
+  const std::uint64_t found = number ? PyLong_AsUnsignedLongLong(number.ptr()) : 0;
+  if (PyErr_Occurred() != nullptr) {
+    PyErr_Clear();
+    return std::nullopt;
+  }
+  return found <= most ? std::optional(found) : std::nullopt;
 }
 
 /// Gives `options` what keywords name; the names that are of the option table.
@@ -77,7 +87,8 @@ std::vector<OptionText> setKeywords(const py::dict& keywords, SimulationOptions&
     if (keyword == "threads") {
       options.threads = threadsOf(value);
     } else if (keyword == "body_transforms" || keyword == "auto_reset") {
-      (keyword == "auto_reset" ? options.auto_reset : options.body_transforms) = value.cast<bool>();
+      (keyword == "auto_reset" ? options.auto_reset : options.body_transforms) =
+          truthOf(keyword.c_str(), value);
     } else {
       texts.push_back({dashed(keyword), textOf(keyword, value)});
     }
@@ -91,6 +102,39 @@ std::vector<OptionText> setKeywords(const py::dict& keywords, SimulationOptions&
 }
 
 }  // namespace
+
+std::uint64_t wholeOf(const char* name, const py::handle& value, std::uint64_t least,
+                      std::uint64_t most) {
+  const std::optional<std::uint64_t> found = wholeUpTo(value, most);
+  if (found && *found >= least) return *found;
+  refuseValue(name, value, fmt::format("a whole number from {} to {}", least, most));
+}
+
+double numberOf(const char* name, const py::handle& value) {
+  const bool is_number = PyNumber_Check(value.ptr()) != 0;
+  const double found = is_number ? PyFloat_AsDouble(value.ptr()) : 0;
+  const bool is_wrong = PyErr_Occurred() != nullptr;
+  PyErr_Clear();
+  if (!is_number || is_wrong) refuseValue(name, value, "a number");
+  return found;
+}
+
+bool truthOf(const char* name, const py::handle& value) {
+  py::detail::make_caster<bool> truth;
+  if (!truth.load(value, true)) refuseValue(name, value, "True or False");
+  return py::detail::cast_op<bool>(truth);
+}
+
+std::string wordOf(const char* name, const py::handle& value, const char* wanted) {
+  if (!py::isinstance<py::str>(value)) refuseValue(name, value, wanted);
+  return value.cast<std::string>();
+}
+
+std::uint32_t threadsOf(const py::handle& value) {
+  constexpr std::uint64_t kMost = 4096;
+  if (const auto threads = wholeUpTo(value, kMost)) return static_cast<std::uint32_t>(*threads);
+  refuseValue("threads", value, fmt::format("0 to {}; 0 takes one per processor", kMost));
+}
 
 SimulationOptions optionsOf(const World& world, const py::dict& keywords) {
   SimulationOptions options = world.withTask();

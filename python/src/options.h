@@ -1,6 +1,8 @@
 #pragma once
 #include <pybind11/pybind11.h>
 
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "galactic/option_text.h"
@@ -10,6 +12,16 @@
 namespace galactic::python {
 
 namespace py = pybind11;
+
+/// What a keyword is given, as a whole number of a range, a number, a truth value, or text. Throws
+/// a Refusal that says what was found; the last one says what was `wanted`, too.
+[[nodiscard]] std::uint64_t wholeOf(const char* name, const py::handle& value, std::uint64_t least,
+                                    std::uint64_t most);
+[[nodiscard]] double numberOf(const char* name, const py::handle& value);
+[[nodiscard]] bool truthOf(const char* name, const py::handle& value);
+[[nodiscard]] std::string wordOf(const char* name, const py::handle& value, const char* wanted);
+/// The same of `threads`.
+[[nodiscard]] std::uint32_t threadsOf(const py::handle& value);
 
 /// The options that keywords name: those of the option table with '_' for '-', and `threads`,
 /// `body_transforms` and `auto_reset`. What they do not name is what the world says of its task,

@@ -2,32 +2,44 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <optional>
+#include <limits>
 #include <string>
 
 #include "bindings.h"
 #include "dlpack.h"
 #include "errors.h"
+#include "options.h"
 #include "renderer.h"
 
 namespace galactic::python {
 namespace {
 
-ColorFormat colorOf(const std::optional<std::string>& name) {
-  if (!name) return ColorFormat::kNone;
-  if (*name == "rgb") return ColorFormat::kRgb8;
-  if (*name == "rgba") return ColorFormat::kRgba8;
-  throw Refusal{
-      {ErrorCode::kInvalidInput, "color", "is " + *name + ", expected rgb, rgba or None"}};
+ColorFormat colorOf(const py::handle& value) {
+  if (value.is_none()) return ColorFormat::kNone;
+  const std::string name = wordOf("color", value, "rgb, rgba or None");
+  if (name == "rgb") return ColorFormat::kRgb8;
+  if (name == "rgba") return ColorFormat::kRgba8;
+  throw Refusal{{ErrorCode::kInvalidInput, "color", "is " + name + ", expected rgb, rgba or None"}};
 }
 
-RenderBackend backendOf(const std::string& name) {
+RenderBackend backendOf(const py::handle& value) {
+  const std::string name = wordOf("backend", value, "auto, soft, gl or cuda");
   if (name == "auto") return RenderBackend::kAuto;
   if (name == "soft") return RenderBackend::kSoft;
   if (name == "gl") return RenderBackend::kGl;
   if (name == "cuda") return RenderBackend::kCuda;
   throw Refusal{
       {ErrorCode::kInvalidInput, "backend", "is " + name + ", expected auto, soft, gl or cuda"}};
+}
+
+/// Also by its index, a number.
+std::string deviceOf(const py::handle& value) {
+  if (PyIndex_Check(value.ptr()) == 0) return wordOf("device", value, "an index or a name");
+  return std::to_string(wholeOf("device", value, 0, std::numeric_limits<std::uint16_t>::max()));
+}
+
+std::uint32_t edgeOf(const char* name, const py::handle& value) {
+  return static_cast<std::uint32_t>(wholeOf(name, value, 1, kLargestImage));
 }
 
 /// The keywords of Renderer, with their defaults.
@@ -39,25 +51,25 @@ CameraOptions optionsFrom(const py::kwargs& keywords) {
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
     if (name == "width") {
-      render.width = value.cast<std::uint32_t>();
+      render.width = edgeOf("width", value);
     } else if (name == "height") {
-      render.height = value.cast<std::uint32_t>();
+      render.height = edgeOf("height", value);
     } else if (name == "color") {
-      render.color = colorOf(value.cast<std::optional<std::string>>());
+      render.color = colorOf(value);
     } else if (name == "depth") {
-      render.depth = value.cast<bool>();
+      render.depth = truthOf("depth", value);
     } else if (name == "semantics") {
-      render.semantics = value.cast<bool>();
+      render.semantics = truthOf("semantics", value);
     } else if (name == "camera") {
-      options.camera.name = value.cast<std::string>();
+      options.camera.name = wordOf("camera", value, "head, follow, top or a link");
     } else if (name == "fov_degrees") {
-      options.camera.fov_degrees = value.cast<float>();
+      options.camera.fov_degrees = static_cast<float>(numberOf("fov_degrees", value));
     } else if (name == "backend") {
-      render.backend = backendOf(value.cast<std::string>());
+      render.backend = backendOf(value);
     } else if (name == "device") {
-      render.device = value.cast<std::string>();
+      render.device = deviceOf(value);
     } else if (name == "threads") {
-      render.threads = value.cast<std::uint32_t>();
+      render.threads = threadsOf(value);
     } else {
       throw py::type_error(fmt::format(
           "there is no option {}; the options are width, height, color, depth, semantics, camera, "
@@ -106,7 +118,8 @@ void bindRenderer(py::module_& module) {
       "The simulator must have been made with body_transforms=True. Keywords: width=128,\n"
       "height=128, pixels; color='rgb', 'rgba' or None; depth=True; semantics=False;\n"
       "camera='head', 'follow', 'top' or a link; fov_degrees, vertical, 1 to 175, or 0 for\n"
-      "the camera's own; backend='auto', 'soft', 'gl' or 'cuda'; device=''; threads=0.\n\n"
+      "the camera's own; backend='auto', 'soft', 'gl' or 'cuda'; device='', or an index; "
+      "threads=0.\n\n"
       "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
       "(N, height, width), meters along the camera's axis, 0 where nothing is drawn;\n"
       "'semantics' uint32 (N, height, width), indices into semantic_names.");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -116,10 +117,11 @@ void Simulator::requireEpisode(std::int64_t number, std::int32_t least) const {
   }
 }
 
-void Simulator::restart(std::uint64_t seed) {
+void Simulator::restart(const py::object& seed) {
+  const std::uint64_t number = wholeOf("seed", seed, 0, std::numeric_limits<std::uint64_t>::max());
   const Confinement::Use use = readState();
   const py::gil_scoped_release unlocked;
-  batch_.restart(seed);
+  batch_.restart(number);
 }
 
 std::vector<std::uint32_t> Simulator::envNumbers(const py::object& envs) const {

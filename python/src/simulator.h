@@ -32,7 +32,7 @@ class Simulator {
   void reset(const py::object& episodes);
   /// Raises what reset() would, and does nothing.
   void checkEpisodes(const py::object& episodes) const;
-  void restart(std::uint64_t seed);
+  void restart(const py::object& seed);
   /// `envs`: None for all, or numbers of envs.
   [[nodiscard]] py::bytes saveState(const py::object& envs);
   void restoreState(const py::object& state, const py::object& envs);

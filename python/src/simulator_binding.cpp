@@ -268,10 +268,15 @@ void bindSimulator(py::module_& module) {
   bindEnvState(module);
   py::class_<Simulator> type(module, "Simulator");
   type.def(
-      py::init([](std::shared_ptr<World> world, const py::kwargs& options) {
-        return Simulator::create(std::move(world), options);
+      py::init([](const py::object& world, const py::object& envs, const py::kwargs& options) {
+        if (!py::isinstance<World>(world)) {
+          throw py::type_error(
+              fmt::format("world is a {}, expected a galactic.World", typeName(world)));
+        }
+        if (!envs.is_none()) options["envs"] = envs;
+        return Simulator::create(world.cast<std::shared_ptr<World>>(), options);
       }),
-      py::arg("world"),
+      py::arg("world"), py::arg("envs") = py::none(),
       "N environments of one world, stepped together.\n\n"
       "Keywords: every option of galactic-run's simulation with '_' for '-' (envs=128, seed=1,\n"
       "order='shuffled', task='pick', no_distractors=True, ...; docs/simulation.md has them),\n"

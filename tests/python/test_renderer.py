@@ -115,7 +115,18 @@ def test_two_threads_cannot_use_one_renderer_at_once(world):
     "options, error, message",
     [
         ({"widht": 3}, TypeError, "there is no option widht; the options are width"),
-        ({"width": 0}, Error, "found images of 0 x 20 pixels"),
+        ({"width": 0}, Error, "width: is 0, expected a whole number from 1 to 4096"),
+        ({"width": 128.0}, Error, "width: is 128.0, expected a whole number from 1 to 4096"),
+        ({"height": -3}, Error, "height: is -3, expected a whole number from 1 to 4096"),
+        ({"height": 2**70}, Error, f"height: is {2**70}, expected"),
+        ({"color": 2}, Error, "color: is 2, expected rgb, rgba or None"),
+        ({"backend": None}, Error, "backend: is None, expected auto, soft, gl or cuda"),
+        ({"camera": 1}, Error, "camera: is 1, expected head, follow, top or a link"),
+        ({"depth": "no"}, Error, "depth: is 'no', expected True or False"),
+        ({"threads": -1}, Error, "threads: is -1, expected 0 to 4096; 0 takes one per processor"),
+        ({"backend": "cuda", "device": -1}, Error, "device: is -1, expected a whole number"),
+        ({"backend": "cuda", "device": 1.5}, Error, "device: is 1.5, expected an index or a name"),
+        ({"fov_degrees": "wide"}, Error, "fov_degrees: is 'wide', expected a number"),
         ({"color": "bgr"}, Error, "color: is bgr, expected rgb, rgba or None"),
         ({"backend": "vulkan"}, Error, "backend: is vulkan, expected auto, soft, gl or cuda"),
         ({"color": None, "depth": False}, Error, "found no image to make"),
@@ -140,6 +151,16 @@ def test_fields_of_view_that_show_nothing_are_refused(world, simulator, fov):
 def test_the_widest_field_of_view_and_that_of_the_camera_show_something(simulator):
     for fov in (0, 175, np.float32(90)):
         assert Renderer(simulator, **CAMERA, fov_degrees=fov).render()["rgb"].any()
+
+
+def test_devices_may_be_numbers(simulator):
+    def outcome(device):
+        try:
+            return Renderer(simulator, **{**CAMERA, "backend": "cuda"}, device=device).description
+        except Error as error:  # here, or where there is no device
+            return str(error)
+
+    assert outcome(0) == outcome(np.int32(0)) == outcome("0")
 
 
 def test_wrong_simulators_and_uses_are_refused(world, simulator):

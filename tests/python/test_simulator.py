@@ -215,6 +215,25 @@ def test_the_next_episode_is_none_that_a_step_begins(simulator, draw_actions):
     assert [simulator.env_state(n).step for n in range(ENVS)] == [0] * ENVS
 
 
+def test_wrong_arguments_are_refused_in_our_words(world):
+    assert Simulator(world, 3).num_envs == 3
+    assert Simulator(world, envs=np.int64(2)).num_envs == 2
+    for make, error, message in (
+        (lambda: Simulator("home.pack", 3), TypeError, "world is a str, expected a galactic.World"),
+        (lambda: Simulator(world, 3.5), Error, "envs: is 3.5, expected"),
+        (lambda: Simulator(world, 3, auto_reset="no"), Error,
+         "auto_reset: is 'no', expected True or False"),
+        (lambda: Simulator(world, 3, threads=2**70), Error,
+         f"threads: is {2**70}, expected 0 to 4096"),
+        (lambda: Simulator(world, 3).restart(-1), Error,
+         "seed: is -1, expected a whole number from 0 to 18446744073709551615"),
+        (lambda: Simulator(world, 3).restart(1.5), Error, "seed: is 1.5, expected"),
+    ):  # fmt: skip
+        with pytest.raises(error) as caught:
+            make()
+        assert message in str(caught.value)
+
+
 def test_options_are_those_of_the_option_table(world):
     simulator = Simulator(
         world,

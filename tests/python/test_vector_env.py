@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from galactic import EpisodeEnd, Renderer, Simulator, VectorEnv
+from galactic import EpisodeEnd, Error, Renderer, Simulator, VectorEnv
 
 ENVS = 24
 OPTIONS = {"threads": 1, "seed": 11, "episode_steps": 35}
@@ -368,3 +368,31 @@ def test_pictures_are_drawn_for_those_who_ask(world):
     assert len(frames) == 3
     assert all(frame.shape == (240, 320, 3) and frame.dtype == np.uint8 for frame in frames)
     assert len(np.unique(frames[0])) > 5
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"num_envs": 4.5}, "num_envs is 4.5, expected a whole number above 0"),
+        ({"num_envs": "8"}, "num_envs is '8', expected a whole number above 0"),
+        ({"num_envs": 0}, "num_envs is 0, expected a whole number above 0"),
+        ({"num_envs": 3, "halves": 2}, "num_envs is 3, expected an even number for two halves"),
+        ({"images": True}, "images is True, expected options of galactic.Renderer, such as"),
+        ({"images": {"device": 1.5}}, "device: is 1.5, expected an index or a name"),
+        ({"images": {"width": 128.0}}, "width: is 128.0, expected a whole number"),
+    ],
+)
+def test_natural_mistakes_are_told_what_was_wanted(world, options, message):
+    with pytest.raises((ValueError, Error)) as caught:
+        VectorEnv(world, **{"num_envs": 2, "threads": 1, **options})
+    assert message in str(caught.value)
+
+
+def test_a_seed_that_is_none_begins_nothing(world, draw_actions):
+    env = VectorEnv(world, ENVS, **OPTIONS)
+    env.step(draw_actions(ENVS, 8))
+    before = env.save_state()
+    for seed in (-1, 2**64, 1.5, "one"):
+        with pytest.raises(Error, match="seed: is .*, expected a whole number from 0 to"):
+            env.reset(seed=seed)
+        assert env.save_state() == before

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "galactic/batch_renderer.h"
 #include "galactic/world_views.h"
 #include "support/number_text.h"
 
@@ -15,7 +16,6 @@ namespace galactic {
 namespace {
 
 constexpr const char* kGroup = "Rendering";
-constexpr std::uint32_t kLargestImage = 4096;
 
 /// A whole number of 1 to kLargestImage.
 std::optional<std::uint32_t> edgeOf(std::string_view text) {

@@ -34,8 +34,11 @@ enum class RenderBackend : std::uint8_t {
 /// Bytes per pixel of color images.
 enum class ColorFormat : std::uint8_t { kNone = 0, kRgb8 = 3, kRgba8 = 4 };
 
+/// Pixels along an edge of an image.
+inline constexpr std::uint32_t kLargestImage = 4096;
+
 struct RenderOptions {
-  /// Pixels, 1 to 4096 each.
+  /// Pixels, 1 to kLargestImage each.
   std::uint32_t width = 128;
   std::uint32_t height = 128;
   /// Which images the renderer makes.

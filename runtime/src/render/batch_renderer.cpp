@@ -11,8 +11,6 @@
 namespace galactic {
 namespace {
 
-constexpr std::uint32_t kLargestImage = 4096;
-
 Result<void> checkOptions(const RenderOptions& options) {
   const auto refuse = [](const std::string& message) {
     return fail(ErrorCode::kInvalidInput, "render options", message);
