@@ -68,15 +68,23 @@ class Collector:
         self._hidden = policy.initial_hidden(envs.count, device)
         self._returns = np.zeros(envs.count, np.float64)
         self._lengths = np.zeros(envs.count, np.int64)
+        # Envs that have not finished an episode yet.
+        self._waits = np.ones(envs.count, np.bool_)
         self._timeouts: list[_Timeout] = []
         self._decisions: list[Function] = [self._decide for _ in envs.halves]
         if options.cuda_graphs and device.type == "cuda":
             self._decisions = [Replayed(self._decide, record_cuda) for _ in envs.halves]
 
+    @property
+    def waiting(self) -> int:
+        """How many envs have not finished an episode since reset()."""
+        return int(self._waits.sum())
+
     def reset(self) -> None:
         """Starts all envs on their first episodes."""
         self.envs.reset(self._row(0, slice(None)))
         self.rollout.starts[0] = True
+        self._waits[:] = True
 
     def collect(
         self, update: int, should_stop: Callable[[int], bool] = lambda step: False
@@ -120,6 +128,7 @@ class Collector:
             "starts": rollout.starts[last].cpu(),
             "returns": torch.from_numpy(self._returns.copy()),
             "lengths": torch.from_numpy(self._lengths.copy()),
+            "waits": torch.from_numpy(self._waits.copy()),
         }
 
     def load_state_dict(self, state: dict[str, Tensor]) -> None:
@@ -134,6 +143,8 @@ class Collector:
         self.rollout.steps = 0
         self._returns[:] = state["returns"].numpy()
         self._lengths[:] = state["lengths"].numpy()
+        # Checkpoints of before do not know it: their first episodes are long over.
+        self._waits[:] = state["waits"].numpy() if "waits" in state else False
 
     def _begin_again(self) -> None:
         """Makes the state after the last step row 0."""
@@ -222,6 +233,7 @@ class Collector:
         self.episodes.lengths += float(lengths[ended].sum())
         returns[ended] = 0.0
         lengths[ended] = 0
+        self._waits[envs][ended] = False
 
     def _timeout(self, envs: slice, step: int, timeouts: Timeouts) -> "_Timeout":
         """Keeps what the values of cut-off episodes are computed from; that waits for the rollout's

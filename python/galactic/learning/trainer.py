@@ -77,6 +77,8 @@ class Trainer:
         self.updates = 0
         self.best: Optional[float] = None
         self._window: collections.deque[EpisodeSums] = collections.deque()
+        # Envs of all ranks that have not finished an episode yet.
+        self._waiting = settings.envs * group.size
         self._seconds_before = 0.0
         self._started = time.perf_counter()
         self._logged = (0.0, 0)
@@ -130,15 +132,17 @@ class Trainer:
             [
                 float(rollout.steps * self.settings.envs),
                 float(self._interrupted),
+                float(self.collector.waiting),
                 *dataclasses.astuple(sums),
             ],
             dtype=torch.float64,
             device=self.group.device,
         )
-        steps, stop, *episodes = self.group.sum(shared).tolist()
+        steps, stop, waiting, *episodes = self.group.sum(shared).tolist()
         self.stragglers.forget(update)
         self.steps += int(steps)
         self.updates += 1
+        self._waiting = int(waiting)
         self._remember(EpisodeSums(*episodes))
         if not all(abs(value) < float("inf") for value in losses.values()):
             raise TrainingError(
@@ -163,8 +167,13 @@ class Trainer:
             *(sum(column) for column in zip(*map(dataclasses.astuple, self._window)))
         )
 
+    def figures(self) -> dict[str, float]:
+        """Success, return and length, means over recent(); none before every env has finished an
+        episode: those that are over first are the short ones, successes most of all."""
+        return {} if self._waiting else _means(self.recent(), "")
+
     def _log(self, losses: dict[str, float]) -> None:
-        recent = self.recent()
+        figures = self.figures()
         seconds, steps = self._logged
         speed = (self.steps - steps) / max(self.seconds - seconds, 1e-9)
         self._logged = (self.seconds, self.steps)
@@ -173,18 +182,19 @@ class Trainer:
             "seconds": self.seconds,
             "updates": self.updates,
             "sps": speed,
-            "episodes": recent.episodes,
+            "episodes": self.recent().episodes,
             "learning_rate": self.learner.optimizer.learning_rate,
             **losses,
-            **_means(recent, ""),
+            **figures,
         }
         self.curves.add(values)
         left = (self.settings.steps - self.steps) / max(speed, 1e-9)
-        success = f"{100.0 * values['success']:.1f} %" if recent.episodes else "-"
+        success = f"{100.0 * figures['success']:.1f} %" if figures else "-"
+        earned = f"{figures['return']:.2f}" if figures else "-"
         self.progress.show(
             f"{amount(self.steps)} of {amount(self.settings.steps)} steps  "
             f"{amount(speed)} steps/s  success {success}  "
-            f"return {values.get('return', 0.0):.2f}  {duration(left)} left"
+            f"return {earned}  {duration(left)} left"
         )
         with self.stopwatch.time("reports"):
             self.curves.write(self.settings.to_dict(), self.breakdown())
@@ -219,7 +229,7 @@ class Trainer:
     def save(self) -> None:
         """Writes a checkpoint; all ranks call it after the same update."""
         if self.validation is None:
-            self._keep_if_best(_means(self.recent(), "").get("success"))
+            self._keep_if_best(self.figures().get("success"))
         if self.checkpoints is None:
             return
         with self.stopwatch.time("reports"):
@@ -254,6 +264,8 @@ class Trainer:
         self.curves.rows = trainer["rows"]
         self.stopwatch.seconds = dict(trainer["stopwatch"])
         self._window = collections.deque(EpisodeSums(*sums) for sums in trainer["window"])
+        # As in Collector.load_state_dict().
+        self._waiting = trainer.get("waiting", 0)
         self._seconds_before = trainer["seconds"]
         self._started = time.perf_counter()
         self._logged = (self.seconds, self.steps)
@@ -267,6 +279,7 @@ class Trainer:
             "updates": self.updates,
             "best": self.best,
             "rows": self.curves.rows,
+            "waiting": self._waiting,
             "window": [dataclasses.astuple(sums) for sums in self._window],
             "seconds": self.seconds,
             "stopwatch": self.stopwatch.seconds,
@@ -301,7 +314,6 @@ class Trainer:
     def _write_report(self) -> None:
         if not self.folder or self.group.rank > 0:
             return
-        recent = self.recent()
         write_json(
             self.folder / "report.json",
             {
@@ -315,7 +327,7 @@ class Trainer:
                 "processor_seconds": time.process_time(),
                 "steps_per_second": self.steps / max(self.seconds, 1e-9),
                 "best_success": self.best,
-                "training": _means(recent, ""),
+                "training": self.figures(),
                 "timing": self.timing(),
             },
         )

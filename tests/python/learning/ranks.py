@@ -7,6 +7,7 @@ import pathlib
 import sys
 import time
 
+import numpy as np
 import torch
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
@@ -15,7 +16,7 @@ from galactic.learning.distributed import Group  # noqa: E402
 from galactic.learning.environments import Step  # noqa: E402
 from galactic.learning.trainer import Trainer  # noqa: E402
 from test_trainer import SETTINGS  # noqa: E402
-from toys import ReachAndGrasp  # noqa: E402
+from toys import ReachAndGrasp, Uneven  # noqa: E402
 
 
 def train(group: Group, folder: pathlib.Path, envs: int) -> None:
@@ -63,11 +64,32 @@ def straggle(group: Group, folder: pathlib.Path) -> None:
     torch.save(found, folder / f"steps-{group.rank}.pt")
 
 
+class QuickFirst(Uneven):
+    """All envs of the first rank are the quick ones."""
+
+    def is_quick(self, envs: slice) -> np.ndarray:
+        return self.envs[envs] < self.count
+
+
+def wait(group: Group, folder: pathlib.Path) -> None:
+    settings = dataclasses.replace(SETTINGS, sync_fraction=1.0)
+    toy = QuickFirst(settings.envs, first_env=group.rank * settings.envs, halves=settings.halves)
+    trainer = Trainer(settings, toy, group, None)
+    trainer.begin()
+    has_figures = []
+    for _ in range(5):
+        trainer._iterate()
+        has_figures.append(bool(trainer.figures()))
+    torch.save(has_figures, folder / f"figures-{group.rank}.pt")
+
+
 def main() -> None:
     group = Group.join("cpu")
     folder = pathlib.Path(sys.argv[2])
     if sys.argv[1] == "train":
         train(group, folder, int(sys.argv[3]))
+    elif sys.argv[1] == "wait":
+        wait(group, folder)
     else:
         straggle(group, folder)
     group.leave()

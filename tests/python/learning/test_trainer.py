@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import json
 import os
 import pathlib
 import signal
@@ -20,7 +21,7 @@ from galactic.learning.launch import launch
 from galactic.learning.reports.curves import read_curves
 from galactic.learning.settings import Settings
 from galactic.learning.trainer import Trainer
-from toys import ReachAndGrasp, Remember
+from toys import ReachAndGrasp, Remember, Uneven
 
 HERE = pathlib.Path(__file__).parent
 UPDATE = 16 * 10
@@ -60,7 +61,9 @@ def curve(folder: pathlib.Path) -> list[dict[str, float | None]]:
     return [{key: row[key] for key in row if key not in MEASURED} for row in rows]
 
 
-@pytest.mark.parametrize("toy, recurrent", [(ReachAndGrasp, False), (Remember, True)])
+@pytest.mark.parametrize(
+    "toy, recurrent", [(ReachAndGrasp, False), (Remember, True), (Uneven, False)]
+)
 def test_a_resumed_run_is_the_same_run_bit_for_bit(
     tmp_path: pathlib.Path, toy: Any, recurrent: bool
 ) -> None:
@@ -86,6 +89,35 @@ def test_a_resumed_run_is_the_same_run_bit_for_bit(
     assert torch.equal(again.policy.normalize.mean, whole.policy.normalize.mean)
     assert curve(tmp_path / "cut") == curve(tmp_path / "whole")
     assert len(curve(tmp_path / "whole")) == 8
+
+
+def test_the_curves_begin_when_every_env_has_finished_an_episode(
+    tmp_path: pathlib.Path, capsys: Any
+) -> None:
+    """Before, the short episodes would count alone: all of them successes."""
+    trainer = make_trainer(tmp_path, toy=Uneven)
+    trainer.begin()
+    trainer._iterate()
+    trainer._log({})
+    assert "success -  return -  " in capsys.readouterr().err
+    trainer.save()
+    assert load_policy(tmp_path / "best.pt").success is None
+    trainer.train()
+    rows = curve(tmp_path)
+    assert len(rows) == 8 and all(row["episodes"] > 0 for row in rows)
+    for name in ("success", "return", "length"):
+        # Of 45 steps, in rollouts of ten.
+        assert [row[name] is None for row in rows] == [True] * 4 + [False] * 4, name
+    # Four envs make 13 or 14 successes in a rollout, and twelve failed in the fifth.
+    assert 0.4 < rows[4]["success"] < 0.7
+
+
+def test_a_report_has_no_figures_before_the_curves_have(tmp_path: pathlib.Path) -> None:
+    trainer = make_trainer(tmp_path, dataclasses.replace(SETTINGS, steps=UPDATE), Uneven)
+    trainer.begin()
+    trainer.train()
+    report = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
+    assert report["training"] == {} and report["best_success"] is None
 
 
 def test_a_checkpoint_holds_a_policy_that_acts_the_same(tmp_path: pathlib.Path) -> None:
@@ -227,3 +259,10 @@ def test_stragglers_are_stopped_and_their_steps_counted(tmp_path: pathlib.Path) 
     total = sum(steps[0]["rollouts"]) + sum(steps[1]["rollouts"])
     assert steps[0]["steps"] == steps[1]["steps"] == 16 * total
     assert torch.equal(steps[0]["parameters"], steps[1]["parameters"])
+
+
+def test_the_curves_of_ranks_wait_for_the_envs_of_all(tmp_path: pathlib.Path) -> None:
+    run_ranks(2, "wait", str(tmp_path))
+    for rank in range(2):
+        updates = torch.load(tmp_path / f"figures-{rank}.pt")
+        assert updates == [False, False, False, False, True]

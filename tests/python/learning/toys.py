@@ -128,3 +128,24 @@ class Remember(ReachAndGrasp):
         self._begin(which)
         self._write(envs, into)
         return Step(successes.astype(np.float32), ended, np.zeros_like(ended), successes, None)
+
+
+class Uneven(ReachAndGrasp):
+    """Whatever is done, every fourth env succeeds in three steps, and the others fail in `limit`."""
+
+    def __init__(self, count: int, limit: int = 45, **options: int):
+        super().__init__(count, limit=limit, **options)
+
+    def is_quick(self, envs: slice) -> np.ndarray:
+        return self.envs[envs] % 4 == 0
+
+    def recv(self, half: int) -> Step:
+        (actions, into), envs = self._sent.pop(half), self.halves[half]
+        self.age[envs] += 1
+        successes = self.is_quick(envs) & (self.age[envs] >= 3)
+        ended = successes | (self.age[envs] >= self.limit)
+        which = np.flatnonzero(ended) + envs.start
+        self.episode[which] += 1
+        self._begin(which)
+        self._write(envs, into)
+        return Step(successes.astype(np.float32), ended, np.zeros_like(ended), successes, None)

@@ -34,8 +34,8 @@ COLUMNS = (
     "learning_rate",
 )
 """Steps, seconds and updates since the run began, over all its parts; sps: steps per second since the
-row before. Success, return and length: means of the latest episodes of training; `validation_...`: of
-the episodes for validation, in rows that have them."""
+row before. Success, return and length: means of the latest episodes of training, from when every env
+has finished one; `validation_...`: of the episodes for validation, in rows that have them."""
 
 
 class Curves:
