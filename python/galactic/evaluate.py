@@ -110,6 +110,10 @@ def _evaluate(options: argparse.Namespace) -> int:
         pictures.require_tools(video=bool(options.video))
     if options.dynamics:
         dynamics.require_tool()
+    # Playing may take long.
+    for file in (options.report, options.contact_sheet, options.video):
+        if file:
+            checkpoint.require_writable(file)
     saved = checkpoint.load_policy(options.policy)
     threads = threads_of(options.threads, 1)
     torch.set_num_threads(threads)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import functools
 import json
 import os
 import pathlib
@@ -94,7 +95,8 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
             return launch(run.settings.ranks, [sys.executable, "-m", "galactic.train", *given])
         group = Group.join(options.device)
         try:
-            return _train(run, options, group)
+            work = functools.partial(_train, run, options, group)
+            return told("galactic.train", work, group.is_first_to_say)
         finally:
             group.leave()
 
@@ -166,7 +168,9 @@ def _resumed_run(options: argparse.Namespace) -> Run:
         )
     file = options.out / "settings.json"
     if not file.is_file():
-        raise checkpoint.CheckpointError(f"{file} does not exist: {options.out} holds no run")
+        raise galactic.Error(
+            galactic.ErrorCode.IO, str(file), f"does not exist: {options.out} holds no run"
+        )
     run = json.loads(file.read_text(encoding="utf-8"))
     settings = resumed(Settings.from_dict(run["settings"]), given_options(options))
     validation = run["validation"]

@@ -24,6 +24,7 @@ and under "values" a JSON text with all else (torch 1.13 reads no plain floats t
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import pathlib
@@ -33,10 +34,14 @@ from typing import Any, Callable, Optional
 
 import torch
 
+from galactic._core import ErrorCode
+from galactic.errors import Error
 from galactic.learning.networks import Policy, PolicyShape, make_policy
 from galactic.learning.settings import Settings
 
 FORMAT = 1
+# What every pack begins with: docs/packs.md.
+_PACK = b"GALAPACK"
 
 
 class CheckpointError(Exception):
@@ -137,18 +142,47 @@ def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
 def load(file: pathlib.Path) -> tuple[dict[str, Any], dict[str, Any]]:
     """Values and tensors of a file. Rejects files that would run code."""
     try:
-        contents = torch.load(file, map_location="cpu", weights_only=True)
-        return json.loads(contents.pop("values")), contents
-    except FileNotFoundError:
-        raise CheckpointError(f"{file} does not exist") from None
-    except Exception as error:  # torch raises whatever its readers do
-        raise CheckpointError(f"{file} cannot be read as a checkpoint: {error}") from error
+        handle = open(file, "rb")
+    except OSError as error:
+        raise Error(ErrorCode.IO, str(file), f"cannot open the file: {error.strerror}") from None
+    with handle:
+        if handle.read(len(_PACK)) == _PACK:
+            raise CheckpointError(
+                f"{file} is a pack, and no checkpoint; play a policy pack with galactic-run "
+                "--policy, or give the best.pt that it was made of"
+            )
+        handle.seek(0)
+        try:
+            contents = torch.load(handle, map_location="cpu", weights_only=True)
+            return json.loads(contents.pop("values")), contents
+        except Exception as error:  # torch raises whatever its readers do
+            # What torch advises is to let the file run code.
+            raise CheckpointError(
+                f"{file} cannot be read as a checkpoint; take best.pt or a policy.pt of a run"
+            ) from error
+
+
+def require_writable(file: pathlib.Path) -> None:
+    """Raises galactic.Error where write_atomically() could not write `file`, and leaves it as it is:
+    for outputs of long work, before it."""
+    try:
+        if file.is_dir():
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        temporary = _temporary(file)
+        temporary.touch()
+        temporary.unlink()
+    except OSError as error:
+        raise Error(
+            ErrorCode.IO,
+            str(file),
+            f"cannot write the file: {error.strerror}; an existing file is left as it was",
+        ) from None
 
 
 def write_atomically(file: pathlib.Path, write: Callable[[Any], object], mode: str = "wb") -> None:
     """Calls write(handle) on a temporary file that then takes the name `file`: readers, and whoever
     comes after a crash, find the old contents or the new ones."""
-    temporary = file.with_name(f".{file.name}.{os.getpid()}")
+    temporary = _temporary(file)
     encoding = None if "b" in mode else "utf-8"
     try:
         with open(temporary, mode, encoding=encoding) as handle:
@@ -159,6 +193,10 @@ def write_atomically(file: pathlib.Path, write: Callable[[Any], object], mode: s
     finally:
         temporary.unlink(missing_ok=True)
     _sync_folder(file.parent)
+
+
+def _temporary(file: pathlib.Path) -> pathlib.Path:
+    return file.with_name(f".{file.name}.{os.getpid()}")
 
 
 def save(file: pathlib.Path, values: dict[str, Any], tensors: dict[str, Any]) -> None:
@@ -204,9 +242,8 @@ class CheckpointFolder:
     def latest(self) -> pathlib.Path:
         complete = self.complete()
         if not complete:
-            raise CheckpointError(
-                f"{self.folder} holds no checkpoint to go on from; begin the run without --resume"
-            )
+            message = "holds no checkpoint to go on from; begin the run without --resume"
+            raise Error(ErrorCode.IO, str(self.folder), message)
         return complete[-1]
 
     def _unfinished(self, steps: int) -> pathlib.Path:

@@ -11,7 +11,7 @@ from typing import Any, Callable, NoReturn
 import galactic
 from galactic.learning.checkpoint import CheckpointError
 from galactic.learning.distributed import RankLost
-from galactic.learning.settings import SettingsError
+from galactic.learning.settings import SettingsError, did_you_mean
 
 # Those of all tools of the project.
 OK, COMMAND_LINE, INPUT_OUTPUT, INVALID_INPUT, INTERNAL = 0, 1, 2, 3, 4
@@ -36,6 +36,14 @@ class Parser(argparse.ArgumentParser):
             if action is not None:
                 seen.add(action.dest)
         return super().parse_known_args(words, namespace)
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        found, unknown = self.parse_known_args(args, namespace)
+        if unknown:
+            name = unknown[0].partition("=")[0]
+            hint = did_you_mean(name, self._option_string_actions)
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
+        return found
 
     def error(self, message: str) -> NoReturn:
         self.exit(COMMAND_LINE, f"{program_of(self.prog)}: command line: {message}; see --help\n")
@@ -66,8 +74,11 @@ def named_path(text: str) -> pathlib.Path:
     return pathlib.Path(text)
 
 
-def told(program: str, work: Callable[[], int]) -> int:
-    """Does `work` and returns its exit code; what it refuses becomes a line on stderr and a code."""
+def told(
+    program: str, work: Callable[[], int], may_say: Callable[[str], bool] = lambda message: True
+) -> int:
+    """Does `work` and returns its exit code; what it refuses becomes a line on stderr, unless it may
+    not be said, and a code."""
     try:
         return work()
     except SettingsError as error:
@@ -80,5 +91,6 @@ def told(program: str, work: Callable[[], int]) -> int:
         code, message = INPUT_OUTPUT, str(error)
     except (ArithmeticError, RankLost) as error:
         code, message = INTERNAL, str(error)
-    print(f"{program}: {message}", file=sys.stderr)
+    if may_say(message):
+        print(f"{program}: {message}", file=sys.stderr)
     return code

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import datetime
+import hashlib
 import os
 from typing import Iterator, Optional
 
@@ -78,6 +79,17 @@ class Group:
         if self.size > 1:
             with _others():
                 torch.distributed.barrier()
+
+    def is_first_to_say(self, text: str) -> bool:
+        """Whether no other rank has asked this of the same text: what all of them find out is said
+        once. True where the others cannot be asked."""
+        if self._store is None:
+            return True
+        key = "said/" + hashlib.sha256(text.encode()).hexdigest()
+        try:
+            return int(self._store.add(key, 1)) == 1
+        except RuntimeError:
+            return True
 
     def stragglers(self, sync_fraction: float, shortest: float) -> "Stragglers":
         return Stragglers(self._store, self.rank, self.size, sync_fraction, shortest)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from typing import Any, Mapping
 
-from galactic.learning.settings import Settings, SettingsError
+from galactic.learning.settings import Settings, SettingsError, did_you_mean
 
 PRESETS: Mapping[str, Mapping[str, Any]] = {
     # Table 3 of the paper, which are the defaults.
@@ -39,5 +39,6 @@ PRESETS: Mapping[str, Mapping[str, Any]] = {
 def preset(name: str, **changes: Any) -> Settings:
     """The settings of a preset, with changes."""
     if name not in PRESETS:
-        raise SettingsError(f'"{name}" is not a preset; the presets are {", ".join(PRESETS)}')
+        hint = did_you_mean(name, PRESETS) or f"; the presets are {', '.join(PRESETS)}"
+        raise SettingsError(f'"{name}" is not a preset{hint}')
     return dataclasses.replace(Settings(), **{**PRESETS[name], **changes})

@@ -195,8 +195,8 @@ def test_a_checkpoint_becomes_a_pack(tmp_path: pathlib.Path, capsys: Any) -> Non
 
 def test_errors_say_what_to_do(tmp_path: pathlib.Path, capsys: Any) -> None:
     missing = tmp_path / "no.pt"
-    assert export.main([str(missing), "-o", str(tmp_path / "p.pack")]) == 3
-    assert "no.pt does not exist" in capsys.readouterr().err
+    assert export.main([str(missing), "-o", str(tmp_path / "p.pack")]) == 2
+    assert "no.pt: cannot open the file: No such file" in capsys.readouterr().err
     checkpoint.save_policy(saved_policy(network="state"), tmp_path / "best.pt")
     assert export.main([str(tmp_path / "best.pt"), "-o", "/nowhere/p.pack"]) == 2
     assert "/nowhere" in capsys.readouterr().err

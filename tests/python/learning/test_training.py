@@ -155,7 +155,10 @@ def test_an_interrupt_saves_and_says_how_to_go_on(tmp_path: pathlib.Path) -> Non
         (["nowhere.pack", *SMALL], 2, "nowhere.pack"),
         ([WORLD, *SMALL, "--simulation", "no-such"], 1, "--simulation: there is no option no_such"),
         ([WORLD, *SMALL, "--simulation", "laser-range=nan"], 3, "laser_range: is nan, expected"),
-        (["--resume"], 3, "holds no run"),
+        ([WORLD, "--preset", "quik"], 1, '"quik" is not a preset; did you mean quick?'),
+        ([WORLD, "--stepz", "5"], 1, "unrecognized arguments: --stepz 5; did you mean --steps?"),
+        ([WORLD, "--stepz=5"], 1, "unrecognized arguments: --stepz=5; did you mean --steps?"),
+        (["--resume"], 2, "holds no run"),
     ],
 )
 def test_what_cannot_be_is_refused_with_a_sentence(
@@ -238,6 +241,34 @@ def test_a_policy_that_sees_pictures_trains_and_is_evaluated(tmp_path: pathlib.P
     assert len(each) == 5 and all(1 <= one["length"] <= 6 for one in each)
 
 
+def test_an_error_that_all_ranks_find_is_said_once(tmp_path: pathlib.Path) -> None:
+    done = run("train", WORLD, "-o", tmp_path / "run", *SMALL_OF_ANY_RANKS, "--ranks", "2",
+               "--simulation", "no-such")  # fmt: skip
+    assert done.returncode == 1
+    assert done.stderr.count("--simulation: there is no option no_such") == 1, done.stderr
+
+
 def test_an_evaluation_refuses_what_is_no_policy(tmp_path: pathlib.Path) -> None:
     done = call("evaluate", tmp_path / "none.pt", HELD_OUT)
-    assert done.returncode == 3 and "none.pt does not exist" in done.stderr
+    assert done.returncode == 2
+    assert f"{tmp_path / 'none.pt'}: cannot open the file: No such file" in done.stderr
+    done = call("evaluate", WORLD, HELD_OUT)
+    assert done.returncode == 3
+    assert "is a pack, and no checkpoint; play a policy pack with galactic-run" in done.stderr
+    (tmp_path / "bad.pt").write_bytes(b"nonsense")
+    done = call("evaluate", tmp_path / "bad.pt", HELD_OUT)
+    assert done.returncode == 3 and "cannot be read as a checkpoint" in done.stderr
+    assert "weights_only" not in done.stderr
+
+
+@pytest.mark.parametrize("option", ["--report", "--contact-sheet"])
+@pytest.mark.parametrize("place, why", [("nowhere/x", "No such file"), ("", "Is a directory")])
+def test_an_evaluation_tries_its_outputs_before_it_plays(
+    tmp_path: pathlib.Path, option: str, place: str, why: str
+) -> None:
+    """Before it looks for the policy, even."""
+    output = tmp_path / place
+    done = call("evaluate", tmp_path / "none.pt", HELD_OUT, option, output)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"galactic.evaluate: {output}: cannot write the file: {why}")
+    assert not list(tmp_path.iterdir())
