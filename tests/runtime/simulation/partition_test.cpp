@@ -86,6 +86,23 @@ TEST(PartitionIdle, NothingOfAnIdleEnvChangesNorCounts) {
   EXPECT_EQ(after.reward, before.reward);
 }
 
+TEST(PartitionTurns, AreNotTakenByChosenEpisodes) {
+  const BoxWorld world = furnishedWorld();
+  BatchSimulator simulator = made(world, partition(2));
+  const std::size_t playable =
+      world.world().episodes().episodes().size() - simulator.skippedEpisodes().size();
+  // What it plays anyhow, from the start again.
+  std::vector<std::int32_t> chosen(2, BatchSimulator::kStays);
+  chosen[0] = static_cast<std::int32_t>(simulator.envObjects(0).episode);
+  for (std::uint32_t step = 0; step < 3; ++step) {
+    simulator.step(actionsFor(simulator, 0, step));
+    simulator.reset(chosen);
+  }
+  const Played played = playAll(simulator, kSteps * (1 + static_cast<std::uint32_t>(playable)));
+  EXPECT_EQ(played.size(), playable);
+  for (const auto& [episode, times] : played) EXPECT_EQ(times, 1) << "episode " << episode;
+}
+
 TEST(PartitionIdle, EndsWithAChosenEpisodeAndNotWithTheNextOne) {
   const BoxWorld world = furnishedWorld();
   BatchSimulator simulator = made(world, partition(10));

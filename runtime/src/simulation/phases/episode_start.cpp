@@ -79,11 +79,12 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t n,
 void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) noexcept {
   const auto count = static_cast<std::uint32_t>(model.starts.size());
   const std::uint64_t number = model.globalEnv(env);
-  const auto next = nthEpisode(model.options, number, state.counters(env).begun, count);
+  const auto next = nthEpisode(model.options, number, state.counters(env).turns, count);
   // An env that never has one stands somewhere, too.
   const bool has_begun = state.counters(env).begun > 0;
   if (next || !has_begun) {
     beginEpisode(model, state, env, next.value_or(static_cast<std::uint32_t>(number % count)));
+    ++state.counters(env).turns;
   }
   state.idle()[env] = next ? 0 : 1;
 }

@@ -32,8 +32,9 @@ inline constexpr std::size_t kBaseRows = 4;
 /// What happened in one env; added up by SimulationStatistics. Apart from Env, because
 /// many steps change nothing of it.
 struct alignas(64) EnvCounters {
-  /// Episodes begun.
+  /// Episodes begun, and those of them whose turn it was.
   std::uint64_t begun = 0;
+  std::uint64_t turns = 0;
   std::uint32_t refused = 0;
   std::uint32_t slid = 0;
   std::uint32_t grasps = 0;

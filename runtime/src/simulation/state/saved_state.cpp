@@ -23,7 +23,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::array<char, 8> kMagic{'G', 'A', 'L', 'S', 'T', 'A', 'T', 'E'};
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 /// Far beyond any world, meters, and any joint; keeps arithmetic on what comes from outside finite.
 constexpr float kLargest = 1e6F;
 constexpr const char* kWhere = "saved state";
@@ -47,6 +47,7 @@ static_assert(sizeof(Header) == 64);
 /// The numbers of an env in one piece.
 struct EnvRecord {
   std::uint64_t ordinal = 0;
+  std::uint64_t turns = 0;
   std::uint64_t nan_actions = 0;
   std::uint64_t idle_steps = 0;
   double reward_sum = 0;
@@ -69,7 +70,7 @@ struct EnvRecord {
   std::uint32_t is_idle = 0;
 };
 static_assert(std::is_trivially_copyable_v<EnvRecord> &&
-              sizeof(EnvRecord) == 32 + 16 + 32 + 56 + 16 + sizeof(GripFrame) + 16);
+              sizeof(EnvRecord) == 40 + 16 + 32 + 56 + 16 + sizeof(GripFrame) + 16);
 
 /// What tells a world from all others: kinds, sizes and hashes of its packs, in any order.
 std::uint64_t worldHash(const World& world) {
@@ -174,6 +175,7 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
   const EnvCounters& counters = state.counters(n);
   out.add(EnvRecord{
       .ordinal = counters.begun,
+      .turns = counters.turns,
       .nan_actions = counters.nan_actions,
       .idle_steps = counters.idle_steps,
       .reward_sum = env.reward_sum,
@@ -226,7 +228,8 @@ std::string faultOf(const Model& model, const EnvRecord& record) {
     return fmt::format("holds object {} of {}", record.held, objects);
   }
   if (record.ending >= kEpisodeEnds) return fmt::format("ended in way {}", record.ending);
-  if (record.has_picked > 1 || record.was_refused > 1 || record.is_idle > 1 || record.ordinal == 0)
+  if (record.has_picked > 1 || record.was_refused > 1 || record.is_idle > 1 ||
+      record.ordinal == 0 || record.turns > record.ordinal)
     return "has a wrong flag or count";
   const bool is_held_plain =
       record.held < 0 || (isPlain(record.grip_from_held) && isPlain(record.before));
@@ -255,6 +258,7 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
   saved.is_idle = record.is_idle != 0;
   saved.env.reward_sum = record.reward_sum;
   saved.counters = {.begun = record.ordinal,
+                    .turns = record.turns,
                     .refused = refused,
                     .slid = slid,
                     .grasps = grasps,
