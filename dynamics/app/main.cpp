@@ -34,13 +34,14 @@ int refuse(const Error& error) {
   return static_cast<int>(error.code);
 }
 
-/// What is written must not replace what is read.
-Result<void> checkOutputs(const Command& command) {
+/// What is written must not replace what is read, the packs that the world lists among it.
+Result<void> checkOutputs(const Command& command, const World& world) {
   bake::ReadLog log;
   log.noteRead(command.recipe);
   if (!command.recording.empty()) log.noteRead(command.recording);
   if (!command.policyFile().empty()) log.noteRead(command.policyFile());
   for (const std::filesystem::path& pack : command.packs) log.noteRead(pack);
+  for (const PackFile& pack : world.packs()) log.noteRead(pack.where());
   for (const std::filesystem::path& output :
        {command.report, command.shown.view, command.shown.pictures}) {
     RETURN_IF_ERROR(log.checkNotRead(output));
@@ -74,8 +75,8 @@ Result<void> showBoth(const Command& command, const EpisodePlan& plan,
 }
 
 Result<void> run(const Command& command) {
-  RETURN_IF_ERROR(checkOutputs(command));
   ASSIGN_OR_RETURN(const auto world, World::open(command.packs));
+  RETURN_IF_ERROR(checkOutputs(command, world));
   ASSIGN_OR_RETURN(const auto plan, EpisodePlan::create(command, world));
   ASSIGN_OR_RETURN(const auto sources,
                    readSources({.recipe = command.recipe, .data = command.data}, world));

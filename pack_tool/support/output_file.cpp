@@ -5,12 +5,12 @@
 #include <span>
 
 #include "support/atomic_file.h"
+#include "support/output_files.h"
 
 namespace galactic::pack_tool {
 
 Result<void> checkOutput(const PackFile& pack, const std::filesystem::path& output) {
-  std::error_code missing;
-  if (!std::filesystem::equivalent(pack.where(), output, missing)) return {};
+  if (!isSameFile(pack.where(), output)) return {};
   return fail(ErrorCode::kInvalidInput, output.string(),
               "is the pack itself; write to another file");
 }

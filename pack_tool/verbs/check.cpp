@@ -11,6 +11,7 @@
 #include "pack_tool/describe/pack_description.h"
 #include "pack_tool/support/output_file.h"
 #include "pack_tool/verbs/verbs.h"
+#include "support/output_files.h"
 
 namespace galactic::pack_tool {
 
@@ -101,8 +102,7 @@ Json entryOf(const CheckedPack& pack) {
 /// Refuses to write the report over a pack that was checked.
 Result<void> checkReport(const std::vector<CheckedPack>& packs, const fs::path& report) {
   for (const CheckedPack& pack : packs) {
-    std::error_code missing;
-    if (fs::equivalent(pack.file, report, missing)) {
+    if (isSameFile(pack.file, report)) {
       return fail(ErrorCode::kInvalidInput, report.string(),
                   "is one of the packs; write to another file");
     }

@@ -143,6 +143,16 @@ TEST_F(PolicyCli, IsRecordedAndReplayedBitForBit) {
   }
 }
 
+TEST_F(PolicyCli, DoesNotReplaceThePolicy) {
+  const std::string before = content("blind.pack");
+  for (const char* option : {"--record", "--report", "--view", "--animation"}) {
+    const ProgramRun result = run({"--policy", "blind.pack", option, "./blind.pack"});
+    EXPECT_EQ(result.exit_code, 3) << option;
+    EXPECT_EQ(result.err, "galactic-run: ./blind.pack: is also an input; write to another file\n");
+  }
+  EXPECT_TRUE(content("blind.pack") == before);
+}
+
 TEST_F(PolicyCli, IsShownInPicturesOfAnotherCamera) {
   const ProgramRun result =
       run({"--policy", "seeing.pack", "--backend", "soft", "--render", "rgb", "--size", "40",

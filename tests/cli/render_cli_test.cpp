@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "support/homes/small_home_models.h"
@@ -182,6 +183,7 @@ TEST_F(RenderCli, WhatCannotWorkIsRefusedBeforeTheRun) {
        "galactic-run: debug view: found a radius of 0.3 m"},
       {{"--render", "rgb", "--frames", "occupied"}, 2, "galactic-run: occupied: "},
       {{"--render", "rgb", "--contact-sheet", "none/a.png"}, 2, "galactic-run: none/a.png: "},
+      {{"--render", "rgb", "--video", "none/a.mp4"}, 2, "galactic-run: none/a.mp4: "},
       {{"--frames", "f"}, 1, "galactic-run: command line: "},
   };
   for (const auto& [arguments, code, message] : mistakes) {
@@ -190,6 +192,47 @@ TEST_F(RenderCli, WhatCannotWorkIsRefusedBeforeTheRun) {
     EXPECT_THAT(result.err, StartsWith(message));
     EXPECT_THAT(result.out, IsEmpty());
   }
+}
+
+TEST_F(RenderCli, PicturesReplaceNothingThatIsReadOrWritten) {
+  const std::string kitchen = "scenes/kitchen.pack";
+  const std::string before = content(kitchen);
+  std::filesystem::create_directories(folder_.path() / "linked");
+  std::filesystem::create_symlink(folder_.path() / kitchen,
+                                  folder_.path() / "linked/env_0000_step_000000_rgb.png");
+  const std::string twice = "would be written twice: by ";
+  const std::vector<std::pair<std::vector<std::string>, std::string>> attempts{
+      {{"--contact-sheet", kitchen}, kitchen + ": is also an input; write to another file"},
+      {{"--video", kitchen}, kitchen + ": is also an input; write to another file"},
+      {{"--frames", "linked"},
+       "linked/env_0000_step_000000_rgb.png: is also an input; write to another file"},
+      {{"--frames", "f", "--report", "./f/semantics.json"},
+       "f/semantics.json: " + twice + "--report and by --frames; give each its own name"},
+      {{"--frames", "f", "--contact-sheet", "f"},
+       "f: " + twice + "--contact-sheet and by --frames; give each its own name"},
+      {{"--video", "a.mp4", "--contact-sheet", "a.mp4"},
+       "a.mp4: " + twice + "--contact-sheet and by --video; give each its own name"},
+  };
+  for (const auto& [arguments, message] : attempts) {
+    std::vector<std::string> all{"--render", "rgb"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const ProgramRun result = run(all);
+    EXPECT_EQ(result.exit_code, 3) << message;
+    EXPECT_EQ(result.err, "galactic-run: " + message + "\n");
+    EXPECT_THAT(result.out, IsEmpty());
+  }
+  EXPECT_TRUE(content(kitchen) == before);
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "f"));
+}
+
+TEST_F(RenderCli, OtherFilesMayLieAmongTheFrames) {
+  const std::vector<std::string> all{"--render", "rgb",      "--size",   "16",
+                                     "--frames", "new/f",    "--report", "new/f/report.json",
+                                     "--record", "new/f/rec"};
+  EXPECT_EQ(run(all).exit_code, 0);
+  // Again, over what is there.
+  const ProgramRun again = run(all);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
 }
 
 TEST_F(RenderCli, AWorldWithoutRenderMeshesIsRefusedByItsPack) {

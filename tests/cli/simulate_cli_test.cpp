@@ -2,7 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "run/recording.h"
 #include "support/homes/small_home.h"
@@ -324,6 +329,70 @@ TEST_F(SimulateCli, EndsWithACodeForEachKindOfMistake) {
   EXPECT_EQ(alone.exit_code, 3);
   std::filesystem::remove(folder_.path() / "objects.pack");
   EXPECT_EQ(run({"--steps", "1"}).exit_code, 3);
+}
+
+TEST_F(SimulateCli, ReplacesNothingThatItReads) {
+  record();
+  std::filesystem::create_symlink("objects.pack", folder_.path() / "link.pack");
+  const std::string kitchen = "scenes/kitchen.pack";
+  // What is written, the option that asks for it, and the file that would be lost.
+  const std::vector<std::tuple<std::string, std::string, std::string>> attempts{
+      {"world.pack", "--record", "world.pack"},
+      {"./world.pack", "--report", "world.pack"},
+      {(folder_.path() / "world.pack").string(), "--view", "world.pack"},
+      {kitchen, "--record", kitchen},
+      {"scenes/../scenes/kitchen.pack", "--report", kitchen},
+      {"episodes.pack", "--animation", "episodes.pack"},
+      {"link.pack", "--record", "objects.pack"},
+      {"link.pack", "--report", "objects.pack"},
+      {"run.rec", "--record", "run.rec"},
+      {"./run.rec", "--report", "run.rec"},
+  };
+  for (const auto& [output, option, file] : attempts) {
+    SCOPED_TRACE(option + " " + output);
+    const std::string before = content(file);
+    const ProgramRun result = run({"--policy", "replay:run.rec", "--steps", "3", option, output});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_EQ(result.err,
+              "galactic-run: " + output + ": is also an input; write to another file\n");
+    EXPECT_THAT(result.out, IsEmpty());
+    EXPECT_TRUE(content(file) == before);
+  }
+  // Packs that are named one by one.
+  const std::string before = content(kitchen);
+  EXPECT_EQ(runBare({"episodes.pack", "objects.pack", "robots/helper.pack", kitchen, "--envs", "1",
+                     "--steps", "1", "--record", kitchen})
+                .exit_code,
+            3);
+  EXPECT_TRUE(content(kitchen) == before);
+}
+
+TEST_F(SimulateCli, WritesNoFileTwice) {
+  static_cast<void>(folder_.write("old", "kept"));
+  std::filesystem::create_symlink("old", folder_.path() / "link");
+  const std::vector<std::pair<std::string, std::string>> pairs{
+      {"a", "a"}, {"a", "./a"}, {"a", (folder_.path() / "a").string()}, {"old", "link"}};
+  for (const auto& [record, report] : pairs) {
+    const ProgramRun result =
+        run({"--envs", "1", "--steps", "1", "--record", record, "--report", report});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_EQ(result.err, "galactic-run: " + report +
+                              ": would be written twice: by --record and by --report; give each "
+                              "its own name\n");
+  }
+  EXPECT_EQ(content("old"), "kept");
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "a"));
+}
+
+TEST_F(SimulateCli, TriesItsFilesBeforeItSteps) {
+  for (const char* option : {"--record", "--report", "--view", "--animation"}) {
+    // Of a run that began, the table would be there.
+    const ProgramRun result = run({"--envs", "1", "--steps", "1", option, "missing/file"});
+    EXPECT_EQ(result.exit_code, 2) << option;
+    EXPECT_THAT(result.err, StartsWith("galactic-run: missing/file: cannot write the file"))
+        << option;
+    EXPECT_THAT(result.out, IsEmpty()) << option;
+  }
 }
 
 TEST_F(SimulateCli, WritesTheSamePageForARunAndItsReplay) {

@@ -1,9 +1,9 @@
 #include "galactic/bake/assets.h"
 
 #include <chrono>
-#include <system_error>
 #include <utility>
 
+#include "support/output_files.h"
 #include "support/try.h"
 #include "write/packs.h"
 
@@ -25,10 +25,7 @@ void ReadLog::noteRead(const std::filesystem::path& folder, const std::vector<So
 
 Result<void> ReadLog::checkNotRead(const std::filesystem::path& output) const {
   for (const ReadFile& source : read_) {
-    std::error_code missing;
-    if (output.empty() || !std::filesystem::equivalent(source.path, output, missing)) continue;
-    return fail(ErrorCode::kInvalidInput, output.string(),
-                "is also an input; write to another file");
+    if (!output.empty()) RETURN_IF_ERROR(checkNotInput(output, source.path));
   }
   return {};
 }

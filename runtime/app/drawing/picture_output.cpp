@@ -11,6 +11,7 @@
 
 #include "pictures/png_file.h"
 #include "support/atomic_file.h"
+#include "support/output_files.h"
 
 namespace galactic {
 namespace {
@@ -20,28 +21,11 @@ using pictures::Image;
 /// Between the images of a tile, and between the tiles of a video; pixels.
 constexpr int kTileGap = 2;
 
+/// Beside the frames: what semantic ids mean.
+constexpr std::string_view kLegendName = "semantics.json";
+
 std::string frameName(std::size_t env, std::uint64_t step, const char* what) {
   return fmt::format("env_{:04}_step_{:06}_{}.png", env, step, what);
-}
-
-/// Whether a file can be written here; leaves nothing behind.
-Result<void> tryFile(const std::filesystem::path& path) {
-  std::error_code unknown;
-  if (!path.has_filename() || std::filesystem::is_directory(path, unknown)) {
-    return fail(ErrorCode::kIo, path.string(), "is a folder; expected the name of a file");
-  }
-  const Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return tl::unexpected<Error>(file.error());
-  return {};
-}
-
-Result<void> tryFolder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + error.message());
-  }
-  return tryFile(folder / frameName(0, 0, "rgb"));
 }
 
 /// The moments that a sheet shows of `frames` frames, evenly spread, first and last among them.
@@ -72,6 +56,19 @@ Image emptyTile(const DrawingOptions& options) {
 
 }  // namespace
 
+bool isFrameName(std::string_view name) {
+  return name == kLegendName || (name.starts_with("env_") && name.ends_with(".png"));
+}
+
+Result<void> makeFrameFolder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + error.message());
+  }
+  return tryFile(folder / frameName(0, 0, "rgb"));
+}
+
 Image tileOf(const EnvFrame& frame) {
   std::vector<Image> images;
   const auto add = [&images](const DrawnImage& drawn) {
@@ -97,11 +94,6 @@ PictureOutput::PictureOutput(const DrawingOptions& options, const RunLength& len
 
 Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const RunLength& length) {
   PictureOutput output(options, length);
-  Result<void> good;
-  if (!options.frames.empty()) good = tryFolder(options.frames);
-  if (good && !options.contact_sheet.empty()) good = tryFile(options.contact_sheet);
-  if (good && !options.video.empty()) good = tryFile(options.video);
-  if (!good) return tl::unexpected<Error>(good.error());
   if (!options.video.empty()) {
     const std::vector<Image> tiles(output.envs_, emptyTile(options));
     Result<VideoPipe> video = VideoPipe::start(options.video, output.videoFrame(tiles));
@@ -113,7 +105,7 @@ Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const R
 
 Result<void> PictureOutput::writeLegend(std::string_view json) const {
   if (options_.frames.empty()) return {};
-  const std::filesystem::path file = std::filesystem::path(options_.frames) / "semantics.json";
+  const std::filesystem::path file = std::filesystem::path(options_.frames) / kLegendName;
   return writeFileAtomically(file, {std::as_bytes(std::span(json))});
 }
 

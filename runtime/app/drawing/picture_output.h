@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -31,14 +32,21 @@ struct RunLength {
 /// side, as far as they are there.
 [[nodiscard]] pictures::Image tileOf(const EnvFrame& frame);
 
+/// Whether a frame may have this name, or what stands beside the frames.
+[[nodiscard]] bool isFrameName(std::string_view name);
+
+/// Makes the folder that frames are written into, if needed. Fails with kIo when it cannot, or when
+/// no frame can be written there.
+[[nodiscard]] Result<void> makeFrameFolder(const std::filesystem::path& folder);
+
 /// Writes frames, contact sheet and video of a run, as the options say.
 class PictureOutput {
  public:
   /// Most moments that a contact sheet shows.
   static constexpr std::size_t kSheetRows = 6;
 
-  /// Tries all files and folders. Fails with kIo when one cannot be written, and with the errors of
-  /// VideoPipe.
+  /// Whether files can be written is for others to try: makeFrameFolder() and tryFile(). Fails with
+  /// the errors of VideoPipe.
   [[nodiscard]] static Result<PictureOutput> open(const DrawingOptions& options,
                                                   const RunLength& length);
 

@@ -18,7 +18,9 @@
 #include "run/live_line.h"
 #include "run/planned_policy.h"
 #include "run/policy.h"
+#include "run/run_files.h"
 #include "run/tracked_run.h"
+#include "support/try.h"
 
 namespace galactic {
 namespace {
@@ -122,13 +124,9 @@ class Run {
   }
 
   /// Before go().
-  Result<void> track(const World& world) {
-    Result<TrackedRun> tracked = TrackedRun::create(world, simulator_, options_);
-    if (!tracked) return tl::unexpected<Error>(tracked.error());
-    tracked_.emplace(std::move(*tracked));
-    return {};
-  }
+  void track(const World& world) { tracked_.emplace(world, simulator_, options_); }
 
+  /// Before go().
   Result<void> record(const World& world) {
     const RecordingSubject subject{
         options_.simulation, static_cast<std::uint32_t>(simulator_.actionCount()), stampsOf(world)};
@@ -244,6 +242,7 @@ Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
                            const RunSource& source) {
   const Interrupt interrupt;
   const World& world = opened.world;
+  RETURN_IF_ERROR(tryOutputs(world, options));
   RunReport report;
   report.options = options;
   report.world_task = world.taskOptions();
@@ -272,9 +271,7 @@ Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
   if (options.drawing.draws()) {
     if (auto drawn = run.draw(world); !drawn) return tl::unexpected<Error>(drawn.error());
   }
-  if (!options.view.empty() || !options.animation.empty()) {
-    if (auto tracked = run.track(world); !tracked) return tl::unexpected<Error>(tracked.error());
-  }
+  if (!options.view.empty() || !options.animation.empty()) run.track(world);
   if (!options.record.empty()) {
     if (auto opened_file = run.record(world); !opened_file) {
       return tl::unexpected<Error>(opened_file.error());

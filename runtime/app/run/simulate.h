@@ -26,7 +26,7 @@ struct RunSource {
 
 /// Steps the world as `options` say and writes the recording. On a terminal a line says how it
 /// goes; Ctrl-C ends the run early. A replay ends at the first step that differs. Fails with the
-/// errors of BatchSimulator::create, makeLearnedPolicy and the recordings.
+/// errors of tryOutputs, BatchSimulator::create, makeLearnedPolicy and the recordings.
 [[nodiscard]] Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
                                          const RunSource& source);
 

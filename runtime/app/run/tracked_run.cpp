@@ -5,7 +5,6 @@
 #include <memory>
 #include <set>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -76,22 +75,6 @@ Result<void> writeText(const std::string& path, std::string_view text) {
   return writeFileAtomically(path, {std::as_bytes(std::span(text))});
 }
 
-/// A run may take hours: a file that cannot be written is found out before it.
-Result<void> tryFile(const std::string& file, const World& world, const RunOptions& options) {
-  std::vector<std::string> read = options.packs;
-  read.push_back(options.replayFile());
-  read.push_back(options.policyFile());
-  for (const PackFile& pack : world.packs()) read.push_back(pack.where());
-  for (const std::string& one : read) {
-    std::error_code missing;
-    if (!std::filesystem::equivalent(one, file, missing)) continue;
-    return fail(ErrorCode::kInvalidInput, file,
-                "is a file that the run reads; choose another name to write to");
-  }
-  RETURN_IF_ERROR(AtomicFile::create(file));
-  return {};
-}
-
 }  // namespace
 
 Result<std::vector<PageAsset>> pageAssetsOf(const RunTrack& track) {
@@ -116,16 +99,10 @@ Result<std::vector<PageAsset>> pageAssetsOf(const RunTrack& track) {
   return assets;
 }
 
-Result<TrackedRun> TrackedRun::create(const World& world, const BatchSimulator& simulator,
-                                      const RunOptions& options) {
-  for (const std::string& file : {options.view, options.animation}) {
-    if (file.empty()) continue;
-    RETURN_IF_ERROR(tryFile(file, world, options));
-  }
-  // An animation shows the first env.
-  return TrackedRun(RunTrack(world, simulator, options.view.empty() ? 1 : options.view_envs),
-                    options);
-}
+// An animation shows the first env.
+TrackedRun::TrackedRun(const World& world, const BatchSimulator& simulator,
+                       const RunOptions& options)
+    : track_(world, simulator, options.view.empty() ? 1 : options.view_envs), options_(options) {}
 
 Result<void> TrackedRun::finish() const {
   ASSIGN_OR_RETURN(const auto assets, pageAssetsOf(track_));

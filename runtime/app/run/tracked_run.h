@@ -23,11 +23,8 @@ class TrackedRun {
   /// Most steps of all kept envs together: what is kept of them takes some 200 bytes a step.
   static constexpr std::uint64_t kMostSteps = 1'000'000;
 
-  /// Of the run of `options`. Tries the files. Fails with kIo, and with kInvalidInput where one of
-  /// them is read.
-  [[nodiscard]] static Result<TrackedRun> create(const World& world,
-                                                 const BatchSimulator& simulator,
-                                                 const RunOptions& options);
+  /// Of the run of `options`.
+  TrackedRun(const World& world, const BatchSimulator& simulator, const RunOptions& options);
 
   /// After a step with `actions`.
   void add(const BatchSimulator& simulator, std::span<const float> actions) {
@@ -38,9 +35,6 @@ class TrackedRun {
   [[nodiscard]] Result<void> finish() const;
 
  private:
-  TrackedRun(RunTrack track, const RunOptions& options)
-      : track_(std::move(track)), options_(options) {}
-
   [[nodiscard]] Result<void> writePage(std::span<const PageAsset> assets) const;
   [[nodiscard]] Result<void> writeAnimation(std::span<const PageAsset> assets) const;
 

@@ -167,6 +167,7 @@ TEST_F(Pictures, FramesAreNamedByEnvAndStep) {
   DrawingOptions options = smallOptions();
   options.frames = file("deep/frames");
   options.frame_every = 60;
+  ASSERT_TRUE(makeFrameFolder(options.frames));
   auto output = PictureOutput::open(options, {120, 5});
   ASSERT_TRUE(output) << output.error().message;
   EXPECT_EQ(output->envCount(), 2U);
@@ -215,25 +216,13 @@ TEST_F(Pictures, ASheetShowsSixMomentsFromTheFirstToTheLast) {
   EXPECT_EQ(height_of(100, 41), kSheetGap + 3 * row);
 }
 
-TEST_F(Pictures, WhatCannotBeWrittenIsRefusedBeforeTheRun) {
+TEST_F(Pictures, AFileInTheWayOfTheFramesIsRefused) {
   const std::string in_the_way = folder_.write("occupied", "a file").string();
-  DrawingOptions options = smallOptions();
-  options.frames = in_the_way;
-  auto output = PictureOutput::open(options, {10, 2});
-  ASSERT_FALSE(output);
-  EXPECT_EQ(output.error().code, ErrorCode::kIo);
-  EXPECT_EQ(output.error().where, in_the_way);
-  EXPECT_THAT(output.error().message, HasSubstr("cannot be made a folder"));
-  options.frames.clear();
-  options.contact_sheet = file("no/such/folder/sheet.png");
-  output = PictureOutput::open(options, {10, 2});
-  ASSERT_FALSE(output);
-  EXPECT_EQ(output.error().code, ErrorCode::kIo);
-  for (const char* folder : {"", "folder"}) {
-    std::filesystem::create_directories(folder_.path() / "folder");
-    options.contact_sheet = file(folder);
-    EXPECT_FALSE(PictureOutput::open(options, {10, 2})) << folder;
-  }
+  const Result<void> made = makeFrameFolder(in_the_way);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::kIo);
+  EXPECT_EQ(made.error().where, in_the_way);
+  EXPECT_THAT(made.error().message, HasSubstr("cannot be made a folder"));
 }
 
 TEST_F(Pictures, AVideoIsTheTilesOfAllFrames) {

@@ -1,0 +1,20 @@
+#pragma once
+#include <filesystem>
+
+#include "galactic/error.h"
+
+namespace galactic {
+
+/// Whether two names lead to one file: links are followed, "a" and "./a" are the same, also where
+/// there is no file yet.
+[[nodiscard]] bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// Fails with kInvalidInput when `output` is the file `input`, which writing would lose.
+[[nodiscard]] Result<void> checkNotInput(const std::filesystem::path& output,
+                                         const std::filesystem::path& input);
+
+/// Fails with kIo when no file can be written under this name; leaves nothing behind and a file of
+/// the name as it is. Long work that ends with a file begins with this.
+[[nodiscard]] Result<void> tryFile(const std::filesystem::path& path);
+
+}  // namespace galactic
