@@ -20,6 +20,7 @@
 #include "galactic/scene.h"
 #include "inspect/query_benchmark.h"
 #include "inspect/summary.h"
+#include "run/interrupt.h"
 #include "run/learned_run.h"
 #include "run/recording.h"
 #include "run/run_report.h"
@@ -100,6 +101,7 @@ int simulateWorld(const RunOptions& options, const OpenedWorld& world, const Run
         galactic::writeFileAtomically(options.report, {std::as_bytes(std::span(json))});
     if (!saved) return report(saved.error());
   }
+  if (run->is_interrupted) return galactic::kExitInterrupted;
   if (!run->first_difference) return galactic::kExitOk;
   fmt::print(stderr,
              "galactic-run: {}: step {} differs from the recording; "

@@ -268,7 +268,7 @@ TEST_F(RenderCli, ARunThatIsStoppedFinishesItsPictures) {
                                               "1000",
                                               "--contact-sheet",
                                               "sheet.png"});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.exit_code, 130) << result.err;
   EXPECT_THAT(result.out, HasSubstr("(stopped; 1000000000 steps were asked for)"));
   EXPECT_THAT(content("sheet.png"), StartsWith("\x89PNG"));
   EXPECT_THAT(files("frames"), testing::Contains("env_0001_step_000000_rgb.png"));
