@@ -91,6 +91,7 @@ int describePacks(const RunOptions& options) {
 }
 
 int simulateWorld(const RunOptions& options, const OpenedWorld& world, const RunSource& source) {
+  if (!options.without_effect.empty()) return galactic::refuseCommandLine(options.without_effect);
   const Result<galactic::RunReport> run = galactic::simulate(options, world, source);
   if (!run) return report(run.error());
   if (!options.is_quiet) fmt::print("{}", galactic::tableOf(*run));

@@ -169,6 +169,21 @@ TEST_F(SimulateCli, TakesTheTaskOfTheWorldWhichTheCommandLineOverrides) {
   EXPECT_THAT(runBare({"world.pack"}).out, Not(HasSubstr("task:")));
 }
 
+TEST_F(SimulateCli, RefusesWhatHasNoEffectUnlessTheWorldGivesItOne) {
+  const std::vector<std::string> narrow{"--envs", "1", "--steps", "1", "--laser-fov", "90"};
+  const ProgramRun refused = run(narrow);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_EQ(refused.err,
+            "galactic-run: command line: --laser-fov applies to a laser scan only; add "
+            "--laser-beams N; see --help\n");
+  EXPECT_THAT(refused.out, IsEmpty());
+  test::WorldPackFields list = test::writePacks(folder_, test::smallHomeWorld());
+  list.task = test::TaskTexts{{"laser-beams", "8"}};
+  ASSERT_FALSE(folder_.write("world.pack", test::textOf(buildPack(list))).empty());
+  const ProgramRun fine = run(narrow);
+  EXPECT_EQ(fine.exit_code, 0) << fine.err;
+}
+
 TEST_F(SimulateCli, RefusesAWorldWhoseTaskIsNone) {
   test::WorldPackFields list = test::writePacks(folder_, test::smallHomeWorld());
   list.task = test::TaskTexts{{"episode-steps", "many"}};

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <map>
@@ -38,6 +39,8 @@ constexpr const char* kReplayPrefix = "replay:";
 constexpr const char* kPolicySuffix = ".pack";
 constexpr const char* kPlainGroup = "Options";
 constexpr const char* kRunGroup = "Simulation";
+// As the table of options calls it.
+constexpr const char* kRewardGroup = "Reward";
 
 CLI::Validator knownPolicy() {
   return CLI::Validator(
@@ -219,12 +222,49 @@ std::vector<std::string> longNamesOf(const CLI::App& app) {
   return names;
 }
 
-int refuse(std::string_view message) {
-  fmt::print(stderr, "galactic-run: command line: {}; see --help\n", printable(message));
-  return kExitUsage;
+/// Options that begin with `prefix`, all but `main`, and do nothing where `is_off`.
+struct Details {
+  std::string_view prefix;
+  std::string_view main;
+  bool is_off;
+  std::string_view what_to_do;
+};
+
+/// Which option of the simulation was typed and does nothing; empty when none.
+std::string withoutEffect(const CLI::App& app, const SimulationOptions& simulation) {
+  const SensorOptions& sensors = simulation.sensors;
+  const TaskOptions& task = simulation.task;
+  const std::array details{
+      Details{"--laser-", "--laser-beams", sensors.laser.beams == 0,
+              "applies to a laser scan only; add --laser-beams N"},
+      Details{"--geodesic-megabytes",
+              {},
+              !sensors.geodesic && task.geodesic_weight == 0,
+              "applies to paths along the floor only; add --geodesic or --geodesic-weight X"},
+      Details{"--slide-", "--slide-attempts", simulation.slide.attempts == 0,
+              "applies to robots that slide, and sliding is off; leave it out"},
+      Details{"--place-", "--place-attempts", simulation.placement.attempts == 0,
+              "applies to objects that are placed, and --place-attempts is 0; leave it out"}};
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() == 0) continue;
+    const std::string name = option->get_name();
+    for (const Details& one : details) {
+      if (!one.is_off || !name.starts_with(one.prefix) || name == one.main) continue;
+      return fmt::format("{} {}", name, one.what_to_do);
+    }
+    if (task.kind == TaskKind::kNone && option->get_group() == kRewardGroup) {
+      return name + " applies to the reward of a task, and --task is none; leave it out";
+    }
+  }
+  return {};
 }
 
 }  // namespace
+
+int refuseCommandLine(std::string_view message) {
+  fmt::print(stderr, "galactic-run: command line: {}; see --help\n", printable(message));
+  return kExitUsage;
+}
 
 std::string RunOptions::replayFile() const {
   const std::string_view prefix = kReplayPrefix;
@@ -250,11 +290,12 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const bool asked = error.get_exit_code() == 0;  // --help, --version
-    return asked ? app.exit(error) : refuse(withSuggestions(error.what(), longNamesOf(app)));
+    return asked ? app.exit(error)
+                 : refuseCommandLine(withSuggestions(error.what(), longNamesOf(app)));
   }
   for (const CLI::Option* option : app.get_options()) {
     for (const std::string& value : option->results()) {
-      if (value.empty()) return refuse(option->get_name() + " has an empty value");
+      if (value.empty()) return refuseCommandLine(option->get_name() + " has an empty value");
     }
     options.simulates |= option->count() > 0 && option->get_group() != kPlainGroup;
   }
@@ -265,7 +306,8 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
   options.drawing.policy_may_draw = !options.policyFile().empty();
   if (fault.empty()) fault = drawingFault(options.drawing, app);
   options.simulation.body_transforms |= options.drawing.draws();
-  return fault.empty() ? std::nullopt : std::optional<int>(refuse(fault));
+  options.without_effect = withoutEffect(app, options.simulation);
+  return fault.empty() ? std::nullopt : std::optional<int>(refuseCommandLine(fault));
 }
 
 }  // namespace galactic

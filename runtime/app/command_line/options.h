@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "command_line/render_options.h"
@@ -22,6 +23,9 @@ struct RunOptions {
   /// are summarized.
   bool simulates = false;
   SimulationOptions simulation;
+  /// Why an option of the simulation that was typed does nothing beside all the others; empty when
+  /// none. World, policy and recording have a say in it: it counts when they have been read.
+  std::string without_effect;
   /// Of the whole batch.
   std::uint64_t steps = 1000;
   std::string policy = "random";
@@ -47,5 +51,8 @@ struct RunOptions {
 /// and what is wrong. Returns an exit code when there is nothing more to do.
 [[nodiscard]] std::optional<int> parseCommandLine(int argc, const char* const* argv,
                                                   RunOptions& options);
+
+/// Prints what is wrong with the command line and returns the exit code.
+[[nodiscard]] int refuseCommandLine(std::string_view message);
 
 }  // namespace galactic

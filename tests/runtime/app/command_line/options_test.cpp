@@ -104,6 +104,50 @@ TEST(RunCommandLine, RefusesADeviceThatNothingUsesAndSuggestsNames) {
   EXPECT_NE(said.find("did you mean '--envs'"), std::string::npos) << said;
 }
 
+TEST(RunCommandLine, FindsWhatHasNoEffect) {
+  const auto without_effect = [](const std::vector<std::string>& arguments) {
+    return parsed(arguments).without_effect;
+  };
+  for (const char* option : {"--laser-fov", "--laser-height", "--laser-second-height",
+                             "--laser-range", "--laser-min-range", "--laser-noise"}) {
+    EXPECT_EQ(without_effect({option, "1"}),
+              std::string(option) + " applies to a laser scan only; add --laser-beams N");
+    EXPECT_NE(without_effect({option, "1", "--laser-beams", "0"}), "") << option;
+    EXPECT_EQ(without_effect({option, "1", "--laser-beams", "8"}), "") << option;
+  }
+  EXPECT_EQ(without_effect({"--laser-beams", "0"}), "");
+  EXPECT_EQ(without_effect({"--geodesic-megabytes", "5"}),
+            "--geodesic-megabytes applies to paths along the floor only; add --geodesic or "
+            "--geodesic-weight X");
+  EXPECT_EQ(without_effect({"--geodesic-megabytes", "5", "--geodesic"}), "");
+  EXPECT_EQ(without_effect({"--geodesic-megabytes", "5", "--geodesic-weight", "0.5"}), "");
+  for (const char* off : {"--slide=off", "--slide-attempts=0"}) {
+    EXPECT_EQ(without_effect({off}), "") << off;
+    EXPECT_EQ(without_effect({off, "--slide-step", "0.1"}),
+              "--slide-step applies to robots that slide, and sliding is off; leave it out");
+  }
+  EXPECT_EQ(without_effect({"--slide", "off", "--slide-attempts", "2", "--slide-step", "1"}), "");
+  EXPECT_NE(without_effect({"--place-attempts", "0", "--place-lift", "1"}), "");
+  EXPECT_EQ(without_effect({"--place-attempts", "1", "--place-lift", "1"}), "");
+  EXPECT_EQ(without_effect({"--task", "none", "--success-reward", "5"}),
+            "--success-reward applies to the reward of a task, and --task is none; leave it out");
+  EXPECT_EQ(without_effect({"--success-reward", "5"}), "");
+  EXPECT_EQ(without_effect({"--task", "none", "--episode-steps", "5"}), "");
+}
+
+TEST(RunCommandLine, DoesNotJudgeWhatIsNotTyped) {
+  // As a world or a recording says.
+  RunOptions options;
+  options.simulation.sensors.laser.fov_degrees = 90;
+  options.simulation.task.kind = TaskKind::kNone;
+  options.simulation.task.success_reward = 5;
+  ASSERT_EQ(parse({"--steps", "5"}, options), std::nullopt);
+  EXPECT_EQ(options.without_effect, "");
+  options.simulation.sensors.laser.beams = 8;
+  ASSERT_EQ(parse({"--laser-range", "5"}, options), std::nullopt);
+  EXPECT_EQ(options.without_effect, "");
+}
+
 TEST(RunCommandLine, HasUsefulDefaults) {
   const RunOptions options = parsed({"--steps", "5"});
   EXPECT_EQ(options.simulation.envs, 1024U);
