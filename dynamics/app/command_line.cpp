@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "command_line/policy_command_line.h"
 #include "galactic/error.h"
 #include "run/policy.h"
 #include "support/nearest_name.h"
@@ -49,7 +50,7 @@ CLI::Validator knownPolicy() {
   return CLI::Validator(
       [](const std::string& text) {
         if (text == kScriptedPolicy || text.ends_with(kPolicySuffix)) return std::string();
-        return fmt::format("unknown policy {}, expected scripted or FILE.pack", text);
+        return unknownPolicy(text, "scripted or FILE.pack");
       },
       "", "policy");
 }
@@ -73,9 +74,7 @@ void addActions(CLI::App& app, Command& command) {
                  "Close the loop: this policy acts on what it observes in the dynamics")
       ->check(knownPolicy())
       ->option_text("scripted|FILE.pack");
-  app.add_flag("--deterministic,!--sampled", command.is_deterministic,
-               "Let a policy pack take its likeliest actions, or sample them (the default)")
-      ->check(switchCheck());
+  addSampling(app, command.is_deterministic);
   app.add_option("--seed", command.seed, "Of what is random in a closed loop")
       ->check(wholeCheck(0, std::numeric_limits<std::uint64_t>::max()))
       ->option_text(fmt::format("N [{}]", command.seed));

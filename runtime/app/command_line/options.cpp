@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "command_line/policy_command_line.h"
 #include "command_line/render_command_line.h"
 #include "galactic/error.h"
 #include "run/policy.h"
@@ -49,9 +50,7 @@ CLI::Validator knownPolicy() {
         const std::string_view prefix = kReplayPrefix;
         if (text.starts_with(prefix) && text.size() > prefix.size()) return std::string();
         if (text.ends_with(kPolicySuffix)) return std::string();
-        return fmt::format(
-            "unknown policy {}, expected random, forward, zero, scripted, FILE.pack or replay:FILE",
-            text);
+        return unknownPolicy(text, "random, forward, zero, scripted, FILE.pack or replay:FILE");
       },
       "", "policy");
 }
@@ -164,9 +163,7 @@ void addRunOptions(CLI::App& app, RunOptions& options) {
       ->check(knownPolicy())
       ->option_text(
           fmt::format("random|forward|zero|scripted|FILE.pack|replay:FILE [{}]", options.policy));
-  app.add_flag("--deterministic,!--sampled", options.is_deterministic,
-               "Let a policy pack take its likeliest actions, or sample them (the default)")
-      ->check(switchCheck());
+  addSampling(app, options.is_deterministic);
   app.add_option("-j,--threads", options.simulation.threads,
                  "Threads; the results do not depend on it; 0: one per processor")
       ->check(wholeCheck(0, 4096))

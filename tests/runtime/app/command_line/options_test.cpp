@@ -148,6 +148,42 @@ TEST(RunCommandLine, DoesNotJudgeWhatIsNotTyped) {
   EXPECT_EQ(options.without_effect, "");
 }
 
+/// What is said when the command line is refused.
+std::string refusalOf(const std::vector<std::string>& arguments) {
+  RunOptions options;
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(parse(arguments, options), kExitUsage) << testing::PrintToString(arguments);
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(RunCommandLine, SaysWhatToDoWithACheckpoint) {
+  EXPECT_EQ(refusalOf({"--policy", "runs/pick/best.pt"}),
+            "galactic-run: command line: --policy: unknown policy runs/pick/best.pt, expected "
+            "random, forward, zero, scripted, FILE.pack or replay:FILE; python3 -m galactic.export "
+            "makes a policy pack of it; see --help\n");
+  EXPECT_EQ(refusalOf({"--policy", "dance"}).find("galactic.export"), std::string::npos);
+}
+
+TEST(RunCommandLine, SamplesOrTakesTheLikeliest) {
+  EXPECT_TRUE(parsed({"--policy", "a.pack", "--deterministic"}).is_deterministic);
+  EXPECT_FALSE(parsed({"--policy", "a.pack", "--sampled"}).is_deterministic);
+  EXPECT_FALSE(parsed({"--policy", "a.pack"}).is_deterministic);
+  EXPECT_NE(refusalOf({"--policy", "a.pack", "--deterministic", "--sampled"}).find("excludes"),
+            std::string::npos);
+}
+
+TEST(RunCommandLine, HelpIsFreeOfTheParsersNotation) {
+  RunOptions options;
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(parse({"--help"}, options), 0);
+  std::fflush(stdout);
+  const std::string help = testing::internal::GetCapturedStdout();
+  EXPECT_EQ(help.find('{'), std::string::npos) << help;
+  EXPECT_EQ(help.find("Excludes"), std::string::npos) << help;
+  EXPECT_NE(help.find("\n  --deterministic  "), std::string::npos) << help;
+  EXPECT_NE(help.find("\n  --sampled  "), std::string::npos) << help;
+}
+
 TEST(RunCommandLine, HasUsefulDefaults) {
   const RunOptions options = parsed({"--steps", "5"});
   EXPECT_EQ(options.simulation.envs, 1024U);
