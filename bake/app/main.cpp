@@ -18,6 +18,7 @@
 #include "galactic/bake/robot_recipe.h"
 #include "report.h"
 #include "support/out_of_memory.h"
+#include "support/output_files.h"
 #include "terminal.h"
 
 namespace galactic::bake {
@@ -57,14 +58,18 @@ Result<void> checkOutputs(const BakeCommand& command, const JobList& list) {
 
 /// Several packs go into a folder, which is made.
 Result<void> makeOutputFolder(const BakeCommand& command, const JobList& list) {
-  if (list.world || list.assets.size() < 2 || command.run.out.empty() || command.run.dry_run) {
-    return {};
-  }
+  const fs::path& folder = list.world ? list.folder : command.run.out;
+  const bool is_one_pack = !list.world && list.assets.size() < 2;
+  if (is_one_pack || folder.empty() || command.run.dry_run) return {};
   std::error_code problem;
-  fs::create_directories(command.run.out, problem);
+  fs::create_directories(folder, problem);
   if (!problem) return {};
-  return fail(ErrorCode::kIo, command.run.out.string(),
-              "cannot be made a folder: " + problem.message());
+  return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + problem.message());
+}
+
+/// A bake may take hours: a report that cannot be written is found out before it.
+Result<void> tryReport(const BakeCommand& command) {
+  return command.run.report.empty() ? Result<void>() : tryFile(command.run.report);
 }
 
 /// Three quarters of what the machine has.
@@ -145,6 +150,7 @@ Error incomplete(const JobList& list, const std::vector<LeftOut>& missing) {
 int bakeList(const BakeCommand& command, const JobList& list) {
   if (auto checked = checkOutputs(command, list); !checked) return refuse(checked.error());
   if (auto made = makeOutputFolder(command, list); !made) return refuse(made.error());
+  if (auto tried = tryReport(command); !tried) return refuse(tried.error());
   const BuildOutcome outcome = buildAll(command, list);
   int exit_code = exitCodeOf(outcome);
   if (outcome.world && !outcome.world->isThere()) return exit_code;

@@ -194,6 +194,18 @@ TEST_F(BakeCli, NeverReplacesAnythingThatItReads) {
   EXPECT_FALSE(has("one.pack"));
 }
 
+TEST_F(BakeCli, TriesItsReportBeforeItBakes) {
+  const ProgramRun bake = run({"room.obj", "-o", "one.pack", "--report", "missing/report.json"});
+  EXPECT_EQ(bake.exit_code, 2);
+  EXPECT_THAT(bake.err, HasSubstr("missing/report.json: cannot write the file"));
+  EXPECT_FALSE(has("one.pack"));
+  // It may go where the packs go.
+  write("other.obj", test::objFile(test::unevenBox()));
+  const ProgramRun two =
+      run({"room.obj", "other.obj", "-o", "packs", "--report", "packs/report.json"});
+  EXPECT_EQ(two.exit_code, 0) << two.err;
+}
+
 TEST_F(BakeCli, RefusesTwoInputsForOnePack) {
   write("other/room.obj", test::objFile(test::unevenBox()));
   const ProgramRun bake = run({"room.obj", "other/room.obj", "-o", "packs"});

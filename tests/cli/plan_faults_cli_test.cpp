@@ -206,12 +206,12 @@ TEST_F(PlanFaults, ExplainsThatItCannotMakeItsFolder) {
   write("out/home", "no folder");
   const ProgramRun blocked = bake("out", {"--scenes", "c", "--no-cache"});
   EXPECT_EQ(blocked.exit_code, 2);
-  EXPECT_THAT(blocked.err, HasSubstr("out/home/scenes: cannot be made a folder"));
+  EXPECT_THAT(blocked.err, HasSubstr("out/home: cannot be made a folder"));
   EXPECT_EQ(content("out/home"), "no folder");
   // Where nobody may write, root neither.
   const ProgramRun nowhere = bake("/proc/none", {"--scenes", "c"});
   EXPECT_EQ(nowhere.exit_code, 2);
-  EXPECT_THAT(nowhere.err, HasSubstr("/proc/none/home/scenes: cannot be made a folder"));
+  EXPECT_THAT(nowhere.err, HasSubstr("/proc/none/home: cannot be made a folder"));
 }
 
 TEST_F(PlanFaults, RefusesOutputsThatAreInputsOrNoPack) {
