@@ -154,6 +154,7 @@ TEST_F(DynamicsCli, RefusesWhatItCannotDo) {
       {{"--policy", "scripted", "--set", "gravity=1"}, kInvalid, "gravity=1 is no option"},
       {{"--policy", "home.pack"}, kInvalid, "home.pack"},
       {{"--recording", "home.rec", "--report", "home.rec"}, kInvalid, "is also an input"},
+      {{"--policy", "scripted", "--report", "home/episodes.pack"}, kInvalid, "is also an input"},
       {{"--recording", "home.pack"}, kInvalid, "home.pack"},
       {{"--recording", "none.rec"}, 2, "none.rec"},
   };
