@@ -6,8 +6,8 @@ Every policy is the same plain chain, kept in these attributes so that an export
     closeup     Closeup of the state, or None
     encoder     inputs -> features
     rnn         nn.GRU of one layer, or None
-    action      ActorHead: one nn.Linear for means, log-stds (unless those are a parameter), decisions
-    critic      nn.Linear: the value
+    action      ActorHead: one HeadLinear for means, log-stds (unless those are a parameter), decisions
+    critic      HeadLinear: the value
 
 A policy without `rnn` (class StatePolicy) has two encoders, `encoder` for the actor and
 `value_encoder` for the critic, which share nothing but the normalization.
@@ -73,6 +73,15 @@ class PolicyShape(NamedTuple):
         return self.state * (2 if self.closeup > 0.0 else 1)
 
 
+class HeadLinear(nn.Linear):
+    """A linear layer in float32, even where the layers before it are computed in bfloat16: values of 8
+    bits would blur advantages, and log-stds of 8 bits the ratios of probabilities."""
+
+    def forward(self, input: Tensor) -> Tensor:
+        with torch.autocast(input.device.type, enabled=False):
+            return super().forward(input.float())
+
+
 class ActorHead(nn.Module):
     """Features [..., F] -> ActionDistribution. One linear layer, so one multiplication.
 
@@ -88,11 +97,11 @@ class ActorHead(nn.Module):
         if initial_log_std is not None:
             self.log_std = nn.Parameter(torch.full((shape.motions,), initial_log_std))
         rows = shape.motions * (2 if self.log_std is None else 1) + 2 * DECISIONS
-        self.linear = nn.Linear(features, rows)
+        self.linear = HeadLinear(features, rows)
         _orthogonal(self.linear, 0.01)
 
     def forward(self, features: Tensor) -> ActionDistribution:
-        rows = self.linear(features).float()
+        rows = self.linear(features)
         mean = torch.tanh(rows[..., : self.motions])
         if self.log_std is None:
             log_std = rows[..., self.motions : 2 * self.motions]
@@ -196,7 +205,7 @@ class StatePolicy(Policy):
         self.encoder = perceptron(shape.seen, width, layers, activation)
         self.value_encoder = perceptron(shape.seen, width, layers, activation)
         self.action = ActorHead(width, shape, initial_log_std)
-        self.critic = _orthogonal(nn.Linear(width, 1), 1.0)
+        self.critic = _orthogonal(HeadLinear(width, 1), 1.0)
 
     def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
         state = self._seen(inputs.state)
@@ -223,7 +232,7 @@ class RecurrentPolicy(Policy):
         self.encoder = encoder
         self.rnn = nn.GRU(encoder.features, width)
         self.action = ActorHead(width, shape, initial_log_std)
-        self.critic = _orthogonal(nn.Linear(width, 1), 1.0)
+        self.critic = _orthogonal(HeadLinear(width, 1), 1.0)
         for name, parameter in self.rnn.named_parameters():
             if "weight" in name:
                 nn.init.orthogonal_(parameter)
@@ -234,7 +243,7 @@ class RecurrentPolicy(Policy):
         assert hidden is not None
         features = self.encoder(inputs._replace(state=self._seen(inputs.state)))
         features, hidden = run_gru(self.rnn, features, hidden, starts)
-        return Outputs(self.action(features), self.critic(features).squeeze(-1).float(), hidden)
+        return Outputs(self.action(features), self.critic(features).squeeze(-1), hidden)
 
 
 class Encoder(nn.Module):

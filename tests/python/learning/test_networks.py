@@ -1,7 +1,10 @@
 """The policies: the paper's parameter counts, memory across episodes, normalization."""
 
+from typing import Optional
+
 import pytest
 import torch
+from torch.nn import functional
 
 from galactic.learning.distributions import ActionDistribution
 from galactic.learning.networks import Inputs, PolicyShape, Tanh, make_policy
@@ -63,6 +66,44 @@ def test_a_sequence_equals_its_steps_one_after_another(network: str, recurrent: 
             torch.testing.assert_close(one.actions.mean[0], whole.actions.mean[step])
     if hidden is not None:
         torch.testing.assert_close(hidden, whole.hidden)
+
+
+@pytest.mark.parametrize("log_std", [None, -0.5])
+@pytest.mark.parametrize("network, recurrent", POLICIES[:-1])  # a GroupNorm mixes no types here
+def test_heads_are_float32_after_a_network_of_bfloat16(
+    network: str, recurrent: bool, log_std: Optional[float]
+) -> None:
+    torch.manual_seed(11)
+    policy = make_policy(network, ARM_OF_SEVEN, recurrent=recurrent, initial_log_std=log_std)
+    with torch.no_grad():
+        policy.critic.bias.fill_(9.0)  # neighbors in bfloat16 are 1/16 apart there
+        policy.action.linear.bias.uniform_(0.1, 1.0)
+    steps, envs = 3, 4
+    inputs = some_inputs(policy, steps, envs)
+    hidden = policy.initial_hidden(envs, torch.device("cpu"))
+    starts = torch.zeros(steps, envs, dtype=torch.bool)
+    features: dict[torch.nn.Module, torch.Tensor] = {}
+    for head in (policy.action.linear, policy.critic):
+        head.register_forward_pre_hook(lambda head, seen: features.update({head: seen[0]}))
+    with torch.no_grad():
+        with torch.autocast("cpu", dtype=torch.bfloat16):
+            found = policy(inputs, hidden, starts)
+            values = policy.value(inputs, hidden, starts)
+            acted = policy.act(inputs, hidden, starts).actions
+        wide = {head: seen.float() for head, seen in features.items()}
+        rows, wanted = (
+            functional.linear(wide[head], head.weight, head.bias)
+            for head in (policy.action.linear, policy.critic)
+        )
+    for one in (found.values, values, *found.actions[:3], *acted[:3]):
+        assert one.dtype == torch.float32
+    for one in (found.values, values):
+        assert torch.equal(one, wanted.squeeze(-1))
+        assert not torch.equal(one, one.bfloat16().float())
+    for actions in (found.actions, acted):
+        assert torch.equal(actions.mean, torch.tanh(rows[..., :9]))
+        assert torch.equal(actions.logits, rows[..., -3::2] - rows[..., -4::2])
+        assert not torch.equal(actions.logits, actions.logits.bfloat16().float())
 
 
 def test_memory_does_not_cross_the_start_of_an_episode() -> None:
