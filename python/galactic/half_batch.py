@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galactic import spaces
-from galactic._core import EpisodeTally, Renderer, Simulator, World
+from galactic._core import EpisodeTally, ErrorCode, Renderer, Simulator, World
+from galactic.errors import Error
 
 Array = NDArray[Any]
 Observations = Union[Array, dict[str, Array]]
@@ -97,21 +98,25 @@ class HalfBatch:
     def save_state(self) -> dict[str, Array]:
         """Arrays that restore_state() takes."""
         state = np.frombuffer(self.simulator.save_state(), np.uint8)
-        return {"simulator": state, "returns": self._tally.returns, "lengths": self._tally.lengths}
+        return {"simulator": state, **{name: own.copy() for name, own in self._own_state().items()}}
 
     def restore_state(self, saved: Mapping[str, Array]) -> None:
         """Goes on from there. Raises Error for a state that does not fit, and changes nothing."""
-        for name, mine in (("returns", self._tally.returns), ("lengths", self._tally.lengths)):
-            if saved[name].shape != mine.shape or saved[name].dtype != mine.dtype:
-                raise ValueError(f"{name} are {saved[name].dtype} {saved[name].shape}")
+        # States of earlier versions do not tell whether a reset() came before them; mostly one did.
+        saved = {"simulator": np.empty(0, np.uint8), "is_new": np.array(False), **saved}
+        for name, mine in self._own_state().items():
+            _check_saved(name, saved.get(name), mine)
         self.simulator.restore_state(saved["simulator"].tobytes())
         self._tally.restore(saved["returns"], saved["lengths"])
-        self._is_new = False
+        self._is_new = bool(saved["is_new"])
+
+    def _own_state(self) -> dict[str, Array]:
+        """What the simulator does not know."""
+        tally, is_new = self._tally, np.array(self._is_new)
+        return {"returns": tally.returns, "lengths": tally.lengths, "is_new": is_new}
 
     def step(self, actions: NDArray[np.float32], out: Mapping[str, Array] | None) -> StepResult:
-        """See VectorEnv.step."""
-        if out is not None:
-            _check_places(out, self.landing_shapes(), self.simulator.num_envs)
+        """See VectorEnv.step, which has checked `actions` and `out`."""
         simulator = self.simulator
         simulator.step(actions)
         self._is_new = False
@@ -201,7 +206,15 @@ def _row(observations: Observations, row: int) -> Any:
     return observations[row]
 
 
-def _check_places(
+def _check_saved(name: str, found: Array | None, mine: Array) -> None:
+    """Refuses an array of a saved state that is not like that of this batch."""
+    if found is None or found.shape != mine.shape or found.dtype != mine.dtype:
+        there = "missing" if found is None else f"{found.dtype} {found.shape}"
+        message = f"{name}: found {there}, expected {mine.dtype} {mine.shape}; give what save_state() returned"
+        raise Error(ErrorCode.INVALID_INPUT, "saved state", message)
+
+
+def check_places(
     out: Mapping[str, Array], known: Mapping[str, tuple[tuple[int, ...], Any]], envs: int
 ) -> None:
     """Refuses places that results cannot land in, before anything is done."""

@@ -5,9 +5,8 @@ from __future__ import annotations
 import io
 import numbers
 import os
-import zipfile
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from enum import Enum
 from typing import Any, Literal, Union
 
@@ -17,7 +16,7 @@ from numpy.typing import NDArray
 from galactic import spaces
 from galactic._core import ErrorCode, Renderer, Simulator, World
 from galactic.errors import Error
-from galactic.half_batch import HalfBatch, Observations, StepResult
+from galactic.half_batch import HalfBatch, Observations, StepResult, check_places
 
 try:
     from gymnasium.vector import VectorEnv as _Base
@@ -241,14 +240,23 @@ class VectorEnv(_Base):
         Returns:
             Observations, rewards float32 (num_envs,), terminations and truncations bool
             (num_envs,), and infos; of an env with one half, what landed in `out` as it lies there.
+
+        Raises ValueError or TypeError for actions or places of another shape or type, and no env
+        has stepped then.
         """
         self._require_idle()
         rows = self._action_rows(actions, self.num_envs)
+        self._check_out(out, self.num_envs)
         if self.halves == 1:
             return self._halves[0].step(rows, out)
-        for half in range(self.halves):
+        under_way = [
             self._begin(half, rows[self.rows(half)], _part(out, self.rows(half)))
-        return _joined_results([self.recv(half) for half in range(self.halves)])
+            for half in range(self.halves)
+        ]
+        # All have to be done, whatever one of them raises: else the others would stay under way.
+        wait(under_way)
+        self._pending = [None] * self.halves
+        return _joined_results([step.result() for step in under_way])
 
     def send(self, actions: Any, half: int = 0, out: Row | None = None) -> None:
         """Begins a step of one half, and returns at once.
@@ -257,10 +265,15 @@ class VectorEnv(_Base):
             actions: of the half's envs; they must stay as they are until recv().
             half: which.
             out: as in step(), with the rows of the half's envs.
+
+        Raises as step() does, and nothing is under way then.
         """
         if self._pending[half] is not None:
             raise RuntimeError(f"half {half} is under way; call recv({half}) first")
-        self._begin(half, self._action_rows(actions, self.num_envs // self.halves), out)
+        envs = self.num_envs // self.halves
+        rows = self._action_rows(actions, envs)
+        self._check_out(out, envs)
+        self._begin(half, rows, out)
 
     def recv(self, half: int = 0) -> StepResult:
         """Waits for the step that send() began, and returns its results for the half's envs."""
@@ -297,20 +310,15 @@ class VectorEnv(_Base):
         """Goes on, bit for bit, from a state that an env of the same world, options and halves
         saved; observe() shows it. Raises Error for bytes that are none, and changes nothing."""
         self._require_idle()
+        arrays = _arrays_of(state, self.halves)
         before = [half.save_state() for half in self._halves]
-        before = [{name: array.copy() for name, array in one.items()} for one in before]
         try:
-            with np.load(io.BytesIO(state), allow_pickle=False) as arrays:
-                for number, half in enumerate(self._halves):
-                    names = ("simulator", "returns", "lengths")
-                    half.restore_state({name: arrays[f"{name}_{number}"] for name in names})
-        except (Error, ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile) as problem:
+            for half, saved in zip(self._halves, arrays):
+                half.restore_state(saved)
+        except Error:
             for half, saved in zip(self._halves, before):
                 half.restore_state(saved)
-            if isinstance(problem, Error):
-                raise
-            message = f"is none of this env ({problem}); give what save_state() returned"
-            raise Error(ErrorCode.INVALID_INPUT, "saved state", message) from problem
+            raise
 
     def close(self, **kwargs: Any) -> None:
         """Waits for what is under way. What was returned stays valid."""
@@ -319,23 +327,27 @@ class VectorEnv(_Base):
                 thread.shutdown()
         self.closed = True
 
-    def _begin(self, half: int, rows: NDArray[np.float32], out: Row | None) -> None:
-        self._pending[half] = self._threads[half].submit(self._halves[half].step, rows, out)
+    def _begin(self, half: int, rows: NDArray[np.float32], out: Row | None) -> Future[StepResult]:
+        step = self._threads[half].submit(self._halves[half].step, rows, out)
+        self._pending[half] = step
+        return step
 
     def _require_idle(self) -> None:
         busy = [half for half, pending in enumerate(self._pending) if pending is not None]
         if busy:
             raise RuntimeError(f"half {busy[0]} is under way; call recv({busy[0]}) first")
 
+    def _check_out(self, out: Row | None, envs: int) -> None:
+        if out is not None:
+            check_places(out, self._halves[0].landing_shapes(), envs)
+
     def _action_rows(self, actions: Any, envs: int) -> NDArray[np.float32]:
-        """Actions as the simulator takes them."""
-        if self._actions == "box":
-            return np.asarray(actions, np.float32)
+        """Actions as the simulator takes them. Raises where they have another shape."""
         count = self._halves[0].simulator.action_count
-        rows = np.empty((envs, count), np.float32)
-        rows[:, : count - 2] = actions["continuous"]
-        rows[:, count - 2 :] = actions["discrete"]
-        return rows
+        if self._actions == "box":
+            return _rows_of("actions", actions, (envs, count))
+        moves = _rows_of("continuous", actions["continuous"], (envs, count - 2))
+        return np.hstack([moves, _rows_of("discrete", actions["discrete"], (envs, 2))])
 
 
 def _require(holds: bool, name: str, found: object, wanted: str) -> None:
@@ -377,6 +389,34 @@ def _reset_options(
         episodes = np.minimum(episodes, np.uint64(2**63 - 1))
     chosen = episodes.astype(np.int64)
     return mask, np.where(mask & (chosen >= 0), chosen, Simulator.NEXT_EPISODE)
+
+
+def _rows_of(name: str, given: Any, shape: tuple[int, int]) -> NDArray[np.float32]:
+    rows = np.asarray(given, np.float32)
+    if rows.shape != shape:
+        raise ValueError(f"{name} has the shape {rows.shape}, expected {shape}")
+    return rows
+
+
+def _arrays_of(state: bytes, halves: int) -> list[dict[str, NDArray[Any]]]:
+    """What HalfBatch.save_state() gave, of each half. Raises Error for bytes that are no such state."""
+    file = io.BytesIO(state)
+    try:
+        archive = np.load(file, allow_pickle=False)
+        if not isinstance(archive, np.lib.npyio.NpzFile):
+            raise ValueError(f"it is an array, {archive.dtype} {archive.shape}")
+        found = {name: np.asarray(archive[name]) for name in archive.files}
+    except Exception as problem:  # numpy and zipfile raise whatever their readers do
+        message = f"cannot be read ({problem}); give what save_state() returned"
+        raise Error(ErrorCode.INVALID_INPUT, "saved state", message) from problem
+    there = sum(name.startswith("simulator_") for name in found)
+    if there != halves:
+        message = f"halves: found {there}, expected {halves}; restore it in an env of as many"
+        raise Error(ErrorCode.INVALID_INPUT, "saved state", message)
+    return [
+        {name[: -len(end)]: array for name, array in found.items() if name.endswith(end)}
+        for end in (f"_{half}" for half in range(halves))
+    ]
 
 
 def _part(out: Row | None, rows: slice) -> Row | None:

@@ -1,5 +1,9 @@
 """States of simulators and environments: saved, restored, and gone on from."""
 
+import io
+import struct
+import zipfile
+
 import numpy as np
 import pytest
 
@@ -86,3 +90,94 @@ def test_environments_go_on_with_their_sums(world, draw_actions, halves):
         with pytest.raises(galactic.Error):
             second.restore_state(bad)
     np.testing.assert_array_equal(second.observe(), first.observe())
+
+
+def packed(arrays):
+    file = io.BytesIO()
+    np.savez(file, **arrays)
+    return file.getvalue()
+
+
+def unpacked(state):
+    with np.load(io.BytesIO(state)) as arrays:
+        return dict(arrays)
+
+
+def with_entry(state, offset, value):
+    """A state in whose zip the directory says `value`, of two bytes, of the last file."""
+    entry = state.rindex(b"PK\x01\x02") + offset
+    return state[:entry] + struct.pack("<H", value) + state[entry + 2 :]
+
+
+def test_other_files_are_no_states_of_environments(world, draw_actions):
+    env = VectorEnv(world, 4, halves=2, threads=1)
+    env.reset()
+    for _ in range(3):
+        env.step(draw_actions(4, 8))
+    state = env.save_state()
+    for _ in range(3):
+        env.step(draw_actions(4, 8))
+    arrays, now = unpacked(state), env.save_state()
+    array = io.BytesIO()
+    np.save(array, np.zeros(3))
+    text = io.BytesIO()
+    with zipfile.ZipFile(text, "w") as archive:
+        archive.writestr("simulator_0", "no array")
+        archive.writestr("simulator_1", "no array")
+    others = VectorEnv(world, 4, threads=1).save_state()
+    damaged = {**arrays, "simulator_1": arrays["simulator_1"][:-1]}
+    for bad, message in (
+        (array.getvalue(), r"it is an array, float64 \(3,\)"),
+        (with_entry(state, 8, 1), "cannot be read .* is encrypted"),
+        (with_entry(state, 10, 99), "cannot be read .*compression"),
+        (state[:-30], "cannot be read"),
+        (text.getvalue(), r"returns: found missing, expected float64 \(2,\)"),
+        (others, "halves: found 1, expected 2"),
+        (packed({**arrays, "returns_1": np.zeros(3)}), r"returns: found float64 \(3,\), expected"),
+        (
+            packed({**arrays, "is_new_1": np.zeros(3)}),
+            r"is_new: found float64 \(3,\), expected bool",
+        ),
+        (packed(damaged), "saved state"),
+    ):
+        with pytest.raises(Error, match=message) as caught:
+            env.restore_state(bad)
+        assert caught.value.where == "saved state"
+        assert caught.value.code == ErrorCode.INVALID_INPUT
+        # Half 0 may have been restored before half 1 was found to be wrong.
+        assert env.save_state() == now
+    env.restore_state(state)
+    assert env.save_state() == state
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_a_state_from_before_the_first_reset_is_one_to_reset(world, halves):
+    def episodes(env):
+        env.reset()
+        return [list(one.episodes()) for one in env.simulators]
+
+    def made():
+        return VectorEnv(world, 4, halves=halves, threads=1)
+
+    env, other = made(), made()
+    state = env.save_state()
+    first, second = episodes(env), episodes(env)
+    assert first != second
+    other.restore_state(state)
+    assert episodes(other) == first
+    # One from afterwards is not, nor is one of a version that did not tell.
+    other.restore_state(state)
+    other.reset()
+    later = made()
+    later.restore_state(other.save_state())
+    assert episodes(later) == second
+    arrays = unpacked(state)
+    older = {name: array for name, array in arrays.items() if not name.startswith("is_new")}
+    assert len(older) == 3 * halves < len(arrays)
+    later.restore_state(packed(older))
+    assert episodes(later) == second
+    # A state that is refused takes nothing from an env that is new.
+    new = made()
+    with pytest.raises(Error):
+        new.restore_state(b"")
+    assert episodes(new) == first

@@ -352,13 +352,56 @@ def test_halves_take_turns(world, draw_actions):
     env.send(actions, 1)
     assert env.recv(1)[0].shape == (ENVS // 2, 23)
     assert env.recv(0)[0].shape == (ENVS // 2, 23)
-    # What goes wrong on the way comes out at the end.
-    env.send(actions[1:], 0)
+    # What cannot be begun is not under way.
     with pytest.raises(ValueError, match="actions has the shape"):
-        env.recv(0)
+        env.send(actions[1:], 0)
+    with pytest.raises(ValueError, match="rewards has the shape"):
+        env.send(actions, 0, {"rewards": np.zeros(ENVS, np.float32)})
     env.reset(seed=1)
     env.close()
     env.close()
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_what_is_wrong_with_a_step_is_said_before_any_half_steps(world, draw_actions, halves):
+    env = VectorEnv(world, ENVS, halves=halves, **OPTIONS)
+    env.reset()
+    actions = draw_actions(ENVS, 8)
+    for wrong in (actions[:, 1:], actions[1:], actions[:1], actions[None], np.float32(0.0)):
+        with pytest.raises(ValueError, match=r"actions has the shape .*, expected \(24, 8\)"):
+            env.step(wrong)
+    with pytest.raises(ValueError, match="could not convert"):
+        env.step(np.full((ENVS, 8), "fast"))
+    # Rows enough for each half, and more than there are envs.
+    for rows in (ENVS - 1, ENVS + 1):
+        with pytest.raises(ValueError, match="rewards has the shape"):
+            env.step(actions, {"rewards": np.zeros(rows, np.float32)})
+    with pytest.raises(TypeError, match="state has the type list"):
+        env.step(actions, {"state": [[0.0]] * ENVS})
+    assert [one.statistics()["steps"] for one in env.simulators] == [0] * halves
+    env.step(actions)
+
+
+def test_actions_of_the_paper_are_refused_in_other_shapes(world):
+    env = VectorEnv(world, ENVS, actions="paper", **OPTIONS)
+    right = {"continuous": np.zeros((ENVS, 6)), "discrete": np.zeros((ENVS, 2))}
+    for name, wrong in (("continuous", np.zeros(6)), ("discrete", np.zeros((ENVS, 1)))):
+        with pytest.raises(ValueError, match=f"{name} has the shape"):
+            env.step({**right, name: wrong})
+    env.step(right)
+
+
+def test_halves_are_idle_after_a_step_in_which_one_failed(world, draw_actions, monkeypatch):
+    env = VectorEnv(world, ENVS, halves=2, **OPTIONS)
+
+    def fail(*arguments):
+        raise RuntimeError("no memory for images")
+
+    with monkeypatch.context() as broken, pytest.raises(RuntimeError, match="no memory"):
+        broken.setattr(env._halves[0], "step", fail)
+        env.step(draw_actions(ENVS, 8))
+    assert [one.statistics()["steps"] for one in env.simulators] == [0, ENVS // 2]
+    env.step(draw_actions(ENVS, 8))
 
 
 def test_pictures_are_drawn_for_those_who_ask(world):
