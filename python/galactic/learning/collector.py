@@ -89,8 +89,8 @@ class Collector:
     def collect(
         self, update: int, should_stop: Callable[[int], bool] = lambda step: False
     ) -> Rollout:
-        """Goes on from where the last rollout ended, for `horizon` steps or until should_stop(step).
-        `update` counts from 0 and chooses the random numbers. The rollout is ready for the learner,
+        """Goes on from where the last rollout ended, for `horizon` steps or until should_stop(step), but
+        for one at least: nothing can be learned from none. `update` counts from 0 and chooses the random numbers. The rollout is ready for the learner,
         and overwritten by the next call."""
         options, rollout = self.options, self.rollout
         if rollout.steps:
@@ -102,7 +102,7 @@ class Collector:
         self.policy.eval()
         with torch.inference_mode():
             step = 0
-            while step < options.horizon and not should_stop(step):
+            while step == 0 or (step < options.horizon and not should_stop(step)):
                 for half, envs in enumerate(self.envs.halves):
                     if step > 0:
                         self._receive(half, envs, step - 1)

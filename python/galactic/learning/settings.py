@@ -171,7 +171,11 @@ class Settings:
         high=1.0,
     )
     shortest_rollout: float = _setting(
-        0.25, "Ranks", "no rank is stopped before this share of its rollout", low=0.0, high=1.0
+        0.25,
+        "Ranks",
+        "no rank is stopped before this share of its rollout, nor before its first step",
+        low=0.0,
+        high=1.0,
     )
 
     simulation_threads: int = _setting(

@@ -17,7 +17,7 @@ import torch
 import galactic
 from galactic.learning import checkpoint
 from galactic.learning.checkpoint import CheckpointError, CheckpointFolder, load_policy
-from galactic.learning.distributed import Group
+from galactic.learning.distributed import Group, Stragglers
 from galactic.learning.launch import launch
 from galactic.learning.reports.curves import read_curves
 from galactic.learning.settings import Settings
@@ -260,6 +260,27 @@ def test_stragglers_are_stopped_and_their_steps_counted(tmp_path: pathlib.Path) 
     total = sum(steps[0]["rollouts"]) + sum(steps[1]["rollouts"])
     assert steps[0]["steps"] == steps[1]["steps"] == 16 * total
     assert torch.equal(steps[0]["parameters"], steps[1]["parameters"])
+
+
+class StoreOfTwo(dict[str, int]):
+    """What two ranks share, the other of which has finished every rollout before this one begins."""
+
+    def add(self, key: str, count: int) -> int:
+        self[key] = self.get(key, 1) + count
+        return self[key]
+
+    def delete_key(self, key: str) -> None:
+        self.pop(key)
+
+
+def test_a_rank_that_is_late_from_the_start_takes_one_step(tmp_path: pathlib.Path) -> None:
+    trainer = make_trainer(tmp_path, dataclasses.replace(SETTINGS, halves=2))
+    trainer.stragglers = Stragglers(StoreOfTwo(), 0, 2, sync_fraction=0.5, shortest=0.0)
+    trainer.begin()
+    for _ in range(3):
+        trainer._iterate()
+        assert trainer.collector.rollout.steps == 1
+    assert trainer.steps == 3 * SETTINGS.envs
 
 
 def test_the_curves_of_ranks_wait_for_the_envs_of_all(tmp_path: pathlib.Path) -> None:
