@@ -94,13 +94,51 @@ def load_policy(file: pathlib.Path) -> SavedPolicy:
         raise CheckpointError(
             f"{file} is not a policy of format {FORMAT}; take best.pt or a policy.pt of a run"
         )
-    settings = Settings.from_dict(values["settings"])
-    shape = PolicyShape(**values["shape"])
+    try:
+        return _policy_of(values, tensors["policy"])
+    except Exception as error:  # torch raises whatever its readers do
+        # Of layers that do not fit, torch has a line each; the first of them tells enough.
+        found = " ".join(line.strip() for line in str(error).splitlines()[:2])
+        raise CheckpointError(
+            f"{file} is not a policy of this version: {found}; take best.pt or a policy.pt of a run"
+        ) from error
+
+
+# Of what is in a policy.pt, and of its shape: types that JSON gives them.
+_POLICY = {
+    "settings": dict,
+    "shape": dict,
+    "parts": list,
+    "steps": int,
+    "success": (float, int, type(None)),
+}
+_SHAPE = {
+    "state": int,
+    "motions": int,
+    "decides_terminate": bool,
+    "normalize": bool,
+    "closeup": (float, int),
+}
+
+
+def _policy_of(values: dict[str, Any], state: dict[str, Any]) -> SavedPolicy:
+    _require_types(values, _POLICY)
+    sizes = {**PolicyShape._field_defaults, **values["shape"]}
+    _require_types(sizes, _SHAPE)
+    settings, shape = Settings.from_dict(values["settings"]), PolicyShape(**sizes)
     policy = new_policy(settings, shape)
-    policy.load_state_dict(tensors["policy"])
+    policy.load_state_dict(state)
     policy.eval()
     parts = [(str(name), int(size)) for name, size in values["parts"]]
     return SavedPolicy(policy, settings, shape, parts, values["steps"], values["success"])
+
+
+def _require_types(values: dict[str, Any], types: dict[str, Any]) -> None:
+    for name, wanted in types.items():
+        if name not in values or not isinstance(values[name], wanted):
+            found = repr(values[name]) if name in values else "nothing"
+            names = [one.__name__ for one in (wanted if isinstance(wanted, tuple) else (wanted,))]
+            raise ValueError(f"{name}: found {found}, expected {' or '.join(names)}")
 
 
 NEW_TERMINATE_LOGIT = -4.0
@@ -154,7 +192,10 @@ def load(file: pathlib.Path) -> tuple[dict[str, Any], dict[str, Any]]:
         handle.seek(0)
         try:
             contents = torch.load(handle, map_location="cpu", weights_only=True)
-            return json.loads(contents.pop("values")), contents
+            values = json.loads(contents.pop("values"))
+            if not isinstance(values, dict):
+                raise ValueError("its values have no names")
+            return values, contents
         except Exception as error:  # torch raises whatever its readers do
             # What torch advises is to let the file run code.
             raise CheckpointError(

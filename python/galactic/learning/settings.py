@@ -7,6 +7,7 @@ import argparse
 import dataclasses
 import difflib
 import math
+import numbers
 import re
 from dataclasses import dataclass
 from typing import Any, Iterable, Mapping, Optional, Sequence
@@ -282,9 +283,22 @@ class Settings:
         return cls(**values)
 
 
+_KINDS = {bool: "true or false", int: "a whole number", float: "a number", str: "text"}
+
+
+def _is_a(value: Any, kind: type) -> bool:
+    """Whether a value, which may come from a file, is of a setting's type; a whole number is a number."""
+    if isinstance(value, bool) or kind in (bool, str):
+        return isinstance(value, kind)
+    return isinstance(value, numbers.Integral if kind is int else numbers.Real)
+
+
 def _check(field: "dataclasses.Field[Any]", value: Any) -> None:
     low, high = field.metadata["low"], field.metadata["high"]
     choices = field.metadata["choices"]
+    kind = type(field.default)
+    if not _is_a(value, kind):
+        raise SettingsError(f"{field.name}: found {value!r}, expected {_KINDS[kind]}")
     if choices and value not in choices:
         raise SettingsError(f'{field.name} is "{value}"; it can be {", ".join(choices)}')
     # A comparison with NaN is false.

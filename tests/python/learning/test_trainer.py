@@ -16,9 +16,15 @@ import torch
 
 import galactic
 from galactic.learning import checkpoint
-from galactic.learning.checkpoint import CheckpointError, CheckpointFolder, load_policy
+from galactic.learning.checkpoint import (
+    CheckpointError,
+    CheckpointFolder,
+    load_policy,
+    new_policy,
+)
 from galactic.learning.distributed import Group, Stragglers
 from galactic.learning.launch import launch
+from galactic.learning.networks import PolicyShape
 from galactic.learning.reports.curves import read_curves
 from galactic.learning.settings import Settings
 from galactic.learning.trainer import Trainer
@@ -181,6 +187,68 @@ def test_what_is_no_checkpoint_is_refused(tmp_path: pathlib.Path) -> None:
         load_policy(tmp_path / "policy.pt")
     with pytest.raises(galactic.Error, match="none.pt: cannot open the file: No such file"):
         load_policy(tmp_path / "none.pt")
+
+
+def write_policy(file: pathlib.Path, **changes: Any) -> None:
+    """A policy.pt in which some of the values, and "policy", are others; "left out" leaves one out."""
+    shape = PolicyShape(4, 2, False, True)
+    policy = new_policy(SETTINGS, shape)
+    good = checkpoint.SavedPolicy(policy, SETTINGS, shape, [("way", 4)], 7, None)
+    checkpoint.save_policy(good, file)
+    values, tensors = checkpoint.load(file)
+    tensors["policy"] = changes.pop("policy", tensors["policy"])
+    values = {name: value for name, value in {**values, **changes}.items() if value != "left out"}
+    checkpoint.save(file, values, tensors)
+
+
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        ({"settings": "left out"}, "settings: found nothing, expected dict"),
+        ({"settings": [1, 2]}, r"settings: found \[1, 2\], expected dict"),
+        ({"settings": {"width": 17}}, "size mismatch for encoder.0.weight"),
+        ({"settings": {"steps": "many"}}, "steps: found 'many', expected a whole number"),
+        ({"settings": {"steps": 1.5}}, "steps: found 1.5, expected a whole number"),
+        ({"settings": {"gamma": None}}, "gamma: found None, expected a number"),
+        ({"settings": {"normalize": 1}}, "normalize: found 1, expected true or false"),
+        ({"settings": {"simulation": 3}}, "simulation: found 3, expected text"),
+        ({"settings": {"activation": "sine"}}, 'activation is "sine"'),
+        ({"settings": {"mood": 1}}, "mood are unknown to this version"),
+        ({"shape": "left out"}, "shape: found nothing, expected dict"),
+        ({"shape": {"state": 4}}, "motions: found nothing, expected int"),
+        ({"shape": {"state": "4", "motions": 2}}, "state: found '4', expected int"),
+        ({"shape": {"state": -4, "motions": 2}}, "negative dimension"),
+        ({"shape": {"state": 4, "motions": 2, "legs": 2}}, "legs"),
+        ({"parts": [["way"]]}, "not enough values"),
+        ({"parts": None}, "parts: found None, expected list"),
+        ({"steps": "many"}, "steps: found 'many', expected int"),
+        ({"success": "left out"}, "success: found nothing, expected float or int or NoneType"),
+        ({"policy": []}, "list"),
+        ({"policy": {}}, "Missing key"),
+    ],
+)
+def test_a_policy_of_other_values_is_refused_with_the_files_name(
+    tmp_path: pathlib.Path, changes: dict[str, Any], message: str
+) -> None:
+    file = tmp_path / "policy.pt"
+    if isinstance(changes.get("settings"), dict):
+        changes = {"settings": {**SETTINGS.to_dict(), **changes["settings"]}}
+    write_policy(file, **changes)
+    with pytest.raises(CheckpointError, match=message) as refused:
+        load_policy(file)
+    said = str(refused.value)
+    assert said.startswith(f"{file} is not a policy of this version: ") and "\n" not in said
+
+
+def test_a_policy_of_before_a_choice_takes_its_default(tmp_path: pathlib.Path) -> None:
+    write_policy(tmp_path / "policy.pt", shape={"state": 4, "motions": 2, "normalize": True})
+    assert load_policy(tmp_path / "policy.pt").shape == PolicyShape(4, 2, normalize=True)
+
+
+def test_values_that_are_no_dictionary_are_refused(tmp_path: pathlib.Path) -> None:
+    checkpoint.save(tmp_path / "policy.pt", [1, 2], {})
+    with pytest.raises(CheckpointError, match="policy.pt cannot be read as a checkpoint"):
+        load_policy(tmp_path / "policy.pt")
 
 
 def test_an_interrupted_run_saves_and_goes_on(tmp_path: pathlib.Path) -> None:
