@@ -220,8 +220,9 @@ void SceneComposer::placeLinks(const ReceptacleParent& placed, const SourceRobot
   const std::string& name = placed.name;
   for (std::size_t n = 0; n < furniture.links.size(); ++n) {
     const Affine& world_from_link = placed.links[n].world_from_link;
-    for (std::size_t visual = 0; visual < furniture.links[n].visuals.size(); ++visual) {
-      const LinkShape& shape = furniture.links[n].visuals[visual];
+    const std::vector<LinkShape>& shapes = drawnShapes(furniture.links[n]);
+    for (std::size_t visual = 0; visual < shapes.size(); ++visual) {
+      const LinkShape& shape = shapes[visual];
       if (const auto* mesh = std::get_if<MeshShape>(&shape.geometry); mesh != nullptr) {
         const SourceAsset& asset = furniture.meshes[mesh->mesh];
         const std::string file = asset.files.empty() ? asset.name : asset.files.front().name;

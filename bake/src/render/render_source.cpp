@@ -55,7 +55,7 @@ std::uint32_t addOwnMesh(Surface surface, RenderSource& source) {
   return static_cast<std::uint32_t>(source.own_meshes.size() - 1);
 }
 
-/// Places the visual shapes of a robot's links.
+/// Places the shapes that are drawn of a robot's links.
 class RobotPlacer {
  public:
   RobotPlacer(const SourceRobot& robot, RenderSource& source)
@@ -85,26 +85,31 @@ class RobotPlacer {
  private:
   void placeMesh(std::uint32_t number, std::size_t link) {
     const SourceAsset& asset = robot_.meshes[number];
-    for (const LinkShape& shape : robot_.links[link].visuals) {
+    for (const LinkShape& shape : drawnShapes(robot_.links[link])) {
       const auto* shape_mesh = std::get_if<MeshShape>(&shape.geometry);
       if (shape_mesh == nullptr || shape_mesh->mesh != number) continue;
       for (const SourceInstance& instance : asset.instances) {
         const SourceMesh& mesh = asset.meshes[instance.mesh];
-        const bool urdf_color = shape.color && !hasLooks(asset, mesh);
-        const std::uint32_t material =
-            urdf_color ? materials_.addColor(*shape.color, isTwoSided(asset, mesh))
-                       : materials_.add(asset, mesh);
         placed_[link].push_back(
             {.mesh = &mesh,
              .part_from_mesh = compose(shape.link_from_shape, instance.world_from_mesh),
-             .material = material,
+             .material = materialOf(shape, asset, mesh, robot_.links[link].visuals_are_lost),
              .semantic = static_cast<std::uint32_t>(link)});
       }
     }
   }
 
+  /// Collision meshes that stand in are plain, whatever looks their files give them.
+  std::uint32_t materialOf(const LinkShape& shape, const SourceAsset& asset, const SourceMesh& mesh,
+                           bool stands_in) {
+    if (stands_in) return materials_.addColor(kPlainColor, isTwoSided(asset, mesh));
+    const bool urdf_color = shape.color && !hasLooks(asset, mesh);
+    return urdf_color ? materials_.addColor(*shape.color, isTwoSided(asset, mesh))
+                      : materials_.add(asset, mesh);
+  }
+
   void placePrimitives(std::size_t link) {
-    for (const LinkShape& shape : robot_.links[link].visuals) {
+    for (const LinkShape& shape : drawnShapes(robot_.links[link])) {
       if (std::holds_alternative<MeshShape>(shape.geometry)) continue;
       const std::uint32_t own = addOwnMesh(surfaceOfPrimitive(shape), source_);
       placed_[link].push_back(

@@ -23,9 +23,9 @@ namespace galactic::bake {
                                                       const std::filesystem::path& folder,
                                                       const TextureBakeOptions& options);
 
-/// A part for each link with visual geometry, in the link's frame: meshes with their materials, and
-/// primitives. A semantic id per link. The URDF's color is taken for primitives and for meshes
-/// that have none of their own: neither named material nor texture nor vertex colors.
+/// A part for each link that is drawn (drawnShapes), in the link's frame: meshes with their
+/// materials, and primitives. A semantic id per link. The URDF's color is taken for primitives and
+/// for meshes that have none of their own: neither named material nor texture nor vertex colors.
 [[nodiscard]] Result<RenderSource> robotRenderSource(const SourceRobot& robot,
                                                      const std::filesystem::path& folder,
                                                      const TextureBakeOptions& options);

@@ -163,4 +163,8 @@ Surface surfaceOfShapes(const SourceRobot& robot, const std::vector<LinkShape>& 
   return surface;
 }
 
+const std::vector<LinkShape>& drawnShapes(const SourceLink& link) {
+  return link.visuals_are_lost ? link.collisions : link.visuals;
+}
+
 }  // namespace galactic::bake

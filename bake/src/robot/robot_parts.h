@@ -26,6 +26,10 @@ inline constexpr std::array<float, 4> kPlainColor{0.55F, 0.55F, 0.57F, 1.0F};
 [[nodiscard]] Surface surfaceOfShapes(const SourceRobot& robot,
                                       const std::vector<LinkShape>& shapes);
 
+/// What is drawn of a link: its visuals, or its collisions where all visuals were lost. A link
+/// without any in its file is not drawn.
+[[nodiscard]] const std::vector<LinkShape>& drawnShapes(const SourceLink& link);
+
 /// Links that count as one rigid body.
 struct RigidGroup {
   /// The link nearest to the root: the frame of the group.

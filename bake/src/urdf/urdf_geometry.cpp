@@ -134,11 +134,13 @@ GeometryBuilder::GeometryBuilder(const fs::path& urdf, const UrdfImportOptions& 
       resolver_(urdf, options),
       up_from_urdf_(options.up == UpAxis::kZ ? kYUpFromZUp : kIdentityAffine) {}
 
-void GeometryBuilder::warn(const std::string& place, const std::string& message) {
-  // The place without the URDF's name, which every warning would repeat.
+std::string GeometryBuilder::withoutUrdf(const std::string& place) const {
   const std::string prefix = urdf_.string() + ": ";
-  const std::string short_place = place.starts_with(prefix) ? place.substr(prefix.size()) : place;
-  robot_.warnings.push_back(fmt::format("{}: {}", short_place, message));
+  return place.starts_with(prefix) ? place.substr(prefix.size()) : place;
+}
+
+void GeometryBuilder::warn(const std::string& place, const std::string& message) {
+  robot_.warnings.push_back(fmt::format("{}: {}", withoutUrdf(place), message));
 }
 
 Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& file) {
@@ -192,11 +194,13 @@ const MeshResolution& GeometryBuilder::resolve(const std::string& reference,
 }
 
 Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const UrdfShape& shape,
-                                                               const std::string& place) {
+                                                               const std::string& place,
+                                                               std::vector<LostShape>& lost) {
   const MeshResolution& resolution = resolve(shape.mesh, place);
   if (resolution.file.empty()) {
     robot_.missing.push_back(shape.mesh);
-    warn(place, fmt::format("mesh '{}' is missing; looked for {}", shape.mesh, resolution.how));
+    lost.push_back(
+        {place, fmt::format("mesh '{}' is missing; looked for {}", shape.mesh, resolution.how)});
     return std::nullopt;
   }
   auto loaded = loaded_.find(resolution.file);
@@ -206,7 +210,7 @@ Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const UrdfShape& 
   }
   const LoadedMesh& mesh = loaded->second;
   if (!mesh.index) {
-    warn(place, "mesh " + mesh.failure);
+    lost.push_back({place, "mesh " + mesh.failure});
     return std::nullopt;
   }
   double largest = 0;
@@ -223,7 +227,7 @@ Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const UrdfShape& 
 
 Result<std::optional<LinkShape>> GeometryBuilder::convert(const UrdfShape& shape,
                                                           const std::string& place,
-                                                          std::size_t& lost) {
+                                                          std::vector<LostShape>& lost) {
   RETURN_IF_ERROR(checkShape(shape, place));
   if (!hasSize(shape)) {
     warn(place, fmt::format("a {} with a size of 0 is left out", sizeName(shape.geometry)));
@@ -243,12 +247,9 @@ Result<std::optional<LinkShape>> GeometryBuilder::convert(const UrdfShape& shape
       converted.geometry = SphereShape{s[0]};
       break;
     case UrdfGeometry::kMesh: {
-      const auto mesh = loadMesh(shape, place);
+      const auto mesh = loadMesh(shape, place, lost);
       if (!mesh) return tl::unexpected(mesh.error());
-      if (!*mesh) {
-        ++lost;
-        return std::nullopt;
-      }
+      if (!*mesh) return std::nullopt;
       converted.geometry = MeshShape{**mesh};
       link_from_shape = compose(link_from_shape, {s[0], 0, 0, 0, 0, s[1], 0, 0, 0, 0, s[2], 0});
       break;
@@ -263,8 +264,9 @@ Result<std::optional<LinkShape>> GeometryBuilder::convert(const UrdfShape& shape
   return converted;
 }
 
-Result<std::size_t> GeometryBuilder::addList(const UrdfLink& link, const ShapeList& list) {
-  std::size_t lost = 0;
+Result<std::vector<GeometryBuilder::LostShape>> GeometryBuilder::addList(const UrdfLink& link,
+                                                                         const ShapeList& list) {
+  std::vector<LostShape> lost;
   for (std::size_t i = 0; i < list.from.size(); ++i) {
     const std::string place =
         fmt::format("{}: link '{}' {} {}", urdf_.string(), link.name, list.kind, i + 1);
@@ -276,19 +278,28 @@ Result<std::size_t> GeometryBuilder::addList(const UrdfLink& link, const ShapeLi
 }
 
 Result<void> GeometryBuilder::addShapes(const UrdfLink& from, SourceLink& to) {
-  const std::size_t warnings_before = robot_.warnings.size();
   ASSIGN_OR_RETURN(const auto lost_collisions,
                    addList(from, {from.collisions, to.collisions, "collision"}));
   ASSIGN_OR_RETURN(const auto lost_visuals, addList(from, {from.visuals, to.visuals, "visual"}));
-  const bool lost_all = from.collisions.empty() ? lost_visuals != 0 && to.visuals.empty()
-                                                : lost_collisions != 0 && to.collisions.empty();
+  to.visuals_are_lost = !lost_visuals.empty() && to.visuals.empty();
+  std::string drawn_instead;
+  if (to.visuals_are_lost) {
+    drawn_instead = to.collisions.empty() ? "; the link is not drawn"
+                                          : "; the link's collision geometry is drawn instead";
+  }
+  for (const auto& [place, reason] : lost_collisions) warn(place, reason);
+  for (const auto& [place, reason] : lost_visuals) warn(place, reason + drawn_instead);
+
+  const auto& lost = from.collisions.empty() ? lost_visuals : lost_collisions;
+  const bool lost_all =
+      !lost.empty() && (from.collisions.empty() ? to.visuals : to.collisions).empty();
   const std::string place = fmt::format("{}: link '{}'", urdf_.string(), from.name);
   if (lost_all && !options_.allow_missing) {
-    const bool collision = !from.collisions.empty();
     return fail(ErrorCode::kInvalidInput, place,
-                fmt::format("it lost all its {} geometry: {}; name the package's folder (`package` "
-                            "NAME=DIR), put the file there, or allow missing geometry",
-                            collision ? "collision" : "visual", robot_.warnings[warnings_before]));
+                fmt::format("it lost all its {} geometry: {}: {}; name the package's folder "
+                            "(`package` NAME=DIR), put the file there, or allow missing geometry",
+                            from.collisions.empty() ? "visual" : "collision",
+                            withoutUrdf(lost.front().place), lost.front().reason));
   }
   if (lost_all) {
     warn(place, "it lost all its geometry and collides with nothing");

@@ -38,16 +38,25 @@ class GeometryBuilder {
     const char* kind;
   };
 
-  /// How many shapes of the list were lost.
-  Result<std::size_t> addList(const UrdfLink& link, const ShapeList& list);
+  /// A shape that was lost, and why.
+  struct LostShape {
+    std::string place;
+    std::string reason;
+  };
+
+  /// The shapes of the list that were lost; nothing warned of them.
+  Result<std::vector<LostShape>> addList(const UrdfLink& link, const ShapeList& list);
   /// The shape, or nothing when it is lost or has no size.
   Result<std::optional<LinkShape>> convert(const UrdfShape& shape, const std::string& place,
-                                           std::size_t& lost);
+                                           std::vector<LostShape>& lost);
   /// The mesh of the shape, or nothing when it is lost.
-  Result<std::optional<std::uint32_t>> loadMesh(const UrdfShape& shape, const std::string& place);
+  Result<std::optional<std::uint32_t>> loadMesh(const UrdfShape& shape, const std::string& place,
+                                                std::vector<LostShape>& lost);
   /// Where the reference leads; says so the first time.
   const MeshResolution& resolve(const std::string& reference, const std::string& place);
   Result<LoadedMesh> loadFile(const std::filesystem::path& file);
+  /// The place without the URDF's name, which every warning would repeat.
+  [[nodiscard]] std::string withoutUrdf(const std::string& place) const;
   void warn(const std::string& place, const std::string& message);
 
   const std::filesystem::path& urdf_;

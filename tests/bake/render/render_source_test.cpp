@@ -106,6 +106,33 @@ TEST(RenderSource, OfARobotHasAPartForEachLinkThatIsSeen) {
   EXPECT_EQ(colorOf(source->parts[1].meshes[1]), 0xFFFFFFFFU);
 }
 
+TEST(RenderSource, OfALinkThatLostItsVisualsIsItsCollisionGeometryInGray) {
+  bake::SourceRobot made = robot();
+  for (bake::SourceLink& link : made.links) {
+    link.visuals.clear();
+    link.collisions = {
+        {.geometry = bake::SphereShape{0.1}, .link_from_shape = kHere, .color = {}},
+        {.geometry = bake::MeshShape{1}, .link_from_shape = movedBy(0.5, 0, 0), .color = {}}};
+  }
+  made.meshes[1].materials[0].base_color = {1, 0, 0, 1};
+  made.links[1].visuals_are_lost = true;
+  const auto source = bake::robotRenderSource(made, {}, {});
+  ASSERT_TRUE(source);
+  ASSERT_EQ(source->parts.size(), 1U);
+  EXPECT_EQ(source->parts[0].part, 1U);
+  ASSERT_EQ(source->parts[0].meshes.size(), 2U);
+  const auto meshes = bake::bakeRenderMeshes(*source, {.error = 0.002, .jobs = 1});
+  ASSERT_TRUE(meshes);
+  EXPECT_NEAR(meshes->models[0].bounds_min.x, -0.1F, 0.003F);
+  EXPECT_NEAR(meshes->models[0].bounds_max.x, 0.6F, 0.003F);
+  for (const bake::PlacedMesh& placed : source->parts[0].meshes) {
+    const std::uint32_t color = source->baked.materials[placed.material].color;
+    EXPECT_EQ(color & 0xFFU, (color >> 8U) & 0xFFU);
+    EXPECT_LT(color & 0xFFU, 0xF0U);
+    EXPECT_EQ(placed.semantic, 1U);
+  }
+}
+
 TEST(RenderSource, OfARobotIsBakedInTheFramesOfItsLinks) {
   const bake::SourceRobot made = robot();
   const auto source = bake::robotRenderSource(made, {}, {});

@@ -118,6 +118,7 @@ constexpr const char* kLostCollision =
     "<collision><geometry><mesh filename=\"lost.stl\"/></geometry></collision>";
 constexpr const char* kLostVisualWarning =
     "link 'a' visual 1: mesh 'lost.dae' is missing; looked for lost.dae (from the URDF's folder)";
+constexpr const char* kBoxVisual = "<visual><geometry><box size=\"1 1 1\"/></geometry></visual>";
 constexpr const char* kLostCollisionWarning =
     "link 'a' collision 1: mesh 'lost.stl' is missing; looked for lost.stl (from the URDF's "
     "folder)";
@@ -126,13 +127,32 @@ std::string linkWith(std::string_view inside) {
   return robotText(fmt::format("<link name=\"a\">{}</link>", inside));
 }
 
-TEST(UrdfMissingGeometry, OfVisualsIsAWarning) {
+TEST(UrdfMissingGeometry, OfAllVisualsSaysWhatIsDrawnInstead) {
   const ScratchFolder folder;
   const auto robot = importText(folder, linkWith(std::string(kBoxCollision) + kLostVisual));
   ASSERT_TRUE(robot.has_value());
-  EXPECT_THAT(robot->warnings, ElementsAre(kLostVisualWarning));
+  EXPECT_THAT(robot->warnings, ElementsAre(std::string(kLostVisualWarning) +
+                                           "; the link's collision geometry is drawn instead"));
   EXPECT_EQ(robot->links[0].collisions.size(), 1U);
   EXPECT_THAT(robot->links[0].visuals, IsEmpty());
+  EXPECT_TRUE(robot->links[0].visuals_are_lost);
+}
+
+TEST(UrdfMissingGeometry, OfSomeVisualsIsAWarning) {
+  const ScratchFolder folder;
+  const auto robot =
+      importText(folder, linkWith(std::string(kBoxCollision) + kLostVisual + kBoxVisual));
+  ASSERT_TRUE(robot.has_value());
+  EXPECT_THAT(robot->warnings, ElementsAre(kLostVisualWarning));
+  EXPECT_FALSE(robot->links[0].visuals_are_lost);
+}
+
+TEST(UrdfMissingGeometry, OfVisualsIsNoneWhereTheLinkHasNone) {
+  const ScratchFolder folder;
+  const auto robot = importText(folder, linkWith(kBoxCollision));
+  ASSERT_TRUE(robot.has_value());
+  EXPECT_THAT(robot->warnings, IsEmpty());
+  EXPECT_FALSE(robot->links[0].visuals_are_lost);
 }
 
 TEST(UrdfMissingGeometry, OfSomeCollisionElementsIsAWarning) {
@@ -145,8 +165,7 @@ TEST(UrdfMissingGeometry, OfSomeCollisionElementsIsAWarning) {
 
 TEST(UrdfMissingGeometry, OfAllCollisionElementsIsAnErrorUnlessAllowed) {
   const ScratchFolder folder;
-  const std::string text = linkWith(std::string(kLostCollision) +
-                                    "<visual><geometry><box size=\"1 1 1\"/></geometry></visual>");
+  const std::string text = linkWith(std::string(kLostCollision) + kBoxVisual);
   const auto refused = importText(folder, text);
   ASSERT_FALSE(refused.has_value());
   EXPECT_EQ(placeIn(folder, refused.error()), "r.urdf: link 'a'");
@@ -167,7 +186,11 @@ TEST(UrdfMissingGeometry, OfALinkThatHasOnlyVisualsIsAnErrorUnlessAllowed) {
   EXPECT_THAT(refused.error().message, HasSubstr("it lost all its visual geometry"));
   bake::UrdfImportOptions options;
   options.allow_missing = true;
-  EXPECT_TRUE(importText(folder, linkWith(kLostVisual), options).has_value());
+  const auto allowed = importText(folder, linkWith(kLostVisual), options);
+  ASSERT_TRUE(allowed.has_value());
+  EXPECT_THAT(allowed->warnings,
+              ElementsAre(std::string(kLostVisualWarning) + "; the link is not drawn",
+                          "link 'a': it lost all its geometry and collides with nothing"));
 }
 
 TEST(UrdfMissingGeometry, IncludesMeshesThatDoNotLoad) {
@@ -183,8 +206,7 @@ TEST(UrdfMissingGeometry, IncludesMeshesThatDoNotLoad) {
 
 TEST(UrdfGeometry, OfVisualsStandsInForCollisionElementsWithAWarning) {
   const ScratchFolder folder;
-  const auto robot =
-      importText(folder, linkWith("<visual><geometry><box size=\"1 1 1\"/></geometry></visual>"));
+  const auto robot = importText(folder, linkWith(kBoxVisual));
   ASSERT_TRUE(robot.has_value());
   EXPECT_THAT(robot->warnings,
               ElementsAre("link 'a': it has no collision geometry; its visual geometry stands in "

@@ -68,6 +68,8 @@ struct SourceLink {
   std::optional<Mimic> mimic;
   std::vector<LinkShape> collisions;
   std::vector<LinkShape> visuals;
+  /// Whether the file has visuals of which none could be read: the collisions are drawn instead.
+  bool visuals_are_lost = false;
 };
 
 /// What the robot importer hands to the baker: neutral, every frame Y up and X forward, meters.

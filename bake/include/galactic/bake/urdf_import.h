@@ -48,8 +48,10 @@ struct UrdfImportOptions {
 /// SourceAsset, names of files and textures are relative to the URDF's folder.
 ///
 /// What is missing is loud: a mesh that is not found or does not load is a warning while its link
-/// keeps other geometry, and an error when the link lost all (see allow_missing). For links with
-/// visuals but without collision elements a warning says that the visuals stand in for them.
+/// keeps other geometry, and an error when the link lost all (see allow_missing). Where all visuals
+/// are lost, the warning says that the collision elements are drawn instead, if there are any
+/// (SourceLink::visuals_are_lost). For links with visuals but without collision elements a warning
+/// says that the visuals stand in for them.
 ///
 /// Colors are taken as sRGB and converted to linear; material textures are not used (warning).
 /// Joints: continuous joints have no limits. Of revolute and prismatic ones lower or upper is 0
