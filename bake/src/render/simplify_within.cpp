@@ -167,14 +167,18 @@ class SimplifiedSurface {
 bool keepFarCorners(const PartMesh& piece, SimplifiedSurface& surface, double allowed,
                     std::vector<bool>& kept) {
   bool near = true;
-  std::vector<bool> asked = kept;
+  // Those that were kept, too: the surface may have lost one whose neighbors all fell together.
+  std::vector<bool> asked(piece.vertices.size());
   for (const Triangle& triangle : piece.triangles) {
     for (const std::uint32_t corner : triangle) {
       if (asked[corner]) continue;
       asked[corner] = true;
       if (surface.cornerWithin(corner, triangle, allowed)) continue;
-      kept[corner] = true;
       near = false;
+      if (kept[corner]) {
+        for (const std::uint32_t neighbor : triangle) kept[neighbor] = true;
+      }
+      kept[corner] = true;
     }
   }
   for (const Triangle& triangle : piece.triangles) {

@@ -147,6 +147,38 @@ TEST(Simplification, MeasuresTheLargestDistanceAndSearchesForFewOfThem) {
   }
 }
 
+/// Leaves of a scan: triangles that touch nothing, of all sizes, some with two corners close to
+/// each other.
+bake::TriangleMesh leaves(std::uint32_t seed) {
+  MeshBuilder builder;
+  std::mt19937 random(seed);
+  const auto uniform = [&](float most) {
+    return most * static_cast<float>(random()) / 4294967296.0F;
+  };
+  constexpr int kLeaves = 150;
+  for (int n = 0; n < kLeaves; ++n) {
+    const Vec3 a{uniform(0.1F), uniform(0.1F), uniform(0.1F)};
+    const float reach = uniform(0.02F);
+    const Vec3 b = a + Vec3{uniform(reach), uniform(reach), uniform(reach)};
+    const Vec3 c = b + Vec3{uniform(0.004F), uniform(0.004F), uniform(0.004F)};
+    builder.quad({a, b, c, a + (c - a) * uniform(1)});
+  }
+  return builder.build();
+}
+
+TEST(Simplification, MovesNothingFurtherThanAllowedWhereCornersOfSmallPartsAreKept) {
+  constexpr double kAllowed = 0.005;
+  int simplified = 0;
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+    const bake::PartMesh piece = pieceOf(leaves(seed));
+    const bake::MeasuredSimplified result = bake::simplifyWithin(piece, kAllowed);
+    EXPECT_LE(result.surface.error, kAllowed) << "seed " << seed;
+    EXPECT_LE(largestDistance(piece, result.surface.triangles), kAllowed + 1e-9) << "seed " << seed;
+    if (result.surface.triangles.size() < piece.triangles.size()) ++simplified;
+  }
+  EXPECT_GT(simplified, 20);
+}
+
 TEST(Simplification, OfAFlatFloorLeavesTwoTriangles) {
   MeshBuilder builder;
   for (int z = 0; z < 12; ++z) {
