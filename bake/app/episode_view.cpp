@@ -37,9 +37,8 @@ void printGeneration(const EpisodeGeneration& generation, Verbosity verbosity) {
 
 }  // namespace
 
-void printTable(const EpisodeFigures& set, const PackFigures& pack, Verbosity verbosity) {
+void printEpisodes(const EpisodeFigures& set, Verbosity verbosity) {
   const EpisodeFigures::Distances& distances = set.target_to_goal;
-  fmt::print("{} -> {}\n", printable(set.input), targetOf(pack));
   fmt::print("  {}: {} episodes; {} scenes, {} objects, {} placements, at most {} in an episode\n",
              printable(set.name), set.episodes, set.scenes.size(), set.objects.size(),
              set.placements, set.most_placements);
@@ -54,7 +53,12 @@ void printTable(const EpisodeFigures& set, const PackFigures& pack, Verbosity ve
     }
   }
   if (set.generation) printGeneration(*set.generation, verbosity);
-  printWarnings(set.warnings, verbosity);
+}
+
+void printTable(const EpisodeFigures& set, const PackFigures& pack, Verbosity verbosity) {
+  fmt::print("{} -> {}\n", printable(set.input), targetOf(pack));
+  printEpisodes(set, verbosity);
+  printWarnings(warningsOf(pack), verbosity);
   fmt::print("  {:.3f} s; {:.2f} MB\n", set.seconds, static_cast<double>(pack.pack_bytes) / 1e6);
 }
 

@@ -38,6 +38,15 @@ void FileFollower::end(const PackJob& /*pack*/, const PackOutcome& outcome) {
 void WorldFollower::begin(const PackJob& pack) {
   const std::lock_guard lock(mutex_);
   running_.insert(pack.name);
+  forgetStage();
+  redraw();
+}
+
+void WorldFollower::show(std::string_view /*item*/, std::string_view stage, double fraction) {
+  const std::lock_guard lock(mutex_);
+  if (running_.size() != 1) return;
+  stage_ = stage;
+  fraction_ = fraction;
   redraw();
 }
 
@@ -45,6 +54,7 @@ void WorldFollower::end(const PackJob& pack, const PackOutcome& outcome) {
   const std::lock_guard lock(mutex_);
   const bool is_world = std::holds_alternative<WorldJob>(pack.job);
   running_.erase(pack.name);
+  forgetStage();
   line_.clear();
   for (const BakeFailure& failure : outcome.failures) printError(failure.error);
   if (is_world) return;
@@ -59,17 +69,25 @@ void WorldFollower::end(const PackJob& pack, const PackOutcome& outcome) {
   redraw();
 }
 
+void WorldFollower::forgetStage() {
+  stage_.clear();
+  fraction_ = 0;
+}
+
 void WorldFollower::redraw() {
   if (running_.empty()) return line_.clear();
   std::string left = "?";
+  const double done = static_cast<double>(done_) + fraction_;
   // What was found in the cache says nothing of how long the rest takes.
-  if (baked_ > 0) {
+  const double baked = static_cast<double>(baked_) + fraction_;
+  if (baked > 0) {
     const std::chrono::duration<double> since = std::chrono::steady_clock::now() - start_;
-    left = clockText(since.count() / static_cast<double>(baked_) *
-                     static_cast<double>(count_ - done_));
+    left = clockText(since.count() / baked * (static_cast<double>(count_) - done));
   }
-  line_.show(fmt::format("{}/{}, {} left", done_, count_, left), printable(*running_.begin()),
-             static_cast<double>(done_) / static_cast<double>(count_));
+  std::string at_work = printable(*running_.begin());
+  if (!stage_.empty()) at_work += ": " + printable(stage_);
+  line_.show(fmt::format("{}/{}, {} left", done_, count_, left), at_work,
+             done / static_cast<double>(count_));
 }
 
 }  // namespace galactic::bake

@@ -36,10 +36,13 @@ class WorldFollower final : public BuildObserver {
       : verbosity_(command.run.verbosity), count_(count), line_(command.saysMore()) {}
 
   void begin(const PackJob& pack) override;
+  /// What is done inside a pack is shown while it is the only one at work, as episodes always are.
+  void show(std::string_view item, std::string_view stage, double fraction) override;
   void end(const PackJob& pack, const PackOutcome& outcome) override;
   [[nodiscard]] bool stops() override { return stop_.came(); }
 
  private:
+  void forgetStage();
   void redraw();
 
   StopRequest stop_;
@@ -49,6 +52,9 @@ class WorldFollower final : public BuildObserver {
   ProgressLine line_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::set<std::string> running_;
+  /// Of the only pack at work: what is done, and how much of it is; else nothing.
+  std::string stage_;
+  double fraction_ = 0;
   std::size_t done_ = 0;
   std::size_t baked_ = 0;
 };

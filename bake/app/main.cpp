@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -25,6 +26,8 @@ namespace galactic::bake {
 namespace {
 
 namespace fs = std::filesystem;
+
+using Clock = std::chrono::steady_clock;
 
 constexpr int kExitInterrupted = 130;
 
@@ -147,17 +150,21 @@ Error incomplete(const JobList& list, const std::vector<LeftOut>& missing) {
                       first.reasons.front())};
 }
 
-int bakeList(const BakeCommand& command, const JobList& list) {
+int bakeList(const BakeCommand& command, const JobList& list, Clock::time_point start) {
   if (auto checked = checkOutputs(command, list); !checked) return refuse(checked.error());
   if (auto made = makeOutputFolder(command, list); !made) return refuse(made.error());
   if (auto tried = tryReport(command); !tried) return refuse(tried.error());
-  const BuildOutcome outcome = buildAll(command, list);
+  BuildOutcome outcome = buildAll(command, list);
   int exit_code = exitCodeOf(outcome);
   if (outcome.world && !outcome.world->isThere()) return exit_code;
-  if (list.world && command.saysMore()) printWorldTable(list, outcome);
+  const bool looks_only = list.world && command.run.dry_run;
+  std::vector<LeftOut> missing;
+  if (looks_only) missing = whatIsMissing(list, command.run.jobs);
+  // Reading recipe and dataset, and looking for what is missing, take longer than a small build.
+  outcome.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  if (list.world && command.saysMore()) printWorldTable(list, outcome, command.run.verbosity);
   Json report = reportOf(list, outcome);
-  if (list.world && command.run.dry_run) {
-    const std::vector<LeftOut> missing = whatIsMissing(list, command.run.jobs);
+  if (looks_only) {
     if (command.saysMore()) printMissing(missing);
     report["missing"] = missingReport(missing);
     if (!missing.empty()) exit_code = refuse(incomplete(list, missing));
@@ -189,11 +196,12 @@ int printRecipeDraft(const BakeCommand& command) {
 }
 
 int bakeCommand(const BakeCommand& command) {
+  const auto start = Clock::now();
   if (command.prints_recipe) return printRecipeDraft(command);
   const auto* dataset = std::get_if<DatasetCommand>(&command.what);
   if (dataset != nullptr && dataset->list) return printSceneNames(command, dataset->jobs);
   const auto list = jobsOf(command);
-  return list ? bakeList(command, *list) : refuse(list.error());
+  return list ? bakeList(command, *list, start) : refuse(list.error());
 }
 
 /// A full disk behind a redirection must not look like success.

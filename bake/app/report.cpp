@@ -10,6 +10,7 @@
 #include "support/atomic_file.h"
 #include "support/printable.h"
 #include "terminal.h"
+#include "views.h"
 
 namespace galactic::bake {
 namespace {
@@ -151,6 +152,17 @@ void print(const Sentences& sentences) {
   }
 }
 
+/// The episodes that were made, now or before: what was drawn, and whether they can be solved.
+void printEpisodes(const BuildOutcome& outcome, Verbosity verbosity) {
+  for (const PackOutcome& pack : outcome.packs) {
+    if (!pack.figures) continue;
+    const auto* set = std::get_if<EpisodeFigures>(&pack.figures->of);
+    if (set == nullptr) continue;
+    fmt::print("{}:\n", printable(pack.name));
+    printEpisodes(*set, verbosity);
+  }
+}
+
 void printWorld(const JobList& list, const BuildOutcome& outcome) {
   std::uint64_t bytes = 0;
   for (const LinkedPack& pack : outcome.linked) bytes += pack.bytes;
@@ -199,7 +211,8 @@ Result<void> writeReport(const std::filesystem::path& path, const Json& report) 
   return writeFileAtomically(path, {std::as_bytes(std::span(text))});
 }
 
-void printWorldTable(const JobList& list, const BuildOutcome& outcome) {
+void printWorldTable(const JobList& list, const BuildOutcome& outcome, Verbosity verbosity) {
+  printEpisodes(outcome, verbosity);
   if (!list.left_out.empty()) {
     fmt::print("{} scenes are left out:\n", list.left_out.size());
     print(reasonsOf(list.left_out));

@@ -20,7 +20,7 @@ using Json = OrderedJson;
 [[nodiscard]] Result<void> writeReport(const std::filesystem::path& path, const Json& report);
 
 /// What was made of a dataset or recipe, what is left out, and warnings, for people.
-void printWorldTable(const JobList& list, const BuildOutcome& outcome);
+void printWorldTable(const JobList& list, const BuildOutcome& outcome, Verbosity verbosity);
 
 /// What is missing, for people.
 void printMissing(const std::vector<LeftOut>& missing);

@@ -21,6 +21,9 @@ void printTable(const RobotFigures& robot, const PackFigures& pack, Verbosity ve
 void printTable(const EpisodeFigures& set, const PackFigures& pack, Verbosity verbosity);
 void printTable(const WorldFigures& world, const PackFigures& pack, Verbosity verbosity);
 
+/// What a set of episodes holds and, if it was generated, how: the middle of its table.
+void printEpisodes(const EpisodeFigures& set, Verbosity verbosity);
+
 // Parts of several kinds.
 
 /// Where the pack was written, or that it was not.

@@ -113,6 +113,16 @@ TEST_F(PlanEpisodes, StandInTheReceptaclesOfTheDataset) {
   EXPECT_THAT(placesAlongX(), AllOf(Contains(Ge(1.F)), Contains(testing::Lt(1.F))));
 }
 
+TEST_F(PlanEpisodes, SayWhetherTheyCanBeSolved) {
+  const auto table =
+      AllOf(HasSubstr("episodes.pack:\n"), HasSubstr(": 6 episodes; "),
+            HasSubstr("\n  drawn and not taken: "), HasSubstr("\n  the scripted policy solves "));
+  const ProgramRun baked = bakeWorld(R"("c")", "");
+  ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  EXPECT_THAT(baked.out, table);
+  EXPECT_THAT(bakeWorld(R"("c")", "").out, AllOf(HasSubstr("\n0 baked, "), table));
+}
+
 TEST_F(PlanEpisodes, AreAnErrorWhereNoSceneIsLeft) {
   const ProgramRun none = bakeWorld(R"("well")", "");
   EXPECT_EQ(none.exit_code, 3);

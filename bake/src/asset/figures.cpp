@@ -1,7 +1,10 @@
 #include "galactic/bake/figures.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace galactic::bake {
@@ -163,6 +166,19 @@ EpisodeFigures figuresOf(const EpisodeOutcome& outcome) {
           .generation = outcome.generation};
 }
 
+/// Nothing where enough episodes can be solved or none was tried. It is of the sample, so the pack
+/// does not keep it.
+std::vector<std::string> solveWarnings(const std::optional<EpisodeGeneration>& generation) {
+  constexpr std::uint64_t kEnoughPercent = 80;
+  if (!generation) return {};
+  const SolvedSample& sample = generation->sample;
+  if (100 * sample.solved >= kEnoughPercent * sample.episodes) return {};
+  return {
+      fmt::format("the scripted policy solves {} of {} episodes, less than {} %: robot, "
+                  "scenes and `heights` may not suit each other",
+                  sample.solved, sample.episodes, kEnoughPercent)};
+}
+
 WorldFigures figuresOf(const WorldOutcome& outcome) { return {outcome.packs, outcome.seconds}; }
 
 template <class... T>
@@ -181,17 +197,22 @@ PackFigures figuresOf(const Made& made) {
 }
 
 std::vector<std::string> warningsOf(const PackFigures& figures) {
-  return std::visit(Overload{[](const ObjectSetFigures& one) {
-                               std::vector<std::string> all = one.warnings;
-                               for (const ObjectFigures& object : one.objects) {
-                                 all.insert(all.end(), object.warnings.begin(),
-                                            object.warnings.end());
-                               }
-                               return all;
-                             },
-                             [](const WorldFigures&) { return std::vector<std::string>(); },
-                             [](const auto& one) { return one.warnings; }},
-                    figures.of);
+  return std::visit(
+      Overload{[](const ObjectSetFigures& one) {
+                 std::vector<std::string> all = one.warnings;
+                 for (const ObjectFigures& object : one.objects) {
+                   all.insert(all.end(), object.warnings.begin(), object.warnings.end());
+                 }
+                 return all;
+               },
+               [](const EpisodeFigures& one) {
+                 std::vector<std::string> all = one.warnings;
+                 std::ranges::move(solveWarnings(one.generation), std::back_inserter(all));
+                 return all;
+               },
+               [](const WorldFigures&) { return std::vector<std::string>(); },
+               [](const auto& one) { return one.warnings; }},
+      figures.of);
 }
 
 std::vector<std::string> sharedTexturesOf(const PackFigures& figures) {

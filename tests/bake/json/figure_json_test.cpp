@@ -190,6 +190,20 @@ TEST(FigureJson, IsRefusedOrDiffersWithoutAnyOneOfItsMembers) {
   EXPECT_GT(differing, 3U) << "what is optional";
 }
 
+TEST(FigureWarnings, SayWhenFewerThanFourInFiveEpisodesCanBeSolved) {
+  EXPECT_THAT(bake::warningsOf({"home.pack", 4, episodeFigures()}),
+              testing::ElementsAre("one place only",
+                                   "the scripted policy solves 3 of 4 episodes, less than 80 %: "
+                                   "robot, scenes and `heights` may not suit each other"));
+  for (const bake::SolvedSample& enough :
+       {bake::SolvedSample{.episodes = 5, .solved = 4, .unsolved = {{"x", 1}}},
+        bake::SolvedSample{}}) {
+    bake::EpisodeFigures set = episodeFigures();
+    set.generation->sample = enough;
+    EXPECT_THAT(bake::warningsOf({"home.pack", 4, set}), testing::ElementsAre("one place only"));
+  }
+}
+
 TEST(FigureReports, RephraseSentencesAndLeaveOutDetails) {
   const auto loud = [](const std::string& sentence) { return sentence + "!"; };
   const OrderedJson entries = reportEntries(allFigures().front(), loud);
