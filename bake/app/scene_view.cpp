@@ -19,13 +19,9 @@ std::string castCheckText(const GridFigures& grid) {
   if (check.columns_differing == 0) {
     return fmt::format("0 errors, {} columns agree", check.columns);
   }
-  if (check.longest == 0) {
-    return fmt::format("0 errors, {} of {} columns differ in ties: surfaces just at the radius",
-                       check.columns_differing, check.columns);
-  }
   return fmt::format(
-      "0 errors, {} of {} columns differ, by {:.1f} mm at most: steps and pad of the casts",
-      check.columns_differing, check.columns, check.longest * 1e3);
+      "0 errors, {} of {} columns differ: at most {:.1f} mm by method, {:.2f} mm ties",
+      check.columns_differing, check.columns, check.longest * 1e3, check.longest_tie * 1e3);
 }
 
 void printGrids(const SceneFigures& scene) {

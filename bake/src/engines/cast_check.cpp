@@ -226,6 +226,7 @@ std::vector<Piece> cutInPieces(const Span& heights, std::span<const Span> grid,
 /// obstacles block twice that.
 void judgePiece(const Judge& judge, const Piece& piece, double radius, CastCheck& result) {
   double by_method = 0;
+  double ties = 0;
   const bool agreed = piece.grid_free == piece.cast_free;
   const double wanted = agreed ? radius : kPartLength;
   const auto count =
@@ -244,11 +245,13 @@ void judgePiece(const Judge& judge, const Piece& piece, double radius, CastCheck
     if (verdict == Verdict::kWrong) {
       result.errors += part_length;
     } else if (!agreed) {
-      (verdict == Verdict::kTie ? result.ties : by_method) += part_length;
+      (verdict == Verdict::kTie ? ties : by_method) += part_length;
     }
   }
   result.method += by_method;
   result.longest = std::max(result.longest, by_method);
+  result.ties += ties;
+  result.longest_tie = std::max(result.longest_tie, ties);
 }
 
 /// The tolerance, or two units in the last place of the greatest height where those are more: span

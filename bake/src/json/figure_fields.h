@@ -98,6 +98,7 @@ void listFields(V& v, CastCheck& check) {
   v.field("ties", check.ties);
   v.field("errors", check.errors);
   v.field("longest", check.longest);
+  v.field("longest_tie", check.longest_tie);
 }
 
 template <class V>

@@ -138,13 +138,18 @@ void visitSpheres(SphereFields<Length, Count> fields, OptionVisitor& v) {
              fields.eps = kProfiles[n].value.eps;
              fields.tau = kProfiles[n].value.tau;
            }));
-  v.option({"eps", "METERS", "Every reachable surface point lies this near to a sphere, meters"},
+  v.option({"eps", "METERS",
+            "Every reachable surface point lies this near to a sphere, meters (default: 0.015 of "
+            "objects, 0.02 of robots)"},
            number(fields.eps, kMetersAboveZero));
-  v.option({"tau", "METERS", "No sphere sticks out further, but for thin parts, meters"},
+  v.option({"tau", "METERS",
+            "No sphere sticks out further, but for thin parts, meters (default: 0.02 of objects, "
+            "0.04 of robots)"},
            number(fields.tau, kMetersAboveZero));
-  v.option(
-      {"max-spheres", "N", "Most spheres of an object or robot; 0: as many as the tolerances need"},
-      whole(fields.max_spheres, {0, 1'000'000}));
+  v.option({"max-spheres", "N",
+            "Most spheres of an object or robot; 0: as many as the tolerances need (default: 0 of "
+            "objects, 100 of robots, more where gaps would be wide)"},
+           whole(fields.max_spheres, {0, 1'000'000}));
 }
 
 void visitShape(ObjectBakeOptions& options, OptionVisitor& v) {

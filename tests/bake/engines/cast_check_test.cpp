@@ -158,7 +158,9 @@ TEST(CastCheck, CallsAWallAtExactlyTheRadiusATie) {
   const CastCheck result = checkWithCasts(mesh, columns, BulletColumnCaster(mesh));
   EXPECT_EQ(result.columns_differing, 3U);
   EXPECT_NEAR(result.ties, 9, 1e-3);
+  EXPECT_NEAR(result.longest_tie, 3, 1e-3);
   EXPECT_EQ(result.method, 0);
+  EXPECT_EQ(result.longest, 0);
   EXPECT_EQ(result.errors, 0);
 }
 

@@ -94,6 +94,8 @@ struct CastCheck {
   double errors = 0;
   /// The longest stretch of one column in which the two differ because of the method.
   double longest = 0;
+  /// The same because of ties.
+  double longest_tie = 0;
 };
 
 /// Replays a sample of columns with Bullet and judges each disagreement by the distance to the
