@@ -53,6 +53,20 @@ bool makesOnePack(const Job& job) {
          std::holds_alternative<EpisodeGenerationJob>(job);
 }
 
+/// Packs are inputs of episodes and worlds alone.
+Result<void> checkNoPacks(const BakeCommand& command, const Job& job) {
+  if (std::holds_alternative<WorldJob>(job) || std::holds_alternative<EpisodeGenerationJob>(job)) {
+    return {};
+  }
+  for (const fs::path& input : command.inputs) {
+    if (input.extension() != ".pack" || isFolder(input)) continue;
+    return fail(ErrorCode::kInvalidInput, input.string(),
+                "is a pack already; add `as` episodes to generate episodes in packs, or `as` world "
+                "to link them");
+  }
+  return {};
+}
+
 JobList jobsOfFiles(const BakeCommand& command, const Job& job) {
   JobList list;
   const fs::path& out = command.run.out;
@@ -98,7 +112,10 @@ Result<fs::path> worldPack(const BakeCommand& command) {
 }  // namespace
 
 Result<JobList> jobsOf(const BakeCommand& command) {
-  if (const auto* job = std::get_if<Job>(&command.what)) return jobsOfFiles(command, *job);
+  if (const auto* job = std::get_if<Job>(&command.what)) {
+    RETURN_IF_ERROR(checkNoPacks(command, *job));
+    return jobsOfFiles(command, *job);
+  }
   ASSIGN_OR_RETURN(auto world, worldPack(command));
   if (const auto* recipe = std::get_if<RecipeCommand>(&command.what)) {
     return jobsOfRecipe({.recipe = command.inputs.front(),

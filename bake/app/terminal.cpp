@@ -5,35 +5,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
 
 #include "support/printable.h"
+#include "support/sentence_kinds.h"
 
 namespace galactic::bake {
 namespace {
-
-/// So many warnings of one kind are all shown.
-constexpr std::size_t kFew = 3;
-
-/// A warning without names in quotes and numbers. An apostrophe inside a word quotes nothing.
-std::string kindOf(std::string_view warning) {
-  std::string kind;
-  const auto is_word = [&](std::size_t at) {
-    const char c = at < warning.size() ? warning[at] : ' ';
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-  };
-  for (std::size_t at = 0; at < warning.size(); ++at) {
-    const char c = warning[at];
-    if (c >= '0' && c <= '9') continue;
-    kind += c;
-    if (c != '\'' || (at > 0 && is_word(at - 1))) continue;
-    const std::size_t end = warning.find('\'', at + 1);
-    if (end == std::string_view::npos) continue;
-    kind += '\'';
-    at = end;
-  }
-  return kind;
-}
 
 bool isOption(std::string_view name) {
   static const std::vector<std::string> names = [] {
@@ -78,23 +55,7 @@ int refuse(const Error& error) {
 std::vector<std::string> warningLines(const std::vector<std::string>& warnings,
                                       Verbosity verbosity) {
   if (verbosity == Verbosity::kVerbose) return warnings;
-  std::vector<std::vector<std::string>> kinds;
-  std::map<std::string, std::size_t> place_of_kind;
-  for (const std::string& warning : warnings) {
-    const auto [place, is_new] = place_of_kind.try_emplace(kindOf(warning), kinds.size());
-    if (is_new) kinds.emplace_back();
-    kinds[place->second].push_back(warning);
-  }
-  std::vector<std::string> lines;
-  for (const std::vector<std::string>& kind : kinds) {
-    if (kind.size() <= kFew) {
-      lines.insert(lines.end(), kind.begin(), kind.end());
-    } else {
-      lines.push_back(fmt::format("{} (and {} more of this kind; -v lists them)", kind.front(),
-                                  kind.size() - 1));
-    }
-  }
-  return lines;
+  return oneOfEachKind(warnings, "-v lists them");
 }
 
 void printWarnings(const std::vector<std::string>& warnings, Verbosity verbosity) {

@@ -9,6 +9,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "command_line.h"
@@ -23,14 +24,23 @@
 #include "support/atomic_file.h"
 #include "support/out_of_memory.h"
 #include "support/printable.h"
+#include "support/sentence_kinds.h"
 #include "support/try.h"
 
 namespace galactic::dynamics {
 namespace {
 
+/// The recipe's reader names its one option in backquotes, as a library does.
+std::string withFlags(std::string message) {
+  constexpr std::string_view kName = "`data`";
+  const std::size_t at = message.find(kName);
+  if (at != std::string::npos) message.replace(at, kName.size(), "--data");
+  return message;
+}
+
 int refuse(const Error& error) {
   fmt::print(stderr, "galactic-dynamics: {}: {}\n", printable(error.where),
-             printable(error.message));
+             printable(withFlags(error.message)));
   return static_cast<int>(error.code);
 }
 
@@ -80,7 +90,8 @@ Result<void> run(const Command& command) {
   ASSIGN_OR_RETURN(const auto plan, EpisodePlan::create(command, world));
   ASSIGN_OR_RETURN(const auto sources,
                    readSources({.recipe = command.recipe, .data = command.data}, world));
-  for (const std::string& warning : sources.warnings) {
+  // The report holds all of them.
+  for (const std::string& warning : oneOfEachKind(sources.warnings, "--report lists them")) {
     if (command.is_quiet) break;
     fmt::print(stderr, "galactic-dynamics: warning: {}\n", printable(warning));
   }

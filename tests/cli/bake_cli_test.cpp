@@ -172,6 +172,35 @@ TEST_F(BakeCli, RefusesToReplaceItsInput) {
   EXPECT_EQ(content("room.obj"), before);
 }
 
+TEST_F(BakeCli, SaysWhatAPackIsAnInputOf) {
+  write("room.pack", "a pack");
+  const ProgramRun bake = run({"room.pack"});
+  EXPECT_EQ(bake.exit_code, 3);
+  EXPECT_EQ(bake.err,
+            "galactic-bake: room.pack: is a pack already; add --as episodes to generate episodes "
+            "in packs, or --as world to link them\n");
+  EXPECT_EQ(content("room.pack"), "a pack");
+}
+
+TEST_F(BakeCli, ListsTheExtensionsThatItReads) {
+  const ProgramRun bake = run({"scene.xyz"});
+  EXPECT_EQ(bake.exit_code, 2);
+  EXPECT_THAT(bake.err, HasSubstr("scene.xyz: there is no such file, and no reader knows the "
+                                  "extension '.xyz'; expected one of "));
+  EXPECT_THAT(run({"scene.obj"}).err, HasSubstr("there is no such file; check the path"));
+}
+
+TEST_F(BakeCli, SaysTheDefaultsOfObjectsAndOfRobots) {
+  const std::string help = run({"--help"}).out;
+  for (const char* option : {"--eps", "--tau", "--max-spheres"}) {
+    const std::size_t begin = help.find(std::string(option) + " ");
+    ASSERT_NE(begin, std::string::npos) << option;
+    const std::string text = help.substr(begin, help.find("\n  -", begin) - begin);
+    EXPECT_THAT(text, testing::ContainsRegex("of robots|of *\n *robots")) << option;
+    EXPECT_THAT(text, Not(HasSubstr("["))) << option;
+  }
+}
+
 TEST_F(BakeCli, NeverReplacesAnythingThatItReads) {
   write("textured.obj", "mtllib colors.mtl\n" + test::objFile(test::unevenBox()));
   write("colors.mtl", "newmtl red\nKd 1 0 0\n");

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -164,6 +165,24 @@ TEST_F(DynamicsCli, RefusesWhatItCannotDo) {
     EXPECT_THAT(done.err, HasSubstr(refusal.part));
     EXPECT_THAT(done.err, HasSubstr("galactic-dynamics: "));
   }
+}
+
+TEST_F(DynamicsCli, GroupsWarningsAndReportsAllOfThem) {
+  const ProgramRun done =
+      run({"--policy", "scripted", "--episodes", "1", "--report", "warnings.json"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("has no <inertial>"));
+  EXPECT_THAT(done.err, HasSubstr("more of this kind; --report lists them)"));
+  const auto lines = std::count(done.err.begin(), done.err.end(), '\n');
+  EXPECT_LT(lines, 6) << done.err;
+  EXPECT_GT(report("warnings.json").at("warnings").size(), 12U);
+}
+
+TEST_F(DynamicsCli, NamesTheOptionThatTellsWhereFilesAre) {
+  const ProgramRun done = runProgram(GALACTIC_DYNAMICS, path("").parent_path(),
+                                     {"home.toml", "home.pack", "--policy", "scripted"});
+  EXPECT_EQ(done.exit_code, 2);
+  EXPECT_THAT(done.err, HasSubstr("or tell with --data where the files are"));
 }
 
 TEST_F(DynamicsCli, PrintsHelpAndVersion) {

@@ -38,14 +38,23 @@ Result<void> checkOptions(const MeshImportOptions& options) {
   return {};
 }
 
+std::string unknownExtension(const fs::path& path) {
+  return fmt::format("no reader knows the extension '{}'; expected one of {}",
+                     path.extension().string(), readableExtensions());
+}
+
 Result<void> checkMainFile(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) {
-    const bool absent = status.type() == fs::file_type::not_found;
+  if (status.type() == fs::file_type::not_found) {
     return fail(ErrorCode::kIo, path.string(),
-                absent ? "there is no such file; check the path"
-                       : fmt::format("cannot look at the file: {}", error.message()));
+                hasReader(path) || !path.has_extension()
+                    ? "there is no such file; check the path"
+                    : "there is no such file, and " + unknownExtension(path));
+  }
+  if (!fs::exists(status)) {
+    return fail(ErrorCode::kIo, path.string(),
+                fmt::format("cannot look at the file: {}", error.message()));
   }
   if (fs::is_directory(status)) {
     return fail(ErrorCode::kIo, path.string(),
@@ -59,9 +68,7 @@ Result<void> checkMainFile(const fs::path& path) {
                 fmt::format("cannot read the file: {}", std::generic_category().message(errno)));
   }
   if (!hasReader(path)) {
-    return fail(ErrorCode::kUnsupported, path.string(),
-                fmt::format("no reader knows the extension '{}'; expected one of {}",
-                            path.extension().string(), readableExtensions()));
+    return fail(ErrorCode::kUnsupported, path.string(), unknownExtension(path));
   }
   if (fs::file_size(path, error) == 0) {
     return fail(ErrorCode::kInvalidInput, path.string(),

@@ -182,7 +182,7 @@ Result<T> parseIsolated(const fs::path& path, std::chrono::seconds time_limit, P
 Result<void> checkUrdfText(std::string_view text, const std::string& where) {
   if (text.find('\0') != std::string_view::npos) {
     return fail(ErrorCode::kInvalidInput, where,
-                "it has zero bytes, so it is no XML text; is it a URDF?");
+                "it has NUL bytes, so it is no XML text; is it a URDF?");
   }
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
     return fail(ErrorCode::kInvalidInput, where, "the file is empty; generate it again");

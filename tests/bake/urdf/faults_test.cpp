@@ -40,7 +40,7 @@ std::vector<Fault> syntaxFaults() {
       {"OtherRoot", "<sdf version=\"1.7\"/>", "r.urdf",
        "its outermost element is <sdf>, expected <robot>"},
       {"ZeroBytes", std::string("<robot\0", 7), "r.urdf",
-       "it has zero bytes, so it is no XML text; is it a URDF?"},
+       "it has NUL bytes, so it is no XML text; is it a URDF?"},
       {"NoRobotName", "<robot><link name=\"a\"/></robot>", "r.urdf",
        "the URDF parser refuses it: No name given for the robot"},
       {"Xacro", "<robot name=\"r\">\n<xacro:macro name=\"m\"/><link name=\"a\"/></robot>",
