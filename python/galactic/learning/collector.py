@@ -89,9 +89,9 @@ class Collector:
     def collect(
         self, update: int, should_stop: Callable[[int], bool] = lambda step: False
     ) -> Rollout:
-        """Goes on from where the last rollout ended, for `horizon` steps or until should_stop(step), but
-        for one at least: nothing can be learned from none. `update` counts from 0 and chooses the random numbers. The rollout is ready for the learner,
-        and overwritten by the next call."""
+        """Goes on from where the last rollout ended, for `horizon` steps or until should_stop(step),
+        but for one at least: nothing can be learned from none. `update` counts from 0 and chooses
+        the random numbers. The rollout is ready for the learner, and overwritten by the next call."""
         options, rollout = self.options, self.rollout
         if rollout.steps:
             self._begin_again()
