@@ -111,7 +111,8 @@ void addDrawingOptions(CLI::App& app, DrawingOptions& drawing) {
       ->option_text(fmt::format("head|follow|top|LINK [{}]", drawing.camera));
   app.add_option("--fov", drawing.fov_degrees,
                  "Vertical field of view, from the image's lower to its upper edge")
-      ->check(numberCheck(kLeastFovDegrees, kMostFovDegrees))
+      ->check(
+          numberCheck(static_cast<double>(kLeastFovDegrees), static_cast<double>(kMostFovDegrees)))
       ->option_text("DEGREES");
   addPictures(app, drawing);
   addDebug(app, drawing);
