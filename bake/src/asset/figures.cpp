@@ -170,9 +170,10 @@ EpisodeFigures figuresOf(const EpisodeOutcome& outcome) {
 /// does not keep it.
 std::vector<std::string> solveWarnings(const std::optional<EpisodeGeneration>& generation) {
   constexpr std::uint64_t kEnoughPercent = 80;
+  constexpr std::uint64_t kAllPercent = 100;
   if (!generation) return {};
   const SolvedSample& sample = generation->sample;
-  if (100 * sample.solved >= kEnoughPercent * sample.episodes) return {};
+  if (kAllPercent * sample.solved >= kEnoughPercent * sample.episodes) return {};
   return {
       fmt::format("the scripted policy solves {} of {} episodes, less than {} %: robot, "
                   "scenes and `heights` may not suit each other",
