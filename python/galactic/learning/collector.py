@@ -91,7 +91,8 @@ class Collector:
     ) -> Rollout:
         """Goes on from where the last rollout ended, for `horizon` steps or until should_stop(step),
         but for one at least: nothing can be learned from none. `update` counts from 0 and chooses
-        the random numbers. The rollout is ready for the learner, and overwritten by the next call."""
+        the random numbers. The rollout is ready for the learner, and overwritten by the next call.
+        """
         options, rollout = self.options, self.rollout
         if rollout.steps:
             self._begin_again()
