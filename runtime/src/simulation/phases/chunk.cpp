@@ -23,6 +23,12 @@ void moveBy(EnvRow* rows, std::size_t env, const Vec3& by) {
 
 }  // namespace
 
+SceneExitScratch::SceneExitScratch(const Model& model)
+    : way(mostWays(model)),
+      columns(kLanes * mostWays(model)),
+      suited(paddedToLanes(model.groups.size()) / kLanes),
+      in_columns(suited.size()) {}
+
 Chunk::Chunk(const Model& model)
     : kernels_(model.kernels),
       sphere_count_(model.sphereCount()),
@@ -41,11 +47,9 @@ Chunk::Chunk(const Model& model)
       placement_(model.most_held_spheres, model.world->radii()),
       sure_(group_stride_ / kLanes * kChunk),
       in_slices_(sure_.size()),
-      group_bits_(group_stride_ / kLanes),
+      seen_(group_stride_ / kLanes),
       places_(kChunk * model.groups.size()),
-      way_out_(mostWays(model)),
-      column_ways_(kLanes * mostWays(model)),
-      blocked_bits_(model.bodyWords()),
+      scene_exit_(model),
       held_bits_(model.heldWords()),
       body_bits_(model.bodyWords()) {
   for (std::size_t n = 0; n < group_count_; ++n) {

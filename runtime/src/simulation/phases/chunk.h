@@ -26,16 +26,27 @@ enum class Floor : std::uint8_t {
   kDrops = 2,
 };
 
-/// What is known of eight groups of eight spheres of one candidate, as bits.
-struct GroupBits {
+/// What a look at one candidate found of eight groups of eight spheres; groups as bits.
+struct SeenGroups {
   /// Not free as a whole, as far as the maps know.
   unsigned unsure = 0;
   /// Of these, those that are free and low: nobody has looked where their spheres are.
   unsigned low = 0;
-  /// The last way out suits all of their spheres.
-  unsigned suited = 0;
-  /// The way out is asked of the columns around their spheres.
-  unsigned in_columns = 0;
+  /// One bit for each sphere that the scene blocks.
+  std::uint64_t blocked = 0;
+};
+
+/// Room for a search for the way out of the scene.
+struct SceneExitScratch {
+  explicit SceneExitScratch(const Model& model);
+
+  WayOut way;
+  ColumnWays columns;
+  /// Of the robot's groups, eight by eight, as bits: those all of whose spheres were added to the
+  /// way, so that they are free where it leads.
+  std::vector<unsigned> suited;
+  /// Those whose spheres were added to the columns.
+  std::vector<unsigned> in_columns;
 };
 
 /// Room for kChunk envs on their way through a step, allocated once for each thread.
@@ -100,30 +111,18 @@ class Chunk {
   [[nodiscard]] Floor& floor(std::size_t env) { return floor_[env]; }
   [[nodiscard]] CollisionScratch& collision() { return collision_; }
   [[nodiscard]] PlacementScratch& placement() { return placement_; }
-  /// One bit for each sphere of the robot that the scene blocks: what isFree() found last on a
-  /// floor that carries the base.
-  [[nodiscard]] std::span<std::uint64_t> blockedBits() { return blocked_bits_; }
-  /// Of the groups from 8 * `eight` on: what isFree() found last on a floor that carries the base.
-  [[nodiscard]] GroupBits& groupBits(std::size_t eight) { return group_bits_[eight]; }
-  void forgetSuited() {
-    for (GroupBits& bits : group_bits_) bits.suited = 0;
-  }
-  void forgetWays() {
-    for (GroupBits& bits : group_bits_) bits.suited = bits.in_columns = 0;
-  }
-  void suitColumnsOnly() {
-    for (GroupBits& bits : group_bits_) bits.suited = bits.in_columns;
-  }
+  /// Of the groups from 8 * `eight` on: what the last look for blocked spheres found.
+  [[nodiscard]] SeenGroups& seen(std::size_t eight) { return seen_[eight]; }
   /// Of the groups from 8 * `eight` on that slices were asked about: where their spheres are.
   [[nodiscard]] EightPlaces* places(std::size_t env, std::size_t eight) {
     return places_.data() + env * group_count_ + eight * kLanes;
   }
   /// From the places of one env to those of the next.
   [[nodiscard]] std::size_t placesStride() const { return group_count_; }
-  [[nodiscard]] WayOut& wayOut() { return way_out_; }
-  [[nodiscard]] ColumnWays& columnWays() { return column_ways_; }
+  /// Room for a search for the way out of the scene.
+  [[nodiscard]] SceneExitScratch& sceneExit() { return scene_exit_; }
   /// One bit for each sphere of the held object that may penetrate something, whether it counts or
-  /// not: what isFree() found last where the robot itself is free, all where it touches an object.
+  /// not: where the candidate was found free.
   [[nodiscard]] std::span<std::uint64_t> heldBits() { return held_bits_; }
   /// Room for a bit for each sphere of the robot.
   [[nodiscard]] std::span<std::uint64_t> bodyBits() { return body_bits_; }
@@ -163,11 +162,9 @@ class Chunk {
   /// Shape: eights of groups x kChunk.
   std::vector<SureGroups> sure_;
   std::vector<InSlices> in_slices_;
-  std::vector<GroupBits> group_bits_;
+  std::vector<SeenGroups> seen_;
   std::vector<EightPlaces> places_;
-  WayOut way_out_;
-  ColumnWays column_ways_;
-  std::vector<std::uint64_t> blocked_bits_;
+  SceneExitScratch scene_exit_;
   std::vector<std::uint64_t> held_bits_;
   std::vector<std::uint64_t> body_bits_;
 };

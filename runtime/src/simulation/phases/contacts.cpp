@@ -104,35 +104,36 @@ void lookAtAll(const ChunkStep& step) noexcept {
 
 namespace {
 
+/// No groups are known to be free.
+unsigned noGroups(std::size_t) { return 0; }
+
 /// As findBlocked(), where maps have been asked already. `look`: what slices say of some groups of
-/// an eight.
-template <class Look>
-bool findBlockedBy(const Look& look, const ChunkStep& step, std::size_t e) {
+/// an eight. `free`: the groups of an eight that are free anyway.
+template <class Look, class Free>
+bool findBlockedBy(const Look& look, const Free& free, const ChunkStep& step, std::size_t e) {
   const Env& env = step.state.env(step.first + e);
   const Scene& scene = step.model.world->scenes()[env.scene];
   const std::span<const EightSpheres> groups = step.model.groups;
   std::uint64_t any = 0;
   for (std::size_t eight = 0; eight * kLanes < groups.size(); ++eight) {
     const SureGroups& sure = step.chunk.sure(eight)[e];
-    GroupBits& known = step.chunk.groupBits(eight);
-    const unsigned others = groupsOf(step.model, eight) & ~known.suited;
-    known.unsure = others & ~(sure.free & ~sure.low);
-    known.low = others & sure.free & sure.low;
+    SeenGroups& seen = step.chunk.seen(eight);
+    const unsigned others = groupsOf(step.model, eight) & ~free(eight);
+    seen.unsure = others & ~(sure.free & ~sure.low);
+    seen.low = others & sure.free & sure.low;
     const InSlices found = look(eight, others & ~sure.free);
-    std::uint64_t blocked = found.blocked;
+    seen.blocked = found.blocked;
     if (found.unknown != 0) {
-      blocked |=
+      seen.blocked |=
           blockedSpheres(scene, step.chunk.spheres(e), groups, eight * kLanes, found.unknown);
     }
-    step.chunk.blockedBits()[eight] = blocked;
-    any |= blocked;
+    any |= seen.blocked;
   }
   return any != 0;
 }
 
-}  // namespace
-
-bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
+template <class Free>
+bool findBlockedBut(const Free& free, const ChunkStep& step, std::size_t e) {
   for (std::size_t eight = 0; eight * kLanes < step.model.groups.size(); ++eight) {
     step.model.clearance.surelyFree(mapOf(step, e), eight, step.chunk.bounds(e, eight),
                                     step.chunk.sure(eight)[e]);
@@ -140,17 +141,28 @@ bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
   const auto look = [&](std::size_t eight, unsigned groups) {
     return findPlaces(step, e, eight, groups);
   };
-  return findBlockedBy(look, step, e);
+  return findBlockedBy(look, free, step, e);
 }
 
-bool isSureAfter(const ChunkStep& step, std::size_t e, const Push& moved) noexcept {
+}  // namespace
+
+bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
+  return findBlockedBut(noGroups, step, e);
+}
+
+bool findBlocked(const ChunkStep& step, std::size_t e, std::span<const unsigned> free) noexcept {
+  return findBlockedBut([&](std::size_t eight) { return free[eight]; }, step, e);
+}
+
+bool isSureAfter(const ChunkStep& step, std::size_t e, const Push& moved,
+                 std::span<const unsigned> free) noexcept {
   // More than rounding, meters.
   constexpr float kSlack = 1e-4F;
   const float reach = std::max(std::abs(moved.x), std::abs(moved.z)) + kSlack;
   unsigned unsure = 0;
   for (std::size_t eight = 0; eight * kLanes < step.model.groups.size(); ++eight) {
-    const unsigned known = step.chunk.groupBits(eight).suited |
-                           ClearanceMaps::freeWithin(step.chunk.sure(eight)[e], reach);
+    const unsigned known =
+        free[eight] | ClearanceMaps::freeWithin(step.chunk.sure(eight)[e], reach);
     unsure |= groupsOf(step.model, eight) & ~known;
   }
   return unsure == 0;
@@ -197,26 +209,34 @@ bool heldPenetrates(const ChunkStep& step, std::size_t e) {
 
 }  // namespace
 
-bool isFreeAsSeen(const ChunkStep& step, std::size_t e) noexcept {
-  step.chunk.forgetSuited();
-  if (step.chunk.floor(e) != Floor::kCarries) return false;
-  const auto seen = [&](std::size_t eight, unsigned) { return step.chunk.inSlices(eight)[e]; };
-  return !findBlockedBy(seen, step, e) && isFreeOfObjects(step, e);
-}
-
-bool isFree(const ChunkStep& step, std::size_t e) noexcept {
-  step.chunk.forgetSuited();
-  if (step.chunk.floor(e) != Floor::kCarries) return false;
-  return !findBlocked(step, e) && isFreeOfObjects(step, e);
-}
-
-bool isFreeOfObjects(const ChunkStep& step, std::size_t e) noexcept {
-  if (bodyTouchesObjects(step, e)) {
-    // Of what the hand holds nobody has asked.
-    std::ranges::fill(step.chunk.heldBits(), ~std::uint64_t{0});
-    return false;
+Hindrance hindranceByFloor(const ChunkStep& step, std::size_t e) noexcept {
+  switch (step.chunk.floor(e)) {
+    case Floor::kCarries:
+      return Hindrance::kNone;
+    case Floor::kBlocks:
+      return Hindrance::kRise;
+    case Floor::kDrops:
+      return Hindrance::kDrop;
   }
-  return !heldPenetrates(step, e);
+  return Hindrance::kDrop;
+}
+
+Hindrance hindranceByObjects(const ChunkStep& step, std::size_t e) noexcept {
+  if (bodyTouchesObjects(step, e)) return Hindrance::kObject;
+  return heldPenetrates(step, e) ? Hindrance::kHeld : Hindrance::kNone;
+}
+
+Hindrance hindranceAsSeen(const ChunkStep& step, std::size_t e) noexcept {
+  const Hindrance floor = hindranceByFloor(step, e);
+  if (floor != Hindrance::kNone) return floor;
+  const auto seen = [&](std::size_t eight, unsigned) { return step.chunk.inSlices(eight)[e]; };
+  return findBlockedBy(seen, noGroups, step, e) ? Hindrance::kScene : hindranceByObjects(step, e);
+}
+
+Hindrance hindranceOf(const ChunkStep& step, std::size_t e) noexcept {
+  const Hindrance floor = hindranceByFloor(step, e);
+  if (floor != Hindrance::kNone) return floor;
+  return findBlocked(step, e) ? Hindrance::kScene : hindranceByObjects(step, e);
 }
 
 }  // namespace galactic::simulation

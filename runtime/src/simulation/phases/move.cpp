@@ -37,8 +37,9 @@ void accept(const ChunkStep& step, std::size_t e) {
 
 /// As walkToCandidate(), looking at the end of the way alone, which lookAtAll() has seen.
 Walk jumpToCandidate(const ChunkStep& step, std::size_t e) {
-  if (isFreeAsSeen(step, e)) return Walk::kStraight;
-  return slideClear(step, e) ? Walk::kHindered : Walk::kNone;
+  const Hindrance met = hindranceAsSeen(step, e);
+  if (met == Hindrance::kNone) return Walk::kStraight;
+  return slideClear(step, e, met) ? Walk::kHindered : Walk::kNone;
 }
 
 /// Takes over the poses and grips of accepted candidates: all envs of a number at once, without a

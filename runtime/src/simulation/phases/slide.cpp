@@ -1,13 +1,12 @@
 #include "simulation/phases/slide.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <optional>
 
-#include "simulation/phases/contacts.h"
 #include "simulation/phases/move.h"
+#include "simulation/phases/scene_exit.h"
 
 namespace galactic::simulation {
 namespace {
@@ -30,362 +29,106 @@ class Glide {
       : step_(step),
         e_(e),
         env_(step.state.env(step.first + e)),
-        obstacles_(obstaclesOf(step, e)),
-        way_(step.chunk.wayOut()) {
+        objects_(step.state.resting(step.first + e)),
+        exit_(step, e) {
     const Vec3 from = step.state.base(step.first + e);
     const Vec3 to = step.chunk.base(e);
     drive_ = {to.x - from.x, to.z - from.z};
-    begin();
   }
 
-  /// isFree() has said that the candidate is not. Whether it is now.
-  bool run() {
+  /// Whether the candidate, which met `met`, is free now.
+  bool run(Hindrance met) {
     for (std::uint32_t attempt = 0; attempt < step_.model.options.slide.attempts; ++attempt) {
-      if (step_.chunk.floor(e_) == Floor::kDrops) return false;
-      if (!(addBlocked() ? leaveScene() : leaveObjects())) return false;
-      if (isFreeNow()) return true;
+      if (met == Hindrance::kDrop || !leave(met)) return false;
+      met = lookAgain();
+      if (met == Hindrance::kNone) return true;
     }
     return false;
   }
 
  private:
-  /// Moves the candidate over the floor. Whether it is as high as before.
-  bool move(const Push& by) {
-    const bool is_level = moveBase(step_, e_, by);
-    since_asked_ = {since_asked_.x + by.x, since_asked_.z + by.z};
-    knows_maps_ = knows_maps_ && is_level;
-    return is_level;
+  bool leave(Hindrance met) {
+    // Under a floor that is too high, maps are asked anew.
+    if (met == Hindrance::kRise) since_asked_.reset();
+    return exit_.addBlocked(met) ? leaveScene(met) : leaveObjects();
   }
 
-  bool isFreeNow() {
-    if (step_.chunk.floor(e_) != Floor::kCarries) return false;
-    // With something in the hand, another way out may be sought for the groups that are asked here.
-    if (env_.held < 0 && knows_maps_ && isSureAfter(step_, e_, since_asked_)) {
-      if (isFreeOfObjects(step_, e_)) return true;
-      std::ranges::fill(step_.chunk.blockedBits(), 0U);
-      return false;
-    }
-    knows_maps_ = false;
-    return !findBlocked(step_, e_) && isFreeOfObjects(step_, e_);
-  }
-
-  /// The way out is sought from where the candidate is now.
-  void begin() {
-    way_.clear(obstacles_.scene.grids().front().spacing());
-    forgetWays();
-    moved_ = {};
-    has_way_ = true;
-  }
-
-  /// No group is known to suit a way, nor to be in columns.
-  void forgetWays() {
-    step_.chunk.columnWays().clear();
-    step_.chunk.forgetWays();
-    holds_columns_ = false;
-  }
-
-  /// Adds the spheres that decide where the way out of the scene leads. Whether the scene blocks
-  /// any.
-  bool addBlocked() {
-    const bool floor_blocks = step_.chunk.floor(e_) == Floor::kBlocks;
-    if (floor_blocks) {
-      knows_maps_ = false;
-      findBlocked(step_, e_);
-    }
-    const bool body = floor_blocks || !isEmpty(step_.chunk.blockedBits());
-    // isFree() asks about what the robot holds when the robot itself is free.
-    const bool held = !body && !isEmpty(step_.chunk.heldBits()) && heldIsBlocked();
-    if (!body && !held) return false;
-    if (asks_columns_) {
-      addColumns();
-      return true;
-    }
-    if (floor_blocks) addSphere(0, floorProbeHere());
-    if (body) {
-      addBody();
-    } else {
-      addHeld();
-    }
-    return true;
-  }
-
-  [[nodiscard]] Vec3 floorProbeHere() const {
-    return floorProbe(obstacles_.scene, step_.chunk.base(e_), step_.model.options.ground);
-  }
-
-  /// Adds the robot's spheres in all groups that are not free as a whole: those that are blocked,
-  /// and those of which it is known where they are free.
-  void addBody() {
-    const bool is_begun = moved_.x != 0 || moved_.z != 0;
-    for (std::size_t eight = 0; eight * kLanes < step_.model.groups.size(); ++eight) {
-      GroupBits& known = step_.chunk.groupBits(eight);
-      // Of those that are low, nobody has looked.
-      if ((known.unsure & known.low) != 0) findPlaces(step_, e_, eight, known.unsure & known.low);
-      known.suited |= is_begun ? addFromBefore(eight) : addFromHere(eight);
-    }
-  }
-
-  /// Adds the groups of an eight; the way out begins where they are. Those whose spheres were all
-  /// added, as bits.
-  unsigned addFromHere(std::size_t eight) {
-    const EightPlaces* places = step_.chunk.places(e_, eight);
-    const AddedGroups added = way_.add({.rows = step_.model.slices.rows(),
-                                        .groups = step_.model.groups.data() + eight * kLanes,
-                                        .places = places,
-                                        .asked = step_.chunk.groupBits(eight).unsure,
-                                        .blocked = step_.chunk.blockedBits()[eight]});
-    for (unsigned left = added.outside; left != 0; left &= left - 1) {
-      const auto n = static_cast<std::size_t>(std::countr_zero(left));
-      addSingles(eight * kLanes + n, freeOrBlocked(eight, n) & ~places[n].inside);
-    }
-    return added.whole;
-  }
-
-  /// The same where the way out was begun before.
-  unsigned addFromBefore(std::size_t eight) {
-    unsigned whole = 0;
-    for (unsigned left = step_.chunk.groupBits(eight).unsure; left != 0; left &= left - 1) {
-      const auto n = static_cast<std::size_t>(std::countr_zero(left));
-      const std::size_t group = eight * kLanes + n;
-      const unsigned added = freeOrBlocked(eight, n);
-      whole |= static_cast<unsigned>(added == step_.model.groups[group].spheres) << n;
-      const EightPlaces before = placesBefore(group);
-      way_.add(step_.model.slices.rows(), before, added & before.inside);
-      addSingles(group, added & ~before.inside);
-    }
-    return whole;
-  }
-
-  /// The spheres of group `n` of an eight, as bits, but for those that only columns call free.
-  [[nodiscard]] unsigned freeOrBlocked(std::size_t eight, std::size_t n) const {
-    const auto blocked = static_cast<unsigned>(step_.chunk.blockedBits()[eight] >> (n * kLanes));
-    return step_.model.groups[eight * kLanes + n].spheres &
-           (step_.chunk.places(e_, eight)[n].free | blocked);
-  }
-
-  /// Adds spheres of a group of which slices know nothing where the way out begins.
-  void addSingles(std::size_t group, unsigned spheres) {
-    if (spheres == 0) return;
-    const std::uint32_t radius = step_.model.groups[group].radius_index;
-    const SphereBatch all = step_.chunk.spheres(e_);
-    for (unsigned left = spheres; left != 0; left &= left - 1) {
-      const std::size_t n = group * kLanes + static_cast<std::size_t>(std::countr_zero(left));
-      addSphere(radius, {all.x[n], all.y[n], all.z[n]});
-    }
-  }
-
-  [[nodiscard]] EightPlaces placesBefore(std::size_t group) const {
-    const SphereBatch spheres = step_.chunk.spheres(e_);
-    std::array<float, kLanes> x;
-    std::array<float, kLanes> z;
-    for (std::size_t n = 0; n < kLanes; ++n) {
-      x[n] = spheres.x[group * kLanes + n] - moved_.x;
-      z[n] = spheres.z[group * kLanes + n] - moved_.z;
-    }
-    EightPlaces places;
-    step_.model.slices.findPlaces(env_.clearance_map, group,
-                                  {.x = x.data(),
-                                   .y = spheres.y + group * kLanes,
-                                   .z = z.data(),
-                                   .asked = 1,
-                                   .places = &places});
-    return places;
-  }
-
-  /// Calls visit(radius index, center) for each sphere of what the robot holds that counts.
-  template <class Visit>
-  void forEachHeld(const Visit& visit) const {
-    if (env_.held < 0) return;
-    const SphereBatch held = heldSpheres(step_, e_);
-    const IgnoredSpheres ignored = step_.state.ignored(step_.first + e_);
-    for (const RadiusRange& range : held.ranges) {
-      for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
-        if ((ignored[n / 64] >> (n % 64) & 1U) != 0) continue;
-        visit(range.radius_index, Vec3{held.x[n], held.y[n], held.z[n]});
-      }
-    }
-  }
-
-  [[nodiscard]] bool isBlocked(std::uint32_t radius, const Vec3& center) const {
-    return obstacles_.scene.grids()[radius].clearance(center) != Clearance::kFree;
-  }
-
-  [[nodiscard]] bool heldIsBlocked() const {
-    bool any = false;
-    forEachHeld(
-        [&](std::uint32_t radius, const Vec3& center) { any = any || isBlocked(radius, center); });
-    return any;
-  }
-
-  /// As addBody() for what the robot holds.
-  void addHeld() {
-    forEachHeld([&](std::uint32_t radius, const Vec3& center) {
-      if (isBlocked(radius, center) || isKnown(radius, center)) addSphere(radius, center);
-    });
-  }
-
-  /// Whether slices say rightly that a sphere is free where it is. Close above a table they do not,
-  /// and would have it leave the table.
-  [[nodiscard]] bool isKnown(std::uint32_t radius, const Vec3& center) const {
-    const auto around = step_.model.slices.around(env_.clearance_map, radius, center);
-    return !around || around->isFree(0, 0);
-  }
-
-  /// `center`: where the sphere is now.
-  void addSphere(std::uint32_t radius, const Vec3& center) {
-    const ColumnGrid& grid = obstacles_.scene.grids()[radius];
-    const Vec3 before{center.x - moved_.x, center.y, center.z - moved_.z};
-    const auto around = step_.model.slices.around(env_.clearance_map, radius, before);
-    way_.add(around ? around->cells() : surroundingsOf(grid, before), grid.layout(), before);
-  }
-
-  /// Whether slices call each cell blocked for one of the robot's spheres that isFree() has just
-  /// looked at: most searches of columns end here.
-  [[nodiscard]] bool isHopelessInSlices() const {
-    const bool is_begun = moved_.x != 0 || moved_.z != 0;
-    // Where nothing blocks the robot nobody may have looked.
-    if (is_begun || isEmpty(step_.chunk.blockedBits())) return false;
-    CommonCells may_be_free = CommonCells::everywhere();
-    for (std::size_t eight = 0; eight * kLanes < step_.model.groups.size(); ++eight) {
-      const GroupBits& known = step_.chunk.groupBits(eight);
-      const GroupsToAdd groups{.rows = step_.model.slices.rows(),
-                               .groups = step_.model.groups.data() + eight * kLanes,
-                               .places = step_.chunk.places(e_, eight),
-                               .asked = known.unsure & ~known.low};
-      if (!way_.leaveUnblocked(groups, may_be_free)) return true;
-    }
-    return false;
-  }
-
-  /// Adds all spheres that are not free as a whole, and what the robot holds, and asks the columns
-  /// where the slices do not know better.
-  void addColumns() {
-    if (isHopelessInSlices()) {
-      has_way_ = false;
-      return;
-    }
-    ColumnWays& columns = step_.chunk.columnWays();
-    if (step_.chunk.floor(e_) == Floor::kBlocks) addColumn(0, floorProbeHere());
-    const SphereBatch spheres = step_.chunk.spheres(e_);
-    const bool is_begun = moved_.x != 0 || moved_.z != 0;
-    for (std::size_t n = 0; n < step_.model.groups.size(); ++n) {
-      GroupBits& known = step_.chunk.groupBits(n / kLanes);
-      const unsigned bit = 1U << (n % kLanes);
-      const EightSpheres& group = step_.model.groups[n];
-      // Those that suited a way through slices have to suit this one, too.
-      if (((known.unsure | known.suited) & ~known.in_columns & bit) == 0) continue;
-      known.in_columns |= bit;
-      // Where the way begins here, it is known where they are.
-      const bool has_places = !is_begun && (known.unsure & bit) != 0;
-      const EightPlaces& places = step_.chunk.places(e_, n / kLanes)[n % kLanes];
-      for (unsigned left = group.spheres; left != 0; left &= left - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-        const std::size_t at = n * kLanes + lane;
-        const Vec3 center{spheres.x[at], spheres.y[at], spheres.z[at]};
-        if (!has_places) {
-          addColumn(group.radius_index, center);
-        } else if ((places.inside >> lane & 1U) != 0) {
-          addColumn(group.radius_index, center, step_.model.slices.around(places, lane));
-        } else {
-          addColumn(group.radius_index, center, std::nullopt);
-        }
-      }
-      if (columns.isHopeless()) {
-        has_way_ = false;
-        return;
-      }
-    }
-    if (!holds_columns_) {
-      forEachHeld([&](std::uint32_t radius, const Vec3& center) { addColumn(radius, center); });
-    }
-    holds_columns_ = true;
-    way_.clear(obstacles_.scene.grids().front().spacing());
-    has_way_ = columns.addTo(way_);
-    // No group needs another look where they lead.
-    step_.chunk.suitColumnsOnly();
-  }
-
-  /// `center`: where the sphere is now.
-  void addColumn(std::uint32_t radius, const Vec3& center) {
-    const Vec3 before{center.x - moved_.x, center.y, center.z - moved_.z};
-    addColumn(radius, before, step_.model.slices.around(env_.clearance_map, radius, before));
-  }
-  /// `center`: where the way begins. `around`: what slices know.
-  void addColumn(std::uint32_t radius, const Vec3& center,
-                 const std::optional<SurroundingRows>& around) {
-    step_.chunk.columnWays().add(obstacles_.scene.grids()[radius], center, around);
-  }
-
-  [[nodiscard]] FoundWay findWay(const Push& drive) {
-    if (!has_way_) return {};
-    return way_.shortest(drive, step_.model.options.slide.step);
-  }
-
-  bool leaveScene() {
-    FoundWay way = findWay(drive_);
-    if (way.squared == kNoWay && !asks_columns_) {
-      asks_columns_ = true;
-      addColumns();
-      way = findWay(drive_);
-    }
+  bool leaveScene(Hindrance met) {
+    FoundWay way = exit_.shortest(drive_);
+    if (way.squared == kNoWay && exit_.turnToColumns(met)) way = exit_.shortest(drive_);
     // Where the arm or a turn led into something, the drive is not to blame.
-    if (way.squared == kNoWay && has_way_ && isBlockedWithoutDrive()) way = findWay({});
+    if (way.squared == kNoWay && exit_.isOpen() && isBlockedWithoutDrive())
+      way = exit_.shortest({});
     if (way.squared == kNoWay) return false;
-    const bool is_level = move({way.x - moved_.x, way.z - moved_.z});
-    // At another height all is different.
-    if (!is_level) forgetWays();
-    moved_ = {way.x, way.z};
+    const Push moved = exit_.moved();
+    const bool is_level = move({way.x - moved.x, way.z - moved.z});
+    exit_.follow({way.x, way.z}, is_level);
     return true;
-  }
-
-  /// Whether the scene would block the robot, or what it holds, if it had not driven.
-  [[nodiscard]] bool isBlockedWithoutDrive() {
-    if (drive_.x == 0 && drive_.z == 0) return false;
-    const Push back{-drive_.x - moved_.x, -drive_.z - moved_.z};
-    step_.chunk.shift(e_, {back.x, 0, back.z});
-    step_.chunk.forgetSuited();
-    knows_maps_ = false;
-    const bool is_blocked = findBlocked(step_, e_) || heldIsBlocked();
-    step_.chunk.shift(e_, {-back.x, 0, -back.z});
-    return is_blocked;
   }
 
   bool leaveObjects() {
     PushSum sum;
     CollisionScratch& scratch = step_.chunk.collision();
-    if (obstacles_.objects.mayTouch(step_.chunk.extents(e_))) {
+    if (objects_.mayTouch(step_.chunk.extents(e_))) {
       withoutLeft(step_, e_, [&] {
-        return pushOutOfObjects(obstacles_.objects, step_.chunk.spheres(e_), {}, scratch, sum);
+        return pushOutOfObjects(objects_, step_.chunk.spheres(e_), {}, scratch, sum);
       });
     }
     if (env_.held >= 0 && !heldIsSurelyFree(step_, e_)) {
-      pushOutOfObjects(obstacles_.objects, heldSpheres(step_, e_),
-                       step_.state.ignored(step_.first + e_), scratch, sum);
+      pushOutOfObjects(objects_, heldSpheres(step_, e_), step_.state.ignored(step_.first + e_),
+                       scratch, sum);
     }
     const Push push = sum.total(step_.model.options.slide.step);
     if (push.x == 0 && push.z == 0) return false;
     move(push);
-    begin();
+    exit_.begin();
     return true;
+  }
+
+  /// Moves the candidate over the floor. Whether it is as high as before.
+  bool move(const Push& by) {
+    const bool is_level = moveBase(step_, e_, by);
+    if (!is_level) since_asked_.reset();
+    if (since_asked_) since_asked_ = Push{since_asked_->x + by.x, since_asked_->z + by.z};
+    return is_level;
+  }
+
+  /// What the candidate meets where it was moved to.
+  Hindrance lookAgain() {
+    const Hindrance floor = hindranceByFloor(step_, e_);
+    if (floor != Hindrance::kNone) return floor;
+    // With something in the hand, another way out may be sought for the groups that are asked here.
+    const bool is_sure =
+        env_.held < 0 && since_asked_ && isSureAfter(step_, e_, *since_asked_, exit_.suited());
+    if (!is_sure) {
+      since_asked_.reset();
+      if (findBlocked(step_, e_, exit_.suited())) return Hindrance::kScene;
+    }
+    return hindranceByObjects(step_, e_);
+  }
+
+  /// Whether the scene would block the robot, or what it holds, if it had not driven.
+  [[nodiscard]] bool isBlockedWithoutDrive() {
+    if (drive_.x == 0 && drive_.z == 0) return false;
+    const Push moved = exit_.moved();
+    const Push back{-drive_.x - moved.x, -drive_.z - moved.z};
+    step_.chunk.shift(e_, {back.x, 0, back.z});
+    since_asked_.reset();
+    const bool is_blocked = findBlocked(step_, e_) || exit_.heldIsBlocked();
+    step_.chunk.shift(e_, {-back.x, 0, -back.z});
+    return is_blocked;
   }
 
   const ChunkStep& step_;
   std::size_t e_;
   const Env& env_;
-  Obstacles obstacles_;
-  WayOut& way_;
+  RestingObjects& objects_;
+  SceneExit exit_;
+  /// The way that the robot came.
   Push drive_;
-  /// From where the way out was begun.
-  Push moved_;
-  /// From where the maps were asked what is sure.
-  Push since_asked_;
-  /// What they said is of where the candidate was, at the same height.
-  bool knows_maps_ = true;
-  bool has_way_ = true;
-  /// Slices know no way out, so columns are asked from now on.
-  bool asks_columns_ = false;
-  /// What the robot holds has been asked about.
-  bool holds_columns_ = false;
+  /// How far the candidate has been moved since maps were asked about it; none where what they said
+  /// counts no more: they were asked about another place, or at another height.
+  std::optional<Push> since_asked_ = Push{};
 };
 
 /// The jitter of the published rule away from a sphere: towards the base.
@@ -471,10 +214,10 @@ bool pushTowardsBase(const ChunkStep& step, std::size_t e) {
 
 }  // namespace
 
-bool slideClear(const ChunkStep& step, std::size_t e) noexcept {
+bool slideClear(const ChunkStep& step, std::size_t e, Hindrance met) noexcept {
   switch (step.model.options.slide.direction) {
     case SlideDirection::kGlide:
-      return Glide(step, e).run();
+      return Glide(step, e).run(met);
     case SlideDirection::kTowardsBase:
       return pushTowardsBase(step, e);
   }

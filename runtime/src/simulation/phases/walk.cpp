@@ -125,18 +125,18 @@ class Walker {
   /// Goes through the lanes as long as they are free; the first slide changes those after it.
   Progress goOn() {
     for (std::size_t lane = 1; lane < kLanes && reached_ < parts_; ++lane) {
-      const bool is_free = isFree(at(lane), lane);
-      if (!is_free && !slide(lane)) return Progress::kBlocked;
+      const Hindrance met = hindranceOf(at(lane), lane);
+      if (met != Hindrance::kNone && !slide(lane, met)) return Progress::kBlocked;
       lane_ = lane;
       ++reached_;
-      if (!is_free) return Progress::kSlid;
+      if (met != Hindrance::kNone) return Progress::kSlid;
     }
     return Progress::kFree;
   }
 
-  bool slide(std::size_t lane) {
+  bool slide(std::size_t lane, Hindrance met) {
     const Vec3 before = step_.between->base(lane);
-    if (!slideClear(at(lane), lane)) return false;
+    if (!slideClear(at(lane), lane, met)) return false;
     const Vec3 after = step_.between->base(lane);
     const Push by{after.x - before.x, after.z - before.z};
     if (!isInReach(after.y) || !slidThroughNothing(lane, by)) return false;
@@ -156,7 +156,6 @@ class Walker {
     step_.between->takeOver(kSpareLane, *step_.between, lane);
     for (float n = 1; n < looks; ++n) {
       step_.between->shift(kSpareLane, back);
-      step_.between->forgetSuited();
       if (findBlocked(at(kSpareLane), kSpareLane) && blocksSmallerThan(length)) return false;
     }
     return true;
@@ -164,9 +163,9 @@ class Walker {
 
   /// Of the spheres that findBlocked() found.
   [[nodiscard]] bool blocksSmallerThan(float radius) const {
-    const std::span<const std::uint64_t> words = step_.between->blockedBits();
     for (std::size_t n = 0; n < step_.model.groups.size(); ++n) {
-      const std::uint64_t blocked = words[n / kLanes] >> (n % kLanes * kLanes) & 0xffU;
+      const std::uint64_t words = step_.between->seen(n / kLanes).blocked;
+      const std::uint64_t blocked = words >> (n % kLanes * kLanes) & 0xffU;
       if (blocked != 0 && step_.model.groups[n].radius < radius) return true;
     }
     return false;

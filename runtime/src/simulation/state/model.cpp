@@ -117,7 +117,8 @@ class StartFinder {
     setObjects(episode);
     const ChunkStep step{model_, state_, chunk_, 0};
     placeBodies(step);
-    if (!isFree(step, 0) && !slideClear(step, 0)) return false;
+    const Hindrance met = hindranceOf(step, 0);
+    if (met != Hindrance::kNone && !slideClear(step, 0, met)) return false;
     const PoseArrays pose = chunk_.candidates(0);
     const float floor = chunk_.base(0).y;
     heights_.lowest = std::min(heights_.lowest, chunk_.lowest(0) - floor);

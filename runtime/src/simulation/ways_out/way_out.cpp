@@ -26,9 +26,18 @@ void WayOut::clear(float spacing) noexcept {
   common_ = CommonCells::everywhere();
 }
 
+void WayOut::close() noexcept { std::ranges::fill(common_.rows, std::uint16_t{0}); }
+
+bool WayOut::isOpen() const noexcept {
+  constexpr unsigned kEdge = 2 * kCellsAround + 1;
+  const auto first = std::begin(common_.rows);
+  return std::any_of(first, first + kEdge,
+                     [](unsigned row) { return (row & ((1U << kEdge) - 1)) != 0; });
+}
+
 EightWays* WayOut::next() noexcept {
   if (count_ < most_) return &ways_[count_];
-  std::ranges::fill(common_.rows, std::uint16_t{0});
+  close();
   return nullptr;
 }
 
@@ -44,7 +53,7 @@ AddedGroups WayOut::add(const GroupsToAdd& groups) noexcept {
   if (count_ > most_) return {};
   const AddedGroups added = kernels_.add_groups(groups, &ways_[count_], common_);
   count_ += added.count;
-  if (count_ > most_) std::ranges::fill(common_.rows, std::uint16_t{0});
+  if (count_ > most_) close();
   return added;
 }
 

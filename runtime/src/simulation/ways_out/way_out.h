@@ -25,6 +25,12 @@ class WayOut {
   /// Forgets all spheres. `spacing`: edge of a cell, meters.
   void clear(float spacing) noexcept;
 
+  /// From now on no move is free, until clear().
+  void close() noexcept;
+
+  /// Whether there is a cell around their own in which all spheres are free.
+  [[nodiscard]] bool isOpen() const noexcept;
+
   /// Adds the spheres of `lanes` at `places`. `rows`: of the slices for their radius.
   void add(const std::uint16_t* rows, const EightPlaces& places, unsigned lanes) noexcept;
 

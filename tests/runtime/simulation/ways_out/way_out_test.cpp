@@ -106,6 +106,24 @@ double shortestOfAll(std::span<const Sphere> spheres) {
 constexpr float kAny = 5;
 constexpr float kRounding = 1e-5F;
 
+TEST(WayOut, IsOpenAsLongAsOneCellIsFreeForAllSpheres) {
+  WayOut way(2);
+  way.clear(1);
+  EXPECT_TRUE(way.isOpen());
+  Surroundings corner;
+  corner.setFree(kCellsAround, -kCellsAround);
+  way.add(corner, 0.5F, 0.5F);
+  EXPECT_TRUE(way.isOpen());
+  way.add(Surroundings{}, 0.5F, 0.5F);
+  EXPECT_FALSE(way.isOpen());
+  way.clear(1);
+  way.close();
+  EXPECT_FALSE(way.isOpen());
+  EXPECT_EQ(way.shortest({}, kAny).squared, kNoWay);
+  way.clear(1);
+  EXPECT_TRUE(way.isOpen());
+}
+
 TEST(WayOut, LeadsToWhereAllSpheresAreFreeAndIsLittleLongerThanTheShortest) {
   constexpr std::uint32_t kSeed = 1604;
   std::printf("seed %u\n", kSeed);
