@@ -171,15 +171,24 @@ def _resumed_run(options: argparse.Namespace) -> Run:
         raise galactic.Error(
             galactic.ErrorCode.IO, str(file), f"does not exist: {options.out} holds no run"
         )
-    run = json.loads(file.read_text(encoding="utf-8"))
-    settings = resumed(Settings.from_dict(run["settings"]), given_options(options))
-    validation = run["validation"]
-    return Run(
-        pathlib.Path(run["world"]),
-        pathlib.Path(validation) if validation else None,
-        settings,
-        pathlib.Path(run["start_from"]) if run.get("start_from") else None,
-    )
+    run = _read_run(file)
+    return dataclasses.replace(run, settings=resumed(run.settings, given_options(options)))
+
+
+def _read_run(file: pathlib.Path) -> Run:
+    remedy = "begin another run, which can have the weights of best.pt (--start-from)"
+    with checkpoint.refusing(f"{file} does not say what the run is", remedy):
+        run = json.loads(file.read_text(encoding="utf-8"))
+        run, path = {"start_from": None, **run}, (str, type(None))
+        checkpoint.require_types(
+            run, {"world": str, "validation": path, "start_from": path, "settings": dict}
+        )
+        return Run(
+            pathlib.Path(run["world"]),
+            pathlib.Path(run["validation"]) if run["validation"] else None,
+            Settings.from_dict(run["settings"]),
+            pathlib.Path(run["start_from"]) if run["start_from"] else None,
+        )
 
 
 def _write_run(run: Run, folder: pathlib.Path) -> None:

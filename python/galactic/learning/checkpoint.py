@@ -24,15 +24,17 @@ and under "values" a JSON text with all else (torch 1.13 reads no plain floats t
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import json
 import os
 import pathlib
 import shutil
 from dataclasses import dataclass
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Iterator, Mapping, Optional
 
 import torch
+from torch import Tensor
 
 from galactic._core import ErrorCode
 from galactic.errors import Error
@@ -42,6 +44,7 @@ from galactic.learning.settings import Settings
 FORMAT = 1
 # What every pack begins with: docs/packs.md.
 _PACK = b"GALAPACK"
+_ANOTHER_POLICY = "take best.pt or a policy.pt of a run"
 
 
 class CheckpointError(Exception):
@@ -87,21 +90,15 @@ def save_policy(saved: SavedPolicy, file: pathlib.Path) -> None:
     save(file, values, {"policy": saved.policy.state_dict()})
 
 
-def load_policy(file: pathlib.Path) -> SavedPolicy:
-    """Reads a policy.pt or best.pt; the policy is on the processor, ready to act."""
-    values, tensors = load(file)
+def load_policy(file: pathlib.Path, remedy: str = "") -> SavedPolicy:
+    """Reads a policy.pt or best.pt; the policy is on the processor, ready to act. `remedy` is as in
+    load()."""
+    values, tensors = load(file, remedy)
+    remedy = remedy or _ANOTHER_POLICY
     if values.get("format") != FORMAT or "policy" not in tensors:
-        raise CheckpointError(
-            f"{file} is not a policy of format {FORMAT}; take best.pt or a policy.pt of a run"
-        )
-    try:
+        raise CheckpointError(f"{file} is not a policy of format {FORMAT}; {remedy}")
+    with refusing(f"{file} is not a policy of this version", remedy):
         return _policy_of(values, tensors["policy"])
-    except Exception as error:  # torch raises whatever its readers do
-        # Of layers that do not fit, torch has a line each; the first of them tells enough.
-        found = " ".join(line.strip() for line in str(error).splitlines()[:2])
-        raise CheckpointError(
-            f"{file} is not a policy of this version: {found}; take best.pt or a policy.pt of a run"
-        ) from error
 
 
 # Of what is in a policy.pt, and of its shape: types that JSON gives them.
@@ -122,9 +119,9 @@ _SHAPE = {
 
 
 def _policy_of(values: dict[str, Any], state: dict[str, Any]) -> SavedPolicy:
-    _require_types(values, _POLICY)
+    require_types(values, _POLICY)
     sizes = {**PolicyShape._field_defaults, **values["shape"]}
-    _require_types(sizes, _SHAPE)
+    require_types(sizes, _SHAPE)
     settings, shape = Settings.from_dict(values["settings"]), PolicyShape(**sizes)
     policy = new_policy(settings, shape)
     policy.load_state_dict(state)
@@ -133,12 +130,46 @@ def _policy_of(values: dict[str, Any], state: dict[str, Any]) -> SavedPolicy:
     return SavedPolicy(policy, settings, shape, parts, values["steps"], values["success"])
 
 
-def _require_types(values: dict[str, Any], types: dict[str, Any]) -> None:
+@contextlib.contextmanager
+def refusing(fault: str, remedy: str) -> Iterator[None]:
+    """Around taking over what a file holds: whatever is raised, and torch raises whatever its readers
+    do, becomes a CheckpointError "FAULT: what was found; REMEDY"."""
+    try:
+        yield
+    except CheckpointError:
+        raise
+    except Exception as error:
+        # Of layers that do not fit, torch has a line each; the first of them tells enough.
+        found = " ".join(line.strip() for line in str(error).splitlines()[:2])
+        raise CheckpointError(f"{fault}: {found}; {remedy}") from error
+
+
+def require_types(values: dict[str, Any], types: dict[str, Any]) -> None:
+    """Raises ValueError where `values` lacks a name of `types`, or has something of another type."""
     for name, wanted in types.items():
         if name not in values or not isinstance(values[name], wanted):
             found = repr(values[name]) if name in values else "nothing"
             names = [one.__name__ for one in (wanted if isinstance(wanted, tuple) else (wanted,))]
             raise ValueError(f"{name}: found {found}, expected {' or '.join(names)}")
+
+
+def require_tensors(found: Any, wanted: Mapping[str, Tensor]) -> None:
+    """Raises ValueError where `found` is no dictionary with tensors of these names, shapes and types:
+    torch would stretch some to fit."""
+    tensors = found if isinstance(found, dict) else {}
+    for name, tensor in wanted.items():
+        one = _described(tensors.get(name))
+        if one != _described(tensor):
+            raise ValueError(f"{name}: found {one}, expected {_described(tensor)}")
+
+
+def _described(value: Any) -> str:
+    """A tensor of float32 [16, 4]."""
+    if value is None:
+        return "nothing"
+    if not isinstance(value, Tensor):
+        return f"{type(value).__name__}, which is no tensor"
+    return f"{str(value.dtype).removeprefix('torch.')} {list(value.shape)}"
 
 
 NEW_TERMINATE_LOGIT = -4.0
@@ -177,18 +208,18 @@ def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
         policy.action.start_terminate(NEW_TERMINATE_LOGIT)
 
 
-def load(file: pathlib.Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Values and tensors of a file. Rejects files that would run code."""
+def load(file: pathlib.Path, remedy: str = "") -> tuple[dict[str, Any], dict[str, Any]]:
+    """Values and tensors of a file. Rejects files that would run code. `remedy`: what to do about a
+    file that is none; of itself it says how to come by a policy."""
     try:
         handle = open(file, "rb")
     except OSError as error:
-        raise Error(ErrorCode.IO, str(file), f"cannot open the file: {error.strerror}") from None
+        message = f"cannot open the file: {error.strerror}" + (remedy and f"; {remedy}")
+        raise Error(ErrorCode.IO, str(file), message) from None
     with handle:
         if handle.read(len(_PACK)) == _PACK:
-            raise CheckpointError(
-                f"{file} is a pack, and no checkpoint; play a policy pack with galactic-run "
-                "--policy, or give the best.pt that it was made of"
-            )
+            play = "play a policy pack with galactic-run --policy, or give the best.pt that it was made of"
+            raise CheckpointError(f"{file} is a pack, and no checkpoint; {remedy or play}")
         handle.seek(0)
         try:
             contents = torch.load(handle, map_location="cpu", weights_only=True)
@@ -199,7 +230,8 @@ def load(file: pathlib.Path) -> tuple[dict[str, Any], dict[str, Any]]:
         except Exception as error:  # torch raises whatever its readers do
             # What torch advises is to let the file run code.
             raise CheckpointError(
-                f"{file} cannot be read as a checkpoint; take best.pt or a policy.pt of a run"
+                f"{file} cannot be read as a checkpoint: found {os.fstat(handle.fileno()).st_size:,} "
+                f"bytes of something else, or a part of one; {remedy or _ANOTHER_POLICY}"
             ) from error
 
 
@@ -286,6 +318,19 @@ class CheckpointFolder:
             message = "holds no checkpoint to go on from; begin the run without --resume"
             raise Error(ErrorCode.IO, str(self.folder), message)
         return complete[-1]
+
+    @property
+    def without_latest(self) -> str:
+        """What to do where the latest cannot be taken up: its files are of no use apart."""
+        *earlier, latest = self.complete()
+        if earlier:
+            return (
+                f"remove the folder {latest} to resume from {earlier[-1].name}, which is before it"
+            )
+        return (
+            "no checkpoint is before it: begin another run, which can have the weights of best.pt "
+            "(--start-from)"
+        )
 
     def _unfinished(self, steps: int) -> pathlib.Path:
         return self.folder / f".{steps:012d}.unfinished"

@@ -9,6 +9,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from galactic.learning.checkpoint import require_tensors, require_types
 from galactic.learning.environments import Environments, Observation, Timeouts
 from galactic.learning.graphs import Function, Replayed, Tensors, record_cuda
 from galactic.learning.networks import Inputs, Policy
@@ -119,20 +120,29 @@ class Collector:
 
     def state_dict(self) -> dict[str, Tensor]:
         """All that the next collect() depends on, but for the policy."""
-        rollout = self.rollout
-        last = rollout.steps
+        envs = torch.from_numpy(np.frombuffer(self.envs.save(), np.uint8).copy())
+        return {"envs": envs, **self._beside_envs()}
+
+    def _beside_envs(self) -> dict[str, Tensor]:
+        """The part of the state whose size is known without the envs."""
+        last = self.rollout.steps
         hidden = {} if self._hidden is None else {"hidden": self._hidden.cpu()}
         return {
             **hidden,
-            "envs": torch.from_numpy(np.frombuffer(self.envs.save(), np.uint8).copy()),
             "previous": self._previous_after(last).cpu(),
-            "starts": rollout.starts[last].cpu(),
+            "starts": self.rollout.starts[last].cpu(),
             "returns": torch.from_numpy(self._returns.copy()),
             "lengths": torch.from_numpy(self._lengths.copy()),
             "waits": torch.from_numpy(self._waits.copy()),
         }
 
     def load_state_dict(self, state: dict[str, Tensor]) -> None:
+        """Raises ValueError where it is not the state of as many envs with this policy, and what the
+        envs raise."""
+        # Checkpoints of before do not know who waits: their first episodes are long over.
+        state = {"waits": torch.zeros(self.envs.count, dtype=torch.bool), **state}
+        require_types(state, {"envs": Tensor})
+        require_tensors(state, self._beside_envs())
         self.envs.restore(state["envs"].numpy().tobytes())
         self.envs.observe(self._row(0, slice(None)))
         if self._hidden is not None:
@@ -144,8 +154,7 @@ class Collector:
         self.rollout.steps = 0
         self._returns[:] = state["returns"].numpy()
         self._lengths[:] = state["lengths"].numpy()
-        # Checkpoints of before do not know it: their first episodes are long over.
-        self._waits[:] = state["waits"].numpy() if "waits" in state else False
+        self._waits[:] = state["waits"].numpy()
 
     def _begin_again(self) -> None:
         """Makes the state after the last step row 0."""

@@ -6,6 +6,7 @@ import contextlib
 import datetime
 import hashlib
 import os
+import pickle
 from typing import Iterator, Optional
 
 import torch
@@ -79,6 +80,19 @@ class Group:
         if self.size > 1:
             with _others():
                 torch.distributed.barrier()
+
+    def raise_on_all(self, error: Optional[Exception]) -> None:
+        """Raises on every rank the `error` of the first that has one; nothing where none has. It is then
+        one sentence and one exit code, and nobody waits for a rank that has ended."""
+        errors = [error]
+        if self._store is not None:
+            self._store.set(f"error/{self.rank}", pickle.dumps(error).hex())
+            self.wait_for_all()
+            found = (self._store.get(f"error/{rank}") for rank in range(self.size))
+            errors = [pickle.loads(bytes.fromhex(one.decode())) for one in found]
+        for one in errors:
+            if one is not None:
+                raise one
 
     def is_first_to_say(self, text: str) -> bool:
         """Whether no other rank has asked this of the same text: what all of them find out is said

@@ -5,6 +5,8 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
+from galactic.learning.checkpoint import require_tensors
+
 
 class FlatAdam:
     """Adam (Kingma and Ba 2015) with the norm of the gradient clipped.
@@ -56,6 +58,9 @@ class FlatAdam:
         return dict(self._adam.state[self.parameters])
 
     def load_state_dict(self, state: dict[str, Tensor]) -> None:
+        """Raises ValueError where it is not the state after a step of as many parameters."""
+        moments = dict.fromkeys(("exp_avg", "exp_avg_sq"), self.parameters)
+        require_tensors(state, {"step": torch.tensor(0.0), **moments})
         own = self._adam.state[self.parameters]
         for name, value in state.items():
             own[name] = value.to(self.parameters.device) if value.dim() else value.clone()

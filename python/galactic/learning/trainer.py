@@ -8,18 +8,26 @@ import os
 import pathlib
 import signal
 import time
-from typing import Any, Callable, Optional
+from typing import Any, Callable, ContextManager, Optional
 
 import torch
 
+from galactic.errors import Error
 from galactic.learning import checkpoint
-from galactic.learning.checkpoint import CheckpointFolder, SavedPolicy, new_policy
+from galactic.learning.checkpoint import (
+    CheckpointError,
+    CheckpointFolder,
+    SavedPolicy,
+    new_policy,
+    refusing,
+    require_types,
+)
 from galactic.learning.collector import Collector, CollectorOptions, EpisodeSums
 from galactic.learning.distributed import Group
 from galactic.learning.environments import Environments
 from galactic.learning.networks import Policy, PolicyShape
 from galactic.learning.ppo import Learner
-from galactic.learning.reports.curves import Curves, write_json
+from galactic.learning.reports.curves import COLUMNS, Curves, write_json
 from galactic.learning.reports.progress import ProgressLine, amount, duration
 from galactic.learning.settings import Settings
 from galactic.learning.stopwatch import Stopwatch
@@ -248,27 +256,51 @@ class Trainer:
 
     def resume(self) -> None:
         """Takes up the latest checkpoint: what follows is what would have followed, on a processor
-        bit for bit."""
+        bit for bit. Raises on all ranks what one of them finds wrong: CheckpointError, or Error where a
+        file is missing."""
         assert self.checkpoints is not None
-        folder = self.checkpoints.latest()
-        trainer, tensors = checkpoint.load(folder / "trainer.pt")
-        if trainer["ranks"] != self.group.size:
-            raise checkpoint.CheckpointError(
-                f"{folder} is of {trainer['ranks']} ranks, not {self.group.size}; start as many"
-            )
-        saved = checkpoint.load_policy(folder / "policy.pt")
-        self.policy.load_state_dict(saved.policy.state_dict())
-        self.learner.optimizer.load_state_dict(tensors["optimizer"])
-        self.collector.load_state_dict(checkpoint.load(folder / f"rank-{self.group.rank}.pt")[1])
-        self.steps, self.updates, self.best = saved.steps, trainer["updates"], trainer["best"]
-        self.curves.rows = trainer["rows"]
-        self.stopwatch.seconds = dict(trainer["stopwatch"])
-        self._window = collections.deque(EpisodeSums(*sums) for sums in trainer["window"])
-        # As in Collector.load_state_dict().
-        self._waiting = trainer.get("waiting", 0)
-        self._seconds_before = trainer["seconds"]
+        fault = None
+        try:
+            self._take_up(self.checkpoints.latest(), self.checkpoints.without_latest)
+        except (CheckpointError, Error) as error:
+            fault = error
+        self.group.raise_on_all(fault)
+
+    def _take_up(self, folder: pathlib.Path, remedy: str) -> None:
+        file = folder / "trainer.pt"
+        counters, tensors = checkpoint.load(file, remedy)
+        with _fitting(file, remedy):
+            # Checkpoints of before do not know who waits: as in Collector.load_state_dict().
+            counters = {"waiting": 0, **counters}
+            require_types(counters, _COUNTERS)
+            if counters["ranks"] != self.group.size:
+                raise CheckpointError(
+                    f"{folder} is of {counters['ranks']} ranks, not {self.group.size}; start as many"
+                )
+            self._take_counters(counters)
+            self.learner.optimizer.load_state_dict(tensors.get("optimizer", {}))
+        file = folder / "policy.pt"
+        saved = checkpoint.load_policy(file, remedy)
+        with _fitting(file, remedy):
+            self.policy.load_state_dict(saved.policy.state_dict())
+        file = folder / f"rank-{self.group.rank}.pt"
+        _, state = checkpoint.load(file, remedy)
+        with _fitting(file, remedy):
+            self.collector.load_state_dict(state)
+        self.steps = saved.steps
         self._started = time.perf_counter()
         self._logged = (self.seconds, self.steps)
+
+    def _take_counters(self, counters: dict[str, Any]) -> None:
+        self.updates, self.best = counters["updates"], counters["best"]
+        self.curves.rows = _rows(counters, "rows", len(COLUMNS), (float, int, type(None)))
+        width = len(dataclasses.fields(EpisodeSums))
+        self._window = collections.deque(
+            EpisodeSums(*sums) for sums in _rows(counters, "window", width, (float, int))
+        )
+        require_types(counters["stopwatch"], dict.fromkeys(counters["stopwatch"], (float, int)))
+        self.stopwatch.seconds = dict(counters["stopwatch"])
+        self._waiting, self._seconds_before = counters["waiting"], counters["seconds"]
 
     def _saved_policy(self, success: Optional[float]) -> SavedPolicy:
         return SavedPolicy(self.policy, self.settings, self.shape, self.parts, self.steps, success)
@@ -337,6 +369,33 @@ class Trainer:
             raise KeyboardInterrupt
         self._interrupted = True
         self.progress.say("stopping after this update; once more to stop without saving")
+
+
+# Of a trainer.pt: types that JSON gives its values.
+_COUNTERS = {
+    "ranks": int,
+    "updates": int,
+    "best": (float, int, type(None)),
+    "rows": list,
+    "waiting": int,
+    "window": list,
+    "seconds": (float, int),
+    "stopwatch": dict,
+}
+
+
+def _rows(values: dict[str, Any], name: str, width: int, kinds: Any) -> list[list[Any]]:
+    """The table of that name; ValueError where a row has another width or kind of numbers."""
+    for number, row in enumerate(values[name]):
+        are_numbers = isinstance(row, list) and all(isinstance(one, kinds) for one in row)
+        if not are_numbers or len(row) != width:
+            raise ValueError(f"{name}[{number}]: found {row!r}, expected {width} numbers")
+    return list(values[name])
+
+
+def _fitting(file: pathlib.Path, remedy: str) -> ContextManager[None]:
+    """Around taking over what `file` holds."""
+    return refusing(f"{file} does not fit this run", remedy)
 
 
 class _Signals:

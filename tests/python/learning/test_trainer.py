@@ -7,6 +7,7 @@ import dataclasses
 import json
 import os
 import pathlib
+import shutil
 import signal
 import sys
 from typing import Any
@@ -249,6 +250,130 @@ def test_values_that_are_no_dictionary_are_refused(tmp_path: pathlib.Path) -> No
     checkpoint.save(tmp_path / "policy.pt", [1, 2], {})
     with pytest.raises(CheckpointError, match="policy.pt cannot be read as a checkpoint"):
         load_policy(tmp_path / "policy.pt")
+
+
+def saved_run(folder: pathlib.Path, **changes: Any) -> Trainer:
+    """A run with two checkpoints."""
+    settings = dataclasses.replace(SETTINGS, checkpoint_every=UPDATE, **changes)
+    trainer = make_trainer(folder, dataclasses.replace(settings, steps=2 * UPDATE))
+    trainer.begin()
+    trainer.train()
+    return make_trainer(folder, settings)
+
+
+@pytest.mark.parametrize("name", ["trainer.pt", "policy.pt", "rank-0.pt"])
+@pytest.mark.parametrize("damage", ["empty", "half", "text", "pack", "plain", "of another run"])
+def test_a_damaged_file_of_a_checkpoint_is_refused_with_what_to_do(
+    tmp_path: pathlib.Path, name: str, damage: str
+) -> None:
+    resumed = saved_run(tmp_path)
+    latest = resumed.checkpoints.latest()
+    file = latest / name
+    if damage == "of another run":
+        (tmp_path / "other").mkdir()
+        other = saved_run(tmp_path / "other", width=8, envs=8).checkpoints.latest()
+        shutil.copy(other / name, file)
+    elif damage == "plain":
+        torch.save([1, 2], file)
+    else:
+        whole = file.read_bytes()
+        damaged = {"empty": b"", "half": whole[: len(whole) // 2], "text": b"no checkpoint"}
+        file.write_bytes(damaged.get(damage, b"GALAPACK and more"))
+    with pytest.raises(CheckpointError) as refused:
+        resumed.resume()
+    said = str(refused.value)
+    assert said.startswith(f"{file} ") and "\n" not in said
+    assert said.endswith(
+        f"; remove the folder {latest} to resume from {UPDATE:012d}, which is before it"
+    )
+    shutil.rmtree(latest)
+    resumed.resume()
+    assert resumed.steps == UPDATE
+
+
+def test_a_file_that_a_checkpoint_lacks_is_missed(tmp_path: pathlib.Path) -> None:
+    resumed = saved_run(tmp_path)
+    (resumed.checkpoints.latest() / "rank-0.pt").unlink()
+    with pytest.raises(galactic.Error, match="cannot open the file: No such file.*; remove the f"):
+        resumed.resume()
+
+
+def test_the_only_checkpoint_has_none_to_go_back_to(tmp_path: pathlib.Path) -> None:
+    resumed = saved_run(tmp_path)
+    shutil.rmtree(resumed.checkpoints.complete()[0])
+    (resumed.checkpoints.latest() / "trainer.pt").write_bytes(b"")
+    with pytest.raises(
+        CheckpointError, match=r"found 0 bytes.*; no checkpoint is before it: begin"
+    ):
+        resumed.resume()
+
+
+GONE = "gone"
+
+
+@pytest.mark.parametrize(
+    "name, changes, message",
+    [
+        ("trainer.pt", {"ranks": 2}, "is of 2 ranks, not 1; start as many"),
+        ("trainer.pt", {"ranks": GONE}, "ranks: found nothing, expected int"),
+        ("trainer.pt", {"updates": 1.5}, "updates: found 1.5, expected int"),
+        ("trainer.pt", {"best": "most"}, "best: found 'most', expected float or int or NoneType"),
+        ("trainer.pt", {"rows": None}, "rows: found None, expected list"),
+        (
+            "trainer.pt",
+            {"rows": [[1.0, 2.0]]},
+            r"rows\[0\]: found \[1.0, 2.0\], expected 20 numbers",
+        ),
+        ("trainer.pt", {"window": [[1, 2, 3, "4"]]}, r"window\[0\]: found \[1, 2, 3, '4'\], exp"),
+        ("trainer.pt", {"window": [4]}, r"window\[0\]: found 4, expected 4 numbers"),
+        ("trainer.pt", {"seconds": GONE}, "seconds: found nothing, expected float or int"),
+        ("trainer.pt", {"stopwatch": {"update": "long"}}, "update: found 'long', expected float"),
+        ("trainer.pt", {"optimizer": GONE}, "step: found nothing, expected float32 "),
+        ("trainer.pt", {"optimizer": [1]}, "step: found nothing, expected float32 "),
+        (
+            "trainer.pt",
+            {"optimizer": {"step": 3}},
+            "step: found int, which is no tensor, expected fl",
+        ),
+        ("rank-0.pt", {"envs": GONE}, "envs: found nothing, expected Tensor"),
+        ("rank-0.pt", {"envs": torch.zeros(7, dtype=torch.uint8)}, "does not fit this run: "),
+        ("rank-0.pt", {"starts": GONE}, r"starts: found nothing, expected bool \[16\]"),
+        ("rank-0.pt", {"starts": torch.zeros(1).bool()}, r"found bool \[1\], expected bool \[16\]"),
+        (
+            "rank-0.pt",
+            {"returns": torch.zeros(16)},
+            r"found float32 \[16\], expected float64 \[16\]",
+        ),
+        ("rank-0.pt", {"waits": torch.zeros(2).bool()}, r"waits: found bool \[2\], expected bool"),
+    ],
+)
+def test_a_checkpoint_of_other_values_is_refused(
+    tmp_path: pathlib.Path, name: str, changes: dict[str, Any], message: str
+) -> None:
+    """Some of them torch would have stretched to fit."""
+    resumed = saved_run(tmp_path)
+    file = resumed.checkpoints.latest() / name
+    values, tensors = checkpoint.load(file)
+    for key, value in changes.items():
+        part = tensors if key in tensors else values
+        part[key] = value
+        if value is GONE:
+            del part[key]
+    checkpoint.save(file, values, tensors)
+    with pytest.raises(CheckpointError, match=message) as refused:
+        resumed.resume()
+    assert str(file.parent) in str(refused.value) and "\n" not in str(refused.value)
+
+
+def test_a_checkpoint_of_before_the_curves_waited_is_taken_up(tmp_path: pathlib.Path) -> None:
+    resumed = saved_run(tmp_path)
+    for name, key in (("trainer.pt", "waiting"), ("rank-0.pt", "waits")):
+        file = resumed.checkpoints.latest() / name
+        values, tensors = checkpoint.load(file)
+        (values if key in values else tensors).pop(key)
+        checkpoint.save(file, values, tensors)
+    resumed.resume()
+    assert resumed.collector.waiting == 0 and resumed.steps == 2 * UPDATE
 
 
 def test_an_interrupted_run_saves_and_goes_on(tmp_path: pathlib.Path) -> None:

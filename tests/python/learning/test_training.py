@@ -181,6 +181,33 @@ def test_a_run_is_not_written_over_nor_turned_into_another(tmp_path: pathlib.Pat
     assert longer.returncode == 0 and len(curve(tmp_path / "run")) == 3
 
 
+def test_a_damaged_checkpoint_is_one_sentence_on_any_number_of_ranks(
+    tmp_path: pathlib.Path,
+) -> None:
+    """Also of the ranks whose own files are whole."""
+    folder = tmp_path / "run"
+    words = [*SMALL_OF_ANY_RANKS, "--ranks", "2", "--steps", 2 * UPDATE]
+    assert run("train", WORLD, "-o", folder, *words).returncode == 0
+    (file,) = folder.glob("checkpoints/[0-9]*/rank-1.pt")
+    whole = file.read_bytes()
+
+    def refuse(code: int, message: str) -> None:
+        done = run("train", "-o", folder, "--resume", "--steps", 3 * UPDATE)
+        assert done.returncode == code, done.stderr
+        assert done.stderr.startswith(f"galactic.train: {message}"), done.stderr
+        assert done.stderr.count("\n") == 1
+
+    file.write_bytes(whole[:100])
+    refuse(3, f"{file} cannot be read as a checkpoint: found 100 bytes of something else")
+    values, tensors = checkpoint.load(folder / "best.pt")
+    checkpoint.save(file, values, tensors)
+    refuse(3, f"{file} does not fit this run: envs: found nothing")
+    file.unlink()
+    refuse(2, f"{file}: cannot open the file: No such file or directory; no checkpoint is before")
+    (folder / "settings.json").write_text("[]", encoding="utf-8")
+    refuse(3, f"{folder / 'settings.json'} does not say what the run is: ")
+
+
 def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
     """The weights of Mobile Pick begin a run of Rearrange, which has a decision more."""
     pick, rearrange = tmp_path / "pick", tmp_path / "rearrange"
