@@ -29,8 +29,6 @@ namespace fs = std::filesystem;
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kExitInterrupted = 130;
-
 /// What the command and its jobs name: whatever else they read is known when they have.
 ReadLog namedFiles(const BakeCommand& command, const JobList& list) {
   ReadLog named;

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -14,6 +15,7 @@
 #include "dynamics/episodes/trace.h"
 #include "galactic/bake/parallel_for.h"
 #include "galactic/option_text.h"
+#include "run/interrupt.h"
 #include "run/recording.h"
 #include "support/content_hash.h"
 #include "support/try.h"
@@ -175,9 +177,15 @@ Result<std::vector<EpisodeComparison>> compareAll(const EpisodePlan& plan,
   const std::size_t wanted =
       command.threads != 0 ? command.threads : std::max(1U, std::thread::hardware_concurrency());
   const std::size_t threads = std::min(wanted, open.size());
+  // Before there are threads, which inherit it.
+  const Interrupt interrupt;
+  std::atomic<bool> is_interrupted = false;
   ASSIGN_OR_RETURN(const auto lanes, LanePool::create(plan, threads));
   Progress progress(results.size() - open.size(), results.size(), command.is_quiet);
   bake::parallelFor(static_cast<unsigned>(threads), open.size(), [&](std::size_t k) {
+    // A signal is told to one of the threads.
+    if (interrupt.came()) is_interrupted = true;
+    if (is_interrupted) return;
     const std::size_t n = open[k];
     std::unique_ptr<EpisodeLane> lane = lanes->take();
     const auto compared = [&]() -> Result<EpisodeComparison> {
@@ -192,6 +200,7 @@ Result<std::vector<EpisodeComparison>> compareAll(const EpisodePlan& plan,
   });
   std::vector<EpisodeComparison> all;
   for (std::optional<Result<EpisodeComparison>>& result : results) {
+    if (!result) continue;
     ASSIGN_OR_RETURN(auto one, std::move(*result));
     all.push_back(std::move(one));
   }

@@ -50,7 +50,8 @@ class EpisodePlan {
 };
 
 /// Compares all episodes of the plan. `journal`: keeps what is done; null: nobody does. The result
-/// does not depend on the number of threads. Fails with the errors of compareEpisode, of the first
+/// does not depend on the number of threads. After Ctrl-C or SIGTERM it finishes what has begun,
+/// and returns fewer than plan.count(). Fails with the errors of compareEpisode, of the first
 /// episode that fails.
 [[nodiscard]] Result<std::vector<EpisodeComparison>> compareAll(const EpisodePlan& plan,
                                                                 const ComparisonWorlds& worlds,

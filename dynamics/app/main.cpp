@@ -84,7 +84,17 @@ Result<void> showBoth(const Command& command, const EpisodePlan& plan,
                          subject, command.shown);
 }
 
-Result<void> run(const Command& command) {
+/// Says how to go on.
+int endInterrupted(const Command& command, std::size_t done, std::size_t all) {
+  const std::string advice = command.report.empty() ? "--report FILE.json would keep what is done"
+                                                    : "start it again to go on from there";
+  fmt::print(stderr, "galactic-dynamics: interrupted after {} of {} episodes; {}\n", done, all,
+             advice);
+  return kExitInterrupted;
+}
+
+/// The exit code.
+Result<int> run(const Command& command) {
   ASSIGN_OR_RETURN(const auto world, World::open(command.packs));
   RETURN_IF_ERROR(checkOutputs(command, world));
   ASSIGN_OR_RETURN(const auto plan, EpisodePlan::create(command, world));
@@ -99,6 +109,9 @@ Result<void> run(const Command& command) {
   const ComparisonWorlds worlds{world, plan->options(), sources, command.world};
   Comparisons comparisons;
   ASSIGN_OR_RETURN(comparisons.episodes, compareAll(*plan, worlds, command, journal.get()));
+  if (comparisons.episodes.size() < plan->count()) {
+    return endInterrupted(command, comparisons.episodes.size(), plan->count());
+  }
   constexpr std::size_t kWorst = 10;
   comparisons.worst = worstMoments(comparisons.episodes, kWorst, !plan->isClosedLoop());
   const ReportSubject subject{.recording = command.recording.filename().string(),
@@ -110,18 +123,18 @@ Result<void> run(const Command& command) {
     return fail(ErrorCode::kIo, "standard output", "cannot be written; free some space");
   }
   RETURN_IF_ERROR(showBoth(command, *plan, comparisons, worlds, subject));
-  if (command.report.empty()) return {};
+  if (command.report.empty()) return kExitOk;
   const std::string json = reportJson(comparisons, world, subject);
   RETURN_IF_ERROR(writeFileAtomically(command.report, {std::as_bytes(std::span(json))}));
   journal->remove();
-  return {};
+  return kExitOk;
 }
 
 int start(int argc, const char* const* argv) {
   Command command;
   if (const auto code = parseCommandLine(argc, argv, command)) return *code;
-  const Result<void> done = run(command);
-  return done ? kExitOk : refuse(done.error());
+  const Result<int> done = run(command);
+  return done ? *done : refuse(done.error());
 }
 
 }  // namespace

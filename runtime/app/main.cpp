@@ -20,7 +20,6 @@
 #include "galactic/scene.h"
 #include "inspect/query_benchmark.h"
 #include "inspect/summary.h"
-#include "run/interrupt.h"
 #include "run/learned_run.h"
 #include "run/recording.h"
 #include "run/run_report.h"

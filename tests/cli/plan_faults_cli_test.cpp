@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "cli/plan_folder.h"
+#include "galactic/error.h"
 #include "support/part_files.h"
 
 namespace galactic::test::plan_faults_cli_test {
@@ -151,7 +152,7 @@ TEST_F(PlanFaults, StopsBetweenPacksAndGoesOnLater) {
     }
     program.signal(number);
     const ProgramRun stopped = program.wait();
-    EXPECT_EQ(stopped.exit_code, 130);
+    EXPECT_EQ(stopped.exit_code, kExitInterrupted);
     EXPECT_THAT(stopped.err, HasSubstr("finishing what has begun; once more to stop at once"));
     EXPECT_THAT(stopped.out, HasSubstr("stopped; the same command goes on from here\n"));
     EXPECT_EQ(report().at("run").at("stopped"), true);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "galactic/error.h"
 #include "support/homes/small_home_models.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
@@ -268,7 +269,7 @@ TEST_F(RenderCli, ARunThatIsStoppedFinishesItsPictures) {
                                               "1000",
                                               "--contact-sheet",
                                               "sheet.png"});
-  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_EQ(result.exit_code, kExitInterrupted) << result.err;
   EXPECT_THAT(result.out, HasSubstr("(stopped; 1000000000 steps were asked for)"));
   EXPECT_THAT(content("sheet.png"), StartsWith("\x89PNG"));
   EXPECT_THAT(files("frames"), testing::Contains("env_0001_step_000000_rgb.png"));

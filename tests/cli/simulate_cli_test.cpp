@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "galactic/error.h"
 #include "run/recording.h"
 #include "support/homes/small_home.h"
 #include "support/program_run.h"
@@ -431,7 +432,7 @@ TEST_F(SimulateCli, EndsCleanlyWhenItIsInterrupted) {
       "/usr/bin/timeout", folder_.path(),
       {"--preserve-status", "--signal=INT", "2", GALACTIC_RUN, "world.pack", "--envs", "8",
        "--steps", "100000000000", "--threads", "2", "--record", "run.rec"});
-  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_EQ(result.exit_code, kExitInterrupted) << result.err;
   EXPECT_THAT(result.out, AllOf(StartsWith("8 envs, "), HasSubstr("(stopped; 100000000000 steps"),
                                 HasSubstr("\n  stepping ")));
   const Result<RecordingReader> reader = RecordingReader::open(folder_.path() / "run.rec");

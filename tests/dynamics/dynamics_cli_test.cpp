@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "galactic/error.h"
 #include "support/program_run.h"
 #include "support/recipe_text.h"
 #include "support/scratch_folder.h"
@@ -124,6 +125,27 @@ TEST_F(DynamicsCli, GoesOnWhereItWasInterrupted) {
   // Another arm has nothing to do with it.
   EXPECT_EQ(few("kinematic").exit_code, 0);
   EXPECT_LT(report("again.json")["disturbed_objects"], 70);
+}
+
+TEST_F(DynamicsCli, SaysHowToGoOnWhenItIsInterrupted) {
+  // Told to end when the first episode is done.
+  const std::string script =
+      "report=$1; shift; \"$@\" --report $report -j 1 & tool=$!\n"
+      "until grep -q number $report.partial 2> /dev/null; do :; done\n"
+      "kill -TERM $tool; wait $tool";
+  const ProgramRun stopped =
+      runProgram("/bin/sh", path("").parent_path(),
+                 {"-c", script, "sh", "stopped.json", GALACTIC_DYNAMICS, "home.toml", "home.pack",
+                  "--data", (sourceFolder() / "packs/sample").string(), "--policy", "scripted"});
+  EXPECT_EQ(stopped.exit_code, kExitInterrupted) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("galactic-dynamics: interrupted after "));
+  EXPECT_THAT(stopped.err, HasSubstr(" of 6 episodes; start it again to go on from there\n"));
+  EXPECT_TRUE(stopped.out.empty()) << stopped.out;
+  EXPECT_TRUE(std::filesystem::exists(path("stopped.json.partial")));
+  EXPECT_FALSE(std::filesystem::exists(path("stopped.json")));
+  ASSERT_EQ(run({"--policy", "scripted", "--report", "stopped.json"}).exit_code, 0);
+  ASSERT_EQ(run({"--policy", "scripted", "--report", "through.json"}).exit_code, 0);
+  EXPECT_EQ(fileContent(path("stopped.json")), fileContent(path("through.json")));
 }
 
 TEST_F(DynamicsCli, ShowsTheWorstMoments) {

@@ -3,9 +3,6 @@
 
 namespace galactic {
 
-/// The exit code of a program that an Interrupt ended: what shells say of Ctrl-C.
-inline constexpr int kExitInterrupted = 130;
-
 /// While it lives, Ctrl-C and SIGTERM do not end the program but wait to be asked for. Make it
 /// before threads start, which inherit this. Destroyed, the next signal ends the program as usual.
 class Interrupt {

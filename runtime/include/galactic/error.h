@@ -8,10 +8,12 @@ namespace galactic {
 /// Why something failed. The values are the exit codes of all tools.
 enum class ErrorCode { kIo = 2, kInvalidInput = 3, kInternal = 4, kUnsupported = 5 };
 
-/// The exit codes besides those of ErrorCode: success, a wrong command line, a difference.
+/// The exit codes besides those of ErrorCode: success, a wrong command line, a difference, and of
+/// what was interrupted the one that shells give Ctrl-C.
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitUsage = 1;
 inline constexpr int kExitDiffers = 7;
+inline constexpr int kExitInterrupted = 130;
 /// What --help of all tools says about exit codes.
 inline constexpr const char* kExitCodesHelp =
     "Exit codes:\n"
