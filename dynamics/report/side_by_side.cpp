@@ -3,15 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "command_line/options.h"
 #include "drawing/contact_sheet.h"
-#include "drawing/rendering.h"
+#include "drawing/frame_images.h"
+#include "dynamics/report/best_view.h"
 #include "dynamics/report/names.h"
 #include "pictures/png_file.h"
 #include "run/tracked_run.h"
@@ -24,16 +26,12 @@
 namespace galactic::dynamics {
 namespace {
 
-/// Pixels of a picture.
-constexpr std::uint32_t kWidth = 480;
-constexpr std::uint32_t kHeight = 360;
-
 /// What one world looks like while an episode is played in it.
 class Onlooker {
  public:
-  /// `rendering`: null without pictures. `steps`: after which ones there is a picture.
-  Onlooker(const World& world, Rendering* rendering, std::vector<std::uint32_t> steps)
-      : world_(world), rendering_(rendering), steps_(std::move(steps)) {}
+  /// `best`: takes the stills; null without pictures. `steps`: after which ones there is one.
+  Onlooker(const World& world, BestView* best, std::vector<std::uint32_t> steps)
+      : world_(world), best_(best), steps_(std::move(steps)) {}
 
   void look(const BatchSimulator& simulator, std::span<const float> actions) {
     if (actions.empty()) {
@@ -42,31 +40,26 @@ class Onlooker {
     }
     track_->add(simulator, actions);
     const auto step = static_cast<std::uint32_t>(track_->steps()) - 1;
-    if (rendering_ == nullptr) return;
+    if (best_ == nullptr) return;
     // Where the episode ends before, its end is shown.
     if (std::ranges::find(steps_, step) != steps_.end() || simulator.dones()[0] != 0) {
-      rendering_->update(simulator);
-      rendering_->begin();
-      rendering_->end();
-      last_.emplace(tileOf(rendering_->frames().front()));
-      pictures_.insert_or_assign(step, *last_);
+      stills_.insert_or_assign(step, best_->take(simulator));
     }
   }
 
   [[nodiscard]] const RunTrack& track() const { return *track_; }
   /// After this step or, where there was none, the last one.
-  [[nodiscard]] const pictures::Image& picture(std::uint32_t step) const {
-    const auto found = pictures_.find(step);
-    return found == pictures_.end() ? *last_ : found->second;
+  [[nodiscard]] const Still& still(std::uint32_t step) const {
+    const auto found = stills_.find(step);
+    return found == stills_.end() ? stills_.rbegin()->second : found->second;
   }
 
  private:
   const World& world_;
-  Rendering* rendering_;
+  BestView* best_;
   std::vector<std::uint32_t> steps_;
   std::optional<RunTrack> track_;
-  std::map<std::uint32_t, pictures::Image> pictures_;
-  std::optional<pictures::Image> last_;
+  std::map<std::uint32_t, Still> stills_;
 };
 
 /// Lets a lane follow what the simulation did.
@@ -85,14 +78,24 @@ void replayHere(const EpisodeTrace& trace, EpisodeLane& lane, Onlooker& onlooker
   }
 }
 
-Result<Rendering> makeRendering(const World& world, const EpisodeLane& lane) {
-  RunOptions options;
-  options.simulation = lane.simulator().options();
-  options.drawing.images = "rgb";
-  options.drawing.width = kWidth;
-  options.drawing.height = kHeight;
-  options.drawing.camera = "follow";
-  return Rendering::create(world, lane.simulator(), options, 1);
+/// What is to be seen of a moment.
+PictureSubject subjectOf(const Moment& moment, const EpisodeComparison& episode,
+                         const EpisodeTrace& trace, const Robot& robot) {
+  switch (moment.kind) {
+    case MomentKind::kLost:
+      return {.objects = {trace.target}};
+    case MomentKind::kMissed:
+      return {.link = std::get<0>(episode.deepest->key)};
+    case MomentKind::kApart: {
+      PictureSubject hand{.link = robot.endEffector()->link};
+      if (const auto held = trace.steps[moment.step].held) hand.objects = {*held};
+      return hand;
+    }
+    case MomentKind::kMoved:
+      break;
+  }
+  const auto release = std::ranges::find(trace.releases, moment.step, &TracedRelease::step);
+  return {.objects = {release->object}};
 }
 
 std::string factsOf(const ReportSubject& subject) {
@@ -114,8 +117,7 @@ class SideBySide {
 
   Result<void> play() {
     if (!files_.pictures.empty()) {
-      ASSIGN_OR_RETURN(here_, makeRendering(parts_.worlds.world, parts_.here));
-      ASSIGN_OR_RETURN(there_, makeRendering(parts_.worlds.world, parts_.there));
+      ASSIGN_OR_RETURN(best_, BestView::create(parts_.worlds.world, parts_.here.simulator()));
     }
     std::map<std::size_t, std::vector<std::size_t>> moments;
     for (std::size_t n = 0; n < worst().size(); ++n) moments[worst()[n].comparison].push_back(n);
@@ -151,8 +153,8 @@ class SideBySide {
     std::vector<std::uint32_t> steps;
     for (const std::size_t n : moments) steps.push_back(worst()[n].step);
     const World& world = parts_.worlds.world;
-    Onlooker here(world, here_ ? &*here_ : nullptr, steps);
-    Onlooker there(world, there_ ? &*there_ : nullptr, steps);
+    Onlooker here(world, best_.get(), steps);
+    Onlooker there(world, best_.get(), steps);
     ASSIGN_OR_RETURN(const auto trace, parts_.trace_of(comparison));
     replayHere(trace, parts_.here, here);
     RETURN_IF_ERROR(
@@ -161,7 +163,10 @@ class SideBySide {
                          there.look(simulator, actions);
                        }));
     keep(here.track(), there.track(), trace.episode);
-    for (const std::size_t n : moments) keep(n, here, there);
+    for (const std::size_t n : moments) {
+      keep(n, there.track());
+      if (best_) draw(n, trace, {&here.still(worst()[n].step), &there.still(worst()[n].step)});
+    }
     return {};
   }
 
@@ -178,25 +183,34 @@ class SideBySide {
     twins_.insert(twins_.end(), {first + 1, first});
   }
 
-  void keep(std::size_t n, const Onlooker& here, const Onlooker& there) {
+  void keep(std::size_t n, const RunTrack& there) {
     const Moment& moment = worst()[n];
     const EpisodeComparison& episode = parts_.comparisons.episodes[moment.comparison];
     const std::size_t env = names_.size() - 1;
-    const auto last = static_cast<std::uint32_t>(there.track().steps());
+    const auto last = static_cast<std::uint32_t>(there.steps());
     page_moments_.push_back({.env = env,
                              .frame = std::min(moment.step + 1, last),
                              .text = describe(moment, episode, parts_.worlds.world)});
-    if (!here_) return;
-    cells_[2 * n] = {here.picture(moment.step), fmt::format("{}. episode {}, step {}", n + 1,
-                                                            episode.episode, moment.step + 1)};
-    cells_[2 * n + 1] = {there.picture(moment.step),
-                         fmt::format("dynamics: {}, {:.3f} m", nameOf(moment.kind), moment.meters)};
+  }
+
+  void draw(std::size_t n, const EpisodeTrace& trace, const std::array<const Still*, 2>& stills) {
+    const Moment& moment = worst()[n];
+    const EpisodeComparison& episode = parts_.comparisons.episodes[moment.comparison];
+    const auto cameras =
+        best_->camerasFor(stills, subjectOf(moment, episode, trace, parts_.worlds.world.robot()));
+    const std::array captions{
+        fmt::format("{}. episode {}, step {}", n + 1, episode.episode, moment.step + 1),
+        fmt::format("dynamics: {}, {:.3f} m", nameOf(moment.kind), moment.meters)};
+    for (std::size_t side = 0; side < stills.size(); ++side) {
+      cells_[2 * n + side] = {colorPicture(best_->draw(*stills[side], cameras[side])),
+                              captions[side]};
+    }
   }
 
   const SideBySideParts& parts_;
   const SideBySideFiles& files_;
-  std::optional<Rendering> here_;
-  std::optional<Rendering> there_;
+  /// Null without pictures.
+  std::unique_ptr<BestView> best_;
   std::optional<RunTrack> track_;
   std::vector<std::string> names_;
   std::vector<std::uint32_t> twins_;

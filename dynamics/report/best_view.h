@@ -1,0 +1,87 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "drawing/rendering.h"
+#include "galactic/batch_renderer.h"
+#include "galactic/batch_simulator.h"
+#include "galactic/error.h"
+#include "galactic/world.h"
+#include "galactic/world_models.h"
+#include "galactic/world_views.h"
+
+namespace galactic::dynamics {
+
+/// What a picture is about: some of an env's objects, a link of the robot, or both.
+struct PictureSubject {
+  /// Indices into EnvObjects::objects.
+  std::vector<std::size_t> objects = {};
+  std::optional<std::uint32_t> link = {};
+};
+
+/// An env as it was after a step, to be drawn later.
+struct Still {
+  /// Index into World::scenes().
+  std::uint32_t scene = 0;
+  /// As the camera sees it that follows the robot, without `posed` and `bodies`.
+  RenderView view;
+  std::vector<PosedModel> posed;
+  std::vector<RigidTransform> bodies;
+  /// By object of the env: its place in `posed`; none where it has nothing to show.
+  std::vector<std::optional<std::size_t>> places;
+};
+
+/// Draws stills from where most of their subject is seen: it looks from all around, counts the
+/// pixels of the subject and those of them that nothing hides. The software renderer does it, so
+/// that the pictures are the same on every machine.
+class BestView {
+ public:
+  /// `world` must outlive it; `simulator` is one of those that stills are taken of, which have one
+  /// env. Fails as WorldModels::from, chooseCamera and BatchRenderer::create do.
+  [[nodiscard]] static Result<std::unique_ptr<BestView>> create(const World& world,
+                                                                const BatchSimulator& simulator);
+
+  /// Valid as long as this lives.
+  [[nodiscard]] Still take(const BatchSimulator& simulator);
+
+  /// Cameras for two stills, which see their subjects from the same side and as far away, so that
+  /// the pictures compare: from where most of both is seen. They stand where the column grids are
+  /// free and outside of robot and objects. Where no such camera sees anything of the subject,
+  /// those that follow the robots.
+  [[nodiscard]] std::array<RenderCamera, 2> camerasFor(const std::array<const Still*, 2>& stills,
+                                                       const PictureSubject& subject);
+
+  /// Valid until the next call.
+  [[nodiscard]] DrawnImage draw(const Still& still, const RenderCamera& camera);
+
+ private:
+  /// The subject alone, and a ball around it.
+  struct Cutout {
+    std::vector<PosedModel> posed;
+    std::vector<AttachedModel> attached;
+    Vec3 center;
+    float radius = 0;
+  };
+
+  BestView(const World& world, WorldModels models) : world_(world), models_(std::move(models)) {}
+
+  [[nodiscard]] Cutout cutOut(const Still& still, const PictureSubject& subject) const;
+  /// By camera: which share of the subject is seen; 0 where there is no place for a camera.
+  [[nodiscard]] std::vector<float> sharesSeen(const Still& still, const Cutout& cutout,
+                                              const std::vector<RenderCamera>& cameras);
+  [[nodiscard]] bool hasPlaceFor(const Vec3& camera, const Still& still) const;
+
+  const World& world_;
+  WorldModels models_;
+  std::optional<WorldViews> views_;
+  std::optional<ImageBatch> looks_;
+  std::optional<ImageBatch> picture_;
+  /// By link of the robot: the body that carries it.
+  std::vector<std::size_t> body_of_link_;
+};
+
+}  // namespace galactic::dynamics
